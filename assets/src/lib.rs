@@ -1,0 +1,9 @@
+//! What is baked and shared: limits, skeleton, body, rig, fabrics, sizes, garments.
+//!
+//! Reads: TOML, OBJ and the data embedded under `data/`. Writes: immutable assets that every other room borrows.
+//! Budget: at load only; nothing here runs inside the frame.
+//! Thread: the loading thread.
+
+pub mod limits;
+pub mod mesh;
+pub mod skeleton;

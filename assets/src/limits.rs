@@ -1,0 +1,19 @@
+//! Every capacity and every rate of the engine: a named constant, its unit and its reason.
+
+/// Physics steps a second: fast enough that a hand at 6 m/s moves 5 cm a step, the radius of a wrist.
+pub const STEP_HZ: u32 = 120;
+
+/// Length of one step (s). Derived from [`STEP_HZ`]; time itself is counted in `u64` ticks.
+pub const STEP_SECONDS: f32 = 1.0 / STEP_HZ as f32;
+
+/// Collision spheres a body carries: the count of the published fitting rooms, enough for one body's outline.
+pub const MAX_SPHERES: usize = 16;
+
+/// Tapered capsules between those spheres: every limb plus the diagonals that fill the flat torso.
+pub const MAX_CAPSULES: usize = 28;
+
+/// Bone influences a vertex: four weights fill one 128-bit lane group.
+pub const INFLUENCES: usize = 4;
+
+/// Confidence below which a joint is not believed (0..1); Gultepe 2013, section 4.2.
+pub const CONFIDENCE_GATE: f32 = 0.5;

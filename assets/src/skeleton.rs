@@ -1,0 +1,189 @@
+//! The one skeleton of the house: joint names, parents, and the pose that bends them.
+//!
+//! Right-handed, y up, metres. The person faces +z, so their left side is +x. In the rest pose every bone's frame is
+//! aligned with the world's axes: a bone's rest transform is a translation.
+
+use glam::{Quat, Vec3};
+
+/// Joints that a sensor may report and a pose may bend; each is the centre of the rotation that it names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[repr(u8)]
+#[expect(missing_docs, reason = "the names are the field's standard terms")]
+pub enum Joint {
+    Pelvis,
+    Spine,
+    Chest,
+    Neck,
+    Head,
+    LeftClavicle,
+    LeftShoulder,
+    LeftElbow,
+    LeftWrist,
+    LeftHand,
+    LeftHip,
+    LeftKnee,
+    LeftAnkle,
+    LeftToe,
+    RightClavicle,
+    RightShoulder,
+    RightElbow,
+    RightWrist,
+    RightHand,
+    RightHip,
+    RightKnee,
+    RightAnkle,
+    RightToe,
+}
+
+/// Number of joints.
+pub const JOINTS: usize = 23;
+
+/// Number of bones that carry skin: one a joint, then one twist bone for each upper arm and forearm.
+pub const BONES: usize = JOINTS + 4;
+
+/// The bones that take half of a limb's twist (Gultepe 2013, section 4.4.3): index, the joint whose frame it starts
+/// from, and the joint towards which it twists. Each stands halfway between the two.
+pub const TWIST_BONES: [(usize, Joint, Joint); 4] = [
+    (23, Joint::LeftShoulder, Joint::LeftElbow),
+    (24, Joint::LeftElbow, Joint::LeftWrist),
+    (25, Joint::RightShoulder, Joint::RightElbow),
+    (26, Joint::RightElbow, Joint::RightWrist),
+];
+
+impl Joint {
+    /// All joints, parents before children.
+    pub const ALL: [Self; JOINTS] = {
+        use Joint::*;
+        [
+            Pelvis,
+            Spine,
+            Chest,
+            Neck,
+            Head,
+            LeftClavicle,
+            LeftShoulder,
+            LeftElbow,
+            LeftWrist,
+            LeftHand,
+            LeftHip,
+            LeftKnee,
+            LeftAnkle,
+            LeftToe,
+            RightClavicle,
+            RightShoulder,
+            RightElbow,
+            RightWrist,
+            RightHand,
+            RightHip,
+            RightKnee,
+            RightAnkle,
+            RightToe,
+        ]
+    };
+
+    /// The joint's place in every `[_; JOINTS]` array.
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+
+    /// The joint this one hangs from; `None` for the pelvis.
+    pub const fn parent(self) -> Option<Self> {
+        use Joint::*;
+        Some(match self {
+            Pelvis => return None,
+            Spine | LeftHip | RightHip => Pelvis,
+            Chest => Spine,
+            Neck | LeftClavicle | RightClavicle => Chest,
+            Head => Neck,
+            LeftShoulder => LeftClavicle,
+            LeftElbow => LeftShoulder,
+            LeftWrist => LeftElbow,
+            LeftHand => LeftWrist,
+            LeftKnee => LeftHip,
+            LeftAnkle => LeftKnee,
+            LeftToe => LeftAnkle,
+            RightShoulder => RightClavicle,
+            RightElbow => RightShoulder,
+            RightWrist => RightElbow,
+            RightHand => RightWrist,
+            RightKnee => RightHip,
+            RightAnkle => RightKnee,
+            RightToe => RightAnkle,
+        })
+    }
+
+    /// The same joint on the other side; joints of the midline are their own mirror.
+    pub const fn mirror(self) -> Self {
+        let i = self as usize;
+        if i < 5 {
+            self
+        } else if i < 14 {
+            Self::ALL[i + 9]
+        } else {
+            Self::ALL[i - 9]
+        }
+    }
+}
+
+/// Where the joints of one body lie in its rest pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Skeleton {
+    /// Rest position of each joint, world (m) `[JOINTS]`; the floor is y = 0.
+    pub rest: [Vec3; JOINTS],
+}
+
+impl Skeleton {
+    /// Rest position of one joint, world (m).
+    pub fn at(&self, joint: Joint) -> Vec3 {
+        self.rest[joint.index()]
+    }
+
+    /// Vector from a joint's parent to the joint in the rest pose (m); the pelvis' is its position.
+    pub fn offset(&self, joint: Joint) -> Vec3 {
+        match joint.parent() {
+            Some(parent) => self.at(joint) - self.at(parent),
+            None => self.at(joint),
+        }
+    }
+
+    /// Rest position of each bone's origin (m) `[BONES]`: the joints, then the twist bones.
+    pub fn bone_origins(&self) -> [Vec3; BONES] {
+        let mut origins = [Vec3::ZERO; BONES];
+        origins[..JOINTS].copy_from_slice(&self.rest);
+        for (bone, from, to) in TWIST_BONES {
+            origins[bone] = (self.at(from) + self.at(to)) * 0.5;
+        }
+        origins
+    }
+}
+
+/// How the skeleton is bent at one moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// World position of the pelvis (m).
+    pub root: Vec3,
+    /// Rotation of each joint relative to its parent `[JOINTS]`; identity is the rest pose.
+    pub local: [Quat; JOINTS],
+}
+
+impl Pose {
+    /// The rest pose of a skeleton.
+    pub fn rest(skeleton: &Skeleton) -> Self {
+        Self { root: skeleton.at(Joint::Pelvis), local: [Quat::IDENTITY; JOINTS] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parents_come_before_children_and_mirrors_return() {
+        for (i, joint) in Joint::ALL.into_iter().enumerate() {
+            assert_eq!(joint.index(), i);
+            assert!(joint.parent().is_none_or(|p| p.index() < i));
+            assert_eq!(joint.mirror().mirror(), joint);
+            assert_eq!(joint.parent().map(Joint::mirror), joint.mirror().parent());
+        }
+    }
+}

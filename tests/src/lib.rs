@@ -1,0 +1,1 @@
+//! The tests of the house live in `tests/`; this library holds what they share.
