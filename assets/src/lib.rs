@@ -4,6 +4,9 @@
 //! Budget: at load only; nothing here runs inside the frame.
 //! Thread: the loading thread.
 
+pub mod bake;
+pub mod fabric;
+pub mod garment;
 pub mod limits;
 pub mod mesh;
 pub mod skeleton;
