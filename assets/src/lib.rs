@@ -6,4 +6,5 @@
 
 pub mod limits;
 pub mod mesh;
+pub mod sizes;
 pub mod skeleton;
