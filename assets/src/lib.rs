@@ -9,4 +9,5 @@ pub mod fabric;
 pub mod garment;
 pub mod limits;
 pub mod mesh;
+pub mod sizes;
 pub mod skeleton;
