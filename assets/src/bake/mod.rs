@@ -7,6 +7,7 @@
 
 pub mod colour;
 pub mod fibers;
+pub mod weights;
 
 use crate::fabric::Fabric;
 use crate::garment::shape::NO_VERTEX;

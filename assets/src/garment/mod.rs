@@ -4,12 +4,19 @@
 //! Budget: at load only. Thread: the loading thread.
 
 pub mod check;
+pub mod drape;
+pub mod section;
 pub mod shape;
+pub mod style;
+pub mod sun_dress;
+pub mod t_shirt;
+pub mod wardrobe;
+pub mod wide_trousers;
 
 use glam::Vec3;
 
 pub use check::MeshError;
-pub use shape::{Face, Shape, Zone};
+pub use shape::{Face, Shape};
 
 use crate::bake::fibers::Direction;
 use crate::fabric::Fabric;

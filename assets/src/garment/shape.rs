@@ -11,29 +11,6 @@ pub const NO_VERTEX: u32 = u32::MAX;
 /// sides a-b and d-c run along the weft, a-d and b-c along the warp.
 pub type Face = [u32; 4];
 
-/// A part of the body that a garment may sit on; girths are compared zone by zone.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Zone {
-    /// Around the bust points, under the armpits.
-    Chest,
-    /// Around the natural waist.
-    Waist,
-    /// Around the greatest protrusion of the buttocks.
-    Hip,
-}
-
-impl Zone {
-    /// The word a shopper reads.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Chest => "chest",
-            Self::Waist => "waist",
-            Self::Hip => "hip",
-        }
-    }
-}
-
 /// A garment as drafted or imported, before it is baked. All vertex arrays have the same length.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Shape {
