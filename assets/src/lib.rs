@@ -5,8 +5,10 @@
 //! Thread: the loading thread.
 
 pub mod bake;
+pub mod body;
 pub mod fabric;
 pub mod garment;
+pub mod import;
 pub mod limits;
 pub mod mesh;
 pub mod sizes;
