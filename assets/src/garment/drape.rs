@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::section::{Fit, Plane, Section, resample};
 use super::shape::{Face, Shape};
+use crate::body::tape::hull;
 use crate::body::{Body, Region};
 
 /// Cloth starts at least this far from the skin (m): a little more than the contact offset of the thickest fabric.
@@ -11,6 +12,9 @@ pub const START_GAP_M: f32 = 0.005;
 
 /// Lowest height at which a trunk has an outline worth following (m): above the ankles.
 const LOWEST_LEVEL_M: f32 = 0.12;
+
+/// A way over the shoulder rises at least this much above its ends (m).
+const LEAST_RISE_M: f32 = 0.004;
 
 /// One body to drape on, and the gap that cloth keeps from it (m): none on the body that it is cut for, where its
 /// girths are what the size says; [`START_GAP_M`] on the shopper, who may be larger than the garment.
@@ -57,18 +61,20 @@ impl<'a> Form<'a> {
         let x = 0.5 * (front.x + back.x);
         let plane = Plane { origin: Vec3::X * x, u: Vec3::Z, v: Vec3::Y };
         let arm = if x > 0.0 { Region::LeftArm } else { Region::RightArm };
-        let Some(section) = Section::of(self.body, &[Region::Torso, arm], plane) else {
+        let lowest = front.y.min(back.y);
+        let Some(section) = Section::of(self.body, &[Region::Torso, arm], plane, |p| p.y > lowest) else {
             return vec![front, back];
         };
-        let lowest = front.y.max(back.y) + 0.01;
-        let outline = section.widened(0.0, self.gap.max(START_GAP_M));
-        let start = (0..outline.len()).find(|&k| outline[k].y <= lowest && outline[(k + 1) % outline.len()].y > lowest);
-        let mut line = vec![front];
-        if let Some(start) = start {
-            let turn = (1..=outline.len()).map(|k| outline[(start + k) % outline.len()]);
-            line.extend(turn.take_while(|p| p.y > lowest).map(|p| plane.at(p)));
-        }
-        line.push(back);
+        // The ends lie lowest, so they are corners of the hull, and the way over the top is one of its two sides.
+        let ends = [front, back].map(|p| Vec2::new(p.z, p.y));
+        let mut points = section.widened(0.0, self.gap.max(START_GAP_M));
+        points.retain(|p| p.y > lowest + LEAST_RISE_M);
+        points.extend(ends);
+        let around = hull(&points);
+        let place = |end: Vec2| around.iter().position(|&p| p == end).unwrap_or(0);
+        let (start, stop) = (place(ends[0]), place(ends[1]));
+        let count = (stop + around.len() - start) % around.len();
+        let mut line: Vec<Vec3> = (0..=count).map(|k| plane.at(around[(start + k) % around.len()])).collect();
         ease_sideways(&mut line, front.x, back.x);
         line
     }

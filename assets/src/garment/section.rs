@@ -38,20 +38,26 @@ pub struct Section {
 }
 
 impl Section {
-    /// The outline of the given regions; `None` where the plane misses them.
-    pub fn of(body: &Body, regions: &[Region], plane: Plane) -> Option<Self> {
-        let normal = plane.u.cross(plane.v);
+    /// The outline of the given regions, of those points alone that `near` admits (what belongs to a limb is a matter
+    /// of where, too: regions end in a slanted line). `None` where the plane misses them.
+    pub fn of(body: &Body, regions: &[Region], plane: Plane, near: impl Fn(Vec3) -> bool) -> Option<Self> {
         let keep = |t: usize| body.mesh.triangles[t].iter().all(|&v| regions.contains(&body.regions[v as usize]));
+        let normal = plane.u.cross(plane.v);
         let flat = |p: Vec3| Vec2::new((p - plane.origin).dot(plane.u), (p - plane.origin).dot(plane.v));
         let cuts = slice(&body.mesh, keep, plane.origin, normal);
-        let points = cuts.iter().flat_map(|s| s.map(flat)).collect::<Vec<_>>();
+        let points = cuts.iter().flatten().filter(|p| near(**p)).map(|&p| flat(p)).collect::<Vec<_>>();
         let outline = hull(&points);
         (outline.len() >= 3).then_some(Self { plane, outline })
     }
 
     /// The torso without arms at a height; below the crotch both legs together.
     pub fn trunk(body: &Body, height: f32) -> Option<Self> {
-        Self::of(body, &[Region::Torso, Region::LeftLeg, Region::RightLeg], Plane::level(height))
+        Self::of(body, &[Region::Torso, Region::LeftLeg, Region::RightLeg], Plane::level(height), |_| true)
+    }
+
+    /// The left leg at a height; above the crotch, the left half of the trunk.
+    pub fn left_leg(body: &Body, height: f32) -> Option<Self> {
+        Self::of(body, &[Region::Torso, Region::LeftLeg], Plane::level(height), |p| p.x >= 0.0)
     }
 
     /// Length of the outline (m).
@@ -155,6 +161,9 @@ fn along(line: &[Vec2], s: f32) -> Vec2 {
 
 /// `count` points evenly along an open line, its ends included.
 pub fn resample(line: &[Vec3], count: usize) -> Vec<Vec3> {
+    if line.len() < 2 {
+        return vec![line.first().copied().unwrap_or_default(); count];
+    }
     let mut sums = vec![0.0f32];
     for pair in line.windows(2) {
         sums.push(sums[sums.len() - 1] + pair[0].distance(pair[1]));

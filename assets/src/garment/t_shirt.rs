@@ -10,8 +10,8 @@ use crate::body::{Body, Region};
 use crate::sizes::Girth;
 use crate::skeleton::Joint;
 
-/// The underarm seam lies this far above the chest level (m).
-const UNDERARM_M: f32 = 0.02;
+/// Where the underarm seam lies between the chest level and the shoulders: just below the armpit.
+const UNDERARM_SHARE: f32 = 0.34;
 
 /// Half of the columns that an armhole cuts out of the ring, as a share of the ring.
 const ARMHOLE_SHARE: f32 = 0.055;
@@ -63,17 +63,18 @@ fn plan(style: &Style, cut: &Body) -> Plan {
     let chest = form.girth(levels.chest) + style.ease_mm.at(Girth::Chest).unwrap_or(0.0);
     let hip = style.ease_mm.at(Girth::Hip).map_or(chest, |ease| form.girth(levels.hip) + ease);
     let below_waist = below_waist_mm * 1e-3;
-    let length = levels.chest + UNDERARM_M - levels.waist + below_waist;
+    let underarm = underarm(cut);
+    let length = underarm - levels.waist + below_waist;
     let rows = (length / spacing).round() as usize;
     let to_hip = levels.chest - levels.hip;
     let rings = (0..=rows).map(|r| {
-        let down = ((length * r as f32 / rows as f32 - UNDERARM_M) / to_hip).clamp(0.0, 1.0);
+        let down = ((length * r as f32 / rows as f32 + levels.chest - underarm) / to_hip).clamp(0.0, 1.0);
         chest + (hip - chest) * down
     });
     let front = columns / 4 - (columns as f32 * ARMHOLE_SHARE).round() as usize;
-    let top = form.ring(levels.chest + UNDERARM_M, chest, columns);
+    let top = form.ring(underarm, chest, columns);
     let neck = (0..front).find(|&c| top[c].x >= neck_mm * 1e-3).unwrap_or(front / 2).max(2);
-    let shoulder_rows = (1.15 * (levels.shoulder - levels.chest - UNDERARM_M) / spacing).round().max(6.0) as usize;
+    let shoulder_rows = (1.15 * (levels.shoulder - underarm) / spacing).round().max(6.0) as usize;
     let sleeve_length = sleeve_mm * 1e-3;
     let sleeve_rows = (sleeve_length / spacing).round().max(4.0) as usize;
     let armhole = (columns / 2 - 2 * front) as f32 * chest / columns as f32 + 2.0 * shoulder_rows as f32 * spacing;
@@ -83,6 +84,12 @@ fn plan(style: &Style, cut: &Body) -> Plan {
     let rings = rings.collect();
     let front_neck = front_neck_mm * 1e-3;
     Plan { columns, front, neck, rings, shoulder_rows, sleeve, below_waist, sleeve_length, front_neck }
+}
+
+/// Height of the underarm seam (m).
+fn underarm(body: &Body) -> f32 {
+    let levels = &body.levels;
+    levels.chest + UNDERARM_SHARE * (levels.shoulder - levels.chest)
 }
 
 /// Where each part's vertices begin. Front and back columns run from the right armhole to the left one as seen by the
@@ -165,7 +172,7 @@ fn armhole_length(plan: &Plan) -> usize {
 /// [`connect`] drops them.
 fn lay(plan: &Plan, form: Form<'_>) -> Vec<Vec3> {
     let levels = &form.body.levels;
-    let (top, hem) = (levels.chest + UNDERARM_M, levels.waist - plan.below_waist);
+    let (top, hem) = (underarm(form.body), levels.waist - plan.below_waist);
     let last = (plan.rings.len() - 1) as f32;
     let mut points = Vec::new();
     for (r, &girth) in plan.rings.iter().enumerate() {
@@ -226,6 +233,9 @@ fn arm_girth(body: &Body, along: f32) -> f32 {
     arm_section(body, along, 1.0).map_or(0.3, |s| s.girth())
 }
 
+/// Nothing farther from the middle of an arm belongs to it (m).
+const ARM_REACH_M: f32 = 0.14;
+
 /// Outline of the left arm, in a plane that turns from the armhole's (0) to the arm's own (1).
 fn arm_section(body: &Body, along: f32, turn: f32) -> Option<Section> {
     let shoulder = body.skeleton.at(Joint::LeftShoulder);
@@ -234,7 +244,7 @@ fn arm_section(body: &Body, along: f32, turn: f32) -> Option<Section> {
     // A ring begins below the arm and runs over its front.
     let below = (Vec3::NEG_Y - normal * normal.dot(Vec3::NEG_Y)).normalize_or_zero();
     let plane = Plane { origin: shoulder + axis * along, u: below.cross(normal), v: below };
-    Section::of(body, &[Region::LeftArm], plane)
+    Section::of(body, &[Region::LeftArm, Region::Torso], plane, |p| p.distance(plane.origin) < ARM_REACH_M)
 }
 
 fn sleeve_ring(plan: &Plan, form: Form<'_>, hole: &[Vec3], k: usize) -> Vec<Vec3> {

@@ -4,10 +4,10 @@
 use glam::{Vec2, Vec3};
 
 use super::drape::{Form, flip, join};
-use super::section::{Fit, Plane, Section};
+use super::section::{Fit, Section};
 use super::shape::Shape;
 use super::style::{Cut, Style};
-use crate::body::{Body, Region};
+use crate::body::Body;
 use crate::sizes::Girth;
 
 /// Height of the skinned waistband (m).
@@ -101,9 +101,7 @@ fn leg_ring(plan: &Plan, form: Form<'_>, bottom: f32, row: usize) -> Vec<Vec3> {
     let down = plan.inseam * (row + 1) as f32 / plan.legs.len() as f32;
     let height = bottom - down;
     let fit = Fit { girth: plan.legs[row], gap: form.gap };
-    let section = [height, height - 0.04, height - 0.08]
-        .iter()
-        .find_map(|&y| Section::of(form.body, &[Region::LeftLeg], Plane::level(y.max(0.12))));
+    let section = Section::left_leg(form.body, height.max(0.12));
     let Some(section) = section else { return vec![Vec3::new(0.1, height, 0.0); columns] };
     // The outer side is the middle of the first half ring, so its first column lies a quarter of the hip before it.
     let ring = section.ring(fit, columns, Vec2::X, plan.columns as f32 / 4.0);
