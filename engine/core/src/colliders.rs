@@ -7,7 +7,7 @@
 use glam::{Affine3A, Vec3, Vec4, Vec4Swizzles};
 use thiserror::Error;
 use toile_assets::limits::{MAX_CAPSULES, MAX_SPHERES};
-use toile_assets::skeleton::BONES;
+use toile_assets::skeleton::{BONES, Skeleton};
 
 /// A sphere that follows a bone, where it stands in the rest pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +18,15 @@ pub struct RestSphere {
     pub centre: Vec3,
     /// Radius (m).
     pub radius: f32,
+}
+
+impl RestSphere {
+    /// A sphere given from its bone's origin in the rest pose (m). A bone that does not exist is refused by
+    /// [`Colliders::new`].
+    pub fn on_bone(skeleton: &Skeleton, bone: u8, offset: Vec3, radius: f32) -> Self {
+        let origin = skeleton.bone_origins().get(usize::from(bone)).copied().unwrap_or_default();
+        Self { bone, centre: origin + offset, radius }
+    }
 }
 
 /// Why a set of colliders cannot be used.
@@ -281,4 +290,112 @@ fn ball(v: Vec3, radius: f32, pole: Vec3, along: f32) -> Contact {
     let length = v.length();
     let normal = if length > 1e-9 { v / length } else { pole };
     Contact { distance: length - radius, normal, along }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Distance to the union of the balls that the two spheres sweep, by trying many of them; outside it is the
+    /// distance to the capsule, up to the sampling.
+    fn swept(a: Vec3, ra: f32, b: Vec3, rb: f32, p: Vec3) -> f32 {
+        let ball = |t: f32| p.distance(a.lerp(b, t)) - (ra + (rb - ra) * t);
+        // The distance is convex along the axis: halve the bracket around the least sample.
+        let best = (0..=64).min_by(|i, j| ball(*i as f32 / 64.0).total_cmp(&ball(*j as f32 / 64.0))).unwrap();
+        let (mut low, mut high) = ((best as f32 - 1.0).max(0.0) / 64.0, (best as f32 + 1.0).min(64.0) / 64.0);
+        for _ in 0..40 {
+            let (x, y) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+            if ball(x) < ball(y) { high = y } else { low = x }
+        }
+        ball(0.5 * (low + high))
+    }
+
+    fn point() -> impl Strategy<Value = Vec3> {
+        (-0.6_f32..0.6, -0.6_f32..0.6, -0.6_f32..0.6).prop_map(|(x, y, z)| Vec3::new(x, y, z))
+    }
+
+    proptest! {
+        #[test]
+        fn distance_is_that_to_the_swept_spheres_and_the_normal_its_gradient(
+            a in point(), b in prop_oneof![4 => point(), 1 => Just(Vec3::ZERO)], p in point(),
+            ra in 0.0_f32..0.3, rb in 0.0_f32..0.3, alike in any::<bool>(),
+        ) {
+            let rb = if alike { ra } else { rb };
+            let cone = RoundCone::new(a, ra, b, rb);
+            let (distance, normal) = cone.distance(p);
+            let truth = swept(a, ra, b, rb, p);
+            prop_assert!((distance - truth).abs() < 2e-5, "{distance} against {truth}");
+            prop_assert!((normal.length() - 1.0).abs() < 1e-4);
+            // One step of the length of the distance lands on the surface.
+            let surface = p - normal * distance;
+            prop_assert!(cone.distance(surface).0.abs() < 2e-5, "{} off the surface", cone.distance(surface).0);
+            let along = cone.contact(p).along;
+            prop_assert!((0.0..=1.0).contains(&along));
+            let foot = a.lerp(b, along);
+            let radius = ra + (rb - ra) * along;
+            prop_assert!((p.distance(foot) - radius - distance).abs() < 5e-5);
+        }
+
+        #[test]
+        fn no_spheres_make_a_normal_that_is_not_finite(
+            n in proptest::collection::vec(any::<f32>(), 8), p in point(),
+        ) {
+            let cone = RoundCone::new(Vec3::new(n[0], n[1], n[2]), n[3], Vec3::new(n[4], n[5], n[6]), n[7]);
+            let near = n.iter().all(|v| !v.is_finite() || v.abs() < 1e9);
+            let (distance, normal) = cone.distance(p);
+            prop_assert!(!near || (distance.is_finite() && normal.is_finite()), "{cone:?} {distance} {normal}");
+        }
+    }
+
+    #[test]
+    fn centres_and_axis_have_a_way_out() {
+        let (a, b) = (Vec3::ZERO, Vec3::Y);
+        for (ra, rb) in [(0.2, 0.2), (0.3, 0.1), (1.5, 0.2), (0.0, 0.0)] {
+            for p in [a, b, Vec3::Y * 0.5] {
+                let (distance, normal) = RoundCone::new(a, ra, b, rb).distance(p);
+                assert!((normal.length() - 1.0).abs() < 1e-5, "{ra} {rb} {p}");
+                assert!(distance <= 0.0);
+            }
+        }
+        let same = RoundCone::new(a, 0.1, a, 0.2).distance(Vec3::X);
+        assert_eq!(same, (0.8, Vec3::X));
+    }
+
+    fn two() -> Colliders {
+        let sphere = |bone, x| RestSphere { bone, centre: Vec3::new(x, 1.0, 0.0), radius: 0.1 };
+        Colliders::new(&[sphere(0, 0.0), sphere(3, 0.5)], &[[0, 1]], true).unwrap()
+    }
+
+    #[test]
+    fn first_placement_does_not_sweep_and_the_next_starts_where_the_last_ended() {
+        let mut colliders = two();
+        let mut palette = [Affine3A::IDENTITY; BONES];
+        palette[0] = Affine3A::from_translation(Vec3::Z);
+        colliders.place(&palette);
+        assert_eq!(colliders.start(), colliders.end());
+        assert_eq!(colliders.end()[0], Vec4::new(0.0, 1.0, 1.0, 0.1));
+        palette[3] = Affine3A::from_translation(Vec3::Y * 0.2);
+        let ended = colliders.end().to_vec();
+        colliders.place(&palette);
+        assert_eq!(colliders.start(), ended);
+        assert!(colliders.travel(0, 0.5).distance(Vec3::Y * 0.1) < 1e-6);
+        assert!(colliders.cone(0, 0.5).b.distance(Vec3::new(0.5, 1.1, 0.0)) < 1e-6);
+        colliders.reset();
+        colliders.place(&[Affine3A::IDENTITY; BONES]);
+        assert_eq!(colliders.start(), colliders.end());
+    }
+
+    #[test]
+    fn bad_rigs_are_refused_with_the_place() {
+        let good = RestSphere { bone: 0, centre: Vec3::ZERO, radius: 0.1 };
+        let refuse = |s: RestSphere| Colliders::new(&[good, s], &[], false).unwrap_err().to_string();
+        assert!(refuse(RestSphere { bone: 27, ..good }).contains("sphere 1 follows bone 27"));
+        assert!(refuse(RestSphere { radius: f32::NAN, ..good }).contains("sphere 1"));
+        assert!(refuse(RestSphere { radius: -0.1, ..good }).contains("sphere 1"));
+        let error = Colliders::new(&[good], &[[0, 1]], false).unwrap_err();
+        assert!(error.to_string().contains("[0, 1]"));
+        assert_eq!(Colliders::new(&[good; 17], &[], false), Err(ColliderError::TooManySpheres(17)));
+        assert_eq!(Colliders::new(&[good], &[[0, 0]; 29], false), Err(ColliderError::TooManyCapsules(29)));
+    }
 }

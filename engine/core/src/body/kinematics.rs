@@ -46,8 +46,8 @@ impl JointFrames {
 /// Skin matrices of a pose, `palette[bone] * rest point = world point` (m): the joints', then the twist bones'.
 pub fn palette(skeleton: &Skeleton, pose: &Pose, palette: &mut [Affine3A; BONES]) {
     let frames = JointFrames::new(skeleton, pose);
-    for i in 0..JOINTS {
-        palette[i] = skin_matrix(frames.rotation[i], frames.position[i], skeleton.rest[i]);
+    for (i, bone) in palette.iter_mut().enumerate().take(JOINTS) {
+        *bone = skin_matrix(frames.rotation[i], frames.position[i], skeleton.rest[i]);
     }
     for (bone, from, to) in TWIST_BONES {
         let axis = (skeleton.at(to) - skeleton.at(from)).normalize_or_zero();

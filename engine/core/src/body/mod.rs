@@ -11,6 +11,8 @@ mod limb;
 pub mod limits;
 mod retarget;
 pub mod smooth;
+#[cfg(test)]
+mod tests;
 
 pub use kinematics::{JointFrames, palette};
 
@@ -82,6 +84,10 @@ impl Poser {
         self.carry(&seen, &mut next, dt, first);
         if next.root.is_finite() && next.local.iter().all(|q| q.is_finite()) {
             self.pose = next;
+        } else {
+            // No input is known to lead here; should one, the last good pose stays and the memory starts anew.
+            self.retarget = Retarget::new(&self.skeleton);
+            self.ground = Ground::new(&self.skeleton);
         }
         self.pose
     }

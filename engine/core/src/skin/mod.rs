@@ -189,3 +189,6 @@ fn check(vertex: usize, given: &SkinWeights) -> Result<SkinWeights, SkinError> {
     pairs.sort_by(|a, b| b.1.total_cmp(&a.1));
     Ok(SkinWeights { bones: pairs.map(|p| p.0), weights: pairs.map(|p| p.1) })
 }
+
+#[cfg(test)]
+mod tests;
