@@ -1,0 +1,91 @@
+//! Forward kinematics: a pose becomes joint frames, and joint frames become the bones that carry skin.
+//!
+//! In the rest pose every bone's frame is a translation, so the matrix that moves a rest point with its bone is
+//! `x -> R (x - rest) + position`. The twist of a limb about its own axis is split (Gultepe 2013, section 4.4.3): the
+//! bone at the limb's root keeps the swing alone, the twist bone halfway turns with half the twist, and the joint at
+//! the far end with all of it, so that no stretch of skin between two bones bears more than half.
+
+use glam::{Affine3A, Mat3A, Quat, Vec3, Vec3A};
+use toile_assets::skeleton::{BONES, JOINTS, Joint, Pose, Skeleton, TWIST_BONES};
+
+/// Where every joint stands and how it is turned, in the world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointFrames {
+    /// Rotation from rest to world `[JOINTS]`.
+    pub rotation: [Quat; JOINTS],
+    /// World position (m) `[JOINTS]`.
+    pub position: [Vec3; JOINTS],
+}
+
+impl JointFrames {
+    /// Forward kinematics of one pose.
+    pub fn new(skeleton: &Skeleton, pose: &Pose) -> Self {
+        let mut frames = Self { rotation: pose.local, position: [pose.root; JOINTS] };
+        for joint in Joint::ALL {
+            let i = joint.index();
+            if let Some(parent) = joint.parent().map(Joint::index) {
+                let turn = frames.rotation[parent];
+                frames.position[i] = frames.position[parent] + turn * skeleton.offset(joint);
+                frames.rotation[i] = (turn * pose.local[i]).normalize();
+            }
+        }
+        frames
+    }
+
+    /// World position of one joint (m).
+    pub fn at(&self, joint: Joint) -> Vec3 {
+        self.position[joint.index()]
+    }
+
+    /// Rotation of one joint from rest to world.
+    pub fn turn(&self, joint: Joint) -> Quat {
+        self.rotation[joint.index()]
+    }
+}
+
+/// Skin matrices of a pose, `palette[bone] * rest point = world point` (m): the joints', then the twist bones'.
+pub fn palette(skeleton: &Skeleton, pose: &Pose, palette: &mut [Affine3A; BONES]) {
+    let frames = JointFrames::new(skeleton, pose);
+    for (i, bone) in palette.iter_mut().enumerate().take(JOINTS) {
+        *bone = skin_matrix(frames.rotation[i], frames.position[i], skeleton.rest[i]);
+    }
+    for (bone, from, to) in TWIST_BONES {
+        let axis = (skeleton.at(to) - skeleton.at(from)).normalize_or_zero();
+        let carrier = if is_shoulder(from) { from } else { to };
+        let (_, twist) = swing_twist(pose.local[carrier.index()], axis);
+        let start = if is_shoulder(from) { frames.turn(from) * twist.inverse() } else { frames.turn(from) };
+        let half = Quat::from_scaled_axis(axis * (0.5 * angle_about(twist, axis)));
+        let middle = (frames.at(from) + frames.at(to)) * 0.5;
+        palette[from.index()] = skin_matrix(start, frames.at(from), skeleton.at(from));
+        palette[bone] = skin_matrix(start * half, middle, (skeleton.at(from) + skeleton.at(to)) * 0.5);
+    }
+}
+
+/// The upper arm's own rotation holds its twist; the forearm's is held by the wrist that it turns.
+fn is_shoulder(joint: Joint) -> bool {
+    matches!(joint, Joint::LeftShoulder | Joint::RightShoulder)
+}
+
+fn skin_matrix(turn: Quat, position: Vec3, rest: Vec3) -> Affine3A {
+    let matrix3 = Mat3A::from_quat(turn);
+    Affine3A { matrix3, translation: Vec3A::from(position) - matrix3 * Vec3A::from(rest) }
+}
+
+/// Splits a rotation into `swing * twist`: the twist turns about `axis` (unit), the swing about a line across it.
+/// Half a turn of pure swing leaves the twist undefined; it is then taken as none.
+pub fn swing_twist(turn: Quat, axis: Vec3) -> (Quat, Quat) {
+    let along = turn.xyz().dot(axis);
+    let length = (along * along + turn.w * turn.w).sqrt();
+    if length < 1e-6 {
+        return (turn, Quat::IDENTITY);
+    }
+    let v = axis * (along / length);
+    let twist = Quat::from_xyzw(v.x, v.y, v.z, turn.w / length);
+    (turn * twist.inverse(), twist)
+}
+
+/// Angle (rad, -pi to pi) of a rotation about `axis`, of which the rotation is known to be a twist.
+pub fn angle_about(twist: Quat, axis: Vec3) -> f32 {
+    let along = twist.xyz().dot(axis);
+    if twist.w < 0.0 { 2.0 * (-along).atan2(-twist.w) } else { 2.0 * along.atan2(twist.w) }
+}
