@@ -7,4 +7,5 @@
 pub mod body;
 pub mod limits;
 pub mod mesh;
+pub mod rig;
 pub mod skeleton;
