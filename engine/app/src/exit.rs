@@ -130,7 +130,9 @@ pub fn install_panic_hook() {
             return;
         }
         let place = info.location().map_or_else(String::new, |at| format!(" at {}:{}", at.file(), at.line()));
-        let what = info.payload_as_str().unwrap_or("no reason given");
+        let payload = info.payload();
+        let owned = payload.downcast_ref::<String>().map(String::as_str);
+        let what = payload.downcast_ref::<&str>().copied().or(owned).unwrap_or("no reason given");
         let cure = "please report this with the command you typed";
         say_line(&one_line(&format!("internal fault{place} ({what}); {cure}")));
         if std::env::var_os("RUST_BACKTRACE").is_some() {
