@@ -4,6 +4,7 @@
 //! Budget: at load only; nothing here runs inside the frame.
 //! Thread: the loading thread.
 
+pub mod body;
 pub mod limits;
 pub mod mesh;
 pub mod sizes;
