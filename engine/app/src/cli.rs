@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use toile_assets::body::Sex;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
@@ -38,6 +39,8 @@ pub struct TryOnArgs {
     pub garments: Vec<String>,
     /// A size to wear in place of the recommended one.
     pub size: Option<String>,
+    /// Whose body is shown; `None` goes by the garment.
+    pub body: Option<Sex>,
     /// Where the files go.
     pub out: PathBuf,
     /// Whether pictures are made.
@@ -127,6 +130,8 @@ fn try_on() -> clap::Command {
             text("garment", "G", "Garment of the wardrobe, or an OBJ file; repeat it to dress in layers, inner first")
                 .action(ArgAction::Append),
             text("size", "S", "Size to wear, as the garment's table names it [default: the one that fits]"),
+            text("body", "B", "Body to show: female or male [default: whom the garment is cut for]")
+                .value_parser(["female", "male"]),
             path("out", "DIR", "Folder for the files; it is made if missing").default_value("out"),
             flag("no-pictures", "Make no pictures: only the report and the physics"),
             json(),
@@ -244,6 +249,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
             session: matches.get_one("session").cloned(),
             garments: matches.get_many("garment").into_iter().flatten().cloned().collect(),
             size: matches.get_one("size").cloned(),
+            body: matches.get_one::<String>("body").map(|b| if b == "male" { Sex::Male } else { Sex::Female }),
             out: required(matches, "out")?,
             pictures: !matches.get_flag("no-pictures"),
             json: matches.get_flag("json"),

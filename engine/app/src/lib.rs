@@ -9,11 +9,14 @@ pub mod cli;
 pub mod completions;
 pub mod doctor;
 pub mod exit;
+pub mod fit;
 pub mod machine;
 pub mod measure;
 pub mod output;
+pub mod pictures;
 pub mod record;
 pub mod report;
+pub mod shopper;
 pub mod terminal;
 pub mod try_on;
 

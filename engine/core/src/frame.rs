@@ -227,6 +227,11 @@ impl Frame {
         self.tick
     }
 
+    /// The pose of the last step.
+    pub fn pose(&self) -> &Pose {
+        &self.pose
+    }
+
     /// The body.
     pub fn body(&self) -> &Body {
         &self.body

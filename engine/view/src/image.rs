@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use crate::tone;
 use png::{BitDepth, ColorType, Compression, Encoder, Filter, SrgbRenderingIntent};
 
 /// Why a picture could not be written.
@@ -57,6 +58,11 @@ impl std::fmt::Display for Size {
 pub struct Image {
     size: Size,
     bytes: Vec<u8>,
+}
+
+/// Linear light of an sRGB value, both 0..1: for colours that are given as people write them.
+pub fn linear(srgb: f32) -> f32 {
+    tone::decode(srgb)
 }
 
 /// A rectangle of pixels.

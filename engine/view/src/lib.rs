@@ -11,6 +11,7 @@ pub mod sheet;
 pub mod text;
 pub mod trace;
 pub mod tree;
+pub mod tuck;
 
 mod sample;
 mod shade;
