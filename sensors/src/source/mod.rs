@@ -65,7 +65,7 @@ pub fn read_bytes(
 ) -> Result<Session, SourceError> {
     let unknown = |what| SourceError::UnknownKind { path: path.to_owned(), what };
     let result = match recognise(bytes, camera.is_some()).map_err(unknown)? {
-        Kind::Session => return Err(unknown("x")),
+        Kind::Session => return crate::session::read(path, bytes),
         Kind::KinectCsv => kinect_csv::read(bytes),
         Kind::Kinectron => kinectron::read(bytes),
         Kind::Bvh => bvh::read(bytes),
