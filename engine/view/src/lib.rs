@@ -12,6 +12,8 @@ pub mod text;
 pub mod trace;
 pub mod tree;
 
+mod develop;
+mod expose;
 mod sample;
 mod shade;
 mod studio;

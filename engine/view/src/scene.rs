@@ -207,6 +207,11 @@ impl View {
         (self.forward + self.right * x + self.up * y).normalize()
     }
 
+    /// Width of what is seen at the depth of a point (m).
+    pub fn width_at(&self, point: Vec3) -> f32 {
+        2.0 * self.half.x * (point - self.origin).dot(self.forward).max(0.0)
+    }
+
     /// True if a point falls within the middle `share` of the picture.
     fn sees(&self, point: Vec3, share: Vec2) -> bool {
         let to = point - self.origin;

@@ -33,12 +33,14 @@ pub struct Place {
     pub material: Material,
     /// Unit direction to the eye.
     pub eye: Vec3,
+    /// True on the subject, false on the studio around it.
+    pub on_subject: bool,
 }
 
 impl Place {
     /// A matte place on something flat.
     pub fn painted(position: Vec3, normal: Vec3, colour: Vec3, eye: Vec3) -> Self {
-        Self { position, normal, flat: normal, colour, material: Material::Chart, eye }
+        Self { position, normal, flat: normal, colour, material: Material::Chart, eye, on_subject: false }
     }
 
     /// Share of a lamp's light sent to the eye, the cosine included; the lamp stands at `toward`.
