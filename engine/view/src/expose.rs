@@ -236,7 +236,7 @@ impl<'a> Shot<'a> {
             position: rounded(blend(points, weights), points, normals, weights),
             normal: facing(blend(normals, weights).normalize_or(flat), eye),
             flat,
-            colour: blend(corners.map(|i| surface.colours.at(i)), weights),
+            colour: surface.colours.blend(corners, weights),
             material: surface.material,
             eye,
             on_subject: true,

@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// Reflectance of the cove's paint, linear RGB.
-pub const PAINT: Vec3 = Vec3::new(0.66, 0.655, 0.65);
+pub const PAINT: Vec3 = Vec3::new(0.70, 0.695, 0.69);
 
 /// Reach of ambient occlusion, in subject heights.
 const REACH: f32 = 0.22;
@@ -68,10 +68,10 @@ impl Studio {
         let cove = Cove::new(view, bounds, floor);
         let fill_toward = (view.right * 0.55 - view.forward + Vec3::Y * 0.15).normalize();
         Self {
-            key: Lamp::new(view, -0.98, 0.70, 0.13, Vec3::new(1.02, 0.965, 0.89) * 0.98),
+            key: Lamp::new(view, -0.98, 0.80, 0.17, Vec3::new(1.0, 0.965, 0.915) * 0.98),
             rim: Lamp::new(view, 2.45, 0.55, 0.12, Vec3::new(0.92, 0.97, 1.05) * 0.55),
-            sky: Vec3::new(0.47, 0.485, 0.51),
-            ground: Vec3::new(0.20, 0.19, 0.18),
+            sky: Vec3::new(0.53, 0.53, 0.54),
+            ground: Vec3::new(0.23, 0.22, 0.21),
             fill: Vec3::new(0.16, 0.165, 0.175),
             fill_toward,
             subject: bounds,
@@ -130,11 +130,11 @@ pub struct Cove {
 /// Where the curve starts behind the subject, in subject heights.
 const DEPTH: f32 = 0.75;
 
-/// Radius of the curve, in subject heights.
-const CURVE: f32 = 1.1;
+/// Radius of the curve, in subject heights: so wide that the preset cameras see no end of it, nor a line where it ends.
+const CURVE: f32 = 2.4;
 
 /// Distance over which the pool of light around the subject falls to half, in subject heights.
-const POOL: f32 = 1.75;
+const POOL: f32 = 2.3;
 
 impl Cove {
     fn new(view: &View, bounds: Bounds, floor: bool) -> Self {

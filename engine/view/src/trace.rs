@@ -15,7 +15,6 @@ use crate::{
     develop::develop,
     expose::{Guide, Plan, Shot, Texel},
     image::{Image, Size},
-    sample::MOST_SAMPLES,
     scene::{Bounds, Camera, Scene, Surface},
     studio::Studio,
     tree::Tree,
@@ -24,7 +23,7 @@ use crate::{
 /// How much work a picture is worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Quality {
-    /// To be looked at: sixteen samples a pixel, four times as many along edges.
+    /// To be looked at: eight samples a pixel, four times as many along edges.
     Still,
     /// One frame of an animation: two samples a pixel, eight along edges.
     Motion,
@@ -33,7 +32,7 @@ pub enum Quality {
 impl Quality {
     fn plan(self) -> Plan {
         match self {
-            Self::Still => Plan { inside: 16, edge: MOST_SAMPLES, reach: 2 },
+            Self::Still => Plan { inside: 8, edge: 32, reach: 3 },
             Self::Motion => Plan { inside: 2, edge: 8, reach: 3 },
         }
     }
@@ -121,4 +120,59 @@ fn by_rows<R: Send>(threads: usize, rows: impl Iterator<Item = R> + Send, work: 
             });
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        scene::{Colours, Material},
+        tone,
+    };
+
+    /// A ball of radius 0.5 around (0, 1, 0): positions, normals, triangles.
+    fn ball() -> (Vec<Vec3>, Vec<Vec3>, Vec<[u32; 3]>) {
+        let (around, rings) = (48, 24);
+        let normals: Vec<_> = (0..=rings)
+            .flat_map(|r| (0..around).map(move |a| (r as f32 / rings as f32, a as f32 / around as f32)))
+            .map(|(r, a)| {
+                let (polar, turn) = (r * std::f32::consts::PI, a * std::f32::consts::TAU);
+                Vec3::new(polar.sin() * turn.sin(), polar.cos(), polar.sin() * turn.cos())
+            })
+            .collect();
+        let triangles = (0..rings)
+            .flat_map(|r| (0..around).map(move |a| (r * around + a, r * around + (a + 1) % around)))
+            .flat_map(|(a, b)| [[a, a + around, b], [b, a + around, b + around]])
+            .collect();
+        (normals.iter().map(|n| *n * 0.5 + Vec3::Y).collect(), normals, triangles)
+    }
+
+    /// In a furnace (equal light from everywhere, no lamps) a convex thing that reflects everything looks just like
+    /// its surroundings: it neither swallows nor makes light.
+    #[test]
+    fn a_white_ball_vanishes_in_the_furnace() {
+        let (positions, normals, triangles) = ball();
+        let level = 0.6;
+        for material in [Material::Skin, Material::Cloth, Material::Chart] {
+            let surface = Surface {
+                positions: &positions,
+                normals: &normals,
+                triangles: &triangles,
+                colours: Colours::One(Vec3::ONE),
+                material,
+            };
+            let surfaces = [surface];
+            let stage = Stage::build(Scene { surfaces: &surfaces, floor: false });
+            let size = Size::new(40, 40);
+            let view = Camera::front(&stage.bounds(), 1.0).view(1.0);
+            let studio = Studio::furnace(&view, stage.bounds(), level);
+            let (image, _) = stage.take(&Shot::new(&stage, studio, view, size, Quality::Still.plan()), 1);
+            let want = tone::bytes(tone::compress(Vec3::splat(level)), 0.0);
+            for (x, y) in [(20, 20), (12, 20), (20, 10), (26, 26), (20, 31), (8, 20)] {
+                let got = image.pixel(x, y).unwrap();
+                let far = got.iter().zip(want).map(|(a, b)| a.abs_diff(b)).max().unwrap();
+                assert!(far <= 1, "{material:?} at ({x}, {y}): {got:?}, the furnace is {want:?}");
+            }
+        }
+    }
 }
