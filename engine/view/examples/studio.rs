@@ -3,7 +3,14 @@
 //! `cargo run --release -p toile-view --example studio [FOLDER]` writes PNG files into the folder (here by default) and
 //! what they cost to standard error.
 
-use std::{error::Error, f32::consts::TAU, fs::File, io::BufWriter, path::PathBuf, time::Instant};
+use std::{
+    error::Error,
+    f32::consts::TAU,
+    fs::File,
+    io::BufWriter,
+    path::{Path, PathBuf},
+    time::Instant,
+};
 
 use glam::{Vec2, Vec3};
 use toile_assets::mesh::vertex_normals;
@@ -23,11 +30,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| ".".to_owned()));
     let body = mannequin();
     let (skirt, flare) = skirt();
-    let mut map = Vec::new();
-    fitmap::colours(&flare, &mut map);
 
     let plain = [body.skin(), skirt.cloth(Colours::One(Vec3::new(0.055, 0.12, 0.24)), Material::Cloth)];
-    let mapped = [body.skin(), skirt.cloth(Colours::PerVertex(&map), Material::Chart)];
+    let mapped = [body.skin(), skirt.cloth(Colours::Tightness(&flare), Material::Chart)];
     let legend = fitmap::legend(420, sheet::PAPER);
     for (name, surfaces, legend) in [("skirt", &plain, None), ("fit", &mapped, Some(&legend))] {
         let [front, side, back] = views(surfaces);
@@ -45,11 +50,8 @@ fn views(surfaces: &[Surface<'_>]) -> [Image; 3] {
     eprintln!("tree: {:.1} ms", start.elapsed().as_secs_f32() * 1e3);
     let aspect = STILL.width as f32 / STILL.height as f32;
     let bounds = stage.bounds();
-    [Camera::front, Camera::side, Camera::back].map(|preset| {
-        let (image, cost) = timed("still", || stage.render_on(2, &preset(&bounds, aspect), STILL, Quality::Still));
-        let _: Cost = cost;
-        image
-    })
+    [Camera::front, Camera::side, Camera::back]
+        .map(|preset| timed("still", || stage.render_on(2, &preset(&bounds, aspect), STILL, Quality::Still)).0)
 }
 
 fn timed(what: &str, work: impl FnOnce() -> (Image, Cost)) -> (Image, Cost) {
@@ -62,7 +64,7 @@ fn timed(what: &str, work: impl FnOnce() -> (Image, Cost)) -> (Image, Cost) {
 }
 
 /// One turn before the camera; the tree is built anew for each frame, as it is when the cloth moves.
-fn turn(folder: &PathBuf, surfaces: &[Surface<'_>]) -> Result<(), Box<dyn Error>> {
+fn turn(folder: &Path, surfaces: &[Surface<'_>]) -> Result<(), Box<dyn Error>> {
     let file = BufWriter::new(File::create(folder.join("turn.png"))?);
     let mut animation = Animation::new(file, MOTION, FRAMES, 12)?;
     for frame in 0..FRAMES {
@@ -80,7 +82,7 @@ fn turn(folder: &PathBuf, surfaces: &[Surface<'_>]) -> Result<(), Box<dyn Error>
     Ok(animation.finish()?)
 }
 
-fn write(folder: &PathBuf, name: &str, image: &Image) -> Result<(), Box<dyn Error>> {
+fn write(folder: &Path, name: &str, image: &Image) -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let path = folder.join(name).with_extension("png");
     image.write_png(&mut BufWriter::new(File::create(&path)?))?;

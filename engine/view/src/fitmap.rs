@@ -36,12 +36,6 @@ pub fn colour(value: f32) -> Vec3 {
     Vec3::from_array(bytes.map(|b| tone::decode(f32::from(b) / 255.0)))
 }
 
-/// The colours of all vertices, from a scalar each.
-pub fn colours(values: &[f32], out: &mut Vec<Vec3>) {
-    out.clear();
-    out.extend(values.iter().map(|&v| colour(v)));
-}
-
 /// A strip with the eight steps and the words loose, good, tight, on the given paper (sRGB).
 pub fn legend(width: u32, paper: [u8; 3]) -> Image {
     let (bar, gap) = (14, 5);

@@ -13,6 +13,8 @@ pub mod trace;
 pub mod tree;
 pub mod tuck;
 
+mod develop;
+mod expose;
 mod sample;
 mod shade;
 mod studio;

@@ -4,6 +4,8 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::{Vec2, Vec3};
 
+use crate::fitmap;
+
 /// Linear RGB of the mannequin: a warm light grey-beige that lets any garment speak.
 pub const MANNEQUIN: Vec3 = Vec3::new(0.60, 0.53, 0.465);
 
@@ -47,16 +49,27 @@ pub enum Colours<'a> {
     One(Vec3),
     /// One a vertex `[vertices]`, blended across triangles.
     PerVertex(&'a [Vec3]),
+    /// The fit map's colour of a scalar a vertex, -1 (loose) .. 1 (tight) `[vertices]`. The scalar is blended, not the
+    /// colour, so the eight steps keep clean borders on any mesh.
+    Tightness(&'a [f32]),
 }
 
 impl Colours<'_> {
-    /// Colour of one vertex; mid grey where it is missing or not finite.
-    pub(crate) fn at(&self, vertex: u32) -> Vec3 {
-        let colour = match self {
-            Self::One(colour) => Some(*colour),
-            Self::PerVertex(colours) => colours.get(vertex as usize).copied(),
+    /// Colour between three vertices; mid grey where one is missing or not finite.
+    pub(crate) fn blend(&self, corners: [u32; 3], weights: [f32; 3]) -> Vec3 {
+        let of = |colours: &[Vec3]| -> Vec3 {
+            let at = |i: u32| colours.get(i as usize).copied().unwrap_or(Vec3::NAN);
+            (0..3).map(|k| at(corners[k]) * weights[k]).sum()
         };
-        colour.filter(|c| c.is_finite()).map_or(NO_COLOUR, |c| c.clamp(Vec3::ZERO, Vec3::ONE))
+        let colour = match self {
+            Self::One(colour) => *colour,
+            Self::PerVertex(colours) => of(colours),
+            Self::Tightness(values) => {
+                let at = |i: u32| values.get(i as usize).copied().unwrap_or(f32::NAN);
+                fitmap::colour((0..3).map(|k| at(corners[k]) * weights[k]).sum())
+            }
+        };
+        if colour.is_finite() { colour.clamp(Vec3::ZERO, Vec3::ONE) } else { NO_COLOUR }
     }
 }
 
@@ -107,11 +120,7 @@ impl Bounds {
     fn corners(self) -> [Vec3; 8] {
         std::array::from_fn(|i| {
             let pick = |bit: usize, lo: f32, hi: f32| if i >> bit & 1 == 0 { lo } else { hi };
-            Vec3::new(
-                pick(0, self.min.x, self.max.x),
-                pick(1, self.min.y, self.max.y),
-                pick(2, self.min.z, self.max.z),
-            )
+            Vec3::new(pick(0, self.min.x, self.max.x), pick(1, self.min.y, self.max.y), pick(2, self.min.z, self.max.z))
         })
     }
 }
@@ -205,6 +214,11 @@ impl View {
         let x = (2.0 * at.x - 1.0) * self.half.x;
         let y = (1.0 - 2.0 * at.y) * self.half.y;
         (self.forward + self.right * x + self.up * y).normalize()
+    }
+
+    /// Width of what is seen at the depth of a point (m).
+    pub fn width_at(&self, point: Vec3) -> f32 {
+        2.0 * self.half.x * (point - self.origin).dot(self.forward).max(0.0)
     }
 
     /// True if a point falls within the middle `share` of the picture.

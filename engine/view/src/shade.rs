@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::scene::Material;
 
-/// Reflectance of skin and cloth seen head-on.
+/// Reflectance of any dielectric seen head-on. The tone curve takes it off again.
 const FRESNEL: f32 = 0.04;
 
 /// Exponent of the mannequin's highlight: wide and soft, a matte lacquer.
@@ -33,12 +33,14 @@ pub struct Place {
     pub material: Material,
     /// Unit direction to the eye.
     pub eye: Vec3,
+    /// True on the subject, false on the studio around it.
+    pub on_subject: bool,
 }
 
 impl Place {
     /// A matte place on something flat.
     pub fn painted(position: Vec3, normal: Vec3, colour: Vec3, eye: Vec3) -> Self {
-        Self { position, normal, flat: normal, colour, material: Material::Chart, eye }
+        Self { position, normal, flat: normal, colour, material: Material::Chart, eye, on_subject: false }
     }
 
     /// Share of a lamp's light sent to the eye, the cosine included; the lamp stands at `toward`.
@@ -56,8 +58,8 @@ impl Place {
                 let lobe = (GLOSS + 8.0) / 8.0 * self.normal.dot(half).max(0.0).powf(GLOSS);
                 self.colour * (1.0 - fresnel) + fresnel * lobe
             }
-            Material::Cloth => self.colour + self.sheen_colour() * (SHEEN * grazing),
-            Material::Chart => self.colour,
+            Material::Cloth => self.veiled() + self.sheen_colour() * (SHEEN * grazing),
+            Material::Chart => self.veiled(),
         };
         answer * cosine
     }
@@ -71,14 +73,19 @@ impl Place {
                 let fresnel = FRESNEL + 0.3 * grazing;
                 self.colour * around * (1.0 - fresnel) + mirrored * fresnel
             }
-            Material::Cloth => self.colour.lerp(self.sheen_colour(), SHEEN * grazing) * around,
-            Material::Chart => self.colour * around,
+            Material::Cloth => self.veiled().lerp(self.sheen_colour(), SHEEN * grazing) * around,
+            Material::Chart => self.veiled() * around,
         }
     }
 
     /// Ambient light that an occluded place still gets, as a share of what an open one gets.
     pub fn bounce(&self) -> Vec3 {
         self.colour * BOUNCE
+    }
+
+    /// The base colour under the white reflection that any dielectric has.
+    fn veiled(&self) -> Vec3 {
+        self.colour.lerp(Vec3::ONE, FRESNEL)
     }
 
     fn sheen_colour(&self) -> Vec3 {
@@ -91,4 +98,36 @@ impl Place {
 fn fifth(x: f32) -> f32 {
     let square = x * x;
     square * square * x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Light from one direction, counted over all directions that it may leave by: a matte chart gives back its
+    /// colour and no more than all, skin and cloth at most a little more than all (highlight and sheen are added to the diffusion).
+    #[test]
+    fn no_material_makes_light() {
+        for (material, colour, most) in
+            [(Material::Chart, 1.0, 1.000_1), (Material::Skin, 0.95, 1.02), (Material::Cloth, 0.9, 1.02)]
+        {
+            for tilt in [0.2_f32, 0.7, 1.2] {
+                let toward = Vec3::new(tilt.sin(), tilt.cos(), 0.0);
+                let (mut sent, steps) = (0.0, 200);
+                for i in 0..steps {
+                    for j in 0..steps {
+                        // Cosine-weighted directions of leaving: the mean of the answer is the share sent.
+                        let (radius, turn) = (((i as f32 + 0.5) / steps as f32).sqrt(), j as f32 / steps as f32);
+                        let (sin, cos) = (turn * std::f32::consts::TAU).sin_cos();
+                        let eye = Vec3::new(radius * cos, (1.0 - radius * radius).sqrt(), radius * sin);
+                        let mut place = Place::painted(Vec3::ZERO, Vec3::Y, Vec3::splat(colour), eye);
+                        place.material = material;
+                        sent += place.reflect(toward).x / toward.y;
+                    }
+                }
+                let share = sent / (steps * steps) as f32;
+                assert!(share <= most && share >= 0.6, "{material:?} at {tilt}: sends {share} of what it gets");
+            }
+        }
+    }
 }

@@ -33,9 +33,9 @@ pub fn contact_sheet(images: &[&Image], columns: usize, captions: &[&str]) -> Im
 /// Lays out a page from the top: title, rows of pictures, legend.
 fn page(images: &[&Image], columns: usize, captions: &[&str], title: &str, legend: Option<&Image>) -> Image {
     let columns = columns.clamp(1, images.len().max(1)) as u32;
-    let cell = images.iter().fold(Size::new(1, 1), |s, i| {
-        Size::new(s.width.max(i.size().width), s.height.max(i.size().height))
-    });
+    let cell = images
+        .iter()
+        .fold(Size::new(1, 1), |s, i| Size::new(s.width.max(i.size().width), s.height.max(i.size().height)));
     let caption = if captions.iter().any(|c| !c.is_empty()) { TextSize::Small.height() + 8 } else { 0 };
     let (across, down) = (cell.width + GAP, cell.height + caption + GAP);
     let rows = (images.len() as u32).div_ceil(columns);
@@ -96,7 +96,13 @@ mod tests {
         }
         let ink = |colour: [u8; 3]| sheet.bytes().chunks_exact(3).filter(|p| **p == colour).count();
         assert_eq!(ink([1, 2, 3]), 80 * 20, "the legend is whole");
-        assert!(ink(INK) > 20 && ink(QUIET) > 20, "title and captions are set");
+        let dark = |rows: std::ops::Range<u32>| {
+            let pixels = rows.flat_map(|y| (0..sheet.size().width).map(move |x| (x, y)));
+            pixels.filter(|&(x, y)| sheet.pixel(x, y).is_some_and(|p| p[0] < 180 && p[0].abs_diff(p[2]) < 9)).count()
+        };
+        let captions = MARGIN + title_height("a\nb") + 100;
+        assert!(dark(MARGIN..MARGIN + 24) > 80, "the title is set");
+        assert!(dark(captions..captions + 24) > 80, "the captions are set");
     }
 
     #[test]

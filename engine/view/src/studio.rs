@@ -6,12 +6,16 @@
 use glam::{Vec2, Vec3};
 
 use crate::{
+    sample::disc,
     scene::{Bounds, View},
     tree::Ray,
 };
 
 /// Reflectance of the cove's paint, linear RGB.
-pub const PAINT: Vec3 = Vec3::new(0.66, 0.655, 0.65);
+pub const PAINT: Vec3 = Vec3::new(0.70, 0.695, 0.69);
+
+/// Reach of ambient occlusion, in subject heights.
+const REACH: f32 = 0.22;
 
 /// A lamp far away that appears as a disc.
 #[derive(Debug, Clone, Copy)]
@@ -28,15 +32,15 @@ impl Lamp {
         let back = -Vec3::new(view.forward.x, 0.0, view.forward.z).normalize_or(Vec3::NEG_Z);
         let level = back * azimuth.cos() + view.right * azimuth.sin();
         let toward = (level * elevation.cos() + Vec3::Y * elevation.sin()).normalize();
-        let across = [toward.any_orthonormal_pair().0, toward.any_orthonormal_pair().1].map(|a| a * radius.tan());
+        let across = toward.any_orthonormal_pair();
+        let across = [across.0, across.1].map(|a| a * radius.tan());
         Self { toward, across, colour }
     }
 
     /// Direction towards a place on the lamp's disc; `at` is uniform in the unit square.
     pub fn direction(&self, at: Vec2) -> Vec3 {
-        let (sin, cos) = (std::f32::consts::TAU * at.y).sin_cos();
-        let radius = at.x.sqrt();
-        (self.toward + self.across[0] * (radius * cos) + self.across[1] * (radius * sin)).normalize()
+        let at = disc(at);
+        (self.toward + self.across[0] * at.x + self.across[1] * at.y).normalize()
     }
 
     /// Direction towards the lamp's middle.
@@ -54,8 +58,7 @@ pub struct Studio {
     ground: Vec3,
     fill: Vec3,
     fill_toward: Vec3,
-    /// Reach of ambient occlusion (m): hollows smaller than this darken.
-    pub reach: f32,
+    subject: Bounds,
     pub cove: Cove,
 }
 
@@ -65,13 +68,13 @@ impl Studio {
         let cove = Cove::new(view, bounds, floor);
         let fill_toward = (view.right * 0.55 - view.forward + Vec3::Y * 0.15).normalize();
         Self {
-            key: Lamp::new(view, -0.98, 0.70, 0.13, Vec3::new(1.02, 0.965, 0.89) * 0.98),
+            key: Lamp::new(view, -0.98, 0.80, 0.17, Vec3::new(1.0, 0.965, 0.915) * 0.98),
             rim: Lamp::new(view, 2.45, 0.55, 0.12, Vec3::new(0.92, 0.97, 1.05) * 0.55),
-            sky: Vec3::new(0.47, 0.485, 0.51),
-            ground: Vec3::new(0.20, 0.19, 0.18),
+            sky: Vec3::new(0.53, 0.53, 0.54),
+            ground: Vec3::new(0.23, 0.22, 0.21),
             fill: Vec3::new(0.16, 0.165, 0.175),
             fill_toward,
-            reach: 0.22 * cove.size,
+            subject: bounds,
             cove,
         }
     }
@@ -82,9 +85,24 @@ impl Studio {
         self.ground.lerp(self.sky, 0.5 + 0.5 * normal.y) + self.fill * (facing * facing)
     }
 
-    /// The subject's height (m), the measure of small distances.
-    pub fn scale(&self) -> f32 {
-        self.cove.size
+    /// Reach of ambient occlusion (m): hollows smaller than this darken.
+    pub fn reach(&self) -> f32 {
+        REACH * self.cove.size
+    }
+
+    /// True for a place on the cove that no shadow of the subject can touch.
+    pub fn clear(&self, place: Vec3) -> bool {
+        if !self.cove.floor || self.subject.is_empty() {
+            return true;
+        }
+        let (min, max) = (self.subject.min - place, self.subject.max - place);
+        // The box grown by the lamp's breadth as seen from here, against the ray to the lamp's middle.
+        let breadth = self.key.across[0].length() * min.abs().max(max.abs()).length();
+        let inverse = self.key.toward.recip();
+        let (a, b) = ((min - breadth) * inverse, (max + breadth) * inverse);
+        let shaded = a.min(b).max_element().max(0.0) <= a.max(b).min_element();
+        let gap = min.max(-max).max(Vec3::ZERO).length();
+        !shaded && gap > self.reach()
     }
 
     /// No lamps, and the same light from everywhere: a surface that reflects all of it cannot be seen.
@@ -112,11 +130,11 @@ pub struct Cove {
 /// Where the curve starts behind the subject, in subject heights.
 const DEPTH: f32 = 0.75;
 
-/// Radius of the curve, in subject heights.
-const CURVE: f32 = 1.1;
+/// Radius of the curve, in subject heights: so wide that the preset cameras see no end of it, nor a line where it ends.
+const CURVE: f32 = 2.4;
 
 /// Distance over which the pool of light around the subject falls to half, in subject heights.
-const POOL: f32 = 1.75;
+const POOL: f32 = 2.3;
 
 impl Cove {
     fn new(view: &View, bounds: Bounds, floor: bool) -> Self {
@@ -127,15 +145,21 @@ impl Cove {
         Self { centre: Vec3::new(centre.x, 0.0, centre.z), away, size, floor }
     }
 
-    /// Where a ray meets the cove: distance and the normal that faces into the room.
-    pub fn meet(&self, ray: &Ray) -> Option<(f32, Vec3)> {
+    /// The subject's height (m), the measure of everything here.
+    pub fn size(&self) -> f32 {
+        self.size
+    }
+
+    /// Where a ray meets the cove: distance and the normal that faces into the room. The wall has no top, so rays that
+    /// lead away from it meet it far behind the eye's back: they are given a place far ahead.
+    pub fn meet(&self, ray: &Ray) -> (f32, Vec3) {
         let (depth, radius) = (DEPTH * self.size, CURVE * self.size);
         let (w, y) = ((ray.origin - self.centre).dot(self.away), ray.origin.y);
         let (dw, dy) = (ray.direction.dot(self.away), ray.direction.y);
         if self.floor {
             let floor = -y / dy;
             if dy < 0.0 && floor > 0.0 && w + floor * dw <= depth {
-                return Some((floor, Vec3::Y));
+                return (floor, Vec3::Y);
             }
             // The far side of the cylinder whose axis runs across at (depth, radius).
             let (cw, cy) = (w - depth, y - radius);
@@ -144,16 +168,11 @@ impl Cove {
             let curve = (root.max(0.0).sqrt() - b) / a;
             let (hw, hy) = (cw + curve * dw, cy + curve * dy);
             if root >= 0.0 && curve > 0.0 && hw >= 0.0 && hy <= 0.0 {
-                return Some((curve, (-self.away * hw - Vec3::Y * hy) / radius));
+                return (curve, (-self.away * hw - Vec3::Y * hy) / radius);
             }
         }
         let wall = (depth + radius - w) / dw;
-        (dw > 0.0 && wall > 0.0).then_some((wall, -self.away))
-    }
-
-    /// True where the subject may cast a shadow.
-    pub fn takes_shadow(&self) -> bool {
-        self.floor
+        (if dw > 0.0 && wall > 0.0 { wall } else { 1e3 * self.size }, -self.away)
     }
 
     /// How bright the pool of light is at a place (1 at the subject).
@@ -162,10 +181,5 @@ impl Cove {
         let level = from - self.away * from.dot(self.away);
         let far = (level.length_squared() + 0.15 * from.length_squared()) / (POOL * self.size).powi(2);
         1.0 / (1.0 + far)
-    }
-
-    /// What is seen where there is no cove.
-    pub fn beyond(&self) -> Vec3 {
-        PAINT * 0.5
     }
 }
