@@ -9,6 +9,6 @@ fn fits_the_average_bodies() {
         let body = Body::build(sex, &Measures::average(sex)).unwrap();
         let start = std::time::Instant::now();
         let rig = Rig::fit(&body);
-        eprintln!("{:?} {:?}", start.elapsed(), rig);
+        eprintln!("{:?} {:?}", start.elapsed(), rig.report);
     }
 }
