@@ -1,8 +1,8 @@
 //! The collision body: 16 spheres and the 28 tapered capsules between them, fitted to one body's surface.
 //!
 //! A tapered capsule (round cone) is the convex hull of two spheres. The fit minimises the squared distance between the
-//! body's surface and the union of the capsules by Levenberg-Marquardt, left and right mirrored, with a heavier weight
-//! where the union stands out of the body: cloth rests on the union, and the picture shows the body.
+//! body's surface and the union of the capsules by Levenberg-Marquardt, left and right mirrored. Large distances cost
+//! more than their square: cloth rests on the union while the picture shows the body, and the worst place is what is seen.
 
 mod fit;
 
@@ -60,7 +60,8 @@ mod at {
     pub const ANKLE: u8 = 14;
 }
 
-/// The capsules: limbs, the pairs across the trunk, its uprights, and the diagonals that fill it.
+/// The capsules: limbs, the pairs across the trunk, its uprights, the diagonals that fill it, and two long ones a side
+/// that span the shoulder blades and the fold of the hip.
 const CAPSULES: [[u8; 2]; MAX_CAPSULES] = {
     use at::*;
     [
@@ -90,8 +91,8 @@ const CAPSULES: [[u8; 2]; MAX_CAPSULES] = {
         [CHEST + 1, SHOULDER],
         [WAIST, SHOULDER],
         [WAIST + 1, SHOULDER + 1],
-        [WAIST, SHOULDER + 1],
-        [WAIST + 1, SHOULDER],
+        [WAIST, KNEE],
+        [WAIST + 1, KNEE + 1],
     ]
 };
 

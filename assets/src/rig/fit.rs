@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::{CAPSULES, CARRIERS, Placed, clothed, nearest, vertex_areas};
-use crate::body::Body;
+use crate::body::{Body, Region};
 use crate::limits::MAX_SPHERES;
 use crate::skeleton::Joint;
 
@@ -16,10 +16,9 @@ type Vector = [f64; UNKNOWNS];
 const STEPS: usize = 40;
 /// One vertex in this many is a sample of the fit; the report takes them all.
 const STRIDE: usize = 5;
-/// Weight of standing out of the body against staying below its surface, up to and beyond [`PROUD`].
-const OUTSIDE: [f64; 2] = [2.0, 5.0];
-/// How far the union may stand out before it costs more (m).
-const PROUD: f32 = 3e-3;
+/// Distance at which the quartic part of the cost equals the quadratic one (m). Beyond it a few bad places cost more than
+/// many fair ones: skin that shows through cloth, or cloth that floats, is seen where it is worst.
+const FAIR: f64 = 8e-3;
 
 /// A point of the surface and its share of the area.
 struct Sample {
@@ -60,10 +59,15 @@ fn samples(body: &Body) -> Vec<Sample> {
     let areas = vertex_areas(body);
     let left = (0..areas.len()).filter(|&v| body.mesh.positions[v].x >= 0.0 && clothed(body, v)).step_by(STRIDE);
     let mut samples: Vec<Sample> =
-        left.map(|v| Sample { point: body.mesh.positions[v], weight: f64::from(areas[v]) }).collect();
+        left.map(|v| Sample { point: body.mesh.positions[v], weight: f64::from(areas[v]) * matter(body, v) }).collect();
     let total: f64 = samples.iter().map(|s| s.weight).sum();
     samples.iter_mut().for_each(|s| s.weight /= total);
     samples
+}
+
+/// How much a place matters: garments lie close on bust, belly and seat, and hang away from the limbs.
+fn matter(body: &Body, vertex: usize) -> f64 {
+    if body.regions[vertex] == Region::Torso { 2.5 } else { 1.0 }
 }
 
 /// Spheres at the joints, and within the trunk at its levels.
@@ -128,9 +132,8 @@ fn assemble(
     for sample in samples {
         let (distance, capsule, t) = nearest(&spheres, sample.point);
         let d = f64::from(distance);
-        let over = f64::from((-distance - PROUD).max(0.0));
-        let (near, far) = (if distance < 0.0 { OUTSIDE[0] } else { 1.0 }, OUTSIDE[1]);
-        cost += sample.weight * (near * d * d + far * over * over);
+        let square = d * d / (FAIR * FAIR);
+        cost += sample.weight * d * d * (1.0 + square);
         let Some(system) = system.as_deref_mut() else { continue };
         let ends = CAPSULES[capsule].map(usize::from);
         let centre = spheres[ends[0]].0.lerp(spheres[ends[1]].0, t);
@@ -141,10 +144,7 @@ fn assemble(
             let slope = [-normal.x * mirror, -normal.y, -normal.z, -1.0].map(|g| f64::from(g * share));
             row.add(end / 2, slope);
         }
-        system.add(&row, d, sample.weight * near);
-        if over > 0.0 {
-            system.add(&row, -over, sample.weight * far);
-        }
+        system.add(&row, d, sample.weight * (1.0 + 2.0 * square));
     }
     for i in 0..UNKNOWNS {
         let away = x[i] - start[i];
