@@ -14,6 +14,7 @@ pub mod measure;
 pub mod output;
 pub mod record;
 pub mod report;
+pub mod summary;
 pub mod terminal;
 pub mod try_on;
 

@@ -164,7 +164,7 @@ fn a_session_that_cannot_be_used_leaves_no_folder() {
     fs::write(folder.join("empty.json"), b"").unwrap();
     for session in ["absent.mcap", "empty.json"] {
         let output = program().current_dir(&folder).args(["--session", session, "--out", "made/out"]).output().unwrap();
-        assert_ne!(output.status.code(), Some(0), "{session}");
+        assert_eq!(output.status.code(), Some(4), "{session}");
         assert!(output.stdout.is_empty(), "{session}");
         sentence(&output);
         assert!(!folder.join("made").exists(), "{session}");
