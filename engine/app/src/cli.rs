@@ -113,6 +113,7 @@ pub fn command() -> clap::Command {
              size in garments that move as cloth, 120 steps a second.\n\nWithout a command, `toile` runs `toile \
              try-on`, and takes its options.",
         )
+        .override_usage("toile [OPTIONS OF TRY-ON]\n       toile <COMMAND>")
         .subcommand_required(true)
         .subcommands([try_on(), measure(), record(), doctor(), bench(), completions()])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")

@@ -17,6 +17,7 @@ pub mod pictures;
 pub mod record;
 pub mod report;
 pub mod shopper;
+pub mod summary;
 pub mod terminal;
 pub mod try_on;
 
@@ -31,8 +32,14 @@ use exit::{AppError, Code};
 pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     exit::install_panic_hook();
     let args = args.into_iter().collect();
-    // Unwinding rather than leaving at once lets an output folder take back its unfinished files.
-    let outcome = catch_unwind(AssertUnwindSafe(|| cli::parse(args).and_then(|command| dispatch(&command))));
+    guarded(|| cli::parse(args).and_then(|command| dispatch(&command))).into()
+}
+
+/// Does some work, says its error if it has one, and turns a panic, on any thread, into [`Code::Internal`].
+pub fn guarded(work: impl FnOnce() -> Result<(), AppError>) -> Code {
+    // Unwinding rather than leaving at once lets an output folder take back its unfinished files. Nothing that the
+    // work has touched is looked at again, so it need not be unwind-safe.
+    let outcome = catch_unwind(AssertUnwindSafe(work));
     let code = match outcome {
         Ok(Ok(())) => Code::Ok,
         Ok(Err(error)) => {
@@ -42,7 +49,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         Err(_) => Code::Internal,
     };
     // A panic on another thread was told by the hook; whatever this thread made of it, the run has failed.
-    if exit::panicked() { Code::Internal.into() } else { code.into() }
+    if exit::panicked() { Code::Internal } else { code }
 }
 
 fn dispatch(command: &Command) -> Result<(), AppError> {

@@ -52,7 +52,8 @@ pub fn lanes() -> &'static str {
     }
 }
 
-fn cpu_name() -> String {
+/// The processor's own name, or `unknown`.
+pub fn cpu_name() -> String {
     let linux = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| cpu_model(&text));
     linux.or_else(mac_cpu_name).unwrap_or_else(|| "unknown".to_owned())
 }

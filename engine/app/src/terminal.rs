@@ -23,7 +23,7 @@ pub fn print(text: &str) -> Result<(), AppError> {
 /// Writes exactly one JSON object and a line end to stdout.
 ///
 /// # Errors
-/// As [`print`].
+/// As [`print()`].
 pub fn print_json<T: Serialize>(document: &Document<T>) -> Result<(), AppError> {
     let mut text = serde_json::to_string_pretty(document).map_err(AppError::internal)?;
     text.push('\n');

@@ -1,13 +1,20 @@
 //! The adapters as wgpu finds them.
 
 use std::pin::pin;
+use std::sync::OnceLock;
 use std::task::{Context, Poll, Waker};
 
 use wgpu::{Backends, DeviceType, Instance, InstanceDescriptor};
 
 use crate::Adapter;
 
+/// All adapters. The drivers are started once only: that takes long, and the hardware stays the same.
 pub fn adapters() -> Vec<Adapter> {
+    static FOUND: OnceLock<Vec<Adapter>> = OnceLock::new();
+    FOUND.get_or_init(look).clone()
+}
+
+fn look() -> Vec<Adapter> {
     let instance = Instance::new(InstanceDescriptor::new_without_display_handle());
     let found = block_on(instance.enumerate_adapters(Backends::PRIMARY));
     let mut adapters: Vec<Adapter> = found.iter().map(|a| describe(&a.get_info())).collect();

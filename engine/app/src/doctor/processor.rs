@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::time::Instant;
 
 use super::{Check, field, kernel_file};
-use crate::machine::{self, Machine};
+use crate::machine;
 
 /// Physics and sensor threads want one core each.
 const CORES_WANTED: usize = 2;
@@ -16,8 +16,8 @@ const MEMORY_WANTED_MIB: u64 = 1024;
 const CLOCK_WANTED_NS: u128 = 1000;
 
 pub fn cpu() -> Check {
-    let name = Machine::here().cpu;
-    if name == "unknown" { Check::unknown("processor", "nothing") } else { Check::ok("processor", "all work", name) }
+    let name = machine::cpu_name();
+    if name == "unknown" { Check::unknown("processor", "all work") } else { Check::ok("processor", "all work", name) }
 }
 
 pub fn cores() -> Check {

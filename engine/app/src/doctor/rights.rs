@@ -2,8 +2,11 @@
 
 use super::{Check, field, kernel_file};
 
-/// `CAP_SYS_NICE` in the capability masks of the kernel.
+/// `CAP_SYS_NICE`, real-time priority, in the capability masks of the kernel.
 const CAP_SYS_NICE: u32 = 23;
+
+/// `CAP_IPC_LOCK`, locked memory without limit, in the same masks.
+const CAP_IPC_LOCK: u32 = 14;
 
 /// The priority that a kiosk's physics thread asks for: above the interrupts' 50, below the watchdogs' 99.
 const PRIORITY_WANTED: u64 = 80;
@@ -38,6 +41,9 @@ pub fn priority() -> Check {
 
 pub fn locked_memory() -> Check {
     let (name, use_for) = ("locked memory", "a kiosk's deadlines");
+    if has_capability(&kernel_file("/proc/self/status").unwrap_or_default(), CAP_IPC_LOCK) {
+        return Check::ok(name, use_for, "unlimited (CAP_IPC_LOCK)");
+    }
     let limits = kernel_file("/proc/self/limits").unwrap_or_default();
     let Some((soft, _)) = limit(&limits, "Max locked memory") else { return Check::unknown(name, use_for) };
     let mib = soft >> 20;
@@ -80,12 +86,16 @@ enum Right {
 }
 
 fn priority_right(limits: &str, status: &str) -> Option<Right> {
-    let mask = field(status, "CapEff").and_then(|m| u64::from_str_radix(m, 16).ok());
-    if mask.is_some_and(|m| m >> CAP_SYS_NICE & 1 == 1) {
+    if has_capability(status, CAP_SYS_NICE) {
         return Some(Right::Capability);
     }
     let (soft, hard) = limit(limits, "Max realtime priority")?;
     Some(if hard > soft { Right::Hard(hard) } else { Right::Soft(soft) })
+}
+
+fn has_capability(status: &str, bit: u32) -> bool {
+    let mask = field(status, "CapEff").and_then(|m| u64::from_str_radix(m, 16).ok());
+    mask.is_some_and(|m| m >> bit & 1 == 1)
 }
 
 /// Soft and hard limit of a row of `/proc/self/limits`; `unlimited` is the largest number.
