@@ -4,4 +4,11 @@
 //! Budget: 33 ms a frame at 30 Hz; joints are filtered in under 50 us.
 //! Thread: the sensor thread.
 
+pub mod clock;
+pub mod error;
+pub mod filter;
 pub mod frame;
+pub mod limits;
+pub mod sample;
+pub mod session;
+pub mod source;

@@ -1,0 +1,92 @@
+//! What can be wrong with a recording: one sentence that says what, where, and the cure.
+
+use std::fmt;
+
+/// Where in a file something is wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// A line of a text file, from 1.
+    Line(usize),
+    /// A frame, from 0.
+    Frame(usize),
+    /// An offset from the file's begin.
+    Byte(u64),
+    /// The file as a whole.
+    Whole,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(n) => write!(f, ", line {n}"),
+            Self::Frame(n) => write!(f, ", frame {n}"),
+            Self::Byte(n) => write!(f, ", byte {n}"),
+            Self::Whole => Ok(()),
+        }
+    }
+}
+
+/// Why a recording could not be opened or written.
+#[derive(Debug, thiserror::Error)]
+pub enum SourceError {
+    /// The file system refused.
+    #[error("{path}: cannot be {action}: {error}; check that the path exists and that you may use it")]
+    Io {
+        /// The file.
+        path: String,
+        /// "read" or "written".
+        action: &'static str,
+        /// What the system said.
+        error: std::io::Error,
+    },
+    /// The file is larger than a session may be.
+    #[error("{path}: holds {bytes} bytes, more than the {limit} that are read; cut the recording into shorter pieces")]
+    TooLarge {
+        /// The file.
+        path: String,
+        /// Its size.
+        bytes: u64,
+        /// [`crate::limits::MAX_FILE_BYTES`].
+        limit: u64,
+    },
+    /// The content is of no known kind.
+    #[error(
+        "{path}: {what}; give a Toile session (.mcap), a Kinect v2 CSV, a Kinectron JSON, a BVH, or raw 16-bit depth"
+    )]
+    UnknownKind {
+        /// The file.
+        path: String,
+        /// What it looks like.
+        what: &'static str,
+    },
+    /// The kind is known and its content is wrong.
+    #[error("{path}{place}: {problem}; {cure}")]
+    Malformed {
+        /// The file.
+        path: String,
+        /// Where.
+        place: Place,
+        /// What.
+        problem: String,
+        /// What to do.
+        cure: &'static str,
+    },
+}
+
+/// A fault found by a reader, which knows bytes but no path.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Fault {
+    pub place: Place,
+    pub problem: String,
+    pub cure: &'static str,
+}
+
+impl Fault {
+    pub fn new(place: Place, problem: impl Into<String>, cure: &'static str) -> Self {
+        Self { place, problem: problem.into(), cure }
+    }
+
+    pub fn at(self, path: &str) -> SourceError {
+        SourceError::Malformed { path: path.to_owned(), place: self.place, problem: self.problem, cure: self.cure }
+    }
+}

@@ -1,0 +1,29 @@
+//! Every capacity of the sensor room: a named constant, its unit and its reason.
+
+/// Largest file that is read (bytes): ten minutes of raw 640x480 depth at 30 Hz would be 11 GB; what a fitting needs
+/// is half a minute, and a file is read whole.
+pub const MAX_FILE_BYTES: u64 = 1 << 30;
+
+/// Most joint frames of a session: half an hour of 120 Hz motion capture, 81 MB in memory.
+pub const MAX_JOINT_FRAMES: usize = 216_000;
+
+/// Most depth frames of a session: one minute at 30 Hz, 1.1 GB at 640x480.
+pub const MAX_DEPTH_FRAMES: usize = 1_800;
+
+/// Most pixels of a depth image: four times the largest sensor in sale (1 megapixel).
+pub const MAX_PIXELS: u64 = 4_194_304;
+
+/// Longest side of a depth image (px): no sensor is wider, and it keeps width * height within `u32`.
+pub const MAX_SIDE: u32 = 8_192;
+
+/// Most joints of a motion-capture skeleton: a full body with both hands has about 120.
+pub const MAX_BVH_JOINTS: usize = 1_024;
+
+/// Deepest nesting of a motion-capture skeleton: a finger tip lies at depth 12.
+pub const MAX_BVH_DEPTH: usize = 64;
+
+/// Farthest coordinate that a recording may hold (m): a room, with room to spare.
+pub const MAX_COORDINATE: f32 = 100.0;
+
+/// Farthest time that a recording may hold after its first frame (ns): a day, beyond which a clock was reset.
+pub const MAX_DURATION_NS: u64 = 86_400 * crate::clock::SECOND_NS;

@@ -1,0 +1,123 @@
+//! Kinectron recordings (JSON): a list of bodies, each with 25 joints in Kinect v2 camera space and hand states.
+//!
+//! The format has no confidence: it is derived by [`crate::filter::gate::derive_confidence`], and a hand whose state
+//! is unknown or not tracked is not believed.
+
+use glam::Vec3;
+use serde::Deserialize;
+use toile_assets::skeleton::Joint;
+
+use super::kinect2::{FROM_KINECT, KINECT_JOINTS, turned};
+use super::{align, tidy};
+use crate::error::{Fault, Place};
+use crate::filter::gate::derive_confidence;
+use crate::frame::{Joints, TrackedJoint};
+use crate::limits::{MAX_COORDINATE, MAX_JOINT_FRAMES};
+use crate::session::{Session, too_many};
+
+/// Confidence of a hand that the sensor itself has lost.
+const UNKNOWN_HAND_CONFIDENCE: f32 = 0.4;
+
+const CURE: &str = "record it again with Kinectron";
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Body {
+    #[serde(default = "yes")]
+    tracked: bool,
+    #[serde(default)]
+    tracking_id: serde_json::Value,
+    #[serde(default)]
+    left_hand_state: Option<u32>,
+    #[serde(default)]
+    right_hand_state: Option<u32>,
+    joints: Vec<CameraJoint>,
+    #[serde(rename = "record_timestamp")]
+    timestamp_ms: f64,
+}
+
+fn yes() -> bool {
+    true
+}
+
+#[derive(Deserialize)]
+struct CameraJoint {
+    #[serde(rename = "cameraX")]
+    x: f32,
+    #[serde(rename = "cameraY")]
+    y: f32,
+    #[serde(rename = "cameraZ")]
+    z: f32,
+}
+
+pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let bodies: Vec<Body> = serde_json::from_slice(bytes).map_err(|e| {
+        let problem = format!("not a Kinectron recording: {e}");
+        Fault::new(Place::Line(e.line()), problem, CURE)
+    })?;
+    if bodies.len() > MAX_JOINT_FRAMES {
+        return Err(too_many(bodies.len()));
+    }
+    let mut notes = Vec::new();
+    let main = main_body(&bodies);
+    let mut frames = Vec::with_capacity(bodies.len());
+    let mut others = 0;
+    for (i, body) in bodies.iter().enumerate() {
+        if !body.tracked || Some(&body.tracking_id) != main {
+            others += 1;
+            continue;
+        }
+        frames.push(frame(body).map_err(|problem| Fault::new(Place::Frame(i), problem, CURE))?);
+    }
+    if others > 0 {
+        notes.push(format!("{others} frames are untracked or of another person and were left out"));
+    }
+    let mut joints = tidy::tidy(frames, &mut notes)?;
+    derive_confidence(&mut joints, &mut notes);
+    align::to_world(&mut joints, &mut notes)?;
+    Ok(Session { joints, notes, raw_scale_known: true, ..Session::default() })
+}
+
+/// The person seen in most frames; the first of equals.
+fn main_body(bodies: &[Body]) -> Option<&serde_json::Value> {
+    let mut counts: Vec<(&serde_json::Value, usize)> = Vec::new();
+    for body in bodies.iter().filter(|b| b.tracked) {
+        match counts.iter().position(|(id, _)| *id == &body.tracking_id) {
+            Some(i) => counts[i].1 += 1,
+            // A sensor follows six people; more identities than that many a session is a broken file.
+            None if counts.len() < 64 => counts.push((&body.tracking_id, 1)),
+            None => {}
+        }
+    }
+    counts.iter().rev().max_by_key(|(_, n)| *n).map(|(id, _)| *id)
+}
+
+fn frame(body: &Body) -> Result<Joints, String> {
+    if body.joints.len() != KINECT_JOINTS {
+        return Err(format!("{} joints where a Kinect v2 body has {KINECT_JOINTS}", body.joints.len()));
+    }
+    let ms = body.timestamp_ms;
+    if !ms.is_finite() || !(0.0..1e15).contains(&ms) {
+        return Err(format!("the time stamp {ms} is not in milliseconds"));
+    }
+    let mut joints = Joints::absent((ms * 1e6) as u64);
+    for (kinect, joint) in FROM_KINECT {
+        let CameraJoint { x, y, z } = body.joints[kinect];
+        let camera = Vec3::new(x, y, z);
+        if !camera.is_finite() || camera.abs().max_element() > MAX_COORDINATE {
+            return Err(format!("joint {kinect} lies at ({x}, {y}, {z}), which is no place in metres"));
+        }
+        *joints.at_mut(joint) = TrackedJoint { position: turned(camera), confidence: 1.0 };
+    }
+    mark_hand(&mut joints, Joint::LeftHand, body.left_hand_state);
+    mark_hand(&mut joints, Joint::RightHand, body.right_hand_state);
+    Ok(joints)
+}
+
+/// Hand states: 0 unknown, 1 not tracked, 2 open, 3 closed, 4 lasso.
+fn mark_hand(joints: &mut Joints, joint: Joint, state: Option<u32>) {
+    if matches!(state, Some(0 | 1)) {
+        joints.at_mut(joint).confidence = UNKNOWN_HAND_CONFIDENCE;
+    }
+}

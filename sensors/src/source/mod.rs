@@ -1,0 +1,164 @@
+//! Recordings of real sensors: one file a format, recognised by content.
+//!
+//! Reads: files of any of the kinds below. Writes: a `Session` in our world. Budget: at load only.
+//! Thread: the loading thread.
+//!
+//! | kind | recognised by |
+//! |---|---|
+//! | Toile session (MCAP) | the MCAP magic |
+//! | Kinect v2 joints, CSV | text whose first line is 102 numbers between commas |
+//! | Kinectron recording, JSON | text that begins with `[` |
+//! | BVH motion capture | text that begins with `HIERARCHY` |
+//! | raw 16-bit depth | none of these, and a camera is given or the size is that of 640x480 images |
+
+mod align;
+mod bvh;
+mod bvh_names;
+mod bvh_pose;
+mod camera;
+mod kinect2;
+mod kinect_csv;
+mod kinectron;
+mod raw_depth;
+pub mod synthetic;
+mod tidy;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::limits::MAX_FILE_BYTES;
+
+pub use crate::error::{Place, SourceError};
+pub use crate::session::Session;
+
+/// How to open a recording.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct OpenOptions {
+    /// JSON that describes the depth camera of a raw depth file: `width`, `height`, `fx`, `fy`, `cx`, `cy` (px) and
+    /// optionally `cam_to_world` (4 x 4, mm, y up).
+    pub camera: Option<PathBuf>,
+}
+
+/// Opens a recording of any known kind.
+///
+/// # Errors
+/// One sentence with the path, the place and the cure where the file cannot be read, is of an unknown kind, or is wrong.
+pub fn open(path: &Path, options: &OpenOptions) -> Result<Session, SourceError> {
+    let bytes = read_file(path)?;
+    let camera = match &options.camera {
+        Some(json) => Some((shown(json), read_file(json)?)),
+        None => None,
+    };
+    let name = path.file_stem().map_or_else(|| "session".to_owned(), |s| s.to_string_lossy().into_owned());
+    read_bytes(&shown(path), &name, &bytes, camera.as_ref().map(|(path, bytes)| (path.as_str(), bytes.as_slice())))
+}
+
+/// Reads a recording of any known kind from memory; `path` appears in errors, `camera` is a camera JSON with its path.
+///
+/// # Errors
+/// As [`open`].
+pub fn read_bytes(
+    path: &str,
+    name: &str,
+    bytes: &[u8],
+    camera: Option<(&str, &[u8])>,
+) -> Result<Session, SourceError> {
+    let unknown = |what| SourceError::UnknownKind { path: path.to_owned(), what };
+    let result = match recognise(bytes, camera.is_some()).map_err(unknown)? {
+        Kind::Session => return crate::session::read(path, bytes),
+        Kind::KinectCsv => kinect_csv::read(bytes),
+        Kind::Kinectron => kinectron::read(bytes),
+        Kind::Bvh => bvh::read(bytes),
+        Kind::RawDepth => {
+            let camera = match camera {
+                Some((json, bytes)) => Some(camera::read(bytes).map_err(|fault| fault.at(json))?),
+                None => None,
+            };
+            raw_depth::read(bytes, camera)
+        }
+    };
+    let mut session = result.map_err(|fault| fault.at(path))?;
+    name.clone_into(&mut session.name);
+    session.check().map_err(|fault| fault.at(path))?;
+    Ok(session)
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Session,
+    KinectCsv,
+    Kinectron,
+    Bvh,
+    RawDepth,
+}
+
+/// What a file is, by its first bytes; else what it looks like.
+fn recognise(bytes: &[u8], has_camera: bool) -> Result<Kind, &'static str> {
+    if bytes.is_empty() {
+        return Err("the file is empty");
+    }
+    if bytes.starts_with(b"\x89MCAP") {
+        return Ok(Kind::Session);
+    }
+    if bytes.starts_with(b"\x1a\x45\xdf\xa3") {
+        return Err("this is a Matroska video, which is not read: export its depth as raw 16-bit millimetres");
+    }
+    let head = &bytes[..bytes.len().min(4096)];
+    if has_camera || !is_text(head) {
+        return if has_camera || (bytes.len() as u64).is_multiple_of(raw_depth::KINECT_V1_BYTES) {
+            Ok(Kind::RawDepth)
+        } else {
+            Err("binary of no known kind, and no camera JSON says how wide a raw depth image is")
+        };
+    }
+    let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
+    match text.first() {
+        None => Err("the file holds only white space"),
+        Some(b'[') => Ok(Kind::Kinectron),
+        Some(b'{') => Err("a JSON object, perhaps a camera: give it beside its raw depth file, not instead"),
+        Some(_) if text.starts_with(b"HIERARCHY") => Ok(Kind::Bvh),
+        Some(c) if (c.is_ascii_digit() || b"+-.".contains(c)) && text.contains(&b',') => Ok(Kind::KinectCsv),
+        Some(_) => Err("text of no known kind"),
+    }
+}
+
+fn is_text(head: &[u8]) -> bool {
+    head.iter().all(|b| *b >= 0x20 || b"\t\n\r".contains(b))
+}
+
+fn read_file(path: &Path) -> Result<Vec<u8>, SourceError> {
+    let refused = |error| SourceError::Io { path: shown(path), action: "read", error };
+    let bytes = fs::metadata(path).map_err(refused)?.len();
+    if bytes > MAX_FILE_BYTES {
+        return Err(SourceError::TooLarge { path: shown(path), bytes, limit: MAX_FILE_BYTES });
+    }
+    fs::read(path).map_err(refused)
+}
+
+fn shown(path: &Path) -> String {
+    path.display().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinds_are_told_by_content() {
+        assert_eq!(recognise(b"\x89MCAP0\r\n", false), Ok(Kind::Session));
+        assert_eq!(recognise(b"HIERARCHY\nROOT", false), Ok(Kind::Bvh));
+        assert_eq!(recognise(b"\xef\xbb\xbf [{}]", false), Ok(Kind::Kinectron));
+        assert_eq!(recognise(b"123,0.5,", false), Ok(Kind::KinectCsv));
+        assert_eq!(recognise(&[0; 614_400], false), Ok(Kind::RawDepth));
+        assert_eq!(recognise(&[0; 8], true), Ok(Kind::RawDepth));
+        for other in [&b""[..], b"  \n", b"{}", b"hello", b"\x1a\x45\xdf\xa3", &[0; 614_401]] {
+            assert!(recognise(other, false).is_err(), "{other:?}");
+        }
+    }
+
+    #[test]
+    fn a_missing_file_is_named() {
+        let error = open(Path::new("no/such.csv"), &OpenOptions::default()).unwrap_err();
+        assert!(error.to_string().starts_with("no/such.csv: cannot be read"));
+    }
+}
