@@ -8,27 +8,21 @@ use toile_assets::sizes::Population;
 
 use crate::estimate::Estimate;
 
-/// Heights as fractions of stature. Chest: ANSUR II chestheight (.719 women, .735 men, each +- .014, .011). Waist: the
-/// natural waistline of EN 13402-1, midway between tenthribheight and iliocristaleheight (.630 women, .621 men). Hip:
-/// buttockheight (.512, .505, +- .016). Axilla: axillaheight. Acromion: acromialheight (.820 +- .009).
+/// Heights as fractions of stature.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(missing_docs, reason = "named by the measure")]
 pub struct Levels {
     pub hip: f32,
     pub waist: f32,
     pub chest: f32,
-    pub axilla: f32,
     pub acromion: f32,
 }
 
-/// The levels of a population.
-pub const fn levels(population: Population) -> Levels {
-    match population {
-        Population::Women => Levels { hip: 0.512, waist: 0.630, chest: 0.719, axilla: 0.761, acromion: 0.820 },
-        Population::Men => Levels { hip: 0.505, waist: 0.621, chest: 0.735, axilla: 0.757, acromion: 0.820 },
-        Population::Mixed => Levels { hip: 0.509, waist: 0.626, chest: 0.727, axilla: 0.759, acromion: 0.820 },
-    }
-}
+/// Where the levels lie, for everybody: a camera does not know whom it sees, and two people of one sex differ more
+/// (+- .011 to .016) than the means of the sexes. ANSUR II has the chest (chestheight) at .719 of women's and .735 of
+/// men's stature; the natural waistline of EN 13402-1, midway between tenthribheight and iliocristaleheight, at .630
+/// and .621; the hip (buttockheight) at .512 and .505; the acromion (acromialheight) at .820 of both.
+pub const LEVELS: Levels = Levels { hip: 0.513, waist: 0.628, chest: 0.722, acromion: 0.820 };
 
 /// Stature where nothing was measured: mean and standard deviation of ANSUR II.
 pub const fn stature(population: Population) -> Estimate {

@@ -43,6 +43,8 @@ pub struct Cloud {
     pub pitch: f32,
     /// Median distance from the camera (m).
     pub distance: f32,
+    /// Elevation of their highest point seen from the camera, above the horizontal (rad).
+    pub elevation: f32,
     /// The picture's edge cuts the person off below.
     pub cut_below: bool,
 }
@@ -207,7 +209,9 @@ impl<'a> Grid<'a> {
         depths.sort_by(f32::total_cmp);
         let distance = depths[depths.len() / 2];
         let points = self.points(piece);
-        Some(Cloud { cut_below: self.cut_below(piece, &cells), pitch: distance / focal, distance, points })
+        let [_, top] = extent(cells.iter().map(|p| p.y));
+        let elevation = ((top - self.frame.camera_to_world.translation.y) / distance).atan();
+        Some(Cloud { cut_below: self.cut_below(piece, &cells), pitch: distance / focal, distance, elevation, points })
     }
 
     fn points(&self, piece: &[usize]) -> Vec<Vec3> {
@@ -261,6 +265,12 @@ fn looks_human(cells: &[Vec3]) -> bool {
     low.sort_by(f32::total_cmp);
     let axis = low[low.len() / 2];
     let [_, crown] = extent(cells.iter().filter(|p| (p.x - axis).abs() < 0.13).map(|p| p.y));
+    // Someone half hidden behind another has their axis elsewhere: then their highest point is their head.
+    head_and_chest(cells, axis, crown) || head_and_chest(cells, axis, top)
+}
+
+/// Whether a head and a chest lie below a crown.
+fn head_and_chest(cells: &[Vec3], axis: f32, crown: f32) -> bool {
     // Breadth that holds three quarters of a band's points around the axis.
     let core = |from: f32, to: f32, reach: f32| {
         let within = |p: &&Vec3| (from..to).contains(&(crown - p.y)) && (p.x - axis).abs() < reach;

@@ -201,14 +201,13 @@ struct Readings {
 }
 
 fn from_depth(depth: &[DepthFrame], hint: &Hint) -> Result<Measurements, MeasureError> {
-    let levels = anthropometry::levels(hint.population);
     let mut all = Readings { readings: Vec::new(), pixels: Vec::new(), people: Vec::new(), distances: Vec::new() };
     let mut too_far = None;
     for frame in depth.iter().take(FRAMES) {
         let scene = cloud::people(frame);
         too_far = too_far.or(scene.too_far);
         let Some(nearest) = scene.people.first() else { continue };
-        all.add(nearest, scene.people.len(), silhouette::read(nearest, &levels, hint.population));
+        all.add(nearest, scene.people.len(), silhouette::read(nearest, &anthropometry::LEVELS, hint.population));
     }
     if all.pixels.is_empty() {
         let frames = depth.len().min(FRAMES);

@@ -1,8 +1,6 @@
 //! One horizontal slice of a torso as a depth camera sees it: its front half, between two edges.
 
-use glam::{Mat3, Vec3};
-
-use crate::silhouette::from_above;
+use glam::{Mat3, Vec2, Vec3};
 
 /// Columns in which a slice is sorted, to either side of the axis.
 const COLUMNS: usize = 60;
@@ -35,6 +33,7 @@ pub struct Section {
     pub breadth: f32,
     /// Depth of its front half as that of the half ellipse that fits it best (m).
     pub front: f32,
+    pub arc: f32,
 }
 
 /// Measures the torso in a band of points, x counted from the body's axis and the person facing +z.
@@ -47,7 +46,8 @@ pub(crate) fn torso(points: &[Vec3], pitch: f32) -> Option<Section> {
     if !(BREADTH[0]..BREADTH[1]).contains(&breadth) {
         return None;
     }
-    Some(Section { breadth, front: columns.front(left, right, edges)? })
+    let front = columns.front(left, right, edges)?;
+    Some(Section { breadth, front, arc: columns.arc(left, right, edges) })
 }
 
 /// A slice in columns: mean depth of each, and how many points it has.
@@ -59,9 +59,9 @@ struct Columns {
 impl Columns {
     fn new(points: &[Vec3]) -> Self {
         let mut sorted: [Vec<f32>; 2 * COLUMNS] = std::array::from_fn(|_| Vec::new());
-        for p in from_above(points) {
+        for p in points {
             if let Some(column) = column(p.x) {
-                sorted[column].push(p.y);
+                sorted[column].push(p.z);
             }
         }
         let mut trunk: Vec<f32> = sorted[COLUMNS - 8..COLUMNS + 8].concat();
@@ -128,6 +128,21 @@ impl Columns {
         let seen = rows.iter().filter(|r| r[0].is_finite()).count().max(1) as f32;
         let sum = rows.iter().filter(|r| r[0].is_finite()).fold([0.0; 2], |s, r| [s[0] + r[0], s[1] + r[1]]);
         sum.map(|s| s / seen)
+    }
+
+    /// Length of the tape from edge to edge over the front: the convex hull of the columns' depths (m).
+    fn arc(&self, left: usize, right: usize, edges: [f32; 2]) -> f32 {
+        let mut chain: Vec<Vec2> = Vec::with_capacity(right - left + 1);
+        for i in (left..=right).filter(|&i| self.count[i] > 0) {
+            let p = Vec2::new(position(i).clamp(edges[0], edges[1]), self.depth[i]);
+            while let [.., a, b] = chain[..]
+                && (b - a).perp_dot(p - b) >= 0.0
+            {
+                chain.pop();
+            }
+            chain.push(p);
+        }
+        chain.windows(2).map(|w| w[0].distance(w[1])).sum()
     }
 
     /// Depth of the half ellipse z = z0 + front sqrt(1 - u^2) + turn u over the breadth, u from -1 to 1, by least

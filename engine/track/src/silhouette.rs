@@ -4,7 +4,7 @@
 //! Definitions are those of EN 13402-1 and ISO 8559-1: levels are fixed fractions of stature (see
 //! [`crate::anthropometry::Levels`]), not the widest or narrowest place, which lies 12 to 27 mm of girth away.
 
-use glam::{Vec2, Vec3, Vec3Swizzles};
+use glam::{Vec2, Vec3};
 
 use crate::anthropometry::{Levels, stature};
 use crate::cloud::Cloud;
@@ -26,6 +26,9 @@ const HEAD_REACH: f32 = 0.13;
 
 /// The top of the head is where so many points lie higher: one would be noise, a head 4 mm down is thirteen wide.
 const TOP_POINTS: usize = 4;
+
+/// Radius of the top of the head (m): a camera below it sees the horizon of this sphere, not its top.
+const CROWN_RADIUS: f32 = 0.12;
 
 /// Distance from the top of the head to the acromion as a fraction of stature, and its spread (ANSUR II).
 const HEAD_AND_NECK: Estimate = Estimate::new(0.180, 0.009);
@@ -89,7 +92,7 @@ impl Upright {
         for p in &mut points {
             *p -= Vec3::new(axis.x, 0.0, axis.y);
         }
-        let top = top_of_head(&points, cloud.pitch)?;
+        let top = top_of_head(&points, cloud.pitch)? + beyond_horizon(cloud.elevation);
         let floor = match bottom {
             b if b.abs() < FLOOR_NEAR => Some(0.0),
             b if !cloud.cut_below && top - b > WHOLE_BODY => Some(b),
@@ -160,12 +163,12 @@ impl Upright {
                 / seen.iter().map(|(x, _)| (x - mean_x).powi(2)).sum::<f32>();
             mean_y + slope * (levels.chest - mean_x)
         };
-        Some(Section { breadth: line(|s| s.breadth), front: line(|s| s.front) })
+        Some(Section { breadth: line(|s| s.breadth), front: line(|s| s.front), arc: line(|s| s.arc) })
     }
 
-    /// Breadth of the outline where it falls away from the shoulders: at the acromion's level less 3 % of stature.
+    /// Breadth of the outline at the acromions' level, where it falls away from the shoulders.
     fn shoulders(&self, levels: &Levels) -> Option<f32> {
-        let y = self.at(levels.acromion - SHOULDER_DROP);
+        let y = self.at(levels.acromion);
         let mut highest = [f32::NEG_INFINITY; 2 * OUTLINE];
         for p in band(&self.points, y - 0.02, self.top) {
             let bin = (p.x / OUTLINE_STEP).floor() + OUTLINE as f32;
@@ -183,9 +186,6 @@ impl Upright {
 /// Half the number of columns in which the outline of the shoulders is sought, and their width (m).
 const OUTLINE: usize = 40;
 const OUTLINE_STEP: f32 = 0.01;
-
-/// How far below the acromion the outline is cut (fraction of stature).
-const SHOULDER_DROP: f32 = 0.03;
 
 /// Where the outline crosses height `y` between a column below it and the column before it, by linear interpolation.
 fn edge(highest: &[f32], below: usize, above: usize, y: f32) -> f32 {
@@ -214,6 +214,11 @@ fn top_of_head(points: &[Vec3], pitch: f32) -> Option<f32> {
     Some(near.nth(TOP_POINTS - 1)? + 0.5 * pitch)
 }
 
+/// How far the top of the head rises above what a camera sees of it from below, at an elevation (rad).
+fn beyond_horizon(elevation: f32) -> f32 {
+    CROWN_RADIUS * (1.0 - elevation.max(0.0).cos())
+}
+
 /// Stature of a person seen in part: the head and neck are 18 % of it, drawn towards what people commonly measure.
 fn height_from_shoulders(points: &[Vec3], top: f32, population: Population) -> f32 {
     let common = stature(population);
@@ -237,9 +242,4 @@ fn run(points: &[Vec3]) -> f32 {
         (Some(r), Some(l)) => r - l,
         _ => 0.0,
     }
-}
-
-/// The same points seen from above: x and z (m).
-pub(crate) fn from_above(points: &[Vec3]) -> impl Iterator<Item = Vec2> + '_ {
-    points.iter().map(|p| p.xz())
 }
