@@ -12,5 +12,7 @@ pub mod import;
 pub mod limits;
 pub mod mesh;
 pub mod rig;
+pub mod scene;
 pub mod sizes;
 pub mod skeleton;
+pub mod wardrobe;

@@ -19,7 +19,9 @@ const ROOMS: [(&str, &[&[&str]]); 3] = [
             &["body"],
             &["rig"],
             &["garment"],
-            &["scene", "blob"],
+            &["import", "bake"],
+            &["wardrobe"],
+            &["scene"],
         ],
     ),
     (

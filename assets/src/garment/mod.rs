@@ -1,17 +1,11 @@
-//! Garments: drafted or imported as a shape, baked into what the cloth steps over.
+//! Garments: what a shape is before it is baked, and what the cloth steps over afterwards.
 //!
-//! Reads: garment files, the body's sections, OBJ meshes. Writes: [`Shape`] (before baking), [`Garment`] (after).
-//! Budget: at load only. Thread: the loading thread.
+//! Reads: nothing; these are types, and the check of a mesh. Writes: [`Shape`] (before baking), [`Garment`] (after).
+//! Budget: at load only.
+//! Thread: the loading thread makes them, physics borrows them.
 
 pub mod check;
-pub mod drape;
-pub mod section;
 pub mod shape;
-pub mod style;
-pub mod sun_dress;
-pub mod t_shirt;
-pub mod wardrobe;
-pub mod wide_trousers;
 
 use glam::Vec3;
 

@@ -3,11 +3,11 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use toile_assets::body::Sex;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use clap_complete::Shell;
+use toile_assets::body::Sex;
 
 use crate::exit::AppError;
 
@@ -171,7 +171,7 @@ fn record() -> clap::Command {
                 .default_value("1"),
             text("seconds", "S", "Length in seconds")
                 .value_parser(value_parser!(u32).range(1..=MAX_RECORD_SECONDS))
-                .default_value("6"),
+                .default_value("10"),
             json(),
             quiet(),
         ])

@@ -1,26 +1,49 @@
-//! Fit: the size of each garment, its zones, and the words that a person reads at the end.
+//! Fit: the size of each garment and how each zone of it sits, from the room that recommends.
 
-use toile_assets::garment::style::Style;
-use toile_assets::sizes::Population;
+use toile_assets::sizes::{Girth, SizeError, SizeTable};
+use toile_assets::wardrobe::style::Style;
 use toile_track::measure::Measurements;
+use toile_track::recommend::{self, EaseRange, MadeSize, Offer, ZoneGirth};
 
 use crate::exit::AppError;
-use crate::report::{Recommendation, TryOn};
+use crate::report::{Recommendation, Zone};
 
-/// The size that fits, or the one asked for, with every zone.
-pub fn choose(
-    style: &Style,
-    size: Option<&str>,
-    _measured: &Measurements,
-    _population: Population,
-) -> Result<Recommendation, AppError> {
+/// The size that fits, or the one asked for, judged at every zone that the garment reaches.
+pub fn choose(style: &Style, size: Option<&str>, measured: &Measurements) -> Result<Recommendation, AppError> {
     let table = style.sizes().map_err(AppError::input)?;
-    let code = size.unwrap_or("38");
-    table.size(code).map_err(AppError::input)?;
-    Ok(Recommendation { garment: style.name.clone(), size: code.into(), zones: Vec::new() })
+    let sizes = made(style, &table).map_err(AppError::input)?;
+    let range = |zone: Girth| style.comfort_mm.at(zone).map(|[least, most]| EaseRange { zone, least, most });
+    let ease: Vec<EaseRange> = Girth::ALL.into_iter().filter_map(range).collect();
+    let offer = Offer { garment: &style.name, kind: style.kind, table: &table, sizes: &sizes, ease: &ease };
+    let judged = match size {
+        Some(size) => recommend::evaluate(measured, &offer, size),
+        None => recommend::recommend(measured, &offer),
+    }
+    .map_err(AppError::input)?;
+    let mm = |m: f32| (f64::from(m) * 1e4).round() / 10.0;
+    let zones = judged.zones.iter().map(|fit| Zone {
+        zone: fit.zone.name().into(),
+        ease_mm: mm(fit.ease),
+        sigma_mm: mm(fit.sigma),
+        verdict: fit.verdict.name().into(),
+        sentence: fit.sentence.clone(),
+    });
+    Ok(Recommendation {
+        garment: judged.garment,
+        size: judged.size,
+        probability: (f64::from(judged.probability) * 1e3).round() / 1e3,
+        zones: zones.collect(),
+        runner_up: judged.runner_up.map(|r| r.size),
+        note: judged.note,
+    })
 }
 
-/// What a person reads on stdout.
-pub fn summary(done: &TryOn) -> String {
-    format!("{done:#?}\n")
+/// The finished girths of every size that is made.
+fn made(style: &Style, table: &SizeTable) -> Result<Vec<MadeSize>, SizeError> {
+    let size = |code: &str| {
+        let finished = style.finished(&table.size_body(code)?);
+        let zones = finished.into_iter().map(|(zone, girth_m)| ZoneGirth { zone, girth_m }).collect();
+        Ok(MadeSize { code: code.into(), zones })
+    };
+    table.codes().into_iter().map(size).collect()
 }

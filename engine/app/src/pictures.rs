@@ -87,9 +87,11 @@ impl Drawing {
     /// Takes over a snapshot: the skin beneath the cloth, normals of the cloth.
     fn take(&mut self, snapshot: &Snapshot) {
         self.body.copy_from_slice(&snapshot.body);
-        let corners = self.cloths.iter().zip(&snapshot.garments).flat_map(|(cloth, points)| {
-            cloth.triangles.iter().map(move |t| t.map(|i| points[i as usize]))
-        });
+        let corners = self
+            .cloths
+            .iter()
+            .zip(&snapshot.garments)
+            .flat_map(|(cloth, points)| cloth.triangles.iter().map(move |t| t.map(|i| points[i as usize])));
         Cover::new(corners).tuck(&mut self.body, &snapshot.normals);
         for (cloth, points) in self.cloths.iter_mut().zip(&snapshot.garments) {
             vertex_normals(points, &cloth.triangles, &mut cloth.normals);
@@ -97,7 +99,7 @@ impl Drawing {
     }
 
     /// The surfaces of a picture; `map` gives each garment its colours by vertex instead of the fabric's.
-    fn surfaces<'a>(&'a self, snapshot: &'a Snapshot, map: Option<&'a [Vec<Vec3>]>) -> Vec<Surface<'a>> {
+    fn surfaces<'a>(&'a self, snapshot: &'a Snapshot, map: Option<&'a [Vec<f32>]>) -> Vec<Surface<'a>> {
         let mut surfaces = vec![Surface {
             positions: &self.body,
             normals: &snapshot.normals,
@@ -107,7 +109,7 @@ impl Drawing {
         }];
         for (i, (cloth, points)) in self.cloths.iter().zip(&snapshot.garments).enumerate() {
             let (colours, material) = match map {
-                Some(map) => (Colours::PerVertex(&map[i]), Material::Chart),
+                Some(map) => (Colours::Tightness(&map[i]), Material::Chart),
                 None => (Colours::One(cloth.colour), Material::Cloth),
             };
             let (normals, triangles) = (&cloth.normals, &cloth.triangles);
@@ -170,30 +172,22 @@ impl Pictures {
     /// Finishes the animation; writes the contact sheet, and the stills of the last snapshot in the fabric's colours
     /// and in those of the fit map. `tightness` has a value in -1..1 for each particle of each garment, `facing` is the
     /// direction that the shopper looks in (rad from +z towards +x).
-    pub fn finish(
-        mut self,
-        out: &mut OutputFolder,
-        snapshot: &Snapshot,
-        ending: &Ending<'_>,
-    ) -> Result<(), AppError> {
+    pub fn finish(mut self, out: &mut OutputFolder, snapshot: &Snapshot, ending: &Ending<'_>) -> Result<(), AppError> {
         self.animation.finish().map_err(AppError::input)?;
         debug_assert_eq!(self.kept.len(), self.frames as usize);
         contact_sheet(out, &self.kept)?;
         self.drawing.take(snapshot);
-        let mut map = Vec::new();
-        for values in ending.tightness {
-            let mut colours = Vec::new();
-            fitmap::colours(values, &mut colours);
-            map.push(colours);
-        }
         let legend = fitmap::legend(3 * STILL.width / 4, sheet::PAPER);
-        for (name, map, legend) in [("look.png", None, None), ("fit.png", Some(map.as_slice()), Some(&legend))] {
+        for (name, map, legend) in [("look.png", None, None), ("fit.png", Some(ending.tightness), Some(&legend))] {
             let surfaces = self.drawing.surfaces(snapshot, map);
             let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });
             let aspect = STILL.width as f32 / STILL.height as f32;
             let view = |turn: f32| {
-                let image =
-                    stage.render(&Camera::framing(&stage.bounds(), ending.facing + turn, aspect), STILL, Quality::Still);
+                let image = stage.render(
+                    &Camera::framing(&stage.bounds(), ending.facing + turn, aspect),
+                    STILL,
+                    Quality::Still,
+                );
                 self.bar.inc(1);
                 image
             };

@@ -80,6 +80,8 @@ pub struct Zone {
     pub sigma_mm: f64,
     /// `tight`, `good` or `loose`.
     pub verdict: String,
+    /// The same for a person to read.
+    pub sentence: String,
 }
 
 /// The size that fits, and how.
@@ -89,8 +91,14 @@ pub struct Recommendation {
     pub garment: String,
     /// Its size, by EN 13402.
     pub size: String,
+    /// How likely this size is the best one, given how well the shopper could be measured (0..1).
+    pub probability: f64,
     /// How each zone of it fits.
     pub zones: Vec<Zone>,
+    /// The next best size, where it may be the better one.
+    pub runner_up: Option<String>,
+    /// Set where no size is made for this shopper, or guesses stand for measures.
+    pub note: Option<String>,
 }
 
 /// The distribution of a step's time (us).
@@ -211,8 +219,15 @@ mod tests {
     use super::*;
 
     fn try_on() -> TryOn {
-        let zone = Zone { zone: "waist".into(), ease_mm: 40.0, sigma_mm: 8.0, verdict: "good".into() };
-        let recommendation = Recommendation { garment: "trousers".into(), size: "40".into(), zones: vec![zone] };
+        let zone = Zone {
+            zone: "waist".into(),
+            ease_mm: 40.0,
+            sigma_mm: 8.0,
+            verdict: "good".into(),
+            sentence: "The waist is good.".into(),
+        };
+        let recommendation =
+            Recommendation { garment: "trousers".into(), size: "40".into(), zones: vec![zone], ..Default::default() };
         TryOn {
             session: Session::default(),
             measurements: Measurements::default(),

@@ -60,6 +60,13 @@ fn recommendation(text: &mut String, worn: &Recommendation, paint: Paint) {
         let verdict = paint.tone(&verdict, tone);
         line(text, &format!("  {:17} {verdict} {:+5.0} mm of ease +- {:.0}", zone.zone, zone.ease_mm, zone.sigma_mm));
     }
+    if let Some(other) = &worn.runner_up {
+        let sure = worn.probability * 100.0;
+        line(text, &format!("  {sure:.0} % sure; size {other} may suit as well"));
+    }
+    if let Some(note) = &worn.note {
+        line(text, &format!("  {note}"));
+    }
 }
 
 fn physics(text: &mut String, physics: &Physics, paint: Paint) {
@@ -94,11 +101,22 @@ mod tests {
 
     #[test]
     fn a_summary_says_each_zone_and_each_file() {
-        let zone = Zone { zone: "waist".into(), ease_mm: -12.0, sigma_mm: 8.0, verdict: "tight".into() };
+        let zone = Zone {
+            zone: "waist".into(),
+            ease_mm: -12.0,
+            sigma_mm: 8.0,
+            verdict: "tight".into(),
+            sentence: "Waist: tight.".into(),
+        };
         let mut report = TryOn {
             session: Session { name: "a.csv".into(), frames: 3, seconds: 0.1, notes: vec!["one drop".into()] },
             measurements: Measurements::default(),
-            recommendation: Recommendation { garment: "trousers".into(), size: "40".into(), zones: vec![zone] },
+            recommendation: Recommendation {
+                garment: "trousers".into(),
+                size: "40".into(),
+                zones: vec![zone],
+                ..Default::default()
+            },
             others: Vec::new(),
             physics: Physics::default(),
             state_hash: String::new(),

@@ -3,18 +3,19 @@
 use std::path::Path;
 
 use toile_assets::body::{Body, Sex};
-use toile_assets::garment::wardrobe;
-use toile_assets::garment::{Garment, style::Style};
+use toile_assets::garment::Garment;
 use toile_assets::limits::STEP_HZ;
 use toile_assets::rig::Rig;
 use toile_assets::sizes::Population;
 use toile_assets::skeleton::Joint;
+use toile_assets::wardrobe::{self, style::Style};
 use toile_engine::cloth::{Settings, measure};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::relay::Reader;
 use toile_sensors::clock::{ns_to_ticks, ticks_to_ns};
 use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
+use toile_track::measure::Measurements;
 
 use crate::cli::TryOnArgs;
 use crate::exit::AppError;
@@ -23,7 +24,8 @@ use crate::output::OutputFolder;
 use crate::pictures::{Ending, Pictures};
 use crate::report::{self, Document, TryOn};
 use crate::shopper;
-use crate::terminal::{self, Words};
+use crate::summary;
+use crate::terminal::{self, Paint, Words};
 
 /// Fabric of a mesh that a user brings without saying what it is made of.
 const MESH_FABRIC: &str = "cotton-lawn";
@@ -53,11 +55,10 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let measured = shopper::measure(&session, population)?;
     let (body, note) = shopper::build(sex, &measured, population)?;
     let notes: Vec<String> = note.into_iter().chain(measured.notes.iter().cloned()).collect();
-    let (garments, recommendations) = dress(&wanted, args, &measured, population, &body)?;
+    let (garments, recommendations) = dress(&wanted, args, &measured, &body)?;
 
     let rig = Rig::fit(&body);
-    let (mut frame, mut reader) =
-        Frame::new(body, &rig, garments, Settings::default()).map_err(AppError::internal)?;
+    let (mut frame, mut reader) = Frame::new(body, &rig, garments, Settings::default()).map_err(AppError::internal)?;
     let track = shopper::believable(&session);
     let title = title(&recommendations);
     play(args, &words, &mut out, &mut frame, &mut reader, &track, &title)?;
@@ -79,7 +80,11 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let text = serde_json::to_string_pretty(&document).map_err(AppError::internal)?;
     out.write("report.json", format!("{text}\n").as_bytes())?;
     out.commit()?;
-    if args.json { terminal::print_json(&document) } else { terminal::print(&fit::summary(&document.body)) }
+    if args.json {
+        terminal::print_json(&document)
+    } else {
+        terminal::print(&summary::try_on(&document.body, Paint::for_stdout()))
+    }
 }
 
 /// What to wear; the wardrobe's first garment if nothing is said. A name with a file behind it is a mesh.
@@ -122,15 +127,14 @@ fn population(args: &TryOnArgs, wanted: &[Wanted]) -> Result<(Sex, Population), 
 fn dress(
     wanted: &[Wanted],
     args: &TryOnArgs,
-    measured: &toile_track::measure::Measurements,
-    population: Population,
+    measured: &Measurements,
     body: &Body,
 ) -> Result<(Vec<Garment>, Vec<report::Recommendation>), AppError> {
     let (mut garments, mut recommendations) = (Vec::new(), Vec::new());
     for item in wanted {
         match item {
             Wanted::Style(style) => {
-                let fitted = fit::choose(style, args.size.as_deref(), measured, population)?;
+                let fitted = fit::choose(style, args.size.as_deref(), measured)?;
                 garments.push(style.dress(&fitted.size, body).map_err(AppError::input)?);
                 recommendations.push(fitted);
             }
@@ -210,10 +214,14 @@ fn physics(frame: &Frame) -> report::Physics {
     for (cloth, garment) in frame.cloths().iter().zip(frame.garments()) {
         let events = cloth.events;
         if events.rolled_back > 0 {
-            warnings.push(format!("{}: {} steps were not finite and were rolled back", garment.name, events.rolled_back));
+            warnings
+                .push(format!("{}: {} steps were not finite and were rolled back", garment.name, events.rolled_back));
         }
         if events.speed_limited > 0 {
-            warnings.push(format!("{}: particles were held at the speed limit {} times", garment.name, events.speed_limited));
+            warnings.push(format!(
+                "{}: particles were held at the speed limit {} times",
+                garment.name, events.speed_limited
+            ));
         }
     }
     report::Physics {
@@ -225,11 +233,7 @@ fn physics(frame: &Frame) -> report::Physics {
             p999: us(0.999),
             max: meters.step_ns.max() as f64 * 1e-3,
         },
-        strain: report::Strain {
-            mean: f64::from(strain.mean),
-            p99: f64::from(strain.p99),
-            max: f64::from(strain.max),
-        },
+        strain: report::Strain { mean: f64::from(strain.mean), p99: f64::from(strain.p99), max: f64::from(strain.max) },
         penetration_mm: report::Penetration { max: f64::from(meters.penetration_max) * 1e3 },
         nonfinite: frame.cloths().iter().map(|c| c.events.rolled_back).sum(),
         warnings,

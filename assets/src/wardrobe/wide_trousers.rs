@@ -5,9 +5,9 @@ use glam::{Vec2, Vec3};
 
 use super::drape::{Form, flip, join};
 use super::section::{Fit, Section};
-use super::shape::Shape;
 use super::style::{Cut, Style};
 use crate::body::Body;
+use crate::garment::Shape;
 use crate::sizes::Girth;
 
 /// Height of the skinned waistband (m).

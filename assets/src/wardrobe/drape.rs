@@ -3,9 +3,9 @@
 use glam::{Vec2, Vec3};
 
 use super::section::{Fit, Plane, Section, resample};
-use super::shape::{Face, Shape};
 use crate::body::tape::hull;
 use crate::body::{Body, Region};
+use crate::garment::shape::{Face, Shape};
 
 /// Cloth starts at least this far from the skin (m): a little more than the contact offset of the thickest fabric.
 pub const START_GAP_M: f32 = 0.005;

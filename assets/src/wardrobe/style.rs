@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::sizes::{Girth, GarmentKind};
+use crate::sizes::{GarmentKind, Girth};
 
 /// A garment file: what is cut, from which fabric, in which sizes, with how much ease.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

@@ -4,9 +4,9 @@ use glam::{Vec2, Vec3};
 
 use super::drape::{Form, below, flip, join, rows_after, split_at_top};
 use super::section::{Fit, Plane, Section};
-use super::shape::Shape;
 use super::style::{Cut, Style};
 use crate::body::{Body, Region};
+use crate::garment::Shape;
 use crate::sizes::Girth;
 use crate::skeleton::Joint;
 

@@ -4,9 +4,9 @@ use glam::Vec3;
 
 use super::drape::{Form, join};
 use super::section::resample;
-use super::shape::Shape;
 use super::style::{Cut, Style};
 use crate::body::Body;
+use crate::garment::Shape;
 use crate::sizes::Girth;
 
 /// Where a strap begins, as a share of the ring from the front centre: over the middle of the breast.

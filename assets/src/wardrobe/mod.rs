@@ -1,16 +1,27 @@
 //! The wardrobe: the garments that are built in, and meshes that a user brings, dressed onto a shopper's body.
+//!
+//! Reads: garment files, size tables, the body's sections, OBJ meshes. Writes: baked garments.
+//! Budget: 0.3 s a garment; at load only.
+//! Thread: the loading thread.
+
+pub mod drape;
+pub mod section;
+pub mod style;
+pub mod sun_dress;
+pub mod t_shirt;
+pub mod wide_trousers;
 
 use std::path::Path;
 
 use thiserror::Error;
 
-use super::style::{Cut, Style};
-use super::{Garment, MeshError, Shape, sun_dress, t_shirt, wide_trousers};
 use crate::bake::{bake, weights};
 use crate::body::{Body, BodyError, Measures, Sex};
 use crate::fabric::{Fabric, FabricError};
+use crate::garment::{Garment, MeshError, Shape};
 use crate::import::obj::{self, ObjError};
 use crate::sizes::{Girth, Population, SizeBody, SizeError, SizeTable};
+use style::{Cut, Style};
 
 /// The garments that are built in, first the one that is shown when none is asked for.
 const BUILT_IN: [(&str, &str); 3] = [
@@ -133,8 +144,8 @@ impl Style {
             waist_girth: of.waist_girth,
             hip_girth: of.hip_girth,
         };
-        let cut = Body::build(self.sex()?, &measures)
-            .map_err(|source| WardrobeError::Body { size: size.into(), source })?;
+        let cut =
+            Body::build(self.sex()?, &measures).map_err(|source| WardrobeError::Body { size: size.into(), source })?;
         let mut shape = match self.cut {
             Cut::SunDress { .. } => sun_dress::draft(self, &cut, shopper),
             Cut::TShirt { .. } => t_shirt::draft(self, &cut, shopper),
