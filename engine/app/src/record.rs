@@ -23,7 +23,7 @@ const SENSOR_HZ: u64 = 30;
 
 /// The synthetic camera: a Kinect's field of view at half its resolution, upright so that a whole person fits, which
 /// keeps the embedded session small.
-const CAMERA: Intrinsics = Intrinsics { width: 240, height: 320, fx: 287.9, fy: 287.9, cx: 119.5, cy: 159.5 };
+const CAMERA: Intrinsics = Intrinsics { width: 480, height: 640, fx: 575.8, fy: 575.8, cx: 239.5, cy: 319.5 };
 
 /// Runs `toile record`.
 ///

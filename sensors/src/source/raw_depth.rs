@@ -77,7 +77,7 @@ fn place(depth: &mut [DepthFrame], posed: bool, notes: &mut Vec<String>) -> Resu
         low
     } else {
         notes
-            .push(format!("the camera's pose is unknown: level, {ASSUMED_CAMERA_HEIGHT} m above the floor is assumed"));
+            .push(format!("the camera's pose is unknown: level, {ASSUMED_CAMERA_HEIGHT} m above the floor is assumed, and heights depend on it"));
         0.0
     };
     let shift = Affine3A::from_translation(-Vec3::new(x, floor, z));
