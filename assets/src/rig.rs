@@ -163,7 +163,8 @@ fn clothed(body: &Body, vertex: usize) -> bool {
     let (p, skeleton) = (body.mesh.positions[vertex], &body.skeleton);
     let wrist = |j: Joint| (p - skeleton.at(j)).dot((skeleton.at(j) - skeleton.at(elbow_of(j))).normalize()) < 0.0;
     match body.regions[vertex] {
-        Region::Torso => p.y < body.levels.shoulder,
+        // The base of the neck leans forwards.
+        Region::Torso => (p - skeleton.at(Joint::Neck)).dot(Vec3::new(0.0, 0.93, 0.37)) < 0.0,
         Region::LeftArm => wrist(Joint::LeftWrist),
         Region::RightArm => wrist(Joint::RightWrist),
         Region::LeftLeg | Region::RightLeg => p.y > 1.3 * body.levels.ankle,

@@ -65,9 +65,15 @@ fn samples(body: &Body) -> Vec<Sample> {
     samples
 }
 
-/// How much a place matters: garments lie close on bust, belly and seat, and hang away from the limbs.
+/// How much a place matters: garments lie close on bust, belly and seat, hang from the tops of the shoulders, and keep
+/// away from the limbs.
 fn matter(body: &Body, vertex: usize) -> f64 {
-    if body.regions[vertex] == Region::Torso { 2.5 } else { 1.0 }
+    let hangs = body.mesh.positions[vertex].y > body.levels.chest && body.normals[vertex].y > 0.5;
+    match body.regions[vertex] {
+        Region::Torso if hangs => 6.0,
+        Region::Torso => 2.5,
+        _ => 1.0,
+    }
 }
 
 /// Spheres at the joints, and within the trunk at its levels.
