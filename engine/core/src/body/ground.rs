@@ -9,7 +9,7 @@ use toile_assets::skeleton::{Joint, Skeleton};
 
 use super::kinematics::JointFrames;
 use super::limb::ramp;
-use super::retarget::Seen;
+use super::seen::Seen;
 use super::smooth::fraction;
 
 /// Time constant with which a lower floor is taken over (s).
@@ -19,8 +19,15 @@ const DOWN_TAU: f32 = 0.15;
 const UP_TAU: f32 = 5.0;
 const UP_SPEED: f32 = 0.02;
 
-/// Rise (m) up to which feet are taken to stand, as noise lifts them too, and from which the rise is taken as it is.
-const RISE: [f32; 2] = [0.02, 0.06];
+/// Rise (m) up to which feet are taken to stand, and from which the rise is taken as it is: bones held to their length
+/// lift the feet with a hip that wobbles by as much.
+const RISE: [f32; 2] = [0.06, 0.14];
+
+/// Longest flight (s): a jump of 80 cm. Who is up longer stands on something.
+const LONGEST_FLIGHT: f32 = 0.8;
+
+/// Time constant with which the floor then comes up (s).
+const LIFT_TAU: f32 = 0.2;
 
 /// Time constant of the clearance (s).
 const CLEARANCE_TAU: f32 = 0.03;
@@ -51,6 +58,8 @@ pub struct Ground {
     ankle_height: f32,
     /// How far the lowest point is off the floor (m), smooth.
     clearance: f32,
+    /// How long the feet have been up (s).
+    flight: f32,
 }
 
 impl Ground {
@@ -65,14 +74,16 @@ impl Ground {
         let height = |joint| seen.at(joint).map(|p| p.y);
         let ankle = height(Joint::LeftAnkle).zip(height(Joint::RightAnkle)).map(|(l, r)| l.min(r));
         let toe = height(Joint::LeftToe).zip(height(Joint::RightToe)).map(|(l, r)| l.min(r));
-        let ankle_rise = track(&mut self.ankle, ankle, dt);
-        let toe_rise = track(&mut self.toe, toe, dt);
+        let landed = self.flight > LONGEST_FLIGHT;
+        let ankle_rise = track(&mut self.ankle, ankle, dt, landed);
+        let toe_rise = track(&mut self.toe, toe, dt, landed);
         let rise = match (ankle_rise, toe_rise) {
             (Some(a), Some(t)) => a.min(t),
             (Some(a), None) => a,
             (None, _) => 0.0,
         };
         let rise = rise.min(self.others(seen)).max(0.0);
+        self.flight = if rise > RISE[0] { self.flight + dt } else { 0.0 };
         self.clearance += (rise * ramp(RISE, rise) - self.clearance) * fraction(dt, CLEARANCE_TAU);
     }
 
@@ -95,12 +106,14 @@ impl Ground {
 }
 
 /// Follows the usual height of the lower of two joints, and returns how far it is above that (m).
-fn track(base: &mut Option<f32>, low: Option<f32>, dt: f32) -> Option<f32> {
+fn track(base: &mut Option<f32>, low: Option<f32>, dt: f32, landed: bool) -> Option<f32> {
     let low = low?;
     let base = base.get_or_insert(low);
     let above = low - *base;
     *base += if above < 0.0 {
         above * fraction(dt, DOWN_TAU)
+    } else if landed {
+        above * fraction(dt, LIFT_TAU)
     } else {
         (above * fraction(dt, UP_TAU)).min(UP_SPEED * dt.max(0.0))
     };
