@@ -126,6 +126,18 @@ impl Limb {
         carrier * local[hinge.index()]
     }
 
+    /// Brings the limb a share of the way back to rest, and returns the lower limb's rotation in the world for a limb
+    /// that hangs on `parent`.
+    pub fn stretch(&self, share: f32, parent: Quat, local: &mut [Quat; JOINTS]) -> Quat {
+        let [root, hinge, ..] = self.joints.map(Joint::index);
+        for joint in [root, hinge] {
+            if share > 0.0 {
+                follow(&mut local[joint], Quat::IDENTITY, share);
+            }
+        }
+        parent * local[root] * local[hinge]
+    }
+
     /// Aims the hand from the forearm's rotation; a hand that is not believed is held straight.
     pub fn hand(&self, seen: &Seen, forearm: Quat, dt: f32, first: bool, local: &mut [Quat; JOINTS]) {
         let [.., wrist, hand] = self.joints;

@@ -99,7 +99,7 @@ impl Poser {
             return self.pose;
         }
         self.started = true;
-        self.ground.observe(&seen, dt);
+        self.ground.observe(&seen, dt, first);
         self.retarget.update(&seen, &self.ground, dt, first);
         let mut next = if first { Pose { local: self.retarget.local, ..self.pose } } else { self.turn(dt) };
         self.carry(&seen, &mut next, dt, first);

@@ -62,7 +62,8 @@ impl Retarget {
             let forearm = self.arms[i].update(seen, clavicle, dt, first, &mut self.local);
             self.arms[i].hand(seen, forearm, dt, first, &mut self.local);
             // The leg is aimed as if the pelvis had the sensor's slant, and hung on ours without it.
-            let shin = slant.inverse() * self.legs[i].update(seen, slant * pelvis, dt, first, &mut self.local);
+            self.legs[i].update(seen, slant * pelvis, dt, first, &mut self.local);
+            let shin = self.legs[i].stretch(1.0 - ground.legs_trust(), pelvis, &mut self.local);
             self.feet[i].update(seen, ground, shin, dt, first, &mut self.local);
         }
     }
