@@ -4,6 +4,15 @@
 //! Budget: at load only; nothing here runs inside the frame.
 //! Thread: the loading thread.
 
+pub mod bake;
+pub mod body;
+pub mod fabric;
+pub mod garment;
+pub mod import;
 pub mod limits;
 pub mod mesh;
+pub mod rig;
+pub mod scene;
+pub mod sizes;
 pub mod skeleton;
+pub mod wardrobe;

@@ -102,7 +102,9 @@ impl Intrinsics {
         let (w, h) = (self.width, self.height);
         let pixels = u64::from(w) * u64::from(h);
         if w == 0 || h == 0 || w > MAX_SIDE || h > MAX_SIDE || pixels > MAX_PIXELS {
-            return Some(format!("an image of {w} x {h} pixels is outside 1 .. {MAX_SIDE} a side and {MAX_PIXELS} in all"));
+            return Some(format!(
+                "an image of {w} x {h} pixels is outside 1 .. {MAX_SIDE} a side and {MAX_PIXELS} in all"
+            ));
         }
         let lengths = [self.fx, self.fy];
         if lengths.iter().any(|f| !f.is_finite() || *f < 1.0 || *f > 1e6) {

@@ -27,7 +27,13 @@ fn describe(s: &Session) {
     let f = filtered(s);
     let y = |j| median(s.joints.iter().filter(|f| f.at(j).confidence > 0.0).map(|f| f.at(j).position.y));
     println!("{}: {} frames, {:.2} s", s.name, s.joints.len(), s.duration_ns() as f32 * 1e-9);
-    println!("  head {:.3} hips {:.3} ankles {:.3} {:.3}", y(Joint::Head), y(Joint::LeftHip), y(Joint::LeftAnkle), y(Joint::RightAnkle));
+    println!(
+        "  head {:.3} hips {:.3} ankles {:.3} {:.3}",
+        y(Joint::Head),
+        y(Joint::LeftHip),
+        y(Joint::LeftAnkle),
+        y(Joint::RightAnkle)
+    );
     println!("  raw {:?}, filtered {:?}", top_speed(&s.joints), top_speed(&f));
     for j in Joint::ALL {
         if let Some(p) = j.parent() {

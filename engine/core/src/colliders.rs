@@ -163,6 +163,11 @@ impl Colliders {
         RoundCone::new(a.xyz(), a.w, b.xyz(), b.w)
     }
 
+    /// All capsules at `t` of the step; places past their count hold a point far below.
+    pub fn cones_at(&self, t: f32) -> [RoundCone; MAX_CAPSULES] {
+        std::array::from_fn(|c| if c < self.capsules.len() { self.cone(c, t) } else { RoundCone::PARKED })
+    }
+
     /// How far the point of a capsule at `along` (0 its first sphere, 1 its second) moves in the step (m); over the
     /// step's length that is its velocity.
     pub fn travel(&self, capsule: usize, along: f32) -> Vec3 {
@@ -218,6 +223,21 @@ pub struct Contact {
 }
 
 impl RoundCone {
+    /// A point without radius, far below: nothing ever touches it.
+    pub const PARKED: Self = Self {
+        a: Vec3::new(0.0, -1000.0, 0.0),
+        ra: 0.0,
+        axis: Vec3::Y,
+        length: 0.0,
+        b: Vec3::new(0.0, -1000.0, 0.0),
+        rb: 0.0,
+        cosine: 1.0,
+        sine: 0.0,
+        side: 0.0,
+        across: Vec3::X,
+        larger: 0.0,
+    };
+
     /// The capsule of two spheres (m). Values that are not finite give a sphere without radius far below.
     pub fn new(a: Vec3, ra: f32, b: Vec3, rb: f32) -> Self {
         let finite = a.is_finite() && b.is_finite() && ra.is_finite() && rb.is_finite();

@@ -5,6 +5,8 @@
 //! Thread: the physics thread; `relay` stands between it and the others.
 
 pub mod body;
+pub mod cloth;
 pub mod colliders;
+pub mod frame;
 pub mod relay;
 pub mod skin;

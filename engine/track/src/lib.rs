@@ -1,1 +1,15 @@
-//! engine/track
+//! Who stands there: the body's measures from depth frames and joints, and the size that fits them.
+//!
+//! Reads: one second of `DepthFrame` and `Joints`, size tables, finished girths of garments. Writes: `Measurements`,
+//! `Recommendation`. Budget: 1 s for 30 depth frames of 640 x 480, once a shopper; nothing here runs inside the frame.
+//! Thread: the sensor thread.
+
+pub mod agreement;
+pub mod anthropometry;
+pub mod cloud;
+pub mod estimate;
+mod joints;
+pub mod measure;
+pub mod recommend;
+mod section;
+pub mod silhouette;

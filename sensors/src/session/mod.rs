@@ -2,10 +2,40 @@
 //!
 //! Reads: recordings' frames. Writes: `Session`, and its own recording (MCAP). Budget: at load only.
 //! Thread: the loading thread.
+//!
+//! # The recording
+//!
+//! An [MCAP](https://mcap.dev) file, profile `toile`, chunks uncompressed and with checksums, so that any MCAP tool lists
+//! and recovers it. Two channels, messages in order of time, message encoding `toile-le`; each channel's schema (encoding
+//! `text/plain`) describes its bytes in words:
+//!
+//! | topic | schema | a message |
+//! |---|---|---|
+//! | `/joints` | `toile.joints/1` | u64 time (ns), u32 count, then x, y, z (m), confidence as f32 for each joint |
+//! | `/depth` | `toile.depth/1` | u64 time (ns), camera, pose, then a 16-bit grey PNG in millimetres |
+//!
+//! Numbers are little endian. The metadata record `toile.session` holds `version` (1), `origin`, `name`, `scale` (`known`
+//! or `assumed`) and the frame counts; `toile.notes` holds the notes.
+
+mod layout;
+mod read;
+mod write;
+
+pub use read::read;
+pub use write::write;
 
 use crate::error::{Fault, Place};
 use crate::frame::{DepthFrame, Joints};
 use crate::limits::{MAX_DEPTH_FRAMES, MAX_JOINT_FRAMES};
+
+/// Version of the recording's format; another one is refused.
+const VERSION: u32 = 1;
+const JOINTS_TOPIC: &str = "/joints";
+const DEPTH_TOPIC: &str = "/depth";
+const ENCODING: &str = "toile-le";
+const LAYOUT: &str = "text/plain";
+const METADATA: &str = "toile.session";
+const NOTES: &str = "toile.notes";
 
 /// What a sensor saw of one shopper. World: metres, y up, floor at y = 0, the shopper faces +z near x = z = 0.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -27,6 +57,14 @@ impl Session {
     pub fn duration_ns(&self) -> u64 {
         let joints = self.joints.last().map_or(0, |f| f.time_ns);
         joints.max(self.depth.last().map_or(0, |f| f.time_ns))
+    }
+
+    /// The bytes of the session's recording; the same session gives the same bytes.
+    ///
+    /// # Errors
+    /// Where the session breaks its own promises (order of time, finite numbers, sizes).
+    pub fn to_bytes(&self) -> Result<Vec<u8>, crate::error::SourceError> {
+        write::to_bytes(self).map_err(|fault| fault.at(&self.name))
     }
 
     /// Refuses a session that breaks its own promises: empty, too long, times that do not increase, numbers that are

@@ -1,5 +1,9 @@
 //! Finds the shared recordings, and measures joints.
 
+#![allow(dead_code, reason = "each test file uses its part")]
+
+pub mod samples;
+
 use std::path::{Path, PathBuf};
 
 use toile_assets::skeleton::Joint;

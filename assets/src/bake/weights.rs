@@ -1,0 +1,59 @@
+//! Weights: what sticks to the body moves with the skin beneath it.
+
+use glam::Vec3;
+
+use crate::body::Body;
+use crate::mesh::SkinWeights;
+use crate::skeleton::BONES;
+
+/// Body vertices that share in a garment vertex: enough to smooth over one quad of the body.
+const NEIGHBOURS: usize = 6;
+
+/// Skin weights for points near the body: the weights of the nearest body vertices, nearer ones counting more, cut to
+/// the four strongest bones.
+pub fn transfer(body: &Body, points: &[Vec3]) -> Vec<SkinWeights> {
+    points.iter().map(|&p| at(body, p)).collect()
+}
+
+fn at(body: &Body, point: Vec3) -> SkinWeights {
+    let mut nearest = [(f32::MAX, 0usize); NEIGHBOURS];
+    for (i, p) in body.mesh.positions.iter().enumerate() {
+        let d2 = p.distance_squared(point);
+        if d2 < nearest[NEIGHBOURS - 1].0 {
+            nearest[NEIGHBOURS - 1] = (d2, i);
+            nearest.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        }
+    }
+    let mut sum = [0.0f32; BONES];
+    for (d2, i) in nearest {
+        let share = (d2 + 1e-6).recip();
+        let w = &body.weights[i];
+        w.bones.iter().zip(&w.weights).for_each(|(&b, &x)| sum[b as usize] += share * x);
+    }
+    strongest(&sum)
+}
+
+/// The four strongest of all bones, made to sum to 1.
+fn strongest(all: &[f32; BONES]) -> SkinWeights {
+    let mut order: [usize; BONES] = std::array::from_fn(|i| i);
+    order.sort_by(|&a, &b| all[b].total_cmp(&all[a]).then(a.cmp(&b)));
+    let total: f32 = order[..4].iter().map(|&b| all[b]).sum();
+    SkinWeights {
+        bones: std::array::from_fn(|k| order[k] as u8),
+        weights: std::array::from_fn(|k| all[order[k]] / total),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_strongest_four_sum_to_one() {
+        let mut all = [0.0; BONES];
+        (0..6).for_each(|i| all[i * 3] = (i + 1) as f32);
+        let w = strongest(&all);
+        assert_eq!(w.bones, [15, 12, 9, 6]);
+        assert!((w.weights.iter().sum::<f32>() - 1.0).abs() < 1e-6);
+    }
+}

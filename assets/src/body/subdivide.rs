@@ -1,0 +1,168 @@
+//! Catmull-Clark subdivision of a closed mesh of quads, and the cage whose limit surface passes through given points.
+//!
+//! Catmull and Clark 1978 for the refinement; Halstead, Kass and DeRose 1993, "Efficient, fair interpolation using
+//! Catmull-Clark surfaces", for the limit of a vertex of valence n, `(n^2 v + 4 sum(e) + sum(f)) / (n (n + 5))`.
+
+use glam::Vec3;
+
+/// An edge: its two vertices and the two faces that share it.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    ends: [u32; 2],
+    faces: [u32; 2],
+}
+
+/// The connectivity of one closed mesh of quads, with everything that refinement asks of it.
+#[derive(Debug, Clone)]
+pub(super) struct Quads {
+    faces: Vec<[u32; 4]>,
+    edges: Vec<Edge>,
+    valence: Vec<f32>,
+    /// Edge of each face's side `[faces]`, side k running from corner k to corner k + 1.
+    sides: Vec<[u32; 4]>,
+}
+
+impl Quads {
+    /// Joins faces to edges. Panics when an edge is not shared by exactly two faces: the cage is our own data.
+    pub(super) fn new(vertices: usize, faces: Vec<[u32; 4]>) -> Self {
+        let mut half: Vec<(u32, u32, u32, u32)> = Vec::with_capacity(faces.len() * 4);
+        for (f, q) in faces.iter().enumerate() {
+            for k in 0..4 {
+                let (a, b) = (q[k], q[(k + 1) % 4]);
+                half.push((a.min(b), a.max(b), f as u32, k as u32));
+            }
+        }
+        half.sort_unstable();
+        let mut valence = vec![0.0; vertices];
+        let mut sides = vec![[0; 4]; faces.len()];
+        let edges = half
+            .chunks(2)
+            .enumerate()
+            .map(|(e, pair)| {
+                assert!(pair.len() == 2 && (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1), "the cage is not closed");
+                for h in pair {
+                    sides[h.2 as usize][h.3 as usize] = e as u32;
+                }
+                let ends = [pair[0].0, pair[0].1];
+                ends.iter().for_each(|&v| valence[v as usize] += 1.0);
+                Edge { ends, faces: [pair[0].2, pair[1].2] }
+            })
+            .collect();
+        Self { faces, edges, valence, sides }
+    }
+
+    /// The connectivity after one refinement: old vertices first, then one vertex an edge, then one a face.
+    pub(super) fn refined(&self) -> Self {
+        let (first_edge, first_face) = (self.valence.len() as u32, (self.valence.len() + self.edges.len()) as u32);
+        let mut faces = Vec::with_capacity(self.faces.len() * 4);
+        for (f, q) in self.faces.iter().enumerate() {
+            for k in 0..4 {
+                let (after, before) = (self.sides[f][k], self.sides[f][(k + 3) % 4]);
+                faces.push([q[k], first_edge + after, first_face + f as u32, first_edge + before]);
+            }
+        }
+        Self::new(self.valence.len() + self.edges.len() + self.faces.len(), faces)
+    }
+
+    /// Values on the refined mesh's vertices, from values on this one's.
+    pub(super) fn refine(&self, values: &[Vec3]) -> Vec<Vec3> {
+        let at = |i: u32| values[i as usize];
+        let centres: Vec<Vec3> =
+            self.faces.iter().map(|q| (at(q[0]) + at(q[1]) + at(q[2]) + at(q[3])) * 0.25).collect();
+        let mut out: Vec<Vec3> = vec![Vec3::ZERO; values.len()];
+        for (q, &c) in self.faces.iter().zip(&centres) {
+            for &v in q {
+                out[v as usize] += c;
+            }
+        }
+        let mut middles = Vec::with_capacity(self.edges.len());
+        for e in &self.edges {
+            let (sum, [f, g]) = (at(e.ends[0]) + at(e.ends[1]), e.faces);
+            middles.push((sum + (centres[f as usize] + centres[g as usize])) * 0.25);
+            for v in e.ends {
+                out[v as usize] += sum;
+            }
+        }
+        // (Q + 2 R + (n - 3) S) / n, where Q and R are means over n faces and n edge middles.
+        for ((o, &v), &n) in out.iter_mut().zip(values).zip(&self.valence) {
+            *o = (*o / n + (n - 3.0) * v) / n;
+        }
+        out.extend(middles);
+        out.extend(centres);
+        out
+    }
+
+    /// Each vertex moved to where endless refinement would take it.
+    pub(super) fn limit(&self, values: &[Vec3]) -> Vec<Vec3> {
+        let at = |i: u32| values[i as usize];
+        let mut sums = vec![Vec3::ZERO; values.len()];
+        for e in &self.edges {
+            sums[e.ends[0] as usize] += 4.0 * at(e.ends[1]);
+            sums[e.ends[1] as usize] += 4.0 * at(e.ends[0]);
+        }
+        for q in &self.faces {
+            for k in 0..4 {
+                sums[q[k] as usize] += at(q[(k + 2) % 4]);
+            }
+        }
+        let limit = |((&s, &v), &n): ((&Vec3, &Vec3), &f32)| (n * n * v + s) / (n * (n + 5.0));
+        sums.iter().zip(values).zip(&self.valence).map(limit).collect()
+    }
+
+    /// The cage whose limit surface passes close to `points`, by over-relaxed Richardson iteration. The count of
+    /// rounds is also a filter: it reproduces the shape and leaves out what wavers from vertex to vertex.
+    pub(super) fn interpolate(&self, points: &[Vec3], rounds: usize) -> Vec<Vec3> {
+        let mut cage = points.to_vec();
+        for _ in 0..rounds {
+            let limit = self.limit(&cage);
+            for ((c, &p), l) in cage.iter_mut().zip(points).zip(limit) {
+                *c += 1.5 * (p - l);
+            }
+        }
+        cage
+    }
+
+    /// Each quad split in two, along the diagonal from its first corner: the same split on both sides of the body.
+    pub(super) fn triangles(&self) -> Vec<[u32; 3]> {
+        self.faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cube() -> (Quads, Vec<Vec3>) {
+        let points = (0..8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) - 0.5).collect();
+        let faces = vec![[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        (Quads::new(8, faces), points)
+    }
+
+    #[test]
+    fn limit_is_where_refinement_goes() {
+        let (quads, points) = cube();
+        let (once, finer) = (quads.refined(), quads.refine(&points));
+        let direct = quads.limit(&points);
+        let later = once.limit(&finer);
+        for i in 0..8 {
+            assert!((direct[i] - later[i]).length() < 1e-6, "the limit of a vertex does not depend on the level");
+        }
+    }
+
+    #[test]
+    fn interpolated_surface_passes_through_its_points() {
+        let (quads, points) = cube();
+        let cage = quads.interpolate(&points, 40);
+        for (l, p) in quads.limit(&cage).iter().zip(&points) {
+            assert!((*l - *p).length() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn refinement_keeps_the_sphere_topology() {
+        let (quads, points) = cube();
+        let fine = quads.refined().refined();
+        let vertices = quads.refined().refine(&quads.refine(&points)).len();
+        assert_eq!(vertices + fine.faces.len(), fine.edges.len() + 2);
+    }
+}

@@ -1,0 +1,152 @@
+//! Fabrics in physical units, from TOML.
+
+use serde::Deserialize;
+use thiserror::Error;
+
+/// One fabric, as its file states it. Stiffnesses are per unit width of cloth, so that they do not depend on any mesh.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Fabric {
+    /// The name by which garment files call it.
+    pub name: String,
+    /// What a shopper reads.
+    pub title: String,
+    /// Mass per area (kg/m2).
+    pub density_kg_m2: f32,
+    /// Tensile stiffness along the warp (N/m).
+    pub stretch_warp_n_m: f32,
+    /// Tensile stiffness along the weft (N/m).
+    pub stretch_weft_n_m: f32,
+    /// Shear stiffness (N/m per radian).
+    pub shear_n_m: f32,
+    /// Bending rigidity along the warp (uN m).
+    pub bend_warp_un_m: f32,
+    /// Bending rigidity along the weft (uN m).
+    pub bend_weft_un_m: f32,
+    /// Coulomb friction coefficient against the body.
+    pub friction: f32,
+    /// Rate at which motion through the air is damped (1/s).
+    pub damping_per_s: f32,
+    /// Gap kept between the cloth's middle surface and a collider (mm): half the thickness and the pile.
+    pub contact_offset_mm: f32,
+    /// Stretch that a wearer still finds comfortable (1): the fit map's full scale.
+    pub comfortable_stretch: f32,
+    /// Base colour of the cloth, sRGB 0..1.
+    pub colour: [f32; 3],
+}
+
+/// What can be wrong with a fabric file.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum FabricError {
+    /// Not a fabric file.
+    #[error("fabric {name}: {reason}; compare it with a fabric that is built in")]
+    Syntax {
+        /// The file or the embedded fabric.
+        name: String,
+        /// What the parser says, on one line.
+        reason: String,
+    },
+    /// A figure outside of what cloth can have.
+    #[error("fabric {name}: {key} is {value}, which no cloth has; give a value between {low} and {high}")]
+    Range {
+        /// The fabric.
+        name: String,
+        /// The offending key.
+        key: &'static str,
+        /// Its value.
+        value: f32,
+        /// Lowest accepted value.
+        low: f32,
+        /// Highest accepted value.
+        high: f32,
+    },
+    /// No fabric of that name.
+    #[error("there is no fabric named {name}; built in are {known}")]
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+}
+
+/// The fabrics that are built in.
+const BUILT_IN: [&str; 3] = [
+    include_str!("../data/fabrics/cotton-lawn.toml"),
+    include_str!("../data/fabrics/cotton-jersey.toml"),
+    include_str!("../data/fabrics/linen-twill.toml"),
+];
+
+impl Fabric {
+    /// Reads one fabric from TOML; `name` says in errors where the text came from.
+    pub fn parse(name: &str, text: &str) -> Result<Self, FabricError> {
+        let fabric: Self = toml::from_str(text)
+            .map_err(|e| FabricError::Syntax { name: name.into(), reason: e.message().replace('\n', " ") })?;
+        fabric.check()?;
+        Ok(fabric)
+    }
+
+    /// The built-in fabric of that name.
+    pub fn built_in(name: &str) -> Result<Self, FabricError> {
+        let all = Self::all()?;
+        let known = all.iter().map(|f| f.name.as_str()).collect::<Vec<_>>().join(", ");
+        all.into_iter().find(|f| f.name == name).ok_or(FabricError::Unknown { name: name.into(), known })
+    }
+
+    /// Every built-in fabric.
+    pub fn all() -> Result<Vec<Self>, FabricError> {
+        BUILT_IN.iter().map(|text| Self::parse("built in", text)).collect()
+    }
+
+    /// Ranges: from the thinnest silk to canvas, an order of magnitude wider than the 618 fabrics that were measured
+    /// for the published bands (REFERENCES: density .031 to .487 kg/m2, bending rigidity .9 to 109 uN m).
+    fn check(&self) -> Result<(), FabricError> {
+        let ranges = [
+            ("density_kg_m2", self.density_kg_m2, 0.01, 2.0),
+            ("stretch_warp_n_m", self.stretch_warp_n_m, 10.0, 1e6),
+            ("stretch_weft_n_m", self.stretch_weft_n_m, 10.0, 1e6),
+            ("shear_n_m", self.shear_n_m, 1.0, 1e5),
+            ("bend_warp_un_m", self.bend_warp_un_m, 0.0, 1e4),
+            ("bend_weft_un_m", self.bend_weft_un_m, 0.0, 1e4),
+            ("friction", self.friction, 0.0, 2.0),
+            ("damping_per_s", self.damping_per_s, 0.0, 100.0),
+            ("contact_offset_mm", self.contact_offset_mm, 0.1, 20.0),
+            ("comfortable_stretch", self.comfortable_stretch, 0.001, 1.0),
+            ("colour", self.colour[0], 0.0, 1.0),
+            ("colour", self.colour[1], 0.0, 1.0),
+            ("colour", self.colour[2], 0.0, 1.0),
+        ];
+        for (key, value, low, high) in ranges {
+            if !(low..=high).contains(&value) {
+                return Err(FabricError::Range { name: self.name.clone(), key, value, low, high });
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn built_in_fabrics_are_valid_and_found_by_name() {
+        for fabric in Fabric::all().unwrap() {
+            assert_eq!(Fabric::built_in(&fabric.name).unwrap(), fabric);
+        }
+        let error = Fabric::built_in("tin").unwrap_err().to_string();
+        assert!(error.contains("tin") && error.contains("cotton-lawn"), "{error}");
+    }
+
+    #[test]
+    fn nonsense_is_refused_with_key_and_cure() {
+        let text = include_str!("../data/fabrics/cotton-lawn.toml");
+        let heavy = text.replace("density_kg_m2 = 0.105", "density_kg_m2 = nan");
+        assert_ne!(heavy, text);
+        assert!(Fabric::parse("heavy", &heavy).unwrap_err().to_string().contains("density_kg_m2"));
+        assert!(
+            Fabric::parse("odd", &format!("{text}\nstiffness = 0.8\n")).unwrap_err().to_string().contains("stiffness")
+        );
+        assert!(matches!(Fabric::parse("empty", ""), Err(FabricError::Syntax { .. })));
+    }
+}

@@ -1,0 +1,49 @@
+//! The shape of one garment in one size: its faces, its measure as cut, and where it starts on a shopper.
+
+use glam::Vec3;
+
+use crate::mesh::SkinWeights;
+
+/// In the fourth place of a [`Face`]: the face is a triangle.
+pub const NO_VERTEX: u32 = u32::MAX;
+
+/// A quad `[a, b, c, d]` or a triangle `[a, b, c, NO_VERTEX]`, counter-clockwise seen from outside. In a quad the
+/// sides a-b and d-c run along the weft, a-d and b-c along the warp.
+pub type Face = [u32; 4];
+
+/// A garment as drafted or imported, before it is baked. All vertex arrays have the same length.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Shape {
+    /// Vertex positions on the body the garment was cut for (m): rest lengths and areas come from these.
+    pub cut: Vec<Vec3>,
+    /// Where each vertex starts on the shopper, in the rest pose (m).
+    pub worn: Vec<Vec3>,
+    /// Faces.
+    pub faces: Vec<Face>,
+    /// True where the vertex sticks to the body and is skinned, false where it is simulated.
+    pub fixed: Vec<bool>,
+    /// Skin weights; only those of fixed vertices are read.
+    pub weights: Vec<SkinWeights>,
+}
+
+impl Shape {
+    /// Adds a vertex and returns its index.
+    pub fn push(&mut self, cut: Vec3, worn: Vec3, fixed: bool) -> u32 {
+        self.cut.push(cut);
+        self.worn.push(worn);
+        self.fixed.push(fixed);
+        (self.cut.len() - 1) as u32
+    }
+
+    /// The faces as triangles; a quad is split along its a-c diagonal.
+    pub fn triangles(&self) -> Vec<[u32; 3]> {
+        let mut out = Vec::with_capacity(self.faces.len() * 2);
+        for &[a, b, c, d] in &self.faces {
+            out.push([a, b, c]);
+            if d != NO_VERTEX {
+                out.push([a, c, d]);
+            }
+        }
+        out
+    }
+}

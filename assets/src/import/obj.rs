@@ -1,0 +1,259 @@
+//! Garments from OBJ files. Faces whose material name ends in `Free` move; all others stick to the body. A file without
+//! any such material moves except for its uppermost edge.
+
+use std::collections::BTreeMap;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use glam::Vec3;
+use thiserror::Error;
+
+use crate::garment::shape::{Face, NO_VERTEX, Shape};
+
+/// Largest file that is read (bytes): a quarter of a million vertices and their faces take 40 MiB as text.
+pub const MAX_BYTES: u64 = 64 << 20;
+
+/// Material suffix of what moves.
+const FREE: &str = "Free";
+
+/// Share of the height from the top that is fixed when no material says what moves.
+const FIXED_TOP_SHARE: f32 = 0.06;
+
+/// What can be wrong with an OBJ file.
+#[derive(Debug, Error)]
+pub enum ObjError {
+    /// The file cannot be read.
+    #[error("{path}: {reason}; give the path of a readable OBJ file")]
+    Read {
+        /// The file.
+        path: String,
+        /// What the system says.
+        reason: String,
+    },
+    /// The file is too large.
+    #[error("{path}: it has {bytes} bytes, more than the {MAX_BYTES} that are read; reduce the mesh before exporting")]
+    TooLarge {
+        /// The file.
+        path: String,
+        /// Its size.
+        bytes: u64,
+    },
+    /// The text is no OBJ.
+    #[error("{path}: {reason}; export the garment as Wavefront OBJ with vertices and faces")]
+    Syntax {
+        /// The file.
+        path: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A face with more than four corners.
+    #[error("{path}: face {face} has {corners} corners; export faces of three or four corners")]
+    Polygon {
+        /// The file.
+        path: String,
+        /// Index of the face, from 0.
+        face: usize,
+        /// Its corners.
+        corners: u32,
+    },
+    /// Not a garment's size.
+    #[error("{path}: the mesh is {height} m high; export it in metres, y up, standing on y = 0 like the person in it")]
+    Units {
+        /// The file.
+        path: String,
+        /// Height of its bounding box (m).
+        height: f32,
+    },
+}
+
+/// Reads a garment; the weights are left empty. Errors say what is wrong in one sentence.
+pub fn read(path: &Path) -> Result<Shape, ObjError> {
+    let shown = path.display().to_string();
+    let failed = |e: std::io::Error| ObjError::Read { path: shown.clone(), reason: e.to_string() };
+    let file = std::fs::File::open(path).map_err(failed)?;
+    let info = file.metadata().map_err(failed)?;
+    if info.is_dir() {
+        return Err(ObjError::Read { path: shown, reason: "it is a folder".into() });
+    }
+    if info.len() > MAX_BYTES {
+        return Err(ObjError::TooLarge { path: shown, bytes: info.len() });
+    }
+    parse(&shown, &mut BufReader::new(file))
+}
+
+/// Reads a garment from text; `path` stands in error messages.
+pub fn parse(path: &str, reader: &mut impl BufRead) -> Result<Shape, ObjError> {
+    let syntax = |reason: String| ObjError::Syntax { path: path.into(), reason };
+    let mut text = String::new();
+    reader.read_to_string(&mut text).map_err(|_| syntax("it is not text".into()))?;
+    let materials = material_names(&text);
+    let options = tobj::LoadOptions { single_index: false, ..Default::default() };
+    // Only names matter here, so that a missing MTL file is no reason to refuse: each name stands for a material.
+    let library = |_: &Path| {
+        let list = materials.iter().map(|n| tobj::Material { name: n.clone(), ..Default::default() }).collect();
+        Ok((list, materials.iter().enumerate().map(|(i, n)| (n.clone(), i)).collect()))
+    };
+    let with_library = format!("mtllib names\n{text}");
+    let (models, _) = tobj::load_obj_buf(&mut with_library.as_bytes(), &options, library)
+        .map_err(|e| syntax(format!("{e}").to_lowercase()))?;
+    let mut mesh = Welded::default();
+    for model in &models {
+        let free = model.mesh.material_id.and_then(|m| materials.get(m)).is_some_and(|name| name.ends_with(FREE));
+        mesh.add(path, &model.mesh, free)?;
+    }
+    mesh.into_shape(path, materials.iter().any(|name| name.ends_with(FREE)))
+}
+
+/// The material names in order of their first use.
+fn material_names(text: &str) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in text.lines().filter_map(|l| l.trim().strip_prefix("usemtl ")).map(|n| n.trim().to_owned()) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// All models of a file as one mesh: vertices at the same place are one vertex, so that parts with different materials
+/// stay sewn together.
+#[derive(Default)]
+struct Welded {
+    places: BTreeMap<[u32; 3], u32>,
+    positions: Vec<Vec3>,
+    faces: Vec<Face>,
+    /// True where a face that moves touches the vertex.
+    moves: Vec<bool>,
+    /// True where a face that does not move touches the vertex.
+    sticks: Vec<bool>,
+}
+
+impl Welded {
+    fn vertex(&mut self, p: Vec3) -> u32 {
+        // Adding zero makes -0 and 0 one place.
+        let key = (p + Vec3::ZERO).to_array().map(f32::to_bits);
+        let next = self.positions.len() as u32;
+        let found = *self.places.entry(key).or_insert(next);
+        if found == next {
+            self.positions.push(p);
+            self.moves.push(false);
+            self.sticks.push(false);
+        }
+        found
+    }
+
+    fn add(&mut self, path: &str, mesh: &tobj::Mesh, free: bool) -> Result<(), ObjError> {
+        let triangles = vec![3; if mesh.face_arities.is_empty() { mesh.indices.len() / 3 } else { 0 }];
+        let arities = if mesh.face_arities.is_empty() { &triangles } else { &mesh.face_arities };
+        let mut at = 0;
+        for &corners in arities {
+            let ring = &mesh.indices[at..at + corners as usize];
+            at += corners as usize;
+            match corners {
+                0..=2 => continue, // points and lines carry no cloth
+                3 | 4 => {}
+                _ => return Err(ObjError::Polygon { path: path.into(), face: self.faces.len(), corners }),
+            }
+            let mut face = [NO_VERTEX; 4];
+            for (k, &i) in ring.iter().enumerate() {
+                let i = i as usize * 3;
+                let Some(p) = mesh.positions.get(i..i + 3) else {
+                    let reason = format!("face {} names vertex {}, which is not there", self.faces.len(), i / 3 + 1);
+                    return Err(ObjError::Syntax { path: path.into(), reason });
+                };
+                face[k] = self.vertex(Vec3::new(p[0], p[1], p[2]));
+                let touched = if free { &mut self.moves } else { &mut self.sticks };
+                touched[face[k] as usize] = true;
+            }
+            self.faces.push(face);
+        }
+        Ok(())
+    }
+
+    /// Where moving and fixed parts meet, the vertex is fixed: it is where the cloth hangs.
+    fn into_shape(self, path: &str, has_free: bool) -> Result<Shape, ObjError> {
+        let finite = || self.positions.iter().filter(|p| p.is_finite());
+        let low = finite().map(|p| p.y).fold(f32::INFINITY, f32::min);
+        let high = finite().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max);
+        if !self.faces.is_empty() && !(LEAST_HEIGHT_M..MOST_HEIGHT_M).contains(&(high - low)) {
+            return Err(ObjError::Units { path: path.into(), height: high - low });
+        }
+        let edge = high - FIXED_TOP_SHARE * (high - low);
+        let fixed = match has_free {
+            true => self.sticks,
+            false => self.positions.iter().map(|p| p.y >= edge).collect(),
+        };
+        let faces = self.faces.into_iter().map(|f| warp_upright(&self.positions, f)).collect();
+        Ok(Shape { cut: self.positions.clone(), worn: self.positions, faces, fixed, weights: Vec::new() })
+    }
+}
+
+/// A garment is between a wristband and a bridal train high (m).
+const LEAST_HEIGHT_M: f32 = 0.02;
+const MOST_HEIGHT_M: f32 = 3.0;
+
+/// Turns a quad so that its a-b side is the flattest: then warp runs down the garment.
+fn warp_upright(positions: &[Vec3], face: Face) -> Face {
+    if face[3] == NO_VERTEX {
+        return face;
+    }
+    let rise = |i: u32, j: u32| (positions[i as usize].y - positions[j as usize].y).abs();
+    let [a, b, c, d] = face;
+    if rise(a, b) + rise(c, d) > rise(b, c) + rise(d, a) { [b, c, d, a] } else { face }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::garment::check::check;
+
+    const SKIRT: &str = "o skirt\nv 0 1 0\nv .2 1 0\nv .2 .5 0\nv 0 .5 0\nv .2 0 0\nv 0 0 0\n\
+        usemtl Band\nf 4 3 2 1\nusemtl ClothFree\nf 6 5 3 4\n";
+
+    fn read(text: &str) -> Result<Shape, ObjError> {
+        parse("test.obj", &mut text.as_bytes())
+    }
+
+    #[test]
+    fn material_suffix_says_what_moves_and_parts_stay_sewn() {
+        let shape = read(SKIRT).unwrap();
+        check(&shape.cut, &shape.faces).unwrap();
+        assert_eq!(shape.cut.len(), 6);
+        let moving: Vec<f32> = (0..6).filter(|&i| !shape.fixed[i]).map(|i| shape.cut[i].y).collect();
+        assert_eq!(moving, [0.0, 0.0]);
+    }
+
+    #[test]
+    fn without_materials_the_upper_edge_is_fixed() {
+        let shape = read(&SKIRT.replace("usemtl Band\n", "").replace("usemtl ClothFree\n", "")).unwrap();
+        assert!((0..6).all(|i| shape.fixed[i] == (shape.cut[i].y > 0.9)));
+    }
+
+    #[test]
+    fn every_truncation_and_every_broken_byte_is_an_error_or_a_mesh() {
+        for end in 0..SKIRT.len() {
+            let _ = read(&SKIRT[..end]);
+        }
+        for (at, byte) in (0..SKIRT.len()).flat_map(|i| [b'9', b'-', b'n', b'\n', b'/', b'e'].map(|b| (i, b))) {
+            let mut bytes = SKIRT.as_bytes().to_vec();
+            bytes[at] = byte;
+            if let Ok(shape) = parse("broken.obj", &mut bytes.as_slice()) {
+                let _ = check(&shape.cut, &shape.faces);
+            }
+        }
+    }
+
+    #[test]
+    fn other_files_and_other_units_are_refused_in_one_sentence() {
+        for (text, part) in [
+            ("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\n", "vertex"),
+            ("v 0 0 0\nv 100 0 0\nv 100 170 0\nf 1 2 3\n", "metres"),
+            ("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 .5 0\nf 1 2 3 4 5\n", "5 corners"),
+        ] {
+            let message = read(text).unwrap_err().to_string();
+            assert!(message.contains(part) && !message.contains('\n'), "{message}");
+        }
+        assert!(parse("x", &mut &[0xffu8, 0xfe, 0x00][..]).unwrap_err().to_string().contains("not text"));
+        assert!(read("").is_ok_and(|s| s.faces.is_empty()), "an empty mesh is refused when it is checked");
+    }
+}

@@ -1,0 +1,120 @@
+//! Styles: garment files of the wardrobe, and the numbers that a size gives them.
+
+use serde::Deserialize;
+
+use crate::sizes::{GarmentKind, Girth};
+
+/// A garment file: what is cut, from which fabric, in which sizes, with how much ease.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Style {
+    /// Name by which it is asked for.
+    pub name: String,
+    /// What a shopper reads.
+    pub title: String,
+    /// What it is; decides its primary measures.
+    pub kind: GarmentKind,
+    /// The size table.
+    pub table: String,
+    /// The fabric.
+    pub fabric: String,
+    /// Distance between neighbouring particles along the warp (mm).
+    pub spacing_mm: f32,
+    /// Particles around the body.
+    pub columns: usize,
+    /// What the garment adds to the body of its size (mm).
+    pub ease_mm: Ease,
+    /// The ease that a wearer finds good, least and most (mm): outside of it a zone is tight or loose.
+    pub comfort_mm: Comfort,
+    /// The cut.
+    pub cut: Cut,
+}
+
+/// Ease by zone (mm); a zone that the garment does not reach is left out.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Ease {
+    /// At the chest.
+    pub chest: Option<f32>,
+    /// At the waist.
+    pub waist: Option<f32>,
+    /// At the hip.
+    pub hip: Option<f32>,
+}
+
+/// Comfortable ease by zone (mm), least and most.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Comfort {
+    /// At the chest.
+    pub chest: Option<[f32; 2]>,
+    /// At the waist.
+    pub waist: Option<[f32; 2]>,
+    /// At the hip.
+    pub hip: Option<[f32; 2]>,
+}
+
+impl Ease {
+    /// Ease at one zone (m).
+    pub fn at(&self, zone: Girth) -> Option<f32> {
+        match zone {
+            Girth::Chest => self.chest,
+            Girth::Waist => self.waist,
+            Girth::Hip => self.hip,
+        }
+        .map(|mm| mm * 1e-3)
+    }
+}
+
+impl Comfort {
+    /// Comfortable ease at one zone (m).
+    pub fn at(&self, zone: Girth) -> Option<[f32; 2]> {
+        match zone {
+            Girth::Chest => self.chest,
+            Girth::Waist => self.waist,
+            Girth::Hip => self.hip,
+        }
+        .map(|r| r.map(|mm| mm * 1e-3))
+    }
+}
+
+/// Lengths and widths that the sizes do not change (mm).
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(tag = "pattern", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Cut {
+    /// A fitted bodice on two straps, a flared skirt from the waist.
+    SunDress {
+        /// Upper edge of the bodice above the chest level.
+        neckline_mm: f32,
+        /// Waist to hem along the side.
+        skirt_mm: f32,
+        /// Girth of the hem.
+        hem_mm: f32,
+        /// Width of a strap.
+        strap_mm: f32,
+    },
+    /// A straight body with set-in short sleeves and a round neck.
+    TShirt {
+        /// Waist to hem.
+        below_waist_mm: f32,
+        /// Length of the sleeve from the shoulder point.
+        sleeve_mm: f32,
+        /// What the sleeve adds to the arm.
+        sleeve_ease_mm: f32,
+        /// Half the width of the neck opening.
+        neck_mm: f32,
+        /// Depth of the front neckline below the side of the neck.
+        front_neck_mm: f32,
+    },
+    /// Trousers that fall straight and wide from the hip.
+    WideTrousers {
+        /// Height of the upper edge above the waist level.
+        waistband_mm: f32,
+        /// Crotch to hem.
+        inseam_mm: f32,
+        /// Girth of a leg at the hem.
+        hem_mm: f32,
+        /// How far the crotch hangs below the body's.
+        crotch_drop_mm: f32,
+    },
+}

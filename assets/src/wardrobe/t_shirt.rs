@@ -1,0 +1,306 @@
+//! The T-shirt: rings from hem to underarm, columns from there over the shoulders, and sleeves set into the armholes.
+
+use glam::{Vec2, Vec3};
+
+use super::drape::{Form, below, flip, join, rows_after, split_at_top};
+use super::section::{Fit, Plane, Section};
+use super::style::{Cut, Style};
+use crate::body::{Body, Region};
+use crate::garment::Shape;
+use crate::sizes::Girth;
+use crate::skeleton::Joint;
+
+/// Where the underarm seam lies between the chest level and the shoulders: just below the armpit.
+const UNDERARM_SHARE: f32 = 0.34;
+
+/// Half of the columns that an armhole cuts out of the ring, as a share of the ring.
+const ARMHOLE_SHARE: f32 = 0.055;
+
+/// Rows next to the shoulder seam and the neckline that are skinned.
+const YOKE_ROWS: usize = 3;
+
+/// The sleeve's rings turn from the armhole's plane to the arm's over this share of its rows.
+const SLEEVE_TURN: f32 = 0.5;
+
+struct Plan {
+    /// Columns around the body, a multiple of 4.
+    columns: usize,
+    /// Columns from the front centre to the armhole.
+    front: usize,
+    /// Columns from the front centre to the side of the neck.
+    neck: usize,
+    /// Girth of the rings from the underarm to the hem (m).
+    rings: Vec<f32>,
+    /// Rows from the underarm to the shoulder seam.
+    shoulder_rows: usize,
+    /// Girth of each ring of a sleeve (m).
+    sleeve: Vec<f32>,
+    below_waist: f32,
+    sleeve_length: f32,
+    front_neck: f32,
+}
+
+/// Drafts the T-shirt for the body of its size and lays it on the shopper.
+pub fn draft(style: &Style, cut: &Body, shopper: &Body) -> Shape {
+    let plan = plan(style, cut);
+    let mut shape = Shape::default();
+    let index = Index::new(&plan);
+    for (i, (c, w)) in lay(&plan, Form::cut(cut)).into_iter().zip(lay(&plan, Form::shopper(shopper))).enumerate() {
+        shape.push(c, w, index.is_yoke(&plan, i));
+    }
+    connect(&mut shape, &plan, &index);
+    shape
+}
+
+fn plan(style: &Style, cut: &Body) -> Plan {
+    let Cut::TShirt { below_waist_mm, sleeve_mm, sleeve_ease_mm, neck_mm, front_neck_mm } = style.cut else {
+        unreachable!("the wardrobe drafts each style by its own cut")
+    };
+    let form = Form::cut(cut);
+    let levels = &cut.levels;
+    let spacing = style.spacing_mm * 1e-3;
+    let columns = style.columns / 4 * 4;
+    let chest = form.girth(levels.chest) + style.ease_mm.at(Girth::Chest).unwrap_or(0.0);
+    let hip = style.ease_mm.at(Girth::Hip).map_or(chest, |ease| form.girth(levels.hip) + ease);
+    let below_waist = below_waist_mm * 1e-3;
+    let underarm = underarm(cut);
+    let length = underarm - levels.waist + below_waist;
+    let rows = (length / spacing).round() as usize;
+    let to_hip = levels.chest - levels.hip;
+    let rings = (0..=rows).map(|r| {
+        let down = ((length * r as f32 / rows as f32 + levels.chest - underarm) / to_hip).clamp(0.0, 1.0);
+        chest + (hip - chest) * down
+    });
+    let front = columns / 4 - (columns as f32 * ARMHOLE_SHARE).round() as usize;
+    let top = form.ring(underarm, chest, columns);
+    let neck = (0..front).find(|&c| top[c].x >= neck_mm * 1e-3).unwrap_or(front / 2).max(2);
+    let shoulder_rows = (1.15 * (levels.shoulder - underarm) / spacing).round().max(6.0) as usize;
+    let sleeve_length = sleeve_mm * 1e-3;
+    let sleeve_rows = (sleeve_length / spacing).round().max(4.0) as usize;
+    let armhole = (columns / 2 - 2 * front) as f32 * chest / columns as f32 + 2.0 * shoulder_rows as f32 * spacing;
+    let hem = arm_girth(cut, sleeve_length) + sleeve_ease_mm * 1e-3;
+    let narrow = |k: usize| (k as f32 / (0.6 * sleeve_rows as f32)).min(1.0);
+    let sleeve = (1..=sleeve_rows).map(|k| armhole + (hem - armhole) * narrow(k)).collect();
+    let rings = rings.collect();
+    let front_neck = front_neck_mm * 1e-3;
+    Plan { columns, front, neck, rings, shoulder_rows, sleeve, below_waist, sleeve_length, front_neck }
+}
+
+/// Height of the underarm seam (m).
+fn underarm(body: &Body) -> f32 {
+    let levels = &body.levels;
+    levels.chest + UNDERARM_SHARE * (levels.shoulder - levels.chest)
+}
+
+/// Where each part's vertices begin. Front and back columns run from the right armhole to the left one as seen by the
+/// ring; the seam row belongs to the front.
+struct Index {
+    ring: usize,
+    front: usize,
+    back: usize,
+    sleeves: [usize; 2],
+    width: usize,
+}
+
+impl Index {
+    fn new(plan: &Plan) -> Self {
+        let width = 2 * plan.front + 1;
+        let front = plan.rings.len() * plan.columns;
+        let back = front + width * plan.shoulder_rows;
+        let left = back + width * plan.shoulder_rows;
+        let loop_length = armhole_length(plan);
+        Self { ring: 0, front, back, sleeves: [left, left + loop_length * plan.sleeve.len()], width }
+    }
+
+    /// Ring vertex of a column counted from the front centre, positive towards the left.
+    fn column(plan: &Plan, c: isize) -> u32 {
+        c.rem_euclid(plan.columns as isize) as u32
+    }
+
+    /// Vertex of the front panel; row 0 is the underarm ring, the last row the shoulder seam or the neckline.
+    fn front_at(&self, plan: &Plan, row: usize, c: isize) -> u32 {
+        if row == 0 {
+            return Self::column(plan, c);
+        }
+        (self.front + (row - 1) * self.width) as u32 + (c + plan.front as isize) as u32
+    }
+
+    /// Vertex of the back panel in the column behind front column `c`.
+    fn back_at(&self, plan: &Plan, row: usize, c: isize) -> u32 {
+        if row == 0 {
+            return Self::column(plan, plan.columns as isize / 2 - c);
+        }
+        if row == plan.shoulder_rows && c.unsigned_abs() >= plan.neck {
+            return self.front_at(plan, row, c);
+        }
+        (self.back + (row - 1) * self.width) as u32 + (c + plan.front as isize) as u32
+    }
+
+    /// The yoke sticks to the shoulders: the last rows of the panels.
+    fn is_yoke(&self, plan: &Plan, i: usize) -> bool {
+        let panel_row = |first: usize| (i - first) / self.width + 1;
+        let row = if i >= self.sleeves[0] || i < self.front {
+            return false;
+        } else if i >= self.back {
+            panel_row(self.back)
+        } else {
+            panel_row(self.front)
+        };
+        row + YOKE_ROWS > plan.shoulder_rows
+    }
+
+    /// The armhole from the lowest column over the front, the shoulder point and the back: one side's sleeve begins here.
+    fn armhole(&self, plan: &Plan, left: bool) -> Vec<u32> {
+        let sign = if left { 1 } else { -1 };
+        let edge = plan.front as isize;
+        let quarter = plan.columns as isize / 4;
+        let mut ring: Vec<u32> = (edge..quarter).rev().map(|c| Self::column(plan, sign * c)).collect();
+        ring.insert(0, Self::column(plan, sign * quarter));
+        ring.extend((1..=plan.shoulder_rows).map(|r| self.front_at(plan, r, sign * edge)));
+        ring.extend((1..plan.shoulder_rows).rev().map(|r| self.back_at(plan, r, sign * edge)));
+        let half = plan.columns as isize / 2;
+        ring.extend((quarter + 1..=half - edge).rev().map(|c| Self::column(plan, sign * c)));
+        ring
+    }
+}
+
+fn armhole_length(plan: &Plan) -> usize {
+    plan.columns / 2 - 2 * plan.front + 2 * plan.shoulder_rows
+}
+
+/// All positions in the order of [`Index`]. Vertices of the back's seam row are in the list but no face names them;
+/// [`connect`] drops them.
+fn lay(plan: &Plan, form: Form<'_>) -> Vec<Vec3> {
+    let levels = &form.body.levels;
+    let (top, hem) = (underarm(form.body), levels.waist - plan.below_waist);
+    let last = (plan.rings.len() - 1) as f32;
+    let mut points = Vec::new();
+    for (r, &girth) in plan.rings.iter().enumerate() {
+        points.extend(form.ring(top + (hem - top) * r as f32 / last, girth, plan.columns));
+    }
+    let width = 2 * plan.front + 1;
+    let mut front = vec![Vec3::ZERO; width * plan.shoulder_rows];
+    let mut back = front.clone();
+    let edge = plan.front as isize;
+    let neck_height = shoulder_line(plan, form, &points);
+    for c in -edge..=edge {
+        let (up, down) = panel_column(plan, form, &points, neck_height, c);
+        let place = (c + edge) as usize;
+        for r in 0..plan.shoulder_rows {
+            front[r * width + place] = up[r];
+            back[r * width + place] = down[r];
+        }
+    }
+    points.extend(front);
+    points.extend(back);
+    let index = Index::new(plan);
+    let hole: Vec<Vec3> = index.armhole(plan, true).iter().map(|&i| points[i as usize]).collect();
+    let left: Vec<Vec3> = (0..plan.sleeve.len()).flat_map(|k| sleeve_ring(plan, form, &hole, k)).collect();
+    let right = left.iter().map(|p| Vec3::new(-p.x, p.y, p.z)).collect::<Vec<_>>();
+    points.extend(left);
+    points.extend(right);
+    points
+}
+
+/// Height of the side of the neck (m): where the column beside it crosses the shoulder.
+fn shoulder_line(plan: &Plan, form: Form<'_>, ring: &[Vec3]) -> f32 {
+    let front = ring[plan.neck];
+    let back = ring[plan.columns / 2 - plan.neck];
+    split_at_top(&form.over_shoulder(front, back)).0.last().map_or(front.y, |p| p.y)
+}
+
+/// Rows 1.. of the front and of the back panel in one column: up to the shoulder, or to the neckline.
+fn panel_column(plan: &Plan, form: Form<'_>, ring: &[Vec3], neck_height: f32, c: isize) -> (Vec<Vec3>, Vec<Vec3>) {
+    let front = ring[Index::column(plan, c) as usize];
+    let back = ring[Index::column(plan, plan.columns as isize / 2 - c) as usize];
+    let (mut up, mut down) = split_at_top(&form.over_shoulder(front, back));
+    down.reverse();
+    if c.unsigned_abs() < plan.neck {
+        // A round neckline: an ellipse from the sides of the neck down to the middle of the front, a flat one behind.
+        let side = c as f32 / plan.neck as f32;
+        let dip = (1.0 - side * side).sqrt();
+        up = below(&up, neck_height - plan.front_neck * dip);
+        down = below(&down, neck_height - BACK_NECK_SHARE * plan.front_neck * dip);
+    }
+    (rows_after(&up, plan.shoulder_rows), rows_after(&down, plan.shoulder_rows))
+}
+
+/// The back neckline is this share of the front's depth.
+const BACK_NECK_SHARE: f32 = 0.3;
+
+/// Girth of the left arm at a distance from the shoulder (m).
+fn arm_girth(body: &Body, along: f32) -> f32 {
+    arm_section(body, along, 1.0).map_or(0.3, |s| s.girth())
+}
+
+/// Nothing farther from the middle of an arm belongs to it (m).
+const ARM_REACH_M: f32 = 0.14;
+
+/// Outline of the left arm, in a plane that turns from the armhole's (0) to the arm's own (1).
+fn arm_section(body: &Body, along: f32, turn: f32) -> Option<Section> {
+    let shoulder = body.skeleton.at(Joint::LeftShoulder);
+    let axis = (body.skeleton.at(Joint::LeftElbow) - shoulder).normalize_or_zero();
+    let normal = Vec3::X.lerp(axis, turn).normalize_or_zero();
+    // A ring begins below the arm and runs over its front.
+    let below = (Vec3::NEG_Y - normal * normal.dot(Vec3::NEG_Y)).normalize_or_zero();
+    let plane = Plane { origin: shoulder + axis * along, u: below.cross(normal), v: below };
+    Section::of(body, &[Region::LeftArm, Region::Torso], plane, |p| p.distance(plane.origin) < ARM_REACH_M)
+}
+
+fn sleeve_ring(plan: &Plan, form: Form<'_>, hole: &[Vec3], k: usize) -> Vec<Vec3> {
+    let share = (k + 1) as f32 / plan.sleeve.len() as f32;
+    let turn = (share / SLEEVE_TURN).min(1.0);
+    let fit = Fit { girth: plan.sleeve[k], gap: form.gap };
+    let count = hole.len();
+    let ring = arm_section(form.body, plan.sleeve_length * share, turn).map(|s| s.ring(fit, count, Vec2::Y, 0.0));
+    // Where the arm has no outline of its own yet, the armhole is carried along.
+    let shift = Vec3::X * plan.sleeve_length * share;
+    let ring = ring.unwrap_or_else(|| hole.iter().map(|p| *p + shift).collect());
+    let blend = (share / SLEEVE_TURN).min(1.0);
+    ring.iter().zip(hole).map(|(r, h)| (*h + shift).lerp(*r, blend)).collect()
+}
+
+fn connect(shape: &mut Shape, plan: &Plan, index: &Index) {
+    let n = plan.columns;
+    let ring = |r: usize| (index.ring + r * n..index.ring + (r + 1) * n).map(|i| i as u32).collect::<Vec<_>>();
+    for r in 1..plan.rings.len() {
+        join(shape, &ring(r - 1), &ring(r), true);
+    }
+    let edge = plan.front as isize;
+    for r in 1..=plan.shoulder_rows {
+        let row = |r| (-edge..=edge).map(|c| index.front_at(plan, r, c)).collect::<Vec<_>>();
+        join(shape, &row(r), &row(r - 1), false);
+        let row = |r| (-edge..=edge).rev().map(|c| index.back_at(plan, r, c)).collect::<Vec<_>>();
+        join(shape, &row(r), &row(r - 1), false);
+    }
+    let count = armhole_length(plan);
+    for (side, &first) in index.sleeves.iter().enumerate() {
+        let row = |k: usize| (first + k * count..first + (k + 1) * count).map(|i| i as u32).collect::<Vec<_>>();
+        let from = shape.faces.len();
+        join(shape, &index.armhole(plan, side == 0), &row(0), true);
+        for k in 1..plan.sleeve.len() {
+            join(shape, &row(k - 1), &row(k), true);
+        }
+        if side == 1 {
+            flip(&mut shape.faces[from..]);
+        }
+    }
+    drop_loose(shape);
+}
+
+/// Removes the vertices that no face names.
+fn drop_loose(shape: &mut Shape) {
+    let mut used = vec![false; shape.cut.len()];
+    shape.faces.iter().flatten().for_each(|&v| used[v as usize] = true);
+    let mut place = vec![0u32; used.len()];
+    let mut next = 0;
+    for (i, &u) in used.iter().enumerate() {
+        place[i] = next;
+        next += u32::from(u);
+    }
+    shape.faces.iter_mut().flatten().for_each(|v| *v = place[*v as usize]);
+    let kept = |i: &usize| used[*i];
+    shape.cut = (0..used.len()).filter(kept).map(|i| shape.cut[i]).collect();
+    shape.worn = (0..used.len()).filter(kept).map(|i| shape.worn[i]).collect();
+    shape.fixed = (0..used.len()).filter(kept).map(|i| shape.fixed[i]).collect();
+}

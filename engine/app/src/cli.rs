@@ -1,0 +1,398 @@
+//! The command line's grammar, its help, and what it is parsed into.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::error::ErrorKind;
+use clap::{Arg, ArgAction, ArgMatches, value_parser};
+use clap_complete::Shell;
+use toile_assets::body::Sex;
+
+use crate::exit::AppError;
+
+/// What the user asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Command {
+    /// `toile try-on`, and plain `toile`.
+    TryOn(TryOnArgs),
+    /// `toile measure`.
+    Measure(MeasureArgs),
+    /// `toile record`.
+    Record(RecordArgs),
+    /// `toile doctor`.
+    Doctor(DoctorArgs),
+    /// `toile bench skinning`.
+    BenchSkinning(SkinningArgs),
+    /// `toile completions`.
+    Completions(Shell),
+    /// Help or version: text to print.
+    Print(String),
+}
+
+/// Arguments of `toile try-on`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TryOnArgs {
+    /// A recording; `None` is the embedded session.
+    pub session: Option<PathBuf>,
+    /// Garments of the wardrobe or OBJ files, in dressing order; empty is the default garment.
+    pub garments: Vec<String>,
+    /// A size to wear in place of the recommended one.
+    pub size: Option<String>,
+    /// Whose body is shown; `None` goes by the garment.
+    pub body: Option<Sex>,
+    /// Where the files go.
+    pub out: PathBuf,
+    /// Whether pictures are made.
+    pub pictures: bool,
+    /// One JSON object on stdout in place of the summary.
+    pub json: bool,
+    /// No words on stderr.
+    pub quiet: bool,
+}
+
+/// Arguments of `toile measure`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasureArgs {
+    /// The recording or depth frame.
+    pub file: PathBuf,
+    /// Camera description for a raw depth frame.
+    pub camera: Option<PathBuf>,
+    /// One JSON object on stdout in place of the summary.
+    pub json: bool,
+    /// No words on stderr.
+    pub quiet: bool,
+}
+
+/// Arguments of `toile record`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordArgs {
+    /// The session file to write.
+    pub out: PathBuf,
+    /// Seed of the sensor's noise.
+    pub seed: u64,
+    /// Length (s).
+    pub seconds: u32,
+    /// One JSON object on stdout in place of the summary.
+    pub json: bool,
+    /// No words on stderr.
+    pub quiet: bool,
+}
+
+/// Arguments of `toile doctor`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DoctorArgs {
+    /// The folder whose writing is tried.
+    pub out: PathBuf,
+    /// One JSON object on stdout in place of the table.
+    pub json: bool,
+}
+
+/// Arguments of `toile bench skinning`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SkinningArgs {
+    /// Vertices to skin.
+    pub verts: usize,
+    /// One JSON object on stdout in place of the summary.
+    pub json: bool,
+}
+
+/// Most vertices that `bench skinning` takes: 16 million, about 2 GB of arrays.
+const MAX_BENCH_VERTS: u64 = 1 << 24;
+
+/// Longest session that `record` makes (s); at 30 frames a second this is some hundred megabytes.
+const MAX_RECORD_SECONDS: i64 = 600;
+
+/// The whole grammar, for parsing, help and completions.
+pub fn command() -> clap::Command {
+    clap::Command::new("toile")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about("A real-time virtual fitting room: measures a shopper and dresses a body of their size")
+        .long_about(
+            "A real-time virtual fitting room: measures a shopper before a depth camera and dresses a body of their \
+             size in garments that move as cloth, 120 steps a second.\n\nWithout a command, `toile` runs `toile \
+             try-on`, and takes its options.",
+        )
+        .override_usage("toile [OPTIONS OF TRY-ON]\n       toile <COMMAND>")
+        .subcommand_required(true)
+        .subcommands([try_on(), measure(), record(), doctor(), bench(), completions()])
+        .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
+}
+
+fn try_on() -> clap::Command {
+    clap::Command::new("try-on")
+        .about("Measure a shopper, dress them, and write pictures and a report")
+        .long_about(
+            "Watches a session, measures the shopper, recommends a size zone by zone, lets the garment move on a body \
+             of that size for the whole session, and writes pictures and a report.",
+        )
+        .args([
+            path("session", "F", "Recording to watch: .mcap, Kinect CSV, Kinectron JSON or BVH [default: embedded]"),
+            text("garment", "G", "Garment of the wardrobe, or an OBJ file; repeat it to dress in layers, inner first")
+                .action(ArgAction::Append),
+            text("size", "S", "Size to wear, as the garment's table names it [default: the one that fits]"),
+            text("body", "B", "Body to show: female or male [default: whom the garment is cut for]")
+                .value_parser(["female", "male"]),
+            path("out", "DIR", "Folder for the files; it is made if missing").default_value("out"),
+            flag("no-pictures", "Make no pictures: only the report and the physics"),
+            json(),
+            quiet(),
+        ])
+        .after_help("Example: see how a recorded shopper moves in wide trousers\n  toile try-on --session shopper.csv --garment trousers --out fitting")
+}
+
+fn measure() -> clap::Command {
+    clap::Command::new("measure")
+        .about("Measure the person in a recording or a depth frame")
+        .args([
+            Arg::new("file")
+                .value_name("F")
+                .required(true)
+                .value_parser(value_parser!(PathBuf))
+                .help("Recording or depth frame"),
+            path("camera", "J", "Camera of a raw depth frame, as JSON [default: the recording's own]"),
+            json(),
+            quiet(),
+        ])
+        .after_help("Example: get the measures as JSON\n  toile measure shopper.mcap --json")
+}
+
+fn record() -> clap::Command {
+    clap::Command::new("record")
+        .about("Make a synthetic session, such as the embedded one")
+        .long_about(
+            "Renders what a depth camera would see of a moving body, with the camera's noise, and writes it as a \
+             session. Without --seed and --seconds it makes the session that is embedded in the program.",
+        )
+        .args([
+            path("out", "F.mcap", "Session file to write").required(true),
+            text("seed", "N", "Seed of the noise; the same seed gives the same bits")
+                .value_parser(value_parser!(u64))
+                .default_value("1"),
+            text("seconds", "S", "Length in seconds")
+                .value_parser(value_parser!(u32).range(1..=MAX_RECORD_SECONDS))
+                .default_value("10"),
+            json(),
+            quiet(),
+        ])
+        .after_help("Example: make another session and watch it\n  toile record --out other.mcap --seed 7 && toile try-on --session other.mcap")
+}
+
+fn doctor() -> clap::Command {
+    clap::Command::new("doctor")
+        .about("Say what this machine has, and the exact cure for what is missing")
+        .args([path("out", "DIR", "Output folder whose writing is tried").default_value("out"), json()])
+        .after_help("Example: see why a kiosk misses its deadline\n  toile doctor")
+}
+
+fn bench() -> clap::Command {
+    let skinning = clap::Command::new("skinning")
+        .about("Time the skinning of a body, against a plain loop and with its error")
+        .args([
+            text("verts", "N", "Vertices to skin")
+                .value_parser(value_parser!(u64).range(1..=MAX_BENCH_VERTS))
+                .default_value("16384"),
+            json(),
+        ])
+        .after_help("Example: the cost of a vertex at 65,536 vertices\n  toile bench skinning --verts 65536");
+    clap::Command::new("bench")
+        .about("Time one part of the frame, with the error at that speed")
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommand(skinning)
+        .after_help("Example: the cost of a vertex\n  toile bench skinning --verts 16384")
+}
+
+fn completions() -> clap::Command {
+    let shells = ["bash", "elvish", "fish", "powershell", "zsh"];
+    let parser = PossibleValuesParser::new(shells).try_map(|name| name.parse::<Shell>());
+    clap::Command::new("completions")
+        .about("Print the completions of a shell")
+        .arg(Arg::new("shell").value_name("SHELL").required(true).value_parser(parser).help("The shell"))
+        .after_help("Example: complete Toile's options in bash\n  toile completions bash > ~/.local/share/bash-completion/completions/toile")
+}
+
+fn path(name: &'static str, value: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).long(name).value_name(value).value_parser(value_parser!(PathBuf)).help(help)
+}
+
+fn text(name: &'static str, value: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).long(name).value_name(value).help(help)
+}
+
+fn flag(name: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).long(name).action(ArgAction::SetTrue).help(help)
+}
+
+fn json() -> Arg {
+    flag("json", "Print one JSON object, and nothing else, on stdout")
+}
+
+fn quiet() -> Arg {
+    flag("quiet", "Say nothing on stderr but errors").short('q')
+}
+
+/// Parses a command line, the program's name first.
+///
+/// # Errors
+/// [`AppError::Usage`] with one sentence.
+pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
+    let args = with_default_command(args);
+    let matches = match command().try_get_matches_from(&args) {
+        Ok(matches) => matches,
+        Err(error) => return told(&error, &args),
+    };
+    let Some((name, matches)) = matches.subcommand() else {
+        return Err(AppError::internal("a command line without a command was let through"));
+    };
+    Ok(match name {
+        "try-on" => Command::TryOn(TryOnArgs {
+            session: matches.get_one("session").cloned(),
+            garments: matches.get_many("garment").into_iter().flatten().cloned().collect(),
+            size: matches.get_one("size").cloned(),
+            body: matches.get_one::<String>("body").map(|b| if b == "male" { Sex::Male } else { Sex::Female }),
+            out: required(matches, "out")?,
+            pictures: !matches.get_flag("no-pictures"),
+            json: matches.get_flag("json"),
+            quiet: matches.get_flag("quiet"),
+        }),
+        "measure" => Command::Measure(MeasureArgs {
+            file: required(matches, "file")?,
+            camera: matches.get_one("camera").cloned(),
+            json: matches.get_flag("json"),
+            quiet: matches.get_flag("quiet"),
+        }),
+        "record" => Command::Record(RecordArgs {
+            out: required(matches, "out")?,
+            seed: required(matches, "seed")?,
+            seconds: required(matches, "seconds")?,
+            json: matches.get_flag("json"),
+            quiet: matches.get_flag("quiet"),
+        }),
+        "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
+        "bench" => bench_command(matches)?,
+        "completions" => Command::Completions(required(matches, "shell")?),
+        other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
+    })
+}
+
+fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
+    let Some(("skinning", matches)) = matches.subcommand() else {
+        return Err(AppError::internal("a benchmark without a name was let through"));
+    };
+    let verts: u64 = required(matches, "verts")?;
+    let verts = usize::try_from(verts).map_err(AppError::internal)?;
+    Ok(Command::BenchSkinning(SkinningArgs { verts, json: matches.get_flag("json") }))
+}
+
+/// A value that the grammar guarantees, by being required or by having a default.
+fn required<T: Clone + Send + Sync + 'static>(matches: &ArgMatches, name: &str) -> Result<T, AppError> {
+    matches.get_one::<T>(name).cloned().ok_or_else(|| AppError::Internal(format!("no value for `{name}`")))
+}
+
+/// Puts `try-on` where no command is given, and moves flags given before a command behind it: `toile --json doctor`.
+fn with_default_command(mut args: Vec<OsString>) -> Vec<OsString> {
+    let is_flag = |arg: &OsString| ["--json", "--quiet", "-q"].iter().any(|flag| arg == flag);
+    if args.is_empty() {
+        args.push("toile".into());
+    }
+    let flags = args[1..].iter().take_while(|a| is_flag(a)).count();
+    let first = args.get(1 + flags).map(|a| a.to_string_lossy().into_owned());
+    match first.as_deref() {
+        Some("-h" | "--help" | "-V" | "--version") => {}
+        Some(word) if !word.starts_with('-') => args[1..=1 + flags].rotate_right(1),
+        _ => args.insert(1, "try-on".into()),
+    }
+    args
+}
+
+/// Help and version become text to print; a real error becomes one sentence that ends with where help is.
+fn told(error: &clap::Error, args: &[OsString]) -> Result<Command, AppError> {
+    if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
+        let colour = crate::terminal::Paint::for_stdout().is_on();
+        let text = error.render();
+        return Ok(Command::Print(if colour { text.ansi().to_string() } else { text.to_string() }));
+    }
+    let known = |arg: &&OsString| command().get_subcommands().any(|c| **arg == c.get_name());
+    let place = args.get(1).filter(known).map_or_else(String::new, |name| format!(" {}", name.to_string_lossy()));
+    Err(AppError::Usage(sentence(error, &place)))
+}
+
+fn sentence(error: &clap::Error, place: &str) -> String {
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        return format!("`toile{place}` needs to be told what to do; see `toile{place} --help`");
+    }
+    let text = error.render().to_string();
+    let parts = text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:"));
+    let parts: Vec<&str> = parts.filter(|line| !line.is_empty() && !line.starts_with("For more information")).collect();
+    let (what, tips) = parts.split_first().unwrap_or((&"the command line was not understood", &[]));
+    let what = what.trim_start_matches("error: ");
+    // A list of missing arguments ends its first line with a colon; any other lines are tips.
+    let tips = match (tips, what.ends_with(':')) {
+        ([], _) => String::new(),
+        (tips, true) => format!(" {}", tips.join(", ")),
+        (tips, false) => format!(" ({})", tips.join("; ").replace("tip: ", "")),
+    };
+    format!("{what}{tips}; see `toile{place} --help`")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(line: &str) -> Result<Command, AppError> {
+        parse(line.split_whitespace().map(OsString::from).collect())
+    }
+
+    #[test]
+    fn the_grammar_is_sound() {
+        command().debug_assert();
+    }
+
+    #[test]
+    fn no_command_is_try_on() {
+        let plain = parsed("toile").unwrap();
+        assert_eq!(plain, parsed("toile try-on").unwrap());
+        let Command::TryOn(args) = plain else { panic!("{plain:?}") };
+        assert_eq!(args.out, PathBuf::from("out"));
+        assert!(args.session.is_none() && args.garments.is_empty() && args.pictures && !args.json);
+        assert_eq!(parsed("toile --json --garment a").unwrap(), parsed("toile try-on --json --garment a").unwrap());
+    }
+
+    #[test]
+    fn flags_may_stand_before_the_command() {
+        assert_eq!(parsed("toile --json doctor").unwrap(), parsed("toile doctor --json").unwrap());
+        assert_eq!(parsed("toile -q --json measure f").unwrap(), parsed("toile measure -q --json f").unwrap());
+    }
+
+    #[test]
+    fn garments_keep_their_order() {
+        let Command::TryOn(args) = parsed("toile --garment b --garment a --size 40").unwrap() else { panic!() };
+        assert_eq!(args.garments, ["b", "a"]);
+        assert_eq!(args.size.as_deref(), Some("40"));
+    }
+
+    #[test]
+    fn every_help_ends_with_an_example() {
+        fn check(command: &clap::Command) {
+            let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+            assert!(after.starts_with("Example: ") && after.contains("\n  toile"), "{}", command.get_name());
+            command.get_subcommands().for_each(check);
+        }
+        check(&command());
+    }
+
+    #[test]
+    fn a_wrong_line_gives_one_sentence_with_its_cure() {
+        let lines =
+            ["toile --garmet x", "toile mesure", "toile bench", "toile measure", "toile record --out f --seed x"];
+        for line in lines {
+            let error = parsed(line).unwrap_err();
+            assert!(matches!(error, AppError::Usage(_)), "{line}");
+            let said = error.to_string();
+            assert!(said.contains("--help`") && !said.contains('\n'), "{said}");
+        }
+        let said = parsed("toile --garmet x").unwrap_err().to_string();
+        assert!(said.contains("--garmet") && said.contains("'--garment'"), "{said}");
+    }
+}

@@ -1,0 +1,185 @@
+//! `toile doctor`: what this machine has, and the exact cure for what is missing.
+
+mod processor;
+mod rights;
+mod surroundings;
+
+use std::fmt::Write;
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::cli::DoctorArgs;
+use crate::exit::AppError;
+use crate::report::Document;
+use crate::terminal::{self, Paint, Tone};
+
+/// How one thing stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// As it should be.
+    Ok,
+    /// Not there, or not as it should be; the cure says how to mend it.
+    Missing,
+    /// This machine does not tell.
+    Unknown,
+}
+
+/// One thing that was looked at.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Check {
+    /// What was looked at.
+    pub name: &'static str,
+    /// How it stands.
+    pub status: Status,
+    /// What was found.
+    pub found: String,
+    /// What it is needed for.
+    pub needed_for: &'static str,
+    /// The exact cure, where something is missing.
+    pub cure: Option<String>,
+}
+
+impl Check {
+    fn ok(name: &'static str, needed_for: &'static str, found: impl Into<String>) -> Self {
+        Self { name, status: Status::Ok, found: found.into(), needed_for, cure: None }
+    }
+
+    fn missing(
+        name: &'static str,
+        needed_for: &'static str,
+        found: impl Into<String>,
+        cure: impl Into<String>,
+    ) -> Self {
+        Self { name, status: Status::Missing, found: found.into(), needed_for, cure: Some(cure.into()) }
+    }
+
+    fn unknown(name: &'static str, needed_for: &'static str) -> Self {
+        Self { name, status: Status::Unknown, found: "this machine does not tell".into(), needed_for, cure: None }
+    }
+}
+
+/// The body of `toile doctor --json`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DoctorReport {
+    /// Everything that was looked at.
+    pub checks: Vec<Check>,
+    /// The GPU adapters, where GPU support is built in.
+    pub adapters: Vec<AdapterReport>,
+    /// Whether GPU support is built in.
+    pub gpu_built_in: bool,
+    /// Whether `toile try-on` can run here: of all checks, the output folder alone decides that.
+    pub ready: bool,
+}
+
+/// One GPU adapter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AdapterReport {
+    /// The device's own name.
+    pub name: String,
+    /// The interface it is reached by.
+    pub backend: String,
+    /// `discrete`, `integrated`, `virtual`, `software` or `other`.
+    pub kind: &'static str,
+    /// The driver's name and version.
+    pub driver: String,
+}
+
+/// Runs `toile doctor`.
+///
+/// # Errors
+/// Only where stdout cannot be written: what is missing is a finding, not an error.
+pub fn run(args: &DoctorArgs) -> Result<(), AppError> {
+    let document = Document::new("doctor", examine(&args.out));
+    if args.json {
+        terminal::print_json(&document)
+    } else {
+        terminal::print(&table(&document.body, Paint::for_stdout()))
+    }
+}
+
+fn examine(out: &Path) -> DoctorReport {
+    let adapters = toile_gpu::adapters();
+    let folder = surroundings::output_folder(out);
+    let ready = folder.status == Status::Ok;
+    let checks = vec![
+        processor::cpu(),
+        processor::cores(),
+        processor::lanes(),
+        processor::memory(),
+        processor::governor(),
+        processor::clock_source(),
+        processor::clock_cost(),
+        rights::priority(),
+        rights::locked_memory(),
+        rights::kernel(),
+        surroundings::gpu(&adapters),
+        surroundings::display(),
+        folder,
+        surroundings::ffmpeg(),
+    ];
+    let adapters = adapters.into_iter();
+    let adapters =
+        adapters.map(|a| AdapterReport { name: a.name, backend: a.backend, kind: a.kind, driver: a.driver }).collect();
+    DoctorReport { checks, adapters, gpu_built_in: toile_gpu::BUILT_IN, ready }
+}
+
+fn table(report: &DoctorReport, paint: Paint) -> String {
+    let width = report.checks.iter().map(|c| c.name.len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for check in &report.checks {
+        let (word, tone) = match check.status {
+            Status::Ok => ("ok     ", Tone::Good),
+            Status::Missing => ("missing", Tone::Warn),
+            Status::Unknown => ("unknown", Tone::Strong),
+        };
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{}  {:width$}  {}", paint.tone(word, tone), check.name, check.found);
+        if let Some(cure) = &check.cure {
+            let _ = writeln!(text, "         {:width$}  for {}: {cure}", "", check.needed_for);
+        }
+    }
+    let missing = report.checks.iter().filter(|c| c.status == Status::Missing).count();
+    let ready = if report.ready { "`toile try-on` can run here" } else { "`toile try-on` cannot run here yet" };
+    let _ = writeln!(text, "\n{ready}; missing: {missing}.");
+    text
+}
+
+/// The text of one of the kernel's files, without its ends.
+fn kernel_file(path: impl AsRef<Path>) -> Option<String> {
+    let text = std::fs::read_to_string(path).ok()?;
+    Some(text.trim().to_owned()).filter(|t| !t.is_empty())
+}
+
+/// The value of a `Key: value` line.
+fn field<'a>(text: &'a str, key: &str) -> Option<&'a str> {
+    text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(':')).map(str::trim)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_missing_has_a_cure_and_what_is_ok_needs_none() {
+        for check in examine(&std::env::temp_dir().join("toile-doctor")).checks {
+            assert_eq!(check.status == Status::Missing, check.cure.is_some(), "{check:?}");
+            assert!(!check.found.is_empty() && !check.found.contains('\n'), "{check:?}");
+        }
+    }
+
+    #[test]
+    fn table_shows_the_cure_below_the_finding() {
+        let checks = vec![Check::ok("a", "x", "fine"), Check::missing("bb", "kiosks", "none", "do this")];
+        let report = DoctorReport { checks, adapters: Vec::new(), gpu_built_in: false, ready: true };
+        let text = table(&report, Paint::none());
+        assert!(text.starts_with("ok       a   fine\nmissing  bb  none\n             for kiosks: do this\n"), "{text}");
+        assert!(text.ends_with("can run here; missing: 1.\n"), "{text}");
+    }
+
+    #[test]
+    fn field_reads_the_whole_key() {
+        assert_eq!(field("CapEffX:\t1\nCapEff:\t2\n", "CapEff"), Some("2"));
+    }
+}

@@ -1,0 +1,179 @@
+//! How a run ends: the exit codes, the one error type, and what a panic says.
+
+use std::fmt::Display;
+use std::io;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What the process exits with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Code {
+    /// The work was done.
+    Ok = 0,
+    /// The command line was not understood.
+    Usage = 2,
+    /// The work was done, but a figure missed its threshold.
+    Threshold = 3,
+    /// A file, an asset or a folder cannot be used.
+    BadInput = 4,
+    /// A device, such as the GPU that was asked for, is not available.
+    Device = 5,
+    /// A replay did not give the bits that were recorded.
+    Diverged = 6,
+    /// Toile itself is at fault.
+    Internal = 70,
+}
+
+impl From<Code> for ExitCode {
+    fn from(code: Code) -> Self {
+        Self::from(code as u8)
+    }
+}
+
+/// Every way in which a command can fail. The text is one sentence: what, where, and the cure.
+#[derive(Debug, thiserror::Error)]
+pub enum AppError {
+    /// The command line was not understood.
+    #[error("{0}")]
+    Usage(String),
+    /// A figure missed its threshold.
+    #[error("{0}")]
+    Threshold(String),
+    /// A file, an asset or a folder cannot be used.
+    #[error("{0}")]
+    Input(String),
+    /// A device is not available.
+    #[error("{0}")]
+    Device(String),
+    /// A replay did not give the recorded bits.
+    #[error("{0}")]
+    Diverged(String),
+    /// Toile itself is at fault.
+    #[error("{0}")]
+    Internal(String),
+    /// Standard output cannot be written, because a disk is full for example.
+    #[error("standard output cannot be written ({0}); send it to another place")]
+    Stdout(io::Error),
+    /// The reader of standard output went away, as `head` does: not a fault, so nothing is said.
+    #[error("the reader of standard output has closed it")]
+    StdoutClosed,
+}
+
+impl AppError {
+    /// Bad input, told by the error of the room that read it: `.map_err(AppError::input)?`.
+    pub fn input(error: impl Display) -> Self {
+        Self::Input(error.to_string())
+    }
+
+    /// A fault of Toile's own, told by an error that ought not to happen.
+    pub fn internal(error: impl Display) -> Self {
+        Self::Internal(error.to_string())
+    }
+
+    /// The exit code of this error.
+    pub fn code(&self) -> Code {
+        match self {
+            Self::Usage(_) => Code::Usage,
+            Self::Threshold(_) => Code::Threshold,
+            Self::Input(_) | Self::Stdout(_) => Code::BadInput,
+            Self::Device(_) => Code::Device,
+            Self::Diverged(_) => Code::Diverged,
+            Self::Internal(_) => Code::Internal,
+            Self::StdoutClosed => Code::Ok,
+        }
+    }
+
+    /// Says the error on stderr, as one line: `toile: ...`.
+    pub fn tell(&self) {
+        if !matches!(self, Self::StdoutClosed) {
+            say_line(&one_line(&self.to_string()));
+        }
+    }
+}
+
+impl From<io::Error> for AppError {
+    /// Only for errors of standard output: files are told by [`crate::output::OutputError`], which names them.
+    fn from(error: io::Error) -> Self {
+        if error.kind() == io::ErrorKind::BrokenPipe { Self::StdoutClosed } else { Self::Stdout(error) }
+    }
+}
+
+/// Makes `?` turn errors of the rooms into bad input, exit code 4.
+macro_rules! bad_input {
+    ($($error:ty),+ $(,)?) => { $(
+        impl From<$error> for AppError {
+            fn from(error: $error) -> Self {
+                Self::input(error)
+            }
+        }
+    )+ };
+}
+
+bad_input!(crate::output::OutputError);
+
+static PANICKED: AtomicBool = AtomicBool::new(false);
+
+/// Whether any thread has panicked since [`install_panic_hook`].
+pub fn panicked() -> bool {
+    // Relaxed: the flag guards no other data, and joining a thread already orders its store before this load.
+    PANICKED.load(Ordering::Relaxed)
+}
+
+/// Makes the first panic say one sentence in place of a trace; later ones, its consequences, say nothing.
+/// With `RUST_BACKTRACE` set the usual message and trace are kept.
+pub fn install_panic_hook() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        // Relaxed: only one thread can win the swap, and nothing else is published by it.
+        if PANICKED.swap(true, Ordering::Relaxed) {
+            return;
+        }
+        let place = info.location().map_or_else(String::new, |at| format!(" at {}:{}", at.file(), at.line()));
+        let payload = info.payload();
+        let owned = payload.downcast_ref::<String>().map(String::as_str);
+        let what = payload.downcast_ref::<&str>().copied().or(owned).unwrap_or("no reason given");
+        let cure = "please report this with the command you typed";
+        say_line(&one_line(&format!("internal fault{place} ({what}); {cure}")));
+        if std::env::var_os("RUST_BACKTRACE").is_some() {
+            usual(info);
+        }
+    }));
+}
+
+/// Joins the lines of a text with single spaces, so that a message stays one line whatever a source put in it.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn say_line(sentence: &str) {
+    use io::Write;
+    // Nowhere is left to complain when stderr itself is closed.
+    let _ = writeln!(io::stderr(), "toile: {sentence}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_is_one_line() {
+        assert_eq!(one_line("a\n  b\r\n\tc "), "a b c");
+    }
+
+    #[test]
+    fn each_error_has_the_code_of_the_contract() {
+        let codes = [
+            (AppError::Usage(String::new()), 2),
+            (AppError::Threshold(String::new()), 3),
+            (AppError::input("x"), 4),
+            (AppError::Device(String::new()), 5),
+            (AppError::Diverged(String::new()), 6),
+            (AppError::internal("x"), 70),
+            (AppError::from(io::Error::from(io::ErrorKind::BrokenPipe)), 0),
+        ];
+        for (error, code) in codes {
+            assert_eq!(error.code() as u8, code, "{error:?}");
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! The command line of Toile: the only place that knows every room.
+//!
+//! Reads: arguments, sessions, garments. Writes: one report on stdout, words on stderr, files in the output folder.
+//! Budget: the words and the parsing take under 10 ms; the work itself is budgeted by the rooms it calls.
+//! Thread: the main thread, which loads, starts the frame's threads and waits for them.
+
+pub mod bench;
+pub mod cli;
+pub mod completions;
+pub mod doctor;
+pub mod exit;
+pub mod fit;
+pub mod machine;
+pub mod measure;
+pub mod output;
+pub mod pictures;
+pub mod record;
+pub mod report;
+pub mod shopper;
+pub mod summary;
+pub mod terminal;
+pub mod try_on;
+
+use std::ffi::OsString;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+
+use cli::Command;
+use exit::{AppError, Code};
+
+/// Runs one command line, the program's name first, and returns what the process shall exit with.
+pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
+    exit::install_panic_hook();
+    let args = args.into_iter().collect();
+    guarded(|| cli::parse(args).and_then(|command| dispatch(&command))).into()
+}
+
+/// Does some work, says its error if it has one, and turns a panic, on any thread, into [`Code::Internal`].
+pub fn guarded(work: impl FnOnce() -> Result<(), AppError>) -> Code {
+    // Unwinding rather than leaving at once lets an output folder take back its unfinished files. Nothing that the
+    // work has touched is looked at again, so it need not be unwind-safe.
+    let outcome = catch_unwind(AssertUnwindSafe(work));
+    let code = match outcome {
+        Ok(Ok(())) => Code::Ok,
+        Ok(Err(error)) => {
+            error.tell();
+            error.code()
+        }
+        Err(_) => Code::Internal,
+    };
+    // A panic on another thread was told by the hook; whatever this thread made of it, the run has failed.
+    if exit::panicked() { Code::Internal } else { code }
+}
+
+fn dispatch(command: &Command) -> Result<(), AppError> {
+    match command {
+        Command::TryOn(args) => try_on::run(args),
+        Command::Measure(args) => measure::run(args),
+        Command::Record(args) => record::run(args),
+        Command::Doctor(args) => doctor::run(args),
+        Command::BenchSkinning(args) => bench::skinning(args),
+        Command::Completions(shell) => completions::run(*shell),
+        Command::Print(text) => terminal::print(text),
+    }
+}

@@ -1,0 +1,234 @@
+//! The pictures of a try-on: the session as an animation, a contact sheet through it, and stills of its end.
+
+use std::f32::consts::{FRAC_PI_2, PI};
+use std::fs::File;
+use std::io::BufWriter;
+
+use glam::Vec3;
+use indicatif::ProgressBar;
+use toile_assets::garment::Garment;
+use toile_assets::limits::STEP_HZ;
+use toile_assets::mesh::vertex_normals;
+use toile_engine::frame::{Frame, Snapshot};
+use toile_view::fitmap;
+use toile_view::image::{Animation, Image, Size};
+use toile_view::scene::{Bounds, Camera, Colours, MANNEQUIN, Material, Scene, Surface};
+use toile_view::sheet;
+use toile_view::trace::{Quality, Stage};
+use toile_view::tuck::Cover;
+
+use crate::exit::AppError;
+use crate::output::OutputFolder;
+
+/// A still: tall enough to see a hem's folds, small enough that three take a few seconds.
+const STILL: Size = Size::new(480, 800);
+
+/// A frame of the animation.
+const MOTION: Size = Size::new(240, 360);
+
+/// Frames a second of the animation.
+const MOTION_FPS: u32 = 10;
+
+/// Most frames of the animation: sessions longer than this show every second, third, ... of them.
+const MOST_FRAMES: u64 = 80;
+
+/// Frames on the contact sheet, in rows of this many.
+const SHEET_FRAMES: usize = 12;
+const SHEET_COLUMNS: usize = 6;
+
+/// Half the width of what an animation shows around the shopper: arms stretched out (m).
+const HALF_REACH_M: f32 = 0.75;
+
+/// Height of what an animation shows as a share of the stature: arms half raised.
+const HEADROOM: f32 = 1.08;
+
+/// How fast the camera follows the shopper across the floor (share of the way a frame).
+const FOLLOW: f32 = 0.35;
+
+/// Makes pictures while a session runs.
+pub struct Pictures {
+    animation: Animation<BufWriter<File>>,
+    stride: u64,
+    frames: u32,
+    kept: Vec<(Image, u64)>,
+    drawing: Drawing,
+    middle: Option<Vec3>,
+    stature: f32,
+    bar: ProgressBar,
+}
+
+/// What is drawn: topology and colours, which the session does not change, and room for what it does.
+struct Drawing {
+    body: Vec<Vec3>,
+    body_triangles: Vec<[u32; 3]>,
+    cloths: Vec<ClothDrawing>,
+}
+
+struct ClothDrawing {
+    triangles: Vec<[u32; 3]>,
+    normals: Vec<Vec3>,
+    colour: Vec3,
+}
+
+impl Drawing {
+    fn new(frame: &Frame) -> Self {
+        let cloth = |g: &Garment| ClothDrawing {
+            triangles: g.triangles.to_vec(),
+            normals: vec![Vec3::ZERO; g.particles()],
+            colour: Vec3::from_array(g.fabric.colour.map(toile_view::image::linear)),
+        };
+        Self {
+            body: frame.body().mesh.positions.clone(),
+            body_triangles: frame.body().mesh.triangles.clone(),
+            cloths: frame.garments().iter().map(cloth).collect(),
+        }
+    }
+
+    /// Takes over a snapshot: the skin beneath the cloth, normals of the cloth.
+    fn take(&mut self, snapshot: &Snapshot) {
+        self.body.copy_from_slice(&snapshot.body);
+        let corners = self
+            .cloths
+            .iter()
+            .zip(&snapshot.garments)
+            .flat_map(|(cloth, points)| cloth.triangles.iter().map(move |t| t.map(|i| points[i as usize])));
+        Cover::new(corners).tuck(&mut self.body, &snapshot.normals);
+        for (cloth, points) in self.cloths.iter_mut().zip(&snapshot.garments) {
+            vertex_normals(points, &cloth.triangles, &mut cloth.normals);
+        }
+    }
+
+    /// The surfaces of a picture; `map` gives each garment its colours by vertex instead of the fabric's.
+    fn surfaces<'a>(&'a self, snapshot: &'a Snapshot, map: Option<&'a [Vec<f32>]>) -> Vec<Surface<'a>> {
+        let mut surfaces = vec![Surface {
+            positions: &self.body,
+            normals: &snapshot.normals,
+            triangles: &self.body_triangles,
+            colours: Colours::One(MANNEQUIN),
+            material: Material::Skin,
+        }];
+        for (i, (cloth, points)) in self.cloths.iter().zip(&snapshot.garments).enumerate() {
+            let (colours, material) = match map {
+                Some(map) => (Colours::Tightness(&map[i]), Material::Chart),
+                None => (Colours::One(cloth.colour), Material::Cloth),
+            };
+            let (normals, triangles) = (&cloth.normals, &cloth.triangles);
+            surfaces.push(Surface { positions: points, normals, triangles, colours, material });
+        }
+        surfaces
+    }
+}
+
+impl Pictures {
+    /// Begins the animation of a session of `steps` steps.
+    pub fn begin(out: &mut OutputFolder, frame: &Frame, steps: u64, bar: ProgressBar) -> Result<Self, AppError> {
+        let each = u64::from(STEP_HZ / MOTION_FPS);
+        let stride = each * steps.div_ceil(each).max(1).div_ceil(MOST_FRAMES);
+        let frames = steps.max(1).div_ceil(stride) as u32;
+        let path = out.stage("session.png")?;
+        let file = BufWriter::new(File::create(&path).map_err(AppError::input)?);
+        let fps = (STEP_HZ as u64 / stride).max(1) as u16;
+        Ok(Self {
+            animation: Animation::new(file, MOTION, frames, fps).map_err(AppError::input)?,
+            stride,
+            frames,
+            kept: Vec::new(),
+            drawing: Drawing::new(frame),
+            middle: None,
+            stature: frame.body().measures.stature,
+            bar,
+        })
+    }
+
+    /// Whether the animation wants the snapshot of this tick.
+    pub fn wants(&self, tick: u64) -> bool {
+        tick.is_multiple_of(self.stride)
+    }
+
+    /// Draws a frame of the animation.
+    pub fn add(&mut self, snapshot: &Snapshot) -> Result<(), AppError> {
+        self.drawing.take(snapshot);
+        let camera = self.follow(snapshot);
+        let surfaces = self.drawing.surfaces(snapshot, None);
+        let image = Stage::build(Scene { surfaces: &surfaces, floor: true }).render(&camera, MOTION, Quality::Motion);
+        self.animation.push(&image).map_err(AppError::input)?;
+        self.kept.push((image, snapshot.tick));
+        self.bar.inc(1);
+        Ok(())
+    }
+
+    /// A camera before the place where the shopper stands; it turns with nobody and never zooms.
+    fn follow(&mut self, snapshot: &Snapshot) -> Camera {
+        let bounds = Bounds::of(&snapshot.body);
+        let now = (bounds.min + bounds.max) * 0.5;
+        let middle = self.middle.map_or(now, |m| m.lerp(now, FOLLOW));
+        self.middle = Some(middle);
+        let reach = Vec3::new(HALF_REACH_M, 0.0, 0.2);
+        let at = Vec3::new(middle.x, 0.0, middle.z);
+        let shown = Bounds { min: at - reach, max: at + reach + Vec3::Y * self.stature * HEADROOM };
+        Camera::front(&shown, MOTION.width as f32 / MOTION.height as f32)
+    }
+
+    /// Finishes the animation; writes the contact sheet, and the stills of the last snapshot in the fabric's colours
+    /// and in those of the fit map. `tightness` has a value in -1..1 for each particle of each garment, `facing` is the
+    /// direction that the shopper looks in (rad from +z towards +x).
+    pub fn finish(mut self, out: &mut OutputFolder, snapshot: &Snapshot, ending: &Ending<'_>) -> Result<(), AppError> {
+        self.animation.finish().map_err(AppError::input)?;
+        debug_assert_eq!(self.kept.len(), self.frames as usize);
+        contact_sheet(out, &self.kept)?;
+        self.drawing.take(snapshot);
+        let legend = fitmap::legend(3 * STILL.width / 4, sheet::PAPER);
+        for (name, map, legend) in [("look.png", None, None), ("fit.png", Some(ending.tightness), Some(&legend))] {
+            let surfaces = self.drawing.surfaces(snapshot, map);
+            let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });
+            let aspect = STILL.width as f32 / STILL.height as f32;
+            let view = |turn: f32| {
+                let image = stage.render(
+                    &Camera::framing(&stage.bounds(), ending.facing + turn, aspect),
+                    STILL,
+                    Quality::Still,
+                );
+                self.bar.inc(1);
+                image
+            };
+            let [front, side, back] = [0.0, FRAC_PI_2, PI].map(view);
+            write_png(out, name, &sheet::triptych(&front, &side, &back, ending.title, legend))?;
+        }
+        self.bar.finish_and_clear();
+        Ok(())
+    }
+
+    /// Units of work that a session of this many animation frames has.
+    pub fn work(steps: u64) -> u64 {
+        let each = u64::from(STEP_HZ / MOTION_FPS);
+        let stride = each * steps.div_ceil(each).max(1).div_ceil(MOST_FRAMES);
+        steps.max(1).div_ceil(stride) + 6
+    }
+}
+
+/// How the session ended, as the stills show it.
+pub struct Ending<'a> {
+    /// A value in -1 (loose) .. 1 (tight) for each particle of each garment.
+    pub tightness: &'a [Vec<f32>],
+    /// The direction in which the shopper looks (rad from +z towards +x).
+    pub facing: f32,
+    /// Words over the stills: a title, then smaller lines.
+    pub title: &'a str,
+}
+
+fn contact_sheet(out: &mut OutputFolder, kept: &[(Image, u64)]) -> Result<(), AppError> {
+    let last = kept.len().saturating_sub(1);
+    let count = SHEET_FRAMES.min(kept.len());
+    let picks: Vec<usize> = (0..count).map(|i| i * last / count.saturating_sub(1).max(1)).collect();
+    let images: Vec<&Image> = picks.iter().map(|&i| &kept[i].0).collect();
+    let captions: Vec<String> =
+        picks.iter().map(|&i| format!("{:.1} s", kept[i].1 as f64 / f64::from(STEP_HZ))).collect();
+    let captions: Vec<&str> = captions.iter().map(String::as_str).collect();
+    write_png(out, "contact-sheet.png", &sheet::contact_sheet(&images, SHEET_COLUMNS, &captions))
+}
+
+fn write_png(out: &mut OutputFolder, name: &str, image: &Image) -> Result<(), AppError> {
+    let mut bytes = Vec::new();
+    image.write_png(&mut bytes).map_err(AppError::internal)?;
+    Ok(out.write(name, &bytes)?)
+}

@@ -1,0 +1,90 @@
+//! `toile record`: a synthetic session, such as the embedded one: what a depth camera would see of a moving shopper.
+
+use glam::{Affine3A, Vec3};
+use toile_assets::body::Body;
+use toile_assets::scene;
+use toile_assets::skeleton::{BONES, JOINTS, Pose};
+use toile_engine::body::{JointFrames, palette};
+use toile_engine::skin::SkinningJob;
+use toile_sensors::clock::SECOND_NS;
+use toile_sensors::frame::{Intrinsics, Joints, TrackedJoint};
+use toile_sensors::session::Session;
+use toile_sensors::source::synthetic::{JointNoise, KinectNoise, SyntheticCamera};
+
+use crate::cli::RecordArgs;
+use crate::exit::AppError;
+use crate::output::OutputFolder;
+use crate::report::{Document, RecordReport};
+use crate::shopper::session_report;
+use crate::terminal::{self, Words};
+
+/// Frames a second of the synthetic sensor, a Kinect's.
+const SENSOR_HZ: u64 = 30;
+
+/// The synthetic camera: a Kinect's field of view at half its resolution, upright so that a whole person fits, which
+/// keeps the embedded session small.
+const CAMERA: Intrinsics = Intrinsics { width: 240, height: 320, fx: 287.9, fy: 287.9, cx: 119.5, cy: 159.5 };
+
+/// Runs `toile record`.
+///
+/// # Errors
+/// An output file that cannot be written, or a closed stdout.
+pub fn run(args: &RecordArgs) -> Result<(), AppError> {
+    let words = Words::new(args.quiet || args.json);
+    let (folder, name) = place(args)?;
+    let mut out = OutputFolder::prepare(&folder)?;
+    let frames = u64::from(args.seconds) * SENSOR_HZ;
+    let bar = words.bar(frames, "recording");
+    let session = perform(args.seed, frames, || bar.inc(1))?;
+    bar.finish_and_clear();
+    out.write(&name, &session.to_bytes().map_err(AppError::internal)?)?;
+    let files = out.commit()?;
+    let report = RecordReport { session: session_report(&session, &[]), seed: args.seed, files };
+    if args.json {
+        return terminal::print_json(&Document::new("record", report));
+    }
+    let (path, bytes) = (&report.files[0], report.files[0].metadata().map_or(0, |m| m.len()));
+    terminal::print(&format!("{}: {} frames, {} KiB\n", path.display(), frames, bytes / 1024))
+}
+
+fn place(args: &RecordArgs) -> Result<(std::path::PathBuf, String), AppError> {
+    let name = args.out.file_name().and_then(|n| n.to_str());
+    let Some(name) = name else {
+        return Err(AppError::Usage(format!(
+            "`--out {}` names no file; give one such as shopper.mcap",
+            args.out.display()
+        )));
+    };
+    let folder = args.out.parent().filter(|p| !p.as_os_str().is_empty());
+    Ok((folder.map_or_else(|| ".".into(), std::path::Path::to_path_buf), name.to_owned()))
+}
+
+/// Lets the shopper of the scene perform before the synthetic camera. The same seed gives the same bits.
+pub fn perform(seed: u64, frames: u64, mut done: impl FnMut()) -> Result<Session, AppError> {
+    let (sex, measures) = scene::SHOPPER;
+    let body = Body::build(sex, &measures).map_err(AppError::internal)?;
+    let job = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights).map_err(AppError::internal)?;
+    let camera = SyntheticCamera::looking_at(CAMERA, scene::CAMERA[0], scene::CAMERA[1]);
+    let (mut depth_noise, mut joint_noise) = (KinectNoise::new(seed), JointNoise::new(seed ^ 0x5eed));
+    let (mut skin, mut normals) = (body.mesh.positions.clone(), body.normals.clone());
+    let mut z = vec![0.0f32; (CAMERA.width * CAMERA.height) as usize];
+    let mut bones = [Affine3A::IDENTITY; BONES];
+    let (mut joints, mut depth) = (Vec::new(), Vec::new());
+    for frame in 0..frames {
+        let time_ns = frame * SECOND_NS / SENSOR_HZ;
+        let pose = scene::shopper(&body.skeleton, frame as f32 / SENSOR_HZ as f32);
+        palette(&body.skeleton, &pose, &mut bones);
+        job.run(&bones, &mut skin, &mut normals);
+        camera.render(&skin, &body.mesh.triangles, &mut z);
+        depth.push(camera.frame(time_ns, depth_noise.apply(&CAMERA, &z)));
+        joints.push(joint_noise.apply(&truth(&body, &pose, time_ns)));
+        done();
+    }
+    Ok(Session { name: "synthetic shopper".into(), joints, depth, notes: Vec::new(), raw_scale_known: true })
+}
+
+/// Where the joints really are.
+fn truth(body: &Body, pose: &Pose, time_ns: u64) -> Joints {
+    let at: [Vec3; JOINTS] = JointFrames::new(&body.skeleton, pose).position;
+    Joints { time_ns, joints: at.map(|position| TrackedJoint { position, confidence: 1.0 }) }
+}

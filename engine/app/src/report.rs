@@ -1,0 +1,288 @@
+//! The JSON that everything is judged by: its keys are a contract, to which keys may be added freely.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use crate::machine::Machine;
+
+/// What every object carries, around what one command has to say.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Document<T> {
+    /// `toile.<command>/1`.
+    pub schema: String,
+    /// Version of the program.
+    pub version: &'static str,
+    /// The machine that the figures were measured on.
+    pub machine: Machine,
+    /// The command's own keys, on the same level.
+    #[serde(flatten)]
+    pub body: T,
+}
+
+impl<T> Document<T> {
+    /// The object of a command, with the machine as it is now.
+    pub fn new(command: &str, body: T) -> Self {
+        Self {
+            schema: format!("toile.{command}/1"),
+            version: env!("CARGO_PKG_VERSION"),
+            machine: Machine::here(),
+            body,
+        }
+    }
+}
+
+/// One measure of the body.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Measure {
+    /// The value (mm).
+    pub value: f64,
+    /// Its standard uncertainty (mm).
+    pub sigma: f64,
+}
+
+/// The measures of one shopper.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Measurements {
+    /// Crown to floor.
+    pub stature_mm: Measure,
+    /// Between the shoulder points.
+    pub shoulder_breadth_mm: Measure,
+    /// Around the fullest part of the chest.
+    pub chest_girth_mm: Measure,
+    /// Around the waist.
+    pub waist_girth_mm: Measure,
+    /// Around the fullest part of the hips.
+    pub hip_girth_mm: Measure,
+}
+
+/// The session that was watched.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Session {
+    /// File name, or the name of the embedded one.
+    pub name: String,
+    /// Joint or depth frames read.
+    pub frames: u64,
+    /// From the first frame to the last (s).
+    pub seconds: f64,
+    /// What was found wrong with it and how it was mended, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// How one zone of a garment fits.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Zone {
+    /// Which part of the body.
+    pub zone: String,
+    /// Garment's girth less the body's (mm).
+    pub ease_mm: f64,
+    /// Its standard uncertainty (mm).
+    pub sigma_mm: f64,
+    /// `tight`, `good` or `loose`.
+    pub verdict: String,
+    /// The same for a person to read.
+    pub sentence: String,
+}
+
+/// The size that fits, and how.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Recommendation {
+    /// The garment's name.
+    pub garment: String,
+    /// Its size, by EN 13402.
+    pub size: String,
+    /// How likely this size is the best one, given how well the shopper could be measured (0..1).
+    pub probability: f64,
+    /// How each zone of it fits.
+    pub zones: Vec<Zone>,
+    /// The next best size, where it may be the better one.
+    pub runner_up: Option<String>,
+    /// Set where no size is made for this shopper, or guesses stand for measures.
+    pub note: Option<String>,
+}
+
+/// The distribution of a step's time (us).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct StepMicros {
+    /// Median.
+    pub p50: f64,
+    /// 99 %.
+    pub p99: f64,
+    /// 99.9 %.
+    pub p999: f64,
+    /// The longest.
+    pub max: f64,
+}
+
+/// How far edges are stretched, as a part of their rest length (0.01 is 1 %).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Strain {
+    /// Mean over edges and steps.
+    pub mean: f64,
+    /// 99 %.
+    pub p99: f64,
+    /// The worst edge at the worst step.
+    pub max: f64,
+}
+
+/// How deep cloth was inside the body after contact.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Penetration {
+    /// The deepest particle (mm).
+    pub max: f64,
+}
+
+/// What the physics did.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Physics {
+    /// Steps a second of simulated time.
+    pub hz: u32,
+    /// Steps taken.
+    pub steps: u64,
+    /// Time a step took.
+    pub step_us: StepMicros,
+    /// How far edges were stretched.
+    pub strain: Strain,
+    /// How deep cloth was inside the body.
+    pub penetration_mm: Penetration,
+    /// Steps at which a particle was not finite.
+    pub nonfinite: u64,
+    /// What the guards and capacities had to say.
+    pub warnings: Vec<String>,
+}
+
+/// The body of `toile try-on`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TryOn {
+    /// The session that was watched.
+    pub session: Session,
+    /// The shopper's measures.
+    pub measurements: Measurements,
+    /// The size of the first garment, zone by zone.
+    pub recommendation: Recommendation,
+    /// The sizes of the others, in the order in which they were asked for.
+    pub others: Vec<Recommendation>,
+    /// What the physics did.
+    pub physics: Physics,
+    /// Hash of the last state, 16 hexadecimal digits; the same input gives the same.
+    pub state_hash: String,
+    /// The files written.
+    pub files: Vec<PathBuf>,
+}
+
+/// The body of `toile measure`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MeasureReport {
+    /// The session that was watched.
+    pub session: Session,
+    /// The shopper's measures.
+    pub measurements: Measurements,
+    /// Pixels that carried a depth, mean over the frames.
+    pub valid_pixels: u64,
+    /// People seen.
+    pub people: u32,
+}
+
+/// The body of `toile record`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RecordReport {
+    /// The session that was made.
+    pub session: Session,
+    /// Seed of the noise.
+    pub seed: u64,
+    /// The files written.
+    pub files: Vec<PathBuf>,
+}
+
+/// The body of `toile bench skinning`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SkinningReport {
+    /// Vertices skinned.
+    pub verts: usize,
+    /// Time of one pass over all of them (us, median).
+    pub us: f64,
+    /// The same for one vertex (ns).
+    pub ns_per_vertex: f64,
+    /// Time of the plain scalar loop (us, median).
+    pub yardstick_us: f64,
+    /// Largest distance from an f64 oracle (m).
+    pub max_error_m: f64,
+}
+
+/// A 64-bit state hash as the reports write it.
+pub fn hash_text(hash: u64) -> String {
+    format!("{hash:016x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn try_on() -> TryOn {
+        let zone = Zone {
+            zone: "waist".into(),
+            ease_mm: 40.0,
+            sigma_mm: 8.0,
+            verdict: "good".into(),
+            sentence: "The waist is good.".into(),
+        };
+        let recommendation =
+            Recommendation { garment: "trousers".into(), size: "40".into(), zones: vec![zone], ..Default::default() };
+        TryOn {
+            session: Session::default(),
+            measurements: Measurements::default(),
+            recommendation,
+            others: Vec::new(),
+            physics: Physics::default(),
+            state_hash: hash_text(10),
+            files: vec!["out/front.png".into()],
+        }
+    }
+
+    #[test]
+    fn try_on_keeps_the_contract() {
+        let json = serde_json::to_value(Document::new("try-on", try_on())).unwrap();
+        let present = [
+            "/schema",
+            "/version",
+            "/machine/cpu",
+            "/machine/cores",
+            "/machine/lanes",
+            "/machine/adapter",
+            "/measurements/stature_mm/value",
+            "/measurements/shoulder_breadth_mm/sigma",
+            "/measurements/chest_girth_mm/value",
+            "/measurements/waist_girth_mm/value",
+            "/measurements/hip_girth_mm/value",
+            "/recommendation/garment",
+            "/recommendation/size",
+            "/recommendation/zones/0/zone",
+            "/recommendation/zones/0/ease_mm",
+            "/recommendation/zones/0/sigma_mm",
+            "/recommendation/zones/0/verdict",
+            "/physics/hz",
+            "/physics/steps",
+            "/physics/step_us/p50",
+            "/physics/step_us/p99",
+            "/physics/step_us/p999",
+            "/physics/step_us/max",
+            "/physics/strain/mean",
+            "/physics/strain/p99",
+            "/physics/strain/max",
+            "/physics/penetration_mm/max",
+            "/physics/nonfinite",
+            "/physics/warnings",
+            "/files/0",
+            "/state_hash",
+            "/session/name",
+            "/session/frames",
+            "/session/seconds",
+            "/session/notes",
+        ];
+        for key in present {
+            assert!(json.pointer(key).is_some(), "{key} is missing");
+        }
+        assert_eq!(json["schema"], "toile.try-on/1");
+        assert_eq!(json["state_hash"], "000000000000000a");
+    }
+}

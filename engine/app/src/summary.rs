@@ -1,0 +1,133 @@
+//! The reports as people read them: what `--json` says, in words and tables.
+
+use std::fmt::Write;
+
+use crate::report::{Measure, MeasureReport, Measurements, Physics, Recommendation, Session, TryOn};
+use crate::terminal::{Paint, Tone};
+
+/// The summary of a try-on.
+pub fn try_on(report: &TryOn, paint: Paint) -> String {
+    let mut text = String::new();
+    session(&mut text, &report.session);
+    measurements(&mut text, &report.measurements, paint);
+    for worn in std::iter::once(&report.recommendation).chain(&report.others) {
+        recommendation(&mut text, worn, paint);
+    }
+    physics(&mut text, &report.physics, paint);
+    heading(&mut text, "Files", paint);
+    for file in &report.files {
+        line(&mut text, &format!("  {}", file.display()));
+    }
+    text
+}
+
+/// The summary of a measuring.
+pub fn measure(report: &MeasureReport, paint: Paint) -> String {
+    let mut text = String::new();
+    session(&mut text, &report.session);
+    measurements(&mut text, &report.measurements, paint);
+    line(&mut text, &format!("\nPeople: {}; pixels with a depth: {} a frame", report.people, report.valid_pixels));
+    text
+}
+
+fn session(text: &mut String, session: &Session) {
+    let Session { name, frames, seconds, notes } = session;
+    line(text, &format!("Session {name}: {frames} frames, {seconds:.1} s"));
+    for note in notes {
+        line(text, &format!("  {note}"));
+    }
+}
+
+fn measurements(text: &mut String, measurements: &Measurements, paint: Paint) {
+    heading(text, "Measures", paint);
+    let rows: [(&str, &Measure); 5] = [
+        ("stature", &measurements.stature_mm),
+        ("shoulder breadth", &measurements.shoulder_breadth_mm),
+        ("chest girth", &measurements.chest_girth_mm),
+        ("waist girth", &measurements.waist_girth_mm),
+        ("hip girth", &measurements.hip_girth_mm),
+    ];
+    for (name, measure) in rows {
+        line(text, &format!("  {name:17} {:6.0} mm +- {:.0}", measure.value, measure.sigma));
+    }
+}
+
+fn recommendation(text: &mut String, worn: &Recommendation, paint: Paint) {
+    heading(text, &format!("{}, size {}", worn.garment, worn.size), paint);
+    for zone in &worn.zones {
+        let tone = if zone.verdict == "good" { Tone::Good } else { Tone::Warn };
+        let verdict = format!("{:6}", zone.verdict);
+        let verdict = paint.tone(&verdict, tone);
+        line(text, &format!("  {:17} {verdict} {:+5.0} mm of ease +- {:.0}", zone.zone, zone.ease_mm, zone.sigma_mm));
+    }
+    if let Some(other) = &worn.runner_up {
+        let sure = worn.probability * 100.0;
+        line(text, &format!("  {sure:.0} % sure; size {other} may suit as well"));
+    }
+    if let Some(note) = &worn.note {
+        line(text, &format!("  {note}"));
+    }
+}
+
+fn physics(text: &mut String, physics: &Physics, paint: Paint) {
+    heading(text, &format!("Cloth at {} steps a second, {} steps", physics.hz, physics.steps), paint);
+    let (step, strain) = (&physics.step_us, &physics.strain);
+    line(text, &format!("  a step takes      {:.0} us, 99 % of them under {:.0} us", step.p50, step.p99));
+    let (mean, p99) = (strain.mean * 100.0, strain.p99 * 100.0);
+    line(text, &format!("  it is stretched   {mean:.2} % on average, 99 % of it under {p99:.2} %"));
+    line(text, &format!("  deepest contact   {:.1} mm", physics.penetration_mm.max));
+    for warning in &physics.warnings {
+        line(text, &format!("  {}", paint.tone(warning, Tone::Warn)));
+    }
+    if physics.nonfinite > 0 {
+        let said = format!("{} steps met a particle that was not finite, and were taken back", physics.nonfinite);
+        line(text, &format!("  {}", paint.tone(&said, Tone::Warn)));
+    }
+}
+
+fn heading(text: &mut String, words: &str, paint: Paint) {
+    line(text, &format!("\n{}", paint.tone(words, Tone::Strong)));
+}
+
+fn line(text: &mut String, words: &str) {
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{words}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::Zone;
+
+    #[test]
+    fn a_summary_says_each_zone_and_each_file() {
+        let zone = Zone {
+            zone: "waist".into(),
+            ease_mm: -12.0,
+            sigma_mm: 8.0,
+            verdict: "tight".into(),
+            sentence: "Waist: tight.".into(),
+        };
+        let mut report = TryOn {
+            session: Session { name: "a.csv".into(), frames: 3, seconds: 0.1, notes: vec!["one drop".into()] },
+            measurements: Measurements::default(),
+            recommendation: Recommendation {
+                garment: "trousers".into(),
+                size: "40".into(),
+                zones: vec![zone],
+                ..Default::default()
+            },
+            others: Vec::new(),
+            physics: Physics::default(),
+            state_hash: String::new(),
+            files: vec!["out/front.png".into()],
+        };
+        let text = try_on(&report, Paint::none());
+        for said in ["a.csv", "one drop", "trousers, size 40", "waist", "tight", "-12 mm", "out/front.png"] {
+            assert!(text.contains(said), "{said} is not in: {text}");
+        }
+        assert!(!text.contains("not finite"));
+        report.physics.nonfinite = 2;
+        assert!(try_on(&report, Paint::none()).contains("2 steps met a particle that was not finite"));
+    }
+}

@@ -1,0 +1,241 @@
+//! `toile try-on`: one whole try-on, from a session to pictures and a report.
+
+use std::path::Path;
+
+use toile_assets::body::{Body, Sex};
+use toile_assets::garment::Garment;
+use toile_assets::limits::STEP_HZ;
+use toile_assets::rig::Rig;
+use toile_assets::sizes::Population;
+use toile_assets::skeleton::Joint;
+use toile_assets::wardrobe::{self, style::Style};
+use toile_engine::cloth::{Settings, measure};
+use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::relay::Reader;
+use toile_sensors::clock::{ns_to_ticks, ticks_to_ns};
+use toile_sensors::frame::Joints;
+use toile_sensors::sample::sample;
+use toile_track::measure::Measurements;
+
+use crate::cli::TryOnArgs;
+use crate::exit::AppError;
+use crate::fit;
+use crate::output::OutputFolder;
+use crate::pictures::{Ending, Pictures};
+use crate::report::{self, Document, TryOn};
+use crate::shopper;
+use crate::summary;
+use crate::terminal::{self, Paint, Words};
+
+/// Fabric of a mesh that a user brings without saying what it is made of.
+const MESH_FABRIC: &str = "cotton-lawn";
+
+/// What a user asked to wear: a garment of the wardrobe, or a mesh.
+enum Wanted {
+    Style(Box<Style>),
+    Mesh(String),
+}
+
+/// Runs `toile try-on`.
+///
+/// # Errors
+/// Bad input, an output folder that cannot be written, or a closed stdout.
+pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
+    let words = Words::new(args.quiet || args.json);
+    let mut out = OutputFolder::prepare(&args.out)?;
+    let wanted = wanted(args)?;
+    let session = shopper::open(args.session.as_deref(), None)?;
+    if session.joints.is_empty() {
+        return Err(AppError::Input(format!(
+            "session {} has depth but no joints, so that no pose can be shown; measure it with `toile measure`",
+            session.name
+        )));
+    }
+    let (sex, population) = population(args, &wanted)?;
+    let measured = shopper::measure(&session, population)?;
+    let (body, note) = shopper::build(sex, &measured, population)?;
+    let notes: Vec<String> = note.into_iter().chain(measured.notes.iter().cloned()).collect();
+    let (garments, recommendations) = dress(&wanted, args, &measured, &body)?;
+
+    let rig = Rig::fit(&body);
+    let (mut frame, mut reader) = Frame::new(body, &rig, garments, Settings::default()).map_err(AppError::internal)?;
+    let track = shopper::believable(&session);
+    let title = title(&recommendations);
+    play(args, &words, &mut out, &mut frame, &mut reader, &track, &title)?;
+
+    let files = out.files();
+    let mut recommendations = recommendations.into_iter();
+    let document = Document::new(
+        "try-on",
+        TryOn {
+            session: shopper::session_report(&session, &notes),
+            measurements: shopper::measures_report(&measured, population),
+            recommendation: recommendations.next().unwrap_or_default(),
+            others: recommendations.collect(),
+            physics: physics(&frame),
+            state_hash: report::hash_text(frame.state_hash()),
+            files,
+        },
+    );
+    let text = serde_json::to_string_pretty(&document).map_err(AppError::internal)?;
+    out.write("report.json", format!("{text}\n").as_bytes())?;
+    out.commit()?;
+    if args.json {
+        terminal::print_json(&document)
+    } else {
+        terminal::print(&summary::try_on(&document.body, Paint::for_stdout()))
+    }
+}
+
+/// What to wear; the wardrobe's first garment if nothing is said. A name with a file behind it is a mesh.
+fn wanted(args: &TryOnArgs) -> Result<Vec<Wanted>, AppError> {
+    let default = [wardrobe::names()[0].to_owned()];
+    let names = if args.garments.is_empty() { default.as_slice() } else { &args.garments };
+    names
+        .iter()
+        .map(|name| {
+            let is_file = Path::new(name).exists() || name.to_lowercase().ends_with(".obj");
+            if is_file && !wardrobe::names().contains(&name.as_str()) {
+                return Ok(Wanted::Mesh(name.clone()));
+            }
+            wardrobe::style(name).map(|s| Wanted::Style(Box::new(s))).map_err(AppError::input)
+        })
+        .collect()
+}
+
+/// Whose body is shown: as asked for, otherwise whom the first garment with sizes is cut for; women for all others.
+fn population(args: &TryOnArgs, wanted: &[Wanted]) -> Result<(Sex, Population), AppError> {
+    let asked = args.body;
+    let mut of = Population::Mixed;
+    for style in wanted.iter().filter_map(|w| if let Wanted::Style(s) = w { Some(s) } else { None }) {
+        let population = style.sizes().map_err(AppError::input)?.population;
+        if population != Population::Mixed {
+            of = population;
+            break;
+        }
+    }
+    let sex = asked.unwrap_or(if of == Population::Men { Sex::Male } else { Sex::Female });
+    let known = match (asked, of) {
+        (None, of) => of,
+        (Some(Sex::Female), _) => Population::Women,
+        (Some(Sex::Male), _) => Population::Men,
+    };
+    Ok((sex, known))
+}
+
+/// Sizes and bakes every garment.
+fn dress(
+    wanted: &[Wanted],
+    args: &TryOnArgs,
+    measured: &Measurements,
+    body: &Body,
+) -> Result<(Vec<Garment>, Vec<report::Recommendation>), AppError> {
+    let (mut garments, mut recommendations) = (Vec::new(), Vec::new());
+    for item in wanted {
+        match item {
+            Wanted::Style(style) => {
+                let fitted = fit::choose(style, args.size.as_deref(), measured)?;
+                garments.push(style.dress(&fitted.size, body).map_err(AppError::input)?);
+                recommendations.push(fitted);
+            }
+            Wanted::Mesh(path) => {
+                if let Some(size) = &args.size {
+                    let (name, size) = (path.clone(), size.clone());
+                    return Err(AppError::input(wardrobe::WardrobeError::NoSizes { name, size }));
+                }
+                let garment = wardrobe::dress_mesh(Path::new(path), MESH_FABRIC, body).map_err(AppError::input)?;
+                recommendations.push(report::Recommendation {
+                    garment: path.clone(),
+                    size: garment.size.clone(),
+                    ..Default::default()
+                });
+                garments.push(garment);
+            }
+        }
+    }
+    Ok((garments, recommendations))
+}
+
+/// Plays the session through the frame, 120 steps a second, and draws it.
+fn play(
+    args: &TryOnArgs,
+    words: &Words,
+    out: &mut OutputFolder,
+    frame: &mut Frame,
+    reader: &mut Reader<Snapshot>,
+    track: &[Joints],
+    title: &str,
+) -> Result<(), AppError> {
+    let (Some(first), Some(last)) = (track.first(), track.last()) else {
+        return Err(AppError::internal("a session without joints was let through"));
+    };
+    let steps = ns_to_ticks(last.time_ns - first.time_ns).max(1);
+    let mut pictures = None;
+    if args.pictures {
+        let bar = words.bar(Pictures::work(steps), "drawing");
+        pictures = Some(Pictures::begin(out, frame, steps, bar)?);
+    }
+    frame.dress(first);
+    for tick in 0..steps {
+        let joints = sample(track, first.time_ns + ticks_to_ns(tick)).unwrap_or(*first);
+        frame.step(&joints);
+        if let Some(pictures) = pictures.as_mut().filter(|p| p.wants(tick)) {
+            pictures.add(reader.latest())?;
+        }
+    }
+    if let Some(pictures) = pictures {
+        let tightness: Vec<Vec<f32>> = frame
+            .cloths()
+            .iter()
+            .zip(frame.garments())
+            .map(|(cloth, garment)| measure::tightness(cloth, garment, frame.colliders()))
+            .collect();
+        let ahead = frame.pose().local[Joint::Pelvis.index()] * glam::Vec3::Z;
+        let facing = ahead.x.atan2(ahead.z);
+        pictures.finish(out, reader.latest(), &Ending { tightness: &tightness, facing, title })?;
+    }
+    Ok(())
+}
+
+/// Words over the stills: the first garment and its size, then each zone.
+fn title(recommendations: &[report::Recommendation]) -> String {
+    let line = |r: &report::Recommendation| {
+        let zones = r.zones.iter().map(|z| format!("{} {} ({:+.0} mm)", z.zone, z.verdict, z.ease_mm));
+        format!("{}, size {}\n{}", r.garment, r.size, zones.collect::<Vec<_>>().join("   "))
+    };
+    recommendations.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+fn physics(frame: &Frame) -> report::Physics {
+    let meters = frame.meters();
+    let us = |quantile: f64| meters.step_ns.value_at_quantile(quantile) as f64 * 1e-3;
+    let strain = meters.strain();
+    let mut warnings = Vec::new();
+    for (cloth, garment) in frame.cloths().iter().zip(frame.garments()) {
+        let events = cloth.events;
+        if events.rolled_back > 0 {
+            warnings
+                .push(format!("{}: {} steps were not finite and were rolled back", garment.name, events.rolled_back));
+        }
+        if events.speed_limited > 0 {
+            warnings.push(format!(
+                "{}: particles were held at the speed limit {} times",
+                garment.name, events.speed_limited
+            ));
+        }
+    }
+    report::Physics {
+        hz: STEP_HZ,
+        steps: frame.tick(),
+        step_us: report::StepMicros {
+            p50: us(0.5),
+            p99: us(0.99),
+            p999: us(0.999),
+            max: meters.step_ns.max() as f64 * 1e-3,
+        },
+        strain: report::Strain { mean: f64::from(strain.mean), p99: f64::from(strain.p99), max: f64::from(strain.max) },
+        penetration_mm: report::Penetration { max: f64::from(meters.penetration_max) * 1e3 },
+        nonfinite: frame.cloths().iter().map(|c| c.events.rolled_back).sum(),
+        warnings,
+    }
+}

@@ -1,0 +1,103 @@
+//! Measures from joints alone: lengths of the skeleton, and girths guessed from them.
+
+use toile_assets::limits::CONFIDENCE_GATE;
+use toile_assets::skeleton::Joint::{self, *};
+use toile_sensors::frame::Joints;
+
+use crate::anthropometry::{guesses, stature};
+use crate::estimate::{Estimate, temporal_mean};
+use crate::measure::{Hint, Measures};
+
+/// Path from pelvis over spine, chest and neck to the middle of the head, as a fraction of stature, and its relative
+/// error. The Kinect puts the pelvis at .53 and the head at .935 of stature (Drillis and Contini 1966 give .530 for
+/// the hip); sensors differ by some centimetres in where they put either.
+const TRUNK: Estimate = Estimate::new(0.405, 0.05);
+
+/// Hip over knee to ankle as a fraction of stature (Drillis and Contini 1966: .245 + .246), and its relative error:
+/// depth cameras place hips and ankles worse than the spine.
+const LEG: Estimate = Estimate::new(0.491, 0.06);
+
+/// A leg longer or shorter than this times the trunk's proportion is a mistracked one.
+const LEG_TO_TRUNK: [f32; 2] = [0.85, 1.18];
+
+/// Breadth between the acromions over the distance of the shoulder joints' centres, and its relative error: the centre
+/// of the joint lies a hand's thickness below and inside the acromion.
+const ACROMIONS: Estimate = Estimate::new(1.15, 0.05);
+
+/// Fewest frames in which a bone must be seen.
+const FEWEST: usize = 3;
+
+/// Measures from the frames given; `None` if trunk and shoulders are both unseen.
+pub(crate) fn measures(frames: &[Joints], hint: &Hint) -> Option<Measures> {
+    let common = stature(hint.population);
+    let seen = stature_of(frames);
+    let shoulders = length(frames, &[LeftShoulder, RightShoulder]).map(|s| scaled(s, ACROMIONS.value, ACROMIONS));
+    if seen.is_none() && shoulders.is_none() {
+        return None;
+    }
+    let guess = guesses(hint.population);
+    let (stature, shoulder) = match (hint.scale_known, seen) {
+        // What is measured is drawn towards what people commonly measure, because its error is nearly as large.
+        (true, Some(seen)) => (seen.fuse(common), shoulders),
+        (true, None) => (common, shoulders),
+        // Without a scale only proportions are known: the stature is assumed.
+        (false, Some(seen)) => {
+            let scale = common.value / seen.value;
+            (common, shoulders.map(|s| Estimate::new(s.value * scale, s.sigma * scale).widened(s.value * scale * 0.05)))
+        }
+        (false, None) => (common, None),
+    };
+    let usual = guess.shoulder.at(stature, Estimate::new(0.0, 0.0));
+    let shoulder = shoulder.map_or(usual, |s| s.fuse(usual));
+    Some(Measures {
+        stature: Some(stature),
+        shoulder_breadth: Some(shoulder),
+        chest_girth: Some(guess.chest.at(stature, shoulder)),
+        waist_girth: Some(guess.waist.at(stature, shoulder)),
+        hip_girth: Some(guess.hip.at(stature, shoulder)),
+        inseam: Some(guess.inseam.at(stature, Estimate::new(0.0, 0.0))),
+        arm_length: Some(guess.arm.at(stature, Estimate::new(0.0, 0.0))),
+    })
+}
+
+/// Whether a frame shows enough of a body to be measured: a believed pelvis or chest, and a shoulder or the head.
+pub(crate) fn is_believed(frame: &Joints) -> bool {
+    let seen = |j: Joint| believed(frame, j);
+    (seen(Pelvis) || seen(Chest)) && (seen(Head) || seen(LeftShoulder) || seen(RightShoulder))
+}
+
+fn believed(frame: &Joints, joint: Joint) -> bool {
+    let j = frame.at(joint);
+    j.confidence >= CONFIDENCE_GATE && j.position.is_finite()
+}
+
+fn stature_of(frames: &[Joints]) -> Option<Estimate> {
+    let trunk = length(frames, &[Pelvis, Spine, Chest, Neck, Head]).map(|t| scaled(t, TRUNK.value.recip(), TRUNK));
+    let left = length(frames, &[LeftHip, LeftKnee, LeftAnkle]);
+    let right = length(frames, &[RightHip, RightKnee, RightAnkle]);
+    let leg = match (left, right) {
+        (Some(l), Some(r)) => Some(Estimate::new(0.5 * (l.value + r.value), l.sigma.hypot(r.sigma) * 0.5)),
+        (one, other) => one.or(other),
+    };
+    let leg = leg.map(|l| scaled(l, LEG.value.recip(), LEG));
+    match (trunk, leg) {
+        (Some(t), Some(l)) if (LEG_TO_TRUNK[0]..LEG_TO_TRUNK[1]).contains(&(l.value / t.value)) => Some(t.fuse(l)),
+        (Some(t), Some(_) | None) => Some(t),
+        (None, l) => l,
+    }
+}
+
+/// A length times a factor whose relative error is that of `model` (its sigma).
+fn scaled(length: Estimate, factor: f32, model: Estimate) -> Estimate {
+    Estimate::new(length.value * factor, length.sigma * factor).widened(length.value * factor * model.sigma)
+}
+
+/// Length of a path over joints, averaged over the frames that show all of it (m).
+fn length(frames: &[Joints], path: &[Joint]) -> Option<Estimate> {
+    let samples: Vec<f32> = frames
+        .iter()
+        .filter(|f| path.iter().all(|&j| believed(f, j)))
+        .map(|f| path.windows(2).map(|w| f.at(w[0]).position.distance(f.at(w[1]).position)).sum())
+        .collect();
+    (samples.len() >= FEWEST).then(|| temporal_mean(&samples)).flatten()
+}

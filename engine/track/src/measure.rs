@@ -1,0 +1,315 @@
+//! The measures of the person before the sensor, each with its error, from one second of depth and joints.
+
+use toile_assets::sizes::{Population, SizeBody};
+use toile_sensors::frame::{DepthFrame, Joints};
+
+use crate::anthropometry::{self, Chart, guesses};
+use crate::cloud::{self, Cloud};
+use crate::estimate::{Estimate, fuse, temporal_mean};
+use crate::joints;
+use crate::silhouette::{self, Reading};
+
+/// Depth frames that are averaged: one second at 30 Hz (Gultepe 2013, section 6.4).
+pub const FRAMES: usize = 30;
+
+/// Joints that are averaged: those within one second of the first believed frame (ns).
+const ONE_SECOND_NS: u64 = 1_000_000_000;
+
+/// Fewest frames of joints that make a measurement: below it one bad frame is a third of the evidence.
+pub const FEWEST_JOINT_FRAMES: usize = 3;
+
+/// What is known beforehand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Hint {
+    /// Whose proportions apply; `Mixed` where nothing is known.
+    pub population: Population,
+    /// Whether the joints are in metres ([`toile_sensors`]' `Session::raw_scale_known`).
+    pub scale_known: bool,
+}
+
+impl Default for Hint {
+    fn default() -> Self {
+        Self { population: Population::Mixed, scale_known: true }
+    }
+}
+
+/// Where the measures come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum Source {
+    Depth,
+    Joints,
+    Both,
+}
+
+impl Source {
+    /// The word for reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Depth => "depth",
+            Self::Joints => "joints",
+            Self::Both => "depth and joints",
+        }
+    }
+}
+
+/// The measures that could be taken; `None` where the sensor did not see what is needed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Measures {
+    /// Stature as the person stands before the sensor: shoes and hair count.
+    pub stature: Option<Estimate>,
+    /// Shoulder breadth between the acromions.
+    pub shoulder_breadth: Option<Estimate>,
+    /// Chest or bust girth.
+    pub chest_girth: Option<Estimate>,
+    /// Girth at the natural waistline.
+    pub waist_girth: Option<Estimate>,
+    /// Girth at the greatest protrusion of the buttocks.
+    pub hip_girth: Option<Estimate>,
+    /// Crotch height, guessed from the stature.
+    pub inseam: Option<Estimate>,
+    /// Acromion to wrist, guessed from the stature.
+    pub arm_length: Option<Estimate>,
+}
+
+impl Measures {
+    /// Each measure with its name, in the order of the fields.
+    pub fn named(&self) -> [(&'static str, Option<Estimate>); 7] {
+        [
+            ("stature", self.stature),
+            ("shoulder_breadth", self.shoulder_breadth),
+            ("chest_girth", self.chest_girth),
+            ("waist_girth", self.waist_girth),
+            ("hip_girth", self.hip_girth),
+            ("inseam", self.inseam),
+            ("arm_length", self.arm_length),
+        ]
+    }
+
+    fn fused(self, other: Self) -> Self {
+        Self {
+            stature: fuse(self.stature, other.stature),
+            shoulder_breadth: fuse(self.shoulder_breadth, other.shoulder_breadth),
+            chest_girth: fuse(self.chest_girth, other.chest_girth),
+            waist_girth: fuse(self.waist_girth, other.waist_girth),
+            hip_girth: fuse(self.hip_girth, other.hip_girth),
+            inseam: fuse(self.inseam, other.inseam),
+            arm_length: fuse(self.arm_length, other.arm_length),
+        }
+    }
+}
+
+/// What [`measure`] found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measurements {
+    /// The measures.
+    pub measures: Measures,
+    /// Depth pixels on the person, median over the frames; 0 without depth.
+    pub valid_pixels: usize,
+    /// People in view, median over the depth frames; 1 with joints only.
+    pub people: usize,
+    /// Frames that were averaged: depth frames where there are any, joints otherwise.
+    pub frames: usize,
+    /// Where the measures come from.
+    pub source: Source,
+    /// What could not be taken, and why: one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Why nothing could be measured; each message says what, where, and the cure.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MeasureError {
+    /// Neither depth nor joints.
+    #[error(
+        "the session holds neither a depth frame nor joints; record at least one second of a person standing before the sensor."
+    )]
+    Empty,
+    /// Depth without a person.
+    #[error(
+        "nobody is in view in any of the {frames} depth frames; stand upright before the camera, 1.2 to 3.5 m away, head and shoulders in the picture."
+    )]
+    Nobody {
+        /// Frames looked at.
+        frames: usize,
+    },
+    /// Somebody, but beyond what can be measured.
+    #[error(
+        "the person stands {distance:.1} m from the camera, where its depth is too coarse to measure; come closer than {limit:.1} m."
+    )]
+    TooFar {
+        /// Distance (m).
+        distance: f32,
+        /// Farthest that is measured (m).
+        limit: f32,
+    },
+    /// Joints without a believed body.
+    #[error(
+        "only {got} of {frames} frames of joints show a trunk that can be believed and {need} are needed; stand facing the sensor for a second with head, shoulders and hips in view."
+    )]
+    TooFewFrames {
+        /// Believed frames.
+        got: usize,
+        /// Frames looked at.
+        frames: usize,
+        /// Frames needed.
+        need: usize,
+    },
+}
+
+/// Measures a person from a session's first believed second: depth, joints or both, fused by inverse variance.
+pub fn measure(joints: &[Joints], depth: &[DepthFrame], hint: &Hint) -> Result<Measurements, MeasureError> {
+    if joints.is_empty() && depth.is_empty() {
+        return Err(MeasureError::Empty);
+    }
+    let from_depth = if depth.is_empty() { None } else { Some(from_depth(depth, hint)) };
+    let from_joints = if joints.is_empty() { None } else { Some(from_joints(joints, hint)) };
+    match (from_depth, from_joints) {
+        (Some(Ok(depth)), Some(Ok(joints))) => Ok(Measurements {
+            measures: depth.measures.fused(joints.measures),
+            source: Source::Both,
+            notes: Vec::new(),
+            ..depth
+        }),
+        (Some(Ok(one)), _) | (Some(Err(_)) | None, Some(Ok(one))) => Ok(one),
+        (Some(Err(why)), _) | (None, Some(Err(why))) => Err(why),
+        (None, None) => Err(MeasureError::Empty),
+    }
+}
+
+fn from_joints(joints: &[Joints], hint: &Hint) -> Result<Measurements, MeasureError> {
+    let mut believed = joints.iter().filter(|f| joints::is_believed(f)).peekable();
+    let start = believed.peek().map_or(0, |f| f.time_ns);
+    let second: Vec<Joints> = believed.take_while(|f| f.time_ns - start <= ONE_SECOND_NS).copied().collect();
+    let too_few = MeasureError::TooFewFrames { got: second.len(), frames: joints.len(), need: FEWEST_JOINT_FRAMES };
+    if second.len() < FEWEST_JOINT_FRAMES {
+        return Err(too_few);
+    }
+    let measures = joints::measures(&second, hint).ok_or(too_few)?;
+    let mut notes = vec!["There is no depth: girths are guessed from stature and shoulders.".to_owned()];
+    if !hint.scale_known {
+        notes.push("The recording has no unit: the stature is assumed.".to_owned());
+    }
+    Ok(Measurements { measures, valid_pixels: 0, people: 1, frames: second.len(), source: Source::Joints, notes })
+}
+
+/// What the depth frames say, one reading a frame, and how many pixels and people they hold.
+struct Readings {
+    readings: Vec<Reading>,
+    pixels: Vec<f32>,
+    people: Vec<f32>,
+    distances: Vec<f32>,
+}
+
+fn from_depth(depth: &[DepthFrame], hint: &Hint) -> Result<Measurements, MeasureError> {
+    let mut all = Readings { readings: Vec::new(), pixels: Vec::new(), people: Vec::new(), distances: Vec::new() };
+    let mut too_far = None;
+    for frame in depth.iter().take(FRAMES) {
+        let scene = cloud::people(frame);
+        too_far = too_far.or(scene.too_far);
+        let Some(nearest) = scene.people.first() else { continue };
+        all.add(nearest, scene.people.len(), silhouette::read(nearest, &anthropometry::LEVELS, hint.population));
+    }
+    if all.pixels.is_empty() {
+        let frames = depth.len().min(FRAMES);
+        return Err(match too_far {
+            Some(distance) => MeasureError::TooFar { distance, limit: cloud::FARTHEST },
+            None => MeasureError::Nobody { frames },
+        });
+    }
+    let measures = all.measures(hint);
+    Ok(Measurements {
+        notes: missing(&measures),
+        measures,
+        valid_pixels: median(&all.pixels) as usize,
+        people: median(&all.people).round() as usize,
+        frames: all.pixels.len(),
+        source: Source::Depth,
+    })
+}
+
+impl Readings {
+    fn add(&mut self, nearest: &Cloud, people: usize, reading: Option<Reading>) {
+        self.pixels.push(nearest.points.len() as f32);
+        self.people.push(people as f32);
+        self.distances.push(nearest.distance);
+        self.readings.extend(reading);
+    }
+
+    /// Mean of one parameter over the frames that show it; a third of them must.
+    fn mean(&self, parameter: impl Fn(&Reading) -> Option<f32>) -> Option<Estimate> {
+        let samples: Vec<f32> = self.readings.iter().filter_map(parameter).collect();
+        if samples.len() * 3 < self.readings.len() {
+            return None;
+        }
+        temporal_mean(&samples)
+    }
+
+    fn measures(&self, hint: &Hint) -> Measures {
+        let chart = Chart::of(hint.population);
+        let sensor = anthropometry::sensor_bias(median(&self.distances));
+        let stature = self.mean(|r| r.stature).map(|h| {
+            Estimate::new(h.value + chart.stature.value, h.sigma).widened(chart.stature.sigma).widened(sensor)
+        });
+        let section = |breadth, front, girth: &anthropometry::Girth| {
+            let (breadth, front): (Option<Estimate>, Option<Estimate>) = (breadth, front);
+            Some(girth.at(breadth?.widened(sensor), front?.widened(sensor)))
+        };
+        let chest = section(self.mean(|r| Some(r.chest?.breadth)), self.mean(|r| Some(r.chest?.front)), &chart.chest);
+        let waist = section(self.mean(|r| Some(r.waist?.breadth)), self.mean(|r| Some(r.waist?.front)), &chart.waist);
+        let hip = section(self.mean(|r| Some(r.hip?.breadth)), self.mean(|r| Some(r.hip?.front)), &chart.hip);
+        let guess = guesses(hint.population);
+        let nothing = Estimate::new(0.0, 0.0);
+        Measures {
+            stature,
+            shoulder_breadth: self.mean(|r| r.shoulders).map(|s| chart.shoulder.at(s.widened(sensor), nothing)),
+            chest_girth: chest,
+            waist_girth: waist,
+            hip_girth: hip,
+            inseam: stature.map(|h| guess.inseam.at(h, nothing)),
+            arm_length: stature.map(|h| guess.arm.at(h, nothing)),
+        }
+    }
+}
+
+/// A sentence for each measure that depth should have given and did not.
+fn missing(measures: &Measures) -> Vec<String> {
+    let why = [
+        (measures.stature, "The stature cannot be taken: the feet are not in the picture."),
+        (measures.shoulder_breadth, "The shoulder breadth cannot be taken: the outline of the shoulders is hidden."),
+        (measures.chest_girth, "The chest girth cannot be taken: arms or the picture's edge hide the torso's sides."),
+        (measures.waist_girth, "The waist girth cannot be taken: arms or the picture's edge hide the torso's sides."),
+        (measures.hip_girth, "The hip girth cannot be taken: arms or the picture's edge hide the torso's sides."),
+    ];
+    why.iter().filter(|(m, _)| m.is_none()).map(|(_, sentence)| (*sentence).to_owned()).collect()
+}
+
+fn median(samples: &[f32]) -> f32 {
+    let mut sorted = samples.to_vec();
+    sorted.sort_by(f32::total_cmp);
+    crate::estimate::middle(&sorted).unwrap_or(0.0)
+}
+
+impl Measurements {
+    /// Five lengths to build a body from: what was measured, and for the rest what a body of that stature and those
+    /// shoulders has on average (then with that guess's sigma). In order: stature, shoulder breadth, chest, waist, hip.
+    pub fn completed(&self, population: Population) -> [Estimate; 5] {
+        let m = &self.measures;
+        let guess = guesses(population);
+        let stature = m.stature.unwrap_or(anthropometry::stature(population));
+        let shoulder = m.shoulder_breadth.unwrap_or_else(|| guess.shoulder.at(stature, Estimate::new(0.0, 0.0)));
+        [
+            stature,
+            shoulder,
+            m.chest_girth.unwrap_or_else(|| guess.chest.at(stature, shoulder)),
+            m.waist_girth.unwrap_or_else(|| guess.waist.at(stature, shoulder)),
+            m.hip_girth.unwrap_or_else(|| guess.hip.at(stature, shoulder)),
+        ]
+    }
+
+    /// [`Measurements::completed`] without the errors.
+    pub fn body(&self, population: Population) -> SizeBody {
+        let [stature, shoulder_breadth, chest_girth, waist_girth, hip_girth] =
+            self.completed(population).map(|e| e.value);
+        SizeBody { stature, shoulder_breadth, chest_girth, waist_girth, hip_girth }
+    }
+}

@@ -1,0 +1,108 @@
+//! The rules of the house that a compiler does not know: doors, sizes, unsafe code, words.
+
+use std::path::{Path, PathBuf};
+
+use toile_tests::scan;
+use toile_tests::tree::{self, FLOORS};
+
+/// Files that may hold unsafe code, each with its reason.
+const UNSAFE_FILES: [(&str, &str); 1] =
+    [("tests/tests/allocations.rs", "a counting allocator has to implement an unsafe trait")];
+
+/// Most lines of a file; beyond it, it is two rooms.
+const MAX_LINES: usize = 500;
+
+fn all_rust_files() -> Vec<PathBuf> {
+    FLOORS.iter().flat_map(|(folder, _)| tree::rust_files(&tree::root().join(folder))).collect()
+}
+
+/// Which of a door's four lines its opening comment lacks.
+fn missing_lines(source: &str) -> Vec<&'static str> {
+    let opening: String = source.lines().take_while(|l| l.starts_with("//!")).collect();
+    ["Reads:", "Writes:", "Budget:", "Thread:"].into_iter().filter(|word| !opening.contains(word)).collect()
+}
+
+fn is_door(file: &Path) -> bool {
+    let in_src = file.components().any(|c| c.as_os_str() == "src");
+    in_src && file.file_name().is_some_and(|name| name == "lib.rs" || name == "mod.rs")
+}
+
+#[test]
+fn every_door_says_what_it_reads_writes_costs_and_where_it_runs() {
+    let doors: Vec<PathBuf> = all_rust_files().into_iter().filter(|f| is_door(f)).collect();
+    assert!(doors.len() >= FLOORS.len(), "only {} doors were found", doors.len());
+    for file in doors {
+        let missing = missing_lines(&tree::read(&file));
+        assert!(missing.is_empty(), "{} opens without {missing:?}", tree::name(&file));
+    }
+}
+
+#[test]
+fn a_door_without_its_lines_is_found() {
+    assert!(missing_lines("//! A room.\n//!\n//! Reads: a. Writes: b.\n//! Budget: c.\n//! Thread: d.\n").is_empty());
+    let bare = "//! A room.\n//! Reads: a.\nfn f() {} // Writes: Budget: Thread:";
+    assert_eq!(missing_lines(bare), ["Writes:", "Budget:", "Thread:"]);
+}
+
+fn has_unsafe(source: &str) -> bool {
+    scan::tokens(source).iter().any(|t| t.text == "unsafe")
+}
+
+#[test]
+fn unsafe_code_stands_only_in_named_files() {
+    for file in all_rust_files() {
+        let name = tree::name(&file);
+        let named = UNSAFE_FILES.iter().any(|(allowed, _)| *allowed == name);
+        assert!(named || !has_unsafe(&tree::read(&file)), "{name} holds unsafe code but is not a named file");
+    }
+}
+
+#[test]
+fn unsafe_is_found_in_code_and_not_in_words() {
+    assert!(has_unsafe("fn f() { unsafe { g() } }"));
+    assert!(!has_unsafe("// unsafe\nconst S: &str = \"unsafe\"; #![deny(unsafe_code)]"));
+}
+
+#[test]
+fn no_file_is_longer_than_a_room() {
+    for file in all_rust_files() {
+        let lines = tree::read(&file).lines().count();
+        assert!(lines <= MAX_LINES, "{} has {lines} lines, more than {MAX_LINES}: split it", tree::name(&file));
+    }
+}
+
+/// The first line of a text that names a path of one person's machine.
+fn machine_path(text: &str) -> Option<&str> {
+    // Put together here, so that this file does not name them itself.
+    let homes = ["home", "root", "work", "Users"].map(|folder| format!("/{folder}/"));
+    // A path inside the project, or an address, continues something; an absolute path begins.
+    let begins = |line: &str, at: usize| {
+        let before = line[..at].chars().next_back();
+        before.is_none_or(|c| !(c.is_alphanumeric() || "._-~}/*".contains(c)))
+    };
+    text.lines().find(|line| homes.iter().any(|home| line.match_indices(home.as_str()).any(|(at, _)| begins(line, at))))
+}
+
+#[test]
+fn no_file_names_a_path_of_one_machine() {
+    let is_text = |path: &Path| {
+        let endings = ["rs", "toml", "md", "sh", "wgsl", "json", "txt", "yml"];
+        path.extension().is_none_or(|e| endings.iter().any(|x| *x == e))
+    };
+    for file in tree::files(&tree::root(), is_text) {
+        // Without an ending a file may be binary; those are not read as text.
+        let Ok(content) = std::fs::read_to_string(&file) else { continue };
+        if let Some(line) = machine_path(&content) {
+            panic!("{} names a path of one machine: {line}", tree::name(&file));
+        }
+    }
+}
+
+#[test]
+fn a_path_of_one_machine_is_found() {
+    for folder in ["home", "root", "Users"] {
+        assert!(machine_path(&format!("see `/{folder}/someone/x`")).is_some());
+        assert!(machine_path(&format!("/{folder}/x")).is_some());
+    }
+    assert!(machine_path(&format!("src/{}/x and https://example.org/{}/y", "home", "work")).is_none());
+}
