@@ -10,14 +10,22 @@ use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 use super::ground::Ground;
 use super::limb::ramp;
 use super::limits::{self, Side};
-use super::retarget::Seen;
+use super::seen::Seen;
 use super::smooth::fraction;
 
-/// Lift of the ankle (m) up to which a foot is taken to stand, and from which it is taken to hang.
-const STANDING: [f32; 2] = [0.04, 0.25];
+/// Lift of the ankle (m) up to which a foot stands flat, and from which its slope is its own.
+const STANDING: [f32; 2] = [0.04, 0.10];
+
+/// Lift of the ankle (m) up to which a foot without toes is taken to stand, and from which it is taken to hang.
+const HANGING: [f32; 2] = [0.05, 0.25];
 
 /// Time constant with which the slope of a standing foot is learned (s).
 const SLOPE_TAU: f32 = 1.0;
+
+/// Time constants with which a swinging and a standing foot turn (s): toes are the joint that sensors know worst, and a
+/// foot that stands cannot turn fast.
+const SWING_TAU: f32 = 0.05;
+const STAND_TAU: f32 = 0.3;
 
 /// One foot.
 #[derive(Debug, Clone)]
@@ -27,6 +35,8 @@ pub struct Foot {
     side: Side,
     /// Rest direction from ankle to toe, level part (unit).
     heading: Vec3,
+    /// Direction in which it heads now, world, level (unit).
+    ahead: Vec3,
     /// Slope (rad, downwards negative) that the sensor shows for a flat foot.
     flat_slope: f32,
 }
@@ -40,27 +50,48 @@ impl Foot {
         };
         let ahead = skeleton.at(toe) - skeleton.at(ankle);
         let heading = level(ahead).unwrap_or(Vec3::Z);
-        Self { ankle, toe, side, heading, flat_slope: slope(ahead.normalize_or(heading)) }
+        Self { ankle, toe, side, heading, ahead: heading, flat_slope: slope(ahead.normalize_or(heading)) }
     }
 
     /// Turns the foot against the shin's rotation (rest to world).
-    pub fn update(&mut self, seen: &Seen, ground: &Ground, shin: Quat, dt: f32, local: &mut [Quat; JOINTS]) {
+    pub fn update(
+        &mut self,
+        seen: &Seen,
+        ground: &Ground,
+        shin: Quat,
+        dt: f32,
+        first: bool,
+        local: &mut [Quat; JOINTS],
+    ) {
         let lift = seen.at(self.ankle).map_or(0.0, |p| ground.lift(p.y));
         let standing = 1.0 - ramp(STANDING, lift);
+        let tau = SWING_TAU + (STAND_TAU - SWING_TAU) * standing;
+        let share = if first { 1.0 } else { fraction(dt, tau) };
         let target = match seen.direction(self.ankle, self.toe) {
             Some(now) => {
                 let difference = slope(now) - self.flat_slope;
                 self.flat_slope += difference * fraction(dt * standing * standing, SLOPE_TAU);
-                self.stand(level(now), shin, slope(now) - self.flat_slope)
+                self.turn_to(level(now), share);
+                self.stand(self.ahead, shin, (slope(now) - self.flat_slope) * (1.0 - standing))
             }
-            None => self.stand(None, shin, 0.0).slerp(Quat::IDENTITY, 1.0 - standing),
+            None => {
+                self.turn_to(level(shin * self.heading), share);
+                let flat = self.stand(self.ahead, shin, 0.0);
+                flat.slerp(Quat::IDENTITY, ramp(HANGING, lift))
+            }
         };
         local[self.ankle.index()] = limits::ANKLE.clamp(target, self.side);
     }
 
-    /// Rotation against the shin of a foot pitched up by `pitch` (rad), heading `ahead` or else as the shin does.
-    fn stand(&self, ahead: Option<Vec3>, shin: Quat, pitch: f32) -> Quat {
-        let ahead = ahead.or_else(|| level(shin * self.heading)).unwrap_or(self.heading);
+    /// Turns the heading a share of the way to where the foot is seen to head.
+    fn turn_to(&mut self, shown: Option<Vec3>, share: f32) {
+        if let Some(shown) = shown {
+            self.ahead = level(self.ahead.lerp(shown, share)).unwrap_or(shown);
+        }
+    }
+
+    /// Rotation against the shin of a foot heading `ahead` (level, unit), pitched up by `pitch` (rad).
+    fn stand(&self, ahead: Vec3, shin: Quat, pitch: f32) -> Quat {
         let yaw = Quat::from_rotation_arc(self.heading, ahead);
         let upwards = self.heading.cross(Vec3::Y);
         shin.inverse() * yaw * Quat::from_axis_angle(upwards, pitch)

@@ -8,8 +8,8 @@ use glam::{Quat, Vec3};
 use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 
 use super::limits::{self, Range, Reach, Side, clamp_angle, soft_clamp};
-use super::retarget::{Seen, wrap};
-use super::smooth::fraction;
+use super::seen::Seen;
+use super::smooth::{fraction, wrap};
 
 /// Bend (degrees) from which the plane of a limb begins to be believed, and from which it is believed fully: at 25
 /// degrees a centimetre of noise turns the plane by 7.
@@ -29,6 +29,12 @@ const TOE_TAU: f32 = 0.1;
 
 /// Time constant with which the twist of a straight limb goes back to none (s).
 const RELAX_TAU: f32 = 1.5;
+
+/// Time constant with which a joint that is held, not seen, is followed (s).
+const HELD_TAU: f32 = 0.3;
+
+/// Time constant with which hands are followed (s): short, noisy bones.
+const HAND_TAU: f32 = 0.1;
 
 /// A ball joint, a hinge and an end: shoulder, elbow, wrist and hand, or hip, knee, ankle and toe.
 #[derive(Debug, Clone)]
@@ -109,22 +115,39 @@ impl Limb {
             let upper = self.reach.clamp(inward * upper, self.side);
             let swing = Quat::from_rotation_arc(self.upper, upper);
             self.follow_twist(upper, swing * self.axis, lower.map(|l| inward * l), self.toe(seen, inward), dt, first);
-            local[root.index()] = Quat::from_axis_angle(upper, self.twist) * swing;
+            let share = if first || seen.believes(&[root, hinge]) { 1.0 } else { fraction(dt, HELD_TAU) };
+            follow(&mut local[root.index()], Quat::from_axis_angle(upper, self.twist) * swing, share);
         }
         let carrier = parent * local[root.index()];
         if let Some(lower) = lower {
-            local[hinge.index()] = self.bend(carrier.inverse() * lower);
+            let share = if first || seen.believes(&[hinge, end]) { 1.0 } else { fraction(dt, HELD_TAU) };
+            follow(&mut local[hinge.index()], self.bend(carrier.inverse() * lower), share);
         }
         carrier * local[hinge.index()]
     }
 
+    /// Brings the limb a share of the way back to rest, and returns the lower limb's rotation in the world for a limb
+    /// that hangs on `parent`.
+    pub fn stretch(&self, share: f32, parent: Quat, local: &mut [Quat; JOINTS]) -> Quat {
+        let [root, hinge, ..] = self.joints.map(Joint::index);
+        for joint in [root, hinge] {
+            if share > 0.0 {
+                follow(&mut local[joint], Quat::IDENTITY, share);
+            }
+        }
+        parent * local[root] * local[hinge]
+    }
+
     /// Aims the hand from the forearm's rotation; a hand that is not believed is held straight.
-    pub fn hand(&self, seen: &Seen, forearm: Quat, local: &mut [Quat; JOINTS]) {
+    pub fn hand(&self, seen: &Seen, forearm: Quat, dt: f32, first: bool, local: &mut [Quat; JOINTS]) {
         let [.., wrist, hand] = self.joints;
-        local[wrist.index()] = match seen.direction(wrist, hand) {
-            Some(now) => clamp_angle(Quat::from_rotation_arc(self.end, forearm.inverse() * now), limits::WRIST_DEG),
-            None => Quat::IDENTITY,
+        let target = match seen.direction(wrist, hand) {
+            Some(now) if seen.believes(&[wrist, hand]) => {
+                clamp_angle(Quat::from_rotation_arc(self.end, forearm.inverse() * now), limits::WRIST_DEG)
+            }
+            _ => Quat::IDENTITY,
         };
+        follow(&mut local[wrist.index()], target, if first { 1.0 } else { fraction(dt, HAND_TAU) });
     }
 
     /// Direction of a leg's foot in the parent's frame; nothing for arms.
@@ -174,6 +197,11 @@ impl Limb {
         let (sine, cosine) = aside.sin_cos();
         Quat::from_rotation_arc(turn * self.lower, (flat * cosine + self.axis * sine).normalize()) * turn
     }
+}
+
+/// Turns a rotation a share of the way to its target.
+fn follow(rotation: &mut Quat, target: Quat, share: f32) {
+    *rotation = if share >= 1.0 { target } else { rotation.slerp(target, share).normalize() };
 }
 
 /// Angle (rad, within half a turn) by which `from` must turn about `axis` (unit) to stand over `to`.

@@ -6,8 +6,7 @@
 
 use glam::{Quat, Vec3};
 
-use super::retarget::wrap;
-use super::smooth::rotation_vector;
+use super::smooth::{rotation_vector, wrap};
 
 /// Width of the zone before a limit in which angles are compressed (degrees).
 pub const SOFT_DEG: f32 = 8.0;

@@ -9,10 +9,16 @@ pub mod ground;
 pub mod kinematics;
 mod limb;
 pub mod limits;
+mod neutral;
+#[cfg(test)]
+mod recordings;
 mod retarget;
+mod seen;
 pub mod smooth;
+mod stance;
 #[cfg(test)]
 mod tests;
+mod trunk;
 
 pub use kinematics::{JointFrames, palette};
 
@@ -21,27 +27,34 @@ use toile_assets::skeleton::{JOINTS, Joint, Pose, Skeleton};
 use toile_sensors::frame::Joints;
 
 use ground::Ground;
-use retarget::{Retarget, Seen};
-use smooth::{ANGLE_TAU, LIMB_SPEED, TRUNK_SPEED, move_towards, turn_towards};
+use retarget::Retarget;
+use seen::Seen;
+use smooth::{ANGLE_TAU, LIMB_SPEED, TRUNK_SPEED, fraction, turn_towards};
+use stance::Stance;
 
 /// Fastest that the person is carried along (m/s): a run.
 pub const ROOT_SPEED: f32 = 5.0;
+
+/// Joints by which the person is placed, the best first; hips are better than any.
+const ANCHORS: [Joint; 4] = [Joint::Pelvis, Joint::Spine, Joint::Chest, Joint::Neck];
 
 /// Longest step that is taken as one (s): after a longer gap nothing of the past would be left anyway.
 const MAX_DT: f32 = 1.0;
 
 /// Turns joints into poses of one skeleton, moment by moment.
 ///
-/// Joints below the confidence gate, or that are no numbers, keep their last rotation. The first moment in which hips
-/// and trunk are seen is taken over as it is; from then on every angle moves smoothly and at a bounded speed, so
+/// Joints that are absent, or no numbers, keep their last rotation; those below the confidence gate are followed slowly,
+/// as a filter holds them for the sensor. The first moment in which the trunk is seen is taken over as it is; from then on every angle moves smoothly and at a bounded speed, so
 /// whatever the sensor does, the pose never jumps and is always finite.
 #[derive(Debug, Clone)]
 pub struct Poser {
     skeleton: Skeleton,
     retarget: Retarget,
     ground: Ground,
-    /// Where the pelvis is wanted on the floor's plane; y is not used.
+    stance: Stance,
+    /// Where the pelvis is seen, and where it is carried to before feet are held, world (m); y is not used.
     place: Vec3,
+    carried: Vec3,
     pose: Pose,
     started: bool,
 }
@@ -53,7 +66,9 @@ impl Poser {
             skeleton: skeleton.clone(),
             retarget: Retarget::new(skeleton),
             ground: Ground::new(skeleton),
+            stance: Stance::default(),
             place: skeleton.at(Joint::Pelvis),
+            carried: skeleton.at(Joint::Pelvis),
             pose: Pose::rest(skeleton),
             started: false,
         }
@@ -62,6 +77,12 @@ impl Poser {
     /// Forgets the person: the next moment is taken over as it is.
     pub fn reset(&mut self) {
         *self = Self::new(&self.skeleton);
+    }
+
+    /// Whether the person was seen since the last reset; the rest pose is shown until then, and the first pose of a
+    /// person is no movement.
+    pub fn is_started(&self) -> bool {
+        self.started
     }
 
     /// The skeleton that is posed.
@@ -74,11 +95,11 @@ impl Poser {
         let dt = if dt.is_finite() { dt.clamp(0.0, MAX_DT) } else { 0.0 };
         let seen = Seen::new(joints);
         let first = !self.started;
-        if first && seen.middle(Joint::LeftHip, Joint::RightHip).is_none() {
+        if first && ANCHORS.iter().all(|j| seen.at(*j).is_none()) {
             return self.pose;
         }
         self.started = true;
-        self.ground.observe(&seen, dt);
+        self.ground.observe(&seen, dt, first);
         self.retarget.update(&seen, &self.ground, dt, first);
         let mut next = if first { Pose { local: self.retarget.local, ..self.pose } } else { self.turn(dt) };
         self.carry(&seen, &mut next, dt, first);
@@ -106,12 +127,16 @@ impl Poser {
     /// Puts the root where the hips are seen, at the height at which our feet stand.
     fn carry(&mut self, seen: &Seen, next: &mut Pose, dt: f32, first: bool) {
         let frames = JointFrames::new(&self.skeleton, &Pose { root: Vec3::ZERO, ..*next });
-        if let Some(hips) = seen.middle(Joint::LeftHip, Joint::RightHip) {
+        if let Some(hips) = seen.hips() {
             self.place = hips - (frames.at(Joint::LeftHip) + frames.at(Joint::RightHip)) * 0.5;
+        } else if let Some(joint) = ANCHORS.into_iter().find(|j| seen.at(*j).is_some()) {
+            self.place = seen.at(joint).unwrap_or(self.place) - frames.at(joint);
         }
-        let height = self.ground.root_height(&self.skeleton, &frames);
-        let wanted = self.place.with_y(height);
-        next.root = if first { wanted } else { move_towards(next.root, wanted, dt, ANGLE_TAU, ROOT_SPEED) };
-        next.root.y = height;
+        let share = if first { 1.0 } else { fraction(dt, ANGLE_TAU) };
+        self.carried = self.carried.lerp(self.place, share);
+        let shift = self.stance.shift(seen, &self.ground, &self.skeleton, &frames, self.carried, dt);
+        let step = (self.carried + shift - self.pose.root).with_y(0.0);
+        let step = if first { step } else { step.clamp_length_max(ROOT_SPEED * dt) };
+        next.root = (self.pose.root + step).with_y(self.ground.root_height(&self.skeleton, &frames));
     }
 }

@@ -32,14 +32,15 @@ pub fn turn_towards(from: Quat, to: Quat, dt: f32, tau: f32, speed: f32) -> Quat
     (Quat::from_axis_angle(left / angle, step) * from).normalize()
 }
 
-/// Moves `from` towards `to` (m) by the asymptotic fraction, at most `speed * dt`.
-pub fn move_towards(from: Vec3, to: Vec3, dt: f32, tau: f32, speed: f32) -> Vec3 {
-    from + ((to - from) * fraction(dt, tau)).clamp_length_max(speed * dt.max(0.0))
-}
-
 /// Axis times angle (rad) of a rotation, exact near none: `acos` of a cosine near 1 would lose half the digits.
 pub fn rotation_vector(turn: Quat) -> Vec3 {
     let turn = if turn.w < 0.0 { -turn } else { turn };
     let sine = turn.xyz().length();
     if sine < 1e-12 { Vec3::ZERO } else { turn.xyz() * (2.0 * sine.atan2(turn.w) / sine) }
+}
+
+/// An angle (rad) brought within half a turn of 0.
+pub fn wrap(angle: f32) -> f32 {
+    let turns = (angle / std::f32::consts::TAU).round();
+    angle - turns * std::f32::consts::TAU
 }

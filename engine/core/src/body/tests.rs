@@ -73,28 +73,33 @@ fn poses(skeleton: &Skeleton) -> Vec<(&'static str, Pose)> {
             pose(&[
                 &both(LeftHip, [-100.0, 20.0, 0.0]),
                 &both(LeftKnee, [120.0, 0.0, 0.0]),
+                &both(LeftAnkle, [-20.0, 0.0, 0.0]),
                 &[(Spine, [15.0, 0.0, 0.0]), (Chest, [15.0, 0.0, 0.0])],
             ]),
         ),
         (
             "step",
-            pose(&[&[
-                (LeftHip, [-35.0, 0.0, 0.0]),
-                (LeftKnee, [30.0, 0.0, 0.0]),
-                (RightHip, [15.0, 0.0, 0.0]),
-                (RightKnee, [20.0, 0.0, 0.0]),
-            ]]),
+            pose(&[
+                &[(LeftHip, [-35.0, 0.0, 0.0]), (LeftKnee, [30.0, 0.0, 0.0]), (LeftAnkle, [5.0, 0.0, 0.0])],
+                &[(RightHip, [10.0, 0.0, 0.0]), (RightKnee, [10.0, 0.0, 0.0]), (RightAnkle, [-20.0, 0.0, 0.0])],
+            ]),
         ),
         ("turned left", pose(&[&[(Pelvis, [0.0, 90.0, 0.0])]])),
         (
             "turned about, bowing",
-            pose(&[&[(Pelvis, [10.0, 180.0, 0.0]), (Spine, [20.0, 0.0, 0.0]), (Chest, [20.0, 0.0, 0.0])]]),
+            pose(&[&[
+                (Pelvis, [10.0, 180.0, 0.0]),
+                (LeftHip, [-10.0, 0.0, 0.0]),
+                (RightHip, [-10.0, 0.0, 0.0]),
+                (Spine, [20.0, 0.0, 0.0]),
+                (Chest, [20.0, 0.0, 0.0]),
+            ]]),
         ),
         ("twisted", pose(&[&[(Spine, [0.0, 18.0, 8.0]), (Chest, [0.0, 18.0, 8.0]), (Neck, [10.0, 0.0, 10.0])]])),
     ]
 }
 
-const LIMBS: [(Joint, Joint); 8] = [
+pub const LIMBS: [(Joint, Joint); 8] = [
     (Joint::LeftShoulder, Joint::LeftElbow),
     (Joint::LeftElbow, Joint::LeftWrist),
     (Joint::RightShoulder, Joint::RightElbow),
@@ -209,7 +214,7 @@ fn nothing_jumps_while_the_person_turns_about_and_joints_flicker() {
     let flicker = |frame: usize, joints: &mut Joints| {
         for (i, joint) in joints.joints.iter_mut().enumerate() {
             joint.position += Vec3::from_array(std::array::from_fn(|_| noise(&mut state))) * 0.02;
-            if (frame * 7 + i * 3) % 11 == 0 {
+            if (frame * 7 + i * 3).is_multiple_of(11) {
                 joint.confidence = 0.2;
             }
         }

@@ -1,0 +1,93 @@
+//! Standing feet stay: what the pose would make a standing foot slide is taken back by shifting the whole body.
+//!
+//! Hips wobble in a sensor more than feet do, and angles shown with other bone lengths carry a foot elsewhere. The shift
+//! fades, so the body never strays from where it is seen (after the root relocation of Gultepe 2013, section 4.5).
+
+use glam::Vec3;
+use toile_assets::skeleton::{Joint, Skeleton};
+
+use super::ground::{Ground, soles};
+use super::kinematics::JointFrames;
+use super::limb::ramp;
+use super::seen::Seen;
+use super::smooth::fraction;
+
+/// Speed of a seen ankle (m/s) up to which it stands, and from which it walks.
+const STANDING_SPEED: [f32; 2] = [0.15, 0.5];
+
+/// Lift of a seen ankle (m) up to which it stands, and from which it swings.
+const STANDING_LIFT: [f32; 2] = [0.04, 0.10];
+
+/// Time constant of an ankle's measured velocity (s): two sensor frames.
+const SPEED_TAU: f32 = 0.07;
+
+/// Time constant with which the shift fades (s), and its greatest length (m).
+const FADE_TAU: f32 = 1.5;
+const MAX_SHIFT: f32 = 0.15;
+
+/// What is remembered of the feet.
+#[derive(Debug, Clone, Default)]
+pub struct Stance {
+    shift: Vec3,
+    feet: [Foot; 2],
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Foot {
+    /// Where the ankle was last seen, and how fast it moves (m/s).
+    ankle: Option<Vec3>,
+    velocity: Vec3,
+    /// Where the middle of our sole was, world (m).
+    sole: Option<Vec3>,
+}
+
+impl Stance {
+    /// Level shift (m) to add to a root at `root`; `frames` are joint frames with the root at the origin.
+    pub fn shift(
+        &mut self,
+        seen: &Seen,
+        ground: &Ground,
+        skeleton: &Skeleton,
+        frames: &JointFrames,
+        root: Vec3,
+        dt: f32,
+    ) -> Vec3 {
+        self.shift *= 1.0 - fraction(dt, FADE_TAU);
+        let before = self.shift;
+        let now = soles(skeleton, frames).map(|[heel, ball, _]| (heel + ball) * 0.5 + root);
+        let (mut slip, mut total, mut most) = (Vec3::ZERO, 0.0, 0.0_f32);
+        for ((foot, ankle), now) in self.feet.iter_mut().zip([Joint::LeftAnkle, Joint::RightAnkle]).zip(now) {
+            let stands = foot.watch(seen.at(ankle), ground, dt);
+            if let Some(last) = foot.sole {
+                slip += (now + before - last) * stands;
+                total += stands;
+                most = most.max(stands);
+            }
+        }
+        if total > 0.0 {
+            self.shift -= (slip * (most / total)).with_y(0.0);
+        }
+        self.shift = self.shift.clamp_length_max(MAX_SHIFT);
+        for (foot, now) in self.feet.iter_mut().zip(now) {
+            foot.sole = Some(now + self.shift);
+        }
+        self.shift
+    }
+}
+
+impl Foot {
+    /// How much the foot stands, 0 to 1.
+    fn watch(&mut self, ankle: Option<Vec3>, ground: &Ground, dt: f32) -> f32 {
+        let Some(ankle) = ankle else {
+            *self = Self { sole: self.sole, ..Self::default() };
+            return 1.0;
+        };
+        if let Some(last) = self.ankle
+            && dt > 0.0
+        {
+            self.velocity += ((ankle - last) / dt - self.velocity) * fraction(dt, SPEED_TAU);
+        }
+        self.ankle = Some(ankle);
+        (1.0 - ramp(STANDING_SPEED, self.velocity.length())) * (1.0 - ramp(STANDING_LIFT, ground.lift(ankle.y)))
+    }
+}
