@@ -3,10 +3,11 @@
 use toile_assets::sizes::{Population, SizeBody};
 use toile_sensors::frame::{DepthFrame, Joints};
 
-use crate::anthropometry::{self, Chart, guesses};
+use crate::anthropometry::{self, Chart, GirthModel, guesses};
 use crate::cloud::{self, Cloud};
 use crate::estimate::{Estimate, fuse, temporal_mean};
 use crate::joints;
+use crate::section::Section;
 use crate::silhouette::{self, Reading};
 
 /// Depth frames that are averaged: one second at 30 Hz (Gultepe 2013, section 6.4).
@@ -250,21 +251,19 @@ impl Readings {
         let stature = self.mean(|r| r.stature).map(|h| {
             Estimate::new(h.value + chart.stature.value, h.sigma).widened(chart.stature.sigma).widened(sensor)
         });
-        let section = |breadth, front, girth: &anthropometry::Girth| {
-            let (breadth, front): (Option<Estimate>, Option<Estimate>) = (breadth, front);
-            Some(girth.at(breadth?.widened(sensor), front?.widened(sensor)))
+        let section = |which: fn(&Reading) -> Option<Section>, model: &GirthModel| {
+            let mean = |part: fn(&Section) -> f32| self.mean(|r| which(r).as_ref().map(part));
+            let breadth = mean(|s| s.breadth)?.widened(sensor);
+            Some(model.at(breadth, mean(|s| s.arc)?.widened(sensor), mean(|s| s.front)?))
         };
-        let chest = section(self.mean(|r| Some(r.chest?.breadth)), self.mean(|r| Some(r.chest?.front)), &chart.chest);
-        let waist = section(self.mean(|r| Some(r.waist?.breadth)), self.mean(|r| Some(r.waist?.front)), &chart.waist);
-        let hip = section(self.mean(|r| Some(r.hip?.breadth)), self.mean(|r| Some(r.hip?.front)), &chart.hip);
         let guess = guesses(hint.population);
         let nothing = Estimate::new(0.0, 0.0);
         Measures {
             stature,
             shoulder_breadth: self.mean(|r| r.shoulders).map(|s| chart.shoulder.at(s.widened(sensor), nothing)),
-            chest_girth: chest,
-            waist_girth: waist,
-            hip_girth: hip,
+            chest_girth: section(|r| r.chest, &chart.chest),
+            waist_girth: section(|r| r.waist, &chart.waist),
+            hip_girth: section(|r| r.hip, &chart.hip),
             inseam: stature.map(|h| guess.inseam.at(h, nothing)),
             arm_length: stature.map(|h| guess.arm.at(h, nothing)),
         }
