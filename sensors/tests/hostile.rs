@@ -57,7 +57,10 @@ fn truncation_at_any_byte_is_an_error_or_a_shorter_session() {
             if survives(name, &bytes[..end], camera) {
                 read_anyway += 1;
                 let part = read(name, &bytes[..end], camera).unwrap();
-                assert!(part.joints.len() <= whole.joints.len() && part.depth.len() <= whole.depth.len(), "{name} {end}");
+                assert!(
+                    part.joints.len() <= whole.joints.len() && part.depth.len() <= whole.depth.len(),
+                    "{name} {end}"
+                );
             }
         }
         println!("{name}: {} bytes, {read_anyway} of the shorter files give a session", bytes.len());
@@ -113,7 +116,9 @@ fn a_file_of_another_kind_is_refused_in_one_sentence() {
             assert!(!survives(name, &bytes, Some(samples::CAMERA)) || name.ends_with("mcap"));
         }
     }
-    for bytes in [&b""[..], b"\n\n", b"{\"a\":1}", b"PK\x03\x04", b"#!/bin/sh\n", b"[]", b"[1,2]", b"1,2,3", b"HIERARCHY"] {
+    for bytes in
+        [&b""[..], b"\n\n", b"{\"a\":1}", b"PK\x03\x04", b"#!/bin/sh\n", b"[]", b"[1,2]", b"1,2,3", b"HIERARCHY"]
+    {
         assert!(!survives("other.bin", bytes, None), "{bytes:?}");
     }
 }
@@ -132,7 +137,14 @@ fn absurd_counts_and_numbers_are_refused_at_once() {
         ("nan.json", json.replacen("0.45", "NaN", 1)),
         ("huge.json", json.replacen("0.45", "1e39", 1)),
         ("time.json", json.replacen("\"record_timestamp\":11", "\"record_timestamp\":1e300", 1)),
-        ("joints.json", json.replacen("\"joints\":[", &format!("\"joints\":[{}", "{\"cameraX\":0,\"cameraY\":0,\"cameraZ\":0},".repeat(100_000)), 1)),
+        (
+            "joints.json",
+            json.replacen(
+                "\"joints\":[",
+                &format!("\"joints\":[{}", "{\"cameraX\":0,\"cameraY\":0,\"cameraZ\":0},".repeat(100_000)),
+                1,
+            ),
+        ),
         ("frames.bvh", bvh.replacen("Frames: 3", "Frames: 1000000000", 1)),
         ("overflow.bvh", bvh.replacen("Frames: 3", "Frames: 99999999999999999999999", 1)),
         ("nan.bvh", bvh.replacen("0.5 0.5", "nan 0.5", 1)),

@@ -85,7 +85,7 @@ impl JointFilter {
         let dt = self.step(frame.time_ns);
         let seen = self.smooth(frame, dt);
         let places = self.place(frame, &seen, dt);
-        self.pull_bones(frame, &places)
+        self.pull_bones(frame, &seen, &places)
     }
 
     /// Seconds since the last frame; after a long silence the motion is forgotten.
@@ -139,8 +139,9 @@ impl JointFilter {
             let bone = parent.and_then(|p| self.anchor(p)).map_or(Vec3::ZERO, |g| at - places[g.index()]);
             let held = match parent {
                 Some(parent) => {
-                    let hint = inferred(frame, parent, joint);
-                    track.hold.held(at, bone, hint.filter(|_| !seen[i]), dt)
+                    // A joint that claims to be seen and is not believed jumped: no hint.
+                    let hint = inferred(frame, parent, joint).filter(|_| !frame.joints[i].is_believed());
+                    track.hold.held(at, bone, hint, dt)
                 }
                 None => track.place + self.drift(joint),
             };
@@ -174,7 +175,7 @@ impl JointFilter {
     }
 
     /// Pulls bones to their lengths, from the pelvis outward; learns from bones of which both ends are at least inferred.
-    fn pull_bones(&mut self, frame: &Joints, places: &[Vec3; JOINTS]) -> Joints {
+    fn pull_bones(&mut self, frame: &Joints, seen: &[bool; JOINTS], places: &[Vec3; JOINTS]) -> Joints {
         let mut out = Joints::absent(frame.time_ns);
         for joint in Joint::ALL {
             let i = joint.index();
@@ -182,9 +183,10 @@ impl JointFilter {
             let Some(track) = &mut self.tracks[i] else { continue };
             let position = match parent {
                 Some(from) => {
-                    if let Some(seen) = inferred(frame, from, joint) {
+                    let jumped = [from, joint].iter().any(|j| frame.at(*j).is_believed() && !seen[j.index()]);
+                    if let Some(bone) = inferred(frame, from, joint).filter(|_| !jumped) {
                         let weight = frame.at(from).confidence.min(frame.at(joint).confidence);
-                        track.bone.learn(from, seen.length(), weight);
+                        track.bone.learn(from, bone.length(), weight);
                     }
                     let bone = places[i] - places[from.index()];
                     out.at(from).position + track.bone.pulled(from, bone, self.settings.bone_pull)

@@ -57,7 +57,11 @@ pub(super) fn decode_joints(bytes: &[u8]) -> Result<Joints, String> {
     for joint in &mut frame.joints {
         *joint = TrackedJoint { position: words.vec3()?, confidence: words.f32()? };
     }
-    if frame.is_valid() { Ok(frame) } else { Err("a joint is not finite, or its confidence not within 0..1".to_owned()) }
+    if frame.is_valid() {
+        Ok(frame)
+    } else {
+        Err("a joint is not finite, or its confidence not within 0..1".to_owned())
+    }
 }
 
 /// A depth message.

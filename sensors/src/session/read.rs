@@ -56,7 +56,9 @@ fn read_bytes(bytes: &[u8]) -> Result<Session, Fault> {
     }
     if cut || !reading.complete {
         let (joints, depth) = (session.joints.len(), session.depth.len());
-        session.notes.push(format!("the recording was cut off: {joints} joint frames and {depth} depth frames are left"));
+        session
+            .notes
+            .push(format!("the recording was cut off: {joints} joint frames and {depth} depth frames are left"));
     }
     session.check()?;
     Ok(session)

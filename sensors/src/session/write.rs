@@ -46,15 +46,13 @@ pub(super) fn to_bytes(session: &Session) -> Result<Vec<u8>, Fault> {
 
 fn encode(session: &Session, depth: Vec<(u64, Vec<u8>)>) -> McapResult<Vec<u8>> {
     let mut file = Cursor::new(Vec::new());
-    let options = WriteOptions::new()
-        .compression(None)
-        .profile("toile")
-        .library("toile-sensors")
-        .chunk_size(Some(CHUNK_BYTES));
+    let options =
+        WriteOptions::new().compression(None).profile("toile").library("toile-sensors").chunk_size(Some(CHUNK_BYTES));
     let mut writer = Writer::with_options(&mut file, options)?;
     writer.write_metadata(&description(session))?;
     writer.write_metadata(&notes(session))?;
-    let topics = [(JOINTS_TOPIC, "toile.joints/1", layout::JOINTS_LAYOUT), (DEPTH_TOPIC, "toile.depth/1", layout::DEPTH_LAYOUT)];
+    let topics =
+        [(JOINTS_TOPIC, "toile.joints/1", layout::JOINTS_LAYOUT), (DEPTH_TOPIC, "toile.depth/1", layout::DEPTH_LAYOUT)];
     let mut channels = [0; 2];
     for (channel, (topic, name, text)) in channels.iter_mut().zip(topics) {
         let schema = writer.add_schema(name, LAYOUT, text.as_bytes())?;
@@ -79,7 +77,8 @@ struct Message {
 
 /// All messages in order of time, so that a cut-off file holds both kinds up to the cut.
 fn in_time(session: &Session, depth: Vec<(u64, Vec<u8>)>) -> Vec<Message> {
-    let joints = session.joints.iter().map(|f| Message { topic: 0, time_ns: f.time_ns, bytes: layout::encode_joints(f) });
+    let joints =
+        session.joints.iter().map(|f| Message { topic: 0, time_ns: f.time_ns, bytes: layout::encode_joints(f) });
     let depth = depth.into_iter().map(|(time_ns, bytes)| Message { topic: 1, time_ns, bytes });
     let mut all: Vec<Message> = joints.chain(depth).collect();
     all.sort_by_key(|m| m.time_ns);

@@ -67,7 +67,9 @@ fn level(frames: &mut [Joints], notes: &mut Vec<String>) {
     }
     let degrees = tilt.to_degrees();
     if tilt > LARGEST_TILT {
-        notes.push(format!("the body is {degrees:.0} degrees from upright, which no camera tilt explains: left as it is"));
+        notes.push(format!(
+            "the body is {degrees:.0} degrees from upright, which no camera tilt explains: left as it is"
+        ));
         return;
     }
     notes.push(format!("the camera was tilted by {degrees:.0} degrees (from spine and feet): levelled"));
@@ -148,7 +150,9 @@ fn leg_length(frames: &[Joints]) -> (Option<f32>, &'static str) {
     let [[hip, knee, ankle, _], _] = LEGS;
     let inferred = bone(hip, knee).zip(bone(knee, ankle)).map(|(thigh, shin)| thigh + shin + ANKLE_HEIGHT);
     match (inferred, torso) {
-        (Some(leg), Some(torso)) if (1.2..2.0).contains(&(leg / torso)) => (Some(leg), "the leg that the sensor inferred"),
+        (Some(leg), Some(torso)) if (1.2..2.0).contains(&(leg / torso)) => {
+            (Some(leg), "the leg that the sensor inferred")
+        }
         (Some(leg), None) => (Some(leg), "the leg that the sensor inferred"),
         (_, Some(torso)) => (Some(torso * LEG_OVER_TORSO), "the torso's length"),
         (None, None) => (None, ""),

@@ -86,7 +86,11 @@ fn to_y_up(frames: &mut [Positions]) -> DVec3 {
     let axes = [DVec3::Y, DVec3::Z, DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z, DVec3::NEG_X];
     // The first of equals wins, so that y is taken where nothing can be told.
     let up = axes.into_iter().rev().max_by(|a, b| a.dot(sum).total_cmp(&b.dot(sum))).unwrap_or(DVec3::Y);
-    let turn = if up == DVec3::NEG_Y { DQuat::from_rotation_x(std::f64::consts::PI) } else { DQuat::from_rotation_arc(up, DVec3::Y) };
+    let turn = if up == DVec3::NEG_Y {
+        DQuat::from_rotation_x(std::f64::consts::PI)
+    } else {
+        DQuat::from_rotation_arc(up, DVec3::Y)
+    };
     frames.iter_mut().flatten().for_each(|p| *p = turn * *p);
     up
 }
@@ -100,7 +104,9 @@ fn axis_name(axis: DVec3) -> &'static str {
 
 /// Length of a file unit (m), and whether it is known rather than assumed.
 fn unit(bvh: &Bvh, names: &Names, notes: &mut Vec<String>) -> Result<(f64, bool), Fault> {
-    let leg = (chain(bvh, names, Joint::LeftAnkle, Joint::LeftHip) + chain(bvh, names, Joint::RightAnkle, Joint::RightHip)) * 0.5;
+    let leg = (chain(bvh, names, Joint::LeftAnkle, Joint::LeftHip)
+        + chain(bvh, names, Joint::RightAnkle, Joint::RightHip))
+        * 0.5;
     if leg < 1e-6 {
         let cure = "export the motion with its skeleton";
         return Err(Fault::new(Place::Whole, "the skeleton's legs have no length", cure));

@@ -57,12 +57,7 @@ pub fn open(path: &Path, options: &OpenOptions) -> Result<Session, SourceError> 
 ///
 /// # Errors
 /// As [`open`].
-pub fn read_bytes(
-    path: &str,
-    name: &str,
-    bytes: &[u8],
-    camera: Option<(&str, &[u8])>,
-) -> Result<Session, SourceError> {
+pub fn read_bytes(path: &str, name: &str, bytes: &[u8], camera: Option<(&str, &[u8])>) -> Result<Session, SourceError> {
     let unknown = |what| SourceError::UnknownKind { path: path.to_owned(), what };
     let result = match recognise(bytes, camera.is_some()).map_err(unknown)? {
         Kind::Session => return crate::session::read(path, bytes),

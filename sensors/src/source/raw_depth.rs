@@ -23,7 +23,8 @@ pub(super) fn read(bytes: &[u8], camera: Option<Camera>) -> Result<Session, Faul
     let mut notes = Vec::new();
     let camera = camera.unwrap_or_else(|| {
         notes.push(
-            "no camera was given: a Kinect v1 is assumed (640 x 480, f = 575.8 px, centred); sizes depend on it".to_owned(),
+            "no camera was given: a Kinect v1 is assumed (640 x 480, f = 575.8 px, centred); sizes depend on it"
+                .to_owned(),
         );
         Camera { intrinsics: Intrinsics::KINECT_V1, pose: None }
     });
@@ -31,7 +32,11 @@ pub(super) fn read(bytes: &[u8], camera: Option<Camera>) -> Result<Session, Faul
     if bytes.is_empty() || !bytes.len().is_multiple_of(image) {
         let (w, h) = (camera.intrinsics.width, camera.intrinsics.height);
         let problem = format!("{} bytes are not whole images of {w} x {h} x 2", bytes.len());
-        return Err(Fault::new(Place::Byte(bytes.len() as u64), problem, "give the camera JSON that fits, or the whole file"));
+        return Err(Fault::new(
+            Place::Byte(bytes.len() as u64),
+            problem,
+            "give the camera JSON that fits, or the whole file",
+        ));
     }
     if bytes.len() / image > MAX_DEPTH_FRAMES {
         return Err(too_many(bytes.len() / image));
@@ -39,7 +44,8 @@ pub(super) fn read(bytes: &[u8], camera: Option<Camera>) -> Result<Session, Faul
     if bytes.len() > image {
         notes.push(format!("the file holds no times: its {} images are taken at {ASSUMED_HZ} Hz", bytes.len() / image));
     }
-    let mut depth: Vec<DepthFrame> = (0u64..).zip(bytes.chunks_exact(image)).map(|(i, b)| frame(i, b, &camera)).collect();
+    let mut depth: Vec<DepthFrame> =
+        (0u64..).zip(bytes.chunks_exact(image)).map(|(i, b)| frame(i, b, &camera)).collect();
     place(&mut depth, camera.pose.is_some(), &mut notes)?;
     Ok(Session { depth, notes, raw_scale_known: true, ..Session::default() })
 }
@@ -65,10 +71,13 @@ fn place(depth: &mut [DepthFrame], posed: bool, notes: &mut Vec<String>) -> Resu
         return Err(Fault::new(Place::Frame(0), "the first depth image is empty", cure));
     };
     let floor = if posed {
-        notes.push(format!("the floor is put under the lowest points of the first image, at y = {low:.3} m of the camera's world"));
+        notes.push(format!(
+            "the floor is put under the lowest points of the first image, at y = {low:.3} m of the camera's world"
+        ));
         low
     } else {
-        notes.push(format!("the camera's pose is unknown: level, {ASSUMED_CAMERA_HEIGHT} m above the floor is assumed"));
+        notes
+            .push(format!("the camera's pose is unknown: level, {ASSUMED_CAMERA_HEIGHT} m above the floor is assumed, and heights depend on it"));
         0.0
     };
     let shift = Affine3A::from_translation(-Vec3::new(x, floor, z));

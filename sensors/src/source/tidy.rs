@@ -66,7 +66,11 @@ fn describe(kept: &[Joints], period: u64, [total, merged, backwards]: [usize; 3]
     }
     let gap = kept.windows(2).map(|w| w[1].time_ns - w[0].time_ns).max().unwrap_or(0);
     if gap > period + period / 2 {
-        notes.push(format!("frames are missing: the longest gap is {:.0} ms at a period of {:.1} ms", ms(gap), ms(period)));
+        notes.push(format!(
+            "frames are missing: the longest gap is {:.0} ms at a period of {:.1} ms",
+            ms(gap),
+            ms(period)
+        ));
     }
 }
 

@@ -126,9 +126,10 @@ pub fn kinectron(frames: u64) -> Vec<u8> {
 
 /// A BVH in centimetres of some frames, y up.
 pub fn bvh(frames: usize) -> Vec<u8> {
-    let mut text = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation \
+    let mut text =
+        "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation \
                     Xrotation\n"
-        .to_owned();
+            .to_owned();
     let joint = |name: &str, x: f32, y: f32, inner: &str| {
         format!("JOINT {name}\n{{\nOFFSET {x} {y} 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n{inner}}}\n")
     };

@@ -217,7 +217,10 @@ mod tests {
         let (steep, most) = error(65.0);
         assert_eq!(all, CAMERA.pixels());
         assert!(steep > 1.02 * flat && most > all / 2, "{flat} {steep} {most}");
-        assert!(error(88.0).1 < all / 20);
+        // The middle columns, for towards the image's edge the line of sight itself turns.
+        let grazing = KinectNoise::new(5).apply(&CAMERA, &plane(88.0));
+        let seen = grazing.iter().enumerate().filter(|(i, d)| (75..85).contains(&(i % 160)) && **d != 0).count();
+        assert!(seen < 60, "{seen} of 1200");
     }
 
     #[test]
