@@ -120,20 +120,30 @@ pub struct GirthModel {
     pub front: f32,
     /// Standard deviation over bodies of other shapes (m).
     pub residual: f32,
+    /// The fronts that the model was made from (m): 19 of 20 mannequins.
+    pub fronts: [f32; 2],
 }
 
+/// Fronts of 19 of 20 mannequins at chest, waist and hip (m).
+const CHEST_FRONTS: [f32; 2] = [-0.02, 0.08];
+const WAIST_FRONTS: [f32; 2] = [0.05, 0.15];
+const HIP_FRONTS: [f32; 2] = [0.03, 0.10];
+
 impl GirthModel {
-    const fn new(offset: f32, breadth: f32, arc: f32, front: f32, residual: f32) -> Self {
-        Self { offset, breadth, arc, front, residual }
+    const fn new([offset, breadth, arc, front]: [f32; 4], residual: f32, fronts: [f32; 2]) -> Self {
+        Self { offset, breadth, arc, front, residual, fronts }
     }
 
     /// The girth of a torso from the parameters of its section. The sensor's errors of breadth and arc go together, so
-    /// their weights add up.
+    /// their weights add up. A front beyond all mannequins' is hair, cloth or a hand: the nearest that a mannequin has
+    /// stands for it, and what that changes is added to the error.
     pub fn at(&self, breadth: Estimate, arc: Estimate, front: Estimate) -> Estimate {
         let scatter = (self.breadth * breadth.sigma).abs() + (self.arc * arc.sigma).abs();
+        let usual = front.value.clamp(self.fronts[0], self.fronts[1]);
+        let strange = self.front * (front.value - usual);
         Estimate {
-            value: self.offset + self.breadth * breadth.value + self.arc * arc.value + self.front * front.value,
-            sigma: self.residual.hypot(scatter).hypot(self.front * front.sigma),
+            value: self.offset + self.breadth * breadth.value + self.arc * arc.value + self.front * usual,
+            sigma: self.residual.hypot(scatter).hypot(self.front * front.sigma).hypot(strange),
         }
     }
 }
@@ -141,8 +151,8 @@ impl GirthModel {
 /// How a frame's readings become measures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chart {
-    /// Added to the height of the top of the head (m), and its residual.
-    pub stature: Estimate,
+    /// Error of the top of the head (m).
+    pub stature: f32,
     /// Shoulder breadth from the outline's breadth.
     pub shoulder: Regression,
     /// Chest girth from its section.
@@ -180,25 +190,25 @@ impl Chart {
 // 10 mm (ANSUR II leaves 14 mm between the breadth over the deltoids and that between the acromions).
 
 const WOMEN: Chart = Chart {
-    stature: Estimate::new(0.0061, 0.005),
+    stature: 0.005,
     shoulder: Regression::new(0.0048, 0.9760, 0.0, 0.010),
-    chest: GirthModel::new(0.1424, 0.4997, 1.7676, -1.8791, 0.0233),
-    waist: GirthModel::new(0.0581, -0.0517, 2.2064, -0.7312, 0.0191),
-    hip: GirthModel::new(0.0806, 0.3098, 2.0816, -1.8045, 0.0261),
+    chest: GirthModel::new([0.1424, 0.4997, 1.7676, -1.8791], 0.0233, CHEST_FRONTS),
+    waist: GirthModel::new([0.0581, -0.0517, 2.2064, -0.7312], 0.0191, WAIST_FRONTS),
+    hip: GirthModel::new([0.0806, 0.3098, 2.0816, -1.8045], 0.0261, HIP_FRONTS),
 };
 
 const MEN: Chart = Chart {
-    stature: Estimate::new(0.0063, 0.005),
+    stature: 0.005,
     shoulder: Regression::new(-0.0086, 1.0231, 0.0, 0.010),
-    chest: GirthModel::new(0.1187, 0.3227, 1.9700, -1.4697, 0.0270),
-    waist: GirthModel::new(0.0442, 0.4248, 1.8260, -0.5248, 0.0220),
-    hip: GirthModel::new(0.0876, 0.3181, 2.0345, -1.5412, 0.0218),
+    chest: GirthModel::new([0.1187, 0.3227, 1.9700, -1.4697], 0.0270, CHEST_FRONTS),
+    waist: GirthModel::new([0.0442, 0.4248, 1.8260, -0.5248], 0.0220, WAIST_FRONTS),
+    hip: GirthModel::new([0.0876, 0.3181, 2.0345, -1.5412], 0.0218, HIP_FRONTS),
 };
 
 const MIXED: Chart = Chart {
-    stature: Estimate::new(0.0062, 0.005),
+    stature: 0.005,
     shoulder: Regression::new(-0.0294, 1.0710, 0.0, 0.010),
-    chest: GirthModel::new(0.1000, 0.4619, 1.9054, -1.5997, 0.0260),
-    waist: GirthModel::new(0.0503, 0.2565, 1.9576, -0.5995, 0.0206),
-    hip: GirthModel::new(0.0832, 0.2528, 2.1138, -1.6992, 0.0240),
+    chest: GirthModel::new([0.1000, 0.4619, 1.9054, -1.5997], 0.0260, CHEST_FRONTS),
+    waist: GirthModel::new([0.0503, 0.2565, 1.9576, -0.5995], 0.0206, WAIST_FRONTS),
+    hip: GirthModel::new([0.0832, 0.2528, 2.1138, -1.6992], 0.0240, HIP_FRONTS),
 };
