@@ -7,5 +7,6 @@
 pub mod body;
 pub mod limits;
 pub mod mesh;
+pub mod rig;
 pub mod sizes;
 pub mod skeleton;

@@ -14,6 +14,7 @@ use crate::skeleton::{JOINTS, Joint, Skeleton};
 pub(super) mod row {
     pub const CROTCH: usize = 0;
     pub const HIP: usize = 1;
+    pub const HIGH_HIP: usize = 2;
     pub const WAIST: usize = 3;
     pub const UNDERBUST: usize = 4;
     pub const BUST: usize = 5;
@@ -28,8 +29,10 @@ pub(super) mod row {
 pub(super) const KNEE: usize = 2;
 
 /// Columns of a torso ring, and of a limb's.
-const AROUND: usize = 12;
+pub(super) const AROUND: usize = 12;
 pub(super) const LIMB: usize = 8;
+/// Column of the one vertex that bridges the legs, in the lowest row.
+pub(super) const BRIDGE: usize = AROUND;
 const NONE: u32 = u32::MAX;
 
 /// How far a body departs from its sex's drawing: factors, all 1 for the drawing itself.
@@ -50,7 +53,7 @@ pub(super) struct Place {
     pub region: Region,
     /// Row of the torso table, or ring of the limb.
     pub row: usize,
-    /// Column 0..12 of the torso, 0..8 of a limb; the crotch's point is column [`LIMB`] of the lowest row.
+    /// Column 0..12 of the torso, 0..8 of a limb; the crotch's point is [`BRIDGE`].
     pub column: usize,
 }
 
@@ -100,7 +103,7 @@ impl Cage {
     pub(super) fn new(table: &Table, shape: &Shape) -> Self {
         let mut cage = Self::default();
         cage.lay_torso(table, shape);
-        let bridge = cage.push(shape.crotch(table), Region::Torso, row::CROTCH, LIMB);
+        let bridge = cage.push(shape.crotch(table), Region::Torso, row::CROTCH, BRIDGE);
         for side in [Side::Left, Side::Right] {
             cage.lay_leg(table, shape, side, bridge);
             cage.lay_arm(table, shape, side);

@@ -177,7 +177,7 @@ pub struct Body {
 const CLOSE_ENOUGH: f32 = 0.2e-3;
 /// Largest error that a caller has to accept (m).
 const TOLERANCE: f32 = 2e-3;
-/// Rounds of fitting; ordinary bodies need four or five.
+/// Rounds of fitting at most.
 const ROUNDS: usize = 24;
 /// Rounds of interpolation: enough to pass through the points within half a millimetre.
 const INTERPOLATION: usize = 16;
@@ -187,8 +187,7 @@ impl Body {
     pub fn build(sex: Sex, wanted: &Measures) -> Result<Self, BodyError> {
         wanted.check()?;
         let sweep = Sweep::new(sex);
-        let (shape, _) = sweep.calibrate(wanted)?;
-        Ok(sweep.body(&shape))
+        Ok(sweep.body(&sweep.calibrate(wanted)?))
     }
 }
 
@@ -235,13 +234,13 @@ impl Sweep {
     }
 
     /// Stretches the drawing until the tape reads the measures wanted.
-    fn calibrate(&self, wanted: &Measures) -> Result<(Shape, Measures), BodyError> {
+    fn calibrate(&self, wanted: &Measures) -> Result<Shape, BodyError> {
         let mut shape = Shape { scale: wanted.stature / self.table.stature * 1e3, ..Shape::drawn() };
         let mut mesh = self.mesh(&shape);
         for _ in 0..ROUNDS {
             let read = self.measure(&mesh);
             if furthest(wanted, &read).3 <= CLOSE_ENOUGH {
-                return Ok((shape, read));
+                return Ok(shape);
             }
             let grown = wanted.stature / read.stature;
             shape.scale *= grown;
@@ -254,27 +253,30 @@ impl Sweep {
         }
         let read = self.measure(&mesh);
         let (measure, value, reached, error) = furthest(wanted, &read);
-        if error <= TOLERANCE { Ok((shape, read)) } else { Err(BodyError::Unreachable { measure, value, reached }) }
+        if error <= TOLERANCE { Ok(shape) } else { Err(BodyError::Unreachable { measure, value, reached }) }
     }
 
     fn levels(&self, mesh: &Mesh) -> Levels {
         let at = |r: usize, column: usize| mesh.positions[self.torso[r][column] as usize].y;
-        let skeleton_height = |mm: f32| mm * at(row::WAIST, 3) / self.table.torso[row::WAIST].points[3][1];
-        let behind = |&i: &usize| matches!(self.regions[i], Region::Torso | Region::LeftLeg | Region::RightLeg);
-        let low =
-            (0..mesh.positions.len()).filter(behind).map(|i| mesh.positions[i]).filter(|p| p.y < at(row::WAIST, 3));
-        // The legs' heels stand further back than nothing above the crotch does.
-        let seat = low.filter(|p| p.y > at(row::CROTCH, 5)).min_by(|a, b| a.z.total_cmp(&b.z));
+        // Heights grow with stature alone, so any one row gives the scale from the drawing (mm) to the body (m).
+        let (waist, fold, back) = (at(row::WAIST, 3), at(row::CROTCH, 5), at(row::HIGH_HIP, 5));
+        let drawn = |mm: f32| mm * waist / self.table.torso[row::WAIST].points[3][1];
+        let mut seat = Vec3::new(0.0, at(row::HIP, 5), 0.0);
+        for (p, region) in mesh.positions.iter().zip(&self.regions) {
+            if *region == Region::Torso && p.y > fold && p.y < back && p.z < seat.z {
+                seat = *p;
+            }
+        }
         Levels {
             neck: at(row::TRAPEZIUS, 6),
             shoulder: at(row::SHOULDER, 3),
             chest: at(row::BUST, 1),
             underbust: at(row::UNDERBUST, 1),
-            waist: at(row::WAIST, 3),
-            hip: seat.map_or(at(row::HIP, 5), |p| p.y),
-            crotch: skeleton_height(self.table.crotch.point[1]),
-            knee: skeleton_height(self.table.leg[cage::KNEE].y),
-            ankle: skeleton_height(self.table.joints.ankle[1]),
+            waist,
+            hip: seat.y,
+            crotch: drawn(self.table.crotch.point[1]),
+            knee: drawn(self.table.leg[cage::KNEE].y),
+            ankle: drawn(self.table.joints.ankle[1]),
         }
     }
 

@@ -6,7 +6,7 @@
 use glam::Vec3;
 
 use super::Region;
-use super::cage::{Cage, LIMB, Place, row};
+use super::cage::{AROUND, BRIDGE, Cage, Place, row};
 use crate::mesh::SkinWeights;
 use crate::skeleton::{BONES, Joint, Skeleton, TWIST_BONES};
 
@@ -25,7 +25,8 @@ pub(super) fn right_shares(cage: &Cage) -> Vec<Vec3> {
             Region::LeftLeg => Region::RightLeg,
             other => other,
         };
-        let column = if region == Region::Torso && p.column != LIMB { (12 - p.column) % 12 } else { p.column };
+        let column =
+            if region == Region::Torso && p.column != BRIDGE { (AROUND - p.column) % AROUND } else { p.column };
         Place { region, row: p.row, column }
     };
     let places = cage.places.iter().map(mirrored);
@@ -71,7 +72,7 @@ fn leg_share(p: &Place) -> f32 {
     match (p.region, p.row, p.column) {
         (Region::LeftLeg, 0, _) => 0.96,
         (Region::LeftLeg, ..) => 1.0,
-        (Region::Torso, row::CROTCH, LIMB) => 0.4,
+        (Region::Torso, row::CROTCH, BRIDGE) => 0.4,
         (Region::Torso, row::CROTCH, 0 | 6) => 0.25,
         (Region::Torso, row::CROTCH, 1..6) => 0.5,
         (Region::Torso, row::HIP, 1..6) => 0.08,
@@ -142,8 +143,8 @@ impl<'a> Skinning<'a> {
         // The neck's plane leans forwards and spares the shoulders' slope; the head's keeps chin and occiput together.
         let shoulders = 0.5 * (p.x.abs() - 50.0 * mm).max(0.0);
         let ramps = [
-            ramp(at(Spine).y, 85.0 * mm),
-            ramp(at(Chest).y, 85.0 * mm),
+            ramp(at(Spine).y, 100.0 * mm),
+            ramp(at(Chest).y, 100.0 * mm),
             ramp(at(Neck).dot(Vec3::new(0.0, 0.93, 0.37)) - shoulders, 38.0 * mm),
             ramp(at(Head).dot(Vec3::new(0.0, 0.77, 0.64)), 36.0 * mm),
         ];

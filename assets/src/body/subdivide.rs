@@ -27,8 +27,8 @@ impl Quads {
     pub(super) fn new(vertices: usize, faces: Vec<[u32; 4]>) -> Self {
         let mut half: Vec<(u32, u32, u32, u32)> = Vec::with_capacity(faces.len() * 4);
         for (f, q) in faces.iter().enumerate() {
-            for k in 0..4 {
-                let (a, b) = (q[k], q[(k + 1) % 4]);
+            for (k, &a) in q.iter().enumerate() {
+                let b = q[(k + 1) % 4];
                 half.push((a.min(b), a.max(b), f as u32, k as u32));
             }
         }
@@ -56,9 +56,9 @@ impl Quads {
         let (first_edge, first_face) = (self.valence.len() as u32, (self.valence.len() + self.edges.len()) as u32);
         let mut faces = Vec::with_capacity(self.faces.len() * 4);
         for (f, q) in self.faces.iter().enumerate() {
-            for k in 0..4 {
+            for (k, &corner) in q.iter().enumerate() {
                 let (after, before) = (self.sides[f][k], self.sides[f][(k + 3) % 4]);
-                faces.push([q[k], first_edge + after, first_face + f as u32, first_edge + before]);
+                faces.push([corner, first_edge + after, first_face + f as u32, first_edge + before]);
             }
         }
         Self::new(self.valence.len() + self.edges.len() + self.faces.len(), faces)
@@ -100,9 +100,9 @@ impl Quads {
             sums[e.ends[0] as usize] += 4.0 * at(e.ends[1]);
             sums[e.ends[1] as usize] += 4.0 * at(e.ends[0]);
         }
-        for q in &self.faces {
-            for k in 0..4 {
-                sums[q[k] as usize] += at(q[(k + 2) % 4]);
+        for &[a, b, c, d] in &self.faces {
+            for (v, across) in [(a, c), (b, d), (c, a), (d, b)] {
+                sums[v as usize] += at(across);
             }
         }
         let limit = |((&s, &v), &n): ((&Vec3, &Vec3), &f32)| (n * n * v + s) / (n * (n + 5.0));

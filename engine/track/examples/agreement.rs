@@ -1,4 +1,5 @@
-//! The long study of synthetic agreement: `cargo run --release -p toile-track --example agreement -- SUBJECTS FRAMES SEED`.
+//! The long study of synthetic agreement:
+//! `cargo run --release -p toile-track --example agreement -- SUBJECTS FRAMES SEED`.
 
 use std::process::ExitCode;
 
