@@ -5,6 +5,8 @@
 
 use serde::Deserialize;
 
+use crate::body::{Measures, Sex};
+
 /// What a garment is, as far as sizing is concerned (EN 13402-2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
 #[expect(missing_docs, reason = "the names say it")]
@@ -64,6 +66,17 @@ pub enum Population {
     Mixed,
 }
 
+impl From<Option<Sex>> for Population {
+    /// Where a shopper's sex is not told, anybody's proportions apply.
+    fn from(sex: Option<Sex>) -> Self {
+        match sex {
+            Some(Sex::Female) => Self::Women,
+            Some(Sex::Male) => Self::Men,
+            None => Self::Mixed,
+        }
+    }
+}
+
 /// Which girths decide the size of one kind of garment (EN 13402-2).
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -115,6 +128,18 @@ pub struct SizeBody {
     pub waist_girth: f32,
     /// Hip girth (m).
     pub hip_girth: f32,
+}
+
+impl From<SizeBody> for Measures {
+    fn from(b: SizeBody) -> Self {
+        Self {
+            stature: b.stature,
+            shoulder_breadth: b.shoulder_breadth,
+            chest_girth: b.chest_girth,
+            waist_girth: b.waist_girth,
+            hip_girth: b.hip_girth,
+        }
+    }
 }
 
 /// A table of sizes, smallest first.

@@ -10,9 +10,11 @@ use glam::{Affine3A, Quat, Vec3};
 use toile_assets::body::{Body, BodyError, Measures, Region, Sex, tape};
 use toile_assets::sizes::Population;
 use toile_sensors::frame::DepthFrame;
+use toile_sensors::frame::Intrinsics;
+use toile_sensors::source::synthetic::{KinectNoise, Rng, SyntheticCamera};
 
 use crate::estimate::Estimate;
-use crate::measure::{FRAMES, Hint, Measurements, measure};
+use crate::measure::{Hint, Measurements, measure};
 
 /// Mean and lower Cholesky factor of the covariance of stature, biacromial breadth, chest, waist and buttock girth
 /// (m) in ANSUR II (public domain). The waist's mean is that of [`Measures::average`], because ANSUR measures another.
@@ -59,6 +61,22 @@ const LEVEL: [f32; 3] = [0.011, 0.0115, 0.014];
 /// Sway of a standing person over one second: shift (m) and turn (rad).
 const SWAY: [f32; 2] = [0.008, 0.03];
 
+/// How a subject is turned from the camera when asked to face it (rad).
+const TURNED: f32 = 0.06;
+
+/// The camera's place (m): as far off as a body of 1.95 m just fits into the picture.
+const EYE: [f32; 3] = [0.0, 0.95, 2.5];
+
+/// Corners of the floor and of the wall behind (m).
+const ROOM: [Vec3; 6] = [
+    Vec3::new(-4.0, 0.0, 3.0),
+    Vec3::new(4.0, 0.0, 3.0),
+    Vec3::new(-4.0, 0.0, -1.5),
+    Vec3::new(4.0, 0.0, -1.5),
+    Vec3::new(-4.0, 3.0, -1.5),
+    Vec3::new(4.0, 3.0, -1.5),
+];
+
 /// One subject: the reshaped body at rest, and what the tape reads.
 #[derive(Debug, Clone)]
 pub struct Subject {
@@ -66,25 +84,19 @@ pub struct Subject {
     pub body: Body,
 }
 
-/// A normal deviate from a source of uniform ones in 0..1 (Box and Muller 1958).
-fn gaussian(uniform: &mut impl FnMut() -> f32) -> f32 {
-    let (u, v) = (uniform().max(1e-7), uniform());
-    (-2.0 * u.ln()).sqrt() * (std::f32::consts::TAU * v).cos()
-}
-
 /// Draws a subject's five measures as they are distributed in ANSUR II, within two standard deviations.
-pub fn draw(sex: Sex, uniform: &mut impl FnMut() -> f32) -> Measures {
+pub fn draw(sex: Sex, rng: &mut Rng) -> Measures {
     let (mean, factor) = if sex == Sex::Female { WOMEN } else { MEN };
-    let normal: [f32; 5] = std::array::from_fn(|_| gaussian(uniform).clamp(-2.0, 2.0));
+    let normal: [f32; 5] = std::array::from_fn(|_| rng.gaussian().clamp(-2.0, 2.0));
     let m: [f32; 5] = std::array::from_fn(|i| mean[i] + (0..=i).map(|j| factor[i][j] * normal[j]).sum::<f32>());
     Measures { stature: m[0], shoulder_breadth: m[1], chest_girth: m[2], waist_girth: m[3], hip_girth: m[4] }
 }
 
 impl Subject {
-    /// A random subject with a shape of their own; `uniform` gives numbers in 0..1.
-    pub fn new(sex: Sex, uniform: &mut impl FnMut() -> f32) -> Result<Self, BodyError> {
-        let mut body = Body::build(sex, &draw(sex, uniform))?;
-        let mut three = |sd: [f32; 3]| -> [f32; 3] { std::array::from_fn(|i| sd[i] * gaussian(uniform)) };
+    /// A random subject with a shape of their own.
+    pub fn new(sex: Sex, rng: &mut Rng) -> Result<Self, BodyError> {
+        let mut body = Body::build(sex, &draw(sex, rng))?;
+        let mut three = |sd: [f32; 3]| -> [f32; 3] { std::array::from_fn(|i| sd[i] * rng.gaussian()) };
         let z = three([1.0; 3]);
         let aspect: [f32; 3] =
             std::array::from_fn(|i| ASPECT[i] * (0..=i).map(|j| ASPECT_TOGETHER[i][j] * z[j]).sum::<f32>());
@@ -113,22 +125,29 @@ impl Subject {
         [m.stature, m.shoulder_breadth, m.chest_girth, m.waist_girth, m.hip_girth]
     }
 
-    /// Renders one second of the swaying body through `camera`, which sees the positions and triangles handed to it.
-    pub fn second(
-        &self,
-        frames: usize,
-        uniform: &mut impl FnMut() -> f32,
-        mut camera: impl FnMut(&[Vec3], &[[u32; 3]]) -> DepthFrame,
-    ) -> Vec<DepthFrame> {
-        let turned = 0.06 * gaussian(uniform);
-        (0..frames)
-            .map(|_| {
-                let mut sway = |by: f32| by * gaussian(uniform);
+    /// The swaying body as a Kinect sees it, before a wall and on a floor, in as many frames.
+    pub fn seen(&self, frames: usize, rng: &mut Rng) -> Vec<DepthFrame> {
+        let eye = Vec3::new(0.0, EYE[1], EYE[2] + 0.1 * (rng.uniform() - 0.5));
+        let camera = SyntheticCamera::looking_at(Intrinsics::KINECT_V1, eye, Vec3::new(0.0, EYE[1], 0.0));
+        let mut noise = KinectNoise::new(rng.next_u64());
+        let turned = TURNED * rng.gaussian();
+        let mut positions = self.body.mesh.positions.clone();
+        positions.extend(ROOM);
+        let n = self.body.mesh.positions.len() as u32;
+        let mut triangles = self.body.mesh.triangles.clone();
+        triangles.extend([[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 5, 4]].map(|t| t.map(|i| n + i)));
+        let mut image = vec![0.0; camera.intrinsics.pixels()];
+        (0..frames as u64)
+            .map(|i| {
+                let mut sway = |by: f32| by * rng.gaussian();
                 let turn = Quat::from_rotation_y(turned + sway(SWAY[1])) * Quat::from_rotation_z(sway(0.2 * SWAY[1]));
                 let shift = Vec3::new(sway(SWAY[0]), 0.0, sway(SWAY[0]));
                 let place = Affine3A::from_rotation_translation(turn, shift);
-                let seen: Vec<Vec3> = self.body.mesh.positions.iter().map(|&p| place.transform_point3(p)).collect();
-                camera(&seen, &self.body.mesh.triangles)
+                for (to, from) in positions.iter_mut().zip(&self.body.mesh.positions) {
+                    *to = place.transform_point3(*from);
+                }
+                camera.render(&positions, &triangles, &mut image);
+                camera.frame(i * 33_333_333, noise.apply(&camera.intrinsics, &image))
             })
             .collect()
     }
@@ -211,13 +230,22 @@ pub fn compare(results: &[(Measurements, [f32; 5])]) -> [Agreement; 5] {
     })
 }
 
-/// Measures a subject seen by `camera` for one second, sex told or not.
-pub fn measured(
-    subject: &Subject,
-    population: Population,
-    uniform: &mut impl FnMut() -> f32,
-    camera: impl FnMut(&[Vec3], &[[u32; 3]]) -> DepthFrame,
-) -> Option<Measurements> {
-    let depth = subject.second(FRAMES, uniform, camera);
-    measure(&[], &depth, &Hint { population, scale_known: true }).ok()
+/// Measures random subjects of both sexes: `hint` says whether their sex is told. Subjects whose measures no body has
+/// together are left out, as are those whom the measuring refuses; the caller sees by the counts.
+pub fn study(subjects: usize, frames: usize, seed: u64, sex_told: bool) -> Vec<(Measurements, [f32; 5])> {
+    let mut results = Vec::new();
+    for (i, sex) in (0..subjects as u64).flat_map(|i| [(i, Sex::Female), (i, Sex::Male)]) {
+        let mut rng = Rng::new(seed + 2 * i + u64::from(sex == Sex::Male));
+        let Ok(subject) = Subject::new(sex, &mut rng) else { continue };
+        let population = match (sex_told, sex) {
+            (false, _) => Population::Mixed,
+            (true, Sex::Female) => Population::Women,
+            (true, Sex::Male) => Population::Men,
+        };
+        let depth = subject.seen(frames, &mut rng);
+        if let Ok(measured) = measure(&[], &depth, &Hint { population, scale_known: true }) {
+            results.push((measured, subject.truth()));
+        }
+    }
+    results
 }

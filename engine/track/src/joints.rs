@@ -8,21 +8,33 @@ use crate::anthropometry::{guesses, stature};
 use crate::estimate::{Estimate, temporal_mean};
 use crate::measure::{Hint, Measures};
 
-/// Path from pelvis over spine, chest and neck to the middle of the head, as a fraction of stature, and its relative
-/// error. The Kinect puts the pelvis at .53 and the head at .935 of stature (Drillis and Contini 1966 give .530 for
-/// the hip); sensors differ by some centimetres in where they put either.
-const TRUNK: Estimate = Estimate::new(0.405, 0.05);
+/// Where one kind of sensor puts its joints.
+struct Dialect {
+    /// Path from pelvis over spine, chest and neck to the head, as a fraction of stature.
+    trunk: f32,
+    /// Hip over knee to ankle as a fraction of stature.
+    leg: f32,
+    /// Breadth between the acromions over the distance of the shoulder joints.
+    acromions: f32,
+}
 
-/// Hip over knee to ankle as a fraction of stature (Drillis and Contini 1966: .245 + .246), and its relative error:
-/// depth cameras place hips and ankles worse than the spine.
-const LEG: Estimate = Estimate::new(0.491, 0.06);
+/// Sensors without collar bones, the Kinect first: the pelvis at .53 of stature, the head joint in the middle of the
+/// head at .935, the leg after Drillis and Contini 1966 (.245 + .246); the shoulder joint a hand's thickness below and
+/// inside the acromion.
+const KINECT: Dialect = Dialect { trunk: 0.405, leg: 0.491, acromions: 1.15 };
+
+/// Skeletons with collar bones: ours, read off the mannequins of `toile_assets::body` (the same for both sexes), whose
+/// head joint is where the skull turns on the neck.
+const HOUSE: Dialect = Dialect { trunk: 0.354, leg: 0.478, acromions: 1.107 };
+
+/// Relative errors of those factors: sensors and people differ by some centimetres in where a joint is; depth cameras
+/// place hips and ankles worse than the spine.
+const TRUNK_ERROR: f32 = 0.05;
+const LEG_ERROR: f32 = 0.06;
+const ACROMIONS_ERROR: f32 = 0.05;
 
 /// A leg longer or shorter than this times the trunk's proportion is a mistracked one.
 const LEG_TO_TRUNK: [f32; 2] = [0.85, 1.18];
-
-/// Breadth between the acromions over the distance of the shoulder joints' centres, and its relative error: the centre
-/// of the joint lies a hand's thickness below and inside the acromion.
-const ACROMIONS: Estimate = Estimate::new(1.15, 0.05);
 
 /// Fewest frames in which a bone must be seen.
 const FEWEST: usize = 3;
@@ -30,8 +42,10 @@ const FEWEST: usize = 3;
 /// Measures from the frames given; `None` if trunk and shoulders are both unseen.
 pub(crate) fn measures(frames: &[Joints], hint: &Hint) -> Option<Measures> {
     let common = stature(hint.population);
-    let seen = stature_of(frames);
-    let shoulders = length(frames, &[LeftShoulder, RightShoulder]).map(|s| scaled(s, ACROMIONS.value, ACROMIONS));
+    let dialect = if length(frames, &[LeftClavicle, RightClavicle]).is_some() { &HOUSE } else { &KINECT };
+    let seen = stature_of(frames, dialect);
+    let shoulders =
+        length(frames, &[LeftShoulder, RightShoulder]).map(|s| scaled(s, dialect.acromions, ACROMIONS_ERROR));
     if seen.is_none() && shoulders.is_none() {
         return None;
     }
@@ -71,15 +85,16 @@ fn believed(frame: &Joints, joint: Joint) -> bool {
     j.confidence >= CONFIDENCE_GATE && j.position.is_finite()
 }
 
-fn stature_of(frames: &[Joints]) -> Option<Estimate> {
-    let trunk = length(frames, &[Pelvis, Spine, Chest, Neck, Head]).map(|t| scaled(t, TRUNK.value.recip(), TRUNK));
+fn stature_of(frames: &[Joints], dialect: &Dialect) -> Option<Estimate> {
+    let trunk =
+        length(frames, &[Pelvis, Spine, Chest, Neck, Head]).map(|t| scaled(t, dialect.trunk.recip(), TRUNK_ERROR));
     let left = length(frames, &[LeftHip, LeftKnee, LeftAnkle]);
     let right = length(frames, &[RightHip, RightKnee, RightAnkle]);
     let leg = match (left, right) {
         (Some(l), Some(r)) => Some(Estimate::new(0.5 * (l.value + r.value), l.sigma.hypot(r.sigma) * 0.5)),
         (one, other) => one.or(other),
     };
-    let leg = leg.map(|l| scaled(l, LEG.value.recip(), LEG));
+    let leg = leg.map(|l| scaled(l, dialect.leg.recip(), LEG_ERROR));
     match (trunk, leg) {
         (Some(t), Some(l)) if (LEG_TO_TRUNK[0]..LEG_TO_TRUNK[1]).contains(&(l.value / t.value)) => Some(t.fuse(l)),
         (Some(t), Some(_) | None) => Some(t),
@@ -87,9 +102,9 @@ fn stature_of(frames: &[Joints]) -> Option<Estimate> {
     }
 }
 
-/// A length times a factor whose relative error is that of `model` (its sigma).
-fn scaled(length: Estimate, factor: f32, model: Estimate) -> Estimate {
-    Estimate::new(length.value * factor, length.sigma * factor).widened(length.value * factor * model.sigma)
+/// A length times a factor that has a relative error of its own.
+fn scaled(length: Estimate, factor: f32, error: f32) -> Estimate {
+    Estimate::new(length.value * factor, length.sigma * factor).widened(length.value * factor * error)
 }
 
 /// Length of a path over joints, averaged over the frames that show all of it (m).

@@ -11,5 +11,5 @@ pub mod estimate;
 mod joints;
 pub mod measure;
 pub mod recommend;
-mod section;
+pub mod section;
 pub mod silhouette;

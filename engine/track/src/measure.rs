@@ -3,10 +3,11 @@
 use toile_assets::sizes::{Population, SizeBody};
 use toile_sensors::frame::{DepthFrame, Joints};
 
-use crate::anthropometry::{self, Chart, guesses};
+use crate::anthropometry::{self, Chart, GirthModel, guesses};
 use crate::cloud::{self, Cloud};
 use crate::estimate::{Estimate, fuse, temporal_mean};
 use crate::joints;
+use crate::section::Section;
 use crate::silhouette::{self, Reading};
 
 /// Depth frames that are averaged: one second at 30 Hz (Gultepe 2013, section 6.4).
@@ -17,6 +18,10 @@ const ONE_SECOND_NS: u64 = 1_000_000_000;
 
 /// Fewest frames of joints that make a measurement: below it one bad frame is a third of the evidence.
 pub const FEWEST_JOINT_FRAMES: usize = 3;
+
+/// Error of a chest girth that is carried on from below the armpits, because arms or sleeves hide it (m): a third of
+/// what chests differ from waists by.
+const HIDDEN_CHEST: f32 = 0.04;
 
 /// What is known beforehand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -247,24 +252,21 @@ impl Readings {
     fn measures(&self, hint: &Hint) -> Measures {
         let chart = Chart::of(hint.population);
         let sensor = anthropometry::sensor_bias(median(&self.distances));
-        let stature = self.mean(|r| r.stature).map(|h| {
-            Estimate::new(h.value + chart.stature.value, h.sigma).widened(chart.stature.sigma).widened(sensor)
-        });
-        let section = |breadth, front, girth: &anthropometry::Girth| {
-            let (breadth, front): (Option<Estimate>, Option<Estimate>) = (breadth, front);
-            Some(girth.at(breadth?.widened(sensor), front?.widened(sensor)))
+        let stature = self.mean(|r| r.stature).map(|h| h.widened(chart.stature).widened(sensor));
+        let section = |which: fn(&Reading) -> Option<Section>, model: &GirthModel| {
+            let mean = |part: fn(&Section) -> f32| self.mean(|r| which(r).as_ref().map(part));
+            let breadth = mean(|s| s.breadth)?.widened(sensor);
+            Some(model.at(breadth, mean(|s| s.arc)?.widened(sensor), mean(|s| s.front)?))
         };
-        let chest = section(self.mean(|r| Some(r.chest?.breadth)), self.mean(|r| Some(r.chest?.front)), &chart.chest);
-        let waist = section(self.mean(|r| Some(r.waist?.breadth)), self.mean(|r| Some(r.waist?.front)), &chart.waist);
-        let hip = section(self.mean(|r| Some(r.hip?.breadth)), self.mean(|r| Some(r.hip?.front)), &chart.hip);
+        let hidden = self.readings.iter().filter(|r| r.chest_hidden).count() * 2 > self.readings.len();
         let guess = guesses(hint.population);
         let nothing = Estimate::new(0.0, 0.0);
         Measures {
             stature,
             shoulder_breadth: self.mean(|r| r.shoulders).map(|s| chart.shoulder.at(s.widened(sensor), nothing)),
-            chest_girth: chest,
-            waist_girth: waist,
-            hip_girth: hip,
+            chest_girth: section(|r| r.chest, &chart.chest).map(|c| if hidden { c.widened(HIDDEN_CHEST) } else { c }),
+            waist_girth: section(|r| r.waist, &chart.waist),
+            hip_girth: section(|r| r.hip, &chart.hip),
             inseam: stature.map(|h| guess.inseam.at(h, nothing)),
             arm_length: stature.map(|h| guess.arm.at(h, nothing)),
         }

@@ -33,6 +33,7 @@ pub struct Section {
     pub breadth: f32,
     /// Depth of its front half as that of the half ellipse that fits it best (m).
     pub front: f32,
+    /// Length of a tape laid over its front from edge to edge (m).
     pub arc: f32,
 }
 

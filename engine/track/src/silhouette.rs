@@ -27,6 +27,10 @@ const HEAD_REACH: f32 = 0.13;
 /// The top of the head is where so many points lie higher: one would be noise, a head 4 mm down is thirteen wide.
 const TOP_POINTS: usize = 4;
 
+/// Rows of pixels between the highest of them and the top of the head: half a row by itself, and what a Kinect loses of
+/// surface that it sees at a grazing angle (6.2 mm at 2.5 m, from mannequins; see `crate::agreement`).
+const ROWS_LOST: f32 = 1.93;
+
 /// Radius of the top of the head (m): a camera below it sees the horizon of this sphere, not its top.
 const CROWN_RADIUS: f32 = 0.12;
 
@@ -42,6 +46,9 @@ const OUTLINE_BREADTH: std::ops::Range<f32> = 0.17..0.34;
 /// Error of the shoulder line, which is where the outline widens (m).
 const SHOULDER_LINE: f32 = 0.02;
 
+/// Part of the way from waist to chest that sleeves and armpits leave alone.
+const BELOW_ARMPITS: f32 = 0.6;
+
 /// What one frame tells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
@@ -51,6 +58,8 @@ pub struct Reading {
     pub shoulders: Option<f32>,
     /// The torso at chest level.
     pub chest: Option<Section>,
+    /// The chest was hidden by arms or sleeves, and is carried on from below the armpits.
+    pub chest_hidden: bool,
     /// The torso at waist level.
     pub waist: Option<Section>,
     /// The torso at hip level.
@@ -61,11 +70,15 @@ pub struct Reading {
 pub fn read(cloud: &Cloud, levels: &Levels, population: Population) -> Option<Reading> {
     let upright = Upright::new(cloud, population)?;
     let section = |level: f32| upright.section(level);
-    let chest = section(levels.chest).or_else(|| upright.below_armpits(levels));
+    let shoulders = upright.shoulders(levels);
+    // Raised arms pull sleeves and armpits into the chest's level; without an outline of the shoulders they are raised.
+    let seen = shoulders.and_then(|_| section(levels.chest));
+    let chest = seen.or_else(|| upright.below_armpits(levels)).or_else(|| section(levels.chest));
     Some(Reading {
         stature: upright.floor.map(|floor| upright.top - floor),
-        shoulders: upright.shoulders(levels),
+        shoulders,
         chest,
+        chest_hidden: seen.is_none(),
         waist: section(levels.waist),
         hip: section(levels.hip),
     })
@@ -148,7 +161,7 @@ impl Upright {
         let steps = 12;
         let seen: Vec<(f32, Section)> = (0..steps)
             .filter_map(|i| {
-                let level = levels.waist + (levels.chest - levels.waist) * i as f32 / steps as f32;
+                let level = levels.waist + BELOW_ARMPITS * (levels.chest - levels.waist) * i as f32 / steps as f32;
                 Some((level, self.section(level)?))
             })
             .collect();
@@ -208,10 +221,10 @@ fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
     middle(&sorted)
 }
 
-/// The top of the head near the axis, half a row of pixels above the highest rows seen (m).
+/// The top of the head near the axis (m).
 fn top_of_head(points: &[Vec3], pitch: f32) -> Option<f32> {
     let mut near = points.iter().rev().filter(|p| p.x.abs() < HEAD_REACH).map(|p| p.y);
-    Some(near.nth(TOP_POINTS - 1)? + 0.5 * pitch)
+    Some(near.nth(TOP_POINTS - 1)? + ROWS_LOST * pitch)
 }
 
 /// How far the top of the head rises above what a camera sees of it from below, at an elevation (rad).

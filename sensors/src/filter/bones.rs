@@ -9,8 +9,8 @@ use toile_assets::skeleton::Joint;
 /// Largest step of the estimate in its first frame (m); the n-th frame moves it by this over n at most.
 const FIRST_STEP: f32 = 0.05;
 
-/// Smallest largest step (m): 6 mm a second at 30 Hz, so that an estimate learned from a bad pose is unlearned.
-const LAST_STEP: f32 = 2e-4;
+/// Smallest largest step (m): 12 mm a second at 30 Hz, so that an estimate learned from a bad pose is unlearned.
+const LAST_STEP: f32 = 4e-4;
 
 /// Largest change of a bone by the pull, over its length: one that is off by more has no direction to be believed.
 const LARGEST_PULL: f32 = 0.5;
@@ -66,7 +66,7 @@ mod tests {
             bone.learn(Joint::LeftShoulder, length, 1.0);
         }
         let pulled = bone.pulled(Joint::LeftShoulder, Vec3::X * 0.3, 1.0);
-        assert!((pulled.x - 0.2525).abs() < 0.003, "{pulled}");
+        assert!((pulled.x - 0.2528).abs() < 0.006, "{pulled}");
     }
 
     #[test]

@@ -87,7 +87,7 @@ enum Kind {
     RawDepth,
 }
 
-/// What a file is, by its first bytes; else what it looks like.
+/// What a file is, by its first bytes; else what it looks like. `has_camera` says that a camera was given for it.
 fn recognise(bytes: &[u8], has_camera: bool) -> Result<Kind, &'static str> {
     if bytes.is_empty() {
         return Err("the file is empty");
@@ -99,13 +99,19 @@ fn recognise(bytes: &[u8], has_camera: bool) -> Result<Kind, &'static str> {
         return Err("this is a Matroska video, which is not read: export its depth as raw 16-bit millimetres");
     }
     let head = &bytes[..bytes.len().min(4096)];
-    if has_camera || !is_text(head) {
-        return if has_camera || (bytes.len() as u64).is_multiple_of(raw_depth::KINECT_V1_BYTES) {
+    let text =
+        if is_text(head) { recognise_text(head) } else { Err("binary of no known kind, and no camera is given") };
+    match text {
+        // Whatever is none of these is depth to somebody who says which camera took it.
+        Err(_) if has_camera => Ok(Kind::RawDepth),
+        Err(_) if !is_text(head) && (bytes.len() as u64).is_multiple_of(raw_depth::KINECT_V1_BYTES) => {
             Ok(Kind::RawDepth)
-        } else {
-            Err("binary of no known kind, and no camera JSON says how wide a raw depth image is")
-        };
+        }
+        other => other,
     }
+}
+
+fn recognise_text(head: &[u8]) -> Result<Kind, &'static str> {
     let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
     match text.first() {
         None => Err("the file holds only white space"),
@@ -146,6 +152,7 @@ mod tests {
         assert_eq!(recognise(b"123,0.5,", false), Ok(Kind::KinectCsv));
         assert_eq!(recognise(&[0; 614_400], false), Ok(Kind::RawDepth));
         assert_eq!(recognise(&[0; 8], true), Ok(Kind::RawDepth));
+        assert_eq!(recognise(b"123,0.5,", true), Ok(Kind::KinectCsv));
         for other in [&b""[..], b"  \n", b"{}", b"hello", b"\x1a\x45\xdf\xa3", &[0; 614_401]] {
             assert!(recognise(other, false).is_err(), "{other:?}");
         }

@@ -1,0 +1,231 @@
+//! Measuring held against truth: mannequins through a synthetic Kinect, and what real sensors recorded.
+
+use std::path::PathBuf;
+
+use glam::{Affine3A, Mat3, Vec3};
+use toile_assets::body::{Body, Measures as BodyMeasures, Sex};
+use toile_assets::sizes::Population;
+use toile_assets::skeleton::{JOINTS, Joint};
+use toile_sensors::frame::{DepthFrame, Intrinsics, Joints, TrackedJoint};
+use toile_sensors::source::{OpenOptions, open};
+use toile_track::agreement::{compare, study};
+use toile_track::measure::{FRAMES, Hint, MeasureError, Measurements, Source, measure};
+
+/// Subjects of each sex, and frames of each: the long study is the example `agreement`.
+const SUBJECTS: usize = 4;
+const SHORT: usize = 6;
+
+/// Largest mean absolute error and largest single error (m) of stature, shoulder breadth, chest, waist and hip. Over
+/// eight subjects the mean wanders by a third, so the bounds are half as wide again as the figures of the long study;
+/// one error in a hundred exceeds 2.6 sigma.
+const MEAN_LIMITS: [f32; 5] = [0.004, 0.012, 0.040, 0.030, 0.032];
+const LARGEST_IN_SIGMAS: f32 = 3.5;
+
+#[test]
+fn mannequins_through_a_synthetic_kinect_agree_with_their_tape() {
+    let results = study(SUBJECTS, SHORT, 77, false);
+    assert!(results.len() >= 2 * SUBJECTS - 2, "{} of {} subjects were measured", results.len(), 2 * SUBJECTS);
+    for (agreement, limit) in compare(&results).iter().zip(MEAN_LIMITS) {
+        assert_eq!(agreement.taken, results.len(), "{agreement:?}");
+        assert!(agreement.mean_absolute < limit, "{agreement:?}");
+    }
+    for (measured, truth) in &results {
+        assert_eq!((measured.people, measured.source), (1, Source::Depth));
+        for ((name, estimate), truth) in measured.measures.named().into_iter().zip(truth) {
+            let e = estimate.unwrap();
+            assert!((e.value - truth).abs() < LARGEST_IN_SIGMAS * e.sigma, "{name}: {e:?} against {truth}");
+        }
+    }
+}
+
+#[test]
+fn the_same_second_measures_the_same_bits() {
+    assert_eq!(study(1, 2, 5, true), study(1, 2, 5, true));
+}
+
+/// A rest pose as frames of joints, all believed, with a wobble of a centimetre that averages out.
+fn joints_of(body: &Body) -> Vec<Joints> {
+    let wobble = |i: usize, k: usize| 0.01 * ((i * 7 + k * 3) as f32).sin();
+    (0..FRAMES)
+        .map(|i| Joints {
+            time_ns: i as u64 * 33_333_333,
+            joints: std::array::from_fn(|k| TrackedJoint {
+                position: body.skeleton.rest[k] + Vec3::new(wobble(i, k), wobble(i + 5, k), wobble(i + 9, k)),
+                confidence: 1.0,
+            }),
+        })
+        .collect()
+}
+
+#[test]
+fn joints_alone_give_stature_and_shoulders_within_their_sigma_and_girths_as_guesses() {
+    for sex in [Sex::Female, Sex::Male] {
+        let body = Body::build(sex, &BodyMeasures::average(sex)).unwrap();
+        let m = measure(&joints_of(&body), &[], &Hint::default()).unwrap();
+        assert_eq!((m.source, m.people, m.valid_pixels), (Source::Joints, 1, 0));
+        let b = &body.measures;
+        let truth = [b.stature, b.shoulder_breadth, b.chest_girth, b.waist_girth, b.hip_girth];
+        for ((name, estimate), truth) in m.measures.named().into_iter().zip(truth) {
+            let e = estimate.unwrap();
+            assert!((e.value - truth).abs() < 1.5 * e.sigma, "{sex:?} {name}: {e:?} against {truth}");
+        }
+        assert!(m.measures.chest_girth.unwrap().sigma > 0.07, "a guess says that it is one");
+    }
+}
+
+#[test]
+fn without_a_unit_the_stature_is_assumed_and_says_so() {
+    let body = Body::build(Sex::Female, &BodyMeasures::average(Sex::Female)).unwrap();
+    let mut joints = joints_of(&body);
+    for j in joints.iter_mut().flat_map(|f| &mut f.joints) {
+        j.position *= 39.37;
+    }
+    let hint = Hint { population: Population::Women, scale_known: false };
+    let m = measure(&joints, &[], &hint).unwrap();
+    let (stature, shoulder) = (m.measures.stature.unwrap(), m.measures.shoulder_breadth.unwrap());
+    assert!((stature.value - 1.628).abs() < 1e-3 && stature.sigma > 0.06, "{stature:?}");
+    assert!((shoulder.value - 0.365).abs() < 2.0 * shoulder.sigma && shoulder.value < 0.5, "{shoulder:?}");
+    assert!(m.notes.iter().any(|n| n.contains("assumed")), "{:?}", m.notes);
+}
+
+#[test]
+fn joints_that_nobody_believes_are_refused_in_one_sentence() {
+    let absent = Joints { time_ns: 0, joints: [TrackedJoint::default(); JOINTS] };
+    let mut nan = absent;
+    nan.joints[Joint::Pelvis.index()] = TrackedJoint { position: Vec3::NAN, confidence: 1.0 };
+    for frames in [vec![absent; 40], vec![nan; 40]] {
+        let why = measure(&frames, &[], &Hint::default()).unwrap_err();
+        assert_eq!(why, MeasureError::TooFewFrames { got: 0, frames: 40, need: 3 });
+        assert!(why.to_string().ends_with('.'));
+    }
+    assert_eq!(measure(&[], &[], &Hint::default()).unwrap_err(), MeasureError::Empty);
+}
+
+/// A Kinect's frame, level and 1.2 m above the floor, from a depth for each pixel (m; 0 = nothing).
+fn frame(depth: impl Fn(f32, f32) -> f32) -> DepthFrame {
+    let k = Intrinsics::KINECT_V1;
+    let level = Mat3::from_cols(Vec3::X, Vec3::NEG_Y, Vec3::NEG_Z);
+    let pixel = |i: usize| {
+        let (u, v) = ((i % k.width as usize) as f32, (i / k.width as usize) as f32);
+        (depth((u - k.cx) / k.fx, (v - k.cy) / k.fy) * 1000.0) as u16
+    };
+    DepthFrame {
+        time_ns: 0,
+        intrinsics: k,
+        camera_to_world: Affine3A::from_mat3_translation(level, Vec3::new(0.0, 1.2, 2.5)),
+        depth_mm: (0..k.width as usize * k.height as usize).map(pixel).collect(),
+    }
+}
+
+#[test]
+fn an_empty_room_and_a_cupboard_are_nobody() {
+    let nothing = frame(|_, _| 0.0);
+    let room = frame(|_, y| if y > 0.0 { (1.2 / y).min(4.0) } else { 4.0 });
+    let cupboard = frame(|x, y| if x.abs() < 0.2 && y > -0.3 { 2.5 } else { 4.0 });
+    for seen in [nothing, room, cupboard] {
+        let why = measure(&[], &[seen], &Hint::default()).unwrap_err();
+        assert_eq!(why, MeasureError::Nobody { frames: 1 });
+    }
+}
+
+/// The folder of real data; `None` skips, but a missing folder is a failure in CI.
+fn data() -> Option<PathBuf> {
+    match std::env::var_os("TOILE_DATA") {
+        Some(folder) => Some(folder.into()),
+        None if std::env::var("CI").is_ok_and(|ci| ci == "true") => panic!("set TOILE_DATA to the folder of real data"),
+        None => {
+            eprintln!("skipped: set TOILE_DATA to the folder of real data to run this test");
+            None
+        }
+    }
+}
+
+fn measured(file: &str, camera: Option<&str>) -> Option<Result<Measurements, MeasureError>> {
+    let root = data()?;
+    let options = OpenOptions { camera: camera.map(|c| root.join(c)) };
+    let session = open(&root.join(file), &options).unwrap();
+    Some(measure(&session.joints, &session.depth, &Hint { scale_known: session.raw_scale_known, ..Hint::default() }))
+}
+
+#[test]
+fn a_whole_woman_with_shoes_and_hair_is_as_tall_as_her_picture() {
+    let folder = "depth/depthkit-chae/derived";
+    let image = format!("{folder}/chae_depth_mm_1024x512.u16le");
+    let Some(result) = measured(&image, Some(&format!("{folder}/chae_depth_camera.json"))) else { return };
+    let m = result.unwrap();
+    assert_eq!(m.people, 1);
+    assert!(m.valid_pixels.abs_diff(165_326) < 1_000, "{}", m.valid_pixels);
+    let stature = m.measures.stature.unwrap();
+    // 1.750 m between the 0.2 and 99.8 percentiles, 1.782 m from end to end.
+    assert!((1.74..1.80).contains(&stature.value), "{stature:?}");
+    // A slim woman in tight clothes; nobody measured her, so the bounds are those of slim women of her stature.
+    for (name, estimate, range) in [
+        ("chest", m.measures.chest_girth, 0.75..1.05),
+        ("waist", m.measures.waist_girth, 0.60..0.95),
+        ("hip", m.measures.hip_girth, 0.82..1.08),
+    ] {
+        assert!(range.contains(&estimate.unwrap().value), "{name}: {estimate:?}");
+    }
+}
+
+#[test]
+fn people_seen_from_the_waist_up_have_a_chest_but_no_stature() {
+    // Frames of one man in a wide shirt; in the last one somebody stands behind him.
+    let frames = [1028894671u64, 1038901490, 1045879925, 1051883281, 1058893191, 1064898470, 1078881076, 1399145206];
+    let mut chests = 0;
+    for number in frames {
+        let Some(result) = measured(&format!("depth/skeltrack/depth-data-{number}.u16le"), None) else { return };
+        let m = result.unwrap();
+        assert_eq!(m.people, if number == 1399145206 { 2 } else { 1 }, "{number}");
+        assert_eq!(m.measures.stature, None, "{number}");
+        assert!(m.notes.iter().any(|n| n.contains("feet")), "{number}: {:?}", m.notes);
+        if let Some(chest) = m.measures.chest_girth {
+            assert!((0.85..1.45).contains(&chest.value), "{number}: {chest:?}");
+            chests += 1;
+        }
+    }
+    assert!(chests >= 6, "{chests} of 8");
+}
+
+#[test]
+fn a_mug_is_nobody() {
+    let Some(root) = data() else { return };
+    let bytes = std::fs::read(root.join("depth/pyk4a-azure-mkv/recording.mkv")).unwrap();
+    // The one frame of the depth track: a Matroska block of track 2 with 640 x 576 big-endian pixels.
+    let size = 640 * 576 * 2;
+    let at =
+        (4..bytes.len() - size).find(|&i| bytes[i] == 0x82 && vint_before(&bytes, i) == Some(size as u64 + 4)).unwrap();
+    let depth_mm = bytes[at + 4..at + 4 + size].chunks_exact(2).map(|b| u16::from_be_bytes([b[0], b[1]])).collect();
+    // Calibration.json over 1024 x 1024 px, cut to the middle.
+    let intrinsics = Intrinsics { width: 640, height: 576, fx: 504.6, fy: 504.7, cx: 333.3, cy: 349.3 };
+    let seen = DepthFrame { intrinsics, depth_mm, ..frame(|_, _| 0.0) };
+    let valid = seen.depth_mm.iter().filter(|&&mm| mm > 0).count();
+    assert!(valid > 100_000, "{valid} valid pixels");
+    assert_eq!(measure(&[], &[seen], &Hint::default()).unwrap_err(), MeasureError::Nobody { frames: 1 });
+}
+
+/// The EBML number that ends before a byte, if one does in 3 to 8 bytes.
+fn vint_before(bytes: &[u8], end: usize) -> Option<u64> {
+    (3..=8.min(end)).find_map(|n| {
+        let first = bytes[end - n];
+        let value =
+            bytes[end - n + 1..end].iter().fold(u64::from(first) & ((1 << (8 - n)) - 1), |v, &b| v << 8 | u64::from(b));
+        (first.leading_zeros() as usize + 1 == n && value > 1000).then_some(value)
+    })
+}
+
+#[test]
+fn a_recorded_skeleton_gives_a_plausible_person() {
+    let files = [
+        "labanotation-kinect2/Ges01_wavehand.csv",
+        "labanotation-kinect2/joints.csv",
+        "kinectron-kinect2/recorded_skeleton.json",
+    ];
+    for file in files {
+        let Some(result) = measured(&format!("skeleton/{file}"), None) else { return };
+        let m = result.unwrap();
+        let stature = m.measures.stature.unwrap();
+        assert!((1.5..2.0).contains(&stature.value) && (0.02..0.10).contains(&stature.sigma), "{file}: {stature:?}");
+        assert_eq!(m.source, Source::Joints);
+    }
+}
