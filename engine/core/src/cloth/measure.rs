@@ -64,13 +64,13 @@ const LOOSE_M: f32 = 0.08;
 const SMOOTHING: usize = 6;
 
 /// How tight the garment sits at each particle, -1 (loose) .. 1 (stretched to the fabric's comfortable limit): the mean
-/// stretch of the weft where there is one, otherwise the gap to the body. Allocates; not for the frame.
+/// stretch of the hoops through it, less the gap to the body. Allocates; not for the frame.
 pub fn tightness(cloth: &Cloth, garment: &Garment, colliders: &Colliders) -> Vec<f32> {
     let cones = colliders.cones_at(1.0);
     let offset = garment.fabric.contact_offset_mm * 1e-3;
     let mut stretch = vec![0.0f32; garment.particles()];
     let mut share = vec![0u32; garment.particles()];
-    for ([a, b], rest) in &garment.weft_edges {
+    for ([a, b], rest) in &garment.hoop_edges {
         let s = cloth.positions[*a as usize].distance(cloth.positions[*b as usize]) / rest - 1.0;
         for &i in [a, b] {
             stretch[i as usize] += s;
