@@ -68,8 +68,8 @@ pub struct Guesses {
     /// Chest girth (chestcircumference) from stature and shoulder breadth.
     pub chest: Regression,
     /// Waist girth from stature and shoulder breadth: waistcircumference, less what lies between the navel, where
-    /// ANSUR II measures, and the natural waist (74 mm for women, 2 mm for men, so that the mean is what EN 13402-3 pairs
-    /// with the mean chest; 20 mm of uncertainty for that).
+    /// ANSUR II measures, and the natural waist (74 mm for women, 2 mm for men, so that the mean is what EN 13402-3
+    /// pairs with the mean chest; 20 mm of uncertainty for that).
     pub waist: Regression,
     /// Hip girth (buttockcircumference) from stature and shoulder breadth.
     pub hip: Regression,
@@ -183,10 +183,10 @@ impl Chart {
     }
 }
 
-// Least squares over 99 women and 100 men of `crate::agreement` (seed 1,000,000, 10 frames each, 2.5 m from the camera);
-// `cargo run --release -p toile-track --example calibrate -- 100 10 1000000` prints them again. Their residuals are those
-// printed, but for two that mannequins, which are all alike there, make too small. Stature: 1 mm; a camera's tilt known
-// to .1 degree makes it 4 mm and more. Shoulders: 4 to 5 mm; how much deltoid people wear over their acromions makes it
+// Least squares over 99 women and 100 men of `crate::agreement` (seed 1,000,000, 10 frames each, 2.5 m off):
+// `cargo run --release -p toile-track --example calibrate -- 100 10 1000000` prints them again. Residuals are those
+// printed, but for two that mannequins, being all alike there, make too small. Stature: 1 mm; a camera's tilt known to
+// .1 degree makes it 4 mm and more. Shoulders: 4 to 5 mm; how much deltoid people wear over their acromions makes it
 // 10 mm (ANSUR II leaves 14 mm between the breadth over the deltoids and that between the acromions).
 
 const WOMEN: Chart = Chart {

@@ -7,6 +7,7 @@ use toile_assets::body::{Body, Measures as BodyMeasures, Sex};
 use toile_assets::sizes::Population;
 use toile_assets::skeleton::{JOINTS, Joint};
 use toile_sensors::frame::{DepthFrame, Intrinsics, Joints, TrackedJoint};
+use toile_sensors::source::synthetic::SyntheticCamera;
 use toile_sensors::source::{OpenOptions, open};
 use toile_track::agreement::{compare, study};
 use toile_track::measure::{FRAMES, Hint, MeasureError, Measurements, Source, measure};
@@ -126,6 +127,19 @@ fn an_empty_room_and_a_cupboard_are_nobody() {
         let why = measure(&[], &[seen], &Hint::default()).unwrap_err();
         assert_eq!(why, MeasureError::Nobody { frames: 1 });
     }
+}
+
+#[test]
+fn who_stands_too_far_is_told_to_come_closer() {
+    let body = Body::build(Sex::Male, &BodyMeasures::average(Sex::Male)).unwrap();
+    let camera = SyntheticCamera::looking_at(Intrinsics::KINECT_V1, Vec3::new(0.0, 1.2, 5.5), Vec3::new(0.0, 1.2, 0.0));
+    let mut image = vec![0.0; camera.intrinsics.pixels()];
+    camera.render(&body.mesh.positions, &body.mesh.triangles, &mut image);
+    let mm = |z: &f32| if z.is_finite() { (z * 1000.0) as u16 } else { 0 };
+    let seen = camera.frame(0, image.iter().map(mm).collect());
+    let why = measure(&[], &[seen], &Hint::default()).unwrap_err();
+    assert!(matches!(why, MeasureError::TooFar { distance, .. } if (5.2..5.6).contains(&distance)), "{why}");
+    assert!(why.to_string().contains("come closer"), "{why}");
 }
 
 /// The folder of real data; `None` skips, but a missing folder is a failure in CI.
