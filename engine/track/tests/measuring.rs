@@ -17,9 +17,10 @@ const SUBJECTS: usize = 4;
 const SHORT: usize = 6;
 
 /// Largest mean absolute error (m) of stature, shoulder breadth, chest, waist and hip. Over eight subjects the mean
-/// wanders by a third, so the bounds are half as wide again as the figures of the long study, and two and twice 3 mm for
-/// stature and shoulders, because six frames average less than thirty. One error in a hundred exceeds 2.6 sigma.
-const MEAN_LIMITS: [f32; 5] = [0.002, 0.006, 0.034, 0.026, 0.033];
+/// wanders by a third, so the bounds are half as wide again as the figures of the long study; 2 mm for the stature, because
+/// six frames average less than thirty; the stated sigma for the shoulders, where one in thirty is off by 20 mm (the
+/// outline has a step where arm and shoulder meet). One error in a hundred exceeds 2.6 sigma.
+const MEAN_LIMITS: [f32; 5] = [0.002, 0.010, 0.034, 0.026, 0.033];
 const LARGEST_IN_SIGMAS: f32 = 3.5;
 
 #[test]
