@@ -20,6 +20,10 @@ const STRIDE: usize = 5;
 /// many fair ones: skin that shows through cloth, or cloth that floats, is seen where it is worst.
 const FAIR: f64 = 8e-3;
 
+/// Weight of standing out of the body against staying below its surface: what stands out most does so in hollows (between
+/// the breasts, along the spine) that cloth spans anyway, while skin that stands out pierces the cloth.
+const OUTSIDE: f64 = 0.4;
+
 /// A point of the surface and its share of the area.
 struct Sample {
     point: Vec3,
@@ -65,12 +69,16 @@ fn samples(body: &Body) -> Vec<Sample> {
     samples
 }
 
-/// How much a place matters: garments lie close on bust, belly and seat, hang from the tops of the shoulders, and keep
-/// away from the limbs.
+/// How much a place matters: garments hang from the tops of the shoulders, lie tight on the bust and the seat, close on
+/// the rest of the trunk, and keep away from the limbs.
 fn matter(body: &Body, vertex: usize) -> f64 {
     let hangs = body.mesh.positions[vertex].y > body.levels.chest && body.normals[vertex].y > 0.5;
+    let near = |height: f32| (body.mesh.positions[vertex].y - height).abs() < 0.03 * body.measures.stature;
+    let proud = body.normals[vertex].z;
+    let close = (proud < -0.6 && near(body.levels.hip)) || (proud > 0.6 && near(body.levels.chest));
     match body.regions[vertex] {
         Region::Torso if hangs => 6.0,
+        Region::Torso if close => 6.0,
         Region::Torso => 2.5,
         _ => 1.0,
     }
@@ -139,7 +147,8 @@ fn assemble(
         let (distance, capsule, t) = nearest(&spheres, sample.point);
         let d = f64::from(distance);
         let square = d * d / (FAIR * FAIR);
-        cost += sample.weight * d * d * (1.0 + square);
+        let weight = sample.weight * if distance < 0.0 { OUTSIDE } else { 1.0 };
+        cost += weight * d * d * (1.0 + square);
         let Some(system) = system.as_deref_mut() else { continue };
         let ends = CAPSULES[capsule].map(usize::from);
         let centre = spheres[ends[0]].0.lerp(spheres[ends[1]].0, t);
@@ -150,7 +159,7 @@ fn assemble(
             let slope = [-normal.x * mirror, -normal.y, -normal.z, -1.0].map(|g| f64::from(g * share));
             row.add(end / 2, slope);
         }
-        system.add(&row, d, sample.weight * (1.0 + 2.0 * square));
+        system.add(&row, d, weight * (1.0 + 2.0 * square));
     }
     for i in 0..UNKNOWNS {
         let away = x[i] - start[i];
