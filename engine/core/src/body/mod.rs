@@ -23,7 +23,7 @@ mod trunk;
 
 pub use kinematics::{JointFrames, palette};
 
-use crate::colliders::RestSphere;
+use crate::cone::RestSphere;
 use glam::Vec3;
 use toile_assets::skeleton::{JOINTS, Joint, Pose, Skeleton};
 use toile_sensors::frame::Joints;

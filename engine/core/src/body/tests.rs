@@ -501,7 +501,7 @@ fn standing_feet_stay_while_the_hips_wobble() {
 
 #[test]
 fn arms_stay_beside_a_body_that_is_wider_than_the_one_seen() {
-    use crate::colliders::{RestSphere, RoundCone};
+    use crate::cone::{RestSphere, RoundCone};
     let ours = skeleton(1.0, 1.0);
     let hip = |x: f32| RestSphere { bone: 0, centre: Vec3::new(x, 0.88, 0.0), radius: 0.2 };
     let waist = |x: f32| RestSphere { bone: 1, centre: Vec3::new(x, 1.2, 0.0), radius: 0.12 };
