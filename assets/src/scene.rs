@@ -26,6 +26,7 @@ pub fn shopper(skeleton: &Skeleton, time: f32) -> Pose {
     let mut pose = Pose::rest(skeleton);
     let mut act = Act { pose: &mut pose, breath: (TAU * 0.3 * time).sin() };
     act.stand();
+    act.lower_arms(ramp(time, STILL_S, STILL_S + 1.0));
     act.lift_arms(window(time, STILL_S, 3.6));
     act.walk(window(time, 3.2, 6.0), TAU * 1.1 * (time - 3.2));
     act.swing(window(time, 5.6, 7.4), TAU * 0.9 * (time - 5.6));
@@ -72,9 +73,14 @@ impl Act<'_> {
         self.bend(Joint::Chest, Quat::from_rotation_x(0.01 * self.breath));
     }
 
+    /// Arms down to the sides, as nobody keeps them away for long.
+    fn lower_arms(&mut self, strength: f32) {
+        self.bend_both(Joint::LeftShoulder, Quat::from_rotation_z(-0.24 * strength));
+    }
+
     /// Both arms out to the sides and up to the height of the head.
     fn lift_arms(&mut self, strength: f32) {
-        self.bend_both(Joint::LeftShoulder, Quat::from_rotation_z(1.15 * strength));
+        self.bend_both(Joint::LeftShoulder, Quat::from_rotation_z(1.4 * strength));
         self.bend_both(Joint::LeftClavicle, Quat::from_rotation_z(0.12 * strength));
     }
 

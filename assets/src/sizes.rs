@@ -190,7 +190,8 @@ pub enum SizeError {
     },
     /// Sizes out of order, or the same code twice.
     #[error(
-        "size table {table}: size {code} repeats an earlier code or is not larger than the size before it; put the sizes in rising order."
+        "size table {table}: size {code} repeats an earlier code or is not larger than the size before it; put the \
+         sizes in rising order."
     )]
     Order {
         /// Name of the table.

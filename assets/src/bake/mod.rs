@@ -27,7 +27,9 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
     let (stretch, stretch_sets) = stretches(shape, fabric, &edges, &free);
     let (bends, bend_sets) = bends(shape, fabric, &edges, &chains);
     let strain_edges = edges.iter().filter(|e| e.direction != Direction::Bias).map(|e| ([e.a, e.b], e.rest)).collect();
-    let weft = edges.iter().filter(|e| e.direction == Direction::Weft).map(|e| ([e.a, e.b], e.rest)).collect();
+    let hoop = |f: &&Fiber| f.direction == Direction::Weft && f.vertices.first() == f.vertices.last();
+    let weft = chains.iter().filter(hoop).flat_map(|f| &f.edges).map(|&i| &edges[i as usize]);
+    let hoop_edges = weft.map(|e| ([e.a, e.b], e.rest)).collect();
     Ok(Garment {
         name: name.into(),
         size: size.into(),
@@ -42,7 +44,7 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
         bends: bends.into(),
         bend_sets: bend_sets.into(),
         strain_edges,
-        weft_edges: weft,
+        hoop_edges,
     })
 }
 

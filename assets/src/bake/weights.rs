@@ -4,18 +4,28 @@ use glam::Vec3;
 
 use crate::body::Body;
 use crate::mesh::SkinWeights;
-use crate::skeleton::BONES;
+use crate::skeleton::{BONES, Joint};
 
 /// Body vertices that share in a garment vertex: enough to smooth over one quad of the body.
 const NEIGHBOURS: usize = 6;
 
 /// Skin weights for points near the body: the weights of the nearest body vertices, nearer ones counting more, cut to
-/// the four strongest bones.
-pub fn transfer(body: &Body, points: &[Vec3]) -> Vec<SkinWeights> {
-    points.iter().map(|&p| at(body, p)).collect()
+/// the four strongest bones among those that `carries` admits: a bodice does not follow the arm beside it.
+pub fn transfer(body: &Body, points: &[Vec3], carries: impl Fn(usize) -> bool) -> Vec<SkinWeights> {
+    points.iter().map(|&p| at(body, p, &carries)).collect()
 }
 
-fn at(body: &Body, point: Vec3) -> SkinWeights {
+/// The trunk's bones: what a bodice or a waistband hangs on.
+pub fn trunk(bone: usize) -> bool {
+    [Joint::Pelvis, Joint::Spine, Joint::Chest].iter().any(|j| j.index() == bone)
+}
+
+/// The trunk's bones and the shoulder girdle's: what straps and yokes hang on.
+pub fn shoulders(bone: usize) -> bool {
+    trunk(bone) || [Joint::Neck, Joint::LeftClavicle, Joint::RightClavicle].iter().any(|j| j.index() == bone)
+}
+
+fn at(body: &Body, point: Vec3, carries: &impl Fn(usize) -> bool) -> SkinWeights {
     let mut nearest = [(f32::MAX, 0usize); NEIGHBOURS];
     for (i, p) in body.mesh.positions.iter().enumerate() {
         let d2 = p.distance_squared(point);
@@ -28,7 +38,12 @@ fn at(body: &Body, point: Vec3) -> SkinWeights {
     for (d2, i) in nearest {
         let share = (d2 + 1e-6).recip();
         let w = &body.weights[i];
-        w.bones.iter().zip(&w.weights).for_each(|(&b, &x)| sum[b as usize] += share * x);
+        let carried = w.bones.iter().zip(&w.weights).filter(|(b, _)| carries(usize::from(**b)));
+        carried.for_each(|(&b, &x)| sum[usize::from(b)] += share * x);
+    }
+    if sum.iter().all(|x| *x <= 0.0) {
+        // Nothing near is admitted: such a point hangs on the chest, which every garment is hung from.
+        sum[Joint::Chest.index()] = 1.0;
     }
     strongest(&sum)
 }

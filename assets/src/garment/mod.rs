@@ -80,8 +80,8 @@ pub struct Garment {
     pub bend_sets: Box<[Set]>,
     /// Warp and weft edges with their rest lengths (m): what strain is measured on.
     pub strain_edges: Box<[([u32; 2], f32)]>,
-    /// The weft edges among them: what tells how tight a garment sits around the body.
-    pub weft_edges: Box<[([u32; 2], f32)]>,
+    /// The edges of weft fibers that close around the body or a limb: what tells how tight a garment sits.
+    pub hoop_edges: Box<[([u32; 2], f32)]>,
 }
 
 impl Garment {

@@ -151,7 +151,11 @@ impl Style {
             Cut::TShirt { .. } => t_shirt::draft(self, &cut, shopper),
             Cut::WideTrousers { .. } => wide_trousers::draft(self, &cut, shopper),
         };
-        shape.weights = weights::transfer(shopper, &shape.worn);
+        let carries = match self.cut {
+            Cut::SunDress { .. } | Cut::TShirt { .. } => weights::shoulders,
+            Cut::WideTrousers { .. } => weights::trunk,
+        };
+        shape.weights = weights::transfer(shopper, &shape.worn, carries);
         Ok(shape)
     }
 
@@ -175,6 +179,6 @@ pub fn dress_mesh(path: &Path, fabric: &str, shopper: &Body) -> Result<Garment, 
     let wide = shopper.measures.hip_girth / average.hip_girth;
     let scale = glam::Vec3::new(wide, tall, 0.5 * (wide + tall));
     shape.cut.iter_mut().chain(&mut shape.worn).for_each(|p| *p *= scale);
-    shape.weights = weights::transfer(shopper, &shape.worn);
+    shape.weights = weights::transfer(shopper, &shape.worn, |_| true);
     bake(&name, "one size", &shape, &fabric).map_err(|source| WardrobeError::Mesh { name, source })
 }

@@ -37,10 +37,10 @@ const SHEET_FRAMES: usize = 12;
 const SHEET_COLUMNS: usize = 6;
 
 /// Half the width of what an animation shows around the shopper: arms stretched out (m).
-const HALF_REACH_M: f32 = 0.75;
+const HALF_REACH_M: f32 = 0.62;
 
 /// Height of what an animation shows as a share of the stature: arms half raised.
-const HEADROOM: f32 = 1.08;
+const HEADROOM: f32 = 1.04;
 
 /// How fast the camera follows the shopper across the floor (share of the way a frame).
 const FOLLOW: f32 = 0.35;

@@ -134,7 +134,7 @@ impl Frame {
         };
         let Relay { writer, reader } = Relay::new(&snapshot);
         let frame = Self {
-            poser: Poser::new(&body.skeleton),
+            poser: Poser::new(&body.skeleton).keeping_clear(&spheres, &rig.capsules),
             pose: Pose::rest(&body.skeleton),
             palette: [Affine3A::IDENTITY; BONES],
             colliders,

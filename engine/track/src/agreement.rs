@@ -5,6 +5,16 @@
 //! .065, correlated .2 to .4 between levels), squarer or more oval (girth over that of the ellipse +- 2 %), more of
 //! the depth before or behind the sides (+- 5 %, our assumption), and with levels higher or lower than the average
 //! (+- 1 % of stature). The truth is then read off the reshaped mesh by the tape.
+//!
+//! 48 subjects other than those the charts were fitted to (seed 500, 30 frames, sex not told), in mm:
+//!
+//! | measure | bias | SD | mean absolute | 95 % | stated sigma | within 1, 2 sigma |
+//! |---|---|---|---|---|---|---|
+//! | stature | 0.3 | 0.9 | 0.7 | 2.2 | 5.4 | 100 %, 100 % |
+//! | shoulder breadth | -0.2 | 3.6 | 2.8 | 7.6 | 10.5 | 98 %, 100 % |
+//! | chest girth | -4.8 | 28.4 | 22.2 | 70.6 | 30.4 | 75 %, 94 % |
+//! | waist girth | 0.1 | 21.2 | 16.6 | 43.0 | 26.3 | 77 %, 100 % |
+//! | hip girth | -5.2 | 27.9 | 21.2 | 53.9 | 27.6 | 69 %, 98 % |
 
 use glam::{Affine3A, Quat, Vec3};
 use toile_assets::body::{Body, BodyError, Measures, Region, Sex, tape};

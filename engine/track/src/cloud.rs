@@ -18,8 +18,9 @@ const FLOOR_REACH: f32 = 0.6;
 /// The picture is searched in cells so that about this many stand side by side.
 const CELLS_ACROSS: usize = 320;
 
-/// Smallest surface of a person worth measuring: half of what one sees from the waist up (m2).
-const LEAST_AREA: f32 = 0.10;
+/// Smallest surface of a person worth measuring, half of what one sees from the waist up, and largest, twice that of a
+/// large person with arms stretched (m2): walls are larger.
+const AREA: std::ops::Range<f32> = 0.10..2.5;
 
 /// Smallest and largest height of what is seen of a person (m).
 const HEIGHT: [f32; 2] = [0.45, 2.4];
@@ -100,13 +101,16 @@ impl<'a> Grid<'a> {
     }
 
     fn nearest_in_cell(&self, row: usize, column: usize) -> f32 {
+        let width = self.frame.intrinsics.width as usize;
         let mut nearest = u16::MAX;
-        for (_, _, mm) in self.pixels(row, column) {
-            if mm != 0 {
-                nearest = nearest.min(mm);
+        for v in row * self.step..(row + 1) * self.step {
+            let start = v * width + column * self.step;
+            for &mm in &self.frame.depth_mm[start..start + self.step] {
+                // 0 is nothing; one less than it wraps to the farthest.
+                nearest = nearest.min(mm.wrapping_sub(1));
             }
         }
-        let z = f32::from(nearest) / 1000.0;
+        let z = (f32::from(nearest) + 1.0) / 1000.0;
         if nearest == u16::MAX || z < NEAREST { 0.0 } else { z }
     }
 
@@ -139,7 +143,7 @@ impl<'a> Grid<'a> {
             .filter(|&(_, &y)| y.abs() < FLOOR_CLEARANCE)
             .map(|(&c, _)| self.depth[c])
             .collect();
-        reach.sort_by(f32::total_cmp);
+        reach.sort_unstable_by(f32::total_cmp);
         let n = reach.len();
         if n == 0 || reach[n * 19 / 20] - reach[n / 20] < FLOOR_REACH {
             return;
@@ -198,7 +202,7 @@ impl<'a> Grid<'a> {
         let focal = (self.frame.intrinsics.fx * self.frame.intrinsics.fy).sqrt();
         let side = self.step as f32 / focal;
         let area: f32 = piece.iter().map(|&c| (self.depth[c] * side).powi(2)).sum();
-        if area < LEAST_AREA {
+        if !AREA.contains(&area) {
             return None;
         }
         let cells: Vec<Vec3> = piece.iter().map(|&c| self.cell_world(c)).collect();
@@ -206,7 +210,7 @@ impl<'a> Grid<'a> {
             return None;
         }
         let mut depths: Vec<f32> = piece.iter().map(|&c| self.depth[c]).collect();
-        depths.sort_by(f32::total_cmp);
+        depths.sort_unstable_by(f32::total_cmp);
         let distance = depths[depths.len() / 2];
         let points = self.points(piece);
         let [_, top] = extent(cells.iter().map(|p| p.y));
@@ -245,7 +249,7 @@ impl<'a> Grid<'a> {
 /// The 1st and 99th percentile; zeros of nothing.
 fn extent(values: impl Iterator<Item = f32>) -> [f32; 2] {
     let mut sorted: Vec<f32> = values.collect();
-    sorted.sort_by(f32::total_cmp);
+    sorted.sort_unstable_by(f32::total_cmp);
     match sorted.len() {
         0 => [0.0; 2],
         n => [sorted[(n - 1) / 100], sorted[n - 1 - (n - 1) / 100]],
@@ -262,7 +266,7 @@ fn looks_human(cells: &[Vec3]) -> bool {
     }
     // Raised hands are higher than the head, so the head is sought above the middle of the lower half.
     let mut low: Vec<f32> = cells.iter().filter(|p| p.y < 0.5 * (bottom + top)).map(|p| p.x).collect();
-    low.sort_by(f32::total_cmp);
+    low.sort_unstable_by(f32::total_cmp);
     let axis = low[low.len() / 2];
     let [_, crown] = extent(cells.iter().filter(|p| (p.x - axis).abs() < 0.13).map(|p| p.y));
     // Someone half hidden behind another has their axis elsewhere: then their highest point is their head.
@@ -275,7 +279,7 @@ fn head_and_chest(cells: &[Vec3], axis: f32, crown: f32) -> bool {
     let core = |from: f32, to: f32, reach: f32| {
         let within = |p: &&Vec3| (from..to).contains(&(crown - p.y)) && (p.x - axis).abs() < reach;
         let mut xs: Vec<f32> = cells.iter().filter(within).map(|p| p.x).collect();
-        xs.sort_by(f32::total_cmp);
+        xs.sort_unstable_by(f32::total_cmp);
         let n = xs.len();
         (n >= 8).then(|| xs[n * 7 / 8] - xs[n / 8])
     };

@@ -66,12 +66,14 @@ pub struct Measurements {
 pub enum MeasureError {
     /// Neither depth nor joints.
     #[error(
-        "the session holds neither a depth frame nor joints; record at least one second of a person standing before the sensor."
+        "the session holds neither a depth frame nor joints; record at least one second of a person standing before \
+         the sensor."
     )]
     Empty,
     /// Depth without a person.
     #[error(
-        "nobody is in view in any of the {frames} depth frames; stand upright before the camera, 1.2 to 3.5 m away, head and shoulders in the picture."
+        "nobody is in view in any of the {frames} depth frames; stand upright before the camera, 1.2 to 3.5 m away, \
+         head and shoulders in the picture."
     )]
     Nobody {
         /// Frames looked at.
@@ -79,7 +81,8 @@ pub enum MeasureError {
     },
     /// Somebody, but beyond what can be measured.
     #[error(
-        "the person stands {distance:.1} m from the camera, where its depth is too coarse to measure; come closer than {limit:.1} m."
+        "the person stands {distance:.1} m from the camera, where its depth is too coarse to measure; come closer \
+         than {limit:.1} m."
     )]
     TooFar {
         /// Distance (m).
@@ -89,7 +92,8 @@ pub enum MeasureError {
     },
     /// Joints without a believed body.
     #[error(
-        "only {got} of {frames} frames of joints show a trunk that can be believed and {need} are needed; stand facing the sensor for a second with head, shoulders and hips in view."
+        "only {got} of {frames} frames of joints show a trunk that can be believed and {need} are needed; stand \
+         facing the sensor for a second with head, shoulders and hips in view."
     )]
     TooFewFrames {
         /// Believed frames.

@@ -363,13 +363,15 @@ fn note(measured: &Measurements, offer: &Offer, zones: &[Judged]) -> Option<Stri
     if primary.body.value < smallest.range(zone)[0] {
         let (code, limit) = (&smallest.code, cm(smallest.range(zone)[0]));
         return Some(format!(
-            "The {name} of {value:.0} cm is smaller than the smallest size made, {code}, is meant for ({limit:.0} cm and up): it is the nearest."
+            "The {name} of {value:.0} cm is smaller than the smallest size made, {code}, is meant for ({limit:.0} cm \
+             and up): it is the nearest."
         ));
     }
     if primary.body.value > largest.range(zone)[1] {
         let (code, limit) = (&largest.code, cm(largest.range(zone)[1]));
         return Some(format!(
-            "The {name} of {value:.0} cm is larger than the largest size made, {code}, is meant for (up to {limit:.0} cm): it is the nearest."
+            "The {name} of {value:.0} cm is larger than the largest size made, {code}, is meant for (up to \
+             {limit:.0} cm): it is the nearest."
         ));
     }
     let m = &measured.measures;

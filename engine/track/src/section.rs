@@ -82,9 +82,9 @@ impl Columns {
     fn reach(&self, side: isize) -> Option<usize> {
         let start = if side > 0 { COLUMNS } else { COLUMNS - 1 };
         let at = |i: usize| start.wrapping_add_signed(side * i as isize);
-        let mut last = (0..GAP * 2).find(|&i| self.count[at(i)] > 0)?;
-        let mut empty = 0;
-        for i in last..COLUMNS {
+        let first = (0..GAP * 2).find(|&i| self.count[at(i)] > 0)?;
+        let (mut last, mut empty) = (first, 0);
+        for i in first..COLUMNS {
             if self.count[at(i)] > 0 {
                 (last, empty) = (i, 0);
             } else {
@@ -115,7 +115,7 @@ impl Columns {
         None
     }
 
-    /// Left and right edge (m): the mean of the outermost points, one a row of four, so that a stray pixel weighs little.
+    /// Left and right edge (m): the mean of the outermost points of four rows, so that a stray pixel weighs little.
     fn edges(&self, points: &[Vec3], left: usize, right: usize) -> [f32; 2] {
         const ROWS: usize = 4;
         let [low, high] = [position(left) - 0.5 * COLUMN, position(right) + 0.5 * COLUMN];

@@ -97,7 +97,7 @@ struct Upright {
 impl Upright {
     fn new(cloud: &Cloud, population: Population) -> Option<Self> {
         let mut points = cloud.points.clone();
-        points.sort_by(|a, b| a.y.total_cmp(&b.y));
+        points.sort_unstable_by(|a, b| a.y.total_cmp(&b.y));
         let bottom = points.get(points.len() / 300)?.y;
         let rough_top = points[points.len() - 1 - points.len() / 300].y;
         let trunk = band(&points, bottom + 0.45 * (rough_top - bottom), bottom + 0.8 * (rough_top - bottom));
@@ -217,7 +217,7 @@ fn band(points: &[Vec3], from: f32, to: f32) -> &[Vec3] {
 
 fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
     let mut sorted: Vec<f32> = values.collect();
-    sorted.sort_by(f32::total_cmp);
+    sorted.sort_unstable_by(f32::total_cmp);
     middle(&sorted)
 }
 
@@ -247,7 +247,7 @@ fn height_from_shoulders(points: &[Vec3], top: f32, population: Population) -> f
 /// Breadth of the piece that holds the axis (m): raised arms beside it do not count.
 fn run(points: &[Vec3]) -> f32 {
     let mut xs: Vec<f32> = points.iter().map(|p| p.x).collect();
-    xs.sort_by(f32::total_cmp);
+    xs.sort_unstable_by(f32::total_cmp);
     let middle = xs.partition_point(|&x| x < 0.0);
     let right = xs[middle..].windows(2).take_while(|w| w[1] - w[0] < APART).count();
     let left = xs[..middle].windows(2).rev().take_while(|w| w[1] - w[0] < APART).count();

@@ -7,10 +7,10 @@
 use glam::{Quat, Vec3};
 use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 
-use super::ground::Ground;
 use super::limb::ramp;
 use super::limits::{self, Side};
-use super::seen::Seen;
+use super::neutral::Neutral;
+use super::seen::Moment;
 use super::smooth::fraction;
 
 /// Lift of the ankle (m) up to which a foot stands flat, and from which its slope is its own.
@@ -27,9 +27,44 @@ const SLOPE_TAU: f32 = 1.0;
 const SWING_TAU: f32 = 0.05;
 const STAND_TAU: f32 = 0.3;
 
+/// Greatest turn of a sensor's feet, both inwards or both outwards, that is taken for its habit (rad).
+const MAX_TURN: f32 = 0.6;
+
+/// Both feet.
+#[derive(Debug, Clone)]
+pub struct Feet {
+    feet: [Foot; 2],
+    /// How far both seem to be turned outwards.
+    turn: Neutral,
+}
+
+impl Feet {
+    /// Feet that stand as in the rest pose.
+    pub fn new(skeleton: &Skeleton) -> Self {
+        Self { feet: Side::BOTH.map(|side| Foot::new(skeleton, side)), turn: Neutral::default() }
+    }
+
+    /// Where the feet point (world, unit), left first, but for the sensor's habit to show both turned in or out.
+    pub fn aim(&mut self, now: Moment, pelvis: Quat) -> [Option<Vec3>; 2] {
+        if let (Some(left), Some(right)) = (self.feet[0].outwards(now, pelvis), self.feet[1].outwards(now, pelvis)) {
+            self.turn.learn(Vec3::X * (0.5 * (left + right)), now.dt);
+        }
+        let habit = self.turn.value().x.clamp(-MAX_TURN, MAX_TURN);
+        self.feet.each_ref().map(|foot| {
+            let shown = now.seen.direction(foot.ankle, foot.toe)?;
+            Some(Quat::from_rotation_y(-habit * foot.side.sign()) * shown)
+        })
+    }
+
+    /// Turns one foot, 0 left or 1 right, against its shin's rotation (rest to world).
+    pub fn update(&mut self, now: Moment, foot: usize, shin: Quat, toe: Option<Vec3>, local: &mut [Quat; JOINTS]) {
+        self.feet[foot].update(now, shin, toe, local);
+    }
+}
+
 /// One foot.
 #[derive(Debug, Clone)]
-pub struct Foot {
+struct Foot {
     ankle: Joint,
     toe: Joint,
     side: Side,
@@ -43,7 +78,7 @@ pub struct Foot {
 
 impl Foot {
     /// A foot that stands as in the rest pose.
-    pub fn new(skeleton: &Skeleton, side: Side) -> Self {
+    fn new(skeleton: &Skeleton, side: Side) -> Self {
         let (ankle, toe) = match side {
             Side::Left => (Joint::LeftAnkle, Joint::LeftToe),
             Side::Right => (Joint::RightAnkle, Joint::RightToe),
@@ -53,26 +88,17 @@ impl Foot {
         Self { ankle, toe, side, heading, ahead: heading, flat_slope: slope(ahead.normalize_or(heading)) }
     }
 
-    /// Turns the foot against the shin's rotation (rest to world).
-    pub fn update(
-        &mut self,
-        seen: &Seen,
-        ground: &Ground,
-        shin: Quat,
-        dt: f32,
-        first: bool,
-        local: &mut [Quat; JOINTS],
-    ) {
-        let lift = seen.at(self.ankle).map_or(0.0, |p| ground.lift(p.y));
+    /// Turns the foot, seen to point towards `toe` (world, unit), against the shin's rotation (rest to world).
+    fn update(&mut self, now: Moment, shin: Quat, toe: Option<Vec3>, local: &mut [Quat; JOINTS]) {
+        let lift = now.seen.at(self.ankle).map_or(0.0, |p| now.ground.lift(p.y));
         let standing = 1.0 - ramp(STANDING, lift);
-        let tau = SWING_TAU + (STAND_TAU - SWING_TAU) * standing;
-        let share = if first { 1.0 } else { fraction(dt, tau) };
-        let target = match seen.direction(self.ankle, self.toe) {
-            Some(now) => {
-                let difference = slope(now) - self.flat_slope;
-                self.flat_slope += difference * fraction(dt * standing * standing, SLOPE_TAU);
-                self.turn_to(level(now), share);
-                self.stand(self.ahead, shin, (slope(now) - self.flat_slope) * (1.0 - standing))
+        let share = now.share(SWING_TAU + (STAND_TAU - SWING_TAU) * standing);
+        let target = match toe {
+            Some(toe) => {
+                let difference = slope(toe) - self.flat_slope;
+                self.flat_slope += difference * fraction(now.dt * standing * standing, SLOPE_TAU);
+                self.turn_to(level(toe), share);
+                self.stand(self.ahead, shin, (slope(toe) - self.flat_slope) * (1.0 - standing))
             }
             None => {
                 self.turn_to(level(shin * self.heading), share);
@@ -81,6 +107,15 @@ impl Foot {
             }
         };
         local[self.ankle.index()] = limits::ANKLE.clamp(target, self.side);
+    }
+
+    /// How far the foot is turned outwards against the pelvis, more than in the rest pose (rad), if it stands.
+    fn outwards(&self, now: Moment, pelvis: Quat) -> Option<f32> {
+        let stands = now.ground.lift(now.seen.at(self.ankle)?.y) < STANDING[0];
+        let toe = level(now.seen.direction(self.ankle, self.toe)?)?;
+        let plain = level(pelvis * self.heading)?;
+        let turn = plain.cross(toe).y.atan2(plain.dot(toe));
+        (stands && now.seen.believes(&[self.ankle, self.toe])).then_some(turn * self.side.sign())
     }
 
     /// Turns the heading a share of the way to where the foot is seen to head.

@@ -8,7 +8,7 @@ use glam::{Quat, Vec3};
 use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 
 use super::limits::{self, Range, Reach, Side, clamp_angle, soft_clamp};
-use super::seen::Seen;
+use super::seen::Moment;
 use super::smooth::{fraction, wrap};
 
 /// Bend (degrees) from which the plane of a limb begins to be believed, and from which it is believed fully: at 25
@@ -68,7 +68,7 @@ impl Limb {
         };
         let mut limb = Self::new(skeleton, joints, side, Vec3::Z);
         (limb.reach, limb.twist_range, limb.hinge_range) =
-            (limits::SHOULDER_REACH, limits::SHOULDER_TWIST, limits::ELBOW);
+            (limits::SHOULDER_REACH, limits::SHOULDER_TWIST.on(side), limits::ELBOW);
         limb
     }
 
@@ -94,7 +94,7 @@ impl Limb {
             joints,
             side,
             reach: limits::HIP_REACH,
-            twist_range: limits::HIP_TWIST,
+            twist_range: limits::HIP_TWIST.on(side),
             hinge_range: limits::KNEE,
             upper,
             lower,
@@ -107,20 +107,22 @@ impl Limb {
     }
 
     /// Aims upper and lower limb from `parent` (rest to world), and returns the lower limb's rotation in the world.
-    pub fn update(&mut self, seen: &Seen, parent: Quat, dt: f32, first: bool, local: &mut [Quat; JOINTS]) -> Quat {
+    /// `toe` is where a leg's foot points (world, unit).
+    pub fn update(&mut self, now: Moment, parent: Quat, toe: Option<Vec3>, local: &mut [Quat; JOINTS]) -> Quat {
+        let seen = now.seen;
         let [root, hinge, end, _] = self.joints;
         let lower = seen.direction(hinge, end);
         if let Some(upper) = seen.direction(root, hinge) {
             let inward = parent.inverse();
             let upper = self.reach.clamp(inward * upper, self.side);
             let swing = Quat::from_rotation_arc(self.upper, upper);
-            self.follow_twist(upper, swing * self.axis, lower.map(|l| inward * l), self.toe(seen, inward), dt, first);
-            let share = if first || seen.believes(&[root, hinge]) { 1.0 } else { fraction(dt, HELD_TAU) };
+            self.follow_twist(now, upper, [lower, toe].map(|d| Some(inward * d?)));
+            let share = if seen.believes(&[root, hinge]) { 1.0 } else { now.share(HELD_TAU) };
             follow(&mut local[root.index()], Quat::from_axis_angle(upper, self.twist) * swing, share);
         }
         let carrier = parent * local[root.index()];
         if let Some(lower) = lower {
-            let share = if first || seen.believes(&[hinge, end]) { 1.0 } else { fraction(dt, HELD_TAU) };
+            let share = if seen.believes(&[hinge, end]) { 1.0 } else { now.share(HELD_TAU) };
             follow(&mut local[hinge.index()], self.bend(carrier.inverse() * lower), share);
         }
         carrier * local[hinge.index()]
@@ -139,30 +141,23 @@ impl Limb {
     }
 
     /// Aims the hand from the forearm's rotation; a hand that is not believed is held straight.
-    pub fn hand(&self, seen: &Seen, forearm: Quat, dt: f32, first: bool, local: &mut [Quat; JOINTS]) {
+    pub fn hand(&self, now: Moment, forearm: Quat, local: &mut [Quat; JOINTS]) {
         let [.., wrist, hand] = self.joints;
-        let target = match seen.direction(wrist, hand) {
-            Some(now) if seen.believes(&[wrist, hand]) => {
-                clamp_angle(Quat::from_rotation_arc(self.end, forearm.inverse() * now), limits::WRIST_DEG)
+        let target = match now.seen.direction(wrist, hand) {
+            Some(shown) if now.seen.believes(&[wrist, hand]) => {
+                clamp_angle(Quat::from_rotation_arc(self.end, forearm.inverse() * shown), limits::WRIST_DEG)
             }
             _ => Quat::IDENTITY,
         };
-        follow(&mut local[wrist.index()], target, if first { 1.0 } else { fraction(dt, HAND_TAU) });
+        follow(&mut local[wrist.index()], target, now.share(HAND_TAU));
     }
 
-    /// Direction of a leg's foot in the parent's frame; nothing for arms.
-    fn toe(&self, seen: &Seen, inward: Quat) -> Option<Vec3> {
-        self.rest_toe?;
-        Some(inward * seen.direction(self.joints[2], self.joints[3])?)
-    }
-
-    /// Brings the twist to where plane, foot or rest say, each as far as it is to be believed.
-    fn follow_twist(&mut self, upper: Vec3, plain: Vec3, lower: Option<Vec3>, toe: Option<Vec3>, dt: f32, first: bool) {
-        let share = |trust: f32, tau: f32| match first {
-            true => trust,
-            false => fraction(dt * trust, tau),
-        };
-        if first {
+    /// Brings the twist to where plane, foot or rest say, each as far as it is to be believed. Directions in the
+    /// parent's frame: the upper limb, and where known the lower limb and the foot.
+    fn follow_twist(&mut self, now: Moment, upper: Vec3, [lower, toe]: [Option<Vec3>; 2]) {
+        let share = |trust: f32, tau: f32| if now.first { trust } else { fraction(now.dt * trust, tau) };
+        let plain = Quat::from_rotation_arc(self.upper, upper) * self.axis;
+        if now.first {
             self.twist = 0.0;
         }
         let mut free = 1.0;

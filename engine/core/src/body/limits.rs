@@ -103,6 +103,14 @@ impl Side {
 }
 
 impl Range {
+    /// The range of a left joint's angle about an axis that does not mirror, for either side.
+    pub fn on(self, side: Side) -> Self {
+        match side {
+            Side::Left => self,
+            Side::Right => Self { min: -self.max, max: -self.min },
+        }
+    }
+
     /// An angle (rad) brought into the range softly.
     pub fn clamp(self, angle: f32) -> f32 {
         soft_clamp(angle, self.min.to_radians(), self.max.to_radians())

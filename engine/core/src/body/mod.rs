@@ -4,6 +4,7 @@
 //! Budget: 20 us a step; nothing allocated.
 //! Thread: physics, 120 Hz.
 
+mod clear;
 mod foot;
 pub mod ground;
 pub mod kinematics;
@@ -22,14 +23,16 @@ mod trunk;
 
 pub use kinematics::{JointFrames, palette};
 
+use crate::colliders::RestSphere;
 use glam::Vec3;
 use toile_assets::skeleton::{JOINTS, Joint, Pose, Skeleton};
 use toile_sensors::frame::Joints;
 
+use clear::Clear;
 use ground::Ground;
 use retarget::Retarget;
-use seen::Seen;
-use smooth::{ANGLE_TAU, LIMB_SPEED, TRUNK_SPEED, fraction, turn_towards};
+use seen::{Moment, Seen};
+use smooth::{ANGLE_TAU, LIMB_SPEED, TRUNK_SPEED, turn_towards};
 use stance::Stance;
 
 /// Fastest that the person is carried along (m/s): a run.
@@ -55,6 +58,8 @@ pub struct Poser {
     /// Where the pelvis is seen, and where it is carried to before feet are held, world (m); y is not used.
     place: Vec3,
     carried: Vec3,
+    clear: Clear,
+    /// The pose before the arms are kept clear of the body.
     pose: Pose,
     started: bool,
 }
@@ -69,14 +74,23 @@ impl Poser {
             stance: Stance::default(),
             place: skeleton.at(Joint::Pelvis),
             carried: skeleton.at(Joint::Pelvis),
+            clear: Clear::default(),
             pose: Pose::rest(skeleton),
             started: false,
         }
     }
 
+    /// The same, with arms that stay out of the body that these spheres and capsules make up. At load.
+    #[must_use]
+    pub fn keeping_clear(self, spheres: &[RestSphere], capsules: &[[u8; 2]]) -> Self {
+        Self { clear: Clear::new(spheres, capsules), ..self }
+    }
+
     /// Forgets the person: the next moment is taken over as it is.
     pub fn reset(&mut self) {
-        *self = Self::new(&self.skeleton);
+        let mut clear = std::mem::take(&mut self.clear);
+        clear.reset();
+        *self = Self { clear, ..Self::new(&self.skeleton) };
     }
 
     /// Whether the person was seen since the last reset; the rest pose is shown until then, and the first pose of a
@@ -100,7 +114,7 @@ impl Poser {
         }
         self.started = true;
         self.ground.observe(&seen, dt, first);
-        self.retarget.update(&seen, &self.ground, dt, first);
+        self.retarget.update(Moment { seen: &seen, ground: &self.ground, dt, first });
         let mut next = if first { Pose { local: self.retarget.local, ..self.pose } } else { self.turn(dt) };
         self.carry(&seen, &mut next, dt, first);
         if next.root.is_finite() && next.local.iter().all(|q| q.is_finite()) {
@@ -110,7 +124,9 @@ impl Poser {
             self.retarget = Retarget::new(&self.skeleton);
             self.ground = Ground::new(&self.skeleton);
         }
-        self.pose
+        let mut shown = self.pose;
+        self.clear.apply(&self.skeleton, &mut shown, dt, first);
+        shown
     }
 
     /// Every joint moved towards its target.
@@ -132,9 +148,9 @@ impl Poser {
         } else if let Some(joint) = ANCHORS.into_iter().find(|j| seen.at(*j).is_some()) {
             self.place = seen.at(joint).unwrap_or(self.place) - frames.at(joint);
         }
-        let share = if first { 1.0 } else { fraction(dt, ANGLE_TAU) };
-        self.carried = self.carried.lerp(self.place, share);
-        let shift = self.stance.shift(seen, &self.ground, &self.skeleton, &frames, self.carried, dt);
+        let now = Moment { seen, ground: &self.ground, dt, first };
+        self.carried = self.carried.lerp(self.place, now.share(ANGLE_TAU));
+        let shift = self.stance.shift(now, &self.skeleton, &frames, self.carried);
         let step = (self.carried + shift - self.pose.root).with_y(0.0);
         let step = if first { step } else { step.clamp_length_max(ROOT_SPEED * dt) };
         next.root = (self.pose.root + step).with_y(self.ground.root_height(&self.skeleton, &frames));

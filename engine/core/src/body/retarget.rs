@@ -7,12 +7,11 @@
 use glam::{Quat, Vec3};
 use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 
-use super::foot::Foot;
-use super::ground::Ground;
+use super::foot::Feet;
 use super::limb::Limb;
 use super::limits::Side;
 use super::neutral::Neutral;
-use super::seen::Seen;
+use super::seen::{Moment, Seen};
 use super::trunk::Trunk;
 
 /// Greatest slant of a sensor's legs that is taken for its habit (rad): 15 degrees.
@@ -31,7 +30,7 @@ pub struct Retarget {
     trunk: Trunk,
     arms: [Limb; 2],
     legs: [Limb; 2],
-    feet: [Foot; 2],
+    feet: Feet,
     /// Slant of the straight legs of somebody standing, about x, and the same in our rest pose (rad).
     slant: Neutral,
     rest_slant: f32,
@@ -46,31 +45,33 @@ impl Retarget {
             trunk: Trunk::new(skeleton),
             arms: Side::BOTH.map(|side| Limb::arm(skeleton, side)),
             legs: Side::BOTH.map(|side| Limb::leg(skeleton, side)),
-            feet: Side::BOTH.map(|side| Foot::new(skeleton, side)),
+            feet: Feet::new(skeleton),
             slant: Neutral::default(),
             rest_slant: slants(&Seen::rest(skeleton), Vec3::Z).map_or(0.0, |[l, r]| 0.5 * (l + r)),
             local: [Quat::IDENTITY; JOINTS],
         }
     }
 
-    /// Takes in one moment, `dt` (s) after the last; `first` takes it over without memory.
-    pub fn update(&mut self, seen: &Seen, ground: &Ground, dt: f32, first: bool) {
-        let (pelvis, chest) = self.trunk.update(seen, dt, first, &mut self.local);
-        let slant = self.legs_slant(seen, ground, pelvis, dt);
+    /// Takes in one moment.
+    pub fn update(&mut self, now: Moment) {
+        let (pelvis, chest) = self.trunk.update(now, &mut self.local);
+        let slant = self.legs_slant(now, pelvis);
+        let toes = self.feet.aim(now, pelvis);
         for (i, side) in Side::BOTH.into_iter().enumerate() {
-            let clavicle = chest * self.trunk.clavicle(seen, chest, side, dt, &mut self.local);
-            let forearm = self.arms[i].update(seen, clavicle, dt, first, &mut self.local);
-            self.arms[i].hand(seen, forearm, dt, first, &mut self.local);
+            let clavicle = chest * self.trunk.clavicle(now, chest, side, &mut self.local);
+            let forearm = self.arms[i].update(now, clavicle, None, &mut self.local);
+            self.arms[i].hand(now, forearm, &mut self.local);
             // The leg is aimed as if the pelvis had the sensor's slant, and hung on ours without it.
-            self.legs[i].update(seen, slant * pelvis, dt, first, &mut self.local);
-            let shin = self.legs[i].stretch(1.0 - ground.legs_trust(), pelvis, &mut self.local);
-            self.feet[i].update(seen, ground, shin, dt, first, &mut self.local);
+            self.legs[i].update(now, slant * pelvis, toes[i], &mut self.local);
+            let shin = self.legs[i].stretch(1.0 - now.ground.legs_trust(), pelvis, &mut self.local);
+            self.feet.update(now, i, shin, toes[i], &mut self.local);
         }
     }
 
     /// World rotation by which a sensor's legs are slanted: somebody who stands on straight legs has the hips above the
     /// feet, or would fall.
-    fn legs_slant(&mut self, seen: &Seen, ground: &Ground, pelvis: Quat, dt: f32) -> Quat {
+    fn legs_slant(&mut self, now: Moment, pelvis: Quat) -> Quat {
+        let (seen, ground, dt) = (now.seen, now.ground, now.dt);
         let left = (pelvis * Vec3::X).with_y(0.0).normalize_or(Vec3::X);
         let stands = |ankle| seen.at(ankle).is_some_and(|p| ground.lift(p.y) < STANDING);
         if let Some([l, r]) = slants(seen, left.cross(Vec3::Y))

@@ -9,7 +9,7 @@ use toile_assets::skeleton::{Joint, Skeleton};
 use super::ground::{Ground, soles};
 use super::kinematics::JointFrames;
 use super::limb::ramp;
-use super::seen::Seen;
+use super::seen::Moment;
 use super::smooth::fraction;
 
 /// Speed of a seen ankle (m/s) up to which it stands, and from which it walks.
@@ -43,23 +43,16 @@ struct Foot {
 
 impl Stance {
     /// Level shift (m) to add to a root at `root`; `frames` are joint frames with the root at the origin.
-    pub fn shift(
-        &mut self,
-        seen: &Seen,
-        ground: &Ground,
-        skeleton: &Skeleton,
-        frames: &JointFrames,
-        root: Vec3,
-        dt: f32,
-    ) -> Vec3 {
+    pub fn shift(&mut self, now: Moment, skeleton: &Skeleton, frames: &JointFrames, root: Vec3) -> Vec3 {
+        let (seen, ground, dt) = (now.seen, now.ground, now.dt);
         self.shift *= 1.0 - fraction(dt, FADE_TAU);
         let before = self.shift;
-        let now = soles(skeleton, frames).map(|[heel, ball, _]| (heel + ball) * 0.5 + root);
+        let soles = soles(skeleton, frames).map(|[heel, ball, _]| (heel + ball) * 0.5 + root);
         let (mut slip, mut total, mut most) = (Vec3::ZERO, 0.0, 0.0_f32);
-        for ((foot, ankle), now) in self.feet.iter_mut().zip([Joint::LeftAnkle, Joint::RightAnkle]).zip(now) {
+        for ((foot, ankle), sole) in self.feet.iter_mut().zip([Joint::LeftAnkle, Joint::RightAnkle]).zip(soles) {
             let stands = foot.watch(seen.at(ankle), ground, dt);
             if let Some(last) = foot.sole {
-                slip += (now + before - last) * stands;
+                slip += (sole + before - last) * stands;
                 total += stands;
                 most = most.max(stands);
             }
@@ -68,8 +61,8 @@ impl Stance {
             self.shift -= (slip * (most / total)).with_y(0.0);
         }
         self.shift = self.shift.clamp_length_max(MAX_SHIFT);
-        for (foot, now) in self.feet.iter_mut().zip(now) {
-            foot.sole = Some(now + self.shift);
+        for (foot, sole) in self.feet.iter_mut().zip(soles) {
+            foot.sole = Some(sole + self.shift);
         }
         self.shift
     }

@@ -10,8 +10,8 @@ use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 use super::kinematics::swing_twist;
 use super::limits::{self, Side};
 use super::neutral::Neutral;
-use super::seen::{Seen, unit};
-use super::smooth::{fraction, rotation_vector, wrap};
+use super::seen::{Moment, Seen, unit};
+use super::smooth::{rotation_vector, wrap};
 
 /// Time constant with which the head follows the chest's turn (s): eyes stay on the mirror a moment longer.
 const HEAD_TAU: f32 = 0.25;
@@ -65,7 +65,8 @@ impl Trunk {
     }
 
     /// Aims pelvis, spine, chest, neck and head; returns the rotations of pelvis and chest in the world.
-    pub fn update(&mut self, seen: &Seen, dt: f32, first: bool, local: &mut [Quat; JOINTS]) -> (Quat, Quat) {
+    pub fn update(&mut self, now: Moment, local: &mut [Quat; JOINTS]) -> (Quat, Quat) {
+        let (seen, dt) = (now.seen, now.dt);
         let [pelvis, spine, chest] = [Joint::Pelvis, Joint::Spine, Joint::Chest].map(Joint::index);
         if let Some(frames) = self.frames(seen) {
             let bend = self.straighten(&frames, dt, &mut local[pelvis]);
@@ -76,7 +77,7 @@ impl Trunk {
         }
         let turn = (local[pelvis] * local[spine] * local[chest]).normalize();
         self.lean(seen, turn, dt, local);
-        self.look(turn, if first { 1.0 } else { fraction(dt, HEAD_TAU) }, local);
+        self.look(turn, now.share(HEAD_TAU), local);
         (local[pelvis], turn)
     }
 
@@ -138,7 +139,8 @@ impl Trunk {
     }
 
     /// Rotation of a collar bone: as its two ends show, but for the habit of both; else lifted with the arm.
-    pub fn clavicle(&mut self, seen: &Seen, chest: Quat, side: Side, dt: f32, local: &mut [Quat; JOINTS]) -> Quat {
+    pub fn clavicle(&mut self, now: Moment, chest: Quat, side: Side, local: &mut [Quat; JOINTS]) -> Quat {
+        let (seen, dt) = (now.seen, now.dt);
         let (clavicle, shoulder, elbow) = match side {
             Side::Left => (Joint::LeftClavicle, Joint::LeftShoulder, Joint::LeftElbow),
             Side::Right => (Joint::RightClavicle, Joint::RightShoulder, Joint::RightElbow),
@@ -146,9 +148,9 @@ impl Trunk {
         let inward = chest.inverse();
         let shown = seen.direction(clavicle, shoulder).zip(self.rest.direction(clavicle, shoulder));
         let local = &mut local[clavicle.index()];
-        let target = if let Some((now, rest)) = shown {
+        let target = if let Some((shown, rest)) = shown {
             let mirror = Vec3::new(1.0, side.sign(), side.sign());
-            let turn = rotation_vector(Quat::from_rotation_arc(rest, inward * now)) * mirror;
+            let turn = rotation_vector(Quat::from_rotation_arc(rest, inward * shown)) * mirror;
             Quat::from_scaled_axis((turn - self.shoulders.learn(turn, 0.5 * dt)) * mirror)
         } else if let Some(arm) = seen.direction(shoulder, elbow) {
             // Nothing up to the horizontal, all of it straight up.

@@ -1,6 +1,6 @@
 //! Measures of a garment's state: strain, penetration, how tight it sits. Read only; outside of the timed step.
 
-use glam::{Vec3, Vec3A};
+use glam::Vec3;
 use toile_assets::garment::Garment;
 
 use super::Cloth;
@@ -42,12 +42,19 @@ pub fn strain(cloth: &mut Cloth, garment: &Garment) -> Strain {
     Strain { mean: (sum / count as f64) as f32, p99, max }
 }
 
-/// Deepest point of a free particle inside the colliders (m), 0 if none is inside.
+/// Deepest point of a free particle inside the colliders (m), 0 if none is inside. Only capsules that the step found
+/// near are asked; a particle cannot be inside of another.
 pub fn penetration(cloth: &Cloth, garment: &Garment, colliders: &Colliders) -> f32 {
     let cones = colliders.cones_at(1.0);
-    let deepest = |p: Vec3A| cones.iter().map(|c| c.distance(p.into()).0).fold(f32::MAX, f32::min);
-    let free = cloth.positions.iter().zip(&garment.inverse_mass).filter(|(_, w)| **w > 0.0);
-    free.map(|(p, _)| -deepest(*p)).fold(0.0, f32::max)
+    let mut deepest = 0.0f32;
+    for ((p, &near), w) in cloth.positions.iter().zip(&cloth.near).zip(&garment.inverse_mass) {
+        let mut bits = if *w > 0.0 { near } else { 0 };
+        while bits != 0 {
+            deepest = deepest.max(-cones[bits.trailing_zeros() as usize].distance((*p).into()).0);
+            bits &= bits - 1;
+        }
+    }
+    deepest
 }
 
 /// Distance from the body at which a garment counts as altogether loose (m).
@@ -57,13 +64,13 @@ const LOOSE_M: f32 = 0.08;
 const SMOOTHING: usize = 6;
 
 /// How tight the garment sits at each particle, -1 (loose) .. 1 (stretched to the fabric's comfortable limit): the mean
-/// stretch of the weft where there is one, otherwise the gap to the body. Allocates; not for the frame.
+/// stretch of the hoops through it, less the gap to the body. Allocates; not for the frame.
 pub fn tightness(cloth: &Cloth, garment: &Garment, colliders: &Colliders) -> Vec<f32> {
     let cones = colliders.cones_at(1.0);
     let offset = garment.fabric.contact_offset_mm * 1e-3;
     let mut stretch = vec![0.0f32; garment.particles()];
     let mut share = vec![0u32; garment.particles()];
-    for ([a, b], rest) in &garment.weft_edges {
+    for ([a, b], rest) in &garment.hoop_edges {
         let s = cloth.positions[*a as usize].distance(cloth.positions[*b as usize]) / rest - 1.0;
         for &i in [a, b] {
             stretch[i as usize] += s;
