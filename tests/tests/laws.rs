@@ -103,7 +103,7 @@ fn hanging(fabric: &Fabric, substeps: u32) -> f32 {
 fn a_hanging_strip_stretches_by_its_weight_whatever_the_substeps() {
     // Tensile stiffness E (N/m), weight per area w (N/m2), length 1 m: u = w L^2 / (2 E), and a discrete chain with
     // half a mass at its end reaches it exactly.
-    for (density, stiffness) in [(0.5, 200.0), (0.2, 300.0)] {
+    for (density, stiffness) in [(0.5, 200.0), (0.3, 90.0)] {
         let fabric = plain_fabric(density, stiffness, 5.0);
         let expected = density * G / (2.0 * stiffness);
         let sags = [8, 12, 16].map(|substeps| hanging(&fabric, substeps));
