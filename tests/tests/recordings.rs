@@ -106,8 +106,8 @@ fn judge(file: &str, worn: &[&str], frame: &Frame, figures: &Figures) {
     assert!(frame.tick() > 100, "{file} is too short to tell anything");
     assert!(figures.turn <= LIMB_SPEED * 1.01, "{file}: a joint jumps at {} rad/s", figures.turn);
     assert!(figures.level <= ROOT_SPEED * 1.01, "{file}: the pelvis jumps at {} m/s", figures.level);
-    // A high jump leaves the floor at 4 m/s.
-    assert!(figures.upright < 4.0, "{file}: the pelvis jumps up or down at {} m/s", figures.upright);
+    // Who lands from a jump of 1.2 m falls at 4.9 m/s.
+    assert!(figures.upright < 4.9, "{file}: the pelvis jumps up or down at {} m/s", figures.upright);
     assert!(strain.p99 < STRAIN_P99, "{file}: {strain:?}");
 }
 
