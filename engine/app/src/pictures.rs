@@ -61,6 +61,8 @@ pub struct Pictures {
 struct Drawing {
     body: Vec<Vec3>,
     body_triangles: Vec<[u32; 3]>,
+    /// Body vertices under a garment.
+    dressed: Vec<bool>,
     cloths: Vec<ClothDrawing>,
 }
 
@@ -77,9 +79,12 @@ impl Drawing {
             normals: vec![Vec3::ZERO; g.particles()],
             colour: Vec3::from_array(g.fabric.colour.map(toile_view::image::linear)),
         };
+        let corners = frame.garments().iter().flat_map(|g| g.triangles.iter().map(|t| t.map(|i| g.start[i as usize])));
+        let body = frame.body();
         Self {
-            body: frame.body().mesh.positions.clone(),
-            body_triangles: frame.body().mesh.triangles.clone(),
+            dressed: Cover::new(corners).dressed(&body.mesh.positions, &body.normals),
+            body: body.mesh.positions.clone(),
+            body_triangles: body.mesh.triangles.clone(),
             cloths: frame.garments().iter().map(cloth).collect(),
         }
     }
@@ -92,7 +97,7 @@ impl Drawing {
             .iter()
             .zip(&snapshot.garments)
             .flat_map(|(cloth, points)| cloth.triangles.iter().map(move |t| t.map(|i| points[i as usize])));
-        Cover::new(corners).tuck(&mut self.body, &snapshot.normals);
+        Cover::new(corners).tuck(&mut self.body, &snapshot.normals, &self.dressed);
         for (cloth, points) in self.cloths.iter_mut().zip(&snapshot.garments) {
             vertex_normals(points, &cloth.triangles, &mut cloth.normals);
         }

@@ -7,6 +7,7 @@
 pub mod body;
 pub mod cloth;
 pub mod colliders;
+pub mod cone;
 pub mod frame;
 pub mod relay;
 pub mod skin;

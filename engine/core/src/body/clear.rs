@@ -11,7 +11,7 @@ use toile_assets::skeleton::{JOINTS, Joint, Pose, Skeleton};
 use super::kinematics::JointFrames;
 use super::limits::Side;
 use super::smooth::fraction;
-use crate::colliders::{RestSphere, RoundCone};
+use crate::cone::{RestSphere, RoundCone};
 
 /// Distance (m) kept between arm and body, for the cloth between them.
 const GAP: f32 = 0.015;

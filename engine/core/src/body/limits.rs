@@ -182,7 +182,8 @@ pub fn soft_clamp(angle: f32, min: f32, max: f32) -> f32 {
     if angle > 0.5 * (min + max) { soft_above(angle, max, soft) } else { -soft_above(-angle, -min, soft) }
 }
 
-/// The upper half of [`soft_clamp`]: `max - soft + soft (1 - e^-x)`, x the distance past `max - soft` in units of `soft`.
+/// The upper half of [`soft_clamp`]: `max - soft e^-x`, x the distance past `max - soft`
+/// in units of `soft`.
 fn soft_above(value: f32, max: f32, soft: f32) -> f32 {
     let knee = max - soft;
     if value <= knee { value } else { max - soft * (-(value - knee) / soft).exp() }

@@ -1,7 +1,7 @@
 //! Standing feet stay: what the pose would make a standing foot slide is taken back by shifting the whole body.
 //!
-//! Hips wobble in a sensor more than feet do, and angles shown with other bone lengths carry a foot elsewhere. The shift
-//! fades, so the body never strays from where it is seen (after the root relocation of Gultepe 2013, section 4.5).
+//! Hips wobble in a sensor more than feet do, and angles shown with other bone lengths carry a foot elsewhere. The
+//! shift fades, so the body never strays from where it is seen (after the root relocation of Gultepe 2013, section 4.5).
 
 use glam::Vec3;
 use toile_assets::skeleton::{Joint, Skeleton};
