@@ -5,19 +5,9 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use super::is_quad;
+pub use crate::garment::Direction;
 use crate::garment::check::corners;
 use crate::garment::shape::Face;
-
-/// Which way a fiber runs through the cloth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Direction {
-    /// Along the loom's threads under tension: down the garment.
-    Warp,
-    /// Across: around the garment.
-    Weft,
-    /// Diagonal: resists shear.
-    Bias,
-}
 
 /// An edge that carries a constraint.
 #[derive(Debug, Clone, Copy, PartialEq)]

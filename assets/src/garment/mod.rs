@@ -5,14 +5,15 @@
 //! Thread: the loading thread makes them, physics borrows them.
 
 pub mod check;
+pub mod direction;
 pub mod shape;
 
 use glam::Vec3;
 
 pub use check::MeshError;
+pub use direction::Direction;
 pub use shape::{Face, Part, Shape};
 
-use crate::bake::fibers::Direction;
 use crate::fabric::Fabric;
 use crate::mesh::SkinWeights;
 

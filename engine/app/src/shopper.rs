@@ -7,7 +7,8 @@ use toile_assets::sizes::{Population, SizeBody};
 use toile_sensors::filter::{FilterSettings, JointFilter};
 use toile_sensors::frame::Joints;
 use toile_sensors::source::{self, OpenOptions, Session};
-use toile_track::measure::{self, Hint, Measurements};
+use toile_track::measure::{self, Measurements};
+use toile_track::measures::Hint;
 
 use crate::exit::AppError;
 use crate::report;

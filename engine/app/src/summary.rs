@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::report::{Measure, MeasureReport, Measurements, Physics, Recommendation, Session, TryOn};
+use crate::report::{Measure, MeasureReport, Measurements, Physics, Recommendation, Session, SkinningReport, TryOn};
 use crate::terminal::{Paint, Tone};
 
 /// The summary of a try-on.
@@ -27,6 +27,18 @@ pub fn measure(report: &MeasureReport, paint: Paint) -> String {
     session(&mut text, &report.session);
     measurements(&mut text, &report.measurements, paint);
     line(&mut text, &format!("\nPeople: {}; pixels with a depth: {} a frame", report.people, report.valid_pixels));
+    text
+}
+
+/// The summary of a skinning benchmark.
+pub fn skinning(report: &SkinningReport, paint: Paint) -> String {
+    let SkinningReport { verts, us, ns_per_vertex, yardstick_us, yardstick_verts, max_error_m } = report;
+    let plain = yardstick_us * 1e3 / *yardstick_verts as f64;
+    let mut text = String::new();
+    line(&mut text, &paint.tone(&format!("Skinning {verts} vertices, positions and normals"), Tone::Strong));
+    line(&mut text, &format!("  the engine    {us:.1} us, {ns_per_vertex:.2} ns a vertex"));
+    line(&mut text, &format!("  a plain loop  {plain:.2} ns a vertex ({yardstick_us:.1} us for {yardstick_verts})"));
+    line(&mut text, &format!("  largest error {:.3} um, against f64", max_error_m * 1e6));
     text
 }
 
@@ -98,6 +110,22 @@ fn line(text: &mut String, words: &str) {
 mod tests {
     use super::*;
     use crate::report::Zone;
+
+    #[test]
+    fn a_skinning_summary_compares_vertex_with_vertex() {
+        let report = SkinningReport {
+            verts: 1000,
+            us: 5.0,
+            ns_per_vertex: 5.0,
+            yardstick_us: 120.0,
+            yardstick_verts: 15_000,
+            max_error_m: 2.5e-7,
+        };
+        let text = skinning(&report, Paint::none());
+        for said in ["1000 vertices", "5.00 ns", "8.00 ns", "0.250 um"] {
+            assert!(text.contains(said), "{said} is not in: {text}");
+        }
+    }
 
     #[test]
     fn a_summary_says_each_zone_and_each_file() {

@@ -63,6 +63,8 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let title = title(&recommendations);
     play(args, &words, &mut out, &mut frame, &mut reader, &track, &title)?;
 
+    // The report names itself as well.
+    out.stage("report.json")?;
     let files = out.files();
     let mut recommendations = recommendations.into_iter();
     let document = Document::new(

@@ -118,6 +118,26 @@ fn doctor_for_people_has_no_colour_in_a_pipe() {
 }
 
 #[test]
+fn bench_skinning_reports_time_and_error_together() {
+    let output = toile(&["bench", "skinning", "--verts", "2000", "--json"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(output.stderr.is_empty());
+    let json: Value = serde_json::from_str(&stdout(&output)).expect("stdout is exactly one JSON object");
+    assert_eq!(json["schema"], "toile.bench-skinning/1");
+    assert_eq!(json["verts"], 2000);
+    let number = |key: &str| json[key].as_f64().unwrap_or_else(|| panic!("{key} is no number: {json}"));
+    assert!(number("us") > 0.0 && number("yardstick_us") > 0.0);
+    assert!((number("ns_per_vertex") - number("us") / 2.0).abs() < 1e-6);
+    assert!((0.0..1e-6).contains(&number("max_error_m")), "{json}");
+    assert!(json["machine"]["cpu"].is_string());
+
+    let output = toile(&["bench", "skinning", "--verts", "500"]);
+    assert_eq!(output.status.code(), Some(0));
+    let text = stdout(&output);
+    assert!(text.contains("500 vertices") && text.contains("ns a vertex") && !text.contains('\x1b'), "{text}");
+}
+
+#[test]
 fn completions_know_the_commands() {
     for shell in ["bash", "zsh", "fish"] {
         let output = toile(&["completions", shell]);

@@ -24,7 +24,8 @@ use toile_sensors::frame::Intrinsics;
 use toile_sensors::source::synthetic::{KinectNoise, Rng, SyntheticCamera};
 
 use crate::estimate::Estimate;
-use crate::measure::{Hint, Measurements, measure};
+use crate::measure::{Measurements, measure};
+use crate::measures::Hint;
 
 /// Mean and lower Cholesky factor of the covariance of stature, biacromial breadth, chest, waist and buttock girth
 /// (m) in ANSUR II (public domain). The waist's mean is that of [`Measures::average`], because ANSUR measures another.

@@ -6,7 +6,7 @@ use toile_sensors::frame::Joints;
 
 use crate::anthropometry::{guesses, stature};
 use crate::estimate::{Estimate, temporal_mean};
-use crate::measure::{Hint, Measures};
+use crate::measures::{Hint, Measures};
 
 /// Where one kind of sensor puts its joints.
 struct Dialect {

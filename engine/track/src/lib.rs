@@ -10,6 +10,7 @@ pub mod cloud;
 pub mod estimate;
 mod joints;
 pub mod measure;
+pub mod measures;
 pub mod recommend;
 pub mod section;
 pub mod silhouette;

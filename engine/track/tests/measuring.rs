@@ -10,7 +10,8 @@ use toile_sensors::frame::{DepthFrame, Intrinsics, Joints, TrackedJoint};
 use toile_sensors::source::synthetic::SyntheticCamera;
 use toile_sensors::source::{OpenOptions, open};
 use toile_track::agreement::{compare, study};
-use toile_track::measure::{FRAMES, Hint, MeasureError, Measurements, Source, measure};
+use toile_track::measure::{FRAMES, MeasureError, Measurements, Source, measure};
+use toile_track::measures::Hint;
 
 /// Subjects of each sex, and frames of each: the long study is the example `agreement`.
 const SUBJECTS: usize = 4;

@@ -2,7 +2,8 @@
 
 use toile_assets::sizes::{GarmentKind, SizeTable};
 use toile_track::estimate::Estimate;
-use toile_track::measure::{Measurements, Measures, Source};
+use toile_track::measure::{Measurements, Source};
+use toile_track::measures::Measures;
 use toile_track::recommend::{EaseRange, MadeSize, Offer, Verdict, Zone, ZoneGirth, evaluate, recommend};
 
 fn person(chest: f32, waist: f32, hip: f32, sigma: f32) -> Measurements {

@@ -7,8 +7,8 @@ use crate::{
     sample::{Sample, Use, disc},
     scene::View,
     shade::Place,
+    stage::Stage,
     studio::{Lamp, PAINT, Studio},
-    trace::Stage,
     tree::{Hit, Ray},
 };
 

@@ -17,5 +17,6 @@ mod develop;
 mod expose;
 mod sample;
 mod shade;
+mod stage;
 mod studio;
 mod tone;

@@ -9,16 +9,15 @@ use std::{
     thread,
 };
 
-use glam::Vec3;
-
 use crate::{
     develop::develop,
     expose::{Guide, Plan, Shot, Texel},
     image::{Image, Size},
-    scene::{Bounds, Camera, Scene, Surface},
+    scene::{Camera, Scene},
     studio::Studio,
-    tree::Tree,
 };
+
+pub use crate::stage::Stage;
 
 /// How much work a picture is worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -43,15 +42,6 @@ pub fn render(scene: &Scene<'_>, camera: &Camera, size: Size, quality: Quality) 
     Stage::build(*scene).render(camera, size, quality)
 }
 
-/// A scene made ready to be looked at, from any number of cameras.
-#[derive(Debug)]
-pub struct Stage<'a> {
-    pub(crate) scene: Scene<'a>,
-    pub(crate) tree: Tree,
-    /// First triangle of each surface in the tree's numbering.
-    pub(crate) starts: Vec<u32>,
-}
-
 /// One picture's cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Cost {
@@ -59,25 +49,7 @@ pub struct Cost {
     pub rays: u64,
 }
 
-impl<'a> Stage<'a> {
-    /// Builds the tree over every triangle of the scene that has three finite corners and an area.
-    pub fn build(scene: Scene<'a>) -> Self {
-        let mut starts = Vec::with_capacity(scene.surfaces.len());
-        let mut next = 0;
-        for surface in scene.surfaces {
-            starts.push(next);
-            next += surface.triangles.len() as u32;
-        }
-        let corner = |s: &Surface<'_>, i: u32| s.positions.get(i as usize).copied().unwrap_or(Vec3::NAN);
-        let faces = scene.surfaces.iter().flat_map(|s| s.triangles.iter().map(move |t| t.map(|i| corner(s, i))));
-        Self { scene, tree: Tree::build(faces), starts }
-    }
-
-    /// The box around everything that can be seen.
-    pub fn bounds(&self) -> Bounds {
-        self.tree.bounds()
-    }
-
+impl Stage<'_> {
     /// The picture from one camera, on all cores.
     pub fn render(&self, camera: &Camera, size: Size, quality: Quality) -> Image {
         self.render_on(thread::available_parallelism().map_or(1, NonZero::get), camera, size, quality).0
@@ -124,9 +96,11 @@ fn by_rows<R: Send>(threads: usize, rows: impl Iterator<Item = R> + Send, work: 
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
     use crate::{
-        scene::{Colours, Material},
+        scene::{Colours, Material, Surface},
         tone,
     };
 

@@ -16,6 +16,9 @@ const FOLD_M: f32 = 0.012;
 /// Skin is drawn at least this far beneath the cloth (m): more than the sag of a chord of the cloth's mesh.
 const BENEATH_M: f32 = 0.006;
 
+/// Cosine between the normals of skin and of the cloth over it, at least.
+const LEAST_FACING: f32 = 0.2;
+
 /// Of a vertex's push its neighbours get this share, so that no triangle of skin cuts through a hem.
 const SPREAD: f32 = 0.7;
 
@@ -30,12 +33,16 @@ const UNDER_M: f32 = 0.30;
 #[derive(Debug, Clone)]
 pub struct Cover {
     tree: Tree,
+    /// Unit normal of each triangle.
+    outwards: Vec<Vec3>,
 }
 
 impl Cover {
     /// The garments' triangles, by their corners (m).
     pub fn new(faces: impl Iterator<Item = [Vec3; 3]>) -> Self {
-        Self { tree: Tree::build(faces) }
+        let faces: Vec<[Vec3; 3]> = faces.collect();
+        let outwards = faces.iter().map(|[a, b, c]| (*b - *a).cross(*c - *a).normalize_or_zero()).collect();
+        Self { tree: Tree::build(faces.into_iter()), outwards }
     }
 
     /// Which body vertices are dressed: those with cloth before them. A hand that later comes to lie on a skirt is not
@@ -78,6 +85,10 @@ impl Cover {
             return 0.0;
         }
         let Some(outer) = self.tree.closest(&Ray::new(from, -n), DEPTH_M + BENEATH_M) else { return 0.0 };
+        // Cloth met on its inner side does not lie over this skin: in a crease the normals of skin point anywhere.
+        if self.outwards[outer.triangle as usize].dot(n) < LEAST_FACING {
+            return 0.0;
+        }
         let under = from - n * (outer.distance + 1e-4);
         let fold = self.tree.closest(&Ray::new(under, -n), FOLD_M).map_or(0.0, |hit| hit.distance + 1e-4);
         outer.distance + fold

@@ -1,0 +1,141 @@
+//! A whole try-on through the built program: the JSON, the files, and the same bits twice.
+
+mod common;
+
+use std::fs::{self, File};
+use std::io::BufReader;
+use std::path::Path;
+use std::process::Output;
+use std::thread;
+
+use common::Scratch;
+use serde_json::Value;
+
+fn json(output: &Output) -> Value {
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.is_empty(), "with --json nothing is said: {said}");
+    serde_json::from_slice(&output.stdout).expect("stdout is exactly one JSON object")
+}
+
+/// Every key that the contract names for `try-on`.
+const KEYS: [&str; 24] = [
+    "/version",
+    "/machine/cpu",
+    "/machine/cores",
+    "/machine/lanes",
+    "/machine/adapter",
+    "/measurements/stature_mm/sigma",
+    "/measurements/shoulder_breadth_mm/value",
+    "/measurements/chest_girth_mm/value",
+    "/measurements/waist_girth_mm/value",
+    "/measurements/hip_girth_mm/sigma",
+    "/recommendation/garment",
+    "/recommendation/size",
+    "/recommendation/zones/0/zone",
+    "/recommendation/zones/0/ease_mm",
+    "/recommendation/zones/0/sigma_mm",
+    "/recommendation/zones/0/verdict",
+    "/physics/step_us/p50",
+    "/physics/step_us/p999",
+    "/physics/strain/mean",
+    "/physics/strain/p99",
+    "/physics/strain/max",
+    "/physics/penetration_mm/max",
+    "/physics/warnings",
+    "/files/0",
+];
+
+/// What is so whatever the machine: the contract, and what the embedded shopper measures.
+fn is_whole(report: &Value) {
+    assert_eq!(report["schema"], "toile.try-on/1");
+    for key in KEYS {
+        assert!(report.pointer(key).is_some(), "{key} is missing");
+    }
+    assert_eq!(report["physics"]["hz"], 120);
+    assert_eq!(report["physics"]["nonfinite"], 0);
+    assert!(report["physics"]["steps"].as_u64().unwrap() > 1_000, "ten seconds at 120 Hz");
+    let hash = report["state_hash"].as_str().unwrap();
+    assert!(hash.len() == 16 && hash.chars().all(|c| c.is_ascii_hexdigit()), "{hash}");
+    // The scene's shopper is 1,694 mm high; three sigmas of what the sensor says must hold her.
+    let stature = &report["measurements"]["stature_mm"];
+    let (value, sigma) = (stature["value"].as_f64().unwrap(), stature["sigma"].as_f64().unwrap());
+    assert!((value - 1_694.0).abs() < 3.0 * sigma.max(5.0) && sigma < 60.0, "{stature}");
+}
+
+#[test]
+fn two_runs_give_one_report_and_the_same_bits() {
+    let scratch = Scratch::new("twice");
+    let runs = thread::scope(|scope| {
+        let run = |out| {
+            let scratch = &scratch;
+            scope.spawn(move || json(&scratch.toile(&["try-on", "--no-pictures", "--json", "--out", out])))
+        };
+        [run("first"), run("second")].map(|r| r.join().expect("a run that ends"))
+    });
+    runs.iter().for_each(is_whole);
+    for key in ["state_hash", "measurements", "recommendation"] {
+        assert_eq!(runs[0][key], runs[1][key], "{key}");
+    }
+    assert_eq!(runs[0]["physics"]["strain"], runs[1]["physics"]["strain"]);
+    for (run, out) in runs.iter().zip(["first", "second"]) {
+        let names: Vec<_> = fs::read_dir(scratch.path().join(out)).unwrap().map(|e| e.unwrap().file_name()).collect();
+        assert_eq!(names, ["report.json"], "no picture was asked for, and no part is left");
+        assert_eq!(run["files"].as_array().unwrap().len(), names.len());
+    }
+}
+
+/// Decodes every frame of a PNG; gives its size, its number of frames and how many grey levels its first frame has.
+fn decode(path: &Path) -> ([u32; 2], u32, usize) {
+    let file = BufReader::new(File::open(path).unwrap_or_else(|e| panic!("{}: {e}", path.display())));
+    let mut reader = png::Decoder::new(file).read_info().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let frames = reader.info().animation_control().map_or(1, |a| a.num_frames);
+    let size = [reader.info().width, reader.info().height];
+    let mut pixels = vec![0; reader.output_buffer_size().expect("a size that fits")];
+    let mut levels = 0;
+    for frame in 0..frames {
+        reader.next_frame(&mut pixels).unwrap_or_else(|e| panic!("{}, frame {frame}: {e}", path.display()));
+        if frame == 0 {
+            let mut seen = [false; 256];
+            pixels.iter().for_each(|p| seen[usize::from(*p)] = true);
+            levels = seen.iter().filter(|s| **s).count();
+        }
+    }
+    (size, frames, levels)
+}
+
+#[test]
+fn a_run_with_pictures_leaves_them_and_the_report() {
+    let scratch = Scratch::new("pictures");
+    let output = scratch.toile(&["try-on", "--json", "--out", "out"]);
+    let report = json(&output);
+    is_whole(&report);
+    let out = scratch.path().join("out");
+    assert_eq!(fs::read(out.join("report.json")).unwrap(), output.stdout, "the report is what was printed");
+
+    let promised: Vec<_> = report["files"].as_array().unwrap().iter().map(|f| f.as_str().unwrap()).collect();
+    let mut left: Vec<_> = fs::read_dir(&out).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    left.sort();
+    let mut names: Vec<_> = promised.iter().map(|f| f.rsplit('/').next().unwrap().to_owned()).collect();
+    names.sort();
+    assert_eq!(left, names, "exactly the promised files");
+    for name in ["session.png", "contact-sheet.png", "look.png", "fit.png", "report.json"] {
+        assert!(names.iter().any(|n| n == name), "{name} is missing in {names:?}");
+    }
+
+    let (size, frames, levels) = decode(&out.join("session.png"));
+    assert_eq!(size, [240, 360]);
+    assert!((40..=100).contains(&frames), "{frames} frames of animation");
+    assert!(levels > 64, "the animation shows nothing: {levels} levels");
+    // Front, side and back of 480 x 800 side by side, words above or below them.
+    for name in ["look.png", "fit.png"] {
+        let ([width, height], frames, levels) = decode(&out.join(name));
+        assert!(width >= 3 * 480 && (800..1200).contains(&height), "{name}: {width} x {height}");
+        assert_eq!(frames, 1);
+        assert!(levels > 64, "{name} shows nothing: {levels} levels");
+    }
+    // Twelve moments in two rows of six.
+    let ([width, height], _, levels) = decode(&out.join("contact-sheet.png"));
+    assert!(width >= 6 * 240 && height >= 2 * 360, "the contact sheet is {width} x {height}");
+    assert!(levels > 64, "the contact sheet shows nothing: {levels} levels");
+}

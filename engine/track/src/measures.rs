@@ -1,0 +1,67 @@
+//! What measuring is told and what it gives: the types that every way of measuring shares.
+
+use toile_assets::sizes::Population;
+
+use crate::estimate::{Estimate, fuse};
+
+/// What is known beforehand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Hint {
+    /// Whose proportions apply; `Mixed` where nothing is known.
+    pub population: Population,
+    /// Whether the joints are in metres ([`toile_sensors`]' `Session::raw_scale_known`).
+    pub scale_known: bool,
+}
+
+impl Default for Hint {
+    fn default() -> Self {
+        Self { population: Population::Mixed, scale_known: true }
+    }
+}
+
+/// The measures that could be taken; `None` where the sensor did not see what is needed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Measures {
+    /// Stature as the person stands before the sensor: shoes and hair count.
+    pub stature: Option<Estimate>,
+    /// Shoulder breadth between the acromions.
+    pub shoulder_breadth: Option<Estimate>,
+    /// Chest or bust girth.
+    pub chest_girth: Option<Estimate>,
+    /// Girth at the natural waistline.
+    pub waist_girth: Option<Estimate>,
+    /// Girth at the greatest protrusion of the buttocks.
+    pub hip_girth: Option<Estimate>,
+    /// Crotch height, guessed from the stature.
+    pub inseam: Option<Estimate>,
+    /// Acromion to wrist, guessed from the stature.
+    pub arm_length: Option<Estimate>,
+}
+
+impl Measures {
+    /// Each measure with its name, in the order of the fields.
+    pub fn named(&self) -> [(&'static str, Option<Estimate>); 7] {
+        [
+            ("stature", self.stature),
+            ("shoulder_breadth", self.shoulder_breadth),
+            ("chest_girth", self.chest_girth),
+            ("waist_girth", self.waist_girth),
+            ("hip_girth", self.hip_girth),
+            ("inseam", self.inseam),
+            ("arm_length", self.arm_length),
+        ]
+    }
+
+    /// Both readings of each measure as one, weighted by their errors.
+    pub(crate) fn fused(self, other: Self) -> Self {
+        Self {
+            stature: fuse(self.stature, other.stature),
+            shoulder_breadth: fuse(self.shoulder_breadth, other.shoulder_breadth),
+            chest_girth: fuse(self.chest_girth, other.chest_girth),
+            waist_girth: fuse(self.waist_girth, other.waist_girth),
+            hip_girth: fuse(self.hip_girth, other.hip_girth),
+            inseam: fuse(self.inseam, other.inseam),
+            arm_length: fuse(self.arm_length, other.arm_length),
+        }
+    }
+}

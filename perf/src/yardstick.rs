@@ -1,0 +1,98 @@
+//! The yardstick of a machine: plain scalar linear-blend skinning of 15,000 vertices with four influences each, position
+//! and normal. Times on different machines are laid side by side through it.
+
+use std::hint::black_box;
+
+use glam::Affine3A;
+use toile_assets::body::BodyError;
+
+use crate::surface::Surface;
+use crate::time;
+
+/// Vertices of the yardstick, by the benchmark scene.
+pub const VERTICES: usize = 15_000;
+
+/// Three rows of four: the rotation, then the translation, of each row.
+type Matrix = [[f32; 4]; 3];
+
+/// One vertex as a plain loop would keep it.
+#[derive(Debug, Clone, Copy)]
+struct Vertex {
+    position: [f32; 3],
+    normal: [f32; 3],
+    bones: [u8; 4],
+    weights: [f32; 4],
+}
+
+/// Time of the yardstick on this machine (us, median).
+///
+/// # Errors
+/// Where the scene's shopper cannot be built.
+pub fn measure() -> Result<f64, BodyError> {
+    let surface = Surface::new(VERTICES)?;
+    let vertices = vertices(&surface);
+    let palette: Vec<Matrix> = surface.palette.iter().map(rows).collect();
+    let mut posed = vec![[[0.0; 3]; 2]; VERTICES];
+    Ok(time::median_us(|| {
+        blend(black_box(&palette), black_box(&vertices), &mut posed);
+        black_box(&posed);
+    }))
+}
+
+fn vertices(surface: &Surface) -> Vec<Vertex> {
+    let parts = surface.positions.iter().zip(&surface.normals).zip(&surface.weights);
+    let vertex = |((p, n), w): ((&glam::Vec3, &glam::Vec3), &toile_assets::mesh::SkinWeights)| Vertex {
+        position: p.to_array(),
+        normal: n.to_array(),
+        bones: w.bones,
+        weights: w.weights,
+    };
+    parts.map(vertex).collect()
+}
+
+fn rows(matrix: &Affine3A) -> Matrix {
+    let m = matrix.matrix3.to_cols_array_2d();
+    let t = matrix.translation.to_array();
+    std::array::from_fn(|row| [m[0][row], m[1][row], m[2][row], t[row]])
+}
+
+/// The loop itself: every influence moves the vertex, and the weighted sum is where it ends. The normals keep the
+/// length that the sum gives them.
+fn blend(palette: &[Matrix], vertices: &[Vertex], posed: &mut [[[f32; 3]; 2]]) {
+    for (vertex, posed) in vertices.iter().zip(posed) {
+        let ([x, y, z], [nx, ny, nz]) = (vertex.position, vertex.normal);
+        let mut sum = [[0.0; 3]; 2];
+        for (&bone, &weight) in vertex.bones.iter().zip(&vertex.weights) {
+            for (axis, row) in palette[usize::from(bone)].iter().enumerate() {
+                sum[0][axis] += weight * (row[0] * x + row[1] * y + row[2] * z + row[3]);
+                sum[1][axis] += weight * (row[0] * nx + row[1] * ny + row[2] * nz);
+            }
+        }
+        *posed = sum;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use toile_engine::skin::SkinningJob;
+
+    use super::*;
+
+    #[test]
+    fn the_yardstick_does_the_work_of_the_engine() {
+        let surface = Surface::new(VERTICES).unwrap();
+        let palette: Vec<Matrix> = surface.palette.iter().map(rows).collect();
+        let mut posed = vec![[[0.0; 3]; 2]; VERTICES];
+        blend(&palette, &vertices(&surface), &mut posed);
+        let (mut positions, mut normals) = (surface.positions.clone(), surface.normals.clone());
+        let job = SkinningJob::new(&surface.positions, &surface.normals, &surface.weights).unwrap();
+        job.run(&surface.palette, &mut positions, &mut normals);
+        for (i, [position, normal]) in posed.iter().enumerate() {
+            assert!(Vec3::from_array(*position).distance(positions[i]) < 1e-5, "vertex {i}");
+            assert!(Vec3::from_array(*normal).normalize().distance(normals[i]) < 1e-4, "vertex {i}");
+        }
+        let moved = positions.iter().zip(&surface.positions).filter(|(a, b)| a.distance(**b) > 0.05).count();
+        assert!(moved > VERTICES / 10, "the pose bends the body: {moved} vertices moved");
+    }
+}

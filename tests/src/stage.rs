@@ -1,0 +1,99 @@
+//! The scene on which the frame is tested: the shopper of the embedded session, her joints as a perfect sensor sees
+//! them, and the wardrobe in the size nearest to her.
+
+use toile_assets::body::Body;
+use toile_assets::garment::Garment;
+use toile_assets::rig::Rig;
+use toile_assets::scene;
+use toile_assets::sizes::SizeBody;
+use toile_assets::wardrobe::{self, style::Style};
+use toile_engine::body::JointFrames;
+use toile_engine::cloth::Settings;
+use toile_engine::frame::Frame;
+use toile_sensors::clock::SECOND_NS;
+use toile_sensors::filter::JointFilter;
+use toile_sensors::frame::{Joints, TrackedJoint};
+
+/// Frames a second of the sensor.
+pub const SENSOR_HZ: u64 = 30;
+
+/// The scene's shopper.
+///
+/// # Panics
+/// Where her body cannot be built.
+pub fn shopper() -> Body {
+    Body::build(scene::SHOPPER.0, &scene::SHOPPER.1).expect("the scene's shopper can be built")
+}
+
+/// Her joints at a time, all seen (s).
+pub fn joints(body: &Body, time_ns: u64) -> Joints {
+    let seconds = (time_ns as f64 / SECOND_NS as f64) as f32;
+    let at = JointFrames::new(&body.skeleton, &scene::shopper(&body.skeleton, seconds)).position;
+    Joints { time_ns, joints: at.map(|position| TrackedJoint { position, confidence: 1.0 }) }
+}
+
+/// What a sensor that sees her perfectly gives after the filter, from `from` (s) on for `seconds`.
+pub fn track(body: &Body, from: f32, seconds: f32) -> Vec<Joints> {
+    let mut filter = JointFilter::default();
+    let first = (from * SENSOR_HZ as f32) as u64;
+    let frames = (seconds * SENSOR_HZ as f32) as u64 + 1;
+    (first..first + frames).map(|i| filter.push(&joints(body, i * SECOND_NS / SENSOR_HZ))).collect()
+}
+
+/// A garment of the wardrobe in the size nearest to a body.
+///
+/// # Panics
+/// Where there is no such garment.
+pub fn dress(name: &str, body: &Body) -> Garment {
+    let style = wardrobe::style(name).expect("a garment of the wardrobe");
+    style.dress(&nearest_size(&style, body), body).expect("a garment that can be worn")
+}
+
+/// The same with threads so far apart that a step costs little: for laws that hold on any mesh.
+///
+/// # Panics
+/// Where there is no such garment.
+pub fn dress_coarsely(name: &str, body: &Body) -> Garment {
+    let mut style = wardrobe::style(name).expect("a garment of the wardrobe");
+    style.spacing_mm = 40.0;
+    style.columns = 40;
+    style.dress(&nearest_size(&style, body), body).expect("a garment that can be worn")
+}
+
+fn nearest_size(style: &Style, body: &Body) -> String {
+    let table = style.sizes().expect("a table of the wardrobe");
+    let m = &body.measures;
+    let distance = |size: &SizeBody| {
+        let girths =
+            [(size.chest_girth, m.chest_girth), (size.waist_girth, m.waist_girth), (size.hip_girth, m.hip_girth)];
+        girths.iter().map(|(a, b)| (a - b).abs()).sum::<f32>()
+    };
+    let of = |code: &&str| distance(&table.size_body(code).expect("a code of its own table"));
+    let nearest = table.codes().into_iter().min_by(|a, b| of(a).total_cmp(&of(b)));
+    nearest.expect("a table with sizes").to_owned()
+}
+
+/// A frame with these garments on a body, not yet dressed.
+///
+/// # Panics
+/// Where the body has no colliders.
+pub fn frame(body: Body, garments: Vec<Garment>) -> Frame {
+    let rig = Rig::fit(&body);
+    Frame::new(body, &rig, garments, Settings::default()).expect("a frame of the wardrobe").0
+}
+
+/// The scene's shopper dressed in garments of the wardrobe, as she stands at the begin of a track.
+pub fn dressed(names: &[&str], track: &[Joints]) -> Frame {
+    let body = shopper();
+    let garments = names.iter().map(|name| dress(name, &body)).collect();
+    let mut frame = frame(body, garments);
+    frame.dress(&track[0]);
+    frame
+}
+
+/// Whether every number that the frame shows or keeps is finite.
+pub fn is_finite(frame: &Frame) -> bool {
+    let pose = frame.pose();
+    let posed = pose.root.is_finite() && pose.local.iter().all(|q| q.is_finite());
+    posed && frame.cloths().iter().all(|c| c.positions.iter().chain(&c.velocities).all(|p| p.is_finite()))
+}

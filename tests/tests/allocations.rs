@@ -1,0 +1,102 @@
+//! The frame allocates nothing: every allocation of the thread is counted while the shopper moves.
+
+#![expect(unsafe_code, reason = "a counting allocator has to implement an unsafe trait")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::hint::black_box;
+
+use toile_assets::wardrobe;
+use toile_sensors::filter::JointFilter;
+use toile_sensors::sample::between;
+use toile_tests::stage;
+
+thread_local! {
+    /// Allocations of this thread; the test's own, because the harness allocates on others meanwhile.
+    static COUNT: Cell<u64> = const { Cell::new(0) };
+}
+
+/// The system's allocator, which counts what it hands out; giving back is free.
+struct Counting;
+
+fn count() {
+    // The counter is gone while a thread ends; nothing is measured then.
+    let _ = COUNT.try_with(|c| c.set(c.get() + 1));
+}
+
+// SAFETY: every call is passed on as it came to the system's allocator, which keeps the contract; the counter is a
+// plain cell without a destructor and allocates nothing itself.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: the caller keeps the contract of `alloc`, and it is the same.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: the caller keeps the contract of `alloc_zeroed`, and it is the same.
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        // SAFETY: the block came from the system's allocator through `alloc`; the contract is the same.
+        unsafe { System.realloc(block, layout, size) }
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        // SAFETY: the block came from the system's allocator through `alloc`; the contract is the same.
+        unsafe { System.dealloc(block, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Allocations of this thread during a job.
+fn allocations(job: impl FnOnce()) -> u64 {
+    let before = COUNT.with(Cell::get);
+    job();
+    COUNT.with(Cell::get) - before
+}
+
+#[test]
+fn the_counter_counts() {
+    assert_eq!(allocations(|| drop(black_box(Box::new(7)))), 1);
+    assert_eq!(allocations(|| drop(black_box(vec![0u8; 100]))), 1, "zeroed memory counts");
+    let mut grown: Vec<u64> = Vec::with_capacity(1);
+    assert_eq!(allocations(|| grown.reserve_exact(black_box(1000))), 1, "growing counts");
+    assert_eq!(allocations(|| drop(black_box(grown))), 0, "giving back is free");
+}
+
+/// Sensor frames in which allocations are counted: a second and a half, in which the arms begin to rise and fall.
+const SENSOR_FRAMES: u64 = 45;
+
+#[test]
+fn no_garment_of_the_wardrobe_costs_an_allocation_a_step() {
+    for name in wardrobe::names() {
+        let body = stage::shopper();
+        // The sensor's frames are its own thread's business and are made beforehand.
+        let first = 40;
+        let seen: Vec<_> = (first..first + SENSOR_FRAMES)
+            .map(|i| stage::joints(&body, i * 1_000_000_000 / stage::SENSOR_HZ))
+            .collect();
+        let mut filter = JointFilter::default();
+        let mut frame = stage::dressed(&[name], &seen);
+        let mut last = filter.push(&seen[0]);
+        let found = allocations(|| {
+            for raw in &seen[1..] {
+                let joints = filter.push(raw);
+                for quarter in 1..=4 {
+                    let time = last.time_ns + (joints.time_ns - last.time_ns) * quarter / 4;
+                    frame.step(black_box(&between(&last, &joints, time)));
+                }
+                last = joints;
+            }
+        });
+        assert_eq!(frame.tick(), (SENSOR_FRAMES - 1) * 4);
+        assert!(frame.tick() >= 120);
+        assert_eq!(found, 0, "{name}: {found} allocations in {} steps", frame.tick());
+    }
+}
