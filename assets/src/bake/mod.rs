@@ -36,6 +36,7 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
         fabric: fabric.clone(),
         start: shape.worn.clone().into(),
         inverse_mass: inverse_masses(shape, fabric.density_kg_m2).into(),
+        parts: shape.parts.clone().into(),
         triangles: shape.triangles().into(),
         fixed: shape.fixed.iter().enumerate().filter(|(_, f)| **f).map(|(i, _)| i as u32).collect(),
         fixed_weights: shape.fixed.iter().zip(&shape.weights).filter(|(f, _)| **f).map(|(_, w)| *w).collect(),

@@ -12,7 +12,7 @@ use glam::Vec3;
 
 pub use check::MeshError;
 pub use direction::Direction;
-pub use shape::{Face, Shape};
+pub use shape::{Face, Part, Shape};
 
 use crate::fabric::Fabric;
 use crate::mesh::SkinWeights;
@@ -65,6 +65,8 @@ pub struct Garment {
     pub start: Box<[Vec3]>,
     /// Inverse mass (1/kg), 0 where the particle is skinned `[particles]`.
     pub inverse_mass: Box<[f32]>,
+    /// The part of the body that each particle can touch `[particles]`.
+    pub parts: Box<[Part]>,
     /// Triangles for pictures and normals.
     pub triangles: Box<[[u32; 3]]>,
     /// The particles that are skinned.

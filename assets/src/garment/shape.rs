@@ -11,6 +11,26 @@ pub const NO_VERTEX: u32 = u32::MAX;
 /// sides a-b and d-c run along the weft, a-d and b-c along the warp.
 pub type Face = [u32; 4];
 
+/// The part of the body that a particle lies on: what it can touch. Between an arm and the trunk, or between two legs,
+/// cloth that met both would be pinched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum Part {
+    /// Any part of the body.
+    #[default]
+    All,
+    /// Everything but the arms.
+    Trunk,
+    LeftArm,
+    RightArm,
+    /// Nothing: in the hollow of an armpit cloth is held by what surrounds it.
+    Hollow,
+    /// The left leg and the trunk.
+    LeftLeg,
+    /// The right leg and the trunk.
+    RightLeg,
+}
+
 /// A garment as drafted or imported, before it is baked. All vertex arrays have the same length.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Shape {
@@ -22,13 +42,16 @@ pub struct Shape {
     pub faces: Vec<Face>,
     /// True where the vertex sticks to the body and is skinned, false where it is simulated.
     pub fixed: Vec<bool>,
+    /// The part of the body that each vertex lies on.
+    pub parts: Vec<Part>,
     /// Skin weights; only those of fixed vertices are read.
     pub weights: Vec<SkinWeights>,
 }
 
 impl Shape {
     /// Adds a vertex and returns its index.
-    pub fn push(&mut self, cut: Vec3, worn: Vec3, fixed: bool) -> u32 {
+    pub fn push(&mut self, cut: Vec3, worn: Vec3, fixed: bool, part: Part) -> u32 {
+        self.parts.push(part);
         self.cut.push(cut);
         self.worn.push(worn);
         self.fixed.push(fixed);

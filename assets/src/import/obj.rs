@@ -8,7 +8,7 @@ use std::path::Path;
 use glam::Vec3;
 use thiserror::Error;
 
-use crate::garment::shape::{Face, NO_VERTEX, Shape};
+use crate::garment::shape::{Face, NO_VERTEX, Part, Shape};
 
 /// Largest file that is read (bytes): a quarter of a million vertices and their faces take 40 MiB as text.
 pub const MAX_BYTES: u64 = 64 << 20;
@@ -184,7 +184,8 @@ impl Welded {
             false => self.positions.iter().map(|p| p.y >= edge).collect(),
         };
         let faces = self.faces.into_iter().map(|f| warp_upright(&self.positions, f)).collect();
-        Ok(Shape { cut: self.positions.clone(), worn: self.positions, faces, fixed, weights: Vec::new() })
+        let parts = vec![Part::All; self.positions.len()];
+        Ok(Shape { cut: self.positions.clone(), worn: self.positions, faces, fixed, parts, weights: Vec::new() })
     }
 }
 

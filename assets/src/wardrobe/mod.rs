@@ -126,11 +126,12 @@ impl Style {
         Girth::ALL.into_iter().filter_map(|z| self.ease_mm.at(z).map(|ease| (z, body(z) + ease))).collect()
     }
 
-    /// Whose body the garment is cut for. Unisex garments are cut on the male block, as the trade does.
-    pub fn sex(&self) -> Result<Sex, SizeError> {
+    /// Whose body the garment is cut for. Garments in unisex sizes come in two blocks; the wearer gets theirs.
+    fn block(&self, wearer: Sex) -> Result<Sex, SizeError> {
         Ok(match self.sizes()?.population {
             Population::Women => Sex::Female,
-            Population::Men | Population::Mixed => Sex::Male,
+            Population::Men => Sex::Male,
+            Population::Mixed => wearer,
         })
     }
 
@@ -144,8 +145,8 @@ impl Style {
             waist_girth: of.waist_girth,
             hip_girth: of.hip_girth,
         };
-        let cut =
-            Body::build(self.sex()?, &measures).map_err(|source| WardrobeError::Body { size: size.into(), source })?;
+        let cut = Body::build(self.block(shopper.sex)?, &measures)
+            .map_err(|source| WardrobeError::Body { size: size.into(), source })?;
         let mut shape = match self.cut {
             Cut::SunDress { .. } => sun_dress::draft(self, &cut, shopper),
             Cut::TShirt { .. } => t_shirt::draft(self, &cut, shopper),

@@ -6,7 +6,7 @@ use super::drape::{Form, join};
 use super::section::resample;
 use super::style::{Cut, Style};
 use crate::body::Body;
-use crate::garment::Shape;
+use crate::garment::{Part, Shape};
 use crate::sizes::Girth;
 
 /// Where a strap begins, as a share of the ring from the front centre: over the middle of the breast.
@@ -36,7 +36,7 @@ pub fn draft(style: &Style, cut: &Body, shopper: &Body) -> Shape {
     let rings = plan.girths.len();
     for (i, (c, w)) in cut_at.into_iter().zip(worn_at).enumerate() {
         let row = i / n;
-        shape.push(c, w, row <= plan.bodice_rows || row >= rings);
+        shape.push(c, w, row <= plan.bodice_rows || row >= rings, Part::All);
     }
     let ring = |r: usize| (r * n..(r + 1) * n).map(|i| i as u32).collect::<Vec<_>>();
     for r in 1..rings {

@@ -6,18 +6,24 @@ use super::drape::{Form, below, flip, join, rows_after, split_at_top};
 use super::section::{Fit, Plane, Section};
 use super::style::{Cut, Style};
 use crate::body::{Body, Region};
-use crate::garment::Shape;
+use crate::garment::{Part, Shape};
 use crate::sizes::Girth;
 use crate::skeleton::Joint;
 
 /// Where the underarm seam lies between the chest level and the shoulders: just below the armpit.
 const UNDERARM_SHARE: f32 = 0.34;
 
+/// Least ease of any row (m).
+const LEAST_EASE_M: f32 = 0.02;
+
 /// Half of the columns that an armhole cuts out of the ring, as a share of the ring.
 const ARMHOLE_SHARE: f32 = 0.055;
 
 /// Rows next to the shoulder seam and the neckline that are skinned.
 const YOKE_ROWS: usize = 3;
+
+/// Rows from the armhole's seam that lie in the hollow of the armpit.
+const HOLLOW_ROWS: usize = 3;
 
 /// The sleeve's rings turn from the armhole's plane to the arm's over this share of its rows.
 const SLEEVE_TURN: f32 = 0.5;
@@ -46,7 +52,7 @@ pub fn draft(style: &Style, cut: &Body, shopper: &Body) -> Shape {
     let mut shape = Shape::default();
     let index = Index::new(&plan);
     for (i, (c, w)) in lay(&plan, Form::cut(cut)).into_iter().zip(lay(&plan, Form::shopper(shopper))).enumerate() {
-        shape.push(c, w, index.is_yoke(&plan, i));
+        shape.push(c, w, index.is_yoke(&plan, i), index.part(&plan, i));
     }
     connect(&mut shape, &plan, &index);
     shape
@@ -68,8 +74,10 @@ fn plan(style: &Style, cut: &Body) -> Plan {
     let rows = (length / spacing).round() as usize;
     let to_hip = levels.chest - levels.hip;
     let rings = (0..=rows).map(|r| {
-        let down = ((length * r as f32 / rows as f32 + levels.chest - underarm) / to_hip).clamp(0.0, 1.0);
-        chest + (hip - chest) * down
+        let fallen = length * r as f32 / rows as f32;
+        let down = ((fallen + levels.chest - underarm) / to_hip).clamp(0.0, 1.0);
+        // Shoulder blades may need more than the chest: no row is cut tighter than the body.
+        (chest + (hip - chest) * down).max(form.girth(underarm - fallen) + LEAST_EASE_M)
     });
     let front = columns / 4 - (columns as f32 * ARMHOLE_SHARE).round() as usize;
     let top = form.ring(underarm, chest, columns);
@@ -147,6 +155,25 @@ impl Index {
             panel_row(self.front)
         };
         row + YOKE_ROWS > plan.shoulder_rows
+    }
+
+    /// What a vertex lies on. Around the lowest point of the armhole that is nothing.
+    fn part(&self, plan: &Plan, i: usize) -> Part {
+        let (n, loop_length) = (plan.columns, armhole_length(plan));
+        let half_hole = n / 4 - plan.front;
+        if i < self.sleeves[0] {
+            let from_side = (i % n).abs_diff(n / 4).min((i % n).abs_diff(3 * n / 4));
+            let hollow = i < HOLLOW_ROWS * n && from_side <= half_hole;
+            return if hollow { Part::Hollow } else { Part::Trunk };
+        }
+        let right = i >= self.sleeves[1];
+        let place = i - self.sleeves[usize::from(right)];
+        let from_bottom = (place % loop_length).min(loop_length - place % loop_length);
+        match right {
+            _ if place / loop_length < HOLLOW_ROWS && from_bottom <= half_hole + HOLLOW_ROWS => Part::Hollow,
+            false => Part::LeftArm,
+            true => Part::RightArm,
+        }
     }
 
     /// The armhole from the lowest column over the front, the shoulder point and the back: one side's sleeve begins here.
@@ -303,4 +330,5 @@ fn drop_loose(shape: &mut Shape) {
     shape.cut = (0..used.len()).filter(kept).map(|i| shape.cut[i]).collect();
     shape.worn = (0..used.len()).filter(kept).map(|i| shape.worn[i]).collect();
     shape.fixed = (0..used.len()).filter(kept).map(|i| shape.fixed[i]).collect();
+    shape.parts = (0..used.len()).filter(kept).map(|i| shape.parts[i]).collect();
 }

@@ -7,7 +7,7 @@ use super::drape::{Form, flip, join};
 use super::section::{Fit, Section};
 use super::style::{Cut, Style};
 use crate::body::Body;
-use crate::garment::Shape;
+use crate::garment::{Part, Shape};
 use crate::sizes::Girth;
 
 /// Height of the skinned waistband (m).
@@ -40,10 +40,23 @@ pub fn draft(style: &Style, cut: &Body, shopper: &Body) -> Shape {
     let fixed_rows = (WAISTBAND_M / spacing).round().max(1.0) as usize;
     let mut shape = Shape::default();
     for (i, (c, w)) in lay(&plan, Form::cut(cut)).into_iter().zip(lay(&plan, Form::shopper(shopper))).enumerate() {
-        shape.push(c, w, i / plan.columns <= fixed_rows);
+        shape.push(c, w, i / plan.columns <= fixed_rows, part(&plan, i));
     }
     connect(&mut shape, &plan);
     shape
+}
+
+/// Vertices are in the order of [`lay`].
+fn part(plan: &Plan, i: usize) -> Part {
+    let left = plan.rings.len() * plan.columns + plan.crotch;
+    let leg = (plan.columns / 2 + 1 + plan.crotch) * plan.legs.len();
+    if i < left {
+        Part::Trunk
+    } else if i < left + leg {
+        Part::LeftLeg
+    } else {
+        Part::RightLeg
+    }
 }
 
 fn plan(style: &Style, cut: &Body) -> Plan {

@@ -67,6 +67,10 @@ struct Drawing {
 }
 
 struct ClothDrawing {
+    /// Where the particles are drawn: beneath the garments worn over them.
+    points: Vec<Vec3>,
+    /// Particles under a garment worn over this one.
+    dressed: Vec<bool>,
     triangles: Vec<[u32; 3]>,
     normals: Vec<Vec3>,
     colour: Vec3,
@@ -74,33 +78,43 @@ struct ClothDrawing {
 
 impl Drawing {
     fn new(frame: &Frame) -> Self {
-        let cloth = |g: &Garment| ClothDrawing {
-            triangles: g.triangles.to_vec(),
-            normals: vec![Vec3::ZERO; g.particles()],
-            colour: Vec3::from_array(g.fabric.colour.map(toile_view::image::linear)),
+        let (body, garments) = (frame.body(), frame.garments());
+        let starts: Vec<&[Vec3]> = garments.iter().map(|g| &*g.start).collect();
+        let over = |first: usize| {
+            let worn = garments.iter().zip(&starts).skip(first);
+            Cover::new(worn.flat_map(|(g, points)| g.triangles.iter().map(|t| t.map(|i| points[i as usize]))))
         };
-        let corners = frame.garments().iter().flat_map(|g| g.triangles.iter().map(|t| t.map(|i| g.start[i as usize])));
-        let body = frame.body();
+        let cloth = |(i, g): (usize, &Garment)| {
+            let mut normals = vec![Vec3::ZERO; g.particles()];
+            vertex_normals(&g.start, &g.triangles, &mut normals);
+            ClothDrawing {
+                points: g.start.to_vec(),
+                dressed: over(i + 1).dressed(&g.start, &normals),
+                triangles: g.triangles.to_vec(),
+                normals,
+                colour: Vec3::from_array(g.fabric.colour.map(toile_view::image::linear)),
+            }
+        };
         Self {
-            dressed: Cover::new(corners).dressed(&body.mesh.positions, &body.normals),
+            dressed: over(0).dressed(&body.mesh.positions, &body.normals),
             body: body.mesh.positions.clone(),
             body_triangles: body.mesh.triangles.clone(),
-            cloths: frame.garments().iter().map(cloth).collect(),
+            cloths: garments.iter().enumerate().map(cloth).collect(),
         }
     }
 
-    /// Takes over a snapshot: the skin beneath the cloth, normals of the cloth.
+    /// Takes over a snapshot, from the outermost garment to the skin: each is drawn beneath what is worn over it.
     fn take(&mut self, snapshot: &Snapshot) {
-        self.body.copy_from_slice(&snapshot.body);
-        let corners = self
-            .cloths
-            .iter()
-            .zip(&snapshot.garments)
-            .flat_map(|(cloth, points)| cloth.triangles.iter().map(move |t| t.map(|i| points[i as usize])));
-        Cover::new(corners).tuck(&mut self.body, &snapshot.normals, &self.dressed);
-        for (cloth, points) in self.cloths.iter_mut().zip(&snapshot.garments) {
-            vertex_normals(points, &cloth.triangles, &mut cloth.normals);
+        let mut over: Vec<[Vec3; 3]> = Vec::new();
+        for (cloth, points) in self.cloths.iter_mut().zip(&snapshot.garments).rev() {
+            let ClothDrawing { points: at, dressed, triangles, normals, .. } = cloth;
+            at.copy_from_slice(points);
+            vertex_normals(at, triangles, normals);
+            Cover::new(over.iter().copied()).tuck(at, normals, dressed, triangles);
+            over.extend(triangles.iter().map(|t| t.map(|i| at[i as usize])));
         }
+        self.body.copy_from_slice(&snapshot.body);
+        Cover::new(over.into_iter()).tuck(&mut self.body, &snapshot.normals, &self.dressed, &self.body_triangles);
     }
 
     /// The surfaces of a picture; `map` gives each garment its colours by vertex instead of the fabric's.
@@ -112,12 +126,12 @@ impl Drawing {
             colours: Colours::One(MANNEQUIN),
             material: Material::Skin,
         }];
-        for (i, (cloth, points)) in self.cloths.iter().zip(&snapshot.garments).enumerate() {
+        for (i, cloth) in self.cloths.iter().enumerate() {
             let (colours, material) = match map {
                 Some(map) => (Colours::Tightness(&map[i]), Material::Chart),
                 None => (Colours::One(cloth.colour), Material::Cloth),
             };
-            let (normals, triangles) = (&cloth.normals, &cloth.triangles);
+            let ClothDrawing { points, normals, triangles, .. } = cloth;
             surfaces.push(Surface { positions: points, normals, triangles, colours, material });
         }
         surfaces

@@ -126,6 +126,11 @@ impl Colliders {
         &self.end[..self.rest.len()]
     }
 
+    /// The bone that a sphere follows.
+    pub fn bone(&self, sphere: u8) -> u8 {
+        self.rest[usize::from(sphere)].bone
+    }
+
     /// Pairs of spheres that capsules join `[capsules]`.
     pub fn capsules(&self) -> &[[u8; 2]] {
         &self.capsules

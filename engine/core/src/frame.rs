@@ -125,7 +125,7 @@ impl Frame {
         });
         let colliders = Colliders::new(&spheres, &rig.capsules, true)?;
         let skinning = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights)?;
-        let cloths: Box<[Cloth]> = garments.iter().map(Cloth::new).collect();
+        let cloths: Box<[Cloth]> = garments.iter().map(|g| Cloth::new(g, &colliders)).collect();
         let snapshot = Snapshot {
             tick: 0,
             body: body.mesh.positions.clone().into(),

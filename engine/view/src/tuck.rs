@@ -7,12 +7,23 @@ use glam::Vec3;
 
 use crate::tree::{Ray, Tree};
 
-/// Cloth this deep under the skin is still meant to lie on it (m): the largest distance at which the body stands out
-/// of its capsules.
-const DEPTH_M: f32 = 0.035;
+/// Cloth this deep under the skin is still meant to lie on it (m): how far a bent body stands out of its capsules.
+const DEPTH_M: f32 = 0.06;
+
+/// A fold may lie this much deeper than the outermost cloth (m).
+const FOLD_M: f32 = 0.012;
 
 /// Skin is drawn at least this far beneath the cloth (m): more than the sag of a chord of the cloth's mesh.
 const BENEATH_M: f32 = 0.006;
+
+/// Cosine between the normals of skin and of the cloth over it, at least.
+const LEAST_FACING: f32 = 0.2;
+
+/// Of a vertex's push its neighbours get this share, so that no triangle of skin cuts through a hem.
+const SPREAD: f32 = 0.7;
+
+/// Rings of neighbours that a push spreads over.
+const SPREAD_RINGS: usize = 2;
 
 /// Skin is under a garment if cloth lies this far before it at most when the garment is put on (m): a flared hem stands
 /// this far from the leg.
@@ -22,36 +33,65 @@ const UNDER_M: f32 = 0.30;
 #[derive(Debug, Clone)]
 pub struct Cover {
     tree: Tree,
+    /// Unit normal of each triangle.
+    outwards: Vec<Vec3>,
 }
 
 impl Cover {
     /// The garments' triangles, by their corners (m).
     pub fn new(faces: impl Iterator<Item = [Vec3; 3]>) -> Self {
-        Self { tree: Tree::build(faces) }
+        let faces: Vec<[Vec3; 3]> = faces.collect();
+        let outwards = faces.iter().map(|[a, b, c]| (*b - *a).cross(*c - *a).normalize_or_zero()).collect();
+        Self { tree: Tree::build(faces.into_iter()), outwards }
     }
 
     /// Which body vertices are dressed: those with cloth before them. A hand that later comes to lie on a skirt is not
     /// under it. Asked once, of the garments as they are put on.
     pub fn dressed(&self, positions: &[Vec3], normals: &[Vec3]) -> Vec<bool> {
         let under = |(p, n): (&Vec3, &Vec3)| {
-            let from = *p - *n * DEPTH_M;
-            *n != Vec3::ZERO && from.is_finite() && self.tree.closest(&Ray::new(from, *n), DEPTH_M + UNDER_M).is_some()
+            let from = *p - *n * BENEATH_M;
+            *n != Vec3::ZERO
+                && from.is_finite()
+                && self.tree.closest(&Ray::new(from, *n), BENEATH_M + UNDER_M).is_some()
         };
         positions.iter().zip(normals).map(under).collect()
     }
 
-    /// Pushes dressed body vertices beneath the cloth that lies on or in them. `normals` are the body's unit normals.
-    pub fn tuck(&self, positions: &mut [Vec3], normals: &[Vec3], dressed: &[bool]) {
-        for ((p, n), dressed) in positions.iter_mut().zip(normals).zip(dressed) {
-            let from = *p - *n * DEPTH_M;
-            if !dressed || *n == Vec3::ZERO || !from.is_finite() {
-                continue;
-            }
-            let hit = self.tree.closest(&Ray::new(from, *n), DEPTH_M + BENEATH_M);
-            if let Some(hit) = hit {
-                *p = from + *n * (hit.distance - BENEATH_M);
+    /// Pushes dressed vertices beneath the cloth that lies on or in them. `normals` are the unit normals of what is
+    /// pushed, `triangles` its topology.
+    pub fn tuck(&self, positions: &mut [Vec3], normals: &[Vec3], dressed: &[bool], triangles: &[[u32; 3]]) {
+        let mut pushes: Vec<f32> = positions
+            .iter()
+            .zip(normals)
+            .zip(dressed)
+            .map(|((p, n), dressed)| if *dressed { self.push(*p, *n) } else { 0.0 })
+            .collect();
+        for _ in 0..SPREAD_RINGS {
+            let before = pushes.clone();
+            for t in triangles {
+                let most = t.iter().map(|&i| before[i as usize]).fold(0.0, f32::max) * SPREAD;
+                t.iter().for_each(|&i| pushes[i as usize] = pushes[i as usize].max(most));
             }
         }
+        for ((p, n), push) in positions.iter_mut().zip(normals).zip(pushes) {
+            *p -= *n * push;
+        }
+    }
+
+    /// How far a vertex must go inwards (m). The ray comes from outside, so that on a thin limb it meets the near side.
+    fn push(&self, p: Vec3, n: Vec3) -> f32 {
+        let from = p + n * BENEATH_M;
+        if n == Vec3::ZERO || !from.is_finite() {
+            return 0.0;
+        }
+        let Some(outer) = self.tree.closest(&Ray::new(from, -n), DEPTH_M + BENEATH_M) else { return 0.0 };
+        // Cloth met on its inner side does not lie over this skin: in a crease the normals of skin point anywhere.
+        if self.outwards[outer.triangle as usize].dot(n) < LEAST_FACING {
+            return 0.0;
+        }
+        let under = from - n * (outer.distance + 1e-4);
+        let fold = self.tree.closest(&Ray::new(under, -n), FOLD_M).map_or(0.0, |hit| hit.distance + 1e-4);
+        outer.distance + fold
     }
 }
 
@@ -66,9 +106,9 @@ mod tests {
 
     #[test]
     fn skin_goes_beneath_cloth_that_lies_in_it_and_stays_where_cloth_is_away() {
-        for (cloth, skin) in [(-0.01, -0.01 - BENEATH_M), (0.003, 0.003 - BENEATH_M), (0.02, 0.0), (-0.05, 0.0)] {
+        for (cloth, skin) in [(-0.01, -0.01 - BENEATH_M), (0.003, 0.003 - BENEATH_M), (0.02, 0.0), (-0.09, 0.0)] {
             let mut p = [Vec3::ZERO];
-            sheet(cloth).tuck(&mut p, &[Vec3::Y], &[true]);
+            sheet(cloth).tuck(&mut p, &[Vec3::Y], &[true], &[]);
             assert!((p[0].y - skin).abs() < 1e-6, "cloth {cloth}: {}", p[0].y);
         }
     }
@@ -79,7 +119,7 @@ mod tests {
         let mut p = at;
         let dressed = sheet(0.2).dressed(&at, &[Vec3::Y; 2]);
         assert_eq!(dressed, [true, false]);
-        sheet(0.495).tuck(&mut p, &[Vec3::Y; 2], &dressed);
+        sheet(0.495).tuck(&mut p, &[Vec3::Y; 2], &dressed, &[]);
         assert_eq!(p, at, "cloth that comes to lie in bare skin leaves it alone");
     }
 }

@@ -6,8 +6,9 @@
 //! Coulomb bound of the push): up to mu times the push it holds, beyond that it slides.
 
 use glam::Vec3A;
-use toile_assets::garment::Garment;
+use toile_assets::garment::{Garment, Part};
 use toile_assets::limits::{MAX_CAPSULES, STEP_SECONDS};
+use toile_assets::skeleton::{Joint, TWIST_BONES};
 
 use super::{Cloth, Step};
 use crate::colliders::{Colliders, RoundCone};
@@ -18,18 +19,54 @@ const _: () = assert!(MAX_CAPSULES <= 32);
 /// Particles this much farther away than they can travel in a step are still looked at (m).
 const SLACK_M: f32 = 0.004;
 
+/// The capsules that cloth on a part of the body can touch, a bit each.
+pub fn reach(part: Part, colliders: &Colliders) -> u32 {
+    let mut bits = 0;
+    for (c, ends) in colliders.capsules().iter().enumerate() {
+        let limb = ends.iter().map(|&s| limb(colliders.bone(s))).max_by_key(|l| *l as u8).unwrap_or(Part::Trunk);
+        let touches = match part {
+            Part::All => true,
+            Part::Hollow => false,
+            Part::Trunk => !matches!(limb, Part::LeftArm | Part::RightArm),
+            Part::LeftArm | Part::RightArm => limb == part,
+            Part::LeftLeg | Part::RightLeg => limb == part || limb == Part::Trunk,
+        };
+        bits |= u32::from(touches) << c;
+    }
+    bits
+}
+
+/// The limb that a bone belongs to; the shoulder girdle and the pelvis are the trunk's.
+fn limb(bone: u8) -> Part {
+    use Joint::*;
+    const SIDES: [(Part, [Joint; 4]); 4] = [
+        (Part::LeftArm, [LeftShoulder, LeftElbow, LeftWrist, LeftHand]),
+        (Part::RightArm, [RightShoulder, RightElbow, RightWrist, RightHand]),
+        (Part::LeftLeg, [LeftHip, LeftKnee, LeftAnkle, LeftToe]),
+        (Part::RightLeg, [RightHip, RightKnee, RightAnkle, RightToe]),
+    ];
+    let joint = TWIST_BONES.iter().find(|(b, ..)| *b == usize::from(bone)).map_or(usize::from(bone), |t| t.1.index());
+    SIDES
+        .into_iter()
+        .find(|(_, joints)| joints.iter().any(|j| j.index() == joint))
+        .map_or(Part::Trunk, |(part, _)| part)
+}
+
 /// Finds the capsules that each free particle may touch during the step: first by bounding box, then by distance.
 pub fn find_near(cloth: &mut Cloth, garment: &Garment, step: &Step<'_>) {
     let reaches = Reaches::new(step.colliders);
     let offset = garment.fabric.contact_offset_mm * 1e-3 + SLACK_M;
     let fall = step.settings.gravity.length() * STEP_SECONDS;
     let particles = cloth.positions.iter().zip(&cloth.velocities).zip(&garment.inverse_mass);
-    for (((p, v), w), near) in particles.zip(&mut cloth.near) {
+    for ((((p, v), w), near), reach) in particles.zip(&mut cloth.near).zip(&cloth.reach) {
         let mut bits = 0u32;
         if *w > 0.0 {
             // Twice its present motion: a particle may be jerked along by its neighbours.
             let margin = offset + 2.0 * (v.length() + fall) * STEP_SECONDS;
-            for c in 0..reaches.count {
+            let mut asked = reach & reaches.all;
+            while asked != 0 {
+                let c = asked.trailing_zeros() as usize;
+                asked &= asked - 1;
                 let inside = (p.cmpge(reaches.low[c] - margin) & p.cmple(reaches.high[c] + margin)).all();
                 if inside && reaches.cones[c].touch(*p, margin + reaches.travel[c]).is_some() {
                     bits |= 1 << c;
@@ -42,7 +79,8 @@ pub fn find_near(cloth: &mut Cloth, garment: &Garment, step: &Step<'_>) {
 
 /// Where each capsule is at the start of the step and how far it reaches during it.
 struct Reaches {
-    count: usize,
+    /// A bit for each capsule.
+    all: u32,
     cones: [Cone; MAX_CAPSULES],
     low: [Vec3A; MAX_CAPSULES],
     high: [Vec3A; MAX_CAPSULES],
@@ -52,7 +90,7 @@ struct Reaches {
 impl Reaches {
     fn new(colliders: &Colliders) -> Self {
         let mut this = Self {
-            count: colliders.capsules().len(),
+            all: ((1u64 << colliders.capsules().len()) - 1) as u32,
             cones: colliders.cones_at(0.0).map(Cone::from),
             low: [Vec3A::INFINITY; MAX_CAPSULES],
             high: [Vec3A::NEG_INFINITY; MAX_CAPSULES],

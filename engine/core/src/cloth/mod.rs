@@ -67,6 +67,8 @@ pub struct Cloth {
     pub(crate) fixed_end: Box<[Vec3A]>,
     /// Bit c is set where capsule c may be touched during this step.
     pub(crate) near: Box<[u32]>,
+    /// Bit c is set where capsule c can be touched at all.
+    pub(crate) reach: Box<[u32]>,
     /// Positions at the end of the last step that was finite (m).
     pub(crate) good: Box<[Vec3A]>,
     /// Room for percentiles.
@@ -77,8 +79,8 @@ pub struct Cloth {
 }
 
 impl Cloth {
-    /// All storage of a garment, at rest where the garment starts.
-    pub fn new(garment: &Garment) -> Self {
+    /// All storage of a garment, at rest where the garment starts; `colliders` says which capsules are which limb's.
+    pub fn new(garment: &Garment, colliders: &Colliders) -> Self {
         let start: Box<[Vec3A]> = garment.start.iter().map(|&p| p.into()).collect();
         let fixed: Box<[Vec3A]> = garment.fixed.iter().map(|&i| start[i as usize]).collect();
         Self {
@@ -87,6 +89,7 @@ impl Cloth {
             fixed_start: fixed.clone(),
             fixed_end: fixed,
             near: vec![0; start.len()].into(),
+            reach: garment.parts.iter().map(|&part| contact::reach(part, colliders)).collect(),
             good: start.clone(),
             scratch: vec![0.0; garment.strain_edges.len()].into(),
             events: guard::Events::default(),
