@@ -235,16 +235,20 @@ fn a_shopper_who_is_suddenly_elsewhere_keeps_her_dress() {
     assert!(cloth < 1.5, "a part of the dress stayed behind, {cloth} m away");
 }
 
-/// Bounds of calm motion: the 99th percentile of strain, averaged over the steps, and the deepest penetration (m).
-const CALM_STRAIN_P99: f32 = 0.10;
+/// Bounds of calm motion for each garment: the 99th percentile of strain, averaged over the steps. Trousers crumple
+/// between the thighs, and a sleeve is stretched over the armpit where it meets the yoke that sticks to the trunk.
+const CALM_STRAIN_P99: [(&str, f32); 3] = [("sun-dress", 0.03), ("t-shirt", 0.35), ("wide-trousers", 0.12)];
+
+/// Deepest penetration in calm motion (m).
 const CALM_PENETRATION_M: f32 = 0.010;
 
 #[test]
 fn calm_motion_stretches_little_and_stays_outside_of_the_body() {
     // She stands, then lifts the arms: no fast motion yet.
     let track = stage::track(&stage::shopper(), 1.0, 1.5);
+    assert_eq!(CALM_STRAIN_P99.map(|(name, _)| name)[..], toile_assets::wardrobe::names()[..]);
     std::thread::scope(|scope| {
-        for name in toile_assets::wardrobe::names() {
+        for (name, most) in CALM_STRAIN_P99 {
             let track = &track;
             scope.spawn(move || {
                 let mut frame = stage::dressed(&[name], track);
@@ -252,7 +256,7 @@ fn calm_motion_stretches_little_and_stays_outside_of_the_body() {
                 let strain = frame.meters().strain();
                 let deepest = frame.meters().penetration_max;
                 eprintln!("{name}: {strain:?}, deepest {:.1} mm", deepest * 1e3);
-                assert!(strain.p99 < CALM_STRAIN_P99, "{name}: {strain:?}");
+                assert!(strain.p99 < most, "{name}: {strain:?}");
                 assert!(strain.mean > 0.0, "{name}: nothing was measured");
                 assert!(deepest < CALM_PENETRATION_M, "{name}: {:.1} mm deep", deepest * 1e3);
             });

@@ -19,26 +19,24 @@ use toile_sensors::sample::sample;
 use toile_sensors::source::{OpenOptions, open};
 use toile_tests::{recordings, stage};
 
-/// A recording and what is worn in it.
-const TRY_ONS: [(&str, &[&str]); 11] = [
-    ("skeleton/kinectron-kinect2/recorded_skeleton.json", &["sun-dress"]),
-    ("skeleton/labanotation-kinect2/Ges01_wavehand.csv", &["sun-dress"]),
-    ("skeleton/labanotation-kinect2/Ges02_balancinghands.csv", &["sun-dress"]),
-    ("skeleton/labanotation-kinect2/Ges03_drawlines.csv", &["sun-dress"]),
-    ("skeleton/labanotation-kinect2/joints.csv", &["sun-dress"]),
-    ("mocap/cmu/14_14.bvh", &["sun-dress"]),
-    ("mocap/animated-drawings/jumping.bvh", &["sun-dress"]),
-    ("mocap/animated-drawings/wave_hello.bvh", &["sun-dress"]),
-    ("mocap/animated-drawings/dab.bvh", &["sun-dress"]),
-    ("mocap/animated-drawings/zombie.bvh", &["sun-dress"]),
-    ("skeleton/kinectron-kinect2/recorded_skeleton.json", &["t-shirt", "wide-trousers"]),
+/// A recording, what is worn in it, and the most strain that the 99th percentile of the edges may have, averaged over
+/// the steps: a jump flings a dress about, and the T-shirt is tight at the armpits.
+const TRY_ONS: [(&str, &[&str], f32); 11] = [
+    ("skeleton/kinectron-kinect2/recorded_skeleton.json", &["sun-dress"], 0.08),
+    ("skeleton/labanotation-kinect2/Ges01_wavehand.csv", &["sun-dress"], 0.08),
+    ("skeleton/labanotation-kinect2/Ges02_balancinghands.csv", &["sun-dress"], 0.08),
+    ("skeleton/labanotation-kinect2/Ges03_drawlines.csv", &["sun-dress"], 0.08),
+    ("skeleton/labanotation-kinect2/joints.csv", &["sun-dress"], 0.08),
+    ("mocap/cmu/14_14.bvh", &["sun-dress"], 0.08),
+    ("mocap/animated-drawings/jumping.bvh", &["sun-dress"], 0.25),
+    ("mocap/animated-drawings/wave_hello.bvh", &["sun-dress"], 0.08),
+    ("mocap/animated-drawings/dab.bvh", &["sun-dress"], 0.08),
+    ("mocap/animated-drawings/zombie.bvh", &["sun-dress"], 0.08),
+    ("skeleton/kinectron-kinect2/recorded_skeleton.json", &["t-shirt", "wide-trousers"], 0.50),
 ];
 
 /// The part of each recording that is played (ns): its first seconds, in which each sensor's flaws already show.
 const PLAYED_NS: u64 = 6 * SECOND_NS;
-
-/// Most strain that the 99th percentile of the edges may have, averaged over the steps.
-const STRAIN_P99: f32 = 0.15;
 
 /// What was seen over one recording.
 #[derive(Debug, Default)]
@@ -85,7 +83,7 @@ fn play(track: &[Joints], worn: &[&str]) -> (Frame, Figures) {
     (frame, figures)
 }
 
-fn judge(file: &str, worn: &[&str], frame: &Frame, figures: &Figures) {
+fn judge((file, worn, most): (&str, &[&str], f32), frame: &Frame, figures: &Figures) {
     let (strain, depth) = (frame.meters().strain(), frame.meters().penetration_max);
     eprintln!(
         "{file}, {}: {} steps, turn {:.1} rad/s, pelvis {:.2} m/s level and {:.2} upright, strain mean {:.2} % p99 \
@@ -108,20 +106,20 @@ fn judge(file: &str, worn: &[&str], frame: &Frame, figures: &Figures) {
     assert!(figures.level <= ROOT_SPEED * 1.01, "{file}: the pelvis jumps at {} m/s", figures.level);
     // Who lands from a jump of 1.2 m falls at 4.9 m/s.
     assert!(figures.upright < 4.9, "{file}: the pelvis jumps up or down at {} m/s", figures.upright);
-    assert!(strain.p99 < STRAIN_P99, "{file}: {strain:?}");
+    assert!(strain.p99 < most, "{file}: {strain:?}");
 }
 
 #[test]
 fn real_recordings_neither_jump_nor_harm_the_cloth() {
     let Some(data) = recordings::folder() else { return };
-    let open = Mutex::new(TRY_ONS.into_iter().collect::<VecDeque<_>>());
-    let next = || open.lock().expect("nobody panics while holding it").pop_front();
+    let waiting = Mutex::new(TRY_ONS.into_iter().collect::<VecDeque<_>>());
+    let next = || waiting.lock().expect("nobody panics while holding it").pop_front();
     thread::scope(|scope| {
         for _ in 0..2 {
             scope.spawn(|| {
-                while let Some((file, worn)) = next() {
-                    let (frame, figures) = play(&filtered(&data.join(file)), worn);
-                    judge(file, worn, &frame, &figures);
+                while let Some(run) = next() {
+                    let (frame, figures) = play(&filtered(&data.join(run.0)), run.1);
+                    judge(run, &frame, &figures);
                 }
             });
         }

@@ -1,7 +1,7 @@
 //! Baking: a garment's shape becomes what the cloth steps over.
 //!
-//! Reads: a checked [`Shape`](crate::garment::Shape) and its fabric. Writes: an immutable
-//! [`Garment`](crate::garment::Garment): masses, fibers in sets, bends, what is skinned.
+//! Reads: a checked [`Shape`] and its fabric. Writes: an immutable
+//! [`Garment`]: masses, fibers in sets, bends, what is skinned.
 //! Budget: 100 ms for 8,000 vertices; at load only.
 //! Thread: the loading thread.
 
