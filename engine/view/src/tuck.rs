@@ -29,6 +29,9 @@ const SPREAD_RINGS: usize = 2;
 /// this far from the leg.
 const UNDER_M: f32 = 0.30;
 
+/// A garment as it is put on lies this deep in the skin at most (m), where a seam cuts a corner.
+const PUT_ON_DEPTH_M: f32 = 0.03;
+
 /// The garments that lie over the skin.
 #[derive(Debug, Clone)]
 pub struct Cover {
