@@ -52,10 +52,9 @@ impl Cover {
     /// under it. Asked once, of the garments as they are put on.
     pub fn dressed(&self, positions: &[Vec3], normals: &[Vec3]) -> Vec<bool> {
         let under = |(p, n): (&Vec3, &Vec3)| {
-            let from = *p - *n * BENEATH_M;
-            *n != Vec3::ZERO
-                && from.is_finite()
-                && self.tree.closest(&Ray::new(from, *n), BENEATH_M + UNDER_M).is_some()
+            let from = *p - *n * PUT_ON_DEPTH_M;
+            let ray = Ray::new(from, *n);
+            *n != Vec3::ZERO && from.is_finite() && self.tree.closest(&ray, PUT_ON_DEPTH_M + UNDER_M).is_some()
         };
         positions.iter().zip(normals).map(under).collect()
     }
