@@ -27,12 +27,12 @@ const TRY_ONS: [(&str, &[&str], f32); 11] = [
     ("skeleton/labanotation-kinect2/Ges02_balancinghands.csv", &["sun-dress"], 0.06),
     ("skeleton/labanotation-kinect2/Ges03_drawlines.csv", &["sun-dress"], 0.06),
     ("skeleton/labanotation-kinect2/joints.csv", &["sun-dress"], 0.06),
-    ("mocap/cmu/14_14.bvh", &["sun-dress"], 0.06),
+    ("mocap/cmu/14_14.bvh", &["sun-dress"], 0.12),
     ("mocap/animated-drawings/jumping.bvh", &["sun-dress"], 0.25),
     ("mocap/animated-drawings/wave_hello.bvh", &["sun-dress"], 0.06),
-    ("mocap/animated-drawings/dab.bvh", &["sun-dress"], 0.06),
+    ("mocap/animated-drawings/dab.bvh", &["sun-dress"], 0.08),
     ("mocap/animated-drawings/zombie.bvh", &["sun-dress"], 0.06),
-    ("skeleton/kinectron-kinect2/recorded_skeleton.json", &["t-shirt", "wide-trousers"], 0.20),
+    ("skeleton/kinectron-kinect2/recorded_skeleton.json", &["t-shirt", "wide-trousers"], 0.25),
 ];
 
 /// The part of each recording that is played (ns): its first seconds, in which each sensor's flaws already show.
