@@ -3,7 +3,7 @@
 use glam::{Affine3A, Vec3, Vec3A};
 use toile_assets::bake::bake;
 use toile_assets::fabric::Fabric;
-use toile_assets::garment::{Garment, Shape};
+use toile_assets::garment::{Garment, Part, Shape};
 use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
 use toile_assets::mesh::SkinWeights;
 use toile_assets::skeleton::BONES;
@@ -25,7 +25,7 @@ fn sheet(columns: u32, rows: u32, cell: f32, top: Vec3, pinned: bool) -> Shape {
     for row in 0..=rows {
         for column in 0..=columns {
             let p = top + Vec3::new(column as f32 * cell, -(row as f32) * cell, 0.0);
-            shape.push(p, p, pinned && row == 0);
+            shape.push(p, p, pinned && row == 0, Part::All);
             shape.weights.push(SkinWeights { bones: [0; 4], weights: [1.0, 0.0, 0.0, 0.0] });
         }
     }
@@ -56,7 +56,7 @@ fn plain_fabric(density_kg_m2: f32, stretch_n_m: f32, damping_per_s: f32) -> Fab
 fn alone(garment: &Garment, settings: &Settings, steps: u32) -> Cloth {
     let colliders = Colliders::new(&[], &[], false).expect("no colliders at all");
     let bones = [Affine3A::IDENTITY; BONES];
-    let mut cloth = Cloth::new(garment);
+    let mut cloth = Cloth::new(garment, &colliders);
     for _ in 0..steps {
         cloth.step(garment, &Step { palette: &bones, colliders: &colliders, settings });
     }
@@ -237,7 +237,7 @@ fn a_shopper_who_is_suddenly_elsewhere_keeps_her_dress() {
 
 /// Bounds of calm motion for each garment: the 99th percentile of strain, averaged over the steps. Trousers crumple
 /// between the thighs, and a sleeve is stretched over the armpit where it meets the yoke that sticks to the trunk.
-const CALM_STRAIN_P99: [(&str, f32); 3] = [("sun-dress", 0.03), ("t-shirt", 0.35), ("wide-trousers", 0.12)];
+const CALM_STRAIN_P99: [(&str, f32); 3] = [("sun-dress", 0.03), ("t-shirt", 0.18), ("wide-trousers", 0.05)];
 
 /// Deepest penetration in calm motion (m).
 const CALM_PENETRATION_M: f32 = 0.010;

@@ -13,7 +13,7 @@ pub const PARKED: Vec4 = Vec4::new(0.0, -1000.0, 0.0, 0.0);
 /// A sphere that follows a bone, where it stands in the rest pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RestSphere {
-    /// The bone it follows, below [`BONES`].
+    /// The bone it follows, below [`toile_assets::skeleton::BONES`].
     pub bone: u8,
     /// Centre in the rest pose, world (m).
     pub centre: Vec3,
