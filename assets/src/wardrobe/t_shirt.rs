@@ -22,6 +22,9 @@ const ARMHOLE_SHARE: f32 = 0.055;
 /// Rows next to the shoulder seam and the neckline that are skinned.
 const YOKE_ROWS: usize = 3;
 
+/// Columns beside an armhole that are not skinned.
+const FREE_COLUMNS: usize = 3;
+
 /// Rows from the armhole's seam that lie in the hollow of the armpit.
 const HOLLOW_ROWS: usize = 3;
 
@@ -144,17 +147,14 @@ impl Index {
         (self.back + (row - 1) * self.width) as u32 + (c + plan.front as isize) as u32
     }
 
-    /// The yoke sticks to the shoulders: the last rows of the panels.
+    /// The yoke sticks to the shoulders: the last rows of the panels, but not beside the armholes, where the arm pulls.
     fn is_yoke(&self, plan: &Plan, i: usize) -> bool {
-        let panel_row = |first: usize| (i - first) / self.width + 1;
-        let row = if i >= self.sleeves[0] || i < self.front {
+        if i >= self.sleeves[0] || i < self.front {
             return false;
-        } else if i >= self.back {
-            panel_row(self.back)
-        } else {
-            panel_row(self.front)
-        };
-        row + YOKE_ROWS > plan.shoulder_rows
+        }
+        let place = i - if i >= self.back { self.back } else { self.front };
+        let from_armhole = (place % self.width).min(self.width - 1 - place % self.width);
+        place / self.width + 1 + YOKE_ROWS > plan.shoulder_rows && from_armhole >= FREE_COLUMNS
     }
 
     /// What a vertex lies on. Around the lowest point of the armhole that is nothing.

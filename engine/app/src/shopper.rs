@@ -4,6 +4,7 @@ use std::path::Path;
 
 use toile_assets::body::{Body, BodyError, Measures, Sex};
 use toile_assets::sizes::{Population, SizeBody};
+use toile_assets::skeleton::Joint;
 use toile_sensors::filter::{FilterSettings, JointFilter};
 use toile_sensors::frame::Joints;
 use toile_sensors::source::{self, OpenOptions, Session};
@@ -38,6 +39,13 @@ pub fn measure(session: &Session, population: Population) -> Result<Measurements
 pub fn believable(session: &Session) -> Vec<Joints> {
     let mut filter = JointFilter::new(FilterSettings::default());
     session.joints.iter().map(|joints| filter.push(joints)).collect()
+}
+
+/// The first frame in which the hips are seen, so that the shopper can be stood somewhere; the first frame of all where
+/// they never are.
+pub fn stands_from(track: &[Joints]) -> usize {
+    const HIPS: [Joint; 3] = [Joint::Pelvis, Joint::LeftHip, Joint::RightHip];
+    track.iter().position(|frame| HIPS.iter().all(|&j| frame.at(j).is_believed())).unwrap_or(0)
 }
 
 /// Shares of the way from the measured body to an average one of the same stature that are tried in turn.

@@ -60,8 +60,9 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let rig = Rig::fit(&body);
     let (mut frame, mut reader) = Frame::new(body, &rig, garments, Settings::default()).map_err(AppError::internal)?;
     let track = shopper::believable(&session);
+    let track = &track[shopper::stands_from(&track)..];
     let title = title(&recommendations);
-    play(args, &words, &mut out, &mut frame, &mut reader, &track, &title)?;
+    play(args, &words, &mut out, &mut frame, &mut reader, track, &title)?;
 
     // The report names itself as well.
     out.stage("report.json")?;
