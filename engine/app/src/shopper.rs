@@ -5,6 +5,7 @@ use std::path::Path;
 use toile_assets::body::{Body, BodyError, Measures, Sex};
 use toile_assets::sizes::{Population, SizeBody};
 use toile_assets::skeleton::Joint;
+use toile_sensors::clock::SECOND_NS;
 use toile_sensors::filter::{FilterSettings, JointFilter};
 use toile_sensors::frame::Joints;
 use toile_sensors::source::{self, OpenOptions, Session};
@@ -41,11 +42,21 @@ pub fn believable(session: &Session) -> Vec<Joints> {
     session.joints.iter().map(|joints| filter.push(joints)).collect()
 }
 
-/// The first frame in which the hips are seen, so that the shopper can be stood somewhere; the first frame of all where
-/// they never are.
+/// Time that a sensor which begins without seeing the hips is given to settle, once it sees them (ns): until then
+/// somebody is walking in, and legs are guesses.
+const WALK_IN_NS: u64 = SECOND_NS / 2;
+
+/// The frame at which a shopper can be dressed: the first, unless the hips are not seen in it.
 pub fn stands_from(track: &[Joints]) -> usize {
     const HIPS: [Joint; 3] = [Joint::Pelvis, Joint::LeftHip, Joint::RightHip];
-    track.iter().position(|frame| HIPS.iter().all(|&j| frame.at(j).is_believed())).unwrap_or(0)
+    let seen = |frame: &Joints| HIPS.iter().all(|&j| frame.at(j).is_believed());
+    match track.iter().position(seen) {
+        None | Some(0) => 0,
+        Some(first) => {
+            let settled = track[first].time_ns + WALK_IN_NS;
+            track.iter().position(|frame| frame.time_ns >= settled && seen(frame)).unwrap_or(first)
+        }
+    }
 }
 
 /// Shares of the way from the measured body to an average one of the same stature that are tried in turn.
