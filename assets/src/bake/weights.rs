@@ -10,9 +10,9 @@ use crate::skeleton::{BONES, Joint};
 const NEIGHBOURS: usize = 6;
 
 /// Skin weights for points near the body: the weights of the nearest body vertices, nearer ones counting more, cut to
-/// the four strongest bones among those that `carries` admits: a bodice does not follow the arm beside it.
-pub fn transfer(body: &Body, points: &[Vec3], carries: impl Fn(usize) -> bool) -> Vec<SkinWeights> {
-    points.iter().map(|&p| at(body, p, &carries)).collect()
+/// the four strongest bones among those that `carries` admits for a point: a bodice does not follow the arm beside it.
+pub fn transfer(body: &Body, points: &[Vec3], carries: impl Fn(Vec3, usize) -> bool) -> Vec<SkinWeights> {
+    points.iter().map(|&p| at(body, p, &|bone| carries(p, bone))).collect()
 }
 
 /// The trunk's bones: what a bodice or a waistband hangs on.

@@ -30,6 +30,9 @@ const BUILT_IN: [(&str, &str); 3] = [
     ("wide-trousers", include_str!("../../data/garments/wide-trousers.toml")),
 ];
 
+/// What rises this far above the upper edge of a bodice is a strap (m).
+const STRAP_RISE_M: f32 = 0.03;
+
 /// Why a garment cannot be worn.
 #[derive(Debug, Error)]
 pub enum WardrobeError {
@@ -137,14 +140,7 @@ impl Style {
 
     /// Cuts the garment in a size and lays it on a shopper.
     pub fn draft(&self, size: &str, shopper: &Body) -> Result<Shape, WardrobeError> {
-        let of = self.sizes()?.size_body(size)?;
-        let measures = Measures {
-            stature: of.stature,
-            shoulder_breadth: of.shoulder_breadth,
-            chest_girth: of.chest_girth,
-            waist_girth: of.waist_girth,
-            hip_girth: of.hip_girth,
-        };
+        let measures = Measures::from(self.sizes()?.size_body(size)?);
         let cut = Body::build(self.block(shopper.sex)?, &measures)
             .map_err(|source| WardrobeError::Body { size: size.into(), source })?;
         let mut shape = match self.cut {
@@ -152,10 +148,13 @@ impl Style {
             Cut::TShirt { .. } => t_shirt::draft(self, &cut, shopper),
             Cut::WideTrousers { .. } => wide_trousers::draft(self, &cut, shopper),
         };
-        let carries = match self.cut {
-            Cut::SunDress { .. } | Cut::TShirt { .. } => weights::shoulders,
-            Cut::WideTrousers { .. } => weights::trunk,
+        // Below this height (m) a garment hangs on the trunk alone; above it, on the shoulders too.
+        let shoulders_from = match self.cut {
+            Cut::SunDress { neckline_mm, .. } => shopper.levels.chest + neckline_mm * 1e-3 + STRAP_RISE_M,
+            Cut::TShirt { .. } => f32::NEG_INFINITY,
+            Cut::WideTrousers { .. } => f32::INFINITY,
         };
+        let carries = |p: glam::Vec3, bone| weights::trunk(bone) || (p.y > shoulders_from && weights::shoulders(bone));
         shape.weights = weights::transfer(shopper, &shape.worn, carries);
         Ok(shape)
     }
@@ -180,6 +179,6 @@ pub fn dress_mesh(path: &Path, fabric: &str, shopper: &Body) -> Result<Garment, 
     let wide = shopper.measures.hip_girth / average.hip_girth;
     let scale = glam::Vec3::new(wide, tall, 0.5 * (wide + tall));
     shape.cut.iter_mut().chain(&mut shape.worn).for_each(|p| *p *= scale);
-    shape.weights = weights::transfer(shopper, &shape.worn, |_| true);
+    shape.weights = weights::transfer(shopper, &shape.worn, |_, _| true);
     bake(&name, "one size", &shape, &fabric).map_err(|source| WardrobeError::Mesh { name, source })
 }

@@ -61,6 +61,8 @@ pub struct Pictures {
 struct Drawing {
     body: Vec<Vec3>,
     body_triangles: Vec<[u32; 3]>,
+    /// Triangles of the body that are drawn.
+    drawn: Vec<[u32; 3]>,
     /// Body vertices under a garment.
     dressed: Vec<bool>,
     cloths: Vec<ClothDrawing>,
@@ -72,6 +74,8 @@ struct ClothDrawing {
     /// Particles under a garment worn over this one.
     dressed: Vec<bool>,
     triangles: Vec<[u32; 3]>,
+    /// Those of them that are drawn.
+    drawn: Vec<[u32; 3]>,
     normals: Vec<Vec3>,
     colour: Vec3,
 }
@@ -90,6 +94,7 @@ impl Drawing {
             ClothDrawing {
                 points: g.start.to_vec(),
                 dressed: over(i + 1).dressed(&g.start, &normals),
+                drawn: g.triangles.to_vec(),
                 triangles: g.triangles.to_vec(),
                 normals,
                 colour: Vec3::from_array(g.fabric.colour.map(toile_view::image::linear)),
@@ -98,6 +103,7 @@ impl Drawing {
         Self {
             dressed: over(0).dressed(&body.mesh.positions, &body.normals),
             body: body.mesh.positions.clone(),
+            drawn: body.mesh.triangles.clone(),
             body_triangles: body.mesh.triangles.clone(),
             cloths: garments.iter().enumerate().map(cloth).collect(),
         }
@@ -107,14 +113,15 @@ impl Drawing {
     fn take(&mut self, snapshot: &Snapshot) {
         let mut over: Vec<[Vec3; 3]> = Vec::new();
         for (cloth, points) in self.cloths.iter_mut().zip(&snapshot.garments).rev() {
-            let ClothDrawing { points: at, dressed, triangles, normals, .. } = cloth;
+            let ClothDrawing { points: at, dressed, triangles, drawn, normals, .. } = cloth;
             at.copy_from_slice(points);
             vertex_normals(at, triangles, normals);
-            Cover::new(over.iter().copied()).tuck(at, normals, dressed, triangles);
+            *drawn = Cover::new(over.iter().copied()).tuck(at, normals, dressed, triangles);
             over.extend(triangles.iter().map(|t| t.map(|i| at[i as usize])));
         }
         self.body.copy_from_slice(&snapshot.body);
-        Cover::new(over.into_iter()).tuck(&mut self.body, &snapshot.normals, &self.dressed, &self.body_triangles);
+        let cover = Cover::new(over.into_iter());
+        self.drawn = cover.tuck(&mut self.body, &snapshot.normals, &self.dressed, &self.body_triangles);
     }
 
     /// The surfaces of a picture; `map` gives each garment its colours by vertex instead of the fabric's.
@@ -122,7 +129,7 @@ impl Drawing {
         let mut surfaces = vec![Surface {
             positions: &self.body,
             normals: &snapshot.normals,
-            triangles: &self.body_triangles,
+            triangles: &self.drawn,
             colours: Colours::One(MANNEQUIN),
             material: Material::Skin,
         }];
@@ -131,7 +138,7 @@ impl Drawing {
                 Some(map) => (Colours::Tightness(&map[i]), Material::Chart),
                 None => (Colours::One(cloth.colour), Material::Cloth),
             };
-            let ClothDrawing { points, normals, triangles, .. } = cloth;
+            let ClothDrawing { points, normals, drawn: triangles, .. } = cloth;
             surfaces.push(Surface { positions: points, normals, triangles, colours, material });
         }
         surfaces

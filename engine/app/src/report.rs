@@ -137,6 +137,10 @@ pub struct Penetration {
 pub struct Physics {
     /// Steps a second of simulated time.
     pub hz: u32,
+    /// Substeps of a step, which with the fabric decide the strain.
+    pub substeps: u32,
+    /// Particles of all garments, the skinned ones included.
+    pub particles: usize,
     /// Steps taken.
     pub steps: u64,
     /// Time a step took.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use toile_assets::body::{Body, BodyError, Measures, Sex};
-use toile_assets::sizes::{Population, SizeBody};
+use toile_assets::sizes::Population;
 use toile_assets::skeleton::Joint;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::filter::{FilterSettings, JointFilter};
@@ -65,7 +65,7 @@ const TOWARDS_AVERAGE: [f32; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
 /// A body of the measured size. Where no body has the measures together (a sensor may err in one of them), the nearest
 /// one on the way to the average body of that stature is built, and a sentence says so.
 pub fn build(sex: Sex, measured: &Measurements, population: Population) -> Result<(Body, Option<String>), AppError> {
-    let wanted = from_size(&measured.body(population));
+    let wanted = Measures::from(measured.body(population));
     let average = scaled(&Measures::average(sex), wanted.stature);
     let mut refused = None;
     for share in TOWARDS_AVERAGE {
@@ -83,16 +83,6 @@ pub fn build(sex: Sex, measured: &Measurements, population: Population) -> Resul
         Some(error) => AppError::input(error),
         None => AppError::internal("no body was tried"),
     })
-}
-
-fn from_size(size: &SizeBody) -> Measures {
-    Measures {
-        stature: size.stature,
-        shoulder_breadth: size.shoulder_breadth,
-        chest_girth: size.chest_girth,
-        waist_girth: size.waist_girth,
-        hip_girth: size.hip_girth,
-    }
 }
 
 fn scaled(m: &Measures, stature: f32) -> Measures {

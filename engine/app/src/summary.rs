@@ -82,7 +82,10 @@ fn recommendation(text: &mut String, worn: &Recommendation, paint: Paint) {
 }
 
 fn physics(text: &mut String, physics: &Physics, paint: Paint) {
-    heading(text, &format!("Cloth at {} steps a second, {} steps", physics.hz, physics.steps), paint);
+    let Physics { hz, steps, particles, substeps, .. } = physics;
+    let words =
+        format!("Cloth of {particles} particles at {hz} steps a second ({substeps} substeps each), {steps} steps");
+    heading(text, &words, paint);
     let (step, strain) = (&physics.step_us, &physics.strain);
     line(text, &format!("  a step takes      {:.0} us, 99 % of them under {:.0} us", step.p50, step.p99));
     let (mean, p99) = (strain.mean * 100.0, strain.p99 * 100.0);

@@ -118,11 +118,7 @@ fn population(args: &TryOnArgs, wanted: &[Wanted]) -> Result<(Sex, Population), 
         }
     }
     let sex = asked.unwrap_or(if of == Population::Men { Sex::Male } else { Sex::Female });
-    let known = match (asked, of) {
-        (None, of) => of,
-        (Some(Sex::Female), _) => Population::Women,
-        (Some(Sex::Male), _) => Population::Men,
-    };
+    let known = asked.map_or(of, |sex| Population::from(Some(sex)));
     Ok((sex, known))
 }
 
@@ -229,6 +225,8 @@ fn physics(frame: &Frame) -> report::Physics {
     }
     report::Physics {
         hz: STEP_HZ,
+        substeps: frame.settings().substeps,
+        particles: frame.garments().iter().map(Garment::particles).sum(),
         steps: frame.tick(),
         step_us: report::StepMicros {
             p50: us(0.5),

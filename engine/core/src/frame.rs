@@ -227,6 +227,11 @@ impl Frame {
         self.tick
     }
 
+    /// How the cloth is stepped.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
     /// The pose of the last step.
     pub fn pose(&self) -> &Pose {
         &self.pose

@@ -60,14 +60,22 @@ impl Cover {
     }
 
     /// Pushes dressed vertices beneath the cloth that lies on or in them. `normals` are the unit normals of what is
-    /// pushed, `triangles` its topology.
-    pub fn tuck(&self, positions: &mut [Vec3], normals: &[Vec3], dressed: &[bool], triangles: &[[u32; 3]]) {
-        let mut pushes: Vec<f32> = positions
+    /// pushed, `triangles` its topology. Returns the triangles to draw: all but those in a crease, where cloth lies over
+    /// the skin but no direction leads out from under it.
+    pub fn tuck(
+        &self,
+        positions: &mut [Vec3],
+        normals: &[Vec3],
+        dressed: &[bool],
+        triangles: &[[u32; 3]],
+    ) -> Vec<[u32; 3]> {
+        let finds: Vec<Find> = positions
             .iter()
             .zip(normals)
             .zip(dressed)
-            .map(|((p, n), dressed)| if *dressed { self.push(*p, *n) } else { 0.0 })
+            .map(|((p, n), dressed)| if *dressed { self.find(*p, *n) } else { Find::Bare })
             .collect();
+        let mut pushes: Vec<f32> = finds.iter().map(|f| if let Find::Under(push) = f { *push } else { 0.0 }).collect();
         for _ in 0..SPREAD_RINGS {
             let before = pushes.clone();
             for t in triangles {
@@ -78,23 +86,39 @@ impl Cover {
         for ((p, n), push) in positions.iter_mut().zip(normals).zip(pushes) {
             *p -= *n * push;
         }
+        let is = |t: &[u32; 3], find: fn(&Find) -> bool| t.map(|i| find(&finds[i as usize]));
+        let hidden = |t: &[u32; 3]| {
+            is(t, |f| matches!(f, Find::Creased)).contains(&true) && !is(t, |f| matches!(f, Find::Bare)).contains(&true)
+        };
+        triangles.iter().filter(|t| !hidden(t)).copied().collect()
     }
 
-    /// How far a vertex must go inwards (m). The ray comes from outside, so that on a thin limb it meets the near side.
-    fn push(&self, p: Vec3, n: Vec3) -> f32 {
+    /// What lies over a vertex. The ray comes from outside, so that on a thin limb it meets the near side.
+    fn find(&self, p: Vec3, n: Vec3) -> Find {
         let from = p + n * BENEATH_M;
         if n == Vec3::ZERO || !from.is_finite() {
-            return 0.0;
+            return Find::Bare;
         }
-        let Some(outer) = self.tree.closest(&Ray::new(from, -n), DEPTH_M + BENEATH_M) else { return 0.0 };
+        let Some(outer) = self.tree.closest(&Ray::new(from, -n), DEPTH_M + BENEATH_M) else { return Find::Bare };
         // Cloth met on its inner side does not lie over this skin: in a crease the normals of skin point anywhere.
         if self.outwards[outer.triangle as usize].dot(n) < LEAST_FACING {
-            return 0.0;
+            return Find::Creased;
         }
         let under = from - n * (outer.distance + 1e-4);
         let fold = self.tree.closest(&Ray::new(under, -n), FOLD_M).map_or(0.0, |hit| hit.distance + 1e-4);
-        outer.distance + fold
+        Find::Under(outer.distance + fold)
     }
+}
+
+/// What lies over a vertex of skin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Find {
+    /// No cloth near.
+    Bare,
+    /// Cloth that is got beneath by going this far inwards (m).
+    Under(f32),
+    /// Cloth, but seen from its inner side.
+    Creased,
 }
 
 #[cfg(test)]
@@ -110,7 +134,7 @@ mod tests {
     fn skin_goes_beneath_cloth_that_lies_in_it_and_stays_where_cloth_is_away() {
         for (cloth, skin) in [(-0.01, -0.01 - BENEATH_M), (0.003, 0.003 - BENEATH_M), (0.02, 0.0), (-0.12, 0.0)] {
             let mut p = [Vec3::ZERO];
-            sheet(cloth).tuck(&mut p, &[Vec3::Y], &[true], &[]);
+            let _ = sheet(cloth).tuck(&mut p, &[Vec3::Y], &[true], &[]);
             assert!((p[0].y - skin).abs() < 1e-6, "cloth {cloth}: {}", p[0].y);
         }
     }
@@ -121,7 +145,17 @@ mod tests {
         let mut p = at;
         let dressed = sheet(0.2).dressed(&at, &[Vec3::Y; 2]);
         assert_eq!(dressed, [true, false]);
-        sheet(0.495).tuck(&mut p, &[Vec3::Y; 2], &dressed, &[]);
+        let _ = sheet(0.495).tuck(&mut p, &[Vec3::Y; 2], &dressed, &[]);
         assert_eq!(p, at, "cloth that comes to lie in bare skin leaves it alone");
+    }
+
+    #[test]
+    fn a_triangle_in_a_crease_is_not_drawn() {
+        // Skin whose normals point down, beneath a sheet that faces up: no way out from under it.
+        let mut p = [Vec3::ZERO, Vec3::X * 0.01, Vec3::Z * 0.01];
+        let before = p;
+        assert!(sheet(0.02).tuck(&mut p, &[Vec3::NEG_Y; 3], &[true; 3], &[[0, 1, 2]]).is_empty());
+        assert_eq!(p, before);
+        assert_eq!(sheet(0.02).tuck(&mut p, &[Vec3::NEG_Y; 3], &[true, false, true], &[[0, 1, 2]]).len(), 1);
     }
 }
