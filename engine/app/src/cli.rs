@@ -103,6 +103,10 @@ const MAX_BENCH_VERTS: u64 = 1 << 24;
 /// Longest session that `record` makes (s); at 30 frames a second this is some hundred megabytes.
 const MAX_RECORD_SECONDS: i64 = 600;
 
+/// Length of the embedded session (s), [`toile_assets::scene::LENGTH_S`] as the grammar wants it.
+const DEFAULT_RECORD_SECONDS: &str = "10";
+const _: () = assert!(toile_assets::scene::LENGTH_S == 10.0);
+
 /// The whole grammar, for parsing, help and completions.
 pub fn command() -> clap::Command {
     clap::Command::new("toile")
@@ -138,7 +142,7 @@ fn try_on() -> clap::Command {
             json(),
             quiet(),
         ])
-        .after_help("Example: see how a recorded shopper moves in wide trousers\n  toile try-on --session shopper.csv --garment trousers --out fitting")
+        .after_help("Example: see how a recorded shopper moves in wide trousers\n  toile try-on --session shopper.csv --garment wide-trousers --out fitting")
 }
 
 fn measure() -> clap::Command {
@@ -171,7 +175,7 @@ fn record() -> clap::Command {
                 .default_value("1"),
             text("seconds", "S", "Length in seconds")
                 .value_parser(value_parser!(u32).range(1..=MAX_RECORD_SECONDS))
-                .default_value("10"),
+                .default_value(DEFAULT_RECORD_SECONDS),
             json(),
             quiet(),
         ])

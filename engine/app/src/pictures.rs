@@ -23,14 +23,37 @@ use crate::output::OutputFolder;
 /// A still: tall enough to see a hem's folds, small enough that three take a few seconds.
 const STILL: Size = Size::new(480, 800);
 
+/// Stills at the end: three views in the fabric's colours, three as a fit map.
+const STILLS: u64 = 6;
+
 /// A frame of the animation.
 const MOTION: Size = Size::new(240, 360);
 
-/// Frames a second of the animation.
-const MOTION_FPS: u32 = 10;
+/// Steps between two frames of the animation, the first for short sessions. All divide a second, so that the animation
+/// runs at the speed of life.
+const STRIDES: [u64; 5] = [12, 24, 40, 60, STEP_HZ as u64];
 
-/// Most frames of the animation: sessions longer than this show every second, third, ... of them.
-const MOST_FRAMES: u64 = 80;
+/// Most frames of the animation. A session so long that one frame a second is more is shown sped up.
+const MOST_FRAMES: u64 = 100;
+
+/// How an animation shows a session.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Tempo {
+    /// Steps from one frame to the next.
+    stride: u64,
+    frames: u32,
+    fps: u16,
+}
+
+impl Tempo {
+    fn new(steps: u64) -> Self {
+        let steps = steps.max(1);
+        let fits = |stride: &u64| steps.div_ceil(*stride) <= MOST_FRAMES;
+        let stride = STRIDES.into_iter().find(fits).unwrap_or_else(|| steps.div_ceil(MOST_FRAMES));
+        let fps = (u64::from(STEP_HZ) / stride).max(1) as u16;
+        Self { stride, frames: steps.div_ceil(stride) as u32, fps }
+    }
+}
 
 /// Frames on the contact sheet, in rows of this many.
 const SHEET_FRAMES: usize = 12;
@@ -48,8 +71,7 @@ const FOLLOW: f32 = 0.35;
 /// Makes pictures while a session runs.
 pub struct Pictures {
     animation: Animation<BufWriter<File>>,
-    stride: u64,
-    frames: u32,
+    tempo: Tempo,
     kept: Vec<(Image, u64)>,
     drawing: Drawing,
     middle: Option<Vec3>,
@@ -148,16 +170,12 @@ impl Drawing {
 impl Pictures {
     /// Begins the animation of a session of `steps` steps.
     pub fn begin(out: &mut OutputFolder, frame: &Frame, steps: u64, bar: ProgressBar) -> Result<Self, AppError> {
-        let each = u64::from(STEP_HZ / MOTION_FPS);
-        let stride = each * steps.div_ceil(each).max(1).div_ceil(MOST_FRAMES);
-        let frames = steps.max(1).div_ceil(stride) as u32;
+        let tempo = Tempo::new(steps);
         let path = out.stage("session.png")?;
         let file = BufWriter::new(File::create(&path).map_err(AppError::input)?);
-        let fps = (STEP_HZ as u64 / stride).max(1) as u16;
         Ok(Self {
-            animation: Animation::new(file, MOTION, frames, fps).map_err(AppError::input)?,
-            stride,
-            frames,
+            animation: Animation::new(file, MOTION, tempo.frames, tempo.fps).map_err(AppError::input)?,
+            tempo,
             kept: Vec::new(),
             drawing: Drawing::new(frame),
             middle: None,
@@ -168,7 +186,7 @@ impl Pictures {
 
     /// Whether the animation wants the snapshot of this tick.
     pub fn wants(&self, tick: u64) -> bool {
-        tick.is_multiple_of(self.stride)
+        tick.is_multiple_of(self.tempo.stride)
     }
 
     /// Draws a frame of the animation.
@@ -200,7 +218,7 @@ impl Pictures {
     /// direction that the shopper looks in (rad from +z towards +x).
     pub fn finish(mut self, out: &mut OutputFolder, snapshot: &Snapshot, ending: &Ending<'_>) -> Result<(), AppError> {
         self.animation.finish().map_err(AppError::input)?;
-        debug_assert_eq!(self.kept.len(), self.frames as usize);
+        debug_assert_eq!(self.kept.len(), self.tempo.frames as usize);
         contact_sheet(out, &self.kept)?;
         self.drawing.take(snapshot);
         let legend = fitmap::legend(3 * STILL.width / 4, sheet::PAPER);
@@ -224,11 +242,9 @@ impl Pictures {
         Ok(())
     }
 
-    /// Units of work that a session of this many animation frames has.
+    /// Pictures that a session of `steps` steps takes: the animation's frames, and the stills.
     pub fn work(steps: u64) -> u64 {
-        let each = u64::from(STEP_HZ / MOTION_FPS);
-        let stride = each * steps.div_ceil(each).max(1).div_ceil(MOST_FRAMES);
-        steps.max(1).div_ceil(stride) + 6
+        u64::from(Tempo::new(steps).frames) + STILLS
     }
 }
 
@@ -257,4 +273,21 @@ fn write_png(out: &mut OutputFolder, name: &str, image: &Image) -> Result<(), Ap
     let mut bytes = Vec::new();
     image.write_png(&mut bytes).map_err(AppError::internal)?;
     Ok(out.write(name, &bytes)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn animations_run_at_the_speed_of_life_while_they_can() {
+        for (steps, stride, fps) in [(1, 12, 10), (1_195, 12, 10), (3_111, 40, 3), (4_652, 60, 2), (12_000, 120, 1)] {
+            let tempo = Tempo::new(steps);
+            assert_eq!((tempo.stride, tempo.fps), (stride, fps), "{steps} steps");
+            assert_eq!(tempo.stride * u64::from(tempo.fps), u64::from(STEP_HZ));
+            assert!((1..=MOST_FRAMES).contains(&u64::from(tempo.frames)));
+        }
+        let hour = Tempo::new(3_600 * u64::from(STEP_HZ));
+        assert!(u64::from(hour.frames) <= MOST_FRAMES && hour.fps == 1);
+    }
 }

@@ -98,19 +98,6 @@ impl Colliders {
         }
     }
 
-    /// Places the spheres where a track says, `(x, y, z, radius)` in world metres, instead of by bones.
-    pub fn place_at(&mut self, spheres: &[Vec4]) {
-        self.start = self.end;
-        let count = self.rest.len();
-        for (end, s) in self.end[..count].iter_mut().zip(spheres) {
-            *end = *s;
-        }
-        if !self.placed {
-            self.start = self.end;
-            self.placed = true;
-        }
-    }
-
     /// Forgets where the body was: the next placement sets start and end alike.
     pub fn reset(&mut self) {
         self.placed = false;

@@ -117,12 +117,7 @@ impl Frame {
         garments: Vec<Garment>,
         settings: Settings,
     ) -> Result<(Self, Reader<Snapshot>), FrameError> {
-        let origins = body.skeleton.bone_origins();
-        let spheres = rig.spheres.each_ref().map(|s| RestSphere {
-            bone: s.bone,
-            centre: origins[usize::from(s.bone)] + s.offset,
-            radius: s.radius,
-        });
+        let spheres = rig.spheres.each_ref().map(|s| RestSphere::on_bone(&body.skeleton, s.bone, s.offset, s.radius));
         let colliders = Colliders::new(&spheres, &rig.capsules, true)?;
         let skinning = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights)?;
         let cloths: Box<[Cloth]> = garments.iter().map(|g| Cloth::new(g, &colliders)).collect();

@@ -96,12 +96,6 @@ impl Poser {
         *self = Self { clear, ..Self::new(&self.skeleton) };
     }
 
-    /// Whether the person was seen since the last reset; the rest pose is shown until then, and the first pose of a
-    /// person is no movement.
-    pub fn is_started(&self) -> bool {
-        self.started
-    }
-
     /// The skeleton that is posed.
     pub fn skeleton(&self) -> &Skeleton {
         &self.skeleton
