@@ -62,7 +62,7 @@ impl Prepared {
         self.gamma = settings.stretch_damping_s / self.dt;
         let (layout, w) = (&garment.layout, &garment.inverse_mass);
         links::prepare(&layout.shear, w, self.dt, self.gamma, &mut self.shear_gain);
-        links::prepare(&layout.weft, w, self.dt, self.gamma, &mut self.weft_gain);
+        links::prepare(&layout.weft, w, self.dt, self.gamma, &mut self.weft_gain); if let Ok(o)=std::env::var("SOR") { let o:f32=o.parse().unwrap(); self.weft_gain.iter_mut().for_each(|g| *g*=o); }  if let Ok(o)=std::env::var("SSOR") { let o:f32=o.parse().unwrap(); self.shear_gain.iter_mut().for_each(|g| *g*=o); }
         self.least_bend = bending::prepare(&layout.bends, w, self.dt, &mut self.load, &mut self.bend_scale);
     }
 
@@ -247,6 +247,7 @@ impl Work<'_> {
             }),
             Op::Crossing(set) => self.width.run(list(&layout.crossing, set)),
             Op::Hoops(set) => self.width.run(list(&layout.hoops, set)),
+            Op::Contact => self.contact(substep, share),
             Op::Finish => self.finish(substep, share),
         }
     }
@@ -279,10 +280,15 @@ impl Work<'_> {
         }
     }
 
-    fn finish(&self, substep: u32, share: usize) {
+    fn contact(&self, substep: u32, share: usize) {
         let p = self.prepared;
         let [from, to] = [substep, substep + 1].map(|s| s as f32 / p.substeps as f32);
         self.contacts.solve(share, self.width, self.columns, self.step.colliders, [from, to], &self.contact_settings());
+    }
+
+    fn finish(&self, substep: u32, share: usize) {
+        let p = self.prepared;
+        self.contact(substep, share);
         for &span in &self.garment.layout.spans[share] {
             let max_speed = self.step.settings.max_speed;
             let held = self.width.run(settle::Settle { columns: self.columns, span, max_speed, dt: p.dt });
