@@ -7,7 +7,11 @@
 
 pub mod colour;
 pub mod fibers;
+pub mod stiffness;
 pub mod weights;
+
+#[cfg(test)]
+pub(crate) mod meshes;
 
 use crate::fabric::Fabric;
 use crate::garment::shape::NO_VERTEX;
