@@ -8,6 +8,7 @@
 pub mod colour;
 pub mod fibers;
 pub mod stiffness;
+pub mod tethers;
 pub mod weights;
 
 #[cfg(test)]
