@@ -152,7 +152,9 @@ mod tests {
             Fabric::parse("odd", &format!("{text}\nstiffness = 0.8\n")).unwrap_err().to_string().contains("stiffness")
         );
         assert!(matches!(Fabric::parse("empty", ""), Err(FabricError::Syntax { .. })));
-        let bias = |value: f32| Fabric::parse("bias", &text.replace("friction", &format!("bend_bias_un_m = {value:?}\nfriction")));
+        let bias = |value: f32| {
+            Fabric::parse("bias", &text.replace("friction", &format!("bend_bias_un_m = {value:?}\nfriction")))
+        };
         assert_eq!(bias(3.0).unwrap().bend_bias_un_m, Some(3.0));
         assert!(bias(-1.0).unwrap_err().to_string().contains("bend_bias_un_m"));
     }

@@ -5,6 +5,7 @@
 //! Budget: 100 ms for 8,000 vertices; at load only.
 //! Thread: the loading thread.
 
+pub mod bending;
 pub mod colour;
 pub mod fibers;
 pub mod stiffness;
