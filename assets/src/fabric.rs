@@ -13,9 +13,9 @@ pub struct Fabric {
     pub title: String,
     /// Mass per area (kg/m2).
     pub density_kg_m2: f32,
-    /// Tensile stiffness along the warp (N/m).
+    /// Tensile stiffness along the warp (N/m); infinite is inextensible.
     pub stretch_warp_n_m: f32,
-    /// Tensile stiffness along the weft (N/m).
+    /// Tensile stiffness along the weft (N/m); infinite is inextensible.
     pub stretch_weft_n_m: f32,
     /// Shear stiffness (N/m per radian).
     pub shear_n_m: f32,
@@ -106,8 +106,8 @@ impl Fabric {
     fn check(&self) -> Result<(), FabricError> {
         let ranges = [
             ("density_kg_m2", self.density_kg_m2, 0.01, 2.0),
-            ("stretch_warp_n_m", self.stretch_warp_n_m, 10.0, 1e6),
-            ("stretch_weft_n_m", self.stretch_weft_n_m, 10.0, 1e6),
+            ("stretch_warp_n_m", self.stretch_warp_n_m, 10.0, f32::INFINITY),
+            ("stretch_weft_n_m", self.stretch_weft_n_m, 10.0, f32::INFINITY),
             ("shear_n_m", self.shear_n_m, 1.0, 1e5),
             ("bend_warp_un_m", self.bend_warp_un_m, 0.0, 1e4),
             ("bend_weft_un_m", self.bend_weft_un_m, 0.0, 1e4),
@@ -140,6 +140,15 @@ mod tests {
         }
         let error = Fabric::built_in("tin").unwrap_err().to_string();
         assert!(error.contains("tin") && error.contains("cotton-lawn"), "{error}");
+    }
+
+    #[test]
+    fn an_infinite_stiffness_is_inextensible() {
+        let text = include_str!("../data/fabrics/cotton-lawn.toml");
+        let tape = text.replace("stretch_warp_n_m = 6000.0", "stretch_warp_n_m = inf");
+        assert_eq!(Fabric::parse("tape", &tape).unwrap().stretch_warp_n_m, f32::INFINITY);
+        let sheared = text.replace("shear_n_m = 60.0", "shear_n_m = inf");
+        assert!(Fabric::parse("sheared", &sheared).unwrap_err().to_string().contains("shear_n_m"));
     }
 
     #[test]

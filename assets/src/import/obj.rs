@@ -185,7 +185,7 @@ impl Welded {
         };
         let faces = self.faces.into_iter().map(|f| warp_upright(&self.positions, f)).collect();
         let parts = vec![Part::All; self.positions.len()];
-        Ok(Shape { cut: self.positions.clone(), worn: self.positions, faces, fixed, parts, weights: Vec::new() })
+        Ok(Shape { cut: self.positions.clone(), worn: self.positions, faces, fixed, parts, ..Shape::default() })
     }
 }
 

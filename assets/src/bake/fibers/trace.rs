@@ -25,7 +25,8 @@ const STRAIGHT_COS: f32 = 0.7;
 
 /// Follows the edges of a mesh as fibers: warp, weft, bias, in this order. Every edge is in exactly one, be it alone
 /// ([`Fiber::is_loose`]). No two warp fibers cross, nor do two weft fibers; but a warp fiber that would start within the
-/// cloth, because there is more cloth below than above, starts at a vertex of the fiber that it hangs from.
+/// cloth, because there is more cloth below than above, starts at a vertex of the fiber that it hangs from; such come
+/// after all others of the warp.
 pub fn trace(positions: &[Vec3], edges: &[Edge]) -> Vec<Fiber> {
     let mut used = vec![false; edges.len()];
     let mut fibers = Vec::new();
@@ -36,6 +37,8 @@ pub fn trace(positions: &[Vec3], edges: &[Edge]) -> Vec<Fiber> {
         let mut chains = threads.chains();
         if direction == Direction::Warp {
             threads.hang(&mut chains, &used);
+            // Those that stand on their own come first, so that who hands out vertices hands them to these.
+            chains.sort_by_key(|fiber| threads.behind[fiber.vertices[1] as usize] != fiber.edges[0]);
         }
         chains.iter().flat_map(|fiber| &fiber.edges).for_each(|&e| used[e as usize] = true);
         fibers.append(&mut chains);
