@@ -16,6 +16,8 @@
 //! that goes as planned: at 120 Hz a helper that never slept would burn a whole core, and no other way of sleeping ends
 //! when the next step begins. [`Crew::wake`] hides the time of waking behind whatever comes before the cloth.
 
+mod own;
+
 use std::any::Any;
 use std::cell::UnsafeCell;
 use std::fmt;
@@ -30,6 +32,8 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use thiserror::Error;
+
+pub use own::Own;
 
 /// Shares of a phase, and most workers of a crew.
 pub const SHARES: usize = 2;

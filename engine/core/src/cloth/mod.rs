@@ -6,7 +6,6 @@
 
 pub mod bending;
 pub mod contact;
-pub mod contact2;
 pub mod fibers;
 pub mod guard;
 pub mod links;
