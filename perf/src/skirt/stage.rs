@@ -1,0 +1,164 @@
+//! The skirt on its body, ready to be stepped: baked, placed and moved by the scene's clock.
+
+use glam::{Affine3A, Vec3, Vec3A, Vec4};
+use toile_assets::bake::bake;
+use toile_assets::garment::{Garment, Shape};
+use toile_assets::limits::MAX_SPHERES;
+use toile_assets::scene::skirt;
+use toile_assets::skeleton::BONES;
+use toile_engine::cloth::{Cloth, Settings, Step};
+use toile_engine::colliders::{Colliders, RestSphere};
+
+use super::heap::HeapProbe;
+use super::options::{MESH_SEED, Mesh, Options};
+use super::{SkirtError, Spheres};
+
+/// One or several skirts on one body.
+#[derive(Debug)]
+pub struct Stage {
+    /// What was asked for.
+    pub options: Options,
+    /// Vertices a side.
+    pub side: usize,
+    /// The mesh that was baked.
+    pub shape: Shape,
+    /// The skirt, shared by all cloths.
+    pub garment: Garment,
+    /// The skirts' states.
+    pub cloths: Vec<Cloth>,
+    /// The body's spheres as asked for at the end of the coming step; a hard case may change them.
+    pub spheres: Spheres,
+    /// The bones at the end of the coming step; a hard case may change them.
+    pub palette: [Affine3A; BONES],
+    /// Steps taken.
+    pub tick: u64,
+    /// Bytes on the heap of garments, states and colliders, where the program counts them.
+    pub memory_bytes: Option<u64>,
+    settings: Settings,
+    colliders: Colliders,
+}
+
+impl Stage {
+    /// The scene at its start.
+    ///
+    /// # Errors
+    /// Where the options cannot be met.
+    pub fn new(options: &Options, heap: &HeapProbe) -> Result<Self, SkirtError> {
+        Self::with(options, heap, |_| {})
+    }
+
+    /// The same with a mesh that `change` has changed before it is baked.
+    ///
+    /// # Errors
+    /// Where the options cannot be met.
+    pub fn with(options: &Options, heap: &HeapProbe, change: impl FnOnce(&mut Shape)) -> Result<Self, SkirtError> {
+        let side = options.side()?;
+        let settings = options.settings()?;
+        let mut shape = match options.mesh {
+            Mesh::Grid => skirt::shape(side),
+            Mesh::Irregular => skirt::irregular(side, MESH_SEED),
+        };
+        let fabric = skirt::fabric(&shape, options.stretch);
+        change(&mut shape);
+        let before = heap.read();
+        let garment = bake("skirt", "one", &shape, &fabric)?;
+        let rest = skirt::JOINTS.map(|(p, r)| RestSphere {
+            bone: 0,
+            centre: Vec3::from_array(p.map(|x| x as f32)),
+            radius: r as f32,
+        });
+        let colliders = Colliders::new(&rest, &skirt::CAPSULES, false)?;
+        let cloths = (0..options.garments.max(1)).map(|_| Cloth::new(&garment, &colliders)).collect();
+        let memory_bytes = before.zip(heap.read()).map(|(before, after)| after.live_bytes - before.live_bytes);
+        let mut stage = Self {
+            options: *options,
+            side,
+            shape,
+            garment,
+            cloths,
+            spheres: [Vec4::ZERO; MAX_SPHERES],
+            palette: [Affine3A::IDENTITY; BONES],
+            tick: 0,
+            memory_bytes: memory_bytes.and_then(|bytes| u64::try_from(bytes).ok()),
+            settings,
+            colliders,
+        };
+        // Where the body stands at time 0; the first step then sweeps as every other.
+        stage.ask();
+        stage.colliders.place_spheres(&stage.spheres);
+        Ok(stage)
+    }
+
+    /// Asks the scene where body and root are at the end of the coming step. Not timed.
+    pub fn prepare(&mut self) {
+        self.tick += 1;
+        self.ask();
+    }
+
+    fn ask(&mut self) {
+        let time = self.tick as f64 * f64::from(self.options.step_s);
+        self.spheres = skirt::spheres(self.options.motion, time);
+        self.palette[0] = skirt::root(self.options.motion, time);
+    }
+
+    /// One step of every skirt: what is timed.
+    pub fn step(&mut self) {
+        self.colliders.place_spheres(&self.spheres);
+        let step = Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings };
+        for cloth in &mut self.cloths {
+            cloth.step(&self.garment, &step);
+        }
+    }
+
+    /// Substeps of a step.
+    pub fn substeps(&self) -> u32 {
+        self.settings.substeps
+    }
+
+    /// Lanes of the kernels.
+    pub fn lanes(&self) -> usize {
+        1
+    }
+
+    /// Steps taken back because something was not finite, and particles held at the speed limit, of all skirts.
+    pub fn events(&self) -> [u64; 2] {
+        self.cloths.iter().fold([0; 2], |[a, b], c| [a + c.events.rolled_back, b + c.events.speed_limited])
+    }
+
+    /// Mean time of each stage of a step since the last call (us), by name; empty where the engine does not say.
+    pub fn stages_us(&self) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+
+    /// Mass of each particle that moves, 0 of one that is pinned (kg).
+    pub fn masses(&self) -> Vec<f64> {
+        let mass = |w: &f32| if *w > 0.0 { f64::from(*w).recip() } else { 0.0 };
+        self.garment.inverse_mass.iter().map(mass).collect()
+    }
+
+    /// Energy of motion of the particles that move, of all skirts (J).
+    pub fn kinetic_energy(&self) -> f64 {
+        let masses = self.masses();
+        let of = |c: &Cloth| -> f64 {
+            c.velocities.iter().zip(&masses).map(|(v, m)| 0.5 * m * f64::from(v.length_squared())).sum()
+        };
+        self.cloths.iter().map(of).sum()
+    }
+
+    /// The particle that each vertex of the shape became.
+    pub fn particle_of(&self) -> Vec<u32> {
+        (0..self.shape.cut.len() as u32).collect()
+    }
+
+    /// FNV-1a over the bits of all positions and velocities.
+    pub fn state_hash(&self) -> u64 {
+        let numbers = self.cloths.iter().flat_map(|c| c.positions.iter().chain(c.velocities.iter()));
+        let bytes = numbers.flat_map(|p| p.to_array()).flat_map(|x| x.to_bits().to_le_bytes());
+        bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    }
+
+    /// Puts one particle of the first skirt where it cannot be, as a fault of memory would.
+    pub fn spoil(&mut self, particle: usize, position: Vec3A) {
+        self.cloths[0].positions[particle] = position;
+    }
+}
