@@ -185,6 +185,20 @@ mod tests {
     }
 
     #[test]
+    fn a_skirt_summary_says_time_and_error_and_warns_of_what_should_not_be() {
+        let mut report = Report { verts: 4_096, y_ratio: 0.58, motion: "walk", ..Report::default() };
+        report.strain.mean = 0.0014;
+        report.memory_bytes = Some(420_000);
+        let text = skirt(&report, Paint::none());
+        for said in ["4096 vertices", "0.58 of it", "0.140 %", "0.420 MB", "allocations a step: not counted"] {
+            assert!(text.contains(said), "{said} is not in: {text}");
+        }
+        assert!(!text.contains("the hem does not"));
+        report.hem_winding_wrong = 3;
+        assert!(skirt(&report, Paint::none()).contains("3 frames in which the hem does not"));
+    }
+
+    #[test]
     fn a_summary_says_each_zone_and_each_file() {
         let zone = Zone {
             zone: "waist".into(),
