@@ -49,7 +49,7 @@ pub fn skirt(report: &Report, paint: Paint) -> String {
     let Report { verts, motion, mesh, stretch, substeps, lanes, threads, garments, strain, step_us, .. } = report;
     let mut text = String::new();
     line(&mut text, &paint.tone(&format!("A skirt of {verts} vertices ({mesh}, {stretch}), {motion}"), Tone::Strong));
-    let quality = report.quality.map_or_else(String::new, |q| format!("quality {q}, "));
+    let quality = format!("quality {}, ", report.quality);
     let wind = if report.wind { ", wind" } else { "" };
     line(
         &mut text,

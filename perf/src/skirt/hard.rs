@@ -9,6 +9,7 @@ use super::SkirtError;
 use super::gauge::{Frame, Gauge};
 use super::heap::HeapProbe;
 use super::options::{Options, WARM_UP};
+use super::report::Events;
 use super::stage::Stage;
 
 /// Something that is wrong for one frame.
@@ -24,61 +25,67 @@ pub enum Fault {
     Pin(f32),
 }
 
-/// Steps before the fault over which the baseline is taken: one cycle of the walk.
-const BASELINE: usize = 120;
-
-/// Steps that are watched from the fault on.
+/// Steps that are watched from the fault on: two cycles of the walk.
 const WATCHED: usize = 240;
 
-/// Times its baseline up to which strain counts as back: no two cycles of a swinging skirt are equal.
+/// Times the undisturbed skirt's strain up to which strain counts as back: a skirt that was pushed swings differently
+/// ever after, and no two cycles of it are equal.
 const BACK: f64 = 1.25;
 
 /// How the skirt took a fault.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Recovery {
-    /// Greatest mean strain of a frame before the fault.
+    /// Greatest mean strain of a frame of the same skirt undisturbed, over the same steps.
     pub baseline_mean: f64,
-    /// Greatest 99th percentile of a frame before the fault.
+    /// Greatest 99th percentile of a frame of the same.
     pub baseline_p99: f64,
+    /// Greatest stretch of an edge of the same.
+    pub baseline_stretch: f64,
     /// Greatest stretch of an edge from the fault on.
     pub worst_stretch: f64,
     /// Steps after the faulty one until strain, mean and 99th percentile, is back within a quarter above its baseline
-    /// for good.
+    /// for good; the faulty step itself is the first.
     pub recovered_steps: usize,
     /// Vertices published that were not finite, summed over the frames.
     pub nonfinite: usize,
-    /// Steps taken back.
-    pub rolled_back: u64,
+    /// What the engine says has happened.
+    pub events: Events,
 }
 
-/// Runs the scene into a fault and watches what follows.
+/// Runs the scene into a fault, and once more without it, and compares what follows.
 ///
 /// # Errors
 /// Where the options cannot be met.
 pub fn recover(options: &Options, fault: Fault, heap: &HeapProbe) -> Result<Recovery, SkirtError> {
+    let (undisturbed, _) = watch(options, None, heap)?;
+    let (frames, events) = watch(options, Some(fault), heap)?;
+    let greatest = |of: fn(&Frame) -> f64, frames: &[Frame]| frames.iter().map(of).fold(0.0, f64::max);
+    let baseline_mean = greatest(|f| f.strain_mean, &undisturbed);
+    let baseline_p99 = greatest(|f| f.strain_p99, &undisturbed);
+    let back =
+        |f: &Frame| f.nonfinite == 0 && f.strain_mean <= BACK * baseline_mean && f.strain_p99 <= BACK * baseline_p99;
+    Ok(Recovery {
+        baseline_mean,
+        baseline_p99,
+        baseline_stretch: greatest(|f| f.stretch_max, &undisturbed),
+        worst_stretch: greatest(|f| f.stretch_max, &frames),
+        recovered_steps: frames.iter().rposition(|f| !back(f)).map_or(0, |last| last + 1),
+        nonfinite: frames.iter().map(|f| f.nonfinite).sum(),
+        events,
+    })
+}
+
+/// The frames from the fault on, and what happened in them.
+fn watch(options: &Options, fault: Option<Fault>, heap: &HeapProbe) -> Result<(Vec<Frame>, Events), SkirtError> {
     let mut stage = Stage::new(options, heap)?;
     let mut gauge = Gauge::new(&stage);
-    for _ in 0..WARM_UP - BASELINE {
-        step(&mut stage, &mut gauge, None);
+    for _ in 0..WARM_UP {
+        stage.prepare();
+        stage.step();
     }
-    let mut found = Recovery::default();
-    for _ in 0..BASELINE {
-        let frame = step(&mut stage, &mut gauge, None);
-        found.baseline_mean = found.baseline_mean.max(frame.strain_mean);
-        found.baseline_p99 = found.baseline_p99.max(frame.strain_p99);
-    }
-    let before = stage.events()[0];
-    for after in 0..WATCHED {
-        let frame = step(&mut stage, &mut gauge, (after == 0).then_some(fault));
-        found.worst_stretch = found.worst_stretch.max(frame.stretch_max);
-        found.nonfinite += frame.nonfinite;
-        let back = frame.strain_mean <= BACK * found.baseline_mean && frame.strain_p99 <= BACK * found.baseline_p99;
-        if !back || frame.nonfinite > 0 {
-            found.recovered_steps = after + 1;
-        }
-    }
-    found.rolled_back = stage.events()[0] - before;
-    Ok(found)
+    let before = stage.events();
+    let frames = (0..WATCHED).map(|after| step(&mut stage, &mut gauge, fault.filter(|_| after == 0))).collect();
+    Ok((frames, stage.events().since(before)))
 }
 
 fn step(stage: &mut Stage, gauge: &mut Gauge, fault: Option<Fault>) -> Frame {

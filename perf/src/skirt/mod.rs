@@ -6,7 +6,7 @@
 
 pub mod claim;
 mod gauge;
-mod hard;
+pub mod hard;
 pub mod heap;
 pub mod options;
 pub mod report;
@@ -27,7 +27,7 @@ use crate::yardstick::Yardstick;
 pub use gauge::{Frame, Gauge};
 use heap::HeapProbe;
 use options::{Options, WARM_UP};
-use report::{Events, Report};
+use report::Report;
 pub use stage::Stage;
 
 /// The body's spheres: centre and radius, world (m).
@@ -70,6 +70,9 @@ pub enum SkirtError {
 /// Steps at the end over which the greatest energy of motion is looked for: a second.
 const RESTING_STEPS: usize = 120;
 
+/// Steps after the last that counts in which the engine times its stages, which costs some time of its own.
+const METERED_STEPS: usize = 240;
+
 /// Runs the scene as asked, and tells time and error of the same steps.
 ///
 /// # Errors
@@ -88,7 +91,6 @@ fn measure_with(options: &Options, heap: &HeapProbe, change: impl FnOnce(&mut Sh
         stage.step();
     }
     let before = stage.events();
-    stage.stages_us();
     let mut readings = Vec::new();
     for _ in 0..options.runs.max(1) {
         readings.push(yardstick.read_us());
@@ -96,9 +98,9 @@ fn measure_with(options: &Options, heap: &HeapProbe, change: impl FnOnce(&mut Sh
         run.end_run();
     }
     readings.push(yardstick.read_us());
-    let [rolled_back, speed_limited] = stage.events();
     let mut report = run.report(&stage, quantile(&mut readings, 0.5));
-    report.events = Events { rolled_back: rolled_back - before[0], speed_limited: speed_limited - before[1] };
+    report.events = stage.events().since(before);
+    report.stages_us = stage.stages_us(METERED_STEPS).into_iter().collect();
     Ok(report)
 }
 
@@ -191,7 +193,8 @@ impl Run {
         let p50 = quantile(&mut self.medians.clone(), 0.5);
         let mut time = |part| quantile(&mut self.times, part);
         Report {
-            lanes: stage.lanes(),
+            quality: stage.settings().quality.name(),
+            lanes: stage.settings().width.lanes(),
             substeps: stage.substeps(),
             warm_up: WARM_UP,
             step_us: report::StepMicros { p50, p99: time(0.99), p999: time(0.999), max: time(1.0) },
@@ -215,9 +218,9 @@ impl Run {
             },
             hem_winding_wrong: self.wrong_frames,
             nonfinite: self.nonfinite,
-            stages_us: stage.stages_us().into_iter().collect(),
             allocations_per_step: self.heap.read().map(|_| self.allocations as f64 / self.times.len() as f64),
-            memory_bytes: stage.memory_bytes,
+            memory_bytes: stage.memory_bytes.map(|[garment, states]| garment + states),
+            memory_garment_bytes: stage.memory_bytes.map(|[garment, _]| garment),
             kinetic_energy_mj: stage.kinetic_energy() * 1e3,
             kinetic_energy_max_mj: self.energies.iter().copied().fold(0.0, f64::max),
             state_hash: format!("{:016x}", stage.state_hash()),

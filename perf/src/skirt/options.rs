@@ -1,7 +1,7 @@
 //! What a run of the skirt is asked for, and the engine's settings for it: the one place that knows both.
 
 use toile_assets::scene::skirt::{Motion, Stretch};
-use toile_engine::cloth::Settings;
+use toile_engine::cloth::{Quality, Settings};
 use toile_engine::lanes::Width;
 
 use super::SkirtError;
@@ -14,17 +14,6 @@ pub enum Mesh {
     Grid,
     /// As many vertices strewn at random, Delaunay triangles.
     Irregular,
-}
-
-/// Tested combinations of settings.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quality {
-    /// For many garments, or a slow machine.
-    Draft,
-    /// For a shop.
-    Shop,
-    /// For judging a cut.
-    Fine,
 }
 
 /// One run of the benchmark.
@@ -110,16 +99,13 @@ impl Options {
         if self.threads > 1 {
             return refuse("--threads 2");
         }
-        if self.lanes.is_some() {
-            return refuse("--lanes");
-        }
-        if self.quality.is_some() {
-            return refuse("--quality");
-        }
-        if self.step_s != toile_assets::limits::STEP_SECONDS {
-            return refuse("a step of another length");
-        }
         let default = Settings::default();
-        Ok(Settings { substeps: self.substeps.unwrap_or(default.substeps), ..default })
+        Ok(Settings {
+            quality: self.quality.unwrap_or(default.quality),
+            substeps: self.substeps,
+            step_seconds: self.step_s,
+            width: self.lanes.unwrap_or(default.width),
+            ..default
+        })
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use toile_assets::scene::skirt::{Motion, Stretch};
 
-use super::options::{Mesh, Options, Quality};
+use super::options::{Mesh, Options};
 
 /// The distribution of a step's time (us).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -53,10 +53,53 @@ pub struct Penetration {
 /// What happened that should not have, over the measured steps.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Events {
+    /// Particles that were put back to their last good place.
+    pub repaired: u64,
     /// Steps taken back because something was not finite.
     pub rolled_back: u64,
     /// Particle substeps at the speed limit.
     pub speed_limited: u64,
+    /// Pinned particles whose target was not finite and was not followed.
+    pub held_pins: u64,
+    /// Steps in which the root jumped.
+    pub teleports: u64,
+    /// Collision spheres that jumped or were not finite and were held.
+    pub held_colliders: u64,
+}
+
+impl Events {
+    fn fields(&mut self) -> [&mut u64; 6] {
+        let Self { repaired, rolled_back, speed_limited, held_pins, teleports, held_colliders } = self;
+        [repaired, rolled_back, speed_limited, held_pins, teleports, held_colliders]
+    }
+
+    /// What happened since an earlier count.
+    pub fn since(mut self, mut earlier: Self) -> Self {
+        self.fields().into_iter().zip(earlier.fields()).for_each(|(now, then)| *now -= *then);
+        self
+    }
+}
+
+impl From<toile_engine::cloth::guard::Events> for Events {
+    fn from(e: toile_engine::cloth::guard::Events) -> Self {
+        Self {
+            repaired: e.repaired,
+            rolled_back: e.rolled_back,
+            speed_limited: e.speed_limited,
+            held_pins: e.held_pins,
+            teleports: e.teleports,
+            held_colliders: e.held_colliders,
+        }
+    }
+}
+
+impl std::iter::Sum for Events {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |mut sum, mut e| {
+            sum.fields().into_iter().zip(e.fields()).for_each(|(sum, e)| *sum += *e);
+            sum
+        })
+    }
 }
 
 /// One run, complete.
@@ -78,8 +121,8 @@ pub struct Report {
     pub threads: usize,
     /// Lanes of the kernels.
     pub lanes: usize,
-    /// `draft`, `shop` or `fine`, where one was asked for.
-    pub quality: Option<&'static str>,
+    /// `draft`, `shop` or `fine`.
+    pub quality: &'static str,
     /// Substeps of a step.
     pub substeps: u32,
     /// Steps before the first that counts.
@@ -110,8 +153,10 @@ pub struct Report {
     pub stages_us: BTreeMap<&'static str, f64>,
     /// Heap allocations a step, of all threads, where they are counted.
     pub allocations_per_step: Option<f64>,
-    /// Heap bytes of the baked garment, the states and the colliders, where they are counted.
+    /// Heap bytes of the baked garment and of all skirts' states, where they are counted.
     pub memory_bytes: Option<u64>,
+    /// Of these the garment's, which equal skirts share; it holds what is drawn and measured as well.
+    pub memory_garment_bytes: Option<u64>,
     /// Energy of motion at the end (mJ).
     pub kinetic_energy_mj: f64,
     /// The greatest of the last 120 steps (mJ).
@@ -139,11 +184,6 @@ impl Report {
             wind: options.wind,
             garments: options.garments,
             threads: options.threads,
-            quality: options.quality.map(|q| match q {
-                Quality::Draft => "draft",
-                Quality::Shop => "shop",
-                Quality::Fine => "fine",
-            }),
             runs: options.runs,
             steps: options.steps,
             ..Self::default()

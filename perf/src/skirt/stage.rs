@@ -6,11 +6,13 @@ use toile_assets::garment::{Garment, Shape};
 use toile_assets::limits::MAX_SPHERES;
 use toile_assets::scene::skirt;
 use toile_assets::skeleton::BONES;
+use toile_engine::cloth::program::STAGES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 
-use super::heap::HeapProbe;
+use super::heap::{Heap, HeapProbe};
 use super::options::{MESH_SEED, Mesh, Options};
+use super::report::Events;
 use super::{SkirtError, Spheres};
 
 /// One or several skirts on one body.
@@ -32,8 +34,8 @@ pub struct Stage {
     pub palette: [Affine3A; BONES],
     /// Steps taken.
     pub tick: u64,
-    /// Bytes on the heap of garments, states and colliders, where the program counts them.
-    pub memory_bytes: Option<u64>,
+    /// Bytes on the heap of the baked garment, and of the states of all skirts, where the program counts them.
+    pub memory_bytes: Option<[u64; 2]>,
     settings: Settings,
     colliders: Colliders,
 }
@@ -62,6 +64,7 @@ impl Stage {
         change(&mut shape);
         let before = heap.read();
         let garment = bake("skirt", "one", &shape, &fabric)?;
+        let baked = heap.read();
         let rest = skirt::JOINTS.map(|(p, r)| RestSphere {
             bone: 0,
             centre: Vec3::from_array(p.map(|x| x as f32)),
@@ -69,7 +72,8 @@ impl Stage {
         });
         let colliders = Colliders::new(&rest, &skirt::CAPSULES, false)?;
         let cloths = (0..options.garments.max(1)).map(|_| Cloth::new(&garment, &colliders)).collect();
-        let memory_bytes = before.zip(heap.read()).map(|(before, after)| after.live_bytes - before.live_bytes);
+        let between = |a: Option<Heap>, b: Option<Heap>| u64::try_from(b?.live_bytes - a?.live_bytes).ok();
+        let memory_bytes = between(before, baked).zip(between(baked, heap.read())).map(|(a, b)| [a, b]);
         let mut stage = Self {
             options: *options,
             side,
@@ -79,7 +83,7 @@ impl Stage {
             spheres: [Vec4::ZERO; MAX_SPHERES],
             palette: [Affine3A::IDENTITY; BONES],
             tick: 0,
-            memory_bytes: memory_bytes.and_then(|bytes| u64::try_from(bytes).ok()),
+            memory_bytes,
             settings,
             colliders,
         };
@@ -110,24 +114,33 @@ impl Stage {
         }
     }
 
-    /// Substeps of a step.
+    /// Substeps of a step, once one has been taken.
     pub fn substeps(&self) -> u32 {
-        self.settings.substeps
+        self.cloths[0].substeps()
     }
 
-    /// Lanes of the kernels.
-    pub fn lanes(&self) -> usize {
-        1
+    /// How the steps are done.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
     }
 
-    /// Steps taken back because something was not finite, and particles held at the speed limit, of all skirts.
-    pub fn events(&self) -> [u64; 2] {
-        self.cloths.iter().fold([0; 2], |[a, b], c| [a + c.events.rolled_back, b + c.events.speed_limited])
+    /// What happened that should not have, to all skirts since the start.
+    pub fn events(&self) -> Events {
+        self.cloths.iter().map(|c| Events::from(c.events)).sum()
     }
 
-    /// Mean time of each stage of a step since the last call (us), by name; empty where the engine does not say.
-    pub fn stages_us(&self) -> Vec<(&'static str, f64)> {
-        Vec::new()
+    /// Takes some steps more with the engine's own meters on: the mean time of each stage of a step, all skirts (us).
+    pub fn stages_us(&mut self, steps: usize) -> Vec<(&'static str, f64)> {
+        self.settings.timed = true;
+        let mut sums = [0; STAGES.len()];
+        for _ in 0..steps {
+            self.prepare();
+            self.step();
+            let told = self.cloths.iter().map(|c| c.stage_ns);
+            told.for_each(|ns| sums.iter_mut().zip(ns).for_each(|(sum, ns)| *sum += ns));
+        }
+        self.settings.timed = false;
+        STAGES.into_iter().zip(sums).map(|(name, ns)| (name, ns as f64 * 1e-3 / steps as f64)).collect()
     }
 
     /// Mass of each particle that moves, 0 of one that is pinned (kg).
@@ -138,27 +151,29 @@ impl Stage {
 
     /// Energy of motion of the particles that move, of all skirts (J).
     pub fn kinetic_energy(&self) -> f64 {
-        let masses = self.masses();
-        let of = |c: &Cloth| -> f64 {
-            c.velocities.iter().zip(&masses).map(|(v, m)| 0.5 * m * f64::from(v.length_squared())).sum()
-        };
-        self.cloths.iter().map(of).sum()
+        self.cloths.iter().map(|c| c.kinetic_energy(&self.garment)).sum()
     }
 
     /// The particle that each vertex of the shape became.
     pub fn particle_of(&self) -> Vec<u32> {
-        (0..self.shape.cut.len() as u32).collect()
+        let mut particle = vec![0; self.garment.source.len()];
+        self.garment.source.iter().enumerate().for_each(|(p, &v)| particle[v as usize] = p as u32);
+        particle
     }
 
-    /// FNV-1a over the bits of all positions and velocities.
+    /// FNV-1a over the bits of all positions and velocities, vertex by vertex of the shape: the same motion has the same
+    /// hash in whatever order particles are kept.
     pub fn state_hash(&self) -> u64 {
-        let numbers = self.cloths.iter().flat_map(|c| c.positions.iter().chain(c.velocities.iter()));
-        let bytes = numbers.flat_map(|p| p.to_array()).flat_map(|x| x.to_bits().to_le_bytes());
+        let particles = self.particle_of();
+        let of = |c: &Cloth, p: u32| [c.positions[p as usize], c.velocity(p as usize)];
+        let numbers = self.cloths.iter().flat_map(|c| particles.iter().flat_map(move |&p| of(c, p)));
+        let bytes = numbers.flat_map(|v| v.to_array()).flat_map(|x| x.to_bits().to_le_bytes());
         bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
     }
 
     /// Puts one particle of the first skirt where it cannot be, as a fault of memory would.
     pub fn spoil(&mut self, particle: usize, position: Vec3A) {
-        self.cloths[0].positions[particle] = position;
+        let velocity = self.cloths[0].velocity(particle);
+        self.cloths[0].disturb(particle, position, velocity);
     }
 }

@@ -2,8 +2,9 @@
 
 use clap::{ArgMatches, value_parser};
 use toile_assets::scene::skirt::{Motion, Stretch};
+use toile_engine::cloth::Quality;
 use toile_engine::lanes::Width;
-use toile_perf::skirt::options::{Mesh, Options, Quality};
+use toile_perf::skirt::options::{Mesh, Options};
 
 use super::{flag, json, required, text};
 use crate::exit::AppError;
@@ -68,11 +69,7 @@ pub(super) fn parse(matches: &ArgMatches) -> Result<SkirtArgs, AppError> {
     let word = |name: &str| required::<String>(matches, name);
     let count = |name: &str| usize::try_from(required::<u64>(matches, name)?).map_err(AppError::internal);
     let lanes = matches.get_one::<String>("lanes").and_then(|l| l.parse().ok()).and_then(Width::of);
-    let quality = matches.get_one::<String>("quality").map(|q| match q.as_str() {
-        "draft" => Quality::Draft,
-        "shop" => Quality::Shop,
-        _ => Quality::Fine,
-    });
+    let quality = matches.get_one::<String>("quality").and_then(|q| q.parse::<Quality>().ok());
     let options = Options {
         verts: count("verts")?,
         motion: match word("motion")?.as_str() {
