@@ -25,8 +25,8 @@ fn stage(options: &Options) -> Stage {
 }
 
 /// Means of strain mean and 99th percentile, worst of all else, over the steps after the warm-up.
-fn run(mut stage: Stage) -> Frame {
-    let mut gauge = Gauge::new(&stage);
+fn run(stage: &mut Stage) -> Frame {
+    let mut gauge = Gauge::new(stage);
     let mut sum = Frame::default();
     for step in 0..WARM_UP + STEPS {
         stage.prepare();
@@ -50,7 +50,7 @@ fn run(mut stage: Stage) -> Frame {
 
 /// Strain mean and 99th percentile stay below bounds (%), nothing is inside the body, the hem is around both legs.
 fn holds(name: &str, options: &Options, [mean, p99]: [f64; 2]) {
-    let found = run(stage(options));
+    let found = run(&mut stage(options));
     eprintln!("{name}: {found:?}");
     assert!(found.strain_mean * 100.0 <= mean && found.strain_mean > 0.0, "{name}: {found:?}");
     assert!(found.strain_p99 * 100.0 <= p99, "{name}: {found:?}");
@@ -139,15 +139,20 @@ fn nothing_that_is_no_number_is_published_or_stays() {
     });
 }
 
+/// How much a strain that is stable may differ from one cycle to the next (1).
+const STEADY: f64 = 1.5;
+
 #[test]
 fn long_steps_and_unequal_masses_are_stable() {
     let slow = stage(&Options { step_s: 1.0 / 30.0, ..small() });
     let patched = Stage::with(&small(), &HeapProbe::none(), patches).expect("the scene can be built");
     let hemmed = Stage::with(&small(), &HeapProbe::none(), heavy_hem).expect("the scene can be built");
-    for (name, stage) in [("dt = 1/30", slow), ("patches", patched), ("heavy hem", hemmed)] {
-        let found = run(stage);
-        eprintln!("{name}: {found:?}");
-        assert!(found.stretch_max <= 1.0, "{name}: {found:?}");
+    for (name, mut stage) in [("dt = 1/30", slow), ("patches", patched), ("heavy hem", hemmed)] {
+        let [first, last] = [(); 2].map(|()| run(&mut stage));
+        eprintln!("{name}: {first:?}, then {last:?}");
+        assert!(last.strain_mean <= STEADY * first.strain_mean, "{name}: {first:?}, then {last:?}");
+        let farthest = stage.cloths[0].positions.iter().map(|p| p.length()).fold(0.0, f32::max);
+        assert!(farthest < 3.0, "{name}: a part of the skirt is {farthest} m away");
     }
 }
 

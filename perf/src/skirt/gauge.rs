@@ -43,10 +43,10 @@ pub struct Frame {
     pub nonfinite: usize,
 }
 
-/// An edge that strain is measured on.
+/// An edge that strain is measured on; kept small, so that measuring does not sweep the cloth out of the caches.
 #[derive(Debug, Clone, Copy)]
 struct Edge {
-    ends: [usize; 2],
+    ends: [u32; 2],
     rest: f64,
     /// Strain by the weight below it.
     elastic: f64,
@@ -71,14 +71,13 @@ impl Gauge {
         particle_of.iter().enumerate().for_each(|(v, &p)| row_of[p as usize] = v / stage.side);
         let free: Vec<bool> = stage.garment.inverse_mass.iter().map(|w| *w > 0.0).collect();
         let edge = |([a, b], rest): &([u32; 2], f32)| {
-            let ends = [*a as usize, *b as usize];
-            let [upper, lower] = [row_of[ends[0]].min(row_of[ends[1]]), row_of[ends[0]].max(row_of[ends[1]])];
-            let elastic = if upper < lower { elastic[upper] } else { 0.0 };
-            Edge { ends, rest: f64::from(*rest), elastic }
+            let [one, other] = [row_of[*a as usize], row_of[*b as usize]];
+            let elastic = if one == other { 0.0 } else { elastic[one.min(other)] };
+            Edge { ends: [*a, *b], rest: f64::from(*rest), elastic }
         };
         // Edges of the pinned ring cannot stretch: counting them would flatter the solver.
         let edges: Vec<Edge> =
-            stage.garment.strain_edges.iter().map(edge).filter(|e| e.ends.iter().any(|i| free[*i])).collect();
+            stage.garment.strain_edges.iter().map(edge).filter(|e| e.ends.iter().any(|i| free[*i as usize])).collect();
         let hem: Vec<usize> = skirt::hem(stage.side).map(|v| particle_of[v] as usize).collect();
         Self { scratch: vec![0.0; edges.len()], loop_points: Vec::with_capacity(hem.len()), edges, free, hem }
     }
@@ -106,7 +105,7 @@ impl Gauge {
     fn strain(&mut self, positions: &[Vec3A], frame: &mut Frame) {
         let (mut sum, mut beyond_sum) = (0.0, 0.0);
         for (edge, strain) in self.edges.iter().zip(&mut self.scratch) {
-            let [a, b] = edge.ends.map(|i| Vec3::from(positions[i]).as_dvec3());
+            let [a, b] = edge.ends.map(|i| Vec3::from(positions[i as usize]).as_dvec3());
             let stretch = a.distance(b) / edge.rest - 1.0;
             *strain = stretch.abs();
             sum += *strain;

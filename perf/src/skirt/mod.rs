@@ -114,6 +114,8 @@ struct Run {
     /// Where the present run starts in `times`.
     first: usize,
     medians: Vec<f64>,
+    /// Sum of the frames' mean strains and their count at the end of each run.
+    marks: Vec<[f64; 2]>,
     allocations: u64,
     frames: u64,
     sums: [f64; 4],
@@ -135,6 +137,7 @@ impl Run {
             times: Vec::with_capacity(steps),
             first: 0,
             medians: Vec::new(),
+            marks: vec![[0.0; 2]],
             allocations: 0,
             frames: 0,
             sums: [0.0; 4],
@@ -186,6 +189,7 @@ impl Run {
         self.medians.push(quantile(&mut run, 0.5));
         self.first = self.times.len();
         self.left_inside += self.last_inside;
+        self.marks.push([self.sums[0], self.frames as f64]);
     }
 
     fn report(mut self, stage: &Stage, yardstick_us: f64) -> Report {
@@ -205,6 +209,7 @@ impl Run {
             strain: report::Strain {
                 mean,
                 p99,
+                run_mean: self.marks.windows(2).map(|m| (m[1][0] - m[0][0]) / (m[1][1] - m[0][1])).collect(),
                 max: self.worst.stretch_max,
                 compression_max: self.worst.compression_max,
                 beyond_elastic_max: self.worst.beyond_max,

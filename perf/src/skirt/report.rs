@@ -21,12 +21,14 @@ pub struct StepMicros {
 }
 
 /// How far warp and weft edges are from their length, as a part of it (0.01 is 1 %).
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Strain {
     /// Mean of |l/l0 - 1| over edges and frames.
     pub mean: f64,
     /// Mean of the frames' 99th percentiles.
     pub p99: f64,
+    /// Mean of each run: what grows from run to run is not stable.
+    pub run_mean: Vec<f64>,
     /// The worst stretch of any edge in any frame.
     pub max: f64,
     /// The worst compression.
