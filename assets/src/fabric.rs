@@ -23,6 +23,9 @@ pub struct Fabric {
     pub bend_warp_un_m: f32,
     /// Bending rigidity along the weft (uN m).
     pub bend_weft_un_m: f32,
+    /// Bending rigidity along the bias (uN m). Cloth without it bends as two families of threads that know nothing of
+    /// each other: along the bias a quarter of what warp and weft have together.
+    pub bend_bias_un_m: Option<f32>,
     /// Coulomb friction coefficient against the body.
     pub friction: f32,
     /// Rate at which motion through the air is damped (1/s).
@@ -116,7 +119,8 @@ impl Fabric {
             ("colour", self.colour[1], 0.0, 1.0),
             ("colour", self.colour[2], 0.0, 1.0),
         ];
-        for (key, value, low, high) in ranges {
+        let bias = self.bend_bias_un_m.map(|b| ("bend_bias_un_m", b, 0.0, 1e4));
+        for (key, value, low, high) in ranges.into_iter().chain(bias) {
             if !(low..=high).contains(&value) {
                 return Err(FabricError::Range { name: self.name.clone(), key, value, low, high });
             }
@@ -157,5 +161,10 @@ mod tests {
             Fabric::parse("odd", &format!("{text}\nstiffness = 0.8\n")).unwrap_err().to_string().contains("stiffness")
         );
         assert!(matches!(Fabric::parse("empty", ""), Err(FabricError::Syntax { .. })));
+        let bias = |value: f32| {
+            Fabric::parse("bias", &text.replace("friction", &format!("bend_bias_un_m = {value:?}\nfriction")))
+        };
+        assert_eq!(bias(3.0).unwrap().bend_bias_un_m, Some(3.0));
+        assert!(bias(-1.0).unwrap_err().to_string().contains("bend_bias_un_m"));
     }
 }

@@ -5,11 +5,17 @@
 //! Budget: 100 ms for 8,000 vertices; at load only.
 //! Thread: the loading thread.
 
+pub mod bending;
 pub mod fibers;
 mod links;
 pub mod order;
 pub mod runs;
+pub mod stiffness;
+pub mod tethers;
 pub mod weights;
+
+#[cfg(test)]
+pub(crate) mod meshes;
 
 use crate::fabric::Fabric;
 use crate::garment::shape::NO_VERTEX;
@@ -54,7 +60,14 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
         strain_edges: warp_weft.map(|e| ([new(e.a), new(e.b)], e.rest)).collect(),
         hoop_edges: weft.map(|e| ([new(e.a), new(e.b)], e.rest)).collect(),
         substeps: longest.div_ceil(ROWS_A_SUBSTEP).max(2) as u32,
-        layout: links::lay_out(&links::Baking { shape, fabric, edges: &edges, chains: &chains, pieces: &pieces, order: &order }),
+        layout: links::lay_out(&links::Baking {
+            shape,
+            fabric,
+            edges: &edges,
+            chains: &chains,
+            pieces: &pieces,
+            order: &order,
+        }),
         source: order.source.clone().into(),
     })
 }
