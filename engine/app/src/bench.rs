@@ -64,7 +64,9 @@ fn heap() -> Heap {
 fn refused(error: SkirtError) -> AppError {
     match error {
         SkirtError::NotSquare { .. } => AppError::Usage(format!("{error}; see `toile bench skirt --help`")),
-        SkirtError::Unsupported { .. } | SkirtError::NoSuchLanes { .. } => AppError::Device(error.to_string()),
+        SkirtError::Unsupported { .. } | SkirtError::NoSuchLanes { .. } | SkirtError::Crew(_) => {
+            AppError::Device(error.to_string())
+        }
         SkirtError::Mesh(_) | SkirtError::Colliders(_) | SkirtError::Body(_) => AppError::internal(error),
     }
 }

@@ -22,6 +22,7 @@ use toile_assets::body::BodyError;
 use toile_assets::garment::{MeshError, Shape};
 use toile_assets::limits::MAX_SPHERES;
 use toile_engine::colliders::ColliderError;
+use toile_engine::crew::CrewError;
 
 use crate::yardstick::Yardstick;
 pub use gauge::{Frame, Gauge};
@@ -62,6 +63,9 @@ pub enum SkirtError {
     /// The scene's body.
     #[error(transparent)]
     Colliders(#[from] ColliderError),
+    /// The engine's workers.
+    #[error(transparent)]
+    Crew(#[from] CrewError),
     /// The yardstick's body.
     #[error(transparent)]
     Body(#[from] BodyError),

@@ -96,8 +96,8 @@ impl Options {
         if self.wind {
             return refuse("--wind");
         }
-        if self.threads > 1 {
-            return refuse("--threads 2");
+        if self.threads > 1 && self.garments < 2 {
+            return refuse("--threads 2 on one garment");
         }
         let default = Settings::default();
         Ok(Settings {

@@ -1,5 +1,7 @@
 //! The skirt on its body, ready to be stepped: baked, placed and moved by the scene's clock.
 
+use std::time::{Duration, Instant};
+
 use glam::{Affine3A, Vec3, Vec3A, Vec4};
 use toile_assets::bake::bake;
 use toile_assets::garment::{Garment, Shape};
@@ -9,6 +11,7 @@ use toile_assets::skeleton::BONES;
 use toile_engine::cloth::program::STAGES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
+use toile_engine::crew::Crew;
 
 use super::heap::{Heap, HeapProbe};
 use super::options::{MESH_SEED, Mesh, Options};
@@ -16,7 +19,6 @@ use super::report::Events;
 use super::{SkirtError, Spheres};
 
 /// One or several skirts on one body.
-#[derive(Debug)]
 pub struct Stage {
     /// What was asked for.
     pub options: Options,
@@ -38,7 +40,12 @@ pub struct Stage {
     pub memory_bytes: Option<[u64; 2]>,
     settings: Settings,
     colliders: Colliders,
+    crew: Crew,
 }
+
+/// What a frame does between waking the cloth's helper and the cloth's step, posing and skinning the body, takes at
+/// least so long; the helper is awake by then.
+const BEFORE_CLOTH: Duration = Duration::from_micros(80);
 
 impl Stage {
     /// The scene at its start.
@@ -86,6 +93,7 @@ impl Stage {
             memory_bytes,
             settings,
             colliders,
+            crew: Crew::new(options.threads)?,
         };
         // Where the body stands at time 0; the first step then sweeps as every other.
         stage.ask();
@@ -97,6 +105,12 @@ impl Stage {
     pub fn prepare(&mut self) {
         self.tick += 1;
         self.ask();
+        if self.crew.wake() {
+            let woken = Instant::now();
+            while woken.elapsed() < BEFORE_CLOTH {
+                std::hint::spin_loop();
+            }
+        }
     }
 
     fn ask(&mut self) {
@@ -106,11 +120,19 @@ impl Stage {
     }
 
     /// One step of every skirt: what is timed.
+    ///
+    /// # Panics
+    /// Where the engine does.
     pub fn step(&mut self) {
         self.colliders.place_spheres(&self.spheres);
         let step = Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings };
-        for cloth in &mut self.cloths {
-            cloth.step(&self.garment, &step);
+        let garment = &self.garment;
+        match &mut self.cloths[..] {
+            [cloth] => cloth.step(garment, &step),
+            cloths => {
+                let done = self.crew.each(cloths, |_, cloth| cloth.step(garment, &step));
+                done.expect("a share of the step panicked");
+            }
         }
     }
 
