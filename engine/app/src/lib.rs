@@ -59,6 +59,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Record(args) => record::run(args),
         Command::Doctor(args) => doctor::run(args),
         Command::BenchSkinning(args) => bench::skinning(args),
+        Command::BenchSkirt(args) => bench::skirt(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }
