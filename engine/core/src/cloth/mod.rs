@@ -17,6 +17,7 @@ pub mod settings;
 pub mod settle;
 pub mod state;
 mod step;
+pub mod wind;
 
 use glam::{Affine3A, Vec3A};
 use toile_assets::garment::Garment;
