@@ -43,7 +43,7 @@ pub struct Edge {
 /// A chain of edges. A closed hoop repeats its first vertex at its end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fiber {
-    /// Which way it runs; single edges of it may lean as far as 45 degrees.
+    /// Which way it runs; single edges of it may lean as far as 60 degrees, one that it hangs by 75.
     pub direction: Direction,
     /// Vertices in order: one more than edges.
     pub vertices: Vec<u32>,

@@ -10,6 +10,7 @@ pub mod fibers;
 mod links;
 pub mod order;
 pub mod runs;
+pub mod solver;
 pub mod stiffness;
 pub mod tethers;
 pub mod weights;

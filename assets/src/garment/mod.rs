@@ -16,7 +16,7 @@ pub use check::MeshError;
 pub use direction::Direction;
 pub use layout::Layout;
 pub use shape::{Face, Part, Shape};
-pub use solver::Solver;
+pub use solver::{Overrides, Solver};
 
 use crate::fabric::Fabric;
 use crate::mesh::SkinWeights;

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::Overrides;
 use crate::mesh::SkinWeights;
 
 /// In the fourth place of a [`Face`]: the face is a triangle.
@@ -51,6 +52,8 @@ pub struct Shape {
     /// How many times heavier than its fabric each vertex is, a weight sewn into a hem for example `[vertices]`;
     /// vertices past its end have the fabric's mass.
     pub heavier: Vec<f32>,
+    /// Solvers that its garment file has chosen.
+    pub solver: Overrides,
 }
 
 impl Shape {

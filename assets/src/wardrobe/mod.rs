@@ -156,6 +156,7 @@ impl Style {
         };
         let carries = |p: glam::Vec3, bone| weights::trunk(bone) || (p.y > shoulders_from && weights::shoulders(bone));
         shape.weights = weights::transfer(shopper, &shape.worn, carries);
+        shape.solver = self.solver;
         Ok(shape)
     }
 
