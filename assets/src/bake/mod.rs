@@ -12,6 +12,7 @@ pub mod order;
 pub mod runs;
 pub mod solver;
 pub mod stiffness;
+pub mod survey;
 pub mod tethers;
 pub mod weights;
 

@@ -59,4 +59,18 @@ impl Garment {
     pub fn particles(&self) -> usize {
         self.start.len()
     }
+
+    /// Bytes that the cloth borrows: the constraints, and what is kept of each particle and triangle.
+    pub fn bytes(&self) -> usize {
+        self.layout.bytes()
+            + size_of_val(&*self.source)
+            + size_of_val(&*self.start)
+            + size_of_val(&*self.inverse_mass)
+            + size_of_val(&*self.parts)
+            + size_of_val(&*self.triangles)
+            + size_of_val(&*self.fixed)
+            + size_of_val(&*self.fixed_weights)
+            + size_of_val(&*self.strain_edges)
+            + size_of_val(&*self.hoop_edges)
+    }
 }
