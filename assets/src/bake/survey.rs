@@ -58,7 +58,7 @@ pub struct Survey {
 
 /// Surveys a shape that baking accepts.
 pub fn survey(shape: &Shape, fabric: &Fabric) -> Survey {
-    let edges = fibers::edges(&shape.cut, &shape.faces);
+    let edges = fibers::edges_of(shape);
     let chains = fibers::trace(&shape.cut, &edges);
     let chooser = Chooser::new(shape, &shape.solver);
     let mut solvers = [Solver::SemiImplicit, Solver::GaussSeidel, Solver::ZeroStretch].map(|solver| Solved {

@@ -1,6 +1,6 @@
 //! The shape of one garment in one size: its faces, its measure as cut, and where it starts on a shopper.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::Overrides;
 use crate::mesh::SkinWeights;
@@ -52,6 +52,9 @@ pub struct Shape {
     /// How many times heavier than its fabric each vertex is, a weight sewn into a hem for example `[vertices]`;
     /// vertices past its end have the fabric's mass.
     pub heavier: Vec<f32>,
+    /// Texture coordinates of the corners of each face `[faces]`, or empty. Where they are a pattern laid out flat, its
+    /// warp along v, they say which way the threads of triangles run.
+    pub uvs: Vec<[Vec2; 4]>,
     /// Solvers that its garment file has chosen.
     pub solver: Overrides,
 }

@@ -228,7 +228,18 @@ fn patterns_give_their_warp_by_their_texture() {
     for warp in warp::from_uvs(&positions, &faces, &uvs, &fallback) {
         assert!((warp + axis.extend(0.0)).length() < 1e-4, "{warp}");
     }
+    assert!(warp::is_pattern(&positions, &faces, &uvs));
+    let shape = Shape { cut: positions.clone(), faces: faces.clone(), uvs: uvs.clone(), ..Shape::default() };
+    let downwards = |edges: &[Edge]| edges.iter().filter(|e| e.direction == Direction::Warp).count();
+    let by_pattern = edges_of(&shape);
+    // A fifth of a turn: the diagonals of the cells are no nearer to the threads than their sides were.
+    assert!(by_pattern != edges(&positions, &faces) && downwards(&by_pattern) > 0);
+    // Squeezed to fill a square, or missing, it is no pattern.
+    let squeezed: Vec<[Vec2; 4]> = uvs.iter().map(|uv| uv.map(|p| p * Vec2::new(1.0, 2.0))).collect();
+    assert!(!warp::is_pattern(&positions, &faces, &squeezed) && !warp::is_pattern(&positions, &faces, &[]));
+    assert_eq!(edges_of(&Shape { uvs: squeezed, ..shape }), edges(&positions, &faces));
     let nothing = vec![[Vec2::ZERO; 4]; faces.len()];
+    assert!(!warp::is_pattern(&positions, &faces, &nothing));
     assert_eq!(warp::from_uvs(&positions, &faces, &nothing, &fallback), fallback);
 }
 
