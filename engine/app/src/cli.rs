@@ -13,6 +13,9 @@ use crate::exit::AppError;
 
 mod skirt;
 pub use skirt::SkirtArgs;
+mod bake;
+
+pub use bake::BakeArgs;
 
 /// What the user asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,6 +28,8 @@ pub enum Command {
     Record(RecordArgs),
     /// `toile doctor`.
     Doctor(DoctorArgs),
+    /// `toile bake`.
+    Bake(BakeArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
@@ -124,7 +129,7 @@ pub fn command() -> clap::Command {
         )
         .override_usage("toile [OPTIONS OF TRY-ON]\n       toile <COMMAND>")
         .subcommand_required(true)
-        .subcommands([try_on(), measure(), record(), doctor(), bench(), completions()])
+        .subcommands([try_on(), measure(), record(), bake::grammar(), doctor(), bench(), completions()])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
 }
 
@@ -279,6 +284,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
             quiet: matches.get_flag("quiet"),
         }),
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
+        "bake" => Command::Bake(bake::args(matches)?),
         "bench" => bench_command(matches)?,
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
