@@ -59,6 +59,7 @@ fn inverse_masses(shape: &Shape, density: f32) -> Vec<f32> {
             mass[i as usize] += third;
         }
     }
+    mass.iter_mut().zip(&shape.heavier).for_each(|(m, times)| *m *= times);
     mass.iter().zip(&shape.fixed).map(|(m, fixed)| if *fixed { 0.0 } else { m.recip() }).collect()
 }
 

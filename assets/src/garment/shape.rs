@@ -46,6 +46,9 @@ pub struct Shape {
     pub parts: Vec<Part>,
     /// Skin weights; only those of fixed vertices are read.
     pub weights: Vec<SkinWeights>,
+    /// How many times heavier than its fabric each vertex is, a weight sewn into a hem for example `[vertices]`;
+    /// vertices past its end have the fabric's mass.
+    pub heavier: Vec<f32>,
 }
 
 impl Shape {

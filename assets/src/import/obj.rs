@@ -14,7 +14,7 @@ use crate::garment::shape::{Face, NO_VERTEX, Part, Shape};
 pub const MAX_BYTES: u64 = 64 << 20;
 
 /// Material suffix of what moves.
-const FREE: &str = "Free";
+pub(crate) const FREE: &str = "Free";
 
 /// Share of the height from the top that is fixed when no material says what moves.
 const FIXED_TOP_SHARE: f32 = 0.06;
@@ -185,7 +185,7 @@ impl Welded {
         };
         let faces = self.faces.into_iter().map(|f| warp_upright(&self.positions, f)).collect();
         let parts = vec![Part::All; self.positions.len()];
-        Ok(Shape { cut: self.positions.clone(), worn: self.positions, faces, fixed, parts, weights: Vec::new() })
+        Ok(Shape { cut: self.positions.clone(), worn: self.positions, faces, fixed, parts, ..Shape::default() })
     }
 }
 
@@ -194,7 +194,7 @@ const LEAST_HEIGHT_M: f32 = 0.02;
 const MOST_HEIGHT_M: f32 = 3.0;
 
 /// Turns a quad so that its a-b side is the flattest: then warp runs down the garment.
-fn warp_upright(positions: &[Vec3], face: Face) -> Face {
+pub(crate) fn warp_upright(positions: &[Vec3], face: Face) -> Face {
     if face[3] == NO_VERTEX {
         return face;
     }
