@@ -158,6 +158,15 @@ mod tests {
     }
 
     #[test]
+    fn an_infinite_stiffness_is_inextensible() {
+        let text = include_str!("../data/fabrics/cotton-lawn.toml");
+        let tape = text.replace("stretch_warp_n_m = 6000.0", "stretch_warp_n_m = inf");
+        assert_eq!(Fabric::parse("tape", &tape).unwrap().stretch_warp_n_m, f32::INFINITY);
+        let sheared = text.replace("shear_n_m = 60.0", "shear_n_m = inf");
+        assert!(Fabric::parse("sheared", &sheared).unwrap_err().to_string().contains("shear_n_m"));
+    }
+
+    #[test]
     fn nonsense_is_refused_with_key_and_cure() {
         let text = include_str!("../data/fabrics/cotton-lawn.toml");
         let heavy = text.replace("density_kg_m2 = 0.105", "density_kg_m2 = nan");

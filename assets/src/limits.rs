@@ -12,6 +12,9 @@ pub const MAX_SPHERES: usize = 16;
 /// Tapered capsules between those spheres: every limb plus the diagonals that fill the flat torso.
 pub const MAX_CAPSULES: usize = 28;
 
+/// Planes beside the floor: the four walls of a changing room.
+pub const MAX_PLANES: usize = 4;
+
 /// Bone influences a vertex: four weights fill one 128-bit lane group.
 pub const INFLUENCES: usize = 4;
 

@@ -46,6 +46,8 @@ pub struct Shape {
     pub parts: Vec<Part>,
     /// Skin weights; only those of fixed vertices are read.
     pub weights: Vec<SkinWeights>,
+    /// True where a quad is split along b-d rather than a-c `[faces]`; faces past its end are split along a-c.
+    pub split: Vec<bool>,
     /// How many times heavier than its fabric each vertex is, a weight sewn into a hem for example `[vertices]`;
     /// vertices past its end have the fabric's mass.
     pub heavier: Vec<f32>,
@@ -61,13 +63,16 @@ impl Shape {
         (self.cut.len() - 1) as u32
     }
 
-    /// The faces as triangles; a quad is split along its a-c diagonal.
+    /// The faces as triangles; a quad is split along a-c, or along b-d where `split` says so.
     pub fn triangles(&self) -> Vec<[u32; 3]> {
         let mut out = Vec::with_capacity(self.faces.len() * 2);
-        for &[a, b, c, d] in &self.faces {
-            out.push([a, b, c]);
-            if d != NO_VERTEX {
-                out.push([a, c, d]);
+        for (i, &[a, b, c, d]) in self.faces.iter().enumerate() {
+            if d == NO_VERTEX {
+                out.push([a, b, c]);
+            } else if self.split.get(i).copied().unwrap_or(false) {
+                out.extend([[a, b, d], [b, c, d]]);
+            } else {
+                out.extend([[a, b, c], [a, c, d]]);
             }
         }
         out

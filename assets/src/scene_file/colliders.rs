@@ -6,7 +6,7 @@ use super::error::SceneError;
 use super::source::Source;
 use super::table::Table;
 use super::track::Track;
-use crate::limits::{MAX_CAPSULES, MAX_SPHERES};
+use crate::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
 
 /// A plane: cloth stays on the side that the normal shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,9 +16,6 @@ pub struct Plane {
     /// Unit normal.
     pub normal: Vec3,
 }
-
-/// Most planes of a scene: a room has six, and a box to stand in it as many.
-pub const MAX_PLANES: usize = 8;
 
 /// The colliders of a scene and how they move.
 #[derive(Debug, Clone, Default, PartialEq)]

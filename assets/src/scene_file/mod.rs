@@ -23,7 +23,7 @@ use std::path::Path;
 use glam::Vec3;
 use toml::de::DeTable;
 
-pub use colliders::{MAX_PLANES, Plane, SceneColliders};
+pub use colliders::{Plane, SceneColliders};
 pub use error::SceneError;
 pub use garment::{SceneGarment, UserMesh};
 pub use source::Source;

@@ -11,6 +11,10 @@ use toile_assets::body::Sex;
 
 use crate::exit::AppError;
 
+mod run;
+
+pub use run::{RunArgs, RunScene};
+
 /// What the user asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Command {
@@ -20,6 +24,8 @@ pub enum Command {
     Measure(MeasureArgs),
     /// `toile record`.
     Record(RecordArgs),
+    /// `toile run`.
+    Run(RunArgs),
     /// `toile doctor`.
     Doctor(DoctorArgs),
     /// `toile bench skinning`.
@@ -119,7 +125,7 @@ pub fn command() -> clap::Command {
         )
         .override_usage("toile [OPTIONS OF TRY-ON]\n       toile <COMMAND>")
         .subcommand_required(true)
-        .subcommands([try_on(), measure(), record(), doctor(), bench(), completions()])
+        .subcommands([try_on(), measure(), record(), run::grammar(), doctor(), bench(), completions()])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
 }
 
@@ -273,6 +279,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         }),
+        "run" => Command::Run(run::args(matches)?),
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
         "bench" => bench_command(matches)?,
         "completions" => Command::Completions(required(matches, "shell")?),

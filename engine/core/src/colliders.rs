@@ -6,7 +6,7 @@
 
 use glam::{Affine3A, Vec3, Vec4, Vec4Swizzles};
 use thiserror::Error;
-use toile_assets::limits::{MAX_CAPSULES, MAX_SPHERES};
+use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
 use toile_assets::skeleton::BONES;
 
 pub use crate::cone::{Contact, PARKED, RestSphere, RoundCone};
@@ -41,6 +41,12 @@ pub enum ColliderError {
         /// How many spheres there are.
         spheres: usize,
     },
+    /// More planes than [`MAX_PLANES`].
+    #[error("{0} planes are more than MAX_PLANES = {MAX_PLANES}; leave out those that nothing can reach")]
+    TooManyPlanes(usize),
+    /// A plane without a direction.
+    #[error("plane {0} has a normal that is not of unit length or an offset that is not finite; correct it")]
+    BadPlane(usize),
 }
 
 /// The colliders of one body at the start and the end of a step.
@@ -54,6 +60,7 @@ pub struct Colliders {
     rest: heapless::Vec<RestSphere, MAX_SPHERES>,
     /// Whether the floor at y = 0 stops the cloth.
     pub floor: bool,
+    planes: heapless::Vec<Vec4, MAX_PLANES>,
     placed: bool,
 }
 
@@ -80,8 +87,25 @@ impl Colliders {
                 .map_err(|_| ColliderError::TooManyCapsules(capsules.len()))?,
             rest: heapless::Vec::from_slice(spheres).map_err(|_| ColliderError::TooManySpheres(spheres.len()))?,
             floor,
+            planes: heapless::Vec::new(),
             placed: false,
         })
+    }
+
+    /// Walls, tables and slopes that stop the cloth besides the floor; they do not move. Each is a unit normal and the
+    /// offset of the plane along it (m): outside is where `normal . p >= offset`. At load.
+    pub fn set_planes(&mut self, planes: &[Vec4]) -> Result<(), ColliderError> {
+        let sound = |p: &Vec4| (p.xyz().length() - 1.0).abs() < 1e-3 && p.w.is_finite();
+        if let Some(plane) = planes.iter().position(|p| !sound(p)) {
+            return Err(ColliderError::BadPlane(plane));
+        }
+        self.planes = heapless::Vec::from_slice(planes).map_err(|_| ColliderError::TooManyPlanes(planes.len()))?;
+        Ok(())
+    }
+
+    /// The planes besides the floor: unit normal, and offset along it (m) `[planes]`.
+    pub fn planes(&self) -> &[Vec4] {
+        &self.planes
     }
 
     /// Moves the end of the last step to the start of this one, and the end to where the bones now are. The first
@@ -92,6 +116,19 @@ impl Colliders {
             let bone = palette[usize::from(sphere.bone) % BONES];
             *end = bone.transform_point3(sphere.centre).extend(sphere.radius);
         }
+        self.appear();
+    }
+
+    /// The same for a body whose spheres are given in the world (m), centre and radius: a scene's track. Spheres past
+    /// the rig's count are passed over, and those not given stay where they are.
+    pub fn place_spheres(&mut self, spheres: &[Vec4]) {
+        self.start = self.end;
+        self.end[..self.rest.len()].iter_mut().zip(spheres).for_each(|(end, sphere)| *end = *sphere);
+        self.appear();
+    }
+
+    /// What is placed for the first time has not moved.
+    fn appear(&mut self) {
         if !self.placed {
             self.start = self.end;
             self.placed = true;
@@ -176,6 +213,31 @@ mod tests {
         colliders.reset();
         colliders.place(&[Affine3A::IDENTITY; BONES]);
         assert_eq!(colliders.start(), colliders.end());
+    }
+
+    #[test]
+    fn spheres_given_in_the_world_are_placed_alike() {
+        let mut colliders = two();
+        let at = |x: f32| [Vec4::new(x, 1.0, 0.0, 0.1), Vec4::new(x, 2.0, 0.0, 0.2), Vec4::splat(9.0)];
+        colliders.place_spheres(&at(0.0));
+        assert_eq!(colliders.start(), &at(0.0)[..2], "the first placement does not sweep, and a third is passed over");
+        assert_eq!(colliders.start(), colliders.end());
+        colliders.place_spheres(&at(0.5));
+        assert_eq!(colliders.start(), &at(0.0)[..2]);
+        assert_eq!(colliders.end(), &at(0.5)[..2]);
+        assert_eq!(colliders.cone(0, 1.0).rb, 0.2);
+    }
+
+    #[test]
+    fn planes_are_kept_and_bad_ones_refused() {
+        let mut colliders = two();
+        let wall = Vec4::new(0.0, 0.6, 0.8, -2.0);
+        assert!(colliders.planes().is_empty());
+        assert_eq!(colliders.set_planes(&[wall, Vec4::new(1.0, 0.0, 0.0, 0.0)]), Ok(()));
+        assert_eq!(colliders.planes()[0], wall);
+        assert_eq!(colliders.set_planes(&[wall, wall * 2.0]), Err(ColliderError::BadPlane(1)));
+        assert_eq!(colliders.set_planes(&[Vec4::NAN]), Err(ColliderError::BadPlane(0)));
+        assert_eq!(colliders.set_planes(&[wall; 5]), Err(ColliderError::TooManyPlanes(5)));
     }
 
     #[test]

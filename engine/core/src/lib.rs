@@ -9,5 +9,6 @@ pub mod cloth;
 pub mod colliders;
 pub mod cone;
 pub mod frame;
+pub mod lanes;
 pub mod relay;
 pub mod skin;

@@ -11,6 +11,7 @@ pub mod guard;
 pub mod measure;
 pub mod predict;
 pub mod settle;
+pub mod state;
 
 use glam::{Affine3A, Vec3A};
 use toile_assets::garment::Garment;

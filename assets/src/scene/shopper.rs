@@ -1,4 +1,4 @@
-//! Scenes, written once and shared by recordings, tests and benchmarks: here the shopper of the embedded session.
+//! The shopper of the embedded session: who she is, and what she does before the camera.
 
 use std::f32::consts::{PI, TAU};
 

@@ -1,0 +1,187 @@
+//! The skirt: the scene on which Toile and its peers are timed, with the same geometry, motion and fabric for each.
+//!
+//! Reads: the number of vertices a side. Writes: the shape, its fabric, the body's spheres and the root at any time.
+//! Budget: at load; the body at one time costs about a microsecond.
+//! Thread: any.
+//!
+//! A cone hangs from a ring around the waist: radius 0.18 m at 1.08 m above the floor, 0.42 m at 0.30 m. Its ring is
+//! pinned and follows the root; a body of 16 spheres and 28 tapered capsules walks in it.
+
+mod body;
+mod irregular;
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use glam::{DVec3, Vec3};
+
+use crate::fabric::Fabric;
+use crate::garment::{Part, Shape};
+use crate::mesh::SkinWeights;
+
+pub use body::{CAPSULES, JOINTS, Motion, root, spheres};
+pub use irregular::irregular;
+
+/// Mass of the whole skirt, the pinned ring included (kg).
+pub const MASS_KG: f32 = 0.31;
+
+/// Radius at the pinned ring (m), and how much wider the hem is.
+const RADIUS: [f64; 2] = [0.18, 0.24];
+
+/// Height of the pinned ring (m), and how far below it the hem starts.
+const HEIGHT: [f64; 2] = [1.08, 0.78];
+
+/// Part of its speed that the cloth keeps after a second in the air.
+const KEPT_AFTER_1_S: f32 = 0.35;
+
+/// How the skirt's threads stretch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Stretch {
+    /// Not at all: what is measured is the solver's error alone.
+    #[default]
+    Inextensible,
+    /// As woven cloth: 2,000 N/m along warp and weft.
+    Physical,
+}
+
+impl Stretch {
+    /// Tensile stiffness (N/m).
+    pub fn stiffness_n_m(self) -> f32 {
+        match self {
+            Self::Inextensible => f32::INFINITY,
+            Self::Physical => 2_000.0,
+        }
+    }
+}
+
+/// The skirt as a grid of `n` rows and `n` columns, row after row, at least 3: vertex (i, j) is `i * n + j`. Row 0 is
+/// fixed and moves with bone 0. Faces are quads; [`Shape::triangles`] gives the scene's alternating triangles.
+pub fn shape(n: usize) -> Shape {
+    let n = n.max(3);
+    let mut shape = Shape::default();
+    for i in 0..n {
+        for j in 0..n {
+            push(&mut shape, point(i as f64 / (n - 1) as f64, TAU * j as f64 / n as f64), i == 0);
+        }
+    }
+    let at = |i: usize, j: usize| (i * n + j % n) as u32;
+    for i in 0..n - 1 {
+        for j in 0..n {
+            shape.faces.push([at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)]);
+            shape.split.push((i + j) % 2 == 0);
+        }
+    }
+    shape
+}
+
+/// The vertices of the hem in their order around it, of the grid and of the irregular mesh alike.
+pub fn hem(n: usize) -> Range<usize> {
+    n * n - n..n * n
+}
+
+/// The fabric of a skirt: of a density that gives it [`MASS_KG`], shear 100 N/m, and the bending of the median of 618
+/// measured fabrics. Cloth is kept 1 mm off the body, which is less than half the thickness of the lightest of them and
+/// more than what f32 and a substep's motion leave open.
+pub fn fabric(shape: &Shape, stretch: Stretch) -> Fabric {
+    let corner = |i: u32| shape.cut[i as usize].as_dvec3();
+    let area = |t: &[u32; 3]| 0.5 * (corner(t[1]) - corner(t[0])).cross(corner(t[2]) - corner(t[0])).length();
+    let area: f64 = shape.triangles().iter().map(area).sum();
+    Fabric {
+        name: "skirt".into(),
+        title: "Benchmark skirt".into(),
+        density_kg_m2: (f64::from(MASS_KG) / area) as f32,
+        stretch_warp_n_m: stretch.stiffness_n_m(),
+        stretch_weft_n_m: stretch.stiffness_n_m(),
+        shear_n_m: 100.0,
+        bend_warp_un_m: 13.6,
+        bend_weft_un_m: 8.7,
+        friction: 0.3,
+        damping_per_s: -KEPT_AFTER_1_S.ln(),
+        contact_offset_mm: 1.0,
+        comfortable_stretch: 0.05,
+        colour: [0.24, 0.42, 0.55],
+    }
+}
+
+/// The point of the cone at `u` (0 ring, 1 hem) and an angle (rad).
+fn point(u: f64, angle: f64) -> DVec3 {
+    let r = RADIUS[0] + RADIUS[1] * u;
+    DVec3::new(r * angle.cos(), HEIGHT[0] - HEIGHT[1] * u, r * angle.sin())
+}
+
+fn push(shape: &mut Shape, p: DVec3, fixed: bool) {
+    let p: Vec3 = p.as_vec3();
+    shape.push(p, p, fixed, Part::All);
+    shape.weights.push(SkinWeights { bones: [0; 4], weights: [1.0, 0.0, 0.0, 0.0] });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bake::bake;
+    use crate::garment::check;
+
+    #[test]
+    fn the_grid_is_the_scenes() {
+        let (n, shape) = (64, shape(64));
+        assert_eq!(shape.cut.len(), 4_096);
+        assert_eq!(check::check(&shape.cut, &shape.faces), Ok(()));
+        let at = |i: usize, j: usize| shape.cut[i * n + j];
+        assert!((at(0, 5).distance(at(1, 5)) * 1e3 - 12.95).abs() < 0.01);
+        // Column 16 of 64 is a quarter round: at the hem (0, 0.30, 0.42).
+        assert!(at(63, 16).distance(Vec3::new(0.0, 0.30, 0.42)) < 1e-6);
+        assert!(at(0, 0).distance(Vec3::new(0.18, 1.08, 0.0)) < 1e-6);
+        for v in hem(n) {
+            let p = shape.cut[v];
+            assert!((p.x.hypot(p.z) - 0.42).abs() < 1e-6 && (p.y - 0.30).abs() < 1e-6, "{p}");
+        }
+        assert_eq!(shape.fixed.iter().filter(|f| **f).count(), n);
+        assert!(shape.fixed[..n].iter().all(|f| *f));
+    }
+
+    #[test]
+    fn its_triangles_alternate_and_look_outwards() {
+        let (n, shape) = (32u32, shape(32));
+        let triangles = shape.triangles();
+        assert_eq!(triangles.len(), 2 * 31 * 32);
+        // Quad (0, 0) with corners a b / d c: even, so (a, b, d) and (b, c, d). Quad (0, 1) is odd.
+        let [a, b, c, d] = [0, 1, n + 1, n];
+        assert_eq!(triangles[..2], [[a, b, d], [b, c, d]]);
+        let [a, b, c, d] = [1, 2, n + 2, n + 1];
+        assert_eq!(triangles[2..4], [[a, b, c], [a, c, d]]);
+        for t in triangles {
+            let [a, b, c] = t.map(|i| shape.cut[i as usize]);
+            assert!((b - a).cross(c - a).dot((a + b + c).with_y(0.0)) > 0.0, "{t:?} looks inwards");
+        }
+    }
+
+    #[test]
+    fn its_mass_is_310_g_whatever_the_mesh() {
+        for shape in [shape(32), shape(64), irregular(32, 1)] {
+            let free = Shape { fixed: vec![false; shape.cut.len()], ..shape.clone() };
+            let garment = bake("skirt", "one", &free, &fabric(&shape, Stretch::Physical)).unwrap();
+            let mass: f64 = garment.inverse_mass.iter().map(|w| f64::from(*w).recip()).sum();
+            assert!((mass - 0.31).abs() < 1e-6, "{mass} kg");
+        }
+    }
+
+    #[test]
+    fn a_weight_in_the_hem_is_the_hems_alone() {
+        let (n, plain) = (32, shape(32));
+        let mut heavy = plain.clone();
+        heavy.heavier = vec![1.0; n * n];
+        heavy.heavier[hem(n)].fill(1_000.0);
+        let fabric = fabric(&plain, Stretch::Physical);
+        let [light, heavy] = [plain, heavy].map(|s| bake("skirt", "one", &s, &fabric).unwrap().inverse_mass);
+        let ratio = |v: usize| light[v] / heavy[v];
+        assert!((n..hem(n).start).all(|v| ratio(v) == 1.0));
+        assert!(hem(n).all(|v| (ratio(v) - 1_000.0).abs() < 0.01));
+    }
+
+    #[test]
+    fn the_air_takes_65_per_cent_of_the_speed_in_a_second() {
+        let fabric = fabric(&shape(32), Stretch::Inextensible);
+        assert!(((-fabric.damping_per_s).exp() - 0.35).abs() < 1e-6);
+        assert_eq!(fabric.stretch_warp_n_m, f32::INFINITY);
+    }
+}

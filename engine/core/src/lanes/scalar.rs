@@ -1,0 +1,81 @@
+//! One lane: f32 itself. The plain twin of every kernel.
+
+use super::{Column, Lanes, MOST, Mask};
+
+impl Mask for bool {
+    #[inline(always)]
+    fn any(self) -> bool {
+        self
+    }
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        self && other
+    }
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        u32::from(self)
+    }
+}
+
+impl Lanes for f32 {
+    const N: usize = 1;
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn from_array(values: &[f32; MOST]) -> Self {
+        values[0]
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f32; MOST] {
+        let mut out = [0.0; MOST];
+        out[0] = self;
+        out
+    }
+    #[inline(always)]
+    fn load(from: Column<'_>, at: usize) -> Self {
+        from.get(at)
+    }
+    #[inline(always)]
+    fn load_part(_: Column<'_>, _: usize, _: usize) -> Self {
+        0.0
+    }
+    #[inline(always)]
+    fn store(self, to: Column<'_>, at: usize) {
+        to.set(at, self);
+    }
+    #[inline(always)]
+    fn store_part(self, _: Column<'_>, _: usize, _: usize) {}
+    #[inline(always)]
+    fn div(self, by: Self) -> Self {
+        self / by
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f32::sqrt(self)
+    }
+    // As the processors' instructions have it, which `f32::min` is not where a number is missing.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn select(self, mask: bool, other: Self) -> Self {
+        if mask { self } else { other }
+    }
+    #[inline(always)]
+    fn root_seed(self, magic: u32) -> Self {
+        f32::from_bits(magic.wrapping_sub(self.to_bits() >> 1))
+    }
+}

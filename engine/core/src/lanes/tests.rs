@@ -1,0 +1,120 @@
+use super::*;
+
+/// Every operation of the trait on awkward numbers, written out.
+struct Everything<'a> {
+    a: &'a [f32],
+    b: &'a [f32],
+    out: Column<'a>,
+}
+
+impl Kernel for Everything<'_> {
+    type Out = u64;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u64 {
+        let (a, b) = (Column::read_only(self.a), Column::read_only(self.b));
+        let mut answers = 0u64;
+        let mut at = 0;
+        while at < a.len() {
+            let n = L::N.min(a.len() - at);
+            let part = |c| if n == L::N { L::load(c, at) } else { L::load_part(c, at, n) };
+            let (x, y) = (part(a), part(b));
+            let mask = x.lt(y);
+            let v = (x + y * x - y).min(x.max(y)).select(mask, (-x).div(y));
+            let v = v + reciprocal_root((x * x).max(y * y)) + (x * x).sqrt();
+            if n == L::N {
+                v.store(self.out, at)
+            } else {
+                v.store_part(self.out, at, n)
+            }
+            for lane in 0..n {
+                let bit = u64::from(mask.and(x.lt(L::splat(3.0))).bits() >> lane & 1);
+                answers = answers.rotate_left(1) ^ bit;
+            }
+            at += L::N;
+        }
+        answers
+    }
+}
+
+fn awkward(seed: u32, n: usize) -> Vec<f32> {
+    let special = [0.0, -0.0, 1.0, -1.0, f32::MIN_POSITIVE, 1e-40, 1e30, f32::INFINITY, f32::NAN, 3.0];
+    let mut state = seed;
+    let mut next = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        state >> 8
+    };
+    (0..n)
+        .map(|_| match next() % 12 {
+            k if (k as usize) < special.len() => special[k as usize],
+            _ => next() as f32 / 65_536.0 - 128.0,
+        })
+        .collect()
+}
+
+#[test]
+fn every_width_gives_the_bits_of_plain_f32() {
+    for n in [1, 3, 16, 37, 64, 101] {
+        let (a, b) = (awkward(7, n), awkward(99, n));
+        let run = |width: Width| {
+            let mut out = vec![0.0f32; n];
+            let answers = width.run(Everything { a: &a, b: &b, out: Column::new(&mut out) });
+            // What is not a number may differ in its payload, which nobody reads.
+            (answers, out.iter().map(|v| if v.is_nan() { u32::MAX } else { v.to_bits() }).collect::<Vec<_>>())
+        };
+        let plain = run(Width::One);
+        for width in Width::ALL.into_iter().filter(|w| w.available()) {
+            assert_eq!(run(width), plain, "{width} lanes, {n} numbers");
+        }
+    }
+}
+
+#[test]
+fn the_reciprocal_root_is_exact_to_eight_parts_in_ten_million() {
+    let mut worst = 0.0f64;
+    for i in 0..200_000u32 {
+        let x = f32::from_bits(0x3000_0000 + i * 5_003);
+        let error = f64::from(reciprocal_root(x)) * f64::from(x).sqrt() - 1.0;
+        worst = worst.max(error.abs());
+    }
+    assert!(worst < 8e-7, "{worst}");
+    assert!(reciprocal_root(0.0f32).is_finite());
+}
+
+#[test]
+fn nothing_past_the_end_is_read_or_written() {
+    let mut numbers = [1.0f32; 20];
+    let column = Column::new(&mut numbers[..18]);
+    struct Past<'a>(Column<'a>);
+    impl Kernel for Past<'_> {
+        type Out = f32;
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> f32 {
+            L::splat(5.0).store(self.0, 18);
+            L::splat(5.0).store(self.0, usize::MAX - 3);
+            L::load(self.0, 18).to_array()[0] + L::load_part(self.0, 19, 1).to_array()[0]
+        }
+    }
+    for width in Width::ALL {
+        assert_eq!(width.run(Past(column)), 0.0);
+    }
+    assert_eq!(numbers, [1.0; 20]);
+}
+
+#[test]
+fn gather_and_scatter_keep_their_places() {
+    let mut numbers: Vec<f32> = (0..40).map(|i| i as f32).collect();
+    let index: Vec<u32> = (0..16).map(|i| (i * 7 % 40) as u32).collect();
+    struct Double<'a>(Column<'a>, &'a [u32]);
+    impl Kernel for Double<'_> {
+        type Out = ();
+        #[inline(always)]
+        fn run<L: Lanes>(self) {
+            let n = L::N.min(3);
+            let v = L::gather(self.0, self.1, n);
+            (v + v).scatter(self.0, self.1, n);
+        }
+    }
+    Width::widest().run(Double(Column::new(&mut numbers), &index));
+    let doubled = numbers.iter().enumerate().filter(|(i, v)| **v != *i as f32).map(|(i, _)| i).collect::<Vec<_>>();
+    assert!(doubled.iter().all(|i| [7, 14].contains(i)) && !doubled.is_empty(), "{doubled:?}");
+}
