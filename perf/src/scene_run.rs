@@ -259,9 +259,7 @@ fn settings(scene: &SceneFile) -> Settings {
 /// The motion of the pin groups as bones: bone 0 stands.
 fn palette(scene: &SceneFile, time: f64) -> [Affine3A; BONES] {
     let mut palette = [Affine3A::IDENTITY; BONES];
-    for (bone, track) in palette[1..].iter_mut().zip(&scene.pin_tracks) {
-        *bone = track.rigid(time).as_affine3a();
-    }
+    palette[1..].iter_mut().zip(&scene.pins).for_each(|(bone, motion)| *bone = motion.at(time));
     palette
 }
 

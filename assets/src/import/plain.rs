@@ -13,6 +13,8 @@ pub struct PlainMesh {
     pub positions: Vec<Vec3>,
     /// Faces of three or four corners.
     pub faces: Vec<Face>,
+    /// True where a quad is split along b-d, as in [`crate::garment::Shape`].
+    pub split: Vec<bool>,
     /// Index of each face's material among `materials` `[faces]`.
     pub face_materials: Vec<Option<usize>>,
     /// Names of the materials in the order of their first use.

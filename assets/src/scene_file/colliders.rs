@@ -7,6 +7,7 @@ use super::source::Source;
 use super::table::Table;
 use super::track::Track;
 use crate::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
+use crate::scene::skirt::{self, Motion};
 
 /// A plane: cloth stays on the side that the normal shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,12 +18,20 @@ pub struct Plane {
     pub normal: Vec3,
 }
 
+/// What moves spheres.
+#[derive(Debug, Clone, PartialEq)]
+enum Mover {
+    Track(Track),
+    /// The benchmark's body.
+    Body(Motion),
+}
+
 /// The colliders of a scene and how they move.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SceneColliders {
-    /// For each sphere its track, and its place among the spheres of that track.
+    /// For each sphere what moves it, and its place among the spheres of that.
     spheres: Vec<(usize, usize)>,
-    tracks: Vec<Track>,
+    movers: Vec<Mover>,
     /// Pairs of spheres; one that belongs to no pair is paired with itself.
     pub capsules: Vec<[u8; 2]>,
     /// Planes.
@@ -34,14 +43,24 @@ impl SceneColliders {
         let mut this = Self::default();
         let spheres = table.tables("sphere")?;
         match table.text("track")? {
-            Some(_) if !spheres.is_empty() => {
-                return Err(table
-                    .wrong("track", "moves all spheres and stands for them; delete the [[colliders.sphere]] tables"));
+            Some(_) if !spheres.is_empty() || table.has("motion") => {
+                return Err(
+                    table.wrong("track", "stands for all spheres; delete the [[colliders.sphere]] tables and motion")
+                );
             }
             Some(name) => {
                 let track = sphere_track(table, name, source, pass, None)?;
                 this.spheres = (0..track.width() / 4).map(|k| (0, k)).collect();
-                this.tracks.push(track);
+                this.movers.push(Mover::Track(track));
+            }
+            None if table.has("motion") => {
+                if !spheres.is_empty() || table.has("capsules") {
+                    let says = "brings spheres and capsules of its own; delete the others";
+                    return Err(table.wrong("motion", says));
+                }
+                let motion = motion(table.choice("motion")?.unwrap_or_default());
+                this.spheres = (0..skirt::JOINTS.len()).map(|k| (0, k)).collect();
+                this.movers.push(Mover::Body(motion));
             }
             None => spheres.iter().try_for_each(|sphere| this.add(sphere, source, pass))?,
         }
@@ -74,14 +93,17 @@ impl SceneColliders {
                 Track::still(&[centre.x, centre.y, centre.z, radius])
             }
         };
-        self.spheres.push((self.tracks.len(), 0));
-        self.tracks.push(track);
+        self.spheres.push((self.movers.len(), 0));
+        self.movers.push(Mover::Track(track));
         Ok(())
     }
 
     /// Capsules as the scene joins them, and one of its own for every sphere that is in none.
     fn join(&mut self, table: &Table<'_>) -> Result<(), SceneError> {
-        self.capsules = table.pairs("capsules", self.spheres.len())?;
+        self.capsules = match self.movers.first() {
+            Some(Mover::Body(_)) => skirt::CAPSULES.to_vec(),
+            _ => table.pairs("capsules", self.spheres.len())?,
+        };
         let joined = |s: u8| self.capsules.iter().any(|ends| ends.contains(&s));
         let alone: Vec<[u8; 2]> = (0..self.spheres.len() as u8).filter(|s| !joined(*s)).map(|s| [s, s]).collect();
         self.capsules.extend(alone);
@@ -101,9 +123,17 @@ impl SceneColliders {
 
     /// Where a sphere is at a time (s): centre and radius (m).
     pub fn sphere(&self, k: usize, time: f64) -> Vec4 {
-        let (track, place) = self.spheres[k];
-        self.tracks[track].sphere(time, place).as_vec4()
+        let (mover, place) = self.spheres[k];
+        match &self.movers[mover] {
+            Mover::Track(track) => track.sphere(time, place).as_vec4(),
+            Mover::Body(motion) => skirt::spheres(*motion, time)[place],
+        }
     }
+}
+
+/// The motion of the schema's name.
+pub(super) fn motion(choice: usize) -> Motion {
+    [Motion::Walk, Motion::Fast, Motion::Settled][choice.min(2)]
 }
 
 fn sphere_track(

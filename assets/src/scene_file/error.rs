@@ -49,7 +49,7 @@ pub(super) struct Document<'t> {
 impl Document<'_> {
     /// An error at a byte of the text.
     pub fn error(&self, at: usize, says: impl Into<String>) -> SceneError {
-        let before = &self.text[..self.text.floor_char_boundary(at)];
+        let before = self.text.get(..at).unwrap_or(self.text);
         let line = before.matches('\n').count() + 1;
         let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
         let says = says.into().split_whitespace().collect::<Vec<_>>().join(" ");

@@ -8,6 +8,7 @@ macro_rules! files {
 }
 
 files!(
+    "bench-skirt.toml",
     "cloth-on-sphere.csv",
     "cloth-on-sphere.toml",
     "flag-in-wind.toml",

@@ -8,7 +8,7 @@ use super::error::{SceneError, nearest};
 use super::source::Source;
 use super::table::Table;
 use super::track::Track;
-use super::{Loading, primitive};
+use super::{Loading, PinSource, primitive};
 use crate::fabric::Fabric;
 use crate::garment::shape::{Face, NO_VERTEX, Part};
 use crate::garment::{MeshError, Shape};
@@ -67,15 +67,18 @@ impl SceneGarment {
     }
 }
 
+/// The keys of which one says what a garment's mesh is.
+const MESHES: [&str; 4] = ["mesh", "grid", "tube", "skirt"];
+
 /// The key that names a garment's mesh, for messages.
 fn mesh_key(table: &Table<'_>) -> &'static str {
-    ["mesh", "grid", "tube"].into_iter().find(|key| table.has(key)).unwrap_or("mesh")
+    MESHES.into_iter().find(|key| table.has(key)).unwrap_or("mesh")
 }
 
 fn mesh(table: &Table<'_>, source: Source<'_>) -> Result<PlainMesh, SceneError> {
-    let given = ["mesh", "grid", "tube"].into_iter().filter(|key| table.has(key)).count();
+    let given = MESHES.into_iter().filter(|key| table.has(key)).count();
     if given != 1 {
-        let says = format!("[garment] has {given} of \"mesh\", \"grid\" and \"tube\"; give exactly one of them");
+        let says = format!("[garment] has {given} of {}; give exactly one of them", MESHES.join(", "));
         return Err(table.error(says));
     }
     if let Some(grid) = table.table("grid")? {
@@ -83,6 +86,9 @@ fn mesh(table: &Table<'_>, source: Source<'_>) -> Result<PlainMesh, SceneError> 
     }
     if let Some(tube) = table.table("tube")? {
         return primitive::tube(&tube);
+    }
+    if let Some(skirt) = table.table("skirt")? {
+        return primitive::skirt(&skirt);
     }
     let name = table.text("mesh")?.unwrap_or_default();
     let wrong = |says: String| table.wrong("mesh", format!("{name}: {says}"));
@@ -148,6 +154,7 @@ fn weld(mesh: &PlainMesh, weld: bool) -> (Shape, Vec<u32>) {
         places.insert(key, to_shape[i]);
     }
     let face = |face: &Face| face.map(|v| if v == NO_VERTEX { v } else { to_shape[v as usize] });
+    shape.split = mesh.split.clone();
     shape.faces = mesh.faces.iter().map(|f| warp_upright(&shape.cut, face(f))).collect();
     (shape, to_shape)
 }
@@ -234,8 +241,12 @@ fn pin(
             return Err(pin.error("[garment.pin] holds nothing; give vertices, box or material"));
         }
         let by = match pin.text("track")? {
-            Some(name) => loading.pin_group(&pin, name)?,
-            None => 0,
+            Some(_) if pin.has("motion") => return Err(pin.wrong("motion", "stands beside track; give one of them")),
+            Some(name) => loading.pin_group(&pin, PinSource::Track(name))?,
+            None => match pin.choice("motion")? {
+                Some(i) => loading.pin_group(&pin, PinSource::Motion(i))?,
+                None => 0,
+            },
         };
         chosen(&pin, mesh)?.into_iter().for_each(|v| hold(mesh.to_shape[v], by));
         if let Some(suffix) = pin.text("material")? {

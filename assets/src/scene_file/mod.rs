@@ -20,7 +20,7 @@ mod track;
 
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
 use toml::de::DeTable;
 
 pub use colliders::{Plane, SceneColliders};
@@ -29,6 +29,7 @@ pub use garment::{SceneGarment, UserMesh};
 pub use source::Source;
 pub use track::Track;
 
+use crate::scene::skirt::{self, Motion};
 use error::Document;
 use table::Table;
 
@@ -54,6 +55,34 @@ pub struct SceneSettings {
     pub max_speed: Option<f32>,
 }
 
+/// How a group of pinned vertices moves.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PinMotion {
+    /// By a track of positions and quaternions.
+    Track(Track),
+    /// As the root of the benchmark's body.
+    Body(Motion),
+}
+
+impl PinMotion {
+    /// The rigid motion at a time (s): what starts at p is held at its image of p.
+    pub fn at(&self, time: f64) -> Affine3A {
+        match self {
+            Self::Track(track) => track.rigid(time).as_affine3a(),
+            Self::Body(motion) => skirt::root(*motion, time),
+        }
+    }
+}
+
+/// What a pin table says about its motion.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum PinSource<'a> {
+    /// The name of a track.
+    Track(&'a str),
+    /// A choice among the schema's motions.
+    Motion(usize),
+}
+
 /// A whole scene, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneFile {
@@ -75,30 +104,37 @@ pub struct SceneFile {
     pub garments: Vec<SceneGarment>,
     /// What the cloth meets.
     pub colliders: SceneColliders,
-    /// Rigid motions of pin groups: group g of a pinned vertex follows `pin_tracks[g - 1]`, group 0 stands.
-    pub pin_tracks: Vec<Track>,
+    /// Rigid motions of pin groups: group g of a pinned vertex follows `pins[g - 1]`, group 0 stands.
+    pub pins: Vec<PinMotion>,
 }
 
 /// What is shared while the parts of a scene are read.
 pub(crate) struct Loading<'a> {
     source: Source<'a>,
     pass: bool,
-    pin_tracks: Vec<(String, Track)>,
+    pins: Vec<(String, PinMotion)>,
 }
 
 impl Loading<'_> {
-    /// The group of the pins that follow a track; the same file is one group.
-    fn pin_group(&mut self, pin: &Table<'_>, name: &str) -> Result<u8, SceneError> {
-        if let Some(known) = self.pin_tracks.iter().position(|(n, _)| n == name) {
+    /// The group of the pins that follow a motion; the same one is one group.
+    fn pin_group(&mut self, pin: &Table<'_>, source: PinSource<'_>) -> Result<u8, SceneError> {
+        let name = match source {
+            PinSource::Track(name) => name.to_owned(),
+            PinSource::Motion(choice) => format!("motion {}", schema::MOTIONS[choice]),
+        };
+        if let Some(known) = self.pins.iter().position(|(n, _)| *n == name) {
             return Ok(known as u8 + 1);
         }
-        if self.pin_tracks.len() == garment::MAX_PIN_TRACKS {
-            let says = format!("is the {}th; give pins that move alike the same file", self.pin_tracks.len() + 1);
+        if self.pins.len() == garment::MAX_PIN_TRACKS {
+            let says = format!("is the {}th; give pins that move alike the same file", self.pins.len() + 1);
             return Err(pin.wrong("track", says));
         }
-        let track = garment::rigid_track(pin, name, self.source, self.pass)?;
-        self.pin_tracks.push((name.into(), track));
-        Ok(self.pin_tracks.len() as u8)
+        let motion = match source {
+            PinSource::Track(name) => PinMotion::Track(garment::rigid_track(pin, name, self.source, self.pass)?),
+            PinSource::Motion(choice) => PinMotion::Body(colliders::motion(choice)),
+        };
+        self.pins.push((name, motion));
+        Ok(self.pins.len() as u8)
     }
 }
 
@@ -130,7 +166,7 @@ impl SceneFile {
         })?;
         let root = Table::open(document, entries.get_ref(), "", 0)?;
         let pass = root.choice("bad_rows")? == Some(1);
-        let mut loading = Loading { source, pass, pin_tracks: Vec::new() };
+        let mut loading = Loading { source, pass, pins: Vec::new() };
         let garments = garments(&root, &mut loading)?;
         let colliders = root.table("colliders")?.map(|table| SceneColliders::load(&table, source, pass));
         let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -144,7 +180,7 @@ impl SceneFile {
             settings: root.table("settings")?.map(|table| settings(&table)).transpose()?.unwrap_or_default(),
             garments,
             colliders: colliders.transpose()?.unwrap_or_default(),
-            pin_tracks: loading.pin_tracks.into_iter().map(|(_, track)| track).collect(),
+            pins: loading.pins.into_iter().map(|(_, motion)| motion).collect(),
         };
         if scene.steps() == 0 {
             return Err(root.wrong("duration", "is shorter than one step; give a longer one"));

@@ -6,8 +6,10 @@ use glam::{DVec3, Vec3};
 
 use super::error::SceneError;
 use super::table::Table;
+use crate::garment::Shape;
 use crate::garment::shape::Face;
 use crate::import::plain::PlainMesh;
+use crate::scene::skirt;
 
 /// A rectangle, centred on x = 0. Vertex (row, column) is `row * columns + column`; row 0 is the top, or the far edge
 /// of a level one.
@@ -37,6 +39,17 @@ pub(super) fn tube(table: &Table<'_>) -> Result<PlainMesh, SceneError> {
     Ok(mesh(rows, columns, true, place))
 }
 
+/// The benchmark's skirt; its faces run down from row 0, the waistband.
+pub(super) fn skirt(table: &Table<'_>) -> Result<PlainMesh, SceneError> {
+    let side = table.count("side")? as usize;
+    let Shape { cut, faces, split, .. } =
+        if table.choice("layout")? == Some(1) { skirt::irregular(side, SEED) } else { skirt::shape(side) };
+    Ok(PlainMesh { face_materials: vec![None; faces.len()], positions: cut, faces, split, ..PlainMesh::default() })
+}
+
+/// Seed of the irregular skirt.
+const SEED: u64 = 1;
+
 /// Rows of vertices and the quads between them; `a-b` runs along the row, so that warp runs down the columns.
 fn mesh(rows: u32, columns: u32, closed: bool, place: impl Fn(u32, u32) -> DVec3) -> PlainMesh {
     let positions: Vec<Vec3> =
@@ -52,7 +65,7 @@ fn mesh(rows: u32, columns: u32, closed: bool, place: impl Fn(u32, u32) -> DVec3
         }
     };
     let faces: Vec<Face> = (0..rows - 1).flat_map(|r| (0..across).map(move |c| face(r, c))).collect();
-    PlainMesh { face_materials: vec![None; faces.len()], positions, faces, materials: Vec::new() }
+    PlainMesh { face_materials: vec![None; faces.len()], positions, faces, ..PlainMesh::default() }
 }
 
 #[cfg(test)]

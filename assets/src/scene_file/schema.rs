@@ -61,11 +61,11 @@ const fn key(
 /// Farthest coordinate (m): beyond it f32 cannot tell apart a tenth of a millimetre.
 pub const FAR_M: f64 = 1_000.0;
 
-/// Names of the solvers, as `garment.solver` takes them.
-pub const SOLVERS: &[&str] = &["gauss-seidel", "semi-implicit", "zero-stretch"];
-
 /// Names of the qualities.
 pub const QUALITIES: &[&str] = &["draft", "shop", "fine"];
+
+/// Names of the motions of the benchmark's body.
+pub const MOTIONS: &[&str] = &["walk", "fast", "settled"];
 
 use Kind::{Box, Choice, Count, Flag, Number, Pairs, Table, Tables, Text, TextOrTable, Vector, Vertices};
 
@@ -99,6 +99,7 @@ pub const KEYS: &[Key] = &[
     key("garment", "mesh", Text, "", "-", "OBJ, glTF or GLB file, from the scene file's folder."),
     key("garment", "grid", Table("garment.grid"), "", "-", "A rectangle in place of a mesh file."),
     key("garment", "tube", Table("garment.tube"), "", "-", "An open tube or cone in place of a mesh file."),
+    key("garment", "skirt", Table("garment.skirt"), "", "-", "The benchmark's skirt in place of a mesh file."),
     key("garment", "weld", Flag, "", "true", "Whether vertices at the very same place are one particle."),
     key("garment", "scale", Number(1e-6, 1e6), "1", "1", "The mesh is multiplied by this; 0.001 for millimetres."),
     key("garment", "rotation_deg", Vector(360.0), "degrees", "[0, 0, 0]", "Then turned about x, then y, then z."),
@@ -132,6 +133,22 @@ pub const KEYS: &[Key] = &[
     key("garment.tube", "top_radius", Number(1e-3, 100.0), "m", "required", "Radius of row 0."),
     key("garment.tube", "bottom_radius", Number(1e-3, 100.0), "m", "required", "Radius of the last row."),
     key("garment.tube", "height", Number(1e-3, 100.0), "m", "required", "From row 0 at y = 0 down to the last."),
+    key(
+        "garment.skirt",
+        "side",
+        Count(3, 512),
+        "",
+        "required",
+        "Vertices a side: 64 makes 4,096; row 0 is the waistband.",
+    ),
+    key(
+        "garment.skirt",
+        "layout",
+        Choice(&["grid", "irregular"]),
+        "",
+        "grid",
+        "Quads in rows, or irregular triangles.",
+    ),
     key("garment.fabric", "base", Text, "", "cotton-lawn", "The built-in fabric that other keys of the table change."),
     key("garment.fabric", "file", Text, "", "-", "A fabric file, in place of `base`."),
     key("garment.fabric", "density_kg_m2", Number(0.01, 2.0), "kg/m2", "of the base", "Mass of an area."),
@@ -175,11 +192,27 @@ pub const KEYS: &[Key] = &[
     key("garment.pin", "box", Box, "m", "-", "Holds the vertices that start inside."),
     key("garment.pin", "material", Text, "", "-", "Holds the vertices of faces whose material ends in this."),
     key("garment.pin", "track", Text, "", "they stand", "CSV of the motion: time, x, y, z, qx, qy, qz, qw."),
+    key(
+        "garment.pin",
+        "motion",
+        Choice(MOTIONS),
+        "",
+        "they stand",
+        "The root of the benchmark's body, in place of a track.",
+    ),
     key("garment.mass_patch", "factor", Number(1e-4, 1e4), "1", "required", "Their mass is multiplied by this."),
     key("garment.mass_patch", "vertices", Vertices, "", "-", "The vertices of the patch."),
     key("garment.mass_patch", "box", Box, "m", "-", "The vertices that start inside."),
     key("colliders", "sphere", Tables("colliders.sphere"), "", "none", "Spheres, counted from 0 in their order."),
     key("colliders", "track", Text, "", "they stand", "CSV of all spheres: time, then x, y, z, r of each."),
+    key(
+        "colliders",
+        "motion",
+        Choice(MOTIONS),
+        "",
+        "-",
+        "The benchmark's body: its 16 spheres, 28 capsules and motion.",
+    ),
     key("colliders", "capsules", Pairs, "", "none", "Pairs of spheres joined to tapered capsules."),
     key("colliders", "plane", Tables("colliders.plane"), "", "none", "Planes that the cloth stays on one side of."),
     key("colliders.sphere", "centre", Vector(FAR_M), "m", "required", "Its centre."),
@@ -194,6 +227,29 @@ pub fn of(table: &str) -> impl Iterator<Item = &'static Key> {
     KEYS.iter().filter(move |k| k.table == table)
 }
 
+/// The reference of all keys, as `docs/scene.md` has it: one table for each table of a scene file.
+pub fn reference() -> String {
+    let mut text = String::new();
+    let mut tables: Vec<&str> = Vec::new();
+    KEYS.iter().for_each(|k| {
+        if !tables.contains(&k.table) {
+            tables.push(k.table);
+        }
+    });
+    for table in tables {
+        let several = KEYS.iter().any(|k| k.kind == Tables(table));
+        let title = match (table, several) {
+            ("", _) => "The file itself".to_owned(),
+            (_, true) => format!("`[[{table}]]`"),
+            (_, false) => format!("`[{table}]`"),
+        };
+        text += &format!("### {title}\n\n| key | takes | default | what it does |\n|---|---|---|---|\n");
+        of(table).for_each(|key| text += &(key.row() + "\n"));
+        text.push('\n');
+    }
+    text
+}
+
 impl Key {
     /// The key with its table, as messages call it.
     pub fn path(&self) -> String {
@@ -202,7 +258,7 @@ impl Key {
 
     /// What it takes, for messages and the reference.
     pub fn takes(&self) -> String {
-        let unit = if self.unit.is_empty() { String::new() } else { format!(" ({})", self.unit) };
+        let unit = if ["", "1"].contains(&self.unit) { String::new() } else { format!(" ({})", self.unit) };
         match self.kind {
             Number(low, high) => format!("a number from {low} to {high}{unit}"),
             Count(low, high) => format!("a whole number from {low} to {high}"),

@@ -72,6 +72,13 @@ box = [[-9, -9, -9], [9, 0.01, 9]]
 [[garment.pin]]
 material = "Band"
 
+[[garment]]
+skirt = { side = 8, layout = "irregular" }
+
+[[garment.pin]]
+vertices = ["0-7"]
+motion = "fast"
+
 [colliders]
 capsules = [[0, 1]]
 
@@ -164,7 +171,7 @@ fn pins_follow_their_track_and_masses_their_patches() {
     let fixed: Vec<usize> = (0..12).filter(|i| shape.fixed[*i]).collect();
     assert_eq!(fixed, [0, 1, 2]);
     assert!(fixed.iter().all(|i| shape.weights[*i].bones[0] == 1 && shape.weights[*i].weights[0] == 1.0));
-    assert_eq!(scene.pin_tracks.len(), 1);
+    assert_eq!(scene.pins.len(), 2, "the track, and the motion of another garment");
     // 0.5 kg by the scene; the last row, below y = 0.5, is ten times heavier on top of that.
     let area = 0.4 * 0.6 * f64::from(0.2f32);
     let (plain, heavy) = (shape.heavier[0], shape.heavier[11]);
@@ -175,6 +182,25 @@ fn pins_follow_their_track_and_masses_their_patches() {
             .shape
             .heavier
             .is_empty()
+    );
+}
+
+#[test]
+fn the_benchmarks_body_and_skirt_are_built_in() {
+    let text = "[garment]\nskirt = { side = 8 }\nmass = 0.31\npin = { vertices = [\"0-7\"], motion = \"walk\" }\n\
+        [colliders]\nmotion = \"walk\"\n";
+    let scene = parse(text).unwrap();
+    let (own, theirs) = (&scene.garments[0].shape, skirt::shape(8));
+    assert_eq!((&own.cut, &own.faces, &own.split), (&theirs.cut, &theirs.faces, &theirs.split));
+    assert_eq!(own.fixed, theirs.fixed);
+    assert_eq!((scene.colliders.spheres(), scene.colliders.capsules.len()), (16, 28));
+    assert_eq!(scene.colliders.sphere(9, 1.7), skirt::spheres(Motion::Walk, 1.7)[9]);
+    assert_eq!(scene.pins[0].at(1.7), skirt::root(Motion::Walk, 1.7));
+    assert!(refusal(&text.replace("walk\"\n", "walk\"\ncapsules = [[0, 1]]\n")).1.contains("of its own"));
+    assert!(
+        refusal(&text.replace("motion = \"walk\" }", "motion = \"walk\", track = \"pin.csv\" }"))
+            .1
+            .contains("one of them")
     );
 }
 

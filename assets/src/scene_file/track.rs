@@ -63,8 +63,7 @@ impl Track {
         if !time.is_finite() || self.times.last().is_some_and(|last| time <= *last) {
             return Err(format!("time {time} does not come after the row before; sort the rows by time (s)"));
         }
-        // Written so that a value that is not a number is found too.
-        let bad = values.iter().position(|v| !(v.abs() <= FAR));
+        let bad = values.iter().position(|v| v.is_nan() || v.abs() > FAR);
         if let Some(column) = bad.filter(|_| !pass) {
             let value = values[column];
             let cure = "correct it, or set bad_rows = \"pass\" to see how the engine copes";
