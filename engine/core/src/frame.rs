@@ -263,7 +263,8 @@ impl Frame {
         self.pose.root.to_array().into_iter().for_each(&mut add);
         self.pose.local.iter().flat_map(|q| q.to_array()).for_each(&mut add);
         for cloth in &self.cloths {
-            cloth.positions.iter().chain(&cloth.velocities).flat_map(|p| p.to_array()).for_each(&mut add);
+            cloth.positions.iter().flat_map(|p| p.to_array()).for_each(&mut add);
+            (0..cloth.positions.len()).flat_map(|i| cloth.velocity(i).to_array()).for_each(&mut add);
         }
         hash
     }

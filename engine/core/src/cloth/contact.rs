@@ -6,11 +6,11 @@
 //! Coulomb bound of the push): up to mu times the push it holds, beyond that it slides.
 
 use glam::Vec3A;
-use toile_assets::garment::{Garment, Part};
+use toile_assets::garment::Part;
 use toile_assets::limits::{MAX_CAPSULES, STEP_SECONDS};
 use toile_assets::skeleton::{Joint, TWIST_BONES};
 
-use super::{Cloth, Step};
+use super::state::{self, Columns};
 use crate::colliders::{Colliders, RoundCone};
 
 // A set bit of `Cloth::near` names a capsule.
@@ -52,28 +52,60 @@ fn limb(bone: u8) -> Part {
         .map_or(Part::Trunk, |(part, _)| part)
 }
 
-/// Finds the capsules that each free particle may touch during the step: first by bounding box, then by distance.
-pub fn find_near(cloth: &mut Cloth, garment: &Garment, step: &Step<'_>) {
-    let reaches = Reaches::new(step.colliders);
-    let offset = garment.fabric.contact_offset_mm * 1e-3 + SLACK_M;
-    let fall = step.settings.gravity.length() * STEP_SECONDS;
-    let particles = cloth.positions.iter().zip(&cloth.velocities).zip(&garment.inverse_mass);
-    for ((((p, v), w), near), reach) in particles.zip(&mut cloth.near).zip(&cloth.reach) {
+/// TEMPORARY
+#[derive(Debug, Clone)]
+pub struct Contacts { near: std::cell::RefCell<Vec<u32>>, reach: Vec<u32>, spans: [Vec<(u32,u32)>;2], limited: std::cell::Cell<u64> }
+pub struct ContactSettings { pub offset_m: f32, pub friction_static: f32, pub friction_kinetic: f32, pub substep_seconds: f32 }
+impl Contacts {
+    pub fn new(spans: &[Vec<(u32,u32)>;2], parts: &[Part], colliders: &Colliders) -> Self {
+        Self { near: vec![0; parts.len()].into(), reach: parts.iter().map(|&p| reach(p, colliders)).collect(), spans: spans.clone(), limited: 0.into() }
+    }
+    pub fn bytes(&self) -> usize { 0 }
+    pub fn take_limited(&self) -> u64 { self.limited.take() }
+    pub fn add_limited(&self, _: usize, n: u32) { self.limited.set(self.limited.get() + u64::from(n)); }
+    pub fn find(&self, share: usize, _: crate::lanes::Width, c: Columns<'_>, colliders: &Colliders, s: &ContactSettings) {
+        let reaches = Reaches::new(colliders);
+        let offset = s.offset_m + SLACK_M;
+        let fall = 9.81 * STEP_SECONDS;
+        for &(first, len) in &self.spans[share] { for i in first as usize..(first+len) as usize {
+        let (p, v, w, reach) = (state::get(c.x, i), state::get(c.v, i), c.w.get(i), self.reach[i]);
         let mut bits = 0u32;
-        if *w > 0.0 {
-            // Twice its present motion: a particle may be jerked along by its neighbours.
+        if w > 0.0 {
             let margin = offset + 2.0 * (v.length() + fall) * STEP_SECONDS;
             let mut asked = reach & reaches.all;
             while asked != 0 {
                 let c = asked.trailing_zeros() as usize;
                 asked &= asked - 1;
                 let inside = (p.cmpge(reaches.low[c] - margin) & p.cmple(reaches.high[c] + margin)).all();
-                if inside && reaches.cones[c].touch(*p, margin + reaches.travel[c]).is_some() {
+                if inside && reaches.cones[c].touch(p, margin + reaches.travel[c]).is_some() {
                     bits |= 1 << c;
                 }
             }
         }
-        *near = bits;
+        self.near.borrow_mut()[i] = bits;
+        }}
+    }
+    pub fn solve(&self, share: usize, _: crate::lanes::Width, cols: Columns<'_>, colliders: &Colliders, span: [f32;2], s: &ContactSettings) {
+    let cones = colliders.cones_at(span[1]).map(Cone::from);
+    let part = span[1] - span[0];
+    for &(first, len) in &self.spans[share] { for i in first as usize..(first+len) as usize {
+        let mut bits = self.near.borrow()[i];
+        if cols.w.get(i) <= 0.0 { continue; }
+        let (mut position, mut previous) = (state::get(cols.x, i), state::get(cols.previous, i));
+        while bits != 0 {
+            let c = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            if let Some(touch) = cones[c].touch(position, s.offset_m) {
+                let carried = Vec3A::from(colliders.travel(c, touch.along)) * part;
+                push(&mut position, &mut previous, touch.normal, touch.depth, s.friction_static, carried);
+            }
+        }
+        if colliders.floor && position.y < s.offset_m {
+            let depth = s.offset_m - position.y;
+            push(&mut position, &mut previous, Vec3A::Y, depth, s.friction_static, Vec3A::ZERO);
+        }
+        state::set(cols.x, i, position); state::set(cols.previous, i, previous);
+    }}
     }
 }
 
@@ -107,34 +139,6 @@ impl Reaches {
             this.travel[c] = colliders.travel(c, 0.0).length().max(colliders.travel(c, 1.0).length());
         }
         this
-    }
-}
-
-/// Pushes every near particle out of the body as it stands at the end of a substep, and out of the floor.
-/// `span` is the substep's part of the step, 0..1.
-pub fn solve(cloth: &mut Cloth, garment: &Garment, colliders: &Colliders, span: [f32; 2]) {
-    let cones = colliders.cones_at(span[1]).map(Cone::from);
-    let share = span[1] - span[0];
-    let offset = garment.fabric.contact_offset_mm * 1e-3;
-    let friction = garment.fabric.friction;
-    let particles = cloth.positions.iter_mut().zip(&mut cloth.previous).zip(&cloth.near);
-    for (((position, previous), &near), &w) in particles.zip(&garment.inverse_mass) {
-        if w <= 0.0 {
-            continue;
-        }
-        let mut bits = near;
-        while bits != 0 {
-            let c = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            if let Some(touch) = cones[c].touch(*position, offset) {
-                let carried = Vec3A::from(colliders.travel(c, touch.along)) * share;
-                push(position, previous, touch.normal, touch.depth, friction, carried);
-            }
-        }
-        if colliders.floor && position.y < offset {
-            let depth = offset - position.y;
-            push(position, previous, Vec3A::Y, depth, friction, Vec3A::ZERO);
-        }
     }
 }
 

@@ -1,59 +1,266 @@
-//! Fibers: stretch along warp and weft, shear along the bias, by Gauss-Seidel.
+//! Fibers side by side, each solved whole: the tridiagonal system of its tensions, a fiber a lane.
 //!
-//! Extended position-based dynamics (Macklin, Mueller, Chentanez 2016, eq. 18): for a link C = |b - a| - rest with
-//! compliance alpha, one iteration a substep moves the ends by -+ w n C / (w_a + w_b + alpha / dt^2). The compliance is
-//! the inverse of a physical stiffness, so neither the step nor the number of substeps changes what is converged to.
+//! For the links C_e = |x_(e+1) - x_e| - rest_e of one fiber, with unit vectors n_e, one linearised solve is
+//! (J W J^T + alpha / dt^2) lambda = C. A link shares a particle with the next only, so the matrix is tridiagonal:
+//! diagonal w_e + w_(e+1) + alpha_e / dt^2, beside it -w_e n_e.n_(e-1); it is factored as L D L^T on the way down and
+//! solved on the way up (Goldenthal et al. 2007, "Efficient simulation of inextensible cloth", sets this system up;
+//! Macklin et al. 2016 the compliance). Particles then move by w (lambda_e n_e - lambda_(e-1) n_(e-1)).
+//!
+//! Ill-conditioned chains: a collapsed link has no direction and drops out; both ends pinned and taut, or masses far
+//! apart, leave a pivot near zero, which is held at [`LEAST_PIVOT`] of its diagonal; and no particle moves by more than
+//! half its link in one solve, because beyond that the directions mean nothing.
 
-use toile_assets::garment::{Garment, Stretch};
+use toile_assets::garment::Solver;
+use toile_assets::garment::layout::{Bundle, ENDED, Fibers, Row};
 
-use super::Cloth;
+use super::state::Columns;
+use crate::lanes::{Column, Kernel, Lanes, MOST, V3, reciprocal_root};
 
-/// A link shorter than this has no direction (m).
-const LEAST_LENGTH_M: f32 = 1e-7;
+/// Least pivot as a share of its diagonal: the rounding of f32 over a chain of a hundred links, ten times over.
+pub(super) const LEAST_PIVOT: f32 = 1e-5;
 
-/// Solves every set once, in the order in which they were baked: bias, weft, warp.
-pub fn solve(cloth: &mut Cloth, garment: &Garment, dt: f32) {
-    let per_dt2 = (dt * dt).recip();
-    for link in &garment.stretch {
-        solve_link(&mut cloth.positions, &garment.inverse_mass, link, per_dt2);
-    }
+/// A pivot where there is no link at all.
+pub(super) const NO_PIVOT: f32 = 1e-12;
+
+/// Farthest that one solve may move a particle, as a share of its link.
+pub(super) const FARTHEST: f32 = 0.5;
+
+/// Passes of a fiber that must not lengthen; each squares what is left of the error.
+const ZERO_STRETCH_PASSES: usize = 2;
+
+/// Vectors kept a link between the way down and the way up: n (three), the factor, the right-hand side.
+const KEPT: usize = 5;
+
+/// Numbers of scratch that the longest bundle needs.
+pub fn scratch_len(fibers: &Fibers) -> usize {
+    fibers.bundles.iter().map(|b| b.rows.len()).max().unwrap_or(0) * KEPT * MOST
 }
 
-#[inline]
-fn solve_link(positions: &mut [glam::Vec3A], inverse_mass: &[f32], link: &Stretch, per_dt2: f32) {
-    let (a, b) = (link.a as usize, link.b as usize);
-    let (wa, wb) = (inverse_mass[a], inverse_mass[b]);
-    let d = positions[b] - positions[a];
-    let length = d.length();
-    let weight = wa + wb + link.compliance * per_dt2;
-    if length < LEAST_LENGTH_M || weight <= 0.0 {
-        return;
-    }
-    let push = d * ((length - link.rest) / (length * weight));
-    positions[a] += push * wa;
-    positions[b] -= push * wb;
+/// All bundles of one owner.
+pub struct Solve<'a> {
+    /// The garment's particles.
+    pub columns: Columns<'a>,
+    /// All fibers.
+    pub fibers: &'a Fibers,
+    /// Whose.
+    pub owner: usize,
+    /// This worker's scratch.
+    pub scratch: Column<'a>,
+    /// 1 / dt^2 (1/s2).
+    pub per_dt2: f32,
+    /// Damping time over the substep (1).
+    pub gamma: f32,
+    /// The solver of all bundles, where the quality overrides the bake's choice.
+    pub solver: Option<Solver>,
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::Vec3A;
+impl Kernel for Solve<'_> {
+    type Out = ();
 
-    #[test]
-    fn a_stiff_link_reaches_its_length_and_keeps_the_centre_of_mass() {
-        let mut p = [Vec3A::ZERO, Vec3A::new(2.0, 0.0, 0.0)];
-        let w = [1.0, 3.0];
-        solve_link(&mut p, &w, &Stretch { a: 0, b: 1, rest: 1.0, compliance: 0.0 }, 1.0);
-        assert!(((p[1] - p[0]).length() - 1.0).abs() < 1e-6);
-        assert!((p[0].x / w[0] + p[1].x / w[1] - 2.0 / w[1]).abs() < 1e-6);
-    }
-
-    #[test]
-    fn collapsed_and_fixed_links_do_nothing() {
-        for (w, b) in [([1.0, 1.0], Vec3A::ZERO), ([0.0, 0.0], Vec3A::X * 3.0)] {
-            let mut p = [Vec3A::ZERO, b];
-            solve_link(&mut p, &w, &Stretch { a: 0, b: 1, rest: 1.0, compliance: 0.0 }, 1.0);
-            assert_eq!(p, [Vec3A::ZERO, b]);
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        for bundle in self.fibers.bundles.iter().filter(|b| usize::from(b.owner) == self.owner) {
+            let mut lane = 0;
+            while lane < bundle.lanes as usize {
+                let chain = Chain { solve: &self, bundle, lane };
+                match self.solver.unwrap_or(bundle.solver) {
+                    Solver::GaussSeidel => chain.sweep::<L>(),
+                    Solver::SemiImplicit if self.gamma > 0.0 => chain.direct::<L, true, false>(),
+                    Solver::SemiImplicit => chain.direct::<L, false, false>(),
+                    Solver::ZeroStretch => {
+                        (0..ZERO_STRETCH_PASSES).for_each(|_| chain.direct::<L, false, true>());
+                        chain.shorten::<L>();
+                    }
+                }
+                lane += L::N;
+            }
         }
     }
+}
+
+/// The fibers of a bundle from `lane` on, as many as there are lanes.
+struct Chain<'a> {
+    solve: &'a Solve<'a>,
+    bundle: &'a Bundle,
+    lane: usize,
+}
+
+impl Chain<'_> {
+    #[inline(always)]
+    fn rows(&self) -> &[Row] {
+        &self.solve.fibers.rows[self.bundle.rows.start as usize..self.bundle.rows.end as usize]
+    }
+
+    /// First particle of a row for these lanes, and how many of them reach so far.
+    #[inline(always)]
+    fn place<L: Lanes>(&self, row: Row) -> (usize, usize) {
+        (row.first as usize + self.lane, (row.lanes as usize).saturating_sub(self.lane).min(L::N))
+    }
+
+    #[inline(always)]
+    fn weights<L: Lanes>(&self, at: usize, n: usize) -> L {
+        let w = self.solve.columns.w;
+        if n == L::N { L::load(w, at) } else { L::load_part(w, at, n) }
+    }
+
+    /// Rest length and compliance of a link.
+    #[inline(always)]
+    fn link<L: Lanes>(&self, link: usize) -> (L, L) {
+        let lanes = self.bundle.lanes as usize;
+        let at = self.bundle.at as usize + link * lanes + self.lane;
+        let n = (lanes - self.lane).min(L::N);
+        let (rest, soft) =
+            (Column::read_only(&self.solve.fibers.rest), Column::read_only(&self.solve.fibers.compliance));
+        if n == L::N {
+            (L::load(rest, at), L::load(soft, at))
+        } else {
+            (L::load_part(rest, at, n), L::load_part(soft, at, n))
+        }
+    }
+
+    #[inline(always)]
+    fn direct<L: Lanes, const DAMPED: bool, const ZERO: bool>(&self) {
+        let c = &self.solve.columns;
+        let rows = self.rows();
+        let scratch = self.solve.scratch;
+        let per_dt2 = L::splat(self.solve.per_dt2);
+        let gamma = L::splat(self.solve.gamma);
+        let zero = L::splat(0.0);
+        let (at, n) = self.place::<L>(rows[0]);
+        let mut p = V3::<L>::load(c.x, at, n);
+        let mut moved = if DAMPED { p - V3::load(c.previous, at, n) } else { p };
+        let mut w = self.weights::<L>(at, n);
+        let mut normal = V3 { x: zero, y: zero, z: zero };
+        let (mut pivot, mut y) = (zero, zero);
+        for link in 0..rows.len() - 1 {
+            let (at, n) = self.place::<L>(rows[link + 1]);
+            let q = V3::<L>::load(c.x, at, n);
+            let w_q = self.weights::<L>(at, n);
+            let (rest, soft) = self.link::<L>(link);
+            let d = q - p;
+            let length2 = d.dot(d);
+            let inverse = reciprocal_root(length2);
+            let next = d * inverse;
+            let mut stretch = length2 * inverse - rest;
+            let mut both = w + w_q;
+            let mut beside = w * next.dot(normal);
+            let stiff = if ZERO {
+                stretch = stretch.max(zero);
+                soft.select(L::splat(0.1 * ENDED).lt(soft), zero)
+            } else {
+                soft * per_dt2
+            };
+            if DAMPED {
+                let moves = q - V3::load(c.previous, at, n);
+                stretch = stretch + gamma * next.dot(moves - moved);
+                moved = moves;
+                both = both + gamma * both;
+                beside = beside + gamma * beside;
+            }
+            // L D L^T: `beside` is minus the entry beside the diagonal.
+            let diagonal = both + stiff;
+            let factor = beside * pivot;
+            let rest_pivot = (diagonal - factor * beside).max(diagonal * L::splat(LEAST_PIVOT)).max(L::splat(NO_PIVOT));
+            pivot = L::splat(1.0).div(rest_pivot);
+            y = stretch + factor * y;
+            let kept = link * KEPT * L::N;
+            next.x.store(scratch, kept);
+            next.y.store(scratch, kept + L::N);
+            next.z.store(scratch, kept + 2 * L::N);
+            factor.store(scratch, kept + 3 * L::N);
+            (y * pivot).store(scratch, kept + 4 * L::N);
+            (p, w, normal) = (q, w_q, next);
+        }
+        self.back::<L>(rows);
+    }
+
+    /// The way up: tensions, and the motion that they cause.
+    #[inline(always)]
+    fn back<L: Lanes>(&self, rows: &[Row]) {
+        let c = &self.solve.columns;
+        let scratch = self.solve.scratch;
+        let zero = L::splat(0.0);
+        let mut below = V3 { x: zero, y: zero, z: zero };
+        let (mut lambda, mut factor) = (zero, zero);
+        let mut reach = zero;
+        for link in (0..rows.len() - 1).rev() {
+            let kept = link * KEPT * L::N;
+            let normal = V3 {
+                x: L::load(scratch, kept),
+                y: L::load(scratch, kept + L::N),
+                z: L::load(scratch, kept + 2 * L::N),
+            };
+            lambda = L::load(scratch, kept + 4 * L::N) + factor * lambda;
+            factor = L::load(scratch, kept + 3 * L::N);
+            let pull = normal * lambda;
+            let (at, n) = self.place::<L>(rows[link + 1]);
+            reach = self.link::<L>(link).0 * L::splat(FARTHEST);
+            self.shift((below - pull) * self.weights::<L>(at, n), reach, at, n);
+            below = pull;
+        }
+        let (at, n) = self.place::<L>(rows[0]);
+        self.shift(below * self.weights::<L>(at, n), reach, at, n);
+        let _ = c;
+    }
+
+    /// Moves a row, no particle farther than `reach`.
+    #[inline(always)]
+    fn shift<L: Lanes>(&self, by: V3<L>, reach: L, at: usize, n: usize) {
+        let x = self.solve.columns.x;
+        let by = limited(by, reach);
+        (V3::load(x, at, n) + by).store(x, at, n);
+    }
+
+    /// Gauss-Seidel down the fibers, each link once.
+    #[inline(always)]
+    fn sweep<L: Lanes>(&self) {
+        let c = &self.solve.columns;
+        let rows = self.rows();
+        let (mut above, n) = self.place::<L>(rows[0]);
+        let mut p = V3::<L>::load(c.x, above, n);
+        let mut reached = n;
+        let mut w = self.weights::<L>(above, n);
+        for link in 0..rows.len() - 1 {
+            let (at, n) = self.place::<L>(rows[link + 1]);
+            let mut q = V3::<L>::load(c.x, at, n);
+            let w_q = self.weights::<L>(at, n);
+            let (rest, soft) = self.link::<L>(link);
+            let d = q - p;
+            let inverse = reciprocal_root(d.dot(d));
+            let weight = (w + w_q + soft * L::splat(self.solve.per_dt2)).max(L::splat(NO_PIVOT));
+            let pull = (L::splat(1.0) - rest * inverse).div(weight);
+            (p + d * (pull * w)).store(c.x, above, reached);
+            q = q - d * (pull * w_q);
+            (p, w, above, reached) = (q, w_q, at, n);
+        }
+        p.store(c.x, above, reached);
+    }
+
+    /// From the support on, every particle whose link is too long is drawn to its length: nothing stays lengthened.
+    #[inline(always)]
+    fn shorten<L: Lanes>(&self) {
+        let c = &self.solve.columns;
+        let rows = self.rows();
+        let (at, n) = self.place::<L>(rows[0]);
+        let mut p = V3::<L>::load(c.x, at, n);
+        for (link, &row) in rows[1..].iter().enumerate() {
+            let (at, n) = self.place::<L>(row);
+            let q = V3::<L>::load(c.x, at, n);
+            let (rest, _) = self.link::<L>(link);
+            let d = q - p;
+            let kept = (rest * reciprocal_root(d.dot(d))).min(L::splat(1.0));
+            let free = L::splat(0.0).lt(self.weights::<L>(at, n));
+            p = (p + d * kept).select(free, q);
+            p.store(c.x, at, n);
+        }
+    }
+}
+
+/// A vector no longer than `reach`.
+#[inline(always)]
+pub(super) fn limited<L: Lanes>(by: V3<L>, reach: L) -> V3<L> {
+    use crate::lanes::Mask;
+    let size2 = by.dot(by);
+    let over = (reach * reach).lt(size2);
+    if over.any() { by * (reach * reciprocal_root(size2)).select(over, L::splat(1.0)) } else { by }
 }

@@ -1,7 +1,7 @@
 //! Measures of a garment's state: strain, penetration, how tight it sits. Read only; outside of the timed step.
 
 use glam::Vec3;
-use toile_assets::garment::Garment;
+use toile_assets::garment::{Garment, Part};
 
 use super::Cloth;
 use crate::colliders::Colliders;
@@ -19,7 +19,7 @@ pub struct Strain {
 
 /// Strain of the edges that can move; allocates nothing.
 pub fn strain(cloth: &mut Cloth, garment: &Garment) -> Strain {
-    let Cloth { positions, scratch, .. } = cloth;
+    let Cloth { positions, strains: scratch, .. } = cloth;
     let mut count = 0;
     let mut sum = 0.0f64;
     for ([a, b], rest) in &garment.strain_edges {
@@ -42,16 +42,15 @@ pub fn strain(cloth: &mut Cloth, garment: &Garment) -> Strain {
     Strain { mean: (sum / count as f64) as f32, p99, max }
 }
 
-/// Deepest point of a free particle inside the colliders (m), 0 if none is inside. Only capsules that the step found
-/// near are asked; a particle cannot be inside of another.
+/// Deepest point of a free particle inside the colliders (m), 0 if none is inside.
 pub fn penetration(cloth: &Cloth, garment: &Garment, colliders: &Colliders) -> f32 {
     let cones = colliders.cones_at(1.0);
+    let cones = &cones[..colliders.capsules().len()];
     let mut deepest = 0.0f32;
-    for ((p, &near), w) in cloth.positions.iter().zip(&cloth.near).zip(&garment.inverse_mass) {
-        let mut bits = if *w > 0.0 { near } else { 0 };
-        while bits != 0 {
-            deepest = deepest.max(-cones[bits.trailing_zeros() as usize].distance((*p).into()).0);
-            bits &= bits - 1;
+    for ((p, part), w) in cloth.positions.iter().zip(&garment.parts).zip(&garment.inverse_mass) {
+        if *w > 0.0 && *part != Part::Hollow {
+            let depth = cones.iter().map(|c| -c.distance((*p).into()).0).fold(0.0, f32::max);
+            deepest = deepest.max(depth);
         }
     }
     deepest

@@ -2,45 +2,36 @@
 //!
 //! Reads: a baked `Garment`, the bone palette, the placed colliders. Writes: particle positions and velocities.
 //! Budget: 3 ms a step for 6,000 particles on one core ([`STEP_BUDGET_US`]); no allocation after [`Cloth::new`].
-//! Thread: physics.
+//! Thread: physics; two workers may share a step.
 
 pub mod bending;
 pub mod contact;
 pub mod fibers;
 pub mod guard;
+pub mod links;
+pub mod lists;
 pub mod measure;
 pub mod predict;
+pub mod program;
+pub mod settings;
 pub mod settle;
 pub mod state;
+mod step;
 
 use glam::{Affine3A, Vec3A};
 use toile_assets::garment::Garment;
-use toile_assets::limits::STEP_SECONDS;
+use toile_assets::garment::layout::OWNERS;
 use toile_assets::skeleton::BONES;
 
 use crate::colliders::Colliders;
+use crate::lanes::Store;
+use program::{Op, STAGES};
+pub use settings::{Quality, Settings};
+use state::State;
 
 /// What a step of one garment may cost (us): a third of the 8,333 us that 120 Hz leaves, so that two garments and the
 /// rest of the frame fit beside it.
 pub const STEP_BUDGET_US: f32 = 3_000.0;
-
-/// How the cloth is stepped; the same for every garment of a scene.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
-    /// Substeps of a step. Small substeps beat many iterations (Macklin et al. 2019, "Small steps in physics
-    /// simulation"): every substep solves each constraint once.
-    pub substeps: u32,
-    /// Acceleration of gravity (m/s2).
-    pub gravity: Vec3A,
-    /// Speed limit of a particle (m/s): three times a fast arm; what is faster is an error, not cloth.
-    pub max_speed: f32,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self { substeps: 12, gravity: Vec3A::new(0.0, -9.81, 0.0), max_speed: 15.0 }
-    }
-}
 
 /// What the surroundings do during one step.
 #[derive(Debug, Clone, Copy)]
@@ -53,29 +44,32 @@ pub struct Step<'a> {
     pub settings: &'a Settings,
 }
 
-/// The state of one garment. Every array has one entry a particle and is made once.
+/// The state of one garment. All storage is made once.
 #[derive(Debug, Clone)]
 pub struct Cloth {
-    /// World position (m); written by predict, bending, fibers, contact.
+    /// World position (m) at the end of the last step `[particles]`: always finite.
     pub positions: Box<[Vec3A]>,
-    /// Position at the start of the substep (m); written by predict, and by contact to keep a push from becoming speed.
-    pub(crate) previous: Box<[Vec3A]>,
-    /// Velocity (m/s); written by settle.
-    pub velocities: Box<[Vec3A]>,
+    /// The particles as the kernels have them.
+    pub(crate) state: State,
     /// Where each skinned particle is at the start of the step (m) `[fixed]`.
-    pub(crate) fixed_start: Box<[Vec3A]>,
+    fixed_start: Box<[Vec3A]>,
     /// Where each skinned particle is at the end of the step (m) `[fixed]`.
-    pub(crate) fixed_end: Box<[Vec3A]>,
-    /// Bit c is set where capsule c may be touched during this step.
-    pub(crate) near: Box<[u32]>,
-    /// Bit c is set where capsule c can be touched at all.
-    pub(crate) reach: Box<[u32]>,
-    /// Positions at the end of the last step that was finite (m).
-    pub(crate) good: Box<[Vec3A]>,
+    fixed_end: Box<[Vec3A]>,
+    /// What contact keeps from step to step.
+    contacts: contact::Contacts,
+    /// Room of each worker for a fiber's factors.
+    scratch: [Store; OWNERS],
     /// Room for percentiles.
-    pub(crate) scratch: Box<[f32]>,
+    pub(crate) strains: Box<[f32]>,
+    prepared: step::Prepared,
+    /// The root of the palette at the end of the last step.
+    root: Affine3A,
     /// What happened that should not have.
     pub events: guard::Events,
+    /// Time spent in each of [`STAGES`] during the last step that was metered (ns).
+    pub stage_ns: [u64; STAGES.len()],
+    /// Steps in a row that were rolled back.
+    rolled: u32,
     placed: bool,
 }
 
@@ -84,54 +78,69 @@ impl Cloth {
     pub fn new(garment: &Garment, colliders: &Colliders) -> Self {
         let start: Box<[Vec3A]> = garment.start.iter().map(|&p| p.into()).collect();
         let fixed: Box<[Vec3A]> = garment.fixed.iter().map(|&i| start[i as usize]).collect();
+        let layout = &garment.layout;
+        let needs = [
+            fibers::scratch_len(&layout.fibers),
+            lists::scratch_len(&layout.crossing),
+            lists::scratch_len(&layout.hoops),
+        ];
+        let scratch = || Store::zeros(needs.into_iter().max().unwrap_or(0));
         Self {
-            previous: start.clone(),
-            velocities: vec![Vec3A::ZERO; start.len()].into(),
+            state: State::new(&garment.start, &garment.inverse_mass),
             fixed_start: fixed.clone(),
             fixed_end: fixed,
-            near: vec![0; start.len()].into(),
-            reach: garment.parts.iter().map(|&part| contact::reach(part, colliders)).collect(),
-            good: start.clone(),
-            scratch: vec![0.0; garment.strain_edges.len()].into(),
+            contacts: contact::Contacts::new(&layout.spans, &garment.parts, colliders),
+            scratch: [scratch(), scratch()],
+            strains: vec![0.0; garment.strain_edges.len()].into(),
+            prepared: step::Prepared::new(garment),
+            root: Affine3A::IDENTITY,
             events: guard::Events::default(),
+            stage_ns: [0; STAGES.len()],
+            rolled: 0,
             placed: false,
             positions: start,
         }
     }
 
-    /// One step of 1/120 s.
-    pub fn step(&mut self, garment: &Garment, step: &Step<'_>) {
-        let substeps = step.settings.substeps.max(1);
-        let dt = STEP_SECONDS / substeps as f32;
-        self.attach(garment, step.palette);
-        contact::find_near(self, garment, step);
-        for substep in 0..substeps {
-            let from = substep as f32 / substeps as f32;
-            let to = (substep + 1) as f32 / substeps as f32;
-            predict::predict(self, garment, step.settings, dt);
-            predict::carry_fixed(self, garment, to);
-            bending::solve(self, garment, dt);
-            fibers::solve(self, garment, dt);
-            contact::solve(self, garment, step.colliders, [from, to]);
-            settle::settle(self, garment, step.settings, dt);
-        }
-        guard::check(self);
+    /// Velocity of a particle at the end of the last step (m/s).
+    pub fn velocity(&self, particle: usize) -> Vec3A {
+        Vec3A::from_array([0, 1, 2].map(|axis| self.state.velocity[axis].as_slice()[particle]))
     }
 
-    /// Moves the skinned particles' targets on: the end of the last step is the start of this one.
-    fn attach(&mut self, garment: &Garment, palette: &[Affine3A; BONES]) {
-        self.fixed_start.copy_from_slice(&self.fixed_end);
-        for (k, (&i, w)) in garment.fixed.iter().zip(&garment.fixed_weights).enumerate() {
-            let rest = garment.start[i as usize].into();
-            let mut p = Vec3A::ZERO;
-            for (&bone, &weight) in w.bones.iter().zip(&w.weights) {
-                p += palette[bone as usize].transform_point3a(rest) * weight;
-            }
-            self.fixed_end[k] = p;
+    /// Puts a particle somewhere, with a velocity (m, m/s): how tests and scenes disturb a garment.
+    pub fn disturb(&mut self, particle: usize, position: Vec3A, velocity: Vec3A) {
+        let columns = self.state.columns();
+        state::set(columns.x, particle, position);
+        state::set(columns.previous, particle, position);
+        state::set(columns.v, particle, velocity);
+        if position.is_finite() {
+            self.positions[particle] = position;
         }
-        if !self.placed {
-            self.fixed_start.copy_from_slice(&self.fixed_end);
-            self.placed = true;
-        }
+    }
+
+    /// Kinetic energy (J).
+    pub fn kinetic_energy(&self, garment: &Garment) -> f64 {
+        let particles = garment.inverse_mass.iter().enumerate().filter(|(_, w)| **w > 0.0);
+        particles.map(|(i, w)| 0.5 / f64::from(*w) * f64::from(self.velocity(i).length_squared())).sum()
+    }
+
+    /// Bytes that the state of the garment holds; its constraints are `Layout::bytes`.
+    pub fn bytes(&self) -> usize {
+        self.state.bytes()
+            + size_of_val(&*self.positions)
+            + 2 * size_of_val(&*self.fixed_start)
+            + self.contacts.bytes()
+            + self.scratch.iter().map(Store::bytes).sum::<usize>()
+            + self.prepared.bytes()
+    }
+
+    /// The phases of a substep as last prepared.
+    pub fn program(&self) -> &[Op] {
+        self.prepared.program()
+    }
+
+    /// Substeps of a step as last prepared.
+    pub fn substeps(&self) -> u32 {
+        self.prepared.substeps()
     }
 }

@@ -1,26 +1,53 @@
-//! Predict: gravity and air move every free particle; the skinned ones follow the body.
+//! Predict: gravity, air and wind move every free particle; the skinned ones follow the body.
 
 use glam::Vec3A;
-use toile_assets::garment::Garment;
 
-use super::{Cloth, Settings};
+use super::state::Columns;
+use crate::lanes::{Column, Kernel, Lanes, V3};
 
-/// Semi-implicit Euler: v += g dt, damped by the air; x += v dt.
-pub fn predict(cloth: &mut Cloth, garment: &Garment, settings: &Settings, dt: f32) {
-    let kept = (-garment.fabric.damping_per_s * dt).exp();
-    let fall = settings.gravity * dt;
-    let particles = cloth.positions.iter_mut().zip(&mut cloth.previous).zip(&cloth.velocities);
-    for (((position, previous), velocity), &w) in particles.zip(&garment.inverse_mass) {
-        *previous = *position;
-        // A skinned particle has no velocity of its own; the select keeps the loop free of branches.
-        let v = if w > 0.0 { (*velocity + fall) * kept } else { Vec3A::ZERO };
-        *position += v * dt;
+/// Semi-implicit Euler over one range of particles: v = (v + a dt) kept; x += v dt.
+pub struct Predict<'a> {
+    /// The garment's particles.
+    pub columns: Columns<'a>,
+    /// The range, `(first, len)`.
+    pub span: (u32, u32),
+    /// Gravity over the substep (m/s).
+    pub fall: Vec3A,
+    /// Accelerations of each particle besides gravity (m/s2), and the substep (s).
+    pub pushed: Option<([Column<'a>; 3], f32)>,
+    /// Share of the velocity that the air leaves.
+    pub kept: f32,
+    /// Length of the substep (s).
+    pub dt: f32,
+}
+
+impl Kernel for Predict<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let (first, len) = (self.span.0 as usize, self.span.1 as usize);
+        let mut t = 0;
+        while t < len {
+            self.some::<L>(first + t, (len - t).min(L::N));
+            t += L::N;
+        }
     }
 }
 
-/// Puts the skinned particles where the body has them at `to` (0..1) of the step.
-pub fn carry_fixed(cloth: &mut Cloth, garment: &Garment, to: f32) {
-    for (k, &i) in garment.fixed.iter().enumerate() {
-        cloth.positions[i as usize] = cloth.fixed_start[k].lerp(cloth.fixed_end[k], to);
+impl Predict<'_> {
+    #[inline(always)]
+    fn some<L: Lanes>(&self, at: usize, n: usize) {
+        let c = &self.columns;
+        let x = V3::<L>::load(c.x, at, n);
+        x.store(c.previous, at, n);
+        let mut v = V3::<L>::load(c.v, at, n) + V3::splat(self.fall);
+        if let Some((acceleration, dt)) = self.pushed {
+            v = v + V3::load(acceleration, at, n) * L::splat(dt);
+        }
+        let w = if n == L::N { L::load(c.w, at) } else { L::load_part(c.w, at, n) };
+        // A skinned particle has no velocity of its own.
+        let kept = L::splat(self.kept).select(L::splat(0.0).lt(w), L::splat(0.0));
+        (x + v * (kept * L::splat(self.dt))).store(c.x, at, n);
     }
 }

@@ -1,22 +1,51 @@
 //! Settle: velocities from where the particles came to lie.
 
-use toile_assets::garment::Garment;
+use super::state::Columns;
+use crate::lanes::{Kernel, Lanes, Mask, V3, reciprocal_root};
 
-use super::{Cloth, Settings};
+/// v = (x - previous) / dt over one range of particles, limited to the settings' speed. A particle over the limit is
+/// also put back to where that speed would have brought it, so that position and velocity agree. Gives how many were.
+pub struct Settle<'a> {
+    /// The garment's particles.
+    pub columns: Columns<'a>,
+    /// The range, `(first, len)`.
+    pub span: (u32, u32),
+    /// Speed limit (m/s).
+    pub max_speed: f32,
+    /// Length of the substep (s).
+    pub dt: f32,
+}
 
-/// v = (x - previous) / dt, limited to the settings' speed. A particle over the limit is also put back to where that
-/// speed would have brought it, so that position and velocity agree.
-pub fn settle(cloth: &mut Cloth, garment: &Garment, settings: &Settings, dt: f32) {
-    let farthest = settings.max_speed * dt;
-    let particles = cloth.positions.iter_mut().zip(&cloth.previous).zip(&mut cloth.velocities);
-    for (((position, previous), velocity), &w) in particles.zip(&garment.inverse_mass) {
-        let mut moved = *position - *previous;
-        let distance2 = moved.length_squared();
-        if w > 0.0 && distance2 > farthest * farthest {
-            moved *= farthest / distance2.sqrt();
-            *position = *previous + moved;
-            cloth.events.speed_limited += 1;
+impl Kernel for Settle<'_> {
+    type Out = u32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u32 {
+        let (first, len) = (self.span.0 as usize, self.span.1 as usize);
+        let (mut t, mut held) = (0, 0);
+        while t < len {
+            held += self.some::<L>(first + t, (len - t).min(L::N));
+            t += L::N;
         }
-        *velocity = moved / dt;
+        held
+    }
+}
+
+impl Settle<'_> {
+    #[inline(always)]
+    fn some<L: Lanes>(&self, at: usize, n: usize) -> u32 {
+        let c = &self.columns;
+        let previous = V3::<L>::load(c.previous, at, n);
+        let mut moved = V3::load(c.x, at, n) - previous;
+        let distance2 = moved.dot(moved);
+        let farthest = L::splat(self.max_speed * self.dt);
+        let w = if n == L::N { L::load(c.w, at) } else { L::load_part(c.w, at, n) };
+        let over = (farthest * farthest).lt(distance2).and(L::splat(0.0).lt(w));
+        if over.any() {
+            moved = moved * (farthest * reciprocal_root(distance2)).select(over, L::splat(1.0));
+            (previous + moved).select(over, V3::load(c.x, at, n)).store(c.x, at, n);
+        }
+        (moved * L::splat(self.dt.recip())).store(c.v, at, n);
+        over.bits().count_ones()
     }
 }

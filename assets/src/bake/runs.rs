@@ -1,0 +1,153 @@
+//! Runs: constraints coloured into sets without a common particle, and laid side by side where their particles are.
+
+use crate::garment::Direction;
+use crate::garment::layout::{OWNERS, Run, Set, Share, Tuples};
+
+/// Runs shorter than this are not worth a vector; their constraints are loose.
+const LEAST_RUN: usize = 3;
+
+/// Lays constraints over `K` particles out; `apart` demands that no two of a set share a particle. Gives the tuples and
+/// for each parameter place the constraint it belongs to. Constraints that touch both owners' particles are the first
+/// owner's where sets are kept apart (nobody else touches them in that set), else they form a last set of their own.
+pub fn lay_out<const K: usize>(
+    constraints: &[(Direction, [u32; K])],
+    owner: &[u8],
+    apart: bool,
+) -> (Tuples<K>, Vec<usize>) {
+    let mut order: Vec<usize> = (0..constraints.len()).collect();
+    order.sort_by_key(|&i| (std::cmp::Reverse(constraints[i].0), constraints[i].1));
+    let sets = if apart { coloured(constraints, &order, owner.len()) } else { gathered(constraints, &order, owner) };
+    let mut out = Layouter { runs: Vec::new(), loose: Vec::new(), places: Vec::new() };
+    let sets = sets.into_iter().map(|set| Set {
+        direction: constraints[set[0]].0,
+        shares: std::array::from_fn(|share| {
+            let mine = |i: &usize| usize::from(owner[constraints[*i].1[0] as usize]) == share;
+            let part: Vec<usize> = set.iter().copied().filter(mine).collect();
+            out.share(constraints, &part, owner)
+        }),
+    });
+    let sets = sets.collect();
+    let count = out.places.len();
+    (Tuples { runs: out.runs.into(), loose: out.loose.into(), sets, count }, out.places)
+}
+
+/// First fit in the order of the particles: on a grid neighbours side by side get one colour, which makes long runs.
+fn coloured<const K: usize>(
+    constraints: &[(Direction, [u32; K])],
+    order: &[usize],
+    particles: usize,
+) -> Vec<Vec<usize>> {
+    let mut taken: Vec<(Direction, Vec<bool>)> = Vec::new();
+    let mut sets: Vec<Vec<usize>> = Vec::new();
+    for &i in order {
+        let (direction, v) = &constraints[i];
+        let free = |t: &(Direction, Vec<bool>)| t.0 == *direction && v.iter().all(|&p| !t.1[p as usize]);
+        let colour = taken.iter().position(free).unwrap_or_else(|| {
+            taken.push((*direction, vec![false; particles]));
+            sets.push(Vec::new());
+            sets.len() - 1
+        });
+        v.iter().for_each(|&p| taken[colour].1[p as usize] = true);
+        sets[colour].push(i);
+    }
+    sets
+}
+
+/// One set of what stays within an owner's particles, one of what crosses.
+fn gathered<const K: usize>(
+    constraints: &[(Direction, [u32; K])],
+    order: &[usize],
+    owner: &[u8],
+) -> Vec<Vec<usize>> {
+    let crosses = |i: &usize| {
+        let v = &constraints[*i].1;
+        v.iter().any(|&p| owner[p as usize] != owner[v[0] as usize])
+    };
+    let (crossing, within): (Vec<usize>, Vec<usize>) = order.iter().partition(|i| crosses(i));
+    [within, crossing].into_iter().filter(|s| !s.is_empty()).collect()
+}
+
+struct Layouter<const K: usize> {
+    runs: Vec<Run<K>>,
+    loose: Vec<[u32; K]>,
+    places: Vec<usize>,
+}
+
+impl<const K: usize> Layouter<K> {
+    /// One owner's share: its runs first, then what is loose.
+    fn share(&mut self, constraints: &[(Direction, [u32; K])], part: &[usize], owner: &[u8]) -> Share {
+        let (first_run, first_loose) = (self.runs.len() as u32, self.loose.len() as u32);
+        let mut loose: Vec<usize> = Vec::new();
+        let mut at = 0;
+        while at < part.len() {
+            let len = run_length(constraints, &part[at..], owner);
+            if len >= LEAST_RUN {
+                let first = constraints[part[at]].1;
+                self.runs.push(Run { first, len: len as u32, at: self.places.len() as u32 });
+                self.places.extend(&part[at..at + len]);
+            } else {
+                loose.extend(&part[at..at + len]);
+            }
+            at += len;
+        }
+        let loose_at = self.places.len() as u32;
+        self.loose.extend(loose.iter().map(|&i| constraints[i].1));
+        self.places.extend(&loose);
+        Share {
+            runs: first_run..self.runs.len() as u32,
+            loose: first_loose..self.loose.len() as u32,
+            loose_at,
+        }
+    }
+}
+
+/// How many constraints from the first on advance by one particle each, under one owner.
+fn run_length<const K: usize>(constraints: &[(Direction, [u32; K])], part: &[usize], owner: &[u8]) -> usize {
+    let (direction, first) = constraints[part[0]];
+    let follows = |t: usize| {
+        let (d, v) = constraints[part[t]];
+        let owned = |p: u32| owner[p as usize] == owner[v[0] as usize];
+        let like = (0..K).all(|k| v[k] == first[k] + t as u32 && owned(v[k]) == (owner[first[k] as usize] == owner[first[0] as usize]));
+        d == direction && like
+    };
+    (1..part.len()).take_while(|&t| follows(t)).count() + 1
+}
+
+// A share is worked on by one owner alone.
+const _: () = assert!(OWNERS == 2);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sets_are_apart_nothing_is_lost_and_a_ladder_becomes_runs() {
+        // Two rails of 20 particles, the second rail's numbers after the first's.
+        let rungs = (0..20u32).map(|i| (Direction::Warp, [i, 20 + i]));
+        let rails = (0..19u32).map(|i| (Direction::Weft, [i, i + 1]));
+        let all: Vec<(Direction, [u32; 2])> = rungs.chain(rails).collect();
+        let owner: Vec<u8> = (0..40).map(|i| u8::from(i % 20 >= 10)).collect();
+        let (tuples, places) = lay_out(&all, &owner, true);
+        let mut sorted = places.clone();
+        sorted.sort_unstable();
+        assert_eq!(sorted, (0..all.len()).collect::<Vec<_>>());
+        for (place, v) in tuples.all().into_iter().enumerate() {
+            assert_eq!(v, all[places[place]].1);
+        }
+        for set in &tuples.sets {
+            let mut seen = [false; 40];
+            for share in &set.shares {
+                let runs = share.runs.clone().flat_map(|r| {
+                    let run = tuples.runs[r as usize];
+                    (0..run.len).flat_map(move |t| run.first.map(|f| f + t))
+                });
+                let loose = share.loose.clone().flat_map(|i| tuples.loose[i as usize]);
+                for p in runs.chain(loose) {
+                    assert!(!seen[p as usize], "{p} twice in a set");
+                    seen[p as usize] = true;
+                }
+            }
+        }
+        assert!(tuples.runs.iter().any(|r| r.len == 10), "the rungs of each owner are one run");
+    }
+}

@@ -1,0 +1,222 @@
+//! How constraints lie in memory: side by side, so that kernels take many at a time without looking up indices.
+//!
+//! Particles are numbered so that what is solved together is contiguous. A [`Run`] is a row of constraints whose
+//! particles all advance by one; a [`Bundle`] is a row of fibers of which every step lies contiguous. What fits neither
+//! is kept as an index list. Each particle, and each constraint, has one of two owners: two workers may solve a set at
+//! once, because no two constraints of a set share a particle.
+
+use std::ops::Range;
+
+use super::{Direction, Solver};
+
+/// Workers that a garment can be shared between.
+pub const OWNERS: usize = 2;
+
+/// Most fibers of one index list: the widest lanes.
+pub const MAX_LISTED: usize = 16;
+
+/// Constraints side by side: constraint `t < len` holds the particles `first[k] + t`, its parameters are at `at + t`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Run<const K: usize> {
+    /// Particles of the first constraint.
+    pub first: [u32; K],
+    /// Constraints.
+    pub len: u32,
+    /// Where its parameters begin.
+    pub at: u32,
+}
+
+/// One owner's share of a set.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Share {
+    /// Its runs, a range of [`Tuples::runs`].
+    pub runs: Range<u32>,
+    /// Its constraints that are in no run, a range of [`Tuples::loose`].
+    pub loose: Range<u32>,
+    /// Where the parameters of the first loose one are.
+    pub loose_at: u32,
+}
+
+/// Constraints of one direction; in a set of [`Links`] no two share a particle.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Set {
+    /// Direction.
+    pub direction: Direction,
+    /// What each owner solves.
+    pub shares: [Share; OWNERS],
+}
+
+/// Constraints over `K` particles, in sets.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Tuples<const K: usize> {
+    /// Runs, set after set, owner after owner.
+    pub runs: Box<[Run<K>]>,
+    /// The others.
+    pub loose: Box<[[u32; K]]>,
+    /// The sets in the order in which they are solved.
+    pub sets: Box<[Set]>,
+    /// Constraints in all.
+    pub count: usize,
+}
+
+impl<const K: usize> Tuples<K> {
+    /// The particles of every constraint, in the order of the parameters.
+    pub fn all(&self) -> Vec<[u32; K]> {
+        let mut out = vec![[0; K]; self.count];
+        for run in &self.runs {
+            for t in 0..run.len {
+                out[(run.at + t) as usize] = run.first.map(|f| f + t);
+            }
+        }
+        for share in self.sets.iter().flat_map(|s| &s.shares) {
+            for (k, i) in share.loose.clone().enumerate() {
+                out[share.loose_at as usize + k] = self.loose[i as usize];
+            }
+        }
+        out
+    }
+}
+
+/// Stretch constraints between two particles.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Links {
+    /// Who is linked.
+    pub tuples: Tuples<2>,
+    /// Length as cut (m).
+    pub rest: Box<[f32]>,
+    /// Inverse stiffness (m/N).
+    pub compliance: Box<[f32]>,
+}
+
+/// Bending stencils over three particles in a row: energy (1/2) |sum c_i x_i|^2, the stiffness within the coefficients.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Bends {
+    /// Who is bent. The sets of bends may share particles: they are forces, not projections.
+    pub tuples: Tuples<3>,
+    /// Coefficients (sqrt(N/m)), one array a particle of the stencil.
+    pub coefficients: [Box<[f32]>; 3],
+}
+
+/// One step down the fibers of a bundle: which particles lie there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Row {
+    /// The particle of the first fiber.
+    pub first: u32,
+    /// Fibers that reach so far; their particles are `first..first + lanes`.
+    pub lanes: u32,
+}
+
+/// Fibers side by side, longest first.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Bundle {
+    /// How it is solved.
+    pub solver: Solver,
+    /// Whose it is.
+    pub owner: u8,
+    /// Fibers.
+    pub lanes: u32,
+    /// Particles of its longest fiber, from the support on: a range of [`Fibers::rows`].
+    pub rows: Range<u32>,
+    /// Where its parameters begin: `lanes` for each link from row to row.
+    pub at: u32,
+}
+
+/// Fibers whose particles lie contiguous, row after row.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Fibers {
+    /// Bundles.
+    pub bundles: Box<[Bundle]>,
+    /// Their rows.
+    pub rows: Box<[Row]>,
+    /// Length of each link as cut (m); 0 where a fiber has ended.
+    pub rest: Box<[f32]>,
+    /// Inverse stiffness of each link (m/N); [`ENDED`] where a fiber has ended.
+    pub compliance: Box<[f32]>,
+}
+
+/// Compliance of a link that is not there (m/N): it carries nothing.
+pub const ENDED: f32 = 1e30;
+
+/// Fibers of equal length by index list: hoops, and whatever crosses another fiber of its direction.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct List {
+    /// How it is solved.
+    pub solver: Solver,
+    /// Direction.
+    pub direction: Direction,
+    /// Whether the last particle is linked to the first.
+    pub closed: bool,
+    /// Fibers, at most [`MAX_LISTED`].
+    pub lanes: u32,
+    /// Particles of each fiber.
+    pub rows: u32,
+    /// Where its indices begin: `lanes` a row.
+    pub first: u32,
+    /// Where its parameters begin: `lanes` a link.
+    pub at: u32,
+}
+
+impl List {
+    /// Links of each fiber.
+    pub fn links(&self) -> u32 {
+        if self.closed { self.rows } else { self.rows - 1 }
+    }
+}
+
+/// Fibers by index list, in sets within which none shares a particle.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Lists {
+    /// The lists, set after set.
+    pub lists: Box<[List]>,
+    /// Sets: what each owner solves of `lists`.
+    pub sets: Box<[[Range<u32>; OWNERS]]>,
+    /// Particles.
+    pub index: Box<[u32]>,
+    /// Length of each link as cut (m).
+    pub rest: Box<[f32]>,
+    /// Inverse stiffness (m/N).
+    pub compliance: Box<[f32]>,
+}
+
+/// Everything that holds a garment together.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Layout {
+    /// Shear: links along the bias, in coloured sets.
+    pub shear: Links,
+    /// Links along the weft, and along the warp where no fiber carries them, in coloured sets.
+    pub weft: Links,
+    /// Fibers along the warp.
+    pub fibers: Fibers,
+    /// Warp fibers that could not be laid side by side.
+    pub crossing: Lists,
+    /// Closed hoops along the weft, for those who solve them whole; the same links are in `weft`.
+    pub hoops: Lists,
+    /// Bending.
+    pub bends: Bends,
+    /// The particles that each owner has, as ranges `(first, len)`.
+    pub spans: [Vec<(u32, u32)>; OWNERS],
+    /// Whose each particle is.
+    pub owner: Box<[u8]>,
+}
+
+impl Layout {
+    /// Bytes that a garment's constraints hold.
+    pub fn bytes(&self) -> usize {
+        let tuples = |runs: usize, run: usize, loose: usize, k: usize| runs * run + loose * 4 * k;
+        let links = |l: &Links| {
+            tuples(l.tuples.runs.len(), size_of::<Run<2>>(), l.tuples.loose.len(), 2) + l.rest.len() * 8
+        };
+        let lists = |l: &Lists| l.lists.len() * size_of::<List>() + l.index.len() * 4 + l.rest.len() * 8;
+        let bends = &self.bends;
+        links(&self.shear)
+            + links(&self.weft)
+            + self.fibers.rows.len() * size_of::<Row>()
+            + self.fibers.rest.len() * 8
+            + lists(&self.crossing)
+            + lists(&self.hoops)
+            + tuples(bends.tuples.runs.len(), size_of::<Run<3>>(), bends.tuples.loose.len(), 3)
+            + bends.coefficients[0].len() * 12
+            + self.owner.len()
+            + self.spans.iter().map(Vec::len).sum::<usize>() * 8
+    }
+}

@@ -1,0 +1,176 @@
+//! Links: stretch between two particles, set by set, by Gauss-Seidel.
+//!
+//! Extended position-based dynamics (Macklin, Mueller, Chentanez 2016, eq. 18 and 26): for C = |b - a| - rest with
+//! compliance alpha and damping time tau, one pass a substep moves the ends by -+ w n lambda with
+//! lambda = (C + gamma n.(db - da)) / ((1 + gamma)(w_a + w_b) + alpha / dt^2), gamma = tau / dt, where da and db are the
+//! ends' motion in this substep. No two links of a set share a particle, so their order changes no bit.
+
+use toile_assets::garment::layout::{Links, Set};
+
+use super::state::Columns;
+use crate::lanes::{Column, Kernel, Lanes, V3, reciprocal_root};
+
+/// 1 / ((1 + gamma)(w_a + w_b) + alpha / dt^2) of each link, in the order of the parameters; 0 where nothing can move.
+pub fn prepare(links: &Links, weights: &[f32], dt: f32, gamma: f32, gain: &mut [f32]) {
+    let per_dt2 = (dt * dt).recip();
+    let mut put = |place: usize, a: u32, b: u32| {
+        let w = weights[a as usize] + weights[b as usize];
+        let weight = (1.0 + gamma) * w + links.compliance[place] * per_dt2;
+        gain[place] = if w > 0.0 && weight > 0.0 { weight.recip() } else { 0.0 };
+    };
+    for run in &links.tuples.runs {
+        for t in 0..run.len {
+            put((run.at + t) as usize, run.first[0] + t, run.first[1] + t);
+        }
+    }
+    for share in links.tuples.sets.iter().flat_map(|s| &s.shares) {
+        for (k, i) in share.loose.clone().enumerate() {
+            let [a, b] = links.tuples.loose[i as usize];
+            put(share.loose_at as usize + k, a, b);
+        }
+    }
+}
+
+/// One owner's share of one set.
+pub struct Solve<'a> {
+    /// The garment's particles.
+    pub columns: Columns<'a>,
+    /// All links.
+    pub links: &'a Links,
+    /// What [`prepare`] made.
+    pub gain: &'a [f32],
+    /// The set.
+    pub set: &'a Set,
+    /// Whose share of it.
+    pub owner: usize,
+    /// Damping time over the substep (1).
+    pub gamma: f32,
+}
+
+impl Kernel for Solve<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        if self.gamma > 0.0 { self.all::<L, true>() } else { self.all::<L, false>() }
+    }
+}
+
+impl Solve<'_> {
+    #[inline(always)]
+    fn all<L: Lanes, const DAMPED: bool>(&self) {
+        let (rest, gain) = (Column::read_only(&self.links.rest), Column::read_only(self.gain));
+        let share = &self.set.shares[self.owner];
+        for run in &self.links.tuples.runs[share.runs.start as usize..share.runs.end as usize] {
+            let [a, b] = run.first.map(|f| f as usize);
+            let (at, len) = (run.at as usize, run.len as usize);
+            let mut t = 0;
+            while t + L::N <= len {
+                self.side_by_side::<L, DAMPED>([a + t, b + t], [L::load(rest, at + t), L::load(gain, at + t)], L::N);
+                t += L::N;
+            }
+            if t < len {
+                let n = len - t;
+                let part = |c| L::load_part(c, at + t, n);
+                self.side_by_side::<L, DAMPED>([a + t, b + t], [part(rest), part(gain)], n);
+            }
+        }
+        for (k, i) in share.loose.clone().enumerate() {
+            let at = share.loose_at as usize + k;
+            self.side_by_side::<f32, DAMPED>(
+                self.links.tuples.loose[i as usize].map(|v| v as usize),
+                [rest.get(at), gain.get(at)],
+                1,
+            );
+        }
+    }
+
+    /// `n` links whose ends lie side by side.
+    #[inline(always)]
+    fn side_by_side<L: Lanes, const DAMPED: bool>(&self, [a, b]: [usize; 2], [rest, gain]: [L; 2], n: usize) {
+        let c = &self.columns;
+        let (pa, pb) = (V3::<L>::load(c.x, a, n), V3::load(c.x, b, n));
+        let weights = |i| if n == L::N { L::load(c.w, i) } else { L::load_part(c.w, i, n) };
+        let d = pb - pa;
+        let inverse = reciprocal_root(d.dot(d));
+        // lambda / |d|: (|d| - rest) / |d| times the gain.
+        let mut pull = (L::splat(1.0) - rest * inverse) * gain;
+        if DAMPED {
+            let moved = (pb - V3::load(c.previous, b, n)) - (pa - V3::load(c.previous, a, n));
+            pull = pull + d.dot(moved) * inverse * inverse * gain * L::splat(self.gamma);
+        }
+        (pa + d * (pull * weights(a))).store(c.x, a, n);
+        (pb - d * (pull * weights(b))).store(c.x, b, n);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloth::state::State;
+    use crate::lanes::Width;
+    use glam::Vec3;
+    use toile_assets::garment::Direction;
+    use toile_assets::garment::layout::{Run, Share, Tuples};
+
+    /// Links between particles i and i + n.
+    fn ladder(n: u32, rest: f32, compliance: f32) -> Links {
+        let share = Share { runs: 0..1, loose: 0..0, loose_at: n };
+        let set = Set { direction: Direction::Weft, shares: [share, Share::default()] };
+        let runs = [Run { first: [0, n], len: n, at: 0 }].into();
+        Links {
+            tuples: Tuples { runs, loose: [].into(), sets: [set].into(), count: n as usize },
+            rest: vec![rest; n as usize].into(),
+            compliance: vec![compliance; n as usize].into(),
+        }
+    }
+
+    fn solved(width: Width, positions: &[Vec3], weights: &[f32], links: &Links, gamma: f32) -> Vec<Vec3> {
+        let mut state = State::new(positions, weights);
+        let mut gain = vec![0.0; links.rest.len()];
+        prepare(links, weights, 1.0, gamma, &mut gain);
+        let set = &links.tuples.sets[0];
+        width.run(Solve { columns: state.columns(), links, gain: &gain, set, owner: 0, gamma });
+        (0..positions.len()).map(|i| Vec3::from_array([0, 1, 2].map(|a| state.position[a].as_slice()[i]))).collect()
+    }
+
+    #[test]
+    fn a_stiff_link_reaches_its_length_and_keeps_the_centre_of_mass() {
+        let p = solved(Width::widest(), &[Vec3::ZERO, Vec3::X * 2.0], &[1.0, 3.0], &ladder(1, 1.0, 0.0), 0.0);
+        assert!(((p[1] - p[0]).length() - 1.0).abs() < 2e-6);
+        assert!((p[0].x + p[1].x / 3.0 - 2.0 / 3.0).abs() < 2e-6);
+    }
+
+    #[test]
+    fn collapsed_and_fixed_links_do_nothing() {
+        for (w, b) in [([1.0, 1.0], Vec3::ZERO), ([0.0, 0.0], Vec3::X * 3.0)] {
+            assert_eq!(solved(Width::widest(), &[Vec3::ZERO, b], &w, &ladder(1, 1.0, 0.0), 0.0), [Vec3::ZERO, b]);
+        }
+    }
+
+    #[test]
+    fn every_width_gives_the_same_bits_and_f64_agrees() {
+        let n = 37;
+        let place = |i: u32| Vec3::new((i as f32 * 0.37).sin(), 0.1 * (i / n) as f32, (i as f32 * 0.71).cos()) * 0.3;
+        let positions: Vec<Vec3> = (0..2 * n).map(place).collect();
+        let weights: Vec<f32> = (0..2 * n).map(|i| if i % 5 == 0 { 0.0 } else { 1.0 + i as f32 }).collect();
+        let links = ladder(n, 0.12, 2.0);
+        let plain = solved(Width::One, &positions, &weights, &links, 0.25);
+        for width in Width::ALL.into_iter().filter(|w| w.available()) {
+            assert_eq!(solved(width, &positions, &weights, &links, 0.25), plain, "{width} lanes");
+        }
+        for i in 0..n as usize {
+            let (a, b) = (positions[i].as_dvec3(), positions[i + n as usize].as_dvec3());
+            let (wa, wb) = (f64::from(weights[i]), f64::from(weights[i + n as usize]));
+            if wa + wb == 0.0 {
+                continue;
+            }
+            let d = b - a;
+            // Nothing has moved yet in this substep: damping only weakens the pull.
+            let lambda = (d.length() - f64::from(0.12f32)) / (1.25 * (wa + wb) + 2.0);
+            let expected = b - d.normalize() * lambda * wb;
+            let error = (expected - plain[i + n as usize].as_dvec3()).length();
+            assert!(error < 1e-6, "link {i}: {error} m");
+        }
+    }
+}

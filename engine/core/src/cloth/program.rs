@@ -1,0 +1,68 @@
+//! The program of a substep: which kernels run in which order, as phases that two workers share.
+//!
+//! Order decides the error (see the README's table): bending and the air are forces; then shear, which undoes the most;
+//! hoops; fibers, which carry the weight; hoops and fibers once more, because each undoes a little of the other; contact
+//! last, so that nothing is left inside the body.
+
+use toile_assets::garment::Layout;
+
+use super::Quality;
+
+/// One phase: both owners' shares of it may run at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Op {
+    /// Bending, set by set; the set that crosses the owners is one worker's.
+    Bend(u16),
+    /// Gravity, air, wind; skinned particles move on.
+    Predict,
+    /// A set of shear links.
+    Shear(u16),
+    /// A set of weft links.
+    Weft(u16),
+    /// Warp fibers.
+    Fibers,
+    /// A set of warp fibers that cross others.
+    Crossing(u16),
+    /// A set of closed hoops.
+    Hoops(u16),
+    /// Tethers, contact with the body, new velocities.
+    Finish,
+}
+
+/// Name of a stage, for the meters.
+pub const STAGES: [&str; 6] = ["predict", "bend", "shear", "weft", "fibers", "contact"];
+
+impl Op {
+    /// Which of [`STAGES`] it counts towards.
+    pub fn stage(self) -> usize {
+        match self {
+            Self::Predict => 0,
+            Self::Bend(_) => 1,
+            Self::Shear(_) => 2,
+            Self::Weft(_) | Self::Hoops(_) => 3,
+            Self::Fibers | Self::Crossing(_) => 4,
+            Self::Finish => 5,
+        }
+    }
+}
+
+/// The phases of one substep.
+pub fn substep(layout: &Layout, quality: Quality) -> Box<[Op]> {
+    let numbered = |n: usize, op: fn(u16) -> Op| (0..n as u16).map(op);
+    let wefts = || numbered(layout.weft.tuples.sets.len(), Op::Weft);
+    let hoops = || numbered(layout.hoops.sets.len(), Op::Hoops);
+    let fibers = || numbered(layout.crossing.sets.len(), Op::Crossing).chain([Op::Fibers]);
+    let mut ops: Vec<Op> = numbered(layout.bends.tuples.sets.len(), Op::Bend).collect();
+    ops.push(Op::Predict);
+    ops.extend(numbered(layout.shear.tuples.sets.len(), Op::Shear));
+    ops.extend(wefts());
+    ops.extend(fibers());
+    match quality {
+        Quality::Draft => {}
+        Quality::Shop => ops.extend(wefts().chain(fibers())),
+        // Open weft fibers are in no hoop: they keep their sweep.
+        Quality::Fine => ops.extend(wefts().chain(hoops()).chain(fibers())),
+    }
+    ops.push(Op::Finish);
+    ops.into()
+}

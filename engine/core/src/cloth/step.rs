@@ -1,0 +1,295 @@
+//! One step: substeps of phases, on one core or on two, and the doors of the guard at both ends.
+
+use std::time::Instant;
+
+use glam::{Affine3A, Vec3A};
+use toile_assets::garment::Garment;
+use toile_assets::garment::layout::OWNERS;
+
+use super::program::{self, Op, STAGES};
+use super::state::{self, Columns};
+use super::{Cloth, Quality, Settings, Step, bending, contact, fibers, guard, links, lists, predict, settle};
+use crate::lanes::{Column, Width};
+
+/// What depends on the settings, made again when they change; the storage stays.
+#[derive(Debug, Clone)]
+pub struct Prepared {
+    /// Substeps, their length (s), damping time: what the figures below were made for.
+    made_for: Option<(u32, f32, f32)>,
+    programs: [Box<[Op]>; 3],
+    quality: Quality,
+    substeps: u32,
+    dt: f32,
+    gamma: f32,
+    shear_gain: Box<[f32]>,
+    weft_gain: Box<[f32]>,
+    bend_scale: Box<[f32]>,
+    /// Least share of the bending stiffness that this time step can carry.
+    least_bend: f32,
+    load: Box<[f32]>,
+}
+
+impl Prepared {
+    pub fn new(garment: &Garment) -> Self {
+        let layout = &garment.layout;
+        let zeros = |n: usize| vec![0.0; n].into_boxed_slice();
+        Self {
+            made_for: None,
+            programs: Quality::ALL.map(|q| program::substep(layout, q)),
+            quality: Quality::default(),
+            substeps: 1,
+            dt: 0.0,
+            gamma: 0.0,
+            shear_gain: zeros(layout.shear.rest.len()),
+            weft_gain: zeros(layout.weft.rest.len()),
+            bend_scale: zeros(layout.bends.tuples.count),
+            least_bend: 1.0,
+            load: zeros(garment.start.len()),
+        }
+    }
+
+    /// Allocates nothing; a microsecond a hundred constraints, in steps in which the settings have changed.
+    fn make(&mut self, garment: &Garment, settings: &Settings) {
+        let asked = settings.substeps.unwrap_or_else(|| settings.quality.substeps(garment.substeps)).max(1);
+        self.quality = settings.quality;
+        let made_for = (asked, settings.step_seconds, settings.stretch_damping_s);
+        if self.made_for == Some(made_for) {
+            return;
+        }
+        self.made_for = Some(made_for);
+        self.substeps = asked;
+        self.dt = settings.step_seconds / asked as f32;
+        self.gamma = settings.stretch_damping_s / self.dt;
+        let (layout, w) = (&garment.layout, &garment.inverse_mass);
+        links::prepare(&layout.shear, w, self.dt, self.gamma, &mut self.shear_gain);
+        links::prepare(&layout.weft, w, self.dt, self.gamma, &mut self.weft_gain);
+        self.least_bend = bending::prepare(&layout.bends, w, self.dt, &mut self.load, &mut self.bend_scale);
+    }
+
+    pub fn program(&self) -> &[Op] {
+        &self.programs[Quality::ALL.iter().position(|q| *q == self.quality).unwrap_or(0)]
+    }
+
+    pub fn substeps(&self) -> u32 {
+        self.substeps
+    }
+
+    pub fn bytes(&self) -> usize {
+        4 * (self.shear_gain.len() + self.weft_gain.len() + self.bend_scale.len() + self.load.len())
+    }
+}
+
+/// Everything that the phases of one step share.
+struct Work<'a> {
+    garment: &'a Garment,
+    step: &'a Step<'a>,
+    prepared: &'a Prepared,
+    columns: Columns<'a>,
+    contacts: &'a contact::Contacts,
+    fixed: [&'a [Vec3A]; 2],
+    scratch: [Column<'a>; OWNERS],
+    fall: Vec3A,
+    kept: f32,
+    width: Width,
+}
+
+impl Cloth {
+    /// One step of the settings' length, both shares on the caller's thread.
+    pub fn step(&mut self, garment: &Garment, step: &Step<'_>) {
+        self.begin(garment, step);
+        let timed = step.settings.timed;
+        let mut stage_ns = [0; STAGES.len()];
+        let work = self.work(garment, step);
+        let clock = || timed.then(Instant::now);
+        let mut begun = clock();
+        let mut lap = |stage: usize| {
+            if let Some(start) = begun {
+                let now = Instant::now();
+                stage_ns[stage] += (now - start).as_nanos() as u64;
+                begun = Some(now);
+            }
+        };
+        (0..OWNERS).for_each(|share| work.find(share));
+        lap(STAGES.len() - 1);
+        for substep in 0..work.prepared.substeps {
+            for &op in work.prepared.program() {
+                (0..OWNERS).for_each(|share| work.phase(op, substep, share));
+                lap(op.stage());
+            }
+        }
+        self.stage_ns = stage_ns;
+        self.end(garment, step);
+    }
+
+    /// What comes before the phases: targets of the skinned particles, repairs.
+    fn begin(&mut self, garment: &Garment, step: &Step<'_>) {
+        self.prepared.make(garment, step.settings);
+        self.attach(garment, step);
+        let columns = self.state.columns();
+        let width = step.settings.width;
+        if !(width.run(guard::Sound(columns.x)) && width.run(guard::Sound(columns.v))) {
+            self.events.repaired += guard::repair(columns, &self.positions);
+        }
+    }
+
+    /// What comes after them: nothing that is not finite is published.
+    fn end(&mut self, garment: &Garment, step: &Step<'_>) {
+        self.events.speed_limited += self.contacts.take_limited();
+        let columns = self.state.columns();
+        let width = step.settings.width;
+        if width.run(guard::Sound(columns.x)) && width.run(guard::Sound(columns.v)) {
+            self.rolled = 0;
+        } else {
+            // Rolled back again and again, it is drawn to where it was dressed.
+            let towards = (self.rolled as f32 * 0.25).min(1.0);
+            let root = step.palette[0];
+            let dressed = |i: usize| root.transform_point3a(garment.start[i].into());
+            guard::roll_back(columns, &self.positions, dressed, towards);
+            self.rolled += 1;
+            self.events.rolled_back += 1;
+        }
+        let [x, y, z] = self.state.position.each_ref().map(|s| s.as_slice());
+        for (i, p) in self.positions.iter_mut().enumerate() {
+            *p = Vec3A::new(x[i], y[i], z[i]);
+        }
+    }
+
+    /// Moves the skinned particles' targets on: the end of the last step is the start of this one.
+    fn attach(&mut self, garment: &Garment, step: &Step<'_>) {
+        self.fixed_start.copy_from_slice(&self.fixed_end);
+        for (k, (&i, w)) in garment.fixed.iter().zip(&garment.fixed_weights).enumerate() {
+            let rest = garment.start[i as usize].into();
+            let mut p = Vec3A::ZERO;
+            for (&bone, &weight) in w.bones.iter().zip(&w.weights) {
+                p += step.palette[bone as usize].transform_point3a(rest) * weight;
+            }
+            // A target that is not finite is not followed.
+            if p.is_finite() {
+                self.fixed_end[k] = p;
+            } else {
+                self.events.held_pins += 1;
+            }
+        }
+        if !self.placed {
+            self.fixed_start.copy_from_slice(&self.fixed_end);
+            self.placed = true;
+        }
+    }
+
+    fn work<'a>(&'a mut self, garment: &'a Garment, step: &'a Step<'a>) -> Work<'a> {
+        let dt = self.prepared.dt;
+        let [one, two] = &mut self.scratch;
+        Work {
+            garment,
+            step,
+            prepared: &self.prepared,
+            columns: self.state.columns(),
+            contacts: &self.contacts,
+            fixed: [&self.fixed_start, &self.fixed_end],
+            scratch: [one.column(), two.column()],
+            fall: step.settings.gravity * dt,
+            kept: (-garment.fabric.damping_per_s * dt).exp(),
+            width: step.settings.width,
+        }
+    }
+}
+
+impl Work<'_> {
+    /// The broad phase, once a step.
+    fn find(&self, share: usize) {
+        self.contacts.find(share, self.width, self.columns, self.step.colliders, &self.contact_settings());
+    }
+
+    fn contact_settings(&self) -> contact::ContactSettings {
+        let fabric = &self.garment.fabric;
+        contact::ContactSettings {
+            offset_m: fabric.contact_offset_mm * 1e-3,
+            friction_static: fabric.friction,
+            friction_kinetic: fabric.friction,
+            substep_seconds: self.prepared.dt,
+        }
+    }
+
+    /// One owner's share of one phase.
+    fn phase(&self, op: Op, substep: u32, share: usize) {
+        let (columns, layout) = (self.columns, &self.garment.layout);
+        let p = self.prepared;
+        let per_dt2 = (p.dt * p.dt).recip();
+        let scratch = self.scratch[share];
+        let link = |links, gain, set| links::Solve { columns, links, gain, set, owner: share, gamma: p.gamma };
+        let list = |lists, set: u16| lists::Solve {
+            columns,
+            lists,
+            set: usize::from(set),
+            owner: share,
+            scratch,
+            per_dt2,
+        };
+        match op {
+            Op::Bend(set) => self.bend(usize::from(set), share),
+            Op::Predict => self.predict(substep, share),
+            Op::Shear(set) => {
+                let set = &layout.shear.tuples.sets[usize::from(set)];
+                self.width.run(link(&layout.shear, &p.shear_gain, set));
+            }
+            Op::Weft(set) => {
+                let set = &layout.weft.tuples.sets[usize::from(set)];
+                self.width.run(link(&layout.weft, &p.weft_gain, set));
+            }
+            Op::Fibers => self.width.run(fibers::Solve {
+                columns,
+                fibers: &layout.fibers,
+                owner: share,
+                scratch,
+                per_dt2,
+                gamma: p.gamma,
+                solver: None,
+            }),
+            Op::Crossing(set) => self.width.run(list(&layout.crossing, set)),
+            Op::Hoops(set) => self.width.run(list(&layout.hoops, set)),
+            Op::Finish => self.finish(substep, share),
+        }
+    }
+
+    fn bend(&self, number: usize, share: usize) {
+        let bends = &self.garment.layout.bends;
+        let set = &bends.tuples.sets[number];
+        let scale = (self.prepared.least_bend < 1.0).then_some(&*self.prepared.bend_scale);
+        let bend =
+            |owner| bending::Bend { columns: self.columns, bends, set, owner, dt: self.prepared.dt, scale };
+        if number == 0 {
+            self.width.run(bend(share));
+        } else if share == 0 {
+            // What crosses the owners is the first worker's alone.
+            (0..OWNERS).for_each(|owner| self.width.run(bend(owner)));
+        }
+    }
+
+    fn predict(&self, substep: u32, share: usize) {
+        let (columns, p) = (self.columns, self.prepared);
+        for &span in &self.garment.layout.spans[share] {
+            let (fall, kept, dt) = (self.fall, self.kept, p.dt);
+            self.width.run(predict::Predict { columns, span, fall, pushed: None, kept, dt });
+        }
+        let to = (substep + 1) as f32 / p.substeps as f32;
+        for (k, &i) in self.garment.fixed.iter().enumerate() {
+            if usize::from(self.garment.layout.owner[i as usize]) == share {
+                state::set(columns.x, i as usize, self.fixed[0][k].lerp(self.fixed[1][k], to));
+            }
+        }
+    }
+
+    fn finish(&self, substep: u32, share: usize) {
+        let p = self.prepared;
+        let [from, to] = [substep, substep + 1].map(|s| s as f32 / p.substeps as f32);
+        self.contacts.solve(share, self.width, self.columns, self.step.colliders, [from, to], &self.contact_settings());
+        for &span in &self.garment.layout.spans[share] {
+            let max_speed = self.step.settings.max_speed;
+            let held = self.width.run(settle::Settle { columns: self.columns, span, max_speed, dt: p.dt });
+            self.contacts.add_limited(share, held);
+        }
+    }
+}
+
+// The root's motion is asked for by the rooms around the cloth.
+const _: fn(&Affine3A) = |_| ();
