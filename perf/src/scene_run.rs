@@ -4,15 +4,16 @@
 
 use std::time::Instant;
 
-use glam::{Affine3A, Vec3, Vec3A, Vec4};
+use glam::{Affine3A, Vec3, Vec4};
 use thiserror::Error;
 use toile_assets::bake::bake;
-use toile_assets::garment::{Garment, MeshError};
+use toile_assets::garment::{Garment, Layout, MeshError};
 use toile_assets::limits::MAX_SPHERES;
 use toile_assets::scene_file::{SceneFile, SceneGarment};
 use toile_assets::skeleton::BONES;
-use toile_engine::cloth::{Cloth, Settings, Step, measure};
+use toile_engine::cloth::{Cloth, Quality, Settings, Step, measure};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere, RoundCone};
+use toile_engine::lanes::Width;
 
 /// In place of a particle: this vertex belongs to no face and stands where it was.
 const STANDS: u32 = u32::MAX;
@@ -98,9 +99,8 @@ impl Runner {
         let garments = scene.garments.iter().map(baked).collect::<Result<Vec<_>, _>>()?;
         let mut cloths: Vec<Cloth> = garments.iter().map(|g| Cloth::new(g, &colliders)).collect();
         for ((cloth, garment), given) in cloths.iter_mut().zip(&garments).zip(&scene.garments) {
-            let free =
-                garment.inverse_mass.iter().map(|w| if *w > 0.0 { Vec3A::from(given.velocity) } else { Vec3A::ZERO });
-            cloth.velocities.iter_mut().zip(free).for_each(|(v, start)| *v = start);
+            let free = (0..garment.particles()).filter(|i| garment.inverse_mass[*i] > 0.0);
+            free.for_each(|i| cloth.disturb(i, garment.start[i].into(), given.velocity.into()));
         }
         let particles = scene.garments.iter().zip(&garments).map(|(given, baked)| user_order(given, baked)).collect();
         let measured = scene.steps() - (scene.measure_from * scene.step_hz) as u64;
@@ -145,14 +145,14 @@ impl Runner {
             mean = mean.max(f64::from(strain.mean));
             p99 = p99.max(f64::from(strain.p99));
             self.sums.strain_max = self.sums.strain_max.max(f64::from(strain.max));
-            for ((p, v), w) in cloth.positions.iter().zip(&cloth.velocities).zip(&garment.inverse_mass) {
+            kinetic += cloth.kinetic_energy(garment);
+            for (p, w) in cloth.positions.iter().zip(&garment.inverse_mass) {
                 self.sums.nonfinite += u64::from(!p.is_finite());
                 if *w > 0.0 {
                     let depth = depth(Vec3::from(*p), &cones, self.colliders.planes(), self.colliders.floor);
                     self.sums.penetration_mm = self.sums.penetration_mm.max(f64::from(depth) * 1e3);
                     inside += usize::from(depth > 0.0);
                     free += 1;
-                    kinetic += 0.5 * f64::from(v.length_squared()) / f64::from(*w);
                 }
             }
         }
@@ -228,8 +228,9 @@ impl Runner {
 
     /// FNV-1a over the bits of positions and velocities: equal states give equal hashes.
     pub fn state_hash(&self) -> u64 {
-        let numbers =
-            self.cloths.iter().flat_map(|c| c.positions.iter().chain(&c.velocities)).flat_map(|p| p.to_array());
+        let state = |cloth: &Cloth, i: usize| [cloth.positions[i], cloth.velocity(i)].map(|v| v.to_array());
+        let particles = self.cloths.iter().flat_map(|c| (0..c.positions.len()).map(move |i| state(c, i)));
+        let numbers = particles.flatten().flatten();
         numbers
             .flat_map(|x| x.to_bits().to_le_bytes())
             .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
@@ -238,21 +239,36 @@ impl Runner {
 
 fn baked(given: &SceneGarment) -> Result<Garment, RunError> {
     let mesh = |source| RunError::Mesh { name: given.name.clone(), source };
-    bake(&given.name, "one size", &given.shape, &given.fabric).map_err(mesh)
+    let mut garment = bake(&given.name, "one size", &given.shape, &given.fabric).map_err(mesh)?;
+    if let Some(solver) = given.warp_solver {
+        let Layout { fibers, crossing, .. } = &mut garment.layout;
+        fibers.bundles.iter_mut().for_each(|bundle| bundle.solver = solver);
+        crossing.lists.iter_mut().for_each(|list| list.solver = solver);
+    }
+    Ok(garment)
 }
 
 /// The particle of each of the user's vertices.
-fn user_order(given: &SceneGarment, _baked: &Garment) -> Box<[u32]> {
-    given.mesh.to_shape.clone().into()
+fn user_order(given: &SceneGarment, baked: &Garment) -> Box<[u32]> {
+    let mut particle = vec![STANDS; baked.particles()];
+    baked.source.iter().zip(0..).for_each(|(vertex, i)| particle[*vertex as usize] = i);
+    given.mesh.to_shape.iter().map(|v| particle.get(*v as usize).copied().unwrap_or(STANDS)).collect()
 }
 
 /// The engine's settings; what the scene leaves out is as the engine has it.
 fn settings(scene: &SceneFile) -> Settings {
-    let default = Settings::default();
+    let (default, given) = (Settings::default(), &scene.settings);
+    let quality = |name: &str| Quality::ALL.into_iter().find(|q| q.name() == name);
+    let width = given.lanes.and_then(|n| Width::of(n as usize)).filter(|w| w.available());
     Settings {
+        quality: given.quality.and_then(quality).unwrap_or_default(),
+        substeps: given.substeps,
+        step_seconds: scene.step_hz.recip() as f32,
         gravity: scene.gravity.into(),
-        substeps: scene.settings.substeps.unwrap_or(default.substeps),
-        max_speed: scene.settings.max_speed.unwrap_or(default.max_speed),
+        max_speed: given.max_speed.unwrap_or(default.max_speed),
+        stretch_damping_s: given.stretch_damping.unwrap_or(default.stretch_damping_s),
+        width: width.unwrap_or(default.width),
+        ..default
     }
 }
 

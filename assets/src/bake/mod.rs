@@ -54,7 +54,14 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
         strain_edges: warp_weft.map(|e| ([new(e.a), new(e.b)], e.rest)).collect(),
         hoop_edges: weft.map(|e| ([new(e.a), new(e.b)], e.rest)).collect(),
         substeps: longest.div_ceil(ROWS_A_SUBSTEP).max(2) as u32,
-        layout: links::lay_out(&links::Baking { shape, fabric, edges: &edges, chains: &chains, pieces: &pieces, order: &order }),
+        layout: links::lay_out(&links::Baking {
+            shape,
+            fabric,
+            edges: &edges,
+            chains: &chains,
+            pieces: &pieces,
+            order: &order,
+        }),
         source: order.source.clone().into(),
     })
 }

@@ -11,7 +11,7 @@ use super::track::Track;
 use super::{Loading, PinSource, primitive};
 use crate::fabric::Fabric;
 use crate::garment::shape::{Face, NO_VERTEX, Part};
-use crate::garment::{MeshError, Shape};
+use crate::garment::{MeshError, Shape, Solver};
 use crate::import::gltf::parse_gltf;
 use crate::import::obj::{FREE, warp_upright};
 use crate::import::plain::{PlainMesh, parse_obj};
@@ -39,7 +39,7 @@ pub struct SceneGarment {
     pub name: String,
     /// The shape; fixed vertices have one bone, the number of their pin group.
     pub shape: Shape,
-    /// The fabric.
+    /// The fabric; where the cloth hangs by its weft, warp and weft are exchanged here and in the shape.
     pub fabric: Fabric,
     /// The user's mesh.
     pub mesh: UserMesh,
@@ -47,6 +47,8 @@ pub struct SceneGarment {
     pub velocity: Vec3,
     /// Mass of the whole cloth (kg), pinned parts included.
     pub mass_kg: f64,
+    /// How fibers along the warp are solved, where the scene says so.
+    pub warp_solver: Option<Solver>,
 }
 
 impl SceneGarment {
@@ -55,15 +57,18 @@ impl SceneGarment {
         if !name.chars().all(|c| c.is_alphanumeric() || "-_. ".contains(c)) || name.starts_with('.') {
             return Err(table.wrong("name", "names files, so give letters, digits, - and _ only"));
         }
-        let fabric = fabric(table, loading.source)?;
+        let mut fabric = fabric(table, loading.source)?;
         let mut plain = mesh(table, loading.source)?;
         place(table, &mut plain)?;
         let (mut shape, to_shape) = weld(&plain, table.flag("weld")?);
         let mesh = UserMesh { start: plain.positions.clone(), faces: plain.faces.clone(), to_shape };
         shape.check(table)?;
         pin(table, loading, &plain, &mesh, &mut shape)?;
+        hang(&mut shape, &mut fabric);
         let mass_kg = weigh(table, &mesh, &fabric, &mut shape)?;
-        Ok(Self { name, shape, fabric, mesh, velocity: table.vector("velocity")?, mass_kg })
+        let solvers = [Solver::GaussSeidel, Solver::SemiImplicit, Solver::ZeroStretch];
+        let warp_solver = table.choice("warp_solver")?.map(|i| solvers[i]);
+        Ok(Self { name, shape, fabric, mesh, velocity: table.vector("velocity")?, mass_kg, warp_solver })
     }
 }
 
@@ -265,6 +270,25 @@ fn pin(
     let weights = |by: &Option<u8>| SkinWeights { bones: [by.unwrap_or(0); 4], weights: [1.0, 0.0, 0.0, 0.0] };
     shape.weights = group.iter().map(weights).collect();
     Ok(())
+}
+
+/// Turns the faces so that the warp, whose fibers are solved whole, runs away from the pins: a flag hangs from its pole
+/// sideways. The fabric's figures are exchanged with them, so that each thread keeps its stiffness.
+fn hang(shape: &mut Shape, fabric: &mut Fabric) {
+    let holds = |a: u32, b: u32| usize::from(shape.fixed[a as usize] != shape.fixed[b as usize]);
+    let quads = || shape.faces.iter().filter(|f| f[3] != NO_VERTEX);
+    let weft: usize = quads().map(|&[a, b, c, d]| holds(a, b) + holds(d, c)).sum();
+    let warp: usize = quads().map(|&[a, b, c, d]| holds(a, d) + holds(b, c)).sum();
+    if weft <= warp {
+        return;
+    }
+    shape.split.resize(shape.faces.len(), false);
+    for (face, split) in shape.faces.iter_mut().zip(&mut shape.split).filter(|(f, _)| f[3] != NO_VERTEX) {
+        face.rotate_left(1);
+        *split = !*split;
+    }
+    std::mem::swap(&mut fabric.stretch_warp_n_m, &mut fabric.stretch_weft_n_m);
+    std::mem::swap(&mut fabric.bend_warp_un_m, &mut fabric.bend_weft_un_m);
 }
 
 /// Mass of the shape (kg): by the fabric, or as the scene says; patches on top of it.

@@ -53,6 +53,10 @@ pub struct SceneSettings {
     pub substeps: Option<u32>,
     /// Speed limit of a particle (m/s).
     pub max_speed: Option<f32>,
+    /// Damping time of stretch (s).
+    pub stretch_damping: Option<f32>,
+    /// Lanes that kernels run on: 1, 4, 8 or 16.
+    pub lanes: Option<u32>,
 }
 
 /// How a group of pinned vertices moves.
@@ -225,9 +229,15 @@ fn wind(table: &Table<'_>) -> Result<Wind, SceneError> {
 }
 
 fn settings(table: &Table<'_>) -> Result<SceneSettings, SceneError> {
+    let lanes = table.maybe_count("lanes")?;
+    if lanes.is_some_and(|n| ![1, 4, 8, 16].contains(&n)) {
+        return Err(table.wrong("lanes", "is no width that processors have; give 1, 4, 8 or 16"));
+    }
     Ok(SceneSettings {
         quality: table.choice("quality")?.map(|i| schema::QUALITIES[i]),
         substeps: table.maybe_count("substeps")?,
         max_speed: table.maybe_number("max_speed")?.map(|v| v as f32),
+        stretch_damping: table.maybe_number("stretch_damping")?.map(|v| v as f32),
+        lanes,
     })
 }

@@ -61,6 +61,9 @@ const fn key(
 /// Farthest coordinate (m): beyond it f32 cannot tell apart a tenth of a millimetre.
 pub const FAR_M: f64 = 1_000.0;
 
+/// Names of the solvers.
+pub const SOLVERS: &[&str] = &["gauss-seidel", "semi-implicit", "zero-stretch"];
+
 /// Names of the qualities.
 pub const QUALITIES: &[&str] = &["draft", "shop", "fine"];
 
@@ -95,6 +98,22 @@ pub const KEYS: &[Key] = &[
     key("settings", "quality", Choice(QUALITIES), "", "shop", "A tested combination of substeps and iterations."),
     key("settings", "substeps", Count(1, 256), "", "of the quality", "Substeps of a step, in place of the quality's."),
     key("settings", "max_speed", Number(0.1, 1_000.0), "m/s", "15", "A particle's speed limit."),
+    key(
+        "settings",
+        "stretch_damping",
+        Number(0.0, 1.0),
+        "s",
+        "0",
+        "Time in which a fiber's own motion along itself fades.",
+    ),
+    key(
+        "settings",
+        "lanes",
+        Count(1, 16),
+        "",
+        "the widest",
+        "Lanes of the kernels: 1, 4, 8 or 16; all give the same bits.",
+    ),
     key("garment", "name", Text, "", "cloth-1, cloth-2, ...", "What reports and dumped files call it."),
     key("garment", "mesh", Text, "", "-", "OBJ, glTF or GLB file, from the scene file's folder."),
     key("garment", "grid", Table("garment.grid"), "", "-", "A rectangle in place of a mesh file."),
@@ -107,6 +126,7 @@ pub const KEYS: &[Key] = &[
     key("garment", "velocity", Vector(100.0), "m/s", "[0, 0, 0]", "Velocity of its free vertices at the start."),
     key("garment", "fabric", TextOrTable("garment.fabric"), "", "cotton-lawn", "A built-in fabric, or a table."),
     key("garment", "mass", Number(1e-6, 1e3), "kg", "by the fabric", "Mass of the whole cloth, pinned parts included."),
+    key("garment", "warp_solver", Choice(SOLVERS), "", "semi-implicit", "How fibers along the warp are solved."),
     key("garment", "mass_patch", Tables("garment.mass_patch"), "", "none", "Vertices that are heavier or lighter."),
     key(
         "garment",

@@ -21,6 +21,8 @@ lift = 0.1
 quality = "fine"
 substeps = 6
 max_speed = 20
+stretch_damping = 0.01
+lanes = 8
 
 [[garment]]
 name = "cloth"
@@ -31,6 +33,7 @@ rotation_deg = [0, 90, 0]
 position = [0, 1, 0]
 velocity = [0, 0, 1]
 mass = 0.5
+warp_solver = "zero-stretch"
 
 [garment.fabric]
 base = "linen-twill"
@@ -128,11 +131,18 @@ fn every_key_of_the_schema_is_read() {
     }
     assert_eq!((scene.steps(), scene.gravity.y, scene.measure_from), (60, -1.62, 0.5));
     assert_eq!(scene.wind, Some(Wind { velocity: Vec3::X, drag: 0.2, lift: 0.1 }));
-    let settings = SceneSettings { quality: Some("fine"), substeps: Some(6), max_speed: Some(20.0) };
+    let settings = SceneSettings {
+        quality: Some("fine"),
+        substeps: Some(6),
+        max_speed: Some(20.0),
+        stretch_damping: Some(0.01),
+        lanes: Some(8),
+    };
     assert_eq!(scene.settings, settings);
     let cloth = &scene.garments[0];
     assert_eq!((cloth.fabric.name.as_str(), cloth.fabric.stretch_warp_n_m), ("linen-twill", f32::INFINITY));
     assert_eq!((cloth.fabric.friction, cloth.velocity), (0.4, Vec3::Z));
+    assert_eq!(cloth.warp_solver, Some(crate::garment::Solver::ZeroStretch));
     assert_eq!(scene.garments[2].fabric.name, "cotton-jersey");
     assert_eq!(scene.colliders.planes, [Plane { point: Vec3::NEG_Y, normal: Vec3::Y }]);
     assert_eq!(scene.colliders.sphere(1, 0.5), glam::Vec4::new(1.0, 0.0, 0.0, 0.2));
@@ -183,6 +193,36 @@ fn pins_follow_their_track_and_masses_their_patches() {
             .heavier
             .is_empty()
     );
+}
+
+#[test]
+fn warp_runs_away_from_the_pins_and_every_thread_keeps_its_stiffness() {
+    let text = "[garment]\ngrid = { rows = 3, columns = 4, width = 3, height = 2 }\n\
+        fabric = { stretch_warp_n_m = 100, stretch_weft_n_m = 200, bend_warp_un_m = 1, bend_weft_un_m = 2 }\n";
+    let (by_top, by_side) = ("pin = { vertices = [\"0-3\"] }\n", "pin = { vertices = [0, 4, 8] }\n");
+    for (pins, stiffness, along) in [(by_top, [100.0, 200.0], Vec3::Y), (by_side, [200.0, 100.0], Vec3::X)] {
+        let garment = &parse(&format!("{text}{pins}")).unwrap().garments[0];
+        let fabric = &garment.fabric;
+        assert_eq!([fabric.stretch_warp_n_m, fabric.stretch_weft_n_m], stiffness);
+        assert_eq!(fabric.bend_warp_un_m * 100.0, stiffness[0]);
+        for face in &garment.shape.faces {
+            let [a, _, _, d] = face.map(|v| garment.shape.cut[v as usize]);
+            assert!((d - a).dot(along).abs() > 0.99, "warp runs along {along}");
+        }
+        let sets = |triangles: Vec<[u32; 3]>| {
+            let mut all: Vec<[u32; 3]> = triangles
+                .into_iter()
+                .map(|mut t| {
+                    t.sort_unstable();
+                    t
+                })
+                .collect();
+            all.sort_unstable();
+            all
+        };
+        let plain = parse(text).unwrap().garments[0].shape.triangles();
+        assert_eq!(sets(garment.shape.triangles()), sets(plain), "quads are split as before");
+    }
 }
 
 #[test]
@@ -280,7 +320,7 @@ fn every_line_left_out_and_every_truncation_is_a_scene_or_a_sentence_with_a_line
 #[test]
 fn mistakes_are_told_with_their_cure() {
     let grid = "[[garment]]\ngrid = { rows = 3, columns = 3, width = 1, height = 1 }\n";
-    let cases: [(String, usize, &[&str]); 24] = [
+    let cases: [(String, usize, &[&str]); 25] = [
         (String::new(), 1, &["garment is missing", "[[garment]]"]),
         ("x = [".into(), 1, &["not TOML", "docs/scene.md"]),
         ("[[garment]]\n".into(), 1, &["exactly one of"]),
@@ -289,6 +329,7 @@ fn mistakes_are_told_with_their_cure() {
         ("[garment]\nmesh = \"pin.csv\"\n".into(), 2, &[".obj, .gltf or .glb"]),
         (format!("{grid}mass = -1\n"), 3, &["garment.mass is -1", "from 0.000001 to 1000 (kg)"]),
         (format!("step_hz = 1e9\n{grid}"), 1, &["step_hz", "from 10 to 2000 (1/s)"]),
+        (format!("{grid}[settings]\nlanes = 5\n"), 4, &["settings.lanes", "1, 4, 8 or 16"]),
         (format!("gravity = [0, 1]\n{grid}"), 1, &["gravity", "three numbers"]),
         (format!("{grid}fabric = \"coton-lawn\"\n"), 3, &["coton-lawn", "did you mean \"cotton-lawn\""]),
         (format!("{grid}fabric = {{ base = \"tin\" }}\n"), 3, &["tin", "cotton-jersey"]),

@@ -1,6 +1,8 @@
 //! `toile run`: any scene of the user's own, headless.
 
 use toile_assets::scene_file::SceneFile;
+use toile_engine::cloth::Cloth;
+use toile_engine::cloth::guard::Events;
 use toile_perf::scene_run::Runner;
 
 use crate::cli::{RunArgs, RunScene};
@@ -89,9 +91,7 @@ fn report(runner: &Runner, args: &RunArgs, dumped: u64) -> RunReport {
         fabric: given.fabric.name.clone(),
         mass_kg: given.mass_kg,
     });
-    let events = |count: fn(&toile_engine::cloth::guard::Events) -> u64| {
-        runner.cloths().iter().map(|cloth| count(&cloth.events)).sum()
-    };
+    let events = |count: fn(&Events) -> u64| runner.cloths().iter().map(|cloth| count(&cloth.events)).sum();
     let times = figures.step_us;
     RunReport {
         scene: scene.name.clone(),
@@ -103,16 +103,21 @@ fn report(runner: &Runner, args: &RunArgs, dumped: u64) -> RunReport {
         steps: runner.steps(),
         seconds: runner.time(),
         measured_steps: figures.steps,
-        quality: scene.settings.quality.unwrap_or("shop"),
-        substeps: settings.substeps,
+        quality: settings.quality.name(),
+        substeps: runner.cloths().iter().map(Cloth::substeps).max().unwrap_or_default(),
+        lanes: settings.width.lanes(),
         step_us: report::StepMicros { p50: times.p50, p99: times.p99, p999: times.p999, max: times.max },
         strain: report::Strain { mean: figures.strain_mean, p99: figures.strain_p99, max: figures.strain_max },
         penetration_mm: report::RunPenetration { max: figures.penetration_mm, fraction: figures.penetration_fraction },
         kinetic_energy_j: report::KineticEnergy { end: figures.kinetic_j, max: figures.kinetic_max_j },
         nonfinite: figures.nonfinite,
         events: report::RunEvents {
+            repaired: events(|e| e.repaired),
             rolled_back: events(|e| e.rolled_back),
             speed_limited: events(|e| e.speed_limited),
+            held_pins: events(|e| e.held_pins),
+            held_colliders: events(|e| e.held_colliders),
+            teleports: events(|e| e.teleports),
         },
         state_hash: report::hash_text(runner.state_hash()),
         dump: args.dump.clone(),

@@ -58,9 +58,18 @@ pub fn run(report: &RunReport, paint: Paint) -> String {
     let energy = report.kinetic_energy_j.end * 1e3;
     line(&mut text, &format!("  it ends with      {energy:.3} mJ of motion, state {}", report.state_hash));
     let events = report.events;
-    if events.rolled_back + events.speed_limited + report.nonfinite > 0 {
-        let (back, fast, bad) = (events.rolled_back, events.speed_limited, report.nonfinite);
-        let said = format!("{back} steps rolled back, {fast} times at the speed limit, {bad} numbers not finite");
+    let counts = [
+        (events.repaired, "particles put back"),
+        (events.rolled_back, "steps rolled back"),
+        (events.speed_limited, "times at the speed limit"),
+        (events.held_pins, "pins held"),
+        (events.held_colliders, "spheres held"),
+        (events.teleports, "jumps of the root"),
+        (report.nonfinite, "numbers not finite"),
+    ];
+    let met: Vec<String> = counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
+    if !met.is_empty() {
+        let said = met.join(", ");
         line(&mut text, &format!("  {}", paint.tone(&said, Tone::Warn)));
     }
     if let Some(folder) = &report.dump {

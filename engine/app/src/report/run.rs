@@ -44,10 +44,18 @@ pub struct KineticEnergy {
 /// What the guards had to do, in `toile run`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct RunEvents {
+    /// Particles that were not finite when a step began, or ran away; put back to their last good place.
+    pub repaired: u64,
     /// Steps that ended with a number that is not finite, and were rolled back.
     pub rolled_back: u64,
     /// Particle substeps held at the speed limit.
     pub speed_limited: u64,
+    /// Pinned particles whose target was not finite and that were held.
+    pub held_pins: u64,
+    /// Collision spheres held because they jumped or were not finite.
+    pub held_colliders: u64,
+    /// Steps in which the root jumped.
+    pub teleports: u64,
 }
 
 /// The body of `toile run`.
@@ -73,8 +81,10 @@ pub struct RunReport {
     pub measured_steps: u64,
     /// The quality's name.
     pub quality: &'static str,
-    /// Substeps of a step.
+    /// Substeps of a step: the most of any garment.
     pub substeps: u32,
+    /// Lanes that kernels ran on.
+    pub lanes: usize,
     /// Time a step took, all garments.
     pub step_us: StepMicros,
     /// How far edges were stretched.

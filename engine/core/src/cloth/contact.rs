@@ -54,58 +54,101 @@ fn limb(bone: u8) -> Part {
 
 /// TEMPORARY
 #[derive(Debug, Clone)]
-pub struct Contacts { near: std::cell::RefCell<Vec<u32>>, reach: Vec<u32>, spans: [Vec<(u32,u32)>;2], limited: std::cell::Cell<u64> }
-pub struct ContactSettings { pub offset_m: f32, pub friction_static: f32, pub friction_kinetic: f32, pub substep_seconds: f32 }
+pub struct Contacts {
+    near: std::cell::RefCell<Vec<u32>>,
+    reach: Vec<u32>,
+    spans: [Vec<(u32, u32)>; 2],
+    limited: std::cell::Cell<u64>,
+}
+pub struct ContactSettings {
+    pub offset_m: f32,
+    pub friction_static: f32,
+    pub friction_kinetic: f32,
+    pub substep_seconds: f32,
+}
 impl Contacts {
-    pub fn new(spans: &[Vec<(u32,u32)>;2], parts: &[Part], colliders: &Colliders) -> Self {
-        Self { near: vec![0; parts.len()].into(), reach: parts.iter().map(|&p| reach(p, colliders)).collect(), spans: spans.clone(), limited: 0.into() }
+    pub fn new(spans: &[Vec<(u32, u32)>; 2], parts: &[Part], colliders: &Colliders) -> Self {
+        Self {
+            near: vec![0; parts.len()].into(),
+            reach: parts.iter().map(|&p| reach(p, colliders)).collect(),
+            spans: spans.clone(),
+            limited: 0.into(),
+        }
     }
-    pub fn bytes(&self) -> usize { 0 }
-    pub fn take_limited(&self) -> u64 { self.limited.take() }
-    pub fn add_limited(&self, _: usize, n: u32) { self.limited.set(self.limited.get() + u64::from(n)); }
-    pub fn find(&self, share: usize, _: crate::lanes::Width, c: Columns<'_>, colliders: &Colliders, s: &ContactSettings) {
+    pub fn bytes(&self) -> usize {
+        0
+    }
+    pub fn take_limited(&self) -> u64 {
+        self.limited.take()
+    }
+    pub fn add_limited(&self, _: usize, n: u32) {
+        self.limited.set(self.limited.get() + u64::from(n));
+    }
+    pub fn find(
+        &self,
+        share: usize,
+        _: crate::lanes::Width,
+        c: Columns<'_>,
+        colliders: &Colliders,
+        s: &ContactSettings,
+    ) {
         let reaches = Reaches::new(colliders);
         let offset = s.offset_m + SLACK_M;
         let fall = 9.81 * STEP_SECONDS;
-        for &(first, len) in &self.spans[share] { for i in first as usize..(first+len) as usize {
-        let (p, v, w, reach) = (state::get(c.x, i), state::get(c.v, i), c.w.get(i), self.reach[i]);
-        let mut bits = 0u32;
-        if w > 0.0 {
-            let margin = offset + 2.0 * (v.length() + fall) * STEP_SECONDS;
-            let mut asked = reach & reaches.all;
-            while asked != 0 {
-                let c = asked.trailing_zeros() as usize;
-                asked &= asked - 1;
-                let inside = (p.cmpge(reaches.low[c] - margin) & p.cmple(reaches.high[c] + margin)).all();
-                if inside && reaches.cones[c].touch(p, margin + reaches.travel[c]).is_some() {
-                    bits |= 1 << c;
+        for &(first, len) in &self.spans[share] {
+            for i in first as usize..(first + len) as usize {
+                let (p, v, w, reach) = (state::get(c.x, i), state::get(c.v, i), c.w.get(i), self.reach[i]);
+                let mut bits = 0u32;
+                if w > 0.0 {
+                    let margin = offset + 2.0 * (v.length() + fall) * STEP_SECONDS;
+                    let mut asked = reach & reaches.all;
+                    while asked != 0 {
+                        let c = asked.trailing_zeros() as usize;
+                        asked &= asked - 1;
+                        let inside = (p.cmpge(reaches.low[c] - margin) & p.cmple(reaches.high[c] + margin)).all();
+                        if inside && reaches.cones[c].touch(p, margin + reaches.travel[c]).is_some() {
+                            bits |= 1 << c;
+                        }
+                    }
                 }
+                self.near.borrow_mut()[i] = bits;
             }
         }
-        self.near.borrow_mut()[i] = bits;
-        }}
     }
-    pub fn solve(&self, share: usize, _: crate::lanes::Width, cols: Columns<'_>, colliders: &Colliders, span: [f32;2], s: &ContactSettings) {
-    let cones = colliders.cones_at(span[1]).map(Cone::from);
-    let part = span[1] - span[0];
-    for &(first, len) in &self.spans[share] { for i in first as usize..(first+len) as usize {
-        let mut bits = self.near.borrow()[i];
-        if cols.w.get(i) <= 0.0 { continue; }
-        let (mut position, mut previous) = (state::get(cols.x, i), state::get(cols.previous, i));
-        while bits != 0 {
-            let c = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            if let Some(touch) = cones[c].touch(position, s.offset_m) {
-                let carried = Vec3A::from(colliders.travel(c, touch.along)) * part;
-                push(&mut position, &mut previous, touch.normal, touch.depth, s.friction_static, carried);
+    pub fn solve(
+        &self,
+        share: usize,
+        _: crate::lanes::Width,
+        cols: Columns<'_>,
+        colliders: &Colliders,
+        span: [f32; 2],
+        s: &ContactSettings,
+    ) {
+        let cones = colliders.cones_at(span[1]).map(Cone::from);
+        let part = span[1] - span[0];
+        for &(first, len) in &self.spans[share] {
+            for i in first as usize..(first + len) as usize {
+                let mut bits = self.near.borrow()[i];
+                if cols.w.get(i) <= 0.0 {
+                    continue;
+                }
+                let (mut position, mut previous) = (state::get(cols.x, i), state::get(cols.previous, i));
+                while bits != 0 {
+                    let c = bits.trailing_zeros() as usize;
+                    bits &= bits - 1;
+                    if let Some(touch) = cones[c].touch(position, s.offset_m) {
+                        let carried = Vec3A::from(colliders.travel(c, touch.along)) * part;
+                        push(&mut position, &mut previous, touch.normal, touch.depth, s.friction_static, carried);
+                    }
+                }
+                if colliders.floor && position.y < s.offset_m {
+                    let depth = s.offset_m - position.y;
+                    push(&mut position, &mut previous, Vec3A::Y, depth, s.friction_static, Vec3A::ZERO);
+                }
+                state::set(cols.x, i, position);
+                state::set(cols.previous, i, previous);
             }
         }
-        if colliders.floor && position.y < s.offset_m {
-            let depth = s.offset_m - position.y;
-            push(&mut position, &mut previous, Vec3A::Y, depth, s.friction_static, Vec3A::ZERO);
-        }
-        state::set(cols.x, i, position); state::set(cols.previous, i, previous);
-    }}
     }
 }
 

@@ -217,14 +217,8 @@ impl Work<'_> {
         let per_dt2 = (p.dt * p.dt).recip();
         let scratch = self.scratch[share];
         let link = |links, gain, set| links::Solve { columns, links, gain, set, owner: share, gamma: p.gamma };
-        let list = |lists, set: u16| lists::Solve {
-            columns,
-            lists,
-            set: usize::from(set),
-            owner: share,
-            scratch,
-            per_dt2,
-        };
+        let list =
+            |lists, set: u16| lists::Solve { columns, lists, set: usize::from(set), owner: share, scratch, per_dt2 };
         match op {
             Op::Bend(set) => self.bend(usize::from(set), share),
             Op::Predict => self.predict(substep, share),
@@ -255,8 +249,7 @@ impl Work<'_> {
         let bends = &self.garment.layout.bends;
         let set = &bends.tuples.sets[number];
         let scale = (self.prepared.least_bend < 1.0).then_some(&*self.prepared.bend_scale);
-        let bend =
-            |owner| bending::Bend { columns: self.columns, bends, set, owner, dt: self.prepared.dt, scale };
+        let bend = |owner| bending::Bend { columns: self.columns, bends, set, owner, dt: self.prepared.dt, scale };
         if number == 0 {
             self.width.run(bend(share));
         } else if share == 0 {
