@@ -23,6 +23,9 @@ pub struct Fabric {
     pub bend_warp_un_m: f32,
     /// Bending rigidity along the weft (uN m).
     pub bend_weft_un_m: f32,
+    /// Bending rigidity along the bias (uN m). Cloth without it bends as two families of threads that know nothing of
+    /// each other: along the bias a quarter of what warp and weft have together.
+    pub bend_bias_un_m: Option<f32>,
     /// Coulomb friction coefficient against the body.
     pub friction: f32,
     /// Rate at which motion through the air is damped (1/s).
@@ -80,7 +83,7 @@ const BUILT_IN: [&str; 3] = [
 impl Fabric {
     /// Reads one fabric from TOML; `name` says in errors where the text came from.
     pub fn parse(name: &str, text: &str) -> Result<Self, FabricError> {
-        let mut fabric: Self = toml::from_str(text)
+        let fabric: Self = toml::from_str(text)
             .map_err(|e| FabricError::Syntax { name: name.into(), reason: e.message().replace('\n', " ") })?;
         fabric.check()?;
         Ok(fabric)
@@ -101,43 +104,60 @@ impl Fabric {
     /// Accepted figures, lowest and highest: from the thinnest silk to canvas, an order of magnitude wider than the 618
     /// fabrics that were measured for the published bands (REFERENCES: density .031 to .487 kg/m2, bending rigidity .9
     /// to 109 uN m).
-    pub const RANGES: [(&'static str, f32, f32); 9] = [
+    pub const RANGES: [(&'static str, f32, f32); 10] = [
         ("density_kg_m2", 0.01, 2.0),
         ("stretch_warp_n_m", 10.0, f32::INFINITY),
         ("stretch_weft_n_m", 10.0, f32::INFINITY),
         ("shear_n_m", 1.0, 1e5),
         ("bend_warp_un_m", 0.0, 1e4),
         ("bend_weft_un_m", 0.0, 1e4),
+        ("bend_bias_un_m", 0.0, 1e4),
         ("friction", 0.0, 2.0),
         ("damping_per_s", 0.0, 100.0),
         ("contact_offset_mm", 0.1, 20.0),
     ];
 
-    /// One of the figures of [`Self::RANGES`], by its key.
-    pub fn figure(&mut self, key: &str) -> Option<&mut f32> {
+    /// One of the figures of [`Self::RANGES`], if it is given.
+    fn figure(&self, key: &str) -> Option<f32> {
         Some(match key {
-            "density_kg_m2" => &mut self.density_kg_m2,
-            "stretch_warp_n_m" => &mut self.stretch_warp_n_m,
-            "stretch_weft_n_m" => &mut self.stretch_weft_n_m,
-            "shear_n_m" => &mut self.shear_n_m,
-            "bend_warp_un_m" => &mut self.bend_warp_un_m,
-            "bend_weft_un_m" => &mut self.bend_weft_un_m,
-            "friction" => &mut self.friction,
-            "damping_per_s" => &mut self.damping_per_s,
-            "contact_offset_mm" => &mut self.contact_offset_mm,
+            "density_kg_m2" => self.density_kg_m2,
+            "stretch_warp_n_m" => self.stretch_warp_n_m,
+            "stretch_weft_n_m" => self.stretch_weft_n_m,
+            "shear_n_m" => self.shear_n_m,
+            "bend_warp_un_m" => self.bend_warp_un_m,
+            "bend_weft_un_m" => self.bend_weft_un_m,
+            "bend_bias_un_m" => return self.bend_bias_un_m,
+            "friction" => self.friction,
+            "damping_per_s" => self.damping_per_s,
+            "contact_offset_mm" => self.contact_offset_mm,
             _ => return None,
         })
     }
 
-    fn check(&mut self) -> Result<(), FabricError> {
-        let name = self.name.clone();
+    /// Changes one of the figures of [`Self::RANGES`]; other keys are passed over.
+    pub fn set_figure(&mut self, key: &str, value: f32) {
+        match key {
+            "density_kg_m2" => self.density_kg_m2 = value,
+            "stretch_warp_n_m" => self.stretch_warp_n_m = value,
+            "stretch_weft_n_m" => self.stretch_weft_n_m = value,
+            "shear_n_m" => self.shear_n_m = value,
+            "bend_warp_un_m" => self.bend_warp_un_m = value,
+            "bend_weft_un_m" => self.bend_weft_un_m = value,
+            "bend_bias_un_m" => self.bend_bias_un_m = Some(value),
+            "friction" => self.friction = value,
+            "damping_per_s" => self.damping_per_s = value,
+            "contact_offset_mm" => self.contact_offset_mm = value,
+            _ => {}
+        }
+    }
+
+    fn check(&self) -> Result<(), FabricError> {
         let checked = |key, value: f32, low: f32, high: f32| match (low..=high).contains(&value) {
             true => Ok(()),
-            false => Err(FabricError::Range { name: name.clone(), key, value, low, high }),
+            false => Err(FabricError::Range { name: self.name.clone(), key, value, low, high }),
         };
         for (key, low, high) in Self::RANGES {
-            let value = self.figure(key).map_or(f32::NAN, |figure| *figure);
-            checked(key, value, low, high)?;
+            self.figure(key).map_or(Ok(()), |value| checked(key, value, low, high))?;
         }
         checked("comfortable_stretch", self.comfortable_stretch, 0.001, 1.0)?;
         self.colour.iter().try_for_each(|&part| checked("colour", part, 0.0, 1.0))
@@ -167,6 +187,17 @@ mod tests {
     }
 
     #[test]
+    fn every_figure_can_be_changed_and_is_checked() {
+        for (key, low, high) in Fabric::RANGES {
+            let mut fabric = Fabric::built_in("cotton-lawn").unwrap();
+            fabric.set_figure(key, high);
+            assert_eq!((fabric.figure(key), fabric.check()), (Some(high), Ok(())), "{key}");
+            fabric.set_figure(key, low - 1.0);
+            assert!(fabric.check().unwrap_err().to_string().contains(key), "{key}");
+        }
+    }
+
+    #[test]
     fn nonsense_is_refused_with_key_and_cure() {
         let text = include_str!("../data/fabrics/cotton-lawn.toml");
         let heavy = text.replace("density_kg_m2 = 0.105", "density_kg_m2 = nan");
@@ -176,5 +207,10 @@ mod tests {
             Fabric::parse("odd", &format!("{text}\nstiffness = 0.8\n")).unwrap_err().to_string().contains("stiffness")
         );
         assert!(matches!(Fabric::parse("empty", ""), Err(FabricError::Syntax { .. })));
+        let bias = |value: f32| {
+            Fabric::parse("bias", &text.replace("friction", &format!("bend_bias_un_m = {value:?}\nfriction")))
+        };
+        assert_eq!(bias(3.0).unwrap().bend_bias_un_m, Some(3.0));
+        assert!(bias(-1.0).unwrap_err().to_string().contains("bend_bias_un_m"));
     }
 }

@@ -5,11 +5,17 @@
 //! Budget: 100 ms for 8,000 vertices; at load only.
 //! Thread: the loading thread.
 
+pub mod bending;
 pub mod fibers;
 mod links;
 pub mod order;
 pub mod runs;
+pub mod stiffness;
+pub mod tethers;
 pub mod weights;
+
+#[cfg(test)]
+pub(crate) mod meshes;
 
 use crate::fabric::Fabric;
 use crate::garment::shape::NO_VERTEX;

@@ -196,8 +196,8 @@ fn fabric(table: &Table<'_>, source: Source<'_>) -> Result<Fabric, SceneError> {
         None => built_in(&own, "base", own.text("base")?.unwrap_or(DEFAULT))?,
     };
     for (key, ..) in Fabric::RANGES {
-        if let Some((value, to)) = own.maybe_number(key)?.zip(fabric.figure(key)) {
-            *to = value as f32;
+        if let Some(value) = own.maybe_number(key)? {
+            fabric.set_figure(key, value as f32);
         }
     }
     Ok(fabric)

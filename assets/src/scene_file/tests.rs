@@ -43,6 +43,7 @@ stretch_weft_n_m = 1000
 shear_n_m = 100
 bend_warp_un_m = 9
 bend_weft_un_m = 8
+bend_bias_un_m = 7
 friction = 0.4
 damping_per_s = 1
 contact_offset_mm = 2

@@ -8,6 +8,8 @@ pub mod body;
 pub mod cloth;
 pub mod colliders;
 pub mod cone;
+#[expect(unsafe_code, reason = "a job that borrows the caller's stack is handed to another thread")]
+pub mod crew;
 pub mod frame;
 pub mod lanes;
 pub mod relay;

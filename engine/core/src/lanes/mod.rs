@@ -32,6 +32,8 @@ pub trait Mask: Copy {
     fn and(self, other: Self) -> Self;
     /// A bit a lane, the first lane lowest.
     fn bits(self) -> u32;
+    /// The mask with these bits; those past the lanes are passed over.
+    fn of(bits: u32) -> Self;
 }
 
 /// A vector of f32.

@@ -25,6 +25,10 @@ impl Mask for Answers {
     fn bits(self) -> u32 {
         self.0.into_iter().enumerate().fold(0, |sum, (i, b)| sum | u32::from(b) << i)
     }
+    #[inline(always)]
+    fn of(bits: u32) -> Self {
+        Self(std::array::from_fn(|i| bits >> i & 1 != 0))
+    }
 }
 
 macro_rules! operator {

@@ -15,6 +15,10 @@ impl Mask for bool {
     fn bits(self) -> u32 {
         u32::from(self)
     }
+    #[inline(always)]
+    fn of(bits: u32) -> Self {
+        bits & 1 != 0
+    }
 }
 
 impl Lanes for f32 {

@@ -19,6 +19,7 @@ impl Kernel for Everything<'_> {
             let part = |c| if n == L::N { L::load(c, at) } else { L::load_part(c, at, n) };
             let (x, y) = (part(a), part(b));
             let mask = x.lt(y);
+            let mask = L::Mask::of(mask.bits() | !0 << L::N.min(31));
             let v = (x + y * x - y).min(x.max(y)).select(mask, (-x).div(y));
             let v = v + reciprocal_root((x * x).max(y * y)) + (x * x).sqrt();
             if n == L::N {

@@ -274,6 +274,14 @@ mod widths {
         fn bits(self) -> u32 {
             (unsafe { _mm_movemask_ps(self.0) }).cast_unsigned()
         }
+        #[inline(always)]
+        fn of(bits: u32) -> Self {
+            Self(unsafe {
+                let lane = _mm_setr_epi32(1, 2, 4, 8);
+                let bits = _mm_set1_epi32(bits.cast_signed());
+                _mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(bits, lane), lane))
+            })
+        }
     }
 
     impl Eight {
@@ -319,6 +327,14 @@ mod widths {
         fn bits(self) -> u32 {
             (unsafe { _mm256_movemask_ps(self.0) }).cast_unsigned()
         }
+        #[inline(always)]
+        fn of(bits: u32) -> Self {
+            Self(unsafe {
+                let lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+                let bits = _mm256_set1_epi32(bits.cast_signed());
+                _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(bits, lane), lane))
+            })
+        }
     }
 
     impl Sixteen {
@@ -363,6 +379,10 @@ mod widths {
         #[inline(always)]
         fn bits(self) -> u32 {
             u32::from(self.0)
+        }
+        #[inline(always)]
+        fn of(bits: u32) -> Self {
+            Self(bits as __mmask16)
         }
     }
 }

@@ -1,0 +1,81 @@
+//! Bending stencils: where and how the curvature of the cloth is measured.
+//!
+//! A stencil is a weighted sum of up to four particles, f = sum c_i x_i, that vanishes for any flat state and whose
+//! length is the curvature 1/R when the cloth is rolled up along the stencil's direction. With the energy k/2 |f|^2 bending
+//! is linear in x, as in Bergou et al. 2006, "A quadratic bending model for inextensible surfaces"; but that model knows
+//! no direction. Here each vertex has up to four stencils: along the warp, along the weft, and along both diagonals.
+//!
+//! **Points.** The ring of neighbours is laid flat around the vertex. Four points in a plane have one affine dependence c
+//! (the areas of the triangles that three of them form), and to second order its sum over a surface of curvature tensor S
+//! is M : S with M = 1/2 sum c_i x_i x_i^T. Of all triples in the ring that is chosen whose M comes nearest to d d^T, d
+//! being the direction; three points in a row give it exactly, with the second difference of unequal steps as c.
+//!
+//! **Rigidities.** Stencils along warp, weft and each diagonal with the rigidities b1, b2, b3 give a plate
+//! B_0 = b1 + b3/2, B_90 = b2 + b3/2, B_45 = (b1 + b2)/4 + b3. That is solved for b, and is what the stencils around each
+//! vertex together shall come to, whatever their directions are: least squares over the plate's quadratic form, b >= 0.
+
+mod fit;
+mod ring;
+
+use crate::fabric::Fabric;
+use crate::garment::shape::{NO_VERTEX, Shape};
+
+use super::fibers::{Direction, Edge};
+use fit::{Form, Patches};
+use ring::{Measure, Rings};
+
+/// One place where the cloth is bent: energy k/2 |sum c_i x_i|^2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stencil {
+    /// The particles; the vertex that it belongs to comes first. [`NO_VERTEX`] in the fourth place if three suffice.
+    pub v: [u32; 4],
+    /// Their weights (1/m2), 0 in a fourth place without a particle. They sum to zero.
+    pub c: [f32; 4],
+    /// Rigidity times the area that it stands for (N m3): the sum is a curvature (1/m).
+    pub k: f32,
+    /// The direction whose curvature it measures.
+    pub direction: Direction,
+}
+
+/// Rigidities (N m) of stencils along warp, weft and each diagonal that give a plate the fabric's rigidities. Without a
+/// rigidity along the bias the diagonals have none; one that no plate of such stencils can have (below a quarter of
+/// warp and weft together) is met as nearly as can be.
+pub fn rigidities(fabric: &Fabric) -> [f64; 3] {
+    let micro = |b: f32| f64::from(b) * 1e-6;
+    let (warp, weft) = (micro(fabric.bend_warp_un_m), micro(fabric.bend_weft_un_m));
+    let Some(bias) = fabric.bend_bias_un_m.map(micro) else { return [warp, weft, 0.0] };
+    fit::least_squares(&[[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.25, 0.25, 1.0]], &[warp, weft, bias])
+}
+
+/// All stencils of a garment that can move and have any stiffness.
+pub fn stencils(shape: &Shape, edges: &[Edge], fabric: &Fabric) -> Vec<Stencil> {
+    let rings = Rings::new(shape, edges);
+    let measures: Vec<Vec<(Direction, Measure)>> = (0..shape.cut.len()).map(|v| measures(&rings, v)).collect();
+    let plate = Form::plate(rigidities(fabric));
+    let patches = Patches::new(&rings, &measures);
+    let mut out = Vec::new();
+    for (v, around) in measures.iter().enumerate().filter(|(_, around)| !around.is_empty()) {
+        let rigidity = patches.rigidities(v, &plate);
+        for (direction, measure) in around {
+            let k = rigidity[*direction as usize] * rings.area[v];
+            let moves = measure.v.iter().any(|&i| i != NO_VERTEX && !shape.fixed[i as usize]);
+            if k > 0.0 && moves {
+                out.push(Stencil { v: measure.v, c: measure.weights(), k: k as f32, direction: *direction });
+            }
+        }
+    }
+    out
+}
+
+/// What the ring of a vertex can measure of the four directions.
+fn measures(rings: &Rings, v: usize) -> Vec<(Direction, Measure)> {
+    let Some(ring) = rings.flat(v) else { return Vec::new() };
+    let eighth = std::f64::consts::FRAC_PI_4;
+    [(Direction::Warp, 0.0), (Direction::Weft, 2.0), (Direction::Bias, 1.0), (Direction::Bias, 3.0)]
+        .into_iter()
+        .filter_map(|(direction, turns)| Some((direction, ring.measure(eighth * turns)?)))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests;

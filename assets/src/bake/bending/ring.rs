@@ -1,0 +1,225 @@
+//! The ring of neighbours around a vertex, laid flat, and what four points of it can measure.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use glam::{DMat2, DVec2, Vec3};
+
+use crate::bake::fibers::Edge;
+use crate::garment::check::corners;
+use crate::garment::shape::{NO_VERTEX, Shape};
+
+/// A measure that differs from its direction by more than this (of 1, Frobenius norm) is none of it.
+const MOST_OFF: f64 = 0.45;
+
+/// How much a measure by long levers is worse than one by short ones: enough to settle ties.
+const LEVER_COST: f64 = 0.02;
+
+/// Longest lever: how much farther points pull apart than those of three in a row, for whom this is 1.
+const MOST_LEVER: f64 = 4.0;
+
+/// A fourth point with less than this share of the weights does nothing.
+const LEAST_WEIGHT: f64 = 1e-5;
+
+/// Neighbours and areas of all vertices.
+pub struct Rings {
+    /// Area of the cloth that each vertex stands for (m2).
+    pub area: Vec<f64>,
+    /// True where the cloth ends at the vertex.
+    pub rim: Vec<bool>,
+    /// Neighbours by sides and diagonals.
+    pub beside: Vec<Vec<u32>>,
+    fans: Vec<Vec<Sector>>,
+    /// Angle of each edge to the warp, from its smaller to its larger vertex (rad), and whether it is a side.
+    angles: BTreeMap<(u32, u32), (f64, bool)>,
+    lengths: BTreeMap<(u32, u32), f64>,
+}
+
+/// One face seen from one of its corners: the neighbours there, counter-clockwise, and the angles between them (rad).
+struct Sector {
+    points: [u32; 3],
+    angles: [f64; 2],
+}
+
+impl Sector {
+    fn last(&self) -> u32 {
+        if self.points[2] == NO_VERTEX { self.points[1] } else { self.points[2] }
+    }
+}
+
+fn pair(a: u32, b: u32) -> (u32, u32) {
+    (a.min(b), a.max(b))
+}
+
+impl Rings {
+    /// Gathers the faces around each vertex.
+    pub fn new(shape: &Shape, edges: &[Edge]) -> Self {
+        let count = shape.cut.len();
+        let (mut area, mut fans) = (vec![0.0; count], (0..count).map(|_| Vec::new()).collect::<Vec<Vec<Sector>>>());
+        for face in &shape.faces {
+            let ring = corners(face);
+            let n = ring.len();
+            let share = face_area(&shape.cut, ring) / n as f64;
+            for (k, &v) in ring.iter().enumerate() {
+                area[v as usize] += share;
+                let (next, last) = (ring[(k + 1) % n], ring[(k + n - 1) % n]);
+                let between = |p, q| angle(&shape.cut, v, p, q);
+                fans[v as usize].push(if n == 3 {
+                    Sector { points: [next, last, NO_VERTEX], angles: [between(next, last), 0.0] }
+                } else {
+                    let far = ring[(k + 2) % n];
+                    Sector { points: [next, far, last], angles: [between(next, far), between(far, last)] }
+                });
+            }
+        }
+        let mut beside = vec![Vec::new(); count];
+        for e in edges {
+            beside[e.a as usize].push(e.b);
+            beside[e.b as usize].push(e.a);
+        }
+        let angles = edges.iter().map(|e| ((e.a, e.b), (f64::from(e.angle), e.side))).collect();
+        let lengths = edges.iter().map(|e| ((e.a, e.b), f64::from(e.rest))).collect();
+        let rim = fans.iter().map(|fan| !closed(fan)).collect();
+        Self { area, rim, beside, fans, angles, lengths }
+    }
+
+    /// The ring of a vertex in the plane, with the warp along x and the weft along y. Around a vertex inside of the cloth
+    /// the angles are made to fill a whole turn, since cloth lies flat before it is sewn. `None` where faces meet in the
+    /// vertex alone.
+    pub fn flat(&self, v: usize) -> Option<Ring> {
+        let around = &self.fans[v];
+        let first = around.iter().position(|s| around.iter().all(|t| t.last() != s.points[0])).unwrap_or(0);
+        let mut at = first;
+        let (mut angle, mut points) = (0.0, Vec::new());
+        for _ in 0..around.len() {
+            let sector = &around[at];
+            points.push((sector.points[0], angle));
+            angle += sector.angles[0];
+            if sector.points[2] != NO_VERTEX {
+                points.push((sector.points[1], angle));
+                angle += sector.angles[1];
+            }
+            let end = sector.last();
+            match around.iter().position(|s| s.points[0] == end) {
+                Some(next) => at = next,
+                None => points.push((end, angle)),
+            }
+        }
+        let whole = if self.rim[v] { around.len() + 1 } else { around.len() };
+        let sides = points.iter().filter(|(u, _)| self.angles[&pair(v as u32, *u)].1).count();
+        let scale = if self.rim[v] { 1.0 } else { TAU / angle };
+        (sides == whole && angle > 0.0).then(|| self.turned(v as u32, &points, scale))
+    }
+
+    /// Turns a ring so that the warp runs along x, as its edges have it on average.
+    fn turned(&self, v: u32, points: &[(u32, f64)], scale: f64) -> Ring {
+        let mut mean = DVec2::ZERO;
+        for &(u, angle) in points {
+            let (of_edge, side) = self.angles[&pair(v, u)];
+            let outwards = if v < u { of_edge } else { of_edge + 0.5 * TAU };
+            if side {
+                mean += DVec2::from_angle(outwards - angle * scale);
+            }
+        }
+        let turn = mean.to_angle();
+        let place = |&(u, angle): &(u32, f64)| (u, DVec2::from_angle(angle * scale + turn) * self.lengths[&pair(v, u)]);
+        Ring { v, points: points.iter().map(place).collect() }
+    }
+}
+
+/// True where the faces close around the vertex.
+fn closed(fan: &[Sector]) -> bool {
+    fan.iter().all(|s| fan.iter().any(|t| t.points[0] == s.last()))
+}
+
+fn face_area(positions: &[Vec3], ring: &[u32]) -> f64 {
+    let p = |k: usize| positions[ring[k] as usize].as_dvec3();
+    (2..ring.len()).map(|k| 0.5 * (p(k - 1) - p(0)).cross(p(k) - p(0)).length()).sum()
+}
+
+fn angle(positions: &[Vec3], v: u32, p: u32, q: u32) -> f64 {
+    let from = |i: u32| positions[i as usize].as_dvec3() - positions[v as usize].as_dvec3();
+    from(p).cross(from(q)).length().atan2(from(p).dot(from(q)))
+}
+
+/// A vertex and its neighbours in the plane.
+pub struct Ring {
+    v: u32,
+    points: Vec<(u32, DVec2)>,
+}
+
+/// An affine dependence of points around a vertex.
+#[derive(Debug, Clone, Copy)]
+pub struct Measure {
+    /// The vertex, then up to three of its ring.
+    pub v: [u32; 4],
+    /// Weights of those of the ring (1/m2).
+    weights: [f64; 3],
+    /// What it measures of the curvature tensor: 1 along its direction.
+    pub tensor: DMat2,
+}
+
+impl Measure {
+    /// The weights of all four, summing to zero as exactly as f32 can.
+    pub fn weights(&self) -> [f32; 4] {
+        let [p, q, r] = self.weights.map(|w| w as f32);
+        [-(p + q + r), p, q, r]
+    }
+}
+
+impl Ring {
+    /// The three points that with the vertex measure the curvature at an angle to the warp (rad) best.
+    pub fn measure(&self, angle: f64) -> Option<Measure> {
+        let direction = DVec2::from_angle(angle);
+        let n = self.points.len();
+        let mut best: Option<(f64, Measure)> = None;
+        for i in 0..n {
+            for j in i + 1..n {
+                // With three points in a row a fourth has no weight, so that two neighbours need a third to stand by.
+                for k in j + 1..n {
+                    let Some((cost, found)) = self.dependence([i, j, k], direction) else { continue };
+                    if best.as_ref().is_none_or(|(least, _)| cost < least - 1e-9) {
+                        best = Some((cost, found));
+                    }
+                }
+            }
+        }
+        best.map(|(_, found)| found)
+    }
+
+    /// The affine dependence of the vertex and three points, normalised to measure 1 along a direction; and how bad it is.
+    fn dependence(&self, triple: [usize; 3], direction: DVec2) -> Option<(f64, Measure)> {
+        let [p, q, r] = triple.map(|k| self.points[k].1);
+        // Barycentric, with the vertex in the origin: w_p p + w_q q + w_r r = 0.
+        let raw = [q.perp_dot(r), r.perp_dot(p), p.perp_dot(q)];
+        let tensor = |w: [f64; 3]| {
+            let outer = |w: f64, x: DVec2| DMat2::from_cols(x * x.x, x * x.y) * (0.5 * w);
+            outer(w[0], p) + outer(w[1], q) + outer(w[2], r)
+        };
+        let along = direction.dot(tensor(raw) * direction);
+        let scale = raw.iter().zip([p, q, r]).map(|(w, x)| w.abs() * x.length_squared()).sum::<f64>();
+        if along.abs() < 1e-6 * scale || scale == 0.0 {
+            return None;
+        }
+        let weights = raw.map(|w| w / along);
+        let found = tensor(weights);
+        let exact = DMat2::from_cols(direction * direction.x, direction * direction.y);
+        let off = (found - exact).to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
+        let lever = 0.5 * scale / along.abs();
+        let cost = off + LEVER_COST * lever;
+        (off < MOST_OFF && lever < MOST_LEVER).then(|| (cost, self.tidied(triple, weights, found)))
+    }
+
+    /// Leaves out a point without weight.
+    fn tidied(&self, triple: [usize; 3], weights: [f64; 3], tensor: DMat2) -> Measure {
+        let least = LEAST_WEIGHT * weights.iter().map(|w| w.abs()).sum::<f64>();
+        let mut v = [self.v, NO_VERTEX, NO_VERTEX, NO_VERTEX];
+        let mut kept = [0.0; 3];
+        let used = (0..3).filter(|&k| weights[k].abs() > least);
+        for (place, k) in used.enumerate() {
+            v[place + 1] = self.points[triple[k]].0;
+            kept[place] = weights[k];
+        }
+        Measure { v, weights: kept, tensor }
+    }
+}

@@ -1,0 +1,191 @@
+//! What stencils must measure, on meshes of every kind.
+
+use std::f32::consts::PI;
+
+use glam::{Mat3, Quat, Vec3};
+
+use super::*;
+use crate::bake::fibers;
+use crate::bake::meshes::{TestMesh, rough_sheet, rough_skirt, sheet, split, tube};
+
+fn fabric(bias: Option<f32>) -> Fabric {
+    let mut fabric = Fabric::built_in("linen-twill").unwrap();
+    (fabric.bend_warp_un_m, fabric.bend_weft_un_m, fabric.bend_bias_un_m) = (20.0, 12.0, bias);
+    fabric
+}
+
+fn shape((positions, faces): &TestMesh) -> Shape {
+    Shape {
+        cut: positions.clone(),
+        worn: positions.clone(),
+        faces: faces.clone(),
+        fixed: vec![false; positions.len()],
+        ..Shape::default()
+    }
+}
+
+fn stencils_of(mesh: &TestMesh, fabric: &Fabric) -> Vec<Stencil> {
+    let shape = shape(mesh);
+    stencils(&shape, &fibers::edges(&shape.cut, &shape.faces), fabric)
+}
+
+/// |sum c x| in f64.
+fn measured(stencil: &Stencil, place: &dyn Fn(u32) -> Vec3) -> f64 {
+    let used = stencil.v.iter().zip(stencil.c).filter(|(v, _)| **v != NO_VERTEX);
+    used.map(|(&v, c)| place(v).as_dvec3() * f64::from(c)).sum::<glam::DVec3>().length()
+}
+
+/// A hanging sheet in the x-y plane rolled up on a cylinder; `angle` to the warp (down), `radius` in m.
+fn rolled(p: Vec3, angle: f32, radius: f32) -> Vec3 {
+    let along = Vec3::new(angle.sin(), -angle.cos(), 0.0);
+    let across = Vec3::new(angle.cos(), angle.sin(), 0.0);
+    let (s, t) = (p.dot(along), p.dot(across));
+    along * (radius * (s / radius).sin()) + across * t + Vec3::Z * (radius * ((s / radius).cos() - 1.0))
+}
+
+/// Bending energy of a rolled sheet over B / 2 kappa^2 area, leaving out what the vertices on `rim` stand for.
+fn rigidity(mesh: &TestMesh, fabric: &Fabric, angle: f32, rim: impl Fn(Vec3) -> bool) -> f64 {
+    let radius = 2.0;
+    let place = |v: u32| rolled(mesh.0[v as usize], angle, radius);
+    let energy: f64 =
+        stencils_of(mesh, fabric).iter().map(|s| 0.5 * f64::from(s.k) * measured(s, &place).powi(2)).sum();
+    let mut area = 0.0;
+    for face in &mesh.1 {
+        let ring = crate::garment::check::corners(face);
+        let p = |k: usize| mesh.0[ring[k] as usize];
+        let whole: f32 = (2..ring.len()).map(|k| 0.5 * (p(k - 1) - p(0)).cross(p(k) - p(0)).length()).sum();
+        let kept = ring.iter().filter(|&&v| !rim(mesh.0[v as usize])).count();
+        area += f64::from(whole) * kept as f64 / ring.len() as f64;
+    }
+    energy / (0.5 * area / f64::from(radius).powi(2))
+}
+
+#[test]
+fn rigidities_of_the_stencils_give_those_of_the_plate() {
+    for (bias, expected) in [(Some(18.0), 18.0), (Some(30.0), 30.0), (Some(8.0), 8.0), (None, 8.0)] {
+        let [b1, b2, b3] = rigidities(&fabric(bias)).map(|b| b * 1e6);
+        let plate = [b1 + b3 / 2.0, b2 + b3 / 2.0, (b1 + b2) / 4.0 + b3];
+        if bias != Some(30.0) {
+            for (found, wanted) in plate.iter().zip([20.0, 12.0, expected]) {
+                assert!((found - wanted).abs() < 1e-4, "{bias:?}: {plate:?}");
+            }
+        }
+        assert!(b1 >= 0.0 && b2 >= 0.0 && b3 >= 0.0);
+    }
+    // Softer along the bias than threads alone can be: as soft as they are.
+    assert_eq!(rigidities(&fabric(Some(0.0)))[2], 0.0);
+}
+
+#[test]
+fn a_stencil_measures_the_curvature_of_a_cylinder_along_its_direction() {
+    let grids = [sheet(12, 12, 0.05, 0.05), sheet(12, 12, 0.05, 0.03), split(sheet(12, 12, 0.04, 0.05), true)];
+    for mesh in &grids {
+        for stencil in stencils_of(mesh, &fabric(Some(20.0))) {
+            // A grid's diagonals lean as its cells do.
+            let [v, p] = [0, 1].map(|k| mesh.0[stencil.v[k] as usize]);
+            assert_eq!(stencil.v[3], NO_VERTEX, "three points in a row suffice");
+            let angle = (p - v).x.atan2(-(p - v).y);
+            let curvature = measured(&stencil, &|v| rolled(mesh.0[v as usize], angle, 2.0));
+            assert!((curvature / 0.5 - 1.0).abs() < 0.16, "{stencil:?}: {curvature}");
+        }
+    }
+    let rough = rough_sheet(0.8, 0.8, 0.05, 3);
+    for stencil in stencils_of(&rough, &fabric(Some(18.0))) {
+        let along = |angle: f32| measured(&stencil, &|v| rolled(rough.0[v as usize], angle, 3.0)) * 3.0;
+        let found = match stencil.direction {
+            Direction::Warp => along(0.0),
+            Direction::Weft => along(0.5 * PI),
+            // One of the two diagonals.
+            Direction::Bias => [along(0.25 * PI), along(-0.25 * PI)]
+                .into_iter()
+                .min_by(|a, b| (a - 1.0).abs().total_cmp(&(b - 1.0).abs()))
+                .unwrap(),
+        };
+        assert!((found - 1.0).abs() < 0.04, "{stencil:?}: {found}");
+    }
+}
+
+#[test]
+fn flat_cloth_is_not_bent_however_it_lies() {
+    for mesh in [sheet(9, 9, 0.05, 0.04), split(sheet(9, 9, 0.05, 0.04), false), rough_sheet(0.7, 0.6, 0.05, 8)] {
+        let turn = Quat::from_euler(glam::EulerRot::XYZ, 0.4, 1.1, -0.6);
+        // Any affine image of a flat state is flat.
+        let skew = Mat3::from_cols(Vec3::new(1.1, 0.2, 0.0), Vec3::new(-0.1, 0.9, 0.0), Vec3::Z);
+        for stencil in stencils_of(&mesh, &fabric(Some(18.0))) {
+            let bent = measured(&stencil, &|v| turn * (skew * mesh.0[v as usize]));
+            let lever: f32 = stencil.c.iter().map(|c| c.abs()).sum();
+            assert!(bent < 1e-6 * f64::from(lever), "{stencil:?}: {bent}");
+            assert!(stencil.c.iter().sum::<f32>().abs() <= 1e-6 * lever);
+        }
+    }
+}
+
+#[test]
+fn a_cone_lies_flat_when_it_is_cut_open() {
+    // Stencils of a skirt vanish on its development, where its hoops are arcs.
+    let mesh = rough_skirt(0.06, 4);
+    let slope = 0.24f32.hypot(0.78) / 0.24;
+    let mut checked = 0;
+    for stencil in stencils_of(&mesh, &fabric(None)) {
+        let centre = mesh.0[stencil.v[0] as usize];
+        let middle = centre.z.atan2(centre.x);
+        let develop = |v: u32| {
+            let p = mesh.0[v as usize];
+            let turn = (p.z.atan2(p.x) - middle + PI).rem_euclid(2.0 * PI) - PI;
+            Vec3::new((turn / slope).cos(), (turn / slope).sin(), 0.0) * (p.x.hypot(p.z) * slope)
+        };
+        // Faces are chords of the cone, so that the ring is flat but for the second order of its size.
+        let bent = measured(&stencil, &develop);
+        assert!(bent < 0.25, "{stencil:?}: {bent}");
+        checked += 1;
+    }
+    assert!(checked > 500);
+}
+
+#[test]
+fn a_bent_plate_has_the_energy_of_its_fabric() {
+    let end = |p: Vec3| p.y > -1e-4 || p.y < -1.0 + 1e-3;
+    let side = |p: Vec3| p.x < 1e-4 || p.x > 1.0 - 1e-3;
+    let grids = [sheet(41, 41, 0.025, 0.025), sheet(31, 41, 1.0 / 30.0, 0.025)];
+    for (mesh, tolerance) in grids.iter().map(|m| (m.clone(), 0.02)).chain([
+        // With an even number of columns the diagonals alternate as on a chessboard.
+        (split(sheet(42, 41, 1.0 / 41.0, 0.025), true), 0.02),
+        (rough_sheet(1.0, 1.0, 0.03, 5), 0.05),
+        (rough_sheet(1.0, 1.0, 0.03, 6), 0.05),
+    ]) {
+        for (bias, diagonal) in [(None, 8.0), (Some(14.0), 14.0)] {
+            let fabric = fabric(bias);
+            let warp = rigidity(&mesh, &fabric, 0.0, end) * 1e6;
+            let weft = rigidity(&mesh, &fabric, 0.5 * PI, side) * 1e6;
+            let ways = [0.25, -0.25].map(|way| rigidity(&mesh, &fabric, way * PI, |p| end(p) || side(p)) * 1e6);
+            eprintln!("{bias:?}: {warp:.2} {weft:.2} {ways:.2?} of 20, 12, {diagonal}");
+            assert!((warp / 20.0 - 1.0).abs() < tolerance, "warp {warp}");
+            assert!((weft / 12.0 - 1.0).abs() < tolerance, "weft {weft}");
+            let mean = 0.5 * (ways[0] + ways[1]);
+            assert!((mean / diagonal - 1.0).abs() < 2.0 * tolerance, "bias {ways:?}");
+        }
+    }
+}
+
+#[test]
+fn a_rod_one_cell_wide_is_as_stiff_as_it_should_be() {
+    for columns in [2, 3] {
+        let mesh = sheet(columns, 81, 0.0125, 0.0125);
+        let end = |p: Vec3| p.y > -1e-4 || p.y < -1.0 + 1e-3;
+        let found = rigidity(&mesh, &fabric(Some(14.0)), 0.0, end) * 1e6;
+        assert!((found / 20.0 - 1.0).abs() < 0.02, "{columns} columns: {found}");
+    }
+}
+
+#[test]
+fn what_cannot_move_and_what_has_no_stiffness_has_no_stencil() {
+    let mut held = shape(&tube(12, 6));
+    held.fixed = vec![true; 72];
+    let edges = fibers::edges(&held.cut, &held.faces);
+    assert!(stencils(&held, &edges, &fabric(None)).is_empty());
+    let mut limp = fabric(None);
+    (limp.bend_warp_un_m, limp.bend_weft_un_m) = (0.0, 0.0);
+    assert!(stencils_of(&tube(12, 6), &limp).is_empty());
+    let threads = stencils_of(&tube(12, 6), &fabric(None));
+    assert!(threads.iter().all(|s| s.direction != Direction::Bias), "diagonals without rigidity are left out");
+}

@@ -1,0 +1,124 @@
+//! Where the threads run: the direction of the warp within each face.
+
+use std::collections::BTreeMap;
+
+use glam::{Vec2, Vec3};
+
+use super::{is_quad, normal};
+use crate::garment::check::corners;
+use crate::garment::shape::Face;
+
+/// A face whose steepest direction rises less than this (sine of 10 degrees) lies flat: noise would choose its warp.
+const FLAT_SINE: f32 = 0.17;
+
+/// The warp of each face (unit, downwards): the sides that a quad calls so, the steepest direction of a triangle. Where
+/// a face lies flat it goes on as its neighbours do; a mesh that lies flat altogether has its warp towards +z.
+pub fn steepest(positions: &[Vec3], faces: &[Face]) -> Vec<Vec3> {
+    let found = faces.iter().map(|face| {
+        let down = within(positions, face, Vec3::NEG_Y);
+        (down.length() > FLAT_SINE).then(|| down.normalize())
+    });
+    let mut warp: Vec<Option<Vec3>> = found.collect();
+    let beside = neighbours(faces);
+    spread(positions, faces, &beside, &mut warp);
+    while let Some(flat) = warp.iter().position(Option::is_none) {
+        warp[flat] = Some(
+            along(positions, &faces[flat], Vec3::Z)
+                .or_else(|| along(positions, &faces[flat], Vec3::X))
+                .unwrap_or(Vec3::Z),
+        );
+        spread(positions, faces, &beside, &mut warp);
+    }
+    warp.into_iter().flatten().collect()
+}
+
+/// The warp of each face by texture coordinates, one for each corner of each face: patterns are laid out with their
+/// warp along v. A face without area in the texture keeps the `fallback`; downwards stays downwards, so that pieces laid
+/// out upside down agree with the others.
+pub fn from_uvs(positions: &[Vec3], faces: &[Face], uvs: &[[Vec2; 4]], fallback: &[Vec3]) -> Vec<Vec3> {
+    let one = |((face, uv), fallback): ((&Face, &[Vec2; 4]), &Vec3)| {
+        let [p, q, r] = [0, 1, 2].map(|k| positions[face[k] as usize]);
+        let (e, f) = (uv[1] - uv[0], uv[2] - uv[0]);
+        // The gradient of v along the face: v changes by e.y along the first side, by f.y along the second.
+        let up = ((r - p) * e.x - (q - p) * f.x) * e.perp_dot(f).signum();
+        let warp = if e.perp_dot(f) == 0.0 { Vec3::ZERO } else { up.normalize_or_zero() };
+        let agrees = if warp.dot(*fallback) < 0.0 { -warp } else { warp };
+        if warp == Vec3::ZERO { *fallback } else { along(positions, face, agrees).unwrap_or(*fallback) }
+    };
+    faces.iter().zip(uvs).zip(fallback).map(one).collect()
+}
+
+/// A warp that was found on one shape of a mesh, laid into the same faces of another: as they are worn, say, and as they
+/// were cut.
+pub fn carried(from: &[Vec3], to: &[Vec3], faces: &[Face], warp: &[Vec3]) -> Vec<Vec3> {
+    let one = |(face, warp): (&Face, &Vec3)| {
+        let at = |p: &[Vec3], k: usize| p[face[k] as usize] - p[face[0] as usize];
+        let (e, f) = (at(from, 1), at(from, 2));
+        // Least squares for warp = x e + y f.
+        let (ee, ef, ff) = (e.dot(e), e.dot(f), f.dot(f));
+        let (we, wf) = (warp.dot(e), warp.dot(f));
+        let (x, y) = (we * ff - wf * ef, wf * ee - we * ef);
+        let laid = at(to, 1) * x + at(to, 2) * y;
+        along(to, face, laid).or_else(|| along(to, face, *warp)).unwrap_or(*warp)
+    };
+    faces.iter().zip(warp).map(one).collect()
+}
+
+/// The part of a direction that a face can follow: its projection onto the plane of a triangle, or along the warp sides
+/// of a quad.
+fn within(positions: &[Vec3], face: &Face, direction: Vec3) -> Vec3 {
+    if is_quad(face) {
+        let [a, b, c, d] = face.map(|i| positions[i as usize]);
+        let axis = ((a - d) + (b - c)).normalize_or_zero();
+        axis * axis.dot(direction)
+    } else {
+        let up = normal(positions, face);
+        direction - up * up.dot(direction)
+    }
+}
+
+/// The same as a unit vector, if there is any.
+fn along(positions: &[Vec3], face: &Face, direction: Vec3) -> Option<Vec3> {
+    within(positions, face, direction.normalize_or_zero()).try_normalize()
+}
+
+/// The faces that share a side with each face.
+fn neighbours(faces: &[Face]) -> Vec<Vec<u32>> {
+    let mut sides: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+    let mut beside = vec![Vec::new(); faces.len()];
+    for (i, face) in faces.iter().enumerate() {
+        let ring = corners(face);
+        for (k, &a) in ring.iter().enumerate() {
+            let b = ring[(k + 1) % ring.len()];
+            if let Some(j) = sides.insert((a.min(b), a.max(b)), i as u32) {
+                beside[i].push(j);
+                beside[j as usize].push(i as u32);
+            }
+        }
+    }
+    beside
+}
+
+/// Carries the warp into faces that have none, a ring of faces at a time, so that the order of the faces is no matter.
+fn spread(positions: &[Vec3], faces: &[Face], beside: &[Vec<u32>], warp: &mut [Option<Vec3>]) {
+    let open = |warp: &[Option<Vec3>], i: u32| warp[i as usize].is_none();
+    let all = 0..faces.len() as u32;
+    let mut front: Vec<u32> =
+        all.filter(|&i| open(warp, i) && beside[i as usize].iter().any(|&j| !open(warp, j))).collect();
+    while !front.is_empty() {
+        let one = |&i: &u32| {
+            let sum: Vec3 = beside[i as usize].iter().filter_map(|&j| warp[j as usize]).sum();
+            along(positions, &faces[i as usize], sum)
+        };
+        let found: Vec<Option<Vec3>> = front.iter().map(one).collect();
+        let mut next = Vec::new();
+        for (&i, found) in front.iter().zip(&found).filter(|(_, found)| found.is_some()) {
+            warp[i as usize] = *found;
+            next.extend(beside[i as usize].iter().copied());
+        }
+        next.retain(|&i| open(warp, i));
+        next.sort_unstable();
+        next.dedup();
+        front = next;
+    }
+}

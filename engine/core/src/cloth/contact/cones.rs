@@ -1,0 +1,270 @@
+//! The capsules as kernels want them: a row a quantity, a place a capsule, made ready once a substep.
+
+use glam::Vec4;
+use toile_assets::limits::MAX_CAPSULES;
+
+use crate::colliders::Colliders;
+use crate::lanes::{Column, Kernel, Lanes, V3};
+
+/// Places of a row: [`MAX_CAPSULES`] padded to the widest lanes.
+pub const PLACES: usize = 32;
+
+const _: () = assert!(MAX_CAPSULES <= PLACES, "a bit of a u32 names a capsule");
+
+/// Farther than this from the origin (m), or larger, a sphere is an error and its capsules are ignored.
+const FARTHEST_M: f32 = 1e4;
+
+/// A capsule's end that moves farther in one step (m), 60 m/s, has been put elsewhere: nothing is swept along its way.
+const TELEPORT_M: f32 = 0.5;
+
+/// One number a capsule.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
+pub struct Row(pub [f32; PLACES]);
+
+impl Row {
+    const ZERO: Self = Self([0.0; PLACES]);
+
+    /// One capsule's number in every lane.
+    #[inline(always)]
+    pub fn splat<L: Lanes>(&self, capsule: usize) -> L {
+        L::splat(self.0[capsule % PLACES])
+    }
+}
+
+/// One capsule's vector in every lane.
+#[inline(always)]
+pub fn splat3<L: Lanes>(rows: &[Row; 3], capsule: usize) -> V3<L> {
+    V3 { x: rows[0].splat(capsule), y: rows[1].splat(capsule), z: rows[2].splat(capsule) }
+}
+
+/// A sphere a capsule: centre and radius.
+#[derive(Debug, Clone)]
+pub struct Spheres {
+    /// Centre (m).
+    pub centre: [Row; 3],
+    /// Radius (m).
+    pub radius: Row,
+}
+
+impl Spheres {
+    const ZERO: Self = Self { centre: [Row::ZERO; 3], radius: Row::ZERO };
+
+    fn set(&mut self, capsule: usize, sphere: Vec4) {
+        for (row, v) in self.centre.iter_mut().zip(sphere.to_array()) {
+            row.0[capsule] = v;
+        }
+        self.radius.0[capsule] = sphere.w;
+    }
+}
+
+/// Both ends of every capsule at the start of the step, and what they add to that until its end.
+#[derive(Debug, Clone)]
+pub struct Ends {
+    /// First and second sphere at the start of the step.
+    pub start: [Spheres; 2],
+    /// How far each moves and grows in the step.
+    pub travel: [Spheres; 2],
+    /// A bit for each capsule that is to be believed.
+    pub sound: u32,
+}
+
+impl Ends {
+    /// Nothing yet.
+    pub const NONE: Self = Self { start: [Spheres::ZERO; 2], travel: [const { Spheres::ZERO }; 2], sound: 0 };
+
+    /// Reads the colliders of this step. A capsule that is not finite at the end of the step is ignored; one that was
+    /// not at its start, or has jumped since, stands at its end all the while.
+    pub fn read(&mut self, colliders: &Colliders) {
+        self.sound = 0;
+        for (c, ends) in colliders.capsules().iter().enumerate().take(MAX_CAPSULES) {
+            let start = ends.map(|s| colliders.start()[usize::from(s)]);
+            let end = ends.map(|s| colliders.end()[usize::from(s)]);
+            if !end.iter().all(|s| sound(*s)) {
+                continue;
+            }
+            let swept = (0..2).all(|i| sound(start[i]) && (end[i] - start[i]).truncate().length() < TELEPORT_M);
+            for i in 0..2 {
+                let from = if swept { start[i] } else { end[i] };
+                self.start[i].set(c, from);
+                self.travel[i].set(c, end[i] - from);
+            }
+            self.sound |= 1 << c;
+        }
+    }
+}
+
+fn sound(sphere: Vec4) -> bool {
+    sphere.is_finite() && sphere.abs().max_element() < FARTHEST_M && sphere.w >= 0.0
+}
+
+/// The capsules at one moment as the distance wants them (see [`RoundCone`](crate::cone::RoundCone) for the geometry).
+/// One sphere inside of the other leaves a sphere: an axis without length.
+#[derive(Debug, Clone)]
+pub struct Cones {
+    /// First centre (m).
+    pub a: [Row; 3],
+    /// Unit vector along the axis.
+    pub axis: [Row; 3],
+    /// Unit vector across it: the way out for a particle on the axis.
+    pub across: [Row; 3],
+    /// Radius at the first centre and contact offset (m).
+    pub reach: Row,
+    /// Cosine of the side's slope.
+    pub cosine: Row,
+    /// Sine of the side's slope.
+    pub sine: Row,
+    /// Length of the slanted side (m).
+    pub side: Row,
+    /// Way along the axis (m) a metre of the side.
+    pub climb: Row,
+    /// Radius gained (m) a metre of the side.
+    pub growth: Row,
+    /// Place along the axis (0..1) a metre of the side.
+    pub along: Row,
+    /// 1 / length of the axis (1/m), 0 for a sphere.
+    pub shortness: Row,
+    /// How far the first centre moves in the substep (m).
+    pub carried: [Row; 3],
+    /// How much farther the second moves (m).
+    pub turned: [Row; 3],
+    /// A particle that moves farther in a substep than the root of this (m2) may have to be swept; below 0: any.
+    pub quick2: Row,
+}
+
+impl Cones {
+    /// Nothing yet.
+    pub const NONE: Self = {
+        const THREE: [Row; 3] = [Row::ZERO; 3];
+        const ZERO: Row = Row::ZERO;
+        Self {
+            a: THREE,
+            axis: THREE,
+            across: THREE,
+            reach: ZERO,
+            cosine: ZERO,
+            sine: ZERO,
+            side: ZERO,
+            climb: ZERO,
+            growth: ZERO,
+            along: ZERO,
+            shortness: ZERO,
+            carried: THREE,
+            turned: THREE,
+            quick2: ZERO,
+        }
+    };
+}
+
+/// Makes the capsules ready.
+pub struct Prepare<'a> {
+    /// Their ends.
+    pub ends: &'a Ends,
+    /// Part of the step at which they are wanted, 0..1.
+    pub at: f32,
+    /// Part of the step that the substep lasts, 0..1.
+    pub share: f32,
+    /// Radii grow by so much of the travel in the step: 0.5 covers the whole step from its middle.
+    pub swell: f32,
+    /// Contact offset (m).
+    pub offset: f32,
+    /// How much of the smallest radius something may travel and still be believed where it ended.
+    pub quick: f32,
+    /// Where they go.
+    pub to: &'a mut Cones,
+}
+
+impl Kernel for Prepare<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self) {
+        let mut at = 0;
+        while at < PLACES {
+            self.some::<L>(at);
+            at += L::N;
+        }
+    }
+}
+
+impl Prepare<'_> {
+    #[inline(always)]
+    fn some<L: Lanes>(&mut self, at: usize) {
+        let offset = L::splat(self.offset);
+        let [(a, ra, ta), (b, rb, tb)] = [0, 1].map(|i| self.end::<L>(i, at));
+        let zero = L::splat(0.0);
+        // A sphere: the larger one at both ends, and an axis that is never asked.
+        let (gap, d) = (b - a, ra - rb);
+        let thick = d.max(-d) * L::splat(1.000_01);
+        let length = gap.dot(gap).sqrt();
+        let cone = thick.max(L::splat(1e-9)).lt(length);
+        let second = ra.lt(rb);
+        let only = |one: V3<L>, two: V3<L>| one.select(cone, two.select(second, one));
+        let a0 = only(a, b);
+        let r0 = ra.select(cone, rb.select(second, ra));
+        let t0 = only(ta, tb);
+        let none = V3 { x: zero, y: zero, z: zero };
+        let turned = (tb - ta).select(cone, none);
+        let inverse = L::splat(1.0).div(length).select(cone, zero);
+        let y_axis = V3 { x: zero, y: L::splat(1.0), z: zero };
+        let axis = (gap * inverse).select(cone, y_axis);
+        let sine = d * inverse;
+        let cosine = (L::splat(1.0) - sine * sine).max(zero).sqrt();
+        let side = length.select(cone, zero) * cosine;
+        let climb = L::splat(1.0).div(cosine).select(cone, zero);
+        let along = climb * inverse;
+        let share = L::splat(self.share);
+        let travel = ta.dot(ta).max(tb.dot(tb)).sqrt() * share;
+        let quick = (ra.min(rb) + offset) * L::splat(self.quick) - travel;
+        let to = &mut *self.to;
+        store3(&mut to.a, at, a0);
+        store3(&mut to.axis, at, axis);
+        store3(&mut to.across, at, across(axis));
+        store3(&mut to.carried, at, t0 * share);
+        store3(&mut to.turned, at, turned * share);
+        let ones = [
+            (&mut to.reach, r0 + offset),
+            (&mut to.cosine, cosine),
+            (&mut to.sine, sine),
+            (&mut to.side, side),
+            (&mut to.climb, climb),
+            (&mut to.growth, (rb - ra) * along),
+            (&mut to.along, along),
+            (&mut to.shortness, inverse),
+            (&mut to.quick2, (quick * quick).select(zero.lt(quick), L::splat(-1.0))),
+        ];
+        ones.into_iter().for_each(|(row, v)| v.store(Column::new(&mut row.0), at));
+    }
+
+    /// Centre, radius and travel in the step of one end.
+    #[inline(always)]
+    fn end<L: Lanes>(&self, i: usize, at: usize) -> (V3<L>, L, V3<L>) {
+        let three = |rows: &[Row; 3]| V3 {
+            x: L::load(Column::read_only(&rows[0].0), at),
+            y: L::load(Column::read_only(&rows[1].0), at),
+            z: L::load(Column::read_only(&rows[2].0), at),
+        };
+        let one = |row: &Row| L::load(Column::read_only(&row.0), at);
+        let (start, travel) = (&self.ends.start[i], &self.ends.travel[i]);
+        let t = L::splat(self.at);
+        let moved = three(&travel.centre);
+        let swell = moved.dot(moved).sqrt() * L::splat(self.swell);
+        (three(&start.centre) + moved * t, one(&start.radius) + one(&travel.radius) * t + swell, moved)
+    }
+}
+
+#[inline(always)]
+fn store3<L: Lanes>(rows: &mut [Row; 3], at: usize, v: V3<L>) {
+    let [x, y, z] = rows;
+    v.x.store(Column::new(&mut x.0), at);
+    v.y.store(Column::new(&mut y.0), at);
+    v.z.store(Column::new(&mut z.0), at);
+}
+
+/// A unit vector across a unit vector: square to it and to x, or to y where it is close to x.
+#[inline(always)]
+fn across<L: Lanes>(axis: V3<L>) -> V3<L> {
+    let (zero, steep) = (L::splat(0.0), (axis.x * axis.x).lt(L::splat(0.5)));
+    let v = V3 { x: zero, y: axis.z, z: -axis.y }.select(steep, V3 { x: -axis.z, y: zero, z: axis.x });
+    v * L::splat(1.0).div(v.dot(v).max(L::splat(0.25)).sqrt())
+}

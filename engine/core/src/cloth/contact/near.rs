@@ -1,0 +1,251 @@
+//! Near: the broad phase. Which capsules and planes each particle may touch during the step.
+//!
+//! Particles are looked at in blocks of 16 that lie together in memory, four blocks a group. A group's box against the
+//! capsules' boxes, lanes across capsules, leaves few capsules; those are asked for the distance of each particle from
+//! all that they sweep in the step, lanes across particles. What is near is kept as bits, so that there is room for
+//! every particle at every capsule, and each particle meets its capsules in their order.
+
+use super::cones::{Cones, Ends, PLACES, Row};
+use super::touch::place;
+use crate::cloth::state::Columns;
+use crate::lanes::{Column, Kernel, Lanes, MOST, Mask, V3, reciprocal_root};
+use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, STEP_SECONDS};
+
+/// Planes that a block can be near: the floor and those of the scene.
+pub const PLANES: usize = MAX_PLANES + 1;
+
+/// Blocks of a group: a larger one is tested sooner and its box is looser.
+pub const GROUP: usize = 4;
+
+/// Particles this much farther away than they can travel in a step are still looked at (m): what neighbours and gravity
+/// add within the step.
+const SLACK_M: f32 = 0.005;
+
+/// A particle may be jerked along by its neighbours at so many times its present speed.
+const JERK: f32 = 2.0;
+
+/// Boxes are wider than what they hold by this (m), so that rounding never makes the coarse test stricter than the fine.
+const BOX_M: f32 = 1e-3;
+
+/// Up to 16 particles that lie together in memory and have one owner.
+#[derive(Debug, Clone)]
+pub struct Block {
+    /// First particle.
+    pub first: u32,
+    /// Particles, at most [`MOST`].
+    pub len: u32,
+    /// Bit c is set where a particle of the block may touch capsule c in this step.
+    pub capsules: u32,
+    /// The same for planes.
+    pub planes: u32,
+    /// Which particles may touch each capsule at all, a bit each.
+    pub reach: [u16; MAX_CAPSULES],
+    /// Which may in this step; holds where `capsules` has a bit.
+    pub lanes: [u16; MAX_CAPSULES],
+    /// Which may touch each plane in this step; holds where `planes` has a bit.
+    pub plane_lanes: [u16; PLANES],
+}
+
+impl Block {
+    /// Near nothing yet.
+    pub fn new(first: u32, len: u32, reach: [u16; MAX_CAPSULES]) -> Self {
+        let (lanes, plane_lanes) = ([0; MAX_CAPSULES], [0; PLANES]);
+        Self { first, len, capsules: 0, planes: 0, reach, lanes, plane_lanes }
+    }
+
+    /// First particle and how many.
+    #[inline(always)]
+    pub fn place(&self) -> (usize, usize) {
+        (self.first as usize, (self.len as usize).min(MOST))
+    }
+}
+
+/// Boxes around what each capsule sweeps in the step.
+#[derive(Debug, Clone)]
+pub struct Boxes {
+    low: [Row; 3],
+    high: [Row; 3],
+}
+
+impl Boxes {
+    /// Boxes that hold nothing.
+    pub const NONE: Self = Self { low: [Row([f32::INFINITY; PLACES]); 3], high: [Row([f32::NEG_INFINITY; PLACES]); 3] };
+
+    /// Around both ends at start and end of the step, and the offset.
+    pub fn set(&mut self, ends: &Ends, offset: f32) {
+        *self = Self::NONE;
+        for c in (0..PLACES).filter(|c| ends.sound >> c & 1 != 0) {
+            for (start, travel) in ends.start.iter().zip(&ends.travel) {
+                for axis in 0..3 {
+                    let from = start.centre[axis].0[c];
+                    let to = from + travel.centre[axis].0[c];
+                    let radius = start.radius.0[c] + travel.radius.0[c].max(0.0) + offset + BOX_M;
+                    self.low[axis].0[c] = self.low[axis].0[c].min(from.min(to) - radius);
+                    self.high[axis].0[c] = self.high[axis].0[c].max(from.max(to) + radius);
+                }
+            }
+        }
+    }
+
+    /// The capsules whose boxes meet a box.
+    #[inline(always)]
+    fn meet<L: Lanes>(&self, low: [f32; 3], high: [f32; 3]) -> u32 {
+        let mut bits = 0;
+        let mut at = 0;
+        while at < PLACES {
+            let row = |rows: &[Row; 3], axis: usize| L::load(Column::read_only(&rows[axis].0), at);
+            let side = |axis: usize| {
+                let (l, h) = (L::splat(low[axis]), L::splat(high[axis]));
+                row(&self.low, axis).lt(h).and(l.lt(row(&self.high, axis)))
+            };
+            bits |= side(0).and(side(1)).and(side(2)).bits() << at;
+            at += L::N;
+        }
+        bits
+    }
+}
+
+/// The broad phase over the blocks of one owner.
+pub struct Find<'a> {
+    /// The garment's columns.
+    pub cols: Columns<'a>,
+    /// Where the capsules are in the middle of the step, swollen by half of their travel: they hold all that is swept.
+    pub swept: &'a Cones,
+    /// Boxes around the same.
+    pub boxes: &'a Boxes,
+    /// Unit normals and offsets (m) of the planes, moved outwards by the contact offset.
+    pub planes: &'a [[f32; 4]],
+    /// The owner's blocks, a group at a time.
+    pub blocks: &'a mut [Block],
+}
+
+impl Kernel for Find<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { cols, swept, boxes, planes, blocks } = self;
+        for group in blocks.chunks_mut(GROUP) {
+            let [low, high] = around::<L>(cols, group);
+            let capsules = boxes.meet::<L>(low, high);
+            let met = meet_planes(planes, low, high);
+            for block in group {
+                (block.capsules, block.planes) = (0, 0);
+                if capsules | met != 0 {
+                    close::<L>(cols, swept, planes, block, [capsules, met]);
+                }
+            }
+        }
+    }
+}
+
+/// How far a particle may come in a step (m).
+#[inline(always)]
+fn travel<L: Lanes>(cols: Columns<'_>, at: usize, n: usize) -> L {
+    let v = V3::<L>::load(cols.v, at, n);
+    let speed2 = v.dot(v);
+    L::splat(SLACK_M) + speed2 * reciprocal_root(speed2) * L::splat(JERK * STEP_SECONDS)
+}
+
+/// Which of `n` lanes move at all.
+#[inline(always)]
+fn free<L: Lanes>(cols: Columns<'_>, at: usize, n: usize) -> L::Mask {
+    let w = if n == L::N { L::load(cols.w, at) } else { L::load_part(cols.w, at, n) };
+    L::splat(0.0).lt(w)
+}
+
+/// The box around all places that the free particles of a group may come to.
+#[inline(always)]
+fn around<L: Lanes>(cols: Columns<'_>, group: &[Block]) -> [[f32; 3]; 2] {
+    let (most, least) = (L::splat(f32::MAX), L::splat(-f32::MAX));
+    let (mut low, mut high) = ([most; 3], [least; 3]);
+    for block in group {
+        let (first, len) = block.place();
+        let mut from = 0;
+        while from < len {
+            let (at, n) = (first + from, L::N.min(len - from));
+            let x = V3::<L>::load(cols.x, at, n);
+            let far = travel::<L>(cols, at, n);
+            let free = free::<L>(cols, at, n);
+            // What is not a number leaves the box as it was.
+            low[0] = (x.x - far).select(free, most).min(low[0]);
+            low[1] = (x.y - far).select(free, most).min(low[1]);
+            low[2] = (x.z - far).select(free, most).min(low[2]);
+            high[0] = (x.x + far).select(free, least).max(high[0]);
+            high[1] = (x.y + far).select(free, least).max(high[1]);
+            high[2] = (x.z + far).select(free, least).max(high[2]);
+            from += L::N;
+        }
+    }
+    [
+        [smallest(low[0]), smallest(low[1]), smallest(low[2])],
+        [-smallest(-high[0]), -smallest(-high[1]), -smallest(-high[2])],
+    ]
+}
+
+/// The least lane. Halving lets the compiler keep vectors; no order of minima gives other bits.
+#[inline(always)]
+fn smallest<L: Lanes>(v: L) -> f32 {
+    let mut all = v.to_array();
+    let mut half = L::N / 2;
+    while half > 0 {
+        for i in 0..half {
+            all[i] = if all[i] < all[i + half] { all[i] } else { all[i + half] };
+        }
+        half /= 2;
+    }
+    all[0]
+}
+
+/// The planes that a box reaches through.
+#[inline(always)]
+fn meet_planes(planes: &[[f32; 4]], low: [f32; 3], high: [f32; 3]) -> u32 {
+    let mut bits = 0;
+    for (i, [nx, ny, nz, offset]) in planes.iter().enumerate() {
+        let deepest =
+            (nx * low[0]).min(nx * high[0]) + (ny * low[1]).min(ny * high[1]) + (nz * low[2]).min(nz * high[2]);
+        bits |= u32::from(deepest < offset + BOX_M) << i;
+    }
+    bits
+}
+
+/// Asks the capsules and planes that a group has met for each particle of one of its blocks.
+#[inline(always)]
+fn close<L: Lanes>(cols: Columns<'_>, swept: &Cones, planes: &[[f32; 4]], block: &mut Block, met: [u32; 2]) {
+    let (first, len) = block.place();
+    block.lanes = [0; MAX_CAPSULES];
+    block.plane_lanes = [0; PLANES];
+    let mut from = 0;
+    while from < len {
+        let (at, n) = (first + from, L::N.min(len - from));
+        let x = V3::<L>::load(cols.x, at, n);
+        let far = travel::<L>(cols, at, n);
+        let free = free::<L>(cols, at, n);
+        let mut bits = met[0];
+        while bits != 0 {
+            let c = bits.trailing_zeros() as usize % MAX_CAPSULES;
+            bits &= bits - 1;
+            let place = place(swept, c, x);
+            let reach = place.reach + far;
+            let near = place.out2.lt(reach * reach).and(free).bits() << from;
+            block.lanes[c] |= near as u16 & block.reach[c];
+            block.capsules |= u32::from(block.lanes[c] != 0) << c;
+        }
+        let mut bits = met[1];
+        while bits != 0 {
+            let p = bits.trailing_zeros() as usize % PLANES;
+            bits &= bits - 1;
+            let near = (-far).lt(depth(&planes[p], x)).and(free);
+            block.plane_lanes[p] |= (near.bits() << from) as u16;
+            block.planes |= u32::from(block.plane_lanes[p] != 0) << p;
+        }
+        from += L::N;
+    }
+}
+
+/// How deep particles are behind a plane (m).
+#[inline(always)]
+pub fn depth<L: Lanes>(plane: &[f32; 4], x: V3<L>) -> L {
+    let [nx, ny, nz, offset] = plane.map(L::splat);
+    offset - (x.x * nx + x.y * ny + x.z * nz)
+}

@@ -1,0 +1,383 @@
+//! Crew: the workers of a step, the caller's thread and at most one helper.
+//!
+//! Reads: a job that borrows the caller's data. Writes: what the job writes; which shares were late.
+//! Budget: a phase costs one meeting of two cores, under 1 us; no lock, no allocation, no channel in a run.
+//! Thread: physics, and the helper that this room starts at load. One of the few rooms with unsafe code: a job that
+//! borrows the caller's stack is handed to another thread.
+//!
+//! A run is a list of phases, a phase is two shares. Both shares of a phase may run at once; all of a phase runs before
+//! any of the next. How the data falls into shares is the job's matter and never depends on the number of workers, so
+//! one worker, which does share 0 and then share 1, gives the bits of two. A phase for one worker leaves share 1 empty.
+//!
+//! The helper is never waited for before it has begun: a share that it has not claimed within some microseconds is done
+//! by the caller, who then stops waiting for it until it claims one again. Only a share that was begun is waited for.
+//!
+//! Between runs the helper spins for [`AWAKE`], then parks. Parking it and waking it are the only system calls of a run
+//! that goes as planned: at 120 Hz a helper that never slept would burn a whole core, and no other way of sleeping ends
+//! when the next step begins. [`Crew::wake`] hides the time of waking behind whatever comes before the cloth.
+
+mod own;
+
+use std::any::Any;
+use std::cell::UnsafeCell;
+use std::fmt;
+use std::hint::spin_loop;
+use std::io;
+use std::mem::forget;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::Ordering::{Acquire, Relaxed, Release, SeqCst};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use thiserror::Error;
+
+pub use own::Own;
+
+/// Shares of a phase, and most workers of a crew.
+pub const SHARES: usize = 2;
+
+/// How long the helper stays awake after its last work: longer than the gap between two garments of a step, short
+/// beside the step of 8.3 ms.
+pub const AWAKE: Duration = Duration::from_micros(100);
+
+/// Looks at the other's progress before the caller takes over a share that nobody has begun: about 2 us, ten times what
+/// a meeting takes.
+const LOOKS_BEFORE_TAKING: u32 = 64;
+
+/// Looks before a waiting thread offers its core to others at every further look: about 30 us. On a machine whose cores
+/// are all busy the other worker may be waiting for this very core.
+const LOOKS_BEFORE_YIELDING: u32 = 1024;
+
+/// Why there is no crew.
+#[derive(Debug, Error)]
+pub enum CrewError {
+    /// Not 1 or 2.
+    #[error("a crew of {0} workers cannot be made, because a step has {SHARES} shares; ask for 1 or 2 workers")]
+    Workers(usize),
+    /// The system gave no thread.
+    #[error(
+        "the helper thread of the cloth could not be started ({0}); raise the limit of threads or ask for 1 worker"
+    )]
+    Spawn(#[from] io::Error),
+}
+
+/// A share of a run panicked; what came after it was not done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("share {share} of phase {phase} panicked and the rest of the run was left out; its message tells the cause")]
+pub struct Panicked {
+    /// The phase, counted from 0.
+    pub phase: usize,
+    /// The share, 0 or 1.
+    pub share: usize,
+}
+
+/// Room of its own for what one side writes and the other reads: two cache lines, because processors fetch pairs.
+#[derive(Default)]
+#[repr(align(128))]
+struct Apart<T>(T);
+
+/// A borrowed job with its type and lifetime taken off.
+#[derive(Clone, Copy)]
+struct Job {
+    data: *const (),
+    call: unsafe fn(*const (), usize, usize),
+    /// Ticket of its first phase.
+    first: u64,
+}
+
+/// What the two threads share. Phases are numbered by tickets that never repeat, over all runs.
+struct Board {
+    /// The last ticket of the run on the board.
+    open: Apart<AtomicU64>,
+    /// The last ticket whose share 1 somebody has begun. Share 0 is always the caller's.
+    claimed: Apart<AtomicU64>,
+    /// The last ticket whose share is done, a share.
+    done: [Apart<AtomicU64>; SHARES],
+    /// Whether the helper sleeps, or is about to.
+    asleep: Apart<AtomicBool>,
+    /// Whether the helper is to end.
+    leaving: AtomicBool,
+    /// 0, or 1 + ticket * SHARES + share of the first panic of the run.
+    failed: AtomicU64,
+    /// The job. Written by the caller while all tickets are done; read by whoever holds a share that is not.
+    job: UnsafeCell<Job>,
+}
+
+// SAFETY: the job's pointer is the only part that is not an atomic. `Crew::run` takes only jobs that are `Sync`, and the
+// protocol above keeps reads and writes of the cell apart.
+unsafe impl Send for Board {}
+// SAFETY: as above.
+unsafe impl Sync for Board {}
+
+impl Board {
+    fn new() -> Self {
+        unsafe fn nothing(_: *const (), _: usize, _: usize) {}
+        Self {
+            open: Apart::default(),
+            claimed: Apart::default(),
+            done: Default::default(),
+            asleep: Apart::default(),
+            leaving: AtomicBool::new(false),
+            failed: AtomicU64::new(0),
+            job: UnsafeCell::new(Job { data: std::ptr::null(), call: nothing, first: 1 }),
+        }
+    }
+
+    /// Takes share 1 of a ticket, or says which ticket was the last taken.
+    ///
+    /// Relaxed: the exchange decides who does the share and carries nothing else. What the share reads was acquired
+    /// through `open` and `done`; a ticket is taken once, so a helper that comes late with an old one gets nothing.
+    fn claim(&self, ticket: u64) -> Result<(), u64> {
+        self.claimed.0.compare_exchange(ticket - 1, ticket, Relaxed, Relaxed).map(|_| ())
+    }
+
+    /// Does one share and says so.
+    ///
+    /// # Safety
+    /// The caller holds this share of this ticket (share 1 by [`Self::claim`]), and it is not done yet. Then the run is
+    /// still on, because [`Crew::run`] waits for both shares of its last ticket: the job lives, and its cell is not
+    /// written.
+    unsafe fn work(&self, ticket: u64, share: usize) {
+        // SAFETY: see above; the write of the cell happened before `open` was stored, which this thread has acquired.
+        let job = unsafe { *self.job.get() };
+        // Relaxed: only saves work. The caller of the run looks again after it has acquired every `done`.
+        if self.failed.load(Relaxed) == 0 {
+            let phase = (ticket - job.first) as usize;
+            // SAFETY: `call` was made for `data`, which the run borrows until it ends.
+            if let Err(payload) = catch_unwind(AssertUnwindSafe(|| unsafe { (job.call)(job.data, phase, share) })) {
+                self.fail(ticket, share, payload);
+            }
+        }
+        // Release: who acquires it sees all that the share wrote.
+        self.done[share].0.store(ticket, Release);
+    }
+
+    #[cold]
+    fn fail(&self, ticket: u64, share: usize, payload: Box<dyn Any + Send>) {
+        // A payload may panic when it is dropped, which would end the helper: it is left.
+        forget(payload);
+        let place = 1 + ticket * SHARES as u64 + share as u64;
+        // Relaxed: the store of `done` that follows carries it.
+        let _ = self.failed.compare_exchange(0, place, Relaxed, Relaxed);
+    }
+
+    /// Whether both shares of a ticket are done. Acquire: then all that they wrote is seen.
+    fn is_done(&self, ticket: u64) -> bool {
+        self.done.iter().all(|d| d.0.load(Acquire) >= ticket)
+    }
+}
+
+/// Waits a moment: longer, and generously, after many looks.
+fn pause(looks: u32) {
+    if looks < LOOKS_BEFORE_YIELDING { spin_loop() } else { thread::yield_now() }
+}
+
+/// The helper's life: claim share 1 of one ticket after the other.
+fn help(board: &Board) {
+    let (mut ticket, mut looks) = (1, 0);
+    let mut rest = Instant::now() + AWAKE;
+    loop {
+        // Acquire: the job was written before.
+        if board.open.0.load(Acquire) < ticket {
+            // Relaxed: it is stored before the wake-up that ends a park, or seen at a later look.
+            if board.leaving.load(Relaxed) {
+                return;
+            }
+            looks += 1;
+            if looks % 64 == 0 && Instant::now() >= rest {
+                sleep(board, ticket);
+                rest = Instant::now() + AWAKE;
+            }
+            spin_loop();
+        } else if !board.is_done(ticket - 1) {
+            // The meeting: the phase before is not over.
+            looks += 1;
+            pause(looks);
+        } else {
+            match board.claim(ticket) {
+                Ok(()) => {
+                    // SAFETY: share 1 was claimed, its run is open, and the phases before it are done.
+                    unsafe { board.work(ticket, 1) };
+                    ticket += 1;
+                    rest = Instant::now() + AWAKE;
+                }
+                // The caller did not wait; go on behind what it took.
+                Err(taken) => ticket = taken + 1,
+            }
+            looks = 0;
+        }
+    }
+}
+
+/// Parks the helper unless there is work.
+///
+/// All SeqCst, with those in [`Crew::run`], [`Crew::wake`] and `drop`: either the helper sees the new `open` (or
+/// `leaving`) or the other side sees it `asleep` and wakes it. With any weaker order both could look too early.
+fn sleep(board: &Board, ticket: u64) {
+    board.asleep.0.store(true, SeqCst);
+    if board.open.0.load(SeqCst) < ticket && !board.leaving.load(SeqCst) {
+        thread::park();
+    }
+    board.asleep.0.store(false, SeqCst);
+}
+
+/// The workers. A run borrows the crew, so two runs cannot overlap and a job cannot start another.
+pub struct Crew {
+    board: Arc<Board>,
+    helper: Option<JoinHandle<()>>,
+    last: u64,
+    taken: u64,
+}
+
+impl Crew {
+    /// A crew of 1 or 2 workers; the second is a thread that lives as long as the crew. At load.
+    pub fn new(workers: usize) -> Result<Self, CrewError> {
+        if !(1..=SHARES).contains(&workers) {
+            return Err(CrewError::Workers(workers));
+        }
+        let board = Arc::new(Board::new());
+        let theirs = board.clone();
+        let start = || thread::Builder::new().name("toile-cloth".into()).spawn(move || help(&theirs));
+        let helper = if workers == SHARES { Some(start()?) } else { None };
+        Ok(Self { board, helper, last: 0, taken: 0 })
+    }
+
+    /// How many.
+    pub fn workers(&self) -> usize {
+        1 + usize::from(self.helper.is_some())
+    }
+
+    /// Shares that the helper should have done and came too late for, since the crew was made.
+    pub fn taken(&self) -> u64 {
+        self.taken
+    }
+
+    /// Wakes the helper if it sleeps, which takes it some 50 us; to be called as the frame begins, before the body is
+    /// posed. Says whether it slept.
+    pub fn wake(&self) -> bool {
+        let Some(helper) = &self.helper else { return false };
+        // SeqCst: see `sleep`.
+        let asleep = self.board.asleep.0.load(SeqCst);
+        if asleep {
+            helper.thread().unpark();
+        }
+        asleep
+    }
+
+    /// Calls `job(phase, share)` for every phase below `phases`, in order, and for both shares of each; returns when
+    /// all are done. After a panic nothing further is begun.
+    pub fn run<F: Fn(usize, usize) + Sync>(&mut self, phases: usize, job: F) -> Result<(), Panicked> {
+        /// # Safety
+        /// `data` is an `F` that lives during the call.
+        unsafe fn call<F: Fn(usize, usize)>(data: *const (), phase: usize, share: usize) {
+            // SAFETY: see above.
+            unsafe { (*data.cast::<F>())(phase, share) }
+        }
+        let board = &*self.board;
+        let first = self.last + 1;
+        self.last += phases as u64;
+        // SAFETY: every ticket so far is done, so nobody reads the cell: `work` is entered only with a ticket that is
+        // open and not done.
+        unsafe { *board.job.get() = Job { data: (&raw const job).cast(), call: call::<F>, first } };
+        // Relaxed: published by `open`.
+        board.failed.store(0, Relaxed);
+        // SeqCst: publishes the job as a release does, and see `sleep`.
+        board.open.0.store(self.last, SeqCst);
+        let mut helped = self.helper.is_some() && !self.wake();
+        for ticket in first..=self.last {
+            // SAFETY: share 0 is this thread's, and this ticket's was not done before.
+            unsafe { board.work(ticket, 0) };
+            helped = meet(board, ticket, helped);
+            self.taken += u64::from(!helped && self.helper.is_some());
+        }
+        // Relaxed: every `done` of the run was acquired.
+        match board.failed.load(Relaxed).checked_sub(1) {
+            None => Ok(()),
+            Some(place) => Err(Panicked {
+                phase: (place / SHARES as u64 - first) as usize,
+                share: (place % SHARES as u64) as usize,
+            }),
+        }
+    }
+
+    /// Calls `task(i, &mut items[i])` for every item, whichever worker is free: one garment each. Items should not
+    /// depend on each other; those with most work come best first.
+    pub fn each<T: Send, F: Fn(usize, &mut T) + Sync>(&mut self, items: &mut [T], task: F) -> Result<(), Panicked> {
+        let (next, items) = (AtomicUsize::new(0), Items::new(items));
+        self.run(1, |_, _| {
+            loop {
+                // Relaxed: gives out each number once; the meetings before and after the phase carry the items.
+                let i = next.fetch_add(1, Relaxed);
+                // SAFETY: no number is given out twice.
+                let Some(item) = (unsafe { items.get(i) }) else { return };
+                task(i, item);
+            }
+        })
+    }
+}
+
+/// Share 1 of a ticket: waits for it where it was begun, does it where it was not. Says whether the helper did it.
+fn meet(board: &Board, ticket: u64, helped: bool) -> bool {
+    let (mut looks, mut begun) = (0, false);
+    // A helper that was late is not waited for again before it is back.
+    let patience = if helped { LOOKS_BEFORE_TAKING } else { 0 };
+    // Acquire: all that the share wrote is seen.
+    while board.done[1].0.load(Acquire) < ticket {
+        if !begun && looks >= patience {
+            if board.claim(ticket).is_ok() {
+                // SAFETY: share 1 was claimed, and share 0 and all tickets before were done by or for this thread.
+                unsafe { board.work(ticket, 1) };
+                return false;
+            }
+            begun = true;
+        }
+        pause(looks);
+        looks += 1;
+    }
+    true
+}
+
+impl Drop for Crew {
+    fn drop(&mut self) {
+        let Some(helper) = self.helper.take() else { return };
+        // SeqCst: see `sleep`. The wake-up is unconditional: it costs nothing here.
+        self.board.leaving.store(true, SeqCst);
+        helper.thread().unpark();
+        // It cannot have panicked: every share is caught.
+        let _ = helper.join();
+    }
+}
+
+impl fmt::Debug for Crew {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Crew").field("workers", &self.workers()).field("taken", &self.taken).finish()
+    }
+}
+
+/// Items of which each is given out once.
+struct Items<T> {
+    data: *mut T,
+    len: usize,
+}
+
+// SAFETY: it hands `&mut T` to other threads and nothing else, and `T` may be sent.
+unsafe impl<T: Send> Sync for Items<T> {}
+
+impl<T> Items<T> {
+    fn new(items: &mut [T]) -> Self {
+        Self { data: items.as_mut_ptr(), len: items.len() }
+    }
+
+    /// # Safety
+    /// No index is asked for twice, and the slice is still borrowed.
+    #[expect(clippy::mut_from_ref, reason = "each item is given out once")]
+    unsafe fn get(&self, i: usize) -> Option<&mut T> {
+        // SAFETY: within the slice; see above.
+        (i < self.len).then(|| unsafe { &mut *self.data.add(i) })
+    }
+}
+
+#[cfg(test)]
+mod tests;
