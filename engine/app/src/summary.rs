@@ -54,7 +54,7 @@ pub fn run(report: &RunReport, paint: Paint) -> String {
     let [mean, p99, max] = percent;
     line(&mut text, &format!("  it is stretched   {mean:.2} % on average, 99 % under {p99:.2} %, at worst {max:.1} %"));
     let share = deep.fraction * 100.0;
-    line(&mut text, &format!("  deepest contact   {:.2} mm, {share:.2} % of the particles inside", deep.max.max(0.0)));
+    line(&mut text, &format!("  deepest contact   {:.2} mm, {share:.2} % of the particles inside", deep.max));
     let energy = report.kinetic_energy_j.end * 1e3;
     line(&mut text, &format!("  it ends with      {energy:.3} mJ of motion, state {}", report.state_hash));
     let events = report.events;

@@ -26,7 +26,7 @@ pub struct RunGarment {
 /// How deep cloth was inside colliders, in `toile run`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct RunPenetration {
-    /// The deepest free particle in any step (mm); negative where none was ever inside.
+    /// The deepest free particle in any step (mm); 0 where none was ever inside.
     pub max: f64,
     /// Share of the free particles that were inside, mean over steps.
     pub fraction: f64,
