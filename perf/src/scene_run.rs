@@ -8,7 +8,7 @@ use glam::{Affine3A, Vec3, Vec4};
 use thiserror::Error;
 use toile_assets::bake::bake;
 use toile_assets::garment::{Garment, Layout, MeshError};
-use toile_assets::limits::MAX_SPHERES;
+use toile_assets::limits::{MAX_SPHERES, STEP_HZ};
 use toile_assets::scene_file::{SceneFile, SceneGarment};
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, measure};
@@ -81,7 +81,8 @@ pub struct Runner {
     /// The particle of each of the user's vertices, or [`STANDS`] `[garments][user's vertices]`.
     particles: Vec<Box<[u32]>>,
     colliders: Colliders,
-    settings: Settings,
+    /// Of each garment: where the scene says nothing, substeps differ.
+    settings: Vec<Settings>,
     palette: [Affine3A; BONES],
     steps: u64,
     times_ns: Vec<u64>,
@@ -105,7 +106,7 @@ impl Runner {
         let particles = scene.garments.iter().zip(&garments).map(|(given, baked)| user_order(given, baked)).collect();
         let measured = scene.steps() - (scene.measure_from * scene.step_hz) as u64;
         Ok(Self {
-            settings: settings(&scene),
+            settings: garments.iter().map(|g| settings(&scene, g)).collect(),
             palette: palette(&scene, 0.0),
             times_ns: Vec::with_capacity(measured as usize),
             sums: Figures::default(),
@@ -124,9 +125,9 @@ impl Runner {
         place(&mut self.colliders, &self.scene, end);
         self.palette = palette(&self.scene, end);
         let begun = Instant::now();
-        let step = Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings };
-        for (cloth, garment) in self.cloths.iter_mut().zip(&self.garments) {
-            cloth.step(garment, &step);
+        let (palette, colliders) = (&self.palette, &self.colliders);
+        for ((cloth, garment), settings) in self.cloths.iter_mut().zip(&self.garments).zip(&self.settings) {
+            cloth.step(garment, &Step { palette, colliders, settings });
         }
         let ns = begun.elapsed().as_nanos() as u64;
         self.steps += 1;
@@ -221,8 +222,8 @@ impl Runner {
         &self.colliders
     }
 
-    /// How the cloth is stepped.
-    pub fn settings(&self) -> &Settings {
+    /// How each garment is stepped.
+    pub fn settings(&self) -> &[Settings] {
         &self.settings
     }
 
@@ -255,14 +256,18 @@ fn user_order(given: &SceneGarment, baked: &Garment) -> Box<[u32]> {
     given.mesh.to_shape.iter().map(|v| particle.get(*v as usize).copied().unwrap_or(STANDS)).collect()
 }
 
-/// The engine's settings; what the scene leaves out is as the engine has it.
-fn settings(scene: &SceneFile) -> Settings {
+/// The engine's settings; what the scene leaves out is as the engine has it. A garment asks for substeps of a step of
+/// 1/120 s: a longer step has more of them.
+fn settings(scene: &SceneFile, garment: &Garment) -> Settings {
     let (default, given) = (Settings::default(), &scene.settings);
     let quality = |name: &str| Quality::ALL.into_iter().find(|q| q.name() == name);
     let width = given.lanes.and_then(|n| Width::of(n as usize)).filter(|w| w.available());
+    let quality = given.quality.and_then(quality).unwrap_or_default();
+    let longer = f64::from(STEP_HZ) / scene.step_hz;
+    let asked = (f64::from(quality.substeps(garment.substeps)) * longer).ceil().max(1.0) as u32;
     Settings {
-        quality: given.quality.and_then(quality).unwrap_or_default(),
-        substeps: given.substeps,
+        quality,
+        substeps: Some(given.substeps.unwrap_or(asked)),
         step_seconds: scene.step_hz.recip() as f32,
         gravity: scene.gravity.into(),
         max_speed: given.max_speed.unwrap_or(default.max_speed),
@@ -305,3 +310,6 @@ fn depth(p: Vec3, cones: &[RoundCone], planes: &[Vec4], floor: bool) -> f32 {
     let plane = planes.iter().map(|plane| plane.w - plane.truncate().dot(p)).fold(f32::NEG_INFINITY, f32::max);
     cone.max(plane).max(if floor { -p.y } else { f32::NEG_INFINITY })
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,19 +1,17 @@
 //! One piece of cloth of a scene: its mesh placed, its fabric, what holds it, what it weighs.
 
-use std::collections::BTreeMap;
-
 use glam::{EulerRot, Quat, Vec3};
 
 use super::error::{SceneError, nearest};
 use super::source::Source;
 use super::table::Table;
 use super::track::Track;
-use super::{Loading, PinSource, primitive};
+use super::{Loading, PinSource, primitive, weld};
 use crate::fabric::Fabric;
-use crate::garment::shape::{Face, NO_VERTEX, Part};
+use crate::garment::shape::{Face, NO_VERTEX};
 use crate::garment::{MeshError, Shape, Solver};
 use crate::import::gltf::parse_gltf;
-use crate::import::obj::{FREE, warp_upright};
+use crate::import::obj::FREE;
 use crate::import::plain::{PlainMesh, parse_obj};
 use crate::mesh::SkinWeights;
 use crate::skeleton::BONES;
@@ -60,7 +58,7 @@ impl SceneGarment {
         let mut fabric = fabric(table, loading.source)?;
         let mut plain = mesh(table, loading.source)?;
         place(table, &mut plain)?;
-        let (mut shape, to_shape) = weld(&plain, table.flag("weld")?);
+        let (mut shape, to_shape) = weld::shape(&plain, table.flag("weld")?);
         let mesh = UserMesh { start: plain.positions.clone(), faces: plain.faces.clone(), to_shape };
         shape.check(table)?;
         pin(table, loading, &plain, &mesh, &mut shape)?;
@@ -141,27 +139,6 @@ fn place(table: &Table<'_>, mesh: &mut PlainMesh) -> Result<(), SceneError> {
         return Err(table.wrong(mesh_key(table), says));
     }
     Ok(())
-}
-
-/// The shape of a mesh, and which of its vertices each of the mesh is. Vertices at the very same place become one,
-/// because exporters split them along seams of texture and material; those that no face uses are left out.
-fn weld(mesh: &PlainMesh, weld: bool) -> (Shape, Vec<u32>) {
-    let mut used = vec![false; mesh.positions.len()];
-    mesh.faces.iter().flatten().filter(|v| **v != NO_VERTEX).for_each(|v| used[*v as usize] = true);
-    let mut places: BTreeMap<[u32; 3], u32> = BTreeMap::new();
-    let mut shape = Shape::default();
-    let mut to_shape = vec![NO_VERTEX; used.len()];
-    for (i, &p) in mesh.positions.iter().enumerate().filter(|(i, _)| used[*i]) {
-        // Adding zero makes -0 and 0 one place.
-        let key = (p + Vec3::ZERO).to_array().map(f32::to_bits);
-        let known = if weld { places.get(&key).copied() } else { None };
-        to_shape[i] = known.unwrap_or_else(|| shape.push(p, p, false, Part::All));
-        places.insert(key, to_shape[i]);
-    }
-    let face = |face: &Face| face.map(|v| if v == NO_VERTEX { v } else { to_shape[v as usize] });
-    shape.split = mesh.split.clone();
-    shape.faces = mesh.faces.iter().map(|f| warp_upright(&shape.cut, face(f))).collect();
-    (shape, to_shape)
 }
 
 impl Shape {

@@ -17,6 +17,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 mod track;
+mod weld;
 
 use std::path::Path;
 

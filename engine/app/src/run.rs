@@ -82,7 +82,9 @@ fn play(runner: &mut Runner, words: &Words, mut dump: Option<&mut Dump>) -> Resu
 }
 
 fn report(runner: &Runner, args: &RunArgs, dumped: u64) -> RunReport {
-    let (scene, figures, settings) = (runner.scene(), runner.figures(), runner.settings());
+    let (scene, figures) = (runner.scene(), runner.figures());
+    // Quality and lanes are the same for every garment.
+    let settings = runner.settings().first().copied().unwrap_or_default();
     let garments = scene.garments.iter().zip(runner.garments()).map(|(given, baked)| RunGarment {
         name: given.name.clone(),
         vertices: given.mesh.start.len(),
