@@ -13,9 +13,25 @@ use crate::lanes::{Column, Kernel, Lanes, MOST, V3};
 /// The bound on dt^2 omega^2 that is used, half of what is stable: motion near the limit rings.
 const STABLE: f32 = 2.0;
 
-/// Writes for each stencil the share of its stiffness that can be carried, 1 where all of it; the least share is
-/// returned. `load` is room for a number a particle.
-pub fn prepare(bends: &Bends, weights: &[f32], dt: f32, load: &mut [f32], scale: &mut [f32]) -> f32 {
+/// How bending goes on for one time step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pace {
+    /// It acts every so many substeps, with the impulse of all of them (Tuckerman, Berne, Martyna 1992: slow forces need
+    /// not be asked as often as fast ones).
+    pub every: u32,
+    /// Least share of its stiffness that the time step can carry.
+    pub least: f32,
+}
+
+/// Writes for each stencil the share of its stiffness that can be carried, 1 where all of it. `load` is room for a
+/// number a particle.
+pub fn prepare(
+    bends: &Bends,
+    weights: &[f32],
+    [dt, substeps]: [f32; 2],
+    load: &mut [f32],
+    scale: &mut [f32],
+) -> Pace {
     load.fill(0.0);
     let all = bends.tuples.all();
     let coefficient = |at: usize, k: usize| bends.coefficients[k][at];
@@ -31,7 +47,10 @@ pub fn prepare(bends: &Bends, weights: &[f32], dt: f32, load: &mut [f32], scale:
         scale[at] = if most > STABLE { STABLE / most } else { 1.0 };
         least = least.min(scale[at]);
     }
-    least
+    let most = load.iter().copied().fold(0.0, f32::max);
+    let substeps = substeps as u32;
+    let fits = |every: u32| substeps % every == 0 && most * (every * every) as f32 <= STABLE;
+    Pace { every: (1..=substeps).rev().find(|&e| fits(e)).unwrap_or(1), least }
 }
 
 /// Adds the bending forces of one owner's share of a set to the velocities.
@@ -76,28 +95,55 @@ impl Kernel for Bend<'_> {
 impl Bend<'_> {
     #[inline(always)]
     fn block<L: Lanes>(&self, first: [usize; 3], at: usize, n: usize) {
-        let c = &self.columns;
-        let zero = V3::<L>::splat(glam::Vec3A::ZERO);
-        let mut d = [zero; MOST];
+        if L::N == MOST && n == MOST {
+            let d = self.curvature::<L>(first, at, MOST);
+            for (k, v) in first.into_iter().enumerate() {
+                self.push(k, d, v, at, MOST);
+            }
+            return;
+        }
+        if L::N == MOST {
+            let n = n.min(MOST - 1);
+            let d = self.curvature::<L>(first, at, n);
+            for (k, v) in first.into_iter().enumerate() {
+                self.push(k, d, v, at, n);
+            }
+            return;
+        }
+        let mut d = [V3::<L>::splat(glam::Vec3A::ZERO); MOST];
         let steps = n.div_ceil(L::N);
         let part = |step: usize| (n - step * L::N).min(L::N);
         for (step, d) in d.iter_mut().enumerate().take(steps) {
-            let (o, n) = (step * L::N, part(step));
-            for (k, &v) in first.iter().enumerate() {
-                *d = *d + V3::<L>::load(c.x, v + o, n) * self.coefficient::<L>(k, at + o, n);
-            }
-            if let Some(scale) = self.scale {
-                *d = *d * load(Column::read_only(scale), at + o, n);
-            }
-            *d = *d * L::splat(self.dt);
+            let o = step * L::N;
+            *d = self.curvature::<L>(first.map(|v| v + o), at + o, part(step));
         }
         for (k, &v) in first.iter().enumerate() {
             for (step, &d) in d.iter().enumerate().take(steps) {
-                let (o, n) = (step * L::N, part(step));
-                let share = self.coefficient::<L>(k, at + o, n) * load(c.w, v + o, n);
-                (V3::<L>::load(c.v, v + o, n) - d * share).store(c.v, v + o, n);
+                let o = step * L::N;
+                self.push(k, d, v + o, at + o, part(step));
             }
         }
+    }
+
+    /// `n` stencils: the curvature, times the substep.
+    #[inline(always)]
+    fn curvature<L: Lanes>(&self, first: [usize; 3], at: usize, n: usize) -> V3<L> {
+        let x = self.columns.x;
+        let mut d = V3::<L>::load(x, first[0], n) * self.coefficient::<L>(0, at, n);
+        d = d + V3::load(x, first[1], n) * self.coefficient::<L>(1, at, n);
+        d = d + V3::load(x, first[2], n) * self.coefficient::<L>(2, at, n);
+        if let Some(scale) = self.scale {
+            d = d * load(Column::read_only(scale), at, n);
+        }
+        d * L::splat(self.dt)
+    }
+
+    /// What `n` stencils do to their particles of one kind.
+    #[inline(always)]
+    fn push<L: Lanes>(&self, k: usize, d: V3<L>, v: usize, at: usize, n: usize) {
+        let c = &self.columns;
+        let share = self.coefficient::<L>(k, at, n) * load(c.w, v, n);
+        (V3::<L>::load(c.v, v, n) - d * share).store(c.v, v, n);
     }
 
     #[inline(always)]

@@ -8,7 +8,7 @@
 use toile_assets::garment::layout::{Links, Set};
 
 use super::state::Columns;
-use crate::lanes::{Column, Kernel, Lanes, V3, reciprocal_root};
+use crate::lanes::{Column, Kernel, Lanes, MOST, V3, reciprocal_root};
 
 /// 1 / ((1 + gamma)(w_a + w_b) + alpha / dt^2) of each link, in the order of the parameters; 0 where nothing can move.
 pub fn prepare(links: &Links, weights: &[f32], dt: f32, gamma: f32, gain: &mut [f32]) {
@@ -69,20 +69,39 @@ impl Solve<'_> {
                 self.side_by_side::<L, DAMPED>([a + t, b + t], [L::load(rest, at + t), L::load(gain, at + t)], L::N);
                 t += L::N;
             }
-            if t < len {
-                let n = len - t;
+            if t < len && L::N > 1 {
+                // Less than a vector, and the compiler is told so.
+                let n = (len - t).min(L::N - 1);
                 let part = |c| L::load_part(c, at + t, n);
                 self.side_by_side::<L, DAMPED>([a + t, b + t], [part(rest), part(gain)], n);
             }
         }
-        for (k, i) in share.loose.clone().enumerate() {
-            let at = share.loose_at as usize + k;
-            self.side_by_side::<f32, DAMPED>(
-                self.links.tuples.loose[i as usize].map(|v| v as usize),
-                [rest.get(at), gain.get(at)],
-                1,
-            );
+        let loose = &self.links.tuples.loose;
+        let mut k = 0;
+        while k < share.loose.len() {
+            let n = (share.loose.len() - k).min(L::N);
+            let first = share.loose.start as usize + k;
+            self.listed::<L, DAMPED>(&loose[first..first + n], [rest, gain], share.loose_at as usize + k);
+            k += n;
         }
+    }
+
+    /// Links by index list.
+    #[inline(always)]
+    fn listed<L: Lanes, const DAMPED: bool>(&self, links: &[[u32; 2]], [rest, gain]: [Column<'_>; 2], at: usize) {
+        let c = &self.columns;
+        let n = links.len();
+        let mut ends = [[0u32; MOST]; 2];
+        for (t, link) in links.iter().enumerate() {
+            (ends[0][t], ends[1][t]) = (link[0], link[1]);
+        }
+        let [a, b] = &ends;
+        let part = |c| if n == L::N { L::load(c, at) } else { L::load_part(c, at, n) };
+        let (pa, pb) = (V3::<L>::gather(c.x, a, n), V3::gather(c.x, b, n));
+        let moved = || (pb - V3::gather(c.previous, b, n)) - (pa - V3::gather(c.previous, a, n));
+        let push = self.push::<L, DAMPED>(pb - pa, [part(rest), part(gain)], moved);
+        (pa + push * L::gather(c.w, a, n)).scatter(c.x, a, n);
+        (pb - push * L::gather(c.w, b, n)).scatter(c.x, b, n);
     }
 
     /// `n` links whose ends lie side by side.
@@ -91,16 +110,22 @@ impl Solve<'_> {
         let c = &self.columns;
         let (pa, pb) = (V3::<L>::load(c.x, a, n), V3::load(c.x, b, n));
         let weights = |i| if n == L::N { L::load(c.w, i) } else { L::load_part(c.w, i, n) };
-        let d = pb - pa;
+        let moved = || (pb - V3::load(c.previous, b, n)) - (pa - V3::load(c.previous, a, n));
+        let push = self.push::<L, DAMPED>(pb - pa, [rest, gain], moved);
+        (pa + push * weights(a)).store(c.x, a, n);
+        (pb - push * weights(b)).store(c.x, b, n);
+    }
+
+    /// How far a link of vector `d` draws an end of weight 1.
+    #[inline(always)]
+    fn push<L: Lanes, const DAMPED: bool>(&self, d: V3<L>, [rest, gain]: [L; 2], moved: impl Fn() -> V3<L>) -> V3<L> {
         let inverse = reciprocal_root(d.dot(d));
         // lambda / |d|: (|d| - rest) / |d| times the gain.
         let mut pull = (L::splat(1.0) - rest * inverse) * gain;
         if DAMPED {
-            let moved = (pb - V3::load(c.previous, b, n)) - (pa - V3::load(c.previous, a, n));
-            pull = pull + d.dot(moved) * inverse * inverse * gain * L::splat(self.gamma);
+            pull = pull + d.dot(moved()) * inverse * inverse * gain * L::splat(self.gamma);
         }
-        (pa + d * (pull * weights(a))).store(c.x, a, n);
-        (pb - d * (pull * weights(b))).store(c.x, b, n);
+        d * pull
     }
 }
 

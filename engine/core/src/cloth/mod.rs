@@ -139,6 +139,11 @@ impl Cloth {
         self.prepared.program()
     }
 
+    /// How bending went on in the last step.
+    pub fn bend_pace(&self) -> bending::Pace {
+        self.prepared.bend_pace()
+    }
+
     /// Substeps of a step as last prepared.
     pub fn substeps(&self) -> u32 {
         self.prepared.substeps()

@@ -105,10 +105,14 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// Where `n` numbers from `at` on lie, or None where they are not all there.
+    /// Where `n` numbers from `at` on lie.
+    ///
+    /// # Panics
+    /// Where they are not all there, which no index of a bake is: the check of a slice, once a vector.
     #[inline(always)]
-    pub(super) fn place(self, at: usize, n: usize) -> Option<*mut f32> {
+    pub(super) fn place(self, at: usize, n: usize) -> *mut f32 {
+        assert!(at <= self.len && n <= self.len - at, "a kernel left its column");
         // SAFETY: within the length, or its end.
-        (at <= self.len && n <= self.len - at).then(|| unsafe { self.data.add(at) })
+        unsafe { self.data.add(at) }
     }
 }

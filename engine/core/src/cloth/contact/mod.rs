@@ -161,8 +161,9 @@ impl Owner {
             to: cones,
         };
         width.run(prepare);
+        let least_quick2 = cones.least_quick2(ends.sound);
         let sweep = Sweep { ends, cones, span, offset: how.offset_m };
-        tally.swept += width.run(Solve { cols, sweep, planes, blocks, how });
+        tally.swept += width.run(Solve { cols, sweep, planes, blocks, least_quick2, how });
     }
 }
 

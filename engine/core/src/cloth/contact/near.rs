@@ -6,7 +6,7 @@
 //! every particle at every capsule, and each particle meets its capsules in their order.
 
 use super::cones::{Cones, Ends, PLACES, Row};
-use super::touch::place;
+use super::touch::close;
 use crate::cloth::state::Columns;
 use crate::lanes::{Column, Kernel, Lanes, MOST, Mask, V3, reciprocal_root};
 use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, STEP_SECONDS};
@@ -19,10 +19,10 @@ pub const GROUP: usize = 4;
 
 /// Particles this much farther away than they can travel in a step are still looked at (m): what neighbours and gravity
 /// add within the step.
-const SLACK_M: f32 = 0.005;
+const SLACK_M: f32 = 0.004;
 
 /// A particle may be jerked along by its neighbours at so many times its present speed.
-const JERK: f32 = 2.0;
+const JERK: f32 = 1.5;
 
 /// Boxes are wider than what they hold by this (m), so that rounding never makes the coarse test stricter than the fine.
 const BOX_M: f32 = 1e-3;
@@ -132,7 +132,7 @@ impl Kernel for Find<'_> {
             for block in group {
                 (block.capsules, block.planes) = (0, 0);
                 if capsules | met != 0 {
-                    close::<L>(cols, swept, planes, block, [capsules, met]);
+                    ask::<L>(cols, swept, planes, block, [capsules, met]);
                 }
             }
         }
@@ -211,7 +211,7 @@ fn meet_planes(planes: &[[f32; 4]], low: [f32; 3], high: [f32; 3]) -> u32 {
 
 /// Asks the capsules and planes that a group has met for each particle of one of its blocks.
 #[inline(always)]
-fn close<L: Lanes>(cols: Columns<'_>, swept: &Cones, planes: &[[f32; 4]], block: &mut Block, met: [u32; 2]) {
+fn ask<L: Lanes>(cols: Columns<'_>, swept: &Cones, planes: &[[f32; 4]], block: &mut Block, met: [u32; 2]) {
     let (first, len) = block.place();
     block.lanes = [0; MAX_CAPSULES];
     block.plane_lanes = [0; PLANES];
@@ -225,9 +225,7 @@ fn close<L: Lanes>(cols: Columns<'_>, swept: &Cones, planes: &[[f32; 4]], block:
         while bits != 0 {
             let c = bits.trailing_zeros() as usize % MAX_CAPSULES;
             bits &= bits - 1;
-            let place = place(swept, c, x);
-            let reach = place.reach + far;
-            let near = place.out2.lt(reach * reach).and(free).bits() << from;
+            let near = close(swept, c, x, far).and(free).bits() << from;
             block.lanes[c] |= near as u16 & block.reach[c];
             block.capsules |= u32::from(block.lanes[c] != 0) << c;
         }

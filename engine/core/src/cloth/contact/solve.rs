@@ -5,7 +5,7 @@ use toile_assets::limits::MAX_CAPSULES;
 use super::ContactSettings;
 use super::near::{Block, PLANES, depth};
 use super::sweep::Sweep;
-use super::touch::{Friction, Surface, place, push, surface};
+use super::touch::{Friction, Surface, close, place, push, surface};
 use crate::cloth::state::Columns;
 use crate::lanes::{Kernel, Lanes, Mask, V3};
 
@@ -19,6 +19,8 @@ pub struct Solve<'a> {
     pub planes: &'a [[f32; 4]],
     /// The owner's blocks.
     pub blocks: &'a [Block],
+    /// What a particle may move (m2) before any capsule has to sweep it.
+    pub least_quick2: f32,
     /// Friction.
     pub how: &'a ContactSettings,
 }
@@ -54,6 +56,8 @@ impl Solve<'_> {
             let mut x = V3::<L>::load(cols.x, at, n);
             let mut previous = V3::<L>::load(cols.previous, at, n);
             let mut moved = false;
+            let mut way2 = way(x, previous);
+            let mut fast = L::splat(self.least_quick2).lt(way2).any();
             let mut bits = block.capsules;
             while bits != 0 {
                 let c = bits.trailing_zeros() as usize % MAX_CAPSULES;
@@ -63,17 +67,24 @@ impl Solve<'_> {
                     continue;
                 }
                 let lanes = L::Mask::of(lanes);
-                let way = x - previous;
-                let quick = sweep.cones.quick2.splat::<L>(c).lt(way.dot(way)).and(lanes);
-                if quick.any() {
-                    swept += u64::from(sweep.run(c, &mut x, &mut previous, friction, quick).count_ones());
-                    moved = true;
+                if fast {
+                    let quick = sweep.cones.quick2.splat::<L>(c).lt(way2).and(lanes);
+                    if quick.any() {
+                        swept += u64::from(sweep.run(c, &mut x, &mut previous, friction, quick).count_ones());
+                        moved = true;
+                        way2 = way(x, previous);
+                    }
+                }
+                if !close(sweep.cones, c, x, L::splat(0.0)).and(lanes).any() {
+                    continue;
                 }
                 let place = place(sweep.cones, c, x);
                 let touches = place.out2.lt(place.reach * place.reach).and(lanes);
                 if touches.any() {
                     push(&mut x, &mut previous, &surface(sweep.cones, c, &place), friction, touches);
                     moved = true;
+                    way2 = way(x, previous);
+                    fast = L::splat(self.least_quick2).lt(way2).any();
                 }
             }
             moved |= self.planes(block, from, &mut x, &mut previous, friction);
@@ -115,4 +126,11 @@ impl Solve<'_> {
         }
         moved
     }
+}
+
+/// Square of how far particles have moved in the substep (m2).
+#[inline(always)]
+fn way<L: Lanes>(x: V3<L>, previous: V3<L>) -> L {
+    let way = x - previous;
+    way.dot(way)
 }

@@ -49,6 +49,22 @@ pub fn place<L: Lanes>(cones: &Cones, c: usize, x: V3<L>) -> Place<L> {
     Place { out, out2: out.dot(out), reach: cones.reach.splat::<L>(c) + foot * cones.growth.splat(c), foot }
 }
 
+/// Which particles may be within `far` of capsule `c` and its offset: half the work of [`place`], never too few.
+///
+/// The axis is met square to it, at `y`, instead of at the slanted side's foot. With `x` the way from the axis, the side
+/// is at `x cosine + y sine - ra`, that is `cosine (x - r(y))`, so that what is within `m` has `x - r(y) < m / cosine`.
+/// At the spheres the way out is no longer than there, but their radius is not slanted: `r (1 - cosine)` is added to
+/// `m`, which holds off the axis's end, too, since sqrt(x2 + e2) - x <= e2 / 2x.
+#[inline(always)]
+pub fn close<L: Lanes>(cones: &Cones, c: usize, x: V3<L>, far: L) -> L::Mask {
+    let v = x - splat3(&cones.a, c);
+    let axis = splat3(&cones.axis, c);
+    let y = v.dot(axis).min(cones.length.splat(c)).max(L::splat(0.0));
+    let out = v - axis * y;
+    let reach = cones.wide.splat::<L>(c) + cones.taper.splat::<L>(c) * y + cones.loose.splat::<L>(c) * far;
+    out.dot(out).lt(reach * reach)
+}
+
 /// A point of a surface that pushes.
 #[derive(Clone, Copy)]
 pub struct Surface<L> {
