@@ -34,7 +34,9 @@ fn every_scene_of_the_page_is_one() {
 fn published_outfits_are_scenes_as_they_are() {
     let Some(data) = toile_tests::recordings::folder() else { return };
     let outfits = data.join("garments/makehuman");
-    for (file, vertices) in [("female_elegantsuit01", 2_205), ("female_sportsuit01", 1_797), ("male_casualsuit04", 1_696)] {
+    for (file, vertices) in
+        [("female_elegantsuit01", 2_205), ("female_sportsuit01", 1_797), ("male_casualsuit04", 1_696)]
+    {
         // Decimetres, and faces of a strip drawn from the other side.
         let text = format!(
             "[garment]\nmesh = \"{file}.obj\"\nscale = 0.1\n[[garment.pin]]\nbox = [[-5, 0.3, -5], [5, 5, 5]]\n"

@@ -146,7 +146,7 @@ fn sphere_track(
     let wrong = |says: String| table.wrong("track", format!("{name}: {says}"));
     let text = source.text(name).map_err(|e| wrong(format!("{e}; give the path of a CSV file")))?;
     let fits = |n: usize| match spheres {
-        None if n > 0 && n % 4 == 0 => Ok(()),
+        None if n > 0 && n.is_multiple_of(4) => Ok(()),
         Some(count) if n == 4 * count => Ok(()),
         _ => Err(format!("it has {} columns; give time, then x, y, z, r of each sphere", n + 1)),
     };

@@ -59,7 +59,7 @@ impl Dump {
     /// # Errors
     /// Where a file cannot be written.
     pub fn add(&mut self, runner: &Runner) -> Result<(), AppError> {
-        if runner.steps() % self.every != 0 {
+        if !runner.steps().is_multiple_of(self.every) {
             return Ok(());
         }
         let scene = runner.scene();
