@@ -6,6 +6,7 @@
 
 pub mod scene_run;
 pub mod skinning;
+pub mod skirt;
 mod surface;
 pub mod time;
 pub mod yardstick;

@@ -11,12 +11,18 @@ use toile_assets::garment::{Garment, Layout, MeshError};
 use toile_assets::limits::{MAX_SPHERES, STEP_HZ};
 use toile_assets::scene_file::{SceneFile, SceneGarment};
 use toile_assets::skeleton::BONES;
+use toile_engine::cloth::program::STAGES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, measure};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere, RoundCone};
 use toile_engine::lanes::Width;
 
+use crate::skirt::heap::{Heap, HeapProbe};
+
 /// In place of a particle: this vertex belongs to no face and stands where it was.
 const STANDS: u32 = u32::MAX;
+
+/// One step of so many has its stages timed, which costs some microseconds.
+pub const METERED: u64 = 16;
 
 /// Why a scene cannot be run.
 #[derive(Debug, Error)]
@@ -68,6 +74,13 @@ pub struct Figures {
     pub kinetic_j: f64,
     /// Most kinetic energy at the end of any step (J).
     pub kinetic_max_j: f64,
+    /// Mean time of each stage of a step, all garments (us), in the order of [`STAGES`]: taken in one step of
+    /// [`METERED`], which do not count for `step_us`.
+    pub stages_us: [f64; STAGES.len()],
+    /// Allocations a step; none where the program does not count them.
+    pub allocations_per_step: Option<f64>,
+    /// Bytes of the baked garments and of their states; none where the program does not count them.
+    pub memory_bytes: Option<[u64; 2]>,
     /// Vertices that were not finite, counted in each step: none is ever published.
     pub nonfinite: u64,
 }
@@ -86,6 +99,9 @@ pub struct Runner {
     palette: [Affine3A; BONES],
     steps: u64,
     times_ns: Vec<u64>,
+    metered: u64,
+    heap: HeapProbe,
+    allocations: u64,
     sums: Figures,
 }
 
@@ -95,21 +111,36 @@ impl Runner {
     /// # Errors
     /// Where a mesh or the colliders cannot be used.
     pub fn new(scene: SceneFile) -> Result<Self, RunError> {
+        Self::counting(scene, HeapProbe::none())
+    }
+
+    /// The same, counting allocations and memory.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn counting(scene: SceneFile, heap: HeapProbe) -> Result<Self, RunError> {
         let mut colliders = colliders(&scene)?;
         place(&mut colliders, &scene, 0.0);
+        let before = heap.read();
         let garments = scene.garments.iter().map(baked).collect::<Result<Vec<_>, _>>()?;
+        let between = heap.read();
         let mut cloths: Vec<Cloth> = garments.iter().map(|g| Cloth::new(g, &colliders)).collect();
         for ((cloth, garment), given) in cloths.iter_mut().zip(&garments).zip(&scene.garments) {
             let free = (0..garment.particles()).filter(|i| garment.inverse_mass[*i] > 0.0);
             free.for_each(|i| cloth.disturb(i, garment.start[i].into(), given.velocity.into()));
         }
+        let grown = |from: Option<Heap>, to: Option<Heap>| u64::try_from(to?.live_bytes - from?.live_bytes).ok();
+        let memory_bytes = grown(before, between).zip(grown(between, heap.read())).map(|(baked, state)| [baked, state]);
         let particles = scene.garments.iter().zip(&garments).map(|(given, baked)| user_order(given, baked)).collect();
         let measured = scene.steps() - (scene.measure_from * scene.step_hz) as u64;
         Ok(Self {
             settings: garments.iter().map(|g| settings(&scene, g)).collect(),
             palette: palette(&scene, 0.0),
             times_ns: Vec::with_capacity(measured as usize),
-            sums: Figures::default(),
+            sums: Figures { memory_bytes, ..Figures::default() },
+            metered: 0,
+            allocations: 0,
+            heap,
             steps: 0,
             particles,
             colliders,
@@ -124,17 +155,29 @@ impl Runner {
         let end = (self.steps + 1) as f64 / self.scene.step_hz;
         place(&mut self.colliders, &self.scene, end);
         self.palette = palette(&self.scene, end);
+        let metered = self.steps % METERED == METERED / 2;
+        self.settings.iter_mut().for_each(|settings| settings.timed = metered);
+        let before = self.heap.read();
         let begun = Instant::now();
         let (palette, colliders) = (&self.palette, &self.colliders);
         for ((cloth, garment), settings) in self.cloths.iter_mut().zip(&self.garments).zip(&self.settings) {
             cloth.step(garment, &Step { palette, colliders, settings });
         }
         let ns = begun.elapsed().as_nanos() as u64;
+        let after = self.heap.read();
         self.steps += 1;
-        if end > self.scene.measure_from {
-            self.times_ns.push(ns);
-            self.measure();
+        if end <= self.scene.measure_from {
+            return;
         }
+        self.allocations += before.zip(after).map_or(0, |(a, b)| b.allocations - a.allocations);
+        if metered {
+            self.metered += 1;
+            let told = self.cloths.iter().map(|cloth| cloth.stage_ns);
+            told.for_each(|ns| self.sums.stages_us.iter_mut().zip(ns).for_each(|(sum, ns)| *sum += ns as f64 * 1e-3));
+        } else {
+            self.times_ns.push(ns);
+        }
+        self.measure();
     }
 
     fn measure(&mut self) {
@@ -180,6 +223,8 @@ impl Runner {
             strain_mean: self.sums.strain_mean / steps,
             strain_p99: self.sums.strain_p99 / steps,
             penetration_fraction: self.sums.penetration_fraction / steps,
+            stages_us: self.sums.stages_us.map(|sum| sum / self.metered.max(1) as f64),
+            allocations_per_step: self.heap.read().map(|_| self.allocations as f64 / steps),
             ..self.sums
         }
     }
@@ -227,11 +272,13 @@ impl Runner {
         &self.settings
     }
 
-    /// FNV-1a over the bits of positions and velocities: equal states give equal hashes.
+    /// FNV-1a over the bits of positions and velocities, in the order of the shapes' vertices: equal states give equal
+    /// hashes in whatever order particles are kept.
     pub fn state_hash(&self) -> u64 {
-        let state = |cloth: &Cloth, i: usize| [cloth.positions[i], cloth.velocity(i)].map(|v| v.to_array());
-        let particles = self.cloths.iter().flat_map(|c| (0..c.positions.len()).map(move |i| state(c, i)));
-        let numbers = particles.flatten().flatten();
+        let state = |cloth: &Cloth, i: u32| [cloth.positions[i as usize], cloth.velocity(i as usize)];
+        let garments = self.cloths.iter().zip(&self.garments);
+        let particles = garments.flat_map(|(c, g)| particle_of(g).into_iter().map(move |i| state(c, i)));
+        let numbers = particles.flatten().flat_map(|v| v.to_array());
         numbers
             .flat_map(|x| x.to_bits().to_le_bytes())
             .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
@@ -249,10 +296,16 @@ fn baked(given: &SceneGarment) -> Result<Garment, RunError> {
     Ok(garment)
 }
 
+/// The particle of each vertex of a garment's shape.
+fn particle_of(garment: &Garment) -> Vec<u32> {
+    let mut particle = vec![STANDS; garment.particles()];
+    garment.source.iter().zip(0..).for_each(|(vertex, i)| particle[*vertex as usize] = i);
+    particle
+}
+
 /// The particle of each of the user's vertices.
 fn user_order(given: &SceneGarment, baked: &Garment) -> Box<[u32]> {
-    let mut particle = vec![STANDS; baked.particles()];
-    baked.source.iter().zip(0..).for_each(|(vertex, i)| particle[*vertex as usize] = i);
+    let particle = particle_of(baked);
     given.mesh.to_shape.iter().map(|v| particle.get(*v as usize).copied().unwrap_or(STANDS)).collect()
 }
 

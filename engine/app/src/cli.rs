@@ -12,8 +12,10 @@ use toile_assets::body::Sex;
 use crate::exit::AppError;
 
 mod run;
+mod skirt;
 
 pub use run::{RunArgs, RunScene};
+pub use skirt::SkirtArgs;
 
 /// What the user asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,6 +32,8 @@ pub enum Command {
     Doctor(DoctorArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
+    /// `toile bench skirt`.
+    BenchSkirt(SkirtArgs),
     /// `toile completions`.
     Completions(Shell),
     /// Help or version: text to print.
@@ -209,8 +213,8 @@ fn bench() -> clap::Command {
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommand(skinning)
-        .after_help("Example: the cost of a vertex\n  toile bench skinning --verts 16384")
+        .subcommands([skinning, skirt::grammar()])
+        .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
 
 fn completions() -> clap::Command {
@@ -288,12 +292,15 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
 }
 
 fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
-    let Some(("skinning", matches)) = matches.subcommand() else {
-        return Err(AppError::internal("a benchmark without a name was let through"));
-    };
-    let verts: u64 = required(matches, "verts")?;
-    let verts = usize::try_from(verts).map_err(AppError::internal)?;
-    Ok(Command::BenchSkinning(SkinningArgs { verts, json: matches.get_flag("json") }))
+    match matches.subcommand() {
+        Some(("skinning", matches)) => {
+            let verts: u64 = required(matches, "verts")?;
+            let verts = usize::try_from(verts).map_err(AppError::internal)?;
+            Ok(Command::BenchSkinning(SkinningArgs { verts, json: matches.get_flag("json") }))
+        }
+        Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),
+        _ => Err(AppError::internal("a benchmark without a name was let through")),
+    }
 }
 
 /// A value that the grammar guarantees, by being required or by having a default.

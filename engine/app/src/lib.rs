@@ -62,6 +62,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Run(args) => run::run(args),
         Command::Doctor(args) => doctor::run(args),
         Command::BenchSkinning(args) => bench::skinning(args),
+        Command::BenchSkirt(args) => bench::skirt(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }

@@ -8,7 +8,7 @@ use crate::machine::Machine;
 
 mod run;
 
-pub use run::{KineticEnergy, RunEvents, RunGarment, RunPenetration, RunReport};
+pub use run::{KineticEnergy, RunGarment, RunPenetration, RunReport};
 
 /// What every object carries, around what one command has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -2,9 +2,13 @@
 
 use toile_assets::scene_file::SceneFile;
 use toile_engine::cloth::Cloth;
-use toile_engine::cloth::guard::Events;
+use toile_engine::cloth::program::STAGES;
 use toile_perf::scene_run::Runner;
+use toile_perf::skirt::heap::HeapProbe;
+use toile_perf::skirt::report::Events;
+use toile_perf::yardstick;
 
+use crate::bench::heap;
 use crate::cli::{RunArgs, RunScene};
 use crate::dump::Dump;
 use crate::exit::AppError;
@@ -41,11 +45,12 @@ pub fn run(args: &RunArgs) -> Result<(), AppError> {
             OutputFolder::prepare(folder).map_err(|e| AppError::Input(e.to_string().replace("--out", "--dump")))?;
         dump = Some(Dump::new(folder, args.format, args.every));
     }
-    let mut runner = Runner::new(scene).map_err(AppError::input)?;
+    let mut runner = Runner::counting(scene, HeapProbe::new(heap)).map_err(AppError::input)?;
     play(&mut runner, &words, dump.as_mut())?;
     let dumped = dump.as_ref().map_or(0, Dump::frames);
     dump.map_or(Ok(()), Dump::finish)?;
-    let report = report(&runner, args, dumped);
+    let yardstick_us = if args.json { Some(yardstick::measure().map_err(AppError::internal)?) } else { None };
+    let report = report(&runner, args, dumped, yardstick_us);
     if args.json {
         return terminal::print_json(&Document::new("run", report));
     }
@@ -81,7 +86,7 @@ fn play(runner: &mut Runner, words: &Words, mut dump: Option<&mut Dump>) -> Resu
     Ok(())
 }
 
-fn report(runner: &Runner, args: &RunArgs, dumped: u64) -> RunReport {
+fn report(runner: &Runner, args: &RunArgs, dumped: u64, yardstick_us: Option<f64>) -> RunReport {
     let (scene, figures) = (runner.scene(), runner.figures());
     // Quality and lanes are the same for every garment.
     let settings = runner.settings().first().copied().unwrap_or_default();
@@ -93,7 +98,6 @@ fn report(runner: &Runner, args: &RunArgs, dumped: u64) -> RunReport {
         fabric: given.fabric.name.clone(),
         mass_kg: given.mass_kg,
     });
-    let events = |count: fn(&Events) -> u64| runner.cloths().iter().map(|cloth| count(&cloth.events)).sum();
     let times = figures.step_us;
     RunReport {
         scene: scene.name.clone(),
@@ -109,18 +113,15 @@ fn report(runner: &Runner, args: &RunArgs, dumped: u64) -> RunReport {
         substeps: runner.cloths().iter().map(Cloth::substeps).max().unwrap_or_default(),
         lanes: settings.width.lanes(),
         step_us: report::StepMicros { p50: times.p50, p99: times.p99, p999: times.p999, max: times.max },
+        stages_us: STAGES.into_iter().zip(figures.stages_us).collect(),
+        yardstick_us,
+        allocations_per_step: figures.allocations_per_step,
+        memory_bytes: figures.memory_bytes.map(|bytes| bytes.iter().sum()),
         strain: report::Strain { mean: figures.strain_mean, p99: figures.strain_p99, max: figures.strain_max },
         penetration_mm: report::RunPenetration { max: figures.penetration_mm, fraction: figures.penetration_fraction },
         kinetic_energy_j: report::KineticEnergy { end: figures.kinetic_j, max: figures.kinetic_max_j },
         nonfinite: figures.nonfinite,
-        events: report::RunEvents {
-            repaired: events(|e| e.repaired),
-            rolled_back: events(|e| e.rolled_back),
-            speed_limited: events(|e| e.speed_limited),
-            held_pins: events(|e| e.held_pins),
-            held_colliders: events(|e| e.held_colliders),
-            teleports: events(|e| e.teleports),
-        },
+        events: runner.cloths().iter().map(|cloth| Events::from(cloth.events)).sum(),
         state_hash: report::hash_text(runner.state_hash()),
         dump: args.dump.clone(),
         dumped_frames: dumped,

@@ -1,8 +1,10 @@
 //! What `toile run` reports.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use serde::Serialize;
+use toile_perf::skirt::report::Events;
 
 use super::{StepMicros, Strain};
 
@@ -41,23 +43,6 @@ pub struct KineticEnergy {
     pub max: f64,
 }
 
-/// What the guards had to do, in `toile run`.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct RunEvents {
-    /// Particles that were not finite when a step began, or ran away; put back to their last good place.
-    pub repaired: u64,
-    /// Steps that ended with a number that is not finite, and were rolled back.
-    pub rolled_back: u64,
-    /// Particle substeps held at the speed limit.
-    pub speed_limited: u64,
-    /// Pinned particles whose target was not finite and that were held.
-    pub held_pins: u64,
-    /// Collision spheres held because they jumped or were not finite.
-    pub held_colliders: u64,
-    /// Steps in which the root jumped.
-    pub teleports: u64,
-}
-
 /// The body of `toile run`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunReport {
@@ -87,6 +72,14 @@ pub struct RunReport {
     pub lanes: usize,
     /// Time a step took, all garments.
     pub step_us: StepMicros,
+    /// Mean time of each stage of a step, from one step in sixteen, which does not count above (us).
+    pub stages_us: BTreeMap<&'static str, f64>,
+    /// The benchmark's plain skinning loop on this machine (us): how fast it is; left out of the summary.
+    pub yardstick_us: Option<f64>,
+    /// Allocations a step.
+    pub allocations_per_step: Option<f64>,
+    /// Bytes of the baked garments and their states together.
+    pub memory_bytes: Option<u64>,
     /// How far edges were stretched.
     pub strain: Strain,
     /// How deep cloth was inside colliders.
@@ -96,7 +89,7 @@ pub struct RunReport {
     /// Published positions that were not finite.
     pub nonfinite: u64,
     /// What the guards had to do.
-    pub events: RunEvents,
+    pub events: Events,
     /// Hash of the last state, 16 hexadecimal digits; the same scene gives the same.
     pub state_hash: String,
     /// The folder of the dump; `index.csv` in it lists its files.
