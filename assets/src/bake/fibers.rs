@@ -198,7 +198,8 @@ fn normal(positions: &[Vec3], face: &Face) -> Vec3 {
     across.normalize_or_zero()
 }
 
-fn area(positions: &[Vec3], face: &Face) -> f32 {
+/// Area of a face (m2).
+pub(crate) fn area(positions: &[Vec3], face: &Face) -> f32 {
     let p = |i: u32| positions[i as usize];
     let ring = corners(face);
     (2..ring.len()).map(|k| 0.5 * (p(ring[k - 1]) - p(ring[0])).cross(p(ring[k]) - p(ring[0])).length()).sum()

@@ -107,20 +107,31 @@ impl Chain<'_> {
         (at, if FULL { L::N } else { (row.lanes as usize).saturating_sub(self.lane).min(L::N) })
     }
 
+    /// Weights of a row's particles.
     #[inline(always)]
-    fn weights<L: Lanes>(&self, at: usize, n: usize) -> L {
+    fn weights<L: Lanes>(&self, row: Row, at: usize, n: usize) -> L {
         let w = self.solve.columns.w;
-        if n == L::N { L::load(w, at) } else { L::load_part(w, at, n) }
+        if self.bundle.alike {
+            L::splat(w.get(row.first as usize))
+        } else if n == L::N {
+            L::load(w, at)
+        } else {
+            L::load_part(w, at, n)
+        }
     }
 
     /// Rest length and compliance of a link.
     #[inline(always)]
     fn link<L: Lanes, const FULL: bool>(&self, link: usize) -> (L, L) {
-        let lanes = self.bundle.lanes as usize;
-        let at = self.bundle.at as usize + link * lanes + self.lane;
-        let n = if FULL { L::N } else { (lanes - self.lane).min(L::N) };
         let (rest, soft) =
             (Column::read_only(&self.solve.fibers.rest), Column::read_only(&self.solve.fibers.compliance));
+        let first = self.bundle.at as usize;
+        if self.bundle.alike {
+            return (L::splat(rest.get(first + link)), L::splat(soft.get(first + link)));
+        }
+        let lanes = self.bundle.lanes as usize;
+        let at = first + link * lanes + self.lane;
+        let n = if FULL { L::N } else { (lanes - self.lane).min(L::N) };
         if n == L::N {
             (L::load(rest, at), L::load(soft, at))
         } else {
@@ -139,13 +150,13 @@ impl Chain<'_> {
         let (at, n) = self.place::<L, FULL>(rows[0]);
         let mut p = V3::<L>::load(c.x, at, n);
         let mut moved = if DAMPED { p - V3::load(c.previous, at, n) } else { p };
-        let mut w = self.weights::<L>(at, n);
+        let mut w = self.weights::<L>(rows[0], at, n);
         let mut normal = V3 { x: zero, y: zero, z: zero };
         let (mut pivot, mut y) = (zero, zero);
         for link in 0..rows.len() - 1 {
             let (at, n) = self.place::<L, FULL>(rows[link + 1]);
             let q = V3::<L>::load(c.x, at, n);
-            let w_q = self.weights::<L>(at, n);
+            let w_q = self.weights::<L>(rows[link + 1], at, n);
             let (rest, soft) = self.link::<L, FULL>(link);
             let d = q - p;
             let length2 = d.dot(d);
@@ -204,11 +215,11 @@ impl Chain<'_> {
             let pull = normal * lambda;
             let (at, n) = self.place::<L, FULL>(rows[link + 1]);
             reach = self.link::<L, FULL>(link).0 * L::splat(FARTHEST);
-            self.shift((below - pull) * self.weights::<L>(at, n), reach, at, n);
+            self.shift((below - pull) * self.weights::<L>(rows[link + 1], at, n), reach, at, n);
             below = pull;
         }
         let (at, n) = self.place::<L, FULL>(rows[0]);
-        self.shift(below * self.weights::<L>(at, n), reach, at, n);
+        self.shift(below * self.weights::<L>(rows[0], at, n), reach, at, n);
     }
 
     /// Moves a row, no particle farther than `reach`.
@@ -227,11 +238,11 @@ impl Chain<'_> {
         let (mut above, n) = self.place::<L, false>(rows[0]);
         let mut p = V3::<L>::load(c.x, above, n);
         let mut reached = n;
-        let mut w = self.weights::<L>(above, n);
+        let mut w = self.weights::<L>(rows[0], above, n);
         for link in 0..rows.len() - 1 {
             let (at, n) = self.place::<L, false>(rows[link + 1]);
             let mut q = V3::<L>::load(c.x, at, n);
-            let w_q = self.weights::<L>(at, n);
+            let w_q = self.weights::<L>(rows[link + 1], at, n);
             let (rest, soft) = self.link::<L, false>(link);
             let d = q - p;
             let inverse = reciprocal_root(d.dot(d));
@@ -257,7 +268,7 @@ impl Chain<'_> {
             let (rest, _) = self.link::<L, false>(link);
             let d = q - p;
             let kept = (rest * reciprocal_root(d.dot(d))).min(L::splat(1.0));
-            let free = L::splat(0.0).lt(self.weights::<L>(at, n));
+            let free = L::splat(0.0).lt(self.weights::<L>(row, at, n));
             p = (p + d * kept).select(free, q);
             p.store(c.x, at, n);
         }

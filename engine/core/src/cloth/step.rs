@@ -44,7 +44,7 @@ impl Prepared {
             gamma: 0.0,
             shear_gain: zeros(layout.shear.rest.len()),
             weft_gain: zeros(layout.weft.rest.len()),
-            bend_scale: zeros(layout.bends.tuples.count),
+            bend_scale: zeros(layout.bends.tuples.places),
             bend: bending::Pace { every: 1, least: 1.0 },
             load: zeros(garment.start.len()),
         }
@@ -64,7 +64,7 @@ impl Prepared {
         self.gamma = settings.stretch_damping_s / self.dt;
         let (layout, w) = (&garment.layout, &garment.inverse_mass);
         links::prepare(&layout.shear, w, self.dt, self.gamma, &mut self.shear_gain);
-        links::prepare(&layout.weft, w, self.dt, self.gamma, &mut self.weft_gain); if let Ok(o)=std::env::var("SOR") { let o:f32=o.parse().unwrap(); self.weft_gain.iter_mut().for_each(|g| *g*=o); }  if let Ok(o)=std::env::var("SSOR") { let o:f32=o.parse().unwrap(); self.shear_gain.iter_mut().for_each(|g| *g*=o); }
+        links::prepare(&layout.weft, w, self.dt, self.gamma, &mut self.weft_gain);
         let times = [self.dt, asked as f32];
         self.bend = bending::prepare(&layout.bends, w, times, &mut self.load, &mut self.bend_scale);
     }
@@ -158,7 +158,7 @@ impl Cloth {
             self.rolled += 1;
             self.events.rolled_back += 1;
         }
-        let [x, y, z] = self.state.position.each_ref().map(|s| s.as_slice());
+        let [x, y, z] = self.state.positions();
         for (i, p) in self.positions.iter_mut().enumerate() {
             *p = Vec3A::new(x[i], y[i], z[i]);
         }
@@ -307,6 +307,3 @@ impl Work<'_> {
         self.limited[share].fetch_add(u64::from(held), Relaxed);
     }
 }
-
-// The root's motion is asked for by the rooms around the cloth.
-const _: fn(&Affine3A) = |_| ();

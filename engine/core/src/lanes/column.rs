@@ -89,6 +89,14 @@ impl<'a> Column<'a> {
         self.len
     }
 
+    /// `len` numbers from `start` on as a column of their own.
+    ///
+    /// # Panics
+    /// Where they are not all there.
+    pub fn part(self, start: usize, len: usize) -> Self {
+        Self { data: self.place(start, len), len, owner: PhantomData }
+    }
+
     /// One number; 0 past the end.
     #[inline(always)]
     pub fn get(self, at: usize) -> f32 {
@@ -111,7 +119,9 @@ impl<'a> Column<'a> {
     /// Where they are not all there, which no index of a bake is: the check of a slice, once a vector.
     #[inline(always)]
     pub(super) fn place(self, at: usize, n: usize) -> *mut f32 {
-        assert!(at <= self.len && n <= self.len - at, "a kernel left its column");
+        // Two comparisons of which the first does not depend on the place: it leaves the loop.
+        assert!(n <= self.len, "a kernel left its column");
+        assert!(at <= self.len - n, "a kernel left its column");
         // SAFETY: within the length, or its end.
         unsafe { self.data.add(at) }
     }

@@ -17,9 +17,6 @@ const FARTHEST_M: f32 = 1e4;
 /// A capsule's end that moves farther in one step (m), 60 m/s, has been put elsewhere: nothing is swept along its way.
 const TELEPORT_M: f32 = 0.5;
 
-/// What rounding may add to a distance (m): the loose test is wider by it.
-const ROUNDING_M: f32 = 1e-5;
-
 /// One number a capsule.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
@@ -111,30 +108,20 @@ pub struct Cones {
     pub axis: [Row; 3],
     /// Unit vector across it: the way out for a particle on the axis.
     pub across: [Row; 3],
-    /// Radius at the first centre and contact offset (m).
-    pub reach: Row,
-    /// Cosine of the side's slope.
-    pub cosine: Row,
-    /// Sine of the side's slope.
-    pub sine: Row,
-    /// Length of the slanted side (m).
-    pub side: Row,
-    /// Way along the axis (m) a metre of the side.
-    pub climb: Row,
-    /// Radius gained (m) a metre of the side.
-    pub growth: Row,
-    /// Place along the axis (0..1) a metre of the side.
-    pub along: Row,
-    /// 1 / length of the axis (1/m), 0 for a sphere.
-    pub shortness: Row,
     /// Length of the axis (m).
     pub length: Row,
-    /// Radius gained (m) a metre of the axis.
+    /// Its inverse (1/m), 0 for a sphere.
+    pub shortness: Row,
+    /// Radius at the first centre and contact offset (m).
+    pub reach: Row,
+    /// Radius gained (m) a metre of the axis: minus the sine of the side's slope.
     pub taper: Row,
-    /// Radius of the loose test at the first centre (m).
-    pub wide: Row,
-    /// What a metre of distance adds to the radius of the loose test (m).
-    pub loose: Row,
+    /// Tangent of the side's slope.
+    pub tangent: Row,
+    /// 1 / cosine^2 of it.
+    pub stretch: Row,
+    /// sine / cosine^2.
+    pub lean: Row,
     /// How far the first centre moves in the substep (m).
     pub carried: [Row; 3],
     /// How much farther the second moves (m).
@@ -152,18 +139,13 @@ impl Cones {
             a: THREE,
             axis: THREE,
             across: THREE,
-            reach: ZERO,
-            cosine: ZERO,
-            sine: ZERO,
-            side: ZERO,
-            climb: ZERO,
-            growth: ZERO,
-            along: ZERO,
-            shortness: ZERO,
             length: ZERO,
+            shortness: ZERO,
+            reach: ZERO,
             taper: ZERO,
-            wide: ZERO,
-            loose: ZERO,
+            tangent: ZERO,
+            stretch: ZERO,
+            lean: ZERO,
             carried: THREE,
             turned: THREE,
             quick2: ZERO,
@@ -229,12 +211,8 @@ impl Prepare<'_> {
         let axis = (gap * inverse).select(cone, V3 { x: zero, y: one, z: zero });
         let length = length.select(cone, zero);
         let sine = d * inverse;
-        let cosine = (one - sine * sine).max(zero).sqrt();
-        let loose = one.div(cosine);
-        let climb = loose.select(cone, zero);
-        let along = climb * inverse;
-        // See `touch::close` for the loose test.
-        let bulge = ra.max(rb) * (one - cosine) + offset;
+        let cosine2 = (one - sine * sine).max(zero);
+        let stretch = one.div(cosine2);
         let quick = (ra.min(rb) + offset) * L::splat(self.quick) - ta.dot(ta).max(tb.dot(tb)).sqrt() * share;
         let to = &mut *self.to;
         store3(&mut to.a, at, centre);
@@ -242,18 +220,13 @@ impl Prepare<'_> {
         store3(&mut to.across, at, across(axis));
         store3(&mut to.carried, at, carried);
         store3(&mut to.turned, at, turned);
-        store(&mut to.reach, at, radius + offset);
-        store(&mut to.cosine, at, cosine);
-        store(&mut to.sine, at, sine);
-        store(&mut to.side, at, length * cosine);
-        store(&mut to.climb, at, climb);
-        store(&mut to.growth, at, (rb - ra) * along);
-        store(&mut to.along, at, along);
-        store(&mut to.shortness, at, inverse);
         store(&mut to.length, at, length);
-        store(&mut to.taper, at, (rb - ra) * inverse);
-        store(&mut to.wide, at, radius + bulge * loose + L::splat(ROUNDING_M));
-        store(&mut to.loose, at, loose);
+        store(&mut to.shortness, at, inverse);
+        store(&mut to.reach, at, radius + offset);
+        store(&mut to.taper, at, -sine);
+        store(&mut to.tangent, at, sine.div(cosine2.sqrt()));
+        store(&mut to.stretch, at, stretch);
+        store(&mut to.lean, at, sine * stretch);
         store(&mut to.quick2, at, (quick * quick).select(zero.lt(quick), L::splat(-1.0)));
     }
 

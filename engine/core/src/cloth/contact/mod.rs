@@ -18,7 +18,7 @@ use super::state::Columns;
 use crate::colliders::Colliders;
 use crate::lanes::{MOST, Width};
 use cones::{Cones, Ends, Prepare};
-use near::{Block, Boxes, Find, PLANES};
+use near::{Block, Boxes, Find, PLANES, Pair};
 use solve::Solve;
 use sweep::{QUICK, Sweep};
 
@@ -82,7 +82,8 @@ impl Contacts {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + self.owners.iter().map(|o| size_of_val(&*o.blocks)).sum::<usize>()
+        let owned = |o: &Owner| size_of_val(&*o.blocks) + size_of_val(&*o.pairs) + size_of_val(&*o.reach);
+        size_of::<Self>() + self.owners.iter().map(owned).sum::<usize>()
     }
 }
 
@@ -90,6 +91,8 @@ impl Contacts {
 #[derive(Debug, Clone)]
 pub struct Owner {
     blocks: Box<[Block]>,
+    pairs: Box<[Pair]>,
+    reach: Box<[[u16; MAX_CAPSULES]]>,
     ends: Ends,
     cones: Cones,
     boxes: Boxes,
@@ -99,18 +102,14 @@ pub struct Owner {
 
 impl Owner {
     fn new(spans: &[(u32, u32)], parts: &[Part], colliders: &Colliders) -> Self {
-        let blocks = spans.iter().flat_map(|&(first, len)| {
-            (0..len).step_by(MOST).map(move |from| (first + from, (len - from).min(MOST as u32)))
-        });
-        let lanes = |first: u32, len: u32, c: usize| {
-            (0..len).fold(0, |bits, i| {
-                let part = parts.get((first + i) as usize).copied().unwrap_or(Part::All);
-                bits | ((reach(part, colliders) >> c & 1) as u16) << i
-            })
-        };
-        let block = |(first, len)| Block::new(first, len, std::array::from_fn(|c| lanes(first, len, c)));
+        let most = MOST as u32;
+        let cut = |&(first, len): &(u32, u32)| (0..len).step_by(MOST).map(move |k| (first + k, most.min(len - k)));
+        let blocks: Box<[Block]> = spans.iter().flat_map(cut).map(|(first, len)| Block::new(first, len)).collect();
+        let pairs = vec![Pair::default(); blocks.len() * colliders.capsules().len()].into();
         Self {
-            blocks: blocks.map(block).collect(),
+            reach: reaches(&blocks, parts, colliders),
+            blocks,
+            pairs,
             ends: Ends::NONE,
             cones: Cones::NONE,
             boxes: Boxes::NONE,
@@ -139,18 +138,16 @@ impl Owner {
             to: &mut self.cones,
         };
         width.run(prepare);
-        let Self { blocks, cones, boxes, planes, .. } = self;
-        width.run(Find { cols, swept: cones, boxes, planes, blocks });
-        let near = |b: &Block| b.lanes.iter().map(|l| u64::from(l.count_ones())).sum::<u64>();
-        self.tally.near += self.blocks.iter().filter(|b| b.capsules != 0).map(near).sum::<u64>();
-        self.tally.ignored +=
-            (colliders.capsules().len().min(MAX_CAPSULES) as u64) - u64::from(self.ends.sound.count_ones());
+        let Self { blocks, pairs, reach, cones, boxes, planes, tally, .. } = self;
+        let count = width.run(Find { cols, swept: cones, boxes, planes, blocks, pairs, reach });
+        tally.near += pairs[..count].iter().map(|p| u64::from(p.lanes.count_ones())).sum::<u64>();
+        tally.ignored += colliders.capsules().len() as u64 - u64::from(self.ends.sound.count_ones());
     }
 
     /// Pushes what touches out of the capsules as they stand at the end of the substep, and holds what would have gone
     /// through them. `span` is the substep's part of the step, 0..1. Last of the constraints of a substep.
     pub fn solve(&mut self, width: Width, cols: Columns<'_>, span: [f32; 2], how: &ContactSettings) {
-        let Self { blocks, ends, cones, planes, tally, .. } = self;
+        let Self { blocks, pairs, ends, cones, planes, tally, .. } = self;
         let prepare = Prepare {
             ends,
             at: span[1],
@@ -163,8 +160,22 @@ impl Owner {
         width.run(prepare);
         let least_quick2 = cones.least_quick2(ends.sound);
         let sweep = Sweep { ends, cones, span, offset: how.offset_m };
-        tally.swept += width.run(Solve { cols, sweep, planes, blocks, least_quick2, how });
+        tally.swept += width.run(Solve { cols, sweep, planes, blocks, pairs, least_quick2, how });
     }
+}
+
+/// Which particles of each block may touch each capsule at all; nothing where all may touch all.
+fn reaches(blocks: &[Block], parts: &[Part], colliders: &Colliders) -> Box<[[u16; MAX_CAPSULES]]> {
+    let all = reach(Part::All, colliders);
+    let bits: Vec<u32> = parts.iter().map(|&part| reach(part, colliders)).collect();
+    if bits.iter().all(|b| *b == all) {
+        return Box::default();
+    }
+    let of = |block: &Block, c: usize| {
+        let (first, len) = block.place();
+        (0..len).fold(0, |lanes, i| lanes | ((bits.get(first + i).unwrap_or(&all) >> c & 1) as u16) << i)
+    };
+    blocks.iter().map(|block| std::array::from_fn(|c| of(block, c))).collect()
 }
 
 #[cfg(test)]

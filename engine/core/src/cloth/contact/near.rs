@@ -2,14 +2,17 @@
 //!
 //! Particles are looked at in blocks of 16 that lie together in memory, four blocks a group. A group's box against the
 //! capsules' boxes, lanes across capsules, leaves few capsules; those are asked for the distance of each particle from
-//! all that they sweep in the step, lanes across particles. What is near is kept as bits, so that there is room for
-//! every particle at every capsule, and each particle meets its capsules in their order.
+//! all that they sweep in the step, lanes across particles. What is near is kept as pairs of block and capsule, a bit a
+//! particle, with room for all of them; each particle meets its capsules in their order.
+
+use std::ops::Range;
+
+use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, STEP_SECONDS};
 
 use super::cones::{Cones, Ends, PLACES, Row};
 use super::touch::close;
 use crate::cloth::state::Columns;
 use crate::lanes::{Column, Kernel, Lanes, MOST, Mask, V3, reciprocal_root};
-use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, STEP_SECONDS};
 
 /// Planes that a block can be near: the floor and those of the scene.
 pub const PLANES: usize = MAX_PLANES + 1;
@@ -32,32 +35,49 @@ const BOX_M: f32 = 1e-3;
 pub struct Block {
     /// First particle.
     pub first: u32,
+    /// First of its pairs.
+    pub from: u32,
     /// Particles, at most [`MOST`].
-    pub len: u32,
-    /// Bit c is set where a particle of the block may touch capsule c in this step.
-    pub capsules: u32,
-    /// The same for planes.
-    pub planes: u32,
-    /// Which particles may touch each capsule at all, a bit each.
-    pub reach: [u16; MAX_CAPSULES],
-    /// Which may in this step; holds where `capsules` has a bit.
-    pub lanes: [u16; MAX_CAPSULES],
-    /// Which may touch each plane in this step; holds where `planes` has a bit.
+    pub len: u16,
+    /// Pairs: capsules that some of its particles may touch in this step.
+    pub pairs: u16,
+    /// Bit p is set where some may touch plane p.
+    pub planes: u16,
+    /// Which may touch each plane, a bit a particle; holds where `planes` has a bit.
     pub plane_lanes: [u16; PLANES],
+    /// Whether anything is to be done in this substep.
+    pub busy: bool,
 }
 
 impl Block {
     /// Near nothing yet.
-    pub fn new(first: u32, len: u32, reach: [u16; MAX_CAPSULES]) -> Self {
-        let (lanes, plane_lanes) = ([0; MAX_CAPSULES], [0; PLANES]);
-        Self { first, len, capsules: 0, planes: 0, reach, lanes, plane_lanes }
+    pub fn new(first: u32, len: u32) -> Self {
+        let len = len.min(MOST as u32) as u16;
+        Self { first, from: 0, len, pairs: 0, planes: 0, plane_lanes: [0; PLANES], busy: false }
     }
 
     /// First particle and how many.
     #[inline(always)]
     pub fn place(&self) -> (usize, usize) {
-        (self.first as usize, (self.len as usize).min(MOST))
+        (self.first as usize, usize::from(self.len))
     }
+
+    /// Its pairs, a range of the owner's.
+    #[inline(always)]
+    pub fn range(&self) -> Range<usize> {
+        self.from as usize..self.from as usize + usize::from(self.pairs)
+    }
+}
+
+/// A block and a capsule that are near.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Pair {
+    /// The capsule.
+    pub capsule: u16,
+    /// Which particles of the block may touch it in this step, a bit each.
+    pub lanes: u16,
+    /// Which do at the end of this substep as the other constraints left them.
+    pub touched: u16,
 }
 
 /// Boxes around what each capsule sweeps in the step.
@@ -117,26 +137,58 @@ pub struct Find<'a> {
     pub planes: &'a [[f32; 4]],
     /// The owner's blocks, a group at a time.
     pub blocks: &'a mut [Block],
+    /// Room for a pair of every block with every capsule.
+    pub pairs: &'a mut [Pair],
+    /// Which particles of each block may touch each capsule at all; empty where all may touch all.
+    pub reach: &'a [[u16; MAX_CAPSULES]],
 }
 
 impl Kernel for Find<'_> {
-    type Out = ();
+    /// Pairs.
+    type Out = usize;
 
     #[inline(always)]
-    fn run<L: Lanes>(self) {
-        let Self { cols, swept, boxes, planes, blocks } = self;
-        for group in blocks.chunks_mut(GROUP) {
+    fn run<L: Lanes>(self) -> usize {
+        let Self { cols, swept, boxes, planes, blocks, pairs, reach } = self;
+        let mut count = 0;
+        for (g, group) in blocks.chunks_mut(GROUP).enumerate() {
             let [low, high] = around::<L>(cols, group);
-            let capsules = boxes.meet::<L>(low, high);
-            let met = meet_planes(planes, low, high);
-            for block in group {
-                (block.capsules, block.planes) = (0, 0);
-                if capsules | met != 0 {
-                    ask::<L>(cols, swept, planes, block, [capsules, met]);
+            let met = [boxes.meet::<L>(low, high), meet_planes(planes, low, high)];
+            for (k, block) in group.iter_mut().enumerate() {
+                (block.from, block.pairs, block.planes) = (count as u32, 0, 0);
+                if met != [0, 0] {
+                    let lanes = ask::<L>(cols, swept, planes, block, met);
+                    count = keep(block, pairs, met[0], lanes, reach.get(g * GROUP + k));
                 }
             }
         }
+        count
     }
+}
+
+/// Keeps a block's pairs; says how many there are now in all.
+#[inline(always)]
+fn keep(
+    block: &mut Block,
+    pairs: &mut [Pair],
+    met: u32,
+    lanes: [u16; PLACES],
+    reach: Option<&[u16; MAX_CAPSULES]>,
+) -> usize {
+    let mut at = block.from as usize;
+    let mut bits = met;
+    while bits != 0 {
+        let c = bits.trailing_zeros() as usize % MAX_CAPSULES;
+        bits &= bits - 1;
+        let lanes = lanes[c] & reach.map_or(!0, |r| r[c]);
+        // Written first and counted after: no branch.
+        if let Some(pair) = pairs.get_mut(at) {
+            *pair = Pair { capsule: c as u16, lanes, touched: 0 };
+            at += usize::from(lanes != 0);
+        }
+    }
+    block.pairs = (at - block.from as usize) as u16;
+    at
 }
 
 /// How far a particle may come in a step (m).
@@ -209,11 +261,18 @@ fn meet_planes(planes: &[[f32; 4]], low: [f32; 3], high: [f32; 3]) -> u32 {
     bits
 }
 
-/// Asks the capsules and planes that a group has met for each particle of one of its blocks.
+/// Asks the capsules and planes that a group has met for each particle of one of its blocks: a bit a particle for each
+/// capsule.
 #[inline(always)]
-fn ask<L: Lanes>(cols: Columns<'_>, swept: &Cones, planes: &[[f32; 4]], block: &mut Block, met: [u32; 2]) {
+fn ask<L: Lanes>(
+    cols: Columns<'_>,
+    swept: &Cones,
+    planes: &[[f32; 4]],
+    block: &mut Block,
+    met: [u32; 2],
+) -> [u16; PLACES] {
     let (first, len) = block.place();
-    block.lanes = [0; MAX_CAPSULES];
+    let mut lanes = [0; PLACES];
     block.plane_lanes = [0; PLANES];
     let mut from = 0;
     while from < len {
@@ -223,11 +282,9 @@ fn ask<L: Lanes>(cols: Columns<'_>, swept: &Cones, planes: &[[f32; 4]], block: &
         let free = free::<L>(cols, at, n);
         let mut bits = met[0];
         while bits != 0 {
-            let c = bits.trailing_zeros() as usize % MAX_CAPSULES;
+            let c = bits.trailing_zeros() as usize % PLACES;
             bits &= bits - 1;
-            let near = close(swept, c, x, far).and(free).bits() << from;
-            block.lanes[c] |= near as u16 & block.reach[c];
-            block.capsules |= u32::from(block.lanes[c] != 0) << c;
+            lanes[c] |= (close(swept, c, x, far).and(free).bits() << from) as u16;
         }
         let mut bits = met[1];
         while bits != 0 {
@@ -235,10 +292,11 @@ fn ask<L: Lanes>(cols: Columns<'_>, swept: &Cones, planes: &[[f32; 4]], block: &
             bits &= bits - 1;
             let near = (-far).lt(depth(&planes[p], x)).and(free);
             block.plane_lanes[p] |= (near.bits() << from) as u16;
-            block.planes |= u32::from(block.plane_lanes[p] != 0) << p;
+            block.planes |= u16::from(block.plane_lanes[p] != 0) << p;
         }
         from += L::N;
     }
+    lanes
 }
 
 /// How deep particles are behind a plane (m).
