@@ -22,6 +22,7 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
             &["import", "bake"],
             &["wardrobe"],
             &["scene"],
+            &["scene_file"],
         ],
     ),
     (

@@ -14,7 +14,7 @@ use crate::garment::shape::{Face, NO_VERTEX, Part, Shape};
 pub const MAX_BYTES: u64 = 64 << 20;
 
 /// Material suffix of what moves.
-const FREE: &str = "Free";
+pub(crate) const FREE: &str = "Free";
 
 /// Share of the height from the top that is fixed when no material says what moves.
 const FIXED_TOP_SHARE: f32 = 0.06;
@@ -203,7 +203,7 @@ const LEAST_HEIGHT_M: f32 = 0.02;
 const MOST_HEIGHT_M: f32 = 3.0;
 
 /// Turns a quad so that its a-b side is the flattest: then warp runs down the garment.
-fn warp_upright(positions: &[Vec3], face: Face, uv: [Vec2; 4]) -> (Face, [Vec2; 4]) {
+pub(crate) fn warp_upright(positions: &[Vec3], face: Face, uv: [Vec2; 4]) -> (Face, [Vec2; 4]) {
     if face[3] == NO_VERTEX {
         return (face, uv);
     }

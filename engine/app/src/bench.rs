@@ -53,7 +53,7 @@ pub fn skirt(args: &SkirtArgs) -> Result<(), AppError> {
 }
 
 /// The heap as the program's allocator counts it.
-fn heap() -> Heap {
+pub(crate) fn heap() -> Heap {
     let s = INSTRUMENTED_SYSTEM.stats();
     Heap {
         allocations: (s.allocations + s.reallocations) as u64,

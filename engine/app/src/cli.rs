@@ -11,7 +11,10 @@ use toile_assets::body::Sex;
 
 use crate::exit::AppError;
 
+mod run;
 mod skirt;
+
+pub use run::{RunArgs, RunScene};
 pub use skirt::SkirtArgs;
 mod bake;
 
@@ -26,6 +29,8 @@ pub enum Command {
     Measure(MeasureArgs),
     /// `toile record`.
     Record(RecordArgs),
+    /// `toile run`.
+    Run(RunArgs),
     /// `toile doctor`.
     Doctor(DoctorArgs),
     /// `toile bake`.
@@ -129,7 +134,7 @@ pub fn command() -> clap::Command {
         )
         .override_usage("toile [OPTIONS OF TRY-ON]\n       toile <COMMAND>")
         .subcommand_required(true)
-        .subcommands([try_on(), measure(), record(), bake::grammar(), doctor(), bench(), completions()])
+        .subcommands([try_on(), measure(), record(), bake::grammar(), run::grammar(), doctor(), bench(), completions()])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
 }
 
@@ -283,6 +288,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         }),
+        "run" => Command::Run(run::args(matches)?),
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
         "bake" => Command::Bake(bake::args(matches)?),
         "bench" => bench_command(matches)?,

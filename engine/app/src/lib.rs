@@ -9,6 +9,7 @@ pub mod bench;
 pub mod cli;
 pub mod completions;
 pub mod doctor;
+pub mod dump;
 pub mod exit;
 pub mod fit;
 pub mod machine;
@@ -17,6 +18,7 @@ pub mod output;
 pub mod pictures;
 pub mod record;
 pub mod report;
+pub mod run;
 pub mod shopper;
 pub mod summary;
 pub mod terminal;
@@ -58,6 +60,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::TryOn(args) => try_on::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Record(args) => record::run(args),
+        Command::Run(args) => run::run(args),
         Command::Doctor(args) => doctor::run(args),
         Command::Bake(args) => bake::run(args),
         Command::BenchSkinning(args) => bench::skinning(args),

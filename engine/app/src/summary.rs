@@ -4,7 +4,9 @@ use std::fmt::Write;
 
 use toile_perf::skirt::report::Report;
 
-use crate::report::{Measure, MeasureReport, Measurements, Physics, Recommendation, Session, SkinningReport, TryOn};
+use crate::report::{
+    Measure, MeasureReport, Measurements, Physics, Recommendation, RunReport, Session, SkinningReport, TryOn,
+};
 use crate::terminal::{Paint, Tone};
 
 /// The summary of a try-on.
@@ -29,6 +31,52 @@ pub fn measure(report: &MeasureReport, paint: Paint) -> String {
     session(&mut text, &report.session);
     measurements(&mut text, &report.measurements, paint);
     line(&mut text, &format!("\nPeople: {}; pixels with a depth: {} a frame", report.people, report.valid_pixels));
+    text
+}
+
+/// The summary of a run.
+pub fn run(report: &RunReport, paint: Paint) -> String {
+    let mut text = String::new();
+    line(
+        &mut text,
+        &paint.tone(&format!("Scene {}: {} steps, {:.2} s", report.scene, report.steps, report.seconds), Tone::Strong),
+    );
+    for garment in &report.garments {
+        let (name, fabric, pinned) = (&garment.name, &garment.fabric, garment.pinned);
+        let count = garment.particles;
+        line(&mut text, &format!("  {name}: {count} particles, {pinned} pinned, {fabric}, {:.3} kg", garment.mass_kg));
+    }
+    let (step, strain, deep) = (&report.step_us, &report.strain, &report.penetration_mm);
+    line(
+        &mut text,
+        &format!("  quality           {}, {} substeps at {} Hz", report.quality, report.substeps, report.hz),
+    );
+    line(&mut text, &format!("  a step takes      {:.0} us, 99 % of them under {:.0} us", step.p50, step.p99));
+    let percent = [strain.mean, strain.p99, strain.max].map(|s| s * 100.0);
+    let [mean, p99, max] = percent;
+    line(&mut text, &format!("  it is stretched   {mean:.2} % on average, 99 % under {p99:.2} %, at worst {max:.1} %"));
+    let share = deep.fraction * 100.0;
+    line(&mut text, &format!("  deepest contact   {:.2} mm, {share:.2} % of the particles inside", deep.max));
+    let energy = report.kinetic_energy_j.end * 1e3;
+    line(&mut text, &format!("  it ends with      {energy:.3} mJ of motion, state {}", report.state_hash));
+    let events = report.events;
+    let counts = [
+        (events.repaired, "particles put back"),
+        (events.rolled_back, "steps rolled back"),
+        (events.speed_limited, "times at the speed limit"),
+        (events.held_pins, "pins held"),
+        (events.held_colliders, "spheres held"),
+        (events.teleports, "jumps of the root"),
+        (report.nonfinite, "numbers not finite"),
+    ];
+    let met: Vec<String> = counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
+    if !met.is_empty() {
+        let said = met.join(", ");
+        line(&mut text, &format!("  {}", paint.tone(&said, Tone::Warn)));
+    }
+    if let Some(folder) = &report.dump {
+        line(&mut text, &format!("  {} frames in {}, listed in index.csv", report.dumped_frames, folder.display()));
+    }
     text
 }
 
