@@ -5,6 +5,7 @@
 //! Thread: one, with nothing else running.
 
 pub mod skinning;
+pub mod skirt;
 mod surface;
 pub mod time;
 pub mod yardstick;

@@ -6,9 +6,7 @@ use super::fibers::{Direction, Edge, Fiber};
 use super::order::Order;
 use super::runs;
 use crate::fabric::Fabric;
-use crate::garment::layout::{
-    Bends, Bundle, ENDED, Fibers, Layout, Links, List, Lists, MAX_LISTED, OWNERS, Row,
-};
+use crate::garment::layout::{Bends, Bundle, ENDED, Fibers, Layout, Links, List, Lists, MAX_LISTED, OWNERS, Row};
 use crate::garment::{Shape, Solver};
 
 /// What baking has found out about a shape so far.
@@ -21,6 +19,15 @@ pub struct Baking<'a> {
     /// The free pieces of the warp fibers.
     pub pieces: &'a [Fiber],
     pub order: &'a Order,
+    /// Inverse mass of each vertex (1/kg).
+    pub weights: &'a [f32],
+}
+
+impl Baking<'_> {
+    /// Inverse mass of a particle (1/kg).
+    fn weight(&self, particle: u32) -> f32 {
+        self.weights[self.order.source[particle as usize] as usize]
+    }
 }
 
 /// All constraints.
@@ -59,6 +66,14 @@ fn compliance(fabric: &Fabric, edge: &Edge) -> f32 {
     k.recip()
 }
 
+/// Relative difference below which two lengths or masses count as the same: what the rounding of coordinates of f32 a
+/// metre from the origin does to an edge of a centimetre.
+const SAME: f32 = 1e-5;
+
+fn same(a: f32, b: f32) -> bool {
+    (a - b).abs() <= SAME * a.abs().max(b.abs()) || a == b
+}
+
 fn links(baking: &Baking<'_>, edges: &[&Edge]) -> Links {
     let particle = |v: u32| baking.order.particle[v as usize];
     let ends = |e: &&Edge| {
@@ -66,7 +81,13 @@ fn links(baking: &Baking<'_>, edges: &[&Edge]) -> Links {
         (e.direction, [a.min(b), a.max(b)])
     };
     let constraints: Vec<_> = edges.iter().map(ends).collect();
-    let (tuples, places) = runs::lay_out(&constraints, &baking.order.owner, true);
+    let weight = |i: usize, k: usize| baking.weight(constraints[i].1[k]);
+    let alike = |i: usize, j: usize| {
+        same(edges[i].rest, edges[j].rest)
+            && same(compliance(baking.fabric, edges[i]), compliance(baking.fabric, edges[j]))
+            && (0..2).all(|k| same(weight(i, k), weight(j, k)))
+    };
+    let (tuples, places) = runs::lay_out(&constraints, &baking.order.owner, true, &alike);
     Links {
         tuples,
         rest: places.iter().map(|&i| edges[i].rest).collect(),
@@ -84,8 +105,9 @@ fn fibers(baking: &Baking<'_>) -> Fibers {
             let first = baking.order.particle[pieces[0].vertices[row] as usize];
             rows.push(Row { first, lanes: reach(row) });
         }
+        let alike = pieces.iter().all(|p| fibers_alike(baking, pieces[0], p));
         for link in 0..pieces[0].edges.len() {
-            for piece in &pieces {
+            for piece in if alike { &pieces[..1] } else { &pieces[..] } {
                 let edge = piece.edges.get(link).map(|&e| &baking.edges[e as usize]);
                 rest.push(edge.map_or(0.0, |e| e.rest));
                 soft.push(edge.map_or(ENDED, |e| compliance(baking.fabric, e)));
@@ -97,9 +119,23 @@ fn fibers(baking: &Baking<'_>) -> Fibers {
             lanes: pieces.len() as u32,
             rows: first_row..rows.len() as u32,
             at,
+            alike,
         });
     }
     Fibers { bundles: bundles.into(), rows: rows.into(), rest: rest.into(), compliance: soft.into() }
+}
+
+/// Whether two fibers are the same, link by link and mass by mass.
+fn fibers_alike(baking: &Baking<'_>, a: &Fiber, b: &Fiber) -> bool {
+    let edge = |i: u32| &baking.edges[i as usize];
+    let links = a.edges.iter().zip(&b.edges).all(|(&i, &j)| {
+        let (i, j) = (edge(i), edge(j));
+        same(i.rest, j.rest) && same(compliance(baking.fabric, i), compliance(baking.fabric, j))
+    });
+    let weight = |v: u32| baking.weights[v as usize];
+    a.edges.len() == b.edges.len()
+        && links
+        && a.vertices.iter().zip(&b.vertices).all(|(&v, &w)| same(weight(v), weight(w)))
 }
 
 /// Fibers as index lists: sets without a common particle, in each of them lists of equal length.
@@ -206,11 +242,12 @@ fn bends(baking: &Baking<'_>) -> Bends {
             coefficients.push([c[1], c[0], c[2]]);
         }
     }
-    let (tuples, places) = runs::lay_out(&triples, &order.owner, false);
-    Bends {
-        tuples,
-        coefficients: std::array::from_fn(|k| places.iter().map(|&i| coefficients[i][k]).collect()),
-    }
+    let alike = |i: usize, j: usize| {
+        let weight = |i: usize, k: usize| baking.weight(triples[i].1[k]);
+        (0..3).all(|k| same(coefficients[i][k], coefficients[j][k]) && same(weight(i, k), weight(j, k)))
+    };
+    let (tuples, places) = runs::lay_out(&triples, &order.owner, false, &alike);
+    Bends { tuples, coefficients: std::array::from_fn(|k| places.iter().map(|&i| coefficients[i][k]).collect()) }
 }
 
 /// Each owner's particles as ranges.

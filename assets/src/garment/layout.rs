@@ -15,7 +15,8 @@ pub const OWNERS: usize = 2;
 /// Most fibers of one index list: the widest lanes.
 pub const MAX_LISTED: usize = 16;
 
-/// Constraints side by side: constraint `t < len` holds the particles `first[k] + t`, its parameters are at `at + t`.
+/// Constraints side by side: constraint `t < len` holds the particles `first[k] + t`. Where they are all alike, in their
+/// parameters and in the masses of their particles, they share the parameters at `at`; else its own are at `at + t`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Run<const K: usize> {
     /// Particles of the first constraint.
@@ -24,6 +25,16 @@ pub struct Run<const K: usize> {
     pub len: u32,
     /// Where its parameters begin.
     pub at: u32,
+    /// Whether all are alike.
+    pub alike: bool,
+}
+
+impl<const K: usize> Run<K> {
+    /// Where the parameters of constraint `t` are.
+    #[inline(always)]
+    pub fn place(&self, t: u32) -> usize {
+        (if self.alike { self.at } else { self.at + t }) as usize
+    }
 }
 
 /// One owner's share of a set.
@@ -57,23 +68,23 @@ pub struct Tuples<const K: usize> {
     pub sets: Box<[Set]>,
     /// Constraints in all.
     pub count: usize,
+    /// Places of parameters: fewer than constraints where some are alike.
+    pub places: usize,
 }
 
 impl<const K: usize> Tuples<K> {
-    /// The particles of every constraint, in the order of the parameters.
-    pub fn all(&self) -> Vec<[u32; K]> {
-        let mut out = vec![[0; K]; self.count];
+    /// Calls `each(place, particles)` for every constraint with the place of its parameters.
+    pub fn for_each(&self, mut each: impl FnMut(usize, [u32; K])) {
         for run in &self.runs {
             for t in 0..run.len {
-                out[(run.at + t) as usize] = run.first.map(|f| f + t);
+                each(run.place(t), run.first.map(|f| f + t));
             }
         }
         for share in self.sets.iter().flat_map(|s| &s.shares) {
             for (k, i) in share.loose.clone().enumerate() {
-                out[share.loose_at as usize + k] = self.loose[i as usize];
+                each(share.loose_at as usize + k, self.loose[i as usize]);
             }
         }
-        out
     }
 }
 
@@ -117,8 +128,10 @@ pub struct Bundle {
     pub lanes: u32,
     /// Particles of its longest fiber, from the support on: a range of [`Fibers::rows`].
     pub rows: Range<u32>,
-    /// Where its parameters begin: `lanes` for each link from row to row.
+    /// Where its parameters begin: `lanes` for each link from row to row, or one where its fibers are alike.
     pub at: u32,
+    /// Whether the fibers are all alike, in their links and in the masses of their particles.
+    pub alike: bool,
 }
 
 /// Fibers whose particles lie contiguous, row after row.
@@ -203,9 +216,8 @@ impl Layout {
     /// Bytes that a garment's constraints hold.
     pub fn bytes(&self) -> usize {
         let tuples = |runs: usize, run: usize, loose: usize, k: usize| runs * run + loose * 4 * k;
-        let links = |l: &Links| {
-            tuples(l.tuples.runs.len(), size_of::<Run<2>>(), l.tuples.loose.len(), 2) + l.rest.len() * 8
-        };
+        let links =
+            |l: &Links| tuples(l.tuples.runs.len(), size_of::<Run<2>>(), l.tuples.loose.len(), 2) + l.rest.len() * 8;
         let lists = |l: &Lists| l.lists.len() * size_of::<List>() + l.index.len() * 4 + l.rest.len() * 8;
         let bends = &self.bends;
         links(&self.shear)

@@ -13,25 +13,40 @@ use crate::lanes::{Column, Kernel, Lanes, MOST, V3};
 /// The bound on dt^2 omega^2 that is used, half of what is stable: motion near the limit rings.
 const STABLE: f32 = 2.0;
 
-/// Writes for each stencil the share of its stiffness that can be carried, 1 where all of it; the least share is
-/// returned. `load` is room for a number a particle.
-pub fn prepare(bends: &Bends, weights: &[f32], dt: f32, load: &mut [f32], scale: &mut [f32]) -> f32 {
+/// How bending goes on for one time step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pace {
+    /// It acts every so many substeps, with the impulse of all of them (Tuckerman, Berne, Martyna 1992: slow forces need
+    /// not be asked as often as fast ones).
+    pub every: u32,
+    /// Least share of its stiffness that the time step can carry.
+    pub least: f32,
+}
+
+/// Writes for each stencil the share of its stiffness that can be carried, 1 where all of it. `load` is room for a
+/// number a particle.
+pub fn prepare(bends: &Bends, weights: &[f32], [dt, substeps]: [f32; 2], load: &mut [f32], scale: &mut [f32]) -> Pace {
     load.fill(0.0);
-    let all = bends.tuples.all();
     let coefficient = |at: usize, k: usize| bends.coefficients[k][at];
-    for (at, v) in all.iter().enumerate() {
+    bends.tuples.for_each(|at, v| {
         let sum: f32 = (0..3).map(|k| coefficient(at, k).abs()).sum();
         for (k, &i) in v.iter().enumerate() {
             load[i as usize] += dt * dt * weights[i as usize] * coefficient(at, k).abs() * sum;
         }
-    }
+    });
     let mut least = 1.0f32;
-    for (at, v) in all.iter().enumerate() {
+    scale.fill(1.0);
+    bends.tuples.for_each(|at, v| {
         let most = v.iter().map(|&i| load[i as usize]).fold(0.0, f32::max);
-        scale[at] = if most > STABLE { STABLE / most } else { 1.0 };
-        least = least.min(scale[at]);
-    }
-    least
+        if most > STABLE {
+            scale[at] = scale[at].min(STABLE / most);
+            least = least.min(scale[at]);
+        }
+    });
+    let most = load.iter().copied().fold(0.0, f32::max);
+    let substeps = substeps as u32;
+    let fits = |every: u32| substeps % every == 0 && most * (every * every) as f32 <= STABLE;
+    Pace { every: (1..=substeps).rev().find(|&e| fits(e)).unwrap_or(1), least }
 }
 
 /// Adds the bending forces of one owner's share of a set to the velocities.
@@ -58,52 +73,113 @@ impl Kernel for Bend<'_> {
         let share = &self.set.shares[self.owner];
         let tuples = &self.bends.tuples;
         for run in &tuples.runs[share.runs.start as usize..share.runs.end as usize] {
-            let (at, len) = (run.at as usize, run.len as usize);
+            let len = run.len as usize;
             // Stencils side by side overlap. Each block of MOST of them adds to all its middles first, then to all its
             // first ends, then to its second ones: the same order of sums at every width.
             let mut t = 0;
             while t < len {
-                self.block::<L>(run.first.map(|f| f as usize + t), at + t, (len - t).min(MOST));
+                let first = run.first.map(|f| f as usize + t);
+                let lead = run.alike.then_some(run.first.map(|f| f as usize));
+                self.block::<L>(first, run.place(t as u32), lead, (len - t).min(MOST));
                 t += MOST;
             }
         }
         for (k, i) in share.loose.clone().enumerate() {
-            self.block::<f32>(tuples.loose[i as usize].map(|v| v as usize), share.loose_at as usize + k, 1);
+            let first = tuples.loose[i as usize].map(|v| v as usize);
+            self.block::<f32>(first, share.loose_at as usize + k, Some(first), 1);
         }
     }
 }
 
 impl Bend<'_> {
     #[inline(always)]
-    fn block<L: Lanes>(&self, first: [usize; 3], at: usize, n: usize) {
-        let c = &self.columns;
-        let zero = V3::<L>::splat(glam::Vec3A::ZERO);
-        let mut d = [zero; MOST];
+    fn block<L: Lanes>(&self, first: [usize; 3], at: usize, alike: Option<[usize; 3]>, n: usize) {
+        if L::N == MOST && n == MOST {
+            let p = self.parameters::<L>(first, at, alike, MOST);
+            let d = self.curvature::<L>(first, &p, MOST);
+            for (k, v) in first.into_iter().enumerate() {
+                self.push(&p, k, d, v, MOST);
+            }
+            return;
+        }
+        if L::N == MOST || n == 1 {
+            let n = n.min(L::N).min(if L::N == MOST { MOST - 1 } else { L::N });
+            let p = self.parameters::<L>(first, at, alike, n);
+            let d = self.curvature::<L>(first, &p, n);
+            for (k, v) in first.into_iter().enumerate() {
+                self.push(&p, k, d, v, n);
+            }
+            return;
+        }
+        let mut d = [V3::<L>::splat(glam::Vec3A::ZERO); MOST];
         let steps = n.div_ceil(L::N);
-        let part = |step: usize| (n - step * L::N).min(L::N);
         for (step, d) in d.iter_mut().enumerate().take(steps) {
-            let (o, n) = (step * L::N, part(step));
-            for (k, &v) in first.iter().enumerate() {
-                *d = *d + V3::<L>::load(c.x, v + o, n) * self.coefficient::<L>(k, at + o, n);
-            }
-            if let Some(scale) = self.scale {
-                *d = *d * load(Column::read_only(scale), at + o, n);
-            }
-            *d = *d * L::splat(self.dt);
+            let (o, part) = (step * L::N, (n - step * L::N).min(L::N));
+            let (first, at) = (first.map(|v| v + o), if alike.is_some() { at } else { at + o });
+            let p = self.parameters::<L>(first, at, alike, part);
+            *d = self.curvature::<L>(first, &p, part);
         }
         for (k, &v) in first.iter().enumerate() {
             for (step, &d) in d.iter().enumerate().take(steps) {
-                let (o, n) = (step * L::N, part(step));
-                let share = self.coefficient::<L>(k, at + o, n) * load(c.w, v + o, n);
-                (V3::<L>::load(c.v, v + o, n) - d * share).store(c.v, v + o, n);
+                let (o, part) = (step * L::N, (n - step * L::N).min(L::N));
+                let place = if alike.is_some() { at } else { at + o };
+                let p = self.parameters::<L>(first.map(|v| v + o), place, alike, part);
+                self.push(&p, k, d, v + o, part);
             }
         }
     }
 
+    /// Coefficients, and the weights of the three particles, of `n` stencils; `alike` is the first of the run where all
+    /// of it are alike.
     #[inline(always)]
-    fn coefficient<L: Lanes>(&self, k: usize, at: usize, n: usize) -> L {
-        load(Column::read_only(&self.bends.coefficients[k]), at, n)
+    fn parameters<L: Lanes>(&self, first: [usize; 3], at: usize, alike: Option<[usize; 3]>, n: usize) -> Parameters<L> {
+        let [c0, c1, c2] = &self.bends.coefficients;
+        let c = [Column::read_only(c0), Column::read_only(c1), Column::read_only(c2)];
+        let w = self.columns.w;
+        if let Some(lead) = alike {
+            let one = |c: Column<'_>, i: usize| L::splat(c.get(i));
+            let scale = self.scale.map_or(1.0, |s| s[at]);
+            Parameters {
+                c: [one(c[0], at), one(c[1], at), one(c[2], at)],
+                w: [one(w, lead[0]), one(w, lead[1]), one(w, lead[2])],
+                scale: L::splat(scale * self.dt),
+            }
+        } else {
+            let scale = match self.scale {
+                Some(scale) => load(Column::read_only(scale), at, n),
+                None => L::splat(1.0),
+            };
+            Parameters {
+                c: [load(c[0], at, n), load(c[1], at, n), load(c[2], at, n)],
+                w: [load(w, first[0], n), load(w, first[1], n), load(w, first[2], n)],
+                scale: scale * L::splat(self.dt),
+            }
+        }
     }
+
+    /// `n` stencils: the curvature, times the substep.
+    #[inline(always)]
+    fn curvature<L: Lanes>(&self, first: [usize; 3], p: &Parameters<L>, n: usize) -> V3<L> {
+        let x = self.columns.x;
+        let d = V3::<L>::load(x, first[0], n) * p.c[0];
+        let d = d + V3::load(x, first[1], n) * p.c[1];
+        let d = d + V3::load(x, first[2], n) * p.c[2];
+        d * p.scale
+    }
+
+    /// What `n` stencils do to their particles of one kind.
+    #[inline(always)]
+    fn push<L: Lanes>(&self, p: &Parameters<L>, k: usize, d: V3<L>, v: usize, n: usize) {
+        let c = &self.columns;
+        (V3::<L>::load(c.v, v, n) - d * (p.c[k] * p.w[k])).store(c.v, v, n);
+    }
+}
+
+/// What some stencils need besides positions.
+struct Parameters<L> {
+    c: [L; 3],
+    w: [L; 3],
+    scale: L,
 }
 
 #[inline(always)]
