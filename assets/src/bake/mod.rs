@@ -10,7 +10,9 @@ pub mod fibers;
 mod links;
 pub mod order;
 pub mod runs;
+pub mod solver;
 pub mod stiffness;
+pub mod survey;
 pub mod tethers;
 pub mod weights;
 
@@ -33,7 +35,7 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
         MeshError::Degenerate { .. } => Ok(()), // the first steps unfold what started flat on the body
         other => Err(other),
     })?;
-    let edges = fibers::edges(&shape.cut, &shape.faces);
+    let edges = fibers::edges_of(shape);
     let chains = fibers::trace(&shape.cut, &edges);
     let warp = chains.iter().filter(|f| f.direction == Direction::Warp);
     let pieces: Vec<Fiber> = warp.flat_map(|f| f.split_at_pins(&shape.fixed)).collect();
@@ -67,19 +69,21 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
             chains: &chains,
             pieces: &pieces,
             order: &order,
+            weights: &masses,
         }),
         source: order.source.clone().into(),
     })
 }
 
-/// Lumped masses: a third of each triangle's area at each corner; fixed vertices have inverse mass 0.
+/// Lumped masses: each face's area in equal parts at its corners, so that the way a quad is split for pictures weighs
+/// nothing; fixed vertices have inverse mass 0.
 fn inverse_masses(shape: &Shape, density: f32) -> Vec<f32> {
     let mut mass = vec![0.0f32; shape.cut.len()];
-    for t in shape.triangles() {
-        let [a, b, c] = t.map(|i| shape.cut[i as usize]);
-        let third = (b - a).cross(c - a).length() * 0.5 * density / 3.0;
-        for i in t {
-            mass[i as usize] += third;
+    for face in &shape.faces {
+        let ring = check::corners(face);
+        let part = fibers::area(&shape.cut, face) * density / ring.len() as f32;
+        for &v in ring {
+            mass[v as usize] += part;
         }
     }
     mass.iter_mut().zip(&shape.heavier).for_each(|(m, times)| *m *= times);

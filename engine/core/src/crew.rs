@@ -254,7 +254,7 @@ impl Crew {
         self.taken
     }
 
-    /// Wakes the helper if it sleeps, which takes it some 50 us; to be called as the frame begins, before the body is
+    /// Wakes the helper if it sleeps, which takes it some 20 us; to be called as the frame begins, before the body is
     /// posed. Says whether it slept.
     pub fn wake(&self) -> bool {
         let Some(helper) = &self.helper else { return false };

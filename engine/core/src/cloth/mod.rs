@@ -17,6 +17,7 @@ pub mod settings;
 pub mod settle;
 pub mod state;
 mod step;
+pub mod wind;
 
 use glam::{Affine3A, Vec3A};
 use toile_assets::garment::Garment;
@@ -104,7 +105,7 @@ impl Cloth {
 
     /// Velocity of a particle at the end of the last step (m/s).
     pub fn velocity(&self, particle: usize) -> Vec3A {
-        Vec3A::from_array([0, 1, 2].map(|axis| self.state.velocity[axis].as_slice()[particle]))
+        Vec3A::from_array(self.state.velocities().map(|column| column[particle]))
     }
 
     /// Puts a particle somewhere, with a velocity (m, m/s): how tests and scenes disturb a garment.
@@ -137,6 +138,16 @@ impl Cloth {
     /// The phases of a substep as last prepared.
     pub fn program(&self) -> &[Op] {
         self.prepared.program()
+    }
+
+    /// What contact did since the garment was made.
+    pub fn contact_tally(&self) -> contact::Tally {
+        self.contacts.tally()
+    }
+
+    /// How bending went on in the last step.
+    pub fn bend_pace(&self) -> bending::Pace {
+        self.prepared.bend_pace()
     }
 
     /// Substeps of a step as last prepared.

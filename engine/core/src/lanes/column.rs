@@ -89,6 +89,14 @@ impl<'a> Column<'a> {
         self.len
     }
 
+    /// `len` numbers from `start` on as a column of their own.
+    ///
+    /// # Panics
+    /// Where they are not all there.
+    pub fn part(self, start: usize, len: usize) -> Self {
+        Self { data: self.place(start, len), len, owner: PhantomData }
+    }
+
     /// One number; 0 past the end.
     #[inline(always)]
     pub fn get(self, at: usize) -> f32 {
@@ -105,10 +113,16 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// Where `n` numbers from `at` on lie, or None where they are not all there.
+    /// Where `n` numbers from `at` on lie.
+    ///
+    /// # Panics
+    /// Where they are not all there, which no index of a bake is: the check of a slice, once a vector.
     #[inline(always)]
-    pub(super) fn place(self, at: usize, n: usize) -> Option<*mut f32> {
+    pub(super) fn place(self, at: usize, n: usize) -> *mut f32 {
+        // Two comparisons of which the first does not depend on the place: it leaves the loop.
+        assert!(n <= self.len, "a kernel left its column");
+        assert!(at <= self.len - n, "a kernel left its column");
         // SAFETY: within the length, or its end.
-        (at <= self.len && n <= self.len - at).then(|| unsafe { self.data.add(at) })
+        unsafe { self.data.add(at) }
     }
 }

@@ -1,0 +1,341 @@
+//! Wind: drag and lift on triangles, both sides alike.
+//!
+//! The law is that of a flat plate (Wejchert and Haumann 1991, "Animation aerodynamics", with the lift of Keckeisen et
+//! al. 2004, "Wind and thermal"): with u the velocity of the air relative to the triangle, s its speed, n the unit normal
+//! on the lee side and c = u.n / s >= 0,
+//!
+//!   F = 1/2 rho A s c (Cd u + Cl (s n - c u))
+//!
+//! Drag lies along u and counts the area that faces the wind, A c. Lift is at right angles to u, 1/2 rho A s^2 Cl c
+//! sqrt(1 - c^2): none head-on, none edge-on. n turns with u, so the winding of a triangle means nothing.
+//!
+//! F is evaluated once a step and a third of it goes to each corner. 1/2 rho A s is held below m / ((Cd + Cl) dt), m
+//! being the mass that moves with the triangle: then neither the part of u along n nor the one across it is turned
+//! round within the step, however fast the air and however light the cloth. That happens far outside of what cloth
+//! meets: at 20 m/s, 100 g/m2 and the coefficients of `skirt` the factor is 1/60 of the bound.
+//!
+//! Sums depend on their order, so it is fixed at load: [`Faces`] sorts the triangles into runs whose three corners all
+//! advance by one, which are read and written as rows; and loose ones, which are gathered and added one by one. A run
+//! is done in chunks of [`CHUNK`], all of them to their first corner, then to the second, then to the third; that is
+//! the same sum at every width.
+
+use glam::{Vec3, Vec3A};
+
+use super::state::Columns;
+use crate::lanes::{Column, Kernel, Lanes, MOST, Store, V3, Width, reciprocal_root};
+
+/// Density of dry air at 20 C and 1,013 hPa (kg/m3).
+pub const AIR_DENSITY: f32 = 1.204;
+
+/// Triangles of a run whose forces are summed corner by corner.
+const CHUNK: usize = 64;
+
+/// Shortest run that is worth a row; what is shorter is loose.
+const SHORTEST_RUN: u32 = 4;
+
+/// The air around the cloth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wind {
+    /// Velocity of the air (m/s).
+    pub velocity: Vec3A,
+    /// Drag coefficient Cd of a piece of cloth that faces the wind.
+    pub drag: f32,
+    /// Lift coefficient Cl.
+    pub lift: f32,
+}
+
+/// Triangles `first + k`, k in `0..len`: no particle twice at one corner.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Run3 {
+    first: [u32; 3],
+    len: u32,
+}
+
+/// Triangles that one share adds up.
+#[derive(Debug, Clone, Default)]
+struct Group {
+    runs: Box<[Run3]>,
+    /// Corners of the loose triangles, a list a corner.
+    loose: [Box<[u32]>; 3],
+    /// The mass that moves with each triangle (kg) `[runs, then loose]`.
+    mass: Box<[f32]>,
+}
+
+/// Which part of the triangles: the first two may be done at once, the third after both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// All corners owned by worker 0.
+    First,
+    /// All corners owned by worker 1.
+    Second,
+    /// Corners of both.
+    Crossing,
+}
+
+impl Part {
+    /// All of them, in their order.
+    pub const ALL: [Self; 3] = [Self::First, Self::Second, Self::Crossing];
+}
+
+/// A garment's triangles as the wind needs them. Made at load.
+#[derive(Debug, Clone)]
+pub struct Faces {
+    groups: [Group; 3],
+    /// Particles of each owner, as ranges.
+    owned: [Box<[[u32; 2]]>; 2],
+}
+
+impl Faces {
+    /// Sorts the triangles of a garment. `rest` are its particles (m), `inverse_mass` their inverse masses (1/kg, 0
+    /// where the body carries them), `owner` which worker (0 or 1) each belongs to.
+    pub fn new(triangles: &[[u32; 3]], rest: &[Vec3], inverse_mass: &[f32], owner: &[u8]) -> Self {
+        let area = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| rest[i as usize]);
+            0.5 * (b - a).cross(c - a).length()
+        };
+        let mut around = vec![0.0f32; rest.len()];
+        triangles.iter().for_each(|t| t.iter().for_each(|&i| around[i as usize] += area(t)));
+        // A corner gives three times the part of its mass that is the triangle's by area; the lightest decides. Where
+        // the body carries all three nothing moves and any mass will do.
+        let moved = |t: &[u32; 3]| {
+            let corner =
+                |&i: &u32| 3.0 * area(t) / (inverse_mass[i as usize] * around[i as usize]).max(f32::MIN_POSITIVE);
+            t.iter().map(corner).fold(f32::MAX, f32::min)
+        };
+        let mut groups: [Vec<[u32; 3]>; 3] = Default::default();
+        for &triangle in triangles {
+            // The winding means nothing, so corners in rising order: then neighbours have alike offsets.
+            let mut t = triangle;
+            t.sort_unstable();
+            let owners = t.map(|i| owner[i as usize]);
+            let group = if owners == [0; 3] {
+                0
+            } else if owners == [1; 3] {
+                1
+            } else {
+                2
+            };
+            groups[group].push(t);
+        }
+        let owned = [0, 1].map(|worker| ranges(owner, worker));
+        Self { groups: groups.map(|triangles| Group::new(triangles, &moved)), owned }
+    }
+
+    /// Writes the accelerations (m/s2) of one part of the triangles, for a step of `dt` seconds. The first two parts
+    /// also clear what their owners' particles had.
+    pub fn blow(&self, width: Width, part: Part, wind: &Wind, dt: f32, at: Columns<'_>, to: [Column<'_>; 3]) {
+        if let Some(owned) = self.owned.get(part as usize) {
+            width.run(Clear { owned, to });
+        }
+        width.run(Blow { group: &self.groups[part as usize], wind, dt, at, to });
+    }
+
+    /// How many triangles lie in runs, and how many are loose.
+    pub fn count(&self) -> [usize; 2] {
+        let runs = self.groups.iter().flat_map(|g| &g.runs).map(|r| r.len as usize).sum();
+        [runs, self.groups.iter().map(|g| g.loose[0].len()).sum()]
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let group = |g: &Group| {
+            let loose: usize = g.loose.iter().map(|l| size_of_val(&**l)).sum();
+            size_of_val(&*g.runs) + loose + size_of_val(&*g.mass)
+        };
+        self.groups.iter().map(group).sum::<usize>() + self.owned.iter().map(|o| size_of_val(&**o)).sum::<usize>()
+    }
+}
+
+/// The particles of one worker as ranges `[from, to]`, `to` not among them.
+fn ranges(owner: &[u8], worker: u8) -> Box<[[u32; 2]]> {
+    let mut ranges: Vec<[u32; 2]> = Vec::new();
+    for (i, _) in (0u32..).zip(owner).filter(|(_, o)| **o == worker) {
+        match ranges.last_mut() {
+            Some(last) if last[1] == i => last[1] += 1,
+            _ => ranges.push([i, i + 1]),
+        }
+    }
+    ranges.into()
+}
+
+impl Group {
+    fn new(mut triangles: Vec<[u32; 3]>, moved: &impl Fn(&[u32; 3]) -> f32) -> Self {
+        triangles.sort_unstable_by_key(|t| [t[1] - t[0], t[2] - t[0], t[0]]);
+        let mut all: Vec<Run3> = Vec::new();
+        for t in triangles {
+            match all.last_mut() {
+                Some(run) if run.first.map(|i| i + run.len) == t => run.len += 1,
+                _ => all.push(Run3 { first: t, len: 1 }),
+            }
+        }
+        let (runs, short): (Vec<Run3>, Vec<Run3>) = all.into_iter().partition(|r| r.len >= SHORTEST_RUN);
+        let triangles = |r: &Run3| {
+            let first = r.first;
+            (0..r.len).map(move |k| first.map(|i| i + k))
+        };
+        let loose: Vec<[u32; 3]> = short.iter().flat_map(triangles).collect();
+        Self {
+            mass: runs.iter().flat_map(triangles).chain(loose.iter().copied()).map(|t| moved(&t)).collect(),
+            loose: [0, 1, 2].map(|corner| loose.iter().map(|t| t[corner]).collect()),
+            runs: runs.into(),
+        }
+    }
+}
+
+/// Room for accelerations: a column a coordinate.
+pub fn still(particles: usize) -> [Store; 3] {
+    [0, 1, 2].map(|_| Store::zeros(particles))
+}
+
+struct Clear<'a> {
+    owned: &'a [[u32; 2]],
+    to: [Column<'a>; 3],
+}
+
+impl Kernel for Clear<'_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        for &[from, to] in self.owned {
+            let mut at = from as usize;
+            while at < to as usize {
+                let n = L::N.min(to as usize - at);
+                V3::<L>::splat(Vec3A::ZERO).store(self.to, at, n);
+                at += n;
+            }
+        }
+    }
+}
+
+struct Blow<'a> {
+    group: &'a Group,
+    wind: &'a Wind,
+    dt: f32,
+    at: Columns<'a>,
+    to: [Column<'a>; 3],
+}
+
+/// What is the same for every triangle of a step.
+#[derive(Clone, Copy)]
+struct Air<L> {
+    velocity: V3<L>,
+    drag: L,
+    lift: L,
+    /// 1 / ((Cd + Cl) dt) (1/s).
+    bound: L,
+}
+
+impl<L: Lanes> Air<L> {
+    #[inline(always)]
+    fn new(wind: &Wind, dt: f32) -> Self {
+        let most = wind.drag.abs() + wind.lift.abs();
+        Self {
+            velocity: V3::splat(wind.velocity),
+            drag: L::splat(wind.drag),
+            lift: L::splat(wind.lift),
+            bound: L::splat(1.0 / (most * dt).max(f32::MIN_POSITIVE)),
+        }
+    }
+
+    /// A third of the force on each triangle (N); the equation is at the top of the file.
+    #[inline(always)]
+    fn force(&self, x: [V3<L>; 3], v: [V3<L>; 3], mass: L) -> V3<L> {
+        let third = L::splat(1.0 / 3.0);
+        let u = self.velocity - (v[0] + v[1] + v[2]) * third;
+        let normal = (x[1] - x[0]).cross(x[2] - x[0]);
+        let (uu, nn, un) = (u.dot(u), normal.dot(normal), u.dot(normal));
+        let (per_s, per_n) = (reciprocal_root(uu), reciprocal_root(nn));
+        let (s, lee) = (uu * per_s, un * (per_s * per_n));
+        let c = lee.max(-lee).min(L::splat(1.0));
+        // |normal| is twice the area.
+        let pressed = (L::splat(0.25 * AIR_DENSITY) * nn * per_n * s).min(mass * self.bound);
+        let k = pressed * third;
+        u * (k * c * (self.drag - self.lift * c)) + normal * (k * lee * self.lift * s * per_n)
+    }
+}
+
+impl Kernel for Blow<'_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let air = Air::<L>::new(self.wind, self.dt);
+        let mut room = [0.0; CHUNK * 3];
+        let (a, rest) = room.split_at_mut(CHUNK);
+        let (b, c) = rest.split_at_mut(CHUNK);
+        let force = [Column::new(a), Column::new(b), Column::new(c)];
+        let mut done = 0;
+        for run in &self.group.runs {
+            let mut from = 0;
+            while from < run.len as usize {
+                let len = CHUNK.min(run.len as usize - from);
+                let corners = run.first.map(|i| i as usize + from);
+                self.press_row(&air, corners, [done, len], force);
+                corners.into_iter().for_each(|i| self.add_row::<L>(i, len, force));
+                from += len;
+                done += len;
+            }
+        }
+        self.press_loose(&air, done, force);
+    }
+}
+
+impl Blow<'_> {
+    /// The forces of a piece of a run; `[done, len]` is where its masses begin, and how many.
+    #[inline(always)]
+    fn press_row<L: Lanes>(&self, air: &Air<L>, corners: [usize; 3], [done, len]: [usize; 2], force: [Column<'_>; 3]) {
+        let masses = Column::read_only(&self.group.mass);
+        let mut k = 0;
+        while k < len {
+            let n = L::N.min(len - k);
+            let x = corners.map(|i| V3::<L>::load(self.at.x, i + k, n));
+            let v = corners.map(|i| V3::<L>::load(self.at.v, i + k, n));
+            air.force(x, v, part(masses, done + k, n)).store(force, k, n);
+            k += n;
+        }
+    }
+
+    /// Adds the forces of a piece of a run to one corner.
+    #[inline(always)]
+    fn add_row<L: Lanes>(&self, corner: usize, len: usize, force: [Column<'_>; 3]) {
+        let mut k = 0;
+        while k < len {
+            let n = L::N.min(len - k);
+            let f = V3::<L>::load(force, k, n) * part(self.at.w, corner + k, n);
+            (V3::load(self.to, corner + k, n) + f).store(self.to, corner + k, n);
+            k += n;
+        }
+    }
+
+    /// The loose triangles: forces several at a time, sums one after the other, because they may share particles.
+    #[inline(always)]
+    fn press_loose<L: Lanes>(&self, air: &Air<L>, done: usize, force: [Column<'_>; 3]) {
+        let loose = &self.group.loose;
+        let mut at = 0;
+        while at < loose[0].len() {
+            let n = L::N.min(loose[0].len() - at);
+            let corners = [0, 1, 2].map(|corner| &loose[corner][at..at + n]);
+            let x = corners.map(|i| V3::<L>::gather(self.at.x, i, n));
+            let v = corners.map(|i| V3::<L>::gather(self.at.v, i, n));
+            let mass = part(Column::read_only(&self.group.mass), done + at, n);
+            air.force(x, v, mass).store(force, 0, n);
+            for k in 0..n {
+                for i in corners.map(|c| c[k] as usize) {
+                    let w = self.at.w.get(i);
+                    (0..3).for_each(|axis| self.to[axis].set(i, self.to[axis].get(i) + force[axis].get(k) * w));
+                }
+            }
+            at += n;
+        }
+    }
+}
+
+/// `n <= N` numbers of a column.
+#[inline(always)]
+fn part<L: Lanes>(from: Column<'_>, at: usize, n: usize) -> L {
+    if n == L::N { L::load(from, at) } else { L::load_part(from, at, n) }
+}
+
+const _: () = assert!(CHUNK.is_multiple_of(MOST));
+
+#[cfg(test)]
+mod tests;
