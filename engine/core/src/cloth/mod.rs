@@ -90,7 +90,7 @@ impl Cloth {
             state: State::new(&garment.start, &garment.inverse_mass),
             fixed_start: fixed.clone(),
             fixed_end: fixed,
-            contacts: contact::Contacts::new(&layout.spans, &garment.parts, colliders),
+            contacts: contact::Contacts::new(&layout.spans, &garment.parts, &garment.start, colliders),
             scratch: [scratch(), scratch()],
             strains: vec![0.0; garment.strain_edges.len()].into(),
             prepared: step::Prepared::new(garment),
