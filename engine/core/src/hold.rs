@@ -52,8 +52,7 @@ impl Default for Hold {
 
 impl Hold {
     /// Changes the spheres `(x, y, z, radius)` of a step of `dt` seconds to where the cloth may meet them; says how many
-    /// are not where they were said to be. `motion` is the root's in this step, in world space
-    /// (`RootMotion::motion`), finite. Spheres past [`MAX_SPHERES`] are left as they are.
+    /// are not where they were said to be. `motion` is the root's in this step, in world space, finite. Spheres past [`MAX_SPHERES`] are left as they are.
     pub fn filter(&mut self, motion: &Affine3A, targets: &mut [Vec4], dt: f32) -> u32 {
         let mut away = 0;
         for ((target, last), doing) in targets.iter_mut().zip(&mut self.last).zip(&mut self.doing) {
