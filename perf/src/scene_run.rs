@@ -288,7 +288,7 @@ impl Runner {
 fn baked(given: &SceneGarment) -> Result<Garment, RunError> {
     let mesh = |source| RunError::Mesh { name: given.name.clone(), source };
     let mut garment = bake(&given.name, "one size", &given.shape, &given.fabric).map_err(mesh)?;
-    if let Some(solver) = given.warp_solver {
+    if let Some(solver) = given.shape.solver.warp {
         let Layout { fibers, crossing, .. } = &mut garment.layout;
         fibers.bundles.iter_mut().for_each(|bundle| bundle.solver = solver);
         crossing.lists.iter_mut().for_each(|list| list.solver = solver);

@@ -6,9 +6,7 @@ use super::fibers::{Direction, Edge, Fiber};
 use super::order::Order;
 use super::runs;
 use crate::fabric::Fabric;
-use crate::garment::layout::{
-    Bends, Bundle, ENDED, Fibers, Layout, Links, List, Lists, MAX_LISTED, OWNERS, Row,
-};
+use crate::garment::layout::{Bends, Bundle, ENDED, Fibers, Layout, Links, List, Lists, MAX_LISTED, OWNERS, Row};
 use crate::garment::{Shape, Solver};
 
 /// What baking has found out about a shape so far.
@@ -249,10 +247,7 @@ fn bends(baking: &Baking<'_>) -> Bends {
         (0..3).all(|k| same(coefficients[i][k], coefficients[j][k]) && same(weight(i, k), weight(j, k)))
     };
     let (tuples, places) = runs::lay_out(&triples, &order.owner, false, &alike);
-    Bends {
-        tuples,
-        coefficients: std::array::from_fn(|k| places.iter().map(|&i| coefficients[i][k]).collect()),
-    }
+    Bends { tuples, coefficients: std::array::from_fn(|k| places.iter().map(|&i| coefficients[i][k]).collect()) }
 }
 
 /// Each owner's particles as ranges.

@@ -10,7 +10,9 @@ pub mod fibers;
 mod links;
 pub mod order;
 pub mod runs;
+pub mod solver;
 pub mod stiffness;
+pub mod survey;
 pub mod tethers;
 pub mod weights;
 
@@ -33,7 +35,7 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
         MeshError::Degenerate { .. } => Ok(()), // the first steps unfold what started flat on the body
         other => Err(other),
     })?;
-    let edges = fibers::edges(&shape.cut, &shape.faces);
+    let edges = fibers::edges_of(shape);
     let chains = fibers::trace(&shape.cut, &edges);
     let warp = chains.iter().filter(|f| f.direction == Direction::Warp);
     let pieces: Vec<Fiber> = warp.flat_map(|f| f.split_at_pins(&shape.fixed)).collect();
@@ -66,7 +68,9 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
             edges: &edges,
             chains: &chains,
             pieces: &pieces,
-            order: &order, weights: &masses }),
+            order: &order,
+            weights: &masses,
+        }),
         source: order.source.clone().into(),
     })
 }

@@ -61,11 +61,7 @@ fn coloured<const K: usize>(
 }
 
 /// One set of what stays within an owner's particles, one of what crosses.
-fn gathered<const K: usize>(
-    constraints: &[(Direction, [u32; K])],
-    order: &[usize],
-    owner: &[u8],
-) -> Vec<Vec<usize>> {
+fn gathered<const K: usize>(constraints: &[(Direction, [u32; K])], order: &[usize], owner: &[u8]) -> Vec<Vec<usize>> {
     let crosses = |i: &usize| {
         let v = &constraints[*i].1;
         v.iter().any(|&p| owner[p as usize] != owner[v[0] as usize])
@@ -108,11 +104,7 @@ impl<const K: usize> Layouter<K> {
         let loose_at = self.places.len() as u32;
         self.loose.extend(loose.iter().map(|&i| constraints[i].1));
         self.places.extend(&loose);
-        Share {
-            runs: first_run..self.runs.len() as u32,
-            loose: first_loose..self.loose.len() as u32,
-            loose_at,
-        }
+        Share { runs: first_run..self.runs.len() as u32, loose: first_loose..self.loose.len() as u32, loose_at }
     }
 }
 
@@ -122,7 +114,9 @@ fn run_length<const K: usize>(constraints: &[(Direction, [u32; K])], part: &[usi
     let follows = |t: usize| {
         let (d, v) = constraints[part[t]];
         let owned = |p: u32| owner[p as usize] == owner[v[0] as usize];
-        let like = (0..K).all(|k| v[k] == first[k] + t as u32 && owned(v[k]) == (owner[first[k] as usize] == owner[first[0] as usize]));
+        let like = (0..K).all(|k| {
+            v[k] == first[k] + t as u32 && owned(v[k]) == (owner[first[k] as usize] == owner[first[0] as usize])
+        });
         d == direction && like
     };
     (1..part.len()).take_while(|&t| follows(t)).count() + 1

@@ -216,9 +216,8 @@ impl Layout {
     /// Bytes that a garment's constraints hold.
     pub fn bytes(&self) -> usize {
         let tuples = |runs: usize, run: usize, loose: usize, k: usize| runs * run + loose * 4 * k;
-        let links = |l: &Links| {
-            tuples(l.tuples.runs.len(), size_of::<Run<2>>(), l.tuples.loose.len(), 2) + l.rest.len() * 8
-        };
+        let links =
+            |l: &Links| tuples(l.tuples.runs.len(), size_of::<Run<2>>(), l.tuples.loose.len(), 2) + l.rest.len() * 8;
         let lists = |l: &Lists| l.lists.len() * size_of::<List>() + l.index.len() * 4 + l.rest.len() * 8;
         let bends = &self.bends;
         links(&self.shear)

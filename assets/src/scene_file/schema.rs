@@ -126,7 +126,7 @@ pub const KEYS: &[Key] = &[
     key("garment", "velocity", Vector(100.0), "m/s", "[0, 0, 0]", "Velocity of its free vertices at the start."),
     key("garment", "fabric", TextOrTable("garment.fabric"), "", "cotton-lawn", "A built-in fabric, or a table."),
     key("garment", "mass", Number(1e-6, 1e3), "kg", "by the fabric", "Mass of the whole cloth, pinned parts included."),
-    key("garment", "warp_solver", Choice(SOLVERS), "", "semi-implicit", "How fibers along the warp are solved."),
+    key("garment", "solver", Table("garment.solver"), "", "as the bake", "How fibers are solved."),
     key("garment", "mass_patch", Tables("garment.mass_patch"), "", "none", "Vertices that are heavier or lighter."),
     key(
         "garment",
@@ -169,6 +169,7 @@ pub const KEYS: &[Key] = &[
         "grid",
         "Quads in rows, or irregular triangles.",
     ),
+    key("garment.solver", "warp", Choice(SOLVERS), "", "semi-implicit", "Of fibers along the warp."),
     key("garment.fabric", "base", Text, "", "cotton-lawn", "The built-in fabric that other keys of the table change."),
     key("garment.fabric", "file", Text, "", "-", "A fabric file, in place of `base`."),
     key("garment.fabric", "density_kg_m2", Number(0.01, 2.0), "kg/m2", "of the base", "Mass of an area."),

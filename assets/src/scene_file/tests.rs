@@ -33,7 +33,7 @@ rotation_deg = [0, 90, 0]
 position = [0, 1, 0]
 velocity = [0, 0, 1]
 mass = 0.5
-warp_solver = "zero-stretch"
+solver = { warp = "zero-stretch" }
 
 [garment.fabric]
 base = "linen-twill"
@@ -143,7 +143,7 @@ fn every_key_of_the_schema_is_read() {
     let cloth = &scene.garments[0];
     assert_eq!((cloth.fabric.name.as_str(), cloth.fabric.stretch_warp_n_m), ("linen-twill", f32::INFINITY));
     assert_eq!((cloth.fabric.friction, cloth.velocity), (0.4, Vec3::Z));
-    assert_eq!(cloth.warp_solver, Some(crate::garment::Solver::ZeroStretch));
+    assert_eq!(cloth.shape.solver.warp, Some(crate::garment::Solver::ZeroStretch));
     assert_eq!(scene.garments[2].fabric.name, "cotton-jersey");
     assert_eq!(scene.colliders.planes, [Plane { point: Vec3::NEG_Y, normal: Vec3::Y }]);
     assert_eq!(scene.colliders.sphere(1, 0.5), glam::Vec4::new(1.0, 0.0, 0.0, 0.2));

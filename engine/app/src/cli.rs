@@ -11,9 +11,11 @@ use toile_assets::body::Sex;
 
 use crate::exit::AppError;
 
+mod bake;
 mod run;
 mod skirt;
 
+pub use bake::BakeArgs;
 pub use run::{RunArgs, RunScene};
 pub use skirt::SkirtArgs;
 
@@ -30,6 +32,8 @@ pub enum Command {
     Run(RunArgs),
     /// `toile doctor`.
     Doctor(DoctorArgs),
+    /// `toile bake`.
+    Bake(BakeArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
@@ -129,7 +133,16 @@ pub fn command() -> clap::Command {
         )
         .override_usage("toile [OPTIONS OF TRY-ON]\n       toile <COMMAND>")
         .subcommand_required(true)
-        .subcommands([try_on(), measure(), record(), run::grammar(), doctor(), bench(), completions()])
+        .subcommands([
+            try_on(),
+            measure(),
+            record(),
+            run::grammar(),
+            bake::grammar(),
+            doctor(),
+            bench(),
+            completions(),
+        ])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
 }
 
@@ -285,6 +298,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         }),
         "run" => Command::Run(run::args(matches)?),
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
+        "bake" => Command::Bake(bake::args(matches)?),
         "bench" => bench_command(matches)?,
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),

@@ -4,6 +4,7 @@
 //! Budget: the words and the parsing take under 10 ms; the work itself is budgeted by the rooms it calls.
 //! Thread: the main thread, which loads, starts the frame's threads and waits for them.
 
+pub mod bake;
 pub mod bench;
 pub mod cli;
 pub mod completions;
@@ -61,6 +62,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Record(args) => record::run(args),
         Command::Run(args) => run::run(args),
         Command::Doctor(args) => doctor::run(args),
+        Command::Bake(args) => bake::run(args),
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
         Command::Completions(shell) => completions::run(*shell),

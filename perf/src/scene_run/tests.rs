@@ -126,7 +126,7 @@ fn patches_weigh_what_they_say_and_steps_before_the_measuring_do_not_count() {
 fn a_chosen_solver_is_the_one_that_runs() {
     let hash = |solver: &str| {
         let fabric = "fabric = { stretch_warp_n_m = 10000 }\n";
-        played(&format!("duration = 0.3\n{GRID}{fabric}warp_solver = \"{solver}\"\npin = {{ vertices = [0] }}\n"))
+        played(&format!("duration = 0.3\n{GRID}{fabric}solver = {{ warp = \"{solver}\" }}\npin = {{ vertices = [0] }}\n"))
             .state_hash()
     };
     let hashes = ["gauss-seidel", "semi-implicit", "zero-stretch"].map(hash);

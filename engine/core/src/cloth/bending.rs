@@ -25,13 +25,7 @@ pub struct Pace {
 
 /// Writes for each stencil the share of its stiffness that can be carried, 1 where all of it. `load` is room for a
 /// number a particle.
-pub fn prepare(
-    bends: &Bends,
-    weights: &[f32],
-    [dt, substeps]: [f32; 2],
-    load: &mut [f32],
-    scale: &mut [f32],
-) -> Pace {
+pub fn prepare(bends: &Bends, weights: &[f32], [dt, substeps]: [f32; 2], load: &mut [f32], scale: &mut [f32]) -> Pace {
     load.fill(0.0);
     let coefficient = |at: usize, k: usize| bends.coefficients[k][at];
     bends.tuples.for_each(|at, v| {
@@ -138,13 +132,7 @@ impl Bend<'_> {
     /// Coefficients, and the weights of the three particles, of `n` stencils; `alike` is the first of the run where all
     /// of it are alike.
     #[inline(always)]
-    fn parameters<L: Lanes>(
-        &self,
-        first: [usize; 3],
-        at: usize,
-        alike: Option<[usize; 3]>,
-        n: usize,
-    ) -> Parameters<L> {
+    fn parameters<L: Lanes>(&self, first: [usize; 3], at: usize, alike: Option<[usize; 3]>, n: usize) -> Parameters<L> {
         let [c0, c1, c2] = &self.bends.coefficients;
         let c = [Column::read_only(c0), Column::read_only(c1), Column::read_only(c2)];
         let w = self.columns.w;

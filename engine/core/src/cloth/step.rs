@@ -228,14 +228,8 @@ impl Work<'_> {
         let per_dt2 = (p.dt * p.dt).recip();
         let scratch = self.scratch[share];
         let link = |links, gain, set| links::Solve { columns, links, gain, set, owner: share, gamma: p.gamma };
-        let list = |lists, set: u16| lists::Solve {
-            columns,
-            lists,
-            set: usize::from(set),
-            owner: share,
-            scratch,
-            per_dt2,
-        };
+        let list =
+            |lists, set: u16| lists::Solve { columns, lists, set: usize::from(set), owner: share, scratch, per_dt2 };
         match op {
             Op::Bend(set) if substep % p.bend.every == 0 => self.bend(usize::from(set), share),
             Op::Bend(_) => {}

@@ -98,7 +98,8 @@ impl Faces {
         // A corner gives three times the part of its mass that is the triangle's by area; the lightest decides. Where
         // the body carries all three nothing moves and any mass will do.
         let moved = |t: &[u32; 3]| {
-            let corner = |&i: &u32| 3.0 * area(t) / (inverse_mass[i as usize] * around[i as usize]).max(f32::MIN_POSITIVE);
+            let corner =
+                |&i: &u32| 3.0 * area(t) / (inverse_mass[i as usize] * around[i as usize]).max(f32::MIN_POSITIVE);
             t.iter().map(corner).fold(f32::MAX, f32::min)
         };
         let mut groups: [Vec<[u32; 3]>; 3] = Default::default();
@@ -107,7 +108,13 @@ impl Faces {
             let mut t = triangle;
             t.sort_unstable();
             let owners = t.map(|i| owner[i as usize]);
-            let group = if owners == [0; 3] { 0 } else if owners == [1; 3] { 1 } else { 2 };
+            let group = if owners == [0; 3] {
+                0
+            } else if owners == [1; 3] {
+                1
+            } else {
+                2
+            };
             groups[group].push(t);
         }
         let owned = [0, 1].map(|worker| ranges(owner, worker));

@@ -78,7 +78,11 @@ fn every_width_and_both_ways_to_share_give_the_same_bits() {
                 };
                 Crew::new(workers).unwrap().run(2, job).unwrap();
                 for (i, a) in plain.iter().enumerate() {
-                    assert_eq!([0, 1, 2].map(|k| out[k].as_slice()[i]), a.to_array(), "{workers} workers, particle {i}");
+                    assert_eq!(
+                        [0, 1, 2].map(|k| out[k].as_slice()[i]),
+                        a.to_array(),
+                        "{workers} workers, particle {i}"
+                    );
                 }
             }
         }
