@@ -17,10 +17,15 @@ pub fn lay_out<const K: usize>(
 ) -> (Tuples<K>, Vec<usize>) {
     let mut order: Vec<usize> = (0..constraints.len()).collect();
     order.sort_by_key(|&i| (std::cmp::Reverse(constraints[i].0), constraints[i].1));
-    let sets = if apart { coloured(constraints, &order, owner.len()) } else { gathered(constraints, &order, owner) };
+    let crosses = |i: usize| {
+        let v = &constraints[i].1;
+        v.iter().any(|&p| owner[p as usize] != owner[v[0] as usize])
+    };
+    let sets = if apart { coloured(constraints, &order, owner.len()) } else { gathered(&order, &crosses) };
     let mut out = Layouter { runs: Vec::new(), loose: Vec::new(), places: Vec::new() };
     let sets = sets.into_iter().map(|set| Set {
         direction: constraints[set[0]].0,
+        crosses: !apart && crosses(set[0]),
         shares: std::array::from_fn(|share| {
             let mine = |i: &usize| usize::from(owner[constraints[*i].1[0] as usize]) == share;
             let part: Vec<usize> = set.iter().copied().filter(mine).collect();
@@ -61,12 +66,8 @@ fn coloured<const K: usize>(
 }
 
 /// One set of what stays within an owner's particles, one of what crosses.
-fn gathered<const K: usize>(constraints: &[(Direction, [u32; K])], order: &[usize], owner: &[u8]) -> Vec<Vec<usize>> {
-    let crosses = |i: &usize| {
-        let v = &constraints[*i].1;
-        v.iter().any(|&p| owner[p as usize] != owner[v[0] as usize])
-    };
-    let (crossing, within): (Vec<usize>, Vec<usize>) = order.iter().partition(|i| crosses(i));
+fn gathered(order: &[usize], crosses: &dyn Fn(usize) -> bool) -> Vec<Vec<usize>> {
+    let (crossing, within): (Vec<usize>, Vec<usize>) = order.iter().partition(|&&i| crosses(i));
     [within, crossing].into_iter().filter(|s| !s.is_empty()).collect()
 }
 

@@ -51,8 +51,10 @@ pub struct Share {
 /// Constraints of one direction; in a set of [`Links`] no two share a particle.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Set {
-    /// Direction.
+    /// Direction of its first constraint.
     pub direction: Direction,
+    /// Whether its constraints touch particles of both owners and nothing keeps them apart: one worker's then.
+    pub crosses: bool,
     /// What each owner solves.
     pub shares: [Share; OWNERS],
 }
@@ -99,13 +101,29 @@ pub struct Links {
     pub compliance: Box<[f32]>,
 }
 
-/// Bending stencils over three particles in a row: energy (1/2) |sum c_i x_i|^2, the stiffness within the coefficients.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Bends {
-    /// Who is bent. The sets of bends may share particles: they are forces, not projections.
-    pub tuples: Tuples<3>,
+/// Bending stencils over `K` particles: energy (1/2) |sum c_i x_i|^2, the root of the stiffness within the coefficients.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bends<const K: usize> {
+    /// Who is bent; the particle in the middle comes first. The sets of bends may share particles: they are forces, not
+    /// projections. The first set keeps within the owners, the second crosses them.
+    pub tuples: Tuples<K>,
     /// Coefficients (sqrt(N/m)), one array a particle of the stencil.
-    pub coefficients: [Box<[f32]>; 3],
+    pub coefficients: [Box<[f32]>; K],
+}
+
+impl<const K: usize> Default for Bends<K> {
+    fn default() -> Self {
+        Self { tuples: Tuples::default(), coefficients: std::array::from_fn(|_| [].into()) }
+    }
+}
+
+/// How far each particle can get from where the garment hangs.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Tethers {
+    /// The fixed particle nearest along the cloth; itself where there is none.
+    pub anchor: Box<[u32]>,
+    /// Length of the way to it as cut (m).
+    pub length: Box<[f32]>,
 }
 
 /// One step down the fibers of a bundle: which particles lie there.
@@ -200,12 +218,16 @@ pub struct Layout {
     pub weft: Links,
     /// Fibers along the warp.
     pub fibers: Fibers,
-    /// Warp fibers that could not be laid side by side.
+    /// Fibers that are solved whole by index list: warp that crosses warp, waistbands, whatever was chosen to be.
     pub crossing: Lists,
-    /// Closed hoops along the weft, for those who solve them whole; the same links are in `weft`.
+    /// Closed hoops along the weft, for the quality that solves them whole too; the same links are in `weft`.
     pub hoops: Lists,
-    /// Bending.
-    pub bends: Bends,
+    /// Bending over three particles in a row.
+    pub bends: Bends<3>,
+    /// Bending where a fiber turns within the cloth: a fourth particle keeps flat cloth free of it.
+    pub skewed: Bends<4>,
+    /// What holds the garment together when all else gives way.
+    pub tethers: Tethers,
     /// The particles that each owner has, as ranges `(first, len)`.
     pub spans: [Vec<(u32, u32)>; OWNERS],
     /// Whose each particle is.
@@ -219,15 +241,18 @@ impl Layout {
         let links =
             |l: &Links| tuples(l.tuples.runs.len(), size_of::<Run<2>>(), l.tuples.loose.len(), 2) + l.rest.len() * 8;
         let lists = |l: &Lists| l.lists.len() * size_of::<List>() + l.index.len() * 4 + l.rest.len() * 8;
-        let bends = &self.bends;
+        fn bends<const K: usize>(b: &Bends<K>) -> usize {
+            b.tuples.runs.len() * size_of::<Run<K>>() + b.tuples.loose.len() * 4 * K + b.coefficients[0].len() * 4 * K
+        }
         links(&self.shear)
             + links(&self.weft)
             + self.fibers.rows.len() * size_of::<Row>()
             + self.fibers.rest.len() * 8
             + lists(&self.crossing)
             + lists(&self.hoops)
-            + tuples(bends.tuples.runs.len(), size_of::<Run<3>>(), bends.tuples.loose.len(), 3)
-            + bends.coefficients[0].len() * 12
+            + bends(&self.bends)
+            + bends(&self.skewed)
+            + self.tethers.anchor.len() * 8
             + self.owner.len()
             + self.spans.iter().map(Vec::len).sum::<usize>() * 8
     }

@@ -9,7 +9,7 @@ use super::track::Track;
 use super::{Loading, PinSource, primitive, weld};
 use crate::fabric::Fabric;
 use crate::garment::shape::{Face, NO_VERTEX};
-use crate::garment::{MeshError, Shape, Solver};
+use crate::garment::{MeshError, Overrides, Shape, Solver};
 use crate::import::gltf::parse_gltf;
 use crate::import::obj::FREE;
 use crate::import::plain::{PlainMesh, parse_obj};
@@ -64,7 +64,9 @@ impl SceneGarment {
         let mass_kg = weigh(table, &mesh, &fabric, &mut shape)?;
         if let Some(solver) = table.table("solver")? {
             let known = [Solver::GaussSeidel, Solver::SemiImplicit, Solver::ZeroStretch];
-            shape.solver.warp = solver.choice("warp")?.map(|i| known[i]);
+            let chosen = |key| Ok::<_, SceneError>(solver.choice(key)?.map(|i| known[i]));
+            let (warp, weft) = (chosen("warp")?, chosen("weft")?);
+            shape.solver = Overrides { warp, weft, waistband: chosen("waistband")?, hem: chosen("hem")?, bias: None };
         }
         Ok(Self { name, shape, fabric, mesh, velocity: table.vector("velocity")?, mass_kg })
     }

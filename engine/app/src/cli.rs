@@ -133,16 +133,7 @@ pub fn command() -> clap::Command {
         )
         .override_usage("toile [OPTIONS OF TRY-ON]\n       toile <COMMAND>")
         .subcommand_required(true)
-        .subcommands([
-            try_on(),
-            measure(),
-            record(),
-            run::grammar(),
-            bake::grammar(),
-            doctor(),
-            bench(),
-            completions(),
-        ])
+        .subcommands([try_on(), measure(), record(), bake::grammar(), run::grammar(), doctor(), bench(), completions()])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
 }
 

@@ -3,7 +3,7 @@
 //! Each stencil stores (1/2) |d|^2 with d = sum c_i x_i, the curvature along its fiber times the root of its stiffness
 //! (assets, `bake::links`); it pulls with -c_i d. Evaluated at the positions of the substep's start, so statics do not
 //! depend on the time step; stable while dt^2 w_i sum_s |c_si| sum_j |c_sj| stays below 4 for every particle
-//! (Gershgorin). [`prepare`] weakens what is stiffer than a mesh and a substep can carry, and says by how much.
+//! (Gershgorin). [`weaken`] weakens what is stiffer than a mesh and a substep can carry, and says by how much.
 
 use toile_assets::garment::layout::{Bends, Set};
 
@@ -23,17 +23,19 @@ pub struct Pace {
     pub least: f32,
 }
 
-/// Writes for each stencil the share of its stiffness that can be carried, 1 where all of it. `load` is room for a
-/// number a particle.
-pub fn prepare(bends: &Bends, weights: &[f32], [dt, substeps]: [f32; 2], load: &mut [f32], scale: &mut [f32]) -> Pace {
-    load.fill(0.0);
-    let coefficient = |at: usize, k: usize| bends.coefficients[k][at];
+/// Adds to each particle the bound on dt^2 omega^2 that some stencils put on it.
+pub fn add_load<const K: usize>(bends: &Bends<K>, weights: &[f32], dt: f32, load: &mut [f32]) {
+    let coefficient = |at: usize, k: usize| bends.coefficients[k][at].abs();
     bends.tuples.for_each(|at, v| {
-        let sum: f32 = (0..3).map(|k| coefficient(at, k).abs()).sum();
+        let sum: f32 = (0..K).map(|k| coefficient(at, k)).sum();
         for (k, &i) in v.iter().enumerate() {
-            load[i as usize] += dt * dt * weights[i as usize] * coefficient(at, k).abs() * sum;
+            load[i as usize] += dt * dt * weights[i as usize] * coefficient(at, k) * sum;
         }
     });
+}
+
+/// Writes for each stencil the share of its stiffness that can be carried, 1 where all of it; the least is given back.
+pub fn weaken<const K: usize>(bends: &Bends<K>, load: &[f32], scale: &mut [f32]) -> f32 {
     let mut least = 1.0f32;
     scale.fill(1.0);
     bends.tuples.for_each(|at, v| {
@@ -43,29 +45,33 @@ pub fn prepare(bends: &Bends, weights: &[f32], [dt, substeps]: [f32; 2], load: &
             least = least.min(scale[at]);
         }
     });
+    least
+}
+
+/// How often bending has to act.
+pub fn every(load: &[f32], substeps: u32) -> u32 {
     let most = load.iter().copied().fold(0.0, f32::max);
-    let substeps = substeps as u32;
-    let fits = |every: u32| substeps % every == 0 && most * (every * every) as f32 <= STABLE;
-    Pace { every: (1..=substeps).rev().find(|&e| fits(e)).unwrap_or(1), least }
+    let fits = |every: &u32| substeps.is_multiple_of(*every) && most * (every * every) as f32 <= STABLE;
+    (1..=substeps).rev().find(fits).unwrap_or(1)
 }
 
 /// Adds the bending forces of one owner's share of a set to the velocities.
-pub struct Bend<'a> {
+pub struct Bend<'a, const K: usize> {
     /// The garment's particles.
     pub columns: Columns<'a>,
     /// All stencils.
-    pub bends: &'a Bends,
+    pub bends: &'a Bends<K>,
     /// The set.
     pub set: &'a Set,
     /// Whose share.
     pub owner: usize,
     /// Length of the substep (s).
     pub dt: f32,
-    /// What [`prepare`] made, where anything had to be weakened.
+    /// What [`weaken`] made, where anything had to be weakened.
     pub scale: Option<&'a [f32]>,
 }
 
-impl Kernel for Bend<'_> {
+impl<const K: usize> Kernel for Bend<'_, K> {
     type Out = ();
 
     #[inline(always)]
@@ -91,9 +97,9 @@ impl Kernel for Bend<'_> {
     }
 }
 
-impl Bend<'_> {
+impl<const K: usize> Bend<'_, K> {
     #[inline(always)]
-    fn block<L: Lanes>(&self, first: [usize; 3], at: usize, alike: Option<[usize; 3]>, n: usize) {
+    fn block<L: Lanes>(&self, first: [usize; K], at: usize, alike: Option<[usize; K]>, n: usize) {
         if L::N == MOST && n == MOST {
             let p = self.parameters::<L>(first, at, alike, MOST);
             let d = self.curvature::<L>(first, &p, MOST);
@@ -132,53 +138,55 @@ impl Bend<'_> {
     /// Coefficients, and the weights of the three particles, of `n` stencils; `alike` is the first of the run where all
     /// of it are alike.
     #[inline(always)]
-    fn parameters<L: Lanes>(&self, first: [usize; 3], at: usize, alike: Option<[usize; 3]>, n: usize) -> Parameters<L> {
-        let [c0, c1, c2] = &self.bends.coefficients;
-        let c = [Column::read_only(c0), Column::read_only(c1), Column::read_only(c2)];
+    fn parameters<L: Lanes>(&self, first: [usize; K], at: usize, alike: Option<[usize; K]>, n: usize) -> Parameters<L, K> {
+        let coefficients = &self.bends.coefficients;
         let w = self.columns.w;
+        // Plain loops: a closure is not always compiled for the kernel's lanes.
+        let (mut c, mut weights) = ([L::splat(0.0); K], [L::splat(0.0); K]);
+        let mut scale = L::splat(self.dt);
         if let Some(lead) = alike {
-            let one = |c: Column<'_>, i: usize| L::splat(c.get(i));
-            let scale = self.scale.map_or(1.0, |s| s[at]);
-            Parameters {
-                c: [one(c[0], at), one(c[1], at), one(c[2], at)],
-                w: [one(w, lead[0]), one(w, lead[1]), one(w, lead[2])],
-                scale: L::splat(scale * self.dt),
+            for k in 0..K {
+                c[k] = L::splat(coefficients[k][at]);
+                weights[k] = L::splat(w.get(lead[k]));
+            }
+            if let Some(s) = self.scale {
+                scale = scale * L::splat(s[at]);
             }
         } else {
-            let scale = match self.scale {
-                Some(scale) => load(Column::read_only(scale), at, n),
-                None => L::splat(1.0),
-            };
-            Parameters {
-                c: [load(c[0], at, n), load(c[1], at, n), load(c[2], at, n)],
-                w: [load(w, first[0], n), load(w, first[1], n), load(w, first[2], n)],
-                scale: scale * L::splat(self.dt),
+            for k in 0..K {
+                c[k] = load(Column::read_only(&coefficients[k]), at, n);
+                weights[k] = load(w, first[k], n);
+            }
+            if let Some(s) = self.scale {
+                scale = scale * load(Column::read_only(s), at, n);
             }
         }
+        Parameters { c, w: weights, scale }
     }
 
     /// `n` stencils: the curvature, times the substep.
     #[inline(always)]
-    fn curvature<L: Lanes>(&self, first: [usize; 3], p: &Parameters<L>, n: usize) -> V3<L> {
+    fn curvature<L: Lanes>(&self, first: [usize; K], p: &Parameters<L, K>, n: usize) -> V3<L> {
         let x = self.columns.x;
-        let d = V3::<L>::load(x, first[0], n) * p.c[0];
-        let d = d + V3::load(x, first[1], n) * p.c[1];
-        let d = d + V3::load(x, first[2], n) * p.c[2];
+        let mut d = V3::<L>::load(x, first[0], n) * p.c[0];
+        for k in 1..K {
+            d = d + V3::load(x, first[k], n) * p.c[k];
+        }
         d * p.scale
     }
 
     /// What `n` stencils do to their particles of one kind.
     #[inline(always)]
-    fn push<L: Lanes>(&self, p: &Parameters<L>, k: usize, d: V3<L>, v: usize, n: usize) {
+    fn push<L: Lanes>(&self, p: &Parameters<L, K>, k: usize, d: V3<L>, v: usize, n: usize) {
         let c = &self.columns;
         (V3::<L>::load(c.v, v, n) - d * (p.c[k] * p.w[k])).store(c.v, v, n);
     }
 }
 
 /// What some stencils need besides positions.
-struct Parameters<L> {
-    c: [L; 3],
-    w: [L; 3],
+struct Parameters<L, const K: usize> {
+    c: [L; K],
+    w: [L; K],
     scale: L,
 }
 

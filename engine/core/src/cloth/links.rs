@@ -139,7 +139,7 @@ mod tests {
     /// Links between particles i and i + n.
     fn ladder(n: u32, rest: f32, compliance: f32) -> Links {
         let share = Share { runs: 0..1, loose: 0..0, loose_at: n };
-        let set = Set { direction: Direction::Weft, shares: [share, Share::default()] };
+        let set = Set { direction: Direction::Weft, crosses: false, shares: [share, Share::default()] };
         let runs = [Run { first: [0, n], len: n, at: 0, alike: false }].into();
         Links {
             tuples: Tuples { runs, loose: [].into(), sets: [set].into(), count: n as usize, places: n as usize },

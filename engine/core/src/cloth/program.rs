@@ -55,7 +55,8 @@ pub fn substep(layout: &Layout, quality: Quality) -> Box<[Op]> {
     let wefts = || numbered(layout.weft.tuples.sets.len(), Op::Weft);
     let hoops = || numbered(layout.hoops.sets.len(), Op::Hoops);
     let fibers = || numbered(layout.crossing.sets.len(), Op::Crossing).chain([Op::Fibers]);
-    let mut ops: Vec<Op> = numbered(layout.bends.tuples.sets.len(), Op::Bend).collect();
+    let bends = layout.bends.tuples.sets.len().max(layout.skewed.tuples.sets.len());
+    let mut ops: Vec<Op> = numbered(bends, Op::Bend).collect();
     ops.push(Op::Predict);
     let shear = || numbered(layout.shear.tuples.sets.len(), Op::Shear);
     ops.extend(shear().chain(wefts()).chain(fibers()));

@@ -77,6 +77,16 @@ impl State {
         [0, 1, 2].map(|axis| self.column_of(VELOCITY + axis))
     }
 
+    /// Inverse masses (1/kg).
+    pub fn weights(&self) -> &[f32] {
+        self.column_of(WEIGHT)
+    }
+
+    /// Changes the velocities (m/s), one axis after the other.
+    pub fn velocities_mut(&mut self, mut change: impl FnMut(&mut [f32])) {
+        (0..3).for_each(|axis| change(self.column_mut(VELOCITY + axis)));
+    }
+
     /// The columns, all at once.
     pub fn columns(&mut self) -> Columns<'_> {
         let (starts, len) = (self.starts, self.len);

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use glam::{Affine3A, Vec3A};
 use toile_assets::garment::Garment;
-use toile_assets::garment::layout::OWNERS;
+use toile_assets::garment::layout::{Bends, OWNERS};
 
 use super::program::{self, Op, STAGES};
 use super::state::{self, Columns};
@@ -27,6 +27,7 @@ pub struct Prepared {
     shear_gain: Box<[f32]>,
     weft_gain: Box<[f32]>,
     bend_scale: Box<[f32]>,
+    skewed_scale: Box<[f32]>,
     bend: bending::Pace,
     load: Box<[f32]>,
 }
@@ -45,6 +46,7 @@ impl Prepared {
             shear_gain: zeros(layout.shear.rest.len()),
             weft_gain: zeros(layout.weft.rest.len()),
             bend_scale: zeros(layout.bends.tuples.places),
+            skewed_scale: zeros(layout.skewed.tuples.places),
             bend: bending::Pace { every: 1, least: 1.0 },
             load: zeros(garment.start.len()),
         }
@@ -65,8 +67,12 @@ impl Prepared {
         let (layout, w) = (&garment.layout, &garment.inverse_mass);
         links::prepare(&layout.shear, w, self.dt, self.gamma, &mut self.shear_gain);
         links::prepare(&layout.weft, w, self.dt, self.gamma, &mut self.weft_gain);
-        let times = [self.dt, asked as f32];
-        self.bend = bending::prepare(&layout.bends, w, times, &mut self.load, &mut self.bend_scale);
+        self.load.fill(0.0);
+        bending::add_load(&layout.bends, w, self.dt, &mut self.load);
+        bending::add_load(&layout.skewed, w, self.dt, &mut self.load);
+        let least = bending::weaken(&layout.bends, &self.load, &mut self.bend_scale);
+        let least = bending::weaken(&layout.skewed, &self.load, &mut self.skewed_scale).min(least);
+        self.bend = bending::Pace { every: bending::every(&self.load, asked), least };
     }
 
     pub fn program(&self) -> &[Op] {
@@ -231,7 +237,10 @@ impl Work<'_> {
         let list =
             |lists, set: u16| lists::Solve { columns, lists, set: usize::from(set), owner: share, scratch, per_dt2 };
         match op {
-            Op::Bend(set) if substep % p.bend.every == 0 => self.bend(usize::from(set), share),
+            Op::Bend(set) if substep.is_multiple_of(p.bend.every) => {
+                self.bend(&layout.bends, &p.bend_scale, usize::from(set), share);
+                self.bend(&layout.skewed, &p.skewed_scale, usize::from(set), share);
+            }
             Op::Bend(_) => {}
             Op::Predict => self.predict(substep, share),
             Op::Shear(set) => {
@@ -258,17 +267,17 @@ impl Work<'_> {
         }
     }
 
-    fn bend(&self, number: usize, share: usize) {
-        let bends = &self.garment.layout.bends;
-        let set = &bends.tuples.sets[number];
-        let scale = (self.prepared.bend.least < 1.0).then_some(&*self.prepared.bend_scale);
-        let dt = self.prepared.dt * self.prepared.bend.every as f32;
-        let bend = |owner| bending::Bend { columns: self.columns, bends, set, owner, dt, scale };
-        if number == 0 {
-            self.width.run(bend(share));
-        } else if share == 0 {
-            // What crosses the owners is the first worker's alone.
-            (0..OWNERS).for_each(|owner| self.width.run(bend(owner)));
+    /// A set of the stencils; what crosses the owners is the first worker's alone.
+    fn bend<const K: usize>(&self, bends: &Bends<K>, scale: &[f32], number: usize, share: usize) {
+        let Some(set) = bends.tuples.sets.get(number) else { return };
+        let (columns, dt) = (self.columns, self.prepared.dt * self.prepared.bend.every as f32);
+        let scale = (self.prepared.bend.least < 1.0).then_some(scale);
+        if set.crosses {
+            if share == 0 {
+                (0..OWNERS).for_each(|owner| self.width.run(bending::Bend { columns, bends, set, owner, dt, scale }));
+            }
+        } else {
+            self.width.run(bending::Bend { columns, bends, set, owner: share, dt, scale });
         }
     }
 

@@ -151,12 +151,6 @@ impl Cones {
             quick2: ZERO,
         }
     };
-
-    /// Least of the capsules' `quick2` (m2).
-    pub fn least_quick2(&self, sound: u32) -> f32 {
-        let quick2 = self.quick2.0.iter().enumerate();
-        quick2.filter(|(c, _)| sound >> c & 1 != 0).fold(f32::MAX, |least, (_, q)| least.min(*q))
-    }
 }
 
 /// Makes the capsules ready.

@@ -19,7 +19,7 @@ use crate::colliders::Colliders;
 use crate::lanes::{MOST, Width};
 use cones::{Cones, Ends, Prepare};
 use near::{Block, Boxes, Find, PLANES, Pair};
-use solve::Solve;
+use solve::{Solve, Turn};
 use sweep::{QUICK, Sweep};
 
 pub use reach::reach;
@@ -82,7 +82,9 @@ impl Contacts {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let owned = |o: &Owner| size_of_val(&*o.blocks) + size_of_val(&*o.pairs) + size_of_val(&*o.reach);
+        let owned = |o: &Owner| {
+            size_of_val(&*o.blocks) + size_of_val(&*o.pairs) + size_of_val(&*o.turns) + size_of_val(&*o.reach)
+        };
         size_of::<Self>() + self.owners.iter().map(owned).sum::<usize>()
     }
 }
@@ -92,6 +94,7 @@ impl Contacts {
 pub struct Owner {
     blocks: Box<[Block]>,
     pairs: Box<[Pair]>,
+    turns: Box<[Turn]>,
     reach: Box<[[u16; MAX_CAPSULES]]>,
     ends: Ends,
     cones: Cones,
@@ -108,6 +111,7 @@ impl Owner {
         let pairs = vec![Pair::default(); blocks.len() * colliders.capsules().len()].into();
         Self {
             reach: reaches(&blocks, parts, colliders),
+            turns: vec![Turn::default(); blocks.len()].into(),
             blocks,
             pairs,
             ends: Ends::NONE,
@@ -147,7 +151,7 @@ impl Owner {
     /// Pushes what touches out of the capsules as they stand at the end of the substep, and holds what would have gone
     /// through them. `span` is the substep's part of the step, 0..1. Last of the constraints of a substep.
     pub fn solve(&mut self, width: Width, cols: Columns<'_>, span: [f32; 2], how: &ContactSettings) {
-        let Self { blocks, pairs, ends, cones, planes, tally, .. } = self;
+        let Self { blocks, pairs, turns, ends, cones, planes, tally, .. } = self;
         let prepare = Prepare {
             ends,
             at: span[1],
@@ -158,9 +162,8 @@ impl Owner {
             to: cones,
         };
         width.run(prepare);
-        let least_quick2 = cones.least_quick2(ends.sound);
         let sweep = Sweep { ends, cones, span, offset: how.offset_m };
-        tally.swept += width.run(Solve { cols, sweep, planes, blocks, pairs, least_quick2, how });
+        tally.swept += width.run(Solve { cols, sweep, planes, blocks, pairs, turns, how });
     }
 }
 

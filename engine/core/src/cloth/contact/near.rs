@@ -5,8 +5,6 @@
 //! all that they sweep in the step, lanes across particles. What is near is kept as pairs of block and capsule, a bit a
 //! particle, with room for all of them; each particle meets its capsules in their order.
 
-use std::ops::Range;
-
 use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, STEP_SECONDS};
 
 use super::cones::{Cones, Ends, PLACES, Row};
@@ -45,27 +43,19 @@ pub struct Block {
     pub planes: u16,
     /// Which may touch each plane, a bit a particle; holds where `planes` has a bit.
     pub plane_lanes: [u16; PLANES],
-    /// Whether anything is to be done in this substep.
-    pub busy: bool,
 }
 
 impl Block {
     /// Near nothing yet.
     pub fn new(first: u32, len: u32) -> Self {
         let len = len.min(MOST as u32) as u16;
-        Self { first, from: 0, len, pairs: 0, planes: 0, plane_lanes: [0; PLANES], busy: false }
+        Self { first, from: 0, len, pairs: 0, planes: 0, plane_lanes: [0; PLANES] }
     }
 
     /// First particle and how many.
     #[inline(always)]
     pub fn place(&self) -> (usize, usize) {
         (self.first as usize, usize::from(self.len))
-    }
-
-    /// Its pairs, a range of the owner's.
-    #[inline(always)]
-    pub fn range(&self) -> Range<usize> {
-        self.from as usize..self.from as usize + usize::from(self.pairs)
     }
 }
 
@@ -76,8 +66,10 @@ pub struct Pair {
     pub capsule: u16,
     /// Which particles of the block may touch it in this step, a bit each.
     pub lanes: u16,
-    /// Which do at the end of this substep as the other constraints left them.
+    /// Which do at the end of this substep as it stands.
     pub touched: u16,
+    /// Which have moved so far in it that the capsule may have to sweep them.
+    pub fast: u16,
 }
 
 /// Boxes around what each capsule sweeps in the step.
@@ -183,7 +175,7 @@ fn keep(
         let lanes = lanes[c] & reach.map_or(!0, |r| r[c]);
         // Written first and counted after: no branch.
         if let Some(pair) = pairs.get_mut(at) {
-            *pair = Pair { capsule: c as u16, lanes, touched: 0 };
+            *pair = Pair { capsule: c as u16, lanes, touched: 0, fast: 0 };
             at += usize::from(lanes != 0);
         }
     }

@@ -8,9 +8,11 @@ use super::touch::{Friction, ON_M, Surface, close, place, push, surface};
 use crate::cloth::state::Columns;
 use crate::lanes::{Kernel, Lanes, MOST, Mask, V3};
 
-/// One substep over the blocks of one owner, in two passes. The first looks at every pair and changes nothing, so that
-/// nothing waits for anything; it leaves few blocks, and what the second does with their pairs is known before it gets
-/// there. A pair is looked at again only where a push came before it.
+/// One substep over the blocks of one owner.
+///
+/// Each particle meets its capsules one after the other, but a push is a long chain of operations that wait for each
+/// other. So the blocks take turns: all are looked at, each that has something to do meets one capsule, those are looked
+/// at again from that capsule on, until nothing is left. Nothing then waits for what was only just begun.
 pub struct Solve<'a> {
     /// The garment's columns.
     pub cols: Columns<'a>,
@@ -19,30 +21,22 @@ pub struct Solve<'a> {
     /// Unit normals and offsets (m) of the planes, moved outwards by the contact offset.
     pub planes: &'a [[f32; 4]],
     /// The owner's blocks.
-    pub blocks: &'a mut [Block],
+    pub blocks: &'a [Block],
     /// Their pairs.
     pub pairs: &'a mut [Pair],
-    /// What a particle may move (m2) before any capsule has to sweep it.
-    pub least_quick2: f32,
+    /// Room for a turn of every block.
+    pub turns: &'a mut [Turn],
     /// Friction.
     pub how: &'a ContactSettings,
 }
 
-/// Particles of a block on lanes, and what is known of them.
-struct Few<L: Lanes> {
-    x: V3<L>,
-    previous: V3<L>,
-    /// Shift of their bits.
-    from: usize,
-    friction: Friction<L>,
-    /// Whether one may have moved so far that a capsule has to sweep it.
-    fast: bool,
-    /// Square of how far they moved (m2).
-    way2: L,
-    /// Whether any was pushed.
-    moved: bool,
-    /// Pairs whose way was followed.
-    swept: u32,
+/// A block that has something to do.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Turn {
+    /// The block.
+    block: u32,
+    /// Which of its pairs is next.
+    pair: u32,
 }
 
 impl Kernel for Solve<'_> {
@@ -51,140 +45,142 @@ impl Kernel for Solve<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u64 {
-        let Self { cols, sweep, planes, blocks, pairs, least_quick2, how } = self;
-        for block in &mut *blocks {
-            if block.pairs != 0 {
-                block.busy = look::<L>(cols, &sweep, block, pairs, least_quick2);
-            }
-            block.busy = block.busy && block.pairs != 0 || block.planes != 0;
-        }
+        let Self { cols, sweep, planes, blocks, pairs, turns, how } = self;
         let friction = Friction { hold: L::splat(how.friction_static), slide: L::splat(how.friction_kinetic) };
         let mut swept = 0;
-        for block in blocks.iter().filter(|b| b.busy) {
-            let (first, len) = block.place();
-            let mut from = 0;
-            while from < len {
-                let (at, n) = (first + from, L::N.min(len - from));
-                let (x, previous) = (V3::<L>::load(cols.x, at, n), V3::<L>::load(cols.previous, at, n));
-                let zero = L::splat(0.0);
-                let mut few = Few { x, previous, from, friction, fast: false, way2: zero, moved: false, swept: 0 };
-                few.measure(least_quick2);
-                for pair in pairs.get(block.range()).unwrap_or_default() {
-                    few.meet(&sweep, pair, least_quick2);
-                }
-                few.meet_planes(planes, block);
-                if few.moved {
-                    few.x.store(cols.x, at, n);
-                    few.previous.store(cols.previous, at, n);
-                }
-                swept += u64::from(few.swept);
-                from += L::N;
+        let mut count = 0;
+        for (b, block) in blocks.iter().enumerate().filter(|(_, b)| b.pairs != 0) {
+            let next = look::<L>(cols, &sweep, block, pairs, 0);
+            count += take(turns, count, b as u32, next);
+        }
+        while count > 0 {
+            for turn in &turns[..count] {
+                let block = &blocks[turn.block as usize];
+                swept += meet(cols, &sweep, block, &pairs[turn.pair as usize], friction);
             }
+            let mut left = 0;
+            for t in 0..count {
+                let Turn { block: b, pair } = turns[t];
+                let block = &blocks[b as usize];
+                let next = look::<L>(cols, &sweep, block, pairs, pair as usize + 1 - block.from as usize);
+                left += take(turns, left, b, next);
+            }
+            count = left;
+        }
+        for block in blocks.iter().filter(|b| b.planes != 0) {
+            meet_planes(cols, planes, block, friction);
         }
         swept
     }
 }
 
-/// The bits of these lanes among those of a block.
+/// Notes a turn; 1 if there is something to do. Written first and counted after: no branch.
 #[inline(always)]
-fn few_of<L: Lanes>(lanes: u16, from: usize) -> u32 {
+fn take(turns: &mut [Turn], at: usize, block: u32, next: Option<u32>) -> usize {
+    turns[at] = Turn { block, pair: next.unwrap_or(0) };
+    usize::from(next.is_some())
+}
+
+/// The bits of the lanes from `from` on among those of a block.
+#[inline(always)]
+fn few<L: Lanes>(lanes: u16, from: usize) -> u32 {
     u32::from(lanes) >> from & (((1u64 << L::N) - 1) as u32)
 }
 
-/// Which particles of a block touch each capsule that they are near; whether any does, or has moved far.
+/// Looks at a block's pairs from number `start` on: which particles touch, which have moved far. Gives the first of the
+/// pairs with any.
 #[inline(always)]
-fn look<L: Lanes>(cols: Columns<'_>, sweep: &Sweep<'_>, block: &Block, pairs: &mut [Pair], least_quick2: f32) -> bool {
+fn look<L: Lanes>(
+    cols: Columns<'_>,
+    sweep: &Sweep<'_>,
+    block: &Block,
+    pairs: &mut [Pair],
+    start: usize,
+) -> Option<u32> {
     let (first, len) = block.place();
-    let pairs = pairs.get_mut(block.range()).unwrap_or_default();
-    let mut busy = 0;
+    let range = block.from as usize + start..block.from as usize + usize::from(block.pairs);
+    let later = &mut pairs[range.clone()];
     let mut from = 0;
     while from < len {
         let (at, n) = (first + from, L::N.min(len - from));
         let x = V3::<L>::load(cols.x, at, n);
-        busy |= L::splat(least_quick2).lt(way2(x, V3::load(cols.previous, at, n))).bits();
-        for pair in &mut *pairs {
-            let lanes = few_of::<L>(pair.lanes, from);
-            let before = if from == 0 { 0 } else { pair.touched };
+        let way = x - V3::load(cols.previous, at, n);
+        let way2 = way.dot(way);
+        for pair in &mut *later {
+            let lanes = few::<L>(pair.lanes, from);
             // The widest lanes hold all of a pair's particles: there is always one.
-            if L::N < MOST && lanes == 0 {
-                pair.touched = before;
-                continue;
+            let [mut touched, mut fast] = [0; 2];
+            if L::N == MOST || lanes != 0 {
+                let c = usize::from(pair.capsule) % PLACES;
+                touched = close(sweep.cones, c, x, L::splat(-ON_M)).bits() & lanes;
+                fast = sweep.cones.quick2.splat::<L>(c).lt(way2).bits() & lanes;
             }
-            let c = usize::from(pair.capsule) % PLACES;
-            let touched = close(sweep.cones, c, x, L::splat(-ON_M)).bits() & lanes;
-            pair.touched = before | (touched << from) as u16;
-            busy |= touched;
+            if from == 0 {
+                (pair.touched, pair.fast) = (0, 0);
+            }
+            pair.touched |= (touched << from) as u16;
+            pair.fast |= (fast << from) as u16;
         }
         from += L::N;
     }
-    busy != 0
+    let mut next = None;
+    for (pair, i) in later.iter().zip(range).rev() {
+        next = if pair.touched | pair.fast != 0 { Some(i as u32) } else { next };
+    }
+    next
 }
 
-impl<L: Lanes> Few<L> {
-    /// How far the particles moved.
-    #[inline(always)]
-    fn measure(&mut self, least_quick2: f32) {
-        self.way2 = way2(self.x, self.previous);
-        self.fast = L::splat(least_quick2).lt(self.way2).any();
-    }
-
-    /// One capsule.
-    #[inline(always)]
-    fn meet(&mut self, sweep: &Sweep<'_>, pair: &Pair, least_quick2: f32) {
-        let lanes = few_of::<L>(pair.lanes, self.from);
-        if L::N < MOST && lanes == 0 {
-            return;
-        }
-        let c = usize::from(pair.capsule) % PLACES;
-        let lanes = L::Mask::of(lanes);
-        if self.fast {
-            let quick = sweep.cones.quick2.splat::<L>(c).lt(self.way2).and(lanes);
-            if quick.any() {
-                let swept = sweep.run(c, &mut self.x, &mut self.previous, self.friction, quick);
-                self.swept += swept.count_ones();
-                self.moved = true;
-                self.measure(least_quick2);
-            }
-        }
-        if !self.moved && few_of::<L>(pair.touched, self.from) == 0 {
-            return;
-        }
-        let touches = close(sweep.cones, c, self.x, L::splat(-ON_M)).and(lanes);
-        // What the first pass saw still holds as long as nothing was moved.
-        if self.moved && !touches.any() {
-            return;
-        }
-        let on = surface(sweep.cones, c, &place(sweep.cones, c, self.x));
-        push(&mut self.x, &mut self.previous, &on, self.friction, touches);
-        self.moved = true;
-        self.measure(least_quick2);
-    }
-
-    /// Whatever is behind a plane is pushed out: there is no other side.
-    #[inline(always)]
-    fn meet_planes(&mut self, planes: &[[f32; 4]], block: &Block) {
-        let mut bits = block.planes;
-        while bits != 0 {
-            let p = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            let Some(plane) = planes.get(p) else { return };
-            let lanes = L::Mask::of(few_of::<L>(block.plane_lanes[p % PLANES], self.from));
-            let depth = depth(plane, self.x);
-            let touches = L::splat(0.0).lt(depth).and(lanes);
-            if touches.any() {
-                let [x, y, z, _] = plane.map(L::splat);
-                let zero = L::splat(0.0);
-                let on = Surface { normal: V3 { x, y, z }, depth, carried: V3 { x: zero, y: zero, z: zero } };
-                push(&mut self.x, &mut self.previous, &on, self.friction, touches);
-                self.moved = true;
-            }
-        }
-    }
-}
-
-/// Square of how far particles have moved in the substep (m2).
+/// A block meets a capsule; gives how many particles' ways were followed.
 #[inline(always)]
-fn way2<L: Lanes>(x: V3<L>, previous: V3<L>) -> L {
-    let way = x - previous;
-    way.dot(way)
+fn meet<L: Lanes>(cols: Columns<'_>, sweep: &Sweep<'_>, block: &Block, pair: &Pair, friction: Friction<L>) -> u64 {
+    let (first, len) = block.place();
+    let c = usize::from(pair.capsule) % PLACES;
+    let mut swept = 0;
+    let mut from = 0;
+    while from < len {
+        let (mut touched, fast) = (few::<L>(pair.touched, from), few::<L>(pair.fast, from));
+        let (at, n) = (first + from, L::N.min(len - from));
+        if touched | fast != 0 {
+            let mut x = V3::<L>::load(cols.x, at, n);
+            let mut previous = V3::<L>::load(cols.previous, at, n);
+            if fast != 0 {
+                swept += sweep.run(c, &mut x, &mut previous, friction, L::Mask::of(fast)).count_ones();
+                touched = close(sweep.cones, c, x, L::splat(-ON_M)).bits() & few::<L>(pair.lanes, from);
+            }
+            if touched != 0 {
+                let on = surface(sweep.cones, c, &place(sweep.cones, c, x));
+                push(&mut x, &mut previous, &on, friction, L::Mask::of(touched));
+            }
+            x.store(cols.x, at, n);
+            previous.store(cols.previous, at, n);
+        }
+        from += L::N;
+    }
+    u64::from(swept)
+}
+
+/// Whatever is behind a plane is pushed out: there is no other side.
+#[inline(always)]
+fn meet_planes<L: Lanes>(cols: Columns<'_>, planes: &[[f32; 4]], block: &Block, friction: Friction<L>) {
+    let (first, len) = block.place();
+    let zero = L::splat(0.0);
+    let mut from = 0;
+    while from < len {
+        let (at, n) = (first + from, L::N.min(len - from));
+        let mut x = V3::<L>::load(cols.x, at, n);
+        let mut previous = V3::<L>::load(cols.previous, at, n);
+        for (p, plane) in planes.iter().enumerate().filter(|(p, _)| block.planes >> p & 1 != 0) {
+            let depth = depth(plane, x);
+            let touched = zero.lt(depth).and(L::Mask::of(few::<L>(block.plane_lanes[p % PLANES], from)));
+            if touched.any() {
+                let [nx, ny, nz, _] = *plane;
+                let normal = V3 { x: L::splat(nx), y: L::splat(ny), z: L::splat(nz) };
+                let on = Surface { normal, depth, carried: V3 { x: zero, y: zero, z: zero } };
+                push(&mut x, &mut previous, &on, friction, touched);
+            }
+        }
+        x.store(cols.x, at, n);
+        previous.store(cols.previous, at, n);
+        from += L::N;
+    }
 }

@@ -139,7 +139,7 @@ fn a_capsule_that_is_not_finite_is_ignored_and_counted_and_the_others_act() {
 fn a_pinned_particle_never_moves() {
     let (positions, colliders) = crowd(200, 4);
     let mut bed = Bed::new(&positions, &colliders);
-    (0..200).step_by(3).for_each(|i| bed.state.weight.as_mut()[i] = 0.0);
+    (0..200).step_by(3).for_each(|i| bed.state.columns().w.set(i, 0.0));
     bed.find(&colliders);
     bed.solve([0.0, 1.0]);
     let moved = |i: &usize| bed.state.positions()[0][*i] != positions[*i].x;
