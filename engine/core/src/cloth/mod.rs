@@ -8,11 +8,13 @@ pub mod bending;
 pub mod contact;
 pub mod fibers;
 pub mod guard;
+pub mod hold;
 pub mod links;
 pub mod lists;
 pub mod measure;
 pub mod predict;
 pub mod program;
+pub mod root;
 pub mod settings;
 pub mod settle;
 pub mod state;
@@ -90,7 +92,7 @@ impl Cloth {
             state: State::new(&garment.start, &garment.inverse_mass),
             fixed_start: fixed.clone(),
             fixed_end: fixed,
-            contacts: contact::Contacts::new(&layout.spans, &garment.parts, colliders),
+            contacts: contact::Contacts::new(&layout.spans, &garment.parts, &garment.start, colliders),
             scratch: [scratch(), scratch()],
             strains: vec![0.0; garment.strain_edges.len()].into(),
             prepared: step::Prepared::new(garment),

@@ -125,4 +125,16 @@ impl<'a> Column<'a> {
         // SAFETY: within the length, or its end.
         unsafe { self.data.add(at) }
     }
+
+    /// Where four times four numbers lie.
+    ///
+    /// # Panics
+    /// Where they are not all there.
+    #[inline(always)]
+    pub(super) fn quads(self, at: &[u32; 4]) -> [*mut f32; 4] {
+        let last = at[0].max(at[1]).max(at[2].max(at[3]));
+        self.place(last as usize, 4);
+        // SAFETY: none begins later than one that is within the length.
+        at.map(|q| unsafe { self.data.add(q as usize) })
+    }
 }

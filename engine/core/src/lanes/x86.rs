@@ -130,6 +130,16 @@ macro_rules! vector {
                 self.spread(to, &index[..n.min($n)]);
             }
             #[inline(always)]
+            fn load_quads(from: Column<'_>, quads: &[u32; 4], lane: usize) -> Self {
+                // SAFETY: the column has four numbers at each place.
+                unsafe { Self::read_quads(from.quads(quads), lane / 4 % 4) }
+            }
+            #[inline(always)]
+            fn store_quads(self, to: Column<'_>, quads: &[u32; 4], lane: usize) {
+                // SAFETY: as above.
+                unsafe { self.write_quads(to.quads(quads), lane / 4 % 4) }
+            }
+            #[inline(always)]
             fn div(self, by: Self) -> Self {
                 // SAFETY: as above.
                 Self(unsafe { $div(self.0, by.0) })
@@ -313,6 +323,54 @@ mod widths {
             let outside = unsafe { _mm512_mask_cmpge_epu32_mask(first, at, len) };
             assert!(outside == 0, "a kernel left its column");
             (first, at)
+        }
+    }
+
+    // SAFETY of the following: the caller has four numbers at each place.
+    impl Four {
+        #[inline(always)]
+        pub(super) unsafe fn read_quads(at: [*mut f32; 4], first: usize) -> Self {
+            Self(unsafe { _mm_loadu_ps(at[first]) })
+        }
+        #[inline(always)]
+        pub(super) unsafe fn write_quads(self, at: [*mut f32; 4], first: usize) {
+            unsafe { _mm_storeu_ps(at[first], self.0) }
+        }
+    }
+
+    impl Eight {
+        #[inline(always)]
+        pub(super) unsafe fn read_quads(at: [*mut f32; 4], first: usize) -> Self {
+            let [a, b] = [at[first], at[(first + 1) % 4]];
+            Self(unsafe { _mm256_insertf128_ps::<1>(_mm256_castps128_ps256(_mm_loadu_ps(a)), _mm_loadu_ps(b)) })
+        }
+        #[inline(always)]
+        pub(super) unsafe fn write_quads(self, at: [*mut f32; 4], first: usize) {
+            unsafe {
+                _mm_storeu_ps(at[first], _mm256_castps256_ps128(self.0));
+                _mm_storeu_ps(at[(first + 1) % 4], _mm256_extractf128_ps::<1>(self.0));
+            }
+        }
+    }
+
+    impl Sixteen {
+        #[inline(always)]
+        pub(super) unsafe fn read_quads(at: [*mut f32; 4], _: usize) -> Self {
+            unsafe {
+                let v = _mm512_castps128_ps512(_mm_loadu_ps(at[0]));
+                let v = _mm512_insertf32x4::<1>(v, _mm_loadu_ps(at[1]));
+                let v = _mm512_insertf32x4::<2>(v, _mm_loadu_ps(at[2]));
+                Self(_mm512_insertf32x4::<3>(v, _mm_loadu_ps(at[3])))
+            }
+        }
+        #[inline(always)]
+        pub(super) unsafe fn write_quads(self, at: [*mut f32; 4], _: usize) {
+            unsafe {
+                _mm_storeu_ps(at[0], _mm512_castps512_ps128(self.0));
+                _mm_storeu_ps(at[1], _mm512_extractf32x4_ps::<1>(self.0));
+                _mm_storeu_ps(at[2], _mm512_extractf32x4_ps::<2>(self.0));
+                _mm_storeu_ps(at[3], _mm512_extractf32x4_ps::<3>(self.0));
+            }
         }
     }
 

@@ -6,17 +6,19 @@
 
 mod cones;
 mod near;
+mod patch;
 mod reach;
 mod solve;
 mod sweep;
 mod touch;
 
+use glam::Vec3;
 use toile_assets::garment::Part;
 use toile_assets::limits::MAX_CAPSULES;
 
 use super::state::Columns;
 use crate::colliders::Colliders;
-use crate::lanes::{MOST, Width};
+use crate::lanes::Width;
 use cones::{Cones, Ends, Prepare};
 use near::{Block, Boxes, Find, PLANES, Pair};
 use solve::{Solve, Turn};
@@ -54,9 +56,9 @@ pub struct Contacts {
 
 impl Contacts {
     /// All storage. `spans` are the ranges of particles (first, how many) of each worker, together each particle once;
-    /// `parts` says which limb each particle hangs on.
-    pub fn new(spans: &[Vec<(u32, u32)>; 2], parts: &[Part], colliders: &Colliders) -> Self {
-        Self { owners: [0, 1].map(|w| Owner::new(&spans[w], parts, colliders)) }
+    /// `parts` says which limb each particle hangs on, `start` where it starts (m): what is close shares a block.
+    pub fn new(spans: &[Vec<(u32, u32)>; 2], parts: &[Part], start: &[Vec3], colliders: &Colliders) -> Self {
+        Self { owners: [0, 1].map(|w| Owner::new(&spans[w], parts, start, colliders)) }
     }
 
     /// The workers' parts, to be used at the same time.
@@ -104,10 +106,8 @@ pub struct Owner {
 }
 
 impl Owner {
-    fn new(spans: &[(u32, u32)], parts: &[Part], colliders: &Colliders) -> Self {
-        let most = MOST as u32;
-        let cut = |&(first, len): &(u32, u32)| (0..len).step_by(MOST).map(move |k| (first + k, most.min(len - k)));
-        let blocks: Box<[Block]> = spans.iter().flat_map(cut).map(|(first, len)| Block::new(first, len)).collect();
+    fn new(spans: &[(u32, u32)], parts: &[Part], start: &[Vec3], colliders: &Colliders) -> Self {
+        let blocks = patch::blocks(spans, start);
         let pairs = vec![Pair::default(); blocks.len() * colliders.capsules().len()].into();
         Self {
             reach: reaches(&blocks, parts, colliders),
@@ -175,8 +175,8 @@ fn reaches(blocks: &[Block], parts: &[Part], colliders: &Colliders) -> Box<[[u16
         return Box::default();
     }
     let of = |block: &Block, c: usize| {
-        let (first, len) = block.place();
-        (0..len).fold(0, |lanes, i| lanes | ((bits.get(first + i).unwrap_or(&all) >> c & 1) as u16) << i)
+        let reaches = |lane: usize| bits.get(block.particle(lane) as usize).unwrap_or(&all) >> c & 1;
+        (0..block.len()).fold(0, |lanes, lane| lanes | (reaches(lane) as u16) << lane)
     };
     blocks.iter().map(|block| std::array::from_fn(|c| of(block, c))).collect()
 }

@@ -1,6 +1,6 @@
 //! Near: the broad phase. Which capsules and planes each particle may touch during the step.
 //!
-//! Particles are looked at in blocks of 16 that lie together in memory, four blocks a group. A group's box against the
+//! Particles are looked at in blocks of 16 that lie close together, found at load, four blocks a group. A group's box against the
 //! capsules' boxes, lanes across capsules, leaves few capsules; those are asked for the distance of each particle from
 //! all that they sweep in the step, lanes across particles. What is near is kept as pairs of block and capsule, a bit a
 //! particle, with room for all of them; each particle meets its capsules in their order.
@@ -28,17 +28,17 @@ const JERK: f32 = 1.5;
 /// Boxes are wider than what they hold by this (m), so that rounding never makes the coarse test stricter than the fine.
 const BOX_M: f32 = 1e-3;
 
-/// Up to 16 particles that lie together in memory and have one owner.
+/// Up to 16 particles of one owner that lie close together: four times four that are neighbours in memory.
 #[derive(Debug, Clone)]
 pub struct Block {
-    /// First particle.
-    pub first: u32,
-    /// First of its pairs.
-    pub from: u32,
+    /// First particle of each four; of those past `len` nothing is read or written.
+    quads: [u32; 4],
     /// Particles, at most [`MOST`].
-    pub len: u16,
+    len: u16,
     /// Pairs: capsules that some of its particles may touch in this step.
     pub pairs: u16,
+    /// First of its pairs.
+    pub from: u32,
     /// Bit p is set where some may touch plane p.
     pub planes: u16,
     /// Which may touch each plane, a bit a particle; holds where `planes` has a bit.
@@ -46,16 +46,57 @@ pub struct Block {
 }
 
 impl Block {
-    /// Near nothing yet.
-    pub fn new(first: u32, len: u32) -> Self {
-        let len = len.min(MOST as u32) as u16;
-        Self { first, from: 0, len, pairs: 0, planes: 0, plane_lanes: [0; PLANES] }
+    /// Near nothing yet. All fours but the last are whole.
+    pub fn new(quads: [u32; 4], len: usize) -> Self {
+        Self { quads, len: len.min(MOST) as u16, pairs: 0, from: 0, planes: 0, plane_lanes: [0; PLANES] }
     }
 
-    /// First particle and how many.
+    /// Particles.
     #[inline(always)]
-    pub fn place(&self) -> (usize, usize) {
-        (self.first as usize, usize::from(self.len))
+    pub fn len(&self) -> usize {
+        usize::from(self.len)
+    }
+
+    /// Which particle is on a lane.
+    #[inline(always)]
+    pub fn particle(&self, lane: usize) -> u32 {
+        self.quads[lane / 4 % 4] + lane as u32 % 4
+    }
+
+    /// Which particles are on the lanes from `lane` on, and how many.
+    #[inline(always)]
+    fn index<L: Lanes>(&self, lane: usize) -> ([u32; MOST], usize) {
+        (std::array::from_fn(|i| self.particle(lane + i)), L::N.min(self.len() - lane))
+    }
+
+    /// Vectors of the particles from `lane` on; 0 past the last.
+    #[inline(always)]
+    pub fn load<L: Lanes>(&self, from: [Column<'_>; 3], lane: usize) -> V3<L> {
+        if self.len() == MOST {
+            return V3::load_quads(from, &self.quads, lane);
+        }
+        let (index, n) = self.index::<L>(lane);
+        V3::gather(from, &index, n)
+    }
+
+    /// Numbers of the same.
+    #[inline(always)]
+    pub fn load_one<L: Lanes>(&self, from: Column<'_>, lane: usize) -> L {
+        if self.len() == MOST {
+            return L::load_quads(from, &self.quads, lane);
+        }
+        let (index, n) = self.index::<L>(lane);
+        L::gather(from, &index, n)
+    }
+
+    /// Writes vectors.
+    #[inline(always)]
+    pub fn store<L: Lanes>(&self, v: V3<L>, to: [Column<'_>; 3], lane: usize) {
+        if self.len() == MOST {
+            return v.store_quads(to, &self.quads, lane);
+        }
+        let (index, n) = self.index::<L>(lane);
+        v.scatter(to, &index, n);
     }
 }
 
@@ -183,19 +224,11 @@ fn keep(
     at
 }
 
-/// How far a particle may come in a step (m).
+/// How far particles of these velocities may come in a step (m).
 #[inline(always)]
-fn travel<L: Lanes>(cols: Columns<'_>, at: usize, n: usize) -> L {
-    let v = V3::<L>::load(cols.v, at, n);
+fn travel<L: Lanes>(v: V3<L>) -> L {
     let speed2 = v.dot(v);
     L::splat(SLACK_M) + speed2 * reciprocal_root(speed2) * L::splat(JERK * STEP_SECONDS)
-}
-
-/// Which of `n` lanes move at all.
-#[inline(always)]
-fn free<L: Lanes>(cols: Columns<'_>, at: usize, n: usize) -> L::Mask {
-    let w = if n == L::N { L::load(cols.w, at) } else { L::load_part(cols.w, at, n) };
-    L::splat(0.0).lt(w)
 }
 
 /// The box around all places that the free particles of a group may come to.
@@ -204,13 +237,11 @@ fn around<L: Lanes>(cols: Columns<'_>, group: &[Block]) -> [[f32; 3]; 2] {
     let (most, least) = (L::splat(f32::MAX), L::splat(-f32::MAX));
     let (mut low, mut high) = ([most; 3], [least; 3]);
     for block in group {
-        let (first, len) = block.place();
         let mut from = 0;
-        while from < len {
-            let (at, n) = (first + from, L::N.min(len - from));
-            let x = V3::<L>::load(cols.x, at, n);
-            let far = travel::<L>(cols, at, n);
-            let free = free::<L>(cols, at, n);
+        while from < block.len() {
+            let x = block.load::<L>(cols.x, from);
+            let far = travel::<L>(block.load(cols.v, from));
+            let free = L::splat(0.0).lt(block.load_one(cols.w, from));
             // What is not a number leaves the box as it was.
             low[0] = (x.x - far).select(free, most).min(low[0]);
             low[1] = (x.y - far).select(free, most).min(low[1]);
@@ -263,15 +294,13 @@ fn ask<L: Lanes>(
     block: &mut Block,
     met: [u32; 2],
 ) -> [u16; PLACES] {
-    let (first, len) = block.place();
     let mut lanes = [0; PLACES];
     block.plane_lanes = [0; PLANES];
     let mut from = 0;
-    while from < len {
-        let (at, n) = (first + from, L::N.min(len - from));
-        let x = V3::<L>::load(cols.x, at, n);
-        let far = travel::<L>(cols, at, n);
-        let free = free::<L>(cols, at, n);
+    while from < block.len() {
+        let x = block.load::<L>(cols.x, from);
+        let far = travel::<L>(block.load(cols.v, from));
+        let free = L::splat(0.0).lt(block.load_one(cols.w, from));
         let mut bits = met[0];
         while bits != 0 {
             let c = bits.trailing_zeros() as usize % PLACES;

@@ -97,14 +97,12 @@ fn look<L: Lanes>(
     pairs: &mut [Pair],
     start: usize,
 ) -> Option<u32> {
-    let (first, len) = block.place();
     let range = block.from as usize + start..block.from as usize + usize::from(block.pairs);
     let later = &mut pairs[range.clone()];
     let mut from = 0;
-    while from < len {
-        let (at, n) = (first + from, L::N.min(len - from));
-        let x = V3::<L>::load(cols.x, at, n);
-        let way = x - V3::load(cols.previous, at, n);
+    while from < block.len() {
+        let x = block.load::<L>(cols.x, from);
+        let way = x - block.load(cols.previous, from);
         let way2 = way.dot(way);
         for pair in &mut *later {
             let lanes = few::<L>(pair.lanes, from);
@@ -133,16 +131,14 @@ fn look<L: Lanes>(
 /// A block meets a capsule; gives how many particles' ways were followed.
 #[inline(always)]
 fn meet<L: Lanes>(cols: Columns<'_>, sweep: &Sweep<'_>, block: &Block, pair: &Pair, friction: Friction<L>) -> u64 {
-    let (first, len) = block.place();
     let c = usize::from(pair.capsule) % PLACES;
     let mut swept = 0;
     let mut from = 0;
-    while from < len {
+    while from < block.len() {
         let (mut touched, fast) = (few::<L>(pair.touched, from), few::<L>(pair.fast, from));
-        let (at, n) = (first + from, L::N.min(len - from));
         if touched | fast != 0 {
-            let mut x = V3::<L>::load(cols.x, at, n);
-            let mut previous = V3::<L>::load(cols.previous, at, n);
+            let mut x = block.load::<L>(cols.x, from);
+            let mut previous = block.load::<L>(cols.previous, from);
             if fast != 0 {
                 swept += sweep.run(c, &mut x, &mut previous, friction, L::Mask::of(fast)).count_ones();
                 touched = close(sweep.cones, c, x, L::splat(-ON_M)).bits() & few::<L>(pair.lanes, from);
@@ -151,8 +147,8 @@ fn meet<L: Lanes>(cols: Columns<'_>, sweep: &Sweep<'_>, block: &Block, pair: &Pa
                 let on = surface(sweep.cones, c, &place(sweep.cones, c, x));
                 push(&mut x, &mut previous, &on, friction, L::Mask::of(touched));
             }
-            x.store(cols.x, at, n);
-            previous.store(cols.previous, at, n);
+            block.store(x, cols.x, from);
+            block.store(previous, cols.previous, from);
         }
         from += L::N;
     }
@@ -162,13 +158,11 @@ fn meet<L: Lanes>(cols: Columns<'_>, sweep: &Sweep<'_>, block: &Block, pair: &Pa
 /// Whatever is behind a plane is pushed out: there is no other side.
 #[inline(always)]
 fn meet_planes<L: Lanes>(cols: Columns<'_>, planes: &[[f32; 4]], block: &Block, friction: Friction<L>) {
-    let (first, len) = block.place();
     let zero = L::splat(0.0);
     let mut from = 0;
-    while from < len {
-        let (at, n) = (first + from, L::N.min(len - from));
-        let mut x = V3::<L>::load(cols.x, at, n);
-        let mut previous = V3::<L>::load(cols.previous, at, n);
+    while from < block.len() {
+        let mut x = block.load::<L>(cols.x, from);
+        let mut previous = block.load::<L>(cols.previous, from);
         for (p, plane) in planes.iter().enumerate().filter(|(p, _)| block.planes >> p & 1 != 0) {
             let depth = depth(plane, x);
             let touched = zero.lt(depth).and(L::Mask::of(few::<L>(block.plane_lanes[p % PLANES], from)));
@@ -179,8 +173,8 @@ fn meet_planes<L: Lanes>(cols: Columns<'_>, planes: &[[f32; 4]], block: &Block, 
                 push(&mut x, &mut previous, &on, friction, touched);
             }
         }
-        x.store(cols.x, at, n);
-        previous.store(cols.previous, at, n);
+        block.store(x, cols.x, from);
+        block.store(previous, cols.previous, from);
         from += L::N;
     }
 }
