@@ -7,7 +7,7 @@ use std::time::Instant;
 use glam::{Affine3A, Vec3, Vec4};
 use thiserror::Error;
 use toile_assets::bake::bake;
-use toile_assets::garment::{Garment, Layout, MeshError};
+use toile_assets::garment::{Garment, MeshError};
 use toile_assets::limits::{MAX_SPHERES, STEP_HZ};
 use toile_assets::scene_file::{SceneFile, SceneGarment};
 use toile_assets::skeleton::BONES;
@@ -287,13 +287,7 @@ impl Runner {
 
 fn baked(given: &SceneGarment) -> Result<Garment, RunError> {
     let mesh = |source| RunError::Mesh { name: given.name.clone(), source };
-    let mut garment = bake(&given.name, "one size", &given.shape, &given.fabric).map_err(mesh)?;
-    if let Some(solver) = given.warp_solver {
-        let Layout { fibers, crossing, .. } = &mut garment.layout;
-        fibers.bundles.iter_mut().for_each(|bundle| bundle.solver = solver);
-        crossing.lists.iter_mut().for_each(|list| list.solver = solver);
-    }
-    Ok(garment)
+    bake(&given.name, "one size", &given.shape, &given.fabric).map_err(mesh)
 }
 
 /// The particle of each vertex of a garment's shape.
