@@ -66,6 +66,8 @@ pub struct Colliders {
     /// Whether the floor at y = 0 stops the cloth.
     pub floor: bool,
     planes: heapless::Vec<Vec4, MAX_PLANES>,
+    /// Length of a step (s): what can move how far in it.
+    pub step_seconds: f32,
     placed: bool,
     root: Affine3A,
     hold: Hold,
@@ -95,6 +97,7 @@ impl Colliders {
             rest: heapless::Vec::from_slice(spheres).map_err(|_| ColliderError::TooManySpheres(spheres.len()))?,
             floor,
             planes: heapless::Vec::new(),
+            step_seconds: STEP_SECONDS,
             placed: false,
             root: Affine3A::IDENTITY,
             hold: Hold::default(),
@@ -150,7 +153,7 @@ impl Colliders {
         if !self.placed || far * 2 > count {
             self.hold.reset();
         }
-        self.hold.filter(motion, &mut self.end[..count], STEP_SECONDS);
+        self.hold.filter(motion, &mut self.end[..count], self.step_seconds);
         if !self.placed || far * 2 > count {
             self.start = self.end;
             self.placed = true;

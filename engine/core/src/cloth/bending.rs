@@ -138,7 +138,13 @@ impl<const K: usize> Bend<'_, K> {
     /// Coefficients, and the weights of the three particles, of `n` stencils; `alike` is the first of the run where all
     /// of it are alike.
     #[inline(always)]
-    fn parameters<L: Lanes>(&self, first: [usize; K], at: usize, alike: Option<[usize; K]>, n: usize) -> Parameters<L, K> {
+    fn parameters<L: Lanes>(
+        &self,
+        first: [usize; K],
+        at: usize,
+        alike: Option<[usize; K]>,
+        n: usize,
+    ) -> Parameters<L, K> {
         let coefficients = &self.bends.coefficients;
         let w = self.columns.w;
         // Plain loops: a closure is not always compiled for the kernel's lanes.

@@ -7,10 +7,11 @@ use std::time::Instant;
 use glam::{Affine3A, Vec3A};
 use toile_assets::garment::Garment;
 use toile_assets::garment::layout::{Bends, OWNERS};
+use toile_assets::limits::STEP_SECONDS;
 
 use super::program::{self, Op, STAGES};
-use super::state::{self, Columns};
 use super::root::{Carried, RootStep};
+use super::state::{self, Columns};
 use super::{
     Cloth, Quality, Settings, Step, Wind, bending, contact, fibers, guard, links, lists, predict, settle, tethers, wind,
 };
@@ -57,7 +58,10 @@ impl Prepared {
 
     /// Allocates nothing; a microsecond a hundred constraints, in steps in which the settings have changed.
     fn make(&mut self, garment: &Garment, settings: &Settings) {
-        let asked = settings.substeps.unwrap_or_else(|| settings.quality.substeps(garment.substeps)).max(1);
+        // The bake speaks of steps of 1/120 s.
+        let longer = (settings.step_seconds / STEP_SECONDS).max(1.0);
+        let chosen = (settings.quality.substeps(garment.substeps) as f32 * longer).ceil() as u32;
+        let asked = settings.substeps.unwrap_or(chosen).max(1);
         self.quality = settings.quality;
         let made_for = (asked, settings.step_seconds, settings.stretch_damping_s);
         if self.made_for == Some(made_for) {
@@ -301,6 +305,7 @@ impl Work<'_> {
             offset_m: fabric.contact_offset_mm * 1e-3,
             friction_static: fabric.friction * self.step.settings.static_friction,
             friction_kinetic: fabric.friction,
+            step_seconds: self.step.settings.step_seconds,
         }
     }
 

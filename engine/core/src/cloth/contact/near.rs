@@ -22,6 +22,9 @@ pub const GROUP: usize = 4;
 /// add within the step.
 const SLACK_M: f32 = 0.004;
 
+/// Acceleration that brings a particle at rest closer within a step (m/s2).
+const FALL_M_S2: f32 = 10.0;
+
 /// A particle may be jerked along by its neighbours at so many times its present speed.
 const JERK: f32 = 1.5;
 
@@ -172,6 +175,8 @@ pub struct Find<'a> {
     pub blocks: &'a mut [Block],
     /// Room for a pair of every block with every capsule.
     pub pairs: &'a mut [Pair],
+    /// Length of the step (s).
+    pub seconds: f32,
     /// Which particles of each block may touch each capsule at all; empty where all may touch all.
     pub reach: &'a [[u16; MAX_CAPSULES]],
 }
@@ -182,15 +187,15 @@ impl Kernel for Find<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> usize {
-        let Self { cols, swept, boxes, planes, blocks, pairs, reach } = self;
+        let Self { cols, swept, boxes, planes, blocks, pairs, seconds, reach } = self;
         let mut count = 0;
         for (g, group) in blocks.chunks_mut(GROUP).enumerate() {
-            let [low, high] = around::<L>(cols, group);
+            let [low, high] = around::<L>(cols, group, seconds);
             let met = [boxes.meet::<L>(low, high), meet_planes(planes, low, high)];
             for (k, block) in group.iter_mut().enumerate() {
                 (block.from, block.pairs, block.planes) = (count as u32, 0, 0);
                 if met != [0, 0] {
-                    let lanes = ask::<L>(cols, swept, planes, block, met);
+                    let lanes = ask::<L>(cols, swept, planes, block, (met, seconds));
                     count = keep(block, pairs, met[0], lanes, reach.get(g * GROUP + k));
                 }
             }
@@ -226,21 +231,23 @@ fn keep(
 
 /// How far particles of these velocities may come in a step (m).
 #[inline(always)]
-fn travel<L: Lanes>(v: V3<L>) -> L {
+fn travel<L: Lanes>(v: V3<L>, seconds: f32) -> L {
     let speed2 = v.dot(v);
-    L::splat(SLACK_M) + speed2 * reciprocal_root(speed2) * L::splat(JERK * STEP_SECONDS)
+    // What falls from rest comes this far; the slack covers it in a step of 1/120 s.
+    let slack = SLACK_M + FALL_M_S2 * (seconds * seconds - STEP_SECONDS * STEP_SECONDS).max(0.0);
+    L::splat(slack) + speed2 * reciprocal_root(speed2) * L::splat(JERK * seconds)
 }
 
 /// The box around all places that the free particles of a group may come to.
 #[inline(always)]
-fn around<L: Lanes>(cols: Columns<'_>, group: &[Block]) -> [[f32; 3]; 2] {
+fn around<L: Lanes>(cols: Columns<'_>, group: &[Block], seconds: f32) -> [[f32; 3]; 2] {
     let (most, least) = (L::splat(f32::MAX), L::splat(-f32::MAX));
     let (mut low, mut high) = ([most; 3], [least; 3]);
     for block in group {
         let mut from = 0;
         while from < block.len() {
             let x = block.load::<L>(cols.x, from);
-            let far = travel::<L>(block.load(cols.v, from));
+            let far = travel::<L>(block.load(cols.v, from), seconds);
             let free = L::splat(0.0).lt(block.load_one(cols.w, from));
             // What is not a number leaves the box as it was.
             low[0] = (x.x - far).select(free, most).min(low[0]);
@@ -292,14 +299,14 @@ fn ask<L: Lanes>(
     swept: &Cones,
     planes: &[[f32; 4]],
     block: &mut Block,
-    met: [u32; 2],
+    (met, seconds): ([u32; 2], f32),
 ) -> [u16; PLACES] {
     let mut lanes = [0; PLACES];
     block.plane_lanes = [0; PLANES];
     let mut from = 0;
     while from < block.len() {
         let x = block.load::<L>(cols.x, from);
-        let far = travel::<L>(block.load(cols.v, from));
+        let far = travel::<L>(block.load(cols.v, from), seconds);
         let free = L::splat(0.0).lt(block.load_one(cols.w, from));
         let mut bits = met[0];
         while bits != 0 {
