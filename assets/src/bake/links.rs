@@ -44,6 +44,13 @@ pub fn lay_out(baking: &Baking<'_>) -> Layout {
     for fiber in across().filter(|f| chooser.choose(f) == Solver::GaussSeidel) {
         fiber.edges.iter().for_each(|&e| role[e as usize] = Some(fiber.direction));
     }
+    // Warp that no fiber carries, such as the link by which a fiber hangs from the middle of another.
+    let mut carried = vec![false; baking.edges.len()];
+    baking.pieces.iter().flat_map(|p| &p.edges).for_each(|&e| carried[e as usize] = true);
+    for fiber in baking.chains.iter().filter(|f| f.direction == Direction::Warp) {
+        let single = fiber.edges.iter().filter(|&&e| !carried[e as usize]);
+        single.for_each(|&e| role[e as usize] = Some(Direction::Warp));
+    }
     let free = |i: usize| {
         let e = &baking.edges[i];
         !(baking.shape.fixed[e.a as usize] && baking.shape.fixed[e.b as usize])
@@ -100,9 +107,7 @@ fn links(baking: &Baking<'_>, edges: &[(usize, Direction)]) -> Links {
         .collect();
     let weight = |i: usize, k: usize| baking.weight(constraints[i].1[k]);
     let alike = |i: usize, j: usize| {
-        same(edge(i).rest, edge(j).rest)
-            && same(soft(i), soft(j))
-            && (0..2).all(|k| same(weight(i, k), weight(j, k)))
+        same(edge(i).rest, edge(j).rest) && same(soft(i), soft(j)) && (0..2).all(|k| same(weight(i, k), weight(j, k)))
     };
     let (tuples, places) = runs::lay_out(&constraints, &baking.order.owner, true, &alike);
     Links {

@@ -21,7 +21,7 @@
 
 use glam::{Vec3, Vec3A};
 
-use super::state::Columns;
+use super::state::{self, Columns};
 use crate::lanes::{Column, Kernel, Lanes, MOST, Store, V3, Width, reciprocal_root};
 
 /// Density of dry air at 20 C and 1,013 hPa (kg/m3).
@@ -268,9 +268,12 @@ impl Kernel for Blow<'_> {
             let mut from = 0;
             while from < run.len as usize {
                 let len = CHUNK.min(run.len as usize - from);
-                let corners = run.first.map(|i| i as usize + from);
-                self.press_row(&air, corners, [done, len], force);
-                corners.into_iter().for_each(|i| self.add_row::<L>(i, len, force));
+                let [i, j, k] = run.first;
+                let (i, j, k) = (i as usize + from, j as usize + from, k as usize + from);
+                self.press_row(&air, [i, j, k], [done, len], force);
+                self.add_row::<L>(i, len, force);
+                self.add_row::<L>(j, len, force);
+                self.add_row::<L>(k, len, force);
                 from += len;
                 done += len;
             }
@@ -283,49 +286,85 @@ impl Blow<'_> {
     /// The forces of a piece of a run; `[done, len]` is where its masses begin, and how many.
     #[inline(always)]
     fn press_row<L: Lanes>(&self, air: &Air<L>, corners: [usize; 3], [done, len]: [usize; 2], force: [Column<'_>; 3]) {
-        let masses = Column::read_only(&self.group.mass);
+        let whole = len - len % L::N;
         let mut k = 0;
-        while k < len {
-            let n = L::N.min(len - k);
-            let x = corners.map(|i| V3::<L>::load(self.at.x, i + k, n));
-            let v = corners.map(|i| V3::<L>::load(self.at.v, i + k, n));
-            air.force(x, v, part(masses, done + k, n)).store(force, k, n);
-            k += n;
+        while k < whole {
+            self.press_some(air, corners, done, k, L::N, force);
+            k += L::N;
         }
+        if k < len {
+            self.press_some(air, corners, done, k, len - k, force);
+        }
+    }
+
+    /// The forces of `n` triangles from the `k`th of a piece on.
+    #[inline(always)]
+    fn press_some<L: Lanes>(
+        &self,
+        air: &Air<L>,
+        [a, b, c]: [usize; 3],
+        done: usize,
+        k: usize,
+        n: usize,
+        force: [Column<'_>; 3],
+    ) {
+        let (at, speed) = (self.at.x, self.at.v);
+        let x = [V3::load(at, a + k, n), V3::load(at, b + k, n), V3::load(at, c + k, n)];
+        let v = [V3::load(speed, a + k, n), V3::load(speed, b + k, n), V3::load(speed, c + k, n)];
+        let mass = part(Column::read_only(&self.group.mass), done + k, n);
+        // The room is a multiple of the widest lanes: what is written past `n` is not used.
+        air.force(x, v, mass).store(force, k, L::N);
     }
 
     /// Adds the forces of a piece of a run to one corner.
     #[inline(always)]
     fn add_row<L: Lanes>(&self, corner: usize, len: usize, force: [Column<'_>; 3]) {
+        let whole = len - len % L::N;
         let mut k = 0;
-        while k < len {
-            let n = L::N.min(len - k);
-            let f = V3::<L>::load(force, k, n) * part(self.at.w, corner + k, n);
-            (V3::load(self.to, corner + k, n) + f).store(self.to, corner + k, n);
-            k += n;
+        while k < whole {
+            self.add_some::<L>(corner, k, L::N, force);
+            k += L::N;
         }
+        if k < len {
+            self.add_some::<L>(corner, k, len - k, force);
+        }
+    }
+
+    /// Adds `n` forces from the `k`th on to one corner.
+    #[inline(always)]
+    fn add_some<L: Lanes>(&self, corner: usize, k: usize, n: usize, force: [Column<'_>; 3]) {
+        let f = V3::<L>::load(force, k, L::N) * part(self.at.w, corner + k, n);
+        (V3::load(self.to, corner + k, n) + f).store(self.to, corner + k, n);
     }
 
     /// The loose triangles: forces several at a time, sums one after the other, because they may share particles.
     #[inline(always)]
     fn press_loose<L: Lanes>(&self, air: &Air<L>, done: usize, force: [Column<'_>; 3]) {
-        let loose = &self.group.loose;
+        let [a, b, c] = &self.group.loose;
+        let (place, speed) = (self.at.x, self.at.v);
         let mut at = 0;
-        while at < loose[0].len() {
-            let n = L::N.min(loose[0].len() - at);
-            let corners = [0, 1, 2].map(|corner| &loose[corner][at..at + n]);
-            let x = corners.map(|i| V3::<L>::gather(self.at.x, i, n));
-            let v = corners.map(|i| V3::<L>::gather(self.at.v, i, n));
+        while at < a.len() {
+            let n = L::N.min(a.len() - at);
+            let (a, b, c) = (&a[at..at + n], &b[at..at + n], &c[at..at + n]);
+            let x = [V3::gather(place, a, n), V3::gather(place, b, n), V3::gather(place, c, n)];
+            let v = [V3::gather(speed, a, n), V3::gather(speed, b, n), V3::gather(speed, c, n)];
             let mass = part(Column::read_only(&self.group.mass), done + at, n);
             air.force(x, v, mass).store(force, 0, n);
             for k in 0..n {
-                for i in corners.map(|c| c[k] as usize) {
-                    let w = self.at.w.get(i);
-                    (0..3).for_each(|axis| self.to[axis].set(i, self.to[axis].get(i) + force[axis].get(k) * w));
-                }
+                let f = state::get(force, k);
+                self.add_one(a[k], f);
+                self.add_one(b[k], f);
+                self.add_one(c[k], f);
             }
             at += n;
         }
+    }
+
+    /// Adds a force to one particle.
+    #[inline(always)]
+    fn add_one(&self, particle: u32, force: Vec3A) {
+        let i = particle as usize;
+        state::set(self.to, i, state::get(self.to, i) + force * self.at.w.get(i));
     }
 }
 
