@@ -224,6 +224,7 @@ impl Work<'_> {
             offset_m: fabric.contact_offset_mm * 1e-3,
             friction_static: fabric.friction,
             friction_kinetic: fabric.friction,
+            step_seconds: self.step.settings.step_seconds,
         }
     }
 

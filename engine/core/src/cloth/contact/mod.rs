@@ -35,6 +35,8 @@ pub struct ContactSettings {
     pub friction_static: f32,
     /// Coulomb coefficient of what slides, at most the static one.
     pub friction_kinetic: f32,
+    /// Length of a step (s): how far what moves may come until the next search.
+    pub step_seconds: f32,
 }
 
 /// What contact did, counted since the garment was made.
@@ -143,7 +145,8 @@ impl Owner {
         };
         width.run(prepare);
         let Self { blocks, pairs, reach, cones, boxes, planes, tally, .. } = self;
-        let count = width.run(Find { cols, swept: cones, boxes, planes, blocks, pairs, reach });
+        let count =
+            width.run(Find { cols, swept: cones, boxes, planes, blocks, pairs, reach, step_seconds: how.step_seconds });
         tally.near += pairs[..count].iter().map(|p| u64::from(p.lanes.count_ones())).sum::<u64>();
         tally.ignored += colliders.capsules().len() as u64 - u64::from(self.ends.sound.count_ones());
     }

@@ -5,7 +5,7 @@
 //! all that they sweep in the step, lanes across particles. What is near is kept as pairs of block and capsule, a bit a
 //! particle, with room for all of them; each particle meets its capsules in their order.
 
-use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, STEP_SECONDS};
+use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES};
 
 use super::cones::{Cones, Ends, PLACES, Row};
 use super::touch::close;
@@ -171,6 +171,8 @@ pub struct Find<'a> {
     pub pairs: &'a mut [Pair],
     /// Which particles of each block may touch each capsule at all; empty where all may touch all.
     pub reach: &'a [[u16; MAX_CAPSULES]],
+    /// Length of the step (s).
+    pub step_seconds: f32,
 }
 
 impl Kernel for Find<'_> {
@@ -179,12 +181,13 @@ impl Kernel for Find<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> usize {
-        let Self { cols, swept, boxes, planes, blocks, pairs, reach } = self;
+        let Self { cols, swept, boxes, planes, blocks, pairs, reach, step_seconds } = self;
+        let ahead = L::splat(JERK * step_seconds);
         let mut count = 0;
         for (b, block) in blocks.iter_mut().enumerate() {
             let mut far = [0.0; MOST];
             let far = Column::new(&mut far);
-            let [low, high] = around::<L>(cols, block, far);
+            let [low, high] = around::<L>(cols, block, ahead, far);
             let met = [boxes.meet::<L>(low, high), meet_planes(planes, low, high)];
             (block.from, block.pairs, block.planes) = (count as u32, 0, 0);
             if met != [0, 0] {
@@ -221,23 +224,23 @@ fn keep(
     at
 }
 
-/// How far particles of these velocities may come in a step (m).
+/// How far particles of these velocities may come in so much time (m).
 #[inline(always)]
-fn travel<L: Lanes>(v: V3<L>) -> L {
+fn travel<L: Lanes>(v: V3<L>, ahead: L) -> L {
     let speed2 = v.dot(v);
-    L::splat(SLACK_M) + speed2 * reciprocal_root(speed2) * L::splat(JERK * STEP_SECONDS)
+    L::splat(SLACK_M) + speed2 * reciprocal_root(speed2) * ahead
 }
 
 /// The box around all places that the free particles of a block may come to, and how far each may come; what is not free
 /// comes to no number, which is in no box and near nothing.
 #[inline(always)]
-fn around<L: Lanes>(cols: Columns<'_>, block: &Block, far: Column<'_>) -> [[f32; 3]; 2] {
+fn around<L: Lanes>(cols: Columns<'_>, block: &Block, ahead: L, far: Column<'_>) -> [[f32; 3]; 2] {
     let (mut low, mut high) = ([L::splat(f32::MAX); 3], [L::splat(-f32::MAX); 3]);
     let mut from = 0;
     while from < block.len() {
         let x = block.load::<L>(cols.x, from);
         let free = L::splat(0.0).lt(block.load_one(cols.w, from));
-        let reach = travel::<L>(block.load(cols.v, from)).select(free, L::splat(f32::NAN));
+        let reach = travel(block.load(cols.v, from), ahead).select(free, L::splat(f32::NAN));
         reach.store(far, from);
         // What is no number leaves the box as it was.
         low[0] = (x.x - reach).min(low[0]);
