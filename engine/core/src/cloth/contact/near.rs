@@ -252,23 +252,9 @@ fn around<L: Lanes>(cols: Columns<'_>, block: &Block, ahead: L, far: Column<'_>)
         from += L::N;
     }
     [
-        [smallest(low[0]), smallest(low[1]), smallest(low[2])],
-        [-smallest(-high[0]), -smallest(-high[1]), -smallest(-high[2])],
+        [low[0].least(), low[1].least(), low[2].least()],
+        [-(-high[0]).least(), -(-high[1]).least(), -(-high[2]).least()],
     ]
-}
-
-/// The least lane. Halving lets the compiler keep vectors; no order of minima gives other bits.
-#[inline(always)]
-fn smallest<L: Lanes>(v: L) -> f32 {
-    let mut all = v.to_array();
-    let mut half = L::N / 2;
-    while half > 0 {
-        for i in 0..half {
-            all[i] = if all[i] < all[i + half] { all[i] } else { all[i + half] };
-        }
-        half /= 2;
-    }
-    all[0]
 }
 
 /// The planes that a box reaches through.
