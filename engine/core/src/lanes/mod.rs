@@ -94,6 +94,11 @@ pub trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = S
     fn min(self, other: Self) -> Self;
     /// `a > b ? a : b`.
     fn max(self, other: Self) -> Self;
+    /// The least of its lanes, none of which is no number.
+    fn least(self) -> f32 {
+        let values = self.to_array();
+        values[1..Self::N].iter().fold(values[0], |least, v| if *v < least { *v } else { least })
+    }
     /// Lane by lane: less than; false where either is not a number.
     fn lt(self, other: Self) -> Self::Mask;
     /// `mask ? self : other`.

@@ -121,13 +121,16 @@ fn gather_and_scatter_keep_their_places() {
 }
 
 #[test]
-fn quads_keep_their_places_at_every_width() {
+fn quads_keep_their_places_and_the_least_is_found_at_every_width() {
     struct Move<'a>(Column<'a>, Column<'a>);
     impl Kernel for Move<'_> {
         type Out = ();
         #[inline(always)]
         fn run<L: Lanes>(self) {
             for lane in (0..MOST).step_by(L::N) {
+                let numbers = L::load(self.0, lane);
+                assert_eq!(numbers.least(), lane as f32);
+                assert_eq!((-numbers).least(), -((lane + L::N - 1) as f32));
                 let v = L::load_quads(self.0, &[20, 4, 11, 36], lane);
                 v.store_quads(self.1, &[0, 30, 10, 21], lane);
             }

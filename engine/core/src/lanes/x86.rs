@@ -160,6 +160,10 @@ macro_rules! vector {
                 Self(unsafe { $max(self.0, o.0) })
             }
             #[inline(always)]
+            fn least(self) -> f32 {
+                self.lowest()
+            }
+            #[inline(always)]
             fn lt(self, o: Self) -> $answers {
                 self.less(o)
             }
@@ -323,6 +327,32 @@ mod widths {
             let outside = unsafe { _mm512_mask_cmpge_epu32_mask(first, at, len) };
             assert!(outside == 0, "a kernel left its column");
             (first, at)
+        }
+    }
+
+    impl Four {
+        #[inline(always)]
+        pub(super) fn lowest(self) -> f32 {
+            unsafe {
+                let two = _mm_min_ps(self.0, _mm_movehl_ps(self.0, self.0));
+                _mm_cvtss_f32(_mm_min_ss(two, _mm_shuffle_ps::<1>(two, two)))
+            }
+        }
+    }
+
+    impl Eight {
+        #[inline(always)]
+        pub(super) fn lowest(self) -> f32 {
+            let [a, b] = unsafe { [_mm256_castps256_ps128(self.0), _mm256_extractf128_ps::<1>(self.0)] };
+            Four(unsafe { _mm_min_ps(a, b) }).lowest()
+        }
+    }
+
+    impl Sixteen {
+        #[inline(always)]
+        pub(super) fn lowest(self) -> f32 {
+            let [a, b] = unsafe { [_mm512_castps512_ps256(self.0), _mm512_extractf32x8_ps::<1>(self.0)] };
+            Eight(unsafe { _mm256_min_ps(a, b) }).lowest()
         }
     }
 

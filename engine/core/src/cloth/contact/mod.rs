@@ -35,7 +35,7 @@ pub struct ContactSettings {
     pub friction_static: f32,
     /// Coulomb coefficient of what slides, at most the static one.
     pub friction_kinetic: f32,
-    /// Length of the step (s).
+    /// Length of a step (s): how far what moves may come until the next search.
     pub step_seconds: f32,
 }
 
@@ -146,7 +146,7 @@ impl Owner {
         width.run(prepare);
         let Self { blocks, pairs, reach, cones, boxes, planes, tally, .. } = self;
         let count =
-            width.run(Find { cols, swept: cones, boxes, planes, blocks, pairs, seconds: how.step_seconds, reach });
+            width.run(Find { cols, swept: cones, boxes, planes, blocks, pairs, reach, step_seconds: how.step_seconds });
         tally.near += pairs[..count].iter().map(|p| u64::from(p.lanes.count_ones())).sum::<u64>();
         tally.ignored += colliders.capsules().len() as u64 - u64::from(self.ends.sound.count_ones());
     }

@@ -1,11 +1,11 @@
 //! Near: the broad phase. Which capsules and planes each particle may touch during the step.
 //!
-//! Particles are looked at in blocks of 16 that lie close together, found at load, four blocks a group. A group's box against the
-//! capsules' boxes, lanes across capsules, leaves few capsules; those are asked for the distance of each particle from
+//! Particles are looked at in blocks of 16 that lie close together, found at load. A block's box against the capsules'
+//! boxes, lanes across capsules, leaves few capsules; those are asked for the distance of each particle from
 //! all that they sweep in the step, lanes across particles. What is near is kept as pairs of block and capsule, a bit a
 //! particle, with room for all of them; each particle meets its capsules in their order.
 
-use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, STEP_SECONDS};
+use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES};
 
 use super::cones::{Cones, Ends, PLACES, Row};
 use super::touch::close;
@@ -15,18 +15,15 @@ use crate::lanes::{Column, Kernel, Lanes, MOST, Mask, V3, reciprocal_root};
 /// Planes that a block can be near: the floor and those of the scene.
 pub const PLANES: usize = MAX_PLANES + 1;
 
-/// Blocks of a group: a larger one is tested sooner and its box is looser.
-pub const GROUP: usize = 4;
-
 /// Particles this much farther away than they can travel in a step are still looked at (m): what neighbours and gravity
 /// add within the step.
 const SLACK_M: f32 = 0.004;
 
-/// Acceleration that brings a particle at rest closer within a step (m/s2).
-const FALL_M_S2: f32 = 10.0;
-
 /// A particle may be jerked along by its neighbours at so many times its present speed.
 const JERK: f32 = 1.5;
+
+/// Acceleration that brings a particle at rest closer within a step (m/s2): in a long step more than the slack.
+const FALL_M_S2: f32 = 10.0;
 
 /// Boxes are wider than what they hold by this (m), so that rounding never makes the coarse test stricter than the fine.
 const BOX_M: f32 = 1e-3;
@@ -171,14 +168,14 @@ pub struct Find<'a> {
     pub boxes: &'a Boxes,
     /// Unit normals and offsets (m) of the planes, moved outwards by the contact offset.
     pub planes: &'a [[f32; 4]],
-    /// The owner's blocks, a group at a time.
+    /// The owner's blocks.
     pub blocks: &'a mut [Block],
     /// Room for a pair of every block with every capsule.
     pub pairs: &'a mut [Pair],
-    /// Length of the step (s).
-    pub seconds: f32,
     /// Which particles of each block may touch each capsule at all; empty where all may touch all.
     pub reach: &'a [[u16; MAX_CAPSULES]],
+    /// Length of the step (s).
+    pub step_seconds: f32,
 }
 
 impl Kernel for Find<'_> {
@@ -187,17 +184,18 @@ impl Kernel for Find<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> usize {
-        let Self { cols, swept, boxes, planes, blocks, pairs, seconds, reach } = self;
+        let Self { cols, swept, boxes, planes, blocks, pairs, reach, step_seconds } = self;
+        let ahead = L::splat(JERK * step_seconds);
         let mut count = 0;
-        for (g, group) in blocks.chunks_mut(GROUP).enumerate() {
-            let [low, high] = around::<L>(cols, group, seconds);
+        for (b, block) in blocks.iter_mut().enumerate() {
+            let mut far = [0.0; MOST];
+            let far = Column::new(&mut far);
+            let [low, high] = around::<L>(cols, block, ahead, far);
             let met = [boxes.meet::<L>(low, high), meet_planes(planes, low, high)];
-            for (k, block) in group.iter_mut().enumerate() {
-                (block.from, block.pairs, block.planes) = (count as u32, 0, 0);
-                if met != [0, 0] {
-                    let lanes = ask::<L>(cols, swept, planes, block, (met, seconds));
-                    count = keep(block, pairs, met[0], lanes, reach.get(g * GROUP + k));
-                }
+            (block.from, block.pairs, block.planes) = (count as u32, 0, 0);
+            if met != [0, 0] {
+                let lanes = ask::<L>(cols, swept, planes, block, far, met);
+                count = keep(block, pairs, met[0], lanes, reach.get(b));
             }
         }
         count
@@ -229,54 +227,38 @@ fn keep(
     at
 }
 
-/// How far particles of these velocities may come in a step (m).
+/// How far particles of these velocities may come in so much time (m).
 #[inline(always)]
-fn travel<L: Lanes>(v: V3<L>, seconds: f32) -> L {
+fn travel<L: Lanes>(v: V3<L>, ahead: L) -> L {
     let speed2 = v.dot(v);
-    // What falls from rest comes this far; the slack covers it in a step of 1/120 s.
-    let slack = SLACK_M + FALL_M_S2 * (seconds * seconds - STEP_SECONDS * STEP_SECONDS).max(0.0);
-    L::splat(slack) + speed2 * reciprocal_root(speed2) * L::splat(JERK * seconds)
+    let fall = L::splat(FALL_M_S2 / (JERK * JERK)) * ahead * ahead;
+    L::splat(SLACK_M) + fall + speed2 * reciprocal_root(speed2) * ahead
 }
 
-/// The box around all places that the free particles of a group may come to.
+/// The box around all places that the free particles of a block may come to, and how far each may come; what is not free
+/// comes to no number, which is in no box and near nothing.
 #[inline(always)]
-fn around<L: Lanes>(cols: Columns<'_>, group: &[Block], seconds: f32) -> [[f32; 3]; 2] {
-    let (most, least) = (L::splat(f32::MAX), L::splat(-f32::MAX));
-    let (mut low, mut high) = ([most; 3], [least; 3]);
-    for block in group {
-        let mut from = 0;
-        while from < block.len() {
-            let x = block.load::<L>(cols.x, from);
-            let far = travel::<L>(block.load(cols.v, from), seconds);
-            let free = L::splat(0.0).lt(block.load_one(cols.w, from));
-            // What is not a number leaves the box as it was.
-            low[0] = (x.x - far).select(free, most).min(low[0]);
-            low[1] = (x.y - far).select(free, most).min(low[1]);
-            low[2] = (x.z - far).select(free, most).min(low[2]);
-            high[0] = (x.x + far).select(free, least).max(high[0]);
-            high[1] = (x.y + far).select(free, least).max(high[1]);
-            high[2] = (x.z + far).select(free, least).max(high[2]);
-            from += L::N;
-        }
+fn around<L: Lanes>(cols: Columns<'_>, block: &Block, ahead: L, far: Column<'_>) -> [[f32; 3]; 2] {
+    let (mut low, mut high) = ([L::splat(f32::MAX); 3], [L::splat(-f32::MAX); 3]);
+    let mut from = 0;
+    while from < block.len() {
+        let x = block.load::<L>(cols.x, from);
+        let free = L::splat(0.0).lt(block.load_one(cols.w, from));
+        let reach = travel(block.load(cols.v, from), ahead).select(free, L::splat(f32::NAN));
+        reach.store(far, from);
+        // What is no number leaves the box as it was.
+        low[0] = (x.x - reach).min(low[0]);
+        low[1] = (x.y - reach).min(low[1]);
+        low[2] = (x.z - reach).min(low[2]);
+        high[0] = (x.x + reach).max(high[0]);
+        high[1] = (x.y + reach).max(high[1]);
+        high[2] = (x.z + reach).max(high[2]);
+        from += L::N;
     }
     [
-        [smallest(low[0]), smallest(low[1]), smallest(low[2])],
-        [-smallest(-high[0]), -smallest(-high[1]), -smallest(-high[2])],
+        [low[0].least(), low[1].least(), low[2].least()],
+        [-(-high[0]).least(), -(-high[1]).least(), -(-high[2]).least()],
     ]
-}
-
-/// The least lane. Halving lets the compiler keep vectors; no order of minima gives other bits.
-#[inline(always)]
-fn smallest<L: Lanes>(v: L) -> f32 {
-    let mut all = v.to_array();
-    let mut half = L::N / 2;
-    while half > 0 {
-        for i in 0..half {
-            all[i] = if all[i] < all[i + half] { all[i] } else { all[i + half] };
-        }
-        half /= 2;
-    }
-    all[0]
 }
 
 /// The planes that a box reaches through.
@@ -291,34 +273,33 @@ fn meet_planes(planes: &[[f32; 4]], low: [f32; 3], high: [f32; 3]) -> u32 {
     bits
 }
 
-/// Asks the capsules and planes that a group has met for each particle of one of its blocks: a bit a particle for each
-/// capsule.
+/// Asks the capsules and planes that a block's box has met for each of its particles: a bit a particle for each capsule.
 #[inline(always)]
 fn ask<L: Lanes>(
     cols: Columns<'_>,
     swept: &Cones,
     planes: &[[f32; 4]],
     block: &mut Block,
-    (met, seconds): ([u32; 2], f32),
+    far: Column<'_>,
+    met: [u32; 2],
 ) -> [u16; PLACES] {
     let mut lanes = [0; PLACES];
     block.plane_lanes = [0; PLANES];
     let mut from = 0;
     while from < block.len() {
         let x = block.load::<L>(cols.x, from);
-        let far = travel::<L>(block.load(cols.v, from), seconds);
-        let free = L::splat(0.0).lt(block.load_one(cols.w, from));
+        let far = L::load(far, from);
         let mut bits = met[0];
         while bits != 0 {
             let c = bits.trailing_zeros() as usize % PLACES;
             bits &= bits - 1;
-            lanes[c] |= (close(swept, c, x, far).and(free).bits() << from) as u16;
+            lanes[c] |= (close(swept, c, x, far).bits() << from) as u16;
         }
         let mut bits = met[1];
         while bits != 0 {
             let p = bits.trailing_zeros() as usize % PLANES;
             bits &= bits - 1;
-            let near = (-far).lt(depth(&planes[p], x)).and(free);
+            let near = (-far).lt(depth(&planes[p], x));
             block.plane_lanes[p] |= (near.bits() << from) as u16;
             block.planes |= u16::from(block.plane_lanes[p] != 0) << p;
         }

@@ -112,6 +112,9 @@ fn look<L: Lanes>(
                 let c = usize::from(pair.capsule) % PLACES;
                 touched = close(sweep.cones, c, x, L::splat(-ON_M)).bits() & lanes;
                 fast = sweep.cones.quick2.splat::<L>(c).lt(way2).bits() & lanes;
+                if fast != 0 {
+                    fast &= sweep.asks(c, x, way).bits();
+                }
             }
             if from == 0 {
                 (pair.touched, pair.fast) = (0, 0);
@@ -140,7 +143,8 @@ fn meet<L: Lanes>(cols: Columns<'_>, sweep: &Sweep<'_>, block: &Block, pair: &Pa
             let mut x = block.load::<L>(cols.x, from);
             let mut previous = block.load::<L>(cols.previous, from);
             if fast != 0 {
-                swept += sweep.run(c, &mut x, &mut previous, friction, L::Mask::of(fast)).count_ones();
+                sweep.run(c, &mut x, &mut previous, friction, L::Mask::of(fast));
+                swept += fast.count_ones();
                 touched = close(sweep.cones, c, x, L::splat(-ON_M)).bits() & few::<L>(pair.lanes, from);
             }
             if touched != 0 {

@@ -6,7 +6,7 @@
 //! quotient. From the moment of impact on the particle stays before the tangent plane that the capsule carries along.
 
 use super::cones::{Cones, Ends, splat3};
-use super::touch::{Friction, Surface, carried, push};
+use super::touch::{Friction, Surface, carried, close, push};
 use crate::lanes::{Lanes, Mask, V3, reciprocal_root};
 
 /// Of the smallest radius and offset: what travels less relative to the surface cuts at most 1/128 of the radius deep,
@@ -15,6 +15,9 @@ pub const QUICK: f32 = 0.25;
 
 /// Most steps of the advancement; each goes on by at least their part of the substep.
 const STEPS: u32 = 32;
+
+/// Square of the farthest move relative to a capsule (m2) that is followed: what moves farther is an error.
+const FARTHEST2_M2: f32 = 1e8;
 
 /// What a sweep works on.
 pub struct Sweep<'a> {
@@ -42,24 +45,22 @@ struct Moment<L> {
 }
 
 impl Sweep<'_> {
-    /// Pushes the particles of `mask` that hit capsule `c` on their way; says which were looked at closely.
+    /// Which particles, now at `x` after `moved`, have to be followed: they moved far relative to capsule `c`, and not
+    /// from farther away than they could have come to it.
     #[inline(always)]
-    pub fn run<L: Lanes>(
-        &self,
-        c: usize,
-        x: &mut V3<L>,
-        previous: &mut V3<L>,
-        friction: Friction<L>,
-        mask: L::Mask,
-    ) -> u32 {
+    pub fn asks<L: Lanes>(&self, c: usize, x: V3<L>, moved: V3<L>) -> L::Mask {
+        let speed2 = self.speed2(c, moved);
+        let speed = speed2 * reciprocal_root(speed2) * L::splat(1.0 + 1e-3);
+        let far = self.quick2::<L>(c).lt(speed2).and(speed2.lt(L::splat(FARTHEST2_M2)));
+        far.and(close(self.cones, c, x, speed))
+    }
+
+    /// Pushes the particles of `mask` that hit capsule `c` on their way.
+    #[inline(always)]
+    pub fn run<L: Lanes>(&self, c: usize, x: &mut V3<L>, previous: &mut V3<L>, friction: Friction<L>, mask: L::Mask) {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         let moved = *x - *previous;
         let speed2 = self.speed2(c, moved);
-        let quick2 = self.quick2::<L>(c);
-        let mask = mask.and(quick2.lt(speed2)).and(speed2.lt(L::splat(1e8)));
-        if !mask.any() {
-            return 0;
-        }
         let pace = reciprocal_root(speed2);
         let least = L::splat(1.0 / STEPS as f32);
         let mut t = zero;
@@ -77,7 +78,6 @@ impl Sweep<'_> {
             let on = self.carry(c, &moment, *x);
             push(x, previous, &on, friction, hit.and(zero.lt(on.depth)));
         }
-        mask.bits()
     }
 
     /// Square of the farthest that particles move relative to any point of the capsule (m2).
