@@ -40,7 +40,17 @@ mod tests {
     fn each_share_has_its_own_and_nobody_has_it_twice() {
         let mut numbers = [1, 10];
         let own = Own::new(&mut numbers);
-        assert_eq!(own.with(0, |n| { *n += 1; own.with(0, |_| ()).is_none() && own.with(1, |m| { *m += 1; true }) == Some(true) }), Some(true));
+        assert_eq!(
+            own.with(0, |n| {
+                *n += 1;
+                own.with(0, |_| ()).is_none()
+                    && own.with(1, |m| {
+                        *m += 1;
+                        true
+                    }) == Some(true)
+            }),
+            Some(true)
+        );
         assert_eq!(own.with(1, |n| *n), Some(11));
         assert_eq!(own.with(2, |n| *n), None);
         assert_eq!(numbers, [2, 11]);
