@@ -255,10 +255,7 @@ fn around<L: Lanes>(cols: Columns<'_>, block: &Block, ahead: L, far: Column<'_>)
         high[2] = (x.z + reach).max(high[2]);
         from += L::N;
     }
-    [
-        [low[0].least(), low[1].least(), low[2].least()],
-        [-(-high[0]).least(), -(-high[1]).least(), -(-high[2]).least()],
-    ]
+    [[low[0].least(), low[1].least(), low[2].least()], [-(-high[0]).least(), -(-high[1]).least(), -(-high[2]).least()]]
 }
 
 /// The planes that a box reaches through.

@@ -78,8 +78,9 @@ fn linear_scale_0_keeps_a_particle_at_rest_relative_to_a_root_that_accelerates()
     }
     // A half takes half of the acceleration.
     let (mut root, mut state) = (RootMotion::new(scales(0.5, 1.0, 1.0)), particles());
-    (0..=120)
-        .for_each(|k| drop(step(&mut state, &mut root, &Affine3A::from_translation(Vec3::X * (k * k) as f32 * 1e-4))));
+    (0..=120).for_each(|k| {
+        step(&mut state, &mut root, &Affine3A::from_translation(Vec3::X * (k * k) as f32 * 1e-4));
+    });
     assert!((place(state.positions(), 0) - place(start.positions(), 0)).x / (120.0f32 * 120.0 * 1e-4) - 0.5 < 1e-3);
 }
 
@@ -110,7 +111,9 @@ fn a_particle_that_turns_with_the_root_keeps_turning_without_the_centrifugal_for
     let (mut root, mut state) = (RootMotion::new(RootSettings::default()), particles());
     let about = Vec3A::Y.cross(place(state.positions(), 0)) * spin;
     put(state.columns().v, 0, about);
-    (0..120).for_each(|k| drop(step(&mut state, &mut root, &at(k))));
+    (0..120).for_each(|k| {
+        step(&mut state, &mut root, &at(k));
+    });
     assert!(place(state.positions(), 0).length() > 3.0);
 }
 
@@ -123,7 +126,9 @@ fn scales_of_zero_carry_a_free_particle_with_any_smooth_motion() {
         let place = Vec3::new(0.5 * (3.0 * t).sin(), 0.1 * (7.0 * t).cos(), t);
         pose(Vec3::new(0.2, 1.0, 0.1), 0.8 * (2.0 * t).sin(), place)
     };
-    (0..=240).for_each(|k| drop(step(&mut state, &mut root, &at(k))));
+    (0..=240).for_each(|k| {
+        step(&mut state, &mut root, &at(k));
+    });
     for i in 0..37 {
         let dressed = (at(240) * at(0).inverse()).transform_point3a(place(start.positions(), i));
         let error = dressed.distance(place(state.positions(), i));
