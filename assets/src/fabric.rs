@@ -101,31 +101,66 @@ impl Fabric {
         BUILT_IN.iter().map(|text| Self::parse("built in", text)).collect()
     }
 
-    /// Ranges: from the thinnest silk to canvas, an order of magnitude wider than the 618 fabrics that were measured
-    /// for the published bands (REFERENCES: density .031 to .487 kg/m2, bending rigidity .9 to 109 uN m).
-    fn check(&self) -> Result<(), FabricError> {
-        let ranges = [
-            ("density_kg_m2", self.density_kg_m2, 0.01, 2.0),
-            ("stretch_warp_n_m", self.stretch_warp_n_m, 10.0, f32::INFINITY),
-            ("stretch_weft_n_m", self.stretch_weft_n_m, 10.0, f32::INFINITY),
-            ("shear_n_m", self.shear_n_m, 1.0, 1e5),
-            ("bend_warp_un_m", self.bend_warp_un_m, 0.0, 1e4),
-            ("bend_weft_un_m", self.bend_weft_un_m, 0.0, 1e4),
-            ("friction", self.friction, 0.0, 2.0),
-            ("damping_per_s", self.damping_per_s, 0.0, 100.0),
-            ("contact_offset_mm", self.contact_offset_mm, 0.1, 20.0),
-            ("comfortable_stretch", self.comfortable_stretch, 0.001, 1.0),
-            ("colour", self.colour[0], 0.0, 1.0),
-            ("colour", self.colour[1], 0.0, 1.0),
-            ("colour", self.colour[2], 0.0, 1.0),
-        ];
-        let bias = self.bend_bias_un_m.map(|b| ("bend_bias_un_m", b, 0.0, 1e4));
-        for (key, value, low, high) in ranges.into_iter().chain(bias) {
-            if !(low..=high).contains(&value) {
-                return Err(FabricError::Range { name: self.name.clone(), key, value, low, high });
-            }
+    /// Accepted figures, lowest and highest: from the thinnest silk to canvas, an order of magnitude wider than the 618
+    /// fabrics that were measured for the published bands (REFERENCES: density .031 to .487 kg/m2, bending rigidity .9
+    /// to 109 uN m).
+    pub const RANGES: [(&'static str, f32, f32); 10] = [
+        ("density_kg_m2", 0.01, 2.0),
+        ("stretch_warp_n_m", 10.0, f32::INFINITY),
+        ("stretch_weft_n_m", 10.0, f32::INFINITY),
+        ("shear_n_m", 1.0, 1e5),
+        ("bend_warp_un_m", 0.0, 1e4),
+        ("bend_weft_un_m", 0.0, 1e4),
+        ("bend_bias_un_m", 0.0, 1e4),
+        ("friction", 0.0, 2.0),
+        ("damping_per_s", 0.0, 100.0),
+        ("contact_offset_mm", 0.1, 20.0),
+    ];
+
+    /// One of the figures of [`Self::RANGES`], if it is given.
+    fn figure(&self, key: &str) -> Option<f32> {
+        Some(match key {
+            "density_kg_m2" => self.density_kg_m2,
+            "stretch_warp_n_m" => self.stretch_warp_n_m,
+            "stretch_weft_n_m" => self.stretch_weft_n_m,
+            "shear_n_m" => self.shear_n_m,
+            "bend_warp_un_m" => self.bend_warp_un_m,
+            "bend_weft_un_m" => self.bend_weft_un_m,
+            "bend_bias_un_m" => return self.bend_bias_un_m,
+            "friction" => self.friction,
+            "damping_per_s" => self.damping_per_s,
+            "contact_offset_mm" => self.contact_offset_mm,
+            _ => return None,
+        })
+    }
+
+    /// Changes one of the figures of [`Self::RANGES`]; other keys are passed over.
+    pub fn set_figure(&mut self, key: &str, value: f32) {
+        match key {
+            "density_kg_m2" => self.density_kg_m2 = value,
+            "stretch_warp_n_m" => self.stretch_warp_n_m = value,
+            "stretch_weft_n_m" => self.stretch_weft_n_m = value,
+            "shear_n_m" => self.shear_n_m = value,
+            "bend_warp_un_m" => self.bend_warp_un_m = value,
+            "bend_weft_un_m" => self.bend_weft_un_m = value,
+            "bend_bias_un_m" => self.bend_bias_un_m = Some(value),
+            "friction" => self.friction = value,
+            "damping_per_s" => self.damping_per_s = value,
+            "contact_offset_mm" => self.contact_offset_mm = value,
+            _ => {}
         }
-        Ok(())
+    }
+
+    fn check(&self) -> Result<(), FabricError> {
+        let checked = |key, value: f32, low: f32, high: f32| match (low..=high).contains(&value) {
+            true => Ok(()),
+            false => Err(FabricError::Range { name: self.name.clone(), key, value, low, high }),
+        };
+        for (key, low, high) in Self::RANGES {
+            self.figure(key).map_or(Ok(()), |value| checked(key, value, low, high))?;
+        }
+        checked("comfortable_stretch", self.comfortable_stretch, 0.001, 1.0)?;
+        self.colour.iter().try_for_each(|&part| checked("colour", part, 0.0, 1.0))
     }
 }
 
@@ -149,6 +184,17 @@ mod tests {
         assert_eq!(Fabric::parse("tape", &tape).unwrap().stretch_warp_n_m, f32::INFINITY);
         let sheared = text.replace("shear_n_m = 60.0", "shear_n_m = inf");
         assert!(Fabric::parse("sheared", &sheared).unwrap_err().to_string().contains("shear_n_m"));
+    }
+
+    #[test]
+    fn every_figure_can_be_changed_and_is_checked() {
+        for (key, low, high) in Fabric::RANGES {
+            let mut fabric = Fabric::built_in("cotton-lawn").unwrap();
+            fabric.set_figure(key, high);
+            assert_eq!((fabric.figure(key), fabric.check()), (Some(high), Ok(())), "{key}");
+            fabric.set_figure(key, low - 1.0);
+            assert!(fabric.check().unwrap_err().to_string().contains(key), "{key}");
+        }
     }
 
     #[test]

@@ -13,6 +13,7 @@ pub mod limits;
 pub mod mesh;
 pub mod rig;
 pub mod scene;
+pub mod scene_file;
 pub mod sizes;
 pub mod skeleton;
 pub mod wardrobe;

@@ -4,7 +4,9 @@
 //! Budget: some seconds a benchmark; never inside the frame.
 //! Thread: one, with nothing else running.
 
+pub mod scene_run;
 pub mod skinning;
+pub mod skirt;
 mod surface;
 pub mod time;
 pub mod yardstick;

@@ -24,19 +24,39 @@ struct Vertex {
     weights: [f32; 4],
 }
 
+/// The yardstick made ready, to be read more than once in a run.
+#[derive(Debug)]
+pub struct Yardstick {
+    vertices: Vec<Vertex>,
+    palette: Vec<Matrix>,
+}
+
+impl Yardstick {
+    /// The yardstick on the scene's shopper.
+    ///
+    /// # Errors
+    /// Where she cannot be built.
+    pub fn new() -> Result<Self, BodyError> {
+        let surface = Surface::new(VERTICES)?;
+        Ok(Self { vertices: vertices(&surface), palette: surface.palette.iter().map(rows).collect() })
+    }
+
+    /// Its time on this machine now (us, median of many passes).
+    pub fn read_us(&self) -> f64 {
+        let mut posed = vec![[[0.0; 3]; 2]; VERTICES];
+        time::median_us(|| {
+            blend(black_box(&self.palette), black_box(&self.vertices), &mut posed);
+            black_box(&posed);
+        })
+    }
+}
+
 /// Time of the yardstick on this machine (us, median).
 ///
 /// # Errors
 /// Where the scene's shopper cannot be built.
 pub fn measure() -> Result<f64, BodyError> {
-    let surface = Surface::new(VERTICES)?;
-    let vertices = vertices(&surface);
-    let palette: Vec<Matrix> = surface.palette.iter().map(rows).collect();
-    let mut posed = vec![[[0.0; 3]; 2]; VERTICES];
-    Ok(time::median_us(|| {
-        blend(black_box(&palette), black_box(&vertices), &mut posed);
-        black_box(&posed);
-    }))
+    Ok(Yardstick::new()?.read_us())
 }
 
 fn vertices(surface: &Surface) -> Vec<Vertex> {

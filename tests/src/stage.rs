@@ -95,5 +95,9 @@ pub fn dressed(names: &[&str], track: &[Joints]) -> Frame {
 pub fn is_finite(frame: &Frame) -> bool {
     let pose = frame.pose();
     let posed = pose.root.is_finite() && pose.local.iter().all(|q| q.is_finite());
-    posed && frame.cloths().iter().all(|c| c.positions.iter().chain(&c.velocities).all(|p| p.is_finite()))
+    posed
+        && frame
+            .cloths()
+            .iter()
+            .all(|c| (0..c.positions.len()).all(|i| c.positions[i].is_finite() && c.velocity(i).is_finite()))
 }

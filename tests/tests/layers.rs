@@ -8,7 +8,7 @@ use toile_tests::tree::{self, FLOORS};
 
 /// Rooms in the order in which data flows; a room imports only rooms of earlier rows, and those of no row are held
 /// to the general law alone: no circle.
-const ROOMS: [(&str, &[&[&str]]); 3] = [
+const ROOMS: [(&str, &[&[&str]]); 4] = [
     (
         "toile-assets",
         &[
@@ -22,6 +22,7 @@ const ROOMS: [(&str, &[&[&str]]); 3] = [
             &["import", "bake"],
             &["wardrobe"],
             &["scene"],
+            &["scene_file"],
         ],
     ),
     (
@@ -37,6 +38,7 @@ const ROOMS: [(&str, &[&[&str]]); 3] = [
         ],
     ),
     ("toile-engine", &[&["lanes", "relay"], &["body"], &["skin"], &["colliders"], &["cloth"], &["frame"]]),
+    ("toile-perf", &[&["time"], &["surface"], &["yardstick"], &["skinning", "skirt"]]),
 ];
 
 /// One arrow between rooms of a crate.

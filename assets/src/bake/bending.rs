@@ -47,11 +47,13 @@ pub fn rigidities(fabric: &Fabric) -> [f64; 3] {
     fit::least_squares(&[[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.25, 0.25, 1.0]], &[warp, weft, bias])
 }
 
-/// All stencils of a garment that can move and have any stiffness.
+/// All stencils of a garment that can move and have any stiffness. A direction in which the plate has no stencils of its
+/// own gets none, though a skewed mesh might use them to come a little nearer: each costs time in every substep.
 pub fn stencils(shape: &Shape, edges: &[Edge], fabric: &Fabric) -> Vec<Stencil> {
     let rings = Rings::new(shape, edges);
-    let measures: Vec<Vec<(Direction, Measure)>> = (0..shape.cut.len()).map(|v| measures(&rings, v)).collect();
-    let plate = Form::plate(rigidities(fabric));
+    let wanted = rigidities(fabric);
+    let measures: Vec<_> = (0..shape.cut.len()).map(|v| measures(&rings, v, wanted)).collect();
+    let plate = Form::plate(wanted);
     let patches = Patches::new(&rings, &measures);
     let mut out = Vec::new();
     for (v, around) in measures.iter().enumerate().filter(|(_, around)| !around.is_empty()) {
@@ -67,12 +69,13 @@ pub fn stencils(shape: &Shape, edges: &[Edge], fabric: &Fabric) -> Vec<Stencil> 
     out
 }
 
-/// What the ring of a vertex can measure of the four directions.
-fn measures(rings: &Rings, v: usize) -> Vec<(Direction, Measure)> {
+/// What the ring of a vertex can measure of the directions that are wanted.
+fn measures(rings: &Rings, v: usize, wanted: [f64; 3]) -> Vec<(Direction, Measure)> {
     let Some(ring) = rings.flat(v) else { return Vec::new() };
     let eighth = std::f64::consts::FRAC_PI_4;
     [(Direction::Warp, 0.0), (Direction::Weft, 2.0), (Direction::Bias, 1.0), (Direction::Bias, 3.0)]
         .into_iter()
+        .filter(|(direction, _)| wanted[*direction as usize] > 0.0)
         .filter_map(|(direction, turns)| Some((direction, ring.measure(eighth * turns)?)))
         .collect()
 }

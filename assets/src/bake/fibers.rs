@@ -14,7 +14,7 @@ use glam::{Vec2, Vec3};
 use super::is_quad;
 pub use crate::garment::Direction;
 use crate::garment::check::corners;
-use crate::garment::shape::Face;
+use crate::garment::shape::{Face, Shape};
 pub use coverage::Coverage;
 pub use trace::trace;
 
@@ -43,7 +43,7 @@ pub struct Edge {
 /// A chain of edges. A closed hoop repeats its first vertex at its end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fiber {
-    /// Which way it runs; single edges of it may lean as far as 45 degrees.
+    /// Which way it runs; single edges of it may lean as far as 60 degrees, one that it hangs by 75.
     pub direction: Direction,
     /// Vertices in order: one more than edges.
     pub vertices: Vec<u32>,
@@ -104,6 +104,17 @@ impl Fiber {
             turned.edges.rotate_left(at);
         }
         turned
+    }
+}
+
+/// The edges of a shape as cut, its warp by its texture where that is a pattern laid out flat.
+pub fn edges_of(shape: &Shape) -> Vec<Edge> {
+    let (cut, faces) = (&shape.cut, &shape.faces);
+    let steepest = warp::steepest(cut, faces);
+    if warp::is_pattern(cut, faces, &shape.uvs) {
+        edges_along(cut, faces, &warp::from_uvs(cut, faces, &shape.uvs, &steepest))
+    } else {
+        edges_along(cut, faces, &steepest)
     }
 }
 
@@ -198,7 +209,8 @@ fn normal(positions: &[Vec3], face: &Face) -> Vec3 {
     across.normalize_or_zero()
 }
 
-fn area(positions: &[Vec3], face: &Face) -> f32 {
+/// Area of a face (m2).
+pub(crate) fn area(positions: &[Vec3], face: &Face) -> f32 {
     let p = |i: u32| positions[i as usize];
     let ring = corners(face);
     (2..ring.len()).map(|k| 0.5 * (p(ring[k - 1]) - p(ring[0])).cross(p(ring[k]) - p(ring[0])).length()).sum()

@@ -2,13 +2,16 @@
 
 use std::ops::Range;
 
+use super::bending::{self, Stencil};
 use super::fibers::{Direction, Edge, Fiber};
 use super::order::Order;
-use super::runs;
+use super::solver::Chooser;
+use super::{runs, stiffness, tethers};
 use crate::fabric::Fabric;
 use crate::garment::layout::{
-    Bends, Bundle, ENDED, Fibers, Layout, Links, List, Lists, MAX_LISTED, OWNERS, Row,
+    Bends, Bundle, ENDED, Fibers, Layout, Links, List, Lists, MAX_LISTED, OWNERS, Row, Tethers,
 };
+use crate::garment::shape::NO_VERTEX;
 use crate::garment::{Shape, Solver};
 
 /// What baking has found out about a shape so far.
@@ -21,60 +24,100 @@ pub struct Baking<'a> {
     /// The free pieces of the warp fibers.
     pub pieces: &'a [Fiber],
     pub order: &'a Order,
+    /// Inverse mass of each vertex (1/kg).
+    pub weights: &'a [f32],
+}
+
+impl Baking<'_> {
+    /// Inverse mass of a particle (1/kg).
+    fn weight(&self, particle: u32) -> f32 {
+        self.weights[self.order.source[particle as usize] as usize]
+    }
 }
 
 /// All constraints.
 pub fn lay_out(baking: &Baking<'_>) -> Layout {
+    let mut role: Vec<Option<Direction>> = vec![None; baking.edges.len()];
+    let chooser = Chooser::new(baking.shape, &baking.shape.solver);
+    let moves = |f: &&Fiber| f.vertices.iter().any(|&v| !baking.shape.fixed[v as usize]);
+    let across = || baking.chains.iter().filter(|f| f.direction != Direction::Warp).filter(moves);
+    for fiber in across().filter(|f| chooser.choose(f) == Solver::GaussSeidel) {
+        fiber.edges.iter().for_each(|&e| role[e as usize] = Some(fiber.direction));
+    }
+    // Warp that no fiber carries, such as the link by which a fiber hangs from the middle of another.
     let mut carried = vec![false; baking.edges.len()];
     baking.pieces.iter().flat_map(|p| &p.edges).for_each(|&e| carried[e as usize] = true);
-    let free = |e: &Edge| !(baking.shape.fixed[e.a as usize] && baking.shape.fixed[e.b as usize]);
-    let rest = || baking.edges.iter().enumerate().filter(|(i, e)| !carried[*i] && free(e)).map(|(_, e)| e);
-    let shear: Vec<&Edge> = rest().filter(|e| e.direction == Direction::Bias).collect();
-    let weft: Vec<&Edge> = rest().filter(|e| e.direction != Direction::Bias).collect();
-    let crossing: Vec<&Fiber> = baking.order.crossing.iter().map(|&i| &baking.pieces[i]).collect();
-    let closed = |f: &&Fiber| f.vertices.first() == f.vertices.last();
-    let moves = |f: &&Fiber| f.vertices.iter().any(|&v| !baking.shape.fixed[v as usize]);
-    let hoops: Vec<&Fiber> =
-        baking.chains.iter().filter(|f| f.direction == Direction::Weft).filter(closed).filter(moves).collect();
+    for fiber in baking.chains.iter().filter(|f| f.direction == Direction::Warp) {
+        let single = fiber.edges.iter().filter(|&&e| !carried[e as usize]);
+        single.for_each(|&e| role[e as usize] = Some(Direction::Warp));
+    }
+    let free = |i: usize| {
+        let e = &baking.edges[i];
+        !(baking.shape.fixed[e.a as usize] && baking.shape.fixed[e.b as usize])
+    };
+    let of = |bias: bool| -> Vec<(usize, Direction)> {
+        let roles = role.iter().enumerate().filter_map(|(i, r)| r.map(|r| (i, r)));
+        roles.filter(|(i, r)| free(*i) && (*r == Direction::Bias) == bias).collect()
+    };
+    // Fibers that are solved whole but do not lie side by side: warp that crosses warp, and what is chosen to be.
+    let crossing = baking.order.crossing.iter().map(|&i| &baking.pieces[i]);
+    let chosen = across().filter(|f| chooser.choose(f) != Solver::GaussSeidel);
+    let whole: Vec<(&Fiber, Solver)> = crossing.chain(chosen).map(|f| (f, chooser.choose(f))).collect();
+    let hoops = across().filter(|f| f.direction == Direction::Weft && f.is_hoop());
+    let hoops = hoops.filter(|f| chooser.choose(f) == Solver::GaussSeidel);
+    let hoops: Vec<(&Fiber, Solver)> = hoops.map(|f| (f, Solver::SemiImplicit)).collect();
+    let stencils = bending::stencils(baking.shape, baking.edges, baking.fabric);
     Layout {
-        shear: links(baking, &shear),
-        weft: links(baking, &weft),
-        fibers: fibers(baking),
-        crossing: lists(baking, &crossing),
-        hoops: lists(baking, &hoops),
-        bends: bends(baking),
+        shear: links(baking, &of(true)),
+        weft: links(baking, &of(false)),
+        fibers: fibers(baking, &chooser),
+        crossing: lists(baking, whole),
+        hoops: lists(baking, hoops),
+        bends: bends(baking, &stencils),
+        skewed: bends(baking, &stencils),
+        tethers: tethers(baking),
         spans: spans(&baking.order.owner),
         owner: baking.order.owner.clone().into(),
     }
 }
 
-/// Inverse stiffness of an edge (m/N). A link of length h stands for a strip of cloth as wide as the area it drains:
-/// k = E w / h. Both diagonals of a square cell together have the shear stiffness of the cell when each has k = G.
-fn compliance(fabric: &Fabric, edge: &Edge) -> f32 {
-    let k = match edge.direction {
-        Direction::Warp => fabric.stretch_warp_n_m * edge.width / edge.rest,
-        Direction::Weft => fabric.stretch_weft_n_m * edge.width / edge.rest,
-        Direction::Bias => fabric.shear_n_m,
-    };
-    k.recip()
+/// Inverse stiffness of an edge as part of a fiber (m/N).
+fn compliance(fabric: &Fabric, edge: &Edge, fiber: Direction) -> f32 {
+    stiffness::stretch(edge, fiber, fabric).recip()
 }
 
-fn links(baking: &Baking<'_>, edges: &[&Edge]) -> Links {
+/// Relative difference below which two lengths or masses count as the same: what the rounding of coordinates of f32 a
+/// metre from the origin does to an edge of a centimetre.
+const SAME: f32 = 1e-5;
+
+fn same(a: f32, b: f32) -> bool {
+    (a - b).abs() <= SAME * a.abs().max(b.abs()) || a == b
+}
+
+/// Links of single edges, each with the direction of the fiber that it belongs to.
+fn links(baking: &Baking<'_>, edges: &[(usize, Direction)]) -> Links {
+    let edge = |i: usize| &baking.edges[edges[i].0];
+    let soft = |i: usize| compliance(baking.fabric, edge(i), edges[i].1);
     let particle = |v: u32| baking.order.particle[v as usize];
-    let ends = |e: &&Edge| {
-        let (a, b) = (particle(e.a), particle(e.b));
-        (e.direction, [a.min(b), a.max(b)])
+    let constraints: Vec<_> = (0..edges.len())
+        .map(|i| {
+            let (a, b) = (particle(edge(i).a), particle(edge(i).b));
+            (edges[i].1, [a.min(b), a.max(b)])
+        })
+        .collect();
+    let weight = |i: usize, k: usize| baking.weight(constraints[i].1[k]);
+    let alike = |i: usize, j: usize| {
+        same(edge(i).rest, edge(j).rest) && same(soft(i), soft(j)) && (0..2).all(|k| same(weight(i, k), weight(j, k)))
     };
-    let constraints: Vec<_> = edges.iter().map(ends).collect();
-    let (tuples, places) = runs::lay_out(&constraints, &baking.order.owner, true);
+    let (tuples, places) = runs::lay_out(&constraints, &baking.order.owner, true, &alike);
     Links {
         tuples,
-        rest: places.iter().map(|&i| edges[i].rest).collect(),
-        compliance: places.iter().map(|&i| compliance(baking.fabric, edges[i])).collect(),
+        rest: places.iter().map(|&i| edge(i).rest).collect(),
+        compliance: places.iter().map(|&i| soft(i)).collect(),
     }
 }
 
-fn fibers(baking: &Baking<'_>) -> Fibers {
+fn fibers(baking: &Baking<'_>, chooser: &Chooser) -> Fibers {
     let (mut bundles, mut rows, mut rest, mut soft) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for side in &baking.order.sides {
         let pieces: Vec<&Fiber> = side.pieces.iter().map(|&p| &baking.pieces[p]).collect();
@@ -84,39 +127,57 @@ fn fibers(baking: &Baking<'_>) -> Fibers {
             let first = baking.order.particle[pieces[0].vertices[row] as usize];
             rows.push(Row { first, lanes: reach(row) });
         }
+        let alike = pieces.iter().all(|p| fibers_alike(baking, pieces[0], p));
         for link in 0..pieces[0].edges.len() {
-            for piece in &pieces {
+            for piece in if alike { &pieces[..1] } else { &pieces[..] } {
                 let edge = piece.edges.get(link).map(|&e| &baking.edges[e as usize]);
                 rest.push(edge.map_or(0.0, |e| e.rest));
-                soft.push(edge.map_or(ENDED, |e| compliance(baking.fabric, e)));
+                soft.push(edge.map_or(ENDED, |e| compliance(baking.fabric, e, Direction::Warp)));
             }
         }
         bundles.push(Bundle {
-            solver: Solver::SemiImplicit,
+            solver: chooser.choose(pieces[0]),
             owner: side.owner,
             lanes: pieces.len() as u32,
             rows: first_row..rows.len() as u32,
             at,
+            alike,
         });
     }
     Fibers { bundles: bundles.into(), rows: rows.into(), rest: rest.into(), compliance: soft.into() }
 }
 
-/// Fibers as index lists: sets without a common particle, in each of them lists of equal length.
-fn lists(baking: &Baking<'_>, fibers: &[&Fiber]) -> Lists {
+/// Whether two fibers are the same, link by link and mass by mass.
+fn fibers_alike(baking: &Baking<'_>, a: &Fiber, b: &Fiber) -> bool {
+    let edge = |i: u32| &baking.edges[i as usize];
+    let links = a.edges.iter().zip(&b.edges).all(|(&i, &j)| {
+        let (i, j) = (edge(i), edge(j));
+        same(i.rest, j.rest) && {
+            let soft = |e| compliance(baking.fabric, e, Direction::Warp);
+            same(soft(i), soft(j))
+        }
+    });
+    let weight = |v: u32| baking.weights[v as usize];
+    a.edges.len() == b.edges.len()
+        && links
+        && a.vertices.iter().zip(&b.vertices).all(|(&v, &w)| same(weight(v), weight(w)))
+}
+
+/// Fibers as index lists: sets without a common particle, in each of them lists of equal length and like solver.
+fn lists(baking: &Baking<'_>, mut left: Vec<(&Fiber, Solver)>) -> Lists {
     let mut out = ListsMaker::default();
-    let mut left: Vec<&Fiber> = fibers.to_vec();
-    left.sort_by_key(|f| std::cmp::Reverse(f.edges.len()));
+    left.sort_by_key(|(f, solver)| (std::cmp::Reverse(f.edges.len()), f.direction, *solver, !f.is_hoop()));
     while !left.is_empty() {
         let mut taken = vec![false; baking.order.particle.len()];
-        let (set, rest): (Vec<&Fiber>, Vec<&Fiber>) = left.into_iter().partition(|f| {
+        let mut set = Vec::new();
+        left.retain(|&(f, solver)| {
             let apart = f.vertices.iter().all(|&v| !taken[v as usize]);
             if apart {
                 f.vertices.iter().for_each(|&v| taken[v as usize] = true);
+                set.push((f, solver));
             }
-            apart
+            !apart
         });
-        left = rest;
         out.set(baking, &set);
     }
     Lists {
@@ -138,9 +199,10 @@ struct ListsMaker {
 }
 
 impl ListsMaker {
-    fn set(&mut self, baking: &Baking<'_>, set: &[&Fiber]) {
+    fn set(&mut self, baking: &Baking<'_>, set: &[(&Fiber, Solver)]) {
         let first = self.lists.len() as u32;
-        for alike in set.chunk_by(|a, b| (a.edges.len(), a.vertices.len()) == (b.edges.len(), b.vertices.len())) {
+        let kind = |(f, solver): &(&Fiber, Solver)| (f.edges.len(), f.direction, *solver, f.is_hoop());
+        for alike in set.chunk_by(|a, b| kind(a) == kind(b)) {
             alike.chunks(MAX_LISTED).for_each(|fibers| self.list(baking, fibers));
         }
         // Half of the lists each: they are of much the same length.
@@ -149,11 +211,12 @@ impl ListsMaker {
         self.sets.push([first..middle, middle..end]);
     }
 
-    fn list(&mut self, baking: &Baking<'_>, fibers: &[&Fiber]) {
-        let closed = fibers[0].vertices.first() == fibers[0].vertices.last();
+    fn list(&mut self, baking: &Baking<'_>, chosen: &[(&Fiber, Solver)]) {
+        let fibers: Vec<&Fiber> = chosen.iter().map(|(f, _)| *f).collect();
+        let closed = fibers[0].is_hoop();
         let rows = fibers[0].vertices.len() - usize::from(closed);
         self.lists.push(List {
-            solver: Solver::SemiImplicit,
+            solver: chosen[0].1,
             direction: fibers[0].direction,
             closed,
             lanes: fibers.len() as u32,
@@ -167,50 +230,43 @@ impl ListsMaker {
         for link in 0..fibers[0].edges.len() {
             let edges = || fibers.iter().map(|f| &baking.edges[f.edges[link] as usize]);
             self.rest.extend(edges().map(|e| e.rest));
-            self.compliance.extend(edges().map(|e| compliance(baking.fabric, e)));
+            self.compliance.extend(edges().map(|e| compliance(baking.fabric, e, fibers[0].direction)));
         }
     }
 }
 
-/// Bends: each three vertices in a row along a warp or weft fiber. A strip of width w bent over spans h1 and h2 stores
-/// (B w h / 2) kappa^2 with h their mean and kappa = |x0 / (h1 h) - 2 x1 / (h1 h2) + x2 / (h2 h)|.
-fn bends(baking: &Baking<'_>) -> Bends {
-    let Baking { shape, fabric, edges, order, .. } = baking;
-    let (mut triples, mut coefficients) = (Vec::new(), Vec::new());
-    for fiber in baking.chains.iter().filter(|f| f.direction != Direction::Bias) {
-        let rigidity = 1e-6
-            * match fiber.direction {
-                Direction::Warp => fabric.bend_warp_un_m,
-                _ => fabric.bend_weft_un_m,
-            };
-        let closed = fiber.vertices.first() == fiber.vertices.last();
-        let count = fiber.edges.len();
-        for k in usize::from(!closed)..count {
-            let before = if k == 0 { count - 1 } else { k - 1 };
-            let [e1, e2] = [before, k].map(|e| &edges[fiber.edges[e] as usize]);
-            let v = [fiber.vertices[before], fiber.vertices[k], fiber.vertices[k + 1]];
-            if v.iter().all(|&i| shape.fixed[i as usize]) || rigidity <= 0.0 {
-                continue;
-            }
-            let mean = 0.5 * (e1.rest + e2.rest);
-            let size = (rigidity * 0.5 * (e1.width + e2.width) * mean).sqrt();
-            let (c0, c2) = (size / (e1.rest * mean), size / (e2.rest * mean));
-            let mut ends = v.map(|i| order.particle[i as usize]);
-            let mut c = [c0, -(c0 + c2), c2];
-            if ends[0] > ends[2] {
-                ends.reverse();
-                c.reverse();
-            }
-            // The middle leads: rows of middles are what lies side by side.
-            triples.push((fiber.direction, [ends[1], ends[0], ends[2]]));
-            coefficients.push([c[1], c[0], c[2]]);
-        }
+/// The stencils of `K` particles, 3 or 4, the root of the stiffness within the coefficients.
+fn bends<const K: usize>(baking: &Baking<'_>, stencils: &[Stencil]) -> Bends<K> {
+    let count = |s: &&Stencil| if s.v[3] == NO_VERTEX { 3 } else { 4 };
+    let mine: Vec<&Stencil> = stencils.iter().filter(|s| count(s) == K).collect();
+    let (mut tuples, mut coefficients) = (Vec::new(), Vec::new());
+    for stencil in mine {
+        let particle = |k: usize| baking.order.particle[stencil.v[k] as usize];
+        let mut order: [usize; K] = std::array::from_fn(|k| k);
+        // The middle leads: rows of middles are what lies side by side. Its neighbours follow in the order of memory.
+        order[1..].sort_by_key(|&k| particle(k));
+        tuples.push((stencil.direction, order.map(particle)));
+        coefficients.push(order.map(|k| stencil.c[k] * stencil.k.sqrt()));
     }
-    let (tuples, places) = runs::lay_out(&triples, &order.owner, false);
-    Bends {
-        tuples,
-        coefficients: std::array::from_fn(|k| places.iter().map(|&i| coefficients[i][k]).collect()),
+    let alike = |i: usize, j: usize| {
+        let weight = |i: usize, k: usize| baking.weight(tuples[i].1[k]);
+        (0..K).all(|k| same(coefficients[i][k], coefficients[j][k]) && same(weight(i, k), weight(j, k)))
+    };
+    let (tuples, places) = runs::lay_out(&tuples, &baking.order.owner, false, &alike);
+    let coefficients = std::array::from_fn(|k| places.iter().map(|&i| coefficients[i][k]).collect());
+    Bends { tuples, coefficients }
+}
+
+/// For each particle the fixed one nearest to it along the cloth, itself where there is none.
+fn tethers(baking: &Baking<'_>) -> Tethers {
+    let n = baking.order.particle.len();
+    let mut out = Tethers { anchor: (0..n as u32).collect(), length: vec![0.0; n].into() };
+    for tether in tethers::tethers(baking.shape) {
+        let at = baking.order.particle[tether.vertex as usize] as usize;
+        out.anchor[at] = baking.order.particle[tether.anchor as usize];
+        out.length[at] = tether.length;
     }
+    out
 }
 
 /// Each owner's particles as ranges.

@@ -11,7 +11,7 @@ use super::fibers::{Direction, Edge, Fiber};
 use crate::garment::layout::{MAX_LISTED, OWNERS};
 
 /// Garments with fewer particles than this are not shared between workers: meeting would cost what sharing saves.
-pub const SHARE_FROM: usize = 2_048;
+pub const SHARE_FROM: usize = 8_192;
 
 /// Fewest columns of a strip.
 const LEAST_STRIP: usize = 6;

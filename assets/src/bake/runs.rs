@@ -7,28 +7,40 @@ use crate::garment::layout::{OWNERS, Run, Set, Share, Tuples};
 const LEAST_RUN: usize = 3;
 
 /// Lays constraints over `K` particles out; `apart` demands that no two of a set share a particle. Gives the tuples and
-/// for each parameter place the constraint it belongs to. Constraints that touch both owners' particles are the first
+/// for each parameter place the constraint it belongs to, or one of those that are `alike`. Constraints that touch both owners' particles are the first
 /// owner's where sets are kept apart (nobody else touches them in that set), else they form a last set of their own.
 pub fn lay_out<const K: usize>(
     constraints: &[(Direction, [u32; K])],
     owner: &[u8],
     apart: bool,
+    alike: &dyn Fn(usize, usize) -> bool,
 ) -> (Tuples<K>, Vec<usize>) {
     let mut order: Vec<usize> = (0..constraints.len()).collect();
     order.sort_by_key(|&i| (std::cmp::Reverse(constraints[i].0), constraints[i].1));
-    let sets = if apart { coloured(constraints, &order, owner.len()) } else { gathered(constraints, &order, owner) };
+    let crosses = |i: usize| {
+        let v = &constraints[i].1;
+        v.iter().any(|&p| owner[p as usize] != owner[v[0] as usize])
+    };
+    let sets = if apart { coloured(constraints, &order, owner.len()) } else { gathered(&order, &crosses) };
     let mut out = Layouter { runs: Vec::new(), loose: Vec::new(), places: Vec::new() };
     let sets = sets.into_iter().map(|set| Set {
         direction: constraints[set[0]].0,
+        crosses: !apart && crosses(set[0]),
         shares: std::array::from_fn(|share| {
             let mine = |i: &usize| usize::from(owner[constraints[*i].1[0] as usize]) == share;
             let part: Vec<usize> = set.iter().copied().filter(mine).collect();
-            out.share(constraints, &part, owner)
+            out.share(constraints, &part, owner, alike)
         }),
     });
     let sets = sets.collect();
-    let count = out.places.len();
-    (Tuples { runs: out.runs.into(), loose: out.loose.into(), sets, count }, out.places)
+    let tuples = Tuples {
+        runs: out.runs.into(),
+        loose: out.loose.into(),
+        sets,
+        count: constraints.len(),
+        places: out.places.len(),
+    };
+    (tuples, out.places)
 }
 
 /// First fit in the order of the particles: on a grid neighbours side by side get one colour, which makes long runs.
@@ -54,16 +66,8 @@ fn coloured<const K: usize>(
 }
 
 /// One set of what stays within an owner's particles, one of what crosses.
-fn gathered<const K: usize>(
-    constraints: &[(Direction, [u32; K])],
-    order: &[usize],
-    owner: &[u8],
-) -> Vec<Vec<usize>> {
-    let crosses = |i: &usize| {
-        let v = &constraints[*i].1;
-        v.iter().any(|&p| owner[p as usize] != owner[v[0] as usize])
-    };
-    let (crossing, within): (Vec<usize>, Vec<usize>) = order.iter().partition(|i| crosses(i));
+fn gathered(order: &[usize], crosses: &dyn Fn(usize) -> bool) -> Vec<Vec<usize>> {
+    let (crossing, within): (Vec<usize>, Vec<usize>) = order.iter().partition(|&&i| crosses(i));
     [within, crossing].into_iter().filter(|s| !s.is_empty()).collect()
 }
 
@@ -75,7 +79,13 @@ struct Layouter<const K: usize> {
 
 impl<const K: usize> Layouter<K> {
     /// One owner's share: its runs first, then what is loose.
-    fn share(&mut self, constraints: &[(Direction, [u32; K])], part: &[usize], owner: &[u8]) -> Share {
+    fn share(
+        &mut self,
+        constraints: &[(Direction, [u32; K])],
+        part: &[usize],
+        owner: &[u8],
+        alike: &dyn Fn(usize, usize) -> bool,
+    ) -> Share {
         let (first_run, first_loose) = (self.runs.len() as u32, self.loose.len() as u32);
         let mut loose: Vec<usize> = Vec::new();
         let mut at = 0;
@@ -83,8 +93,10 @@ impl<const K: usize> Layouter<K> {
             let len = run_length(constraints, &part[at..], owner);
             if len >= LEAST_RUN {
                 let first = constraints[part[at]].1;
-                self.runs.push(Run { first, len: len as u32, at: self.places.len() as u32 });
-                self.places.extend(&part[at..at + len]);
+                let run = &part[at..at + len];
+                let same = run.iter().all(|&i| alike(run[0], i));
+                self.runs.push(Run { first, len: len as u32, at: self.places.len() as u32, alike: same });
+                self.places.extend(if same { &run[..1] } else { run });
             } else {
                 loose.extend(&part[at..at + len]);
             }
@@ -93,11 +105,7 @@ impl<const K: usize> Layouter<K> {
         let loose_at = self.places.len() as u32;
         self.loose.extend(loose.iter().map(|&i| constraints[i].1));
         self.places.extend(&loose);
-        Share {
-            runs: first_run..self.runs.len() as u32,
-            loose: first_loose..self.loose.len() as u32,
-            loose_at,
-        }
+        Share { runs: first_run..self.runs.len() as u32, loose: first_loose..self.loose.len() as u32, loose_at }
     }
 }
 
@@ -107,7 +115,9 @@ fn run_length<const K: usize>(constraints: &[(Direction, [u32; K])], part: &[usi
     let follows = |t: usize| {
         let (d, v) = constraints[part[t]];
         let owned = |p: u32| owner[p as usize] == owner[v[0] as usize];
-        let like = (0..K).all(|k| v[k] == first[k] + t as u32 && owned(v[k]) == (owner[first[k] as usize] == owner[first[0] as usize]));
+        let like = (0..K).all(|k| {
+            v[k] == first[k] + t as u32 && owned(v[k]) == (owner[first[k] as usize] == owner[first[0] as usize])
+        });
         d == direction && like
     };
     (1..part.len()).take_while(|&t| follows(t)).count() + 1
@@ -127,13 +137,13 @@ mod tests {
         let rails = (0..19u32).map(|i| (Direction::Weft, [i, i + 1]));
         let all: Vec<(Direction, [u32; 2])> = rungs.chain(rails).collect();
         let owner: Vec<u8> = (0..40).map(|i| u8::from(i % 20 >= 10)).collect();
-        let (tuples, places) = lay_out(&all, &owner, true);
+        let (tuples, places) = lay_out(&all, &owner, true, &|_, _| false);
         let mut sorted = places.clone();
         sorted.sort_unstable();
         assert_eq!(sorted, (0..all.len()).collect::<Vec<_>>());
-        for (place, v) in tuples.all().into_iter().enumerate() {
-            assert_eq!(v, all[places[place]].1);
-        }
+        tuples.for_each(|place, v| assert_eq!(v, all[places[place]].1));
+        let (even, few) = lay_out(&all, &owner, true, &|_, _| true);
+        assert!(few.len() < places.len() && even.places == few.len() && even.count == all.len());
         for set in &tuples.sets {
             let mut seen = [false; 40];
             for share in &set.shares {

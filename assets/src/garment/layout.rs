@@ -15,7 +15,8 @@ pub const OWNERS: usize = 2;
 /// Most fibers of one index list: the widest lanes.
 pub const MAX_LISTED: usize = 16;
 
-/// Constraints side by side: constraint `t < len` holds the particles `first[k] + t`, its parameters are at `at + t`.
+/// Constraints side by side: constraint `t < len` holds the particles `first[k] + t`. Where they are all alike, in their
+/// parameters and in the masses of their particles, they share the parameters at `at`; else its own are at `at + t`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Run<const K: usize> {
     /// Particles of the first constraint.
@@ -24,6 +25,16 @@ pub struct Run<const K: usize> {
     pub len: u32,
     /// Where its parameters begin.
     pub at: u32,
+    /// Whether all are alike.
+    pub alike: bool,
+}
+
+impl<const K: usize> Run<K> {
+    /// Where the parameters of constraint `t` are.
+    #[inline(always)]
+    pub fn place(&self, t: u32) -> usize {
+        (if self.alike { self.at } else { self.at + t }) as usize
+    }
 }
 
 /// One owner's share of a set.
@@ -40,8 +51,10 @@ pub struct Share {
 /// Constraints of one direction; in a set of [`Links`] no two share a particle.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Set {
-    /// Direction.
+    /// Direction of its first constraint.
     pub direction: Direction,
+    /// Whether its constraints touch particles of both owners and nothing keeps them apart: one worker's then.
+    pub crosses: bool,
     /// What each owner solves.
     pub shares: [Share; OWNERS],
 }
@@ -57,23 +70,23 @@ pub struct Tuples<const K: usize> {
     pub sets: Box<[Set]>,
     /// Constraints in all.
     pub count: usize,
+    /// Places of parameters: fewer than constraints where some are alike.
+    pub places: usize,
 }
 
 impl<const K: usize> Tuples<K> {
-    /// The particles of every constraint, in the order of the parameters.
-    pub fn all(&self) -> Vec<[u32; K]> {
-        let mut out = vec![[0; K]; self.count];
+    /// Calls `each(place, particles)` for every constraint with the place of its parameters.
+    pub fn for_each(&self, mut each: impl FnMut(usize, [u32; K])) {
         for run in &self.runs {
             for t in 0..run.len {
-                out[(run.at + t) as usize] = run.first.map(|f| f + t);
+                each(run.place(t), run.first.map(|f| f + t));
             }
         }
         for share in self.sets.iter().flat_map(|s| &s.shares) {
             for (k, i) in share.loose.clone().enumerate() {
-                out[share.loose_at as usize + k] = self.loose[i as usize];
+                each(share.loose_at as usize + k, self.loose[i as usize]);
             }
         }
-        out
     }
 }
 
@@ -88,13 +101,29 @@ pub struct Links {
     pub compliance: Box<[f32]>,
 }
 
-/// Bending stencils over three particles in a row: energy (1/2) |sum c_i x_i|^2, the stiffness within the coefficients.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Bends {
-    /// Who is bent. The sets of bends may share particles: they are forces, not projections.
-    pub tuples: Tuples<3>,
+/// Bending stencils over `K` particles: energy (1/2) |sum c_i x_i|^2, the root of the stiffness within the coefficients.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bends<const K: usize> {
+    /// Who is bent; the particle in the middle comes first. The sets of bends may share particles: they are forces, not
+    /// projections. The first set keeps within the owners, the second crosses them.
+    pub tuples: Tuples<K>,
     /// Coefficients (sqrt(N/m)), one array a particle of the stencil.
-    pub coefficients: [Box<[f32]>; 3],
+    pub coefficients: [Box<[f32]>; K],
+}
+
+impl<const K: usize> Default for Bends<K> {
+    fn default() -> Self {
+        Self { tuples: Tuples::default(), coefficients: std::array::from_fn(|_| [].into()) }
+    }
+}
+
+/// How far each particle can get from where the garment hangs.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Tethers {
+    /// The fixed particle nearest along the cloth; itself where there is none.
+    pub anchor: Box<[u32]>,
+    /// Length of the way to it as cut (m).
+    pub length: Box<[f32]>,
 }
 
 /// One step down the fibers of a bundle: which particles lie there.
@@ -117,8 +146,10 @@ pub struct Bundle {
     pub lanes: u32,
     /// Particles of its longest fiber, from the support on: a range of [`Fibers::rows`].
     pub rows: Range<u32>,
-    /// Where its parameters begin: `lanes` for each link from row to row.
+    /// Where its parameters begin: `lanes` for each link from row to row, or one where its fibers are alike.
     pub at: u32,
+    /// Whether the fibers are all alike, in their links and in the masses of their particles.
+    pub alike: bool,
 }
 
 /// Fibers whose particles lie contiguous, row after row.
@@ -187,12 +218,16 @@ pub struct Layout {
     pub weft: Links,
     /// Fibers along the warp.
     pub fibers: Fibers,
-    /// Warp fibers that could not be laid side by side.
+    /// Fibers that are solved whole by index list: warp that crosses warp, waistbands, whatever was chosen to be.
     pub crossing: Lists,
-    /// Closed hoops along the weft, for those who solve them whole; the same links are in `weft`.
+    /// Closed hoops along the weft, for the quality that solves them whole too; the same links are in `weft`.
     pub hoops: Lists,
-    /// Bending.
-    pub bends: Bends,
+    /// Bending over three particles in a row.
+    pub bends: Bends<3>,
+    /// Bending where a fiber turns within the cloth: a fourth particle keeps flat cloth free of it.
+    pub skewed: Bends<4>,
+    /// What holds the garment together when all else gives way.
+    pub tethers: Tethers,
     /// The particles that each owner has, as ranges `(first, len)`.
     pub spans: [Vec<(u32, u32)>; OWNERS],
     /// Whose each particle is.
@@ -203,19 +238,21 @@ impl Layout {
     /// Bytes that a garment's constraints hold.
     pub fn bytes(&self) -> usize {
         let tuples = |runs: usize, run: usize, loose: usize, k: usize| runs * run + loose * 4 * k;
-        let links = |l: &Links| {
-            tuples(l.tuples.runs.len(), size_of::<Run<2>>(), l.tuples.loose.len(), 2) + l.rest.len() * 8
-        };
+        let links =
+            |l: &Links| tuples(l.tuples.runs.len(), size_of::<Run<2>>(), l.tuples.loose.len(), 2) + l.rest.len() * 8;
         let lists = |l: &Lists| l.lists.len() * size_of::<List>() + l.index.len() * 4 + l.rest.len() * 8;
-        let bends = &self.bends;
+        fn bends<const K: usize>(b: &Bends<K>) -> usize {
+            b.tuples.runs.len() * size_of::<Run<K>>() + b.tuples.loose.len() * 4 * K + b.coefficients[0].len() * 4 * K
+        }
         links(&self.shear)
             + links(&self.weft)
             + self.fibers.rows.len() * size_of::<Row>()
             + self.fibers.rest.len() * 8
             + lists(&self.crossing)
             + lists(&self.hoops)
-            + tuples(bends.tuples.runs.len(), size_of::<Run<3>>(), bends.tuples.loose.len(), 3)
-            + bends.coefficients[0].len() * 12
+            + bends(&self.bends)
+            + bends(&self.skewed)
+            + self.tethers.anchor.len() * 8
             + self.owner.len()
             + self.spans.iter().map(Vec::len).sum::<usize>() * 8
     }

@@ -16,7 +16,7 @@ pub use check::MeshError;
 pub use direction::Direction;
 pub use layout::Layout;
 pub use shape::{Face, Part, Shape};
-pub use solver::Solver;
+pub use solver::{Overrides, Solver};
 
 use crate::fabric::Fabric;
 use crate::mesh::SkinWeights;
@@ -58,5 +58,19 @@ impl Garment {
     /// Number of particles.
     pub fn particles(&self) -> usize {
         self.start.len()
+    }
+
+    /// Bytes that the cloth borrows: the constraints, and what is kept of each particle and triangle.
+    pub fn bytes(&self) -> usize {
+        self.layout.bytes()
+            + size_of_val(&*self.source)
+            + size_of_val(&*self.start)
+            + size_of_val(&*self.inverse_mass)
+            + size_of_val(&*self.parts)
+            + size_of_val(&*self.triangles)
+            + size_of_val(&*self.fixed)
+            + size_of_val(&*self.fixed_weights)
+            + size_of_val(&*self.strain_edges)
+            + size_of_val(&*self.hoop_edges)
     }
 }

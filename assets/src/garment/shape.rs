@@ -1,7 +1,8 @@
 //! The shape of one garment in one size: its faces, its measure as cut, and where it starts on a shopper.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
+use super::Overrides;
 use crate::mesh::SkinWeights;
 
 /// In the fourth place of a [`Face`]: the face is a triangle.
@@ -51,6 +52,11 @@ pub struct Shape {
     /// How many times heavier than its fabric each vertex is, a weight sewn into a hem for example `[vertices]`;
     /// vertices past its end have the fabric's mass.
     pub heavier: Vec<f32>,
+    /// Texture coordinates of the corners of each face `[faces]`, or empty. Where they are a pattern laid out flat, its
+    /// warp along v, they say which way the threads of triangles run.
+    pub uvs: Vec<[Vec2; 4]>,
+    /// Solvers that its garment file has chosen.
+    pub solver: Overrides,
 }
 
 impl Shape {

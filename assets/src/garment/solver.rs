@@ -1,9 +1,11 @@
-//! How a set of fibers is solved.
+//! How a set of fibers is solved, and what a garment file has to say about it.
 
 use serde::Deserialize;
 
+use super::Direction;
+
 /// What keeps the links of a fiber to their length.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Solver {
     /// Link after link: cheap, for what carries little.
@@ -12,4 +14,57 @@ pub enum Solver {
     SemiImplicit,
     /// As semi-implicit, without compliance, until no link is longer than it was cut: for waistbands.
     ZeroStretch,
+}
+
+impl Solver {
+    /// Its name in garment files and reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::GaussSeidel => "gauss-seidel",
+            Self::SemiImplicit => "semi-implicit",
+            Self::ZeroStretch => "zero-stretch",
+        }
+    }
+}
+
+/// A part of a garment whose fibers a garment file can speak of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Region {
+    /// Closed weft fibers that are sewn to what does not move, vertex by vertex: a waistband, a neckband.
+    Waistband,
+    /// Closed weft fibers where the cloth ends, below or above.
+    Hem,
+}
+
+/// The table `[solver]` of a garment file: solvers that are chosen by hand. A region goes before a direction, and either
+/// before what the bake would choose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Overrides {
+    /// Of all fibers down the garment.
+    pub warp: Option<Solver>,
+    /// Of all fibers around it.
+    pub weft: Option<Solver>,
+    /// Of all diagonals.
+    pub bias: Option<Solver>,
+    /// Of the hoops that the garment hangs by.
+    pub waistband: Option<Solver>,
+    /// Of the hoops at its edges.
+    pub hem: Option<Solver>,
+}
+
+impl Overrides {
+    /// What is said of a fiber of a direction that belongs to a region or to none.
+    pub fn of(&self, direction: Direction, region: Option<Region>) -> Option<Solver> {
+        let by_region = match region {
+            Some(Region::Waistband) => self.waistband,
+            Some(Region::Hem) => self.hem,
+            None => None,
+        };
+        by_region.or(match direction {
+            Direction::Warp => self.warp,
+            Direction::Weft => self.weft,
+            Direction::Bias => self.bias,
+        })
+    }
 }

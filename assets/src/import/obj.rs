@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use thiserror::Error;
 
 use crate::garment::shape::{Face, NO_VERTEX, Part, Shape};
@@ -14,7 +14,7 @@ use crate::garment::shape::{Face, NO_VERTEX, Part, Shape};
 pub const MAX_BYTES: u64 = 64 << 20;
 
 /// Material suffix of what moves.
-const FREE: &str = "Free";
+pub(crate) const FREE: &str = "Free";
 
 /// Share of the height from the top that is fixed when no material says what moves.
 const FIXED_TOP_SHARE: f32 = 0.06;
@@ -122,6 +122,8 @@ struct Welded {
     places: BTreeMap<[u32; 3], u32>,
     positions: Vec<Vec3>,
     faces: Vec<Face>,
+    /// Texture coordinates of the corners of each face.
+    uvs: Vec<[Vec2; 4]>,
     /// True where a face that moves touches the vertex.
     moves: Vec<bool>,
     /// True where a face that does not move touches the vertex.
@@ -148,6 +150,8 @@ impl Welded {
         let mut at = 0;
         for &corners in arities {
             let ring = &mesh.indices[at..at + corners as usize];
+            // A face without texture coordinates has none at any corner.
+            let texture = mesh.texcoord_indices.get(at..at + corners as usize).unwrap_or_default();
             at += corners as usize;
             match corners {
                 0..=2 => continue, // points and lines carry no cloth
@@ -165,6 +169,10 @@ impl Welded {
                 let touched = if free { &mut self.moves } else { &mut self.sticks };
                 touched[face[k] as usize] = true;
             }
+            let uv = |&i: &u32| mesh.texcoords.get(i as usize * 2..i as usize * 2 + 2).map(|t| Vec2::new(t[0], t[1]));
+            let mut uvs = [Vec2::ZERO; 4];
+            uvs.iter_mut().zip(texture).for_each(|(to, i)| *to = uv(i).unwrap_or_default());
+            self.uvs.push(uvs);
             self.faces.push(face);
         }
         Ok(())
@@ -183,9 +191,10 @@ impl Welded {
             true => self.sticks,
             false => self.positions.iter().map(|p| p.y >= edge).collect(),
         };
-        let faces = self.faces.into_iter().map(|f| warp_upright(&self.positions, f)).collect();
+        let upright = self.faces.into_iter().zip(self.uvs).map(|(f, uv)| warp_upright(&self.positions, f, uv));
+        let (faces, uvs) = upright.unzip();
         let parts = vec![Part::All; self.positions.len()];
-        Ok(Shape { cut: self.positions.clone(), worn: self.positions, faces, fixed, parts, ..Shape::default() })
+        Ok(Shape { cut: self.positions.clone(), worn: self.positions, faces, fixed, parts, uvs, ..Shape::default() })
     }
 }
 
@@ -194,13 +203,17 @@ const LEAST_HEIGHT_M: f32 = 0.02;
 const MOST_HEIGHT_M: f32 = 3.0;
 
 /// Turns a quad so that its a-b side is the flattest: then warp runs down the garment.
-fn warp_upright(positions: &[Vec3], face: Face) -> Face {
+pub(crate) fn warp_upright(positions: &[Vec3], face: Face, uv: [Vec2; 4]) -> (Face, [Vec2; 4]) {
     if face[3] == NO_VERTEX {
-        return face;
+        return (face, uv);
     }
     let rise = |i: u32, j: u32| (positions[i as usize].y - positions[j as usize].y).abs();
     let [a, b, c, d] = face;
-    if rise(a, b) + rise(c, d) > rise(b, c) + rise(d, a) { [b, c, d, a] } else { face }
+    if rise(a, b) + rise(c, d) > rise(b, c) + rise(d, a) {
+        ([b, c, d, a], [uv[1], uv[2], uv[3], uv[0]])
+    } else {
+        (face, uv)
+    }
 }
 
 #[cfg(test)]
@@ -222,6 +235,18 @@ mod tests {
         assert_eq!(shape.cut.len(), 6);
         let moving: Vec<f32> = (0..6).filter(|&i| !shape.fixed[i]).map(|i| shape.cut[i].y).collect();
         assert_eq!(moving, [0.0, 0.0]);
+    }
+
+    #[test]
+    fn texture_coordinates_stay_with_their_corners() {
+        let text = "v 0 0 0\nv .2 0 0\nv .2 1 0\nvt 0 .5\nvt .4 .5\nvt .4 .9\nf 1/3 2/1 3/2\n";
+        let shape = read(text).unwrap();
+        assert_eq!(shape.uvs[0][..3], [Vec2::new(0.4, 0.9), Vec2::new(0.0, 0.5), Vec2::new(0.4, 0.5)]);
+        // A quad that is turned takes them along; a file without any has none.
+        let turned = "v 0 0 0\nv 0 1 0\nv .2 1 0\nv .2 0 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
+        let shape = read(turned).unwrap();
+        assert_eq!((shape.faces[0], shape.uvs[0][0]), ([1, 2, 3, 0], Vec2::X));
+        assert_eq!(read(SKIRT).unwrap().uvs, vec![[Vec2::ZERO; 4]; 2]);
     }
 
     #[test]

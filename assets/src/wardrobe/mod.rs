@@ -138,11 +138,15 @@ impl Style {
         })
     }
 
+    /// The body that a size is cut for; `wearer` chooses the block of a garment in unisex sizes.
+    pub fn body(&self, size: &str, wearer: Sex) -> Result<Body, WardrobeError> {
+        let measures = Measures::from(self.sizes()?.size_body(size)?);
+        Body::build(self.block(wearer)?, &measures).map_err(|source| WardrobeError::Body { size: size.into(), source })
+    }
+
     /// Cuts the garment in a size and lays it on a shopper.
     pub fn draft(&self, size: &str, shopper: &Body) -> Result<Shape, WardrobeError> {
-        let measures = Measures::from(self.sizes()?.size_body(size)?);
-        let cut = Body::build(self.block(shopper.sex)?, &measures)
-            .map_err(|source| WardrobeError::Body { size: size.into(), source })?;
+        let cut = self.body(size, shopper.sex)?;
         let mut shape = match self.cut {
             Cut::SunDress { .. } => sun_dress::draft(self, &cut, shopper),
             Cut::TShirt { .. } => t_shirt::draft(self, &cut, shopper),
@@ -156,6 +160,7 @@ impl Style {
         };
         let carries = |p: glam::Vec3, bone| weights::trunk(bone) || (p.y > shoulders_from && weights::shoulders(bone));
         shape.weights = weights::transfer(shopper, &shape.worn, carries);
+        shape.solver = self.solver;
         Ok(shape)
     }
 
@@ -172,7 +177,13 @@ impl Style {
 /// scales a garment: its height by stature, its breadth by the hip, its depth by the mean of both.
 pub fn dress_mesh(path: &Path, fabric: &str, shopper: &Body) -> Result<Garment, WardrobeError> {
     let fabric = Fabric::built_in(fabric)?;
+    let shape = draft_mesh(path, shopper)?;
     let name = path.display().to_string();
+    bake(&name, "one size", &shape, &fabric).map_err(|source| WardrobeError::Mesh { name, source })
+}
+
+/// The same before it is baked.
+pub fn draft_mesh(path: &Path, shopper: &Body) -> Result<Shape, WardrobeError> {
     let mut shape = obj::read(path)?;
     let average = Measures::average(Sex::Female);
     let tall = shopper.measures.stature / average.stature;
@@ -180,5 +191,5 @@ pub fn dress_mesh(path: &Path, fabric: &str, shopper: &Body) -> Result<Garment, 
     let scale = glam::Vec3::new(wide, tall, 0.5 * (wide + tall));
     shape.cut.iter_mut().chain(&mut shape.worn).for_each(|p| *p *= scale);
     shape.weights = weights::transfer(shopper, &shape.worn, |_, _| true);
-    bake(&name, "one size", &shape, &fabric).map_err(|source| WardrobeError::Mesh { name, source })
+    Ok(shape)
 }

@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 
+use crate::garment::Overrides;
 use crate::sizes::{GarmentKind, Girth};
 
 /// A garment file: what is cut, from which fabric, in which sizes, with how much ease.
@@ -28,6 +29,9 @@ pub struct Style {
     pub comfort_mm: Comfort,
     /// The cut.
     pub cut: Cut,
+    /// Solvers that are not left to the bake.
+    #[serde(default)]
+    pub solver: Overrides,
 }
 
 /// Ease by zone (mm); a zone that the garment does not reach is left out.
@@ -117,4 +121,27 @@ pub enum Cut {
         /// How far the crotch hangs below the body's.
         crotch_drop_mm: f32,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::garment::Direction;
+    use crate::garment::solver::{Region, Solver};
+    use crate::wardrobe;
+
+    #[test]
+    fn a_garment_file_names_solvers_and_is_told_which_there_are() {
+        let text = include_str!("../../data/garments/wide-trousers.toml");
+        assert_eq!(wardrobe::parse("trousers", text).unwrap().solver, Overrides::default());
+        let with = |table: &str| wardrobe::parse("trousers", &format!("{text}\n[solver]\n{table}\n"));
+        let style = with("weft = \"semi-implicit\"\nwaistband = \"zero-stretch\"").unwrap();
+        assert_eq!(style.solver.of(Direction::Weft, None), Some(Solver::SemiImplicit));
+        assert_eq!(style.solver.of(Direction::Weft, Some(Region::Waistband)), Some(Solver::ZeroStretch));
+        assert_eq!(style.solver.of(Direction::Warp, None), None);
+        for (table, word) in [("weft = \"magic\"", "semi-implicit"), ("sleeve = \"zero-stretch\"", "waistband")] {
+            let said = with(table).unwrap_err().to_string();
+            assert!(said.contains(word) && said.contains("trousers") && !said.contains('\n'), "{said}");
+        }
+    }
 }

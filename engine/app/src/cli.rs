@@ -11,6 +11,15 @@ use toile_assets::body::Sex;
 
 use crate::exit::AppError;
 
+mod run;
+mod skirt;
+
+pub use run::{RunArgs, RunScene};
+pub use skirt::SkirtArgs;
+mod bake;
+
+pub use bake::BakeArgs;
+
 /// What the user asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Command {
@@ -20,10 +29,16 @@ pub enum Command {
     Measure(MeasureArgs),
     /// `toile record`.
     Record(RecordArgs),
+    /// `toile run`.
+    Run(RunArgs),
     /// `toile doctor`.
     Doctor(DoctorArgs),
+    /// `toile bake`.
+    Bake(BakeArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
+    /// `toile bench skirt`.
+    BenchSkirt(SkirtArgs),
     /// `toile completions`.
     Completions(Shell),
     /// Help or version: text to print.
@@ -119,7 +134,7 @@ pub fn command() -> clap::Command {
         )
         .override_usage("toile [OPTIONS OF TRY-ON]\n       toile <COMMAND>")
         .subcommand_required(true)
-        .subcommands([try_on(), measure(), record(), doctor(), bench(), completions()])
+        .subcommands([try_on(), measure(), record(), bake::grammar(), run::grammar(), doctor(), bench(), completions()])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
 }
 
@@ -203,8 +218,8 @@ fn bench() -> clap::Command {
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommand(skinning)
-        .after_help("Example: the cost of a vertex\n  toile bench skinning --verts 16384")
+        .subcommands([skinning, skirt::grammar()])
+        .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
 
 fn completions() -> clap::Command {
@@ -273,7 +288,9 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         }),
+        "run" => Command::Run(run::args(matches)?),
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
+        "bake" => Command::Bake(bake::args(matches)?),
         "bench" => bench_command(matches)?,
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
@@ -281,12 +298,15 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
 }
 
 fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
-    let Some(("skinning", matches)) = matches.subcommand() else {
-        return Err(AppError::internal("a benchmark without a name was let through"));
-    };
-    let verts: u64 = required(matches, "verts")?;
-    let verts = usize::try_from(verts).map_err(AppError::internal)?;
-    Ok(Command::BenchSkinning(SkinningArgs { verts, json: matches.get_flag("json") }))
+    match matches.subcommand() {
+        Some(("skinning", matches)) => {
+            let verts: u64 = required(matches, "verts")?;
+            let verts = usize::try_from(verts).map_err(AppError::internal)?;
+            Ok(Command::BenchSkinning(SkinningArgs { verts, json: matches.get_flag("json") }))
+        }
+        Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),
+        _ => Err(AppError::internal("a benchmark without a name was let through")),
+    }
 }
 
 /// A value that the grammar guarantees, by being required or by having a default.

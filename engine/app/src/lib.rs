@@ -4,10 +4,12 @@
 //! Budget: the words and the parsing take under 10 ms; the work itself is budgeted by the rooms it calls.
 //! Thread: the main thread, which loads, starts the frame's threads and waits for them.
 
+pub mod bake;
 pub mod bench;
 pub mod cli;
 pub mod completions;
 pub mod doctor;
+pub mod dump;
 pub mod exit;
 pub mod fit;
 pub mod machine;
@@ -16,6 +18,7 @@ pub mod output;
 pub mod pictures;
 pub mod record;
 pub mod report;
+pub mod run;
 pub mod shopper;
 pub mod summary;
 pub mod terminal;
@@ -57,8 +60,11 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::TryOn(args) => try_on::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Record(args) => record::run(args),
+        Command::Run(args) => run::run(args),
         Command::Doctor(args) => doctor::run(args),
+        Command::Bake(args) => bake::run(args),
         Command::BenchSkinning(args) => bench::skinning(args),
+        Command::BenchSkirt(args) => bench::skirt(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }

@@ -3,6 +3,7 @@
 //! A file is written under a temporary name in the folder itself, because only a rename within one file system is
 //! atomic. [`OutputFolder::commit`] renames all; dropping the folder before that takes everything back.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -46,6 +47,8 @@ pub struct OutputFolder {
     made: Option<PathBuf>,
     /// Temporary and final path of each file, in the order of their making.
     files: Vec<(PathBuf, PathBuf)>,
+    /// Their names; a name may be staged again.
+    names: BTreeSet<String>,
 }
 
 impl OutputFolder {
@@ -55,7 +58,12 @@ impl OutputFolder {
     /// [`OutputError::Folder`].
     pub fn prepare(folder: &Path) -> Result<Self, OutputError> {
         let missing = folder.ancestors().take_while(|p| !p.as_os_str().is_empty() && !p.exists()).last();
-        let mut this = Self { folder: folder.to_path_buf(), made: missing.map(Path::to_path_buf), files: Vec::new() };
+        let mut this = Self {
+            folder: folder.to_path_buf(),
+            made: missing.map(Path::to_path_buf),
+            files: Vec::new(),
+            names: BTreeSet::new(),
+        };
         this.prove().map_err(|reason| OutputError::Folder { path: folder.to_path_buf(), reason })?;
         this.sweep();
         Ok(this)
@@ -77,9 +85,8 @@ impl OutputFolder {
             return Err(OutputError::Name { name: name.to_owned() });
         }
         let part = self.part(name);
-        let last = self.folder.join(name);
-        if !self.files.iter().any(|(_, l)| *l == last) {
-            self.files.push((part.clone(), last));
+        if self.names.insert(name.to_owned()) {
+            self.files.push((part.clone(), self.folder.join(name)));
         }
         Ok(part)
     }

@@ -6,6 +6,10 @@ use serde::Serialize;
 
 use crate::machine::Machine;
 
+mod run;
+
+pub use run::{KineticEnergy, RunGarment, RunPenetration, RunReport};
+
 /// What every object carries, around what one command has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Document<T> {

@@ -2,7 +2,11 @@
 
 use std::fmt::Write;
 
-use crate::report::{Measure, MeasureReport, Measurements, Physics, Recommendation, Session, SkinningReport, TryOn};
+use toile_perf::skirt::report::Report;
+
+use crate::report::{
+    Measure, MeasureReport, Measurements, Physics, Recommendation, RunReport, Session, SkinningReport, TryOn,
+};
 use crate::terminal::{Paint, Tone};
 
 /// The summary of a try-on.
@@ -30,6 +34,52 @@ pub fn measure(report: &MeasureReport, paint: Paint) -> String {
     text
 }
 
+/// The summary of a run.
+pub fn run(report: &RunReport, paint: Paint) -> String {
+    let mut text = String::new();
+    line(
+        &mut text,
+        &paint.tone(&format!("Scene {}: {} steps, {:.2} s", report.scene, report.steps, report.seconds), Tone::Strong),
+    );
+    for garment in &report.garments {
+        let (name, fabric, pinned) = (&garment.name, &garment.fabric, garment.pinned);
+        let count = garment.particles;
+        line(&mut text, &format!("  {name}: {count} particles, {pinned} pinned, {fabric}, {:.3} kg", garment.mass_kg));
+    }
+    let (step, strain, deep) = (&report.step_us, &report.strain, &report.penetration_mm);
+    line(
+        &mut text,
+        &format!("  quality           {}, {} substeps at {} Hz", report.quality, report.substeps, report.hz),
+    );
+    line(&mut text, &format!("  a step takes      {:.0} us, 99 % of them under {:.0} us", step.p50, step.p99));
+    let percent = [strain.mean, strain.p99, strain.max].map(|s| s * 100.0);
+    let [mean, p99, max] = percent;
+    line(&mut text, &format!("  it is stretched   {mean:.2} % on average, 99 % under {p99:.2} %, at worst {max:.1} %"));
+    let share = deep.fraction * 100.0;
+    line(&mut text, &format!("  deepest contact   {:.2} mm, {share:.2} % of the particles inside", deep.max));
+    let energy = report.kinetic_energy_j.end * 1e3;
+    line(&mut text, &format!("  it ends with      {energy:.3} mJ of motion, state {}", report.state_hash));
+    let events = report.events;
+    let counts = [
+        (events.repaired, "particles put back"),
+        (events.rolled_back, "steps rolled back"),
+        (events.speed_limited, "times at the speed limit"),
+        (events.held_pins, "pins held"),
+        (events.held_colliders, "spheres held"),
+        (events.teleports, "jumps of the root"),
+        (report.nonfinite, "numbers not finite"),
+    ];
+    let met: Vec<String> = counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
+    if !met.is_empty() {
+        let said = met.join(", ");
+        line(&mut text, &format!("  {}", paint.tone(&said, Tone::Warn)));
+    }
+    if let Some(folder) = &report.dump {
+        line(&mut text, &format!("  {} frames in {}, listed in index.csv", report.dumped_frames, folder.display()));
+    }
+    text
+}
+
 /// The summary of a skinning benchmark.
 pub fn skinning(report: &SkinningReport, paint: Paint) -> String {
     let SkinningReport { verts, us, ns_per_vertex, yardstick_us, yardstick_verts, max_error_m } = report;
@@ -39,6 +89,58 @@ pub fn skinning(report: &SkinningReport, paint: Paint) -> String {
     line(&mut text, &format!("  the engine    {us:.1} us, {ns_per_vertex:.2} ns a vertex"));
     line(&mut text, &format!("  a plain loop  {plain:.2} ns a vertex ({yardstick_us:.1} us for {yardstick_verts})"));
     line(&mut text, &format!("  largest error {:.3} um, against f64", max_error_m * 1e6));
+    text
+}
+
+/// The summary of a run of the skirt: no time without the error reached at it.
+pub fn skirt(report: &Report, paint: Paint) -> String {
+    let Report { verts, motion, mesh, stretch, substeps, lanes, threads, garments, strain, step_us, .. } = report;
+    let mut text = String::new();
+    line(&mut text, &paint.tone(&format!("A skirt of {verts} vertices ({mesh}, {stretch}), {motion}"), Tone::Strong));
+    let quality = format!("quality {}, ", report.quality);
+    let wind = if report.wind { ", wind" } else { "" };
+    line(
+        &mut text,
+        &format!("  {quality}{substeps} substeps, {lanes} lanes, {threads} thread(s), {garments} skirt(s){wind}"),
+    );
+    line(&mut text, &format!("  a step takes  {:.1} us, 99 % of them under {:.1} us", step_us.p50, step_us.p99));
+    let (ratio, yardstick) = (report.y_ratio, report.yardstick_us);
+    line(&mut text, &format!("  the yardstick {yardstick:.1} us: the step takes {ratio:.2} of it"));
+    let [mean, p99, max] = [strain.mean, strain.p99, strain.max].map(|s| s * 100.0);
+    line(
+        &mut text,
+        &format!("  strain        {mean:.3} % mean, {p99:.2} % at the 99th percentile, {max:.1} % at worst"),
+    );
+    let (deepest, inside) = (report.penetration_mm.max, report.penetration_mm.fraction * 100.0);
+    line(&mut text, &format!("  penetration   {deepest:.2} mm at worst, {inside:.3} % of the vertices inside"));
+    for (stage, us) in &report.stages_us {
+        line(&mut text, &format!("  {stage:13} {us:.1} us"));
+    }
+    let told = |x: Option<String>| x.unwrap_or_else(|| "not counted".into());
+    let memory = told(report.memory_bytes.map(|b| format!("{:.3} MB", b as f64 * 1e-6)));
+    line(
+        &mut text,
+        &format!(
+            "  memory        {memory}; allocations a step: {}",
+            told(report.allocations_per_step.map(|a| a.to_string()))
+        ),
+    );
+    line(
+        &mut text,
+        &format!(
+            "  energy        {:.3} mJ of motion at the end; state {}",
+            report.kinetic_energy_mj, report.state_hash
+        ),
+    );
+    let events = [
+        (report.hem_winding_wrong, "frames in which the hem does not go around each leg"),
+        (report.nonfinite, "vertices that are not finite"),
+        (report.events.rolled_back, "steps taken back"),
+        (report.events.speed_limited, "particles at the speed limit"),
+    ];
+    for (count, what) in events.into_iter().filter(|(count, _)| *count > 0) {
+        line(&mut text, &format!("  {}", paint.tone(&format!("{count} {what}"), Tone::Warn)));
+    }
     text
 }
 
@@ -128,6 +230,20 @@ mod tests {
         for said in ["1000 vertices", "5.00 ns", "8.00 ns", "0.250 um"] {
             assert!(text.contains(said), "{said} is not in: {text}");
         }
+    }
+
+    #[test]
+    fn a_skirt_summary_says_time_and_error_and_warns_of_what_should_not_be() {
+        let mut report = Report { verts: 4_096, y_ratio: 0.58, motion: "walk", ..Report::default() };
+        report.strain.mean = 0.0014;
+        report.memory_bytes = Some(420_000);
+        let text = skirt(&report, Paint::none());
+        for said in ["4096 vertices", "0.58 of it", "0.140 %", "0.420 MB", "allocations a step: not counted"] {
+            assert!(text.contains(said), "{said} is not in: {text}");
+        }
+        assert!(!text.contains("the hem does not"));
+        report.hem_winding_wrong = 3;
+        assert!(skirt(&report, Paint::none()).contains("3 frames in which the hem does not"));
     }
 
     #[test]

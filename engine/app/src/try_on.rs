@@ -225,7 +225,7 @@ fn physics(frame: &Frame) -> report::Physics {
     }
     report::Physics {
         hz: STEP_HZ,
-        substeps: frame.settings().substeps,
+        substeps: frame.cloths().iter().map(|c| c.substeps()).max().unwrap_or(0),
         particles: frame.garments().iter().map(Garment::particles).sum(),
         steps: frame.tick(),
         step_us: report::StepMicros {

@@ -37,7 +37,7 @@ fn scratch(name: &str) -> PathBuf {
 
 #[test]
 fn help_is_on_stdout_and_ends_with_an_example() {
-    for command in ["", "try-on", "measure", "record", "doctor", "bench", "completions"] {
+    for command in ["", "try-on", "measure", "record", "bake", "doctor", "bench", "completions"] {
         let args: Vec<&str> = [command, "--help"].into_iter().filter(|a| !a.is_empty()).collect();
         let output = toile(&args);
         assert_eq!(output.status.code(), Some(0), "{command}");
@@ -58,13 +58,14 @@ fn version_is_the_packages() {
 
 #[test]
 fn a_line_not_understood_exits_2_with_one_sentence() {
-    let lines: [&[&str]; 8] = [
+    let lines: [&[&str]; 9] = [
         &["--bogus"],
         &["try-on", "--garmet", "x"],
         &["mesure", "x"],
         &["measure"],
         &["record", "--out", "x.mcap", "--seconds", "0"],
         &["bench"],
+        &["bake"],
         &["bench", "skinning", "--verts", "0"],
         &["completions", "tcsh"],
     ];
@@ -135,6 +136,54 @@ fn bench_skinning_reports_time_and_error_together() {
     assert_eq!(output.status.code(), Some(0));
     let text = stdout(&output);
     assert!(text.contains("500 vertices") && text.contains("ns a vertex") && !text.contains('\x1b'), "{text}");
+}
+
+#[test]
+fn bench_skirt_reports_time_and_error_of_the_same_steps() {
+    let output = toile(&["bench", "skirt", "--verts", "256", "--runs", "2", "--steps", "30", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.stderr.is_empty());
+    let json: Value = serde_json::from_str(&stdout(&output)).expect("stdout is exactly one JSON object");
+    assert_eq!(json["schema"], "toile.bench-skirt/1");
+    let contract = [
+        "/step_us/p50",
+        "/step_us/p99",
+        "/step_us/p999",
+        "/step_us/max",
+        "/strain/mean",
+        "/strain/p99",
+        "/strain/max",
+        "/penetration_mm/max",
+        "/penetration_mm/fraction",
+        "/allocations_per_step",
+        "/memory_bytes",
+        "/yardstick_us",
+        "/y_ratio",
+        "/substeps",
+        "/lanes",
+        "/hem_winding_wrong",
+        "/kinetic_energy_mj",
+    ];
+    for key in contract {
+        assert!(json.pointer(key).is_some_and(Value::is_number), "{key}: {json}");
+    }
+    assert!(json["stages_us"].is_object() && json["state_hash"].as_str().unwrap().len() == 16);
+    assert_eq!(json["allocations_per_step"], 0.0, "the built program counts its own allocations");
+    assert!(json["memory_bytes"].as_u64().unwrap() > 256 * 12, "{json}");
+    let ratio = json["step_us"]["p50"].as_f64().unwrap() / json["yardstick_us"].as_f64().unwrap();
+    assert!((ratio - json["y_ratio"].as_f64().unwrap()).abs() < 1e-9);
+
+    let output = toile(&["bench", "skirt", "--verts", "256", "--runs", "1", "--steps", "5", "--motion", "settled"]);
+    assert_eq!(output.status.code(), Some(0));
+    let text = stdout(&output);
+    assert!(text.contains("256 vertices") && text.contains("strain") && !text.contains('\x1b'), "{text}");
+}
+
+#[test]
+fn bench_skirt_refuses_what_is_no_grid() {
+    let output = toile(&["bench", "skirt", "--verts", "1000"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(sentence(&output).contains("1000 vertices"));
 }
 
 #[test]

@@ -145,9 +145,12 @@ fn the_same_cloth_has_the_same_fibers_whatever_its_numbers() {
     }
 }
 
-/// Which share of the fibers two tracings have in common.
+/// Which share of the warp fibers two tracings have in common; of the weft as many edges must be covered.
 fn alike(one: &TestMesh, other: &TestMesh) -> f32 {
-    let (one, other) = (names(&traced(one).1, |v| v), names(&traced(other).1, |v| v));
+    let found = [one, other].map(|mesh| traced(mesh).1);
+    let covered = |f: &Vec<Fiber>| of(f, Direction::Weft).iter().map(|f| f.edges.len()).sum::<usize>();
+    assert!(covered(&found[0]).abs_diff(covered(&found[1])) <= covered(&found[0]) / 50);
+    let [one, other] = found.map(|f| names(&of(&f, Direction::Warp).into_iter().cloned().collect::<Vec<_>>(), |v| v));
     one.intersection(&other).count() as f32 / one.len().max(other.len()) as f32
 }
 
@@ -225,7 +228,18 @@ fn patterns_give_their_warp_by_their_texture() {
     for warp in warp::from_uvs(&positions, &faces, &uvs, &fallback) {
         assert!((warp + axis.extend(0.0)).length() < 1e-4, "{warp}");
     }
+    assert!(warp::is_pattern(&positions, &faces, &uvs));
+    let shape = Shape { cut: positions.clone(), faces: faces.clone(), uvs: uvs.clone(), ..Shape::default() };
+    let downwards = |edges: &[Edge]| edges.iter().filter(|e| e.direction == Direction::Warp).count();
+    let by_pattern = edges_of(&shape);
+    // A fifth of a turn: the diagonals of the cells are no nearer to the threads than their sides were.
+    assert!(by_pattern != edges(&positions, &faces) && downwards(&by_pattern) > 0);
+    // Squeezed to fill a square, or missing, it is no pattern.
+    let squeezed: Vec<[Vec2; 4]> = uvs.iter().map(|uv| uv.map(|p| p * Vec2::new(1.0, 2.0))).collect();
+    assert!(!warp::is_pattern(&positions, &faces, &squeezed) && !warp::is_pattern(&positions, &faces, &[]));
+    assert_eq!(edges_of(&Shape { uvs: squeezed, ..shape }), edges(&positions, &faces));
     let nothing = vec![[Vec2::ZERO; 4]; faces.len()];
+    assert!(!warp::is_pattern(&positions, &faces, &nothing));
     assert_eq!(warp::from_uvs(&positions, &faces, &nothing, &fallback), fallback);
 }
 

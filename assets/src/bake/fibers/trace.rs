@@ -1,7 +1,7 @@
 //! Following edges as fibers.
 //!
 //! Warp fibers are a cover of the vertices by paths that share none: each vertex chooses one edge on and one edge back
-//! among those within 45 degrees of the warp. That is a matching between the lower ends of some vertices and the upper
+//! among those that lean little enough ([`ALONG_COS`]). That is a matching between the lower ends of some vertices and the upper
 //! ends of others (the more edges it holds, the fewer and longer the paths): first greedily by how well the edges are
 //! aligned, then by augmenting paths until no vertex that could hang is left without (Hopcroft and Karp 1973, in the
 //! plain form of one breadth-first search a vertex). Weft fibers are found the same way among the edges that are left, and
@@ -14,8 +14,9 @@ use super::{Direction, Edge, Fiber};
 /// No edge.
 const NONE: u32 = u32::MAX;
 
-/// An edge may join a fiber of warp or weft while it leans by less than 45 degrees.
-const ALONG_COS: f32 = 0.707;
+/// An edge joins a fiber of warp or weft while it leans by less than 45 degrees; a vertex that finds no such edge takes
+/// one that leans by less than 60, which in an irregular mesh makes fibers twice as long.
+const ALONG_COS: [f32; 2] = [0.707, 0.5];
 
 /// What no such edge leads into may hang by one that leans by less than 75 degrees.
 const HANG_COS: f32 = 0.26;
@@ -32,8 +33,8 @@ pub fn trace(positions: &[Vec3], edges: &[Edge]) -> Vec<Fiber> {
     let mut fibers = Vec::new();
     for direction in [Direction::Warp, Direction::Weft] {
         let mut threads = Threads::new(direction, positions.len(), edges, &used);
-        threads.greedy();
-        threads.augment();
+        threads.greedy(ALONG_COS[0]);
+        ALONG_COS.iter().for_each(|&least| threads.augment(least));
         let mut chains = threads.chains();
         if direction == Direction::Warp {
             threads.hang(&mut chains, &used);
@@ -74,7 +75,7 @@ impl<'a> Threads<'a> {
         };
         let open = |&e: &u32| edges[e as usize].side && !used[e as usize];
         let mut ranked: Vec<u32> =
-            (0..edges.len() as u32).filter(open).filter(|&e| threads.along(e).abs() > ALONG_COS).collect();
+            (0..edges.len() as u32).filter(open).filter(|&e| threads.along(e).abs() > ALONG_COS[1]).collect();
         ranked.sort_by_key(|&e| threads.rank(e));
         for &e in &ranked {
             let head = threads.head(e);
@@ -88,7 +89,7 @@ impl<'a> Threads<'a> {
     /// lean one way come first.
     fn rank(&self, e: u32) -> (u32, bool, u32) {
         let off = self.along(e).abs().min(1.0).acos();
-        ((off * 1e4).round() as u32, self.lean(e) < 0.0, e)
+        ((off * 1e5).round() as u32, self.lean(e) < 0.0, e)
     }
 
     /// Cosine between the edge from a to b and the direction.
@@ -116,9 +117,12 @@ impl<'a> Threads<'a> {
     }
 
     /// Takes every candidate, best aligned first, whose both ends are free.
-    fn greedy(&mut self) {
+    fn greedy(&mut self, least: f32) {
         for k in 0..self.ranked.len() {
             let e = self.ranked[k];
+            if self.along(e).abs() < least {
+                break;
+            }
             let (tail, head) = (self.tail(e) as usize, self.head(e) as usize);
             if self.ahead[tail] == NONE && self.behind[head] == NONE {
                 self.ahead[tail] = e;
@@ -129,25 +133,25 @@ impl<'a> Threads<'a> {
 
     /// Finds an edge for every vertex that can have one. What a search that failed has seen can serve no later one
     /// either, so all failures together see each candidate once.
-    fn augment(&mut self) {
+    fn augment(&mut self, least: f32) {
         let mut via = vec![NONE; self.ahead.len()];
         for k in 0..self.ranked.len() {
             let start = self.head(self.ranked[k]);
             if self.behind[start as usize] == NONE {
-                self.search(start, &mut via);
+                self.search(start, least, &mut via);
             }
         }
     }
 
     /// Breadth first from a vertex without an edge into it; `via` keeps the edge by which each vertex was seen.
-    fn search(&mut self, start: u32, via: &mut [u32]) {
+    fn search(&mut self, start: u32, least: f32, via: &mut [u32]) {
         let (mut queue, mut seen, mut next) = (vec![start], Vec::new(), 0);
         while next < queue.len() {
             let head = queue[next];
             next += 1;
             for &e in &self.into[head as usize] {
                 let tail = self.tail(e);
-                if via[tail as usize] != NONE {
+                if via[tail as usize] != NONE || self.along(e).abs() < least {
                     continue;
                 }
                 via[tail as usize] = e;

@@ -39,13 +39,56 @@ pub fn from_uvs(positions: &[Vec3], faces: &[Face], uvs: &[[Vec2; 4]], fallback:
     let one = |((face, uv), fallback): ((&Face, &[Vec2; 4]), &Vec3)| {
         let [p, q, r] = [0, 1, 2].map(|k| positions[face[k] as usize]);
         let (e, f) = (uv[1] - uv[0], uv[2] - uv[0]);
-        // The gradient of v along the face: v changes by e.y along the first side, by f.y along the second.
+        // The way along the face on which v grows and u stays.
         let up = ((r - p) * e.x - (q - p) * f.x) * e.perp_dot(f).signum();
         let warp = if e.perp_dot(f) == 0.0 { Vec3::ZERO } else { up.normalize_or_zero() };
         let agrees = if warp.dot(*fallback) < 0.0 { -warp } else { warp };
         if warp == Vec3::ZERO { *fallback } else { along(positions, face, agrees).unwrap_or(*fallback) }
     };
     faces.iter().zip(uvs).zip(fallback).map(one).collect()
+}
+
+/// By how much the scale of a pattern may differ from that of its cloth, from place to place and along from across: what
+/// fullness and shaping take; textures that were unwrapped to fill a square differ by far more.
+const PATTERN_SCALE: f32 = 1.3;
+
+/// Part of the area that must agree.
+const PATTERN_SHARE: f32 = 0.9;
+
+/// Whether texture coordinates are a pattern: nearly all of the cloth laid out flat to one scale, undistorted.
+pub fn is_pattern(positions: &[Vec3], faces: &[Face], uvs: &[[Vec2; 4]]) -> bool {
+    if uvs.len() != faces.len() {
+        return false;
+    }
+    let mut scales: Vec<(f32, f32, f32)> =
+        faces.iter().zip(uvs).map(|(face, uv)| scales(positions, face, uv)).collect();
+    let whole: f32 = scales.iter().map(|s| s.2).sum();
+    // The median by area is the pattern's scale.
+    scales.sort_by(|a, b| (a.0 * a.1).total_cmp(&(b.0 * b.1)));
+    let mut below = 0.0;
+    let middle = scales.iter().find(|s| {
+        below += s.2;
+        below >= 0.5 * whole
+    });
+    let Some(scale) = middle.map(|s| (s.0 * s.1).sqrt()).filter(|s| s.is_finite() && *s > 0.0) else { return false };
+    let like = |s: f32| s < scale * PATTERN_SCALE && s > scale / PATTERN_SCALE;
+    let agrees: f32 = scales.iter().filter(|s| like(s.0) && like(s.1)).map(|s| s.2).sum();
+    agrees >= PATTERN_SHARE * whole
+}
+
+/// By how much the texture stretches a face at most and at least (1/m), and the face's area (m2): the singular values of
+/// the map from its plane, of which trace and determinant of the metric tell.
+fn scales(positions: &[Vec3], face: &Face, uv: &[Vec2; 4]) -> (f32, f32, f32) {
+    let at = |k: usize| positions[face[k] as usize] - positions[face[0] as usize];
+    let (e, f) = (at(1), at(2));
+    let (p, q) = (uv[1] - uv[0], uv[2] - uv[0]);
+    let area = 0.5 * e.cross(f).length();
+    let (ee, ef, ff) = (e.dot(e), e.dot(f), f.dot(f));
+    let inverse = (ee * ff - ef * ef).recip();
+    let trace = (p.dot(p) * ff - 2.0 * p.dot(q) * ef + q.dot(q) * ee) * inverse;
+    let determinant = p.perp_dot(q) * p.perp_dot(q) * inverse;
+    let root = (0.25 * trace * trace - determinant).max(0.0).sqrt();
+    ((0.5 * trace + root).sqrt(), (0.5 * trace - root).max(0.0).sqrt(), area)
 }
 
 /// A warp that was found on one shape of a mesh, laid into the same faces of another: as they are worn, say, and as they

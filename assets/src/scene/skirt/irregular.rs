@@ -34,8 +34,9 @@ pub fn irregular(n: usize, seed: u64) -> Shape {
     let n = n.max(3);
     let around = |u: f64| (0..n).map(move |j| [u, TAU * j as f64 / n as f64]);
     let mut places: Vec<Place> = around(0.0).collect();
-    strew(&mut places, around(1.0).collect(), n * n - 2 * n, seed);
-    places.extend(around(1.0));
+    let hem: Vec<Place> = around(1.0).collect();
+    strew(&mut places, &hem, n * n - 2 * n, seed);
+    places.extend(hem);
     let mut shape = Shape::default();
     for (i, &[u, angle]) in places.iter().enumerate() {
         push(&mut shape, point(u, angle), i < n);
@@ -71,12 +72,12 @@ fn slant() -> f64 {
 }
 
 /// Throws `count` darts that keep a distance from each other and from the two rings, closer as room runs out.
-fn strew(places: &mut Vec<Place>, hem: Vec<Place>, count: usize, seed: u64) {
+fn strew(places: &mut Vec<Place>, hem: &[Place], count: usize, seed: u64) {
     let area = std::f64::consts::PI * (2.0 * RADIUS[0] + RADIUS[1]) * slant();
     // In the densest packing each point has an area of spacing^2 sqrt(3) / 2.
     let mut spacing = FIRST_SPACING * (area / (count + hem.len()) as f64 * 2.0 / 3f64.sqrt()).sqrt();
     let mut board = Board::new(spacing);
-    places.iter().chain(&hem).for_each(|&place| board.add(place));
+    places.iter().chain(hem).for_each(|&place| board.add(place));
     let mut dice = Dice(seed);
     let mut left = count;
     while left > 0 {

@@ -65,10 +65,13 @@ impl Kernel for Solve<'_> {
                 let chain = Chain { solve: &self, bundle, lane };
                 match self.solver.unwrap_or(bundle.solver) {
                     Solver::GaussSeidel => chain.sweep::<L>(),
-                    Solver::SemiImplicit if self.gamma > 0.0 => chain.direct::<L, true, false>(),
-                    Solver::SemiImplicit => chain.direct::<L, false, false>(),
+                    Solver::SemiImplicit if self.gamma > 0.0 => chain.direct::<L, true, false, false>(),
+                    Solver::SemiImplicit if chain.full(L::N) => chain.direct::<L, false, false, true>(),
+                    Solver::SemiImplicit => chain.direct::<L, false, false, false>(),
                     Solver::ZeroStretch => {
-                        (0..ZERO_STRETCH_PASSES).for_each(|_| chain.direct::<L, false, true>());
+                        for _ in 0..ZERO_STRETCH_PASSES {
+                            chain.direct::<L, false, true, false>();
+                        }
                         chain.shorten::<L>();
                     }
                 }
@@ -91,26 +94,44 @@ impl Chain<'_> {
         &self.solve.fibers.rows[self.bundle.rows.start as usize..self.bundle.rows.end as usize]
     }
 
-    /// First particle of a row for these lanes, and how many of them reach so far.
+    /// Whether every lane has a fiber to the last row: then nothing has to be masked.
     #[inline(always)]
-    fn place<L: Lanes>(&self, row: Row) -> (usize, usize) {
-        (row.first as usize + self.lane, (row.lanes as usize).saturating_sub(self.lane).min(L::N))
+    fn full(&self, lanes: usize) -> bool {
+        self.rows().last().is_some_and(|row| self.lane + lanes <= row.lanes as usize)
     }
 
+    /// First particle of a row for these lanes, and how many of them reach so far.
     #[inline(always)]
-    fn weights<L: Lanes>(&self, at: usize, n: usize) -> L {
+    fn place<L: Lanes, const FULL: bool>(&self, row: Row) -> (usize, usize) {
+        let at = row.first as usize + self.lane;
+        (at, if FULL { L::N } else { (row.lanes as usize).saturating_sub(self.lane).min(L::N) })
+    }
+
+    /// Weights of a row's particles.
+    #[inline(always)]
+    fn weights<L: Lanes>(&self, row: Row, at: usize, n: usize) -> L {
         let w = self.solve.columns.w;
-        if n == L::N { L::load(w, at) } else { L::load_part(w, at, n) }
+        if self.bundle.alike {
+            L::splat(w.get(row.first as usize))
+        } else if n == L::N {
+            L::load(w, at)
+        } else {
+            L::load_part(w, at, n)
+        }
     }
 
     /// Rest length and compliance of a link.
     #[inline(always)]
-    fn link<L: Lanes>(&self, link: usize) -> (L, L) {
-        let lanes = self.bundle.lanes as usize;
-        let at = self.bundle.at as usize + link * lanes + self.lane;
-        let n = (lanes - self.lane).min(L::N);
+    fn link<L: Lanes, const FULL: bool>(&self, link: usize) -> (L, L) {
         let (rest, soft) =
             (Column::read_only(&self.solve.fibers.rest), Column::read_only(&self.solve.fibers.compliance));
+        let first = self.bundle.at as usize;
+        if self.bundle.alike {
+            return (L::splat(rest.get(first + link)), L::splat(soft.get(first + link)));
+        }
+        let lanes = self.bundle.lanes as usize;
+        let at = first + link * lanes + self.lane;
+        let n = if FULL { L::N } else { (lanes - self.lane).min(L::N) };
         if n == L::N {
             (L::load(rest, at), L::load(soft, at))
         } else {
@@ -119,24 +140,24 @@ impl Chain<'_> {
     }
 
     #[inline(always)]
-    fn direct<L: Lanes, const DAMPED: bool, const ZERO: bool>(&self) {
+    fn direct<L: Lanes, const DAMPED: bool, const ZERO: bool, const FULL: bool>(&self) {
         let c = &self.solve.columns;
         let rows = self.rows();
         let scratch = self.solve.scratch;
         let per_dt2 = L::splat(self.solve.per_dt2);
         let gamma = L::splat(self.solve.gamma);
         let zero = L::splat(0.0);
-        let (at, n) = self.place::<L>(rows[0]);
+        let (at, n) = self.place::<L, FULL>(rows[0]);
         let mut p = V3::<L>::load(c.x, at, n);
         let mut moved = if DAMPED { p - V3::load(c.previous, at, n) } else { p };
-        let mut w = self.weights::<L>(at, n);
+        let mut w = self.weights::<L>(rows[0], at, n);
         let mut normal = V3 { x: zero, y: zero, z: zero };
         let (mut pivot, mut y) = (zero, zero);
         for link in 0..rows.len() - 1 {
-            let (at, n) = self.place::<L>(rows[link + 1]);
+            let (at, n) = self.place::<L, FULL>(rows[link + 1]);
             let q = V3::<L>::load(c.x, at, n);
-            let w_q = self.weights::<L>(at, n);
-            let (rest, soft) = self.link::<L>(link);
+            let w_q = self.weights::<L>(rows[link + 1], at, n);
+            let (rest, soft) = self.link::<L, FULL>(link);
             let d = q - p;
             let length2 = d.dot(d);
             let inverse = reciprocal_root(length2);
@@ -171,13 +192,12 @@ impl Chain<'_> {
             (y * pivot).store(scratch, kept + 4 * L::N);
             (p, w, normal) = (q, w_q, next);
         }
-        self.back::<L>(rows);
+        self.back::<L, FULL>(rows);
     }
 
     /// The way up: tensions, and the motion that they cause.
     #[inline(always)]
-    fn back<L: Lanes>(&self, rows: &[Row]) {
-        let c = &self.solve.columns;
+    fn back<L: Lanes, const FULL: bool>(&self, rows: &[Row]) {
         let scratch = self.solve.scratch;
         let zero = L::splat(0.0);
         let mut below = V3 { x: zero, y: zero, z: zero };
@@ -193,14 +213,13 @@ impl Chain<'_> {
             lambda = L::load(scratch, kept + 4 * L::N) + factor * lambda;
             factor = L::load(scratch, kept + 3 * L::N);
             let pull = normal * lambda;
-            let (at, n) = self.place::<L>(rows[link + 1]);
-            reach = self.link::<L>(link).0 * L::splat(FARTHEST);
-            self.shift((below - pull) * self.weights::<L>(at, n), reach, at, n);
+            let (at, n) = self.place::<L, FULL>(rows[link + 1]);
+            reach = self.link::<L, FULL>(link).0 * L::splat(FARTHEST);
+            self.shift((below - pull) * self.weights::<L>(rows[link + 1], at, n), reach, at, n);
             below = pull;
         }
-        let (at, n) = self.place::<L>(rows[0]);
-        self.shift(below * self.weights::<L>(at, n), reach, at, n);
-        let _ = c;
+        let (at, n) = self.place::<L, FULL>(rows[0]);
+        self.shift(below * self.weights::<L>(rows[0], at, n), reach, at, n);
     }
 
     /// Moves a row, no particle farther than `reach`.
@@ -216,15 +235,15 @@ impl Chain<'_> {
     fn sweep<L: Lanes>(&self) {
         let c = &self.solve.columns;
         let rows = self.rows();
-        let (mut above, n) = self.place::<L>(rows[0]);
+        let (mut above, n) = self.place::<L, false>(rows[0]);
         let mut p = V3::<L>::load(c.x, above, n);
         let mut reached = n;
-        let mut w = self.weights::<L>(above, n);
+        let mut w = self.weights::<L>(rows[0], above, n);
         for link in 0..rows.len() - 1 {
-            let (at, n) = self.place::<L>(rows[link + 1]);
+            let (at, n) = self.place::<L, false>(rows[link + 1]);
             let mut q = V3::<L>::load(c.x, at, n);
-            let w_q = self.weights::<L>(at, n);
-            let (rest, soft) = self.link::<L>(link);
+            let w_q = self.weights::<L>(rows[link + 1], at, n);
+            let (rest, soft) = self.link::<L, false>(link);
             let d = q - p;
             let inverse = reciprocal_root(d.dot(d));
             let weight = (w + w_q + soft * L::splat(self.solve.per_dt2)).max(L::splat(NO_PIVOT));
@@ -241,15 +260,15 @@ impl Chain<'_> {
     fn shorten<L: Lanes>(&self) {
         let c = &self.solve.columns;
         let rows = self.rows();
-        let (at, n) = self.place::<L>(rows[0]);
+        let (at, n) = self.place::<L, false>(rows[0]);
         let mut p = V3::<L>::load(c.x, at, n);
         for (link, &row) in rows[1..].iter().enumerate() {
-            let (at, n) = self.place::<L>(row);
+            let (at, n) = self.place::<L, false>(row);
             let q = V3::<L>::load(c.x, at, n);
-            let (rest, _) = self.link::<L>(link);
+            let (rest, _) = self.link::<L, false>(link);
             let d = q - p;
             let kept = (rest * reciprocal_root(d.dot(d))).min(L::splat(1.0));
-            let free = L::splat(0.0).lt(self.weights::<L>(at, n));
+            let free = L::splat(0.0).lt(self.weights::<L>(row, at, n));
             p = (p + d * kept).select(free, q);
             p.store(c.x, at, n);
         }

@@ -8,27 +8,16 @@
 use toile_assets::garment::layout::{Links, Set};
 
 use super::state::Columns;
-use crate::lanes::{Column, Kernel, Lanes, V3, reciprocal_root};
+use crate::lanes::{Column, Kernel, Lanes, MOST, V3, reciprocal_root};
 
 /// 1 / ((1 + gamma)(w_a + w_b) + alpha / dt^2) of each link, in the order of the parameters; 0 where nothing can move.
 pub fn prepare(links: &Links, weights: &[f32], dt: f32, gamma: f32, gain: &mut [f32]) {
     let per_dt2 = (dt * dt).recip();
-    let mut put = |place: usize, a: u32, b: u32| {
+    links.tuples.for_each(|place, [a, b]| {
         let w = weights[a as usize] + weights[b as usize];
         let weight = (1.0 + gamma) * w + links.compliance[place] * per_dt2;
         gain[place] = if w > 0.0 && weight > 0.0 { weight.recip() } else { 0.0 };
-    };
-    for run in &links.tuples.runs {
-        for t in 0..run.len {
-            put((run.at + t) as usize, run.first[0] + t, run.first[1] + t);
-        }
-    }
-    for share in links.tuples.sets.iter().flat_map(|s| &s.shares) {
-        for (k, i) in share.loose.clone().enumerate() {
-            let [a, b] = links.tuples.loose[i as usize];
-            put(share.loose_at as usize + k, a, b);
-        }
-    }
+    });
 }
 
 /// One owner's share of one set.
@@ -61,46 +50,80 @@ impl Solve<'_> {
     fn all<L: Lanes, const DAMPED: bool>(&self) {
         let (rest, gain) = (Column::read_only(&self.links.rest), Column::read_only(self.gain));
         let share = &self.set.shares[self.owner];
+        let w = self.columns.w;
         for run in &self.links.tuples.runs[share.runs.start as usize..share.runs.end as usize] {
             let [a, b] = run.first.map(|f| f as usize);
             let (at, len) = (run.at as usize, run.len as usize);
+            let one = |c: Column<'_>, i: usize| L::splat(c.get(i));
+            let mut p = [one(rest, at), one(gain, at), one(w, a), one(w, b)];
             let mut t = 0;
             while t + L::N <= len {
-                self.side_by_side::<L, DAMPED>([a + t, b + t], [L::load(rest, at + t), L::load(gain, at + t)], L::N);
+                if !run.alike {
+                    p = [L::load(rest, at + t), L::load(gain, at + t), L::load(w, a + t), L::load(w, b + t)];
+                }
+                self.side_by_side::<L, DAMPED>([a + t, b + t], p, L::N);
                 t += L::N;
             }
-            if t < len {
-                let n = len - t;
-                let part = |c| L::load_part(c, at + t, n);
-                self.side_by_side::<L, DAMPED>([a + t, b + t], [part(rest), part(gain)], n);
+            if t < len && L::N > 1 {
+                // Less than a vector, and the compiler is told so.
+                let n = (len - t).min(L::N - 1);
+                if !run.alike {
+                    let part = |c, i| L::load_part(c, i + t, n);
+                    p = [part(rest, at), part(gain, at), part(w, a), part(w, b)];
+                }
+                self.side_by_side::<L, DAMPED>([a + t, b + t], p, n);
             }
         }
-        for (k, i) in share.loose.clone().enumerate() {
-            let at = share.loose_at as usize + k;
-            self.side_by_side::<f32, DAMPED>(
-                self.links.tuples.loose[i as usize].map(|v| v as usize),
-                [rest.get(at), gain.get(at)],
-                1,
-            );
+        let loose = &self.links.tuples.loose;
+        let mut k = 0;
+        while k < share.loose.len() {
+            let n = (share.loose.len() - k).min(L::N);
+            let first = share.loose.start as usize + k;
+            self.listed::<L, DAMPED>(&loose[first..first + n], [rest, gain], share.loose_at as usize + k);
+            k += n;
         }
+    }
+
+    /// Links by index list.
+    #[inline(always)]
+    fn listed<L: Lanes, const DAMPED: bool>(&self, links: &[[u32; 2]], [rest, gain]: [Column<'_>; 2], at: usize) {
+        let c = &self.columns;
+        let n = links.len();
+        let mut ends = [[0u32; MOST]; 2];
+        for (t, link) in links.iter().enumerate() {
+            (ends[0][t], ends[1][t]) = (link[0], link[1]);
+        }
+        let [a, b] = &ends;
+        let part = |c| if n == L::N { L::load(c, at) } else { L::load_part(c, at, n) };
+        let (pa, pb) = (V3::<L>::gather(c.x, a, n), V3::gather(c.x, b, n));
+        let moved = || (pb - V3::gather(c.previous, b, n)) - (pa - V3::gather(c.previous, a, n));
+        let push = self.push::<L, DAMPED>(pb - pa, [part(rest), part(gain)], moved);
+        (pa + push * L::gather(c.w, a, n)).scatter(c.x, a, n);
+        (pb - push * L::gather(c.w, b, n)).scatter(c.x, b, n);
     }
 
     /// `n` links whose ends lie side by side.
     #[inline(always)]
-    fn side_by_side<L: Lanes, const DAMPED: bool>(&self, [a, b]: [usize; 2], [rest, gain]: [L; 2], n: usize) {
+    fn side_by_side<L: Lanes, const DAMPED: bool>(&self, [a, b]: [usize; 2], parameters: [L; 4], n: usize) {
+        let [rest, gain, wa, wb] = parameters;
         let c = &self.columns;
         let (pa, pb) = (V3::<L>::load(c.x, a, n), V3::load(c.x, b, n));
-        let weights = |i| if n == L::N { L::load(c.w, i) } else { L::load_part(c.w, i, n) };
-        let d = pb - pa;
+        let moved = || (pb - V3::load(c.previous, b, n)) - (pa - V3::load(c.previous, a, n));
+        let push = self.push::<L, DAMPED>(pb - pa, [rest, gain], moved);
+        (pa + push * wa).store(c.x, a, n);
+        (pb - push * wb).store(c.x, b, n);
+    }
+
+    /// How far a link of vector `d` draws an end of weight 1.
+    #[inline(always)]
+    fn push<L: Lanes, const DAMPED: bool>(&self, d: V3<L>, [rest, gain]: [L; 2], moved: impl Fn() -> V3<L>) -> V3<L> {
         let inverse = reciprocal_root(d.dot(d));
         // lambda / |d|: (|d| - rest) / |d| times the gain.
         let mut pull = (L::splat(1.0) - rest * inverse) * gain;
         if DAMPED {
-            let moved = (pb - V3::load(c.previous, b, n)) - (pa - V3::load(c.previous, a, n));
-            pull = pull + d.dot(moved) * inverse * inverse * gain * L::splat(self.gamma);
+            pull = pull + d.dot(moved()) * inverse * inverse * gain * L::splat(self.gamma);
         }
-        (pa + d * (pull * weights(a))).store(c.x, a, n);
-        (pb - d * (pull * weights(b))).store(c.x, b, n);
+        d * pull
     }
 }
 
@@ -116,10 +139,10 @@ mod tests {
     /// Links between particles i and i + n.
     fn ladder(n: u32, rest: f32, compliance: f32) -> Links {
         let share = Share { runs: 0..1, loose: 0..0, loose_at: n };
-        let set = Set { direction: Direction::Weft, shares: [share, Share::default()] };
-        let runs = [Run { first: [0, n], len: n, at: 0 }].into();
+        let set = Set { direction: Direction::Weft, crosses: false, shares: [share, Share::default()] };
+        let runs = [Run { first: [0, n], len: n, at: 0, alike: false }].into();
         Links {
-            tuples: Tuples { runs, loose: [].into(), sets: [set].into(), count: n as usize },
+            tuples: Tuples { runs, loose: [].into(), sets: [set].into(), count: n as usize, places: n as usize },
             rest: vec![rest; n as usize].into(),
             compliance: vec![compliance; n as usize].into(),
         }
@@ -131,7 +154,7 @@ mod tests {
         prepare(links, weights, 1.0, gamma, &mut gain);
         let set = &links.tuples.sets[0];
         width.run(Solve { columns: state.columns(), links, gain: &gain, set, owner: 0, gamma });
-        (0..positions.len()).map(|i| Vec3::from_array([0, 1, 2].map(|a| state.position[a].as_slice()[i]))).collect()
+        (0..positions.len()).map(|i| Vec3::from_array(state.positions().map(|a| a[i]))).collect()
     }
 
     #[test]

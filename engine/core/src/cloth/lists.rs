@@ -157,9 +157,8 @@ impl Ring<'_> {
             let soft = self.parameter::<L>(&self.solve.lists.compliance, link);
             if ZERO { soft.select(L::splat(0.1 * ENDED).lt(soft), zero) } else { soft * L::splat(self.solve.per_dt2) }
         };
-        let diagonal = |link: usize| -> L {
-            self.kept::<L>(link, WEIGHT) + self.kept::<L>(self.after(link), WEIGHT) + soft(link)
-        };
+        let diagonal =
+            |link: usize| -> L { self.kept::<L>(link, WEIGHT) + self.kept::<L>(self.after(link), WEIGHT) + soft(link) };
         let beside = |link: usize, before: usize| -> L {
             self.kept::<L>(link, WEIGHT) * self.kept3::<L>(link, NORMAL).dot(self.kept3(before, NORMAL))
         };

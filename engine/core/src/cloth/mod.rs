@@ -92,7 +92,7 @@ impl Cloth {
             state: State::new(&garment.start, &garment.inverse_mass),
             fixed_start: fixed.clone(),
             fixed_end: fixed,
-            contacts: contact::Contacts::new(&layout.spans, &garment.parts, colliders),
+            contacts: contact::Contacts::new(&layout.spans, &garment.parts, &garment.start, colliders),
             scratch: [scratch(), scratch()],
             strains: vec![0.0; garment.strain_edges.len()].into(),
             prepared: step::Prepared::new(garment),
@@ -107,7 +107,7 @@ impl Cloth {
 
     /// Velocity of a particle at the end of the last step (m/s).
     pub fn velocity(&self, particle: usize) -> Vec3A {
-        Vec3A::from_array([0, 1, 2].map(|axis| self.state.velocity[axis].as_slice()[particle]))
+        Vec3A::from_array(self.state.velocities().map(|column| column[particle]))
     }
 
     /// Puts a particle somewhere, with a velocity (m, m/s): how tests and scenes disturb a garment.
@@ -140,6 +140,16 @@ impl Cloth {
     /// The phases of a substep as last prepared.
     pub fn program(&self) -> &[Op] {
         self.prepared.program()
+    }
+
+    /// What contact did since the garment was made.
+    pub fn contact_tally(&self) -> contact::Tally {
+        self.contacts.tally()
+    }
+
+    /// How bending went on in the last step.
+    pub fn bend_pace(&self) -> bending::Pace {
+        self.prepared.bend_pace()
     }
 
     /// Substeps of a step as last prepared.

@@ -5,12 +5,12 @@ use glam::Vec3A;
 use super::state::Columns;
 use crate::lanes::{Column, Kernel, Lanes, V3};
 
-/// Semi-implicit Euler over one range of particles: v = (v + a dt) kept; x += v dt.
+/// Semi-implicit Euler over one owner's particles: v = (v + a dt) kept; x += v dt.
 pub struct Predict<'a> {
     /// The garment's particles.
     pub columns: Columns<'a>,
-    /// The range, `(first, len)`.
-    pub span: (u32, u32),
+    /// Ranges of particles, `(first, len)`.
+    pub spans: &'a [(u32, u32)],
     /// Gravity over the substep (m/s).
     pub fall: Vec3A,
     /// Accelerations of each particle besides gravity (m/s2), and the substep (s).
@@ -26,11 +26,17 @@ impl Kernel for Predict<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let (first, len) = (self.span.0 as usize, self.span.1 as usize);
-        let mut t = 0;
-        while t < len {
-            self.some::<L>(first + t, (len - t).min(L::N));
-            t += L::N;
+        for &(first, len) in self.spans {
+            let (first, len) = (first as usize, len as usize);
+            let mut t = 0;
+            while t + L::N <= len {
+                self.some::<L>(first + t, L::N);
+                t += L::N;
+            }
+            if t < len && L::N > 1 {
+                // Less than a vector, and the compiler is told so.
+                self.some::<L>(first + t, (len - t).min(L::N - 1));
+            }
         }
     }
 }

@@ -3,13 +3,13 @@
 use super::state::Columns;
 use crate::lanes::{Kernel, Lanes, Mask, V3, reciprocal_root};
 
-/// v = (x - previous) / dt over one range of particles, limited to the settings' speed. A particle over the limit is
+/// v = (x - previous) / dt over one owner's particles, limited to the settings' speed. A particle over the limit is
 /// also put back to where that speed would have brought it, so that position and velocity agree. Gives how many were.
 pub struct Settle<'a> {
     /// The garment's particles.
     pub columns: Columns<'a>,
-    /// The range, `(first, len)`.
-    pub span: (u32, u32),
+    /// Ranges of particles, `(first, len)`.
+    pub spans: &'a [(u32, u32)],
     /// Speed limit (m/s).
     pub max_speed: f32,
     /// Length of the substep (s).
@@ -21,11 +21,18 @@ impl Kernel for Settle<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
-        let (first, len) = (self.span.0 as usize, self.span.1 as usize);
-        let (mut t, mut held) = (0, 0);
-        while t < len {
-            held += self.some::<L>(first + t, (len - t).min(L::N));
-            t += L::N;
+        let mut held = 0;
+        for &(first, len) in self.spans {
+            let (first, len) = (first as usize, len as usize);
+            let mut t = 0;
+            while t + L::N <= len {
+                held += self.some::<L>(first + t, L::N);
+                t += L::N;
+            }
+            if t < len && L::N > 1 {
+                // Less than a vector, and the compiler is told so.
+                held += self.some::<L>(first + t, (len - t).min(L::N - 1));
+            }
         }
         held
     }

@@ -2,19 +2,27 @@
 
 use glam::{Vec3, Vec3A};
 
-use crate::lanes::{Column, Store};
+use crate::lanes::{Column, MOST, Store};
+
+/// Columns: position, previous, velocity (three each), inverse mass.
+const COLUMNS: usize = 10;
+const PREVIOUS: usize = 3;
+const VELOCITY: usize = 6;
+const WEIGHT: usize = 9;
+
+/// Numbers between two places that a processor takes for the same when it looks whether a load follows a store (4 KiB).
+const ALIAS: usize = 1_024;
+
+/// How far each column starts behind the one before, of [`ALIAS`]: about a third, so that what a kernel stores in x is
+/// never taken for what it loads from y or z a few vectors later.
+const STAGGER: usize = 336;
 
 /// Owns the columns.
 #[derive(Debug, Clone)]
 pub struct State {
-    /// World position (m).
-    pub position: [Store; 3],
-    /// Position at the start of the substep (m).
-    pub previous: [Store; 3],
-    /// Velocity (m/s).
-    pub velocity: [Store; 3],
-    /// Inverse mass (1/kg), 0 where the body carries the particle.
-    pub weight: Store,
+    numbers: Store,
+    starts: [usize; COLUMNS],
+    len: usize,
 }
 
 /// The columns as kernels see them.
@@ -33,34 +41,63 @@ pub struct Columns<'a> {
 impl State {
     /// At rest at these positions.
     pub fn new(positions: &[Vec3], inverse_mass: &[f32]) -> Self {
-        let column = |axis: usize| Store::collect(positions.iter().map(|p| p[axis]));
-        let zeros = || Store::zeros(positions.len());
-        let position = [column(0), column(1), column(2)];
-        Self {
-            previous: position.clone(),
-            position,
-            velocity: [zeros(), zeros(), zeros()],
-            weight: Store::collect(inverse_mass.iter().copied()),
+        let len = positions.len();
+        let mut end = 0usize;
+        let starts = std::array::from_fn(|c| {
+            let phase = c * STAGGER % ALIAS;
+            let start = end + (phase + ALIAS - end % ALIAS) % ALIAS;
+            end = (start + len).next_multiple_of(MOST);
+            start
+        });
+        let mut this = Self { numbers: Store::zeros(end), starts, len };
+        for axis in 0..3 {
+            for c in [axis, PREVIOUS + axis] {
+                this.column_mut(c).iter_mut().zip(positions).for_each(|(to, p)| *to = p[axis]);
+            }
         }
+        this.column_mut(WEIGHT).copy_from_slice(inverse_mass);
+        this
+    }
+
+    fn column_mut(&mut self, c: usize) -> &mut [f32] {
+        &mut self.numbers.as_mut()[self.starts[c]..self.starts[c] + self.len]
+    }
+
+    fn column_of(&self, c: usize) -> &[f32] {
+        &self.numbers.as_slice()[self.starts[c]..self.starts[c] + self.len]
+    }
+
+    /// World positions (m), one axis after the other.
+    pub fn positions(&self) -> [&[f32]; 3] {
+        [0, 1, 2].map(|axis| self.column_of(axis))
+    }
+
+    /// Velocities (m/s), one axis after the other.
+    pub fn velocities(&self) -> [&[f32]; 3] {
+        [0, 1, 2].map(|axis| self.column_of(VELOCITY + axis))
+    }
+
+    /// Inverse masses (1/kg).
+    pub fn weights(&self) -> &[f32] {
+        self.column_of(WEIGHT)
+    }
+
+    /// Changes the velocities (m/s), one axis after the other.
+    pub fn velocities_mut(&mut self, mut change: impl FnMut(&mut [f32])) {
+        (0..3).for_each(|axis| change(self.column_mut(VELOCITY + axis)));
     }
 
     /// The columns, all at once.
     pub fn columns(&mut self) -> Columns<'_> {
-        fn three(stores: &mut [Store; 3]) -> [Column<'_>; 3] {
-            stores.each_mut().map(Store::column)
-        }
-        Columns {
-            x: three(&mut self.position),
-            previous: three(&mut self.previous),
-            v: three(&mut self.velocity),
-            w: self.weight.column(),
-        }
+        let (starts, len) = (self.starts, self.len);
+        let all = self.numbers.column();
+        let three = |first: usize| [0, 1, 2].map(|axis| all.part(starts[first + axis], len));
+        Columns { x: three(0), previous: three(PREVIOUS), v: three(VELOCITY), w: all.part(starts[WEIGHT], len) }
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let all = self.position.iter().chain(&self.previous).chain(&self.velocity);
-        all.map(Store::bytes).sum::<usize>() + self.weight.bytes()
+        self.numbers.bytes()
     }
 }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use glam::{Affine3A, Vec3A};
 use toile_assets::garment::Garment;
-use toile_assets::garment::layout::OWNERS;
+use toile_assets::garment::layout::{Bends, OWNERS};
 
 use super::program::{self, Op, STAGES};
 use super::state::{self, Columns};
@@ -27,8 +27,8 @@ pub struct Prepared {
     shear_gain: Box<[f32]>,
     weft_gain: Box<[f32]>,
     bend_scale: Box<[f32]>,
-    /// Least share of the bending stiffness that this time step can carry.
-    least_bend: f32,
+    skewed_scale: Box<[f32]>,
+    bend: bending::Pace,
     load: Box<[f32]>,
 }
 
@@ -45,8 +45,9 @@ impl Prepared {
             gamma: 0.0,
             shear_gain: zeros(layout.shear.rest.len()),
             weft_gain: zeros(layout.weft.rest.len()),
-            bend_scale: zeros(layout.bends.tuples.count),
-            least_bend: 1.0,
+            bend_scale: zeros(layout.bends.tuples.places),
+            skewed_scale: zeros(layout.skewed.tuples.places),
+            bend: bending::Pace { every: 1, least: 1.0 },
             load: zeros(garment.start.len()),
         }
     }
@@ -65,12 +66,21 @@ impl Prepared {
         self.gamma = settings.stretch_damping_s / self.dt;
         let (layout, w) = (&garment.layout, &garment.inverse_mass);
         links::prepare(&layout.shear, w, self.dt, self.gamma, &mut self.shear_gain);
-        links::prepare(&layout.weft, w, self.dt, self.gamma, &mut self.weft_gain); if let Ok(o)=std::env::var("SOR") { let o:f32=o.parse().unwrap(); self.weft_gain.iter_mut().for_each(|g| *g*=o); }  if let Ok(o)=std::env::var("SSOR") { let o:f32=o.parse().unwrap(); self.shear_gain.iter_mut().for_each(|g| *g*=o); }
-        self.least_bend = bending::prepare(&layout.bends, w, self.dt, &mut self.load, &mut self.bend_scale);
+        links::prepare(&layout.weft, w, self.dt, self.gamma, &mut self.weft_gain);
+        self.load.fill(0.0);
+        bending::add_load(&layout.bends, w, self.dt, &mut self.load);
+        bending::add_load(&layout.skewed, w, self.dt, &mut self.load);
+        let least = bending::weaken(&layout.bends, &self.load, &mut self.bend_scale);
+        let least = bending::weaken(&layout.skewed, &self.load, &mut self.skewed_scale).min(least);
+        self.bend = bending::Pace { every: bending::every(&self.load, asked), least };
     }
 
     pub fn program(&self) -> &[Op] {
         &self.programs[Quality::ALL.iter().position(|q| *q == self.quality).unwrap_or(0)]
+    }
+
+    pub fn bend_pace(&self) -> bending::Pace {
+        self.bend
     }
 
     pub fn substeps(&self) -> u32 {
@@ -154,7 +164,7 @@ impl Cloth {
             self.rolled += 1;
             self.events.rolled_back += 1;
         }
-        let [x, y, z] = self.state.position.each_ref().map(|s| s.as_slice());
+        let [x, y, z] = self.state.positions();
         for (i, p) in self.positions.iter_mut().enumerate() {
             *p = Vec3A::new(x[i], y[i], z[i]);
         }
@@ -224,16 +234,14 @@ impl Work<'_> {
         let per_dt2 = (p.dt * p.dt).recip();
         let scratch = self.scratch[share];
         let link = |links, gain, set| links::Solve { columns, links, gain, set, owner: share, gamma: p.gamma };
-        let list = |lists, set: u16| lists::Solve {
-            columns,
-            lists,
-            set: usize::from(set),
-            owner: share,
-            scratch,
-            per_dt2,
-        };
+        let list =
+            |lists, set: u16| lists::Solve { columns, lists, set: usize::from(set), owner: share, scratch, per_dt2 };
         match op {
-            Op::Bend(set) => self.bend(usize::from(set), share),
+            Op::Bend(set) if substep.is_multiple_of(p.bend.every) => {
+                self.bend(&layout.bends, &p.bend_scale, usize::from(set), share);
+                self.bend(&layout.skewed, &p.skewed_scale, usize::from(set), share);
+            }
+            Op::Bend(_) => {}
             Op::Predict => self.predict(substep, share),
             Op::Shear(set) => {
                 let set = &layout.shear.tuples.sets[usize::from(set)];
@@ -259,26 +267,25 @@ impl Work<'_> {
         }
     }
 
-    fn bend(&self, number: usize, share: usize) {
-        let bends = &self.garment.layout.bends;
-        let set = &bends.tuples.sets[number];
-        let scale = (self.prepared.least_bend < 1.0).then_some(&*self.prepared.bend_scale);
-        let bend =
-            |owner| bending::Bend { columns: self.columns, bends, set, owner, dt: self.prepared.dt, scale };
-        if number == 0 {
-            self.width.run(bend(share));
-        } else if share == 0 {
-            // What crosses the owners is the first worker's alone.
-            (0..OWNERS).for_each(|owner| self.width.run(bend(owner)));
+    /// A set of the stencils; what crosses the owners is the first worker's alone.
+    fn bend<const K: usize>(&self, bends: &Bends<K>, scale: &[f32], number: usize, share: usize) {
+        let Some(set) = bends.tuples.sets.get(number) else { return };
+        let (columns, dt) = (self.columns, self.prepared.dt * self.prepared.bend.every as f32);
+        let scale = (self.prepared.bend.least < 1.0).then_some(scale);
+        if set.crosses {
+            if share == 0 {
+                (0..OWNERS).for_each(|owner| self.width.run(bending::Bend { columns, bends, set, owner, dt, scale }));
+            }
+        } else {
+            self.width.run(bending::Bend { columns, bends, set, owner: share, dt, scale });
         }
     }
 
     fn predict(&self, substep: u32, share: usize) {
         let (columns, p) = (self.columns, self.prepared);
-        for &span in &self.garment.layout.spans[share] {
-            let (fall, kept, dt) = (self.fall, self.kept, p.dt);
-            self.width.run(predict::Predict { columns, span, fall, pushed: None, kept, dt });
-        }
+        let spans = &self.garment.layout.spans[share];
+        let (fall, kept, dt) = (self.fall, self.kept, p.dt);
+        self.width.run(predict::Predict { columns, spans, fall, pushed: None, kept, dt });
         let to = (substep + 1) as f32 / p.substeps as f32;
         for (k, &i) in self.garment.fixed.iter().enumerate() {
             if usize::from(self.garment.layout.owner[i as usize]) == share {
@@ -297,14 +304,9 @@ impl Work<'_> {
     fn finish(&self, substep: u32, share: usize) {
         let p = self.prepared;
         self.contact(substep, share);
-        for &span in &self.garment.layout.spans[share] {
-            let max_speed = self.step.settings.max_speed;
-            let held = self.width.run(settle::Settle { columns: self.columns, span, max_speed, dt: p.dt });
-            // Relaxed: a counter that one share adds to and that is read when all is done.
-            self.limited[share].fetch_add(u64::from(held), Relaxed);
-        }
+        let (spans, max_speed) = (&self.garment.layout.spans[share], self.step.settings.max_speed);
+        let held = self.width.run(settle::Settle { columns: self.columns, spans, max_speed, dt: p.dt });
+        // Relaxed: a counter that one share adds to and that is read when all is done.
+        self.limited[share].fetch_add(u64::from(held), Relaxed);
     }
 }
-
-// The root's motion is asked for by the rooms around the cloth.
-const _: fn(&Affine3A) = |_| ();

@@ -89,6 +89,14 @@ impl<'a> Column<'a> {
         self.len
     }
 
+    /// `len` numbers from `start` on as a column of their own.
+    ///
+    /// # Panics
+    /// Where they are not all there.
+    pub fn part(self, start: usize, len: usize) -> Self {
+        Self { data: self.place(start, len), len, owner: PhantomData }
+    }
+
     /// One number; 0 past the end.
     #[inline(always)]
     pub fn get(self, at: usize) -> f32 {
@@ -105,23 +113,28 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// Its first `len` numbers. Columns cut to one length share their checks: a kernel that asks [`Self::has`] of one of
-    /// them before it loads and stores has asked it of all.
+    /// Where `n` numbers from `at` on lie.
+    ///
+    /// # Panics
+    /// Where they are not all there, which no index of a bake is: the check of a slice, once a vector.
     #[inline(always)]
-    pub fn first(self, len: usize) -> Option<Self> {
-        (len <= self.len).then_some(Self { len, ..self })
-    }
-
-    /// Whether it has `n` numbers from `at` on.
-    #[inline(always)]
-    pub fn has(self, at: usize, n: usize) -> bool {
-        at <= self.len && n <= self.len - at
-    }
-
-    /// Where `n` numbers from `at` on lie, or None where they are not all there.
-    #[inline(always)]
-    pub(super) fn place(self, at: usize, n: usize) -> Option<*mut f32> {
+    pub(super) fn place(self, at: usize, n: usize) -> *mut f32 {
+        // Two comparisons of which the first does not depend on the place: it leaves the loop.
+        assert!(n <= self.len, "a kernel left its column");
+        assert!(at <= self.len - n, "a kernel left its column");
         // SAFETY: within the length, or its end.
-        self.has(at, n).then(|| unsafe { self.data.add(at) })
+        unsafe { self.data.add(at) }
+    }
+
+    /// Where four times four numbers lie.
+    ///
+    /// # Panics
+    /// Where they are not all there.
+    #[inline(always)]
+    pub(super) fn quads(self, at: &[u32; 4]) -> [*mut f32; 4] {
+        let last = at[0].max(at[1]).max(at[2].max(at[3]));
+        self.place(last as usize, 4);
+        // SAFETY: none begins later than one that is within the length.
+        at.map(|q| unsafe { self.data.add(q as usize) })
     }
 }

@@ -68,6 +68,19 @@ impl<L: Lanes> V3<L> {
         self.y.scatter(to[1], index, n);
         self.z.scatter(to[2], index, n);
     }
+    /// The vectors at four times four places: [`Lanes::load_quads`].
+    #[inline(always)]
+    pub fn load_quads(from: [Column<'_>; 3], quads: &[u32; 4], lane: usize) -> Self {
+        let [x, y, z] = from;
+        Self { x: L::load_quads(x, quads, lane), y: L::load_quads(y, quads, lane), z: L::load_quads(z, quads, lane) }
+    }
+    /// Writes them.
+    #[inline(always)]
+    pub fn store_quads(self, to: [Column<'_>; 3], quads: &[u32; 4], lane: usize) {
+        self.x.store_quads(to[0], quads, lane);
+        self.y.store_quads(to[1], quads, lane);
+        self.z.store_quads(to[2], quads, lane);
+    }
     /// Inner product.
     #[inline(always)]
     pub fn dot(self, o: Self) -> L {

@@ -72,6 +72,20 @@ pub trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = S
             to.set(i as usize, *v);
         }
     }
+    /// `N` of the 16 numbers that lie four by four from `quads` on, the `lane`th first; `lane` is a multiple of `N`.
+    fn load_quads(from: Column<'_>, quads: &[u32; 4], lane: usize) -> Self {
+        let mut values = [0.0; MOST];
+        for (i, v) in values.iter_mut().enumerate().take(Self::N) {
+            *v = from.get(quads[(lane + i) / 4 % 4] as usize + i % 4);
+        }
+        Self::from_array(&values)
+    }
+    /// Writes to the same places; no two quads may share one.
+    fn store_quads(self, to: Column<'_>, quads: &[u32; 4], lane: usize) {
+        for (i, v) in self.to_array().into_iter().enumerate().take(Self::N) {
+            to.set(quads[(lane + i) / 4 % 4] as usize + i % 4, v);
+        }
+    }
     /// Quotient, exactly rounded.
     fn div(self, by: Self) -> Self;
     /// Root, exactly rounded.

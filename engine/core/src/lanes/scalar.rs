@@ -54,6 +54,14 @@ impl Lanes for f32 {
     #[inline(always)]
     fn store_part(self, _: Column<'_>, _: usize, _: usize) {}
     #[inline(always)]
+    fn load_quads(from: Column<'_>, quads: &[u32; 4], lane: usize) -> Self {
+        from.get(quads[lane / 4 % 4] as usize + lane % 4)
+    }
+    #[inline(always)]
+    fn store_quads(self, to: Column<'_>, quads: &[u32; 4], lane: usize) {
+        to.set(quads[lane / 4 % 4] as usize + lane % 4, self);
+    }
+    #[inline(always)]
     fn div(self, by: Self) -> Self {
         self / by
     }

@@ -119,3 +119,27 @@ fn gather_and_scatter_keep_their_places() {
     let doubled = numbers.iter().enumerate().filter(|(i, v)| **v != *i as f32).map(|(i, _)| i).collect::<Vec<_>>();
     assert!(doubled.iter().all(|i| [7, 14].contains(i)) && !doubled.is_empty(), "{doubled:?}");
 }
+
+#[test]
+fn quads_keep_their_places_at_every_width() {
+    struct Move<'a>(Column<'a>, Column<'a>);
+    impl Kernel for Move<'_> {
+        type Out = ();
+        #[inline(always)]
+        fn run<L: Lanes>(self) {
+            for lane in (0..MOST).step_by(L::N) {
+                let v = L::load_quads(self.0, &[20, 4, 11, 36], lane);
+                v.store_quads(self.1, &[0, 30, 10, 21], lane);
+            }
+        }
+    }
+    for width in Width::ALL {
+        let mut from: Vec<f32> = (0..40).map(|i| i as f32).collect();
+        let mut to = vec![-1.0; 40];
+        width.run(Move(Column::new(&mut from), Column::new(&mut to)));
+        for (q, p) in [(20, 0), (4, 30), (11, 10), (36, 21)] {
+            assert_eq!(to[p..p + 4], from[q..q + 4], "{width} lanes");
+        }
+        assert_eq!(to.iter().filter(|v| **v < 0.0).count(), 24, "{width} lanes");
+    }
+}

@@ -99,33 +99,45 @@ macro_rules! vector {
             }
             #[inline(always)]
             fn load(from: Column<'_>, at: usize) -> Self {
-                match from.place(at, $n) {
-                    // SAFETY: the column has so many numbers there.
-                    Some(place) => Self(unsafe { $load(place) }),
-                    None => Self::splat(0.0),
-                }
+                let place = from.place(at, $n);
+                // SAFETY: the column has so many numbers there.
+                Self(unsafe { $load(place) })
             }
             #[inline(always)]
             fn load_part(from: Column<'_>, at: usize, n: usize) -> Self {
-                match from.place(at, n.min($n)) {
-                    // SAFETY: the column has `n` numbers there, and no more are read.
-                    Some(place) => unsafe { Self::read(place, n.min($n)) },
-                    None => Self::splat(0.0),
-                }
+                let place = from.place(at, n.min($n));
+                // SAFETY: the column has `n` numbers there, and no more are read.
+                unsafe { Self::read(place, n.min($n)) }
             }
             #[inline(always)]
             fn store(self, to: Column<'_>, at: usize) {
-                if let Some(place) = to.place(at, $n) {
-                    // SAFETY: the column has so many numbers there.
-                    unsafe { $store(place, self.0) }
-                }
+                let place = to.place(at, $n);
+                // SAFETY: the column has so many numbers there.
+                unsafe { $store(place, self.0) }
             }
             #[inline(always)]
             fn store_part(self, to: Column<'_>, at: usize, n: usize) {
-                if let Some(place) = to.place(at, n.min($n)) {
-                    // SAFETY: the column has `n` numbers there, and no more are written.
-                    unsafe { self.write(place, n.min($n)) }
-                }
+                let place = to.place(at, n.min($n));
+                // SAFETY: the column has `n` numbers there, and no more are written.
+                unsafe { self.write(place, n.min($n)) }
+            }
+            #[inline(always)]
+            fn gather(from: Column<'_>, index: &[u32], n: usize) -> Self {
+                Self::pick(from, &index[..n.min($n)])
+            }
+            #[inline(always)]
+            fn scatter(self, to: Column<'_>, index: &[u32], n: usize) {
+                self.spread(to, &index[..n.min($n)]);
+            }
+            #[inline(always)]
+            fn load_quads(from: Column<'_>, quads: &[u32; 4], lane: usize) -> Self {
+                // SAFETY: the column has four numbers at each place.
+                unsafe { Self::read_quads(from.quads(quads), lane / 4 % 4) }
+            }
+            #[inline(always)]
+            fn store_quads(self, to: Column<'_>, quads: &[u32; 4], lane: usize) {
+                // SAFETY: as above.
+                unsafe { self.write_quads(to.quads(quads), lane / 4 % 4) }
             }
             #[inline(always)]
             fn div(self, by: Self) -> Self {
@@ -258,6 +270,107 @@ mod widths {
                 let half = _mm_srli_epi32::<1>(_mm_castps_si128(self.0));
                 _mm_castsi128_ps(_mm_sub_epi32(_mm_set1_epi32(magic.cast_signed()), half))
             })
+        }
+    }
+
+    /// One number after another: what widths without such an instruction do.
+    macro_rules! by_hand {
+        ($name:ident, $($method:ident),+) => {
+            impl $name {
+                $(by_hand!(@ $method);)+
+            }
+        };
+        (@ pick) => {
+            #[inline(always)]
+            pub(super) fn pick(from: Column<'_>, index: &[u32]) -> Self {
+                let mut values = [0.0; MOST];
+                for (v, &i) in values.iter_mut().zip(index) {
+                    *v = from.get(i as usize);
+                }
+                Self::from_array(&values)
+            }
+        };
+        (@ spread) => {
+            #[inline(always)]
+            pub(super) fn spread(self, to: Column<'_>, index: &[u32]) {
+                for (v, &i) in self.to_array().into_iter().zip(index) {
+                    to.set(i as usize, v);
+                }
+            }
+        };
+    }
+    by_hand!(Four, pick, spread);
+    by_hand!(Eight, pick, spread);
+
+    impl Sixteen {
+        #[inline(always)]
+        pub(super) fn pick(from: Column<'_>, index: &[u32]) -> Self {
+            let (first, at) = Self::places(from, index);
+            Self(unsafe { _mm512_mask_i32gather_ps::<4>(_mm512_setzero_ps(), first, at, from.place(0, 0)) })
+        }
+        #[inline(always)]
+        pub(super) fn spread(self, to: Column<'_>, index: &[u32]) {
+            let (first, at) = Self::places(to, index);
+            unsafe { _mm512_mask_i32scatter_ps::<4>(to.place(0, 0), first, at, self.0) }
+        }
+        /// Which lanes are used, and their places: all within the column.
+        #[inline(always)]
+        fn places(column: Column<'_>, index: &[u32]) -> (__mmask16, __m512i) {
+            let first = Self::first(index.len().min(MOST));
+            // SAFETY: masked to the list's length.
+            let at = unsafe { _mm512_maskz_loadu_epi32(first, index.as_ptr().cast()) };
+            let len = unsafe { _mm512_set1_epi32(column.len().min(i32::MAX as usize) as i32) };
+            let outside = unsafe { _mm512_mask_cmpge_epu32_mask(first, at, len) };
+            assert!(outside == 0, "a kernel left its column");
+            (first, at)
+        }
+    }
+
+    // SAFETY of the following: the caller has four numbers at each place.
+    impl Four {
+        #[inline(always)]
+        pub(super) unsafe fn read_quads(at: [*mut f32; 4], first: usize) -> Self {
+            Self(unsafe { _mm_loadu_ps(at[first]) })
+        }
+        #[inline(always)]
+        pub(super) unsafe fn write_quads(self, at: [*mut f32; 4], first: usize) {
+            unsafe { _mm_storeu_ps(at[first], self.0) }
+        }
+    }
+
+    impl Eight {
+        #[inline(always)]
+        pub(super) unsafe fn read_quads(at: [*mut f32; 4], first: usize) -> Self {
+            let [a, b] = [at[first], at[(first + 1) % 4]];
+            Self(unsafe { _mm256_insertf128_ps::<1>(_mm256_castps128_ps256(_mm_loadu_ps(a)), _mm_loadu_ps(b)) })
+        }
+        #[inline(always)]
+        pub(super) unsafe fn write_quads(self, at: [*mut f32; 4], first: usize) {
+            unsafe {
+                _mm_storeu_ps(at[first], _mm256_castps256_ps128(self.0));
+                _mm_storeu_ps(at[(first + 1) % 4], _mm256_extractf128_ps::<1>(self.0));
+            }
+        }
+    }
+
+    impl Sixteen {
+        #[inline(always)]
+        pub(super) unsafe fn read_quads(at: [*mut f32; 4], _: usize) -> Self {
+            unsafe {
+                let v = _mm512_castps128_ps512(_mm_loadu_ps(at[0]));
+                let v = _mm512_insertf32x4::<1>(v, _mm_loadu_ps(at[1]));
+                let v = _mm512_insertf32x4::<2>(v, _mm_loadu_ps(at[2]));
+                Self(_mm512_insertf32x4::<3>(v, _mm_loadu_ps(at[3])))
+            }
+        }
+        #[inline(always)]
+        pub(super) unsafe fn write_quads(self, at: [*mut f32; 4], _: usize) {
+            unsafe {
+                _mm_storeu_ps(at[0], _mm512_castps512_ps128(self.0));
+                _mm_storeu_ps(at[1], _mm512_extractf32x4_ps::<1>(self.0));
+                _mm_storeu_ps(at[2], _mm512_extractf32x4_ps::<2>(self.0));
+                _mm_storeu_ps(at[3], _mm512_extractf32x4_ps::<3>(self.0));
+            }
         }
     }
 

@@ -108,22 +108,20 @@ pub struct Cones {
     pub axis: [Row; 3],
     /// Unit vector across it: the way out for a particle on the axis.
     pub across: [Row; 3],
+    /// Length of the axis (m).
+    pub length: Row,
+    /// Its inverse (1/m), 0 for a sphere.
+    pub shortness: Row,
     /// Radius at the first centre and contact offset (m).
     pub reach: Row,
-    /// Cosine of the side's slope.
-    pub cosine: Row,
-    /// Sine of the side's slope.
-    pub sine: Row,
-    /// Length of the slanted side (m).
-    pub side: Row,
-    /// Way along the axis (m) a metre of the side.
-    pub climb: Row,
-    /// Radius gained (m) a metre of the side.
-    pub growth: Row,
-    /// Place along the axis (0..1) a metre of the side.
-    pub along: Row,
-    /// 1 / length of the axis (1/m), 0 for a sphere.
-    pub shortness: Row,
+    /// Radius gained (m) a metre of the axis: minus the sine of the side's slope.
+    pub taper: Row,
+    /// Tangent of the side's slope.
+    pub tangent: Row,
+    /// 1 / cosine^2 of it.
+    pub stretch: Row,
+    /// sine / cosine^2.
+    pub lean: Row,
     /// How far the first centre moves in the substep (m).
     pub carried: [Row; 3],
     /// How much farther the second moves (m).
@@ -141,14 +139,13 @@ impl Cones {
             a: THREE,
             axis: THREE,
             across: THREE,
-            reach: ZERO,
-            cosine: ZERO,
-            sine: ZERO,
-            side: ZERO,
-            climb: ZERO,
-            growth: ZERO,
-            along: ZERO,
+            length: ZERO,
             shortness: ZERO,
+            reach: ZERO,
+            taper: ZERO,
+            tangent: ZERO,
+            stretch: ZERO,
+            lean: ZERO,
             carried: THREE,
             turned: THREE,
             quick2: ZERO,
@@ -190,75 +187,76 @@ impl Kernel for Prepare<'_> {
 impl Prepare<'_> {
     #[inline(always)]
     fn some<L: Lanes>(&mut self, at: usize) {
-        let offset = L::splat(self.offset);
-        let [(a, ra, ta), (b, rb, tb)] = [0, 1].map(|i| self.end::<L>(i, at));
-        let zero = L::splat(0.0);
-        // A sphere: the larger one at both ends, and an axis that is never asked.
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let (share, offset) = (L::splat(self.share), L::splat(self.offset));
+        let (a, ra, ta) = self.end::<L>(0, at);
+        let (b, rb, tb) = self.end::<L>(1, at);
         let (gap, d) = (b - a, ra - rb);
-        let thick = d.max(-d) * L::splat(1.000_01);
         let length = gap.dot(gap).sqrt();
-        let cone = thick.max(L::splat(1e-9)).lt(length);
+        let cone = (d.max(-d) * L::splat(1.000_01)).max(L::splat(1e-9)).lt(length);
+        // A sphere: the larger one at both ends, and an axis without length.
         let second = ra.lt(rb);
-        let only = |one: V3<L>, two: V3<L>| one.select(cone, two.select(second, one));
-        let a0 = only(a, b);
-        let r0 = ra.select(cone, rb.select(second, ra));
-        let t0 = only(ta, tb);
         let none = V3 { x: zero, y: zero, z: zero };
-        let turned = (tb - ta).select(cone, none);
-        let inverse = L::splat(1.0).div(length).select(cone, zero);
-        let y_axis = V3 { x: zero, y: L::splat(1.0), z: zero };
-        let axis = (gap * inverse).select(cone, y_axis);
+        let centre = a.select(cone, b.select(second, a));
+        let radius = ra.select(cone, ra.max(rb));
+        let carried = ta.select(cone, tb.select(second, ta)) * share;
+        let turned = (tb - ta).select(cone, none) * share;
+        let inverse = one.div(length).select(cone, zero);
+        let axis = (gap * inverse).select(cone, V3 { x: zero, y: one, z: zero });
+        let length = length.select(cone, zero);
         let sine = d * inverse;
-        let cosine = (L::splat(1.0) - sine * sine).max(zero).sqrt();
-        let side = length.select(cone, zero) * cosine;
-        let climb = L::splat(1.0).div(cosine).select(cone, zero);
-        let along = climb * inverse;
-        let share = L::splat(self.share);
-        let travel = ta.dot(ta).max(tb.dot(tb)).sqrt() * share;
-        let quick = (ra.min(rb) + offset) * L::splat(self.quick) - travel;
+        let cosine2 = (one - sine * sine).max(zero);
+        let stretch = one.div(cosine2);
+        let quick = (ra.min(rb) + offset) * L::splat(self.quick) - ta.dot(ta).max(tb.dot(tb)).sqrt() * share;
         let to = &mut *self.to;
-        store3(&mut to.a, at, a0);
+        store3(&mut to.a, at, centre);
         store3(&mut to.axis, at, axis);
         store3(&mut to.across, at, across(axis));
-        store3(&mut to.carried, at, t0 * share);
-        store3(&mut to.turned, at, turned * share);
-        let ones = [
-            (&mut to.reach, r0 + offset),
-            (&mut to.cosine, cosine),
-            (&mut to.sine, sine),
-            (&mut to.side, side),
-            (&mut to.climb, climb),
-            (&mut to.growth, (rb - ra) * along),
-            (&mut to.along, along),
-            (&mut to.shortness, inverse),
-            (&mut to.quick2, (quick * quick).select(zero.lt(quick), L::splat(-1.0))),
-        ];
-        ones.into_iter().for_each(|(row, v)| v.store(Column::new(&mut row.0), at));
+        store3(&mut to.carried, at, carried);
+        store3(&mut to.turned, at, turned);
+        store(&mut to.length, at, length);
+        store(&mut to.shortness, at, inverse);
+        store(&mut to.reach, at, radius + offset);
+        store(&mut to.taper, at, -sine);
+        store(&mut to.tangent, at, sine.div(cosine2.sqrt()));
+        store(&mut to.stretch, at, stretch);
+        store(&mut to.lean, at, sine * stretch);
+        store(&mut to.quick2, at, (quick * quick).select(zero.lt(quick), L::splat(-1.0)));
     }
 
     /// Centre, radius and travel in the step of one end.
     #[inline(always)]
     fn end<L: Lanes>(&self, i: usize, at: usize) -> (V3<L>, L, V3<L>) {
-        let three = |rows: &[Row; 3]| V3 {
-            x: L::load(Column::read_only(&rows[0].0), at),
-            y: L::load(Column::read_only(&rows[1].0), at),
-            z: L::load(Column::read_only(&rows[2].0), at),
-        };
-        let one = |row: &Row| L::load(Column::read_only(&row.0), at);
         let (start, travel) = (&self.ends.start[i], &self.ends.travel[i]);
         let t = L::splat(self.at);
-        let moved = three(&travel.centre);
+        let moved = load3::<L>(&travel.centre, at);
         let swell = moved.dot(moved).sqrt() * L::splat(self.swell);
-        (three(&start.centre) + moved * t, one(&start.radius) + one(&travel.radius) * t + swell, moved)
+        let radius = load::<L>(&start.radius, at) + load::<L>(&travel.radius, at) * t + swell;
+        (load3::<L>(&start.centre, at) + moved * t, radius, moved)
     }
+}
+
+#[inline(always)]
+fn load<L: Lanes>(row: &Row, at: usize) -> L {
+    L::load(Column::read_only(&row.0), at)
+}
+
+#[inline(always)]
+fn load3<L: Lanes>(rows: &[Row; 3], at: usize) -> V3<L> {
+    V3 { x: load(&rows[0], at), y: load(&rows[1], at), z: load(&rows[2], at) }
+}
+
+#[inline(always)]
+fn store<L: Lanes>(row: &mut Row, at: usize, v: L) {
+    v.store(Column::new(&mut row.0), at);
 }
 
 #[inline(always)]
 fn store3<L: Lanes>(rows: &mut [Row; 3], at: usize, v: V3<L>) {
     let [x, y, z] = rows;
-    v.x.store(Column::new(&mut x.0), at);
-    v.y.store(Column::new(&mut y.0), at);
-    v.z.store(Column::new(&mut z.0), at);
+    store(x, at, v.x);
+    store(y, at, v.y);
+    store(z, at, v.z);
 }
 
 /// A unit vector across a unit vector: square to it and to x, or to y where it is close to x.

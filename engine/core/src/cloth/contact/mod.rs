@@ -6,20 +6,22 @@
 
 mod cones;
 mod near;
+mod patch;
 mod reach;
 mod solve;
 mod sweep;
 mod touch;
 
+use glam::Vec3;
 use toile_assets::garment::Part;
 use toile_assets::limits::MAX_CAPSULES;
 
 use super::state::Columns;
 use crate::colliders::Colliders;
-use crate::lanes::{MOST, Width};
+use crate::lanes::Width;
 use cones::{Cones, Ends, Prepare};
-use near::{Block, Boxes, Find, PLANES};
-use solve::Solve;
+use near::{Block, Boxes, Find, PLANES, Pair};
+use solve::{Solve, Turn};
 use sweep::{QUICK, Sweep};
 
 pub use reach::reach;
@@ -54,9 +56,9 @@ pub struct Contacts {
 
 impl Contacts {
     /// All storage. `spans` are the ranges of particles (first, how many) of each worker, together each particle once;
-    /// `parts` says which limb each particle hangs on.
-    pub fn new(spans: &[Vec<(u32, u32)>; 2], parts: &[Part], colliders: &Colliders) -> Self {
-        Self { owners: [0, 1].map(|w| Owner::new(&spans[w], parts, colliders)) }
+    /// `parts` says which limb each particle hangs on, `start` where it starts (m): what is close shares a block.
+    pub fn new(spans: &[Vec<(u32, u32)>; 2], parts: &[Part], start: &[Vec3], colliders: &Colliders) -> Self {
+        Self { owners: [0, 1].map(|w| Owner::new(&spans[w], parts, start, colliders)) }
     }
 
     /// The workers' parts, to be used at the same time.
@@ -82,7 +84,10 @@ impl Contacts {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + self.owners.iter().map(|o| size_of_val(&*o.blocks)).sum::<usize>()
+        let owned = |o: &Owner| {
+            size_of_val(&*o.blocks) + size_of_val(&*o.pairs) + size_of_val(&*o.turns) + size_of_val(&*o.reach)
+        };
+        size_of::<Self>() + self.owners.iter().map(owned).sum::<usize>()
     }
 }
 
@@ -90,6 +95,9 @@ impl Contacts {
 #[derive(Debug, Clone)]
 pub struct Owner {
     blocks: Box<[Block]>,
+    pairs: Box<[Pair]>,
+    turns: Box<[Turn]>,
+    reach: Box<[[u16; MAX_CAPSULES]]>,
     ends: Ends,
     cones: Cones,
     boxes: Boxes,
@@ -98,19 +106,14 @@ pub struct Owner {
 }
 
 impl Owner {
-    fn new(spans: &[(u32, u32)], parts: &[Part], colliders: &Colliders) -> Self {
-        let blocks = spans.iter().flat_map(|&(first, len)| {
-            (0..len).step_by(MOST).map(move |from| (first + from, (len - from).min(MOST as u32)))
-        });
-        let lanes = |first: u32, len: u32, c: usize| {
-            (0..len).fold(0, |bits, i| {
-                let part = parts.get((first + i) as usize).copied().unwrap_or(Part::All);
-                bits | ((reach(part, colliders) >> c & 1) as u16) << i
-            })
-        };
-        let block = |(first, len)| Block::new(first, len, std::array::from_fn(|c| lanes(first, len, c)));
+    fn new(spans: &[(u32, u32)], parts: &[Part], start: &[Vec3], colliders: &Colliders) -> Self {
+        let blocks = patch::blocks(spans, start);
+        let pairs = vec![Pair::default(); blocks.len() * colliders.capsules().len()].into();
         Self {
-            blocks: blocks.map(block).collect(),
+            reach: reaches(&blocks, parts, colliders),
+            turns: vec![Turn::default(); blocks.len()].into(),
+            blocks,
+            pairs,
             ends: Ends::NONE,
             cones: Cones::NONE,
             boxes: Boxes::NONE,
@@ -139,18 +142,16 @@ impl Owner {
             to: &mut self.cones,
         };
         width.run(prepare);
-        let Self { blocks, cones, boxes, planes, .. } = self;
-        width.run(Find { cols, swept: cones, boxes, planes, blocks });
-        let near = |b: &Block| b.lanes.iter().map(|l| u64::from(l.count_ones())).sum::<u64>();
-        self.tally.near += self.blocks.iter().filter(|b| b.capsules != 0).map(near).sum::<u64>();
-        self.tally.ignored +=
-            (colliders.capsules().len().min(MAX_CAPSULES) as u64) - u64::from(self.ends.sound.count_ones());
+        let Self { blocks, pairs, reach, cones, boxes, planes, tally, .. } = self;
+        let count = width.run(Find { cols, swept: cones, boxes, planes, blocks, pairs, reach });
+        tally.near += pairs[..count].iter().map(|p| u64::from(p.lanes.count_ones())).sum::<u64>();
+        tally.ignored += colliders.capsules().len() as u64 - u64::from(self.ends.sound.count_ones());
     }
 
     /// Pushes what touches out of the capsules as they stand at the end of the substep, and holds what would have gone
     /// through them. `span` is the substep's part of the step, 0..1. Last of the constraints of a substep.
     pub fn solve(&mut self, width: Width, cols: Columns<'_>, span: [f32; 2], how: &ContactSettings) {
-        let Self { blocks, ends, cones, planes, tally, .. } = self;
+        let Self { blocks, pairs, turns, ends, cones, planes, tally, .. } = self;
         let prepare = Prepare {
             ends,
             at: span[1],
@@ -162,8 +163,22 @@ impl Owner {
         };
         width.run(prepare);
         let sweep = Sweep { ends, cones, span, offset: how.offset_m };
-        tally.swept += width.run(Solve { cols, sweep, planes, blocks, how });
+        tally.swept += width.run(Solve { cols, sweep, planes, blocks, pairs, turns, how });
     }
+}
+
+/// Which particles of each block may touch each capsule at all; nothing where all may touch all.
+fn reaches(blocks: &[Block], parts: &[Part], colliders: &Colliders) -> Box<[[u16; MAX_CAPSULES]]> {
+    let all = reach(Part::All, colliders);
+    let bits: Vec<u32> = parts.iter().map(|&part| reach(part, colliders)).collect();
+    if bits.iter().all(|b| *b == all) {
+        return Box::default();
+    }
+    let of = |block: &Block, c: usize| {
+        let reaches = |lane: usize| bits.get(block.particle(lane) as usize).unwrap_or(&all) >> c & 1;
+        (0..block.len()).fold(0, |lanes, lane| lanes | (reaches(lane) as u16) << lane)
+    };
+    blocks.iter().map(|block| std::array::from_fn(|c| of(block, c))).collect()
 }
 
 #[cfg(test)]

@@ -1,15 +1,16 @@
 //! Near: the broad phase. Which capsules and planes each particle may touch during the step.
 //!
-//! Particles are looked at in blocks of 16 that lie together in memory, four blocks a group. A group's box against the
+//! Particles are looked at in blocks of 16 that lie close together, found at load, four blocks a group. A group's box against the
 //! capsules' boxes, lanes across capsules, leaves few capsules; those are asked for the distance of each particle from
-//! all that they sweep in the step, lanes across particles. What is near is kept as bits, so that there is room for
-//! every particle at every capsule, and each particle meets its capsules in their order.
+//! all that they sweep in the step, lanes across particles. What is near is kept as pairs of block and capsule, a bit a
+//! particle, with room for all of them; each particle meets its capsules in their order.
+
+use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, STEP_SECONDS};
 
 use super::cones::{Cones, Ends, PLACES, Row};
-use super::touch::place;
+use super::touch::close;
 use crate::cloth::state::Columns;
 use crate::lanes::{Column, Kernel, Lanes, MOST, Mask, V3, reciprocal_root};
-use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, STEP_SECONDS};
 
 /// Planes that a block can be near: the floor and those of the scene.
 pub const PLANES: usize = MAX_PLANES + 1;
@@ -19,45 +20,97 @@ pub const GROUP: usize = 4;
 
 /// Particles this much farther away than they can travel in a step are still looked at (m): what neighbours and gravity
 /// add within the step.
-const SLACK_M: f32 = 0.005;
+const SLACK_M: f32 = 0.004;
 
 /// A particle may be jerked along by its neighbours at so many times its present speed.
-const JERK: f32 = 2.0;
+const JERK: f32 = 1.5;
 
 /// Boxes are wider than what they hold by this (m), so that rounding never makes the coarse test stricter than the fine.
 const BOX_M: f32 = 1e-3;
 
-/// Up to 16 particles that lie together in memory and have one owner.
+/// Up to 16 particles of one owner that lie close together: four times four that are neighbours in memory.
 #[derive(Debug, Clone)]
 pub struct Block {
-    /// First particle.
-    pub first: u32,
+    /// First particle of each four; of those past `len` nothing is read or written.
+    quads: [u32; 4],
     /// Particles, at most [`MOST`].
-    pub len: u32,
-    /// Bit c is set where a particle of the block may touch capsule c in this step.
-    pub capsules: u32,
-    /// The same for planes.
-    pub planes: u32,
-    /// Which particles may touch each capsule at all, a bit each.
-    pub reach: [u16; MAX_CAPSULES],
-    /// Which may in this step; holds where `capsules` has a bit.
-    pub lanes: [u16; MAX_CAPSULES],
-    /// Which may touch each plane in this step; holds where `planes` has a bit.
+    len: u16,
+    /// Pairs: capsules that some of its particles may touch in this step.
+    pub pairs: u16,
+    /// First of its pairs.
+    pub from: u32,
+    /// Bit p is set where some may touch plane p.
+    pub planes: u16,
+    /// Which may touch each plane, a bit a particle; holds where `planes` has a bit.
     pub plane_lanes: [u16; PLANES],
 }
 
 impl Block {
-    /// Near nothing yet.
-    pub fn new(first: u32, len: u32, reach: [u16; MAX_CAPSULES]) -> Self {
-        let (lanes, plane_lanes) = ([0; MAX_CAPSULES], [0; PLANES]);
-        Self { first, len, capsules: 0, planes: 0, reach, lanes, plane_lanes }
+    /// Near nothing yet. All fours but the last are whole.
+    pub fn new(quads: [u32; 4], len: usize) -> Self {
+        Self { quads, len: len.min(MOST) as u16, pairs: 0, from: 0, planes: 0, plane_lanes: [0; PLANES] }
     }
 
-    /// First particle and how many.
+    /// Particles.
     #[inline(always)]
-    pub fn place(&self) -> (usize, usize) {
-        (self.first as usize, (self.len as usize).min(MOST))
+    pub fn len(&self) -> usize {
+        usize::from(self.len)
     }
+
+    /// Which particle is on a lane.
+    #[inline(always)]
+    pub fn particle(&self, lane: usize) -> u32 {
+        self.quads[lane / 4 % 4] + lane as u32 % 4
+    }
+
+    /// Which particles are on the lanes from `lane` on, and how many.
+    #[inline(always)]
+    fn index<L: Lanes>(&self, lane: usize) -> ([u32; MOST], usize) {
+        (std::array::from_fn(|i| self.particle(lane + i)), L::N.min(self.len() - lane))
+    }
+
+    /// Vectors of the particles from `lane` on; 0 past the last.
+    #[inline(always)]
+    pub fn load<L: Lanes>(&self, from: [Column<'_>; 3], lane: usize) -> V3<L> {
+        if self.len() == MOST {
+            return V3::load_quads(from, &self.quads, lane);
+        }
+        let (index, n) = self.index::<L>(lane);
+        V3::gather(from, &index, n)
+    }
+
+    /// Numbers of the same.
+    #[inline(always)]
+    pub fn load_one<L: Lanes>(&self, from: Column<'_>, lane: usize) -> L {
+        if self.len() == MOST {
+            return L::load_quads(from, &self.quads, lane);
+        }
+        let (index, n) = self.index::<L>(lane);
+        L::gather(from, &index, n)
+    }
+
+    /// Writes vectors.
+    #[inline(always)]
+    pub fn store<L: Lanes>(&self, v: V3<L>, to: [Column<'_>; 3], lane: usize) {
+        if self.len() == MOST {
+            return v.store_quads(to, &self.quads, lane);
+        }
+        let (index, n) = self.index::<L>(lane);
+        v.scatter(to, &index, n);
+    }
+}
+
+/// A block and a capsule that are near.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Pair {
+    /// The capsule.
+    pub capsule: u16,
+    /// Which particles of the block may touch it in this step, a bit each.
+    pub lanes: u16,
+    /// Which do at the end of this substep as it stands.
+    pub touched: u16,
+    /// Which have moved so far in it that the capsule may have to sweep them.
+    pub fast: u16,
 }
 
 /// Boxes around what each capsule sweeps in the step.
@@ -117,41 +170,65 @@ pub struct Find<'a> {
     pub planes: &'a [[f32; 4]],
     /// The owner's blocks, a group at a time.
     pub blocks: &'a mut [Block],
+    /// Room for a pair of every block with every capsule.
+    pub pairs: &'a mut [Pair],
+    /// Which particles of each block may touch each capsule at all; empty where all may touch all.
+    pub reach: &'a [[u16; MAX_CAPSULES]],
 }
 
 impl Kernel for Find<'_> {
-    type Out = ();
+    /// Pairs.
+    type Out = usize;
 
     #[inline(always)]
-    fn run<L: Lanes>(self) {
-        let Self { cols, swept, boxes, planes, blocks } = self;
-        for group in blocks.chunks_mut(GROUP) {
+    fn run<L: Lanes>(self) -> usize {
+        let Self { cols, swept, boxes, planes, blocks, pairs, reach } = self;
+        let mut count = 0;
+        for (g, group) in blocks.chunks_mut(GROUP).enumerate() {
             let [low, high] = around::<L>(cols, group);
-            let capsules = boxes.meet::<L>(low, high);
-            let met = meet_planes(planes, low, high);
-            for block in group {
-                (block.capsules, block.planes) = (0, 0);
-                if capsules | met != 0 {
-                    close::<L>(cols, swept, planes, block, [capsules, met]);
+            let met = [boxes.meet::<L>(low, high), meet_planes(planes, low, high)];
+            for (k, block) in group.iter_mut().enumerate() {
+                (block.from, block.pairs, block.planes) = (count as u32, 0, 0);
+                if met != [0, 0] {
+                    let lanes = ask::<L>(cols, swept, planes, block, met);
+                    count = keep(block, pairs, met[0], lanes, reach.get(g * GROUP + k));
                 }
             }
         }
+        count
     }
 }
 
-/// How far a particle may come in a step (m).
+/// Keeps a block's pairs; says how many there are now in all.
 #[inline(always)]
-fn travel<L: Lanes>(cols: Columns<'_>, at: usize, n: usize) -> L {
-    let v = V3::<L>::load(cols.v, at, n);
-    let speed2 = v.dot(v);
-    L::splat(SLACK_M) + speed2 * reciprocal_root(speed2) * L::splat(JERK * STEP_SECONDS)
+fn keep(
+    block: &mut Block,
+    pairs: &mut [Pair],
+    met: u32,
+    lanes: [u16; PLACES],
+    reach: Option<&[u16; MAX_CAPSULES]>,
+) -> usize {
+    let mut at = block.from as usize;
+    let mut bits = met;
+    while bits != 0 {
+        let c = bits.trailing_zeros() as usize % MAX_CAPSULES;
+        bits &= bits - 1;
+        let lanes = lanes[c] & reach.map_or(!0, |r| r[c]);
+        // Written first and counted after: no branch.
+        if let Some(pair) = pairs.get_mut(at) {
+            *pair = Pair { capsule: c as u16, lanes, touched: 0, fast: 0 };
+            at += usize::from(lanes != 0);
+        }
+    }
+    block.pairs = (at - block.from as usize) as u16;
+    at
 }
 
-/// Which of `n` lanes move at all.
+/// How far particles of these velocities may come in a step (m).
 #[inline(always)]
-fn free<L: Lanes>(cols: Columns<'_>, at: usize, n: usize) -> L::Mask {
-    let w = if n == L::N { L::load(cols.w, at) } else { L::load_part(cols.w, at, n) };
-    L::splat(0.0).lt(w)
+fn travel<L: Lanes>(v: V3<L>) -> L {
+    let speed2 = v.dot(v);
+    L::splat(SLACK_M) + speed2 * reciprocal_root(speed2) * L::splat(JERK * STEP_SECONDS)
 }
 
 /// The box around all places that the free particles of a group may come to.
@@ -160,13 +237,11 @@ fn around<L: Lanes>(cols: Columns<'_>, group: &[Block]) -> [[f32; 3]; 2] {
     let (most, least) = (L::splat(f32::MAX), L::splat(-f32::MAX));
     let (mut low, mut high) = ([most; 3], [least; 3]);
     for block in group {
-        let (first, len) = block.place();
         let mut from = 0;
-        while from < len {
-            let (at, n) = (first + from, L::N.min(len - from));
-            let x = V3::<L>::load(cols.x, at, n);
-            let far = travel::<L>(cols, at, n);
-            let free = free::<L>(cols, at, n);
+        while from < block.len() {
+            let x = block.load::<L>(cols.x, from);
+            let far = travel::<L>(block.load(cols.v, from));
+            let free = L::splat(0.0).lt(block.load_one(cols.w, from));
             // What is not a number leaves the box as it was.
             low[0] = (x.x - far).select(free, most).min(low[0]);
             low[1] = (x.y - far).select(free, most).min(low[1]);
@@ -209,27 +284,28 @@ fn meet_planes(planes: &[[f32; 4]], low: [f32; 3], high: [f32; 3]) -> u32 {
     bits
 }
 
-/// Asks the capsules and planes that a group has met for each particle of one of its blocks.
+/// Asks the capsules and planes that a group has met for each particle of one of its blocks: a bit a particle for each
+/// capsule.
 #[inline(always)]
-fn close<L: Lanes>(cols: Columns<'_>, swept: &Cones, planes: &[[f32; 4]], block: &mut Block, met: [u32; 2]) {
-    let (first, len) = block.place();
-    block.lanes = [0; MAX_CAPSULES];
+fn ask<L: Lanes>(
+    cols: Columns<'_>,
+    swept: &Cones,
+    planes: &[[f32; 4]],
+    block: &mut Block,
+    met: [u32; 2],
+) -> [u16; PLACES] {
+    let mut lanes = [0; PLACES];
     block.plane_lanes = [0; PLANES];
     let mut from = 0;
-    while from < len {
-        let (at, n) = (first + from, L::N.min(len - from));
-        let x = V3::<L>::load(cols.x, at, n);
-        let far = travel::<L>(cols, at, n);
-        let free = free::<L>(cols, at, n);
+    while from < block.len() {
+        let x = block.load::<L>(cols.x, from);
+        let far = travel::<L>(block.load(cols.v, from));
+        let free = L::splat(0.0).lt(block.load_one(cols.w, from));
         let mut bits = met[0];
         while bits != 0 {
-            let c = bits.trailing_zeros() as usize % MAX_CAPSULES;
+            let c = bits.trailing_zeros() as usize % PLACES;
             bits &= bits - 1;
-            let place = place(swept, c, x);
-            let reach = place.reach + far;
-            let near = place.out2.lt(reach * reach).and(free).bits() << from;
-            block.lanes[c] |= near as u16 & block.reach[c];
-            block.capsules |= u32::from(block.lanes[c] != 0) << c;
+            lanes[c] |= (close(swept, c, x, far).and(free).bits() << from) as u16;
         }
         let mut bits = met[1];
         while bits != 0 {
@@ -237,10 +313,11 @@ fn close<L: Lanes>(cols: Columns<'_>, swept: &Cones, planes: &[[f32; 4]], block:
             bits &= bits - 1;
             let near = (-far).lt(depth(&planes[p], x)).and(free);
             block.plane_lanes[p] |= (near.bits() << from) as u16;
-            block.planes |= u32::from(block.plane_lanes[p] != 0) << p;
+            block.planes |= u16::from(block.plane_lanes[p] != 0) << p;
         }
         from += L::N;
     }
+    lanes
 }
 
 /// How deep particles are behind a plane (m).

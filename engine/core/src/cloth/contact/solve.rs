@@ -1,15 +1,18 @@
 //! The kernel of a substep: every particle against what it is near.
 
-use toile_assets::limits::MAX_CAPSULES;
-
 use super::ContactSettings;
-use super::near::{Block, PLANES, depth};
+use super::cones::PLACES;
+use super::near::{Block, PLANES, Pair, depth};
 use super::sweep::Sweep;
-use super::touch::{Friction, Surface, place, push, surface};
+use super::touch::{Friction, ON_M, Surface, close, place, push, surface};
 use crate::cloth::state::Columns;
-use crate::lanes::{Kernel, Lanes, Mask, V3};
+use crate::lanes::{Kernel, Lanes, MOST, Mask, V3};
 
 /// One substep over the blocks of one owner.
+///
+/// Each particle meets its capsules one after the other, but a push is a long chain of operations that wait for each
+/// other. So the blocks take turns: all are looked at, each that has something to do meets one capsule, those are looked
+/// at again from that capsule on, until nothing is left. Nothing then waits for what was only just begun.
 pub struct Solve<'a> {
     /// The garment's columns.
     pub cols: Columns<'a>,
@@ -19,100 +22,159 @@ pub struct Solve<'a> {
     pub planes: &'a [[f32; 4]],
     /// The owner's blocks.
     pub blocks: &'a [Block],
+    /// Their pairs.
+    pub pairs: &'a mut [Pair],
+    /// Room for a turn of every block.
+    pub turns: &'a mut [Turn],
     /// Friction.
     pub how: &'a ContactSettings,
 }
 
+/// A block that has something to do.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Turn {
+    /// The block.
+    block: u32,
+    /// Which of its pairs is next.
+    pair: u32,
+}
+
 impl Kernel for Solve<'_> {
-    /// Pairs whose way was followed.
+    /// Pairs of particle and capsule whose way was followed.
     type Out = u64;
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> u64 {
+        let Self { cols, sweep, planes, blocks, pairs, turns, how } = self;
+        let friction = Friction { hold: L::splat(how.friction_static), slide: L::splat(how.friction_kinetic) };
         let mut swept = 0;
-        for block in self.blocks {
-            if block.capsules | block.planes != 0 {
-                swept += self.block::<L>(block);
+        let mut count = 0;
+        for (b, block) in blocks.iter().enumerate().filter(|(_, b)| b.pairs != 0) {
+            let next = look::<L>(cols, &sweep, block, pairs, 0);
+            count += take(turns, count, b as u32, next);
+        }
+        while count > 0 {
+            for turn in &turns[..count] {
+                let block = &blocks[turn.block as usize];
+                swept += meet(cols, &sweep, block, &pairs[turn.pair as usize], friction);
             }
+            let mut left = 0;
+            for t in 0..count {
+                let Turn { block: b, pair } = turns[t];
+                let block = &blocks[b as usize];
+                let next = look::<L>(cols, &sweep, block, pairs, pair as usize + 1 - block.from as usize);
+                left += take(turns, left, b, next);
+            }
+            count = left;
+        }
+        for block in blocks.iter().filter(|b| b.planes != 0) {
+            meet_planes(cols, planes, block, friction);
         }
         swept
     }
 }
 
-impl Solve<'_> {
-    #[inline(always)]
-    fn block<L: Lanes>(&self, block: &Block) -> u64 {
-        let friction =
-            Friction { hold: L::splat(self.how.friction_static), slide: L::splat(self.how.friction_kinetic) };
-        let Self { cols, sweep, .. } = self;
-        let (first, len) = block.place();
-        let lanes_below = ((1u64 << L::N) - 1) as u32;
-        let mut swept = 0;
-        let mut from = 0;
-        while from < len {
-            let (at, n) = (first + from, L::N.min(len - from));
-            let mut x = V3::<L>::load(cols.x, at, n);
-            let mut previous = V3::<L>::load(cols.previous, at, n);
-            let mut moved = false;
-            let mut bits = block.capsules;
-            while bits != 0 {
-                let c = bits.trailing_zeros() as usize % MAX_CAPSULES;
-                bits &= bits - 1;
-                let lanes = u32::from(block.lanes[c]) >> from & lanes_below;
-                if L::N < 16 && lanes == 0 {
-                    continue;
-                }
-                let lanes = L::Mask::of(lanes);
-                let way = x - previous;
-                let quick = sweep.cones.quick2.splat::<L>(c).lt(way.dot(way)).and(lanes);
-                if quick.any() {
-                    swept += u64::from(sweep.run(c, &mut x, &mut previous, friction, quick).count_ones());
-                    moved = true;
-                }
-                let place = place(sweep.cones, c, x);
-                let touches = place.out2.lt(place.reach * place.reach).and(lanes);
-                if touches.any() {
-                    push(&mut x, &mut previous, &surface(sweep.cones, c, &place), friction, touches);
-                    moved = true;
-                }
-            }
-            moved |= self.planes(block, from, &mut x, &mut previous, friction);
-            if moved {
-                x.store(cols.x, at, n);
-                previous.store(cols.previous, at, n);
-            }
-            from += L::N;
-        }
-        swept
-    }
+/// Notes a turn; 1 if there is something to do. Written first and counted after: no branch.
+#[inline(always)]
+fn take(turns: &mut [Turn], at: usize, block: u32, next: Option<u32>) -> usize {
+    turns[at] = Turn { block, pair: next.unwrap_or(0) };
+    usize::from(next.is_some())
+}
 
-    /// Whatever is behind a plane is pushed out: there is no other side.
-    #[inline(always)]
-    fn planes<L: Lanes>(
-        &self,
-        block: &Block,
-        from: usize,
-        x: &mut V3<L>,
-        previous: &mut V3<L>,
-        friction: Friction<L>,
-    ) -> bool {
-        let mut moved = false;
-        let mut bits = block.planes;
-        while bits != 0 {
-            let p = bits.trailing_zeros() as usize % PLANES;
-            bits &= bits - 1;
-            let lanes = L::Mask::of(u32::from(block.plane_lanes[p]) >> from);
-            let depth = depth(&self.planes[p % self.planes.len()], *x);
-            let touches = L::splat(0.0).lt(depth).and(lanes);
-            if touches.any() {
-                let [nx, ny, nz, _] = self.planes[p % self.planes.len()];
-                let zero = L::splat(0.0);
+/// The bits of the lanes from `from` on among those of a block.
+#[inline(always)]
+fn few<L: Lanes>(lanes: u16, from: usize) -> u32 {
+    u32::from(lanes) >> from & (((1u64 << L::N) - 1) as u32)
+}
+
+/// Looks at a block's pairs from number `start` on: which particles touch, which have moved far. Gives the first of the
+/// pairs with any.
+#[inline(always)]
+fn look<L: Lanes>(
+    cols: Columns<'_>,
+    sweep: &Sweep<'_>,
+    block: &Block,
+    pairs: &mut [Pair],
+    start: usize,
+) -> Option<u32> {
+    let range = block.from as usize + start..block.from as usize + usize::from(block.pairs);
+    let later = &mut pairs[range.clone()];
+    let mut from = 0;
+    while from < block.len() {
+        let x = block.load::<L>(cols.x, from);
+        let way = x - block.load(cols.previous, from);
+        let way2 = way.dot(way);
+        for pair in &mut *later {
+            let lanes = few::<L>(pair.lanes, from);
+            // The widest lanes hold all of a pair's particles: there is always one.
+            let [mut touched, mut fast] = [0; 2];
+            if L::N == MOST || lanes != 0 {
+                let c = usize::from(pair.capsule) % PLACES;
+                touched = close(sweep.cones, c, x, L::splat(-ON_M)).bits() & lanes;
+                fast = sweep.cones.quick2.splat::<L>(c).lt(way2).bits() & lanes;
+            }
+            if from == 0 {
+                (pair.touched, pair.fast) = (0, 0);
+            }
+            pair.touched |= (touched << from) as u16;
+            pair.fast |= (fast << from) as u16;
+        }
+        from += L::N;
+    }
+    let mut next = None;
+    for (pair, i) in later.iter().zip(range).rev() {
+        next = if pair.touched | pair.fast != 0 { Some(i as u32) } else { next };
+    }
+    next
+}
+
+/// A block meets a capsule; gives how many particles' ways were followed.
+#[inline(always)]
+fn meet<L: Lanes>(cols: Columns<'_>, sweep: &Sweep<'_>, block: &Block, pair: &Pair, friction: Friction<L>) -> u64 {
+    let c = usize::from(pair.capsule) % PLACES;
+    let mut swept = 0;
+    let mut from = 0;
+    while from < block.len() {
+        let (mut touched, fast) = (few::<L>(pair.touched, from), few::<L>(pair.fast, from));
+        if touched | fast != 0 {
+            let mut x = block.load::<L>(cols.x, from);
+            let mut previous = block.load::<L>(cols.previous, from);
+            if fast != 0 {
+                swept += sweep.run(c, &mut x, &mut previous, friction, L::Mask::of(fast)).count_ones();
+                touched = close(sweep.cones, c, x, L::splat(-ON_M)).bits() & few::<L>(pair.lanes, from);
+            }
+            if touched != 0 {
+                let on = surface(sweep.cones, c, &place(sweep.cones, c, x));
+                push(&mut x, &mut previous, &on, friction, L::Mask::of(touched));
+            }
+            block.store(x, cols.x, from);
+            block.store(previous, cols.previous, from);
+        }
+        from += L::N;
+    }
+    u64::from(swept)
+}
+
+/// Whatever is behind a plane is pushed out: there is no other side.
+#[inline(always)]
+fn meet_planes<L: Lanes>(cols: Columns<'_>, planes: &[[f32; 4]], block: &Block, friction: Friction<L>) {
+    let zero = L::splat(0.0);
+    let mut from = 0;
+    while from < block.len() {
+        let mut x = block.load::<L>(cols.x, from);
+        let mut previous = block.load::<L>(cols.previous, from);
+        for (p, plane) in planes.iter().enumerate().filter(|(p, _)| block.planes >> p & 1 != 0) {
+            let depth = depth(plane, x);
+            let touched = zero.lt(depth).and(L::Mask::of(few::<L>(block.plane_lanes[p % PLANES], from)));
+            if touched.any() {
+                let [nx, ny, nz, _] = *plane;
                 let normal = V3 { x: L::splat(nx), y: L::splat(ny), z: L::splat(nz) };
-                let carried = V3 { x: zero, y: zero, z: zero };
-                push(x, previous, &Surface { normal, depth, carried }, friction, touches);
-                moved = true;
+                let on = Surface { normal, depth, carried: V3 { x: zero, y: zero, z: zero } };
+                push(&mut x, &mut previous, &on, friction, touched);
             }
         }
-        moved
+        block.store(x, cols.x, from);
+        block.store(previous, cols.previous, from);
+        from += L::N;
     }
 }

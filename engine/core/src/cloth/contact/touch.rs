@@ -1,7 +1,7 @@
 //! Touch: the distance to a capsule, and the push that ends it, on lanes of particles.
 //!
-//! The nearest point of a round cone belongs to the sphere around the axis whose place is that of the particle's foot
-//! on the slanted side, held between the ends ([`RoundCone`](crate::cone::RoundCone) has the geometry; the tests hold
+//! The nearest point of a round cone belongs to the sphere around that point of the axis from which the particle is seen
+//! square to the slanted side, held between the ends ([`RoundCone`](crate::cone::RoundCone) has the geometry; the tests hold
 //! this against it). Friction acts on the motion relative to the moving surface (Mueller et al. 2007, "Position based
 //! dynamics", section 3.5, with the Coulomb bound of the push): what the static bound covers is held, what goes beyond
 //! slides against the kinetic one.
@@ -12,6 +12,9 @@ use crate::lanes::{Lanes, Mask, V3, reciprocal_root};
 /// A particle that moves farther than this relative to a surface in one substep (m) is no case for contact; the square
 /// stays finite.
 const FARTHEST_MOVE_M: f32 = 1e4;
+
+/// A particle not deeper than this behind a surface (m) lies on it: spheres that capsules share push once.
+pub const ON_M: f32 = 1e-6;
 
 /// Friction of a substep.
 #[derive(Clone, Copy)]
@@ -31,22 +34,50 @@ pub struct Place<L> {
     pub out2: L,
     /// Radius there, and offset (m).
     pub reach: L,
-    /// Foot on the slanted side (m).
-    pub foot: L,
+    /// How far along the axis (m).
+    pub height: L,
 }
 
-/// The place of particles `x` from capsule `c`.
+/// 1 / sqrt(x) to 7e-4: the first step of [`reciprocal_root`].
+#[inline(always)]
+fn rough_reciprocal_root<L: Lanes>(x: L) -> L {
+    let y = x.root_seed(0x5F1F_FFF9);
+    y * L::splat(0.703_952_25) * (L::splat(2.389_244_6) - x * y * y)
+}
+
+/// The place of particles `x` from capsule `c`. The distance is least at the right height: that the rough root puts the
+/// height off by 7e-4 of what the slope makes of it shows in no more than 1e-6 of the distance from the axis.
 #[inline(always)]
 pub fn place<L: Lanes>(cones: &Cones, c: usize, x: V3<L>) -> Place<L> {
     let v = x - splat3(&cones.a, c);
-    let axis = splat3(&cones.axis, c);
-    let y = v.dot(axis);
+    let y = v.dot(splat3(&cones.axis, c));
     let away2 = (v.dot(v) - y * y).max(L::splat(0.0));
-    let away = away2 * reciprocal_root(away2);
-    let foot = y * cones.cosine.splat(c) - away * cones.sine.splat(c);
-    let foot = foot.min(cones.side.splat(c)).max(L::splat(0.0));
-    let out = v - axis * (foot * cones.climb.splat(c));
-    Place { out, out2: out.dot(out), reach: cones.reach.splat::<L>(c) + foot * cones.growth.splat(c), foot }
+    let height = y - away2 * rough_reciprocal_root(away2) * cones.tangent.splat(c);
+    around(cones, c, v, height, L::splat(0.0))
+}
+
+/// Which particles are within `far` of capsule `c` and its offset.
+///
+/// A particle just there is `reach + far` out from its point of the axis, square to the side, so that its height tells
+/// where that is without a root: `height = (y - (reach + far) sine) / cosine^2`, with the reach of the first centre. Any
+/// other particle is looked at from a wrong point of the axis, from which it looks farther away, but not by so much
+/// that one inside would seem outside.
+#[inline(always)]
+pub fn close<L: Lanes>(cones: &Cones, c: usize, x: V3<L>, far: L) -> L::Mask {
+    let v = x - splat3(&cones.a, c);
+    let y = v.dot(splat3(&cones.axis, c));
+    let height = y * cones.stretch.splat(c) - (far + cones.reach.splat(c)) * cones.lean.splat(c);
+    let place = around(cones, c, v, height, far);
+    place.out2.lt(place.reach * place.reach)
+}
+
+/// The place of particles, `v` from the first centre, seen from a height along the axis.
+#[inline(always)]
+fn around<L: Lanes>(cones: &Cones, c: usize, v: V3<L>, height: L, far: L) -> Place<L> {
+    let height = height.min(cones.length.splat(c)).max(L::splat(0.0));
+    let out = v - splat3::<L>(&cones.axis, c) * height;
+    let reach = far + cones.reach.splat(c) + height * cones.taper.splat(c);
+    Place { out, out2: out.dot(out), reach, height }
 }
 
 /// A point of a surface that pushes.
@@ -66,19 +97,22 @@ pub struct Surface<L> {
 pub fn carried<L: Lanes>(cones: &Cones, c: usize, along: L, normal: V3<L>, radius: L) -> V3<L> {
     let (axis, turned) = (splat3::<L>(&cones.axis, c), splat3::<L>(&cones.turned, c));
     let lever = radius * cones.shortness.splat(c);
-    let spin = turned * axis.dot(normal) - axis * turned.dot(normal);
-    splat3::<L>(&cones.carried, c) + turned * along + spin * lever
+    splat3::<L>(&cones.carried, c) + turned * (along + lever * axis.dot(normal)) - axis * (lever * turned.dot(normal))
 }
 
 /// The surface of capsule `c` under particles inside of it.
 #[inline(always)]
 pub fn surface<L: Lanes>(cones: &Cones, c: usize, at: &Place<L>) -> Surface<L> {
-    // A particle on the axis leaves it sideways.
-    let lost = at.out2.lt(L::splat(1e-18));
-    let inverse = reciprocal_root(at.out2.max(L::splat(1e-18)));
-    let normal = splat3::<L>(&cones.across, c).select(lost, at.out * inverse);
-    let along = at.foot * cones.along.splat(c);
-    let depth = at.reach - at.out2 * inverse;
+    let nothing = L::splat(1e-18);
+    let inverse = reciprocal_root(at.out2.max(nothing));
+    let mut normal = at.out * inverse;
+    let lost = at.out2.lt(nothing);
+    if lost.any() {
+        // A particle on the axis leaves it sideways.
+        normal = splat3::<L>(&cones.across, c).select(lost, normal);
+    }
+    let along = at.height * cones.shortness.splat(c);
+    let depth = (at.reach - at.out2 * inverse).max(L::splat(0.0));
     Surface { normal, depth, carried: carried(cones, c, along, normal, at.reach) }
 }
 
@@ -87,17 +121,17 @@ pub fn surface<L: Lanes>(cones: &Cones, c: usize, at: &Place<L>) -> Surface<L> {
 /// found in.
 #[inline(always)]
 pub fn push<L: Lanes>(x: &mut V3<L>, previous: &mut V3<L>, on: &Surface<L>, friction: Friction<L>, mask: L::Mask) {
-    let zero = L::splat(0.0);
     let relative = *x - *previous - on.carried;
     let normal_motion = relative.dot(on.normal);
-    let approach = (-normal_motion).max(zero);
+    let approach = (-normal_motion).max(L::splat(0.0));
     let load = on.depth.min(approach);
     let sliding = relative - on.normal * normal_motion;
     let slid2 = sliding.dot(sliding);
     let held = friction.hold * load;
-    let slows = (friction.slide * load * reciprocal_root(slid2)).min(L::splat(1.0));
+    let slows = (friction.slide * load * rough_reciprocal_root(slid2)).min(L::splat(1.0));
     let slows = L::splat(1.0).select(slid2.lt(held * held), slows);
-    let mask = mask.and(relative.dot(relative).lt(L::splat(FARTHEST_MOVE_M * FARTHEST_MOVE_M)));
+    let far2 = slid2 + normal_motion * normal_motion;
+    let mask = mask.and(far2.lt(L::splat(FARTHEST_MOVE_M * FARTHEST_MOVE_M)));
     *x = (*x + on.normal * on.depth - sliding * slows).select(mask, *x);
-    *previous = (*previous + on.normal * (on.depth - approach).max(zero)).select(mask, *previous);
+    *previous = (*previous + on.normal * (on.depth - load)).select(mask, *previous);
 }

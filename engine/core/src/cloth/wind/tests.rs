@@ -37,10 +37,10 @@ fn square(normal: Vec3A) -> (State, Faces) {
 }
 
 fn accelerations(faces: &Faces, width: Width, wind: &Wind, state: &mut State) -> Vec<Vec3A> {
-    let mut out = still(state.weight.as_slice().len());
-    let to = out.each_mut().map(Store::column);
+    let mut out = Accelerations::new(state.weights().len());
+    let to = out.columns();
     Part::ALL.into_iter().for_each(|part| faces.blow(width, part, wind, DT, state.columns(), to));
-    (0..state.weight.as_slice().len()).map(|i| Vec3A::from_array([0, 1, 2].map(|k| out[k].as_slice()[i]))).collect()
+    (0..state.weights().len()).map(|i| out.of(i)).collect()
 }
 
 /// A crumpled tube in motion, some of it pinned, and which worker owns what.
@@ -50,7 +50,7 @@ fn crumpled(rows: u32, n: u32) -> (State, Vec<Vec3>, Vec<[u32; 3]>, Vec<u8>) {
     let moved: Vec<Vec3> = rest.iter().map(|p| *p + Vec3::new(noise(), noise(), noise()) * 0.005).collect();
     let w: Vec<f32> = (0..rest.len()).map(|i| if i < n as usize { 0.0 } else { 8_000.0 + 500.0 * noise() }).collect();
     let mut state = State::new(&moved, &w);
-    state.velocity.iter_mut().for_each(|column| column.as_mut().fill_with(|| 2.0 * noise()));
+    state.velocities_mut(|column| column.fill_with(|| 2.0 * noise()));
     let owner = (0..rest.len()).map(|i| u8::from(i % n as usize > n as usize / 2)).collect();
     (state, rest, triangles, owner)
 }
@@ -59,16 +59,16 @@ fn crumpled(rows: u32, n: u32) -> (State, Vec<Vec3>, Vec<[u32; 3]>, Vec<u8>) {
 fn every_width_and_both_ways_to_share_give_the_same_bits() {
     for (rows, n) in [(2, 3), (5, 19), (9, 100), (12, 150)] {
         let (mut state, rest, triangles, owner) = crumpled(rows, n);
-        let faces = Faces::new(&triangles, &rest, state.weight.as_slice(), &owner);
+        let faces = Faces::new(&triangles, &rest, state.weights(), &owner);
         assert_eq!(faces.count().iter().sum::<usize>(), triangles.len());
         let plain = accelerations(&faces, Width::One, &SKIRT, &mut state);
         assert!(plain.iter().any(|a| a.length() > 0.01));
         for width in Width::ALL.into_iter().filter(|w| w.available()) {
             assert_eq!(accelerations(&faces, width, &SKIRT, &mut state), plain, "{width} lanes, {rows} x {n}");
             for workers in [1, 2] {
-                let mut out = still(rest.len());
-                out.iter_mut().for_each(|column| column.as_mut().fill(f32::NAN));
-                let (at, to) = (state.columns(), out.each_mut().map(Store::column));
+                let mut out = Accelerations::new(rest.len());
+                let (at, to) = (state.columns(), out.columns());
+                (0..rest.len()).for_each(|i| state::set(to, i, Vec3A::NAN));
                 let blow = |part| faces.blow(width, part, &SKIRT, DT, at, to);
                 let job = |phase, share| match (phase, share) {
                     (0, 0) => blow(Part::First),
@@ -78,11 +78,7 @@ fn every_width_and_both_ways_to_share_give_the_same_bits() {
                 };
                 Crew::new(workers).unwrap().run(2, job).unwrap();
                 for (i, a) in plain.iter().enumerate() {
-                    assert_eq!(
-                        [0, 1, 2].map(|k| out[k].as_slice()[i]),
-                        a.to_array(),
-                        "{workers} workers, particle {i}"
-                    );
+                    assert_eq!(out.of(i), *a, "{workers} workers, particle {i}");
                 }
             }
         }
@@ -92,15 +88,14 @@ fn every_width_and_both_ways_to_share_give_the_same_bits() {
 #[test]
 fn a_plain_f64_version_gives_the_same_to_five_digits() {
     let (mut state, rest, triangles, owner) = crumpled(9, 100);
-    let faces = Faces::new(&triangles, &rest, state.weight.as_slice(), &owner);
+    let faces = Faces::new(&triangles, &rest, state.weights(), &owner);
     let got = accelerations(&faces, Width::widest(), &SKIRT, &mut state);
-    let at = |columns: &[Store; 3], i: u32| {
-        glam::DVec3::from_array([0, 1, 2].map(|k| f64::from(columns[k].as_slice()[i as usize])))
-    };
+    let at =
+        |columns: [&[f32]; 3], i: u32| glam::DVec3::from_array([0, 1, 2].map(|k| f64::from(columns[k][i as usize])));
     let mut want = vec![glam::DVec3::ZERO; rest.len()];
     for t in &triangles {
-        let [a, b, c] = t.map(|i| at(&state.position, i));
-        let mean = t.map(|i| at(&state.velocity, i)).into_iter().sum::<glam::DVec3>() / 3.0;
+        let [a, b, c] = t.map(|i| at(state.positions(), i));
+        let mean = t.map(|i| at(state.velocities(), i)).into_iter().sum::<glam::DVec3>() / 3.0;
         let u = SKIRT.velocity.as_dvec3() - mean;
         let area = 0.5 * (b - a).cross(c - a).length();
         let normal = (b - a).cross(c - a).normalize();
@@ -111,7 +106,7 @@ fn a_plain_f64_version_gives_the_same_to_five_digits() {
         let across = lee - u / s * cos;
         let force = area * pressure * cos * (f64::from(SKIRT.drag) * u / s + f64::from(SKIRT.lift) * across);
         for &i in t {
-            want[i as usize] += force / 3.0 * f64::from(state.weight.as_slice()[i as usize]);
+            want[i as usize] += force / 3.0 * f64::from(state.weights()[i as usize]);
         }
     }
     let largest = want.iter().map(|a| a.length()).fold(0.0, f64::max);
@@ -122,7 +117,7 @@ fn a_plain_f64_version_gives_the_same_to_five_digits() {
 #[test]
 fn both_sides_of_a_triangle_are_alike() {
     let (mut state, rest, mut triangles, owner) = crumpled(6, 40);
-    let faces = |triangles: &[[u32; 3]], state: &State| Faces::new(triangles, &rest, state.weight.as_slice(), &owner);
+    let faces = |triangles: &[[u32; 3]], state: &State| Faces::new(triangles, &rest, state.weights(), &owner);
     let before = accelerations(&faces(&triangles, &state), Width::widest(), &SKIRT, &mut state);
     triangles.iter_mut().step_by(3).for_each(|t| t.swap(1, 2));
     triangles.iter_mut().step_by(5).for_each(|t| t.rotate_left(1));
@@ -157,14 +152,15 @@ fn a_falling_sheet_reaches_its_terminal_velocity() {
     for _ in 0..120 * 10 {
         let air = accelerations(&faces, Width::widest(), &wind, &mut state);
         for (i, a) in air.iter().enumerate() {
-            state.velocity[1].as_mut()[i] += (a.y - 9.81) * DT;
-            state.position[1].as_mut()[i] += state.velocity[1].as_slice()[i] * DT;
+            let columns = state.columns();
+            columns.v[1].set(i, columns.v[1].get(i) + (a.y - 9.81) * DT);
+            columns.x[1].set(i, columns.x[1].get(i) + columns.v[1].get(i) * DT);
         }
     }
     let expected = -(2.0 * 0.1 * 9.81 / (AIR_DENSITY * 0.1f32)).sqrt();
-    let got = state.velocity[1].as_slice()[0];
+    let got = state.velocities()[1][0];
     assert!((got / expected - 1.0).abs() < 0.002, "{got} m/s, expected {expected}");
-    assert!(state.velocity[0].as_slice()[0].abs() < 1e-3, "a level sheet falls straight");
+    assert!(state.velocities()[0][0].abs() < 1e-3, "a level sheet falls straight");
 }
 
 #[test]

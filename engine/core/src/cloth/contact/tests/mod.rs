@@ -64,7 +64,7 @@ impl Bed {
         let parts = vec![Part::All; positions.len()];
         Self {
             state: State::new(positions, &vec![1.0; positions.len()]),
-            contacts: Contacts::new(spans, &parts, colliders),
+            contacts: Contacts::new(spans, &parts, positions, colliders),
             width: Width::widest(),
             how: HOW,
         }

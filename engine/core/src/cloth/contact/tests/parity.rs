@@ -46,7 +46,8 @@ fn contact_is_that_of_the_plain_twin() {
         let colliders = colliders(&from, &to, &[[0, 1]], false);
         let mut bed = Bed::new(&[p], &colliders);
         bed.find(&colliders);
-        bed.send(0, p + random.direction() * random.between(0.0, 0.004));
+        let way = random.direction() * random.between(0.0, 0.004);
+        bed.send(0, p + way);
         let (x, previous) = (bed.at(0).as_dvec3(), p.as_dvec3());
         let offset = f64::from(HOW.offset_m);
         let friction = [f64::from(HOW.friction_static), f64::from(HOW.friction_kinetic)];
@@ -55,9 +56,10 @@ fn contact_is_that_of_the_plain_twin() {
         let off = bed.at(0).as_dvec3().distance(x).max(bed.previous(0).as_dvec3().distance(previous));
         // Where the way out is not unique, or static friction just holds, rounding decides.
         let (distance, ..) = Cone::at(from, to, 1.0).contact(p.as_dvec3());
-        let certain = distance > -0.02;
+        let certain = distance > -0.01;
         touched += u32::from(certain && bed.at(0) != p);
-        assert!(!certain || off < 1e-6, "case {case}: off by {off}");
+        let deep = f64::from(HOW.offset_m) - Cone::at(from, to, 1.0).distance((p + way).as_dvec3());
+        assert!(!certain || off < 1e-6 + 1e-4 * deep.max(0.0), "case {case}: off by {off}, {deep} deep");
         let left = f64::from(HOW.offset_m) - Cone::at(from, to, 1.0).distance(bed.at(0).as_dvec3());
         assert!(left < 1e-5, "case {case}: {left} inside");
     }
@@ -137,9 +139,9 @@ fn a_capsule_that_is_not_finite_is_ignored_and_counted_and_the_others_act() {
 fn a_pinned_particle_never_moves() {
     let (positions, colliders) = crowd(200, 4);
     let mut bed = Bed::new(&positions, &colliders);
-    (0..200).step_by(3).for_each(|i| bed.state.weight.as_mut()[i] = 0.0);
+    (0..200).step_by(3).for_each(|i| bed.state.columns().w.set(i, 0.0));
     bed.find(&colliders);
     bed.solve([0.0, 1.0]);
-    let moved = |i: &usize| bed.state.position[0].as_slice()[*i] != positions[*i].x;
+    let moved = |i: &usize| bed.state.positions()[0][*i] != positions[*i].x;
     assert!(!(0..200).step_by(3).any(|i| moved(&i)) && (0..200).any(|i| moved(&i)));
 }

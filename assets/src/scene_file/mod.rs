@@ -1,0 +1,244 @@
+//! Scene files: any mesh, fabric, pins, colliders and settings of a user's own, described in TOML.
+//!
+//! Reads: a scene file and the meshes, fabrics and tracks that it names. Writes: a checked [`SceneFile`].
+//! Budget: at load only; 0.2 s for 16,000 vertices. Refusals name file, line, key and cure.
+//! Thread: the loading thread.
+//!
+//! `docs/scene.md` is the reference of the format; [`schema`] is what it is made from.
+
+mod colliders;
+mod error;
+pub mod examples;
+mod garment;
+mod primitive;
+pub mod schema;
+mod source;
+mod table;
+#[cfg(test)]
+mod tests;
+mod track;
+mod weld;
+
+use std::path::Path;
+
+use glam::{Affine3A, Vec3};
+use toml::de::DeTable;
+
+pub use colliders::{Plane, SceneColliders};
+pub use error::SceneError;
+pub use garment::{SceneGarment, UserMesh};
+pub use source::Source;
+pub use track::Track;
+
+use crate::scene::skirt::{self, Motion};
+use error::Document;
+use table::Table;
+
+/// Air that moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wind {
+    /// Velocity of the air (m/s).
+    pub velocity: Vec3,
+    /// Drag coefficient (1).
+    pub drag: f32,
+    /// Lift coefficient (1).
+    pub lift: f32,
+}
+
+/// How the cloth is stepped, where the scene says so.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SceneSettings {
+    /// The quality's name, one of [`schema::QUALITIES`].
+    pub quality: Option<&'static str>,
+    /// Substeps of a step.
+    pub substeps: Option<u32>,
+    /// Speed limit of a particle (m/s).
+    pub max_speed: Option<f32>,
+    /// Damping time of stretch (s).
+    pub stretch_damping: Option<f32>,
+    /// Lanes that kernels run on: 1, 4, 8 or 16.
+    pub lanes: Option<u32>,
+}
+
+/// How a group of pinned vertices moves.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PinMotion {
+    /// By a track of positions and quaternions.
+    Track(Track),
+    /// As the root of the benchmark's body.
+    Body(Motion),
+}
+
+impl PinMotion {
+    /// The rigid motion at a time (s): what starts at p is held at its image of p.
+    pub fn at(&self, time: f64) -> Affine3A {
+        match self {
+            Self::Track(track) => track.rigid(time).as_affine3a(),
+            Self::Body(motion) => skirt::root(*motion, time),
+        }
+    }
+}
+
+/// What a pin table says about its motion.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum PinSource<'a> {
+    /// The name of a track.
+    Track(&'a str),
+    /// A choice among the schema's motions.
+    Motion(usize),
+}
+
+/// A whole scene, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneFile {
+    /// What reports call it.
+    pub name: String,
+    /// Length of the run (s).
+    pub duration: f64,
+    /// Steps a second.
+    pub step_hz: f64,
+    /// Steps before this time (s) are not measured.
+    pub measure_from: f64,
+    /// Acceleration of gravity (m/s2).
+    pub gravity: Vec3,
+    /// Wind, where there is any.
+    pub wind: Option<Wind>,
+    /// How the cloth is stepped.
+    pub settings: SceneSettings,
+    /// The pieces of cloth, at least one.
+    pub garments: Vec<SceneGarment>,
+    /// What the cloth meets.
+    pub colliders: SceneColliders,
+    /// Rigid motions of pin groups: group g of a pinned vertex follows `pins[g - 1]`, group 0 stands.
+    pub pins: Vec<PinMotion>,
+}
+
+/// What is shared while the parts of a scene are read.
+pub(crate) struct Loading<'a> {
+    source: Source<'a>,
+    pass: bool,
+    pins: Vec<(String, PinMotion)>,
+}
+
+impl Loading<'_> {
+    /// The group of the pins that follow a motion; the same one is one group.
+    fn pin_group(&mut self, pin: &Table<'_>, source: PinSource<'_>) -> Result<u8, SceneError> {
+        let name = match source {
+            PinSource::Track(name) => name.to_owned(),
+            PinSource::Motion(choice) => format!("motion {}", schema::MOTIONS[choice]),
+        };
+        if let Some(known) = self.pins.iter().position(|(n, _)| *n == name) {
+            return Ok(known as u8 + 1);
+        }
+        if self.pins.len() == garment::MAX_PIN_TRACKS {
+            let says = format!("is the {}th; give pins that move alike the same file", self.pins.len() + 1);
+            return Err(pin.wrong("track", says));
+        }
+        let motion = match source {
+            PinSource::Track(name) => PinMotion::Track(garment::rigid_track(pin, name, self.source, self.pass)?),
+            PinSource::Motion(choice) => PinMotion::Body(colliders::motion(choice)),
+        };
+        self.pins.push((name, motion));
+        Ok(self.pins.len() as u8)
+    }
+}
+
+impl SceneFile {
+    /// Reads a scene file; the files that it names are looked for in its folder.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        let text = std::fs::read(path)
+            .map_err(|e| e.to_string())
+            .and_then(|bytes| String::from_utf8(bytes).map_err(|_| "it is not text in UTF-8".to_owned()));
+        let text = text.map_err(|reason| SceneError::Read { path: path.to_path_buf(), reason })?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse(&path.display().to_string(), &text, Source::Folder(folder))
+    }
+
+    /// One of the [`examples`].
+    pub fn example(name: &str) -> Result<Self, SceneError> {
+        let known = || examples::names().collect::<Vec<_>>().join(", ");
+        let text = examples::text(name);
+        let text = text.ok_or_else(|| SceneError::NoExample { name: name.into(), known: known() })?;
+        Self::parse(&format!("{name}.toml"), text, Source::Inside(examples::FILES))
+    }
+
+    /// Reads a scene from text; `file` is what messages call it.
+    pub fn parse(file: &str, text: &str, source: Source<'_>) -> Result<Self, SceneError> {
+        let document = Document { file, text };
+        let entries = DeTable::parse(text).map_err(|e| {
+            let at = e.span().map_or(0, |span| span.start);
+            document.error(at, format!("this is not TOML: {}; see docs/scene.md for the format", e.message()))
+        })?;
+        let root = Table::open(document, entries.get_ref(), "", 0)?;
+        let pass = root.choice("bad_rows")? == Some(1);
+        let mut loading = Loading { source, pass, pins: Vec::new() };
+        let garments = garments(&root, &mut loading)?;
+        let colliders = root.table("colliders")?.map(|table| SceneColliders::load(&table, source, pass));
+        let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let scene = Self {
+            name: root.text("name")?.map_or(stem, str::to_owned),
+            duration: root.number("duration")?,
+            step_hz: root.number("step_hz")?,
+            measure_from: root.number("measure_from")?,
+            gravity: root.vector("gravity")?,
+            wind: root.table("wind")?.map(|table| wind(&table)).transpose()?,
+            settings: root.table("settings")?.map(|table| settings(&table)).transpose()?.unwrap_or_default(),
+            garments,
+            colliders: colliders.transpose()?.unwrap_or_default(),
+            pins: loading.pins.into_iter().map(|(_, motion)| motion).collect(),
+        };
+        if scene.steps() == 0 {
+            return Err(root.wrong("duration", "is shorter than one step; give a longer one"));
+        }
+        if scene.measure_from >= scene.duration {
+            return Err(
+                root.wrong("measure_from", "lies past the end, so that nothing is measured; give an earlier time")
+            );
+        }
+        Ok(scene)
+    }
+
+    /// Whole steps of the run.
+    pub fn steps(&self) -> u64 {
+        // A step that ends within a millionth of the duration belongs to it.
+        (self.duration * self.step_hz + 1e-6).floor() as u64
+    }
+}
+
+fn garments(root: &Table<'_>, loading: &mut Loading<'_>) -> Result<Vec<SceneGarment>, SceneError> {
+    let tables = root.tables("garment")?;
+    if tables.is_empty() {
+        return Err(root.error("garment is missing; give at least one table [[garment]] with a mesh, grid or tube"));
+    }
+    let mut garments: Vec<SceneGarment> = Vec::new();
+    for (i, table) in tables.iter().enumerate() {
+        let garment = SceneGarment::load(table, i + 1, loading)?;
+        if garments.iter().any(|g| g.name == garment.name) {
+            return Err(table.wrong("name", format!("\"{}\" stands twice; give each garment its own", garment.name)));
+        }
+        garments.push(garment);
+    }
+    Ok(garments)
+}
+
+fn wind(table: &Table<'_>) -> Result<Wind, SceneError> {
+    Ok(Wind {
+        velocity: table.vector("velocity")?,
+        drag: table.number("drag")? as f32,
+        lift: table.number("lift")? as f32,
+    })
+}
+
+fn settings(table: &Table<'_>) -> Result<SceneSettings, SceneError> {
+    let lanes = table.maybe_count("lanes")?;
+    if lanes.is_some_and(|n| ![1, 4, 8, 16].contains(&n)) {
+        return Err(table.wrong("lanes", "is no width that processors have; give 1, 4, 8 or 16"));
+    }
+    Ok(SceneSettings {
+        quality: table.choice("quality")?.map(|i| schema::QUALITIES[i]),
+        substeps: table.maybe_count("substeps")?,
+        max_speed: table.maybe_number("max_speed")?.map(|v| v as f32),
+        stretch_damping: table.maybe_number("stretch_damping")?.map(|v| v as f32),
+        lanes,
+    })
+}

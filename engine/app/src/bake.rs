@@ -1,0 +1,359 @@
+//! `toile bake`: what a garment's mesh becomes, and what gives reason to worry.
+
+use std::fmt::Write;
+use std::path::Path;
+use std::time::Instant;
+
+use serde::Serialize;
+use toile_assets::bake::survey::{Survey, survey};
+use toile_assets::bake::{self, weights};
+use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::fabric::Fabric;
+use toile_assets::garment::{Garment, Shape};
+use toile_assets::import::obj;
+use toile_assets::sizes::Population;
+use toile_assets::wardrobe::{self, WardrobeError};
+
+use crate::cli::BakeArgs;
+use crate::exit::AppError;
+use crate::report::Document;
+use crate::terminal::{self, Paint, Tone};
+
+/// Fabric of a mesh where none is named.
+const MESH_FABRIC: &str = "cotton-lawn";
+
+/// Largest fabric file that is read (bytes); a fabric is a dozen lines.
+const MAX_FABRIC_BYTES: u64 = 1 << 16;
+
+/// The body of `toile bake`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BakeReport {
+    /// The garment, or the file of the mesh.
+    pub garment: String,
+    /// Its size.
+    pub size: String,
+    /// Its fabric.
+    pub fabric: String,
+    /// Vertices.
+    pub vertices: usize,
+    /// Triangles; a quad counts as two.
+    pub triangles: usize,
+    /// Vertices that do not move.
+    pub fixed: usize,
+    /// How many edges the fibers of each kind cover.
+    pub edges: Edges,
+    /// How many fibers of two edges or more there are.
+    pub fibers: Fibers,
+    /// How the cloth hangs.
+    pub hanging: Hanging,
+    /// How many fibers each solver has.
+    pub solvers: Vec<Solver>,
+    /// Sets in which the constraints are solved.
+    pub sets: Sets,
+    /// Tethers.
+    pub tethers: usize,
+    /// Bending stencils by direction.
+    pub stencils: Stencils,
+    /// Memory of the baked garment (bytes).
+    pub bytes: usize,
+    /// Time that baking took, drafting and this survey left out (ms).
+    pub bake_ms: f64,
+    /// Substeps of a step of 1/120 s that the garment asks for.
+    pub substeps: u32,
+    /// What is likely to look or to run worse than it could.
+    pub warnings: Vec<String>,
+    /// What else is worth knowing.
+    pub notes: Vec<String>,
+}
+
+/// Edges by what covers them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Edges {
+    /// All of them.
+    pub all: usize,
+    /// In fibers down the warp.
+    pub warp: usize,
+    /// In open fibers along the weft.
+    pub weft: usize,
+    /// In closed hoops.
+    pub hoops: usize,
+    /// In fibers along the bias.
+    pub bias: usize,
+    /// Alone.
+    pub loose: usize,
+}
+
+/// Fibers by direction.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Fibers {
+    /// Down the warp.
+    pub warp: usize,
+    /// Along the weft, open or closed.
+    pub weft: usize,
+    /// Along the bias.
+    pub bias: usize,
+    /// Edges of the longest.
+    pub longest: usize,
+}
+
+/// How the cloth hangs.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Hanging {
+    /// Vertices that can move.
+    pub free: usize,
+    /// Those of them that one warp fiber joins to a fixed vertex.
+    pub by_one_fiber: usize,
+    /// Those that hang by several, one from another.
+    pub by_several: usize,
+    /// Share of both (0..1).
+    pub share: f64,
+}
+
+/// What one solver has to do.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Solver {
+    /// Its name, as garment files call it.
+    pub solver: &'static str,
+    /// Fibers; edges alone count as one each.
+    pub fibers: usize,
+    /// Their edges.
+    pub edges: usize,
+}
+
+/// Sets in which nothing shares a particle.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Sets {
+    /// Of links along the bias.
+    pub shear: usize,
+    /// Of links along the weft.
+    pub weft: usize,
+    /// Bundles of fibers side by side.
+    pub bundles: usize,
+    /// Of fibers by index list.
+    pub crossing: usize,
+    /// Of hoops.
+    pub hoops: usize,
+}
+
+/// Bending stencils by direction.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Stencils {
+    /// Along the warp.
+    pub warp: usize,
+    /// Along the weft.
+    pub weft: usize,
+    /// Along the bias.
+    pub bias: usize,
+}
+
+/// Runs `toile bake`.
+///
+/// # Errors
+/// A garment, size, fabric or mesh that cannot be used, or a closed stdout.
+pub fn run(args: &BakeArgs) -> Result<(), AppError> {
+    let report = bake(args)?;
+    if args.json {
+        return terminal::print_json(&Document::new("bake", report));
+    }
+    terminal::print(&summary(&report, Paint::for_stdout()))
+}
+
+/// A shape with the names that it goes by.
+struct Drafted {
+    name: String,
+    size: String,
+    fabric: String,
+    shape: Shape,
+}
+
+fn bake(args: &BakeArgs) -> Result<BakeReport, AppError> {
+    let named = args.fabric.as_deref().map(fabric).transpose()?;
+    let drafted = draft(args)?;
+    let fabric = named.map_or_else(|| Fabric::built_in(&drafted.fabric).map_err(AppError::input), Ok)?;
+    let start = Instant::now();
+    let garment = bake::bake(&drafted.name, &drafted.size, &drafted.shape, &fabric)
+        .map_err(|source| AppError::input(WardrobeError::Mesh { name: drafted.name.clone(), source }))?;
+    let bake_ms = start.elapsed().as_secs_f64() * 1e3;
+    Ok(report(&garment, survey(&drafted.shape, &fabric), bake_ms))
+}
+
+/// Cuts the garment on the body of its size, or reads the mesh.
+fn draft(args: &BakeArgs) -> Result<Drafted, AppError> {
+    let name = &args.garment;
+    let is_file = Path::new(name).exists() || name.to_lowercase().ends_with(".obj");
+    if is_file && !wardrobe::names().contains(&name.as_str()) {
+        if let Some(size) = &args.size {
+            return Err(AppError::input(WardrobeError::NoSizes { name: name.clone(), size: size.clone() }));
+        }
+        let mut shape = obj::read(Path::new(name)).map_err(AppError::input)?;
+        let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
+        shape.weights = weights::transfer(&body, &shape.worn, |_, _| true);
+        return Ok(Drafted { name: name.clone(), size: "one size".into(), fabric: MESH_FABRIC.into(), shape });
+    }
+    let style = wardrobe::style(name).map_err(AppError::input)?;
+    let table = style.sizes().map_err(AppError::input)?;
+    let codes = table.codes();
+    let size = args.size.clone().unwrap_or_else(|| codes[codes.len() / 2].to_owned());
+    let wearer = if table.population == Population::Men { Sex::Male } else { Sex::Female };
+    let body = style.body(&size, wearer).map_err(AppError::input)?;
+    let shape = style.draft(&size, &body).map_err(AppError::input)?;
+    Ok(Drafted { name: style.name.clone(), size, fabric: style.fabric.clone(), shape })
+}
+
+/// A fabric by its name, or from a file.
+fn fabric(name: &str) -> Result<Fabric, AppError> {
+    let path = Path::new(name);
+    if !path.exists() && !name.to_lowercase().ends_with(".toml") {
+        return Fabric::built_in(name).map_err(AppError::input);
+    }
+    let unread = |reason: String| {
+        AppError::Input(format!(
+            "fabric {name}: {reason}; give the path of a fabric file, or a fabric that is built in"
+        ))
+    };
+    let info = std::fs::metadata(path).map_err(|e| unread(e.to_string()))?;
+    if info.is_dir() || info.len() > MAX_FABRIC_BYTES {
+        return Err(unread(if info.is_dir() {
+            "it is a folder".into()
+        } else {
+            format!("it has {} bytes", info.len())
+        }));
+    }
+    let text = std::fs::read_to_string(path).map_err(|e| unread(e.to_string()))?;
+    Fabric::parse(name, &text).map_err(AppError::input)
+}
+
+fn report(garment: &Garment, found: Survey, bake_ms: f64) -> BakeReport {
+    let covered = &found.coverage;
+    let layout = &garment.layout;
+    let solver = |s: &bake::survey::Solved| Solver { solver: s.solver.name(), fibers: s.fibers, edges: s.edges };
+    BakeReport {
+        garment: garment.name.clone(),
+        size: garment.size.clone(),
+        fabric: garment.fabric.name.clone(),
+        vertices: found.vertices,
+        triangles: found.triangles,
+        fixed: found.fixed,
+        edges: Edges {
+            all: covered.edges,
+            warp: covered.warp,
+            weft: covered.weft,
+            hoops: covered.hoops,
+            bias: covered.bias,
+            loose: covered.loose,
+        },
+        fibers: Fibers {
+            warp: covered.fibers[0],
+            weft: covered.fibers[1],
+            bias: covered.fibers[2],
+            longest: covered.longest,
+        },
+        hanging: Hanging {
+            free: covered.free,
+            by_one_fiber: covered.hanging,
+            by_several: covered.hanging_on,
+            share: covered.hanging_share(),
+        },
+        solvers: found.solvers.iter().map(solver).collect(),
+        sets: Sets {
+            shear: layout.shear.tuples.sets.len(),
+            weft: layout.weft.tuples.sets.len(),
+            bundles: layout.fibers.bundles.len(),
+            crossing: layout.crossing.sets.len(),
+            hoops: layout.hoops.sets.len(),
+        },
+        tethers: found.tethers,
+        stencils: Stencils { warp: found.stencils[0], weft: found.stencils[1], bias: found.stencils[2] },
+        bytes: garment.bytes(),
+        bake_ms,
+        substeps: garment.substeps,
+        warnings: found.warnings,
+        notes: found.notes,
+    }
+}
+
+/// The report for a person.
+fn summary(report: &BakeReport, paint: Paint) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let mut line = |words: String| _ = writeln!(text, "{words}");
+    let BakeReport { garment, size, fabric, vertices, triangles, fixed, edges, fibers, .. } = report;
+    line(paint.tone(&format!("{garment}, size {size}, {fabric}"), Tone::Strong).into_owned());
+    line(format!("  {vertices} vertices ({fixed} fixed), {triangles} triangles, {} edges", edges.all));
+    let share = |count: usize| 100.0 * count as f64 / edges.all.max(1) as f64;
+    let covered = |count: usize, what: String| format!("  {:5.1} %  {count:7} {what}", share(count));
+    line(paint.tone("Edges", Tone::Strong).into_owned());
+    line(covered(edges.warp, format!("in {} fibers down the warp", fibers.warp)));
+    line(covered(
+        edges.weft + edges.hoops,
+        format!("in {} along the weft, {} of them in closed hoops", fibers.weft, edges.hoops),
+    ));
+    line(covered(edges.bias, format!("in {} along the bias", fibers.bias)));
+    line(covered(edges.loose, "alone".into()));
+    let hanging = report.hanging;
+    line(format!(
+        "  {:.1} % of the free vertices hang by fibers, {} of {} by a single one; the longest has {} edges",
+        100.0 * hanging.share,
+        hanging.by_one_fiber,
+        hanging.free,
+        fibers.longest
+    ));
+    line(paint.tone("Solved", Tone::Strong).into_owned());
+    for solver in report.solvers.iter().filter(|s| s.fibers > 0) {
+        line(format!("  {:14} {} fibers of {} edges", solver.solver, solver.fibers, solver.edges));
+    }
+    let (sets, stencils) = (report.sets, report.stencils);
+    line(format!(
+        "  in {} sets of shear, {} of weft, {} bundles, {} sets by index, {} of hoops",
+        sets.shear, sets.weft, sets.bundles, sets.crossing, sets.hoops
+    ));
+    line(format!(
+        "  {} tethers; bending: {} stencils along the warp, {} the weft, {} the bias",
+        report.tethers, stencils.warp, stencils.weft, stencils.bias
+    ));
+    line(format!(
+        "  {:.2} MB, baked in {:.0} ms, {} substeps a step",
+        report.bytes as f64 * 1e-6,
+        report.bake_ms,
+        report.substeps
+    ));
+    report.notes.iter().for_each(|note| line(format!("  {note}")));
+    report.warnings.iter().for_each(|warning| line(format!("  {}", paint.tone(warning, Tone::Warn))));
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn args(garment: &str) -> BakeArgs {
+        BakeArgs { garment: garment.into(), size: None, fabric: None, json: false }
+    }
+
+    #[test]
+    fn every_garment_of_the_wardrobe_is_covered_and_hangs() {
+        for name in wardrobe::names() {
+            let report = bake(&args(name)).unwrap();
+            let Edges { all, warp, weft, hoops, bias, loose } = report.edges;
+            assert_eq!(warp + weft + hoops + bias + loose, all, "{name}");
+            assert_eq!(report.hanging.free + report.fixed, report.vertices, "{name}");
+            assert_eq!(report.tethers, report.hanging.free, "{name}: something hangs from nothing");
+            assert!(loose * 50 < all && report.hanging.share > 0.5, "{name}");
+            // Pieces that meet at an angle leave needles; nothing else is wrong with what is built in.
+            let wrong = report.warnings.iter().find(|w| !(w.contains("needles") || w.contains("mm long")));
+            assert_eq!(wrong, None, "{name}");
+            let text = summary(&report, Paint::none());
+            for said in [name, "vertices", "down the warp", "semi-implicit", "tethers", "substeps"] {
+                assert!(text.contains(said), "{said} is not in: {text}");
+            }
+        }
+    }
+
+    #[test]
+    fn size_and_fabric_can_be_chosen() {
+        let mut chosen = args("sun-dress");
+        (chosen.size, chosen.fabric) = (Some("40".into()), Some("linen-twill".into()));
+        let report = bake(&chosen).unwrap();
+        assert_eq!((report.size.as_str(), report.fabric.as_str()), ("40", "linen-twill"));
+    }
+}

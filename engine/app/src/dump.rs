@@ -1,0 +1,160 @@
+//! Dumps of a run: where every vertex of the user's mesh is, frame by frame, so that anybody can check them with tools
+//! of their own.
+//!
+//! CSV has the shortest decimals that read back as the same f32. PLY is binary little endian (version 1.0, G. Turk 1994)
+//! with the user's faces. An index says the time of each file.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+
+use glam::Vec3;
+use toile_assets::garment::check::corners;
+use toile_assets::scene_file::UserMesh;
+use toile_perf::scene_run::Runner;
+
+use crate::exit::AppError;
+use crate::output::OutputFolder;
+
+/// Name of the file that lists the others.
+pub const INDEX: &str = "index.csv";
+
+/// How a frame is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Format {
+    /// One line a vertex: its index, x, y, z.
+    #[default]
+    Csv,
+    /// Binary PLY with faces.
+    Ply,
+}
+
+impl Format {
+    /// Ending of its files.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Ply => "ply",
+        }
+    }
+}
+
+/// Writes frames of a run into an output folder; they appear when that is committed.
+#[derive(Debug)]
+pub struct Dump {
+    folder: OutputFolder,
+    format: Format,
+    every: u64,
+    index: String,
+    frame: u64,
+}
+
+impl Dump {
+    /// A dump of every `every`th step.
+    pub fn new(folder: OutputFolder, format: Format, every: u64) -> Self {
+        Self { folder, format, every, index: "frame,step,time_s,garment,file\n".into(), frame: 0 }
+    }
+
+    /// Writes the state of a run if its step is to be dumped; step 0 is the start.
+    ///
+    /// # Errors
+    /// Where a file cannot be written.
+    pub fn add(&mut self, runner: &Runner) -> Result<(), AppError> {
+        if !runner.steps().is_multiple_of(self.every) {
+            return Ok(());
+        }
+        let scene = runner.scene();
+        for (k, garment) in scene.garments.iter().enumerate() {
+            let file = format!("{}-{:06}.{}", garment.name, self.frame, self.format.ending());
+            let bytes = match self.format {
+                Format::Csv => csv(runner.positions(k)).into_bytes(),
+                Format::Ply => ply(runner.positions(k), &garment.mesh),
+            };
+            self.folder.write(&file, &bytes)?;
+            let (frame, step, time, name) = (self.frame, runner.steps(), runner.time(), &garment.name);
+            // Writing to a string cannot fail.
+            let _ = writeln!(self.index, "{frame},{step},{time},{name},{file}");
+        }
+        self.frame += 1;
+        Ok(())
+    }
+
+    /// Frames written.
+    pub fn frames(&self) -> u64 {
+        self.frame
+    }
+
+    /// Writes the index and gives all files their names.
+    ///
+    /// # Errors
+    /// Where a file cannot be written or named.
+    pub fn finish(mut self) -> Result<(), AppError> {
+        self.folder.write(INDEX, self.index.as_bytes())?;
+        self.folder.commit()?;
+        Ok(())
+    }
+}
+
+fn csv(positions: impl Iterator<Item = Vec3>) -> String {
+    let mut text = String::from("vertex,x,y,z\n");
+    for (i, p) in positions.enumerate() {
+        // Rust prints an f32 with as few digits as bring back the same bits.
+        let _ = writeln!(text, "{i},{},{},{}", p.x, p.y, p.z);
+    }
+    text
+}
+
+fn ply(positions: impl Iterator<Item = Vec3>, mesh: &UserMesh) -> Vec<u8> {
+    let (vertices, faces) = (mesh.start.len(), mesh.faces.len());
+    let mut bytes = Vec::with_capacity(256 + vertices * 12 + faces * 17);
+    // Writing to memory cannot fail.
+    let _ = write!(
+        bytes,
+        "ply\nformat binary_little_endian 1.0\nelement vertex {vertices}\nproperty float x\nproperty float y\n\
+         property float z\nelement face {faces}\nproperty list uchar uint vertex_indices\nend_header\n"
+    );
+    positions.flat_map(|p| p.to_array()).for_each(|x| bytes.extend(x.to_le_bytes()));
+    for ring in mesh.faces.iter().map(corners) {
+        bytes.push(ring.len() as u8);
+        ring.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toile_assets::garment::shape::NO_VERTEX;
+
+    #[test]
+    fn decimals_bring_back_the_same_bits() {
+        let odd = [0.1f32, -0.0, 1e-30, 16_777_217.0, f32::MIN_POSITIVE, 1.0 / 3.0, -2.5e-7, 123.456_79];
+        let points = odd.windows(3).map(|w| Vec3::new(w[0], w[1], w[2]));
+        let text = csv(points.clone());
+        let read =
+            |line: &str| -> Vec<u32> { line.split(',').skip(1).map(|x| x.parse::<f32>().unwrap().to_bits()).collect() };
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!((lines[0], lines.len()), ("vertex,x,y,z", 7));
+        for (line, p) in lines[1..].iter().zip(points) {
+            assert_eq!(read(line), p.to_array().map(f32::to_bits), "{line}");
+        }
+    }
+
+    #[test]
+    fn ply_holds_bits_and_faces() {
+        let points = [Vec3::ZERO, Vec3::X, Vec3::ONE, Vec3::new(0.0, 1.0 / 3.0, 0.0)];
+        let mesh = UserMesh {
+            start: points.into(),
+            faces: vec![[0, 1, 2, 3], [2, 1, 0, NO_VERTEX]],
+            to_shape: vec![0, 1, 2, 3],
+        };
+        let bytes = ply(points.into_iter(), &mesh);
+        let end = bytes.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
+        let head = std::str::from_utf8(&bytes[..end]).unwrap();
+        assert!(head.starts_with("ply\nformat binary_little_endian 1.0\nelement vertex 4\n"), "{head}");
+        let float = |i: usize| f32::from_le_bytes(bytes[end + 4 * i..][..4].try_into().unwrap());
+        assert!((0..12).all(|i| float(i).to_bits() == points[i / 3][i % 3].to_bits()));
+        let faces = &bytes[end + 48..];
+        assert_eq!((faces.len(), faces[0], faces[17]), (17 + 13, 4, 3));
+        assert_eq!(faces[18..22], 2u32.to_le_bytes());
+    }
+}

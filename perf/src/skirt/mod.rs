@@ -1,0 +1,245 @@
+//! The skirt benchmark: time and error of the cloth in the scene that Toile and its peers share.
+//!
+//! Reads: the scene, the engine's cloth. Writes: a report of one run, and the table of all targets.
+//! Budget: about six seconds for 4,096 vertices; nothing but the step itself is timed.
+//! Thread: one, and those of the engine; with nothing else running.
+
+pub mod claim;
+mod gauge;
+pub mod hard;
+pub mod heap;
+pub mod options;
+pub mod report;
+mod stage;
+pub mod table;
+mod winding;
+
+use std::time::Instant;
+
+use glam::Vec4;
+use thiserror::Error;
+use toile_assets::body::BodyError;
+use toile_assets::garment::{MeshError, Shape};
+use toile_assets::limits::MAX_SPHERES;
+use toile_engine::colliders::ColliderError;
+use toile_engine::crew::CrewError;
+
+use crate::yardstick::Yardstick;
+pub use gauge::{Frame, Gauge};
+use heap::HeapProbe;
+use options::{Options, WARM_UP};
+use report::Report;
+pub use stage::Stage;
+
+/// The body's spheres: centre and radius, world (m).
+pub type Spheres = [Vec4; MAX_SPHERES];
+
+/// Why the benchmark cannot run as asked.
+#[derive(Debug, Error)]
+pub enum SkirtError {
+    /// Not a grid.
+    #[error("{verts} vertices do not make a square grid of at least 8 x 8; give 1024, 4096 or 16384, for example")]
+    NotSquare {
+        /// What was asked for.
+        verts: usize,
+    },
+    /// Something that the engine cannot do.
+    #[error("the cloth cannot do {option} yet; leave it out")]
+    Unsupported {
+        /// The option.
+        option: &'static str,
+    },
+    /// A width that the processor lacks.
+    #[error("this processor has no {lanes} lanes of f32; give --lanes {widest} or less")]
+    NoSuchLanes {
+        /// Lanes asked for.
+        lanes: usize,
+        /// The most it has.
+        widest: usize,
+    },
+    /// The scene's mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The scene's body.
+    #[error(transparent)]
+    Colliders(#[from] ColliderError),
+    /// The engine's workers.
+    #[error(transparent)]
+    Crew(#[from] CrewError),
+    /// The yardstick's body.
+    #[error(transparent)]
+    Body(#[from] BodyError),
+}
+
+/// Steps at the end over which the greatest energy of motion is looked for: a second.
+const RESTING_STEPS: usize = 120;
+
+/// Steps after the last that counts in which the engine times its stages, which costs some time of its own.
+const METERED_STEPS: usize = 240;
+
+/// Runs the scene as asked, and tells time and error of the same steps.
+///
+/// # Errors
+/// Where the options cannot be met.
+pub fn measure(options: &Options, heap: &HeapProbe) -> Result<Report, SkirtError> {
+    measure_with(options, heap, |_| {})
+}
+
+/// The same with a mesh that `change` has changed before it is baked.
+fn measure_with(options: &Options, heap: &HeapProbe, change: impl FnOnce(&mut Shape)) -> Result<Report, SkirtError> {
+    let yardstick = Yardstick::new()?;
+    let mut stage = Stage::with(options, heap, change)?;
+    let mut run = Run::new(options, &stage, *heap);
+    for _ in 0..WARM_UP {
+        stage.prepare();
+        stage.step();
+    }
+    let before = stage.events();
+    let mut readings = Vec::new();
+    for _ in 0..options.runs.max(1) {
+        readings.push(yardstick.read_us());
+        (0..options.steps.max(1)).for_each(|_| run.step(&mut stage));
+        run.end_run();
+    }
+    readings.push(yardstick.read_us());
+    let mut report = run.report(&stage, quantile(&mut readings, 0.5));
+    report.events = stage.events().since(before);
+    report.stages_us = stage.stages_us(METERED_STEPS).into_iter().collect();
+    Ok(report)
+}
+
+/// What is gathered while the steps go by.
+struct Run {
+    options: Options,
+    heap: HeapProbe,
+    gauge: Gauge,
+    /// Time of each step, run after run (us).
+    times: Vec<f64>,
+    /// Where the present run starts in `times`.
+    first: usize,
+    medians: Vec<f64>,
+    /// Sum of the frames' mean strains and their count at the end of each run.
+    marks: Vec<[f64; 2]>,
+    allocations: u64,
+    frames: u64,
+    sums: [f64; 4],
+    last_inside: u64,
+    left_inside: u64,
+    worst: Frame,
+    wrong_frames: u64,
+    nonfinite: u64,
+    energies: Vec<f64>,
+}
+
+impl Run {
+    fn new(options: &Options, stage: &Stage, heap: HeapProbe) -> Self {
+        let steps = options.runs.max(1) * options.steps.max(1);
+        Self {
+            options: *options,
+            heap,
+            gauge: Gauge::new(stage),
+            times: Vec::with_capacity(steps),
+            first: 0,
+            medians: Vec::new(),
+            marks: vec![[0.0; 2]],
+            allocations: 0,
+            frames: 0,
+            sums: [0.0; 4],
+            last_inside: 0,
+            left_inside: 0,
+            worst: Frame::default(),
+            wrong_frames: 0,
+            nonfinite: 0,
+            energies: Vec::with_capacity(RESTING_STEPS),
+        }
+    }
+
+    fn step(&mut self, stage: &mut Stage) {
+        stage.prepare();
+        let before = self.heap.read();
+        let start = Instant::now();
+        stage.step();
+        let elapsed = start.elapsed();
+        if let Some((before, after)) = before.zip(self.heap.read()) {
+            self.allocations += after.allocations - before.allocations;
+        }
+        self.times.push(elapsed.as_secs_f64() * 1e6);
+        self.last_inside = 0;
+        for cloth in &stage.cloths {
+            let frame = self.gauge.read(&cloth.positions, &stage.spheres);
+            self.add(&frame);
+        }
+        if self.times.len() + RESTING_STEPS > self.options.runs.max(1) * self.options.steps.max(1) {
+            self.energies.push(stage.kinetic_energy() * 1e3);
+        }
+    }
+
+    fn add(&mut self, frame: &Frame) {
+        let worst = &mut self.worst;
+        worst.stretch_max = worst.stretch_max.max(frame.stretch_max);
+        worst.compression_max = worst.compression_max.max(frame.compression_max);
+        worst.beyond_max = worst.beyond_max.max(frame.beyond_max);
+        worst.deepest = worst.deepest.max(frame.deepest);
+        let values = [frame.strain_mean, frame.strain_p99, frame.inside as f64, frame.beyond_mean];
+        self.sums.iter_mut().zip(values).for_each(|(sum, x)| *sum += x);
+        self.wrong_frames += u64::from(frame.wrong_legs > 0);
+        self.nonfinite += frame.nonfinite as u64;
+        self.last_inside += frame.inside as u64;
+        self.frames += 1;
+    }
+
+    fn end_run(&mut self) {
+        let mut run = self.times[self.first..].to_vec();
+        self.medians.push(quantile(&mut run, 0.5));
+        self.first = self.times.len();
+        self.left_inside += self.last_inside;
+        self.marks.push([self.sums[0], self.frames as f64]);
+    }
+
+    fn report(mut self, stage: &Stage, yardstick_us: f64) -> Report {
+        let [mean, p99, inside, beyond] = self.sums.map(|sum| sum / self.frames as f64);
+        let p50 = quantile(&mut self.medians.clone(), 0.5);
+        let mut time = |part| quantile(&mut self.times, part);
+        Report {
+            quality: stage.settings().quality.name(),
+            lanes: stage.settings().width.lanes(),
+            substeps: stage.substeps(),
+            warm_up: WARM_UP,
+            step_us: report::StepMicros { p50, p99: time(0.99), p999: time(0.999), max: time(1.0) },
+            run_p50_us: self.medians,
+            yardstick_us,
+            y_ratio: p50 / yardstick_us,
+            ns_per_vertex: p50 * 1e3 / (self.options.verts * stage.cloths.len()) as f64,
+            strain: report::Strain {
+                mean,
+                p99,
+                run_mean: self.marks.windows(2).map(|m| (m[1][0] - m[0][0]) / (m[1][1] - m[0][1])).collect(),
+                max: self.worst.stretch_max,
+                compression_max: self.worst.compression_max,
+                beyond_elastic_max: self.worst.beyond_max,
+                beyond_elastic_mean: beyond,
+                edges: self.gauge.edges(),
+            },
+            penetration_mm: report::Penetration {
+                max: f64::from(self.worst.deepest) * 1e3,
+                fraction: inside / self.options.verts as f64,
+                left_inside: self.left_inside,
+            },
+            hem_winding_wrong: self.wrong_frames,
+            nonfinite: self.nonfinite,
+            allocations_per_step: self.heap.read().map(|_| self.allocations as f64 / self.times.len() as f64),
+            memory_bytes: stage.memory_bytes.map(|[garment, states]| garment + states),
+            memory_garment_bytes: stage.memory_bytes.map(|[garment, _]| garment),
+            kinetic_energy_mj: stage.kinetic_energy() * 1e3,
+            kinetic_energy_max_mj: self.energies.iter().copied().fold(0.0, f64::max),
+            state_hash: format!("{:016x}", stage.state_hash()),
+            ..Report::of(&self.options)
+        }
+    }
+}
+
+/// The value below which a part (0..1) of the values lies.
+fn quantile(values: &mut [f64], part: f64) -> f64 {
+    let rank = ((values.len() - 1) as f64 * part).round() as usize;
+    *values.select_nth_unstable_by(rank, f64::total_cmp).1
+}

@@ -1,0 +1,111 @@
+//! What a run of the skirt is asked for, and the engine's settings for it: the one place that knows both.
+
+use toile_assets::scene::skirt::{Motion, Stretch};
+use toile_engine::cloth::{Quality, Settings};
+use toile_engine::lanes::Width;
+
+use super::SkirtError;
+
+/// How the skirt is meshed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Mesh {
+    /// Rows and columns.
+    #[default]
+    Grid,
+    /// As many vertices strewn at random, Delaunay triangles.
+    Irregular,
+}
+
+/// One run of the benchmark.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Vertices; a square.
+    pub verts: usize,
+    /// What the body does.
+    pub motion: Motion,
+    /// How the skirt is meshed.
+    pub mesh: Mesh,
+    /// How its threads stretch.
+    pub stretch: Stretch,
+    /// Wind of the scene.
+    pub wind: bool,
+    /// Threads that step.
+    pub threads: usize,
+    /// Equal skirts on equal bodies, stepped one after the other or shared between threads.
+    pub garments: usize,
+    /// Lane width; the widest if not given.
+    pub lanes: Option<Width>,
+    /// Tested settings; the engine's own choice if not given.
+    pub quality: Option<Quality>,
+    /// Substeps of a step; the engine's own choice if not given.
+    pub substeps: Option<u32>,
+    /// Length of a step (s), 1/120 unless a case asks for another.
+    pub step_s: f32,
+    /// Runs of which the median is told.
+    pub runs: usize,
+    /// Steps of a run.
+    pub steps: usize,
+}
+
+/// Steps before the first that counts, by the scene.
+pub const WARM_UP: usize = 240;
+
+/// Seed of the irregular mesh.
+pub const MESH_SEED: u64 = 1;
+
+impl Default for Options {
+    /// 4,096 vertices, walk, one thread, five runs of 600 steps.
+    fn default() -> Self {
+        Self {
+            verts: 4_096,
+            motion: Motion::Walk,
+            mesh: Mesh::Grid,
+            stretch: Stretch::Inextensible,
+            wind: false,
+            threads: 1,
+            garments: 1,
+            lanes: None,
+            quality: None,
+            substeps: None,
+            step_s: toile_assets::limits::STEP_SECONDS,
+            runs: 5,
+            steps: 600,
+        }
+    }
+}
+
+impl Options {
+    /// Vertices a side.
+    ///
+    /// # Errors
+    /// Where `verts` is not a square.
+    pub fn side(&self) -> Result<usize, SkirtError> {
+        let n = self.verts.isqrt();
+        if n * n == self.verts && n >= 8 { Ok(n) } else { Err(SkirtError::NotSquare { verts: self.verts }) }
+    }
+
+    /// The engine's settings.
+    ///
+    /// # Errors
+    /// Where the engine cannot do what is asked for, with the option's name.
+    pub fn settings(&self) -> Result<Settings, SkirtError> {
+        if let Some(width) = self.lanes.filter(|w| !w.available()) {
+            return Err(SkirtError::NoSuchLanes { lanes: width.lanes(), widest: Width::widest().lanes() });
+        }
+        let refuse = |option| Err(SkirtError::Unsupported { option });
+        if self.wind {
+            return refuse("--wind");
+        }
+        if self.threads > 1 && self.garments < 2 {
+            return refuse("--threads 2 on one garment");
+        }
+        let default = Settings::default();
+        Ok(Settings {
+            quality: self.quality.unwrap_or(default.quality),
+            substeps: self.substeps,
+            step_seconds: self.step_s,
+            width: self.lanes.unwrap_or(default.width),
+            ..default
+        })
+    }
+}

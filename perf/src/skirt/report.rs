@@ -1,0 +1,203 @@
+//! What a run of the skirt has to say: time and error of the same steps.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use toile_assets::scene::skirt::{Motion, Stretch};
+
+use super::options::{Mesh, Options};
+
+/// The distribution of a step's time (us).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct StepMicros {
+    /// Median of the runs' medians.
+    pub p50: f64,
+    /// 99 % of all steps.
+    pub p99: f64,
+    /// 99.9 %.
+    pub p999: f64,
+    /// The longest.
+    pub max: f64,
+}
+
+/// How far warp and weft edges are from their length, as a part of it (0.01 is 1 %).
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Strain {
+    /// Mean of |l/l0 - 1| over edges and frames.
+    pub mean: f64,
+    /// Mean of the frames' 99th percentiles.
+    pub p99: f64,
+    /// Mean of each run: what grows from run to run is not stable.
+    pub run_mean: Vec<f64>,
+    /// The worst stretch of any edge in any frame.
+    pub max: f64,
+    /// The worst compression.
+    pub compression_max: f64,
+    /// The worst |l/l0 - 1| beyond the exact elastic strain of the hanging skirt.
+    pub beyond_elastic_max: f64,
+    /// Mean of the same.
+    pub beyond_elastic_mean: f64,
+    /// Edges that were measured.
+    pub edges: usize,
+}
+
+/// How deep vertices were inside the body as it was asked for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Penetration {
+    /// The deepest vertex of any frame (mm).
+    pub max: f64,
+    /// Mean part of the vertices that are inside by more than 0.01 mm (0..1).
+    pub fraction: f64,
+    /// Vertices inside at the end of each run, summed over the runs.
+    pub left_inside: u64,
+}
+
+/// What happened that should not have, over the measured steps.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Events {
+    /// Particles that were put back to their last good place.
+    pub repaired: u64,
+    /// Steps taken back because something was not finite.
+    pub rolled_back: u64,
+    /// Particle substeps at the speed limit.
+    pub speed_limited: u64,
+    /// Pinned particles whose target was not finite and was not followed.
+    pub held_pins: u64,
+    /// Steps in which the root jumped.
+    pub teleports: u64,
+    /// Collision spheres that jumped or were not finite and were held.
+    pub held_colliders: u64,
+}
+
+impl Events {
+    fn fields(&mut self) -> [&mut u64; 6] {
+        let Self { repaired, rolled_back, speed_limited, held_pins, teleports, held_colliders } = self;
+        [repaired, rolled_back, speed_limited, held_pins, teleports, held_colliders]
+    }
+
+    /// What happened since an earlier count.
+    pub fn since(mut self, mut earlier: Self) -> Self {
+        self.fields().into_iter().zip(earlier.fields()).for_each(|(now, then)| *now -= *then);
+        self
+    }
+}
+
+impl From<toile_engine::cloth::guard::Events> for Events {
+    fn from(e: toile_engine::cloth::guard::Events) -> Self {
+        Self {
+            repaired: e.repaired,
+            rolled_back: e.rolled_back,
+            speed_limited: e.speed_limited,
+            held_pins: e.held_pins,
+            teleports: e.teleports,
+            held_colliders: e.held_colliders,
+        }
+    }
+}
+
+impl std::iter::Sum for Events {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |mut sum, mut e| {
+            sum.fields().into_iter().zip(e.fields()).for_each(|(sum, e)| *sum += *e);
+            sum
+        })
+    }
+}
+
+/// One run, complete.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Report {
+    /// Vertices of one skirt.
+    pub verts: usize,
+    /// `walk`, `fast` or `settled`.
+    pub motion: &'static str,
+    /// `grid` or `irregular`.
+    pub mesh: &'static str,
+    /// `inextensible` or `physical`.
+    pub stretch: &'static str,
+    /// Whether there is wind.
+    pub wind: bool,
+    /// Skirts that were stepped.
+    pub garments: usize,
+    /// Threads that stepped them.
+    pub threads: usize,
+    /// Lanes of the kernels.
+    pub lanes: usize,
+    /// `draft`, `shop` or `fine`.
+    pub quality: &'static str,
+    /// Substeps of a step.
+    pub substeps: u32,
+    /// Steps before the first that counts.
+    pub warm_up: usize,
+    /// Runs.
+    pub runs: usize,
+    /// Steps of a run.
+    pub steps: usize,
+    /// Time of a step of all skirts, colliders' placing included.
+    pub step_us: StepMicros,
+    /// Median step of each run (us).
+    pub run_p50_us: Vec<f64>,
+    /// Time of the yardstick in the same run (us): the median of one reading before each run and one after the last.
+    pub yardstick_us: f64,
+    /// Median step over the yardstick.
+    pub y_ratio: f64,
+    /// Median step a vertex (ns).
+    pub ns_per_vertex: f64,
+    /// Strain of the same steps.
+    pub strain: Strain,
+    /// Penetration of the same steps.
+    pub penetration_mm: Penetration,
+    /// Frames in which the hem did not go around each leg exactly once.
+    pub hem_winding_wrong: u64,
+    /// Vertices that were not finite, summed over the frames.
+    pub nonfinite: u64,
+    /// Mean time of each stage of a step (us), as far as the engine tells.
+    pub stages_us: BTreeMap<&'static str, f64>,
+    /// Heap allocations a step, of all threads, where they are counted.
+    pub allocations_per_step: Option<f64>,
+    /// Heap bytes of the baked garment and of all skirts' states, where they are counted.
+    pub memory_bytes: Option<u64>,
+    /// Of these the garment's, which equal skirts share; it holds what is drawn and measured as well.
+    pub memory_garment_bytes: Option<u64>,
+    /// Energy of motion at the end (mJ).
+    pub kinetic_energy_mj: f64,
+    /// The greatest of the last 120 steps (mJ).
+    pub kinetic_energy_max_mj: f64,
+    /// Events.
+    pub events: Events,
+    /// Hash of the last state, 16 hexadecimal digits.
+    pub state_hash: String,
+}
+
+impl Report {
+    /// A report that says what was asked for, and nothing yet of how it went.
+    pub fn of(options: &Options) -> Self {
+        Self {
+            verts: options.verts,
+            motion: motion(options.motion),
+            mesh: match options.mesh {
+                Mesh::Grid => "grid",
+                Mesh::Irregular => "irregular",
+            },
+            stretch: match options.stretch {
+                Stretch::Inextensible => "inextensible",
+                Stretch::Physical => "physical",
+            },
+            wind: options.wind,
+            garments: options.garments,
+            threads: options.threads,
+            runs: options.runs,
+            steps: options.steps,
+            ..Self::default()
+        }
+    }
+}
+
+/// A motion's name.
+pub fn motion(motion: Motion) -> &'static str {
+    match motion {
+        Motion::Walk => "walk",
+        Motion::Fast => "fast",
+        Motion::Settled => "settled",
+    }
+}

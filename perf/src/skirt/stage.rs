@@ -1,0 +1,201 @@
+//! The skirt on its body, ready to be stepped: baked, placed and moved by the scene's clock.
+
+use std::time::{Duration, Instant};
+
+use glam::{Affine3A, Vec3, Vec3A, Vec4};
+use toile_assets::bake::bake;
+use toile_assets::garment::{Garment, Shape};
+use toile_assets::limits::MAX_SPHERES;
+use toile_assets::scene::skirt;
+use toile_assets::skeleton::BONES;
+use toile_engine::cloth::program::STAGES;
+use toile_engine::cloth::{Cloth, Settings, Step};
+use toile_engine::colliders::{Colliders, RestSphere};
+use toile_engine::crew::Crew;
+
+use super::heap::{Heap, HeapProbe};
+use super::options::{MESH_SEED, Mesh, Options};
+use super::report::Events;
+use super::{SkirtError, Spheres};
+
+/// One or several skirts on one body.
+pub struct Stage {
+    /// What was asked for.
+    pub options: Options,
+    /// Vertices a side.
+    pub side: usize,
+    /// The mesh that was baked.
+    pub shape: Shape,
+    /// The skirt, shared by all cloths.
+    pub garment: Garment,
+    /// The skirts' states.
+    pub cloths: Vec<Cloth>,
+    /// The body's spheres as asked for at the end of the coming step; a hard case may change them.
+    pub spheres: Spheres,
+    /// The bones at the end of the coming step; a hard case may change them.
+    pub palette: [Affine3A; BONES],
+    /// Steps taken.
+    pub tick: u64,
+    /// Bytes on the heap of the baked garment, and of the states of all skirts, where the program counts them.
+    pub memory_bytes: Option<[u64; 2]>,
+    settings: Settings,
+    colliders: Colliders,
+    crew: Crew,
+}
+
+/// What a frame does between waking the cloth's helper and the cloth's step, posing and skinning the body, takes at
+/// least so long; the helper is awake by then.
+const BEFORE_CLOTH: Duration = Duration::from_micros(80);
+
+impl Stage {
+    /// The scene at its start.
+    ///
+    /// # Errors
+    /// Where the options cannot be met.
+    pub fn new(options: &Options, heap: &HeapProbe) -> Result<Self, SkirtError> {
+        Self::with(options, heap, |_| {})
+    }
+
+    /// The same with a mesh that `change` has changed before it is baked.
+    ///
+    /// # Errors
+    /// Where the options cannot be met.
+    pub fn with(options: &Options, heap: &HeapProbe, change: impl FnOnce(&mut Shape)) -> Result<Self, SkirtError> {
+        let side = options.side()?;
+        let settings = options.settings()?;
+        let mut shape = match options.mesh {
+            Mesh::Grid => skirt::shape(side),
+            Mesh::Irregular => skirt::irregular(side, MESH_SEED),
+        };
+        let fabric = skirt::fabric(&shape, options.stretch);
+        change(&mut shape);
+        let before = heap.read();
+        let garment = bake("skirt", "one", &shape, &fabric)?;
+        let baked = heap.read();
+        let rest = skirt::JOINTS.map(|(p, r)| RestSphere {
+            bone: 0,
+            centre: Vec3::from_array(p.map(|x| x as f32)),
+            radius: r as f32,
+        });
+        let colliders = Colliders::new(&rest, &skirt::CAPSULES, false)?;
+        let cloths = (0..options.garments.max(1)).map(|_| Cloth::new(&garment, &colliders)).collect();
+        let between = |a: Option<Heap>, b: Option<Heap>| u64::try_from(b?.live_bytes - a?.live_bytes).ok();
+        let memory_bytes = between(before, baked).zip(between(baked, heap.read())).map(|(a, b)| [a, b]);
+        let mut stage = Self {
+            options: *options,
+            side,
+            shape,
+            garment,
+            cloths,
+            spheres: [Vec4::ZERO; MAX_SPHERES],
+            palette: [Affine3A::IDENTITY; BONES],
+            tick: 0,
+            memory_bytes,
+            settings,
+            colliders,
+            crew: Crew::new(options.threads)?,
+        };
+        // Where the body stands at time 0; the first step then sweeps as every other.
+        stage.ask();
+        stage.colliders.place_spheres(&stage.spheres);
+        Ok(stage)
+    }
+
+    /// Asks the scene where body and root are at the end of the coming step. Not timed.
+    pub fn prepare(&mut self) {
+        self.tick += 1;
+        self.ask();
+        if self.crew.wake() {
+            let woken = Instant::now();
+            while woken.elapsed() < BEFORE_CLOTH {
+                std::hint::spin_loop();
+            }
+        }
+    }
+
+    fn ask(&mut self) {
+        let time = self.tick as f64 * f64::from(self.options.step_s);
+        self.spheres = skirt::spheres(self.options.motion, time);
+        self.palette[0] = skirt::root(self.options.motion, time);
+    }
+
+    /// One step of every skirt: what is timed.
+    ///
+    /// # Panics
+    /// Where the engine does.
+    pub fn step(&mut self) {
+        self.colliders.place_spheres(&self.spheres);
+        let step = Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings };
+        let garment = &self.garment;
+        match &mut self.cloths[..] {
+            [cloth] => cloth.step(garment, &step),
+            cloths => {
+                let done = self.crew.each(cloths, |_, cloth| cloth.step(garment, &step));
+                done.expect("a share of the step panicked");
+            }
+        }
+    }
+
+    /// Substeps of a step, once one has been taken.
+    pub fn substeps(&self) -> u32 {
+        self.cloths[0].substeps()
+    }
+
+    /// How the steps are done.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// What happened that should not have, to all skirts since the start.
+    pub fn events(&self) -> Events {
+        self.cloths.iter().map(|c| Events::from(c.events)).sum()
+    }
+
+    /// Takes some steps more with the engine's own meters on: the mean time of each stage of a step, all skirts (us).
+    pub fn stages_us(&mut self, steps: usize) -> Vec<(&'static str, f64)> {
+        self.settings.timed = true;
+        let mut sums = [0; STAGES.len()];
+        for _ in 0..steps {
+            self.prepare();
+            self.step();
+            let told = self.cloths.iter().map(|c| c.stage_ns);
+            told.for_each(|ns| sums.iter_mut().zip(ns).for_each(|(sum, ns)| *sum += ns));
+        }
+        self.settings.timed = false;
+        STAGES.into_iter().zip(sums).map(|(name, ns)| (name, ns as f64 * 1e-3 / steps as f64)).collect()
+    }
+
+    /// Mass of each particle that moves, 0 of one that is pinned (kg).
+    pub fn masses(&self) -> Vec<f64> {
+        let mass = |w: &f32| if *w > 0.0 { f64::from(*w).recip() } else { 0.0 };
+        self.garment.inverse_mass.iter().map(mass).collect()
+    }
+
+    /// Energy of motion of the particles that move, of all skirts (J).
+    pub fn kinetic_energy(&self) -> f64 {
+        self.cloths.iter().map(|c| c.kinetic_energy(&self.garment)).sum()
+    }
+
+    /// The particle that each vertex of the shape became.
+    pub fn particle_of(&self) -> Vec<u32> {
+        let mut particle = vec![0; self.garment.source.len()];
+        self.garment.source.iter().enumerate().for_each(|(p, &v)| particle[v as usize] = p as u32);
+        particle
+    }
+
+    /// FNV-1a over the bits of all positions and velocities, vertex by vertex of the shape: the same motion has the same
+    /// hash in whatever order particles are kept.
+    pub fn state_hash(&self) -> u64 {
+        let particles = self.particle_of();
+        let of = |c: &Cloth, p: u32| [c.positions[p as usize], c.velocity(p as usize)];
+        let numbers = self.cloths.iter().flat_map(|c| particles.iter().flat_map(move |&p| of(c, p)));
+        let bytes = numbers.flat_map(|v| v.to_array()).flat_map(|x| x.to_bits().to_le_bytes());
+        bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    }
+
+    /// Puts one particle of the first skirt where it cannot be, as a fault of memory would.
+    pub fn spoil(&mut self, particle: usize, position: Vec3A) {
+        let velocity = self.cloths[0].velocity(particle);
+        self.cloths[0].disturb(particle, position, velocity);
+    }
+}

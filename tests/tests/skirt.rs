@@ -1,0 +1,174 @@
+//! The benchmark's skirt, small and short: its errors and its hard cases, but no times.
+
+use std::thread;
+
+use toile_assets::scene::skirt::{Motion, Stretch};
+use toile_engine::lanes::Width;
+use toile_perf::skirt::hard::{Fault, Recovery, heavy_hem, patches, recover};
+use toile_perf::skirt::heap::HeapProbe;
+use toile_perf::skirt::options::{Mesh, Options, WARM_UP};
+use toile_perf::skirt::{Frame, Gauge, Stage};
+
+/// Steps that are measured after the warm-up: a cycle of the walk, two of the fast motion.
+const STEPS: usize = 120;
+
+/// Deepest penetration allowed (m).
+const DEEPEST_M: f32 = 1e-3;
+
+/// The smallest skirt of the scene.
+fn small() -> Options {
+    Options { verts: 1_024, ..Options::default() }
+}
+
+fn stage(options: &Options) -> Stage {
+    Stage::new(options, &HeapProbe::none()).expect("the scene can be built")
+}
+
+/// Means of strain mean and 99th percentile, worst of all else, over the steps after the warm-up.
+fn run(stage: &mut Stage) -> Frame {
+    let mut gauge = Gauge::new(stage);
+    let mut sum = Frame::default();
+    for step in 0..WARM_UP + STEPS {
+        stage.prepare();
+        stage.step();
+        let frame = gauge.read(&stage.cloths[0].positions, &stage.spheres);
+        assert_eq!(frame.nonfinite, 0, "step {step}");
+        if step >= WARM_UP {
+            sum.strain_mean += frame.strain_mean / STEPS as f64;
+            sum.strain_p99 += frame.strain_p99 / STEPS as f64;
+            sum.beyond_mean += frame.beyond_mean / STEPS as f64;
+            sum.beyond_max = sum.beyond_max.max(frame.beyond_max);
+            sum.compression_max = sum.compression_max.max(frame.compression_max);
+            sum.stretch_max = sum.stretch_max.max(frame.stretch_max);
+            sum.deepest = sum.deepest.max(frame.deepest);
+            sum.wrong_legs += frame.wrong_legs;
+        }
+    }
+    assert_eq!(stage.events().rolled_back, 0);
+    sum
+}
+
+/// Strain mean and 99th percentile stay below bounds (%), nothing is inside the body, the hem is around both legs.
+fn holds(name: &str, options: &Options, [mean, p99]: [f64; 2]) {
+    let found = run(&mut stage(options));
+    eprintln!("{name}: {found:?}");
+    assert!(found.strain_mean * 100.0 <= mean && found.strain_mean > 0.0, "{name}: {found:?}");
+    assert!(found.strain_p99 * 100.0 <= p99, "{name}: {found:?}");
+    assert!(found.deepest <= DEEPEST_M, "{name}: {found:?}");
+    assert_eq!(found.wrong_legs, 0, "{name}: a leg came out of the skirt");
+}
+
+#[test]
+fn a_walk_strains_the_skirt_by_a_fifth_of_a_per_cent() {
+    holds("walk", &small(), [0.2, 2.0]);
+}
+
+#[test]
+fn a_walk_in_cloth_that_stretches_does_the_same() {
+    holds("walk, 2,000 N/m", &Options { stretch: Stretch::Physical, ..small() }, [0.2, 2.0]);
+}
+
+#[test]
+fn a_walk_in_an_irregular_mesh_does_twice_that() {
+    holds("irregular", &Options { mesh: Mesh::Irregular, ..small() }, [0.4, 4.0]);
+}
+
+#[test]
+fn in_fast_motion_no_leg_comes_out_of_the_skirt() {
+    holds("fast", &Options { motion: Motion::Fast, ..small() }, [1.0, 10.0]);
+}
+
+#[test]
+fn a_skirt_left_alone_hangs_at_its_elastic_strain_and_comes_to_rest() {
+    for stretch in [Stretch::Inextensible, Stretch::Physical] {
+        let options = Options { motion: Motion::Settled, stretch, ..small() };
+        let mut stage = stage(&options);
+        // Ten seconds: the air takes two thirds of the speed in each.
+        for _ in 0..1_200 {
+            stage.prepare();
+            stage.step();
+        }
+        let frame = Gauge::new(&stage).read(&stage.cloths[0].positions, &stage.spheres);
+        let energy = stage.kinetic_energy();
+        eprintln!("{stretch:?}: {frame:?}, {energy} J");
+        assert!(frame.beyond_mean <= 0.000_5, "{stretch:?}: {frame:?}");
+        assert!(frame.beyond_max <= 0.005, "{stretch:?}: {frame:?}");
+        assert!(energy <= 1e-3, "{stretch:?}: {energy} J");
+    }
+}
+
+#[test]
+fn no_substep_count_pumps_energy_into_a_skirt_at_rest() {
+    for substeps in [2, 8, 32] {
+        let mut stage = stage(&Options { motion: Motion::Settled, substeps: Some(substeps), ..small() });
+        for _ in 0..1_200 {
+            stage.prepare();
+            stage.step();
+        }
+        let energy = stage.kinetic_energy();
+        eprintln!("{substeps} substeps: {energy} J");
+        assert!(energy <= 1e-3, "{substeps} substeps: {energy} J");
+    }
+}
+
+fn after(fault: Fault) -> Recovery {
+    let found = recover(&small(), fault, &HeapProbe::none()).expect("the scene can be built");
+    eprintln!("{fault:?}: {found:?}");
+    assert_eq!(found.nonfinite, 0, "{fault:?}: {found:?}");
+    found
+}
+
+#[test]
+fn a_leg_that_jumps_a_metre_and_back_is_forgotten_in_half_a_second() {
+    let found = after(Fault::Jump);
+    assert!(found.worst_stretch <= 1.0, "{found:?}");
+    assert!(found.recovered_steps <= 60, "{found:?}");
+}
+
+#[test]
+fn nothing_that_is_no_number_is_published_or_stays() {
+    thread::scope(|scope| {
+        for value in [f32::NAN, f32::INFINITY] {
+            for fault in [Fault::Collider(value), Fault::Particle(value), Fault::Pin(value)] {
+                scope.spawn(move || {
+                    let found = after(fault);
+                    assert!(found.recovered_steps <= 2, "{fault:?}: {found:?}");
+                });
+            }
+        }
+    });
+}
+
+/// How much a strain that is stable may differ from one cycle to the next (1).
+const STEADY: f64 = 1.5;
+
+#[test]
+fn long_steps_and_unequal_masses_are_stable() {
+    let slow = stage(&Options { step_s: 1.0 / 30.0, ..small() });
+    let patched = Stage::with(&small(), &HeapProbe::none(), patches).expect("the scene can be built");
+    let hemmed = Stage::with(&small(), &HeapProbe::none(), heavy_hem).expect("the scene can be built");
+    for (name, mut stage) in [("dt = 1/30", slow), ("patches", patched), ("heavy hem", hemmed)] {
+        let [first, last] = [(); 2].map(|()| run(&mut stage));
+        eprintln!("{name}: {first:?}, then {last:?}");
+        assert!(last.strain_mean <= STEADY * first.strain_mean, "{name}: {first:?}, then {last:?}");
+        let farthest = stage.cloths[0].positions.iter().map(|p| p.length()).fold(0.0, f32::max);
+        assert!(farthest < 3.0, "{name}: a part of the skirt is {farthest} m away");
+    }
+}
+
+#[test]
+fn every_width_and_every_run_gives_the_same_bits() {
+    let play = |width: Width| {
+        let mut stage = stage(&Options { motion: Motion::Fast, lanes: Some(width), ..small() });
+        for _ in 0..STEPS {
+            stage.prepare();
+            stage.step();
+        }
+        stage.state_hash()
+    };
+    let widest = play(Width::widest());
+    assert_eq!(widest, play(Width::widest()));
+    for width in Width::ALL.into_iter().filter(|w| w.available()) {
+        assert_eq!(play(width), widest, "{width:?}");
+    }
+}
