@@ -72,7 +72,7 @@ pub struct Cloth {
     root: RootMotion,
     origin: Vec3A,
     /// Accelerations of the particles besides gravity (m/s2).
-    pushed: [Store; 3],
+    pushed: wind::Accelerations,
     /// The triangles as the wind has them, where there is wind.
     faces: Option<wind::Faces>,
     /// What happened that should not have.
@@ -106,7 +106,7 @@ impl Cloth {
             prepared: step::Prepared::new(garment),
             root: RootMotion::new(RootSettings::default()),
             origin: centre(garment),
-            pushed: wind::still(start.len()),
+            pushed: wind::Accelerations::new(start.len()),
             faces: None,
             events: guard::Events::default(),
             stage_ns: [0; STAGES.len()],
@@ -151,7 +151,7 @@ impl Cloth {
             + size_of_val(&*self.positions)
             + 2 * size_of_val(&*self.fixed_start)
             + self.contacts.bytes()
-            + self.pushed.iter().map(Store::bytes).sum::<usize>()
+            + self.pushed.bytes()
             + self.faces.as_ref().map_or(0, wind::Faces::bytes)
             + self.scratch.iter().map(Store::bytes).sum::<usize>()
             + self.prepared.bytes()

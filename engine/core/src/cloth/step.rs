@@ -16,7 +16,7 @@ use super::{
     Cloth, Quality, Settings, Step, Wind, bending, contact, fibers, guard, links, lists, predict, settle, tethers, wind,
 };
 use crate::crew::{Crew, Own};
-use crate::lanes::{Column, Store, Width};
+use crate::lanes::{Column, Width};
 
 /// What depends on the settings, made again when they change; the storage stays.
 #[derive(Debug, Clone)]
@@ -235,7 +235,7 @@ impl Cloth {
             columns: self.state.columns(),
             faces: self.faces.as_ref().zip(step.settings.wind),
             carried,
-            pushed: self.pushed.each_mut().map(Store::column),
+            pushed: self.pushed.columns(),
             contacts: Own::new(self.contacts.owners()),
             limited: [AtomicU64::new(0), AtomicU64::new(0)],
             fixed: [&self.fixed_start, &self.fixed_end],

@@ -16,7 +16,7 @@
 //!
 //! Sums depend on their order, so it is fixed at load: [`Faces`] sorts the triangles into runs whose three corners all
 //! advance by one, which are read and written as rows; and loose ones, which are gathered and added one by one. A run
-//! is done in chunks of [`CHUNK`], all of them to their first corner, then to the second, then to the third; that is
+//! is done in chunks of 64, all of them to their first corner, then to the second, then to the third; that is
 //! the same sum at every width.
 
 use glam::{Vec3, Vec3A};
@@ -182,9 +182,39 @@ impl Group {
     }
 }
 
-/// Room for accelerations: a column a coordinate.
-pub fn still(particles: usize) -> [Store; 3] {
-    [0, 1, 2].map(|_| Store::zeros(particles))
+/// An acceleration a particle (m/s2): the wind's, and what the root's motion adds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Accelerations {
+    numbers: Store,
+    starts: [usize; 3],
+    len: usize,
+}
+
+impl Accelerations {
+    /// All 0.
+    pub fn new(particles: usize) -> Self {
+        // As in `State`: no two columns lie alike within 4 KiB, or a processor takes what is stored in one for what is
+        // loaded from the other.
+        let stride = (particles + 336).next_multiple_of(1_024) + 336;
+        let starts = [160, 160 + stride, 160 + 2 * stride];
+        Self { numbers: Store::zeros(starts[2] + particles), starts, len: particles }
+    }
+
+    /// The three coordinates as kernels see them.
+    pub fn columns(&mut self) -> [Column<'_>; 3] {
+        let all = self.numbers.column();
+        self.starts.map(|start| all.part(start, self.len))
+    }
+
+    /// One particle's.
+    pub fn of(&self, particle: usize) -> Vec3A {
+        Vec3A::from_array(self.starts.map(|start| self.numbers.as_slice()[start + particle]))
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.numbers.bytes()
+    }
 }
 
 struct Clear<'a> {
@@ -266,7 +296,7 @@ impl Kernel for Blow<'_> {
         let (b, c) = rest.split_at_mut(CHUNK);
         let force = [Column::new(a), Column::new(b), Column::new(c)];
         let masses = Column::read_only(&self.group.mass);
-        let Some(rows) = Rows::new(self.at, self.to) else { return };
+        let rows = Rows::new(self.at, self.to);
         let mut done = 0;
         for run in &self.group.runs {
             let mut from = 0;
@@ -298,9 +328,10 @@ struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     #[inline(always)]
-    fn new(at: Columns<'a>, to: [Column<'a>; 3]) -> Option<Self> {
+    fn new(at: Columns<'a>, to: [Column<'a>; 3]) -> Self {
         let len = at.w.len();
-        Some(Self { x: first(at.x, len)?, v: first(at.v, len)?, w: at.w.first(len)?, to: first(to, len)? })
+        let cut = |[x, y, z]: [Column<'a>; 3]| [x.part(0, len), y.part(0, len), z.part(0, len)];
+        Self { x: cut(at.x), v: cut(at.v), w: at.w.part(0, len), to: cut(to) }
     }
 
     /// The forces of a piece of a run, its masses from `done` on.
@@ -320,21 +351,20 @@ impl<'a> Rows<'a> {
             let corners = [a + k, b + k, c + k];
             let mass = part(masses, done + k, n);
             // A whole vector wherever the columns have one: what it holds past `n` is not used.
-            let f = if self.have(corners, L::N) {
+            let f = if self.reaches(c + k, L::N) {
                 self.forces(air, corners, L::N, mass)
-            } else if self.have(corners, n) {
-                self.forces(air, corners, n, mass)
             } else {
-                return;
+                self.forces(air, corners, n, mass)
             };
             f.store(force, k, L::N);
             k += n;
         }
     }
 
+    /// Whether `n` numbers from `at` on are there; the first corner's index is the least, the third's the greatest.
     #[inline(always)]
-    fn have(self, [a, b, c]: [usize; 3], n: usize) -> bool {
-        self.w.has(a, n) && self.w.has(b, n) && self.w.has(c, n)
+    fn reaches(self, at: usize, n: usize) -> bool {
+        n <= self.w.len() && at <= self.w.len() - n
     }
 
     /// A third of the forces on `n` triangles of a run.
@@ -349,9 +379,6 @@ impl<'a> Rows<'a> {
     #[inline(always)]
     fn add<L: Lanes>(self, corner: usize, len: usize, force: [Column<'_>; 3]) {
         let whole = len - len % L::N;
-        if !self.w.has(corner, len) {
-            return;
-        }
         let mut k = 0;
         while k < whole {
             self.add_some::<L>(corner + k, L::N, V3::load(force, k, L::N));
@@ -365,9 +392,7 @@ impl<'a> Rows<'a> {
     /// Adds `n` forces to particles in a row.
     #[inline(always)]
     fn add_some<L: Lanes>(self, at: usize, n: usize, force: V3<L>) {
-        if self.w.has(at, n) {
-            (V3::load(self.to, at, n) + force * part(self.w, at, n)).store(self.to, at, n);
-        }
+        (V3::load(self.to, at, n) + force * part(self.w, at, n)).store(self.to, at, n);
     }
 
     /// The loose triangles: forces several at a time, sums one after the other, because they may share particles.
@@ -403,12 +428,6 @@ impl<'a> Rows<'a> {
         let i = particle as usize;
         state::set(self.to, i, state::get(self.to, i) + force * self.w.get(i));
     }
-}
-
-/// Three columns cut to one length.
-#[inline(always)]
-fn first([x, y, z]: [Column<'_>; 3], len: usize) -> Option<[Column<'_>; 3]> {
-    Some([x.first(len)?, y.first(len)?, z.first(len)?])
 }
 
 /// `n <= N` numbers of a column.

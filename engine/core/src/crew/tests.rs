@@ -29,7 +29,7 @@ fn one_worker_and_two_give_the_same_in_order_however_long_the_shares_are() {
     assert_eq!((one.workers(), two.workers()), (1, 2));
     let even = |_: usize, _: usize| 0;
     let odd = |phase: usize, share: usize| (phase * 7_919 + share * 104_729) as u32 % 64;
-    let late = |phase: usize, share: usize| if share == 1 && phase % 50 == 0 { 5_000 } else { 0 };
+    let late = |phase: usize, share: usize| if share == 1 && phase.is_multiple_of(50) { 5_000 } else { 0 };
     for round in 0..200 {
         let phases = [1, 2, 3, 500][round % 4];
         assert_eq!(ordered(&mut one, phases, even), ordered(&mut two, phases, even));

@@ -1,10 +1,9 @@
 use glam::Vec3;
 use proptest::prelude::*;
 
-use super::super::state::{State, get, set};
-use super::super::wind::still;
+use super::super::state::{self, State};
+use super::super::wind::Accelerations;
 use super::*;
-use crate::lanes::Store;
 
 const DT: f32 = 1.0 / 120.0;
 const SUBSTEPS: usize = 4;
@@ -27,25 +26,20 @@ fn place(columns: [&[f32]; 3], i: usize) -> Vec3A {
     Vec3A::from_array(columns.map(|c| c[i]))
 }
 
-fn put(columns: [Column<'_>; 3], i: usize, v: Vec3A) {
-    set(columns, i, v);
-}
-
 /// A step of free particles without gravity, as predict moves them.
 fn step(state: &mut State, root: &mut RootMotion, at: &Affine3A) -> RootStep {
-    let mut accelerations = still(37);
+    let mut accelerations = Accelerations::new(37);
     let motion = root.advance(at, DT);
     if let RootStep::Carried(carried) = motion {
-        let to = accelerations.each_mut().map(Store::column);
-        carried.apply(Width::widest(), state.columns(), (0, 37), to);
+        carried.apply(Width::widest(), state.columns(), (0, 37), accelerations.columns());
     }
     let dt = DT / SUBSTEPS as f32;
     for _ in 0..SUBSTEPS {
         for i in 0..37 {
-            let v = place(state.velocities(), i) + place(accelerations.each_ref().map(Store::as_slice), i) * dt;
-            let x = place(state.positions(), i) + v * dt;
-            put(state.columns().v, i, v);
-            put(state.columns().x, i, x);
+            let c = state.columns();
+            let v = state::get(c.v, i) + accelerations.of(i) * dt;
+            state::set(c.v, i, v);
+            state::set(c.x, i, state::get(c.x, i) + v * dt);
         }
     }
     motion
@@ -78,9 +72,9 @@ fn linear_scale_0_keeps_a_particle_at_rest_relative_to_a_root_that_accelerates()
     }
     // A half takes half of the acceleration.
     let (mut root, mut state) = (RootMotion::new(scales(0.5, 1.0, 1.0)), particles());
-    (0..=120).for_each(|k| {
+    for k in 0..=120 {
         step(&mut state, &mut root, &Affine3A::from_translation(Vec3::X * (k * k) as f32 * 1e-4));
-    });
+    }
     assert!((place(state.positions(), 0) - place(start.positions(), 0)).x / (120.0f32 * 120.0 * 1e-4) - 0.5 < 1e-3);
 }
 
@@ -95,7 +89,7 @@ fn a_particle_that_turns_with_the_root_keeps_turning_without_the_centrifugal_for
         root.advance(&at(0), DT);
         root.advance(&at(1), DT);
         for i in 0..37 {
-            put(state.columns().v, i, Vec3A::Y.cross(place(start.positions(), i)) * spin);
+            state::set(state.columns().v, i, Vec3A::Y.cross(place(start.positions(), i)) * spin);
         }
         for k in 2..242 {
             step(&mut state, &mut root, &at(k));
@@ -109,11 +103,11 @@ fn a_particle_that_turns_with_the_root_keeps_turning_without_the_centrifugal_for
     }
     // With it, it flies off.
     let (mut root, mut state) = (RootMotion::new(RootSettings::default()), particles());
-    let about = Vec3A::Y.cross(place(state.positions(), 0)) * spin;
-    put(state.columns().v, 0, about);
-    (0..120).for_each(|k| {
+    let tangent = Vec3A::Y.cross(place(state.positions(), 0)) * spin;
+    state::set(state.columns().v, 0, tangent);
+    for k in 0..120 {
         step(&mut state, &mut root, &at(k));
-    });
+    }
     assert!(place(state.positions(), 0).length() > 3.0);
 }
 
@@ -126,9 +120,9 @@ fn scales_of_zero_carry_a_free_particle_with_any_smooth_motion() {
         let place = Vec3::new(0.5 * (3.0 * t).sin(), 0.1 * (7.0 * t).cos(), t);
         pose(Vec3::new(0.2, 1.0, 0.1), 0.8 * (2.0 * t).sin(), place)
     };
-    (0..=240).for_each(|k| {
+    for k in 0..=240 {
         step(&mut state, &mut root, &at(k));
-    });
+    }
     for i in 0..37 {
         let dressed = (at(240) * at(0).inverse()).transform_point3a(place(start.positions(), i));
         let error = dressed.distance(place(state.positions(), i));
@@ -139,12 +133,13 @@ fn scales_of_zero_carry_a_free_particle_with_any_smooth_motion() {
 #[test]
 fn every_width_compensates_with_the_same_bits() {
     let run = |width: Width| {
-        let (mut root, mut state, mut out) = (RootMotion::new(scales(0.3, 0.2, 0.1)), particles(), still(37));
+        let (mut root, mut state, mut out) =
+            (RootMotion::new(scales(0.3, 0.2, 0.1)), particles(), Accelerations::new(37));
         root.advance(&Affine3A::IDENTITY, DT);
         let RootStep::Carried(carried) = root.advance(&pose(Vec3::ONE, 0.05, Vec3::X * 0.02), DT) else { panic!() };
-        [(0, 20), (20, 17)].map(|span| carried.apply(width, state.columns(), span, out.each_mut().map(Store::column)));
+        [(0, 20), (20, 17)].into_iter().for_each(|span| carried.apply(width, state.columns(), span, out.columns()));
         Moved { motion: root.motion() }.apply(width, state.columns(), (3, 30));
-        (state.positions().map(<[f32]>::to_vec), state.velocities().map(<[f32]>::to_vec), out)
+        ([state.positions(), state.velocities()].map(|c| c.map(<[f32]>::to_vec)), out)
     };
     Width::ALL.into_iter().filter(|w| w.available()).for_each(|w| assert_eq!(run(w), run(Width::One), "{w} lanes"));
 }
@@ -191,7 +186,7 @@ proptest! {
         root.advance(&from, DT);
         let RootStep::Keep(moved) = root.advance(&to, DT) else { panic!("not noticed") };
         let mut state = particles();
-        (0..37).for_each(|i| put(state.columns().v, i, Vec3A::new(i as f32 * 0.1, 1.0, -0.3)));
+        (0..37).for_each(|i| state::set(state.columns().v, i, Vec3A::new(i as f32 * 0.1, 1.0, -0.3)));
         let before = state.clone();
         moved.apply(Width::widest(), state.columns(), (0, 37));
         let carry = to * from.inverse();
@@ -203,7 +198,10 @@ proptest! {
             prop_assert!((speed(&state) - speed(&before)).abs() < 1e-5);
             prop_assert!(place(state.positions(), i).distance(carry.transform_point3a(place(before.positions(), i))) < 1e-5);
             prop_assert!(place(state.velocities(), i).distance(carry.transform_vector3a(place(before.velocities(), i))) < 1e-5);
-            let step = (place(state.positions(), i) - get(state.columns().previous, i)).length();
+            let step = {
+                let c = state.columns();
+                state::get(c.x, i).distance(state::get(c.previous, i))
+            };
             prop_assert!(step < 1e-5, "previous moves along");
         }
     }

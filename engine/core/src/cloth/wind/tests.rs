@@ -37,10 +37,10 @@ fn square(normal: Vec3A) -> (State, Faces) {
 }
 
 fn accelerations(faces: &Faces, width: Width, wind: &Wind, state: &mut State) -> Vec<Vec3A> {
-    let mut out = still(state.weights().len());
-    let to = out.each_mut().map(Store::column);
+    let mut out = Accelerations::new(state.weights().len());
+    let to = out.columns();
     Part::ALL.into_iter().for_each(|part| faces.blow(width, part, wind, DT, state.columns(), to));
-    (0..state.weights().len()).map(|i| Vec3A::from_array([0, 1, 2].map(|k| out[k].as_slice()[i]))).collect()
+    (0..state.weights().len()).map(|i| out.of(i)).collect()
 }
 
 /// A crumpled tube in motion, some of it pinned, and which worker owns what.
@@ -66,9 +66,9 @@ fn every_width_and_both_ways_to_share_give_the_same_bits() {
         for width in Width::ALL.into_iter().filter(|w| w.available()) {
             assert_eq!(accelerations(&faces, width, &SKIRT, &mut state), plain, "{width} lanes, {rows} x {n}");
             for workers in [1, 2] {
-                let mut out = still(rest.len());
-                out.iter_mut().for_each(|column| column.as_mut().fill(f32::NAN));
-                let (at, to) = (state.columns(), out.each_mut().map(Store::column));
+                let mut out = Accelerations::new(rest.len());
+                let (at, to) = (state.columns(), out.columns());
+                (0..rest.len()).for_each(|i| state::set(to, i, Vec3A::NAN));
                 let blow = |part| faces.blow(width, part, &SKIRT, DT, at, to);
                 let job = |phase, share| match (phase, share) {
                     (0, 0) => blow(Part::First),
@@ -78,11 +78,7 @@ fn every_width_and_both_ways_to_share_give_the_same_bits() {
                 };
                 Crew::new(workers).unwrap().run(2, job).unwrap();
                 for (i, a) in plain.iter().enumerate() {
-                    assert_eq!(
-                        [0, 1, 2].map(|k| out[k].as_slice()[i]),
-                        a.to_array(),
-                        "{workers} workers, particle {i}"
-                    );
+                    assert_eq!(out.of(i), *a, "{workers} workers, particle {i}");
                 }
             }
         }
