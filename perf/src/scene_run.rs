@@ -7,12 +7,12 @@ use std::time::Instant;
 use glam::{Affine3A, Vec3, Vec4};
 use thiserror::Error;
 use toile_assets::bake::bake;
-use toile_assets::garment::{Garment, Layout, MeshError};
-use toile_assets::limits::{MAX_SPHERES, STEP_HZ};
+use toile_assets::garment::{Garment, MeshError};
+use toile_assets::limits::MAX_SPHERES;
 use toile_assets::scene_file::{SceneFile, SceneGarment};
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::program::STAGES;
-use toile_engine::cloth::{Cloth, Quality, Settings, Step, measure};
+use toile_engine::cloth::{Cloth, Quality, Settings, Step, Wind, measure};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere, RoundCone};
 use toile_engine::lanes::Width;
 
@@ -120,11 +120,13 @@ impl Runner {
     /// As [`Self::new`].
     pub fn counting(scene: SceneFile, heap: HeapProbe) -> Result<Self, RunError> {
         let mut colliders = colliders(&scene)?;
+        colliders.step_seconds = scene.step_hz.recip() as f32;
         place(&mut colliders, &scene, 0.0);
         let before = heap.read();
         let garments = scene.garments.iter().map(baked).collect::<Result<Vec<_>, _>>()?;
         let between = heap.read();
-        let mut cloths: Vec<Cloth> = garments.iter().map(|g| Cloth::new(g, &colliders)).collect();
+        let ready = |g: &Garment, cloth: Cloth| if scene.wind.is_some() { cloth.in_wind(g) } else { cloth };
+        let mut cloths: Vec<Cloth> = garments.iter().map(|g| ready(g, Cloth::new(g, &colliders))).collect();
         for ((cloth, garment), given) in cloths.iter_mut().zip(&garments).zip(&scene.garments) {
             let free = (0..garment.particles()).filter(|i| garment.inverse_mass[*i] > 0.0);
             free.for_each(|i| cloth.disturb(i, garment.start[i].into(), given.velocity.into()));
@@ -134,7 +136,7 @@ impl Runner {
         let particles = scene.garments.iter().zip(&garments).map(|(given, baked)| user_order(given, baked)).collect();
         let measured = scene.steps() - (scene.measure_from * scene.step_hz) as u64;
         Ok(Self {
-            settings: garments.iter().map(|g| settings(&scene, g)).collect(),
+            settings: garments.iter().map(|_| settings(&scene)).collect(),
             palette: palette(&scene, 0.0),
             times_ns: Vec::with_capacity(measured as usize),
             sums: Figures { memory_bytes, ..Figures::default() },
@@ -287,13 +289,7 @@ impl Runner {
 
 fn baked(given: &SceneGarment) -> Result<Garment, RunError> {
     let mesh = |source| RunError::Mesh { name: given.name.clone(), source };
-    let mut garment = bake(&given.name, "one size", &given.shape, &given.fabric).map_err(mesh)?;
-    if let Some(solver) = given.warp_solver {
-        let Layout { fibers, crossing, .. } = &mut garment.layout;
-        fibers.bundles.iter_mut().for_each(|bundle| bundle.solver = solver);
-        crossing.lists.iter_mut().for_each(|list| list.solver = solver);
-    }
-    Ok(garment)
+    bake(&given.name, "one size", &given.shape, &given.fabric).map_err(mesh)
 }
 
 /// The particle of each vertex of a garment's shape.
@@ -311,20 +307,19 @@ fn user_order(given: &SceneGarment, baked: &Garment) -> Box<[u32]> {
 
 /// The engine's settings; what the scene leaves out is as the engine has it. A garment asks for substeps of a step of
 /// 1/120 s: a longer step has more of them.
-fn settings(scene: &SceneFile, garment: &Garment) -> Settings {
+fn settings(scene: &SceneFile) -> Settings {
     let (default, given) = (Settings::default(), &scene.settings);
     let quality = |name: &str| Quality::ALL.into_iter().find(|q| q.name() == name);
     let width = given.lanes.and_then(|n| Width::of(n as usize)).filter(|w| w.available());
     let quality = given.quality.and_then(quality).unwrap_or_default();
-    let longer = f64::from(STEP_HZ) / scene.step_hz;
-    let asked = (f64::from(quality.substeps(garment.substeps)) * longer).ceil().max(1.0) as u32;
     Settings {
         quality,
-        substeps: Some(given.substeps.unwrap_or(asked)),
+        substeps: given.substeps,
         step_seconds: scene.step_hz.recip() as f32,
         gravity: scene.gravity.into(),
         max_speed: given.max_speed.unwrap_or(default.max_speed),
         stretch_damping_s: given.stretch_damping.unwrap_or(default.stretch_damping_s),
+        wind: scene.wind.map(|w| Wind { velocity: w.velocity.into(), drag: w.drag, lift: w.lift }),
         width: width.unwrap_or(default.width),
         ..default
     }

@@ -2,7 +2,7 @@
 //!
 //! The garment reader of [`super::obj`] welds and reorders while it reads; here that is left to whoever needs it.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::garment::shape::{Face, NO_VERTEX};
 
@@ -13,6 +13,8 @@ pub struct PlainMesh {
     pub positions: Vec<Vec3>,
     /// Faces of three or four corners.
     pub faces: Vec<Face>,
+    /// Texture coordinates of the corners of each face `[faces]`, or empty.
+    pub uvs: Vec<[Vec2; 4]>,
     /// True where a quad is split along b-d, as in [`crate::garment::Shape`].
     pub split: Vec<bool>,
     /// Index of each face's material among `materials` `[faces]`.
@@ -31,11 +33,13 @@ impl PlainMesh {
     }
 }
 
-/// Reads Wavefront OBJ text: `v`, `f` and `usemtl`; everything else that OBJ may hold is passed over. An error says the
+/// Reads Wavefront OBJ text: `v`, `vt`, `f` and `usemtl`; everything else that OBJ may hold is passed over. An error says the
 /// line and the cure, to stand behind the file's name.
 pub fn parse_obj(text: &str) -> Result<PlainMesh, String> {
     let mut mesh = PlainMesh::default();
     let mut material = None;
+    let mut textures = Vec::new();
+    let mut corners = Vec::new();
     let mut lines = text.lines().enumerate();
     while let Some((i, line)) = lines.next() {
         let mut line = line.split('#').next().unwrap_or_default().trim().to_owned();
@@ -46,7 +50,16 @@ pub fn parse_obj(text: &str) -> Result<PlainMesh, String> {
         let mut words = line.split_whitespace();
         let read = match words.next() {
             Some("v") => vertex(&mut mesh, words),
-            Some("f") => face(&mut mesh, words, material),
+            Some("vt") => {
+                // Never a reason to refuse: what is no number is taken as 0.
+                let mut number = || words.next().and_then(|w| w.parse().ok()).unwrap_or(0.0);
+                textures.push(Vec2::new(number(), number()));
+                Ok(())
+            }
+            Some("f") => {
+                corners.push(texture_corners(words.clone(), textures.len()));
+                face(&mut mesh, words, material)
+            }
             Some("usemtl") => {
                 material = Some(mesh.material(&words.collect::<Vec<_>>().join(" ")));
                 Ok(())
@@ -54,6 +67,10 @@ pub fn parse_obj(text: &str) -> Result<PlainMesh, String> {
             _ => Ok(()),
         };
         read.map_err(|says| format!("line {}: {says}", i + 1))?;
+    }
+    if !textures.is_empty() {
+        let at = |i: Option<usize>| i.and_then(|i| textures.get(i)).copied().unwrap_or_default();
+        mesh.uvs = corners.into_iter().map(|ring| ring.map(at)).collect();
     }
     // Faces may stand before their vertices, so that these are counted at the end.
     let count = mesh.positions.len();
@@ -78,6 +95,17 @@ fn vertex<'t>(mesh: &mut PlainMesh, words: impl Iterator<Item = &'t str>) -> Res
     }
     mesh.positions.push(p.into());
     Ok(())
+}
+
+/// The texture coordinates that the corners of a face name, counted from 0; `known` stand before it.
+fn texture_corners<'t>(words: impl Iterator<Item = &'t str>, known: usize) -> [Option<usize>; 4] {
+    let mut ring = [None; 4];
+    for (to, word) in ring.iter_mut().zip(words) {
+        let number: i64 = word.split('/').nth(1).and_then(|n| n.parse().ok()).unwrap_or(0);
+        let index = if number > 0 { number - 1 } else { known as i64 + number };
+        *to = if number == 0 { None } else { usize::try_from(index).ok() };
+    }
+    ring
 }
 
 fn face<'t>(mesh: &mut PlainMesh, words: impl Iterator<Item = &'t str>, material: Option<usize>) -> Result<(), String> {
@@ -117,6 +145,15 @@ mod tests {
         assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y]);
         assert_eq!(mesh.faces, [[2, 1, 0, NO_VERTEX], [3, 0, 2, 1]]);
         assert_eq!((mesh.materials, mesh.face_materials), (vec!["A Free".to_owned()], vec![None, Some(0)]));
+    }
+
+    #[test]
+    fn texture_coordinates_are_those_of_each_corner() {
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt .5 0\nvt 0 .25 1\nf 1/1 2/2 3/-1\nf 3 2 1\n";
+        let uvs = parse_obj(text).unwrap().uvs;
+        assert_eq!(uvs[0], [Vec2::ZERO, Vec2::new(0.5, 0.0), Vec2::new(0.0, 0.25), Vec2::ZERO]);
+        assert_eq!(uvs[1], [Vec2::ZERO; 4]);
+        assert!(parse_obj(TEXT).unwrap().uvs.is_empty());
     }
 
     #[test]

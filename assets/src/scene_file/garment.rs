@@ -9,7 +9,7 @@ use super::track::Track;
 use super::{Loading, PinSource, primitive, weld};
 use crate::fabric::Fabric;
 use crate::garment::shape::{Face, NO_VERTEX};
-use crate::garment::{MeshError, Shape, Solver};
+use crate::garment::{MeshError, Overrides, Shape, Solver};
 use crate::import::gltf::parse_gltf;
 use crate::import::obj::FREE;
 use crate::import::plain::{PlainMesh, parse_obj};
@@ -45,8 +45,6 @@ pub struct SceneGarment {
     pub velocity: Vec3,
     /// Mass of the whole cloth (kg), pinned parts included.
     pub mass_kg: f64,
-    /// How fibers along the warp are solved, where the scene says so.
-    pub warp_solver: Option<Solver>,
 }
 
 impl SceneGarment {
@@ -64,9 +62,13 @@ impl SceneGarment {
         pin(table, loading, &plain, &mesh, &mut shape)?;
         hang(&mut shape, &mut fabric);
         let mass_kg = weigh(table, &mesh, &fabric, &mut shape)?;
-        let solvers = [Solver::GaussSeidel, Solver::SemiImplicit, Solver::ZeroStretch];
-        let warp_solver = table.choice("warp_solver")?.map(|i| solvers[i]);
-        Ok(Self { name, shape, fabric, mesh, velocity: table.vector("velocity")?, mass_kg, warp_solver })
+        if let Some(solver) = table.table("solver")? {
+            let known = [Solver::GaussSeidel, Solver::SemiImplicit, Solver::ZeroStretch];
+            let chosen = |key| Ok::<_, SceneError>(solver.choice(key)?.map(|i| known[i]));
+            let (warp, weft) = (chosen("warp")?, chosen("weft")?);
+            shape.solver = Overrides { warp, weft, waistband: chosen("waistband")?, hem: chosen("hem")?, bias: None };
+        }
+        Ok(Self { name, shape, fabric, mesh, velocity: table.vector("velocity")?, mass_kg })
     }
 }
 
@@ -260,8 +262,16 @@ fn hang(shape: &mut Shape, fabric: &mut Fabric) {
         return;
     }
     shape.split.resize(shape.faces.len(), false);
-    for (face, split) in shape.faces.iter_mut().zip(&mut shape.split).filter(|(f, _)| f[3] != NO_VERTEX) {
+    let mut uvs = shape.uvs.iter_mut();
+    for (face, split) in shape.faces.iter_mut().zip(&mut shape.split) {
+        let uv = uvs.next();
+        if face[3] == NO_VERTEX {
+            continue;
+        }
         face.rotate_left(1);
+        if let Some(uv) = uv {
+            uv.rotate_left(1);
+        }
         *split = !*split;
     }
     std::mem::swap(&mut fabric.stretch_warp_n_m, &mut fabric.stretch_weft_n_m);

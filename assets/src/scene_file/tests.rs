@@ -3,6 +3,7 @@
 use glam::{Quat, Vec3};
 
 use super::*;
+use crate::garment::Solver;
 
 /// A scene in which every key of the schema stands once.
 const EVERY_KEY: &str = r#"name = "all"
@@ -33,7 +34,7 @@ rotation_deg = [0, 90, 0]
 position = [0, 1, 0]
 velocity = [0, 0, 1]
 mass = 0.5
-warp_solver = "zero-stretch"
+solver = { warp = "zero-stretch", weft = "semi-implicit", waistband = "gauss-seidel", hem = "zero-stretch" }
 
 [garment.fabric]
 base = "linen-twill"
@@ -143,7 +144,12 @@ fn every_key_of_the_schema_is_read() {
     let cloth = &scene.garments[0];
     assert_eq!((cloth.fabric.name.as_str(), cloth.fabric.stretch_warp_n_m), ("linen-twill", f32::INFINITY));
     assert_eq!((cloth.fabric.friction, cloth.velocity), (0.4, Vec3::Z));
-    assert_eq!(cloth.warp_solver, Some(crate::garment::Solver::ZeroStretch));
+    let solver = cloth.shape.solver;
+    assert_eq!([solver.warp, solver.weft], [Some(Solver::ZeroStretch), Some(Solver::SemiImplicit)]);
+    assert_eq!(
+        [solver.waistband, solver.hem, solver.bias],
+        [Some(Solver::GaussSeidel), Some(Solver::ZeroStretch), None]
+    );
     assert_eq!(scene.garments[2].fabric.name, "cotton-jersey");
     assert_eq!(scene.colliders.planes, [Plane { point: Vec3::NEG_Y, normal: Vec3::Y }]);
     assert_eq!(scene.colliders.sphere(1, 0.5), glam::Vec4::new(1.0, 0.0, 0.0, 0.2));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::garment::Shape;
 use crate::garment::check::corners;
@@ -28,14 +28,20 @@ pub(super) fn shape(mesh: &PlainMesh, weld: bool) -> (Shape, Vec<u32>) {
     let face = |face: &Face| face.map(|v| if v == NO_VERTEX { v } else { to_shape[v as usize] });
     shape.split = mesh.split.clone();
     let mut faces: Vec<Face> = mesh.faces.iter().map(face).collect();
-    orient(&mut faces);
-    shape.faces = faces.into_iter().map(|f| warp_upright(&shape.cut, f, Default::default()).0).collect();
+    let mut uvs = mesh.uvs.clone();
+    uvs.resize(faces.len(), [Vec2::ZERO; 4]);
+    orient(&mut faces, &mut uvs);
+    let upright = faces.into_iter().zip(uvs).map(|(face, uv)| warp_upright(&shape.cut, face, uv));
+    (shape.faces, shape.uvs) = upright.unzip();
+    if mesh.uvs.is_empty() {
+        shape.uvs = Vec::new();
+    }
     (shape, to_shape)
 }
 
 /// Turns faces over until those that share an edge run round the same way, as far as that is possible: programs export
 /// faces that a modeller drew from the other side. Where a mesh has none to turn it is left as it is.
-fn orient(faces: &mut [Face]) {
+fn orient(faces: &mut [Face], uvs: &mut [[Vec2; 4]]) {
     // The faces at each edge, each with whether it runs from the smaller vertex to the larger.
     let mut edges: BTreeMap<[u32; 2], Vec<(usize, bool)>> = BTreeMap::new();
     let sides = |face: &Face| {
@@ -66,11 +72,13 @@ fn orient(faces: &mut [Face]) {
             }
         }
     }
-    for (face, turned) in faces.iter_mut().zip(turned) {
-        let [a, b, c, d] = *face;
-        if turned == Some(true) {
-            // The side a-b of a quad stays along the weft.
-            *face = if d == NO_VERTEX { [b, a, c, d] } else { [b, a, d, c] };
+    for ((face, uv), _) in faces.iter_mut().zip(uvs).zip(turned).filter(|(_, turned)| *turned == Some(true)) {
+        // The side a-b of a quad stays along the weft.
+        face.swap(0, 1);
+        uv.swap(0, 1);
+        if face[3] != NO_VERTEX {
+            face.swap(2, 3);
+            uv.swap(2, 3);
         }
     }
 }
@@ -87,13 +95,13 @@ mod tests {
         let quads = (0..9u32).map(|i| (i / 3, i % 3));
         let sound: Vec<Face> = quads.map(|(r, c)| [at(r + 1, c), at(r + 1, c + 1), at(r, c + 1), at(r, c)]).collect();
         let mut faces = sound.clone();
-        orient(&mut faces);
+        orient(&mut faces, &mut [[Vec2::ZERO; 4]; 9]);
         assert_eq!(faces, sound);
         for i in [1, 4, 5] {
             faces[i].reverse();
         }
         assert!(check(&positions, &faces).is_err());
-        orient(&mut faces);
+        orient(&mut faces, &mut [[Vec2::ZERO; 4]; 9]);
         assert_eq!(check(&positions, &faces), Ok(()));
         for [a, b, ..] in &faces {
             assert_eq!(positions[*a as usize].y, positions[*b as usize].y, "a-b runs along the weft");
@@ -105,7 +113,7 @@ mod tests {
         let mut positions = vec![Vec3::ZERO, Vec3::X];
         positions.extend([Vec3::Y, Vec3::Z, Vec3::NEG_Z]);
         let mut faces = [[0, 1, 2, NO_VERTEX], [1, 0, 3, NO_VERTEX], [0, 1, 4, NO_VERTEX]];
-        orient(&mut faces);
+        orient(&mut faces, &mut [[Vec2::ZERO; 4]; 9]);
         assert!(check(&positions, &faces).is_err());
     }
 }

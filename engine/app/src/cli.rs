@@ -11,14 +11,13 @@ use toile_assets::body::Sex;
 
 use crate::exit::AppError;
 
+mod bake;
 mod run;
 mod skirt;
 
+pub use bake::BakeArgs;
 pub use run::{RunArgs, RunScene};
 pub use skirt::SkirtArgs;
-mod bake;
-
-pub use bake::BakeArgs;
 
 /// What the user asked for.
 #[derive(Debug, Clone, PartialEq)]

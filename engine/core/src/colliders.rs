@@ -6,10 +6,15 @@
 
 use glam::{Affine3A, Vec3, Vec4, Vec4Swizzles};
 use thiserror::Error;
-use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
+use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES, STEP_SECONDS};
 use toile_assets::skeleton::BONES;
 
+use crate::hold::Hold;
+
 pub use crate::cone::{Contact, PARKED, RestSphere, RoundCone};
+
+/// When more than half of the spheres move further than this in a step (m), the body has been teleported.
+const TELEPORT_M: f32 = 0.5;
 
 /// Why a set of colliders cannot be used.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -61,7 +66,11 @@ pub struct Colliders {
     /// Whether the floor at y = 0 stops the cloth.
     pub floor: bool,
     planes: heapless::Vec<Vec4, MAX_PLANES>,
+    /// Length of a step (s): what can move how far in it.
+    pub step_seconds: f32,
     placed: bool,
+    root: Affine3A,
+    hold: Hold,
 }
 
 impl Colliders {
@@ -88,7 +97,10 @@ impl Colliders {
             rest: heapless::Vec::from_slice(spheres).map_err(|_| ColliderError::TooManySpheres(spheres.len()))?,
             floor,
             planes: heapless::Vec::new(),
+            step_seconds: STEP_SECONDS,
             placed: false,
+            root: Affine3A::IDENTITY,
+            hold: Hold::default(),
         })
     }
 
@@ -116,7 +128,12 @@ impl Colliders {
             let bone = palette[usize::from(sphere.bone) % BONES];
             *end = bone.transform_point3(sphere.centre).extend(sphere.radius);
         }
-        self.appear();
+        let motion = palette[0] * self.root.inverse();
+        let motion = if self.placed && motion.is_finite() { motion } else { Affine3A::IDENTITY };
+        if palette[0].is_finite() {
+            self.root = palette[0];
+        }
+        self.believe(&motion);
     }
 
     /// The same for a body whose spheres are given in the world (m), centre and radius: a scene's track. Spheres past
@@ -124,15 +141,28 @@ impl Colliders {
     pub fn place_spheres(&mut self, spheres: &[Vec4]) {
         self.start = self.end;
         self.end[..self.rest.len()].iter_mut().zip(spheres).for_each(|(end, sphere)| *end = *sphere);
-        self.appear();
+        self.believe(&Affine3A::IDENTITY);
     }
 
-    /// What is placed for the first time has not moved.
-    fn appear(&mut self) {
-        if !self.placed {
+    /// Takes the new places as far as a body can have got there, carried by `motion`: single spheres that jump are held;
+    /// a body that is somewhere else altogether has not swept what lies between.
+    fn believe(&mut self, motion: &Affine3A) {
+        let count = self.rest.len();
+        let moved = |(start, end): (&Vec4, &Vec4)| (end.xyz() - start.xyz()).length();
+        let far = self.start[..count].iter().zip(&self.end[..count]).filter(|pair| moved(*pair) > TELEPORT_M).count();
+        if !self.placed || far * 2 > count {
+            self.hold.reset();
+        }
+        self.hold.filter(motion, &mut self.end[..count], self.step_seconds);
+        if !self.placed || far * 2 > count {
             self.start = self.end;
             self.placed = true;
         }
+    }
+
+    /// Sphere steps in which a sphere was not where it was said to be, because it had jumped or was not finite.
+    pub fn held(&self) -> u64 {
+        self.hold.held + self.hold.followed
     }
 
     /// Forgets where the body was: the next placement sets start and end alike.

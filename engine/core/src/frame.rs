@@ -19,6 +19,7 @@ use crate::body::{Poser, palette};
 use crate::cloth::measure::{self, Strain};
 use crate::cloth::{Cloth, Settings, Step};
 use crate::colliders::{ColliderError, Colliders, RestSphere};
+use crate::crew::{Crew, CrewError, SHARES};
 use crate::relay::{Reader, Relay, Writer};
 use crate::skin::{SkinError, SkinningJob};
 
@@ -88,6 +89,9 @@ pub enum FrameError {
     /// The body's skin.
     #[error(transparent)]
     Skin(#[from] SkinError),
+    /// The workers.
+    #[error(transparent)]
+    Crew(#[from] CrewError),
 }
 
 /// The scene in motion: a body, its colliders, its garments.
@@ -101,6 +105,9 @@ pub struct Frame {
     pose: Pose,
     palette: [Affine3A; BONES],
     colliders: Colliders,
+    crew: Crew,
+    /// Steps in which a worker panicked.
+    broken: u64,
     skinned: Box<[Vec3]>,
     normals: Box<[Vec3]>,
     skinning: SkinningJob,
@@ -120,7 +127,8 @@ impl Frame {
         let spheres = rig.spheres.each_ref().map(|s| RestSphere::on_bone(&body.skeleton, s.bone, s.offset, s.radius));
         let colliders = Colliders::new(&spheres, &rig.capsules, true)?;
         let skinning = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights)?;
-        let cloths: Box<[Cloth]> = garments.iter().map(|g| Cloth::new(g, &colliders)).collect();
+        let ready = |g: &Garment, cloth: Cloth| if settings.wind.is_some() { cloth.in_wind(g) } else { cloth };
+        let cloths: Box<[Cloth]> = garments.iter().map(|g| ready(g, Cloth::new(g, &colliders))).collect();
         let snapshot = Snapshot {
             tick: 0,
             body: body.mesh.positions.clone().into(),
@@ -133,6 +141,8 @@ impl Frame {
             pose: Pose::rest(&body.skeleton),
             palette: [Affine3A::IDENTITY; BONES],
             colliders,
+            crew: Crew::new(settings.workers.clamp(1, SHARES))?,
+            broken: 0,
             skinned: snapshot.body,
             normals: snapshot.normals,
             skinning,
@@ -163,6 +173,8 @@ impl Frame {
     /// One step of the session: the joints as they are at its end.
     pub fn step(&mut self, joints: &Joints) {
         let begun = Instant::now();
+        // It wakes while the body is posed and skinned.
+        self.crew.wake();
         self.pose = self.poser.pose(joints, STEP_SECONDS);
         self.advance();
         self.publish();
@@ -177,9 +189,16 @@ impl Frame {
         palette(&self.body.skeleton, &self.pose, &mut self.palette);
         self.skinning.run(&self.palette, &mut self.skinned, &mut self.normals);
         self.colliders.place(&self.palette);
-        let step = Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings };
-        for (cloth, garment) in self.cloths.iter_mut().zip(&self.garments) {
-            cloth.step(garment, &step);
+        let Self { cloths, garments, crew, palette, colliders, settings, .. } = self;
+        let step = Step { palette, colliders, settings };
+        match (&mut cloths[..], &garments[..]) {
+            // One garment is shared by the workers; several are one worker's each.
+            ([cloth], [garment]) => cloth.step_with(crew, garment, &step),
+            (cloths, garments) => {
+                let work = crew.each(cloths, |i, cloth| cloth.step(&garments[i], &step));
+                // The garment whose step broke off keeps what it had published.
+                self.broken += u64::from(work.is_err());
+            }
         }
     }
 

@@ -11,6 +11,7 @@ pub mod cone;
 #[expect(unsafe_code, reason = "a job that borrows the caller's stack is handed to another thread")]
 pub mod crew;
 pub mod frame;
+pub mod hold;
 pub mod lanes;
 pub mod relay;
 pub mod skin;

@@ -124,11 +124,13 @@ fn patches_weigh_what_they_say_and_steps_before_the_measuring_do_not_count() {
 
 #[test]
 fn a_chosen_solver_is_the_one_that_runs() {
-    let hash = |solver: &str| {
-        let fabric = "fabric = { stretch_warp_n_m = 10000 }\n";
-        played(&format!("duration = 0.3\n{GRID}{fabric}warp_solver = \"{solver}\"\npin = {{ vertices = [0] }}\n"))
-            .state_hash()
+    let hash = |key: &str, solver: &str| {
+        let fabric = "fabric = { stretch_warp_n_m = 10000, stretch_weft_n_m = 10000 }\n";
+        let solver = format!("solver = {{ {key} = \"{solver}\" }}\n");
+        played(&format!("duration = 0.3\n{GRID}{fabric}{solver}pin = {{ vertices = [0, 1] }}\n")).state_hash()
     };
-    let hashes = ["gauss-seidel", "semi-implicit", "zero-stretch"].map(hash);
-    assert!(hashes[0] != hashes[1] && hashes[1] != hashes[2] && hashes[0] != hashes[2], "{hashes:x?}");
+    for key in ["warp", "weft"] {
+        let hashes = ["gauss-seidel", "semi-implicit", "zero-stretch"].map(|solver| hash(key, solver));
+        assert!(hashes[0] != hashes[1] && hashes[1] != hashes[2] && hashes[0] != hashes[2], "{key}: {hashes:x?}");
+    }
 }

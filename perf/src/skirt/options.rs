@@ -1,7 +1,7 @@
 //! What a run of the skirt is asked for, and the engine's settings for it: the one place that knows both.
 
-use toile_assets::scene::skirt::{Motion, Stretch};
-use toile_engine::cloth::{Quality, Settings};
+use toile_assets::scene::skirt::{self, Motion, Stretch};
+use toile_engine::cloth::{Quality, Settings, Wind};
 use toile_engine::lanes::Width;
 
 use super::SkirtError;
@@ -92,18 +92,16 @@ impl Options {
         if let Some(width) = self.lanes.filter(|w| !w.available()) {
             return Err(SkirtError::NoSuchLanes { lanes: width.lanes(), widest: Width::widest().lanes() });
         }
-        let refuse = |option| Err(SkirtError::Unsupported { option });
-        if self.wind {
-            return refuse("--wind");
-        }
-        if self.threads > 1 && self.garments < 2 {
-            return refuse("--threads 2 on one garment");
-        }
         let default = Settings::default();
         Ok(Settings {
             quality: self.quality.unwrap_or(default.quality),
             substeps: self.substeps,
             step_seconds: self.step_s,
+            wind: self.wind.then(|| {
+                let (velocity, drag, lift) = skirt::WIND;
+                Wind { velocity: velocity.into(), drag, lift }
+            }),
+            workers: self.threads,
             width: self.lanes.unwrap_or(default.width),
             ..default
         })

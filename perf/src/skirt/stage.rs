@@ -78,7 +78,9 @@ impl Stage {
             radius: r as f32,
         });
         let colliders = Colliders::new(&rest, &skirt::CAPSULES, false)?;
-        let cloths = (0..options.garments.max(1)).map(|_| Cloth::new(&garment, &colliders)).collect();
+        let new = || Cloth::new(&garment, &colliders);
+        let ready = |cloth: Cloth| if options.wind { cloth.in_wind(&garment) } else { cloth };
+        let cloths = (0..options.garments.max(1)).map(|_| ready(new())).collect();
         let between = |a: Option<Heap>, b: Option<Heap>| u64::try_from(b?.live_bytes - a?.live_bytes).ok();
         let memory_bytes = between(before, baked).zip(between(baked, heap.read())).map(|(a, b)| [a, b]);
         let mut stage = Self {
@@ -128,7 +130,7 @@ impl Stage {
         let step = Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings };
         let garment = &self.garment;
         match &mut self.cloths[..] {
-            [cloth] => cloth.step(garment, &step),
+            [cloth] => cloth.step_with(&mut self.crew, garment, &step),
             cloths => {
                 let done = self.crew.each(cloths, |_, cloth| cloth.step(garment, &step));
                 done.expect("a share of the step panicked");

@@ -25,6 +25,9 @@ pub use irregular::irregular;
 /// Mass of the whole skirt, the pinned ring included (kg).
 pub const MASS_KG: f32 = 0.31;
 
+/// The scene's wind: velocity (m/s), drag and lift coefficient.
+pub const WIND: (Vec3, f32, f32) = (Vec3::new(1.0, 0.0, 0.5), 0.1, 0.05);
+
 /// Radius at the pinned ring (m), and how much wider the hem is.
 const RADIUS: [f64; 2] = [0.18, 0.24];
 

@@ -138,7 +138,13 @@ impl<const K: usize> Bend<'_, K> {
     /// Coefficients, and the weights of the three particles, of `n` stencils; `alike` is the first of the run where all
     /// of it are alike.
     #[inline(always)]
-    fn parameters<L: Lanes>(&self, first: [usize; K], at: usize, alike: Option<[usize; K]>, n: usize) -> Parameters<L, K> {
+    fn parameters<L: Lanes>(
+        &self,
+        first: [usize; K],
+        at: usize,
+        alike: Option<[usize; K]>,
+        n: usize,
+    ) -> Parameters<L, K> {
         let coefficients = &self.bends.coefficients;
         let w = self.columns.w;
         // Plain loops: a closure is not always compiled for the kernel's lanes.
@@ -169,8 +175,8 @@ impl<const K: usize> Bend<'_, K> {
     fn curvature<L: Lanes>(&self, first: [usize; K], p: &Parameters<L, K>, n: usize) -> V3<L> {
         let x = self.columns.x;
         let mut d = V3::<L>::load(x, first[0], n) * p.c[0];
-        for k in 1..K {
-            d = d + V3::load(x, first[k], n) * p.c[k];
+        for (&v, &c) in first.iter().zip(&p.c).skip(1) {
+            d = d + V3::load(x, v, n) * c;
         }
         d * p.scale
     }

@@ -8,7 +8,6 @@ pub mod bending;
 pub mod contact;
 pub mod fibers;
 pub mod guard;
-pub mod hold;
 pub mod links;
 pub mod lists;
 pub mod measure;
@@ -19,6 +18,7 @@ pub mod settings;
 pub mod settle;
 pub mod state;
 mod step;
+pub mod tethers;
 pub mod wind;
 
 use glam::{Affine3A, Vec3A};
@@ -29,8 +29,11 @@ use toile_assets::skeleton::BONES;
 use crate::colliders::Colliders;
 use crate::lanes::Store;
 use program::{Op, STAGES};
+use root::RootMotion;
+pub use root::{RootSettings, Teleport};
 pub use settings::{Quality, Settings};
 use state::State;
+pub use wind::Wind;
 
 /// What a step of one garment may cost (us): a third of the 8,333 us that 120 Hz leaves, so that two garments and the
 /// rest of the frame fit beside it.
@@ -65,8 +68,13 @@ pub struct Cloth {
     /// Room for percentiles.
     pub(crate) strains: Box<[f32]>,
     prepared: step::Prepared,
-    /// The root of the palette at the end of the last step.
-    root: Affine3A,
+    /// The root's motion, and the point of the garment at rest that it is taken at (m).
+    root: RootMotion,
+    origin: Vec3A,
+    /// Accelerations of the particles besides gravity (m/s2).
+    pushed: [Store; 3],
+    /// The triangles as the wind has them, where there is wind.
+    faces: Option<wind::Faces>,
     /// What happened that should not have.
     pub events: guard::Events,
     /// Time spent in each of [`STAGES`] during the last step that was metered (ns).
@@ -96,13 +104,23 @@ impl Cloth {
             scratch: [scratch(), scratch()],
             strains: vec![0.0; garment.strain_edges.len()].into(),
             prepared: step::Prepared::new(garment),
-            root: Affine3A::IDENTITY,
+            root: RootMotion::new(RootSettings::default()),
+            origin: centre(garment),
+            pushed: wind::still(start.len()),
+            faces: None,
             events: guard::Events::default(),
             stage_ns: [0; STAGES.len()],
             rolled: 0,
             placed: false,
             positions: start,
         }
+    }
+
+    /// Makes the garment ready for wind. At load.
+    pub fn in_wind(mut self, garment: &Garment) -> Self {
+        let owner = &garment.layout.owner;
+        self.faces = Some(wind::Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, owner));
+        self
     }
 
     /// Velocity of a particle at the end of the last step (m/s).
@@ -133,6 +151,8 @@ impl Cloth {
             + size_of_val(&*self.positions)
             + 2 * size_of_val(&*self.fixed_start)
             + self.contacts.bytes()
+            + self.pushed.iter().map(Store::bytes).sum::<usize>()
+            + self.faces.as_ref().map_or(0, wind::Faces::bytes)
             + self.scratch.iter().map(Store::bytes).sum::<usize>()
             + self.prepared.bytes()
     }
@@ -156,4 +176,15 @@ impl Cloth {
     pub fn substeps(&self) -> u32 {
         self.prepared.substeps()
     }
+}
+
+/// Where a garment hangs: the middle of its skinned particles, or of all where it has none (m).
+fn centre(garment: &Garment) -> Vec3A {
+    let fixed = garment.fixed.iter().map(|&i| garment.start[i as usize]);
+    let (sum, count) = if garment.fixed.is_empty() {
+        (garment.start.iter().copied().sum::<glam::Vec3>(), garment.start.len())
+    } else {
+        (fixed.sum(), garment.fixed.len())
+    };
+    (sum / count.max(1) as f32).into()
 }

@@ -12,6 +12,14 @@ use super::Quality;
 /// One phase: both owners' shares of it may run at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Op {
+    /// What contact may meet in this step.
+    Find,
+    /// The wind on each owner's own triangles; then, one worker's, on those that cross.
+    Wind,
+    /// See [`Op::Wind`].
+    CrossWind,
+    /// What the root's motion is not to be felt of.
+    Carry,
     /// Bending, set by set; the set that crosses the owners is one worker's.
     Bend(u16),
     /// Gravity, air, wind; skinned particles move on.
@@ -28,23 +36,30 @@ pub enum Op {
     Hoops(u16),
     /// Contact with the body.
     Contact,
-    /// Tethers, contact with the body, new velocities.
+    /// Tethers.
+    Tether,
+    /// Contact with the body, new velocities.
     Finish,
 }
 
 /// Name of a stage, for the meters.
-pub const STAGES: [&str; 6] = ["predict", "bend", "shear", "weft", "fibers", "contact"];
+pub const STAGES: [&str; 8] = ["predict", "bend", "shear", "weft", "fibers", "contact", "wind", "tethers"];
+
+/// What comes before the first substep of a step.
+pub const BEFORE: [Op; 4] = [Op::Find, Op::Wind, Op::CrossWind, Op::Carry];
 
 impl Op {
     /// Which of [`STAGES`] it counts towards.
     pub fn stage(self) -> usize {
         match self {
-            Self::Predict => 0,
+            Self::Predict | Self::Carry => 0,
             Self::Bend(_) => 1,
             Self::Shear(_) => 2,
             Self::Weft(_) | Self::Hoops(_) => 3,
             Self::Fibers | Self::Crossing(_) => 4,
-            Self::Finish | Self::Contact => 5,
+            Self::Finish | Self::Contact | Self::Find => 5,
+            Self::Wind | Self::CrossWind => 6,
+            Self::Tether => 7,
         }
     }
 }
@@ -69,6 +84,7 @@ pub fn substep(layout: &Layout, quality: Quality) -> Box<[Op]> {
             ops.extend(wefts().chain(hoops()).chain(fibers()).chain(hoops()).chain(wefts()));
         }
     }
+    ops.push(Op::Tether);
     ops.push(Op::Finish);
     ops.into()
 }

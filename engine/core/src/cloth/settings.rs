@@ -6,6 +6,9 @@ use std::str::FromStr;
 use glam::Vec3A;
 use toile_assets::limits::STEP_SECONDS;
 
+use super::root::RootSettings;
+use super::wind::Wind;
+use crate::crew::SHARES;
 use crate::lanes::Width;
 
 /// Tested combinations of substeps and of what is solved in each.
@@ -73,6 +76,17 @@ pub struct Settings {
     pub max_speed: f32,
     /// Damping time of stretch (s): how long a fiber's own motion along itself takes to fade, 0 for none of its own.
     pub stretch_damping_s: f32,
+    /// The wind, if any; garments have to be made ready for it by [`Cloth::in_wind`](super::Cloth::in_wind).
+    pub wind: Option<Wind>,
+    /// How the root's motion is passed on, and what happens when it jumps.
+    pub root: RootSettings,
+    /// Whether each particle is held within its length along the cloth from where the garment hangs: what keeps `draft`
+    /// in shape, and nothing that a measured strain may hide behind.
+    pub tethers: bool,
+    /// Friction coefficient of what sticks, over that of what slides, which is the fabric's (1).
+    pub static_friction: f32,
+    /// Workers of a step, 1 or 2.
+    pub workers: usize,
     /// Lanes that kernels run on.
     pub width: Width,
     /// Whether stages are timed: some microseconds a step.
@@ -88,6 +102,11 @@ impl Default for Settings {
             gravity: Vec3A::new(0.0, -9.81, 0.0),
             max_speed: 15.0,
             stretch_damping_s: 0.0,
+            wind: None,
+            root: RootSettings::default(),
+            tethers: false,
+            static_friction: 1.0,
+            workers: std::thread::available_parallelism().map_or(1, |n| n.get().min(SHARES)),
             width: Width::widest(),
             timed: false,
         }

@@ -7,12 +7,16 @@ use std::time::Instant;
 use glam::{Affine3A, Vec3A};
 use toile_assets::garment::Garment;
 use toile_assets::garment::layout::{Bends, OWNERS};
+use toile_assets::limits::STEP_SECONDS;
 
 use super::program::{self, Op, STAGES};
+use super::root::{Carried, RootStep};
 use super::state::{self, Columns};
-use super::{Cloth, Quality, Settings, Step, bending, contact, fibers, guard, links, lists, predict, settle};
-use crate::crew::Own;
-use crate::lanes::{Column, Width};
+use super::{
+    Cloth, Quality, Settings, Step, Wind, bending, contact, fibers, guard, links, lists, predict, settle, tethers, wind,
+};
+use crate::crew::{Crew, Own};
+use crate::lanes::{Column, Store, Width};
 
 /// What depends on the settings, made again when they change; the storage stays.
 #[derive(Debug, Clone)]
@@ -54,7 +58,10 @@ impl Prepared {
 
     /// Allocates nothing; a microsecond a hundred constraints, in steps in which the settings have changed.
     fn make(&mut self, garment: &Garment, settings: &Settings) {
-        let asked = settings.substeps.unwrap_or_else(|| settings.quality.substeps(garment.substeps)).max(1);
+        // The bake speaks of steps of 1/120 s.
+        let longer = (settings.step_seconds / STEP_SECONDS).max(1.0);
+        let chosen = (settings.quality.substeps(garment.substeps) as f32 * longer).ceil() as u32;
+        let asked = settings.substeps.unwrap_or(chosen).max(1);
         self.quality = settings.quality;
         let made_for = (asked, settings.step_seconds, settings.stretch_damping_s);
         if self.made_for == Some(made_for) {
@@ -98,6 +105,9 @@ struct Work<'a> {
     step: &'a Step<'a>,
     prepared: &'a Prepared,
     columns: Columns<'a>,
+    faces: Option<(&'a wind::Faces, Wind)>,
+    carried: Option<Carried>,
+    pushed: [Column<'a>; 3],
     contacts: Own<'a, contact::Owner>,
     /// Particle substeps that each owner held at the speed limit.
     limited: [AtomicU64; OWNERS],
@@ -111,49 +121,72 @@ struct Work<'a> {
 impl Cloth {
     /// One step of the settings' length, both shares on the caller's thread.
     pub fn step(&mut self, garment: &Garment, step: &Step<'_>) {
-        self.begin(garment, step);
+        let carried = self.begin(garment, step);
         let timed = step.settings.timed;
         let mut stage_ns = [0; STAGES.len()];
-        let work = self.work(garment, step);
-        let clock = || timed.then(Instant::now);
-        let mut begun = clock();
-        let mut lap = |stage: usize| {
+        let work = self.work(garment, step, carried);
+        let mut begun = timed.then(Instant::now);
+        for phase in 0..work.phases() {
+            (0..OWNERS).for_each(|share| work.phase(phase, share));
             if let Some(start) = begun {
                 let now = Instant::now();
-                stage_ns[stage] += (now - start).as_nanos() as u64;
+                stage_ns[work.op(phase).0.stage()] += (now - start).as_nanos() as u64;
                 begun = Some(now);
             }
-        };
-        (0..OWNERS).for_each(|share| work.find(share));
-        lap(STAGES.len() - 1);
-        for substep in 0..work.prepared.substeps {
-            for &op in work.prepared.program() {
-                (0..OWNERS).for_each(|share| work.phase(op, substep, share));
-                lap(op.stage());
-            }
         }
-        let limited: u64 = work.limited.iter().map(|l| l.load(Relaxed)).sum();
-        self.events.speed_limited += limited;
+        let limited = work.limited();
         self.stage_ns = stage_ns;
-        self.end(garment, step);
+        self.end(garment, step, limited, false);
     }
 
-    /// What comes before the phases: targets of the skinned particles, repairs.
-    fn begin(&mut self, garment: &Garment, step: &Step<'_>) {
-        self.prepared.make(garment, step.settings);
+    /// The same with the crew's workers, a share each: the same bits.
+    pub fn step_with(&mut self, crew: &mut Crew, garment: &Garment, step: &Step<'_>) {
+        if crew.workers() < OWNERS || garment.layout.spans[1].is_empty() {
+            return self.step(garment, step);
+        }
+        let carried = self.begin(garment, step);
+        let work = self.work(garment, step, carried);
+        let failed = crew.run(work.phases(), |phase, share| work.phase(phase, share)).is_err();
+        let limited = work.limited();
+        self.end(garment, step, limited, failed);
+    }
+
+    /// What comes before the phases: targets of the skinned particles, the root's motion, repairs.
+    fn begin(&mut self, garment: &Garment, step: &Step<'_>) -> Option<Carried> {
+        let settings = step.settings;
+        self.prepared.make(garment, settings);
         self.attach(garment, step);
         let columns = self.state.columns();
-        let width = step.settings.width;
+        let width = settings.width;
         if !(width.run(guard::Sound(columns.x)) && width.run(guard::Sound(columns.v))) {
             self.events.repaired += guard::repair(columns, &self.positions);
         }
+        self.root.settings = settings.root;
+        let root = step.palette[0] * Affine3A::from_translation(self.origin.into());
+        let all = (0, garment.start.len() as u32);
+        match self.root.advance(&root, settings.step_seconds) {
+            RootStep::Plain => return None,
+            RootStep::Carried(carried) => return Some(carried),
+            RootStep::Keep(moved) => {
+                moved.apply(width, columns, all);
+                self.fixed_start.iter_mut().for_each(|p| *p = moved.point(*p));
+            }
+            RootStep::Reset => {
+                let dressed = |i: usize| step.palette[0].transform_point3a(garment.start[i].into());
+                guard::roll_back(columns, &self.positions, dressed, 1.0);
+                self.fixed_start.copy_from_slice(&self.fixed_end);
+            }
+        }
+        self.events.teleports += 1;
+        None
     }
 
-    /// What comes after them: nothing that is not finite is published.
-    fn end(&mut self, garment: &Garment, step: &Step<'_>) {
+    /// What comes after them: nothing that is not finite is published. `failed` says that a worker panicked.
+    fn end(&mut self, garment: &Garment, step: &Step<'_>, limited: u64, failed: bool) {
+        self.events.speed_limited += limited;
         let columns = self.state.columns();
         let width = step.settings.width;
-        if width.run(guard::Sound(columns.x)) && width.run(guard::Sound(columns.v)) {
+        if !failed && width.run(guard::Sound(columns.x)) && width.run(guard::Sound(columns.v)) {
             self.rolled = 0;
         } else {
             // Rolled back again and again, it is drawn to where it was dressed.
@@ -192,7 +225,7 @@ impl Cloth {
         }
     }
 
-    fn work<'a>(&'a mut self, garment: &'a Garment, step: &'a Step<'a>) -> Work<'a> {
+    fn work<'a>(&'a mut self, garment: &'a Garment, step: &'a Step<'a>, carried: Option<Carried>) -> Work<'a> {
         let dt = self.prepared.dt;
         let [one, two] = &mut self.scratch;
         Work {
@@ -200,6 +233,9 @@ impl Cloth {
             step,
             prepared: &self.prepared,
             columns: self.state.columns(),
+            faces: self.faces.as_ref().zip(step.settings.wind),
+            carried,
+            pushed: self.pushed.each_mut().map(Store::column),
             contacts: Own::new(self.contacts.owners()),
             limited: [AtomicU64::new(0), AtomicU64::new(0)],
             fixed: [&self.fixed_start, &self.fixed_end],
@@ -212,24 +248,68 @@ impl Cloth {
 }
 
 impl Work<'_> {
+    /// Phases of the step.
+    fn phases(&self) -> usize {
+        program::BEFORE.len() + self.prepared.substeps as usize * self.prepared.program().len()
+    }
+
+    /// What a phase does, and in which substep.
+    fn op(&self, phase: usize) -> (Op, u32) {
+        let program = self.prepared.program();
+        match phase.checked_sub(program::BEFORE.len()) {
+            None => (program::BEFORE[phase], 0),
+            Some(later) => (program[later % program.len()], (later / program.len()) as u32),
+        }
+    }
+
+    /// One owner's share of one phase.
+    fn phase(&self, phase: usize, share: usize) {
+        let (op, substep) = self.op(phase);
+        self.run(op, substep, share);
+    }
+
+    /// Particle substeps that were held at the speed limit.
+    fn limited(&self) -> u64 {
+        self.limited.iter().map(|l| l.load(Relaxed)).sum()
+    }
+
     /// The broad phase, once a step.
     fn find(&self, share: usize) {
         let how = self.contact_settings();
         self.contacts.with(share, |own| own.find(self.width, self.columns, self.step.colliders, &how));
     }
 
+    /// The wind of the whole step, as accelerations.
+    fn wind(&self, part: wind::Part) {
+        if let Some((faces, wind)) = self.faces {
+            faces.blow(self.width, part, &wind, self.step.settings.step_seconds, self.columns, self.pushed);
+        }
+    }
+
+    /// What of the root's motion the cloth is not to feel, beside the wind.
+    fn carry(&self, share: usize) {
+        let Some(carried) = self.carried else { return };
+        for &span in &self.garment.layout.spans[share] {
+            if self.faces.is_none() {
+                for i in span.0..span.0 + span.1 {
+                    state::set(self.pushed, i as usize, Vec3A::ZERO);
+                }
+            }
+            carried.apply(self.width, self.columns, span, self.pushed);
+        }
+    }
+
     fn contact_settings(&self) -> contact::ContactSettings {
         let fabric = &self.garment.fabric;
         contact::ContactSettings {
             offset_m: fabric.contact_offset_mm * 1e-3,
-            friction_static: fabric.friction,
+            friction_static: fabric.friction * self.step.settings.static_friction,
             friction_kinetic: fabric.friction,
             step_seconds: self.step.settings.step_seconds,
         }
     }
 
-    /// One owner's share of one phase.
-    fn phase(&self, op: Op, substep: u32, share: usize) {
+    fn run(&self, op: Op, substep: u32, share: usize) {
         let (columns, layout) = (self.columns, &self.garment.layout);
         let p = self.prepared;
         let per_dt2 = (p.dt * p.dt).recip();
@@ -238,6 +318,16 @@ impl Work<'_> {
         let list =
             |lists, set: u16| lists::Solve { columns, lists, set: usize::from(set), owner: share, scratch, per_dt2 };
         match op {
+            Op::Find => self.find(share),
+            Op::Wind => self.wind([wind::Part::First, wind::Part::Second][share]),
+            Op::CrossWind if share == 0 => self.wind(wind::Part::Crossing),
+            Op::CrossWind => {}
+            Op::Carry => self.carry(share),
+            Op::Tether if self.step.settings.tethers => {
+                let spans = &layout.spans[share];
+                self.width.run(tethers::Hold { columns, tethers: &layout.tethers, spans });
+            }
+            Op::Tether => {}
             Op::Bend(set) if substep.is_multiple_of(p.bend.every) => {
                 self.bend(&layout.bends, &p.bend_scale, usize::from(set), share);
                 self.bend(&layout.skewed, &p.skewed_scale, usize::from(set), share);
@@ -286,7 +376,8 @@ impl Work<'_> {
         let (columns, p) = (self.columns, self.prepared);
         let spans = &self.garment.layout.spans[share];
         let (fall, kept, dt) = (self.fall, self.kept, p.dt);
-        self.width.run(predict::Predict { columns, spans, fall, pushed: None, kept, dt });
+        let pushed = (self.faces.is_some() || self.carried.is_some()).then_some((self.pushed, dt));
+        self.width.run(predict::Predict { columns, spans, fall, pushed, kept, dt });
         let to = (substep + 1) as f32 / p.substeps as f32;
         for (k, &i) in self.garment.fixed.iter().enumerate() {
             if usize::from(self.garment.layout.owner[i as usize]) == share {

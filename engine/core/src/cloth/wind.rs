@@ -243,14 +243,16 @@ impl<L: Lanes> Air<L> {
         let third = L::splat(1.0 / 3.0);
         let u = self.velocity - (v[0] + v[1] + v[2]) * third;
         let normal = (x[1] - x[0]).cross(x[2] - x[0]);
-        let (uu, nn, un) = (u.dot(u), normal.dot(normal), u.dot(normal));
-        let (per_s, per_n) = (reciprocal_root(uu), reciprocal_root(nn));
-        let (s, lee) = (uu * per_s, un * (per_s * per_n));
+        let (uu, un) = (u.dot(u), u.dot(normal));
+        // With N the normal of twice the area's length: |u| |N|, and one over it. That is all the roots there are,
+        // because 1/2 rho A s = 1/4 rho |u| |N| and s n = N u.u / (|u| |N|).
+        let square = uu * normal.dot(normal);
+        let inverse = reciprocal_root(square);
+        let lee = un * inverse;
         let c = lee.max(-lee).min(L::splat(1.0));
-        // |normal| is twice the area.
-        let pressed = (L::splat(0.25 * AIR_DENSITY) * nn * per_n * s).min(mass * self.bound);
+        let pressed = (L::splat(0.25 * AIR_DENSITY) * square * inverse).min(mass * self.bound);
         let k = pressed * third;
-        u * (k * c * (self.drag - self.lift * c)) + normal * (k * lee * self.lift * s * per_n)
+        u * (k * c * (self.drag - self.lift * c)) + normal * (k * lee * self.lift * uu * inverse)
     }
 }
 
@@ -263,93 +265,128 @@ impl Kernel for Blow<'_> {
         let (a, rest) = room.split_at_mut(CHUNK);
         let (b, c) = rest.split_at_mut(CHUNK);
         let force = [Column::new(a), Column::new(b), Column::new(c)];
+        let masses = Column::read_only(&self.group.mass);
+        let Some(rows) = Rows::new(self.at, self.to) else { return };
         let mut done = 0;
         for run in &self.group.runs {
             let mut from = 0;
             while from < run.len as usize {
                 let len = CHUNK.min(run.len as usize - from);
-                let [i, j, k] = run.first;
-                let (i, j, k) = (i as usize + from, j as usize + from, k as usize + from);
-                self.press_row(&air, [i, j, k], [done, len], force);
-                self.add_row::<L>(i, len, force);
-                self.add_row::<L>(j, len, force);
-                self.add_row::<L>(k, len, force);
+                let [a, b, c] = run.first;
+                let corners = [a as usize + from, b as usize + from, c as usize + from];
+                rows.press(&air, corners, len, masses, done, force);
+                rows.add::<L>(corners[0], len, force);
+                rows.add::<L>(corners[1], len, force);
+                rows.add::<L>(corners[2], len, force);
                 from += len;
                 done += len;
             }
         }
-        self.press_loose(&air, done, force);
+        rows.loose(&air, &self.group.loose, masses, done, force);
     }
 }
 
-impl Blow<'_> {
-    /// The forces of a piece of a run; `[done, len]` is where its masses begin, and how many.
+/// What a row of triangles reads and writes, all of one length. Passed by value: the compiler then knows that writing a
+/// particle does not change where the columns lie.
+#[derive(Clone, Copy)]
+struct Rows<'a> {
+    x: [Column<'a>; 3],
+    v: [Column<'a>; 3],
+    w: Column<'a>,
+    to: [Column<'a>; 3],
+}
+
+impl<'a> Rows<'a> {
     #[inline(always)]
-    fn press_row<L: Lanes>(&self, air: &Air<L>, corners: [usize; 3], [done, len]: [usize; 2], force: [Column<'_>; 3]) {
-        let whole = len - len % L::N;
+    fn new(at: Columns<'a>, to: [Column<'a>; 3]) -> Option<Self> {
+        let len = at.w.len();
+        Some(Self { x: first(at.x, len)?, v: first(at.v, len)?, w: at.w.first(len)?, to: first(to, len)? })
+    }
+
+    /// The forces of a piece of a run, its masses from `done` on.
+    #[inline(always)]
+    fn press<L: Lanes>(
+        self,
+        air: &Air<L>,
+        [a, b, c]: [usize; 3],
+        len: usize,
+        masses: Column<'_>,
+        done: usize,
+        force: [Column<'_>; 3],
+    ) {
         let mut k = 0;
-        while k < whole {
-            self.press_some(air, corners, done, k, L::N, force);
-            k += L::N;
-        }
-        if k < len {
-            self.press_some(air, corners, done, k, len - k, force);
+        while k < len {
+            let n = L::N.min(len - k);
+            let corners = [a + k, b + k, c + k];
+            let mass = part(masses, done + k, n);
+            // A whole vector wherever the columns have one: what it holds past `n` is not used.
+            let f = if self.have(corners, L::N) {
+                self.forces(air, corners, L::N, mass)
+            } else if self.have(corners, n) {
+                self.forces(air, corners, n, mass)
+            } else {
+                return;
+            };
+            f.store(force, k, L::N);
+            k += n;
         }
     }
 
-    /// The forces of `n` triangles from the `k`th of a piece on.
     #[inline(always)]
-    fn press_some<L: Lanes>(
-        &self,
-        air: &Air<L>,
-        [a, b, c]: [usize; 3],
-        done: usize,
-        k: usize,
-        n: usize,
-        force: [Column<'_>; 3],
-    ) {
-        let (at, speed) = (self.at.x, self.at.v);
-        let x = [V3::load(at, a + k, n), V3::load(at, b + k, n), V3::load(at, c + k, n)];
-        let v = [V3::load(speed, a + k, n), V3::load(speed, b + k, n), V3::load(speed, c + k, n)];
-        let mass = part(Column::read_only(&self.group.mass), done + k, n);
-        // The room is a multiple of the widest lanes: what is written past `n` is not used.
-        air.force(x, v, mass).store(force, k, L::N);
+    fn have(self, [a, b, c]: [usize; 3], n: usize) -> bool {
+        self.w.has(a, n) && self.w.has(b, n) && self.w.has(c, n)
+    }
+
+    /// A third of the forces on `n` triangles of a run.
+    #[inline(always)]
+    fn forces<L: Lanes>(self, air: &Air<L>, [a, b, c]: [usize; 3], n: usize, mass: L) -> V3<L> {
+        let x = [V3::load(self.x, a, n), V3::load(self.x, b, n), V3::load(self.x, c, n)];
+        let v = [V3::load(self.v, a, n), V3::load(self.v, b, n), V3::load(self.v, c, n)];
+        air.force(x, v, mass)
     }
 
     /// Adds the forces of a piece of a run to one corner.
     #[inline(always)]
-    fn add_row<L: Lanes>(&self, corner: usize, len: usize, force: [Column<'_>; 3]) {
+    fn add<L: Lanes>(self, corner: usize, len: usize, force: [Column<'_>; 3]) {
         let whole = len - len % L::N;
+        if !self.w.has(corner, len) {
+            return;
+        }
         let mut k = 0;
         while k < whole {
-            self.add_some::<L>(corner, k, L::N, force);
+            self.add_some::<L>(corner + k, L::N, V3::load(force, k, L::N));
             k += L::N;
         }
         if k < len {
-            self.add_some::<L>(corner, k, len - k, force);
+            self.add_some::<L>(corner + k, len - k, V3::load(force, k, L::N));
         }
     }
 
-    /// Adds `n` forces from the `k`th on to one corner.
+    /// Adds `n` forces to particles in a row.
     #[inline(always)]
-    fn add_some<L: Lanes>(&self, corner: usize, k: usize, n: usize, force: [Column<'_>; 3]) {
-        let f = V3::<L>::load(force, k, L::N) * part(self.at.w, corner + k, n);
-        (V3::load(self.to, corner + k, n) + f).store(self.to, corner + k, n);
+    fn add_some<L: Lanes>(self, at: usize, n: usize, force: V3<L>) {
+        if self.w.has(at, n) {
+            (V3::load(self.to, at, n) + force * part(self.w, at, n)).store(self.to, at, n);
+        }
     }
 
     /// The loose triangles: forces several at a time, sums one after the other, because they may share particles.
     #[inline(always)]
-    fn press_loose<L: Lanes>(&self, air: &Air<L>, done: usize, force: [Column<'_>; 3]) {
-        let [a, b, c] = &self.group.loose;
-        let (place, speed) = (self.at.x, self.at.v);
+    fn loose<L: Lanes>(
+        self,
+        air: &Air<L>,
+        [a, b, c]: &[Box<[u32]>; 3],
+        masses: Column<'_>,
+        done: usize,
+        force: [Column<'_>; 3],
+    ) {
         let mut at = 0;
         while at < a.len() {
             let n = L::N.min(a.len() - at);
             let (a, b, c) = (&a[at..at + n], &b[at..at + n], &c[at..at + n]);
-            let x = [V3::gather(place, a, n), V3::gather(place, b, n), V3::gather(place, c, n)];
-            let v = [V3::gather(speed, a, n), V3::gather(speed, b, n), V3::gather(speed, c, n)];
-            let mass = part(Column::read_only(&self.group.mass), done + at, n);
-            air.force(x, v, mass).store(force, 0, n);
+            let x = [V3::gather(self.x, a, n), V3::gather(self.x, b, n), V3::gather(self.x, c, n)];
+            let v = [V3::gather(self.v, a, n), V3::gather(self.v, b, n), V3::gather(self.v, c, n)];
+            air.force(x, v, part(masses, done + at, n)).store(force, 0, n);
             for k in 0..n {
                 let f = state::get(force, k);
                 self.add_one(a[k], f);
@@ -362,10 +399,16 @@ impl Blow<'_> {
 
     /// Adds a force to one particle.
     #[inline(always)]
-    fn add_one(&self, particle: u32, force: Vec3A) {
+    fn add_one(self, particle: u32, force: Vec3A) {
         let i = particle as usize;
-        state::set(self.to, i, state::get(self.to, i) + force * self.at.w.get(i));
+        state::set(self.to, i, state::get(self.to, i) + force * self.w.get(i));
     }
+}
+
+/// Three columns cut to one length.
+#[inline(always)]
+fn first([x, y, z]: [Column<'_>; 3], len: usize) -> Option<[Column<'_>; 3]> {
+    Some([x.first(len)?, y.first(len)?, z.first(len)?])
 }
 
 /// `n <= N` numbers of a column.

@@ -22,6 +22,9 @@ const SLACK_M: f32 = 0.004;
 /// A particle may be jerked along by its neighbours at so many times its present speed.
 const JERK: f32 = 1.5;
 
+/// Acceleration that brings a particle at rest closer within a step (m/s2): in a long step more than the slack.
+const FALL_M_S2: f32 = 10.0;
+
 /// Boxes are wider than what they hold by this (m), so that rounding never makes the coarse test stricter than the fine.
 const BOX_M: f32 = 1e-3;
 
@@ -227,7 +230,8 @@ fn keep(
 #[inline(always)]
 fn travel<L: Lanes>(v: V3<L>, ahead: L) -> L {
     let speed2 = v.dot(v);
-    L::splat(SLACK_M) + speed2 * reciprocal_root(speed2) * ahead
+    let fall = L::splat(FALL_M_S2 / (JERK * JERK)) * ahead * ahead;
+    L::splat(SLACK_M) + fall + speed2 * reciprocal_root(speed2) * ahead
 }
 
 /// The box around all places that the free particles of a block may come to, and how far each may come; what is not free

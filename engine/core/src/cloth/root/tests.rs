@@ -1,7 +1,7 @@
 use glam::Vec3;
 use proptest::prelude::*;
 
-use super::super::state::State;
+use super::super::state::{State, get, set};
 use super::super::wind::still;
 use super::*;
 use crate::lanes::Store;
@@ -23,12 +23,12 @@ fn particles() -> State {
     State::new(&places, &[1_000.0; 37])
 }
 
-fn place(columns: &[Store; 3], i: usize) -> Vec3A {
-    Vec3A::from_array([0, 1, 2].map(|k| columns[k].as_slice()[i]))
+fn place(columns: [&[f32]; 3], i: usize) -> Vec3A {
+    Vec3A::from_array(columns.map(|c| c[i]))
 }
 
-fn put(columns: &mut [Store; 3], i: usize, v: Vec3A) {
-    (0..3).for_each(|k| columns[k].as_mut()[i] = v[k]);
+fn put(columns: [Column<'_>; 3], i: usize, v: Vec3A) {
+    set(columns, i, v);
 }
 
 /// A step of free particles without gravity, as predict moves them.
@@ -42,10 +42,10 @@ fn step(state: &mut State, root: &mut RootMotion, at: &Affine3A) -> RootStep {
     let dt = DT / SUBSTEPS as f32;
     for _ in 0..SUBSTEPS {
         for i in 0..37 {
-            let v = place(&state.velocity, i) + place(&accelerations, i) * dt;
-            let x = place(&state.position, i) + v * dt;
-            put(&mut state.velocity, i, v);
-            put(&mut state.position, i, x);
+            let v = place(state.velocities(), i) + place(accelerations.each_ref().map(Store::as_slice), i) * dt;
+            let x = place(state.positions(), i) + v * dt;
+            put(state.columns().v, i, v);
+            put(state.columns().x, i, x);
         }
     }
     motion
@@ -73,14 +73,15 @@ fn linear_scale_0_keeps_a_particle_at_rest_relative_to_a_root_that_accelerates()
         step(&mut state, &mut root, &Affine3A::from_translation(offset));
     }
     for i in 0..37 {
-        let moved = place(&state.position, i) - place(&start.position, i);
+        let moved = place(state.positions(), i) - place(start.positions(), i);
         assert!(moved.distance(offset.into()) < 1e-4, "moved {moved}, the root {offset}");
     }
     // A half takes half of the acceleration.
     let (mut root, mut state) = (RootMotion::new(scales(0.5, 1.0, 1.0)), particles());
-    (0..=120)
-        .for_each(|k| drop(step(&mut state, &mut root, &Affine3A::from_translation(Vec3::X * (k * k) as f32 * 1e-4))));
-    assert!((place(&state.position, 0) - place(&start.position, 0)).x / (120.0f32 * 120.0 * 1e-4) - 0.5 < 1e-3);
+    (0..=120).for_each(|k| {
+        step(&mut state, &mut root, &Affine3A::from_translation(Vec3::X * (k * k) as f32 * 1e-4));
+    });
+    assert!((place(state.positions(), 0) - place(start.positions(), 0)).x / (120.0f32 * 120.0 * 1e-4) - 0.5 < 1e-3);
 }
 
 #[test]
@@ -94,23 +95,26 @@ fn a_particle_that_turns_with_the_root_keeps_turning_without_the_centrifugal_for
         root.advance(&at(0), DT);
         root.advance(&at(1), DT);
         for i in 0..37 {
-            put(&mut state.velocity, i, Vec3A::Y.cross(place(&start.position, i)) * spin);
+            put(state.columns().v, i, Vec3A::Y.cross(place(start.positions(), i)) * spin);
         }
         for k in 2..242 {
             step(&mut state, &mut root, &at(k));
         }
         for i in 0..37 {
-            let back = at(240).inverse().transform_point3a(place(&state.position, i));
-            let error = back.distance(place(&start.position, i));
+            let back = at(240).inverse().transform_point3a(place(state.positions(), i));
+            let error = back.distance(place(start.positions(), i));
             // Nothing brings it back; it has gone 8 m. With the centrifugal force it would be 7 m out.
             assert!(error < 0.02 * 8.0, "angular {angular}: {error} m from where it turned with the root");
         }
     }
     // With it, it flies off.
     let (mut root, mut state) = (RootMotion::new(RootSettings::default()), particles());
-    put(&mut state.velocity, 0, Vec3A::Y.cross(place(&state.position, 0)) * spin);
-    (0..120).for_each(|k| drop(step(&mut state, &mut root, &at(k))));
-    assert!(place(&state.position, 0).length() > 3.0);
+    let about = Vec3A::Y.cross(place(state.positions(), 0)) * spin;
+    put(state.columns().v, 0, about);
+    (0..120).for_each(|k| {
+        step(&mut state, &mut root, &at(k));
+    });
+    assert!(place(state.positions(), 0).length() > 3.0);
 }
 
 #[test]
@@ -122,10 +126,12 @@ fn scales_of_zero_carry_a_free_particle_with_any_smooth_motion() {
         let place = Vec3::new(0.5 * (3.0 * t).sin(), 0.1 * (7.0 * t).cos(), t);
         pose(Vec3::new(0.2, 1.0, 0.1), 0.8 * (2.0 * t).sin(), place)
     };
-    (0..=240).for_each(|k| drop(step(&mut state, &mut root, &at(k))));
+    (0..=240).for_each(|k| {
+        step(&mut state, &mut root, &at(k));
+    });
     for i in 0..37 {
-        let dressed = (at(240) * at(0).inverse()).transform_point3a(place(&start.position, i));
-        let error = dressed.distance(place(&state.position, i));
+        let dressed = (at(240) * at(0).inverse()).transform_point3a(place(start.positions(), i));
+        let error = dressed.distance(place(state.positions(), i));
         assert!(error < 0.05, "{error} m after two seconds");
     }
 }
@@ -138,7 +144,7 @@ fn every_width_compensates_with_the_same_bits() {
         let RootStep::Carried(carried) = root.advance(&pose(Vec3::ONE, 0.05, Vec3::X * 0.02), DT) else { panic!() };
         [(0, 20), (20, 17)].map(|span| carried.apply(width, state.columns(), span, out.each_mut().map(Store::column)));
         Moved { motion: root.motion() }.apply(width, state.columns(), (3, 30));
-        (state.position, state.velocity, out)
+        (state.positions().map(<[f32]>::to_vec), state.velocities().map(<[f32]>::to_vec), out)
     };
     Width::ALL.into_iter().filter(|w| w.available()).for_each(|w| assert_eq!(run(w), run(Width::One), "{w} lanes"));
 }
@@ -185,19 +191,19 @@ proptest! {
         root.advance(&from, DT);
         let RootStep::Keep(moved) = root.advance(&to, DT) else { panic!("not noticed") };
         let mut state = particles();
-        (0..37).for_each(|i| put(&mut state.velocity, i, Vec3A::new(i as f32 * 0.1, 1.0, -0.3)));
+        (0..37).for_each(|i| put(state.columns().v, i, Vec3A::new(i as f32 * 0.1, 1.0, -0.3)));
         let before = state.clone();
         moved.apply(Width::widest(), state.columns(), (0, 37));
         let carry = to * from.inverse();
         for i in 0..37 {
             let j = (i * 7 + 1) % 37;
-            let edge = |s: &State| place(&s.position, i).distance(place(&s.position, j));
+            let edge = |s: &State| place(s.positions(), i).distance(place(s.positions(), j));
             prop_assert!((edge(&state) - edge(&before)).abs() < 1e-5);
-            let speed = |s: &State| place(&s.velocity, i).distance(place(&s.velocity, j));
+            let speed = |s: &State| place(s.velocities(), i).distance(place(s.velocities(), j));
             prop_assert!((speed(&state) - speed(&before)).abs() < 1e-5);
-            prop_assert!(place(&state.position, i).distance(carry.transform_point3a(place(&before.position, i))) < 1e-5);
-            prop_assert!(place(&state.velocity, i).distance(carry.transform_vector3a(place(&before.velocity, i))) < 1e-5);
-            let step = (place(&state.position, i) - place(&state.previous, i)).length();
+            prop_assert!(place(state.positions(), i).distance(carry.transform_point3a(place(before.positions(), i))) < 1e-5);
+            prop_assert!(place(state.velocities(), i).distance(carry.transform_vector3a(place(before.velocities(), i))) < 1e-5);
+            let step = (place(state.positions(), i) - get(state.columns().previous, i)).length();
             prop_assert!(step < 1e-5, "previous moves along");
         }
     }

@@ -94,9 +94,8 @@ fn a_plain_f64_version_gives_the_same_to_five_digits() {
     let (mut state, rest, triangles, owner) = crumpled(9, 100);
     let faces = Faces::new(&triangles, &rest, state.weights(), &owner);
     let got = accelerations(&faces, Width::widest(), &SKIRT, &mut state);
-    let at = |columns: [&[f32]; 3], i: u32| {
-        glam::DVec3::from_array([0, 1, 2].map(|k| f64::from(columns[k][i as usize])))
-    };
+    let at =
+        |columns: [&[f32]; 3], i: u32| glam::DVec3::from_array([0, 1, 2].map(|k| f64::from(columns[k][i as usize])));
     let mut want = vec![glam::DVec3::ZERO; rest.len()];
     for t in &triangles {
         let [a, b, c] = t.map(|i| at(state.positions(), i));

@@ -6,11 +6,11 @@
 //! makes it worse. A sphere that is not finite is held for as long as that lasts.
 
 use glam::{Affine3A, Vec4, Vec4Swizzles};
-use toile_assets::limits::MAX_SPHERES;
+use toile_assets::limits::{MAX_SPHERES, STEP_SECONDS};
 
 use crate::cone::PARKED;
 
-/// What no sphere moves in a step, relative to the root (m): 30 m/s, twice a thrown punch.
+/// What no sphere moves in a step of 1/120 s, relative to the root (m): 30 m/s, twice a thrown punch.
 pub const JUMP_M: f32 = 0.25;
 
 /// Steps that a sphere is held before it is followed: 50 ms, one and a half frames of a 30 Hz camera.
@@ -52,13 +52,13 @@ impl Default for Hold {
 
 impl Hold {
     /// Changes the spheres `(x, y, z, radius)` of a step of `dt` seconds to where the cloth may meet them; says how many
-    /// are not where they were said to be. `motion` is the root's in this step, in world space
-    /// (`RootMotion::motion`), finite. Spheres past [`MAX_SPHERES`] are left as they are.
+    /// are not where they were said to be. `motion` is the root's in this step, in world space, finite. Spheres past [`MAX_SPHERES`] are left as they are.
     pub fn filter(&mut self, motion: &Affine3A, targets: &mut [Vec4], dt: f32) -> u32 {
         let mut away = 0;
         for ((target, last), doing) in targets.iter_mut().zip(&mut self.last).zip(&mut self.doing) {
             let carried = motion.transform_point3(last.xyz()).extend(last.w);
-            let (next, place) = decide(*doing, carried, *target, FOLLOW_M_S * dt);
+            let jump = JUMP_M * (dt / STEP_SECONDS).max(1.0);
+            let (next, place) = decide(*doing, carried, *target, [jump, FOLLOW_M_S * dt]);
             (*doing, *target, *last) = (next, place, place);
             self.held += u64::from(matches!(next, Doing::Held(_) | Doing::Absent));
             self.followed += u64::from(next == Doing::Following);
@@ -73,8 +73,9 @@ impl Hold {
     }
 }
 
-/// What a sphere does now, and where it is. `reach` is how far it may go in a step (m).
-fn decide(doing: Doing, carried: Vec4, target: Vec4, reach: f32) -> (Doing, Vec4) {
+/// What a sphere does now, and where it is. A sphere that moved further than `jump` has jumped; one on its way
+/// goes as far as `reach` (m).
+fn decide(doing: Doing, carried: Vec4, target: Vec4, [jump, reach]: [f32; 2]) -> (Doing, Vec4) {
     let finite = target.is_finite() && target.w >= 0.0;
     let gap = target - carried;
     // A radius jumps like a place.
@@ -84,7 +85,7 @@ fn decide(doing: Doing, carried: Vec4, target: Vec4, reach: f32) -> (Doing, Vec4
         Doing::Absent => (doing, PARKED),
         // It is followed when it is back and known, however long that takes.
         _ if !finite => (if doing == Doing::Following { doing } else { Doing::Held(0) }, carried),
-        Doing::There | Doing::Held(_) if far <= JUMP_M => (Doing::There, target),
+        Doing::There | Doing::Held(_) if far <= jump => (Doing::There, target),
         Doing::There => (Doing::Held(1), carried),
         Doing::Held(steps) if steps < HOLD_STEPS => (Doing::Held(steps + 1), carried),
         _ if far <= reach => (Doing::There, target),
