@@ -170,6 +170,13 @@ impl Colliders {
         self.placed = false;
     }
 
+    /// Puts the spheres where no motion would bring them: for tests of what has to bear it.
+    #[cfg(test)]
+    pub(crate) fn force(&mut self, start: &[Vec4], end: &[Vec4]) {
+        self.start[..start.len()].copy_from_slice(start);
+        self.end[..end.len()].copy_from_slice(end);
+    }
+
     /// Spheres at the start of the step `[spheres]`.
     pub fn start(&self) -> &[Vec4] {
         &self.start[..self.rest.len()]
