@@ -259,9 +259,9 @@ mod tests {
         colliders.place_spheres(&at(0.0));
         assert_eq!(colliders.start(), &at(0.0)[..2], "the first placement does not sweep, and a third is passed over");
         assert_eq!(colliders.start(), colliders.end());
-        colliders.place_spheres(&at(0.5));
+        colliders.place_spheres(&at(0.2));
         assert_eq!(colliders.start(), &at(0.0)[..2]);
-        assert_eq!(colliders.end(), &at(0.5)[..2]);
+        assert_eq!(colliders.end(), &at(0.2)[..2]);
         assert_eq!(colliders.cone(0, 1.0).rb, 0.2);
     }
 
