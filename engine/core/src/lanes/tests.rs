@@ -23,9 +23,9 @@ impl Kernel for Everything<'_> {
             let v = (x + y * x - y).min(x.max(y)).select(mask, (-x).div(y));
             let v = v + reciprocal_root((x * x).max(y * y)) + (x * x).sqrt();
             if n == L::N {
-                v.store(self.out, at)
+                v.store(self.out, at);
             } else {
-                v.store_part(self.out, at, n)
+                v.store_part(self.out, at, n);
             }
             for lane in 0..n {
                 let bit = u64::from(mask.and(x.lt(L::splat(3.0))).bits() >> lane & 1);
@@ -85,18 +85,28 @@ fn the_reciprocal_root_is_exact_to_eight_parts_in_ten_million() {
 fn nothing_past_the_end_is_read_or_written() {
     let mut numbers = [1.0f32; 20];
     let column = Column::new(&mut numbers[..18]);
-    struct Past<'a>(Column<'a>);
+    struct Past<'a>(Column<'a>, usize);
     impl Kernel for Past<'_> {
         type Out = f32;
         #[inline(always)]
         fn run<L: Lanes>(self) -> f32 {
-            L::splat(5.0).store(self.0, 18);
-            L::splat(5.0).store(self.0, usize::MAX - 3);
-            L::load(self.0, 18).to_array()[0] + L::load_part(self.0, 19, 1).to_array()[0]
+            let Self(column, way) = self;
+            match way {
+                0 => L::splat(5.0).store(column, 18),
+                1 => L::splat(5.0).store(column, usize::MAX - 3),
+                2 => return L::load(column, 18).to_array()[0],
+                3 => return L::load_part(column, 19, 1).to_array()[0],
+                4 => return L::load_quads(column, &[0, 15, 4, 8], 0).to_array()[0],
+                _ => L::splat(5.0).store_quads(column, &[18, 18, 18, 18], 0),
+            }
+            0.0
         }
     }
-    for width in Width::ALL {
-        assert_eq!(width.run(Past(column)), 0.0);
+    for (width, way) in Width::ALL.into_iter().flat_map(|w| (0..6).map(move |way| (w, way))) {
+        // One lane is given 0, the others stop.
+        let run = std::panic::AssertUnwindSafe(|| width.run(Past(column, way)));
+        let got = std::panic::catch_unwind(run);
+        assert!(got.is_err() || width == Width::One, "{width} lanes, {way}: {got:?}");
     }
     assert_eq!(numbers, [1.0; 20]);
 }

@@ -107,10 +107,9 @@ pub struct Pair {
     pub capsule: u16,
     /// Which particles of the block may touch it in this step, a bit each.
     pub lanes: u16,
-    /// Which do at the end of this substep as it stands.
-    pub touched: u16,
-    /// Which have moved so far in it that the capsule may have to sweep them.
-    pub fast: u16,
+    /// Which do at the end of this substep as it stands; from bit 16 on, which have moved so far in it that the capsule
+    /// may have to sweep them.
+    pub found: u32,
 }
 
 /// Boxes around what each capsule sweeps in the step.
@@ -219,7 +218,7 @@ fn keep(
         let lanes = lanes[c] & reach.map_or(!0, |r| r[c]);
         // Written first and counted after: no branch.
         if let Some(pair) = pairs.get_mut(at) {
-            *pair = Pair { capsule: c as u16, lanes, touched: 0, fast: 0 };
+            *pair = Pair { capsule: c as u16, lanes, found: 0 };
             at += usize::from(lanes != 0);
         }
     }

@@ -83,8 +83,8 @@ fn take(turns: &mut [Turn], at: usize, block: u32, next: Option<u32>) -> usize {
 
 /// The bits of the lanes from `from` on among those of a block.
 #[inline(always)]
-fn few<L: Lanes>(lanes: u16, from: usize) -> u32 {
-    u32::from(lanes) >> from & (((1u64 << L::N) - 1) as u32)
+fn few<L: Lanes>(bits: u32, from: usize) -> u32 {
+    bits >> from & (((1u64 << L::N) - 1) as u32)
 }
 
 /// Looks at a block's pairs from number `start` on: which particles touch, which have moved far. Gives the first of the
@@ -105,7 +105,7 @@ fn look<L: Lanes>(
         let way = x - block.load(cols.previous, from);
         let way2 = way.dot(way);
         for pair in &mut *later {
-            let lanes = few::<L>(pair.lanes, from);
+            let lanes = few::<L>(pair.lanes.into(), from);
             // The widest lanes hold all of a pair's particles: there is always one.
             let [mut touched, mut fast] = [0; 2];
             if L::N == MOST || lanes != 0 {
@@ -116,17 +116,14 @@ fn look<L: Lanes>(
                     fast &= sweep.asks(c, x, way).bits();
                 }
             }
-            if from == 0 {
-                (pair.touched, pair.fast) = (0, 0);
-            }
-            pair.touched |= (touched << from) as u16;
-            pair.fast |= (fast << from) as u16;
+            let before = if from == 0 { 0 } else { pair.found };
+            pair.found = before | (touched | fast << MOST) << from;
         }
         from += L::N;
     }
     let mut next = None;
     for (pair, i) in later.iter().zip(range).rev() {
-        next = if pair.touched | pair.fast != 0 { Some(i as u32) } else { next };
+        next = if pair.found != 0 { Some(i as u32) } else { next };
     }
     next
 }
@@ -138,14 +135,15 @@ fn meet<L: Lanes>(cols: Columns<'_>, sweep: &Sweep<'_>, block: &Block, pair: &Pa
     let mut swept = 0;
     let mut from = 0;
     while from < block.len() {
-        let (mut touched, fast) = (few::<L>(pair.touched, from), few::<L>(pair.fast, from));
+        let mut touched = few::<L>(pair.found, from);
+        let fast = few::<L>(pair.found >> MOST, from);
         if touched | fast != 0 {
             let mut x = block.load::<L>(cols.x, from);
             let mut previous = block.load::<L>(cols.previous, from);
             if fast != 0 {
                 sweep.run(c, &mut x, &mut previous, friction, L::Mask::of(fast));
                 swept += fast.count_ones();
-                touched = close(sweep.cones, c, x, L::splat(-ON_M)).bits() & few::<L>(pair.lanes, from);
+                touched = close(sweep.cones, c, x, L::splat(-ON_M)).bits() & few::<L>(pair.lanes.into(), from);
             }
             if touched != 0 {
                 let on = surface(sweep.cones, c, &place(sweep.cones, c, x));
@@ -169,7 +167,7 @@ fn meet_planes<L: Lanes>(cols: Columns<'_>, planes: &[[f32; 4]], block: &Block, 
         let mut previous = block.load::<L>(cols.previous, from);
         for (p, plane) in planes.iter().enumerate().filter(|(p, _)| block.planes >> p & 1 != 0) {
             let depth = depth(plane, x);
-            let touched = zero.lt(depth).and(L::Mask::of(few::<L>(block.plane_lanes[p % PLANES], from)));
+            let touched = zero.lt(depth).and(L::Mask::of(few::<L>(block.plane_lanes[p % PLANES].into(), from)));
             if touched.any() {
                 let [nx, ny, nz, _] = *plane;
                 let normal = V3 { x: L::splat(nx), y: L::splat(ny), z: L::splat(nz) };

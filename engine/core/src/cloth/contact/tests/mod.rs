@@ -43,8 +43,7 @@ impl Random {
 pub fn colliders(from: &[Vec4], to: &[Vec4], capsules: &[[u8; 2]], floor: bool) -> Colliders {
     let rest = vec![RestSphere { bone: 0, centre: Vec3::ZERO, radius: 0.0 }; from.len()];
     let mut colliders = Colliders::new(&rest, capsules, floor).unwrap();
-    colliders.place_spheres(from);
-    colliders.place_spheres(to);
+    colliders.force(from, to);
     colliders
 }
 
