@@ -66,13 +66,14 @@ pub fn lay_out(baking: &Baking<'_>) -> Layout {
     let hoops = across().filter(|f| f.direction == Direction::Weft && f.is_hoop());
     let hoops = hoops.filter(|f| chooser.choose(f) == Solver::GaussSeidel);
     let hoops: Vec<(&Fiber, Solver)> = hoops.map(|f| (f, Solver::SemiImplicit)).collect();
+    let (weft, numbers) = links(baking, &of(false));
     let stencils = bending::stencils(baking.shape, baking.edges, baking.fabric);
     Layout {
-        shear: links(baking, &of(true)),
-        weft: links(baking, &of(false)),
+        shear: links(baking, &of(true)).0,
+        weft,
         fibers: fibers(baking, &chooser),
-        crossing: lists(baking, whole),
-        hoops: lists(baking, hoops),
+        crossing: lists(baking, whole, None),
+        hoops: lists(baking, hoops, Some(&numbers)),
         bends: bends(baking, &stencils),
         skewed: bends(baking, &stencils),
         tethers: tethers(baking),
@@ -94,8 +95,8 @@ fn same(a: f32, b: f32) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs()) || a == b
 }
 
-/// Links of single edges, each with the direction of the fiber that it belongs to.
-fn links(baking: &Baking<'_>, edges: &[(usize, Direction)]) -> Links {
+/// Links of single edges, each with the direction of the fiber that it belongs to; and the number of each edge's link.
+fn links(baking: &Baking<'_>, edges: &[(usize, Direction)]) -> (Links, Vec<u32>) {
     let edge = |i: usize| &baking.edges[edges[i].0];
     let soft = |i: usize| compliance(baking.fabric, edge(i), edges[i].1);
     let particle = |v: u32| baking.order.particle[v as usize];
@@ -109,19 +110,24 @@ fn links(baking: &Baking<'_>, edges: &[(usize, Direction)]) -> Links {
     let alike = |i: usize, j: usize| {
         same(edge(i).rest, edge(j).rest) && same(soft(i), soft(j)) && (0..2).all(|k| same(weight(i, k), weight(j, k)))
     };
-    let (tuples, places) = runs::lay_out(&constraints, &baking.order.owner, true, &alike);
-    Links {
+    let (tuples, laid) = runs::lay_out(&constraints, &baking.order.owner, true, &alike);
+    let mut numbers = vec![0; baking.edges.len()];
+    laid.serial.iter().enumerate().for_each(|(number, &i)| numbers[edges[i].0] = number as u32);
+    let links = Links {
         tuples,
-        rest: places.iter().map(|&i| edge(i).rest).collect(),
-        compliance: places.iter().map(|&i| soft(i)).collect(),
-    }
+        rest: laid.places.iter().map(|&i| edge(i).rest).collect(),
+        compliance: laid.places.iter().map(|&i| soft(i)).collect(),
+    };
+    (links, numbers)
 }
 
 fn fibers(baking: &Baking<'_>, chooser: &Chooser) -> Fibers {
     let (mut bundles, mut rows, mut rest, mut soft) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut links = 0;
     for side in &baking.order.sides {
         let pieces: Vec<&Fiber> = side.pieces.iter().map(|&p| &baking.pieces[p]).collect();
-        let (first_row, at) = (rows.len() as u32, rest.len() as u32);
+        let (first_row, at, serial) = (rows.len() as u32, rest.len() as u32, links as u32);
+        links += pieces.len() * pieces[0].edges.len();
         let reach = |row: usize| pieces.iter().take_while(|p| p.vertices.len() > row).count() as u32;
         for row in 0..pieces[0].vertices.len() {
             let first = baking.order.particle[pieces[0].vertices[row] as usize];
@@ -141,10 +147,11 @@ fn fibers(baking: &Baking<'_>, chooser: &Chooser) -> Fibers {
             lanes: pieces.len() as u32,
             rows: first_row..rows.len() as u32,
             at,
+            serial,
             alike,
         });
     }
-    Fibers { bundles: bundles.into(), rows: rows.into(), rest: rest.into(), compliance: soft.into() }
+    Fibers { bundles: bundles.into(), rows: rows.into(), links, rest: rest.into(), compliance: soft.into() }
 }
 
 /// Whether two fibers are the same, link by link and mass by mass.
@@ -163,9 +170,10 @@ fn fibers_alike(baking: &Baking<'_>, a: &Fiber, b: &Fiber) -> bool {
         && a.vertices.iter().zip(&b.vertices).all(|(&v, &w)| same(weight(v), weight(w)))
 }
 
-/// Fibers as index lists: sets without a common particle, in each of them lists of equal length and like solver.
-fn lists(baking: &Baking<'_>, mut left: Vec<(&Fiber, Solver)>) -> Lists {
-    let mut out = ListsMaker::default();
+/// Fibers as index lists: sets without a common particle, in each of them lists of equal length and like solver. Their
+/// links have the `numbers` of their edges, or their own.
+fn lists(baking: &Baking<'_>, mut left: Vec<(&Fiber, Solver)>, numbers: Option<&[u32]>) -> Lists {
+    let mut out = ListsMaker { numbers: numbers.map(<[u32]>::to_vec), ..ListsMaker::default() };
     left.sort_by_key(|(f, solver)| (std::cmp::Reverse(f.edges.len()), f.direction, *solver, !f.is_hoop()));
     while !left.is_empty() {
         let mut taken = vec![false; baking.order.particle.len()];
@@ -184,6 +192,7 @@ fn lists(baking: &Baking<'_>, mut left: Vec<(&Fiber, Solver)>) -> Lists {
         lists: out.lists.into(),
         sets: out.sets.into(),
         index: out.index.into(),
+        serial: out.serial.into(),
         rest: out.rest.into(),
         compliance: out.compliance.into(),
     }
@@ -194,6 +203,8 @@ struct ListsMaker {
     lists: Vec<List>,
     sets: Vec<[Range<u32>; OWNERS]>,
     index: Vec<u32>,
+    numbers: Option<Vec<u32>>,
+    serial: Vec<u32>,
     rest: Vec<f32>,
     compliance: Vec<f32>,
 }
@@ -229,6 +240,11 @@ impl ListsMaker {
         }
         for link in 0..fibers[0].edges.len() {
             let edges = || fibers.iter().map(|f| &baking.edges[f.edges[link] as usize]);
+            for fiber in &fibers {
+                let own = self.serial.len() as u32;
+                let number = |n: &Vec<u32>| n[fiber.edges[link] as usize];
+                self.serial.push(self.numbers.as_ref().map_or(own, number));
+            }
             self.rest.extend(edges().map(|e| e.rest));
             self.compliance.extend(edges().map(|e| compliance(baking.fabric, e, fibers[0].direction)));
         }
@@ -252,8 +268,8 @@ fn bends<const K: usize>(baking: &Baking<'_>, stencils: &[Stencil]) -> Bends<K> 
         let weight = |i: usize, k: usize| baking.weight(tuples[i].1[k]);
         (0..K).all(|k| same(coefficients[i][k], coefficients[j][k]) && same(weight(i, k), weight(j, k)))
     };
-    let (tuples, places) = runs::lay_out(&tuples, &baking.order.owner, false, &alike);
-    let coefficients = std::array::from_fn(|k| places.iter().map(|&i| coefficients[i][k]).collect());
+    let (tuples, laid) = runs::lay_out(&tuples, &baking.order.owner, false, &alike);
+    let coefficients = std::array::from_fn(|k| laid.places.iter().map(|&i| coefficients[i][k]).collect());
     Bends { tuples, coefficients }
 }
 

@@ -6,6 +6,15 @@ use crate::garment::layout::{OWNERS, Run, Set, Share, Tuples};
 /// Runs shorter than this are not worth a vector; their constraints are loose.
 const LEAST_RUN: usize = 3;
 
+/// Which constraint is where.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Laid {
+    /// The constraint of each parameter place.
+    pub places: Vec<usize>,
+    /// The constraint of each number.
+    pub serial: Vec<usize>,
+}
+
 /// Lays constraints over `K` particles out; `apart` demands that no two of a set share a particle. Gives the tuples and
 /// for each parameter place the constraint it belongs to, or one of those that are `alike`. Constraints that touch both owners' particles are the first
 /// owner's where sets are kept apart (nobody else touches them in that set), else they form a last set of their own.
@@ -14,7 +23,7 @@ pub fn lay_out<const K: usize>(
     owner: &[u8],
     apart: bool,
     alike: &dyn Fn(usize, usize) -> bool,
-) -> (Tuples<K>, Vec<usize>) {
+) -> (Tuples<K>, Laid) {
     let mut order: Vec<usize> = (0..constraints.len()).collect();
     order.sort_by_key(|&i| (std::cmp::Reverse(constraints[i].0), constraints[i].1));
     let crosses = |i: usize| {
@@ -22,7 +31,7 @@ pub fn lay_out<const K: usize>(
         v.iter().any(|&p| owner[p as usize] != owner[v[0] as usize])
     };
     let sets = if apart { coloured(constraints, &order, owner.len()) } else { gathered(&order, &crosses) };
-    let mut out = Layouter { runs: Vec::new(), loose: Vec::new(), places: Vec::new() };
+    let mut out = Layouter { runs: Vec::new(), loose: Vec::new(), places: Vec::new(), serial: Vec::new() };
     let sets = sets.into_iter().map(|set| Set {
         direction: constraints[set[0]].0,
         crosses: !apart && crosses(set[0]),
@@ -40,7 +49,7 @@ pub fn lay_out<const K: usize>(
         count: constraints.len(),
         places: out.places.len(),
     };
-    (tuples, out.places)
+    (tuples, Laid { places: out.places, serial: out.serial })
 }
 
 /// First fit in the order of the particles: on a grid neighbours side by side get one colour, which makes long runs.
@@ -75,6 +84,8 @@ struct Layouter<const K: usize> {
     runs: Vec<Run<K>>,
     loose: Vec<[u32; K]>,
     places: Vec<usize>,
+    /// The constraints in the order of their numbers.
+    serial: Vec<usize>,
 }
 
 impl<const K: usize> Layouter<K> {
@@ -95,7 +106,14 @@ impl<const K: usize> Layouter<K> {
                 let first = constraints[part[at]].1;
                 let run = &part[at..at + len];
                 let same = run.iter().all(|&i| alike(run[0], i));
-                self.runs.push(Run { first, len: len as u32, at: self.places.len() as u32, alike: same });
+                self.runs.push(Run {
+                    first,
+                    len: len as u32,
+                    at: self.places.len() as u32,
+                    serial: self.serial.len() as u32,
+                    alike: same,
+                });
+                self.serial.extend(run);
                 self.places.extend(if same { &run[..1] } else { run });
             } else {
                 loose.extend(&part[at..at + len]);
@@ -104,8 +122,15 @@ impl<const K: usize> Layouter<K> {
         }
         let loose_at = self.places.len() as u32;
         self.loose.extend(loose.iter().map(|&i| constraints[i].1));
+        let loose_serial = self.serial.len() as u32;
         self.places.extend(&loose);
-        Share { runs: first_run..self.runs.len() as u32, loose: first_loose..self.loose.len() as u32, loose_at }
+        self.serial.extend(&loose);
+        Share {
+            runs: first_run..self.runs.len() as u32,
+            loose: first_loose..self.loose.len() as u32,
+            loose_at,
+            loose_serial,
+        }
     }
 }
 
@@ -137,12 +162,14 @@ mod tests {
         let rails = (0..19u32).map(|i| (Direction::Weft, [i, i + 1]));
         let all: Vec<(Direction, [u32; 2])> = rungs.chain(rails).collect();
         let owner: Vec<u8> = (0..40).map(|i| u8::from(i % 20 >= 10)).collect();
-        let (tuples, places) = lay_out(&all, &owner, true, &|_, _| false);
+        let (tuples, Laid { places, serial }) = lay_out(&all, &owner, true, &|_, _| false);
+        assert_eq!(serial, places);
         let mut sorted = places.clone();
         sorted.sort_unstable();
         assert_eq!(sorted, (0..all.len()).collect::<Vec<_>>());
         tuples.for_each(|place, v| assert_eq!(v, all[places[place]].1));
-        let (even, few) = lay_out(&all, &owner, true, &|_, _| true);
+        let (even, Laid { places: few, serial }) = lay_out(&all, &owner, true, &|_, _| true);
+        assert_eq!(serial.len(), all.len());
         assert!(few.len() < places.len() && even.places == few.len() && even.count == all.len());
         for set in &tuples.sets {
             let mut seen = [false; 40];

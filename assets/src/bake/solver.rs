@@ -101,8 +101,7 @@ mod tests {
     fn what_carries_weight_is_solved_as_a_whole() {
         let solver = chosen(Overrides::default());
         assert_eq!(solver(Direction::Warp, 0), Solver::SemiImplicit);
-        assert_eq!(solver(Direction::Weft, 1), Solver::SemiImplicit, "the hoop that the skirt hangs by");
-        for row in 2..6 {
+        for row in 1..6 {
             assert_eq!(solver(Direction::Weft, row), Solver::GaussSeidel);
         }
         assert_eq!(solver(Direction::Bias, 0), Solver::GaussSeidel);

@@ -25,6 +25,8 @@ pub struct Run<const K: usize> {
     pub len: u32,
     /// Where its parameters begin.
     pub at: u32,
+    /// Number of its first constraint among all.
+    pub serial: u32,
     /// Whether all are alike.
     pub alike: bool,
 }
@@ -46,6 +48,8 @@ pub struct Share {
     pub loose: Range<u32>,
     /// Where the parameters of the first loose one are.
     pub loose_at: u32,
+    /// Number of the first loose one among all constraints.
+    pub loose_serial: u32,
 }
 
 /// Constraints of one direction; in a set of [`Links`] no two share a particle.
@@ -148,6 +152,8 @@ pub struct Bundle {
     pub rows: Range<u32>,
     /// Where its parameters begin: `lanes` for each link from row to row, or one where its fibers are alike.
     pub at: u32,
+    /// Number of its first link among all: `lanes` for each link from row to row.
+    pub serial: u32,
     /// Whether the fibers are all alike, in their links and in the masses of their particles.
     pub alike: bool,
 }
@@ -159,6 +165,8 @@ pub struct Fibers {
     pub bundles: Box<[Bundle]>,
     /// Their rows.
     pub rows: Box<[Row]>,
+    /// Links of all bundles, those that have ended among them.
+    pub links: usize,
     /// Length of each link as cut (m); 0 where a fiber has ended.
     pub rest: Box<[f32]>,
     /// Inverse stiffness of each link (m/N); [`ENDED`] where a fiber has ended.
@@ -203,6 +211,8 @@ pub struct Lists {
     pub sets: Box<[[Range<u32>; OWNERS]]>,
     /// Particles.
     pub index: Box<[u32]>,
+    /// Number of each link among those that its tension is counted with.
+    pub serial: Box<[u32]>,
     /// Length of each link as cut (m).
     pub rest: Box<[f32]>,
     /// Inverse stiffness (m/N).

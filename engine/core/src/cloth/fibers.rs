@@ -50,8 +50,8 @@ pub struct Solve<'a> {
     pub per_dt2: f32,
     /// Damping time over the substep (1).
     pub gamma: f32,
-    /// The solver of all bundles, where the quality overrides the bake's choice.
-    pub solver: Option<Solver>,
+    /// The tension of each link so far in this substep, where they have compliance.
+    pub tension: Option<Column<'a>>,
 }
 
 impl Kernel for Solve<'_> {
@@ -63,9 +63,11 @@ impl Kernel for Solve<'_> {
             let mut lane = 0;
             while lane < bundle.lanes as usize {
                 let chain = Chain { solve: &self, bundle, lane };
-                match self.solver.unwrap_or(bundle.solver) {
+                match bundle.solver {
                     Solver::GaussSeidel => chain.sweep::<L>(),
-                    Solver::SemiImplicit if self.gamma > 0.0 => chain.direct::<L, true, false, false>(),
+                    Solver::SemiImplicit if self.gamma > 0.0 || self.tension.is_some() => {
+                        chain.direct::<L, true, false, false>();
+                    }
                     Solver::SemiImplicit if chain.full(L::N) => chain.direct::<L, false, false, true>(),
                     Solver::SemiImplicit => chain.direct::<L, false, false, false>(),
                     Solver::ZeroStretch => {
@@ -120,6 +122,21 @@ impl Chain<'_> {
         }
     }
 
+    /// Number of a link of the first of these lanes, and how many lanes there are.
+    #[inline(always)]
+    fn number<L: Lanes>(&self, link: usize) -> (usize, usize) {
+        let lanes = self.bundle.lanes as usize;
+        (self.bundle.serial as usize + link * lanes + self.lane, (lanes - self.lane).min(L::N))
+    }
+
+    /// Tension of a link so far.
+    #[inline(always)]
+    fn tension<L: Lanes>(&self, link: usize) -> L {
+        let Some(tension) = self.solve.tension else { return L::splat(0.0) };
+        let (at, n) = self.number::<L>(link);
+        if n == L::N { L::load(tension, at) } else { L::load_part(tension, at, n) }
+    }
+
     /// Rest length and compliance of a link.
     #[inline(always)]
     fn link<L: Lanes, const FULL: bool>(&self, link: usize) -> (L, L) {
@@ -140,7 +157,7 @@ impl Chain<'_> {
     }
 
     #[inline(always)]
-    fn direct<L: Lanes, const DAMPED: bool, const ZERO: bool, const FULL: bool>(&self) {
+    fn direct<L: Lanes, const SOFT: bool, const ZERO: bool, const FULL: bool>(&self) {
         let c = &self.solve.columns;
         let rows = self.rows();
         let scratch = self.solve.scratch;
@@ -149,7 +166,7 @@ impl Chain<'_> {
         let zero = L::splat(0.0);
         let (at, n) = self.place::<L, FULL>(rows[0]);
         let mut p = V3::<L>::load(c.x, at, n);
-        let mut moved = if DAMPED { p - V3::load(c.previous, at, n) } else { p };
+        let mut moved = if SOFT { p - V3::load(c.previous, at, n) } else { p };
         let mut w = self.weights::<L>(rows[0], at, n);
         let mut normal = V3 { x: zero, y: zero, z: zero };
         let (mut pivot, mut y) = (zero, zero);
@@ -171,9 +188,10 @@ impl Chain<'_> {
             } else {
                 soft * per_dt2
             };
-            if DAMPED {
+            if SOFT {
+                // What the link gives by its compliance under the tension that it has, and its damping.
                 let moves = q - V3::load(c.previous, at, n);
-                stretch = stretch + gamma * next.dot(moves - moved);
+                stretch = stretch + gamma * next.dot(moves - moved) - self.tension::<L>(link) * stiff;
                 moved = moves;
                 both = both + gamma * both;
                 beside = beside + gamma * beside;
@@ -212,6 +230,11 @@ impl Chain<'_> {
             };
             lambda = L::load(scratch, kept + 4 * L::N) + factor * lambda;
             factor = L::load(scratch, kept + 3 * L::N);
+            if let Some(tension) = self.solve.tension {
+                let (at, n) = self.number::<L>(link);
+                let sum = self.tension::<L>(link) + lambda;
+                if n == L::N { sum.store(tension, at) } else { sum.store_part(tension, at, n) }
+            }
             let pull = normal * lambda;
             let (at, n) = self.place::<L, FULL>(rows[link + 1]);
             reach = self.link::<L, FULL>(link).0 * L::splat(FARTHEST);
@@ -247,7 +270,14 @@ impl Chain<'_> {
             let d = q - p;
             let inverse = reciprocal_root(d.dot(d));
             let weight = (w + w_q + soft * L::splat(self.solve.per_dt2)).max(L::splat(NO_PIVOT));
-            let pull = (L::splat(1.0) - rest * inverse).div(weight);
+            let slack = self.tension::<L>(link) * soft * L::splat(self.solve.per_dt2);
+            let by = (d.dot(d) * inverse - rest - slack).div(weight);
+            if let Some(tension) = self.solve.tension {
+                let (at, n) = self.number::<L>(link);
+                let sum = self.tension::<L>(link) + by;
+                if n == L::N { sum.store(tension, at) } else { sum.store_part(tension, at, n) }
+            }
+            let pull = by * inverse;
             (p + d * (pull * w)).store(c.x, above, reached);
             q = q - d * (pull * w_q);
             (p, w, above, reached) = (q, w_q, at, n);

@@ -34,6 +34,9 @@ pub struct Solve<'a> {
     pub owner: usize,
     /// Damping time over the substep (1).
     pub gamma: f32,
+    /// The tension of each link so far in this substep, and 1 / dt^2, where links with compliance are solved more than
+    /// once a substep: without it, each pass would add a spring of its own.
+    pub tension: Option<(Column<'a>, f32)>,
 }
 
 impl Kernel for Solve<'_> {
@@ -41,14 +44,15 @@ impl Kernel for Solve<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        if self.gamma > 0.0 { self.all::<L, true>() } else { self.all::<L, false>() }
+        if self.gamma > 0.0 || self.tension.is_some() { self.all::<L, true>() } else { self.all::<L, false>() }
     }
 }
 
 impl Solve<'_> {
     #[inline(always)]
-    fn all<L: Lanes, const DAMPED: bool>(&self) {
+    fn all<L: Lanes, const SOFT: bool>(&self) {
         let (rest, gain) = (Column::read_only(&self.links.rest), Column::read_only(self.gain));
+        let soft = Column::read_only(&self.links.compliance);
         let share = &self.set.shares[self.owner];
         let w = self.columns.w;
         for run in &self.links.tuples.runs[share.runs.start as usize..share.runs.end as usize] {
@@ -61,7 +65,10 @@ impl Solve<'_> {
                 if !run.alike {
                     p = [L::load(rest, at + t), L::load(gain, at + t), L::load(w, a + t), L::load(w, b + t)];
                 }
-                self.side_by_side::<L, DAMPED>([a + t, b + t], p, L::N);
+                let slack =
+                    self.slack::<L, SOFT>(soft, [run.place(t as u32), run.serial as usize + t], run.alike, L::N);
+                let pull = self.side_by_side::<L, SOFT>([a + t, b + t], p, slack, L::N);
+                self.count::<L, SOFT>(pull, run.serial as usize + t, L::N);
                 t += L::N;
             }
             if t < len && L::N > 1 {
@@ -71,7 +78,9 @@ impl Solve<'_> {
                     let part = |c, i| L::load_part(c, i + t, n);
                     p = [part(rest, at), part(gain, at), part(w, a), part(w, b)];
                 }
-                self.side_by_side::<L, DAMPED>([a + t, b + t], p, n);
+                let slack = self.slack::<L, SOFT>(soft, [run.place(t as u32), run.serial as usize + t], run.alike, n);
+                let pull = self.side_by_side::<L, SOFT>([a + t, b + t], p, slack, n);
+                self.count::<L, SOFT>(pull, run.serial as usize + t, n);
             }
         }
         let loose = &self.links.tuples.loose;
@@ -79,14 +88,49 @@ impl Solve<'_> {
         while k < share.loose.len() {
             let n = (share.loose.len() - k).min(L::N);
             let first = share.loose.start as usize + k;
-            self.listed::<L, DAMPED>(&loose[first..first + n], [rest, gain], share.loose_at as usize + k);
+            let (at, number) = (share.loose_at as usize + k, share.loose_serial as usize + k);
+            let slack = self.slack::<L, SOFT>(soft, [at, number], false, n);
+            let pull = self.listed::<L, SOFT>(&loose[first..first + n], [rest, gain], at, slack);
+            self.count::<L, SOFT>(pull, number, n);
             k += n;
         }
     }
 
-    /// Links by index list.
+    /// What links give by their compliance under the tension that they have (m).
     #[inline(always)]
-    fn listed<L: Lanes, const DAMPED: bool>(&self, links: &[[u32; 2]], [rest, gain]: [Column<'_>; 2], at: usize) {
+    fn slack<L: Lanes, const SOFT: bool>(
+        &self,
+        soft: Column<'_>,
+        [at, number]: [usize; 2],
+        alike: bool,
+        n: usize,
+    ) -> L {
+        let Some((tension, per_dt2)) = self.tension.filter(|_| SOFT) else { return L::splat(0.0) };
+        let part = |c: Column<'_>, i| if n == L::N { L::load(c, i) } else { L::load_part(c, i, n) };
+        let soft = if alike { L::splat(soft.get(at)) } else { part(soft, at) };
+        part(tension, number) * soft * L::splat(per_dt2)
+    }
+
+    /// Adds to the tension of links.
+    #[inline(always)]
+    fn count<L: Lanes, const SOFT: bool>(&self, by: L, number: usize, n: usize) {
+        let Some((tension, _)) = self.tension.filter(|_| SOFT) else { return };
+        if n == L::N {
+            (L::load(tension, number) + by).store(tension, number);
+        } else {
+            (L::load_part(tension, number, n) + by).store_part(tension, number, n);
+        }
+    }
+
+    /// Links by index list; gives by how much their tension grew.
+    #[inline(always)]
+    fn listed<L: Lanes, const SOFT: bool>(
+        &self,
+        links: &[[u32; 2]],
+        [rest, gain]: [Column<'_>; 2],
+        at: usize,
+        slack: L,
+    ) -> L {
         let c = &self.columns;
         let n = links.len();
         let mut ends = [[0u32; MOST]; 2];
@@ -97,33 +141,51 @@ impl Solve<'_> {
         let part = |c| if n == L::N { L::load(c, at) } else { L::load_part(c, at, n) };
         let (pa, pb) = (V3::<L>::gather(c.x, a, n), V3::gather(c.x, b, n));
         let moved = || (pb - V3::gather(c.previous, b, n)) - (pa - V3::gather(c.previous, a, n));
-        let push = self.push::<L, DAMPED>(pb - pa, [part(rest), part(gain)], moved);
+        let (push, by) = self.push::<L, SOFT>(pb - pa, [part(rest), part(gain), slack], moved);
         (pa + push * L::gather(c.w, a, n)).scatter(c.x, a, n);
         (pb - push * L::gather(c.w, b, n)).scatter(c.x, b, n);
+        by
     }
 
-    /// `n` links whose ends lie side by side.
+    /// `n` links whose ends lie side by side; gives by how much their tension grew.
     #[inline(always)]
-    fn side_by_side<L: Lanes, const DAMPED: bool>(&self, [a, b]: [usize; 2], parameters: [L; 4], n: usize) {
+    fn side_by_side<L: Lanes, const SOFT: bool>(
+        &self,
+        [a, b]: [usize; 2],
+        parameters: [L; 4],
+        slack: L,
+        n: usize,
+    ) -> L {
         let [rest, gain, wa, wb] = parameters;
         let c = &self.columns;
         let (pa, pb) = (V3::<L>::load(c.x, a, n), V3::load(c.x, b, n));
         let moved = || (pb - V3::load(c.previous, b, n)) - (pa - V3::load(c.previous, a, n));
-        let push = self.push::<L, DAMPED>(pb - pa, [rest, gain], moved);
+        let (push, by) = self.push::<L, SOFT>(pb - pa, [rest, gain, slack], moved);
         (pa + push * wa).store(c.x, a, n);
         (pb - push * wb).store(c.x, b, n);
+        by
     }
 
-    /// How far a link of vector `d` draws an end of weight 1.
+    /// How far a link of vector `d` draws an end of weight 1, and by how much its tension grows.
     #[inline(always)]
-    fn push<L: Lanes, const DAMPED: bool>(&self, d: V3<L>, [rest, gain]: [L; 2], moved: impl Fn() -> V3<L>) -> V3<L> {
-        let inverse = reciprocal_root(d.dot(d));
-        // lambda / |d|: (|d| - rest) / |d| times the gain.
-        let mut pull = (L::splat(1.0) - rest * inverse) * gain;
-        if DAMPED {
-            pull = pull + d.dot(moved()) * inverse * inverse * gain * L::splat(self.gamma);
+    fn push<L: Lanes, const SOFT: bool>(
+        &self,
+        d: V3<L>,
+        [rest, gain, slack]: [L; 3],
+        moved: impl Fn() -> V3<L>,
+    ) -> (V3<L>, L) {
+        let length2 = d.dot(d);
+        let inverse = reciprocal_root(length2);
+        if !SOFT {
+            // lambda / |d|: (|d| - rest) / |d| times the gain.
+            return (d * ((L::splat(1.0) - rest * inverse) * gain), L::splat(0.0));
         }
-        d * pull
+        let mut stretch = length2 * inverse - rest - slack;
+        if self.gamma > 0.0 {
+            stretch = stretch + d.dot(moved()) * inverse * L::splat(self.gamma);
+        }
+        let by = stretch * gain;
+        (d * (by * inverse), by)
     }
 }
 
@@ -138,9 +200,9 @@ mod tests {
 
     /// Links between particles i and i + n.
     fn ladder(n: u32, rest: f32, compliance: f32) -> Links {
-        let share = Share { runs: 0..1, loose: 0..0, loose_at: n };
+        let share = Share { runs: 0..1, loose: 0..0, loose_at: n, loose_serial: n };
         let set = Set { direction: Direction::Weft, crosses: false, shares: [share, Share::default()] };
-        let runs = [Run { first: [0, n], len: n, at: 0, alike: false }].into();
+        let runs = [Run { first: [0, n], len: n, at: 0, serial: 0, alike: false }].into();
         Links {
             tuples: Tuples { runs, loose: [].into(), sets: [set].into(), count: n as usize, places: n as usize },
             rest: vec![rest; n as usize].into(),
@@ -153,7 +215,7 @@ mod tests {
         let mut gain = vec![0.0; links.rest.len()];
         prepare(links, weights, 1.0, gamma, &mut gain);
         let set = &links.tuples.sets[0];
-        width.run(Solve { columns: state.columns(), links, gain: &gain, set, owner: 0, gamma });
+        width.run(Solve { columns: state.columns(), links, gain: &gain, set, owner: 0, gamma, tension: None });
         (0..positions.len()).map(|i| Vec3::from_array(state.positions().map(|a| a[i]))).collect()
     }
 

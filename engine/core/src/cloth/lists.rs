@@ -41,6 +41,8 @@ pub struct Solve<'a> {
     pub scratch: Column<'a>,
     /// 1 / dt^2 (1/s2).
     pub per_dt2: f32,
+    /// The tension of each link so far in this substep, by its number, where they have compliance.
+    pub tension: Option<Column<'a>>,
 }
 
 impl Kernel for Solve<'_> {
@@ -78,6 +80,22 @@ impl Ring<'_> {
     fn index(&self, row: usize) -> &[u32] {
         let at = self.list.first as usize + row * self.list.lanes as usize + self.lane;
         &self.solve.lists.index[at..at + self.n]
+    }
+
+    /// Numbers of a link of these fibers.
+    #[inline(always)]
+    fn numbers(&self, link: usize) -> &[u32] {
+        let at = self.list.at as usize + link * self.list.lanes as usize + self.lane;
+        &self.solve.lists.serial[at..at + self.n]
+    }
+
+    /// Adds to the tension of a link.
+    #[inline(always)]
+    fn count<L: Lanes>(&self, link: usize, by: L) {
+        if let Some(tension) = self.solve.tension {
+            let numbers = self.numbers(link);
+            (L::gather(tension, numbers, self.n) + by).scatter(tension, numbers, self.n);
+        }
     }
 
     #[inline(always)]
@@ -142,6 +160,13 @@ impl Ring<'_> {
             let length2 = d.dot(d);
             let inverse = reciprocal_root(length2);
             let stretch = length2 * inverse - self.parameter::<L>(&self.solve.lists.rest, link);
+            let stretch = match self.solve.tension.filter(|_| !ZERO) {
+                Some(tension) => {
+                    let soft = self.parameter::<L>(&self.solve.lists.compliance, link) * L::splat(self.solve.per_dt2);
+                    stretch - L::gather(tension, self.numbers(link), self.n) * soft
+                }
+                None => stretch,
+            };
             self.keep3(link, NORMAL, d * inverse);
             self.keep(link, SIDE, if ZERO { stretch.max(L::splat(0.0)) } else { stretch });
             p = q;
@@ -194,6 +219,7 @@ impl Ring<'_> {
         let zero = L::splat(0.0);
         let end = links - 1;
         let rows = self.list.rows as usize;
+        self.count(end, last);
         let outer = self.kept3::<L>(end, NORMAL) * last;
         let mut below = outer;
         if !self.list.closed {
@@ -203,6 +229,7 @@ impl Ring<'_> {
         for link in (0..end).rev() {
             lambda = self.kept::<L>(link, SIDE) + self.kept::<L>(link, LAST) * last + factor * lambda;
             factor = self.kept(link, FACTOR);
+            self.count(link, lambda);
             let pull = self.kept3::<L>(link, NORMAL) * lambda;
             self.shift(link + 1, below - pull, link);
             below = pull;

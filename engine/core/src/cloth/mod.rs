@@ -65,6 +65,8 @@ pub struct Cloth {
     contacts: contact::Contacts,
     /// Room of each worker for a fiber's factors.
     scratch: [Store; OWNERS],
+    /// Tensions of weft links, of fibers, of crossing fibers within a substep; empty where they have no compliance.
+    tension: [Store; 3],
     /// Room for percentiles.
     pub(crate) strains: Box<[f32]>,
     prepared: step::Prepared,
@@ -95,6 +97,9 @@ impl Cloth {
             lists::scratch_len(&layout.crossing),
             lists::scratch_len(&layout.hoops),
         ];
+        let prepared = step::Prepared::new(garment);
+        let counts = [layout.weft.tuples.count, layout.fibers.links, layout.crossing.rest.len()];
+        let tension = std::array::from_fn(|k| Store::zeros(if prepared.soft(k) { counts[k] } else { 0 }));
         let scratch = || Store::zeros(needs.into_iter().max().unwrap_or(0));
         Self {
             state: State::new(&garment.start, &garment.inverse_mass),
@@ -103,7 +108,8 @@ impl Cloth {
             contacts: contact::Contacts::new(&layout.spans, &garment.parts, &garment.start, colliders),
             scratch: [scratch(), scratch()],
             strains: vec![0.0; garment.strain_edges.len()].into(),
-            prepared: step::Prepared::new(garment),
+            prepared,
+            tension,
             root: RootMotion::new(RootSettings::default()),
             origin: centre(garment),
             pushed: wind::Accelerations::new(start.len()),
@@ -154,6 +160,7 @@ impl Cloth {
             + self.pushed.bytes()
             + self.faces.as_ref().map_or(0, wind::Faces::bytes)
             + self.scratch.iter().map(Store::bytes).sum::<usize>()
+            + self.tension.iter().map(Store::bytes).sum::<usize>()
             + self.prepared.bytes()
     }
 

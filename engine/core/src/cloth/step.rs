@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use glam::{Affine3A, Vec3A};
 use toile_assets::garment::Garment;
-use toile_assets::garment::layout::{Bends, OWNERS};
+use toile_assets::garment::layout::{Bends, ENDED, OWNERS};
 use toile_assets::limits::STEP_SECONDS;
 
 use super::program::{self, Op, STAGES};
@@ -16,7 +16,7 @@ use super::{
     Cloth, Quality, Settings, Step, Wind, bending, contact, fibers, guard, links, lists, predict, settle, tethers, wind,
 };
 use crate::crew::{Crew, Own};
-use crate::lanes::{Column, Width};
+use crate::lanes::{Column, Store, Width};
 
 /// What depends on the settings, made again when they change; the storage stays.
 #[derive(Debug, Clone)]
@@ -34,6 +34,8 @@ pub struct Prepared {
     skewed_scale: Box<[f32]>,
     bend: bending::Pace,
     load: Box<[f32]>,
+    /// Whether weft links, fibers, crossing fibers have any compliance.
+    soft: [bool; 3],
 }
 
 impl Prepared {
@@ -53,6 +55,7 @@ impl Prepared {
             skewed_scale: zeros(layout.skewed.tuples.places),
             bend: bending::Pace { every: 1, least: 1.0 },
             load: zeros(garment.start.len()),
+            soft: [&layout.weft.compliance, &layout.fibers.compliance, &layout.crossing.compliance].map(|c| soft(c)),
         }
     }
 
@@ -80,6 +83,11 @@ impl Prepared {
         let least = bending::weaken(&layout.bends, &self.load, &mut self.bend_scale);
         let least = bending::weaken(&layout.skewed, &self.load, &mut self.skewed_scale).min(least);
         self.bend = bending::Pace { every: bending::every(&self.load, asked), least };
+    }
+
+    /// Whether weft links (0), fibers (1), crossing fibers (2) have any compliance.
+    pub fn soft(&self, kind: usize) -> bool {
+        self.soft[kind]
     }
 
     pub fn program(&self) -> &[Op] {
@@ -112,6 +120,8 @@ struct Work<'a> {
     /// Particle substeps that each owner held at the speed limit.
     limited: [AtomicU64; OWNERS],
     fixed: [&'a [Vec3A]; 2],
+    /// Tensions of weft links, of fibers, of crossing fibers so far in the substep; empty where they have no compliance.
+    tension: [Column<'a>; 3],
     scratch: [Column<'a>; OWNERS],
     fall: Vec3A,
     kept: f32,
@@ -239,6 +249,7 @@ impl Cloth {
             contacts: Own::new(self.contacts.owners()),
             limited: [AtomicU64::new(0), AtomicU64::new(0)],
             fixed: [&self.fixed_start, &self.fixed_end],
+            tension: self.tension.each_mut().map(Store::column),
             scratch: [one.column(), two.column()],
             fall: step.settings.gravity * dt,
             kept: (-garment.fabric.damping_per_s * dt).exp(),
@@ -314,9 +325,26 @@ impl Work<'_> {
         let p = self.prepared;
         let per_dt2 = (p.dt * p.dt).recip();
         let scratch = self.scratch[share];
-        let link = |links, gain, set| links::Solve { columns, links, gain, set, owner: share, gamma: p.gamma };
+        let link = |links, gain, set, tension| links::Solve {
+            columns,
+            links,
+            gain,
+            set,
+            owner: share,
+            gamma: p.gamma,
+            tension,
+        };
+        let tension = |k: usize| p.soft[k].then_some(self.tension[k]);
         let list =
-            |lists, set: u16| lists::Solve { columns, lists, set: usize::from(set), owner: share, scratch, per_dt2 };
+            |lists, set: u16, tension| lists::Solve {
+            columns,
+            lists,
+            set: usize::from(set),
+            owner: share,
+            scratch,
+            per_dt2,
+            tension,
+        };
         match op {
             Op::Find => self.find(share),
             Op::Wind => self.wind([wind::Part::First, wind::Part::Second][share]),
@@ -336,11 +364,11 @@ impl Work<'_> {
             Op::Predict => self.predict(substep, share),
             Op::Shear(set) => {
                 let set = &layout.shear.tuples.sets[usize::from(set)];
-                self.width.run(link(&layout.shear, &p.shear_gain, set));
+                self.width.run(link(&layout.shear, &p.shear_gain, set, None));
             }
             Op::Weft(set) => {
                 let set = &layout.weft.tuples.sets[usize::from(set)];
-                self.width.run(link(&layout.weft, &p.weft_gain, set));
+                self.width.run(link(&layout.weft, &p.weft_gain, set, tension(0).map(|t| (t, per_dt2))));
             }
             Op::Fibers => self.width.run(fibers::Solve {
                 columns,
@@ -349,10 +377,10 @@ impl Work<'_> {
                 scratch,
                 per_dt2,
                 gamma: p.gamma,
-                solver: None,
+                tension: tension(1),
             }),
-            Op::Crossing(set) => self.width.run(list(&layout.crossing, set)),
-            Op::Hoops(set) => self.width.run(list(&layout.hoops, set)),
+            Op::Crossing(set) => self.width.run(list(&layout.crossing, set, tension(2))),
+            Op::Hoops(set) => self.width.run(list(&layout.hoops, set, tension(0))),
             Op::Contact => self.contact(substep, share),
             Op::Finish => self.finish(substep, share),
         }
@@ -374,6 +402,12 @@ impl Work<'_> {
 
     fn predict(&self, substep: u32, share: usize) {
         let (columns, p) = (self.columns, self.prepared);
+        // Half of the tensions each: they start from none in every substep.
+        for tension in self.tension {
+            let half = tension.len().div_ceil(OWNERS);
+            let from = share * half;
+            (from..(from + half).min(tension.len())).for_each(|i| tension.set(i, 0.0));
+        }
         let spans = &self.garment.layout.spans[share];
         let (fall, kept, dt) = (self.fall, self.kept, p.dt);
         let pushed = (self.faces.is_some() || self.carried.is_some()).then_some((self.pushed, dt));
@@ -401,4 +435,9 @@ impl Work<'_> {
         // Relaxed: a counter that one share adds to and that is read when all is done.
         self.limited[share].fetch_add(u64::from(held), Relaxed);
     }
+}
+
+/// Whether any of some links gives: a millimetre under a thousand newtons and more.
+fn soft(compliance: &[f32]) -> bool {
+    compliance.iter().any(|c| (1e-6..ENDED).contains(c))
 }
