@@ -103,7 +103,7 @@ fn quality_and_longer_steps_ask_for_more_substeps() {
     let substeps = |head: &str| {
         let mut runner = runner(&format!("{head}{GRID}"));
         runner.step();
-        runner.substeps()[0]
+        runner.cloths()[0].substeps()
     };
     let shop = substeps("");
     assert!(substeps("[settings]\nquality = \"fine\"\n") > shop);

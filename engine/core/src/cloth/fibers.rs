@@ -7,7 +7,7 @@
 //! Macklin et al. 2016 the compliance). Particles then move by w (lambda_e n_e - lambda_(e-1) n_(e-1)).
 //!
 //! Ill-conditioned chains: a collapsed link has no direction and drops out; both ends pinned and taut, or masses far
-//! apart, leave a pivot near zero, which is held at [`LEAST_PIVOT`] of its diagonal; and no particle moves by more than
+//! apart, leave a pivot near zero, which is held at `LEAST_PIVOT` of its diagonal; and no particle moves by more than
 //! half its link in one solve, because beyond that the directions mean nothing.
 
 use toile_assets::garment::Solver;

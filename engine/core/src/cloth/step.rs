@@ -335,8 +335,7 @@ impl Work<'_> {
             tension,
         };
         let tension = |k: usize| p.soft[k].then_some(self.tension[k]);
-        let list =
-            |lists, set: u16, tension| lists::Solve {
+        let list = |lists, set: u16, tension| lists::Solve {
             columns,
             lists,
             set: usize::from(set),

@@ -1,4 +1,8 @@
 //! Laws of contact. `Bed` is a garment without cloth: particles, colliders, and nothing between them.
+//!
+//! Reads: nothing. Writes: nothing but what its tests say.
+//! Budget: seconds, at test time.
+//! Thread: the test's.
 
 mod friction;
 mod parity;

@@ -1,0 +1,292 @@
+//! What each width of x86-64 does in its own way: masks, parts of a vector, index lists, the seed of a root.
+//!
+//! Soundness: SSE2 is part of x86-64; the wider types exist only inside of `run8` and `run16`, which ask the processor.
+
+use super::*;
+
+impl Four {
+    /// The first `n < 4` numbers at a place.
+    #[inline(always)]
+    pub(super) unsafe fn read(place: *mut f32, n: usize) -> Self {
+        let mut out = [0.0; MOST];
+        for (i, v) in out.iter_mut().enumerate().take(n) {
+            // SAFETY: the caller has `n` numbers there.
+            *v = unsafe { *place.add(i) };
+        }
+        Self::from_array(&out)
+    }
+    #[inline(always)]
+    pub(super) unsafe fn write(self, place: *mut f32, n: usize) {
+        for (i, v) in self.to_array().into_iter().enumerate().take(n) {
+            // SAFETY: the caller has `n` numbers there.
+            unsafe { *place.add(i) = v };
+        }
+    }
+    #[inline(always)]
+    pub(super) fn less(self, o: Self) -> Answers4 {
+        Answers4(unsafe { _mm_cmplt_ps(self.0, o.0) })
+    }
+    #[inline(always)]
+    pub(super) fn choose(self, mask: Answers4, o: Self) -> Self {
+        Self(unsafe { _mm_or_ps(_mm_and_ps(mask.0, self.0), _mm_andnot_ps(mask.0, o.0)) })
+    }
+    #[inline(always)]
+    pub(super) fn seed(self, magic: u32) -> Self {
+        Self(unsafe {
+            let half = _mm_srli_epi32::<1>(_mm_castps_si128(self.0));
+            _mm_castsi128_ps(_mm_sub_epi32(_mm_set1_epi32(magic.cast_signed()), half))
+        })
+    }
+}
+
+/// One number after another: what widths without such an instruction do.
+macro_rules! by_hand {
+    ($name:ident, $($method:ident),+) => {
+        impl $name {
+            $(by_hand!(@ $method);)+
+        }
+    };
+    (@ pick) => {
+        #[inline(always)]
+        pub(super) fn pick(from: Column<'_>, index: &[u32]) -> Self {
+            let mut values = [0.0; MOST];
+            for (v, &i) in values.iter_mut().zip(index) {
+                *v = from.get(i as usize);
+            }
+            Self::from_array(&values)
+        }
+    };
+    (@ spread) => {
+        #[inline(always)]
+        pub(super) fn spread(self, to: Column<'_>, index: &[u32]) {
+            for (v, &i) in self.to_array().into_iter().zip(index) {
+                to.set(i as usize, v);
+            }
+        }
+    };
+}
+by_hand!(Four, pick, spread);
+by_hand!(Eight, pick, spread);
+
+impl Sixteen {
+    #[inline(always)]
+    pub(super) fn pick(from: Column<'_>, index: &[u32]) -> Self {
+        let (first, at) = Self::places(from, index);
+        Self(unsafe { _mm512_mask_i32gather_ps::<4>(_mm512_setzero_ps(), first, at, from.place(0, 0)) })
+    }
+    #[inline(always)]
+    pub(super) fn spread(self, to: Column<'_>, index: &[u32]) {
+        let (first, at) = Self::places(to, index);
+        unsafe { _mm512_mask_i32scatter_ps::<4>(to.place(0, 0), first, at, self.0) }
+    }
+    /// Which lanes are used, and their places: all within the column.
+    #[inline(always)]
+    fn places(column: Column<'_>, index: &[u32]) -> (__mmask16, __m512i) {
+        let first = Self::first(index.len().min(MOST));
+        // SAFETY: masked to the list's length.
+        let at = unsafe { _mm512_maskz_loadu_epi32(first, index.as_ptr().cast()) };
+        let len = unsafe { _mm512_set1_epi32(column.len().min(i32::MAX as usize) as i32) };
+        let outside = unsafe { _mm512_mask_cmpge_epu32_mask(first, at, len) };
+        assert!(outside == 0, "a kernel left its column");
+        (first, at)
+    }
+}
+
+impl Four {
+    #[inline(always)]
+    pub(super) fn lowest(self) -> f32 {
+        unsafe {
+            let two = _mm_min_ps(self.0, _mm_movehl_ps(self.0, self.0));
+            _mm_cvtss_f32(_mm_min_ss(two, _mm_shuffle_ps::<1>(two, two)))
+        }
+    }
+}
+
+impl Eight {
+    #[inline(always)]
+    pub(super) fn lowest(self) -> f32 {
+        let [a, b] = unsafe { [_mm256_castps256_ps128(self.0), _mm256_extractf128_ps::<1>(self.0)] };
+        Four(unsafe { _mm_min_ps(a, b) }).lowest()
+    }
+}
+
+impl Sixteen {
+    #[inline(always)]
+    pub(super) fn lowest(self) -> f32 {
+        let [a, b] = unsafe { [_mm512_castps512_ps256(self.0), _mm512_extractf32x8_ps::<1>(self.0)] };
+        Eight(unsafe { _mm256_min_ps(a, b) }).lowest()
+    }
+}
+
+// SAFETY of the following: the caller has four numbers at each place.
+impl Four {
+    #[inline(always)]
+    pub(super) unsafe fn read_quads(at: [*mut f32; 4], first: usize) -> Self {
+        Self(unsafe { _mm_loadu_ps(at[first]) })
+    }
+    #[inline(always)]
+    pub(super) unsafe fn write_quads(self, at: [*mut f32; 4], first: usize) {
+        unsafe { _mm_storeu_ps(at[first], self.0) }
+    }
+}
+
+impl Eight {
+    #[inline(always)]
+    pub(super) unsafe fn read_quads(at: [*mut f32; 4], first: usize) -> Self {
+        let [a, b] = [at[first], at[(first + 1) % 4]];
+        Self(unsafe { _mm256_insertf128_ps::<1>(_mm256_castps128_ps256(_mm_loadu_ps(a)), _mm_loadu_ps(b)) })
+    }
+    #[inline(always)]
+    pub(super) unsafe fn write_quads(self, at: [*mut f32; 4], first: usize) {
+        unsafe {
+            _mm_storeu_ps(at[first], _mm256_castps256_ps128(self.0));
+            _mm_storeu_ps(at[(first + 1) % 4], _mm256_extractf128_ps::<1>(self.0));
+        }
+    }
+}
+
+impl Sixteen {
+    #[inline(always)]
+    pub(super) unsafe fn read_quads(at: [*mut f32; 4], _: usize) -> Self {
+        unsafe {
+            let v = _mm512_castps128_ps512(_mm_loadu_ps(at[0]));
+            let v = _mm512_insertf32x4::<1>(v, _mm_loadu_ps(at[1]));
+            let v = _mm512_insertf32x4::<2>(v, _mm_loadu_ps(at[2]));
+            Self(_mm512_insertf32x4::<3>(v, _mm_loadu_ps(at[3])))
+        }
+    }
+    #[inline(always)]
+    pub(super) unsafe fn write_quads(self, at: [*mut f32; 4], _: usize) {
+        unsafe {
+            _mm_storeu_ps(at[0], _mm512_castps512_ps128(self.0));
+            _mm_storeu_ps(at[1], _mm512_extractf32x4_ps::<1>(self.0));
+            _mm_storeu_ps(at[2], _mm512_extractf32x4_ps::<2>(self.0));
+            _mm_storeu_ps(at[3], _mm512_extractf32x4_ps::<3>(self.0));
+        }
+    }
+}
+
+impl Mask for Answers4 {
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.bits() != 0
+    }
+    #[inline(always)]
+    fn and(self, o: Self) -> Self {
+        Self(unsafe { _mm_and_ps(self.0, o.0) })
+    }
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        (unsafe { _mm_movemask_ps(self.0) }).cast_unsigned()
+    }
+    #[inline(always)]
+    fn of(bits: u32) -> Self {
+        Self(unsafe {
+            let lane = _mm_setr_epi32(1, 2, 4, 8);
+            let bits = _mm_set1_epi32(bits.cast_signed());
+            _mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(bits, lane), lane))
+        })
+    }
+}
+
+impl Eight {
+    #[inline(always)]
+    pub(super) unsafe fn read(place: *mut f32, n: usize) -> Self {
+        Self(unsafe { _mm256_maskload_ps(place, Self::first(n)) })
+    }
+    #[inline(always)]
+    pub(super) unsafe fn write(self, place: *mut f32, n: usize) {
+        unsafe { _mm256_maskstore_ps(place, Self::first(n), self.0) }
+    }
+    #[inline(always)]
+    fn first(n: usize) -> __m256i {
+        unsafe { _mm256_loadu_si256(FIRST.as_ptr().add(8 - n.min(8)).cast()) }
+    }
+    #[inline(always)]
+    pub(super) fn less(self, o: Self) -> Answers8 {
+        Answers8(unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, o.0) })
+    }
+    #[inline(always)]
+    pub(super) fn choose(self, mask: Answers8, o: Self) -> Self {
+        Self(unsafe { _mm256_blendv_ps(o.0, self.0, mask.0) })
+    }
+    #[inline(always)]
+    pub(super) fn seed(self, magic: u32) -> Self {
+        Self(unsafe {
+            let half = _mm256_srli_epi32::<1>(_mm256_castps_si256(self.0));
+            _mm256_castsi256_ps(_mm256_sub_epi32(_mm256_set1_epi32(magic.cast_signed()), half))
+        })
+    }
+}
+
+impl Mask for Answers8 {
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.bits() != 0
+    }
+    #[inline(always)]
+    fn and(self, o: Self) -> Self {
+        Self(unsafe { _mm256_and_ps(self.0, o.0) })
+    }
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        (unsafe { _mm256_movemask_ps(self.0) }).cast_unsigned()
+    }
+    #[inline(always)]
+    fn of(bits: u32) -> Self {
+        Self(unsafe {
+            let lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let bits = _mm256_set1_epi32(bits.cast_signed());
+            _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(bits, lane), lane))
+        })
+    }
+}
+
+impl Sixteen {
+    #[inline(always)]
+    pub(super) unsafe fn read(place: *mut f32, n: usize) -> Self {
+        Self(unsafe { _mm512_maskz_loadu_ps(Self::first(n), place) })
+    }
+    #[inline(always)]
+    pub(super) unsafe fn write(self, place: *mut f32, n: usize) {
+        unsafe { _mm512_mask_storeu_ps(place, Self::first(n), self.0) }
+    }
+    #[inline(always)]
+    fn first(n: usize) -> __mmask16 {
+        ((1u32 << n) - 1) as __mmask16
+    }
+    #[inline(always)]
+    pub(super) fn less(self, o: Self) -> Answers16 {
+        Answers16(unsafe { _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, o.0) })
+    }
+    #[inline(always)]
+    pub(super) fn choose(self, mask: Answers16, o: Self) -> Self {
+        Self(unsafe { _mm512_mask_blend_ps(mask.0, o.0, self.0) })
+    }
+    #[inline(always)]
+    pub(super) fn seed(self, magic: u32) -> Self {
+        Self(unsafe {
+            let half = _mm512_srli_epi32::<1>(_mm512_castps_si512(self.0));
+            _mm512_castsi512_ps(_mm512_sub_epi32(_mm512_set1_epi32(magic.cast_signed()), half))
+        })
+    }
+}
+
+impl Mask for Answers16 {
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.0 != 0
+    }
+    #[inline(always)]
+    fn and(self, o: Self) -> Self {
+        Self(self.0 & o.0)
+    }
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        u32::from(self.0)
+    }
+    #[inline(always)]
+    fn of(bits: u32) -> Self {
+        Self(bits as __mmask16)
+    }
+}
