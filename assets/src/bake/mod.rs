@@ -30,7 +30,7 @@ use fibers::{Direction, Fiber};
 const LINKS_A_SUBSTEP: f32 = 16.0;
 
 /// Fewest substeps: what the legs do to the hem within a step does not get less with the mesh.
-const LEAST_SUBSTEPS: u32 = 4;
+const LEAST_SUBSTEPS: f32 = 4.0;
 
 /// Bakes one shape in one fabric. Errors name the face or vertex at fault.
 pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Garment, MeshError> {
@@ -52,6 +52,8 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
     let hoop = |f: &&Fiber| f.direction == Direction::Weft && f.vertices.first() == f.vertices.last();
     let weft = chains.iter().filter(hoop).flat_map(|f| &f.edges).map(|&i| &edges[i as usize]);
     let fixed: Vec<usize> = (0..n).filter(|&i| shape.fixed[old(i)]).collect();
+    let hung = pieces.iter().filter(|p| shape.fixed[p.vertices[0] as usize]).map(|p| p.edges.len()).sum::<usize>();
+    let hanging = hung as f32 / (n - fixed.len()).max(1) as f32;
     let layout = links::lay_out(&links::Baking {
         shape,
         fabric,
@@ -73,22 +75,24 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
         fixed: fixed.iter().map(|&i| i as u32).collect(),
         strain_edges: warp_weft.map(|e| ([new(e.a), new(e.b)], e.rest)).collect(),
         hoop_edges: weft.map(|e| ([new(e.a), new(e.b)], e.rest)).collect(),
-        substeps: substeps(&edges, &layout),
+        substeps: substeps(&edges, &layout, hanging),
         layout,
         source: order.source.clone().into(),
     })
 }
 
-/// Substeps that a garment asks for: by how many links its lowest particle hangs, twice as many where the mesh is
-/// irregular, because there Gauss-Seidel has to do what fibers do on a grid.
-fn substeps(edges: &[fibers::Edge], layout: &Layout) -> u32 {
+/// Substeps that a garment asks for: by how many links its lowest particle hangs, and up to three times as many where the
+/// mesh is irregular and where no fiber hangs from a support, because there Gauss-Seidel has to do what fibers do
+/// elsewhere. `hanging` is the share of free vertices that hang by a fiber.
+fn substeps(edges: &[fibers::Edge], layout: &Layout, hanging: f32) -> u32 {
     let lengths = edges.iter().filter(|e| e.direction == Direction::Warp).map(|e| e.rest);
     let mean = lengths.clone().sum::<f32>() / lengths.count().max(1) as f32;
     let links = layout.tethers.length.iter().copied().fold(0.0, f32::max) / mean.max(f32::MIN_POSITIVE);
     let tuples = [&layout.shear.tuples, &layout.weft.tuples];
     let [loose, all] = tuples.iter().fold([0, 0], |[l, a], t| [l + t.loose.len(), a + t.count]);
     let irregular = loose as f32 / (all.max(1)) as f32;
-    ((links * (1.0 + irregular) / LINKS_A_SUBSTEP).round() as u32).max(LEAST_SUBSTEPS)
+    let more = 1.0 + irregular + (1.0 - hanging).max(0.0);
+    ((links / LINKS_A_SUBSTEP).max(LEAST_SUBSTEPS) * more).round() as u32
 }
 
 /// Fibers without the link by which they hang from the middle of another one: so that they share no particle and can be

@@ -9,6 +9,8 @@ use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use clap_complete::Shell;
 use toile_assets::body::Sex;
 
+use toile_engine::cloth::Quality;
+
 use crate::exit::AppError;
 
 mod bake;
@@ -55,6 +57,8 @@ pub struct TryOnArgs {
     pub size: Option<String>,
     /// Whose body is shown; `None` goes by the garment.
     pub body: Option<Sex>,
+    /// How the cloth is stepped.
+    pub quality: Quality,
     /// Where the files go.
     pub out: PathBuf,
     /// Whether pictures are made.
@@ -151,6 +155,9 @@ fn try_on() -> clap::Command {
             text("size", "S", "Size to wear, as the garment's table names it [default: the one that fits]"),
             text("body", "B", "Body to show: female or male [default: whom the garment is cut for]")
                 .value_parser(["female", "male"]),
+            text("quality", "Q", "Tested settings of the cloth: draft, shop or fine")
+                .value_parser(Quality::ALL.map(Quality::name))
+                .default_value(Quality::default().name()),
             path("out", "DIR", "Folder for the files; it is made if missing").default_value("out"),
             flag("no-pictures", "Make no pictures: only the report and the physics"),
             json(),
@@ -269,6 +276,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
             garments: matches.get_many("garment").into_iter().flatten().cloned().collect(),
             size: matches.get_one("size").cloned(),
             body: matches.get_one::<String>("body").map(|b| if b == "male" { Sex::Male } else { Sex::Female }),
+            quality: matches.get_one::<String>("quality").and_then(|q| q.parse().ok()).unwrap_or_default(),
             out: required(matches, "out")?,
             pictures: !matches.get_flag("no-pictures"),
             json: matches.get_flag("json"),

@@ -141,6 +141,12 @@ pub struct Penetration {
 pub struct Physics {
     /// Steps a second of simulated time.
     pub hz: u32,
+    /// The tested settings that were used.
+    pub quality: &'static str,
+    /// Lanes that the kernels ran on.
+    pub lanes: usize,
+    /// Workers of a step.
+    pub workers: usize,
     /// Substeps of a step, which with the fabric decide the strain.
     pub substeps: u32,
     /// Particles of all garments, the skinned ones included.

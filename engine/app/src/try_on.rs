@@ -58,7 +58,8 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let (garments, recommendations) = dress(&wanted, args, &measured, &body)?;
 
     let rig = Rig::fit(&body);
-    let (mut frame, mut reader) = Frame::new(body, &rig, garments, Settings::default()).map_err(AppError::internal)?;
+    let settings = Settings { quality: args.quality, ..Settings::default() };
+    let (mut frame, mut reader) = Frame::new(body, &rig, garments, settings).map_err(AppError::internal)?;
     let track = shopper::believable(&session);
     let track = &track[shopper::stands_from(&track)..];
     let title = title(&recommendations);
@@ -225,6 +226,9 @@ fn physics(frame: &Frame) -> report::Physics {
     }
     report::Physics {
         hz: STEP_HZ,
+        quality: frame.settings().quality.name(),
+        lanes: frame.settings().width.lanes(),
+        workers: frame.settings().workers,
         substeps: frame.cloths().iter().map(|c| c.substeps()).max().unwrap_or(0),
         particles: frame.garments().iter().map(Garment::particles).sum(),
         steps: frame.tick(),

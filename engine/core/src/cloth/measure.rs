@@ -3,7 +3,7 @@
 use glam::Vec3;
 use toile_assets::garment::{Garment, Part};
 
-use super::Cloth;
+use super::{Cloth, contact};
 use crate::colliders::Colliders;
 
 /// Strain over warp and weft edges: |length / rest - 1|.
@@ -42,15 +42,19 @@ pub fn strain(cloth: &mut Cloth, garment: &Garment) -> Strain {
     Strain { mean: (sum / count as f64) as f32, p99, max }
 }
 
-/// Deepest point of a free particle inside the colliders (m), 0 if none is inside.
+/// Deepest point of a free particle inside the colliders that it can touch (m), 0 if none is inside.
 pub fn penetration(cloth: &Cloth, garment: &Garment, colliders: &Colliders) -> f32 {
     let cones = colliders.cones_at(1.0);
-    let cones = &cones[..colliders.capsules().len()];
+    let (mut part, mut reach) = (Part::Hollow, 0);
     let mut deepest = 0.0f32;
-    for ((p, part), w) in cloth.positions.iter().zip(&garment.parts).zip(&garment.inverse_mass) {
-        if *w > 0.0 && *part != Part::Hollow {
-            let depth = cones.iter().map(|c| -c.distance((*p).into()).0).fold(0.0, f32::max);
-            deepest = deepest.max(depth);
+    for ((p, &of), w) in cloth.positions.iter().zip(&garment.parts).zip(&garment.inverse_mass) {
+        if of != part {
+            (part, reach) = (of, contact::reach(of, colliders));
+        }
+        let mut bits = if *w > 0.0 { reach } else { 0 };
+        while bits != 0 {
+            deepest = deepest.max(-cones[bits.trailing_zeros() as usize].distance((*p).into()).0);
+            bits &= bits - 1;
         }
     }
     deepest
