@@ -5,7 +5,6 @@
 //! along the weft and across both diagonals, are runs too. Columns that stand in no strip are bundled by length.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use super::fibers::{Direction, Edge, Fiber};
 use crate::garment::layout::{MAX_LISTED, OWNERS};
@@ -135,24 +134,22 @@ impl Order {
         self.owner.push(owner);
     }
 
-    /// Rows of a strip, each: even columns of the first owner, of the second, odd columns likewise.
+    /// Rows of a strip, in each the even columns and then the odd ones. Owners have halves of their own in memory: where
+    /// they took turns within a row, each core's prefetcher fetched the lines that the other was writing, and two workers
+    /// took twice the time of one.
     fn strip(&mut self, pieces: &[Fiber], strip: &[usize], shared: bool) {
-        let halves: [Range<usize>; OWNERS] =
-            if shared { [0..strip.len() / 2, strip.len() / 2..strip.len()] } else { [0..strip.len(), 0..0] };
-        let mut sides = Vec::new();
-        for parity in 0..2 {
-            for (owner, half) in halves.iter().enumerate() {
-                let columns = half.clone().filter(|c| c % 2 == parity).map(|c| strip[c]);
-                sides.push(Side { owner: owner as u8, pieces: columns.collect() });
+        let middle = if shared { strip.len() / 2 } else { strip.len() };
+        for (owner, half) in [0..middle, middle..strip.len()].into_iter().enumerate() {
+            let parity = |p: usize| half.clone().filter(move |c| c % 2 == p).map(|c| strip[c]).collect();
+            let mut sides = [0, 1].map(|p| Side { owner: owner as u8, pieces: parity(p) }).to_vec();
+            sides.retain(|s| !s.pieces.is_empty());
+            for row in 0..pieces[strip[0]].vertices.len() {
+                for &p in sides.iter().flat_map(|s| &s.pieces) {
+                    self.push(pieces[p].vertices[row], owner as u8);
+                }
             }
+            self.sides.extend(sides);
         }
-        sides.retain(|s| !s.pieces.is_empty());
-        for row in 0..pieces[strip[0]].vertices.len() {
-            for side in &sides {
-                side.pieces.iter().for_each(|&p| self.push(pieces[p].vertices[row], side.owner));
-            }
-        }
-        self.sides.extend(sides);
     }
 
     /// Columns of unlike length, bundled by length; each bundle's rows lie one after the other.
