@@ -75,7 +75,8 @@ impl<const K: usize> Kernel for Bend<'_, K> {
     type Out = ();
 
     #[inline(always)]
-    fn run<L: Lanes>(self) {
+    fn run<L: Lanes>(mut self) {
+        self.columns = self.columns.level();
         let share = &self.set.shares[self.owner];
         let tuples = &self.bends.tuples;
         for run in &tuples.runs[share.runs.start as usize..share.runs.end as usize] {

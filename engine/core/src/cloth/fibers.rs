@@ -58,7 +58,8 @@ impl Kernel for Solve<'_> {
     type Out = ();
 
     #[inline(always)]
-    fn run<L: Lanes>(self) {
+    fn run<L: Lanes>(mut self) {
+        self.columns = self.columns.level();
         for bundle in self.fibers.bundles.iter().filter(|b| usize::from(b.owner) == self.owner) {
             let mut lane = 0;
             while lane < bundle.lanes as usize {

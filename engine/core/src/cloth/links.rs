@@ -43,7 +43,8 @@ impl Kernel for Solve<'_> {
     type Out = ();
 
     #[inline(always)]
-    fn run<L: Lanes>(self) {
+    fn run<L: Lanes>(mut self) {
+        self.columns = self.columns.level();
         if self.gamma > 0.0 || self.tension.is_some() { self.all::<L, true>() } else { self.all::<L, false>() }
     }
 }

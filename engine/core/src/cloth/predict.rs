@@ -25,7 +25,8 @@ impl Kernel for Predict<'_> {
     type Out = ();
 
     #[inline(always)]
-    fn run<L: Lanes>(self) {
+    fn run<L: Lanes>(mut self) {
+        self.columns = self.columns.level();
         for &(first, len) in self.spans {
             let (first, len) = (first as usize, len as usize);
             let mut t = 0;

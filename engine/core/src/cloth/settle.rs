@@ -20,7 +20,8 @@ impl Kernel for Settle<'_> {
     type Out = u32;
 
     #[inline(always)]
-    fn run<L: Lanes>(self) -> u32 {
+    fn run<L: Lanes>(mut self) -> u32 {
+        self.columns = self.columns.level();
         let mut held = 0;
         for &(first, len) in self.spans {
             let (first, len) = (first as usize, len as usize);

@@ -38,6 +38,24 @@ pub struct Columns<'a> {
     pub w: Column<'a>,
 }
 
+impl Columns<'_> {
+    /// The same with one length, known to be one: a check of one place is then a check of all columns. For kernels to
+    /// begin with.
+    #[inline(always)]
+    pub fn level(self) -> Self {
+        let len = self.w.len();
+        let [x, y, z] = self.x;
+        let [px, py, pz] = self.previous;
+        let [vx, vy, vz] = self.v;
+        Self {
+            x: [x.cut(len), y.cut(len), z.cut(len)],
+            previous: [px.cut(len), py.cut(len), pz.cut(len)],
+            v: [vx.cut(len), vy.cut(len), vz.cut(len)],
+            w: self.w,
+        }
+    }
+}
+
 impl State {
     /// At rest at these positions.
     pub fn new(positions: &[Vec3], inverse_mass: &[f32]) -> Self {

@@ -120,6 +120,16 @@ impl<'a> Column<'a> {
         (len <= self.len).then_some(Self { len, ..self })
     }
 
+    /// Its first `len` numbers; columns cut to one length share their checks.
+    ///
+    /// # Panics
+    /// Where there are not so many.
+    #[inline(always)]
+    pub fn cut(self, len: usize) -> Self {
+        assert!(len <= self.len, "a column is shorter than the others");
+        Self { len, ..self }
+    }
+
     /// Whether it has `n` numbers from `at` on.
     #[inline(always)]
     pub fn has(self, at: usize, n: usize) -> bool {
