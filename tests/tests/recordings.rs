@@ -30,7 +30,7 @@ const TRY_ONS: [(&str, &[&str], f32); 11] = [
     ("mocap/cmu/14_14.bvh", &["sun-dress"], 0.12),
     ("mocap/animated-drawings/jumping.bvh", &["sun-dress"], 0.25),
     ("mocap/animated-drawings/wave_hello.bvh", &["sun-dress"], 0.06),
-    ("mocap/animated-drawings/dab.bvh", &["sun-dress"], 0.08),
+    ("mocap/animated-drawings/dab.bvh", &["sun-dress"], 0.10),
     ("mocap/animated-drawings/zombie.bvh", &["sun-dress"], 0.06),
     ("skeleton/kinectron-kinect2/recorded_skeleton.json", &["t-shirt", "wide-trousers"], 0.25),
 ];

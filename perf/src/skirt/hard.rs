@@ -32,6 +32,9 @@ const WATCHED: usize = 240;
 /// ever after, and no two cycles of it are equal.
 const BACK: f64 = 1.25;
 
+/// Steps for which it has to stay there (a quarter of a second): a peak a cycle later is the walk's, not the fault's.
+const STAYS: usize = 30;
+
 /// How the skirt took a fault.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Recovery {
@@ -43,8 +46,8 @@ pub struct Recovery {
     pub baseline_stretch: f64,
     /// Greatest stretch of an edge from the fault on.
     pub worst_stretch: f64,
-    /// Steps after the faulty one until strain, mean and 99th percentile, is back within a quarter above its baseline
-    /// for good; the faulty step itself is the first.
+    /// Steps from the faulty one on, which is the first, until strain, mean and 99th percentile, is back within a quarter
+    /// above its baseline and stays there for a quarter of a second.
     pub recovered_steps: usize,
     /// Vertices published that were not finite, summed over the frames.
     pub nonfinite: usize,
@@ -69,7 +72,7 @@ pub fn recover(options: &Options, fault: Fault, heap: &HeapProbe) -> Result<Reco
         baseline_p99,
         baseline_stretch: greatest(|f| f.stretch_max, &undisturbed),
         worst_stretch: greatest(|f| f.stretch_max, &frames),
-        recovered_steps: frames.iter().rposition(|f| !back(f)).map_or(0, |last| last + 1),
+        recovered_steps: frames.windows(STAYS).position(|w| w.iter().all(back)).unwrap_or(frames.len()),
         nonfinite: frames.iter().map(|f| f.nonfinite).sum(),
         events,
     })

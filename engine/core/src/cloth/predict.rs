@@ -55,6 +55,8 @@ impl Predict<'_> {
         let w = if n == L::N { L::load(c.w, at) } else { L::load_part(c.w, at, n) };
         // A skinned particle has no velocity of its own.
         let kept = L::splat(self.kept).select(L::splat(0.0).lt(w), L::splat(0.0));
-        (x + v * (kept * L::splat(self.dt))).store(c.x, at, n);
+        let v = v * kept;
+        v.store(c.v, at, n);
+        (x + v * L::splat(self.dt)).store(c.x, at, n);
     }
 }

@@ -14,7 +14,7 @@ use crate::lanes::Width;
 /// Tested combinations of substeps and of what is solved in each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Quality {
-    /// Every set once a substep.
+    /// Every set once a substep, and tethers.
     Draft,
     /// Hoops and fibers twice a substep: what a shop shows.
     #[default]
@@ -80,8 +80,8 @@ pub struct Settings {
     pub wind: Option<Wind>,
     /// How the root's motion is passed on, and what happens when it jumps.
     pub root: RootSettings,
-    /// Whether each particle is held within its length along the cloth from where the garment hangs: what keeps `draft`
-    /// in shape, and nothing that a measured strain may hide behind.
+    /// Whether each particle is held within its length along the cloth from where the garment hangs. `draft` always does
+    /// it, to stay in shape; the others only when asked, so that no measured strain hides behind it.
     pub tethers: bool,
     /// Friction coefficient of what sticks, over that of what slides, which is the fabric's (1).
     pub static_friction: f32,

@@ -3,7 +3,7 @@
 use super::state::Columns;
 use crate::lanes::{Kernel, Lanes, Mask, V3, reciprocal_root};
 
-/// v = (x - previous) / dt over one owner's particles, limited to the settings' speed. A particle over the limit is
+/// v = (x - previous) / dt over one owner's particles, in a form that keeps the bits of free flight, limited to the settings' speed. A particle over the limit is
 /// also put back to where that speed would have brought it, so that position and velocity agree. Gives how many were.
 pub struct Settle<'a> {
     /// The garment's particles.
@@ -44,16 +44,23 @@ impl Settle<'_> {
     fn some<L: Lanes>(&self, at: usize, n: usize) -> u32 {
         let c = &self.columns;
         let previous = V3::<L>::load(c.previous, at, n);
-        let mut moved = V3::load(c.x, at, n) - previous;
+        let x = V3::<L>::load(c.x, at, n);
+        let foreseen = V3::<L>::load(c.v, at, n);
+        let moved = x - previous;
         let distance2 = moved.dot(moved);
         let farthest = L::splat(self.max_speed * self.dt);
         let w = if n == L::N { L::load(c.w, at) } else { L::load_part(c.w, at, n) };
         let over = (farthest * farthest).lt(distance2).and(L::splat(0.0).lt(w));
+        let per_dt = L::splat(self.dt.recip());
+        // What the constraints changed, added to the velocity that was foreseen: where they changed nothing, nothing is
+        // lost to the rounding of positions, which in short substeps is a few per cent of gravity.
+        let mut v = foreseen + (x - (previous + foreseen * L::splat(self.dt))) * per_dt;
         if over.any() {
-            moved = moved * (farthest * reciprocal_root(distance2)).select(over, L::splat(1.0));
-            (previous + moved).select(over, V3::load(c.x, at, n)).store(c.x, at, n);
+            let held = moved * (farthest * reciprocal_root(distance2)).select(over, L::splat(1.0));
+            (previous + held).select(over, x).store(c.x, at, n);
+            v = (held * per_dt).select(over, v);
         }
-        (moved * L::splat(self.dt.recip())).store(c.v, at, n);
+        v.store(c.v, at, n);
         over.bits().count_ones()
     }
 }

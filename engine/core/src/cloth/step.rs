@@ -350,7 +350,7 @@ impl Work<'_> {
             Op::CrossWind if share == 0 => self.wind(wind::Part::Crossing),
             Op::CrossWind => {}
             Op::Carry => self.carry(share),
-            Op::Tether if self.step.settings.tethers => {
+            Op::Tether if self.step.settings.tethers || p.quality == Quality::Draft => {
                 let spans = &layout.spans[share];
                 self.width.run(tethers::Hold { columns, tethers: &layout.tethers, spans });
             }
