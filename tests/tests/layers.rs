@@ -37,7 +37,10 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
             &["source"],
         ],
     ),
-    ("toile-engine", &[&["lanes", "relay"], &["body"], &["skin"], &["colliders"], &["cloth"], &["frame"]]),
+    (
+        "toile-engine",
+        &[&["lanes", "relay", "crew", "cone"], &["body", "hold"], &["skin"], &["colliders"], &["cloth"], &["frame"]],
+    ),
     ("toile-perf", &[&["time"], &["surface"], &["yardstick"], &["skinning", "skirt"]]),
 ];
 
