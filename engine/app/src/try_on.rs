@@ -224,6 +224,13 @@ fn physics(frame: &Frame) -> report::Physics {
             ));
         }
     }
+    let held = frame.colliders().held();
+    if held > 0 {
+        warnings.push(format!("collision spheres jumped or were not finite and were held {held} times"));
+    }
+    if frame.broken() > 0 {
+        warnings.push(format!("{} steps broke off in a worker; the garments kept their last places", frame.broken()));
+    }
     report::Physics {
         hz: STEP_HZ,
         quality: frame.settings().quality.name(),

@@ -241,6 +241,11 @@ impl Frame {
         self.tick
     }
 
+    /// Steps in which a worker panicked and garments kept what they had published.
+    pub fn broken(&self) -> u64 {
+        self.broken
+    }
+
     /// How the cloth is stepped.
     pub fn settings(&self) -> &Settings {
         &self.settings

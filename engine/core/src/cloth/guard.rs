@@ -18,7 +18,8 @@ pub struct Events {
     pub held_pins: u64,
     /// Steps in which the root jumped and the garment was reset or carried along.
     pub teleports: u64,
-    /// Collision spheres held because they jumped or were not finite.
+    /// Sphere steps in which a collider was not where it was said to be, because it had jumped or was not finite; since
+    /// the colliders were made.
     pub held_colliders: u64,
 }
 

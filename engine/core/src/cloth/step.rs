@@ -180,6 +180,8 @@ impl Cloth {
             RootStep::Keep(moved) => {
                 moved.apply(width, columns, all);
                 self.fixed_start.iter_mut().for_each(|p| *p = moved.point(*p));
+                // What the guard would roll back to goes along.
+                self.positions.iter_mut().for_each(|p| *p = moved.point(*p));
             }
             RootStep::Reset => {
                 let dressed = |i: usize| step.palette[0].transform_point3a(garment.start[i].into());
@@ -194,6 +196,7 @@ impl Cloth {
     /// What comes after them: nothing that is not finite is published. `failed` says that a worker panicked.
     fn end(&mut self, garment: &Garment, step: &Step<'_>, limited: u64, failed: bool) {
         self.events.speed_limited += limited;
+        self.events.held_colliders = step.colliders.held();
         let columns = self.state.columns();
         let width = step.settings.width;
         if !failed && width.run(guard::Sound(columns.x)) && width.run(guard::Sound(columns.v)) {

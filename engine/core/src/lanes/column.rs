@@ -113,13 +113,6 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// Its first `len` numbers. Columns cut to one length share their checks: a kernel that asks [`Self::has`] of one of
-    /// them before it loads and stores has asked it of all.
-    #[inline(always)]
-    pub fn first(self, len: usize) -> Option<Self> {
-        (len <= self.len).then_some(Self { len, ..self })
-    }
-
     /// Its first `len` numbers; columns cut to one length share their checks.
     ///
     /// # Panics
@@ -128,12 +121,6 @@ impl<'a> Column<'a> {
     pub fn cut(self, len: usize) -> Self {
         assert!(len <= self.len, "a column is shorter than the others");
         Self { len, ..self }
-    }
-
-    /// Whether it has `n` numbers from `at` on.
-    #[inline(always)]
-    pub fn has(self, at: usize, n: usize) -> bool {
-        at <= self.len && n <= self.len - at
     }
 
     /// Where `n` numbers from `at` on lie.

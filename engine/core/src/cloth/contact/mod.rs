@@ -68,16 +68,6 @@ impl Contacts {
         &mut self.owners
     }
 
-    /// [`Owner::find`] of one worker.
-    pub fn find(&mut self, worker: usize, width: Width, cols: Columns<'_>, around: &Colliders, how: &ContactSettings) {
-        self.owners[worker & 1].find(width, cols, around, how);
-    }
-
-    /// [`Owner::solve`] of one worker.
-    pub fn solve(&mut self, worker: usize, width: Width, cols: Columns<'_>, span: [f32; 2], how: &ContactSettings) {
-        self.owners[worker & 1].solve(width, cols, span, how);
-    }
-
     /// What contact did so far, all workers together.
     pub fn tally(&self) -> Tally {
         let [a, b] = [self.owners[0].tally, self.owners[1].tally];

@@ -92,12 +92,12 @@ impl Bed {
 
     pub fn find(&mut self, colliders: &Colliders) {
         let cols = self.state.columns();
-        (0..2).for_each(|w| self.contacts.find(w, self.width, cols, colliders, &self.how));
+        (0..2).for_each(|w| self.contacts.owners()[w].find(self.width, cols, colliders, &self.how));
     }
 
     pub fn solve(&mut self, span: [f32; 2]) {
         let cols = self.state.columns();
-        (0..2).for_each(|w| self.contacts.solve(w, self.width, cols, span, &self.how));
+        (0..2).for_each(|w| self.contacts.owners()[w].solve(self.width, cols, span, &self.how));
     }
 
     pub fn positions(&mut self) -> Vec<Vec3> {
