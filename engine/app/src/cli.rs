@@ -16,10 +16,12 @@ use crate::exit::AppError;
 mod bake;
 mod run;
 mod skirt;
+mod torture;
 
 pub use bake::BakeArgs;
 pub use run::{RunArgs, RunScene};
 pub use skirt::SkirtArgs;
+pub use torture::TortureArgs;
 
 /// What the user asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,6 +42,8 @@ pub enum Command {
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
     BenchSkirt(SkirtArgs),
+    /// `toile torture`.
+    Torture(TortureArgs),
     /// `toile completions`.
     Completions(Shell),
     /// Help or version: text to print.
@@ -137,7 +141,7 @@ pub fn command() -> clap::Command {
         )
         .override_usage("toile [OPTIONS OF TRY-ON]\n       toile <COMMAND>")
         .subcommand_required(true)
-        .subcommands([try_on(), measure(), record(), bake::grammar(), run::grammar(), doctor(), bench(), completions()])
+        .subcommands([try_on(), measure(), record(), bake::grammar(), run::grammar(), doctor(), bench(), torture::grammar(), completions()])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
 }
 
@@ -299,6 +303,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
         "bake" => Command::Bake(bake::args(matches)?),
         "bench" => bench_command(matches)?,
+        "torture" => Command::Torture(torture::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
     })

@@ -22,6 +22,7 @@ pub mod run;
 pub mod shopper;
 pub mod summary;
 pub mod terminal;
+pub mod torture;
 pub mod try_on;
 
 use std::ffi::OsString;
@@ -65,6 +66,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Bake(args) => bake::run(args),
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
+        Command::Torture(args) => torture::run(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }

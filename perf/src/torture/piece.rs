@@ -1,0 +1,127 @@
+//! The pieces that are tortured: small cloths whose place of rest is the only one.
+
+use std::f32::consts::TAU;
+
+use glam::{Affine3A, Vec3, Vec3A};
+use toile_assets::bake::bake;
+use toile_assets::fabric::Fabric;
+use toile_assets::garment::{Garment, MeshError, Part, Shape};
+use toile_assets::mesh::SkinWeights;
+use toile_assets::skeleton::BONES;
+use toile_engine::cloth::{Cloth, Settings, Step};
+use toile_engine::colliders::Colliders;
+
+/// Columns and rows of the curtain: 360 particles of which the upper row is held.
+pub const CURTAIN: [usize; 2] = [15, 24];
+
+/// Columns and rows of the patch, for cases in which each seed has a cloth of its own, and for long rests.
+pub const PATCH: [usize; 2] = [9, 14];
+
+/// From thread to thread (m).
+const CELL_M: f32 = 0.02;
+
+/// Where the upper edge hangs (m): in the height of a person, because f32 is coarser there than about the origin.
+pub const TOP: Vec3 = Vec3::new(0.0, 1.5, 0.0);
+
+/// Rate at which the air damps motion (1/s). The built-in fabrics have 1/s, with which a swing of 0.3 m is still one of 20
+/// mm after five seconds, whoever solves it; with this rate it is one of 1e-6 m, and what is farther away is an error.
+pub const DAMPING_PER_S: f32 = 6.0;
+
+/// Steps until a piece that was left alone counts as at rest.
+const SETTLE_STEPS: usize = 1_800;
+
+/// A garment, and where it rests.
+#[derive(Debug, Clone)]
+pub struct Piece {
+    /// The garment.
+    pub garment: Garment,
+    /// The cloth at rest.
+    pub settled: Cloth,
+    /// Where each particle then is (m) `[particles]`.
+    pub rest: Box<[Vec3]>,
+}
+
+impl Piece {
+    /// Bakes a shape and lets it come to rest by itself.
+    ///
+    /// # Errors
+    /// Where the shape cannot be baked.
+    pub fn new(shape: &Shape, fabric: &Fabric, settings: &Settings) -> Result<Self, MeshError> {
+        let garment = bake("torture", "one", shape, fabric)?;
+        let settled = settled(&garment, settings);
+        let rest = settled.positions.iter().map(|p| Vec3::from(*p)).collect();
+        Ok(Self { garment, settled, rest })
+    }
+
+    /// The particles of a vertex row by row: particle `[vertex]`.
+    pub fn particles(&self) -> Vec<usize> {
+        let mut particle = vec![0; self.garment.particles()];
+        self.garment.source.iter().enumerate().for_each(|(i, &v)| particle[v as usize] = i);
+        particle
+    }
+}
+
+/// The garment after it was left alone with nothing about it.
+fn settled(garment: &Garment, settings: &Settings) -> Cloth {
+    let colliders = Colliders::new(&[], &[], false).expect("no colliders are within every limit");
+    let palette = [Affine3A::IDENTITY; BONES];
+    let mut cloth = Cloth::new(garment, &colliders).in_wind(garment);
+    for _ in 0..SETTLE_STEPS {
+        cloth.step(garment, &Step { palette: &palette, colliders: &colliders, settings });
+    }
+    cloth
+}
+
+/// Light cotton in much air.
+///
+/// # Panics
+/// Where the fabric is not built in, which its own tests rule out.
+pub fn fabric() -> Fabric {
+    let lawn = Fabric::built_in("cotton-lawn").expect("a fabric that is built in");
+    Fabric { damping_per_s: DAMPING_PER_S, ..lawn }
+}
+
+/// A cloth that hangs by its whole upper edge; the pins follow bones 0 and 1, half each. Vertices row by row from above.
+pub fn sheet([columns, rows]: [usize; 2]) -> Shape {
+    let mut shape = Shape::default();
+    for v in 0..columns * rows {
+        let (row, column) = (v / columns, v % columns);
+        let x = (column as f32 - 0.5 * (columns - 1) as f32) * CELL_M;
+        let p = TOP + Vec3::new(x, -(row as f32) * CELL_M, 0.0);
+        shape.push(p, p, row == 0, Part::All);
+        shape.weights.push(SkinWeights { bones: [0, 1, 0, 0], weights: [0.5, 0.5, 0.0, 0.0] });
+    }
+    let at = |row: usize, column: usize| (row * columns + column) as u32;
+    for row in 1..rows {
+        for column in 1..columns {
+            shape.faces.push([at(row, column - 1), at(row, column), at(row - 1, column), at(row - 1, column - 1)]);
+        }
+    }
+    shape
+}
+
+/// A tube that hangs by its upper ring, cut `cut_radius` wide and worn `worn_radius` wide (m).
+pub fn tube([columns, rows]: [usize; 2], cut_radius: f32, worn_radius: f32) -> Shape {
+    let mut shape = Shape::default();
+    for v in 0..columns * rows {
+        let (row, column) = (v / columns, v % columns);
+        let (sin, cos) = (column as f32 / columns as f32 * TAU).sin_cos();
+        let at = |radius: f32| TOP + Vec3::new(radius * cos, -(row as f32) * CELL_M, radius * sin);
+        shape.push(at(cut_radius), at(worn_radius), row == 0, Part::All);
+        shape.weights.push(SkinWeights { bones: [0, 1, 0, 0], weights: [0.5, 0.5, 0.0, 0.0] });
+    }
+    let at = |row: usize, column: usize| (row * columns + column % columns) as u32;
+    for row in 1..rows {
+        for column in 0..columns {
+            shape.faces.push([at(row, column + 1), at(row, column), at(row - 1, column), at(row - 1, column + 1)]);
+        }
+    }
+    shape
+}
+
+/// Whether every position of a cloth, and every velocity, is a number.
+pub fn nonfinite(cloth: &Cloth) -> u64 {
+    let bad = |v: &Vec3A| !v.is_finite();
+    let velocities = (0..cloth.positions.len()).map(|i| cloth.velocity(i));
+    (cloth.positions.iter().filter(|p| bad(p)).count() + velocities.filter(bad).count()) as u64
+}
