@@ -16,6 +16,8 @@ pub struct Events {
     pub speed_limited: u64,
     /// Skinned particles whose target was not finite and that were held.
     pub held_pins: u64,
+    /// Steps whose settings no step can be made with; it was made with sound ones.
+    pub held_settings: u64,
     /// Steps in which the root jumped and the garment was reset or carried along.
     pub teleports: u64,
     /// Sphere steps in which a collider was not where it was said to be, because it had jumped or was not finite; since

@@ -11,6 +11,7 @@ use toile_assets::limits::STEP_SECONDS;
 
 use super::program::{self, Op, STAGES};
 use super::root::{Carried, RootStep};
+use super::settings::MAX_SUBSTEPS;
 use super::state::{self, Columns};
 use super::{
     Cloth, Quality, Settings, Step, Wind, bending, contact, fibers, guard, links, lists, predict, settle, tethers, wind,
@@ -64,7 +65,7 @@ impl Prepared {
         // The bake speaks of steps of 1/120 s.
         let longer = (settings.step_seconds / STEP_SECONDS).max(1.0);
         let chosen = (settings.quality.substeps(garment.substeps) as f32 * longer).ceil() as u32;
-        let asked = settings.substeps.unwrap_or(chosen).max(1);
+        let asked = settings.substeps.unwrap_or(chosen).clamp(1, MAX_SUBSTEPS);
         self.quality = settings.quality;
         let made_for = (asked, settings.step_seconds, settings.stretch_damping_s);
         if self.made_for == Some(made_for) {
@@ -131,6 +132,8 @@ struct Work<'a> {
 impl Cloth {
     /// One step of the settings' length, both shares on the caller's thread.
     pub fn step(&mut self, garment: &Garment, step: &Step<'_>) {
+        let settings = self.sound(step.settings);
+        let step = &Step { settings: &settings, ..*step };
         let carried = self.begin(garment, step);
         let timed = step.settings.timed;
         let mut stage_ns = [0; STAGES.len()];
@@ -154,11 +157,20 @@ impl Cloth {
         if crew.workers() < OWNERS || garment.layout.spans[1].is_empty() {
             return self.step(garment, step);
         }
+        let settings = self.sound(step.settings);
+        let step = &Step { settings: &settings, ..*step };
         let carried = self.begin(garment, step);
         let work = self.work(garment, step, carried);
         let failed = crew.run(work.phases(), |phase, share| work.phase(phase, share)).is_err();
         let limited = work.limited();
         self.end(garment, step, limited, failed);
+    }
+
+    /// Settings that a step can be made with.
+    fn sound(&mut self, settings: &Settings) -> Settings {
+        let sound = settings.sound();
+        self.events.held_settings += u64::from(sound != *settings);
+        sound
     }
 
     /// What comes before the phases: targets of the skinned particles, the root's motion, repairs.
