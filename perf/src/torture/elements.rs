@@ -6,7 +6,7 @@ use toile_assets::garment::{MeshError, Shape};
 
 use super::Site;
 use super::found::Found;
-use super::piece::{PATCH, Piece, fabric, sheet};
+use super::piece::{PATCH, Piece, denim, sheet};
 use super::random::Random;
 use super::start::swung;
 use super::trial::Trial;
@@ -49,7 +49,7 @@ pub(super) fn bad_elements(site: &Site, random: &mut Random, seed: u64) -> Found
 
 /// A mesh that must not become a garment.
 fn refused(shape: &Shape, face: usize) -> Found {
-    match bake("torture", "one", shape, &fabric()) {
+    match bake("torture", "one", shape, &denim()) {
         Err(error @ MeshError::Degenerate { .. }) => Found { note: error.to_string(), ..Found::default() },
         Err(error) => Found { miss: Some(format!("refused for another reason: {error}")), ..Found::default() },
         Ok(_) => Found { miss: Some(format!("face {face} was baked")), ..Found::default() },
@@ -58,7 +58,7 @@ fn refused(shape: &Shape, face: usize) -> Found {
 
 /// A mesh that can be baked, and must then hang.
 fn survived(site: &Site, shape: &Shape, random: &mut Random) -> Found {
-    let piece = match Piece::new(shape, &fabric(), &site.settings) {
+    let piece = match Piece::new(shape, &denim(), &site.settings) {
         Ok(piece) => piece,
         Err(error) => return Found { miss: Some(error.to_string()), ..Found::default() },
     };

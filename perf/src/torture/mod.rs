@@ -103,7 +103,7 @@ struct Site {
 impl Site {
     fn new(quality: Quality) -> Result<Self, MeshError> {
         let settings = Settings { quality, workers: 1, ..Settings::default() };
-        let fabric = piece::fabric();
+        let fabric = piece::denim();
         Ok(Self {
             curtain: Piece::new(&piece::sheet(CURTAIN), &fabric, &settings)?,
             patch: Piece::new(&piece::sheet(PATCH), &fabric, &settings)?,

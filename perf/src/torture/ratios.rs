@@ -9,7 +9,7 @@ use toile_engine::cloth::Settings;
 
 use super::Site;
 use super::found::Found;
-use super::piece::{DAMPING_PER_S, PATCH, Piece, TOP, fabric, sheet};
+use super::piece::{DAMPING_PER_S, PATCH, Piece, TOP, denim, sheet};
 use super::random::Random;
 use super::start::swung;
 use super::trial::Trial;
@@ -44,7 +44,7 @@ pub(super) fn mass_ratio(site: &Site, random: &mut Random, _: u64) -> Found {
     let ends = [free(random), free(random)];
     shape.heavier[ends[0]] = 10f32.powf(-HALF_DECADES);
     shape.heavier[ends[1]] = 10f32.powf(HALF_DECADES);
-    own(site, &shape, &fabric(), random)
+    own(site, &shape, &denim(), random)
 }
 
 /// Threads one way 10,000 times stiffer than the other way.
@@ -53,7 +53,7 @@ pub(super) fn stiffness_ratio(site: &Site, random: &mut Random, seed: u64) -> Fo
     let stiff = soft * 1e4;
     let [warp, weft] = if seed.is_multiple_of(2) { [soft, stiff] } else { [stiff, soft] };
     let shear_n_m = random.decades(0.5, 3.0);
-    let fabric = Fabric { stretch_warp_n_m: warp, stretch_weft_n_m: weft, shear_n_m, ..fabric() };
+    let fabric = Fabric { stretch_warp_n_m: warp, stretch_weft_n_m: weft, shear_n_m, ..denim() };
     own(site, &sheet(PATCH), &fabric, random)
 }
 
@@ -102,7 +102,7 @@ impl Chain<'_> {
             bend_warp_un_m: 0.0,
             bend_weft_un_m: 0.0,
             shear_n_m: 1.0,
-            ..fabric()
+            ..denim()
         };
         let even = bake("chain", "one", &shape, &fabric).expect("a straight ribbon can be baked");
         shape.heavier = vec![1.0; shape.cut.len()];

@@ -21,33 +21,38 @@ const STRETCH: f32 = 5.0;
 /// Fastest push of what swings (m/s).
 const PUSH_M_S: f32 = 3.0;
 
+/// How far nothing is from where it is meant to be (m). What lies exactly in the plane that it hangs in could leave it to
+/// either side as well and so, by symmetry, never does: an equilibrium, but not one that anything real is found in.
+const TREMBLE_M: f32 = 1e-5;
+
 /// Puts the curtain's free particles elsewhere, at rest, and lets go.
-fn from(site: &Site, mut to: impl FnMut(usize, Vec3) -> Vec3) -> Found {
+fn from(site: &Site, random: &mut Random, mut to: impl FnMut(usize, Vec3) -> Vec3) -> Found {
     let mut trial = Trial::new(&site.curtain.garment, &site.settings);
-    trial.disturb(|i, p| (to(i, p), Vec3::ZERO));
+    trial.disturb(|i, p| (to(i, p) + random.point() * TREMBLE_M, Vec3::ZERO));
     Found::back(trial, &site.curtain.rest)
 }
 
 pub(super) fn random_box(site: &Site, random: &mut Random, _: u64) -> Found {
-    from(site, |_, _| MIDDLE + random.point() * BOX_M)
+    let mut strewn = random.clone();
+    from(site, random, |_, _| MIDDLE + strewn.point() * BOX_M)
 }
 
 /// Into a plane through the middle: what stands across it is gone.
 pub(super) fn flattened(site: &Site, random: &mut Random, _: u64) -> Found {
     let across = random.direction();
-    from(site, |_, p| p - across * across.dot(p - MIDDLE))
+    from(site, random, |_, p| p - across * across.dot(p - MIDDLE))
 }
 
 pub(super) fn inverted(site: &Site, random: &mut Random, _: u64) -> Found {
     let across = random.direction();
-    from(site, |_, p| p - 2.0 * across * across.dot(p - MIDDLE))
+    from(site, random, |_, p| p - 2.0 * across * across.dot(p - MIDDLE))
 }
 
 /// Along one direction or, every second seed, along all.
 pub(super) fn stretched(site: &Site, random: &mut Random, seed: u64) -> Found {
     let along = random.direction();
     let grown = |d: Vec3| if seed.is_multiple_of(2) { along * along.dot(d) } else { d };
-    from(site, |_, p| p + grown(p - TOP) * (STRETCH - 1.0))
+    from(site, random, |_, p| p + grown(p - TOP) * (STRETCH - 1.0))
 }
 
 /// A warp fiber or a weft fiber, at the place of one of its particles.
@@ -59,7 +64,7 @@ pub(super) fn collapsed_fiber(site: &Site, random: &mut Random, seed: u64) -> Fo
     let to = if warp { (1 + random.below(rows - 1)) * columns + fiber } else { fiber * columns + random.below(columns) };
     let place = site.curtain.garment.start[site.curtain.particles()[to]];
     let source = &site.curtain.garment.source;
-    from(site, |i, p| {
+    from(site, random, |i, p| {
         let v = source[i] as usize;
         let of = if warp { v % columns } else { v / columns };
         if of == fiber { place } else { p }
@@ -68,7 +73,7 @@ pub(super) fn collapsed_fiber(site: &Site, random: &mut Random, seed: u64) -> Fo
 
 pub(super) fn collapsed_cloth(site: &Site, random: &mut Random, _: u64) -> Found {
     let place = MIDDLE + random.point() * BOX_M;
-    from(site, |_, _| place)
+    from(site, random, |_, _| place)
 }
 
 /// A cloth that hangs askew, turned about its upper edge, each particle pushed another way.

@@ -127,7 +127,8 @@ impl<'a> Trial<'a> {
         let put = |e: &Events| (e.repaired, e.rolled_back, e.teleports);
         let moved = put(&self.cloth.events) == put(&self.told);
         self.told = self.cloth.events;
-        let dt = self.settings.step_seconds;
+        // What no step can be made with is not what the step was made with.
+        let dt = self.settings.sound().step_seconds;
         for (i, w) in self.garment.inverse_mass.iter().enumerate() {
             if *w > 0.0 {
                 let way = if moved { self.cloth.positions[i].distance(self.before[i]) / dt } else { 0.0 };
@@ -146,7 +147,7 @@ impl<'a> Trial<'a> {
             self.step();
             since = if is_near(&self.cloth.positions, rest) { since.or(Some(step as f32 * dt)) } else { None };
         }
-        Recovery { after_s: since, hausdorff_m: hausdorff(&self.cloth.positions, rest) }
+Recovery { after_s: since, hausdorff_m: hausdorff(&self.cloth.positions, rest) }
     }
 }
 
