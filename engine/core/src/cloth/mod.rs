@@ -93,6 +93,7 @@ impl Cloth {
         let fixed: Box<[Vec3A]> = garment.fixed.iter().map(|&i| start[i as usize]).collect();
         let layout = &garment.layout;
         let needs = [
+            bending::SCRATCH,
             fibers::scratch_len(&layout.fibers),
             lists::scratch_len(&layout.crossing),
             lists::scratch_len(&layout.hoops),

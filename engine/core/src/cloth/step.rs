@@ -393,12 +393,12 @@ impl Work<'_> {
         let Some(set) = bends.tuples.sets.get(number) else { return };
         let (columns, dt) = (self.columns, self.prepared.dt * self.prepared.bend.every as f32);
         let scale = (self.prepared.bend.least < 1.0).then_some(scale);
-        if set.crosses {
-            if share == 0 {
-                (0..OWNERS).for_each(|owner| self.width.run(bending::Bend { columns, bends, set, owner, dt, scale }));
-            }
-        } else {
-            self.width.run(bending::Bend { columns, bends, set, owner: share, dt, scale });
+        let scratch = self.scratch[share];
+        let bend = |owner| self.width.run(bending::Bend { columns, bends, set, owner, dt, scale, scratch });
+        if !set.crosses {
+            bend(share);
+        } else if share == 0 {
+            (0..OWNERS).for_each(bend);
         }
     }
 

@@ -5,21 +5,33 @@
 use super::*;
 
 impl Four {
-    /// The first `n < 4` numbers at a place.
+    /// The first `n < 4` numbers at a place. Never by way of an array: a vector read from what was just written number
+    /// by number has to wait until all of it has reached the cache.
     #[inline(always)]
     pub(super) unsafe fn read(place: *mut f32, n: usize) -> Self {
-        let mut out = [0.0; MOST];
-        for (i, v) in out.iter_mut().enumerate().take(n) {
-            // SAFETY: the caller has `n` numbers there.
-            *v = unsafe { *place.add(i) };
-        }
-        Self::from_array(&out)
+        // SAFETY: the caller has `n` numbers there.
+        Self(unsafe {
+            match n {
+                1 => _mm_load_ss(place),
+                2 => _mm_castpd_ps(_mm_load_sd(place.cast())),
+                3 => _mm_movelh_ps(_mm_castpd_ps(_mm_load_sd(place.cast())), _mm_load_ss(place.add(2))),
+                _ => _mm_setzero_ps(),
+            }
+        })
     }
     #[inline(always)]
     pub(super) unsafe fn write(self, place: *mut f32, n: usize) {
-        for (i, v) in self.to_array().into_iter().enumerate().take(n) {
-            // SAFETY: the caller has `n` numbers there.
-            unsafe { *place.add(i) = v };
+        // SAFETY: the caller has `n` numbers there.
+        unsafe {
+            match n {
+                1 => _mm_store_ss(place, self.0),
+                2 => _mm_store_sd(place.cast(), _mm_castps_pd(self.0)),
+                3 => {
+                    _mm_store_sd(place.cast(), _mm_castps_pd(self.0));
+                    _mm_store_ss(place.add(2), _mm_movehl_ps(self.0, self.0));
+                }
+                _ => {}
+            }
         }
     }
     #[inline(always)]
