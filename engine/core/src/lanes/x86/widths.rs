@@ -179,6 +179,8 @@ impl Sixteen {
 }
 
 impl Mask for Answers4 {
+    const N: usize = 4;
+
     #[inline(always)]
     fn any(self) -> bool {
         self.bits() != 0
@@ -232,6 +234,8 @@ impl Eight {
 }
 
 impl Mask for Answers8 {
+    const N: usize = 8;
+
     #[inline(always)]
     fn any(self) -> bool {
         self.bits() != 0
@@ -285,6 +289,8 @@ impl Sixteen {
 }
 
 impl Mask for Answers16 {
+    const N: usize = 16;
+
     #[inline(always)]
     fn any(self) -> bool {
         self.0 != 0
@@ -300,5 +306,53 @@ impl Mask for Answers16 {
     #[inline(always)]
     fn of(bits: u32) -> Self {
         Self(bits as __mmask16)
+    }
+}
+
+// The lanes of a fiber's neighbours: one lane on, one lane back.
+impl Four {
+    #[inline(always)]
+    pub(super) fn down(self) -> Self {
+        Self(unsafe { _mm_shuffle_ps::<0b00_11_10_01>(self.0, self.0) })
+    }
+    #[inline(always)]
+    pub(super) fn up(self) -> Self {
+        Self(unsafe { _mm_shuffle_ps::<0b10_01_00_11>(self.0, self.0) })
+    }
+    #[inline(always)]
+    pub(super) fn but_first(self, other: Self) -> Self {
+        Self(unsafe { _mm_move_ss(self.0, other.0) })
+    }
+}
+
+impl Eight {
+    #[inline(always)]
+    pub(super) fn down(self) -> Self {
+        Self(unsafe { _mm256_permutevar8x32_ps(self.0, _mm256_setr_epi32(1, 2, 3, 4, 5, 6, 7, 0)) })
+    }
+    #[inline(always)]
+    pub(super) fn up(self) -> Self {
+        Self(unsafe { _mm256_permutevar8x32_ps(self.0, _mm256_setr_epi32(7, 0, 1, 2, 3, 4, 5, 6)) })
+    }
+    #[inline(always)]
+    pub(super) fn but_first(self, other: Self) -> Self {
+        Self(unsafe { _mm256_blend_ps::<1>(self.0, other.0) })
+    }
+}
+
+impl Sixteen {
+    #[inline(always)]
+    pub(super) fn down(self) -> Self {
+        let v = unsafe { _mm512_castps_si512(self.0) };
+        Self(unsafe { _mm512_castsi512_ps(_mm512_alignr_epi32::<1>(v, v)) })
+    }
+    #[inline(always)]
+    pub(super) fn up(self) -> Self {
+        let v = unsafe { _mm512_castps_si512(self.0) };
+        Self(unsafe { _mm512_castsi512_ps(_mm512_alignr_epi32::<15>(v, v)) })
+    }
+    #[inline(always)]
+    pub(super) fn but_first(self, other: Self) -> Self {
+        Self(unsafe { _mm512_mask_blend_ps(1, self.0, other.0) })
     }
 }
