@@ -70,6 +70,21 @@ impl<L: Numbers> V3<L> {
     pub fn select(self, mask: L::Mask, other: Self) -> Self {
         Self { x: self.x.select(mask, other.x), y: self.y.select(mask, other.y), z: self.z.select(mask, other.z) }
     }
+    /// [`Numbers::rotate_down`].
+    #[inline(always)]
+    pub fn rotate_down(self) -> Self {
+        Self { x: self.x.rotate_down(), y: self.y.rotate_down(), z: self.z.rotate_down() }
+    }
+    /// [`Numbers::rotate_up`].
+    #[inline(always)]
+    pub fn rotate_up(self) -> Self {
+        Self { x: self.x.rotate_up(), y: self.y.rotate_up(), z: self.z.rotate_up() }
+    }
+    /// [`Numbers::with_first`].
+    #[inline(always)]
+    pub fn with_first(self, o: Self) -> Self {
+        Self { x: self.x.with_first(o.x), y: self.y.with_first(o.y), z: self.z.with_first(o.z) }
+    }
 }
 
 impl<L: Lanes> V3<L> {
@@ -98,21 +113,6 @@ impl<L: Lanes> V3<L> {
         self.x.store_quads(to[0], quads, lane);
         self.y.store_quads(to[1], quads, lane);
         self.z.store_quads(to[2], quads, lane);
-    }
-    /// [`Lanes::rotate_down`].
-    #[inline(always)]
-    pub fn rotate_down(self) -> Self {
-        Self { x: self.x.rotate_down(), y: self.y.rotate_down(), z: self.z.rotate_down() }
-    }
-    /// [`Lanes::rotate_up`].
-    #[inline(always)]
-    pub fn rotate_up(self) -> Self {
-        Self { x: self.x.rotate_up(), y: self.y.rotate_up(), z: self.z.rotate_up() }
-    }
-    /// [`Lanes::with_first`].
-    #[inline(always)]
-    pub fn with_first(self, o: Self) -> Self {
-        Self { x: self.x.with_first(o.x), y: self.y.with_first(o.y), z: self.z.with_first(o.z) }
     }
 }
 

@@ -72,6 +72,12 @@ pub trait Numbers: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output =
     fn select(self, mask: Self::Mask, other: Self) -> Self;
     /// The number whose bits are `magic - (bits >> 1)`: the seed of a reciprocal root.
     fn root_seed(self, magic: u32) -> Self;
+    /// Each lane's number from the lane above it; the last lane's from the first.
+    fn rotate_down(self) -> Self;
+    /// Each lane's number from the lane below it; the first lane's from the last.
+    fn rotate_up(self) -> Self;
+    /// Its numbers, but the first lane's from another.
+    fn with_first(self, other: Self) -> Self;
 }
 
 /// A vector of the processor.
@@ -114,12 +120,6 @@ pub trait Lanes: Numbers {
         let values = self.to_array();
         values[1..Self::N].iter().fold(values[0], |least, v| if *v < least { *v } else { least })
     }
-    /// Each lane's number from the lane above it; the last lane's from the first.
-    fn rotate_down(self) -> Self;
-    /// Each lane's number from the lane below it; the first lane's from the last.
-    fn rotate_up(self) -> Self;
-    /// Its numbers, but the first lane's from another.
-    fn with_first(self, other: Self) -> Self;
 }
 
 /// A kernel for any lanes. `run` has to be `#[inline(always)]`, or it is not compiled for the width it is called at.

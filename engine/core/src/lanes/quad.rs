@@ -108,17 +108,6 @@ impl Numbers for Four {
     fn root_seed(self, magic: u32) -> Self {
         Self(self.0.map(|v| v.root_seed(magic)))
     }
-}
-
-impl Lanes for Four {
-    #[inline(always)]
-    fn from_array(values: &[f32; MOST]) -> Self {
-        Self(std::array::from_fn(|i| values[i]))
-    }
-    #[inline(always)]
-    fn to_array(self) -> [f32; MOST] {
-        std::array::from_fn(|i| if i < 4 { self.0[i] } else { 0.0 })
-    }
     #[inline(always)]
     fn rotate_down(self) -> Self {
         let [a, b, c, d] = self.0;
@@ -132,5 +121,16 @@ impl Lanes for Four {
     #[inline(always)]
     fn with_first(self, other: Self) -> Self {
         Self([other.0[0], self.0[1], self.0[2], self.0[3]])
+    }
+}
+
+impl Lanes for Four {
+    #[inline(always)]
+    fn from_array(values: &[f32; MOST]) -> Self {
+        Self(std::array::from_fn(|i| values[i]))
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f32; MOST] {
+        std::array::from_fn(|i| if i < 4 { self.0[i] } else { 0.0 })
     }
 }

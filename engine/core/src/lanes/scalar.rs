@@ -74,6 +74,18 @@ impl Numbers for f32 {
     fn root_seed(self, magic: u32) -> Self {
         f32::from_bits(magic.wrapping_sub(self.to_bits() >> 1))
     }
+    #[inline(always)]
+    fn rotate_down(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn rotate_up(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn with_first(self, other: Self) -> Self {
+        other
+    }
 }
 
 impl Lanes for f32 {
@@ -94,17 +106,5 @@ impl Lanes for f32 {
     #[inline(always)]
     fn store_quads(self, to: Column<'_>, quads: &[u32; 4], lane: usize) {
         to.set(quads[lane / 4 % 4] as usize + lane % 4, self);
-    }
-    #[inline(always)]
-    fn rotate_down(self) -> Self {
-        self
-    }
-    #[inline(always)]
-    fn rotate_up(self) -> Self {
-        self
-    }
-    #[inline(always)]
-    fn with_first(self, other: Self) -> Self {
-        other
     }
 }

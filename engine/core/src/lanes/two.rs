@@ -114,4 +114,17 @@ impl<L: Numbers> Numbers for Two<L> {
     fn root_seed(self, magic: u32) -> Self {
         Self(self.0.root_seed(magic), self.1.root_seed(magic))
     }
+    #[inline(always)]
+    fn rotate_down(self) -> Self {
+        Self(self.0.with_first(self.1).rotate_down(), self.1.with_first(self.0).rotate_down())
+    }
+    #[inline(always)]
+    fn rotate_up(self) -> Self {
+        let (low, high) = (self.0.rotate_up(), self.1.rotate_up());
+        Self(low.with_first(high), high.with_first(low))
+    }
+    #[inline(always)]
+    fn with_first(self, other: Self) -> Self {
+        Self(self.0.with_first(other.0), self.1)
+    }
 }

@@ -143,6 +143,18 @@ macro_rules! vector {
             fn root_seed(self, magic: u32) -> Self {
                 self.seed(magic)
             }
+            #[inline(always)]
+            fn rotate_down(self) -> Self {
+                self.down()
+            }
+            #[inline(always)]
+            fn rotate_up(self) -> Self {
+                self.up()
+            }
+            #[inline(always)]
+            fn with_first(self, other: Self) -> Self {
+                self.but_first(other)
+            }
         }
         impl Lanes for $name {
             #[inline(always)]
@@ -178,18 +190,6 @@ macro_rules! vector {
             #[inline(always)]
             fn least(self) -> f32 {
                 self.lowest()
-            }
-            #[inline(always)]
-            fn rotate_down(self) -> Self {
-                self.down()
-            }
-            #[inline(always)]
-            fn rotate_up(self) -> Self {
-                self.up()
-            }
-            #[inline(always)]
-            fn with_first(self, other: Self) -> Self {
-                self.but_first(other)
             }
         }
     };
