@@ -1,7 +1,7 @@
 //! Runs: constraints coloured into sets without a common particle, and laid side by side where their particles are.
 
-use crate::garment::Direction;
 use super::zigzags;
+use crate::garment::Direction;
 use crate::garment::layout::{OWNERS, Run, Set, Share, Tuples, Zigzag};
 
 /// Runs shorter than this are not worth a vector; their constraints are loose.
@@ -122,12 +122,7 @@ impl<const K: usize> Layouter<K> {
     }
 
     /// Constraints side by side get their places and numbers.
-    fn run<const N: usize>(
-        &mut self,
-        first: [u32; N],
-        run: &[usize],
-        alike: &dyn Fn(usize, usize) -> bool,
-    ) -> Run<N> {
+    fn run<const N: usize>(&mut self, first: [u32; N], run: &[usize], alike: &dyn Fn(usize, usize) -> bool) -> Run<N> {
         let same = run.iter().all(|&i| alike(run[0], i));
         let (at, serial) = (self.places.len() as u32, self.serial.len() as u32);
         self.serial.extend(run);

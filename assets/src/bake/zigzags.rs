@@ -132,7 +132,9 @@ mod tests {
         assert_eq!(take(&links, &order, &owner), (vec![], order));
         // Three rows of 10, links from each to the next.
         let between = |r: u32| {
-            (0..10).map(move |t| [10 * r + t, 10 * r + 10 + t]).chain((0..9).map(move |t| [10 * r + t + 1, 10 * r + 10 + t]))
+            (0..10)
+                .map(move |t| [10 * r + t, 10 * r + 10 + t])
+                .chain((0..9).map(move |t| [10 * r + t + 1, 10 * r + 10 + t]))
         };
         let links: Vec<_> = (0..2).flat_map(between).map(|v| (Direction::Bias, v)).collect();
         let order: Vec<usize> = (0..links.len()).collect();

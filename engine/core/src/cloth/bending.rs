@@ -3,15 +3,15 @@
 //! Each stencil stores (1/2) |d|^2 with d = sum c_i x_i, the curvature along its fiber times the root of its stiffness
 //! (assets, `bake::links`); it pulls with -c_i d. Evaluated at the positions of the substep's start, so statics do not
 //! depend on the time step; stable while dt^2 w_i sum_s |c_si| sum_j |c_sj| stays below 4 for every particle
-//! (Gershgorin). [`weaken`] weakens what is stiffer than a mesh and a substep can carry, and says by how much.
+//! (Gershgorin). What is stiffer than a mesh and a substep can carry so takes several [`super::stages`]; [`weaken`] weakens
+//! what is stiffer still, and says by how much.
 
 use toile_assets::garment::layout::{Bends, Run, Set};
 
-use super::state::Columns;
 use crate::lanes::{Column, Kernel, Lanes, MOST, V3};
 
 /// The bound on dt^2 omega^2 that is used, half of what is stable: motion near the limit rings.
-const STABLE: f32 = 2.0;
+pub const STABLE: f32 = 2.0;
 
 /// How bending goes on for one time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +19,8 @@ pub struct Pace {
     /// It acts every so many substeps, with the impulse of all of them (Tuckerman, Berne, Martyna 1992: slow forces need
     /// not be asked as often as fast ones).
     pub every: u32,
+    /// Stages of each time ([`super::stages`]); 1 where it is a plain force.
+    pub stages: u32,
     /// Least share of its stiffness that the time step can carry.
     pub least: f32,
 }
@@ -34,14 +36,15 @@ pub fn add_load<const K: usize>(bends: &Bends<K>, weights: &[f32], dt: f32, load
     });
 }
 
-/// Writes for each stencil the share of its stiffness that can be carried, 1 where all of it; the least is given back.
-pub fn weaken<const K: usize>(bends: &Bends<K>, load: &[f32], scale: &mut [f32]) -> f32 {
+/// Writes for each stencil the share of its stiffness that can be carried where `limit` is the bound, 1 where all of it;
+/// the least is given back.
+pub fn weaken<const K: usize>(bends: &Bends<K>, load: &[f32], limit: f32, scale: &mut [f32]) -> f32 {
     let mut least = 1.0f32;
     scale.fill(1.0);
     bends.tuples.for_each(|at, v| {
         let most = v.iter().map(|&i| load[i as usize]).fold(0.0, f32::max);
-        if most > STABLE {
-            scale[at] = scale[at].min(STABLE / most);
+        if most > limit {
+            scale[at] = scale[at].min(limit / most);
             least = least.min(scale[at]);
         }
     });
@@ -64,22 +67,26 @@ const STRIDE: usize = CHUNK + MOST;
 /// Numbers of scratch that bending needs.
 pub const SCRATCH: usize = 3 * STRIDE;
 
-/// Adds the bending forces of one owner's share of a set to the velocities.
+/// Adds the bending forces of one owner's share of a set to the velocities, or whatever is bent to whatever is pushed.
 ///
 /// Stencils side by side overlap, and what one has just written another reads from the middle of it, which stalls a
 /// processor. So [`CHUNK`] stencils at a time are swept `K + 1` times: first for their curvatures, then for what these
 /// do to all the middles, to all the first ends and to all the second ones. The order of sums is the same at every width.
 pub struct Bend<'a, const K: usize> {
-    /// The garment's particles.
-    pub columns: Columns<'a>,
+    /// Inverse masses (1/kg).
+    pub w: Column<'a>,
     /// All stencils.
     pub bends: &'a Bends<K>,
     /// The set.
     pub set: &'a Set,
     /// Whose share.
     pub owner: usize,
-    /// Length of the substep (s).
-    pub dt: f32,
+    /// What is bent: the positions (m).
+    pub from: [Column<'a>; 3],
+    /// What is pushed: the velocities (m/s).
+    pub to: [Column<'a>; 3],
+    /// How much: the length of the substep (s).
+    pub by: f32,
     /// What [`weaken`] made, where anything had to be weakened.
     pub scale: Option<&'a [f32]>,
     /// This worker's scratch, at least [`SCRATCH`] numbers.
@@ -99,7 +106,10 @@ impl<const K: usize> Kernel for Bend<'_, K> {
 
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
-        self.columns = self.columns.level();
+        let len = self.w.len();
+        for axis in 0..3 {
+            (self.from[axis], self.to[axis]) = (self.from[axis].cut(len), self.to[axis].cut(len));
+        }
         let share = &self.set.shares[self.owner];
         let runs = &self.bends.tuples.runs[share.runs.start as usize..share.runs.end as usize];
         let mut place = Place { run: 0, t: 0 };
@@ -120,7 +130,7 @@ impl<const K: usize> Bend<'_, K> {
     /// The curvatures of a chunk, times the substep, into the scratch; gives the place behind it.
     #[inline(always)]
     fn curvatures<L: Lanes>(&self, runs: &[Run<K>], mut place: Place) -> Place {
-        let (x, mut filled) = (self.columns.x, 0);
+        let (x, mut filled) = (self.from, 0);
         while filled < CHUNK && place.run < runs.len() {
             let run = &runs[place.run];
             let n = (run.len as usize - place.t).min(CHUNK - filled);
@@ -133,7 +143,7 @@ impl<const K: usize> Bend<'_, K> {
                     let c = self.coefficient::<L>(k, run, at, part);
                     d = d + V3::load(x, run.first[k] as usize + t, part) * c;
                 }
-                let mut scale = L::splat(self.dt);
+                let mut scale = L::splat(self.by);
                 if let Some(s) = self.scale {
                     scale = scale * one_or_each::<L>(Column::read_only(s), run.alike, at, part);
                 }
@@ -149,7 +159,7 @@ impl<const K: usize> Bend<'_, K> {
     /// What the curvatures of a chunk do to the particles at end `k` of its stencils.
     #[inline(always)]
     fn push<L: Lanes>(&self, runs: &[Run<K>], mut place: Place, k: usize) {
-        let (c, mut filled) = (&self.columns, 0);
+        let (to, mut filled) = (self.to, 0);
         while filled < CHUNK && place.run < runs.len() {
             let run = &runs[place.run];
             let n = (run.len as usize - place.t).min(CHUNK - filled);
@@ -158,10 +168,10 @@ impl<const K: usize> Bend<'_, K> {
                 let (t, part) = (place.t + done, (n - done).min(L::N));
                 let v = run.first[k] as usize + t;
                 let w_at = if run.alike { run.first[k] as usize } else { v };
-                let w = one_or_each::<L>(c.w, run.alike, w_at, part);
+                let w = one_or_each::<L>(self.w, run.alike, w_at, part);
                 let by = self.coefficient::<L>(k, run, run.place(t as u32), part) * w;
                 let d = V3::<L>::load(self.kept(), filled + done, part);
-                (V3::<L>::load(c.v, v, part) - d * by).store(c.v, v, part);
+                (V3::<L>::load(to, v, part) - d * by).store(to, v, part);
                 done += part;
             }
             filled += n;
@@ -172,15 +182,15 @@ impl<const K: usize> Bend<'_, K> {
     /// A stencil that is in no run.
     #[inline(always)]
     fn loose(&self, v: [u32; K], at: usize) {
-        let (c, v) = (&self.columns, v.map(|v| v as usize));
+        let (x, to, v) = (self.from, self.to, v.map(|v| v as usize));
         let coefficient = |k: usize| self.bends.coefficients[k][at];
-        let mut d = V3::<f32>::load(c.x, v[0], 1) * coefficient(0);
+        let mut d = V3::<f32>::load(x, v[0], 1) * coefficient(0);
         for k in 1..K {
-            d = d + V3::load(c.x, v[k], 1) * coefficient(k);
+            d = d + V3::load(x, v[k], 1) * coefficient(k);
         }
-        let d = d * self.scale.map_or(self.dt, |s| self.dt * s[at]);
+        let d = d * self.scale.map_or(self.by, |s| self.by * s[at]);
         for (k, &v) in v.iter().enumerate() {
-            (V3::<f32>::load(c.v, v, 1) - d * (coefficient(k) * c.w.get(v))).store(c.v, v, 1);
+            (V3::<f32>::load(to, v, 1) - d * (coefficient(k) * self.w.get(v))).store(to, v, 1);
         }
     }
 

@@ -206,7 +206,8 @@ impl Chain<'_> {
             // L D L^T: `beside` is minus the entry beside the diagonal.
             let diagonal = both + stiff;
             let factor = beside * pivot;
-            let rest_pivot = (diagonal - factor * beside).max((diagonal * L::splat(LEAST_PIVOT)).max(L::splat(NO_PIVOT)));
+            let rest_pivot =
+                (diagonal - factor * beside).max((diagonal * L::splat(LEAST_PIVOT)).max(L::splat(NO_PIVOT)));
             pivot = L::splat(1.0).div(rest_pivot);
             y = stretch + factor * y;
             let kept = link * KEPT * L::N;

@@ -59,6 +59,8 @@ impl Solve<'_> {
             if SOFT || n < L::N {
                 self.row::<L, SOFT>(&zigzag.rungs, 0, zigzag.rungs.len);
                 self.slants::<L, SOFT>(zigzag, 0);
+            } else if alike && L::N == 4 && n >= 4 * L::N {
+                self.zigzag::<L, Two<Two<L>>, true>(zigzag);
             } else if alike && n >= 2 * L::N {
                 self.zigzag::<L, Two<L>, true>(zigzag);
             } else if alike {
@@ -355,7 +357,14 @@ mod tests {
         let set = Set { direction: Direction::Weft, crosses: false, shares: [share, Share::default()] };
         let runs = [Run { first: [0, n], len: n, at: 0, serial: 0, alike: false }].into();
         Links {
-            tuples: Tuples { zigzags: [].into(), runs, loose: [].into(), sets: [set].into(), count: n as usize, places: n as usize },
+            tuples: Tuples {
+                zigzags: [].into(),
+                runs,
+                loose: [].into(),
+                sets: [set].into(),
+                count: n as usize,
+                places: n as usize,
+            },
             rest: vec![rest; n as usize].into(),
             compliance: vec![compliance; n as usize].into(),
         }
