@@ -21,6 +21,9 @@ const MOST_LEVER: f64 = 4.0;
 /// A fourth point with less than this share of the weights does nothing.
 const LEAST_WEIGHT: f64 = 1e-5;
 
+/// Least part of a stencil beside a clamp that counts as free to bend: what is less is an accident of the mesh.
+const LEAST_BENDS: f64 = 0.25;
+
 /// Neighbours and areas of all vertices.
 pub struct Rings {
     /// Area of the cloth that each vertex stands for (m2).
@@ -155,6 +158,8 @@ pub struct Measure {
     pub v: [u32; 4],
     /// Weights of those of the ring (1/m2).
     weights: [f64; 3],
+    /// What part of the curvature along its direction each of them measures; together 1.
+    shares: [f64; 3],
     /// What it measures of the curvature tensor: 1 along its direction.
     pub tensor: DMat2,
 }
@@ -164,6 +169,18 @@ impl Measure {
     pub fn weights(&self) -> [f32; 4] {
         let [p, q, r] = self.weights.map(|w| w as f32);
         [-(p + q + r), p, q, r]
+    }
+
+    /// The part of its length that can bend: all of it, but where the vertex is fixed and so is what lies behind it, as in
+    /// a clamp, only what lies before. There the cloth turns on its half of the length, so that the sum measures as much
+    /// less of the curvature as that half is shorter than the whole.
+    pub fn bends(&self, fixed: &[bool]) -> f64 {
+        if !fixed[self.v[0] as usize] {
+            return 1.0;
+        }
+        let ring = self.v[1..].iter().zip(self.shares);
+        let free = ring.filter(|(v, _)| **v != NO_VERTEX && !fixed[**v as usize]).map(|(_, share)| share);
+        free.sum::<f64>().clamp(LEAST_BENDS, 1.0)
     }
 }
 
@@ -207,19 +224,20 @@ impl Ring {
         let off = (found - exact).to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
         let lever = 0.5 * scale / along.abs();
         let cost = off + LEVER_COST * lever;
-        (off < MOST_OFF && lever < MOST_LEVER).then(|| (cost, self.tidied(triple, weights, found)))
+                let shares = [0, 1, 2].map(|k| 0.5 * weights[k] * direction.dot([p, q, r][k]).powi(2));
+        (off < MOST_OFF && lever < MOST_LEVER).then(|| (cost, self.tidied(triple, weights, shares, found)))
     }
 
     /// Leaves out a point without weight.
-    fn tidied(&self, triple: [usize; 3], weights: [f64; 3], tensor: DMat2) -> Measure {
+    fn tidied(&self, triple: [usize; 3], weights: [f64; 3], shares: [f64; 3], tensor: DMat2) -> Measure {
         let least = LEAST_WEIGHT * weights.iter().map(|w| w.abs()).sum::<f64>();
         let mut v = [self.v, NO_VERTEX, NO_VERTEX, NO_VERTEX];
-        let mut kept = [0.0; 3];
+        let (mut kept, mut kept_shares) = ([0.0; 3], [0.0; 3]);
         let used = (0..3).filter(|&k| weights[k].abs() > least);
         for (place, k) in used.enumerate() {
             v[place + 1] = self.points[triple[k]].0;
-            kept[place] = weights[k];
+            (kept[place], kept_shares[place]) = (weights[k], shares[k]);
         }
-        Measure { v, weights: kept, tensor }
+        Measure { v, weights: kept, shares: kept_shares, tensor }
     }
 }
