@@ -62,9 +62,9 @@ impl Rings {
         for face in &shape.faces {
             let ring = corners(face);
             let n = ring.len();
-            let share = face_area(&shape.cut, ring) / n as f64;
+            let shares = corner_areas(&shape.cut, ring);
             for (k, &v) in ring.iter().enumerate() {
-                area[v as usize] += share;
+                area[v as usize] += shares[k];
                 let (next, last) = (ring[(k + 1) % n], ring[(k + n - 1) % n]);
                 let between = |p, q| angle(&shape.cut, v, p, q);
                 fans[v as usize].push(if n == 3 {
@@ -138,6 +138,28 @@ fn closed(fan: &[Sector]) -> bool {
 fn face_area(positions: &[Vec3], ring: &[u32]) -> f64 {
     let p = |k: usize| positions[ring[k] as usize].as_dvec3();
     (2..ring.len()).map(|k| 0.5 * (p(k - 1) - p(0)).cross(p(k) - p(0)).length()).sum()
+}
+
+/// The part of a face's area that is nearest to each of its corners: of a triangle that of Voronoi, in an obtuse one half
+/// of it at the obtuse corner (Meyer et al. 2003, "Discrete differential-geometry operators", 3.3); of a quad a quarter.
+/// Equal thirds would weigh stencils side by side on a thread unequally where six and four faces meet in turn, and a thread
+/// of stiff and soft places in a row is softer than their mean.
+fn corner_areas(positions: &[Vec3], ring: &[u32]) -> [f64; 4] {
+    let area = face_area(positions, ring);
+    if ring.len() != 3 {
+        return [0.25 * area; 4];
+    }
+    let side = |k: usize| positions[ring[(k + 1) % 3] as usize].distance_squared(positions[ring[k % 3] as usize]);
+    let opposite = [1, 2, 0].map(|k| f64::from(side(k)));
+    // 4 area cot(angle) at each corner.
+    let cot = [0, 1, 2].map(|k| opposite[(k + 1) % 3] + opposite[(k + 2) % 3] - opposite[k]);
+    if let Some(obtuse) = cot.iter().position(|c| *c < 0.0) {
+        let mut shares = [0.25 * area; 4];
+        shares[obtuse] = 0.5 * area;
+        return shares;
+    }
+    let part = |k: usize| opposite[k] * cot[k] / (32.0 * area);
+    [part(1) + part(2), part(2) + part(0), part(0) + part(1), 0.0]
 }
 
 fn angle(positions: &[Vec3], v: u32, p: u32, q: u32) -> f64 {
