@@ -4,6 +4,8 @@
 //! Budget: the whole set within five minutes on two cores; never inside the frame.
 //! Thread: as many as are asked for; cases are independent and rows come out in a fixed order.
 
+pub mod case;
+mod cases;
 pub mod exact;
 pub mod mesh;
 pub mod rig;
@@ -22,6 +24,9 @@ pub enum Level {
 }
 
 impl Level {
+    /// The one that targets are for.
+    pub const GATED: Self = Self::Production(Quality::Fine);
+
     /// All of them.
     pub const ALL: [Self; 4] = [
         Self::Production(Quality::Draft),

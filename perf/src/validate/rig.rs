@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use glam::{Affine3A, DVec3, Vec4};
 use toile_assets::bake::bake;
-use toile_assets::garment::layout::ENDED;
+use toile_assets::garment::layout::{Bends, ENDED};
 use toile_assets::garment::{Garment, MeshError, Shape};
 use toile_assets::limits::STEP_SECONDS;
 use toile_assets::skeleton::BONES;
@@ -40,11 +40,12 @@ pub struct Scenery {
 /// Acceleration of gravity (m/s2), as the engine's settings have it.
 pub const G: f64 = 9.81;
 
-/// Speed below which everything counts as at rest (m/s): a millimetre in ten seconds.
-const REST_M_S: f64 = 1e-4;
+/// Time over which the motion of resting cloth is looked at (s): velocities themselves are noise where a substep moves
+/// less than f32 can tell.
+const REST_S: f64 = 0.25;
 
-/// Steps for which it has to stay so.
-const REST_STEPS: u64 = 24;
+/// Farthest that a resting particle drifts in that time (m).
+const REST_M: f64 = 2e-6;
 
 /// One stretch link of the garment, as the engine solves it.
 #[derive(Debug, Clone, Copy)]
@@ -110,12 +111,11 @@ impl Rig {
 
     /// Steps until everything has come to rest, at most so long (s); says whether it has.
     pub fn rest(&mut self, seconds: f64) -> bool {
-        let steps = (seconds / f64::from(self.settings.step_seconds)) as u64;
-        let mut still = 0;
-        for _ in 0..steps {
-            self.step();
-            still = if self.fastest() < REST_M_S { still + 1 } else { 0 };
-            if still >= REST_STEPS {
+        for _ in 0..(seconds / REST_S) as u64 {
+            let before = self.cloth.positions.clone();
+            self.run(REST_S);
+            let drift = before.iter().zip(&self.cloth.positions).map(|(p, q)| p.distance(*q)).fold(0.0, f32::max);
+            if f64::from(drift) < REST_M {
                 return true;
             }
         }
@@ -168,6 +168,17 @@ impl Rig {
     /// Mass of the vertices that can move (kg).
     pub fn mass(&self) -> f64 {
         self.garment.inverse_mass.iter().filter(|w| **w > 0.0).map(|w| f64::from(*w).recip()).sum()
+    }
+
+    /// Energy of motion, weight, stretch and bending (J).
+    pub fn energy(&self) -> f64 {
+        let place = |i: usize| self.cloth.positions[i].as_dvec3();
+        let inverse = self.garment.inverse_mass.iter().enumerate().filter(|(_, w)| **w > 0.0);
+        let weight: f64 = inverse.map(|(i, w)| G * place(i).y / f64::from(*w)).sum();
+        let stretch = |l: Link| (place(l.ends[1]).distance(place(l.ends[0])) - l.rest).powi(2) / (2.0 * l.compliance);
+        let stretch: f64 = self.links().into_iter().map(stretch).sum();
+        let layout = &self.garment.layout;
+        self.cloth.kinetic_energy(&self.garment) + weight + stretch + bent(&layout.bends, place) + bent(&layout.skewed, place)
     }
 
     /// Median time of a step (us).
@@ -228,6 +239,16 @@ impl Rig {
         }
         sum
     }
+}
+
+/// Energy of some bending stencils (J).
+fn bent<const K: usize>(bends: &Bends<K>, place: impl Fn(usize) -> DVec3) -> f64 {
+    let mut sum = 0.0;
+    bends.tuples.for_each(|at, v| {
+        let terms = (0..K).map(|k| place(v[k] as usize) * f64::from(bends.coefficients[k][at]));
+        sum += 0.5 * terms.sum::<DVec3>().length_squared();
+    });
+    sum
 }
 
 impl Level {
