@@ -161,7 +161,11 @@ impl Strip {
         let halves = |cell: (u32, u32)| {
             let [a, b, c, d] = quad(cell);
             let even = (cell.0 + cell.1).is_multiple_of(2);
-            if even { [[a, b, c, NO_VERTEX], [a, c, d, NO_VERTEX]] } else { [[a, b, d, NO_VERTEX], [b, c, d, NO_VERTEX]] }
+            if even {
+                [[a, b, c, NO_VERTEX], [a, c, d, NO_VERTEX]]
+            } else {
+                [[a, b, d, NO_VERTEX], [b, c, d, NO_VERTEX]]
+            }
         };
         cells.flat_map(halves).collect()
     }

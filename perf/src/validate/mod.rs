@@ -9,8 +9,7 @@ mod cases;
 pub mod exact;
 pub mod mesh;
 pub mod rig;
-#[cfg(test)]
-mod probe;
+pub mod run;
 
 use toile_engine::cloth::Quality;
 

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use glam::{Affine3A, DVec3, Vec4};
+use thiserror::Error;
 use toile_assets::bake::bake;
 use toile_assets::garment::layout::{Bends, ENDED};
 use toile_assets::garment::{Garment, MeshError, Shape};
@@ -10,7 +11,6 @@ use toile_assets::limits::STEP_SECONDS;
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere};
-use thiserror::Error;
 
 use super::Level;
 use super::mesh;
@@ -178,7 +178,11 @@ impl Rig {
         let stretch = |l: Link| (place(l.ends[1]).distance(place(l.ends[0])) - l.rest).powi(2) / (2.0 * l.compliance);
         let stretch: f64 = self.links().into_iter().map(stretch).sum();
         let layout = &self.garment.layout;
-        self.cloth.kinetic_energy(&self.garment) + weight + stretch + bent(&layout.bends, place) + bent(&layout.skewed, place)
+        self.cloth.kinetic_energy(&self.garment)
+            + weight
+            + stretch
+            + bent(&layout.bends, place)
+            + bent(&layout.skewed, place)
     }
 
     /// Median time of a step (us).

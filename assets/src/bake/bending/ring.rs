@@ -246,7 +246,7 @@ impl Ring {
         let off = (found - exact).to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
         let lever = 0.5 * scale / along.abs();
         let cost = off + LEVER_COST * lever;
-                let shares = [0, 1, 2].map(|k| 0.5 * weights[k] * direction.dot([p, q, r][k]).powi(2));
+        let shares = [0, 1, 2].map(|k| 0.5 * weights[k] * direction.dot([p, q, r][k]).powi(2));
         (off < MOST_OFF && lever < MOST_LEVER).then(|| (cost, self.tidied(triple, weights, shares, found)))
     }
 

@@ -85,11 +85,8 @@ fn rope(level: Level, mu: f64, ratio: f64) -> Result<(Outcome, bool), RigError> 
         end.iter().for_each(|&v| shape.heavier[v] = ((pull - hanging) / half) as f32);
     }
     let cloth = Cloth { friction: mu, damping: 5.0, stretch: 1e5, ..Cloth::PLAIN };
-    let scenery = Scenery {
-        capsule: Some([DVec3::NEG_Z * 0.2, DVec3::Z * 0.2]),
-        radius: POST - GAP,
-        ..Scenery::default()
-    };
+    let scenery =
+        Scenery { capsule: Some([DVec3::NEG_Z * 0.2, DVec3::Z * 0.2]), radius: POST - GAP, ..Scenery::default() };
     let mut rig = Rig::new(&shape, &cloth, level, &scenery)?;
     let before = rig.mean(ends[1].iter().copied()).y;
     rig.run(ROPE_WATCH.0);

@@ -74,11 +74,7 @@ fn chain(n: usize) -> Case {
         let (samples, step) = watch(&mut rig, PERIODS / hz, projection);
         Ok(Outcome::of(&rig, period(&crossings(&samples, step)).recip()))
     };
-    Case {
-        target: Some(3.0),
-        run: Box::new(run),
-        ..case("chain-mode", format!("mode {n}"), CHAIN_ROWS, "Hz", hz)
-    }
+    Case { target: Some(3.0), run: Box::new(run), ..case("chain-mode", format!("mode {n}"), CHAIN_ROWS, "Hz", hz) }
 }
 
 /// A pendulum: one quad whose lower corners swing about its upper ones.
@@ -170,11 +166,7 @@ fn wave(tension: f64) -> Case {
     };
     // Cloth that is stretched is lighter by as much.
     let exact = speed * (1.0 + tension / 2_000.0).sqrt();
-    Case {
-        target: Some(3.0),
-        run: Box::new(run),
-        ..case("wave", format!("T {tension} N/m"), WAVE_ROWS, "m/s", exact)
-    }
+    Case { target: Some(3.0), run: Box::new(run), ..case("wave", format!("T {tension} N/m"), WAVE_ROWS, "m/s", exact) }
 }
 
 /// How long it falls (s).
@@ -241,4 +233,3 @@ fn energy(which: Kept) -> Case {
         ..case("energy", parameter.into(), SWING.1, "%", 0.0)
     }
 }
-

@@ -20,7 +20,11 @@ pub fn threshold(
     for _ in 0..HALVINGS {
         let middle = (low * high).sqrt();
         let (outcome, gave) = trial(middle)?;
-        if gave { high = middle } else { low = middle }
+        if gave {
+            high = middle
+        } else {
+            low = middle
+        }
         last = Some(outcome);
     }
     let got = (low * high).sqrt();

@@ -42,8 +42,8 @@ fn matrices(b: f64, nu: f64) -> (Matrix, Matrix) {
             let nyy = y + 6.0 * (y.powi(3) / 3.0 - 0.25 * b * b * y) / (b * b);
             for (i, f) in shapes.iter().enumerate() {
                 for (j, g) in shapes.iter().enumerate() {
-                    let curved = (f[2] + f[3]) * (g[2] + g[3])
-                        - (1.0 - nu) * (f[2] * g[3] + f[3] * g[2] - 2.0 * f[4] * g[4]);
+                    let curved =
+                        (f[2] + f[3]) * (g[2] + g[3]) - (1.0 - nu) * (f[2] * g[3] + f[3] * g[2] - 2.0 * f[4] * g[4]);
                     stiff[i][j] += area * curved;
                     load[i][j] += area * (nxx * f[0] * g[0] + nxy * (f[0] * g[1] + f[1] * g[0]) + nyy * f[1] * g[1]);
                 }
