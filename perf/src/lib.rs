@@ -4,9 +4,11 @@
 //! Budget: some seconds a benchmark; never inside the frame.
 //! Thread: one, with nothing else running.
 
+pub mod oracle;
 pub mod scene_run;
 pub mod skinning;
 pub mod skirt;
 mod surface;
 pub mod time;
+pub mod validate;
 pub mod yardstick;

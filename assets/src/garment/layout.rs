@@ -208,8 +208,9 @@ pub struct Fibers {
     pub compliance: Box<[f32]>,
 }
 
-/// Compliance of a link that is not there (m/N): it carries nothing.
-pub const ENDED: f32 = 1e30;
+/// Compliance of a link that is not there (m/N): it carries nothing, and over the square of a substep as short as a
+/// microsecond it is still a number of f32 (1e30 was none from 184 substeps a step on, and rolled every step back).
+pub const ENDED: f32 = 1e20;
 
 /// Fibers of equal length by index list: hoops, and whatever crosses another fiber of its direction.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -143,6 +143,11 @@ impl Stage {
         self.cloths[0].substeps()
     }
 
+    /// The body as it stood at the start and the end of the last step.
+    pub fn colliders(&self) -> &Colliders {
+        &self.colliders
+    }
+
     /// How the steps are done.
     pub fn settings(&self) -> &Settings {
         &self.settings

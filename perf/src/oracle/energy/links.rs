@@ -1,0 +1,95 @@
+//! Stretch: (1/2) k (C + o)^2 of C = |b - a| - rest.
+//!
+//! A link that is soft enough has k = 1 / compliance and o = 0. A stiffer one, and one that does not stretch at all, is
+//! solved by the method of multipliers (Hestenes 1969; Powell 1969; Nocedal & Wright 2006, "Numerical Optimization",
+//! chapter 17.3): k = 1 / (compliance + 1 / rho) and o = T / rho with the tension T of the round before. Where T no longer
+//! changes, T = k (C + o) is C / compliance, or for an inextensible link C = 0, whatever rho is; so rho can be small
+//! enough for the Hessian to stay well conditioned.
+//!
+//! Gradient: T n. Hessian of the difference b - a: k n n^T + (T / l) (I - n n^T). Its eigenvalues are k > 0 along the
+//! link and, twice, T / l across it, negative where the link is compressed: the projection leaves those out.
+
+use glam::{DMat3, DVec3};
+
+use super::super::problem::Link;
+use super::super::solids::outer;
+use super::super::system::System;
+
+/// All links.
+#[derive(Debug)]
+pub struct Springs<'a> {
+    links: &'a [Link],
+    /// 1 / rho of each (m/N), 0 where the link is soft enough.
+    give: Vec<f64>,
+    /// Tension of the round before (N).
+    pub multiplier: Vec<f64>,
+}
+
+impl<'a> Springs<'a> {
+    /// Links with those stiffer than `rho` (N/m) solved by multipliers, which start at `multiplier`.
+    pub fn new(links: &'a [Link], rho: f64, multiplier: Vec<f64>) -> Self {
+        let give = links.iter().map(|l| if l.compliance * rho < 1.0 { rho.recip() } else { 0.0 }).collect();
+        Self { links, give, multiplier }
+    }
+
+    /// Direction, length, stiffness and tension of a link.
+    fn pull(&self, e: usize, x: &[DVec3]) -> (DVec3, f64, f64, f64) {
+        let link = &self.links[e];
+        let gap = x[link.ends[1] as usize] - x[link.ends[0] as usize];
+        let length = gap.length().max(1e-9 * link.rest);
+        let k = (link.compliance + self.give[e]).recip();
+        (gap / length, length, k, k * (length - link.rest + self.multiplier[e] * self.give[e]))
+    }
+
+    /// Tension of a link (N), positive where it pulls.
+    pub fn tension(&self, e: usize, x: &[DVec3]) -> f64 {
+        self.pull(e, x).3
+    }
+
+    /// Energy (J), with what the multipliers add.
+    pub fn value(&self, x: &[DVec3]) -> f64 {
+        let one = |e| {
+            let (_, _, k, tension) = self.pull(e, x);
+            0.5 * tension * tension / k
+        };
+        (0..self.links.len()).map(one).sum()
+    }
+
+    /// Adds the gradient (N).
+    pub fn gradient(&self, x: &[DVec3], to: &mut [DVec3]) {
+        for (e, link) in self.links.iter().enumerate() {
+            let (n, _, _, tension) = self.pull(e, x);
+            to[link.ends[0] as usize] -= n * tension;
+            to[link.ends[1] as usize] += n * tension;
+        }
+    }
+
+    /// Adds the Hessian (N/m), or where it is not to be `exact` what of it is positive.
+    pub fn hessian(&self, x: &[DVec3], exact: bool, to: &mut System) {
+        for (e, link) in self.links.iter().enumerate() {
+            let (n, length, k, tension) = self.pull(e, x);
+            let across = if exact { tension } else { tension.max(0.0) } / length;
+            let along = outer(n, n);
+            let block = along * k + (DMat3::IDENTITY - along) * across;
+            let [a, b] = link.ends.map(|i| i as usize);
+            to.add(a, &block);
+            to.add(b, &block);
+            to.add_pair(a, b, &-block);
+        }
+    }
+
+    /// Takes the tensions of `x` for those of the next round. Gives the largest strain by which a link is off the length
+    /// that its tension asks for (1).
+    pub fn update(&mut self, x: &[DVec3]) -> f64 {
+        let mut worst = 0.0f64;
+        for e in 0..self.links.len() {
+            if self.give[e] > 0.0 {
+                let (_, length, _, tension) = self.pull(e, x);
+                let link = &self.links[e];
+                worst = worst.max((length - link.rest - link.compliance * tension).abs() / link.rest);
+                self.multiplier[e] = tension;
+            }
+        }
+        worst
+    }
+}

@@ -1,0 +1,81 @@
+//! Measures of a state, the engine's or the oracle's own: energies and strain in f64.
+
+use glam::DVec3;
+
+use super::State;
+use super::energy::bends;
+use super::problem::Problem;
+
+/// Energies of a state (J).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Energies {
+    /// Of motion, of the free particles.
+    pub kinetic_j: f64,
+    /// Of stretch and shear: (1/2) C^2 / compliance. Inextensible links hold none; see [`strain`] for what they are off.
+    pub stretch_j: f64,
+    /// Of bending.
+    pub bending_j: f64,
+    /// In the field of gravity, 0 at the origin, of the free particles.
+    pub gravity_j: f64,
+}
+
+impl Energies {
+    /// All together (J).
+    pub fn total_j(&self) -> f64 {
+        self.kinetic_j + self.stretch_j + self.bending_j + self.gravity_j
+    }
+}
+
+/// Strain of links (1), compression counted as stretch is.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Strain {
+    /// Mean of the absolute values.
+    pub mean: f64,
+    /// Largest absolute value.
+    pub max: f64,
+}
+
+/// Energies of a state.
+pub fn energies(problem: &Problem, state: &State) -> Energies {
+    let moving = problem.mass.iter().zip(&state.v).map(|(m, v)| 0.5 * m * v.length_squared());
+    let soft = problem.links.iter().filter(|l| l.compliance > 0.0);
+    let stretch = soft.map(|l| (strain_of(l.ends, l.rest, &state.x) * l.rest).powi(2) * 0.5 / l.compliance);
+    let height = problem.mass.iter().zip(&state.x).map(|(m, x)| -m * problem.gravity.dot(*x));
+    Energies {
+        kinetic_j: moving.sum(),
+        stretch_j: stretch.sum(),
+        bending_j: bends::value(&problem.bends, &state.x),
+        gravity_j: height.sum(),
+    }
+}
+
+/// Strain of each link (1) `[links]`.
+pub fn strains(problem: &Problem, x: &[DVec3]) -> Vec<f64> {
+    problem.links.iter().map(|l| strain_of(l.ends, l.rest, x)).collect()
+}
+
+/// Strain of all links together.
+pub fn strain(problem: &Problem, x: &[DVec3]) -> Strain {
+    let each = strains(problem, x);
+    let sum: f64 = each.iter().map(|s| s.abs()).sum();
+    Strain { mean: sum / each.len().max(1) as f64, max: each.iter().fold(0.0, |most: f64, s| most.max(s.abs())) }
+}
+
+fn strain_of(ends: [u32; 2], rest: f64, x: &[DVec3]) -> f64 {
+    x[ends[0] as usize].distance(x[ends[1] as usize]) / rest - 1.0
+}
+
+/// Distances between the particles of two states (m).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Apart {
+    /// Mean over the particles.
+    pub mean_m: f64,
+    /// Largest.
+    pub max_m: f64,
+}
+
+/// How far each particle of a state is from the same particle of another.
+pub fn apart(a: &[DVec3], b: &[DVec3]) -> Apart {
+    let each = || a.iter().zip(b).map(|(a, b)| a.distance(*b));
+    Apart { mean_m: each().sum::<f64>() / a.len().max(1) as f64, max_m: each().fold(0.0, f64::max) }
+}

@@ -1,0 +1,167 @@
+//! The discretisation in f64: particles, links, bending stencils; plain data, or what a baked garment holds.
+
+use glam::DVec3;
+use toile_assets::garment::Garment;
+use toile_assets::garment::layout::{Bends, ENDED, Fibers, Links, Lists};
+
+use super::OracleError;
+
+/// Stretch between two particles: energy (1/2) C^2 / compliance of C = |b - a| - rest, in tension and in compression.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Link {
+    /// The particles.
+    pub ends: [u32; 2],
+    /// Length as cut (m).
+    pub rest: f64,
+    /// Inverse stiffness (m/N); 0 is inextensible.
+    pub compliance: f64,
+}
+
+/// Bending: energy (1/2) |sum c_i x_i|^2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bend {
+    /// The particles; where there are three, the last place repeats the first.
+    pub particles: [u32; 4],
+    /// Coefficients (sqrt(N/m)); where there are three, the last is 0.
+    pub coefficients: [f64; 4],
+}
+
+/// What is to be solved: the same particles, masses, links and stencils as the engine's.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Problem {
+    /// Mass (kg), 0 where the particle is pinned `[particles]`.
+    pub mass: Vec<f64>,
+    /// Where the garment starts (m) `[particles]`.
+    pub start: Vec<DVec3>,
+    /// Stretch links.
+    pub links: Vec<Link>,
+    /// Bending stencils.
+    pub bends: Vec<Bend>,
+    /// Acceleration of gravity (m/s2).
+    pub gravity: DVec3,
+    /// Distance kept from every solid (m).
+    pub offset_m: f64,
+    /// Coulomb coefficient, sticking and sliding alike.
+    pub friction: f64,
+    /// Which of the first 32 cones each particle can touch, a bit each; empty where each may touch all `[particles]`.
+    pub reach: Vec<u32>,
+}
+
+impl Problem {
+    /// What a baked garment says, in standard gravity; tethers, wind and the speed limit are the engine's own.
+    ///
+    /// Which limb's colliders a particle can meet is left open: set [`Self::reach`] where the garment has parts.
+    pub fn of(garment: &Garment) -> Self {
+        let layout = &garment.layout;
+        let mut links = Vec::new();
+        tuples(&layout.shear, &mut links);
+        tuples(&layout.weft, &mut links);
+        fibers(&layout.fibers, &mut links);
+        // Hoops are the links of the weft once more, solved whole in one of the qualities: no springs of their own.
+        lists(&layout.crossing, &mut links);
+        let mut stencils = Vec::new();
+        bends(&layout.bends, &mut stencils);
+        bends(&layout.skewed, &mut stencils);
+        let mass = |w: &f32| if *w > 0.0 { f64::from(*w).recip() } else { 0.0 };
+        Self {
+            mass: garment.inverse_mass.iter().map(mass).collect(),
+            start: garment.start.iter().map(|p| p.as_dvec3()).collect(),
+            links,
+            bends: stencils,
+            gravity: DVec3::new(0.0, -9.81, 0.0),
+            offset_m: f64::from(garment.fabric.contact_offset_mm) * 1e-3,
+            friction: f64::from(garment.fabric.friction),
+            reach: Vec::new(),
+        }
+    }
+
+    /// Number of particles.
+    pub fn particles(&self) -> usize {
+        self.mass.len()
+    }
+
+    /// Whether a particle is held in place.
+    pub fn pinned(&self, particle: usize) -> bool {
+        self.mass[particle] <= 0.0
+    }
+
+    /// Mass of what is free (kg).
+    pub fn free_mass(&self) -> f64 {
+        self.mass.iter().sum()
+    }
+
+    /// Everything is of the right length, in range and finite.
+    pub(super) fn check(&self) -> Result<(), OracleError> {
+        let n = self.particles();
+        let lengths = [("start", self.start.len())].into_iter();
+        let lengths = lengths.chain((!self.reach.is_empty()).then_some(("reach", self.reach.len())));
+        for (what, got) in lengths {
+            expect(what, got, n)?;
+        }
+        let sound =
+            |ok: bool, what: &'static str, at: usize| ok.then_some(()).ok_or(OracleError::Unusable { what, at });
+        for (at, m) in self.mass.iter().enumerate() {
+            sound(m.is_finite() && *m >= 0.0, "mass", at)?;
+        }
+        for (at, l) in self.links.iter().enumerate() {
+            let [a, b] = l.ends.map(|i| i as usize);
+            let figures = l.rest.is_finite() && l.rest > 0.0 && l.compliance.is_finite() && l.compliance >= 0.0;
+            sound(figures && a != b && a < n && b < n, "link", at)?;
+        }
+        for (at, b) in self.bends.iter().enumerate() {
+            let within = b.particles.iter().all(|&i| (i as usize) < n);
+            sound(within && b.coefficients.iter().all(|c| c.is_finite()), "bend", at)?;
+        }
+        sound(self.gravity.is_finite() && self.offset_m.is_finite() && self.friction >= 0.0, "gravity or contact", 0)
+    }
+}
+
+/// Refuses an array of another length than asked for.
+pub(super) fn expect(what: &'static str, got: usize, expected: usize) -> Result<(), OracleError> {
+    if got == expected { Ok(()) } else { Err(OracleError::Length { what, got, expected }) }
+}
+
+fn link(a: u32, b: u32, rest: f32, compliance: f32) -> Option<Link> {
+    let there = compliance < ENDED && rest > 0.0;
+    there.then(|| Link { ends: [a, b], rest: rest.into(), compliance: compliance.into() })
+}
+
+fn tuples(from: &Links, to: &mut Vec<Link>) {
+    from.tuples.for_each(|at, [a, b]| to.extend(link(a, b, from.rest[at], from.compliance[at])));
+}
+
+fn fibers(from: &Fibers, to: &mut Vec<Link>) {
+    for bundle in &from.bundles {
+        let rows = &from.rows[bundle.rows.start as usize..bundle.rows.end as usize];
+        for (step, pair) in rows.windows(2).enumerate() {
+            for lane in 0..pair[1].lanes {
+                let apart = step as u32 * bundle.lanes + lane;
+                let at = (bundle.at + if bundle.alike { step as u32 } else { apart }) as usize;
+                to.extend(link(pair[0].first + lane, pair[1].first + lane, from.rest[at], from.compliance[at]));
+            }
+        }
+    }
+}
+
+fn lists(from: &Lists, to: &mut Vec<Link>) {
+    for list in &from.lists {
+        for step in 0..list.links() {
+            for lane in 0..list.lanes {
+                let particle = |row: u32| from.index[(list.first + row % list.rows * list.lanes + lane) as usize];
+                let at = (list.at + step * list.lanes + lane) as usize;
+                to.extend(link(particle(step), particle(step + 1), from.rest[at], from.compliance[at]));
+            }
+        }
+    }
+}
+
+fn bends<const K: usize>(from: &Bends<K>, to: &mut Vec<Bend>) {
+    from.tuples.for_each(|at, v| {
+        let mut bend = Bend { particles: [v[0]; 4], coefficients: [0.0; 4] };
+        for k in 0..K {
+            bend.particles[k] = v[k];
+            bend.coefficients[k] = from.coefficients[k][at].into();
+        }
+        to.push(bend);
+    });
+}
