@@ -11,4 +11,5 @@ pub mod skirt;
 mod surface;
 pub mod time;
 pub mod torture;
+pub mod validate;
 pub mod yardstick;

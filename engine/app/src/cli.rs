@@ -17,11 +17,13 @@ mod bake;
 mod run;
 mod skirt;
 mod torture;
+mod validate;
 
 pub use bake::BakeArgs;
 pub use run::{RunArgs, RunScene};
 pub use skirt::SkirtArgs;
 pub use torture::TortureArgs;
+pub use validate::ValidateArgs;
 
 /// What the user asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +46,8 @@ pub enum Command {
     BenchSkirt(SkirtArgs),
     /// `toile torture`.
     Torture(TortureArgs),
+    /// `toile validate`.
+    Validate(ValidateArgs),
     /// `toile completions`.
     Completions(Shell),
     /// Help or version: text to print.
@@ -141,7 +145,18 @@ pub fn command() -> clap::Command {
         )
         .override_usage("toile [OPTIONS OF TRY-ON]\n       toile <COMMAND>")
         .subcommand_required(true)
-        .subcommands([try_on(), measure(), record(), bake::grammar(), run::grammar(), doctor(), bench(), torture::grammar(), completions()])
+        .subcommands([
+            try_on(),
+            measure(),
+            record(),
+            bake::grammar(),
+            run::grammar(),
+            doctor(),
+            bench(),
+            validate::grammar(),
+            torture::grammar(),
+            completions(),
+        ])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
 }
 
@@ -304,6 +319,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "bake" => Command::Bake(bake::args(matches)?),
         "bench" => bench_command(matches)?,
         "torture" => Command::Torture(torture::args(matches)?),
+        "validate" => Command::Validate(validate::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
     })

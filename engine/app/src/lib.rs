@@ -24,6 +24,7 @@ pub mod summary;
 pub mod terminal;
 pub mod torture;
 pub mod try_on;
+pub mod validate;
 
 use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -67,6 +68,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
         Command::Torture(args) => torture::run(args),
+        Command::Validate(args) => validate::run(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }

@@ -1,9 +1,10 @@
 //! What a trial found, and whether that is good enough.
 
+use glam::Vec3;
 use serde::Serialize;
 
-use super::Case;
-use super::trial::{BACK_M, RECOVER_S, Recovery, Seen, Trial};
+use super::trial::{self, BACK_M, RECOVER_S, Recovery, Seen, Trial};
+use super::{Case, piece};
 
 /// What the rounding of a speed may add to its limit (1).
 const SPEED_SLACK: f32 = 1e-3;
@@ -30,9 +31,29 @@ impl Found {
     }
 
     /// Lets a trial come to rest and compares.
-    pub fn back(mut trial: Trial<'_>, rest: &[glam::Vec3]) -> Self {
+    pub fn back(mut trial: Trial<'_>, rest: &[Vec3]) -> Self {
         let recovery = Some(trial.recover(rest));
         Self { recovery, ..Self::of(&trial) }
+    }
+
+    /// The same for what may have other places of rest: one that the oracle finds downhill from where the cloth ended,
+    /// and stable, is as good.
+    pub fn back_anywhere(mut trial: Trial<'_>, rest: &[Vec3]) -> Self {
+        let recovery = trial.recover(rest);
+        let mut found = Self { recovery: Some(recovery), ..Self::of(&trial) };
+        if recovery.after_s.is_none() {
+            let end: Vec<Vec3> = trial.cloth.positions.iter().map(|p| Vec3::from(*p)).collect();
+            let near = piece::equilibrium(trial.garment, &trial.settings, &end);
+            match near.map(|x| trial::hausdorff(&trial.cloth.positions, &x)) {
+                Ok(off) => {
+                    let after_s = (off <= BACK_M).then_some(RECOVER_S);
+                    found.recovery = Some(Recovery { after_s, hausdorff_m: off });
+                    found.note = format!("folds; {:.1} mm from lying flat", recovery.hausdorff_m * 1e3);
+                }
+                Err(error) => found.note = error.to_string(),
+            }
+        }
+        found
     }
 
     /// The first thing that is not as it has to be.
@@ -164,6 +185,8 @@ impl Summary {
 pub struct Report {
     /// The quality's name.
     pub quality: &'static str,
+    /// How far curtain, lawn, patch and tube are from the oracle's equilibrium when nothing is done to them (mm).
+    pub undisturbed_mm: [f64; 4],
     /// One row a case.
     pub summary: Vec<Summary>,
     /// One entry a case and seed, in their order.

@@ -19,11 +19,14 @@ use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use thiserror::Error;
 use toile_assets::garment::MeshError;
 use toile_engine::cloth::{Quality, Settings};
 
-pub use found::{Outcome, Report, Summary};
+use crate::oracle::OracleError;
+
 use found::Found;
+pub use found::{Outcome, Report, Summary};
 use piece::{CURTAIN, PATCH, Piece};
 use random::Random;
 
@@ -48,8 +51,9 @@ pub struct Case {
 }
 
 /// Every case, in the order of the table.
-pub const CASES: [Case; 23] = [
+pub const CASES: [Case; 24] = [
     Case { name: "random-box", about: "every vertex anywhere in a box of 1 m", run: start::random_box },
+    Case { name: "crumpled-lawn", about: "the same with thin cloth, in which folds may stay", run: start::crumpled },
     Case { name: "flattened", about: "pressed into a plane", run: start::flattened },
     Case { name: "inverted", about: "mirrored in a plane through its middle", run: start::inverted },
     Case { name: "stretched", about: "stretched 5 times", run: start::stretched },
@@ -69,10 +73,25 @@ pub const CASES: [Case; 23] = [
     Case { name: "bad-elements", about: "sides without length and faces without area", run: elements::bad_elements },
     Case { name: "bad-surroundings", about: "no numbers in colliders and bones", run: poison::surroundings },
     Case { name: "bad-settings", about: "no numbers in gravity, wind and settings", run: poison::settings },
-    Case { name: "bad-root-settings", about: "the same in the root's settings and substeps", run: poison::root_settings },
+    Case {
+        name: "bad-root-settings",
+        about: "the same in the root's settings and substeps",
+        run: poison::root_settings,
+    },
     Case { name: "bad-state", about: "no numbers in positions and velocities", run: poison::state },
     Case { name: "long-rest", about: "a minute at rest: a step takes as long as before", run: long_rest::long_rest },
 ];
+
+/// Why no torture can be done.
+#[derive(Debug, Error)]
+pub enum TortureError {
+    /// A piece that cannot be baked.
+    #[error("a piece of cloth cannot be baked: {0}")]
+    Mesh(#[from] MeshError),
+    /// A piece whose equilibrium is not found.
+    #[error("a piece of cloth has no equilibrium: {0}")]
+    Oracle(#[from] OracleError),
+}
 
 /// What is to be run.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,16 +115,18 @@ impl Default for Options {
 struct Site {
     settings: Settings,
     curtain: Piece,
+    lawn: Piece,
     patch: Piece,
     tube: Piece,
 }
 
 impl Site {
-    fn new(quality: Quality) -> Result<Self, MeshError> {
+    fn new(quality: Quality) -> Result<Self, TortureError> {
         let settings = Settings { quality, workers: 1, ..Settings::default() };
         let fabric = piece::denim();
         Ok(Self {
             curtain: Piece::new(&piece::sheet(CURTAIN), &fabric, &settings)?,
+            lawn: Piece::new(&piece::sheet(CURTAIN), &piece::lawn(), &settings)?,
             patch: Piece::new(&piece::sheet(PATCH), &fabric, &settings)?,
             tube: Piece::new(&piece::tube(TUBE, TUBE_RADIUS_M, 2.0 * TUBE_RADIUS_M), &fabric, &settings)?,
             settings,
@@ -116,10 +137,12 @@ impl Site {
 /// Runs the cases that are asked for; `told` is given the summary of each as it ends.
 ///
 /// # Errors
-/// Where a piece cannot be baked, which would be an error of the bake.
-pub fn run(options: &Options, told: &mut dyn FnMut(&Summary)) -> Result<Report, MeshError> {
+/// Where a piece cannot be baked or has no equilibrium, which would be an error of the bake or of the oracle.
+pub fn run(options: &Options, told: &mut dyn FnMut(&Summary)) -> Result<Report, TortureError> {
     let site = Site::new(options.quality)?;
-    let mut report = Report { quality: options.quality.name(), ..Report::default() };
+    let off = |piece: &Piece| piece.off() * 1e3;
+    let undisturbed_mm = [off(&site.curtain), off(&site.lawn), off(&site.patch), off(&site.tube)];
+    let mut report = Report { quality: options.quality.name(), undisturbed_mm, ..Report::default() };
     for case in CASES.iter().filter(|c| options.case.as_ref().is_none_or(|name| c.name == name)) {
         let outcomes = of_seeds(case, &site, options.seeds.clone());
         let summary = Summary::of(case, &outcomes);
@@ -148,4 +171,3 @@ fn of_seeds(case: &Case, site: &Site, seeds: Range<u64>) -> Vec<Outcome> {
     std::thread::scope(|scope| (0..THREADS).for_each(|_| drop(scope.spawn(work))));
     done.into_inner().map(|done| done.into_iter().flatten().collect()).unwrap_or_default()
 }
-

@@ -2,14 +2,17 @@
 
 use std::f32::consts::TAU;
 
-use glam::{Affine3A, Vec3, Vec3A};
+use glam::{Affine3A, DVec3, Vec3, Vec3A};
 use toile_assets::bake::bake;
 use toile_assets::fabric::Fabric;
-use toile_assets::garment::{Garment, MeshError, Part, Shape};
+use toile_assets::garment::{Garment, Part, Shape};
 use toile_assets::mesh::SkinWeights;
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::Colliders;
+
+use super::TortureError;
+use crate::oracle::{Oracle, Problem, Solids};
 
 /// Columns and rows of the curtain: 360 particles of which the upper row is held.
 pub const CURTAIN: [usize; 2] = [15, 24];
@@ -42,15 +45,20 @@ pub struct Piece {
 }
 
 impl Piece {
-    /// Bakes a shape and lets it come to rest by itself.
+    /// Bakes a shape, lets it come to rest by itself, and asks the oracle where it should.
     ///
     /// # Errors
-    /// Where the shape cannot be baked.
-    pub fn new(shape: &Shape, fabric: &Fabric, settings: &Settings) -> Result<Self, MeshError> {
+    /// Where the shape cannot be baked, or has no place of rest.
+    pub fn new(shape: &Shape, fabric: &Fabric, settings: &Settings) -> Result<Self, TortureError> {
         let garment = bake("torture", "one", shape, fabric)?;
-        let settled = settled(&garment, settings);
-        let rest = settled.positions.iter().map(|p| Vec3::from(*p)).collect();
-        Ok(Self { garment, settled, rest })
+        let rest = equilibrium(&garment, settings, &garment.start)?;
+        Ok(Self { settled: settled(&garment, settings), garment, rest })
+    }
+
+    /// How far the undisturbed cloth is from the oracle's equilibrium (m).
+    pub fn off(&self) -> f64 {
+        let apart = |(p, q): (&Vec3A, &Vec3)| f64::from(Vec3::from(*p).distance(*q));
+        self.settled.positions.iter().zip(&self.rest).map(apart).fold(0.0, f64::max)
     }
 
     /// The particles of a vertex row by row: particle `[vertex]`.
@@ -59,6 +67,14 @@ impl Piece {
         self.garment.source.iter().enumerate().for_each(|(i, &v)| particle[v as usize] = i);
         particle
     }
+}
+
+/// The equilibrium that is reached downhill from some places (m), by the oracle.
+pub fn equilibrium(garment: &Garment, settings: &Settings, from: &[Vec3]) -> Result<Box<[Vec3]>, TortureError> {
+    let problem = Problem { gravity: Vec3::from(settings.gravity).as_dvec3(), ..Problem::of(garment) };
+    let from: Vec<DVec3> = from.iter().map(|p| p.as_dvec3()).collect();
+    let solved = Oracle::new(problem)?.equilibrium(&from, &Solids::default())?;
+    Ok(solved.state.x.iter().map(|x| x.as_vec3()).collect())
 }
 
 /// The garment after it was left alone with nothing about it.
@@ -106,14 +122,14 @@ pub fn sheet([columns, rows]: [usize; 2]) -> Shape {
     shape
 }
 
-/// A tube that hangs by its upper ring, cut `cut_radius` wide and worn `worn_radius` wide (m).
+/// A tube that hangs by its upper ring, cut `cut_radius` wide and, below that ring, worn `worn_radius` wide (m).
 pub fn tube([columns, rows]: [usize; 2], cut_radius: f32, worn_radius: f32) -> Shape {
     let mut shape = Shape::default();
     for v in 0..columns * rows {
         let (row, column) = (v / columns, v % columns);
         let (sin, cos) = (column as f32 / columns as f32 * TAU).sin_cos();
         let at = |radius: f32| TOP + Vec3::new(radius * cos, -(row as f32) * CELL_M, radius * sin);
-        shape.push(at(cut_radius), at(worn_radius), row == 0, Part::All);
+        shape.push(at(cut_radius), at(if row == 0 { cut_radius } else { worn_radius }), row == 0, Part::All);
         shape.weights.push(SkinWeights { bones: [0, 1, 0, 0], weights: [0.5, 0.5, 0.0, 0.0] });
     }
     let at = |row: usize, column: usize| (row * columns + column % columns) as u32;

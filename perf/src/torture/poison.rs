@@ -32,9 +32,8 @@ fn surrounding_inputs() -> Vec<Input> {
     let sphere = |t: &mut Trial<'_>, change: &dyn Fn(&mut Vec4)| {
         t.spheres.iter_mut().flatten().take(1).for_each(change);
     };
-    let mut inputs: Vec<Input> = (0..4)
-        .map(|k| input(&format!("number {k} of a sphere"), move |t, v| sphere(t, &|s| s[k] = v)))
-        .collect();
+    let mut inputs: Vec<Input> =
+        (0..4).map(|k| input(&format!("number {k} of a sphere"), move |t, v| sphere(t, &|s| s[k] = v))).collect();
     inputs.push(input("a sphere", move |t, v| sphere(t, &|s| *s = Vec4::splat(v))));
     inputs.push(input("all spheres", |t, v| t.spheres.iter_mut().flatten().for_each(|s| *s = Vec4::splat(v))));
     inputs.push(input("the colliders' step", |t, v| t.colliders.step_seconds = v));
@@ -94,7 +93,11 @@ fn state_inputs() -> Vec<Input> {
                 let middle = t.garment.particles() / 2;
                 for i in (0..t.garment.particles()).filter(|i| i % every == middle % every) {
                     let (mut p, mut u) = (t.cloth.positions[i], t.cloth.velocity(i));
-                    if k < 3 { p[k] = v } else { u[k - 3] = v }
+                    if k < 3 {
+                        p[k] = v
+                    } else {
+                        u[k - 3] = v
+                    }
                     t.cloth.disturb(i, p, u);
                 }
             }));

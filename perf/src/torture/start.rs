@@ -37,6 +37,13 @@ pub(super) fn random_box(site: &Site, random: &mut Random, _: u64) -> Found {
     from(site, random, |_, _| MIDDLE + strewn.point() * BOX_M)
 }
 
+/// The same with lawn.
+pub(super) fn crumpled(site: &Site, random: &mut Random, _: u64) -> Found {
+    let mut trial = Trial::new(&site.lawn.garment, &site.settings);
+    trial.disturb(|_, _| (MIDDLE + random.point() * BOX_M, Vec3::ZERO));
+    Found::back_anywhere(trial, &site.lawn.rest)
+}
+
 /// Into a plane through the middle: what stands across it is gone.
 pub(super) fn flattened(site: &Site, random: &mut Random, _: u64) -> Found {
     let across = random.direction();
@@ -61,7 +68,8 @@ pub(super) fn collapsed_fiber(site: &Site, random: &mut Random, seed: u64) -> Fo
     let warp = seed.is_multiple_of(2);
     // Row 0 is held.
     let fiber = if warp { random.below(columns) } else { 1 + random.below(rows - 1) };
-    let to = if warp { (1 + random.below(rows - 1)) * columns + fiber } else { fiber * columns + random.below(columns) };
+    let to =
+        if warp { (1 + random.below(rows - 1)) * columns + fiber } else { fiber * columns + random.below(columns) };
     let place = site.curtain.garment.start[site.curtain.particles()[to]];
     let source = &site.curtain.garment.source;
     from(site, random, |i, p| {

@@ -85,12 +85,9 @@ pub(super) fn squeeze(site: &Site, random: &mut Random, _: u64) -> Found {
     Found::back(trial, &site.curtain.rest)
 }
 
-/// The tube starts about a body twice as wide as it was cut for, which then is gone.
+/// The tube starts about a body twice as wide as it was cut for, below the ring that it hangs by; then the body is gone.
 pub(super) fn too_small(site: &Site, random: &mut Random, _: u64) -> Found {
-    let body = |radius: f32| {
-        let middle = TOP - Vec3::Y * 0.2;
-        capsule(middle, Vec3::Y * 0.6, radius).to_vec()
-    };
+    let body = |radius: f32| capsule(TOP - Vec3::Y * 0.55, Vec3::Y * 0.35, radius).to_vec();
     // The fabric keeps 3 mm; up to 5 mm of the body stand out of the tube.
     let radius = 2.0 * TUBE_RADIUS_M + random.between(-0.03, 0.005);
     let mut trial = Trial::among(&site.tube, &body(radius), &[[0, 1]], &site.settings);

@@ -147,7 +147,7 @@ impl<'a> Trial<'a> {
             self.step();
             since = if is_near(&self.cloth.positions, rest) { since.or(Some(step as f32 * dt)) } else { None };
         }
-Recovery { after_s: since, hausdorff_m: hausdorff(&self.cloth.positions, rest) }
+        Recovery { after_s: since, hausdorff_m: hausdorff(&self.cloth.positions, rest) }
     }
 }
 
