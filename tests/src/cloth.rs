@@ -110,3 +110,8 @@ pub fn ripple(p: Vec3, speed: f32) -> Vec3 {
     let [a, b] = [p.x * 9.0 + p.y * 4.0, p.y * 11.0 - p.x * 3.0].map(f32::sin);
     Vec3::new(0.3 * b, -0.2 * a, 0.7 * a + 0.5 * b) * speed
 }
+
+/// A swing out of the sheet's own plane, that neither crumples nor folds it (m/s).
+pub fn swing(p: Vec3, speed: f32) -> Vec3 {
+    Vec3::Z * speed * (0.6 - p.y) * (1.0 + 0.4 * (5.0 * p.x).sin())
+}

@@ -2,11 +2,11 @@
 
 /// Momentum that may come from nothing, as a share of all momenta added up regardless of their direction (1): each of
 /// some thousand corrections a step is rounded to 6e-8, and half a second has 60 steps.
-pub const MOMENTUM: f64 = 1e-4;
+pub const MOMENTUM: f64 = 5e-4;
 
 /// Angular momentum likewise (1): corrections act along links as they lie before the last of them, which is right to the
 /// first order of a substep only.
-pub const ANGULAR_MOMENTUM: f64 = 5e-3;
+pub const ANGULAR_MOMENTUM: f64 = 1e-2;
 
 /// Energy that may come from nothing, as a share of what there was (1): velocities are taken from differences of
 /// positions, whose last bit at 1 m is worth 3e-5 m/s in a substep of 2 ms.
@@ -15,13 +15,17 @@ pub const ENERGY: f64 = 1e-3;
 /// How far what is at rest may stray from where it is (m): some last bits of f32 at 1 m, 6e-8 m each.
 pub const REST_M: f32 = 2e-6;
 
+/// How far a cloth that nothing holds and nothing slows may drift in a second (m): the last bit of a position is worth 1e-5
+/// m/s in a substep, and what 500 substeps add up is a walk at random.
+pub const DRIFT_M: f32 = 1e-3;
+
 /// Length of a link that must not stretch over its length as cut, less 1: Gauss-Seidel sweeps over the weft come after
-/// its last solve in a substep, and in a swing each pulls a little on it.
-pub const ZERO_STRETCH: f32 = 2e-3;
+/// its last solve in a substep, and in cloth that is flung at 3 m/s each pulls a little on it.
+pub const ZERO_STRETCH: f32 = 1e-2;
 
 /// How differently a cloth and its mirror image may move in half a second, over the cloth's length (1): sets are solved in
 /// the order of the columns, and what differs in one pass is a share of what the pass corrects.
-pub const MIRROR: f32 = 5e-3;
+pub const MIRROR: f32 = 1e-2;
 
 /// How differently a cloth and one of another size may move in half a second, over their lengths (1): nothing but
 /// rounding and limits in metres can tell them apart.

@@ -7,7 +7,7 @@ use toile_assets::garment::{Garment, Shape, Solver};
 use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
 use toile_engine::cloth::{Quality, Settings};
 use toile_perf::oracle::{Problem, measure};
-use toile_tests::cloth::{Alone, plain_fabric, ripple, sheet};
+use toile_tests::cloth::{Alone, plain_fabric, ripple, sheet, swing};
 use toile_tests::tolerance;
 
 /// Half a second.
@@ -36,32 +36,49 @@ fn weightless(quality: Quality) -> Settings {
     Settings { gravity: Vec3A::ZERO, quality, ..Settings::default() }
 }
 
+/// Momentum and angular momentum that half a second adds to a cloth that flies, turns and ripples, over the sums of all
+/// particles' own (1).
+fn added(garment: &Garment, settings: &Settings) -> [f64; 2] {
+    let mut alone = Alone::new(garment);
+    alone.disturb(|_, p| (p, ripple(p, 1.0) + Vec3::new(0.4, 0.1, -0.2) + Vec3::new(0.3, 1.5, 0.4).cross(p)));
+    let (before, size) = alone.momenta();
+    (0..STEPS).for_each(|_| alone.step(settings));
+    let (after, _) = alone.momenta();
+    [0, 1].map(|k| (after[k] - before[k]).length() / size[k])
+}
+
 #[test]
 fn momentum_is_kept_where_nothing_acts_from_outside() {
     let garment = baked(&flat(false), &lawn());
     for quality in Quality::ALL {
-        let mut alone = Alone::new(&garment);
-        alone.disturb(|_, p| (p, ripple(p, 1.0) + Vec3::new(0.4, 0.1, -0.2) + Vec3::new(0.3, 1.5, 0.4).cross(p)));
-        let (before, size) = alone.momenta();
-        (0..STEPS).for_each(|_| alone.step(&weightless(quality)));
-        let (after, _) = alone.momenta();
-        let off = [0, 1].map(|k| (after[k] - before[k]).length() / size[k]);
-        eprintln!("{quality}: momentum off by {:.1e}, angular momentum by {:.1e}", off[0], off[1]);
-        assert!(off[0] < tolerance::MOMENTUM, "{quality}: momentum changed by {:e}", off[0]);
-        assert!(off[1] < tolerance::ANGULAR_MOMENTUM, "{quality}: angular momentum changed by {:e}", off[1]);
+        let [linear, angular] = added(&garment, &weightless(quality));
+        eprintln!("{quality}: momentum off by {linear:.1e}, angular momentum by {angular:.1e}");
+        assert!(linear < tolerance::MOMENTUM, "{quality}: momentum changed by {linear:e}");
+        assert!(angular < tolerance::ANGULAR_MOMENTUM, "{quality}: angular momentum changed by {angular:e}");
     }
 }
 
 #[test]
+fn what_is_wrong_with_angular_momentum_goes_with_the_substep() {
+    let garment = baked(&flat(false), &lawn());
+    let of = |substeps| added(&garment, &Settings { substeps: Some(substeps), ..weightless(Quality::Shop) })[1];
+    let [coarse, fine] = [of(4), of(32)];
+    eprintln!("angular momentum off by {coarse:.1e} with 4 substeps, {fine:.1e} with 32");
+    assert!(fine < 0.5 * coarse, "{coarse:e} with 4 substeps, {fine:e} with 32");
+}
+
+#[test]
 fn what_is_at_rest_stays_at_rest() {
-    for (pinned, quality) in [(false, Quality::Shop), (true, Quality::Shop), (false, Quality::Fine)] {
+    for (pinned, quality) in [false, true].into_iter().flat_map(|pinned| Quality::ALL.map(|q| (pinned, q))) {
         let garment = baked(&flat(pinned), &lawn());
         let mut alone = Alone::new(&garment);
         (0..2 * STEPS).for_each(|_| alone.step(&weightless(quality)));
-        for (p, start) in alone.cloth.positions.iter().zip(&garment.start) {
-            let off = Vec3::from(*p).distance(*start);
-            assert!(off < tolerance::REST_M, "{quality}, pinned {pinned}: strayed by {off} m");
-        }
+        let moved = |(p, start): (&Vec3A, &Vec3)| Vec3::from(*p).distance(*start);
+        let off = alone.cloth.positions.iter().zip(&garment.start).map(moved).fold(0.0, f32::max);
+        let strain = measure::strain(&Problem::of(&garment), &alone.state().x).max;
+        eprintln!("{quality}, pinned {pinned}: strayed by {off:.1e} m, strain {strain:.1e}");
+        assert!(off < if pinned { tolerance::REST_M } else { tolerance::DRIFT_M }, "{quality}: strayed by {off} m");
+        assert!(strain < tolerance::REST_STRAIN, "{quality}, pinned {pinned}: strained by {strain}");
     }
 }
 
@@ -80,12 +97,6 @@ fn pinned_particles_never_move_whatever_pulls_at_them() {
     assert!(garment.fixed.len() > 2);
 }
 
-/// Kinetic, elastic and potential energy together, and the kinetic part alone (J).
-fn energy(problem: &Problem, alone: &Alone<'_>) -> [f64; 2] {
-    let e = measure::energies(problem, &alone.state());
-    [e.total_j(), e.kinetic_j]
-}
-
 #[test]
 fn no_energy_comes_from_nothing() {
     for (pinned, gravity) in [(false, 0.0), (true, -9.81)] {
@@ -95,16 +106,25 @@ fn no_energy_comes_from_nothing() {
             let settings = Settings { gravity: Vec3A::new(0.0, gravity, 0.0), ..weightless(quality) };
             let mut alone = Alone::new(&garment);
             alone.disturb(|_, p| (p, ripple(p, 2.0)));
-            let [mut least, kinetic] = energy(&problem, &alone);
-            let mut gained = 0.0f64;
-            for _ in 0..4 * STEPS {
-                alone.step(&settings);
-                let [now, _] = energy(&problem, &alone);
-                gained = gained.max(now - least);
-                least = least.min(now);
-            }
-            eprintln!("{quality}, gravity {gravity}: {:.1e} of the energy gained at most", gained / kinetic);
-            assert!(gained < tolerance::ENERGY * kinetic, "{quality}: {gained} J came from nothing");
+            let push = measure::energies(&problem, &alone.state()).kinetic_j;
+            // What links hold is left out: it is never negative, and what a solver leaves of a stiff link's length is
+            // no energy that it would give back.
+            let free = |alone: &Alone<'_>| {
+                let e = measure::energies(&problem, &alone.state());
+                e.kinetic_j + e.bending_j + e.gravity_j
+            };
+            let begin = free(&alone);
+            let mut half_second = || {
+                let energy = |_| {
+                    alone.step(&settings);
+                    (free(&alone) - begin) / push
+                };
+                (0..STEPS).map(energy).fold(f64::MIN, f64::max)
+            };
+            let most = [(); 8].map(|()| half_second());
+            eprintln!("{quality}, gravity {gravity}: {most:.4?} of the push above the begin, in each half second");
+            assert!(most[0] < tolerance::ENERGY, "{quality}: {} of the energy came from nothing", most[0]);
+            assert!(most.windows(2).all(|w| w[1] < w[0] + tolerance::ENERGY), "{quality}: energy grows: {most:?}");
         }
     }
 }
@@ -133,7 +153,7 @@ fn a_fiber_that_must_not_stretch_is_never_longer_than_it_was_cut() {
 /// Where a disturbed cloth's vertices are after half a second, with everything mirrored by `mirror` (m) `[vertices]`.
 fn swung(garment: &Garment, mirror: Vec3) -> Vec<Vec3> {
     let mut alone = Alone::new(garment);
-    alone.disturb(|_, p| (p, mirror * ripple(p * mirror, 1.5)));
+    alone.disturb(|_, p| (p, mirror * swing(p * mirror, 1.0)));
     (0..STEPS).for_each(|_| alone.step(&Settings::default()));
     let mut out = vec![Vec3::ZERO; garment.particles()];
     garment.source.iter().zip(&alone.cloth.positions).for_each(|(&v, p)| out[v as usize] = (*p).into());
@@ -180,7 +200,7 @@ fn similar(scale: f32) -> Vec<Vec3> {
         ..Settings::default()
     };
     let mut alone = Alone::new(&garment);
-    alone.disturb(|_, p| (p, ripple(p / scale, 1.5) * scale.sqrt()));
+    alone.disturb(|_, p| (p, swing(p / scale, 1.0) * scale.sqrt()));
     (0..STEPS).for_each(|_| alone.step(&settings));
     assert_eq!(alone.cloth.events, Default::default(), "nothing had to be held");
     alone.cloth.positions.iter().map(|p| Vec3::from(*p) / scale).collect()
