@@ -16,8 +16,8 @@ use crate::lanes::{Column, Kernel, Lanes, Store, V3};
 /// a third, semi-implicit Euler stays stable with it.
 const DAMPING: f64 = 2.0;
 
-/// Most stages: a stiffness 4,000 times what a force can be. What is stiffer is weakened.
-pub const MOST: u32 = 64;
+/// Most stages: a stiffness 12,000 times what a force can be. What is stiffer is weakened.
+pub const MOST: u32 = 160;
 
 /// One stage: newest = ahead * newest + behind * the one before + forced * (r - Z newest).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
