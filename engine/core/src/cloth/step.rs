@@ -316,6 +316,7 @@ impl Work<'_> {
                 scratch,
                 per_dt2,
                 gamma: p.gamma,
+                taut: p.taut,
                 tension: tension(1),
             }),
             Op::Crossing(set) => self.width.run(list(&layout.crossing, set, tension(2))),
