@@ -38,6 +38,10 @@ mod problem;
 mod settle;
 mod solids;
 mod system;
+#[cfg(test)]
+mod tests;
+
+use std::fmt;
 
 use glam::DVec3;
 use thiserror::Error;
@@ -119,7 +123,7 @@ impl Default for Options {
             link_stiffness_n_m: 2e4,
             contact_stiffness_n_m: 1e3,
             creep_m_s: 1e-5,
-            most_iterations: 1_000,
+            most_iterations: 3_000,
             most_rounds: 60,
         }
     }
@@ -143,7 +147,7 @@ pub struct Report {
 }
 
 /// A solution.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Clone, PartialEq, Default)]
 pub struct Solved {
     /// Positions, and velocities: 0 in statics.
     pub state: State,
@@ -153,6 +157,13 @@ pub struct Solved {
     pub touches: Vec<Touch>,
     /// How exact it is.
     pub report: Report,
+}
+
+impl fmt::Debug for Solved {
+    /// How it was reached; the numbers of thousands of particles say little.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Solved").field("report", &self.report).finish_non_exhaustive()
+    }
 }
 
 /// Why there is no solution.

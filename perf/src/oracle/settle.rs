@@ -31,7 +31,13 @@ const CONTACT_M: f64 = 0.1;
 const NUDGE_M: f64 = 1e-5;
 
 /// How often a saddle is left.
-const MOST_NUDGES: usize = 6;
+const MOST_NUDGES: u64 = 6;
+
+/// Length of the step that tells how hard particles press (s).
+const PRESSING_S: f64 = 0.01;
+
+/// Motion below which friction is not yet whole in statics (m).
+const STATIC_SLIP_M: f64 = 1e-6;
 
 /// The solver of one problem. It remembers the last solution's forces, from which the next one starts: they change how
 /// long a solution takes and, below its tolerances, its digits.
@@ -96,7 +102,9 @@ impl Oracle {
         (0..p.particles()).filter(|i| p.pinned(*i)).for_each(|i| from[i] = target[i]);
         let held = [heaviest_link(p) * per_dt2, p.mass.iter().copied().fold(0.0, f64::max) * per_dt2];
         let task = Task { load: Load::Inertia { target, per_dt2 }, from, held, shift: 0.0 };
-        let friction = (p.friction > 0.0).then_some((state.x.as_slice(), step));
+        let slip_m = self.options.creep_m_s * dt;
+        let both = || [step.solids[0].shapes(), step.solids[1].shapes()];
+        let friction = (p.friction > 0.0).then(|| Friction::new(p.friction, slip_m, &state.x, both()));
         let mut solved = self.solve(task, &step.solids[1], friction)?;
         let v = solved.state.x.iter().zip(&state.x).map(|(after, before)| (*after - *before) / dt).collect();
         solved.state.v = v;
@@ -121,35 +129,56 @@ impl Oracle {
         Ok(out)
     }
 
-    /// x* of statics, without friction: the minimum of weight, stretch, bending and contact that is reached downhill from
+    /// x* of statics without friction: the minimum of weight, stretch, bending and contact that is reached downhill from
     /// `start`, in which pinned particles already are where they are to stay. Cloth that folds has many; one that is only
     /// a saddle is left in a fixed direction.
     ///
     /// # Errors
     /// Where the figures cannot be used, or no solution is found.
     pub fn equilibrium(&mut self, start: &[DVec3], solids: &Solids) -> Result<Solved, OracleError> {
-        let state = State::at_rest(start);
-        self.check(&state, solids)?;
-        let mut from = start.to_vec();
-        let mut spent = Report::default();
-        for nudge in 0..=MOST_NUDGES {
-            let load = Load::Weight { gravity: self.problem.gravity, from: start.to_vec() };
-            let held = [heaviest(&self.problem) / shortest(&self.problem), heaviest(&self.problem) / CONTACT_M];
-            let mut solved = self.solve(Task { load, from, held, shift: FIRST_SHIFT }, solids, None)?;
-            for (sum, one) in [
-                (&mut spent.iterations, &mut solved.report.iterations),
-                (&mut spent.rounds, &mut solved.report.rounds),
-                (&mut spent.factorisations, &mut solved.report.factorisations),
-            ] {
-                *sum += *one;
-                *one = *sum;
-            }
-            if solved.report.stable || nudge == MOST_NUDGES {
-                return Ok(solved);
-            }
-            from = nudged(&self.problem, &solved.state.x, nudge as u64);
+        self.statics(start, solids, false)
+    }
+
+    /// The same with friction that holds every particle to the point of the surface where it is at `start`, until more
+    /// than Coulomb's limit pulls at it: where cloth that came to lie at `start` by sliding stays.
+    ///
+    /// # Errors
+    /// As [`Self::equilibrium`].
+    pub fn held_equilibrium(&mut self, start: &[DVec3], solids: &Solids) -> Result<Solved, OracleError> {
+        self.statics(start, solids, true)
+    }
+
+    fn statics(&mut self, start: &[DVec3], solids: &Solids, held: bool) -> Result<Solved, OracleError> {
+        self.check(&State::at_rest(start), solids)?;
+        let (weight, mu) = (weight(&self.problem), self.problem.friction);
+        let task = |from: Vec<DVec3>, problem: &Problem| Task {
+            load: Load::Weight { gravity: problem.gravity, from: start.to_vec() },
+            from,
+            held: [weight / shortest(problem), weight / CONTACT_M],
+            shift: FIRST_SHIFT,
+        };
+        let grip = || {
+            let both = [solids.shapes(), solids.shapes()];
+            (held && mu > 0.0).then(|| Friction::new(mu, STATIC_SLIP_M, start, both))
+        };
+        if held {
+            // How hard each particle presses, before the first round lets any slide.
+            let step = Step { solids: [solids.clone(), solids.clone()], ..Step::of(PRESSING_S) };
+            self.step(&State::at_rest(start), &step)?;
         }
-        unreachable!("the last nudge returns")
+        let mut solved = self.solve(task(start.to_vec(), &self.problem), solids, grip())?;
+        for seed in 0..MOST_NUDGES {
+            if solved.report.stable {
+                break;
+            }
+            let before = solved.report;
+            let from = nudged(&self.problem, &solved.state.x, seed);
+            solved = self.solve(task(from, &self.problem), solids, grip())?;
+            solved.report.iterations += before.iterations;
+            solved.report.rounds += before.rounds;
+            solved.report.factorisations += before.factorisations;
+        }
+        Ok(solved)
     }
 
     fn check(&self, state: &State, solids: &Solids) -> Result<(), OracleError> {
@@ -176,20 +205,11 @@ impl Oracle {
     }
 
     /// Rounds until residual and constraints are within their tolerances.
-    fn solve(
-        &mut self,
-        task: Task,
-        solids: &Solids,
-        friction: Option<(&[DVec3], &Step)>,
-    ) -> Result<Solved, OracleError> {
+    fn solve(&mut self, task: Task, solids: &Solids, friction: Option<Friction<'_>>) -> Result<Solved, OracleError> {
         let options = self.options;
-        let weight = heaviest(&self.problem).max(1.0);
+        let weight = weight(&self.problem).max(1.0);
         let rho = [options.link_stiffness_n_m, options.contact_stiffness_n_m];
         let rho = [0, 1].map(|k| rho[k].max(STIFFER * task.held[k]));
-        let friction = friction.map(|(x, step)| {
-            let both = [step.solids[0].shapes(), step.solids[1].shapes()];
-            Friction::new(self.problem.friction, options.creep_m_s * step.dt, x, both)
-        });
         let mut landscape = Landscape {
             problem: &self.problem,
             load: task.load,
@@ -207,23 +227,21 @@ impl Oracle {
         let mut aim = Aim { residual_n: goal.max(FIRST_RESIDUAL_N * weight), most: options.most_iterations };
         let mut report = Report::default();
         let mut done = false;
+        let (mut tension_n, mut touches) = (Vec::new(), Vec::new());
         while !done && report.rounds < options.most_rounds && stance.iterations < options.most_iterations {
             report.rounds += 1;
             report.residual_n = newton::minimise(&landscape, &mut self.system, &mut x, &mut stance, aim);
+            tension_n = landscape.springs.tensions(&x);
+            touches = landscape.contact.touches(&x);
             report.violation = landscape.update(&x);
             done = report.residual_n <= goal && within(&report.violation, &options, weight);
             aim.residual_n = goal.max(aim.residual_n * SHARPER);
         }
         landscape.hessian(&x, true, 0.0, &mut self.system);
-        report.stable = self.system.solve(&vec![DVec3::ZERO; x.len()]).is_some();
+        report.stable = self.system.factor();
         report.iterations = stance.iterations;
         report.factorisations = self.system.factored - factored;
-        let solved = Solved {
-            tension_n: (0..self.problem.links.len()).map(|e| landscape.springs.tension(e, &x)).collect(),
-            touches: landscape.contact.touches(&x),
-            state: State::at_rest(&x),
-            report,
-        };
+        let solved = Solved { tension_n, touches, state: State::at_rest(&x), report };
         self.tension = landscape.springs.multiplier;
         self.pressure = landscape.contact.multiplier;
         if done { Ok(solved) } else { Err(OracleError::NotConverged(Box::new(solved))) }
@@ -237,7 +255,7 @@ fn within(v: &Violation, options: &Options, weight: f64) -> bool {
 }
 
 /// Weight of all that is free (N).
-fn heaviest(problem: &Problem) -> f64 {
+fn weight(problem: &Problem) -> f64 {
     problem.free_mass() * problem.gravity.length()
 }
 
