@@ -6,8 +6,8 @@
 //! Thread: the caller's; it shares no solver code with the engine.
 //!
 //! x* is where the sum of inertia or weight, stretch, bending, contact and friction is at its least: Newton's method with
-//! a line search ([`newton`]) on a sparse Cholesky factorisation ([`system`]), inside rounds of the method of multipliers
-//! for what does not stretch and for contact ([`energy`]), so that neither needs a stiffness without bound.
+//! a line search (`newton`) on a sparse Cholesky factorisation (`system`), inside rounds of the method of multipliers
+//! for what does not stretch and for contact (`energy`), so that neither needs a stiffness without bound.
 //!
 //! ```
 //! use toile_perf::oracle::{Oracle, Problem, Solids, State, Step};
@@ -32,6 +32,7 @@
 
 pub mod adapter;
 mod energy;
+mod equilibrium;
 pub mod measure;
 mod newton;
 mod problem;

@@ -116,8 +116,8 @@ fn renumbered(problem: &Problem) -> (Problem, Vec<usize>) {
     let n = problem.particles();
     let new: Vec<usize> = (0..n).map(|i| (i * 7 + 3) % n).collect();
     let mut out = problem.clone();
-    for i in 0..n {
-        (out.mass[new[i]], out.start[new[i]]) = (problem.mass[i], problem.start[i]);
+    for (i, &to) in new.iter().enumerate() {
+        (out.mass[to], out.start[to]) = (problem.mass[i], problem.start[i]);
     }
     let name = |i: u32| new[i as usize] as u32;
     out.links = problem.links.iter().rev().map(|l| Link { ends: [name(l.ends[1]), name(l.ends[0])], ..*l }).collect();
