@@ -10,4 +10,5 @@ pub mod skinning;
 pub mod skirt;
 mod surface;
 pub mod time;
+pub mod validate;
 pub mod yardstick;

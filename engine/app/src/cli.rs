@@ -16,10 +16,12 @@ use crate::exit::AppError;
 mod bake;
 mod run;
 mod skirt;
+mod validate;
 
 pub use bake::BakeArgs;
 pub use run::{RunArgs, RunScene};
 pub use skirt::SkirtArgs;
+pub use validate::ValidateArgs;
 
 /// What the user asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,6 +42,8 @@ pub enum Command {
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
     BenchSkirt(SkirtArgs),
+    /// `toile validate`.
+    Validate(ValidateArgs),
     /// `toile completions`.
     Completions(Shell),
     /// Help or version: text to print.
@@ -137,7 +141,17 @@ pub fn command() -> clap::Command {
         )
         .override_usage("toile [OPTIONS OF TRY-ON]\n       toile <COMMAND>")
         .subcommand_required(true)
-        .subcommands([try_on(), measure(), record(), bake::grammar(), run::grammar(), doctor(), bench(), completions()])
+        .subcommands([
+            try_on(),
+            measure(),
+            record(),
+            bake::grammar(),
+            run::grammar(),
+            doctor(),
+            bench(),
+            validate::grammar(),
+            completions(),
+        ])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
 }
 
@@ -299,6 +313,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
         "bake" => Command::Bake(bake::args(matches)?),
         "bench" => bench_command(matches)?,
+        "validate" => Command::Validate(validate::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
     })

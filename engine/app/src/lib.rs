@@ -23,6 +23,7 @@ pub mod shopper;
 pub mod summary;
 pub mod terminal;
 pub mod try_on;
+pub mod validate;
 
 use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -65,6 +66,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Bake(args) => bake::run(args),
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
+        Command::Validate(args) => validate::run(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }

@@ -21,6 +21,9 @@ const MOST_LEVER: f64 = 4.0;
 /// A fourth point with less than this share of the weights does nothing.
 const LEAST_WEIGHT: f64 = 1e-5;
 
+/// Least part of a stencil beside a clamp that counts as free to bend: what is less is an accident of the mesh.
+const LEAST_BENDS: f64 = 0.25;
+
 /// Neighbours and areas of all vertices.
 pub struct Rings {
     /// Area of the cloth that each vertex stands for (m2).
@@ -59,9 +62,9 @@ impl Rings {
         for face in &shape.faces {
             let ring = corners(face);
             let n = ring.len();
-            let share = face_area(&shape.cut, ring) / n as f64;
+            let shares = corner_areas(&shape.cut, ring);
             for (k, &v) in ring.iter().enumerate() {
-                area[v as usize] += share;
+                area[v as usize] += shares[k];
                 let (next, last) = (ring[(k + 1) % n], ring[(k + n - 1) % n]);
                 let between = |p, q| angle(&shape.cut, v, p, q);
                 fans[v as usize].push(if n == 3 {
@@ -137,6 +140,28 @@ fn face_area(positions: &[Vec3], ring: &[u32]) -> f64 {
     (2..ring.len()).map(|k| 0.5 * (p(k - 1) - p(0)).cross(p(k) - p(0)).length()).sum()
 }
 
+/// The part of a face's area that is nearest to each of its corners: of a triangle that of Voronoi, in an obtuse one half
+/// of it at the obtuse corner (Meyer et al. 2003, "Discrete differential-geometry operators", 3.3); of a quad a quarter.
+/// Equal thirds would weigh stencils side by side on a thread unequally where six and four faces meet in turn, and a thread
+/// of stiff and soft places in a row is softer than their mean.
+fn corner_areas(positions: &[Vec3], ring: &[u32]) -> [f64; 4] {
+    let area = face_area(positions, ring);
+    if ring.len() != 3 {
+        return [0.25 * area; 4];
+    }
+    let side = |k: usize| positions[ring[(k + 1) % 3] as usize].distance_squared(positions[ring[k % 3] as usize]);
+    let opposite = [1, 2, 0].map(|k| f64::from(side(k)));
+    // 4 area cot(angle) at each corner.
+    let cot = [0, 1, 2].map(|k| opposite[(k + 1) % 3] + opposite[(k + 2) % 3] - opposite[k]);
+    if let Some(obtuse) = cot.iter().position(|c| *c < 0.0) {
+        let mut shares = [0.25 * area; 4];
+        shares[obtuse] = 0.5 * area;
+        return shares;
+    }
+    let part = |k: usize| opposite[k] * cot[k] / (32.0 * area);
+    [part(1) + part(2), part(2) + part(0), part(0) + part(1), 0.0]
+}
+
 fn angle(positions: &[Vec3], v: u32, p: u32, q: u32) -> f64 {
     let from = |i: u32| positions[i as usize].as_dvec3() - positions[v as usize].as_dvec3();
     from(p).cross(from(q)).length().atan2(from(p).dot(from(q)))
@@ -155,6 +180,8 @@ pub struct Measure {
     pub v: [u32; 4],
     /// Weights of those of the ring (1/m2).
     weights: [f64; 3],
+    /// What part of the curvature along its direction each of them measures; together 1.
+    shares: [f64; 3],
     /// What it measures of the curvature tensor: 1 along its direction.
     pub tensor: DMat2,
 }
@@ -164,6 +191,18 @@ impl Measure {
     pub fn weights(&self) -> [f32; 4] {
         let [p, q, r] = self.weights.map(|w| w as f32);
         [-(p + q + r), p, q, r]
+    }
+
+    /// The part of its length that can bend: all of it, but where the vertex is fixed and so is what lies behind it, as in
+    /// a clamp, only what lies before. There the cloth turns on its half of the length, so that the sum measures as much
+    /// less of the curvature as that half is shorter than the whole.
+    pub fn bends(&self, fixed: &[bool]) -> f64 {
+        if !fixed[self.v[0] as usize] {
+            return 1.0;
+        }
+        let ring = self.v[1..].iter().zip(self.shares);
+        let free = ring.filter(|(v, _)| **v != NO_VERTEX && !fixed[**v as usize]).map(|(_, share)| share);
+        free.sum::<f64>().clamp(LEAST_BENDS, 1.0)
     }
 }
 
@@ -207,19 +246,20 @@ impl Ring {
         let off = (found - exact).to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
         let lever = 0.5 * scale / along.abs();
         let cost = off + LEVER_COST * lever;
-        (off < MOST_OFF && lever < MOST_LEVER).then(|| (cost, self.tidied(triple, weights, found)))
+        let shares = [0, 1, 2].map(|k| 0.5 * weights[k] * direction.dot([p, q, r][k]).powi(2));
+        (off < MOST_OFF && lever < MOST_LEVER).then(|| (cost, self.tidied(triple, weights, shares, found)))
     }
 
     /// Leaves out a point without weight.
-    fn tidied(&self, triple: [usize; 3], weights: [f64; 3], tensor: DMat2) -> Measure {
+    fn tidied(&self, triple: [usize; 3], weights: [f64; 3], shares: [f64; 3], tensor: DMat2) -> Measure {
         let least = LEAST_WEIGHT * weights.iter().map(|w| w.abs()).sum::<f64>();
         let mut v = [self.v, NO_VERTEX, NO_VERTEX, NO_VERTEX];
-        let mut kept = [0.0; 3];
+        let (mut kept, mut kept_shares) = ([0.0; 3], [0.0; 3]);
         let used = (0..3).filter(|&k| weights[k].abs() > least);
         for (place, k) in used.enumerate() {
             v[place + 1] = self.points[triple[k]].0;
-            kept[place] = weights[k];
+            (kept[place], kept_shares[place]) = (weights[k], shares[k]);
         }
-        Measure { v, weights: kept, tensor }
+        Measure { v, weights: kept, shares: kept_shares, tensor }
     }
 }

@@ -189,3 +189,22 @@ fn what_cannot_move_and_what_has_no_stiffness_has_no_stencil() {
     let threads = stencils_of(&tube(12, 6), &fabric(None));
     assert!(threads.iter().all(|s| s.direction != Direction::Bias), "diagonals without rigidity are left out");
 }
+
+#[test]
+fn a_clamped_strip_has_the_energy_of_its_free_length() {
+    let mesh = sheet(2, 81, 0.0125, 0.0125);
+    let mut clamped = shape(&mesh);
+    // Two fixed rows: a clamp at the second.
+    clamped.fixed.iter_mut().take(4).for_each(|fixed| *fixed = true);
+    let edges = fibers::edges(&clamped.cut, &clamped.faces);
+    let place = |v: u32| {
+        let p = mesh.0[v as usize] + Vec3::Y * 0.0125;
+        if p.y >= 0.0 { p } else { rolled(p, 0.0, 2.0) }
+    };
+    let found = stencils(&clamped, &edges, &fabric(None));
+    let energy: f64 = found.iter().map(|s| 0.5 * f64::from(s.k) * measured(s, &place).powi(2)).sum();
+    // Rolled from the clamp on: 79 links, of which the last half bends nothing.
+    let area = 0.0125 * (78.5 * 0.0125);
+    let rigidity = energy / (0.5 * area / 4.0) * 1e6;
+    assert!((rigidity / 20.0 - 1.0).abs() < 1e-3, "{rigidity}");
+}

@@ -1,0 +1,156 @@
+//! `toile validate`: the cloth against exact solutions.
+
+use std::fmt::Write;
+
+use toile_perf::validate::case::Row;
+use toile_perf::validate::run::{self, Report};
+
+use crate::cli::ValidateArgs;
+use crate::exit::AppError;
+use crate::report::Document;
+use crate::terminal::{self, Paint, Tone, Words};
+
+/// Runs `toile validate`.
+///
+/// # Errors
+/// [`AppError::Threshold`] where a target was missed, after the table; a closed stdout.
+pub fn run(args: &ValidateArgs) -> Result<(), AppError> {
+    let words = Words::new(args.quiet || args.json);
+    let bar = words.bar(0, "validating");
+    let told = |all: usize| {
+        bar.set_length(all as u64);
+        bar.inc(1);
+    };
+    let report = run::run(&args.options, &told).map_err(AppError::internal)?;
+    bar.finish_and_clear();
+    let [passed, gated] = report.passed;
+    if args.json {
+        terminal::print_json(&Document::new("validate", report))?;
+    } else {
+        terminal::print(&table(&report, Paint::for_stdout()))?;
+    }
+    if passed < gated {
+        let missed = gated - passed;
+        return Err(AppError::Threshold(format!(
+            "{missed} of {gated} targets were missed; the table's last column says why"
+        )));
+    }
+    Ok(())
+}
+
+/// The table as people read it.
+fn table(report: &Report, paint: Paint) -> String {
+    let mut text = String::new();
+    let head = format!(
+        "{:11} {:24} {:12} {:>5} {:9} {:>4} {:>10} {:>10} {:9} {:>9} {:>9} {:>9}  {}",
+        "case",
+        "parameter",
+        "mesh",
+        "links",
+        "quality",
+        "subs",
+        "expected",
+        "got",
+        "unit",
+        "error %",
+        "solver %",
+        "step us",
+        ""
+    );
+    line(&mut text, &paint.tone(head.trim_end(), Tone::Strong));
+    for row in &report.cases {
+        line(&mut text, &told(row, paint));
+    }
+    let ([passed, gated], threads, wall) = (report.passed, report.threads, report.wall_s);
+    line(&mut text, &format!("\n{passed} of {gated} targets met, {wall:.0} s on {threads} thread(s)"));
+    text
+}
+
+fn told(row: &Row, paint: Paint) -> String {
+    let solver = row.solver_error.map_or_else(|| "-".into(), percent);
+    let verdict = match (row.pass, &row.cause) {
+        (None, _) => "".into(),
+        (Some(true), _) => paint.tone("ok", Tone::Good),
+        (Some(false), cause) => {
+            let cause = cause.as_deref().unwrap_or_default();
+            paint
+                .tone(&format!("MISSED, {:.1} % allowed: {cause}", row.target.unwrap_or_default()), Tone::Warn)
+                .into_owned()
+                .into()
+        }
+    };
+    let Row { name, parameter, mesh, resolution, quality, substeps, unit, step_us, .. } = row;
+    let [expected, got] = [row.expected, row.got].map(figure);
+    let error = percent(row.error_percent);
+    format!(
+        "{name:11} {parameter:24} {mesh:12} {resolution:>5} {quality:9} {substeps:>4} {expected:>10} {got:>10} \
+         {unit:9} {error:>9} {solver:>9} {step_us:>9.1}  {verdict}"
+    )
+    .trim_end()
+    .to_owned()
+}
+
+/// A figure with the digits that fit.
+fn figure(x: f64) -> String {
+    let digits = if x == 0.0 || !x.is_finite() { 0 } else { (3 - x.abs().log10().floor() as i32).clamp(0, 7) };
+    format!("{x:.*}", digits as usize)
+}
+
+fn percent(x: f64) -> String {
+    let digits = if x.abs() < 10.0 {
+        2
+    } else if x.abs() < 1_000.0 {
+        1
+    } else {
+        0
+    };
+    format!("{x:+.digits$}")
+}
+
+fn line(text: &mut String, words: &str) {
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{words}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row() -> Row {
+        Row {
+            name: "cantilever",
+            parameter: "Gamma 10".into(),
+            quality: "fine",
+            mesh: "grid",
+            resolution: 24,
+            substeps: 6,
+            unit: "H/W",
+            expected: 1.0668,
+            got: 1.1668,
+            error_percent: 9.374,
+            solver_error: Some(-0.5),
+            model_error: Some(9.874),
+            step_us: 84.2,
+            target: Some(5.0),
+            pass: Some(false),
+            cause: Some("mesh: it is coarse".into()),
+        }
+    }
+
+    #[test]
+    fn a_row_tells_its_error_beside_its_time_and_why_it_missed() {
+        let text = told(&row(), Paint::none());
+        for part in ["cantilever", "Gamma 10", "1.067", "1.167", "+9.37", "-0.50", "84.2", "MISSED, 5.0 %", "coarse"] {
+            assert!(text.contains(part), "{part} is not in {text}");
+        }
+        let told_only = Row { pass: None, cause: None, solver_error: None, ..row() };
+        assert!(told(&told_only, Paint::none()).ends_with("84.2"));
+    }
+
+    #[test]
+    fn a_missed_target_is_a_failed_threshold() {
+        let report = Report { cases: vec![row()], passed: [0, 1], threads: 2, wall_s: 3.0 };
+        assert!(table(&report, Paint::none()).contains("0 of 1 targets met, 3 s on 2 thread(s)"));
+        assert_eq!(report.failed().count(), 1);
+    }
+}

@@ -1,0 +1,185 @@
+//! A case: something with an exact answer, and how it is run at a level; and the rows that come of it.
+
+use serde::Serialize;
+
+use super::Level;
+use super::rig::{Rig, RigError};
+
+/// What one run gave.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outcome {
+    /// The figure, in the case's unit.
+    pub got: f64,
+    /// Median time of a step (us).
+    pub step_us: f64,
+    /// Substeps of a step.
+    pub substeps: u32,
+    /// Least share of its bending stiffness that the substep could carry (1).
+    pub bend_kept: f32,
+    /// Whether what was to come to rest had.
+    pub settled: bool,
+    /// Steps that the guard rolled back.
+    pub rolled_back: u64,
+}
+
+impl Outcome {
+    /// A figure read off a rig.
+    pub fn of(rig: &Rig, got: f64) -> Self {
+        Self {
+            got,
+            step_us: rig.step_us(),
+            substeps: rig.cloth.substeps(),
+            bend_kept: rig.cloth.bend_pace().least,
+            settled: true,
+            rolled_back: rig.cloth.events.rolled_back,
+        }
+    }
+
+    /// A figure that no rig has given.
+    pub fn none(got: f64) -> Self {
+        Self { got, step_us: 0.0, substeps: 0, bend_kept: 1.0, settled: true, rolled_back: 0 }
+    }
+
+    /// The same, with whether it had come to rest.
+    pub fn settled(self, settled: bool) -> Self {
+        Self { settled, ..self }
+    }
+}
+
+/// How a case is run at a level.
+pub type Run = Box<dyn Fn(Level) -> Result<Outcome, RigError> + Send + Sync>;
+
+/// The figure of the converged f64 solution of the same discretisation, from a solver that shares no code with the engine.
+pub type Solve = Box<dyn Fn() -> Option<f64> + Send + Sync>;
+
+/// Something with an exact answer.
+pub struct Case {
+    /// Its name; what `toile validate CASE` takes.
+    pub name: &'static str,
+    /// Which one of the name it is.
+    pub parameter: String,
+    /// How it is meshed.
+    pub mesh: &'static str,
+    /// Links along it.
+    pub resolution: usize,
+    /// Unit of the figures.
+    pub unit: &'static str,
+    /// The exact value.
+    pub expected: f64,
+    /// What an error is a part of, where it is not the exact value: of a value of 0 nothing is a part.
+    pub scale: Option<f64>,
+    /// Largest error (%) at the quality `fine`; none where the row only tells.
+    pub target: Option<f64>,
+    /// Runs it.
+    pub run: Run,
+    /// Solves it independently, where that can be done.
+    pub solve: Option<Solve>,
+}
+
+/// One line of the table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// The case.
+    pub name: &'static str,
+    /// Which one of it.
+    pub parameter: String,
+    /// How the engine was set: draft, shop, fine or converged.
+    pub quality: &'static str,
+    /// How it was meshed.
+    pub mesh: &'static str,
+    /// Links along it.
+    pub resolution: usize,
+    /// Substeps of a step.
+    pub substeps: u32,
+    /// Unit of the next two.
+    pub unit: &'static str,
+    /// The exact value.
+    pub expected: f64,
+    /// What the engine gave.
+    pub got: f64,
+    /// Difference of the two (% of the exact value).
+    pub error_percent: f64,
+    /// Of that the solver's part: distance from the converged solution of the same mesh (% of the exact value).
+    pub solver_error: Option<f64>,
+    /// And the mesh's part: distance of that solution from the exact value (%).
+    pub model_error: Option<f64>,
+    /// Median time of a step (us).
+    pub step_us: f64,
+    /// Largest error that is accepted (%), where one is.
+    pub target: Option<f64>,
+    /// Whether it was kept to.
+    pub pass: Option<bool>,
+    /// Why it was not.
+    pub cause: Option<String>,
+}
+
+impl Case {
+    /// Runs the case at some levels and at the converged one, and tells a row of each that is asked for.
+    ///
+    /// # Errors
+    /// Where the case's own mesh or colliders are refused.
+    pub fn rows(&self, levels: &[Level]) -> Result<Vec<Row>, RigError> {
+        let converged = (self.run)(Level::Converged)?;
+        let truth = self.solve.as_ref().map_or(Some(converged.got), |solve| solve());
+        let run = |level: &Level| {
+            let found = if *level == Level::Converged { converged } else { (self.run)(*level)? };
+            Ok(self.row(*level, &found, truth))
+        };
+        levels.iter().map(run).collect()
+    }
+
+    fn percent(&self, from: f64, to: f64) -> f64 {
+        (from - to) / self.scale.unwrap_or(self.expected).abs() * 100.0
+    }
+
+    fn row(&self, level: Level, found: &Outcome, truth: Option<f64>) -> Row {
+        let error = self.percent(found.got, self.expected);
+        // What stands for the truth cannot be held against itself.
+        let truth = truth.filter(|_| self.solve.is_some() || level != Level::Converged);
+        let target = self.target.filter(|_| level == Level::GATED);
+        let pass = target.map(|most| error.abs() <= most && found.rolled_back == 0);
+        let mut row = Row {
+            name: self.name,
+            parameter: self.parameter.clone(),
+            quality: level.name(),
+            mesh: self.mesh,
+            resolution: self.resolution,
+            substeps: found.substeps,
+            unit: self.unit,
+            expected: self.expected,
+            got: found.got,
+            error_percent: error,
+            solver_error: truth.map(|t| self.percent(found.got, t)),
+            model_error: truth.map(|t| self.percent(t, self.expected)),
+            step_us: found.step_us,
+            target,
+            pass,
+            cause: None,
+        };
+        if pass == Some(false) {
+            row.cause = Some(cause(found, &row));
+        }
+        row
+    }
+}
+
+/// Why a row fails, from what its run has left behind.
+fn cause(found: &Outcome, row: &Row) -> String {
+    if found.rolled_back > 0 {
+        return format!("{} steps were rolled back by the guard", found.rolled_back);
+    }
+    if found.bend_kept < 0.999 {
+        let kept = f64::from(found.bend_kept) * 100.0;
+        return format!("bending is explicit: {} substeps carry {kept:.2} % of it on this mesh", found.substeps);
+    }
+    if !found.settled {
+        return "it has not come to rest".into();
+    }
+    match (row.solver_error, row.model_error) {
+        (Some(solver), Some(model)) if solver.abs() > model.abs() => {
+            format!("solver: {solver:+.1} % from what the same mesh converges to at {} substeps", found.substeps)
+        }
+        (Some(_), Some(model)) => format!("mesh: it converges to {model:+.1} % of what is exact"),
+        _ => "not told apart".into(),
+    }
+}

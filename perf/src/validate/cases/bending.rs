@@ -1,0 +1,187 @@
+//! Strips bent by a load: the cantilever, Peirce's overhang, the tip-loaded elastica.
+//!
+//! All start straight and level and come to rest under the damping of [`DAMPING`], which holds nothing up.
+
+use glam::DVec3;
+use toile_assets::garment::Shape;
+
+use crate::validate::Level;
+use crate::validate::case::{Case, Outcome};
+use crate::validate::exact::elastica;
+use crate::validate::mesh::{Cloth, Hold, Strip, Style};
+use crate::validate::rig::{G, Rig, RigError, Scenery};
+
+/// Length of the strips (m): a sleeve's.
+pub const LENGTH: f64 = 0.3;
+
+/// Width of the strips that are meshed in more than one way (m).
+const WIDTH: f64 = 0.1;
+
+/// Rate of damping (1/s): near what brings a hanging strip of this length to rest soonest.
+pub const DAMPING: f64 = 10.0;
+
+/// Longest time that a strip is given to come to rest (s).
+pub const REST_S: f64 = 4.0;
+
+/// Links along the cantilever: 12.5 mm as garments have, and 8.3 mm.
+const ROWS: [usize; 2] = [24, 36];
+
+/// Its Gamma = w L^3 / B.
+const GAMMAS: [f64; 12] = [0.1, 0.3, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 300.0, 500.0, 1000.0];
+
+/// Between these the target holds.
+const GATED: [f64; 2] = [0.3, 300.0];
+
+/// A clamped strip, level.
+#[derive(Debug, Clone, Copy)]
+pub struct Cantilever {
+    /// The strip.
+    pub strip: Strip,
+    /// Its w L^3 / B.
+    pub gamma: f64,
+    /// Its tip's load over its own weight (1).
+    pub load: f64,
+}
+
+impl Cantilever {
+    /// One of the cantilevers of the table.
+    pub fn new(style: Style, rows: usize, gamma: f64) -> Self {
+        let ends = [Hold::Clamped, Hold::Free];
+        Self { strip: Strip { length: LENGTH, width: WIDTH, rows, columns: rows / 3, style, ends }, gamma, load: 0.0 }
+    }
+
+    /// Its shape, level along x.
+    pub fn shape(&self) -> Shape {
+        let mut shape = self.strip.shape(|along, across| DVec3::new(along, 0.0, across));
+        if self.load > 0.0 {
+            // The last row has half a link's weight of its own.
+            let factor = 1.0 + 2.0 * self.load * self.strip.rows as f64;
+            let tip = self.tip(&shape);
+            shape.heavier = vec![1.0; shape.cut.len()];
+            tip.for_each(|v| shape.heavier[v] = factor as f32);
+        }
+        shape
+    }
+
+    /// Its cloth.
+    pub fn cloth(&self) -> Cloth {
+        let weight = Cloth::PLAIN.density * G;
+        Cloth { bend: weight * LENGTH.powi(3) / self.gamma, damping: DAMPING, ..Cloth::PLAIN }
+    }
+
+    fn tip(&self, shape: &Shape) -> impl Iterator<Item = usize> + use<> {
+        let last = (-self.strip.length + 1e-5) as f32;
+        let tip: Vec<usize> = shape.cut.iter().enumerate().filter(|(_, p)| p.y < last).map(|(v, _)| v).collect();
+        tip.into_iter()
+    }
+
+    /// Lets it come to rest; gives the rig, where its tip is (m) and whether it rests.
+    pub fn hang(&self, level: Level) -> Result<(Rig, DVec3, bool), RigError> {
+        let shape = self.shape();
+        let mut rig = Rig::new(&shape, &self.cloth(), level, &Scenery::default())?;
+        let settled = rig.rest(REST_S);
+        let tip = rig.mean(self.tip(&shape));
+        Ok((rig, tip, settled))
+    }
+}
+
+/// The cases of this room.
+pub fn cases() -> Vec<Case> {
+    let mut all = Vec::new();
+    for style in Style::ALL {
+        for rows in ROWS {
+            all.extend(GAMMAS.map(|gamma| cantilever(Cantilever::new(style, rows, gamma))));
+        }
+    }
+    all.push(peirce());
+    all.extend([0.5, 1.0, 2.0, 5.0, 10.0].map(tip_loaded));
+    all
+}
+
+fn cantilever(c: Cantilever) -> Case {
+    let run = move |level| {
+        let (rig, tip, settled) = c.hang(level)?;
+        Ok(Outcome::of(&rig, -tip.y / tip.x).settled(settled))
+    };
+    Case {
+        name: "cantilever",
+        parameter: format!("Gamma {}", c.gamma),
+        mesh: c.strip.style.name(),
+        resolution: c.strip.rows,
+        unit: "H/W",
+        expected: elastica::tip(c.gamma, 0.0).slope(),
+        scale: None,
+        target: (GATED[0]..=GATED[1]).contains(&c.gamma).then_some(5.0),
+        run: Box::new(run),
+        solve: None,
+    }
+}
+
+/// Angle of the chord in Peirce's test (rad).
+const PEIRCE: f64 = 41.5 * std::f64::consts::PI / 180.0;
+
+/// Rounds of the secant method: each gets three times closer at least.
+const SECANTS: usize = 3;
+
+/// The length at which the chord hangs at 41.5 degrees, in bending lengths c = (B/w)^(1/3), by the secant method over
+/// Gamma = (L/c)^3 from two lengths around the exact one.
+fn peirce() -> Case {
+    let exact = elastica::overhang(PEIRCE);
+    let run = move |level| {
+        let slope = |length: f64| {
+            let (rig, tip, settled) = Cantilever::new(Style::Grid, ROWS[0], length.powi(3)).hang(level)?;
+            Ok::<_, RigError>((Outcome::of(&rig, (-tip.y / tip.x).atan() - PEIRCE), settled))
+        };
+        let (mut a, mut b) = (0.95 * exact, 1.05 * exact);
+        let (mut at_a, _) = slope(a)?;
+        let (mut at_b, mut settled) = slope(b)?;
+        for _ in 0..SECANTS {
+            let next = b - at_b.got * (b - a) / (at_b.got - at_a.got);
+            if !next.is_finite() || (next - b).abs() < 1e-4 * b {
+                break;
+            }
+            // Within what a strip of this mesh can be.
+            let next = next.clamp(0.2 * exact, 5.0 * exact);
+            (a, at_a, b) = (b, at_b, next);
+            (at_b, settled) = slope(b)?;
+        }
+        Ok(Outcome { got: b, ..at_b }.settled(settled))
+    };
+    Case {
+        name: "peirce",
+        parameter: "chord 41.5 deg".into(),
+        mesh: Style::Grid.name(),
+        resolution: ROWS[0],
+        unit: "L/c",
+        expected: exact,
+        scale: None,
+        target: Some(5.0),
+        run: Box::new(run),
+        solve: None,
+    }
+}
+
+/// The tip's load over the strip's own weight: the engine knows no point loads, so that the last row is made heavier. What
+/// the rest weighs is part of the exact value.
+const TIP_LOAD: f64 = 10.0;
+
+fn tip_loaded(p: f64) -> Case {
+    let ends = [Hold::Clamped, Hold::Free];
+    let c = Cantilever { strip: Strip::narrow(LENGTH, ROWS[0], ends), gamma: p / TIP_LOAD, load: TIP_LOAD };
+    let run = move |level| {
+        let (rig, tip, settled) = c.hang(level)?;
+        Ok(Outcome::of(&rig, -tip.y / LENGTH).settled(settled))
+    };
+    Case {
+        name: "elastica",
+        parameter: format!("P L^2/B {p}"),
+        mesh: Style::Grid.name(),
+        resolution: ROWS[0],
+        unit: "drop/L",
+        expected: elastica::tip(c.gamma, p).drop,
+        scale: None,
+        target: Some(5.0),
+        run: Box::new(run),
+        solve: None,
+    }
+}

@@ -1,0 +1,185 @@
+//! What gives way: the upright strip, the column, the plate on edge. Each is found by bisection over its stiffness.
+//!
+//! The straight state is nudged by a thousandth of the length and left alone; it has given way when it is ever farther off
+//! than [`AWAY`] times the nudge.
+
+use glam::DVec3;
+
+use crate::validate::Level;
+use crate::validate::case::{Case, Outcome};
+use crate::validate::exact::column::{self, Ends};
+use crate::validate::exact::plate;
+use crate::validate::mesh::{Cloth, Hold, Strip, Style};
+use crate::validate::rig::{G, Rig, RigError, Scenery};
+
+use super::bending::LENGTH;
+use super::trial::threshold;
+
+/// Times the nudge.
+const AWAY: f64 = 3.0;
+
+/// The nudge (m).
+const NUDGE: f64 = 3e-4;
+
+/// How long a trial is watched (s).
+const WATCH_S: f64 = 5.0;
+
+/// Rate of damping (1/s): little, so that what gives way slowly is seen to.
+const DAMPING: f64 = 1.0;
+
+/// Links along a column.
+const ROWS: usize = 16;
+
+/// Searched between these parts of the exact value.
+const RANGE: [f64; 2] = [0.3, 3.0];
+
+/// The cases of this room.
+pub fn cases() -> Vec<Case> {
+    let mut all = vec![greenhill()];
+    all.extend(Ends::ALL.map(euler));
+    all.extend([0.1, 0.2].map(lateral));
+    all
+}
+
+/// Watches a rig that was nudged; says whether it gave way.
+fn gives_way(rig: &mut Rig, watched: &[usize], off: impl Fn(DVec3) -> f64) -> bool {
+    let steps = (WATCH_S / f64::from(rig.settings.step_seconds)) as usize;
+    for _ in 0..steps {
+        rig.step();
+        if watched.iter().any(|&v| off(rig.at(v)).abs() > AWAY * NUDGE) {
+            return true;
+        }
+    }
+    false
+}
+
+/// Vertices at a part of a strip's length.
+fn row(rig: &Rig, shape: &toile_assets::garment::Shape, along: f64) -> Vec<usize> {
+    (0..rig.vertices()).filter(|v| (f64::from(-shape.cut[*v].y) - along).abs() < 1e-4).collect()
+}
+
+/// Nudges every vertex that moves to z = NUDGE * form(s).
+fn nudge(rig: &mut Rig, shape: &toile_assets::garment::Shape, form: impl Fn(f64) -> f64) {
+    for v in 0..rig.vertices() {
+        if rig.moves(v) {
+            let along = f64::from(-shape.cut[v].y) / LENGTH;
+            let at = rig.at(v) + DVec3::Z * (NUDGE * form(along));
+            rig.put(v, at, DVec3::ZERO);
+        }
+    }
+}
+
+/// An upright strip, clamped below, with a load on its top of so many times its own weight.
+fn upright(level: Level, gamma: f64, load: f64) -> Result<(Outcome, bool), RigError> {
+    let strip = Strip::narrow(LENGTH, ROWS, [Hold::Clamped, Hold::Free]);
+    let mut shape = strip.shape(|along, across| DVec3::new(across, along, 0.0));
+    let tip: Vec<usize> = (0..shape.cut.len()).filter(|v| f64::from(-shape.cut[*v].y) > LENGTH - 1e-4).collect();
+    shape.heavier = vec![1.0; shape.cut.len()];
+    tip.iter().for_each(|&v| shape.heavier[v] = (1.0 + 2.0 * load * ROWS as f64) as f32);
+    let bend = Cloth::PLAIN.density * G * LENGTH.powi(3) / gamma;
+    let cloth = Cloth { bend, damping: DAMPING, ..Cloth::PLAIN };
+    let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+    nudge(&mut rig, &shape, |s| s * s);
+    let gave = gives_way(&mut rig, &tip, |p| p.z);
+    Ok((Outcome::of(&rig, gamma), gave))
+}
+
+fn greenhill() -> Case {
+    let exact = column::greenhill();
+    Case {
+        name: "greenhill",
+        parameter: "own weight".into(),
+        mesh: Style::Grid.name(),
+        resolution: ROWS,
+        unit: "w L^3/B",
+        expected: exact,
+        scale: None,
+        target: Some(10.0),
+        run: Box::new(move |level| threshold(RANGE.map(|r| r * exact), |gamma| upright(level, gamma, 0.0))),
+        solve: None,
+    }
+}
+
+/// Load on a free top over the strip's own weight, which is part of the exact value.
+const TOP_LOAD: f64 = 10.0;
+
+/// Shortening of columns whose both ends are held (1): the engine knows no end loads, so that the ends are brought closer,
+/// which presses with stretch stiffness times this.
+const SHORTENING: f64 = 5e-4;
+
+fn euler(ends: Ends) -> Case {
+    let exact = if ends == Ends::Free { column::loaded(1.0 / TOP_LOAD) } else { ends.critical() };
+    let run = move |level| {
+        threshold(RANGE.map(|r| r * exact), |p| match ends {
+            Ends::Free => upright(level, p / TOP_LOAD, TOP_LOAD),
+            _ => pressed(level, ends, p),
+        })
+    };
+    Case {
+        name: "euler",
+        parameter: ends.name().into(),
+        mesh: Style::Grid.name(),
+        resolution: ROWS,
+        unit: "P L^2/B",
+        expected: exact,
+        scale: None,
+        target: Some(10.0),
+        run: Box::new(run),
+        solve: None,
+    }
+}
+
+/// A strip pressed between two ends that are too close, without weight.
+fn pressed(level: Level, ends: Ends, p: f64) -> Result<(Outcome, bool), RigError> {
+    let (first, last) = match ends {
+        Ends::Pinned | Ends::Free => (Hold::Pinned, Hold::Pinned),
+        Ends::ClampedPinned => (Hold::Clamped, Hold::Pinned),
+        Ends::Clamped => (Hold::Clamped, Hold::Clamped),
+    };
+    let strip = Strip::narrow(LENGTH, ROWS, [first, last]);
+    let shape = strip.shape(|along, across| DVec3::new((along - 0.5 * LENGTH) * (1.0 - SHORTENING), across, 0.0));
+    let force = Cloth::PLAIN.stretch * SHORTENING;
+    let cloth = Cloth { bend: force * LENGTH * LENGTH / p, damping: DAMPING, ..Cloth::PLAIN };
+    let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+    rig.settings.gravity = glam::Vec3A::ZERO;
+    nudge(&mut rig, &shape, |s| (std::f64::consts::PI * s).sin());
+    let middle = row(&rig, &shape, 0.5 * LENGTH);
+    let gave = gives_way(&mut rig, &middle, |p| p.z);
+    Ok((Outcome::of(&rig, p), gave))
+}
+
+/// Links along the plate.
+const PLATE_ROWS: usize = 20;
+
+/// A plate on edge, clamped at one short side. Stencils along warp, weft and both diagonals are an isotropic plate of
+/// Poisson's ratio 1/3 and no other.
+fn lateral(width: f64) -> Case {
+    let exact = plate::critical(width, 1.0 / 3.0);
+    Case {
+        name: "lateral",
+        parameter: format!("width/length {width}"),
+        mesh: Style::Grid.name(),
+        resolution: PLATE_ROWS,
+        unit: "w L^3/D",
+        expected: exact,
+        scale: None,
+        target: Some(10.0),
+        run: Box::new(move |level| threshold(RANGE.map(|r| r * exact), |gamma| on_edge(level, width, gamma))),
+        solve: None,
+    }
+}
+
+fn on_edge(level: Level, width: f64, gamma: f64) -> Result<(Outcome, bool), RigError> {
+    let columns = (width * PLATE_ROWS as f64).round().max(2.0) as usize;
+    let ends = [Hold::Clamped, Hold::Free];
+    let strip = Strip { length: LENGTH, width: width * LENGTH, rows: PLATE_ROWS, columns, style: Style::Grid, ends };
+    let shape = strip.shape(|along, across| DVec3::new(along, across, 0.0));
+    let bend = Cloth::PLAIN.density * G * LENGTH.powi(3) / gamma;
+    // Stiff in shear as a plate is, so that it does not sag instead.
+    let cloth = Cloth { bend, bias: Some(bend), shear: 2_000.0, damping: DAMPING, ..Cloth::PLAIN };
+    let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+    nudge(&mut rig, &shape, |s| s * s);
+    let tip = row(&rig, &shape, LENGTH);
+    let gave = gives_way(&mut rig, &tip, |p| p.z);
+    Ok((Outcome::of(&rig, gamma), gave))
+}

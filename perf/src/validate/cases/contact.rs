@@ -1,0 +1,169 @@
+//! Contact and friction: the rope around a post, the incline, the stopping distance, on the engine's own colliders.
+
+use std::f64::consts::PI;
+
+use glam::{DVec3, Vec4};
+use toile_assets::garment::Shape;
+
+use crate::validate::Level;
+use crate::validate::case::{Case, Outcome};
+use crate::validate::exact::string;
+use crate::validate::mesh::{Cloth, Hold, Strip, Style};
+use crate::validate::rig::{G, Rig, RigError, Scenery};
+
+use super::trial::threshold;
+
+/// The gap that cloth keeps from a surface (m), as the cases' fabric has it.
+const GAP: f64 = 1e-3;
+
+/// The cases of this room.
+pub fn cases() -> Vec<Case> {
+    let mut all: Vec<Case> = [0.3, 0.6].map(capstan).into();
+    all.extend([0.2, 0.3, 0.6].map(incline));
+    all.extend([(1.0, 0.3), (2.0, 0.3), (1.0, 0.6)].map(|(v, mu)| stopping(v, mu)));
+    all
+}
+
+/// Radius at which the rope lies around the post (m).
+const POST: f64 = 0.1;
+
+/// Length of each hanging end (m).
+const HANGING: f64 = 0.1;
+
+/// Links of the rope.
+const ROPE_ROWS: usize = 64;
+
+/// Mass of the lighter end's load over that of the whole rope.
+const ROPE_LOAD: f64 = 20.0;
+
+/// How long the rope is watched (s), and how far it must run to have slipped (m): far more than the ends give while they
+/// begin to pull.
+const ROPE_WATCH: (f64, f64) = (1.5, 0.02);
+
+/// A rope over half a turn of a post with a load at each end: the ratio of the two pulls at which it slips.
+fn capstan(mu: f64) -> Case {
+    let exact = string::capstan(mu, PI);
+    let run = move |level| threshold([1.0, exact * exact], |ratio| rope(level, mu, ratio));
+    Case {
+        name: "capstan",
+        parameter: format!("mu {mu}, half a turn"),
+        mesh: Style::Grid.name(),
+        resolution: ROPE_ROWS,
+        unit: "T2/T1",
+        expected: exact,
+        scale: None,
+        target: Some(5.0),
+        run: Box::new(run),
+        solve: None,
+    }
+}
+
+fn rope(level: Level, mu: f64, ratio: f64) -> Result<(Outcome, bool), RigError> {
+    let around = PI * POST;
+    let strip = Strip::narrow(around + 2.0 * HANGING, ROPE_ROWS, [Hold::Free, Hold::Free]);
+    let worn = |along: f64, across: f64| {
+        let s = along - HANGING;
+        if s < 0.0 {
+            DVec3::new(-POST, s, across)
+        } else if s > around {
+            DVec3::new(POST, around - s, across)
+        } else {
+            let angle = s / POST;
+            DVec3::new(-POST * angle.cos(), POST * angle.sin(), across)
+        }
+    };
+    let mut shape = strip.shape(worn);
+    let ends = [0.0, strip.length].map(|end| {
+        (0..shape.cut.len()).filter(|v| (f64::from(-shape.cut[*v].y) - end).abs() < 1e-4).collect::<Vec<_>>()
+    });
+    // What hangs below the post pulls too.
+    let hanging = (HANGING - 0.5 * strip.link()) / strip.length;
+    let half = 0.5 / ROPE_ROWS as f64;
+    let light = ROPE_LOAD + hanging;
+    shape.heavier = vec![1.0; shape.cut.len()];
+    for (end, pull) in ends.iter().zip([light, light * ratio]) {
+        end.iter().for_each(|&v| shape.heavier[v] = ((pull - hanging) / half) as f32);
+    }
+    let cloth = Cloth { friction: mu, damping: 5.0, stretch: 1e5, ..Cloth::PLAIN };
+    let scenery =
+        Scenery { capsule: Some([DVec3::NEG_Z * 0.2, DVec3::Z * 0.2]), radius: POST - GAP, ..Scenery::default() };
+    let mut rig = Rig::new(&shape, &cloth, level, &scenery)?;
+    let before = rig.mean(ends[1].iter().copied()).y;
+    rig.run(ROPE_WATCH.0);
+    let slipped = before - rig.mean(ends[1].iter().copied()).y > ROPE_WATCH.1;
+    Ok((Outcome::of(&rig, ratio), slipped))
+}
+
+/// Side of the patch (m) and its links.
+const PATCH: (f64, usize) = (0.05, 5);
+
+/// A patch that lies on a plane through the origin which falls along +x at an angle (rad), at its gap; x is where its
+/// middle is along the slope.
+fn patch(angle: f64, x: f64) -> (Shape, Scenery) {
+    let (side, links) = PATCH;
+    let strip = Strip { width: side, columns: links, ..Strip::narrow(side, links, [Hold::Free, Hold::Free]) };
+    let (sin, cos) = angle.sin_cos();
+    let (down, up) = (DVec3::new(cos, -sin, 0.0), DVec3::new(sin, cos, 0.0));
+    let shape = strip.shape(|along, across| down * (x + along - 0.5 * side) + up * GAP + DVec3::Z * across);
+    let plane = Vec4::new(sin as f32, cos as f32, 0.0, 0.0);
+    (shape, Scenery { planes: vec![plane], ..Scenery::default() })
+}
+
+/// How long the patch is watched (s) and how far it must slide (m).
+const SLIDE: (f64, f64) = (1.0, 0.005);
+
+/// Target of the slope's angle (degrees).
+const SLOPE_DEGREES: f64 = 2.0;
+
+fn incline(mu: f64) -> Case {
+    let exact = mu.atan().to_degrees();
+    let run = move |level| {
+        threshold([0.3 * exact, (3.0 * exact).min(85.0)], |degrees| {
+            let (shape, scenery) = patch(degrees.to_radians(), 0.0);
+            let cloth = Cloth { friction: mu, ..Cloth::PLAIN };
+            let mut rig = Rig::new(&shape, &cloth, level, &scenery)?;
+            let vertices = rig.vertices();
+            let before = rig.mean(0..vertices);
+            rig.run(SLIDE.0);
+            let slid = rig.mean(0..vertices).distance(before) > SLIDE.1;
+            Ok((Outcome::of(&rig, degrees), slid))
+        })
+    };
+    Case {
+        name: "incline",
+        parameter: format!("mu {mu}"),
+        mesh: Style::Grid.name(),
+        resolution: PATCH.1,
+        unit: "deg",
+        expected: exact,
+        scale: None,
+        target: Some(SLOPE_DEGREES / exact * 100.0),
+        run: Box::new(run),
+        solve: None,
+    }
+}
+
+/// A patch that is thrown along the floor: v^2 / 2 mu g.
+fn stopping(speed: f64, mu: f64) -> Case {
+    let run = move |level| {
+        let (shape, scenery) = patch(0.0, 0.0);
+        let cloth = Cloth { friction: mu, ..Cloth::PLAIN };
+        let mut rig = Rig::new(&shape, &cloth, level, &scenery)?;
+        let vertices = rig.vertices();
+        (0..vertices).for_each(|v| rig.put(v, rig.at(v), DVec3::X * speed));
+        let settled = rig.rest(2.0 * speed / (mu * G) + 1.0);
+        Ok(Outcome::of(&rig, rig.mean(0..vertices).x).settled(settled))
+    };
+    Case {
+        name: "stopping",
+        parameter: format!("{speed} m/s, mu {mu}"),
+        mesh: Style::Grid.name(),
+        resolution: PATCH.1,
+        unit: "m",
+        expected: speed * speed / (2.0 * mu * G),
+        scale: None,
+        target: Some(5.0),
+        run: Box::new(run),
+        solve: None,
+    }
+}

@@ -1,0 +1,135 @@
+//! What must not matter: statics are the same when stiffnesses and mass are scaled together, when the mesh is renumbered,
+//! turned or mirrored, when the step is halved. Held against the engine's own cantilever at the same level.
+
+use glam::DQuat;
+use toile_assets::garment::Shape;
+use toile_assets::garment::shape::NO_VERTEX;
+
+use crate::validate::Level;
+use crate::validate::case::{Case, Outcome};
+use crate::validate::mesh::{Cloth, Dice, Style};
+use crate::validate::rig::{Rig, RigError, Scenery};
+
+use super::bending::{Cantilever, REST_S};
+
+/// The cantilever that is changed: its bending is carried whole by the quality `fine`, so that nothing but the change
+/// shows.
+const GAMMA: f64 = 300.0;
+
+/// Links along it.
+const ROWS: usize = 24;
+
+/// How it is changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Change {
+    Scaled,
+    Renumbered,
+    Turned,
+    Mirrored,
+    HalfStep,
+}
+
+impl Change {
+    const ALL: [Self; 5] = [Self::Scaled, Self::Renumbered, Self::Turned, Self::Mirrored, Self::HalfStep];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Scaled => "mass and stiffness x 3",
+            Self::Renumbered => "renumbered",
+            Self::Turned => "turned 37 deg",
+            Self::Mirrored => "mirrored",
+            Self::HalfStep => "step halved",
+        }
+    }
+}
+
+/// The cases of this room.
+pub fn cases() -> Vec<Case> {
+    Style::ALL.into_iter().flat_map(|style| Change::ALL.map(|change| case(style, change))).collect()
+}
+
+fn case(style: Style, change: Change) -> Case {
+    let run = move |level| {
+        let (_, plain) = hung(style, None, level)?;
+        let (rig, changed) = hung(style, Some(change), level)?;
+        Ok(Outcome::of(&rig, changed / plain))
+    };
+    Case {
+        name: "invariance",
+        parameter: change.name().into(),
+        mesh: style.name(),
+        resolution: ROWS,
+        unit: "drop/drop",
+        expected: 1.0,
+        scale: None,
+        target: Some(1.0),
+        run: Box::new(run),
+        solve: None,
+    }
+}
+
+/// The rig at rest, and how far its tip has come down (m).
+fn hung(style: Style, change: Option<Change>, level: Level) -> Result<(Rig, f64), RigError> {
+    let c = Cantilever::new(style, ROWS, GAMMA);
+    let (mut shape, mut cloth) = (c.shape(), c.cloth());
+    // By place, so that the numbers may change.
+    let mut tip: Vec<bool> = shape.worn.iter().map(|p| p.x > (c.strip.length - 1e-5) as f32).collect();
+    match change {
+        Some(Change::Scaled) => {
+            let Cloth { density, stretch, shear, bend, .. } = cloth;
+            let [density, stretch, shear, bend] = [density, stretch, shear, bend].map(|x| 3.0 * x);
+            cloth = Cloth { density, stretch, shear, bend, ..cloth };
+        }
+        Some(Change::Renumbered) => tip = renumber(&mut shape, tip),
+        Some(Change::Turned) => {
+            let turn = DQuat::from_rotation_y(37f64.to_radians()).as_quat();
+            shape.cut.iter_mut().chain(&mut shape.worn).for_each(|p| *p = turn * *p);
+        }
+        Some(Change::Mirrored) => mirror(&mut shape),
+        Some(Change::HalfStep) | None => {}
+    }
+    let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+    if change == Some(Change::HalfStep) {
+        rig.settings.step_seconds *= 0.5;
+    }
+    rig.rest(REST_S);
+    let drop = -rig.mean((0..tip.len()).filter(|v| tip[*v])).y;
+    Ok((rig, drop))
+}
+
+/// Shuffles the vertices and the faces; gives the tip by its new numbers.
+fn renumber(shape: &mut Shape, tip: Vec<bool>) -> Vec<bool> {
+    let mut dice = Dice(7);
+    let count = shape.cut.len();
+    let mut old: Vec<usize> = (0..count).collect();
+    (1..count).rev().for_each(|i| old.swap(i, (dice.roll() * (i + 1) as f64) as usize));
+    let mut new = vec![0u32; count];
+    old.iter().enumerate().for_each(|(i, o)| new[*o] = i as u32);
+    fn moved<T: Copy>(of: &[T], old: &[usize]) -> Vec<T> {
+        old.iter().map(|o| of[*o]).collect()
+    }
+    shape.cut = moved(&shape.cut, &old);
+    shape.worn = moved(&shape.worn, &old);
+    shape.fixed = moved(&shape.fixed, &old);
+    shape.parts = moved(&shape.parts, &old);
+    shape.weights = moved(&shape.weights, &old);
+    let corner = |v: u32| if v == NO_VERTEX { v } else { new[v as usize] };
+    shape.faces = shape.faces.iter().map(|f| f.map(corner)).collect();
+    let faces = shape.faces.len();
+    (1..faces).rev().for_each(|i| shape.faces.swap(i, (dice.roll() * (i + 1) as f64) as usize));
+    moved(&tip, &old)
+}
+
+/// Left and right exchanged; faces keep looking to the front.
+fn mirror(shape: &mut Shape) {
+    shape.cut.iter_mut().for_each(|p| p.x = -p.x);
+    shape.worn.iter_mut().for_each(|p| p.z = -p.z);
+    for [a, b, c, d] in &mut shape.faces {
+        if *d == NO_VERTEX {
+            std::mem::swap(b, c);
+        } else {
+            std::mem::swap(a, b);
+            std::mem::swap(c, d);
+        }
+    }
+}

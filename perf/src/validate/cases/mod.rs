@@ -1,0 +1,21 @@
+//! The cases, in the order of the table.
+//!
+//! Reads: exact values. Writes: cases that can be run at any level.
+//! Budget: nothing; a case costs when it is run.
+//! Thread: any.
+
+mod bending;
+mod buckling;
+mod contact;
+mod invariance;
+mod motion;
+mod strings;
+mod trial;
+
+use super::case::Case;
+
+/// All cases.
+pub fn all() -> Vec<Case> {
+    let rooms = [bending::cases, buckling::cases, strings::cases, motion::cases, contact::cases, invariance::cases];
+    rooms.into_iter().flat_map(|cases| cases()).collect()
+}

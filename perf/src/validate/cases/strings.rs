@@ -1,0 +1,112 @@
+//! What only stretches and hangs: the hanging strip, the catenary. Strips two particles wide that do not bend.
+
+use glam::DVec3;
+
+use crate::validate::case::{Case, Outcome};
+use crate::validate::exact::string;
+use crate::validate::mesh::{Cloth, Hold, Strip, Style};
+use crate::validate::rig::{G, Rig, Scenery};
+
+/// Links along them.
+const ROWS: usize = 32;
+
+/// Rate of damping (1/s).
+const DAMPING: f64 = 5.0;
+
+/// Longest time to come to rest (s).
+const REST_S: f64 = 6.0;
+
+/// The cases of this room.
+pub fn cases() -> Vec<Case> {
+    let mut all = Vec::new();
+    for stretch in [60.0, 600.0, 6_000.0] {
+        all.extend([Hung::Tip, Hung::Top].map(|what| strip(stretch, what)));
+    }
+    for length in [1.05, 1.2, 1.5, 2.0] {
+        all.extend([Slung::Sag, Slung::Tension].map(|what| catenary(length, what)));
+    }
+    all
+}
+
+/// What is read off a hanging strip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Hung {
+    /// How far its tip has come down: w L^2 / 2E.
+    Tip,
+    /// The pull of its highest links, over the weight that hangs on them.
+    Top,
+}
+
+fn strip(stretch: f64, what: Hung) -> Case {
+    let strip = Strip::narrow(1.0, ROWS, [Hold::Pinned, Hold::Free]);
+    let cloth = Cloth { stretch, damping: DAMPING, ..Cloth::PLAIN };
+    let run = move |level| {
+        let shape = strip.shape(|along, across| DVec3::new(across, -along, 0.0));
+        let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+        let settled = rig.rest(REST_S);
+        let tip = (0..rig.vertices()).filter(|v| shape.cut[*v].y < -1.0 + 1e-4);
+        let got = match what {
+            Hung::Tip => -rig.mean(tip).y - 1.0,
+            Hung::Top => -rig.force_on_fixed(|_| true).y / (rig.mass() * G),
+        };
+        Ok(Outcome::of(&rig, got).settled(settled))
+    };
+    let [name, unit] = match what {
+        Hung::Tip => ["strip", "m"],
+        Hung::Top => ["top-force", "T/weight"],
+    };
+    Case {
+        name,
+        parameter: format!("E {stretch} N/m"),
+        mesh: Style::Grid.name(),
+        resolution: ROWS,
+        unit,
+        expected: if what == Hung::Tip { cloth.density * G / (2.0 * stretch) } else { 1.0 },
+        scale: None,
+        target: Some(if what == Hung::Tip { 1.0 } else { 2.0 }),
+        run: Box::new(run),
+        solve: None,
+    }
+}
+
+/// What is read off a catenary.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Slung {
+    Sag,
+    Tension,
+}
+
+/// A strip between two points a metre apart, let go from a V.
+fn catenary(length: f64, what: Slung) -> Case {
+    let strip = Strip::narrow(length, ROWS, [Hold::Pinned, Hold::Pinned]);
+    let cloth = Cloth { stretch: 3e4, damping: DAMPING, ..Cloth::PLAIN };
+    let run = move |level| {
+        let depth = (0.25 * length * length - 0.25).sqrt();
+        let shape = strip.shape(|along, across| {
+            let part = along / length;
+            DVec3::new(part - 0.5, -depth * (1.0 - (2.0 * part - 1.0).abs()), across)
+        });
+        let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+        let settled = rig.rest(REST_S);
+        let lowest = (0..rig.vertices()).map(|v| -rig.at(v).y).fold(0.0, f64::max);
+        let weight = cloth.density * G * strip.width * length;
+        let got = match what {
+            Slung::Sag => lowest,
+            Slung::Tension => rig.force_on_fixed(|p| p.x < 0.0).x / weight,
+        };
+        Ok(Outcome::of(&rig, got).settled(settled))
+    };
+    let exact = string::catenary(length);
+    Case {
+        name: "catenary",
+        parameter: format!("length {length}, {}", if what == Slung::Sag { "sag" } else { "pull" }),
+        mesh: Style::Grid.name(),
+        resolution: ROWS,
+        unit: if what == Slung::Sag { "spans" } else { "T0/weight" },
+        expected: if what == Slung::Sag { exact.sag } else { exact.tension },
+        scale: None,
+        target: Some(2.0),
+        run: Box::new(run),
+        solve: None,
+    }
+}

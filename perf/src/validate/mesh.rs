@@ -1,0 +1,252 @@
+//! Strips and sheets as shapes to be baked: where the clamp is, how they are meshed, what is heavier.
+//!
+//! A strip runs down its warp from s = 0 to its length; it is cut hanging, so that triangles know their warp, and worn
+//! wherever the case wants it. A clamp is two fixed rows: one where the clamp begins and one behind it, which holds the
+//! angle.
+
+use delaunator::{Point, triangulate};
+use glam::{DVec2, DVec3};
+use toile_assets::fabric::Fabric;
+use toile_assets::garment::shape::{NO_VERTEX, Part};
+use toile_assets::garment::{Face, Shape};
+use toile_assets::mesh::SkinWeights;
+
+/// How a strip is meshed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Style {
+    /// Quads in rows and columns.
+    Grid,
+    /// The same points, triangles with diagonals that alternate.
+    Alternating,
+    /// Rows at the ends and points along the sides as before, blue noise between them, joined by Delaunay triangles.
+    Unstructured,
+}
+
+impl Style {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Grid, Self::Alternating, Self::Unstructured];
+
+    /// Its name in the table.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Grid => "grid",
+            Self::Alternating => "alternating",
+            Self::Unstructured => "unstructured",
+        }
+    }
+}
+
+/// How an end of a strip is held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hold {
+    /// Not at all.
+    Free,
+    /// In its place, at any angle: one fixed row.
+    Pinned,
+    /// In its place and its direction: a second fixed row behind the first.
+    Clamped,
+}
+
+/// A strip of cloth: lengths in metres, links down the warp and across.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strip {
+    /// From the first row that counts to the last.
+    pub length: f64,
+    /// Across.
+    pub width: f64,
+    /// Links along the length.
+    pub rows: usize,
+    /// Links across.
+    pub columns: usize,
+    /// How it is meshed.
+    pub style: Style,
+    /// How its first row and its last row are held.
+    pub ends: [Hold; 2],
+}
+
+impl Strip {
+    /// A grid two particles wide with as square cells as that gives: all that a case in a plane needs.
+    pub fn narrow(length: f64, rows: usize, ends: [Hold; 2]) -> Self {
+        Self { length, width: length / rows as f64, rows, columns: 1, style: Style::Grid, ends }
+    }
+
+    /// Length of a link down the warp (m).
+    pub fn link(&self) -> f64 {
+        self.length / self.rows as f64
+    }
+
+    /// The shape. `worn` says where a point of the strip starts: (along, across) in metres, across from the middle.
+    pub fn shape(&self, worn: impl Fn(f64, f64) -> DVec3) -> Shape {
+        let points = self.points();
+        let faces = self.faces(&points);
+        let mut shape = Shape { faces, ..Shape::default() };
+        for p in &points {
+            let fixed = self.holds(p.x);
+            let cut = DVec3::new(p.y, -p.x, 0.0);
+            shape.push(cut.as_vec3(), worn(p.x, p.y).as_vec3(), fixed, Part::All);
+            shape.weights.push(SkinWeights { bones: [0; 4], weights: [1.0, 0.0, 0.0, 0.0] });
+        }
+        shape
+    }
+
+    /// First and last row of the mesh, rows behind the clamps counted, as numbers of links from the first that counts.
+    fn span(&self) -> [i64; 2] {
+        let behind = |hold: Hold| i64::from(hold == Hold::Clamped);
+        [-behind(self.ends[0]), self.rows as i64 + behind(self.ends[1])]
+    }
+
+    /// Whether the points at a distance along the strip are fixed.
+    fn holds(&self, along: f64) -> bool {
+        let near = 1e-6 * self.length;
+        (self.ends[0] != Hold::Free && along < near) || (self.ends[1] != Hold::Free && along > self.length - near)
+    }
+
+    fn row(&self, row: i64) -> impl Iterator<Item = DVec2> {
+        let (link, step, half) = (self.link(), self.width / self.columns as f64, 0.5 * self.width);
+        (0..=self.columns).map(move |c| DVec2::new(row as f64 * link, c as f64 * step - half))
+    }
+
+    /// Points (along, across), row after row; in an unstructured mesh the inner ones come last.
+    fn points(&self) -> Vec<DVec2> {
+        let [first, last] = self.span();
+        let all = (first..=last).flat_map(|r| self.row(r));
+        if self.style != Style::Unstructured {
+            return all.collect();
+        }
+        let half = 0.5 * self.width;
+        let inner = |p: &DVec2| !self.holds(p.x) && p.x < self.length - 1e-6 && p.y.abs() < half - 1e-6;
+        let (strewn, mut kept): (Vec<DVec2>, Vec<DVec2>) = all.partition(inner);
+        self.strew(strewn.len(), &mut kept);
+        kept
+    }
+
+    /// Strews points as far from each other as can be (best candidates; Mitchell 1991).
+    fn strew(&self, count: usize, points: &mut Vec<DVec2>) {
+        let mut dice = Dice(1);
+        let link = self.link();
+        // So far from the rim at least that no triangle there is a sliver.
+        let rim = 0.5 * link;
+        for _ in 0..count {
+            let throw = |dice: &mut Dice| {
+                let along = rim + (self.length - 2.0 * rim) * dice.roll();
+                DVec2::new(along, (self.width - 2.0 * rim) * (dice.roll() - 0.5))
+            };
+            let room = |p: DVec2| points.iter().map(|q| p.distance_squared(*q)).fold(f64::MAX, f64::min);
+            let mut best = (0.0, DVec2::ZERO);
+            for _ in 0..CANDIDATES {
+                let p = throw(&mut dice);
+                let found = room(p);
+                if found > best.0 {
+                    best = (found, p);
+                }
+            }
+            points.push(best.1);
+        }
+    }
+
+    fn faces(&self, points: &[DVec2]) -> Vec<Face> {
+        if self.style == Style::Unstructured {
+            return delaunay(points);
+        }
+        let across = self.columns as u32 + 1;
+        let [first, last] = self.span();
+        let cells = (0..(last - first) as u32).flat_map(|r| (0..self.columns as u32).map(move |c| (r, c)));
+        let quad = |(r, c): (u32, u32)| {
+            let at = |r: u32, c: u32| r * across + c;
+            [at(r + 1, c), at(r + 1, c + 1), at(r, c + 1), at(r, c)]
+        };
+        if self.style == Style::Grid {
+            return cells.map(quad).collect();
+        }
+        let halves = |cell: (u32, u32)| {
+            let [a, b, c, d] = quad(cell);
+            let even = (cell.0 + cell.1).is_multiple_of(2);
+            if even {
+                [[a, b, c, NO_VERTEX], [a, c, d, NO_VERTEX]]
+            } else {
+                [[a, b, d, NO_VERTEX], [b, c, d, NO_VERTEX]]
+            }
+        };
+        cells.flat_map(halves).collect()
+    }
+}
+
+/// Candidates of which the best becomes a point.
+const CANDIDATES: usize = 60;
+
+/// The seeded generator SplitMix64 (Steele et al. 2014), uniform in 0 .. 1.
+pub struct Dice(pub u64);
+
+impl Dice {
+    /// The next number.
+    pub fn roll(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Delaunay triangles, counter-clockwise seen from the front of the cut.
+fn delaunay(points: &[DVec2]) -> Vec<Face> {
+    let flat: Vec<Point> = points.iter().map(|p| Point { x: p.y, y: -p.x }).collect();
+    let turn = |t: &[usize]| {
+        let [a, b, c] = [t[0], t[1], t[2]].map(|i| DVec2::new(flat[i].x, flat[i].y));
+        (b - a).perp_dot(c - a)
+    };
+    let all = triangulate(&flat).triangles;
+    let sound = all.chunks_exact(3).filter(|t| turn(t).abs() > 1e-12);
+    sound
+        .map(|t| {
+            let [a, b, c] = [t[0] as u32, t[1] as u32, t[2] as u32];
+            if turn(t) > 0.0 { [a, b, c, NO_VERTEX] } else { [a, c, b, NO_VERTEX] }
+        })
+        .collect()
+}
+
+/// A fabric made for a case.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cloth {
+    /// Mass per area (kg/m2).
+    pub density: f64,
+    /// Tensile stiffness along warp and weft (N/m).
+    pub stretch: f64,
+    /// Shear stiffness (N/m).
+    pub shear: f64,
+    /// Bending rigidity along warp and weft (N m).
+    pub bend: f64,
+    /// Bending rigidity along the bias (N m), where the case twists.
+    pub bias: Option<f64>,
+    /// Rate at which motion is damped (1/s).
+    pub damping: f64,
+    /// Friction (1).
+    pub friction: f64,
+}
+
+impl Cloth {
+    /// The median of the measured fabrics in weight, as stiff in tension and shear as a cotton lawn; it does not bend.
+    pub const PLAIN: Self =
+        Self { density: 0.2, stretch: 6_000.0, shear: 60.0, bend: 0.0, bias: None, damping: 0.0, friction: 0.3 };
+
+    /// As the bake takes it.
+    pub fn fabric(&self) -> Fabric {
+        let micro = |b: f64| (b * 1e6) as f32;
+        Fabric {
+            name: "case".into(),
+            title: "Made for a case".into(),
+            density_kg_m2: self.density as f32,
+            stretch_warp_n_m: self.stretch as f32,
+            stretch_weft_n_m: self.stretch as f32,
+            shear_n_m: self.shear as f32,
+            bend_warp_un_m: micro(self.bend),
+            bend_weft_un_m: micro(self.bend),
+            bend_bias_un_m: self.bias.map(micro),
+            friction: self.friction as f32,
+            damping_per_s: self.damping as f32,
+            contact_offset_mm: 1.0,
+            comfortable_stretch: 0.1,
+            colour: [0.5; 3],
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! Validation: the engine in its production settings against exact solutions.
+//!
+//! Reads: nothing; every case makes its own cloth. Writes: rows of expected, got, error and the time of a step.
+//! Budget: the whole set within five minutes on two cores; never inside the frame.
+//! Thread: as many as are asked for; cases are independent and rows come out in a fixed order.
+
+pub mod case;
+mod cases;
+pub mod exact;
+pub mod mesh;
+pub mod rig;
+pub mod run;
+
+use toile_engine::cloth::Quality;
+
+/// How the engine is set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    /// As it ships: f32, 120 Hz, a named quality.
+    Production(Quality),
+    /// The same kernels with so many substeps that more of them change nothing.
+    Converged,
+}
+
+impl Level {
+    /// The one that targets are for.
+    pub const GATED: Self = Self::Production(Quality::Fine);
+
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::Production(Quality::Draft),
+        Self::Production(Quality::Shop),
+        Self::Production(Quality::Fine),
+        Self::Converged,
+    ];
+
+    /// Its name in the table.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Production(quality) => quality.name(),
+            Self::Converged => "converged",
+        }
+    }
+}

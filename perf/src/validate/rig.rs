@@ -1,0 +1,290 @@
+//! A rig: one piece of cloth in the engine, stepped and read in the numbers of its shape.
+
+use std::time::Instant;
+
+use glam::{Affine3A, DVec3, Vec4};
+use thiserror::Error;
+use toile_assets::bake::bake;
+use toile_assets::garment::layout::{Bends, ENDED};
+use toile_assets::garment::{Garment, MeshError, Shape};
+use toile_assets::limits::STEP_SECONDS;
+use toile_assets::skeleton::BONES;
+use toile_engine::cloth::{Cloth, Quality, Settings, Step};
+use toile_engine::colliders::{ColliderError, Colliders, RestSphere};
+
+use super::Level;
+use super::mesh;
+
+/// Why a case cannot be run.
+#[derive(Debug, Error)]
+pub enum RigError {
+    /// A mesh that cannot be baked.
+    #[error("a case's mesh cannot be baked: {0}")]
+    Mesh(#[from] MeshError),
+    /// Colliders that the engine does not take.
+    #[error("a case's colliders are refused: {0}")]
+    Colliders(#[from] ColliderError),
+}
+
+/// What a case collides with.
+#[derive(Debug, Clone, Default)]
+pub struct Scenery {
+    /// Ends of one capsule and its radius (m).
+    pub capsule: Option<[DVec3; 2]>,
+    /// Its radius (m).
+    pub radius: f64,
+    /// Planes as unit normal and offset (m).
+    pub planes: Vec<Vec4>,
+}
+
+/// Acceleration of gravity (m/s2), as the engine's settings have it.
+pub const G: f64 = 9.81;
+
+/// Time over which the motion of resting cloth is looked at (s): velocities themselves are noise where a substep moves
+/// less than f32 can tell.
+const REST_S: f64 = 0.25;
+
+/// Farthest that a resting particle drifts in that time (m).
+const REST_M: f64 = 2e-6;
+
+/// One stretch link of the garment, as the engine solves it.
+#[derive(Debug, Clone, Copy)]
+pub struct Link {
+    /// Its particles.
+    pub ends: [usize; 2],
+    /// Length as cut (m).
+    pub rest: f64,
+    /// Inverse stiffness (m/N).
+    pub compliance: f64,
+}
+
+/// One piece of cloth in the engine.
+pub struct Rig {
+    /// What is stepped.
+    pub garment: Garment,
+    /// Its state.
+    pub cloth: Cloth,
+    /// How it is stepped.
+    pub settings: Settings,
+    colliders: Colliders,
+    palette: [Affine3A; BONES],
+    particle: Vec<usize>,
+    times_ns: Vec<u64>,
+}
+
+impl Rig {
+    /// Bakes a shape and puts it where it is worn, at rest.
+    ///
+    /// # Errors
+    /// Where the mesh or the colliders cannot be used.
+    pub fn new(shape: &Shape, cloth: &mesh::Cloth, level: Level, scenery: &Scenery) -> Result<Self, RigError> {
+        let garment = bake("case", "one size", shape, &cloth.fabric())?;
+        let ends = scenery.capsule.unwrap_or_default();
+        let spheres = ends.map(|p| RestSphere { bone: 0, centre: p.as_vec3(), radius: scenery.radius as f32 });
+        let (spheres, capsules): (&[RestSphere], &[[u8; 2]]) =
+            if scenery.capsule.is_some() { (&spheres, &[[0, 1]]) } else { (&[], &[]) };
+        let mut colliders = Colliders::new(spheres, capsules, false)?;
+        colliders.set_planes(&scenery.planes)?;
+        let placed: Vec<Vec4> = spheres.iter().map(|s| s.centre.extend(s.radius)).collect();
+        // Twice, so that they stand still from the first step on.
+        (0..2).for_each(|_| colliders.place_spheres(&placed));
+        let mut particle = vec![0; garment.particles()];
+        garment.source.iter().enumerate().for_each(|(i, vertex)| particle[*vertex as usize] = i);
+        Ok(Self {
+            cloth: Cloth::new(&garment, &colliders),
+            settings: level.settings(&garment),
+            colliders,
+            palette: [Affine3A::IDENTITY; BONES],
+            particle,
+            times_ns: Vec::new(),
+            garment,
+        })
+    }
+
+    /// One step, timed.
+    pub fn step(&mut self) {
+        let Self { garment, cloth, settings, colliders, palette, times_ns, .. } = self;
+        let begun = Instant::now();
+        cloth.step(garment, &Step { palette, colliders, settings });
+        times_ns.push(begun.elapsed().as_nanos() as u64);
+    }
+
+    /// Steps until everything has come to rest, at most so long (s); says whether it has.
+    pub fn rest(&mut self, seconds: f64) -> bool {
+        for _ in 0..(seconds / REST_S) as u64 {
+            let before = self.cloth.positions.clone();
+            self.run(REST_S);
+            let drift = before.iter().zip(&self.cloth.positions).map(|(p, q)| p.distance(*q)).fold(0.0, f32::max);
+            if f64::from(drift) < REST_M {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Steps for a time (s).
+    pub fn run(&mut self, seconds: f64) {
+        let steps = (seconds / f64::from(self.settings.step_seconds)).round() as u64;
+        (0..steps).for_each(|_| self.step());
+    }
+
+    /// Speed of the fastest particle (m/s).
+    pub fn fastest(&self) -> f64 {
+        let speed2 = |i: usize| f64::from(self.cloth.velocity(i).length_squared());
+        (0..self.particle.len()).map(speed2).fold(0.0, f64::max).sqrt()
+    }
+
+    /// Where a vertex of the shape is (m).
+    pub fn at(&self, vertex: usize) -> DVec3 {
+        self.cloth.positions[self.particle[vertex]].as_dvec3()
+    }
+
+    /// How fast it is (m/s).
+    pub fn velocity(&self, vertex: usize) -> DVec3 {
+        self.cloth.velocity(self.particle[vertex]).as_dvec3()
+    }
+
+    /// Puts a vertex somewhere, with a velocity.
+    pub fn put(&mut self, vertex: usize, at: DVec3, velocity: DVec3) {
+        self.cloth.disturb(self.particle[vertex], at.as_vec3a(), velocity.as_vec3a());
+    }
+
+    /// Whether a vertex can move.
+    pub fn moves(&self, vertex: usize) -> bool {
+        self.garment.inverse_mass[self.particle[vertex]] > 0.0
+    }
+
+    /// Vertices of the shape.
+    pub fn vertices(&self) -> usize {
+        self.particle.len()
+    }
+
+    /// Mean place of some vertices (m).
+    pub fn mean(&self, vertices: impl IntoIterator<Item = usize>) -> DVec3 {
+        let (sum, count) = vertices.into_iter().fold((DVec3::ZERO, 0), |(s, n), v| (s + self.at(v), n + 1));
+        sum / f64::from(count.max(1))
+    }
+
+    /// Mass of the vertices that can move (kg).
+    pub fn mass(&self) -> f64 {
+        self.garment.inverse_mass.iter().filter(|w| **w > 0.0).map(|w| f64::from(*w).recip()).sum()
+    }
+
+    /// Energy of motion, weight, stretch and bending (J).
+    pub fn energy(&self) -> f64 {
+        let place = |i: usize| self.cloth.positions[i].as_dvec3();
+        let inverse = self.garment.inverse_mass.iter().enumerate().filter(|(_, w)| **w > 0.0);
+        let weight: f64 = inverse.map(|(i, w)| G * place(i).y / f64::from(*w)).sum();
+        let stretch = |l: Link| (place(l.ends[1]).distance(place(l.ends[0])) - l.rest).powi(2) / (2.0 * l.compliance);
+        let stretch: f64 = self.links().into_iter().map(stretch).sum();
+        let layout = &self.garment.layout;
+        self.cloth.kinetic_energy(&self.garment)
+            + weight
+            + stretch
+            + bent(&layout.bends, place)
+            + bent(&layout.skewed, place)
+    }
+
+    /// Median time of a step (us).
+    pub fn step_us(&self) -> f64 {
+        let mut sorted = self.times_ns.clone();
+        sorted.sort_unstable();
+        sorted.get(sorted.len() / 2).map_or(0.0, |ns| *ns as f64 * 1e-3)
+    }
+
+    /// Every stretch link once.
+    pub fn links(&self) -> Vec<Link> {
+        let layout = &self.garment.layout;
+        let mut found = Vec::new();
+        let mut add = |a: u32, b: u32, rest: f32, compliance: f32| {
+            if compliance < ENDED {
+                let (rest, compliance) = (f64::from(rest), f64::from(compliance));
+                found.push(Link { ends: [a as usize, b as usize], rest, compliance });
+            }
+        };
+        for links in [&layout.shear, &layout.weft] {
+            links.tuples.for_each(|at, [a, b]| add(a, b, links.rest[at], links.compliance[at]));
+        }
+        let fibers = &layout.fibers;
+        for bundle in &fibers.bundles {
+            let rows = &fibers.rows[bundle.rows.start as usize..bundle.rows.end as usize];
+            let places = if bundle.alike { 1 } else { bundle.lanes };
+            for (link, pair) in (0..).zip(rows.windows(2)) {
+                for lane in 0..pair[1].lanes {
+                    let at = (bundle.at + link * places + if bundle.alike { 0 } else { lane }) as usize;
+                    add(pair[0].first + lane, pair[1].first + lane, fibers.rest[at], fibers.compliance[at]);
+                }
+            }
+        }
+        let lists = &layout.crossing;
+        for list in &lists.lists {
+            for link in 0..list.links() {
+                for lane in 0..list.lanes {
+                    let particle = |row: u32| lists.index[(list.first + row % list.rows * list.lanes + lane) as usize];
+                    let at = (list.at + link * list.lanes + lane) as usize;
+                    add(particle(link), particle(link + 1), lists.rest[at], lists.compliance[at]);
+                }
+            }
+        }
+        found
+    }
+
+    /// The force of the links on the fixed vertices for which `chosen` holds, by where they are (N).
+    pub fn force_on_fixed(&self, chosen: impl Fn(DVec3) -> bool) -> DVec3 {
+        let place = |i: usize| self.cloth.positions[i].as_dvec3();
+        let free = |i: usize| self.garment.inverse_mass[i] > 0.0;
+        let mut sum = DVec3::ZERO;
+        for Link { ends: [a, b], rest, compliance } in self.links() {
+            let (fixed, other) = if free(b) { (a, b) } else { (b, a) };
+            if free(other) && !free(fixed) && chosen(place(fixed)) {
+                let d = place(other) - place(fixed);
+                sum += d / d.length() * ((d.length() - rest) / compliance);
+            }
+        }
+        sum
+    }
+}
+
+/// Energy of some bending stencils (J).
+fn bent<const K: usize>(bends: &Bends<K>, place: impl Fn(usize) -> DVec3) -> f64 {
+    let mut sum = 0.0;
+    bends.tuples.for_each(|at, v| {
+        let terms = (0..K).map(|k| place(v[k] as usize) * f64::from(bends.coefficients[k][at]));
+        sum += 0.5 * terms.sum::<DVec3>().length_squared();
+    });
+    sum
+}
+
+impl Level {
+    /// How a garment is stepped at this level.
+    pub fn settings(self, garment: &Garment) -> Settings {
+        let quality = match self {
+            Self::Production(quality) => quality,
+            Self::Converged => Quality::Fine,
+        };
+        let mut settings = Settings { quality, workers: 1, ..Settings::default() };
+        if self == Self::Converged {
+            settings.substeps = Some(converged_substeps(garment));
+        }
+        settings
+    }
+}
+
+/// Substeps at which halving them moves nothing that the table shows.
+const CONVERGED: u32 = 64;
+
+/// Most of them: what f32 can tell of a substep's motion.
+const MOST_SUBSTEPS: u32 = 512;
+
+/// Share of the bound on bending that is used in the converged setting: half of what the engine itself allows.
+const SHARE_OF_BOUND: f32 = 1.0;
+
+/// So many substeps that bending is carried whole, and at least [`CONVERGED`].
+fn converged_substeps(garment: &Garment) -> u32 {
+    use toile_engine::cloth::bending::add_load;
+    let mut load = vec![0.0; garment.particles()];
+    add_load(&garment.layout.bends, &garment.inverse_mass, STEP_SECONDS, &mut load);
+    add_load(&garment.layout.skewed, &garment.inverse_mass, STEP_SECONDS, &mut load);
+    let most = load.into_iter().fold(0.0, f32::max);
+    ((most / SHARE_OF_BOUND).sqrt().ceil() as u32).clamp(CONVERGED, MOST_SUBSTEPS)
+}

@@ -1,0 +1,117 @@
+//! Runs cases side by side and gathers their rows in the order of the cases.
+
+use std::sync::Mutex;
+use std::sync::atomic::AtomicUsize;
+use std::sync::atomic::Ordering::Relaxed;
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::case::{Case, Row};
+use super::rig::RigError;
+use super::{Level, cases};
+
+/// What is to be run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// The one name of which cases are run, or all.
+    pub case: Option<String>,
+    /// The levels that rows are told of.
+    pub levels: Vec<Level>,
+    /// Threads: cases are independent of each other.
+    pub threads: usize,
+    /// One in so many cases of each name is run: a small version of the set.
+    pub every: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let threads = std::thread::available_parallelism().map_or(1, |n| n.get().min(2));
+        Self { case: None, levels: Level::ALL.to_vec(), threads, every: 1 }
+    }
+}
+
+/// The table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// Rows in the order of the cases.
+    pub cases: Vec<Row>,
+    /// Rows with a target that was met, and all with one.
+    pub passed: [usize; 2],
+    /// Threads that it was run on.
+    pub threads: usize,
+    /// How long it took (s).
+    pub wall_s: f64,
+}
+
+impl Report {
+    /// The rows whose target was missed.
+    pub fn failed(&self) -> impl Iterator<Item = &Row> {
+        self.cases.iter().filter(|row| row.pass == Some(false))
+    }
+}
+
+/// The names of all cases, in the order of the table.
+pub fn names() -> Vec<&'static str> {
+    let mut names: Vec<&'static str> = cases::all().iter().map(|case| case.name).collect();
+    names.dedup();
+    let mut seen: Vec<&'static str> = Vec::new();
+    names.into_iter().for_each(|name| {
+        if !seen.contains(&name) {
+            seen.push(name);
+        }
+    });
+    seen
+}
+
+/// Runs cases; `told` hears of each that is done, and of how many.
+///
+/// # Errors
+/// Where a case's own mesh or colliders are refused.
+pub fn run(options: &Options, told: &(impl Fn(usize) + Sync)) -> Result<Report, RigError> {
+    let begun = Instant::now();
+    let chosen = chosen(options);
+    let rows = Mutex::new((0..chosen.len()).map(|_| None).collect::<Vec<_>>());
+    let next = AtomicUsize::new(0);
+    let work = || {
+        loop {
+            // Relaxed: the counter hands out numbers; results are published by the lock.
+            let at = next.fetch_add(1, Relaxed);
+            let Some(case) = chosen.get(at) else { return };
+            let found = case.rows(&options.levels);
+            if let Ok(mut rows) = rows.lock() {
+                rows[at] = Some(found);
+            }
+            told(chosen.len());
+        }
+    };
+    std::thread::scope(|scope| {
+        (1..options.threads).for_each(|_| drop(scope.spawn(work)));
+        work();
+    });
+    let rows = rows.into_inner().unwrap_or_default();
+    let mut cases = Vec::new();
+    for found in rows.into_iter().flatten() {
+        cases.extend(found?);
+    }
+    let passed = [true, false].map(|pass| cases.iter().filter(|row| row.pass == Some(pass)).count());
+    Ok(Report {
+        cases,
+        passed: [passed[0], passed[0] + passed[1]],
+        threads: options.threads,
+        wall_s: begun.elapsed().as_secs_f64(),
+    })
+}
+
+/// The cases that are run.
+fn chosen(options: &Options) -> Vec<Case> {
+    let wanted = |case: &Case| options.case.as_ref().is_none_or(|name| name == case.name);
+    let mut number = 0;
+    let mut before = "";
+    let mut one_in = |case: &Case| {
+        number = if case.name == before { number + 1 } else { 0 };
+        before = case.name;
+        number % options.every.max(1) == 0
+    };
+    cases::all().into_iter().filter(|case| wanted(case) && one_in(case)).collect()
+}
