@@ -58,7 +58,7 @@ impl Found {
 
     /// The first thing that is not as it has to be.
     fn cause(&self) -> Option<String> {
-        let Seen { nonfinite, max_speed } = self.seen;
+        let Seen { nonfinite, max_speed, .. } = self.seen;
         if nonfinite > 0 {
             return Some(format!("{nonfinite} numbers published that are none"));
         }
@@ -88,6 +88,8 @@ pub struct Outcome {
     pub nonfinite: u64,
     /// Greatest speed of a free particle (m/s).
     pub max_speed: f32,
+    /// Longest way of a free particle in a step, over the step (m/s): contact pushes without giving speed.
+    pub max_way: f32,
     /// The speed limit that the engine was given (m/s), where there was a cloth.
     pub speed_limit: Option<f32>,
     /// Time after which it stayed within 1 mm of its place of rest (s); none where it did not, or has more than one.
@@ -111,6 +113,7 @@ impl Outcome {
             seed,
             nonfinite: found.seen.nonfinite,
             max_speed: found.seen.max_speed,
+            max_way: found.seen.max_way,
             speed_limit: found.limit,
             recovered_s: found.recovery.and_then(|r| r.after_s),
             hausdorff_mm: found.recovery.map(|r| r.hausdorff_m * 1e3),

@@ -22,6 +22,9 @@ pub struct Seen {
     pub nonfinite: u64,
     /// Greatest speed of a free particle (m/s).
     pub max_speed: f32,
+    /// Greatest way of a free particle in a step, over the step (m/s): what contact pushes out of a collider moves without
+    /// having that speed.
+    pub max_way: f32,
 }
 
 /// How a cloth came back.
@@ -120,8 +123,8 @@ impl<'a> Trial<'a> {
         (0..steps).for_each(|_| self.step());
     }
 
-    /// Counts what is not finite, and takes the greatest speed: of the velocities, and of the way that was made, except
-    /// where the engine says that it has put the cloth back.
+    /// Counts what is not finite, and takes the greatest speed, and the longest way except where the engine says that it has
+    /// put the cloth back.
     fn look(&mut self) {
         self.seen.nonfinite += piece::nonfinite(&self.cloth);
         let put = |e: &Events| (e.repaired, e.rolled_back, e.teleports);
@@ -132,9 +135,9 @@ impl<'a> Trial<'a> {
         for (i, w) in self.garment.inverse_mass.iter().enumerate() {
             if *w > 0.0 {
                 let way = if moved { self.cloth.positions[i].distance(self.before[i]) / dt } else { 0.0 };
-                let speed = self.cloth.velocity(i).length().max(way);
                 // What is not a number is counted above.
-                self.seen.max_speed = self.seen.max_speed.max(speed);
+                self.seen.max_speed = self.seen.max_speed.max(self.cloth.velocity(i).length());
+                self.seen.max_way = self.seen.max_way.max(way);
             }
         }
     }
