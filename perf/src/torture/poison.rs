@@ -94,9 +94,9 @@ fn state_inputs() -> Vec<Input> {
                 for i in (0..t.garment.particles()).filter(|i| i % every == middle % every) {
                     let (mut p, mut u) = (t.cloth.positions[i], t.cloth.velocity(i));
                     if k < 3 {
-                        p[k] = v
+                        p[k] = v;
                     } else {
-                        u[k - 3] = v
+                        u[k - 3] = v;
                     }
                     t.cloth.disturb(i, p, u);
                 }
