@@ -93,8 +93,9 @@ pub struct Settings {
     pub timed: bool,
 }
 
-/// Most substeps of a step: what asks for more is no number of substeps, and a step would last for minutes.
-pub const MAX_SUBSTEPS: u32 = 4_096;
+/// Most substeps of a step. In shorter ones the last bit of a position of f32 a metre from the origin is a speed of several
+/// mm/s: with 4,096 a cloth at rest was thrown about by its own rounding. What asks for more is no number of substeps.
+pub const MAX_SUBSTEPS: u32 = 512;
 
 /// Shortest and longest step (s); in shorter ones no f32 a metre from the origin moves, longer ones are no steps.
 const STEPS_S: [f32; 2] = [1e-6, 1.0];
