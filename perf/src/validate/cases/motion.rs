@@ -36,7 +36,6 @@ fn case(name: &'static str, parameter: String, rows: usize, unit: &'static str, 
         scale: None,
         target: None,
         run: Box::new(|_| Ok(Outcome::none(f64::NAN))),
-        solve: None,
     }
 }
 

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use crate::validate::case::{Case, Outcome};
+use crate::validate::case::Case;
 use crate::validate::exact::string;
 use crate::validate::mesh::{Cloth, Hold, Strip, Style};
-use crate::validate::rig::{G, Rig, Scenery};
+use crate::validate::rig::{G, Rig, Scenery, Seen};
 
 /// Links along them.
 const ROWS: usize = 32;
@@ -44,12 +44,12 @@ fn strip(stretch: f64, what: Hung) -> Case {
         let shape = strip.shape(|along, across| DVec3::new(across, -along, 0.0));
         let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
         let settled = rig.rest(REST_S);
-        let tip = (0..rig.vertices()).filter(|v| shape.cut[*v].y < -1.0 + 1e-4);
-        let got = match what {
-            Hung::Tip => -rig.mean(tip).y - 1.0,
-            Hung::Top => -rig.force_on_fixed(|_| true).y / (rig.mass() * G),
+        let tip = || (0..rig.vertices()).filter(|v| shape.cut[*v].y < -1.0 + 1e-4);
+        let read = |seen: &Seen<'_>| match what {
+            Hung::Tip => -seen.mean(tip()).y - 1.0,
+            Hung::Top => -seen.force_on_fixed(|_| true).y / (rig.mass() * G),
         };
-        Ok(Outcome::of(&rig, got).settled(settled))
+        Ok(rig.told(level, read).settled(settled))
     };
     let [name, unit] = match what {
         Hung::Tip => ["strip", "m"],
@@ -65,7 +65,6 @@ fn strip(stretch: f64, what: Hung) -> Case {
         scale: None,
         target: Some(if what == Hung::Tip { 1.0 } else { 2.0 }),
         run: Box::new(run),
-        solve: None,
     }
 }
 
@@ -88,13 +87,12 @@ fn catenary(length: f64, what: Slung) -> Case {
         });
         let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
         let settled = rig.rest(REST_S);
-        let lowest = (0..rig.vertices()).map(|v| -rig.at(v).y).fold(0.0, f64::max);
         let weight = cloth.density * G * strip.width * length;
-        let got = match what {
-            Slung::Sag => lowest,
-            Slung::Tension => rig.force_on_fixed(|p| p.x < 0.0).x / weight,
+        let read = |seen: &Seen<'_>| match what {
+            Slung::Sag => -seen.lowest(),
+            Slung::Tension => seen.force_on_fixed(|p| p.x < 0.0).x / weight,
         };
-        Ok(Outcome::of(&rig, got).settled(settled))
+        Ok(rig.told(level, read).settled(settled))
     };
     let exact = string::catenary(length);
     Case {
@@ -107,6 +105,5 @@ fn catenary(length: f64, what: Slung) -> Case {
         scale: None,
         target: Some(2.0),
         run: Box::new(run),
-        solve: None,
     }
 }
