@@ -15,6 +15,7 @@ pub mod stiffness;
 pub mod survey;
 pub mod tethers;
 pub mod weights;
+mod zigzags;
 
 #[cfg(test)]
 pub(crate) mod meshes;

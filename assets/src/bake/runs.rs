@@ -1,7 +1,8 @@
 //! Runs: constraints coloured into sets without a common particle, and laid side by side where their particles are.
 
+use super::zigzags;
 use crate::garment::Direction;
-use crate::garment::layout::{OWNERS, Run, Set, Share, Tuples};
+use crate::garment::layout::{OWNERS, Run, Set, Share, Tuples, Zigzag};
 
 /// Runs shorter than this are not worth a vector; their constraints are loose.
 const LEAST_RUN: usize = 3;
@@ -30,9 +31,20 @@ pub fn lay_out<const K: usize>(
         let v = &constraints[i].1;
         v.iter().any(|&p| owner[p as usize] != owner[v[0] as usize])
     };
+    let mut out = Layouter::default();
+    let mut all = Vec::new();
+    if apart && K == 2 {
+        let pairs: Vec<_> = constraints.iter().map(|(d, v)| (*d, [v[0], v[1]])).collect();
+        let (zigzags, left) = zigzags::take(&pairs, &order, owner);
+        order = left;
+        all.extend(zigzags.iter().map(|set| Set {
+            direction: set[0].direction,
+            crosses: false,
+            shares: std::array::from_fn(|share| out.zigzags(set, share, owner, alike)),
+        }));
+    }
     let sets = if apart { coloured(constraints, &order, owner.len()) } else { gathered(&order, &crosses) };
-    let mut out = Layouter { runs: Vec::new(), loose: Vec::new(), places: Vec::new(), serial: Vec::new() };
-    let sets = sets.into_iter().map(|set| Set {
+    all.extend(sets.into_iter().map(|set| Set {
         direction: constraints[set[0]].0,
         crosses: !apart && crosses(set[0]),
         shares: std::array::from_fn(|share| {
@@ -40,12 +52,12 @@ pub fn lay_out<const K: usize>(
             let part: Vec<usize> = set.iter().copied().filter(mine).collect();
             out.share(constraints, &part, owner, alike)
         }),
-    });
-    let sets = sets.collect();
+    }));
     let tuples = Tuples {
+        zigzags: out.zigzags.into(),
         runs: out.runs.into(),
         loose: out.loose.into(),
-        sets,
+        sets: all.into(),
         count: constraints.len(),
         places: out.places.len(),
     };
@@ -80,7 +92,9 @@ fn gathered(order: &[usize], crosses: &dyn Fn(usize) -> bool) -> Vec<Vec<usize>>
     [within, crossing].into_iter().filter(|s| !s.is_empty()).collect()
 }
 
+#[derive(Default)]
 struct Layouter<const K: usize> {
+    zigzags: Vec<Zigzag>,
     runs: Vec<Run<K>>,
     loose: Vec<[u32; K]>,
     places: Vec<usize>,
@@ -89,6 +103,33 @@ struct Layouter<const K: usize> {
 }
 
 impl<const K: usize> Layouter<K> {
+    /// One owner's zigzags of a set.
+    fn zigzags(
+        &mut self,
+        set: &[zigzags::Zigzag],
+        share: usize,
+        owner: &[u8],
+        alike: &dyn Fn(usize, usize) -> bool,
+    ) -> Share {
+        let first = self.zigzags.len() as u32;
+        for zigzag in set.iter().filter(|z| usize::from(owner[z.rails[0] as usize]) == share) {
+            let [a, b] = zigzag.rails;
+            let rungs = self.run([a, b], &zigzag.rungs, alike);
+            let slants = self.run([b, a + 1], &zigzag.slants, alike);
+            self.zigzags.push(Zigzag { rungs, slants });
+        }
+        Share { zigzags: first..self.zigzags.len() as u32, ..Share::default() }
+    }
+
+    /// Constraints side by side get their places and numbers.
+    fn run<const N: usize>(&mut self, first: [u32; N], run: &[usize], alike: &dyn Fn(usize, usize) -> bool) -> Run<N> {
+        let same = run.iter().all(|&i| alike(run[0], i));
+        let (at, serial) = (self.places.len() as u32, self.serial.len() as u32);
+        self.serial.extend(run);
+        self.places.extend(if same { &run[..1] } else { run });
+        Run { first, len: run.len() as u32, at, serial, alike: same }
+    }
+
     /// One owner's share: its runs first, then what is loose.
     fn share(
         &mut self,
@@ -103,18 +144,8 @@ impl<const K: usize> Layouter<K> {
         while at < part.len() {
             let len = run_length(constraints, &part[at..], owner);
             if len >= LEAST_RUN {
-                let first = constraints[part[at]].1;
-                let run = &part[at..at + len];
-                let same = run.iter().all(|&i| alike(run[0], i));
-                self.runs.push(Run {
-                    first,
-                    len: len as u32,
-                    at: self.places.len() as u32,
-                    serial: self.serial.len() as u32,
-                    alike: same,
-                });
-                self.serial.extend(run);
-                self.places.extend(if same { &run[..1] } else { run });
+                let run = self.run(constraints[part[at]].1, &part[at..at + len], alike);
+                self.runs.push(run);
             } else {
                 loose.extend(&part[at..at + len]);
             }
@@ -126,6 +157,7 @@ impl<const K: usize> Layouter<K> {
         self.places.extend(&loose);
         self.serial.extend(&loose);
         Share {
+            zigzags: 0..0,
             runs: first_run..self.runs.len() as u32,
             loose: first_loose..self.loose.len() as u32,
             loose_at,

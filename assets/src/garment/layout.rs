@@ -39,9 +39,36 @@ impl<const K: usize> Run<K> {
     }
 }
 
+/// Constraints to and fro between two rails of particles: rung `t` from particle `t` of the first rail to the one of the
+/// second beside it, slant `t` from there to the next one of the first. Solved in this order, rungs before slants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Zigzag {
+    /// The rungs.
+    pub rungs: Run<2>,
+    /// The slants, one less than rungs; as many where the last one leads back to the first particle.
+    pub slants: Run<2>,
+}
+
+impl Zigzag {
+    /// Whether the last slant leads back to the first particle.
+    #[inline(always)]
+    pub fn closed(&self) -> bool {
+        self.slants.len == self.rungs.len
+    }
+
+    /// The particles of slant `t`.
+    #[inline(always)]
+    pub fn slant(&self, t: u32) -> [u32; 2] {
+        let [from, to] = self.slants.first;
+        [from + t, if t + 1 == self.rungs.len { self.rungs.first[0] } else { to + t }]
+    }
+}
+
 /// One owner's share of a set.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Share {
+    /// Its zigzags, a range of [`Tuples::zigzags`]; a set has them or the others.
+    pub zigzags: Range<u32>,
     /// Its runs, a range of [`Tuples::runs`].
     pub runs: Range<u32>,
     /// Its constraints that are in no run, a range of [`Tuples::loose`].
@@ -66,6 +93,8 @@ pub struct Set {
 /// Constraints over `K` particles, in sets.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tuples<const K: usize> {
+    /// Zigzags, set after set, owner after owner; only pairs have any.
+    pub zigzags: Box<[Zigzag]>,
     /// Runs, set after set, owner after owner.
     pub runs: Box<[Run<K>]>,
     /// The others.
@@ -81,6 +110,12 @@ pub struct Tuples<const K: usize> {
 impl<const K: usize> Tuples<K> {
     /// Calls `each(place, particles)` for every constraint with the place of its parameters.
     pub fn for_each(&self, mut each: impl FnMut(usize, [u32; K])) {
+        let pair = |pair: [u32; 2]| std::array::from_fn(|k| pair[k % 2]);
+        for zigzag in &self.zigzags {
+            let Zigzag { rungs, slants } = zigzag;
+            (0..rungs.len).for_each(|t| each(rungs.place(t), pair(rungs.first.map(|f| f + t))));
+            (0..slants.len).for_each(|t| each(slants.place(t), pair(zigzag.slant(t))));
+        }
         for run in &self.runs {
             for t in 0..run.len {
                 each(run.place(t), run.first.map(|f| f + t));
@@ -248,9 +283,10 @@ pub struct Layout {
 impl Layout {
     /// Bytes that a garment's constraints hold.
     pub fn bytes(&self) -> usize {
-        let tuples = |runs: usize, run: usize, loose: usize, k: usize| runs * run + loose * 4 * k;
-        let links =
-            |l: &Links| tuples(l.tuples.runs.len(), size_of::<Run<2>>(), l.tuples.loose.len(), 2) + l.rest.len() * 8;
+        let links = |l: &Links| {
+            let Tuples { zigzags, runs, loose, .. } = &l.tuples;
+            size_of_val(&**zigzags) + size_of_val(&**runs) + size_of_val(&**loose) + l.rest.len() * 8
+        };
         let lists = |l: &Lists| l.lists.len() * size_of::<List>() + l.index.len() * 4 + l.rest.len() * 8;
         fn bends<const K: usize>(b: &Bends<K>) -> usize {
             b.tuples.runs.len() * size_of::<Run<K>>() + b.tuples.loose.len() * 4 * K + b.coefficients[0].len() * 4 * K

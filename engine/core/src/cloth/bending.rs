@@ -3,15 +3,15 @@
 //! Each stencil stores (1/2) |d|^2 with d = sum c_i x_i, the curvature along its fiber times the root of its stiffness
 //! (assets, `bake::links`); it pulls with -c_i d. Evaluated at the positions of the substep's start, so statics do not
 //! depend on the time step; stable while dt^2 w_i sum_s |c_si| sum_j |c_sj| stays below 4 for every particle
-//! (Gershgorin). [`weaken`] weakens what is stiffer than a mesh and a substep can carry, and says by how much.
+//! (Gershgorin). What is stiffer than a mesh and a substep can carry so takes several [`super::stages`]; [`weaken`] weakens
+//! what is stiffer still, and says by how much.
 
-use toile_assets::garment::layout::{Bends, Set};
+use toile_assets::garment::layout::{Bends, Run, Set};
 
-use super::state::Columns;
 use crate::lanes::{Column, Kernel, Lanes, MOST, V3};
 
 /// The bound on dt^2 omega^2 that is used, half of what is stable: motion near the limit rings.
-const STABLE: f32 = 2.0;
+pub const STABLE: f32 = 2.0;
 
 /// How bending goes on for one time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +19,8 @@ pub struct Pace {
     /// It acts every so many substeps, with the impulse of all of them (Tuckerman, Berne, Martyna 1992: slow forces need
     /// not be asked as often as fast ones).
     pub every: u32,
+    /// Stages of each time ([`super::stages`]); 1 where it is a plain force.
+    pub stages: u32,
     /// Least share of its stiffness that the time step can carry.
     pub least: f32,
 }
@@ -34,14 +36,15 @@ pub fn add_load<const K: usize>(bends: &Bends<K>, weights: &[f32], dt: f32, load
     });
 }
 
-/// Writes for each stencil the share of its stiffness that can be carried, 1 where all of it; the least is given back.
-pub fn weaken<const K: usize>(bends: &Bends<K>, load: &[f32], scale: &mut [f32]) -> f32 {
+/// Writes for each stencil the share of its stiffness that can be carried where `limit` is the bound, 1 where all of it;
+/// the least is given back.
+pub fn weaken<const K: usize>(bends: &Bends<K>, load: &[f32], limit: f32, scale: &mut [f32]) -> f32 {
     let mut least = 1.0f32;
     scale.fill(1.0);
     bends.tuples.for_each(|at, v| {
         let most = v.iter().map(|&i| load[i as usize]).fold(0.0, f32::max);
-        if most > STABLE {
-            scale[at] = scale[at].min(STABLE / most);
+        if most > limit {
+            scale[at] = scale[at].min(limit / most);
             least = least.min(scale[at]);
         }
     });
@@ -55,20 +58,47 @@ pub fn every(load: &[f32], substeps: u32) -> u32 {
     (1..=substeps).rev().find(fits).unwrap_or(1)
 }
 
-/// Adds the bending forces of one owner's share of a set to the velocities.
+/// Stencils that are taken together: their curvatures stay in the nearest cache.
+const CHUNK: usize = 512;
+
+/// Numbers between the coordinates of the curvatures: not a power of two, so that none of them hides another.
+const STRIDE: usize = CHUNK + MOST;
+
+/// Numbers of scratch that bending needs.
+pub const SCRATCH: usize = 3 * STRIDE;
+
+/// Adds the bending forces of one owner's share of a set to the velocities, or whatever is bent to whatever is pushed.
+///
+/// Stencils side by side overlap, and what one has just written another reads from the middle of it, which stalls a
+/// processor. So [`CHUNK`] stencils at a time are swept `K + 1` times: first for their curvatures, then for what these
+/// do to all the middles, to all the first ends and to all the second ones. The order of sums is the same at every width.
 pub struct Bend<'a, const K: usize> {
-    /// The garment's particles.
-    pub columns: Columns<'a>,
+    /// Inverse masses (1/kg).
+    pub w: Column<'a>,
     /// All stencils.
     pub bends: &'a Bends<K>,
     /// The set.
     pub set: &'a Set,
     /// Whose share.
     pub owner: usize,
-    /// Length of the substep (s).
-    pub dt: f32,
+    /// What is bent: the positions (m).
+    pub from: [Column<'a>; 3],
+    /// What is pushed: the velocities (m/s).
+    pub to: [Column<'a>; 3],
+    /// How much: the length of the substep (s).
+    pub by: f32,
     /// What [`weaken`] made, where anything had to be weakened.
     pub scale: Option<&'a [f32]>,
+    /// This worker's scratch, at least [`SCRATCH`] numbers.
+    pub scratch: Column<'a>,
+}
+
+/// A place among the runs of a share.
+#[derive(Clone, Copy)]
+struct Place {
+    run: usize,
+    /// Stencil of the run.
+    t: usize,
 }
 
 impl<const K: usize> Kernel for Bend<'_, K> {
@@ -76,128 +106,123 @@ impl<const K: usize> Kernel for Bend<'_, K> {
 
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
-        self.columns = self.columns.level();
+        let len = self.w.len();
+        for axis in 0..3 {
+            (self.from[axis], self.to[axis]) = (self.from[axis].cut(len), self.to[axis].cut(len));
+        }
         let share = &self.set.shares[self.owner];
-        let tuples = &self.bends.tuples;
-        for run in &tuples.runs[share.runs.start as usize..share.runs.end as usize] {
-            let len = run.len as usize;
-            // Stencils side by side overlap. Each block of MOST of them adds to all its middles first, then to all its
-            // first ends, then to its second ones: the same order of sums at every width.
-            let mut t = 0;
-            while t < len {
-                let first = run.first.map(|f| f as usize + t);
-                let lead = run.alike.then_some(run.first.map(|f| f as usize));
-                self.block::<L>(first, run.place(t as u32), lead, (len - t).min(MOST));
-                t += MOST;
+        let runs = &self.bends.tuples.runs[share.runs.start as usize..share.runs.end as usize];
+        let mut place = Place { run: 0, t: 0 };
+        while place.run < runs.len() {
+            let next = self.curvatures::<L>(runs, place);
+            for k in 0..K {
+                self.push::<L>(runs, place, k);
             }
+            place = next;
         }
         for (k, i) in share.loose.clone().enumerate() {
-            let first = tuples.loose[i as usize].map(|v| v as usize);
-            self.block::<f32>(first, share.loose_at as usize + k, Some(first), 1);
+            self.loose(self.bends.tuples.loose[i as usize], share.loose_at as usize + k);
         }
     }
 }
 
 impl<const K: usize> Bend<'_, K> {
+    /// The curvatures of a chunk, times the substep, into the scratch; gives the place behind it.
     #[inline(always)]
-    fn block<L: Lanes>(&self, first: [usize; K], at: usize, alike: Option<[usize; K]>, n: usize) {
-        if L::N == MOST && n == MOST {
-            let p = self.parameters::<L>(first, at, alike, MOST);
-            let d = self.curvature::<L>(first, &p, MOST);
-            for (k, v) in first.into_iter().enumerate() {
-                self.push(&p, k, d, v, MOST);
+    fn curvatures<L: Lanes>(&self, runs: &[Run<K>], mut place: Place) -> Place {
+        let (x, mut filled) = (self.from, 0);
+        while filled < CHUNK && place.run < runs.len() {
+            let run = &runs[place.run];
+            let n = (run.len as usize - place.t).min(CHUNK - filled);
+            let mut done = 0;
+            while done < n {
+                let (t, part) = (place.t + done, (n - done).min(L::N));
+                let at = run.place(t as u32);
+                let mut d = V3::<L>::load(x, run.first[0] as usize + t, part) * self.coefficient::<L>(0, run, at, part);
+                for k in 1..K {
+                    let c = self.coefficient::<L>(k, run, at, part);
+                    d = d + V3::load(x, run.first[k] as usize + t, part) * c;
+                }
+                let mut scale = L::splat(self.by);
+                if let Some(s) = self.scale {
+                    scale = scale * one_or_each::<L>(Column::read_only(s), run.alike, at, part);
+                }
+                (d * scale).store(self.kept(), filled + done, part);
+                done += part;
             }
-            return;
+            filled += n;
+            place = place.after(n, run);
         }
-        if L::N == MOST || n == 1 {
-            let n = n.min(L::N).min(if L::N == MOST { MOST - 1 } else { L::N });
-            let p = self.parameters::<L>(first, at, alike, n);
-            let d = self.curvature::<L>(first, &p, n);
-            for (k, v) in first.into_iter().enumerate() {
-                self.push(&p, k, d, v, n);
+        place
+    }
+
+    /// What the curvatures of a chunk do to the particles at end `k` of its stencils.
+    #[inline(always)]
+    fn push<L: Lanes>(&self, runs: &[Run<K>], mut place: Place, k: usize) {
+        let (to, mut filled) = (self.to, 0);
+        while filled < CHUNK && place.run < runs.len() {
+            let run = &runs[place.run];
+            let n = (run.len as usize - place.t).min(CHUNK - filled);
+            let mut done = 0;
+            while done < n {
+                let (t, part) = (place.t + done, (n - done).min(L::N));
+                let v = run.first[k] as usize + t;
+                let w_at = if run.alike { run.first[k] as usize } else { v };
+                let w = one_or_each::<L>(self.w, run.alike, w_at, part);
+                let by = self.coefficient::<L>(k, run, run.place(t as u32), part) * w;
+                let d = V3::<L>::load(self.kept(), filled + done, part);
+                (V3::<L>::load(to, v, part) - d * by).store(to, v, part);
+                done += part;
             }
-            return;
-        }
-        let mut d = [V3::<L>::splat(glam::Vec3A::ZERO); MOST];
-        let steps = n.div_ceil(L::N);
-        for (step, d) in d.iter_mut().enumerate().take(steps) {
-            let (o, part) = (step * L::N, (n - step * L::N).min(L::N));
-            let (first, at) = (first.map(|v| v + o), if alike.is_some() { at } else { at + o });
-            let p = self.parameters::<L>(first, at, alike, part);
-            *d = self.curvature::<L>(first, &p, part);
-        }
-        for (k, &v) in first.iter().enumerate() {
-            for (step, &d) in d.iter().enumerate().take(steps) {
-                let (o, part) = (step * L::N, (n - step * L::N).min(L::N));
-                let place = if alike.is_some() { at } else { at + o };
-                let p = self.parameters::<L>(first.map(|v| v + o), place, alike, part);
-                self.push(&p, k, d, v + o, part);
-            }
+            filled += n;
+            place = place.after(n, run);
         }
     }
 
-    /// Coefficients, and the weights of the three particles, of `n` stencils; `alike` is the first of the run where all
-    /// of it are alike.
+    /// A stencil that is in no run.
     #[inline(always)]
-    fn parameters<L: Lanes>(
-        &self,
-        first: [usize; K],
-        at: usize,
-        alike: Option<[usize; K]>,
-        n: usize,
-    ) -> Parameters<L, K> {
-        let coefficients = &self.bends.coefficients;
-        let w = self.columns.w;
-        // Plain loops: a closure is not always compiled for the kernel's lanes.
-        let (mut c, mut weights) = ([L::splat(0.0); K], [L::splat(0.0); K]);
-        let mut scale = L::splat(self.dt);
-        if let Some(lead) = alike {
-            for k in 0..K {
-                c[k] = L::splat(coefficients[k][at]);
-                weights[k] = L::splat(w.get(lead[k]));
-            }
-            if let Some(s) = self.scale {
-                scale = scale * L::splat(s[at]);
-            }
-        } else {
-            for k in 0..K {
-                c[k] = load(Column::read_only(&coefficients[k]), at, n);
-                weights[k] = load(w, first[k], n);
-            }
-            if let Some(s) = self.scale {
-                scale = scale * load(Column::read_only(s), at, n);
-            }
+    fn loose(&self, v: [u32; K], at: usize) {
+        let (x, to, v) = (self.from, self.to, v.map(|v| v as usize));
+        let coefficient = |k: usize| self.bends.coefficients[k][at];
+        let mut d = V3::<f32>::load(x, v[0], 1) * coefficient(0);
+        for k in 1..K {
+            d = d + V3::load(x, v[k], 1) * coefficient(k);
         }
-        Parameters { c, w: weights, scale }
+        let d = d * self.scale.map_or(self.by, |s| self.by * s[at]);
+        for (k, &v) in v.iter().enumerate() {
+            (V3::<f32>::load(to, v, 1) - d * (coefficient(k) * self.w.get(v))).store(to, v, 1);
+        }
     }
 
-    /// `n` stencils: the curvature, times the substep.
+    /// Where the curvatures are kept, one coordinate after the other.
     #[inline(always)]
-    fn curvature<L: Lanes>(&self, first: [usize; K], p: &Parameters<L, K>, n: usize) -> V3<L> {
-        let x = self.columns.x;
-        let mut d = V3::<L>::load(x, first[0], n) * p.c[0];
-        for (&v, &c) in first.iter().zip(&p.c).skip(1) {
-            d = d + V3::load(x, v, n) * c;
-        }
-        d * p.scale
+    fn kept(&self) -> [Column<'_>; 3] {
+        [0, 1, 2].map(|axis| self.scratch.part(axis * STRIDE, STRIDE))
     }
 
-    /// What `n` stencils do to their particles of one kind.
     #[inline(always)]
-    fn push<L: Lanes>(&self, p: &Parameters<L, K>, k: usize, d: V3<L>, v: usize, n: usize) {
-        let c = &self.columns;
-        (V3::<L>::load(c.v, v, n) - d * (p.c[k] * p.w[k])).store(c.v, v, n);
+    fn coefficient<L: Lanes>(&self, k: usize, run: &Run<K>, at: usize, n: usize) -> L {
+        one_or_each(Column::read_only(&self.bends.coefficients[k]), run.alike, at, n)
     }
 }
 
-/// What some stencils need besides positions.
-struct Parameters<L, const K: usize> {
-    c: [L; K],
-    w: [L; K],
-    scale: L,
+impl Place {
+    /// `n` stencils of the run later.
+    #[inline(always)]
+    fn after<const K: usize>(self, n: usize, run: &Run<K>) -> Self {
+        let t = self.t + n;
+        if t == run.len as usize { Self { run: self.run + 1, t: 0 } } else { Self { t, ..self } }
+    }
 }
 
+/// One number for all, or `n` numbers side by side.
 #[inline(always)]
-fn load<L: Lanes>(from: Column<'_>, at: usize, n: usize) -> L {
-    if n == L::N { L::load(from, at) } else { L::load_part(from, at, n) }
+fn one_or_each<L: Lanes>(from: Column<'_>, one: bool, at: usize, n: usize) -> L {
+    if one {
+        L::splat(from.get(at))
+    } else if n == L::N {
+        L::load(from, at)
+    } else {
+        L::load_part(from, at, n)
+    }
 }

@@ -14,7 +14,7 @@ use toile_assets::garment::Solver;
 use toile_assets::garment::layout::{Bundle, ENDED, Fibers, Row};
 
 use super::state::Columns;
-use crate::lanes::{Column, Kernel, Lanes, MOST, V3, reciprocal_root};
+use crate::lanes::{Column, Kernel, Lanes, MOST, Numbers, Two, V3, reciprocal_root};
 
 /// Least pivot as a share of its diagonal: the rounding of f32 over a chain of a hundred links, ten times over.
 pub(super) const LEAST_PIVOT: f32 = 1e-5;
@@ -33,7 +33,7 @@ const KEPT: usize = 5;
 
 /// Numbers of scratch that the longest bundle needs.
 pub fn scratch_len(fibers: &Fibers) -> usize {
-    fibers.bundles.iter().map(|b| b.rows.len()).max().unwrap_or(0) * KEPT * MOST
+    fibers.bundles.iter().map(|b| b.rows.len()).max().unwrap_or(0) * KEPT * 2 * MOST
 }
 
 /// All bundles of one owner.
@@ -68,6 +68,12 @@ impl Kernel for Solve<'_> {
                     Solver::GaussSeidel => chain.sweep::<L>(),
                     Solver::SemiImplicit if self.gamma > 0.0 || self.tension.is_some() => {
                         chain.direct::<L, true, false, false>();
+                    }
+                    // Each link waits for the one before it: two vectors of fibers keep the processor busy meanwhile,
+                    // where there are registers for both.
+                    Solver::SemiImplicit if L::N == MOST && chain.full(2 * L::N) => {
+                        chain.direct::<Two<L>, false, false, true>();
+                        lane += L::N;
                     }
                     Solver::SemiImplicit if chain.full(L::N) => chain.direct::<L, false, false, true>(),
                     Solver::SemiImplicit => chain.direct::<L, false, false, false>(),
@@ -105,14 +111,14 @@ impl Chain<'_> {
 
     /// First particle of a row for these lanes, and how many of them reach so far.
     #[inline(always)]
-    fn place<L: Lanes, const FULL: bool>(&self, row: Row) -> (usize, usize) {
+    fn place<L: Numbers, const FULL: bool>(&self, row: Row) -> (usize, usize) {
         let at = row.first as usize + self.lane;
         (at, if FULL { L::N } else { (row.lanes as usize).saturating_sub(self.lane).min(L::N) })
     }
 
     /// Weights of a row's particles.
     #[inline(always)]
-    fn weights<L: Lanes>(&self, row: Row, at: usize, n: usize) -> L {
+    fn weights<L: Numbers>(&self, row: Row, at: usize, n: usize) -> L {
         let w = self.solve.columns.w;
         if self.bundle.alike {
             L::splat(w.get(row.first as usize))
@@ -125,14 +131,14 @@ impl Chain<'_> {
 
     /// Number of a link of the first of these lanes, and how many lanes there are.
     #[inline(always)]
-    fn number<L: Lanes>(&self, link: usize) -> (usize, usize) {
+    fn number<L: Numbers>(&self, link: usize) -> (usize, usize) {
         let lanes = self.bundle.lanes as usize;
         (self.bundle.serial as usize + link * lanes + self.lane, (lanes - self.lane).min(L::N))
     }
 
     /// Tension of a link so far.
     #[inline(always)]
-    fn tension<L: Lanes>(&self, link: usize) -> L {
+    fn tension<L: Numbers>(&self, link: usize) -> L {
         let Some(tension) = self.solve.tension else { return L::splat(0.0) };
         let (at, n) = self.number::<L>(link);
         if n == L::N { L::load(tension, at) } else { L::load_part(tension, at, n) }
@@ -140,7 +146,7 @@ impl Chain<'_> {
 
     /// Rest length and compliance of a link.
     #[inline(always)]
-    fn link<L: Lanes, const FULL: bool>(&self, link: usize) -> (L, L) {
+    fn link<L: Numbers, const FULL: bool>(&self, link: usize) -> (L, L) {
         let (rest, soft) =
             (Column::read_only(&self.solve.fibers.rest), Column::read_only(&self.solve.fibers.compliance));
         let first = self.bundle.at as usize;
@@ -158,7 +164,7 @@ impl Chain<'_> {
     }
 
     #[inline(always)]
-    fn direct<L: Lanes, const SOFT: bool, const ZERO: bool, const FULL: bool>(&self) {
+    fn direct<L: Numbers, const SOFT: bool, const ZERO: bool, const FULL: bool>(&self) {
         let c = &self.solve.columns;
         let rows = self.rows();
         let scratch = self.solve.scratch;
@@ -200,7 +206,8 @@ impl Chain<'_> {
             // L D L^T: `beside` is minus the entry beside the diagonal.
             let diagonal = both + stiff;
             let factor = beside * pivot;
-            let rest_pivot = (diagonal - factor * beside).max(diagonal * L::splat(LEAST_PIVOT)).max(L::splat(NO_PIVOT));
+            let rest_pivot =
+                (diagonal - factor * beside).max((diagonal * L::splat(LEAST_PIVOT)).max(L::splat(NO_PIVOT)));
             pivot = L::splat(1.0).div(rest_pivot);
             y = stretch + factor * y;
             let kept = link * KEPT * L::N;
@@ -216,7 +223,7 @@ impl Chain<'_> {
 
     /// The way up: tensions, and the motion that they cause.
     #[inline(always)]
-    fn back<L: Lanes, const FULL: bool>(&self, rows: &[Row]) {
+    fn back<L: Numbers, const FULL: bool>(&self, rows: &[Row]) {
         let scratch = self.solve.scratch;
         let zero = L::splat(0.0);
         let mut below = V3 { x: zero, y: zero, z: zero };
@@ -248,7 +255,7 @@ impl Chain<'_> {
 
     /// Moves a row, no particle farther than `reach`.
     #[inline(always)]
-    fn shift<L: Lanes>(&self, by: V3<L>, reach: L, at: usize, n: usize) {
+    fn shift<L: Numbers>(&self, by: V3<L>, reach: L, at: usize, n: usize) {
         let x = self.solve.columns.x;
         let by = limited(by, reach);
         (V3::load(x, at, n) + by).store(x, at, n);
@@ -308,7 +315,7 @@ impl Chain<'_> {
 
 /// A vector no longer than `reach`.
 #[inline(always)]
-pub(super) fn limited<L: Lanes>(by: V3<L>, reach: L) -> V3<L> {
+pub(super) fn limited<L: Numbers>(by: V3<L>, reach: L) -> V3<L> {
     use crate::lanes::Mask;
     let size2 = by.dot(by);
     let over = (reach * reach).lt(size2);

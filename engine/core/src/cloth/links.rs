@@ -5,10 +5,10 @@
 //! lambda = (C + gamma n.(db - da)) / ((1 + gamma)(w_a + w_b) + alpha / dt^2), gamma = tau / dt, where da and db are the
 //! ends' motion in this substep. No two links of a set share a particle, so their order changes no bit.
 
-use toile_assets::garment::layout::{Links, Set};
+use toile_assets::garment::layout::{Links, Run, Set, Zigzag};
 
-use super::state::Columns;
-use crate::lanes::{Column, Kernel, Lanes, MOST, V3, reciprocal_root};
+use super::state::{self, Columns};
+use crate::lanes::{Column, Kernel, Lanes, MOST, Numbers, Two, V3, reciprocal_root};
 
 /// 1 / ((1 + gamma)(w_a + w_b) + alpha / dt^2) of each link, in the order of the parameters; 0 where nothing can move.
 pub fn prepare(links: &Links, weights: &[f32], dt: f32, gamma: f32, gain: &mut [f32]) {
@@ -52,75 +52,189 @@ impl Kernel for Solve<'_> {
 impl Solve<'_> {
     #[inline(always)]
     fn all<L: Lanes, const SOFT: bool>(&self) {
-        let (rest, gain) = (Column::read_only(&self.links.rest), Column::read_only(self.gain));
-        let soft = Column::read_only(&self.links.compliance);
         let share = &self.set.shares[self.owner];
-        let w = self.columns.w;
-        for run in &self.links.tuples.runs[share.runs.start as usize..share.runs.end as usize] {
-            let [a, b] = run.first.map(|f| f as usize);
-            let (at, len) = (run.at as usize, run.len as usize);
-            let one = |c: Column<'_>, i: usize| L::splat(c.get(i));
-            let mut p = [one(rest, at), one(gain, at), one(w, a), one(w, b)];
-            let mut t = 0;
-            while t + L::N <= len {
-                if !run.alike {
-                    p = [L::load(rest, at + t), L::load(gain, at + t), L::load(w, a + t), L::load(w, b + t)];
-                }
-                let slack =
-                    self.slack::<L, SOFT>(soft, [run.place(t as u32), run.serial as usize + t], run.alike, L::N);
-                let pull = self.side_by_side::<L, SOFT>([a + t, b + t], p, slack, L::N);
-                self.count::<L, SOFT>(pull, run.serial as usize + t, L::N);
-                t += L::N;
-            }
-            if t < len && L::N > 1 {
-                // Less than a vector, and the compiler is told so.
-                let n = (len - t).min(L::N - 1);
-                if !run.alike {
-                    let part = |c, i| L::load_part(c, i + t, n);
-                    p = [part(rest, at), part(gain, at), part(w, a), part(w, b)];
-                }
-                let slack = self.slack::<L, SOFT>(soft, [run.place(t as u32), run.serial as usize + t], run.alike, n);
-                let pull = self.side_by_side::<L, SOFT>([a + t, b + t], p, slack, n);
-                self.count::<L, SOFT>(pull, run.serial as usize + t, n);
+        let tuples = &self.links.tuples;
+        for zigzag in &tuples.zigzags[share.zigzags.start as usize..share.zigzags.end as usize] {
+            let (n, alike) = (zigzag.rungs.len as usize, zigzag.rungs.alike && zigzag.slants.alike);
+            if SOFT || n < L::N {
+                self.row::<L, SOFT>(&zigzag.rungs, 0, zigzag.rungs.len);
+                self.slants::<L, SOFT>(zigzag, 0);
+            } else if alike && L::N == 4 && n >= 4 * L::N {
+                self.zigzag::<L, Two<Two<L>>, true>(zigzag);
+            } else if alike && n >= 2 * L::N {
+                self.zigzag::<L, Two<L>, true>(zigzag);
+            } else if alike {
+                self.zigzag::<L, L, true>(zigzag);
+            } else {
+                self.zigzag::<L, L, false>(zigzag);
             }
         }
+        for run in &tuples.runs[share.runs.start as usize..share.runs.end as usize] {
+            self.row::<L, SOFT>(run, 0, run.len);
+        }
+        let (rest, gain) = (Column::read_only(&self.links.rest), Column::read_only(self.gain));
+        let soft = Column::read_only(&self.links.compliance);
         let loose = &self.links.tuples.loose;
         let mut k = 0;
         while k < share.loose.len() {
             let n = (share.loose.len() - k).min(L::N);
             let first = share.loose.start as usize + k;
             let (at, number) = (share.loose_at as usize + k, share.loose_serial as usize + k);
-            let slack = self.slack::<L, SOFT>(soft, [at, number], false, n);
+            let slack = match self.tension.filter(|_| SOFT) {
+                Some((t, per_dt2)) => part::<L>(t, number, n) * part(soft, at, n) * L::splat(per_dt2),
+                None => L::splat(0.0),
+            };
             let pull = self.listed::<L, SOFT>(&loose[first..first + n], [rest, gain], at, slack);
             self.count::<L, SOFT>(pull, number, n);
             k += n;
         }
     }
 
-    /// What links give by their compliance under the tension that they have (m).
+    /// The links `from..to` of a run.
     #[inline(always)]
-    fn slack<L: Lanes, const SOFT: bool>(
+    fn row<L: Lanes, const SOFT: bool>(&self, run: &Run<2>, from: u32, to: u32) {
+        let [a, b] = run.first.map(|f| f as usize);
+        let mut t = from as usize;
+        while t < to as usize {
+            let n = (to as usize - t).min(L::N);
+            let slack = self.slack::<L, SOFT>(run, t, n);
+            let by = self.side_by_side::<L, SOFT>([a + t, b + t], self.parameters(run, t, n), slack, n);
+            self.count::<L, SOFT>(by, run.serial as usize + t, n);
+            t += n;
+        }
+    }
+
+    /// The slants of a zigzag from `from` on.
+    #[inline(always)]
+    fn slants<L: Lanes, const SOFT: bool>(&self, zigzag: &Zigzag, from: u32) {
+        let Zigzag { rungs, slants } = zigzag;
+        self.row::<L, SOFT>(slants, from, rungs.len - 1);
+        if zigzag.closed() {
+            // The one that leads back, alone.
+            let t = rungs.len - 1;
+            let (place, [b, a]) = (slants.place(t), zigzag.slant(t).map(|p| p as usize));
+            let w = self.columns.w;
+            let p = [self.links.rest[place], self.gain[place], w.get(b), w.get(a)];
+            let slack = self.slack::<f32, SOFT>(slants, t as usize, 1);
+            let by = self.side_by_side::<f32, SOFT>([b, a], p, slack, 1);
+            self.count::<f32, SOFT>(by, slants.serial as usize + t as usize, 1);
+        }
+    }
+
+    /// Rest length, gain and the weights of both ends of `n` links of a run.
+    #[inline(always)]
+    fn parameters<L: Numbers>(&self, run: &Run<2>, t: usize, n: usize) -> [L; 4] {
+        let (rest, gain) = (Column::read_only(&self.links.rest), Column::read_only(self.gain));
+        let ([a, b], at, w) = (run.first.map(|f| f as usize), run.at as usize, self.columns.w);
+        if run.alike {
+            return self.alike(run);
+        }
+        [part(rest, at + t, n), part(gain, at + t, n), part(w, a + t, n), part(w, b + t, n)]
+    }
+
+    /// The same of the first link of a run.
+    #[inline(always)]
+    fn alike<L: Numbers>(&self, run: &Run<2>) -> [L; 4] {
+        let ([a, b], at, w) = (run.first.map(|f| f as usize), run.at as usize, self.columns.w);
+        [self.links.rest[at], self.gain[at], w.get(a), w.get(b)].map(L::splat)
+    }
+
+    /// A zigzag of at least a vector of rungs: each particle is read and written once. What is left of the rails at the
+    /// end, less than a vector, and what leads back to the beginning where that does not fall on a vector's end, go by
+    /// way of memory.
+    #[inline(always)]
+    fn zigzag<L: Lanes, W: Numbers, const ALIKE: bool>(&self, zigzag: &Zigzag) {
+        let Zigzag { rungs, slants } = zigzag;
+        let (x, n) = (self.columns.x, rungs.len as usize);
+        let [a, b] = rungs.first.map(|f| f as usize);
+        let like = [self.alike::<W>(rungs), self.alike::<W>(slants)];
+        let mut one = self.rung::<W>([a, b], self.rung_parameters::<W, ALIKE>(rungs, 0, like[0]));
+        // What the slants before have made of the first lane, the only one that they reach: kept apart, so that the
+        // next slants need not wait for them.
+        let mut behind = one.a;
+        let mut t = W::N;
+        while t + W::N <= n {
+            let next = self.rung::<W>([a + t, b + t], self.rung_parameters::<W, ALIKE>(rungs, t, like[0]));
+            let p = self.slant_parameters::<W, ALIKE>(slants, t - W::N, [&one, &next], like[1]);
+            let turned = slant(&mut one, &next, p);
+            one.a = turned.with_first(behind);
+            one.store(x, [a + t - W::N, b + t - W::N]);
+            (one, behind) = (next, turned);
+            t += W::N;
+        }
+        let last = t - W::N;
+        if t < n || !zigzag.closed() {
+            one.a = one.a.with_first(behind);
+            one.store(x, [a + last, b + last]);
+            self.row::<L, false>(rungs, t as u32, rungs.len);
+            return self.slants::<L, false>(zigzag, last as u32);
+        }
+        let mut first = one;
+        if last > 0 {
+            first.a = V3::splat(state::get(x, a));
+            first.weights[0] = W::splat(self.columns.w.get(a));
+        }
+        let p = self.slant_parameters::<W, ALIKE>(slants, last, [&one, &first], like[1]);
+        let turned = slant(&mut one, &first, p);
+        one.a = turned;
+        if last > 0 {
+            turned.store(x, a, 1);
+            one.a = turned.with_first(behind);
+        }
+        one.store(x, [a + last, b + last]);
+    }
+
+    /// A vector of rungs, solved.
+    #[inline(always)]
+    fn rung<L: Numbers>(&self, [a, b]: [usize; 2], [rest, gain, wa, wb]: [L; 4]) -> Rungs<L> {
+        let x = self.columns.x;
+        let (pa, pb) = (V3::<L>::load(x, a, L::N), V3::load(x, b, L::N));
+        let push = stiff(pb - pa, rest, gain);
+        Rungs { a: pa + push * wa, b: pb - push * wb, weights: [wa, wb] }
+    }
+
+    #[inline(always)]
+    fn rung_parameters<L: Numbers, const ALIKE: bool>(&self, rungs: &Run<2>, t: usize, like: [L; 4]) -> [L; 4] {
+        if ALIKE { like } else { self.parameters::<L>(rungs, t, L::N) }
+    }
+
+    /// The slants' parameters: those of the first where all are alike, else the ends' weights are at hand.
+    #[inline(always)]
+    fn slant_parameters<L: Numbers, const ALIKE: bool>(
         &self,
-        soft: Column<'_>,
-        [at, number]: [usize; 2],
-        alike: bool,
-        n: usize,
-    ) -> L {
+        slants: &Run<2>,
+        t: usize,
+        [one, next]: [&Rungs<L>; 2],
+        like: [L; 4],
+    ) -> [L; 4] {
+        if ALIKE {
+            return like;
+        }
+        let [a, b] = one.weights;
+        let weights = [b, a.with_first(next.weights[0]).rotate_down()];
+        if slants.alike {
+            return [like[0], like[1], weights[0], weights[1]];
+        }
+        let (rest, gain, at) =
+            (Column::read_only(&self.links.rest), Column::read_only(self.gain), slants.at as usize + t);
+        [L::load(rest, at), L::load(gain, at), weights[0], weights[1]]
+    }
+
+    /// What `n` links of a run give by their compliance under the tension that they have (m).
+    #[inline(always)]
+    fn slack<L: Lanes, const SOFT: bool>(&self, run: &Run<2>, t: usize, n: usize) -> L {
         let Some((tension, per_dt2)) = self.tension.filter(|_| SOFT) else { return L::splat(0.0) };
-        let part = |c: Column<'_>, i| if n == L::N { L::load(c, i) } else { L::load_part(c, i, n) };
-        let soft = if alike { L::splat(soft.get(at)) } else { part(soft, at) };
-        part(tension, number) * soft * L::splat(per_dt2)
+        let (soft, at) = (Column::read_only(&self.links.compliance), run.place(t as u32));
+        let soft = if run.alike { L::splat(soft.get(at)) } else { part(soft, at, n) };
+        part::<L>(tension, run.serial as usize + t, n) * soft * L::splat(per_dt2)
     }
 
     /// Adds to the tension of links.
     #[inline(always)]
     fn count<L: Lanes, const SOFT: bool>(&self, by: L, number: usize, n: usize) {
         let Some((tension, _)) = self.tension.filter(|_| SOFT) else { return };
-        if n == L::N {
-            (L::load(tension, number) + by).store(tension, number);
-        } else {
-            (L::load_part(tension, number, n) + by).store_part(tension, number, n);
-        }
+        let sum = part::<L>(tension, number, n) + by;
+        if n == L::N { sum.store(tension, number) } else { sum.store_part(tension, number, n) }
     }
 
     /// Links by index list; gives by how much their tension grew.
@@ -139,7 +253,7 @@ impl Solve<'_> {
             (ends[0][t], ends[1][t]) = (link[0], link[1]);
         }
         let [a, b] = &ends;
-        let part = |c| if n == L::N { L::load(c, at) } else { L::load_part(c, at, n) };
+        let part = |c| part::<L>(c, at, n);
         let (pa, pb) = (V3::<L>::gather(c.x, a, n), V3::gather(c.x, b, n));
         let moved = || (pb - V3::gather(c.previous, b, n)) - (pa - V3::gather(c.previous, a, n));
         let (push, by) = self.push::<L, SOFT>(pb - pa, [part(rest), part(gain), slack], moved);
@@ -175,12 +289,11 @@ impl Solve<'_> {
         [rest, gain, slack]: [L; 3],
         moved: impl Fn() -> V3<L>,
     ) -> (V3<L>, L) {
+        if !SOFT {
+            return (stiff(d, rest, gain), L::splat(0.0));
+        }
         let length2 = d.dot(d);
         let inverse = reciprocal_root(length2);
-        if !SOFT {
-            // lambda / |d|: (|d| - rest) / |d| times the gain.
-            return (d * ((L::splat(1.0) - rest * inverse) * gain), L::splat(0.0));
-        }
         let mut stretch = length2 * inverse - rest - slack;
         if self.gamma > 0.0 {
             stretch = stretch + d.dot(moved()) * inverse * L::splat(self.gamma);
@@ -188,6 +301,45 @@ impl Solve<'_> {
         let by = stretch * gain;
         (d * (by * inverse), by)
     }
+}
+
+/// How far a link without compliance draws an end of weight 1: along d by lambda / |d|, which is (|d| - rest) / |d| times
+/// the gain.
+#[inline(always)]
+fn stiff<L: Numbers>(d: V3<L>, rest: L, gain: L) -> V3<L> {
+    d * ((L::splat(1.0) - rest * reciprocal_root(d.dot(d))) * gain)
+}
+
+/// The slants between a vector of rungs and the next, solved; gives the first rail a lane on, in its lowest lane the
+/// next vector's.
+#[inline(always)]
+fn slant<L: Numbers>(one: &mut Rungs<L>, next: &Rungs<L>, [rest, gain, wb, wa]: [L; 4]) -> V3<L> {
+    let a = one.a.with_first(next.a).rotate_down();
+    let push = stiff(a - one.b, rest, gain);
+    one.b = one.b + push * wb;
+    (a - push * wa).rotate_up()
+}
+
+/// Both ends of a vector of rungs, and their weights.
+#[derive(Clone, Copy)]
+struct Rungs<L> {
+    a: V3<L>,
+    b: V3<L>,
+    weights: [L; 2],
+}
+
+impl<L: Numbers> Rungs<L> {
+    #[inline(always)]
+    fn store(self, to: [Column<'_>; 3], [a, b]: [usize; 2]) {
+        self.a.store(to, a, L::N);
+        self.b.store(to, b, L::N);
+    }
+}
+
+/// `n <= N` numbers side by side.
+#[inline(always)]
+fn part<L: Numbers>(from: Column<'_>, at: usize, n: usize) -> L {
+    if n == L::N { L::load(from, at) } else { L::load_part(from, at, n) }
 }
 
 #[cfg(test)]
@@ -201,11 +353,18 @@ mod tests {
 
     /// Links between particles i and i + n.
     fn ladder(n: u32, rest: f32, compliance: f32) -> Links {
-        let share = Share { runs: 0..1, loose: 0..0, loose_at: n, loose_serial: n };
+        let share = Share { zigzags: 0..0, runs: 0..1, loose: 0..0, loose_at: n, loose_serial: n };
         let set = Set { direction: Direction::Weft, crosses: false, shares: [share, Share::default()] };
         let runs = [Run { first: [0, n], len: n, at: 0, serial: 0, alike: false }].into();
         Links {
-            tuples: Tuples { runs, loose: [].into(), sets: [set].into(), count: n as usize, places: n as usize },
+            tuples: Tuples {
+                zigzags: [].into(),
+                runs,
+                loose: [].into(),
+                sets: [set].into(),
+                count: n as usize,
+                places: n as usize,
+            },
             rest: vec![rest; n as usize].into(),
             compliance: vec![compliance; n as usize].into(),
         }

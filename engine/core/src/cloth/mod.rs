@@ -12,10 +12,12 @@ pub mod links;
 pub mod lists;
 pub mod measure;
 pub mod predict;
+mod prepared;
 pub mod program;
 pub mod root;
 pub mod settings;
 pub mod settle;
+pub mod stages;
 pub mod state;
 mod step;
 pub mod tethers;
@@ -28,7 +30,7 @@ use toile_assets::skeleton::BONES;
 
 use crate::colliders::Colliders;
 use crate::lanes::Store;
-use program::{Op, STAGES};
+use program::STAGES;
 use root::RootMotion;
 pub use root::{RootSettings, Teleport};
 pub use settings::{Quality, Settings};
@@ -65,11 +67,13 @@ pub struct Cloth {
     contacts: contact::Contacts,
     /// Room of each worker for a fiber's factors.
     scratch: [Store; OWNERS],
+    /// Room for bending that is stiffer than a substep; none where it cannot be.
+    room: stages::Room,
     /// Tensions of weft links, of fibers, of crossing fibers within a substep; empty where they have no compliance.
     tension: [Store; 3],
     /// Room for percentiles.
     pub(crate) strains: Box<[f32]>,
-    prepared: step::Prepared,
+    prepared: prepared::Prepared,
     /// The root's motion, and the point of the garment at rest that it is taken at (m).
     root: RootMotion,
     origin: Vec3A,
@@ -93,11 +97,12 @@ impl Cloth {
         let fixed: Box<[Vec3A]> = garment.fixed.iter().map(|&i| start[i as usize]).collect();
         let layout = &garment.layout;
         let needs = [
+            bending::SCRATCH,
             fibers::scratch_len(&layout.fibers),
             lists::scratch_len(&layout.crossing),
             lists::scratch_len(&layout.hoops),
         ];
-        let prepared = step::Prepared::new(garment);
+        let prepared = prepared::Prepared::new(garment);
         let counts = [layout.weft.tuples.count, layout.fibers.links, layout.crossing.rest.len()];
         let tension = std::array::from_fn(|k| Store::zeros(if prepared.soft(k) { counts[k] } else { 0 }));
         let scratch = || Store::zeros(needs.into_iter().max().unwrap_or(0));
@@ -107,6 +112,7 @@ impl Cloth {
             fixed_end: fixed,
             contacts: contact::Contacts::new(&layout.spans, &garment.parts, &garment.start, colliders),
             scratch: [scratch(), scratch()],
+            room: stages::Room::new(if prepared.stiff() { start.len() } else { 0 }),
             strains: vec![0.0; garment.strain_edges.len()].into(),
             prepared,
             tension,
@@ -159,14 +165,10 @@ impl Cloth {
             + self.contacts.bytes()
             + self.pushed.bytes()
             + self.faces.as_ref().map_or(0, wind::Faces::bytes)
+            + self.room.bytes()
             + self.scratch.iter().map(Store::bytes).sum::<usize>()
             + self.tension.iter().map(Store::bytes).sum::<usize>()
             + self.prepared.bytes()
-    }
-
-    /// The phases of a substep as last prepared.
-    pub fn program(&self) -> &[Op] {
-        self.prepared.program()
     }
 
     /// What contact did since the garment was made.

@@ -22,6 +22,10 @@ pub enum Op {
     Carry,
     /// Bending, set by set; the set that crosses the owners is one worker's.
     Bend(u16),
+    /// Bending that is stiffer than a substep: before the forces of a stage; behind the last of them.
+    Turn(u32),
+    /// The forces of a stage, set by set.
+    Stage(u32, u16),
     /// Gravity, air, wind; skinned particles move on.
     Predict,
     /// A set of shear links.
@@ -53,7 +57,7 @@ impl Op {
     pub fn stage(self) -> usize {
         match self {
             Self::Predict | Self::Carry => 0,
-            Self::Bend(_) => 1,
+            Self::Bend(_) | Self::Turn(_) | Self::Stage(..) => 1,
             Self::Shear(_) => 2,
             Self::Weft(_) | Self::Hoops(_) => 3,
             Self::Fibers | Self::Crossing(_) => 4,
@@ -64,15 +68,43 @@ impl Op {
     }
 }
 
-/// The phases of one substep.
+/// Bending, which comes first in a substep: its sets, once as a force, or in stages with a turn before each and at the end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Bending {
+    /// Sets of stencils.
+    pub sets: u32,
+    /// Stages; 1 for a force.
+    pub stages: u32,
+}
+
+impl Bending {
+    /// The sets of a layout.
+    pub fn sets(layout: &Layout) -> u32 {
+        layout.bends.tuples.sets.len().max(layout.skewed.tuples.sets.len()) as u32
+    }
+
+    /// Its phases.
+    pub fn phases(self) -> usize {
+        (if self.stages < 2 || self.sets == 0 { self.sets } else { self.stages * (self.sets + 1) + 1 }) as usize
+    }
+
+    /// One of them.
+    pub fn op(self, phase: usize) -> Op {
+        if self.stages < 2 {
+            return Op::Bend(phase as u16);
+        }
+        let (stage, part) = (phase as u32 / (self.sets + 1), phase as u32 % (self.sets + 1));
+        if part == 0 { Op::Turn(stage) } else { Op::Stage(stage, part as u16 - 1) }
+    }
+}
+
+/// The phases of one substep after bending.
 pub fn substep(layout: &Layout, quality: Quality) -> Box<[Op]> {
     let numbered = |n: usize, op: fn(u16) -> Op| (0..n as u16).map(op);
     let wefts = || numbered(layout.weft.tuples.sets.len(), Op::Weft);
     let hoops = || numbered(layout.hoops.sets.len(), Op::Hoops);
     let fibers = || numbered(layout.crossing.sets.len(), Op::Crossing).chain([Op::Fibers]);
-    let bends = layout.bends.tuples.sets.len().max(layout.skewed.tuples.sets.len());
-    let mut ops: Vec<Op> = numbered(bends, Op::Bend).collect();
-    ops.push(Op::Predict);
+    let mut ops = vec![Op::Predict];
     let shear = || numbered(layout.shear.tuples.sets.len(), Op::Shear);
     ops.extend(shear().chain(wefts()).chain(fibers()));
     match quality {

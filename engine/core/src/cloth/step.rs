@@ -6,106 +6,18 @@ use std::time::Instant;
 
 use glam::{Affine3A, Vec3A};
 use toile_assets::garment::Garment;
-use toile_assets::garment::layout::{Bends, ENDED, OWNERS};
-use toile_assets::limits::STEP_SECONDS;
+use toile_assets::garment::layout::{Bends, OWNERS};
 
+use super::prepared::Prepared;
 use super::program::{self, Op, STAGES};
 use super::root::{Carried, RootStep};
+use super::stages;
 use super::state::{self, Columns};
 use super::{
-    Cloth, Quality, Settings, Step, Wind, bending, contact, fibers, guard, links, lists, predict, settle, tethers, wind,
+    Cloth, Quality, Step, Wind, bending, contact, fibers, guard, links, lists, predict, settle, tethers, wind,
 };
 use crate::crew::{Crew, Own};
 use crate::lanes::{Column, Store, Width};
-
-/// What depends on the settings, made again when they change; the storage stays.
-#[derive(Debug, Clone)]
-pub struct Prepared {
-    /// Substeps, their length (s), damping time: what the figures below were made for.
-    made_for: Option<(u32, f32, f32)>,
-    programs: [Box<[Op]>; 3],
-    quality: Quality,
-    substeps: u32,
-    dt: f32,
-    gamma: f32,
-    shear_gain: Box<[f32]>,
-    weft_gain: Box<[f32]>,
-    bend_scale: Box<[f32]>,
-    skewed_scale: Box<[f32]>,
-    bend: bending::Pace,
-    load: Box<[f32]>,
-    /// Whether weft links, fibers, crossing fibers have any compliance.
-    soft: [bool; 3],
-}
-
-impl Prepared {
-    pub fn new(garment: &Garment) -> Self {
-        let layout = &garment.layout;
-        let zeros = |n: usize| vec![0.0; n].into_boxed_slice();
-        Self {
-            made_for: None,
-            programs: Quality::ALL.map(|q| program::substep(layout, q)),
-            quality: Quality::default(),
-            substeps: 1,
-            dt: 0.0,
-            gamma: 0.0,
-            shear_gain: zeros(layout.shear.rest.len()),
-            weft_gain: zeros(layout.weft.rest.len()),
-            bend_scale: zeros(layout.bends.tuples.places),
-            skewed_scale: zeros(layout.skewed.tuples.places),
-            bend: bending::Pace { every: 1, least: 1.0 },
-            load: zeros(garment.start.len()),
-            soft: [&layout.weft.compliance, &layout.fibers.compliance, &layout.crossing.compliance].map(|c| soft(c)),
-        }
-    }
-
-    /// Allocates nothing; a microsecond a hundred constraints, in steps in which the settings have changed.
-    fn make(&mut self, garment: &Garment, settings: &Settings) {
-        // The bake speaks of steps of 1/120 s.
-        let longer = (settings.step_seconds / STEP_SECONDS).max(1.0);
-        let chosen = (settings.quality.substeps(garment.substeps) as f32 * longer).ceil() as u32;
-        let asked = settings.substeps.unwrap_or(chosen).max(1);
-        self.quality = settings.quality;
-        let made_for = (asked, settings.step_seconds, settings.stretch_damping_s);
-        if self.made_for == Some(made_for) {
-            return;
-        }
-        self.made_for = Some(made_for);
-        self.substeps = asked;
-        self.dt = settings.step_seconds / asked as f32;
-        self.gamma = settings.stretch_damping_s / self.dt;
-        let (layout, w) = (&garment.layout, &garment.inverse_mass);
-        links::prepare(&layout.shear, w, self.dt, self.gamma, &mut self.shear_gain);
-        links::prepare(&layout.weft, w, self.dt, self.gamma, &mut self.weft_gain);
-        self.load.fill(0.0);
-        bending::add_load(&layout.bends, w, self.dt, &mut self.load);
-        bending::add_load(&layout.skewed, w, self.dt, &mut self.load);
-        let least = bending::weaken(&layout.bends, &self.load, &mut self.bend_scale);
-        let least = bending::weaken(&layout.skewed, &self.load, &mut self.skewed_scale).min(least);
-        self.bend = bending::Pace { every: bending::every(&self.load, asked), least };
-    }
-
-    /// Whether weft links (0), fibers (1), crossing fibers (2) have any compliance.
-    pub fn soft(&self, kind: usize) -> bool {
-        self.soft[kind]
-    }
-
-    pub fn program(&self) -> &[Op] {
-        &self.programs[Quality::ALL.iter().position(|q| *q == self.quality).unwrap_or(0)]
-    }
-
-    pub fn bend_pace(&self) -> bending::Pace {
-        self.bend
-    }
-
-    pub fn substeps(&self) -> u32 {
-        self.substeps
-    }
-
-    pub fn bytes(&self) -> usize {
-        4 * (self.shear_gain.len() + self.weft_gain.len() + self.bend_scale.len() + self.load.len())
-    }
-}
 
 /// Everything that the phases of one step share.
 struct Work<'a> {
@@ -123,6 +35,8 @@ struct Work<'a> {
     /// Tensions of weft links, of fibers, of crossing fibers so far in the substep; empty where they have no compliance.
     tension: [Column<'a>; 3],
     scratch: [Column<'a>; OWNERS],
+    /// Room for stiff bending; empty where there is none.
+    room: [[Column<'a>; 3]; 3],
     fall: Vec3A,
     kept: f32,
     width: Width,
@@ -241,6 +155,7 @@ impl Cloth {
     fn work<'a>(&'a mut self, garment: &'a Garment, step: &'a Step<'a>, carried: Option<Carried>) -> Work<'a> {
         let dt = self.prepared.dt;
         let [one, two] = &mut self.scratch;
+        let room = self.room.columns();
         Work {
             garment,
             step,
@@ -254,6 +169,7 @@ impl Cloth {
             fixed: [&self.fixed_start, &self.fixed_end],
             tension: self.tension.each_mut().map(Store::column),
             scratch: [one.column(), two.column()],
+            room,
             fall: step.settings.gravity * dt,
             kept: (-garment.fabric.damping_per_s * dt).exp(),
             width: step.settings.width,
@@ -264,16 +180,21 @@ impl Cloth {
 impl Work<'_> {
     /// Phases of the step.
     fn phases(&self) -> usize {
-        program::BEFORE.len() + self.prepared.substeps as usize * self.prepared.program().len()
+        program::BEFORE.len() + self.prepared.substeps as usize * self.substep_phases()
+    }
+
+    /// Phases of a substep.
+    fn substep_phases(&self) -> usize {
+        self.prepared.bending.phases() + self.prepared.program().len()
     }
 
     /// What a phase does, and in which substep.
     fn op(&self, phase: usize) -> (Op, u32) {
-        let program = self.prepared.program();
-        match phase.checked_sub(program::BEFORE.len()) {
-            None => (program::BEFORE[phase], 0),
-            Some(later) => (program[later % program.len()], (later / program.len()) as u32),
-        }
+        let Some(later) = phase.checked_sub(program::BEFORE.len()) else { return (program::BEFORE[phase], 0) };
+        let (each, bending) = (self.substep_phases(), self.prepared.bending);
+        let (substep, at) = ((later / each) as u32, later % each);
+        let op = at.checked_sub(bending.phases()).map_or_else(|| bending.op(at), |k| self.prepared.program()[k]);
+        (op, substep)
     }
 
     /// One owner's share of one phase.
@@ -359,10 +280,15 @@ impl Work<'_> {
             }
             Op::Tether => {}
             Op::Bend(set) if substep.is_multiple_of(p.bend.every) => {
-                self.bend(&layout.bends, &p.bend_scale, usize::from(set), share);
-                self.bend(&layout.skewed, &p.skewed_scale, usize::from(set), share);
+                self.bend(set, [columns.x, columns.v], p.dt * p.bend.every as f32, share);
             }
             Op::Bend(_) => {}
+            Op::Turn(stage) => self.turn(stage, share),
+            Op::Stage(0, set) => self.bend(set, [self.room[1], self.room[0]], p.dt, share),
+            Op::Stage(stage, set) => {
+                let by = p.stages[stage as usize % p.stages.len()].forced * p.dt * p.dt;
+                self.bend(set, [stage, stage + 1].map(|j| self.room[stages::place(j)]), by, share);
+            }
             Op::Predict => self.predict(substep, share),
             Op::Shear(set) => {
                 let set = &layout.shear.tuples.sets[usize::from(set)];
@@ -388,18 +314,50 @@ impl Work<'_> {
         }
     }
 
-    /// A set of the stencils; what crosses the owners is the first worker's alone.
-    fn bend<const K: usize>(&self, bends: &Bends<K>, scale: &[f32], number: usize, share: usize) {
-        let Some(set) = bends.tuples.sets.get(number) else { return };
-        let (columns, dt) = (self.columns, self.prepared.dt * self.prepared.bend.every as f32);
+    /// A set of the stencils bends one thing and pushes another.
+    fn bend(&self, set: u16, from_to: [[Column<'_>; 3]; 2], by: f32, share: usize) {
+        let (layout, p) = (&self.garment.layout, self.prepared);
+        self.stencils(&layout.bends, &p.bend_scale, set, from_to, by, share);
+        self.stencils(&layout.skewed, &p.skewed_scale, set, from_to, by, share);
+    }
+
+    /// Those of one kind; what crosses the owners is the first worker's alone.
+    fn stencils<const K: usize>(
+        &self,
+        bends: &Bends<K>,
+        scale: &[f32],
+        set: u16,
+        [from, to]: [[Column<'_>; 3]; 2],
+        by: f32,
+        share: usize,
+    ) {
+        let Some(set) = bends.tuples.sets.get(usize::from(set)) else { return };
+        let (w, scratch) = (self.columns.w, self.scratch[share]);
         let scale = (self.prepared.bend.least < 1.0).then_some(scale);
-        if set.crosses {
-            if share == 0 {
-                (0..OWNERS).for_each(|owner| self.width.run(bending::Bend { columns, bends, set, owner, dt, scale }));
-            }
-        } else {
-            self.width.run(bending::Bend { columns, bends, set, owner: share, dt, scale });
+        let bend = |owner| self.width.run(bending::Bend { w, bends, set, owner, from, to, by, scale, scratch });
+        if !set.crosses {
+            bend(share);
+        } else if share == 0 {
+            (0..OWNERS).for_each(bend);
         }
+    }
+
+    /// What comes before the forces of a stage of stiff bending, or behind the last.
+    fn turn(&self, stage: u32, share: usize) {
+        let p = self.prepared;
+        let turn = match stage {
+            0 => stages::Turn::Begin { fall: self.fall, pushed: self.pushed().map(|(by, _)| by), dt: p.dt },
+            last if last == p.bending.stages => stages::Turn::End(last),
+            1 => stages::Turn::First([p.stages[0], p.stages[1]]),
+            later => stages::Turn::Next(later + 1, p.stages[later as usize % p.stages.len()]),
+        };
+        let spans = &self.garment.layout.spans[share];
+        self.width.run(stages::Take { columns: self.columns, spans, room: self.room, turn });
+    }
+
+    /// What accelerates the particles besides gravity, and the substep (s).
+    fn pushed(&self) -> Option<([Column<'_>; 3], f32)> {
+        (self.faces.is_some() || self.carried.is_some()).then_some((self.pushed, self.prepared.dt))
     }
 
     fn predict(&self, substep: u32, share: usize) {
@@ -411,8 +369,9 @@ impl Work<'_> {
             (from..(from + half).min(tension.len())).for_each(|i| tension.set(i, 0.0));
         }
         let spans = &self.garment.layout.spans[share];
-        let (fall, kept, dt) = (self.fall, self.kept, p.dt);
-        let pushed = (self.faces.is_some() || self.carried.is_some()).then_some((self.pushed, dt));
+        let (kept, dt) = (self.kept, p.dt);
+        // Stages have accelerated everything already.
+        let (fall, pushed) = if p.bending.stages > 1 { (Vec3A::ZERO, None) } else { (self.fall, self.pushed()) };
         self.width.run(predict::Predict { columns, spans, fall, pushed, kept, dt });
         let to = (substep + 1) as f32 / p.substeps as f32;
         for (k, &i) in self.garment.fixed.iter().enumerate() {
@@ -437,9 +396,4 @@ impl Work<'_> {
         // Relaxed: a counter that one share adds to and that is read when all is done.
         self.limited[share].fetch_add(u64::from(held), Relaxed);
     }
-}
-
-/// Whether any of some links gives: a millimetre under a thousand newtons and more.
-fn soft(compliance: &[f32]) -> bool {
-    compliance.iter().any(|c| (1e-6..ENDED).contains(c))
 }

@@ -2,14 +2,14 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use super::{Column, Lanes};
+use super::{Column, Lanes, Numbers};
 
 /// 1 / sqrt(x) to 8e-7 of its value, from exactly rounded operations only: a seed from the bits and two Newton steps,
 /// the first with the constants that make its largest error least (Walczyk, Moroz, Cieslinski 2021, "Improving the
 /// accuracy of the fast inverse square root"). A third of the time of root and quotient, and, unlike the processors'
 /// estimates, the same bits everywhere. 0 gives a large finite number.
 #[inline(always)]
-pub fn reciprocal_root<L: Lanes>(x: L) -> L {
+pub fn reciprocal_root<L: Numbers>(x: L) -> L {
     let y = x.root_seed(0x5F1F_FFF9);
     let y = y * L::splat(0.703_952_25) * (L::splat(2.389_244_6) - x * y * y);
     y * (L::splat(1.5) - L::splat(0.5) * x * y * y)
@@ -26,7 +26,7 @@ pub struct V3<L> {
     pub z: L,
 }
 
-impl<L: Lanes> V3<L> {
+impl<L: Numbers> V3<L> {
     /// The same vector in every lane.
     #[inline(always)]
     pub fn splat(v: glam::Vec3A) -> Self {
@@ -55,6 +55,39 @@ impl<L: Lanes> V3<L> {
             self.z.store_part(to[2], at, n);
         }
     }
+    /// Inner product.
+    #[inline(always)]
+    pub fn dot(self, o: Self) -> L {
+        self.x * o.x + self.y * o.y + self.z * o.z
+    }
+    /// Cross product.
+    #[inline(always)]
+    pub fn cross(self, o: Self) -> Self {
+        Self { x: self.y * o.z - self.z * o.y, y: self.z * o.x - self.x * o.z, z: self.x * o.y - self.y * o.x }
+    }
+    /// `mask ? self : other`.
+    #[inline(always)]
+    pub fn select(self, mask: L::Mask, other: Self) -> Self {
+        Self { x: self.x.select(mask, other.x), y: self.y.select(mask, other.y), z: self.z.select(mask, other.z) }
+    }
+    /// [`Numbers::rotate_down`].
+    #[inline(always)]
+    pub fn rotate_down(self) -> Self {
+        Self { x: self.x.rotate_down(), y: self.y.rotate_down(), z: self.z.rotate_down() }
+    }
+    /// [`Numbers::rotate_up`].
+    #[inline(always)]
+    pub fn rotate_up(self) -> Self {
+        Self { x: self.x.rotate_up(), y: self.y.rotate_up(), z: self.z.rotate_up() }
+    }
+    /// [`Numbers::with_first`].
+    #[inline(always)]
+    pub fn with_first(self, o: Self) -> Self {
+        Self { x: self.x.with_first(o.x), y: self.y.with_first(o.y), z: self.z.with_first(o.z) }
+    }
+}
+
+impl<L: Lanes> V3<L> {
     /// The vectors at an index list.
     #[inline(always)]
     pub fn gather(from: [Column<'_>; 3], index: &[u32], n: usize) -> Self {
@@ -81,24 +114,9 @@ impl<L: Lanes> V3<L> {
         self.y.store_quads(to[1], quads, lane);
         self.z.store_quads(to[2], quads, lane);
     }
-    /// Inner product.
-    #[inline(always)]
-    pub fn dot(self, o: Self) -> L {
-        self.x * o.x + self.y * o.y + self.z * o.z
-    }
-    /// Cross product.
-    #[inline(always)]
-    pub fn cross(self, o: Self) -> Self {
-        Self { x: self.y * o.z - self.z * o.y, y: self.z * o.x - self.x * o.z, z: self.x * o.y - self.y * o.x }
-    }
-    /// `mask ? self : other`.
-    #[inline(always)]
-    pub fn select(self, mask: L::Mask, other: Self) -> Self {
-        Self { x: self.x.select(mask, other.x), y: self.y.select(mask, other.y), z: self.z.select(mask, other.z) }
-    }
 }
 
-impl<L: Lanes> Add for V3<L> {
+impl<L: Numbers> Add for V3<L> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
@@ -106,7 +124,7 @@ impl<L: Lanes> Add for V3<L> {
     }
 }
 
-impl<L: Lanes> Sub for V3<L> {
+impl<L: Numbers> Sub for V3<L> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
@@ -114,7 +132,7 @@ impl<L: Lanes> Sub for V3<L> {
     }
 }
 
-impl<L: Lanes> Mul<L> for V3<L> {
+impl<L: Numbers> Mul<L> for V3<L> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, k: L) -> Self {

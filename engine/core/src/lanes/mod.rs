@@ -11,6 +11,7 @@ mod math;
 #[cfg(not(target_arch = "x86_64"))]
 mod quad;
 mod scalar;
+mod two;
 #[cfg(target_arch = "x86_64")]
 #[expect(unsafe_code, reason = "vector instructions, picked at run time")]
 mod x86;
@@ -20,12 +21,16 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 pub use column::{Column, Store};
 pub use math::{V3, reciprocal_root};
+pub use two::Two;
 
 /// Most lanes of any width: storage is padded to it.
 pub const MOST: usize = 16;
 
 /// Which of a vector's lanes something holds for.
 pub trait Mask: Copy {
+    /// Lanes, at most 32.
+    const N: usize;
+
     /// Whether it holds for any lane.
     fn any(self) -> bool;
     /// Lane by lane: both.
@@ -36,19 +41,15 @@ pub trait Mask: Copy {
     fn of(bits: u32) -> Self;
 }
 
-/// A vector of f32.
-pub trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {
-    /// Lanes.
+/// Numbers side by side: what arithmetic takes them to be.
+pub trait Numbers: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {
+    /// How many.
     const N: usize;
     /// Its mask.
     type Mask: Mask;
 
     /// The same number in every lane.
     fn splat(value: f32) -> Self;
-    /// The first `N` numbers of an array.
-    fn from_array(values: &[f32; MOST]) -> Self;
-    /// Its numbers, the rest 0.
-    fn to_array(self) -> [f32; MOST];
     /// `N` numbers from `at` on. A place past the column's end gives 0.
     fn load(from: Column<'_>, at: usize) -> Self;
     /// `n < N` numbers from `at` on, the other lanes 0.
@@ -57,6 +58,34 @@ pub trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = S
     fn store(self, to: Column<'_>, at: usize);
     /// Writes the first `n < N` lanes.
     fn store_part(self, to: Column<'_>, at: usize, n: usize);
+    /// Quotient, exactly rounded.
+    fn div(self, by: Self) -> Self;
+    /// Root, exactly rounded.
+    fn sqrt(self) -> Self;
+    /// `a < b ? a : b`, lane by lane: the other operand where one is not a number.
+    fn min(self, other: Self) -> Self;
+    /// `a > b ? a : b`.
+    fn max(self, other: Self) -> Self;
+    /// Lane by lane: less than; false where either is not a number.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `mask ? self : other`.
+    fn select(self, mask: Self::Mask, other: Self) -> Self;
+    /// The number whose bits are `magic - (bits >> 1)`: the seed of a reciprocal root.
+    fn root_seed(self, magic: u32) -> Self;
+    /// Each lane's number from the lane above it; the last lane's from the first.
+    fn rotate_down(self) -> Self;
+    /// Each lane's number from the lane below it; the first lane's from the last.
+    fn rotate_up(self) -> Self;
+    /// Its numbers, but the first lane's from another.
+    fn with_first(self, other: Self) -> Self;
+}
+
+/// A vector of the processor.
+pub trait Lanes: Numbers {
+    /// The first `N` numbers of an array.
+    fn from_array(values: &[f32; MOST]) -> Self;
+    /// Its numbers, the rest 0.
+    fn to_array(self) -> [f32; MOST];
     /// The numbers at `index[..n]`, `n <= N`, the other lanes 0.
     fn gather(from: Column<'_>, index: &[u32], n: usize) -> Self {
         let mut values = [0.0; MOST];
@@ -86,25 +115,11 @@ pub trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = S
             to.set(quads[(lane + i) / 4 % 4] as usize + i % 4, v);
         }
     }
-    /// Quotient, exactly rounded.
-    fn div(self, by: Self) -> Self;
-    /// Root, exactly rounded.
-    fn sqrt(self) -> Self;
-    /// `a < b ? a : b`, lane by lane: the other operand where one is not a number.
-    fn min(self, other: Self) -> Self;
-    /// `a > b ? a : b`.
-    fn max(self, other: Self) -> Self;
     /// The least of its lanes, none of which is no number.
     fn least(self) -> f32 {
         let values = self.to_array();
         values[1..Self::N].iter().fold(values[0], |least, v| if *v < least { *v } else { least })
     }
-    /// Lane by lane: less than; false where either is not a number.
-    fn lt(self, other: Self) -> Self::Mask;
-    /// `mask ? self : other`.
-    fn select(self, mask: Self::Mask, other: Self) -> Self;
-    /// The number whose bits are `magic - (bits >> 1)`: the seed of a reciprocal root.
-    fn root_seed(self, magic: u32) -> Self;
 }
 
 /// A kernel for any lanes. `run` has to be `#[inline(always)]`, or it is not compiled for the width it is called at.

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::{Column, Lanes, MOST, Mask};
+use super::{Column, Lanes, MOST, Mask, Numbers};
 
 /// Four numbers.
 #[derive(Clone, Copy)]
@@ -13,6 +13,8 @@ pub struct Four([f32; 4]);
 pub struct Answers([bool; 4]);
 
 impl Mask for Answers {
+    const N: usize = 4;
+
     #[inline(always)]
     fn any(self) -> bool {
         self.0.into_iter().any(|b| b)
@@ -54,21 +56,13 @@ impl Neg for Four {
     }
 }
 
-impl Lanes for Four {
+impl Numbers for Four {
     const N: usize = 4;
     type Mask = Answers;
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
         Self([value; 4])
-    }
-    #[inline(always)]
-    fn from_array(values: &[f32; MOST]) -> Self {
-        Self(std::array::from_fn(|i| values[i]))
-    }
-    #[inline(always)]
-    fn to_array(self) -> [f32; MOST] {
-        std::array::from_fn(|i| if i < 4 { self.0[i] } else { 0.0 })
     }
     #[inline(always)]
     fn load(from: Column<'_>, at: usize) -> Self {
@@ -96,11 +90,11 @@ impl Lanes for Four {
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        Self(std::array::from_fn(|i| Lanes::min(self.0[i], other.0[i])))
+        Self(std::array::from_fn(|i| Numbers::min(self.0[i], other.0[i])))
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        Self(std::array::from_fn(|i| Lanes::max(self.0[i], other.0[i])))
+        Self(std::array::from_fn(|i| Numbers::max(self.0[i], other.0[i])))
     }
     #[inline(always)]
     fn lt(self, other: Self) -> Answers {
@@ -113,5 +107,30 @@ impl Lanes for Four {
     #[inline(always)]
     fn root_seed(self, magic: u32) -> Self {
         Self(self.0.map(|v| v.root_seed(magic)))
+    }
+    #[inline(always)]
+    fn rotate_down(self) -> Self {
+        let [a, b, c, d] = self.0;
+        Self([b, c, d, a])
+    }
+    #[inline(always)]
+    fn rotate_up(self) -> Self {
+        let [a, b, c, d] = self.0;
+        Self([d, a, b, c])
+    }
+    #[inline(always)]
+    fn with_first(self, other: Self) -> Self {
+        Self([other.0[0], self.0[1], self.0[2], self.0[3]])
+    }
+}
+
+impl Lanes for Four {
+    #[inline(always)]
+    fn from_array(values: &[f32; MOST]) -> Self {
+        Self(std::array::from_fn(|i| values[i]))
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f32; MOST] {
+        std::array::from_fn(|i| if i < 4 { self.0[i] } else { 0.0 })
     }
 }

@@ -1,8 +1,10 @@
 //! One lane: f32 itself. The plain twin of every kernel.
 
-use super::{Column, Lanes, MOST, Mask};
+use super::{Column, Lanes, MOST, Mask, Numbers};
 
 impl Mask for bool {
+    const N: usize = 1;
+
     #[inline(always)]
     fn any(self) -> bool {
         self
@@ -21,23 +23,13 @@ impl Mask for bool {
     }
 }
 
-impl Lanes for f32 {
+impl Numbers for f32 {
     const N: usize = 1;
     type Mask = bool;
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
         value
-    }
-    #[inline(always)]
-    fn from_array(values: &[f32; MOST]) -> Self {
-        values[0]
-    }
-    #[inline(always)]
-    fn to_array(self) -> [f32; MOST] {
-        let mut out = [0.0; MOST];
-        out[0] = self;
-        out
     }
     #[inline(always)]
     fn load(from: Column<'_>, at: usize) -> Self {
@@ -53,14 +45,6 @@ impl Lanes for f32 {
     }
     #[inline(always)]
     fn store_part(self, _: Column<'_>, _: usize, _: usize) {}
-    #[inline(always)]
-    fn load_quads(from: Column<'_>, quads: &[u32; 4], lane: usize) -> Self {
-        from.get(quads[lane / 4 % 4] as usize + lane % 4)
-    }
-    #[inline(always)]
-    fn store_quads(self, to: Column<'_>, quads: &[u32; 4], lane: usize) {
-        to.set(quads[lane / 4 % 4] as usize + lane % 4, self);
-    }
     #[inline(always)]
     fn div(self, by: Self) -> Self {
         self / by
@@ -89,5 +73,38 @@ impl Lanes for f32 {
     #[inline(always)]
     fn root_seed(self, magic: u32) -> Self {
         f32::from_bits(magic.wrapping_sub(self.to_bits() >> 1))
+    }
+    #[inline(always)]
+    fn rotate_down(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn rotate_up(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn with_first(self, other: Self) -> Self {
+        other
+    }
+}
+
+impl Lanes for f32 {
+    #[inline(always)]
+    fn from_array(values: &[f32; MOST]) -> Self {
+        values[0]
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f32; MOST] {
+        let mut out = [0.0; MOST];
+        out[0] = self;
+        out
+    }
+    #[inline(always)]
+    fn load_quads(from: Column<'_>, quads: &[u32; 4], lane: usize) -> Self {
+        from.get(quads[lane / 4 % 4] as usize + lane % 4)
+    }
+    #[inline(always)]
+    fn store_quads(self, to: Column<'_>, quads: &[u32; 4], lane: usize) {
+        to.set(quads[lane / 4 % 4] as usize + lane % 4, self);
     }
 }

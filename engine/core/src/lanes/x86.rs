@@ -8,7 +8,7 @@ mod widths;
 use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::{Column, Kernel, Lanes, MOST, Mask};
+use super::{Column, Kernel, Lanes, MOST, Mask, Numbers};
 
 /// Whether the processor and the system have 16 lanes.
 pub fn has_sixteen() -> bool {
@@ -78,7 +78,7 @@ macro_rules! vector {
                 Self::splat(-0.0) - self
             }
         }
-        impl Lanes for $name {
+        impl Numbers for $name {
             const N: usize = $n;
             type Mask = $answers;
 
@@ -86,18 +86,6 @@ macro_rules! vector {
             fn splat(value: f32) -> Self {
                 // SAFETY: as above.
                 Self(unsafe { $set(value) })
-            }
-            #[inline(always)]
-            fn from_array(values: &[f32; MOST]) -> Self {
-                // SAFETY: as above; the array is long enough for every width.
-                Self(unsafe { $load(values.as_ptr()) })
-            }
-            #[inline(always)]
-            fn to_array(self) -> [f32; MOST] {
-                let mut out = [0.0; MOST];
-                // SAFETY: as above.
-                unsafe { $store(out.as_mut_ptr(), self.0) };
-                out
             }
             #[inline(always)]
             fn load(from: Column<'_>, at: usize) -> Self {
@@ -124,24 +112,6 @@ macro_rules! vector {
                 unsafe { self.write(place, n.min($n)) }
             }
             #[inline(always)]
-            fn gather(from: Column<'_>, index: &[u32], n: usize) -> Self {
-                Self::pick(from, &index[..n.min($n)])
-            }
-            #[inline(always)]
-            fn scatter(self, to: Column<'_>, index: &[u32], n: usize) {
-                self.spread(to, &index[..n.min($n)]);
-            }
-            #[inline(always)]
-            fn load_quads(from: Column<'_>, quads: &[u32; 4], lane: usize) -> Self {
-                // SAFETY: the column has four numbers at each place.
-                unsafe { Self::read_quads(from.quads(quads), lane / 4 % 4) }
-            }
-            #[inline(always)]
-            fn store_quads(self, to: Column<'_>, quads: &[u32; 4], lane: usize) {
-                // SAFETY: as above.
-                unsafe { self.write_quads(to.quads(quads), lane / 4 % 4) }
-            }
-            #[inline(always)]
             fn div(self, by: Self) -> Self {
                 // SAFETY: as above.
                 Self(unsafe { $div(self.0, by.0) })
@@ -162,10 +132,6 @@ macro_rules! vector {
                 Self(unsafe { $max(self.0, o.0) })
             }
             #[inline(always)]
-            fn least(self) -> f32 {
-                self.lowest()
-            }
-            #[inline(always)]
             fn lt(self, o: Self) -> $answers {
                 self.less(o)
             }
@@ -176,6 +142,54 @@ macro_rules! vector {
             #[inline(always)]
             fn root_seed(self, magic: u32) -> Self {
                 self.seed(magic)
+            }
+            #[inline(always)]
+            fn rotate_down(self) -> Self {
+                self.down()
+            }
+            #[inline(always)]
+            fn rotate_up(self) -> Self {
+                self.up()
+            }
+            #[inline(always)]
+            fn with_first(self, other: Self) -> Self {
+                self.but_first(other)
+            }
+        }
+        impl Lanes for $name {
+            #[inline(always)]
+            fn from_array(values: &[f32; MOST]) -> Self {
+                // SAFETY: as above; the array is long enough for every width.
+                Self(unsafe { $load(values.as_ptr()) })
+            }
+            #[inline(always)]
+            fn to_array(self) -> [f32; MOST] {
+                let mut out = [0.0; MOST];
+                // SAFETY: as above.
+                unsafe { $store(out.as_mut_ptr(), self.0) };
+                out
+            }
+            #[inline(always)]
+            fn gather(from: Column<'_>, index: &[u32], n: usize) -> Self {
+                Self::pick(from, &index[..n.min($n)])
+            }
+            #[inline(always)]
+            fn scatter(self, to: Column<'_>, index: &[u32], n: usize) {
+                self.spread(to, &index[..n.min($n)]);
+            }
+            #[inline(always)]
+            fn load_quads(from: Column<'_>, quads: &[u32; 4], lane: usize) -> Self {
+                // SAFETY: the column has four numbers at each place.
+                unsafe { Self::read_quads(from.quads(quads), lane / 4 % 4) }
+            }
+            #[inline(always)]
+            fn store_quads(self, to: Column<'_>, quads: &[u32; 4], lane: usize) {
+                // SAFETY: as above.
+                unsafe { self.write_quads(to.quads(quads), lane / 4 % 4) }
+            }
+            #[inline(always)]
+            fn least(self) -> f32 {
+                self.lowest()
             }
         }
     };

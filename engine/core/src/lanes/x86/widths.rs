@@ -5,21 +5,33 @@
 use super::*;
 
 impl Four {
-    /// The first `n < 4` numbers at a place.
+    /// The first `n < 4` numbers at a place. Never by way of an array: a vector read from what was just written number
+    /// by number has to wait until all of it has reached the cache.
     #[inline(always)]
     pub(super) unsafe fn read(place: *mut f32, n: usize) -> Self {
-        let mut out = [0.0; MOST];
-        for (i, v) in out.iter_mut().enumerate().take(n) {
-            // SAFETY: the caller has `n` numbers there.
-            *v = unsafe { *place.add(i) };
-        }
-        Self::from_array(&out)
+        // SAFETY: the caller has `n` numbers there.
+        Self(unsafe {
+            match n {
+                1 => _mm_load_ss(place),
+                2 => _mm_castpd_ps(_mm_load_sd(place.cast())),
+                3 => _mm_movelh_ps(_mm_castpd_ps(_mm_load_sd(place.cast())), _mm_load_ss(place.add(2))),
+                _ => _mm_setzero_ps(),
+            }
+        })
     }
     #[inline(always)]
     pub(super) unsafe fn write(self, place: *mut f32, n: usize) {
-        for (i, v) in self.to_array().into_iter().enumerate().take(n) {
-            // SAFETY: the caller has `n` numbers there.
-            unsafe { *place.add(i) = v };
+        // SAFETY: the caller has `n` numbers there.
+        unsafe {
+            match n {
+                1 => _mm_store_ss(place, self.0),
+                2 => _mm_store_sd(place.cast(), _mm_castps_pd(self.0)),
+                3 => {
+                    _mm_store_sd(place.cast(), _mm_castps_pd(self.0));
+                    _mm_store_ss(place.add(2), _mm_movehl_ps(self.0, self.0));
+                }
+                _ => {}
+            }
         }
     }
     #[inline(always)]
@@ -167,6 +179,8 @@ impl Sixteen {
 }
 
 impl Mask for Answers4 {
+    const N: usize = 4;
+
     #[inline(always)]
     fn any(self) -> bool {
         self.bits() != 0
@@ -220,6 +234,8 @@ impl Eight {
 }
 
 impl Mask for Answers8 {
+    const N: usize = 8;
+
     #[inline(always)]
     fn any(self) -> bool {
         self.bits() != 0
@@ -273,6 +289,8 @@ impl Sixteen {
 }
 
 impl Mask for Answers16 {
+    const N: usize = 16;
+
     #[inline(always)]
     fn any(self) -> bool {
         self.0 != 0
@@ -288,5 +306,53 @@ impl Mask for Answers16 {
     #[inline(always)]
     fn of(bits: u32) -> Self {
         Self(bits as __mmask16)
+    }
+}
+
+// The lanes of a fiber's neighbours: one lane on, one lane back.
+impl Four {
+    #[inline(always)]
+    pub(super) fn down(self) -> Self {
+        Self(unsafe { _mm_shuffle_ps::<0b00_11_10_01>(self.0, self.0) })
+    }
+    #[inline(always)]
+    pub(super) fn up(self) -> Self {
+        Self(unsafe { _mm_shuffle_ps::<0b10_01_00_11>(self.0, self.0) })
+    }
+    #[inline(always)]
+    pub(super) fn but_first(self, other: Self) -> Self {
+        Self(unsafe { _mm_move_ss(self.0, other.0) })
+    }
+}
+
+impl Eight {
+    #[inline(always)]
+    pub(super) fn down(self) -> Self {
+        Self(unsafe { _mm256_permutevar8x32_ps(self.0, _mm256_setr_epi32(1, 2, 3, 4, 5, 6, 7, 0)) })
+    }
+    #[inline(always)]
+    pub(super) fn up(self) -> Self {
+        Self(unsafe { _mm256_permutevar8x32_ps(self.0, _mm256_setr_epi32(7, 0, 1, 2, 3, 4, 5, 6)) })
+    }
+    #[inline(always)]
+    pub(super) fn but_first(self, other: Self) -> Self {
+        Self(unsafe { _mm256_blend_ps::<1>(self.0, other.0) })
+    }
+}
+
+impl Sixteen {
+    #[inline(always)]
+    pub(super) fn down(self) -> Self {
+        let v = unsafe { _mm512_castps_si512(self.0) };
+        Self(unsafe { _mm512_castsi512_ps(_mm512_alignr_epi32::<1>(v, v)) })
+    }
+    #[inline(always)]
+    pub(super) fn up(self) -> Self {
+        let v = unsafe { _mm512_castps_si512(self.0) };
+        Self(unsafe { _mm512_castsi512_ps(_mm512_alignr_epi32::<15>(v, v)) })
+    }
+    #[inline(always)]
+    pub(super) fn but_first(self, other: Self) -> Self {
+        Self(unsafe { _mm512_mask_blend_ps(1, self.0, other.0) })
     }
 }

@@ -1,0 +1,139 @@
+//! What depends on the settings: gains, the program's choice, how bending goes on.
+//!
+//! Made again in steps in which the settings have changed; the storage stays.
+
+use toile_assets::garment::Garment;
+use toile_assets::garment::layout::ENDED;
+use toile_assets::limits::STEP_SECONDS;
+
+use super::program::{self, Bending, Op};
+use super::stages::{self, Stage};
+use super::{Quality, Settings, bending, links};
+
+/// What depends on the settings, made again when they change; the storage stays.
+#[derive(Debug, Clone)]
+pub struct Prepared {
+    /// Substeps, their length (s), damping time: what the figures below were made for.
+    made_for: Option<(u32, f32, f32)>,
+    programs: [Box<[Op]>; 3],
+    pub quality: Quality,
+    pub substeps: u32,
+    pub dt: f32,
+    pub gamma: f32,
+    pub shear_gain: Box<[f32]>,
+    pub weft_gain: Box<[f32]>,
+    pub bend_scale: Box<[f32]>,
+    pub skewed_scale: Box<[f32]>,
+    pub bend: bending::Pace,
+    /// Bending's phases of a substep, and its stages where it is stiff.
+    pub bending: Bending,
+    pub stages: [Stage; stages::MOST as usize],
+    /// Whether there is room for stages.
+    stiff: bool,
+    load: Box<[f32]>,
+    /// Whether weft links, fibers, crossing fibers have any compliance.
+    pub soft: [bool; 3],
+}
+
+impl Prepared {
+    pub fn new(garment: &Garment) -> Self {
+        let layout = &garment.layout;
+        let zeros = |n: usize| vec![0.0; n].into_boxed_slice();
+        let mut load = zeros(garment.start.len());
+        let longest = STEP_SECONDS / Quality::Draft.substeps(garment.substeps) as f32;
+        add_load(garment, longest, &mut load);
+        Self {
+            made_for: None,
+            programs: Quality::ALL.map(|q| program::substep(layout, q)),
+            quality: Quality::default(),
+            substeps: 1,
+            dt: 0.0,
+            gamma: 0.0,
+            shear_gain: zeros(layout.shear.rest.len()),
+            weft_gain: zeros(layout.weft.rest.len()),
+            bend_scale: zeros(layout.bends.tuples.places),
+            skewed_scale: zeros(layout.skewed.tuples.places),
+            bend: bending::Pace { every: 1, stages: 1, least: 1.0 },
+            bending: Bending { sets: Bending::sets(layout), stages: 1 },
+            stages: [Stage::default(); stages::MOST as usize],
+            stiff: load.iter().any(|l| *l > bending::STABLE),
+            load,
+            soft: [&layout.weft.compliance, &layout.fibers.compliance, &layout.crossing.compliance].map(|c| soft(c)),
+        }
+    }
+
+    /// Allocates nothing; a microsecond a hundred constraints, in steps in which the settings have changed.
+    pub fn make(&mut self, garment: &Garment, settings: &Settings) {
+        // The bake speaks of steps of 1/120 s.
+        let longer = (settings.step_seconds / STEP_SECONDS).max(1.0);
+        let chosen = (settings.quality.substeps(garment.substeps) as f32 * longer).ceil() as u32;
+        let asked = settings.substeps.unwrap_or(chosen).max(1);
+        self.quality = settings.quality;
+        let made_for = (asked, settings.step_seconds, settings.stretch_damping_s);
+        if self.made_for == Some(made_for) {
+            return;
+        }
+        self.made_for = Some(made_for);
+        self.substeps = asked;
+        self.dt = settings.step_seconds / asked as f32;
+        self.gamma = settings.stretch_damping_s / self.dt;
+        let (layout, w) = (&garment.layout, &garment.inverse_mass);
+        links::prepare(&layout.shear, w, self.dt, self.gamma, &mut self.shear_gain);
+        links::prepare(&layout.weft, w, self.dt, self.gamma, &mut self.weft_gain);
+        self.bend(garment);
+    }
+
+    /// How bending goes on with this substep: as a force, in stages, or weakened.
+    fn bend(&mut self, garment: &Garment) {
+        let layout = &garment.layout;
+        self.load.fill(0.0);
+        add_load(garment, self.dt, &mut self.load);
+        let most = self.load.iter().copied().fold(0.0, f32::max);
+        let stages = if self.stiff && most > bending::STABLE { stages::needed(most) } else { 1 };
+        let limit = if stages > 1 { stages::carried(stages) } else { bending::STABLE };
+        if stages > 1 {
+            stages::coefficients(stages, &mut self.stages);
+        }
+        let least = bending::weaken(&layout.bends, &self.load, limit, &mut self.bend_scale);
+        let least = bending::weaken(&layout.skewed, &self.load, limit, &mut self.skewed_scale).min(least);
+        self.bending.stages = stages;
+        self.bend = bending::Pace { every: bending::every(&self.load, self.substeps), stages, least };
+    }
+
+    /// Whether weft links (0), fibers (1), crossing fibers (2) have any compliance.
+    pub fn soft(&self, kind: usize) -> bool {
+        self.soft[kind]
+    }
+
+    pub fn program(&self) -> &[Op] {
+        &self.programs[Quality::ALL.iter().position(|q| *q == self.quality).unwrap_or(0)]
+    }
+
+    pub fn bend_pace(&self) -> bending::Pace {
+        self.bend
+    }
+
+    /// Whether bending may have to go in stages.
+    pub fn stiff(&self) -> bool {
+        self.stiff
+    }
+
+    pub fn substeps(&self) -> u32 {
+        self.substeps
+    }
+
+    pub fn bytes(&self) -> usize {
+        4 * (self.shear_gain.len() + self.weft_gain.len() + self.bend_scale.len() + self.load.len())
+    }
+}
+
+/// The bound on dt^2 omega^2 that bending puts on each particle.
+fn add_load(garment: &Garment, dt: f32, load: &mut [f32]) {
+    bending::add_load(&garment.layout.bends, &garment.inverse_mass, dt, load);
+    bending::add_load(&garment.layout.skewed, &garment.inverse_mass, dt, load);
+}
+
+/// Whether any of some links gives: a millimetre under a thousand newtons and more.
+fn soft(compliance: &[f32]) -> bool {
+    compliance.iter().any(|c| (1e-6..ENDED).contains(c))
+}
