@@ -16,6 +16,9 @@ const DAMPING: f64 = 5.0;
 /// Longest time to come to rest (s).
 const REST_S: f64 = 6.0;
 
+/// Shear stiffness of what is to stretch alone (N/m): next to none.
+const SHEAR: f64 = 1.0;
+
 /// The cases of this room.
 pub fn cases() -> Vec<Case> {
     let mut all = Vec::new();
@@ -25,7 +28,38 @@ pub fn cases() -> Vec<Case> {
     for length in [1.05, 1.2, 1.5, 2.0] {
         all.extend([Slung::Sag, Slung::Tension].map(|what| catenary(length, what)));
     }
+    all.extend([20.0, 60.0, 200.0].map(shear));
     all
+}
+
+/// Side of the sheared sheet (m).
+const SHEET: f64 = 0.3;
+
+/// A sheet that is held along both upright sides sags by w L^2 / 8G in its middle, by shear alone: its upright threads
+/// only sink, its level ones turn.
+fn shear(stiffness: f64) -> Case {
+    let (rows, held) = (16, [Hold::Pinned, Hold::Pinned]);
+    let strip = Strip { width: SHEET, columns: rows, ..Strip::narrow(SHEET, rows, held) };
+    let cloth = Cloth { shear: stiffness, damping: DAMPING, ..Cloth::PLAIN };
+    let run = move |level| {
+        let shape = strip.shape(|along, across| DVec3::new(along, across, 0.0));
+        let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+        let settled = rig.rest(REST_S);
+        let middle = || (0..rig.vertices()).filter(|v| (shape.worn[*v].x - 0.5 * SHEET as f32).abs() < 1e-4);
+        let before = middle().map(|v| f64::from(shape.worn[v].y)).sum::<f64>() / middle().count().max(1) as f64;
+        Ok(rig.told(level, |seen| before - seen.mean(middle()).y).settled(settled))
+    };
+    Case {
+        name: "shear-sag",
+        parameter: format!("G {stiffness} N/m"),
+        mesh: Style::Grid.name(),
+        resolution: rows,
+        unit: "m",
+        expected: cloth.density * G * SHEET * SHEET / (8.0 * stiffness),
+        scale: None,
+        target: Some(5.0),
+        run: Box::new(run),
+    }
 }
 
 /// What is read off a hanging strip.
@@ -39,7 +73,7 @@ enum Hung {
 
 fn strip(stretch: f64, what: Hung) -> Case {
     let strip = Strip::narrow(1.0, ROWS, [Hold::Pinned, Hold::Free]);
-    let cloth = Cloth { stretch, damping: DAMPING, ..Cloth::PLAIN };
+    let cloth = Cloth { stretch, shear: SHEAR, damping: DAMPING, ..Cloth::PLAIN };
     let run = move |level| {
         let shape = strip.shape(|along, across| DVec3::new(across, -along, 0.0));
         let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
@@ -78,7 +112,7 @@ enum Slung {
 /// A strip between two points a metre apart, let go from a V.
 fn catenary(length: f64, what: Slung) -> Case {
     let strip = Strip::narrow(length, ROWS, [Hold::Pinned, Hold::Pinned]);
-    let cloth = Cloth { stretch: 3e4, damping: DAMPING, ..Cloth::PLAIN };
+    let cloth = Cloth { stretch: 3e4, shear: SHEAR, damping: DAMPING, ..Cloth::PLAIN };
     let run = move |level| {
         let depth = (0.25 * length * length - 0.25).sqrt();
         let shape = strip.shape(|along, across| {
