@@ -6,8 +6,8 @@
 //! Thread: the caller's; it shares no solver code with the engine.
 //!
 //! x* is where the sum of inertia or weight, stretch, bending, contact and friction is at its least: Newton's method with
-//! a line search ([`newton`]) on a sparse Cholesky factorisation ([`system`]), inside rounds of the method of multipliers
-//! for what does not stretch and for contact ([`energy`]), so that neither needs a stiffness without bound.
+//! a line search (`newton`) on a sparse Cholesky factorisation (`system`), inside rounds of the method of multipliers
+//! for what does not stretch and for contact (`energy`), so that neither needs a stiffness without bound.
 //!
 //! ```
 //! use toile_perf::oracle::{Oracle, Problem, Solids, State, Step};
@@ -32,12 +32,17 @@
 
 pub mod adapter;
 mod energy;
+mod equilibrium;
 pub mod measure;
 mod newton;
 mod problem;
 mod settle;
 mod solids;
 mod system;
+#[cfg(test)]
+mod tests;
+
+use std::fmt;
 
 use glam::DVec3;
 use thiserror::Error;
@@ -119,7 +124,7 @@ impl Default for Options {
             link_stiffness_n_m: 2e4,
             contact_stiffness_n_m: 1e3,
             creep_m_s: 1e-5,
-            most_iterations: 1_000,
+            most_iterations: 3_000,
             most_rounds: 60,
         }
     }
@@ -143,7 +148,7 @@ pub struct Report {
 }
 
 /// A solution.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Clone, PartialEq, Default)]
 pub struct Solved {
     /// Positions, and velocities: 0 in statics.
     pub state: State,
@@ -153,6 +158,13 @@ pub struct Solved {
     pub touches: Vec<Touch>,
     /// How exact it is.
     pub report: Report,
+}
+
+impl fmt::Debug for Solved {
+    /// How it was reached; the numbers of thousands of particles say little.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Solved").field("report", &self.report).finish_non_exhaustive()
+    }
 }
 
 /// Why there is no solution.

@@ -158,9 +158,8 @@ fn lists(from: &Lists, to: &mut Vec<Link>) {
 fn bends<const K: usize>(from: &Bends<K>, to: &mut Vec<Bend>) {
     from.tuples.for_each(|at, v| {
         let mut bend = Bend { particles: [v[0]; 4], coefficients: [0.0; 4] };
-        for k in 0..K {
-            bend.particles[k] = v[k];
-            bend.coefficients[k] = from.coefficients[k][at].into();
+        for (k, (&i, c)) in v.iter().zip(&from.coefficients).enumerate() {
+            (bend.particles[k], bend.coefficients[k]) = (i, c[at].into());
         }
         to.push(bend);
     });

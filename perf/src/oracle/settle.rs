@@ -1,4 +1,4 @@
-//! Steps and statics: rounds of the method of multipliers around Newton's method.
+//! The solver: rounds of the method of multipliers around Newton's method, and one step of implicit Euler by it.
 
 use glam::DVec3;
 
@@ -18,23 +18,18 @@ const FIRST_RESIDUAL_N: f64 = 1e-5;
 /// See [`FIRST_RESIDUAL_N`].
 const SHARPER: f64 = 0.01;
 
-/// Shift that statics start with (1/s2): an implicit step of a tenth of a second.
-const FIRST_SHIFT: f64 = 100.0;
+/// How much stiffer the multipliers of links and contact are than what they hold: of the order of how many links lie in
+/// series, squared, in a step, in which they start from those of the step before.
+const STEP_STIFFER: [f64; 2] = [4_000.0, 100.0];
 
-/// How much stiffer multipliers are than what they hold.
-const STIFFER: f64 = 10.0;
+/// Least factor of that kind.
+const LEAST_STIFFER: f64 = 10.0;
 
-/// Length over which a contact yields to the weight at most (m).
-const CONTACT_M: f64 = 0.1;
+/// Roundings of a position that add up to the residual of a particle.
+const ROUNDINGS: f64 = 8.0;
 
-/// How far particles are put from a saddle (m).
-const NUDGE_M: f64 = 1e-5;
-
-/// How often a saddle is left.
-const MOST_NUDGES: usize = 6;
-
-/// The solver of one problem. It remembers the last solution's forces, from which the next one starts: they change how
-/// long a solution takes and, below its tolerances, its digits.
+/// The solver of one problem. It remembers the last solution's forces, from which the next step starts: they change how
+/// long that takes and, below its tolerances, its digits.
 #[derive(Debug)]
 pub struct Oracle {
     problem: Problem,
@@ -46,13 +41,17 @@ pub struct Oracle {
 }
 
 /// What one solution is made with.
-struct Task {
-    load: Load,
+pub(super) struct Task {
+    /// Weight or inertia.
+    pub load: Load,
     /// Where to start from (m).
-    from: Vec<DVec3>,
-    /// Stiffness of what the load holds in place of links and particles (N/m).
-    held: [f64; 2],
-    shift: f64,
+    pub from: Vec<DVec3>,
+    /// Stiffness with which the load resists at links and at particles (N/m).
+    pub held: [f64; 2],
+    /// How much stiffer than that multipliers are to be.
+    pub stiffer: [f64; 2],
+    /// First shift of the Hessian (1/s2).
+    pub shift: f64,
 }
 
 impl Oracle {
@@ -95,8 +94,10 @@ impl Oracle {
         let mut from = state.x.clone();
         (0..p.particles()).filter(|i| p.pinned(*i)).for_each(|i| from[i] = target[i]);
         let held = [heaviest_link(p) * per_dt2, p.mass.iter().copied().fold(0.0, f64::max) * per_dt2];
-        let task = Task { load: Load::Inertia { target, per_dt2 }, from, held, shift: 0.0 };
-        let friction = (p.friction > 0.0).then_some((state.x.as_slice(), step));
+        let task = Task { load: Load::Inertia { target, per_dt2 }, from, held, stiffer: STEP_STIFFER, shift: 0.0 };
+        let slip_m = self.options.creep_m_s * dt;
+        let both = || [step.solids[0].shapes(), step.solids[1].shapes()];
+        let friction = (p.friction > 0.0).then(|| Friction::new(p.friction, slip_m, &state.x, both()));
         let mut solved = self.solve(task, &step.solids[1], friction)?;
         let v = solved.state.x.iter().zip(&state.x).map(|(after, before)| (*after - *before) / dt).collect();
         solved.state.v = v;
@@ -121,38 +122,7 @@ impl Oracle {
         Ok(out)
     }
 
-    /// x* of statics, without friction: the minimum of weight, stretch, bending and contact that is reached downhill from
-    /// `start`, in which pinned particles already are where they are to stay. Cloth that folds has many; one that is only
-    /// a saddle is left in a fixed direction.
-    ///
-    /// # Errors
-    /// Where the figures cannot be used, or no solution is found.
-    pub fn equilibrium(&mut self, start: &[DVec3], solids: &Solids) -> Result<Solved, OracleError> {
-        let state = State::at_rest(start);
-        self.check(&state, solids)?;
-        let mut from = start.to_vec();
-        let mut spent = Report::default();
-        for nudge in 0..=MOST_NUDGES {
-            let load = Load::Weight { gravity: self.problem.gravity, from: start.to_vec() };
-            let held = [heaviest(&self.problem) / shortest(&self.problem), heaviest(&self.problem) / CONTACT_M];
-            let mut solved = self.solve(Task { load, from, held, shift: FIRST_SHIFT }, solids, None)?;
-            for (sum, one) in [
-                (&mut spent.iterations, &mut solved.report.iterations),
-                (&mut spent.rounds, &mut solved.report.rounds),
-                (&mut spent.factorisations, &mut solved.report.factorisations),
-            ] {
-                *sum += *one;
-                *one = *sum;
-            }
-            if solved.report.stable || nudge == MOST_NUDGES {
-                return Ok(solved);
-            }
-            from = nudged(&self.problem, &solved.state.x, nudge as u64);
-        }
-        unreachable!("the last nudge returns")
-    }
-
-    fn check(&self, state: &State, solids: &Solids) -> Result<(), OracleError> {
+    pub(super) fn check(&self, state: &State, solids: &Solids) -> Result<(), OracleError> {
         expect("positions", state.x.len(), self.problem.particles())?;
         expect("velocities", state.v.len(), self.problem.particles())?;
         let bad = (0..state.x.len()).find(|&i| !(state.x[i].is_finite() && state.v[i].is_finite()));
@@ -176,20 +146,17 @@ impl Oracle {
     }
 
     /// Rounds until residual and constraints are within their tolerances.
-    fn solve(
+    pub(super) fn solve(
         &mut self,
         task: Task,
         solids: &Solids,
-        friction: Option<(&[DVec3], &Step)>,
+        friction: Option<Friction<'_>>,
     ) -> Result<Solved, OracleError> {
         let options = self.options;
-        let weight = heaviest(&self.problem).max(1.0);
-        let rho = [options.link_stiffness_n_m, options.contact_stiffness_n_m];
-        let rho = [0, 1].map(|k| rho[k].max(STIFFER * task.held[k]));
-        let friction = friction.map(|(x, step)| {
-            let both = [step.solids[0].shapes(), step.solids[1].shapes()];
-            Friction::new(self.problem.friction, options.creep_m_s * step.dt, x, both)
-        });
+        let weight = weight(&self.problem).max(1.0);
+        let asked = options.residual_n * weight;
+        let rho = stiffness(&options, &task, asked);
+        let goal = asked.max(rounding(&task.from) * rho[0].max(rho[1]));
         let mut landscape = Landscape {
             problem: &self.problem,
             load: task.load,
@@ -203,31 +170,48 @@ impl Oracle {
         }
         let mut stance = Stance::new(task.shift);
         let factored = self.system.factored;
-        let goal = options.residual_n * weight;
         let mut aim = Aim { residual_n: goal.max(FIRST_RESIDUAL_N * weight), most: options.most_iterations };
         let mut report = Report::default();
         let mut done = false;
+        let (mut tension_n, mut touches) = (Vec::new(), Vec::new());
         while !done && report.rounds < options.most_rounds && stance.iterations < options.most_iterations {
             report.rounds += 1;
             report.residual_n = newton::minimise(&landscape, &mut self.system, &mut x, &mut stance, aim);
+            tension_n = landscape.springs.tensions(&x);
+            touches = landscape.contact.touches(&x);
             report.violation = landscape.update(&x);
             done = report.residual_n <= goal && within(&report.violation, &options, weight);
             aim.residual_n = goal.max(aim.residual_n * SHARPER);
         }
         landscape.hessian(&x, true, 0.0, &mut self.system);
-        report.stable = self.system.solve(&vec![DVec3::ZERO; x.len()]).is_some();
+        report.stable = self.system.factor();
         report.iterations = stance.iterations;
         report.factorisations = self.system.factored - factored;
-        let solved = Solved {
-            tension_n: (0..self.problem.links.len()).map(|e| landscape.springs.tension(e, &x)).collect(),
-            touches: landscape.contact.touches(&x),
-            state: State::at_rest(&x),
-            report,
-        };
+        let solved = Solved { tension_n, touches, state: State::at_rest(&x), report };
         self.tension = landscape.springs.multiplier;
         self.pressure = landscape.contact.multiplier;
-        if done { Ok(solved) } else { Err(OracleError::NotConverged(Box::new(solved))) }
+        if done {
+            return Ok(solved);
+        }
+        self.forget();
+        Err(OracleError::NotConverged(Box::new(solved)))
     }
+}
+
+/// Stiffness of the multipliers of links and contact (N/m): so much that few rounds are needed, but not so much that the
+/// rounding of positions alone is a force above the goal (N).
+fn stiffness(options: &Options, task: &Task, goal: f64) -> [f64; 2] {
+    let most = goal / rounding(&task.from);
+    let least = [options.link_stiffness_n_m, options.contact_stiffness_n_m];
+    [0, 1].map(|k| {
+        let wished = (task.stiffer[k] * task.held[k]).min(most);
+        wished.max(least[k]).max(LEAST_STIFFER * task.held[k])
+    })
+}
+
+/// What the rounding of positions can add up to at one particle (m).
+fn rounding(x: &[DVec3]) -> f64 {
+    ROUNDINGS * f64::EPSILON * x.iter().map(|p| p.abs().max_element()).fold(1.0, f64::max)
 }
 
 /// Whether constraints are met.
@@ -237,7 +221,7 @@ fn within(v: &Violation, options: &Options, weight: f64) -> bool {
 }
 
 /// Weight of all that is free (N).
-fn heaviest(problem: &Problem) -> f64 {
+pub(super) fn weight(problem: &Problem) -> f64 {
     problem.free_mass() * problem.gravity.length()
 }
 
@@ -246,26 +230,4 @@ fn heaviest_link(problem: &Problem) -> f64 {
     let weight = |i: u32| if problem.pinned(i as usize) { 0.0 } else { problem.mass[i as usize].recip() };
     let moved = problem.links.iter().map(|l| weight(l.ends[0]) + weight(l.ends[1]));
     moved.filter(|w| *w > 0.0).map(f64::recip).fold(0.0, f64::max)
-}
-
-/// The shortest link (m).
-fn shortest(problem: &Problem) -> f64 {
-    let least = problem.links.iter().map(|l| l.rest).fold(f64::INFINITY, f64::min);
-    if least.is_finite() { least } else { 1.0 }
-}
-
-/// Free particles moved a little, each in a direction of its own (splitmix64, Steele et al. 2014).
-fn nudged(problem: &Problem, x: &[DVec3], seed: u64) -> Vec<DVec3> {
-    let mut s = seed.wrapping_mul(0xD1B5_4A32_D192_ED03);
-    let mut unit = || {
-        s = s.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (s ^ (s >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    };
-    let mut moved = |i: usize, p: &DVec3| {
-        let by = DVec3::new(unit(), unit(), unit());
-        if problem.pinned(i) { *p } else { *p + by * NUDGE_M }
-    };
-    x.iter().enumerate().map(|(i, p)| moved(i, p)).collect()
 }

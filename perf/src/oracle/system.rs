@@ -6,7 +6,6 @@
 
 use faer::Side;
 use faer::linalg::solvers::SolveCore;
-use faer::prelude::ReborrowMut;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut};
@@ -29,6 +28,7 @@ pub struct System {
     pattern: SymbolicSparseColMat<usize>,
     values: Vec<f64>,
     analysis: SymbolicLlt<usize>,
+    factors: Option<Llt<usize, f64>>,
     /// Factorisations so far, those that failed among them.
     pub factored: usize,
 }
@@ -47,7 +47,7 @@ impl System {
         let analysis =
             SymbolicLlt::try_new(pattern.as_ref(), Side::Lower).map_err(|_| OracleError::Memory { unknowns: n })?;
         let values = vec![0.0; pattern.row_idx().len()];
-        Ok(Self { place, starts, rows, pattern, values, analysis, factored: 0 })
+        Ok(Self { place, starts, rows, pattern, values, analysis, factors: None, factored: 0 })
     }
 
     /// Makes every number 0.
@@ -86,19 +86,24 @@ impl System {
         }
     }
 
-    /// Factors the matrix and solves `A d = -g`; nothing where it is not positive definite. Rows of pinned particles are
-    /// left 0.
-    pub fn solve(&mut self, gradient: &[DVec3]) -> Option<Vec<DVec3>> {
+    /// Factors the matrix; false where it is not positive definite.
+    pub fn factor(&mut self) -> bool {
         self.factored += 1;
         let matrix = SparseColMatRef::new(self.pattern.as_ref(), &self.values);
-        let factors = Llt::try_new_with_symbolic(self.analysis.clone(), matrix, Side::Lower).ok()?;
+        self.factors = Llt::try_new_with_symbolic(self.analysis.clone(), matrix, Side::Lower).ok();
+        self.factors.is_some()
+    }
+
+    /// Solves `A d = -g` with the last factors; nothing where there are none or the step is not finite. Rows of pinned
+    /// particles are left 0.
+    pub fn solve(&self, gradient: &[DVec3]) -> Option<Vec<DVec3>> {
+        let factors = self.factors.as_ref()?;
         let mut side = vec![0.0; self.pattern.ncols()];
         for (p, g) in self.place.iter().zip(gradient).filter(|(p, _)| **p != PINNED) {
             side[3 * *p as usize..][..3].copy_from_slice(&(-*g).to_array());
         }
         let n = side.len();
-        let mut column = MatMut::from_column_major_slice_mut(&mut side, n, 1);
-        factors.solve_in_place_with_conj(Conj::No, column.rb_mut());
+        factors.solve_in_place_with_conj(Conj::No, MatMut::from_column_major_slice_mut(&mut side, n, 1));
         let of = |p: &u32| if *p == PINNED { DVec3::ZERO } else { DVec3::from_slice(&side[3 * *p as usize..]) };
         let step: Vec<DVec3> = self.place.iter().map(of).collect();
         step.iter().all(|d| d.is_finite()).then_some(step)

@@ -41,9 +41,9 @@ impl<'a> Springs<'a> {
         (gap / length, length, k, k * (length - link.rest + self.multiplier[e] * self.give[e]))
     }
 
-    /// Tension of a link (N), positive where it pulls.
-    pub fn tension(&self, e: usize, x: &[DVec3]) -> f64 {
-        self.pull(e, x).3
+    /// Tension of each link (N), positive where it pulls.
+    pub fn tensions(&self, x: &[DVec3]) -> Vec<f64> {
+        (0..self.links.len()).map(|e| self.pull(e, x).3).collect()
     }
 
     /// Energy (J), with what the multipliers add.
@@ -61,6 +61,19 @@ impl<'a> Springs<'a> {
             let (n, _, _, tension) = self.pull(e, x);
             to[link.ends[0] as usize] -= n * tension;
             to[link.ends[1] as usize] += n * tension;
+        }
+    }
+
+    /// What the curvature of lengths adds to the gradient (N) after a step `by` from `x`, along the links as they lie at
+    /// `x`: k (|b' - a'| - |b - a| - n . (d_b - d_a)) n.
+    pub fn bulge(&self, x: &[DVec3], by: &[DVec3], to: &mut [DVec3]) {
+        for (e, link) in self.links.iter().enumerate() {
+            let (n, length, k, _) = self.pull(e, x);
+            let [a, b] = link.ends.map(|i| i as usize);
+            let moved = by[b] - by[a];
+            let force = n * (k * ((n * length + moved).length() - length - n.dot(moved)));
+            to[a] -= force;
+            to[b] += force;
         }
     }
 

@@ -1,0 +1,103 @@
+//! The engine beside the oracle: the skirt at rest, and in the first tenth of a second of a swing.
+
+use glam::DVec3;
+use toile_assets::scene::skirt::{Motion, Stretch};
+use toile_engine::cloth::Quality;
+use toile_perf::oracle::{Oracle, Problem, Solved, State, Step, adapter, measure};
+use toile_perf::skirt::Stage;
+use toile_perf::skirt::heap::HeapProbe;
+use toile_perf::skirt::options::Options;
+
+/// The skirt of `side` x `side` particles on the standing body.
+fn skirt(side: usize, substeps: Option<u32>) -> Stage {
+    let options = Options {
+        verts: side * side,
+        motion: Motion::Settled,
+        stretch: Stretch::Inextensible,
+        quality: Some(Quality::Fine),
+        substeps,
+        ..Options::default()
+    };
+    Stage::new(&options, &HeapProbe::none()).unwrap()
+}
+
+fn run(stage: &mut Stage, steps: usize) {
+    for _ in 0..steps {
+        stage.prepare();
+        stage.step();
+    }
+}
+
+fn oracle(stage: &Stage) -> Oracle {
+    let mut problem = Problem::of(&stage.garment);
+    problem.reach = adapter::reach(&stage.garment, stage.colliders());
+    Oracle::new(problem).unwrap()
+}
+
+/// The largest strain of links that do not stretch.
+fn hard_strain(problem: &Problem, x: &[DVec3]) -> f64 {
+    let strains = measure::strains(problem, x);
+    let hard = problem.links.iter().zip(strains).filter(|(link, _)| link.compliance == 0.0);
+    hard.map(|(_, strain)| strain.abs()).fold(0.0, f64::max)
+}
+
+/// The engine's skirt after ten seconds, and the nearest equilibrium without friction.
+fn at_rest(side: usize) -> (Vec<DVec3>, Solved, Oracle) {
+    let mut stage = skirt(side, None);
+    run(&mut stage, 1_200);
+    let x = adapter::positions(&stage.cloths[0].positions);
+    let [_, solids] = adapter::solids(stage.colliders());
+    let mut oracle = oracle(&stage);
+    let solved = oracle.equilibrium(&x, &solids).unwrap();
+    (x, solved, oracle)
+}
+
+/// What is between the two is the engine's error: it lets shear give more than the fabric does, the more the heavier a
+/// substep's motion weighs against it, and it is not quite at rest.
+#[test]
+fn the_engines_skirt_settles_near_the_equilibrium() {
+    for (side, mean_mm, max_mm) in [(16, 3.0, 8.0), (32, 6.0, 40.0)] {
+        let (x, solved, oracle) = at_rest(side);
+        let (apart, report) = (measure::apart(&x, &solved.state.x), solved.report);
+        let energy = |x: &[DVec3]| measure::energies(oracle.problem(), &State::at_rest(x)).total_j();
+        println!(
+            "{side} x {side}: mean {:.2} mm, max {:.2} mm, {:.2e} J above, {report:?}",
+            apart.mean_m * 1e3,
+            apart.max_m * 1e3,
+            energy(&x) - energy(&solved.state.x)
+        );
+        assert!(report.stable && report.residual_n < 1e-9, "{report:?}");
+        assert!(hard_strain(oracle.problem(), &solved.state.x) < 1e-7);
+        assert!(report.violation.penetration_m < 1e-7 && !solved.touches.is_empty());
+        assert!(energy(&solved.state.x) < energy(&x), "an equilibrium is a minimum");
+        assert!(apart.mean_m * 1e3 < mean_mm && apart.max_m * 1e3 < max_mm, "{side}: {apart:?}");
+    }
+}
+
+/// A substep of the engine is about one step of implicit Euler: the oracle with the same time step, gravity, air and pins
+/// swings beside it.
+#[test]
+fn the_engine_swings_as_the_oracle_does() {
+    let (substeps, steps) = (8, 12);
+    let mut stage = skirt(8, Some(substeps));
+    let mut oracle = oracle(&stage);
+    let dt = 1.0 / 120.0 / f64::from(substeps);
+    let kept = (-f64::from(stage.garment.fabric.damping_per_s) * dt).exp();
+    let [_, solids] = adapter::solids(stage.colliders());
+    let step = Step { kept, solids: [solids.clone(), solids], ..Step::of(dt) };
+    // Pushed aside, and not evenly: a cone of threads that do not stretch stands by itself.
+    let mut start = State::at_rest(&oracle.problem().start);
+    for i in (0..start.x.len()).filter(|i| !oracle.problem().pinned(*i)) {
+        start.v[i] = DVec3::new(0.3 + start.x[i].z, 0.0, 1.0 - start.x[i].y);
+        stage.cloths[0].disturb(i, start.x[i].as_vec3().into(), start.v[i].as_vec3().into());
+    }
+    let solved = oracle.trajectory(&start, steps * substeps as usize, |_| step.clone()).unwrap();
+    run(&mut stage, steps);
+    let x = adapter::positions(&stage.cloths[0].positions);
+    let end = &solved.last().unwrap().state.x;
+    let (moved, apart) = (measure::apart(end, &start.x), measure::apart(end, &x));
+    let iterations: usize = solved.iter().map(|s| s.report.iterations).sum();
+    println!("moved {moved:?}, apart {apart:?}, {iterations} iterations in {} steps", solved.len());
+    assert!(solved.iter().all(|s| s.report.residual_n < 1e-9));
+    assert!(moved.max_m > 0.01 && apart.max_m < 0.03 * moved.max_m, "{moved:?} {apart:?}");
+}
