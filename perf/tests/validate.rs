@@ -7,17 +7,12 @@ use toile_perf::validate::case::Row;
 use toile_perf::validate::run::{Options, names, run};
 
 /// What is run: cheap enough for a build without optimisation.
-const QUICK: [(&str, &str); 11] = [
-    ("cantilever", "Gamma 50"),
-    ("elastica", "P L^2/B 5"),
-    ("strip", "E 600 N/m"),
-    ("top-force", "E 600 N/m"),
-    ("catenary", "length 1.5, sag"),
-    ("chain-mode", "mode 3"),
+const QUICK: [(&str, &str); 6] = [
+    ("elastica", "P L^2/B 10"),
+    ("strip", "E 6000 N/m"),
     ("pendulum", "90 deg"),
     ("spring", "8 substeps"),
     ("free-fall", "1 s"),
-    ("incline", "mu 0.3"),
     ("stopping", "1 m/s, mu 0.3"),
 ];
 
@@ -68,7 +63,7 @@ fn strips_bend_strings_hang_cloth_slides_and_pendulums_swing_as_they_should() {
 
 #[test]
 fn statics_are_those_of_the_oracle() {
-    for row in ["cantilever", "elastica", "strip", "catenary"].into_iter().flat_map(regular) {
+    for row in ["elastica", "strip"].into_iter().flat_map(regular) {
         let error = row.solver_error.expect("statics have an oracle");
         assert!(error.abs() < 2.0, "{error} % from the converged solution of the same mesh: {row:?}");
     }
@@ -77,7 +72,7 @@ fn statics_are_those_of_the_oracle() {
 #[test]
 fn rows_are_the_same_on_two_threads() {
     let on = |threads| {
-        let options = Options { threads, parameter: None, every: 2, ..options("spring", "") };
+        let options = Options { threads, parameter: None, every: 3, ..options("spring", "") };
         let rows = run(&options, &|_| {}).expect("the cases' own meshes can be baked").cases;
         rows.into_iter().map(|row| (row.parameter, row.got.to_bits())).collect::<Vec<_>>()
     };

@@ -53,6 +53,9 @@ impl Report {
     }
 }
 
+/// Stack of a thread: kernels that are not optimised keep every vector of theirs there.
+const STACK_BYTES: usize = 32 << 20;
+
 /// The names of all cases, in the order of the table.
 pub fn names() -> Vec<&'static str> {
     let mut names: Vec<&'static str> = Vec::new();
@@ -86,8 +89,12 @@ pub fn run(options: &Options, told: &(impl Fn(usize) + Sync)) -> Result<Report, 
         }
     };
     std::thread::scope(|scope| {
-        (1..options.threads).for_each(|_| drop(scope.spawn(work)));
-        work();
+        for _ in 0..options.threads.max(1) {
+            // Without a thread of its own the work is done by whoever asks for it.
+            if std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, work).is_err() {
+                work();
+            }
+        }
     });
     let rows = rows.into_inner().unwrap_or_default();
     let mut cases = Vec::new();
