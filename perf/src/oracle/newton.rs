@@ -42,7 +42,7 @@ const TRIES: usize = 4;
 const MOST_WAIT: u32 = 8;
 
 /// Times that the bend of the links is followed.
-const BENDS: usize = 3;
+const BENDS: usize = 6;
 
 /// Steps in a row that may be refused where energies no longer tell anything.
 const PATIENCE: u32 = 6;
