@@ -33,6 +33,7 @@
 pub mod adapter;
 mod energy;
 mod equilibrium;
+mod leap;
 pub mod measure;
 mod newton;
 mod problem;
