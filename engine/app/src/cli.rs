@@ -16,11 +16,13 @@ use crate::exit::AppError;
 mod bake;
 mod run;
 mod skirt;
+mod torture;
 mod validate;
 
 pub use bake::BakeArgs;
 pub use run::{RunArgs, RunScene};
 pub use skirt::SkirtArgs;
+pub use torture::TortureArgs;
 pub use validate::ValidateArgs;
 
 /// What the user asked for.
@@ -42,6 +44,8 @@ pub enum Command {
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
     BenchSkirt(SkirtArgs),
+    /// `toile torture`.
+    Torture(TortureArgs),
     /// `toile validate`.
     Validate(ValidateArgs),
     /// `toile completions`.
@@ -150,6 +154,7 @@ pub fn command() -> clap::Command {
             doctor(),
             bench(),
             validate::grammar(),
+            torture::grammar(),
             completions(),
         ])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
@@ -313,6 +318,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
         "bake" => Command::Bake(bake::args(matches)?),
         "bench" => bench_command(matches)?,
+        "torture" => Command::Torture(torture::args(matches)?),
         "validate" => Command::Validate(validate::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),

@@ -31,6 +31,7 @@
 //! ```
 
 pub mod adapter;
+mod cholesky;
 mod energy;
 mod equilibrium;
 mod leap;
@@ -188,12 +189,6 @@ pub enum OracleError {
         what: &'static str,
         /// Which of them.
         at: usize,
-    },
-    /// The factors do not fit.
-    #[error("the factors of a system of {unknowns} unknowns do not fit into memory; solve a smaller mesh")]
-    Memory {
-        /// Unknowns.
-        unknowns: usize,
     },
     /// Iterations ran out, or nothing more could be gained.
     #[error(

@@ -62,7 +62,7 @@ impl Oracle {
     /// Where the problem's arrays or figures cannot be used.
     pub fn new(problem: Problem) -> Result<Self, OracleError> {
         problem.check()?;
-        let system = System::new(&problem)?;
+        let system = System::new(&problem);
         let tension = vec![0.0; problem.links.len()];
         Ok(Self { problem, system, options: Options::default(), tension, pressure: Vec::new() })
     }

@@ -1,17 +1,12 @@
-//! The linear system of a Newton step: a sparse symmetric matrix of 3 x 3 blocks, factored as L L^T by faer.
+//! The linear system of a Newton step: a sparse symmetric matrix of 3 x 3 blocks, factored as L L^T.
 //!
 //! The pattern depends on links and stencils only, because solids meet one particle at a time: it is ordered and
 //! analysed once. Blocks off the diagonal are symmetric themselves (a spring's is along or across its link, a stencil's
 //! a multiple of the identity), so that it does not matter which of two particles comes first.
 
-use faer::Side;
-use faer::linalg::solvers::SolveCore;
-use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
-use faer::{Conj, MatMut};
 use glam::{DMat3, DVec3};
 
-use super::OracleError;
+use super::cholesky::{Analysis, Factor};
 use super::problem::Problem;
 
 /// In place of a row: the particle is pinned.
@@ -25,47 +20,46 @@ pub struct System {
     /// Where the blocks below the diagonal of each column begin in `rows`.
     starts: Vec<usize>,
     rows: Vec<u32>,
-    pattern: SymbolicSparseColMat<usize>,
-    values: Vec<f64>,
-    analysis: SymbolicLlt<usize>,
-    factors: Option<Llt<usize, f64>>,
+    diagonal: Vec<DMat3>,
+    blocks: Vec<DMat3>,
+    analysis: Analysis,
+    factor: Option<Factor>,
     /// Factorisations so far, those that failed among them.
     pub factored: usize,
 }
 
 impl System {
-    /// Analyses the pattern. Fails for want of memory only, or where nothing is free.
-    pub fn new(problem: &Problem) -> Result<Self, OracleError> {
+    /// Analyses the pattern.
+    pub fn new(problem: &Problem) -> Self {
         let mut place = vec![PINNED; problem.particles()];
         let free = (0..problem.particles()).filter(|&i| !problem.pinned(i));
         free.enumerate().for_each(|(k, i)| place[i] = k as u32);
         let count = place.iter().filter(|p| **p != PINNED).count();
-        let (starts, rows) = below(&pairs(problem, &place), count);
-        let (columns, indices) = scalar(&starts, &rows);
-        let n = 3 * count;
-        let pattern = SymbolicSparseColMat::new_checked(n, n, columns, None, indices);
-        let analysis =
-            SymbolicLlt::try_new(pattern.as_ref(), Side::Lower).map_err(|_| OracleError::Memory { unknowns: n })?;
-        let values = vec![0.0; pattern.row_idx().len()];
-        Ok(Self { place, starts, rows, pattern, values, analysis, factors: None, factored: 0 })
+        let pairs = pairs(problem, &place);
+        let (starts, rows) = below(&pairs, count);
+        let (diagonal, blocks) = (vec![DMat3::ZERO; count], vec![DMat3::ZERO; rows.len()]);
+        Self {
+            place,
+            starts,
+            rows,
+            diagonal,
+            blocks,
+            analysis: Analysis::new(count, &pairs),
+            factor: None,
+            factored: 0,
+        }
     }
 
     /// Makes every number 0.
     pub fn clear(&mut self) {
-        self.values.fill(0.0);
+        self.diagonal.fill(DMat3::ZERO);
+        self.blocks.fill(DMat3::ZERO);
     }
 
     /// Adds a symmetric block to a particle's own.
     pub fn add(&mut self, i: usize, block: &DMat3) {
-        let at = self.place[i] as usize;
-        if self.place[i] == PINNED {
-            return;
-        }
-        for c in 0..3 {
-            let first = self.pattern.col_ptr()[3 * at + c];
-            for r in c..3 {
-                self.values[first + r - c] += block.col(c)[r];
-            }
+        if self.place[i] != PINNED {
+            self.diagonal[self.place[i] as usize] += *block;
         }
     }
 
@@ -77,57 +71,56 @@ impl System {
         }
         let range = self.starts[q as usize]..self.starts[q as usize + 1];
         // Every pair is one of those that the pattern was made of.
-        let Ok(k) = self.rows[range].binary_search(&p) else { return };
-        for c in 0..3 {
-            let first = self.pattern.col_ptr()[3 * q as usize + c] + (3 - c) + 3 * k;
-            for r in 0..3 {
-                self.values[first + r] += block.col(c)[r];
-            }
+        if let Ok(k) = self.rows[range.clone()].binary_search(&p) {
+            self.blocks[range.start + k] += *block;
         }
+    }
+
+    /// Each block below the diagonal with its row and column.
+    fn placed(&self) -> impl Iterator<Item = ([u32; 2], DMat3)> {
+        let columns = self.starts.windows(2).zip(0..).flat_map(|(w, column)| (w[0]..w[1]).map(move |at| (at, column)));
+        columns.map(|(at, column)| ([self.rows[at], column], self.blocks[at]))
     }
 
     /// Factors the matrix; false where it is not positive definite.
     pub fn factor(&mut self) -> bool {
         self.factored += 1;
-        let matrix = SparseColMatRef::new(self.pattern.as_ref(), &self.values);
-        self.factors = Llt::try_new_with_symbolic(self.analysis.clone(), matrix, Side::Lower).ok();
-        self.factors.is_some()
+        self.factor = self.analysis.factor(&self.diagonal, self.placed());
+        self.factor.is_some()
     }
 
     /// Solves `A d = -g` with the last factors; nothing where there are none or the step is not finite. Rows of pinned
     /// particles are left 0.
     pub fn solve(&self, gradient: &[DVec3]) -> Option<Vec<DVec3>> {
-        let factors = self.factors.as_ref()?;
-        let mut side = vec![0.0; self.pattern.ncols()];
-        for (p, g) in self.place.iter().zip(gradient).filter(|(p, _)| **p != PINNED) {
-            side[3 * *p as usize..][..3].copy_from_slice(&(-*g).to_array());
-        }
-        let n = side.len();
-        factors.solve_in_place_with_conj(Conj::No, MatMut::from_column_major_slice_mut(&mut side, n, 1));
-        let of = |p: &u32| if *p == PINNED { DVec3::ZERO } else { DVec3::from_slice(&side[3 * *p as usize..]) };
-        let step: Vec<DVec3> = self.place.iter().map(of).collect();
+        let factor = self.factor.as_ref()?;
+        let mut side = self.free(gradient);
+        side.iter_mut().for_each(|g| *g = -*g);
+        self.analysis.solve(factor, &mut side);
+        let step = self.all(&side);
         step.iter().all(|d| d.is_finite()).then_some(step)
+    }
+
+    /// The vectors of the free particles.
+    fn free(&self, all: &[DVec3]) -> Vec<DVec3> {
+        self.place.iter().zip(all).filter(|(p, _)| **p != PINNED).map(|(_, v)| *v).collect()
+    }
+
+    /// The vectors of all particles, 0 for those that are pinned.
+    fn all(&self, free: &[DVec3]) -> Vec<DVec3> {
+        self.place.iter().map(|p| free.get(*p as usize).copied().unwrap_or_default()).collect()
     }
 
     /// The matrix times a vector `[particles]`, for tests: what was added, not what was factored.
     #[cfg(test)]
     pub fn times(&self, x: &[DVec3]) -> Vec<DVec3> {
-        let mut flat = vec![0.0; self.pattern.ncols()];
-        let mut from = flat.clone();
-        for (p, v) in self.place.iter().zip(x).filter(|(p, _)| **p != PINNED) {
-            from[3 * *p as usize..][..3].copy_from_slice(&v.to_array());
+        let from = self.free(x);
+        let mut out: Vec<DVec3> = self.diagonal.iter().zip(&from).map(|(d, x)| *d * *x).collect();
+        for ([row, column], block) in self.placed() {
+            let (row, column) = (row as usize, column as usize);
+            out[row] += block * from[column];
+            out[column] += block.transpose() * from[row];
         }
-        for c in 0..flat.len() {
-            for at in self.pattern.col_ptr()[c]..self.pattern.col_ptr()[c + 1] {
-                let (r, value) = (self.pattern.row_idx()[at], self.values[at]);
-                flat[r] += value * from[c];
-                if r != c {
-                    flat[c] += value * from[r];
-                }
-            }
-        }
-        let of = |p: &u32| if *p == PINNED { DVec3::ZERO } else { DVec3::from_slice(&flat[3 * *p as usize..]) };
-        self.place.iter().map(of).collect()
+        self.all(&out)
     }
 }
 
@@ -157,18 +150,4 @@ fn below(pairs: &[[u32; 2]], count: usize) -> (Vec<usize>, Vec<u32>) {
     pairs.iter().for_each(|[column, _]| starts[*column as usize + 1] += 1);
     (0..count).for_each(|c| starts[c + 1] += starts[c]);
     (starts, pairs.iter().map(|[_, row]| *row).collect())
-}
-
-/// The same in numbers instead of blocks: where each column begins, and the rows.
-fn scalar(starts: &[usize], rows: &[u32]) -> (Vec<usize>, Vec<usize>) {
-    let (mut columns, mut indices) = (vec![0], Vec::new());
-    for block in 0..starts.len() - 1 {
-        for c in 0..3 {
-            indices.extend(3 * block + c..3 * block + 3);
-            let others = &rows[starts[block]..starts[block + 1]];
-            indices.extend(others.iter().flat_map(|&r| 3 * r as usize..3 * r as usize + 3));
-            columns.push(indices.len());
-        }
-    }
-    (columns, indices)
 }

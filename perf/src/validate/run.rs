@@ -16,6 +16,8 @@ use super::{Level, cases};
 pub struct Options {
     /// The one name of which cases are run, or all.
     pub case: Option<String>,
+    /// Of these only what has this parameter, as the table says it, or all.
+    pub parameter: Option<String>,
     /// The levels that rows are told of.
     pub levels: Vec<Level>,
     /// Threads: cases are independent of each other.
@@ -27,7 +29,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let threads = std::thread::available_parallelism().map_or(1, |n| n.get().min(2));
-        Self { case: None, levels: Level::ALL.to_vec(), threads, every: 1 }
+        Self { case: None, parameter: None, levels: Level::ALL.to_vec(), threads, every: 1 }
     }
 }
 
@@ -53,15 +55,13 @@ impl Report {
 
 /// The names of all cases, in the order of the table.
 pub fn names() -> Vec<&'static str> {
-    let mut names: Vec<&'static str> = cases::all().iter().map(|case| case.name).collect();
-    names.dedup();
-    let mut seen: Vec<&'static str> = Vec::new();
-    names.into_iter().for_each(|name| {
-        if !seen.contains(&name) {
-            seen.push(name);
+    let mut names: Vec<&'static str> = Vec::new();
+    for case in cases::all() {
+        if !names.contains(&case.name) {
+            names.push(case.name);
         }
-    });
-    seen
+    }
+    names
 }
 
 /// Runs cases; `told` hears of each that is done, and of how many.
@@ -105,7 +105,8 @@ pub fn run(options: &Options, told: &(impl Fn(usize) + Sync)) -> Result<Report, 
 
 /// The cases that are run.
 fn chosen(options: &Options) -> Vec<Case> {
-    let wanted = |case: &Case| options.case.as_ref().is_none_or(|name| name == case.name);
+    let named = |case: &Case| options.case.as_ref().is_none_or(|name| name == case.name);
+    let wanted = |case: &Case| named(case) && options.parameter.as_ref().is_none_or(|p| *p == case.parameter);
     let mut number = 0;
     let mut before = "";
     let mut one_in = |case: &Case| {

@@ -8,7 +8,7 @@
 use toile_assets::garment::layout::{Links, Run, Set, Zigzag};
 
 use super::state::{self, Columns};
-use crate::lanes::{Column, Kernel, Lanes, MOST, Numbers, Two, V3, reciprocal_root};
+use crate::lanes::{Column, Kernel, Lanes, MOST, Numbers, Two, V3, reciprocal_root, times_reciprocal_root};
 
 /// 1 / ((1 + gamma)(w_a + w_b) + alpha / dt^2) of each link, in the order of the parameters; 0 where nothing can move.
 pub fn prepare(links: &Links, weights: &[f32], dt: f32, gamma: f32, gain: &mut [f32]) {
@@ -189,8 +189,8 @@ impl Solve<'_> {
     fn rung<L: Numbers>(&self, [a, b]: [usize; 2], [rest, gain, wa, wb]: [L; 4]) -> Rungs<L> {
         let x = self.columns.x;
         let (pa, pb) = (V3::<L>::load(x, a, L::N), V3::load(x, b, L::N));
-        let push = stiff(pb - pa, rest, gain);
-        Rungs { a: pa + push * wa, b: pb - push * wb, weights: [wa, wb] }
+        let [by_a, by_b] = stiff(pb - pa, rest, gain, [wa, wb]);
+        Rungs { a: pa + by_a, b: pb - by_b, weights: [wa, wb] }
     }
 
     #[inline(always)]
@@ -256,9 +256,10 @@ impl Solve<'_> {
         let part = |c| part::<L>(c, at, n);
         let (pa, pb) = (V3::<L>::gather(c.x, a, n), V3::gather(c.x, b, n));
         let moved = || (pb - V3::gather(c.previous, b, n)) - (pa - V3::gather(c.previous, a, n));
-        let (push, by) = self.push::<L, SOFT>(pb - pa, [part(rest), part(gain), slack], moved);
-        (pa + push * L::gather(c.w, a, n)).scatter(c.x, a, n);
-        (pb - push * L::gather(c.w, b, n)).scatter(c.x, b, n);
+        let weights = [L::gather(c.w, a, n), L::gather(c.w, b, n)];
+        let ([by_a, by_b], by) = self.push::<L, SOFT>(pb - pa, [part(rest), part(gain), slack], weights, moved);
+        (pa + by_a).scatter(c.x, a, n);
+        (pb - by_b).scatter(c.x, b, n);
         by
     }
 
@@ -275,22 +276,23 @@ impl Solve<'_> {
         let c = &self.columns;
         let (pa, pb) = (V3::<L>::load(c.x, a, n), V3::load(c.x, b, n));
         let moved = || (pb - V3::load(c.previous, b, n)) - (pa - V3::load(c.previous, a, n));
-        let (push, by) = self.push::<L, SOFT>(pb - pa, [rest, gain, slack], moved);
-        (pa + push * wa).store(c.x, a, n);
-        (pb - push * wb).store(c.x, b, n);
+        let ([by_a, by_b], by) = self.push::<L, SOFT>(pb - pa, [rest, gain, slack], [wa, wb], moved);
+        (pa + by_a).store(c.x, a, n);
+        (pb - by_b).store(c.x, b, n);
         by
     }
 
-    /// How far a link of vector `d` draws an end of weight 1, and by how much its tension grows.
+    /// How far a link of vector `d` draws its ends, of the weights given, and by how much its tension grows.
     #[inline(always)]
     fn push<L: Lanes, const SOFT: bool>(
         &self,
         d: V3<L>,
         [rest, gain, slack]: [L; 3],
+        weights: [L; 2],
         moved: impl Fn() -> V3<L>,
-    ) -> (V3<L>, L) {
+    ) -> ([V3<L>; 2], L) {
         if !SOFT {
-            return (stiff(d, rest, gain), L::splat(0.0));
+            return (stiff(d, rest, gain, weights), L::splat(0.0));
         }
         let length2 = d.dot(d);
         let inverse = reciprocal_root(length2);
@@ -299,15 +301,17 @@ impl Solve<'_> {
             stretch = stretch + d.dot(moved()) * inverse * L::splat(self.gamma);
         }
         let by = stretch * gain;
-        (d * (by * inverse), by)
+        let pull = by * inverse;
+        ([d * (pull * weights[0]), d * (pull * weights[1])], by)
     }
 }
 
-/// How far a link without compliance draws an end of weight 1: along d by lambda / |d|, which is (|d| - rest) / |d| times
-/// the gain.
+/// How far a link without compliance draws its ends, of the weights given: along d by w lambda / |d|, which is
+/// (|d| - rest) / |d| times the gain and the weight. Gain and weight are multiplied first: one wait less.
 #[inline(always)]
-fn stiff<L: Numbers>(d: V3<L>, rest: L, gain: L) -> V3<L> {
-    d * ((L::splat(1.0) - rest * reciprocal_root(d.dot(d))) * gain)
+fn stiff<L: Numbers>(d: V3<L>, rest: L, gain: L, weights: [L; 2]) -> [V3<L>; 2] {
+    let excess = L::splat(1.0) - times_reciprocal_root(rest, d.dot(d));
+    [d * (excess * (gain * weights[0])), d * (excess * (gain * weights[1]))]
 }
 
 /// The slants between a vector of rungs and the next, solved; gives the first rail a lane on, in its lowest lane the
@@ -315,9 +319,9 @@ fn stiff<L: Numbers>(d: V3<L>, rest: L, gain: L) -> V3<L> {
 #[inline(always)]
 fn slant<L: Numbers>(one: &mut Rungs<L>, next: &Rungs<L>, [rest, gain, wb, wa]: [L; 4]) -> V3<L> {
     let a = one.a.with_first(next.a).rotate_down();
-    let push = stiff(a - one.b, rest, gain);
-    one.b = one.b + push * wb;
-    (a - push * wa).rotate_up()
+    let [by_b, by_a] = stiff(a - one.b, rest, gain, [wb, wa]);
+    one.b = one.b + by_b;
+    (a - by_a).rotate_up()
 }
 
 /// Both ends of a vector of rungs, and their weights.

@@ -20,7 +20,7 @@ use std::fmt;
 use std::ops::{Add, Mul, Neg, Sub};
 
 pub use column::{Column, Store};
-pub use math::{V3, reciprocal_root};
+pub use math::{V3, reciprocal_root, times_reciprocal_root};
 pub use two::Two;
 
 /// Most lanes of any width: storage is padded to it.

@@ -64,7 +64,6 @@ fn case(style: Style, change: Change) -> Case {
         scale: None,
         target: Some(1.0),
         run: Box::new(run),
-        solve: None,
     }
 }
 
