@@ -41,7 +41,7 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
         "toile-engine",
         &[&["lanes", "relay", "crew", "cone"], &["body", "hold"], &["skin"], &["colliders"], &["cloth"], &["frame"]],
     ),
-    ("toile-perf", &[&["time"], &["surface"], &["yardstick"], &["oracle"], &["skinning", "skirt"]]),
+    ("toile-perf", &[&["time"], &["surface"], &["yardstick"], &["oracle"], &["skinning", "skirt"], &["pareto"]]),
 ];
 
 /// One arrow between rooms of a crate.
