@@ -14,11 +14,13 @@ use toile_engine::cloth::Quality;
 use crate::exit::AppError;
 
 mod bake;
+mod pareto;
 mod run;
 mod skirt;
 mod validate;
 
 pub use bake::BakeArgs;
+pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
 pub use skirt::SkirtArgs;
 pub use validate::ValidateArgs;
@@ -44,6 +46,8 @@ pub enum Command {
     BenchSkirt(SkirtArgs),
     /// `toile validate`.
     Validate(ValidateArgs),
+    /// `toile pareto`.
+    Pareto(ParetoArgs),
     /// `toile completions`.
     Completions(Shell),
     /// Help or version: text to print.
@@ -150,6 +154,7 @@ pub fn command() -> clap::Command {
             doctor(),
             bench(),
             validate::grammar(),
+            pareto::grammar(),
             completions(),
         ])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
@@ -314,6 +319,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "bake" => Command::Bake(bake::args(matches)?),
         "bench" => bench_command(matches)?,
         "validate" => Command::Validate(validate::args(matches)?),
+        "pareto" => Command::Pareto(pareto::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
     })

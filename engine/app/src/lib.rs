@@ -15,6 +15,7 @@ pub mod fit;
 pub mod machine;
 pub mod measure;
 pub mod output;
+pub mod pareto;
 pub mod pictures;
 pub mod record;
 pub mod report;
@@ -67,6 +68,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
         Command::Validate(args) => validate::run(args),
+        Command::Pareto(args) => pareto::run(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }
