@@ -139,7 +139,7 @@ fn energy(scene: &SceneReport) -> Chart {
     let inks = [BLACK, INKS[0], INKS[1], INKS[2]];
     let runs = scene.energy.iter().zip(inks.into_iter().cycle());
     let series = runs.map(|(run, ink)| {
-        let look = Look { dashed: run.setting == "reference", ..Look::line(ink, 1.8) };
+        let look = Look { dashed: ink == BLACK, ..Look::line(ink, 1.8) };
         Series { name: run.setting.clone(), points: run.frames.clone(), look }
     });
     let axes = [("time (s)", false), ("energy: motion, weight, bending, stretch (J)", false)];
@@ -158,7 +158,7 @@ fn map(survival: &Survival) -> Tiles {
     Tiles {
         title: "skirt: survival".into(),
         labels: [
-            format!("mass of the hem over its fabric's; in each cell the worst 99th percentile of strain"),
+            "mass of the hem over its fabric's; in each cell the worst 99th percentile of strain".into(),
             "time step".into(),
         ],
         columns: survival.mass_ratios.iter().map(|r| format!("1 : {r}")).collect(),

@@ -1,10 +1,11 @@
-//! x*: the oracle's equilibrium, or the same run with very many substeps.
+//! x*: the oracle's equilibrium, or what a moment of a run becomes with very many substeps.
 
 use glam::DVec3;
+use toile_assets::garment::Garment;
 use toile_engine::cloth::Quality;
 
 use super::ParetoError;
-use super::play::{Setting, Trace, play};
+use super::play::{Moment, Setting, Trace, WINDOW, play, play_through, play_windows};
 use super::subject::{Choice, Subject, Truth};
 use crate::oracle::{Oracle, Problem, Solids};
 
@@ -24,7 +25,9 @@ pub struct Reference {
     pub words: String,
     /// How far it may be off (mm).
     pub gap_mm: f64,
-    /// Its run, where it is one.
+    /// The moments that are gone on from, where it is no equilibrium.
+    moments: Vec<Moment>,
+    /// The run that they are of.
     pub run: Option<Trace>,
 }
 
@@ -34,6 +37,14 @@ impl Reference {
         match subject.truth {
             Truth::Equilibrium => equilibrium(subject),
             Truth::Trajectory => trajectory(subject, if quick { QUICK_SUBSTEPS } else { SUBSTEPS }),
+        }
+    }
+
+    /// Runs a setting as x* asks for.
+    pub fn play(&self, subject: &Subject, garment: &Garment, setting: Setting) -> Result<Trace, ParetoError> {
+        match subject.truth {
+            Truth::Equilibrium => play(subject, garment, setting),
+            Truth::Trajectory => play_windows(subject, garment, setting, &self.moments),
         }
     }
 
@@ -65,17 +76,22 @@ fn equilibrium(subject: &Subject) -> Result<Reference, ParetoError> {
     let frames = vec![Subject::by_vertex(&garment, |p| solved.state.x[p])];
     let longest = frames[0].iter().map(|x| x.length()).fold(0.0, f64::max);
     let gap_mm = 1e3 * solved.report.violation.strain.abs() * longest;
-    Ok(Reference { frames, free: free(subject), words, gap_mm, run: None })
+    Ok(Reference { frames, free: free(subject), words, gap_mm, moments: Vec::new(), run: None })
 }
 
 fn trajectory(subject: &Subject, substeps: u32) -> Result<Reference, ParetoError> {
     let garment = subject.bake(Choice::Mixed)?;
     let of = |substeps| Setting { quality: Quality::Fine, substeps: Some(substeps), threads: 1 };
-    let run = play(subject, &garment, of(substeps))?;
-    let half = play(subject, &garment, of(substeps / 2))?;
-    let words = format!("the same run with {substeps} substeps of fine");
+    let (run, moments) = play_through(subject, &garment, of(substeps / 8))?;
+    let star = play_windows(subject, &garment, of(substeps), &moments)?;
+    let half = play_windows(subject, &garment, of(substeps / 2), &moments)?;
+    let words = format!(
+        "what {} moments of one run become in {WINDOW} steps of {substeps} substeps of fine, from which each setting \
+         goes on as well",
+        moments.len()
+    );
     let mut reference =
-        Reference { frames: run.frames.clone(), free: free(subject), words, gap_mm: 0.0, run: Some(run) };
+        Reference { frames: star.frames, free: free(subject), words, gap_mm: 0.0, moments, run: Some(run) };
     reference.gap_mm = reference.error_mm(&half)[0];
     Ok(reference)
 }

@@ -15,6 +15,9 @@ const SUBSTEPS: [u32; 8] = [1, 2, 4, 6, 8, 12, 16, 32];
 /// The same for a quick look.
 const QUICK_SUBSTEPS: [u32; 3] = [1, 4, 8];
 
+/// Time of a step from which more substeps are not tried (us): three times what 120 Hz leaves.
+const FAR_BEYOND_US: f64 = 25_000.0;
+
 /// What computes.
 const BACKEND: &str = "cpu";
 
@@ -24,18 +27,27 @@ pub fn sweep(subject: &Subject, quick: bool, told: &dyn Fn(f64)) -> Result<(Vec<
     let mut points = Vec::new();
     let mut energy: Vec<EnergyRun> = Vec::new();
     if let Some(run) = &reference.run {
-        energy.push(EnergyRun { setting: "reference".into(), frames: run.energy.clone() });
+        energy.push(EnergyRun { setting: format!("fine, {} substeps", run.substeps), frames: run.energy.clone() });
     }
     let choices: &[Choice] = if subject.main { &Choice::ALL } else { &[Choice::Mixed] };
     for (k, &choice) in choices.iter().enumerate() {
         let garment = subject.bake(choice)?;
         let settings = settings(subject, &garment, choice, quick);
+        let mut beyond = None;
         for (done, setting) in settings.iter().enumerate() {
             told((k as f64 + done as f64 / settings.len() as f64) / choices.len() as f64);
-            let run = play(subject, &garment, *setting)?;
+            if beyond.is_some_and(|limit: Setting| limit.quality == setting.quality && limit.threads == setting.threads)
+            {
+                continue;
+            }
+            let run = reference.play(subject, &garment, *setting)?;
             let found = point(subject, &garment, choice, *setting, &run, &reference);
-            if found.default && choice == Choice::Mixed && setting.threads == 1 {
+            if found.default && subject.main && setting.threads == 1 {
+                let run = play(subject, &garment, *setting)?;
                 energy.push(EnergyRun { setting: found.quality.into(), frames: run.energy });
+            }
+            if found.step_us > FAR_BEYOND_US {
+                beyond = Some(*setting);
             }
             points.push(found);
         }
