@@ -29,7 +29,11 @@ pub fn sweep(subject: &Subject, quick: bool, told: &dyn Fn(f64)) -> Result<(Vec<
     if let Some(run) = &reference.run {
         energy.push(EnergyRun { setting: format!("fine, {} substeps", run.substeps), frames: run.energy.clone() });
     }
-    let choices: &[Choice] = if subject.main { &Choice::ALL } else { &[Choice::Mixed] };
+    let choices: &[Choice] = match (subject.main, quick) {
+        (true, false) => &Choice::ALL,
+        (true, true) => &[Choice::Mixed, Choice::GaussSeidel],
+        (false, _) => &[Choice::Mixed],
+    };
     for (k, &choice) in choices.iter().enumerate() {
         let garment = subject.bake(choice)?;
         let settings = settings(subject, &garment, choice, quick);
