@@ -11,5 +11,6 @@ pub mod skinning;
 pub mod skirt;
 mod surface;
 pub mod time;
+pub mod torture;
 pub mod validate;
 pub mod yardstick;

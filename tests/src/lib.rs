@@ -4,7 +4,10 @@
 //! Budget: under a second for the whole tree; half a second to dress the shopper's body.
 //! Thread: any test's.
 
+pub mod cloth;
+pub mod meshes;
 pub mod recordings;
 pub mod scan;
 pub mod stage;
+pub mod tolerance;
 pub mod tree;

@@ -3,9 +3,8 @@
 use glam::{Affine3A, Vec3, Vec3A};
 use toile_assets::bake::bake;
 use toile_assets::fabric::Fabric;
-use toile_assets::garment::{Garment, Part, Shape};
+use toile_assets::garment::Garment;
 use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
-use toile_assets::mesh::SkinWeights;
 use toile_assets::skeleton::BONES;
 use toile_engine::body::{Poser, palette};
 use toile_engine::cloth::{Cloth, Settings, Step, measure};
@@ -14,43 +13,11 @@ use toile_engine::frame::Frame;
 use toile_sensors::clock::ticks_to_ns;
 use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
+use toile_tests::cloth::{plain_fabric, sheet};
 use toile_tests::stage;
 
 /// Gravity of the default settings (m/s2).
 const G: f32 = 9.81;
-
-/// A flat sheet, `columns` x `rows` cells of `cell` metres, hanging from `top` down; the upper edge is fixed if asked.
-fn sheet(columns: u32, rows: u32, cell: f32, top: Vec3, pinned: bool) -> Shape {
-    let mut shape = Shape::default();
-    for row in 0..=rows {
-        for column in 0..=columns {
-            let p = top + Vec3::new(column as f32 * cell, -(row as f32) * cell, 0.0);
-            shape.push(p, p, pinned && row == 0, Part::All);
-            shape.weights.push(SkinWeights { bones: [0; 4], weights: [1.0, 0.0, 0.0, 0.0] });
-        }
-    }
-    let at = |row: u32, column: u32| row * (columns + 1) + column;
-    for row in 0..rows {
-        for column in 0..columns {
-            shape.faces.push([at(row + 1, column), at(row + 1, column + 1), at(row, column + 1), at(row, column)]);
-        }
-    }
-    shape
-}
-
-/// A fabric of which only what a law is about is left: no bending, hardly any shear, no air unless asked.
-fn plain_fabric(density_kg_m2: f32, stretch_n_m: f32, damping_per_s: f32) -> Fabric {
-    Fabric {
-        density_kg_m2,
-        stretch_warp_n_m: stretch_n_m,
-        stretch_weft_n_m: stretch_n_m,
-        shear_n_m: 1.0,
-        bend_warp_un_m: 0.0,
-        bend_weft_un_m: 0.0,
-        damping_per_s,
-        ..Fabric::built_in("cotton-lawn").expect("a fabric that is built in")
-    }
-}
 
 /// Steps a garment alone in the world, its bones at rest.
 fn alone(garment: &Garment, settings: &Settings, steps: u32) -> Cloth {

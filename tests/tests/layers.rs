@@ -41,7 +41,18 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
         "toile-engine",
         &[&["lanes", "relay", "crew", "cone"], &["body", "hold"], &["skin"], &["colliders"], &["cloth"], &["frame"]],
     ),
-    ("toile-perf", &[&["time"], &["surface"], &["yardstick"], &["oracle"], &["skinning", "skirt"], &["pareto"]]),
+    (
+        "toile-perf",
+        &[
+            &["time"],
+            &["surface"],
+            &["yardstick"],
+            &["oracle"],
+            &["skinning", "skirt"],
+            &["torture", "validate"],
+            &["pareto"],
+        ],
+    ),
 ];
 
 /// One arrow between rooms of a crate.

@@ -55,9 +55,11 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
     let fixed: Vec<usize> = (0..n).filter(|&i| shape.fixed[old(i)]).collect();
     let hung = pieces.iter().filter(|p| shape.fixed[p.vertices[0] as usize]).map(|p| p.edges.len()).sum::<usize>();
     let hanging = hung as f32 / (n - fixed.len()).max(1) as f32;
+    let area = shape.faces.iter().map(|face| f64::from(fibers::area(&shape.cut, face))).sum();
+    let threads = stiffness::threads(&edges, &chains, area, fabric);
     let layout = links::lay_out(&links::Baking {
         shape,
-        fabric,
+        fabric: &threads,
         edges: &edges,
         chains: &chains,
         pieces: &pieces,

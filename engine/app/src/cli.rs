@@ -17,12 +17,14 @@ mod bake;
 mod pareto;
 mod run;
 mod skirt;
+mod torture;
 mod validate;
 
 pub use bake::BakeArgs;
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
 pub use skirt::SkirtArgs;
+pub use torture::TortureArgs;
 pub use validate::ValidateArgs;
 
 /// What the user asked for.
@@ -44,6 +46,8 @@ pub enum Command {
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
     BenchSkirt(SkirtArgs),
+    /// `toile torture`.
+    Torture(TortureArgs),
     /// `toile validate`.
     Validate(ValidateArgs),
     /// `toile pareto`.
@@ -155,6 +159,7 @@ pub fn command() -> clap::Command {
             bench(),
             validate::grammar(),
             pareto::grammar(),
+            torture::grammar(),
             completions(),
         ])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
@@ -318,6 +323,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
         "bake" => Command::Bake(bake::args(matches)?),
         "bench" => bench_command(matches)?,
+        "torture" => Command::Torture(torture::args(matches)?),
         "validate" => Command::Validate(validate::args(matches)?),
         "pareto" => Command::Pareto(pareto::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),

@@ -23,6 +23,7 @@ pub mod run;
 pub mod shopper;
 pub mod summary;
 pub mod terminal;
+pub mod torture;
 pub mod try_on;
 pub mod validate;
 
@@ -67,6 +68,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Bake(args) => bake::run(args),
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
+        Command::Torture(args) => torture::run(args),
         Command::Validate(args) => validate::run(args),
         Command::Pareto(args) => pareto::run(args),
         Command::Completions(shell) => completions::run(*shell),

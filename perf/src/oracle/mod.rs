@@ -34,6 +34,7 @@ pub mod adapter;
 mod cholesky;
 mod energy;
 mod equilibrium;
+mod leap;
 pub mod measure;
 mod newton;
 mod problem;
@@ -126,7 +127,7 @@ impl Default for Options {
             contact_stiffness_n_m: 1e3,
             creep_m_s: 1e-5,
             most_iterations: 3_000,
-            most_rounds: 60,
+            most_rounds: 200,
         }
     }
 }

@@ -7,6 +7,7 @@ use super::energy::friction::Friction;
 use super::energy::links::Springs;
 use super::energy::load::Load;
 use super::energy::{Landscape, Violation};
+use super::leap::Leaps;
 use super::newton::{self, Aim, Stance};
 use super::problem::{Problem, expect};
 use super::system::System;
@@ -173,13 +174,18 @@ impl Oracle {
         let mut aim = Aim { residual_n: goal.max(FIRST_RESIDUAL_N * weight), most: options.most_iterations };
         let mut report = Report::default();
         let mut done = false;
+        let mut leaps = Leaps::default();
         let (mut tension_n, mut touches) = (Vec::new(), Vec::new());
         while !done && report.rounds < options.most_rounds && stance.iterations < options.most_iterations {
             report.rounds += 1;
             report.residual_n = newton::minimise(&landscape, &mut self.system, &mut x, &mut stance, aim);
             tension_n = landscape.springs.tensions(&x);
             touches = landscape.contact.touches(&x);
+            let multipliers = leaps.take(&landscape, &mut self.system, &x, options.strain);
             report.violation = landscape.update(&x);
+            if let Some(multipliers) = multipliers {
+                landscape.springs.multiplier = multipliers;
+            }
             done = report.residual_n <= goal && within(&report.violation, &options, weight);
             aim.residual_n = goal.max(aim.residual_n * SHARPER);
         }

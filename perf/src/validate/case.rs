@@ -20,6 +20,8 @@ pub struct Outcome {
     pub settled: bool,
     /// Steps that the guard rolled back.
     pub rolled_back: u64,
+    /// The same figure of the converged f64 solution of the same discretisation, where the oracle has found one.
+    pub solved: Option<f64>,
 }
 
 impl Outcome {
@@ -32,12 +34,13 @@ impl Outcome {
             bend_kept: rig.cloth.bend_pace().least,
             settled: true,
             rolled_back: rig.cloth.events.rolled_back,
+            solved: None,
         }
     }
 
     /// A figure that no rig has given.
     pub fn none(got: f64) -> Self {
-        Self { got, step_us: 0.0, substeps: 0, bend_kept: 1.0, settled: true, rolled_back: 0 }
+        Self { got, step_us: 0.0, substeps: 0, bend_kept: 1.0, settled: true, rolled_back: 0, solved: None }
     }
 
     /// The same, with whether it had come to rest.
@@ -48,9 +51,6 @@ impl Outcome {
 
 /// How a case is run at a level.
 pub type Run = Box<dyn Fn(Level) -> Result<Outcome, RigError> + Send + Sync>;
-
-/// The figure of the converged f64 solution of the same discretisation, from a solver that shares no code with the engine.
-pub type Solve = Box<dyn Fn() -> Option<f64> + Send + Sync>;
 
 /// Something with an exact answer.
 pub struct Case {
@@ -72,8 +72,6 @@ pub struct Case {
     pub target: Option<f64>,
     /// Runs it.
     pub run: Run,
-    /// Solves it independently, where that can be done.
-    pub solve: Option<Solve>,
 }
 
 /// One line of the table.
@@ -120,10 +118,9 @@ impl Case {
     /// Where the case's own mesh or colliders are refused.
     pub fn rows(&self, levels: &[Level]) -> Result<Vec<Row>, RigError> {
         let converged = (self.run)(Level::Converged)?;
-        let truth = self.solve.as_ref().map_or(Some(converged.got), |solve| solve());
         let run = |level: &Level| {
             let found = if *level == Level::Converged { converged } else { (self.run)(*level)? };
-            Ok(self.row(*level, &found, truth))
+            Ok(self.row(*level, &found, &converged))
         };
         levels.iter().map(run).collect()
     }
@@ -132,10 +129,11 @@ impl Case {
         (from - to) / self.scale.unwrap_or(self.expected).abs() * 100.0
     }
 
-    fn row(&self, level: Level, found: &Outcome, truth: Option<f64>) -> Row {
+    fn row(&self, level: Level, found: &Outcome, converged: &Outcome) -> Row {
         let error = self.percent(found.got, self.expected);
-        // What stands for the truth cannot be held against itself.
-        let truth = truth.filter(|_| self.solve.is_some() || level != Level::Converged);
+        // Without the oracle the converged setting stands for the truth; it cannot be held against itself.
+        let stands_in = (level != Level::Converged).then_some(converged.got);
+        let truth = converged.solved.or(stands_in);
         let target = self.target.filter(|_| level == Level::GATED);
         let pass = target.map(|most| error.abs() <= most && found.rolled_back == 0);
         let mut row = Row {

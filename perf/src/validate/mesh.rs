@@ -18,7 +18,8 @@ pub enum Style {
     Grid,
     /// The same points, triangles with diagonals that alternate.
     Alternating,
-    /// Rows at the ends and points along the sides as before, blue noise between them, joined by Delaunay triangles.
+    /// Rows at the ends and points along the sides as before, evened-out blue noise between them, joined by Delaunay
+    /// triangles: as a mesher leaves it.
     Unstructured,
 }
 
@@ -116,7 +117,11 @@ impl Strip {
         let half = 0.5 * self.width;
         let inner = |p: &DVec2| !self.holds(p.x) && p.x < self.length - 1e-6 && p.y.abs() < half - 1e-6;
         let (strewn, mut kept): (Vec<DVec2>, Vec<DVec2>) = all.partition(inner);
+        let held = kept.len();
         self.strew(strewn.len(), &mut kept);
+        for _ in 0..RELAX {
+            relax(&mut kept, held);
+        }
         kept
     }
 
@@ -168,6 +173,26 @@ impl Strip {
             }
         };
         cells.flat_map(halves).collect()
+    }
+}
+
+/// Rounds in which strewn points go to the middle of their neighbours, as a mesher's do.
+const RELAX: usize = 6;
+
+/// Moves every point but the first `held` to the middle of those it is joined to.
+fn relax(points: &mut [DVec2], held: usize) {
+    let mut sums = vec![(DVec2::ZERO, 0u32); points.len()];
+    for [a, b, c, _] in delaunay(points) {
+        for (p, q) in [(a, b), (b, c), (c, a)] {
+            // Each inner edge twice, once from each side.
+            for (v, from) in [(p, q), (q, p)] {
+                let sum = &mut sums[v as usize];
+                *sum = (sum.0 + points[from as usize], sum.1 + 1);
+            }
+        }
+    }
+    for (point, (sum, count)) in points.iter_mut().zip(sums).skip(held) {
+        *point = sum / f64::from(count.max(1));
     }
 }
 

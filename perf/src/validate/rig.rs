@@ -7,13 +7,14 @@ use thiserror::Error;
 use toile_assets::bake::bake;
 use toile_assets::garment::layout::{Bends, ENDED};
 use toile_assets::garment::{Garment, MeshError, Shape};
-use toile_assets::limits::STEP_SECONDS;
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere};
 
 use super::Level;
+use super::case::Outcome;
 use super::mesh;
+use crate::oracle::{Oracle, Problem, Solids};
 
 /// Why a case cannot be run.
 #[derive(Debug, Error)]
@@ -128,10 +129,37 @@ impl Rig {
         (0..steps).for_each(|_| self.step());
     }
 
+    /// Changes the rate at which motion is damped (1/s).
+    pub fn damp(&mut self, per_s: f64) {
+        self.garment.fabric.damping_per_s = per_s as f32;
+    }
+
     /// Speed of the fastest particle (m/s).
     pub fn fastest(&self) -> f64 {
         let speed2 = |i: usize| f64::from(self.cloth.velocity(i).length_squared());
         (0..self.particle.len()).map(speed2).fold(0.0, f64::max).sqrt()
+    }
+
+    /// Where everything is.
+    pub fn seen(&self) -> Seen<'_> {
+        let at = self.cloth.positions.iter().map(|p| p.as_dvec3()).collect();
+        Seen { garment: &self.garment, particle: &self.particle, at }
+    }
+
+    /// Where everything would be at rest: the oracle's equilibrium of the very same garment, searched for from where the
+    /// engine has brought it. Nothing where none is found.
+    pub fn solved(&self) -> Option<Seen<'_>> {
+        let mut problem = Problem::of(&self.garment);
+        problem.gravity = self.settings.gravity.as_dvec3();
+        let start: Vec<DVec3> = self.cloth.positions.iter().map(|p| p.as_dvec3()).collect();
+        let solved = Oracle::new(problem).ok()?.equilibrium(&start, &Solids::default()).ok()?;
+        Some(Seen { garment: &self.garment, particle: &self.particle, at: solved.state.x })
+    }
+
+    /// What is read off it at rest, and off the oracle's equilibrium too in the converged setting.
+    pub fn told(&self, level: Level, read: impl Fn(&Seen<'_>) -> f64) -> Outcome {
+        let solved = if level == Level::Converged { self.solved().map(|seen| read(&seen)) } else { None };
+        Outcome { solved, ..Outcome::of(self, read(&self.seen())) }
     }
 
     /// Where a vertex of the shape is (m).
@@ -176,7 +204,7 @@ impl Rig {
         let inverse = self.garment.inverse_mass.iter().enumerate().filter(|(_, w)| **w > 0.0);
         let weight: f64 = inverse.map(|(i, w)| G * place(i).y / f64::from(*w)).sum();
         let stretch = |l: Link| (place(l.ends[1]).distance(place(l.ends[0])) - l.rest).powi(2) / (2.0 * l.compliance);
-        let stretch: f64 = self.links().into_iter().map(stretch).sum();
+        let stretch: f64 = links(&self.garment).into_iter().map(stretch).sum();
         let layout = &self.garment.layout;
         self.cloth.kinetic_energy(&self.garment)
             + weight
@@ -191,50 +219,39 @@ impl Rig {
         sorted.sort_unstable();
         sorted.get(sorted.len() / 2).map_or(0.0, |ns| *ns as f64 * 1e-3)
     }
+}
 
-    /// Every stretch link once.
-    pub fn links(&self) -> Vec<Link> {
-        let layout = &self.garment.layout;
-        let mut found = Vec::new();
-        let mut add = |a: u32, b: u32, rest: f32, compliance: f32| {
-            if compliance < ENDED {
-                let (rest, compliance) = (f64::from(rest), f64::from(compliance));
-                found.push(Link { ends: [a as usize, b as usize], rest, compliance });
-            }
-        };
-        for links in [&layout.shear, &layout.weft] {
-            links.tuples.for_each(|at, [a, b]| add(a, b, links.rest[at], links.compliance[at]));
-        }
-        let fibers = &layout.fibers;
-        for bundle in &fibers.bundles {
-            let rows = &fibers.rows[bundle.rows.start as usize..bundle.rows.end as usize];
-            let places = if bundle.alike { 1 } else { bundle.lanes };
-            for (link, pair) in (0..).zip(rows.windows(2)) {
-                for lane in 0..pair[1].lanes {
-                    let at = (bundle.at + link * places + if bundle.alike { 0 } else { lane }) as usize;
-                    add(pair[0].first + lane, pair[1].first + lane, fibers.rest[at], fibers.compliance[at]);
-                }
-            }
-        }
-        let lists = &layout.crossing;
-        for list in &lists.lists {
-            for link in 0..list.links() {
-                for lane in 0..list.lanes {
-                    let particle = |row: u32| lists.index[(list.first + row % list.rows * list.lanes + lane) as usize];
-                    let at = (list.at + link * list.lanes + lane) as usize;
-                    add(particle(link), particle(link + 1), lists.rest[at], lists.compliance[at]);
-                }
-            }
-        }
-        found
+/// Where the particles of a garment are, read in the numbers of its shape.
+pub struct Seen<'a> {
+    garment: &'a Garment,
+    particle: &'a [usize],
+    /// Positions (m) `[particles]`.
+    at: Vec<DVec3>,
+}
+
+impl Seen<'_> {
+    /// Where a vertex of the shape is (m).
+    pub fn at(&self, vertex: usize) -> DVec3 {
+        self.at[self.particle[vertex]]
+    }
+
+    /// Mean place of some vertices (m).
+    pub fn mean(&self, vertices: impl IntoIterator<Item = usize>) -> DVec3 {
+        let (sum, count) = vertices.into_iter().fold((DVec3::ZERO, 0), |(s, n), v| (s + self.at(v), n + 1));
+        sum / f64::from(count.max(1))
+    }
+
+    /// The lowest place (m).
+    pub fn lowest(&self) -> f64 {
+        self.at.iter().map(|p| p.y).fold(f64::MAX, f64::min)
     }
 
     /// The force of the links on the fixed vertices for which `chosen` holds, by where they are (N).
     pub fn force_on_fixed(&self, chosen: impl Fn(DVec3) -> bool) -> DVec3 {
-        let place = |i: usize| self.cloth.positions[i].as_dvec3();
+        let place = |i: usize| self.at[i];
         let free = |i: usize| self.garment.inverse_mass[i] > 0.0;
         let mut sum = DVec3::ZERO;
-        for Link { ends: [a, b], rest, compliance } in self.links() {
+        for Link { ends: [a, b], rest, compliance } in links(self.garment) {
             let (fixed, other) = if free(b) { (a, b) } else { (b, a) };
             if free(other) && !free(fixed) && chosen(place(fixed)) {
                 let d = place(other) - place(fixed);
@@ -243,6 +260,43 @@ impl Rig {
         }
         sum
     }
+}
+
+/// Every stretch link once.
+pub fn links(garment: &Garment) -> Vec<Link> {
+    let layout = &garment.layout;
+    let mut found = Vec::new();
+    let mut add = |a: u32, b: u32, rest: f32, compliance: f32| {
+        if compliance < ENDED {
+            let (rest, compliance) = (f64::from(rest), f64::from(compliance));
+            found.push(Link { ends: [a as usize, b as usize], rest, compliance });
+        }
+    };
+    for links in [&layout.shear, &layout.weft] {
+        links.tuples.for_each(|at, [a, b]| add(a, b, links.rest[at], links.compliance[at]));
+    }
+    let fibers = &layout.fibers;
+    for bundle in &fibers.bundles {
+        let rows = &fibers.rows[bundle.rows.start as usize..bundle.rows.end as usize];
+        let places = if bundle.alike { 1 } else { bundle.lanes };
+        for (link, pair) in (0..).zip(rows.windows(2)) {
+            for lane in 0..pair[1].lanes {
+                let at = (bundle.at + link * places + if bundle.alike { 0 } else { lane }) as usize;
+                add(pair[0].first + lane, pair[1].first + lane, fibers.rest[at], fibers.compliance[at]);
+            }
+        }
+    }
+    let lists = &layout.crossing;
+    for list in &lists.lists {
+        for link in 0..list.links() {
+            for lane in 0..list.lanes {
+                let particle = |row: u32| lists.index[(list.first + row % list.rows * list.lanes + lane) as usize];
+                let at = (list.at + link * list.lanes + lane) as usize;
+                add(particle(link), particle(link + 1), lists.rest[at], lists.compliance[at]);
+            }
+        }
+    }
+    found
 }
 
 /// Energy of some bending stencils (J).
@@ -264,27 +318,13 @@ impl Level {
         };
         let mut settings = Settings { quality, workers: 1, ..Settings::default() };
         if self == Self::Converged {
-            settings.substeps = Some(converged_substeps(garment));
+            settings.substeps = Some(CONVERGED.max(quality.substeps(garment.substeps)));
         }
         settings
     }
 }
 
-/// Substeps at which halving them moves nothing that the table shows.
-const CONVERGED: u32 = 64;
-
-/// Most of them: what f32 can tell of a substep's motion.
-const MOST_SUBSTEPS: u32 = 512;
-
-/// Share of the bound on bending that is used in the converged setting: half of what the engine itself allows.
-const SHARE_OF_BOUND: f32 = 1.0;
-
-/// So many substeps that bending is carried whole, and at least [`CONVERGED`].
-fn converged_substeps(garment: &Garment) -> u32 {
-    use toile_engine::cloth::bending::add_load;
-    let mut load = vec![0.0; garment.particles()];
-    add_load(&garment.layout.bends, &garment.inverse_mass, STEP_SECONDS, &mut load);
-    add_load(&garment.layout.skewed, &garment.inverse_mass, STEP_SECONDS, &mut load);
-    let most = load.into_iter().fold(0.0, f32::max);
-    ((most / SHARE_OF_BOUND).sqrt().ceil() as u32).clamp(CONVERGED, MOST_SUBSTEPS)
-}
+/// Substeps of the converged setting: six times those of the coarsest garment at `shop`, and as many as f32 allows. A
+/// substep moves resting cloth by g dt^2; beyond some 40 a step that is no more than some units in the last place of a
+/// position a metre from the origin, and forces come out the worse the more there are.
+const CONVERGED: u32 = 32;

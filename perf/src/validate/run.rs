@@ -16,6 +16,8 @@ use super::{Level, cases};
 pub struct Options {
     /// The one name of which cases are run, or all.
     pub case: Option<String>,
+    /// Of these only what has this parameter, as the table says it, or all.
+    pub parameter: Option<String>,
     /// The levels that rows are told of.
     pub levels: Vec<Level>,
     /// Threads: cases are independent of each other.
@@ -27,7 +29,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let threads = std::thread::available_parallelism().map_or(1, |n| n.get().min(2));
-        Self { case: None, levels: Level::ALL.to_vec(), threads, every: 1 }
+        Self { case: None, parameter: None, levels: Level::ALL.to_vec(), threads, every: 1 }
     }
 }
 
@@ -51,17 +53,18 @@ impl Report {
     }
 }
 
+/// Stack of a thread: kernels that are not optimised keep every vector of theirs there.
+const STACK_BYTES: usize = 32 << 20;
+
 /// The names of all cases, in the order of the table.
 pub fn names() -> Vec<&'static str> {
-    let mut names: Vec<&'static str> = cases::all().iter().map(|case| case.name).collect();
-    names.dedup();
-    let mut seen: Vec<&'static str> = Vec::new();
-    names.into_iter().for_each(|name| {
-        if !seen.contains(&name) {
-            seen.push(name);
+    let mut names: Vec<&'static str> = Vec::new();
+    for case in cases::all() {
+        if !names.contains(&case.name) {
+            names.push(case.name);
         }
-    });
-    seen
+    }
+    names
 }
 
 /// Runs cases; `told` hears of each that is done, and of how many.
@@ -86,8 +89,12 @@ pub fn run(options: &Options, told: &(impl Fn(usize) + Sync)) -> Result<Report, 
         }
     };
     std::thread::scope(|scope| {
-        (1..options.threads).for_each(|_| drop(scope.spawn(work)));
-        work();
+        for _ in 0..options.threads.max(1) {
+            // Without a thread of its own the work is done by whoever asks for it.
+            if std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, work).is_err() {
+                work();
+            }
+        }
     });
     let rows = rows.into_inner().unwrap_or_default();
     let mut cases = Vec::new();
@@ -105,7 +112,8 @@ pub fn run(options: &Options, told: &(impl Fn(usize) + Sync)) -> Result<Report, 
 
 /// The cases that are run.
 fn chosen(options: &Options) -> Vec<Case> {
-    let wanted = |case: &Case| options.case.as_ref().is_none_or(|name| name == case.name);
+    let named = |case: &Case| options.case.as_ref().is_none_or(|name| name == case.name);
+    let wanted = |case: &Case| named(case) && options.parameter.as_ref().is_none_or(|p| *p == case.parameter);
     let mut number = 0;
     let mut before = "";
     let mut one_in = |case: &Case| {

@@ -9,14 +9,16 @@ use crate::bake::fibers::Edge;
 use crate::garment::check::corners;
 use crate::garment::shape::{NO_VERTEX, Shape};
 
-/// A measure that differs from its direction by more than this (of 1, Frobenius norm) is none of it.
-const MOST_OFF: f64 = 0.45;
+/// A measure that differs from its direction by more than this (of 1, Frobenius norm) is none of it. A poor one is better
+/// than none: where a vertex measures nothing the cloth has a hinge, which no stiffness beside it makes up for, and along a rim
+/// nothing else resists twisting.
+const MOST_OFF: f64 = 0.8;
 
 /// How much a measure by long levers is worse than one by short ones: enough to settle ties.
 const LEVER_COST: f64 = 0.02;
 
 /// Longest lever: how much farther points pull apart than those of three in a row, for whom this is 1.
-const MOST_LEVER: f64 = 4.0;
+const MOST_LEVER: f64 = 8.0;
 
 /// A fourth point with less than this share of the weights does nothing.
 const LEAST_WEIGHT: f64 = 1e-5;

@@ -38,6 +38,7 @@ pub(super) fn grammar() -> clap::Command {
             text("quality", "Q", "Settings to tell: one of them, or all")
                 .value_parser(PossibleValuesParser::new(levels))
                 .default_value("all"),
+            text("parameter", "P", "Only what the table tells with this parameter, such as 'Gamma 10' [default: all]"),
             text("every", "K", "Run one in K cases of each name: a quick look")
                 .value_parser(value_parser!(u64).range(1..=1_000))
                 .default_value("1"),
@@ -55,9 +56,25 @@ pub(super) fn args(matches: &ArgMatches) -> Result<ValidateArgs, AppError> {
     let usual = Options::default();
     let options = Options {
         case: matches.get_one("case").cloned(),
+        parameter: matches.get_one("parameter").cloned(),
         levels: Level::ALL.into_iter().filter(|level| quality == "all" || level.name() == quality).collect(),
         threads: matches.get_one::<String>("threads").and_then(|t| t.parse().ok()).unwrap_or(usual.threads),
         every: usize::try_from(required::<u64>(matches, "every")?).map_err(AppError::internal)?,
     };
     Ok(ValidateArgs { options, json: matches.get_flag("json"), quiet: matches.get_flag("quiet") })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_case_and_a_quality_are_picked_and_unknown_ones_refused() {
+        let parsed = |line: &str| grammar().try_get_matches_from(line.split_whitespace());
+        let args = args(&parsed("validate cantilever --quality fine --every 6 --threads 1 --json").unwrap()).unwrap();
+        assert_eq!(args.options.case.as_deref(), Some("cantilever"));
+        assert_eq!((args.options.levels, args.options.every, args.options.threads), (vec![Level::GATED], 6, 1));
+        assert!(args.json);
+        assert!(parsed("validate cantilevr").is_err() && parsed("validate --quality best").is_err());
+    }
 }

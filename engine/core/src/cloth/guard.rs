@@ -16,6 +16,8 @@ pub struct Events {
     pub speed_limited: u64,
     /// Skinned particles whose target was not finite and that were held.
     pub held_pins: u64,
+    /// Steps whose settings no step can be made with; it was made with sound ones.
+    pub held_settings: u64,
     /// Steps in which the root jumped and the garment was reset or carried along.
     pub teleports: u64,
     /// Sphere steps in which a collider was not where it was said to be, because it had jumped or was not finite; since
@@ -26,7 +28,11 @@ pub struct Events {
 /// Farthest from the origin that anything can be (m): beyond it, f32 no longer tells millimetres apart.
 const FARTHEST_M: f32 = 10_000.0;
 
-/// Whether every number of some columns is finite and within reach.
+/// What is less than this is nothing (m, m/s): a picometre. Of a motion that fades, what is left would be too small for
+/// a normal number in the end, and with those many processors count a hundred times slower; squares of this are not.
+const LEAST: f32 = 1e-12;
+
+/// Whether every number of some columns is finite and within reach; those that are next to nothing become nothing.
 pub struct Sound<'a>(pub [Column<'a>; 3]);
 
 impl Kernel for Sound<'_> {
@@ -34,25 +40,32 @@ impl Kernel for Sound<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> bool {
-        let (mut least, mut most) = (L::splat(0.0), L::splat(0.0));
-        let mut sum = L::splat(0.0);
+        let zero = L::splat(0.0);
+        let (mut most, mut sum) = (zero, zero);
+        let mut look = |v: L| {
+            let size = v.max(-v);
+            // What is not a number, times 0, is not 0.
+            (most, sum) = (most.max(size), sum + v * zero);
+            let tiny = size.lt(L::splat(LEAST)).and(zero.lt(size));
+            tiny.any().then(|| zero.select(tiny, v))
+        };
         for column in self.0 {
             let whole = column.len() / L::N * L::N;
             let mut at = 0;
             while at < whole {
-                let v = L::load(column, at);
-                (least, most, sum) = (least.min(v), most.max(v), sum + v * L::splat(0.0));
+                if let Some(calm) = look(L::load(column, at)) {
+                    calm.store(column, at);
+                }
                 at += L::N;
             }
             if at < column.len() {
-                let v = L::load_part(column, at, column.len() - at);
-                (least, most, sum) = (least.min(v), most.max(v), sum + v * L::splat(0.0));
+                let n = column.len() - at;
+                if let Some(calm) = look(L::load_part(column, at, n)) {
+                    calm.store_part(column, at, n);
+                }
             }
         }
-        let far = L::splat(FARTHEST_M);
-        let outside = far.lt(most).any() || least.lt(-far).any();
-        // What is not a number, times 0, is not 0.
-        !outside && sum.to_array().iter().all(|s| *s == 0.0)
+        !L::splat(FARTHEST_M).lt(most).any() && sum.to_array().iter().all(|s| *s == 0.0)
     }
 }
 
@@ -80,5 +93,41 @@ pub fn roll_back(columns: Columns<'_>, good: &[Vec3A], dressed: impl Fn(usize) -
         state::set(columns.x, i, goal);
         state::set(columns.previous, i, goal);
         state::set(columns.v, i, Vec3A::ZERO);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::{Store, Width};
+
+    #[test]
+    fn what_is_next_to_nothing_becomes_nothing_and_all_else_stays() {
+        let small = [1e-40, -3e-20, 9e-13, -9e-13, 0.0, f32::MIN_POSITIVE];
+        let large = [1.1e-12, -1.1e-12, 1e-6, -2.5, 9_999.0];
+        for width in Width::ALL.into_iter().filter(|w| w.available()) {
+            let mut store = Store::zeros(3 * 37);
+            let value = |i: usize| if i.is_multiple_of(2) { small[i % small.len()] } else { large[i % large.len()] };
+            store.as_mut().iter_mut().enumerate().for_each(|(i, v)| *v = value(i));
+            let all = store.column();
+            assert!(width.run(Sound([0, 1, 2].map(|k| all.part(k * 37, 37)))), "{width} lanes");
+            for (i, v) in store.as_slice().iter().take(3 * 37).enumerate() {
+                assert_eq!(*v, if i % 2 == 0 { 0.0 } else { value(i) }, "{width} lanes, number {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn one_number_that_is_none_or_out_of_reach_is_found_anywhere() {
+        for width in Width::ALL.into_iter().filter(|w| w.available()) {
+            for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -10_001.0] {
+                for i in 0..3 * 21 {
+                    let mut store = Store::zeros(3 * 21);
+                    store.as_mut()[i] = bad;
+                    let all = store.column();
+                    assert!(!width.run(Sound([0, 1, 2].map(|k| all.part(k * 21, 21)))), "{width}: {bad} at {i}");
+                }
+            }
+        }
     }
 }

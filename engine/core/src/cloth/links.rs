@@ -422,4 +422,57 @@ mod tests {
             assert!(error < 1e-6, "link {i}: {error} m");
         }
     }
+
+    /// A zigzag of `n` rungs, closed or not, alike or not, between rails that lie one behind the other.
+    fn zigzag(n: u32, closed: bool, alike: bool) -> Links {
+        let slants = if closed { n } else { n - 1 };
+        let places = if alike { 1 } else { n };
+        let rungs = Run { first: [0, n], len: n, at: 0, serial: 0, alike };
+        let slants = Run { first: [n, 1], len: slants, at: places, serial: n, alike };
+        let share = Share { zigzags: 0..1, ..Share::default() };
+        let set = Set { direction: Direction::Weft, crosses: false, shares: [share, Share::default()] };
+        let count = places + if alike { 1 } else { slants.len };
+        Links {
+            tuples: Tuples {
+                zigzags: [Zigzag { rungs, slants }].into(),
+                sets: [set].into(),
+                count: (n + slants.len) as usize,
+                places: count as usize,
+                ..Tuples::default()
+            },
+            rest: (0..count).map(|i| if alike { 0.1 } else { 0.1 + 0.01 * (i % 7) as f32 }).collect(),
+            compliance: vec![0.0; count as usize].into(),
+        }
+    }
+
+    #[test]
+    fn a_zigzag_is_its_rungs_and_then_its_slants_at_every_width() {
+        let place = |i: u32| Vec3::new((i as f32 * 0.61).sin(), 0.3 * (i as f32).cos(), (i as f32 * 0.23).sin()) * 0.2;
+        for (n, closed, alike) in
+            (2..70).flat_map(|n| [(n, true, true), (n, false, true), (n, true, false), (n, false, false)])
+        {
+            let links = zigzag(n, closed, alike);
+            let positions: Vec<Vec3> = (0..2 * n).map(place).collect();
+            let weights: Vec<f32> = (0..2 * n).map(|i| if alike { 2.0 } else { (i % 4) as f32 }).collect();
+            // One after the other, each as a ladder of one rung.
+            let mut expected = State::new(&positions, &weights);
+            let mut gain = vec![0.0; links.rest.len()];
+            prepare(&links, &weights, 1.0, 0.0, &mut gain);
+            links.tuples.for_each(|at, [a, b]| {
+                let columns = expected.columns();
+                let [pa, pb] = [a, b].map(|i| state::get(columns.x, i as usize));
+                let d = V3::<f32> { x: pb.x - pa.x, y: pb.y - pa.y, z: pb.z - pa.z };
+                let [by_a, by_b] = stiff(d, links.rest[at], gain[at], [a, b].map(|i| weights[i as usize]));
+                let vector = |v: V3<f32>| glam::Vec3A::new(v.x, v.y, v.z);
+                state::set(columns.x, a as usize, pa + vector(by_a));
+                state::set(columns.x, b as usize, pb - vector(by_b));
+            });
+            let expected: Vec<Vec3> =
+                (0..2 * n as usize).map(|i| Vec3::from_array(expected.positions().map(|a| a[i]))).collect();
+            for width in Width::ALL.into_iter().filter(|w| w.available()) {
+                let got = solved(width, &positions, &weights, &links, 0.0);
+                assert_eq!(got, expected, "{width} lanes, {n} rungs, closed {closed}, alike {alike}");
+            }
+        }
+    }
 }

@@ -7,8 +7,13 @@ use toile_assets::garment::layout::ENDED;
 use toile_assets::limits::STEP_SECONDS;
 
 use super::program::{self, Bending, Op};
+use super::settings::MAX_SUBSTEPS;
 use super::stages::{self, Stage};
-use super::{Quality, Settings, bending, links};
+use super::{Quality, Settings, bending, fibers, links};
+
+/// Pull across a fiber's links from which on its solves are calmed. Garments in the substeps that they ask for are below
+/// 1: a linearised solve is stable there, and calming would slow their swing.
+const TAUT: f32 = 1.0;
 
 /// What depends on the settings, made again when they change; the storage stays.
 #[derive(Debug, Clone)]
@@ -20,6 +25,8 @@ pub struct Prepared {
     pub substeps: u32,
     pub dt: f32,
     pub gamma: f32,
+    /// Whether fibers pull more across themselves than one linearised solve can take.
+    pub taut: bool,
     pub shear_gain: Box<[f32]>,
     pub weft_gain: Box<[f32]>,
     pub bend_scale: Box<[f32]>,
@@ -49,6 +56,7 @@ impl Prepared {
             substeps: 1,
             dt: 0.0,
             gamma: 0.0,
+            taut: false,
             shear_gain: zeros(layout.shear.rest.len()),
             weft_gain: zeros(layout.weft.rest.len()),
             bend_scale: zeros(layout.bends.tuples.places),
@@ -67,7 +75,7 @@ impl Prepared {
         // The bake speaks of steps of 1/120 s.
         let longer = (settings.step_seconds / STEP_SECONDS).max(1.0);
         let chosen = (settings.quality.substeps(garment.substeps) as f32 * longer).ceil() as u32;
-        let asked = settings.substeps.unwrap_or(chosen).max(1);
+        let asked = settings.substeps.unwrap_or(chosen).clamp(1, MAX_SUBSTEPS);
         self.quality = settings.quality;
         let made_for = (asked, settings.step_seconds, settings.stretch_damping_s);
         if self.made_for == Some(made_for) {
@@ -77,6 +85,7 @@ impl Prepared {
         self.substeps = asked;
         self.dt = settings.step_seconds / asked as f32;
         self.gamma = settings.stretch_damping_s / self.dt;
+        self.taut = fibers::pull_across(&garment.layout.fibers, &garment.inverse_mass, self.dt) > TAUT;
         let (layout, w) = (&garment.layout, &garment.inverse_mass);
         links::prepare(&layout.shear, w, self.dt, self.gamma, &mut self.shear_gain);
         links::prepare(&layout.weft, w, self.dt, self.gamma, &mut self.weft_gain);

@@ -109,7 +109,7 @@ pub fn substep(layout: &Layout, quality: Quality) -> Box<[Op]> {
     ops.extend(shear().chain(wefts()).chain(fibers()));
     match quality {
         Quality::Draft => {}
-        Quality::Shop => ops.extend(wefts().chain(fibers()).chain(wefts())),
+        Quality::Shop => ops.extend(wefts().chain(wefts()).chain(fibers()).chain(wefts()).chain(wefts())),
         // Open weft fibers are in no hoop: they keep their sweep.
         Quality::Fine => {
             ops.push(Op::Contact);

@@ -93,14 +93,70 @@ pub struct Settings {
     pub timed: bool,
 }
 
+/// Most substeps of a step. In shorter ones the last bit of a position of f32 a metre from the origin is a speed of several
+/// mm/s: with 4,096 a cloth at rest was thrown about by its own rounding. What asks for more is no number of substeps.
+pub const MAX_SUBSTEPS: u32 = 512;
+
+/// Shortest and longest step (s); in shorter ones no f32 a metre from the origin moves, longer ones are no steps.
+const STEPS_S: [f32; 2] = [1e-6, 1.0];
+
+/// Greatest acceleration of gravity, along each axis (m/s2).
+const MOST_GRAVITY: f32 = 1e4;
+
+/// Greatest speed limit, and fastest air along each axis (m/s).
+const MOST_SPEED: f32 = 1e3;
+
+/// Greatest of all that is a ratio, a coefficient or a damping time: ten times and more what means anything.
+const MOST: f32 = 100.0;
+
+impl Settings {
+    /// The same with every figure that no step can be made with as it is by default, and no wind where its figures are
+    /// none: for the door of a step, so that a slip in one of them costs a step its settings and not the garment. Gives
+    /// the very same settings where nothing is wrong with them.
+    #[must_use]
+    pub fn sound(&self) -> Self {
+        let within = |value: f32, low: f32, high: f32, or: f32| if (low..=high).contains(&value) { value } else { or };
+        let small = |v: Vec3A, most: f32| v.abs().cmple(Vec3A::splat(most)).all();
+        let root = RootSettings::default();
+        let wind = |w: &Wind| {
+            small(w.velocity, MOST_SPEED) && (0.0..=MOST).contains(&w.drag) && (0.0..=MOST).contains(&w.lift)
+        };
+        Self {
+            substeps: self.substeps.map(|n| n.min(MAX_SUBSTEPS)),
+            step_seconds: within(self.step_seconds, STEPS_S[0], STEPS_S[1], STEP_SECONDS),
+            gravity: if small(self.gravity, MOST_GRAVITY) { self.gravity } else { GRAVITY },
+            max_speed: within(self.max_speed, 0.0, MOST_SPEED, MAX_SPEED),
+            stretch_damping_s: within(self.stretch_damping_s, 0.0, MOST, 0.0),
+            wind: self.wind.filter(wind),
+            root: RootSettings {
+                linear: within(self.root.linear, -MOST, MOST, root.linear),
+                angular: within(self.root.angular, -MOST, MOST, root.angular),
+                centrifugal: within(self.root.centrifugal, -MOST, MOST, root.centrifugal),
+                // Infinity is a body that is never teleported.
+                teleport_m: within(self.root.teleport_m, 0.0, f32::INFINITY, root.teleport_m),
+                teleport_degrees: within(self.root.teleport_degrees, 0.0, f32::INFINITY, root.teleport_degrees),
+                teleport: self.root.teleport,
+            },
+            static_friction: within(self.static_friction, 0.0, MOST, 1.0),
+            ..*self
+        }
+    }
+}
+
+/// Acceleration of gravity (m/s2).
+const GRAVITY: Vec3A = Vec3A::new(0.0, -9.81, 0.0);
+
+/// See [`Settings::max_speed`].
+const MAX_SPEED: f32 = 15.0;
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
             quality: Quality::default(),
             substeps: None,
             step_seconds: STEP_SECONDS,
-            gravity: Vec3A::new(0.0, -9.81, 0.0),
-            max_speed: 15.0,
+            gravity: GRAVITY,
+            max_speed: MAX_SPEED,
             stretch_damping_s: 0.0,
             wind: None,
             root: RootSettings::default(),
@@ -110,5 +166,42 @@ impl Default for Settings {
             width: Width::widest(),
             timed: false,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sound_settings_are_left_alone() {
+        let wind = Some(Wind { velocity: Vec3A::new(2.0, 0.0, -30.0), drag: 1.2, lift: 0.6 });
+        let fast = RootSettings { linear: 0.0, teleport_m: f32::INFINITY, ..RootSettings::default() };
+        let odd = Settings { wind, root: fast, substeps: Some(400), step_seconds: 1.0 / 30.0, ..Settings::default() };
+        for settings in [Settings::default(), odd] {
+            assert_eq!(settings.sound(), settings);
+        }
+    }
+
+    #[test]
+    fn what_is_no_figure_is_as_it_is_by_default() {
+        let default = Settings::default();
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1.0] {
+            let root = RootSettings { linear: bad * 1e9, angular: bad * 1e9, centrifugal: f32::NAN, ..default.root };
+            let wind = Some(Wind { velocity: Vec3A::ZERO, drag: bad, lift: 0.0 });
+            let settings = Settings {
+                step_seconds: bad,
+                gravity: Vec3A::new(0.0, bad * 1e9, 0.0),
+                max_speed: bad,
+                stretch_damping_s: bad,
+                static_friction: bad,
+                root,
+                wind,
+                ..default
+            };
+            assert_eq!(settings.sound(), default, "{bad}");
+        }
+        let endless = Settings { substeps: Some(u32::MAX), ..default };
+        assert_eq!(endless.sound().substeps, Some(MAX_SUBSTEPS));
     }
 }

@@ -14,7 +14,7 @@ use super::root::{Carried, RootStep};
 use super::stages;
 use super::state::{self, Columns};
 use super::{
-    Cloth, Quality, Step, Wind, bending, contact, fibers, guard, links, lists, predict, settle, tethers, wind,
+    Cloth, Quality, Settings, Step, Wind, bending, contact, fibers, guard, links, lists, predict, settle, tethers, wind,
 };
 use crate::crew::{Crew, Own};
 use crate::lanes::{Column, Store, Width};
@@ -45,6 +45,8 @@ struct Work<'a> {
 impl Cloth {
     /// One step of the settings' length, both shares on the caller's thread.
     pub fn step(&mut self, garment: &Garment, step: &Step<'_>) {
+        let settings = self.sound(step.settings);
+        let step = &Step { settings: &settings, ..*step };
         let carried = self.begin(garment, step);
         let timed = step.settings.timed;
         let mut stage_ns = [0; STAGES.len()];
@@ -68,11 +70,20 @@ impl Cloth {
         if crew.workers() < OWNERS || garment.layout.spans[1].is_empty() {
             return self.step(garment, step);
         }
+        let settings = self.sound(step.settings);
+        let step = &Step { settings: &settings, ..*step };
         let carried = self.begin(garment, step);
         let work = self.work(garment, step, carried);
         let failed = crew.run(work.phases(), |phase, share| work.phase(phase, share)).is_err();
         let limited = work.limited();
         self.end(garment, step, limited, failed);
+    }
+
+    /// Settings that a step can be made with.
+    fn sound(&mut self, settings: &Settings) -> Settings {
+        let sound = settings.sound();
+        self.events.held_settings += u64::from(sound != *settings);
+        sound
     }
 
     /// What comes before the phases: targets of the skinned particles, the root's motion, repairs.
@@ -305,6 +316,7 @@ impl Work<'_> {
                 scratch,
                 per_dt2,
                 gamma: p.gamma,
+                taut: p.taut,
                 tension: tension(1),
             }),
             Op::Crossing(set) => self.width.run(list(&layout.crossing, set, tension(2))),

@@ -91,18 +91,51 @@ impl<'a> Springs<'a> {
         }
     }
 
-    /// Takes the tensions of `x` for those of the next round. Gives the largest strain by which a link is off the length
-    /// that its tension asks for (1).
-    pub fn update(&mut self, x: &[DVec3]) -> f64 {
-        let mut worst = 0.0f64;
+    /// What each multiplier is off its tension at `x` (N) `[links]`: 0 where a link has none.
+    pub fn lag(&self, x: &[DVec3]) -> Vec<f64> {
+        let one = |e: usize| if self.give[e] > 0.0 { self.pull(e, x).3 - self.multiplier[e] } else { 0.0 };
+        (0..self.links.len()).map(one).collect()
+    }
+
+    /// The largest strain by which a link with a multiplier is off the length that its tension asks for (1).
+    pub fn strain_off(&self, x: &[DVec3]) -> f64 {
+        let one = |e: usize| {
+            let (_, length, _, tension) = self.pull(e, x);
+            let link = &self.links[e];
+            (length - link.rest - link.compliance * tension).abs() / link.rest
+        };
+        (0..self.links.len()).filter(|&e| self.give[e] > 0.0).map(one).fold(0.0, f64::max)
+    }
+
+    /// How the lag answers to a change of the multipliers (N) if particles follow by the factors of the system at `x`: the
+    /// symmetric matrix I - D + rho D G H^-1 G^T D times the change, with D = k / rho and G the links' directions.
+    pub fn answer(&self, x: &[DVec3], system: &System, change: &[f64]) -> Option<Vec<f64>> {
+        let mut push = vec![DVec3::ZERO; x.len()];
+        let stiff = || (0..self.links.len()).filter(|&e| self.give[e] > 0.0);
+        for e in stiff() {
+            let (n, _, k, _) = self.pull(e, x);
+            let force = n * (k * self.give[e] * change[e]);
+            let [a, b] = self.links[e].ends.map(|i| i as usize);
+            push[a] -= force;
+            push[b] += force;
+        }
+        let moved = system.solve(&push)?;
+        let mut out = vec![0.0; change.len()];
+        for e in stiff() {
+            let (n, _, k, _) = self.pull(e, x);
+            let [a, b] = self.links[e].ends.map(|i| i as usize);
+            let d = k * self.give[e];
+            out[e] = (1.0 - d) * change[e] - k * n.dot(moved[b] - moved[a]);
+        }
+        Some(out)
+    }
+
+    /// Takes the tensions of `x` for those of the next round.
+    pub fn update(&mut self, x: &[DVec3]) {
         for e in 0..self.links.len() {
             if self.give[e] > 0.0 {
-                let (_, length, _, tension) = self.pull(e, x);
-                let link = &self.links[e];
-                worst = worst.max((length - link.rest - link.compliance * tension).abs() / link.rest);
-                self.multiplier[e] = tension;
+                self.multiplier[e] = self.pull(e, x).3;
             }
         }
-        worst
     }
 }

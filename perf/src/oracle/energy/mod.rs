@@ -87,7 +87,8 @@ impl Landscape<'_> {
 
     /// Takes the forces at `x` for those of the next round.
     pub fn update(&mut self, x: &[DVec3]) -> Violation {
-        let strain = self.springs.update(x);
+        let strain = self.springs.strain_off(x);
+        self.springs.update(x);
         let touches = self.contact.touches(x);
         let friction_n = self.friction.as_mut().map_or(0.0, |f| f.update(x, &touches));
         let [penetration_m, gap_m] = self.contact.update(x);

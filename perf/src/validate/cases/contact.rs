@@ -33,8 +33,8 @@ const HANGING: f64 = 0.1;
 /// Links of the rope.
 const ROPE_ROWS: usize = 64;
 
-/// Mass of the lighter end's load over that of the whole rope.
-const ROPE_LOAD: f64 = 20.0;
+/// Pull of the lighter end over the weight of the whole rope, whose own weight on the post is part of the exact value.
+const ROPE_LOAD: f64 = 4.0;
 
 /// How long the rope is watched (s), and how far it must run to have slipped (m): far more than the ends give while they
 /// begin to pull.
@@ -42,7 +42,7 @@ const ROPE_WATCH: (f64, f64) = (1.5, 0.02);
 
 /// A rope over half a turn of a post with a load at each end: the ratio of the two pulls at which it slips.
 fn capstan(mu: f64) -> Case {
-    let exact = string::capstan(mu, PI);
+    let exact = string::capstan_heavy(mu, POST / rope_length() / ROPE_LOAD);
     let run = move |level| threshold([1.0, exact * exact], |ratio| rope(level, mu, ratio));
     Case {
         name: "capstan",
@@ -54,13 +54,16 @@ fn capstan(mu: f64) -> Case {
         scale: None,
         target: Some(5.0),
         run: Box::new(run),
-        solve: None,
     }
+}
+
+fn rope_length() -> f64 {
+    PI * POST + 2.0 * HANGING
 }
 
 fn rope(level: Level, mu: f64, ratio: f64) -> Result<(Outcome, bool), RigError> {
     let around = PI * POST;
-    let strip = Strip::narrow(around + 2.0 * HANGING, ROPE_ROWS, [Hold::Free, Hold::Free]);
+    let strip = Strip::narrow(rope_length(), ROPE_ROWS, [Hold::Free, Hold::Free]);
     let worn = |along: f64, across: f64| {
         let s = along - HANGING;
         if s < 0.0 {
@@ -79,9 +82,8 @@ fn rope(level: Level, mu: f64, ratio: f64) -> Result<(Outcome, bool), RigError> 
     // What hangs below the post pulls too.
     let hanging = (HANGING - 0.5 * strip.link()) / strip.length;
     let half = 0.5 / ROPE_ROWS as f64;
-    let light = ROPE_LOAD + hanging;
     shape.heavier = vec![1.0; shape.cut.len()];
-    for (end, pull) in ends.iter().zip([light, light * ratio]) {
+    for (end, pull) in ends.iter().zip([ROPE_LOAD, ROPE_LOAD * ratio]) {
         end.iter().for_each(|&v| shape.heavier[v] = ((pull - hanging) / half) as f32);
     }
     let cloth = Cloth { friction: mu, damping: 5.0, stretch: 1e5, ..Cloth::PLAIN };
@@ -139,7 +141,6 @@ fn incline(mu: f64) -> Case {
         scale: None,
         target: Some(SLOPE_DEGREES / exact * 100.0),
         run: Box::new(run),
-        solve: None,
     }
 }
 
@@ -164,6 +165,5 @@ fn stopping(speed: f64, mu: f64) -> Case {
         scale: None,
         target: Some(5.0),
         run: Box::new(run),
-        solve: None,
     }
 }

@@ -64,7 +64,6 @@ fn case(style: Style, change: Change) -> Case {
         scale: None,
         target: Some(1.0),
         run: Box::new(run),
-        solve: None,
     }
 }
 
@@ -80,7 +79,7 @@ fn hung(style: Style, change: Option<Change>, level: Level) -> Result<(Rig, f64)
             let [density, stretch, shear, bend] = [density, stretch, shear, bend].map(|x| 3.0 * x);
             cloth = Cloth { density, stretch, shear, bend, ..cloth };
         }
-        Some(Change::Renumbered) => tip = renumber(&mut shape, tip),
+        Some(Change::Renumbered) => tip = renumber(&mut shape, &tip),
         Some(Change::Turned) => {
             let turn = DQuat::from_rotation_y(37f64.to_radians()).as_quat();
             shape.cut.iter_mut().chain(&mut shape.worn).for_each(|p| *p = turn * *p);
@@ -98,7 +97,7 @@ fn hung(style: Style, change: Option<Change>, level: Level) -> Result<(Rig, f64)
 }
 
 /// Shuffles the vertices and the faces; gives the tip by its new numbers.
-fn renumber(shape: &mut Shape, tip: Vec<bool>) -> Vec<bool> {
+fn renumber(shape: &mut Shape, tip: &[bool]) -> Vec<bool> {
     let mut dice = Dice(7);
     let count = shape.cut.len();
     let mut old: Vec<usize> = (0..count).collect();
@@ -117,7 +116,7 @@ fn renumber(shape: &mut Shape, tip: Vec<bool>) -> Vec<bool> {
     shape.faces = shape.faces.iter().map(|f| f.map(corner)).collect();
     let faces = shape.faces.len();
     (1..faces).rev().for_each(|i| shape.faces.swap(i, (dice.roll() * (i + 1) as f64) as usize));
-    moved(&tip, &old)
+    moved(tip, &old)
 }
 
 /// Left and right exchanged; faces keep looking to the front.

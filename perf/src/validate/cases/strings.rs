@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use crate::validate::case::{Case, Outcome};
+use crate::validate::case::Case;
 use crate::validate::exact::string;
 use crate::validate::mesh::{Cloth, Hold, Strip, Style};
-use crate::validate::rig::{G, Rig, Scenery};
+use crate::validate::rig::{G, Rig, Scenery, Seen};
 
 /// Links along them.
 const ROWS: usize = 32;
@@ -16,6 +16,9 @@ const DAMPING: f64 = 5.0;
 /// Longest time to come to rest (s).
 const REST_S: f64 = 6.0;
 
+/// Shear stiffness of what is to stretch alone (N/m): next to none.
+const SHEAR: f64 = 1.0;
+
 /// The cases of this room.
 pub fn cases() -> Vec<Case> {
     let mut all = Vec::new();
@@ -25,7 +28,38 @@ pub fn cases() -> Vec<Case> {
     for length in [1.05, 1.2, 1.5, 2.0] {
         all.extend([Slung::Sag, Slung::Tension].map(|what| catenary(length, what)));
     }
+    all.extend([20.0, 60.0, 200.0].map(shear));
     all
+}
+
+/// Side of the sheared sheet (m).
+const SHEET: f64 = 0.3;
+
+/// A sheet that is held along both upright sides sags by w L^2 / 8G in its middle, by shear alone: its upright threads
+/// only sink, its level ones turn.
+fn shear(stiffness: f64) -> Case {
+    let (rows, held) = (16, [Hold::Pinned, Hold::Pinned]);
+    let strip = Strip { width: SHEET, columns: rows, ..Strip::narrow(SHEET, rows, held) };
+    let cloth = Cloth { shear: stiffness, damping: DAMPING, ..Cloth::PLAIN };
+    let run = move |level| {
+        let shape = strip.shape(|along, across| DVec3::new(along, across, 0.0));
+        let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+        let settled = rig.rest(REST_S);
+        let middle = || (0..rig.vertices()).filter(|v| (shape.worn[*v].x - 0.5 * SHEET as f32).abs() < 1e-4);
+        let before = middle().map(|v| f64::from(shape.worn[v].y)).sum::<f64>() / middle().count().max(1) as f64;
+        Ok(rig.told(level, |seen| before - seen.mean(middle()).y).settled(settled))
+    };
+    Case {
+        name: "shear-sag",
+        parameter: format!("G {stiffness} N/m"),
+        mesh: Style::Grid.name(),
+        resolution: rows,
+        unit: "m",
+        expected: cloth.density * G * SHEET * SHEET / (8.0 * stiffness),
+        scale: None,
+        target: Some(5.0),
+        run: Box::new(run),
+    }
 }
 
 /// What is read off a hanging strip.
@@ -39,17 +73,17 @@ enum Hung {
 
 fn strip(stretch: f64, what: Hung) -> Case {
     let strip = Strip::narrow(1.0, ROWS, [Hold::Pinned, Hold::Free]);
-    let cloth = Cloth { stretch, damping: DAMPING, ..Cloth::PLAIN };
+    let cloth = Cloth { stretch, shear: SHEAR, damping: DAMPING, ..Cloth::PLAIN };
     let run = move |level| {
         let shape = strip.shape(|along, across| DVec3::new(across, -along, 0.0));
         let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
         let settled = rig.rest(REST_S);
-        let tip = (0..rig.vertices()).filter(|v| shape.cut[*v].y < -1.0 + 1e-4);
-        let got = match what {
-            Hung::Tip => -rig.mean(tip).y - 1.0,
-            Hung::Top => -rig.force_on_fixed(|_| true).y / (rig.mass() * G),
+        let tip = || (0..rig.vertices()).filter(|v| shape.cut[*v].y < -1.0 + 1e-4);
+        let read = |seen: &Seen<'_>| match what {
+            Hung::Tip => -seen.mean(tip()).y - 1.0,
+            Hung::Top => -seen.force_on_fixed(|_| true).y / (rig.mass() * G),
         };
-        Ok(Outcome::of(&rig, got).settled(settled))
+        Ok(rig.told(level, read).settled(settled))
     };
     let [name, unit] = match what {
         Hung::Tip => ["strip", "m"],
@@ -65,7 +99,6 @@ fn strip(stretch: f64, what: Hung) -> Case {
         scale: None,
         target: Some(if what == Hung::Tip { 1.0 } else { 2.0 }),
         run: Box::new(run),
-        solve: None,
     }
 }
 
@@ -79,7 +112,7 @@ enum Slung {
 /// A strip between two points a metre apart, let go from a V.
 fn catenary(length: f64, what: Slung) -> Case {
     let strip = Strip::narrow(length, ROWS, [Hold::Pinned, Hold::Pinned]);
-    let cloth = Cloth { stretch: 3e4, damping: DAMPING, ..Cloth::PLAIN };
+    let cloth = Cloth { stretch: 3e4, shear: SHEAR, damping: DAMPING, ..Cloth::PLAIN };
     let run = move |level| {
         let depth = (0.25 * length * length - 0.25).sqrt();
         let shape = strip.shape(|along, across| {
@@ -88,13 +121,12 @@ fn catenary(length: f64, what: Slung) -> Case {
         });
         let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
         let settled = rig.rest(REST_S);
-        let lowest = (0..rig.vertices()).map(|v| -rig.at(v).y).fold(0.0, f64::max);
         let weight = cloth.density * G * strip.width * length;
-        let got = match what {
-            Slung::Sag => lowest,
-            Slung::Tension => rig.force_on_fixed(|p| p.x < 0.0).x / weight,
+        let read = |seen: &Seen<'_>| match what {
+            Slung::Sag => -seen.lowest(),
+            Slung::Tension => seen.force_on_fixed(|p| p.x < 0.0).x / weight,
         };
-        Ok(Outcome::of(&rig, got).settled(settled))
+        Ok(rig.told(level, read).settled(settled))
     };
     let exact = string::catenary(length);
     Case {
@@ -107,6 +139,5 @@ fn catenary(length: f64, what: Slung) -> Case {
         scale: None,
         target: Some(2.0),
         run: Box::new(run),
-        solve: None,
     }
 }

@@ -20,11 +20,7 @@ pub fn threshold(
     for _ in 0..HALVINGS {
         let middle = (low * high).sqrt();
         let (outcome, gave) = trial(middle)?;
-        if gave {
-            high = middle
-        } else {
-            low = middle
-        }
+        *(if gave { &mut high } else { &mut low }) = middle;
         last = Some(outcome);
     }
     let got = (low * high).sqrt();

@@ -17,7 +17,7 @@ pub fn bisect(mut low: f64, mut high: f64, above: impl Fn(f64) -> bool) -> f64 {
         if middle <= low || middle >= high {
             break;
         }
-        if above(middle) { high = middle } else { low = middle }
+        *(if above(middle) { &mut high } else { &mut low }) = middle;
     }
     0.5 * (low + high)
 }

@@ -1,6 +1,8 @@
 //! Strings without stiffness: the catenary, and the rope around a post.
 
-use super::bisect;
+use std::f64::consts::PI;
+
+use super::{bisect, runge_kutta};
 
 /// A string of own weight between two points of equal height, one unit apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,10 +24,18 @@ pub fn capstan(mu: f64, angle: f64) -> f64 {
     (mu * angle).exp()
 }
 
+/// The same over the upper half of a post for a rope whose own weight there counts: `own` is w R / T1, the weight of a
+/// length of one radius over the lighter pull. At the angle a from the lighter side the post bears T + w R sin(a) a radian,
+/// and the rope slips where dT/da = mu (T + w R sin a) + w R cos a.
+pub fn capstan_heavy(mu: f64, own: f64) -> f64 {
+    const STEPS: usize = 2_000;
+    let h = PI / STEPS as f64;
+    let rates = |a: f64, t: [f64; 1]| [mu * (t[0] + own * a.sin()) + own * a.cos()];
+    (0..STEPS).fold([1.0], |t, k| runge_kutta(k as f64 * h, h, t, &rates))[0]
+}
+
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::PI;
-
     use super::*;
 
     #[test]
@@ -36,6 +46,7 @@ mod tests {
             let found = catenary(length);
             assert!((found.sag - sag).abs() < 1e-5 && (found.tension - tension).abs() < 1e-5, "{length}: {found:?}");
         }
+        assert!((capstan_heavy(0.3, 0.0) - capstan(0.3, PI)).abs() < 1e-9 && capstan_heavy(0.3, 0.1) > 2.6);
         assert!((capstan(0.3, PI) - 2.566).abs() < 1e-3 && (capstan(0.3, 2.0 * PI) - 6.586).abs() < 1e-3);
     }
 }

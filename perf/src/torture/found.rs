@@ -1,0 +1,204 @@
+//! What a trial found, and whether that is good enough.
+
+use glam::Vec3;
+use serde::Serialize;
+
+use super::trial::{self, BACK_M, RECOVER_S, Recovery, Seen, Trial};
+use super::{Case, piece};
+
+/// What the rounding of a speed may add to its limit (1).
+const SPEED_SLACK: f32 = 1e-3;
+
+/// What a trial found.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Found {
+    /// What was seen of the cloth.
+    pub seen: Seen,
+    /// The speed that no free particle may exceed (m/s); none where there was no cloth.
+    pub limit: Option<f32>,
+    /// How it came back, where there is one place to come back to.
+    pub recovery: Option<Recovery>,
+    /// What else was to be met and was not.
+    pub miss: Option<String>,
+    /// Figures of the case's own.
+    pub note: String,
+}
+
+impl Found {
+    /// What a trial saw that has no one place to come back to.
+    pub fn of(trial: &Trial<'_>) -> Self {
+        Self { seen: trial.seen, limit: Some(trial.settings.max_speed), ..Self::default() }
+    }
+
+    /// Lets a trial come to rest and compares.
+    pub fn back(mut trial: Trial<'_>, rest: &[Vec3]) -> Self {
+        let recovery = Some(trial.recover(rest));
+        Self { recovery, ..Self::of(&trial) }
+    }
+
+    /// The same for what may have other places of rest: one that the oracle finds downhill from where the cloth ended,
+    /// and stable, is as good.
+    pub fn back_anywhere(mut trial: Trial<'_>, rest: &[Vec3]) -> Self {
+        let recovery = trial.recover(rest);
+        let mut found = Self { recovery: Some(recovery), ..Self::of(&trial) };
+        if recovery.after_s.is_none() {
+            let end: Vec<Vec3> = trial.cloth.positions.iter().map(|p| Vec3::from(*p)).collect();
+            let near = piece::equilibrium(trial.garment, &trial.settings, &end);
+            match near.map(|x| trial::hausdorff(&trial.cloth.positions, &x)) {
+                Ok(off) => {
+                    let after_s = (off <= BACK_M).then_some(RECOVER_S);
+                    found.recovery = Some(Recovery { after_s, hausdorff_m: off });
+                    found.note = format!("folds; {:.1} mm from lying flat", recovery.hausdorff_m * 1e3);
+                }
+                Err(error) => found.note = error.to_string(),
+            }
+        }
+        found
+    }
+
+    /// The first thing that is not as it has to be.
+    fn cause(&self) -> Option<String> {
+        let Seen { nonfinite, max_speed, .. } = self.seen;
+        if nonfinite > 0 {
+            return Some(format!("{nonfinite} numbers published that are none"));
+        }
+        if self.limit.is_some_and(|limit| max_speed > limit * (1.0 + SPEED_SLACK)) {
+            return Some(format!("{max_speed:.1} m/s, over the limit"));
+        }
+        if let Some(recovery) = self.recovery.filter(|r| r.after_s.is_none()) {
+            let mm = recovery.hausdorff_m * 1e3;
+            return Some(if recovery.hausdorff_m > BACK_M {
+                format!("{mm:.2} mm from its place after {RECOVER_S} s")
+            } else {
+                format!("it does not stay within {} mm, {mm:.2} mm at the end", BACK_M * 1e3)
+            });
+        }
+        self.miss.clone()
+    }
+}
+
+/// One seed of one case.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Outcome {
+    /// The case.
+    pub name: &'static str,
+    /// The seed.
+    pub seed: u64,
+    /// Positions and velocities published that were not finite, summed over the steps.
+    pub nonfinite: u64,
+    /// Greatest speed of a free particle (m/s).
+    pub max_speed: f32,
+    /// Longest way of a free particle in a step, over the step (m/s): contact pushes without giving speed.
+    pub max_way: f32,
+    /// The speed limit that the engine was given (m/s), where there was a cloth.
+    pub speed_limit: Option<f32>,
+    /// Time after which it stayed within 1 mm of its place of rest (s); none where it did not, or has more than one.
+    pub recovered_s: Option<f32>,
+    /// Hausdorff distance to its place of rest after 5 s (mm); none where there is more than one such place.
+    pub hausdorff_mm: Option<f64>,
+    /// Whether all was as it has to be.
+    pub pass: bool,
+    /// What was not.
+    pub cause: Option<String>,
+    /// Figures of the case's own.
+    pub note: String,
+}
+
+impl Outcome {
+    /// The verdict on what a trial found.
+    pub(super) fn of(case: &Case, seed: u64, found: Found) -> Self {
+        let cause = found.cause();
+        Self {
+            name: case.name,
+            seed,
+            nonfinite: found.seen.nonfinite,
+            max_speed: found.seen.max_speed,
+            max_way: found.seen.max_way,
+            speed_limit: found.limit,
+            recovered_s: found.recovery.and_then(|r| r.after_s),
+            hausdorff_mm: found.recovery.map(|r| r.hausdorff_m * 1e3),
+            pass: cause.is_none(),
+            cause,
+            note: found.note,
+        }
+    }
+}
+
+impl Outcome {
+    /// What was wrong and what was done, or the case's own figures.
+    fn told(&self) -> String {
+        match &self.cause {
+            Some(cause) if self.note.is_empty() || *cause == self.note => cause.clone(),
+            Some(cause) => format!("{cause} ({})", self.note),
+            None => self.note.clone(),
+        }
+    }
+}
+
+/// All seeds of one case.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// The case.
+    pub name: &'static str,
+    /// What is done.
+    pub about: &'static str,
+    /// Seeds run.
+    pub seeds: usize,
+    /// Seeds in which all was as it has to be.
+    pub passed: usize,
+    /// Numbers published that were none.
+    pub nonfinite: u64,
+    /// Greatest speed of a free particle (m/s).
+    pub max_speed: f32,
+    /// Longest time until it was back (s), of the seeds that came back.
+    pub recovered_s: Option<f32>,
+    /// Greatest distance to the place of rest (mm).
+    pub hausdorff_mm: Option<f64>,
+    /// The seed that is worst: one that failed if any has, and of these the farthest from its place.
+    pub worst_seed: u64,
+    /// What was wrong with it, or what its own figures are.
+    pub cause: String,
+}
+
+impl Summary {
+    /// What the seeds of a case have in common.
+    pub(super) fn of(case: &Case, outcomes: &[Outcome]) -> Self {
+        let far = |o: &&Outcome| (!o.pass, o.hausdorff_mm.unwrap_or(0.0));
+        let worst = outcomes.iter().max_by(|a, b| {
+            let (a, b) = (far(a), far(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        });
+        Self {
+            name: case.name,
+            about: case.about,
+            seeds: outcomes.len(),
+            passed: outcomes.iter().filter(|o| o.pass).count(),
+            nonfinite: outcomes.iter().map(|o| o.nonfinite).sum(),
+            max_speed: outcomes.iter().map(|o| o.max_speed).fold(0.0, f32::max),
+            recovered_s: outcomes.iter().filter_map(|o| o.recovered_s).reduce(f32::max),
+            hausdorff_mm: outcomes.iter().filter_map(|o| o.hausdorff_mm).reduce(f64::max),
+            worst_seed: worst.map_or(0, |o| o.seed),
+            cause: worst.map_or_else(String::new, Outcome::told),
+        }
+    }
+}
+
+/// The body of `toile torture`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Report {
+    /// The quality's name.
+    pub quality: &'static str,
+    /// How far curtain, lawn, patch and tube are from the oracle's equilibrium when nothing is done to them (mm).
+    pub undisturbed_mm: [f64; 4],
+    /// One row a case.
+    pub summary: Vec<Summary>,
+    /// One entry a case and seed, in their order.
+    pub cases: Vec<Outcome>,
+}
+
+impl Report {
+    /// Cases of which any seed failed.
+    pub fn failed(&self) -> impl Iterator<Item = &Summary> {
+        self.summary.iter().filter(|s| s.passed < s.seeds)
+    }
+}

@@ -1,0 +1,201 @@
+//! One trial: a cloth, what is done to it, and what is seen of it from the first step on.
+
+use glam::{Affine3A, Vec3, Vec3A, Vec4};
+use toile_assets::garment::Garment;
+use toile_assets::skeleton::BONES;
+use toile_engine::cloth::guard::Events;
+use toile_engine::cloth::{Cloth, Settings, Step};
+use toile_engine::colliders::{Colliders, RestSphere};
+
+use super::piece::{self, Piece};
+
+/// Within which a cloth counts as back (m).
+pub const BACK_M: f64 = 1e-3;
+
+/// In which it has to be back (s).
+pub const RECOVER_S: f32 = 5.0;
+
+/// What a cloth did.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Seen {
+    /// Positions and velocities published that were not finite, summed over the steps.
+    pub nonfinite: u64,
+    /// Greatest speed of a free particle (m/s).
+    pub max_speed: f32,
+    /// Greatest way of a free particle in a step, over the step (m/s): what contact pushes out of a collider moves without
+    /// having that speed.
+    pub max_way: f32,
+}
+
+/// How a cloth came back.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Recovery {
+    /// Time from which on it stayed within [`BACK_M`] of its place of rest (s).
+    pub after_s: Option<f32>,
+    /// Hausdorff distance to its place of rest at the end (m).
+    pub hausdorff_m: f64,
+}
+
+/// A cloth among colliders.
+#[derive(Debug, Clone)]
+pub struct Trial<'a> {
+    /// The garment.
+    pub garment: &'a Garment,
+    /// Its state.
+    pub cloth: Cloth,
+    /// The colliders.
+    pub colliders: Colliders,
+    /// Where the spheres are said to be in the next step (m); where there are none of them, they follow the bones.
+    pub spheres: Option<Vec<Vec4>>,
+    /// Where the bones are.
+    pub palette: Box<[Affine3A; BONES]>,
+    /// How it is stepped.
+    pub settings: Settings,
+    /// What was seen so far.
+    pub seen: Seen,
+    before: Box<[Vec3A]>,
+    /// The events up to which jumps were explained.
+    told: Events,
+}
+
+impl<'a> Trial<'a> {
+    /// A cloth as it starts, with nothing about it.
+    pub fn new(garment: &'a Garment, settings: &Settings) -> Self {
+        let none = Colliders::new(&[], &[], false).expect("no colliders are within every limit");
+        let cloth = Cloth::new(garment, &none).in_wind(garment);
+        Self::with(garment, cloth, none, settings)
+    }
+
+    /// A piece at rest, with nothing about it.
+    pub fn at_rest(piece: &'a Piece, settings: &Settings) -> Self {
+        let none = Colliders::new(&[], &[], false).expect("no colliders are within every limit");
+        Self::with(&piece.garment, piece.settled.clone(), none, settings)
+    }
+
+    /// A piece that hangs as it was cut, among spheres joined to capsules.
+    pub fn among(piece: &'a Piece, spheres: &[Vec4], capsules: &[[u8; 2]], settings: &Settings) -> Self {
+        let mut colliders = rig(spheres, capsules);
+        colliders.place_spheres(spheres);
+        let cloth = Cloth::new(&piece.garment, &colliders).in_wind(&piece.garment);
+        let mut this = Self::with(&piece.garment, cloth, colliders, settings);
+        this.spheres = Some(spheres.to_vec());
+        this
+    }
+
+    fn with(garment: &'a Garment, cloth: Cloth, colliders: Colliders, settings: &Settings) -> Self {
+        Self {
+            before: cloth.positions.clone(),
+            told: cloth.events,
+            garment,
+            cloth,
+            colliders,
+            spheres: None,
+            palette: Box::new([Affine3A::IDENTITY; BONES]),
+            settings: *settings,
+            seen: Seen::default(),
+        }
+    }
+
+    /// Puts every free particle somewhere else, with a velocity: `to` is given the particle and where it is.
+    pub fn disturb(&mut self, mut to: impl FnMut(usize, Vec3) -> (Vec3, Vec3)) {
+        for i in 0..self.garment.particles() {
+            if self.garment.inverse_mass[i] > 0.0 {
+                let (place, velocity) = to(i, self.cloth.positions[i].into());
+                self.cloth.disturb(i, place.into(), velocity.into());
+            }
+        }
+    }
+
+    /// One step, and a look at what came of it.
+    pub fn step(&mut self) {
+        match &self.spheres {
+            Some(spheres) => self.colliders.place_spheres(spheres),
+            None => self.colliders.place(&self.palette),
+        }
+        self.before.copy_from_slice(&self.cloth.positions);
+        let step = Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings };
+        self.cloth.step(self.garment, &step);
+        self.look();
+    }
+
+    /// So many steps.
+    pub fn run(&mut self, steps: usize) {
+        (0..steps).for_each(|_| self.step());
+    }
+
+    /// Counts what is not finite, and takes the greatest speed, and the longest way except where the engine says that it has
+    /// put the cloth back.
+    fn look(&mut self) {
+        self.seen.nonfinite += piece::nonfinite(&self.cloth);
+        let put = |e: &Events| (e.repaired, e.rolled_back, e.teleports);
+        let moved = put(&self.cloth.events) == put(&self.told);
+        self.told = self.cloth.events;
+        // What no step can be made with is not what the step was made with.
+        let dt = self.settings.sound().step_seconds;
+        for (i, w) in self.garment.inverse_mass.iter().enumerate() {
+            if *w > 0.0 {
+                let way = if moved { self.cloth.positions[i].distance(self.before[i]) / dt } else { 0.0 };
+                // What is not a number is counted above.
+                self.seen.max_speed = self.seen.max_speed.max(self.cloth.velocity(i).length());
+                self.seen.max_way = self.seen.max_way.max(way);
+            }
+        }
+    }
+
+    /// Lets it come to rest, for [`RECOVER_S`].
+    pub fn recover(&mut self, rest: &[Vec3]) -> Recovery {
+        let dt = self.settings.step_seconds;
+        let mut since = None;
+        for step in 1..=(RECOVER_S / dt).round() as usize {
+            self.step();
+            since = if is_near(&self.cloth.positions, rest) { since.or(Some(step as f32 * dt)) } else { None };
+        }
+        Recovery { after_s: since, hausdorff_m: hausdorff(&self.cloth.positions, rest) }
+    }
+}
+
+/// Colliders of spheres that are given in the world.
+fn rig(spheres: &[Vec4], capsules: &[[u8; 2]]) -> Colliders {
+    let still = RestSphere { bone: 0, centre: Vec3::ZERO, radius: 0.0 };
+    Colliders::new(&vec![still; spheres.len()], capsules, false).expect("the trials' colliders are within the limits")
+}
+
+/// Distance of a point to the nearest of some others (m).
+fn nearest(p: Vec3, others: impl Iterator<Item = Vec3>) -> f64 {
+    f64::from(others.map(|q| p.distance_squared(q)).fold(f32::INFINITY, f32::min)).sqrt()
+}
+
+/// Hausdorff distance of two sets of particles (m): the farthest that any is from the nearest of the others.
+pub fn hausdorff(positions: &[Vec3A], rest: &[Vec3]) -> f64 {
+    let there = positions.iter().map(|p| nearest((*p).into(), rest.iter().copied()));
+    let back = rest.iter().map(|q| nearest(*q, positions.iter().map(|p| Vec3::from(*p))));
+    there.chain(back).fold(0.0, f64::max)
+}
+
+/// Whether two sets of particles are within [`BACK_M`] of each other. Only what is not where it belongs has to look for
+/// another that is.
+fn is_near(positions: &[Vec3A], rest: &[Vec3]) -> bool {
+    let off = |(p, q): &(&Vec3A, &Vec3)| f64::from(Vec3::from(**p).distance(**q)) > BACK_M;
+    positions.iter().zip(rest).filter(off).all(|(p, q)| {
+        nearest((*p).into(), rest.iter().copied()) <= BACK_M
+            && nearest(*q, positions.iter().map(|p| Vec3::from(*p))) <= BACK_M
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hausdorff_looks_both_ways() {
+        let rest = [Vec3::ZERO, Vec3::X];
+        let at = |p: [Vec3; 2]| p.map(Vec3A::from);
+        assert_eq!(hausdorff(&at(rest), &rest), 0.0);
+        assert_eq!(hausdorff(&at([Vec3::X, Vec3::ZERO]), &rest), 0.0, "sets know no order");
+        assert_eq!(hausdorff(&at([Vec3::ZERO, Vec3::ZERO]), &rest), 1.0, "nothing is at X");
+        assert_eq!(hausdorff(&at([Vec3::ZERO, Vec3::X * 3.0]), &rest), 2.0);
+        for p in [[Vec3::X, Vec3::ZERO], [Vec3::ZERO, Vec3::ZERO], [Vec3::ZERO, Vec3::X * 1.0005]] {
+            assert_eq!(is_near(&at(p), &rest), hausdorff(&at(p), &rest) <= BACK_M);
+        }
+    }
+}
