@@ -50,7 +50,7 @@ fn table(report: &Report, paint: Paint) -> String {
 fn fronts(text: &mut String, report: &Report, scene: &SceneReport, paint: Paint) {
     let title = format!("{}, {}, {} particles, one thread", scene.scene, scene.mesh, scene.particles);
     line(text, &paint.tone(&title, Tone::Strong));
-    line(text, &format!("  x*: {}; off by {:.3} mm at most", scene.reference, scene.reference_gap_mm));
+    line(text, &format!("  x*: {}; itself uncertain by about {:.3} mm", scene.reference, scene.reference_gap_mm));
     line(text, &format!("  {:>9} {:>9} {:>9} {:>9}  setting", "step us", "mean mm", "max mm", "strain %"));
     let mine = |p: &&Point| p.scene == scene.scene && p.mesh == scene.mesh && p.threads == 1;
     let mut front: Vec<&Point> = report.points.iter().filter(mine).filter(|p| p.on_front).collect();

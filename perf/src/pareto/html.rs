@@ -41,7 +41,7 @@ fn section(html: &mut String, report: &Report, scene: &SceneReport, figures: &[F
     // Writing to a string cannot fail.
     let _ = writeln!(
         html,
-        "<h2>{}</h2>\n<p>x* is {}; it may itself be off by {:.3} mm.</p>\n<table>\n<tr><th>front, one thread</th>\
+        "<h2>{}</h2>\n<p>x* is {}; it is itself uncertain by about {:.3} mm.</p>\n<table>\n<tr><th>front, one thread</th>\
          <th>substeps</th><th>iterations</th><th>step us</th><th>mean mm</th><th>max mm</th><th>strain %</th></tr>",
         escaped(&scene.scene),
         escaped(&scene.reference),
