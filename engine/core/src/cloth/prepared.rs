@@ -15,6 +15,9 @@ use super::{Quality, Settings, bending, fibers, links};
 /// 1: a linearised solve is stable there, and calming would slow their swing.
 const TAUT: f32 = 1.0;
 
+/// One particle in so many may ask for more of bending than the others get.
+const NEEDLES: usize = 50;
+
 /// What depends on the settings, made again when they change; the storage stays.
 #[derive(Debug, Clone)]
 pub struct Prepared {
@@ -97,8 +100,12 @@ impl Prepared {
         let layout = &garment.layout;
         self.load.fill(0.0);
         add_load(garment, self.dt, &mut self.load);
-        let most = self.load.iter().copied().fold(0.0, f32::max);
-        let stages = if self.stiff && most > bending::STABLE { stages::needed(most) } else { 1 };
+        // A few needles of a mesh do not decide for all of it: they are weakened.
+        let few = self.load.len() / NEEDLES;
+        let carries = |limit: f32| self.load.iter().filter(|l| **l > limit).count() <= few;
+        let plain = !self.stiff || carries(bending::STABLE);
+        let stages =
+            if plain { 1 } else { (2..stages::MOST).find(|m| carries(stages::carried(*m))).unwrap_or(stages::MOST) };
         let limit = if stages > 1 { stages::carried(stages) } else { bending::STABLE };
         if stages > 1 {
             stages::coefficients(stages, &mut self.stages);
