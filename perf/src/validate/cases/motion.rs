@@ -18,6 +18,7 @@ pub fn cases() -> Vec<Case> {
     for degrees in [30.0, 60.0, 90.0, 120.0] {
         all.extend([Swung::Period, Swung::Loss].map(|what| pendulum(degrees, what)));
     }
+    all.push(pendulum(120.0, Swung::Whole));
     all.push(spring(None));
     all.extend([2, 4, 8, 16, 32].map(|n| spring(Some(n))));
     all.extend([1.0, 4.0].map(wave));
@@ -83,6 +84,9 @@ fn chain(n: usize) -> Case {
 enum Swung {
     /// Four times the way from rest to the lowest place, over the period of small swings.
     Period,
+    /// From the lowest place to and fro to the lowest place again, over the period of small swings: a whole period, which
+    /// what is lost on the way shortens.
+    Whole,
     /// Part of its angle that it has lost after one swing to and fro (%): told only. The velocity of a substep is a chord
     /// of the arc, which is shorter, so that the engine damps what turns.
     Loss,
@@ -102,9 +106,10 @@ fn pendulum(degrees: f64, what: Swung) -> Case {
             let p = rig.mean((0..rig.vertices()).filter(|v| rig.moves(*v)));
             p.z.atan2(-p.y)
         };
-        let (samples, step) = watch(&mut rig, 1.2 * small * exact, swing);
+        let (samples, step) = watch(&mut rig, 1.3 * small * exact, swing);
         let got = match what {
             Swung::Period => crossings(&samples, step).first().map_or(f64::NAN, |quarter| 4.0 * quarter / small),
+            Swung::Whole => period(&crossings(&samples, step)) / small,
             Swung::Loss => {
                 let back = samples[samples.len() / 2..].iter().copied().fold(f64::MIN, f64::max);
                 (1.0 - back / angle) * 100.0
@@ -116,6 +121,9 @@ fn pendulum(degrees: f64, what: Swung) -> Case {
     match what {
         Swung::Period => {
             Case { target: Some(1.0), run, ..case("pendulum", format!("{degrees} deg"), 1, "T/T0", exact) }
+        }
+        Swung::Whole => {
+            Case { target: Some(1.0), run, ..case("pendulum", format!("{degrees} deg, whole"), 1, "T/T0", exact) }
         }
         Swung::Loss => {
             Case { scale: Some(100.0), run, ..case("pendulum", format!("{degrees} deg, lost"), 1, "%", 0.0) }
