@@ -21,7 +21,8 @@ pub fn cases() -> Vec<Case> {
     all.push(pendulum(120.0, Swung::Whole));
     all.push(spring(None));
     all.extend([2, 4, 8, 16, 32].map(|n| spring(Some(n))));
-    all.extend([1.0, 4.0].map(wave));
+    all.extend([1.0, 4.0].map(|tension| wave(tension, WAVE_SHEAR)));
+    all.push(wave(4.0, Cloth::PLAIN.shear));
     all.push(fall());
     all.extend([Kept::Gain, Kept::Loss].map(energy));
     all
@@ -158,16 +159,19 @@ fn spring(substeps: Option<u32>) -> Case {
 /// Where a wave is watched from its start on (m).
 const GAUGES: [f64; 2] = [0.3, 0.8];
 
+/// Shear stiffness of what is to carry waves by its tension alone (N/m): next to none.
+const WAVE_SHEAR: f64 = 1.0;
+
 /// Links of the string.
 const WAVE_ROWS: usize = 120;
 
 /// A wave on a strip that is pulled with a tension (N/m): it starts at rest as a hump in the middle, which runs apart, and
 /// passes two places.
-fn wave(tension: f64) -> Case {
+fn wave(tension: f64, shear: f64) -> Case {
     let density = Cloth::PLAIN.density;
     let speed = (tension / density).sqrt();
     let run = move |level| {
-        let cloth = Cloth { stretch: 2_000.0, shear: 1.0, ..Cloth::PLAIN };
+        let cloth = Cloth { stretch: 2_000.0, shear, ..Cloth::PLAIN };
         let stretched = 1.0 + tension / cloth.stretch;
         let strip = Strip::narrow(2.4 / stretched, WAVE_ROWS, [Hold::Pinned, Hold::Pinned]);
         let hump = |x: f64| 0.005 * (-0.5 * (x / 0.08).powi(2)).exp();
@@ -196,7 +200,9 @@ fn wave(tension: f64) -> Case {
     };
     // Cloth that is stretched is lighter by as much.
     let exact = speed * (1.0 + tension / 2_000.0).sqrt();
-    Case { target: Some(3.0), run: Box::new(run), ..case("wave", format!("T {tension} N/m"), WAVE_ROWS, "m/s", exact) }
+    let sheared = if shear > WAVE_SHEAR { format!(", G {shear} N/m") } else { String::new() };
+    let parameter = format!("T {tension} N/m{sheared}");
+    Case { target: Some(3.0), run: Box::new(run), ..case("wave", parameter, WAVE_ROWS, "m/s", exact) }
 }
 
 /// How long it falls (s).

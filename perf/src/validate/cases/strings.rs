@@ -31,8 +31,8 @@ pub fn cases() -> Vec<Case> {
     for length in [1.05, 1.2, 1.5, 2.0] {
         all.extend([Slung::Sag, Slung::Tension].map(|what| catenary(length, SHEAR, what)));
     }
-    // As cloth shears: the tip alone, and the slackest of the catenaries' pulls.
-    all.push(strip(6_000.0, CLOTH, Hung::Tip));
+    // As cloth shears: the tip, where shear is a tenth of what holds it, and the pull of a slack catenary.
+    all.extend([600.0, 6_000.0].map(|stretch| strip(stretch, CLOTH, Hung::Tip)));
     all.push(catenary(1.2, CLOTH, Slung::Tension));
     all.extend([20.0, 60.0, 200.0].map(shear));
     all
