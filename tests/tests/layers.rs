@@ -43,7 +43,15 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
     ),
     (
         "toile-perf",
-        &[&["time"], &["surface"], &["yardstick"], &["oracle"], &["skinning", "skirt"], &["torture", "validate"]],
+        &[
+            &["time"],
+            &["surface"],
+            &["yardstick"],
+            &["oracle"],
+            &["skinning", "skirt"],
+            &["torture", "validate"],
+            &["pareto"],
+        ],
     ),
 ];
 

@@ -94,7 +94,7 @@ mod tests {
 
     /// A hoop of `2 n` particles, the even ones first.
     fn hoop(n: u32, closed: bool) -> Vec<(Direction, [u32; 2])> {
-        let particle = |c: u32| if c % 2 == 0 { c / 2 } else { n + c / 2 };
+        let particle = |c: u32| if c.is_multiple_of(2) { c / 2 } else { n + c / 2 };
         let links = 0..2 * n - u32::from(!closed);
         let pair = |c: u32| [particle(c), particle((c + 1) % (2 * n))];
         links.map(pair).map(|[p, q]| (Direction::Weft, [p.min(q), p.max(q)])).collect()

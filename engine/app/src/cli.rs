@@ -14,12 +14,14 @@ use toile_engine::cloth::Quality;
 use crate::exit::AppError;
 
 mod bake;
+mod pareto;
 mod run;
 mod skirt;
 mod torture;
 mod validate;
 
 pub use bake::BakeArgs;
+pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
 pub use skirt::SkirtArgs;
 pub use torture::TortureArgs;
@@ -48,6 +50,8 @@ pub enum Command {
     Torture(TortureArgs),
     /// `toile validate`.
     Validate(ValidateArgs),
+    /// `toile pareto`.
+    Pareto(ParetoArgs),
     /// `toile completions`.
     Completions(Shell),
     /// Help or version: text to print.
@@ -154,6 +158,7 @@ pub fn command() -> clap::Command {
             doctor(),
             bench(),
             validate::grammar(),
+            pareto::grammar(),
             torture::grammar(),
             completions(),
         ])
@@ -320,6 +325,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "bench" => bench_command(matches)?,
         "torture" => Command::Torture(torture::args(matches)?),
         "validate" => Command::Validate(validate::args(matches)?),
+        "pareto" => Command::Pareto(pareto::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
     })

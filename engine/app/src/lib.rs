@@ -15,6 +15,7 @@ pub mod fit;
 pub mod machine;
 pub mod measure;
 pub mod output;
+pub mod pareto;
 pub mod pictures;
 pub mod record;
 pub mod report;
@@ -69,6 +70,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::BenchSkirt(args) => bench::skirt(args),
         Command::Torture(args) => torture::run(args),
         Command::Validate(args) => validate::run(args),
+        Command::Pareto(args) => pareto::run(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }

@@ -185,8 +185,8 @@ impl<const K: usize> Bend<'_, K> {
         let (x, to, v) = (self.from, self.to, v.map(|v| v as usize));
         let coefficient = |k: usize| self.bends.coefficients[k][at];
         let mut d = V3::<f32>::load(x, v[0], 1) * coefficient(0);
-        for k in 1..K {
-            d = d + V3::load(x, v[k], 1) * coefficient(k);
+        for (k, &v) in v.iter().enumerate().skip(1) {
+            d = d + V3::load(x, v, 1) * coefficient(k);
         }
         let d = d * self.scale.map_or(self.by, |s| self.by * s[at]);
         for (k, &v) in v.iter().enumerate() {

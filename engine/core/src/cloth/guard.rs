@@ -107,7 +107,7 @@ mod tests {
         let large = [1.1e-12, -1.1e-12, 1e-6, -2.5, 9_999.0];
         for width in Width::ALL.into_iter().filter(|w| w.available()) {
             let mut store = Store::zeros(3 * 37);
-            let value = |i: usize| if i % 2 == 0 { small[i % small.len()] } else { large[i % large.len()] };
+            let value = |i: usize| if i.is_multiple_of(2) { small[i % small.len()] } else { large[i % large.len()] };
             store.as_mut().iter_mut().enumerate().for_each(|(i, v)| *v = value(i));
             let all = store.column();
             assert!(width.run(Sound([0, 1, 2].map(|k| all.part(k * 37, 37)))), "{width} lanes");

@@ -85,14 +85,15 @@ fn a_light_cantilever_sinks_as_its_discrete_beam() {
     assert!((got / sunk - 1.0).abs() < 1e-3, "{got} {sunk}");
 }
 
-/// Sixty links in a row in short steps: rounds that change each multiplier by its own lag alone would need hundreds.
+/// Three hundred links in a row in short steps: by rounds that change each multiplier by its own lag alone, 200 are not
+/// enough.
 #[test]
 fn long_chains_take_few_rounds() {
-    let problem = chain(60, 0.01, 1e-4, 0.0, DVec3::X);
+    let problem = chain(300, 0.01, 1e-4, 0.0, DVec3::X);
     let start = State::at_rest(&problem.start);
-    let solved = Oracle::new(problem).unwrap().trajectory(&start, 10, |_| Step::of(1e-3)).unwrap();
+    let solved = Oracle::new(problem).unwrap().trajectory(&start, 4, |_| Step::of(1e-3)).unwrap();
     let rounds = solved.iter().map(|s| s.report.rounds).max();
-    assert!(rounds < Some(20), "{rounds:?}");
+    assert!(rounds < Some(10), "{rounds:?}");
     assert!(solved.iter().all(|s| s.report.violation.strain < 1e-8 && s.report.residual_n < 1e-9));
 }
 

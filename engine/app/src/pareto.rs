@@ -1,0 +1,138 @@
+//! `toile pareto`: speed against error.
+
+use std::fmt::Write;
+
+use toile_perf::pareto::{self, Drape, Point, Report, SceneReport};
+
+use crate::cli::ParetoArgs;
+use crate::exit::AppError;
+use crate::output::OutputFolder;
+use crate::report::Document;
+use crate::terminal::{self, Paint, Tone, Words};
+
+/// Units of the progress bar.
+const UNITS: f64 = 1_000.0;
+
+/// Runs `toile pareto`.
+///
+/// # Errors
+/// An output folder that cannot be written, a closed stdout.
+pub fn run(args: &ParetoArgs) -> Result<(), AppError> {
+    let words = Words::new(args.quiet || args.json);
+    let mut out = OutputFolder::prepare(&args.out)?;
+    let bar = words.bar(UNITS as u64, "measuring");
+    let told = |part: f64| bar.set_position((UNITS * part) as u64);
+    let report = pareto::run(&args.options, &told).map_err(AppError::internal)?;
+    bar.finish_and_clear();
+    for file in pareto::files(&report).map_err(AppError::internal)? {
+        out.write(&file.name, &file.bytes)?;
+    }
+    let files = out.commit()?;
+    if args.json {
+        return terminal::print_json(&Document::new("pareto", report));
+    }
+    words.say(&format!("{} files in {}", files.len(), args.out.display()));
+    terminal::print(&table(&report, Paint::for_stdout()))
+}
+
+/// The fronts as people read them.
+fn table(report: &Report, paint: Paint) -> String {
+    let mut text = String::new();
+    for scene in report.scenes.iter().filter(|s| s.main) {
+        fronts(&mut text, report, scene, paint);
+    }
+    if let Some(drape) = &report.drape {
+        samplings(&mut text, drape, paint);
+    }
+    text
+}
+
+fn fronts(text: &mut String, report: &Report, scene: &SceneReport, paint: Paint) {
+    let title = format!("{}, {}, {} particles, one thread", scene.scene, scene.mesh, scene.particles);
+    line(text, &paint.tone(&title, Tone::Strong));
+    line(text, &format!("  x*: {}; itself uncertain by about {:.3} mm", scene.reference, scene.reference_gap_mm));
+    line(text, &format!("  {:>9} {:>9} {:>9} {:>9}  setting", "step us", "mean mm", "max mm", "strain %"));
+    let mine = |p: &&Point| p.scene == scene.scene && p.mesh == scene.mesh && p.threads == 1;
+    let mut front: Vec<&Point> = report.points.iter().filter(mine).filter(|p| p.on_front).collect();
+    front.sort_by(|a, b| a.step_us.total_cmp(&b.step_us));
+    front.iter().for_each(|p| line(text, &row(p)));
+    for own in report.points.iter().filter(mine).filter(|p| p.default && p.quality == "shop") {
+        let (verdict, tone) =
+            if own.on_front { ("on the front", Tone::Good) } else { ("not on the front", Tone::Warn) };
+        let said = format!(
+            "  the default, shop with {} substeps, is {verdict}: {:.0} us, {:.3} mm",
+            own.substeps, own.step_us, own.error_mm
+        );
+        line(text, &paint.tone(&said, tone));
+    }
+    line(text, "");
+}
+
+fn row(p: &Point) -> String {
+    let own = if p.default { ", its own substeps" } else { "" };
+    format!(
+        "  {:>9.1} {:>9.3} {:>9.2} {:>9.3}  {}, {}, {} substeps of {} passes{own}",
+        p.step_us,
+        p.error_mm,
+        p.max_mm,
+        100.0 * p.strain_mean,
+        p.solver,
+        p.quality,
+        p.substeps,
+        p.iterations
+    )
+}
+
+fn samplings(text: &mut String, drape: &Drape, paint: Paint) {
+    line(text, &paint.tone("drape", Tone::Strong));
+    line(text, &format!("  {}", drape.setup));
+    line(
+        text,
+        &format!(
+            "  {:>9} {:>9} {:>9} {:>9} {:>12} {:>9}",
+            "cm", "particles", "mean cm", "max cm", "published cm", "step us"
+        ),
+    );
+    for s in &drape.samplings {
+        let published = s.published_cm.map_or_else(|| "-".into(), |cm| format!("{cm:.2}"));
+        let told = format!(
+            "  {:>9} {:>9} {:>9.3} {:>9.2} {published:>12} {:>9.0}",
+            s.spacing_cm, s.particles, s.mean_cm, s.max_cm, s.step_us
+        );
+        line(text, &told);
+    }
+}
+
+fn line(text: &mut String, words: &str) {
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{words}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_tells_the_front_and_whether_the_default_lies_on_it() {
+        let point = |quality, error_mm, on_front, default| Point {
+            scene: "skirt".into(),
+            mesh: "grid".into(),
+            solver: "mixed",
+            quality,
+            substeps: 4,
+            iterations: 3,
+            threads: 1,
+            step_us: 123.4,
+            error_mm,
+            on_front,
+            default,
+            ..Point::default()
+        };
+        let scene = SceneReport { scene: "skirt".into(), mesh: "grid".into(), main: true, ..SceneReport::default() };
+        let points = vec![point("fine", 0.25, true, false), point("shop", 9.87, false, true)];
+        let report = Report { points, scenes: vec![scene], ..Report::default() };
+        let text = table(&report, Paint::none());
+        assert!(text.contains("0.250") && text.contains("mixed, fine, 4 substeps of 3 passes"), "{text}");
+        assert!(text.contains("shop with 4 substeps, is not on the front: 123 us, 9.870 mm"), "{text}");
+    }
+}

@@ -1,0 +1,184 @@
+//! The charts of a report.
+
+use super::front;
+use super::plot::axis::Axis;
+use super::plot::chart::{Chart, Look, Series};
+use super::plot::tiles::{Cell, Tiles};
+use super::plot::{BLACK, Drawing, INKS};
+use super::report::{Drape, Fate, Point, Report, SceneReport, Survival};
+
+/// A chart under its file's name.
+pub struct Figure {
+    /// The file's name without its ending.
+    pub name: String,
+    /// The chart.
+    pub drawing: Drawing,
+}
+
+/// What 120 Hz leaves a step (us).
+const STEP_US: f64 = 1e6 / 120.0;
+
+/// Colours of the fates.
+const FATES: [[u8; 3]; 3] = [[190, 228, 190], [250, 222, 150], [240, 168, 160]];
+
+/// Solvers and qualities that are series of their own, each with its name in a legend.
+const GROUPS: [(&str, &str, &str); 6] = [
+    ("mixed", "draft", "mixed, draft"),
+    ("mixed", "shop", "mixed, shop"),
+    ("mixed", "fine", "mixed, fine"),
+    ("gauss-seidel", "shop", "Gauss-Seidel, shop"),
+    ("semi-implicit", "shop", "semi-implicit, shop"),
+    ("zero-stretch", "shop", "zero-stretch, shop"),
+];
+
+/// All charts that the figures give.
+pub fn figures(report: &Report) -> Vec<Figure> {
+    let mut all = Vec::new();
+    let mut add = |name: String, drawing: Drawing| all.push(Figure { name, drawing });
+    for scene in report.scenes.iter().filter(|s| s.main) {
+        let of = |p: &&Point| p.scene == scene.scene && p.mesh == scene.mesh;
+        let points: Vec<&Point> = report.points.iter().filter(of).collect();
+        let name = &scene.scene;
+        add(format!("{name}-front"), speed(scene, &points, &report.points).draw());
+        add(format!("{name}-substeps"), substeps(scene, &points).draw());
+        add(format!("{name}-iterations"), iterations(scene, &points).draw());
+        if report.scenes.iter().filter(|s| s.scene == *name).count() > 1 {
+            add(format!("{name}-mesh"), meshes(name, report).draw());
+        }
+        if !scene.energy.is_empty() {
+            add(format!("{name}-energy"), energy(scene).draw());
+        }
+    }
+    if let Some(survival) = &report.survival {
+        add("survival".into(), map(survival).draw());
+    }
+    if let Some(drape) = &report.drape {
+        add("drape".into(), samplings(drape).draw());
+    }
+    all
+}
+
+/// A series for each group, by what x is.
+fn by_group(points: &[&Point], look: fn([u8; 3]) -> Look, x: impl Fn(&Point) -> f64) -> Vec<Series> {
+    let group = |(k, (solver, quality, name)): (usize, &(&str, &str, &str))| {
+        let of = points.iter().filter(|p| p.solver == *solver && p.quality == *quality && p.threads == 1);
+        let mut points: Vec<[f64; 2]> = of.map(|p| [x(p), p.error_mm]).collect();
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        Series { name: (*name).into(), points, look: look(INKS[k]) }
+    };
+    GROUPS.iter().enumerate().map(group).filter(|s| !s.points.is_empty()).collect()
+}
+
+/// The chart with axes around all its points.
+fn framed(title: String, labels: [(&'static str, bool); 2], series: Vec<Series>) -> Chart {
+    let axis = |k: usize| {
+        let values = series.iter().flat_map(|s| &s.points).map(|p| p[k]);
+        Axis::around(labels[k].0, labels[k].1, values)
+    };
+    Chart { title, x: axis(0), y: axis(1), series, rules: Vec::new() }
+}
+
+const ERROR: (&str, bool) = ("mean distance to x* (mm)", true);
+
+fn titled(scene: &SceneReport, words: &str) -> String {
+    format!("{}: {words} ({}, {} particles)", scene.scene, scene.mesh, scene.particles)
+}
+
+fn speed(scene: &SceneReport, points: &[&Point], all: &[Point]) -> Chart {
+    let mut series = by_group(points, Look::dots, |p| p.step_us);
+    let two: Vec<[f64; 2]> = points.iter().filter(|p| p.threads == 2).map(|p| [p.step_us, p.error_mm]).collect();
+    if !two.is_empty() {
+        let look = Look { dot: 2.5, ..Look::dots([150; 3]) };
+        series.push(Series { name: "mixed, two threads".into(), points: two, look });
+    }
+    for (threads, words) in [(1, "front, one thread"), (2, "front, two threads")] {
+        let found = front::of(all, &scene.scene, &scene.mesh, threads);
+        let points: Vec<[f64; 2]> = found.iter().map(|p| [p.step_us, p.error_mm]).collect();
+        if !points.is_empty() {
+            let look = Look { dashed: threads == 2, ..Look::line(BLACK, 1.6) };
+            series.push(Series { name: words.into(), points, look });
+        }
+    }
+    let own = points.iter().filter(|p| p.default && p.threads == 1).map(|p| [p.step_us, p.error_mm]).collect();
+    series.push(Series { name: "a quality's own".into(), points: own, look: Look::rings(BLACK) });
+    let mut chart = framed(titled(scene, "error against time"), [("median time of a step (us)", true), ERROR], series);
+    chart.x.range[1] = chart.x.range[1].max(STEP_US * 1.3);
+    chart.rules.push((STEP_US, "120 Hz: 8.33 ms"));
+    chart
+}
+
+fn substeps(scene: &SceneReport, points: &[&Point]) -> Chart {
+    let series = by_group(points, Look::joined, |p| f64::from(p.substeps));
+    framed(titled(scene, "convergence by substeps"), [("substeps of a step", true), ERROR], series)
+}
+
+fn iterations(scene: &SceneReport, points: &[&Point]) -> Chart {
+    let series = by_group(points, Look::joined, |p| f64::from(p.substeps) * p.iterations as f64);
+    let x = ("iterations of a step: substeps x passes over the weft", true);
+    framed(titled(scene, "convergence by iterations"), [x, ERROR], series)
+}
+
+/// Error of the qualities' own settings over the meshes of a scene, and what their x* may itself be off.
+fn meshes(name: &str, report: &Report) -> Chart {
+    let scenes: Vec<&SceneReport> = report.scenes.iter().filter(|s| s.scene == name).collect();
+    let mut series = Vec::new();
+    for (k, quality) in ["draft", "shop", "fine"].into_iter().enumerate() {
+        let point = |s: &&SceneReport| {
+            let of = |p: &&Point| p.scene == s.scene && p.mesh == s.mesh && p.default && p.threads == 1;
+            report.points.iter().filter(of).find(|p| p.quality == quality).map(|p| [s.spacing_mm, p.error_mm])
+        };
+        let mut points: Vec<[f64; 2]> = scenes.iter().filter_map(point).collect();
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        series.push(Series { name: format!("{quality}, its own substeps"), points, look: Look::joined(INKS[k]) });
+    }
+    let x = ("mean length of an edge (mm)", true);
+    framed(format!("{name}: error against mesh size"), [x, ERROR], series)
+}
+
+fn energy(scene: &SceneReport) -> Chart {
+    let inks = [BLACK, INKS[0], INKS[1], INKS[2]];
+    let runs = scene.energy.iter().zip(inks.into_iter().cycle());
+    let series = runs.map(|(run, ink)| {
+        let look = Look { dashed: ink == BLACK, ..Look::line(ink, 1.8) };
+        Series { name: run.setting.clone(), points: run.frames.clone(), look }
+    });
+    let axes = [("time (s)", false), ("energy: motion, weight, bending, stretch (J)", false)];
+    framed(titled(scene, "energy by frame"), axes, series.collect())
+}
+
+fn map(survival: &Survival) -> Tiles {
+    let ink = |fate: Fate| match fate {
+        Fate::Stable => FATES[0],
+        Fate::Strained => FATES[1],
+        Fate::RolledBack => FATES[2],
+    };
+    let cell = |(fate, strain): (&Fate, &f64)| Cell { ink: ink(*fate), words: format!("{:.1} %", 100.0 * strain) };
+    let row = |(fates, strains): (&Vec<Fate>, &Vec<f64>)| fates.iter().zip(strains).map(cell).collect();
+    let limit = 100.0 * survival.strained_p99;
+    Tiles {
+        title: "skirt: survival".into(),
+        labels: [
+            "mass of the hem over its fabric's; in each cell the worst 99th percentile of strain".into(),
+            "time step".into(),
+        ],
+        columns: survival.mass_ratios.iter().map(|r| format!("1 : {r}")).collect(),
+        rows: survival.steps_s.iter().map(|s| format!("{:.1} ms", 1e3 * s)).collect(),
+        cells: survival.fate.iter().zip(&survival.strain_p99).map(row).collect(),
+        legend: vec![
+            (FATES[0], format!("stable: within {limit:.0} %, {} substeps whatever the step", survival.substeps)),
+            (FATES[1], format!("strained: finite, but beyond {limit:.0} %")),
+            (FATES[2], "rolled back: at least one step was not finite".into()),
+        ],
+    }
+}
+
+fn samplings(drape: &Drape) -> Chart {
+    let ours = drape.samplings.iter().map(|s| [s.spacing_cm, s.mean_cm]).filter(|p| p[1] > 0.0).collect();
+    let theirs = drape.samplings.iter().filter_map(|s| Some([s.spacing_cm, s.published_cm?])).collect();
+    let series = vec![
+        Series { name: "to the finest".into(), points: ours, look: Look::joined(INKS[0]) },
+        Series { name: "MIRAGES, to a real cloth".into(), points: theirs, look: Look::joined(INKS[1]) },
+    ];
+    let axes = [("sampling (cm)", true), ("mean distance (cm)", true)];
+    framed("drape: a tablecloth of 1 m by sampling".into(), axes, series)
+}

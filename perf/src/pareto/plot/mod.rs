@@ -1,0 +1,105 @@
+//! Plots: a chart is described once, laid out as marks, and drawn as SVG text or as pixels.
+//!
+//! Reads: series of points, or a grid of cells. Writes: a [`Drawing`], an SVG, an image.
+//! Budget: milliseconds a chart; never inside the frame.
+//! Thread: the caller's.
+
+pub mod axis;
+pub mod chart;
+pub mod raster;
+pub mod svg;
+pub mod tiles;
+
+/// An sRGB colour.
+pub type Ink = [u8; 3];
+
+/// Text, axes.
+pub const BLACK: Ink = [34, 34, 34];
+
+/// Lines of the grid.
+pub const PALE: Ink = [225, 225, 225];
+
+/// Rules across a chart.
+pub const RULE: Ink = [190, 40, 40];
+
+/// Inks of series, apart for most colour-blind eyes (Okabe & Ito 2008).
+pub const INKS: [Ink; 6] = [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [86, 180, 233], [230, 159, 0]];
+
+/// Which end of a text lies where it is put.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Anchor {
+    /// Its left end.
+    Left,
+    /// Its middle.
+    Middle,
+    /// Its right end.
+    Right,
+}
+
+/// One thing that is drawn, in pixels from the upper left corner.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Mark {
+    /// A line from point to point.
+    Line {
+        /// Its corners.
+        points: Vec<[f64; 2]>,
+        /// Its colour.
+        ink: Ink,
+        /// Its width.
+        width: f64,
+        /// Whether it is dashed.
+        dashed: bool,
+    },
+    /// A disc, or a ring.
+    Dot {
+        /// Its middle.
+        at: [f64; 2],
+        /// Its radius.
+        radius: f64,
+        /// Its colour.
+        ink: Ink,
+        /// Whether it is a ring.
+        ring: bool,
+    },
+    /// A filled rectangle.
+    Box {
+        /// Its upper left corner.
+        at: [f64; 2],
+        /// Width and height.
+        size: [f64; 2],
+        /// Its colour.
+        ink: Ink,
+    },
+    /// One line of text, centred on a height.
+    Text {
+        /// The end that the anchor names.
+        at: [f64; 2],
+        /// Which end.
+        anchor: Anchor,
+        /// The words.
+        words: String,
+        /// Whether they are a title.
+        large: bool,
+    },
+}
+
+impl Mark {
+    /// A line of text in normal size.
+    pub fn text(at: [f64; 2], anchor: Anchor, words: impl Into<String>) -> Self {
+        Self::Text { at, anchor, words: words.into(), large: false }
+    }
+
+    /// A straight line.
+    pub fn line(from: [f64; 2], to: [f64; 2], ink: Ink) -> Self {
+        Self::Line { points: vec![from, to], ink, width: 1.0, dashed: false }
+    }
+}
+
+/// A picture as marks.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Drawing {
+    /// Width and height (pixels).
+    pub size: [u32; 2],
+    /// What is drawn, in this order.
+    pub marks: Vec<Mark>,
+}

@@ -1,0 +1,66 @@
+//! A drawing as SVG text, to be put into a page as it is.
+
+use std::fmt::Write;
+
+use super::{Anchor, Drawing, Ink, Mark};
+
+/// The SVG element.
+pub fn text(drawing: &Drawing) -> String {
+    let [width, height] = drawing.size;
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" role=\"img\" \
+         font-family=\"ui-monospace, monospace\" fill=\"#222\">\n<rect width=\"{width}\" height=\"{height}\" \
+         fill=\"#fff\"/>\n"
+    );
+    for mark in &drawing.marks {
+        // Writing to a string cannot fail.
+        let _ = writeln!(svg, "{}", element(mark));
+    }
+    svg.push_str("</svg>\n");
+    svg
+}
+
+fn element(mark: &Mark) -> String {
+    match mark {
+        Mark::Line { points, ink, width, dashed } => {
+            let points: Vec<String> = points.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
+            let dash = if *dashed { " stroke-dasharray=\"7 5\"" } else { "" };
+            let (points, ink) = (points.join(" "), hex(*ink));
+            format!("<polyline points=\"{points}\" fill=\"none\" stroke=\"{ink}\" stroke-width=\"{width}\"{dash}/>")
+        }
+        Mark::Dot { at: [x, y], radius, ink, ring } => {
+            let ink = hex(*ink);
+            let paint = if *ring {
+                format!("fill=\"none\" stroke=\"{ink}\" stroke-width=\"2\"")
+            } else {
+                format!("fill=\"{ink}\"")
+            };
+            format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" {paint}/>")
+        }
+        Mark::Box { at: [x, y], size: [w, h], ink } => {
+            format!("<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{w:.1}\" height=\"{h:.1}\" fill=\"{}\"/>", hex(*ink))
+        }
+        Mark::Text { at: [x, y], anchor, words, large } => {
+            let anchor = match anchor {
+                Anchor::Left => "start",
+                Anchor::Middle => "middle",
+                Anchor::Right => "end",
+            };
+            let size = if *large { 20 } else { 14 };
+            format!(
+                "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" dominant-baseline=\"central\" \
+                 font-size=\"{size}\">{}</text>",
+                escaped(words)
+            )
+        }
+    }
+}
+
+fn hex([r, g, b]: Ink) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// Text with what a page would read as its own signs written out.
+pub fn escaped(words: &str) -> String {
+    words.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

@@ -1,0 +1,119 @@
+//! The scenes: the cantilever in four meshes, the skirt in three, the garments of the wardrobe on an average mannequin.
+
+use glam::DVec3;
+use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::fabric::Fabric;
+use toile_assets::rig::Rig;
+use toile_assets::scene::shopper;
+use toile_assets::scene::skirt::{self, Motion, Stretch};
+use toile_assets::sizes::{Population, SizeTable};
+use toile_assets::wardrobe;
+use toile_engine::colliders::{Colliders, RestSphere};
+
+use super::ParetoError;
+use super::subject::{Drive, Subject, Truth};
+use crate::validate::mesh::{Cloth, Hold, Strip, Style};
+
+/// Time of the walk that is compared (s): the legs swing once to and fro.
+const WALK_S: f64 = 1.0;
+
+/// Time that a garment gets on the mannequin: half of it the pose is taken (s).
+const STAND_S: f64 = 1.5;
+
+/// Time that the cantilever gets to come to rest (s).
+const HANG_S: f64 = 4.0;
+
+/// The cantilever's w L^3 / B, its length (m) and width (m), and its damping (1/s).
+const CANTILEVER: [f64; 4] = [10.0, 0.3, 0.1, 10.0];
+
+/// Acceleration of gravity (m/s2).
+const G: f64 = 9.81;
+
+/// A scene in all its meshes; the first is the one that every setting is run on.
+pub fn subjects(name: &str, quick: bool) -> Result<Vec<Subject>, ParetoError> {
+    match name {
+        "cantilever" => {
+            let rows: &[usize] = if quick { &[24, 12] } else { &[24, 12, 36, 48] };
+            rows.iter().enumerate().map(|(k, rows)| cantilever(*rows, k == 0)).collect()
+        }
+        "skirt" => {
+            let sides: &[usize] = if quick { &[32, 16] } else { &[64, 32, 96] };
+            sides.iter().enumerate().map(|(k, side)| walk(*side, k == 0, quick)).collect()
+        }
+        garment => Ok(vec![worn(garment, quick)?]),
+    }
+}
+
+fn cantilever(rows: usize, main: bool) -> Result<Subject, ParetoError> {
+    let [gamma, length, width, damping] = CANTILEVER;
+    let ends = [Hold::Clamped, Hold::Free];
+    let strip = Strip { length, width, rows, columns: rows / 3, style: Style::Grid, ends };
+    let bend = Cloth::PLAIN.density * G * length.powi(3) / gamma;
+    Ok(Subject {
+        scene: "cantilever",
+        mesh: format!("grid {rows} x {}", rows / 3),
+        main,
+        shape: strip.shape(|along, across| DVec3::new(along, 0.0, across)),
+        fabric: Cloth { bend, damping, ..Cloth::PLAIN }.fabric(),
+        drive: Drive::Still,
+        colliders: Colliders::new(&[], &[], false)?,
+        seconds: HANG_S,
+        truth: Truth::Equilibrium,
+    })
+}
+
+fn walk(side: usize, main: bool, quick: bool) -> Result<Subject, ParetoError> {
+    let shape = skirt::shape(side);
+    let rest =
+        skirt::JOINTS.map(|(p, r)| RestSphere { bone: 0, centre: DVec3::from_array(p).as_vec3(), radius: r as f32 });
+    Ok(Subject {
+        scene: "skirt",
+        mesh: format!("grid {side} x {side}"),
+        main,
+        fabric: skirt::fabric(&shape, Stretch::Inextensible),
+        shape,
+        drive: Drive::Skirt(Motion::Walk),
+        colliders: Colliders::new(&rest, &skirt::CAPSULES, false)?,
+        seconds: if quick { 0.5 } else { WALK_S },
+        truth: Truth::Trajectory,
+    })
+}
+
+fn worn(name: &str, quick: bool) -> Result<Subject, ParetoError> {
+    let style = wardrobe::style(name)?;
+    let table = style.sizes()?;
+    let sex = if table.population == Population::Men { Sex::Male } else { Sex::Female };
+    let average = Measures::average(sex);
+    let size = nearest(&table, &average)?;
+    let body = Body::build(sex, &average)?;
+    let rig = Rig::fit(&body);
+    let spheres = rig.spheres.each_ref().map(|s| RestSphere::on_bone(&body.skeleton, s.bone, s.offset, s.radius));
+    let shape = style.draft(&size, &body)?;
+    let scene = super::SCENES.into_iter().find(|s| *s == name).ok_or_else(|| ParetoError::Unknown(name.into()))?;
+    Ok(Subject {
+        scene,
+        mesh: format!("size {size}"),
+        main: true,
+        shape,
+        fabric: Fabric::built_in(&style.fabric)?,
+        drive: Drive::Mannequin(Box::new(body.skeleton.clone()), Box::new(shopper(&body.skeleton, 0.0))),
+        colliders: Colliders::new(&spheres, &rig.capsules, true)?,
+        seconds: if quick { 0.5 } else { STAND_S },
+        truth: Truth::Trajectory,
+    })
+}
+
+/// The size whose body's girths are nearest to some measures.
+fn nearest(table: &SizeTable, to: &Measures) -> Result<String, ParetoError> {
+    let mut best = (f32::INFINITY, String::new());
+    for code in table.codes() {
+        let body = table.size_body(code)?;
+        let girths =
+            [(body.chest_girth, to.chest_girth), (body.waist_girth, to.waist_girth), (body.hip_girth, to.hip_girth)];
+        let off = girths.iter().map(|(a, b)| (a - b).abs()).sum::<f32>() + 0.1 * (body.stature - to.stature).abs();
+        if off < best.0 {
+            best = (off, code.to_owned());
+        }
+    }
+    Ok(best.1)
+}

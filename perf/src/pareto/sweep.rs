@@ -1,0 +1,129 @@
+//! All settings of a scene, one after the other.
+
+use toile_assets::garment::Garment;
+use toile_engine::cloth::Quality;
+
+use super::ParetoError;
+use super::play::{Setting, Trace, iterations, play};
+use super::reference::Reference;
+use super::report::{EnergyRun, Point, SceneReport};
+use super::subject::{Choice, Subject};
+
+/// Substeps that are tried beside a garment's own.
+const SUBSTEPS: [u32; 8] = [1, 2, 4, 6, 8, 12, 16, 32];
+
+/// The same for a quick look.
+const QUICK_SUBSTEPS: [u32; 3] = [1, 4, 8];
+
+/// Time of a step from which more substeps are not tried (us): three times what 120 Hz leaves.
+const FAR_BEYOND_US: f64 = 25_000.0;
+
+/// What computes.
+const BACKEND: &str = "cpu";
+
+/// Runs every setting of a scene and holds each against x*.
+pub fn sweep(subject: &Subject, quick: bool, told: &dyn Fn(f64)) -> Result<(Vec<Point>, SceneReport), ParetoError> {
+    let reference = Reference::of(subject, quick)?;
+    let mut points = Vec::new();
+    let mut energy: Vec<EnergyRun> = Vec::new();
+    if let Some(run) = &reference.run {
+        energy.push(EnergyRun { setting: format!("fine, {} substeps", run.substeps), frames: run.energy.clone() });
+    }
+    let choices: &[Choice] = match (subject.main, quick) {
+        (true, false) => &Choice::ALL,
+        (true, true) => &[Choice::Mixed, Choice::GaussSeidel],
+        (false, _) => &[Choice::Mixed],
+    };
+    for (k, &choice) in choices.iter().enumerate() {
+        let garment = subject.bake(choice)?;
+        let settings = settings(subject, &garment, choice, quick);
+        let mut beyond = None;
+        for (done, setting) in settings.iter().enumerate() {
+            told((k as f64 + done as f64 / settings.len() as f64) / choices.len() as f64);
+            if beyond.is_some_and(|limit: Setting| limit.quality == setting.quality && limit.threads == setting.threads)
+            {
+                continue;
+            }
+            let run = reference.play(subject, &garment, *setting)?;
+            let found = point(subject, &garment, choice, *setting, &run, &reference);
+            if found.default && subject.main && setting.threads == 1 {
+                let run = play(subject, &garment, *setting)?;
+                energy.push(EnergyRun { setting: found.quality.into(), frames: run.energy });
+            }
+            if found.step_us > FAR_BEYOND_US {
+                beyond = Some(*setting);
+            }
+            points.push(found);
+        }
+    }
+    let garment = subject.bake(Choice::Mixed)?;
+    let scene = SceneReport {
+        scene: subject.scene.into(),
+        mesh: subject.mesh.clone(),
+        particles: garment.particles(),
+        spacing_mm: spacing_mm(&garment),
+        main: subject.main,
+        reference: reference.words.clone(),
+        reference_gap_mm: reference.gap_mm,
+        energy,
+    };
+    Ok((points, scene))
+}
+
+/// What is tried with one choice of solvers: every quality with the bake's own, on one worker and on two; `shop` with the
+/// others; on meshes beside the main one the qualities' own substeps alone.
+fn settings(subject: &Subject, garment: &Garment, choice: Choice, quick: bool) -> Vec<Setting> {
+    let mixed = choice == Choice::Mixed;
+    let qualities = if mixed { &Quality::ALL[..] } else { &[Quality::Shop] };
+    let threads = if mixed && subject.main && !quick { &[1, 2][..] } else { &[1] };
+    let tried = if quick { &QUICK_SUBSTEPS[..] } else { &SUBSTEPS };
+    let mut all = Vec::new();
+    for &threads in threads {
+        for &quality in qualities {
+            let own = quality.substeps(garment.substeps);
+            let mut substeps: Vec<u32> = if subject.main { tried.to_vec() } else { Vec::new() };
+            substeps.push(own);
+            substeps.sort_unstable();
+            substeps.dedup();
+            all.extend(substeps.into_iter().map(|n| Setting { quality, substeps: Some(n), threads }));
+        }
+    }
+    all
+}
+
+fn point(
+    subject: &Subject,
+    garment: &Garment,
+    choice: Choice,
+    setting: Setting,
+    run: &Trace,
+    reference: &Reference,
+) -> Point {
+    let [error_mm, max_mm] = reference.error_mm(run);
+    Point {
+        scene: subject.scene.into(),
+        mesh: subject.mesh.clone(),
+        particles: garment.particles(),
+        solver: choice.name(),
+        quality: setting.quality.name(),
+        substeps: run.substeps,
+        iterations: iterations(garment, setting.quality),
+        default: choice == Choice::Mixed && run.substeps == setting.quality.substeps(garment.substeps),
+        backend: BACKEND,
+        threads: setting.threads,
+        step_us: run.step_us,
+        error_mm,
+        max_mm,
+        strain_mean: run.strain[0],
+        strain_p99: run.strain[1],
+        energy_j: run.energy.last().map_or(0.0, |e| e[1]),
+        rolled_back: run.rolled_back,
+        on_front: false,
+    }
+}
+
+/// Mean length of the edges that strain is measured on (mm).
+fn spacing_mm(garment: &Garment) -> f64 {
+    let sum: f64 = garment.strain_edges.iter().map(|(_, rest)| f64::from(*rest)).sum();
+    1e3 * sum / garment.strain_edges.len().max(1) as f64
+}
