@@ -21,11 +21,18 @@ pub enum Style {
     /// Rows at the ends and points along the sides as before, evened-out blue noise between them, joined by Delaunay
     /// triangles: as a mesher leaves it.
     Unstructured,
+    /// The same with the noise as it falls: triangles of uneven size and poor form.
+    UnstructuredRaw,
 }
 
 impl Style {
-    /// All of them.
+    /// Those that every case of several meshes is run on.
     pub const ALL: [Self; 3] = [Self::Grid, Self::Alternating, Self::Unstructured];
+
+    /// Whether its inner points are blue noise.
+    fn strewn(self) -> bool {
+        matches!(self, Self::Unstructured | Self::UnstructuredRaw)
+    }
 
     /// Its name in the table.
     pub fn name(self) -> &'static str {
@@ -33,6 +40,7 @@ impl Style {
             Self::Grid => "grid",
             Self::Alternating => "alternating",
             Self::Unstructured => "unstructured",
+            Self::UnstructuredRaw => "unstructured-raw",
         }
     }
 }
@@ -111,7 +119,7 @@ impl Strip {
     fn points(&self) -> Vec<DVec2> {
         let [first, last] = self.span();
         let all = (first..=last).flat_map(|r| self.row(r));
-        if self.style != Style::Unstructured {
+        if !self.style.strewn() {
             return all.collect();
         }
         let half = 0.5 * self.width;
@@ -119,7 +127,8 @@ impl Strip {
         let (strewn, mut kept): (Vec<DVec2>, Vec<DVec2>) = all.partition(inner);
         let held = kept.len();
         self.strew(strewn.len(), &mut kept);
-        for _ in 0..RELAX {
+        let rounds = if self.style == Style::Unstructured { RELAX } else { 0 };
+        for _ in 0..rounds {
             relax(&mut kept, held);
         }
         kept
@@ -150,7 +159,7 @@ impl Strip {
     }
 
     fn faces(&self, points: &[DVec2]) -> Vec<Face> {
-        if self.style == Style::Unstructured {
+        if self.style.strewn() {
             return delaunay(points);
         }
         let across = self.columns as u32 + 1;

@@ -1,8 +1,8 @@
 //! Runs cases side by side and gathers their rows in the order of the cases.
 
-use std::sync::Mutex;
 use std::sync::atomic::AtomicUsize;
 use std::sync::atomic::Ordering::Relaxed;
+use std::sync::{Mutex, OnceLock};
 use std::time::Instant;
 
 use serde::Serialize;
@@ -59,7 +59,7 @@ const STACK_BYTES: usize = 32 << 20;
 /// The names of all cases, in the order of the table.
 pub fn names() -> Vec<&'static str> {
     let mut names: Vec<&'static str> = Vec::new();
-    for case in cases::all() {
+    for case in all() {
         if !names.contains(&case.name) {
             names.push(case.name);
         }
@@ -110,8 +110,14 @@ pub fn run(options: &Options, told: &(impl Fn(usize) + Sync)) -> Result<Report, 
     })
 }
 
+/// All cases, made once: their exact values take seconds.
+fn all() -> &'static [Case] {
+    static ALL: OnceLock<Vec<Case>> = OnceLock::new();
+    ALL.get_or_init(cases::all)
+}
+
 /// The cases that are run.
-fn chosen(options: &Options) -> Vec<Case> {
+fn chosen(options: &Options) -> Vec<&'static Case> {
     let named = |case: &Case| options.case.as_ref().is_none_or(|name| name == case.name);
     let wanted = |case: &Case| named(case) && options.parameter.as_ref().is_none_or(|p| *p == case.parameter);
     let mut number = 0;
@@ -121,5 +127,5 @@ fn chosen(options: &Options) -> Vec<Case> {
         before = case.name;
         number % options.every.max(1) == 0
     };
-    cases::all().into_iter().filter(|case| wanted(case) && one_in(case)).collect()
+    all().iter().filter(|case| wanted(case) && one_in(case)).collect()
 }

@@ -29,6 +29,9 @@ const ROWS: [usize; 2] = [24, 32];
 /// Its Gamma = w L^3 / B.
 const GAMMAS: [f64; 12] = [0.1, 0.3, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 300.0, 500.0, 1000.0];
 
+/// What is run on raw noise too.
+const RAW_GAMMAS: [f64; 3] = [1.0, 10.0, 100.0];
+
 /// Between these the target holds.
 const GATED: [f64; 2] = [0.3, 300.0];
 
@@ -92,6 +95,7 @@ pub fn cases() -> Vec<Case> {
             all.extend(GAMMAS.map(|gamma| cantilever(Cantilever::new(style, rows, gamma))));
         }
     }
+    all.extend(RAW_GAMMAS.map(|gamma| cantilever(Cantilever::new(Style::UnstructuredRaw, ROWS[0], gamma))));
     all.push(peirce());
     all.extend([0.5, 1.0, 2.0, 5.0, 10.0].map(tip_loaded));
     all

@@ -18,9 +18,11 @@ pub fn cases() -> Vec<Case> {
     for degrees in [30.0, 60.0, 90.0, 120.0] {
         all.extend([Swung::Period, Swung::Loss].map(|what| pendulum(degrees, what)));
     }
+    all.push(pendulum(120.0, Swung::Whole));
     all.push(spring(None));
     all.extend([2, 4, 8, 16, 32].map(|n| spring(Some(n))));
-    all.extend([1.0, 4.0].map(wave));
+    all.extend([1.0, 4.0].map(|tension| wave(tension, WAVE_SHEAR)));
+    all.push(wave(4.0, Cloth::PLAIN.shear));
     all.push(fall());
     all.extend([Kept::Gain, Kept::Loss].map(energy));
     all
@@ -83,6 +85,9 @@ fn chain(n: usize) -> Case {
 enum Swung {
     /// Four times the way from rest to the lowest place, over the period of small swings.
     Period,
+    /// From the lowest place to and fro to the lowest place again, over the period of small swings: a whole period, which
+    /// what is lost on the way shortens.
+    Whole,
     /// Part of its angle that it has lost after one swing to and fro (%): told only. The velocity of a substep is a chord
     /// of the arc, which is shorter, so that the engine damps what turns.
     Loss,
@@ -102,9 +107,10 @@ fn pendulum(degrees: f64, what: Swung) -> Case {
             let p = rig.mean((0..rig.vertices()).filter(|v| rig.moves(*v)));
             p.z.atan2(-p.y)
         };
-        let (samples, step) = watch(&mut rig, 1.2 * small * exact, swing);
+        let (samples, step) = watch(&mut rig, 1.3 * small * exact, swing);
         let got = match what {
             Swung::Period => crossings(&samples, step).first().map_or(f64::NAN, |quarter| 4.0 * quarter / small),
+            Swung::Whole => period(&crossings(&samples, step)) / small,
             Swung::Loss => {
                 let back = samples[samples.len() / 2..].iter().copied().fold(f64::MIN, f64::max);
                 (1.0 - back / angle) * 100.0
@@ -116,6 +122,9 @@ fn pendulum(degrees: f64, what: Swung) -> Case {
     match what {
         Swung::Period => {
             Case { target: Some(1.0), run, ..case("pendulum", format!("{degrees} deg"), 1, "T/T0", exact) }
+        }
+        Swung::Whole => {
+            Case { target: Some(1.0), run, ..case("pendulum", format!("{degrees} deg, whole"), 1, "T/T0", exact) }
         }
         Swung::Loss => {
             Case { scale: Some(100.0), run, ..case("pendulum", format!("{degrees} deg, lost"), 1, "%", 0.0) }
@@ -150,16 +159,19 @@ fn spring(substeps: Option<u32>) -> Case {
 /// Where a wave is watched from its start on (m).
 const GAUGES: [f64; 2] = [0.3, 0.8];
 
+/// Shear stiffness of what is to carry waves by its tension alone (N/m): next to none.
+const WAVE_SHEAR: f64 = 1.0;
+
 /// Links of the string.
 const WAVE_ROWS: usize = 120;
 
 /// A wave on a strip that is pulled with a tension (N/m): it starts at rest as a hump in the middle, which runs apart, and
 /// passes two places.
-fn wave(tension: f64) -> Case {
+fn wave(tension: f64, shear: f64) -> Case {
     let density = Cloth::PLAIN.density;
     let speed = (tension / density).sqrt();
     let run = move |level| {
-        let cloth = Cloth { stretch: 2_000.0, shear: 1.0, ..Cloth::PLAIN };
+        let cloth = Cloth { stretch: 2_000.0, shear, ..Cloth::PLAIN };
         let stretched = 1.0 + tension / cloth.stretch;
         let strip = Strip::narrow(2.4 / stretched, WAVE_ROWS, [Hold::Pinned, Hold::Pinned]);
         let hump = |x: f64| 0.005 * (-0.5 * (x / 0.08).powi(2)).exp();
@@ -188,7 +200,9 @@ fn wave(tension: f64) -> Case {
     };
     // Cloth that is stretched is lighter by as much.
     let exact = speed * (1.0 + tension / 2_000.0).sqrt();
-    Case { target: Some(3.0), run: Box::new(run), ..case("wave", format!("T {tension} N/m"), WAVE_ROWS, "m/s", exact) }
+    let sheared = if shear > WAVE_SHEAR { format!(", G {shear} N/m") } else { String::new() };
+    let parameter = format!("T {tension} N/m{sheared}");
+    Case { target: Some(3.0), run: Box::new(run), ..case("wave", parameter, WAVE_ROWS, "m/s", exact) }
 }
 
 /// How long it falls (s).

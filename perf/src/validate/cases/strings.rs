@@ -19,15 +19,21 @@ const REST_S: f64 = 6.0;
 /// Shear stiffness of what is to stretch alone (N/m): next to none.
 const SHEAR: f64 = 1.0;
 
+/// That of a woven cloth (N/m).
+const CLOTH: f64 = Cloth::PLAIN.shear;
+
 /// The cases of this room.
 pub fn cases() -> Vec<Case> {
     let mut all = Vec::new();
     for stretch in [60.0, 600.0, 6_000.0] {
-        all.extend([Hung::Tip, Hung::Top].map(|what| strip(stretch, what)));
+        all.extend([Hung::Tip, Hung::Top].map(|what| strip(stretch, SHEAR, what)));
     }
     for length in [1.05, 1.2, 1.5, 2.0] {
-        all.extend([Slung::Sag, Slung::Tension].map(|what| catenary(length, what)));
+        all.extend([Slung::Sag, Slung::Tension].map(|what| catenary(length, SHEAR, what)));
     }
+    // As cloth shears: the tip, where shear is a tenth of what holds it, and the pull of a slack catenary.
+    all.extend([600.0, 6_000.0].map(|stretch| strip(stretch, CLOTH, Hung::Tip)));
+    all.push(catenary(1.2, CLOTH, Slung::Tension));
     all.extend([20.0, 60.0, 200.0].map(shear));
     all
 }
@@ -62,6 +68,11 @@ fn shear(stiffness: f64) -> Case {
     }
 }
 
+/// What a parameter says of a shear stiffness (N/m) that is felt.
+fn sheared(shear: f64) -> String {
+    if shear > SHEAR { format!(", G {shear} N/m") } else { String::new() }
+}
+
 /// What is read off a hanging strip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Hung {
@@ -71,9 +82,9 @@ enum Hung {
     Top,
 }
 
-fn strip(stretch: f64, what: Hung) -> Case {
+fn strip(stretch: f64, shear: f64, what: Hung) -> Case {
     let strip = Strip::narrow(1.0, ROWS, [Hold::Pinned, Hold::Free]);
-    let cloth = Cloth { stretch, shear: SHEAR, damping: DAMPING, ..Cloth::PLAIN };
+    let cloth = Cloth { stretch, shear, damping: DAMPING, ..Cloth::PLAIN };
     let run = move |level| {
         let shape = strip.shape(|along, across| DVec3::new(across, -along, 0.0));
         let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
@@ -91,7 +102,7 @@ fn strip(stretch: f64, what: Hung) -> Case {
     };
     Case {
         name,
-        parameter: format!("E {stretch} N/m"),
+        parameter: format!("E {stretch} N/m{}", sheared(shear)),
         mesh: Style::Grid.name(),
         resolution: ROWS,
         unit,
@@ -110,9 +121,9 @@ enum Slung {
 }
 
 /// A strip between two points a metre apart, let go from a V.
-fn catenary(length: f64, what: Slung) -> Case {
+fn catenary(length: f64, shear: f64, what: Slung) -> Case {
     let strip = Strip::narrow(length, ROWS, [Hold::Pinned, Hold::Pinned]);
-    let cloth = Cloth { stretch: 3e4, shear: SHEAR, damping: DAMPING, ..Cloth::PLAIN };
+    let cloth = Cloth { stretch: 3e4, shear, damping: DAMPING, ..Cloth::PLAIN };
     let run = move |level| {
         let depth = (0.25 * length * length - 0.25).sqrt();
         let shape = strip.shape(|along, across| {
@@ -131,7 +142,7 @@ fn catenary(length: f64, what: Slung) -> Case {
     let exact = string::catenary(length);
     Case {
         name: "catenary",
-        parameter: format!("length {length}, {}", if what == Slung::Sag { "sag" } else { "pull" }),
+        parameter: format!("length {length}, {}{}", if what == Slung::Sag { "sag" } else { "pull" }, sheared(shear)),
         mesh: Style::Grid.name(),
         resolution: ROWS,
         unit: if what == Slung::Sag { "spans" } else { "T0/weight" },
