@@ -3,7 +3,7 @@
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, value_parser};
 use toile_perf::validate::Level;
-use toile_perf::validate::run::{Options, names};
+use toile_perf::validate::run::{NAMES, Options};
 
 use super::{json, quiet, required, text};
 use crate::exit::AppError;
@@ -33,7 +33,7 @@ pub(super) fn grammar() -> clap::Command {
         .args([
             Arg::new("case")
                 .value_name("CASE")
-                .value_parser(PossibleValuesParser::new(names()))
+                .value_parser(PossibleValuesParser::new(NAMES))
                 .help("The one case to run [default: all]"),
             text("quality", "Q", "Settings to tell: one of them, or all")
                 .value_parser(PossibleValuesParser::new(levels))

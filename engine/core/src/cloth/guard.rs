@@ -42,27 +42,20 @@ impl Kernel for Sound<'_> {
     fn run<L: Lanes>(self) -> bool {
         let zero = L::splat(0.0);
         let (mut most, mut sum) = (zero, zero);
-        let mut look = |v: L| {
-            let size = v.max(-v);
-            // What is not a number, times 0, is not 0.
-            (most, sum) = (most.max(size), sum + v * zero);
-            let tiny = size.lt(L::splat(LEAST)).and(zero.lt(size));
-            tiny.any().then(|| zero.select(tiny, v))
-        };
         for column in self.0 {
-            let whole = column.len() / L::N * L::N;
             let mut at = 0;
-            while at < whole {
-                if let Some(calm) = look(L::load(column, at)) {
-                    calm.store(column, at);
+            while at < column.len() {
+                let n = (column.len() - at).min(L::N);
+                let v = if n == L::N { L::load(column, at) } else { L::load_part(column, at, n) };
+                let size = v.max(-v);
+                // What is not a number, times 0, is not 0.
+                (most, sum) = (most.max(size), sum + v * zero);
+                let tiny = size.lt(L::splat(LEAST)).and(zero.lt(size));
+                if tiny.any() {
+                    let calm = zero.select(tiny, v);
+                    if n == L::N { calm.store(column, at) } else { calm.store_part(column, at, n) }
                 }
-                at += L::N;
-            }
-            if at < column.len() {
-                let n = column.len() - at;
-                if let Some(calm) = look(L::load_part(column, at, n)) {
-                    calm.store_part(column, at, n);
-                }
+                at += n;
             }
         }
         !L::splat(FARTHEST_M).lt(most).any() && sum.to_array().iter().all(|s| *s == 0.0)
