@@ -178,7 +178,7 @@ fn every_width_and_every_run_gives_the_same_bits() {
 /// Hash of the skirt of 9,216 vertices after [`GOLDEN_STEPS`] of walking. A change of it is a change of what every user
 /// sees: it has to be meant, and said in the changelog. (Sines of the scene come from the platform's library; the hash is
 /// that of Linux on x86-64.)
-const GOLDEN: u64 = 0xb36f_c9c3_bf33_7c30;
+const GOLDEN: u64 = 0xbed4_cae1_609f_7634;
 
 /// Steps to the golden hash.
 const GOLDEN_STEPS: usize = 40;
