@@ -51,7 +51,7 @@ pub struct Case {
 }
 
 /// Every case, in the order of the table.
-pub const CASES: [Case; 24] = [
+pub const CASES: [Case; 25] = [
     Case { name: "random-box", about: "every vertex anywhere in a box of 1 m", run: start::random_box },
     Case { name: "crumpled-lawn", about: "the same with thin cloth, in which folds may stay", run: start::crumpled },
     Case { name: "flattened", about: "pressed into a plane", run: start::flattened },
@@ -71,7 +71,8 @@ pub const CASES: [Case; 24] = [
     Case { name: "too-small", about: "a tube on a body twice as wide", run: surround::too_small },
     Case { name: "spin", about: "10 turns a second about any axis, 2 s", run: surround::spin },
     Case { name: "bad-elements", about: "sides without length and faces without area", run: elements::bad_elements },
-    Case { name: "bad-surroundings", about: "no numbers in colliders and bones", run: poison::surroundings },
+    Case { name: "bad-surroundings", about: "no numbers in colliders", run: poison::surroundings },
+    Case { name: "bad-bones", about: "no numbers in the bones that pins follow", run: poison::bones },
     Case { name: "bad-settings", about: "no numbers in gravity, wind and settings", run: poison::settings },
     Case {
         name: "bad-root-settings",

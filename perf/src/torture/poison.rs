@@ -26,8 +26,7 @@ fn input(name: &str, put: impl Fn(&mut Trial<'_>, f32) + 'static) -> Input {
     (name.into(), Box::new(put))
 }
 
-/// The inputs of the cloth's surroundings: three fields of a sphere and its radius, all of them, the colliders' step; all
-/// twelve numbers of the two bones that the pins follow, and of one bone that colliders follow.
+/// The inputs of the cloth's colliders: three fields of a sphere and its radius, all of them, their step.
 fn surrounding_inputs() -> Vec<Input> {
     let sphere = |t: &mut Trial<'_>, change: &dyn Fn(&mut Vec4)| {
         t.spheres.iter_mut().flatten().take(1).for_each(change);
@@ -37,6 +36,12 @@ fn surrounding_inputs() -> Vec<Input> {
     inputs.push(input("a sphere", move |t, v| sphere(t, &|s| *s = Vec4::splat(v))));
     inputs.push(input("all spheres", |t, v| t.spheres.iter_mut().flatten().for_each(|s| *s = Vec4::splat(v))));
     inputs.push(input("the colliders' step", |t, v| t.colliders.step_seconds = v));
+    inputs
+}
+
+/// The inputs of the bones: all twelve numbers of the two that the pins follow.
+fn bone_inputs() -> Vec<Input> {
+    let mut inputs = Vec::new();
     for bone in [0, 1] {
         // Bones are an affine map each: three columns and a place.
         for k in 0..12 {
@@ -130,8 +135,16 @@ fn chosen(inputs: &[Input], values: &[f32], seed: u64) -> (usize, f32) {
 }
 
 pub(super) fn surroundings(site: &Site, random: &mut Random, seed: u64) -> Found {
-    let inputs = surrounding_inputs();
-    let (which, value) = chosen(&inputs, &VALUES, seed);
+    beside(site, random, seed, &surrounding_inputs())
+}
+
+pub(super) fn bones(site: &Site, random: &mut Random, seed: u64) -> Found {
+    beside(site, random, seed, &bone_inputs())
+}
+
+/// A bad value in what is around the curtain.
+fn beside(site: &Site, random: &mut Random, seed: u64, inputs: &[Input]) -> Found {
+    let (which, value) = chosen(inputs, &VALUES, seed);
     // They stand beside the cloth, and come through it where they are drawn away and back.
     let side = |x: f32| [Vec3::new(x, TOP.y - 0.1, 0.0).extend(0.05), Vec3::new(x, TOP.y - 0.4, 0.0).extend(0.05)];
     let spheres = [side(-0.4), side(0.4)].concat();
@@ -171,6 +184,7 @@ mod tests {
         let four = VALUES.len();
         for (inputs, values) in [
             (surrounding_inputs(), four),
+            (bone_inputs(), four),
             (setting_inputs(), SETTINGS_VALUES.len()),
             (root_inputs(), SETTINGS_VALUES.len()),
             (state_inputs(), four),
