@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use toile_perf::validate::Level;
 use toile_perf::validate::case::Row;
-use toile_perf::validate::run::{NAMES, Options, run};
+use toile_perf::validate::run::{Options, run};
 
 /// What is run: cheap enough for a build without optimisation.
 const QUICK: [(&str, &str); 6] = [
@@ -77,31 +77,4 @@ fn rows_are_the_same_on_two_threads() {
         rows.into_iter().map(|row| (row.parameter, row.got.to_bits())).collect::<Vec<_>>()
     };
     assert_eq!(on(1), on(2));
-}
-
-#[test]
-fn every_case_of_the_list_is_there() {
-    let all = [
-        "cantilever",
-        "peirce",
-        "elastica",
-        "greenhill",
-        "euler",
-        "lateral",
-        "strip",
-        "top-force",
-        "catenary",
-        "shear-sag",
-        "chain-mode",
-        "pendulum",
-        "spring",
-        "wave",
-        "free-fall",
-        "energy",
-        "capstan",
-        "incline",
-        "stopping",
-        "invariance",
-    ];
-    assert_eq!(NAMES.to_vec(), all);
 }

@@ -104,8 +104,7 @@ impl Prepared {
         let few = self.load.len() / NEEDLES;
         let carries = |limit: f32| self.load.iter().filter(|l| **l > limit).count() <= few;
         let plain = !self.stiff || carries(bending::STABLE);
-        let stages =
-            if plain { 1 } else { (2..stages::MOST).find(|m| carries(stages::carried(*m))).unwrap_or(stages::MOST) };
+        let stages = if plain { 1 } else { stages::needed(carries) };
         let limit = if stages > 1 { stages::carried(stages) } else { bending::STABLE };
         if stages > 1 {
             stages::coefficients(stages, &mut self.stages);

@@ -48,9 +48,9 @@ pub fn carried(m: u32) -> f32 {
     ((w0 + 1.0) * slope / t[m as usize]) as f32
 }
 
-/// The fewest stages that carry a Z, at most [`MOST`].
-pub fn needed(z: f32) -> u32 {
-    (2..MOST).find(|&m| carried(m) >= z).unwrap_or(MOST)
+/// The fewest stages, 2 to [`MOST`], that `suffice` for a garment, told the largest Z that they carry.
+pub fn needed(suffice: impl Fn(f32) -> bool) -> u32 {
+    (2..MOST).find(|&m| suffice(carried(m))).unwrap_or(MOST)
 }
 
 /// The stages 1..=m, into the first `m` places.
@@ -215,6 +215,7 @@ mod tests {
     #[test]
     fn twice_the_stages_carry_four_times_the_stiffness() {
         assert!((carried(2) - 4.28).abs() < 0.02 && (carried(64) / carried(32) - 4.0).abs() < 0.05);
+        let needed = |z: f32| needed(|most| most >= z);
         assert_eq!((needed(0.1), needed(4.2), needed(1e9)), (2, 2, MOST));
         assert!((2..MOST).all(|m| needed(carried(m)) <= m && needed(carried(m) * 1.001) == m + 1));
     }
