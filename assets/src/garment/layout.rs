@@ -156,6 +156,50 @@ impl<const K: usize> Default for Bends<K> {
     }
 }
 
+/// One owner's part of a family of [`Diagonals`].
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Strand {
+    /// Its runs, a range of [`Diagonals::runs`], in the order of solving.
+    pub runs: Range<u32>,
+    /// The particles at which its fibers begin, a range of [`Diagonals::starts`].
+    pub starts: Range<u32>,
+}
+
+/// Fibers along the bias that are solved whole, side by side. In a family at most one link leads to a particle and one
+/// leads on from it, the one that leads to it in an earlier run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Diagonals {
+    /// Families: fibers that lean the same way.
+    pub families: Box<[[Strand; OWNERS]]>,
+    /// Links, family after family, owner after owner; the first particle of each is the one that the fiber comes from.
+    pub runs: Box<[Run<2>]>,
+    /// Particles that no link leads to.
+    pub starts: Box<[u32]>,
+    /// Length as cut (m).
+    pub rest: Box<[f32]>,
+    /// Inverse stiffness (m/N).
+    pub compliance: Box<[f32]>,
+}
+
+impl Diagonals {
+    /// Links in all.
+    pub fn count(&self) -> usize {
+        self.runs.iter().map(|r| r.len as usize).sum()
+    }
+
+    /// Calls `each(place, particles)` for every link with the place of its parameters.
+    pub fn for_each(&self, mut each: impl FnMut(usize, [u32; 2])) {
+        for run in &self.runs {
+            (0..run.len).for_each(|t| each(run.place(t), run.first.map(|f| f + t)));
+        }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.families) + size_of_val(&*self.runs) + 4 * self.starts.len() + 8 * self.rest.len()
+    }
+}
+
 /// How far each particle can get from where the garment hangs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tethers {
@@ -258,7 +302,9 @@ pub struct Lists {
 /// Everything that holds a garment together.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Layout {
-    /// Shear: links along the bias, in coloured sets.
+    /// Shear: fibers along the bias, solved whole.
+    pub diagonals: Diagonals,
+    /// Shear that lies in no such fiber: links along the bias, in coloured sets.
     pub shear: Links,
     /// Links along the weft, and along the warp where no fiber carries them, in coloured sets.
     pub weft: Links,
@@ -291,7 +337,8 @@ impl Layout {
         fn bends<const K: usize>(b: &Bends<K>) -> usize {
             b.tuples.runs.len() * size_of::<Run<K>>() + b.tuples.loose.len() * 4 * K + b.coefficients[0].len() * 4 * K
         }
-        links(&self.shear)
+        self.diagonals.bytes()
+            + links(&self.shear)
             + links(&self.weft)
             + self.fibers.rows.len() * size_of::<Row>()
             + self.fibers.rest.len() * 8

@@ -56,6 +56,8 @@ impl Problem {
         let mut links = Vec::new();
         tuples(&layout.shear, &mut links);
         tuples(&layout.weft, &mut links);
+        let bias = &layout.diagonals;
+        bias.for_each(|at, [a, b]| links.extend(link(a, b, bias.rest[at], bias.compliance[at])));
         fibers(&layout.fibers, &mut links);
         // Hoops are the links of the weft once more, solved whole in one of the qualities: no springs of their own.
         lists(&layout.crossing, &mut links);

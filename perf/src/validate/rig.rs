@@ -275,6 +275,8 @@ pub fn links(garment: &Garment) -> Vec<Link> {
     for links in [&layout.shear, &layout.weft] {
         links.tuples.for_each(|at, [a, b]| add(a, b, links.rest[at], links.compliance[at]));
     }
+    let bias = &layout.diagonals;
+    bias.for_each(|at, [a, b]| add(a, b, bias.rest[at], bias.compliance[at]));
     let fibers = &layout.fibers;
     for bundle in &fibers.bundles {
         let rows = &fibers.rows[bundle.rows.start as usize..bundle.rows.end as usize];

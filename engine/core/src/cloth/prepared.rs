@@ -30,6 +30,8 @@ pub struct Prepared {
     pub gamma: f32,
     /// Whether fibers pull more across themselves than one linearised solve can take.
     pub taut: bool,
+    /// Shear along whole fibers acts every so many substeps, for all of them.
+    pub shear_every: u32,
     pub shear_gain: Box<[f32]>,
     pub weft_gain: Box<[f32]>,
     pub bend_scale: Box<[f32]>,
@@ -60,6 +62,7 @@ impl Prepared {
             dt: 0.0,
             gamma: 0.0,
             taut: false,
+            shear_every: 1,
             shear_gain: zeros(layout.shear.rest.len()),
             weft_gain: zeros(layout.weft.rest.len()),
             bend_scale: zeros(layout.bends.tuples.places),
@@ -88,6 +91,8 @@ impl Prepared {
         self.substeps = asked;
         self.dt = settings.step_seconds / asked as f32;
         self.gamma = settings.stretch_damping_s / self.dt;
+        let half = asked.is_multiple_of(2) && self.quality != Quality::Fine && self.gamma == 0.0;
+        self.shear_every = if half { 2 } else { 1 };
         self.taut = fibers::pull_across(&garment.layout.fibers, &garment.inverse_mass, self.dt) > TAUT;
         let (layout, w) = (&garment.layout, &garment.inverse_mass);
         links::prepare(&layout.shear, w, self.dt, self.gamma, &mut self.shear_gain);
