@@ -7,6 +7,7 @@
 
 pub mod bending;
 pub mod fibers;
+mod hubs;
 mod links;
 pub mod order;
 pub mod runs;

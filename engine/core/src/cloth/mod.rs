@@ -8,6 +8,7 @@ pub mod bending;
 pub mod contact;
 pub mod fibers;
 pub mod guard;
+pub mod hubs;
 pub mod links;
 pub mod lists;
 pub mod measure;
