@@ -1,9 +1,11 @@
 //! Bending stencils: where and how the curvature of the cloth is measured.
 //!
-//! A stencil is a weighted sum of up to four particles, f = sum c_i x_i, that vanishes for any flat state and whose
+//! A stencil is a weighted sum of particles, f = sum c_i x_i, that vanishes for any flat state and whose
 //! length is the curvature 1/R when the cloth is rolled up along the stencil's direction. With the energy k/2 |f|^2 bending
 //! is linear in x, as in Bergou et al. 2006, "A quadratic bending model for inextensible surfaces"; but that model knows
-//! no direction. Here each vertex has up to four stencils: along the warp, along the weft, and along both diagonals.
+//! no direction. Here each vertex of an even mesh has up to four stencils of three or four particles: along the warp, along
+//! the weft, and along both diagonals. Where these would push otherwise than the whole ring of the vertex under the same moment,
+//! as in an uneven mesh, up to three stencils over the whole ring take their place ([`whole`] says why).
 //!
 //! **Points.** The ring of neighbours is laid flat around the vertex. Four points in a plane have one affine dependence c
 //! (the areas of the triangles that three of them form), and to second order its sum over a surface of curvature tensor S

@@ -64,7 +64,7 @@ impl Kernel for Bend<'_> {
         }
         for group in &self.hubs.groups[self.groups.start as usize..self.groups.end as usize] {
             match group.sums {
-                1 => self.any::<1>(group),
+                1 => self.group::<1>(group),
                 2 => self.group::<2>(group),
                 _ => self.group::<3>(group),
             }
@@ -73,50 +73,18 @@ impl Kernel for Bend<'_> {
 }
 
 impl Bend<'_> {
-    /// Hubs of so many sums; five, six and seven neighbours, which most vertices have, without a loop to count them.
+    /// Hubs of so many sums.
     #[inline(always)]
     fn group<const SUMS: usize>(&self, group: &HubGroup) {
-        match group.points {
-            6 => self.known::<SUMS, 6>(group),
-            7 => self.known::<SUMS, 7>(group),
-            8 => self.known::<SUMS, 8>(group),
-            _ => self.any::<SUMS>(group),
-        }
-    }
-
-    /// Hubs of as many points as the compiler knows.
-    #[inline(always)]
-    fn known<const SUMS: usize, const POINTS: usize>(&self, group: &HubGroup) {
-        let (particles, coefficients) = self.parameters::<SUMS>(group);
-        let (particles, coefficients) = (particles.as_chunks::<POINTS>().0, coefficients.as_chunks::<POINTS>().0);
-        for (hub, (v, c)) in particles.iter().zip(coefficients).enumerate() {
-            self.hub(v, c, self.by(group, hub));
-        }
-    }
-
-    /// Hubs of any number of points.
-    #[inline(always)]
-    fn any<const SUMS: usize>(&self, group: &HubGroup) {
         let points = group.points as usize;
-        let (particles, coefficients) = self.parameters::<SUMS>(group);
+        let particles = &self.hubs.particles[group.particles as usize..][..points * group.count as usize];
+        let (coefficients, _) = self.hubs.coefficients[group.coefficients as usize..].as_chunks::<SUMS>();
+        let coefficients = &coefficients[..particles.len()];
         let each = particles.chunks_exact(points).zip(coefficients.chunks_exact(points));
         for (hub, (v, c)) in each.enumerate() {
-            self.hub(v, c, self.by(group, hub));
+            let by = self.scale.map_or(self.by, |s| self.by * s[group.number as usize + hub]);
+            self.hub(v, c, by);
         }
-    }
-
-    /// The particles and coefficients of a group.
-    #[inline(always)]
-    fn parameters<const SUMS: usize>(&self, group: &HubGroup) -> (&[u32], &[[f32; SUMS]]) {
-        let count = (group.points * group.count) as usize;
-        let particles = &self.hubs.particles[group.particles as usize..][..count];
-        let (coefficients, _) = self.hubs.coefficients[group.coefficients as usize..].as_chunks::<SUMS>();
-        (particles, &coefficients[..count])
-    }
-
-    #[inline(always)]
-    fn by(&self, group: &HubGroup, hub: usize) -> f32 {
-        self.scale.map_or(self.by, |s| self.by * s[group.number as usize + hub])
     }
 
     #[inline(always)]
