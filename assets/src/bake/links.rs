@@ -75,7 +75,7 @@ pub fn lay_out(baking: &Baking<'_>) -> Layout {
         hoops: lists(baking, hoops, Some(&numbers)),
         bends: bends(baking, &stencils),
         skewed: bends(baking, &stencils),
-        hubs: hubs::hubs(&baking.order, &stencils),
+        hubs: hubs::hubs(baking.order, &stencils),
         tethers: tethers(baking),
         spans: spans(&baking.order.owner),
         owner: baking.order.owner.clone().into(),
