@@ -5,7 +5,7 @@
 //! is linear in x, as in Bergou et al. 2006, "A quadratic bending model for inextensible surfaces"; but that model knows
 //! no direction. Here each vertex of an even mesh has up to four stencils of three or four particles: along the warp, along
 //! the weft, and along both diagonals. Where these would push otherwise than the whole ring of the vertex under the same moment,
-//! as in an uneven mesh, up to three stencils over the whole ring take their place ([`whole`] says why).
+//! as in an uneven mesh, up to three stencils over the whole ring take their place (`bending/whole.rs` says why).
 //!
 //! **Points.** The ring of neighbours is laid flat around the vertex. Four points in a plane have one affine dependence c
 //! (the areas of the triangles that three of them form), and to second order its sum over a surface of curvature tensor S
