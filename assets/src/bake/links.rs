@@ -7,12 +7,11 @@ use super::diagonals::{self, Leaning};
 use super::fibers::{Direction, Edge, Fiber};
 use super::order::Order;
 use super::solver::Chooser;
-use super::{runs, stiffness, tethers};
+use super::{hubs, runs, stiffness, tethers};
 use crate::fabric::Fabric;
 use crate::garment::layout::{
     Bends, Bundle, Diagonals, ENDED, Fibers, Layout, Links, List, Lists, MAX_LISTED, OWNERS, Row, Tethers,
 };
-use crate::garment::shape::NO_VERTEX;
 use crate::garment::{Shape, Solver};
 
 /// What baking has found out about a shape so far.
@@ -83,6 +82,7 @@ pub fn lay_out(baking: &Baking<'_>) -> Layout {
         hoops: lists(baking, hoops, Some(&numbers)),
         bends: bends(baking, &stencils),
         skewed: bends(baking, &stencils),
+        hubs: hubs::hubs(baking.order, &stencils),
         tethers: tethers(baking),
         spans: spans(&baking.order.owner),
         owner: baking.order.owner.clone().into(),
@@ -294,8 +294,7 @@ impl ListsMaker {
 
 /// The stencils of `K` particles, 3 or 4, the root of the stiffness within the coefficients.
 fn bends<const K: usize>(baking: &Baking<'_>, stencils: &[Stencil]) -> Bends<K> {
-    let count = |s: &&Stencil| if s.v[3] == NO_VERTEX { 3 } else { 4 };
-    let mine: Vec<&Stencil> = stencils.iter().filter(|s| count(s) == K).collect();
+    let mine: Vec<&Stencil> = stencils.iter().filter(|s| s.v.len() == K).collect();
     let (mut tuples, mut coefficients) = (Vec::new(), Vec::new());
     for stencil in mine {
         let particle = |k: usize| baking.order.particle[stencil.v[k] as usize];

@@ -8,6 +8,7 @@
 pub mod bending;
 mod diagonals;
 pub mod fibers;
+mod hubs;
 mod links;
 pub mod order;
 pub mod runs;

@@ -200,6 +200,59 @@ impl Diagonals {
     }
 }
 
+/// Hubs side by side with equally many particles and sums: vertices whose bending is measured over their whole ring.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct HubGroup {
+    /// Particles of each: the vertex and its ring.
+    pub points: u32,
+    /// Sums of each over these particles, 1 to 3.
+    pub sums: u32,
+    /// Hubs.
+    pub count: u32,
+    /// Number of the first among all hubs.
+    pub number: u32,
+    /// Where the particles of the first are in [`Hubs::particles`].
+    pub particles: u32,
+    /// Where its coefficients are in [`Hubs::coefficients`].
+    pub coefficients: u32,
+}
+
+/// Bending stencils over whole rings: energy (1/2) |sum c_i x_i|^2 for each sum of a hub, the root of the stiffness within the
+/// coefficients.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Hubs {
+    /// Particles, hub after hub; the vertex in the middle comes first.
+    pub particles: Box<[u32]>,
+    /// Coefficients (sqrt(N/m)), hub after hub, particle after particle, those of its sums side by side.
+    pub coefficients: Box<[f32]>,
+    /// Group after group, owner after owner, set after set.
+    pub groups: Box<[HubGroup]>,
+    /// Each owner's groups, of two sets as [`Bends`] has them: what keeps within the owners, then what crosses them.
+    pub sets: [[Range<u32>; OWNERS]; 2],
+    /// Hubs in all.
+    pub count: usize,
+}
+
+impl Hubs {
+    /// Sets that are not empty, or come before one that is not.
+    pub fn sets(&self) -> usize {
+        let any = |set: &[Range<u32>; OWNERS]| set.iter().any(|r| !r.is_empty());
+        self.sets.iter().rposition(any).map_or(0, |last| last + 1)
+    }
+
+    /// Calls `each(number, particles, coefficients)` for every hub.
+    pub fn for_each(&self, mut each: impl FnMut(usize, &[u32], &[f32])) {
+        for group in &self.groups {
+            let (points, each_has) = (group.points as usize, (group.points * group.sums) as usize);
+            for t in 0..group.count as usize {
+                let particles = &self.particles[group.particles as usize + t * points..][..points];
+                let coefficients = &self.coefficients[group.coefficients as usize + t * each_has..][..each_has];
+                each(group.number as usize + t, particles, coefficients);
+            }
+        }
+    }
+}
+
 /// How far each particle can get from where the garment hangs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tethers {
@@ -318,6 +371,8 @@ pub struct Layout {
     pub bends: Bends<3>,
     /// Bending where a fiber turns within the cloth: a fourth particle keeps flat cloth free of it.
     pub skewed: Bends<4>,
+    /// Bending where the mesh is uneven: measured over whole rings.
+    pub hubs: Hubs,
     /// What holds the garment together when all else gives way.
     pub tethers: Tethers,
     /// The particles that each owner has, as ranges `(first, len)`.
@@ -346,6 +401,8 @@ impl Layout {
             + lists(&self.hoops)
             + bends(&self.bends)
             + bends(&self.skewed)
+            + 4 * (self.hubs.particles.len() + self.hubs.coefficients.len())
+            + size_of_val(&*self.hubs.groups)
             + self.tethers.anchor.len() * 8
             + self.owner.len()
             + self.spans.iter().map(Vec::len).sum::<usize>() * 8

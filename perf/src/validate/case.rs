@@ -189,9 +189,6 @@ fn known(row: &Row) -> Option<&'static str> {
         ("capstan", _) => {
             Some("contact and fibers are solved in turn only twice a substep: a heavy load on a light rope slips early")
         }
-        ("cantilever", "unstructured" | "unstructured-raw") => Some(
-            "vertices of uneven neighbourhoods have no stencil or a crooked one, and others do not make up for them",
-        ),
         ("shear-sag", _) => Some(
             "within some links of the free sides there is no shear, and the sheet sags more: the mesh's, not the solver's",
         ),

@@ -9,6 +9,7 @@ pub mod contact;
 pub mod diagonals;
 pub mod fibers;
 pub mod guard;
+pub mod hubs;
 pub mod links;
 pub mod lists;
 pub mod measure;

@@ -9,7 +9,7 @@ use toile_assets::limits::STEP_SECONDS;
 use super::program::{self, Bending, Op};
 use super::settings::MAX_SUBSTEPS;
 use super::stages::{self, Stage};
-use super::{Quality, Settings, bending, fibers, links};
+use super::{Quality, Settings, bending, fibers, hubs, links};
 
 /// Pull across a fiber's links from which on its solves are calmed. Garments in the substeps that they ask for are below
 /// 1: a linearised solve is stable there, and calming would slow their swing.
@@ -36,6 +36,7 @@ pub struct Prepared {
     pub weft_gain: Box<[f32]>,
     pub bend_scale: Box<[f32]>,
     pub skewed_scale: Box<[f32]>,
+    pub hub_scale: Box<[f32]>,
     pub bend: bending::Pace,
     /// Bending's phases of a substep, and its stages where it is stiff.
     pub bending: Bending,
@@ -67,6 +68,7 @@ impl Prepared {
             weft_gain: zeros(layout.weft.rest.len()),
             bend_scale: zeros(layout.bends.tuples.places),
             skewed_scale: zeros(layout.skewed.tuples.places),
+            hub_scale: zeros(layout.hubs.count),
             bend: bending::Pace { every: 1, stages: 1, least: 1.0 },
             bending: Bending { sets: Bending::sets(layout), stages: 1 },
             stages: [Stage::default(); stages::MOST as usize],
@@ -116,6 +118,7 @@ impl Prepared {
         }
         let least = bending::weaken(&layout.bends, &self.load, limit, &mut self.bend_scale);
         let least = bending::weaken(&layout.skewed, &self.load, limit, &mut self.skewed_scale).min(least);
+        let least = hubs::weaken(&layout.hubs, &self.load, limit, &mut self.hub_scale).min(least);
         self.bending.stages = stages;
         self.bend = bending::Pace { every: bending::every(&self.load, self.substeps), stages, least };
     }
@@ -151,6 +154,7 @@ impl Prepared {
 fn add_load(garment: &Garment, dt: f32, load: &mut [f32]) {
     bending::add_load(&garment.layout.bends, &garment.inverse_mass, dt, load);
     bending::add_load(&garment.layout.skewed, &garment.inverse_mass, dt, load);
+    hubs::add_load(&garment.layout.hubs, &garment.inverse_mass, dt, load);
 }
 
 /// Whether any of some links gives: a millimetre under a thousand newtons and more.

@@ -82,7 +82,7 @@ pub struct Bending {
 impl Bending {
     /// The sets of a layout.
     pub fn sets(layout: &Layout) -> u32 {
-        layout.bends.tuples.sets.len().max(layout.skewed.tuples.sets.len()) as u32
+        layout.bends.tuples.sets.len().max(layout.skewed.tuples.sets.len()).max(layout.hubs.sets()) as u32
     }
 
     /// Its phases.

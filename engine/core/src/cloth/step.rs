@@ -14,8 +14,8 @@ use super::root::{Carried, RootStep};
 use super::stages;
 use super::state::{self, Columns};
 use super::{
-    Cloth, Quality, Settings, Step, Wind, bending, contact, diagonals, fibers, guard, links, lists, predict, settle,
-    tethers, wind,
+    Cloth, Quality, Settings, Step, Wind, bending, contact, diagonals, fibers, guard, hubs, links, lists, predict,
+    settle, tethers, wind,
 };
 use crate::crew::{Crew, Own};
 use crate::lanes::{Column, Store, Width};
@@ -342,6 +342,24 @@ impl Work<'_> {
         let (layout, p) = (&self.garment.layout, self.prepared);
         self.stencils(&layout.bends, &p.bend_scale, set, from_to, by, share);
         self.stencils(&layout.skewed, &p.skewed_scale, set, from_to, by, share);
+        self.hubs(set, from_to, by, share);
+    }
+
+    /// Those of whole rings.
+    fn hubs(&self, set: u16, [from, to]: [[Column<'_>; 3]; 2], by: f32, share: usize) {
+        let hubs = &self.garment.layout.hubs;
+        let Some(groups) = hubs.sets.get(usize::from(set)) else { return };
+        let scale = (self.prepared.bend.least < 1.0).then_some(&*self.prepared.hub_scale);
+        let bend = |owner: usize| {
+            let groups = groups[owner].clone();
+            self.width.run(hubs::Bend { w: self.columns.w, hubs, groups, from, to, by, scale });
+        };
+        // The second set crosses the owners.
+        if set == 0 {
+            bend(share);
+        } else if share == 0 {
+            (0..OWNERS).for_each(bend);
+        }
     }
 
     /// Those of one kind; what crosses the owners is the first worker's alone.
