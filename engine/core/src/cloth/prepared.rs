@@ -6,6 +6,7 @@ use toile_assets::garment::Garment;
 use toile_assets::garment::layout::ENDED;
 use toile_assets::limits::STEP_SECONDS;
 
+use super::links::Passes;
 use super::program::{self, Bending, Op};
 use super::settings::MAX_SUBSTEPS;
 use super::stages::{self, Stage};
@@ -97,8 +98,8 @@ impl Prepared {
         self.shear_every = if half { 2 } else { 1 };
         self.taut = fibers::pull_across(&garment.layout.fibers, &garment.inverse_mass, self.dt) > TAUT;
         let (layout, w) = (&garment.layout, &garment.inverse_mass);
-        links::prepare(&layout.shear, w, self.dt, self.gamma, &mut self.shear_gain);
-        links::prepare(&layout.weft, w, self.dt, self.gamma, &mut self.weft_gain);
+        links::prepare(&layout.shear, w, [self.dt, self.gamma], Passes::Once, &mut self.shear_gain);
+        links::prepare(&layout.weft, w, [self.dt, self.gamma], Passes::Many, &mut self.weft_gain);
         self.bend(garment);
     }
 
