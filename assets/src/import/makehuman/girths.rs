@@ -1,6 +1,7 @@
 //! The girths of a MakeHuman body along rows of its mesh, as its sliders are labelled with: the length of a closed
-//! polyline around the body. A row runs straight on through the quads from its first edge until it comes back. Where
-//! the tape bridges a hollow (the breastbone, the spine, the cleft of the seat) the row does too.
+//! polyline around the body. A row runs straight on through the quads from its first edge until it comes back, or to
+//! its last vertex, from where the tape goes straight across (from bust point to bust point). Where the tape bridges a
+//! hollow (the spine, the cleft of the seat) the row does too.
 //!
 //! These follow the mesh, not a level: they are not the girths of EN 13402, which [`crate::body::tape`] reads.
 
@@ -26,16 +27,24 @@ pub struct Girths {
     pub hips: f32,
 }
 
-/// A row of `hm08`: its first edge, and the pairs of its vertices between which it is bridged.
+/// A row of `hm08`: its first edge, the vertex where it ends before it has come around, the vertices that the tape
+/// touches on its way straight back, and the pairs of vertices between which the row is bridged.
 struct Row {
     first: [u32; 2],
+    last: Option<u32>,
+    back: &'static [u32],
     bridges: &'static [[u32; 2]],
 }
 
-const NECK: Row = Row { first: [755, 756], bridges: &[] };
-const BUST: Row = Row { first: [8_494, 8_557], bridges: &[[1_799, 8_471], [10_606, 3_942]] };
-const WAIST: Row = Row { first: [4_108, 4_113], bridges: &[] };
-const HIPS: Row = Row { first: [4_226, 4_227], bridges: &[[10_862, 4_227]] };
+const NECK: Row = Row { first: [755, 756], last: None, back: &[], bridges: &[] };
+const BUST: Row = Row {
+    first: [8_462, 8_446],
+    last: Some(1_790),
+    back: &[1_783, 1_799, 8_471, 8_455],
+    bridges: &[[10_606, 3_942]],
+};
+const WAIST: Row = Row { first: [4_108, 4_113], last: None, back: &[], bridges: &[] };
+const HIPS: Row = Row { first: [4_226, 4_227], last: None, back: &[], bridges: &[[10_862, 4_227]] };
 
 /// Longest row (vertices): one that is longer does not close.
 const MAX_ROW: usize = 400;
@@ -49,8 +58,9 @@ impl Girths {
         let net = Net::of(faces);
         let along = |row: &Row, name: &str| {
             let missing = || format!("the row of its {name} is not there; use the base mesh hm08 as it is");
-            let vertices = net.row(row.first).ok_or_else(missing)?;
-            let vertices = bridged(vertices, row.bridges).ok_or_else(missing)?;
+            let vertices = net.row(row.first, row.last).ok_or_else(missing)?;
+            let mut vertices = bridged(vertices, row.bridges).ok_or_else(missing)?;
+            vertices.extend(row.back);
             let next = vertices.iter().cycle().skip(1);
             let edges = vertices.iter().zip(next).map(|(a, b)| positions[*a as usize].distance(positions[*b as usize]));
             Ok::<f32, Flaw>(edges.sum::<f32>() * DECIMETRE)
@@ -95,8 +105,8 @@ impl Net {
         net
     }
 
-    /// The closed row that begins with an edge: at each vertex of four edges it goes on by the one opposite.
-    fn row(&self, [a, b]: [u32; 2]) -> Option<Vec<u32>> {
+    /// The row that begins with an edge: at each vertex of four edges it goes on by the one opposite.
+    fn row(&self, [a, b]: [u32; 2], last: Option<u32>) -> Option<Vec<u32>> {
         self.faces.get(&sorted(a, b))?;
         let mut row = vec![a, b];
         while row.len() < MAX_ROW {
@@ -111,6 +121,9 @@ impl Net {
                 return Some(row);
             }
             row.push(next);
+            if Some(next) == last {
+                return Some(row);
+            }
         }
         None
     }

@@ -64,6 +64,7 @@ struct Base {
 /// # Errors
 /// [`AvatarError`], which names the file, what is wrong in it, and the cure.
 pub fn read(folder: &Path, choice: &Choice, options: &Options) -> Result<Made, AvatarError> {
+    check_rig(folder, &choice.rig)?;
     let mut base = Base::read(folder)?;
     targets(folder, &choice.targets, &mut base.positions)?;
     let girths = Girths::of(&base.positions, &base.faces).map_err(|flaw| flaw.of(&folder.join("base.obj")))?;
@@ -88,11 +89,16 @@ impl Base {
     }
 }
 
-fn raw(folder: &Path, rig: &str, base: &Base) -> Result<Raw, AvatarError> {
+/// A rig's name is part of a file's name, and leads to no other folder.
+fn check_rig(folder: &Path, rig: &str) -> Result<(), AvatarError> {
     if !rig.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
         let reason = format!("a rig has no name like \"{rig}\"; name one of the folder's rig.*.json files");
         return Err(Flaw::Syntax { reason }.of(folder));
     }
+    Ok(())
+}
+
+fn raw(folder: &Path, rig: &str, base: &Base) -> Result<Raw, AvatarError> {
     let joints = rig::joints(&folder.join(format!("rig.{rig}.json")), base)?;
     let influences = influences(&folder.join(format!("weights.{rig}.json.gz")), &joints)?;
     let called: Vec<&str> = joints.iter().map(|j| j.name.as_str()).collect();

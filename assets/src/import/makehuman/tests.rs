@@ -33,7 +33,7 @@ fn heights_and_girths_are_those_of_the_makers() {
         let girths = made(&folder, targets).girths;
         for ((name, value), expected) in girths.named().into_iter().zip(expected) {
             println!("{targets:?} {name}: {:.2} cm, known {expected}", value * 100.0);
-            assert!((value * 100.0 - expected).abs() < 0.2, "{targets:?} {name}: {} {expected}", value * 100.0);
+            assert!((value * 100.0 - expected).abs() < 0.1, "{targets:?} {name}: {} {expected}", value * 100.0);
         }
     }
 }
