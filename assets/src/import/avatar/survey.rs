@@ -1,8 +1,8 @@
 //! The measuring levels, regions and measures of an imported body, from its joints and the shape of its trunk.
 //!
 //! Landmarks under the skin cannot be felt on a mesh, so that some levels are conventions: the waist is the narrowest
-//! level between hips and bust (the natural waist lies within a few centimetres), the underbust a quarter of the way
-//! from bust to waist. Girths are convex hulls of horizontal slices without arms, as for our own bodies.
+//! level between hips and bust (the natural waist lies within a few centimetres), the underbust less than half of the
+//! way from bust to waist, the acromion a little outwards of the shoulder's joint. Girths are convex hulls of horizontal slices without arms, as for our own bodies.
 
 use glam::Vec3;
 
@@ -14,11 +14,13 @@ use crate::skeleton::{BONES, Joint, Skeleton, TWIST_BONES};
 /// Levels at which the trunk is looked at for its narrowest one.
 const SLICES: usize = 64;
 
-/// How far from the middle the lowest place between the legs is looked for (share of the stature).
-const MIDDLE: f32 = 0.012;
+/// How far an acromion lies outwards of its joint's centre, and how far around it its height is looked for (share of the
+/// stature): on the mannequin, whose shoulders ANSUR II gives, 17.6 mm of 1,628.
+const ACROMION_OUT: f32 = 0.0108;
+const ACROMION_NEAR: f32 = 0.015;
 
-/// How far around a shoulder joint its acromion is looked for (share of the stature).
-const ACROMION: f32 = 0.02;
+/// The underbust's share of the way from bust to waist, as on the mannequin.
+const UNDERBUST: f32 = 0.45;
 
 /// What is read off an imported body.
 pub(super) struct Survey {
@@ -55,7 +57,7 @@ pub(super) fn survey(mesh: &Mesh, weights: &[SkinWeights], skeleton: &Skeleton) 
     let knee = 0.5 * (at(Joint::LeftKnee) + at(Joint::RightKnee));
     let ankle = 0.5 * (at(Joint::LeftAnkle) + at(Joint::RightAnkle));
     let neck = at(Joint::Neck).max(chest_top);
-    let underbust = chest - 0.25 * (chest - waist);
+    let underbust = chest - UNDERBUST * (chest - waist);
     let levels = Levels { neck, shoulder: chest_top, chest, underbust, waist, hip, crotch, knee, ankle };
     let measures = Measures {
         stature: mesh.positions.iter().map(|p| p.y).fold(0.0, f32::max),
@@ -109,25 +111,26 @@ fn region(weights: &SkinWeights, of_bone: &[Region; BONES]) -> Region {
     best
 }
 
-/// The lowest place between the legs: the lowest vertex near the middle that is above the knees.
+/// The lowest place between the legs: where the middle plane of the body leaves the trunk above the knees.
 fn crotch(mesh: &Mesh, regions: &[Region], skeleton: &Skeleton) -> Result<f32, Flaw> {
     let knee = skeleton.at(Joint::LeftKnee).y.max(skeleton.at(Joint::RightKnee).y);
     let hips = 0.5 * (skeleton.at(Joint::LeftHip).y + skeleton.at(Joint::RightHip).y);
-    let stature = mesh.positions.iter().map(|p| p.y).fold(0.0, f32::max);
-    let near = |(p, region): &(&Vec3, &Region)| {
-        let trunk = matches!(region, Region::Torso | Region::LeftLeg | Region::RightLeg);
-        trunk && p.x.abs() < MIDDLE * stature && (knee..hips).contains(&p.y)
+    let of_trunk = |t: usize| {
+        let trunk = [Region::Torso, Region::LeftLeg, Region::RightLeg];
+        mesh.triangles[t].iter().all(|&v| trunk.contains(&regions[v as usize]))
     };
-    let low = mesh.positions.iter().zip(regions).filter(near).map(|(p, _)| p.y).min_by(f32::total_cmp);
-    low.ok_or(Flaw::Level { level: "crotch" })
+    let cut = tape::slice(mesh, of_trunk, Vec3::ZERO, Vec3::X);
+    let heights = cut.iter().flatten().map(|p| p.y).filter(|y| (knee..hips).contains(y));
+    heights.min_by(f32::total_cmp).ok_or(Flaw::Level { level: "crotch" })
 }
 
-/// The tops of the two shoulders: the highest place over each shoulder joint.
+/// The tops of the two shoulders: the highest place over each acromion.
 fn acromions(mesh: &Mesh, skeleton: &Skeleton) -> [Vec3; 2] {
     let stature = mesh.positions.iter().map(|p| p.y).fold(0.0, f32::max);
     [Joint::LeftShoulder, Joint::RightShoulder].map(|joint| {
-        let at = skeleton.at(joint);
-        let near = |p: &&Vec3| (**p - at).with_y(0.0).length() < ACROMION * stature;
+        let centre = skeleton.at(joint);
+        let at = centre + Vec3::X * (ACROMION_OUT * stature).copysign(centre.x);
+        let near = |p: &&Vec3| (**p - at).with_y(0.0).length() < ACROMION_NEAR * stature;
         let top = mesh.positions.iter().filter(near).map(|p| p.y).fold(at.y, f32::max);
         at.with_y(top)
     })

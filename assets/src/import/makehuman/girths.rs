@@ -1,7 +1,7 @@
 //! The girths of a MakeHuman body along rows of its mesh, as its sliders are labelled with: the length of a closed
 //! polyline around the body. A row runs straight on through the quads from its first edge until it comes back, or to
 //! its last vertex, from where the tape goes straight across (from bust point to bust point). Where the tape bridges a
-//! hollow (the spine, the cleft of the seat) the row does too.
+//! hollow (the spine, the navel, the cleft of the seat) the row does too.
 //!
 //! These follow the mesh, not a level: they are not the girths of EN 13402, which [`crate::body::tape`] reads.
 
@@ -43,7 +43,7 @@ const BUST: Row = Row {
     back: &[1_783, 1_799, 8_471, 8_455],
     bridges: &[[10_606, 3_942]],
 };
-const WAIST: Row = Row { first: [4_108, 4_113], last: None, back: &[], bridges: &[] };
+const WAIST: Row = Row { first: [4_108, 4_113], last: None, back: &[], bridges: &[[4_121, 10_760]] };
 const HIPS: Row = Row { first: [4_226, 4_227], last: None, back: &[], bridges: &[[10_862, 4_227]] };
 
 /// Longest row (vertices): one that is longer does not close.
