@@ -104,7 +104,7 @@ fn named(name: &'static str, m: f32) -> Named {
 
 fn title(args: &BodyArgs, body: &Body) -> String {
     let name = args.file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-    let line = measures(&body.measures).map(|(name, m)| format!("{name} {:.0} mm", m * 1e3)).join("   ");
+    let line = measures(&body.measures).map(|(name, m)| format!("{name} {:.0} mm", named(name, m).value)).join("   ");
     format!("{name}\n{line}")
 }
 

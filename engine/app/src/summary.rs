@@ -5,7 +5,8 @@ use std::fmt::Write;
 use toile_perf::skirt::report::Report;
 
 use crate::report::{
-    BodyReport, Measure, MeasureReport, Measurements, Physics, Recommendation, RunReport, Session, SkinningReport, TryOn,
+    BodyReport, Measure, MeasureReport, Measurements, Physics, Recommendation, RunReport, Session, SkinningReport,
+    TryOn,
 };
 use crate::terminal::{Paint, Tone};
 
@@ -156,7 +157,9 @@ pub fn body(report: &BodyReport, paint: Paint) -> String {
     let lost = [i.mean_lost, i.max_lost].map(|w| w * 100.0);
     let words = format!("  up to {} influences; {} vertices pruned to 4 lost {:.2} %", i.most, i.pruned, lost[0]);
     line(&mut text, &format!("{words} of their weight on average, {:.1} % at worst", lost[1]));
-    for (words, all) in [("Measures", Some(&report.measures_mm)), ("MakeHuman's own rows", report.makehuman_mm.as_ref())] {
+    for (words, all) in
+        [("Measures", Some(&report.measures_mm)), ("MakeHuman's own rows", report.makehuman_mm.as_ref())]
+    {
         if let Some(all) = all {
             heading(&mut text, words, paint);
             all.iter().for_each(|n| line(&mut text, &format!("  {:17} {:6.0} mm", n.name, n.value)));

@@ -107,11 +107,7 @@ pub(crate) fn load(path: &Path) -> Result<Vec<u8>, Flaw> {
 ///
 /// # Errors
 /// [`Flaw`], to stand behind the file's name.
-pub fn parse(
-    bytes: &[u8],
-    beside: crate::import::gltf::Beside<'_>,
-    options: &Options,
-) -> Result<Imported, Flaw> {
+pub fn parse(bytes: &[u8], beside: crate::import::gltf::Beside<'_>, options: &Options) -> Result<Imported, Flaw> {
     let file = File::open(bytes, beside)?;
     settle(skinned::read(&file, &options.meshes)?, options)
 }
@@ -147,7 +143,8 @@ pub(crate) fn settle(mut raw: Raw, options: &Options) -> Result<Imported, Flaw> 
 }
 
 fn found(raw: &Raw) -> Vec<(String, String)> {
-    let name = |j: Joint| Some((names::HANIM.names(j).remove(0), raw.joints[raw.reading.places[j.index()]?].name.clone()));
+    let name =
+        |j: Joint| Some((names::HANIM.names(j).remove(0), raw.joints[raw.reading.places[j.index()]?].name.clone()));
     Joint::ALL.into_iter().filter_map(name).collect()
 }
 

@@ -26,15 +26,20 @@ impl Nodes {
         let nodes = list(&json["nodes"]);
         if nodes.len() > MAX_BODY_NODES {
             let count = nodes.len();
-            return Err(Flaw::syntax(format!("it has {count} nodes, more than {MAX_BODY_NODES}; export the body alone")));
+            return Err(Flaw::syntax(format!(
+                "it has {count} nodes, more than {MAX_BODY_NODES}; export the body alone"
+            )));
         }
-        let name = |(i, node): (usize, &Value)| node["name"].as_str().map_or_else(|| format!("node {i}"), str::to_owned);
+        let name =
+            |(i, node): (usize, &Value)| node["name"].as_str().map_or_else(|| format!("node {i}"), str::to_owned);
         let names: Vec<String> = nodes.iter().enumerate().map(name).collect();
         let mut parents = vec![None; nodes.len()];
         for (parent, node) in nodes.iter().enumerate() {
             for child in list(&node["children"]) {
                 let child = index(child).filter(|c| *c < nodes.len());
-                let gone = || Flaw::syntax(format!("node \"{}\" has a child that is not there; export it again", names[parent]));
+                let gone = || {
+                    Flaw::syntax(format!("node \"{}\" has a child that is not there; export it again", names[parent]))
+                };
                 let child = child.ok_or_else(gone)?;
                 if parents[child].replace(parent).is_some() {
                     return Err(Flaw::TwoParents { node: names[child].clone() });

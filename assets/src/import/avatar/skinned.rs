@@ -89,9 +89,7 @@ fn shown(json: &Value, wanted: &[String]) -> Result<Vec<Shown>, Flaw> {
     }
     match (shown.is_empty(), wanted.first()) {
         (false, _) => Ok(shown),
-        (true, Some(name)) if !known.is_empty() => {
-            Err(Flaw::NoMesh { name: name.clone(), known: known.join(", ") })
-        }
+        (true, Some(name)) if !known.is_empty() => Err(Flaw::NoMesh { name: name.clone(), known: known.join(", ") }),
         (true, _) => Err(Flaw::NoSkin),
     }
 }
@@ -107,7 +105,9 @@ fn joint_list(file: &File, nodes: &Nodes, skin: usize) -> Result<Vec<usize>, Fla
         return Err(Flaw::syntax(format!("its skin {skin} has no joints; export the body with its armature")));
     }
     match joints.iter().find(|j| **j >= nodes.len()) {
-        Some(j) => Err(Flaw::syntax(format!("its skin {skin} names the joint {j} of {}; export it again", nodes.len()))),
+        Some(j) => {
+            Err(Flaw::syntax(format!("its skin {skin} names the joint {j} of {}; export it again", nodes.len())))
+        }
         None => Ok(joints),
     }
 }
@@ -120,7 +120,9 @@ fn open_skin(file: &File, nodes: &Nodes, skin: usize, hips: Option<usize>) -> Re
     let inverse: Vec<Mat4> = file.floats::<16>(accessor)?.iter().map(Mat4::from_cols_array).collect();
     if inverse.len() < joints.len() {
         let (have, need) = (inverse.len(), joints.len());
-        return Err(Flaw::syntax(format!("its skin {skin} has {have} inverse bind matrices for {need} joints; export it again")));
+        return Err(Flaw::syntax(format!(
+            "its skin {skin} has {have} inverse bind matrices for {need} joints; export it again"
+        )));
     }
     for (matrix, &joint) in inverse.iter().zip(&joints) {
         let usable = matrix.is_finite() && matrix.row(3) == glam::Vec4::W && matrix.inverse().is_finite();
@@ -150,14 +152,7 @@ fn raw_joints(nodes: &Nodes, bones: &[usize], skins: &[Option<Skin>]) -> Vec<Raw
 }
 
 /// Adds the triangles of one primitive.
-fn add(
-    file: &File,
-    nodes: &Nodes,
-    bones: &[usize],
-    skin: &Skin,
-    primitive: &Value,
-    raw: &mut Raw,
-) -> Result<(), Flaw> {
+fn add(file: &File, nodes: &Nodes, bones: &[usize], skin: &Skin, primitive: &Value, raw: &mut Raw) -> Result<(), Flaw> {
     match primitive["mode"].as_u64().unwrap_or(4) {
         4 => {}
         0..=3 => return Ok(()),
@@ -231,14 +226,18 @@ fn influences(
         let [joints, weights] = names.map(|name| index(&primitive["attributes"][name]));
         let (Some(joints), Some(weights)) = (joints, weights) else {
             if set == 0 {
-                return Err(Flaw::syntax("a part of the mesh has no joints or weights; bind all of it to its armature"));
+                return Err(Flaw::syntax(
+                    "a part of the mesh has no joints or weights; bind all of it to its armature",
+                ));
             }
             break;
         };
         let (joints, weights) = (file.integers::<4>(joints)?, file.floats::<4>(weights)?);
         if joints.len() != count || weights.len() != count {
             let have = joints.len().min(weights.len());
-            return Err(Flaw::syntax(format!("it has weights of {have} vertices for {count} positions; export it again")));
+            return Err(Flaw::syntax(format!(
+                "it has weights of {have} vertices for {count} positions; export it again"
+            )));
         }
         for (v, (joints, weights)) in joints.iter().zip(&weights).enumerate() {
             for k in 0..4 {

@@ -66,7 +66,9 @@ pub(super) fn survey(mesh: &Mesh, weights: &[SkinWeights], skeleton: &Skeleton) 
         waist_girth: girth(waist),
         hip_girth: girth(hip),
     };
-    for (level, value) in [("bust", measures.chest_girth), ("waist", measures.waist_girth), ("seat", measures.hip_girth)] {
+    for (level, value) in
+        [("bust", measures.chest_girth), ("waist", measures.waist_girth), ("seat", measures.hip_girth)]
+    {
         if value <= 0.0 {
             return Err(Flaw::Level { level });
         }

@@ -191,9 +191,11 @@ fn scales_and_turns_above_the_skeleton_are_undone() {
     let plain = Edit::new().import().unwrap();
     let quarter = std::f32::consts::FRAC_1_SQRT_2;
     // Centimetres under a node that makes metres of them; z up; facing backwards, as VRM 0.x does.
-    for (factor, scale, turn) in
-        [(100.0, 0.01, [0.0, 0.0, 0.0, 1.0]), (1.0, 1.0, [quarter, 0.0, 0.0, quarter]), (1.0, 1.0, [0.0, 1.0, 0.0, 0.0])]
-    {
+    for (factor, scale, turn) in [
+        (100.0, 0.01, [0.0, 0.0, 0.0, 1.0]),
+        (1.0, 1.0, [quarter, 0.0, 0.0, quarter]),
+        (1.0, 1.0, [0.0, 1.0, 0.0, 0.0]),
+    ] {
         let mut edit = Edit::new();
         edit.scale(factor);
         edit.below(json!({ "name": "Armature", "scale": [scale, scale, scale], "rotation": turn }));
@@ -205,7 +207,7 @@ fn scales_and_turns_above_the_skeleton_are_undone() {
 
 #[test]
 fn vrm_names_say_which_node_is_which_joint() {
-    let vrm = crate::import::avatar::names::DIALECTS[0].title;
+    let vrm = names::DIALECTS[0].title;
     let mut edit = Edit::new();
     let nodes: Vec<(usize, String)> =
         Joint::ALL.into_iter().map(|j| (j.index() + 1, names::DIALECTS[0].names(j).remove(0))).collect();
@@ -334,8 +336,7 @@ fn armatures_that_are_no_tree_are_refused() {
     circle.node("l_talocrural")["children"] = json!([1]);
     assert!(circle.said().contains("below itself"));
     let mut itself = Edit::new();
-    itself.node("l_metatarsophalangeal")["children"] =
-        json!([1 + Joint::LeftToe.index()]);
+    itself.node("l_metatarsophalangeal")["children"] = json!([1 + Joint::LeftToe.index()]);
     assert!(itself.said().contains("two parents"));
     let mut roots = Edit::new();
     let hip = 1 + Joint::LeftHip.index();
@@ -480,7 +481,7 @@ fn truncated_files_are_errors() {
 
 #[test]
 fn files_are_named_in_their_errors() {
-    let said = read(std::path::Path::new("no/such.glb"), &Options::default()).unwrap_err().to_string();
+    let said = read(Path::new("no/such.glb"), &Options::default()).unwrap_err().to_string();
     assert!(said.starts_with("no/such.glb: it cannot be read"), "{said}");
 }
 

@@ -73,7 +73,9 @@ impl File {
     /// The elements of an accessor of whole numbers.
     pub fn integers<const N: usize>(&self, accessor: usize) -> Result<Vec<[u32; N]>, String> {
         if !matches!(self.component(accessor), 5121 | 5123 | 5125) {
-            return Err(format!("its accessor {accessor} has no whole numbers where an index belongs; export it again"));
+            return Err(format!(
+                "its accessor {accessor} has no whole numbers where an index belongs; export it again"
+            ));
         }
         self.elements(accessor, little_endian)
     }
@@ -111,9 +113,10 @@ impl File {
             None => return Err(wrong("no data")),
         };
         if accessor["sparse"].is_object() {
-            self.sparse(number, size * N, |at, bytes| match out.get_mut(at) {
-                Some(to) => Some(*to = element(bytes)),
-                None => None,
+            self.sparse(number, size * N, |at, bytes| {
+                let to = out.get_mut(at)?;
+                *to = element(bytes);
+                Some(())
             })?;
         }
         Ok(out)
@@ -182,11 +185,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     Ok((json.ok_or_else(cut)?, bin))
 }
 
-fn buffers(
-    json: &Value,
-    bin: Option<&[u8]>,
-    beside: Beside<'_>,
-) -> Result<Vec<Vec<u8>>, String> {
+fn buffers(json: &Value, bin: Option<&[u8]>, beside: Beside<'_>) -> Result<Vec<Vec<u8>>, String> {
     let read = |buffer: &Value| match buffer["uri"].as_str() {
         None => bin.map(Vec::from).ok_or_else(|| "it has a buffer without data; export it again".into()),
         Some(uri) if uri.starts_with("data:") => {

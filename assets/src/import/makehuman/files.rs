@@ -15,7 +15,8 @@ const MAX_UNPACKED: u64 = 64 << 20;
 /// A plain file's text.
 pub(super) fn text(path: &Path) -> Result<String, AvatarError> {
     let bytes = load(path).map_err(|flaw| flaw.of(path))?;
-    String::from_utf8(bytes).map_err(|_| Flaw::Syntax { reason: "it is no text; use MakeHuman's own file".into() }.of(path))
+    String::from_utf8(bytes)
+        .map_err(|_| Flaw::Syntax { reason: "it is no text; use MakeHuman's own file".into() }.of(path))
 }
 
 /// A packed file's text.
@@ -71,7 +72,9 @@ fn add(text: &str, share: f32, positions: &mut [Vec3]) -> Result<(), String> {
         let to = vertex.parse().ok().and_then(|v: usize| positions.get_mut(v));
         let (Some(to), Some(offset)) = (to, offset) else {
             let n = i + 1;
-            return Err(format!("line {n} is not a vertex of the base and three numbers; copy MakeHuman's own file again"));
+            return Err(format!(
+                "line {n} is not a vertex of the base and three numbers; copy MakeHuman's own file again"
+            ));
         };
         *to += offset * share;
     }

@@ -37,12 +37,8 @@ struct Row {
 }
 
 const NECK: Row = Row { first: [755, 756], last: None, back: &[], bridges: &[] };
-const BUST: Row = Row {
-    first: [8_462, 8_446],
-    last: Some(1_790),
-    back: &[1_783, 1_799, 8_471, 8_455],
-    bridges: &[[10_606, 3_942]],
-};
+const BUST: Row =
+    Row { first: [8_462, 8_446], last: Some(1_790), back: &[1_783, 1_799, 8_471, 8_455], bridges: &[[10_606, 3_942]] };
 const WAIST: Row = Row { first: [4_108, 4_113], last: None, back: &[], bridges: &[[4_121, 10_760]] };
 const HIPS: Row = Row { first: [4_226, 4_227], last: None, back: &[], bridges: &[[10_862, 4_227]] };
 

@@ -124,13 +124,15 @@ fn raw(folder: &Path, rig: &str, base: &Base) -> Result<Raw, AvatarError> {
 fn influences(path: &Path, joints: &[RawJoint]) -> Result<Vec<Influences>, AvatarError> {
     let wrong = |reason: String| Flaw::Syntax { reason }.of(path);
     let json = json_gz(path)?;
-    let bones = json["weights"].as_object().ok_or_else(|| wrong("it has no weights; use MakeHuman's own file".into()))?;
+    let bones =
+        json["weights"].as_object().ok_or_else(|| wrong("it has no weights; use MakeHuman's own file".into()))?;
     let mut out = vec![Influences::default(); BODY_VERTICES];
     let mut used = vec![0usize; BODY_VERTICES];
     for (name, pairs) in bones {
         let Some(pairs) = pairs.as_array().filter(|p| !p.is_empty()) else { continue };
         let joint = joints.iter().position(|j| j.name == *name);
-        let joint = joint.ok_or_else(|| wrong(format!("its bone \"{name}\" is not in the rig; use the rig's weights")))?;
+        let joint =
+            joint.ok_or_else(|| wrong(format!("its bone \"{name}\" is not in the rig; use the rig's weights")))?;
         for pair in pairs {
             let vertex = pair[0].as_u64().map_or(usize::MAX, |v| v as usize);
             let weight = pair[1].as_f64().unwrap_or(f64::NAN) as f32;
@@ -138,7 +140,9 @@ fn influences(path: &Path, joints: &[RawJoint]) -> Result<Vec<Influences>, Avata
                 continue;
             }
             if used[vertex] == IMPORT_INFLUENCES {
-                return Err(wrong(format!("vertex {vertex} hangs on more than {IMPORT_INFLUENCES} bones; limit them to that")));
+                return Err(wrong(format!(
+                    "vertex {vertex} hangs on more than {IMPORT_INFLUENCES} bones; limit them to that"
+                )));
             }
             out[vertex].0[used[vertex]] = (joint as u16, weight);
             used[vertex] += 1;

@@ -41,16 +41,19 @@ pub(super) fn joints(path: &Path, base: &Base) -> Result<Vec<RawJoint>, AvatarEr
     let json: Value =
         serde_json::from_str(&text(path)?).map_err(|e| wrong(format!("{e}; use MakeHuman's own file")))?;
     let bones = json["bones"].as_object().or(json.as_object());
-    let bones = bones.filter(|b| b.len() <= MAX_BODY_NODES).ok_or_else(|| wrong("it is no rig; use MakeHuman's own file".into()))?;
+    let bones = bones
+        .filter(|b| b.len() <= MAX_BODY_NODES)
+        .ok_or_else(|| wrong("it is no rig; use MakeHuman's own file".into()))?;
     let names: Vec<&str> = bones.keys().map(String::as_str).collect();
     let joint = |(name, bone): (&String, &Value)| {
         let parent = match bone["parent"].as_str().filter(|p| !p.is_empty()) {
-            Some(parent) => Some(
-                names.iter().position(|n| *n == parent).ok_or(format!("bone \"{name}\" hangs from \"{parent}\", which is not there; use MakeHuman's own file"))?,
-            ),
+            Some(parent) => Some(names.iter().position(|n| *n == parent).ok_or(format!(
+                "bone \"{name}\" hangs from \"{parent}\", which is not there; use MakeHuman's own file"
+            ))?),
             None => None,
         };
-        let at = head(&bone["head"], base).ok_or(format!("bone \"{name}\" begins nowhere on the base; use MakeHuman's own file"))?;
+        let at = head(&bone["head"], base)
+            .ok_or(format!("bone \"{name}\" begins nowhere on the base; use MakeHuman's own file"))?;
         Ok(RawJoint { name: name.clone(), parent, at })
     };
     let joints: Vec<RawJoint> = bones.iter().map(joint).collect::<Result<_, String>>().map_err(wrong)?;
