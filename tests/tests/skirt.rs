@@ -175,6 +175,24 @@ fn every_width_and_every_run_gives_the_same_bits() {
     }
 }
 
+#[test]
+fn an_irregular_skirt_has_the_same_bits_with_two_workers_and_at_every_width() {
+    let play = |threads: usize, width: Width| {
+        let stepped =
+            Options { mesh: Mesh::Irregular, lanes: Some(width), verts: 9_216, threads, ..Options::default() };
+        let mut stage = stage(&stepped);
+        for _ in 0..8 {
+            stage.prepare();
+            stage.step();
+        }
+        stage.state_hash()
+    };
+    let one = play(1, Width::widest());
+    for width in Width::ALL.into_iter().filter(|w| w.available()) {
+        assert_eq!(play(2, width), one, "{width:?}");
+    }
+}
+
 /// Hash of the skirt of 9,216 vertices after [`GOLDEN_STEPS`] of walking. A change of it is a change of what every user
 /// sees: it has to be meant, and said in the changelog. (Sines of the scene come from the platform's library; the hash is
 /// that of Linux on x86-64.)
