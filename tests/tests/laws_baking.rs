@@ -105,7 +105,8 @@ proptest! {
                     let ends = run.first.map(|f| f..f + run.len);
                     prop_assert!(ends[1].clone().all(|p| !left.contains(&p)), "a link comes after what it leads on to");
                     let [a, b] = ends;
-                    (left.extend(a), led_to.extend(b));
+                    left.extend(a);
+                    led_to.extend(b);
                 }
             }
             prop_assert!(no_particle_twice(left) && no_particle_twice(led_to));

@@ -46,7 +46,7 @@ pub fn lay_out(
         let strands = std::array::from_fn(|share| {
             let mine = |v: &[u32; 2]| v.iter().all(|&p| usize::from(owner[p as usize]) == share);
             let links: BTreeMap<[u32; 2], usize> = family.iter().filter(|l| mine(&l.1)).map(|&(i, v)| (v, i)).collect();
-            let ordered = ordered(side_by_side(&links));
+            let ordered = ordered(&side_by_side(&links));
             let (first_run, first_start) = (runs.len() as u32, starts.len() as u32);
             let reached: BTreeSet<u32> = ordered.iter().flat_map(|r| (0..r.len).map(|t| r.first[1] + t)).collect();
             for mut run in ordered {
@@ -109,7 +109,7 @@ fn side_by_side(links: &BTreeMap<[u32; 2], usize>) -> Vec<Run<2>> {
 
 /// Runs so that what leads to a run's particles comes before it; those that would have to come before themselves are
 /// left out.
-fn ordered(runs: Vec<Run<2>>) -> Vec<Run<2>> {
+fn ordered(runs: &[Run<2>]) -> Vec<Run<2>> {
     let leads: BTreeMap<u32, usize> =
         runs.iter().enumerate().flat_map(|(r, run)| (0..run.len).map(move |t| (run.first[1] + t, r))).collect();
     let before = |r: usize| {
