@@ -6,8 +6,10 @@ use serde::Serialize;
 
 use crate::machine::Machine;
 
+mod body;
 mod run;
 
+pub use body::{BodyReport, Influences, JointFound, Named, SurfaceReport};
 pub use run::{KineticEnergy, RunGarment, RunPenetration, RunReport};
 
 /// What every object carries, around what one command has to say.
