@@ -6,7 +6,7 @@ use glam::{Quat, Vec2, Vec3};
 use proptest::prelude::*;
 use toile_assets::bake::bake;
 use toile_assets::fabric::Fabric;
-use toile_assets::garment::layout::{Share, Tuples};
+use toile_assets::garment::layout::{List, Share, Tuples};
 use toile_assets::garment::{Garment, Shape, check};
 use toile_perf::oracle::{Problem, State, measure};
 use toile_tests::meshes::{Cell, Plan, area, folded};
@@ -91,12 +91,11 @@ proptest! {
         for set in sets(&layout.shear.tuples).into_iter().chain(sets(&layout.weft.tuples)) {
             prop_assert!(no_particle_twice(set));
         }
-        for set in layout.crossing.sets.iter().chain(&layout.hoops.sets) {
-            for lists in [&layout.crossing, &layout.hoops].into_iter().filter(|l| l.sets.contains(set)) {
-                let of = |l: &toile_assets::garment::layout::List| (l.first..l.first + l.lanes * l.rows).map(|k| lists.index[k as usize]);
-                let all = set.iter().flat_map(|r| lists.lists[r.start as usize..r.end as usize].iter().flat_map(of));
-                prop_assert!(no_particle_twice(all.collect()));
-            }
+        let lists = &layout.crossing;
+        let of = |l: &List| (l.first..l.first + l.lanes * l.rows).map(|k| lists.index[k as usize]);
+        for set in &lists.sets {
+            let all = set.iter().flat_map(|r| lists.lists[r.start as usize..r.end as usize].iter().flat_map(of));
+            prop_assert!(no_particle_twice(all.collect()));
         }
         for strands in &layout.diagonals.families {
             let (mut led_to, mut left) = (Vec::new(), Vec::new());

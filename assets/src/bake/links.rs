@@ -65,21 +65,16 @@ pub fn lay_out(baking: &Baking<'_>) -> Layout {
     let crossing = baking.order.crossing.iter().map(|&i| &baking.pieces[i]);
     let chosen = across().filter(|f| chooser.choose(f) != Solver::GaussSeidel && !leans(f));
     let lists_of: Vec<(&Fiber, Solver)> = crossing.chain(chosen).map(|f| (f, chooser.choose(f))).collect();
-    let hoops = across().filter(|f| f.direction == Direction::Weft && f.is_hoop());
-    let hoops = hoops.filter(|f| chooser.choose(f) == Solver::GaussSeidel);
-    let hoops: Vec<(&Fiber, Solver)> = hoops.map(|f| (f, Solver::SemiImplicit)).collect();
-    let (weft, numbers) = links(baking, &of(false));
     let shear = of(true);
     let (diagonals, whole) = diagonals(baking, &shear, baking.chains.iter().filter(|f| leans(f)));
     let shear: Vec<_> = shear.into_iter().filter(|(i, _)| !whole[*i]).collect();
     let stencils = bending::stencils(baking.shape, baking.edges, baking.fabric);
     Layout {
         diagonals,
-        shear: links(baking, &shear).0,
-        weft,
+        shear: links(baking, &shear),
+        weft: links(baking, &of(false)),
         fibers: fibers(baking, &chooser),
-        crossing: lists(baking, lists_of, None),
-        hoops: lists(baking, hoops, Some(&numbers)),
+        crossing: lists(baking, lists_of),
         bends: bends(baking, &stencils),
         skewed: bends(baking, &stencils),
         hubs: hubs::hubs(baking.order, &stencils),
@@ -102,8 +97,8 @@ fn same(a: f32, b: f32) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs()) || a == b
 }
 
-/// Links of single edges, each with the direction of the fiber that it belongs to; and the number of each edge's link.
-fn links(baking: &Baking<'_>, edges: &[(usize, Direction)]) -> (Links, Vec<u32>) {
+/// Links of single edges, each with the direction of the fiber that it belongs to.
+fn links(baking: &Baking<'_>, edges: &[(usize, Direction)]) -> Links {
     let edge = |i: usize| &baking.edges[edges[i].0];
     let soft = |i: usize| compliance(baking.fabric, edge(i), edges[i].1);
     let particle = |v: u32| baking.order.particle[v as usize];
@@ -118,14 +113,11 @@ fn links(baking: &Baking<'_>, edges: &[(usize, Direction)]) -> (Links, Vec<u32>)
         same(edge(i).rest, edge(j).rest) && same(soft(i), soft(j)) && (0..2).all(|k| same(weight(i, k), weight(j, k)))
     };
     let (tuples, laid) = runs::lay_out(&constraints, &baking.order.owner, true, &alike);
-    let mut numbers = vec![0; baking.edges.len()];
-    laid.serial.iter().enumerate().for_each(|(number, &i)| numbers[edges[i].0] = number as u32);
-    let links = Links {
+    Links {
         tuples,
         rest: laid.places.iter().map(|&i| edge(i).rest).collect(),
         compliance: laid.places.iter().map(|&i| soft(i)).collect(),
-    };
-    (links, numbers)
+    }
 }
 
 /// The fibers along the bias, of the edges given, that can be solved whole; and which edges those are.
@@ -211,10 +203,9 @@ fn fibers_alike(baking: &Baking<'_>, a: &Fiber, b: &Fiber) -> bool {
         && a.vertices.iter().zip(&b.vertices).all(|(&v, &w)| same(weight(v), weight(w)))
 }
 
-/// Fibers as index lists: sets without a common particle, in each of them lists of equal length and like solver. Their
-/// links have the `numbers` of their edges, or their own.
-fn lists(baking: &Baking<'_>, mut left: Vec<(&Fiber, Solver)>, numbers: Option<&[u32]>) -> Lists {
-    let mut out = ListsMaker { numbers: numbers.map(<[u32]>::to_vec), ..ListsMaker::default() };
+/// Fibers as index lists: sets without a common particle, in each of them lists of equal length and like solver.
+fn lists(baking: &Baking<'_>, mut left: Vec<(&Fiber, Solver)>) -> Lists {
+    let mut out = ListsMaker::default();
     left.sort_by_key(|(f, solver)| (std::cmp::Reverse(f.edges.len()), f.direction, *solver, !f.is_hoop()));
     while !left.is_empty() {
         let mut taken = vec![false; baking.order.particle.len()];
@@ -233,7 +224,6 @@ fn lists(baking: &Baking<'_>, mut left: Vec<(&Fiber, Solver)>, numbers: Option<&
         lists: out.lists.into(),
         sets: out.sets.into(),
         index: out.index.into(),
-        serial: out.serial.into(),
         rest: out.rest.into(),
         compliance: out.compliance.into(),
     }
@@ -244,8 +234,6 @@ struct ListsMaker {
     lists: Vec<List>,
     sets: Vec<[Range<u32>; OWNERS]>,
     index: Vec<u32>,
-    numbers: Option<Vec<u32>>,
-    serial: Vec<u32>,
     rest: Vec<f32>,
     compliance: Vec<f32>,
 }
@@ -281,11 +269,6 @@ impl ListsMaker {
         }
         for link in 0..fibers[0].edges.len() {
             let edges = || fibers.iter().map(|f| &baking.edges[f.edges[link] as usize]);
-            for fiber in &fibers {
-                let own = self.serial.len() as u32;
-                let number = |n: &Vec<u32>| n[fiber.edges[link] as usize];
-                self.serial.push(self.numbers.as_ref().map_or(own, number));
-            }
             self.rest.extend(edges().map(|e| e.rest));
             self.compliance.extend(edges().map(|e| compliance(baking.fabric, e, fibers[0].direction)));
         }

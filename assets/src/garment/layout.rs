@@ -344,8 +344,6 @@ pub struct Lists {
     pub sets: Box<[[Range<u32>; OWNERS]]>,
     /// Particles.
     pub index: Box<[u32]>,
-    /// Number of each link among those that its tension is counted with.
-    pub serial: Box<[u32]>,
     /// Length of each link as cut (m).
     pub rest: Box<[f32]>,
     /// Inverse stiffness (m/N).
@@ -365,8 +363,6 @@ pub struct Layout {
     pub fibers: Fibers,
     /// Fibers that are solved whole by index list: warp that crosses warp, waistbands, whatever was chosen to be.
     pub crossing: Lists,
-    /// Closed hoops along the weft, for the quality that solves them whole too; the same links are in `weft`.
-    pub hoops: Lists,
     /// Bending over three particles in a row.
     pub bends: Bends<3>,
     /// Bending where a fiber turns within the cloth: a fourth particle keeps flat cloth free of it.
@@ -398,7 +394,6 @@ impl Layout {
             + self.fibers.rows.len() * size_of::<Row>()
             + self.fibers.rest.len() * 8
             + lists(&self.crossing)
-            + lists(&self.hoops)
             + bends(&self.bends)
             + bends(&self.skewed)
             + 4 * (self.hubs.particles.len() + self.hubs.coefficients.len())

@@ -137,8 +137,6 @@ pub struct Sets {
     pub bundles: usize,
     /// Of fibers by index list.
     pub crossing: usize,
-    /// Of hoops.
-    pub hoops: usize,
 }
 
 /// Bending stencils by direction.
@@ -269,7 +267,6 @@ fn report(garment: &Garment, found: Survey, bake_ms: f64) -> BakeReport {
             weft: layout.weft.tuples.sets.len(),
             bundles: layout.fibers.bundles.len(),
             crossing: layout.crossing.sets.len(),
-            hoops: layout.hoops.sets.len(),
         },
         tethers: found.tethers,
         stencils: Stencils { warp: found.stencils[0], weft: found.stencils[1], bias: found.stencils[2] },
@@ -316,10 +313,7 @@ fn summary(report: &BakeReport, paint: Paint) -> String {
         "  {} edges along the bias side by side in {} families, {} alone in {} sets of shear",
         sets.diagonal_edges, sets.diagonals, sets.shear_edges, sets.shear,
     ));
-    line(format!(
-        "  {} sets of weft, {} bundles, {} sets by index, {} of hoops",
-        sets.weft, sets.bundles, sets.crossing, sets.hoops
-    ));
+    line(format!("  {} sets of weft, {} bundles, {} sets by index", sets.weft, sets.bundles, sets.crossing));
     line(format!(
         "  {} tethers; bending: {} stencils along the warp, {} the weft, {} the bias",
         report.tethers, stencils.warp, stencils.weft, stencils.bias

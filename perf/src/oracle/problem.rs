@@ -59,7 +59,6 @@ impl Problem {
         let bias = &layout.diagonals;
         bias.for_each(|at, [a, b]| links.extend(link(a, b, bias.rest[at], bias.compliance[at])));
         fibers(&layout.fibers, &mut links);
-        // Hoops are the links of the weft once more, solved whole in one of the qualities: no springs of their own.
         lists(&layout.crossing, &mut links);
         let mut stencils = Vec::new();
         bends(&layout.bends, &mut stencils);

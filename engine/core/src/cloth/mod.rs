@@ -100,12 +100,7 @@ impl Cloth {
         let start: Box<[Vec3A]> = garment.start.iter().map(|&p| p.into()).collect();
         let fixed: Box<[Vec3A]> = garment.fixed.iter().map(|&i| start[i as usize]).collect();
         let layout = &garment.layout;
-        let needs = [
-            bending::SCRATCH,
-            fibers::scratch_len(&layout.fibers),
-            lists::scratch_len(&layout.crossing),
-            lists::scratch_len(&layout.hoops),
-        ];
+        let needs = [bending::SCRATCH, fibers::scratch_len(&layout.fibers), lists::scratch_len(&layout.crossing)];
         let prepared = prepared::Prepared::new(garment);
         let counts = [layout.weft.tuples.count, layout.fibers.links, layout.crossing.rest.len()];
         let tension = std::array::from_fn(|k| Store::zeros(if prepared.soft(k) { counts[k] } else { 0 }));

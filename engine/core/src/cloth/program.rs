@@ -38,10 +38,6 @@ pub enum Op {
     Fibers,
     /// A set of warp fibers that cross others.
     Crossing(u16),
-    /// A set of closed hoops.
-    Hoops(u16),
-    /// Contact with the body.
-    Contact,
     /// Tethers.
     Tether,
     /// Contact with the body, new velocities.
@@ -61,9 +57,9 @@ impl Op {
             Self::Predict | Self::Carry => 0,
             Self::Bend(_) | Self::Turn(_) | Self::Stage(..) => 1,
             Self::Diagonals(_) | Self::Shear(_) => 2,
-            Self::Weft(_) | Self::Hoops(_) => 3,
+            Self::Weft(_) => 3,
             Self::Fibers | Self::Crossing(_) => 4,
-            Self::Finish | Self::Contact | Self::Find => 5,
+            Self::Finish | Self::Find => 5,
             Self::Wind | Self::CrossWind => 6,
             Self::Tether => 7,
         }
@@ -104,7 +100,6 @@ impl Bending {
 pub fn substep(layout: &Layout, quality: Quality) -> Box<[Op]> {
     let numbered = |n: usize, op: fn(u16) -> Op| (0..n as u16).map(op);
     let wefts = || numbered(layout.weft.tuples.sets.len(), Op::Weft);
-    let hoops = || numbered(layout.hoops.sets.len(), Op::Hoops);
     let fibers = || numbered(layout.crossing.sets.len(), Op::Crossing).chain([Op::Fibers]);
     let mut ops = vec![Op::Predict];
     let shear = || numbered(layout.shear.tuples.sets.len(), Op::Shear);
@@ -112,11 +107,8 @@ pub fn substep(layout: &Layout, quality: Quality) -> Box<[Op]> {
     ops.extend(shear().chain(wefts()).chain(fibers()));
     match quality {
         Quality::Draft => {}
-        Quality::Shop => ops.extend(wefts().chain(wefts()).chain(fibers()).chain(wefts()).chain(wefts())),
-        // Open weft fibers are in no hoop: they keep their sweep.
-        Quality::Fine => {
-            ops.push(Op::Contact);
-            ops.extend(wefts().chain(hoops()).chain(fibers()).chain(hoops()).chain(wefts()));
+        Quality::Shop | Quality::Fine => {
+            ops.extend(wefts().chain(wefts()).chain(fibers()).chain(wefts()).chain(wefts()))
         }
     }
     ops.push(Op::Tether);

@@ -331,8 +331,6 @@ impl Work<'_> {
                 tension: tension(1),
             }),
             Op::Crossing(set) => self.width.run(list(&layout.crossing, set, tension(2))),
-            Op::Hoops(set) => self.width.run(list(&layout.hoops, set, tension(0))),
-            Op::Contact => self.contact(substep, share),
             Op::Finish => self.finish(substep, share),
         }
     }
