@@ -212,7 +212,7 @@ const WRIST_MM: f32 = 28.0;
 const KNEE_MM: f32 = 60.0;
 const ANKLE_MM: f32 = 34.0;
 /// From the shoulder's or the hip's joint on, how far the root bone carries all (mm, of a body of 1.7 m).
-const DELTOID_MM: f32 = 35.0;
+const DELTOID_MM: f32 = 75.0;
 const BUTTOCK_MM: f32 = 90.0;
 
 fn side(joint: Joint, mirrored: bool) -> Joint {

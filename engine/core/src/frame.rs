@@ -131,11 +131,8 @@ impl Frame {
         let skinning = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights)?;
         let ready = |g: &Garment, cloth: Cloth| if settings.wind.is_some() { cloth.in_wind(g) } else { cloth };
         let cloths: Box<[Cloth]> = garments.iter().map(|g| ready(g, Cloth::new(g, &colliders))).collect();
-        let snapshot = Snapshot {
-            tick: 0,
-            skin: skinning.posed(),
-            garments: garments.iter().map(|g| g.start.clone()).collect(),
-        };
+        let snapshot =
+            Snapshot { tick: 0, skin: skinning.posed(), garments: garments.iter().map(|g| g.start.clone()).collect() };
         let Relay { writer, reader } = Relay::new(&snapshot);
         let frame = Self {
             poser: Poser::new(&body.skeleton).keeping_clear(&spheres, &rig.capsules),

@@ -39,11 +39,7 @@ impl Surface<'_> {
     #[inline(always)]
     fn load<L: Lanes>(&self, at: At, first: usize) -> V3<L> {
         let from = at.rest + first * MOST;
-        V3 {
-            x: L::load(self.rest, from),
-            y: L::load(self.rest, from + MOST),
-            z: L::load(self.rest, from + 2 * MOST),
-        }
+        V3 { x: L::load(self.rest, from), y: L::load(self.rest, from + MOST), z: L::load(self.rest, from + 2 * MOST) }
     }
 
     /// The weights of a bone other than the base, counted from 1.

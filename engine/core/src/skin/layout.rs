@@ -144,7 +144,8 @@ impl Layout {
 
     pub fn padding(&self, width: Width) -> Padding {
         let lanes = |filled: u8| usize::from(filled).next_multiple_of(width.lanes());
-        let of_run = |r: &Run| r.count * self.filled[r.first..r.first + r.blocks].iter().map(|f| lanes(*f)).sum::<usize>();
+        let of_run =
+            |r: &Run| r.count * self.filled[r.first..r.first + r.blocks].iter().map(|f| lanes(*f)).sum::<usize>();
         Padding {
             vertices: self.slots.len(),
             lanes: self.filled.iter().map(|f| lanes(*f)).sum(),

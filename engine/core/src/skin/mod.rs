@@ -154,8 +154,7 @@ struct Work<'a> {
 impl Work<'_> {
     fn runs(&self, runs: Range<usize>) {
         let Layout { runs: all, filled, rest, .. } = &self.job.layout;
-        let surface =
-            Surface { runs: &all[runs], filled, rest: Column::read_only(rest.as_slice()), out: self.out };
+        let surface = Surface { runs: &all[runs], filled, rest: Column::read_only(rest.as_slice()), out: self.out };
         match self.blend {
             Blend::Linear => self.job.width.run(Linear { surface, palette: self.palette }),
             Blend::Dual => self.job.width.run(Dual { surface, palette: self.duals }),

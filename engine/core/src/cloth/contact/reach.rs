@@ -32,8 +32,5 @@ fn limb(bone: u8) -> Part {
         (Part::RightLeg, [RightHip, RightKnee, RightAnkle, RightToe]),
     ];
     let joint = bone_joint(bone.into());
-    SIDES
-        .into_iter()
-        .find(|(_, joints)| joints.iter().any(|j| Some(*j) == joint))
-        .map_or(Part::Trunk, |(part, _)| part)
+    SIDES.into_iter().find(|(_, joints)| joints.iter().any(|j| Some(*j) == joint)).map_or(Part::Trunk, |(part, _)| part)
 }

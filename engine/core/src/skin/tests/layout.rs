@@ -30,7 +30,8 @@ fn the_workers_share_blocks_alike_and_no_block_twice() {
     next.sort_unstable();
     assert!(next.windows(2).all(|w| w[0].0 + w[0].1 == w[1].0), "blocks follow each other");
     assert_eq!(blocks(one) + blocks(two), job.layout.filled.len());
-    let cost = |runs: &[crate::skin::layout::Run]| -> usize { runs.iter().map(|r| r.blocks * (27 + 24 * r.count)).sum() };
+    let cost =
+        |runs: &[crate::skin::layout::Run]| -> usize { runs.iter().map(|r| r.blocks * (27 + 24 * r.count)).sum() };
     let (one, two) = (cost(one), cost(two));
     assert!(one.abs_diff(two) <= 2 * (27 + 24 * 4), "{one} against {two}");
 }

@@ -159,8 +159,7 @@ fn a_collapsed_normal_is_zero_and_an_empty_skin_does_nothing() {
 #[test]
 fn pruning_says_what_it_costs() {
     let crowd = Crowd::<8>::new(64, 0.5);
-    let (kept, shares): (Vec<_>, Vec<_>) =
-        crowd.weights.iter().map(|w| SkinWeights::strongest(w.iter())).unzip();
+    let (kept, shares): (Vec<_>, Vec<_>) = crowd.weights.iter().map(|w| SkinWeights::strongest(w.iter())).unzip();
     let surface = [&crowd.positions[..], &crowd.normals[..]];
     let found = pruning(surface, &crowd.weights, &kept, &[crowd.palette]).unwrap();
     assert_eq!(found.vertices, 32, "half of the vertices have five to eight influences");

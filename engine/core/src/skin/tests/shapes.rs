@@ -70,7 +70,8 @@ fn hinge(theta: f64, blend: Blend) -> [f64; 2] {
         * Affine3A::from_translation(-middle);
     let ring = ring(0.5, bend, blend);
     // Seen along the axis of the hinge, whose points stay where they are.
-    let radius = |i: usize| f64::from((ring[i] - middle).with_x(0.0).length()) / (TAU * i as f64 / SIDES as f64).sin().abs();
+    let radius =
+        |i: usize| f64::from((ring[i] - middle).with_x(0.0).length()) / (TAU * i as f64 / SIDES as f64).sin().abs();
     let moving = (0..SIDES).filter(|i| i % (SIDES / 2) != 0);
     moving.map(radius).fold([0.0, f64::MAX], |[most, least], r| [most.max(r), least.min(r)])
 }
