@@ -167,7 +167,7 @@ impl<'a> Skinning<'a> {
         let ramps = [ramp((p - wrist).dot(f), WRIST_MM * mm), ramp((p - hand).dot(f) - thumb, 22.0 * mm)];
         let [e, w, h] = [Joint::LeftElbow, Joint::LeftWrist, Joint::LeftHand].map(joint);
         self.split(weights, p, share * (1.0 - lower), e, [DELTOID_MM, ELBOW_MM]);
-        self.split(weights, p, share * lower * (1.0 - ramps[0]), w, [ELBOW_MM, WRIST_MM]);
+        self.split(weights, p, share * lower * (1.0 - ramps[0]), w, [FOREARM_MM; 2]);
         chain(weights, share * lower * ramps[0], &[w, h].map(Joint::index), &ramps[1..]);
     }
 
@@ -211,6 +211,8 @@ const ELBOW_MM: f32 = 46.0;
 const WRIST_MM: f32 = 28.0;
 const KNEE_MM: f32 = 60.0;
 const ANKLE_MM: f32 = 34.0;
+/// What a forearm does not twist in at either end: next to nothing, so that it twists as gently as its mesh allows.
+const FOREARM_MM: f32 = 8.0;
 /// From the shoulder's or the hip's joint on, how far the root bone carries all (mm, of a body of 1.7 m).
 const DELTOID_MM: f32 = 75.0;
 const BUTTOCK_MM: f32 = 90.0;

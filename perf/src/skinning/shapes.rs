@@ -239,6 +239,7 @@ mod tests {
     #[test]
     fn twisted_limbs_keep_what_theory_has_and_split_ones_nearly_all() {
         let found = shapes().unwrap();
+        found.twists.iter().for_each(|t| println!("{t:?}"));
         for t in &found.twists {
             if t.of == "cylinder" {
                 assert!((t.linear_one_bone - t.theory).abs() < 1e-4, "{t:?}");

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use toile_assets::limits::{INFLUENCES, MAX_INFLUENCES};
 
 use super::check::{NO_BONE, Vertex};
-use super::posed::{BLOCK, Posed};
+use super::posed::Posed;
 use crate::lanes::{MOST, Store, Width};
 
 /// Bones of a set in the order of their indices, [`NO_BONE`] behind them.
@@ -89,7 +89,7 @@ pub(super) struct Layout {
     pub filled: Box<[u8]>,
     /// Rest data of all runs.
     pub rest: Store,
-    /// Where each vertex stands in the posed data `[vertices]`.
+    /// Lane of each vertex, counted over all blocks `[vertices]`.
     pub slots: Arc<[u32]>,
     /// The rest pose.
     at_rest: Posed,
@@ -112,7 +112,7 @@ impl Layout {
             let (bones, count) = (based(group, vertices), size(&group.set));
             let run = Run { bones, count, data, first: filled.len(), blocks };
             for (k, &v) in group.vertices.iter().enumerate() {
-                slots[v] = ((run.first + k / MOST) * BLOCK + k % MOST) as u32;
+                slots[v] = (run.first * MOST + k) as u32;
             }
             filled.extend(group.vertices.chunks(MOST).map(|c| c.len() as u8));
             data += blocks * run.stride();
@@ -137,7 +137,7 @@ impl Layout {
     /// The bones that a vertex' block is blended from, the base first.
     #[cfg(test)]
     pub fn bones_of(&self, vertex: usize) -> Vec<u8> {
-        let block = self.slots[vertex] as usize / BLOCK;
+        let block = self.slots[vertex] as usize / MOST;
         let run = self.runs.iter().find(|r| (r.first..r.first + r.blocks).contains(&block));
         run.map(|r| r.bones[..r.count].to_vec()).unwrap_or_default()
     }

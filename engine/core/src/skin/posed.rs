@@ -15,7 +15,7 @@ pub(super) const BLOCK: usize = 6 * MOST;
 pub struct Posed {
     /// `[blocks][6][MOST]`.
     columns: Store,
-    /// Where in `columns` the first number of each vertex stands `[vertices]`.
+    /// Lane of each vertex, counted over all blocks `[vertices]`.
     places: Arc<[u32]>,
 }
 
@@ -30,8 +30,9 @@ impl Posed {
 
     pub(super) fn set(&mut self, vertex: usize, position: Vec3, normal: Vec3) {
         let place = self.places[vertex] as usize;
+        let first = place / MOST * BLOCK + place % MOST;
         let numbers = position.to_array().into_iter().chain(normal.to_array());
-        numbers.enumerate().for_each(|(k, x)| self.columns.as_mut()[place + k * MOST] = x);
+        numbers.enumerate().for_each(|(k, x)| self.columns.as_mut()[first + k * MOST] = x);
     }
 
     /// Number of vertices.
@@ -65,8 +66,8 @@ impl Posed {
 
     #[inline]
     fn three(&self, place: u32, first: usize) -> Vec3 {
-        let from = place as usize + first * MOST;
-        let block = &self.columns.as_slice()[from..from + 2 * MOST + 1];
-        Vec3::new(block[0], block[MOST], block[2 * MOST])
+        let (blocks, _) = self.columns.as_slice().as_chunks::<BLOCK>();
+        let (block, lane) = (&blocks[place as usize / MOST], place as usize % MOST);
+        Vec3::new(block[first * MOST + lane], block[(first + 1) * MOST + lane], block[(first + 2) * MOST + lane])
     }
 }
