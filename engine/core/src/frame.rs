@@ -29,9 +29,9 @@ pub const DRESS_STEPS: u64 = STEP_HZ as u64;
 /// Steps in which the garments then settle before the session starts.
 pub const SETTLE_STEPS: u64 = STEP_HZ as u64 / 2;
 
-/// How the body is skinned. With split limbs linear blending keeps their volume too, and unlike dual quaternions it never
-/// bulges out of the colliders that the garments lie on (docs/skinning.md).
-pub const BLEND: Blend = Blend::Linear;
+/// How the body is skinned: dual quaternions take no longer than linear blending, and where that thins a bent elbow to half
+/// they keep it, at the price of a bulge of some millimetres (docs/skinning.md).
+pub const BLEND: Blend = Blend::Dual;
 
 /// Longest step that the meter tells apart from a longer one (us).
 const METER_MAX_US: u64 = 1_000_000;

@@ -24,7 +24,7 @@ use crate::time;
 use crate::yardstick::{self, Yardstick};
 
 pub use oracle::Error as PositionError;
-pub use shapes::{Hinge, Shapes, Twist, shapes};
+pub use shapes::{Apart, Hinge, Shapes, Twist, shapes};
 
 /// Rounds of a measurement: yardstick and kernels in turn, so that both see the machine as it is. An odd number.
 const ROUNDS: usize = 5;

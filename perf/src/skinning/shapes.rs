@@ -4,7 +4,7 @@
 use glam::{Affine3A, Quat, Vec3};
 use serde::Serialize;
 use toile_assets::body::{Body, Region};
-use toile_assets::mesh::SkinWeights;
+use toile_assets::mesh::{Influences, SkinWeights, WideWeights};
 use toile_assets::scene;
 use toile_assets::skeleton::{self, BONES, Joint, Pose};
 use toile_engine::body::{JointFrames, palette};
@@ -16,7 +16,8 @@ use super::solid::Solid;
 /// Volume that a twisted limb keeps (1).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Twist {
-    /// Cylinder or forearm.
+    /// The cylinder, the shopper's forearm with every triangle cut into 16 before it is skinned, so that what is lost
+    /// is lost by skinning, or the forearm as it is meshed, whose triangles lose some more.
     pub of: &'static str,
     /// Twist (degrees).
     pub degrees: f64,
@@ -49,9 +50,24 @@ pub struct Hinge {
     pub thinnest: [f64; 2],
 }
 
+/// How far apart the two blends put the shopper's skin in the scene's ten seconds.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Apart {
+    /// Trunk and head, or arms and legs.
+    pub of: &'static str,
+    /// Mean distance over vertices and moments (mm).
+    pub mean_mm: f64,
+    /// Largest (mm).
+    pub max_mm: f64,
+    /// Volume of the whole body over that at rest in the moment in which it is least, linear and dual.
+    pub body_volume: [f64; 2],
+}
+
 /// All of them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Shapes {
+    /// The blends against each other.
+    pub apart: Vec<Apart>,
     /// Twisted limbs.
     pub twists: Vec<Twist>,
     /// Bent joints.
@@ -69,8 +85,12 @@ pub fn shapes() -> Result<Shapes, BenchError> {
     for degrees in [90.0, 120.0, 180.0] {
         twists.push(twist("cylinder", degrees, |split, blend| cylinder(degrees, split, blend))?);
     }
-    for degrees in [90.0, 120.0] {
-        twists.push(twist("forearm", degrees, |split, blend| forearm(&body, degrees, split, blend))?);
+    for (of, rounds) in [("forearm, skin", 2), ("forearm, its triangles", 0)] {
+        let [plain, split] = [false, true].map(|split| Forearm::new(&body, split, rounds));
+        for degrees in [90.0, 120.0] {
+            let kept = |s: bool, blend| if s { &split } else { &plain }.kept(&body, degrees, blend);
+            twists.push(twist(of, degrees, kept)?);
+        }
     }
     let mut hinges = Vec::new();
     for (of, joint, bends) in [("elbow", Joint::LeftElbow, Vec3::Z), ("knee", Joint::LeftKnee, Vec3::NEG_Z)] {
@@ -78,7 +98,7 @@ pub fn shapes() -> Result<Shapes, BenchError> {
             hinges.push(hinge(&body, of, joint, bends, degrees)?);
         }
     }
-    Ok(Shapes { twists, hinges })
+    Ok(Shapes { twists, hinges, apart: apart(&body)? })
 }
 
 fn twist(
@@ -109,10 +129,10 @@ fn chain(split: bool) -> Vec<usize> {
     std::iter::once(t.from.index()).chain(between).chain([t.to.index()]).collect()
 }
 
-/// Skins points; y of a point is not looked at but by its weights.
-fn posed(
+/// Skins points.
+fn posed<const N: usize>(
     points: &[Vec3],
-    weights: &[SkinWeights],
+    weights: &[Influences<N>],
     palette: &[Affine3A; BONES],
     blend: Blend,
 ) -> Result<Vec<Vec3>, BenchError> {
@@ -156,22 +176,53 @@ fn cylinder(degrees: f64, split: bool, blend: Blend) -> Result<f64, BenchError> 
     Ok(volume(&posed(&points, &weights, &palette, blend)?) / volume(&points))
 }
 
-/// Volume kept by the shopper's left forearm, from elbow to wrist, when the hand is turned about it.
-fn forearm(body: &Body, degrees: f64, split: bool, blend: Blend) -> Result<f64, BenchError> {
-    let (skeleton, points) = (&body.skeleton, &body.mesh.positions);
-    let (elbow, wrist) = (skeleton.at(Joint::LeftElbow), skeleton.at(Joint::LeftWrist));
-    let axis = (wrist - elbow).normalize();
-    let mut pose = Pose::rest(skeleton);
-    pose.local[Joint::LeftWrist.index()] = Quat::from_axis_angle(axis, degrees.to_radians() as f32);
-    let mut bones = [Affine3A::IDENTITY; BONES];
-    palette(skeleton, &pose, &mut bones);
-    let weights: Vec<SkinWeights> = body.weights.iter().map(|w| if split { *w } else { unsplit(w) }).collect();
-    let inside = |v: u32| {
-        let along = (points[v as usize] - elbow).dot(axis) / elbow.distance(wrist);
-        body.regions[v as usize] == Region::LeftArm && (0.0..=1.0).contains(&along)
-    };
-    let solid = Solid::cut(&body.mesh.triangles, inside);
-    Ok(solid.volume(&posed(points, &weights, &bones, blend)?) / solid.volume(points))
+/// The shopper's left forearm, from elbow to wrist, and how it is skinned.
+struct Forearm {
+    solid: Solid,
+    points: Vec<Vec3>,
+    weights: Vec<WideWeights>,
+}
+
+impl Forearm {
+    /// `rounds` of refinement make each triangle into four; nothing is smoothed.
+    fn new(body: &Body, split: bool, rounds: usize) -> Self {
+        let points = body.mesh.positions.clone();
+        let [elbow, wrist] = [Joint::LeftElbow, Joint::LeftWrist].map(|j| body.skeleton.at(j));
+        let inside = |v: u32| {
+            let along = (points[v as usize] - elbow).dot(wrist - elbow) / elbow.distance_squared(wrist);
+            body.regions[v as usize] == Region::LeftArm && (0.0..=1.0).contains(&along)
+        };
+        let solid = Solid::cut(&body.mesh.triangles, inside);
+        let weights = body.weights.iter().map(|w| wide(&if split { *w } else { unsplit(w) })).collect();
+        let mut forearm = Self { solid, points, weights };
+        (0..rounds).for_each(|_| forearm.refine());
+        forearm
+    }
+
+    fn refine(&mut self) {
+        let Self { solid, points, weights } = self;
+        *solid = solid.refined(|edge| {
+            let [a, b] = edge.map(|v| v as usize);
+            points.push((points[a] + points[b]) * 0.5);
+            weights.push(WideWeights::strongest(weights[a].iter().chain(weights[b].iter()).collect::<Vec<_>>()).0);
+            points.len() as u32 - 1
+        });
+    }
+
+    /// Volume kept when the hand is turned about the forearm.
+    fn kept(&self, body: &Body, degrees: f64, blend: Blend) -> Result<f64, BenchError> {
+        let axis = body.skeleton.offset(Joint::LeftWrist).normalize();
+        let mut pose = Pose::rest(&body.skeleton);
+        pose.local[Joint::LeftWrist.index()] = Quat::from_axis_angle(axis, degrees.to_radians() as f32);
+        let mut bones = [Affine3A::IDENTITY; BONES];
+        palette(&body.skeleton, &pose, &mut bones);
+        let moved = posed(&self.points, &self.weights, &bones, blend)?;
+        Ok(self.solid.volume(&moved) / self.solid.volume(&self.points))
+    }
+}
+
+fn wide(weights: &SkinWeights) -> WideWeights {
+    WideWeights::strongest(weights.iter()).0
 }
 
 /// The weights that a forearm of two bones would have: what its twist bones carry goes to its ends, linearly.
@@ -223,6 +274,38 @@ fn hinge(body: &Body, of: &'static str, joint: Joint, bends: Vec3, degrees: f64)
     Ok(found)
 }
 
+/// Moments of the scene that are looked at: ten a second.
+const MOMENTS: usize = 100;
+
+fn apart(body: &Body) -> Result<Vec<Apart>, BenchError> {
+    let (skeleton, points) = (&body.skeleton, &body.mesh.positions);
+    let limb = |v: usize| !matches!(body.regions[v], Region::Torso | Region::Head);
+    let whole = Solid::of(body.mesh.triangles.clone());
+    let mut found =
+        ["trunk and head", "arms and legs"].map(|of| Apart { of, body_volume: [1.0; 2], ..Apart::default() });
+    let mut counts = [0usize; 2];
+    for moment in 0..MOMENTS {
+        let mut bones = [Affine3A::IDENTITY; BONES];
+        let time = scene::LENGTH_S * moment as f32 / MOMENTS as f32;
+        palette(skeleton, &scene::shopper(skeleton, time), &mut bones);
+        let [linear, dual] = Blend::ALL.map(|blend| posed(points, &body.weights, &bones, blend));
+        let (linear, dual) = (linear?, dual?);
+        for v in 0..points.len() {
+            let mm = f64::from(linear[v].distance(dual[v])) * 1e3;
+            let part = usize::from(limb(v));
+            found[part].mean_mm += mm;
+            found[part].max_mm = found[part].max_mm.max(mm);
+            counts[part] += 1;
+        }
+        let volumes = [linear, dual].map(|p| whole.volume(&p) / whole.volume(points));
+        for part in &mut found {
+            part.body_volume = std::array::from_fn(|k| part.body_volume[k].min(volumes[k]));
+        }
+    }
+    found.iter_mut().zip(counts).for_each(|(f, n)| f.mean_mm /= n.max(1) as f64);
+    Ok(found.to_vec())
+}
+
 /// Distance of a point from two bones that meet (m).
 fn from_bones(p: Vec3, [a, b, c]: [Vec3; 3]) -> f64 {
     let segment = |from: Vec3, to: Vec3| {
@@ -239,7 +322,6 @@ mod tests {
     #[test]
     fn twisted_limbs_keep_what_theory_has_and_split_ones_nearly_all() {
         let found = shapes().unwrap();
-        found.twists.iter().for_each(|t| println!("{t:?}"));
         for t in &found.twists {
             if t.of == "cylinder" {
                 assert!((t.linear_one_bone - t.theory).abs() < 1e-4, "{t:?}");
@@ -252,7 +334,11 @@ mod tests {
                 assert!(t.linear_split >= 0.98 && t.dual_split >= 0.98, "{t:?}");
             }
         }
-        assert_eq!(found.twists.len(), 5);
+        assert_eq!(found.twists.len(), 7);
+        for a in &found.apart {
+            assert!(a.mean_mm > 0.0 && a.mean_mm < a.max_mm && a.max_mm < 100.0, "{a:?}");
+            assert!(a.body_volume.iter().all(|v| (0.9..=1.0).contains(v)), "{a:?}");
+        }
     }
 
     #[test]

@@ -15,11 +15,30 @@ pub struct Solid {
 impl Solid {
     /// The triangles whose vertices are all inside.
     pub fn cut(triangles: &[[u32; 3]], inside: impl Fn(u32) -> bool) -> Self {
-        let kept: Vec<[u32; 3]> = triangles.iter().copied().filter(|t| t.iter().all(|&v| inside(v))).collect();
+        Self::of(triangles.iter().copied().filter(|t| t.iter().all(|&v| inside(v))).collect())
+    }
+
+    /// All of these triangles.
+    pub fn of(kept: Vec<[u32; 3]>) -> Self {
         let edges = |t: &[u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
         let all: BTreeSet<[u32; 2]> = kept.iter().flat_map(edges).collect();
         let open: Vec<[u32; 2]> = all.iter().copied().filter(|[a, b]| !all.contains(&[*b, *a])).collect();
         Self { triangles: kept, rims: joined(&open) }
+    }
+
+    /// The same part, each triangle in four; `halfway` makes the vertex in the middle of an edge and says its index.
+    pub fn refined(&self, mut halfway: impl FnMut([u32; 2]) -> u32) -> Self {
+        let mut made: BTreeMap<[u32; 2], u32> = BTreeMap::new();
+        let mut middle = |a: u32, b: u32| {
+            let edge = [a.min(b), a.max(b)];
+            *made.entry(edge).or_insert_with(|| halfway(edge))
+        };
+        let mut triangles = Vec::with_capacity(4 * self.triangles.len());
+        for &[a, b, c] in &self.triangles {
+            let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+            triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        }
+        Self::of(triangles)
     }
 
     /// Volume within the part and the fans over its rims (m^3).
@@ -79,5 +98,11 @@ mod tests {
         let part = Solid::cut(&triangles, |v| (4..16).contains(&v));
         assert_eq!(part.rims.len(), 2);
         assert!((part.volume(&points).abs() - 2.0).abs() < 1e-9, "{}", part.volume(&points));
+        let fine = part.refined(|[a, b]| {
+            points.push((points[a as usize] + points[b as usize]) * 0.5);
+            points.len() as u32 - 1
+        });
+        assert_eq!((fine.triangles.len(), fine.rims.len()), (4 * part.triangles.len(), 2));
+        assert!((fine.volume(&points).abs() - 2.0).abs() < 1e-6, "{}", fine.volume(&points));
     }
 }

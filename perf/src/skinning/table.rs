@@ -180,6 +180,15 @@ impl Table {
                 ),
             );
         }
+        put(
+            text,
+            "\n| linear and dual apart, the scene's ten seconds | mean | largest | least volume of the body: linear, dual |",
+        );
+        put(text, "|---|---|---|---|");
+        for a in &self.shapes.apart {
+            let [linear, dual] = a.body_volume;
+            put(text, &format!("| {} | {:.2} mm | {:.1} mm | {linear:.4}, {dual:.4} |", a.of, a.mean_mm, a.max_mm));
+        }
     }
 }
 
