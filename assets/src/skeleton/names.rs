@@ -90,9 +90,9 @@ mod tests {
             assert_eq!(OWN[joint.index()].joint, joint, "the table is in the order of the joints");
             for name in [joint.hanim(), joint.hanim_1(), joint.vrm()] {
                 assert_eq!(Joint::named(name), Some(joint), "{name}");
-                let other = name.replacen("l_", "r_", 1).replacen("left", "right", 1);
-                if other != name {
-                    assert_eq!(Joint::named(&other), Some(joint.mirror()), "{other}");
+                for (left, right) in [("l_", "r_"), ("left", "right")] {
+                    let other = name.strip_prefix(left).map(|rest| format!("{right}{rest}"));
+                    assert!(other.is_none_or(|o| Joint::named(&o) == Some(joint.mirror())), "{name}");
                 }
             }
         }
