@@ -98,6 +98,19 @@ proptest! {
                 prop_assert!(no_particle_twice(all.collect()));
             }
         }
+        for strands in &layout.diagonals.families {
+            let (mut led_to, mut left) = (Vec::new(), Vec::new());
+            for strand in strands {
+                for run in &layout.diagonals.runs[strand.runs.start as usize..strand.runs.end as usize] {
+                    let ends = run.first.map(|f| f..f + run.len);
+                    prop_assert!(ends[1].clone().all(|p| !left.contains(&p)), "a link comes after what it leads on to");
+                    let [a, b] = ends;
+                    left.extend(a);
+                    led_to.extend(b);
+                }
+            }
+            prop_assert!(no_particle_twice(left) && no_particle_twice(led_to));
+        }
         let rows = layout.fibers.bundles.iter().flat_map(|b| &layout.fibers.rows[b.rows.start as usize..b.rows.end as usize]);
         prop_assert!(no_particle_twice(rows.flat_map(|row| row.first..row.first + row.lanes).collect()));
         let spans = layout.spans.iter().flatten().flat_map(|(first, len)| *first..first + len);

@@ -7,13 +7,13 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use clap_complete::Shell;
-use toile_assets::body::Sex;
 
 use toile_engine::cloth::Quality;
 
 use crate::exit::AppError;
 
 mod bake;
+mod body;
 mod pareto;
 mod run;
 mod skinning;
@@ -22,6 +22,7 @@ mod torture;
 mod validate;
 
 pub use bake::BakeArgs;
+pub use body::{BodyArgs, Wearer};
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
@@ -44,6 +45,8 @@ pub enum Command {
     Doctor(DoctorArgs),
     /// `toile bake`.
     Bake(BakeArgs),
+    /// `toile body`.
+    Body(BodyArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
@@ -69,8 +72,10 @@ pub struct TryOnArgs {
     pub garments: Vec<String>,
     /// A size to wear in place of the recommended one.
     pub size: Option<String>,
-    /// Whose body is shown; `None` goes by the garment.
-    pub body: Option<Sex>,
+    /// Whose body is shown; `None` is one of the measured size, of the sex that the garment is cut for.
+    pub body: Option<Wearer>,
+    /// Whether the dressed body is written as GLB.
+    pub glb: bool,
     /// How the cloth is stepped.
     pub quality: Quality,
     /// Where the files go.
@@ -144,6 +149,7 @@ pub fn command() -> clap::Command {
             measure(),
             record(),
             bake::grammar(),
+            body::grammar(),
             run::grammar(),
             doctor(),
             bench(),
@@ -167,12 +173,12 @@ fn try_on() -> clap::Command {
             text("garment", "G", "Garment of the wardrobe, or an OBJ file; repeat it to dress in layers, inner first")
                 .action(ArgAction::Append),
             text("size", "S", "Size to wear, as the garment's table names it [default: the one that fits]"),
-            text("body", "B", "Body to show: female or male [default: whom the garment is cut for]")
-                .value_parser(["female", "male"]),
+            text("body", "B", "Body to show: female, male, or a file (.glb, .gltf, .vrm) [default: by the garment]"),
             text("quality", "Q", "Tested settings of the cloth: draft, shop or fine")
                 .value_parser(Quality::ALL.map(Quality::name))
                 .default_value(Quality::default().name()),
             path("out", "DIR", "Folder for the files; it is made if missing").default_value("out"),
+            flag("glb", "Write the dressed body at the session's end as dressed.glb too"),
             flag("no-pictures", "Make no pictures: only the report and the physics"),
             json(),
             quiet(),
@@ -280,7 +286,8 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
             session: matches.get_one("session").cloned(),
             garments: matches.get_many("garment").into_iter().flatten().cloned().collect(),
             size: matches.get_one("size").cloned(),
-            body: matches.get_one::<String>("body").map(|b| if b == "male" { Sex::Male } else { Sex::Female }),
+            body: matches.get_one::<String>("body").map(|b| Wearer::parse(b)).transpose()?,
+            glb: matches.get_flag("glb"),
             quality: matches.get_one::<String>("quality").and_then(|q| q.parse().ok()).unwrap_or_default(),
             out: required(matches, "out")?,
             pictures: !matches.get_flag("no-pictures"),
@@ -303,6 +310,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "run" => Command::Run(run::args(matches)?),
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
         "bake" => Command::Bake(bake::args(matches)?),
+        "body" => Command::Body(body::args(matches)?),
         "bench" => bench_command(matches)?,
         "torture" => Command::Torture(torture::args(matches)?),
         "validate" => Command::Validate(validate::args(matches)?),

@@ -275,7 +275,8 @@ fn contact_sheet(out: &mut OutputFolder, kept: &[(Image, u64)]) -> Result<(), Ap
     write_png(out, "contact-sheet.png", &sheet::contact_sheet(&images, SHEET_COLUMNS, &captions))
 }
 
-fn write_png(out: &mut OutputFolder, name: &str, image: &Image) -> Result<(), AppError> {
+/// Writes an image as a file of the output folder.
+pub fn write_png(out: &mut OutputFolder, name: &str, image: &Image) -> Result<(), AppError> {
     let mut bytes = Vec::new();
     image.write_png(&mut bytes).map_err(AppError::internal)?;
     Ok(out.write(name, &bytes)?)

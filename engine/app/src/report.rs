@@ -6,9 +6,11 @@ use serde::Serialize;
 
 use crate::machine::Machine;
 
+mod body;
 mod run;
 mod skinning;
 
+pub use body::{BodyReport, Influences, JointFound, Named, SurfaceReport};
 pub use run::{KineticEnergy, RunGarment, RunPenetration, RunReport};
 pub use skinning::SkinningReport;
 

@@ -5,7 +5,8 @@ use std::fmt::Write;
 use toile_perf::skirt::report::Report;
 
 use crate::report::{
-    Measure, MeasureReport, Measurements, Physics, Recommendation, RunReport, Session, SkinningReport, TryOn,
+    BodyReport, Measure, MeasureReport, Measurements, Physics, Recommendation, RunReport, Session, SkinningReport,
+    TryOn,
 };
 use crate::terminal::{Paint, Tone};
 
@@ -163,6 +164,31 @@ pub fn skirt(report: &Report, paint: Paint) -> String {
     for (count, what) in events.into_iter().filter(|(count, _)| *count > 0) {
         line(&mut text, &format!("  {}", paint.tone(&format!("{count} {what}"), Tone::Warn)));
     }
+    text
+}
+
+/// The summary of an import.
+pub fn body(report: &BodyReport, paint: Paint) -> String {
+    let mut text = String::new();
+    let BodyReport { file, vertices, triangles, dialect, surface, influences: i, .. } = report;
+    line(&mut text, &format!("Body {}: {vertices} vertices, {triangles} triangles", file.display()));
+    report.notes.iter().for_each(|note| line(&mut text, &format!("  {note}")));
+    line(&mut text, &format!("  {} joints found, named as {dialect} names them", report.joints.len()));
+    let (parts, open) = (surface.parts, surface.boundary_edges);
+    line(&mut text, &format!("  {parts} closed or open pieces, {open} open edges"));
+    let lost = [i.mean_lost, i.max_lost].map(|w| w * 100.0);
+    let words = format!("  up to {} influences; {} vertices pruned to 4 lost {:.2} %", i.most, i.pruned, lost[0]);
+    line(&mut text, &format!("{words} of their weight on average, {:.1} % at worst", lost[1]));
+    for (words, all) in
+        [("Measures", Some(&report.measures_mm)), ("MakeHuman's own rows", report.makehuman_mm.as_ref())]
+    {
+        if let Some(all) = all {
+            heading(&mut text, words, paint);
+            all.iter().for_each(|n| line(&mut text, &format!("  {:17} {:6.0} mm", n.name, n.value)));
+        }
+    }
+    heading(&mut text, "Files", paint);
+    report.files.iter().for_each(|file| line(&mut text, &format!("  {}", file.display())));
     text
 }
 

@@ -28,6 +28,8 @@ pub enum Op {
     Stage(u32, u16),
     /// Gravity, air, wind; skinned particles move on.
     Predict,
+    /// A family of fibers along the bias.
+    Diagonals(u16),
     /// A set of shear links.
     Shear(u16),
     /// A set of weft links.
@@ -58,7 +60,7 @@ impl Op {
         match self {
             Self::Predict | Self::Carry => 0,
             Self::Bend(_) | Self::Turn(_) | Self::Stage(..) => 1,
-            Self::Shear(_) => 2,
+            Self::Diagonals(_) | Self::Shear(_) => 2,
             Self::Weft(_) | Self::Hoops(_) => 3,
             Self::Fibers | Self::Crossing(_) => 4,
             Self::Finish | Self::Contact | Self::Find => 5,
@@ -80,7 +82,7 @@ pub struct Bending {
 impl Bending {
     /// The sets of a layout.
     pub fn sets(layout: &Layout) -> u32 {
-        layout.bends.tuples.sets.len().max(layout.skewed.tuples.sets.len()) as u32
+        layout.bends.tuples.sets.len().max(layout.skewed.tuples.sets.len()).max(layout.hubs.sets()) as u32
     }
 
     /// Its phases.
@@ -106,6 +108,7 @@ pub fn substep(layout: &Layout, quality: Quality) -> Box<[Op]> {
     let fibers = || numbered(layout.crossing.sets.len(), Op::Crossing).chain([Op::Fibers]);
     let mut ops = vec![Op::Predict];
     let shear = || numbered(layout.shear.tuples.sets.len(), Op::Shear);
+    ops.extend(numbered(layout.diagonals.families.len(), Op::Diagonals));
     ops.extend(shear().chain(wefts()).chain(fibers()));
     match quality {
         Quality::Draft => {}

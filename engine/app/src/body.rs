@@ -1,0 +1,193 @@
+//! `toile body`: a body that others made, imported, looked at, and written for other tools.
+
+use std::f32::consts::{FRAC_PI_2, PI};
+use std::path::Path;
+
+use glam::Affine3A;
+use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::export::{Dressed, glb};
+use toile_assets::import::{avatar, makehuman};
+use toile_assets::scene;
+use toile_assets::skeleton::BONES;
+use toile_engine::body::{JointFrames, Poser, palette};
+use toile_engine::frame::BLEND;
+use toile_engine::skin::SkinningJob;
+use toile_sensors::frame::{Joints, TrackedJoint};
+use toile_view::image::Size;
+use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};
+use toile_view::sheet;
+use toile_view::trace::{Quality, Stage};
+
+use crate::cli::BodyArgs;
+use crate::exit::AppError;
+use crate::output::OutputFolder;
+use crate::pictures::write_png;
+use crate::report::{BodyReport, Document, Influences, JointFound, Named, SurfaceReport};
+use crate::summary;
+use crate::terminal::{self, Paint, Words};
+
+/// A picture of one side.
+const STILL: Size = Size::new(480, 800);
+
+/// The moment of the embedded performance in which the walking body is shown (s).
+const WALK_S: f32 = 4.9;
+
+/// Views of a body: turns of the camera.
+const VIEWS: [f32; 3] = [0.0, FRAC_PI_2, PI];
+
+/// Runs `toile body`.
+///
+/// # Errors
+/// A file that does not become a body, an output folder that cannot be written, or a closed stdout.
+pub fn run(args: &BodyArgs) -> Result<(), AppError> {
+    let words = Words::new(args.quiet || args.json);
+    let mut out = OutputFolder::prepare(&args.out)?;
+    let (imported, rows) = import(args)?;
+    if args.pictures {
+        let bar = words.bar(2 * VIEWS.len() as u64, "drawing");
+        draw(&mut out, "body.png", &imported.body, &title(args, &imported.body), || bar.inc(1))?;
+        let walking = walking(&imported.body)?;
+        draw(&mut out, "walking.png", &walking, "walking", || bar.inc(1))?;
+        bar.finish_and_clear();
+    }
+    out.write("body.glb", &glb(&Dressed { body: &imported.body, palette: None, worn: &[] }))?;
+    out.stage("report.json")?;
+    let document = Document::new("body", report(args, &imported, rows, out.files()));
+    let text = serde_json::to_string_pretty(&document).map_err(AppError::internal)?;
+    out.write("report.json", format!("{text}\n").as_bytes())?;
+    out.commit()?;
+    if args.json {
+        return terminal::print_json(&document);
+    }
+    terminal::print(&summary::body(&document.body, Paint::for_stdout()))
+}
+
+/// The body of a glTF file, or of a MakeHuman folder, with that program's own girths.
+fn import(args: &BodyArgs) -> Result<(avatar::Imported, Option<Vec<Named>>), AppError> {
+    let options = avatar::Options { sex: args.sex, meshes: args.meshes.clone(), allow_holes: args.allow_holes };
+    if !args.file.is_dir() {
+        if !args.targets.is_empty() {
+            let cure = "give the folder of a MakeHuman base or leave out --target";
+            return Err(AppError::Usage(format!("{} is no folder, so it has no targets; {cure}", args.file.display())));
+        }
+        return Ok((avatar::read(&args.file, &options).map_err(AppError::input)?, None));
+    }
+    let choice = makehuman::Choice { targets: args.targets.clone(), rig: args.rig.clone() };
+    let made = makehuman::read(&args.file, &choice, &options).map_err(AppError::input)?;
+    let rows = made.girths.named().map(|(name, m)| named(name, m)).to_vec();
+    Ok((made.imported, Some(rows)))
+}
+
+/// A body of a file, as `toile try-on --body` wears it.
+pub fn wearer(file: &Path, sex: Sex) -> Result<avatar::Imported, AppError> {
+    let options = avatar::Options { sex, ..avatar::Options::default() };
+    if file.is_dir() {
+        let made = makehuman::read(file, &makehuman::Choice::default(), &options).map_err(AppError::input)?;
+        return Ok(made.imported);
+    }
+    avatar::read(file, &options).map_err(AppError::input)
+}
+
+/// The five measures with their names.
+pub fn measures(m: &Measures) -> [(&'static str, f32); 5] {
+    [
+        ("stature", m.stature),
+        ("shoulder breadth", m.shoulder_breadth),
+        ("chest girth", m.chest_girth),
+        ("waist girth", m.waist_girth),
+        ("hip girth", m.hip_girth),
+    ]
+}
+
+fn named(name: &'static str, m: f32) -> Named {
+    Named { name, value: (f64::from(m) * 1e4).round() / 10.0 }
+}
+
+fn title(args: &BodyArgs, body: &Body) -> String {
+    let name = args.file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let line = measures(&body.measures).map(|(name, m)| format!("{name} {:.0} mm", named(name, m).value)).join("   ");
+    format!("{name}\n{line}")
+}
+
+/// The body in a pose of the embedded shopper, taken over as from a sensor.
+fn walking(body: &Body) -> Result<Body, AppError> {
+    let (sex, measures) = scene::SHOPPER;
+    let shopper = Body::build(sex, &measures).map_err(AppError::internal)?.skeleton;
+    let seen = JointFrames::new(&shopper, &scene::shopper(&shopper, WALK_S)).position;
+    let joints = Joints { time_ns: 0, joints: seen.map(|position| TrackedJoint { position, confidence: 1.0 }) };
+    let pose = Poser::new(&body.skeleton).pose(&joints, 0.0);
+    let mut bones = [Affine3A::IDENTITY; BONES];
+    palette(&body.skeleton, &pose, &mut bones);
+    let mut posed = body.clone();
+    let job = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights).map_err(AppError::input)?;
+    let mut skin = job.posed();
+    job.run(BLEND, &bones, &mut skin);
+    skin.read(&mut posed.mesh.positions, &mut posed.normals);
+    Ok(posed)
+}
+
+fn draw(out: &mut OutputFolder, name: &str, body: &Body, title: &str, mut done: impl FnMut()) -> Result<(), AppError> {
+    let surfaces = [Surface {
+        positions: &body.mesh.positions,
+        normals: &body.normals,
+        triangles: &body.mesh.triangles,
+        colours: Colours::One(MANNEQUIN),
+        material: Material::Skin,
+    }];
+    let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });
+    let aspect = STILL.width as f32 / STILL.height as f32;
+    let [front, side, back] = VIEWS.map(|turn| {
+        let image = stage.render(&Camera::framing(&stage.bounds(), turn, aspect), STILL, Quality::Still);
+        done();
+        image
+    });
+    write_png(out, name, &sheet::triptych(&front, &side, &back, title, None))
+}
+
+fn report(
+    args: &BodyArgs,
+    imported: &avatar::Imported,
+    rows: Option<Vec<Named>>,
+    files: Vec<std::path::PathBuf>,
+) -> BodyReport {
+    let avatar::Imported { body, report } = imported;
+    let l = &body.levels;
+    let levels = [
+        ("neck", l.neck),
+        ("shoulder", l.shoulder),
+        ("chest", l.chest),
+        ("underbust", l.underbust),
+        ("waist", l.waist),
+        ("hip", l.hip),
+        ("crotch", l.crotch),
+        ("knee", l.knee),
+        ("ankle", l.ankle),
+    ];
+    let round = |x: f32| (f64::from(x) * 1e6).round() / 1e6;
+    let pruned = &report.pruned;
+    BodyReport {
+        file: args.file.clone(),
+        dialect: report.dialect,
+        vertices: body.mesh.positions.len(),
+        triangles: body.mesh.triangles.len(),
+        texture_coordinates: !body.mesh.uvs.is_empty(),
+        measures_mm: measures(&body.measures).map(|(name, m)| named(name, m)).to_vec(),
+        levels_mm: levels.map(|(name, m)| named(name, m)).to_vec(),
+        joints: report.joints.iter().cloned().map(|(joint, named)| JointFound { joint, named }).collect(),
+        influences: Influences {
+            most: pruned.most_influences,
+            over_four: pruned.over_four,
+            pruned: pruned.vertices,
+            mean_lost: round(pruned.mean_lost),
+            max_lost: round(pruned.max_lost),
+        },
+        surface: SurfaceReport {
+            parts: report.parts,
+            boundary_edges: report.boundary_edges,
+            crowded_edges: report.crowded_edges,
+        },
+        makehuman_mm: rows,
+        notes: report.notes.clone(),
+        files,
+    }
+}
