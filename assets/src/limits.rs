@@ -18,6 +18,9 @@ pub const MAX_PLANES: usize = 4;
 /// Bone influences a vertex: four weights fill one 128-bit lane group.
 pub const INFLUENCES: usize = 4;
 
+/// Bone influences a vertex of an import: the two sets of four that glTF files carry.
+pub const MAX_INFLUENCES: usize = 8;
+
 /// Confidence below which a joint is not believed (0..1); Gultepe 2013, section 4.2.
 pub const CONFIDENCE_GATE: f32 = 0.5;
 

@@ -9,9 +9,8 @@ use serde_json::{Value, json};
 
 use super::parts::Parts;
 use crate::body::Body;
-use crate::import::avatar::names::HANIM;
 use crate::mesh::vertex_normals;
-use crate::skeleton::{BONES, Joint, TWIST_BONES};
+use crate::skeleton::{BONES, Joint, bone_joint, bone_name};
 
 /// sRGB of the body: the mannequin's warm light grey-beige.
 const SKIN_SRGB: [f32; 3] = [0.797, 0.754, 0.711];
@@ -122,21 +121,11 @@ fn linear(srgb: f32) -> f32 {
     if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 
-/// Name of a bone: the joint's, or that of the joint whose limb it splits.
-pub fn bone_name(bone: usize) -> String {
-    let twist = TWIST_BONES.iter().find(|(b, ..)| *b == bone).map(|(_, from, _)| *from);
-    match (Joint::ALL.get(bone), twist) {
-        (Some(joint), _) => HANIM.names(*joint).remove(0),
-        (None, Some(from)) => format!("{}_twist", HANIM.names(from).remove(0)),
-        (None, None) => format!("bone {bone}"),
-    }
-}
-
 /// What each bone hangs from: the pelvis from nothing.
 fn parent(bone: usize) -> Option<usize> {
     match Joint::ALL.get(bone) {
         Some(joint) => joint.parent().map(Joint::index),
-        None => TWIST_BONES.iter().find(|(b, ..)| *b == bone).map(|(_, from, _)| from.index()),
+        None => bone_joint(bone).map(Joint::index),
     }
 }
 
@@ -152,7 +141,8 @@ fn joint_nodes(body: &Body, palette: Option<&[Affine3A; BONES]>) -> Vec<Value> {
         let local = parent(bone).map_or(world[bone], |p| world[p].inverse() * world[bone]);
         let turn = Quat::from_mat3(&Mat3::from_mat4(local)).normalize();
         let children: Vec<usize> = (0..BONES).filter(|b| parent(*b) == Some(bone)).map(|b| b + 1).collect();
-        let mut node = json!({ "name": bone_name(bone), "translation": local.w_axis.truncate().to_array() });
+        let mut node =
+            json!({ "name": bone_name(bone).unwrap_or_default(), "translation": local.w_axis.truncate().to_array() });
         if turn.x != 0.0 || turn.y != 0.0 || turn.z != 0.0 {
             node["rotation"] = json!(turn.to_array());
         }

@@ -10,6 +10,7 @@ use toile_assets::import::{avatar, makehuman};
 use toile_assets::scene;
 use toile_assets::skeleton::BONES;
 use toile_engine::body::{JointFrames, Poser, palette};
+use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
 use toile_sensors::frame::{Joints, TrackedJoint};
 use toile_view::image::Size;
@@ -119,7 +120,9 @@ fn walking(body: &Body) -> Result<Body, AppError> {
     palette(&body.skeleton, &pose, &mut bones);
     let mut posed = body.clone();
     let job = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights).map_err(AppError::input)?;
-    job.run(&bones, &mut posed.mesh.positions, &mut posed.normals);
+    let mut skin = job.posed();
+    job.run(BLEND, &bones, &mut skin);
+    skin.read(&mut posed.mesh.positions, &mut posed.normals);
     Ok(posed)
 }
 

@@ -16,6 +16,7 @@ mod bake;
 mod body;
 mod pareto;
 mod run;
+mod skinning;
 mod skirt;
 mod torture;
 mod validate;
@@ -24,6 +25,7 @@ pub use bake::BakeArgs;
 pub use body::{BodyArgs, Wearer};
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
+pub use skinning::SkinningArgs;
 pub use skirt::SkirtArgs;
 pub use torture::TortureArgs;
 pub use validate::ValidateArgs;
@@ -122,18 +124,6 @@ pub struct DoctorArgs {
     /// One JSON object on stdout in place of the table.
     pub json: bool,
 }
-
-/// Arguments of `toile bench skinning`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SkinningArgs {
-    /// Vertices to skin.
-    pub verts: usize,
-    /// One JSON object on stdout in place of the summary.
-    pub json: bool,
-}
-
-/// Most vertices that `bench skinning` takes: 16 million, about 2 GB of arrays.
-const MAX_BENCH_VERTS: u64 = 1 << 24;
 
 /// Longest session that `record` makes (s); at 30 frames a second this is some hundred megabytes.
 const MAX_RECORD_SECONDS: i64 = 600;
@@ -241,20 +231,11 @@ fn doctor() -> clap::Command {
 }
 
 fn bench() -> clap::Command {
-    let skinning = clap::Command::new("skinning")
-        .about("Time the skinning of a body, against a plain loop and with its error")
-        .args([
-            text("verts", "N", "Vertices to skin")
-                .value_parser(value_parser!(u64).range(1..=MAX_BENCH_VERTS))
-                .default_value("16384"),
-            json(),
-        ])
-        .after_help("Example: the cost of a vertex at 65,536 vertices\n  toile bench skinning --verts 65536");
     clap::Command::new("bench")
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([skinning, skirt::grammar()])
+        .subcommands([skinning::grammar(), skirt::grammar()])
         .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
 
@@ -341,11 +322,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
 
 fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
     match matches.subcommand() {
-        Some(("skinning", matches)) => {
-            let verts: u64 = required(matches, "verts")?;
-            let verts = usize::try_from(verts).map_err(AppError::internal)?;
-            Ok(Command::BenchSkinning(SkinningArgs { verts, json: matches.get_flag("json") }))
-        }
+        Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),
         _ => Err(AppError::internal("a benchmark without a name was let through")),
     }

@@ -4,13 +4,15 @@
 //! a limb is split for twist (Gultepe 2013, section 4.4.3) the skin between its ends is divided linearly between the
 //! two bones, and so is that of a spine without a chest. The four largest weights are kept and sum to 1.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use super::raw::{Influences, Raw};
 use super::rest::carriers;
 use crate::limits::INFLUENCES;
 use crate::mesh::SkinWeights;
-use crate::skeleton::{BONES, Joint, Skeleton, TWIST_BONES};
+use crate::skeleton::{BONES, Joint, Skeleton, TWISTS};
 
 /// What pruning to four influences cost.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -50,22 +52,23 @@ pub(super) fn weights(raw: &Raw, skeleton: &Skeleton, placed: &[Joint]) -> (Vec<
     (out, pruned)
 }
 
-/// A bone whose skin is divided: from, to, where the division begins, and the way to its end.
+/// A bone whose skin is divided linearly among itself and those that follow it: the chain, where the division begins,
+/// and the way to its end.
 struct Split {
-    from: usize,
-    to: usize,
+    chain: Vec<usize>,
     start: Vec3,
     way: Vec3,
 }
 
 fn splits(skeleton: &Skeleton, placed: &[Joint]) -> Vec<Split> {
-    let split = |from: usize, to: usize, a: Joint, b: Joint| {
-        let start = skeleton.at(a);
-        Split { from, to, start, way: skeleton.at(b) - start }
+    let split = |from: Joint, to: Joint, others: Range<usize>| {
+        let start = skeleton.at(from);
+        Split { chain: std::iter::once(from.index()).chain(others).collect(), start, way: skeleton.at(to) - start }
     };
-    let mut all: Vec<Split> = TWIST_BONES.iter().map(|&(bone, from, to)| split(from.index(), bone, from, to)).collect();
+    let mut all: Vec<Split> = TWISTS.iter().map(|t| split(t.from, t.to, t.bones())).collect();
     if placed.contains(&Joint::Chest) {
-        all.push(split(Joint::Spine.index(), Joint::Chest.index(), Joint::Spine, Joint::Chest));
+        let chest = Joint::Chest.index();
+        all.push(split(Joint::Spine, Joint::Chest, chest..chest + 1));
     }
     all
 }
@@ -79,9 +82,12 @@ fn over_bones(influences: &Influences, carriers: &[Joint], splits: &[Split], p: 
     }
     for split in splits {
         let along = (p - split.start).dot(split.way) / split.way.length_squared().max(1e-12);
-        let moved = bones[split.from] * along.clamp(0.0, 1.0);
-        bones[split.from] -= moved;
-        bones[split.to] += moved;
+        let whole = std::mem::take(&mut bones[split.chain[0]]);
+        let last = split.chain.len() - 1;
+        let place = along.clamp(0.0, 1.0) * last as f32;
+        let below = (place as usize).min(last - 1);
+        bones[split.chain[below]] += whole * (1.0 - (place - below as f32));
+        bones[split.chain[below + 1]] += whole * (place - below as f32);
     }
     bones
 }

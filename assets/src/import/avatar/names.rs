@@ -258,6 +258,15 @@ mod tests {
     }
 
     #[test]
+    fn exports_are_read_back_by_their_own_names() {
+        let vrm = &DIALECTS[0];
+        for joint in Joint::ALL {
+            assert_eq!(HANIM.names(joint)[0], joint.hanim());
+            assert_eq!(vrm.names(joint)[0], joint.vrm());
+        }
+    }
+
+    #[test]
     fn namespaces_case_and_marks_do_not_matter() {
         for name in ["mixamorig:LeftUpLeg", "mixamorig7:leftupleg", "Armature|Left_Up.Leg"] {
             assert_eq!(plain(name), "leftupleg");

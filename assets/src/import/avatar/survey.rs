@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::error::Flaw;
 use crate::body::{Levels, Measures, Region, tape};
 use crate::mesh::{Mesh, SkinWeights};
-use crate::skeleton::{BONES, Joint, Skeleton, TWIST_BONES};
+use crate::skeleton::{BONES, Joint, Skeleton, TWISTS};
 
 /// Levels at which the trunk is looked at for its narrowest one.
 const SLICES: usize = 64;
@@ -90,8 +90,9 @@ fn bone_regions() -> [Region; BONES] {
             _ => Region::Torso,
         };
     }
-    for (bone, from, _) in TWIST_BONES {
-        regions[bone] = regions[from.index()];
+    for twist in &TWISTS {
+        let limb = regions[twist.from.index()];
+        regions[twist.bones()].fill(limb);
     }
     regions
 }
