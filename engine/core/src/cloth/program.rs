@@ -108,7 +108,7 @@ pub fn substep(layout: &Layout, quality: Quality) -> Box<[Op]> {
     match quality {
         Quality::Draft => {}
         Quality::Shop | Quality::Fine => {
-            ops.extend(wefts().chain(wefts()).chain(fibers()).chain(wefts()).chain(wefts()))
+            ops.extend(wefts().chain(wefts()).chain(fibers()).chain(wefts()).chain(wefts()));
         }
     }
     ops.push(Op::Tether);
