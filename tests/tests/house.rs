@@ -8,7 +8,7 @@ use toile_tests::tree::{self, FLOORS};
 /// Files that may hold unsafe code, each with its reason.
 const UNSAFE_FILES: [(&str, &str); 6] = [
     ("engine/core/src/crew/own.rs", "what belongs to a share is lent to whoever works on it"),
-    ("engine/core/src/crew.rs", "a job that borrows the caller's stack is handed to another thread"),
+    ("engine/core/src/crew/mod.rs", "a job that borrows the caller's stack is handed to another thread"),
     ("engine/core/src/lanes/column.rs", "the workers of a step share its columns"),
     ("engine/core/src/lanes/x86.rs", "vector instructions that are picked at run time"),
     ("engine/core/src/lanes/x86/widths.rs", "the same"),

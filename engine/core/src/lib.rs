@@ -5,6 +5,7 @@
 //! Thread: the physics thread; `relay` stands between it and the others.
 
 pub mod body;
+pub mod clock;
 pub mod cloth;
 pub mod colliders;
 pub mod cone;
@@ -13,5 +14,9 @@ pub mod crew;
 pub mod frame;
 pub mod hold;
 pub mod lanes;
+pub mod meter;
+pub mod pace;
 pub mod relay;
 pub mod skin;
+#[expect(unsafe_code, reason = "a value that threads keep apart by other means")]
+pub mod sync;

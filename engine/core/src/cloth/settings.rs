@@ -69,6 +69,8 @@ pub struct Settings {
     /// Substeps of a step, if not as many as garment and quality ask for. Small substeps beat many iterations (Macklin
     /// et al. 2019, "Small steps in physics simulation").
     pub substeps: Option<u32>,
+    /// Share of these substeps that are made, above 0 to 1: what the governor of the loop gives up first.
+    pub substep_share: f32,
     /// Length of a step (s).
     pub step_seconds: f32,
     /// Acceleration of gravity (m/s2).
@@ -98,6 +100,9 @@ pub struct Settings {
 /// mm/s: with 4,096 a cloth at rest was thrown about by its own rounding. What asks for more is no number of substeps.
 pub const MAX_SUBSTEPS: u32 = 512;
 
+/// Least share of the substeps: below a tenth no garment keeps its shape.
+const LEAST_SHARE: f32 = 0.1;
+
 /// Shortest and longest step (s); in shorter ones no f32 a metre from the origin moves, longer ones are no steps.
 const STEPS_S: [f32; 2] = [1e-6, 1.0];
 
@@ -124,6 +129,7 @@ impl Settings {
         };
         Self {
             substeps: self.substeps.map(|n| n.min(MAX_SUBSTEPS)),
+            substep_share: within(self.substep_share, LEAST_SHARE, 1.0, 1.0),
             step_seconds: within(self.step_seconds, STEPS_S[0], STEPS_S[1], STEP_SECONDS),
             gravity: if small(self.gravity, MOST_GRAVITY) { self.gravity } else { GRAVITY },
             max_speed: within(self.max_speed, 0.0, MOST_SPEED, MAX_SPEED),
@@ -155,6 +161,7 @@ impl Default for Settings {
         Self {
             quality: Quality::default(),
             substeps: None,
+            substep_share: 1.0,
             step_seconds: STEP_SECONDS,
             gravity: GRAVITY,
             max_speed: MAX_SPEED,
@@ -192,6 +199,7 @@ mod tests {
             let wind = Some(Wind { velocity: Vec3A::ZERO, drag: bad, lift: 0.0 });
             let settings = Settings {
                 step_seconds: bad,
+                substep_share: bad,
                 gravity: Vec3A::new(0.0, bad * 1e9, 0.0),
                 max_speed: bad,
                 stretch_damping_s: bad,

@@ -1,3 +1,5 @@
+use std::hint::spin_loop;
+
 use super::*;
 use crate::lanes::Column;
 
