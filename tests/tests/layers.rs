@@ -40,7 +40,16 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
     ),
     (
         "toile-engine",
-        &[&["lanes", "relay", "crew", "cone"], &["body", "hold"], &["skin"], &["colliders"], &["cloth"], &["frame"]],
+        &[
+            &["lanes", "relay", "sync", "clock", "meter", "cone"],
+            &["crew"],
+            &["body", "hold"],
+            &["skin"],
+            &["colliders"],
+            &["cloth"],
+            &["frame"],
+            &["pace"],
+        ],
     ),
     (
         "toile-perf",

@@ -86,8 +86,10 @@ impl Clock for SimClock {
     }
 
     fn sleep_until(&self, ns: u64) {
-        let late = self.oversleep.swap(0, Relaxed);
-        self.now.fetch_max(ns + late, Relaxed);
+        if ns > self.now_ns() {
+            let late = self.oversleep.swap(0, Relaxed);
+            self.now.fetch_max(ns + late, Relaxed);
+        }
     }
 }
 
