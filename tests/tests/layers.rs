@@ -58,7 +58,7 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
             &["surface"],
             &["yardstick"],
             &["oracle"],
-            &["skinning", "skirt"],
+            &["skinning", "skirt", "latency"],
             &["torture", "validate"],
             &["pareto"],
         ],

@@ -14,6 +14,7 @@ use crate::exit::AppError;
 
 mod bake;
 mod body;
+mod latency;
 mod pareto;
 mod run;
 mod skinning;
@@ -23,6 +24,7 @@ mod validate;
 
 pub use bake::BakeArgs;
 pub use body::{BodyArgs, Wearer};
+pub use latency::{LatencyArgs, ReplayArgs};
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
@@ -57,6 +59,10 @@ pub enum Command {
     Validate(ValidateArgs),
     /// `toile pareto`.
     Pareto(ParetoArgs),
+    /// `toile latency`.
+    Latency(LatencyArgs),
+    /// `toile replay`.
+    Replay(ReplayArgs),
     /// `toile completions`.
     Completions(Shell),
     /// Help or version: text to print.
@@ -156,6 +162,8 @@ pub fn command() -> clap::Command {
             validate::grammar(),
             pareto::grammar(),
             torture::grammar(),
+            latency::grammar(),
+            latency::replay_grammar(),
             completions(),
         ])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
@@ -315,6 +323,8 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "torture" => Command::Torture(torture::args(matches)?),
         "validate" => Command::Validate(validate::args(matches)?),
         "pareto" => Command::Pareto(pareto::args(matches)?),
+        "latency" => Command::Latency(latency::args(matches)?),
+        "replay" => Command::Replay(latency::replay_args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
     })

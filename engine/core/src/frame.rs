@@ -256,6 +256,11 @@ impl Frame {
         &self.meters
     }
 
+    /// Forgets them: what comes before a benchmark is not its matter.
+    pub fn clear_meters(&mut self) {
+        self.meters.clear();
+    }
+
     /// Steps of the session so far.
     pub fn tick(&self) -> u64 {
         self.tick

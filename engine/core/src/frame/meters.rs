@@ -45,6 +45,14 @@ impl Meters {
         }
     }
 
+    /// Forgets all that was metered, allocating nothing.
+    pub(super) fn clear(&mut self) {
+        self.step_ns.reset();
+        self.stages.iter_mut().for_each(Meter::clear);
+        (self.strain_sum, self.strain_p99_sum, self.steps) = (0.0, 0.0, 0);
+        (self.strain_max, self.penetration_max) = (0.0, 0.0);
+    }
+
     /// A step whose stages took so long.
     pub(super) fn timed(&mut self, stages_ns: [u64; STAGES.len()]) {
         self.step_ns.saturating_record(stages_ns.iter().sum::<u64>().min(STEP_MAX_NS));

@@ -82,8 +82,9 @@ impl Counters {
 
 /// Reads the calling thread's counters, allocating nothing.
 pub trait Account: Send {
-    /// The counters now.
-    fn counters(&mut self) -> Counters;
+    /// The counters now. `closely` says that there is time for those that cost more: behind a step that was late already,
+    /// and now and then in the time that a step leaves. The others are then as they were.
+    fn counters(&mut self, closely: bool) -> Counters;
 }
 
 /// No counters.
@@ -91,7 +92,7 @@ pub trait Account: Send {
 pub struct NoAccount;
 
 impl Account for NoAccount {
-    fn counters(&mut self) -> Counters {
+    fn counters(&mut self, _closely: bool) -> Counters {
         Counters::default()
     }
 }

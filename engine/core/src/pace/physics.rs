@@ -34,6 +34,9 @@ pub trait Scene {
     /// What is measured behind a step, when there is time.
     fn measure(&mut self);
 
+    /// Forgets what was metered so far.
+    fn clear_meters(&mut self);
+
     /// A hash of the state.
     fn fingerprint(&self) -> u64;
 
@@ -69,6 +72,10 @@ impl Scene for Staged {
 
     fn measure(&mut self) {
         self.frame.measure();
+    }
+
+    fn clear_meters(&mut self) {
+        self.frame.clear_meters();
     }
 
     fn fingerprint(&self) -> u64 {
@@ -153,6 +160,16 @@ pub struct Gauges {
     pub skipped: u64,
 }
 
+impl Gauges {
+    /// Forgets everything, allocating nothing.
+    fn clear(&mut self) {
+        let Self { late, intake, step, response, wait, reaction, .. } = self;
+        [late, intake, step, response, wait, reaction].into_iter().for_each(Meter::clear);
+        (self.steps, self.dropped, self.missed, self.skipped) = (0, 0, 0, 0);
+        self.rungs = [0; LADDER.len()];
+    }
+}
+
 /// The ends of what the physics writes to, beside the snapshots.
 #[derive(Debug)]
 pub struct Outlets {
@@ -177,6 +194,9 @@ pub struct Physics<S, C, A> {
     account: A,
     counters: Counters,
     troubles: [u64; 2],
+    /// Steps taken, and after how many the meters begin.
+    tick: u64,
+    warm_up: u64,
     /// Number of the last sensor frame, when it came, and whether there have been none for too long.
     last: u64,
     last_ns: u64,
@@ -197,10 +217,23 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
             outlets,
             account,
             counters: Counters::default(),
+            tick: 0,
+            warm_up: 0,
             last: 0,
             last_ns: origin_ns,
             lost: false,
         }
+    }
+
+    /// The same, whose meters begin after so many steps.
+    #[must_use]
+    pub fn warming_up(self, steps: u64) -> Self {
+        Self { warm_up: steps, ..self }
+    }
+
+    /// Steps taken so far, the first ones included.
+    pub fn ticks(&self) -> u64 {
+        self.tick
     }
 
     /// The place in the ladder.
@@ -210,13 +243,17 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
 
     /// One step that is due.
     fn step(&mut self, due: Tick) {
+        if self.tick == self.warm_up && self.tick > 0 {
+            self.gauges.clear();
+            self.stepper.scene.clear_meters();
+        }
         let begun = self.clock.now_ns();
         self.drop_steps(&due, begun);
         let news = self.look(due.scheduled_ns, begun);
         self.gauges.intake.add(self.clock.now_ns() - begun);
         self.stepper.step(due.scheduled_ns, begun, &self.clock);
         let ended = self.clock.now_ns();
-        let counted = self.count();
+        let counted = self.count(ended - due.scheduled_ns > PERIOD_NS);
         self.meter(&due, begun, ended, news);
         let miss = Miss {
             total_ns: ended - due.scheduled_ns,
@@ -232,9 +269,13 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
         self.govern(due.scheduled_ns, miss.step_ns);
         self.look_for_trouble(due.scheduled_ns);
         self.gauges.steps += 1;
+        self.tick += 1;
         // In the time that is left, if there is enough of it.
         if miss.total_ns < PERIOD_NS / 2 {
             self.stepper.scene.measure();
+            if self.tick.is_multiple_of(MEASURE_EVERY) {
+                self.count(true);
+            }
         }
     }
 
@@ -285,15 +326,15 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
     }
 
     /// What the thread's counters grew by since they were last looked at.
-    fn count(&mut self) -> Counters {
-        let now = self.account.counters();
+    fn count(&mut self, closely: bool) -> Counters {
+        let now = self.account.counters(closely);
         now.since(&std::mem::replace(&mut self.counters, now))
     }
 
     fn record(&mut self, scheduled_ns: u64) {
         if let Some(tape) = &mut self.outlets.tape {
             let fingerprint = self.stepper.scene.fingerprint();
-            let (tick, rung) = (self.gauges.steps, self.governor.place());
+            let (tick, rung) = (self.tick, self.governor.place());
             tape.push(Entry::Step { tick, scheduled_ns, rung, fingerprint });
         }
     }
@@ -317,7 +358,7 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
 
     fn tell(&mut self, scheduled_ns: u64, what: What) {
         // One that does not fit is counted by the queue.
-        self.outlets.events.push(Event { tick: self.gauges.steps, scheduled_ns, what });
+        self.outlets.events.push(Event { tick: self.tick, scheduled_ns, what });
     }
 }
 

@@ -42,6 +42,7 @@ pub struct Render<E, C> {
     /// Pictures that fell out because the one before took too long.
     pub dropped: u64,
     frame: u64,
+    from_ns: u64,
 }
 
 impl<E: Eye, C: Clock> Render<E, C> {
@@ -58,7 +59,14 @@ impl<E: Eye, C: Clock> Render<E, C> {
             pictures: 0,
             dropped: 0,
             frame: 0,
+            from_ns: 0,
         }
+    }
+
+    /// The same, whose meters begin at this time (ns).
+    #[must_use]
+    pub fn metering_from(self, from_ns: u64) -> Self {
+        Self { from_ns, ..self }
     }
 
     fn take(&mut self) {
@@ -67,6 +75,10 @@ impl<E: Eye, C: Clock> Render<E, C> {
         let times = snapshot.times;
         self.eye.look(snapshot);
         let taken = self.clock.now_ns();
+        if begun < self.from_ns {
+            self.frame = times.frame;
+            return;
+        }
         self.pictures += 1;
         self.drawing.add(taken - begun);
         if times.published_ns > 0 {

@@ -92,6 +92,7 @@ pub struct Sense<S, C> {
     filter: JointFilter,
     writer: Writer<Seen>,
     count: u64,
+    from_ns: u64,
     /// From a frame's arrival to its publication.
     pub filtering: Meter,
 }
@@ -99,7 +100,13 @@ pub struct Sense<S, C> {
 impl<S: Source, C: Clock> Sense<S, C> {
     /// At load.
     pub fn new(source: S, clock: C, writer: Writer<Seen>) -> Self {
-        Self { source, clock, filter: JointFilter::default(), writer, count: 0, filtering: Meter::new() }
+        Self { source, clock, filter: JointFilter::default(), writer, count: 0, from_ns: 0, filtering: Meter::new() }
+    }
+
+    /// The same, whose meter begins at this time (ns).
+    #[must_use]
+    pub fn metering_from(self, from_ns: u64) -> Self {
+        Self { from_ns, ..self }
     }
 
     /// Frames published so far.
@@ -120,7 +127,9 @@ impl<S: Source, C: Clock> Turn for Sense<S, C> {
             let joints = self.filter.push(&raw);
             self.count += 1;
             self.writer.publish(Seen { joints, arrived_ns, number: self.count });
-            self.filtering.add(self.clock.now_ns().saturating_sub(arrived_ns));
+            if arrived_ns >= self.from_ns {
+                self.filtering.add(self.clock.now_ns().saturating_sub(arrived_ns));
+            }
         }
         self.source.next_ns()
     }

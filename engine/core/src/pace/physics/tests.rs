@@ -51,6 +51,8 @@ impl Scene for Toy {
 
     fn measure(&mut self) {}
 
+    fn clear_meters(&mut self) {}
+
     fn fingerprint(&self) -> u64 {
         self.hash
     }

@@ -1,0 +1,250 @@
+//! The run itself: the three lives on their threads, and this one, which empties the queues.
+
+use std::thread;
+use std::time::Duration;
+
+use glam::Vec3;
+use toile_engine::clock::{Clock, RealClock};
+use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::meter::{INTAKE, PERIOD_NS, STAGES};
+use toile_engine::pace::event::{EVENTS, EVENTS_NAME, Event, What};
+use toile_engine::pace::governor::LADDER;
+use toile_engine::pace::physics::{Outlets, Physics, Staged};
+use toile_engine::pace::queue::{Receiver, bounded};
+use toile_engine::pace::render::{Eye, Render};
+use toile_engine::pace::roles::{Placement, Role};
+use toile_engine::pace::sense::{Playback, Seen, Sense};
+use toile_engine::pace::tape::{ENTRIES, ENTRIES_NAME, Entry};
+use toile_engine::pace::threads::{self, Stop};
+use toile_engine::relay::{Reader, Relay};
+use toile_sensors::frame::Joints;
+
+use super::account::{ThreadAccount, cause};
+use super::load::Load;
+use super::report::{Attributed, Cause, Goal, Latency, Placed, Quality, Quantiles, Stage, Warned};
+use super::{LatencyError, Options, jitter};
+
+/// Time before the meters begin (s): caches fill, memory is touched for the first time.
+const WARM_UP_S: u64 = 1;
+
+/// Longest time for which the machine's own jitter is measured (s).
+const MOST_JITTER_S: u32 = 10;
+
+/// A snapshot is to be there so soon after a sensor frame's arrival, at the 99th percentile (us).
+const SNAPSHOT_US: f64 = 12_000.0;
+
+/// A picture is to be there so soon after a sensor frame's arrival (us): what 75 ms from motion to light leave beside a sensor of
+/// 20 ms and a display of 17 ms (Waltemate et al. 2016).
+const PICTURE_US: f64 = 38_000.0;
+
+/// Most changes of quality that are told one by one.
+const MOST_CHANGES: usize = 100;
+
+/// Time between two looks at the queues: they hold seconds.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// Who is on stage: a shopper, dressed, and how they moved.
+pub struct Cast<'a> {
+    /// The frame, dressed; its crew is of the workers that are asked for.
+    pub frame: Frame,
+    /// Where its snapshots come out.
+    pub reader: Reader<Snapshot>,
+    /// The session's joints as the sensor gave them.
+    pub joints: &'a [Joints],
+    /// Where the crew's helper runs.
+    pub worker: Option<Placement>,
+}
+
+/// What a display would be handed: the body and the garments in the order of their meshes.
+#[derive(Debug)]
+struct Picture {
+    body: [Box<[Vec3]>; 2],
+    garments: Box<[Box<[Vec3]>]>,
+}
+
+impl Picture {
+    fn of(snapshot: &Snapshot) -> Self {
+        let zeros = || vec![Vec3::ZERO; snapshot.skin.vertices()].into_boxed_slice();
+        Self { body: [zeros(), zeros()], garments: snapshot.garments.clone() }
+    }
+}
+
+impl Eye for Picture {
+    fn look(&mut self, snapshot: &Snapshot) {
+        let [positions, normals] = &mut self.body;
+        snapshot.skin.read(positions, normals);
+        for (to, from) in self.garments.iter_mut().zip(&snapshot.garments) {
+            to.copy_from_slice(from);
+        }
+    }
+}
+
+/// What came out of the queues.
+#[derive(Debug, Default)]
+struct Told {
+    attributed: Attributed,
+    before: Option<(u64, Cause)>,
+    dropped: u64,
+    changes: Vec<[u64; 3]>,
+    sentences: Vec<String>,
+}
+
+impl Told {
+    fn take(&mut self, event: &Event) {
+        match event.what {
+            What::Missed(miss) => {
+                let before = self.before.filter(|(tick, _)| *tick + 1 == event.tick).map(|(_, cause)| cause);
+                let cause = cause(&miss, before);
+                // Steps that were dropped before this one have its cause.
+                self.attributed.add(cause, 1 + std::mem::take(&mut self.dropped));
+                self.before = Some((event.tick, cause));
+            }
+            What::Dropped(steps) => self.dropped += steps,
+            What::Quality(change) if self.changes.len() < MOST_CHANGES => {
+                self.changes.push([event.tick, u64::from(change.from), u64::from(change.to)]);
+            }
+            What::Quality(_) => {}
+            What::SensorLost => self.say(event, "no sensor frame had come for half a second"),
+            What::SensorBack => self.say(event, "the sensor came back"),
+            What::Broken => self.say(event, "a worker panicked and the garments kept their places"),
+            What::RolledBack => self.say(event, "a garment ended with what is no number and was rolled back"),
+        }
+    }
+
+    fn say(&mut self, event: &Event, what: &str) {
+        if self.sentences.len() < MOST_CHANGES {
+            self.sentences.push(format!("step {}: {what}", event.tick));
+        }
+    }
+}
+
+/// Runs the loop for so long. With a recording, `keep` is handed its entries as they come. Gives the report and
+/// the frame as it ends.
+///
+/// # Errors
+/// Where a thread cannot be started or ends before its time.
+pub fn run(cast: Cast<'_>, options: &Options, mut keep: impl FnMut(&Entry)) -> Result<Latency, LatencyError> {
+    let load = Load::start(options.load)?;
+    let empty = jitter::measure(Duration::from_secs(u64::from(options.seconds.min(MOST_JITTER_S))))?;
+    let Cast { frame, mut reader, joints, worker } = cast;
+    let clock = RealClock::default();
+    let begin = clock.now_ns() + 10 * PERIOD_NS;
+    let metered = begin + WARM_UP_S * 1_000_000_000;
+    let (sender, mut events) = bounded(EVENTS_NAME, EVENTS);
+    let (tape, mut entries) = bounded(ENTRIES_NAME, ENTRIES);
+    let Relay { writer, reader: seen } = Relay::new(&Seen::default());
+    let outlets = Outlets { events: sender, tape: options.record.then_some(tape) };
+    let picture = Picture::of(reader.latest());
+    let warm_up = WARM_UP_S * u64::from(toile_assets::limits::STEP_HZ);
+    let sense = Sense::new(Playback::new(joints, begin, u64::MAX), clock, writer).metering_from(metered);
+    let physics = Physics::new(Staged::new(frame), clock, begin, seen, outlets, ThreadAccount::new());
+    let render = Render::new(picture, clock, begin, reader).metering_from(metered);
+
+    let stop = Stop::default();
+    let sensor = threads::start(Role::Sensor, sense, clock, &stop)?;
+    let physics = threads::start(Role::Physics, physics.warming_up(warm_up), clock, &stop)?;
+    let render = threads::start(Role::Render, render, clock, &stop)?;
+    let placements = [sensor.placement(), physics.placement(), worker, render.placement()];
+    let mut told = Told::default();
+    let end = metered + u64::from(options.seconds) * 1_000_000_000;
+    while clock.now_ns() < end && !physics.is_over() {
+        thread::sleep(LOOK);
+        drain(&mut events, &mut entries, warm_up, &mut told, &mut keep);
+    }
+    stop.now();
+    let sensor = sensor.join().ok_or(LatencyError::Died("sensor"))?;
+    let physics = physics.join().ok_or(LatencyError::Died("physics"))?;
+    let render = render.join().ok_or(LatencyError::Died("render"))?;
+    drain(&mut events, &mut entries, warm_up, &mut told, &mut keep);
+    drop(load);
+
+    let (gauges, frame) = (&physics.gauges, &physics.stepper.scene.frame);
+    let mut stages = vec![
+        Stage::of("filter", Some(50), &sensor.filtering),
+        Stage::of("wait for a step", Some(PERIOD_NS / 1_000), &gauges.wait),
+        Stage::of(STAGES[INTAKE].name, Some(STAGES[INTAKE].budget_us), &gauges.intake),
+    ];
+    let own = STAGES.iter().zip(&frame.meters().stages).skip(INTAKE + 1);
+    stages.extend(own.map(|(stage, meter)| Stage::of(stage.name, Some(stage.budget_us), meter)));
+    stages.push(Stage::of("wait for a picture", None, &render.picture));
+    stages.push(Stage::of("picture", None, &render.drawing));
+    let [step, response] = [&gauges.step, &gauges.response].map(Quantiles::of);
+    let [snapshot, total] = [&gauges.reaction, &render.total].map(Quantiles::of);
+    let capacities = [events.capacity(), entries.capacity()];
+    let period_us = PERIOD_NS as f64 * 1e-3;
+    let late = gauges.reaction.histogram().iter_recorded();
+    let late = late.filter(|v| v.value_iterated_to() as f64 * 1e-3 > SNAPSHOT_US).map(|v| v.count_at_value()).sum::<u64>();
+    let threads: Vec<Placed> = placements.into_iter().flatten().map(Placed::from).collect();
+    let mut warnings: Vec<String> = capacities.iter().filter_map(|c| c.warning()).collect();
+    warnings.extend(threads.iter().flat_map(|t| t.refused.clone()));
+    warnings.append(&mut told.sentences);
+    let whole = [("step", &gauges.step), ("snapshot", &gauges.reaction), ("total", &render.total), ("empty loop", &empty)];
+    stages.extend(whole.map(|(name, meter)| Stage::of(name, None, meter)));
+    Ok(Latency {
+        seconds: options.seconds,
+        load_threads: options.load,
+        workers: frame.settings().workers,
+        threads,
+        stages_us: stages.iter().map(|s| (s.name, s.us)).collect(),
+        stages,
+        total_us: total,
+        snapshot_us: snapshot,
+        step_us: step,
+        response_us: response,
+        jitter_us: Quantiles::of(&empty),
+        steps: gauges.steps,
+        deadline_misses: gauges.missed + gauges.dropped,
+        dropped: gauges.dropped,
+        attributed: told.attributed,
+        frames: snapshot.count + gauges.skipped,
+        late_frames: late + gauges.skipped,
+        pictures: render.pictures,
+        quality: quality(frame, &gauges.rungs, told.changes),
+        goals: vec![
+            Goal::new("snapshot after a sensor frame's arrival, p99", SNAPSHOT_US, snapshot.p99),
+            Goal::new("picture after a sensor frame was seen, p99", PICTURE_US, total.p99),
+            Goal::new("step, p99.9", 0.5 * period_us, step.p999),
+            Goal::new("step, longest", 0.8 * period_us, step.max),
+        ],
+        capacities: capacities.map(Warned::from).to_vec(),
+        warnings,
+        state_hash: format!("{:016x}", frame.state_hash()),
+    })
+}
+
+/// Empties the queues. What happened before the meters began is not told.
+fn drain(
+    events: &mut Receiver<Event>,
+    entries: &mut Receiver<Entry>,
+    warm_up: u64,
+    told: &mut Told,
+    keep: &mut impl FnMut(&Entry),
+) {
+    while let Some(event) = events.pop() {
+        if event.tick >= warm_up {
+            told.take(&event);
+        }
+    }
+    while let Some(entry) = entries.pop() {
+        keep(&entry);
+    }
+}
+
+fn quality(frame: &Frame, rungs: &[u64], changes: Vec<[u64; 3]>) -> Quality {
+    let (meters, settings) = (frame.meters(), frame.settings());
+    let strain = meters.strain();
+    let whole = frame.garments().iter().map(|g| settings.quality.substeps(g.substeps)).max().unwrap_or(0);
+    let free = |g: &toile_assets::garment::Garment| g.inverse_mass.iter().filter(|w| **w > 0.0).count();
+    Quality {
+        name: settings.quality.name(),
+        substeps: whole,
+        particles: frame.garments().iter().map(toile_assets::garment::Garment::particles).sum(),
+        free: frame.garments().iter().map(free).sum(),
+        rungs: rungs.to_vec(),
+        gives_up: LADDER.iter().map(|r| r.gives_up).collect(),
+        changes,
+        strain: [strain.mean, strain.p99, strain.max].map(f64::from),
+        penetration_mm: f64::from(meters.penetration_max) * 1e3,
+        nonfinite: frame.cloths().iter().map(|c| c.events.rolled_back).sum(),
+    }
+}
