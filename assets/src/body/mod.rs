@@ -4,7 +4,9 @@
 //! Budget: at load only, under 60 ms a body; the mesh has the same vertices and triangles whatever the size.
 //! Thread: the loading thread.
 
+pub mod base;
 mod cage;
+pub mod landmarks;
 mod skin;
 mod subdivide;
 mod table;
@@ -188,6 +190,17 @@ impl Body {
         wanted.check()?;
         let sweep = Sweep::new(sex);
         Ok(sweep.body(&sweep.calibrate(wanted)?))
+    }
+}
+
+impl base::Base {
+    /// The mean body of a sex.
+    pub fn new(sex: Sex) -> Self {
+        let sweep = Sweep::new(sex);
+        let Body { mesh, skeleton, weights, regions, .. } = sweep.body(&Shape::drawn());
+        let drawn = landmarks::Landmarks::drawn(sex);
+        let landmarks = landmarks::Landmarks::place(&mesh.positions, &mesh.triangles, &regions, &drawn);
+        Self { sex, positions: mesh.positions, triangles: mesh.triangles, regions, skeleton, weights, landmarks }
     }
 }
 
