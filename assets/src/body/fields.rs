@@ -17,6 +17,9 @@ const REACH: f32 = 0.4;
 /// Way along an arm over which it turns from following the trunk's surface to being carried as a whole (m).
 const CARRIED: f32 = 0.10;
 
+/// Height to which nothing grows or stretches, in heights of the ankle's joint: feet keep their shape.
+const ABOVE_ANKLE: f32 = 1.6;
+
 /// Share of a thigh's growth by which the leg below moves outwards.
 const LEG_SHIFT: f32 = 0.35;
 
@@ -96,9 +99,9 @@ impl<'a> Making<'a> {
             let reach = reaches(&cores, &ways);
             near.shares(&ways.into_iter().zip(reach).collect::<Vec<_>>())
         };
-        let trunk = chain(trunk_cores(base, near));
+        let trunk = chain(trunk_cores(base));
         let mut cores = arm_cores(base);
-        cores.insert(0, rim);
+        cores.insert(0, (0..base.positions.len() as u32).filter(|&v| !arm(v)).map(|v| (v, 0.0)).collect());
         Self { base, near, trunk, arm: chain(cores), carried, armhole }
     }
 
@@ -115,7 +118,7 @@ impl<'a> Making<'a> {
     fn trunk(&self, slider: Slider, field: &mut [Vec3]) {
         use Slider as S;
         match slider {
-            S::LowerLeg => self.lengthen(field, [1.6 * self.ankle(), self.height(Landmark::Midpatella)]),
+            S::LowerLeg => self.lengthen(field, [ABOVE_ANKLE * self.ankle(), self.height(Landmark::Midpatella)]),
             S::UpperLeg => self.lengthen(field, [self.height(Landmark::Midpatella), self.height(Landmark::Crotch)]),
             S::LowerTrunk => {
                 self.lengthen(field, [self.height(Landmark::Crotch) + 0.01, self.height(Landmark::NaturalWaist)]);
@@ -211,9 +214,7 @@ impl<'a> Making<'a> {
         let (centre, _) = self.section(level);
         for (v, d) in field.iter_mut().enumerate() {
             let p = self.base.positions[v];
-            // Above the crotch there is one trunk, which grows about its middle.
-            let leg = if p.x.abs() > 0.0 { own * centre.x * p.x.signum() } else { 0.0 };
-            *d = Vec3::new(p.x - leg, 0.0, p.z - centre.y) * self.share(segment, v);
+            *d = Vec3::new(p.x - own * centre.x * p.x.signum(), 0.0, p.z - centre.y) * self.share(segment, v);
             if segment == Trunk::Thigh {
                 let below = self.share(Trunk::Knee, v) + self.share(Trunk::Calf, v) + self.share(Trunk::Foot, v);
                 d.x += LEG_SHIFT * centre.x * p.x.signum() * below;
@@ -316,8 +317,12 @@ fn stretch(t: f32) -> f32 {
 
 /// How far each segment of a chain reaches: from the ways between its core and its neighbours'.
 fn reaches(cores: &[Vec<(u32, f32)>], ways: &[Vec<f32>]) -> Vec<f32> {
+    // To the nearer half of the neighbour's core: the first and the last segment's hold all that lies beyond.
     let way = |i: usize, j: usize| {
-        cores[j].iter().map(|&(v, _)| ways[i][v as usize]).sum::<f32>() / cores[j].len().max(1) as f32
+        let (from, to) = if cores[i].len() > cores[j].len() { (j, i) } else { (i, j) };
+        let least = cores[to].iter().map(|&(v, _)| ways[from][v as usize]).fold(f32::MAX, f32::min);
+        let back = cores[from].iter().map(|&(v, _)| ways[to][v as usize]).sum::<f32>() / cores[from].len().max(1) as f32;
+        least.max(back)
     };
     (0..cores.len())
         .map(|i| {
@@ -345,17 +350,16 @@ fn ring(base: &Base, at: Vec3, normal: Vec3, admits: impl Fn(u32) -> bool) -> Ve
 }
 
 /// The cores of the trunk's chain, in the order of [`Trunk`].
-fn trunk_cores(base: &Base, near: &Neighbourhood) -> Vec<Vec<(u32, f32)>> {
+fn trunk_cores(base: &Base) -> Vec<Vec<(u32, f32)>> {
     let at = |l: Landmark| base.landmarks.mark(l).on(&base.positions);
     let region = |v: u32| base.regions[v as usize];
     let trunk = |v: u32| !matches!(region(v), Region::LeftArm | Region::RightArm);
-    let head = (0..base.positions.len() as u32)
-        .filter(|&v| region(v) == Region::Head && near.ring(v as usize).any(|w| region(w as u32) != Region::Head))
-        .map(|v| (v, 0.0))
-        .collect();
+    let all = 0..base.positions.len() as u32;
+    let head = all.clone().filter(|&v| region(v) == Region::Head).map(|v| (v, 0.0)).collect();
     let neck = |v: u32| trunk(v) && base.positions[v as usize].x.abs() < 0.16;
     let level = |l: Landmark| ring(base, at(l), Vec3::Y, trunk);
-    let foot = base.skeleton.at(Joint::LeftAnkle) * 1.6;
+    let sole = ABOVE_ANKLE * base.skeleton.at(Joint::LeftAnkle).y;
+    let foot = all.filter(|&v| base.positions[v as usize].y < sole).map(|v| (v, 0.0)).collect();
     vec![
         head,
         ring(base, at(Landmark::Infrathyroid), neck_axis(base), neck),
@@ -368,7 +372,7 @@ fn trunk_cores(base: &Base, near: &Neighbourhood) -> Vec<Vec<(u32, f32)>> {
         level(Landmark::Thigh),
         level(Landmark::Midpatella),
         level(Landmark::Calf),
-        ring(base, foot, Vec3::Y, trunk),
+        foot,
     ]
 }
 
@@ -380,10 +384,11 @@ fn arm_cores(base: &Base) -> Vec<Vec<(u32, f32)>> {
     let (elbow, wrist, hand) = (joint(Joint::LeftElbow), joint(Joint::LeftWrist), joint(Joint::LeftHand));
     let upper = (elbow - joint(Joint::LeftShoulder)).normalize();
     let fore = (wrist - elbow).normalize();
+    let beyond = |v: u32| (base.positions[v as usize] - wrist.lerp(hand, 0.5)).dot(hand - wrist) > 0.0;
     vec![
         ring(base, at(Landmark::Biceps), upper, arm),
         ring(base, elbow.lerp(wrist, 0.3), fore, arm),
         ring(base, at(Landmark::Stylion), fore, arm),
-        ring(base, wrist.lerp(hand, 0.5), (hand - wrist).normalize(), arm),
+        (0..base.positions.len() as u32).filter(|&v| arm(v) && beyond(v)).map(|v| (v, 0.0)).collect(),
     ]
 }

@@ -97,6 +97,11 @@ impl Body {
         let model = model(sex);
         model.fitted(&model.as_drawn()).body
     }
+    /// dev
+    pub fn drawn_readings(sex: Sex) -> Readings {
+        let model = model(sex);
+        model.fitted(&model.as_drawn()).readings
+    }
 }
 
 impl Model {

@@ -63,7 +63,7 @@ fn table(sex: Sex) -> &'static Table {
 }
 
 /// Readings that the survey took, by its name.
-const TAKEN: [(Reading, &str); 21] = [
+const TAKEN: [(Reading, &str); 15] = [
     (Reading::Stature, "stature"),
     (Reading::CervicaleHeight, "cervicaleheight"),
     (Reading::OmphalionHeight, "waistheightomphalion"),
@@ -77,19 +77,20 @@ const TAKEN: [(Reading, &str); 21] = [
     (Reading::CalfGirth, "calfcircumference"),
     (Reading::WristGirth, "wristcircumference"),
     (Reading::ShoulderBreadth, "biacromialbreadth"),
-    (Reading::ChestBreadth, "chestbreadth"),
-    (Reading::ChestDepth, "chestdepth"),
-    (Reading::OmphalionBreadth, "waistbreadth"),
-    (Reading::OmphalionDepth, "waistdepth"),
-    (Reading::HipBreadth, "hipbreadth"),
-    (Reading::HipDepth, "buttockdepth"),
     (Reading::SleeveLength, "sleevelengthspinewrist"),
     (Reading::WaistBackLength, "waistbacklength"),
 ];
 
-/// Readings that it did not take: what they follow, and how far they stray from it (m). The deviations of underbust and
-/// waist are those of the EN 13402-3 tables' sizes about a straight line; the others' are of the order of a tape's error.
-const FOLLOWING: [(Reading, Reading, &str, f64); 5] = [
+/// Readings whose mean is the drawn body's, in proportion to the one they follow: those that the survey did not take,
+/// and breadths and depths, which its calliper takes from compressed flesh. With the column that they vary as, and how
+/// far they stray from it (m); for underbust and waist that is about the width of a size in the tables of EN 13402-3.
+const FOLLOWING: [(Reading, Reading, &str, f64); 11] = [
+    (Reading::ChestBreadth, Reading::ChestGirth, "chestbreadth", OWN_ERROR),
+    (Reading::ChestDepth, Reading::ChestGirth, "chestdepth", OWN_ERROR),
+    (Reading::OmphalionBreadth, Reading::OmphalionGirth, "waistbreadth", OWN_ERROR),
+    (Reading::OmphalionDepth, Reading::OmphalionGirth, "waistdepth", OWN_ERROR),
+    (Reading::HipBreadth, Reading::HipGirth, "hipbreadth", OWN_ERROR),
+    (Reading::HipDepth, Reading::HipGirth, "buttockdepth", OWN_ERROR),
     (Reading::NeckBaseGirth, Reading::NeckGirth, "neckcircumferencebase", 5e-3),
     (Reading::UnderbustGirth, Reading::ChestGirth, "chestcircumference", 20e-3),
     (Reading::WaistGirth, Reading::OmphalionGirth, "waistcircumference", 20e-3),
