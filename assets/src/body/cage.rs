@@ -14,10 +14,6 @@ use crate::skeleton::{JOINTS, Joint, Skeleton};
 pub(super) mod row {
     pub const CROTCH: usize = 0;
     pub const HIP: usize = 1;
-    pub const HIGH_HIP: usize = 2;
-    pub const WAIST: usize = 3;
-    pub const UNDERBUST: usize = 4;
-    pub const BUST: usize = 5;
     pub const ARMPIT: usize = 6;
     pub const SCYE: usize = 7;
     pub const SHOULDER: usize = 8;

@@ -37,8 +37,14 @@ const ALONE: [f64; 2] = [0.4, 0.08];
 /// is 3.5 %, most of it not stature's).
 const HEADS: [f64; 2] = [0.5, 0.015];
 
-/// How far a slider may go: segments as a fraction, lengths in metres, the whole as the logarithm of its scale.
-const BOUNDS: [[f64; 2]; 3] = [[-0.45, 1.1], [-0.16, 0.16], [-0.35, 0.35]];
+/// How far a segment may grow or shrink, as a fraction of the base.
+const GIRTHS: [f64; 2] = [-0.45, 1.1];
+
+/// How far each length may be stretched either way (m), in the order of the sliders: about a third of it.
+const LENGTHS: [f64; 6] = [0.12, 0.12, 0.085, 0.075, 0.04, 0.18];
+
+/// How far the whole may be scaled either way, as a logarithm.
+const SCALE: f64 = 0.25;
 
 /// Sliders that follow the mean of two others where nothing else holds them.
 const FOLLOW: [(Slider, Slider, Slider); 6] = [
@@ -114,7 +120,7 @@ impl Model {
         let mut work = Work::new(self);
         let mut at: Vector = [0.0; PARAMETERS];
         if let Some((_, stature)) = given.iter().find(|g| g.0 == Reading::Stature) {
-            at[SLIDERS] = (f64::from(*stature) / self.drawn_stature).ln().clamp(BOUNDS[2][0], BOUNDS[2][1]);
+            at[SLIDERS] = (f64::from(*stature) / self.drawn_stature).ln().clamp(-SCALE, SCALE);
         }
         let mut squares = work.squares(&at, given);
         let mut steps = 0;
@@ -252,9 +258,10 @@ fn kept_together(at: &Vector, squares: &mut Squares) {
 }
 
 fn bounds(parameter: usize) -> [f64; 2] {
-    match Slider::ALL.get(parameter) {
-        Some(slider) => BOUNDS[usize::from(slider.is_length())],
-        None => BOUNDS[2],
+    match LENGTHS.get(parameter) {
+        Some(most) => [-most, *most],
+        None if parameter == SLIDERS => [-SCALE, SCALE],
+        None => GIRTHS,
     }
 }
 

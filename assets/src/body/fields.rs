@@ -23,11 +23,10 @@ const ABOVE_ANKLE: f32 = 1.6;
 /// Share of a thigh's growth by which the leg below moves outwards.
 const LEG_SHIFT: f32 = 0.35;
 
-/// The segments of trunk and legs from the head down; the first and the last only hold still.
+/// The segments of trunk and legs, numbered from the head (0) down to the feet; head and feet only hold still.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Trunk {
-    Head,
-    Neck,
+    Neck = 1,
     Shoulders,
     Chest,
     Underbust,
@@ -40,14 +39,12 @@ enum Trunk {
     Foot,
 }
 
-/// The segments of an arm; the first and the last only hold still.
+/// The segments of an arm, numbered from the trunk (0) to the hand (4); trunk and hand only hold still.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Arm {
-    Root,
-    Upper,
+    Upper = 1,
     Fore,
     Wrist,
-    Hand,
 }
 
 /// What the fields are made from.
@@ -127,18 +124,18 @@ impl<'a> Making<'a> {
                 self.lengthen(field, [self.height(Landmark::NaturalWaist), self.height(Landmark::Axilla)]);
             }
             S::NeckLength => self.lengthen_neck(field),
-            S::Shoulders => self.widen(field, &[(Trunk::Shoulders, 1.0)], 0.0),
+            S::Shoulders => self.widen(field, Trunk::Shoulders),
             S::Neck => self.swell_neck(field),
-            S::ChestBreadth => self.widen(field, &[(Trunk::Chest, 1.0)], 0.0),
+            S::ChestBreadth => self.widen(field, Trunk::Chest),
             S::ChestDepth => {
                 let bust = if self.base.sex == Sex::Female { 0.35 } else { 0.0 };
                 self.deepen(field, &[(Trunk::Chest, 1.0), (Trunk::Shoulders, 0.4)], Landmark::BustPoint, bust);
             }
             S::Underbust => self.swell(field, Trunk::Underbust, Landmark::Underbust, 0.0),
             S::Waist => self.swell(field, Trunk::Waist, Landmark::NaturalWaist, 0.15),
-            S::AbdomenBreadth => self.widen(field, &[(Trunk::Abdomen, 1.0)], 0.0),
+            S::AbdomenBreadth => self.widen(field, Trunk::Abdomen),
             S::AbdomenDepth => self.deepen(field, &[(Trunk::Abdomen, 1.0)], Landmark::Omphalion, 0.4),
-            S::HipBreadth => self.widen(field, &[(Trunk::Hip, 1.0)], 0.0),
+            S::HipBreadth => self.widen(field, Trunk::Hip),
             S::HipDepth => self.deepen(field, &[(Trunk::Hip, 1.0)], Landmark::Buttock, -0.15),
             S::Thigh => self.swell_leg(field, Trunk::Thigh, Landmark::Thigh, 0.0),
             S::Knee => self.swell_leg(field, Trunk::Knee, Landmark::Midpatella, 0.8),
@@ -175,10 +172,9 @@ impl<'a> Making<'a> {
     }
 
     /// Scales breadth about the body's middle.
-    fn widen(&self, field: &mut [Vec3], segments: &[(Trunk, f32)], centre: f32) {
+    fn widen(&self, field: &mut [Vec3], segment: Trunk) {
         for (v, d) in field.iter_mut().enumerate() {
-            let share: f32 = segments.iter().map(|&(s, by)| by * self.share(s, v)).sum();
-            d.x += share * (self.base.positions[v].x - centre);
+            d.x += self.share(segment, v) * self.base.positions[v].x;
         }
     }
 
@@ -194,7 +190,7 @@ impl<'a> Making<'a> {
     }
 
     fn swell(&self, field: &mut [Vec3], segment: Trunk, level: Landmark, front: f32) {
-        self.widen(field, &[(segment, 1.0)], 0.0);
+        self.widen(field, segment);
         self.deepen(field, &[(segment, 1.0)], level, front);
     }
 
@@ -321,13 +317,18 @@ fn reaches(cores: &[Vec<(u32, f32)>], ways: &[Vec<f32>]) -> Vec<f32> {
     let way = |i: usize, j: usize| {
         let (from, to) = if cores[i].len() > cores[j].len() { (j, i) } else { (i, j) };
         let least = cores[to].iter().map(|&(v, _)| ways[from][v as usize]).fold(f32::MAX, f32::min);
-        let back = cores[from].iter().map(|&(v, _)| ways[to][v as usize]).sum::<f32>() / cores[from].len().max(1) as f32;
+        let back =
+            cores[from].iter().map(|&(v, _)| ways[to][v as usize]).sum::<f32>() / cores[from].len().max(1) as f32;
         least.max(back)
     };
     (0..cores.len())
         .map(|i| {
-            let gaps: Vec<f32> =
-                [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter(|&j| j < cores.len()).map(|j| way(i, j)).collect();
+            let gaps: Vec<f32> = [i.checked_sub(1), Some(i + 1)]
+                .into_iter()
+                .flatten()
+                .filter(|&j| j < cores.len())
+                .map(|j| way(i, j))
+                .collect();
             REACH * gaps.iter().sum::<f32>() / gaps.len() as f32
         })
         .collect()
@@ -349,7 +350,7 @@ fn ring(base: &Base, at: Vec3, normal: Vec3, admits: impl Fn(u32) -> bool) -> Ve
     core
 }
 
-/// The cores of the trunk's chain, in the order of [`Trunk`].
+/// The cores of the trunk's chain: the head, then in the order of [`Trunk`].
 fn trunk_cores(base: &Base) -> Vec<Vec<(u32, f32)>> {
     let at = |l: Landmark| base.landmarks.mark(l).on(&base.positions);
     let region = |v: u32| base.regions[v as usize];
@@ -376,7 +377,7 @@ fn trunk_cores(base: &Base) -> Vec<Vec<(u32, f32)>> {
     ]
 }
 
-/// The cores of an arm's chain behind its root, in the order of [`Arm`].
+/// The cores of an arm's chain in the order of [`Arm`], then the hand.
 fn arm_cores(base: &Base) -> Vec<Vec<(u32, f32)>> {
     let arm = |v: u32| base.regions[v as usize] == Region::LeftArm;
     let joint = |j: Joint| base.skeleton.at(j);

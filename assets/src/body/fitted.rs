@@ -1,5 +1,8 @@
 //! Building a body to measure: the door to calibration.
 
+#[cfg(test)]
+mod tests;
+
 use std::sync::LazyLock;
 
 use glam::Vec3;
@@ -7,7 +10,7 @@ use glam::Vec3;
 use super::base::Base;
 use super::calibrate::{Found, Model};
 use super::landmarks::Landmark;
-use super::reading::{En, Readings, Reading, Vocabulary, Wanted};
+use super::reading::{En, Reading, Readings, Vocabulary, Wanted};
 use super::{Body, BodyError, Levels, Measures, Sex};
 use crate::mesh::{Mesh, vertex_normals};
 use crate::skeleton::Joint;
@@ -97,10 +100,10 @@ impl Body {
         let model = model(sex);
         model.fitted(&model.as_drawn()).body
     }
-    /// dev
+
+    /// What the tape reads on the body of a sex as it is drawn.
     pub fn drawn_readings(sex: Sex) -> Readings {
-        let model = model(sex);
-        model.fitted(&model.as_drawn()).readings
+        Readings(model(sex).as_drawn().readings)
     }
 }
 

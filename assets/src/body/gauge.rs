@@ -6,12 +6,12 @@
 
 use glam::{Vec2, Vec3};
 
+use super::Region;
 use super::base::Base;
 use super::landmarks::{Landmark, Mark};
 use super::people::Allowance;
 use super::reading::{READINGS, Reading};
 use super::tape::{hull_corners, perimeter_f64};
-use super::Region;
 use crate::skeleton::Joint;
 
 /// How far from its plane on the base body an edge may lie and still be cut on a calibrated one (m).
@@ -138,21 +138,28 @@ impl Gauge {
         let start = top.on(positions);
         let side = |p: Vec3| Vec2::new(p.z, p.y);
         let mut points: Vec<(Vec2, Option<u32>)> = vec![(side(start), None)];
-        let mut below = (f32::MIN, Vec3::ZERO, 0);
-        let mut above = (f32::MAX, Vec3::ZERO, 0);
+        let (mut below, mut above) = ((f32::MIN, 0), (f32::MAX, 0));
         for &v in &self.back {
             let p = positions[v as usize];
-            if p.y > level && p.y < start.y {
-                points.push((side(p), Some(v)));
-            }
             if p.y > level && p.y < above.0 {
-                above = (p.y, p, v);
+                above = (p.y, v);
             } else if p.y <= level && p.y > below.0 {
-                below = (p.y, p, v);
+                below = (p.y, v);
             }
         }
-        let end = below.1.lerp(above.1, (level - below.0) / (above.0 - below.0).max(f32::MIN_POSITIVE));
-        points.push((side(end), Some(below.2)));
+        let ends = [below.1, above.1];
+        let share = (level - below.0) / (above.0 - below.0).max(f32::MIN_POSITIVE);
+        let [low, high] = ends.map(|v| positions[v as usize]);
+        let end = side(low.lerp(high, share));
+        let chord = (end - side(start)) / (end.y - start.y);
+        for &v in &self.back {
+            let p = side(positions[v as usize]);
+            // The tape lies on what stands out behind the straight line.
+            if p.y > level && p.y < start.y && p.x < start.z + chord.x * (p.y - start.y) {
+                points.push((p, Some(v)));
+            }
+        }
+        points.push((end, None));
         let flat: Vec<Vec2> = points.iter().map(|p| p.0).collect();
         // The tape is the hull without the chord from its lower end to its upper: all else lies behind that chord.
         let corners = hull_corners(&flat);
@@ -169,13 +176,9 @@ impl Gauge {
             }
             let pull = Vec3::new(0.0, pull.y, pull.x);
             match points[i].1 {
-                None => gradient.extend(spread(top, pull)),
-                // The lower end keeps the landmark's height, and the depth of the vertex next to it.
-                Some(v) if i == flat.len() - 1 => {
-                    gradient.push((v, Vec3::new(0.0, 0.0, pull.z)));
-                    gradient.extend(spread(self.mark(landmark), Vec3::new(0.0, pull.y, 0.0)));
-                }
                 Some(v) => gradient.push((v, pull)),
+                None if i == 0 => gradient.extend(spread(top, pull)),
+                None => ride(positions, (ends, share), (Vec3::Y, self.mark(landmark)), pull, &mut gradient),
             }
         }
         ((perimeter_f64(&corners.iter().map(|&i| flat[i]).collect::<Vec<_>>()) - f64::from(chord)) as f32, gradient)
@@ -292,13 +295,18 @@ impl Cut {
     /// Adds what a pull on a slice's point does to the edge under it and to the plane's landmark.
     fn pull(&self, positions: &[Vec3], corner: &Corner, pull: Vec2, to: &mut Gradient) {
         let g = self.axes[0] * pull.x + self.axes[1] * pull.y;
-        let [a, b] = corner.ends.map(|v| positions[v as usize]);
-        let slope = g.dot(b - a) / self.normal.dot(b - a);
-        let on_edge = g - slope * self.normal;
-        to.push((corner.ends[0], on_edge * (1.0 - corner.share)));
-        to.push((corner.ends[1], on_edge * corner.share));
-        to.extend(spread(self.at, slope * self.normal));
+        ride(positions, (corner.ends, corner.share), (self.normal, self.at), g, to);
     }
+}
+
+/// Adds the gradient of a point that lies on an edge, at a share of it, and in a plane with a normal and a landmark.
+fn ride(positions: &[Vec3], (ends, share): ([u32; 2], f32), (normal, at): (Vec3, Mark), pull: Vec3, to: &mut Gradient) {
+    let [a, b] = ends.map(|v| positions[v as usize]);
+    let slope = pull.dot(b - a) / normal.dot(b - a);
+    let on_edge = pull - slope * normal;
+    to.push((ends[0], on_edge * (1.0 - share)));
+    to.push((ends[1], on_edge * share));
+    to.extend(spread(at, slope * normal));
 }
 
 /// Whether a vertex belongs to what the tape goes round.

@@ -29,9 +29,9 @@ use crate::mesh::{Mesh, SkinWeights};
 use crate::skeleton::Skeleton;
 use cage::{Cage, Shape};
 pub use fitted::{Fitted, TOLERANCE};
+use landmarks::Landmarks;
 pub use reading::{Ansur, En, Readings, Vocabulary, Wanted};
 use subdivide::Quads;
-use landmarks::Landmarks;
 use table::Table;
 
 /// Which drawing a body is stretched from.
@@ -200,7 +200,6 @@ impl base::Base {
 
 /// A sex's drawing with the connectivity of its surface, at each level of subdivision.
 struct Sweep {
-    sex: Sex,
     table: &'static Table,
     levels: [Quads; 3],
     triangles: Vec<[u32; 3]>,
@@ -216,7 +215,7 @@ impl Sweep {
         let fine = middle.refined();
         let triangles = fine.triangles();
         let levels = [coarse, middle, fine];
-        let mut sweep = Self { sex, table, levels, triangles, regions: Vec::new() };
+        let mut sweep = Self { table, levels, triangles, regions: Vec::new() };
         let positions = sweep.surface(&cage);
         let parts = sweep.subdivided(&skin::part_shares(&cage));
         sweep.regions = parts.iter().zip(&positions).map(|(&part, &p)| skin::region(part, p)).collect();

@@ -139,9 +139,10 @@ impl Morphs {
 
     /// Where a vertex lies on a body.
     pub(super) fn place(&self, vertex: usize, setting: &Setting) -> Vec3 {
-        let moved = self.moves(vertex).iter().fold(self.base.positions[vertex], |p, &(k, d)| {
-            p + d * setting.sliders[k as usize]
-        });
+        let moved = self
+            .moves(vertex)
+            .iter()
+            .fold(self.base.positions[vertex], |p, &(k, d)| p + d * setting.sliders[k as usize]);
         moved * setting.scale
     }
 

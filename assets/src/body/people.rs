@@ -108,8 +108,6 @@ pub(super) struct People {
     pub mean: [f64; READINGS],
     /// Lower Cholesky factor of their covariance (m).
     pub factor: [[f64; READINGS]; READINGS],
-    /// What posing adds to the arm.
-    pub allowance: Allowance,
 }
 
 /// Posing's part in the arm's lengths.
@@ -157,7 +155,7 @@ impl People {
             }
             spread[i][i] += stray[i] * stray[i];
         }
-        Self { mean, factor: cholesky(&spread), allowance: allowance(sex) }
+        Self { mean, factor: cholesky(&spread) }
     }
 }
 

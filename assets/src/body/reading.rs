@@ -42,39 +42,6 @@ pub(super) enum Reading {
 pub(super) const READINGS: usize = 27;
 
 impl Reading {
-    pub(super) const ALL: [Self; READINGS] = {
-        use Reading::*;
-        [
-            Stature,
-            CervicaleHeight,
-            OmphalionHeight,
-            CrotchHeight,
-            KneeHeight,
-            NeckGirth,
-            NeckBaseGirth,
-            ChestGirth,
-            UnderbustGirth,
-            WaistGirth,
-            OmphalionGirth,
-            HipGirth,
-            ThighGirth,
-            CalfGirth,
-            UpperArmGirth,
-            WristGirth,
-            ShoulderBreadth,
-            ChestBreadth,
-            ChestDepth,
-            OmphalionBreadth,
-            OmphalionDepth,
-            HipBreadth,
-            HipDepth,
-            ArmLength,
-            SleeveLength,
-            BackLength,
-            WaistBackLength,
-        ]
-    };
-
     pub(super) const fn index(self) -> usize {
         self as usize
     }
@@ -192,12 +159,14 @@ pub enum Ansur {
 }
 
 /// A vocabulary of measures. Sealed: [`En`] and [`Ansur`].
-pub trait Vocabulary: Copy + sealed::Read + 'static {
+pub trait Vocabulary: Copy + Read + 'static {
     /// Every measure that it has.
     const ALL: &'static [Self];
     /// What a person would call the measure, without its unit.
     fn name(self) -> &'static str;
 }
+
+use sealed::Read;
 
 mod sealed {
     /// Which reading of the mesh a measure is.
@@ -207,12 +176,10 @@ mod sealed {
     }
 }
 
-pub(super) use sealed::Read;
-
 /// Writes a vocabulary's table: measure, reading, name.
 macro_rules! vocabulary {
     ($kind:ident: $($measure:ident $reading:ident $name:literal),* $(,)?) => {
-        impl sealed::Read for $kind {
+        impl Read for $kind {
             #[expect(private_interfaces, reason = "the trait is sealed: nobody outside calls it")]
             fn reading(self) -> Reading {
                 match self { $(Self::$measure => Reading::$reading),* }

@@ -14,6 +14,7 @@ use toile_engine::cloth::Quality;
 use crate::exit::AppError;
 
 mod bake;
+mod body;
 mod pareto;
 mod run;
 mod skirt;
@@ -21,6 +22,7 @@ mod torture;
 mod validate;
 
 pub use bake::BakeArgs;
+pub use body::BodyArgs;
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
 pub use skirt::SkirtArgs;
@@ -42,6 +44,8 @@ pub enum Command {
     Doctor(DoctorArgs),
     /// `toile bake`.
     Bake(BakeArgs),
+    /// `toile bench body`.
+    BenchBody(BodyArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
@@ -248,7 +252,7 @@ fn bench() -> clap::Command {
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([skinning, skirt::grammar()])
+        .subcommands([skinning, skirt::grammar(), body::grammar()])
         .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
 
@@ -338,6 +342,7 @@ fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
             let verts = usize::try_from(verts).map_err(AppError::internal)?;
             Ok(Command::BenchSkinning(SkinningArgs { verts, json: matches.get_flag("json") }))
         }
+        Some(("body", matches)) => Ok(Command::BenchBody(body::args(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),
         _ => Err(AppError::internal("a benchmark without a name was let through")),
     }

@@ -6,6 +6,7 @@
 
 pub mod bake;
 pub mod bench;
+pub mod body;
 pub mod cli;
 pub mod completions;
 pub mod doctor;
@@ -66,6 +67,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Run(args) => run::run(args),
         Command::Doctor(args) => doctor::run(args),
         Command::Bake(args) => bake::run(args),
+        Command::BenchBody(args) => body::bench(args),
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
         Command::Torture(args) => torture::run(args),

@@ -5,8 +5,10 @@
 //! Budget: none; a study, not a frame.
 //! Thread: the caller's.
 
+mod study;
 mod survey;
 mod table;
 
+pub use study::{Errors, GIVEN, Spread, Study, StudyError, TOO_ROUGH, study};
 pub use survey::{Survey, SurveyError};
 pub use table::table;

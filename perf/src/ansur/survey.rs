@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use toile_assets::body::Sex;
+
 /// Why the survey cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SurveyError {
@@ -59,6 +61,20 @@ impl Survey {
     /// Number of people.
     pub fn people(&self) -> usize {
         self.rows.len()
+    }
+
+    /// Whose measures these are, by the column `Gender` of the first person.
+    ///
+    /// # Errors
+    /// [`SurveyError::NoColumn`] where that column is missing or says something else.
+    pub fn sex(&self) -> Result<Sex, SurveyError> {
+        let place = self.names.iter().position(|n| n == "Gender");
+        let word = place.and_then(|c| self.rows.first()?.get(c)).map(String::as_str);
+        match word {
+            Some("Female") => Ok(Sex::Female),
+            Some("Male") => Ok(Sex::Male),
+            _ => Err(SurveyError::NoColumn { file: self.file.display().to_string(), column: "Gender".into() }),
+        }
     }
 
     /// One measure of everybody (mm).
