@@ -5,9 +5,13 @@
 //! Thread: the loading thread.
 
 mod cage;
+pub mod draw;
+mod form;
+pub mod lattice;
 mod skin;
 mod subdivide;
 mod table;
+mod wrap;
 pub mod tape;
 #[cfg(test)]
 mod tests;
