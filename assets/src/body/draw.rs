@@ -7,6 +7,7 @@ use super::form::{Drawing, Form};
 use super::lattice::{Chart, Lattice};
 use super::subdivide::Quads;
 use super::wrap::Wrapping;
+use crate::skeleton::Skeleton;
 
 /// A base body as it leaves the drawing board.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +22,8 @@ pub struct Drawn {
     pub regions: Vec<Region>,
     /// Mirror image of each vertex `[vertices]`.
     pub twins: Vec<u32>,
+    /// Joint centres.
+    pub skeleton: Skeleton,
 }
 
 /// Rounds of evening out on the cage and on the surface.
@@ -52,7 +55,8 @@ pub fn draw(text: &str) -> Result<Drawn, toml::de::Error> {
     let charts = lattice.charts.iter().flat_map(|&c| [c; 4]).collect();
     let regions = regions(&coarse, &lattice, &positions);
     positions.iter_mut().for_each(|p| *p *= 1e-3);
-    Ok(Drawn { positions, quads: fine.faces().to_vec(), charts, regions, twins })
+    let skeleton = form.skeleton();
+    Ok(Drawn { positions, quads: fine.faces().to_vec(), charts, regions, twins, skeleton })
 }
 
 /// The part of the body of each vertex: by majority of what the cage around it is.

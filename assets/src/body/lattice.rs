@@ -53,7 +53,26 @@ pub enum Chart {
     Sole(bool),
 }
 
+/// Number of pieces of the atlas.
+pub const CHARTS: usize = 16;
+
 impl Chart {
+    /// Its number, below [`CHARTS`].
+    pub fn number(self) -> u8 {
+        match self {
+            Self::Front => 0,
+            Self::Back => 1,
+            Self::Face => 2,
+            Self::Nape => 3,
+            Self::Ear(right) => 4 + u8::from(right),
+            Self::ArmUpper(right) => 6 + u8::from(right),
+            Self::ArmLower(right) => 8 + u8::from(right),
+            Self::LegFront(right) => 10 + u8::from(right),
+            Self::LegBack(right) => 12 + u8::from(right),
+            Self::Sole(right) => 14 + u8::from(right),
+        }
+    }
+
     /// The same piece of the other side; each variant's flag says whether it is the right one.
     fn mirror(self) -> Self {
         match self {

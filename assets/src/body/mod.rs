@@ -4,15 +4,20 @@
 //! Budget: at load only, under 60 ms a body; the mesh has the same vertices and triangles whatever the size.
 //! Thread: the loading thread.
 
+pub mod base;
 mod cage;
 pub mod draw;
 mod form;
+pub mod landmarks;
 pub mod lattice;
+mod shares;
+pub mod stored;
 mod skin;
 mod subdivide;
 mod table;
 mod wrap;
 pub mod tape;
+pub mod unwrap;
 #[cfg(test)]
 mod tests;
 

@@ -120,8 +120,8 @@ pub(super) struct Joints {
     pub toe: [f32; 3],
 }
 
-static FEMALE: LazyLock<Table> = LazyLock::new(|| parse(include_str!("../../data/body/female.toml")));
-static MALE: LazyLock<Table> = LazyLock::new(|| parse(include_str!("../../data/body/male.toml")));
+static FEMALE: LazyLock<Table> = LazyLock::new(|| parse(include_str!("../../data/body/sweep-female.toml")));
+static MALE: LazyLock<Table> = LazyLock::new(|| parse(include_str!("../../data/body/sweep-male.toml")));
 
 /// The tables are part of the program: a test parses both, so a failure here is a build that never passed its tests.
 fn parse(text: &str) -> Table {

@@ -15,20 +15,22 @@ use toile_view::{
     trace::{Quality, Stage},
 };
 
-/// A view: name, target as shares of the stature (x, y, z), height of what is seen (share), turns (degrees), tilt.
-type View = (&'static str, [f32; 3], f32, &'static [f32], f32);
+/// A view: name, target as shares of the stature (x, y, z), height of what is seen (share), turns (degrees), height of the
+/// eye as a share of its distance, field of view (rad).
+type View = (&'static str, [f32; 3], f32, &'static [f32], f32, f32);
 
-const VIEWS: [View; 10] = [
-    ("whole", [0.0, 0.5, 0.0], 1.12, &[0.0, 40.0, 90.0, 140.0, 180.0], 0.1),
-    ("face", [0.0, 0.925, 0.02], 0.19, &[0.0, 40.0, 90.0, 150.0], 0.05),
-    ("hand", [0.335, 0.51, 0.04], 0.17, &[10.0, 80.0, 180.0, 265.0], 0.1),
-    ("foot", [0.06, 0.04, 0.03], 0.16, &[0.0, 45.0, 90.0, 180.0, 270.0], 0.9),
-    ("shoulder", [0.09, 0.76, 0.0], 0.24, &[0.0, 45.0, 180.0, 225.0], 0.1),
-    ("armpit", [0.1, 0.75, 0.0], 0.2, &[0.0, 30.0, 180.0], -0.9),
-    ("hips", [0.0, 0.52, 0.0], 0.3, &[0.0, 45.0, 90.0, 135.0, 180.0], 0.0),
-    ("chest", [0.0, 0.7, 0.0], 0.36, &[0.0, 45.0, 90.0, 135.0, 180.0], 0.05),
-    ("knee", [0.055, 0.27, 0.0], 0.3, &[0.0, 60.0, 90.0, 180.0, 270.0], 0.0),
-    ("elbow", [0.22, 0.67, 0.0], 0.24, &[0.0, 90.0, 180.0], 0.3),
+const VIEWS: [View; 11] = [
+    ("whole", [0.0, 0.5, 0.0], 1.12, &[0.0, 40.0, 90.0, 140.0, 180.0], 0.1, 0.42),
+    ("face", [0.0, 0.925, 0.02], 0.19, &[0.0, 40.0, 90.0, 150.0], 0.05, 0.42),
+    ("hand", [0.35, 0.555, 0.02], 0.19, &[0.0, 45.0, 90.0, 180.0, 265.0], 0.1, 0.8),
+    ("foot", [0.06, 0.04, 0.02], 0.17, &[0.0, 45.0, 90.0, 150.0, 180.0], 0.35, 0.6),
+    ("shoulder", [0.09, 0.76, 0.0], 0.24, &[0.0, 45.0, 180.0, 225.0], 0.1, 0.42),
+    ("armpit", [0.1, 0.75, 0.0], 0.2, &[0.0, 30.0, 180.0], -0.9, 0.42),
+    ("hips", [0.0, 0.52, 0.0], 0.3, &[0.0, 45.0, 90.0, 135.0, 180.0], 0.0, 0.42),
+    ("crotch", [0.0, 0.48, 0.0], 0.2, &[0.0, 45.0, 135.0, 180.0], -0.45, 0.6),
+    ("chest", [0.0, 0.7, 0.0], 0.36, &[0.0, 45.0, 90.0, 135.0, 180.0], 0.05, 0.42),
+    ("knee", [0.055, 0.25, 0.0], 0.36, &[0.0, 60.0, 90.0, 180.0, 225.0], 0.0, 0.42),
+    ("elbow", [0.22, 0.67, 0.0], 0.24, &[0.0, 90.0, 180.0], 0.3, 0.42),
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -55,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn picture(drawn: &Drawn, &(_, target, tall, turns, tilt): &View, checks: bool) -> Image {
+fn picture(drawn: &Drawn, &(_, target, tall, turns, tilt, fov_y): &View, checks: bool) -> Image {
     let mut triangles: Vec<[u32; 3]> = drawn.quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     let mut positions = drawn.positions.clone();
     let mut normals = vec![Vec3::ZERO; positions.len()];
@@ -75,17 +77,17 @@ fn picture(drawn: &Drawn, &(_, target, tall, turns, tilt): &View, checks: bool) 
     let surfaces = [surface];
     let stage = Stage::build(Scene { surfaces: &surfaces, floor: tilt >= 0.0 });
     let stature = positions.iter().map(|p| p.y).fold(0.0, f32::max);
-    let size = if tall > 1.0 { Size::new(420, 900) } else { Size::new(560, 560) };
+    let size = if tall > 1.0 { Size::new(560, 900) } else { Size::new(560, 560) };
     let images: Vec<Image> = turns
         .iter()
         .map(|turn| {
-            let distance = tall * stature / 0.42;
+            let distance = 0.5 * tall * stature / (0.5 * fov_y).tan();
             let camera = Camera {
                 target: Vec3::from(target) * stature,
                 yaw: turn.to_radians(),
                 height: distance * tilt,
                 distance,
-                fov_y: 0.42,
+                fov_y,
             };
             stage.render_on(2, &camera, size, Quality::Motion).0
         })

@@ -5,6 +5,7 @@ use serde::Deserialize;
 
 use super::parts::{smooth_max, smooth_min};
 use super::{Frame, Group, GroupRow};
+use crate::skeleton::{JOINTS, Joint, Skeleton};
 
 /// One sex's drawing; lengths in millimetres, x left, y up, z forwards.
 #[derive(Debug, Deserialize)]
@@ -225,6 +226,32 @@ impl Form {
     /// The balls of a toe, 0 the big one; in the foot's frame.
     pub(crate) fn toe(&self, k: usize) -> Vec<(Vec3, f32)> {
         self.foot.digit(k)
+    }
+
+    /// The joints (m).
+    pub(crate) fn skeleton(&self) -> Skeleton {
+        use Joint::*;
+        let j = &self.drawing.joints;
+        let mut rest = [Vec3::ZERO; JOINTS];
+        let mut set = |joint: Joint, p: Vec3| {
+            rest[joint.index()] = p * 1e-3;
+            if joint.mirror() != joint {
+                rest[joint.mirror().index()] = Vec3::new(-p.x, p.y, p.z) * 1e-3;
+            }
+        };
+        for (joint, p) in [(Pelvis, j.pelvis), (Spine, j.spine), (Chest, j.chest), (Neck, j.neck), (Head, j.head)] {
+            set(joint, p.into());
+        }
+        for (joint, p) in [(LeftClavicle, j.clavicle), (LeftShoulder, j.shoulder), (LeftHip, j.hip)] {
+            set(joint, p.into());
+        }
+        for (joint, p) in [(LeftKnee, j.knee), (LeftAnkle, j.ankle), (LeftToe, j.toe)] {
+            set(joint, p.into());
+        }
+        set(LeftElbow, self.arm_frame.out(self.elbow));
+        set(LeftWrist, self.hand_frame.origin);
+        set(LeftHand, self.hand_frame.out(Vec3::X * self.drawing.arm_line.hand));
+        Skeleton { rest }
     }
 
     /// Direction of steepest growth, unit length, and its steepness.
