@@ -2,6 +2,9 @@
 //!
 //! The surface is drawn once (see [`super::draw`]) and stored; here it is read, skinned and given its landmarks.
 
+#[cfg(test)]
+mod tests;
+
 use std::sync::LazyLock;
 
 use glam::{Vec2, Vec3};

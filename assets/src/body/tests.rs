@@ -356,7 +356,7 @@ fn surface_does_not_cross_itself() {
 }
 
 /// Edges that pierce a triangle that they share no vertex with.
-fn crossings(mesh: &Mesh) -> usize {
+pub(super) fn crossings(mesh: &Mesh) -> usize {
     let at = |v: u32| mesh.positions[v as usize];
     let floor = |t: &[u32; 3]| t.iter().map(|&v| at(v).y).fold(f32::MAX, f32::min);
     let mut by_height = mesh.triangles.clone();
