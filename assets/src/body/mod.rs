@@ -1,38 +1,39 @@
-//! The parametric body: a mannequin of our own, swept from drawn cross-sections and fitted to five measures.
+//! The parametric body: two drawn bodies, and morphs that fit them to whatever measures are given.
 //!
 //! Reads: the drawings in `data/body/`, the measures wanted. Writes: one immutable [`Body`].
-//! Budget: at load only, under 60 ms a body; the mesh has the same vertices and triangles whatever the size.
+//! Budget: at load only, under 20 ms a body; the mesh has the same vertices and triangles whatever the size.
 //! Thread: the loading thread.
 
 pub mod base;
-mod cage;
 mod calibrate;
+pub mod draw;
 mod fields;
 mod fitted;
+mod form;
 mod gauge;
 pub mod landmarks;
+pub mod lattice;
 mod morph;
 mod people;
 mod reading;
 mod segments;
+mod shares;
 mod skin;
 pub mod sound;
+pub mod stored;
 mod subdivide;
-mod table;
 pub mod tape;
 #[cfg(test)]
 mod tests;
+pub mod unwrap;
+mod wrap;
 
 use glam::Vec3;
 
 use crate::mesh::{Mesh, SkinWeights};
 use crate::skeleton::Skeleton;
-use cage::{Cage, Shape};
 pub use fitted::{Fitted, TOLERANCE};
-use landmarks::Landmarks;
 pub use reading::{Ansur, En, Readings, Vocabulary, Wanted};
-use subdivide::Quads;
-use table::Table;
 
 /// Which drawing a body is stretched from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -175,61 +176,4 @@ pub struct Body {
     pub levels: Levels,
     /// As measured on this mesh by the tape.
     pub measures: Measures,
-}
-
-/// Rounds of interpolation: enough to pass through the points within half a millimetre.
-const INTERPOLATION: usize = 16;
-
-impl base::Base {
-    /// The mean body of a sex.
-    pub fn new(sex: Sex) -> Self {
-        let sweep = Sweep::new(sex);
-        let shape = Shape::drawn();
-        let cage = Cage::new(sweep.table, &shape);
-        let positions = sweep.surface(&cage);
-        let skeleton = shape.skeleton(sweep.table);
-        let shares = [skin::left_shares(&cage), skin::right_shares(&cage)].map(|s| sweep.subdivided(&s));
-        let skinning = skin::Skinning::new(&skeleton, sweep.table.stature * 1e-3);
-        let sides = shares[0].iter().zip(&shares[1]);
-        let weights = positions.iter().zip(sides).map(|(&p, (&l, &r))| skinning.weights(p, l, r)).collect();
-        let drawn = Landmarks::drawn(sex);
-        let landmarks = Landmarks::place(&positions, &sweep.triangles, &sweep.regions, &drawn);
-        Self { sex, positions, triangles: sweep.triangles, regions: sweep.regions, skeleton, weights, landmarks }
-    }
-}
-
-/// A sex's drawing with the connectivity of its surface, at each level of subdivision.
-struct Sweep {
-    table: &'static Table,
-    levels: [Quads; 3],
-    triangles: Vec<[u32; 3]>,
-    regions: Vec<Region>,
-}
-
-impl Sweep {
-    fn new(sex: Sex) -> Self {
-        let table = Table::of(sex);
-        let cage = Cage::new(table, &Shape::drawn());
-        let coarse = Quads::new(cage.points.len(), cage.faces.clone());
-        let middle = coarse.refined();
-        let fine = middle.refined();
-        let triangles = fine.triangles();
-        let levels = [coarse, middle, fine];
-        let mut sweep = Self { table, levels, triangles, regions: Vec::new() };
-        let positions = sweep.surface(&cage);
-        let parts = sweep.subdivided(&skin::part_shares(&cage));
-        sweep.regions = parts.iter().zip(&positions).map(|(&part, &p)| skin::region(part, p)).collect();
-        sweep
-    }
-
-    fn subdivided(&self, values: &[Vec3]) -> Vec<Vec3> {
-        self.levels[2].limit(&self.levels[1].refine(&self.levels[0].refine(values)))
-    }
-
-    fn surface(&self, cage: &Cage) -> Vec<Vec3> {
-        let mut positions = self.subdivided(&self.levels[0].interpolate(&cage.points, INTERPOLATION));
-        // The soles are flat on the floor.
-        positions.iter_mut().for_each(|p| p.y = p.y.max(0.0));
-        positions
-    }
 }

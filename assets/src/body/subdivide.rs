@@ -64,6 +64,30 @@ impl Quads {
         Self::new(self.valence.len() + self.edges.len() + self.faces.len(), faces)
     }
 
+    /// Each refined vertex's mirror image, from the mirror images of vertices and faces.
+    pub(super) fn refined_twins(&self, twins: &[u32], faces: impl Fn(u32) -> u32) -> Vec<u32> {
+        let (first_edge, first_face) = (self.valence.len() as u32, (self.valence.len() + self.edges.len()) as u32);
+        let edge = |e: &Edge| {
+            let [a, b] = e.ends.map(|v| twins[v as usize]);
+            let ends = [a.min(b), a.max(b)];
+            first_edge + self.edges.binary_search_by(|o| o.ends.cmp(&ends)).expect("a mirrored edge") as u32
+        };
+        let own = twins.iter().copied();
+        own.chain(self.edges.iter().map(edge))
+            .chain((0..self.faces.len() as u32).map(|f| first_face + faces(f)))
+            .collect()
+    }
+
+    /// The faces.
+    pub(super) fn faces(&self) -> &[[u32; 4]] {
+        &self.faces
+    }
+
+    /// The two ends of each edge.
+    pub(super) fn edges(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.edges.iter().map(|e| e.ends)
+    }
+
     /// Values on the refined mesh's vertices, from values on this one's.
     pub(super) fn refine(&self, values: &[Vec3]) -> Vec<Vec3> {
         let at = |i: u32| values[i as usize];
