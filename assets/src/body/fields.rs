@@ -11,8 +11,8 @@ use super::{Region, Sex};
 use crate::skeleton::Joint;
 
 /// How far a segment reaches, as the Gaussian's sigma over the mean way to its neighbours' cores: the share is a half
-/// midway to the neighbour, and 4 % at its core.
-const REACH: f32 = 0.4;
+/// midway to the neighbour, and 12 % at its core.
+const REACH: f32 = 0.5;
 
 /// Way along an arm over which it turns from following the trunk's surface to being carried as a whole (m).
 const CARRIED: f32 = 0.10;

@@ -75,10 +75,11 @@ fn table(study: &Study, paint: Paint) -> String {
         study.base_roughness, rough.median, rough.p95, rough.max, bent.median, bent.max
     );
     let wrong = format!(
-        "{} too rough (over {:.2}), {} cross themselves, {} not to be met together: {:.1} % look wrong",
+        "{} too rough (over {:.2}), {} cross themselves more than the base ({} edges), {} not to be met together: {:.1} % look wrong",
         study.rough,
         ansur::TOO_ROUGH,
         study.crossing,
+        study.base_crossings,
         study.unreachable,
         study.wrong * 100.0
     );

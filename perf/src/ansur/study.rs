@@ -113,7 +113,9 @@ pub struct Study {
     pub unevenness: Spread,
     /// Bodies that are more than [`TOO_ROUGH`] times as rough as the base.
     pub rough: usize,
-    /// Bodies whose surface crosses itself.
+    /// Edges of the base body that pierce another face.
+    pub base_crossings: usize,
+    /// Bodies that cross themselves in more places than the base body does.
     pub crossing: usize,
     /// Share of bodies that look wrong by either.
     pub wrong: f64,
@@ -204,7 +206,8 @@ fn looks(sex: Sex, base: &Body, of: usize, measures: Vec<Errors>, built: &[Built
     let base_roughness = sound::roughness(&base.mesh);
     let rough = |b: &Built| sound::roughness(&b.fitted.body.mesh) / base_roughness;
     let roughness: Vec<f32> = built.iter().map(rough).collect();
-    let crossed: Vec<bool> = built.iter().map(|b| sound::crossings(&b.fitted.body.mesh) > 0).collect();
+    let base_crossings = sound::crossings(&base.mesh);
+    let crossed: Vec<bool> = built.iter().map(|b| sound::crossings(&b.fitted.body.mesh) > base_crossings).collect();
     let wrong = roughness.iter().zip(&crossed).filter(|(r, c)| **r > TOO_ROUGH || **c).count();
     let of_all = |f: &dyn Fn(&Built) -> f64| spread(built.iter().map(f).collect());
     Study {
@@ -219,6 +222,7 @@ fn looks(sex: Sex, base: &Body, of: usize, measures: Vec<Errors>, built: &[Built
         roughness: spread(roughness.iter().map(|&r| f64::from(r)).collect()),
         unevenness: of_all(&|b| f64::from(sound::unevenness(&b.fitted.body.mesh, &base.mesh))),
         rough: roughness.iter().filter(|r| **r > TOO_ROUGH).count(),
+        base_crossings,
         crossing: crossed.iter().filter(|c| **c).count(),
         wrong: wrong as f64 / built.len().max(1) as f64,
     }

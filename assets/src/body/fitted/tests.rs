@@ -160,13 +160,12 @@ fn sides_are_mirror_images_to_the_bit() {
 #[test]
 fn soles_stay_on_the_floor() {
     for sex in SEXES {
-        let soles: Vec<usize> = {
-            let drawn = &model(sex).morphs.base.positions;
-            (0..drawn.len()).filter(|&v| drawn[v].y < 1e-4).collect()
-        };
+        let drawn = &model(sex).morphs.base.positions;
+        let soles: Vec<usize> = (0..drawn.len()).filter(|&v| drawn[v].y < 2e-3).collect();
         let body = somebody(sex, &mut Dice(4)).body;
-        assert!(soles.len() > 8 && body.mesh.positions.iter().all(|p| p.y >= 0.0));
-        assert!(soles.iter().all(|&v| body.mesh.positions[v].y < 2e-4));
+        let lowest = body.mesh.positions.iter().map(|p| p.y).fold(f32::MAX, f32::min);
+        assert!(soles.len() > 8 && lowest.abs() < 1e-3, "{sex:?}: {} vertices, {lowest} m", soles.len());
+        assert!(soles.iter().all(|&v| (body.mesh.positions[v].y - drawn[v].y).abs() < 1e-3));
     }
 }
 
@@ -180,7 +179,7 @@ fn morphed_bodies_stay_smooth_and_whole() {
             let ratio = sound::roughness(&body.mesh) / sound::roughness(&drawn.mesh);
             assert!((0.8..1.10).contains(&ratio), "{sex:?}: roughness {ratio}");
             assert!(sound::unevenness(&body.mesh, &drawn.mesh) < 0.05);
-            assert_eq!(sound::crossings(&body.mesh), 0);
+            assert_eq!(sound::crossings(&body.mesh), 0, "{sex:?}");
         }
     }
 }
