@@ -11,15 +11,15 @@ mod form;
 pub mod landmarks;
 pub mod lattice;
 mod shares;
-pub mod stored;
 mod skin;
+pub mod stored;
 mod subdivide;
 mod table;
-mod wrap;
 pub mod tape;
-pub mod unwrap;
 #[cfg(test)]
 mod tests;
+pub mod unwrap;
+mod wrap;
 
 use glam::Vec3;
 

@@ -73,7 +73,9 @@ impl Quads {
             first_edge + self.edges.binary_search_by(|o| o.ends.cmp(&ends)).expect("a mirrored edge") as u32
         };
         let own = twins.iter().copied();
-        own.chain(self.edges.iter().map(edge)).chain((0..self.faces.len() as u32).map(|f| first_face + faces(f))).collect()
+        own.chain(self.edges.iter().map(edge))
+            .chain((0..self.faces.len() as u32).map(|f| first_face + faces(f)))
+            .collect()
     }
 
     /// The faces.

@@ -14,20 +14,28 @@ use super::lattice::CHARTS;
 const STEPS: usize = 240;
 /// Rounds of the conjugate gradients within a step.
 const INNER: usize = 60;
+/// Rounds in which overlapping triangles are made smaller, and by how much a round.
+const TIGHTER: usize = 12;
+const SMALLER: f32 = 0.85;
+/// Size of the squares in which a chart's overlaps are looked for (m).
+const SQUARE: f32 = 6e-4;
 /// Gap between charts, as a share of the atlas's side.
 const GAP: f32 = 0.006;
 
 /// Texture points and the point of each face's corners, for both bodies together.
 pub fn unwrap(bodies: &[Drawn; 2]) -> (Vec<Vec2>, Vec<[u32; 4]>) {
-    let mean: Vec<Vec3> =
-        bodies[0].positions.iter().zip(&bodies[1].positions).map(|(a, b)| (*a + *b) * 0.5).collect();
+    let mean: Vec<Vec3> = bodies[0].positions.iter().zip(&bodies[1].positions).map(|(a, b)| (*a + *b) * 0.5).collect();
     let drawn = &bodies[0];
     let mut sheets: Vec<Sheet> = Vec::with_capacity(CHARTS);
     for chart in 0..CHARTS as u8 {
         let faces: Vec<usize> = (0..drawn.quads.len()).filter(|&f| drawn.charts[f].number() == chart).collect();
         let mirrored = chart >= 4 && chart % 2 == 1;
         let sheet = Sheet::new(&drawn.quads, faces);
-        sheets.push(if mirrored { sheet.like(&sheets[usize::from(chart) - 1], &drawn.twins) } else { sheet.flattened(&mean) });
+        sheets.push(if mirrored {
+            sheet.like(&sheets[usize::from(chart) - 1], &drawn.twins)
+        } else {
+            sheet.flattened(&mean)
+        });
     }
     pack(&mut sheets);
     let mut uvs = Vec::new();
@@ -71,8 +79,17 @@ impl Sheet {
     fn flattened(mut self, positions: &[Vec3]) -> Self {
         let rest: Vec<Vec3> = self.vertices.iter().map(|&v| positions[v as usize]).collect();
         let triangles: Vec<[u32; 3]> = self.quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-        let flat = Flattening::new(&rest, &triangles);
+        let mut flat = Flattening::new(&rest, &triangles);
         self.points = flat.run(flat.circle(&rest, &self.rim()));
+        for _ in 0..TIGHTER {
+            // Toes laid flat are broader than the gaps between them: where the sheet covers itself they get less room.
+            let over = overlapping(&self.points, &triangles);
+            if over.is_empty() {
+                break;
+            }
+            flat.tighten(&over);
+            self.points = flat.run(std::mem::take(&mut self.points));
+        }
         let turn = upright(&self.points, &rest);
         self.points.iter_mut().for_each(|p| *p = turn * *p);
         self
@@ -84,7 +101,7 @@ impl Sheet {
         let sides: std::collections::BTreeSet<(u32, u32)> =
             self.quads.iter().flat_map(|q| (0..4).map(|k| (q[k], q[(k + 1) % 4]))).collect();
         for &(a, b) in sides.iter().filter(|&&(a, b)| !sides.contains(&(b, a))) {
-            assert!(next.insert(a, b).is_none(), "a chart's border touches itself");
+            assert!(next.insert(a, b).is_none(), "a chart's border touches itself at {}", self.vertices[a as usize]);
         }
         let first = *next.keys().next().expect("a chart has a border");
         let mut rim = vec![first];
@@ -94,6 +111,31 @@ impl Sheet {
         assert_eq!(rim.len(), next.len(), "a chart is a disc");
         rim
     }
+}
+
+/// Triangles that cover the middle of a square that another one covers, too.
+fn overlapping(points: &[Vec2], triangles: &[[u32; 3]]) -> Vec<usize> {
+    let low = points.iter().copied().fold(Vec2::INFINITY, Vec2::min);
+    let size = (points.iter().copied().fold(Vec2::NEG_INFINITY, Vec2::max) - low) / SQUARE;
+    let columns = size.x as usize + 2;
+    let mut taken = vec![u32::MAX; columns * (size.y as usize + 2)];
+    let mut over = std::collections::BTreeSet::new();
+    for (t, corners) in triangles.iter().enumerate() {
+        let [a, b, c] = corners.map(|v| (points[v as usize] - low) / SQUARE);
+        let (least, most) = (a.min(b).min(c), a.max(b).max(c));
+        for y in least.y as usize..=most.y as usize {
+            for x in least.x as usize..=most.x as usize {
+                let p = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+                if [(a, b), (b, c), (c, a)].iter().all(|(u, v)| (*v - *u).perp_dot(p - *u) > 1e-3) {
+                    let first = std::mem::replace(&mut taken[y * columns + x], t as u32);
+                    if first != u32::MAX {
+                        over.extend([first as usize, t]);
+                    }
+                }
+            }
+        }
+    }
+    over.into_iter().collect()
 }
 
 /// The turn that brings the body's up to the sheet's up, as far as it can.
@@ -164,8 +206,8 @@ impl Flattening {
         for _ in 0..3000 {
             for v in 0..points.len() {
                 if !fixed[v] {
-                    let mean: Vec2 = self.near[v].iter().map(|n| points[n.0 as usize]).sum::<Vec2>()
-                        / self.near[v].len() as f32;
+                    let mean: Vec2 =
+                        self.near[v].iter().map(|n| points[n.0 as usize]).sum::<Vec2>() / self.near[v].len() as f32;
                     points[v] = points[v].lerp(mean, 1.7);
                 }
             }
@@ -175,11 +217,11 @@ impl Flattening {
 
     fn run(&self, mut points: Vec<Vec2>) -> Vec<Vec2> {
         let (mut energy, mut slope) = self.energy(&points).expect("Tutte's layout has no fold");
-        let mut stride = 1.0;
+        let mut stride = 1.0f32;
         for _ in 0..STEPS {
             let down = self.solve(&slope);
             let steep: f32 = slope.iter().zip(&down).map(|(g, d)| g.dot(*d)).sum();
-            stride = (2.0 * stride as f32).min(1.0);
+            stride = (2.0 * stride).min(1.0);
             let mut moved = None;
             while stride > 1e-7 {
                 let tried: Vec<Vec2> = points.iter().zip(&down).map(|(p, d)| *p - *d * stride).collect();
@@ -199,6 +241,16 @@ impl Flattening {
             }
         }
         points
+    }
+
+    /// Gives some triangles, and all that share a corner with them, less room.
+    fn tighten(&mut self, triangles: &[usize]) {
+        let mut near = vec![false; self.near.len()];
+        triangles.iter().for_each(|&t| self.rest[t].corners.iter().for_each(|&v| near[v as usize] = true));
+        for r in self.rest.iter_mut().filter(|r| r.corners.iter().any(|&v| near[v as usize])) {
+            r.inverse = r.inverse * (1.0 / SMALLER);
+            r.area *= SMALLER * SMALLER;
+        }
     }
 
     /// Energy and its gradient; `None` where a triangle is folded.
