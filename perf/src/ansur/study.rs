@@ -38,6 +38,9 @@ const FOLLOWING: [(Ansur, &str); 8] = [
 /// Roughness over the base body's at which a body counts as looking wrong.
 pub const TOO_ROUGH: f32 = 1.10;
 
+/// Time in which a body has to be made (ms): a shopper does not notice it.
+pub const QUICK_MS: f64 = 20.0;
+
 /// Why there is no study.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum StudyError {
@@ -125,9 +128,14 @@ pub struct Study {
 }
 
 impl Study {
-    /// Whether every given measure is within its limit for everybody, each calibration quick enough, and no body wrong.
+    /// Whether every given measure is within its limit for everybody, and no body looks wrong.
     pub fn passes(&self) -> bool {
         self.measures.iter().all(|m| m.within.is_none_or(|w| w == 1.0)) && self.wrong == 0.0
+    }
+
+    /// Whether 99 of 100 bodies are made within [`QUICK_MS`].
+    pub fn is_quick(&self) -> bool {
+        self.calibration_ms.p99 <= QUICK_MS
     }
 }
 
