@@ -19,6 +19,10 @@ const TURNS: [f32; 4] = [0.0, 45.0, 90.0, 180.0];
 /// From the front, a quarter turned.
 const QUARTER: f32 = 28.0;
 
+/// Pictures of one body's sides, and of the six together.
+const SIDES: Size = Size::new(400, 620);
+const TOGETHER: Size = Size::new(310, 440);
+
 /// Deviations of the 99th percentile.
 const FAR: f32 = 2.326;
 
@@ -64,14 +68,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         write(&folder, &format!("{name}-ends"), &ends)?;
     }
-    let images: Vec<Image> = six.iter().map(|(_, body)| picture(body, QUARTER)).collect();
+    let images: Vec<Image> = six.iter().map(|(_, body)| picture(body, QUARTER, TOGETHER)).collect();
     let captions: Vec<&str> = six.iter().map(|(name, _)| name.as_str()).collect();
     save(&folder, "bodies", &sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), SIZES[0].len(), &captions))
 }
 
 /// One row a body, one column a side.
 fn write(folder: &str, name: &str, bodies: &[(String, Body)]) -> Result<(), Box<dyn Error>> {
-    let images: Vec<Image> = bodies.iter().flat_map(|(_, body)| TURNS.map(|turn| picture(body, turn))).collect();
+    let images: Vec<Image> = bodies.iter().flat_map(|(_, body)| TURNS.map(|turn| picture(body, turn, SIDES))).collect();
     let captions: Vec<&str> = bodies.iter().flat_map(|(name, _)| [name.as_str(), "", "", ""]).collect();
     save(folder, name, &sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), TURNS.len(), &captions))
 }
@@ -82,7 +86,7 @@ fn save(folder: &str, name: &str, sheet: &Image) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn picture(body: &Body, turn: f32) -> Image {
+fn picture(body: &Body, turn: f32, size: Size) -> Image {
     let colours = vec![MANNEQUIN; body.mesh.positions.len()];
     let surfaces = [Surface {
         positions: &body.mesh.positions,
@@ -100,5 +104,5 @@ fn picture(body: &Body, turn: f32) -> Image {
         distance: 4.9,
         fov_y: 0.42,
     };
-    stage.render_on(2, &camera, Size::new(400, 620), Quality::Motion).0
+    stage.render_on(2, &camera, size, Quality::Motion).0
 }
