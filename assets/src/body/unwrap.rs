@@ -20,7 +20,7 @@ const SMALLER: f32 = 0.85;
 /// Size of the squares in which a chart's overlaps are looked for (m).
 const SQUARE: f32 = 6e-4;
 /// How far a triangle is taken to reach beyond its edges (squares).
-const REACH: f32 = 0.7;
+const REACH: f32 = 0.3;
 /// Gap between charts, as a share of the atlas's side.
 const GAP: f32 = 0.006;
 
