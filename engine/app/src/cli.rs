@@ -13,6 +13,7 @@ use toile_engine::cloth::Quality;
 use crate::exit::AppError;
 
 mod bake;
+mod bodies;
 mod body;
 mod pareto;
 mod run;
@@ -22,6 +23,7 @@ mod torture;
 mod validate;
 
 pub use bake::BakeArgs;
+pub use bodies::BodiesArgs;
 pub use body::{BodyArgs, Wearer};
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
@@ -47,6 +49,8 @@ pub enum Command {
     Bake(BakeArgs),
     /// `toile body`.
     Body(BodyArgs),
+    /// `toile bench body`.
+    BenchBody(BodiesArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
@@ -235,7 +239,7 @@ fn bench() -> clap::Command {
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([skinning::grammar(), skirt::grammar()])
+        .subcommands([skinning::grammar(), skirt::grammar(), bodies::grammar()])
         .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
 
@@ -323,6 +327,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
 fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
     match matches.subcommand() {
         Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
+        Some(("body", matches)) => Ok(Command::BenchBody(bodies::args(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),
         _ => Err(AppError::internal("a benchmark without a name was let through")),
     }
