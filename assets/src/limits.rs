@@ -6,10 +6,11 @@ pub const STEP_HZ: u32 = 120;
 /// Length of one step (s). Derived from [`STEP_HZ`]; time itself is counted in `u64` ticks.
 pub const STEP_SECONDS: f32 = 1.0 / STEP_HZ as f32;
 
-/// Collision spheres a body carries: the count of the published fitting rooms, enough for one body's outline.
-pub const MAX_SPHERES: usize = 16;
+/// Collision spheres a body carries: each end of the fitted body's capsules may have its own. They are moved once a step;
+/// contact pays for capsules alone.
+pub const MAX_SPHERES: usize = 48;
 
-/// Tapered capsules between those spheres: every limb plus the diagonals that fill the flat torso.
+/// Tapered capsules between those spheres: what a body needs; a bit of 32 names one.
 pub const MAX_CAPSULES: usize = 28;
 
 /// Planes beside the floor: the four walls of a changing room.
