@@ -116,7 +116,7 @@ impl Morphs {
         for field in &mut all {
             for (v, &twin) in near.twin.iter().enumerate() {
                 match (base.positions[v].x, twin as usize) {
-                    (x, _) if x == 0.0 => field[v].x = 0.0,
+                    (0.0, _) => field[v].x = 0.0,
                     (x, other) if x < 0.0 => field[v] = mirrored(field[other]),
                     _ => {}
                 }
@@ -125,8 +125,8 @@ impl Morphs {
         let joints = std::array::from_fn(|k| joint_moves(&base, &all[k]));
         let (mut start, mut moves) = (vec![0], Vec::new());
         for v in 0..base.positions.len() {
-            let moving = (0..SLIDERS).filter(|&k| all[k][v].abs().max_element() > NOTHING);
-            moves.extend(moving.map(|k| (k as u32, all[k][v])));
+            let here = all.iter().map(|field| field[v]).enumerate();
+            moves.extend(here.filter(|(_, d)| d.abs().max_element() > NOTHING).map(|(k, d)| (k as u32, d)));
             start.push(moves.len() as u32);
         }
         Self { base, near, start, moves, joints }

@@ -50,23 +50,89 @@ fn laplacians(mesh: &Mesh) -> (Vec<DVec3>, Vec<u32>) {
 
 /// Number of edges that pierce a triangle that they share no vertex with: 0 for a surface that does not cross itself.
 pub fn crossings(mesh: &Mesh) -> usize {
-    let at = |v: u32| mesh.positions[v as usize];
-    let floor = |t: &[u32; 3]| t.iter().map(|&v| at(v).y).fold(f32::MAX, f32::min);
-    let mut by_height = mesh.triangles.clone();
-    by_height.sort_by(|a, b| floor(a).total_cmp(&floor(b)));
-    let floors: Vec<f32> = by_height.iter().map(floor).collect();
-    let tall =
-        by_height.iter().map(|t| t.iter().map(|&v| at(v).y).fold(f32::MIN, f32::max) - floor(t)).fold(0.0, f32::max);
-    let mut count = 0;
-    for t in &mesh.triangles {
-        for (i, j) in sides(t).into_iter().filter(|(i, j)| i < j) {
-            let (a, b) = (at(i), at(j));
-            let from = floors.partition_point(|&f| f < a.y.min(b.y) - tall);
-            let near = by_height[from..].iter().zip(&floors[from..]).take_while(|(_, f)| **f <= a.y.max(b.y));
-            count += near.filter(|(o, _)| !o.contains(&i) && !o.contains(&j) && pierces(a, b, o.map(at))).count();
+    let grid = Grid::new(mesh);
+    let edges = mesh.triangles.iter().flat_map(sides).filter(|(i, j)| i < j);
+    edges.map(|(i, j)| grid.pierced(mesh, i, j)).sum()
+}
+
+/// Size of the cells in which triangles are looked up (m): about two edges of a body.
+const CELL: f32 = 0.025;
+
+/// Most cells along an axis: a mesh of another size gets larger cells.
+const MOST_CELLS: f32 = 128.0;
+
+/// The triangles of a mesh by the cells of space that they touch.
+struct Grid {
+    low: Vec3,
+    cell: f32,
+    count: [usize; 3],
+    /// Where each cell's triangles start, and the end `[cells + 1]`.
+    start: Vec<u32>,
+    triangles: Vec<u32>,
+}
+
+impl Grid {
+    fn new(mesh: &Mesh) -> Self {
+        let finite = mesh.positions.iter().filter(|p| p.is_finite());
+        let (low, high) = finite.fold((Vec3::MAX, Vec3::MIN), |(l, h), p| (l.min(*p), h.max(*p)));
+        let extent = (high - low).max(Vec3::ZERO);
+        let cell = CELL.max(extent.max_element() / MOST_CELLS);
+        let count = (extent / cell).to_array().map(|n| n as usize + 1);
+        let mut grid =
+            Self { low, cell, count, start: vec![0; count.iter().product::<usize>() + 1], triangles: Vec::new() };
+        let boxes: Vec<[[usize; 3]; 2]> =
+            mesh.triangles.iter().map(|t| grid.around(&t.map(|v| mesh.positions[v as usize]))).collect();
+        let mut places: Vec<(usize, u32)> = Vec::with_capacity(2 * boxes.len());
+        for (t, ends) in boxes.iter().enumerate() {
+            places.extend(grid.cells(ends).map(|(_, c)| (c, t as u32)));
         }
+        places.sort_unstable();
+        for (c, _) in &places {
+            grid.start[c + 1] += 1;
+        }
+        for c in 0..grid.start.len() - 1 {
+            grid.start[c + 1] += grid.start[c];
+        }
+        grid.triangles = places.into_iter().map(|p| p.1).collect();
+        grid
     }
-    count
+
+    /// First and last cell, along each axis, of the box around some points.
+    fn around(&self, points: &[Vec3]) -> [[usize; 3]; 2] {
+        let (least, most) = points.iter().fold((Vec3::MAX, Vec3::MIN), |(l, h), p| (l.min(*p), h.max(*p)));
+        [least, most].map(|p| {
+            let place = ((p - self.low) / self.cell).to_array();
+            std::array::from_fn(|k| (place[k] as usize).min(self.count[k] - 1))
+        })
+    }
+
+    /// The cells of a box: their place along each axis, and their number.
+    fn cells<'a>(&'a self, [from, to]: &'a [[usize; 3]; 2]) -> impl Iterator<Item = ([usize; 3], usize)> + 'a {
+        let [nx, ny, _] = self.count;
+        let planes = (from[2]..=to[2]).flat_map(move |z| (from[1]..=to[1]).map(move |y| (y, z)));
+        planes.flat_map(move |(y, z)| (from[0]..=to[0]).map(move |x| ([x, y, z], (z * ny + y) * nx + x)))
+    }
+
+    /// How many triangles an edge pierces.
+    fn pierced(&self, mesh: &Mesh, i: u32, j: u32) -> usize {
+        let [a, b] = [i, j].map(|v| mesh.positions[v as usize]);
+        let own = self.around(&[a, b]);
+        let mut count = 0;
+        for (place, c) in self.cells(&own) {
+            for &t in &self.triangles[self.start[c] as usize..self.start[c + 1] as usize] {
+                let corners = mesh.triangles[t as usize];
+                if corners.contains(&i) || corners.contains(&j) {
+                    continue;
+                }
+                let corners = corners.map(|v| mesh.positions[v as usize]);
+                // A pair that meets in several cells counts in the first of them.
+                let theirs = self.around(&corners)[0];
+                let first = (0..3).all(|k| place[k] == own[0][k].max(theirs[k]));
+                count += usize::from(first && pierces(a, b, corners));
+            }
+        }
+        count
+    }
 }
 
 /// Whether a segment passes through a triangle (signed volumes, in f64).

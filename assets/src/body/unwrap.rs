@@ -14,6 +14,13 @@ use super::lattice::CHARTS;
 const STEPS: usize = 240;
 /// Rounds of the conjugate gradients within a step.
 const INNER: usize = 60;
+/// Rounds in which overlapping triangles are made smaller, and by how much a round.
+const TIGHTER: usize = 24;
+const SMALLER: f32 = 0.85;
+/// Size of the squares in which a chart's overlaps are looked for (m).
+const SQUARE: f32 = 6e-4;
+/// How far a triangle is taken to reach beyond its edges (squares).
+const REACH: f32 = 0.7;
 /// Gap between charts, as a share of the atlas's side.
 const GAP: f32 = 0.006;
 
@@ -74,8 +81,17 @@ impl Sheet {
     fn flattened(mut self, positions: &[Vec3]) -> Self {
         let rest: Vec<Vec3> = self.vertices.iter().map(|&v| positions[v as usize]).collect();
         let triangles: Vec<[u32; 3]> = self.quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-        let flat = Flattening::new(&rest, &triangles);
+        let mut flat = Flattening::new(&rest, &triangles);
         self.points = flat.run(flat.circle(&rest, &self.rim()));
+        for _ in 0..TIGHTER {
+            // Toes laid flat are broader than the gaps between them: where the sheet covers itself they get less room.
+            let over = overlapping(&self.points, &triangles);
+            if over.is_empty() {
+                break;
+            }
+            flat.tighten(&over);
+            self.points = flat.run(std::mem::take(&mut self.points));
+        }
         let turn = upright(&self.points, &rest);
         self.points.iter_mut().for_each(|p| *p = turn * *p);
         self
@@ -87,7 +103,7 @@ impl Sheet {
         let sides: std::collections::BTreeSet<(u32, u32)> =
             self.quads.iter().flat_map(|q| (0..4).map(|k| (q[k], q[(k + 1) % 4]))).collect();
         for &(a, b) in sides.iter().filter(|&&(a, b)| !sides.contains(&(b, a))) {
-            assert!(next.insert(a, b).is_none(), "a chart's border touches itself");
+            assert!(next.insert(a, b).is_none(), "a chart's border touches itself at {}", self.vertices[a as usize]);
         }
         let first = *next.keys().next().expect("a chart has a border");
         let mut rim = vec![first];
@@ -97,6 +113,33 @@ impl Sheet {
         assert_eq!(rim.len(), next.len(), "a chart is a disc");
         rim
     }
+}
+
+/// Triangles without a common corner that come so near to each other that they touch the middle of one square.
+fn overlapping(points: &[Vec2], triangles: &[[u32; 3]]) -> Vec<usize> {
+    let low = points.iter().copied().fold(Vec2::INFINITY, Vec2::min);
+    let size = (points.iter().copied().fold(Vec2::NEG_INFINITY, Vec2::max) - low) / SQUARE;
+    let columns = size.x as usize + 2;
+    let mut taken = vec![u32::MAX; columns * (size.y as usize + 2)];
+    let mut over = std::collections::BTreeSet::new();
+    for (t, corners) in triangles.iter().enumerate() {
+        let [a, b, c] = corners.map(|v| (points[v as usize] - low) / SQUARE);
+        let least = (a.min(b).min(c) - REACH).max(Vec2::ZERO);
+        let most = (a.max(b).max(c) + REACH).min(size);
+        for y in least.y as usize..=most.y as usize {
+            for x in least.x as usize..=most.x as usize {
+                let p = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+                if [(a, b), (b, c), (c, a)].iter().all(|(u, v)| (*v - *u).perp_dot(p - *u) > -REACH * v.distance(*u)) {
+                    let first = std::mem::replace(&mut taken[y * columns + x], t as u32);
+                    let apart = |o: u32| triangles[o as usize].iter().all(|v| !corners.contains(v));
+                    if first != u32::MAX && apart(first) {
+                        over.extend([first as usize, t]);
+                    }
+                }
+            }
+        }
+    }
+    over.into_iter().collect()
 }
 
 /// The turn that brings the body's up to the sheet's up, as far as it can.
@@ -178,11 +221,11 @@ impl Flattening {
 
     fn run(&self, mut points: Vec<Vec2>) -> Vec<Vec2> {
         let (mut energy, mut slope) = self.energy(&points).expect("Tutte's layout has no fold");
-        let mut stride = 1.0;
+        let mut stride = 1.0f32;
         for _ in 0..STEPS {
             let down = self.solve(&slope);
             let steep: f32 = slope.iter().zip(&down).map(|(g, d)| g.dot(*d)).sum();
-            stride = (2.0 * stride as f32).min(1.0);
+            stride = (2.0 * stride).min(1.0);
             let mut moved = None;
             while stride > 1e-7 {
                 let tried: Vec<Vec2> = points.iter().zip(&down).map(|(p, d)| *p - *d * stride).collect();
@@ -202,6 +245,16 @@ impl Flattening {
             }
         }
         points
+    }
+
+    /// Gives some triangles, and all that share a corner with them, less room.
+    fn tighten(&mut self, triangles: &[usize]) {
+        let mut near = vec![false; self.near.len()];
+        triangles.iter().for_each(|&t| self.rest[t].corners.iter().for_each(|&v| near[v as usize] = true));
+        for r in self.rest.iter_mut().filter(|r| r.corners.iter().any(|&v| near[v as usize])) {
+            r.inverse = r.inverse * (1.0 / SMALLER);
+            r.area *= SMALLER * SMALLER;
+        }
     }
 
     /// Energy and its gradient; `None` where a triangle is folded.

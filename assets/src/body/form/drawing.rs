@@ -12,7 +12,8 @@ use crate::skeleton::{JOINTS, Joint, Skeleton};
 #[serde(deny_unknown_fields)]
 pub struct Drawing {
     /// Height that it is drawn at.
-    pub stature: f32,
+    #[serde(rename = "stature")]
+    _stature: f32,
     pub(crate) joints: Joints,
     pub(crate) arm_line: ArmLine,
     pub(crate) foot_line: FootLine,
@@ -85,8 +86,9 @@ pub(crate) struct Grid {
     pub face: [f32; 13],
     /// Heights of the leg's rings.
     pub leg: Vec<f32>,
-    /// Rings of the foot: top (y, z), bottom (y, z), half breadth, in the foot's frame.
-    pub foot: Vec<[f32; 5]>,
+    /// Rings of the foot: top (y, z), bottom (y, z), half breadth, and how far the outer edge lies behind the inner
+    /// one, in the foot's frame.
+    pub foot: Vec<[f32; 6]>,
     /// Ways down the arm of its rings, from the shoulder.
     pub arm: Vec<f32>,
     /// Ways down the palm of its rings, from the wrist; the last is the web.
@@ -211,11 +213,6 @@ impl Form {
     /// Distance of the arm alone, at a place in its straightened frame.
     pub(crate) fn arm(&self, q: Vec3) -> f32 {
         self.arm.distance(q)
-    }
-
-    /// Distance of the palm alone, in the hand's frame.
-    pub(crate) fn palm(&self, q: Vec3) -> f32 {
-        self.hand.distance(q)
     }
 
     /// The balls of a finger: 0 the index finger .. 3 the little one, 4 the thumb; in the hand's frame.

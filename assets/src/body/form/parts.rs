@@ -27,7 +27,7 @@ pub(super) struct TubeRow {
 /// A chain of balls joined by round cones.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Chain {
+pub(in crate::body) struct Chain {
     #[serde(rename = "name")]
     pub _name: String,
     pub blend: f32,
