@@ -60,7 +60,7 @@ fn line(label: &str, body: &Body) {
     let begun = Instant::now();
     let rig = Rig::fit(body);
     print!("{label:12}{:7.1}", begun.elapsed().as_secs_f64() * 1e3);
-    let cell = |r: &ZoneReport| print!("{:>15}", format!("{:.1} {:.1} {:.0}", r.mean_mm, r.p95_mm, r.max_mm()));
+    let cell = |r: &ZoneReport| print!("{:>15}", format!("{:.1} {:.1} {:.0}/{:.0}", r.mean_mm, r.p95_mm, r.max_outside_mm, r.max_inside_mm));
     rig.zones(body).iter().for_each(cell);
     cell(&rig.trunk(body));
     println!();

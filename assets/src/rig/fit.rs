@@ -132,7 +132,8 @@ fn matter(zone: Zone) -> f64 {
         Zone::Shin => 0.3,
         Zone::UpperArm => 0.25,
         Zone::Forearm | Zone::Neck => 0.2,
-        Zone::Head | Zone::Hand | Zone::Foot => 0.0,
+        Zone::Head => 0.1,
+        Zone::Hand | Zone::Foot => 0.05,
     }
 }
 

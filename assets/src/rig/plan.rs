@@ -10,9 +10,9 @@ use crate::limits::MAX_CAPSULES;
 use crate::skeleton::Joint;
 
 /// Spheres beside the middle, each followed by its mirror image.
-pub(super) const PAIRS: usize = 21;
+pub(super) const PAIRS: usize = 24;
 /// Spheres of the middle, after them.
-pub(super) const MIDDLE: usize = 2;
+pub(super) const MIDDLE: usize = 3;
 /// All spheres of a rig.
 pub const SPHERES: usize = 2 * PAIRS + MIDDLE;
 
@@ -53,6 +53,8 @@ pub(super) const PLAN: [Planned; PAIRS + MIDDLE] = {
     const FOREARM: [Joint; 2] = [LeftElbow, LeftWrist];
     const THIGH: [Joint; 2] = [LeftHip, LeftKnee];
     const SHIN: [Joint; 2] = [LeftKnee, LeftAnkle];
+    const HAND: [Joint; 2] = [LeftWrist, LeftHand];
+    const FOOT: [Joint; 2] = [LeftAnkle, LeftToe];
     const NECK: [Joint; 2] = [Neck, Head];
     [
         trunk(Pelvis, [1.10, 0.426, 0.086, 0.910]),
@@ -77,8 +79,12 @@ pub(super) const PLAN: [Planned; PAIRS + MIDDLE] = {
         limb(LeftKnee, THIGH, 1.066, [-0.0013, 0.0, 0.0006], 0.0309),
         limb(LeftKnee, SHIN, 0.199, [0.0005, 0.0007, -0.0114], 0.0373),
         limb(LeftAnkle, SHIN, 1.001, [0.0002, 0.0002, -0.0027], 0.0183),
+        limb(LeftHand, HAND, 1.3, [0.0; 3], 0.012),
+        limb(LeftAnkle, FOOT, 0.0, [0.0, -0.02, -0.015], 0.02),
+        limb(LeftToe, FOOT, 1.2, [0.0; 3], 0.014),
         limb(Neck, NECK, 0.840, [0.0, -0.0043, 0.0146], 0.0323),
-        limb(Head, NECK, 1.757, [0.0, 0.0092, -0.0287], 0.0354),
+        limb(Head, NECK, 1.5, [0.0, 0.0, 0.01], 0.034),
+        limb(Head, NECK, 2.0, [0.0, 0.01, -0.03], 0.046),
     ]
 };
 
@@ -105,16 +111,20 @@ mod at {
     pub const KNEE: u8 = 36;
     pub const CALF: u8 = 38;
     pub const ANKLE: u8 = 40;
-    pub const NECK: u8 = 42;
-    pub const SKULL: u8 = 43;
+    pub const FINGERS: u8 = 42;
+    pub const HEEL: u8 = 44;
+    pub const TOES: u8 = 46;
+    pub const NECK: u8 = 48;
+    pub const JAW: u8 = 49;
+    pub const SKULL: u8 = 50;
 }
 
 /// The capsules: one across the shoulder blades, one in the neck, then left and right.
 pub(super) const CAPSULES: [[u8; 2]; MAX_CAPSULES] = {
     use at::*;
     [
-        [BACK, BACK + 1],
-        [NECK, SKULL],
+        [NECK, JAW],
+        [JAW, SKULL],
         [BREAST, ARMPIT],
         [BREAST + 1, ARMPIT + 1],
         [TRAPEZIUS, NECK],
@@ -141,5 +151,9 @@ pub(super) const CAPSULES: [[u8; 2]; MAX_CAPSULES] = {
         [GROIN + 1, HIP],
         [BELLY, RIB],
         [BELLY + 1, RIB + 1],
+        [WRIST, FINGERS],
+        [WRIST + 1, FINGERS + 1],
+        [HEEL, TOES],
+        [HEEL + 1, TOES + 1],
     ]
 };
