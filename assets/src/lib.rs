@@ -6,6 +6,7 @@
 
 pub mod bake;
 pub mod body;
+pub mod export;
 pub mod fabric;
 pub mod garment;
 pub mod import;

@@ -20,5 +20,21 @@ pub const MAX_PLANES: usize = 4;
 /// Bone influences a vertex: four weights fill one 128-bit lane group.
 pub const INFLUENCES: usize = 4;
 
+/// Bone influences a vertex of an import: the two sets of four that glTF files carry.
+pub const MAX_INFLUENCES: usize = 8;
+
 /// Confidence below which a joint is not believed (0..1); Gultepe 2013, section 4.2.
 pub const CONFIDENCE_GATE: f32 = 0.5;
+
+/// Most vertices of an imported body: seventeen times the mannequin's, and more than any avatar made for real time;
+/// beyond it skinning alone would take a tenth of the frame.
+pub const MAX_BODY_VERTICES: usize = 250_000;
+
+/// Most joints and other nodes of an imported body: ten times those of the largest face rigs.
+pub const MAX_BODY_NODES: usize = 8_192;
+
+/// Largest file of an imported body that is read (bytes): avatars carry their pictures with them.
+pub const MAX_BODY_BYTES: u64 = 256 << 20;
+
+/// Bone influences of a vertex that imports read before they keep [`INFLUENCES`]: two glTF attribute sets.
+pub const IMPORT_INFLUENCES: usize = 8;

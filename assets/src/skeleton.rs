@@ -3,7 +3,12 @@
 //! Right-handed, y up, metres. The person faces +z, so their left side is +x. In the rest pose every bone's frame is
 //! aligned with the world's axes: a bone's rest transform is a translation.
 
+mod bones;
+mod names;
+
 use glam::{Quat, Vec3};
+
+pub use bones::{BONE_CHAIN, BONES, TWISTS, Twist, bone_joint, bone_mirror, bone_name};
 
 /// Joints that a sensor may report and a pose may bend; each is the centre of the rotation that it names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -37,18 +42,6 @@ pub enum Joint {
 
 /// Number of joints.
 pub const JOINTS: usize = 23;
-
-/// Number of bones that carry skin: one a joint, then one twist bone for each upper arm and forearm.
-pub const BONES: usize = JOINTS + 4;
-
-/// The bones that take half of a limb's twist (Gultepe 2013, section 4.4.3): index, the joint whose frame it starts
-/// from, and the joint towards which it twists. Each stands halfway between the two.
-pub const TWIST_BONES: [(usize, Joint, Joint); 4] = [
-    (23, Joint::LeftShoulder, Joint::LeftElbow),
-    (24, Joint::LeftElbow, Joint::LeftWrist),
-    (25, Joint::RightShoulder, Joint::RightElbow),
-    (26, Joint::RightElbow, Joint::RightWrist),
-];
 
 impl Joint {
     /// All joints, parents before children.
@@ -146,12 +139,14 @@ impl Skeleton {
         }
     }
 
-    /// Rest position of each bone's origin (m) `[BONES]`: the joints, then the twist bones.
+    /// Rest position of each bone's origin (m) `[BONES]`: the joints, then the twist bones along their limbs.
     pub fn bone_origins(&self) -> [Vec3; BONES] {
         let mut origins = [Vec3::ZERO; BONES];
         origins[..JOINTS].copy_from_slice(&self.rest);
-        for (bone, from, to) in TWIST_BONES {
-            origins[bone] = (self.at(from) + self.at(to)) * 0.5;
+        for twist in &TWISTS {
+            for (k, bone) in twist.bones().enumerate() {
+                origins[bone] = self.at(twist.from).lerp(self.at(twist.to), twist.share(k + 1));
+            }
         }
         origins
     }

@@ -4,11 +4,14 @@ use glam::{Affine3A, Vec3};
 use toile_assets::body::{Body, BodyError};
 use toile_assets::mesh::SkinWeights;
 use toile_assets::scene;
-use toile_assets::skeleton::BONES;
+use toile_assets::skeleton::{BONE_CHAIN, BONES};
 use toile_engine::body::palette;
 
 /// A moment of the scene in which arms, legs and trunk are all bent (s).
 const MOMENT_S: f32 = 4.6;
+
+/// Weight of a bone that is added to a vertex so that it has four, before all are divided by their sum.
+const ADDED_WEIGHT: f32 = 0.08;
 
 /// Vertices at rest with their weights, and the palette that poses them.
 #[derive(Debug, Clone)]
@@ -24,17 +27,53 @@ pub(crate) struct Surface {
 }
 
 impl Surface {
-    /// The shopper's vertices in their order, repeated until there are `vertices`.
-    pub fn new(vertices: usize) -> Result<Self, BodyError> {
+    /// The shopper's vertices in their order, each once.
+    pub fn body() -> Result<Self, BodyError> {
         let (sex, measures) = scene::SHOPPER;
         let body = Body::build(sex, &measures)?;
         let mut bones = [Affine3A::IDENTITY; BONES];
         palette(&body.skeleton, &scene::shopper(&body.skeleton, MOMENT_S), &mut bones);
-        Ok(Self {
-            positions: body.mesh.positions.iter().copied().cycle().take(vertices).collect(),
-            normals: body.normals.iter().copied().cycle().take(vertices).collect(),
-            weights: body.weights.iter().copied().cycle().take(vertices).collect(),
-            palette: bones,
-        })
+        Ok(Self { positions: body.mesh.positions, normals: body.normals, weights: body.weights, palette: bones })
     }
+
+    /// The shopper's vertices, repeated until there are `vertices`.
+    pub fn new(vertices: usize) -> Result<Self, BodyError> {
+        Ok(Self::body()?.repeated(vertices))
+    }
+
+    /// The same vertices in their order, repeated or cut until there are `vertices`.
+    pub fn repeated(self, vertices: usize) -> Self {
+        Self {
+            positions: self.positions.into_iter().cycle().take(vertices).collect(),
+            normals: self.normals.into_iter().cycle().take(vertices).collect(),
+            weights: self.weights.into_iter().cycle().take(vertices).collect(),
+            palette: self.palette,
+        }
+    }
+
+    /// The same vertices with exactly four influences each: those of fewer hang a little on the bones around their own.
+    pub fn with_four_influences(mut self) -> Self {
+        self.weights.iter_mut().for_each(|w| *w = four(w));
+        self
+    }
+}
+
+/// Adds the bones nearest in the skeleton until there are four.
+fn four(weights: &SkinWeights) -> SkinWeights {
+    let mut all: Vec<(u8, f32)> = weights.iter().collect();
+    let mut from = 0;
+    while all.len() < 4 && from < all.len() {
+        let own = usize::from(all[from].0);
+        for (bone, parent) in BONE_CHAIN {
+            let near = if bone == own { parent } else { Some(bone).filter(|_| parent == Some(own)) };
+            if let Some(near) = near
+                && all.len() < 4
+                && all.iter().all(|(b, _)| usize::from(*b) != near)
+            {
+                all.push((near as u8, ADDED_WEIGHT));
+            }
+        }
+        from += 1;
+    }
+    SkinWeights::strongest(all).0
 }

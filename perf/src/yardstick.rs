@@ -95,7 +95,7 @@ fn blend(palette: &[Matrix], vertices: &[Vertex], posed: &mut [[[f32; 3]; 2]]) {
 #[cfg(test)]
 mod tests {
     use glam::Vec3;
-    use toile_engine::skin::SkinningJob;
+    use toile_engine::skin::{Blend, SkinningJob};
 
     use super::*;
 
@@ -107,7 +107,9 @@ mod tests {
         blend(&palette, &vertices(&surface), &mut posed);
         let (mut positions, mut normals) = (surface.positions.clone(), surface.normals.clone());
         let job = SkinningJob::new(&surface.positions, &surface.normals, &surface.weights).unwrap();
-        job.run(&surface.palette, &mut positions, &mut normals);
+        let mut shown = job.posed();
+        job.run(Blend::Linear, &surface.palette, &mut shown);
+        shown.read(&mut positions, &mut normals);
         for (i, [position, normal]) in posed.iter().enumerate() {
             assert!(Vec3::from_array(*position).distance(positions[i]) < 1e-5, "vertex {i}");
             assert!(Vec3::from_array(*normal).normalize().distance(normals[i]) < 1e-4, "vertex {i}");

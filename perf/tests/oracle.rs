@@ -41,6 +41,12 @@ fn hard_strain(problem: &Problem, x: &[DVec3]) -> f64 {
     hard.map(|(_, strain)| strain.abs()).fold(0.0, f64::max)
 }
 
+/// From the highest particle down to the lowest (m).
+fn length(x: &[DVec3]) -> f64 {
+    let heights = || x.iter().map(|p| p.y);
+    heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min)
+}
+
 /// The engine's skirt after ten seconds, and the nearest equilibrium without friction.
 fn at_rest(side: usize) -> (Vec<DVec3>, Solved, Oracle) {
     let mut stage = skirt(side, None);
@@ -52,11 +58,11 @@ fn at_rest(side: usize) -> (Vec<DVec3>, Solved, Oracle) {
     (x, solved, oracle)
 }
 
-/// What is between the two is the engine's error: it lets shear give more than the fabric does, the more the heavier a
-/// substep's motion weighs against it, and it is not quite at rest.
+/// What is between the two is the engine's error: its threads stretch a little, shear gives a little more than the fabric
+/// does, and it is not quite at rest.
 #[test]
 fn the_engines_skirt_settles_near_the_equilibrium() {
-    for (side, mean_mm, max_mm) in [(16, 3.0, 8.0), (32, 6.0, 40.0)] {
+    for (side, mean_mm, max_mm) in [(16, 1.0, 5.0), (32, 4.0, 30.0)] {
         let (x, solved, oracle) = at_rest(side);
         let (apart, report) = (measure::apart(&x, &solved.state.x), solved.report);
         let energy = |x: &[DVec3]| measure::energies(oracle.problem(), &State::at_rest(x)).total_j();
@@ -69,7 +75,10 @@ fn the_engines_skirt_settles_near_the_equilibrium() {
         assert!(report.stable && report.residual_n < 1e-9, "{report:?}");
         assert!(hard_strain(oracle.problem(), &solved.state.x) < 1e-7);
         assert!(report.violation.penetration_m < 1e-7 && !solved.touches.is_empty());
-        assert!(energy(&solved.state.x) < energy(&x), "an equilibrium is a minimum");
+        // A minimum among cloth that does not stretch: the engine's threads do, a ten-thousandth, so its weight may hang
+        // lower by as much of its length.
+        let lower = 1e-4 * oracle.problem().free_mass() * 9.81 * length(&x);
+        assert!(energy(&solved.state.x) < energy(&x) + lower, "an equilibrium is a minimum, {lower:.1e} J apart");
         assert!(apart.mean_m * 1e3 < mean_mm && apart.max_m * 1e3 < max_mm, "{side}: {apart:?}");
     }
 }

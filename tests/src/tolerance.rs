@@ -16,8 +16,8 @@ pub const ENERGY: f64 = 1e-3;
 pub const REST_M: f32 = 2e-6;
 
 /// How far a cloth that nothing holds and nothing slows may drift in a second (m): the last bit of a position is worth 1e-5
-/// m/s in a substep, and what 500 substeps add up is a walk at random.
-pub const DRIFT_M: f32 = 1e-3;
+/// m/s in a substep, and what 1,500 substeps (`fine`) add up is a walk at random.
+pub const DRIFT_M: f32 = 3e-3;
 
 /// Length of a link that must not stretch over its length as cut, less 1: Gauss-Seidel sweeps over the weft come after
 /// its last solve in a substep, and in cloth that is flung at 3 m/s each pulls a little on it.

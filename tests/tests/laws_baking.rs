@@ -6,7 +6,7 @@ use glam::{Quat, Vec2, Vec3};
 use proptest::prelude::*;
 use toile_assets::bake::bake;
 use toile_assets::fabric::Fabric;
-use toile_assets::garment::layout::{Share, Tuples};
+use toile_assets::garment::layout::{List, Share, Tuples};
 use toile_assets::garment::{Garment, Shape, check};
 use toile_perf::oracle::{Problem, State, measure};
 use toile_tests::meshes::{Cell, Plan, area, folded};
@@ -91,12 +91,24 @@ proptest! {
         for set in sets(&layout.shear.tuples).into_iter().chain(sets(&layout.weft.tuples)) {
             prop_assert!(no_particle_twice(set));
         }
-        for set in layout.crossing.sets.iter().chain(&layout.hoops.sets) {
-            for lists in [&layout.crossing, &layout.hoops].into_iter().filter(|l| l.sets.contains(set)) {
-                let of = |l: &toile_assets::garment::layout::List| (l.first..l.first + l.lanes * l.rows).map(|k| lists.index[k as usize]);
-                let all = set.iter().flat_map(|r| lists.lists[r.start as usize..r.end as usize].iter().flat_map(of));
-                prop_assert!(no_particle_twice(all.collect()));
+        let lists = &layout.crossing;
+        let of = |l: &List| (l.first..l.first + l.lanes * l.rows).map(|k| lists.index[k as usize]);
+        for set in &lists.sets {
+            let all = set.iter().flat_map(|r| lists.lists[r.start as usize..r.end as usize].iter().flat_map(of));
+            prop_assert!(no_particle_twice(all.collect()));
+        }
+        for strands in &layout.diagonals.families {
+            let (mut led_to, mut left) = (Vec::new(), Vec::new());
+            for strand in strands {
+                for run in &layout.diagonals.runs[strand.runs.start as usize..strand.runs.end as usize] {
+                    let ends = run.first.map(|f| f..f + run.len);
+                    prop_assert!(ends[1].clone().all(|p| !left.contains(&p)), "a link comes after what it leads on to");
+                    let [a, b] = ends;
+                    left.extend(a);
+                    led_to.extend(b);
+                }
             }
+            prop_assert!(no_particle_twice(left) && no_particle_twice(led_to));
         }
         let rows = layout.fibers.bundles.iter().flat_map(|b| &layout.fibers.rows[b.rows.start as usize..b.rows.end as usize]);
         prop_assert!(no_particle_twice(rows.flat_map(|row| row.first..row.first + row.lanes).collect()));

@@ -20,6 +20,7 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
             &["rig"],
             &["garment"],
             &["import", "bake"],
+            &["export"],
             &["wardrobe"],
             &["scene"],
             &["scene_file"],

@@ -92,9 +92,9 @@ fn a_skirt_left_alone_hangs_at_its_elastic_strain_and_comes_to_rest() {
         let energy = stage.kinetic_energy();
         eprintln!("{stretch:?}: {frame:?}, {energy} J");
         assert!(frame.beyond_mean <= 0.000_5, "{stretch:?}: {frame:?}");
-        // The half per cent that is aimed at is missed at the substeps that the bake chooses: .76 %, in the row that hangs
-        // from the pins.
-        assert!(frame.beyond_max <= 0.01, "{stretch:?}: {frame:?}");
+        // The half per cent that is aimed at is missed at the substeps that the bake chooses: 1.1 %, compression in the row
+        // that hangs from the pins (.76 % while shear lost most of its stiffness there).
+        assert!(frame.beyond_max <= 0.012, "{stretch:?}: {frame:?}");
         assert!(energy <= 1e-3, "{stretch:?}: {energy} J");
     }
 }
@@ -175,10 +175,28 @@ fn every_width_and_every_run_gives_the_same_bits() {
     }
 }
 
+#[test]
+fn an_irregular_skirt_has_the_same_bits_with_two_workers_and_at_every_width() {
+    let play = |threads: usize, width: Width| {
+        let stepped =
+            Options { mesh: Mesh::Irregular, lanes: Some(width), verts: 9_216, threads, ..Options::default() };
+        let mut stage = stage(&stepped);
+        for _ in 0..8 {
+            stage.prepare();
+            stage.step();
+        }
+        stage.state_hash()
+    };
+    let one = play(1, Width::widest());
+    for width in Width::ALL.into_iter().filter(|w| w.available()) {
+        assert_eq!(play(2, width), one, "{width:?}");
+    }
+}
+
 /// Hash of the skirt of 9,216 vertices after [`GOLDEN_STEPS`] of walking. A change of it is a change of what every user
 /// sees: it has to be meant, and said in the changelog. (Sines of the scene come from the platform's library; the hash is
 /// that of Linux on x86-64.)
-const GOLDEN: u64 = 0xbed4_cae1_609f_7634;
+const GOLDEN: u64 = 0x8a9e_a28b_223e_c9ba;
 
 /// Steps to the golden hash.
 const GOLDEN_STEPS: usize = 40;

@@ -1,9 +1,11 @@
 //! Bending stencils: where and how the curvature of the cloth is measured.
 //!
-//! A stencil is a weighted sum of up to four particles, f = sum c_i x_i, that vanishes for any flat state and whose
+//! A stencil is a weighted sum of particles, f = sum c_i x_i, that vanishes for any flat state and whose
 //! length is the curvature 1/R when the cloth is rolled up along the stencil's direction. With the energy k/2 |f|^2 bending
 //! is linear in x, as in Bergou et al. 2006, "A quadratic bending model for inextensible surfaces"; but that model knows
-//! no direction. Here each vertex has up to four stencils: along the warp, along the weft, and along both diagonals.
+//! no direction. Here each vertex of an even mesh has up to four stencils of three or four particles: along the warp, along
+//! the weft, and along both diagonals. Where these would push otherwise than the whole ring of the vertex under the same moment,
+//! as in an uneven mesh, up to three stencils over the whole ring take their place (`bending/whole.rs` says why).
 //!
 //! **Points.** The ring of neighbours is laid flat around the vertex. Four points in a plane have one affine dependence c
 //! (the areas of the triangles that three of them form), and to second order its sum over a surface of curvature tensor S
@@ -19,21 +21,24 @@
 
 mod fit;
 mod ring;
+mod whole;
 
 use crate::fabric::Fabric;
-use crate::garment::shape::{NO_VERTEX, Shape};
+use crate::garment::Shape;
 
 use super::fibers::{Direction, Edge};
 use fit::{Form, Patches};
-use ring::{Measure, Rings};
+use ring::{Measure, Ring, Rings};
+use whole::Whole;
 
 /// One place where the cloth is bent: energy k/2 |sum c_i x_i|^2.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Stencil {
-    /// The particles; the vertex that it belongs to comes first. [`NO_VERTEX`] in the fourth place if three suffice.
-    pub v: [u32; 4],
-    /// Their weights (1/m2), 0 in a fourth place without a particle. They sum to zero.
-    pub c: [f32; 4],
+    /// The particles, three or more; the vertex that it belongs to comes first. Stencils of a whole ring follow each other
+    /// and name the same particles.
+    pub v: Vec<u32>,
+    /// Their weights (1/m2). They sum to zero.
+    pub c: Vec<f32>,
     /// Rigidity times the area that it stands for (N m3): the sum is a curvature (1/m).
     pub k: f32,
     /// The direction whose curvature it measures.
@@ -55,26 +60,51 @@ pub fn rigidities(fabric: &Fabric) -> [f64; 3] {
 pub fn stencils(shape: &Shape, edges: &[Edge], fabric: &Fabric) -> Vec<Stencil> {
     let rings = Rings::new(shape, edges);
     let wanted = rigidities(fabric);
-    let measures: Vec<_> = (0..shape.cut.len()).map(|v| measures(&rings, v, wanted)).collect();
     let plate = Form::plate(wanted);
-    let patches = Patches::new(&rings, &measures);
+    let flat: Vec<_> = (0..shape.cut.len()).map(|v| rings.flat(v)).collect();
+    let measures: Vec<_> = flat.iter().map(|ring| measures(ring.as_ref(), wanted)).collect();
+    let uneven = |(v, ring): (usize, &Option<Ring>)| {
+        let whole = Whole::new(ring.as_ref()?)?;
+        differs(&whole, &measures[v], &plate, rings.area[v]).then_some(whole)
+    };
+    let wholes: Vec<Option<Whole>> = flat.iter().enumerate().map(uneven).collect();
+    let patches = Patches::new(&rings, &measures, |v| wholes[v].is_some());
     let mut out = Vec::new();
-    for (v, around) in measures.iter().enumerate().filter(|(_, around)| !around.is_empty()) {
-        let rigidity = patches.rigidities(v, &plate);
-        for (direction, measure) in around {
-            let k = rigidity[*direction as usize] * rings.area[v] / measure.bends(&shape.fixed);
-            let moves = measure.v.iter().any(|&i| i != NO_VERTEX && !shape.fixed[i as usize]);
-            if k > 0.0 && moves {
-                out.push(Stencil { v: measure.v, c: measure.weights(), k: k as f32, direction: *direction });
-            }
+    for (v, around) in measures.iter().enumerate() {
+        if let Some(whole) = &wholes[v] {
+            let area = rings.bending[v].max(ring::LEAST_BENDS * rings.area[v]);
+            out.extend(whole.parts(plate.0).into_iter().map(|part| part.stencil(&whole.v, area)));
+        } else if !around.is_empty() {
+            let rigidity = patches.rigidities(v, &plate);
+            let k = |d: Direction, m: &Measure| rigidity[d as usize] * rings.area[v] / m.bends(&shape.fixed);
+            out.extend(around.iter().map(|(direction, m)| m.stencil(*direction, k(*direction, m))));
         }
     }
+    out.retain(|s: &Stencil| s.k > 0.0 && s.v.iter().any(|&i| !shape.fixed[i as usize]));
     out
 }
 
+/// Largest difference between the force of a short stencil and that of the whole ring under the same moment (of 1) up to
+/// which the short one is taken: it costs half.
+const LIKE: f64 = 0.1;
+
+/// Whether the short stencils of a vertex push otherwise than its whole ring would, along the warp or the weft.
+fn differs(whole: &Whole, around: &[(Direction, Measure)], plate: &Form, area: f64) -> bool {
+    let rigid = |m: &glam::DMat3, k: usize| m.col(k)[k];
+    let condensed = whole.plate(plate.0);
+    [Direction::Warp, Direction::Weft].into_iter().enumerate().any(|(k, direction)| {
+        let bends = rigid(&condensed, k) > 1e-3 * rigid(&plate.0, k);
+        let short = around.iter().find(|(d, _)| *d == direction);
+        match short {
+            Some((_, m)) => !bends || whole.differs(k, &m.forces(area)) > LIKE,
+            None => bends,
+        }
+    })
+}
+
 /// What the ring of a vertex can measure of the directions that are wanted.
-fn measures(rings: &Rings, v: usize, wanted: [f64; 3]) -> Vec<(Direction, Measure)> {
-    let Some(ring) = rings.flat(v) else { return Vec::new() };
+fn measures(ring: Option<&Ring>, wanted: [f64; 3]) -> Vec<(Direction, Measure)> {
+    let Some(ring) = ring else { return Vec::new() };
     let eighth = std::f64::consts::FRAC_PI_4;
     [(Direction::Warp, 0.0), (Direction::Weft, 2.0), (Direction::Bias, 1.0), (Direction::Bias, 3.0)]
         .into_iter()

@@ -3,15 +3,15 @@
 use std::ops::Range;
 
 use super::bending::{self, Stencil};
+use super::diagonals::{self, Leaning};
 use super::fibers::{Direction, Edge, Fiber};
 use super::order::Order;
 use super::solver::Chooser;
-use super::{runs, stiffness, tethers};
+use super::{hubs, runs, stiffness, tethers};
 use crate::fabric::Fabric;
 use crate::garment::layout::{
-    Bends, Bundle, ENDED, Fibers, Layout, Links, List, Lists, MAX_LISTED, OWNERS, Row, Tethers,
+    Bends, Bundle, Diagonals, ENDED, Fibers, Layout, Links, List, Lists, MAX_LISTED, OWNERS, Row, Tethers,
 };
-use crate::garment::shape::NO_VERTEX;
 use crate::garment::{Shape, Solver};
 
 /// What baking has found out about a shape so far.
@@ -41,7 +41,9 @@ pub fn lay_out(baking: &Baking<'_>) -> Layout {
     let chooser = Chooser::new(baking.shape, &baking.shape.solver);
     let moves = |f: &&Fiber| f.vertices.iter().any(|&v| !baking.shape.fixed[v as usize]);
     let across = || baking.chains.iter().filter(|f| f.direction != Direction::Warp).filter(moves);
-    for fiber in across().filter(|f| chooser.choose(f) == Solver::GaussSeidel) {
+    // Whole fibers along the bias lie side by side, or they are swept.
+    let leans = |f: &Fiber| f.direction == Direction::Bias && chooser.choose(f) == Solver::SemiImplicit;
+    for fiber in across().filter(|f| chooser.choose(f) == Solver::GaussSeidel || leans(f)) {
         fiber.edges.iter().for_each(|&e| role[e as usize] = Some(fiber.direction));
     }
     // Warp that no fiber carries, such as the link by which a fiber hangs from the middle of another.
@@ -61,21 +63,21 @@ pub fn lay_out(baking: &Baking<'_>) -> Layout {
     };
     // Fibers that are solved whole but do not lie side by side: warp that crosses warp, and what is chosen to be.
     let crossing = baking.order.crossing.iter().map(|&i| &baking.pieces[i]);
-    let chosen = across().filter(|f| chooser.choose(f) != Solver::GaussSeidel);
-    let whole: Vec<(&Fiber, Solver)> = crossing.chain(chosen).map(|f| (f, chooser.choose(f))).collect();
-    let hoops = across().filter(|f| f.direction == Direction::Weft && f.is_hoop());
-    let hoops = hoops.filter(|f| chooser.choose(f) == Solver::GaussSeidel);
-    let hoops: Vec<(&Fiber, Solver)> = hoops.map(|f| (f, Solver::SemiImplicit)).collect();
-    let (weft, numbers) = links(baking, &of(false));
+    let chosen = across().filter(|f| chooser.choose(f) != Solver::GaussSeidel && !leans(f));
+    let lists_of: Vec<(&Fiber, Solver)> = crossing.chain(chosen).map(|f| (f, chooser.choose(f))).collect();
+    let shear = of(true);
+    let (diagonals, whole) = diagonals(baking, &shear, baking.chains.iter().filter(|f| leans(f)));
+    let shear: Vec<_> = shear.into_iter().filter(|(i, _)| !whole[*i]).collect();
     let stencils = bending::stencils(baking.shape, baking.edges, baking.fabric);
     Layout {
-        shear: links(baking, &of(true)).0,
-        weft,
+        diagonals,
+        shear: links(baking, &shear),
+        weft: links(baking, &of(false)),
         fibers: fibers(baking, &chooser),
-        crossing: lists(baking, whole, None),
-        hoops: lists(baking, hoops, Some(&numbers)),
+        crossing: lists(baking, lists_of),
         bends: bends(baking, &stencils),
         skewed: bends(baking, &stencils),
+        hubs: hubs::hubs(baking.order, &stencils),
         tethers: tethers(baking),
         spans: spans(&baking.order.owner),
         owner: baking.order.owner.clone().into(),
@@ -95,8 +97,8 @@ fn same(a: f32, b: f32) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs()) || a == b
 }
 
-/// Links of single edges, each with the direction of the fiber that it belongs to; and the number of each edge's link.
-fn links(baking: &Baking<'_>, edges: &[(usize, Direction)]) -> (Links, Vec<u32>) {
+/// Links of single edges, each with the direction of the fiber that it belongs to.
+fn links(baking: &Baking<'_>, edges: &[(usize, Direction)]) -> Links {
     let edge = |i: usize| &baking.edges[edges[i].0];
     let soft = |i: usize| compliance(baking.fabric, edge(i), edges[i].1);
     let particle = |v: u32| baking.order.particle[v as usize];
@@ -111,14 +113,45 @@ fn links(baking: &Baking<'_>, edges: &[(usize, Direction)]) -> (Links, Vec<u32>)
         same(edge(i).rest, edge(j).rest) && same(soft(i), soft(j)) && (0..2).all(|k| same(weight(i, k), weight(j, k)))
     };
     let (tuples, laid) = runs::lay_out(&constraints, &baking.order.owner, true, &alike);
-    let mut numbers = vec![0; baking.edges.len()];
-    laid.serial.iter().enumerate().for_each(|(number, &i)| numbers[edges[i].0] = number as u32);
-    let links = Links {
+    Links {
         tuples,
         rest: laid.places.iter().map(|&i| edge(i).rest).collect(),
         compliance: laid.places.iter().map(|&i| soft(i)).collect(),
+    }
+}
+
+/// The fibers along the bias, of the edges given, that can be solved whole; and which edges those are.
+fn diagonals<'a>(
+    baking: &Baking<'_>,
+    shear: &[(usize, Direction)],
+    leaning: impl Iterator<Item = &'a Fiber>,
+) -> (Diagonals, Vec<bool>) {
+    let mut open = vec![false; baking.edges.len()];
+    shear.iter().for_each(|&(i, _)| open[i] = true);
+    let particle = |v: u32| baking.order.particle[v as usize];
+    let mut fibers = Vec::new();
+    for fiber in leaning {
+        let ends = fiber.vertices.windows(2).map(|v| [particle(v[0]), particle(v[1])]);
+        let links: Vec<_> = fiber.edges.iter().map(|&e| e as usize).zip(ends).collect();
+        let (sin, cos) = baking.edges[links[0].0].angle.sin_cos();
+        // Links between two fixed particles are nobody's.
+        for part in links.split(|l| !open[l.0]).filter(|p| !p.is_empty()) {
+            fibers.push(Leaning { towards: sin * cos > 0.0, links: part.to_vec() });
+        }
+    }
+    let edge = |i: usize| &baking.edges[i];
+    let soft = |i: usize| compliance(baking.fabric, edge(i), Direction::Bias);
+    let weights = |i: usize| [edge(i).a, edge(i).b].map(|v| baking.weights[v as usize]);
+    let alike = |i: usize, j: usize| {
+        let ([a, b], [c, d]) = (weights(i), weights(j));
+        same(edge(i).rest, edge(j).rest) && same(soft(i), soft(j)) && same(a, b) && same(a, c) && same(a, d)
     };
-    (links, numbers)
+    let (mut laid, places, numbers) = diagonals::lay_out(&fibers, &baking.order.owner, &alike);
+    laid.rest = places.iter().map(|&i| edge(i).rest).collect();
+    laid.compliance = places.iter().map(|&i| soft(i)).collect();
+    let mut taken = vec![false; baking.edges.len()];
+    numbers.iter().for_each(|&i| taken[i] = true);
+    (laid, taken)
 }
 
 fn fibers(baking: &Baking<'_>, chooser: &Chooser) -> Fibers {
@@ -170,10 +203,9 @@ fn fibers_alike(baking: &Baking<'_>, a: &Fiber, b: &Fiber) -> bool {
         && a.vertices.iter().zip(&b.vertices).all(|(&v, &w)| same(weight(v), weight(w)))
 }
 
-/// Fibers as index lists: sets without a common particle, in each of them lists of equal length and like solver. Their
-/// links have the `numbers` of their edges, or their own.
-fn lists(baking: &Baking<'_>, mut left: Vec<(&Fiber, Solver)>, numbers: Option<&[u32]>) -> Lists {
-    let mut out = ListsMaker { numbers: numbers.map(<[u32]>::to_vec), ..ListsMaker::default() };
+/// Fibers as index lists: sets without a common particle, in each of them lists of equal length and like solver.
+fn lists(baking: &Baking<'_>, mut left: Vec<(&Fiber, Solver)>) -> Lists {
+    let mut out = ListsMaker::default();
     left.sort_by_key(|(f, solver)| (std::cmp::Reverse(f.edges.len()), f.direction, *solver, !f.is_hoop()));
     while !left.is_empty() {
         let mut taken = vec![false; baking.order.particle.len()];
@@ -192,7 +224,6 @@ fn lists(baking: &Baking<'_>, mut left: Vec<(&Fiber, Solver)>, numbers: Option<&
         lists: out.lists.into(),
         sets: out.sets.into(),
         index: out.index.into(),
-        serial: out.serial.into(),
         rest: out.rest.into(),
         compliance: out.compliance.into(),
     }
@@ -203,8 +234,6 @@ struct ListsMaker {
     lists: Vec<List>,
     sets: Vec<[Range<u32>; OWNERS]>,
     index: Vec<u32>,
-    numbers: Option<Vec<u32>>,
-    serial: Vec<u32>,
     rest: Vec<f32>,
     compliance: Vec<f32>,
 }
@@ -240,11 +269,6 @@ impl ListsMaker {
         }
         for link in 0..fibers[0].edges.len() {
             let edges = || fibers.iter().map(|f| &baking.edges[f.edges[link] as usize]);
-            for fiber in &fibers {
-                let own = self.serial.len() as u32;
-                let number = |n: &Vec<u32>| n[fiber.edges[link] as usize];
-                self.serial.push(self.numbers.as_ref().map_or(own, number));
-            }
             self.rest.extend(edges().map(|e| e.rest));
             self.compliance.extend(edges().map(|e| compliance(baking.fabric, e, fibers[0].direction)));
         }
@@ -253,8 +277,7 @@ impl ListsMaker {
 
 /// The stencils of `K` particles, 3 or 4, the root of the stiffness within the coefficients.
 fn bends<const K: usize>(baking: &Baking<'_>, stencils: &[Stencil]) -> Bends<K> {
-    let count = |s: &&Stencil| if s.v[3] == NO_VERTEX { 3 } else { 4 };
-    let mine: Vec<&Stencil> = stencils.iter().filter(|s| count(s) == K).collect();
+    let mine: Vec<&Stencil> = stencils.iter().filter(|s| s.v.len() == K).collect();
     let (mut tuples, mut coefficients) = (Vec::new(), Vec::new());
     for stencil in mine {
         let particle = |k: usize| baking.order.particle[stencil.v[k] as usize];

@@ -6,7 +6,9 @@
 //! Thread: the loading thread.
 
 pub mod bending;
+mod diagonals;
 pub mod fibers;
+mod hubs;
 mod links;
 pub mod order;
 pub mod runs;
@@ -92,7 +94,7 @@ fn substeps(edges: &[fibers::Edge], layout: &Layout, hanging: f32) -> u32 {
     let mean = lengths.clone().sum::<f32>() / lengths.count().max(1) as f32;
     let links = layout.tethers.length.iter().copied().fold(0.0, f32::max) / mean.max(f32::MIN_POSITIVE);
     let tuples = [&layout.shear.tuples, &layout.weft.tuples];
-    let [loose, all] = tuples.iter().fold([0, 0], |[l, a], t| [l + t.loose.len(), a + t.count]);
+    let [loose, all] = tuples.iter().fold([0, layout.diagonals.count()], |[l, a], t| [l + t.loose.len(), a + t.count]);
     let irregular = loose as f32 / (all.max(1)) as f32;
     let more = 1.0 + irregular + (1.0 - hanging).max(0.0);
     ((links / LINKS_A_SUBSTEP).max(LEAST_SUBSTEPS) * more).round() as u32

@@ -45,8 +45,8 @@ pub fn lay_out<const K: usize>(
     }
     let sets = if apart { coloured(constraints, &order, owner.len()) } else { gathered(&order, &crosses) };
     all.extend(sets.into_iter().map(|set| Set {
-        direction: constraints[set[0]].0,
-        crosses: !apart && crosses(set[0]),
+        direction: set.first().map_or(Direction::Warp, |&i| constraints[i].0),
+        crosses: !apart && set.first().is_some_and(|&i| crosses(i)),
         shares: std::array::from_fn(|share| {
             let mine = |i: &usize| usize::from(owner[constraints[*i].1[0] as usize]) == share;
             let part: Vec<usize> = set.iter().copied().filter(mine).collect();
@@ -86,10 +86,13 @@ fn coloured<const K: usize>(
     sets
 }
 
-/// One set of what stays within an owner's particles, one of what crosses.
+/// One set of what stays within an owner's particles, one of what crosses; the first is there if the second is, so that
+/// two layouts side by side never cross while the other keeps within.
 fn gathered(order: &[usize], crosses: &dyn Fn(usize) -> bool) -> Vec<Vec<usize>> {
     let (crossing, within): (Vec<usize>, Vec<usize>) = order.iter().partition(|&&i| crosses(i));
-    [within, crossing].into_iter().filter(|s| !s.is_empty()).collect()
+    let sets = if crossing.is_empty() { 1 } else { 2 };
+    let any = !(within.is_empty() && crossing.is_empty());
+    [within, crossing].into_iter().take(if any { sets } else { 0 }).collect()
 }
 
 #[derive(Default)]

@@ -1,8 +1,9 @@
 //! Which solver each fiber gets.
 //!
 //! What carries weight is solved as a whole, since a sweep from link to link lets it stretch by the number of its links:
-//! fibers down the garment. What lies across carries itself alone, and shear is soft: Gauss-Seidel. (A waistband solved
-//! whole took a quarter of the skirt's step for nothing that its strain showed.) A garment file may say otherwise
+//! fibers down the garment; and what runs along the bias, because link by link a substep leaves a fraction of its
+//! stiffness (`diagonals` says what can be). What lies across carries itself alone: Gauss-Seidel. (A waistband
+//! solved whole took a quarter of the skirt's step for nothing that its strain showed.) A garment file may say otherwise
 //! ([`Overrides`]).
 
 use std::collections::BTreeMap;
@@ -55,7 +56,7 @@ impl Chooser {
     pub fn choose(&self, fiber: &Fiber) -> Solver {
         let region = self.region(fiber);
         self.overrides.of(fiber.direction, region).unwrap_or(match (fiber.direction, region) {
-            (Direction::Warp, _) if !fiber.is_loose() => Solver::SemiImplicit,
+            (Direction::Warp | Direction::Bias, _) if !fiber.is_loose() => Solver::SemiImplicit,
             _ => Solver::GaussSeidel,
         })
     }
@@ -104,7 +105,16 @@ mod tests {
         for row in 1..6 {
             assert_eq!(solver(Direction::Weft, row), Solver::GaussSeidel);
         }
-        assert_eq!(solver(Direction::Bias, 0), Solver::GaussSeidel);
+        // Diagonals run on through quads, and are alone between triangles that lean to and fro.
+        for (mesh, alone) in [(tube(12, 6), false), (split(tube(12, 6), true), true)] {
+            let shape =
+                Shape { cut: mesh.0.clone(), worn: mesh.0, faces: mesh.1, fixed: vec![false; 72], ..Shape::default() };
+            let chooser = Chooser::new(&shape, &Overrides::default());
+            let fibers = fibers::trace(&shape.cut, &fibers::edges(&shape.cut, &shape.faces));
+            let bias: Vec<&Fiber> = fibers.iter().filter(|f| f.direction == Direction::Bias).collect();
+            let expected = if alone { Solver::GaussSeidel } else { Solver::SemiImplicit };
+            assert!(!bias.is_empty() && bias.iter().all(|f| f.is_loose() == alone && chooser.choose(f) == expected));
+        }
     }
 
     #[test]
@@ -129,7 +139,7 @@ mod tests {
         let shape = Shape { cut: positions.clone(), worn: positions, faces, fixed, ..Shape::default() };
         let chooser = Chooser::new(&shape, &Overrides::default());
         for fiber in fibers::trace(&shape.cut, &fibers::edges(&shape.cut, &shape.faces)) {
-            let whole = fiber.direction == Direction::Warp && fiber.edges.len() > 1;
+            let whole = fiber.direction != Direction::Weft && fiber.edges.len() > 1;
             assert_eq!(chooser.choose(&fiber), if whole { Solver::SemiImplicit } else { Solver::GaussSeidel });
         }
     }

@@ -186,9 +186,9 @@ mod tests {
         assert_eq!((found.vertices, found.triangles, found.fixed, found.tethers), (72, 120, 12, 60));
         let Coverage { edges, warp, hoops, bias, loose, .. } = found.coverage;
         assert_eq!((edges, warp, hoops, bias, loose), (60 + 72 + 120, 60, 72, 120, 0));
-        // Twelve columns; the fixed hoop is nobody's.
-        assert_eq!(found.solvers[0], Solved { solver: Solver::SemiImplicit, fibers: 12, edges: 60 });
-        assert_eq!(found.solvers[1].edges, edges - 60 - 12);
+        // Twelve columns and the diagonals both ways; the fixed hoop is nobody's.
+        assert_eq!(found.solvers[0], Solved { solver: Solver::SemiImplicit, fibers: 12 + 24, edges: 60 + 120 });
+        assert_eq!(found.solvers[1].edges, edges - 60 - 120 - 12);
         assert_eq!(found.stencils, [48, 60, 0]);
         assert!(found.warnings.is_empty(), "{:?}", found.warnings);
         assert!(found.notes[0].contains("bend_bias_un_m") && found.notes[0].contains("2.0 uN m"), "{:?}", found.notes);

@@ -45,30 +45,5 @@ fn at(body: &Body, point: Vec3, carries: &impl Fn(usize) -> bool) -> SkinWeights
         // Nothing near is admitted: such a point hangs on the chest, which every garment is hung from.
         sum[Joint::Chest.index()] = 1.0;
     }
-    strongest(&sum)
-}
-
-/// The four strongest of all bones, made to sum to 1.
-fn strongest(all: &[f32; BONES]) -> SkinWeights {
-    let mut order: [usize; BONES] = std::array::from_fn(|i| i);
-    order.sort_by(|&a, &b| all[b].total_cmp(&all[a]).then(a.cmp(&b)));
-    let total: f32 = order[..4].iter().map(|&b| all[b]).sum();
-    SkinWeights {
-        bones: std::array::from_fn(|k| order[k] as u8),
-        weights: std::array::from_fn(|k| all[order[k]] / total),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_strongest_four_sum_to_one() {
-        let mut all = [0.0; BONES];
-        (0..6).for_each(|i| all[i * 3] = (i + 1) as f32);
-        let w = strongest(&all);
-        assert_eq!(w.bones, [15, 12, 9, 6]);
-        assert!((w.weights.iter().sum::<f32>() - 1.0).abs() < 1e-6);
-    }
+    SkinWeights::strongest((0u8..).zip(sum)).0
 }

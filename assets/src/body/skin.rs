@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::Region;
 use crate::mesh::SkinWeights;
-use crate::skeleton::{BONES, Joint, Skeleton, TWIST_BONES};
+use crate::skeleton::{BONES, Joint, Skeleton, Twist};
 
 /// The region of a final vertex.
 pub(super) fn region(part: Vec3, position: Vec3) -> Region {
@@ -61,7 +61,7 @@ impl<'a> Skinning<'a> {
             self.leg(&mut weights, p, shares.y, mirrored);
             weights[side(Joint::LeftClavicle, mirrored).index()] += shares.z;
         }
-        four_largest(&weights)
+        SkinWeights::strongest((0u8..).zip(weights)).0
     }
 
     fn spine(&self, weights: &mut Bones, p: Vec3, share: f32) {
@@ -87,22 +87,16 @@ impl<'a> Skinning<'a> {
         let at = |j: Joint| self.skeleton.at(joint(j));
         let (shoulder, elbow, wrist, hand) =
             (at(Joint::LeftShoulder), at(Joint::LeftElbow), at(Joint::LeftWrist), at(Joint::LeftHand));
-        let (upper, fore) = (elbow - shoulder, wrist - elbow);
-        let (u, f) = (upper.normalize(), fore.normalize());
+        let (u, f) = ((elbow - shoulder).normalize(), (wrist - elbow).normalize());
         let mm = self.size * 1e-3;
         // The thumb, which stands out in front, goes with the wrist and not with the fingers.
         let thumb = 2.0 * ((p - wrist).z - (p - wrist).dot(f) * f.z - 40.0 * mm).max(0.0);
-        let ramps = [
-            ramp((p - shoulder).dot(u) - 0.5 * upper.length(), 0.32 * upper.length()),
-            ramp((p - elbow).dot((u + f).normalize()), 46.0 * mm),
-            ramp((p - elbow).dot(f) - 0.5 * fore.length(), 0.36 * fore.length()),
-            ramp((p - wrist).dot(f), 28.0 * mm),
-            ramp((p - hand).dot(f) - thumb, 22.0 * mm),
-        ];
-        let [upper_twist, fore_twist] = if mirrored { [2, 3] } else { [0, 1] }.map(|k| TWIST_BONES[k].0);
-        let [s, e, w, h] =
-            [Joint::LeftShoulder, Joint::LeftElbow, Joint::LeftWrist, Joint::LeftHand].map(|j| joint(j).index());
-        chain(weights, share, &[s, upper_twist, e, fore_twist, w, h], &ramps);
+        let lower = ramp((p - elbow).dot((u + f).normalize()), ELBOW_MM * mm);
+        let ramps = [ramp((p - wrist).dot(f), WRIST_MM * mm), ramp((p - hand).dot(f) - thumb, 22.0 * mm)];
+        let [e, w, h] = [Joint::LeftElbow, Joint::LeftWrist, Joint::LeftHand].map(joint);
+        self.split(weights, p, share * (1.0 - lower), e, [DELTOID_MM, ELBOW_MM]);
+        self.split(weights, p, share * lower * (1.0 - ramps[0]), w, [FOREARM_MM; 2]);
+        chain(weights, share * lower * ramps[0], &[w, h].map(Joint::index), &ramps[1..]);
     }
 
     fn leg(&self, weights: &mut Bones, p: Vec3, share: f32, mirrored: bool) {
@@ -116,32 +110,41 @@ impl<'a> Skinning<'a> {
         let mm = self.size * 1e-3;
         let across = ((knee - hip).normalize() + (ankle - knee).normalize()).normalize();
         let foot = Vec3::new(0.0, -0.94, 0.34);
-        let ramps = [
-            ramp((p - knee).dot(across), 60.0 * mm),
-            ramp((p - ankle).dot(foot) + 8.0 * mm, 34.0 * mm),
-            ramp((p - toe).z, 26.0 * mm),
-        ];
-        let bones = [Joint::LeftHip, Joint::LeftKnee, Joint::LeftAnkle, Joint::LeftToe].map(|j| joint(j).index());
-        chain(weights, share, &bones, &ramps);
+        let lower = ramp((p - knee).dot(across), KNEE_MM * mm);
+        let ramps = [ramp((p - ankle).dot(foot) + 8.0 * mm, ANKLE_MM * mm), ramp((p - toe).z, 26.0 * mm)];
+        let [k, a, t] = [Joint::LeftKnee, Joint::LeftAnkle, Joint::LeftToe].map(joint);
+        self.split(weights, p, share * (1.0 - lower), k, [BUTTOCK_MM, KNEE_MM]);
+        self.split(weights, p, share * lower * (1.0 - ramps[0]), a, [KNEE_MM, ANKLE_MM]);
+        chain(weights, share * lower * ramps[0], &[a, t].map(Joint::index), &ramps[1..]);
+    }
+
+    /// Divides a share linearly between the bones of the split limb that ends at a joint: from its root bone to its last
+    /// twist bone, one after the other along the limb without so much (mm) at its two ends.
+    fn split(&self, weights: &mut Bones, p: Vec3, share: f32, to: Joint, ends_mm: [f32; 2]) {
+        let Some(twist) = Twist::towards(to) else { return };
+        let (root, end) = (self.skeleton.at(twist.from), self.skeleton.at(to));
+        let [before, after] = ends_mm.map(|e| e * self.size * 1e-3);
+        let length = root.distance(end);
+        let way = ((p - root).dot((end - root) / length) - before) / (length - before - after);
+        let place = way.clamp(0.0, 1.0) * twist.count as f32;
+        let below = (place as usize).min(twist.count - 1);
+        let bone = |k: usize| if k == 0 { twist.from.index() } else { twist.first + k - 1 };
+        weights[bone(below + 1)] += share * (place - below as f32);
+        weights[bone(below)] += share * (1.0 - (place - below as f32));
     }
 }
+
+/// Half the length over which a joint's bend is spread (mm, of a body of 1.7 m); twist is divided beyond it.
+const ELBOW_MM: f32 = 46.0;
+const WRIST_MM: f32 = 28.0;
+const KNEE_MM: f32 = 60.0;
+const ANKLE_MM: f32 = 34.0;
+/// What a forearm does not twist in at either end: next to nothing, so that it twists as gently as its mesh allows.
+const FOREARM_MM: f32 = 8.0;
+/// From the shoulder's or the hip's joint on, how far the root bone carries all (mm, of a body of 1.7 m).
+const DELTOID_MM: f32 = 75.0;
+const BUTTOCK_MM: f32 = 90.0;
 
 fn side(joint: Joint, mirrored: bool) -> Joint {
     if mirrored { joint.mirror() } else { joint }
-}
-
-/// The four largest weights, made to sum to 1; equal ones in the order of the bones.
-fn four_largest(weights: &Bones) -> SkinWeights {
-    let mut order: [usize; BONES] = std::array::from_fn(|i| i);
-    order.sort_by(|&a, &b| weights[b].total_cmp(&weights[a]));
-    let kept = [0, 1, 2, 3].map(|k| weights[order[k]]);
-    let sum: f32 = kept.iter().sum();
-    let mut out = SkinWeights::default();
-    for k in 0..4 {
-        if kept[k] > 0.0 {
-            out.bones[k] = order[k] as u8;
-            out.weights[k] = kept[k] / sum;
-        }
-    }
-    out
 }

@@ -88,7 +88,7 @@ pub fn girth(body: &Body, height: f32) -> f32 {
 }
 
 /// [`girth`] on the parts of a body that is still being made.
-pub(super) fn girth_of(mesh: &Mesh, regions: &[Region], height: f32) -> f32 {
+pub(crate) fn girth_of(mesh: &Mesh, regions: &[Region], height: f32) -> f32 {
     let keep = |t: usize| {
         mesh.triangles[t].iter().all(|&v| !matches!(regions[v as usize], Region::LeftArm | Region::RightArm))
     };

@@ -6,7 +6,7 @@ use std::f32::consts::TAU;
 use glam::DVec3;
 
 use super::*;
-use crate::skeleton::{BONES, Joint};
+use crate::skeleton::{BONES, Joint, TWISTS, bone_joint, bone_mirror};
 
 /// A linear congruential generator (Knuth's MMIX constants) that gives the same subjects in every run.
 struct Dice(u64);
@@ -118,12 +118,8 @@ fn body_is_symmetric_with_its_weights() {
         };
         for (v, &other) in twin.iter().enumerate() {
             for bone in 0..BONES {
-                let mirrored = match bone {
-                    23 | 24 => bone + 2,
-                    25 | 26 => bone - 2,
-                    _ => Joint::ALL[bone].mirror().index(),
-                };
-                assert!((share(v, bone) - share(other, mirrored)).abs() < 1e-3, "vertex {v} bone {bone}");
+                let mirrored = share(other, bone_mirror(bone));
+                assert!((share(v, bone) - mirrored).abs() < 1e-3, "vertex {v} bone {bone}");
             }
         }
     }
@@ -268,8 +264,13 @@ fn weights_are_shares_and_change_gently() {
         }
         let dense = |v: u32| {
             let mut all = [0.0f32; BONES];
-            let w = &body.weights[v as usize];
-            (0..4).for_each(|k| all[usize::from(w.bones[k])] += w.weights[k]);
+            for (bone, w) in body.weights[v as usize].iter() {
+                // What hangs on a twist bone hangs, so far as it twists, on the two ends of its limb.
+                let twist = TWISTS.iter().find(|t| t.bones().contains(&usize::from(bone)));
+                let share = twist.map_or(0.0, |t| t.share(usize::from(bone) - t.first + 1));
+                all[bone_joint(bone.into()).unwrap().index()] += w * (1.0 - share);
+                all[twist.map_or(0, |t| t.to.index())] += w * share;
+            }
             all
         };
         for t in &body.mesh.triangles {

@@ -156,6 +156,103 @@ impl<const K: usize> Default for Bends<K> {
     }
 }
 
+/// One owner's part of a family of [`Diagonals`].
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Strand {
+    /// Its runs, a range of [`Diagonals::runs`], in the order of solving.
+    pub runs: Range<u32>,
+    /// The particles at which its fibers begin, a range of [`Diagonals::starts`].
+    pub starts: Range<u32>,
+}
+
+/// Fibers along the bias that are solved whole, side by side. In a family at most one link leads to a particle and one
+/// leads on from it, the one that leads to it in an earlier run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Diagonals {
+    /// Families: fibers that lean the same way.
+    pub families: Box<[[Strand; OWNERS]]>,
+    /// Links, family after family, owner after owner; the first particle of each is the one that the fiber comes from.
+    pub runs: Box<[Run<2>]>,
+    /// Particles that no link leads to.
+    pub starts: Box<[u32]>,
+    /// Length as cut (m).
+    pub rest: Box<[f32]>,
+    /// Inverse stiffness (m/N).
+    pub compliance: Box<[f32]>,
+}
+
+impl Diagonals {
+    /// Links in all.
+    pub fn count(&self) -> usize {
+        self.runs.iter().map(|r| r.len as usize).sum()
+    }
+
+    /// Calls `each(place, particles)` for every link with the place of its parameters.
+    pub fn for_each(&self, mut each: impl FnMut(usize, [u32; 2])) {
+        for run in &self.runs {
+            (0..run.len).for_each(|t| each(run.place(t), run.first.map(|f| f + t)));
+        }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.families) + size_of_val(&*self.runs) + 4 * self.starts.len() + 8 * self.rest.len()
+    }
+}
+
+/// Hubs side by side with equally many particles and sums: vertices whose bending is measured over their whole ring.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct HubGroup {
+    /// Particles of each: the vertex and its ring.
+    pub points: u32,
+    /// Sums of each over these particles, 1 to 3.
+    pub sums: u32,
+    /// Hubs.
+    pub count: u32,
+    /// Number of the first among all hubs.
+    pub number: u32,
+    /// Where the particles of the first are in [`Hubs::particles`].
+    pub particles: u32,
+    /// Where its coefficients are in [`Hubs::coefficients`].
+    pub coefficients: u32,
+}
+
+/// Bending stencils over whole rings: energy (1/2) |sum c_i x_i|^2 for each sum of a hub, the root of the stiffness within the
+/// coefficients.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Hubs {
+    /// Particles, hub after hub; the vertex in the middle comes first.
+    pub particles: Box<[u32]>,
+    /// Coefficients (sqrt(N/m)), hub after hub, particle after particle, those of its sums side by side.
+    pub coefficients: Box<[f32]>,
+    /// Group after group, owner after owner, set after set.
+    pub groups: Box<[HubGroup]>,
+    /// Each owner's groups, of two sets as [`Bends`] has them: what keeps within the owners, then what crosses them.
+    pub sets: [[Range<u32>; OWNERS]; 2],
+    /// Hubs in all.
+    pub count: usize,
+}
+
+impl Hubs {
+    /// Sets that are not empty, or come before one that is not.
+    pub fn sets(&self) -> usize {
+        let any = |set: &[Range<u32>; OWNERS]| set.iter().any(|r| !r.is_empty());
+        self.sets.iter().rposition(any).map_or(0, |last| last + 1)
+    }
+
+    /// Calls `each(number, particles, coefficients)` for every hub.
+    pub fn for_each(&self, mut each: impl FnMut(usize, &[u32], &[f32])) {
+        for group in &self.groups {
+            let (points, each_has) = (group.points as usize, (group.points * group.sums) as usize);
+            for t in 0..group.count as usize {
+                let particles = &self.particles[group.particles as usize + t * points..][..points];
+                let coefficients = &self.coefficients[group.coefficients as usize + t * each_has..][..each_has];
+                each(group.number as usize + t, particles, coefficients);
+            }
+        }
+    }
+}
+
 /// How far each particle can get from where the garment hangs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tethers {
@@ -247,8 +344,6 @@ pub struct Lists {
     pub sets: Box<[[Range<u32>; OWNERS]]>,
     /// Particles.
     pub index: Box<[u32]>,
-    /// Number of each link among those that its tension is counted with.
-    pub serial: Box<[u32]>,
     /// Length of each link as cut (m).
     pub rest: Box<[f32]>,
     /// Inverse stiffness (m/N).
@@ -258,7 +353,9 @@ pub struct Lists {
 /// Everything that holds a garment together.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Layout {
-    /// Shear: links along the bias, in coloured sets.
+    /// Shear: fibers along the bias, solved whole.
+    pub diagonals: Diagonals,
+    /// Shear that lies in no such fiber: links along the bias, in coloured sets.
     pub shear: Links,
     /// Links along the weft, and along the warp where no fiber carries them, in coloured sets.
     pub weft: Links,
@@ -266,12 +363,12 @@ pub struct Layout {
     pub fibers: Fibers,
     /// Fibers that are solved whole by index list: warp that crosses warp, waistbands, whatever was chosen to be.
     pub crossing: Lists,
-    /// Closed hoops along the weft, for the quality that solves them whole too; the same links are in `weft`.
-    pub hoops: Lists,
     /// Bending over three particles in a row.
     pub bends: Bends<3>,
     /// Bending where a fiber turns within the cloth: a fourth particle keeps flat cloth free of it.
     pub skewed: Bends<4>,
+    /// Bending where the mesh is uneven: measured over whole rings.
+    pub hubs: Hubs,
     /// What holds the garment together when all else gives way.
     pub tethers: Tethers,
     /// The particles that each owner has, as ranges `(first, len)`.
@@ -291,14 +388,16 @@ impl Layout {
         fn bends<const K: usize>(b: &Bends<K>) -> usize {
             b.tuples.runs.len() * size_of::<Run<K>>() + b.tuples.loose.len() * 4 * K + b.coefficients[0].len() * 4 * K
         }
-        links(&self.shear)
+        self.diagonals.bytes()
+            + links(&self.shear)
             + links(&self.weft)
             + self.fibers.rows.len() * size_of::<Row>()
             + self.fibers.rest.len() * 8
             + lists(&self.crossing)
-            + lists(&self.hoops)
             + bends(&self.bends)
             + bends(&self.skewed)
+            + 4 * (self.hubs.particles.len() + self.hubs.coefficients.len())
+            + size_of_val(&*self.hubs.groups)
             + self.tethers.anchor.len() * 8
             + self.owner.len()
             + self.spans.iter().map(Vec::len).sum::<usize>() * 8

@@ -123,16 +123,20 @@ pub struct Solver {
 /// Sets in which nothing shares a particle.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Sets {
-    /// Of links along the bias.
+    /// Families of fibers along the bias that are solved whole.
+    pub diagonals: usize,
+    /// Their edges.
+    pub diagonal_edges: usize,
+    /// Of links along the bias that lie in none.
     pub shear: usize,
+    /// Their edges.
+    pub shear_edges: usize,
     /// Of links along the weft.
     pub weft: usize,
     /// Bundles of fibers side by side.
     pub bundles: usize,
     /// Of fibers by index list.
     pub crossing: usize,
-    /// Of hoops.
-    pub hoops: usize,
 }
 
 /// Bending stencils by direction.
@@ -256,11 +260,13 @@ fn report(garment: &Garment, found: Survey, bake_ms: f64) -> BakeReport {
         },
         solvers: found.solvers.iter().map(solver).collect(),
         sets: Sets {
+            diagonals: layout.diagonals.families.len(),
+            diagonal_edges: layout.diagonals.count(),
             shear: layout.shear.tuples.sets.len(),
+            shear_edges: layout.shear.tuples.count,
             weft: layout.weft.tuples.sets.len(),
             bundles: layout.fibers.bundles.len(),
             crossing: layout.crossing.sets.len(),
-            hoops: layout.hoops.sets.len(),
         },
         tethers: found.tethers,
         stencils: Stencils { warp: found.stencils[0], weft: found.stencils[1], bias: found.stencils[2] },
@@ -304,9 +310,10 @@ fn summary(report: &BakeReport, paint: Paint) -> String {
     }
     let (sets, stencils) = (report.sets, report.stencils);
     line(format!(
-        "  in {} sets of shear, {} of weft, {} bundles, {} sets by index, {} of hoops",
-        sets.shear, sets.weft, sets.bundles, sets.crossing, sets.hoops
+        "  {} edges along the bias side by side in {} families, {} alone in {} sets of shear",
+        sets.diagonal_edges, sets.diagonals, sets.shear_edges, sets.shear,
     ));
+    line(format!("  {} sets of weft, {} bundles, {} sets by index", sets.weft, sets.bundles, sets.crossing));
     line(format!(
         "  {} tethers; bending: {} stencils along the warp, {} the weft, {} the bias",
         report.tethers, stencils.warp, stencils.weft, stencils.bias

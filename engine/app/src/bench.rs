@@ -1,9 +1,9 @@
 //! `toile bench`: what one part of the frame costs, with the error at that speed.
 
 use stats_alloc::INSTRUMENTED_SYSTEM;
+use toile_perf::skinning::{self, BenchError};
 use toile_perf::skirt::heap::{Heap, HeapProbe};
 use toile_perf::skirt::{self, SkirtError, table};
-use toile_perf::{skinning, yardstick};
 
 use crate::cli::{SkinningArgs, SkirtArgs};
 use crate::exit::AppError;
@@ -14,21 +14,28 @@ use crate::terminal::{self, Paint, Words};
 /// Runs `toile bench skinning`.
 ///
 /// # Errors
-/// Only where stdout cannot be written.
+/// Where this machine cannot do what was asked for, and where stdout cannot be written.
 pub fn skinning(args: &SkinningArgs) -> Result<(), AppError> {
-    let found = skinning::measure(args.verts).map_err(AppError::internal)?;
-    let report = SkinningReport {
-        verts: found.verts,
-        us: found.us,
-        ns_per_vertex: found.ns_per_vertex,
-        yardstick_us: found.yardstick_us,
-        yardstick_verts: yardstick::VERTICES,
-        max_error_m: found.max_error_m,
-    };
+    if args.table {
+        let words = Words::new(args.json);
+        let table = skinning::table::run(&mut |case| words.say(case)).map_err(unskinned)?;
+        if args.json {
+            return terminal::print_json(&Document::new("bench-skinning-table", table));
+        }
+        return terminal::print(&table.markdown());
+    }
+    let report = SkinningReport::new(skinning::measure(&args.options).map_err(unskinned)?, args.blend);
     if args.json {
         return terminal::print_json(&Document::new("bench-skinning", report));
     }
     terminal::print(&summary::skinning(&report, Paint::for_stdout()))
+}
+
+fn unskinned(error: BenchError) -> AppError {
+    match error {
+        BenchError::NoSuchLanes(_) | BenchError::Crew(_) => AppError::Device(error.to_string()),
+        BenchError::Body(_) | BenchError::Skin(_) => AppError::internal(error),
+    }
 }
 
 /// Runs `toile bench skirt`.

@@ -1,101 +1,193 @@
-//! `toile bench body`: bodies built to the measures of real people.
+//! `toile body`: a body that others made, imported, looked at, and written for other tools.
 
-use std::fmt::Write;
+use std::f32::consts::{FRAC_PI_2, PI};
+use std::path::Path;
 
-use serde::Serialize;
-use toile_perf::ansur::{self, Errors, Study, Survey};
+use glam::Affine3A;
+use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::export::{Dressed, glb};
+use toile_assets::import::{avatar, makehuman};
+use toile_assets::scene;
+use toile_assets::skeleton::BONES;
+use toile_engine::body::{JointFrames, Poser, palette};
+use toile_engine::frame::BLEND;
+use toile_engine::skin::SkinningJob;
+use toile_sensors::frame::{Joints, TrackedJoint};
+use toile_view::image::Size;
+use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};
+use toile_view::sheet;
+use toile_view::trace::{Quality, Stage};
 
 use crate::cli::BodyArgs;
 use crate::exit::AppError;
-use crate::report::Document;
-use crate::terminal::{self, Paint, Tone, Words};
+use crate::output::OutputFolder;
+use crate::pictures::write_png;
+use crate::report::{BodyReport, Document, Influences, JointFound, Named, SurfaceReport};
+use crate::summary;
+use crate::terminal::{self, Paint, Words};
 
-/// The report as JSON has it.
-#[derive(Debug, Serialize)]
-struct Report {
-    /// The seed by which people were drawn.
-    seed: u64,
-    /// One study a file.
-    studies: Vec<Study>,
-}
+/// A picture of one side.
+const STILL: Size = Size::new(480, 800);
 
-/// Runs `toile bench body`.
+/// The moment of the embedded performance in which the walking body is shown (s).
+const WALK_S: f32 = 4.9;
+
+/// Views of a body: turns of the camera.
+const VIEWS: [f32; 3] = [0.0, FRAC_PI_2, PI];
+
+/// Runs `toile body`.
 ///
 /// # Errors
-/// [`AppError::Input`] for a file that is no survey; [`AppError::Threshold`] where a limit was missed, after the table.
-pub fn bench(args: &BodyArgs) -> Result<(), AppError> {
+/// A file that does not become a body, an output folder that cannot be written, or a closed stdout.
+pub fn run(args: &BodyArgs) -> Result<(), AppError> {
     let words = Words::new(args.quiet || args.json);
-    let mut studies = Vec::new();
-    for file in &args.files {
-        let survey = Survey::read(file).map_err(AppError::input)?;
-        let bar = words.bar(args.people.min(survey.people()) as u64, "building bodies");
-        studies.push(ansur::study(&survey, args.people, args.seed, &|| bar.inc(1)).map_err(AppError::input)?);
+    let mut out = OutputFolder::prepare(&args.out)?;
+    let (imported, rows) = import(args)?;
+    if args.pictures {
+        let bar = words.bar(2 * VIEWS.len() as u64, "drawing");
+        draw(&mut out, "body.png", &imported.body, &title(args, &imported.body), || bar.inc(1))?;
+        let walking = walking(&imported.body)?;
+        draw(&mut out, "walking.png", &walking, "walking", || bar.inc(1))?;
         bar.finish_and_clear();
     }
-    let missed: Vec<&str> = studies.iter().filter(|s| !s.passes()).map(|s| s.people).collect();
-    let verdict = match missed[..] {
-        [] => Ok(()),
-        _ => Err(AppError::Threshold(format!(
-            "the {} miss a limit; the table says which measure, or how many bodies look wrong",
-            missed.join(" and the ")
-        ))),
-    };
+    out.write("body.glb", &glb(&Dressed { body: &imported.body, palette: None, worn: &[] }))?;
+    out.stage("report.json")?;
+    let document = Document::new("body", report(args, &imported, rows, out.files()));
+    let text = serde_json::to_string_pretty(&document).map_err(AppError::internal)?;
+    out.write("report.json", format!("{text}\n").as_bytes())?;
+    out.commit()?;
     if args.json {
-        terminal::print_json(&Document::new("bench-body", Report { seed: args.seed, studies }))?;
-    } else {
-        let tables: Vec<String> = studies.iter().map(|s| table(s, Paint::for_stdout())).collect();
-        terminal::print(&tables.join("\n"))?;
+        return terminal::print_json(&document);
     }
-    verdict
+    terminal::print(&summary::body(&document.body, Paint::for_stdout()))
 }
 
-/// One study as people read it.
-fn table(study: &Study, paint: Paint) -> String {
-    let mut text = String::new();
-    let title = format!("{} of {} {} of the survey", study.drawn, study.of, study.people);
-    let _ = writeln!(text, "{}", paint.tone(&title, Tone::Strong));
-    let _ = writeln!(
-        text,
-        "{:<34} {:>8} {:>9} {:>9} {:>9} {:>9} {:>8}",
-        "measure (mm)", "limit", "bias", "mean", "95 %", "max", "within"
-    );
-    for row in &study.measures {
-        let _ = writeln!(text, "{}", told(row, paint));
+/// The body of a glTF file, or of a MakeHuman folder, with that program's own girths.
+fn import(args: &BodyArgs) -> Result<(avatar::Imported, Option<Vec<Named>>), AppError> {
+    let options = avatar::Options { sex: args.sex, meshes: args.meshes.clone(), allow_holes: args.allow_holes };
+    if !args.file.is_dir() {
+        if !args.targets.is_empty() {
+            let cure = "give the folder of a MakeHuman base or leave out --target";
+            return Err(AppError::Usage(format!("{} is no folder, so it has no targets; {cure}", args.file.display())));
+        }
+        return Ok((avatar::read(&args.file, &options).map_err(AppError::input)?, None));
     }
-    let (ms, rough, bent) = (study.calibration_ms, study.roughness, study.unevenness);
-    let _ = writeln!(
-        text,
-        "a body takes {:.2} ms (median), {:.2} ms (95 %), {:.2} ms (max), in {:.0} to {:.0} steps",
-        ms.median, ms.p95, ms.max, study.steps.median, study.steps.max
-    );
-    let _ = writeln!(
-        text,
-        "roughness over the base body's ({:.4}): {:.3} (median), {:.3} (95 %), {:.3} (max); bent by {:.4} of an edge, \
-         {:.4} at most",
-        study.base_roughness, rough.median, rough.p95, rough.max, bent.median, bent.max
-    );
-    let wrong = format!(
-        "{} too rough (over {:.2}), {} cross themselves more than the base ({} edges), {} not to be met together: {:.1} % look wrong",
-        study.rough,
-        ansur::TOO_ROUGH,
-        study.crossing,
-        study.base_crossings,
-        study.unreachable,
-        study.wrong * 100.0
-    );
-    let _ = writeln!(text, "{}", paint.tone(&wrong, if study.wrong == 0.0 { Tone::Good } else { Tone::Warn }));
-    text
+    let choice = makehuman::Choice { targets: args.targets.clone(), rig: args.rig.clone() };
+    let made = makehuman::read(&args.file, &choice, &options).map_err(AppError::input)?;
+    let rows = made.girths.named().map(|(name, m)| named(name, m)).to_vec();
+    Ok((made.imported, Some(rows)))
 }
 
-fn told(row: &Errors, paint: Paint) -> String {
-    let within = row.within.map_or_else(|| "-".into(), |w| format!("{:.1} %", w * 100.0));
-    let limit = row.limit_mm.map_or_else(|| "follows".into(), |l| format!("{l:.0}"));
-    let line = format!(
-        "{:<34} {limit:>8} {:>9.3} {:>9.3} {:>9.3} {:>9.3} {within:>8}",
-        row.measure, row.bias_mm, row.mean_mm, row.p95_mm, row.max_mm
-    );
-    match row.within {
-        Some(w) if w < 1.0 => paint.tone(&line, Tone::Warn).into_owned(),
-        _ => line,
+/// A body of a file, as `toile try-on --body` wears it.
+pub fn wearer(file: &Path, sex: Sex) -> Result<avatar::Imported, AppError> {
+    let options = avatar::Options { sex, ..avatar::Options::default() };
+    if file.is_dir() {
+        let made = makehuman::read(file, &makehuman::Choice::default(), &options).map_err(AppError::input)?;
+        return Ok(made.imported);
+    }
+    avatar::read(file, &options).map_err(AppError::input)
+}
+
+/// The five measures with their names.
+pub fn measures(m: &Measures) -> [(&'static str, f32); 5] {
+    [
+        ("stature", m.stature),
+        ("shoulder breadth", m.shoulder_breadth),
+        ("chest girth", m.chest_girth),
+        ("waist girth", m.waist_girth),
+        ("hip girth", m.hip_girth),
+    ]
+}
+
+fn named(name: &'static str, m: f32) -> Named {
+    Named { name, value: (f64::from(m) * 1e4).round() / 10.0 }
+}
+
+fn title(args: &BodyArgs, body: &Body) -> String {
+    let name = args.file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let line = measures(&body.measures).map(|(name, m)| format!("{name} {:.0} mm", named(name, m).value)).join("   ");
+    format!("{name}\n{line}")
+}
+
+/// The body in a pose of the embedded shopper, taken over as from a sensor.
+fn walking(body: &Body) -> Result<Body, AppError> {
+    let (sex, measures) = scene::SHOPPER;
+    let shopper = Body::build(sex, &measures).map_err(AppError::internal)?.skeleton;
+    let seen = JointFrames::new(&shopper, &scene::shopper(&shopper, WALK_S)).position;
+    let joints = Joints { time_ns: 0, joints: seen.map(|position| TrackedJoint { position, confidence: 1.0 }) };
+    let pose = Poser::new(&body.skeleton).pose(&joints, 0.0);
+    let mut bones = [Affine3A::IDENTITY; BONES];
+    palette(&body.skeleton, &pose, &mut bones);
+    let mut posed = body.clone();
+    let job = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights).map_err(AppError::input)?;
+    let mut skin = job.posed();
+    job.run(BLEND, &bones, &mut skin);
+    skin.read(&mut posed.mesh.positions, &mut posed.normals);
+    Ok(posed)
+}
+
+fn draw(out: &mut OutputFolder, name: &str, body: &Body, title: &str, mut done: impl FnMut()) -> Result<(), AppError> {
+    let surfaces = [Surface {
+        positions: &body.mesh.positions,
+        normals: &body.normals,
+        triangles: &body.mesh.triangles,
+        colours: Colours::One(MANNEQUIN),
+        material: Material::Skin,
+    }];
+    let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });
+    let aspect = STILL.width as f32 / STILL.height as f32;
+    let [front, side, back] = VIEWS.map(|turn| {
+        let image = stage.render(&Camera::framing(&stage.bounds(), turn, aspect), STILL, Quality::Still);
+        done();
+        image
+    });
+    write_png(out, name, &sheet::triptych(&front, &side, &back, title, None))
+}
+
+fn report(
+    args: &BodyArgs,
+    imported: &avatar::Imported,
+    rows: Option<Vec<Named>>,
+    files: Vec<std::path::PathBuf>,
+) -> BodyReport {
+    let avatar::Imported { body, report } = imported;
+    let l = &body.levels;
+    let levels = [
+        ("neck", l.neck),
+        ("shoulder", l.shoulder),
+        ("chest", l.chest),
+        ("underbust", l.underbust),
+        ("waist", l.waist),
+        ("hip", l.hip),
+        ("crotch", l.crotch),
+        ("knee", l.knee),
+        ("ankle", l.ankle),
+    ];
+    let round = |x: f32| (f64::from(x) * 1e6).round() / 1e6;
+    let pruned = &report.pruned;
+    BodyReport {
+        file: args.file.clone(),
+        dialect: report.dialect,
+        vertices: body.mesh.positions.len(),
+        triangles: body.mesh.triangles.len(),
+        texture_coordinates: !body.mesh.uvs.is_empty(),
+        measures_mm: measures(&body.measures).map(|(name, m)| named(name, m)).to_vec(),
+        levels_mm: levels.map(|(name, m)| named(name, m)).to_vec(),
+        joints: report.joints.iter().cloned().map(|(joint, named)| JointFound { joint, named }).collect(),
+        influences: Influences {
+            most: pruned.most_influences,
+            over_four: pruned.over_four,
+            pruned: pruned.vertices,
+            mean_lost: round(pruned.mean_lost),
+            max_lost: round(pruned.max_lost),
+        },
+        surface: SurfaceReport {
+            parts: report.parts,
+            boundary_edges: report.boundary_edges,
+            crowded_edges: report.crowded_edges,
+        },
+        makehuman_mm: rows,
+        notes: report.notes.clone(),
+        files,
     }
 }

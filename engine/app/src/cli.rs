@@ -7,24 +7,27 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use clap_complete::Shell;
-use toile_assets::body::Sex;
 
 use toile_engine::cloth::Quality;
 
 use crate::exit::AppError;
 
 mod bake;
+mod bodies;
 mod body;
 mod pareto;
 mod run;
+mod skinning;
 mod skirt;
 mod torture;
 mod validate;
 
 pub use bake::BakeArgs;
-pub use body::BodyArgs;
+pub use bodies::BodiesArgs;
+pub use body::{BodyArgs, Wearer};
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
+pub use skinning::SkinningArgs;
 pub use skirt::SkirtArgs;
 pub use torture::TortureArgs;
 pub use validate::ValidateArgs;
@@ -44,8 +47,10 @@ pub enum Command {
     Doctor(DoctorArgs),
     /// `toile bake`.
     Bake(BakeArgs),
+    /// `toile body`.
+    Body(BodyArgs),
     /// `toile bench body`.
-    BenchBody(BodyArgs),
+    BenchBody(BodiesArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
@@ -71,8 +76,10 @@ pub struct TryOnArgs {
     pub garments: Vec<String>,
     /// A size to wear in place of the recommended one.
     pub size: Option<String>,
-    /// Whose body is shown; `None` goes by the garment.
-    pub body: Option<Sex>,
+    /// Whose body is shown; `None` is one of the measured size, of the sex that the garment is cut for.
+    pub body: Option<Wearer>,
+    /// Whether the dressed body is written as GLB.
+    pub glb: bool,
     /// How the cloth is stepped.
     pub quality: Quality,
     /// Where the files go.
@@ -122,18 +129,6 @@ pub struct DoctorArgs {
     pub json: bool,
 }
 
-/// Arguments of `toile bench skinning`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SkinningArgs {
-    /// Vertices to skin.
-    pub verts: usize,
-    /// One JSON object on stdout in place of the summary.
-    pub json: bool,
-}
-
-/// Most vertices that `bench skinning` takes: 16 million, about 2 GB of arrays.
-const MAX_BENCH_VERTS: u64 = 1 << 24;
-
 /// Longest session that `record` makes (s); at 30 frames a second this is some hundred megabytes.
 const MAX_RECORD_SECONDS: i64 = 600;
 
@@ -158,6 +153,7 @@ pub fn command() -> clap::Command {
             measure(),
             record(),
             bake::grammar(),
+            body::grammar(),
             run::grammar(),
             doctor(),
             bench(),
@@ -181,12 +177,12 @@ fn try_on() -> clap::Command {
             text("garment", "G", "Garment of the wardrobe, or an OBJ file; repeat it to dress in layers, inner first")
                 .action(ArgAction::Append),
             text("size", "S", "Size to wear, as the garment's table names it [default: the one that fits]"),
-            text("body", "B", "Body to show: female or male [default: whom the garment is cut for]")
-                .value_parser(["female", "male"]),
+            text("body", "B", "Body to show: female, male, or a file (.glb, .gltf, .vrm) [default: by the garment]"),
             text("quality", "Q", "Tested settings of the cloth: draft, shop or fine")
                 .value_parser(Quality::ALL.map(Quality::name))
                 .default_value(Quality::default().name()),
             path("out", "DIR", "Folder for the files; it is made if missing").default_value("out"),
+            flag("glb", "Write the dressed body at the session's end as dressed.glb too"),
             flag("no-pictures", "Make no pictures: only the report and the physics"),
             json(),
             quiet(),
@@ -239,20 +235,11 @@ fn doctor() -> clap::Command {
 }
 
 fn bench() -> clap::Command {
-    let skinning = clap::Command::new("skinning")
-        .about("Time the skinning of a body, against a plain loop and with its error")
-        .args([
-            text("verts", "N", "Vertices to skin")
-                .value_parser(value_parser!(u64).range(1..=MAX_BENCH_VERTS))
-                .default_value("16384"),
-            json(),
-        ])
-        .after_help("Example: the cost of a vertex at 65,536 vertices\n  toile bench skinning --verts 65536");
     clap::Command::new("bench")
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([skinning, skirt::grammar(), body::grammar()])
+        .subcommands([skinning::grammar(), skirt::grammar(), bodies::grammar()])
         .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
 
@@ -303,7 +290,8 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
             session: matches.get_one("session").cloned(),
             garments: matches.get_many("garment").into_iter().flatten().cloned().collect(),
             size: matches.get_one("size").cloned(),
-            body: matches.get_one::<String>("body").map(|b| if b == "male" { Sex::Male } else { Sex::Female }),
+            body: matches.get_one::<String>("body").map(|b| Wearer::parse(b)).transpose()?,
+            glb: matches.get_flag("glb"),
             quality: matches.get_one::<String>("quality").and_then(|q| q.parse().ok()).unwrap_or_default(),
             out: required(matches, "out")?,
             pictures: !matches.get_flag("no-pictures"),
@@ -326,6 +314,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "run" => Command::Run(run::args(matches)?),
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
         "bake" => Command::Bake(bake::args(matches)?),
+        "body" => Command::Body(body::args(matches)?),
         "bench" => bench_command(matches)?,
         "torture" => Command::Torture(torture::args(matches)?),
         "validate" => Command::Validate(validate::args(matches)?),
@@ -337,12 +326,8 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
 
 fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
     match matches.subcommand() {
-        Some(("skinning", matches)) => {
-            let verts: u64 = required(matches, "verts")?;
-            let verts = usize::try_from(verts).map_err(AppError::internal)?;
-            Ok(Command::BenchSkinning(SkinningArgs { verts, json: matches.get_flag("json") }))
-        }
-        Some(("body", matches)) => Ok(Command::BenchBody(body::args(matches)?)),
+        Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
+        Some(("body", matches)) => Ok(Command::BenchBody(bodies::args(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),
         _ => Err(AppError::internal("a benchmark without a name was let through")),
     }

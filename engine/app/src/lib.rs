@@ -6,7 +6,8 @@
 
 pub mod bake;
 pub mod bench;
-pub mod body;
+pub mod bodies;
+mod body;
 pub mod cli;
 pub mod completions;
 pub mod doctor;
@@ -67,7 +68,8 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Run(args) => run::run(args),
         Command::Doctor(args) => doctor::run(args),
         Command::Bake(args) => bake::run(args),
-        Command::BenchBody(args) => body::bench(args),
+        Command::Body(args) => body::run(args),
+        Command::BenchBody(args) => bodies::bench(args),
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
         Command::Torture(args) => torture::run(args),

@@ -82,6 +82,9 @@ pub struct Pictures {
 /// What is drawn: topology and colours, which the session does not change, and room for what it does.
 struct Drawing {
     body: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    /// Of the body, before it is drawn beneath the garments.
+    bounds: Bounds,
     body_triangles: Vec<[u32; 3]>,
     /// Triangles of the body that are drawn.
     drawn: Vec<[u32; 3]>,
@@ -125,6 +128,8 @@ impl Drawing {
         Self {
             dressed: over(0).dressed(&body.mesh.positions, &body.normals),
             body: body.mesh.positions.clone(),
+            normals: body.normals.clone(),
+            bounds: Bounds::of(&body.mesh.positions),
             drawn: body.mesh.triangles.clone(),
             body_triangles: body.mesh.triangles.clone(),
             cloths: garments.iter().enumerate().map(cloth).collect(),
@@ -141,16 +146,17 @@ impl Drawing {
             *drawn = Cover::new(over.iter().copied()).tuck(at, normals, dressed, triangles);
             over.extend(triangles.iter().map(|t| t.map(|i| at[i as usize])));
         }
-        self.body.copy_from_slice(&snapshot.body);
+        snapshot.skin.read(&mut self.body, &mut self.normals);
+        self.bounds = Bounds::of(&self.body);
         let cover = Cover::new(over.into_iter());
-        self.drawn = cover.tuck(&mut self.body, &snapshot.normals, &self.dressed, &self.body_triangles);
+        self.drawn = cover.tuck(&mut self.body, &self.normals, &self.dressed, &self.body_triangles);
     }
 
     /// The surfaces of a picture; `map` gives each garment its colours by vertex instead of the fabric's.
-    fn surfaces<'a>(&'a self, snapshot: &'a Snapshot, map: Option<&'a [Vec<f32>]>) -> Vec<Surface<'a>> {
+    fn surfaces<'a>(&'a self, map: Option<&'a [Vec<f32>]>) -> Vec<Surface<'a>> {
         let mut surfaces = vec![Surface {
             positions: &self.body,
-            normals: &snapshot.normals,
+            normals: &self.normals,
             triangles: &self.drawn,
             colours: Colours::One(MANNEQUIN),
             material: Material::Skin,
@@ -192,8 +198,8 @@ impl Pictures {
     /// Draws a frame of the animation.
     pub fn add(&mut self, snapshot: &Snapshot) -> Result<(), AppError> {
         self.drawing.take(snapshot);
-        let camera = self.follow(snapshot);
-        let surfaces = self.drawing.surfaces(snapshot, None);
+        let camera = self.follow();
+        let surfaces = self.drawing.surfaces(None);
         let image = Stage::build(Scene { surfaces: &surfaces, floor: true }).render(&camera, MOTION, Quality::Motion);
         self.animation.push(&image).map_err(AppError::input)?;
         self.kept.push((image, snapshot.tick));
@@ -202,8 +208,8 @@ impl Pictures {
     }
 
     /// A camera before the place where the shopper stands; it turns with nobody and never zooms.
-    fn follow(&mut self, snapshot: &Snapshot) -> Camera {
-        let bounds = Bounds::of(&snapshot.body);
+    fn follow(&mut self) -> Camera {
+        let bounds = self.drawing.bounds;
         let now = (bounds.min + bounds.max) * 0.5;
         let middle = self.middle.map_or(now, |m| m.lerp(now, FOLLOW));
         self.middle = Some(middle);
@@ -223,7 +229,7 @@ impl Pictures {
         self.drawing.take(snapshot);
         let legend = fitmap::legend(3 * STILL.width / 4, sheet::PAPER);
         for (name, map, legend) in [("look.png", None, None), ("fit.png", Some(ending.tightness), Some(&legend))] {
-            let surfaces = self.drawing.surfaces(snapshot, map);
+            let surfaces = self.drawing.surfaces(map);
             let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });
             let aspect = STILL.width as f32 / STILL.height as f32;
             let view = |turn: f32| {
@@ -269,7 +275,8 @@ fn contact_sheet(out: &mut OutputFolder, kept: &[(Image, u64)]) -> Result<(), Ap
     write_png(out, "contact-sheet.png", &sheet::contact_sheet(&images, SHEET_COLUMNS, &captions))
 }
 
-fn write_png(out: &mut OutputFolder, name: &str, image: &Image) -> Result<(), AppError> {
+/// Writes an image as a file of the output folder.
+pub fn write_png(out: &mut OutputFolder, name: &str, image: &Image) -> Result<(), AppError> {
     let mut bytes = Vec::new();
     image.write_png(&mut bytes).map_err(AppError::internal)?;
     Ok(out.write(name, &bytes)?)

@@ -5,6 +5,7 @@ use toile_assets::body::Body;
 use toile_assets::scene;
 use toile_assets::skeleton::{BONES, JOINTS, Pose};
 use toile_engine::body::{JointFrames, palette};
+use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::{Intrinsics, Joints, TrackedJoint};
@@ -66,7 +67,7 @@ pub fn perform(seed: u64, frames: u64, mut done: impl FnMut()) -> Result<Session
     let job = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights).map_err(AppError::internal)?;
     let camera = SyntheticCamera::looking_at(CAMERA, scene::CAMERA[0], scene::CAMERA[1]);
     let (mut depth_noise, mut joint_noise) = (KinectNoise::new(seed), JointNoise::new(seed ^ 0x5eed));
-    let (mut skin, mut normals) = (body.mesh.positions.clone(), body.normals.clone());
+    let (mut skin, mut normals, mut posed) = (body.mesh.positions.clone(), body.normals.clone(), job.posed());
     let mut z = vec![0.0f32; (CAMERA.width * CAMERA.height) as usize];
     let mut bones = [Affine3A::IDENTITY; BONES];
     let (mut joints, mut depth) = (Vec::new(), Vec::new());
@@ -74,7 +75,8 @@ pub fn perform(seed: u64, frames: u64, mut done: impl FnMut()) -> Result<Session
         let time_ns = frame * SECOND_NS / SENSOR_HZ;
         let pose = scene::shopper(&body.skeleton, frame as f32 / SENSOR_HZ as f32);
         palette(&body.skeleton, &pose, &mut bones);
-        job.run(&bones, &mut skin, &mut normals);
+        job.run(BLEND, &bones, &mut posed);
+        posed.read(&mut skin, &mut normals);
         camera.render(&skin, &body.mesh.triangles, &mut z);
         depth.push(camera.frame(time_ns, depth_noise.apply(&CAMERA, &z)));
         joints.push(joint_noise.apply(&truth(&body, &pose, time_ns)));

@@ -6,9 +6,13 @@ use serde::Serialize;
 
 use crate::machine::Machine;
 
+mod body;
 mod run;
+mod skinning;
 
+pub use body::{BodyReport, Influences, JointFound, Named, SurfaceReport};
 pub use run::{KineticEnergy, RunGarment, RunPenetration, RunReport};
+pub use skinning::SkinningReport;
 
 /// What every object carries, around what one command has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -206,23 +210,6 @@ pub struct RecordReport {
     pub seed: u64,
     /// The files written.
     pub files: Vec<PathBuf>,
-}
-
-/// The body of `toile bench skinning`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SkinningReport {
-    /// Vertices skinned.
-    pub verts: usize,
-    /// Time of one pass over all of them (us, median).
-    pub us: f64,
-    /// The same for one vertex (ns).
-    pub ns_per_vertex: f64,
-    /// Time of the plain scalar loop over `yardstick_verts` vertices (us, median): how fast this machine is.
-    pub yardstick_us: f64,
-    /// Vertices of that loop, always the same.
-    pub yardstick_verts: usize,
-    /// Largest distance from an f64 oracle (m).
-    pub max_error_m: f64,
 }
 
 /// A 64-bit state hash as the reports write it.

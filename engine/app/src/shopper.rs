@@ -9,6 +9,7 @@ use toile_sensors::clock::SECOND_NS;
 use toile_sensors::filter::{FilterSettings, JointFilter};
 use toile_sensors::frame::Joints;
 use toile_sensors::source::{self, OpenOptions, Session};
+use toile_track::estimate::Estimate;
 use toile_track::measure::{self, Measurements};
 use toile_track::measures::Hint;
 
@@ -85,6 +86,24 @@ pub fn build(sex: Sex, measured: &Measurements, population: Population) -> Resul
     })
 }
 
+/// How far a measure that is read off an imported mesh is believed (m): its levels are found, not felt.
+const READ_OFF: f32 = 0.01;
+
+/// The measures of an imported body in place of the measured shopper's.
+pub fn of_body(measured: Measurements, body: &Body) -> Measurements {
+    let read = |value: f32| Some(Estimate::new(value, READ_OFF));
+    let m = &body.measures;
+    let measures = toile_track::measures::Measures {
+        stature: read(m.stature),
+        shoulder_breadth: read(m.shoulder_breadth),
+        chest_girth: read(m.chest_girth),
+        waist_girth: read(m.waist_girth),
+        hip_girth: read(m.hip_girth),
+        ..measured.measures
+    };
+    Measurements { measures, ..measured }
+}
+
 fn scaled(m: &Measures, stature: f32) -> Measures {
     let k = stature / m.stature;
     Measures {
@@ -119,7 +138,7 @@ pub fn session_report(session: &Session, more: &[String]) -> report::Session {
 
 /// The measures as reports show them; what could not be seen is what such a body has on average, with that sigma.
 pub fn measures_report(measured: &Measurements, population: Population) -> report::Measurements {
-    let mm = |e: toile_track::estimate::Estimate| report::Measure {
+    let mm = |e: Estimate| report::Measure {
         value: round(f64::from(e.value) * 1e3),
         sigma: round(f64::from(e.sigma) * 1e3),
     };

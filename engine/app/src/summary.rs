@@ -5,7 +5,8 @@ use std::fmt::Write;
 use toile_perf::skirt::report::Report;
 
 use crate::report::{
-    Measure, MeasureReport, Measurements, Physics, Recommendation, RunReport, Session, SkinningReport, TryOn,
+    BodyReport, Measure, MeasureReport, Measurements, Physics, Recommendation, RunReport, Session, SkinningReport,
+    TryOn,
 };
 use crate::terminal::{Paint, Tone};
 
@@ -82,13 +83,35 @@ pub fn run(report: &RunReport, paint: Paint) -> String {
 
 /// The summary of a skinning benchmark.
 pub fn skinning(report: &SkinningReport, paint: Paint) -> String {
-    let SkinningReport { verts, us, ns_per_vertex, yardstick_us, yardstick_verts, max_error_m } = report;
-    let plain = yardstick_us * 1e3 / *yardstick_verts as f64;
+    let SkinningReport { blend, ns_per_vertex, y_ratio, yardstick_verts, max_error_m, found, .. } = report;
+    let plain = found.yardstick_us * 1e3 / *yardstick_verts as f64;
     let mut text = String::new();
-    line(&mut text, &paint.tone(&format!("Skinning {verts} vertices, positions and normals"), Tone::Strong));
-    line(&mut text, &format!("  the engine    {us:.1} us, {ns_per_vertex:.2} ns a vertex"));
-    line(&mut text, &format!("  a plain loop  {plain:.2} ns a vertex ({yardstick_us:.1} us for {yardstick_verts})"));
-    line(&mut text, &format!("  largest error {:.3} um, against f64", max_error_m * 1e6));
+    let title = format!("Skinning {} vertices, positions and normals: {blend}", found.verts);
+    line(&mut text, &paint.tone(&title, Tone::Strong));
+    let error = max_error_m * 1e6;
+    line(
+        &mut text,
+        &format!("  the engine    {ns_per_vertex:.2} ns a vertex, {y_ratio:.3} of a plain loop, error {error:.3} um"),
+    );
+    line(
+        &mut text,
+        &format!("  a plain loop  {plain:.2} ns a vertex ({:.1} us for {yardstick_verts})", found.yardstick_us),
+    );
+    for (name, t) in [("linear", &found.linear), ("dual", &found.dual)] {
+        let error = t.max_error_m * 1e6;
+        line(
+            &mut text,
+            &format!("  {name:<13} {:.1} us, {:.1} in mesh order, error {error:.3} um", t.us, t.mesh_order_us),
+        );
+    }
+    let empty = found.padding * 100.0;
+    line(
+        &mut text,
+        &format!(
+            "  {} thread(s), {} lanes, {} joint sets, {empty:.1} % of the lanes empty",
+            found.threads, found.lanes, found.sets
+        ),
+    );
     text
 }
 
@@ -141,6 +164,31 @@ pub fn skirt(report: &Report, paint: Paint) -> String {
     for (count, what) in events.into_iter().filter(|(count, _)| *count > 0) {
         line(&mut text, &format!("  {}", paint.tone(&format!("{count} {what}"), Tone::Warn)));
     }
+    text
+}
+
+/// The summary of an import.
+pub fn body(report: &BodyReport, paint: Paint) -> String {
+    let mut text = String::new();
+    let BodyReport { file, vertices, triangles, dialect, surface, influences: i, .. } = report;
+    line(&mut text, &format!("Body {}: {vertices} vertices, {triangles} triangles", file.display()));
+    report.notes.iter().for_each(|note| line(&mut text, &format!("  {note}")));
+    line(&mut text, &format!("  {} joints found, named as {dialect} names them", report.joints.len()));
+    let (parts, open) = (surface.parts, surface.boundary_edges);
+    line(&mut text, &format!("  {parts} closed or open pieces, {open} open edges"));
+    let lost = [i.mean_lost, i.max_lost].map(|w| w * 100.0);
+    let words = format!("  up to {} influences; {} vertices pruned to 4 lost {:.2} %", i.most, i.pruned, lost[0]);
+    line(&mut text, &format!("{words} of their weight on average, {:.1} % at worst", lost[1]));
+    for (words, all) in
+        [("Measures", Some(&report.measures_mm)), ("MakeHuman's own rows", report.makehuman_mm.as_ref())]
+    {
+        if let Some(all) = all {
+            heading(&mut text, words, paint);
+            all.iter().for_each(|n| line(&mut text, &format!("  {:17} {:6.0} mm", n.name, n.value)));
+        }
+    }
+    heading(&mut text, "Files", paint);
+    report.files.iter().for_each(|file| line(&mut text, &format!("  {}", file.display())));
     text
 }
 
@@ -213,21 +261,29 @@ fn line(text: &mut String, words: &str) {
 
 #[cfg(test)]
 mod tests {
+    use toile_engine::skin::{Blend, Padding};
+    use toile_perf::skinning::{Skinning, Subject, Timing};
+
     use super::*;
     use crate::report::Zone;
 
     #[test]
     fn a_skinning_summary_compares_vertex_with_vertex() {
-        let report = SkinningReport {
+        let timing = Timing { us: 5.0, ns_per_vertex: 5.0, max_error_m: 2.5e-7, ..Timing::default() };
+        let padding = Padding { vertices: 1000, lanes: 1010, blocks: 64, runs: 9, influences: 2000, blended: 2100 };
+        let found = Skinning {
+            subject: Subject::Body,
             verts: 1000,
-            us: 5.0,
-            ns_per_vertex: 5.0,
+            threads: 1,
+            lanes: 16,
             yardstick_us: 120.0,
-            yardstick_verts: 15_000,
-            max_error_m: 2.5e-7,
+            padding,
+            linear: timing,
+            dual: timing,
         };
+        let report = SkinningReport::new(found, Blend::Linear);
         let text = skinning(&report, Paint::none());
-        for said in ["1000 vertices", "5.00 ns", "8.00 ns", "0.250 um"] {
+        for said in ["1000 vertices", "linear", "5.00 ns", "8.00 ns", "0.250 um", "1.0 % of the lanes"] {
             assert!(text.contains(said), "{said} is not in: {text}");
         }
     }

@@ -2,13 +2,16 @@
 
 use std::path::Path;
 
+use glam::Affine3A;
 use toile_assets::body::{Body, Sex};
+use toile_assets::export::{Dressed, Worn, glb};
 use toile_assets::garment::Garment;
 use toile_assets::limits::STEP_HZ;
 use toile_assets::rig::Rig;
 use toile_assets::sizes::Population;
-use toile_assets::skeleton::Joint;
+use toile_assets::skeleton::{BONES, Joint};
 use toile_assets::wardrobe::{self, style::Style};
+use toile_engine::body::palette;
 use toile_engine::cloth::{Settings, measure};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::relay::Reader;
@@ -17,7 +20,7 @@ use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_track::measure::Measurements;
 
-use crate::cli::TryOnArgs;
+use crate::cli::{TryOnArgs, Wearer};
 use crate::exit::AppError;
 use crate::fit;
 use crate::output::OutputFolder;
@@ -53,7 +56,18 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     }
     let (sex, population) = population(args, &wanted)?;
     let measured = shopper::measure(&session, population)?;
-    let (body, note) = shopper::build(sex, &measured, population)?;
+    let (body, measured, note) = match &args.body {
+        Some(Wearer::File(file)) => {
+            let imported = crate::body::wearer(file, sex)?;
+            let measured = shopper::of_body(measured, &imported.body);
+            let note = format!("the body shown is {}, and the measures are read off it", file.display());
+            (imported.body, measured, Some(note))
+        }
+        _ => {
+            let (body, note) = shopper::build(sex, &measured, population)?;
+            (body, measured, note)
+        }
+    };
     let notes: Vec<String> = note.into_iter().chain(measured.notes.iter().cloned()).collect();
     let (garments, recommendations) = dress(&wanted, args, &measured, &body)?;
 
@@ -65,6 +79,9 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let title = title(&recommendations);
     play(args, &words, &mut out, &mut frame, &mut reader, track, &title)?;
 
+    if args.glb {
+        out.write("dressed.glb", &dressed(&frame, reader.latest()))?;
+    }
     // The report names itself as well.
     out.stage("report.json")?;
     let files = out.files();
@@ -109,7 +126,7 @@ fn wanted(args: &TryOnArgs) -> Result<Vec<Wanted>, AppError> {
 
 /// Whose body is shown: as asked for, otherwise whom the first garment with sizes is cut for; women for all others.
 fn population(args: &TryOnArgs, wanted: &[Wanted]) -> Result<(Sex, Population), AppError> {
-    let asked = args.body;
+    let asked = if let Some(Wearer::Ours(sex)) = args.body { Some(sex) } else { None };
     let mut of = Population::Mixed;
     for style in wanted.iter().filter_map(|w| if let Wanted::Style(s) = w { Some(s) } else { None }) {
         let population = style.sizes().map_err(AppError::input)?.population;
@@ -195,6 +212,20 @@ fn play(
         pictures.finish(out, reader.latest(), &Ending { tightness: &tightness, facing, title })?;
     }
     Ok(())
+}
+
+/// The dressed body as it is drawn last: the body on its skeleton in that pose, the garments as they lie.
+fn dressed(frame: &Frame, snapshot: &Snapshot) -> Vec<u8> {
+    let mut bones = [Affine3A::IDENTITY; BONES];
+    palette(&frame.body().skeleton, frame.pose(), &mut bones);
+    let worn = frame.garments().iter().zip(&snapshot.garments).map(|(garment, positions)| Worn {
+        name: &garment.name,
+        positions,
+        triangles: &garment.triangles,
+        srgb: garment.fabric.colour,
+    });
+    let worn: Vec<Worn<'_>> = worn.collect();
+    glb(&Dressed { body: frame.body(), palette: Some(&bones), worn: &worn })
 }
 
 /// Words over the stills: the first garment and its size, then each zone.

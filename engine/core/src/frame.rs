@@ -21,13 +21,17 @@ use crate::cloth::{Cloth, Settings, Step};
 use crate::colliders::{ColliderError, Colliders, RestSphere};
 use crate::crew::{Crew, CrewError, SHARES};
 use crate::relay::{Reader, Relay, Writer};
-use crate::skin::{SkinError, SkinningJob};
+use crate::skin::{Blend, Posed, SkinError, SkinningJob};
 
 /// Steps in which the body moves from its rest pose into the shopper's first pose while it is being dressed.
 pub const DRESS_STEPS: u64 = STEP_HZ as u64;
 
 /// Steps in which the garments then settle before the session starts.
 pub const SETTLE_STEPS: u64 = STEP_HZ as u64 / 2;
+
+/// How the body is skinned: dual quaternions take no longer than linear blending, and where that thins a bent elbow to half
+/// they keep it, at the price of a bulge of some millimetres (docs/skinning.md).
+pub const BLEND: Blend = Blend::Dual;
 
 /// Longest step that the meter tells apart from a longer one (us).
 const METER_MAX_US: u64 = 1_000_000;
@@ -37,10 +41,8 @@ const METER_MAX_US: u64 = 1_000_000;
 pub struct Snapshot {
     /// Steps since the session began.
     pub tick: u64,
-    /// Body vertices, world (m) `[body vertices]`.
-    pub body: Box<[Vec3]>,
-    /// Body normals, unit `[body vertices]`.
-    pub normals: Box<[Vec3]>,
+    /// The body: positions (m) and unit normals, which [`Posed::read`] brings into the order of the mesh.
+    pub skin: Posed,
     /// Particles of each garment, world (m) `[garments][particles]`.
     pub garments: Box<[Box<[Vec3]>]>,
 }
@@ -108,9 +110,9 @@ pub struct Frame {
     crew: Crew,
     /// Steps in which a worker panicked.
     broken: u64,
-    skinned: Box<[Vec3]>,
-    normals: Box<[Vec3]>,
     skinning: SkinningJob,
+    /// The body as last skinned; changes places with a snapshot's when it is published.
+    skin: Posed,
     tick: u64,
     meters: Meters,
     writer: Writer<Snapshot>,
@@ -129,12 +131,8 @@ impl Frame {
         let skinning = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights)?;
         let ready = |g: &Garment, cloth: Cloth| if settings.wind.is_some() { cloth.in_wind(g) } else { cloth };
         let cloths: Box<[Cloth]> = garments.iter().map(|g| ready(g, Cloth::new(g, &colliders))).collect();
-        let snapshot = Snapshot {
-            tick: 0,
-            body: body.mesh.positions.clone().into(),
-            normals: body.normals.clone().into(),
-            garments: garments.iter().map(|g| g.start.clone()).collect(),
-        };
+        let snapshot =
+            Snapshot { tick: 0, skin: skinning.posed(), garments: garments.iter().map(|g| g.start.clone()).collect() };
         let Relay { writer, reader } = Relay::new(&snapshot);
         let frame = Self {
             poser: Poser::new(&body.skeleton).keeping_clear(&spheres, &rig.capsules),
@@ -143,9 +141,8 @@ impl Frame {
             colliders,
             crew: Crew::new(settings.workers.clamp(1, SHARES))?,
             broken: 0,
-            skinned: snapshot.body,
-            normals: snapshot.normals,
             skinning,
+            skin: snapshot.skin,
             tick: 0,
             meters: Meters::new(),
             writer,
@@ -187,7 +184,9 @@ impl Frame {
     /// The stages after the pose, in order.
     fn advance(&mut self) {
         palette(&self.body.skeleton, &self.pose, &mut self.palette);
-        self.skinning.run(&self.palette, &mut self.skinned, &mut self.normals);
+        // What a worker that panicked left out shows the body as it was.
+        let skinned = self.skinning.run_with(&mut self.crew, BLEND, &self.palette, &mut self.skin);
+        self.broken += u64::from(!skinned);
         self.colliders.place(&self.palette);
         let Self { cloths, garments, crew, palette, colliders, settings, .. } = self;
         let step = Step { palette, colliders, settings };
@@ -203,11 +202,11 @@ impl Frame {
     }
 
     fn publish(&mut self) {
-        let Self { writer, skinned, normals, cloths, tick, .. } = self;
+        let Self { writer, skin, cloths, tick, .. } = self;
         writer.publish_with(|snapshot| {
             snapshot.tick = *tick;
-            snapshot.body.copy_from_slice(skinned);
-            snapshot.normals.copy_from_slice(normals);
+            // No copy: the next step writes all of the one that comes back.
+            std::mem::swap(&mut snapshot.skin, skin);
             for (to, cloth) in snapshot.garments.iter_mut().zip(cloths.iter()) {
                 to.iter_mut().zip(&cloth.positions).for_each(|(t, p)| *t = (*p).into());
             }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use toile_assets::garment::Garment;
-use toile_assets::garment::layout::{Bends, ENDED, Fibers, Links, Lists};
+use toile_assets::garment::layout::{Bends, ENDED, Fibers, Hubs, Links, Lists};
 
 use super::OracleError;
 
@@ -18,12 +18,12 @@ pub struct Link {
 }
 
 /// Bending: energy (1/2) |sum c_i x_i|^2.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Bend {
-    /// The particles; where there are three, the last place repeats the first.
-    pub particles: [u32; 4],
-    /// Coefficients (sqrt(N/m)); where there are three, the last is 0.
-    pub coefficients: [f64; 4],
+    /// The particles.
+    pub particles: Vec<u32>,
+    /// Their coefficients (sqrt(N/m)).
+    pub coefficients: Vec<f64>,
 }
 
 /// What is to be solved: the same particles, masses, links and stencils as the engine's.
@@ -56,12 +56,14 @@ impl Problem {
         let mut links = Vec::new();
         tuples(&layout.shear, &mut links);
         tuples(&layout.weft, &mut links);
+        let bias = &layout.diagonals;
+        bias.for_each(|at, [a, b]| links.extend(link(a, b, bias.rest[at], bias.compliance[at])));
         fibers(&layout.fibers, &mut links);
-        // Hoops are the links of the weft once more, solved whole in one of the qualities: no springs of their own.
         lists(&layout.crossing, &mut links);
         let mut stencils = Vec::new();
         bends(&layout.bends, &mut stencils);
         bends(&layout.skewed, &mut stencils);
+        hubs(&layout.hubs, &mut stencils);
         let mass = |w: &f32| if *w > 0.0 { f64::from(*w).recip() } else { 0.0 };
         Self {
             mass: garment.inverse_mass.iter().map(mass).collect(),
@@ -157,10 +159,17 @@ fn lists(from: &Lists, to: &mut Vec<Link>) {
 
 fn bends<const K: usize>(from: &Bends<K>, to: &mut Vec<Bend>) {
     from.tuples.for_each(|at, v| {
-        let mut bend = Bend { particles: [v[0]; 4], coefficients: [0.0; 4] };
-        for (k, (&i, c)) in v.iter().zip(&from.coefficients).enumerate() {
-            (bend.particles[k], bend.coefficients[k]) = (i, c[at].into());
-        }
-        to.push(bend);
+        let coefficients = from.coefficients.iter().map(|c| c[at].into()).collect();
+        to.push(Bend { particles: v.into(), coefficients });
+    });
+}
+
+fn hubs(from: &Hubs, to: &mut Vec<Bend>) {
+    from.for_each(|_, particles, coefficients| {
+        let sums = coefficients.len() / particles.len();
+        to.extend((0..sums).map(|sum| Bend {
+            particles: particles.into(),
+            coefficients: coefficients[sum..].iter().step_by(sums).map(|c| f64::from(*c)).collect(),
+        }));
     });
 }

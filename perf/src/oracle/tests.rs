@@ -65,7 +65,7 @@ fn square(n: usize) -> Problem {
             }
             let c = 1e-5f64.sqrt() / h;
             let mut bend = |p: [u32; 3]| {
-                bends.push(Bend { particles: [p[0], p[1], p[2], p[0]], coefficients: [-2.0 * c, c, c, 0.0] });
+                bends.push(Bend { particles: p.into(), coefficients: vec![-2.0 * c, c, c] });
             };
             if j > 0 && j + 1 < n {
                 bend([at(i, j), at(i, j - 1), at(i, j + 1)]);

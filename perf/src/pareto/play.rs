@@ -219,12 +219,12 @@ fn wake(crew: &mut Crew) {
     }
 }
 
-/// Passes a substep over the weft, hoops solved whole counted; over crossing fibers where the weft is all solved with
+/// Passes a substep over the weft; over crossing fibers where the weft is all solved with
 /// them.
 pub fn iterations(garment: &Garment, quality: Quality) -> usize {
     let ops = program::substep(&garment.layout, quality);
     let count = |of: &[Op]| ops.iter().filter(|op| of.contains(op)).count();
-    match count(&[Op::Weft(0), Op::Hoops(0)]) {
+    match count(&[Op::Weft(0)]) {
         0 => count(&[Op::Crossing(0)]).max(count(&[Op::Fibers])),
         passes => passes,
     }

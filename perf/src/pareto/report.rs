@@ -19,7 +19,7 @@ pub struct Point {
     pub quality: &'static str,
     /// Substeps of a step.
     pub substeps: u32,
-    /// Passes over the weft a substep, hoops solved whole counted; over the fibers where the weft is solved with them.
+    /// Passes over the weft a substep; over the fibers where the weft is solved with them.
     pub iterations: usize,
     /// Whether garment and quality ask for these substeps themselves.
     pub default: bool,

@@ -5,7 +5,7 @@ use std::time::Instant;
 use glam::{Affine3A, DVec3, Vec4};
 use thiserror::Error;
 use toile_assets::bake::bake;
-use toile_assets::garment::layout::{Bends, ENDED};
+use toile_assets::garment::layout::{Bends, ENDED, Hubs};
 use toile_assets::garment::{Garment, MeshError, Shape};
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
@@ -211,6 +211,7 @@ impl Rig {
             + stretch
             + bent(&layout.bends, place)
             + bent(&layout.skewed, place)
+            + hubs_bent(&layout.hubs, place)
     }
 
     /// Median time of a step (us).
@@ -275,6 +276,8 @@ pub fn links(garment: &Garment) -> Vec<Link> {
     for links in [&layout.shear, &layout.weft] {
         links.tuples.for_each(|at, [a, b]| add(a, b, links.rest[at], links.compliance[at]));
     }
+    let bias = &layout.diagonals;
+    bias.for_each(|at, [a, b]| add(a, b, bias.rest[at], bias.compliance[at]));
     let fibers = &layout.fibers;
     for bundle in &fibers.bundles {
         let rows = &fibers.rows[bundle.rows.start as usize..bundle.rows.end as usize];
@@ -307,6 +310,19 @@ fn bent<const K: usize>(bends: &Bends<K>, place: impl Fn(usize) -> DVec3) -> f64
         sum += 0.5 * terms.sum::<DVec3>().length_squared();
     });
     sum
+}
+
+/// Energy of bending over whole rings (J).
+fn hubs_bent(hubs: &Hubs, place: impl Fn(usize) -> DVec3) -> f64 {
+    let mut energy = 0.0;
+    hubs.for_each(|_, particles, coefficients| {
+        let sums = coefficients.len() / particles.len();
+        for sum in 0..sums {
+            let terms = particles.iter().zip(coefficients[sum..].iter().step_by(sums));
+            energy += 0.5 * terms.map(|(&i, c)| place(i as usize) * f64::from(*c)).sum::<DVec3>().length_squared();
+        }
+    });
+    energy
 }
 
 impl Level {

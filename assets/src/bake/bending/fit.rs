@@ -7,7 +7,7 @@ use crate::bake::fibers::Direction;
 
 /// A quadratic form on the curvature tensor (k11, k22, sqrt2 k12): the energy density of a plate, doubled.
 #[derive(Debug, Clone, Copy)]
-pub struct Form(DMat3);
+pub struct Form(pub DMat3);
 
 impl Form {
     /// No energy whatever the curvature.
@@ -62,11 +62,16 @@ impl Patch {
 pub struct Patches(Vec<Patch>);
 
 impl Patches {
-    /// Sums up what each vertex measures, and spreads it among neighbours so that nothing is lost. A vertex on the rim
+    /// Sums up what each vertex measures, all that there is where its `whole` ring does, and spreads it among neighbours so that nothing is lost. A vertex on the rim
     /// stands for itself: beyond it nothing bends.
-    pub fn new(rings: &Rings, measures: &[Vec<(Direction, Measure)>]) -> Self {
+    pub fn new(rings: &Rings, measures: &[Vec<(Direction, Measure)>], whole: impl Fn(usize) -> bool) -> Self {
         let one = |(v, around): (usize, &Vec<(Direction, Measure)>)| {
             let mut patch = Patch { forms: [Form::NONE; 3], area: rings.area[v] };
+            if whole(v) {
+                patch.forms =
+                    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|b| Form(Form::plate(b).0 * patch.area));
+                return patch;
+            }
             for (direction, measure) in around {
                 patch.forms[*direction as usize].0 += Form::square(measure.tensor).0 * rings.area[v];
             }

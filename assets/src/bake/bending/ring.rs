@@ -5,7 +5,9 @@ use std::f64::consts::TAU;
 
 use glam::{DMat2, DVec2, Vec3};
 
-use crate::bake::fibers::Edge;
+use super::Stencil;
+use super::whole::NONE;
+use crate::bake::fibers::{Direction, Edge};
 use crate::garment::check::corners;
 use crate::garment::shape::{NO_VERTEX, Shape};
 
@@ -24,12 +26,14 @@ const MOST_LEVER: f64 = 8.0;
 const LEAST_WEIGHT: f64 = 1e-5;
 
 /// Least part of a stencil beside a clamp that counts as free to bend: what is less is an accident of the mesh.
-const LEAST_BENDS: f64 = 0.25;
+pub const LEAST_BENDS: f64 = 0.25;
 
 /// Neighbours and areas of all vertices.
 pub struct Rings {
     /// Area of the cloth that each vertex stands for (m2).
     pub area: Vec<f64>,
+    /// That of faces that can move.
+    pub bending: Vec<f64>,
     /// True where the cloth ends at the vertex.
     pub rim: Vec<bool>,
     /// Neighbours by sides and diagonals.
@@ -60,13 +64,16 @@ impl Rings {
     /// Gathers the faces around each vertex.
     pub fn new(shape: &Shape, edges: &[Edge]) -> Self {
         let count = shape.cut.len();
-        let (mut area, mut fans) = (vec![0.0; count], (0..count).map(|_| Vec::new()).collect::<Vec<Vec<Sector>>>());
+        let (mut area, mut bending, mut fans) =
+            (vec![0.0; count], vec![0.0; count], (0..count).map(|_| Vec::new()).collect::<Vec<Vec<Sector>>>());
         for face in &shape.faces {
             let ring = corners(face);
             let n = ring.len();
             let shares = corner_areas(&shape.cut, ring);
+            let moves = ring.iter().any(|&v| !shape.fixed[v as usize]);
             for (k, &v) in ring.iter().enumerate() {
                 area[v as usize] += shares[k];
+                bending[v as usize] += if moves { shares[k] } else { 0.0 };
                 let (next, last) = (ring[(k + 1) % n], ring[(k + n - 1) % n]);
                 let between = |p, q| angle(&shape.cut, v, p, q);
                 fans[v as usize].push(if n == 3 {
@@ -85,7 +92,7 @@ impl Rings {
         let angles = edges.iter().map(|e| ((e.a, e.b), (f64::from(e.angle), e.side))).collect();
         let lengths = edges.iter().map(|e| ((e.a, e.b), f64::from(e.rest))).collect();
         let rim = fans.iter().map(|fan| !closed(fan)).collect();
-        Self { area, rim, beside, fans, angles, lengths }
+        Self { area, bending, rim, beside, fans, angles, lengths }
     }
 
     /// The ring of a vertex in the plane, with the warp along x and the weft along y. Around a vertex inside of the cloth
@@ -95,12 +102,16 @@ impl Rings {
         let around = &self.fans[v];
         let first = around.iter().position(|s| around.iter().all(|t| t.last() != s.points[0])).unwrap_or(0);
         let mut at = first;
-        let (mut angle, mut points) = (0.0, Vec::new());
+        let (mut angle, mut points, mut sectors) = (0.0, Vec::new(), Vec::new());
         for _ in 0..around.len() {
             let sector = &around[at];
+            let place = points.len();
             points.push((sector.points[0], angle));
             angle += sector.angles[0];
-            if sector.points[2] != NO_VERTEX {
+            if sector.points[2] == NO_VERTEX {
+                sectors.push([place, place + 1, NONE]);
+            } else {
+                sectors.push([place, place + 1, place + 2]);
                 points.push((sector.points[1], angle));
                 angle += sector.angles[1];
             }
@@ -113,7 +124,15 @@ impl Rings {
         let whole = if self.rim[v] { around.len() + 1 } else { around.len() };
         let sides = points.iter().filter(|(u, _)| self.angles[&pair(v as u32, *u)].1).count();
         let scale = if self.rim[v] { 1.0 } else { TAU / angle };
-        (sides == whole && angle > 0.0).then(|| self.turned(v as u32, &points, scale))
+        // Around a vertex inside the last face ends where the first begins.
+        let count = points.len();
+        let close = |k: usize| if k == NONE { NONE } else { k % count };
+        let sectors = sectors.into_iter().map(|s| s.map(close)).collect();
+        (sides == whole && angle > 0.0).then(|| Ring {
+            sectors,
+            rim: self.rim[v],
+            ..self.turned(v as u32, &points, scale)
+        })
     }
 
     /// Turns a ring so that the warp runs along x, as its edges have it on average.
@@ -128,7 +147,7 @@ impl Rings {
         }
         let turn = mean.to_angle();
         let place = |&(u, angle): &(u32, f64)| (u, DVec2::from_angle(angle * scale + turn) * self.lengths[&pair(v, u)]);
-        Ring { v, points: points.iter().map(place).collect() }
+        Ring { v, points: points.iter().map(place).collect(), sectors: Vec::new(), rim: false }
     }
 }
 
@@ -171,8 +190,14 @@ fn angle(positions: &[Vec3], v: u32, p: u32, q: u32) -> f64 {
 
 /// A vertex and its neighbours in the plane.
 pub struct Ring {
-    v: u32,
-    points: Vec<(u32, DVec2)>,
+    /// The vertex.
+    pub v: u32,
+    /// Its neighbours, counter-clockwise, and where they lie (m).
+    pub points: Vec<(u32, DVec2)>,
+    /// The points of each face, counter-clockwise; [`NONE`] in the third place of a triangle.
+    pub sectors: Vec<[usize; 3]>,
+    /// True where the cloth ends at the vertex.
+    pub rim: bool,
 }
 
 /// An affine dependence of points around a vertex.
@@ -189,10 +214,19 @@ pub struct Measure {
 }
 
 impl Measure {
-    /// The weights of all four, summing to zero as exactly as f32 can.
-    pub fn weights(&self) -> [f32; 4] {
+    /// The stencil of a stiffness (N m3). The weights sum to zero as exactly as f32 can.
+    pub fn stencil(&self, direction: Direction, k: f64) -> Stencil {
         let [p, q, r] = self.weights.map(|w| w as f32);
-        [-(p + q + r), p, q, r]
+        let count = if self.v[3] == NO_VERTEX { 3 } else { 4 };
+        let c = [-(p + q + r), p, q, r];
+        Stencil { v: self.v[..count].to_vec(), c: c[..count].to_vec(), k: k as f32, direction }
+    }
+
+    /// How each of its particles is pushed by a moment over an area (m2), as weights.
+    pub fn forces(&self, area: f64) -> Vec<(u32, f64)> {
+        let own = (self.v[0], -self.weights.iter().sum::<f64>() * area);
+        let ring = self.v[1..].iter().zip(self.weights).map(|(v, w)| (*v, w * area));
+        std::iter::once(own).chain(ring.filter(|(v, _)| *v != NO_VERTEX)).collect()
     }
 
     /// The part of its length that can bend: all of it, but where the vertex is fixed and so is what lies behind it, as in

@@ -31,8 +31,8 @@ fn stencils_of(mesh: &TestMesh, fabric: &Fabric) -> Vec<Stencil> {
 
 /// |sum c x| in f64.
 fn measured(stencil: &Stencil, place: &dyn Fn(u32) -> Vec3) -> f64 {
-    let used = stencil.v.iter().zip(stencil.c).filter(|(v, _)| **v != NO_VERTEX);
-    used.map(|(&v, c)| place(v).as_dvec3() * f64::from(c)).sum::<glam::DVec3>().length()
+    let terms = stencil.v.iter().zip(&stencil.c);
+    terms.map(|(&v, c)| place(v).as_dvec3() * f64::from(*c)).sum::<glam::DVec3>().length()
 }
 
 /// A hanging sheet in the x-y plane rolled up on a cylinder; `angle` to the warp (down), `radius` in m.
@@ -83,7 +83,7 @@ fn a_stencil_measures_the_curvature_of_a_cylinder_along_its_direction() {
         for stencil in stencils_of(mesh, &fabric(Some(20.0))) {
             // A grid's diagonals lean as its cells do.
             let [v, p] = [0, 1].map(|k| mesh.0[stencil.v[k] as usize]);
-            if stencil.v[3] != NO_VERTEX {
+            if stencil.v.len() > 3 {
                 let ends = |of: fn(Vec3) -> f32| {
                     mesh.0.iter().map(|p| of(*p)).fold((f32::MAX, f32::MIN), |(l, h), x| (l.min(x), h.max(x)))
                 };
@@ -97,19 +97,45 @@ fn a_stencil_measures_the_curvature_of_a_cylinder_along_its_direction() {
             assert!((curvature / 0.5 - 1.0).abs() < 0.16, "{stencil:?}: {curvature}");
         }
     }
-    let rough = rough_sheet(0.8, 0.8, 0.05, 3);
-    for stencil in stencils_of(&rough, &fabric(Some(18.0))) {
-        let along = |angle: f32| measured(&stencil, &|v| rolled(rough.0[v as usize], angle, 3.0)) * 3.0;
-        let found = match stencil.direction {
-            Direction::Warp => along(0.0),
-            Direction::Weft => along(0.5 * PI),
-            // One of the two diagonals.
-            Direction::Bias => [along(0.25 * PI), along(-0.25 * PI)]
-                .into_iter()
-                .min_by(|a, b| (a - 1.0).abs().total_cmp(&(b - 1.0).abs()))
-                .unwrap(),
-        };
-        assert!((found - 1.0).abs() < 0.04, "{stencil:?}: {found}");
+}
+
+#[test]
+fn even_moments_push_no_vertex_inside_of_uneven_cloth() {
+    for seed in [3, 4, 5] {
+        let rough = rough_sheet(0.8, 0.8, 0.05, seed);
+        let found = stencils_of(&rough, &fabric(None));
+        for direction in [Direction::Warp, Direction::Weft] {
+            let (mut push, mut terms) = (vec![0.0; rough.0.len()], vec![0.0; rough.0.len()]);
+            for stencil in found.iter().filter(|s| s.direction == direction) {
+                for (&v, c) in stencil.v.iter().zip(&stencil.c) {
+                    push[v as usize] += f64::from(stencil.k * c);
+                    terms[v as usize] += f64::from(stencil.k * c).abs();
+                }
+            }
+            let inside = |p: &Vec3| p.x > 0.11 && p.x < 0.69 && p.y < -0.11 && p.y > -0.69;
+            let ratios = (0..rough.0.len()).filter(|&v| inside(&rough.0[v])).map(|v| push[v].abs() / terms[v]);
+            let (most, sum, count) = ratios.fold((0.0f64, 0.0, 0), |(m, s, n), r| (m.max(r), s + r, n + 1));
+            assert!(
+                count > 80 && most < 0.1 && sum / f64::from(count) < 0.01,
+                "{seed} {direction:?}: {most} {sum} {count}"
+            );
+        }
+    }
+}
+
+#[test]
+fn uneven_cloth_measures_the_curvature_of_a_parabola_on_average() {
+    for seed in [3, 4, 5] {
+        let rough = rough_sheet(0.8, 0.8, 0.03, seed);
+        let found = stencils_of(&rough, &fabric(None));
+        for (direction, along) in [(Direction::Warp, Vec3::Y), (Direction::Weft, Vec3::X)] {
+            let mine = || found.iter().filter(|s| s.direction == direction);
+            let height = |v: u32| 0.5 * f64::from(rough.0[v as usize].dot(along)).powi(2);
+            let measured = |s: &Stencil| s.v.iter().zip(&s.c).map(|(&v, c)| height(v) * f64::from(*c)).sum::<f64>();
+            let mean =
+                mine().map(|s| f64::from(s.k) * measured(s)).sum::<f64>() / mine().map(|s| f64::from(s.k)).sum::<f64>();
+            assert!((mean - 1.0).abs() < 0.02, "{seed} {direction:?}: {mean}");
+        }
     }
 }
 
@@ -155,12 +181,10 @@ fn a_bent_plate_has_the_energy_of_its_fabric() {
     let end = |p: Vec3| p.y > -1e-4 || p.y < -1.0 + 1e-3;
     let side = |p: Vec3| p.x < 1e-4 || p.x > 1.0 - 1e-3;
     let grids = [sheet(41, 41, 0.025, 0.025), sheet(31, 41, 1.0 / 30.0, 0.025)];
-    for (mesh, tolerance) in grids.iter().map(|m| (m.clone(), 0.02)).chain([
-        // With an even number of columns the diagonals alternate as on a chessboard.
-        (split(sheet(42, 41, 1.0 / 41.0, 0.025), true), 0.02),
-        (rough_sheet(1.0, 1.0, 0.03, 5), 0.05),
-        (rough_sheet(1.0, 1.0, 0.03, 6), 0.05),
-    ]) {
+    // With an even number of columns the diagonals alternate as on a chessboard. An uneven mesh that is put on a cylinder is
+    // not in balance: there every vertex finds a place a little off.
+    let alternating = split(sheet(42, 41, 1.0 / 41.0, 0.025), true);
+    for (mesh, tolerance) in grids.into_iter().chain([alternating]).map(|m| (m, 0.02)) {
         for (bias, diagonal) in [(None, 8.0), (Some(14.0), 14.0)] {
             let fabric = fabric(bias);
             let warp = rigidity(&mesh, &fabric, 0.0, end) * 1e6;

@@ -2,11 +2,11 @@
 //!
 //! In the rest pose every bone's frame is a translation, so the matrix that moves a rest point with its bone is
 //! `x -> R (x - rest) + position`. The twist of a limb about its own axis is split (Gultepe 2013, section 4.4.3): the
-//! bone at the limb's root keeps the swing alone, the twist bone halfway turns with half the twist, and the joint at
-//! the far end with all of it, so that no stretch of skin between two bones bears more than half.
+//! bone at the limb's root keeps the swing alone, the twist bones along it turn with growing shares of the twist, and
+//! the joint at the far end with all of it, so that no stretch of skin between two bones bears more than 18 degrees.
 
 use glam::{Affine3A, Mat3A, Quat, Vec3, Vec3A};
-use toile_assets::skeleton::{BONES, JOINTS, Joint, Pose, Skeleton, TWIST_BONES};
+use toile_assets::skeleton::{BONES, JOINTS, Joint, Pose, Skeleton, TWISTS};
 
 /// Where every joint stands and how it is turned, in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,21 +49,21 @@ pub fn palette(skeleton: &Skeleton, pose: &Pose, palette: &mut [Affine3A; BONES]
     for (i, bone) in palette.iter_mut().enumerate().take(JOINTS) {
         *bone = skin_matrix(frames.rotation[i], frames.position[i], skeleton.rest[i]);
     }
-    for (bone, from, to) in TWIST_BONES {
-        let axis = (skeleton.at(to) - skeleton.at(from)).normalize_or_zero();
-        let carrier = if is_shoulder(from) { from } else { to };
-        let (_, twist) = swing_twist(pose.local[carrier.index()], axis);
-        let start = if is_shoulder(from) { frames.turn(from) * twist.inverse() } else { frames.turn(from) };
-        let half = Quat::from_scaled_axis(axis * (0.5 * angle_about(twist, axis)));
-        let middle = (frames.at(from) + frames.at(to)) * 0.5;
-        palette[from.index()] = skin_matrix(start, frames.at(from), skeleton.at(from));
-        palette[bone] = skin_matrix(start * half, middle, (skeleton.at(from) + skeleton.at(to)) * 0.5);
+    for twist in &TWISTS {
+        let (root, rest) = (frames.at(twist.from), skeleton.at(twist.from));
+        let axis = (skeleton.at(twist.to) - rest).normalize_or_zero();
+        let (_, turn) = swing_twist(pose.local[twist.carrier.index()], axis);
+        // A ball joint's own rotation holds the twist; a wrist or an ankle turns what lies before it.
+        let own = twist.carrier == twist.from;
+        let start = if own { frames.turn(twist.from) * turn.inverse() } else { frames.turn(twist.from) };
+        let angle = angle_about(turn, axis);
+        palette[twist.from.index()] = skin_matrix(start, root, rest);
+        for (k, bone) in twist.bones().enumerate() {
+            let part = Quat::from_scaled_axis(axis * (twist.share(k + 1) * angle));
+            // All turn about the limb's axis, on which its root lies.
+            palette[bone] = skin_matrix(start * part, root, rest);
+        }
     }
-}
-
-/// The upper arm's own rotation holds its twist; the forearm's is held by the wrist that it turns.
-fn is_shoulder(joint: Joint) -> bool {
-    matches!(joint, Joint::LeftShoulder | Joint::RightShoulder)
 }
 
 fn skin_matrix(turn: Quat, position: Vec3, rest: Vec3) -> Affine3A {

@@ -2,12 +2,12 @@
 
 use glam::{EulerRot, Quat, Vec3};
 use proptest::prelude::*;
-use toile_assets::skeleton::{BONES, JOINTS, Joint, Pose, Skeleton};
+use toile_assets::skeleton::{BONES, JOINTS, Joint, Pose, Skeleton, TWISTS, Twist};
 use toile_sensors::frame::{Joints, TrackedJoint};
 
 use super::kinematics::{JointFrames, palette, swing_twist};
 use super::smooth::{LIMB_SPEED, rotation_vector};
-use super::{Poser, ground};
+use super::{Poser, ground, limits};
 
 /// Rest pose with the arms 45 degrees down, of a person `scale` times 1.7 m tall with legs `legs` times as long.
 pub fn skeleton(scale: f32, legs: f32) -> Skeleton {
@@ -370,23 +370,40 @@ fn rest_palette_is_the_identity_and_bones_carry_their_joints() {
 }
 
 #[test]
-fn twist_is_shared_root_bone_none_twist_bone_half_far_joint_all() {
-    use Joint::*;
+fn twist_is_shared_along_a_limb_root_bone_none_far_joint_all() {
     let ours = skeleton(1.0, 1.0);
-    for (twisted, bones, upper) in
-        [(LeftShoulder, [6, 23, 7], [LeftShoulder, LeftElbow]), (LeftWrist, [7, 24, 8], [LeftElbow, LeftWrist])]
-    {
-        let axis = (ours.at(upper[1]) - ours.at(upper[0])).normalize();
+    for twist in &TWISTS {
+        let axis = (ours.at(twist.to) - ours.at(twist.from)).normalize();
         let mut pose = Pose::rest(&ours);
-        pose.local[twisted.index()] = Quat::from_axis_angle(axis, 80_f32.to_radians());
+        pose.local[twist.carrier.index()] = Quat::from_axis_angle(axis, 80_f32.to_radians());
         let mut matrices = [glam::Affine3A::IDENTITY; BONES];
         palette(&ours, &pose, &mut matrices);
         let across = axis.any_orthonormal_vector();
-        for (bone, share) in bones.into_iter().zip([0.0, 0.5, 1.0]) {
+        let chain = std::iter::once(twist.from.index()).chain(twist.bones()).chain([twist.to.index()]);
+        for (k, bone) in chain.enumerate() {
             let turned = matrices[bone].transform_vector3(across);
             let angle = axis.dot(across.cross(turned)).atan2(across.dot(turned)).to_degrees();
-            assert!((angle - 80.0 * share).abs() < 0.01, "bone {bone} turned by {angle}");
+            assert!((angle - 80.0 * twist.share(k)).abs() < 0.01, "bone {bone} turned by {angle}");
+            let end = matrices[bone].transform_point3(ours.at(twist.to));
+            assert!(end.distance(ours.at(twist.to)) < 1e-6, "bone {bone} leaves the axis");
         }
+    }
+}
+
+#[test]
+fn no_stretch_of_a_limb_twists_by_more_than_keeps_its_volume() {
+    use Joint::*;
+    // What a limb can twist by: the ranges of its joints, and the forearm's as clinics measure it, with 30 to spare.
+    let ranges = [
+        (LeftElbow, limits::SHOULDER_TWIST.min),
+        (LeftWrist, 90.0 + 30.0),
+        (LeftKnee, limits::HIP_TWIST.min),
+        (LeftAnkle, limits::ANKLE.turn[1]),
+    ];
+    for (to, degrees) in ranges {
+        let stretch = degrees.to_radians().abs() * Twist::towards(to).unwrap().share(1);
+        let kept = 1.0 - (1.0 - stretch.cos()) / 3.0;
+        assert!(kept >= 0.98, "{to:?} keeps {kept}");
     }
 }
 

@@ -4,7 +4,7 @@
 //! (assets, `bake::links`); it pulls with -c_i d. Evaluated at the positions of the substep's start, so statics do not
 //! depend on the time step; stable while dt^2 w_i sum_s |c_si| sum_j |c_sj| stays below 4 for every particle
 //! (Gershgorin). What is stiffer than a mesh and a substep can carry so takes several [`super::stages`]; [`weaken`] weakens
-//! what is stiffer still, and says by how much.
+//! what is stiffer still, and says by how much. [`super::hubs`] does the same over whole rings.
 
 use toile_assets::garment::layout::{Bends, Run, Set};
 

@@ -10,12 +10,25 @@ use toile_assets::garment::layout::{Links, Run, Set, Zigzag};
 use super::state::{self, Columns};
 use crate::lanes::{Column, Kernel, Lanes, MOST, Numbers, Two, V3, reciprocal_root, times_reciprocal_root};
 
-/// 1 / ((1 + gamma)(w_a + w_b) + alpha / dt^2) of each link, in the order of the parameters; 0 where nothing can move.
-pub fn prepare(links: &Links, weights: &[f32], dt: f32, gamma: f32, gain: &mut [f32]) {
+/// How often a substep solves links.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Passes {
+    /// Once. A link that starts from no tension then carries C / ((w_a + w_b) + alpha / dt^2) at rest, too little by what
+    /// its own ends give; the denominator's greater part alone gives what its stiffness says, as long as that is within
+    /// what one substep carries, and never draws its ends past each other.
+    Once,
+    /// More often, or from the tension that it has.
+    Many,
+}
+
+/// 1 / ((1 + gamma)(w_a + w_b) + alpha / dt^2) of each link, in the order of the parameters, but see [`Passes::Once`]; 0
+/// where nothing can move.
+pub fn prepare(links: &Links, weights: &[f32], [dt, gamma]: [f32; 2], passes: Passes, gain: &mut [f32]) {
     let per_dt2 = (dt * dt).recip();
     links.tuples.for_each(|place, [a, b]| {
         let w = weights[a as usize] + weights[b as usize];
-        let weight = (1.0 + gamma) * w + links.compliance[place] * per_dt2;
+        let (ends, own) = ((1.0 + gamma) * w, links.compliance[place] * per_dt2);
+        let weight = if passes == Passes::Once { ends.max(own) } else { ends + own };
         gain[place] = if w > 0.0 && weight > 0.0 { weight.recip() } else { 0.0 };
     });
 }
@@ -377,7 +390,7 @@ mod tests {
     fn solved(width: Width, positions: &[Vec3], weights: &[f32], links: &Links, gamma: f32) -> Vec<Vec3> {
         let mut state = State::new(positions, weights);
         let mut gain = vec![0.0; links.rest.len()];
-        prepare(links, weights, 1.0, gamma, &mut gain);
+        prepare(links, weights, [1.0, gamma], Passes::Many, &mut gain);
         let set = &links.tuples.sets[0];
         width.run(Solve { columns: state.columns(), links, gain: &gain, set, owner: 0, gamma, tension: None });
         (0..positions.len()).map(|i| Vec3::from_array(state.positions().map(|a| a[i]))).collect()
@@ -457,7 +470,7 @@ mod tests {
             // One after the other, each as a ladder of one rung.
             let mut expected = State::new(&positions, &weights);
             let mut gain = vec![0.0; links.rest.len()];
-            prepare(&links, &weights, 1.0, 0.0, &mut gain);
+            prepare(&links, &weights, [1.0, 0.0], Passes::Many, &mut gain);
             links.tuples.for_each(|at, [a, b]| {
                 let columns = expected.columns();
                 let [pa, pb] = [a, b].map(|i| state::get(columns.x, i as usize));

@@ -82,26 +82,30 @@ impl Ring<'_> {
         &self.solve.lists.index[at..at + self.n]
     }
 
-    /// Numbers of a link of these fibers.
+    /// Where a link of these fibers has its parameters, and its tension.
     #[inline(always)]
-    fn numbers(&self, link: usize) -> &[u32] {
-        let at = self.list.at as usize + link * self.list.lanes as usize + self.lane;
-        &self.solve.lists.serial[at..at + self.n]
+    fn place(&self, link: usize) -> usize {
+        self.list.at as usize + link * self.list.lanes as usize + self.lane
     }
 
     /// Adds to the tension of a link.
     #[inline(always)]
     fn count<L: Lanes>(&self, link: usize, by: L) {
         if let Some(tension) = self.solve.tension {
-            let numbers = self.numbers(link);
-            (L::gather(tension, numbers, self.n) + by).scatter(tension, numbers, self.n);
+            let at = self.place(link);
+            let sum = self.numbers::<L>(tension, link) + by;
+            if self.n == L::N { sum.store(tension, at) } else { sum.store_part(tension, at, self.n) }
         }
     }
 
     #[inline(always)]
     fn parameter<L: Lanes>(&self, from: &[f32], link: usize) -> L {
-        let at = self.list.at as usize + link * self.list.lanes as usize + self.lane;
-        let from = Column::read_only(from);
+        self.numbers(Column::read_only(from), link)
+    }
+
+    #[inline(always)]
+    fn numbers<L: Lanes>(&self, from: Column<'_>, link: usize) -> L {
+        let at = self.place(link);
         if self.n == L::N { L::load(from, at) } else { L::load_part(from, at, self.n) }
     }
 
@@ -163,7 +167,7 @@ impl Ring<'_> {
             let stretch = match self.solve.tension.filter(|_| !ZERO) {
                 Some(tension) => {
                     let soft = self.parameter::<L>(&self.solve.lists.compliance, link) * L::splat(self.solve.per_dt2);
-                    stretch - L::gather(tension, self.numbers(link), self.n) * soft
+                    stretch - self.numbers::<L>(tension, link) * soft
                 }
                 None => stretch,
             };

@@ -6,8 +6,10 @@
 
 pub mod bending;
 pub mod contact;
+pub mod diagonals;
 pub mod fibers;
 pub mod guard;
+pub mod hubs;
 pub mod links;
 pub mod lists;
 pub mod measure;
@@ -69,6 +71,8 @@ pub struct Cloth {
     scratch: [Store; OWNERS],
     /// Room for bending that is stiffer than a substep; none where it cannot be.
     room: stages::Room,
+    /// Room for what is solved along the bias.
+    leaning: diagonals::Room,
     /// Tensions of weft links, of fibers, of crossing fibers within a substep; empty where they have no compliance.
     tension: [Store; 3],
     /// Room for percentiles.
@@ -96,12 +100,7 @@ impl Cloth {
         let start: Box<[Vec3A]> = garment.start.iter().map(|&p| p.into()).collect();
         let fixed: Box<[Vec3A]> = garment.fixed.iter().map(|&i| start[i as usize]).collect();
         let layout = &garment.layout;
-        let needs = [
-            bending::SCRATCH,
-            fibers::scratch_len(&layout.fibers),
-            lists::scratch_len(&layout.crossing),
-            lists::scratch_len(&layout.hoops),
-        ];
+        let needs = [bending::SCRATCH, fibers::scratch_len(&layout.fibers), lists::scratch_len(&layout.crossing)];
         let prepared = prepared::Prepared::new(garment);
         let counts = [layout.weft.tuples.count, layout.fibers.links, layout.crossing.rest.len()];
         let tension = std::array::from_fn(|k| Store::zeros(if prepared.soft(k) { counts[k] } else { 0 }));
@@ -113,6 +112,7 @@ impl Cloth {
             contacts: contact::Contacts::new(&layout.spans, &garment.parts, &garment.start, colliders),
             scratch: [scratch(), scratch()],
             room: stages::Room::new(if prepared.stiff() { start.len() } else { 0 }),
+            leaning: diagonals::Room::new(&garment.layout.diagonals, garment.start.len()),
             strains: vec![0.0; garment.strain_edges.len()].into(),
             prepared,
             tension,
@@ -166,6 +166,7 @@ impl Cloth {
             + self.pushed.bytes()
             + self.faces.as_ref().map_or(0, wind::Faces::bytes)
             + self.room.bytes()
+            + self.leaning.bytes()
             + self.scratch.iter().map(Store::bytes).sum::<usize>()
             + self.tension.iter().map(Store::bytes).sum::<usize>()
             + self.prepared.bytes()

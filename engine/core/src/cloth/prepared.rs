@@ -6,10 +6,11 @@ use toile_assets::garment::Garment;
 use toile_assets::garment::layout::ENDED;
 use toile_assets::limits::STEP_SECONDS;
 
+use super::links::Passes;
 use super::program::{self, Bending, Op};
 use super::settings::MAX_SUBSTEPS;
 use super::stages::{self, Stage};
-use super::{Quality, Settings, bending, fibers, links};
+use super::{Quality, Settings, bending, fibers, hubs, links};
 
 /// Pull across a fiber's links from which on its solves are calmed. Garments in the substeps that they ask for are below
 /// 1: a linearised solve is stable there, and calming would slow their swing.
@@ -30,10 +31,13 @@ pub struct Prepared {
     pub gamma: f32,
     /// Whether fibers pull more across themselves than one linearised solve can take.
     pub taut: bool,
+    /// Shear along whole fibers acts every so many substeps, for all of them.
+    pub shear_every: u32,
     pub shear_gain: Box<[f32]>,
     pub weft_gain: Box<[f32]>,
     pub bend_scale: Box<[f32]>,
     pub skewed_scale: Box<[f32]>,
+    pub hub_scale: Box<[f32]>,
     pub bend: bending::Pace,
     /// Bending's phases of a substep, and its stages where it is stiff.
     pub bending: Bending,
@@ -60,10 +64,12 @@ impl Prepared {
             dt: 0.0,
             gamma: 0.0,
             taut: false,
+            shear_every: 1,
             shear_gain: zeros(layout.shear.rest.len()),
             weft_gain: zeros(layout.weft.rest.len()),
             bend_scale: zeros(layout.bends.tuples.places),
             skewed_scale: zeros(layout.skewed.tuples.places),
+            hub_scale: zeros(layout.hubs.count),
             bend: bending::Pace { every: 1, stages: 1, least: 1.0 },
             bending: Bending { sets: Bending::sets(layout), stages: 1 },
             stages: [Stage::default(); stages::MOST as usize],
@@ -88,10 +94,12 @@ impl Prepared {
         self.substeps = asked;
         self.dt = settings.step_seconds / asked as f32;
         self.gamma = settings.stretch_damping_s / self.dt;
+        let half = asked.is_multiple_of(2) && self.quality != Quality::Fine && self.gamma == 0.0;
+        self.shear_every = if half { 2 } else { 1 };
         self.taut = fibers::pull_across(&garment.layout.fibers, &garment.inverse_mass, self.dt) > TAUT;
         let (layout, w) = (&garment.layout, &garment.inverse_mass);
-        links::prepare(&layout.shear, w, self.dt, self.gamma, &mut self.shear_gain);
-        links::prepare(&layout.weft, w, self.dt, self.gamma, &mut self.weft_gain);
+        links::prepare(&layout.shear, w, [self.dt, self.gamma], Passes::Once, &mut self.shear_gain);
+        links::prepare(&layout.weft, w, [self.dt, self.gamma], Passes::Many, &mut self.weft_gain);
         self.bend(garment);
     }
 
@@ -111,6 +119,7 @@ impl Prepared {
         }
         let least = bending::weaken(&layout.bends, &self.load, limit, &mut self.bend_scale);
         let least = bending::weaken(&layout.skewed, &self.load, limit, &mut self.skewed_scale).min(least);
+        let least = hubs::weaken(&layout.hubs, &self.load, limit, &mut self.hub_scale).min(least);
         self.bending.stages = stages;
         self.bend = bending::Pace { every: bending::every(&self.load, self.substeps), stages, least };
     }
@@ -146,6 +155,7 @@ impl Prepared {
 fn add_load(garment: &Garment, dt: f32, load: &mut [f32]) {
     bending::add_load(&garment.layout.bends, &garment.inverse_mass, dt, load);
     bending::add_load(&garment.layout.skewed, &garment.inverse_mass, dt, load);
+    hubs::add_load(&garment.layout.hubs, &garment.inverse_mass, dt, load);
 }
 
 /// Whether any of some links gives: a millimetre under a thousand newtons and more.

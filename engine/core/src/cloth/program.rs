@@ -28,6 +28,8 @@ pub enum Op {
     Stage(u32, u16),
     /// Gravity, air, wind; skinned particles move on.
     Predict,
+    /// A family of fibers along the bias.
+    Diagonals(u16),
     /// A set of shear links.
     Shear(u16),
     /// A set of weft links.
@@ -36,10 +38,6 @@ pub enum Op {
     Fibers,
     /// A set of warp fibers that cross others.
     Crossing(u16),
-    /// A set of closed hoops.
-    Hoops(u16),
-    /// Contact with the body.
-    Contact,
     /// Tethers.
     Tether,
     /// Contact with the body, new velocities.
@@ -58,10 +56,10 @@ impl Op {
         match self {
             Self::Predict | Self::Carry => 0,
             Self::Bend(_) | Self::Turn(_) | Self::Stage(..) => 1,
-            Self::Shear(_) => 2,
-            Self::Weft(_) | Self::Hoops(_) => 3,
+            Self::Diagonals(_) | Self::Shear(_) => 2,
+            Self::Weft(_) => 3,
             Self::Fibers | Self::Crossing(_) => 4,
-            Self::Finish | Self::Contact | Self::Find => 5,
+            Self::Finish | Self::Find => 5,
             Self::Wind | Self::CrossWind => 6,
             Self::Tether => 7,
         }
@@ -80,7 +78,7 @@ pub struct Bending {
 impl Bending {
     /// The sets of a layout.
     pub fn sets(layout: &Layout) -> u32 {
-        layout.bends.tuples.sets.len().max(layout.skewed.tuples.sets.len()) as u32
+        layout.bends.tuples.sets.len().max(layout.skewed.tuples.sets.len()).max(layout.hubs.sets()) as u32
     }
 
     /// Its phases.
@@ -102,18 +100,15 @@ impl Bending {
 pub fn substep(layout: &Layout, quality: Quality) -> Box<[Op]> {
     let numbered = |n: usize, op: fn(u16) -> Op| (0..n as u16).map(op);
     let wefts = || numbered(layout.weft.tuples.sets.len(), Op::Weft);
-    let hoops = || numbered(layout.hoops.sets.len(), Op::Hoops);
     let fibers = || numbered(layout.crossing.sets.len(), Op::Crossing).chain([Op::Fibers]);
     let mut ops = vec![Op::Predict];
     let shear = || numbered(layout.shear.tuples.sets.len(), Op::Shear);
+    ops.extend(numbered(layout.diagonals.families.len(), Op::Diagonals));
     ops.extend(shear().chain(wefts()).chain(fibers()));
     match quality {
         Quality::Draft => {}
-        Quality::Shop => ops.extend(wefts().chain(wefts()).chain(fibers()).chain(wefts()).chain(wefts())),
-        // Open weft fibers are in no hoop: they keep their sweep.
-        Quality::Fine => {
-            ops.push(Op::Contact);
-            ops.extend(wefts().chain(hoops()).chain(fibers()).chain(hoops()).chain(wefts()));
+        Quality::Shop | Quality::Fine => {
+            ops.extend(wefts().chain(wefts()).chain(fibers()).chain(wefts()).chain(wefts()));
         }
     }
     ops.push(Op::Tether);

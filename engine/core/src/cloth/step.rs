@@ -14,7 +14,8 @@ use super::root::{Carried, RootStep};
 use super::stages;
 use super::state::{self, Columns};
 use super::{
-    Cloth, Quality, Settings, Step, Wind, bending, contact, fibers, guard, links, lists, predict, settle, tethers, wind,
+    Cloth, Quality, Settings, Step, Wind, bending, contact, diagonals, fibers, guard, hubs, links, lists, predict,
+    settle, tethers, wind,
 };
 use crate::crew::{Crew, Own};
 use crate::lanes::{Column, Store, Width};
@@ -37,6 +38,7 @@ struct Work<'a> {
     scratch: [Column<'a>; OWNERS],
     /// Room for stiff bending; empty where there is none.
     room: [[Column<'a>; 3]; 3],
+    leaning: [Column<'a>; diagonals::KEPT],
     fall: Vec3A,
     kept: f32,
     width: Width,
@@ -167,6 +169,7 @@ impl Cloth {
         let dt = self.prepared.dt;
         let [one, two] = &mut self.scratch;
         let room = self.room.columns();
+        let leaning = self.leaning.columns();
         Work {
             garment,
             step,
@@ -181,6 +184,7 @@ impl Cloth {
             tension: self.tension.each_mut().map(Store::column),
             scratch: [one.column(), two.column()],
             room,
+            leaning,
             fall: step.settings.gravity * dt,
             kept: (-garment.fabric.damping_per_s * dt).exp(),
             width: step.settings.width,
@@ -301,6 +305,13 @@ impl Work<'_> {
                 self.bend(set, [stage, stage + 1].map(|j| self.room[stages::place(j)]), by, share);
             }
             Op::Predict => self.predict(substep, share),
+            Op::Diagonals(family) if substep.is_multiple_of(p.shear_every) => {
+                let strand = &layout.diagonals.families[usize::from(family)][share];
+                let per_dt2 = per_dt2 / p.shear_every as f32;
+                let (diagonals, room, gamma) = (&layout.diagonals, self.leaning, p.gamma);
+                self.width.run(diagonals::Solve { columns, diagonals, strand, room, per_dt2, gamma });
+            }
+            Op::Diagonals(_) => {}
             Op::Shear(set) => {
                 let set = &layout.shear.tuples.sets[usize::from(set)];
                 self.width.run(link(&layout.shear, &p.shear_gain, set, None));
@@ -320,8 +331,6 @@ impl Work<'_> {
                 tension: tension(1),
             }),
             Op::Crossing(set) => self.width.run(list(&layout.crossing, set, tension(2))),
-            Op::Hoops(set) => self.width.run(list(&layout.hoops, set, tension(0))),
-            Op::Contact => self.contact(substep, share),
             Op::Finish => self.finish(substep, share),
         }
     }
@@ -331,6 +340,24 @@ impl Work<'_> {
         let (layout, p) = (&self.garment.layout, self.prepared);
         self.stencils(&layout.bends, &p.bend_scale, set, from_to, by, share);
         self.stencils(&layout.skewed, &p.skewed_scale, set, from_to, by, share);
+        self.hubs(set, from_to, by, share);
+    }
+
+    /// Those of whole rings.
+    fn hubs(&self, set: u16, [from, to]: [[Column<'_>; 3]; 2], by: f32, share: usize) {
+        let hubs = &self.garment.layout.hubs;
+        let Some(groups) = hubs.sets.get(usize::from(set)) else { return };
+        let scale = (self.prepared.bend.least < 1.0).then_some(&*self.prepared.hub_scale);
+        let bend = |owner: usize| {
+            let groups = groups[owner].clone();
+            self.width.run(hubs::Bend { w: self.columns.w, hubs, groups, from, to, by, scale });
+        };
+        // The second set crosses the owners.
+        if set == 0 {
+            bend(share);
+        } else if share == 0 {
+            (0..OWNERS).for_each(bend);
+        }
     }
 
     /// Those of one kind; what crosses the owners is the first worker's alone.

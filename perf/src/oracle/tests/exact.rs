@@ -70,7 +70,7 @@ fn a_light_cantilever_sinks_as_its_discrete_beam() {
     let mut problem = chain(n, h, q * h, 0.0, DVec3::X);
     problem.mass[1] = 0.0;
     let c = (b / h.powi(3)).sqrt();
-    let bend = |i: u32| Bend { particles: [i, i - 1, i + 1, i], coefficients: [-2.0 * c, c, c, 0.0] };
+    let bend = |i: u32| Bend { particles: vec![i, i - 1, i + 1], coefficients: vec![-2.0 * c, c, c] };
     problem.bends = (1..n as u32).map(bend).collect();
     let start = problem.start.clone();
     let solved = Oracle::new(problem).unwrap().equilibrium(&start, &Solids::default()).unwrap();
@@ -133,7 +133,8 @@ fn renumbered(problem: &Problem) -> (Problem, Vec<usize>) {
     }
     let name = |i: u32| new[i as usize] as u32;
     out.links = problem.links.iter().rev().map(|l| Link { ends: [name(l.ends[1]), name(l.ends[0])], ..*l }).collect();
-    out.bends = problem.bends.iter().rev().map(|b| Bend { particles: b.particles.map(name), ..*b }).collect();
+    let renamed = |b: &Bend| Bend { particles: b.particles.iter().map(|i| name(*i)).collect(), ..b.clone() };
+    out.bends = problem.bends.iter().rev().map(renamed).collect();
     (out, new)
 }
 

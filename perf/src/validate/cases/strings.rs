@@ -41,17 +41,23 @@ pub fn cases() -> Vec<Case> {
 /// Side of the sheared sheet (m).
 const SHEET: f64 = 0.3;
 
+/// How many times as tall as wide it is. At its free sides there is no shear, so that within L sqrt(G/E) of them it
+/// sags more: by a fifth of the width where G is highest, which is nothing any more at half its height.
+const TALL: usize = 3;
+
 /// A sheet that is held along both upright sides sags by w L^2 / 8G in its middle, by shear alone: its upright threads
 /// only sink, its level ones turn.
 fn shear(stiffness: f64) -> Case {
     let (rows, held) = (16, [Hold::Pinned, Hold::Pinned]);
-    let strip = Strip { width: SHEET, columns: rows, ..Strip::narrow(SHEET, rows, held) };
+    let tall = TALL as f64 * SHEET;
+    let strip = Strip { width: tall, columns: TALL * rows, ..Strip::narrow(SHEET, rows, held) };
     let cloth = Cloth { shear: stiffness, damping: DAMPING, ..Cloth::PLAIN };
     let run = move |level| {
         let shape = strip.shape(|along, across| DVec3::new(along, across, 0.0));
         let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
         let settled = rig.rest(REST_S);
-        let middle = || (0..rig.vertices()).filter(|v| (shape.worn[*v].x - 0.5 * SHEET as f32).abs() < 1e-4);
+        let at = |v: usize, axis: usize, middle: f64| (f64::from(shape.worn[v][axis]) - middle).abs() < 1e-4;
+        let middle = || (0..rig.vertices()).filter(|&v| at(v, 0, 0.5 * SHEET) && at(v, 1, 0.0));
         let before = middle().map(|v| f64::from(shape.worn[v].y)).sum::<f64>() / middle().count().max(1) as f64;
         Ok(rig.told(level, |seen| before - seen.mean(middle()).y).settled(settled))
     };

@@ -1,7 +1,7 @@
 //! Which capsules cloth on a part of the body can touch at all: a sleeve has nothing to do with a leg.
 
 use toile_assets::garment::Part;
-use toile_assets::skeleton::{Joint, TWIST_BONES};
+use toile_assets::skeleton::{Joint, bone_joint};
 
 use crate::colliders::Colliders;
 
@@ -31,9 +31,6 @@ fn limb(bone: u8) -> Part {
         (Part::LeftLeg, [LeftHip, LeftKnee, LeftAnkle, LeftToe]),
         (Part::RightLeg, [RightHip, RightKnee, RightAnkle, RightToe]),
     ];
-    let joint = TWIST_BONES.iter().find(|(b, ..)| *b == usize::from(bone)).map_or(usize::from(bone), |t| t.1.index());
-    SIDES
-        .into_iter()
-        .find(|(_, joints)| joints.iter().any(|j| j.index() == joint))
-        .map_or(Part::Trunk, |(part, _)| part)
+    let joint = bone_joint(bone.into());
+    SIDES.into_iter().find(|(_, joints)| joints.iter().any(|j| Some(*j) == joint)).map_or(Part::Trunk, |(part, _)| part)
 }

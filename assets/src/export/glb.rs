@@ -1,0 +1,155 @@
+//! A dressed body as GLB, the binary form of glTF 2.0: it opens in Blender and in every viewer of the format.
+//!
+//! The body hangs on its skeleton (H-Anim names, inverse bind matrices of the rest pose, four weights a vertex), whose
+//! nodes stand in the pose asked for; garments lie around it as plain meshes, in the world. Metres, y up, facing +z, as
+//! the format has it. Colours are linear, as the format wants them, from the sRGB that fabrics state.
+
+use glam::{Affine3A, Mat3, Mat4, Quat, Vec3};
+use serde_json::{Value, json};
+
+use super::parts::Parts;
+use crate::body::Body;
+use crate::mesh::vertex_normals;
+use crate::skeleton::{BONES, Joint, bone_joint, bone_name};
+
+/// sRGB of the body: the mannequin's warm light grey-beige.
+const SKIN_SRGB: [f32; 3] = [0.797, 0.754, 0.711];
+
+/// Roughness of skin and of cloth: neither shines.
+const SKIN_ROUGHNESS: f32 = 0.6;
+const CLOTH_ROUGHNESS: f32 = 0.9;
+
+/// What is exported.
+#[derive(Debug, Clone, Copy)]
+pub struct Dressed<'a> {
+    /// The body in its rest pose.
+    pub body: &'a Body,
+    /// The pose, as skin matrices (rest to world, rigid) `[BONES]`; `None` is the rest pose.
+    pub palette: Option<&'a [Affine3A; BONES]>,
+    /// What it wears, inner first.
+    pub worn: &'a [Worn<'a>],
+}
+
+/// A garment as it lies.
+#[derive(Debug, Clone, Copy)]
+pub struct Worn<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Vertex positions, world (m) `[vertices]`.
+    pub positions: &'a [Vec3],
+    /// Vertex indices.
+    pub triangles: &'a [[u32; 3]],
+    /// Its colour, sRGB 0..1.
+    pub srgb: [f32; 3],
+}
+
+/// The GLB file of a dressed body. The same input gives the same bytes.
+pub fn glb(dressed: &Dressed<'_>) -> Vec<u8> {
+    let mut parts = Parts::default();
+    let body = dressed.body;
+    let joints = joint_nodes(body, dressed.palette);
+    let mut nodes = vec![json!({ "name": "body", "mesh": 0, "skin": 0 })];
+    nodes.extend(joints);
+    let mut meshes = vec![body_mesh(&mut parts, body)];
+    let mut materials = vec![material("skin", SKIN_SRGB, SKIN_ROUGHNESS, false)];
+    // The joints' root, the body, then the garments.
+    let mut roots = vec![0, 1 + Joint::Pelvis.index()];
+    for garment in dressed.worn.iter().filter(|g| !g.triangles.is_empty()) {
+        roots.push(nodes.len());
+        nodes.push(json!({ "name": garment.name, "mesh": meshes.len() }));
+        meshes.push(garment_mesh(&mut parts, garment, materials.len()));
+        materials.push(material(garment.name, garment.srgb, CLOTH_ROUGHNESS, true));
+    }
+    let inverse: Vec<Mat4> = body.skeleton.bone_origins().iter().map(|p| Mat4::from_translation(-*p)).collect();
+    let bones: Vec<usize> = (1..=BONES).collect();
+    let matrices = parts.matrices(&inverse);
+    let description = json!({
+        "asset": { "version": "2.0", "generator": concat!("Toile ", env!("CARGO_PKG_VERSION")) },
+        "scene": 0,
+        "scenes": [{ "name": "dressed", "nodes": roots }],
+        "nodes": nodes,
+        "meshes": meshes,
+        "materials": materials,
+        "skins": [{
+            "name": "skeleton", "joints": bones, "inverseBindMatrices": matrices,
+            "skeleton": 1 + Joint::Pelvis.index(),
+        }],
+    });
+    parts.glb(description)
+}
+
+fn body_mesh(parts: &mut Parts, body: &Body) -> Value {
+    let joints = body.weights.iter().map(|w| {
+        // A joint without weight is named 0, as the format asks.
+        std::array::from_fn(|k| if w.weights[k] > 0.0 { w.bones[k] } else { 0 })
+    });
+    let mut attributes = json!({
+        "POSITION": parts.positions(&body.mesh.positions),
+        "NORMAL": parts.normals(&body.normals),
+        "JOINTS_0": parts.joints(joints),
+        "WEIGHTS_0": parts.weights(body.weights.iter().map(|w| w.weights)),
+    });
+    if !body.mesh.uvs.is_empty() {
+        attributes["TEXCOORD_0"] = parts.uvs(&body.mesh.uvs).into();
+    }
+    let indices = parts.indices(&body.mesh.triangles);
+    json!({ "name": "body", "primitives": [{ "attributes": attributes, "indices": indices, "material": 0 }] })
+}
+
+fn garment_mesh(parts: &mut Parts, garment: &Worn<'_>, material: usize) -> Value {
+    let mut normals = vec![Vec3::ZERO; garment.positions.len()];
+    vertex_normals(garment.positions, garment.triangles, &mut normals);
+    let attributes = json!({ "POSITION": parts.positions(garment.positions), "NORMAL": parts.normals(&normals) });
+    let indices = parts.indices(garment.triangles);
+    json!({ "name": garment.name, "primitives": [{ "attributes": attributes, "indices": indices, "material": material }] })
+}
+
+fn material(name: &str, srgb: [f32; 3], roughness: f32, double_sided: bool) -> Value {
+    let [r, g, b] = srgb.map(linear);
+    json!({
+        "name": name,
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": roughness,
+        },
+        "doubleSided": double_sided,
+    })
+}
+
+/// A linear value of an sRGB one (IEC 61966-2-1).
+fn linear(srgb: f32) -> f32 {
+    let c = srgb.clamp(0.0, 1.0);
+    if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+}
+
+/// What each bone hangs from: the pelvis from nothing.
+fn parent(bone: usize) -> Option<usize> {
+    match Joint::ALL.get(bone) {
+        Some(joint) => joint.parent().map(Joint::index),
+        None => bone_joint(bone).map(Joint::index),
+    }
+}
+
+/// The nodes of the bones, in their order, from the node 1 on.
+fn joint_nodes(body: &Body, palette: Option<&[Affine3A; BONES]>) -> Vec<Value> {
+    let rest = body.skeleton.bone_origins();
+    let world: [Mat4; BONES] = std::array::from_fn(|b| {
+        let skin = palette.map_or(Mat4::IDENTITY, |p| Mat4::from(p[b]));
+        skin * Mat4::from_translation(rest[b])
+    });
+    let mut nodes = Vec::with_capacity(BONES);
+    for bone in 0..BONES {
+        let local = parent(bone).map_or(world[bone], |p| world[p].inverse() * world[bone]);
+        let turn = Quat::from_mat3(&Mat3::from_mat4(local)).normalize();
+        let children: Vec<usize> = (0..BONES).filter(|b| parent(*b) == Some(bone)).map(|b| b + 1).collect();
+        let mut node =
+            json!({ "name": bone_name(bone).unwrap_or_default(), "translation": local.w_axis.truncate().to_array() });
+        if turn.x != 0.0 || turn.y != 0.0 || turn.z != 0.0 {
+            node["rotation"] = json!(turn.to_array());
+        }
+        if !children.is_empty() {
+            node["children"] = json!(children);
+        }
+        nodes.push(node);
+    }
+    nodes
+}

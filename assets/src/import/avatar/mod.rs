@@ -1,0 +1,174 @@
+//! Bodies that others made, as our [`Body`]: skinned glTF 2.0 meshes and VRM avatars.
+//!
+//! Reads: `.gltf`, `.glb` and `.vrm` files in their bind pose. Writes: a body with its report, or one clear sentence.
+//! Budget: at load only, about half a second for a body of 30,000 vertices.
+//! Thread: the loading thread.
+
+mod carry;
+mod error;
+pub mod names;
+mod nodes;
+pub(crate) mod raw;
+mod rest;
+mod skinned;
+pub mod surface;
+mod survey;
+#[cfg(test)]
+pub(crate) mod tests;
+
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+
+use crate::body::{Body, Region, Sex};
+use crate::import::gltf::file::File;
+use crate::limits::MAX_BODY_BYTES;
+use crate::mesh::{Mesh, vertex_normals};
+use crate::skeleton::Joint;
+pub use carry::Pruned;
+pub use error::{AvatarError, Flaw};
+use raw::Raw;
+use surface::Surface;
+
+/// How a body is to be imported.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Whose garments the body is given: a file does not say it.
+    pub sex: Sex,
+    /// Names of the meshes to take; empty takes all that are skinned.
+    pub meshes: Vec<String>,
+    /// Whether the surface may be open outside of the head too.
+    pub allow_holes: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { sex: Sex::Female, meshes: Vec::new(), allow_holes: false }
+    }
+}
+
+/// A body, and what was found in its file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Imported {
+    /// The body in its rest pose: metres, y up, facing +z, the floor at y = 0.
+    pub body: Body,
+    /// What was found.
+    pub report: Report,
+}
+
+/// What was found in a file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Report {
+    /// How its joints are named.
+    pub dialect: &'static str,
+    /// For each of our joints that was found: its H-Anim name, and the file's own.
+    pub joints: Vec<(String, String)>,
+    /// What pruning the weights cost.
+    pub pruned: Pruned,
+    /// Pieces of the surface that hang together.
+    pub parts: usize,
+    /// Edges with a triangle on one side alone.
+    pub boundary_edges: usize,
+    /// Edges of more than two triangles.
+    pub crowded_edges: usize,
+    /// What was found and how it was taken, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Imports the skinned meshes of a `.gltf`, `.glb` or `.vrm` file.
+///
+/// # Errors
+/// [`AvatarError`], which names the file, what is wrong in it, and the cure.
+pub fn read(path: &Path, options: &Options) -> Result<Imported, AvatarError> {
+    let bytes = load(path).map_err(|flaw| flaw.of(path))?;
+    let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+    let beside = |name: &str| {
+        let plain = Path::new(name).components().all(|c| matches!(c, std::path::Component::Normal(_)));
+        let file: PathBuf = folder.join(name);
+        if !plain {
+            return Err(format!("its buffer \"{name}\" lies outside of its folder; put it beside the file"));
+        }
+        load(&file).map_err(|flaw| format!("its buffer {name}: {flaw}"))
+    };
+    parse(&bytes, &beside, options).map_err(|flaw| flaw.of(path))
+}
+
+/// A file's bytes, if they are no more than a body has.
+pub(crate) fn load(path: &Path) -> Result<Vec<u8>, Flaw> {
+    let wrong = |e: std::io::Error| Flaw::Read { reason: e.to_string() };
+    let bytes = std::fs::metadata(path).map_err(wrong)?.len();
+    if bytes > MAX_BODY_BYTES {
+        return Err(Flaw::TooLarge { bytes });
+    }
+    std::fs::read(path).map_err(wrong)
+}
+
+/// Imports a file's bytes; `beside` reads the buffers that lie beside it.
+///
+/// # Errors
+/// [`Flaw`], to stand behind the file's name.
+pub fn parse(bytes: &[u8], beside: crate::import::gltf::Beside<'_>, options: &Options) -> Result<Imported, Flaw> {
+    let file = File::open(bytes, beside)?;
+    settle(skinned::read(&file, &options.meshes)?, options)
+}
+
+/// Makes a raw body ours.
+pub(crate) fn settle(mut raw: Raw, options: &Options) -> Result<Imported, Flaw> {
+    raw.check()?;
+    let (skeleton, placed) = rest::stand(&mut raw)?;
+    let (weights, pruned) = carry::weights(&raw, &skeleton, &placed);
+    let surface = Surface::of(&raw.positions, &raw.triangles);
+    let mesh = Mesh {
+        uvs: if raw.has_uvs { std::mem::take(&mut raw.uvs) } else { Vec::new() },
+        positions: std::mem::take(&mut raw.positions),
+        triangles: std::mem::take(&mut raw.triangles),
+    };
+    let normals = normals(&mesh, &surface, &raw.normals);
+    let survey = survey::survey(&mesh, &weights, &skeleton)?;
+    if !options.allow_holes {
+        check_holes(&mesh, &surface, &survey.regions, skeleton.at(Joint::Neck).y)?;
+    }
+    let report = Report {
+        dialect: raw.reading.dialect,
+        joints: found(&raw),
+        pruned,
+        parts: surface.parts,
+        boundary_edges: surface.boundary.len(),
+        crowded_edges: surface.crowded,
+        notes: raw.notes,
+    };
+    let survey::Survey { regions, levels, measures } = survey;
+    let body = Body { sex: options.sex, mesh, normals, skeleton, weights, regions, levels, measures };
+    Ok(Imported { body, report })
+}
+
+fn found(raw: &Raw) -> Vec<(String, String)> {
+    let name =
+        |j: Joint| Some((names::HANIM.names(j).remove(0), raw.joints[raw.reading.places[j.index()]?].name.clone()));
+    Joint::ALL.into_iter().filter_map(name).collect()
+}
+
+/// The file's normals; where it has none, those of the surface, smooth across seams.
+fn normals(mesh: &Mesh, surface: &Surface, given: &[Vec3]) -> Vec<Vec3> {
+    let welded: Vec<[u32; 3]> = mesh.triangles.iter().map(|t| t.map(|v| surface.first[v as usize])).collect();
+    let mut smooth = vec![Vec3::ZERO; mesh.positions.len()];
+    vertex_normals(&mesh.positions, &welded, &mut smooth);
+    let normal = |(v, n): (usize, &Vec3)| match *n == Vec3::ZERO {
+        true => smooth[surface.first[v] as usize].try_normalize().unwrap_or(Vec3::Y),
+        false => *n,
+    };
+    given.iter().enumerate().map(normal).collect()
+}
+
+/// Refuses holes where garments lie and tapes go. Eyes, mouths and seams of the head are often open, and do no harm.
+fn check_holes(mesh: &Mesh, surface: &Surface, regions: &[Region], neck: f32) -> Result<(), Flaw> {
+    let on_head = |v: u32| regions[v as usize] == Region::Head || mesh.positions[v as usize].y > neck;
+    let open: Vec<&[u32; 2]> = surface.boundary.iter().filter(|e| !e.iter().all(|v| on_head(*v))).collect();
+    match open.first() {
+        None => Ok(()),
+        Some(&&[a, b]) => {
+            let p = mesh.positions[a as usize];
+            Err(Flaw::Hole { count: open.len(), a, b, x: p.x, y: p.y, z: p.z })
+        }
+    }
+}

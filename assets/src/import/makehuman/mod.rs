@@ -1,0 +1,155 @@
+//! MakeHuman's base mesh `hm08`, its targets, rigs and weights, as our [`Body`](crate::body::Body).
+//!
+//! Reads: a folder with `base.obj`, `rig.<name>.json`, `weights.<name>.json.gz` and `*.target.gz` files, which the user
+//! has; nothing of it is part of this program. Writes: a body with its report, and the girths that MakeHuman shows.
+//! Budget: at load only, about half a second.
+//! Thread: the loading thread.
+
+mod files;
+pub mod girths;
+mod rig;
+
+use std::path::Path;
+
+use glam::{Vec2, Vec3};
+
+use super::avatar::raw::{Influences, Raw, RawJoint};
+use super::avatar::{AvatarError, Flaw, Imported, Options, names, settle};
+use super::plain::parse_obj;
+use crate::garment::shape::NO_VERTEX;
+use crate::limits::IMPORT_INFLUENCES;
+use files::{json_gz, targets, text};
+use girths::Girths;
+
+/// Vertices of the body: those after them are helpers, eyes, teeth and the cubes that mark joints.
+pub const BODY_VERTICES: usize = 13_380;
+
+/// What a body is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    /// Targets by their file's name, and how much of each; they add up.
+    pub targets: Vec<(String, f32)>,
+    /// Which rig carries the body: `game_engine` or `cmu_mb`.
+    pub rig: String,
+}
+
+impl Default for Choice {
+    fn default() -> Self {
+        Self { targets: Vec::new(), rig: "game_engine".into() }
+    }
+}
+
+/// A body, what was found in its files, and MakeHuman's own measures of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Made {
+    /// The body and its report.
+    pub imported: Imported,
+    /// The girths by MakeHuman's rows of vertices.
+    pub girths: Girths,
+}
+
+/// The base with targets added.
+struct Base {
+    /// All vertices (dm).
+    positions: Vec<Vec3>,
+    /// Faces of the body.
+    faces: Vec<[u32; 4]>,
+    /// The vertices of each group that marks a joint.
+    cubes: Vec<(String, Vec<u32>)>,
+}
+
+/// Makes a body of a folder's files. Texture coordinates are left out: they belong to corners, not to vertices, and
+/// cutting the mesh along their seams would open its closed surface.
+///
+/// # Errors
+/// [`AvatarError`], which names the file, what is wrong in it, and the cure.
+pub fn read(folder: &Path, choice: &Choice, options: &Options) -> Result<Made, AvatarError> {
+    check_rig(folder, &choice.rig)?;
+    let mut base = Base::read(folder)?;
+    targets(folder, &choice.targets, &mut base.positions)?;
+    let girths = Girths::of(&base.positions, &base.faces).map_err(|flaw| flaw.of(&folder.join("base.obj")))?;
+    let raw = raw(folder, &choice.rig, &base)?;
+    let imported = settle(raw, options).map_err(|flaw| flaw.of(folder))?;
+    Ok(Made { imported, girths })
+}
+
+impl Base {
+    fn read(folder: &Path) -> Result<Self, AvatarError> {
+        let path = folder.join("base.obj");
+        let text = text(&path)?;
+        let wrong = |reason: String| Flaw::Syntax { reason }.of(&path);
+        let mesh = parse_obj(&text).map_err(wrong)?;
+        if mesh.positions.len() <= BODY_VERTICES {
+            let count = mesh.positions.len();
+            return Err(wrong(format!("it has {count} vertices, too few for hm08; give the folder of that base mesh")));
+        }
+        let body = |face: &&[u32; 4]| face.iter().all(|v| (*v as usize) < BODY_VERTICES || *v == NO_VERTEX);
+        let faces = mesh.faces.iter().filter(body).copied().collect();
+        Ok(Self { positions: mesh.positions, faces, cubes: rig::cubes(&text) })
+    }
+}
+
+/// A rig's name is part of a file's name, and leads to no other folder.
+fn check_rig(folder: &Path, rig: &str) -> Result<(), AvatarError> {
+    if !rig.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
+        let reason = format!("a rig has no name like \"{rig}\"; name one of the folder's rig.*.json files");
+        return Err(Flaw::Syntax { reason }.of(folder));
+    }
+    Ok(())
+}
+
+fn raw(folder: &Path, rig: &str, base: &Base) -> Result<Raw, AvatarError> {
+    let joints = rig::joints(&folder.join(format!("rig.{rig}.json")), base)?;
+    let influences = influences(&folder.join(format!("weights.{rig}.json.gz")), &joints)?;
+    let called: Vec<&str> = joints.iter().map(|j| j.name.as_str()).collect();
+    let reading = names::read(&called);
+    let positions = base.positions[..BODY_VERTICES].to_vec();
+    let triangles = base.faces.iter().flat_map(|&[a, b, c, d]| {
+        let second = (d != NO_VERTEX).then_some([a, c, d]);
+        std::iter::once([a, b, c]).chain(second)
+    });
+    Ok(Raw {
+        normals: vec![Vec3::ZERO; positions.len()],
+        uvs: vec![Vec2::ZERO; positions.len()],
+        triangles: triangles.collect(),
+        positions,
+        joints,
+        reading,
+        influences,
+        ..Raw::default()
+    })
+}
+
+/// The weights of the body's vertices: the file lists the vertices of each bone.
+fn influences(path: &Path, joints: &[RawJoint]) -> Result<Vec<Influences>, AvatarError> {
+    let wrong = |reason: String| Flaw::Syntax { reason }.of(path);
+    let json = json_gz(path)?;
+    let bones =
+        json["weights"].as_object().ok_or_else(|| wrong("it has no weights; use MakeHuman's own file".into()))?;
+    let mut out = vec![Influences::default(); BODY_VERTICES];
+    let mut used = vec![0usize; BODY_VERTICES];
+    for (name, pairs) in bones {
+        let Some(pairs) = pairs.as_array().filter(|p| !p.is_empty()) else { continue };
+        let joint = joints.iter().position(|j| j.name == *name);
+        let joint =
+            joint.ok_or_else(|| wrong(format!("its bone \"{name}\" is not in the rig; use the rig's weights")))?;
+        for pair in pairs {
+            let vertex = pair[0].as_u64().map_or(usize::MAX, |v| v as usize);
+            let weight = pair[1].as_f64().unwrap_or(f64::NAN) as f32;
+            if vertex >= BODY_VERTICES || weight == 0.0 {
+                continue;
+            }
+            if used[vertex] == IMPORT_INFLUENCES {
+                return Err(wrong(format!(
+                    "vertex {vertex} hangs on more than {IMPORT_INFLUENCES} bones; limit them to that"
+                )));
+            }
+            out[vertex].0[used[vertex]] = (joint as u16, weight);
+            used[vertex] += 1;
+        }
+    }
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,197 @@
+//! The kernels: a block's vertices hang on the same bones, so each number of a bone is loaded once, into every lane.
+//!
+//! The bones of a run are blended as base + w1 (bone1 - base) + ...: weights sum to 1, so the base needs none, the
+//! differences are made once a run, and a vertex of k influences costs (k - 1) products and sums a number. Operations a
+//! vertex, k influences: linear 24 (k - 1) to blend, 33 to apply, 18 to normalise: 123 for four. Dual quaternion
+//! 16 (k - 1), 9, 75 and nothing to normalise, because what is applied is a rotation: 132 for four. Bytes: 24 + 4 (k - 1)
+//! read and 24 written.
+
+use glam::{Affine3A, Vec3A, Vec4};
+use toile_assets::limits::MAX_INFLUENCES;
+use toile_assets::skeleton::BONES;
+
+use super::dual::DualQuat;
+use super::layout::Run;
+use super::posed::BLOCK;
+use crate::lanes::{Column, Kernel, Lanes, MOST, V3, reciprocal_root};
+
+/// Square of the length below which a normal is taken for collapsed.
+const COLLAPSED: f32 = 1e-24;
+
+/// What both kernels work on.
+#[derive(Clone, Copy)]
+pub(super) struct Surface<'a> {
+    pub runs: &'a [Run],
+    /// Vertices of each block.
+    pub filled: &'a [u8],
+    pub rest: Column<'a>,
+    pub out: Column<'a>,
+}
+
+/// Where a vector of vertices is: in the rest data, in the posed data.
+#[derive(Clone, Copy)]
+struct At {
+    rest: usize,
+    out: usize,
+}
+
+impl Surface<'_> {
+    #[inline(always)]
+    fn load<L: Lanes>(&self, at: At, first: usize) -> V3<L> {
+        let from = at.rest + first * MOST;
+        V3 { x: L::load(self.rest, from), y: L::load(self.rest, from + MOST), z: L::load(self.rest, from + 2 * MOST) }
+    }
+
+    /// The weights of a bone other than the base, counted from 1.
+    #[inline(always)]
+    fn weight<L: Lanes>(&self, at: At, bone: usize) -> L {
+        L::load(self.rest, at.rest + (5 + bone) * MOST)
+    }
+
+    #[inline(always)]
+    fn store<L: Lanes>(&self, at: At, position: V3<L>, normal: V3<L>) {
+        for (k, v) in [position.x, position.y, position.z, normal.x, normal.y, normal.z].into_iter().enumerate() {
+            v.store(self.out, at.out + k * MOST);
+        }
+    }
+}
+
+/// The columns of a matrix, each number in lanes.
+#[derive(Clone, Copy)]
+struct Matrix<L> {
+    x: V3<L>,
+    y: V3<L>,
+    z: V3<L>,
+    t: V3<L>,
+}
+
+/// Linear blending.
+pub(super) struct Linear<'a> {
+    pub surface: Surface<'a>,
+    pub palette: &'a [Affine3A; BONES],
+}
+
+impl Kernel for Linear<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let surface = self.surface;
+        for run in surface.runs {
+            let base = columns(run.of(self.palette, 0));
+            let mut apart = [[Vec3A::ZERO; 4]; MAX_INFLUENCES];
+            for (k, apart) in apart.iter_mut().enumerate().take(run.count).skip(1) {
+                let bone = columns(run.of(self.palette, k));
+                *apart = [bone[0] - base[0], bone[1] - base[1], bone[2] - base[2], bone[3] - base[3]];
+            }
+            for block in 0..run.blocks {
+                let filled = usize::from(surface.filled[run.first + block]);
+                let mut lane = 0;
+                while lane < filled {
+                    let at = At { rest: run.rest(block) + lane, out: (run.first + block) * BLOCK + lane };
+                    linear::<L>(&surface, at, &base, &apart[..run.count]);
+                    lane += L::N;
+                }
+            }
+        }
+    }
+}
+
+/// One vector of vertices; `apart[1..]` are what the other bones have beyond the base.
+#[inline(always)]
+fn linear<L: Lanes>(surface: &Surface<'_>, at: At, base: &[Vec3A; 4], apart: &[[Vec3A; 4]]) {
+    let [x, y, z, t] = *base;
+    let mut m = Matrix::<L> { x: V3::splat(x), y: V3::splat(y), z: V3::splat(z), t: V3::splat(t) };
+    for (k, [x, y, z, t]) in apart.iter().enumerate().skip(1) {
+        let w = surface.weight::<L>(at, k);
+        m.x = m.x + V3::splat(*x) * w;
+        m.y = m.y + V3::splat(*y) * w;
+        m.z = m.z + V3::splat(*z) * w;
+        m.t = m.t + V3::splat(*t) * w;
+    }
+    let p = surface.load::<L>(at, 0);
+    let n = surface.load::<L>(at, 3);
+    let position = (m.x * p.x + m.y * p.y) + (m.z * p.z + m.t);
+    let normal = m.x * n.x + m.y * n.y + m.z * n.z;
+    let squared = normal.dot(normal);
+    let scale = reciprocal_root(squared).select(L::splat(COLLAPSED).lt(squared), L::splat(0.0));
+    surface.store(at, position, normal * scale);
+}
+
+#[inline(always)]
+fn columns(matrix: &Affine3A) -> [Vec3A; 4] {
+    [matrix.matrix3.x_axis, matrix.matrix3.y_axis, matrix.matrix3.z_axis, matrix.translation]
+}
+
+/// Dual quaternion blending.
+pub(super) struct Dual<'a> {
+    pub surface: Surface<'a>,
+    pub palette: &'a [DualQuat; BONES],
+}
+
+impl Kernel for Dual<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let surface = self.surface;
+        for run in surface.runs {
+            let base = *run.of(self.palette, 0);
+            let mut apart = [DualQuat { real: Vec4::ZERO, dual: Vec4::ZERO }; MAX_INFLUENCES];
+            for (k, apart) in apart.iter_mut().enumerate().take(run.count).skip(1) {
+                let bone = run.of(self.palette, k);
+                *apart = DualQuat { real: bone.real - base.real, dual: bone.dual - base.dual };
+            }
+            for block in 0..run.blocks {
+                let filled = usize::from(surface.filled[run.first + block]);
+                let mut lane = 0;
+                while lane < filled {
+                    let at = At { rest: run.rest(block) + lane, out: (run.first + block) * BLOCK + lane };
+                    dual::<L>(&surface, at, &base, &apart[..run.count]);
+                    lane += L::N;
+                }
+            }
+        }
+    }
+}
+
+/// Four numbers, each in lanes: a quaternion's vector and scalar.
+#[derive(Clone, Copy)]
+struct Four<L> {
+    v: V3<L>,
+    w: L,
+}
+
+impl<L: Lanes> Four<L> {
+    #[inline(always)]
+    fn splat(q: Vec4) -> Self {
+        Self { v: V3 { x: L::splat(q.x), y: L::splat(q.y), z: L::splat(q.z) }, w: L::splat(q.w) }
+    }
+    #[inline(always)]
+    fn and(self, more: Vec4, weight: L) -> Self {
+        let more = Self::splat(more);
+        Self { v: self.v + more.v * weight, w: self.w + more.w * weight }
+    }
+}
+
+/// One vector of vertices. With the blend r + e d, r = (v, w), d = (u, s), a point p goes to
+/// p + 2 / |r|^2 (v x (v x p + w p + u) + w u - s v), a direction n to n + 2 / |r|^2 v x (v x n + w n): the
+/// normalisation of Kavan et al. 2008, equation 6, is in the factor.
+#[inline(always)]
+fn dual<L: Lanes>(surface: &Surface<'_>, at: At, base: &DualQuat, apart: &[DualQuat]) {
+    let (mut real, mut twin) = (Four::<L>::splat(base.real), Four::<L>::splat(base.dual));
+    for (k, more) in apart.iter().enumerate().skip(1) {
+        let weight = surface.weight::<L>(at, k);
+        real = real.and(more.real, weight);
+        twin = twin.and(more.dual, weight);
+    }
+    let (v, w) = (real.v, real.w);
+    let squared = v.dot(v) + w * w;
+    // Bones that cancel each other leave no rotation; the floor keeps what is then shown finite.
+    let factor = L::splat(2.0).div(squared.max(L::splat(COLLAPSED)));
+    let p = surface.load::<L>(at, 0);
+    let n = surface.load::<L>(at, 3);
+    let moved = v.cross(v.cross(p) + p * w + twin.v) + (twin.v * w - v * twin.w);
+    let turned = v.cross(v.cross(n) + n * w);
+    surface.store(at, p + moved * factor, n + turned * factor);
+}

@@ -1,0 +1,249 @@
+//! The skinning benchmark: the engine's kernels, linear and dual, against the yardstick, each with its error.
+//!
+//! Reads: the scene's shopper in the middle of a step. Writes: times, ratios to the yardstick, errors against f64, lanes.
+//! Budget: some seconds a measurement.
+//! Thread: the caller's, and the crew's where two are asked for.
+
+mod oracle;
+mod shapes;
+mod solid;
+pub mod table;
+
+use std::hint::black_box;
+
+use glam::Vec3;
+use serde::Serialize;
+use thiserror::Error;
+use toile_assets::body::BodyError;
+use toile_engine::crew::{Crew, CrewError};
+use toile_engine::lanes::Width;
+use toile_engine::skin::{Blend, Padding, Posed, SkinError, SkinningJob};
+
+use crate::surface::Surface;
+use crate::time;
+use crate::yardstick::{self, Yardstick};
+
+pub use oracle::Error as PositionError;
+pub use shapes::{Apart, Hinge, Shapes, Twist, shapes};
+
+/// Rounds of a measurement: yardstick and kernels in turn, so that both see the machine as it is. An odd number.
+const ROUNDS: usize = 5;
+
+/// What is skinned.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Subject {
+    /// As many vertices as are asked for, each of exactly four influences.
+    #[default]
+    Four,
+    /// The shopper's body with the weights that it has: most vertices have one or two influences.
+    Body,
+}
+
+/// A measurement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// What is skinned.
+    pub subject: Subject,
+    /// Vertices; nothing for as many as the body has.
+    pub verts: Option<usize>,
+    /// Workers, 1 or 2.
+    pub threads: usize,
+    /// Lanes of the kernels; nothing for the widest of this processor.
+    pub lanes: Option<Width>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { subject: Subject::Four, verts: Some(yardstick::VERTICES), threads: 1, lanes: None }
+    }
+}
+
+/// What one blend costs, and how exact it is.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Timing {
+    /// Time of one pass over all vertices, positions and unit normals (us, median).
+    pub us: f64,
+    /// The same for one vertex (ns).
+    pub ns_per_vertex: f64,
+    /// The same over the yardstick of as many vertices.
+    pub y_ratio: f64,
+    /// Time with the copy into the order of the mesh, three numbers by three (us, median).
+    pub mesh_order_us: f64,
+    /// Largest distance of a position from the f64 oracle (m).
+    pub max_error_m: f64,
+    /// Largest angle of a normal to the f64 oracle's (rad).
+    pub max_normal_error_rad: f64,
+}
+
+/// What skinning costs on this machine.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Skinning {
+    /// What was skinned.
+    pub subject: Subject,
+    /// Vertices skinned.
+    pub verts: usize,
+    /// Workers.
+    pub threads: usize,
+    /// Lanes.
+    pub lanes: usize,
+    /// Time of the yardstick, [`yardstick::VERTICES`] vertices whatever `verts` is (us, median).
+    pub yardstick_us: f64,
+    /// Blocks, lanes and influences of the job.
+    pub padding: Padding,
+    /// Linear blending.
+    pub linear: Timing,
+    /// Dual quaternions.
+    pub dual: Timing,
+}
+
+/// Why the benchmark cannot run.
+#[derive(Debug, Error)]
+pub enum BenchError {
+    /// The shopper's body.
+    #[error(transparent)]
+    Body(#[from] BodyError),
+    /// The shopper's skin.
+    #[error(transparent)]
+    Skin(#[from] SkinError),
+    /// The workers.
+    #[error(transparent)]
+    Crew(#[from] CrewError),
+    /// Lanes that this processor lacks.
+    #[error("this processor has no {0} lanes; ask for fewer, or leave `--lanes` out")]
+    NoSuchLanes(Width),
+}
+
+/// Times the engine's skinning, both blends, and finds its errors.
+///
+/// # Errors
+/// Where the processor lacks the lanes asked for, and where the scene's shopper or the workers cannot be made.
+pub fn measure(options: &Options) -> Result<Skinning, BenchError> {
+    let width = options.lanes.unwrap_or_else(Width::widest);
+    if !width.available() {
+        return Err(BenchError::NoSuchLanes(width));
+    }
+    let surface = subject(options)?;
+    let mut job = SkinningJob::new(&surface.positions, &surface.normals, &surface.weights)?;
+    job.width = width;
+    let mut crew = Crew::new(options.threads)?;
+    let yardstick = Yardstick::new()?;
+    let mut rounds: [[Vec<f64>; 2]; 2] = Default::default();
+    let mut yards = Vec::new();
+    for _ in 0..ROUNDS {
+        yards.push(yardstick.read_us());
+        for (blend, [alone, whole]) in Blend::ALL.into_iter().zip(&mut rounds) {
+            let mut run = Run { job: &job, surface: &surface, crew: &mut crew, blend };
+            alone.push(run.us());
+            whole.push(run.mesh_order_us());
+        }
+    }
+    let verts = job.vertices();
+    let of_yard = verts as f64 / yardstick::VERTICES as f64;
+    let timing = |blend: Blend, [alone, whole]: &[Vec<f64>; 2]| {
+        let ratios = alone.iter().zip(&yards).map(|(us, yard)| us / (yard * of_yard)).collect();
+        let error = oracle::compare(&surface, blend, &skinned(&job, &surface, blend));
+        let us = median(alone.clone());
+        Timing {
+            us,
+            ns_per_vertex: us * 1e3 / verts as f64,
+            y_ratio: median(ratios),
+            mesh_order_us: median(whole.clone()),
+            max_error_m: error.position_m,
+            max_normal_error_rad: error.normal_rad,
+        }
+    };
+    Ok(Skinning {
+        subject: options.subject,
+        verts,
+        threads: crew.workers(),
+        lanes: width.lanes(),
+        yardstick_us: median(yards.clone()),
+        padding: job.padding(),
+        linear: timing(Blend::Linear, &rounds[0]),
+        dual: timing(Blend::Dual, &rounds[1]),
+    })
+}
+
+fn subject(options: &Options) -> Result<Surface, BodyError> {
+    let body = Surface::body()?;
+    let verts = options.verts.unwrap_or(body.positions.len()).max(1);
+    Ok(match options.subject {
+        Subject::Four => body.repeated(verts).with_four_influences(),
+        Subject::Body => body.repeated(verts),
+    })
+}
+
+/// The surface as a job poses it.
+fn skinned(job: &SkinningJob, surface: &Surface, blend: Blend) -> Posed {
+    let mut posed = job.posed();
+    job.run(blend, &surface.palette, &mut posed);
+    posed
+}
+
+/// What is timed.
+struct Run<'a> {
+    job: &'a SkinningJob,
+    surface: &'a Surface,
+    crew: &'a mut Crew,
+    blend: Blend,
+}
+
+impl Run<'_> {
+    fn us(&mut self) -> f64 {
+        let mut posed = self.job.posed();
+        time::median_us(|| {
+            self.job.run_with(self.crew, self.blend, black_box(&self.surface.palette), &mut posed);
+            black_box(&posed);
+        })
+    }
+
+    fn mesh_order_us(&mut self) -> f64 {
+        let mut posed = self.job.posed();
+        let (mut positions, mut normals) = (vec![Vec3::ZERO; posed.vertices()], vec![Vec3::ZERO; posed.vertices()]);
+        time::median_us(|| {
+            self.job.run_with(self.crew, self.blend, black_box(&self.surface.palette), &mut posed);
+            posed.read(&mut positions, &mut normals);
+            black_box((&positions, &normals));
+        })
+    }
+}
+
+/// The middle of an odd number of figures.
+fn median(mut figures: Vec<f64>) -> f64 {
+    figures.sort_by(f64::total_cmp);
+    figures[figures.len() / 2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_kernels_are_timed_at_their_errors() {
+        for subject in [Subject::Four, Subject::Body] {
+            let found = measure(&Options { subject, verts: Some(1_001), ..Options::default() }).unwrap();
+            assert_eq!((found.verts, found.padding.vertices), (1_001, 1_001));
+            assert!(found.yardstick_us > 0.0 && found.padding.lanes >= 1_001);
+            for timing in [found.linear, found.dual] {
+                assert!(timing.us > 0.0 && timing.mesh_order_us > 0.0);
+                assert!((timing.ns_per_vertex - timing.us * 1e3 / 1_001.0).abs() < 1e-9);
+                // Positions are up to 2 m: a few roundings of f32 there, and never exactly none.
+                assert!((1e-9..2e-6).contains(&timing.max_error_m), "{} m", timing.max_error_m);
+                assert!(timing.max_normal_error_rad < 1e-5, "{} rad", timing.max_normal_error_rad);
+            }
+        }
+    }
+
+    #[test]
+    fn every_vertex_of_the_synthetic_surface_has_four_influences() {
+        let surface = subject(&Options { verts: Some(3_000), ..Options::default() }).unwrap();
+        for w in &surface.weights {
+            assert_eq!(w.iter().count(), 4);
+            assert!((w.weights.iter().sum::<f32>() - 1.0).abs() < 1e-6);
+            let mut bones = w.bones;
+            bones.sort_unstable();
+            assert!(bones.windows(2).all(|b| b[0] < b[1]), "{bones:?}");
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! The table of skinning: both surfaces, one thread and two, each lane width, and what becomes of limbs.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+use toile_engine::lanes::Width;
+use toile_engine::skin::Padding;
+
+use super::{BenchError, Options, Shapes, Skinning, Subject, Timing, measure, shapes};
+use crate::yardstick;
+
+/// Most of the yardstick that a thread may take for as many vertices: linear, dual.
+pub const TARGETS: [f64; 2] = [0.12, 0.2];
+
+/// One measurement as the table has it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// What was skinned.
+    pub subject: Subject,
+    /// Vertices.
+    pub verts: usize,
+    /// Workers.
+    pub threads: usize,
+    /// Lanes.
+    pub lanes: usize,
+    /// Blocks of 16 lanes.
+    pub blocks: usize,
+    /// Joint sets that lie apart.
+    pub sets: usize,
+    /// Share of the lanes that carries no vertex (0..1).
+    pub padding: f64,
+    /// Influences of a vertex, mean.
+    pub influences: f64,
+    /// Influences that a vertex' block is blended from, mean, padding included.
+    pub blended: f64,
+    /// Time of the yardstick (us).
+    pub yardstick_us: f64,
+    /// Linear blending.
+    pub linear: Timing,
+    /// Dual quaternions.
+    pub dual: Timing,
+}
+
+impl From<Skinning> for Row {
+    fn from(found: Skinning) -> Self {
+        let Padding { vertices, blocks, runs, influences, blended, .. } = found.padding;
+        let of_each = |count: usize| count as f64 / vertices.max(1) as f64;
+        Self {
+            subject: found.subject,
+            verts: found.verts,
+            threads: found.threads,
+            lanes: found.lanes,
+            blocks,
+            sets: runs,
+            padding: found.padding.share(),
+            influences: of_each(influences),
+            blended: of_each(blended),
+            yardstick_us: found.yardstick_us,
+            linear: found.linear,
+            dual: found.dual,
+        }
+    }
+}
+
+/// The whole table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Table {
+    /// The measurements.
+    pub rows: Vec<Row>,
+    /// Volumes and bulges.
+    #[serde(flatten)]
+    pub shapes: Shapes,
+}
+
+/// Measures all rows; `told` hears what is being run.
+///
+/// # Errors
+/// Where the scene's shopper or the workers cannot be made.
+pub fn run(told: &mut dyn FnMut(&str)) -> Result<Table, BenchError> {
+    let mut rows = Vec::new();
+    let mut add = |options: Options| -> Result<(), BenchError> {
+        told(&format!("{:?}, {} thread(s), lanes {:?}", options.subject, options.threads, options.lanes));
+        rows.push(measure(&options)?.into());
+        Ok(())
+    };
+    for (subject, verts) in
+        [(Subject::Four, Some(yardstick::VERTICES)), (Subject::Body, Some(yardstick::VERTICES)), (Subject::Body, None)]
+    {
+        for threads in [1, 2] {
+            add(Options { subject, verts, threads, lanes: None })?;
+        }
+    }
+    for width in Width::ALL.into_iter().rev().skip(1).filter(|w| w.available()) {
+        add(Options { lanes: Some(width), ..Options::default() })?;
+    }
+    Ok(Table { rows, shapes: shapes()? })
+}
+
+impl Table {
+    /// The table as Markdown.
+    pub fn markdown(&self) -> String {
+        let mut text = String::new();
+        self.times(&mut text);
+        self.limbs(&mut text);
+        text
+    }
+
+    fn times(&self, text: &mut String) {
+        put(
+            text,
+            "| surface | vertices | threads | lanes | sets | empty lanes | influences, blended | linear: us, Y, error \
+             | in mesh order | dual: us, Y, error | in mesh order | Y (us) |",
+        );
+        put(text, "|---|---|---|---|---|---|---|---|---|---|---|---|");
+        for r in &self.rows {
+            let timing = |t: &Timing| {
+                format!("{:.1}, **{:.3}**, {:.2} um | {:.1}", t.us, t.y_ratio, t.max_error_m * 1e6, t.mesh_order_us)
+            };
+            let surface = if r.subject == Subject::Four { "four influences each" } else { "the body's own weights" };
+            put(
+                text,
+                &format!(
+                    "| {surface} | {} | {} | {} | {} | {:.1} % | {:.2}, {:.2} | {} | {} | {:.0} |",
+                    r.verts,
+                    r.threads,
+                    r.lanes,
+                    r.sets,
+                    r.padding * 100.0,
+                    r.influences,
+                    r.blended,
+                    timing(&r.linear),
+                    timing(&r.dual),
+                    r.yardstick_us,
+                ),
+            );
+        }
+        let [linear, dual] = TARGETS;
+        put(
+            text,
+            &format!(
+                "\nTargets, one thread: linear {linear} Y, dual quaternions {dual} Y. Peers on four influences, linear: \
+             ozz-animation .45 Y, OGRE .47 Y; memory floor .05 Y.\n"
+            ),
+        );
+    }
+
+    fn limbs(&self, text: &mut String) {
+        put(
+            text,
+            "| volume kept under twist | theory, two bones, linear | linear, two bones | linear, split | dual, two bones \
+             | dual, split |",
+        );
+        put(text, "|---|---|---|---|---|---|");
+        for t in &self.shapes.twists {
+            put(
+                text,
+                &format!(
+                    "| {} {:.0} degrees | {:.3} | {:.3} | {:.3} | {:.3} | {:.3} |",
+                    t.of, t.degrees, t.theory, t.linear_one_bone, t.linear_split, t.dual_one_bone, t.dual_split,
+                ),
+            );
+        }
+        put(text, "\n| bent joint | volume: linear, dual | bulge: linear, dual | thinnest place: linear, dual |");
+        put(text, "|---|---|---|---|");
+        for h in &self.shapes.hinges {
+            put(
+                text,
+                &format!(
+                    "| {} {:.0} degrees | {:.3}, {:.3} | {:+.1} % ({:.1} mm), {:+.1} % ({:.1} mm) | {:+.1} %, {:+.1} % |",
+                    h.of,
+                    h.degrees,
+                    h.volume[0],
+                    h.volume[1],
+                    h.bulge[0] * 100.0,
+                    h.bulge_mm[0],
+                    h.bulge[1] * 100.0,
+                    h.bulge_mm[1],
+                    h.thinnest[0] * 100.0,
+                    h.thinnest[1] * 100.0,
+                ),
+            );
+        }
+        put(
+            text,
+            "\n| linear and dual apart, the scene's ten seconds | mean | largest | least volume of the body: linear, dual |",
+        );
+        put(text, "|---|---|---|---|");
+        for a in &self.shapes.apart {
+            let [linear, dual] = a.body_volume;
+            put(text, &format!("| {} | {:.2} mm | {:.1} mm | {linear:.4}, {dual:.4} |", a.of, a.mean_mm, a.max_mm));
+        }
+    }
+}
+
+fn put(text: &mut String, line: &str) {
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{line}");
+}
