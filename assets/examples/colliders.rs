@@ -40,8 +40,8 @@ const TAKEN: [Ansur; 8] = [
 
 fn main() -> Result<(), BodyError> {
     print!("{:12}{:>7}", "mean p95 max", "fit ms");
-    Zone::ALL.iter().for_each(|zone| print!("{:>15}", zone.name()));
-    println!("{:>15}", "trunk");
+    Zone::ALL.iter().for_each(|zone| print!("{:>18}", zone.name()));
+    println!("{:>18}", "trunk");
     for (sex, label, size) in SIZES {
         line(label, &built(sex, &[En::Stature, En::BustGirth, En::WaistGirth, En::HipGirth], &size)?);
     }
@@ -60,8 +60,9 @@ fn line(label: &str, body: &Body) {
     let begun = Instant::now();
     let rig = Rig::fit(body);
     print!("{label:12}{:7.1}", begun.elapsed().as_secs_f64() * 1e3);
-    let cell = |r: &ZoneReport| print!("{:>15}", format!("{:.1} {:.1} {:.0}/{:.0}", r.mean_mm, r.p95_mm, r.max_outside_mm, r.max_inside_mm));
-    rig.zones(body).iter().for_each(cell);
-    cell(&rig.trunk(body));
+    let cell = |r: &ZoneReport| print!("{:>18}", format!("{:.1} {:.1} {:.0}/{:.0}|{:.0}", r.mean_mm, r.p95_mm, r.max_outside_mm, r.max_inside_mm,r.cloth_max_above_mm));
+    let report = rig.report(body);
+    report.zones.iter().for_each(cell);
+    cell(&report.trunk);
     println!();
 }

@@ -11,6 +11,8 @@
 
 mod fit;
 mod plan;
+mod report;
+mod skin;
 mod system;
 mod zones;
 
@@ -21,7 +23,8 @@ use crate::limits::{MAX_CAPSULES, MAX_SPHERES};
 use crate::skeleton::Joint;
 pub use plan::SPHERES;
 use plan::{CAPSULES, PAIRS, PLAN};
-pub use zones::{MEAN_GOAL_MM, P95_GOAL_MM, Zone, ZoneReport};
+pub use report::{MEAN_GOAL_MM, P95_GOAL_MM, Report, ZoneReport};
+pub use zones::Zone;
 
 const _: () = assert!(SPHERES <= MAX_SPHERES);
 
@@ -70,14 +73,9 @@ impl Rig {
         nearest(&self.placed(body), p).0
     }
 
-    /// How closely the union follows the skin, zone by zone in the order of [`Zone::ALL`].
-    pub fn zones(&self, body: &Body) -> [ZoneReport; 12] {
-        zones::reports(body, &self.placed(body))
-    }
-
-    /// The same over the whole trunk: chest, waist, hips and shoulders together.
-    pub fn trunk(&self, body: &Body) -> ZoneReport {
-        zones::trunk_report(body, &self.placed(body))
+    /// How closely the union follows the skin of the body that the rig was fitted to, in its rest pose.
+    pub fn report(&self, body: &Body) -> Report {
+        Report::new(body, &self.placed(body))
     }
 }
 

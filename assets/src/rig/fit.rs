@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::plan::{CAPSULES, MIDDLE, PAIRS, PLAN, SPHERES, Start};
+use super::skin::Skin;
 use super::system::{Row, System, UNKNOWNS, Vector};
 use super::zones::{self, Zone};
 use super::{Placed, nearest, vertex_areas};
@@ -17,6 +18,13 @@ const STRIDE: usize = 5;
 /// Distance at which the quartic part of the cost equals the quadratic one (m). Beyond it a few bad places cost more than
 /// many fair ones: skin that shows through cloth, or cloth that floats, is seen where it is worst.
 const FAIR: f64 = 8e-3;
+/// One vertex in this many has a sample above it, which no capsule may come near: the skin alone says nothing of what
+/// stands out beside it, such as a ball around a hand whose skin is nowhere far from the ball's surface.
+const STRIDE_ABOVE: usize = 10;
+/// How far above the skin those samples are (m).
+const ABOVE: f32 = 0.025;
+/// Their weight against those of the skin.
+const SHARE_ABOVE: f64 = 1.0;
 /// Weight of standing out of the body against staying below its surface: what stands out most does so in hollows (between
 /// the breasts, along the spine) that cloth spans anyway, while skin that stands out pierces the cloth.
 const OUTSIDE: f64 = 0.7;
@@ -27,10 +35,13 @@ const STRIDE_M: f64 = 0.03;
 /// Smallest radius (m).
 const LEAST_RADIUS: f64 = 5e-3;
 
-/// A point of the surface and its share of the cost.
+/// A point on the skin or above it.
 struct Sample {
     point: Vec3,
+    /// Its share of the cost.
     weight: f64,
+    /// How far above the skin it is (m); 0 on the skin.
+    above: f64,
 }
 
 /// What a fit starts from.
@@ -85,9 +96,12 @@ impl Problem {
         let mut cost = 0.0;
         for sample in &self.samples {
             let (distance, capsule, t) = nearest(&spheres, sample.point);
-            let d = f64::from(distance);
+            let d = f64::from(distance) - sample.above;
+            if d > 0.0 && sample.above > 0.0 {
+                continue;
+            }
             let square = d * d / (FAIR * FAIR);
-            let weight = sample.weight * if distance < 0.0 { OUTSIDE } else { 1.0 };
+            let weight = sample.weight * if d < 0.0 { OUTSIDE } else { 1.0 };
             cost += weight * d * d * (1.0 + square);
             if let Some(system) = system.as_deref_mut() {
                 system.add(&slopes(&spheres, capsule, t, sample.point), d, weight * (1.0 + 2.0 * square));
@@ -137,19 +151,33 @@ fn matter(zone: Zone) -> f64 {
     }
 }
 
-/// The left half of the skin, each zone with its own share of the whole; the body is symmetric.
+/// The left half of the skin, each zone with its own share of the whole, and places above it; the body is symmetric.
 fn samples(body: &Body) -> Vec<Sample> {
     let areas = vertex_areas(body);
     let zones: Vec<Zone> = (0..areas.len()).map(|v| Zone::of(body, v)).collect();
-    let left = |v: &usize| body.mesh.positions[*v].x >= 0.0 && matter(zones[*v]) > 0.0;
-    let chosen: Vec<usize> = (0..areas.len()).filter(left).step_by(STRIDE).collect();
-    let area = |zone: Zone| -> f64 { chosen.iter().filter(|v| zones[**v] == zone).map(|v| f64::from(areas[*v])).sum() };
-    let share = Zone::ALL.map(|zone| matter(zone) / area(zone).max(1e-9));
-    let sample = |&v: &usize| Sample {
-        point: body.mesh.positions[v],
-        weight: f64::from(areas[v]) * share[zones::place(zones[v])],
+    let left: Vec<usize> = (0..areas.len()).filter(|v| body.mesh.positions[*v].x >= 0.0).collect();
+    let share = |stride: usize| {
+        let area = |zone: Zone| -> f64 {
+            left.iter().step_by(stride).filter(|v| zones[**v] == zone).map(|v| f64::from(areas[*v])).sum()
+        };
+        Zone::ALL.map(|zone| matter(zone) / area(zone).max(1e-9))
     };
-    chosen.iter().map(sample).collect()
+    let on = share(STRIDE);
+    let skin = left.iter().step_by(STRIDE).map(|&v| Sample {
+        point: body.mesh.positions[v],
+        weight: f64::from(areas[v]) * on[zones::place(zones[v])],
+        above: 0.0,
+    });
+    let (above, look) = (share(STRIDE_ABOVE), Skin::new(body));
+    let over = left.iter().step_by(STRIDE_ABOVE).filter_map(|&v| {
+        let point = body.mesh.positions[v] + body.normals[v] * ABOVE;
+        let (nearest, distance) = look.nearest(point)?;
+        // In a fold the place above one side is in or near the other: there it says nothing.
+        let clear = (point - body.mesh.positions[nearest]).dot(body.normals[nearest]) > 0.5 * ABOVE;
+        let weight = SHARE_ABOVE * f64::from(areas[v]) * above[zones::place(zones[v])];
+        clear.then_some(Sample { point, weight, above: f64::from(distance) })
+    });
+    skin.chain(over).collect()
 }
 
 /// Where the plan has the spheres on this body.
