@@ -24,7 +24,7 @@ const STRIDE_ABOVE: usize = 10;
 /// How far above the skin those samples are (m).
 const ABOVE: f32 = 0.025;
 /// Their weight against those of the skin.
-const SHARE_ABOVE: f64 = 1.0;
+const SHARE_ABOVE: f64 = 0.7;
 /// Weight of standing out of the body against staying below its surface: what stands out most does so in hollows (between
 /// the breasts, along the spine) that cloth spans anyway, while skin that stands out pierces the cloth.
 const OUTSIDE: f64 = 0.7;
@@ -139,9 +139,9 @@ fn slopes(spheres: &Placed, capsule: usize, t: f32, point: Vec3) -> Row {
 /// How much each zone matters: the trunk before the limbs, on which garments are wide; head, hands and feet not at all.
 fn matter(zone: Zone) -> f64 {
     match zone {
-        Zone::Chest => 1.3,
+        Zone::Chest => 1.5,
         Zone::Waist => 1.0,
-        Zone::Hips => 1.5,
+        Zone::Hips => 2.0,
         Zone::Shoulder | Zone::Thigh => 0.9,
         Zone::Shin => 0.3,
         Zone::UpperArm => 0.25,

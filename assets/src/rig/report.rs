@@ -87,11 +87,7 @@ impl Report {
     pub(super) fn new(body: &Body, placed: &Placed) -> Self {
         let (skin, cloth) = (from_skin(body, placed), from_union(body, placed));
         let of = |asked: &dyn Fn(Zone) -> bool| summed(&skin, &cloth, asked);
-        Self {
-            zones: Zone::ALL.map(|zone| of(&|z| z == zone)),
-            trunk: of(&zones::is_trunk),
-            whole: of(&|_| true),
-        }
+        Self { zones: Zone::ALL.map(|zone| of(&|z| z == zone)), trunk: of(&zones::is_trunk), whole: of(&|_| true) }
     }
 }
 
