@@ -14,6 +14,7 @@ mod fit;
 pub mod people;
 mod plan;
 mod report;
+mod shell;
 mod skin;
 mod system;
 mod zones;
@@ -26,6 +27,7 @@ use crate::skeleton::Joint;
 pub use plan::SPHERES;
 use plan::{CAPSULES, PAIRS, PLAN};
 pub use report::{MEAN_GOAL_MM, P95_GOAL_MM, Report, ZoneReport};
+pub use shell::Shell;
 pub use zones::Zone;
 
 const _: () = assert!(SPHERES <= MAX_SPHERES);
@@ -78,6 +80,11 @@ impl Rig {
     /// How closely the union follows the skin of the body that the rig was fitted to, in its rest pose.
     pub fn report(&self, body: &Body) -> Report {
         Report::new(body, &self.placed(body))
+    }
+
+    /// The capsules as surfaces to look at, in the rest pose of the body that the rig was fitted to.
+    pub fn shell(&self, body: &Body) -> Shell {
+        Shell::new(&self.placed(body))
     }
 }
 
