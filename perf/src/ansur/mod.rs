@@ -9,6 +9,6 @@ mod study;
 mod survey;
 mod table;
 
-pub use study::{Errors, GIVEN, Spread, Study, StudyError, TOO_ROUGH, study};
+pub use study::{Errors, GIVEN, QUICK_MS, Spread, Study, StudyError, TOO_ROUGH, study};
 pub use survey::{Survey, SurveyError};
 pub use table::table;
