@@ -92,7 +92,7 @@ impl Rig {
 fn carrier(sphere: usize) -> Joint {
     match sphere.checked_sub(2 * PAIRS) {
         Some(middle) => PLAN[PAIRS + middle].carrier,
-        None if sphere % 2 == 0 => PLAN[sphere / 2].carrier,
+        None if sphere.is_multiple_of(2) => PLAN[sphere / 2].carrier,
         None => PLAN[sphere / 2].carrier.mirror(),
     }
 }

@@ -240,7 +240,7 @@ fn placed(x: &Vector) -> Placed {
     };
     std::array::from_fn(|i: usize| match i.checked_sub(2 * PAIRS) {
         Some(middle) => sphere(PAIRS + middle, 0.0),
-        None => sphere(i / 2, if i % 2 == 0 { 1.0 } else { -1.0 }),
+        None => sphere(i / 2, if i.is_multiple_of(2) { 1.0 } else { -1.0 }),
     })
 }
 

@@ -23,7 +23,7 @@ use crate::report::Document;
 use crate::terminal::{self, Paint, Tone, Words};
 
 /// A picture of one side.
-const STILL: Size = Size::new(400, 640);
+const STILL: Size = Size::new(480, 580);
 
 /// Views of a body: turns of the camera.
 const VIEWS: [f32; 3] = [0.0, FRAC_PI_2, PI];
@@ -36,7 +36,7 @@ const CLOSE: Vec3 = Vec3::new(0.72, 0.70, 0.66);
 const PROUD: Vec3 = Vec3::new(0.75, 0.12, 0.06);
 const BELOW: Vec3 = Vec3::new(0.05, 0.20, 0.62);
 
-/// Colours of the capsules, in turn.
+/// Colours of the capsules, in turn: left and right alike.
 const CAPSULES: [Vec3; 6] = [
     Vec3::new(0.55, 0.42, 0.30),
     Vec3::new(0.30, 0.45, 0.48),
@@ -289,7 +289,7 @@ fn drawn(body: &Body) -> toile_view::image::Image {
     let towards = |d: f32| CLOSE.lerp(if d > 0.0 { PROUD } else { BELOW }, (d.abs() / FULL).min(1.0));
     let skin: Vec<Vec3> = body.mesh.positions.iter().map(|p| towards(rig.distance(body, *p))).collect();
     let shell = rig.shell(body);
-    let painted: Vec<Vec3> = shell.capsules.iter().map(|c| CAPSULES[usize::from(*c) % CAPSULES.len()]).collect();
+    let painted: Vec<Vec3> = shell.capsules.iter().map(|c| CAPSULES[usize::from(*c) / 2 % CAPSULES.len()]).collect();
     let surfaces = [
         Surface {
             positions: &body.mesh.positions,
