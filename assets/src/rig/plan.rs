@@ -3,7 +3,8 @@
 //!
 //! Chosen by a search: from 129 capsules over the same spheres, one after the other was dropped whose loss cost the fit
 //! least, and then exchanged while that helped, on bodies of both sexes and all sizes. Contact pays by the capsule and
-//! hardly by the sphere, so that 28 capsules with ends of their own follow a trunk far closer than 28 that share 16.
+//! hardly by the sphere, so that 28 capsules with ends of their own follow a trunk far closer than 28 that share 16. Head,
+//! hands and feet were then given theirs, in place of one across the shoulder blades.
 //! Where the fit begins is the middle of what it found on twelve bodies.
 
 use crate::limits::MAX_CAPSULES;
@@ -119,7 +120,7 @@ mod at {
     pub const SKULL: u8 = 50;
 }
 
-/// The capsules: one across the shoulder blades, one in the neck, then left and right.
+/// The capsules: neck and head, then left and right.
 pub(super) const CAPSULES: [[u8; 2]; MAX_CAPSULES] = {
     use at::*;
     [
