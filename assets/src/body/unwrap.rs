@@ -251,7 +251,7 @@ impl Flattening {
         let mut near = vec![false; self.near.len()];
         triangles.iter().for_each(|&t| self.rest[t].corners.iter().for_each(|&v| near[v as usize] = true));
         for r in self.rest.iter_mut().filter(|r| r.corners.iter().any(|&v| near[v as usize])) {
-            r.inverse = r.inverse * (1.0 / SMALLER);
+            r.inverse *= 1.0 / SMALLER;
             r.area *= SMALLER * SMALLER;
         }
     }

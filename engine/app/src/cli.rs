@@ -15,6 +15,7 @@ use crate::exit::AppError;
 mod bake;
 mod bodies;
 mod body;
+mod colliders;
 mod pareto;
 mod run;
 mod skinning;
@@ -25,6 +26,7 @@ mod validate;
 pub use bake::BakeArgs;
 pub use bodies::BodiesArgs;
 pub use body::{BodyArgs, Wearer};
+pub use colliders::CollidersArgs;
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
@@ -49,6 +51,8 @@ pub enum Command {
     Bake(BakeArgs),
     /// `toile body`.
     Body(BodyArgs),
+    /// `toile body --colliders`.
+    Colliders(CollidersArgs),
     /// `toile bench body`.
     BenchBody(BodiesArgs),
     /// `toile bench skinning`.
@@ -314,6 +318,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "run" => Command::Run(run::args(matches)?),
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
         "bake" => Command::Bake(bake::args(matches)?),
+        "body" if matches.get_flag("colliders") => Command::Colliders(colliders::args(matches)?),
         "body" => Command::Body(body::args(matches)?),
         "bench" => bench_command(matches)?,
         "torture" => Command::Torture(torture::args(matches)?),
