@@ -4,6 +4,7 @@ use std::fs;
 
 use serde::Serialize;
 use toile_engine::pace::tape::{self, Entry};
+use toile_engine::pace::threads;
 use toile_perf::latency::{self, Cast, Goal, Latency, Options, Quantiles};
 
 use crate::cli::LatencyArgs;
@@ -42,21 +43,20 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
         return Err(AppError::Input(format!("session {} has no joints, so that no pose can be shown", session.name)));
     };
     let recipe = Recipe::write(&session, &args.wish)?;
-    let dressed = recipe.make(args.workers, first)?;
+    let (frame, reader) = recipe.make(first)?;
+    // Only now: a helper with a real-time priority shares its core with nobody who waits for it.
+    let (crew, worker) = threads::crew(args.workers).map_err(AppError::input)?;
     words.say(&format!("running for {} s, with {} threads of load", args.seconds, args.load));
-    let options = Options { seconds: args.seconds, load: args.load, record: args.record.is_some() };
+    let options = Options { seconds: args.seconds, load: args.load, record: args.record.is_some(), rung: args.rung };
     let text = serde_json::to_string(&recipe).map_err(AppError::internal)?;
     let mut bytes = tape::header(&text);
     tape::write(&Entry::Dressed(*first), &mut bytes);
-    let cast = Cast {
-        frame: dressed.frame,
-        reader: dressed.reader,
-        joints: &session.joints[from..],
-        worker: dressed.worker,
-    };
+    let cast =
+        Cast { frame: dressed.frame, reader: dressed.reader, joints: &session.joints[from..], worker: dressed.worker };
     let found = latency::run(cast, &options, |entry| tape::write(entry, &mut bytes)).map_err(AppError::internal)?;
     if let Some(path) = &args.record {
-        let refused = |e| format!("recording {} cannot be written ({e}); name another file with --record", path.display());
+        let refused =
+            |e| format!("recording {} cannot be written ({e}); name another file with --record", path.display());
         fs::write(path, &bytes).map_err(|e| AppError::Input(refused(e)))?;
     }
     let machine = Machine::here();
@@ -66,7 +66,10 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     files.extend(args.record.clone());
     let missed: Vec<&Goal> = found.goals.iter().filter(|g| !g.pass).collect();
     let verdict = missed.first().filter(|_| args.gate).map(|g| {
-        format!("{} is {:.0} us, more than {:.0} us; run it on a quiet machine or choose less quality", g.name, g.us, g.limit_us)
+        format!(
+            "{} is {:.0} us, more than {:.0} us; run it on a quiet machine or choose less quality",
+            g.name, g.us, g.limit_us
+        )
     });
     let report = LatencyReport { scene: recipe, found, files };
     if args.json {

@@ -7,8 +7,6 @@ use toile_assets::sizes::Population;
 use toile_assets::wardrobe;
 use toile_engine::cloth::{Quality, Settings};
 use toile_engine::frame::{Frame, Snapshot};
-use toile_engine::pace::roles::Placement;
-use toile_engine::pace::threads;
 use toile_engine::relay::Reader;
 use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
@@ -66,7 +64,9 @@ impl Recipe {
         let sex = if population == Population::Men { Sex::Male } else { Sex::Female };
         let measured = shopper::measure(session, population)?;
         let (body, _) = shopper::build(sex, &measured, population)?;
-        let sizes = styles.iter().map(|style| Ok((style.name.clone(), fit::choose(style, wish.size.as_deref(), &measured)?.size)));
+        let sizes = styles
+            .iter()
+            .map(|style| Ok((style.name.clone(), fit::choose(style, wish.size.as_deref(), &measured)?.size)));
         let m = &body.measures;
         let measures = [m.stature, m.shoulder_breadth, m.chest_girth, m.waist_girth, m.hip_girth];
         Ok(Self {
@@ -79,11 +79,12 @@ impl Recipe {
         })
     }
 
-    /// Makes the scene, with its workers on their places, and dresses the shopper as they stand in a frame.
+    /// Makes the scene and dresses the shopper as they stand in a frame, with one worker: which crew takes the steps from
+    /// then on is the caller's choice and changes no bit.
     ///
     /// # Errors
     /// A recipe of which no scene can be made, because it was tampered with or comes from another version.
-    pub fn make(&self, workers: usize, first: &Joints) -> Result<Dressed, AppError> {
+    pub fn make(&self, first: &Joints) -> Result<(Frame, Reader<Snapshot>), AppError> {
         let sex = if self.sex == "male" { Sex::Male } else { Sex::Female };
         let [stature, shoulder_breadth, chest_girth, waist_girth, hip_girth] = self.measures.map(f32::from_bits);
         let measures = Measures { stature, shoulder_breadth, chest_girth, waist_girth, hip_girth };
@@ -95,23 +96,9 @@ impl Recipe {
         let garments = garments.collect::<Result<Vec<_>, AppError>>()?;
         let rig = Rig::fit(&body);
         let quality = self.quality.parse().map_err(AppError::Input)?;
-        // The crew comes from the loop, which gives its helper a place.
         let settings = Settings { quality, workers: 1, ..Settings::default() };
-        let (frame, reader) = Frame::new(body, &rig, garments, settings).map_err(AppError::input)?;
-        let (crew, worker) = threads::crew(workers).map_err(AppError::input)?;
-        let mut frame = frame.with_crew(crew);
+        let (mut frame, reader) = Frame::new(body, &rig, garments, settings).map_err(AppError::input)?;
         frame.dress(first);
-        Ok(Dressed { frame, reader, worker })
+        Ok((frame, reader))
     }
-}
-
-/// A shopper, dressed.
-#[derive(Debug)]
-pub struct Dressed {
-    /// The frame.
-    pub frame: Frame,
-    /// Where its snapshots come out.
-    pub reader: Reader<Snapshot>,
-    /// Where the second worker runs, if there is one.
-    pub worker: Option<Placement>,
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 use toile_engine::clock::SimClock;
+use toile_engine::crew::Crew;
 use toile_engine::pace::physics::{Staged, Stepper};
 use toile_engine::pace::replay::replay;
 use toile_engine::pace::tape::{self, Entry};
@@ -46,8 +47,9 @@ pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
     let Some(Entry::Dressed(first)) = entries.first() else {
         return Err(bad(&"it does not begin with how the shopper was dressed; record the run again"));
     };
-    let dressed = recipe.make(args.workers, first)?;
-    let mut stepper = Stepper::new(Staged::new(dressed.frame));
+    let (frame, _reader) = recipe.make(first)?;
+    let crew = Crew::new(args.workers).map_err(AppError::input)?;
+    let mut stepper = Stepper::new(Staged::new(frame.with_crew(crew)));
     let out = replay(&mut stepper, &entries, &SimClock::default());
     let report = ReplayReport {
         workers: args.workers,
@@ -75,7 +77,10 @@ pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
 
 fn read(path: &Path) -> Result<Vec<u8>, AppError> {
     let refused = |e: std::io::Error| {
-        AppError::Input(format!("{} cannot be read ({e}); name a file made by `toile latency --record`", path.display()))
+        AppError::Input(format!(
+            "{} cannot be read ({e}); name a file made by `toile latency --record`",
+            path.display()
+        ))
     };
     let bytes = fs::metadata(path).map_err(refused)?.len();
     if bytes > MOST_BYTES {

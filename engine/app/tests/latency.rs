@@ -33,7 +33,8 @@ fn a_run_is_told_by_stage_and_replayed_bit_for_bit_with_two_workers_and_with_one
     assert_eq!(causes, whole("deadline_misses"), "every miss has its cause");
     assert_eq!(found["quality"]["nonfinite"], 0);
     assert!(found["quality"]["strain"][0].as_f64().unwrap() > 0.0, "a time without its error");
-    let threads: Vec<&str> = found["threads"].as_array().unwrap().iter().map(|t| t["thread"].as_str().unwrap()).collect();
+    let threads: Vec<&str> =
+        found["threads"].as_array().unwrap().iter().map(|t| t["thread"].as_str().unwrap()).collect();
     assert!(["sensor", "physics", "render"].iter().all(|t| threads.contains(t)));
     let page = fs::read_to_string(scratch.path().join("latency/latency.html")).unwrap();
     assert!(page.matches("<svg").count() >= 12 && page.trim_end().ends_with("</html>"));

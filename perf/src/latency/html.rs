@@ -174,7 +174,12 @@ fn plot(html: &mut String, stage: &Stage) {
             x.min(width - 110.0)
         );
     }
-    let _ = writeln!(html, "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{most:.0}</text>\n</svg><br>", left - 6.0, top + 8.0);
+    let _ = writeln!(
+        html,
+        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{most:.0}</text>\n</svg><br>",
+        left - 6.0,
+        top + 8.0
+    );
 }
 
 fn escaped(text: &str) -> String {

@@ -14,8 +14,8 @@ mod load;
 mod report;
 mod trial;
 
-pub use report::{Attributed, Cause, Goal, Latency, Placed, Quantiles, Quality, Stage, Warned};
 pub use html::page;
+pub use report::{Attributed, Cause, Goal, Latency, Placed, Quality, Quantiles, Stage, Warned};
 pub use trial::{Cast, run};
 
 use thiserror::Error;
@@ -30,6 +30,8 @@ pub struct Options {
     pub load: usize,
     /// Whether the run is recorded.
     pub record: bool,
+    /// A rung of the governor's ladder that the run is held on; none lets it govern.
+    pub rung: Option<u8>,
 }
 
 /// Why the figures cannot be taken.

@@ -4,19 +4,22 @@ use std::thread;
 use std::time::Duration;
 
 use glam::Vec3;
+use toile_assets::garment::Garment;
+use toile_assets::limits::STEP_HZ;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::{Frame, Snapshot};
-use toile_engine::meter::{INTAKE, PERIOD_NS, STAGES};
+use toile_engine::meter::{INTAKE, Meter, PERIOD_NS, STAGES, STEP_BUDGET_US};
 use toile_engine::pace::event::{EVENTS, EVENTS_NAME, Event, What};
 use toile_engine::pace::governor::LADDER;
 use toile_engine::pace::physics::{Outlets, Physics, Staged};
-use toile_engine::pace::queue::{Receiver, bounded};
+use toile_engine::pace::queue::{Capacity, Receiver, bounded};
 use toile_engine::pace::render::{Eye, Render};
 use toile_engine::pace::roles::{Placement, Role};
 use toile_engine::pace::sense::{Playback, Seen, Sense};
 use toile_engine::pace::tape::{ENTRIES, ENTRIES_NAME, Entry};
-use toile_engine::pace::threads::{self, Stop};
+use toile_engine::pace::threads::{self, Life, Stop};
 use toile_engine::relay::{Reader, Relay};
+use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::Joints;
 
 use super::account::{ThreadAccount, cause};
@@ -26,6 +29,10 @@ use super::{LatencyError, Options, jitter};
 
 /// Time before the meters begin (s): caches fill, memory is touched for the first time.
 const WARM_UP_S: u64 = 1;
+const WARM_UP_STEPS: u64 = WARM_UP_S * STEP_HZ as u64;
+
+/// What filtering a sensor frame may take (us).
+const FILTER_US: u64 = 50;
 
 /// Longest time for which the machine's own jitter is measured (s).
 const MOST_JITTER_S: u32 = 10;
@@ -118,69 +125,105 @@ impl Told {
     }
 }
 
-/// Runs the loop for so long. With a recording, `keep` is handed its entries as they come. Gives the report and
-/// the frame as it ends.
+/// The three lives on their threads, and the ends of their queues.
+struct Running {
+    clock: RealClock,
+    stop: Stop,
+    metered_ns: u64,
+    sensor: Life<Sense<Playback, RealClock>>,
+    physics: Life<Physics<Staged, RealClock, ThreadAccount>>,
+    render: Life<Render<Picture, RealClock>>,
+    events: Receiver<Event>,
+    entries: Receiver<Entry>,
+}
+
+/// The lives, when they have ended.
+struct Ended {
+    sensor: Sense<Playback, RealClock>,
+    physics: Physics<Staged, RealClock, ThreadAccount>,
+    render: Render<Picture, RealClock>,
+    capacities: [Capacity; 2],
+}
+
+impl Running {
+    fn start(
+        frame: Frame,
+        mut reader: Reader<Snapshot>,
+        joints: &[Joints],
+        options: &Options,
+    ) -> Result<Self, LatencyError> {
+        let clock = RealClock::default();
+        let begin = clock.now_ns() + 10 * PERIOD_NS;
+        let metered_ns = begin + WARM_UP_S * SECOND_NS;
+        let (sender, events) = bounded(EVENTS_NAME, EVENTS);
+        let (tape, entries) = bounded(ENTRIES_NAME, ENTRIES);
+        let Relay { writer, reader: seen } = Relay::new(&Seen::default());
+        let outlets = Outlets { events: sender, tape: options.record.then_some(tape) };
+        let picture = Picture::of(reader.latest());
+        let sense = Sense::new(Playback::new(joints, begin, u64::MAX), clock, writer).metering_from(metered_ns);
+        let physics = Physics::new(Staged::new(frame), clock, begin, seen, outlets, ThreadAccount::new());
+        let physics = physics.warming_up(WARM_UP_STEPS);
+        let physics = match options.rung {
+            Some(rung) => physics.held_on(rung),
+            None => physics,
+        };
+        let render = Render::new(picture, clock, begin, reader).metering_from(metered_ns);
+        let stop = Stop::default();
+        Ok(Self {
+            sensor: threads::start(Role::Sensor, sense, clock, &stop)?,
+            physics: threads::start(Role::Physics, physics, clock, &stop)?,
+            render: threads::start(Role::Render, render, clock, &stop)?,
+            clock,
+            stop,
+            metered_ns,
+            events,
+            entries,
+        })
+    }
+
+    /// Lets it run until the end, and hands on what comes out of the queues.
+    fn watch(mut self, seconds: u32, told: &mut Told, keep: &mut impl FnMut(&Entry)) -> Result<Ended, LatencyError> {
+        let end = self.metered_ns + u64::from(seconds) * SECOND_NS;
+        while self.clock.now_ns() < end && !self.physics.is_over() {
+            thread::sleep(LOOK);
+            drain(&mut self.events, &mut self.entries, told, keep);
+        }
+        self.stop.now();
+        let sensor = self.sensor.join().ok_or(LatencyError::Died("sensor"))?;
+        let physics = self.physics.join().ok_or(LatencyError::Died("physics"))?;
+        let render = self.render.join().ok_or(LatencyError::Died("render"))?;
+        drain(&mut self.events, &mut self.entries, told, keep);
+        Ok(Ended { sensor, physics, render, capacities: [self.events.capacity(), self.entries.capacity()] })
+    }
+}
+
+/// Runs the loop for so long; `keep` is handed the entries of a recording as they come.
 ///
 /// # Errors
 /// Where a thread cannot be started or ends before its time.
 pub fn run(cast: Cast<'_>, options: &Options, mut keep: impl FnMut(&Entry)) -> Result<Latency, LatencyError> {
     let load = Load::start(options.load)?;
-    let empty = jitter::measure(Duration::from_secs(u64::from(options.seconds.min(MOST_JITTER_S))))?;
-    let Cast { frame, mut reader, joints, worker } = cast;
-    let clock = RealClock::default();
-    let begin = clock.now_ns() + 10 * PERIOD_NS;
-    let metered = begin + WARM_UP_S * 1_000_000_000;
-    let (sender, mut events) = bounded(EVENTS_NAME, EVENTS);
-    let (tape, mut entries) = bounded(ENTRIES_NAME, ENTRIES);
-    let Relay { writer, reader: seen } = Relay::new(&Seen::default());
-    let outlets = Outlets { events: sender, tape: options.record.then_some(tape) };
-    let picture = Picture::of(reader.latest());
-    let warm_up = WARM_UP_S * u64::from(toile_assets::limits::STEP_HZ);
-    let sense = Sense::new(Playback::new(joints, begin, u64::MAX), clock, writer).metering_from(metered);
-    let physics = Physics::new(Staged::new(frame), clock, begin, seen, outlets, ThreadAccount::new());
-    let render = Render::new(picture, clock, begin, reader).metering_from(metered);
-
-    let stop = Stop::default();
-    let sensor = threads::start(Role::Sensor, sense, clock, &stop)?;
-    let physics = threads::start(Role::Physics, physics.warming_up(warm_up), clock, &stop)?;
-    let render = threads::start(Role::Render, render, clock, &stop)?;
-    let placements = [sensor.placement(), physics.placement(), worker, render.placement()];
+    let jitter = jitter::measure(Duration::from_secs(u64::from(options.seconds.min(MOST_JITTER_S))))?;
+    let running = Running::start(cast.frame, cast.reader, cast.joints, options)?;
+    let placements = [running.sensor.placement(), running.physics.placement(), cast.worker, running.render.placement()];
+    let threads: Vec<Placed> = placements.into_iter().flatten().map(Placed::from).collect();
     let mut told = Told::default();
-    let end = metered + u64::from(options.seconds) * 1_000_000_000;
-    while clock.now_ns() < end && !physics.is_over() {
-        thread::sleep(LOOK);
-        drain(&mut events, &mut entries, warm_up, &mut told, &mut keep);
-    }
-    stop.now();
-    let sensor = sensor.join().ok_or(LatencyError::Died("sensor"))?;
-    let physics = physics.join().ok_or(LatencyError::Died("physics"))?;
-    let render = render.join().ok_or(LatencyError::Died("render"))?;
-    drain(&mut events, &mut entries, warm_up, &mut told, &mut keep);
+    let ended = running.watch(options.seconds, &mut told, &mut keep)?;
     drop(load);
+    Ok(report(&ended, options, threads, told, &jitter))
+}
 
+/// What it comes to.
+fn report(ended: &Ended, options: &Options, threads: Vec<Placed>, told: Told, jitter: &Meter) -> Latency {
+    let Ended { physics, render, capacities, .. } = ended;
     let (gauges, frame) = (&physics.gauges, &physics.stepper.scene.frame);
-    let mut stages = vec![
-        Stage::of("filter", Some(50), &sensor.filtering),
-        Stage::of("wait for a step", Some(PERIOD_NS / 1_000), &gauges.wait),
-        Stage::of(STAGES[INTAKE].name, Some(STAGES[INTAKE].budget_us), &gauges.intake),
-    ];
-    let own = STAGES.iter().zip(&frame.meters().stages).skip(INTAKE + 1);
-    stages.extend(own.map(|(stage, meter)| Stage::of(stage.name, Some(stage.budget_us), meter)));
-    stages.push(Stage::of("wait for a picture", None, &render.picture));
-    stages.push(Stage::of("picture", None, &render.drawing));
+    let stages = stages(ended, jitter);
     let [step, response] = [&gauges.step, &gauges.response].map(Quantiles::of);
     let [snapshot, total] = [&gauges.reaction, &render.total].map(Quantiles::of);
-    let capacities = [events.capacity(), entries.capacity()];
-    let period_us = PERIOD_NS as f64 * 1e-3;
-    let late = gauges.reaction.histogram().iter_recorded();
-    let late = late.filter(|v| v.value_iterated_to() as f64 * 1e-3 > SNAPSHOT_US).map(|v| v.count_at_value()).sum::<u64>();
-    let threads: Vec<Placed> = placements.into_iter().flatten().map(Placed::from).collect();
-    let mut warnings: Vec<String> = capacities.iter().filter_map(|c| c.warning()).collect();
+    let mut warnings: Vec<String> = capacities.iter().filter_map(Capacity::warning).collect();
     warnings.extend(threads.iter().flat_map(|t| t.refused.clone()));
-    warnings.append(&mut told.sentences);
-    let whole = [("step", &gauges.step), ("snapshot", &gauges.reaction), ("total", &render.total), ("empty loop", &empty)];
-    stages.extend(whole.map(|(name, meter)| Stage::of(name, None, meter)));
-    Ok(Latency {
+    warnings.extend(told.sentences);
+    Latency {
         seconds: options.seconds,
         load_threads: options.load,
         workers: frame.settings().workers,
@@ -191,37 +234,62 @@ pub fn run(cast: Cast<'_>, options: &Options, mut keep: impl FnMut(&Entry)) -> R
         snapshot_us: snapshot,
         step_us: step,
         response_us: response,
-        jitter_us: Quantiles::of(&empty),
+        jitter_us: Quantiles::of(jitter),
         steps: gauges.steps,
         deadline_misses: gauges.missed + gauges.dropped,
         dropped: gauges.dropped,
         attributed: told.attributed,
         frames: snapshot.count + gauges.skipped,
-        late_frames: late + gauges.skipped,
+        late_frames: later_than(&gauges.reaction, SNAPSHOT_US) + gauges.skipped,
         pictures: render.pictures,
         quality: quality(frame, &gauges.rungs, told.changes),
-        goals: vec![
-            Goal::new("snapshot after a sensor frame's arrival, p99", SNAPSHOT_US, snapshot.p99),
-            Goal::new("picture after a sensor frame was seen, p99", PICTURE_US, total.p99),
-            Goal::new("step, p99.9", 0.5 * period_us, step.p999),
-            Goal::new("step, longest", 0.8 * period_us, step.max),
-        ],
+        goals: goals(snapshot, total, step),
         capacities: capacities.map(Warned::from).to_vec(),
         warnings,
         state_hash: format!("{:016x}", frame.state_hash()),
-    })
+    }
+}
+
+/// From the sensor to the picture, then the whole of it, then the machine.
+fn stages(ended: &Ended, jitter: &Meter) -> Vec<Stage> {
+    let Ended { sensor, physics, render, .. } = ended;
+    let (gauges, meters) = (&physics.gauges, physics.stepper.scene.frame.meters());
+    let mut stages = vec![
+        Stage::of("filter", Some(FILTER_US), &sensor.filtering),
+        Stage::of("wait for a step", Some(PERIOD_NS / 1_000), &gauges.wait),
+        Stage::of(STAGES[INTAKE].name, Some(STAGES[INTAKE].budget_us), &gauges.intake),
+    ];
+    let own = STAGES.iter().zip(&meters.stages).skip(INTAKE + 1);
+    stages.extend(own.map(|(stage, meter)| Stage::of(stage.name, Some(stage.budget_us), meter)));
+    stages.push(Stage::of("step", Some(STEP_BUDGET_US), &gauges.step));
+    stages.push(Stage::of("snapshot", Some(SNAPSHOT_US as u64), &gauges.reaction));
+    stages.push(Stage::of("wait for a picture", None, &render.picture));
+    stages.push(Stage::of("picture", None, &render.drawing));
+    stages.push(Stage::of("total", Some(PICTURE_US as u64), &render.total));
+    stages.push(Stage::of("empty loop", None, jitter));
+    stages
+}
+
+/// How many times of a meter are longer than this (us).
+fn later_than(meter: &Meter, us: f64) -> u64 {
+    let late = meter.histogram().iter_recorded().filter(|v| v.value_iterated_to() as f64 * 1e-3 > us);
+    late.map(|v| v.count_since_last_iteration()).sum()
+}
+
+fn goals(snapshot: Quantiles, total: Quantiles, step: Quantiles) -> Vec<Goal> {
+    let period_us = PERIOD_NS as f64 * 1e-3;
+    vec![
+        Goal::new("snapshot after a sensor frame's arrival, p99", SNAPSHOT_US, snapshot.p99),
+        Goal::new("picture after a sensor frame was seen, p99", PICTURE_US, total.p99),
+        Goal::new("step, p99.9", 0.5 * period_us, step.p999),
+        Goal::new("step, longest", 0.8 * period_us, step.max),
+    ]
 }
 
 /// Empties the queues. What happened before the meters began is not told.
-fn drain(
-    events: &mut Receiver<Event>,
-    entries: &mut Receiver<Entry>,
-    warm_up: u64,
-    told: &mut Told,
-    keep: &mut impl FnMut(&Entry),
-) {
+fn drain(events: &mut Receiver<Event>, entries: &mut Receiver<Entry>, told: &mut Told, keep: &mut impl FnMut(&Entry)) {
     while let Some(event) = events.pop() {
-        if event.tick >= warm_up {
+        if event.tick >= WARM_UP_STEPS {
             told.take(&event);
         }
     }
@@ -234,11 +302,11 @@ fn quality(frame: &Frame, rungs: &[u64], changes: Vec<[u64; 3]>) -> Quality {
     let (meters, settings) = (frame.meters(), frame.settings());
     let strain = meters.strain();
     let whole = frame.garments().iter().map(|g| settings.quality.substeps(g.substeps)).max().unwrap_or(0);
-    let free = |g: &toile_assets::garment::Garment| g.inverse_mass.iter().filter(|w| **w > 0.0).count();
+    let free = |g: &Garment| g.inverse_mass.iter().filter(|w| **w > 0.0).count();
     Quality {
         name: settings.quality.name(),
         substeps: whole,
-        particles: frame.garments().iter().map(toile_assets::garment::Garment::particles).sum(),
+        particles: frame.garments().iter().map(Garment::particles).sum(),
         free: frame.garments().iter().map(free).sum(),
         rungs: rungs.to_vec(),
         gives_up: LADDER.iter().map(|r| r.gives_up).collect(),

@@ -36,7 +36,14 @@ fn a_value_is_never_torn_and_never_goes_back() {
 fn each_ordering_is_needed() {
     // The writer's exchange releases what it wrote and acquires the reader's leaving of the place that it gets back; the
     // reader's does the same the other way round.
-    for weak in [[Relaxed, AcqRel], [AcqRel, Relaxed], [Acquire, AcqRel], [Release, AcqRel], [AcqRel, Acquire], [AcqRel, Release]] {
+    for weak in [
+        [Relaxed, AcqRel],
+        [AcqRel, Relaxed],
+        [Acquire, AcqRel],
+        [Release, AcqRel],
+        [AcqRel, Acquire],
+        [AcqRel, Release],
+    ] {
         let found = catch_unwind(AssertUnwindSafe(|| explore(weak))).is_err();
         assert!(found, "{weak:?} would do");
     }

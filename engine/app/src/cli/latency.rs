@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use toile_engine::cloth::Quality;
 use toile_engine::crew::SHARES;
+use toile_engine::pace::governor::LADDER;
 
 use super::{flag, json, path, quiet, required, text};
 use crate::exit::AppError;
@@ -29,6 +30,8 @@ pub struct LatencyArgs {
     pub workers: usize,
     /// Threads of load.
     pub load: usize,
+    /// Rung of the governor's ladder to be held on.
+    pub rung: Option<u8>,
     /// Where the run is recorded.
     pub record: Option<PathBuf>,
     /// Whether a missed goal fails the command.
@@ -77,6 +80,8 @@ pub(super) fn grammar() -> clap::Command {
                 .num_args(0..=1)
                 .default_missing_value("0")
                 .value_parser(value_parser!(u32).range(0..=MOST_LOAD)),
+            text("rung", "R", "Hold the quality on a rung of the governor's ladder: 0 is all of it [default: governed]")
+                .value_parser(value_parser!(u8).range(0..LADDER.len() as i64)),
             path("record", "F", "Record the run, without images, for `toile replay`"),
             flag("gate", "Exit with 3 where a goal is missed"),
             path("out", "DIR", "Folder for the page; it is made if missing").default_value("latency"),
@@ -129,6 +134,7 @@ pub(super) fn args(matches: &ArgMatches) -> Result<LatencyArgs, AppError> {
         seconds: required(matches, "seconds")?,
         workers: chosen_workers(matches),
         load,
+        rung: matches.get_one("rung").copied(),
         record: matches.get_one("record").cloned(),
         gate: matches.get_flag("gate"),
         out: required(matches, "out")?,

@@ -29,9 +29,7 @@ use std::time::Duration;
 
 use thiserror::Error;
 
-use crate::sync::{
-    AtomicBool, AtomicU64, AtomicUsize, Idle, JoinHandle, LOOKS_BEFORE_TAKING, Slot, pause, thread,
-};
+use crate::sync::{AtomicBool, AtomicU64, AtomicUsize, Idle, JoinHandle, LOOKS_BEFORE_TAKING, Slot, pause, thread};
 
 pub use own::Own;
 

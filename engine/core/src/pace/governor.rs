@@ -69,15 +69,22 @@ pub struct Governor {
     since_up: u64,
     /// The while, as it is now (steps).
     patience: u64,
+    /// Whether it stays where it is, whatever happens.
+    held: bool,
 }
 
 impl Default for Governor {
     fn default() -> Self {
-        Self { rung: 0, long: 0, longest_ns: 0, steps: 0, since_up: u64::MAX, patience: FIRST_WHILE }
+        Self { rung: 0, long: 0, longest_ns: 0, steps: 0, since_up: u64::MAX, patience: FIRST_WHILE, held: false }
     }
 }
 
 impl Governor {
+    /// One that stays on a rung (the last, where there is no such), to see what it costs and which error it has.
+    pub fn held_on(rung: u8) -> Self {
+        Self { rung: rung.min(LADDER.len() as u8 - 1), held: true, ..Self::default() }
+    }
+
     /// The rung as it is.
     pub fn rung(&self) -> &'static Rung {
         &LADDER[usize::from(self.rung)]
@@ -90,6 +97,9 @@ impl Governor {
 
     /// A step took so long (ns). Gives the change of rung that the next step is to be taken with.
     pub fn after(&mut self, step_ns: u64) -> Option<Change> {
+        if self.held {
+            return None;
+        }
         let share = step_ns as f32 / PERIOD_NS as f32;
         self.long = (self.long << 1 | u32::from(share > LONG)) & ((1 << WINDOW) - 1);
         self.longest_ns = self.longest_ns.max(step_ns);
@@ -211,6 +221,13 @@ mod tests {
         let late = changes.iter().filter(|c| c.0 > 120 * 300).count();
         assert!(changes.len() < 60 && late <= 6, "{} changes, {late} of them late: {changes:?}", changes.len());
         assert!(missed <= changes.len() as u64, "each rise is paid for once at most: {missed}");
+    }
+
+    #[test]
+    fn one_that_is_held_stays_where_it_is() {
+        let mut governor = Governor::held_on(2);
+        let (changes, _) = play(&mut governor, 500, |step| if step < 250 { 1.0 } else { 40.0 });
+        assert_eq!((changes, governor.place(), Governor::held_on(99).place()), (vec![], 2, 3));
     }
 
     #[test]

@@ -15,8 +15,8 @@ use toile_sensors::frame::{Joints, TrackedJoint};
 /// the first third of that time, which is a frame of 30 Hz and its delay, it keeps nine tenths of itself.
 pub const FADE_S: f32 = 0.13;
 
-/// Poles of the correction, times the sensor's period (1). Higher ones follow sooner and shake more: from 3 to 4.5, a fast
-/// reach is followed within 29 instead of 36 mm, with twice the jerk (docs/loop.md).
+/// Poles of the correction, times the sensor's period (1). Higher ones follow a fast reach a little sooner and
+/// shake it far more, for jerk grows with their square.
 const POLES: f32 = 3.0;
 
 /// The sensor's period, as far as it decides on the correction (s): 60 Hz to 12 Hz.

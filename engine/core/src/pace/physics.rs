@@ -231,6 +231,14 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
         Self { warm_up: steps, ..self }
     }
 
+    /// The same, held on a rung of the ladder whatever happens.
+    #[must_use]
+    pub fn held_on(mut self, rung: u8) -> Self {
+        self.governor = Governor::held_on(rung);
+        self.stepper.set_rung(self.governor.place());
+        self
+    }
+
     /// Steps taken so far, the first ones included.
     pub fn ticks(&self) -> u64 {
         self.tick

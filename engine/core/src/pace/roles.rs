@@ -71,7 +71,10 @@ pub fn settle(role: Role) -> Placement {
     let mut placement = Placement { role, core: None, priority: None, refused: Vec::new() };
     pin(&mut placement);
     if let Some(priority) = role.priority() {
-        match raise(priority) {
+        // On a shared core a thread that waits for another of a lower priority would wait for ever.
+        let raised =
+            if placement.core.is_some() { raise(priority) } else { Err("it has no core of its own".to_owned()) };
+        match raised {
             Ok(()) => placement.priority = Some(priority),
             Err(why) => placement.refused.push(format!(
                 "the {} thread has no real-time priority ({why}); grant CAP_SYS_NICE or raise the limit `rtprio`",
@@ -86,7 +89,8 @@ fn pin(placement: &mut Placement) {
     let role = placement.role;
     let cores = core_affinity::get_core_ids().unwrap_or_default();
     if cores.len() < 2 {
-        let why = format!("the {} thread is not pinned, because there is no second core to keep it apart from", role.name());
+        let why =
+            format!("the {} thread is not pinned, because there is no second core to keep it apart from", role.name());
         placement.refused.push(format!("{why}; give the program two cores"));
         return;
     }

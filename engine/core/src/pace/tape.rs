@@ -48,7 +48,9 @@ pub enum Entry {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum TapeError {
     /// Another file.
-    #[error("this is not a recording of a run (it does not begin with `toile-tape/1`); make one with `toile latency --record F`")]
+    #[error(
+        "this is not a recording of a run (it does not begin with `toile-tape/1`); make one with `toile latency --record F`"
+    )]
     Magic,
     /// Cut off before the first step, or no text.
     #[error("the recording ends before its first step; record the run again")]

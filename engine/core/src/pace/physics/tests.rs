@@ -154,7 +154,8 @@ fn quality_is_given_up_before_deadlines_and_comes_back_when_the_load_is_gone() {
     let told = rig.told();
     let gauges = &rig.physics.gauges;
     assert_eq!((gauges.steps, gauges.dropped), (1_200, 0));
-    let changes: Vec<u8> = told.iter().filter_map(|e| if let What::Quality(c) = e.what { Some(c.to) } else { None }).collect();
+    let changes: Vec<u8> =
+        told.iter().filter_map(|e| if let What::Quality(c) = e.what { Some(c.to) } else { None }).collect();
     assert_eq!(changes, [1, 2, 1, 0], "each change is told");
     assert!(gauges.missed <= 8, "{} steps were late until quality was given up", gauges.missed);
     assert_eq!(gauges.rungs.iter().sum::<u64>(), 1_200);
