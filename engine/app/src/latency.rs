@@ -51,8 +51,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     let text = serde_json::to_string(&recipe).map_err(AppError::internal)?;
     let mut bytes = tape::header(&text);
     tape::write(&Entry::Dressed(*first), &mut bytes);
-    let cast =
-        Cast { frame: dressed.frame, reader: dressed.reader, joints: &session.joints[from..], worker: dressed.worker };
+    let cast = Cast { frame: frame.with_crew(crew), reader, joints: &session.joints[from..], worker };
     let found = latency::run(cast, &options, |entry| tape::write(entry, &mut bytes)).map_err(AppError::internal)?;
     if let Some(path) = &args.record {
         let refused =
