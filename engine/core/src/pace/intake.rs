@@ -19,11 +19,11 @@ pub const FADE_S: f32 = 0.13;
 /// shake it far more, for jerk grows with their square.
 const POLES: f32 = 3.0;
 
-/// The sensor's period, as far as it decides on the correction (s): 60 Hz to 12 Hz.
-const PERIODS_S: [f32; 2] = [1.0 / 60.0, 1.0 / 12.0];
+/// The sensor's period, as far as it decides on the correction (s): 60 Hz to 6 Hz.
+const PERIODS_S: [f32; 2] = [1.0 / 60.0, 1.0 / 6.0];
 
 /// How fast the period follows the sensor: share of a new one.
-const PERIOD_SHARE: f32 = 0.2;
+const PERIOD_SHARE: f32 = 0.35;
 
 /// Speed at which half of a joint's velocity is believed (m/s): what is slower is the sensor's noise, which must not be drawn
 /// out into the time ahead.

@@ -65,16 +65,21 @@ fn held(stamps: &[u64]) -> Vec<f64> {
 fn a_sensor_of_30_hz_moves_a_joint_smoothly_and_one_that_stutters_too() {
     let truth = truth_at_steps();
     assert!((most(&truth, 3) - 139.0).abs() < 20.0, "a true reach: 60 x 0.5 m / (0.6 s)^3, {}", most(&truth, 3));
-    for (stutters, jerk, error_mm) in [(false, 6_000.0, 45.0), (true, 8_000.0, 150.0)] {
+    let off = |path: &[f64]| path.iter().zip(&truth).fold(0.0f64, |m, (a, b)| m.max((a - b).abs())) * 1e3;
+    for stutters in [false, true] {
         let stamps = stamps(stutters);
-        let path = play(&stamps, reach);
-        let jumps = held(&stamps);
-        let off = path.iter().zip(&truth).fold(0.0f64, |m, (a, b)| m.max((a - b).abs())) * 1e3;
-        let figures = [1, 2, 3].map(|k| [&path, &jumps].map(|p| most(p, k)));
-        eprintln!("stutters {stutters}: off by {off:.1} mm; speed, acceleration, jerk {figures:.0?} (ours, held)");
-        assert!(figures[2][0] < jerk, "jerk {}", figures[2][0]);
-        assert!(figures[2][1] > 10.0 * figures[2][0], "the steps of the sensor are still felt");
-        assert!(off < error_mm, "{off} mm");
+        let (path, jumps) = (play(&stamps, reach), held(&stamps));
+        let [ours, theirs] = [off(&path), off(&jumps)];
+        let [speed, bend, jerk] = [1, 2, 3].map(|k| most(&path, k));
+        let [_, _, steps] = [1, 2, 3].map(|k| most(&jumps, k));
+        eprintln!(
+            "stutters {stutters}: off by {ours:.0} mm, {theirs:.0} if each frame is held; {speed:.1} m/s, {bend:.0} m/s2, \
+             jerk {jerk:.0} m/s3, {steps:.0} if each frame is held"
+        );
+        // A part of what a body would do that jumps to each frame as it comes, and nearer to the truth.
+        assert!(jerk < steps / if stutters { 60.0 } else { 40.0 }, "jerk {jerk}");
+        assert!(ours < theirs, "{ours} mm");
+        assert!(stutters || (jerk < 6_000.0 && ours < 45.0));
     }
 }
 
