@@ -19,8 +19,8 @@ pub struct Rung {
 }
 
 /// The ladder, whole quality first. The order: substeps, then how often self-collision is looked for, then garments that
-/// are far away, then the wind; models that come later take their place in it. Half of the substeps is the least
-/// that fibers hold their length in (docs/loop.md has the error of each rung).
+/// are far away, then the wind; models that come later take their place in it. `toile latency --rung R` tells
+/// the error of each.
 pub const LADDER: [Rung; 4] = [
     Rung { gives_up: "nothing", substep_share: 1.0, wind: true },
     Rung { gives_up: "a quarter of the substeps", substep_share: 0.75, wind: true },
