@@ -67,13 +67,17 @@ pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
             continue;
         };
         let at = |problem| Fault::new(Place::Frame(i), problem, CURE);
-        let ns = frame.timestamp_usec.checked_mul(1_000).ok_or_else(|| at("the time is beyond any clock".to_owned()))?;
+        let ns =
+            frame.timestamp_usec.checked_mul(1_000).ok_or_else(|| at("the time is beyond any clock".to_owned()))?;
         joints.push(map.joints(ns, &points(body).map_err(at)?));
         levels &= body.joint_confidence_levels.is_some();
     }
     let mut notes = Vec::new();
     if empty > 0 {
-        notes.push(format!("{empty} of {} frames do not show the person who is seen most and were left out", frames.len()));
+        notes.push(format!(
+            "{empty} of {} frames do not show the person who is seen most and were left out",
+            frames.len()
+        ));
     }
     let mut joints = tidy::tidy(joints, &mut notes)?;
     if !levels {

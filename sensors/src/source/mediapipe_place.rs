@@ -79,7 +79,8 @@ pub(super) fn in_space(people: &[Person], notes: &mut Vec<String>) -> Vec<[Track
     people
         .iter()
         .map(|person| {
-            last = person.image.as_ref().zip(person.world.as_ref()).and_then(|(i, w)| translation(i, w)).unwrap_or(last);
+            last =
+                person.image.as_ref().zip(person.world.as_ref()).and_then(|(i, w)| translation(i, w)).unwrap_or(last);
             let points = person.world.as_ref();
             points.map_or([TrackedJoint::default(); POINTS], |points| {
                 points.map(|p| tracked(&p, turned(Vec3::new(p.x, p.y, p.z) + last)))
@@ -149,11 +150,8 @@ mod tests {
         });
         let size = [640.0, 480.0];
         let f = FOCAL * 640.0;
-        let points = world.map(|p| Landmark {
-            x: 0.5 + f * (p.x + x) / z / size[0],
-            y: 0.5 + f * (p.y + y) / z / size[1],
-            ..p
-        });
+        let points =
+            world.map(|p| Landmark { x: 0.5 + f * (p.x + x) / z / size[0], y: 0.5 + f * (p.y + y) / z / size[1], ..p });
         Person { time_ns: 0, image: Some(Image { points, size }), world: Some(world) }
     }
 

@@ -26,9 +26,11 @@ mod kinect_csv;
 mod kinectron;
 mod mediapipe;
 mod mediapipe_place;
+mod openpose;
 mod raw_depth;
 pub mod synthetic;
 mod tidy;
+pub mod vmc;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -46,11 +48,14 @@ pub struct OpenOptions {
     pub camera: Option<PathBuf>,
 }
 
-/// Opens a recording of any known kind.
+/// Opens a recording of any known kind: a file, or the folder of a multi-view recording.
 ///
 /// # Errors
 /// One sentence with the path, the place and the cure where the file cannot be read, is of an unknown kind, or is wrong.
 pub fn open(path: &Path, options: &OpenOptions) -> Result<Session, SourceError> {
+    if path.is_dir() {
+        return openpose::open(path);
+    }
     let bytes = read_file(path)?;
     let camera = match &options.camera {
         Some(json) => Some((shown(json), read_file(json)?)),
