@@ -153,6 +153,21 @@ fn a_wobbling_bone_is_steady_and_its_direction_is_kept() {
 }
 
 #[test]
+fn a_measured_body_fixes_the_limbs_whatever_is_seen() {
+    use toile_assets::skeleton::{JOINTS, Skeleton};
+    let mut rest = [Vec3::ZERO; JOINTS];
+    Joint::ALL.into_iter().for_each(|j| rest[j.index()] = standing(0).at(j).position);
+    rest[Joint::LeftElbow.index()] = rest[Joint::LeftShoulder.index()] - Vec3::Y * 0.31;
+    let mut filter = JointFilter::default();
+    filter.lock_bones(&Skeleton { rest });
+    for i in 0..40u64 {
+        let out = filter.push(&arm(i * PERIOD_NS, 0.02 * i as f32));
+        let bone = out.at(Joint::LeftElbow).position - out.at(Joint::LeftShoulder).position;
+        assert!((bone.length() - 0.31).abs() < 1e-3, "{} in frame {i}", bone.length());
+    }
+}
+
+#[test]
 fn reset_forgets_everything_and_the_state_is_small() {
     let mut filter = JointFilter::new(FilterSettings::default());
     let first = filter.push(&arm(0, 0.5));

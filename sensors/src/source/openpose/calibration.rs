@@ -94,7 +94,7 @@ impl Camera {
         distortion[..table.distortions.len()].copy_from_slice(&table.distortions);
         let turn = DVec3::from_array(table.rotation);
         let translation = DVec3::from_array(table.translation);
-        let far = |v: DVec3, limit: f64| !(v.abs().max_element() <= limit);
+        let far = |v: DVec3, limit: f64| !v.is_finite() || v.abs().max_element() > limit;
         if !distortion.iter().all(|k| k.abs() < LARGEST_DISTORTION)
             || far(turn, 100.0)
             || far(translation, f64::from(MAX_COORDINATE))

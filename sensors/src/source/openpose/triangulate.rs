@@ -64,7 +64,8 @@ fn solve(rays: &[Ray]) -> Option<Point> {
         }
     }
     let trace = normal.x_axis.x + normal.y_axis.y + normal.z_axis.z;
-    if !(normal.determinant() > LEAST_DETERMINANT * trace.powi(3)) {
+    let determinant = normal.determinant();
+    if determinant.is_nan() || determinant <= LEAST_DETERMINANT * trace.powi(3) {
         return None;
     }
     let position = normal.inverse() * right;
