@@ -14,6 +14,7 @@ use crate::exit::AppError;
 
 mod bake;
 mod body;
+mod filters;
 mod pareto;
 mod run;
 mod skinning;
@@ -23,6 +24,7 @@ mod validate;
 
 pub use bake::BakeArgs;
 pub use body::{BodyArgs, Wearer};
+pub use filters::FiltersArgs;
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
@@ -47,6 +49,8 @@ pub enum Command {
     Bake(BakeArgs),
     /// `toile body`.
     Body(BodyArgs),
+    /// `toile bench filters`.
+    BenchFilters(FiltersArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
@@ -235,7 +239,7 @@ fn bench() -> clap::Command {
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([skinning::grammar(), skirt::grammar()])
+        .subcommands([filters::grammar(), skinning::grammar(), skirt::grammar()])
         .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
 
@@ -322,6 +326,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
 
 fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
     match matches.subcommand() {
+        Some(("filters", matches)) => Ok(Command::BenchFilters(filters::parse(matches))),
         Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),
         _ => Err(AppError::internal("a benchmark without a name was let through")),

@@ -68,6 +68,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Doctor(args) => doctor::run(args),
         Command::Bake(args) => bake::run(args),
         Command::Body(args) => body::run(args),
+        Command::BenchFilters(args) => bench::filters(args),
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
         Command::Torture(args) => torture::run(args),

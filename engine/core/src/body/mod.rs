@@ -5,6 +5,7 @@
 //! Thread: physics, 120 Hz.
 
 mod clear;
+pub mod filters;
 mod foot;
 pub mod ground;
 #[cfg(test)]
