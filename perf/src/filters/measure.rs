@@ -121,10 +121,10 @@ fn rms(values: impl Iterator<Item = f32>) -> f64 {
     (sum / f64::from(count.max(1))).sqrt() * 1e3
 }
 
-/// A recorded right hand, which waves in the recordings: its jitter about its own smooth course while it is slow, and its
+/// A recorded right wrist, whose hand waves in the recordings: its jitter about its own smooth course while it is slow, and its
 /// delay against the raw hand's smooth course.
 fn recorded(session: &Session, filter: &mut dyn Filter) -> Recorded {
-    const WAVING: Joint = Joint::RightHand;
+    const WAVING: Joint = Joint::RightWrist;
     let course = |track: &[Joints]| -> Vec<Vec3> { track.iter().map(|f| f.at(WAVING).position).collect() };
     let (raw, out) = (course(&session.joints), course(&run(filter, &session.joints)));
     let (truth, own) = (smooth(&raw), smooth(&out));

@@ -45,9 +45,8 @@ pub fn by_kinect(motion: &Motion, seconds: f32, seed: u64) -> Seen {
 }
 
 fn see(motion: &Motion, seconds: f32, mut show: impl FnMut(&Joints) -> Joints) -> Seen {
-    let truth: Vec<Joints> = (0..(seconds * HZ) as usize)
-        .map(|i| Joints { time_ns: time_ns(i), ..motion(i as f32 / HZ) })
-        .collect();
+    let truth: Vec<Joints> =
+        (0..(seconds * HZ) as usize).map(|i| Joints { time_ns: time_ns(i), ..motion(i as f32 / HZ) }).collect();
     let seen = truth.iter().map(&mut show).collect();
     Seen { truth, seen }
 }

@@ -77,7 +77,8 @@ impl Table {
     }
 
     fn filters(&self, text: &mut String) {
-        let recordings: Vec<&str> = self.rows.first().map_or(Vec::new(), |r| r.recorded.iter().map(|r| &*r.name).collect());
+        let recordings: Vec<&str> =
+            self.rows.first().map_or(Vec::new(), |r| r.recorded.iter().map(|r| &*r.name).collect());
         let columns: String = recordings.iter().map(|name| format!(" {name}: jitter, lag |")).collect();
         put(
             text,
@@ -89,7 +90,8 @@ impl Table {
         put(text, &format!("|---|---|---|---|---|---|{}---|", "---|".repeat(recordings.len())));
         for row in &self.rows {
             let reference = REFERENCE.iter().find(|(name, _)| *name == row.name);
-            let reference = reference.map_or("-".to_owned(), |(_, [j, l, o])| format!("{j:.2} mm, {l:.0} ms, {o:.0} mm"));
+            let reference =
+                reference.map_or("-".to_owned(), |(_, [j, l, o])| format!("{j:.2} mm, {l:.0} ms, {o:.0} mm"));
             let recorded: String =
                 row.recorded.iter().map(|r| format!(" {:.2} mm, {:.0} ms |", r.jitter_mm, r.lag_ms)).collect();
             put(

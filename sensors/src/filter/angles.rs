@@ -8,9 +8,9 @@ use glam::{Quat, Vec3};
 use toile_assets::skeleton::{JOINTS, Joint};
 
 use super::Filter;
-use super::gate::anchor;
+use super::gate::{anchor, in_the_room};
 use crate::clock::seconds_between;
-use crate::frame::{Joints, TrackedJoint};
+use crate::frame::Joints;
 
 /// Shortest bone that has a direction (m).
 const SHORTEST: f32 = 1e-3;
@@ -37,14 +37,11 @@ impl Filter for AngleFilter {
         let dt = self.last_ns.map_or(0.0, |last| seconds_between(last, frame.time_ns)).max(0.0);
         self.last_ns = Some(frame.time_ns);
         let share = 1.0 - (-dt / self.tau).exp();
-        let mut out = *frame;
+        let frame = in_the_room(frame);
+        let mut out = frame;
         for joint in Joint::ALL {
             let tracked = *frame.at(joint);
-            if !tracked.position.is_finite() {
-                *out.at_mut(joint) = TrackedJoint::default();
-                continue;
-            }
-            let there = |j: Joint| frame.at(j).confidence > 0.0 && frame.at(j).position.is_finite();
+            let there = |j: Joint| frame.at(j).confidence > 0.0;
             let Some(parent) = anchor(joint, there).filter(|_| there(joint)) else { continue };
             let bone = tracked.position - frame.at(parent).position;
             let length = bone.length();
@@ -74,6 +71,7 @@ fn turned(from: Vec3, to: Vec3, share: f32) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::TrackedJoint;
 
     fn arm(ms: u64, angle: f32) -> Joints {
         let mut f = Joints::absent(ms * 1_000_000);

@@ -111,10 +111,11 @@ impl JointFilter {
     ///
     /// After a silence of more than a second every joint comes back as from a dropout, its motion forgotten.
     pub fn push(&mut self, frame: &Joints) -> Joints {
+        let frame = gate::in_the_room(frame);
         let dt = self.step(frame.time_ns);
-        let seen = self.smooth(frame, dt);
-        let places = self.place(frame, &seen, dt);
-        self.pull_bones(frame, &seen, &places)
+        let seen = self.smooth(&frame, dt);
+        let places = self.place(&frame, &seen, dt);
+        self.pull_bones(&frame, &seen, &places)
     }
 
     /// Seconds since the last frame; after a long silence the motion is forgotten.
@@ -206,6 +207,7 @@ impl JointFilter {
     /// Pulls bones to their lengths, from the pelvis outward; learns from bones of which both ends are at least inferred.
     fn pull_bones(&mut self, frame: &Joints, seen: &[bool; JOINTS], places: &[Vec3; JOINTS]) -> Joints {
         let mut out = Joints::absent(frame.time_ns);
+        let firmness = self.tracks.map(|t| t.map_or(0.0, |t| t.hold.firmness()));
         for joint in Joint::ALL {
             let i = joint.index();
             let parent = self.anchor(joint);
@@ -220,7 +222,10 @@ impl JointFilter {
                     let bone = places[i] - places[from.index()];
                     let length = self.measured[i].filter(|_| joint.parent() == Some(from));
                     let bone_length = length.map_or(track.bone, |length| BoneLength::fixed(from, length));
-                    out.at(from).position + bone_length.pulled(from, bone, self.settings.bone_pull)
+                    // A parent that is only held is no place to hang a seen joint from.
+                    let pull = if seen[i] { firmness[from.index()] } else { 1.0 } * self.settings.bone_pull;
+                    let locked = out.at(from).position + bone_length.pulled(from, bone, pull);
+                    places[i].lerp(locked, pull)
                 }
                 None => places[i],
             };

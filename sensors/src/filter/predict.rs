@@ -7,8 +7,9 @@ use glam::Vec3;
 use toile_assets::skeleton::JOINTS;
 
 use super::Filter;
+use super::gate::in_the_room;
 use crate::clock::seconds_between;
-use crate::frame::{Joints, TrackedJoint};
+use crate::frame::Joints;
 
 /// Time constant of the velocity (s): two frames at 30 Hz.
 const VELOCITY_SECONDS: f32 = 0.066;
@@ -49,6 +50,7 @@ impl Predictor {
     }
 
     fn observe(&mut self, frame: &Joints) {
+        let frame = in_the_room(frame);
         let dt = seconds_between(self.last.time_ns, frame.time_ns);
         for (i, joint) in frame.joints.iter().enumerate() {
             let before = &self.last.joints[i];
@@ -61,10 +63,7 @@ impl Predictor {
                 Vec3::ZERO
             };
         }
-        self.last = *frame;
-        for joint in self.last.joints.iter_mut().filter(|j| !j.position.is_finite()) {
-            *joint = TrackedJoint::default();
-        }
+        self.last = frame;
     }
 }
 
@@ -84,6 +83,7 @@ impl Filter for Predictor {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::TrackedJoint;
 
     fn at(ms: u64, x: f32) -> Joints {
         let joints = [TrackedJoint { position: Vec3::new(x, 1.0, 0.0), confidence: 1.0 }; JOINTS];
