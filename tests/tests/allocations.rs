@@ -112,7 +112,7 @@ fn no_filter_of_joints_allocates_a_frame() {
     let settings = FilterSettings { smoothing: Smoothing::OneEuro(OneEuroSettings::default()), bone_pull: 1.0 };
     let body = stage::shopper();
     let seen: Vec<_> = (0..SENSOR_FRAMES).map(|i| stage::joints(&body, i * 1_000_000_000 / stage::SENSOR_HZ)).collect();
-    let mut locked = JointFilter::default();
+    let mut locked = JointFilter::new(FilterSettings { bone_pull: 1.0, ..FilterSettings::default() });
     locked.lock_bones(&body.skeleton);
     let filters: [(&str, Box<dyn Filter>); 6] = [
         ("bones of the body", Box::new(locked)),

@@ -12,12 +12,11 @@ use toile_sensors::filter::{Filter, FilterSettings, JointFilter};
 use toile_sensors::frame::Joints;
 
 /// Names of the rows, in their order.
-pub const NAMES: [&str; 13] = [
+pub const NAMES: [&str; 14] = [
     "none",
     "gate, hold and blend",
     "Holt .5/.5/.5",
     "Holt .7/.3/0",
-    "Holt, damped and adaptive",
     "One Euro 1, 10",
     "One Euro .5, 10",
     "bones of the session",
@@ -25,11 +24,13 @@ pub const NAMES: [&str; 13] = [
     "angles, 40 ms",
     "joint limits",
     DEFAULT,
+    "the same, bones of the session",
+    "the same, posed",
     "the same, predicted by 38 ms",
 ];
 
 /// The row of what the program runs.
-pub const DEFAULT: &str = "default: hold, adaptive Holt, bones";
+pub const DEFAULT: &str = "default: hold and damped, adaptive Holt";
 
 /// Time by which is predicted (s): from a frame's arrival to the picture.
 const LEAD: f32 = 0.038;
@@ -76,7 +77,6 @@ pub fn filter(name: &str, body: &Skeleton) -> Option<Box<dyn Filter>> {
         "gate, hold and blend" => Box::new(of(Smoothing::None, 0.0)),
         "Holt .5/.5/.5" => Box::new(of(classic(0.5, 0.5, 0.5), 0.0)),
         "Holt .7/.3/0" => Box::new(of(classic(0.7, 0.3, 0.0), 0.0)),
-        "Holt, damped and adaptive" => Box::new(of(Smoothing::Holt(HoltSettings::default()), 0.0)),
         "One Euro 1, 10" => Box::new(of(euro(1.0), 0.0)),
         "One Euro .5, 10" => Box::new(of(euro(0.5), 0.0)),
         "bones of the session" => Box::new(of(Smoothing::None, 1.0)),
@@ -88,6 +88,7 @@ pub fn filter(name: &str, body: &Skeleton) -> Option<Box<dyn Filter>> {
         "angles, 40 ms" => Box::new(AngleFilter::new(0.04)),
         "joint limits" => Box::new(LimitFilter::new(body)),
         DEFAULT => Box::new(JointFilter::default()),
+        "the same, bones of the session" => Box::new(of(Smoothing::default(), 1.0)),
         "the same, predicted by 38 ms" => {
             Box::new(Chain(vec![Box::new(JointFilter::default()), Box::new(Predictor::new(LEAD))]))
         }

@@ -65,11 +65,6 @@ impl Hold {
         self.trust = if seen { self.trust + step } else { self.trust - step }.clamp(HELD_CONFIDENCE, 1.0);
     }
 
-    /// How far the joint's place is a measured one, 0 for held to 1 for seen, changing as the trust does.
-    pub fn firmness(&self) -> f32 {
-        (self.trust - HELD_CONFIDENCE) / (1.0 - HELD_CONFIDENCE)
-    }
-
     /// Confidence handed out: 1 for seen, [`HELD_CONFIDENCE`] for held, in between while one becomes the other.
     pub fn trust(&self) -> f32 {
         self.trust

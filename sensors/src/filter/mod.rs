@@ -49,8 +49,10 @@ pub struct FilterSettings {
 }
 
 impl Default for FilterSettings {
+    /// Bones as seen: pulled ones add their parents' noise along the chain, and a pose takes directions alone
+    /// (docs/filters.md has the figures).
     fn default() -> Self {
-        Self { smoothing: Smoothing::default(), bone_pull: 1.0 }
+        Self { smoothing: Smoothing::default(), bone_pull: 0.0 }
     }
 }
 
@@ -207,7 +209,6 @@ impl JointFilter {
     /// Pulls bones to their lengths, from the pelvis outward; learns from bones of which both ends are at least inferred.
     fn pull_bones(&mut self, frame: &Joints, seen: &[bool; JOINTS], places: &[Vec3; JOINTS]) -> Joints {
         let mut out = Joints::absent(frame.time_ns);
-        let firmness = self.tracks.map(|t| t.map_or(0.0, |t| t.hold.firmness()));
         for joint in Joint::ALL {
             let i = joint.index();
             let parent = self.anchor(joint);
@@ -222,10 +223,7 @@ impl JointFilter {
                     let bone = places[i] - places[from.index()];
                     let length = self.measured[i].filter(|_| joint.parent() == Some(from));
                     let bone_length = length.map_or(track.bone, |length| BoneLength::fixed(from, length));
-                    // A parent that is only held is no place to hang a seen joint from.
-                    let pull = if seen[i] { firmness[from.index()] } else { 1.0 } * self.settings.bone_pull;
-                    let locked = out.at(from).position + bone_length.pulled(from, bone, pull);
-                    places[i].lerp(locked, pull)
+                    out.at(from).position + bone_length.pulled(from, bone, self.settings.bone_pull)
                 }
                 None => places[i],
             };
