@@ -4,6 +4,7 @@
 //! Budget: some seconds a benchmark; never inside the frame.
 //! Thread: one, with nothing else running.
 
+pub mod ansur;
 pub mod filters;
 pub mod oracle;
 pub mod pareto;
