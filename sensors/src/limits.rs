@@ -27,3 +27,18 @@ pub const MAX_COORDINATE: f32 = 100.0;
 
 /// Farthest time that a recording may hold after its first frame (ns): a day, beyond which a clock was reset.
 pub const MAX_DURATION_NS: u64 = 86_400 * crate::clock::SECOND_NS;
+
+/// Most cameras of a multi-view recording: any two of them are compared, and a room has eight corners.
+pub const MAX_CAMERAS: usize = 8;
+
+/// Most people of one view: any two of two views are compared.
+pub const MAX_VIEW_PEOPLE: usize = 6;
+
+/// Longest datagram of a motion stream that is read (bytes): senders keep to a network's 1500, some to three of them.
+pub const MAX_PACKET_BYTES: usize = 4_096;
+
+/// Most bundles in one datagram: the protocol puts messages into one, and a parser descends into each.
+pub const MAX_OSC_BUNDLES: usize = 8;
+
+/// Most datagrams that one call reads: a second of a sender that sends each of 60 bones by itself four times.
+pub const MAX_PACKETS_A_POLL: usize = 256;

@@ -9,6 +9,7 @@ use glam::Vec3;
 use toile_assets::limits::CONFIDENCE_GATE;
 use toile_assets::skeleton::Joint;
 use toile_sensors::clock::ticks_to_ns;
+use toile_sensors::filter::{FilterSettings, JointFilter};
 use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_sensors::session::{self as recording, Session};
@@ -163,10 +164,11 @@ fn joints_csv_is_a_third_inferred_and_its_feet_almost_always() {
 }
 
 #[test]
-fn bones_keep_their_length_after_the_filter() {
+fn bones_keep_their_length_where_they_are_pulled_to_it() {
     let Some(folder) = data() else { return };
     for s in all(&folder) {
-        let track = filtered(&s);
+        let mut filter = JointFilter::new(FilterSettings { bone_pull: 1.0, ..FilterSettings::default() });
+        let track: Vec<Joints> = s.joints.iter().map(|f| filter.push(f)).collect();
         for joint in Joint::ALL {
             let Some(parent) = joint.parent() else { continue };
             let raw: Vec<f32> = s.joints.iter().filter_map(|f| length(f, parent, joint)).collect();

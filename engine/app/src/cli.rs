@@ -16,6 +16,7 @@ mod bake;
 mod bodies;
 mod body;
 mod colliders;
+mod filters;
 mod pareto;
 mod run;
 mod skinning;
@@ -27,6 +28,7 @@ pub use bake::BakeArgs;
 pub use bodies::BodiesArgs;
 pub use body::{BodyArgs, Wearer};
 pub use colliders::CollidersArgs;
+pub use filters::FiltersArgs;
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
@@ -55,6 +57,8 @@ pub enum Command {
     Colliders(CollidersArgs),
     /// `toile bench body`.
     BenchBody(BodiesArgs),
+    /// `toile bench filters`.
+    BenchFilters(FiltersArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
@@ -243,7 +247,7 @@ fn bench() -> clap::Command {
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([skinning::grammar(), skirt::grammar(), bodies::grammar()])
+        .subcommands([filters::grammar(), skinning::grammar(), skirt::grammar(), bodies::grammar()])
         .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
 
@@ -331,6 +335,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
 
 fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
     match matches.subcommand() {
+        Some(("filters", matches)) => Ok(Command::BenchFilters(filters::parse(matches))),
         Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
         Some(("body", matches)) => Ok(Command::BenchBody(bodies::args(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),

@@ -72,6 +72,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Body(args) => body::run(args),
         Command::Colliders(args) => colliders::run(args),
         Command::BenchBody(args) => bodies::bench(args),
+        Command::BenchFilters(args) => bench::filters(args),
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
         Command::Torture(args) => torture::run(args),

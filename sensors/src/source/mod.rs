@@ -6,22 +6,31 @@
 //! | kind | recognised by |
 //! |---|---|
 //! | Toile session (MCAP) | the MCAP magic |
-//! | Kinect v2 joints, CSV | text whose first line is 102 numbers between commas |
+//! | Kinect v1 or v2 joints | text whose lines are 81 or 101 numbers |
 //! | Kinectron recording, JSON | text that begins with `[` |
+//! | Azure Kinect bodies, JSON | a JSON object, or lines of them, that names `timestamp_usec` or its bones |
+//! | MediaPipe landmarks, JSON | JSON that names `...andmarks` |
+//! | OpenPose keypoints, JSON | a folder with a calibration (`.toml`) and a folder of JSON files for each camera |
 //! | BVH motion capture | text that begins with `HIERARCHY` |
 //! | raw 16-bit depth | none of these, and a camera is given or the size is that of 640x480 images |
 
 mod align;
+mod azure;
 mod bvh;
 mod bvh_names;
 mod bvh_pose;
 mod camera;
+pub mod joint_map;
 mod kinect2;
 mod kinect_csv;
 mod kinectron;
+mod mediapipe;
+mod mediapipe_place;
+mod openpose;
 mod raw_depth;
 pub mod synthetic;
 mod tidy;
+pub mod vmc;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -39,11 +48,14 @@ pub struct OpenOptions {
     pub camera: Option<PathBuf>,
 }
 
-/// Opens a recording of any known kind.
+/// Opens a recording of any known kind: a file, or the folder of a multi-view recording.
 ///
 /// # Errors
 /// One sentence with the path, the place and the cure where the file cannot be read, is of an unknown kind, or is wrong.
 pub fn open(path: &Path, options: &OpenOptions) -> Result<Session, SourceError> {
+    if path.is_dir() {
+        return openpose::open(path);
+    }
     let bytes = read_file(path)?;
     let camera = match &options.camera {
         Some(json) => Some((shown(json), read_file(json)?)),
@@ -63,6 +75,8 @@ pub fn read_bytes(path: &str, name: &str, bytes: &[u8], camera: Option<(&str, &[
         Kind::Session => return crate::session::read(path, bytes),
         Kind::KinectCsv => kinect_csv::read(bytes),
         Kind::Kinectron => kinectron::read(bytes),
+        Kind::Azure => azure::read(bytes),
+        Kind::MediaPipe => mediapipe::read(bytes),
         Kind::Bvh => bvh::read(bytes),
         Kind::RawDepth => {
             let camera = match camera {
@@ -83,6 +97,8 @@ enum Kind {
     Session,
     KinectCsv,
     Kinectron,
+    Azure,
+    MediaPipe,
     Bvh,
     RawDepth,
 }
@@ -115,13 +131,21 @@ fn recognise_text(head: &[u8]) -> Result<Kind, &'static str> {
     let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
     match text.first() {
         None => Err("the file holds only white space"),
+        Some(b'[' | b'{') if mediapipe::recognises(text) => Ok(Kind::MediaPipe),
         Some(b'[') => Ok(Kind::Kinectron),
+        Some(b'{') if azure::recognises(text) => Ok(Kind::Azure),
+        Some(b'{') if text.windows(9).any(|w| w == b"keypoints") => Err(ONE_VIEW),
         Some(b'{') => Err("a JSON object, perhaps a camera: give it beside its raw depth file, not instead"),
         Some(_) if text.starts_with(b"HIERARCHY") => Ok(Kind::Bvh),
-        Some(c) if (c.is_ascii_digit() || b"+-.".contains(c)) && text.contains(&b',') => Ok(Kind::KinectCsv),
+        Some(c) if (c.is_ascii_digit() || b"+-.".contains(c)) && text.iter().any(|c| b", ".contains(c)) => {
+            Ok(Kind::KinectCsv)
+        }
         Some(_) => Err("text of no known kind"),
     }
 }
+
+const ONE_VIEW: &str = "these are the keypoints of one view, which have no depth: give the folder of all cameras with \
+                        their calibration";
 
 fn is_text(head: &[u8]) -> bool {
     head.iter().all(|b| *b >= 0x20 || b"\t\n\r".contains(b))
