@@ -69,6 +69,8 @@ pub struct HandShape {
     pub spread: f32,
     /// How deep the outline lies under its hull at most (hand lengths): the seed's own measure.
     pub gap: f32,
+    /// Length over breadth: nearly 1 for a fist, about 2 for fingers stretched together.
+    pub aspect: f32,
 }
 
 /// Cuts hands out of depth frames; owns its buffers and allocates only when it is made.
@@ -162,6 +164,7 @@ impl HandEye {
             solidity: outline.area / outline.hull,
             spread: outline.hull * cell * cell,
             gap: outline.gap * cell,
+            aspect: outline.aspect,
         })
     }
 
@@ -191,14 +194,24 @@ impl HandEye {
     }
 }
 
-impl HandShape {
-    /// How open the hand is: 0 a fist, 1 stretched fingers.
-    pub fn openness(&self) -> f32 {
-        ((self.spread - 0.2) / 0.2).clamp(0.0, 1.0)
-    }
-}
+/// Aspect, spread and gap of a fist, and by how much they differ from hand to hand: means over distances and deviations of
+/// the made-up hands of [`super::study`].
+const FIST: [f32; 3] = [1.41, 0.325, 0.05];
+const SCATTER: [f32; 3] = [0.17, 0.06, 0.03];
+
+/// The sum of the three deviations from a fist below which a hand is surely closed, and above which surely open: fists have
+/// 0 +- 2, fingers stretched together 7, spread 10.
+const CLOSED_OPEN: [f32; 2] = [1.5, 6.5];
 
 impl HandShape {
+    /// How open the hand is, 0 to 1: the sum of how much longer, wider and more gapped than a fist it is, each in its own
+    /// scatter. Fingers stretched together show by the aspect, spread ones by the other two.
+    pub fn openness(&self) -> f32 {
+        let seen = [self.aspect, self.spread, self.gap];
+        let sum: f32 = (0..3).map(|i| (seen[i] - FIST[i]) / SCATTER[i]).sum();
+        ((sum - CLOSED_OPEN[0]) / (CLOSED_OPEN[1] - CLOSED_OPEN[0])).clamp(0.0, 1.0)
+    }
+
     /// Open by the seed's measure alone: how deep the outline lies under its hull.
     pub fn is_open_by_gap(&self) -> bool {
         self.gap > 0.1
@@ -206,6 +219,6 @@ impl HandShape {
 
     /// Open by the ratio of the areas alone.
     pub fn is_open_by_solidity(&self) -> bool {
-        self.solidity < 0.88
+        self.solidity < 0.89
     }
 }

@@ -28,6 +28,8 @@ pub(super) struct Outline {
     pub hull: f32,
     /// How deep the outline lies under its hull at most.
     pub gap: f32,
+    /// Length over breadth: the ratio of the principal standard deviations of its cells.
+    pub aspect: f32,
 }
 
 /// The four neighbours of a cell.
@@ -94,6 +96,21 @@ impl Mask {
         self.cells.iter_mut().zip(&self.spare).for_each(|(cell, outside)| *cell = !outside);
     }
 
+    /// Square root of the ratio of the eigenvalues of the cells' covariance, a twelfth added for each cell's own size.
+    fn aspect(&self, area: f32) -> f32 {
+        let cells = || (0..CELLS).filter(|c| self.cells[*c]).map(|c| Vec2::new((c % SIDE) as f32, (c / SIDE) as f32));
+        let mean = cells().sum::<Vec2>() / area;
+        let (mut square, mut mixed) = (Vec2::ZERO, 0.0);
+        for d in cells().map(|c| c - mean) {
+            square += d * d;
+            mixed += d.x * d.y;
+        }
+        let (square, mixed) = (square / area + 1.0 / 12.0, mixed / area);
+        let middle = 0.5 * (square.x + square.y);
+        let half = (0.25 * (square.x - square.y).powi(2) + mixed * mixed).sqrt();
+        ((middle + half) / (middle - half).max(1.0 / 12.0)).sqrt()
+    }
+
     /// Holds the outline against its convex hull; `None` for an empty set.
     pub(super) fn outline(&self) -> Option<Outline> {
         let hull = Hull::of(self)?;
@@ -105,7 +122,7 @@ impl Mask {
                 gap = gap.max(hull.depth(centre) - 0.5);
             }
         }
-        Some(Outline { area, hull: hull.area(), gap })
+        Some(Outline { area, hull: hull.area(), gap, aspect: self.aspect(area) })
     }
 }
 
@@ -193,6 +210,9 @@ mod tests {
     fn a_square_is_its_own_hull() {
         let o = drawn(|x, y| x.abs() <= 10 && y.abs() <= 10).outline().unwrap();
         assert_eq!((o.area, o.hull, o.gap), (441.0, 441.0, 0.0));
+        assert!((o.aspect - 1.0).abs() < 1e-3);
+        let o = drawn(|x, y| x.abs() <= 20 && y.abs() <= 5).outline().unwrap();
+        assert!((o.aspect - 41.0 / 11.0).abs() < 0.01, "{o:?}");
         assert!(drawn(|_, _| false).outline().is_none());
     }
 

@@ -20,6 +20,10 @@ const BEFORE: f32 = 0.30;
 /// A hand is presented between these heights above the shoulders (arm lengths): waist and crown.
 const HEIGHTS: [f32; 2] = [-0.75, 0.70];
 
+/// A hand that is farther to the side than this (arm lengths from the middle) is at a rail or a wall, not before the
+/// mirror.
+const SIDEWAYS: f32 = 0.9;
+
 /// Slower than this a hand is still (arm lengths/s): tremor and jitter of a tracker stay under a third of it.
 const STILL: f32 = 0.55;
 
@@ -57,6 +61,10 @@ const OTHER_HAND: f32 = 0.5;
 
 /// A wrist nearer to the head than this (arm lengths) at a stroke's end went to the hair, the glasses or the ear.
 const AT_HEAD: f32 = 0.45;
+
+/// A stroke ends at least this far before the shoulders (arm lengths): arms stretched to the sides and hands put behind the
+/// back end at the trunk's own plane.
+const END_BEFORE: f32 = 0.20;
 
 /// A stroke that undoes the last one within this time (ns) to within this distance (arm lengths) is the hand's way back.
 const WAY_BACK_NS: u64 = 1_300_000_000;
@@ -188,6 +196,9 @@ impl Swipe {
             State::Stroke(stroke) => (stroke.step(m), None),
             State::Proving(proof) => self.prove(m, proof),
         };
+        if std::env::var("DBG").is_ok() && std::mem::discriminant(&self.state) != std::mem::discriminant(&state) {
+            eprintln!("{:.3} at {:.2} v {:.2} out {} calm {} {state:?} {found:?}", m.now as f64 * 1e-9, m.at, m.velocity, m.held_out, m.calm);
+        }
         self.state = state;
         found
     }
@@ -222,7 +233,7 @@ fn rest(m: &Moment) -> State {
 }
 
 pub(super) fn is_presented(at: Vec3) -> bool {
-    at.z >= BEFORE && (HEIGHTS[0]..=HEIGHTS[1]).contains(&at.y)
+    at.z >= BEFORE && at.x.abs() <= SIDEWAYS && (HEIGHTS[0]..=HEIGHTS[1]).contains(&at.y)
 }
 
 impl Still {
@@ -282,6 +293,6 @@ impl Stroke {
             _ => true,
         };
         let to_head = m.head.is_some_and(|head| head.distance(m.at) < AT_HEAD);
-        self.fastest >= FAST && straight && alone && !to_head
+        self.fastest >= FAST && straight && alone && !to_head && m.at.z >= END_BEFORE
     }
 }
