@@ -102,6 +102,31 @@ impl Trunk {
     }
 }
 
+/// The trunk's direction is a running mean over this time (s): two shoulders a forearm's length apart jitter by degrees,
+/// and a hand held out swings with them.
+const TURN_S: f32 = 0.25;
+
+/// Which way the trunk has looked lately.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Facing {
+    left: Option<(Vec3, u64)>,
+}
+
+impl Facing {
+    pub(super) const fn new() -> Self {
+        Self { left: None }
+    }
+
+    /// The trunk with its direction averaged.
+    pub(super) fn settled(&mut self, trunk: Trunk, now: u64) -> Trunk {
+        let (mean, last) = self.left.unwrap_or((trunk.left, now));
+        let weight = 1.0 - (-seconds_between(last, now) / TURN_S).exp();
+        let left = mean.lerp(trunk.left, weight).try_normalize().unwrap_or(trunk.left);
+        self.left = Some((left, now));
+        Trunk { left, forward: left.cross(Vec3::Y), ..trunk }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

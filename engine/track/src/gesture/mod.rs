@@ -10,6 +10,7 @@
 mod frame;
 mod grip;
 mod hand;
+mod hold;
 mod hull;
 pub mod study;
 mod swipe;
@@ -21,8 +22,9 @@ use toile_sensors::frame::{DepthFrame, Joints};
 pub use frame::{Side, Trunk};
 pub use hand::{HandEye, HandShape, HandSight};
 
-use frame::Scale;
+use frame::{Facing, Scale};
 use grip::Grip;
+use hold::{Arms, Hold};
 use swipe::{Moment, Swipe};
 use trail::Trail;
 
@@ -30,8 +32,8 @@ use trail::Trail;
 /// does not, and would need longer trails.
 const SHORTEST_STEP_NS: u64 = 20_000_000;
 
-/// A silence or a loss longer than this ends every gesture (ns): at 15 Hz three frames may be dropped.
-pub(crate) const LONGEST_GAP_NS: u64 = 280_000_000;
+/// A silence or a loss longer than this ends every gesture (ns): at 15 Hz four frames may be dropped.
+pub(crate) const LONGEST_GAP_NS: u64 = 350_000_000;
 
 /// After an event no other is given for this long (ns): arms need as long to come to rest.
 const COOL_DOWN_NS: u64 = 500_000_000;
@@ -93,12 +95,13 @@ pub type Events = [Option<Event>; 4];
 struct Hand {
     trail: Trail,
     swipe: Swipe,
+    hold: Hold,
     grip: Grip,
 }
 
 impl Hand {
     const fn new() -> Self {
-        Self { trail: Trail::new(), swipe: Swipe::new(), grip: Grip::new() }
+        Self { trail: Trail::new(), swipe: Swipe::new(), hold: Hold::new(), grip: Grip::new() }
     }
 }
 
@@ -108,6 +111,7 @@ pub struct Gestures {
     last_ns: Option<u64>,
     quiet_until_ns: u64,
     scale: Scale,
+    facing: Facing,
     trunk: Trail,
     hands: [Hand; 2],
     eye: HandEye,
@@ -126,6 +130,7 @@ impl Gestures {
             last_ns: None,
             quiet_until_ns: 0,
             scale: Scale::new(),
+            facing: Facing::new(),
             trunk: Trail::new(),
             hands: [Hand::new(), Hand::new()],
             eye: HandEye::new(),
@@ -160,6 +165,7 @@ impl Gestures {
             self.rest();
             return Events::default();
         };
+        let trunk = self.facing.settled(trunk, now);
         self.trunk.push(now, trunk.origin / arm);
         let calm = self.trunk.velocity().is_some_and(|v| v.length() < WALKING) && trunk.forward.z > FACING;
         let mut events = Events::default();
@@ -172,6 +178,7 @@ impl Gestures {
 
     /// Ends every gesture that has begun.
     fn rest(&mut self) {
+        self.facing = Facing::new();
         self.trunk = Trail::new();
         self.hands = [Hand::new(), Hand::new()];
     }
@@ -180,29 +187,19 @@ impl Gestures {
         let now = joints.time_ns;
         let local = |joint: Joint| joints.believed(joint).map(|p| trunk.local(p) / arm);
         let at = Side::BOTH.map(|side| local(side.wrist()));
-        let held_out = [0, 1].map(|i| {
-            at[i]
-                .zip(local(Side::BOTH[i].shoulder()))
-                .is_some_and(|(wrist, shoulder)| swipe::is_held_out(wrist, shoulder))
-        });
+        let reach = [0, 1].map(|i| Some(at[i]? - local(Side::BOTH[i].shoulder())?));
+        let cooling = now < self.quiet_until_ns;
         for (i, side) in Side::BOTH.into_iter().enumerate() {
             let hand = &mut self.hands[i];
             if let Some(at) = at[i] {
                 hand.trail.push(now, at);
             }
-            let seen = at[i].zip(hand.trail.velocity()).map(|(place, velocity)| Moment {
-                now,
-                at: place,
-                velocity,
-                other: at[1 - i],
-                head: local(Joint::Head),
-                held_out: held_out[i] && !held_out[1 - i],
-                calm: calm && now >= self.quiet_until_ns,
-            });
-            let found = match seen {
-                Some(moment) => hand.swipe.step(&moment),
-                None => hand.swipe.unseen(now),
-            };
+            let (Some(place), Some(velocity)) = (at[i], hand.trail.velocity()) else { continue };
+            let (other, other_reach) = (at[1 - i], reach[1 - i]);
+            let moment = Moment { now, at: place, velocity, other, head: local(Joint::Head), calm: calm && !cooling };
+            let arms = Arms { now, at: place, reach: reach[i], other, other_reach, calm, cooling };
+            let held = hand.hold.step(&arms);
+            let found = hand.swipe.step(&moment).or(held);
             events[i] = found.map(|gesture| Event { time_ns: now, side, gesture });
         }
         if events.iter().any(Option::is_some) {

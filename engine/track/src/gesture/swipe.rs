@@ -1,4 +1,4 @@
-//! Strokes and holds of one hand: a small machine of states, one step a frame.
+//! Strokes of one hand: a small machine of states, one step a frame.
 //!
 //! Gultepe 2013 (appendix C) listens for the hand's speed to pass a threshold. By itself that also fires on waving,
 //! scratching, dressing and on the way back. So a stroke must begin with the hand presented and still, go straight along
@@ -6,7 +6,6 @@
 //!
 //! ```text
 //! away -> still -> stroke -> proving -> event
-//!           |-> held out for a second -> event
 //! ```
 
 use glam::Vec3;
@@ -50,14 +49,18 @@ const LONGEST_STROKE_NS: u64 = 900_000_000;
 const ASIDE: f32 = 0.5;
 const DEEP: f32 = 0.9;
 
-/// How long a stroke must not turn back to be believed (ns); wavers turn within it.
-const PROVING_NS: u64 = 130_000_000;
+/// How long a stroke to the side must not turn back to be believed (ns); wavers turn within it. A stroke upwards may be
+/// followed by dropping the arm, and nobody waves up and down.
+const PROVING_NS: [u64; 2] = [130_000_000, 0];
 
 /// A stroke that gives back this part of its length has turned.
 const TURNED_BACK: f32 = 0.35;
 
 /// The other hand must stay within this part of a stroke's length: both hands moving is dressing, not pointing.
 const OTHER_HAND: f32 = 0.5;
+
+/// With the other wrist nearer to the middle of the shoulders than this (arm lengths) the shopper dresses.
+const AT_COLLAR: f32 = 0.50;
 
 /// A wrist nearer to the head than this (arm lengths) at a stroke's end went to the hair, the glasses or the ear.
 const AT_HEAD: f32 = 0.45;
@@ -70,18 +73,6 @@ const END_BEFORE: f32 = 0.20;
 const WAY_BACK_NS: u64 = 1_300_000_000;
 const WAY_BACK: f32 = 0.4;
 
-/// How long a hand is held out to confirm (ns): Kinect interfaces of the time ask for one to two seconds.
-const HOLD_NS: u64 = 1_000_000_000;
-
-/// A held hand stays within this of where it was (arm lengths).
-const HOLD_WITHIN: f32 = 0.14;
-
-/// A held hand is this far from its shoulder, before it, and at least this high above it (arm lengths): a hand that holds
-/// a phone or a bag, with a bent elbow, is nearer or lower.
-const HELD_REACH: f32 = 0.80;
-const HELD_BEFORE: f32 = 0.55;
-const HELD_HEIGHT: f32 = -0.40;
-
 /// One hand at one moment, in arm lengths along the trunk's axes (left, up, forward of the middle of the shoulders).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Moment {
@@ -91,16 +82,8 @@ pub(super) struct Moment {
     pub velocity: Vec3,
     pub other: Option<Vec3>,
     pub head: Option<Vec3>,
-    /// Whether this hand, and not the other, is held out.
-    pub held_out: bool,
     /// Whether the shopper faces the mirror, does not walk, and nothing was recognised just now.
     pub calm: bool,
-}
-
-/// Whether a wrist is held out towards the mirror, both in arm lengths along the trunk's axes.
-pub(super) fn is_held_out(wrist: Vec3, shoulder: Vec3) -> bool {
-    let d = wrist - shoulder;
-    d.length() >= HELD_REACH && d.z >= HELD_BEFORE && d.y >= HELD_HEIGHT
 }
 
 /// A direction that a stroke may have.
@@ -110,12 +93,14 @@ struct Axis {
     along: Vec3,
     /// Across the axis in the plane of the view.
     across: Vec3,
+    /// How long it must not turn back (ns).
+    proving_ns: u64,
 }
 
 const AXES: [Axis; 3] = [
-    Axis { gesture: Gesture::SwipeLeft, along: Vec3::X, across: Vec3::Y },
-    Axis { gesture: Gesture::SwipeRight, along: Vec3::NEG_X, across: Vec3::Y },
-    Axis { gesture: Gesture::SwipeUp, along: Vec3::Y, across: Vec3::X },
+    Axis { gesture: Gesture::SwipeLeft, along: Vec3::X, across: Vec3::Y, proving_ns: PROVING_NS[0] },
+    Axis { gesture: Gesture::SwipeRight, along: Vec3::NEG_X, across: Vec3::Y, proving_ns: PROVING_NS[0] },
+    Axis { gesture: Gesture::SwipeUp, along: Vec3::Y, across: Vec3::X, proving_ns: PROVING_NS[1] },
 ];
 
 /// A hand that is presented and still.
@@ -124,9 +109,6 @@ struct Still {
     since: u64,
     at: Vec3,
     other: Option<Vec3>,
-    held: Vec3,
-    held_since: u64,
-    confirmed: bool,
 }
 
 /// A stroke on its way.
@@ -176,14 +158,6 @@ impl Swipe {
         Self { state: State::Away, seen_ns: 0, last: None }
     }
 
-    /// The hand was not seen: a gesture goes on if it is seen again soon.
-    pub(super) fn unseen(&mut self, now: u64) -> Option<Gesture> {
-        if now.saturating_sub(self.seen_ns) > LONGEST_GAP_NS {
-            self.state = State::Away;
-        }
-        None
-    }
-
     /// One step with a hand that is seen.
     pub(super) fn step(&mut self, m: &Moment) -> Option<Gesture> {
         if m.now.saturating_sub(self.seen_ns) > LONGEST_GAP_NS || !m.calm {
@@ -192,13 +166,10 @@ impl Swipe {
         self.seen_ns = m.now;
         let (state, found) = match self.state {
             State::Away => (rest(m), None),
-            State::Still(still) => still.step(m),
+            State::Still(still) => (still.step(m), None),
             State::Stroke(stroke) => (stroke.step(m), None),
             State::Proving(proof) => self.prove(m, proof),
         };
-        if std::env::var("DBG").is_ok() && std::mem::discriminant(&self.state) != std::mem::discriminant(&state) {
-            eprintln!("{:.3} at {:.2} v {:.2} out {} calm {} {state:?} {found:?}", m.now as f64 * 1e-9, m.at, m.velocity, m.held_out, m.calm);
-        }
         self.state = state;
         found
     }
@@ -210,7 +181,7 @@ impl Swipe {
         if length < (1.0 - TURNED_BACK) * proof.length {
             return (State::Away, None);
         }
-        if m.now - proof.since < PROVING_NS {
+        if m.now - proof.since < proof.axis.proving_ns {
             return (State::Proving(proof), None);
         }
         let Proof { from, axis, .. } = proof;
@@ -229,7 +200,7 @@ fn rest(m: &Moment) -> State {
     if m.velocity.length() >= STILL || !is_presented(m.at) || !m.calm {
         return State::Away;
     }
-    State::Still(Still { since: m.now, at: m.at, other: m.other, held: m.at, held_since: m.now, confirmed: false })
+    State::Still(Still { since: m.now, at: m.at, other: m.other })
 }
 
 pub(super) fn is_presented(at: Vec3) -> bool {
@@ -237,25 +208,20 @@ pub(super) fn is_presented(at: Vec3) -> bool {
 }
 
 impl Still {
-    fn step(mut self, m: &Moment) -> (State, Option<Gesture>) {
+    fn step(mut self, m: &Moment) -> State {
         let speed = m.velocity.length();
         if speed >= SET_OFF {
             let was_still = m.now - self.since >= STILL_NS;
             let stroke = Stroke { from: self.at, other: self.other, since: m.now, fastest: speed };
-            return (if was_still { State::Stroke(stroke) } else { State::Away }, None);
+            return if was_still { State::Stroke(stroke) } else { State::Away };
         }
         if !is_presented(m.at) {
-            return (State::Away, None);
+            return State::Away;
         }
         if speed < STILL {
             (self.at, self.other) = (m.at, m.other);
         }
-        if !m.held_out || m.at.distance(self.held) > HOLD_WITHIN {
-            (self.held, self.held_since) = (m.at, m.now);
-        }
-        let confirms = m.held_out && !self.confirmed && m.now - self.held_since >= HOLD_NS;
-        self.confirmed |= confirms;
-        (State::Still(self), confirms.then_some(Gesture::Confirm))
+        State::Still(self)
     }
 }
 
@@ -289,7 +255,7 @@ impl Stroke {
         let moved = m.at - self.from;
         let straight = moved.dot(axis.across).abs() <= ASIDE * length && moved.z.abs() <= DEEP * length;
         let alone = match (self.other, m.other) {
-            (Some(before), Some(after)) => before.distance(after) <= OTHER_HAND * length,
+            (Some(before), Some(after)) => before.distance(after) <= OTHER_HAND * length && after.length() > AT_COLLAR,
             _ => true,
         };
         let to_head = m.head.is_some_and(|head| head.distance(m.at) < AT_HEAD);

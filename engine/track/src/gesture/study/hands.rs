@@ -250,12 +250,6 @@ impl Sum {
             return;
         };
         let open = row.pose != HandPose::Fist;
-        if std::env::var("DUMP").is_ok() {
-            eprintln!(
-                "F {:?} {} {} {} {} {}",
-                row.pose, row.distance, shape.solidity, shape.spread, shape.gap, shape.aspect
-            );
-        }
         row.wrong += u32::from((shape.openness() > 0.5) != open);
         row.wrong_by_gap += u32::from(shape.is_open_by_gap() != open);
         row.wrong_by_solidity += u32::from(shape.is_open_by_solidity() != open);
