@@ -14,6 +14,7 @@ use crate::exit::AppError;
 
 mod bake;
 mod body;
+mod gestures;
 mod pareto;
 mod run;
 mod skinning;
@@ -23,6 +24,7 @@ mod validate;
 
 pub use bake::BakeArgs;
 pub use body::{BodyArgs, Wearer};
+pub use gestures::GesturesArgs;
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
@@ -47,6 +49,8 @@ pub enum Command {
     Bake(BakeArgs),
     /// `toile body`.
     Body(BodyArgs),
+    /// `toile bench gestures`.
+    BenchGestures(GesturesArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
@@ -235,7 +239,7 @@ fn bench() -> clap::Command {
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([skinning::grammar(), skirt::grammar()])
+        .subcommands([skinning::grammar(), skirt::grammar(), gestures::grammar()])
         .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
 
@@ -322,6 +326,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
 
 fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
     match matches.subcommand() {
+        Some(("gestures", matches)) => Ok(Command::BenchGestures(gestures::parse(matches)?)),
         Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),
         _ => Err(AppError::internal("a benchmark without a name was let through")),

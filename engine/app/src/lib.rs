@@ -13,6 +13,7 @@ pub mod doctor;
 pub mod dump;
 pub mod exit;
 pub mod fit;
+pub mod gestures;
 pub mod machine;
 pub mod measure;
 pub mod output;
@@ -68,6 +69,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Doctor(args) => doctor::run(args),
         Command::Bake(args) => bake::run(args),
         Command::Body(args) => body::run(args),
+        Command::BenchGestures(args) => gestures::run(args),
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
         Command::Torture(args) => torture::run(args),

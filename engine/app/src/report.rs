@@ -7,10 +7,12 @@ use serde::Serialize;
 use crate::machine::Machine;
 
 mod body;
+mod gestures;
 mod run;
 mod skinning;
 
 pub use body::{BodyReport, Influences, JointFound, Named, SurfaceReport};
+pub use gestures::{GestureRow, GesturesReport, HandRow, OtherRow};
 pub use run::{KineticEnergy, RunGarment, RunPenetration, RunReport};
 pub use skinning::SkinningReport;
 

@@ -53,7 +53,7 @@ impl Grip {
             return None;
         }
         let changed = self.open.replace(open).is_some();
-        self.quiet_until_ns = now + COOL_DOWN_NS;
+        self.quiet_until_ns = now.saturating_add(COOL_DOWN_NS);
         changed.then_some(if open { Gesture::Opened } else { Gesture::Closed })
     }
 }

@@ -219,7 +219,7 @@ mod tests {
     #[test]
     fn a_disc_is_nearly_its_own_hull_and_a_cross_is_not() {
         let o = drawn(|x, y| x * x + y * y <= 400).outline().unwrap();
-        assert!(o.area / o.hull > 0.96 && o.gap < 1.0, "{o:?}");
+        assert!(o.area / o.hull > 0.95 && o.gap < 1.0, "{o:?}");
         // A cross with arms of 5 x 20 cells: the hull is the octagon around it, and the corners lie deep.
         let o = drawn(|x, y| x.abs().min(y.abs()) <= 2 && x.abs().max(y.abs()) <= 20).outline().unwrap();
         assert!((o.hull - (41.0 * 41.0 - 2.0 * 18.0 * 18.0)).abs() < 1.0, "{o:?}");

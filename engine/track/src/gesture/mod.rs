@@ -151,9 +151,12 @@ impl Gestures {
     }
 
     /// Takes a frame of filtered joints, and the depth of about the same time where there is any. Frames that come less
-    /// than 20 ms after the one before, or before it, are passed over.
+    /// than 20 ms after the one before, or shortly before it, are passed over; a clock set back by more begins anew.
     pub fn push(&mut self, joints: &Joints, depth: Option<&DepthFrame>) -> Events {
         let now = joints.time_ns;
+        if self.last_ns.is_some_and(|last| last.saturating_sub(now) > LONGEST_GAP_NS) {
+            self.reset();
+        }
         match self.last_ns {
             Some(last) if now < last.saturating_add(SHORTEST_STEP_NS) => return Events::default(),
             Some(last) if now - last > LONGEST_GAP_NS => self.rest(),
@@ -203,7 +206,7 @@ impl Gestures {
             events[i] = found.map(|gesture| Event { time_ns: now, side, gesture });
         }
         if events.iter().any(Option::is_some) {
-            self.quiet_until_ns = now + COOL_DOWN_NS;
+            self.quiet_until_ns = now.saturating_add(COOL_DOWN_NS);
         }
     }
 

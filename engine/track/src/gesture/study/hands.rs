@@ -218,6 +218,14 @@ impl Scene {
     }
 }
 
+/// A spread hand held up at a distance (m): a frame, and where a tracker says that the hand is.
+pub fn held_up(distance: f32, seed: u64) -> (DepthFrame, HandSight) {
+    let mut rng = Rng::new(seed);
+    let mut scene = Scene::new(distance, &mut rng);
+    let held = scene.held(HandPose::Spread, &mut rng);
+    scene.frame(&held, &mut rng)
+}
+
 /// What is summed up of one pose at one distance.
 struct Sum {
     row: GripRow,

@@ -17,7 +17,7 @@ use super::{Event, Gestures};
 use motion::Motion;
 use person::{Person, Tracker};
 
-pub use hands::{GripRow, HandPose, grips};
+pub use hands::{GripRow, HandPose, grips, held_up};
 pub use motion::Act;
 pub use table::Study;
 
