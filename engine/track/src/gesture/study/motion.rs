@@ -200,7 +200,7 @@ impl Draw<'_> {
         }
     }
 
-    fn to_head(&mut self) {
+    fn scratch(&mut self) {
         let head = self.near([-0.2, 0.2, 0.0], [0.0, 0.5, 0.3]);
         let raising = self.between(0.4, 0.8);
         self.right(head, raising);
@@ -388,7 +388,7 @@ impl Motion {
             Act::Stand => draw.stand(),
             Act::Walk => draw.walk(),
             Act::TurnAround => draw.turn_around(),
-            Act::ScratchHead => draw.to_head(),
+            Act::ScratchHead => draw.scratch(),
             Act::PutOnJacket => draw.jacket(),
             Act::PullOverHead => draw.over_head(),
             Act::RaiseArms => draw.raise_arms(),
