@@ -12,7 +12,7 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
     (
         "toile-assets",
         &[
-            &["limits"],
+            &["limits", "cone"],
             &["skeleton"],
             &["mesh"],
             &["fabric", "body"],

@@ -1,24 +1,40 @@
-//! The parametric body: a mannequin of our own, swept from drawn cross-sections and fitted to five measures.
+//! The parametric body: two drawn bodies, and morphs that fit them to whatever measures are given.
 //!
 //! Reads: the drawings in `data/body/`, the measures wanted. Writes: one immutable [`Body`].
-//! Budget: at load only, under 60 ms a body; the mesh has the same vertices and triangles whatever the size.
+//! Budget: at load only, under 20 ms a body; the mesh has the same vertices and triangles whatever the size.
 //! Thread: the loading thread.
 
-mod cage;
+pub mod base;
+mod calibrate;
+pub mod draw;
+mod fields;
+mod fitted;
+mod form;
+mod gauge;
+pub mod landmarks;
+pub mod lattice;
+mod morph;
+mod people;
+mod proportions;
+mod reading;
+mod segments;
+mod shares;
 mod skin;
+pub mod sound;
+pub mod stored;
 mod subdivide;
-mod table;
 pub mod tape;
 #[cfg(test)]
 mod tests;
+pub mod unwrap;
+mod wrap;
 
 use glam::Vec3;
 
-use crate::mesh::{Mesh, SkinWeights, vertex_normals};
+use crate::mesh::{Mesh, SkinWeights};
 use crate::skeleton::Skeleton;
-use cage::{Cage, Shape, row};
-use subdivide::Quads;
-use table::Table;
+pub use fitted::{Fitted, TOLERANCE};
+pub use reading::{Ansur, En, Readings, Vocabulary, Wanted};
 
 /// Which drawing a body is stretched from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -66,24 +82,12 @@ impl Measures {
         }
     }
 
-    fn named(&self) -> [(&'static str, f32, [f32; 2]); 5] {
-        [
-            ("stature", self.stature, [1.2, 2.2]),
-            ("shoulder breadth", self.shoulder_breadth, [0.25, 0.55]),
-            ("chest girth", self.chest_girth, [0.5, 1.8]),
-            ("waist girth", self.waist_girth, [0.5, 1.8]),
-            ("hip girth", self.hip_girth, [0.5, 1.8]),
-        ]
-    }
-
     /// Checks that every measure lies in the range that a body can be built to.
+    ///
+    /// # Errors
+    /// [`BodyError::OutOfRange`].
     pub fn check(&self) -> Result<(), BodyError> {
-        for (measure, value, [least, most]) in self.named() {
-            if !(least..=most).contains(&value) {
-                return Err(BodyError::OutOfRange { measure, value, least, most });
-            }
-        }
-        Ok(())
+        self.wanted().check()
     }
 }
 
@@ -91,7 +95,7 @@ impl Measures {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BodyError {
     /// A measure is not a number, or beyond the sizes that the mannequin is drawn for.
-    #[error("the {measure} is {value} m, but a body is built for {least} to {most} m: check the measure and its unit")]
+    #[error("the {measure} is {value} m, but a body is built for {least} to {most} m: {}", cure(*value, [*least, *most]))]
     OutOfRange {
         /// Its name.
         measure: &'static str,
@@ -104,8 +108,9 @@ pub enum BodyError {
     },
     /// Each measure is in its range, but no body of this kind has them together.
     #[error(
-        "no body has a {measure} of {value} m together with the other measures, the nearest has {reached} m: \
-         check them against each other"
+        "no body has a {measure} of {value} m together with {}, the nearest has {reached:.3} m: check them against each \
+         other, or leave one out",
+        beside(against.as_ref())
     )]
     Unreachable {
         /// The name of the measure that is furthest off.
@@ -114,7 +119,25 @@ pub enum BodyError {
         value: f32,
         /// The value of the nearest body (m).
         reached: f32,
+        /// The one other measure without which the first can be met, if there is one, and the value asked for (m).
+        against: Option<(&'static str, f32)>,
+        /// The nearest body.
+        nearest: Box<Fitted>,
     },
+}
+
+/// What to do about a measure that is out of its range: in another unit it may be in it.
+fn cure(value: f32, [least, most]: [f32; 2]) -> String {
+    let units = [("millimetres", 1e-3), ("centimetres", 1e-2), ("inches", 0.0254)];
+    match units.into_iter().find(|(_, metres)| (least..=most).contains(&(value * metres))) {
+        Some((unit, metres)) => format!("taken as {unit} it would be {:.3} m, so give metres", value * metres),
+        None => "check the measure and its unit".to_owned(),
+    }
+}
+
+/// What a measure cannot be had together with.
+fn beside(other: Option<&(&'static str, f32)>) -> String {
+    other.map_or_else(|| "the other measures".to_owned(), |(name, value)| format!("a {name} of {value} m"))
 }
 
 /// Parts of the body.
@@ -171,153 +194,4 @@ pub struct Body {
     pub levels: Levels,
     /// As measured on this mesh by the tape.
     pub measures: Measures,
-}
-
-/// Largest error of a calibrated measure at which the fitting stops (m).
-const CLOSE_ENOUGH: f32 = 0.2e-3;
-/// Largest error that a caller has to accept (m).
-const TOLERANCE: f32 = 2e-3;
-/// Rounds of fitting at most.
-const ROUNDS: usize = 24;
-/// Rounds of interpolation: enough to pass through the points within half a millimetre.
-const INTERPOLATION: usize = 16;
-
-impl Body {
-    /// Builds the body of a sex that has the measures wanted, each within 2 mm.
-    pub fn build(sex: Sex, wanted: &Measures) -> Result<Self, BodyError> {
-        wanted.check()?;
-        let sweep = Sweep::new(sex);
-        Ok(sweep.body(&sweep.calibrate(wanted)?))
-    }
-}
-
-/// A sex's drawing with the connectivity of its surface, at each level of subdivision.
-struct Sweep {
-    sex: Sex,
-    table: &'static Table,
-    levels: [Quads; 3],
-    triangles: Vec<[u32; 3]>,
-    regions: Vec<Region>,
-    torso: Vec<[u32; 12]>,
-}
-
-impl Sweep {
-    fn new(sex: Sex) -> Self {
-        let table = Table::of(sex);
-        let cage = Cage::new(table, &Shape::drawn());
-        let coarse = Quads::new(cage.points.len(), cage.faces.clone());
-        let middle = coarse.refined();
-        let fine = middle.refined();
-        let triangles = fine.triangles();
-        let levels = [coarse, middle, fine];
-        let mut sweep = Self { sex, table, levels, triangles, regions: Vec::new(), torso: cage.torso.clone() };
-        let positions = sweep.surface(&cage);
-        let parts = sweep.subdivided(&skin::part_shares(&cage));
-        sweep.regions = parts.iter().zip(&positions).map(|(&part, &p)| skin::region(part, p)).collect();
-        sweep
-    }
-
-    fn subdivided(&self, values: &[Vec3]) -> Vec<Vec3> {
-        self.levels[2].limit(&self.levels[1].refine(&self.levels[0].refine(values)))
-    }
-
-    fn surface(&self, cage: &Cage) -> Vec<Vec3> {
-        let mut positions = self.subdivided(&self.levels[0].interpolate(&cage.points, INTERPOLATION));
-        // The soles are flat on the floor.
-        positions.iter_mut().for_each(|p| p.y = p.y.max(0.0));
-        positions
-    }
-
-    fn mesh(&self, shape: &Shape) -> Mesh {
-        let positions = self.surface(&Cage::new(self.table, shape));
-        Mesh { positions, uvs: Vec::new(), triangles: self.triangles.clone() }
-    }
-
-    /// Stretches the drawing until the tape reads the measures wanted.
-    fn calibrate(&self, wanted: &Measures) -> Result<Shape, BodyError> {
-        let mut shape = Shape { scale: wanted.stature / self.table.stature * 1e3, ..Shape::drawn() };
-        let mut mesh = self.mesh(&shape);
-        for _ in 0..ROUNDS {
-            let read = self.measure(&mesh);
-            if furthest(wanted, &read).3 <= CLOSE_ENOUGH {
-                return Ok(shape);
-            }
-            let grown = wanted.stature / read.stature;
-            shape.scale *= grown;
-            let closer = |factor: f32, wanted: f32, read: f32| (factor * wanted / (read * grown)).clamp(0.2, 5.0);
-            shape.shoulder = closer(shape.shoulder, wanted.shoulder_breadth, read.shoulder_breadth);
-            shape.chest = closer(shape.chest, wanted.chest_girth, read.chest_girth);
-            shape.waist = closer(shape.waist, wanted.waist_girth, read.waist_girth);
-            shape.hip = closer(shape.hip, wanted.hip_girth, read.hip_girth);
-            mesh = self.mesh(&shape);
-        }
-        let read = self.measure(&mesh);
-        let (measure, value, reached, error) = furthest(wanted, &read);
-        if error <= TOLERANCE { Ok(shape) } else { Err(BodyError::Unreachable { measure, value, reached }) }
-    }
-
-    fn levels(&self, mesh: &Mesh) -> Levels {
-        let at = |r: usize, column: usize| mesh.positions[self.torso[r][column] as usize].y;
-        // Heights grow with stature alone, so any one row gives the scale from the drawing (mm) to the body (m).
-        let (waist, fold, back) = (at(row::WAIST, 3), at(row::CROTCH, 5), at(row::HIGH_HIP, 5));
-        let drawn = |mm: f32| mm * waist / self.table.torso[row::WAIST].points[3][1];
-        let mut seat = Vec3::new(0.0, at(row::HIP, 5), 0.0);
-        for (p, region) in mesh.positions.iter().zip(&self.regions) {
-            if *region == Region::Torso && p.y > fold && p.y < back && p.z < seat.z {
-                seat = *p;
-            }
-        }
-        Levels {
-            neck: at(row::TRAPEZIUS, 6),
-            shoulder: at(row::SHOULDER, 3),
-            chest: at(row::BUST, 1),
-            underbust: at(row::UNDERBUST, 1),
-            waist,
-            hip: seat.y,
-            crotch: drawn(self.table.crotch.point[1]),
-            knee: drawn(self.table.leg[cage::KNEE].y),
-            ankle: drawn(self.table.joints.ankle[1]),
-        }
-    }
-
-    /// Reads the five measures off a mesh.
-    fn measure(&self, mesh: &Mesh) -> Measures {
-        let levels = self.levels(mesh);
-        let [left, right] = [3, 9].map(|c| mesh.positions[self.torso[row::SHOULDER][c] as usize]);
-        let girth = |height: f32| tape::girth_of(mesh, &self.regions, height);
-        Measures {
-            stature: mesh.positions.iter().map(|p| p.y).fold(0.0, f32::max),
-            shoulder_breadth: left.distance(right),
-            chest_girth: girth(levels.chest),
-            waist_girth: girth(levels.waist),
-            hip_girth: girth(levels.hip),
-        }
-    }
-
-    fn body(&self, shape: &Shape) -> Body {
-        let cage = Cage::new(self.table, shape);
-        let mesh = self.mesh(shape);
-        let mut normals = vec![Vec3::ZERO; mesh.positions.len()];
-        vertex_normals(&mesh.positions, &mesh.triangles, &mut normals);
-        let skeleton = shape.skeleton(self.table);
-        let measures = self.measure(&mesh);
-        let shares = [skin::left_shares(&cage), skin::right_shares(&cage)].map(|s| self.subdivided(&s));
-        let skinning = skin::Skinning::new(&skeleton, measures.stature);
-        let weights = mesh
-            .positions
-            .iter()
-            .zip(&shares[0])
-            .zip(&shares[1])
-            .map(|((&p, &l), &r)| skinning.weights(p, l, r))
-            .collect();
-        let levels = self.levels(&mesh);
-        Body { sex: self.sex, mesh, normals, skeleton, weights, regions: self.regions.clone(), levels, measures }
-    }
-}
-
-/// The measure that is furthest from the one wanted: name, wanted, read, error (m).
-fn furthest(wanted: &Measures, read: &Measures) -> (&'static str, f32, f32, f32) {
-    let pairs = wanted.named().into_iter().zip(read.named());
-    let errors = pairs.map(|((name, w, _), (_, r, _))| (name, w, r, (w - r).abs()));
-    errors.max_by(|a, b| a.3.total_cmp(&b.3)).expect("five measures")
 }

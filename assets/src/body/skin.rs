@@ -6,43 +6,8 @@
 use glam::Vec3;
 
 use super::Region;
-use super::cage::{AROUND, BRIDGE, Cage, Place, row};
 use crate::mesh::SkinWeights;
 use crate::skeleton::{BONES, Joint, Skeleton, Twist};
-
-/// Shares of the left arm, the left leg and the left clavicle at a cage vertex (x, y, z).
-pub(super) fn left_shares(cage: &Cage) -> Vec<Vec3> {
-    cage.places.iter().map(|p| Vec3::new(arm_share(p), leg_share(p), clavicle_share(p))).collect()
-}
-
-/// The same for the right side.
-pub(super) fn right_shares(cage: &Cage) -> Vec<Vec3> {
-    let mirrored = |p: &Place| {
-        let region = match p.region {
-            Region::RightArm => Region::LeftArm,
-            Region::RightLeg => Region::LeftLeg,
-            Region::LeftArm => Region::RightArm,
-            Region::LeftLeg => Region::RightLeg,
-            other => other,
-        };
-        let column =
-            if region == Region::Torso && p.column != BRIDGE { (AROUND - p.column) % AROUND } else { p.column };
-        Place { region, row: p.row, column }
-    };
-    let places = cage.places.iter().map(mirrored);
-    places.map(|p| Vec3::new(arm_share(&p), leg_share(&p), clavicle_share(&p))).collect()
-}
-
-/// Whether a cage vertex is of the arms, of the legs, of the head (x, y, z): the final vertices' regions by majority.
-pub(super) fn part_shares(cage: &Cage) -> Vec<Vec3> {
-    let part = |p: &Place| match p.region {
-        Region::Torso => Vec3::ZERO,
-        Region::LeftArm | Region::RightArm => Vec3::X,
-        Region::LeftLeg | Region::RightLeg => Vec3::Y,
-        Region::Head => Vec3::Z,
-    };
-    cage.places.iter().map(part).collect()
-}
 
 /// The region of a final vertex.
 pub(super) fn region(part: Vec3, position: Vec3) -> Region {
@@ -53,43 +18,6 @@ pub(super) fn region(part: Vec3, position: Vec3) -> Region {
         p if p.z > 0.5 => Region::Head,
         _ => Region::Torso,
     }
-}
-
-fn arm_share(p: &Place) -> f32 {
-    match (p.region, p.row, p.column) {
-        (Region::LeftArm, 0, _) => 0.97,
-        (Region::LeftArm, ..) => 1.0,
-        (Region::Torso, row::ARMPIT, 3) => 0.4,
-        (Region::Torso, row::ARMPIT, 2 | 4) => 0.3,
-        (Region::Torso, row::SCYE, 2 | 4) => 0.35,
-        (Region::Torso, row::SHOULDER, 3) => 0.45,
-        (Region::Torso, row::SHOULDER, 2 | 4) => 0.35,
-        _ => 0.0,
-    }
-}
-
-fn leg_share(p: &Place) -> f32 {
-    match (p.region, p.row, p.column) {
-        (Region::LeftLeg, 0, _) => 0.96,
-        (Region::LeftLeg, ..) => 1.0,
-        (Region::Torso, row::CROTCH, BRIDGE) => 0.4,
-        (Region::Torso, row::CROTCH, 0 | 6) => 0.25,
-        (Region::Torso, row::CROTCH, 1..6) => 0.5,
-        (Region::Torso, row::HIP, 1..6) => 0.08,
-        _ => 0.0,
-    }
-}
-
-fn clavicle_share(p: &Place) -> f32 {
-    let by_column: [f32; 7] = match (p.region, p.row) {
-        (Region::Torso, row::ARMPIT) => [0.0, 0.0, 0.12, 0.15, 0.15, 0.08, 0.0],
-        (Region::Torso, row::SCYE) => [0.0, 0.12, 0.45, 0.0, 0.4, 0.15, 0.0],
-        (Region::Torso, row::SHOULDER) => [0.0, 0.25, 0.6, 0.55, 0.6, 0.3, 0.0],
-        (Region::Torso, row::TRAPEZIUS) => [0.0, 0.1, 0.35, 0.4, 0.35, 0.12, 0.0],
-        (Region::LeftArm, 0) => return 0.03,
-        _ => [0.0; 7],
-    };
-    by_column.get(p.column).copied().unwrap_or(0.0)
 }
 
 /// A ramp from 0 at `-width` to 1 at `+width`, with level ends.

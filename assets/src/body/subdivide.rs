@@ -64,6 +64,30 @@ impl Quads {
         Self::new(self.valence.len() + self.edges.len() + self.faces.len(), faces)
     }
 
+    /// Each refined vertex's mirror image, from the mirror images of vertices and faces.
+    pub(super) fn refined_twins(&self, twins: &[u32], faces: impl Fn(u32) -> u32) -> Vec<u32> {
+        let (first_edge, first_face) = (self.valence.len() as u32, (self.valence.len() + self.edges.len()) as u32);
+        let edge = |e: &Edge| {
+            let [a, b] = e.ends.map(|v| twins[v as usize]);
+            let ends = [a.min(b), a.max(b)];
+            first_edge + self.edges.binary_search_by(|o| o.ends.cmp(&ends)).expect("a mirrored edge") as u32
+        };
+        let own = twins.iter().copied();
+        own.chain(self.edges.iter().map(edge))
+            .chain((0..self.faces.len() as u32).map(|f| first_face + faces(f)))
+            .collect()
+    }
+
+    /// The faces.
+    pub(super) fn faces(&self) -> &[[u32; 4]] {
+        &self.faces
+    }
+
+    /// The two ends of each edge.
+    pub(super) fn edges(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.edges.iter().map(|e| e.ends)
+    }
+
     /// Values on the refined mesh's vertices, from values on this one's.
     pub(super) fn refine(&self, values: &[Vec3]) -> Vec<Vec3> {
         let at = |i: u32| values[i as usize];
@@ -91,41 +115,6 @@ impl Quads {
         out.extend(centres);
         out
     }
-
-    /// Each vertex moved to where endless refinement would take it.
-    pub(super) fn limit(&self, values: &[Vec3]) -> Vec<Vec3> {
-        let at = |i: u32| values[i as usize];
-        let mut sums = vec![Vec3::ZERO; values.len()];
-        for e in &self.edges {
-            sums[e.ends[0] as usize] += 4.0 * at(e.ends[1]);
-            sums[e.ends[1] as usize] += 4.0 * at(e.ends[0]);
-        }
-        for &[a, b, c, d] in &self.faces {
-            for (v, across) in [(a, c), (b, d), (c, a), (d, b)] {
-                sums[v as usize] += at(across);
-            }
-        }
-        let limit = |((&s, &v), &n): ((&Vec3, &Vec3), &f32)| (n * n * v + s) / (n * (n + 5.0));
-        sums.iter().zip(values).zip(&self.valence).map(limit).collect()
-    }
-
-    /// The cage whose limit surface passes close to `points`, by over-relaxed Richardson iteration. The count of
-    /// rounds is also a filter: it reproduces the shape and leaves out what wavers from vertex to vertex.
-    pub(super) fn interpolate(&self, points: &[Vec3], rounds: usize) -> Vec<Vec3> {
-        let mut cage = points.to_vec();
-        for _ in 0..rounds {
-            let limit = self.limit(&cage);
-            for ((c, &p), l) in cage.iter_mut().zip(points).zip(limit) {
-                *c += 1.5 * (p - l);
-            }
-        }
-        cage
-    }
-
-    /// Each quad split in two, along the diagonal from its first corner: the same split on both sides of the body.
-    pub(super) fn triangles(&self) -> Vec<[u32; 3]> {
-        self.faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect()
-    }
 }
 
 #[cfg(test)]
@@ -136,26 +125,6 @@ mod tests {
         let points = (0..8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) - 0.5).collect();
         let faces = vec![[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         (Quads::new(8, faces), points)
-    }
-
-    #[test]
-    fn limit_is_where_refinement_goes() {
-        let (quads, points) = cube();
-        let (once, finer) = (quads.refined(), quads.refine(&points));
-        let direct = quads.limit(&points);
-        let later = once.limit(&finer);
-        for i in 0..8 {
-            assert!((direct[i] - later[i]).length() < 1e-6, "the limit of a vertex does not depend on the level");
-        }
-    }
-
-    #[test]
-    fn interpolated_surface_passes_through_its_points() {
-        let (quads, points) = cube();
-        let cage = quads.interpolate(&points, 40);
-        for (l, p) in quads.limit(&cage).iter().zip(&points) {
-            assert!((*l - *p).length() < 1e-4);
-        }
     }
 
     #[test]

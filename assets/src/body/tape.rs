@@ -33,25 +33,32 @@ pub fn slice(mesh: &Mesh, keep: impl Fn(usize) -> bool, origin: Vec3, normal: Ve
 /// The convex hull of points in the plane, counter-clockwise, without collinear points (Andrew's monotone chain).
 /// Points that are not finite are left out.
 pub fn hull(points: &[Vec2]) -> Vec<Vec2> {
-    let mut sorted: Vec<Vec2> = points.iter().copied().filter(|p| p.is_finite()).collect();
-    sorted.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    sorted.dedup();
+    hull_corners(points).into_iter().map(|i| points[i]).collect()
+}
+
+/// Which points are corners of the [`hull`], in its order.
+pub(super) fn hull_corners(points: &[Vec2]) -> Vec<usize> {
+    let mut sorted: Vec<usize> = (0..points.len()).filter(|&i| points[i].is_finite()).collect();
+    let (x, y) = (|i: &usize| points[*i].x, |i: &usize| points[*i].y);
+    sorted.sort_unstable_by(|a, b| x(a).total_cmp(&x(b)).then(y(a).total_cmp(&y(b))).then(a.cmp(b)));
+    sorted.dedup_by(|a, b| points[*a] == points[*b]);
     if sorted.len() < 3 {
         return sorted;
     }
-    let mut chain: Vec<Vec2> = Vec::with_capacity(sorted.len() + 1);
-    let half = |chain: &mut Vec<Vec2>, p: Vec2, floor: usize| {
-        while chain.len() > floor && turn(chain[chain.len() - 2], chain[chain.len() - 1], p) <= 0.0 {
+    let mut chain: Vec<usize> = Vec::with_capacity(sorted.len() + 1);
+    let half = |chain: &mut Vec<usize>, i: usize, floor: usize| {
+        let left = |c: &[usize]| turn(points[c[c.len() - 2]], points[c[c.len() - 1]], points[i]) > 0.0;
+        while chain.len() > floor && !left(chain) {
             chain.pop();
         }
-        chain.push(p);
+        chain.push(i);
     };
-    for &p in &sorted {
-        half(&mut chain, p, 1);
+    for &i in &sorted {
+        half(&mut chain, i, 1);
     }
     let floor = chain.len();
-    for &p in sorted.iter().rev().skip(1) {
-        half(&mut chain, p, floor);
+    for &i in sorted.iter().rev().skip(1) {
+        half(&mut chain, i, floor);
     }
     chain.pop();
     chain
@@ -65,8 +72,13 @@ fn turn(a: Vec2, b: Vec2, c: Vec2) -> f64 {
 
 /// Length of a closed loop of points (m for points in m).
 pub fn perimeter(hull: &[Vec2]) -> f32 {
+    perimeter_f64(hull) as f32
+}
+
+/// [`perimeter`] before it is rounded.
+pub(super) fn perimeter_f64(hull: &[Vec2]) -> f64 {
     let next = hull.iter().skip(1).chain(hull.first());
-    hull.iter().zip(next).map(|(&a, &b)| f64::from(a.distance(b))).sum::<f64>() as f32
+    hull.iter().zip(next).map(|(&a, &b)| f64::from(a.distance(b))).sum()
 }
 
 /// Girth of the body without arms at a height above the floor (m): the perimeter of the convex hull of its horizontal

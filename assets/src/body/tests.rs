@@ -57,14 +57,15 @@ fn small_and_large() -> [Body; 4] {
 }
 
 fn worst(wanted: &Measures, read: &Measures) -> f32 {
-    furthest(wanted, read).3
+    let five = |m: &Measures| [m.stature, m.shoulder_breadth, m.chest_girth, m.waist_girth, m.hip_girth];
+    five(wanted).iter().zip(five(read)).map(|(w, r)| (w - r).abs()).fold(0.0, f32::max)
 }
 
 #[test]
 fn mesh_is_one_closed_surface() {
     for body in [average(Sex::Female), average(Sex::Male)].iter().chain(&small_and_large()) {
         let mesh = &body.mesh;
-        assert!((6_000..=16_000).contains(&mesh.triangles.len()), "{}", mesh.triangles.len());
+        assert!((12_000..=20_000).contains(&mesh.triangles.len()), "{}", mesh.triangles.len());
         let mut sides: BTreeMap<(u32, u32), u32> = BTreeMap::new();
         for t in &mesh.triangles {
             for k in 0..3 {
@@ -249,7 +250,12 @@ fn impossible_measures_are_refused_in_one_sentence() {
         (Measures { hip_girth: -1.0, ..mean }, "hip girth"),
     ] {
         let message = Body::build(Sex::Female, &wanted).unwrap_err().to_string();
-        assert!(message.contains(name) && message.contains("check") && !message.contains('\n'), "{message}");
+        assert!(
+            message.contains(name)
+                && (message.contains("check") || message.contains("give metres"))
+                && !message.contains('\n'),
+            "{message}"
+        );
     }
 }
 
@@ -318,18 +324,6 @@ fn levels_climb_and_agree_with_the_survey() {
 }
 
 #[test]
-fn surface_passes_through_the_drawing() {
-    for sex in [Sex::Female, Sex::Male] {
-        let sweep = Sweep::new(sex);
-        let cage = Cage::new(sweep.table, &Shape::drawn());
-        let surface = sweep.surface(&cage);
-        let off: Vec<f32> = cage.points.iter().zip(&surface).map(|(p, s)| p.distance(*s)).collect();
-        let (worst, mean) = (off.iter().copied().fold(0.0, f32::max), off.iter().sum::<f32>() / off.len() as f32);
-        assert!(worst < 5e-4 && mean < 1e-4, "worst {worst} m, mean {mean} m");
-    }
-}
-
-#[test]
 fn limbs_keep_clear_of_the_trunk() {
     for body in [average(Sex::Female), average(Sex::Male)].iter().chain(&small_and_large()) {
         let points = |region: Region| {
@@ -352,51 +346,16 @@ fn limbs_keep_clear_of_the_trunk() {
 #[test]
 fn surface_does_not_cross_itself() {
     for body in [average(Sex::Female), average(Sex::Male)].iter().chain(&small_and_large()) {
-        assert_eq!(crossings(&body.mesh), 0, "{:?}", body.measures);
+        assert_eq!(sound::crossings(&body.mesh), [], "{:?}", body.measures);
     }
-}
-
-/// Edges that pierce a triangle that they share no vertex with.
-fn crossings(mesh: &Mesh) -> usize {
-    let at = |v: u32| mesh.positions[v as usize];
-    let floor = |t: &[u32; 3]| t.iter().map(|&v| at(v).y).fold(f32::MAX, f32::min);
-    let mut by_height = mesh.triangles.clone();
-    by_height.sort_by(|a, b| floor(a).total_cmp(&floor(b)));
-    let floors: Vec<f32> = by_height.iter().map(floor).collect();
-    let tall =
-        by_height.iter().map(|t| t.iter().map(|&v| at(v).y).fold(f32::MIN, f32::max) - floor(t)).fold(0.0, f32::max);
-    let mut count = 0;
-    for t in &mesh.triangles {
-        for (i, j) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].into_iter().filter(|(i, j)| i < j) {
-            let (a, b) = (at(i), at(j));
-            let from = floors.partition_point(|&f| f < a.y.min(b.y) - tall);
-            let near = by_height[from..].iter().zip(&floors[from..]).take_while(|(_, f)| **f <= a.y.max(b.y));
-            count += near.filter(|(o, _)| !o.contains(&i) && !o.contains(&j) && pierces(a, b, o.map(at))).count();
-        }
-    }
-    count
-}
-
-/// Whether a segment passes through a triangle (signed volumes, in f64).
-fn pierces(a: Vec3, b: Vec3, [p, q, r]: [Vec3; 3]) -> bool {
-    if p.max(q).max(r).cmplt(a.min(b)).any() || p.min(q).min(r).cmpgt(a.max(b)).any() {
-        return false;
-    }
-    let [a, b, p, q, r] = [a, b, p, q, r].map(Vec3::as_dvec3);
-    let side = |u: DVec3, v: DVec3, w: DVec3, x: DVec3| (v - u).cross(w - u).dot(x - u);
-    if side(p, q, r, a) * side(p, q, r, b) >= 0.0 {
-        return false;
-    }
-    let [u, v, w] = [side(a, b, p, q), side(a, b, q, r), side(a, b, r, p)];
-    (u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0)
 }
 
 #[test]
 fn crossings_are_seen() {
     let mut mesh = average(Sex::Female).mesh;
-    let (top, middle) = (1.6285, 0.5);
-    mesh.positions.iter_mut().filter(|p| p.y > 0.95 * top && p.x > 0.0).for_each(|p| p.x -= middle);
-    assert!(crossings(&mesh) > 0);
+    let (top, aside) = (1.6285, Vec3::new(0.1, 0.013, 0.007));
+    mesh.positions.iter_mut().filter(|p| p.y > 0.95 * top && p.x > 0.0).for_each(|p| *p -= aside);
+    assert!(!sound::crossings(&mesh).is_empty());
 }
 
 #[test]

@@ -1,5 +1,8 @@
 //! `toile bench`: what one part of the frame costs, with the error at that speed.
 
+use std::collections::BTreeMap;
+use std::path::Path;
+
 use stats_alloc::INSTRUMENTED_SYSTEM;
 use toile_perf::skinning::{self, BenchError};
 use toile_perf::skirt::heap::{Heap, HeapProbe};
@@ -7,6 +10,8 @@ use toile_perf::skirt::{self, SkirtError, table};
 
 use crate::cli::{SkinningArgs, SkirtArgs};
 use crate::exit::AppError;
+use crate::output::OutputFolder;
+use crate::pictures::write_png;
 use crate::report::{Document, SkinningReport};
 use crate::summary;
 use crate::terminal::{self, Paint, Words};
@@ -16,6 +21,9 @@ use crate::terminal::{self, Paint, Words};
 /// # Errors
 /// Where this machine cannot do what was asked for, and where stdout cannot be written.
 pub fn skinning(args: &SkinningArgs) -> Result<(), AppError> {
+    if let Some(folder) = &args.picture {
+        return twist(folder, args.json);
+    }
     if args.table {
         let words = Words::new(args.json);
         let table = skinning::table::run(&mut |case| words.say(case)).map_err(unskinned)?;
@@ -29,6 +37,17 @@ pub fn skinning(args: &SkinningArgs) -> Result<(), AppError> {
         return terminal::print_json(&Document::new("bench-skinning", report));
     }
     terminal::print(&summary::skinning(&report, Paint::for_stdout()))
+}
+
+/// Draws the twist test.
+fn twist(folder: &Path, json: bool) -> Result<(), AppError> {
+    let mut out = OutputFolder::prepare(folder)?;
+    write_png(&mut out, "twist.png", &skinning::twist_picture().map_err(unskinned)?)?;
+    let files = out.commit()?;
+    if json {
+        return terminal::print_json(&Document::new("bench-skinning-picture", BTreeMap::from([("files", files)])));
+    }
+    terminal::print(&format!("{}\n", files[0].display()))
 }
 
 fn unskinned(error: BenchError) -> AppError {

@@ -7,6 +7,7 @@ use glam::Affine3A;
 use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::export::{Dressed, glb};
 use toile_assets::import::{avatar, makehuman};
+use toile_assets::rig::Rig;
 use toile_assets::scene;
 use toile_assets::skeleton::BONES;
 use toile_engine::body::{JointFrames, Poser, palette};
@@ -19,6 +20,7 @@ use toile_view::sheet;
 use toile_view::trace::{Quality, Stage};
 
 use crate::cli::BodyArgs;
+use crate::colliders::Followed;
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::pictures::write_png;
@@ -63,7 +65,7 @@ pub fn run(args: &BodyArgs) -> Result<(), AppError> {
 }
 
 /// The body of a glTF file, or of a MakeHuman folder, with that program's own girths.
-fn import(args: &BodyArgs) -> Result<(avatar::Imported, Option<Vec<Named>>), AppError> {
+pub fn import(args: &BodyArgs) -> Result<(avatar::Imported, Option<Vec<Named>>), AppError> {
     let options = avatar::Options { sex: args.sex, meshes: args.meshes.clone(), allow_holes: args.allow_holes };
     if !args.file.is_dir() {
         if !args.targets.is_empty() {
@@ -187,6 +189,7 @@ fn report(
             crowded_edges: report.crowded_edges,
         },
         makehuman_mm: rows,
+        colliders: Followed::of(&Rig::fit(body).report(body)),
         notes: report.notes.clone(),
         files,
     }

@@ -13,7 +13,9 @@ use toile_engine::cloth::Quality;
 use crate::exit::AppError;
 
 mod bake;
+mod bodies;
 mod body;
+mod colliders;
 mod gestures;
 mod pareto;
 mod run;
@@ -23,7 +25,9 @@ mod torture;
 mod validate;
 
 pub use bake::BakeArgs;
+pub use bodies::BodiesArgs;
 pub use body::{BodyArgs, Wearer};
+pub use colliders::CollidersArgs;
 pub use gestures::GesturesArgs;
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
@@ -49,6 +53,10 @@ pub enum Command {
     Bake(BakeArgs),
     /// `toile body`.
     Body(BodyArgs),
+    /// `toile body --colliders`.
+    Colliders(CollidersArgs),
+    /// `toile bench body`.
+    BenchBody(BodiesArgs),
     /// `toile bench gestures`.
     BenchGestures(GesturesArgs),
     /// `toile bench skinning`.
@@ -239,7 +247,7 @@ fn bench() -> clap::Command {
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([skinning::grammar(), skirt::grammar(), gestures::grammar()])
+        .subcommands([skinning::grammar(), skirt::grammar(), bodies::grammar(), gestures::grammar()])
         .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
 
@@ -314,6 +322,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "run" => Command::Run(run::args(matches)?),
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
         "bake" => Command::Bake(bake::args(matches)?),
+        "body" if matches.get_flag("colliders") => Command::Colliders(colliders::args(matches)?),
         "body" => Command::Body(body::args(matches)?),
         "bench" => bench_command(matches)?,
         "torture" => Command::Torture(torture::args(matches)?),
@@ -328,6 +337,7 @@ fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
     match matches.subcommand() {
         Some(("gestures", matches)) => Ok(Command::BenchGestures(gestures::parse(matches)?)),
         Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
+        Some(("body", matches)) => Ok(Command::BenchBody(bodies::args(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),
         _ => Err(AppError::internal("a benchmark without a name was let through")),
     }

@@ -6,8 +6,10 @@
 
 pub mod bake;
 pub mod bench;
-pub mod body;
+pub mod bodies;
+mod body;
 pub mod cli;
+mod colliders;
 pub mod completions;
 pub mod doctor;
 pub mod dump;
@@ -69,6 +71,8 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Doctor(args) => doctor::run(args),
         Command::Bake(args) => bake::run(args),
         Command::Body(args) => body::run(args),
+        Command::Colliders(args) => colliders::run(args),
+        Command::BenchBody(args) => bodies::bench(args),
         Command::BenchGestures(args) => gestures::run(args),
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),

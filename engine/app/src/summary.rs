@@ -187,6 +187,10 @@ pub fn body(report: &BodyReport, paint: Paint) -> String {
             all.iter().for_each(|n| line(&mut text, &format!("  {:17} {:6.0} mm", n.name, n.value)));
         }
     }
+    heading(&mut text, "Collision body, distance from the skin", paint);
+    for f in &report.colliders {
+        line(&mut text, &format!("  {:17} {:6.1} mm on average, 95 % {:.1} mm", f.zone, f.mean_mm, f.p95_mm));
+    }
     heading(&mut text, "Files", paint);
     report.files.iter().for_each(|file| line(&mut text, &format!("  {}", file.display())));
     text

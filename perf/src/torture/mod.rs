@@ -28,7 +28,7 @@ use crate::oracle::OracleError;
 use found::Found;
 pub use found::{Outcome, Report, Summary};
 use piece::{CURTAIN, PATCH, Piece};
-use random::Random;
+pub(crate) use random::Random;
 
 /// Seeds of a case where nothing else is said.
 pub const SEEDS: u64 = 100;

@@ -1,0 +1,73 @@
+//! Drawing a base body: grid, form, and the surface where the two meet.
+
+use glam::Vec3;
+
+use super::Region;
+use super::form::{Drawing, Form};
+use super::lattice::{Chart, Lattice};
+use super::subdivide::Quads;
+use super::wrap::Wrapping;
+use crate::skeleton::Skeleton;
+
+/// A base body as it leaves the drawing board.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawn {
+    /// Closed surface (m) `[vertices]`.
+    pub positions: Vec<Vec3>,
+    /// Its faces `[quads]`.
+    pub quads: Vec<[u32; 4]>,
+    /// Piece of the atlas of each face `[quads]`.
+    pub charts: Vec<Chart>,
+    /// Part of the body `[vertices]`.
+    pub regions: Vec<Region>,
+    /// Mirror image of each vertex `[vertices]`.
+    pub twins: Vec<u32>,
+    /// Joint centres.
+    pub skeleton: Skeleton,
+}
+
+/// Rounds of evening out on the cage and on the surface.
+const CAGE_ROUNDS: usize = 12;
+const SURFACE_ROUNDS: usize = 10;
+
+/// Draws a body from the text of its drawing.
+pub fn draw(text: &str) -> Result<Drawn, toml::de::Error> {
+    let form = Form::new(toml::from_str::<Drawing>(text)?);
+    let lattice = Lattice::new(&form);
+    let coarse = Quads::new(lattice.points.len(), lattice.faces.clone());
+    let slide: Vec<f32> = lattice.tags.iter().map(|t| t.slide).collect();
+    let mut cage = lattice.points.clone();
+    Wrapping { form: &form, quads: &coarse, twins: &lattice.twins, slide: &slide }.lay(&mut cage, CAGE_ROUNDS);
+
+    let fine = coarse.refined();
+    let half = lattice.faces.len() as u32 / 2;
+    let twins = coarse.refined_twins(&lattice.twins, |f| (f + half) % (2 * half));
+    let mut positions = coarse.refine(&cage);
+    let slides: Vec<Vec3> = slide.iter().map(|&s| Vec3::splat(s)).collect();
+    let slide: Vec<f32> = coarse.refine(&slides).iter().map(|s| s.x).collect();
+    for v in 0..positions.len() {
+        let twin = twins[v] as usize;
+        if positions[v].x >= 0.0 {
+            positions[twin] = positions[v] * Vec3::new(-1.0, 1.0, 1.0);
+        }
+    }
+    Wrapping { form: &form, quads: &fine, twins: &twins, slide: &slide }.lay(&mut positions, SURFACE_ROUNDS);
+    let charts = lattice.charts.iter().flat_map(|&c| [c; 4]).collect();
+    let regions = regions(&coarse, &lattice, &positions);
+    positions.iter_mut().for_each(|p| *p *= 1e-3);
+    let skeleton = form.skeleton();
+    Ok(Drawn { positions, quads: fine.faces().to_vec(), charts, regions, twins, skeleton })
+}
+
+/// The part of the body of each vertex: by majority of what the cage around it is.
+fn regions(coarse: &Quads, lattice: &Lattice, positions: &[Vec3]) -> Vec<Region> {
+    let part = |r: Region| match r {
+        Region::Torso => Vec3::ZERO,
+        Region::LeftArm | Region::RightArm => Vec3::X,
+        Region::LeftLeg | Region::RightLeg => Vec3::Y,
+        Region::Head => Vec3::Z,
+    };
+    let parts: Vec<Vec3> = lattice.tags.iter().map(|t| part(t.region)).collect();
+    let shares = coarse.refine(&parts);
+    shares.iter().zip(positions).map(|(&part, &p)| super::skin::region(part, p)).collect()
+}

@@ -1,0 +1,173 @@
+//! Building a body to measure: the door to calibration.
+
+#[cfg(test)]
+mod tests;
+
+use std::sync::LazyLock;
+
+use glam::Vec3;
+
+use super::base::Base;
+use super::calibrate::{Found, Model};
+use super::landmarks::Landmark;
+use super::proportions::Proportions;
+use super::reading::{En, Reading, Readings, Vocabulary, Wanted};
+use super::{Body, BodyError, Levels, Measures, Sex};
+use crate::mesh::{Mesh, vertex_normals};
+use crate::skeleton::Joint;
+
+/// Largest error of a given measure that a caller has to accept (m).
+pub const TOLERANCE: f32 = 2e-3;
+
+/// A body built to measure, and what the tape reads on it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fitted {
+    /// The body.
+    pub body: Body,
+    /// Every measure of it, those that were not asked for included.
+    pub readings: Readings,
+    /// Steps that the calibration took.
+    pub steps: usize,
+}
+
+/// A sex's model, worked out on first use: some hundred milliseconds.
+fn model(sex: Sex) -> &'static Model {
+    static WOMAN: LazyLock<Model> = LazyLock::new(|| Model::new(Base::new(Sex::Female)));
+    static MAN: LazyLock<Model> = LazyLock::new(|| Model::new(Base::new(Sex::Male)));
+    match sex {
+        Sex::Female => &WOMAN,
+        Sex::Male => &MAN,
+    }
+}
+
+impl Measures {
+    /// The same in the words of the standard.
+    pub fn wanted(&self) -> Wanted<En> {
+        Wanted::new()
+            .with(En::Stature, self.stature)
+            .with(En::ShoulderBreadth, self.shoulder_breadth)
+            .with(En::BustGirth, self.chest_girth)
+            .with(En::WaistGirth, self.waist_girth)
+            .with(En::HipGirth, self.hip_girth)
+    }
+
+    /// What the tape reads, of these five.
+    fn read(readings: &Readings) -> Self {
+        Self {
+            stature: readings.of(En::Stature),
+            shoulder_breadth: readings.of(En::ShoulderBreadth),
+            chest_girth: readings.of(En::BustGirth),
+            waist_girth: readings.of(En::WaistGirth),
+            hip_girth: readings.of(En::HipGirth),
+        }
+    }
+}
+
+impl Body {
+    /// Builds the body of a sex that has the five measures wanted, each within [`TOLERANCE`].
+    ///
+    /// # Errors
+    /// As [`Body::fitted`].
+    pub fn build(sex: Sex, wanted: &Measures) -> Result<Self, BodyError> {
+        Ok(Self::fitted(sex, &wanted.wanted())?.body)
+    }
+
+    /// Builds the body of a sex that has every measure wanted, each within [`TOLERANCE`]; all other measures are what
+    /// people with these are expected to have.
+    ///
+    /// # Errors
+    /// [`BodyError::OutOfRange`] for a measure that no body is built for, and [`BodyError::Unreachable`], which holds
+    /// the nearest body, for measures that none has together.
+    pub fn fitted<V: Vocabulary>(sex: Sex, wanted: &Wanted<V>) -> Result<Fitted, BodyError> {
+        wanted.check()?;
+        let given: Vec<(Reading, f32)> = wanted.given().iter().map(|(m, value)| (m.reading(), *value)).collect();
+        let model = model(sex);
+        let fitted = model.fitted(&model.calibrate(&given));
+        let off = |(m, value): &(V, f32)| (fitted.readings.of(*m) - value).abs();
+        let furthest = wanted.given().iter().max_by(|a, b| off(a).total_cmp(&off(b)));
+        match furthest.filter(|f| off(f) > TOLERANCE) {
+            None => Ok(fitted),
+            Some(&(measure, value)) => Err(BodyError::Unreachable {
+                measure: measure.name(),
+                value,
+                reached: fitted.readings.of(measure),
+                against: model.against(wanted, measure),
+                nearest: Box::new(fitted),
+            }),
+        }
+    }
+
+    /// The body of a sex as it is drawn, before any morph.
+    pub fn drawn(sex: Sex) -> Self {
+        let model = model(sex);
+        model.fitted(&model.as_drawn()).body
+    }
+
+    /// Where the landmarks of a sex's drawn body lie.
+    pub(crate) fn proportions(sex: Sex) -> Proportions {
+        Proportions::of(&model(sex).morphs.base)
+    }
+
+    /// What the tape reads on the body of a sex as it is drawn.
+    pub fn drawn_readings(sex: Sex) -> Readings {
+        Readings(model(sex).as_drawn().readings)
+    }
+}
+
+impl Model {
+    /// The measure without which all others are met, one of them in particular; of several the one that was given last.
+    fn against<V: Vocabulary>(&self, wanted: &Wanted<V>, measure: V) -> Option<(&'static str, f32)> {
+        let given = wanted.given();
+        let without = |left_out: usize| {
+            let others = given.iter().enumerate().filter(|&(k, _)| k != left_out).map(|(_, g)| g);
+            let others: Vec<(Reading, f32)> = others.map(|(m, value)| (m.reading(), *value)).collect();
+            let found = self.calibrate(&others);
+            others.iter().all(|(r, value)| (found.readings[r.index()] - value).abs() <= TOLERANCE)
+        };
+        let others = (0..given.len()).rev().filter(|&k| given[k].0.reading() != measure.reading());
+        let freed = others.into_iter().find(|&k| without(k))?;
+        Some((given[freed].0.name(), given[freed].1))
+    }
+
+    fn fitted(&self, found: &Found) -> Fitted {
+        let base = &self.morphs.base;
+        let positions = self.morphs.positions(&found.setting);
+        let mut normals = vec![Vec3::ZERO; positions.len()];
+        vertex_normals(&positions, &base.triangles, &mut normals);
+        // Triangles meet a vertex and its mirror image in another order, which rounding shows.
+        for (v, &twin) in self.morphs.near.twin.iter().enumerate() {
+            let other = normals[twin as usize];
+            if twin as usize == v {
+                normals[v].x = 0.0;
+                normals[v] = normals[v].normalize_or_zero();
+            } else if positions[v].x < 0.0 {
+                normals[v] = Vec3::new(-other.x, other.y, other.z);
+            }
+        }
+        let skeleton = self.morphs.skeleton(&found.setting);
+        let at = |l: Landmark| base.landmarks.mark(l).on(&positions).y;
+        let levels = Levels {
+            neck: at(Landmark::Cervicale),
+            shoulder: at(Landmark::Acromion),
+            chest: at(Landmark::BustPoint),
+            underbust: at(Landmark::Underbust),
+            waist: at(Landmark::NaturalWaist),
+            hip: at(Landmark::Buttock),
+            crotch: at(Landmark::Crotch),
+            knee: at(Landmark::Midpatella),
+            ankle: skeleton.at(Joint::LeftAnkle).y,
+        };
+        let readings = Readings(found.readings);
+        let body = Body {
+            sex: base.sex,
+            measures: Measures::read(&readings),
+            mesh: Mesh { positions, uvs: Vec::new(), triangles: base.triangles.clone() },
+            normals,
+            skeleton,
+            weights: base.weights.clone(),
+            regions: base.regions.clone(),
+            levels,
+        };
+        Fitted { body, readings, steps: found.steps }
+    }
+}

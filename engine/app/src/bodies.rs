@@ -1,0 +1,101 @@
+//! `toile bench body`: bodies built to the measures of real people.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+use toile_perf::ansur::{self, Errors, Study, Survey};
+
+use crate::cli::BodiesArgs;
+use crate::exit::AppError;
+use crate::report::Document;
+use crate::terminal::{self, Paint, Tone, Words};
+
+/// The report as JSON has it.
+#[derive(Debug, Serialize)]
+struct Report {
+    /// The seed by which people were drawn.
+    seed: u64,
+    /// One study a file.
+    studies: Vec<Study>,
+}
+
+/// Runs `toile bench body`.
+///
+/// # Errors
+/// [`AppError::Input`] for a file that is no survey; [`AppError::Threshold`] where a limit was missed, after the table.
+pub fn bench(args: &BodiesArgs) -> Result<(), AppError> {
+    let words = Words::new(args.quiet || args.json);
+    let mut studies = Vec::new();
+    for file in &args.files {
+        let survey = Survey::read(file).map_err(AppError::input)?;
+        let bar = words.bar(args.people.min(survey.people()) as u64, "building bodies");
+        studies.push(ansur::study(&survey, args.people, args.seed, &|| bar.inc(1)).map_err(AppError::input)?);
+        bar.finish_and_clear();
+    }
+    let missed: Vec<&str> = studies.iter().filter(|s| !s.passes() || !s.is_quick()).map(|s| s.people).collect();
+    let verdict = match missed[..] {
+        [] => Ok(()),
+        _ => Err(AppError::Threshold(format!(
+            "the {} miss a limit; the table says which measure, how many bodies look wrong, or how long they take",
+            missed.join(" and the ")
+        ))),
+    };
+    if args.json {
+        terminal::print_json(&Document::new("bench-body", Report { seed: args.seed, studies }))?;
+    } else {
+        let tables: Vec<String> = studies.iter().map(|s| table(s, Paint::for_stdout())).collect();
+        terminal::print(&tables.join("\n"))?;
+    }
+    verdict
+}
+
+/// One study as people read it.
+fn table(study: &Study, paint: Paint) -> String {
+    let mut text = String::new();
+    let title = format!("{} of {} {} of the survey", study.drawn, study.of, study.people);
+    let _ = writeln!(text, "{}", paint.tone(&title, Tone::Strong));
+    let _ = writeln!(
+        text,
+        "{:<34} {:>8} {:>9} {:>9} {:>9} {:>9} {:>8}",
+        "measure (mm)", "limit", "bias", "mean", "95 %", "max", "within"
+    );
+    for row in &study.measures {
+        let _ = writeln!(text, "{}", told(row, paint));
+    }
+    let (ms, rough, bent) = (study.calibration_ms, study.roughness, study.unevenness);
+    let _ = writeln!(
+        text,
+        "a body takes {:.2} ms (median), {:.2} ms (99 %), {:.2} ms (max), in {:.0} steps (median), {:.0} at most",
+        ms.median, ms.p99, ms.max, study.steps.median, study.steps.max
+    );
+    let _ = writeln!(
+        text,
+        "roughness over the base body's ({:.4}): {:.3} (median), {:.3} (95 %), {:.3} (max); bent by {:.4} of an edge, \
+         {:.4} at most",
+        study.base_roughness, rough.median, rough.p95, rough.max, bent.median, bent.max
+    );
+    let wrong = format!(
+        "{} too rough (over {:.2}), {} folded, {} not to be met together: {:.1} % look wrong; of {}, parts touch",
+        study.rough,
+        ansur::TOO_ROUGH,
+        study.folded,
+        study.unreachable,
+        study.wrong * 100.0,
+        study.touching
+    );
+    let _ = writeln!(text, "{}", paint.tone(&wrong, if study.wrong == 0.0 { Tone::Good } else { Tone::Warn }));
+    text
+}
+
+fn told(row: &Errors, paint: Paint) -> String {
+    let within = row.within.map_or_else(|| "-".into(), |w| format!("{:.1} %", w * 100.0));
+    let limit = row.limit_mm.map_or_else(|| "follows".into(), |l| format!("{l:.0}"));
+    let line = format!(
+        "{:<34} {limit:>8} {:>9.3} {:>9.3} {:>9.3} {:>9.3} {within:>8}",
+        row.measure, row.bias_mm, row.mean_mm, row.p95_mm, row.max_mm
+    );
+    match row.within {
+        Some(w) if w < 1.0 => paint.tone(&line, Tone::Warn).into_owned(),
+        _ => line,
+    }
+}

@@ -1,0 +1,97 @@
+//! The survey's files: who was measured, in millimetres.
+
+use std::path::{Path, PathBuf};
+
+use toile_assets::body::Sex;
+
+/// Why the survey cannot be used.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SurveyError {
+    /// The file cannot be read.
+    #[error("{file}: {reason}; give the path of an ANSUR II file, such as ANSUR_II_FEMALE.csv")]
+    Unreadable {
+        /// The path.
+        file: String,
+        /// What the system said.
+        reason: String,
+    },
+    /// A measure that the file does not have.
+    #[error("{file}: there is no column {column}; give a file of ANSUR II with `;` between its columns")]
+    NoColumn {
+        /// The path.
+        file: String,
+        /// The column's name.
+        column: String,
+    },
+    /// A cell that is no number.
+    #[error("{file}: line {line}: {column} is no number of millimetres; repair the line or leave it out")]
+    NoNumber {
+        /// The path.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// The column's name.
+        column: String,
+    },
+}
+
+/// One of the survey's files.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Survey {
+    file: PathBuf,
+    names: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Survey {
+    /// Reads a file: `;` between columns, names in the first line.
+    ///
+    /// # Errors
+    /// [`SurveyError::Unreadable`].
+    pub fn read(file: &Path) -> Result<Self, SurveyError> {
+        let bytes = std::fs::read(file)
+            .map_err(|e| SurveyError::Unreadable { file: file.display().to_string(), reason: e.to_string() })?;
+        // One name has a letter that is not UTF-8; the measures are plain digits.
+        let text = String::from_utf8_lossy(&bytes);
+        let mut lines = text.lines().map(|l| l.split(';').map(|c| c.trim().to_owned()).collect::<Vec<_>>());
+        let names = lines.next().unwrap_or_default();
+        Ok(Self { file: file.to_owned(), names, rows: lines.filter(|r| r.len() > 1).collect() })
+    }
+
+    /// Number of people.
+    pub fn people(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whose measures these are, by the column `Gender` of the first person.
+    ///
+    /// # Errors
+    /// [`SurveyError::NoColumn`] where that column is missing or says something else.
+    pub fn sex(&self) -> Result<Sex, SurveyError> {
+        let place = self.names.iter().position(|n| n == "Gender");
+        let word = place.and_then(|c| self.rows.first()?.get(c)).map(String::as_str);
+        match word {
+            Some("Female") => Ok(Sex::Female),
+            Some("Male") => Ok(Sex::Male),
+            _ => Err(SurveyError::NoColumn { file: self.file.display().to_string(), column: "Gender".into() }),
+        }
+    }
+
+    /// One measure of everybody (mm).
+    ///
+    /// # Errors
+    /// [`SurveyError::NoColumn`], [`SurveyError::NoNumber`].
+    pub fn column(&self, name: &str) -> Result<Vec<f64>, SurveyError> {
+        let file = || self.file.display().to_string();
+        let place = self
+            .names
+            .iter()
+            .position(|n| n == name)
+            .ok_or_else(|| SurveyError::NoColumn { file: file(), column: name.to_owned() })?;
+        let cell = |(line, row): (usize, &Vec<String>)| {
+            let number = row.get(place).and_then(|c| c.parse::<f64>().ok()).filter(|x| x.is_finite());
+            number.ok_or_else(|| SurveyError::NoNumber { file: file(), line: line + 2, column: name.to_owned() })
+        };
+        self.rows.iter().enumerate().map(cell).collect()
+    }
+}
