@@ -1,7 +1,7 @@
 //! Gestures: a hand swiped left, right or up, held out to confirm, opened or closed.
 //!
 //! Reads: filtered `Joints`, and a `DepthFrame` where hands shall be told open from closed. Writes: `Events`. Budget:
-//! 1 us a frame of joints, 200 us with depth; fixed state, no allocation after [`Gestures::new`].
+//! 2 us a frame of joints, 2 ms a hand with depth; fixed state, no allocation after [`Gestures::new`].
 //! Thread: the sensor thread.
 //!
 //! Left and right are the shopper's own. Everything is measured in arm lengths from the middle of the shoulders along
