@@ -17,6 +17,7 @@ mod bodies;
 mod body;
 mod colliders;
 mod filters;
+mod gestures;
 mod pareto;
 mod run;
 mod skinning;
@@ -29,6 +30,7 @@ pub use bodies::BodiesArgs;
 pub use body::{BodyArgs, Wearer};
 pub use colliders::CollidersArgs;
 pub use filters::FiltersArgs;
+pub use gestures::GesturesArgs;
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
@@ -59,6 +61,8 @@ pub enum Command {
     BenchBody(BodiesArgs),
     /// `toile bench filters`.
     BenchFilters(FiltersArgs),
+    /// `toile bench gestures`.
+    BenchGestures(GesturesArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
@@ -247,7 +251,13 @@ fn bench() -> clap::Command {
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([filters::grammar(), skinning::grammar(), skirt::grammar(), bodies::grammar()])
+        .subcommands([
+            filters::grammar(),
+            skinning::grammar(),
+            skirt::grammar(),
+            bodies::grammar(),
+            gestures::grammar(),
+        ])
         .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
 
@@ -336,6 +346,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
 fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
     match matches.subcommand() {
         Some(("filters", matches)) => Ok(Command::BenchFilters(filters::parse(matches))),
+        Some(("gestures", matches)) => Ok(Command::BenchGestures(gestures::parse(matches)?)),
         Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
         Some(("body", matches)) => Ok(Command::BenchBody(bodies::args(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),

@@ -15,6 +15,7 @@ pub mod doctor;
 pub mod dump;
 pub mod exit;
 pub mod fit;
+pub mod gestures;
 pub mod machine;
 pub mod measure;
 pub mod output;
@@ -73,6 +74,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Colliders(args) => colliders::run(args),
         Command::BenchBody(args) => bodies::bench(args),
         Command::BenchFilters(args) => bench::filters(args),
+        Command::BenchGestures(args) => gestures::run(args),
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
         Command::Torture(args) => torture::run(args),
