@@ -29,10 +29,11 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
     (
         "toile-sensors",
         &[
-            &["error", "clock"],
+            &["error", "clock", "rng"],
             &["limits"],
             &["frame"],
-            &["sample", "depth", "segment"],
+            &["sample", "segment"],
+            &["depth"],
             &["filter"],
             &["session"],
             &["source"],

@@ -25,8 +25,8 @@ pub use read::read;
 pub use write::write;
 
 use crate::error::{Fault, Place};
-use crate::frame::{DepthFrame, Joints};
-use crate::limits::{MAX_DEPTH_FRAMES, MAX_JOINT_FRAMES};
+use crate::frame::{DepthFrame, Intrinsics, Joints};
+use crate::limits::{MAX_DEPTH_BYTES, MAX_DEPTH_FRAMES, MAX_JOINT_FRAMES};
 
 /// Version of the recording's format; another one is refused.
 const VERSION: u32 = 1;
@@ -91,6 +91,29 @@ impl Session {
             if let Some(fault) = frame.fault() {
                 return Err(Fault::new(Place::Frame(i), fault, CURE));
             }
+        }
+        Ok(())
+    }
+}
+
+/// What room a session still has for depth images; asked before an image is unpacked.
+#[derive(Debug, Default)]
+pub(crate) struct DepthRoom {
+    frames: usize,
+    bytes: u64,
+}
+
+impl DepthRoom {
+    /// Takes room for one image, or says why there is none.
+    pub(crate) fn take(&mut self, camera: &Intrinsics) -> Result<(), Fault> {
+        self.frames += 1;
+        self.bytes += camera.pixels() as u64 * 2;
+        if self.frames > MAX_DEPTH_FRAMES {
+            return Err(too_many(self.frames));
+        }
+        if self.bytes > MAX_DEPTH_BYTES {
+            let problem = format!("its depth images take more than {} MiB of memory", MAX_DEPTH_BYTES >> 20);
+            return Err(Fault::new(Place::Frame(self.frames - 1), problem, "cut the recording into shorter pieces"));
         }
         Ok(())
     }
