@@ -73,6 +73,11 @@ impl Clean {
         (shopper, &self.cloud)
     }
 
+    /// How depth is smoothed.
+    pub fn smoothing(&self) -> Smoothing {
+        self.smoothing
+    }
+
     /// What the segmenter knows.
     pub fn segmenter(&self) -> &Segmenter {
         &self.segmenter

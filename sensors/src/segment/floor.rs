@@ -1,13 +1,14 @@
 //! The floor: a plane found by random sampling (Fischler and Bolles 1981, with its own seed) and fitted by iteratively
 //! reweighted least squares with Tukey's biweight.
 
-use glam::{Mat3, Vec3};
+use glam::{Affine3A, Mat3, Vec3};
 
-use super::grid::Grid;
+use super::grid::sigma;
+use crate::frame::DepthFrame;
 use crate::rng::Rng;
 
-/// Planes that are tried where none is known: with a tenth of all points on the floor, one try in a thousand hits three
-/// of them, but a floor worth having holds a quarter, of which 300 tries miss one in 100.
+/// Planes that are tried where none is known, through points of the lower half of what is seen: where the floor holds a
+/// quarter of that half, all tries miss it once in a hundred times; half of it, which is usual, never.
 const TRIES: usize = 300;
 
 /// Points looked at, spread over the image.
@@ -19,8 +20,9 @@ const LARGEST_TILT: f32 = 40.0 * std::f32::consts::PI / 180.0;
 /// Heights at which a camera is mounted (m).
 const CAMERA_HEIGHT: std::ops::RangeInclusive<f32> = 0.15..=3.0;
 
-/// Farther than this a depth camera sees a floor too askew to count (m).
-const FARTHEST: f32 = 6.0;
+/// Nearer than this a depth camera measures nothing, and farther it sees a floor too askew to count (mm).
+const FIRST_MM: u16 = 300;
+const FARTHEST_MM: u16 = 6_000;
 
 /// A floor reaches at least so far in both directions (m); soles, seats and shelves do not.
 const SHORTEST: f32 = 0.5;
@@ -45,6 +47,14 @@ pub struct Floor {
 }
 
 impl Floor {
+    /// The pose (camera to world, m) of a camera that sees this floor at y = 0 and looks towards -z.
+    pub fn pose(&self) -> Affine3A {
+        let ahead = (Vec3::Z - self.up * self.up.z).try_normalize().unwrap_or(Vec3::NEG_Y);
+        let right = ahead.cross(self.up);
+        let rotation = Mat3::from_cols(right, self.up, -ahead).transpose();
+        Affine3A::from_mat3_translation(rotation, Vec3::Y * self.height)
+    }
+
     /// Height of a point in camera axes (m).
     pub fn above(&self, p: Vec3) -> f32 {
         self.up.dot(p) + self.height
@@ -65,9 +75,10 @@ pub struct FloorFinder {
     points: Vec<Vec3>,
 }
 
-/// Half of the thickness of a floor at a distance (m): its noise and its unevenness.
-fn thickness(z: f32) -> f32 {
-    0.012 + 0.003 * z * z
+/// Half of the thickness of a floor at a distance, seen from a height (m): its unevenness, and two deviations of the noise
+/// along the line of sight as far as that is upright.
+fn thickness(z: f32, height: f32) -> f32 {
+    0.006 + 2.0 * sigma(z) * (height / z).min(1.0)
 }
 
 /// Tukey's biweight of a residual, both in units of where it ends.
@@ -83,12 +94,17 @@ impl FloorFinder {
     }
 
     /// Looks at the next frame. `up` is where the camera's pose says that up is, in camera axes.
-    pub(super) fn push(&mut self, grid: &Grid, up: Vec3) {
-        let valid = grid.depth.iter().filter(|z| **z > 0.0 && **z < FARTHEST).count();
-        let stride = valid.div_ceil(SAMPLES).max(1);
+    pub fn push(&mut self, frame: &DepthFrame, up: Vec3) {
+        // Single pixels, not the nearest of a cell, which at a grazing view would lie above the floor.
+        let (k, width) = (frame.intrinsics, frame.intrinsics.width as usize);
+        let seen = |i: usize| (FIRST_MM..FARTHEST_MM).contains(&frame.depth_mm[i]);
+        let valid = (0..frame.depth_mm.len()).filter(|i| seen(*i)).count();
+        let stride = (valid / SAMPLES).max(1);
         self.points.clear();
-        let cells = (0..grid.depth.len()).filter(|c| grid.depth[*c] > 0.0 && grid.depth[*c] < FARTHEST);
-        self.points.extend(cells.step_by(stride).map(|c| grid.point(c)));
+        let pixels = (0..frame.depth_mm.len()).filter(|i| seen(*i)).step_by(stride);
+        self.points.extend(
+            pixels.map(|i| k.unproject((i % width) as f32, (i / width) as f32, f32::from(frame.depth_mm[i]) * 1e-3)),
+        );
         let kept = self.floor.map(|floor| fit(&self.points, floor, 2)).filter(|f| is_floor(&self.points, f, up));
         if let Some(floor) = kept
             && score(&self.points, &floor) > WORN * self.support
@@ -110,14 +126,17 @@ impl FloorFinder {
 
 /// The floor among some points, if there is one.
 fn sought(points: &[Vec3], up: Vec3) -> Option<Floor> {
-    let count = points.len() as u64;
-    if count < 200 {
+    if points.len() < 200 {
         return None;
     }
+    let mut low = points.to_vec();
+    let middle = low.len() / 2;
+    low.select_nth_unstable_by(middle, |a, b| a.dot(up).total_cmp(&b.dot(up)));
+    low.truncate(middle);
     let mut rng = Rng::new(0x000f_1008);
     let mut best: Option<(f32, Floor)> = None;
     for _ in 0..TRIES {
-        let [a, b, c] = std::array::from_fn(|_| points[(rng.next_u64() % count) as usize]);
+        let [a, b, c] = std::array::from_fn(|_| low[(rng.next_u64() % low.len() as u64) as usize]);
         let Some(normal) = (b - a).cross(c - a).try_normalize() else { continue };
         let normal = if normal.dot(up) < 0.0 { -normal } else { normal };
         let floor = Floor { up: normal, height: -normal.dot(a) };
@@ -136,7 +155,7 @@ fn sought(points: &[Vec3], up: Vec3) -> Option<Floor> {
 /// How much lies on a plane, less twice what lies below it: a shelf has a floor under it.
 fn score(points: &[Vec3], floor: &Floor) -> f32 {
     let value = |p: &Vec3| {
-        let residual = floor.above(*p) / (2.0 * thickness(p.z));
+        let residual = floor.above(*p) / (2.0 * thickness(p.z, floor.height));
         if residual < -2.0 { -2.0 } else { biweight(residual) }
     };
     points.iter().map(value).sum()
@@ -151,7 +170,7 @@ fn fit(points: &[Vec3], floor: Floor, rounds: usize) -> Floor {
         let (mut normal, mut right) = (Mat3::ZERO, Vec3::ZERO);
         for p in points {
             let above = floor.above(*p);
-            let weight = biweight(above / (2.0 * thickness(p.z)));
+            let weight = biweight(above / (2.0 * thickness(p.z, floor.height)));
             let row = Vec3::new(p.dot(along), p.dot(across), 1.0);
             normal += Mat3::from_cols(row * row.x, row * row.y, row * row.z) * weight;
             right += row * (weight * above);
@@ -182,11 +201,11 @@ fn is_floor(points: &[Vec3], floor: &Floor, up: Vec3) -> bool {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for p in points {
         let above = floor.above(*p);
-        if above.abs() < thickness(p.z) {
+        if above.abs() < thickness(p.z, floor.height) {
             let place = Vec3::new(p.dot(right), p.dot(ahead), 0.0);
             (low, high) = (low.min(place), high.max(place));
             on += 1;
-        } else if above < -3.0 * thickness(p.z) {
+        } else if above < -3.0 * thickness(p.z, floor.height) {
             under += 1;
         }
     }

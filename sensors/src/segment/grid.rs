@@ -23,6 +23,11 @@ pub fn same_surface(z: f32) -> f32 {
     0.05 + 0.01 * z * z
 }
 
+/// Standard deviation of depth at depth `z` (m), that of a Kinect v1 (Nguyen et al. 2012): other sensors are better.
+pub(super) fn sigma(z: f32) -> f32 {
+    0.0012 + 0.0019 * (z - 0.4) * (z - 0.4)
+}
+
 /// The cells of one frame. A cell is named by its index, row by row.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Grid {
@@ -137,8 +142,7 @@ impl Grid {
 
     /// Height under which what is seen along a ray (z = 1) at a depth (m) is taken for floor (m).
     fn clearance(&self, ray: Vec3, z: f32, before: bool) -> f32 {
-        let sigma = 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
-        let clearance = CLEARANCE + 3.0 * sigma * self.axes.up.dot(ray).abs();
+        let clearance = CLEARANCE + 3.0 * sigma(z) * self.axes.up.dot(ray).abs();
         if before { clearance * HYSTERESIS } else { clearance }
     }
 

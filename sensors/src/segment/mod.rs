@@ -126,7 +126,7 @@ impl Segmenter {
     pub fn push(&mut self, frame: &DepthFrame) -> Segmentation<'_> {
         let up = frame.camera_to_world.matrix3.transpose() * Vec3::Y;
         self.grid.load(frame);
-        self.finder.push(&self.grid, up);
+        self.finder.push(frame, up);
         let height = frame.camera_to_world.translation.y;
         self.grid.stand(self.finder.floor().map_or(Floor { up, height }, |f| *f), self.finder.floor().is_some());
         self.people.find(&mut self.grid, self.zone.ahead[1]);
@@ -141,21 +141,21 @@ impl Segmenter {
         Segmentation { mask: &self.mask, shopper, others, floor: self.finder.floor().copied() }
     }
 
-    /// Which of the people is the shopper: whoever it was, else the nearest in the zone.
+    /// Which of the people is the shopper: whoever it was, and else, once they have left, the nearest in the zone.
+    /// Whoever hides the shopper for a moment does not take their place.
     fn choose(&mut self, time_ns: u64) -> Option<usize> {
         let people = self.people.all();
-        let fresh = |t: &Track| time_ns.saturating_sub(t.seen_ns) <= FORGOTTEN_NS;
         let nearest = |cost: &dyn Fn(&Person) -> Option<f32>| {
             let costs = people.iter().enumerate().filter_map(|(i, p)| Some((i, cost(p)?)));
             costs.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
         };
-        let stays = self.track.filter(fresh).and_then(|track| {
-            nearest(&|p| {
+        let chosen = match self.track.filter(|t| time_ns.saturating_sub(t.seen_ns) <= FORGOTTEN_NS) {
+            Some(track) => nearest(&|p| {
                 let step = p.place.distance(track.place);
                 (step < LONGEST_STEP && self.zone.holds(p.place, LEAVING)).then_some(step)
-            })
-        });
-        let chosen = stays.or_else(|| nearest(&|p| self.zone.holds(p.place, 0.0).then_some(p.place.y)));
+            }),
+            None => nearest(&|p| self.zone.holds(p.place, 0.0).then_some(p.place.length())),
+        };
         if let Some(i) = chosen {
             self.track = Some(Track { place: people[i].place, seen_ns: time_ns });
         }

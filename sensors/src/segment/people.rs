@@ -1,9 +1,9 @@
 //! Which pieces are people, and what else belongs to the shopper.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use super::Person;
-use super::grid::Grid;
+use super::grid::{Grid, sigma};
 use super::heads::Heads;
 use super::pieces::Pieces;
 
@@ -35,6 +35,15 @@ const GAP: f32 = 0.10;
 /// ... and where it is smaller than this (m2), or lies in their column, nearer than this to their axis (m).
 const FRAGMENT: f32 = 0.05;
 const COLUMN: f32 = 0.25;
+
+/// A hand stretched towards the camera hides its arm: it lies up to so far before the shopper (m), but beside them in the
+/// image (cells).
+const STRETCHED: f32 = 0.6;
+const BESIDE: isize = 8;
+
+/// A body is not flat: its surface leaves the plane nearest to it by more than this and the noise (m, root mean square).
+/// Walls, doors and mirrors do not.
+const RELIEF: f32 = 0.008;
 
 /// Lower pieces are what is left of the floor (m).
 const LITTER: f32 = 0.12;
@@ -148,27 +157,50 @@ fn belongs(grid: &Grid, cells: &[u32], is_shopper: &[bool], axis: Vec2, numbers:
     if area > AREA.end * 0.5 || top < LITTER {
         return false;
     }
-    if area > FRAGMENT && place(grid, cells, numbers).distance(axis) > COLUMN {
+    let column = if area < ARM { 2.0 * BROADEST } else { COLUMN };
+    if area > FRAGMENT && place(grid, cells, numbers).distance(axis) > column {
         return false;
     }
-    cells.iter().any(|c| touches(grid, *c as usize, is_shopper))
+    cells.iter().any(|c| touches(grid, *c as usize, is_shopper, area < ARM))
 }
 
-/// Whether the shopper is found near a cell, along its row and column.
-fn touches(grid: &Grid, cell: usize, is_shopper: &[bool]) -> bool {
+/// Whether the shopper is found near a cell, along its row and column; for what may be a hand, behind it too.
+fn touches(grid: &Grid, cell: usize, is_shopper: &[bool], hand: bool) -> bool {
     let (row, column) = ((cell / grid.columns) as isize, (cell % grid.columns) as isize);
     let p = grid.point(cell);
     let reach = (GAP / grid.area(cell).sqrt().max(1e-4)).min(24.0) as isize;
-    (1..=reach).any(|d| {
+    (1..=reach.max(BESIDE)).any(|d| {
         [(d, 0), (-d, 0), (0, d), (0, -d)].into_iter().any(|(dx, dy)| {
             let (r, c) = (row + dy, column + dx);
             let inside = (0..grid.rows as isize).contains(&r) && (0..grid.columns as isize).contains(&c);
             inside && {
                 let other = r as usize * grid.columns + c as usize;
-                is_shopper[other] && grid.point(other).distance(p) < GAP
+                let behind = grid.depth[other] - p.z;
+                let beside = hand && d <= BESIDE && (0.0..STRETCHED).contains(&behind);
+                is_shopper[other] && (beside || grid.point(other).distance(p) < GAP)
             }
         })
     })
+}
+
+/// Whether some cells lie in one plane, up to the sensor's noise.
+fn is_flat(grid: &Grid, cells: &[u32]) -> bool {
+    let count = cells.len() as f32;
+    let middle = cells.iter().map(|c| grid.point(*c as usize)).sum::<Vec3>() / count;
+    // The plane nearest to the points, its depth over the image's two directions.
+    let (mut xx, mut xy, mut yy, mut xz, mut yz, mut zz) = (0.0f32, 0.0f32, 0.0f32, 0.0f32, 0.0f32, 0.0f32);
+    for cell in cells {
+        let d = grid.point(*cell as usize) - middle;
+        (xx, xy, yy) = (xx + d.x * d.x, xy + d.x * d.y, yy + d.y * d.y);
+        (xz, yz, zz) = (xz + d.x * d.z, yz + d.y * d.z, zz + d.z * d.z);
+    }
+    let determinant = xx * yy - xy * xy;
+    if determinant <= 0.0 {
+        return true;
+    }
+    let (a, b) = ((xz * yy - yz * xy) / determinant, (yz * xx - xz * xy) / determinant);
+    let variance = (zz - a * xz - b * yz) / count / (1.0 + a * a + b * b);
+    variance.max(0.0).sqrt() < RELIEF + 0.75 * sigma(middle.z)
 }
 
 /// The middle of some cells along the floor (m).
@@ -184,7 +216,7 @@ fn place(grid: &Grid, cells: &[u32], numbers: &mut Vec<f32>) -> Vec2 {
 /// The person that some cells show: upright, of a person's size, with a head narrower than the chest below it.
 fn person(grid: &Grid, cells: &[u32], numbers: &mut Vec<f32>) -> Option<Person> {
     let area: f32 = cells.iter().map(|c| grid.area(*c as usize)).sum();
-    if !AREA.contains(&area) {
+    if !AREA.contains(&area) || is_flat(grid, cells) {
         return None;
     }
     let mut span = |value: &dyn Fn(usize) -> f32| {

@@ -9,6 +9,7 @@ use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place};
 use crate::frame::{DepthFrame, Intrinsics};
 use crate::limits::MAX_DURATION_NS;
+use crate::segment::floor::{Floor, FloorFinder};
 use crate::session::{DepthRoom, Session};
 
 /// Rate assumed of images without times (Hz): that of the Kinects.
@@ -133,9 +134,45 @@ fn level_camera() -> Affine3A {
     Affine3A::from_mat3_translation(rotation, Vec3::Y * ASSUMED_CAMERA_HEIGHT)
 }
 
-/// Centres at the median point of the first image that shows anything; puts the floor under the lowest points where up is
-/// known.
+/// Sets the images into our world: the floor at y = 0, centred at what is seen. Where the pose is known, up is, and the
+/// floor lies under the lowest points; else both come from the floor that is seen.
 fn place(depth: &mut [DepthFrame], posed: bool, notes: &mut Vec<String>) -> Result<(), Fault> {
+    if !posed && let Some(floor) = depth.iter().take(TRIED).find_map(floor_of) {
+        notes.push(format!(
+            "the camera's pose is unknown: from the floor that it sees, it stands {:.2} m high and is tilted by {:.0} degrees",
+            floor.height,
+            floor.up.angle_between(Vec3::NEG_Y).to_degrees()
+        ));
+        depth.iter_mut().for_each(|f| f.camera_to_world = floor.pose());
+        return centre(depth, |_| 0.0);
+    }
+    let mut said = |low: f32| {
+        if posed {
+            notes.push(format!(
+                "the floor is put under the lowest points of the first image, at y = {low:.3} m of the camera's world"
+            ));
+            return low;
+        }
+        notes.push(format!(
+            "the camera's pose is unknown and no floor is seen: level, {ASSUMED_CAMERA_HEIGHT} m above the floor is assumed, and heights depend on it"
+        ));
+        0.0
+    };
+    centre(depth, &mut said)
+}
+
+/// Images in which the floor is sought.
+const TRIED: usize = 5;
+
+/// The floor that a frame of unknown pose shows.
+fn floor_of(frame: &DepthFrame) -> Option<Floor> {
+    let mut finder = FloorFinder::default();
+    finder.push(frame, Vec3::NEG_Y);
+    finder.floor().copied()
+}
+
+/// Moves the world's origin under the median point of the first image that shows anything, at the floor.
+fn centre(depth: &mut [DepthFrame], floor: impl FnOnce(f32) -> f32) -> Result<(), Fault> {
     let first = depth.iter().find(|f| f.depth_mm.iter().any(|d| *d != 0));
     let points: Vec<Vec3> = first.map(|f| f.points().collect()).unwrap_or_default();
     let axis = |k: usize, fraction| quantile(points.iter().map(|p| p[k]).collect(), fraction);
@@ -143,17 +180,7 @@ fn place(depth: &mut [DepthFrame], posed: bool, notes: &mut Vec<String>) -> Resu
         let cure = "record again with somebody in view";
         return Err(Fault::new(Place::Frame(0), "every depth image is empty", cure));
     };
-    let floor = if posed {
-        notes.push(format!(
-            "the floor is put under the lowest points of the first image, at y = {low:.3} m of the camera's world"
-        ));
-        low
-    } else {
-        notes.push(format!(
-            "the camera's pose is unknown: level, {ASSUMED_CAMERA_HEIGHT} m above the floor is assumed, and heights depend on it"
-        ));
-        0.0
-    };
+    let floor = floor(low);
     let shift = Affine3A::from_translation(-Vec3::new(x, floor, z));
     for frame in depth {
         frame.camera_to_world = shift * frame.camera_to_world;

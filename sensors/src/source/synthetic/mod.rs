@@ -6,6 +6,7 @@
 
 mod joints;
 mod noise;
+pub mod room;
 
 use glam::{Affine3A, Mat3, Vec3};
 
