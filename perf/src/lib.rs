@@ -4,6 +4,7 @@
 //! Budget: some seconds a benchmark; never inside the frame.
 //! Thread: one, with nothing else running.
 
+pub mod depth;
 pub mod oracle;
 pub mod pareto;
 pub mod scene_run;

@@ -70,12 +70,13 @@ fn the_shopper_is_found_whole_and_nobody_else() {
     let two = Two::new();
     let behind = |x: f32, z: f32| (Vec3::new(x, 0.0, z), 0.3);
     let shopper = (Vec3::ZERO, 0.0);
-    let cases: [(&str, &[(Vec3, f32)]); 6] = [
+    let cases: [(&str, &[(Vec3, f32)]); 7] = [
         ("alone", &[shopper]),
         ("turned", &[(Vec3::ZERO, 1.2)]),
         ("behind", &[shopper, behind(0.3, -0.55)]),
         ("beside", &[shopper, behind(1.0, 0.0)]),
-        ("arms touching", &[shopper, (Vec3::new(0.85, 0.0, 0.0), 0.0)]),
+        ("hands touching", &[shopper, (Vec3::new(1.0, 0.0, 0.0), 0.0)]),
+        ("arms crossing", &[shopper, (Vec3::new(0.85, 0.0, 0.0), 0.0)]),
         ("nearer, outside the zone", &[shopper, behind(1.05, 0.5)]),
     ];
     for (name, people) in cases {
@@ -96,7 +97,8 @@ fn the_shopper_is_found_whole_and_nobody_else() {
         assert_eq!(found.others, people.len() - 1, "{name}");
         assert_eq!(leaked, 0, "{name}");
         // Turned, the far arm shows behind the chest and apart from it, as an arm of anybody who hides there would.
-        let most = if name == "turned" { 0.09 } else { 0.04 };
+        // An arm that touches somebody else's is given up.
+        let most = if ["turned", "hands touching", "arms crossing"].contains(&name) { 0.12 } else { 0.04 };
         assert!(missed < most, "{name}: {missed}");
         let floor = found.floor.unwrap();
         assert!((floor.height - 1.2).abs() < 0.01, "{name}: {floor:?}");

@@ -50,7 +50,7 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
             &["surface"],
             &["yardstick"],
             &["oracle"],
-            &["skinning", "skirt"],
+            &["depth", "skinning", "skirt"],
             &["torture", "validate"],
             &["pareto"],
         ],

@@ -1,15 +1,29 @@
 //! `toile bench`: what one part of the frame costs, with the error at that speed.
 
 use stats_alloc::INSTRUMENTED_SYSTEM;
+use toile_perf::depth;
 use toile_perf::skinning::{self, BenchError};
 use toile_perf::skirt::heap::{Heap, HeapProbe};
 use toile_perf::skirt::{self, SkirtError, table};
 
-use crate::cli::{SkinningArgs, SkirtArgs};
+use crate::cli::{DepthArgs, SkinningArgs, SkirtArgs};
 use crate::exit::AppError;
 use crate::report::{Document, SkinningReport};
 use crate::summary;
 use crate::terminal::{self, Paint, Words};
+
+/// Runs `toile bench depth`.
+///
+/// # Errors
+/// Where the scene's people cannot be made, and where stdout cannot be written.
+pub fn depth(args: &DepthArgs) -> Result<(), AppError> {
+    let words = Words::new(args.json);
+    let table = depth::run(&mut |case| words.say(case)).map_err(AppError::internal)?;
+    if args.json {
+        return terminal::print_json(&Document::new("bench-depth", table));
+    }
+    terminal::print(&table.markdown())
+}
 
 /// Runs `toile bench skinning`.
 ///

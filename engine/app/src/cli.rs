@@ -14,6 +14,8 @@ use crate::exit::AppError;
 
 mod bake;
 mod body;
+mod convert;
+mod depth;
 mod pareto;
 mod run;
 mod skinning;
@@ -23,6 +25,8 @@ mod validate;
 
 pub use bake::BakeArgs;
 pub use body::{BodyArgs, Wearer};
+pub use convert::{ConvertArgs, KeptDepth};
+pub use depth::DepthArgs;
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
@@ -39,6 +43,8 @@ pub enum Command {
     Measure(MeasureArgs),
     /// `toile record`.
     Record(RecordArgs),
+    /// `toile convert`.
+    Convert(ConvertArgs),
     /// `toile run`.
     Run(RunArgs),
     /// `toile doctor`.
@@ -47,6 +53,8 @@ pub enum Command {
     Bake(BakeArgs),
     /// `toile body`.
     Body(BodyArgs),
+    /// `toile bench depth`.
+    BenchDepth(DepthArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
@@ -148,6 +156,7 @@ pub fn command() -> clap::Command {
             try_on(),
             measure(),
             record(),
+            convert::grammar(),
             bake::grammar(),
             body::grammar(),
             run::grammar(),
@@ -235,7 +244,7 @@ fn bench() -> clap::Command {
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([skinning::grammar(), skirt::grammar()])
+        .subcommands([depth::grammar(), skinning::grammar(), skirt::grammar()])
         .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
 
@@ -307,6 +316,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         }),
+        "convert" => Command::Convert(convert::args(matches)?),
         "run" => Command::Run(run::args(matches)?),
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
         "bake" => Command::Bake(bake::args(matches)?),
@@ -322,6 +332,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
 
 fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
     match matches.subcommand() {
+        Some(("depth", matches)) => Ok(Command::BenchDepth(depth::parse(matches))),
         Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),
         _ => Err(AppError::internal("a benchmark without a name was let through")),

@@ -9,6 +9,7 @@ pub mod bench;
 pub mod body;
 pub mod cli;
 pub mod completions;
+pub mod convert;
 pub mod doctor;
 pub mod dump;
 pub mod exit;
@@ -64,10 +65,12 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::TryOn(args) => try_on::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Record(args) => record::run(args),
+        Command::Convert(args) => convert::run(args),
         Command::Run(args) => run::run(args),
         Command::Doctor(args) => doctor::run(args),
         Command::Bake(args) => bake::run(args),
         Command::Body(args) => body::run(args),
+        Command::BenchDepth(args) => bench::depth(args),
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
         Command::Torture(args) => torture::run(args),

@@ -10,10 +10,19 @@ use super::grid::Grid;
 /// How far a peak stands out of what it is part of (m).
 const STANDS_OUT: f32 = 0.12;
 
+/// What lies so near the border between two people, over the surface, is nobody's (m): a forearm with
+/// its hand.
+const TOUCHING: f32 = 0.4;
+
 /// Most peaks of a piece: two people with raised hands have six.
 pub(super) const MAX_PEAKS: usize = 8;
 
 const NOBODY: u32 = u32::MAX;
+
+/// Owner of a cell outside the piece, of one not reached yet, and of one near a border.
+const OUTSIDE: u8 = u8::MAX - 2;
+const FREE: u8 = u8::MAX;
+const NOBODYS: u8 = u8::MAX - 1;
 
 /// Finds peaks and parts pieces; its arrays are as large as the grid.
 #[derive(Debug, Clone, Default)]
@@ -82,8 +91,7 @@ impl Heads {
     /// Parts a piece among its peaks: every cell goes to the peak that is nearest over the surface. Gives the cells of
     /// each, in the order of the peaks.
     pub fn part(&mut self, grid: &Grid, cells: &[u32], peaks: &[u32]) -> Vec<Vec<u32>> {
-        const FREE: u8 = u8::MAX;
-        self.owner.resize(grid.depth.len(), 0);
+        self.owner.resize(grid.depth.len(), OUTSIDE);
         cells.iter().for_each(|c| self.owner[*c as usize] = FREE);
         self.queue.clear();
         let mut parts = vec![Vec::new(); peaks.len()];
@@ -105,7 +113,42 @@ impl Heads {
                 }
             }
         }
-        cells.iter().for_each(|c| self.owner[*c as usize] = 0);
+        if peaks.len() > 1 {
+            self.draw_back(grid, cells, &mut parts);
+        }
+        cells.iter().for_each(|c| self.owner[*c as usize] = OUTSIDE);
         parts
+    }
+
+    /// Takes out of all parts what lies near a border between two of them: whose hand it is that touches, the way to the
+    /// heads cannot tell, and nothing of anybody else may be in the shopper.
+    fn draw_back(&mut self, grid: &Grid, cells: &[u32], parts: &mut [Vec<u32>]) {
+        let parted =
+            |a: usize, b: usize, owner: &[u8]| owner[b] != OUTSIDE && grid.joined(a, b) && owner[a] != owner[b];
+        self.queue.clear();
+        for cell in cells {
+            let cell = *cell as usize;
+            if grid.neighbours(cell).any(|other| parted(cell, other, &self.owner)) {
+                self.queue.push(cell as u32);
+            }
+        }
+        let (mut begin, mut way) = (0, 0.0);
+        while begin < self.queue.len() && way < TOUCHING {
+            let end = self.queue.len();
+            // A step reaches two cells along rows and columns, and one and a half aslant.
+            way += 1.4 * grid.area(self.queue[begin] as usize).sqrt();
+            for i in begin..end {
+                let cell = self.queue[i] as usize;
+                self.owner[cell] = NOBODYS;
+                for other in grid.neighbours(cell) {
+                    if self.owner[other] != NOBODYS && self.owner[other] != OUTSIDE && grid.joined(cell, other) {
+                        self.owner[other] = NOBODYS;
+                        self.queue.push(other as u32);
+                    }
+                }
+            }
+            begin = end;
+        }
+        parts.iter_mut().for_each(|part| part.retain(|c| self.owner[*c as usize] != NOBODYS));
     }
 }

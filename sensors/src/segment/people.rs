@@ -141,9 +141,16 @@ impl People {
         let axis = self.people[chosen].place;
         let mut is_shopper = vec![false; grid.depth.len()];
         self.shopper.iter().for_each(|c| is_shopper[*c as usize] = true);
+        // Whatever is in a piece with people and not the shopper's is somebody else's, or may be.
+        let mut is_other = vec![false; grid.depth.len()];
+        let inhabited = (0..self.pieces.count()).filter(|p| !self.rest.contains(p));
+        for cell in inhabited.flat_map(|p| self.pieces.cells(p)) {
+            is_other[*cell as usize] = !is_shopper[*cell as usize];
+        }
         for &piece in &self.rest {
             let cells = self.pieces.cells(piece);
-            if belongs(grid, cells, &is_shopper, axis, &mut self.numbers) {
+            let contested = || cells.iter().any(|c| touches(grid, *c as usize, &is_other, false));
+            if belongs(grid, cells, &is_shopper, axis, &mut self.numbers) && !contested() {
                 self.shopper.extend_from_slice(cells);
             }
         }
