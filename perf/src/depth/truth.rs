@@ -153,6 +153,6 @@ fn mask_errors(scene: &Scene) -> (usize, f64) {
     };
     let leaked = (0..mask.len()).filter(|i| mask[*i] == 1 && !near(*i)).count();
     let shown = (0..mask.len()).filter(|i| is_shopper(*i) && scene.frame.depth_mm[*i] != 0);
-    let (missed, all) = shown.fold((0, 0), |(missed, all), i| (missed + usize::from(mask[i] == 0), all + 1));
+    let (missed, all) = shown.fold((0, 0), |(missed, all), i| (missed + u32::from(mask[i] == 0), all + 1u32));
     (leaked, 100.0 * f64::from(missed) / f64::from(all.max(1)))
 }

@@ -125,3 +125,19 @@ pub(crate) fn too_many(frames: usize) -> Fault {
     let problem = format!("{frames} frames are more than a session holds ({limits})");
     Fault::new(Place::Whole, problem, "cut the recording into shorter pieces")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_large_images_are_refused_before_they_are_unpacked() {
+        let largest = Intrinsics { width: 2048, height: 2048, ..Intrinsics::KINECT_V1 };
+        let mut room = DepthRoom::default();
+        let fits = (0..MAX_DEPTH_FRAMES).take_while(|_| room.take(&largest).is_ok()).count();
+        assert_eq!(fits as u64, MAX_DEPTH_BYTES / (2048 * 2048 * 2));
+        let mut room = DepthRoom::default();
+        assert!((0..MAX_DEPTH_FRAMES).all(|_| room.take(&Intrinsics::KINECT_V1).is_ok()));
+        assert!(room.take(&Intrinsics::KINECT_V1).is_err());
+    }
+}

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::camera;
 use super::raw_depth::{assumed_camera, samples};
 use super::sequence::{Sequence, assumed_time, untimed};
-use super::{OpenOptions, png_depth, read_file, shown};
+use super::{OpenOptions, fakenect, png_depth, read_file, shown};
 use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place, SourceError};
 use crate::limits::{MAX_FILE_BYTES, MAX_FOLDER_FILES};
@@ -26,6 +26,9 @@ const CURE: &str = "give a folder of 16-bit PNG images (.png) or raw ones (.u16l
 
 /// Reads all depth images of a folder.
 pub(super) fn read(folder: &Path, options: &OpenOptions) -> Result<Session, SourceError> {
+    if folder.join(fakenect::INDEX).is_file() {
+        return fakenect::read(folder, options);
+    }
     let path = shown(folder);
     let (images, beside) = list(folder)?;
     let mut notes = Vec::new();

@@ -17,7 +17,7 @@ const WIDEST: f32 = 3.0;
 /// Steps in which the radius is followed.
 const STEPS: usize = 600;
 
-/// A straightened image is at most so much wider or higher than the bent one: beyond that the corners are smeared.
+/// A straightened image is at most so much wider or higher than the bent one, or narrower or lower: more bends no lens.
 const LARGEST_GROWTH: f32 = 1.5;
 
 /// Neighbours that differ by more than this fraction of their depth, and by more than [`EDGE_MM`], lie on two surfaces.
@@ -110,7 +110,7 @@ impl Straighten {
             let edge = |px: f32| lens.unbend(axis, (px - c) / f, sound) * f;
             let (first, last) = (edge(0.0).floor(), edge(size as f32 - 1.0).ceil());
             let pixels = last - first + 1.0;
-            let sane = pixels.is_finite() && pixels >= 1.0 && pixels <= size as f32 * LARGEST_GROWTH;
+            let sane = pixels.is_finite() && pixels >= size as f32 / LARGEST_GROWTH && pixels <= size as f32 * LARGEST_GROWTH;
             sane.then_some((pixels as u32, -first))
         };
         let (width, cx) = side(0, bent.width, bent.fx, bent.cx)?;
@@ -153,8 +153,8 @@ fn table(bent: &Intrinsics, straight: &Intrinsics, lens: &BrownConrady, sound: f
             let r = (ray[0] - lens.centre[0]).hypot(ray[1] - lens.centre[1]);
             let [x, y] = lens.bend(ray);
             let (u, v) = (bent.cx + bent.fx * x, bent.cy + bent.fy * y);
-            let seen = r <= sound && (-0.5..=right + 0.5).contains(&u) && (-0.5..=bottom + 0.5).contains(&v);
-            from.push(if seen { [u.clamp(0.0, right), v.clamp(0.0, bottom)] } else { [f32::NAN; 2] });
+            let seen = r <= sound && (0.0..=right).contains(&u) && (0.0..=bottom).contains(&v);
+            from.push(if seen { [u, v] } else { [f32::NAN; 2] });
         }
     }
     from.into_boxed_slice()

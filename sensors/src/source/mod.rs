@@ -12,7 +12,7 @@
 //! | Azure Kinect recording (MKV) | the EBML magic; its depth alone is read |
 //! | 16-bit grey PNG | the PNG magic; a folder of them is a sequence |
 //! | OpenNI 2 recording (ONI) | its magic; with the feature `openni2` and Debian's libopenni2 |
-//! | fakenect recording | a folder with INDEX.txt; with the feature `fakenect` and Debian's libfreenect |
+//! | fakenect recording | a folder with INDEX.txt |
 //! | raw 16-bit depth | none of these, and a camera is given or the size is that of 640x480 images |
 
 mod align;
@@ -22,11 +22,14 @@ mod bvh_names;
 mod bvh_pose;
 mod camera;
 mod ebml;
+mod fakenect;
 mod folder;
 mod kinect2;
 mod kinect_csv;
 mod kinectron;
 mod lens;
+#[cfg(feature = "openni2")]
+mod openni2;
 mod png_depth;
 mod raw_depth;
 mod sequence;
@@ -58,6 +61,10 @@ pub fn open(path: &Path, options: &OpenOptions) -> Result<Session, SourceError> 
         return folder::read(path, options);
     }
     let bytes = read_file(path)?;
+    #[cfg(feature = "openni2")]
+    if bytes.starts_with(ONI_MAGIC) {
+        return openni2::read(path, options);
+    }
     let camera = match &options.camera {
         Some(json) => Some((shown(json), read_file(json)?)),
         None => None,
