@@ -96,9 +96,14 @@ fn the_shopper_is_found_whole_and_nobody_else() {
         assert!(found.shopper.is_some(), "{name}");
         assert_eq!(found.others, people.len() - 1, "{name}");
         assert_eq!(leaked, 0, "{name}");
-        // Turned, the far arm shows behind the chest and apart from it, as an arm of anybody who hides there would.
-        // An arm that touches somebody else's is given up.
-        let most = if ["turned", "hands touching", "arms crossing"].contains(&name) { 0.12 } else { 0.04 };
+        // Turned, the far arm shows behind the chest and apart from it, as an arm of anybody who hides there would; and
+        // an arm that touches somebody else's is given up whole.
+        let most = match name {
+            "turned" => 0.09,
+            "hands touching" => 0.13,
+            "arms crossing" => 0.20,
+            _ => 0.04,
+        };
         assert!(missed < most, "{name}: {missed}");
         let floor = found.floor.unwrap();
         assert!((floor.height - 1.2).abs() < 0.01, "{name}: {floor:?}");

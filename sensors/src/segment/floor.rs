@@ -11,6 +11,9 @@ use crate::rng::Rng;
 /// quarter of that half, all tries miss it once in a hundred times; half of it, which is usual, never.
 const TRIES: usize = 300;
 
+/// Every so many of them judge a try; all of them the fit.
+const SPARSE: usize = 4;
+
 /// Points looked at, spread over the image.
 const SAMPLES: usize = 4_000;
 
@@ -134,6 +137,7 @@ fn sought(points: &[Vec3], up: Vec3) -> Option<Floor> {
     low.select_nth_unstable_by(middle, |a, b| a.dot(up).total_cmp(&b.dot(up)));
     low.truncate(middle);
     let mut rng = Rng::new(0x000f_1008);
+    let few: Vec<Vec3> = points.iter().copied().step_by(SPARSE).collect();
     let mut best: Option<(f32, Floor)> = None;
     for _ in 0..TRIES {
         let [a, b, c] = std::array::from_fn(|_| low[(rng.next_u64() % low.len() as u64) as usize]);
@@ -143,7 +147,7 @@ fn sought(points: &[Vec3], up: Vec3) -> Option<Floor> {
         if normal.angle_between(up) > LARGEST_TILT || !CAMERA_HEIGHT.contains(&floor.height) {
             continue;
         }
-        let value = score(points, &floor);
+        let value = score(&few, &floor);
         if best.is_none_or(|(b, _)| value > b) {
             best = Some((value, floor));
         }

@@ -110,7 +110,8 @@ impl Straighten {
             let edge = |px: f32| lens.unbend(axis, (px - c) / f, sound) * f;
             let (first, last) = (edge(0.0).floor(), edge(size as f32 - 1.0).ceil());
             let pixels = last - first + 1.0;
-            let sane = pixels.is_finite() && pixels >= size as f32 / LARGEST_GROWTH && pixels <= size as f32 * LARGEST_GROWTH;
+            let sane =
+                pixels.is_finite() && pixels >= size as f32 / LARGEST_GROWTH && pixels <= size as f32 * LARGEST_GROWTH;
             sane.then_some((pixels as u32, -first))
         };
         let (width, cx) = side(0, bent.width, bent.fx, bent.cx)?;
