@@ -5,6 +5,7 @@
 //! Thread: one, with nothing else running.
 
 pub mod ansur;
+pub mod depth;
 pub mod filters;
 pub mod oracle;
 pub mod pareto;

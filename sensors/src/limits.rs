@@ -10,6 +10,13 @@ pub const MAX_JOINT_FRAMES: usize = 216_000;
 /// Most depth frames of a session: one minute at 30 Hz, 1.1 GB at 640x480.
 pub const MAX_DEPTH_FRAMES: usize = 1_800;
 
+/// Most memory that the depth images of a session may take (bytes): the minute above, and half as much again. A small
+/// file of large, empty, well-packed images would otherwise unpack to 15 GB.
+pub const MAX_DEPTH_BYTES: u64 = 5 << 28;
+
+/// Most files of a folder that is read as a recording: a minute of colour, depth and motion at 30 Hz, with room to spare.
+pub const MAX_FOLDER_FILES: usize = 20_000;
+
 /// Most pixels of a depth image: four times the largest sensor in sale (1 megapixel).
 pub const MAX_PIXELS: u64 = 4_194_304;
 

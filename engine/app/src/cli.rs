@@ -16,6 +16,8 @@ mod bake;
 mod bodies;
 mod body;
 mod colliders;
+mod convert;
+mod depth;
 mod filters;
 mod gestures;
 mod pareto;
@@ -29,6 +31,8 @@ pub use bake::BakeArgs;
 pub use bodies::BodiesArgs;
 pub use body::{BodyArgs, Wearer};
 pub use colliders::CollidersArgs;
+pub use convert::{ConvertArgs, KeptDepth};
+pub use depth::DepthArgs;
 pub use filters::FiltersArgs;
 pub use gestures::GesturesArgs;
 pub use pareto::ParetoArgs;
@@ -47,6 +51,8 @@ pub enum Command {
     Measure(MeasureArgs),
     /// `toile record`.
     Record(RecordArgs),
+    /// `toile convert`.
+    Convert(ConvertArgs),
     /// `toile run`.
     Run(RunArgs),
     /// `toile doctor`.
@@ -63,6 +69,8 @@ pub enum Command {
     BenchFilters(FiltersArgs),
     /// `toile bench gestures`.
     BenchGestures(GesturesArgs),
+    /// `toile bench depth`.
+    BenchDepth(DepthArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
@@ -164,6 +172,7 @@ pub fn command() -> clap::Command {
             try_on(),
             measure(),
             record(),
+            convert::grammar(),
             bake::grammar(),
             body::grammar(),
             run::grammar(),
@@ -257,6 +266,7 @@ fn bench() -> clap::Command {
             skirt::grammar(),
             bodies::grammar(),
             gestures::grammar(),
+            depth::grammar(),
         ])
         .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
@@ -329,6 +339,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         }),
+        "convert" => Command::Convert(convert::args(matches)?),
         "run" => Command::Run(run::args(matches)?),
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
         "bake" => Command::Bake(bake::args(matches)?),
@@ -347,6 +358,7 @@ fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
     match matches.subcommand() {
         Some(("filters", matches)) => Ok(Command::BenchFilters(filters::parse(matches))),
         Some(("gestures", matches)) => Ok(Command::BenchGestures(gestures::parse(matches)?)),
+        Some(("depth", matches)) => Ok(Command::BenchDepth(depth::parse(matches))),
         Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
         Some(("body", matches)) => Ok(Command::BenchBody(bodies::args(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),

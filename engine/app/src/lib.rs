@@ -11,6 +11,7 @@ mod body;
 pub mod cli;
 mod colliders;
 pub mod completions;
+pub mod convert;
 pub mod doctor;
 pub mod dump;
 pub mod exit;
@@ -67,6 +68,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::TryOn(args) => try_on::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Record(args) => record::run(args),
+        Command::Convert(args) => convert::run(args),
         Command::Run(args) => run::run(args),
         Command::Doctor(args) => doctor::run(args),
         Command::Bake(args) => bake::run(args),
@@ -75,6 +77,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::BenchBody(args) => bodies::bench(args),
         Command::BenchFilters(args) => bench::filters(args),
         Command::BenchGestures(args) => gestures::run(args),
+        Command::BenchDepth(args) => bench::depth(args),
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
         Command::Torture(args) => torture::run(args),

@@ -242,6 +242,21 @@ pub struct RecordReport {
     pub files: Vec<PathBuf>,
 }
 
+/// The body of `toile convert`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ConvertReport {
+    /// The session that was written.
+    pub session: Session,
+    /// Joint frames in it.
+    pub joint_frames: u64,
+    /// Depth frames in it.
+    pub depth_frames: u64,
+    /// Depth frames of the recording that are not in it, because they were not asked for.
+    pub depth_frames_left_out: u64,
+    /// The files written.
+    pub files: Vec<PathBuf>,
+}
+
 /// A 64-bit state hash as the reports write it.
 pub fn hash_text(hash: u64) -> String {
     format!("{hash:016x}")

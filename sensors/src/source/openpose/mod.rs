@@ -28,6 +28,11 @@ const ASSUMED_RATE: f64 = 30.0;
 
 const CURE: &str = "give a folder with the cameras' calibration (.toml) and a folder of OpenPose JSON for each camera";
 
+/// Whether a folder is such a recording: it holds a calibration, or folders of JSON files.
+pub(super) fn recognises(folder: &Path) -> Result<bool, SourceError> {
+    Ok(list(folder)?.iter().any(|p| has_extension(p, "toml")) || !camera_folders(folder)?.is_empty())
+}
+
 /// Opens a folder of keypoints.
 pub(super) fn open(folder: &Path) -> Result<Session, SourceError> {
     let whole = |problem: String| Fault::new(Place::Whole, problem, CURE).at(&shown(folder));
