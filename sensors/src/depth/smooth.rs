@@ -19,6 +19,9 @@ const TAPS: usize = 2 * REACH + 1;
 const WEIGHTS: [f32; TAPS] =
     [0.135_335_28, 0.324_652_47, 0.606_530_66, 0.882_496_9, 1.0, 0.882_496_9, 0.606_530_66, 0.324_652_47, 0.135_335_28];
 
+/// The taps beside the pixel itself, which has weight 1 and no difference.
+const OTHERS: [usize; TAPS - 1] = [0, 1, 2, 3, 5, 6, 7, 8];
+
 /// Differences beyond this many deviations are edges. Two readings of one surface differ by 1.4 deviations.
 const CUT: f32 = 4.0;
 
@@ -83,16 +86,17 @@ fn across(taps: [&[f32]; TAPS], noise: &SensorNoise, out: &mut [f32]) {
         let here = taps[REACH][x];
         let beyond = here - from;
         let range = CUT * (least + growth * (beyond * beyond));
-        let scale = 1.0 / (range * range);
-        let (mut sum, mut total) = (0.0, 0.0);
-        for t in 0..TAPS {
+        // The parabola times the square of the range, which the quotient takes out again. The pixel itself counts most,
+        // so that the total is never 0.
+        let square = range * range;
+        let (mut sum, mut total) = (0.0, square);
+        for t in OTHERS {
             let d = taps[t][x] - here;
-            let near = 1.0 - d * d * scale;
-            let weight = if near > 0.0 { near * WEIGHTS[t] } else { 0.0 };
+            let near = square - d * d;
+            let weight = if near > 0.0 { near } else { 0.0 } * WEIGHTS[t];
             sum += weight * d;
             total += weight;
         }
-        // The pixel itself always counts, so that the total is never 0.
         let smoothed = here + sum / total;
         out[x] = if here > 0.0 { smoothed } else { 0.0 };
     }
@@ -114,11 +118,11 @@ pub fn plain(width: usize, depth_mm: &[u16], noise: &SensorNoise) -> Vec<f32> {
                 return 0.0;
             }
             let range = CUT * noise.sigma_mm(here);
-            let scale = 1.0 / (range * range);
-            let (mut sum, mut total) = (0.0f32, 0.0f32);
-            for (t, weight) in (-(REACH as isize)..).zip(WEIGHTS) {
+            let square = range * range;
+            let (mut sum, mut total) = (0.0f32, square);
+            for (t, weight) in (-(REACH as isize)..).zip(WEIGHTS).filter(|(t, _)| *t != 0) {
                 let d = tap(image, u + t * du, v + t * dv) - here;
-                let near = 1.0 - d * d * scale;
+                let near = square - d * d;
                 if near > 0.0 {
                     sum += near * weight * d;
                     total += near * weight;
