@@ -213,7 +213,7 @@ mod tests {
         assert_eq!(recognise(b"HIERARCHY\nROOT", false), Ok(Kind::Bvh));
         assert_eq!(recognise(b"\xef\xbb\xbf [{}]", false), Ok(Kind::Kinectron));
         assert_eq!(recognise(b"123,0.5,", false), Ok(Kind::KinectCsv));
-        assert_eq!(recognise(b"\x1a\x45\xdf\xa3", true), Ok(Kind::Azure));
+        assert_eq!(recognise(b"\x1a\x45\xdf\xa3", true), Ok(Kind::AzureMkv));
         assert_eq!(recognise(png_depth::MAGIC, true), Ok(Kind::Png));
         assert_eq!(recognise(&[0; 614_400], false), Ok(Kind::RawDepth));
         assert_eq!(recognise(&[0; 8], true), Ok(Kind::RawDepth));
