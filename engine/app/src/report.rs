@@ -7,11 +7,13 @@ use serde::Serialize;
 use crate::machine::Machine;
 
 mod body;
+mod colliders;
 mod gestures;
 mod run;
 mod skinning;
 
 pub use body::{BodyReport, Influences, JointFound, Named, SurfaceReport};
+pub use colliders::Followed;
 pub use gestures::{GestureRow, GesturesReport, HandRow, OtherRow};
 pub use run::{KineticEnergy, RunGarment, RunPenetration, RunReport};
 pub use skinning::SkinningReport;

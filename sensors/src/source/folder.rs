@@ -124,8 +124,8 @@ fn natural(name: &str) -> Vec<(usize, String)> {
 fn clock(images: &[PathBuf]) -> Option<Vec<u64>> {
     let time = |path: &PathBuf| {
         let seconds: f64 = path.file_stem()?.to_str()?.parse().ok()?;
-        (seconds.is_finite() && (FIRST_CLOCK_S..FIRST_CLOCK_S * 10.0).contains(&seconds))
-            .then(|| (seconds * SECOND_NS as f64) as u64)
+        let plausible = seconds.is_finite() && (FIRST_CLOCK_S..FIRST_CLOCK_S * 10.0).contains(&seconds);
+        plausible.then_some((seconds * SECOND_NS as f64) as u64)
     };
     images.iter().map(time).collect()
 }

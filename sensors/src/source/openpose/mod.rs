@@ -1,5 +1,9 @@
 //! OpenPose keypoints of several calibrated cameras, triangulated: BODY_25 and BODY_25B.
 //!
+//! Reads: a folder of keypoints with its calibration. Writes: a session of joints.
+//! Budget: at load only; milliseconds a second of recording.
+//! Thread: the loading thread.
+//!
 //! A folder holds a calibration (`*.toml`) and a folder of JSON files for each camera, in the order of the calibration's
 //! cameras, in itself or one level below; a file is a frame, in the order of their names. In each frame the people that
 //! the cameras see are [matched](people), the shopper is followed, and their keypoints become points in space by a

@@ -48,9 +48,9 @@ pub fn view(camera: &SyntheticCamera, back: f32, people: &[Surface<'_>]) -> View
     let surfaces = std::iter::once((ROOM, (&room[..], &walls[..])));
     for (label, (positions, triangles)) in surfaces.chain((PERSON..).zip(people.iter().copied())) {
         camera.render(positions, triangles, &mut z);
-        for i in 0..pixels {
-            if z[i] < view.z[i] {
-                (view.z[i], view.label[i]) = (z[i], label);
+        for ((z, nearest), of) in z.iter().zip(&mut view.z).zip(&mut view.label) {
+            if z < nearest {
+                (*nearest, *of) = (*z, label);
             }
         }
     }
