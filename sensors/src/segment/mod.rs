@@ -5,8 +5,8 @@
 //! Thread: the sensor thread.
 //!
 //! No user map is needed. The floor is a plane found by chance and then fitted robustly ([`floor`]); what stands on it
-//! falls into pieces where depth jumps ([`pieces`]); pieces that carry a head above a chest are people, and one piece of
-//! two people who touch is parted between their heads ([`heads`]). Of the people, the shopper is the nearest one in the
+//! falls into pieces where depth jumps (`pieces`); pieces that carry a head above a chest are people, and one piece of
+//! two people who touch is parted between their heads (`heads`). Of the people, the shopper is the nearest one in the
 //! [`Zone`], and stays the shopper until they leave it. Nothing of anybody else is in the mask.
 
 pub mod floor;
