@@ -22,6 +22,7 @@ mod zones;
 use glam::Vec3;
 
 use crate::body::Body;
+use crate::cone::round_cone;
 use crate::limits::{MAX_CAPSULES, MAX_SPHERES};
 use crate::skeleton::Joint;
 pub use plan::SPHERES;
@@ -99,26 +100,6 @@ fn carrier(sphere: usize) -> Joint {
 
 /// Spheres in the rest pose: centre and radius (m).
 type Placed = [(Vec3, f32); SPHERES];
-
-/// Signed distance from `p` to a round cone (m), negative inside, and where along the axis (0 at `a`, 1 at `b`) the
-/// sphere stands that the nearest surface point belongs to.
-///
-/// The cone is the union of spheres whose centres run from `a` to `b` while the radius r(s) = ra - k s shrinks with
-/// slope k = (ra - rb) / |b - a|. With x along the axis and y across it, |p - c(s)| - r(s) is convex in s and least where
-/// (x - s) / |p - c(s)| = k, that is at s = x - y k / sqrt(1 - k^2), held between the ends. (The same solid as in
-/// I. Quilez, "Distance to a round cone"; the derivation is our own.) Where one sphere swallows the other, it is all.
-pub fn round_cone(p: Vec3, (a, ra): (Vec3, f32), (b, rb): (Vec3, f32)) -> (f32, f32) {
-    let axis = b - a;
-    let length = axis.length();
-    if length <= (ra - rb).abs() {
-        return if ra >= rb { (p.distance(a) - ra, 0.0) } else { (p.distance(b) - rb, 1.0) };
-    }
-    let k = (ra - rb) / length;
-    let x = (p - a).dot(axis) / length;
-    let y = (p - a - axis * (x / length)).length();
-    let s = (x - y * k / (1.0 - k * k).sqrt()).clamp(0.0, length);
-    ((x - s).hypot(y) - (ra - k * s), s / length)
-}
 
 /// Distance to the union, and the capsule and place on it that are nearest.
 fn nearest(placed: &Placed, p: Vec3) -> (f32, usize, f32) {

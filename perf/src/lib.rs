@@ -5,6 +5,8 @@
 //! Thread: one, with nothing else running.
 
 pub mod ansur;
+pub mod depth;
+pub mod filters;
 pub mod latency;
 pub mod oracle;
 pub mod pareto;

@@ -66,9 +66,10 @@ impl Shell {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Rig, nearest, round_cone};
+    use super::super::{Rig, nearest};
     use super::*;
     use crate::body::{Body, Measures, Sex};
+    use crate::cone::round_cone;
 
     #[test]
     fn shells_lie_on_their_capsules_and_face_outwards() {

@@ -4,17 +4,49 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use stats_alloc::INSTRUMENTED_SYSTEM;
+use toile_perf::depth;
+use toile_perf::filters::{self, FiltersError};
 use toile_perf::skinning::{self, BenchError};
 use toile_perf::skirt::heap::{Heap, HeapProbe};
 use toile_perf::skirt::{self, SkirtError, table};
 
-use crate::cli::{SkinningArgs, SkirtArgs};
+use crate::cli::{DepthArgs, FiltersArgs, SkinningArgs, SkirtArgs};
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::pictures::write_png;
 use crate::report::{Document, SkinningReport};
 use crate::summary;
 use crate::terminal::{self, Paint, Words};
+
+/// Runs `toile bench depth`.
+///
+/// # Errors
+/// Where the scene's people cannot be made, and where stdout cannot be written.
+pub fn depth(args: &DepthArgs) -> Result<(), AppError> {
+    let words = Words::new(args.json);
+    let table = depth::run(&mut |case| words.say(case)).map_err(AppError::internal)?;
+    if args.json {
+        return terminal::print_json(&Document::new("bench-depth", table));
+    }
+    terminal::print(&table.markdown())
+}
+
+/// Runs `toile bench filters`.
+///
+/// # Errors
+/// Where a recording cannot be read, and where stdout cannot be written.
+pub fn filters(args: &FiltersArgs) -> Result<(), AppError> {
+    let words = Words::new(args.json);
+    let table = filters::table::run(args.data.as_deref(), args.table, &mut |case| words.say(case));
+    let table = table.map_err(|error| match error {
+        FiltersError::Source(error) => AppError::input(error),
+        FiltersError::Body(error) => AppError::internal(error),
+    })?;
+    if args.json {
+        return terminal::print_json(&Document::new("bench-filters", table));
+    }
+    terminal::print(&table.markdown())
+}
 
 /// Runs `toile bench skinning`.
 ///

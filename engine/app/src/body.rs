@@ -20,11 +20,10 @@ use toile_view::sheet;
 use toile_view::trace::{Quality, Stage};
 
 use crate::cli::BodyArgs;
-use crate::colliders::Followed;
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::pictures::write_png;
-use crate::report::{BodyReport, Document, Influences, JointFound, Named, SurfaceReport};
+use crate::report::{BodyReport, Document, Followed, Influences, JointFound, Named, SurfaceReport};
 use crate::summary;
 use crate::terminal::{self, Paint, Words};
 

@@ -16,6 +16,10 @@ mod bake;
 mod bodies;
 mod body;
 mod colliders;
+mod convert;
+mod depth;
+mod filters;
+mod gestures;
 mod latency;
 mod pareto;
 mod run;
@@ -28,6 +32,10 @@ pub use bake::BakeArgs;
 pub use bodies::BodiesArgs;
 pub use body::{BodyArgs, Wearer};
 pub use colliders::CollidersArgs;
+pub use convert::{ConvertArgs, KeptDepth};
+pub use depth::DepthArgs;
+pub use filters::FiltersArgs;
+pub use gestures::GesturesArgs;
 pub use latency::{LatencyArgs, ReplayArgs};
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
@@ -45,6 +53,8 @@ pub enum Command {
     Measure(MeasureArgs),
     /// `toile record`.
     Record(RecordArgs),
+    /// `toile convert`.
+    Convert(ConvertArgs),
     /// `toile run`.
     Run(RunArgs),
     /// `toile doctor`.
@@ -57,6 +67,12 @@ pub enum Command {
     Colliders(CollidersArgs),
     /// `toile bench body`.
     BenchBody(BodiesArgs),
+    /// `toile bench filters`.
+    BenchFilters(FiltersArgs),
+    /// `toile bench gestures`.
+    BenchGestures(GesturesArgs),
+    /// `toile bench depth`.
+    BenchDepth(DepthArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
@@ -162,6 +178,7 @@ pub fn command() -> clap::Command {
             try_on(),
             measure(),
             record(),
+            convert::grammar(),
             bake::grammar(),
             body::grammar(),
             run::grammar(),
@@ -251,7 +268,14 @@ fn bench() -> clap::Command {
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([skinning::grammar(), skirt::grammar(), bodies::grammar()])
+        .subcommands([
+            filters::grammar(),
+            skinning::grammar(),
+            skirt::grammar(),
+            bodies::grammar(),
+            gestures::grammar(),
+            depth::grammar(),
+        ])
         .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
 
@@ -323,6 +347,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         }),
+        "convert" => Command::Convert(convert::args(matches)?),
         "run" => Command::Run(run::args(matches)?),
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
         "bake" => Command::Bake(bake::args(matches)?),
@@ -341,6 +366,9 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
 
 fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
     match matches.subcommand() {
+        Some(("filters", matches)) => Ok(Command::BenchFilters(filters::parse(matches))),
+        Some(("gestures", matches)) => Ok(Command::BenchGestures(gestures::parse(matches)?)),
+        Some(("depth", matches)) => Ok(Command::BenchDepth(depth::parse(matches))),
         Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
         Some(("body", matches)) => Ok(Command::BenchBody(bodies::args(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),

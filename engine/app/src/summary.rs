@@ -226,10 +226,7 @@ fn recommendation(text: &mut String, worn: &Recommendation, paint: Paint) {
         let verdict = paint.tone(&verdict, tone);
         line(text, &format!("  {:17} {verdict} {:+5.0} mm of ease +- {:.0}", zone.zone, zone.ease_mm, zone.sigma_mm));
     }
-    if let Some(other) = &worn.runner_up {
-        let sure = worn.probability * 100.0;
-        line(text, &format!("  {sure:.0} % sure; size {other} may suit as well"));
-    }
+    line(text, &format!("  {}", worn.verdict));
     if let Some(note) = &worn.note {
         line(text, &format!("  {note}"));
     }

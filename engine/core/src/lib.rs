@@ -11,6 +11,10 @@ pub mod colliders;
 pub mod cone;
 #[expect(unsafe_code, reason = "a job that borrows the caller's stack is handed to another thread")]
 pub mod crew;
+// Not within the room's own file, which the models of the hand-offs include (tests/models).
+#[cfg(test)]
+#[path = "crew/tests.rs"]
+mod crew_tests;
 pub mod frame;
 pub mod hold;
 pub mod lanes;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use crate::colliders::Followed;
+use super::Followed;
 
 /// The body of `toile body`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]

@@ -78,7 +78,7 @@ struct Job {
 }
 
 /// What the two threads share. Phases are numbered by tickets that never repeat, over all runs.
-struct Board {
+pub(crate) struct Board {
     /// The last ticket of the run on the board.
     open: Apart<AtomicU64>,
     /// The last ticket whose share 1 somebody has begun. Share 0 is always the caller's.
@@ -210,7 +210,7 @@ fn sleep(board: &Board, ticket: u64) {
 
 /// The workers. A run borrows the crew, so two runs cannot overlap and a job cannot start another.
 pub struct Crew {
-    board: Arc<Board>,
+    pub(crate) board: Arc<Board>,
     helper: Option<JoinHandle<()>>,
     last: u64,
     taken: u64,
@@ -372,6 +372,3 @@ impl<T> Items<T> {
         (i < self.len).then(|| unsafe { &mut *self.data.add(i) })
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,6 +1,11 @@
 use std::hint::spin_loop;
 
-use super::*;
+use crate::crew::*;
+use std::sync::Arc;
+use std::sync::atomic::Ordering::{Relaxed, SeqCst};
+use std::time::Duration;
+
+use crate::sync::{AtomicBool, AtomicUsize, thread};
 use crate::lanes::Column;
 
 /// A job that fails where a phase begins before the one before it is over, and that writes plain memory which the other
