@@ -22,6 +22,7 @@ mod filters;
 mod gestures;
 mod latency;
 mod pareto;
+mod plan;
 mod run;
 mod skinning;
 mod skirt;
@@ -38,6 +39,7 @@ pub use filters::FiltersArgs;
 pub use gestures::GesturesArgs;
 pub use latency::{LatencyArgs, ReplayArgs};
 pub use pareto::ParetoArgs;
+pub use plan::{PlanArgs, PlanScene};
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
 pub use skirt::SkirtArgs;
@@ -87,6 +89,8 @@ pub enum Command {
     Latency(LatencyArgs),
     /// `toile replay`.
     Replay(ReplayArgs),
+    /// `toile plan`.
+    Plan(PlanArgs),
     /// `toile completions`.
     Completions(Shell),
     /// Help or version: text to print.
@@ -188,6 +192,7 @@ pub fn command() -> clap::Command {
             pareto::grammar(),
             torture::grammar(),
             latency::grammar(),
+            plan::grammar(),
             latency::replay_grammar(),
             completions(),
         ])
@@ -358,6 +363,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "validate" => Command::Validate(validate::args(matches)?),
         "pareto" => Command::Pareto(pareto::args(matches)?),
         "latency" => Command::Latency(latency::args(matches)?),
+        "plan" => Command::Plan(plan::args(matches)?),
         "replay" => Command::Replay(latency::replay_args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),

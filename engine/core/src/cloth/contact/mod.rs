@@ -37,6 +37,15 @@ pub struct ContactSettings {
     pub friction_kinetic: f32,
     /// Length of a step (s): how far what moves may come until the next search.
     pub step_seconds: f32,
+    /// Whether ways are followed between the ends of a substep, or only these looked at.
+    pub continuous: bool,
+}
+
+impl ContactSettings {
+    /// What moves less than this part of the smallest radius relative to a capsule is not followed.
+    fn quick(&self) -> f32 {
+        if self.continuous { QUICK } else { f32::MAX }
+    }
 }
 
 /// What contact did, counted since the garment was made.
@@ -151,7 +160,7 @@ impl Owner {
             share: span[1] - span[0],
             swell: 0.0,
             offset: how.offset_m,
-            quick: QUICK,
+            quick: how.quick(),
             to: cones,
         };
         width.run(prepare);
