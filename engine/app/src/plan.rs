@@ -53,7 +53,7 @@ pub fn run(args: &PlanArgs) -> Result<(), AppError> {
         played: None,
     };
     if plan.verdict.fits && !args.quick {
-        words.say("playing two seconds of it");
+        words.say("playing it, with each model and without");
         let played = weigh::play(&scene, args.workers).map_err(AppError::internal)?;
         plan.held = Some(Held::of(priced.stages_us[CLOTH], &played));
         plan.played = Some(played);

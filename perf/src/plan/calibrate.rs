@@ -67,7 +67,7 @@ fn texts() -> [String; 6] {
 /// What one cloth took.
 struct Sample {
     work: Work,
-    /// Median time of each stage (us).
+    /// Time of each stage (us).
     stages_us: [f64; STAGES.len()],
 }
 
@@ -118,9 +118,8 @@ fn sample(scene: &Scene) -> Result<Sample, PlanError> {
         }
     }
     let near = (before(&playing) - near) as f64 / TIMED as f64;
-    let first = FirstStep { near, ..FirstStep::of(&playing.cloths[0]) };
-    let work = Work::of(&scene.garments[0], &settings[0], &first);
-    Ok(Sample { work, stages_us: times.map(|mut all| median(&mut all)) })
+    let work = Work::of(&scene.garments[0], &settings[0], &FirstStep::of(&playing.cloths[0], near));
+    Ok(Sample { work, stages_us: times.map(|mut all| quartile(&mut all)) })
 }
 
 /// What it takes two workers to meet, from a cloth that they share (us).
@@ -144,9 +143,10 @@ fn meeting_us(scene: &Scene, costs: &Costs) -> Result<f64, PlanError> {
             one.push(begun.elapsed().as_secs_f64() * 1e6);
         }
     }
-    let work = Work::of(&scene.garments[0], &scene.settings[0], &FirstStep::of(&playing.cloths[0]));
+    let first = FirstStep::of(&playing.cloths[0], 0.0);
+    let work = Work::of(&scene.garments[0], &scene.settings[0], &first);
     let rest = costs.garment(&work).stages_us[STAGES.len() - 1];
-    let (two, one) = (median(&mut times), median(&mut one));
+    let (two, one) = (quartile(&mut times), quartile(&mut one));
     Ok(((two - rest - (one - rest) * work.share) / work.phases).max(0.0))
 }
 
@@ -185,10 +185,11 @@ fn copy_us() -> f64 {
     time::median_us(copy) / PARTICLES as f64
 }
 
-pub(super) fn median(values: &mut [f64]) -> f64 {
+/// The lower quartile: what a machine takes where nothing else wants it, in most of the times.
+pub(super) fn quartile(values: &mut [f64]) -> f64 {
     if values.is_empty() {
         return 0.0;
     }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+    let quarter = values.len() / 4;
+    *values.select_nth_unstable_by(quarter, f64::total_cmp).1
 }

@@ -2,7 +2,7 @@
 //!
 //! Reads: a scene's baked garments, colliders and motion. Writes: who can touch what, memory, the time of each stage as
 //! it is predicted, what each model is worth, whether the scene fits.
-//! Budget: two seconds, most of them to learn what this machine needs for a unit of work, and to weigh the models.
+//! Budget: some seconds, to learn what this machine needs for a unit of work, and to weigh the models.
 //! Thread: the caller's; the engine's workers where their hand-off is timed.
 
 pub mod calibrate;

@@ -89,12 +89,11 @@ fn widest_deg(joint: Joint) -> f32 {
     use Joint::*;
     match joint {
         Pelvis | LeftToe | RightToe => 0.0,
-        Spine | Chest | Neck | Head | LeftAnkle | RightAnkle => 65.0,
-        LeftClavicle | RightClavicle => 40.0,
-        LeftShoulder | RightShoulder => 180.0,
+        LeftClavicle | RightClavicle => 50.0,
+        Spine | Chest | LeftAnkle | RightAnkle | LeftWrist | RightWrist | LeftHand | RightHand => 80.0,
+        Neck | Head => 95.0,
         LeftElbow | RightElbow | LeftKnee | RightKnee => 155.0,
-        LeftWrist | RightWrist | LeftHand | RightHand => 80.0,
-        LeftHip | RightHip => 125.0,
+        LeftShoulder | RightShoulder | LeftHip | RightHip => 180.0,
     }
 }
 
@@ -208,4 +207,48 @@ fn nearest(garment: &Garment, poses: &[Posed]) -> Vec<Option<[f32; MAX_CAPSULES]
         }
     }
     nearest
+}
+
+#[cfg(test)]
+mod tests {
+    use toile_assets::scene_file::{SceneFile, Source};
+
+    use super::*;
+
+    /// A cloth of 0.4 m that hangs at x = 0, with a ball that it can swing to and one that it cannot.
+    fn scene(pinned: &str) -> Scene {
+        let ball = |centre: &str| format!("[[colliders.sphere]]\ncentre = {centre}\nradius = 0.05\n");
+        let text = format!(
+            "duration = 0.1\n[[garment]]\ngrid = {{ rows = 9, columns = 9, width = 0.4, height = 0.4 }}\nposition = [0, 2, \
+             0]\n{pinned}\n[colliders]\ncapsules = [[0, 0], [1, 1]]\n{}{}",
+            ball("[0, 1.8, 0.3]"),
+            ball("[0, 1.0, 0]")
+        );
+        Scene::file(SceneFile::parse("test", &text, Source::Inside(&[])).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn what_hangs_touches_what_its_cloth_is_long_enough_for_and_what_falls_touches_anything() {
+        let [row] = &reach(&scene("[[garment.pin]]\nvertices = [\"0-8\"]"))[..] else { panic!("one part") };
+        assert_eq!((row.by_part, row.by_length, &row.touches[..]), (2, 1, &["capsule 0".to_owned()][..]));
+        assert!(row.mean > 0.2 && row.mean < 1.0, "only the lower rows come so far: {}", row.mean);
+        let [row] = &reach(&scene(""))[..] else { panic!("one part") };
+        assert_eq!((row.by_length, row.mean), (2, 2.0));
+    }
+
+    #[test]
+    fn ranges_are_wider_than_what_a_pose_is_held_to() {
+        use toile_engine::body::limits;
+        let wide = |joint, s: limits::Spread| {
+            let most = |[a, b]: [f32; 2]| a.abs().max(b.abs());
+            let all = Vec3::new(most(s.flexion), most(s.turn), most(s.side)).length();
+            assert!(widest_deg(joint) >= all, "{joint:?}: {all}");
+        };
+        wide(Joint::Chest, limits::TRUNK);
+        wide(Joint::Neck, limits::NECK);
+        wide(Joint::LeftAnkle, limits::ANKLE);
+        wide(Joint::LeftClavicle, limits::CLAVICLE);
+        assert!(widest_deg(Joint::RightElbow) >= limits::ELBOW.max && widest_deg(Joint::RightKnee) >= limits::KNEE.max);
+        assert!(widest_deg(Joint::LeftWrist) >= limits::WRIST_DEG);
+    }
 }

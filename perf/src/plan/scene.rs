@@ -19,8 +19,8 @@ use toile_sensors::sample::sample;
 use super::PlanError;
 use crate::scene_run;
 
-/// Most steps of a session that are played: two seconds.
-pub const MOST_STEPS: usize = 240;
+/// Most steps of a session or a scene file that are played: ten seconds.
+pub const MOST_STEPS: usize = 1_200;
 
 /// What moves bones and colliders.
 #[derive(Debug, Clone)]

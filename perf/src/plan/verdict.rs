@@ -7,7 +7,7 @@ use toile_engine::pace::governor::LADDER;
 
 use super::cost::{Costs, GarmentTime};
 use super::scene::Scene;
-use super::work::{FirstStep, Work};
+use super::work::{FirstStep, Work, near};
 
 /// Whether a scene fits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -52,7 +52,7 @@ impl Priced {
         let one = |(garment, settings): (_, &Settings)| {
             let mut cloth = Cloth::new(garment, &scene.colliders);
             cloth.step(garment, &Step { palette: &bones, colliders: &scene.colliders, settings });
-            let first = FirstStep::of(&cloth);
+            let first = FirstStep::of(&cloth, near(garment, &scene.colliders));
             (first, Work::of(garment, settings, &first))
         };
         let (first, work): (Vec<_>, Vec<_>) = scene.garments.iter().zip(settings).map(one).unzip();

@@ -1,10 +1,12 @@
 //! How much work a step of a garment is, counted from its layout in units that each take about the same time: what one
 //! pass of the lanes does, and what is gathered one by one.
 
-use toile_assets::garment::Garment;
+use glam::Vec3;
 use toile_assets::garment::layout::{ENDED, Links, Tuples};
+use toile_assets::garment::{Garment, Part};
 use toile_engine::cloth::program::{self, BEFORE, Bending, Op};
-use toile_engine::cloth::{Cloth, Quality, Settings, bending};
+use toile_engine::cloth::{Cloth, Quality, Settings, bending, contact};
+use toile_engine::colliders::Colliders;
 
 /// Kinds of unit in each stage.
 pub const KINDS: usize = 3;
@@ -45,6 +47,22 @@ pub struct Work {
     pub substeps: u32,
 }
 
+/// Cloth nearer to the body than this, as it is laid on, counts as near (m): what it moves towards the body in a step, and
+/// the ease that gives way where it hangs.
+const NEAR_M: f32 = 0.015;
+
+/// Pairs of a particle that moves and a capsule that its part can touch, near as the garment is laid on.
+pub fn near(garment: &Garment, colliders: &Colliders) -> f64 {
+    let cones = colliders.cones_at(1.0);
+    let free = garment.parts.iter().zip(&garment.start).zip(&garment.inverse_mass).filter(|(_, w)| **w > 0.0);
+    let of = |((part, p), _): ((&Part, &Vec3), &f32)| {
+        let bits = contact::reach(*part, colliders);
+        let touches = |c: &usize| bits >> c & 1 != 0 && cones[*c].distance(*p).0 < NEAR_M;
+        (0..colliders.capsules().len()).filter(touches).count() as f64
+    };
+    free.map(of).sum()
+}
+
 /// What only a step tells: how it was prepared, and how much of the garment is near the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirstStep {
@@ -58,8 +76,8 @@ pub struct FirstStep {
 
 impl FirstStep {
     /// Of a cloth that was made, and stepped once.
-    pub fn of(cloth: &Cloth) -> Self {
-        Self { substeps: cloth.substeps(), bend: cloth.bend_pace(), near: cloth.contact_tally().near as f64 }
+    pub fn of(cloth: &Cloth, near: f64) -> Self {
+        Self { substeps: cloth.substeps(), bend: cloth.bend_pace(), near }
     }
 }
 

@@ -45,7 +45,7 @@ pub(super) fn grammar() -> clap::Command {
         .about("Say what a scene needs, whether it fits into its time, and what each model is worth, before it runs")
         .long_about(
             "Counts the work of a scene and learns what this machine takes for it: which colliders each part of a garment \
-             can ever touch, memory by part, the predicted time of each stage against its budget. Then plays two seconds of it: \
+             can ever touch, memory by part, the predicted time of each stage against its budget. Then plays ten seconds of it: \
              how the prediction held, and for each model the error of leaving it out and the time that it takes. A scene \
              that cannot fit is refused with exit code 3 and the cure, before anything is played.",
         )

@@ -84,8 +84,11 @@ fn stages(plan: &Plan, lines: &mut Vec<String>, paint: Paint) {
     lines.push(paint.tone(&said, tone).into_owned());
     if let Some(held) = &plan.held {
         lines.push(format!(
-            "  played: cloth {:.0} us in the median, {:.0} us at 99 %; the prediction is {:+.0} % off the median",
-            held.measured_us[0], held.measured_us[1], held.error_percent
+            "  played: cloth {:.0} us in the median, {:.0} us at 99 %, {} pairs near; the prediction is {:+.0} % off the median",
+            held.measured_us[0],
+            held.measured_us[1],
+            plan.played.as_ref().map_or(0, |p| p.near),
+            held.error_percent
         ));
     }
     if !v.within_budget {
@@ -116,5 +119,8 @@ fn models(plan: &Plan, played: &Played, lines: &mut Vec<String>) {
         }
     }
     lines.push("    (50 ms from the same state; times on one core, all garments)".to_owned());
-    lines.push("    self-collision, and contact between garments, are not in the engine: what they would cost is not known".to_owned());
+    lines.push(
+        "    self-collision, and contact between garments, are not in the engine: what they would cost is not known"
+            .to_owned(),
+    );
 }
