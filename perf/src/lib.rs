@@ -7,8 +7,10 @@
 pub mod ansur;
 pub mod depth;
 pub mod filters;
+pub mod latency;
 pub mod oracle;
 pub mod pareto;
+pub mod plan;
 pub mod scene_run;
 pub mod skinning;
 pub mod skirt;

@@ -17,12 +17,16 @@ pub mod dump;
 pub mod exit;
 pub mod fit;
 pub mod gestures;
+pub mod latency;
 pub mod machine;
 pub mod measure;
+pub mod outfit;
 pub mod output;
 pub mod pareto;
 pub mod pictures;
+pub mod plan;
 pub mod record;
+pub mod replay;
 pub mod report;
 pub mod run;
 pub mod shopper;
@@ -83,6 +87,9 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Torture(args) => torture::run(args),
         Command::Validate(args) => validate::run(args),
         Command::Pareto(args) => pareto::run(args),
+        Command::Latency(args) => latency::run(args),
+        Command::Plan(args) => plan::run(args),
+        Command::Replay(args) => replay::run(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }
