@@ -13,6 +13,7 @@ pub mod pareto;
 pub mod scene_run;
 pub mod skinning;
 pub mod skirt;
+pub mod soak;
 mod surface;
 pub mod time;
 pub mod torture;

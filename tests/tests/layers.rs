@@ -62,6 +62,7 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
             &["depth", "skinning", "skirt", "latency"],
             &["torture", "validate"],
             &["pareto"],
+            &["soak"],
         ],
     ),
 ];

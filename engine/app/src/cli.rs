@@ -25,6 +25,7 @@ mod pareto;
 mod run;
 mod skinning;
 mod skirt;
+mod soak;
 mod torture;
 mod validate;
 
@@ -41,6 +42,7 @@ pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
 pub use skirt::SkirtArgs;
+pub use soak::SoakArgs;
 pub use torture::TortureArgs;
 pub use validate::ValidateArgs;
 
@@ -87,6 +89,8 @@ pub enum Command {
     Latency(LatencyArgs),
     /// `toile replay`.
     Replay(ReplayArgs),
+    /// `toile soak`.
+    Soak(SoakArgs),
     /// `toile completions`.
     Completions(Shell),
     /// Help or version: text to print.
@@ -189,6 +193,7 @@ pub fn command() -> clap::Command {
             torture::grammar(),
             latency::grammar(),
             latency::replay_grammar(),
+            soak::grammar(),
             completions(),
         ])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
@@ -359,6 +364,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "pareto" => Command::Pareto(pareto::args(matches)?),
         "latency" => Command::Latency(latency::args(matches)?),
         "replay" => Command::Replay(latency::replay_args(matches)?),
+        "soak" => Command::Soak(soak::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
     })

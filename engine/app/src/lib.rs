@@ -12,11 +12,13 @@ pub mod cli;
 mod colliders;
 pub mod completions;
 pub mod convert;
+pub mod crash;
 pub mod doctor;
 pub mod dump;
 pub mod exit;
 pub mod fit;
 pub mod gestures;
+pub mod heap;
 pub mod latency;
 pub mod machine;
 pub mod measure;
@@ -29,6 +31,7 @@ pub mod replay;
 pub mod report;
 pub mod run;
 pub mod shopper;
+pub mod soak;
 pub mod summary;
 pub mod terminal;
 pub mod torture;
@@ -88,6 +91,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Pareto(args) => pareto::run(args),
         Command::Latency(args) => latency::run(args),
         Command::Replay(args) => replay::run(args),
+        Command::Soak(args) => soak::run(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }
