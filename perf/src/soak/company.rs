@@ -16,10 +16,10 @@ use super::{SoakError, Weight};
 
 /// Of a light scene: distance between particles along the warp (mm) and their number around the body, the coarsest that a
 /// style may have.
-const LIGHT: (f32, usize) = (60.0, 20);
+const LIGHT: (f32, usize) = (60.0, 16);
 
 /// Substeps of a light scene.
-const LIGHT_SUBSTEPS: u32 = 2;
+const LIGHT_SUBSTEPS: u32 = 1;
 
 /// Every so many of the body's vertices are left in a light scene.
 const LIGHT_SKIN: usize = 16;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
 use toile_engine::clock::{Clock, RealClock, SimClock};
+use toile_engine::meter::PERIOD_NS;
 use toile_engine::pace::Turn;
 use toile_engine::pace::queue::{Capacity, Receiver};
 use toile_sensors::clock::SECOND_NS;
@@ -189,7 +190,8 @@ impl<C: Jumping> Watch<C> {
 
     /// Whether nothing was wrong at a step and long before it, and nobody had just come.
     fn calm(&mut self, scheduled_ns: u64) -> bool {
-        let at = scheduled_ns.saturating_sub(self.ground.origin_ns);
+        // Of the time that the step's joints are for.
+        let at = (scheduled_ns + PERIOD_NS).saturating_sub(self.ground.origin_ns);
         let came = self.ground.script.visit_at(at).is_some_and(|v| at < v.from_ns + CALM_NS);
         if came || !self.open.is_empty() || self.pressure.is_some() {
             self.calm_ns = at + CALM_NS;

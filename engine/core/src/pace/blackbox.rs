@@ -16,6 +16,10 @@ use super::tape::{self, Entry};
 /// What is kept at least (ns).
 pub const KEPT_NS: u64 = 10_000_000_000;
 
+/// Room for each of two visits that is there, and touched, from the begin (bytes): nine minutes. Only a longer one takes memory
+/// while it goes on.
+pub const ROOM_BYTES: usize = 8 << 20;
+
 /// Longest visit that is kept whole (bytes): an hour at 15 kB a second. Of a longer one nothing is kept beyond it.
 pub const MOST_BYTES: usize = 56 << 20;
 
@@ -47,8 +51,14 @@ pub struct BlackBox(Mutex<Inner>);
 impl BlackBox {
     /// An empty box whose file begins with this header ([`tape::header`]); it empties this queue.
     pub fn new(header: Vec<u8>, entries: Receiver<Entry>) -> Self {
-        let visits = VecDeque::new();
-        Self(Mutex::new(Inner { header, entries, visits, newest_ns: 0, spare: Vec::new() }))
+        // Written to once, so that the system has given it.
+        let room = || {
+            let mut bytes = vec![1; ROOM_BYTES];
+            bytes.clear();
+            bytes
+        };
+        let spare = vec![room(), room()];
+        Self(Mutex::new(Inner { header, entries, visits: VecDeque::with_capacity(16), newest_ns: 0, spare }))
     }
 
     /// Keeps an entry that comes from elsewhere: how the shopper was dressed before the first step.
