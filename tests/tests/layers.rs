@@ -61,8 +61,7 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
             &["oracle"],
             &["depth", "skinning", "skirt", "latency"],
             &["torture", "validate"],
-            &["pareto"],
-            &["soak"],
+            &["pareto", "plan", "soak"],
         ],
     ),
 ];

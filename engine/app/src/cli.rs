@@ -22,6 +22,7 @@ mod filters;
 mod gestures;
 mod latency;
 mod pareto;
+mod plan;
 mod run;
 mod skinning;
 mod skirt;
@@ -39,6 +40,7 @@ pub use filters::FiltersArgs;
 pub use gestures::GesturesArgs;
 pub use latency::{LatencyArgs, ReplayArgs};
 pub use pareto::ParetoArgs;
+pub use plan::{PlanArgs, PlanScene};
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
 pub use skirt::SkirtArgs;
@@ -89,6 +91,8 @@ pub enum Command {
     Latency(LatencyArgs),
     /// `toile replay`.
     Replay(ReplayArgs),
+    /// `toile plan`.
+    Plan(PlanArgs),
     /// `toile soak`.
     Soak(SoakArgs),
     /// `toile completions`.
@@ -192,6 +196,7 @@ pub fn command() -> clap::Command {
             pareto::grammar(),
             torture::grammar(),
             latency::grammar(),
+            plan::grammar(),
             latency::replay_grammar(),
             soak::grammar(),
             completions(),
@@ -363,6 +368,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "validate" => Command::Validate(validate::args(matches)?),
         "pareto" => Command::Pareto(pareto::args(matches)?),
         "latency" => Command::Latency(latency::args(matches)?),
+        "plan" => Command::Plan(plan::args(matches)?),
         "replay" => Command::Replay(latency::replay_args(matches)?),
         "soak" => Command::Soak(soak::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),

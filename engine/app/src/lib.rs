@@ -26,6 +26,7 @@ pub mod outfit;
 pub mod output;
 pub mod pareto;
 pub mod pictures;
+pub mod plan;
 pub mod record;
 pub mod replay;
 pub mod report;
@@ -90,6 +91,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Validate(args) => validate::run(args),
         Command::Pareto(args) => pareto::run(args),
         Command::Latency(args) => latency::run(args),
+        Command::Plan(args) => plan::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Soak(args) => soak::run(args),
         Command::Completions(shell) => completions::run(*shell),

@@ -32,7 +32,10 @@ fn every_kind_of_fault_is_borne_and_a_second_run_is_the_same() {
     assert_eq!(found["state_hash"], found["second_state_hash"]);
     // Stalls and jumps took some of the 28,800 steps.
     let whole = |key: &str| found[key].as_u64().unwrap();
-    assert!((26_000..28_800).contains(&whole("ticks")) && whole("ticks") + whole("deadline_misses") >= 28_790, "{found}");
+    assert!(
+        (26_000..28_800).contains(&whole("ticks")) && whole("ticks") + whole("deadline_misses") >= 28_790,
+        "{found}"
+    );
     assert!(whole("changes") >= 2 && found["pictures"][1] == 2 && found["off_mm"].as_f64().unwrap() < 80.0);
     let page = fs::read_to_string(scratch.path().join("soak/soak.html")).unwrap();
     assert!(page.contains("<svg") && page.trim_end().ends_with("</html>") && !page.contains("http://cdn"));
@@ -56,7 +59,8 @@ fn an_uptime_of_years_changes_no_bit_and_another_seed_all_of_them() {
 #[test]
 fn a_recorded_run_is_replayed_with_one_worker_as_with_two() {
     let scratch = Scratch::new("soak-replay");
-    let line = ["soak", "--minutes", "1.5", "--seed", "3", "--faults", "15", "--once", "--record", "run.tape", "--json"];
+    let line =
+        ["soak", "--minutes", "1.5", "--seed", "3", "--faults", "15", "--once", "--record", "run.tape", "--json"];
     let (_, found) = object(&scratch, &line);
     assert!(found["changes"].as_u64().unwrap() >= 1, "garments were changed: {found}");
     let again = ["1", "2"].map(|workers| {

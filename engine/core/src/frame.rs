@@ -167,11 +167,11 @@ impl Frame {
         Self { settings: Settings { workers: crew.workers(), ..self.settings }, crew, ..self }
     }
 
-    /// Changes crews with another frame, which is to be stepped in this one's place or the other way about: the helper stays
-    /// the thread that it is.
-    pub fn change_crews(&mut self, other: &mut Self) {
-        std::mem::swap(&mut self.crew, &mut other.crew);
-        std::mem::swap(&mut self.settings.workers, &mut other.settings.workers);
+    /// Takes over the crew of a frame that leaves the stage, which gets this one's: no thread begins or ends.
+    pub fn take_crew(&mut self, from: &mut Self) {
+        std::mem::swap(&mut self.crew, &mut from.crew);
+        self.settings.workers = self.crew.workers();
+        from.settings.workers = from.crew.workers();
     }
 
     /// Strain and penetration are measured every so many steps, for a loop that has other things to do with the time;

@@ -87,7 +87,7 @@ impl Scene for Staged {
     }
 
     fn succeed(&mut self, before: &mut Self) {
-        self.frame.change_crews(&mut before.frame);
+        self.frame.take_crew(&mut before.frame);
     }
 
     fn troubles(&self) -> [u64; 2] {
