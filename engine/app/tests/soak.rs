@@ -20,10 +20,12 @@ fn every_kind_of_fault_is_borne_and_a_second_run_is_the_same() {
     let scratch = Scratch::new("soak");
     let (code, found) = object(&scratch, &["soak", "--minutes", "4", "--seed", "7", "--faults", "38", "--json"]);
     assert_eq!(found["schema"], "toile.soak/1");
-    // Memory over four minutes says nothing of an hour; the nightly run has hours.
-    let failed: Vec<&Value> = found["checks"].as_array().unwrap().iter().filter(|c| c["pass"] != true).collect();
-    assert!(failed.iter().all(|c| c["name"].as_str().unwrap().starts_with("resident memory")), "{failed:?}");
-    assert!(code == Some(0) || code == Some(3) && !failed.is_empty());
+    let checks = found["checks"].as_array().unwrap();
+    let failed: Vec<&Value> = checks.iter().filter(|c| c["pass"] != true).collect();
+    assert_eq!((code, failed), (Some(0), vec![]));
+    // Resident memory over four minutes says nothing of an hour.
+    let unchecked: Vec<&Value> = checks.iter().filter(|c| c["found"].is_null()).map(|c| &c["name"]).collect();
+    assert!(cfg!(not(target_os = "linux")) || unchecked == ["resident memory, growth behind the warm-up (KiB)"]);
     let kinds = found["faults"]["kinds"].as_array().unwrap();
     assert_eq!(kinds.len(), 19, "{kinds:?}");
     assert!(kinds.iter().all(|k| k["injected"] == 2 && k["recovered"] == 2), "{kinds:?}");

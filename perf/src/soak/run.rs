@@ -193,8 +193,14 @@ impl<C: Jumping + Clone + Send> Lives<C> {
         let count = self.watch.ground().count;
         let (sense, stepping, showing) = (&self.sensor.life, &self.physics.life, &self.render.life);
         let gauges = &stepping.physics.gauges;
+        // The fullest of the queues of signs stands for all.
+        let signs = self.watch.capacities().reduce(|a, b| Capacity {
+            high_water: a.high_water.max(b.high_water),
+            lost: a.lost + b.lost,
+            ..a
+        });
         let mut capacities = vec![self.events.capacity(), self.black_box.capacity()];
-        capacities.extend(self.watch.capacities());
+        capacities.extend(signs);
         let mut warnings: Vec<String> = capacities.iter().filter_map(Capacity::warning).collect();
         warnings.extend(self.recorder.life.trouble.clone());
         warnings.extend(self.front.life.trouble.clone());

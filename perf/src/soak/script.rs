@@ -170,12 +170,12 @@ impl Sight {
     /// In words, for the page.
     pub fn words(self) -> &'static str {
         match self {
-            Self::Following => "a step in time, with a new frame, follows the shopper",
+            Self::Following => "the shopper is followed again",
             Self::Step => "a step is published in time",
             Self::Picture => "a picture of a newer snapshot is taken",
             Self::Recording => "all that waited is written",
             Self::Front => "the front takes its turn",
-            Self::Refusal => "each file is refused, the next step is in time",
+            Self::Refusal => "all are refused, the next step is in time",
         }
     }
 }
