@@ -221,7 +221,7 @@ fn another_scene_takes_the_place_between_two_steps_and_in_the_replay_too() {
     for number in 1..=4 {
         rig.run(number * 2 * SECOND_NS);
         let scene = Toy::new(&rig.clock, |_| MS);
-        giver.give(Box::new(Change { scene, number, afresh: number % 2 == 0 })).unwrap();
+        assert!(giver.give(Box::new(Change { scene, number, afresh: number % 2 == 0 })).is_ok());
         rig.run(number * 2 * SECOND_NS + SECOND_NS);
         let before = giver.returned().expect("the scene before");
         assert!(before.scene.path.borrow().len() >= 200 && before.number == number);
