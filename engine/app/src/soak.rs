@@ -71,7 +71,7 @@ pub fn run(args: &SoakArgs) -> Result<(), AppError> {
         progress: &|seconds| words.say(&format!("{} of {} minutes", seconds / 60, args.options.plan.seconds / 60)),
         crash_ns: args.crash_after.map(|s| s * 1_000_000_000),
     };
-    let ran = soak::run(&args.options, tools).map_err(refused)?;
+    let ran = soak::run(&args.options, &tools).map_err(refused)?;
     crash::forget();
     let second = if args.once { None } else { second(&args.options, ran.hash, kept.as_deref(), &words)? };
     let found = Soak::new(ran, &args.options, second);
@@ -127,7 +127,7 @@ fn second(options: &Options, hash: u64, kept: Option<&Path>, words: &Words) -> R
             progress: &|_| {},
             crash_ns: None,
         };
-        return soak::run(options, tools).map(|ran| Some(ran.hash)).map_err(refused);
+        return soak::run(options, &tools).map(|ran| Some(ran.hash)).map_err(refused);
     }
     let Some(path) = kept else { return Ok(None) };
     let unread = |e: std::io::Error| AppError::Input(format!("{} cannot be read again ({e})", path.display()));

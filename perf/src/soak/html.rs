@@ -128,6 +128,9 @@ fn faults(html: &mut String, soak: &Soak) {
     );
 }
 
+/// One of a sample's figures.
+type Figure = fn(&Sample) -> Option<u64>;
+
 /// Resident memory and the heap over the run.
 fn memory(html: &mut String, memory: &Memory) {
     let _ = writeln!(
@@ -168,7 +171,7 @@ fn memory(html: &mut String, memory: &Memory) {
             floor + 20.0
         );
     }
-    let lines: [(&str, fn(&Sample) -> Option<u64>); 2] = [("#0072b2", |s| s.rss_kib), ("#d55e00", |s| s.heap_kib)];
+    let lines: [(&str, Figure); 2] = [("#0072b2", |s| s.rss_kib), ("#d55e00", |s| s.heap_kib)];
     for (colour, of) in lines {
         let points: Vec<String> = memory
             .samples

@@ -15,7 +15,7 @@ use toile_engine::pace::physics::{Outlets, Physics, Staged};
 use toile_engine::pace::queue::{Capacity, Receiver, bounded};
 use toile_engine::pace::render::Render;
 use toile_engine::pace::roles::{Placement, Role};
-use toile_engine::pace::sense::{Seen, Sense};
+use toile_engine::pace::sense::{self, Sense};
 use toile_engine::pace::simulate::simulate;
 use toile_engine::pace::tape::{ENTRIES, ENTRIES_NAME, Entry};
 use toile_engine::pace::threads::{self, Life, Stop};
@@ -84,7 +84,7 @@ pub struct Ran {
     /// Broken garments refused and accepted.
     pub broken: [u64; 2],
     /// What the watch saw.
-    pub(super) watch: Seenby,
+    pub(super) watch: Seen,
     /// How full every queue was.
     pub capacities: Vec<Capacity>,
     /// Where the threads ran.
@@ -96,7 +96,7 @@ pub struct Ran {
 }
 
 /// What the watch saw.
-pub(super) struct Seenby {
+pub(super) struct Seen {
     pub outcomes: Vec<super::watch::Outcome>,
     pub steps: super::watch::Steps,
     pub samples: Vec<super::memory::Sample>,
@@ -119,27 +119,21 @@ struct Lives<C: Clock> {
 ///
 /// # Errors
 /// Too many faults, a first scene that cannot be made, and a thread that ends before its time.
-pub fn run(options: &Options, tools: Tools<'_>) -> Result<Ran, SoakError> {
+pub fn run(options: &Options, tools: &Tools<'_>) -> Result<Ran, SoakError> {
     let script = Arc::new(Script::write(options.plan)?);
     let (origin, begun) = (options.uptime_hours * 3_600 * SECOND_NS, Instant::now());
     let ran = if options.real_time {
         let clock = JumpClock::starting_at(origin);
-        real(Lives::new(options, script, clock, tools.count, &tools)?, options, &tools)
+        real(Lives::new(options, script, clock, tools)?, options, tools)
     } else {
         let clock = SimClock::starting_at(origin);
-        Ok(simulated(Lives::new(options, script, clock.clone(), tools.count, &tools)?, &clock, options, &tools))
+        Ok(simulated(Lives::new(options, script, clock.clone(), tools)?, &clock, options, tools))
     };
     ran.map(|ran| Ran { wall_s: begun.elapsed().as_secs_f64(), ..ran })
 }
 
 impl<C: Jumping + Clone + Send> Lives<C> {
-    fn new(
-        options: &Options,
-        script: Arc<Script>,
-        clock: C,
-        count: Option<Allocations>,
-        tools: &Tools<'_>,
-    ) -> Result<Self, SoakError> {
+    fn new(options: &Options, script: Arc<Script>, clock: C, tools: &Tools<'_>) -> Result<Self, SoakError> {
         let mut company = Company::new(script.clone());
         let (frame, reader) = company.make(0)?;
         let (frame, worker) = if options.workers > 1 {
@@ -150,10 +144,10 @@ impl<C: Jumping + Clone + Send> Lives<C> {
         };
         // Making the first scene took its time.
         let origin_ns = clock.now_ns() + 4 * PERIOD_NS;
-        let ground = Ground { script: script.clone(), clock: clock.clone(), origin_ns, count };
+        let ground = Ground { script: script.clone(), clock: clock.clone(), origin_ns, count: tools.count };
         let (sender, events) = bounded(EVENTS_NAME, EVENTS);
         let (tape, entries) = bounded(ENTRIES_NAME, ENTRIES);
-        let Relay { writer, reader: seen } = Relay::new(&Seen::default());
+        let Relay { writer, reader: seen } = Relay::new(&sense::Seen::default());
         let (scenes, changes) = handover();
         let (readers, other_readers) = handover();
         let outlets = Outlets { events: sender, tape: Some(tape) };
@@ -218,7 +212,7 @@ impl<C: Jumping + Clone + Send> Lives<C> {
             pictures: [showing.render.pictures, self.watch.revived],
             disk: [self.recorder.life.refused, self.recorder.life.written],
             broken: [self.front.life.refused, self.front.life.accepted],
-            watch: Seenby { outcomes: self.watch.outcomes, steps, samples: self.watch.samples },
+            watch: Seen { outcomes: self.watch.outcomes, steps, samples: self.watch.samples },
             capacities,
             threads,
             warnings,
