@@ -55,7 +55,8 @@ pub fn run(args: &PlanArgs) -> Result<(), AppError> {
     if plan.verdict.fits && !args.quick {
         words.say("playing it, with each model and without");
         let played = weigh::play(&scene, args.workers).map_err(AppError::internal)?;
-        plan.held = Some(Held::of(priced.stages_us[CLOTH], &played));
+        let one_core = priced.times.iter().map(|t| t.one_us).sum();
+        plan.held = Some(Held::of(priced.stages_us[CLOTH], one_core, &played));
         plan.played = Some(played);
     }
     let refused = (!plan.verdict.fits).then(|| AppError::Threshold(refusal(&plan.scene, &plan.verdict)));

@@ -42,7 +42,7 @@ const WALKING: &str = "duration = 7\n[colliders]\nmotion = \"walk\"\n";
 const WAIST: &str = "motion = \"walk\"\n";
 
 /// Each cloth's own part of its scene file.
-fn texts() -> [String; 6] {
+fn texts() -> [String; 7] {
     let scene = |more: &str, garment: &str, pinned: &str| {
         format!("{WALKING}{more}\n[[garment]]\n{garment}\n[[garment.pin]]\nvertices = [\"{pinned}\"]\n{WAIST}")
     };
@@ -61,6 +61,11 @@ fn texts() -> [String; 6] {
         scene(draft, "skirt = { side = 48 }\nfabric = \"cotton-jersey\"", "0-47"),
         scene("", &format!("{}\nfabric = \"cotton-jersey\"", tube(40, 96)), "0-95"),
         scene(draft, "skirt = { side = 24, layout = \"irregular\" }\nfabric = \"cotton-lawn\"", "0-23"),
+        // Nothing holds it, so that all of its fibers are solved by index.
+        format!(
+            "{WALKING}[[garment]]\ngrid = {{ rows = 32, columns = 40, width = 1.0, height = 0.8, plane = \"level\" }}\n\
+                 position = [0, 1.2, 0]\n"
+        ),
     ]
 }
 

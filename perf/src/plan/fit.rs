@@ -28,9 +28,9 @@ fn solve(rows: &[[f64; KINDS]], measured: &[f64], columns: &[usize]) -> Option<[
     let mut m = [[0.0; KINDS + 1]; KINDS];
     for (row, &y) in rows.iter().zip(measured).filter(|(_, y)| **y > 0.0) {
         let scaled = |k: usize| row[columns[k]] / y;
-        for i in 0..n {
-            (0..n).for_each(|j| m[i][j] += scaled(i) * scaled(j));
-            m[i][KINDS] += scaled(i);
+        for (i, equation) in m.iter_mut().enumerate().take(n) {
+            (0..n).for_each(|j| equation[j] += scaled(i) * scaled(j));
+            equation[KINDS] += scaled(i);
         }
     }
     let mut found = [0.0; KINDS];

@@ -106,13 +106,21 @@ pub struct Held {
     pub measured_us: [f64; 2],
     /// Predicted over measured median, less one (%).
     pub error_percent: f64,
+    /// The same on one core, the sum of the stages: predicted, measured (us), and the error (%).
+    pub one_core: [f64; 3],
 }
 
 impl Held {
     /// Of a prediction and what was played.
-    pub fn of(predicted_us: f64, played: &Played) -> Self {
-        let error_percent = 100.0 * (predicted_us / played.cloth_us[0].max(1e-9) - 1.0);
-        Self { predicted_us, measured_us: played.cloth_us, error_percent }
+    pub fn of(predicted_us: f64, one_core_us: f64, played: &Played) -> Self {
+        let off = |predicted: f64, measured: f64| 100.0 * (predicted / measured.max(1e-9) - 1.0);
+        let one = played.stages_us.iter().sum();
+        Self {
+            predicted_us,
+            measured_us: played.cloth_us,
+            error_percent: off(predicted_us, played.cloth_us[0]),
+            one_core: [one_core_us, one, off(one_core_us, one)],
+        }
     }
 }
 

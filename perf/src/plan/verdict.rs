@@ -92,13 +92,16 @@ pub fn judge(scene: &Scene, priced: &Priced, costs: &Costs, workers: usize) -> V
     }
 }
 
+/// What a step takes where a change is made to the settings (us).
+type Changed<'a> = dyn Fn(&dyn Fn(&mut Settings)) -> f64 + 'a;
+
 /// What would bring a scene within the budget, each priced like the scene itself.
 fn cures(
     scene: &Scene,
     priced: &Priced,
     costs: &Costs,
     (workers, budget_us): (usize, f64),
-    changed: &dyn Fn(&dyn Fn(&mut Settings)) -> f64,
+    changed: &Changed<'_>,
 ) -> Vec<String> {
     let mut cures = Vec::new();
     let us = |us: f64| format!("{:.1} ms", us * 1e-3);

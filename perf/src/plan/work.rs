@@ -21,7 +21,7 @@ pub const UNITS: [[&str; KINDS]; STAGES.len()] = [
     ["lanes of stencils", "lanes of scattered stencils", "lanes of ring sums"],
     ["lanes of links along fibers", "lanes of links", "lanes of scattered links"],
     ["lanes of links", "lanes of scattered links", "phases"],
-    ["lanes of rows", "lanes of rows by index", "phases"],
+    ["lanes of rows", "lanes of rows by index", "lanes of closed hoops"],
     ["blocks of particles", "near pairs", "phases"],
     ["lanes of triangles", "", ""],
     ["lanes of particles", "", ""],
@@ -166,10 +166,12 @@ impl Count<'_> {
     fn fibers(&self) -> [f64; KINDS] {
         let layout = &self.garment.layout;
         let rows: f64 = layout.fibers.rows.iter().map(|r| self.vectors(r.lanes as usize)).sum();
-        let listed = layout.crossing.lists.iter().map(|l| l.links() as f64 * self.vectors(l.lanes as usize));
+        let listed = |closed: bool| {
+            let lists = layout.crossing.lists.iter().filter(|l| l.closed == closed);
+            lists.map(|l| l.links() as f64 * self.vectors(l.lanes as usize)).sum::<f64>()
+        };
         let (whole, crossing) = (self.times(Op::Fibers), self.times(Op::Crossing(0)));
-        let phases = whole + crossing * layout.crossing.sets.len() as f64;
-        [rows * whole, listed.sum::<f64>() * crossing, phases]
+        [rows * whole, listed(false) * crossing, listed(true) * crossing]
     }
 
     /// Tensions that a substep begins with none of.
