@@ -14,6 +14,7 @@ pub mod plan;
 pub mod scene_run;
 pub mod skinning;
 pub mod skirt;
+pub mod soak;
 mod surface;
 pub mod time;
 pub mod torture;

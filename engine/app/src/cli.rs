@@ -26,6 +26,7 @@ mod plan;
 mod run;
 mod skinning;
 mod skirt;
+mod soak;
 mod torture;
 mod validate;
 
@@ -43,6 +44,7 @@ pub use plan::{PlanArgs, PlanScene};
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
 pub use skirt::SkirtArgs;
+pub use soak::SoakArgs;
 pub use torture::TortureArgs;
 pub use validate::ValidateArgs;
 
@@ -91,6 +93,8 @@ pub enum Command {
     Replay(ReplayArgs),
     /// `toile plan`.
     Plan(PlanArgs),
+    /// `toile soak`.
+    Soak(SoakArgs),
     /// `toile completions`.
     Completions(Shell),
     /// Help or version: text to print.
@@ -194,6 +198,7 @@ pub fn command() -> clap::Command {
             latency::grammar(),
             plan::grammar(),
             latency::replay_grammar(),
+            soak::grammar(),
             completions(),
         ])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
@@ -365,6 +370,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "latency" => Command::Latency(latency::args(matches)?),
         "plan" => Command::Plan(plan::args(matches)?),
         "replay" => Command::Replay(latency::replay_args(matches)?),
+        "soak" => Command::Soak(soak::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
     })

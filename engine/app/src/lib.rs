@@ -12,11 +12,13 @@ pub mod cli;
 mod colliders;
 pub mod completions;
 pub mod convert;
+pub mod crash;
 pub mod doctor;
 pub mod dump;
 pub mod exit;
 pub mod fit;
 pub mod gestures;
+pub mod heap;
 pub mod latency;
 pub mod machine;
 pub mod measure;
@@ -30,6 +32,7 @@ pub mod replay;
 pub mod report;
 pub mod run;
 pub mod shopper;
+pub mod soak;
 pub mod summary;
 pub mod terminal;
 pub mod torture;
@@ -90,6 +93,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Latency(args) => latency::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Replay(args) => replay::run(args),
+        Command::Soak(args) => soak::run(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }
