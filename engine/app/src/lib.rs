@@ -17,6 +17,7 @@ pub mod dump;
 pub mod exit;
 pub mod fit;
 pub mod gestures;
+pub mod kiosk;
 pub mod latency;
 pub mod machine;
 pub mod measure;
@@ -88,6 +89,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Pareto(args) => pareto::run(args),
         Command::Latency(args) => latency::run(args),
         Command::Replay(args) => replay::run(args),
+        Command::Kiosk(args) => kiosk::run(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }

@@ -55,6 +55,13 @@ pub fn locked_memory() -> Check {
     Check::missing(name, use_for, found, cure)
 }
 
+/// Whether memory may be locked without limit.
+pub fn may_lock_all() -> bool {
+    let limits = kernel_file("/proc/self/limits").unwrap_or_default();
+    has_capability(&kernel_file("/proc/self/status").unwrap_or_default(), CAP_IPC_LOCK)
+        || limit(&limits, "Max locked memory").is_some_and(|(soft, _)| soft == u64::MAX)
+}
+
 pub fn kernel() -> Check {
     let (name, use_for) = ("kernel", "a kiosk's deadlines");
     let Some(version) = kernel_file("/proc/version") else { return Check::unknown(name, use_for) };
