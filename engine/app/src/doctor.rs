@@ -114,6 +114,7 @@ fn examine(out: &Path) -> DoctorReport {
         processor::clock_source(),
         processor::clock_cost(),
         rights::priority(),
+        rights::placement(),
         rights::locked_memory(),
         rights::kernel(),
         surroundings::gpu(&adapters),

@@ -170,7 +170,7 @@ impl<'a, S: Staging + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
     fn watch(&mut self) {
         let count = self.lives.pulse.count();
         if self.course.ready_ms.is_none() && count.iter().all(|n| *n > 0) {
-            self.course.ready_ms = Some((self.plan.begun.elapsed().as_secs_f64() * 1e4).round() * 0.1);
+            self.course.ready_ms = Some((self.plan.begun.elapsed().as_secs_f64() * 1e4).round() / 10.0);
             self.tell(News::Ready);
         }
         let now = self.lives.now_ns();

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
-use toile_assets::body::Sex;
+use toile_assets::body::{Measures, Sex};
 use toile_assets::sizes::Population;
 use toile_assets::wardrobe;
 use toile_engine::frame::{Frame, Snapshot};
@@ -122,11 +122,10 @@ pub fn mannequin(wish: &Wish, pose: &Joints) -> Result<Dressed, AppError> {
         let codes = table.codes();
         let size = wish.size.clone().unwrap_or_else(|| codes[codes.len() / 2].to_owned());
         let sex = if table.population == Population::Men { Sex::Male } else { Sex::Female };
-        body = Some((sex, style.body(&size, sex).map_err(AppError::input)?));
+        body = Some((sex, Measures::from(table.size_body(&size).map_err(AppError::input)?)));
         garments.push((name.clone(), size));
     }
-    let Some((sex, body)) = body else { return Err(AppError::Input("no garment is named; name one in [wear]".into())) };
-    let m = &body.measures;
+    let Some((sex, m)) = body else { return Err(AppError::Input("no garment is named; name one in [wear]".into())) };
     let measures = [m.stature, m.shoulder_breadth, m.chest_girth, m.waist_girth, m.hip_girth];
     let recipe = Recipe {
         version: env!("CARGO_PKG_VERSION").to_owned(),
