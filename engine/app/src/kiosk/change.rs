@@ -125,7 +125,7 @@ mod tests {
 
     /// Of nothing at all: no vertex, no garment.
     fn reader() -> Reader<Snapshot> {
-        let skin = SkinningJob::new(&[], &[], &[]).unwrap().posed();
+        let skin = SkinningJob::new::<4>(&[], &[], &[]).unwrap().posed();
         Relay::new(&Snapshot { tick: 0, times: Times::default(), skin, garments: Box::new([]) }).reader
     }
 

@@ -146,9 +146,8 @@ mod tests {
 
     #[test]
     fn a_recording_comes_again_and_again_and_nobody_is_there_between() {
-        let mut shopper = Joints::absent(500);
-        shopper.at_mut(Joint::Pelvis).confidence = 1.0;
-        let frames = [500, 500 + EMPTY_NS].map(|time_ns| Joints { time_ns, ..shopper });
+        let mut frames = [500, 500 + EMPTY_NS].map(Joints::absent);
+        frames.iter_mut().for_each(|frame| frame.at_mut(Joint::Pelvis).confidence = 1.0);
         let mut feed = Feed::Played(Visits::new(&frames, 1_000, 2 * EMPTY_NS + 7));
         let mut told = Vec::new();
         for _ in 0..9 {

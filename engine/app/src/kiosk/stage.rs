@@ -231,7 +231,7 @@ mod tests {
         let first = Act { scene: Said { name: 1, crew: 9, ..Said::default() }, still };
         let mut stage = Stage::new(first, Wings { next, gone, beats, pulse: pulse.clone() });
         let clock = SimClock::default();
-        let mut step = |stage: &mut Stage<Said>| stage.step(&Joints::absent(50), Times::default(), &clock);
+        let step = |stage: &mut Stage<Said>| stage.step(&Joints::absent(50), Times::default(), &clock);
         stage.set_rung(&LADDER[1]);
         step(&mut stage);
         assert!(call.push(Box::new(Act { scene: Said { name: 2, ..Said::default() }, still: None })));
