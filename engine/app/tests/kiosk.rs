@@ -9,6 +9,10 @@ use std::io::{BufRead, BufReader, Read};
 use std::os::unix::net::UnixDatagram;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use common::Scratch;
@@ -103,13 +107,34 @@ fn open_to_the_world(pid: u32) -> Vec<String> {
     found
 }
 
-fn drained(socket: &UnixDatagram) -> Vec<String> {
-    let mut told = Vec::new();
-    let mut bytes = [0; 512];
-    while let Ok(n) = socket.recv(&mut bytes) {
-        told.extend(String::from_utf8_lossy(&bytes[..n]).lines().map(str::to_owned));
+/// A manager that reads what it is told as it comes: a datagram that nobody reads holds its sender up.
+struct Manager {
+    reading: JoinHandle<Vec<String>>,
+    over: Arc<AtomicBool>,
+}
+
+impl Manager {
+    fn at(path: &Path) -> Self {
+        let socket = UnixDatagram::bind(path).unwrap();
+        socket.set_read_timeout(Some(Duration::from_millis(50))).unwrap();
+        let over = Arc::new(AtomicBool::new(false));
+        let ended = over.clone();
+        let read = move || {
+            let (mut told, mut bytes) = (Vec::new(), [0; 512]);
+            // Whatever was sent before the end is read: it waits in the socket.
+            while let Some(n) = socket.recv(&mut bytes).map_or_else(|_| (!ended.load(Relaxed)).then_some(0), Some) {
+                told.extend(String::from_utf8_lossy(&bytes[..n]).lines().map(str::to_owned));
+            }
+            told
+        };
+        Self { reading: std::thread::spawn(read), over }
     }
-    told
+
+    /// All lines that it was told.
+    fn told(self) -> Vec<String> {
+        self.over.store(true, Relaxed);
+        self.reading.join().unwrap()
+    }
 }
 
 #[test]
@@ -117,8 +142,7 @@ fn a_visit_is_told_to_the_manager_leaves_nothing_behind_and_ends_when_told_to() 
     let scratch = Scratch::new("kiosk");
     fs::write(scratch.path().join("kiosk.toml"), QUICK).unwrap();
     let manager = scratch.path().join("manager");
-    let socket = UnixDatagram::bind(&manager).unwrap();
-    socket.set_nonblocking(true).unwrap();
+    let reading = Manager::at(&manager);
     let mut running = Running::start(&scratch, &manager, &["--config", "kiosk.toml"]);
     watch(&mut running);
     #[cfg(target_os = "linux")]
@@ -146,7 +170,7 @@ fn a_visit_is_told_to_the_manager_leaves_nothing_behind_and_ends_when_told_to() 
     assert!(found["present_us"]["p50"].as_f64().unwrap() > 0.0);
     println!("ready after {} ms", found["ready_ms"]);
 
-    let told = drained(&socket);
+    let told = reading.told();
     assert_eq!(told[0], "READY=1");
     assert_eq!(told.last().unwrap(), "STOPPING=1");
     let alive = told.iter().filter(|t| *t == "WATCHDOG=1").count();
