@@ -242,3 +242,46 @@ fn what_cannot_be_used_is_refused_in_one_sentence() {
     let output = scratch.toile(&["kiosk", "--headless", "--quiet", "--seconds", "1", "--config", "printed.toml"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
+
+/// The value of a unit's key.
+fn value<'a>(unit: &'a str, key: &str) -> &'a str {
+    let find = |line: &'a str| line.strip_prefix(key)?.strip_prefix('=');
+    unit.lines().find_map(find).unwrap_or_else(|| panic!("the unit has no {key}"))
+}
+
+#[test]
+fn the_unit_starts_what_there_is_with_the_rights_that_it_needs() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("systemd");
+    let unit = fs::read_to_string(folder.join("toile.service")).unwrap();
+    let line = value(&unit, "ExecStart");
+    let command = toile::cli::parse(line.split_whitespace().map(Into::into).collect()).expect("the grammar knows it");
+    assert!(matches!(command, toile::cli::Command::Kiosk(args) if args.headless && args.config.is_some()), "{line}");
+    for (key, expected) in [
+        ("Type", "notify"),
+        ("Restart", "always"),
+        ("StartLimitIntervalSec", "0"),
+        ("PrivateNetwork", "yes"),
+        ("ProtectSystem", "strict"),
+        ("LimitCORE", "0"),
+        ("LimitMEMLOCK", "infinity"),
+        ("CapabilityBoundingSet", ""),
+    ] {
+        assert_eq!(value(&unit, key), expected, "{key}");
+    }
+    use toile_engine::pace::roles::Role;
+    let highest =
+        [Role::Sensor, Role::Physics, Role::Worker, Role::Render].into_iter().filter_map(Role::priority).max();
+    assert_eq!(value(&unit, "LimitRTPRIO").parse().ok(), highest, "the limit is what the threads ask for");
+    assert!(value(&unit, "WatchdogSec").parse::<u64>().unwrap() >= 3, "a stall of two seconds is survived");
+    let loopback = fs::read_to_string(folder.join("loopback.conf")).unwrap();
+    assert_eq!(value(&loopback, "IPAddressAllow"), "localhost");
+    // systemd itself, where there is one. It looks whether the program is there, so the one that is.
+    let program = env!("CARGO_BIN_EXE_toile");
+    let scratch = Scratch::new("kiosk-unit");
+    fs::write(scratch.path().join("toile.service"), unit.replace("/usr/bin/toile", program)).unwrap();
+    let verify = Command::new("systemd-analyze").args(["verify", "toile.service"]).current_dir(scratch.path()).output();
+    if let Ok(output) = verify {
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && !said.contains("toile.service"), "{said}");
+    }
+}

@@ -69,7 +69,7 @@ impl Tailor {
     pub fn begin(&mut self, model: Model) -> std::io::Result<()> {
         let wish = self.wish.clone();
         self.unwanted = false;
-        self.job = Some(thread::Builder::new().name("toile-tailor".into()).spawn(move || dress(model, &wish))?);
+        self.job = Some(thread::Builder::new().name("toile-tailor".into()).spawn(move || dress(&model, &wish))?);
         Ok(())
     }
 
@@ -92,9 +92,9 @@ impl Tailor {
     }
 }
 
-fn dress(model: Model, wish: &Wish) -> Result<Dressed, AppError> {
+fn dress(model: &Model, wish: &Wish) -> Result<Dressed, AppError> {
     let live;
-    let session = match &model {
+    let session = match model {
         Model::Played(session) => session.as_ref(),
         Model::Joints(joints) => {
             live = Session { name: "live".into(), joints: joints.clone(), raw_scale_known: true, ..Session::default() };
