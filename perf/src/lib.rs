@@ -10,6 +10,7 @@ pub mod filters;
 pub mod latency;
 pub mod oracle;
 pub mod pareto;
+pub mod plan;
 pub mod scene_run;
 pub mod skinning;
 pub mod skirt;

@@ -24,6 +24,7 @@ mod gestures;
 mod kiosk;
 mod latency;
 mod pareto;
+mod plan;
 mod run;
 mod skinning;
 mod skirt;
@@ -42,6 +43,7 @@ pub use gestures::GesturesArgs;
 pub use kiosk::KioskArgs;
 pub use latency::{LatencyArgs, ReplayArgs};
 pub use pareto::ParetoArgs;
+pub use plan::{PlanArgs, PlanScene};
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
 pub use skirt::SkirtArgs;
@@ -93,6 +95,8 @@ pub enum Command {
     Replay(ReplayArgs),
     /// `toile kiosk`.
     Kiosk(KioskArgs),
+    /// `toile plan`.
+    Plan(PlanArgs),
     /// `toile completions`.
     Completions(Shell),
     /// Help or version: text to print.
@@ -185,6 +189,7 @@ pub fn command() -> clap::Command {
             pareto::grammar(),
             torture::grammar(),
             latency::grammar(),
+            plan::grammar(),
             latency::replay_grammar(),
             kiosk::grammar(),
             completions(),
@@ -349,6 +354,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "validate" => Command::Validate(validate::args(matches)?),
         "pareto" => Command::Pareto(pareto::args(matches)?),
         "latency" => Command::Latency(latency::args(matches)?),
+        "plan" => Command::Plan(plan::args(matches)?),
         "replay" => Command::Replay(latency::replay_args(matches)?),
         "kiosk" => Command::Kiosk(kiosk::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),

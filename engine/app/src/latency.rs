@@ -60,7 +60,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     }
     let machine = Machine::here();
     let machine = format!("{}, {} cores, {}", machine.cpu, machine.cores, machine.lanes);
-    out.write("latency.html", latency::page(&found, &machine, &scene(&recipe)).as_bytes())?;
+    out.write("latency.html", latency::page(&found, &machine, &recipe.words()).as_bytes())?;
     let mut files = out.commit()?;
     files.extend(args.record.clone());
     let missed: Vec<&Goal> = found.goals.iter().filter(|g| !g.pass).collect();
@@ -79,16 +79,10 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     verdict.map_or(Ok(()), |verdict| Err(AppError::Threshold(verdict)))
 }
 
-/// What is worn, in a line.
-fn scene(recipe: &Recipe) -> String {
-    let worn: Vec<String> = recipe.garments.iter().map(|(name, size)| format!("{name} in {size}")).collect();
-    format!("session {}, {}, quality {}", recipe.session, worn.join(" and "), recipe.quality)
-}
-
 /// The figures as people read them.
 fn table(report: &LatencyReport, paint: Paint) -> String {
     let found = &report.found;
-    let mut lines = vec![paint.tone(&format!("Latency: {}", scene(&report.scene)), Tone::Strong).into_owned()];
+    let mut lines = vec![paint.tone(&format!("Latency: {}", report.scene.words()), Tone::Strong).into_owned()];
     lines.push(format!("  {:<20} {:>9} {:>9} {:>9} {:>9} {:>9}", "us", "p50", "p99", "p99.9", "max", "budget"));
     for stage in &found.stages {
         let Quantiles { p50, p99, p999, max, .. } = stage.us;

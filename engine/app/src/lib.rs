@@ -25,6 +25,7 @@ pub mod outfit;
 pub mod output;
 pub mod pareto;
 pub mod pictures;
+pub mod plan;
 pub mod record;
 pub mod replay;
 pub mod report;
@@ -88,6 +89,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Validate(args) => validate::run(args),
         Command::Pareto(args) => pareto::run(args),
         Command::Latency(args) => latency::run(args),
+        Command::Plan(args) => plan::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Kiosk(args) => kiosk::run(args),
         Command::Completions(shell) => completions::run(*shell),

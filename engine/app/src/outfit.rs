@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::garment::Garment;
 use toile_assets::rig::Rig;
 use toile_assets::sizes::Population;
 use toile_assets::wardrobe;
@@ -29,6 +30,19 @@ pub struct Recipe {
     pub garments: Vec<(String, String)>,
     /// Tested settings of the cloth.
     pub quality: String,
+}
+
+/// What a scene is made of.
+#[derive(Debug, Clone)]
+pub struct Parts {
+    /// The shopper's body.
+    pub body: Body,
+    /// Its colliders.
+    pub rig: Rig,
+    /// The garments, inner first.
+    pub garments: Vec<Garment>,
+    /// How they are stepped.
+    pub settings: Settings,
 }
 
 /// What is asked for.
@@ -79,12 +93,11 @@ impl Recipe {
         })
     }
 
-    /// Makes the scene and dresses the shopper as they stand in a frame, with one worker: which crew takes the steps from
-    /// then on is the caller's choice and changes no bit.
+    /// The shopper's body, its colliders, the garments on it, and how they are stepped with one worker.
     ///
     /// # Errors
     /// A recipe of which no scene can be made, because it was tampered with or comes from another version.
-    pub fn make(&self, first: &Joints) -> Result<(Frame, Reader<Snapshot>), AppError> {
+    pub fn parts(&self) -> Result<Parts, AppError> {
         let sex = if self.sex == "male" { Sex::Male } else { Sex::Female };
         let [stature, shoulder_breadth, chest_girth, waist_girth, hip_girth] = self.measures.map(f32::from_bits);
         let measures = Measures { stature, shoulder_breadth, chest_girth, waist_girth, hip_girth };
@@ -94,11 +107,26 @@ impl Recipe {
             style.dress(size, &body).map_err(AppError::input)
         });
         let garments = garments.collect::<Result<Vec<_>, AppError>>()?;
-        let rig = Rig::fit(&body);
         let quality = self.quality.parse().map_err(AppError::Input)?;
         let settings = Settings { quality, workers: 1, ..Settings::default() };
+        Ok(Parts { rig: Rig::fit(&body), body, garments, settings })
+    }
+
+    /// Makes the scene and dresses the shopper as they stand in a frame, with one worker: which crew takes the steps from
+    /// then on is the caller's choice and changes no bit.
+    ///
+    /// # Errors
+    /// As [`Self::parts`].
+    pub fn make(&self, first: &Joints) -> Result<(Frame, Reader<Snapshot>), AppError> {
+        let Parts { body, rig, garments, settings } = self.parts()?;
         let (mut frame, reader) = Frame::new(body, &rig, garments, settings).map_err(AppError::input)?;
         frame.dress(first);
         Ok((frame, reader))
+    }
+
+    /// What is worn, in a line.
+    pub fn words(&self) -> String {
+        let worn: Vec<String> = self.garments.iter().map(|(name, size)| format!("{name} in {size}")).collect();
+        format!("session {}, {}, quality {}", self.session, worn.join(" and "), self.quality)
     }
 }

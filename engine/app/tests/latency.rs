@@ -36,6 +36,13 @@ fn a_run_is_told_by_stage_and_replayed_bit_for_bit_with_two_workers_and_with_one
     let threads: Vec<&str> =
         found["threads"].as_array().unwrap().iter().map(|t| t["thread"].as_str().unwrap()).collect();
     assert!(["sensor", "physics", "render"].iter().all(|t| threads.contains(t)));
+    let capacities = found["capacities"].as_array().unwrap();
+    for (name, least) in [("EVENTS", 0), ("MAX_CAPSULES", 1), ("MAX_SUBSTEPS", 1), ("pairs", 1), ("MOST_CATCH_UP", 0)] {
+        let row = capacities.iter().find(|c| c["constant"].as_str().unwrap().starts_with(name));
+        let row = row.unwrap_or_else(|| panic!("no {name} in {capacities:?}"));
+        let [used, bound] = ["high_water", "bound"].map(|k| row[k].as_u64().unwrap());
+        assert!((least..=bound).contains(&used), "{row}");
+    }
     let page = fs::read_to_string(scratch.path().join("latency/latency.html")).unwrap();
     assert!(page.matches("<svg").count() >= 12 && page.trim_end().ends_with("</html>"));
 

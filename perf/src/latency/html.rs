@@ -37,6 +37,7 @@ pub fn page(report: &Latency, machine: &str, scene: &str) -> String {
     quality(&mut html, report);
     stages(&mut html, report);
     threads(&mut html, report);
+    capacities(&mut html, report);
     html.push_str("</body>\n</html>\n");
     html
 }
@@ -129,6 +130,23 @@ fn threads(html: &mut String, report: &Latency) {
     html.push_str("</ul>\n");
 }
 
+fn capacities(html: &mut String, report: &Latency) {
+    html.push_str(
+        "<h2>Capacities</h2>\n<table>\n<tr><th>bound</th><th>places</th><th>most used</th><th>lost</th></tr>\n",
+    );
+    for c in &report.capacities {
+        let lost = if c.lost > 0 { format!("<span class=\"bad\">{}</span>", c.lost) } else { c.lost.to_string() };
+        let _ = writeln!(
+            html,
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{lost}</td></tr>",
+            escaped(c.constant),
+            c.bound,
+            c.high_water
+        );
+    }
+    html.push_str("</table>\n");
+}
+
 /// A histogram: bars as high as the logarithm of their counts, so that a single late one is seen.
 fn plot(html: &mut String, stage: &Stage) {
     let ([width, height], [left, right, top, bottom]) = (SIZE, ROOM);
@@ -146,7 +164,12 @@ fn plot(html: &mut String, stage: &Stage) {
     );
     for k in 0..=decades as i32 {
         let us = RANGE_US[0] * 10f64.powi(k);
-        let (x, label) = (across(us), if us < 1e3 { format!("{us} us") } else { format!("{} ms", us / 1e3) });
+        let label = match us {
+            ..1e3 => format!("{us} us"),
+            ..1e6 => format!("{} ms", us / 1e3),
+            _ => format!("{} s", us / 1e6),
+        };
+        let x = across(us);
         let _ = writeln!(
             html,
             "<line x1=\"{x:.1}\" y1=\"{top}\" x2=\"{x:.1}\" y2=\"{floor}\" stroke=\"#e1e1e1\"/><text x=\"{x:.1}\" \

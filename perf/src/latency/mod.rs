@@ -8,6 +8,7 @@
 //! counts as late as the one in its place: the figures are corrected for coordinated omission. The first second is not metered.
 
 mod account;
+mod capacity;
 mod html;
 mod jitter;
 mod load;

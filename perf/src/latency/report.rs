@@ -228,7 +228,7 @@ pub struct Latency {
     pub quality: Quality,
     /// What is to be reached on a quiet machine of two cores.
     pub goals: Vec<Goal>,
-    /// How full every queue was.
+    /// How full everything was that has a bound.
     pub capacities: Vec<Warned>,
     /// What deserves attention, one sentence each.
     pub warnings: Vec<String>,

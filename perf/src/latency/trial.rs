@@ -25,7 +25,7 @@ use toile_sensors::frame::Joints;
 use super::account::{ThreadAccount, cause};
 use super::load::Load;
 use super::report::{Attributed, Cause, Goal, Latency, Placed, Quality, Quantiles, Stage, Warned};
-use super::{LatencyError, Options, jitter};
+use super::{LatencyError, Options, capacity, jitter};
 
 /// Time before the meters begin (s): caches fill, memory is touched for the first time.
 const WARM_UP_S: u64 = 1;
@@ -142,7 +142,7 @@ struct Ended {
     sensor: Sense<Playback, RealClock>,
     physics: Physics<Staged, RealClock, ThreadAccount>,
     render: Render<Picture, RealClock>,
-    capacities: [Capacity; 2],
+    queues: [Capacity; 2],
 }
 
 impl Running {
@@ -193,7 +193,7 @@ impl Running {
         let physics = self.physics.join().ok_or(LatencyError::Died("physics"))?;
         let render = self.render.join().ok_or(LatencyError::Died("render"))?;
         drain(&mut self.events, &mut self.entries, told, keep);
-        Ok(Ended { sensor, physics, render, capacities: [self.events.capacity(), self.entries.capacity()] })
+        Ok(Ended { sensor, physics, render, queues: [self.events.capacity(), self.entries.capacity()] })
     }
 }
 
@@ -215,12 +215,13 @@ pub fn run(cast: Cast<'_>, options: &Options, mut keep: impl FnMut(&Entry)) -> R
 
 /// What it comes to.
 fn report(ended: &Ended, options: &Options, threads: Vec<Placed>, told: Told, jitter: &Meter) -> Latency {
-    let Ended { physics, render, capacities, .. } = ended;
+    let Ended { physics, render, queues, .. } = ended;
     let (gauges, frame) = (&physics.gauges, &physics.stepper.scene.frame);
     let stages = stages(ended, jitter);
     let [step, response] = [&gauges.step, &gauges.response].map(Quantiles::of);
     let [snapshot, total] = [&gauges.reaction, &render.total].map(Quantiles::of);
-    let mut warnings: Vec<String> = capacities.iter().filter_map(Capacity::warning).collect();
+    let capacities = capacity::capacities(queues, gauges, frame);
+    let mut warnings = capacity::warnings(&capacities, frame);
     warnings.extend(threads.iter().flat_map(|t| t.refused.clone()));
     warnings.extend(told.sentences);
     Latency {
@@ -243,8 +244,8 @@ fn report(ended: &Ended, options: &Options, threads: Vec<Placed>, told: Told, ji
         late_frames: later_than(&gauges.reaction, SNAPSHOT_US) + gauges.skipped,
         pictures: render.pictures,
         quality: quality(frame, &gauges.rungs, told.changes),
-        goals: goals(snapshot, total, step),
-        capacities: capacities.map(Warned::from).to_vec(),
+        goals: goals(snapshot, total, step, response),
+        capacities: capacities.into_iter().map(Warned::from).collect(),
         warnings,
         state_hash: format!("{:016x}", frame.state_hash()),
     }
@@ -276,13 +277,14 @@ fn later_than(meter: &Meter, us: f64) -> u64 {
     late.map(|v| v.count_since_last_iteration()).sum()
 }
 
-fn goals(snapshot: Quantiles, total: Quantiles, step: Quantiles) -> Vec<Goal> {
+fn goals(snapshot: Quantiles, total: Quantiles, step: Quantiles, response: Quantiles) -> Vec<Goal> {
     let period_us = PERIOD_NS as f64 * 1e-3;
     vec![
         Goal::new("snapshot after a sensor frame's arrival, p99", SNAPSHOT_US, snapshot.p99),
         Goal::new("picture after a sensor frame was seen, p99", PICTURE_US, total.p99),
         Goal::new("step, p99.9", 0.5 * period_us, step.p999),
         Goal::new("step, longest", 0.8 * period_us, step.max),
+        Goal::new("published after it was due (120 Hz held), p99.9", period_us, response.p999),
     ]
 }
 

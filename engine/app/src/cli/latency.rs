@@ -107,7 +107,7 @@ pub(super) fn replay_grammar() -> clap::Command {
         .after_help("Example: record a run, and take it again with one worker in place of two\n  toile latency --seconds 10 --record run.tape && toile replay run.tape --workers 1")
 }
 
-fn workers() -> Arg {
+pub(super) fn workers() -> Arg {
     text("workers", "N", "Workers of a step, 1 or 2 [default: as many as there are cores]")
         .value_parser(value_parser!(u8).range(1..=SHARES as i64))
 }
@@ -116,21 +116,25 @@ fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-fn chosen_workers(matches: &ArgMatches) -> usize {
+pub(super) fn chosen_workers(matches: &ArgMatches) -> usize {
     matches.get_one::<u8>("workers").map_or_else(|| cores().min(SHARES), |n| usize::from(*n))
+}
+
+/// What is to be worn.
+pub(super) fn wish(matches: &ArgMatches) -> Wish {
+    Wish {
+        garments: matches.get_many("garment").into_iter().flatten().cloned().collect(),
+        size: matches.get_one("size").cloned(),
+        quality: matches.get_one::<String>("quality").and_then(|q| q.parse().ok()).unwrap_or_default(),
+    }
 }
 
 /// What a matched line asks for.
 pub(super) fn args(matches: &ArgMatches) -> Result<LatencyArgs, AppError> {
     let load = matches.get_one::<u32>("load").map_or(0, |n| if *n == 0 { cores() } else { *n as usize });
-    let wish = Wish {
-        garments: matches.get_many("garment").into_iter().flatten().cloned().collect(),
-        size: matches.get_one("size").cloned(),
-        quality: matches.get_one::<String>("quality").and_then(|q| q.parse().ok()).unwrap_or_default(),
-    };
     Ok(LatencyArgs {
         session: matches.get_one("session").cloned(),
-        wish,
+        wish: wish(matches),
         seconds: required(matches, "seconds")?,
         workers: chosen_workers(matches),
         load,

@@ -88,6 +88,9 @@ pub struct Settings {
     pub tethers: bool,
     /// Friction coefficient of what sticks, over that of what slides, which is the fabric's (1).
     pub static_friction: f32,
+    /// Whether contact follows particles along their ways; without it, what is thin and fast passes through them. For
+    /// telling what it is worth (`toile plan`).
+    pub continuous: bool,
     /// Workers of a step, 1 or 2.
     pub workers: usize,
     /// Lanes that kernels run on.
@@ -170,6 +173,7 @@ impl Default for Settings {
             root: RootSettings::default(),
             tethers: false,
             static_friction: 1.0,
+            continuous: true,
             workers: std::thread::available_parallelism().map_or(1, |n| n.get().min(SHARES)),
             width: Width::widest(),
             timed: false,

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering::{Relaxed, SeqCst};
 use std::time::Duration;
 
-use crate::sync::{AtomicBool, AtomicUsize, thread};
 use crate::lanes::Column;
+use crate::sync::{AtomicBool, AtomicUsize, thread};
 
 /// A job that fails where a phase begins before the one before it is over, and that writes plain memory which the other
 /// share reads in the next phase.
