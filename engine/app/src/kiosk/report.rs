@@ -80,7 +80,7 @@ impl KioskReport {
         warnings.extend(ended.capacities.iter().filter_map(Capacity::warning));
         warnings.extend(course.threads.iter().flat_map(|t| t.refused.clone()));
         Self {
-            seconds: (course.vitals.uptime_ns / 1_000_000) as f64 * 1e-3,
+            seconds: (course.vitals.uptime_ns / 1_000_000) as f64 / 1e3,
             ready_ms: course.ready_ms,
             states: course.states,
             sessions: course.vitals.sessions,
