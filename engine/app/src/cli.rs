@@ -18,8 +18,10 @@ mod body;
 mod colliders;
 mod convert;
 mod depth;
+mod doctor;
 mod filters;
 mod gestures;
+mod kiosk;
 mod latency;
 mod pareto;
 mod plan;
@@ -36,8 +38,10 @@ pub use body::{BodyArgs, Wearer};
 pub use colliders::CollidersArgs;
 pub use convert::{ConvertArgs, KeptDepth};
 pub use depth::DepthArgs;
+pub use doctor::DoctorArgs;
 pub use filters::FiltersArgs;
 pub use gestures::GesturesArgs;
+pub use kiosk::KioskArgs;
 pub use latency::{LatencyArgs, ReplayArgs};
 pub use pareto::ParetoArgs;
 pub use plan::{PlanArgs, PlanScene};
@@ -91,6 +95,8 @@ pub enum Command {
     Latency(LatencyArgs),
     /// `toile replay`.
     Replay(ReplayArgs),
+    /// `toile kiosk`.
+    Kiosk(KioskArgs),
     /// `toile plan`.
     Plan(PlanArgs),
     /// `toile soak`.
@@ -154,15 +160,6 @@ pub struct RecordArgs {
     pub quiet: bool,
 }
 
-/// Arguments of `toile doctor`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DoctorArgs {
-    /// The folder whose writing is tried.
-    pub out: PathBuf,
-    /// One JSON object on stdout in place of the table.
-    pub json: bool,
-}
-
 /// Longest session that `record` makes (s); at 30 frames a second this is some hundred megabytes.
 const MAX_RECORD_SECONDS: i64 = 600;
 
@@ -190,7 +187,7 @@ pub fn command() -> clap::Command {
             bake::grammar(),
             body::grammar(),
             run::grammar(),
-            doctor(),
+            doctor::grammar(),
             bench(),
             validate::grammar(),
             pareto::grammar(),
@@ -199,6 +196,7 @@ pub fn command() -> clap::Command {
             plan::grammar(),
             latency::replay_grammar(),
             soak::grammar(),
+            kiosk::grammar(),
             completions(),
         ])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
@@ -264,13 +262,6 @@ fn record() -> clap::Command {
             quiet(),
         ])
         .after_help("Example: make another session and watch it\n  toile record --out other.mcap --seed 7 && toile try-on --session other.mcap")
-}
-
-fn doctor() -> clap::Command {
-    clap::Command::new("doctor")
-        .about("Say what this machine has, and the exact cure for what is missing")
-        .args([path("out", "DIR", "Output folder whose writing is tried").default_value("out"), json()])
-        .after_help("Example: see why a kiosk misses its deadline\n  toile doctor")
 }
 
 fn bench() -> clap::Command {
@@ -359,7 +350,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         }),
         "convert" => Command::Convert(convert::args(matches)?),
         "run" => Command::Run(run::args(matches)?),
-        "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
+        "doctor" => Command::Doctor(doctor::args(matches)?),
         "bake" => Command::Bake(bake::args(matches)?),
         "body" if matches.get_flag("colliders") => Command::Colliders(colliders::args(matches)?),
         "body" => Command::Body(body::args(matches)?),
@@ -371,6 +362,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "plan" => Command::Plan(plan::args(matches)?),
         "replay" => Command::Replay(latency::replay_args(matches)?),
         "soak" => Command::Soak(soak::args(matches)?),
+        "kiosk" => Command::Kiosk(kiosk::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
     })
