@@ -17,6 +17,7 @@ mod morph;
 mod people;
 mod reading;
 mod segments;
+pub mod shape;
 mod shares;
 mod skin;
 pub mod sound;

@@ -8,6 +8,7 @@ pub mod agreement;
 pub mod anthropometry;
 pub mod cloud;
 pub mod estimate;
+pub mod fit;
 mod joints;
 pub mod measure;
 pub mod measures;
