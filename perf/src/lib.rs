@@ -5,6 +5,7 @@
 //! Thread: one, with nothing else running.
 
 pub mod ansur;
+pub mod measuring;
 pub mod oracle;
 pub mod pareto;
 pub mod scene_run;

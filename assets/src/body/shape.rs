@@ -112,6 +112,11 @@ impl Shapes {
         Read { readings: Readings(work.readings), rows }
     }
 
+    /// Lays the tape on any surface that has the base's vertices at rest, of the family or not (m) `[vertices]`.
+    pub fn read_surface(&self, positions: &[Vec3]) -> Readings {
+        Readings(self.model.gauge.read(positions, None))
+    }
+
     /// The whole body of a shape.
     pub fn body(&self, shape: &Shape) -> Fitted {
         let at = *shape;

@@ -67,13 +67,38 @@ pub struct FittedMeasures {
     pub explained: f32,
 }
 
+/// Frames after which a sex that is plainly not the shopper's is followed no further.
+const DECIDING: usize = 6;
+
+/// Twice the logarithm of how much likelier one sex must be than the other to rule it out: 20,000 times.
+const RULED_OUT: f64 = 20.0;
+
 /// One sex's fit of all frames.
 struct Try {
     fit: BodyFit,
     off: f32,
     explained: f32,
-    /// Twice the negative logarithm of the evidence.
-    against: f64,
+}
+
+impl Try {
+    fn new(sex: Sex, options: Options) -> Self {
+        Self { fit: BodyFit::new(sex, options), off: 0.0, explained: 0.0 }
+    }
+
+    fn push(&mut self, frames: &[DepthFrame]) {
+        for frame in frames {
+            let seen = self.fit.push(frame);
+            if seen.found {
+                (self.off, self.explained) = (seen.off, seen.explained);
+            }
+        }
+    }
+
+    /// Twice the negative logarithm of the evidence; the greatest number where no frame was fitted.
+    fn against(&self) -> f64 {
+        let (cost, frames) = self.fit.cost;
+        if frames == 0 { f64::MAX } else { cost / frames as f64 + self.fit.memory.surprise() }
+    }
 }
 
 /// Measures the shopper in frames that hold nothing but them. `None` if no body fits.
@@ -83,11 +108,17 @@ pub fn measure(frames: &[DepthFrame], population: Population, options: Options) 
         Population::Men => &[Sex::Male],
         Population::Mixed => &[Sex::Female, Sex::Male],
     };
-    let tries: Vec<(Sex, Try)> = sexes.iter().filter_map(|&s| Some((s, attempt(frames, s, options)?))).collect();
-    let least = tries.iter().map(|t| t.1.against).fold(f64::MAX, f64::min);
-    let weight = |t: &Try| (-0.5 * (t.against - least)).exp();
+    let (first, rest) = frames.split_at(frames.len().min(DECIDING));
+    let mut tries: Vec<(Sex, Try)> = sexes.iter().map(|&s| (s, Try::new(s, options))).collect();
+    tries.iter_mut().for_each(|(_, t)| t.push(first));
+    let ahead = tries.iter().map(|(_, t)| t.against()).fold(f64::MAX, f64::min);
+    tries.retain(|(_, t)| t.against() < ahead + RULED_OUT);
+    tries.iter_mut().for_each(|(_, t)| t.push(rest));
+    tries.retain(|(_, t)| t.against() < f64::MAX);
+    let least = tries.iter().map(|t| t.1.against()).fold(f64::MAX, f64::min);
+    let weight = |t: &Try| (-0.5 * (t.against() - least)).exp();
     let whole: f64 = tries.iter().map(|t| weight(&t.1)).sum();
-    let best = tries.iter().min_by(|a, b| a.1.against.total_cmp(&b.1.against))?;
+    let best = tries.iter().min_by(|a, b| a.1.against().total_cmp(&b.1.against()))?;
     let read: Vec<(f64, [Estimate; TAKEN.len()])> =
         tries.iter().map(|(s, t)| (weight(t) / whole, read(Shapes::of(*s), &t.fit))).collect();
     let measures = std::array::from_fn(|i| mixed(read.iter().map(|(w, m)| (*w as f32, m[i])), UNLIKE[i]));
@@ -95,21 +126,6 @@ pub fn measure(frames: &[DepthFrame], population: Population, options: Options) 
     let body = Shapes::of(best.0).body(&best.1.fit.shape());
     let Try { fit, off, explained, .. } = &best.1;
     Some(FittedMeasures { measures, woman, body, frames: fit.frames(), off: *off, explained: *explained })
-}
-
-fn attempt(frames: &[DepthFrame], sex: Sex, options: Options) -> Option<Try> {
-    let mut fit = BodyFit::new(sex, options);
-    let mut last = None;
-    for frame in frames {
-        let seen = fit.push(frame);
-        if seen.found {
-            last = Some(seen);
-        }
-    }
-    let last = last?;
-    let cost = fit.cost.0 / fit.cost.1.max(1) as f64;
-    let against = cost + fit.memory.surprise();
-    Some(Try { off: last.off, explained: last.explained, against, fit })
 }
 
 /// All measures of one fit.
