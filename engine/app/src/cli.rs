@@ -15,6 +15,7 @@ use crate::exit::AppError;
 mod bake;
 mod bodies;
 mod body;
+mod measuring;
 mod pareto;
 mod run;
 mod skinning;
@@ -25,6 +26,7 @@ mod validate;
 pub use bake::BakeArgs;
 pub use bodies::BodiesArgs;
 pub use body::{BodyArgs, Wearer};
+pub use measuring::MeasuringArgs;
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
@@ -51,6 +53,8 @@ pub enum Command {
     Body(BodyArgs),
     /// `toile bench body`.
     BenchBody(BodiesArgs),
+    /// `toile bench measure`.
+    BenchMeasure(MeasuringArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
@@ -99,6 +103,10 @@ pub struct MeasureArgs {
     pub file: PathBuf,
     /// Camera description for a raw depth frame.
     pub camera: Option<PathBuf>,
+    /// Whether the shopper wears nothing that stands off the skin.
+    pub tight: bool,
+    /// Folder for a picture of the fitted body over the depth.
+    pub out: Option<PathBuf>,
     /// One JSON object on stdout in place of the summary.
     pub json: bool,
     /// No words on stderr.
@@ -200,6 +208,8 @@ fn measure() -> clap::Command {
                 .value_parser(value_parser!(PathBuf))
                 .help("Recording or depth frame"),
             path("camera", "J", "Camera of a raw depth frame, as JSON [default: the recording's own]"),
+            flag("tight", "The shopper wears nothing that stands off the skin: the body fit is not one-sided"),
+            path("out", "DIR", "Folder for a picture of the fitted body over the depth"),
             json(),
             quiet(),
         ])
@@ -239,7 +249,7 @@ fn bench() -> clap::Command {
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([skinning::grammar(), skirt::grammar(), bodies::grammar()])
+        .subcommands([skinning::grammar(), skirt::grammar(), bodies::grammar(), measuring::grammar()])
         .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
 
@@ -301,6 +311,8 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "measure" => Command::Measure(MeasureArgs {
             file: required(matches, "file")?,
             camera: matches.get_one("camera").cloned(),
+            tight: matches.get_flag("tight"),
+            out: matches.get_one("out").cloned(),
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         }),
@@ -328,6 +340,7 @@ fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
     match matches.subcommand() {
         Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
         Some(("body", matches)) => Ok(Command::BenchBody(bodies::args(matches)?)),
+        Some(("measure", matches)) => Ok(Command::BenchMeasure(measuring::args(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),
         _ => Err(AppError::internal("a benchmark without a name was let through")),
     }

@@ -16,6 +16,7 @@ pub mod exit;
 pub mod fit;
 pub mod machine;
 pub mod measure;
+pub mod measuring;
 pub mod output;
 pub mod pareto;
 pub mod pictures;
@@ -70,6 +71,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Bake(args) => bake::run(args),
         Command::Body(args) => body::run(args),
         Command::BenchBody(args) => bodies::bench(args),
+        Command::BenchMeasure(args) => measuring::bench(args),
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
         Command::Torture(args) => torture::run(args),

@@ -228,7 +228,14 @@ impl<'a> Grid<'a> {
         let (points, pixels) = self.points(piece);
         let [_, top] = extent(cells.iter().map(|p| p.y));
         let elevation = ((top - self.frame.camera_to_world.translation.y) / distance).atan();
-        Some(Cloud { cut_below: self.cut_below(piece, &cells), pitch: distance / focal, distance, elevation, points, pixels })
+        Some(Cloud {
+            cut_below: self.cut_below(piece, &cells),
+            pitch: distance / focal,
+            distance,
+            elevation,
+            points,
+            pixels,
+        })
     }
 
     fn points(&self, piece: &[usize]) -> (Vec<Vec3>, Vec<u32>) {

@@ -99,7 +99,8 @@ fn shade(frame: &DepthFrame, depth: &[f32], i: usize) -> f32 {
     const BESIDE: usize = 3;
     let at = |j: usize| depth.get(j).copied().filter(|d| (d - z).abs() < 0.08).unwrap_or(z);
     let slope = |a: usize, b: usize| (at(a) - at(b)) / (2.0 * BESIDE as f32 * z / frame.intrinsics.fx);
-    let (dx, dy) = (slope(i + BESIDE, i.wrapping_sub(BESIDE)), slope(i + BESIDE * width, i.wrapping_sub(BESIDE * width)));
+    let (dx, dy) =
+        (slope(i + BESIDE, i.wrapping_sub(BESIDE)), slope(i + BESIDE * width, i.wrapping_sub(BESIDE * width)));
     0.25 + 0.65 / (1.0 + dx * dx + dy * dy).sqrt()
 }
 

@@ -35,7 +35,7 @@ const HARMONICS: [(f32, f32); 4] = [(1.0, 0.012), (2.0, 0.030), (3.0, 0.008), (4
 const KNOTS: [f32; 6] = [0.44, 0.52, 0.58, 0.64, 0.72, 0.82];
 
 /// Roughness of flesh that nobody's family has: harmonics of the whole surface (m), about a hand wide.
-const BUMPS: f32 = 0.0015;
+const BUMPS: f32 = 0.0008;
 
 /// A person who can stand before a camera.
 pub struct Person {

@@ -83,7 +83,8 @@ impl Sight {
         let [near, far] = sensor.distances();
         let distance = near + (far - near) * rng.uniform();
         let told = sensor.told();
-        let mut camera = SyntheticCamera::looking_at(told, Vec3::new(0.0, EYE, distance), Vec3::new(0.0, EYE - 0.05, 0.0));
+        let mut camera =
+            SyntheticCamera::looking_at(told, Vec3::new(0.0, EYE, distance), Vec3::new(0.0, EYE - 0.05, 0.0));
         if sensor == Sensor::Kinect {
             // 43 degrees are too few for a whole person at 2 m: it stands on its side.
             let roll = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2);

@@ -124,8 +124,8 @@ pub fn study(surveys: &[Survey], options: &Options, told: &dyn Fn(&Case)) -> Res
         for row in crate::ansur::chosen(survey.people(), options.people, options.seed) {
             let metres = std::array::from_fn(|k| (columns[k][row] * 1e-3) as f32);
             let mut rng = Rng::new(options.seed ^ ((row as u64) << 20) ^ u64::from(sex == Sex::Male));
-            let person = Person::new(sex, &metres, &mut rng)
-                .map_err(|source| StudyError::Person { line: row + 2, source })?;
+            let person =
+                Person::new(sex, &metres, &mut rng).map_err(|source| StudyError::Person { line: row + 2, source })?;
             let case = measured(&person, options, &mut rng);
             told(&case);
             cases.push(case);
@@ -146,8 +146,7 @@ fn measured(person: &Person, options: &Options, rng: &mut Rng) -> Case {
         let s = &m.measures;
         let mut all = [None; TAKEN.len()];
         let places = [0, 1, 2, 3, 6, 8, 9];
-        let values =
-            [s.stature, s.shoulder_breadth, s.arm_length, s.inseam, s.chest_girth, s.waist_girth, s.hip_girth];
+        let values = [s.stature, s.shoulder_breadth, s.arm_length, s.inseam, s.chest_girth, s.waist_girth, s.hip_girth];
         places.into_iter().zip(values).for_each(|(i, v)| all[i] = v);
         all
     });

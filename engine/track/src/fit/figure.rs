@@ -26,11 +26,16 @@ pub(super) type Row = [f32; WIDTH];
 /// Most bones of one sample.
 const BONES_EACH: usize = 4;
 
-/// A point of the surface that takes part in the fit.
+/// The middle of one face of the surface. Faces and not vertices, because a face is flat: where on it a measured point
+/// lies changes nothing, while beside a vertex the surface falls away from its tangent plane.
 #[derive(Debug, Clone)]
 pub(super) struct Sample {
-    /// The vertex.
-    pub vertex: u32,
+    /// Its face.
+    pub corners: [u32; 4],
+    /// Its place on the drawn body (m).
+    drawn: Vec3,
+    /// The sliders that move it: first and end in [`Cast::moves`].
+    moves: (u32, u32),
     /// Joints that carry it, with their shares.
     bones: [(u8, f32); BONES_EACH],
     /// Whether the ground carries it when one stands.
@@ -48,6 +53,8 @@ impl Sample {
 pub(super) struct Cast {
     pub shapes: &'static Shapes,
     pub samples: Vec<Sample>,
+    /// Sliders and moves a unit of all samples.
+    moves: Vec<(u32, Vec3)>,
     pub turns: [Turn; TURNS],
     /// The turns of each joint: first and end.
     of_joint: [(u8, u8); JOINTS],
@@ -57,9 +64,8 @@ pub(super) struct Cast {
 const SOLE: f32 = 0.012;
 
 impl Cast {
-    /// Samples about `spacing` (m) apart.
+    /// Samples at least about `spacing` (m) apart; every face for 0.
     pub(super) fn new(shapes: &'static Shapes, spacing: f32) -> Self {
-        let base = shapes.base();
         let turns = turns(&shapes.skeleton(shapes.mean()));
         let mut of_joint = [(0u8, 0u8); JOINTS];
         for (i, joint) in Joint::ALL.into_iter().enumerate() {
@@ -68,20 +74,53 @@ impl Cast {
             of_joint[i] = (first as u8, (first + count) as u8);
         }
         let mut taken = std::collections::BTreeSet::new();
-        let mut samples = Vec::new();
-        for (v, p) in base.positions.iter().enumerate() {
-            if taken.insert((*p / spacing).floor().to_array().map(|c| c as i32)) {
-                let mut bones = [(0u8, 0.0f32); BONES_EACH];
-                for (bone, weight) in base.weights[v].iter() {
-                    let joint = bone_joint(bone as usize).map_or(0, Joint::index) as u8;
-                    let free = bones.iter().position(|b| b.1 == 0.0 || b.0 == joint).unwrap_or(BONES_EACH - 1);
-                    bones[free] = (joint, bones[free].1 + weight);
-                }
-                samples.push(Sample { vertex: v as u32, bones, sole: p.y < SOLE });
+        let (mut samples, mut moves) = (Vec::new(), Vec::new());
+        for &corners in &shapes.base().quads {
+            let sample = sample(shapes, corners, &mut moves);
+            let cell = (sample.drawn / spacing.max(1e-6)).floor().to_array().map(|c| c as i32);
+            if spacing == 0.0 || taken.insert(cell) {
+                samples.push(sample);
             }
         }
-        Self { shapes, samples, turns, of_joint }
+        Self { shapes, samples, moves, turns, of_joint }
     }
+
+    /// The sliders that move a sample, and by how much a unit, before scaling (m).
+    fn moves(&self, sample: &Sample) -> &[(u32, Vec3)] {
+        &self.moves[sample.moves.0 as usize..sample.moves.1 as usize]
+    }
+
+    /// Where a sample lies on a shape in the rest pose (m).
+    fn place(&self, sample: &Sample, shape: &[f32; SHAPES], scale: f32) -> Vec3 {
+        scale * self.moves(sample).iter().fold(sample.drawn, |p, &(k, d)| p + d * shape[k as usize])
+    }
+}
+
+/// The mean of a face's corners.
+fn sample(shapes: &Shapes, corners: [u32; 4], moves: &mut Vec<(u32, Vec3)>) -> Sample {
+    let base = shapes.base();
+    let first = moves.len();
+    let mut joints: Vec<(u8, f32)> = Vec::new();
+    for v in corners {
+        for &(k, d) in shapes.moves(v as usize) {
+            match moves[first..].iter_mut().find(|m| m.0 == k) {
+                Some(m) => m.1 += d / 4.0,
+                None => moves.push((k, d / 4.0)),
+            }
+        }
+        for (bone, weight) in base.weights[v as usize].iter() {
+            let joint = bone_joint(bone as usize).map_or(0, Joint::index) as u8;
+            match joints.iter_mut().find(|j| j.0 == joint) {
+                Some(j) => j.1 += weight,
+                None => joints.push((joint, weight)),
+            }
+        }
+    }
+    joints.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    let whole: f32 = joints.iter().take(BONES_EACH).map(|j| j.1).sum();
+    let bones = std::array::from_fn(|k| joints.get(k).map_or((0, 0.0), |j| (j.0, j.1 / whole)));
+    let drawn = corners.map(|v| base.positions[v as usize]).iter().sum::<Vec3>() / 4.0;
+    Sample { corners, drawn, moves: (first as u32, moves.len() as u32), bones, sole: drawn.y < SOLE }
 }
 
 /// What is sought: pose and shape.
@@ -106,6 +145,14 @@ impl State {
         }
         for (local, by) in next.local.iter_mut().zip(turned) {
             *local = (Quat::from_scaled_axis(by) * *local).normalize();
+        }
+        for (joint, &(first, end)) in next.local.iter_mut().zip(&cast.of_joint) {
+            // Turns about two axes, one after the other, come to one about the third as well.
+            if end - first < 3 {
+                let whole = joint.to_scaled_axis();
+                let axes = cast.turns[first as usize..end as usize].iter().map(|t| t.axis);
+                *joint = Quat::from_scaled_axis(axes.map(|a| a * a.dot(whole)).sum());
+            }
         }
         for (k, s) in next.shape.iter_mut().enumerate() {
             let [least, most] = cast.shapes.bounds(k);
@@ -158,8 +205,9 @@ impl Figure {
             *axis = parent * turn.axis;
         }
         self.drifts(cast);
+        let shape = state.shape.map(|s| s as f32);
         for (i, sample) in cast.samples.iter().enumerate() {
-            let still = cast.shapes.place(sample.vertex as usize, &state.shape);
+            let still = cast.place(sample, &shape, self.scale);
             let (mut point, mut normal) = (Vec3::ZERO, Vec3::ZERO);
             for &(j, w) in sample.bones.iter().filter(|b| b.1 > 0.0) {
                 let j = j as usize;
@@ -209,7 +257,7 @@ impl Figure {
     /// How [`Figure::above_rest`] changes with every unknown.
     pub(super) fn row_above_rest(&self, cast: &Cast, index: usize) -> Row {
         let mut row = self.row(cast, index, Vec3::Y);
-        for &(k, by) in cast.shapes.moves(cast.samples[index].vertex as usize) {
+        for &(k, by) in cast.moves(&cast.samples[index]) {
             row[POSE + k as usize] -= self.scale * by.y;
         }
         row[POSE + SCALE] -= self.still[index].y;
@@ -242,7 +290,7 @@ impl Figure {
                 *r += along.dot(*drift);
             }
         }
-        for &(k, by) in cast.shapes.moves(sample.vertex as usize) {
+        for &(k, by) in cast.moves(sample) {
             row[POSE + k as usize] += self.scale * inward.dot(by);
         }
         row[POSE + SCALE] += inward.dot(self.still[index]);
@@ -257,7 +305,8 @@ mod tests {
 
     /// A bent, turned body of an unusual shape.
     fn bent(cast: &Cast) -> State {
-        let mut state = State { root: Vec3::new(0.3, 0.9, -0.2), local: [Quat::IDENTITY; JOINTS], shape: *cast.shapes.mean() };
+        let mut state =
+            State { root: Vec3::new(0.3, 0.9, -0.2), local: [Quat::IDENTITY; JOINTS], shape: *cast.shapes.mean() };
         let mut step = [0.0; UNKNOWNS];
         for (i, s) in step.iter_mut().enumerate().skip(3) {
             let wave = (i as f64 * 1.7).sin();
@@ -305,7 +354,8 @@ mod tests {
         let mut figure = Figure::new(&cast);
         figure.pose(&cast, &state, &vec![Vec3::Y; cast.samples.len()]);
         for (sample, point) in cast.samples.iter().zip(&figure.points) {
-            assert!(point.distance(cast.shapes.place(sample.vertex as usize, &shape)) < 1e-5);
+            let corners = sample.corners.map(|v| cast.shapes.place(v as usize, &shape));
+            assert!(point.distance(corners.iter().sum::<Vec3>() / 4.0) < 1e-5);
         }
         assert!(cast.samples.iter().filter(|s| s.sole).count() > 10);
     }

@@ -3,13 +3,21 @@
 use glam::{Vec2, Vec3};
 
 use super::figure::Figure;
-use super::view::View;
+use super::view::{Cell, View};
 
 /// Least cosine between the normals of a cell and of the sample that it shows.
 const ALIKE: f32 = 0.35;
 
-/// Least cosine between a sample's normal and the direction to the camera.
-const FACING: f32 = 0.05;
+/// Least cosine between a sample's normal and the direction to the camera: a little beyond the horizon, so that cells at
+/// the horizon find samples on either side.
+const FACING: f32 = -0.1;
+
+/// Least cosine between a cell's normal and the direction to the camera: seen more slantingly, a cell is a mean over too
+/// long a stretch of surface.
+const SLANTING: f32 = 0.25;
+
+/// Side of the buckets into which samples are sorted, in cells.
+const BUCKET: usize = 2;
 
 /// What the picture says of one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -31,6 +39,11 @@ impl Match {
     pub(super) fn mean(&self) -> Vec3 {
         self.sum / self.count
     }
+
+    /// Mean distance by which the body's surface lies outside of the points that show it (m), along the normal.
+    pub(super) fn outside(&self, point: Vec3, normal: Vec3) -> f32 {
+        normal.dot(point - self.mean())
+    }
 }
 
 /// The matches of one frame.
@@ -41,6 +54,8 @@ pub(super) struct Matching {
     pub explained: f32,
     /// Mean square distance of cells from their samples' planes, those of unexplained cells counted as the gate (m2).
     pub off: f32,
+    /// Of how many cells one is looked at; it counts for all of them.
+    pub every: usize,
     /// Samples by bucket: where each bucket starts, and the list.
     start: Vec<u32>,
     list: Vec<u32>,
@@ -48,46 +63,87 @@ pub(super) struct Matching {
 
 impl Matching {
     pub(super) fn new(samples: usize) -> Self {
-        Self { of: vec![Match::default(); samples], explained: 0.0, off: 0.0, start: Vec::new(), list: Vec::new() }
+        Self {
+            of: vec![Match::default(); samples],
+            explained: 0.0,
+            off: 0.0,
+            every: 1,
+            start: Vec::new(),
+            list: Vec::new(),
+        }
     }
 
     /// Finds the matches within a distance (m).
     pub(super) fn find(&mut self, view: &View, figure: &Figure, gate: f32) {
         self.see(view, figure);
-        let depth = view.cells.first().map_or(1.0, |c| c.point.distance(view.eye()));
-        let side = ((gate / view.cell_size(depth)).ceil() as usize).max(2);
-        let (across, down) = (view.columns.div_ceil(side), view.rows.div_ceil(side));
-        self.sort(side, across, down);
+        let (across, down) = (view.columns.div_ceil(BUCKET), view.rows.div_ceil(BUCKET));
+        self.sort(across, down);
+        let eye = view.eye();
         let (mut explained, mut squares) = (0usize, 0.0);
-        for cell in &view.cells {
-            let (bc, br) = (cell.column as usize / side, cell.row as usize / side);
-            let mut best = (gate * gate, u32::MAX);
-            for r in br.saturating_sub(1)..(br + 2).min(down) {
-                // The three buckets of a row lie one after the other.
-                let from = self.start[r * across + bc.saturating_sub(1)] as usize;
-                let to = self.start[r * across + (bc + 2).min(across)] as usize;
-                for &i in &self.list[from..to] {
-                    let off = figure.points[i as usize].distance_squared(cell.point);
-                    if off < best.0 {
-                        let alike = figure.normals[i as usize].dot(cell.normal);
-                        if alike > ALIKE || cell.normal == Vec3::ZERO {
-                            best = (off, i);
-                        }
-                    }
-                }
-            }
-            if best.1 == u32::MAX {
+        for cell in view.cells.iter().step_by(self.every) {
+            let Some(i) = self.nearest(view, figure, cell, gate, [across, down]) else {
                 squares += gate * gate;
                 continue;
-            }
-            let i = best.1 as usize;
+            };
             explained += 1;
             squares += (figure.points[i] - cell.point).dot(figure.normals[i]).powi(2);
-            self.of[i].sum += cell.point;
-            self.of[i].count += 1.0;
+            let slanting = cell.normal.dot((eye - cell.point).normalize_or_zero()) < SLANTING;
+            if !slanting || cell.normal == Vec3::ZERO {
+                let count = self.every as f32;
+                self.of[i].sum += cell.point * count;
+                self.of[i].count += count;
+            }
         }
-        let n = view.cells.len().max(1) as f32;
+        let n = view.cells.len().div_ceil(self.every).max(1) as f32;
         (self.explained, self.off) = (explained as f32 / n, squares / n);
+    }
+
+    /// The sample nearest to a cell, in rings of buckets until no nearer one can come.
+    fn nearest(
+        &self,
+        view: &View,
+        figure: &Figure,
+        cell: &Cell,
+        gate: f32,
+        [across, down]: [usize; 2],
+    ) -> Option<usize> {
+        let (bc, br) = (cell.column as usize / BUCKET, cell.row as usize / BUCKET);
+        let width = BUCKET as f32 * view.cell_size(cell.point.distance(view.eye()));
+        let rings = (gate / width).ceil() as usize;
+        let mut best = (gate * gate, None);
+        let mut look = |from: u32, to: u32| {
+            for &i in &self.list[from as usize..to as usize] {
+                let off = figure.points[i as usize].distance_squared(cell.point);
+                let alike = || figure.normals[i as usize].dot(cell.normal) > ALIKE || cell.normal == Vec3::ZERO;
+                if off < best.0 && alike() {
+                    best = (off, Some(i as usize));
+                }
+            }
+            best
+        };
+        for ring in 0..=rings {
+            let (low, high) = (br.saturating_sub(ring), (br + ring).min(down - 1));
+            let (left, right) = (bc.saturating_sub(ring), (bc + ring).min(across - 1));
+            let mut found = (f32::MAX, None);
+            for r in low..=high {
+                let bucket = |c: usize| r * across + c;
+                if r + ring == br || r == br + ring {
+                    // A whole row of the ring: its buckets lie one after the other.
+                    found = look(self.start[bucket(left)], self.start[bucket(right) + 1]);
+                    continue;
+                }
+                if left + ring == bc {
+                    found = look(self.start[bucket(left)], self.start[bucket(left) + 1]);
+                }
+                if right == bc + ring && ring > 0 {
+                    found = look(self.start[bucket(right)], self.start[bucket(right) + 1]);
+                }
+            }
+            if found.1.is_some() && found.0 < (ring as f32 * width).powi(2) {
+                break;
+            }
+        }
+        best.1
     }
 
     /// Which samples face the camera, and where they are seen.
@@ -107,13 +163,13 @@ impl Matching {
         }
     }
 
-    /// Sorts the facing samples into buckets of `side` cells.
-    fn sort(&mut self, side: usize, across: usize, down: usize) {
+    /// Sorts the facing samples into buckets.
+    fn sort(&mut self, across: usize, down: usize) {
         self.start.clear();
         self.start.resize(across * down + 1, 0);
         let bucket = |m: &Match| {
             let at = m.seen.round().max(Vec2::ZERO);
-            (at.y as usize / side).min(down - 1) * across + (at.x as usize / side).min(across - 1)
+            (at.y as usize / BUCKET).min(down - 1) * across + (at.x as usize / BUCKET).min(across - 1)
         };
         for m in self.of.iter().filter(|m| m.faces) {
             self.start[bucket(m) + 1] += 1;

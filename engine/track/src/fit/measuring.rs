@@ -2,8 +2,9 @@
 
 use toile_assets::body::shape::{SHAPES, Shape, Shapes};
 use toile_assets::body::{En, Fitted, Readings, Sex};
-use toile_sensors::frame::DepthFrame;
 use toile_assets::sizes::Population;
+use toile_assets::skeleton::Pose;
+use toile_sensors::frame::DepthFrame;
 
 use super::{BodyFit, Options};
 use crate::estimate::Estimate;
@@ -59,6 +60,8 @@ pub struct FittedMeasures {
     pub woman: f32,
     /// The body that fits better.
     pub body: Fitted,
+    /// Its pose in the last frame.
+    pub pose: Pose,
     /// Frames that took part.
     pub frames: usize,
     /// Root mean square distance of the surface from the body's, in the last frame (m).
@@ -124,8 +127,9 @@ pub fn measure(frames: &[DepthFrame], population: Population, options: Options) 
     let measures = std::array::from_fn(|i| mixed(read.iter().map(|(w, m)| (*w as f32, m[i])), UNLIKE[i]));
     let woman = tries.iter().filter(|t| t.0 == Sex::Female).map(|t| weight(&t.1) / whole).sum::<f64>() as f32;
     let body = Shapes::of(best.0).body(&best.1.fit.shape());
-    let Try { fit, off, explained, .. } = &best.1;
-    Some(FittedMeasures { measures, woman, body, frames: fit.frames(), off: *off, explained: *explained })
+    let Try { fit, off, explained } = &best.1;
+    let pose = fit.last_pose()?;
+    Some(FittedMeasures { measures, woman, body, pose, frames: fit.frames(), off: *off, explained: *explained })
 }
 
 /// All measures of one fit.

@@ -82,7 +82,8 @@ impl Memory {
         let (shape, _) = self.estimate();
         let (precision, mean) = (self.shapes.precision(), self.shapes.mean());
         let off: Shape = std::array::from_fn(|i| shape[i] - mean[i]);
-        let unlike: f64 = (0..SHAPES).map(|i| (0..SHAPES).map(|j| off[i] * precision[i][j] * off[j]).sum::<f64>()).sum();
+        let unlike: f64 =
+            (0..SHAPES).map(|i| (0..SHAPES).map(|j| off[i] * precision[i][j] * off[j]).sum::<f64>()).sum();
         let (_, prior) = invert(precision);
         let (_, known) = invert(&self.about(mean).curve);
         unlike + known - prior

@@ -20,7 +20,6 @@ mod view;
 use glam::{Quat, Vec3};
 use toile_assets::body::shape::{Shape, Shapes};
 use toile_assets::body::{Body, Sex};
-use toile_assets::mesh::vertex_normals;
 use toile_assets::skeleton::{JOINTS, Joint, Pose};
 use toile_sensors::frame::{DepthFrame, Joints, TrackedJoint};
 
@@ -38,7 +37,7 @@ pub struct Options {
     pub ground: Option<f32>,
     /// Whether cloth covers the skin: then the fit is one-sided, for cloth lies outside.
     pub clothed: bool,
-    /// Distance between the samples of the surface (m): finer is surer and slower.
+    /// Least distance between the samples of the surface (m): finer is surer and slower; 0 takes every face.
     pub spacing: f32,
     /// Steps a frame.
     pub steps: usize,
@@ -49,7 +48,7 @@ impl Options {
     pub const LIVE: Self = Self { ground: Some(0.0), clothed: true, spacing: 0.030, steps: 3 };
 
     /// For the second in which a shopper is measured.
-    pub const MEASURING: Self = Self { ground: Some(0.0), clothed: true, spacing: 0.018, steps: 5 };
+    pub const MEASURING: Self = Self { ground: Some(0.0), clothed: true, spacing: 0.0, steps: 3 };
 }
 
 /// Matches farther than this are none, in a frame that follows another (m).
@@ -69,6 +68,12 @@ const EXPLAINED: [f32; 2] = [0.60, 0.70];
 
 /// Frames in a row after which a shopper who is not explained is lost.
 const PATIENCE: usize = 5;
+
+/// One cell in so many is enough to find a shopper by.
+const SPARSE: usize = 4;
+
+/// Another way of holding an arm is believed when it leaves this share of the square distance, or less.
+const BETTER: f32 = 0.93;
 
 /// Share of each diagonal that is added: keeps steps in badly seen directions short.
 const DAMPING: f64 = 1e-3;
@@ -104,6 +109,8 @@ pub struct BodyFit {
     view: View,
     memory: Memory,
     state: Option<State>,
+    /// The last state that was believed.
+    last: Option<State>,
     still_normals: Vec<Vec3>,
     shaped: Option<Shape>,
     doubts: usize,
@@ -122,6 +129,7 @@ impl BodyFit {
             view: View::new(),
             memory: Memory::new(shapes),
             state: None,
+            last: None,
             still_normals: vec![Vec3::ZERO; cast.samples.len()],
             shaped: None,
             doubts: 0,
@@ -134,7 +142,7 @@ impl BodyFit {
     /// Forgets the shopper.
     pub fn reset(&mut self) {
         self.memory = Memory::new(self.cast.shapes);
-        (self.state, self.doubts, self.cost) = (None, 0, (0.0, 0));
+        (self.state, self.last, self.doubts, self.cost) = (None, None, 0, (0.0, 0));
     }
 
     /// Fits the body to the next frame, which holds nothing but the shopper (all other pixels 0).
@@ -155,6 +163,7 @@ impl BodyFit {
         if self.matching.explained >= enough && next.root.is_finite() {
             self.doubts = 0;
             self.state = Some(next);
+            self.last = Some(next);
             self.memory.add(&self.equations.shape(), &next.shape);
             self.cost = (self.cost.0 + self.equations.cost, self.cost.1 + 1);
         } else if !started {
@@ -174,6 +183,7 @@ impl BodyFit {
     fn find(&mut self) -> State {
         let mut best = start::upright(&self.cast, &self.view, self.options.ground);
         self.reshape(&best.shape);
+        self.matching.every = SPARSE;
         best = self.stage(best, &FIRST[..2]);
         let mut least = self.judged(&best);
         for shoulder in [Joint::LeftShoulder, Joint::RightShoulder] {
@@ -183,11 +193,12 @@ impl BodyFit {
                 start::hold(&self.cast, &mut tried, shoulder, *arm);
                 tried = self.stage(tried, &TRIED);
                 let off = self.judged(&tried);
-                if off < least {
+                if off < least * BETTER {
                     (least, best) = (off, tried);
                 }
             }
         }
+        self.matching.every = 1;
         self.reshape(&best.shape);
         let best = self.stage(best, &FIRST[2..]);
         self.reshape(&best.shape);
@@ -234,12 +245,9 @@ impl BodyFit {
         if self.shaped.is_some_and(|s| s.iter().zip(shape).all(|(a, b)| (a - b).abs() < RESHAPED)) {
             return;
         }
-        let base = self.cast.shapes.base();
-        let positions: Vec<Vec3> = (0..base.positions.len()).map(|v| self.cast.shapes.place(v, shape)).collect();
-        let mut normals = vec![Vec3::ZERO; positions.len()];
-        vertex_normals(&positions, &base.triangles, &mut normals);
         for (still, sample) in self.still_normals.iter_mut().zip(&self.cast.samples) {
-            *still = normals[sample.vertex as usize];
+            let [a, b, c, d] = sample.corners.map(|v| self.cast.shapes.place(v as usize, shape));
+            *still = (c - a).cross(d - b).normalize_or_zero();
         }
         self.shaped = Some(*shape);
     }
@@ -257,7 +265,8 @@ impl BodyFit {
                 joints.joints[i] = TrackedJoint { position: self.figure.place[i], confidence };
             }
         }
-        let (explained, off) = if found { (self.matching.explained, step::rms(&self.figure, &self.matching)) } else { (0.0, 0.0) };
+        let (explained, off) =
+            if found { (self.matching.explained, step::rms(&self.figure, &self.matching)) } else { (0.0, 0.0) };
         Seen { joints, found, started, explained, off }
     }
 
@@ -280,6 +289,11 @@ impl BodyFit {
     /// Frames that the shape comes from.
     pub fn frames(&self) -> usize {
         self.memory.frames()
+    }
+
+    /// The pose of the last frame in which somebody was found.
+    pub fn last_pose(&self) -> Option<Pose> {
+        self.last.map(|s| Pose { root: s.root, local: s.local.map(Quat::normalize) })
     }
 
     /// The fitted body at rest, and its pose in the last frame; `None` when nobody is followed.

@@ -67,11 +67,8 @@ pub(super) fn upright(cast: &Cast, view: &View, ground: Option<f32>) -> State {
         band.get(band.len() / 2).copied()
     };
     let all = [heights[0], heights[heights.len() - 1] + 1.0];
-    let whole = Vec3::new(
-        middle(all[0], all[1], |p| p.x).unwrap_or(0.0),
-        0.0,
-        middle(all[0], all[1], |p| p.z).unwrap_or(0.0),
-    );
+    let whole =
+        Vec3::new(middle(all[0], all[1], |p| p.x).unwrap_or(0.0), 0.0, middle(all[0], all[1], |p| p.z).unwrap_or(0.0));
     let near = |p: &Vec3| (p.x - whole.x).hypot(p.z - whole.z) < HEAD_REACH + HALF_PELVIS;
     let mut above: Vec<f32> = view.cells.iter().map(|c| c.point).filter(near).map(|p| p.y).collect();
     above.sort_unstable_by(f32::total_cmp);

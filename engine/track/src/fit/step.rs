@@ -1,6 +1,5 @@
 //! One step of the fit: what picture, ground, habit and the body's limits say, added up and solved.
 
-use glam::Vec3;
 use toile_assets::body::shape::SHAPES;
 
 use super::equations::Equations;
@@ -68,7 +67,7 @@ pub(super) fn gather(equations: &mut Equations, scene: Scene, known: &Known) {
     for (i, found) in matching.of.iter().enumerate() {
         if found.count > 0.0 {
             let normal = figure.normals[i];
-            let residual = normal.dot(figure.points[i] - found.mean());
+            let residual = found.outside(figure.points[i], normal);
             let weight = found.count * trust(residual, known) / (CELL_SIGMA * CELL_SIGMA);
             equations.add(&figure.row(cast, i, normal), residual, weight);
         } else if found.faces {
@@ -142,8 +141,7 @@ pub(super) fn bounded(mut step: [f64; UNKNOWNS]) -> [f64; UNKNOWNS] {
 pub(super) fn rms(figure: &Figure, matching: &Matching) -> f32 {
     let (mut sum, mut count) = (0.0, 0.0);
     for (i, m) in matching.of.iter().enumerate().filter(|(_, m)| m.count > 0.0) {
-        let off: Vec3 = figure.points[i] - m.mean();
-        sum += m.count * figure.normals[i].dot(off).powi(2);
+        sum += m.count * m.outside(figure.points[i], figure.normals[i]).powi(2);
         count += m.count;
     }
     (sum / f32::max(count, 1.0)).sqrt()

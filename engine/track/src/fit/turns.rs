@@ -45,8 +45,8 @@ const BALLS: [Ball; 9] = [
     ball(Joint::Neck, [[-45.0, 50.0], [-60.0, 60.0], [-45.0, 45.0]], [9.0, 15.0, 8.0]),
     ball(Joint::Head, [[-30.0, 30.0], [0.0; 2], [0.0; 2]], [7.0, 0.0, 0.0]),
     ball(Joint::LeftClavicle, [[0.0; 2], [-25.0, 25.0], [-15.0, 40.0]], [0.0, 7.0, 7.0]),
-    ball(Joint::LeftShoulder, [[-170.0, 170.0], [-170.0, 100.0], [-170.0, 120.0]], [40.0, 50.0, 50.0]),
-    ball(Joint::LeftWrist, [[-70.0, 70.0], [0.0; 2], [-80.0, 80.0]], [12.0, 0.0, 15.0]),
+    ball(Joint::LeftShoulder, [[-110.0, 110.0], [-95.0, 95.0], [-130.0, 110.0]], [35.0, 35.0, 50.0]),
+    ball(Joint::LeftWrist, [[-45.0, 45.0], [0.0; 2], [-60.0, 60.0]], [10.0, 0.0, 14.0]),
     ball(Joint::LeftHip, [[-120.0, 30.0], [-45.0, 60.0], [-30.0, 60.0]], [12.0, 14.0, 10.0]),
 ];
 
@@ -141,7 +141,9 @@ mod tests {
     fn an_elbow_bends_forwards_and_a_knee_backwards() {
         let shapes = Shapes::of(Sex::Male);
         let rest = shapes.skeleton(shapes.mean());
-        for (joint, end, forwards) in [(Joint::LeftElbow, Joint::LeftWrist, 1.0), (Joint::RightKnee, Joint::RightAnkle, -1.0)] {
+        for (joint, end, forwards) in
+            [(Joint::LeftElbow, Joint::LeftWrist, 1.0), (Joint::RightKnee, Joint::RightAnkle, -1.0)]
+        {
             let turn = turns(&rest).into_iter().find(|t| t.joint == joint).unwrap();
             let lower = rest.at(end) - rest.at(joint);
             let bent = Quat::from_axis_angle(turn.axis, 0.8) * lower;

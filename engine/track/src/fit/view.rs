@@ -195,10 +195,8 @@ impl View {
     /// The place of the grid, if it lies within.
     pub(super) fn place(&self, at: Vec2) -> Option<(usize, usize)> {
         let rounded = at.round();
-        let inside = rounded.x >= 0.0
-            && rounded.y >= 0.0
-            && rounded.x < self.columns as f32
-            && rounded.y < self.rows as f32;
+        let inside =
+            rounded.x >= 0.0 && rounded.y >= 0.0 && rounded.x < self.columns as f32 && rounded.y < self.rows as f32;
         inside.then_some((rounded.x as usize, rounded.y as usize))
     }
 
