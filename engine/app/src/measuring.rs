@@ -75,7 +75,9 @@ fn table(study: &Study, paint: Paint) -> String {
             "sigma",
             "in 2s"
         );
-        rows.iter().for_each(|row| drop(writeln!(text, "{}", told(row, paint))));
+        for row in rows {
+            let _ = writeln!(text, "{}", told(row, paint));
+        }
     }
     let _ = writeln!(
         text,
@@ -83,6 +85,21 @@ fn table(study: &Study, paint: Paint) -> String {
         study.lost,
         study.people,
         study.sex_right * 100.0
+    );
+    let f = &study.following;
+    let _ = writeln!(
+        text,
+        "following: {:.1} ms a frame (median), {:.1} ms (95 %): picture {:.1}, matches {:.1}, equations {:.1}, solution {:.1} \
+         ms; {:.0} ms to find somebody; surface {:.1} mm and joints {:.0} mm off",
+        f.frame_ms[0],
+        f.frame_ms[1],
+        f.stages_ms[0],
+        f.stages_ms[1],
+        f.stages_ms[2],
+        f.stages_ms[3],
+        f.start_ms,
+        f.off_mm,
+        f.joints_mm
     );
     text
 }

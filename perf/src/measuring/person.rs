@@ -6,8 +6,8 @@ use glam::{Quat, Vec3};
 use toile_assets::body::shape::Shapes;
 use toile_assets::body::{Ansur, Body, BodyError, Readings, Region, Sex, Wanted};
 use toile_assets::mesh::vertex_normals;
-use toile_assets::skeleton::{BONES, Joint, Pose};
-use toile_engine::body::palette;
+use toile_assets::skeleton::{BONES, JOINTS, Joint, Pose};
+use toile_engine::body::{JointFrames, palette};
 use toile_sensors::source::synthetic::Rng;
 
 /// What of the survey a person's body is built to, with the survey's names.
@@ -36,6 +36,9 @@ const KNOTS: [f32; 6] = [0.44, 0.52, 0.58, 0.64, 0.72, 0.82];
 
 /// Roughness of flesh that nobody's family has: harmonics of the whole surface (m), about a hand wide.
 const BUMPS: f32 = 0.0008;
+
+/// Where the joints are at one moment, world (m).
+pub type Moment = [Vec3; JOINTS];
 
 /// A person who can stand before a camera.
 pub struct Person {
@@ -69,7 +72,8 @@ impl Person {
     }
 
     /// The surface of the swaying person at one moment, feet on the floor (m) `[vertices]`.
-    pub fn stand(&self, rng: &mut Rng, positions: &mut Vec<Vec3>) {
+    /// Gives where their joints are.
+    pub fn stand(&self, rng: &mut Rng, positions: &mut Vec<Vec3>) -> Moment {
         let mut pose = self.pose;
         let mut sway = |joint: Joint, by: f32| {
             let turn = Vec3::new(rng.gaussian(), rng.gaussian(), rng.gaussian()) * by;
@@ -96,6 +100,7 @@ impl Person {
         }));
         let lowest = positions.iter().map(|p| p.y).fold(f32::MAX, f32::min);
         positions.iter_mut().for_each(|p| p.y -= lowest);
+        JointFrames::new(&self.body.skeleton, &pose).position.map(|p| p - Vec3::Y * lowest)
     }
 }
 

@@ -4,7 +4,7 @@ use glam::{Affine3A, Quat, Vec3};
 use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::synthetic::{KinectNoise, Rng, SyntheticCamera};
 
-use super::person::Person;
+use super::person::{Moment, Person};
 
 /// A kind of depth camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,15 +106,15 @@ impl Sight {
         Self { told: camera, seen: SyntheticCamera { intrinsics, camera_to_world }, sensor, offset, distance }
     }
 
-    /// A second or less of the swaying person, at 30 Hz.
-    pub fn frames(&self, person: &Person, count: usize, rng: &mut Rng) -> Vec<DepthFrame> {
+    /// The swaying person at 30 Hz, and where their joints are in each frame.
+    pub fn frames(&self, person: &Person, count: usize, rng: &mut Rng) -> Vec<(DepthFrame, Moment)> {
         let mut kinect = KinectNoise::new(rng.next_u64());
         let mut positions = Vec::new();
         let mut image = vec![0.0; self.seen.intrinsics.pixels()];
         let mut triangles = person.triangles().to_vec();
         let mut frames = Vec::with_capacity(count);
         for i in 0..count as u64 {
-            person.stand(rng, &mut positions);
+            let moment = person.stand(rng, &mut positions);
             let n = positions.len() as u32;
             if i == 0 {
                 triangles.extend([[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 5, 4]].map(|t: [u32; 3]| t.map(|k| n + k)));
@@ -128,7 +128,7 @@ impl Sight {
                 Sensor::Kinect => kinect.apply(&self.seen.intrinsics, &image),
                 Sensor::Azure => self.flight(&image, rng),
             };
-            frames.push(self.told.frame(i * 33_333_333, depth));
+            frames.push((self.told.frame(i * 33_333_333, depth), moment));
         }
         frames
     }

@@ -1,19 +1,22 @@
 //! The study: people drawn from the survey, seen, measured in both ways, compared with what the tape reads on them.
 
+use std::time::Instant;
+
 use serde::Serialize;
 use thiserror::Error;
 use toile_assets::body::{BodyError, Sex};
 use toile_assets::sizes::Population;
+use toile_assets::skeleton::Joint;
 use toile_sensors::frame::DepthFrame;
 use toile_sensors::source::synthetic::Rng;
 use toile_track::cloud;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{self, TAKEN};
-use toile_track::fit::{self};
+use toile_track::fit::{self, BodyFit};
 use toile_track::measure;
 use toile_track::measures::Hint;
 
-use super::person::{GIVEN, Person};
+use super::person::{GIVEN, Moment, Person};
 use super::sensor::{Sensor, Sight};
 use crate::ansur::{Survey, SurveyError};
 
@@ -64,6 +67,10 @@ pub struct Case {
     pub sections: Outcome,
     /// How likely the fit took them for a woman.
     pub woman: Option<f32>,
+    /// Each frame followed: its time and that of its stages (s), how far off the surface and the joints are (m).
+    followed: Vec<[f32; 7]>,
+    /// Time of the first frame (s).
+    start: Option<f32>,
 }
 
 /// How one measure agrees over the people.
@@ -93,6 +100,23 @@ pub struct Agreement {
     pub pass: bool,
 }
 
+/// What following people costs, frame by frame, at how good a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Following {
+    /// Frames followed, those in which somebody is found from nothing left out.
+    pub frames: usize,
+    /// Median and 95th percentile of a frame's time (ms).
+    pub frame_ms: [f64; 2],
+    /// Median time of reading the picture, of posing and matching, of adding up, of solving (ms).
+    pub stages_ms: [f64; 4],
+    /// Median time of finding somebody from nothing (ms).
+    pub start_ms: f64,
+    /// Mean root mean square distance of the surface from the body's (mm).
+    pub off_mm: f64,
+    /// Root mean square distance of the joints from the true ones, the hands' and the toes' left out (mm).
+    pub joints_mm: f64,
+}
+
 /// What a study found.
 #[derive(Debug, Clone, Serialize)]
 pub struct Study {
@@ -106,6 +130,8 @@ pub struct Study {
     pub lost: usize,
     /// Share of people whose sex the fit took for the likelier one.
     pub sex_right: f64,
+    /// The body fit frame by frame, as it follows people.
+    pub following: Following,
     /// By the body fit.
     pub fit: Vec<Agreement>,
     /// By sections, proportions and the mean over time.
@@ -137,10 +163,12 @@ pub fn study(surveys: &[Survey], options: &Options, told: &dyn Fn(&Case)) -> Res
 fn measured(person: &Person, options: &Options, rng: &mut Rng) -> Case {
     let sight = Sight::new(options.sensor, rng);
     let frames = sight.frames(person, options.frames, rng);
-    let alone: Vec<DepthFrame> =
-        frames.iter().filter_map(|f| Some(cloud::people(f).people.first()?.alone(f))).collect();
+    let alone = |(f, truth): &(DepthFrame, Moment)| Some((cloud::people(f).people.first()?.alone(f), *truth));
+    let alone: Vec<(DepthFrame, Moment)> = frames.iter().filter_map(alone).collect();
+    let only: Vec<DepthFrame> = alone.iter().map(|a| a.0.clone()).collect();
+    let frames: Vec<DepthFrame> = frames.into_iter().map(|f| f.0).collect();
     let bare = fit::Options { clothed: false, ..fit::Options::MEASURING };
-    let fitted = measuring::measure(&alone, Population::Mixed, bare);
+    let fitted = measuring::measure(&only, Population::Mixed, bare);
     let sections = measure::measure(&[], &frames, &Hint::default()).ok();
     let sections = sections.map_or([None; TAKEN.len()], |m| {
         let s = &m.measures;
@@ -150,13 +178,74 @@ fn measured(person: &Person, options: &Options, rng: &mut Rng) -> Case {
         places.into_iter().zip(values).for_each(|(i, v)| all[i] = v);
         all
     });
+    let (start, followed) = follow(person, &alone);
     Case {
+        start,
+        followed,
         sex: person.sex,
         distance: sight.distance,
         truth: TAKEN.map(|(_, girth, _)| girth.of(&person.readings)),
         fit: fitted.as_ref().map_or([None; TAKEN.len()], |f| f.measures.map(Some)),
         sections,
         woman: fitted.map(|f| f.woman),
+    }
+}
+
+/// Follows a person through their frames, as at 30 Hz.
+fn follow(person: &Person, frames: &[(DepthFrame, Moment)]) -> (Option<f32>, Vec<[f32; 7]>) {
+    let mut fit = BodyFit::new(person.sex, fit::Options { clothed: false, ..fit::Options::LIVE });
+    let (mut start, mut followed) = (None, Vec::new());
+    for (frame, truth) in frames {
+        let begun = Instant::now();
+        let seen = fit.push(frame);
+        let time = begun.elapsed().as_secs_f32();
+        if seen.started {
+            start = Some(time);
+        } else if seen.found {
+            let squares = HELD.map(|j| seen.joints.at(j).position.distance_squared(truth[j.index()]));
+            let joints = (squares.iter().sum::<f32>() / squares.len() as f32).sqrt();
+            let s = fit.stages();
+            followed.push([time, s.look, s.match_up, s.gather, s.solve, seen.off, joints]);
+        }
+    }
+    (start, followed)
+}
+
+/// Joints that are held against the true ones.
+const HELD: [Joint; 14] = [
+    Joint::Pelvis,
+    Joint::Chest,
+    Joint::Neck,
+    Joint::Head,
+    Joint::LeftShoulder,
+    Joint::LeftElbow,
+    Joint::LeftWrist,
+    Joint::RightShoulder,
+    Joint::RightElbow,
+    Joint::RightWrist,
+    Joint::LeftKnee,
+    Joint::LeftAnkle,
+    Joint::RightKnee,
+    Joint::RightAnkle,
+];
+
+fn following(cases: &[Case]) -> Following {
+    let all: Vec<&[f32; 7]> = cases.iter().flat_map(|c| &c.followed).collect();
+    let rank = |mut figures: Vec<f32>, share: f64| {
+        figures.sort_by(f32::total_cmp);
+        let place = (figures.len() as f64 * share) as usize;
+        figures.get(place).map_or(0.0, |f| f64::from(*f) * 1e3)
+    };
+    let column = |k: usize| all.iter().map(|f| f[k]).collect::<Vec<f32>>();
+    let n = all.len().max(1) as f64;
+    let squares: f64 = all.iter().map(|f| f64::from(f[6]).powi(2)).sum();
+    Following {
+        frames: all.len(),
+        frame_ms: [rank(column(0), 0.5), rank(column(0), 0.95)],
+        stages_ms: [1, 2, 3, 4].map(|k| rank(column(k), 0.5)),
+        start_ms: rank(cases.iter().filter_map(|c| c.start).collect(), 0.5),
+        off_mm: all.iter().map(|f| f64::from(f[5])).sum::<f64>() / n * 1e3,
+        joints_mm: (squares / n).sqrt() * 1e3,
     }
 }
 
@@ -169,6 +258,7 @@ fn summed(cases: &[Case], options: &Options) -> Study {
         frames: options.frames,
         lost: cases.len() - found,
         sex_right: cases.iter().filter(right).count() as f64 / found.max(1) as f64,
+        following: following(cases),
         fit: agreements(cases, |c| &c.fit),
         sections: agreements(cases, |c| &c.sections),
     }

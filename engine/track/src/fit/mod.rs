@@ -17,6 +17,8 @@ mod step;
 mod turns;
 mod view;
 
+use std::time::Instant;
+
 use glam::{Quat, Vec3};
 use toile_assets::body::shape::{Shape, Shapes};
 use toile_assets::body::{Body, Sex};
@@ -99,6 +101,19 @@ pub struct Seen {
     pub off: f32,
 }
 
+/// Where the time of one frame went (s).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stages {
+    /// Reading the picture into cells.
+    pub look: f32,
+    /// Posing the body and finding which sample each cell shows.
+    pub match_up: f32,
+    /// Adding up the equations.
+    pub gather: f32,
+    /// Solving them, and what the frame says of the shape.
+    pub solve: f32,
+}
+
 /// One shopper, followed.
 pub struct BodyFit {
     options: Options,
@@ -115,6 +130,7 @@ pub struct BodyFit {
     shaped: Option<Shape>,
     doubts: usize,
     cost: (f64, usize),
+    stages: Stages,
 }
 
 impl BodyFit {
@@ -134,6 +150,7 @@ impl BodyFit {
             shaped: None,
             doubts: 0,
             cost: (0.0, 0),
+            stages: Stages::default(),
             options,
             cast,
         }
@@ -147,7 +164,11 @@ impl BodyFit {
 
     /// Fits the body to the next frame, which holds nothing but the shopper (all other pixels 0).
     pub fn push(&mut self, frame: &DepthFrame) -> Seen {
-        if !self.view.look(frame) {
+        self.stages = Stages::default();
+        let begun = Instant::now();
+        let enough = self.view.look(frame);
+        self.stages.look = begun.elapsed().as_secs_f32();
+        if !enough {
             self.doubt();
             return self.seen(frame.time_ns, false);
         }
@@ -164,7 +185,9 @@ impl BodyFit {
             self.doubts = 0;
             self.state = Some(next);
             self.last = Some(next);
+            let begun = Instant::now();
             self.memory.add(&self.equations.shape(), &next.shape);
+            self.stages.solve += begun.elapsed().as_secs_f32();
             self.cost = (self.cost.0 + self.equations.cost, self.cost.1 + 1);
         } else if !started {
             self.doubt();
@@ -222,16 +245,22 @@ impl BodyFit {
     fn steps(&mut self, from: &State, before: Option<&State>, (gate, robust, steps): (f32, f32, usize)) -> State {
         let mut state = *from;
         for _ in 0..steps {
+            let begun = Instant::now();
             self.figure.pose(&self.cast, &state, &self.still_normals);
             self.matching.find(&self.view, &self.figure, gate);
+            let matched = Instant::now();
+            self.stages.match_up += (matched - begun).as_secs_f32();
             let shape = self.memory.about(&state.shape);
             let Options { ground, clothed, .. } = self.options;
             let known = Known { ground, clothed, robust };
             let Self { cast, figure, view, matching, equations, .. } = self;
             step::gather(equations, step::Scene { cast, figure, view, matching }, &known);
             step::habits(&mut self.equations, &self.cast, &state, before);
+            let gathered = Instant::now();
+            self.stages.gather += (gathered - matched).as_secs_f32();
             let by = step::bounded(self.equations.step(&shape, DAMPING));
             let next = state.stepped(&self.cast, &by);
+            self.stages.solve += gathered.elapsed().as_secs_f32();
             if !next.root.is_finite() {
                 break;
             }
@@ -279,6 +308,11 @@ impl BodyFit {
             }
         }
         cells
+    }
+
+    /// Where the time of the last frame went.
+    pub fn stages(&self) -> Stages {
+        self.stages
     }
 
     /// The shape as all frames so far have it; the mean person's before the first.
