@@ -10,6 +10,7 @@ use glam::Vec3;
 use super::base::Base;
 use super::calibrate::{Found, Model};
 use super::landmarks::Landmark;
+use super::proportions::Proportions;
 use super::reading::{En, Reading, Readings, Vocabulary, Wanted};
 use super::{Body, BodyError, Levels, Measures, Sex};
 use crate::mesh::{Mesh, vertex_normals};
@@ -90,6 +91,7 @@ impl Body {
                 measure: measure.name(),
                 value,
                 reached: fitted.readings.of(measure),
+                against: model.against(wanted, measure),
                 nearest: Box::new(fitted),
             }),
         }
@@ -101,6 +103,11 @@ impl Body {
         model.fitted(&model.as_drawn()).body
     }
 
+    /// Where the landmarks of a sex's drawn body lie.
+    pub(crate) fn proportions(sex: Sex) -> Proportions {
+        Proportions::of(&model(sex).morphs.base)
+    }
+
     /// What the tape reads on the body of a sex as it is drawn.
     pub fn drawn_readings(sex: Sex) -> Readings {
         Readings(model(sex).as_drawn().readings)
@@ -108,6 +115,20 @@ impl Body {
 }
 
 impl Model {
+    /// The measure without which all others are met, one of them in particular; of several the one that was given last.
+    fn against<V: Vocabulary>(&self, wanted: &Wanted<V>, measure: V) -> Option<(&'static str, f32)> {
+        let given = wanted.given();
+        let without = |left_out: usize| {
+            let others = given.iter().enumerate().filter(|&(k, _)| k != left_out).map(|(_, g)| g);
+            let others: Vec<(Reading, f32)> = others.map(|(m, value)| (m.reading(), *value)).collect();
+            let found = self.calibrate(&others);
+            others.iter().all(|(r, value)| (found.readings[r.index()] - value).abs() <= TOLERANCE)
+        };
+        let others = (0..given.len()).rev().filter(|&k| given[k].0.reading() != measure.reading());
+        let freed = others.into_iter().find(|&k| without(k))?;
+        Some((given[freed].0.name(), given[freed].1))
+    }
+
     pub(super) fn fitted(&self, found: &Found) -> Fitted {
         let base = &self.morphs.base;
         let positions = self.morphs.positions(&found.setting);

@@ -15,6 +15,7 @@ pub mod landmarks;
 pub mod lattice;
 mod morph;
 mod people;
+mod proportions;
 mod reading;
 mod segments;
 pub mod shape;
@@ -95,7 +96,7 @@ impl Measures {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BodyError {
     /// A measure is not a number, or beyond the sizes that the mannequin is drawn for.
-    #[error("the {measure} is {value} m, but a body is built for {least} to {most} m: check the measure and its unit")]
+    #[error("the {measure} is {value} m, but a body is built for {least} to {most} m: {}", cure(*value, [*least, *most]))]
     OutOfRange {
         /// Its name.
         measure: &'static str,
@@ -108,8 +109,9 @@ pub enum BodyError {
     },
     /// Each measure is in its range, but no body of this kind has them together.
     #[error(
-        "no body has a {measure} of {value} m together with the other measures, the nearest has {reached} m: \
-         check them against each other"
+        "no body has a {measure} of {value} m together with {}, the nearest has {reached:.3} m: check them against each \
+         other, or leave one out",
+        beside(against.as_ref())
     )]
     Unreachable {
         /// The name of the measure that is furthest off.
@@ -118,9 +120,25 @@ pub enum BodyError {
         value: f32,
         /// The value of the nearest body (m).
         reached: f32,
+        /// The one other measure without which the first can be met, if there is one, and the value asked for (m).
+        against: Option<(&'static str, f32)>,
         /// The nearest body.
         nearest: Box<Fitted>,
     },
+}
+
+/// What to do about a measure that is out of its range: in another unit it may be in it.
+fn cure(value: f32, [least, most]: [f32; 2]) -> String {
+    let units = [("millimetres", 1e-3), ("centimetres", 1e-2), ("inches", 0.0254)];
+    match units.into_iter().find(|(_, metres)| (least..=most).contains(&(value * metres))) {
+        Some((unit, metres)) => format!("taken as {unit} it would be {:.3} m, so give metres", value * metres),
+        None => "check the measure and its unit".to_owned(),
+    }
+}
+
+/// What a measure cannot be had together with.
+fn beside(other: Option<&(&'static str, f32)>) -> String {
+    other.map_or_else(|| "the other measures".to_owned(), |(name, value)| format!("a {name} of {value} m"))
 }
 
 /// Parts of the body.

@@ -1,4 +1,7 @@
 //! Whether a body looks right: how rough its surface is, and whether it crosses itself.
+//!
+//! A surface that meets itself after a short way along it is folded, which no body is; one that meets itself after a
+//! long way touches, as the thighs of stout people do.
 
 use glam::{DVec3, Vec3};
 
@@ -48,11 +51,55 @@ fn laplacians(mesh: &Mesh) -> (Vec<DVec3>, Vec<u32>) {
     (way, count)
 }
 
-/// Number of edges that pierce a triangle that they share no vertex with: 0 for a surface that does not cross itself.
-pub fn crossings(mesh: &Mesh) -> usize {
+/// An edge that pierces a triangle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Crossing {
+    /// Vertices of the edge.
+    pub edge: [u32; 2],
+    /// Vertices of the triangle; none of them is the edge's.
+    pub triangle: [u32; 3],
+}
+
+/// All edges that pierce a triangle that they share no vertex with, once a pair; none on a sound surface.
+pub fn crossings(mesh: &Mesh) -> Vec<Crossing> {
     let grid = Grid::new(mesh);
-    let edges = mesh.triangles.iter().flat_map(sides).filter(|(i, j)| i < j);
-    edges.map(|(i, j)| grid.pierced(mesh, i, j)).sum()
+    let mut found = Vec::new();
+    for (i, j) in mesh.triangles.iter().flat_map(sides).filter(|(i, j)| i < j) {
+        grid.pierced(mesh, [i, j], &mut found);
+    }
+    found
+}
+
+/// Edges along the surface within which crossing is folding: about 80 mm of way on our bodies.
+pub const FOLDED_WITHIN: usize = 6;
+
+/// Those crossings at which the surface is folded: a way of at most [`FOLDED_WITHIN`] edges leads from the edge to the
+/// triangle. The others are contact.
+pub fn folds(mesh: &Mesh, crossings: &[Crossing]) -> Vec<Crossing> {
+    if crossings.is_empty() {
+        return Vec::new();
+    }
+    let mut near: Vec<Vec<u32>> = vec![Vec::new(); mesh.positions.len()];
+    for (a, b) in mesh.triangles.iter().flat_map(sides) {
+        near[a as usize].push(b);
+    }
+    let folded = |c: &&Crossing| {
+        let mut reached = c.edge.to_vec();
+        let mut from = 0;
+        for _ in 0..FOLDED_WITHIN {
+            let to = reached.len();
+            for k in from..to {
+                for &v in &near[reached[k] as usize] {
+                    if !reached.contains(&v) {
+                        reached.push(v);
+                    }
+                }
+            }
+            from = to;
+        }
+        c.triangle.iter().any(|v| reached.contains(v))
+    };
+    crossings.iter().filter(folded).copied().collect()
 }
 
 /// Size of the cells in which triangles are looked up (m): about two edges of a body.
@@ -113,25 +160,26 @@ impl Grid {
         planes.flat_map(move |(y, z)| (from[0]..=to[0]).map(move |x| ([x, y, z], (z * ny + y) * nx + x)))
     }
 
-    /// How many triangles an edge pierces.
-    fn pierced(&self, mesh: &Mesh, i: u32, j: u32) -> usize {
+    /// Adds the triangles that an edge pierces.
+    fn pierced(&self, mesh: &Mesh, edge: [u32; 2], found: &mut Vec<Crossing>) {
+        let [i, j] = edge;
         let [a, b] = [i, j].map(|v| mesh.positions[v as usize]);
         let own = self.around(&[a, b]);
-        let mut count = 0;
         for (place, c) in self.cells(&own) {
             for &t in &self.triangles[self.start[c] as usize..self.start[c + 1] as usize] {
-                let corners = mesh.triangles[t as usize];
-                if corners.contains(&i) || corners.contains(&j) {
+                let triangle = mesh.triangles[t as usize];
+                if triangle.contains(&i) || triangle.contains(&j) {
                     continue;
                 }
-                let corners = corners.map(|v| mesh.positions[v as usize]);
+                let corners = triangle.map(|v| mesh.positions[v as usize]);
                 // A pair that meets in several cells counts in the first of them.
                 let theirs = self.around(&corners)[0];
                 let first = (0..3).all(|k| place[k] == own[0][k].max(theirs[k]));
-                count += usize::from(first && pierces(a, b, corners));
+                if first && pierces(a, b, corners) {
+                    found.push(Crossing { edge, triangle });
+                }
             }
         }
-        count
     }
 }
 

@@ -250,7 +250,12 @@ fn impossible_measures_are_refused_in_one_sentence() {
         (Measures { hip_girth: -1.0, ..mean }, "hip girth"),
     ] {
         let message = Body::build(Sex::Female, &wanted).unwrap_err().to_string();
-        assert!(message.contains(name) && message.contains("check") && !message.contains('\n'), "{message}");
+        assert!(
+            message.contains(name)
+                && (message.contains("check") || message.contains("give metres"))
+                && !message.contains('\n'),
+            "{message}"
+        );
     }
 }
 
@@ -341,7 +346,7 @@ fn limbs_keep_clear_of_the_trunk() {
 #[test]
 fn surface_does_not_cross_itself() {
     for body in [average(Sex::Female), average(Sex::Male)].iter().chain(&small_and_large()) {
-        assert_eq!(sound::crossings(&body.mesh), 0, "{:?}", body.measures);
+        assert_eq!(sound::crossings(&body.mesh), [], "{:?}", body.measures);
     }
 }
 
@@ -350,7 +355,7 @@ fn crossings_are_seen() {
     let mut mesh = average(Sex::Female).mesh;
     let (top, aside) = (1.6285, Vec3::new(0.1, 0.013, 0.007));
     mesh.positions.iter_mut().filter(|p| p.y > 0.95 * top && p.x > 0.0).for_each(|p| *p -= aside);
-    assert!(sound::crossings(&mesh) > 0);
+    assert!(!sound::crossings(&mesh).is_empty());
 }
 
 #[test]

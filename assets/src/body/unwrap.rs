@@ -20,7 +20,7 @@ const SMALLER: f32 = 0.85;
 /// Size of the squares in which a chart's overlaps are looked for (m).
 const SQUARE: f32 = 6e-4;
 /// How far a triangle is taken to reach beyond its edges (squares).
-const REACH: f32 = 0.7;
+const REACH: f32 = 0.3;
 /// Gap between charts, as a share of the atlas's side.
 const GAP: f32 = 0.006;
 
@@ -120,7 +120,7 @@ fn overlapping(points: &[Vec2], triangles: &[[u32; 3]]) -> Vec<usize> {
     let low = points.iter().copied().fold(Vec2::INFINITY, Vec2::min);
     let size = (points.iter().copied().fold(Vec2::NEG_INFINITY, Vec2::max) - low) / SQUARE;
     let columns = size.x as usize + 2;
-    let mut taken = vec![u32::MAX; columns * (size.y as usize + 2)];
+    let mut taken: Vec<Vec<u32>> = vec![Vec::new(); columns * (size.y as usize + 2)];
     let mut over = std::collections::BTreeSet::new();
     for (t, corners) in triangles.iter().enumerate() {
         let [a, b, c] = corners.map(|v| (points[v as usize] - low) / SQUARE);
@@ -130,11 +130,10 @@ fn overlapping(points: &[Vec2], triangles: &[[u32; 3]]) -> Vec<usize> {
             for x in least.x as usize..=most.x as usize {
                 let p = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
                 if [(a, b), (b, c), (c, a)].iter().all(|(u, v)| (*v - *u).perp_dot(p - *u) > -REACH * v.distance(*u)) {
-                    let first = std::mem::replace(&mut taken[y * columns + x], t as u32);
-                    let apart = |o: u32| triangles[o as usize].iter().all(|v| !corners.contains(v));
-                    if first != u32::MAX && apart(first) {
-                        over.extend([first as usize, t]);
-                    }
+                    let here = &mut taken[y * columns + x];
+                    let apart = |o: &&u32| triangles[**o as usize].iter().all(|v| !corners.contains(v));
+                    over.extend(here.iter().filter(apart).flat_map(|&o| [o as usize, t]));
+                    here.push(t as u32);
                 }
             }
         }

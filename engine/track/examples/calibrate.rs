@@ -69,6 +69,11 @@ fn report(name: &str, rows: &[&Row]) {
             Some((DVec4::new(1.0, s.breadth.into(), s.arc.into(), s.front.into()), f64::from(r.truth[2 + k])))
         };
         fit(name, &rows.iter().filter_map(sample).collect::<Vec<_>>());
+        let mut fronts: Vec<f32> = rows.iter().filter_map(|r| Some(r.sections[k]?.front)).collect();
+        fronts.sort_by(f32::total_cmp);
+        if let ([least, ..], [.., most]) = (&fronts[fronts.len() / 40..], &fronts[..fronts.len() - fronts.len() / 40]) {
+            println!("  {name:9} fronts of 19 of 20 are {least:.3} to {most:.3}");
+        }
     }
 }
 

@@ -1,7 +1,8 @@
 //! Bodies of clothes sizes, and at the ends of what people measure, from four sides.
 //!
-//! `cargo run --release -p toile-view --example sizes FOLDER` writes four PNG files into the folder: for each sex the EN
-//! sizes 34, 42, 50 (46, 52, 58), and the short and tall, slight and stout of the 1st and 99th percentile of ANSUR II.
+//! `cargo run --release -p toile-view --example sizes FOLDER` writes five PNG files into the folder: `bodies.png` has the
+//! EN sizes 34, 42, 50 and 46, 52, 58 side by side; for each sex there are these sizes from all sides, and the short and
+//! tall, slight and stout of the 1st and 99th percentile of ANSUR II.
 
 use std::{error::Error, fs::File, io::BufWriter, path::Path};
 
@@ -14,6 +15,13 @@ use toile_view::{
 };
 
 const TURNS: [f32; 4] = [0.0, 45.0, 90.0, 180.0];
+
+/// From the front, a quarter turned.
+const QUARTER: f32 = 28.0;
+
+/// Pictures of one body's sides, and of the six together.
+const SIDES: Size = Size::new(400, 620);
+const TOGETHER: Size = Size::new(310, 440);
 
 /// Deviations of the 99th percentile.
 const FAR: f32 = 2.326;
@@ -32,6 +40,7 @@ const SIZES: [[(&str, f32, f32, f32); 3]; 2] = [
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| ".".to_owned());
+    let mut six = Vec::new();
     for (sex, name) in [(Sex::Female, "women"), (Sex::Male, "men")] {
         let mut sizes = Vec::new();
         for (code, bust, waist, hip) in SIZES[usize::from(sex == Sex::Male)] {
@@ -44,6 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             sizes.push((format!("EN {code}"), Body::fitted(sex, &wanted)?.body));
         }
         write(&folder, &format!("{name}-sizes"), &sizes)?;
+        six.extend(sizes.into_iter().map(|(code, body)| (format!("{name} {code}"), body)));
         let mut ends = Vec::new();
         for (tall, stout) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
             let [stature, girths @ ..] = PEOPLE[usize::from(sex == Sex::Male)];
@@ -58,20 +68,25 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         write(&folder, &format!("{name}-ends"), &ends)?;
     }
-    Ok(())
+    let images: Vec<Image> = six.iter().map(|(_, body)| picture(body, QUARTER, TOGETHER)).collect();
+    let captions: Vec<&str> = six.iter().map(|(name, _)| name.as_str()).collect();
+    save(&folder, "bodies", &sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), SIZES[0].len(), &captions))
 }
 
 /// One row a body, one column a side.
 fn write(folder: &str, name: &str, bodies: &[(String, Body)]) -> Result<(), Box<dyn Error>> {
-    let images: Vec<Image> = bodies.iter().flat_map(|(_, body)| TURNS.map(|turn| picture(body, turn))).collect();
+    let images: Vec<Image> = bodies.iter().flat_map(|(_, body)| TURNS.map(|turn| picture(body, turn, SIDES))).collect();
     let captions: Vec<&str> = bodies.iter().flat_map(|(name, _)| [name.as_str(), "", "", ""]).collect();
-    let sheet = sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), TURNS.len(), &captions);
+    save(folder, name, &sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), TURNS.len(), &captions))
+}
+
+fn save(folder: &str, name: &str, sheet: &Image) -> Result<(), Box<dyn Error>> {
     let path = Path::new(folder).join(name).with_extension("png");
     sheet.write_png(&mut BufWriter::new(File::create(path)?))?;
     Ok(())
 }
 
-fn picture(body: &Body, turn: f32) -> Image {
+fn picture(body: &Body, turn: f32, size: Size) -> Image {
     let colours = vec![MANNEQUIN; body.mesh.positions.len()];
     let surfaces = [Surface {
         positions: &body.mesh.positions,
@@ -89,5 +104,5 @@ fn picture(body: &Body, turn: f32) -> Image {
         distance: 4.9,
         fov_y: 0.42,
     };
-    stage.render_on(2, &camera, Size::new(400, 620), Quality::Motion).0
+    stage.render_on(2, &camera, size, Quality::Motion).0
 }

@@ -2,6 +2,7 @@
 
 use super::super::sound;
 use super::*;
+use crate::body::Region;
 use crate::body::reading::{Ansur, READINGS};
 
 const SEXES: [Sex; 2] = [Sex::Female, Sex::Male];
@@ -179,7 +180,7 @@ fn morphed_bodies_stay_smooth_and_whole() {
             let ratio = sound::roughness(&body.mesh) / sound::roughness(&drawn.mesh);
             assert!((0.8..1.10).contains(&ratio), "{sex:?}: roughness {ratio}");
             assert!(sound::unevenness(&body.mesh, &drawn.mesh) < 0.05);
-            assert_eq!(sound::crossings(&body.mesh), 0, "{sex:?}");
+            assert_eq!(sound::crossings(&body.mesh), [], "{sex:?}");
         }
     }
 }
@@ -202,9 +203,12 @@ fn roughness_knows_a_dent() {
 fn what_nobody_has_together_gives_the_nearest_body() {
     for sex in SEXES {
         let wanted = Wanted::new().with(En::Stature, 1.5).with(En::InsideLegHeight, 1.1);
-        let Err(BodyError::Unreachable { measure, value, reached, nearest }) = Body::fitted(sex, &wanted) else {
+        let Err(BodyError::Unreachable { measure, value, reached, against, nearest }) = Body::fitted(sex, &wanted)
+        else {
             panic!("legs of 1.1 m on a person of 1.5 m");
         };
+        let pair = [measure, against.expect("each of the two can be had alone").0];
+        assert!(pair.contains(&"stature") && pair.contains(&"inside leg height"), "{pair:?}");
         assert!(["stature", "inside leg height"].contains(&measure) && (value - reached).abs() > TOLERANCE);
         assert!(nearest.body.mesh.positions.iter().all(|p| p.is_finite()));
         assert!(nearest.readings.of(En::InsideLegHeight) > 0.8, "it goes as far as it can");
@@ -225,6 +229,65 @@ fn out_of_range_is_refused_by_the_name_of_the_measure() {
     }
     let wanted = Wanted::new().with(Ansur::WaistCircumferenceOmphalion, 0.1);
     assert!(Body::fitted(Sex::Male, &wanted).unwrap_err().to_string().contains("omphalion"));
+}
+
+#[test]
+fn other_units_are_recognised_and_told() {
+    for (value, said) in
+        [(66.0, "as inches it would be 1.676 m"), (168.0, "as centimetres"), (1680.0, "as millimetres")]
+    {
+        let message = Body::fitted(Sex::Female, &Wanted::new().with(En::Stature, value)).unwrap_err().to_string();
+        assert!(message.contains(said) && message.ends_with("so give metres"), "{message}");
+    }
+    let message = Body::fitted(Sex::Male, &Wanted::new().with(En::Stature, -1.7)).unwrap_err().to_string();
+    assert!(message.ends_with("check the measure and its unit"), "{message}");
+}
+
+#[test]
+fn measures_that_contradict_each_other_are_told_by_name() {
+    let contradictions = [
+        Wanted::new().with(En::Stature, 1.6).with(En::KneeHeight, 0.68).with(En::InsideLegHeight, 0.65),
+        Wanted::new().with(En::CervicalHeight, 1.8).with(En::HipGirth, 1.0).with(En::Stature, 1.6),
+        Wanted::new().with(En::ThighGirth, 1.0).with(En::HipGirth, 0.8).with(En::Stature, 1.7),
+    ];
+    for sex in SEXES {
+        for wanted in &contradictions {
+            let Err(error @ BodyError::Unreachable { .. }) = Body::fitted(sex, wanted) else {
+                panic!("{sex:?} {wanted:?} was met");
+            };
+            let message = error.to_string();
+            let told = wanted.given().iter().filter(|(m, _)| message.contains(m.name())).count();
+            let BodyError::Unreachable { nearest, against, .. } = error else { continue };
+            assert_eq!(told, 1 + usize::from(against.is_some()), "{message}");
+            assert!(nearest.body.mesh.positions.iter().chain(&nearest.body.normals).all(|p| p.is_finite()));
+        }
+    }
+}
+
+#[test]
+fn folds_are_told_from_contact() {
+    let drawn = Body::drawn(Sex::Male);
+    let knee = drawn.levels.knee;
+    // Both knees pushed inwards until they pass through each other.
+    let mut touching = drawn.mesh.clone();
+    for p in &mut touching.positions {
+        let near = (1.0 - ((p.y - knee) / 0.15).powi(2)).max(0.0);
+        p.x -= 0.11 * near * p.x.signum();
+    }
+    let all = sound::crossings(&touching);
+    assert!(!all.is_empty() && sound::folds(&touching, &all).is_empty(), "{} crossings", all.len());
+    // One vertex of the waist's side dragged forwards, under the round of the belly and out through it again.
+    let mut folded = drawn.mesh.clone();
+    let trunk = (0..folded.positions.len()).filter(|&v| drawn.regions[v] == Region::Torso);
+    let nearest = |to: Vec3| {
+        let off = |v: &usize| drawn.mesh.positions[*v].distance_squared(to);
+        trunk.clone().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap()
+    };
+    let side = nearest(Vec3::new(0.3, drawn.levels.waist, 0.0));
+    let before = nearest(drawn.mesh.positions[side] + Vec3::Z * 0.05);
+    folded.positions[side] = drawn.mesh.positions[before] + drawn.normals[before] * 2e-3;
+    let all = sound::crossings(&folded);
+    assert!(!sound::folds(&folded, &all).is_empty(), "{} crossings", all.len());
 }
 
 #[test]

@@ -124,7 +124,7 @@ pub(crate) fn settle(mut raw: Raw, options: &Options) -> Result<Imported, Flaw> 
         triangles: std::mem::take(&mut raw.triangles),
     };
     let normals = normals(&mesh, &surface, &raw.normals);
-    let survey = survey::survey(&mesh, &weights, &skeleton)?;
+    let survey = survey::survey(&mesh, &weights, &skeleton, options.sex)?;
     if !options.allow_holes {
         check_holes(&mesh, &surface, &survey.regions, skeleton.at(Joint::Neck).y)?;
     }

@@ -1,26 +1,23 @@
 //! The measuring levels, regions and measures of an imported body, from its joints and the shape of its trunk.
 //!
-//! Landmarks under the skin cannot be felt on a mesh, so that some levels are conventions: the waist is the narrowest
-//! level between hips and bust (the natural waist lies within a few centimetres), the underbust less than half of the
-//! way from bust to waist, the acromion a little outwards of the shoulder's joint. Girths are convex hulls of horizontal slices without arms, as for our own bodies.
+//! Levels are those of our own bodies' landmarks. What shows on a surface is looked for around the place where ours have
+//! it: the seat's and the bust's greatest protrusion, the top of the shoulder, the crotch. What would have to be felt
+//! under the skin lies between those as it does on ours: natural waist, underbust, acromion, 7th cervical vertebra,
+//! kneecap. Girths are convex hulls of horizontal slices without arms, as for our own bodies.
 
 use glam::Vec3;
 
 use super::error::Flaw;
-use crate::body::{Levels, Measures, Region, tape};
+use crate::body::{Body, Levels, Measures, Region, Sex, tape};
 use crate::mesh::{Mesh, SkinWeights};
 use crate::skeleton::{BONES, Joint, Skeleton, TWISTS};
 
-/// Levels at which the trunk is looked at for its narrowest one.
-const SLICES: usize = 64;
-
-/// How far an acromion lies outwards of its joint's centre, and how far around it its height is looked for (share of the
-/// stature): on the mannequin, whose shoulders ANSUR II gives, 17.6 mm of 1,628.
-const ACROMION_OUT: f32 = 0.0108;
+/// How far around an acromion its height is looked for (share of the stature).
 const ACROMION_NEAR: f32 = 0.015;
 
-/// The underbust's share of the way from bust to waist, as on the mannequin.
-const UNDERBUST: f32 = 0.45;
+/// How far below and above our own bodies' places seat and bust are looked for (share of the way from the crotch to the
+/// acromions): 60 mm of a body of 1.7 m.
+const AROUND: f32 = 0.1;
 
 /// What is read off an imported body.
 pub(super) struct Survey {
@@ -30,7 +27,8 @@ pub(super) struct Survey {
 }
 
 /// Reads levels, regions and measures.
-pub(super) fn survey(mesh: &Mesh, weights: &[SkinWeights], skeleton: &Skeleton) -> Result<Survey, Flaw> {
+pub(super) fn survey(mesh: &Mesh, weights: &[SkinWeights], skeleton: &Skeleton, sex: Sex) -> Result<Survey, Flaw> {
+    let ours = Body::proportions(sex);
     let limbs = bone_regions();
     let regions: Vec<Region> = weights.iter().map(|w| region(w, &limbs)).collect();
     let crotch = crotch(mesh, &regions, skeleton)?;
@@ -41,24 +39,34 @@ pub(super) fn survey(mesh: &Mesh, weights: &[SkinWeights], skeleton: &Skeleton) 
     };
     let regions: Vec<Region> = regions.into_iter().zip(&mesh.positions).map(trunk).collect();
     let at = |j: Joint| skeleton.at(j).y;
-    let shoulder = acromions(mesh, skeleton);
+    let shoulder = acromions(mesh, skeleton, ours.acromion);
     let chest_top = shoulder[0].y.min(shoulder[1].y);
     let span = chest_top - crotch;
-    let torso = |low: f32, high: f32| {
+    let torso = |share: f32| {
+        let [low, high] = [share - AROUND, share + AROUND].map(|s| crotch + s * span);
         let inside = move |(p, r): &(&Vec3, &Region)| **r == Region::Torso && (low..high).contains(&p.y);
         mesh.positions.iter().zip(&regions).filter(inside).map(|(p, _)| *p)
     };
-    let seat = torso(crotch, crotch + 0.35 * span).min_by(|a, b| a.z.total_cmp(&b.z));
-    let bust = torso(crotch + 0.6 * span, crotch + 0.9 * span).max_by(|a, b| a.z.total_cmp(&b.z));
+    let seat = torso(ours.seat).min_by(|a, b| a.z.total_cmp(&b.z));
+    let bust = torso(ours.bust).max_by(|a, b| a.z.total_cmp(&b.z));
     let hip = seat.ok_or(Flaw::Level { level: "seat" })?.y;
     let chest = bust.ok_or(Flaw::Level { level: "bust" })?.y;
     let girth = |y: f32| tape::girth_of(mesh, &regions, y);
-    let waist = narrowest(hip + 0.25 * (chest - hip), chest - 0.2 * (chest - hip), girth);
-    let knee = 0.5 * (at(Joint::LeftKnee) + at(Joint::RightKnee));
-    let ankle = 0.5 * (at(Joint::LeftAnkle) + at(Joint::RightAnkle));
-    let neck = at(Joint::Neck).max(chest_top);
-    let underbust = chest - UNDERBUST * (chest - waist);
-    let levels = Levels { neck, shoulder: chest_top, chest, underbust, waist, hip, crotch, knee, ankle };
+    let waist = hip + ours.waist * (chest - hip);
+    let way = |from: f32, to: f32, share: f32| from + share * (to - from);
+    let both = |left: Joint, right: Joint| 0.5 * (at(left) + at(right));
+    let knee = both(Joint::LeftKnee, Joint::RightKnee);
+    let levels = Levels {
+        neck: way(at(Joint::Neck), at(Joint::Head), ours.cervicale).max(chest_top),
+        shoulder: chest_top,
+        chest,
+        underbust: way(chest, waist, ours.underbust),
+        waist,
+        hip,
+        crotch,
+        knee: way(knee, both(Joint::LeftHip, Joint::RightHip), ours.midpatella),
+        ankle: both(Joint::LeftAnkle, Joint::RightAnkle),
+    };
     let measures = Measures {
         stature: mesh.positions.iter().map(|p| p.y).fold(0.0, f32::max),
         shoulder_breadth: shoulder[0].distance(shoulder[1]),
@@ -127,21 +135,14 @@ fn crotch(mesh: &Mesh, regions: &[Region], skeleton: &Skeleton) -> Result<f32, F
     heights.min_by(f32::total_cmp).ok_or(Flaw::Level { level: "crotch" })
 }
 
-/// The tops of the two shoulders: the highest place over each acromion.
-fn acromions(mesh: &Mesh, skeleton: &Skeleton) -> [Vec3; 2] {
+/// The tops of the two shoulders: the highest place over each acromion, which lies `over` its joint's way from the middle.
+fn acromions(mesh: &Mesh, skeleton: &Skeleton, over: f32) -> [Vec3; 2] {
     let stature = mesh.positions.iter().map(|p| p.y).fold(0.0, f32::max);
     [Joint::LeftShoulder, Joint::RightShoulder].map(|joint| {
         let centre = skeleton.at(joint);
-        let at = centre + Vec3::X * (ACROMION_OUT * stature).copysign(centre.x);
+        let at = centre.with_x(over * centre.x);
         let near = |p: &&Vec3| (**p - at).with_y(0.0).length() < ACROMION_NEAR * stature;
         let top = mesh.positions.iter().filter(near).map(|p| p.y).fold(at.y, f32::max);
         at.with_y(top)
     })
-}
-
-/// The level at which a girth is least.
-fn narrowest(low: f32, high: f32, girth: impl Fn(f32) -> f32) -> f32 {
-    let level = |k: usize| low + (high - low) * k as f32 / SLICES as f32;
-    let all = (0..=SLICES).map(|k| (level(k), girth(level(k)))).filter(|(_, g)| *g > 0.0);
-    all.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.5 * (low + high), |(y, _)| y)
 }

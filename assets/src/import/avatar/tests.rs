@@ -157,9 +157,9 @@ fn our_own_body_comes_back() {
     println!("{m:?}\n{ours:?}\n{:?}\n{:?}", body.levels, OURS.levels);
     assert!((m.stature - ours.stature).abs() < 1e-3);
     assert!((m.shoulder_breadth - ours.shoulder_breadth).abs() < 2e-3);
-    assert!((m.hip_girth - ours.hip_girth).abs() < 0.02);
-    assert!((m.chest_girth - ours.chest_girth).abs() < 0.03);
-    assert!((0.0..0.05).contains(&(ours.waist_girth - m.waist_girth)), "the narrowest level is no wider");
+    assert!((m.hip_girth - ours.hip_girth).abs() < 0.01);
+    assert!((m.chest_girth - ours.chest_girth).abs() < 0.01);
+    assert!((m.waist_girth - ours.waist_girth).abs() < 0.01);
     assert!((body.levels.crotch - OURS.levels.crotch).abs() < 0.02 && (body.levels.hip - OURS.levels.hip).abs() < 0.02);
     let same = body.regions.iter().zip(&OURS.regions).filter(|(a, b)| a == b).count();
     assert!(same as f32 > 0.9 * body.regions.len() as f32, "{same} of {}", body.regions.len());

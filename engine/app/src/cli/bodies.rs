@@ -33,7 +33,7 @@ pub(super) fn grammar() -> clap::Command {
             "Draws random people of ANSUR II, builds each one's body from stature, neck, chest, waist at the navel, \
              buttocks, crotch height, sleeve and shoulder breadth, and reads the result off the mesh. Limits are those \
              of ISO 20685: 4 mm for heights, breadths and the neck, 9 mm for large girths. A measure out of its limit, \
-             or a body that is rough or crosses itself, makes the exit code 3.",
+             or a body that is rough or folded, makes the exit code 3; so do bodies that take longer than 20 ms.",
         )
         .args([
             Arg::new("ansur")
