@@ -6,6 +6,7 @@
 
 pub mod bake;
 pub mod body;
+pub mod cone;
 pub mod export;
 pub mod fabric;
 pub mod garment;

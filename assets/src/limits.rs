@@ -6,11 +6,13 @@ pub const STEP_HZ: u32 = 120;
 /// Length of one step (s). Derived from [`STEP_HZ`]; time itself is counted in `u64` ticks.
 pub const STEP_SECONDS: f32 = 1.0 / STEP_HZ as f32;
 
-/// Collision spheres a body carries: the count of the published fitting rooms, enough for one body's outline.
-pub const MAX_SPHERES: usize = 16;
+/// Collision spheres a body carries: each end of every capsule may have its own. They are moved once a step; contact pays
+/// for capsules alone.
+pub const MAX_SPHERES: usize = 2 * MAX_CAPSULES;
 
-/// Tapered capsules between those spheres: every limb plus the diagonals that fill the flat torso.
-pub const MAX_CAPSULES: usize = 28;
+/// Tapered capsules between those spheres: what a body with head, hands and feet needs. A bit of 32 names one, and rows
+/// of 32 are whole lanes of every width: the last four cost nothing where nothing is near them.
+pub const MAX_CAPSULES: usize = 32;
 
 /// Planes beside the floor: the four walls of a changing room.
 pub const MAX_PLANES: usize = 4;

@@ -1,5 +1,7 @@
 //! Clothes sizes after EN 13402: which body girths a size is made for, and which girth decides for which garment.
 //!
+//! Besides stand the bodies that FreeSewing's patterns are drafted on, as tables of their own.
+//!
 //! Part 2 of the standard names the primary and secondary measures of each kind of garment, part 3 tabulates them. The
 //! tables are data (`data/sizes/*.toml`, centimetres as on a tape); here everything is in metres.
 
@@ -220,12 +222,14 @@ pub enum SizeError {
 }
 
 /// The embedded tables: name and text.
-const EMBEDDED: [(&str, &str); 5] = [
+const EMBEDDED: [(&str, &str); 7] = [
     ("women", include_str!("../data/sizes/women.toml")),
     ("women-letters", include_str!("../data/sizes/women-letters.toml")),
     ("men", include_str!("../data/sizes/men.toml")),
     ("men-trousers", include_str!("../data/sizes/men-trousers.toml")),
     ("unisex", include_str!("../data/sizes/unisex.toml")),
+    ("freesewing-women", include_str!("../data/sizes/freesewing-women.toml")),
+    ("freesewing-men", include_str!("../data/sizes/freesewing-men.toml")),
 ];
 
 /// Shoulder breadth (m) = a + b stature + c chest girth, least squares over ANSUR II (biacromial breadth; public
@@ -238,7 +242,8 @@ const SHOULDER_MIXED: [f32; 3] = [-0.065_98, 0.211_44, 0.098_29];
 const PLAUSIBLE: [f32; 2] = [0.2, 2.5];
 
 impl SizeTable {
-    /// An embedded table by its name: `women`, `women-letters`, `men`, `men-trousers` or `unisex`.
+    /// An embedded table by its name: `women`, `women-letters`, `men`, `men-trousers` or `unisex` after EN 13402, or
+    /// `freesewing-women` or `freesewing-men`.
     pub fn embedded(name: &str) -> Result<Self, SizeError> {
         match EMBEDDED.iter().find(|(known, _)| *known == name) {
             Some((known, text)) => Self::parse(known, text),
@@ -360,6 +365,8 @@ struct RawSize {
     chest_cm: [f32; 2],
     waist_cm: [f32; 2],
     hip_cm: [f32; 2],
+    /// Where sizes grow in height too; else that of the table.
+    stature_cm: Option<[f32; 2]>,
 }
 
 impl RawSize {
@@ -370,7 +377,7 @@ impl RawSize {
             chest: metres(self.chest_cm),
             waist: metres(self.waist_cm),
             hip: metres(self.hip_cm),
-            stature: metres(stature_cm),
+            stature: metres(self.stature_cm.unwrap_or(stature_cm)),
         }
     }
 }
@@ -384,7 +391,7 @@ mod tests {
         for name in SizeTable::embedded_names() {
             let table = SizeTable::embedded(name).unwrap();
             assert_eq!(table.name, name);
-            assert!(table.source.starts_with("EN 13402-3"));
+            assert!(table.source.starts_with(if name.contains("freesewing") { "FreeSewing" } else { "EN 13402-3" }));
             for code in table.codes() {
                 let body = table.size_body(code).unwrap();
                 assert!((0.30..0.50).contains(&body.shoulder_breadth), "{name} {code}: {body:?}");

@@ -5,6 +5,8 @@
 //! Thread: one, with nothing else running.
 
 pub mod ansur;
+pub mod depth;
+pub mod filters;
 pub mod measuring;
 pub mod oracle;
 pub mod pareto;

@@ -51,7 +51,7 @@ pub enum SourceError {
     },
     /// The content is of no known kind.
     #[error(
-        "{path}: {what}; give a Toile session (.mcap), a Kinect v2 CSV, a Kinectron JSON, a BVH, or raw 16-bit depth"
+        "{path}: {what}; give a Toile session (.mcap), a Kinect v2 CSV, a Kinectron JSON, a BVH, an Azure Kinect .mkv, 16-bit PNG or raw depth"
     )]
     UnknownKind {
         /// The file.

@@ -5,10 +5,13 @@
 //! Thread: the sensor thread.
 
 pub mod clock;
+pub mod depth;
 pub mod error;
 pub mod filter;
 pub mod frame;
 pub mod limits;
+pub mod rng;
 pub mod sample;
+pub mod segment;
 pub mod session;
 pub mod source;

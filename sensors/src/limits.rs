@@ -10,6 +10,13 @@ pub const MAX_JOINT_FRAMES: usize = 216_000;
 /// Most depth frames of a session: one minute at 30 Hz, 1.1 GB at 640x480.
 pub const MAX_DEPTH_FRAMES: usize = 1_800;
 
+/// Most memory that the depth images of a session may take (bytes): the minute above, and half as much again. A small
+/// file of large, empty, well-packed images would otherwise unpack to 15 GB.
+pub const MAX_DEPTH_BYTES: u64 = 5 << 28;
+
+/// Most files of a folder that is read as a recording: a minute of colour, depth and motion at 30 Hz, with room to spare.
+pub const MAX_FOLDER_FILES: usize = 20_000;
+
 /// Most pixels of a depth image: four times the largest sensor in sale (1 megapixel).
 pub const MAX_PIXELS: u64 = 4_194_304;
 
@@ -27,3 +34,18 @@ pub const MAX_COORDINATE: f32 = 100.0;
 
 /// Farthest time that a recording may hold after its first frame (ns): a day, beyond which a clock was reset.
 pub const MAX_DURATION_NS: u64 = 86_400 * crate::clock::SECOND_NS;
+
+/// Most cameras of a multi-view recording: any two of them are compared, and a room has eight corners.
+pub const MAX_CAMERAS: usize = 8;
+
+/// Most people of one view: any two of two views are compared.
+pub const MAX_VIEW_PEOPLE: usize = 6;
+
+/// Longest datagram of a motion stream that is read (bytes): senders keep to a network's 1500, some to three of them.
+pub const MAX_PACKET_BYTES: usize = 4_096;
+
+/// Most bundles in one datagram: the protocol puts messages into one, and a parser descends into each.
+pub const MAX_OSC_BUNDLES: usize = 8;
+
+/// Most datagrams that one call reads: a second of a sender that sends each of 60 bones by itself four times.
+pub const MAX_PACKETS_A_POLL: usize = 256;

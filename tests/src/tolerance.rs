@@ -46,3 +46,14 @@ pub const PENETRATION_M: f32 = 1e-4;
 
 /// By how much the drift of a cloth along a floor may grow in a step (m/s): the rounding of velocities, as for energy.
 pub const DRIFT_M_S: f32 = 1e-4;
+
+/// Mean distance between skin and capsules with joints bent (mm): at rest it is 3 mm, and skin that is blended between two
+/// bones leaves both near the joint.
+pub const BENT_MEAN_MM: f32 = 5.0;
+
+/// 95th percentile of the same (mm): skin of the groin and the seat is stretched and folded by a hip that bends by 60
+/// degrees, and follows no bone there.
+pub const BENT_P95_MM: f32 = 18.0;
+
+/// How far skin may come out of the capsules where a joint bends (mm).
+pub const BENT_OUTSIDE_MM: f32 = 40.0;

@@ -7,7 +7,13 @@ use std::cell::Cell;
 use std::hint::black_box;
 
 use toile_assets::wardrobe;
-use toile_sensors::filter::JointFilter;
+use toile_engine::body::Poser;
+use toile_engine::body::filters::{LimitFilter, PoseFilter};
+use toile_sensors::filter::angles::AngleFilter;
+use toile_sensors::filter::one_euro::OneEuroSettings;
+use toile_sensors::filter::predict::Predictor;
+use toile_sensors::filter::smoothing::Smoothing;
+use toile_sensors::filter::{Filter, FilterSettings, JointFilter};
 use toile_sensors::sample::between;
 use toile_tests::stage;
 
@@ -98,5 +104,30 @@ fn no_garment_of_the_wardrobe_costs_an_allocation_a_step() {
         assert_eq!(frame.tick(), (SENSOR_FRAMES - 1) * 4);
         assert!(frame.tick() >= 120);
         assert_eq!(found, 0, "{name}: {found} allocations in {} steps", frame.tick());
+    }
+}
+
+#[test]
+fn no_filter_of_joints_allocates_a_frame() {
+    let settings = FilterSettings { smoothing: Smoothing::OneEuro(OneEuroSettings::default()), bone_pull: 1.0 };
+    let body = stage::shopper();
+    let seen: Vec<_> = (0..SENSOR_FRAMES).map(|i| stage::joints(&body, i * 1_000_000_000 / stage::SENSOR_HZ)).collect();
+    let mut locked = JointFilter::new(FilterSettings { bone_pull: 1.0, ..FilterSettings::default() });
+    locked.lock_bones(&body.skeleton);
+    let filters: [(&str, Box<dyn Filter>); 6] = [
+        ("bones of the body", Box::new(locked)),
+        ("One Euro", Box::new(JointFilter::new(settings))),
+        ("angles", Box::new(AngleFilter::new(0.04))),
+        ("prediction", Box::new(Predictor::new(0.04))),
+        ("limits", Box::new(LimitFilter::new(&body.skeleton))),
+        ("pose and feet", Box::new(PoseFilter::new(Poser::new(&body.skeleton)))),
+    ];
+    for (name, mut filter) in filters {
+        let found = allocations(|| {
+            for frame in &seen {
+                black_box(filter.push(black_box(frame)));
+            }
+        });
+        assert_eq!(found, 0, "{name}: {found} allocations in {} frames", seen.len());
     }
 }

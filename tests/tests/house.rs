@@ -6,12 +6,13 @@ use toile_tests::scan;
 use toile_tests::tree::{self, FLOORS};
 
 /// Files that may hold unsafe code, each with its reason.
-const UNSAFE_FILES: [(&str, &str); 6] = [
+const UNSAFE_FILES: [(&str, &str); 7] = [
     ("engine/core/src/crew/own.rs", "what belongs to a share is lent to whoever works on it"),
     ("engine/core/src/crew.rs", "a job that borrows the caller's stack is handed to another thread"),
     ("engine/core/src/lanes/column.rs", "the workers of a step share its columns"),
     ("engine/core/src/lanes/x86.rs", "vector instructions that are picked at run time"),
     ("engine/core/src/lanes/x86/widths.rs", "the same"),
+    ("sensors/src/source/openni2.rs", "OpenNI's C library is called"),
     ("tests/tests/allocations.rs", "a counting allocator has to implement an unsafe trait"),
 ];
 

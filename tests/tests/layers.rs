@@ -12,7 +12,7 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
     (
         "toile-assets",
         &[
-            &["limits"],
+            &["limits", "cone"],
             &["skeleton"],
             &["mesh"],
             &["fabric", "body"],
@@ -29,10 +29,11 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
     (
         "toile-sensors",
         &[
-            &["error", "clock"],
+            &["error", "clock", "rng"],
             &["limits"],
             &["frame"],
-            &["sample", "depth", "segment"],
+            &["sample", "segment"],
+            &["depth"],
             &["filter"],
             &["session"],
             &["source"],
@@ -49,7 +50,7 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
             &["surface"],
             &["yardstick"],
             &["oracle"],
-            &["skinning", "skirt"],
+            &["depth", "skinning", "skirt"],
             &["torture", "validate"],
             &["pareto"],
         ],

@@ -15,12 +15,10 @@ const STEPS: usize = 240;
 /// Rounds of the conjugate gradients within a step.
 const INNER: usize = 60;
 /// Rounds in which overlapping triangles are made smaller, and by how much a round.
-const TIGHTER: usize = 24;
-const SMALLER: f32 = 0.85;
+const TIGHTER: usize = 60;
+const SMALLER: f32 = 0.93;
 /// Size of the squares in which a chart's overlaps are looked for (m).
 const SQUARE: f32 = 6e-4;
-/// How far a triangle is taken to reach beyond its edges (squares).
-const REACH: f32 = 0.3;
 /// Gap between charts, as a share of the atlas's side.
 const GAP: f32 = 0.006;
 
@@ -115,7 +113,7 @@ impl Sheet {
     }
 }
 
-/// Triangles without a common corner that come so near to each other that they touch the middle of one square.
+/// Triangles that cover the middle of one square: those that truly overlap, but for less than a square.
 fn overlapping(points: &[Vec2], triangles: &[[u32; 3]]) -> Vec<usize> {
     let low = points.iter().copied().fold(Vec2::INFINITY, Vec2::min);
     let size = (points.iter().copied().fold(Vec2::NEG_INFINITY, Vec2::max) - low) / SQUARE;
@@ -124,15 +122,14 @@ fn overlapping(points: &[Vec2], triangles: &[[u32; 3]]) -> Vec<usize> {
     let mut over = std::collections::BTreeSet::new();
     for (t, corners) in triangles.iter().enumerate() {
         let [a, b, c] = corners.map(|v| (points[v as usize] - low) / SQUARE);
-        let least = (a.min(b).min(c) - REACH).max(Vec2::ZERO);
-        let most = (a.max(b).max(c) + REACH).min(size);
+        let least = a.min(b).min(c).max(Vec2::ZERO);
+        let most = a.max(b).max(c).min(size);
         for y in least.y as usize..=most.y as usize {
             for x in least.x as usize..=most.x as usize {
                 let p = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-                if [(a, b), (b, c), (c, a)].iter().all(|(u, v)| (*v - *u).perp_dot(p - *u) > -REACH * v.distance(*u)) {
+                if [(a, b), (b, c), (c, a)].iter().all(|(u, v)| (*v - *u).perp_dot(p - *u) > 0.0) {
                     let here = &mut taken[y * columns + x];
-                    let apart = |o: &&u32| triangles[**o as usize].iter().all(|v| !corners.contains(v));
-                    over.extend(here.iter().filter(apart).flat_map(|&o| [o as usize, t]));
+                    over.extend(here.iter().flat_map(|&o| [o as usize, t]));
                     here.push(t as u32);
                 }
             }
@@ -251,7 +248,7 @@ impl Flattening {
         let mut near = vec![false; self.near.len()];
         triangles.iter().for_each(|&t| self.rest[t].corners.iter().for_each(|&v| near[v as usize] = true));
         for r in self.rest.iter_mut().filter(|r| r.corners.iter().any(|&v| near[v as usize])) {
-            r.inverse = r.inverse * (1.0 / SMALLER);
+            r.inverse *= 1.0 / SMALLER;
             r.area *= SMALLER * SMALLER;
         }
     }

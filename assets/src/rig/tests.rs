@@ -1,105 +1,175 @@
 //! The collision body against brute force and against its own promises.
 
 use super::*;
-use crate::body::{Measures, Sex};
+use crate::body::{Ansur, Measures, Sex, Wanted};
 
-/// The distance by walking the axis in small steps and testing every sphere.
-fn walked(p: Vec3, (a, ra): (Vec3, f32), (b, rb): (Vec3, f32)) -> f32 {
-    let steps = 20_000;
-    let at = |i: i32| i as f32 / steps as f32;
-    (0..=steps).map(|i| p.distance(a.lerp(b, at(i))) - (ra + (rb - ra) * at(i))).fold(f32::MAX, f32::min)
-}
+/// The 5th, 50th and 95th percentile of ANSUR II (m): stature, neck, chest, waist at the navel, buttocks, crotch height,
+/// sleeve from the spine, biacromial breadth.
+const PERCENTILES: [(Sex, [[f32; 8]; 3]); 2] = [
+    (
+        Sex::Female,
+        [
+            [1.525, 0.302, 0.824, 0.710, 0.901, 0.712, 0.746, 0.335],
+            [1.626, 0.328, 0.940, 0.852, 1.018, 0.780, 0.805, 0.365],
+            [1.740, 0.363, 1.094, 1.040, 1.156, 0.857, 0.870, 0.396],
+        ],
+    ),
+    (
+        Sex::Male,
+        [
+            [1.648, 0.360, 0.922, 0.768, 0.899, 0.771, 0.831, 0.384],
+            [1.755, 0.395, 1.056, 0.937, 1.017, 0.845, 0.895, 0.415],
+            [1.870, 0.443, 1.207, 1.131, 1.149, 0.925, 0.963, 0.447],
+        ],
+    ),
+];
 
-#[test]
-fn round_cone_agrees_with_brute_force() {
-    let cones = [
-        ((Vec3::ZERO, 0.1), (Vec3::new(0.3, 0.1, -0.2), 0.05)),
-        ((Vec3::ONE, 0.05), (Vec3::new(1.0, 1.4, 1.0), 0.05)),
-        ((Vec3::ZERO, 0.2), (Vec3::new(0.05, 0.0, 0.0), 0.1)),
-        ((Vec3::X, 0.01), (Vec3::X, 0.02)),
-        ((Vec3::ZERO, 0.12), (Vec3::new(0.0, -0.1, 0.0), 0.03)),
-    ];
-    for (a, b) in cones {
-        for i in 0..1000 {
-            let spread = |k: f32| (i as f32 * k).fract() - 0.5;
-            let p = a.0 + Vec3::new(spread(0.618_034), spread(0.414_214), spread(0.732_051)) * 0.8;
-            let (found, t) = round_cone(p, a, b);
-            assert!((found - walked(p, a, b)).abs() < 1e-5, "{p} {found}");
-            assert!((0.0..=1.0).contains(&t));
-        }
-    }
-}
-
-#[test]
-fn round_cone_distance_inside_is_the_way_out() {
-    let (a, b) = ((Vec3::ZERO, 0.1), (Vec3::new(0.4, 0.0, 0.0), 0.06));
-    let p = Vec3::new(0.2, 0.03, 0.01);
-    let depth = -round_cone(p, a, b).0;
-    let directions = (0..20_000).map(|i| {
-        let (s, c) = (i as f32 * 2.399_963).sin_cos();
-        let z = 1.0 - 2.0 * (i as f32 + 0.5) / 20_000.0;
-        Vec3::new(c * (1.0 - z * z).sqrt(), s * (1.0 - z * z).sqrt(), z)
+fn people() -> Vec<(String, Body)> {
+    let sized = people::sizes().into_iter().map(|p| (p.name.clone(), p.body().unwrap()));
+    let surveyed = PERCENTILES.into_iter().flat_map(|(sex, rows)| rows.map(|row| (sex, row)));
+    let surveyed = surveyed.map(|(sex, row)| {
+        use Ansur::*;
+        let girths = [NeckCircumference, ChestCircumference, WaistCircumferenceOmphalion, ButtockCircumference];
+        let lengths = [CrotchHeight, SleeveLengthSpineWrist, BiacromialBreadth];
+        let measures = [Stature].into_iter().chain(girths).chain(lengths);
+        let wanted = measures.zip(row).fold(Wanted::new(), |w, (m, value)| w.with(m, value));
+        (format!("{sex:?} {row:?}"), Body::fitted(sex, &wanted).unwrap().body)
     });
-    let mut reached = 0;
-    for d in directions {
-        assert!(round_cone(p + d * (depth - 1e-5), a, b).0 < 0.0, "a ball of that radius fits");
-        reached += u32::from(round_cone(p + d * (depth + 2e-4), a, b).0 > 0.0);
-    }
-    assert!(reached > 0, "and touches");
-}
-
-fn people() -> Vec<Body> {
-    let mut people = Vec::new();
-    for sex in [Sex::Female, Sex::Male] {
-        let mean = Measures::average(sex);
-        for [stature, girth] in [[1.0, 1.0], [0.93, 0.85], [1.05, 1.2]] {
-            let wanted = Measures {
-                stature: mean.stature * stature,
-                shoulder_breadth: mean.shoulder_breadth * stature,
-                chest_girth: mean.chest_girth * girth,
-                waist_girth: mean.waist_girth * girth,
-                hip_girth: mean.hip_girth * girth,
-            };
-            people.push(Body::build(sex, &wanted).unwrap());
-        }
-    }
-    people
+    sized.chain(surveyed).collect()
 }
 
 #[test]
-fn union_follows_the_body() {
-    for body in people() {
-        let report = Rig::fit(&body).report;
-        assert!(report.mean_mm < 9.0 && report.p95_mm < 22.0, "{report:?}");
-        assert!(report.max_outside_mm < 38.0 && report.max_inside_mm < 28.0, "{report:?}");
+fn trunk_and_thighs_keep_to_the_goal() {
+    for (name, body) in people() {
+        let report = Rig::fit(&body).report(&body);
+        let missed: Vec<_> = report.missed().into_iter().map(|zone| (zone, report.of(zone))).collect();
+        assert!(missed.is_empty(), "{name}: {missed:?}");
+        assert!(report.trunk.meets(), "{name}: trunk {:?}", report.trunk);
     }
+}
+
+/// Zones without a goal, and the worst places of those with one: what is reached must not get worse unseen. Hands and
+/// feet are flatter than any capsule; a fold of the skin (between the legs, under the arm) is as deep as it is.
+#[test]
+fn every_sample_of_the_skin_is_within_bounds() {
+    for (name, body) in people() {
+        let report = Rig::fit(&body).report(&body);
+        for (zone, r) in Zone::ALL.into_iter().zip(report.zones) {
+            // Mean, 95th percentile, deepest skin above the union, union above the skin (mm).
+            let bounds = match zone {
+                Zone::Hand => [15.0, 33.0, 42.0, 45.0],
+                Zone::Foot => [8.0, 21.0, 33.0, 36.0],
+                Zone::Head => [7.0, 16.0, 32.0, 20.0],
+                Zone::Hips => [5.0, 12.0, 22.0, 14.0],
+                _ => [5.5, 14.0, 26.0, 19.0],
+            };
+            let reached = [r.mean_mm, r.p95_mm, r.max_inside_mm, r.cloth_max_above_mm];
+            assert!(reached.iter().zip(bounds).all(|(r, b)| *r <= b), "{name}: {} {r:?}", zone.name());
+            assert!(r.signed_mean_mm.abs() <= r.mean_mm && r.mean_mm <= r.p95_mm.max(r.max_mm()), "{name}: {r:?}");
+        }
+    }
+}
+
+/// Bodies that the plan was not tuned on. Of the twenty, one short and very stout man misses the 95th percentile at the
+/// hips, by the fold between his legs, which the union fills; what cloth lies on there is near the skin all the same.
+#[test]
+fn strangers_keep_to_the_goal() {
+    let mut missed = Vec::new();
+    for person in people::strangers(20, 1) {
+        let body = person.body().unwrap();
+        let report = Rig::fit(&body).report(&body);
+        for zone in Zone::HELD {
+            let r = report.of(zone);
+            assert!(r.mean_mm <= MEAN_GOAL_MM && r.p95_mm <= P95_GOAL_MM + 1.5, "{person:?}: {} {r:?}", zone.name());
+            assert!(
+                r.cloth_mean_mm <= MEAN_GOAL_MM && r.cloth_p95_mm <= P95_GOAL_MM,
+                "{person:?}: {} {r:?}",
+                zone.name()
+            );
+        }
+        missed.extend(report.missed().into_iter().map(|zone| (person.name.clone(), zone)));
+    }
+    assert!(missed.len() <= 1, "{missed:?}");
+}
+
+#[test]
+fn strangers_are_as_many_as_asked_for_and_the_same_again() {
+    assert_eq!(people::strangers(5, 7), people::strangers(9, 7)[..5]);
+    assert_ne!(people::strangers(5, 7), people::strangers(5, 8));
 }
 
 #[test]
 fn rig_is_symmetric_and_complete() {
-    for body in people() {
+    for (_, body) in people() {
         let rig = Rig::fit(&body);
-        for pair in rig.spheres.chunks(2) {
+        let (sides, middle) = rig.spheres.split_at(2 * PAIRS);
+        for pair in sides.chunks(2) {
             let (l, r) = (pair[0], pair[1]);
             assert_eq!(Joint::ALL[usize::from(l.bone)].mirror().index(), usize::from(r.bone));
             assert!((l.offset * Vec3::new(-1.0, 1.0, 1.0)).distance(r.offset) < 1e-6 && l.radius == r.radius);
-            assert!(l.radius > 0.01 && l.radius < 0.25 && l.offset.length() < 0.3);
         }
+        assert!(middle.iter().all(|s| s.offset.x == 0.0));
+        for s in &rig.spheres {
+            assert!(s.radius > 0.01 && s.radius < 0.25 && s.offset.length() < 0.4, "{s:?}");
+        }
+        let mirrored = |s: u8| if usize::from(s) < 2 * PAIRS { s ^ 1 } else { s };
+        let same = |c: &[u8; 2], d: &[u8; 2]| (d[0], d[1]) == (c[0], c[1]) || (d[1], d[0]) == (c[0], c[1]);
         for (i, c) in rig.capsules.iter().enumerate() {
-            assert!(c[0] != c[1] && c.iter().all(|&s| usize::from(s) < MAX_SPHERES));
-            let same = |d: &[u8; 2]| (d[0], d[1]) == (c[0], c[1]) || (d[1], d[0]) == (c[0], c[1]);
-            assert!(!rig.capsules[..i].iter().any(same), "capsule {i} stands twice");
+            assert!(c[0] != c[1] && c.iter().all(|&s| usize::from(s) < SPHERES));
+            assert!(!rig.capsules[..i].iter().any(|d| same(c, d)), "capsule {i} stands twice");
+            assert!(rig.capsules.iter().any(|d| same(&c.map(mirrored), d)), "capsule {i} has no mirror image");
         }
+        assert!((0..SPHERES).all(|s| rig.capsules.iter().flatten().any(|e| usize::from(*e) == s)), "none is idle");
     }
 }
 
 #[test]
-fn report_is_what_the_distance_says() {
+fn reports_are_what_the_distance_says() {
     let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
     let rig = Rig::fit(&body);
-    let covered = (0..body.mesh.positions.len()).filter(|&v| clothed(&body, v));
-    let furthest = covered.map(|v| rig.distance(&body, body.mesh.positions[v]) * 1e3).fold(0.0, f32::max);
-    assert!((furthest - rig.report.max_inside_mm).abs() < 1e-2);
+    let report = rig.report(&body);
+    for (zone, report) in Zone::ALL.into_iter().zip(report.zones) {
+        let within = (0..body.mesh.positions.len()).filter(|&v| Zone::of(&body, v) == zone);
+        let distances: Vec<f32> = within.map(|v| rig.distance(&body, body.mesh.positions[v]) * 1e3).collect();
+        let furthest = distances.iter().copied().fold(0.0, f32::max);
+        assert!((furthest - report.max_inside_mm).abs() < 1e-2, "{}", zone.name());
+        // Where several capsules overlap, the way out of all is longer than that of the deepest one.
+        let deepest = distances.iter().copied().fold(0.0, f32::min);
+        assert!(report.max_outside_mm >= -deepest - 1e-2, "{}", zone.name());
+    }
+}
+
+#[test]
+fn way_out_leads_out() {
+    let body = Body::build(Sex::Male, &Measures::average(Sex::Male)).unwrap();
+    let placed = Rig::fit(&body).placed(&body);
+    let mut inside = 0;
+    for (p, n) in body.mesh.positions.iter().zip(&body.normals).step_by(7) {
+        let (deepest, way) = (nearest(&placed, *p).0, report::way_out(&placed, *p, *n));
+        assert!(way <= deepest + 1e-6, "{p}: {way} {deepest}");
+        inside += u32::from(way < 0.0);
+    }
+    assert!(inside > 100);
+}
+
+/// Points of the union's surface lie on it, and their areas are those of a sphere's that the rest of it does not cover.
+#[test]
+fn surface_of_the_union_is_sampled_evenly() {
+    let alone: Placed = std::array::from_fn(|i| (Vec3::new(i as f32, 0.0, 0.0), 0.0));
+    let mut spread = alone;
+    // The last one shares its ends with no other.
+    let [a, b] = CAPSULES[CAPSULES.len() - 1].map(usize::from);
+    (spread[a], spread[b]) = ((Vec3::ZERO, 0.1), (Vec3::Y * 0.3, 0.06));
+    let points = report::surface(&spread);
+    assert!(points.iter().all(|(p, _)| nearest(&spread, *p).0.abs() < 2e-4));
+    // A round cone's surface: two caps and the slanted side between them.
+    let sine = 0.04 / 0.3f32;
+    let cosine2 = 1.0 - sine * sine;
+    let caps = std::f32::consts::TAU * (0.1 * 0.1 * (1.0 + sine) + 0.06 * 0.06 * (1.0 - sine));
+    let side = std::f32::consts::PI * (0.1 + 0.06) * 0.3 * cosine2;
+    let found: f32 = points.iter().filter(|(p, _)| p.x.abs() < 0.2).map(|p| p.1).sum();
+    // Where cap and side meet, a strip of some millimetres counts on both.
+    assert!((found - caps - side).abs() < 0.02 * (caps + side), "{found} {}", caps + side);
 }
 
 #[test]

@@ -4,6 +4,7 @@ use glam::{Quat, Vec3};
 
 use super::*;
 use crate::garment::Solver;
+use crate::limits::MAX_SPHERES;
 
 /// A scene in which every key of the schema stands once.
 const EVERY_KEY: &str = r#"name = "all"
@@ -359,8 +360,8 @@ fn mistakes_are_told_with_their_cure() {
         assert_eq!(found, line, "{says}\n{text}");
         parts.iter().for_each(|part| assert!(says.contains(part), "{part:?} is not in: {says}"));
     }
-    let spheres = "[[colliders.sphere]]\ncentre = [0, 0, 0]\nradius = 1\n".repeat(17);
-    assert!(refusal(&format!("{grid}{spheres}")).1.contains("MAX_SPHERES = 16"));
+    let spheres = "[[colliders.sphere]]\ncentre = [0, 0, 0]\nradius = 1\n".repeat(MAX_SPHERES + 1);
+    assert!(refusal(&format!("{grid}{spheres}")).1.contains(&format!("MAX_SPHERES = {MAX_SPHERES}")));
     assert!(refusal(&format!("{grid}name = \"a\"\n{grid}name = \"a\"\n")).1.contains("stands twice"));
 }
 

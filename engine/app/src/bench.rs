@@ -1,21 +1,61 @@
 //! `toile bench`: what one part of the frame costs, with the error at that speed.
 
+use std::collections::BTreeMap;
+use std::path::Path;
+
 use stats_alloc::INSTRUMENTED_SYSTEM;
+use toile_perf::depth;
+use toile_perf::filters::{self, FiltersError};
 use toile_perf::skinning::{self, BenchError};
 use toile_perf::skirt::heap::{Heap, HeapProbe};
 use toile_perf::skirt::{self, SkirtError, table};
 
-use crate::cli::{SkinningArgs, SkirtArgs};
+use crate::cli::{DepthArgs, FiltersArgs, SkinningArgs, SkirtArgs};
 use crate::exit::AppError;
+use crate::output::OutputFolder;
+use crate::pictures::write_png;
 use crate::report::{Document, SkinningReport};
 use crate::summary;
 use crate::terminal::{self, Paint, Words};
+
+/// Runs `toile bench depth`.
+///
+/// # Errors
+/// Where the scene's people cannot be made, and where stdout cannot be written.
+pub fn depth(args: &DepthArgs) -> Result<(), AppError> {
+    let words = Words::new(args.json);
+    let table = depth::run(&mut |case| words.say(case)).map_err(AppError::internal)?;
+    if args.json {
+        return terminal::print_json(&Document::new("bench-depth", table));
+    }
+    terminal::print(&table.markdown())
+}
+
+/// Runs `toile bench filters`.
+///
+/// # Errors
+/// Where a recording cannot be read, and where stdout cannot be written.
+pub fn filters(args: &FiltersArgs) -> Result<(), AppError> {
+    let words = Words::new(args.json);
+    let table = filters::table::run(args.data.as_deref(), args.table, &mut |case| words.say(case));
+    let table = table.map_err(|error| match error {
+        FiltersError::Source(error) => AppError::input(error),
+        FiltersError::Body(error) => AppError::internal(error),
+    })?;
+    if args.json {
+        return terminal::print_json(&Document::new("bench-filters", table));
+    }
+    terminal::print(&table.markdown())
+}
 
 /// Runs `toile bench skinning`.
 ///
 /// # Errors
 /// Where this machine cannot do what was asked for, and where stdout cannot be written.
 pub fn skinning(args: &SkinningArgs) -> Result<(), AppError> {
+    if let Some(folder) = &args.picture {
+        return twist(folder, args.json);
+    }
     if args.table {
         let words = Words::new(args.json);
         let table = skinning::table::run(&mut |case| words.say(case)).map_err(unskinned)?;
@@ -29,6 +69,17 @@ pub fn skinning(args: &SkinningArgs) -> Result<(), AppError> {
         return terminal::print_json(&Document::new("bench-skinning", report));
     }
     terminal::print(&summary::skinning(&report, Paint::for_stdout()))
+}
+
+/// Draws the twist test.
+fn twist(folder: &Path, json: bool) -> Result<(), AppError> {
+    let mut out = OutputFolder::prepare(folder)?;
+    write_png(&mut out, "twist.png", &skinning::twist_picture().map_err(unskinned)?)?;
+    let files = out.commit()?;
+    if json {
+        return terminal::print_json(&Document::new("bench-skinning-picture", BTreeMap::from([("files", files)])));
+    }
+    terminal::print(&format!("{}\n", files[0].display()))
 }
 
 fn unskinned(error: BenchError) -> AppError {

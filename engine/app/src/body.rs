@@ -7,6 +7,7 @@ use glam::Affine3A;
 use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::export::{Dressed, glb};
 use toile_assets::import::{avatar, makehuman};
+use toile_assets::rig::Rig;
 use toile_assets::scene;
 use toile_assets::skeleton::BONES;
 use toile_engine::body::{JointFrames, Poser, palette};
@@ -22,7 +23,7 @@ use crate::cli::BodyArgs;
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::pictures::write_png;
-use crate::report::{BodyReport, Document, Influences, JointFound, Named, SurfaceReport};
+use crate::report::{BodyReport, Document, Followed, Influences, JointFound, Named, SurfaceReport};
 use crate::summary;
 use crate::terminal::{self, Paint, Words};
 
@@ -63,7 +64,7 @@ pub fn run(args: &BodyArgs) -> Result<(), AppError> {
 }
 
 /// The body of a glTF file, or of a MakeHuman folder, with that program's own girths.
-fn import(args: &BodyArgs) -> Result<(avatar::Imported, Option<Vec<Named>>), AppError> {
+pub fn import(args: &BodyArgs) -> Result<(avatar::Imported, Option<Vec<Named>>), AppError> {
     let options = avatar::Options { sex: args.sex, meshes: args.meshes.clone(), allow_holes: args.allow_holes };
     if !args.file.is_dir() {
         if !args.targets.is_empty() {
@@ -187,6 +188,7 @@ fn report(
             crowded_edges: report.crowded_edges,
         },
         makehuman_mm: rows,
+        colliders: Followed::of(&Rig::fit(body).report(body)),
         notes: report.notes.clone(),
         files,
     }

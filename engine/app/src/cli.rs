@@ -15,6 +15,11 @@ use crate::exit::AppError;
 mod bake;
 mod bodies;
 mod body;
+mod colliders;
+mod convert;
+mod depth;
+mod filters;
+mod gestures;
 mod measuring;
 mod pareto;
 mod run;
@@ -26,6 +31,11 @@ mod validate;
 pub use bake::BakeArgs;
 pub use bodies::BodiesArgs;
 pub use body::{BodyArgs, Wearer};
+pub use colliders::CollidersArgs;
+pub use convert::{ConvertArgs, KeptDepth};
+pub use depth::DepthArgs;
+pub use filters::FiltersArgs;
+pub use gestures::GesturesArgs;
 pub use measuring::MeasuringArgs;
 pub use pareto::ParetoArgs;
 pub use run::{RunArgs, RunScene};
@@ -43,6 +53,8 @@ pub enum Command {
     Measure(MeasureArgs),
     /// `toile record`.
     Record(RecordArgs),
+    /// `toile convert`.
+    Convert(ConvertArgs),
     /// `toile run`.
     Run(RunArgs),
     /// `toile doctor`.
@@ -51,10 +63,18 @@ pub enum Command {
     Bake(BakeArgs),
     /// `toile body`.
     Body(BodyArgs),
+    /// `toile body --colliders`.
+    Colliders(CollidersArgs),
     /// `toile bench body`.
     BenchBody(BodiesArgs),
     /// `toile bench measure`.
     BenchMeasure(MeasuringArgs),
+    /// `toile bench filters`.
+    BenchFilters(FiltersArgs),
+    /// `toile bench gestures`.
+    BenchGestures(GesturesArgs),
+    /// `toile bench depth`.
+    BenchDepth(DepthArgs),
     /// `toile bench skinning`.
     BenchSkinning(SkinningArgs),
     /// `toile bench skirt`.
@@ -160,6 +180,7 @@ pub fn command() -> clap::Command {
             try_on(),
             measure(),
             record(),
+            convert::grammar(),
             bake::grammar(),
             body::grammar(),
             run::grammar(),
@@ -249,7 +270,15 @@ fn bench() -> clap::Command {
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommands([skinning::grammar(), skirt::grammar(), bodies::grammar(), measuring::grammar()])
+        .subcommands([
+            skinning::grammar(),
+            skirt::grammar(),
+            bodies::grammar(),
+            measuring::grammar(),
+            filters::grammar(),
+            gestures::grammar(),
+            depth::grammar(),
+        ])
         .after_help("Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")
 }
 
@@ -323,9 +352,11 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         }),
+        "convert" => Command::Convert(convert::args(matches)?),
         "run" => Command::Run(run::args(matches)?),
         "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
         "bake" => Command::Bake(bake::args(matches)?),
+        "body" if matches.get_flag("colliders") => Command::Colliders(colliders::args(matches)?),
         "body" => Command::Body(body::args(matches)?),
         "bench" => bench_command(matches)?,
         "torture" => Command::Torture(torture::args(matches)?),
@@ -338,6 +369,9 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
 
 fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
     match matches.subcommand() {
+        Some(("filters", matches)) => Ok(Command::BenchFilters(filters::parse(matches))),
+        Some(("gestures", matches)) => Ok(Command::BenchGestures(gestures::parse(matches)?)),
+        Some(("depth", matches)) => Ok(Command::BenchDepth(depth::parse(matches))),
         Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
         Some(("body", matches)) => Ok(Command::BenchBody(bodies::args(matches)?)),
         Some(("measure", matches)) => Ok(Command::BenchMeasure(measuring::args(matches)?)),

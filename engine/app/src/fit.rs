@@ -6,7 +6,7 @@ use toile_track::measure::Measurements;
 use toile_track::recommend::{self, EaseRange, MadeSize, Offer, ZoneGirth};
 
 use crate::exit::AppError;
-use crate::report::{Recommendation, Zone};
+use crate::report::{Recommendation, SizeChance, Tape, Zone};
 
 /// The size that fits, or the one asked for, judged at every zone that the garment reaches.
 pub fn choose(style: &Style, size: Option<&str>, measured: &Measurements) -> Result<Recommendation, AppError> {
@@ -28,11 +28,22 @@ pub fn choose(style: &Style, size: Option<&str>, measured: &Measurements) -> Res
         verdict: fit.verdict.name().into(),
         sentence: fit.sentence.clone(),
     });
+    let share = |p: f32| (f64::from(p) * 1e3).round() / 1e3;
+    let sizes = judged.sizes.into_iter().map(|s| SizeChance { size: s.size, probability: share(s.probability) });
+    let tape = judged.tape.map(|t| Tape {
+        zone: t.zone.name().into(),
+        probability: share(t.probability),
+        sentence: t.sentence,
+    });
     Ok(Recommendation {
         garment: judged.garment,
         size: judged.size,
-        probability: (f64::from(judged.probability) * 1e3).round() / 1e3,
+        probability: share(judged.probability),
         zones: zones.collect(),
+        sizes: sizes.collect(),
+        uncertain: judged.uncertain,
+        tape,
+        verdict: judged.verdict,
         runner_up: judged.runner_up.map(|r| r.size),
         note: judged.note,
     })

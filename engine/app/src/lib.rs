@@ -9,11 +9,14 @@ pub mod bench;
 pub mod bodies;
 mod body;
 pub mod cli;
+mod colliders;
 pub mod completions;
+pub mod convert;
 pub mod doctor;
 pub mod dump;
 pub mod exit;
 pub mod fit;
+pub mod gestures;
 pub mod machine;
 pub mod measure;
 pub mod measuring;
@@ -66,12 +69,17 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::TryOn(args) => try_on::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Record(args) => record::run(args),
+        Command::Convert(args) => convert::run(args),
         Command::Run(args) => run::run(args),
         Command::Doctor(args) => doctor::run(args),
         Command::Bake(args) => bake::run(args),
         Command::Body(args) => body::run(args),
+        Command::Colliders(args) => colliders::run(args),
         Command::BenchBody(args) => bodies::bench(args),
         Command::BenchMeasure(args) => measuring::bench(args),
+        Command::BenchFilters(args) => bench::filters(args),
+        Command::BenchGestures(args) => gestures::run(args),
+        Command::BenchDepth(args) => bench::depth(args),
         Command::BenchSkinning(args) => bench::skinning(args),
         Command::BenchSkirt(args) => bench::skirt(args),
         Command::Torture(args) => torture::run(args),

@@ -7,10 +7,14 @@ use serde::Serialize;
 use crate::machine::Machine;
 
 mod body;
+mod colliders;
+mod gestures;
 mod run;
 mod skinning;
 
 pub use body::{BodyReport, Influences, JointFound, Named, SurfaceReport};
+pub use colliders::Followed;
+pub use gestures::{GestureRow, GesturesReport, HandRow, OtherRow};
 pub use run::{KineticEnergy, RunGarment, RunPenetration, RunReport};
 pub use skinning::SkinningReport;
 
@@ -92,6 +96,26 @@ pub struct Zone {
     pub sentence: String,
 }
 
+/// A size with its probability.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SizeChance {
+    /// What its label says.
+    pub size: String,
+    /// How likely it is the best one (0..1).
+    pub probability: f64,
+}
+
+/// The measure to take by tape.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Tape {
+    /// Which girth.
+    pub zone: String,
+    /// How likely the likeliest size is to be the best once it is known, on average (0..1).
+    pub probability: f64,
+    /// The same for a person to read.
+    pub sentence: String,
+}
+
 /// The size that fits, and how.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Recommendation {
@@ -103,6 +127,14 @@ pub struct Recommendation {
     pub probability: f64,
     /// How each zone of it fits.
     pub zones: Vec<Zone>,
+    /// Every size that is made with its probability, smallest first; they sum to 1.
+    pub sizes: Vec<SizeChance>,
+    /// Whether no size is sure.
+    pub uncertain: bool,
+    /// The measure to take by tape, where no size is sure and a tape would help.
+    pub tape: Option<Tape>,
+    /// The whole in words.
+    pub verdict: String,
     /// The next best size, where it may be the better one.
     pub runner_up: Option<String>,
     /// Set where no size is made for this shopper, or guesses stand for measures.
@@ -251,6 +283,21 @@ pub struct RecordReport {
     pub session: Session,
     /// Seed of the noise.
     pub seed: u64,
+    /// The files written.
+    pub files: Vec<PathBuf>,
+}
+
+/// The body of `toile convert`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ConvertReport {
+    /// The session that was written.
+    pub session: Session,
+    /// Joint frames in it.
+    pub joint_frames: u64,
+    /// Depth frames in it.
+    pub depth_frames: u64,
+    /// Depth frames of the recording that are not in it, because they were not asked for.
+    pub depth_frames_left_out: u64,
     /// The files written.
     pub files: Vec<PathBuf>,
 }

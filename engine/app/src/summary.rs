@@ -198,6 +198,10 @@ pub fn body(report: &BodyReport, paint: Paint) -> String {
             all.iter().for_each(|n| line(&mut text, &format!("  {:17} {:6.0} mm", n.name, n.value)));
         }
     }
+    heading(&mut text, "Collision body, distance from the skin", paint);
+    for f in &report.colliders {
+        line(&mut text, &format!("  {:17} {:6.1} mm on average, 95 % {:.1} mm", f.zone, f.mean_mm, f.p95_mm));
+    }
     heading(&mut text, "Files", paint);
     report.files.iter().for_each(|file| line(&mut text, &format!("  {}", file.display())));
     text
@@ -233,10 +237,7 @@ fn recommendation(text: &mut String, worn: &Recommendation, paint: Paint) {
         let verdict = paint.tone(&verdict, tone);
         line(text, &format!("  {:17} {verdict} {:+5.0} mm of ease +- {:.0}", zone.zone, zone.ease_mm, zone.sigma_mm));
     }
-    if let Some(other) = &worn.runner_up {
-        let sure = worn.probability * 100.0;
-        line(text, &format!("  {sure:.0} % sure; size {other} may suit as well"));
-    }
+    line(text, &format!("  {}", worn.verdict));
     if let Some(note) = &worn.note {
         line(text, &format!("  {note}"));
     }

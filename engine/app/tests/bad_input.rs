@@ -59,8 +59,9 @@ fn a_session_of_nothing_or_of_another_kind() {
     session_refused(
         "picture.png",
         b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x01\0\0\0\x01\x08\0\0\0\0",
-        &["no known kind", "give"],
+        &["PNG is broken", "16-bit grey PNG"],
     );
+    session_refused("picture.jpg", b"\xff\xd8\xff\xe0\0\x10JFIF\0", &["no known kind", "give"]);
     session_refused("letter.txt", b"Dear shopper,\n", &["no known kind", "give"]);
     session_refused("object.json", b"{\"joints\": []}", &["JSON object", "give"]);
     session_refused("none.json", b"[]", &["none.json"]);
@@ -71,7 +72,7 @@ fn a_session_that_is_missing_a_folder_or_too_large() {
     let scratch = Scratch::new("places");
     refused(&scratch, &["--session", "absent.mcap"], &["absent.mcap", "cannot be read", "check"]);
     fs::create_dir(scratch.path().join("folder")).unwrap();
-    refused(&scratch, &["--session", "folder"], &["folder", "cannot be read", "check"]);
+    refused(&scratch, &["--session", "folder"], &["folder", "no depth image", "give"]);
     // A billion joints would fill four gigabytes: the file has their length, and holes for content.
     File::create(scratch.path().join("huge.csv")).and_then(|f| f.set_len(4 << 30)).unwrap();
     refused(&scratch, &["--session", "huge.csv"], &["huge.csv", "4294967296", "shorter"]);

@@ -37,7 +37,7 @@ fn scratch(name: &str) -> PathBuf {
 
 #[test]
 fn help_is_on_stdout_and_ends_with_an_example() {
-    for command in ["", "try-on", "measure", "record", "bake", "doctor", "bench", "completions"] {
+    for command in ["", "try-on", "measure", "record", "convert", "bake", "doctor", "bench", "completions"] {
         let args: Vec<&str> = [command, "--help"].into_iter().filter(|a| !a.is_empty()).collect();
         let output = toile(&args);
         assert_eq!(output.status.code(), Some(0), "{command}");

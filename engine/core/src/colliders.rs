@@ -1,7 +1,7 @@
 //! Spheres, the tapered capsules between them, and the floor: where they stand at the start and end of a step.
 //!
 //! Reads: the rig's spheres in the rest pose and the palette. Writes: [`Colliders`].
-//! Budget: 16 spheres and 28 capsules, under 1 us a step; a distance to one capsule is 10 ns.
+//! Budget: 51 spheres and 32 capsules, under 1 us a step; a distance to one capsule is 10 ns.
 //! Thread: physics, between skin and cloth.
 
 use glam::{Affine3A, Vec3, Vec4, Vec4Swizzles};
@@ -287,7 +287,13 @@ mod tests {
         assert!(refuse(RestSphere { radius: -0.1, ..good }).contains("sphere 1"));
         let error = Colliders::new(&[good], &[[0, 1]], false).unwrap_err();
         assert!(error.to_string().contains("[0, 1]"));
-        assert_eq!(Colliders::new(&[good; 17], &[], false), Err(ColliderError::TooManySpheres(17)));
-        assert_eq!(Colliders::new(&[good], &[[0, 0]; 29], false), Err(ColliderError::TooManyCapsules(29)));
+        assert_eq!(
+            Colliders::new(&[good; MAX_SPHERES + 1], &[], false),
+            Err(ColliderError::TooManySpheres(MAX_SPHERES + 1))
+        );
+        assert_eq!(
+            Colliders::new(&[good], &[[0, 0]; MAX_CAPSULES + 1], false),
+            Err(ColliderError::TooManyCapsules(MAX_CAPSULES + 1))
+        );
     }
 }

@@ -1,6 +1,6 @@
 //! Who stands there: the body's measures from depth frames and joints, and the size that fits them.
 //!
-//! Reads: one second of `DepthFrame` and `Joints`, size tables, finished girths of garments. Writes: `Measurements`,
+//! Reads: `DepthFrame` and `Joints`, size tables, finished girths of garments. Writes: `Measurements`, gestures,
 //! `Recommendation`. Budget: 1 s for 30 depth frames of 640 x 480, once a shopper; nothing here runs inside the frame.
 //! Thread: the sensor thread.
 
@@ -9,6 +9,7 @@ pub mod anthropometry;
 pub mod cloud;
 pub mod estimate;
 pub mod fit;
+pub mod gesture;
 mod joints;
 pub mod measure;
 pub mod measures;

@@ -179,9 +179,9 @@ impl Upright {
         Some(Section { breadth: line(|s| s.breadth), front: line(|s| s.front), arc: line(|s| s.arc) })
     }
 
-    /// Breadth of the outline at the acromions' level, where it falls away from the shoulders.
+    /// Breadth of the outline a little below the acromions' level, where it falls away from the shoulders.
     fn shoulders(&self, levels: &Levels) -> Option<f32> {
-        let y = self.at(levels.acromion);
+        let y = self.at(levels.acromion) - BELOW_ACROMION;
         let mut highest = [f32::NEG_INFINITY; 2 * OUTLINE];
         for p in band(&self.points, y - 0.02, self.top) {
             let bin = (p.x / OUTLINE_STEP).floor() + OUTLINE as f32;
@@ -195,6 +195,10 @@ impl Upright {
         OUTLINE_BREADTH.contains(&(breadth / self.height)).then_some(breadth)
     }
 }
+
+/// How far below the acromions' usual height the outline is read (m): at that height it is nearly level, so that an acromion
+/// 10 mm lower than usual would take 40 mm off a side; here it falls away, and takes 10 mm.
+const BELOW_ACROMION: f32 = 0.018;
 
 /// Half the number of columns in which the outline of the shoulders is sought, and their width (m).
 const OUTLINE: usize = 40;

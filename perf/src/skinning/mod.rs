@@ -5,6 +5,7 @@
 //! Thread: the caller's, and the crew's where two are asked for.
 
 mod oracle;
+mod picture;
 mod shapes;
 mod solid;
 pub mod table;
@@ -24,6 +25,7 @@ use crate::time;
 use crate::yardstick::{self, Yardstick};
 
 pub use oracle::Error as PositionError;
+pub use picture::twist_picture;
 pub use shapes::{Apart, Hinge, Shapes, Twist, shapes};
 
 /// Rounds of a measurement: yardstick and kernels in turn, so that both see the machine as it is. An odd number.

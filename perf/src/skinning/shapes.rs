@@ -130,7 +130,7 @@ fn chain(split: bool) -> Vec<usize> {
 }
 
 /// Skins points.
-fn posed<const N: usize>(
+pub(super) fn posed<const N: usize>(
     points: &[Vec3],
     weights: &[Influences<N>],
     palette: &[Affine3A; BONES],
@@ -226,7 +226,7 @@ fn wide(weights: &SkinWeights) -> WideWeights {
 }
 
 /// The weights that a forearm of two bones would have: what its twist bones carry goes to its ends, linearly.
-fn unsplit(weights: &SkinWeights) -> SkinWeights {
+pub(super) fn unsplit(weights: &SkinWeights) -> SkinWeights {
     let t = segment();
     let parts = weights.iter().flat_map(|(bone, w)| {
         let twist = usize::from(bone).checked_sub(t.first).filter(|k| *k < t.count);

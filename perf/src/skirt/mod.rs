@@ -20,7 +20,6 @@ use glam::Vec4;
 use thiserror::Error;
 use toile_assets::body::BodyError;
 use toile_assets::garment::{MeshError, Shape};
-use toile_assets::limits::MAX_SPHERES;
 use toile_engine::colliders::ColliderError;
 use toile_engine::crew::CrewError;
 
@@ -32,7 +31,7 @@ use report::Report;
 pub use stage::Stage;
 
 /// The body's spheres: centre and radius, world (m).
-pub type Spheres = [Vec4; MAX_SPHERES];
+pub type Spheres = [Vec4; toile_assets::scene::skirt::SPHERES];
 
 /// Why the benchmark cannot run as asked.
 #[derive(Debug, Error)]

@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 use glam::{Affine3A, Vec3, Vec3A, Vec4};
 use toile_assets::bake::bake;
 use toile_assets::garment::{Garment, Shape};
-use toile_assets::limits::MAX_SPHERES;
 use toile_assets::scene::skirt;
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::program::STAGES;
@@ -89,7 +88,7 @@ impl Stage {
             shape,
             garment,
             cloths,
-            spheres: [Vec4::ZERO; MAX_SPHERES],
+            spheres: [Vec4::ZERO; skirt::SPHERES],
             palette: [Affine3A::IDENTITY; BONES],
             tick: 0,
             memory_bytes,

@@ -31,6 +31,11 @@ pub struct BoneLength {
 }
 
 impl BoneLength {
+    /// A bone whose length (m) has been measured.
+    pub fn fixed(from: Joint, length: f32) -> Self {
+        Self { from: Some(from), length, count: u32::MAX }
+    }
+
     /// Takes a length (m) that was seen with a confidence of `weight` (0..1).
     pub fn learn(&mut self, from: Joint, seen: f32, weight: f32) {
         if self.from != Some(from) {

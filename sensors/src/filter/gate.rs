@@ -5,6 +5,7 @@ use toile_assets::skeleton::{JOINTS, Joint};
 
 use crate::clock::seconds_between;
 use crate::frame::{Joints, TrackedJoint};
+use crate::limits::MAX_COORDINATE;
 
 /// Fastest that a joint moves (m/s): a thrown punch reaches 11 m/s, a swiping hand 3 m/s.
 pub const MAX_JOINT_SPEED: f32 = 10.0;
@@ -25,6 +26,18 @@ const COINCIDENT: f32 = 0.01;
 /// Whether a joint that was last believed at `last` can have come to `now` within `seconds`.
 pub fn is_plausible_move(last: Vec3, now: Vec3, seconds: f32) -> bool {
     last.distance(now) <= FREE_JUMP + MAX_JOINT_SPEED * seconds.max(0.0)
+}
+
+/// A frame without joints that lie nowhere: positions that are no numbers or out of any room become absent.
+pub fn in_the_room(frame: &Joints) -> Joints {
+    let mut out = *frame;
+    for joint in &mut out.joints {
+        let near = joint.position.is_finite() && joint.position.abs().max_element() <= MAX_COORDINATE;
+        if !near || joint.confidence.is_nan() {
+            *joint = TrackedJoint::default();
+        }
+    }
+    out
 }
 
 /// The nearest ancestor of a joint for which `present` holds.

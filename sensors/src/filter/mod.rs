@@ -3,19 +3,23 @@
 //! Reads: `Joints` as tracked. Writes: `Joints` without jumps. Budget: under 50 us a frame, no allocation, fixed state.
 //! Thread: the sensor thread.
 
+pub mod angles;
 pub mod bones;
 pub mod gate;
 pub mod hold;
 pub mod holt;
+pub mod one_euro;
+pub mod predict;
+pub mod smoothing;
 
 use glam::Vec3;
-use toile_assets::skeleton::{JOINTS, Joint};
+use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 
 use crate::clock::seconds_between;
 use crate::frame::{Joints, TrackedJoint};
 use bones::BoneLength;
 use hold::Hold;
-use holt::{Holt, HoltSettings};
+use smoothing::{Smoother, Smoothing};
 
 pub use hold::HELD_CONFIDENCE;
 
@@ -25,25 +29,37 @@ const LONGEST_SILENCE: f32 = 1.0;
 /// Shortest step between two frames (s); a frame that comes no later than the one before counts as this much later.
 const SHORTEST_STEP: f32 = 1e-3;
 
+/// Anything that makes joints more believable, frame by frame, with a memory of a fixed size and no allocation.
+pub trait Filter {
+    /// Takes a frame and gives the filtered one of the same time. Frames may come at any interval, twice, or late, and
+    /// hold positions that are no numbers: what is given is finite wherever its confidence is not 0.
+    fn push(&mut self, frame: &Joints) -> Joints;
+
+    /// Forgets the shopper.
+    fn reset(&mut self);
+}
+
 /// How to filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilterSettings {
     /// Smoothing of positions.
-    pub holt: HoltSettings,
+    pub smoothing: Smoothing,
     /// How far bones are pulled to their running median length: 0 as seen .. 1 constant.
     pub bone_pull: f32,
 }
 
 impl Default for FilterSettings {
+    /// Bones as seen: pulled ones add their parents' noise along the chain, and a pose takes directions alone
+    /// (docs/filters.md has the figures).
     fn default() -> Self {
-        Self { holt: HoltSettings::default(), bone_pull: 1.0 }
+        Self { smoothing: Smoothing::default(), bone_pull: 0.0 }
     }
 }
 
 /// What is remembered of one joint.
 #[derive(Debug, Clone, Copy)]
 struct Track {
-    holt: Holt,
+    smooth: Smoother,
     hold: Hold,
     bone: BoneLength,
     /// The measurement last believed (m), and when (ns).
@@ -64,12 +80,27 @@ pub struct JointFilter {
     last_ns: Option<u64>,
     /// `None` for joints never seen.
     tracks: [Option<Track>; JOINTS],
+    /// Length of each limb's bone (m), where the body has been measured.
+    measured: [Option<f32>; JOINTS],
 }
+
+/// Bones that a measured body fixes: other joints lie elsewhere in a sensor than in a body.
+const MEASURED: [Joint; 8] = {
+    use Joint::*;
+    [LeftElbow, LeftWrist, LeftKnee, LeftAnkle, RightElbow, RightWrist, RightKnee, RightAnkle]
+};
 
 impl JointFilter {
     /// A filter that has seen nothing.
     pub fn new(settings: FilterSettings) -> Self {
-        Self { settings, last_ns: None, tracks: [None; JOINTS] }
+        Self { settings, last_ns: None, tracks: [None; JOINTS], measured: [None; JOINTS] }
+    }
+
+    /// Locks the bones of arms and legs to those of the measured body, in place of what the session shows.
+    pub fn lock_bones(&mut self, body: &Skeleton) {
+        for joint in MEASURED {
+            self.measured[joint.index()] = Some(body.offset(joint).length());
+        }
     }
 
     /// Forgets the shopper.
@@ -82,10 +113,11 @@ impl JointFilter {
     ///
     /// After a silence of more than a second every joint comes back as from a dropout, its motion forgotten.
     pub fn push(&mut self, frame: &Joints) -> Joints {
+        let frame = gate::in_the_room(frame);
         let dt = self.step(frame.time_ns);
-        let seen = self.smooth(frame, dt);
-        let places = self.place(frame, &seen, dt);
-        self.pull_bones(frame, &seen, &places)
+        let seen = self.smooth(&frame, dt);
+        let places = self.place(&frame, &seen, dt);
+        self.pull_bones(&frame, &seen, &places)
     }
 
     /// Seconds since the last frame; after a long silence the motion is forgotten.
@@ -108,13 +140,13 @@ impl JointFilter {
                 && seen[i]
                 && track.following
             {
-                trust[i] = track.holt.trust(tracked.position, dt, &self.settings.holt);
+                trust[i] = track.smooth.drive(tracked.position, dt, &self.settings.smoothing);
             }
         }
         let trust = shared(&trust);
         for (i, tracked) in frame.joints.iter().enumerate() {
             match &mut self.tracks[i] {
-                Some(track) if seen[i] => track.follow(tracked.position, dt, trust[i], &self.settings.holt),
+                Some(track) if seen[i] => track.follow(tracked.position, dt, trust[i], &self.settings.smoothing),
                 Some(track) => track.moved = Vec3::ZERO,
                 empty if seen[i] => *empty = Some(Track::first_seen(tracked.position)),
                 _ => {}
@@ -146,7 +178,7 @@ impl JointFilter {
                 None => track.place + self.drift(joint),
             };
             places[i] = if seen[i] {
-                let smoothed = track.holt.output(&self.settings.holt);
+                let smoothed = track.smooth.output(&self.settings.smoothing);
                 if !track.following {
                     track.hold.resume(held, smoothed);
                 }
@@ -189,7 +221,9 @@ impl JointFilter {
                         track.bone.learn(from, bone.length(), weight);
                     }
                     let bone = places[i] - places[from.index()];
-                    out.at(from).position + track.bone.pulled(from, bone, self.settings.bone_pull)
+                    let length = self.measured[i].filter(|_| joint.parent() == Some(from));
+                    let bone_length = length.map_or(track.bone, |length| BoneLength::fixed(from, length));
+                    out.at(from).position + bone_length.pulled(from, bone, self.settings.bone_pull)
                 }
                 None => places[i],
             };
@@ -206,6 +240,16 @@ fn inferred(frame: &Joints, from: Joint, to: Joint) -> Option<Vec3> {
     (a.confidence > 0.0 && b.confidence > 0.0 && bone.is_finite()).then_some(bone)
 }
 
+impl Filter for JointFilter {
+    fn push(&mut self, frame: &Joints) -> Joints {
+        Self::push(self, frame)
+    }
+
+    fn reset(&mut self) {
+        Self::reset(self);
+    }
+}
+
 impl Default for JointFilter {
     fn default() -> Self {
         Self::new(FilterSettings::default())
@@ -215,7 +259,7 @@ impl Default for JointFilter {
 impl Track {
     fn first_seen(at: Vec3) -> Self {
         Self {
-            holt: Holt::start(at),
+            smooth: Smoother::start(at),
             hold: Hold::first_seen(),
             bone: BoneLength::default(),
             believed: at,
@@ -231,13 +275,13 @@ impl Track {
         gate::is_plausible_move(self.believed, tracked.position, seconds)
     }
 
-    fn follow(&mut self, measured: Vec3, dt: f32, trust: f32, settings: &HoltSettings) {
-        let before = self.holt.level;
+    fn follow(&mut self, measured: Vec3, dt: f32, trust: f32, settings: &Smoothing) {
+        let before = self.smooth.level;
         if self.following {
-            self.holt.update(measured, dt, trust, settings);
-            self.moved = self.holt.level - before;
+            self.smooth.update(measured, dt, trust, settings);
+            self.moved = self.smooth.level - before;
         } else {
-            self.holt = Holt::start(measured);
+            self.smooth = Smoother::start(measured);
             self.moved = Vec3::ZERO;
         }
     }

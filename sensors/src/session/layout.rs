@@ -5,6 +5,7 @@ use std::io::Cursor;
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use toile_assets::skeleton::JOINTS;
 
+use super::DepthRoom;
 use crate::frame::{DepthFrame, Intrinsics, Joints, TrackedJoint, pose_fault};
 
 /// Description of a joints message, stored as its schema.
@@ -88,8 +89,8 @@ pub(super) fn encode_depth(frame: &DepthFrame) -> Result<Vec<u8>, String> {
     Ok(out)
 }
 
-/// Reads a depth message; sizes are checked before memory is taken.
-pub(super) fn decode_depth(bytes: &[u8]) -> Result<DepthFrame, String> {
+/// Reads a depth message; sizes are checked, and `room` is asked, before memory is taken.
+pub(super) fn decode_depth(bytes: &[u8], room: &mut DepthRoom) -> Result<DepthFrame, String> {
     let mut words = Words(bytes);
     let time_ns = words.u64()?;
     let (width, height) = (words.u32()?, words.u32()?);
@@ -100,6 +101,7 @@ pub(super) fn decode_depth(bytes: &[u8]) -> Result<DepthFrame, String> {
     if let Some(fault) = intrinsics.fault().or_else(|| pose_fault(&camera_to_world)) {
         return Err(fault);
     }
+    room.take(&intrinsics).map_err(|fault| fault.problem)?;
     let depth_mm = decode_png(words.0, &intrinsics)?;
     Ok(DepthFrame { time_ns, intrinsics, camera_to_world, depth_mm })
 }

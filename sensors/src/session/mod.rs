@@ -25,8 +25,8 @@ pub use read::read;
 pub use write::write;
 
 use crate::error::{Fault, Place};
-use crate::frame::{DepthFrame, Joints};
-use crate::limits::{MAX_DEPTH_FRAMES, MAX_JOINT_FRAMES};
+use crate::frame::{DepthFrame, Intrinsics, Joints};
+use crate::limits::{MAX_DEPTH_BYTES, MAX_DEPTH_FRAMES, MAX_JOINT_FRAMES};
 
 /// Version of the recording's format; another one is refused.
 const VERSION: u32 = 1;
@@ -96,9 +96,48 @@ impl Session {
     }
 }
 
+/// What room a session still has for depth images; asked before an image is unpacked.
+#[derive(Debug, Default)]
+pub(crate) struct DepthRoom {
+    frames: usize,
+    bytes: u64,
+}
+
+impl DepthRoom {
+    /// Takes room for one image, or says why there is none.
+    pub(crate) fn take(&mut self, camera: &Intrinsics) -> Result<(), Fault> {
+        self.frames += 1;
+        self.bytes += camera.pixels() as u64 * 2;
+        if self.frames > MAX_DEPTH_FRAMES {
+            return Err(too_many(self.frames));
+        }
+        if self.bytes > MAX_DEPTH_BYTES {
+            let problem = format!("its depth images take more than {} MiB of memory", MAX_DEPTH_BYTES >> 20);
+            return Err(Fault::new(Place::Frame(self.frames - 1), problem, "cut the recording into shorter pieces"));
+        }
+        Ok(())
+    }
+}
+
 /// The fault of a recording with more frames than [`MAX_JOINT_FRAMES`] or [`MAX_DEPTH_FRAMES`].
 pub(crate) fn too_many(frames: usize) -> Fault {
     let limits = format!("{MAX_JOINT_FRAMES} joint frames and {MAX_DEPTH_FRAMES} depth frames");
     let problem = format!("{frames} frames are more than a session holds ({limits})");
     Fault::new(Place::Whole, problem, "cut the recording into shorter pieces")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_large_images_are_refused_before_they_are_unpacked() {
+        let largest = Intrinsics { width: 2048, height: 2048, ..Intrinsics::KINECT_V1 };
+        let mut room = DepthRoom::default();
+        let fits = (0..MAX_DEPTH_FRAMES).take_while(|_| room.take(&largest).is_ok()).count();
+        assert_eq!(fits as u64, MAX_DEPTH_BYTES / (2048 * 2048 * 2));
+        let mut room = DepthRoom::default();
+        assert!((0..MAX_DEPTH_FRAMES).all(|_| room.take(&Intrinsics::KINECT_V1).is_ok()));
+        assert!(room.take(&Intrinsics::KINECT_V1).is_err());
+    }
 }

@@ -4,7 +4,7 @@ use mcap::McapError;
 use mcap::records::{Metadata, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
-use super::{DEPTH_TOPIC, ENCODING, JOINTS_TOPIC, METADATA, NOTES, Session, VERSION, layout, too_many};
+use super::{DEPTH_TOPIC, DepthRoom, ENCODING, JOINTS_TOPIC, METADATA, NOTES, Session, VERSION, layout, too_many};
 use crate::error::{Fault, Place, SourceError};
 use crate::limits::{MAX_DEPTH_FRAMES, MAX_JOINT_FRAMES};
 
@@ -33,6 +33,7 @@ struct Reading {
     session: Session,
     /// Channel ids seen, and what they carry; a handful.
     topics: Vec<(u16, Topic)>,
+    room: DepthRoom,
     is_ours: bool,
     complete: bool,
 }
@@ -120,7 +121,7 @@ impl Reading {
                 let topic = self.topics.iter().find(|(id, _)| *id == header.channel_id);
                 match topic.ok_or("a message of an unknown channel")?.1 {
                     Topic::Joints => self.session.joints.push(layout::decode_joints(&data)?),
-                    Topic::Depth => self.session.depth.push(layout::decode_depth(&data)?),
+                    Topic::Depth => self.session.depth.push(layout::decode_depth(&data, &mut self.room)?),
                     Topic::Other => {}
                 }
                 let (joints, depth) = (self.session.joints.len(), self.session.depth.len());

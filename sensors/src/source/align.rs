@@ -1,7 +1,7 @@
 //! A recording brought into our world: levelled, its floor at y = 0, the shopper near x = z = 0.
 //!
 //! Joints alone say how a camera was tilted: a standing person's neck is above the middle of their feet, and the spine
-//! is upright, in the median of a whole recording.
+//! is upright, in the median of a whole recording. Where a tracker has no neck, its chest or head does as well.
 
 use glam::{Quat, Vec3};
 use toile_assets::skeleton::Joint;
@@ -81,9 +81,14 @@ fn level(frames: &mut [Joints], notes: &mut Vec<String>) {
 
 /// The median direction of a standing body, unit length: the mean of pelvis to neck and feet to neck.
 fn upright(frames: &[Joints]) -> Option<Vec3> {
-    let spine = median_direction(frames, |f| Some(f.believed(Joint::Neck)? - f.believed(Joint::Pelvis)?))?;
-    let body = median_direction(frames, |f| Some(f.believed(Joint::Neck)? - middle_of_feet(f)?));
+    let spine = median_direction(frames, |f| Some(top(f)? - f.believed(Joint::Pelvis)?))?;
+    let body = median_direction(frames, |f| Some(top(f)? - middle_of_feet(f)?));
     Some((spine + body.unwrap_or(spine)).normalize())
+}
+
+/// The neck, or what is nearest to it.
+fn top(frame: &Joints) -> Option<Vec3> {
+    [Joint::Neck, Joint::Chest, Joint::Head].into_iter().find_map(|joint| frame.believed(joint))
 }
 
 /// Middle of both feet, between ankles and toes, where all four are seen.

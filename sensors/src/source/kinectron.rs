@@ -7,7 +7,8 @@ use glam::Vec3;
 use serde::Deserialize;
 use toile_assets::skeleton::Joint;
 
-use super::kinect2::{FROM_KINECT, KINECT_JOINTS, turned};
+use super::joint_map::{Format, JointMap};
+use super::kinect2::{KINECT_JOINTS, turned};
 use super::{align, tidy};
 use crate::error::{Fault, Place};
 use crate::filter::gate::derive_confidence;
@@ -60,7 +61,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
         return Err(too_many(bodies.len()));
     }
     let mut notes = Vec::new();
-    let main = main_body(&bodies);
+    let main = tidy::most_frequent(bodies.iter().filter(|b| b.tracked).map(|b| &b.tracking_id));
+    let map = JointMap::of(Format::Kinect25);
     let mut frames = Vec::with_capacity(bodies.len());
     let mut others = 0;
     for (i, body) in bodies.iter().enumerate() {
@@ -68,7 +70,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
             others += 1;
             continue;
         }
-        frames.push(frame(body).map_err(|problem| Fault::new(Place::Frame(i), problem, CURE))?);
+        frames.push(frame(body, &map).map_err(|problem| Fault::new(Place::Frame(i), problem, CURE))?);
     }
     if others > 0 {
         notes.push(format!("{others} frames are untracked or of another person and were left out"));
@@ -79,21 +81,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
     Ok(Session { joints, notes, raw_scale_known: true, ..Session::default() })
 }
 
-/// The person seen in most frames; the first of equals.
-fn main_body(bodies: &[Body]) -> Option<&serde_json::Value> {
-    let mut counts: Vec<(&serde_json::Value, usize)> = Vec::new();
-    for body in bodies.iter().filter(|b| b.tracked) {
-        match counts.iter().position(|(id, _)| *id == &body.tracking_id) {
-            Some(i) => counts[i].1 += 1,
-            // A sensor follows six people; more identities than that many a session is a broken file.
-            None if counts.len() < 64 => counts.push((&body.tracking_id, 1)),
-            None => {}
-        }
-    }
-    counts.iter().rev().max_by_key(|(_, n)| *n).map(|(id, _)| *id)
-}
-
-fn frame(body: &Body) -> Result<Joints, String> {
+fn frame(body: &Body, map: &JointMap) -> Result<Joints, String> {
     if body.joints.len() != KINECT_JOINTS {
         return Err(format!("{} joints where a Kinect v2 body has {KINECT_JOINTS}", body.joints.len()));
     }
@@ -101,15 +89,15 @@ fn frame(body: &Body) -> Result<Joints, String> {
     if !ms.is_finite() || !(0.0..1e15).contains(&ms) {
         return Err(format!("the time stamp {ms} is not in milliseconds"));
     }
-    let mut joints = Joints::absent((ms * 1e6) as u64);
-    for (kinect, joint) in FROM_KINECT {
-        let CameraJoint { x, y, z } = body.joints[kinect];
-        let camera = Vec3::new(x, y, z);
+    let mut points = [TrackedJoint::default(); KINECT_JOINTS];
+    for (kinect, (point, CameraJoint { x, y, z })) in points.iter_mut().zip(&body.joints).enumerate() {
+        let camera = Vec3::new(*x, *y, *z);
         if !camera.is_finite() || camera.abs().max_element() > MAX_COORDINATE {
             return Err(format!("joint {kinect} lies at ({x}, {y}, {z}), which is no place in metres"));
         }
-        *joints.at_mut(joint) = TrackedJoint { position: turned(camera), confidence: 1.0 };
+        *point = TrackedJoint { position: turned(camera), confidence: 1.0 };
     }
+    let mut joints = map.joints((ms * 1e6) as u64, &points);
     mark_hand(&mut joints, Joint::LeftHand, body.left_hand_state);
     mark_hand(&mut joints, Joint::RightHand, body.right_hand_state);
     Ok(joints)

@@ -1,27 +1,49 @@
 //! Recordings of real sensors: one file a format, recognised by content.
 //!
-//! Reads: files of any of the kinds below. Writes: a `Session` in our world. Budget: at load only.
+//! Reads: files and folders of any of the kinds below. Writes: a `Session` in our world. Budget: at load only.
 //! Thread: the loading thread.
 //!
 //! | kind | recognised by |
 //! |---|---|
 //! | Toile session (MCAP) | the MCAP magic |
-//! | Kinect v2 joints, CSV | text whose first line is 102 numbers between commas |
+//! | Kinect v1 or v2 joints | text whose lines are 81 or 101 numbers |
 //! | Kinectron recording, JSON | text that begins with `[` |
+//! | Azure Kinect bodies, JSON | a JSON object, or lines of them, that names `timestamp_usec` or its bones |
+//! | MediaPipe landmarks, JSON | JSON that names `...andmarks` |
+//! | OpenPose keypoints, JSON | a folder with a calibration (`.toml`) and a folder of JSON files for each camera |
 //! | BVH motion capture | text that begins with `HIERARCHY` |
+//! | Azure Kinect recording (MKV) | the EBML magic; its depth alone is read |
+//! | 16-bit grey PNG | the PNG magic; a folder of them is a sequence |
+//! | OpenNI 2 recording (ONI) | its magic; with the feature `openni2` and Debian's libopenni2 |
+//! | fakenect recording | a folder with INDEX.txt |
 //! | raw 16-bit depth | none of these, and a camera is given or the size is that of 640x480 images |
 
 mod align;
+mod azure;
+mod azure_mkv;
 mod bvh;
 mod bvh_names;
 mod bvh_pose;
 mod camera;
+mod ebml;
+mod fakenect;
+mod folder;
+pub mod joint_map;
 mod kinect2;
 mod kinect_csv;
 mod kinectron;
+mod lens;
+mod mediapipe;
+mod mediapipe_place;
+#[cfg(feature = "openni2")]
+mod openni2;
+mod openpose;
+mod png_depth;
 mod raw_depth;
+mod sequence;
 pub mod synthetic;
 mod tidy;
+pub mod vmc;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -34,17 +56,27 @@ pub use crate::session::Session;
 /// How to open a recording.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct OpenOptions {
-    /// JSON that describes the depth camera of a raw depth file: `width`, `height`, `fx`, `fy`, `cx`, `cy` (px) and
-    /// optionally `cam_to_world` (4 x 4, mm, y up).
+    /// JSON that describes the camera of depth images: `width`, `height`, `fx`, `fy`, `cx`, `cy` (px) and optionally
+    /// `cam_to_world` (4 x 4, mm, y up), `distortion` (`k1` .. `k6`, `p1`, `p2`) and `mm_per_unit`.
     pub camera: Option<PathBuf>,
 }
 
-/// Opens a recording of any known kind.
+/// Opens a recording of any known kind: a file, or the folder of a multi-view recording.
 ///
 /// # Errors
 /// One sentence with the path, the place and the cure where the file cannot be read, is of an unknown kind, or is wrong.
 pub fn open(path: &Path, options: &OpenOptions) -> Result<Session, SourceError> {
+    if path.is_dir() {
+        if openpose::recognises(path)? {
+            return openpose::open(path);
+        }
+        return folder::read(path, options);
+    }
     let bytes = read_file(path)?;
+    #[cfg(feature = "openni2")]
+    if bytes.starts_with(ONI_MAGIC) {
+        return openni2::read(path, options);
+    }
     let camera = match &options.camera {
         Some(json) => Some((shown(json), read_file(json)?)),
         None => None,
@@ -63,13 +95,19 @@ pub fn read_bytes(path: &str, name: &str, bytes: &[u8], camera: Option<(&str, &[
         Kind::Session => return crate::session::read(path, bytes),
         Kind::KinectCsv => kinect_csv::read(bytes),
         Kind::Kinectron => kinectron::read(bytes),
+        Kind::Azure => azure::read(bytes),
+        Kind::MediaPipe => mediapipe::read(bytes),
         Kind::Bvh => bvh::read(bytes),
-        Kind::RawDepth => {
+        depth => {
             let camera = match camera {
                 Some((json, bytes)) => Some(camera::read(bytes).map_err(|fault| fault.at(json))?),
                 None => None,
             };
-            raw_depth::read(bytes, camera)
+            match depth {
+                Kind::AzureMkv => azure_mkv::read(bytes, camera),
+                Kind::Png => png_depth::read(bytes, camera),
+                _ => raw_depth::read(bytes, camera),
+            }
         }
     };
     let mut session = result.map_err(|fault| fault.at(path))?;
@@ -78,12 +116,23 @@ pub fn read_bytes(path: &str, name: &str, bytes: &[u8], camera: Option<(&str, &[
     Ok(session)
 }
 
+/// First bytes of an OpenNI recording.
+const ONI_MAGIC: &[u8] = b"NI10";
+
+/// What is said of an OpenNI recording that cannot be read.
+const OPENNI: &str =
+    "an OpenNI recording, which is read from a file and only where Toile was built with `--features openni2`";
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Session,
     KinectCsv,
     Kinectron,
+    Azure,
+    MediaPipe,
     Bvh,
+    AzureMkv,
+    Png,
     RawDepth,
 }
 
@@ -96,7 +145,13 @@ fn recognise(bytes: &[u8], has_camera: bool) -> Result<Kind, &'static str> {
         return Ok(Kind::Session);
     }
     if bytes.starts_with(b"\x1a\x45\xdf\xa3") {
-        return Err("this is a Matroska video, which is not read: export its depth as raw 16-bit millimetres");
+        return Ok(Kind::AzureMkv);
+    }
+    if bytes.starts_with(png_depth::MAGIC) {
+        return Ok(Kind::Png);
+    }
+    if bytes.starts_with(ONI_MAGIC) {
+        return Err(OPENNI);
     }
     let head = &bytes[..bytes.len().min(4096)];
     let text =
@@ -115,13 +170,21 @@ fn recognise_text(head: &[u8]) -> Result<Kind, &'static str> {
     let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
     match text.first() {
         None => Err("the file holds only white space"),
+        Some(b'[' | b'{') if mediapipe::recognises(text) => Ok(Kind::MediaPipe),
         Some(b'[') => Ok(Kind::Kinectron),
+        Some(b'{') if azure::recognises(text) => Ok(Kind::Azure),
+        Some(b'{') if text.windows(9).any(|w| w == b"keypoints") => Err(ONE_VIEW),
         Some(b'{') => Err("a JSON object, perhaps a camera: give it beside its raw depth file, not instead"),
         Some(_) if text.starts_with(b"HIERARCHY") => Ok(Kind::Bvh),
-        Some(c) if (c.is_ascii_digit() || b"+-.".contains(c)) && text.contains(&b',') => Ok(Kind::KinectCsv),
+        Some(c) if (c.is_ascii_digit() || b"+-.".contains(c)) && text.iter().any(|c| b", ".contains(c)) => {
+            Ok(Kind::KinectCsv)
+        }
         Some(_) => Err("text of no known kind"),
     }
 }
+
+const ONE_VIEW: &str = "these are the keypoints of one view, which have no depth: give the folder of all cameras with \
+                        their calibration";
 
 fn is_text(head: &[u8]) -> bool {
     head.iter().all(|b| *b >= 0x20 || b"\t\n\r".contains(b))
@@ -150,10 +213,12 @@ mod tests {
         assert_eq!(recognise(b"HIERARCHY\nROOT", false), Ok(Kind::Bvh));
         assert_eq!(recognise(b"\xef\xbb\xbf [{}]", false), Ok(Kind::Kinectron));
         assert_eq!(recognise(b"123,0.5,", false), Ok(Kind::KinectCsv));
+        assert_eq!(recognise(b"\x1a\x45\xdf\xa3", true), Ok(Kind::AzureMkv));
+        assert_eq!(recognise(png_depth::MAGIC, true), Ok(Kind::Png));
         assert_eq!(recognise(&[0; 614_400], false), Ok(Kind::RawDepth));
         assert_eq!(recognise(&[0; 8], true), Ok(Kind::RawDepth));
         assert_eq!(recognise(b"123,0.5,", true), Ok(Kind::KinectCsv));
-        for other in [&b""[..], b"  \n", b"{}", b"hello", b"\x1a\x45\xdf\xa3", &[0; 614_401]] {
+        for other in [&b""[..], b"  \n", b"{}", b"hello", b"NI10\x01\0\0\0", &[0; 614_401]] {
             assert!(recognise(other, false).is_err(), "{other:?}");
         }
     }

@@ -47,6 +47,22 @@ pub(super) fn tidy(frames: Vec<Joints>, notes: &mut Vec<String>) -> Result<Vec<J
     Ok(kept)
 }
 
+/// Identities that are counted: a sensor follows six people, and more than this many a session is a broken file.
+const IDENTITIES: usize = 64;
+
+/// The identity that most frames show; the first of equals.
+pub(super) fn most_frequent<T: PartialEq>(identities: impl Iterator<Item = T>) -> Option<T> {
+    let mut counts: Vec<(T, usize)> = Vec::new();
+    for id in identities {
+        match counts.iter().position(|(known, _)| *known == id) {
+            Some(i) => counts[i].1 += 1,
+            None if counts.len() < IDENTITIES => counts.push((id, 1)),
+            None => {}
+        }
+    }
+    counts.into_iter().rev().max_by_key(|(_, n)| *n).map(|(id, _)| id)
+}
+
 fn median_step_ns(frames: &[Joints]) -> u64 {
     let mut steps: Vec<u64> = frames.windows(2).filter_map(|w| w[1].time_ns.checked_sub(w[0].time_ns)).collect();
     steps.sort_unstable();

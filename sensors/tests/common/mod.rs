@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 pub mod samples;
+pub mod skeletons;
 
 use std::path::{Path, PathBuf};
 

@@ -163,3 +163,52 @@ pub const CAMERA: &str = r#"{"width":16,"height":12,"fx":14,"fy":14,"cx":7.5,"cy
 pub fn raw_depth() -> Vec<u8> {
     (0..384u16).flat_map(|i| (2000 + i % 5).to_le_bytes()).collect()
 }
+
+/// A 16-bit grey PNG whose depths rise from 2 m.
+pub fn png(width: u32, height: u32) -> Vec<u8> {
+    let mut out = Vec::new();
+    let mut encoder = png::Encoder::new(&mut out, width, height);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Sixteen);
+    let samples: Vec<u8> = (0..width * height).flat_map(|i| (2000 + (i % 5) as u16).to_be_bytes()).collect();
+    encoder.write_header().unwrap().write_image_data(&samples).unwrap();
+    out
+}
+
+/// A Matroska box.
+fn element(id: &[u8], data: &[u8]) -> Vec<u8> {
+    let length = (data.len() as u64 | 1 << 56).to_be_bytes();
+    [id, &length, data].concat()
+}
+
+/// A recording such as an Azure Kinect's, 320 x 288 pixels, with a calibration.
+pub fn azure(frames: u16) -> Vec<u8> {
+    let calibration = r#"{"CalibrationInformation":{"Cameras":[{"Location":"CALIBRATION_CameraLocationD0","MetricRadius":1.7,
+        "Intrinsics":{"ModelType":"CALIBRATION_LensDistortionModelBrownConrady","ModelParameters":
+        [0.51,0.51,0.49,0.49,0.5,-0.02,-0.002,0.88,0.08,-0.01,0,0,0,0]}}]}}"#;
+    let mut private = [0; 40];
+    private[16..20].copy_from_slice(b"b16g");
+    let video = [element(&[0xb0], &[1, 64]), element(&[0xba], &[1, 32])].concat();
+    let track = [
+        element(&[0xd7], &[2]),
+        element(&[0x53, 0x6e], b"DEPTH"),
+        element(&[0x63, 0xa2], &private),
+        element(&[0xe0], &video),
+    ]
+    .concat();
+    let file = [element(&[0x46, 0x6e], b"calibration.json"), element(&[0x46, 0x5c], calibration.as_bytes())].concat();
+    let mut segment = [
+        element(&[0x15, 0x49, 0xa9, 0x66], &element(&[0x2a, 0xd7, 0xb1], &[0x03, 0xe8])),
+        element(&[0x16, 0x54, 0xae, 0x6b], &element(&[0xae], &track)),
+        element(&[0x19, 0x41, 0xa4, 0x69], &element(&[0x61, 0xa7], &file)),
+    ]
+    .concat();
+    for i in 0..frames {
+        let image = (0..320 * 288u32).flat_map(|p| (1500 + (p % 320) as u16 + i).to_be_bytes());
+        let block: Vec<u8> = [0x82, 0, 0, 0x80].into_iter().chain(image).collect();
+        let begin = (u32::from(i) * 33_333).to_be_bytes();
+        let cluster = [element(&[0xe7], &begin), element(&[0xa3], &block)].concat();
+        segment.extend(element(&[0x1f, 0x43, 0xb6, 0x75], &cluster));
+    }
+    [element(&[0x1a, 0x45, 0xdf, 0xa3], b""), element(&[0x18, 0x53, 0x80, 0x67], &segment)].concat()
+}

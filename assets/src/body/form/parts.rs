@@ -4,6 +4,7 @@ use glam::{EulerRot, Mat3, Quat, Vec3};
 use serde::Deserialize;
 
 use super::spline::Spline;
+use crate::cone::round_cone;
 
 /// A limb or trunk: superellipse sections across a straight axis.
 #[derive(Debug, Deserialize)]
@@ -126,7 +127,7 @@ impl Chain {
 
     pub(super) fn distance(&self, p: Vec3) -> f32 {
         let ball = |b: &[f32; 4]| (Vec3::new(b[0], b[1], b[2]), b[3]);
-        let joined = self.balls.windows(2).map(|w| crate::rig::round_cone(p, ball(&w[0]), ball(&w[1])).0);
+        let joined = self.balls.windows(2).map(|w| round_cone(p, ball(&w[0]), ball(&w[1])).0);
         joined.fold(f32::MAX, f32::min)
     }
 }

@@ -3,10 +3,11 @@
 
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Vec4};
 
-use crate::limits::{MAX_CAPSULES, MAX_SPHERES};
+/// Spheres of the scene's body.
+pub const SPHERES: usize = 16;
 
 /// Centre and radius of each sphere at rest (m).
-pub const JOINTS: [([f64; 3], f64); MAX_SPHERES] = [
+pub const JOINTS: [([f64; 3], f64); SPHERES] = [
     ([0.0, 1.0, 0.0], 0.14),
     ([0.0, 1.2, 0.0], 0.13),
     ([0.0, 1.4, 0.0], 0.14),
@@ -26,7 +27,7 @@ pub const JOINTS: [([f64; 3], f64); MAX_SPHERES] = [
 ];
 
 /// Pairs of spheres that tapered capsules join.
-pub const CAPSULES: [[u8; 2]; MAX_CAPSULES] = [
+pub const CAPSULES: [[u8; 2]; 28] = [
     [0, 1],
     [1, 2],
     [2, 3],
@@ -106,7 +107,7 @@ impl Moment {
         Self { phase, leg: ramp * leg, root: DAffine3::from_mat3_translation(turn, at) }
     }
 
-    fn joints(&self) -> [DVec3; MAX_SPHERES] {
+    fn joints(&self) -> [DVec3; SPHERES] {
         let rest = JOINTS.map(|(p, _)| DVec3::from_array(p));
         let mut at = rest;
         for ([hip, knee, ankle, shoulder, elbow], side) in LIMBS.into_iter().zip([0.0, 1.0]) {
@@ -128,7 +129,7 @@ pub fn root(motion: Motion, time: f64) -> Affine3A {
 }
 
 /// The body's spheres at a time (s): centre and radius, world (m).
-pub fn spheres(motion: Motion, time: f64) -> [Vec4; MAX_SPHERES] {
+pub fn spheres(motion: Motion, time: f64) -> [Vec4; SPHERES] {
     let at = Moment::new(motion, time).joints();
     std::array::from_fn(|i| at[i].extend(JOINTS[i].1).as_vec4())
 }

@@ -19,7 +19,7 @@ use crate::fabric::Fabric;
 use crate::garment::{Part, Shape};
 use crate::mesh::SkinWeights;
 
-pub use body::{CAPSULES, JOINTS, Motion, root, spheres};
+pub use body::{CAPSULES, JOINTS, Motion, SPHERES, root, spheres};
 pub use irregular::irregular;
 
 /// Mass of the whole skirt, the pinned ring included (kg).

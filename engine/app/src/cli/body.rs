@@ -58,6 +58,9 @@ pub struct BodyArgs {
     pub quiet: bool,
 }
 
+/// Most random bodies: some minutes' worth.
+const MAX_STRANGERS: u64 = 10_000;
+
 /// The grammar of the command.
 pub(super) fn grammar() -> clap::Command {
     clap::Command::new("body")
@@ -65,14 +68,19 @@ pub(super) fn grammar() -> clap::Command {
         .long_about(
             "Reads a skinned glTF 2.0 mesh (.glb, .gltf), a VRM avatar (.vrm) or a folder with MakeHuman's hm08 base, \
              makes a body of it, and writes pictures of it at rest and walking, body.glb for other tools and for \
-             `toile try-on --body`, and a report of its measures, joints, weights and surface.",
+             `toile try-on --body`, and a report of its measures, joints, weights, surface and collision body.",
         )
         .args([
             Arg::new("file")
                 .value_name("FILE")
-                .required(true)
+                .required_unless_present("colliders")
                 .value_parser(value_parser!(PathBuf))
                 .help("glTF, GLB or VRM file, or MakeHuman folder"),
+            flag("colliders", "Tell how closely the collision body follows the skin; without FILE, for our own bodies"),
+            text("strangers", "N", "Bodies of random measures that --colliders takes besides the sizes")
+                .value_parser(value_parser!(u64).range(0..=MAX_STRANGERS))
+                .default_value("20"),
+            text("seed", "S", "Which random bodies are taken").value_parser(value_parser!(u64)).default_value("1"),
             text("sex", "S", "Whose garments it wears").value_parser(["female", "male"]).default_value("female"),
             text("mesh", "NAME", "Mesh to take; repeat it for more [default: all that are skinned]")
                 .action(ArgAction::Append),

@@ -1,5 +1,7 @@
 //! The grammar of `toile bench skinning`.
 
+use std::path::PathBuf;
+
 use clap::{ArgMatches, value_parser};
 use toile_engine::lanes::Width;
 use toile_engine::skin::Blend;
@@ -18,6 +20,8 @@ pub struct SkinningArgs {
     pub blend: Blend,
     /// All rows and the volumes of limbs in place of one measurement.
     pub table: bool,
+    /// Folder that the picture of the twist test goes into, in place of a measurement.
+    pub picture: Option<PathBuf>,
     /// One JSON object on stdout in place of the summary.
     pub json: bool,
 }
@@ -42,6 +46,8 @@ pub(super) fn grammar() -> clap::Command {
             text("lanes", "L", "Lanes of the kernels [default: the widest of this processor]")
                 .value_parser(["1", "4", "8", "16"]),
             flag("table", "Run every row of the table, and the volumes of limbs; takes half a minute"),
+            text("picture", "DIR", "Draw the twist test into DIR/twist.png instead: the forearm by each blend, split and not")
+                .value_parser(value_parser!(PathBuf)),
             json(),
         ])
         .after_help("Example: the cost of dual quaternions on two threads\n  toile bench skinning --dual --threads 2")
@@ -60,6 +66,7 @@ pub(super) fn parse(matches: &ArgMatches) -> Result<SkinningArgs, AppError> {
         options,
         blend: if matches.get_flag("dual") { Blend::Dual } else { Blend::Linear },
         table: matches.get_flag("table"),
+        picture: matches.get_one::<PathBuf>("picture").cloned(),
         json: matches.get_flag("json"),
     })
 }
@@ -81,8 +88,11 @@ mod tests {
 
     #[test]
     fn every_option_arrives() {
-        let args = parsed("skinning --verts 77 --dual --body --threads 2 --lanes 4 --table --json");
+        let args = parsed("skinning --verts 77 --dual --body --threads 2 --lanes 4 --table --picture out --json");
         let options = Options { subject: Subject::Body, verts: Some(77), threads: 2, lanes: Some(Width::Four) };
-        assert_eq!(args, SkinningArgs { options, blend: Blend::Dual, table: true, json: true });
+        assert_eq!(
+            args,
+            SkinningArgs { options, blend: Blend::Dual, table: true, picture: Some("out".into()), json: true }
+        );
     }
 }

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use super::Followed;
+
 /// The body of `toile body`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct BodyReport {
@@ -29,6 +31,8 @@ pub struct BodyReport {
     pub surface: SurfaceReport,
     /// MakeHuman's own girths along rows of its mesh (mm).
     pub makehuman_mm: Option<Vec<Named>>,
+    /// How closely the collision body follows the skin, zone by zone.
+    pub colliders: Vec<Followed>,
     /// What was found and how it was taken, one sentence each.
     pub notes: Vec<String>,
     /// The files written.

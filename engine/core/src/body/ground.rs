@@ -49,6 +49,9 @@ const JUMP_SPEED: f32 = 4.0;
 /// Time constant of the clearance (s).
 const CLEARANCE_TAU: f32 = 0.03;
 
+/// Clearance from which the body is in the air (m).
+const FLYING: f32 = 0.01;
+
 /// Heel behind the ankle, and tip of the toes ahead of the toe joint (m), along the foot.
 const HEEL: f32 = 0.04;
 const TIP: f32 = 0.05;
@@ -112,6 +115,11 @@ impl Ground {
     /// How far the legs are to be believed, 0 to 1: not where both feet are seen higher than anybody jumps.
     pub fn legs_trust(&self) -> f32 {
         self.trust
+    }
+
+    /// Whether the body is in the air: both feet are off the floor by more than they wobble.
+    pub fn flies(&self) -> bool {
+        self.clearance > FLYING
     }
 
     /// How far an ankle at height `y` is above where ankles stand (m).

@@ -5,14 +5,17 @@
 //! Thread: physics, 120 Hz.
 
 mod clear;
+pub mod filters;
 mod foot;
 pub mod ground;
 #[cfg(test)]
 mod habits;
 pub mod kinematics;
+mod leg;
 mod limb;
 pub mod limits;
 mod neutral;
+mod plant;
 #[cfg(test)]
 mod recordings;
 mod retarget;
@@ -21,6 +24,7 @@ pub mod smooth;
 mod stance;
 #[cfg(test)]
 mod tests;
+mod tread;
 mod trunk;
 
 pub use kinematics::{JointFrames, palette};
@@ -36,6 +40,7 @@ use retarget::Retarget;
 use seen::{Moment, Seen};
 use smooth::{ANGLE_TAU, LIMB_SPEED, TRUNK_SPEED, turn_towards};
 use stance::Stance;
+use tread::Tread;
 
 /// Fastest that the person is carried along (m/s): a run.
 pub const ROOT_SPEED: f32 = 5.0;
@@ -61,8 +66,10 @@ pub struct Poser {
     /// Where the pelvis is seen, and where it is carried to before feet are held, world (m); y is not used.
     place: Vec3,
     carried: Vec3,
+    /// Where planted feet are kept; `None` lets them slide.
+    tread: Option<Tread>,
     clear: Clear,
-    /// The pose before the arms are kept clear of the body.
+    /// The pose before feet are kept and the arms kept clear of the body.
     pose: Pose,
     started: bool,
 }
@@ -77,6 +84,7 @@ impl Poser {
             stance: Stance::default(),
             place: skeleton.at(Joint::Pelvis),
             carried: skeleton.at(Joint::Pelvis),
+            tread: Some(Tread::default()),
             clear: Clear::default(),
             pose: Pose::rest(skeleton),
             started: false,
@@ -89,11 +97,18 @@ impl Poser {
         Self { clear: Clear::new(spheres, capsules), ..self }
     }
 
+    /// The same without inverse kinematics of planted feet: what is compared with.
+    #[must_use]
+    pub fn letting_feet_slide(self) -> Self {
+        Self { tread: None, ..self }
+    }
+
     /// Forgets the person: the next moment is taken over as it is.
     pub fn reset(&mut self) {
         let mut clear = std::mem::take(&mut self.clear);
         clear.reset();
-        *self = Self { clear, ..Self::new(&self.skeleton) };
+        let tread = self.tread.map(|_| Tread::default());
+        *self = Self { clear, tread, ..Self::new(&self.skeleton) };
     }
 
     /// The skeleton that is posed.
@@ -122,6 +137,9 @@ impl Poser {
             self.ground = Ground::new(&self.skeleton);
         }
         let mut shown = self.pose;
+        if let Some(tread) = &mut self.tread {
+            tread.apply(&self.skeleton, &mut shown, self.stance.planted(), dt);
+        }
         self.clear.apply(&self.skeleton, &mut shown, dt, first);
         shown
     }

@@ -4,22 +4,14 @@
 //! shift fades, so the body never strays from where it is seen (after the root relocation of Gultepe 2013, section 4.5).
 
 use glam::Vec3;
-use toile_assets::skeleton::{Joint, Skeleton};
+use toile_assets::skeleton::Skeleton;
 
-use super::ground::{Ground, soles};
+use super::ground::soles;
 use super::kinematics::JointFrames;
-use super::limb::ramp;
+use super::plant::Plant;
 use super::seen::Moment;
 use super::smooth::fraction;
-
-/// Speed of a seen ankle (m/s) up to which it stands, and from which it walks.
-const STANDING_SPEED: [f32; 2] = [0.15, 0.5];
-
-/// Lift of a seen ankle (m) up to which it stands, and from which it swings.
-const STANDING_LIFT: [f32; 2] = [0.04, 0.10];
-
-/// Time constant of an ankle's measured velocity (s): two sensor frames.
-const SPEED_TAU: f32 = 0.07;
+use super::tread::ANKLES;
 
 /// Time constant with which the shift fades (s), and its greatest length (m).
 const FADE_TAU: f32 = 1.5;
@@ -34,9 +26,7 @@ pub struct Stance {
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Foot {
-    /// Where the ankle was last seen, and how fast it moves (m/s).
-    ankle: Option<Vec3>,
-    velocity: Vec3,
+    plant: Plant,
     /// Where the middle of our sole was, world (m).
     sole: Option<Vec3>,
 }
@@ -49,8 +39,9 @@ impl Stance {
         let before = self.shift;
         let soles = soles(skeleton, frames).map(|[heel, ball, _]| (heel + ball) * 0.5 + root);
         let (mut slip, mut total, mut most) = (Vec3::ZERO, 0.0, 0.0_f32);
-        for ((foot, ankle), sole) in self.feet.iter_mut().zip([Joint::LeftAnkle, Joint::RightAnkle]).zip(soles) {
-            let stands = foot.watch(seen.at(ankle), ground, dt);
+        for ((foot, ankle), sole) in self.feet.iter_mut().zip(ANKLES).zip(soles) {
+            foot.plant.watch(seen.at(ankle), ground, dt);
+            let stands = foot.plant.share(ground);
             if let Some(last) = foot.sole {
                 slip += (sole + before - last) * stands;
                 total += stands;
@@ -66,21 +57,9 @@ impl Stance {
         }
         self.shift
     }
-}
 
-impl Foot {
-    /// How much the foot stands, 0 to 1.
-    fn watch(&mut self, ankle: Option<Vec3>, ground: &Ground, dt: f32) -> f32 {
-        let Some(ankle) = ankle else {
-            *self = Self { sole: self.sole, ..Self::default() };
-            return 1.0;
-        };
-        if let Some(last) = self.ankle
-            && dt > 0.0
-        {
-            self.velocity += ((ankle - last) / dt - self.velocity) * fraction(dt, SPEED_TAU);
-        }
-        self.ankle = Some(ankle);
-        (1.0 - ramp(STANDING_SPEED, self.velocity.length())) * (1.0 - ramp(STANDING_LIFT, ground.lift(ankle.y)))
+    /// Which feet are planted, left first.
+    pub fn planted(&self) -> [bool; 2] {
+        self.feet.each_ref().map(|foot| foot.plant.is_planted())
     }
 }

@@ -6,7 +6,7 @@
 //! 16 (k - 1), 9, 75 and nothing to normalise, because what is applied is a rotation: 132 for four. Bytes: 24 + 4 (k - 1)
 //! read and 24 written.
 
-use glam::{Affine3A, Vec3A, Vec4};
+use glam::{Affine3A, Vec4};
 use toile_assets::limits::MAX_INFLUENCES;
 use toile_assets::skeleton::BONES;
 
@@ -56,6 +56,9 @@ impl Surface<'_> {
     }
 }
 
+/// A bone's matrix, column after column: single numbers, since each is loaded into every lane from where it lies.
+type Columns = [f32; 12];
+
 /// The columns of a matrix, each number in lanes.
 #[derive(Clone, Copy)]
 struct Matrix<L> {
@@ -63,6 +66,24 @@ struct Matrix<L> {
     y: V3<L>,
     z: V3<L>,
     t: V3<L>,
+}
+
+impl<L: Lanes> Matrix<L> {
+    #[inline(always)]
+    fn splat(m: &Columns) -> Self {
+        let column = |k: usize| V3 { x: L::splat(m[k]), y: L::splat(m[k + 1]), z: L::splat(m[k + 2]) };
+        Self { x: column(0), y: column(3), z: column(6), t: column(9) }
+    }
+    #[inline(always)]
+    fn and(self, more: &Columns, weight: L) -> Self {
+        let more = Self::splat(more);
+        Self {
+            x: self.x + more.x * weight,
+            y: self.y + more.y * weight,
+            z: self.z + more.z * weight,
+            t: self.t + more.t * weight,
+        }
+    }
 }
 
 /// Linear blending.
@@ -79,10 +100,10 @@ impl Kernel for Linear<'_> {
         let surface = self.surface;
         for run in surface.runs {
             let base = columns(run.of(self.palette, 0));
-            let mut apart = [[Vec3A::ZERO; 4]; MAX_INFLUENCES];
+            let mut apart = [[0.0; 12]; MAX_INFLUENCES];
             for (k, apart) in apart.iter_mut().enumerate().take(run.count).skip(1) {
                 let bone = columns(run.of(self.palette, k));
-                *apart = [bone[0] - base[0], bone[1] - base[1], bone[2] - base[2], bone[3] - base[3]];
+                *apart = std::array::from_fn(|i| bone[i] - base[i]);
             }
             for block in 0..run.blocks {
                 let filled = usize::from(surface.filled[run.first + block]);
@@ -99,15 +120,10 @@ impl Kernel for Linear<'_> {
 
 /// One vector of vertices; `apart[1..]` are what the other bones have beyond the base.
 #[inline(always)]
-fn linear<L: Lanes>(surface: &Surface<'_>, at: At, base: &[Vec3A; 4], apart: &[[Vec3A; 4]]) {
-    let [x, y, z, t] = *base;
-    let mut m = Matrix::<L> { x: V3::splat(x), y: V3::splat(y), z: V3::splat(z), t: V3::splat(t) };
-    for (k, [x, y, z, t]) in apart.iter().enumerate().skip(1) {
-        let w = surface.weight::<L>(at, k);
-        m.x = m.x + V3::splat(*x) * w;
-        m.y = m.y + V3::splat(*y) * w;
-        m.z = m.z + V3::splat(*z) * w;
-        m.t = m.t + V3::splat(*t) * w;
+fn linear<L: Lanes>(surface: &Surface<'_>, at: At, base: &Columns, apart: &[Columns]) {
+    let mut m = Matrix::<L>::splat(base);
+    for (k, more) in apart.iter().enumerate().skip(1) {
+        m = m.and(more, surface.weight::<L>(at, k));
     }
     let p = surface.load::<L>(at, 0);
     let n = surface.load::<L>(at, 3);
@@ -119,8 +135,8 @@ fn linear<L: Lanes>(surface: &Surface<'_>, at: At, base: &[Vec3A; 4], apart: &[[
 }
 
 #[inline(always)]
-fn columns(matrix: &Affine3A) -> [Vec3A; 4] {
-    [matrix.matrix3.x_axis, matrix.matrix3.y_axis, matrix.matrix3.z_axis, matrix.translation]
+fn columns(matrix: &Affine3A) -> Columns {
+    matrix.to_cols_array()
 }
 
 /// Dual quaternion blending.

@@ -3,8 +3,8 @@
 use glam::Vec3;
 use toile_assets::skeleton::{JOINTS, Joint};
 
-use super::rng::Rng;
 use crate::frame::Joints;
+use crate::rng::Rng;
 
 /// Joints that a tracker loses: the ends of the limbs.
 const LOST: [Joint; 6] =

@@ -6,15 +6,15 @@
 
 mod joints;
 mod noise;
-mod rng;
+pub mod room;
 
 use glam::{Affine3A, Mat3, Vec3};
 
 use crate::frame::{DepthFrame, Intrinsics};
 
+pub use crate::rng::Rng;
 pub use joints::JointNoise;
 pub use noise::{KinectNoise, axial_sigma, lateral_sigma};
-pub use rng::Rng;
 
 /// Nearest depth that is rendered (m); triangles are clipped there.
 const NEAR: f32 = 0.05;

@@ -1,7 +1,7 @@
 //! Contact: the cloth against the body's capsules, the floor and other planes, along the whole of each substep.
 //!
 //! Reads: particles, the colliders at the start and end of the step. Writes: positions, and where the substep started.
-//! Budget: 30 us a step to find what is near, 15 us a substep to push, for 4,096 particles and 28 capsules.
+//! Budget: 30 us a step to find what is near, 15 us a substep to push, for 4,096 particles and 28 capsules (32 at most).
 //! Thread: physics; each worker calls its own [`Owner`].
 
 mod cones;

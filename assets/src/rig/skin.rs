@@ -1,0 +1,125 @@
+//! The skin as the fit and its report look things up in it: what is nearest to a point.
+
+use glam::Vec3;
+
+use crate::body::Body;
+
+/// A body's vertices by height, and the triangles around each.
+pub(super) struct Skin<'a> {
+    body: &'a Body,
+    /// Vertices, lowest first.
+    order: Vec<u32>,
+    /// Where each vertex's triangles start in `around`, and the end `[vertices + 1]`.
+    start: Vec<u32>,
+    around: Vec<u32>,
+}
+
+impl<'a> Skin<'a> {
+    pub(super) fn new(body: &'a Body) -> Self {
+        let mesh = &body.mesh;
+        let at = |v: &u32| mesh.positions[*v as usize].y;
+        let mut order: Vec<u32> = (0..mesh.positions.len() as u32).collect();
+        order.sort_by(|a, b| at(a).total_cmp(&at(b)));
+        let mut corners: Vec<(u32, u32)> = Vec::with_capacity(3 * mesh.triangles.len());
+        for (t, triangle) in mesh.triangles.iter().enumerate() {
+            corners.extend(triangle.iter().map(|v| (*v, t as u32)));
+        }
+        corners.sort_unstable();
+        let start = (0..=order.len() as u32).map(|v| corners.partition_point(|c| c.0 < v) as u32).collect();
+        Self { body, order, start, around: corners.into_iter().map(|c| c.1).collect() }
+    }
+
+    /// The vertex nearest to a point, and how far it is (m). Looks down and up from the point's height for as long as
+    /// height alone leaves room for a nearer one.
+    pub(super) fn nearest(&self, p: Vec3) -> Option<(usize, f32)> {
+        let at = |v: u32| self.body.mesh.positions[v as usize];
+        let (down, up) = self.order.split_at(self.order.partition_point(|v| at(*v).y < p.y));
+        let mut best = (None, f32::INFINITY);
+        for v in down.iter().rev() {
+            if (p.y - at(*v).y).powi(2) >= best.1 {
+                break;
+            }
+            best = nearer(best, *v, at(*v).distance_squared(p));
+        }
+        for v in up {
+            if (at(*v).y - p.y).powi(2) >= best.1 {
+                break;
+            }
+            best = nearer(best, *v, at(*v).distance_squared(p));
+        }
+        best.0.map(|v: u32| (v as usize, best.1.sqrt()))
+    }
+
+    /// The vertex nearest to a point, and the distance to the triangles around it (m), positive outside.
+    pub(super) fn distance(&self, p: Vec3) -> Option<(usize, f32)> {
+        let (v, far) = self.nearest(p)?;
+        let outside = (p - self.body.mesh.positions[v]).dot(self.body.normals[v]) >= 0.0;
+        let triangles = &self.around[self.start[v] as usize..self.start[v + 1] as usize];
+        let to = |t: &u32| {
+            let corners = self.body.mesh.triangles[*t as usize].map(|i| self.body.mesh.positions[i as usize]);
+            p.distance(closest(p, corners))
+        };
+        let d = triangles.iter().map(to).fold(far, f32::min);
+        Some((v, if outside { d } else { -d }))
+    }
+}
+
+fn nearer(best: (Option<u32>, f32), v: u32, square: f32) -> (Option<u32>, f32) {
+    if square < best.1 { (Some(v), square) } else { best }
+}
+
+/// The point of a triangle that is closest to `p`: its foot on the plane if that lies inside, else on the nearest side.
+fn closest(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
+    let normal = (b - a).cross(c - a);
+    let foot = p - normal * ((p - a).dot(normal) / normal.length_squared().max(f32::MIN_POSITIVE));
+    let sides = [(a, b), (b, c), (c, a)];
+    if sides.iter().all(|(u, v)| (*v - *u).cross(foot - *u).dot(normal) >= 0.0) {
+        return foot;
+    }
+    let on = |(u, v): (Vec3, Vec3)| {
+        let way = v - u;
+        u + way * ((p - u).dot(way) / way.length_squared().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0)
+    };
+    let [x, y, z] = sides.map(on);
+    let xy = if p.distance_squared(x) <= p.distance_squared(y) { x } else { y };
+    if p.distance_squared(xy) <= p.distance_squared(z) { xy } else { z }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{Measures, Sex};
+
+    #[test]
+    fn nearest_vertex_is_that_of_brute_force_and_triangles_are_no_farther() {
+        let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+        let skin = Skin::new(&body);
+        for i in 0..200 {
+            let spread = |k: f32| (i as f32 * k).fract() - 0.5;
+            let p = Vec3::new(spread(0.618_034), 0.8, 0.0) + Vec3::new(0.0, spread(0.414_2) * 2.2, spread(0.732_05));
+            let all = body.mesh.positions.iter().map(|q| q.distance(p)).fold(f32::MAX, f32::min);
+            let (v, far) = skin.nearest(p).unwrap();
+            assert!(far == all && body.mesh.positions[v].distance(p) == far, "{p}");
+            let (same, d) = skin.distance(p).unwrap();
+            assert!(same == v && d.abs() <= far && d.abs() > far - 0.02, "{p} {d} {far}");
+        }
+    }
+
+    #[test]
+    fn closest_point_of_a_triangle_beats_all_others_of_it() {
+        let corners = [Vec3::ZERO, Vec3::new(0.02, 0.0, 0.003), Vec3::new(0.004, 0.015, 0.0)];
+        for i in 0..60 {
+            let spread = |k: f32| ((i as f32 * k).fract() - 0.4) * 0.06;
+            let p = Vec3::new(spread(0.618_034), spread(0.414_2), spread(0.732_05));
+            let on = closest(p, corners);
+            let mut least = f32::MAX;
+            for j in 0..=100 {
+                for k in 0..=100 - j {
+                    let (u, v) = (j as f32 * 0.01, k as f32 * 0.01);
+                    least = least.min(p.distance(corners[0] * (1.0 - u - v) + corners[1] * u + corners[2] * v));
+                }
+            }
+            assert!(p.distance(on) <= least + 1e-6 && p.distance(on) > least - 2e-4, "{p}");
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Normal equations of the fit's least squares.
+
+use super::plan::{MIDDLE, PAIRS};
+
+/// Centre and radius of each sphere that is not a mirror image.
+pub(super) const UNKNOWNS: usize = 4 * (PAIRS + MIDDLE);
+pub(super) type Vector = [f64; UNKNOWNS];
+
+/// One residual's gradient: the first unknown of each of the two spheres, and the slopes of its four. Both may be the
+/// same one, where a capsule joins a sphere to its own mirror image.
+#[derive(Default)]
+pub(super) struct Row(pub [(usize, [f64; 4]); 2]);
+
+/// The equations: matrix times step = right.
+pub(super) struct System {
+    matrix: Box<[Vector]>,
+    right: Vector,
+}
+
+impl Default for System {
+    fn default() -> Self {
+        Self { matrix: vec![[0.0; UNKNOWNS]; UNKNOWNS].into(), right: [0.0; UNKNOWNS] }
+    }
+}
+
+impl System {
+    /// Adds a residual.
+    pub(super) fn add(&mut self, row: &Row, residual: f64, weight: f64) {
+        for (first, slopes) in &row.0 {
+            for (i, a) in slopes.iter().enumerate() {
+                self.right[first + i] -= weight * a * residual;
+                for (second, others) in &row.0 {
+                    for (j, b) in others.iter().enumerate() {
+                        self.matrix[first + i][second + j] += weight * a * b;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds a spring on one unknown, `away` from its rest.
+    pub(super) fn hold(&mut self, unknown: usize, stiffness: f64, away: f64) {
+        self.matrix[unknown][unknown] += stiffness;
+        self.right[unknown] -= stiffness * away;
+    }
+
+    /// The damped step, by Cholesky; `None` where the matrix is not positive definite.
+    pub(super) fn solve(&self, damping: f64) -> Option<Vector> {
+        let mut lower = self.matrix.clone();
+        let mut x = self.right;
+        for i in 0..UNKNOWNS {
+            lower[i][i] += damping * lower[i][i] + 1e-9;
+            for j in 0..=i {
+                let dot: f64 = (0..j).map(|k| lower[i][k] * lower[j][k]).sum();
+                let rest = lower[i][j] - dot;
+                lower[i][j] = match i == j {
+                    true if rest > 0.0 => rest.sqrt(),
+                    true => return None,
+                    false => rest / lower[j][j],
+                };
+            }
+        }
+        for i in 0..UNKNOWNS {
+            let dot: f64 = (0..i).map(|k| lower[i][k] * x[k]).sum();
+            x[i] = (x[i] - dot) / lower[i][i];
+        }
+        for i in (0..UNKNOWNS).rev() {
+            let dot: f64 = (i + 1..UNKNOWNS).map(|k| lower[k][i] * x[k]).sum();
+            x[i] = (x[i] - dot) / lower[i][i];
+        }
+        Some(x)
+    }
+}

@@ -1,0 +1,84 @@
+//! `toile bench gestures`: what is missed, what is false, and what a frame costs.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use toile_track::gesture::study::{Act, Conditions, Count, Study, held_up, sequence};
+use toile_track::gesture::{Gestures, HandEye};
+
+use crate::cli::GesturesArgs;
+use crate::exit::AppError;
+use crate::report::{Document, GesturesReport};
+use crate::terminal::{self, Words};
+
+/// Runs that the median time is taken of.
+const RUNS: usize = 25;
+
+/// Distance at which one hand is timed (m).
+const TIMED_AT: f32 = 2.0;
+
+/// Runs `toile bench gestures`.
+///
+/// # Errors
+/// Where stdout cannot be written.
+pub fn run(args: &GesturesArgs) -> Result<(), AppError> {
+    let words = Words::new(args.json);
+    let study = Study::run(args.sequences, args.seed, &mut |case| words.say(case));
+    let times = [joints_us(), hand_us()];
+    if args.json {
+        return terminal::print_json(&Document::new("bench-gestures", GesturesReport::new(&study, times)));
+    }
+    let cost = format!("A frame of joints takes {:.2} us, a hand in a depth frame {:.0} us.\n", times[0], times[1]);
+    if args.table {
+        return terminal::print(&format!("{}\n{cost}", study.markdown()));
+    }
+    terminal::print(&format!("{}{cost}", summary(&study)))
+}
+
+fn summary(study: &Study) -> String {
+    let mut text = String::new();
+    for act in Act::GESTURES {
+        let own = study.gestures.iter().filter(|(a, c, _)| *a == act && *c == Conditions::default());
+        let all = own.fold(Count::default(), |sum, (_, _, count)| sum.and(*count));
+        text.push_str(&format!("{:12} {:4.1} % missed at 2 m and 30 Hz\n", act.name(), 100.0 * all.miss_rate()));
+    }
+    let others = study.others.iter().fold(Count::default(), |sum, (_, count)| sum.and(*count));
+    let [frames, wrong, unseen] =
+        study.grips.iter().fold([0, 0, 0], |s, r| [s[0] + r.frames, s[1] + r.wrong, s[2] + r.unseen]);
+    let percent = 100.0 * (wrong + unseen) as f32 / frames.max(1) as f32;
+    text.push_str(&format!("false events {:4.2} a minute of what is no gesture\n", others.wrong_per_minute()));
+    text.push_str(&format!("hands        {percent:4.1} % of the frames told wrong or not at all, 1.2 to 3.5 m\n"));
+    text
+}
+
+/// Median time of a frame of joints (us).
+fn joints_us() -> f64 {
+    let frames = sequence(Act::Talk, &Conditions::default(), 1);
+    let each = frames.len().max(1) as f64;
+    median(|| {
+        let mut gestures = Gestures::new();
+        let start = Instant::now();
+        for frame in &frames {
+            black_box(gestures.push(black_box(frame), None));
+        }
+        start.elapsed().as_secs_f64() * 1e6 / each
+    })
+}
+
+/// Median time of one hand in a depth frame (us).
+fn hand_us() -> f64 {
+    let (frame, sight) = held_up(TIMED_AT, 1);
+    let mut eye = HandEye::new();
+    median(|| {
+        let start = Instant::now();
+        black_box(eye.shape(black_box(&frame), &sight));
+        start.elapsed().as_secs_f64() * 1e6
+    })
+}
+
+fn median(mut once: impl FnMut() -> f64) -> f64 {
+    once();
+    let mut times: Vec<f64> = (0..RUNS).map(|_| once()).collect();
+    times.sort_by(f64::total_cmp);
+    times[RUNS / 2]
+}

@@ -1,0 +1,78 @@
+//! `toile convert`: what is kept of a recording, and that nothing that shows a person is kept unasked.
+
+mod common;
+
+use std::path::Path;
+
+use common::Scratch;
+use serde_json::Value;
+use toile_sensors::session::Session;
+use toile_sensors::source::{OpenOptions, open};
+
+/// Records a second of the synthetic shopper.
+fn recorded(scratch: &Scratch) -> Session {
+    assert!(scratch.toile(&["record", "--out", "in.mcap", "--seconds", "1", "--quiet"]).status.success());
+    open(&scratch.path().join("in.mcap"), &OpenOptions::default()).expect("a session")
+}
+
+fn converted(scratch: &Scratch, input: &str, out: &str, more: &[&str]) -> (Value, Session) {
+    let output = scratch.toile(&[&["convert", input, "--out", out, "--json"], more].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let json = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    (json, open(&scratch.path().join(out), &OpenOptions::default()).expect("a session"))
+}
+
+#[test]
+fn joints_alone_are_kept_unless_depth_is_asked_for() {
+    let scratch = Scratch::new("convert-depth");
+    let original = recorded(&scratch);
+    let (json, session) = converted(&scratch, "in.mcap", "joints.mcap", &[]);
+    assert_eq!(json["schema"], "toile.convert/1");
+    assert_eq!((json["joint_frames"].as_u64(), json["depth_frames"].as_u64()), (Some(30), Some(0)));
+    assert_eq!(json["depth_frames_left_out"], 30);
+    assert!(session.depth.is_empty() && session.joints == original.joints);
+    // Replay is exact: all of it comes back, bit for bit, and again from what was converted.
+    let (_, all) = converted(&scratch, "in.mcap", "all.mcap", &["--depth", "all"]);
+    assert_eq!((&all.joints, &all.depth), (&original.joints, &original.depth));
+    converted(&scratch, "all.mcap", "again.mcap", &["--depth", "all"]);
+    let bytes = |name: &str| std::fs::read(scratch.path().join(name)).unwrap();
+    assert_eq!(bytes("all.mcap"), bytes("again.mcap"));
+}
+
+#[test]
+fn a_recording_of_depth_alone_is_not_converted_unasked() {
+    let scratch = Scratch::new("convert-alone");
+    std::fs::write(scratch.path().join("wall.u16le"), vec![7u8; 640 * 480 * 2]).unwrap();
+    let output = scratch.toile(&["convert", "wall.u16le", "--out", "out.mcap"]);
+    assert_eq!(output.status.code(), Some(4));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--depth"), "{output:?}");
+    assert!(!scratch.path().join("out.mcap").exists());
+    let (json, session) = converted(&scratch, "wall.u16le", "out.mcap", &["--depth", "all"]);
+    assert_eq!((json["depth_frames"].as_u64(), session.depth.len()), (Some(1), 1));
+    // A wall is nobody: nothing of it is the shopper's.
+    let (_, session) = converted(&scratch, "wall.u16le", "shopper.mcap", &["--depth", "shopper"]);
+    assert_eq!(session.depth[0].valid_pixels(), 0);
+}
+
+#[test]
+fn recordings_of_every_kind_become_sessions() {
+    let Some(data) = std::env::var_os("TOILE_DATA") else {
+        assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA must name the recordings where CI=true");
+        eprintln!("skipped: TOILE_DATA does not name the folder of recordings");
+        return;
+    };
+    let data = Path::new(&data).canonicalize().expect("TOILE_DATA names no folder");
+    let scratch = Scratch::new("convert-shared");
+    for (file, more) in [
+        ("skeleton/kinectron-kinect2/recorded_skeleton.json", &[][..]),
+        ("mocap/animated-drawings/dab.bvh", &[]),
+        ("depth/pyk4a-azure-mkv/recording.mkv", &["--depth", "all"]),
+        ("depth/skeltrack/depth-data-1399145206.u16le", &["--depth", "shopper"]),
+    ] {
+        let input = data.join(file);
+        let (_, session) = converted(&scratch, &input.display().to_string(), "out.mcap", more);
+        let original = open(&input, &OpenOptions::default()).unwrap();
+        assert_eq!(session.joints, original.joints, "{file}");
+        assert_eq!(session.depth.len(), original.depth.len(), "{file}");
+    }
+}

@@ -1,0 +1,224 @@
+//! Gestures: a hand swiped left, right or up, held out to confirm, opened or closed.
+//!
+//! Reads: filtered `Joints`, and a `DepthFrame` where hands shall be told open from closed. Writes: `Events`. Budget:
+//! 2 us a frame of joints, 2 ms a hand with depth; fixed state, no allocation after [`Gestures::new`].
+//! Thread: the sensor thread.
+//!
+//! Left and right are the shopper's own. Everything is measured in arm lengths from the middle of the shoulders along
+//! the trunk's own axes, so that the shopper's size, place and distance do not matter, nor a slow turn.
+
+mod frame;
+mod grip;
+mod hand;
+mod hold;
+mod hull;
+pub mod study;
+mod swipe;
+mod trail;
+
+use toile_assets::skeleton::Joint;
+use toile_sensors::frame::{DepthFrame, Joints};
+
+pub use frame::{Side, Trunk};
+pub use hand::{HandEye, HandShape, HandSight};
+
+use frame::{Facing, Scale};
+use grip::Grip;
+use hold::{Arms, Hold};
+use swipe::{Moment, Swipe};
+use trail::Trail;
+
+/// Shortest time between two frames that are looked at (ns): a motion-capture system's 120 Hz carries nothing that 40 Hz
+/// does not, and would need longer trails.
+const SHORTEST_STEP_NS: u64 = 20_000_000;
+
+/// A silence or a loss longer than this ends every gesture (ns): at 15 Hz four frames may be dropped.
+pub(crate) const LONGEST_GAP_NS: u64 = 350_000_000;
+
+/// After an event no other is given for this long (ns): arms need as long to come to rest.
+const COOL_DOWN_NS: u64 = 500_000_000;
+
+/// The trunk moves faster than this (arm lengths/s) in somebody who walks, jumps or sits down: no time for gestures.
+/// Standing people sway at under a tenth of it.
+const WALKING: f32 = 0.6;
+
+/// A trunk turned farther than this from the camera does not look into the mirror: cosine of 55 degrees.
+const FACING: f32 = 0.57;
+
+/// What a hand did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Gesture {
+    /// A stroke to the shopper's own left.
+    SwipeLeft,
+    /// A stroke to the shopper's own right.
+    SwipeRight,
+    /// A stroke upwards.
+    SwipeUp,
+    /// A hand held out towards the mirror for a second.
+    Confirm,
+    /// A closed hand opened.
+    Opened,
+    /// An open hand closed.
+    Closed,
+}
+
+impl Gesture {
+    /// The word for reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::SwipeLeft => "swipe left",
+            Self::SwipeRight => "swipe right",
+            Self::SwipeUp => "swipe up",
+            Self::Confirm => "confirm",
+            Self::Opened => "opened",
+            Self::Closed => "closed",
+        }
+    }
+}
+
+/// A gesture that has been recognised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Event {
+    /// When it was recognised (ns), the time of the frame.
+    pub time_ns: u64,
+    /// Whose hand: the shopper's own side.
+    pub side: Side,
+    /// What it did.
+    pub gesture: Gesture,
+}
+
+/// The events of one frame: at most one stroke and one grip a hand.
+pub type Events = [Option<Event>; 4];
+
+/// What is remembered of one hand.
+#[derive(Debug, Clone)]
+struct Hand {
+    trail: Trail,
+    swipe: Swipe,
+    hold: Hold,
+    grip: Grip,
+}
+
+impl Hand {
+    const fn new() -> Self {
+        Self { trail: Trail::new(), swipe: Swipe::new(), hold: Hold::new(), grip: Grip::new() }
+    }
+}
+
+/// The recogniser of one shopper's gestures.
+#[derive(Debug, Clone)]
+pub struct Gestures {
+    last_ns: Option<u64>,
+    quiet_until_ns: u64,
+    scale: Scale,
+    facing: Facing,
+    trunk: Trail,
+    hands: [Hand; 2],
+    eye: HandEye,
+}
+
+impl Default for Gestures {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Gestures {
+    /// A recogniser that has seen nobody. Allocates all that it will ever need.
+    pub fn new() -> Self {
+        Self {
+            last_ns: None,
+            quiet_until_ns: 0,
+            scale: Scale::new(),
+            facing: Facing::new(),
+            trunk: Trail::new(),
+            hands: [Hand::new(), Hand::new()],
+            eye: HandEye::new(),
+        }
+    }
+
+    /// Forgets the shopper; call it when another one is tracked.
+    pub fn reset(&mut self) {
+        self.last_ns = None;
+        self.quiet_until_ns = 0;
+        self.scale = Scale::new();
+        self.rest();
+    }
+
+    /// The shopper's arm from shoulder over elbow to wrist (m), once it has been seen.
+    pub fn arm_length(&self) -> Option<f32> {
+        self.scale.arm()
+    }
+
+    /// Takes a frame of filtered joints, and the depth of about the same time where there is any. Frames that come less
+    /// than 20 ms after the one before, or shortly before it, are passed over; a clock set back by more begins anew.
+    pub fn push(&mut self, joints: &Joints, depth: Option<&DepthFrame>) -> Events {
+        let now = joints.time_ns;
+        if self.last_ns.is_some_and(|last| last.saturating_sub(now) > LONGEST_GAP_NS) {
+            self.reset();
+        }
+        match self.last_ns {
+            Some(last) if now < last.saturating_add(SHORTEST_STEP_NS) => return Events::default(),
+            Some(last) if now - last > LONGEST_GAP_NS => self.rest(),
+            _ => {}
+        }
+        self.last_ns = Some(now);
+        self.scale.see(joints);
+        let (Some(arm), Some(trunk)) = (self.scale.arm(), Trunk::of(joints)) else {
+            self.rest();
+            return Events::default();
+        };
+        let trunk = self.facing.settled(trunk, now);
+        self.trunk.push(now, trunk.origin / arm);
+        let calm = self.trunk.velocity().is_some_and(|v| v.length() < WALKING) && trunk.forward.z > FACING;
+        let mut events = Events::default();
+        self.swipes(joints, &trunk, arm, calm, &mut events);
+        if let Some(depth) = depth {
+            self.grips(joints, depth, &trunk, arm, &mut events);
+        }
+        events
+    }
+
+    /// Ends every gesture that has begun.
+    fn rest(&mut self) {
+        self.facing = Facing::new();
+        self.trunk = Trail::new();
+        self.hands = [Hand::new(), Hand::new()];
+    }
+
+    fn swipes(&mut self, joints: &Joints, trunk: &Trunk, arm: f32, calm: bool, events: &mut Events) {
+        let now = joints.time_ns;
+        let local = |joint: Joint| joints.believed(joint).map(|p| trunk.local(p) / arm);
+        let at = Side::BOTH.map(|side| local(side.wrist()));
+        let reach = [0, 1].map(|i| Some(at[i]? - local(Side::BOTH[i].shoulder())?));
+        let cooling = now < self.quiet_until_ns;
+        for (i, side) in Side::BOTH.into_iter().enumerate() {
+            let hand = &mut self.hands[i];
+            if let Some(at) = at[i] {
+                hand.trail.push(now, at);
+            }
+            let (Some(place), Some(velocity)) = (at[i], hand.trail.velocity()) else { continue };
+            let (other, other_reach) = (at[1 - i], reach[1 - i]);
+            let moment = Moment { now, at: place, velocity, other, head: local(Joint::Head), calm: calm && !cooling };
+            let arms = Arms { now, at: place, reach: reach[i], other, other_reach, calm, cooling };
+            let held = hand.hold.step(&arms);
+            let found = hand.swipe.step(&moment).or(held);
+            events[i] = found.map(|gesture| Event { time_ns: now, side, gesture });
+        }
+        if events.iter().any(Option::is_some) {
+            self.quiet_until_ns = now.saturating_add(COOL_DOWN_NS);
+        }
+    }
+
+    fn grips(&mut self, joints: &Joints, depth: &DepthFrame, trunk: &Trunk, arm: f32, events: &mut Events) {
+        let now = joints.time_ns;
+        for (i, side) in Side::BOTH.into_iter().enumerate() {
+            let presented = |wrist| swipe::is_presented(trunk.local(wrist) / arm);
+            let sight =
+                HandSight::of(joints, side, arm).filter(|_| joints.believed(side.wrist()).is_some_and(presented));
+            let shape = sight.and_then(|sight| self.eye.shape(depth, &sight));
+            let found = self.hands[i].grip.step(now, shape.map(|s| s.openness()));
+            events[2 + i] = found.map(|gesture| Event { time_ns: now, side, gesture });
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Whether stated probabilities are true: of the sizes said to be right with 70 %, seven of ten must be right.
+//!
+//! Real people's girths are measured again with errors of a known sigma, and the size recommended is compared with the one
+//! that their true girths get.
+
+use toile_sensors::source::synthetic::Rng;
+
+use super::{Offer, RecommendError, Recommendation, Zone, recommend};
+use crate::estimate::Estimate;
+use crate::measure::{Measurements, Source};
+use crate::measures::Measures;
+
+/// Chest, waist and hip girth of one person (m).
+pub type Girths = [f32; 3];
+
+/// Lower ends of the bins of stated probability; the last one ends at 1.
+pub const BINS: [f32; 6] = [0.0, 0.4, 0.5, 0.6, 0.7, 0.85];
+
+/// What was stated and what was right, of the people in one bin.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Bin {
+    /// People.
+    pub people: u32,
+    /// Sum of the stated probabilities.
+    pub stated: f32,
+    /// People for whom the size was right.
+    pub right: u32,
+}
+
+impl Bin {
+    fn add(&mut self, stated: f32, right: bool) {
+        self.people += 1;
+        self.stated += stated;
+        self.right += u32::from(right);
+    }
+
+    /// Mean stated probability, share of right ones, and its standard error.
+    pub fn rates(&self) -> [f32; 3] {
+        let n = self.people.max(1) as f32;
+        let share = self.right as f32 / n;
+        [self.stated / n, share, (share * (1.0 - share) / n).sqrt()]
+    }
+}
+
+/// How reliable recommendations are at one error of the measures.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reliability {
+    /// Standard deviation of the error of every girth (m).
+    pub sigma: f32,
+    /// By stated probability.
+    pub bins: [Bin; BINS.len()],
+    /// All people.
+    pub all: Bin,
+    /// Those who were told to take a girth by tape: what was promised of it and what came of it.
+    pub taped: Bin,
+    /// The same people before.
+    pub untaped: Bin,
+}
+
+/// Reads the girths of a table of ANSUR II: `;` between columns, millimetres. `None` if it is not one.
+pub fn ansur(text: &str) -> Option<Vec<Girths>> {
+    let mut lines = text.lines();
+    let heads: Vec<&str> = lines.next()?.split(';').collect();
+    let names = ["chestcircumference", "waistcircumference", "buttockcircumference"];
+    let columns = names.map(|name| heads.iter().position(|h| *h == name));
+    let [Some(chest), Some(waist), Some(hip)] = columns else { return None };
+    let read = |line: &str| {
+        let cells: Vec<&str> = line.split(';').collect();
+        let girth = |i: usize| Some(cells.get(i)?.trim().parse::<f32>().ok()? / 1000.0);
+        Some([girth(chest)?, girth(waist)?, girth(hip)?])
+    };
+    lines.filter(|l| !l.trim().is_empty()).map(read).collect()
+}
+
+/// Measurements of known girths with known errors.
+fn measured(girths: Girths, sigmas: Girths) -> Measurements {
+    let at = |i: usize| Some(Estimate::new(girths[i], sigmas[i]));
+    let measures = Measures { chest_girth: at(0), waist_girth: at(1), hip_girth: at(2), ..Measures::default() };
+    Measurements { measures, valid_pixels: 1, people: 1, frames: 1, source: Source::Depth, notes: Vec::new() }
+}
+
+/// Recommends to everybody twice: by their true girths, and by girths with errors of `sigma` (m).
+///
+/// # Errors
+/// Those of [`recommend`].
+pub fn reliability(people: &[Girths], offer: &Offer, sigma: f32, seed: u64) -> Result<Reliability, RecommendError> {
+    let mut rng = Rng::new(seed);
+    let none = Bin::default();
+    let mut found = Reliability { sigma, bins: [none; BINS.len()], all: none, taped: none, untaped: none };
+    for truth in people {
+        let seen = truth.map(|g| g + sigma * rng.gaussian());
+        let best = recommend(&measured(*truth, [0.0; 3]), offer)?.size;
+        let told = recommend(&measured(seen, [sigma; 3]), offer)?;
+        let right = told.size == best;
+        let bin = BINS.iter().rposition(|low| told.probability >= *low).unwrap_or(0);
+        found.bins[bin].add(told.probability, right);
+        found.all.add(told.probability, right);
+        if let Some(tape) = &told.tape {
+            let after = taped(*truth, seen, sigma, tape.zone, offer)?;
+            found.untaped.add(told.probability, right);
+            found.taped.add(tape.probability, after.size == best);
+        }
+    }
+    Ok(found)
+}
+
+/// The recommendation once the girth of a zone has been taken by tape.
+fn taped(truth: Girths, seen: Girths, sigma: f32, zone: Zone, offer: &Offer) -> Result<Recommendation, RecommendError> {
+    let known = Zone::ALL.iter().position(|z| *z == zone).unwrap_or(0);
+    let (mut girths, mut sigmas) = (seen, [sigma; 3]);
+    (girths[known], sigmas[known]) = (truth[known], 0.0);
+    recommend(&measured(girths, sigmas), offer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_found_by_name_and_a_broken_row_is_refused() {
+        let text = "id;waistcircumference;x;chestcircumference;buttockcircumference\r\n1;800;9;950;1000\r\n";
+        assert_eq!(ansur(text), Some(vec![[0.95, 0.8, 1.0]]));
+        assert_eq!(ansur("id;waistcircumference\n1;800"), None);
+        assert_eq!(ansur(&format!("{text}2;eight;9;950;1000")), None);
+    }
+}

@@ -1,0 +1,91 @@
+//! The shopper's depth made clean: holes filled, noise smoothed without blurring edges, points and normals in our world.
+//!
+//! Reads: `DepthFrame` and the shopper's mask. Writes: a [`Cloud`] in the order of the image. Budget: smoothing 3 ms for
+//! 640x480 whole images, all of it 10 ms; no allocation once the first frame was seen.
+//! Thread: the sensor thread.
+
+pub mod cloud;
+pub mod fill;
+pub mod gaussian;
+pub mod noise;
+pub mod smooth;
+
+use crate::frame::DepthFrame;
+use crate::segment::{Person, Segmenter, Zone};
+pub use cloud::Cloud;
+pub use fill::Validity;
+pub use noise::SensorNoise;
+
+/// How depth is smoothed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Smoothing {
+    /// Not at all.
+    None,
+    /// Along surfaces, not across edges ([`smooth`]).
+    EdgePreserving(SensorNoise),
+    /// The Gaussian of the seed ([`gaussian`]), with its deviation (px): blurs edges.
+    Gaussian(f32),
+}
+
+/// Cleans the depth of one camera's frames: from [`DepthFrame`] to [`Cloud`], all stages in their order.
+#[derive(Debug, Clone)]
+pub struct Clean {
+    smoothing: Smoothing,
+    segmenter: Segmenter,
+    fill: fill::Fill,
+    edge_preserving: smooth::EdgePreserving,
+    gaussian: gaussian::Gaussian,
+    depth_mm: Vec<f32>,
+    cloud: Cloud,
+}
+
+impl Clean {
+    /// A cleaner that has seen nothing.
+    pub fn new(zone: Zone, smoothing: Smoothing) -> Self {
+        Self {
+            smoothing,
+            segmenter: Segmenter::new(zone),
+            fill: fill::Fill::default(),
+            edge_preserving: smooth::EdgePreserving::default(),
+            gaussian: gaussian::Gaussian::default(),
+            depth_mm: Vec::new(),
+            cloud: Cloud::default(),
+        }
+    }
+
+    /// Cleans the next frame: the shopper, if one stands in the zone, and their cloud, which is empty where none does.
+    pub fn push(&mut self, frame: &DepthFrame) -> (Option<Person>, &Cloud) {
+        let seen = self.segmenter.push(frame);
+        let shopper = seen.shopper;
+        self.fill.run(frame, seen.mask);
+        let width = frame.intrinsics.width as usize;
+        match self.smoothing {
+            Smoothing::None => {
+                self.depth_mm.clear();
+                self.depth_mm.extend(self.fill.depth_mm().iter().map(|d| f32::from(*d)));
+            }
+            Smoothing::EdgePreserving(noise) => {
+                self.edge_preserving.run(width, self.fill.depth_mm(), &noise, &mut self.depth_mm);
+            }
+            Smoothing::Gaussian(sigma) => self.gaussian.run(width, self.fill.depth_mm(), sigma, &mut self.depth_mm),
+        }
+        self.cloud.update(frame, &self.depth_mm, self.fill.validity());
+        (shopper, &self.cloud)
+    }
+
+    /// How depth is smoothed.
+    pub fn smoothing(&self) -> Smoothing {
+        self.smoothing
+    }
+
+    /// What the segmenter knows.
+    pub fn segmenter(&self) -> &Segmenter {
+        &self.segmenter
+    }
+}
+
+impl Default for Clean {
+    fn default() -> Self {
+        Self::new(Zone::default(), Smoothing::EdgePreserving(SensorNoise::KINECT_V1))
+    }
+}

@@ -1,0 +1,164 @@
+//! Who of all that a depth camera sees is the shopper: floor off, pieces of surface, people, the one in the measuring zone.
+//!
+//! Reads: `DepthFrame`, one after the other. Writes: a mask of the shopper's pixels. Budget: 5 ms a 640x480 frame, no
+//! allocation once the first frame was seen.
+//! Thread: the sensor thread.
+//!
+//! No user map is needed. The floor is a plane found by chance and then fitted robustly ([`floor`]); what stands on it
+//! falls into pieces where depth jumps (`pieces`); pieces that carry a head above a chest are people, and one piece of
+//! two people who touch is parted between their heads (`heads`). Of the people, the shopper is the nearest one in the
+//! [`Zone`], and stays the shopper until they leave it. Nothing of anybody else is in the mask.
+
+pub mod floor;
+mod grid;
+mod heads;
+mod people;
+mod pieces;
+
+use glam::{Vec2, Vec3};
+
+use crate::frame::DepthFrame;
+use floor::{Floor, FloorFinder};
+use grid::Grid;
+use people::People;
+
+pub use grid::same_surface;
+
+/// Where a shopper stands to be measured, on the floor, seen from the camera.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Zone {
+    /// Nearest and farthest distance ahead of the camera (m).
+    pub ahead: [f32; 2],
+    /// Half of its breadth (m).
+    pub half_width: f32,
+}
+
+impl Default for Zone {
+    fn default() -> Self {
+        Self { ahead: [0.6, 4.0], half_width: 0.8 }
+    }
+}
+
+impl Zone {
+    /// Whether a place on the floor (m: to the camera's right, ahead of it) is in the zone, widened by a margin (m).
+    fn holds(&self, place: Vec2, margin: f32) -> bool {
+        let [near, far] = self.ahead;
+        (near - margin..=far + margin).contains(&place.y) && place.x.abs() <= self.half_width + margin
+    }
+}
+
+/// The shopper keeps being the shopper up to so far outside the zone (m): one foot on its edge must not flicker.
+const LEAVING: f32 = 0.25;
+
+/// Farthest that a shopper moves between two frames (m): a run of 6 m/s at 10 Hz.
+const LONGEST_STEP: f32 = 0.6;
+
+/// A shopper not seen for so long has left (ns).
+const FORGOTTEN_NS: u64 = crate::clock::SECOND_NS / 2;
+
+/// One person as seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Person {
+    /// Where they stand (m): to the camera's right, ahead of it.
+    pub place: Vec2,
+    /// Their highest point above the floor, or above y = 0 where no floor is seen (m).
+    pub top: f32,
+    /// The surface that is seen (m2).
+    pub area: f32,
+}
+
+/// What a frame shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segmentation<'a> {
+    /// 1 where a pixel shows the shopper, else 0 `[width * height]`.
+    pub mask: &'a [u8],
+    /// The shopper, if one stands in the zone.
+    pub shopper: Option<Person>,
+    /// How many other people are seen.
+    pub others: usize,
+    /// The floor, once it was seen.
+    pub floor: Option<Floor>,
+}
+
+/// The shopper of the frames before.
+#[derive(Debug, Clone, Copy)]
+struct Track {
+    place: Vec2,
+    seen_ns: u64,
+}
+
+/// Finds the shopper, frame by frame.
+#[derive(Debug, Clone)]
+pub struct Segmenter {
+    zone: Zone,
+    finder: FloorFinder,
+    grid: Grid,
+    people: People,
+    track: Option<Track>,
+    mask: Vec<u8>,
+}
+
+impl Default for Segmenter {
+    fn default() -> Self {
+        Self::new(Zone::default())
+    }
+}
+
+impl Segmenter {
+    /// A segmenter that has seen nothing.
+    pub fn new(zone: Zone) -> Self {
+        Self {
+            zone,
+            finder: FloorFinder::default(),
+            grid: Grid::default(),
+            people: People::default(),
+            track: None,
+            mask: Vec::new(),
+        }
+    }
+
+    /// Forgets the shopper and the floor.
+    pub fn reset(&mut self) {
+        *self = Self::new(self.zone);
+    }
+
+    /// Finds the shopper in the next frame. The same frames give the same masks.
+    pub fn push(&mut self, frame: &DepthFrame) -> Segmentation<'_> {
+        let up = frame.camera_to_world.matrix3.transpose() * Vec3::Y;
+        self.grid.load(frame);
+        self.finder.push(frame, up);
+        let height = frame.camera_to_world.translation.y;
+        self.grid.stand(self.finder.floor().map_or(Floor { up, height }, |f| *f), self.finder.floor().is_some());
+        self.people.find(&mut self.grid, self.zone.ahead[1]);
+        let chosen = self.choose(frame.time_ns);
+        self.people.gather(&self.grid, chosen);
+        self.mask.clear();
+        self.mask.resize(frame.depth_mm.len(), 0);
+        self.grid.mask(frame, self.people.shopper_cells(), &mut self.mask);
+        self.grid.remember(self.people.shopper_cells());
+        let shopper = chosen.map(|i| self.people.all()[i]);
+        let others = self.people.all().len() - usize::from(chosen.is_some());
+        Segmentation { mask: &self.mask, shopper, others, floor: self.finder.floor().copied() }
+    }
+
+    /// Which of the people is the shopper: whoever it was, and else, once they have left, the nearest in the zone.
+    /// Whoever hides the shopper for a moment does not take their place.
+    fn choose(&mut self, time_ns: u64) -> Option<usize> {
+        let people = self.people.all();
+        let nearest = |cost: &dyn Fn(&Person) -> Option<f32>| {
+            let costs = people.iter().enumerate().filter_map(|(i, p)| Some((i, cost(p)?)));
+            costs.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
+        };
+        let chosen = match self.track.filter(|t| time_ns.saturating_sub(t.seen_ns) <= FORGOTTEN_NS) {
+            Some(track) => nearest(&|p| {
+                let step = p.place.distance(track.place);
+                (step < LONGEST_STEP && self.zone.holds(p.place, LEAVING)).then_some(step)
+            }),
+            None => nearest(&|p| self.zone.holds(p.place, 0.0).then_some(p.place.length())),
+        };
+        if let Some(i) = chosen {
+            self.track = Some(Track { place: people[i].place, seen_ns: time_ns });
+        }
+        chosen
+    }
+}
