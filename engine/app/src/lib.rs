@@ -30,6 +30,7 @@ pub mod shopper;
 pub mod summary;
 pub mod terminal;
 pub mod torture;
+pub mod tracking;
 pub mod try_on;
 pub mod validate;
 

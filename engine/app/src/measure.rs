@@ -4,13 +4,11 @@ use std::path::PathBuf;
 
 use toile_assets::sizes::Population;
 use toile_perf::measuring::{Fit, overlay};
-use toile_sensors::frame::DepthFrame;
-use toile_sensors::source::Session;
 use toile_track::estimate::Estimate;
 use toile_track::fit::Options;
-use toile_track::fit::measuring::{self, FittedMeasures, TAKEN};
-use toile_track::measure::{FRAMES, Measurements};
-use toile_track::{cloud, measures};
+use toile_track::fit::measuring::{FittedMeasures, TAKEN};
+use toile_track::measure::Measurements;
+use toile_track::measures;
 
 use crate::cli::MeasureArgs;
 use crate::exit::AppError;
@@ -20,14 +18,7 @@ use crate::report::{self, DefinedMeasure, Document, FittedBody, MeasureReport, M
 use crate::shopper;
 use crate::summary;
 use crate::terminal::{self, Paint};
-
-/// The shopper's surface, and the floor below it.
-struct Alone {
-    /// The frames themselves, and the same with nothing in them but the shopper.
-    frames: Vec<(DepthFrame, DepthFrame)>,
-    /// Height of the floor (m), unless the picture cuts the shopper off above it.
-    ground: Option<f32>,
-}
+use crate::tracking::{self, Alone};
 
 /// Runs `toile measure`.
 ///
@@ -38,10 +29,9 @@ pub fn run(args: &MeasureArgs) -> Result<(), AppError> {
     let mut out = args.out.as_deref().map(OutputFolder::prepare).transpose().map_err(AppError::input)?;
     let population = Population::Mixed;
     let measured = shopper::measure(&session, population)?;
-    let alone = alone(&session);
+    let alone = Alone::of(&session);
     let options = Options { ground: alone.ground, clothed: !args.tight, ..Options::MEASURING };
-    let only: Vec<DepthFrame> = alone.frames.iter().map(|f| f.1.clone()).collect();
-    let fitted = measuring::measure(&only, population, options);
+    let fitted = alone.measure(population, options);
     let mut files: Vec<PathBuf> = Vec::new();
     if let (Some(out), Some(fitted)) = (&mut out, &fitted) {
         draw(out, &alone, fitted)?;
@@ -50,7 +40,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), AppError> {
         files = out.commit().map_err(AppError::input)?;
     }
     let mut notes = measured.notes.clone();
-    if !only.is_empty() && fitted.is_none() {
+    if !alone.frames.is_empty() && fitted.is_none() {
         notes.push("No body fits what is seen: stand alone, facing the camera, arms slightly out.".to_owned());
     }
     let report = MeasureReport {
@@ -68,20 +58,6 @@ pub fn run(args: &MeasureArgs) -> Result<(), AppError> {
     terminal::print(&summary::measure(&report, Paint::for_stdout()))
 }
 
-/// The nearest person of each frame of the first second.
-fn alone(session: &Session) -> Alone {
-    let mut cut = 0;
-    let mut frames = Vec::new();
-    for frame in session.depth.iter().take(FRAMES) {
-        if let Some(person) = cloud::people(frame).people.first() {
-            cut += usize::from(person.cut_below);
-            frames.push((frame.clone(), person.alone(frame)));
-        }
-    }
-    let ground = (2 * cut < frames.len()).then_some(0.0);
-    Alone { frames, ground }
-}
-
 fn draw(out: &mut OutputFolder, alone: &Alone, fitted: &FittedMeasures) -> Result<(), AppError> {
     let Some((frame, only)) = alone.frames.last() else { return Ok(()) };
     let image = overlay(&Fit { frame, alone: only, body: &fitted.body.body, pose: &fitted.pose });
@@ -95,16 +71,11 @@ fn measurements(
     fitted: Option<&FittedMeasures>,
     population: Population,
 ) -> report::Measurements {
-    let plain = shopper::measures_report(measured, population);
-    let Some(fitted) = fitted else { return plain };
-    let of = |name: &str| TAKEN.iter().zip(&fitted.measures).find(|(t, _)| t.0 == name).map(|(_, e)| in_mm(*e));
-    report::Measurements {
-        stature_mm: of("stature").unwrap_or(plain.stature_mm),
-        shoulder_breadth_mm: of("shoulder_breadth").unwrap_or(plain.shoulder_breadth_mm),
-        chest_girth_mm: of("chest_girth").unwrap_or(plain.chest_girth_mm),
-        waist_girth_mm: of("waist_girth").unwrap_or(plain.waist_girth_mm),
-        hip_girth_mm: of("hip_girth").unwrap_or(plain.hip_girth_mm),
-    }
+    let best = match fitted {
+        Some(fitted) => tracking::preferred(measured.clone(), fitted),
+        None => measured.clone(),
+    };
+    shopper::measures_report(&best, population)
 }
 
 fn methods(measured: &Measurements, fitted: Option<&FittedMeasures>) -> Vec<Method> {

@@ -92,6 +92,7 @@ impl Person {
             sway(joint, by);
         }
         pose.root += Vec3::new(rng.gaussian(), 0.0, rng.gaussian()) * 0.006;
+        on_both_feet(&self.body, &mut pose);
         let mut bones = [glam::Affine3A::IDENTITY; BONES];
         palette(&self.body.skeleton, &pose, &mut bones);
         positions.clear();
@@ -101,6 +102,22 @@ impl Person {
         let lowest = positions.iter().map(|p| p.y).fold(f32::MAX, f32::min);
         positions.iter_mut().for_each(|p| p.y -= lowest);
         JointFrames::new(&self.body.skeleton, &pose).position.map(|p| p - Vec3::Y * lowest)
+    }
+}
+
+/// Lays both soles flat and level, as standing people have them: ankles turn, and the hips tilt where one leg reaches
+/// lower than the other.
+fn on_both_feet(body: &Body, pose: &mut Pose) {
+    for _ in 0..3 {
+        let frames = JointFrames::new(&body.skeleton, pose);
+        for (ankle, knee) in [(Joint::LeftAnkle, Joint::LeftKnee), (Joint::RightAnkle, Joint::RightKnee)] {
+            let foot = frames.rotation[ankle.index()];
+            let level = Quat::from_rotation_arc(foot * Vec3::Y, Vec3::Y) * foot;
+            pose.local[ankle.index()] = frames.rotation[knee.index()].inverse() * level;
+        }
+        let [left, right] = [Joint::LeftAnkle, Joint::RightAnkle].map(|j| frames.position[j.index()]);
+        let tilt = Quat::from_rotation_z(-(left.y - right.y) / (left.x - right.x).max(0.05));
+        pose.local[Joint::Pelvis.index()] = tilt * pose.local[Joint::Pelvis.index()];
     }
 }
 

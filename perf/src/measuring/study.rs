@@ -191,11 +191,14 @@ fn measured(person: &Person, options: &Options, rng: &mut Rng) -> Case {
     }
 }
 
-/// Follows a person through their frames, as at 30 Hz.
+/// Frames of each person through which they are followed: the first finds them.
+const FOLLOWED: usize = 10;
+
+/// Follows a person through their first frames, as at 30 Hz.
 fn follow(person: &Person, frames: &[(DepthFrame, Moment)]) -> (Option<f32>, Vec<[f32; 7]>) {
     let mut fit = BodyFit::new(person.sex, fit::Options { clothed: false, ..fit::Options::LIVE });
     let (mut start, mut followed) = (None, Vec::new());
-    for (frame, truth) in frames {
+    for (frame, truth) in frames.iter().take(FOLLOWED) {
         let begun = Instant::now();
         let seen = fit.push(frame);
         let time = begun.elapsed().as_secs_f32();

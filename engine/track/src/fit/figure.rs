@@ -40,6 +40,8 @@ pub(super) struct Sample {
     bones: [(u8, f32); BONES_EACH],
     /// Whether the ground carries it when one stands.
     pub sole: bool,
+    /// Whether hair may cover it.
+    pub hairy: bool,
 }
 
 impl Sample {
@@ -118,9 +120,11 @@ fn sample(shapes: &Shapes, corners: [u32; 4], moves: &mut Vec<(u32, Vec3)>) -> S
     }
     joints.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
     let whole: f32 = joints.iter().take(BONES_EACH).map(|j| j.1).sum();
-    let bones = std::array::from_fn(|k| joints.get(k).map_or((0, 0.0), |j| (j.0, j.1 / whole)));
+    let bones: [(u8, f32); BONES_EACH] =
+        std::array::from_fn(|k| joints.get(k).map_or((0, 0.0), |j| (j.0, j.1 / whole)));
     let drawn = corners.map(|v| base.positions[v as usize]).iter().sum::<Vec3>() / 4.0;
-    Sample { corners, drawn, moves: (first as u32, moves.len() as u32), bones, sole: drawn.y < SOLE }
+    let hairy = [Joint::Head, Joint::Neck].iter().any(|j| j.index() == bones[0].0 as usize);
+    Sample { corners, drawn, moves: (first as u32, moves.len() as u32), bones, sole: drawn.y < SOLE, hairy }
 }
 
 /// What is sought: pose and shape.

@@ -9,6 +9,7 @@
 
 mod equations;
 mod figure;
+pub mod follow;
 mod matching;
 pub mod measuring;
 mod memory;
@@ -50,7 +51,7 @@ impl Options {
     pub const LIVE: Self = Self { ground: Some(0.0), clothed: true, spacing: 0.030, steps: 3 };
 
     /// For the second in which a shopper is measured.
-    pub const MEASURING: Self = Self { ground: Some(0.0), clothed: true, spacing: 0.0, steps: 3 };
+    pub const MEASURING: Self = Self { ground: Some(0.0), clothed: true, spacing: 0.0, steps: 2 };
 }
 
 /// Matches farther than this are none, in a frame that follows another (m).
@@ -123,6 +124,8 @@ pub struct BodyFit {
     equations: Equations,
     view: View,
     memory: Memory,
+    /// The same with fewer samples, to find a shopper by; none if this one's are few.
+    scout: Option<Box<BodyFit>>,
     state: Option<State>,
     /// The last state that was believed.
     last: Option<State>,
@@ -144,6 +147,8 @@ impl BodyFit {
             equations: Equations::new(),
             view: View::new(),
             memory: Memory::new(shapes),
+            scout: (options.spacing < Options::LIVE.spacing)
+                .then(|| Box::new(Self::new(sex, Options { spacing: Options::LIVE.spacing, ..options }))),
             state: None,
             last: None,
             still_normals: vec![Vec3::ZERO; cast.samples.len()],
@@ -174,7 +179,10 @@ impl BodyFit {
         }
         let started = self.state.is_none();
         let next = match self.state {
-            None => self.find(),
+            None => match self.scouted(frame) {
+                Some(found) => self.settled(found),
+                None => self.find(),
+            },
             Some(state) => {
                 self.reshape(&state.shape);
                 self.steps(&state, Some(&state), (GATE, ROBUST, self.options.steps))
@@ -202,6 +210,14 @@ impl BodyFit {
         }
     }
 
+    /// What fewer samples find.
+    fn scouted(&mut self, frame: &DepthFrame) -> Option<State> {
+        let scout = self.scout.as_mut()?;
+        scout.reset();
+        scout.push(frame);
+        scout.state
+    }
+
     /// Looks for the shopper from nothing.
     fn find(&mut self) -> State {
         let mut best = start::upright(&self.cast, &self.view, self.options.ground);
@@ -222,8 +238,13 @@ impl BodyFit {
             }
         }
         self.matching.every = 1;
-        self.reshape(&best.shape);
-        let best = self.stage(best, &FIRST[2..]);
+        self.settled(best)
+    }
+
+    /// The last steps of looking for somebody, by all that is seen.
+    fn settled(&mut self, found: State) -> State {
+        self.reshape(&found.shape);
+        let best = self.stage(found, &FIRST[2..]);
         self.reshape(&best.shape);
         self.steps(&best, None, (GATE, ROBUST, self.options.steps))
     }
@@ -320,6 +341,10 @@ impl BodyFit {
         self.memory.estimate().0
     }
 
+    #[doc(hidden)]
+    pub fn dbg(&self) -> (f64, f64) {
+        (self.cost.0, self.memory.surprise())
+    }
     /// Frames that the shape comes from.
     pub fn frames(&self) -> usize {
         self.memory.frames()

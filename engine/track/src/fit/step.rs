@@ -16,6 +16,9 @@ const CELL_SIGMA: f32 = 0.022;
 /// loose fit; a point inside of it pushes with all.
 const CLOTH_PULL: f32 = 0.2;
 
+/// The same on head and neck, for hair stands farther off and is combed to any shape.
+const HAIR_PULL: f32 = 0.05;
+
 /// How far outside of the outline a sample may be before it is pulled in (m): the outermost pixels, which see the
 /// surface at a grazing angle, are lost.
 const OUTLINE_PLAY: f32 = 0.010;
@@ -68,7 +71,8 @@ pub(super) fn gather(equations: &mut Equations, scene: Scene, known: &Known) {
         if found.count > 0.0 {
             let normal = figure.normals[i];
             let residual = found.outside(figure.points[i], normal);
-            let weight = found.count * trust(residual, known) / (CELL_SIGMA * CELL_SIGMA);
+            let pull = if cast.samples[i].hairy { HAIR_PULL } else { CLOTH_PULL };
+            let weight = found.count * trust(residual, known, pull) / (CELL_SIGMA * CELL_SIGMA);
             equations.add(&figure.row(cast, i, normal), residual, weight);
         } else if found.faces {
             outline(equations, scene, i, known);
@@ -80,10 +84,10 @@ pub(super) fn gather(equations: &mut Equations, scene: Scene, known: &Known) {
 }
 
 /// Weight of a match: less the farther off, and less where cloth may lie between.
-fn trust(residual: f32, known: &Known) -> f32 {
+fn trust(residual: f32, known: &Known, pull: f32) -> f32 {
     let share = residual / known.robust;
     let robust = (1.0 + share * share).powi(-2);
-    if known.clothed && residual < 0.0 { CLOTH_PULL * robust } else { robust }
+    if known.clothed && residual < 0.0 { pull * robust } else { robust }
 }
 
 fn outline(equations: &mut Equations, Scene { cast, figure, view, matching }: Scene, i: usize, known: &Known) {

@@ -1,5 +1,7 @@
 //! The shopper in one depth frame, in cells of a few pixels: mean points with normals, and the outline.
 
+use std::ops::Range;
+
 use glam::{Affine3A, Vec2, Vec3};
 use toile_sensors::frame::{DepthFrame, Intrinsics};
 
@@ -26,6 +28,9 @@ pub(super) struct Cell {
     pub row: u16,
 }
 
+/// Cells around the shopper in which the nearest one is looked for: as far as samples are pulled in.
+const ROOM: usize = 12;
+
 /// Nothing there.
 const NONE: u32 = u32::MAX;
 
@@ -45,9 +50,26 @@ pub(super) struct View {
     camera_to_world: Affine3A,
     /// Which of `cells` stands at each place of the grid.
     at: Vec<u32>,
-    /// The nearest place of the grid that has a cell.
+    /// The nearest place of the grid that has a cell, within `reach`.
     nearest: Vec<[u16; 2]>,
     depth: Vec<f32>,
+    /// The part of the grid that holds the shopper, and that with room around.
+    extent: Extent,
+    reach: Extent,
+}
+
+/// A part of the grid: first and end of its columns and rows.
+#[derive(Debug, Clone, Default, PartialEq)]
+struct Extent {
+    columns: Range<usize>,
+    rows: Range<usize>,
+}
+
+impl Extent {
+    fn widened(&self, by: usize, columns: usize, rows: usize) -> Self {
+        let wider = |r: &Range<usize>, end: usize| r.start.saturating_sub(by)..(r.end + by).min(end);
+        Self { columns: wider(&self.columns, columns), rows: wider(&self.rows, rows) }
+    }
 }
 
 impl View {
@@ -64,6 +86,8 @@ impl View {
             at: Vec::new(),
             nearest: Vec::new(),
             depth: Vec::new(),
+            extent: Extent::default(),
+            reach: Extent::default(),
         }
     }
 
@@ -78,6 +102,8 @@ impl View {
         self.step = ((CELL / pixel).round() as usize).clamp(1, 16);
         self.columns = frame.intrinsics.width as usize / self.step;
         self.rows = frame.intrinsics.height as usize / self.step;
+        self.extent = self.occupied(frame);
+        self.reach = self.extent.widened(ROOM, self.columns, self.rows);
         self.read_cells(frame);
         self.read_normals();
         if self.cells.len() < FEWEST_CELLS {
@@ -87,6 +113,25 @@ impl View {
         true
     }
 
+    /// The part of the grid that holds anything.
+    fn occupied(&self, frame: &DepthFrame) -> Extent {
+        let width = frame.intrinsics.width as usize;
+        let mut any = vec![0u16; width];
+        let mut rows: Option<Range<usize>> = None;
+        for (v, row) in frame.depth_mm.chunks_exact(width).enumerate() {
+            if row.iter().fold(0, |all, mm| all | mm) != 0 {
+                any.iter_mut().zip(row).for_each(|(a, mm)| *a |= mm);
+                rows = Some(rows.map_or(v, |r| r.start)..v + 1);
+            }
+        }
+        let first = any.iter().position(|a| *a != 0).unwrap_or(0);
+        let end = any.iter().rposition(|a| *a != 0).map_or(0, |u| u + 1);
+        let cells = |pixels: Range<usize>, most: usize| {
+            (pixels.start / self.step).min(most)..pixels.end.div_ceil(self.step).min(most)
+        };
+        Extent { columns: cells(first..end, self.columns), rows: cells(rows.unwrap_or(0..0), self.rows) }
+    }
+
     fn read_cells(&mut self, frame: &DepthFrame) {
         let width = frame.intrinsics.width as usize;
         let least = ((self.step * self.step) as f32 * FILLED).ceil() as u32;
@@ -94,8 +139,8 @@ impl View {
         self.at.resize(self.columns * self.rows, NONE);
         self.depth.clear();
         self.depth.resize(self.columns * self.rows, 0.0);
-        for row in 0..self.rows {
-            for column in 0..self.columns {
+        for row in self.extent.rows.clone() {
+            for column in self.extent.columns.clone() {
                 let block = |v: usize| {
                     let from = (row * self.step + v) * width + column * self.step;
                     &frame.depth_mm[from..from + self.step]
@@ -144,12 +189,13 @@ impl View {
 
     /// Finds each place's nearest cell (Danielsson 1980, in two passes).
     fn spread(&mut self) {
-        let (columns, rows) = (self.columns, self.rows);
+        let columns = self.columns;
         self.nearest.clear();
-        self.nearest.resize(columns * rows, [u16::MAX; 2]);
+        self.nearest.resize(columns * self.rows, [u16::MAX; 2]);
         for cell in &self.cells {
             self.nearest[cell.row as usize * columns + cell.column as usize] = [cell.column, cell.row];
         }
+        let Extent { columns: across, rows: down } = self.reach.clone();
         let off = |near: [u16; 2], c: usize, r: usize| {
             if near[0] == u16::MAX {
                 return u32::MAX;
@@ -159,23 +205,26 @@ impl View {
         };
         let mut pass = |c: usize, r: usize, steps: [(isize, isize); 4]| {
             let here = r * columns + c;
+            let mut best = (off(self.nearest[here], c, r), self.nearest[here]);
             for (dc, dr) in steps {
-                let (Some(c2), Some(r2)) = (c.checked_add_signed(dc), r.checked_add_signed(dr)) else { continue };
-                if c2 < columns && r2 < rows {
+                let (c2, r2) = (c.wrapping_add_signed(dc), r.wrapping_add_signed(dr));
+                if across.contains(&c2) && down.contains(&r2) {
                     let other = self.nearest[r2 * columns + c2];
-                    if off(other, c, r) < off(self.nearest[here], c, r) {
-                        self.nearest[here] = other;
+                    let far = off(other, c, r);
+                    if far < best.0 {
+                        best = (far, other);
                     }
                 }
             }
+            self.nearest[here] = best.1;
         };
-        for r in 0..rows {
-            (0..columns).for_each(|c| pass(c, r, [(-1, 0), (-1, -1), (0, -1), (1, -1)]));
-            (0..columns).rev().for_each(|c| pass(c, r, [(1, 0), (1, -1), (0, -1), (-1, -1)]));
+        for r in down.clone() {
+            across.clone().for_each(|c| pass(c, r, [(-1, 0), (-1, -1), (0, -1), (1, -1)]));
+            across.clone().rev().for_each(|c| pass(c, r, [(1, 0), (1, -1), (0, -1), (-1, -1)]));
         }
-        for r in (0..rows).rev() {
-            (0..columns).rev().for_each(|c| pass(c, r, [(1, 0), (1, 1), (0, 1), (-1, 1)]));
-            (0..columns).for_each(|c| pass(c, r, [(-1, 0), (-1, 1), (0, 1), (1, 1)]));
+        for r in down.clone().rev() {
+            across.clone().rev().for_each(|c| pass(c, r, [(1, 0), (1, 1), (0, 1), (-1, 1)]));
+            across.clone().for_each(|c| pass(c, r, [(-1, 0), (-1, 1), (0, 1), (1, 1)]));
         }
     }
 
@@ -203,11 +252,13 @@ impl View {
     /// How far outside of the outline a projected point lies (m) and in which direction (world, unit); `None` inside.
     pub(super) fn outside(&self, at: Vec2, z: f32) -> Option<(f32, Vec3)> {
         let (c, r) = self.place(at)?;
-        let place = r * self.columns + c;
-        if self.at[place] != NONE {
+        if self.at[r * self.columns + c] != NONE {
             return None;
         }
-        let near = self.nearest[place];
+        // Farther out than is looked around, the nearest cell is the one of where that ends.
+        let c = c.clamp(self.reach.columns.start, self.reach.columns.end - 1);
+        let r = r.clamp(self.reach.rows.start, self.reach.rows.end - 1);
+        let near = self.nearest[r * self.columns + c];
         let off = at - Vec2::new(f32::from(near[0]), f32::from(near[1]));
         let size = Vec2::new(z / self.intrinsics.fx, z / self.intrinsics.fy) * self.step as f32;
         let off = off * size;
