@@ -23,7 +23,7 @@ impl Default for Hint {
 /// parametric body follows. A girth is the convex hull of a horizontal slice of the torso without arms, or of one thigh.
 pub fn definition(name: &str) -> &'static str {
     match name {
-        "stature" => "crown to floor, without what the fit takes for cloth; hair and shoes count where they are seen",
+        "stature" => "crown to floor; the body fit leaves out what it takes for hair and shoes, sections count both",
         "shoulder_breadth" => "between the acromions (biacromial), not over the deltoids",
         "arm_length" => "acromion over the bent elbow to the wrist bone",
         "leg_length" | "inseam" => "crotch to floor (inside leg height)",

@@ -11,6 +11,7 @@ use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::synthetic::SyntheticCamera;
 use toile_sensors::source::{OpenOptions, open};
 use toile_track::cloud;
+use toile_track::fit::follow::follow;
 use toile_track::fit::measuring::{self, TAKEN};
 use toile_track::fit::{BodyFit, Options};
 
@@ -22,13 +23,23 @@ fn camera() -> SyntheticCamera {
 
 /// A body in its rest pose (arms half raised), turned and moved, as the camera sees it.
 fn seen(sex: Sex, wanted: &Wanted<En>, place: Affine3A) -> (DepthFrame, Truth) {
+    seen_before(&[], sex, wanted, place)
+}
+
+/// The same before walls (m): corners of triangles.
+fn seen_before(walls: &[[Vec3; 3]], sex: Sex, wanted: &Wanted<En>, place: Affine3A) -> (DepthFrame, Truth) {
     let shapes = Shapes::of(sex);
     let shape = shapes.wanted(wanted).expect("a body");
     let fitted = shapes.body(&shape);
-    let positions: Vec<Vec3> = fitted.body.mesh.positions.iter().map(|p| place.transform_point3(*p)).collect();
+    let mut positions: Vec<Vec3> = fitted.body.mesh.positions.iter().map(|p| place.transform_point3(*p)).collect();
+    let mut triangles = fitted.body.mesh.triangles.to_vec();
+    for wall in walls {
+        triangles.push([0, 1, 2].map(|k| positions.len() as u32 + k));
+        positions.extend(wall);
+    }
     let camera = camera();
     let mut image = vec![0.0; camera.intrinsics.pixels()];
-    camera.render(&positions, &fitted.body.mesh.triangles, &mut image);
+    camera.render(&positions, &triangles, &mut image);
     let mm = |z: &f32| if z.is_finite() { (z * 1e3).round() as u16 } else { 0 };
     let joints = Joint::ALL.map(|j| place.transform_point3(fitted.body.skeleton.at(j)));
     let measures = TAKEN.map(|t| t.1.of(&fitted.readings));
@@ -96,6 +107,56 @@ fn a_shopper_who_leaves_is_lost_and_found_again_elsewhere() {
     assert!(again.joints.at(Joint::Pelvis).position.distance(truth.joints[0]) < 0.05);
 }
 
+/// Floor and the wall behind.
+fn room() -> [[Vec3; 3]; 4] {
+    let at = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
+    let (side, high, behind, ahead) = (4.0, 3.0, -1.2, 3.0);
+    [
+        [at(-side, 0.0, ahead), at(side, 0.0, ahead), at(-side, 0.0, behind)],
+        [at(side, 0.0, ahead), at(-side, 0.0, behind), at(side, 0.0, behind)],
+        [at(-side, 0.0, behind), at(side, 0.0, behind), at(-side, high, behind)],
+        [at(side, 0.0, behind), at(-side, high, behind), at(side, high, behind)],
+    ]
+}
+
+#[test]
+fn somebody_is_followed_through_a_room_that_is_seen_as_well() {
+    let room = room();
+    let step = |i: usize| turned(0.02 * i as f32, Vec3::new(-0.1 + 0.03 * i as f32, 0.0, 0.02 * i as f32));
+    let frames: Vec<(DepthFrame, Truth)> =
+        (0..6).map(|i| seen_before(&room, Sex::Female, &Wanted::new(), step(i))).collect();
+    let mut frames: Vec<(DepthFrame, Truth)> = frames
+        .into_iter()
+        .enumerate()
+        .map(|(i, (frame, truth))| (DepthFrame { time_ns: i as u64 * 33_333_333, ..frame }, truth))
+        .collect();
+    // In the last frame nobody is there: nothing is made up.
+    let (last, _) = seen_before(&room, Sex::Female, &Wanted::new(), turned(0.0, Vec3::new(40.0, 0.0, 0.0)));
+    let only: Vec<DepthFrame> = frames
+        .iter()
+        .map(|f| f.0.clone())
+        .chain([DepthFrame { time_ns: 2_000_000_000, ..last }])
+        .collect();
+    let joints = follow(&only, Sex::Female, BARE);
+    assert_eq!(joints.len(), 7);
+    for (found, (frame, truth)) in joints.iter().zip(frames.drain(..)) {
+        assert_eq!(found.time_ns, frame.time_ns);
+        for joint in [Joint::Pelvis, Joint::Head, Joint::LeftElbow, Joint::RightWrist, Joint::LeftKnee] {
+            let off = found.at(joint).position.distance(truth.joints[joint.index()]);
+            assert!(off < 0.05 && found.at(joint).is_believed(), "{joint:?} is {off} m off at {}", frame.time_ns);
+        }
+    }
+    assert!(joints[6].joints.iter().all(|j| !j.is_believed()));
+}
+
+#[test]
+fn somebody_bare_who_is_taken_for_clothed_is_hardly_smaller() {
+    let (frame, truth) = seen(Sex::Male, &Wanted::new().with(En::Stature, 1.82), turned(0.1, Vec3::ZERO));
+    let found = measuring::measure(&[frame.clone(), frame], Population::Men, Options::MEASURING).expect("a fit");
+    let stature = found.named("stature").expect("taken");
+    assert!((stature.value - truth.measures[0]).abs() < 0.015, "{stature:?} {}", truth.measures[0]);
+}
+
 #[test]
 fn a_body_of_the_family_is_measured_and_twice_alike() {
     let wanted = Wanted::new().with(En::Stature, 1.72).with(En::WaistGirth, 0.86);
@@ -153,7 +214,7 @@ fn a_whole_clothed_woman_is_fitted() {
     let frame = &session.depth[0];
     let alone = cloud::people(frame).people[0].alone(frame);
     let fitted = measuring::measure(&[alone], Population::Mixed, Options::MEASURING).expect("a fit");
-    assert!(fitted.woman > 0.9 && fitted.explained > 0.9, "{} {}", fitted.woman, fitted.explained);
+    assert!(fitted.explained > 0.9, "{}", fitted.explained);
     let stature = fitted.measures[0];
     // 1.750 m between the 0.2 and 99.8 percentiles, 1.782 m from end to end.
     assert!((1.73..1.80).contains(&stature.value), "{stature:?}");

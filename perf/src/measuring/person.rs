@@ -193,3 +193,24 @@ fn standing(body: &Body, rng: &mut Rng) -> Pose {
     }
     pose
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn people_stand_on_both_feet() {
+        let mut rng = Rng::new(11);
+        let measures = [1.65, 1.41, 0.98, 0.77, 0.46, 0.33, 0.93, 0.84, 1.01, 0.60, 0.80, 0.36];
+        let person = Person::new(Sex::Female, &measures, &mut rng).expect("a body");
+        let soles: Vec<usize> =
+            (0..person.body.mesh.positions.len()).filter(|&v| person.body.mesh.positions[v].y < 0.002).collect();
+        let mut surface = Vec::new();
+        for _ in 0..3 {
+            person.stand(&mut rng, &mut surface);
+            let highest = soles.iter().map(|&v| surface[v].y).fold(0.0, f32::max);
+            assert!(soles.len() > 20 && highest < 0.006, "{} {highest}", soles.len());
+            assert!(surface.iter().all(|p| p.y >= 0.0));
+        }
+    }
+}

@@ -21,23 +21,33 @@ const STATURES: std::ops::Range<f32> = 1.35..2.15;
 /// Heights between which the pelvis is sought, over stature.
 const HIPS: [f32; 2] = [0.44, 0.60];
 
-/// One way in which somebody may hold an arm (rad): from the vertical, bend of the elbow, and turn of the whole arm
-/// about the vertical, inwards positive.
+/// One way in which somebody may hold an arm (rad): from the vertical, bend of the elbow, turn of the whole arm about the
+/// vertical, inwards positive, and about itself, the forearm upwards positive.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Arm {
     out: f32,
     bend: f32,
     inwards: f32,
+    twist: f32,
 }
 
-/// Hanging a little out, well out, a hand on the hip, a hand before the chest, stretched aside, raised.
-pub(super) const ARMS: [Arm; 6] = [
-    Arm { out: 0.25, bend: 0.1, inwards: 0.0 },
-    Arm { out: 0.7, bend: 0.1, inwards: 0.0 },
-    Arm { out: 0.6, bend: 1.6, inwards: 1.2 },
-    Arm { out: 0.2, bend: 1.9, inwards: 0.5 },
-    Arm { out: 1.5, bend: 0.1, inwards: 0.0 },
-    Arm { out: 0.3, bend: 1.4, inwards: -0.1 },
+const fn arm(out: f32, bend: f32, inwards: f32, twist: f32) -> Arm {
+    Arm { out, bend, inwards, twist }
+}
+
+/// Hanging a little out, well out, a hand on the hip, a hand before the chest, stretched aside, a forearm ahead, a
+/// forearm hanging from a raised elbow, one upright above it, a hand beside the shoulder, an arm raised.
+pub(super) const ARMS: [Arm; 10] = [
+    arm(0.25, 0.1, 0.0, 0.0),
+    arm(0.7, 0.1, 0.0, 0.0),
+    arm(0.6, 1.6, 1.2, 0.0),
+    arm(0.2, 1.9, 0.5, 0.0),
+    arm(1.5, 0.1, 0.0, 0.0),
+    arm(0.3, 1.4, -0.1, 0.0),
+    arm(1.4, 1.4, 0.0, -1.4),
+    arm(1.4, 1.5, 0.0, 1.4),
+    arm(0.5, 2.0, -0.7, 0.0),
+    arm(2.3, 0.3, 0.0, 0.0),
 ];
 
 /// Puts an arm of a state as told.
@@ -46,9 +56,11 @@ pub(super) fn hold(cast: &Cast, state: &mut State, shoulder: Joint, arm: Arm) {
     let left = shoulder == Joint::LeftShoulder;
     let elbow = if left { Joint::LeftElbow } else { Joint::RightElbow };
     let wrist = if left { Joint::LeftWrist } else { Joint::RightWrist };
-    let inwards = if left { -arm.inwards } else { arm.inwards };
+    let side = if left { -1.0 } else { 1.0 };
+    let along = (rest.at(elbow) - rest.at(shoulder)).normalize_or(Vec3::NEG_Y);
     let down = Quat::from_rotation_z(hanging(&rest, shoulder, arm.out));
-    state.local[shoulder.index()] = Quat::from_rotation_y(inwards) * down;
+    let twist = Quat::from_axis_angle(along, side * arm.twist);
+    state.local[shoulder.index()] = Quat::from_rotation_y(side * arm.inwards) * down * twist;
     state.local[wrist.index()] = Quat::IDENTITY;
     if let Some(turn) = cast.turns.iter().find(|t| t.joint == elbow) {
         state.local[elbow.index()] = Quat::from_axis_angle(turn.axis, turn.range[0] + 10f32.to_radians() + arm.bend);
@@ -93,4 +105,47 @@ pub(super) fn upright(cast: &Cast, view: &View, ground: Option<f32>) -> State {
 fn of_stature(shapes: &Shapes, height: f32) -> toile_assets::body::shape::Shape {
     let wanted = Wanted::<En>::new().with(En::Stature, height);
     if STATURES.contains(&height) { shapes.wanted(&wanted).unwrap_or(*shapes.mean()) } else { *shapes.mean() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toile_assets::body::Sex;
+    use toile_assets::skeleton::Pose;
+
+    /// Where the wrists are with both arms held one way, relative to the shoulders, the right one's mirrored (m).
+    fn hands(way: usize) -> [Vec3; 2] {
+        let shapes = Shapes::of(Sex::Male);
+        let cast = Cast::new(shapes, 0.1);
+        let mut state = State { root: Vec3::ZERO, local: [Quat::IDENTITY; JOINTS], shape: *shapes.mean() };
+        let rest = shapes.skeleton(shapes.mean());
+        let pairs = [(Joint::LeftShoulder, Joint::LeftWrist), (Joint::RightShoulder, Joint::RightWrist)];
+        pairs.map(|(shoulder, wrist)| {
+            hold(&cast, &mut state, shoulder, ARMS[way]);
+            let pose = Pose { root: Vec3::ZERO, local: state.local };
+            let (mut turned, mut place) = (Quat::IDENTITY, Vec3::ZERO);
+            let mut chain = vec![wrist];
+            while *chain.last().unwrap() != shoulder {
+                chain.push(chain.last().unwrap().parent().unwrap());
+            }
+            for pair in chain.windows(2).rev() {
+                turned *= pose.local[pair[1].index()];
+                place += turned * (rest.at(pair[0]) - rest.at(pair[1]));
+            }
+            if shoulder == Joint::LeftShoulder { place } else { place * Vec3::new(-1.0, 1.0, 1.0) }
+        })
+    }
+
+    #[test]
+    fn both_arms_are_held_alike_and_as_said() {
+        for way in 0..ARMS.len() {
+            let [left, right] = hands(way);
+            assert!(left.distance(right) < 0.02, "{way}: {left} {right}");
+        }
+        assert!(hands(0)[0].y < -0.4, "hanging");
+        assert!(hands(4)[0].x > 0.4, "stretched aside");
+        assert!(hands(6)[0].y < -0.15 && hands(6)[0].x > 0.2, "a forearm hanging: {}", hands(6)[0]);
+        assert!(hands(7)[0].y > 0.15 && hands(7)[0].x > 0.2, "a forearm upright: {}", hands(7)[0]);
+        assert!(hands(9)[0].y > 0.25, "raised");
+    }
 }

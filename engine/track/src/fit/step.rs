@@ -35,6 +35,10 @@ const STANDING: f32 = 0.05;
 /// How far a sample of a sole is off the ground (m), as for [`CELL_SIGMA`].
 const SOLE_SIGMA: f32 = 0.015;
 
+/// Shoes lie between a clothed shopper's sole and the ground: a sole above the ground is pulled down with this share of
+/// the weight, one below it is pushed up with all of it.
+const SHOE_PULL: f32 = 0.05;
+
 /// Height above the ground up to which the picture shows no feet: they go with the floor (m).
 const FLOOR_ZONE: f32 = 0.05;
 
@@ -79,7 +83,7 @@ pub(super) fn gather(equations: &mut Equations, scene: Scene, known: &Known) {
         }
     }
     if let Some(ground) = known.ground {
-        soles(equations, cast, figure, ground);
+        soles(equations, scene, ground, known);
     }
 }
 
@@ -95,19 +99,22 @@ fn outline(equations: &mut Equations, Scene { cast, figure, view, matching }: Sc
         return;
     }
     let found = &matching.of[i];
+    // Where there may be hair, the outline is that of the hair.
+    let play = if known.clothed && cast.samples[i].hairy { 0.0 } else { OUTLINE_PLAY };
     if let Some((off, along)) = view.outside(found.seen, found.z)
-        && off > OUTLINE_PLAY
+        && off > play
     {
-        let residual = (off - OUTLINE_PLAY).min(OUTLINE_REACH);
+        let residual = (off - play).min(OUTLINE_REACH);
         equations.add(&figure.row(cast, i, along), residual, 1.0 / (OUTLINE_SIGMA * OUTLINE_SIGMA));
     }
 }
 
-fn soles(equations: &mut Equations, cast: &Cast, figure: &Figure, ground: f32) {
+fn soles(equations: &mut Equations, Scene { cast, figure, .. }: Scene, ground: f32, known: &Known) {
     for (i, _) in cast.samples.iter().enumerate().filter(|(_, s)| s.sole) {
         let residual = figure.above_rest(i) - ground;
         if residual.abs() < STANDING {
-            equations.add(&figure.row_above_rest(cast, i), residual, 1.0 / (SOLE_SIGMA * SOLE_SIGMA));
+            let share = if known.clothed && residual > 0.0 { SHOE_PULL } else { 1.0 };
+            equations.add(&figure.row_above_rest(cast, i), residual, share / (SOLE_SIGMA * SOLE_SIGMA));
         }
     }
 }
