@@ -51,7 +51,8 @@ pub enum SourceError {
     },
     /// The content is of no known kind.
     #[error(
-        "{path}: {what}; give a Toile session (.mcap), a Kinect v2 CSV, a Kinectron JSON, a BVH, an Azure Kinect .mkv, 16-bit PNG or raw depth"
+        "{path}: {what}; give a Toile session (.mcap), joints of a Kinect (v1, v2, Azure), Kinectron, MediaPipe or a BVH, \
+         a folder of OpenPose keypoints, an Azure Kinect .mkv, 16-bit PNG or raw depth"
     )]
     UnknownKind {
         /// The file.
