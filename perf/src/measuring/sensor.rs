@@ -88,7 +88,7 @@ impl Sight {
         if sensor == Sensor::Kinect {
             // 43 degrees are too few for a whole person at 2 m: it stands on its side.
             let roll = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2);
-            camera.camera_to_world = camera.camera_to_world * Affine3A::from_quat(roll);
+            camera.camera_to_world *= Affine3A::from_quat(roll);
         }
         let scale = 1.0 + FOCAL * rng.gaussian();
         let intrinsics = Intrinsics {

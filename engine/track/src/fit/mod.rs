@@ -7,11 +7,13 @@
 //! Analysis by synthesis with point-to-surface residuals and a Gauss-Newton step over pose and shape together; the
 //! shape is accumulated over the frames, people (ANSUR II) being what is known before the first.
 
+#[expect(clippy::needless_range_loop, reason = "matrices are read by row and column")]
 mod equations;
 mod figure;
 pub mod follow;
 mod matching;
 pub mod measuring;
+#[expect(clippy::needless_range_loop, reason = "matrices are read by row and column")]
 mod memory;
 mod start;
 mod step;
@@ -341,10 +343,6 @@ impl BodyFit {
         self.memory.estimate().0
     }
 
-    #[doc(hidden)]
-    pub fn dbg(&self) -> (f64, f64) {
-        (self.cost.0, self.memory.surprise())
-    }
     /// Frames that the shape comes from.
     pub fn frames(&self) -> usize {
         self.memory.frames()
