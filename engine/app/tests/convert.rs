@@ -72,7 +72,9 @@ fn joints_are_fitted_to_depth_alone_where_that_is_asked_for_and_dress_a_shopper(
     std::fs::write(scratch.path().join("depth.mcap"), alone.to_bytes().expect("a session")).unwrap();
     let (json, session) = converted(&scratch, "depth.mcap", "joints.mcap", &["--fit"]);
     assert_eq!((json["joint_frames"].as_u64(), json["depth_frames"].as_u64()), (Some(30), Some(0)));
-    for joint in [Joint::Pelvis, Joint::Head, Joint::LeftShoulder, Joint::RightElbow, Joint::LeftWrist, Joint::RightKnee] {
+    for joint in
+        [Joint::Pelvis, Joint::Head, Joint::LeftShoulder, Joint::RightElbow, Joint::LeftWrist, Joint::RightKnee]
+    {
         let off = apart(&session, &original, joint);
         assert!(off < 0.06, "{joint:?}: {off}");
     }

@@ -132,11 +132,8 @@ fn somebody_is_followed_through_a_room_that_is_seen_as_well() {
         .collect();
     // In the last frame nobody is there: nothing is made up.
     let (last, _) = seen_before(&room, Sex::Female, &Wanted::new(), turned(0.0, Vec3::new(40.0, 0.0, 0.0)));
-    let only: Vec<DepthFrame> = frames
-        .iter()
-        .map(|f| f.0.clone())
-        .chain([DepthFrame { time_ns: 2_000_000_000, ..last }])
-        .collect();
+    let only: Vec<DepthFrame> =
+        frames.iter().map(|f| f.0.clone()).chain([DepthFrame { time_ns: 2_000_000_000, ..last }]).collect();
     let joints = follow(&only, Sex::Female, BARE);
     assert_eq!(joints.len(), 7);
     for (found, (frame, truth)) in joints.iter().zip(frames.drain(..)) {

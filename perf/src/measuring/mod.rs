@@ -13,6 +13,6 @@ mod sensor;
 mod study;
 
 pub use overlay::{Fit, overlay, posed};
-pub use person::{Moment, Person};
+pub use person::{GIVEN, Moment, Person};
 pub use sensor::{Sensor, Sight};
 pub use study::{Agreement, Case, Following, Options, Outcome, Study, StudyError, study};
