@@ -7,12 +7,15 @@
 pub mod ansur;
 pub mod depth;
 pub mod filters;
+pub mod latency;
 pub mod measuring;
 pub mod oracle;
 pub mod pareto;
+pub mod plan;
 pub mod scene_run;
 pub mod skinning;
 pub mod skirt;
+pub mod soak;
 mod surface;
 pub mod time;
 pub mod torture;

@@ -119,11 +119,9 @@ impl Runner {
     /// # Errors
     /// As [`Self::new`].
     pub fn counting(scene: SceneFile, heap: HeapProbe) -> Result<Self, RunError> {
-        let mut colliders = colliders(&scene)?;
-        colliders.step_seconds = scene.step_hz.recip() as f32;
-        place(&mut colliders, &scene, 0.0);
+        let colliders = placed(&scene)?;
         let before = heap.read();
-        let garments = scene.garments.iter().map(baked).collect::<Result<Vec<_>, _>>()?;
+        let garments = bake_all(&scene)?;
         let between = heap.read();
         let ready = |g: &Garment, cloth: Cloth| if scene.wind.is_some() { cloth.in_wind(g) } else { cloth };
         let mut cloths: Vec<Cloth> = garments.iter().map(|g| ready(g, Cloth::new(g, &colliders))).collect();
@@ -287,6 +285,19 @@ impl Runner {
     }
 }
 
+/// All garments of a scene.
+pub(crate) fn bake_all(scene: &SceneFile) -> Result<Vec<Garment>, RunError> {
+    scene.garments.iter().map(baked).collect()
+}
+
+/// The colliders of a scene where they stand at its start.
+pub(crate) fn placed(scene: &SceneFile) -> Result<Colliders, RunError> {
+    let mut colliders = colliders(scene)?;
+    colliders.step_seconds = scene.step_hz.recip() as f32;
+    place(&mut colliders, scene, 0.0);
+    Ok(colliders)
+}
+
 fn baked(given: &SceneGarment) -> Result<Garment, RunError> {
     let mesh = |source| RunError::Mesh { name: given.name.clone(), source };
     bake(&given.name, "one size", &given.shape, &given.fabric).map_err(mesh)
@@ -307,7 +318,7 @@ fn user_order(given: &SceneGarment, baked: &Garment) -> Box<[u32]> {
 
 /// The engine's settings; what the scene leaves out is as the engine has it. A garment asks for substeps of a step of
 /// 1/120 s: a longer step has more of them.
-fn settings(scene: &SceneFile) -> Settings {
+pub(crate) fn settings(scene: &SceneFile) -> Settings {
     let (default, given) = (Settings::default(), &scene.settings);
     let quality = |name: &str| Quality::ALL.into_iter().find(|q| q.name() == name);
     let width = given.lanes.and_then(|n| Width::of(n as usize)).filter(|w| w.available());
@@ -326,7 +337,7 @@ fn settings(scene: &SceneFile) -> Settings {
 }
 
 /// The motion of the pin groups as bones: bone 0 stands.
-fn palette(scene: &SceneFile, time: f64) -> [Affine3A; BONES] {
+pub(crate) fn palette(scene: &SceneFile, time: f64) -> [Affine3A; BONES] {
     let mut palette = [Affine3A::IDENTITY; BONES];
     palette[1..].iter_mut().zip(&scene.pins).for_each(|(bone, motion)| *bone = motion.at(time));
     palette
@@ -345,7 +356,7 @@ fn colliders(scene: &SceneFile) -> Result<Colliders, ColliderError> {
 }
 
 /// Puts the spheres where their tracks have them.
-fn place(colliders: &mut Colliders, scene: &SceneFile, time: f64) {
+pub(crate) fn place(colliders: &mut Colliders, scene: &SceneFile, time: f64) {
     let mut spheres = [Vec4::ZERO; MAX_SPHERES];
     let count = scene.colliders.spheres();
     spheres[..count].iter_mut().enumerate().for_each(|(k, s)| *s = scene.colliders.sphere(k, time));

@@ -9,7 +9,8 @@ use toile_assets::sizes::SizeBody;
 use toile_assets::wardrobe::{self, style::Style};
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::Settings;
-use toile_engine::frame::Frame;
+use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::relay::Reader;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::filter::JointFilter;
 use toile_sensors::frame::{Joints, TrackedJoint};
@@ -78,8 +79,16 @@ fn nearest_size(style: &Style, body: &Body) -> String {
 /// # Panics
 /// Where the body has no colliders.
 pub fn frame(body: Body, garments: Vec<Garment>) -> Frame {
+    frame_and_reader(body, garments).0
+}
+
+/// The same with the end at which its snapshots come out.
+///
+/// # Panics
+/// As [`frame`].
+pub fn frame_and_reader(body: Body, garments: Vec<Garment>) -> (Frame, Reader<Snapshot>) {
     let rig = Rig::fit(&body);
-    Frame::new(body, &rig, garments, Settings::default()).expect("a frame of the wardrobe").0
+    Frame::new(body, &rig, garments, Settings::default()).expect("a frame of the wardrobe")
 }
 
 /// The scene's shopper dressed in garments of the wardrobe, as she stands at the begin of a track.

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The crates, lowest floor first: a crate imports only those before it. Folder and name.
-pub const FLOORS: [(&str, &str); 9] = [
+pub const FLOORS: [(&str, &str); 10] = [
     ("assets", "toile-assets"),
     ("sensors", "toile-sensors"),
     ("engine/core", "toile-engine"),
@@ -14,6 +14,7 @@ pub const FLOORS: [(&str, &str); 9] = [
     ("perf", "toile-perf"),
     ("engine/app", "toile"),
     ("tests", "toile-tests"),
+    ("tests/models", "toile-models"),
 ];
 
 /// The workspace's folder.

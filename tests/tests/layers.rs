@@ -41,7 +41,16 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
     ),
     (
         "toile-engine",
-        &[&["lanes", "relay", "crew", "cone"], &["body", "hold"], &["skin"], &["colliders"], &["cloth"], &["frame"]],
+        &[
+            &["lanes", "relay", "sync", "clock", "meter", "cone"],
+            &["crew"],
+            &["body", "hold"],
+            &["skin"],
+            &["colliders"],
+            &["cloth"],
+            &["frame"],
+            &["pace"],
+        ],
     ),
     (
         "toile-perf",
@@ -50,9 +59,9 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
             &["surface"],
             &["yardstick"],
             &["oracle"],
-            &["depth", "skinning", "skirt"],
+            &["depth", "skinning", "skirt", "latency"],
             &["torture", "validate"],
-            &["pareto"],
+            &["pareto", "plan", "soak"],
         ],
     ),
 ];

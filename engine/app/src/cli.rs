@@ -20,11 +20,14 @@ mod convert;
 mod depth;
 mod filters;
 mod gestures;
+mod latency;
 mod measuring;
 mod pareto;
+mod plan;
 mod run;
 mod skinning;
 mod skirt;
+mod soak;
 mod torture;
 mod validate;
 
@@ -36,11 +39,14 @@ pub use convert::{ConvertArgs, KeptDepth};
 pub use depth::DepthArgs;
 pub use filters::FiltersArgs;
 pub use gestures::GesturesArgs;
+pub use latency::{LatencyArgs, ReplayArgs};
 pub use measuring::MeasuringArgs;
 pub use pareto::ParetoArgs;
+pub use plan::{PlanArgs, PlanScene};
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
 pub use skirt::SkirtArgs;
+pub use soak::SoakArgs;
 pub use torture::TortureArgs;
 pub use validate::ValidateArgs;
 
@@ -85,6 +91,14 @@ pub enum Command {
     Validate(ValidateArgs),
     /// `toile pareto`.
     Pareto(ParetoArgs),
+    /// `toile latency`.
+    Latency(LatencyArgs),
+    /// `toile replay`.
+    Replay(ReplayArgs),
+    /// `toile plan`.
+    Plan(PlanArgs),
+    /// `toile soak`.
+    Soak(SoakArgs),
     /// `toile completions`.
     Completions(Shell),
     /// Help or version: text to print.
@@ -189,6 +203,10 @@ pub fn command() -> clap::Command {
             validate::grammar(),
             pareto::grammar(),
             torture::grammar(),
+            latency::grammar(),
+            plan::grammar(),
+            latency::replay_grammar(),
+            soak::grammar(),
             completions(),
         ])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
@@ -362,6 +380,10 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "torture" => Command::Torture(torture::args(matches)?),
         "validate" => Command::Validate(validate::args(matches)?),
         "pareto" => Command::Pareto(pareto::args(matches)?),
+        "latency" => Command::Latency(latency::args(matches)?),
+        "plan" => Command::Plan(plan::args(matches)?),
+        "replay" => Command::Replay(latency::replay_args(matches)?),
+        "soak" => Command::Soak(soak::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
     })

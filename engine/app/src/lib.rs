@@ -12,21 +12,28 @@ pub mod cli;
 mod colliders;
 pub mod completions;
 pub mod convert;
+pub mod crash;
 pub mod doctor;
 pub mod dump;
 pub mod exit;
 pub mod fit;
 pub mod gestures;
+pub mod heap;
+pub mod latency;
 pub mod machine;
 pub mod measure;
 pub mod measuring;
+pub mod outfit;
 pub mod output;
 pub mod pareto;
 pub mod pictures;
+pub mod plan;
 pub mod record;
+pub mod replay;
 pub mod report;
 pub mod run;
 pub mod shopper;
+pub mod soak;
 pub mod summary;
 pub mod terminal;
 pub mod torture;
@@ -86,6 +93,10 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Torture(args) => torture::run(args),
         Command::Validate(args) => validate::run(args),
         Command::Pareto(args) => pareto::run(args),
+        Command::Latency(args) => latency::run(args),
+        Command::Plan(args) => plan::run(args),
+        Command::Replay(args) => replay::run(args),
+        Command::Soak(args) => soak::run(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }

@@ -4,10 +4,9 @@
 //! Budget: 8,333 us a step, of which the cloth has the most; no allocation after [`Frame::new`].
 //! Thread: physics.
 
-use std::time::Instant;
+mod meters;
 
 use glam::{Affine3A, Vec3};
-use hdrhistogram::Histogram;
 use toile_assets::body::Body;
 use toile_assets::garment::Garment;
 use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
@@ -16,12 +15,17 @@ use toile_assets::skeleton::{BONES, Pose};
 use toile_sensors::frame::Joints;
 
 use crate::body::{Poser, palette};
+use crate::clock::{Clock, RealClock};
 use crate::cloth::measure::{self, Strain};
-use crate::cloth::{Cloth, Settings, Step};
+use crate::cloth::{Cloth, Settings, Step, Wind};
 use crate::colliders::{ColliderError, Colliders, RestSphere};
 use crate::crew::{Crew, CrewError, SHARES};
+use crate::meter::{CLOTH, PLACE, POSE, PUBLISH, SKIN};
 use crate::relay::{Reader, Relay, Writer};
 use crate::skin::{Blend, Posed, SkinError, SkinningJob};
+use meters::Laps;
+
+pub use meters::Meters;
 
 /// Steps in which the body moves from its rest pose into the shopper's first pose while it is being dressed.
 pub const DRESS_STEPS: u64 = STEP_HZ as u64;
@@ -33,53 +37,34 @@ pub const SETTLE_STEPS: u64 = STEP_HZ as u64 / 2;
 /// they keep it, at the price of a bulge of some millimetres (docs/skinning.md).
 pub const BLEND: Blend = Blend::Dual;
 
-/// Longest step that the meter tells apart from a longer one (us).
-const METER_MAX_US: u64 = 1_000_000;
-
 /// What was drawn last: everything that a picture needs, copied once a step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Snapshot {
     /// Steps since the session began.
     pub tick: u64,
+    /// When what it shows came to be.
+    pub times: Times,
     /// The body: positions (m) and unit normals, which [`Posed::read`] brings into the order of the mesh.
     pub skin: Posed,
     /// Particles of each garment, world (m) `[garments][particles]`.
     pub garments: Box<[Box<[Vec3]>]>,
 }
 
-/// What the steps of a session came to, for the report.
-#[derive(Debug, Clone)]
-pub struct Meters {
-    /// Time of each step, pose to publish (ns).
-    pub step_ns: Histogram<u64>,
-    /// Sum over the steps of the mean strain.
-    strain_sum: f64,
-    /// Sum over the steps of the 99th percentile of strain.
-    strain_p99_sum: f64,
-    /// Worst strain of any edge in any step (1).
-    pub strain_max: f32,
-    /// Deepest penetration in any step (m).
-    pub penetration_max: f32,
-    /// Steps metered.
-    pub steps: u64,
-}
-
-impl Meters {
-    fn new() -> Self {
-        // Bounds are constants that the histogram accepts; three digits keep 0.1 % of each value.
-        let step_ns = Histogram::new_with_bounds(1, METER_MAX_US * 1_000, 3).expect("constant bounds are valid");
-        Self { step_ns, strain_sum: 0.0, strain_p99_sum: 0.0, strain_max: 0.0, penetration_max: 0.0, steps: 0 }
-    }
-
-    /// Strain over the session: mean of the means, mean of the 99th percentiles, worst.
-    pub fn strain(&self) -> Strain {
-        let steps = self.steps.max(1) as f64;
-        Strain {
-            mean: (self.strain_sum / steps) as f32,
-            p99: (self.strain_p99_sum / steps) as f32,
-            max: self.strain_max,
-        }
-    }
+/// When what a snapshot shows came to be, on the loop's clock (ns); all 0 where no loop ran.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Times {
+    /// When the newest sensor frame in it was taken.
+    pub seen_ns: u64,
+    /// When that frame arrived here.
+    pub arrived_ns: u64,
+    /// Its number, from 1; 0 is none.
+    pub frame: u64,
+    /// When the step was due.
+    pub scheduled_ns: u64,
+    /// When the step began.
+    pub begun_ns: u64,
+    /// When the snapshot was published.
+    pub published_ns: u64,
 }
 
 /// Why a scene cannot be set up.
@@ -114,7 +99,9 @@ pub struct Frame {
     /// The body as last skinned; changes places with a snapshot's when it is published.
     skin: Posed,
     tick: u64,
+    clock: RealClock,
     meters: Meters,
+    measure_every: u64,
     writer: Writer<Snapshot>,
 }
 
@@ -131,8 +118,12 @@ impl Frame {
         let skinning = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights)?;
         let ready = |g: &Garment, cloth: Cloth| if settings.wind.is_some() { cloth.in_wind(g) } else { cloth };
         let cloths: Box<[Cloth]> = garments.iter().map(|g| ready(g, Cloth::new(g, &colliders))).collect();
-        let snapshot =
-            Snapshot { tick: 0, skin: skinning.posed(), garments: garments.iter().map(|g| g.start.clone()).collect() };
+        let snapshot = Snapshot {
+            tick: 0,
+            times: Times::default(),
+            skin: skinning.posed(),
+            garments: garments.iter().map(|g| g.start.clone()).collect(),
+        };
         let Relay { writer, reader } = Relay::new(&snapshot);
         let frame = Self {
             poser: Poser::new(&body.skeleton).keeping_clear(&spheres, &rig.capsules),
@@ -144,7 +135,9 @@ impl Frame {
             skinning,
             skin: snapshot.skin,
             tick: 0,
+            clock: RealClock::default(),
             meters: Meters::new(),
+            measure_every: 1,
             writer,
             garments: garments.into(),
             cloths,
@@ -158,36 +151,70 @@ impl Frame {
     /// the session's first joints, then at rest until the garments have settled. Not metered.
     pub fn dress(&mut self, first: &Joints) {
         self.poser.reset();
+        let clock = self.clock;
         let rest = Pose::rest(&self.body.skeleton);
         let goal = self.poser.pose(first, STEP_SECONDS);
         for step in 1..=DRESS_STEPS + SETTLE_STEPS {
             let t = (step as f32 / DRESS_STEPS as f32).min(1.0);
             self.pose = blend(&rest, &goal, t * t * (3.0 - 2.0 * t));
-            self.advance();
+            self.advance(&mut Laps::from(clock.now_ns()), &clock);
         }
+    }
+
+    /// The same with another crew, one whose helper has a core of its own for example. At load.
+    #[must_use]
+    pub fn with_crew(self, crew: Crew) -> Self {
+        Self { settings: Settings { workers: crew.workers(), ..self.settings }, crew, ..self }
+    }
+
+    /// Takes over the crew of a frame that leaves the stage, which gets this one's: no thread begins or ends.
+    pub fn take_crew(&mut self, from: &mut Self) {
+        std::mem::swap(&mut self.crew, &mut from.crew);
+        self.settings.workers = self.crew.workers();
+        from.settings.workers = from.crew.workers();
+    }
+
+    /// Strain and penetration are measured every so many steps, for a loop that has other things to do with the time;
+    /// 0 is never.
+    pub fn measure_every(&mut self, steps: u64) {
+        self.measure_every = steps;
+    }
+
+    /// What the governor gave up: the share of the substeps that is left, and whether there is wind.
+    pub fn set_quality(&mut self, substep_share: f32, wind: Option<Wind>) {
+        (self.settings.substep_share, self.settings.wind) = (substep_share, wind);
     }
 
     /// One step of the session: the joints as they are at its end.
     pub fn step(&mut self, joints: &Joints) {
-        let begun = Instant::now();
+        let clock = self.clock;
+        self.step_at(joints, Times::default(), &clock);
+        self.measure();
+    }
+
+    /// The step itself, as the loop takes it: what it shows is published with these times.
+    pub fn step_at(&mut self, joints: &Joints, times: Times, clock: &impl Clock) {
+        let mut laps = Laps::from(clock.now_ns());
         // It wakes while the body is posed and skinned.
         self.crew.wake();
         self.pose = self.poser.pose(joints, STEP_SECONDS);
-        self.advance();
-        self.publish();
-        let ns = begun.elapsed().as_nanos().min(u128::from(METER_MAX_US * 1_000)) as u64;
-        self.meters.step_ns.saturating_record(ns);
-        self.measure();
+        self.advance(&mut laps, clock);
+        self.publish(times, clock);
+        laps.lap(PUBLISH, clock.now_ns());
+        self.meters.timed(laps.ns);
         self.tick += 1;
     }
 
     /// The stages after the pose, in order.
-    fn advance(&mut self) {
+    fn advance(&mut self, laps: &mut Laps, clock: &impl Clock) {
         palette(&self.body.skeleton, &self.pose, &mut self.palette);
+        laps.lap(POSE, clock.now_ns());
         // What a worker that panicked left out shows the body as it was.
         let skinned = self.skinning.run_with(&mut self.crew, BLEND, &self.palette, &mut self.skin);
         self.broken += u64::from(!skinned);
+        laps.lap(SKIN, clock.now_ns());
         self.colliders.place(&self.palette);
+        laps.lap(PLACE, clock.now_ns());
         let Self { cloths, garments, crew, palette, colliders, settings, .. } = self;
         let step = Step { palette, colliders, settings };
         match (&mut cloths[..], &garments[..]) {
@@ -199,9 +226,10 @@ impl Frame {
                 self.broken += u64::from(work.is_err());
             }
         }
+        laps.lap(CLOTH, clock.now_ns());
     }
 
-    fn publish(&mut self) {
+    fn publish(&mut self, times: Times, clock: &impl Clock) {
         let Self { writer, skin, cloths, tick, .. } = self;
         writer.publish_with(|snapshot| {
             snapshot.tick = *tick;
@@ -210,29 +238,34 @@ impl Frame {
             for (to, cloth) in snapshot.garments.iter_mut().zip(cloths.iter()) {
                 to.iter_mut().zip(&cloth.positions).for_each(|(t, p)| *t = (*p).into());
             }
+            snapshot.times = Times { published_ns: clock.now_ns(), ..times };
         });
     }
 
-    /// Strain and penetration of the state that was reached, outside of the timed part.
-    fn measure(&mut self) {
-        let mut worst = Strain::default();
+    /// Strain and penetration of the state that was reached, outside of the timed part. Some 100 us for 6,000 particles.
+    pub fn measure(&mut self) {
+        if self.measure_every == 0 || !self.tick.is_multiple_of(self.measure_every) {
+            return;
+        }
+        let (mut worst, mut deepest) = (Strain::default(), 0.0f32);
         for (cloth, garment) in self.cloths.iter_mut().zip(&self.garments) {
             let strain = measure::strain(cloth, garment);
             worst.mean = worst.mean.max(strain.mean);
             worst.p99 = worst.p99.max(strain.p99);
             worst.max = worst.max.max(strain.max);
-            let depth = measure::penetration(cloth, garment, &self.colliders);
-            self.meters.penetration_max = self.meters.penetration_max.max(depth);
+            deepest = deepest.max(measure::penetration(cloth, garment, &self.colliders));
         }
-        self.meters.strain_sum += f64::from(worst.mean);
-        self.meters.strain_p99_sum += f64::from(worst.p99);
-        self.meters.strain_max = self.meters.strain_max.max(worst.max);
-        self.meters.steps += 1;
+        self.meters.measured(worst, deepest);
     }
 
     /// The meters of the session so far.
     pub fn meters(&self) -> &Meters {
         &self.meters
+    }
+
+    /// Forgets them: what comes before a benchmark is not its matter.
+    pub fn clear_meters(&mut self) {
+        self.meters.clear();
     }
 
     /// Steps of the session so far.
@@ -290,6 +323,44 @@ impl Frame {
             (0..cloth.positions.len()).flat_map(|i| cloth.velocity(i).to_array()).for_each(&mut add);
         }
         hash
+    }
+
+    /// The same for every step of a recording: other numbers, a tenth of the time.
+    pub fn fingerprint(&self) -> u64 {
+        let mut print = Fingerprint::default();
+        print.add(&self.pose.root.to_array());
+        self.pose.local.iter().for_each(|q| print.add(&q.to_array()));
+        for cloth in &self.cloths {
+            cloth.state.positions().into_iter().chain(cloth.state.velocities()).for_each(|column| print.add(column));
+        }
+        print.end()
+    }
+}
+
+/// A hash over columns of numbers: four sums side by side, as a processor multiplies.
+#[derive(Default)]
+struct Fingerprint([u64; 4]);
+
+impl Fingerprint {
+    /// An odd number without a pattern: 2^64 over the golden ratio.
+    const ODD: u64 = 0x9e37_79b9_7f4a_7c15;
+
+    fn add(&mut self, numbers: &[f32]) {
+        let (fours, rest) = numbers.as_chunks::<4>();
+        fours.iter().for_each(|four| self.four(four.map(f32::to_bits)));
+        let mut last = [0; 4];
+        last.iter_mut().zip(rest).for_each(|(to, n)| *to = n.to_bits());
+        self.four(last);
+    }
+
+    fn four(&mut self, bits: [u32; 4]) {
+        for (sum, bits) in self.0.iter_mut().zip(bits) {
+            *sum = (*sum ^ u64::from(bits)).wrapping_mul(Self::ODD).rotate_left(29);
+        }
+    }
+
+    fn end(self) -> u64 {
+        self.0.into_iter().fold(0, |hash, sum| (hash ^ sum).wrapping_mul(Self::ODD).rotate_left(29))
     }
 }
 

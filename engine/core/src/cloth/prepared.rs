@@ -84,7 +84,8 @@ impl Prepared {
         // The bake speaks of steps of 1/120 s.
         let longer = (settings.step_seconds / STEP_SECONDS).max(1.0);
         let chosen = (settings.quality.substeps(garment.substeps) as f32 * longer).ceil() as u32;
-        let asked = settings.substeps.unwrap_or(chosen).clamp(1, MAX_SUBSTEPS);
+        let whole = settings.substeps.unwrap_or(chosen) as f32;
+        let asked = ((whole * settings.substep_share).ceil() as u32).clamp(1, MAX_SUBSTEPS);
         self.quality = settings.quality;
         let made_for = (asked, settings.step_seconds, settings.stretch_damping_s);
         if self.made_for == Some(made_for) {

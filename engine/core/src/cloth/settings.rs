@@ -69,6 +69,8 @@ pub struct Settings {
     /// Substeps of a step, if not as many as garment and quality ask for. Small substeps beat many iterations (Macklin
     /// et al. 2019, "Small steps in physics simulation").
     pub substeps: Option<u32>,
+    /// Share of these substeps that are made, above 0 to 1: what the governor of the loop gives up first.
+    pub substep_share: f32,
     /// Length of a step (s).
     pub step_seconds: f32,
     /// Acceleration of gravity (m/s2).
@@ -86,6 +88,9 @@ pub struct Settings {
     pub tethers: bool,
     /// Friction coefficient of what sticks, over that of what slides, which is the fabric's (1).
     pub static_friction: f32,
+    /// Whether contact follows particles along their ways; without it, what is thin and fast passes through them. For
+    /// telling what it is worth (`toile plan`).
+    pub continuous: bool,
     /// Workers of a step, 1 or 2.
     pub workers: usize,
     /// Lanes that kernels run on.
@@ -97,6 +102,9 @@ pub struct Settings {
 /// Most substeps of a step. In shorter ones the last bit of a position of f32 a metre from the origin is a speed of several
 /// mm/s: with 4,096 a cloth at rest was thrown about by its own rounding. What asks for more is no number of substeps.
 pub const MAX_SUBSTEPS: u32 = 512;
+
+/// Least share of the substeps: below a tenth no garment keeps its shape.
+const LEAST_SHARE: f32 = 0.1;
 
 /// Shortest and longest step (s); in shorter ones no f32 a metre from the origin moves, longer ones are no steps.
 const STEPS_S: [f32; 2] = [1e-6, 1.0];
@@ -124,6 +132,7 @@ impl Settings {
         };
         Self {
             substeps: self.substeps.map(|n| n.min(MAX_SUBSTEPS)),
+            substep_share: within(self.substep_share, LEAST_SHARE, 1.0, 1.0),
             step_seconds: within(self.step_seconds, STEPS_S[0], STEPS_S[1], STEP_SECONDS),
             gravity: if small(self.gravity, MOST_GRAVITY) { self.gravity } else { GRAVITY },
             max_speed: within(self.max_speed, 0.0, MOST_SPEED, MAX_SPEED),
@@ -155,6 +164,7 @@ impl Default for Settings {
         Self {
             quality: Quality::default(),
             substeps: None,
+            substep_share: 1.0,
             step_seconds: STEP_SECONDS,
             gravity: GRAVITY,
             max_speed: MAX_SPEED,
@@ -163,6 +173,7 @@ impl Default for Settings {
             root: RootSettings::default(),
             tethers: false,
             static_friction: 1.0,
+            continuous: true,
             workers: std::thread::available_parallelism().map_or(1, |n| n.get().min(SHARES)),
             width: Width::widest(),
             timed: false,
@@ -192,6 +203,7 @@ mod tests {
             let wind = Some(Wind { velocity: Vec3A::ZERO, drag: bad, lift: 0.0 });
             let settings = Settings {
                 step_seconds: bad,
+                substep_share: bad,
                 gravity: Vec3A::new(0.0, bad * 1e9, 0.0),
                 max_speed: bad,
                 stretch_damping_s: bad,

@@ -256,6 +256,7 @@ impl Work<'_> {
             friction_static: fabric.friction * self.step.settings.static_friction,
             friction_kinetic: fabric.friction,
             step_seconds: self.step.settings.step_seconds,
+            continuous: self.step.settings.continuous,
         }
     }
 

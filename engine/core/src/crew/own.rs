@@ -2,10 +2,10 @@
 
 use std::marker::PhantomData;
 use std::ptr;
-use std::sync::atomic::AtomicPtr;
 use std::sync::atomic::Ordering::{Acquire, Release};
 
 use super::SHARES;
+use crate::sync::AtomicPtr;
 
 /// One `T` a share, for a job that both workers call through a shared reference.
 pub struct Own<'a, T> {

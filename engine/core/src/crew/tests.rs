@@ -1,5 +1,12 @@
-use super::*;
+use std::hint::spin_loop;
+
+use crate::crew::*;
+use std::sync::Arc;
+use std::sync::atomic::Ordering::{Relaxed, SeqCst};
+use std::time::Duration;
+
 use crate::lanes::Column;
+use crate::sync::{AtomicBool, AtomicUsize, thread};
 
 /// A job that fails where a phase begins before the one before it is over, and that writes plain memory which the other
 /// share reads in the next phase.

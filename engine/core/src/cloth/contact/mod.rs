@@ -37,6 +37,15 @@ pub struct ContactSettings {
     pub friction_kinetic: f32,
     /// Length of a step (s): how far what moves may come until the next search.
     pub step_seconds: f32,
+    /// Whether ways are followed between the ends of a substep, or only these looked at.
+    pub continuous: bool,
+}
+
+impl ContactSettings {
+    /// What moves less than this part of the smallest radius relative to a capsule is not followed.
+    fn quick(&self) -> f32 {
+        if self.continuous { QUICK } else { f32::MAX }
+    }
 }
 
 /// What contact did, counted since the garment was made.
@@ -48,6 +57,8 @@ pub struct Tally {
     pub swept: u64,
     /// Capsules that could not be believed, summed over the steps.
     pub ignored: u64,
+    /// Most pairs of a block of particles and a capsule in one step, and those that there is room for: all there are.
+    pub most_pairs: [u64; 2],
 }
 
 /// The contact of one garment, split among the workers that own its particles.
@@ -71,7 +82,8 @@ impl Contacts {
     /// What contact did so far, all workers together.
     pub fn tally(&self) -> Tally {
         let [a, b] = [self.owners[0].tally, self.owners[1].tally];
-        Tally { near: a.near + b.near, swept: a.swept + b.swept, ignored: a.ignored.max(b.ignored) }
+        let most_pairs = [0, 1].map(|k| a.most_pairs[k] + b.most_pairs[k]);
+        Tally { near: a.near + b.near, swept: a.swept + b.swept, ignored: a.ignored.max(b.ignored), most_pairs }
     }
 
     /// Bytes held.
@@ -137,6 +149,7 @@ impl Owner {
         let Self { blocks, pairs, reach, cones, boxes, planes, tally, .. } = self;
         let count =
             width.run(Find { cols, swept: cones, boxes, planes, blocks, pairs, reach, step_seconds: how.step_seconds });
+        tally.most_pairs = [tally.most_pairs[0].max(count as u64), pairs.len() as u64];
         tally.near += pairs[..count].iter().map(|p| u64::from(p.lanes.count_ones())).sum::<u64>();
         tally.ignored += colliders.capsules().len() as u64 - u64::from(self.ends.sound.count_ones());
     }
@@ -151,7 +164,7 @@ impl Owner {
             share: span[1] - span[0],
             swell: 0.0,
             offset: how.offset_m,
-            quick: QUICK,
+            quick: how.quick(),
             to: cones,
         };
         width.run(prepare);

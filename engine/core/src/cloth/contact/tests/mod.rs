@@ -16,8 +16,13 @@ use super::*;
 use crate::cloth::state::{State, get, set};
 use crate::colliders::RestSphere;
 
-pub const HOW: ContactSettings =
-    ContactSettings { offset_m: 0.002, friction_static: 0.4, friction_kinetic: 0.3, step_seconds: 1.0 / 120.0 };
+pub const HOW: ContactSettings = ContactSettings {
+    offset_m: 0.002,
+    friction_static: 0.4,
+    friction_kinetic: 0.3,
+    step_seconds: 1.0 / 120.0,
+    continuous: true,
+};
 
 /// A small generator of its own: the tests give the same numbers everywhere.
 pub struct Random(pub u64);

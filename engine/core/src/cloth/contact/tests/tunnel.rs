@@ -108,3 +108,21 @@ fn a_capsule_that_teleports_sweeps_nothing_along() {
     assert!((x.z - 0.948).abs() < 1e-5 && x.distance(previous) < 1e-5, "{x} {previous}");
     assert_eq!(bed.contacts.tally().swept, 0);
 }
+
+#[test]
+fn without_continuous_contact_what_is_fast_goes_through() {
+    let ends = [Vec4::new(-0.1, 0.0, 0.0, 0.03), Vec4::new(0.1, 0.0, 0.0, 0.03)];
+    let colliders = colliders(&ends, &ends, &[[0, 1]], false);
+    let ends_at = |continuous: bool| {
+        let mut bed = Bed::new(&[Vec3::new(0.0, 0.05, 0.0)], &colliders);
+        bed.how.continuous = continuous;
+        set(bed.state.columns().v, 0, Vec3A::NEG_Y * 12.0);
+        bed.find(&colliders);
+        bed.send(0, Vec3::new(0.0, -0.05, 0.0));
+        bed.solve([0.0, 1.0]);
+        (bed.at(0).y, bed.contacts.tally().swept)
+    };
+    assert_eq!(ends_at(false), (-0.05, 0));
+    let (y, swept) = ends_at(true);
+    assert!(y > 0.03 && swept == 1, "{y} {swept}");
+}

@@ -19,19 +19,17 @@
 mod own;
 
 use std::any::Any;
-use std::cell::UnsafeCell;
 use std::fmt;
-use std::hint::spin_loop;
 use std::io;
 use std::mem::forget;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::{Acquire, Relaxed, Release, SeqCst};
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize};
-use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use thiserror::Error;
+
+use crate::sync::{AtomicBool, AtomicU64, AtomicUsize, Idle, JoinHandle, LOOKS_BEFORE_TAKING, Slot, pause, thread};
 
 pub use own::Own;
 
@@ -41,14 +39,6 @@ pub const SHARES: usize = 2;
 /// How long the helper stays awake after its last work: longer than the gap between two garments of a step, short
 /// beside the step of 8.3 ms.
 pub const AWAKE: Duration = Duration::from_micros(100);
-
-/// Looks at the other's progress before the caller takes over a share that nobody has begun: about 1 us, six times what
-/// a meeting takes.
-const LOOKS_BEFORE_TAKING: u32 = 64;
-
-/// Looks before a waiting thread offers its core to others at every further look: about 15 us. On a machine whose cores
-/// are all busy the other worker may be waiting for this very core.
-const LOOKS_BEFORE_YIELDING: u32 = 1024;
 
 /// Why there is no crew.
 #[derive(Debug, Error)]
@@ -88,7 +78,7 @@ struct Job {
 }
 
 /// What the two threads share. Phases are numbered by tickets that never repeat, over all runs.
-struct Board {
+pub(crate) struct Board {
     /// The last ticket of the run on the board.
     open: Apart<AtomicU64>,
     /// The last ticket whose share 1 somebody has begun. Share 0 is always the caller's.
@@ -102,7 +92,7 @@ struct Board {
     /// 0, or 1 + ticket * SHARES + share of the first panic of the run.
     failed: AtomicU64,
     /// The job. Written by the caller while all tickets are done; read by whoever holds a share that is not.
-    job: UnsafeCell<Job>,
+    job: Slot<Job>,
 }
 
 // SAFETY: the job's pointer is the only part that is not an atomic. `Crew::run` takes only jobs that are `Sync`, and the
@@ -121,7 +111,7 @@ impl Board {
             asleep: Apart::default(),
             leaving: AtomicBool::new(false),
             failed: AtomicU64::new(0),
-            job: UnsafeCell::new(Job { data: std::ptr::null(), call: nothing, first: 1 }),
+            job: Slot::new(Job { data: std::ptr::null(), call: nothing, first: 1 }),
         }
     }
 
@@ -141,7 +131,7 @@ impl Board {
     /// written.
     unsafe fn work(&self, ticket: u64, share: usize) {
         // SAFETY: see above; the write of the cell happened before `open` was stored, which this thread has acquired.
-        let job = unsafe { *self.job.get() };
+        let job = unsafe { self.job.read() };
         // Relaxed: only saves work. The caller of the run looks again after it has acquired every `done`.
         if self.failed.load(Relaxed) == 0 {
             let phase = (ticket - job.first) as usize;
@@ -169,15 +159,10 @@ impl Board {
     }
 }
 
-/// Waits a moment: longer, and generously, after many looks.
-fn pause(looks: u32) {
-    if looks < LOOKS_BEFORE_YIELDING { spin_loop() } else { thread::yield_now() }
-}
-
 /// The helper's life: claim share 1 of one ticket after the other.
 fn help(board: &Board) {
     let (mut ticket, mut looks) = (1, 0);
-    let mut rest = Instant::now() + AWAKE;
+    let mut rest = Idle::until(AWAKE);
     loop {
         // Acquire: the job was written before.
         if board.open.0.load(Acquire) < ticket {
@@ -186,11 +171,11 @@ fn help(board: &Board) {
                 return;
             }
             looks += 1;
-            if looks % 64 == 0 && Instant::now() >= rest {
+            if rest.is_over(looks) {
                 sleep(board, ticket);
-                rest = Instant::now() + AWAKE;
+                rest = Idle::until(AWAKE);
             }
-            spin_loop();
+            pause(0);
         } else if !board.is_done(ticket - 1) {
             // The meeting: the phase before is not over.
             looks += 1;
@@ -201,7 +186,7 @@ fn help(board: &Board) {
                     // SAFETY: share 1 was claimed, its run is open, and the phases before it are done.
                     unsafe { board.work(ticket, 1) };
                     ticket += 1;
-                    rest = Instant::now() + AWAKE;
+                    rest = Idle::until(AWAKE);
                 }
                 // The caller did not wait; go on behind what it took.
                 Err(taken) => ticket = taken + 1,
@@ -225,7 +210,7 @@ fn sleep(board: &Board, ticket: u64) {
 
 /// The workers. A run borrows the crew, so two runs cannot overlap and a job cannot start another.
 pub struct Crew {
-    board: Arc<Board>,
+    pub(crate) board: Arc<Board>,
     helper: Option<JoinHandle<()>>,
     last: u64,
     taken: u64,
@@ -234,12 +219,21 @@ pub struct Crew {
 impl Crew {
     /// A crew of 1 or 2 workers; the second is a thread that lives as long as the crew. At load.
     pub fn new(workers: usize) -> Result<Self, CrewError> {
+        Self::beginning(workers, || ())
+    }
+
+    /// The same, whose helper does something first, such as to ask for a core of its own.
+    pub fn beginning(workers: usize, begin: impl FnOnce() + Send + 'static) -> Result<Self, CrewError> {
         if !(1..=SHARES).contains(&workers) {
             return Err(CrewError::Workers(workers));
         }
         let board = Arc::new(Board::new());
         let theirs = board.clone();
-        let start = || thread::Builder::new().name("toile-cloth".into()).spawn(move || help(&theirs));
+        let life = move || {
+            begin();
+            help(&theirs);
+        };
+        let start = || thread::Builder::new().name("toile-cloth".into()).spawn(life);
         let helper = if workers == SHARES { Some(start()?) } else { None };
         Ok(Self { board, helper, last: 0, taken: 0 })
     }
@@ -280,7 +274,7 @@ impl Crew {
         self.last += phases as u64;
         // SAFETY: every ticket so far is done, so nobody reads the cell: `work` is entered only with a ticket that is
         // open and not done.
-        unsafe { *board.job.get() = Job { data: (&raw const job).cast(), call: call::<F>, first } };
+        unsafe { board.job.write(Job { data: (&raw const job).cast(), call: call::<F>, first }) };
         // Relaxed: published by `open`.
         board.failed.store(0, Relaxed);
         // SeqCst: publishes the job as a release does, and see `sleep`.
@@ -378,6 +372,3 @@ impl<T> Items<T> {
         (i < self.len).then(|| unsafe { &mut *self.data.add(i) })
     }
 }
-
-#[cfg(test)]
-mod tests;

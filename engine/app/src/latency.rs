@@ -1,0 +1,117 @@
+//! `toile latency`: from what the sensor saw until a picture of it is taken, on this machine.
+
+use std::fs;
+
+use serde::Serialize;
+use toile_engine::pace::tape::{self, Entry};
+use toile_engine::pace::threads;
+use toile_perf::latency::{self, Cast, Goal, Latency, Options, Quantiles};
+
+use crate::cli::LatencyArgs;
+use crate::exit::AppError;
+use crate::machine::Machine;
+use crate::outfit::Recipe;
+use crate::output::OutputFolder;
+use crate::report::Document;
+use crate::shopper;
+use crate::terminal::{self, Paint, Tone, Words};
+
+/// The body of the JSON.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LatencyReport {
+    /// What was on stage.
+    pub scene: Recipe,
+    /// What was found.
+    #[serde(flatten)]
+    pub found: Latency,
+    /// The files written.
+    pub files: Vec<std::path::PathBuf>,
+}
+
+/// Runs `toile latency`.
+///
+/// # Errors
+/// A session without joints, a garment that is not in the wardrobe, files that cannot be written, and with `--gate` a goal
+/// that was missed.
+pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
+    let words = Words::new(args.quiet || args.json);
+    let mut out = OutputFolder::prepare(&args.out)?;
+    let session = shopper::open(args.session.as_deref(), None)?;
+    let track = shopper::believable(&session);
+    let from = shopper::stands_from(&track);
+    let Some(first) = track.get(from) else {
+        return Err(AppError::Input(format!("session {} has no joints, so that no pose can be shown", session.name)));
+    };
+    let recipe = Recipe::write(&session, &args.wish)?;
+    let (frame, reader) = recipe.make(first)?;
+    // Only now: a helper with a real-time priority shares its core with nobody who waits for it.
+    let (crew, worker) = threads::crew(args.workers).map_err(AppError::input)?;
+    words.say(&format!("running for {} s, with {} threads of load", args.seconds, args.load));
+    let options = Options { seconds: args.seconds, load: args.load, record: args.record.is_some(), rung: args.rung };
+    let text = serde_json::to_string(&recipe).map_err(AppError::internal)?;
+    let mut bytes = tape::header(&text);
+    tape::write(&Entry::Dressed(*first), &mut bytes);
+    let cast = Cast { frame: frame.with_crew(crew), reader, joints: &session.joints[from..], worker };
+    let found = latency::run(cast, &options, |entry| tape::write(entry, &mut bytes)).map_err(AppError::internal)?;
+    if let Some(path) = &args.record {
+        let refused =
+            |e| format!("recording {} cannot be written ({e}); name another file with --record", path.display());
+        fs::write(path, &bytes).map_err(|e| AppError::Input(refused(e)))?;
+    }
+    let machine = Machine::here();
+    let machine = format!("{}, {} cores, {}", machine.cpu, machine.cores, machine.lanes);
+    out.write("latency.html", latency::page(&found, &machine, &recipe.words()).as_bytes())?;
+    let mut files = out.commit()?;
+    files.extend(args.record.clone());
+    let missed: Vec<&Goal> = found.goals.iter().filter(|g| !g.pass).collect();
+    let verdict = missed.first().filter(|_| args.gate).map(|g| {
+        format!(
+            "{} is {:.0} us, more than {:.0} us; run it on a quiet machine or choose less quality",
+            g.name, g.us, g.limit_us
+        )
+    });
+    let report = LatencyReport { scene: recipe, found, files };
+    if args.json {
+        terminal::print_json(&Document::new("latency", report))?;
+    } else {
+        terminal::print(&table(&report, Paint::for_stdout()))?;
+    }
+    verdict.map_or(Ok(()), |verdict| Err(AppError::Threshold(verdict)))
+}
+
+/// The figures as people read them.
+fn table(report: &LatencyReport, paint: Paint) -> String {
+    let found = &report.found;
+    let mut lines = vec![paint.tone(&format!("Latency: {}", report.scene.words()), Tone::Strong).into_owned()];
+    lines.push(format!("  {:<20} {:>9} {:>9} {:>9} {:>9} {:>9}", "us", "p50", "p99", "p99.9", "max", "budget"));
+    for stage in &found.stages {
+        let Quantiles { p50, p99, p999, max, .. } = stage.us;
+        let budget = stage.budget_us.map_or_else(String::new, |us| us.to_string());
+        lines.push(format!("  {:<20} {p50:>9.1} {p99:>9.1} {p999:>9.1} {max:>9.1} {budget:>9}", stage.name));
+    }
+    let (a, q) = (&found.attributed, &found.quality);
+    lines.push(format!(
+        "\n  {} of {} steps late ({} pre-empted, {} page faults, {} solver, {} other), {} of them dropped",
+        found.deadline_misses,
+        found.steps + found.dropped,
+        a.preempted,
+        a.page_fault,
+        a.solver,
+        a.other,
+        found.dropped
+    ));
+    let [mean, p99, _] = q.strain.map(|s| 100.0 * s);
+    lines.push(format!(
+        "  at strain {mean:.2} % (99 % under {p99:.2} %), penetration {:.2} mm, {} particles, {} substeps",
+        q.penetration_mm, q.particles, q.substeps
+    ));
+    lines.push(format!("  steps on each rung of quality: {:?}", q.rungs));
+    for goal in &found.goals {
+        let (word, tone) = if goal.pass { ("kept", Tone::Good) } else { ("missed", Tone::Warn) };
+        let said = format!("  {word:<7} {} <= {:.0} us: {:.0} us", goal.name, goal.limit_us, goal.us);
+        lines.push(paint.tone(&said, tone).into_owned());
+    }
+    lines.extend(found.warnings.iter().map(|w| paint.tone(&format!("  {w}"), Tone::Warn).into_owned()));
+    lines.extend(report.files.iter().map(|f| format!("  {}", f.display())));
+    lines.join("\n") + "\n"
+}

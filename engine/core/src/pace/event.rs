@@ -1,0 +1,100 @@
+//! Events: what happened that somebody may want to know, handed out of the loop through a bounded queue.
+
+use super::governor::Change;
+
+/// Events that wait to be told: half a second in which every step has four.
+pub const EVENTS: usize = 256;
+
+/// The name of the bound, as warnings give it.
+pub const EVENTS_NAME: &str = "EVENTS (engine/core/src/pace/event.rs)";
+
+/// A gap between two sensor frames from which on the sensor counts as lost (ns): 15 frames of 30 Hz.
+pub const SENSOR_LOST_NS: u64 = 500_000_000;
+
+/// What happened, in the step of this number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event {
+    /// The step.
+    pub tick: u64,
+    /// When the step was due (ns).
+    pub scheduled_ns: u64,
+    /// What happened.
+    pub what: What,
+}
+
+/// What can happen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum What {
+    /// The governor gave up quality, or gave it back.
+    Quality(Change),
+    /// So many steps were given up before this one, because the thread woke too late.
+    Dropped(u64),
+    /// The step was not published within its period.
+    Missed(Miss),
+    /// No sensor frame has come for [`SENSOR_LOST_NS`].
+    SensorLost,
+    /// It has come back.
+    SensorBack,
+    /// Another scene is stepped from this step on: its number.
+    Changed(u64),
+    /// A worker panicked; the garments kept their last places.
+    Broken,
+    /// A garment ended a step with what is no number and was put back.
+    RolledBack,
+}
+
+/// A missed deadline and what the thread's own counters say of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Miss {
+    /// From when the step was due until it was published (ns).
+    pub total_ns: u64,
+    /// From when it was due until it began (ns): woken late, or the step before was long.
+    pub late_ns: u64,
+    /// From begin to publication (ns).
+    pub step_ns: u64,
+    /// What the thread's counters grew by since the end of the step before.
+    pub counted: Counters,
+}
+
+/// What a system counts of a thread; all 0 where it does not say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counters {
+    /// Time on a core (ns).
+    pub cpu_ns: u64,
+    /// Time ready to run, but without a core (ns).
+    pub waited_ns: u64,
+    /// Times that its core was taken away.
+    pub preempted: u64,
+    /// Page faults.
+    pub faults: u64,
+}
+
+impl Counters {
+    /// What they grew by since earlier ones.
+    #[must_use]
+    pub fn since(&self, earlier: &Self) -> Self {
+        Self {
+            cpu_ns: self.cpu_ns.saturating_sub(earlier.cpu_ns),
+            waited_ns: self.waited_ns.saturating_sub(earlier.waited_ns),
+            preempted: self.preempted.saturating_sub(earlier.preempted),
+            faults: self.faults.saturating_sub(earlier.faults),
+        }
+    }
+}
+
+/// Reads the calling thread's counters, allocating nothing.
+pub trait Account: Send {
+    /// The counters now. `closely` says that there is time for those that cost more: behind a step that was late already,
+    /// and now and then in the time that a step leaves. The others are then as they were.
+    fn counters(&mut self, closely: bool) -> Counters;
+}
+
+/// No counters.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NoAccount;
+
+impl Account for NoAccount {
+    fn counters(&mut self, _closely: bool) -> Counters {
+        Counters::default()
+    }
+}

@@ -1,0 +1,241 @@
+//! Governor: gives up quality in a stated order when steps grow long, and gives it back when there is room again.
+//!
+//! It looks at nothing but the time that steps took, so the same times give the same decisions. A deadline is never missed
+//! to keep quality: one step beyond its period, or two of the last eight beyond [`LONG`] of it, give up a rung at once. Quality comes
+//! back a rung at a time, and only where the longest step of a whole while would still be short at the next rung; where
+//! that proves wrong soon after, the while doubles, up to [`LONGEST_WHILE`].
+
+use crate::meter::PERIOD_NS;
+
+/// What a rung leaves of the whole quality.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rung {
+    /// What is given up on this rung.
+    pub gives_up: &'static str,
+    /// Share of the substeps that is made.
+    pub substep_share: f32,
+    /// Whether there is wind.
+    pub wind: bool,
+}
+
+/// The ladder, whole quality first. The order: substeps, then how often self-collision is looked for, then garments that
+/// are far away, then the wind; models that come later take their place in it. `toile latency --rung R` tells
+/// the error of each.
+pub const LADDER: [Rung; 4] = [
+    Rung { gives_up: "nothing", substep_share: 1.0, wind: true },
+    Rung { gives_up: "a quarter of the substeps", substep_share: 0.75, wind: true },
+    Rung { gives_up: "half of the substeps", substep_share: 0.5, wind: true },
+    Rung { gives_up: "the wind", substep_share: 0.5, wind: false },
+];
+
+/// Share of the period from which on a step is long.
+pub const LONG: f32 = 0.7;
+
+/// Share of the period below which a step, as it is expected on the next rung, leaves room for that rung.
+pub const SHORT: f32 = 0.5;
+
+/// Steps over which two long ones count: 67 ms.
+const WINDOW: u32 = 8;
+
+/// Steps for which there must be room before quality comes back: 1 s at first.
+pub const FIRST_WHILE: u64 = 120;
+
+/// The longest such while: 64 s.
+pub const LONGEST_WHILE: u64 = 64 * FIRST_WHILE;
+
+/// Steps within which giving up again proves that quality came back too early: 5 s.
+const TOO_EARLY: u64 = 600;
+
+/// A change of rung.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Change {
+    /// Place in [`LADDER`] before.
+    pub from: u8,
+    /// Place in [`LADDER`] from now on.
+    pub to: u8,
+}
+
+/// Decides on the rung.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Governor {
+    rung: u8,
+    /// Whether each of the last steps was long, the newest in the lowest bit.
+    long: u32,
+    /// Longest step since the rung was taken or the while began (ns).
+    longest_ns: u64,
+    /// Steps since then.
+    steps: u64,
+    /// Steps since quality last came back.
+    since_up: u64,
+    /// The while, as it is now (steps).
+    patience: u64,
+    /// Whether it stays where it is, whatever happens.
+    held: bool,
+}
+
+impl Default for Governor {
+    fn default() -> Self {
+        Self { rung: 0, long: 0, longest_ns: 0, steps: 0, since_up: u64::MAX, patience: FIRST_WHILE, held: false }
+    }
+}
+
+impl Governor {
+    /// One that stays on a rung (the last, where there is no such), to see what it costs and which error it has.
+    pub fn held_on(rung: u8) -> Self {
+        Self { rung: rung.min(LADDER.len() as u8 - 1), held: true, ..Self::default() }
+    }
+
+    /// The rung as it is.
+    pub fn rung(&self) -> &'static Rung {
+        &LADDER[usize::from(self.rung)]
+    }
+
+    /// Its place in [`LADDER`].
+    pub fn place(&self) -> u8 {
+        self.rung
+    }
+
+    /// A step took so long (ns). Gives the change of rung that the next step is to be taken with.
+    pub fn after(&mut self, step_ns: u64) -> Option<Change> {
+        if self.held {
+            return None;
+        }
+        let share = step_ns as f32 / PERIOD_NS as f32;
+        self.long = (self.long << 1 | u32::from(share > LONG)) & ((1 << WINDOW) - 1);
+        self.longest_ns = self.longest_ns.max(step_ns);
+        self.steps += 1;
+        self.since_up = self.since_up.saturating_add(1);
+        if share > 1.0 || self.long.count_ones() >= 2 {
+            return self.down();
+        }
+        if self.steps < self.patience {
+            return None;
+        }
+        if self.since_up >= LONGEST_WHILE {
+            // It has gone well for a long time: what made it wait is over.
+            self.patience = (self.patience / 2).max(FIRST_WHILE);
+        }
+        let room = self.has_room();
+        self.begin();
+        if room { self.up() } else { None }
+    }
+
+    /// Whether the longest step of the while would be short on the next better rung.
+    fn has_room(&self) -> bool {
+        let Some(better) = self.rung.checked_sub(1) else { return false };
+        let ratio = LADDER[usize::from(better)].substep_share / self.rung().substep_share;
+        self.longest_ns as f32 * ratio < SHORT * PERIOD_NS as f32
+    }
+
+    fn begin(&mut self) {
+        (self.long, self.longest_ns, self.steps) = (0, 0, 0);
+    }
+
+    fn down(&mut self) -> Option<Change> {
+        self.begin();
+        let from = self.rung;
+        if usize::from(from) + 1 == LADDER.len() {
+            return None;
+        }
+        if self.since_up < TOO_EARLY {
+            self.patience = (self.patience * 2).min(LONGEST_WHILE);
+            // Counted once.
+            self.since_up = TOO_EARLY;
+        }
+        self.rung += 1;
+        Some(Change { from, to: self.rung })
+    }
+
+    fn up(&mut self) -> Option<Change> {
+        let from = self.rung;
+        self.rung -= 1;
+        self.since_up = 0;
+        Some(Change { from, to: self.rung })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: u64 = 1_000_000;
+
+    /// Plays steps whose whole quality takes `full` ms, which half of the substeps halve; gives the changes with their
+    /// steps, and how many were beyond the period.
+    fn play(governor: &mut Governor, steps: u64, full: impl Fn(u64) -> f64) -> (Vec<(u64, u8)>, u64) {
+        let (mut changes, mut missed) = (Vec::new(), 0);
+        for step in 0..steps {
+            let ns = (full(step) * f64::from(governor.rung().substep_share) * MS as f64) as u64;
+            missed += u64::from(ns > PERIOD_NS);
+            changes.extend(governor.after(ns).map(|c| (step, c.to)));
+        }
+        (changes, missed)
+    }
+
+    #[test]
+    fn short_steps_change_nothing_and_one_long_one_neither() {
+        let mut governor = Governor::default();
+        let (changes, missed) = play(&mut governor, 10_000, |step| if step % 100 == 7 { 6.5 } else { 3.0 });
+        assert_eq!((changes, missed), (vec![], 0));
+    }
+
+    #[test]
+    fn long_steps_give_up_a_rung_after_the_second() {
+        let (changes, missed) = play(&mut Governor::default(), 1_000, |step| if step < 100 { 3.0 } else { 6.5 });
+        assert_eq!(changes, [(101, 1)], "and three quarters of 6.5 ms are not long");
+        assert_eq!(missed, 0);
+    }
+
+    #[test]
+    fn a_step_beyond_its_period_gives_up_a_rung_at_once_down_to_the_last() {
+        let (changes, missed) = play(&mut Governor::default(), 500, |_| 40.0);
+        assert_eq!(changes, [(0, 1), (1, 2), (2, 3)]);
+        assert_eq!(missed, 500, "nothing helps against that");
+        let (changes, missed) = play(&mut Governor::default(), 500, |_| 10.0);
+        assert_eq!((changes[0], missed), ((0, 1), 1));
+    }
+
+    #[test]
+    fn quality_comes_back_after_a_while_a_rung_at_a_time() {
+        let mut governor = Governor::default();
+        play(&mut governor, 100, |_| 11.0);
+        assert_eq!(governor.place(), 2);
+        let (changes, _) = play(&mut governor, 1_000, |_| 3.0);
+        assert_eq!(changes.iter().map(|c| c.1).collect::<Vec<_>>(), [1, 0]);
+        assert!(changes[0].0 >= FIRST_WHILE / 2 && changes[1].0 - changes[0].0 == FIRST_WHILE, "{changes:?}");
+    }
+
+    #[test]
+    fn a_load_that_fits_only_the_lower_rung_does_not_make_it_swing() {
+        let mut governor = Governor::default();
+        // Three quarters of it leave room by no means, whole quality is long.
+        let (changes, _) = play(&mut governor, 120 * 600, |_| 6.2);
+        assert_eq!(changes, [(1, 1)]);
+    }
+
+    #[test]
+    fn a_load_that_comes_and_goes_is_tried_less_and_less_often() {
+        let mut governor = Governor::default();
+        // Every two seconds, half a second of steps that are too long at whole quality.
+        let (changes, missed) = play(&mut governor, 120 * 600, |step| if step % 240 < 60 { 9.0 } else { 2.0 });
+        let late = changes.iter().filter(|c| c.0 > 120 * 300).count();
+        assert!(changes.len() < 60 && late <= 6, "{} changes, {late} of them late: {changes:?}", changes.len());
+        assert!(missed <= changes.len() as u64, "each rise is paid for once at most: {missed}");
+    }
+
+    #[test]
+    fn one_that_is_held_stays_where_it_is() {
+        let mut governor = Governor::held_on(2);
+        let (changes, _) = play(&mut governor, 500, |step| if step < 250 { 1.0 } else { 40.0 });
+        assert_eq!((changes, governor.place(), Governor::held_on(99).place()), (vec![], 2, 3));
+    }
+
+    #[test]
+    fn the_ladder_only_gives_up() {
+        for pair in LADDER.windows(2) {
+            assert!(pair[1].substep_share <= pair[0].substep_share && (pair[0].wind || !pair[1].wind));
+            assert!(pair[1] != pair[0]);
+        }
+        assert_eq!((LADDER[0].substep_share, LADDER[0].wind), (1.0, true));
+    }
+}

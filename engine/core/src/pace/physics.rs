@@ -1,0 +1,456 @@
+//! Physics: the life that steps the scene, 120 times a second.
+
+use toile_assets::limits::STEP_HZ;
+use toile_sensors::frame::Joints;
+
+use super::Turn;
+use super::change::Taker;
+use super::event::{Account, Counters, Event, Miss, SENSOR_LOST_NS, What};
+use super::governor::{Governor, LADDER, Rung};
+use super::intake::Intake;
+use super::queue::Sender;
+use super::schedule::{Due, Schedule, Tick};
+use super::sense::Seen;
+use super::tape::Entry;
+use crate::clock::Clock;
+use crate::cloth::Wind;
+use crate::frame::{Frame, Times};
+use crate::meter::{Meter, PERIOD_NS};
+use crate::relay::Reader;
+
+/// Steps between two measurements of the error: ten a second, for they take as long as some substeps.
+pub const MEASURE_EVERY: u64 = 12;
+
+/// Most dropped steps whose lateness is metered one by one: ten seconds of them.
+const MOST_TOLD: u64 = 10 * STEP_HZ as u64;
+
+/// What is stepped: the frame, or what stands for it in a test.
+pub trait Scene {
+    /// One step to where the joints are; publishes a snapshot with these times.
+    fn step(&mut self, joints: &Joints, times: Times, clock: &impl Clock);
+
+    /// The quality from the next step on.
+    fn set_rung(&mut self, rung: &Rung);
+
+    /// What is measured behind a step, when there is time.
+    fn measure(&mut self);
+
+    /// Forgets what was metered so far.
+    fn clear_meters(&mut self);
+
+    /// A hash of the state.
+    fn fingerprint(&self) -> u64;
+
+    /// Takes over what does not go with the scene before it: who works on the steps.
+    fn succeed(&mut self, _before: &mut Self) {}
+
+    /// Steps that a worker broke off, and steps that a garment rolled back, so far.
+    fn troubles(&self) -> [u64; 2];
+}
+
+/// The frame as the loop steps it.
+#[derive(Debug)]
+pub struct Staged {
+    /// The frame.
+    pub frame: Frame,
+    /// The wind at whole quality.
+    wind: Option<Wind>,
+}
+
+impl Staged {
+    /// At load, when the shopper is dressed.
+    pub fn new(mut frame: Frame) -> Self {
+        frame.measure_every(MEASURE_EVERY);
+        Self { wind: frame.settings().wind, frame }
+    }
+}
+
+impl Scene for Staged {
+    fn step(&mut self, joints: &Joints, times: Times, clock: &impl Clock) {
+        self.frame.step_at(joints, times, clock);
+    }
+
+    fn set_rung(&mut self, rung: &Rung) {
+        self.frame.set_quality(rung.substep_share, self.wind.filter(|_| rung.wind));
+    }
+
+    fn measure(&mut self) {
+        self.frame.measure();
+    }
+
+    fn clear_meters(&mut self) {
+        self.frame.clear_meters();
+    }
+
+    fn fingerprint(&self) -> u64 {
+        self.frame.fingerprint()
+    }
+
+    fn succeed(&mut self, before: &mut Self) {
+        self.frame.take_crew(&mut before.frame);
+    }
+
+    fn troubles(&self) -> [u64; 2] {
+        [self.frame.broken(), self.frame.cloths().iter().map(|c| c.events.rolled_back).sum()]
+    }
+}
+
+/// A scene and its intake: what the loop and a replay both step, by the same function.
+#[derive(Debug)]
+pub struct Stepper<S> {
+    /// The scene.
+    pub scene: S,
+    intake: Intake,
+    /// The newest sensor frame.
+    newest: (u64, u64),
+    rung: u8,
+}
+
+impl<S: Scene> Stepper<S> {
+    /// A scene that has not seen anybody move yet.
+    pub fn new(scene: S) -> Self {
+        Self { scene, intake: Intake::default(), newest: (0, 0), rung: 0 }
+    }
+
+    /// From the next step on. A rung that there is not is the last.
+    pub fn set_rung(&mut self, rung: u8) {
+        if rung != self.rung {
+            self.rung = rung;
+            self.scene.set_rung(&LADDER[usize::from(rung).min(LADDER.len() - 1)]);
+        }
+    }
+
+    /// A sensor frame, for the step that is due at `scheduled_ns`.
+    pub fn take(&mut self, seen: &Seen, scheduled_ns: u64) {
+        if self.intake.take(&seen.joints, end_of(scheduled_ns)) {
+            self.newest = (seen.arrived_ns, seen.number);
+        }
+    }
+
+    /// Changes the scene for another, which is set to the rung as it is; where somebody else comes with it nobody's motion
+    /// is carried on.
+    pub fn change(&mut self, scene: &mut S, afresh: bool) {
+        scene.succeed(&mut self.scene);
+        std::mem::swap(&mut self.scene, scene);
+        self.scene.set_rung(&LADDER[usize::from(self.rung).min(LADDER.len() - 1)]);
+        if afresh {
+            (self.intake, self.newest) = (Intake::default(), (0, 0));
+        }
+    }
+
+    /// The joints as a step that is due then (ns) would have them.
+    pub fn joints_for(&self, scheduled_ns: u64) -> Joints {
+        self.intake.at(end_of(scheduled_ns))
+    }
+
+    /// When the newest sensor frame was taken (ns); 0 is none.
+    pub fn seen_ns(&self) -> u64 {
+        self.intake.seen_ns().unwrap_or(0)
+    }
+
+    /// One step: the joints as they are at its end.
+    pub fn step(&mut self, scheduled_ns: u64, begun_ns: u64, clock: &impl Clock) {
+        let joints = self.intake.at(end_of(scheduled_ns));
+        let (arrived_ns, frame) = self.newest;
+        let seen_ns = self.intake.seen_ns().unwrap_or(0);
+        self.scene.step(&joints, Times { seen_ns, arrived_ns, frame, scheduled_ns, begun_ns, published_ns: 0 }, clock);
+    }
+}
+
+/// The time that a step's result is for (ns).
+fn end_of(scheduled_ns: u64) -> u64 {
+    scheduled_ns + PERIOD_NS
+}
+
+/// What the loop meters beside the frame's own stages; all in ns of the loop's clock.
+#[derive(Debug, Clone, Default)]
+pub struct Gauges {
+    /// From when a step was due until it began; of steps that were dropped, until the next began.
+    pub late: Meter,
+    /// The intake.
+    pub intake: Meter,
+    /// From begin to publication.
+    pub step: Meter,
+    /// From when a step was due until it was published, dropped ones included: corrected for coordinated omission.
+    pub response: Meter,
+    /// From a sensor frame's arrival to the begin of the first step that knew it.
+    pub wait: Meter,
+    /// From a sensor frame's arrival to the publication of the first snapshot that knew it.
+    pub reaction: Meter,
+    /// Steps taken.
+    pub steps: u64,
+    /// Steps dropped.
+    pub dropped: u64,
+    /// Steps that were published after their period.
+    pub missed: u64,
+    /// Steps on each rung of the ladder.
+    pub rungs: [u64; LADDER.len()],
+    /// Sensor frames that were overwritten before a step looked.
+    pub skipped: u64,
+}
+
+impl Gauges {
+    /// Forgets everything, allocating nothing.
+    fn clear(&mut self) {
+        let Self { late, intake, step, response, wait, reaction, .. } = self;
+        [late, intake, step, response, wait, reaction].into_iter().for_each(Meter::clear);
+        (self.steps, self.dropped, self.missed, self.skipped) = (0, 0, 0, 0);
+        self.rungs = [0; LADDER.len()];
+    }
+}
+
+/// When a step was due, begun and published (ns).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Taken {
+    /// When it was due.
+    pub scheduled_ns: u64,
+    /// When it began.
+    pub begun_ns: u64,
+    /// When it was published.
+    pub ended_ns: u64,
+}
+
+/// The ends of what the physics writes to, beside the snapshots.
+#[derive(Debug)]
+pub struct Outlets {
+    /// What happened.
+    pub events: Sender<Event>,
+    /// What a replay needs, where somebody records.
+    pub tape: Option<Sender<Entry>>,
+}
+
+/// The physics' life.
+#[derive(Debug)]
+pub struct Physics<S, C, A> {
+    /// What is stepped.
+    pub stepper: Stepper<S>,
+    /// What was metered.
+    pub gauges: Gauges,
+    clock: C,
+    schedule: Schedule,
+    governor: Governor,
+    seen: Reader<Seen>,
+    outlets: Outlets,
+    changes: Option<Taker<S>>,
+    taken: Taken,
+    account: A,
+    counters: Counters,
+    troubles: [u64; 2],
+    /// Steps taken, and after how many the meters begin.
+    tick: u64,
+    warm_up: u64,
+    /// Number of the last sensor frame, when it came, and whether there have been none for too long.
+    last: u64,
+    last_ns: u64,
+    lost: bool,
+}
+
+impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
+    /// At load; the first step is due at `origin_ns`.
+    pub fn new(scene: S, clock: C, origin_ns: u64, seen: Reader<Seen>, outlets: Outlets, account: A) -> Self {
+        Self {
+            troubles: scene.troubles(),
+            stepper: Stepper::new(scene),
+            gauges: Gauges::default(),
+            clock,
+            schedule: Schedule::new(origin_ns, STEP_HZ),
+            governor: Governor::default(),
+            seen,
+            outlets,
+            changes: None,
+            taken: Taken::default(),
+            account,
+            counters: Counters::default(),
+            tick: 0,
+            warm_up: 0,
+            last: 0,
+            last_ns: origin_ns,
+            lost: false,
+        }
+    }
+
+    /// The same, whose meters begin after so many steps.
+    #[must_use]
+    pub fn warming_up(self, steps: u64) -> Self {
+        Self { warm_up: steps, ..self }
+    }
+
+    /// The same, held on a rung of the ladder whatever happens.
+    #[must_use]
+    pub fn held_on(mut self, rung: u8) -> Self {
+        self.governor = Governor::held_on(rung);
+        self.stepper.set_rung(self.governor.place());
+        self
+    }
+
+    /// The same, whose scene is changed for those that are handed to it.
+    #[must_use]
+    pub fn changing(self, changes: Taker<S>) -> Self {
+        Self { changes: Some(changes), ..self }
+    }
+
+    /// The last step.
+    pub fn taken(&self) -> Taken {
+        self.taken
+    }
+
+    /// Steps taken so far, the first ones included.
+    pub fn ticks(&self) -> u64 {
+        self.tick
+    }
+
+    /// The place in the ladder.
+    pub fn rung(&self) -> u8 {
+        self.governor.place()
+    }
+
+    /// One step that is due.
+    fn step(&mut self, due: Tick) {
+        if self.tick == self.warm_up && self.tick > 0 {
+            self.gauges.clear();
+            self.stepper.scene.clear_meters();
+        }
+        let begun = self.clock.now_ns();
+        self.drop_steps(&due, begun);
+        self.change(due.scheduled_ns);
+        let news = self.look(due.scheduled_ns, begun);
+        self.gauges.intake.add(self.clock.now_ns() - begun);
+        self.stepper.step(due.scheduled_ns, begun, &self.clock);
+        let ended = self.clock.now_ns();
+        self.taken = Taken { scheduled_ns: due.scheduled_ns, begun_ns: begun, ended_ns: ended };
+        let counted = self.count(ended - due.scheduled_ns > PERIOD_NS);
+        self.meter(&due, begun, ended, news);
+        let miss = Miss {
+            total_ns: ended - due.scheduled_ns,
+            late_ns: begun - due.scheduled_ns,
+            step_ns: ended - begun,
+            counted,
+        };
+        if miss.total_ns > PERIOD_NS {
+            self.gauges.missed += 1;
+            self.tell(due.scheduled_ns, What::Missed(miss));
+        }
+        self.record(due.scheduled_ns);
+        self.govern(due.scheduled_ns, miss.step_ns);
+        self.look_for_trouble(due.scheduled_ns);
+        self.gauges.steps += 1;
+        self.tick += 1;
+        // In the time that is left, if there is enough of it.
+        if miss.total_ns < PERIOD_NS / 2 {
+            self.stepper.scene.measure();
+            if self.tick.is_multiple_of(MEASURE_EVERY) {
+                self.count(true);
+            }
+        }
+    }
+
+    /// Steps that are given up are metered as late as the one that is taken in their place.
+    fn drop_steps(&mut self, due: &Tick, begun: u64) {
+        self.gauges.late.add(begun - due.scheduled_ns);
+        if due.dropped == 0 {
+            return;
+        }
+        self.gauges.dropped += due.dropped;
+        for k in 1..=due.dropped.min(MOST_TOLD) {
+            let late = begun - due.scheduled_ns + k * PERIOD_NS;
+            self.gauges.late.add(late);
+            self.gauges.response.add(late);
+        }
+        self.tell(due.scheduled_ns, What::Dropped(due.dropped));
+    }
+
+    /// Changes the scene, if another was handed over.
+    fn change(&mut self, scheduled_ns: u64) {
+        let Some(changes) = &mut self.changes else { return };
+        let stepper = &mut self.stepper;
+        let taken = changes.take(|change| stepper.change(&mut change.scene, change.afresh));
+        let Some((number, afresh)) = taken else { return };
+        self.troubles = self.stepper.scene.troubles();
+        if let Some(tape) = &mut self.outlets.tape {
+            tape.push(Entry::Changed { number, afresh });
+        }
+        self.tell(scheduled_ns, What::Changed(number));
+    }
+
+    /// Takes the newest sensor frame, if there is a new one; gives when it arrived (ns).
+    fn look(&mut self, scheduled_ns: u64, begun: u64) -> Option<u64> {
+        let news = self.seen.news().copied().filter(|seen| seen.number > 0);
+        if let Some(seen) = news {
+            self.gauges.skipped += (seen.number - self.last).saturating_sub(1);
+            self.last = seen.number;
+            self.last_ns = begun;
+            self.stepper.take(&seen, scheduled_ns);
+            if let Some(tape) = &mut self.outlets.tape {
+                tape.push(Entry::Seen(seen));
+            }
+        }
+        let lost = begun.saturating_sub(self.last_ns) > SENSOR_LOST_NS;
+        if lost != self.lost {
+            self.lost = lost;
+            self.tell(scheduled_ns, if lost { What::SensorLost } else { What::SensorBack });
+        }
+        news.map(|seen| seen.arrived_ns)
+    }
+
+    fn meter(&mut self, due: &Tick, begun: u64, ended: u64, news: Option<u64>) {
+        let gauges = &mut self.gauges;
+        gauges.step.add(ended - begun);
+        gauges.response.add(ended - due.scheduled_ns);
+        gauges.rungs[usize::from(self.governor.place())] += 1;
+        if let Some(arrived_ns) = news {
+            gauges.wait.add(begun.saturating_sub(arrived_ns));
+            gauges.reaction.add(ended.saturating_sub(arrived_ns));
+        }
+    }
+
+    /// What the thread's counters grew by since they were last looked at.
+    fn count(&mut self, closely: bool) -> Counters {
+        let now = self.account.counters(closely);
+        now.since(&std::mem::replace(&mut self.counters, now))
+    }
+
+    fn record(&mut self, scheduled_ns: u64) {
+        if let Some(tape) = &mut self.outlets.tape {
+            let fingerprint = self.stepper.scene.fingerprint();
+            let (tick, rung) = (self.tick, self.governor.place());
+            tape.push(Entry::Step { tick, scheduled_ns, rung, fingerprint });
+        }
+    }
+
+    fn govern(&mut self, scheduled_ns: u64, step_ns: u64) {
+        if let Some(change) = self.governor.after(step_ns) {
+            self.stepper.set_rung(change.to);
+            self.tell(scheduled_ns, What::Quality(change));
+        }
+    }
+
+    fn look_for_trouble(&mut self, scheduled_ns: u64) {
+        let now = self.stepper.scene.troubles();
+        let before = std::mem::replace(&mut self.troubles, now);
+        for (k, what) in [What::Broken, What::RolledBack].into_iter().enumerate() {
+            if now[k] > before[k] {
+                self.tell(scheduled_ns, what);
+            }
+        }
+    }
+
+    fn tell(&mut self, scheduled_ns: u64, what: What) {
+        // One that does not fit is counted by the queue.
+        self.outlets.events.push(Event { tick: self.tick, scheduled_ns, what });
+    }
+}
+
+impl<S: Scene, C: Clock, A: Account> Turn for Physics<S, C, A> {
+    fn turn(&mut self) -> Option<u64> {
+        match self.schedule.due(self.clock.now_ns()) {
+            Due::At(ns) => Some(ns),
+            Due::Now(tick) => {
+                self.step(tick);
+                Some(self.schedule.next_ns())
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

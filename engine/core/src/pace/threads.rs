@@ -1,0 +1,168 @@
+//! Threads: each life on a thread of its own, pinned and raised as far as the machine allows, ended by a flag.
+
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicBool, AtomicU64};
+use std::sync::mpsc;
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use super::Turn;
+use super::roles::{self, Placement, Role};
+use crate::clock::Clock;
+use crate::crew::{Crew, CrewError};
+
+/// Longest sleep of a life (ns): after at most that it sees that it is to end.
+const LONGEST_SLEEP_NS: u64 = 50_000_000;
+
+/// Longest that a new thread is waited for until it says which place it got.
+const LONGEST_START: Duration = Duration::from_secs(5);
+
+/// Tells all lives to end.
+///
+/// Relaxed: the flag carries nothing else; what a life wrote is seen by who joins it.
+#[derive(Debug, Clone, Default)]
+pub struct Stop(Arc<AtomicBool>);
+
+impl Stop {
+    /// Ends all lives within [`LONGEST_SLEEP_NS`].
+    pub fn now(&self) {
+        self.0.store(true, Relaxed);
+    }
+
+    /// Whether they are to end.
+    pub fn is_set(&self) -> bool {
+        self.0.load(Relaxed)
+    }
+}
+
+/// A life on its thread.
+#[derive(Debug)]
+pub struct Life<T> {
+    thread: JoinHandle<(T, bool)>,
+    /// Turns taken so far: what a watchdog looks at.
+    turns: Arc<AtomicU64>,
+    placement: mpsc::Receiver<Placement>,
+}
+
+impl<T> Life<T> {
+    /// Turns taken so far. Relaxed: a number to look at, which orders nothing.
+    pub fn turns(&self) -> u64 {
+        self.turns.load(Relaxed)
+    }
+
+    /// Whether it has ended by itself.
+    pub fn is_over(&self) -> bool {
+        self.thread.is_finished()
+    }
+
+    /// The place that the thread got, once, as soon as it says so; none if it does not within seconds.
+    pub fn placement(&self) -> Option<Placement> {
+        self.placement.recv_timeout(LONGEST_START).ok()
+    }
+
+    /// Waits for its end, which [`Stop`] brings about, and gives back what lived; none where it panicked.
+    pub fn join(self) -> Option<T> {
+        self.thread.join().ok().and_then(|(life, whole)| whole.then_some(life))
+    }
+
+    /// The same, also where it panicked: what it held can serve the next one. What it was about when it died may be half
+    /// done.
+    pub fn salvage(self) -> Option<T> {
+        self.thread.join().ok().map(|(life, _)| life)
+    }
+}
+
+/// Starts a life. Everything is allocated before its first turn.
+///
+/// # Errors
+/// Where the system gives no thread.
+pub fn start<T, C>(role: Role, mut life: T, clock: C, stop: &Stop) -> io::Result<Life<T>>
+where
+    T: Turn + Send + 'static,
+    C: Clock + Send + 'static,
+{
+    let turns = Arc::new(AtomicU64::new(0));
+    let (stop, mine) = (stop.clone(), turns.clone());
+    let (tell, placement) = mpsc::sync_channel(1);
+    let work = move || {
+        // Nobody may listen.
+        let _ = tell.send(roles::settle(role));
+        let live = || {
+            while !stop.is_set() {
+                let Some(next) = life.turn() else { break };
+                mine.fetch_add(1, Relaxed);
+                clock.sleep_until(next.min(clock.now_ns() + LONGEST_SLEEP_NS));
+            }
+        };
+        let whole = catch_unwind(AssertUnwindSafe(live)).is_ok();
+        (life, whole)
+    };
+    let thread = thread::Builder::new().name(format!("toile-{}", role.name())).spawn(work)?;
+    Ok(Life { thread, turns, placement })
+}
+
+/// The cloth's workers, the second on the core of its role. Gives the place that it got, where there is one.
+///
+/// # Errors
+/// As [`Crew::new`].
+pub fn crew(workers: usize) -> Result<(Crew, Option<Placement>), CrewError> {
+    let (tell, told) = mpsc::sync_channel(1);
+    let crew = Crew::beginning(workers, move || _ = tell.send(roles::settle(Role::Worker)))?;
+    Ok((crew, told.recv_timeout(LONGEST_START).ok()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clock::RealClock;
+
+    struct Counting(u64, RealClock);
+
+    impl Turn for Counting {
+        fn turn(&mut self) -> Option<u64> {
+            self.0 += 1;
+            (self.0 < 40).then(|| self.1.now_ns() + 100_000)
+        }
+    }
+
+    #[test]
+    fn a_life_ends_by_itself_or_when_told() {
+        let clock = RealClock::default();
+        let own = start(Role::Render, Counting(0, clock), clock, &Stop::default()).unwrap();
+        assert_eq!(own.placement().unwrap().role, Role::Render);
+        assert_eq!(own.join().unwrap().0, 40);
+        let stop = Stop::default();
+        let told = start(Role::Render, Counting(u64::MAX / 2, clock), clock, &stop).unwrap();
+        stop.now();
+        assert!(told.join().is_some());
+    }
+
+    struct Dying(u64);
+
+    impl Turn for Dying {
+        fn turn(&mut self) -> Option<u64> {
+            self.0 += 1;
+            // Without the hook: no words on the test's output.
+            if self.0 == 3 { std::panic::resume_unwind(Box::new(())) } else { Some(0) }
+        }
+    }
+
+    #[test]
+    fn what_a_dead_life_held_can_be_had_but_not_as_if_it_had_lived_on() {
+        let clock = RealClock::default();
+        let begun = || start(Role::Render, Dying(0), clock, &Stop::default()).unwrap();
+        assert!(begun().join().is_none());
+        assert_eq!(begun().salvage().unwrap().0, 3);
+    }
+
+    #[test]
+    fn a_crew_of_two_says_where_its_worker_is() {
+        let (one, nobody) = crew(1).unwrap();
+        assert_eq!((one.workers(), nobody), (1, None));
+        let (two, worker) = crew(2).unwrap();
+        assert_eq!((two.workers(), worker.unwrap().role), (2, Role::Worker));
+    }
+}

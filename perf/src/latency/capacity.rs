@@ -1,0 +1,57 @@
+//! How full everything was that has a bound: the queues, the schedule, the frame's rooms.
+
+use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
+use toile_engine::cloth::settings::MAX_SUBSTEPS;
+use toile_engine::cloth::{Cloth, stages};
+use toile_engine::frame::Frame;
+use toile_engine::meter::PERIOD_NS;
+use toile_engine::pace::physics::Gauges;
+use toile_engine::pace::queue::Capacity;
+use toile_engine::pace::schedule::MOST_CATCH_UP;
+
+/// The bounds of the loop and of the frame.
+pub fn capacities(queues: &[Capacity], gauges: &Gauges, frame: &Frame) -> Vec<Capacity> {
+    let late = gauges.late.histogram().max() / PERIOD_NS;
+    let most = |count: fn(&Cloth) -> usize| frame.cloths().iter().map(count).max().unwrap_or(0);
+    let room = |constant, bound, high_water| Capacity { constant, bound, high_water, lost: 0 };
+    let colliders = frame.colliders();
+    let mut all = queues.to_vec();
+    all.push(Capacity {
+        constant: "MOST_CATCH_UP (engine/core/src/pace/schedule.rs)",
+        bound: MOST_CATCH_UP as usize,
+        high_water: late.min(MOST_CATCH_UP) as usize,
+        lost: gauges.dropped,
+    });
+    all.extend([
+        room("MAX_SPHERES (assets/src/limits.rs)", MAX_SPHERES, colliders.start().len()),
+        room("MAX_CAPSULES (assets/src/limits.rs)", MAX_CAPSULES, colliders.capsules().len()),
+        room("MAX_PLANES (assets/src/limits.rs)", MAX_PLANES, colliders.planes().len()),
+        room(
+            "MAX_SUBSTEPS (engine/core/src/cloth/settings.rs)",
+            MAX_SUBSTEPS as usize,
+            most(|c| c.substeps() as usize),
+        ),
+        room("MOST (engine/core/src/cloth/stages.rs)", stages::MOST as usize, most(|c| c.bend_pace().stages as usize)),
+    ]);
+    let pairs = frame.cloths().iter().map(|c| c.contact_tally().most_pairs);
+    all.extend(
+        pairs.map(|[most, room_for]| room("pairs (engine/core/src/cloth/contact)", room_for as usize, most as usize)),
+    );
+    all
+}
+
+/// What was full, and the constant to raise. Spheres, capsules and planes that are too many are refused at load.
+pub fn warnings(capacities: &[Capacity], frame: &Frame) -> Vec<String> {
+    let mut all: Vec<String> = capacities.iter().filter_map(Capacity::warning).collect();
+    for (cloth, garment) in frame.cloths().iter().zip(frame.garments()) {
+        let pace = cloth.bend_pace();
+        if pace.stages == stages::MOST && pace.least < 1.0 {
+            all.push(format!(
+                "{} bends with {:.0} % of its stiffness at some particles; raise MOST (engine/core/src/cloth/stages.rs)",
+                garment.name,
+                pace.least * 100.0
+            ));
+        }
+    }
+    all
+}

@@ -1,0 +1,48 @@
+//! The machine's own jitter: a thread in the physics' place that does nothing, 120 times a second, metered the same way.
+
+use std::thread;
+use std::time::Duration;
+
+use toile_assets::limits::STEP_HZ;
+use toile_engine::clock::{Clock, RealClock};
+use toile_engine::meter::{Meter, PERIOD_NS};
+use toile_engine::pace::Turn;
+use toile_engine::pace::roles::Role;
+use toile_engine::pace::schedule::{Due, Schedule};
+use toile_engine::pace::threads::{self, Stop};
+
+use super::LatencyError;
+
+/// The empty loop.
+#[derive(Debug)]
+struct Empty {
+    clock: RealClock,
+    schedule: Schedule,
+    late: Meter,
+}
+
+impl Turn for Empty {
+    fn turn(&mut self) -> Option<u64> {
+        let now = self.clock.now_ns();
+        match self.schedule.due(now) {
+            Due::At(ns) => Some(ns),
+            Due::Now(tick) => {
+                (0..=tick.dropped).for_each(|k| self.late.add(tick.late_ns + k * PERIOD_NS));
+                Some(self.schedule.next_ns())
+            }
+        }
+    }
+}
+
+/// From when an empty step is due until its thread is awake, for so long.
+///
+/// # Errors
+/// Where the system gives no thread.
+pub fn measure(length: Duration) -> Result<Meter, LatencyError> {
+    let clock = RealClock::default();
+    let (stop, schedule) = (Stop::default(), Schedule::new(clock.now_ns() + PERIOD_NS, STEP_HZ));
+    let life = threads::start(Role::Physics, Empty { clock, schedule, late: Meter::new() }, clock, &stop)?;
+    thread::sleep(length);
+    stop.now();
+    life.join().map(|empty| empty.late).ok_or(LatencyError::Died("jitter"))
+}

@@ -1,0 +1,321 @@
+//! The run itself: the three lives on their threads, and this one, which empties the queues.
+
+use std::thread;
+use std::time::Duration;
+
+use glam::Vec3;
+use toile_assets::garment::Garment;
+use toile_assets::limits::STEP_HZ;
+use toile_engine::clock::{Clock, RealClock};
+use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::meter::{INTAKE, Meter, PERIOD_NS, STAGES, STEP_BUDGET_US};
+use toile_engine::pace::event::{EVENTS, EVENTS_NAME, Event, What};
+use toile_engine::pace::governor::LADDER;
+use toile_engine::pace::physics::{Outlets, Physics, Staged};
+use toile_engine::pace::queue::{Capacity, Receiver, bounded};
+use toile_engine::pace::render::{Eye, Render};
+use toile_engine::pace::roles::{Placement, Role};
+use toile_engine::pace::sense::{Playback, Seen, Sense};
+use toile_engine::pace::tape::{ENTRIES, ENTRIES_NAME, Entry};
+use toile_engine::pace::threads::{self, Life, Stop};
+use toile_engine::relay::{Reader, Relay};
+use toile_sensors::clock::SECOND_NS;
+use toile_sensors::frame::Joints;
+
+use super::account::{ThreadAccount, cause};
+use super::load::Load;
+use super::report::{Attributed, Cause, Goal, Latency, Placed, Quality, Quantiles, Stage, Warned};
+use super::{LatencyError, Options, capacity, jitter};
+
+/// Time before the meters begin (s): caches fill, memory is touched for the first time.
+const WARM_UP_S: u64 = 1;
+const WARM_UP_STEPS: u64 = WARM_UP_S * STEP_HZ as u64;
+
+/// What filtering a sensor frame may take (us).
+const FILTER_US: u64 = 50;
+
+/// Longest time for which the machine's own jitter is measured (s).
+const MOST_JITTER_S: u32 = 10;
+
+/// A snapshot is to be there so soon after a sensor frame's arrival, at the 99th percentile (us).
+const SNAPSHOT_US: f64 = 12_000.0;
+
+/// A picture is to be there so soon after a sensor frame's arrival (us): what 75 ms from motion to light leave beside a sensor of
+/// 20 ms and a display of 17 ms (Waltemate et al. 2016).
+const PICTURE_US: f64 = 38_000.0;
+
+/// Most changes of quality that are told one by one.
+const MOST_CHANGES: usize = 100;
+
+/// Time between two looks at the queues: they hold seconds.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// Who is on stage: a shopper, dressed, and how they moved.
+pub struct Cast<'a> {
+    /// The frame, dressed; its crew is of the workers that are asked for.
+    pub frame: Frame,
+    /// Where its snapshots come out.
+    pub reader: Reader<Snapshot>,
+    /// The session's joints as the sensor gave them.
+    pub joints: &'a [Joints],
+    /// Where the crew's helper runs.
+    pub worker: Option<Placement>,
+}
+
+/// What a display would be handed: the body and the garments in the order of their meshes.
+#[derive(Debug)]
+struct Picture {
+    body: [Box<[Vec3]>; 2],
+    garments: Box<[Box<[Vec3]>]>,
+}
+
+impl Picture {
+    fn of(snapshot: &Snapshot) -> Self {
+        let zeros = || vec![Vec3::ZERO; snapshot.skin.vertices()].into_boxed_slice();
+        Self { body: [zeros(), zeros()], garments: snapshot.garments.clone() }
+    }
+}
+
+impl Eye for Picture {
+    fn look(&mut self, snapshot: &Snapshot) {
+        let [positions, normals] = &mut self.body;
+        snapshot.skin.read(positions, normals);
+        for (to, from) in self.garments.iter_mut().zip(&snapshot.garments) {
+            to.copy_from_slice(from);
+        }
+    }
+}
+
+/// What came out of the queues.
+#[derive(Debug, Default)]
+struct Told {
+    attributed: Attributed,
+    before: Option<(u64, Cause)>,
+    dropped: u64,
+    changes: Vec<[u64; 3]>,
+    sentences: Vec<String>,
+}
+
+impl Told {
+    fn take(&mut self, event: &Event) {
+        match event.what {
+            What::Missed(miss) => {
+                let before = self.before.filter(|(tick, _)| *tick + 1 == event.tick).map(|(_, cause)| cause);
+                let cause = cause(&miss, before);
+                // Steps that were dropped before this one have its cause.
+                self.attributed.add(cause, 1 + std::mem::take(&mut self.dropped));
+                self.before = Some((event.tick, cause));
+            }
+            What::Dropped(steps) => self.dropped += steps,
+            What::Quality(change) if self.changes.len() < MOST_CHANGES => {
+                self.changes.push([event.tick, u64::from(change.from), u64::from(change.to)]);
+            }
+            What::Quality(_) => {}
+            What::SensorLost => self.say(event, "no sensor frame had come for half a second"),
+            What::SensorBack => self.say(event, "the sensor came back"),
+            What::Broken => self.say(event, "a worker panicked and the garments kept their places"),
+            What::Changed(_) => {}
+            What::RolledBack => self.say(event, "a garment ended with what is no number and was rolled back"),
+        }
+    }
+
+    fn say(&mut self, event: &Event, what: &str) {
+        if self.sentences.len() < MOST_CHANGES {
+            self.sentences.push(format!("step {}: {what}", event.tick));
+        }
+    }
+}
+
+/// The three lives on their threads, and the ends of their queues.
+struct Running {
+    clock: RealClock,
+    stop: Stop,
+    metered_ns: u64,
+    sensor: Life<Sense<Playback, RealClock>>,
+    physics: Life<Physics<Staged, RealClock, ThreadAccount>>,
+    render: Life<Render<Picture, RealClock>>,
+    events: Receiver<Event>,
+    entries: Receiver<Entry>,
+}
+
+/// The lives, when they have ended.
+struct Ended {
+    sensor: Sense<Playback, RealClock>,
+    physics: Physics<Staged, RealClock, ThreadAccount>,
+    render: Render<Picture, RealClock>,
+    queues: [Capacity; 2],
+}
+
+impl Running {
+    fn start(
+        frame: Frame,
+        mut reader: Reader<Snapshot>,
+        joints: &[Joints],
+        options: &Options,
+    ) -> Result<Self, LatencyError> {
+        let clock = RealClock::default();
+        let begin = clock.now_ns() + 10 * PERIOD_NS;
+        let metered_ns = begin + WARM_UP_S * SECOND_NS;
+        let (sender, events) = bounded(EVENTS_NAME, EVENTS);
+        let (tape, entries) = bounded(ENTRIES_NAME, ENTRIES);
+        let Relay { writer, reader: seen } = Relay::new(&Seen::default());
+        let outlets = Outlets { events: sender, tape: options.record.then_some(tape) };
+        let picture = Picture::of(reader.latest());
+        let sense = Sense::new(Playback::new(joints, begin, u64::MAX), clock, writer).metering_from(metered_ns);
+        let physics = Physics::new(Staged::new(frame), clock, begin, seen, outlets, ThreadAccount::new());
+        let physics = physics.warming_up(WARM_UP_STEPS);
+        let physics = match options.rung {
+            Some(rung) => physics.held_on(rung),
+            None => physics,
+        };
+        let render = Render::new(picture, clock, begin, reader).metering_from(metered_ns);
+        let stop = Stop::default();
+        Ok(Self {
+            sensor: threads::start(Role::Sensor, sense, clock, &stop)?,
+            physics: threads::start(Role::Physics, physics, clock, &stop)?,
+            render: threads::start(Role::Render, render, clock, &stop)?,
+            clock,
+            stop,
+            metered_ns,
+            events,
+            entries,
+        })
+    }
+
+    /// Lets it run until the end, and hands on what comes out of the queues.
+    fn watch(mut self, seconds: u32, told: &mut Told, keep: &mut impl FnMut(&Entry)) -> Result<Ended, LatencyError> {
+        let end = self.metered_ns + u64::from(seconds) * SECOND_NS;
+        while self.clock.now_ns() < end && !self.physics.is_over() {
+            thread::sleep(LOOK);
+            drain(&mut self.events, &mut self.entries, told, keep);
+        }
+        self.stop.now();
+        let sensor = self.sensor.join().ok_or(LatencyError::Died("sensor"))?;
+        let physics = self.physics.join().ok_or(LatencyError::Died("physics"))?;
+        let render = self.render.join().ok_or(LatencyError::Died("render"))?;
+        drain(&mut self.events, &mut self.entries, told, keep);
+        Ok(Ended { sensor, physics, render, queues: [self.events.capacity(), self.entries.capacity()] })
+    }
+}
+
+/// Runs the loop for so long; `keep` is handed the entries of a recording as they come.
+///
+/// # Errors
+/// Where a thread cannot be started or ends before its time.
+pub fn run(cast: Cast<'_>, options: &Options, mut keep: impl FnMut(&Entry)) -> Result<Latency, LatencyError> {
+    let load = Load::start(options.load)?;
+    let jitter = jitter::measure(Duration::from_secs(u64::from(options.seconds.min(MOST_JITTER_S))))?;
+    let running = Running::start(cast.frame, cast.reader, cast.joints, options)?;
+    let placements = [running.sensor.placement(), running.physics.placement(), cast.worker, running.render.placement()];
+    let threads: Vec<Placed> = placements.into_iter().flatten().map(Placed::from).collect();
+    let mut told = Told::default();
+    let ended = running.watch(options.seconds, &mut told, &mut keep)?;
+    drop(load);
+    Ok(report(&ended, options, threads, told, &jitter))
+}
+
+/// What it comes to.
+fn report(ended: &Ended, options: &Options, threads: Vec<Placed>, told: Told, jitter: &Meter) -> Latency {
+    let Ended { physics, render, queues, .. } = ended;
+    let (gauges, frame) = (&physics.gauges, &physics.stepper.scene.frame);
+    let stages = stages(ended, jitter);
+    let [step, response] = [&gauges.step, &gauges.response].map(Quantiles::of);
+    let [snapshot, total] = [&gauges.reaction, &render.total].map(Quantiles::of);
+    let capacities = capacity::capacities(queues, gauges, frame);
+    let mut warnings = capacity::warnings(&capacities, frame);
+    warnings.extend(threads.iter().flat_map(|t| t.refused.clone()));
+    warnings.extend(told.sentences);
+    Latency {
+        seconds: options.seconds,
+        load_threads: options.load,
+        workers: frame.settings().workers,
+        threads,
+        stages_us: stages.iter().map(|s| (s.name, s.us)).collect(),
+        stages,
+        total_us: total,
+        snapshot_us: snapshot,
+        step_us: step,
+        response_us: response,
+        jitter_us: Quantiles::of(jitter),
+        steps: gauges.steps,
+        deadline_misses: gauges.missed + gauges.dropped,
+        dropped: gauges.dropped,
+        attributed: told.attributed,
+        frames: snapshot.count + gauges.skipped,
+        late_frames: later_than(&gauges.reaction, SNAPSHOT_US) + gauges.skipped,
+        pictures: render.pictures,
+        quality: quality(frame, &gauges.rungs, told.changes),
+        goals: goals(snapshot, total, step, response),
+        capacities: capacities.into_iter().map(Warned::from).collect(),
+        warnings,
+        state_hash: format!("{:016x}", frame.state_hash()),
+    }
+}
+
+/// From the sensor to the picture, then the whole of it, then the machine.
+fn stages(ended: &Ended, jitter: &Meter) -> Vec<Stage> {
+    let Ended { sensor, physics, render, .. } = ended;
+    let (gauges, meters) = (&physics.gauges, physics.stepper.scene.frame.meters());
+    let mut stages = vec![
+        Stage::of("filter", Some(FILTER_US), &sensor.filtering),
+        Stage::of("wait for a step", Some(PERIOD_NS / 1_000), &gauges.wait),
+        Stage::of(STAGES[INTAKE].name, Some(STAGES[INTAKE].budget_us), &gauges.intake),
+    ];
+    let own = STAGES.iter().zip(&meters.stages).skip(INTAKE + 1);
+    stages.extend(own.map(|(stage, meter)| Stage::of(stage.name, Some(stage.budget_us), meter)));
+    stages.push(Stage::of("step", Some(STEP_BUDGET_US), &gauges.step));
+    stages.push(Stage::of("snapshot", Some(SNAPSHOT_US as u64), &gauges.reaction));
+    stages.push(Stage::of("wait for a picture", None, &render.picture));
+    stages.push(Stage::of("picture", None, &render.drawing));
+    stages.push(Stage::of("total", Some(PICTURE_US as u64), &render.total));
+    stages.push(Stage::of("empty loop", None, jitter));
+    stages
+}
+
+/// How many times of a meter are longer than this (us).
+fn later_than(meter: &Meter, us: f64) -> u64 {
+    let late = meter.histogram().iter_recorded().filter(|v| v.value_iterated_to() as f64 * 1e-3 > us);
+    late.map(|v| v.count_since_last_iteration()).sum()
+}
+
+fn goals(snapshot: Quantiles, total: Quantiles, step: Quantiles, response: Quantiles) -> Vec<Goal> {
+    let period_us = PERIOD_NS as f64 * 1e-3;
+    vec![
+        Goal::new("snapshot after a sensor frame's arrival, p99", SNAPSHOT_US, snapshot.p99),
+        Goal::new("picture after a sensor frame was seen, p99", PICTURE_US, total.p99),
+        Goal::new("step, p99.9", 0.5 * period_us, step.p999),
+        Goal::new("step, longest", 0.8 * period_us, step.max),
+        Goal::new("published after it was due (120 Hz held), p99.9", period_us, response.p999),
+    ]
+}
+
+/// Empties the queues. What happened before the meters began is not told.
+fn drain(events: &mut Receiver<Event>, entries: &mut Receiver<Entry>, told: &mut Told, keep: &mut impl FnMut(&Entry)) {
+    while let Some(event) = events.pop() {
+        if event.tick >= WARM_UP_STEPS {
+            told.take(&event);
+        }
+    }
+    while let Some(entry) = entries.pop() {
+        keep(&entry);
+    }
+}
+
+fn quality(frame: &Frame, rungs: &[u64], changes: Vec<[u64; 3]>) -> Quality {
+    let (meters, settings) = (frame.meters(), frame.settings());
+    let strain = meters.strain();
+    let whole = frame.garments().iter().map(|g| settings.quality.substeps(g.substeps)).max().unwrap_or(0);
+    let free = |g: &Garment| g.inverse_mass.iter().filter(|w| **w > 0.0).count();
+    Quality {
+        name: settings.quality.name(),
+        substeps: whole,
+        particles: frame.garments().iter().map(Garment::particles).sum(),
+        free: frame.garments().iter().map(free).sum(),
+        rungs: rungs.to_vec(),
+        gives_up: LADDER.iter().map(|r| r.gives_up).collect(),
+        changes,
+        strain: [strain.mean, strain.p99, strain.max].map(f64::from),
+        penetration_mm: f64::from(meters.penetration_max) * 1e3,
+        nonfinite: frame.cloths().iter().map(|c| c.events.rolled_back).sum(),
+    }
+}

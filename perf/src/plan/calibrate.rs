@@ -1,0 +1,200 @@
+//! What a unit of work takes on this machine: some cloths of the program's own are stepped, and what their stages took is
+//! laid on what they counted.
+//!
+//! The cloths are none of the wardrobe's, so that what is said of a garment of it was learnt from others. They differ
+//! in what decides the time: rows and scattered triangles, threads that give and threads that do not, near the body and
+//! far from it, wind, tethers.
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use glam::Vec3;
+use toile_assets::body::Body;
+use toile_assets::rig::Rig;
+use toile_assets::scene_file::{SceneFile, Source};
+use toile_engine::cloth::{Settings, program};
+use toile_engine::crew::{Crew, SHARES};
+use toile_engine::frame::Frame;
+use toile_engine::meter::STAGES as STEP_STAGES;
+use toile_sensors::frame::Joints;
+
+use super::PlanError;
+use super::cost::Costs;
+use super::fit::fit;
+use super::scene::{Playing, Scene};
+use super::work::{FirstStep, STAGES, Work};
+use crate::time;
+
+/// Steps of each cloth that are not timed, and those that are.
+const WARM_UP: usize = 24;
+const TIMED: usize = 40;
+
+/// Steps of the frame without garments.
+const EMPTY_STEPS: usize = 60;
+
+/// What a frame does between waking the helper and the cloth takes at least so long.
+const BEFORE_CLOTH: Duration = Duration::from_micros(80);
+
+/// The colliders that all of them hang on: the benchmark's body, walking.
+const WALKING: &str = "duration = 7\n[colliders]\nmotion = \"walk\"\n";
+
+/// Waist, pinned to the body that walks.
+const WAIST: &str = "motion = \"walk\"\n";
+
+/// Each cloth's own part of its scene file.
+fn texts() -> [String; 7] {
+    let scene = |more: &str, garment: &str, pinned: &str| {
+        format!("{WALKING}{more}\n[[garment]]\n{garment}\n[[garment.pin]]\nvertices = [\"{pinned}\"]\n{WAIST}")
+    };
+    let wind = "[wind]\nvelocity = [0.5, 0.0, 0.3]\n";
+    let draft = "[settings]\nquality = \"draft\"\n";
+    let tube = |rows: u32, columns: u32| {
+        format!(
+            "tube = {{ rows = {rows}, columns = {columns}, top_radius = 0.19, bottom_radius = 0.3, height = 0.6 }}\nposition \
+             = [0, 1.05, 0]"
+        )
+    };
+    [
+        scene("", "skirt = { side = 64 }\nfabric = \"cotton-lawn\"", "0-63"),
+        scene(wind, "skirt = { side = 32 }\nfabric = \"linen-twill\"", "0-31"),
+        scene(wind, "skirt = { side = 40, layout = \"irregular\" }\nfabric = \"cotton-jersey\"", "0-39"),
+        scene(draft, "skirt = { side = 48 }\nfabric = \"cotton-jersey\"", "0-47"),
+        scene("", &format!("{}\nfabric = \"cotton-jersey\"", tube(40, 96)), "0-95"),
+        scene(draft, "skirt = { side = 24, layout = \"irregular\" }\nfabric = \"cotton-lawn\"", "0-23"),
+        // Nothing holds it, so that all of its fibers are solved by index.
+        format!(
+            "{WALKING}[[garment]]\ngrid = {{ rows = 32, columns = 40, width = 1.0, height = 0.8, plane = \"level\" }}\n\
+                 position = [0, 1.2, 0]\n"
+        ),
+    ]
+}
+
+/// What one cloth took.
+struct Sample {
+    work: Work,
+    /// Time of each stage (us).
+    stages_us: [f64; STAGES.len()],
+}
+
+/// What this machine takes for a body: some seconds' tenths. `track` moves the body.
+///
+/// # Errors
+/// Where a cloth or the frame cannot be made.
+pub fn measure(body: Option<(&Body, &Rig, &[Joints])>, workers: usize) -> Result<Costs, PlanError> {
+    let mut scenes = Vec::new();
+    for text in texts() {
+        scenes.push(Scene::file(SceneFile::parse("calibration", &text, Source::Inside(&[]))?)?);
+    }
+    let samples = scenes.iter().map(sample).collect::<Result<Vec<_>, _>>()?;
+    let mut costs = Costs { copy_us: copy_us(), ..Costs::default() };
+    for (stage, unit) in costs.unit_us.iter_mut().enumerate() {
+        let rows: Vec<_> = samples.iter().map(|s| s.work.counts[stage]).collect();
+        let times: Vec<_> = samples.iter().map(|s| s.stages_us[stage]).collect();
+        *unit = fit(&rows, &times);
+    }
+    if workers > 1 {
+        costs.meeting_us = meeting_us(&scenes[0], &costs)?;
+    }
+    if let Some((body, rig, track)) = body {
+        costs.body_us = body_us(body, rig, track, workers)?;
+    }
+    Ok(costs)
+}
+
+fn sample(scene: &Scene) -> Result<Sample, PlanError> {
+    let mut crew = Crew::new(1)?;
+    let settings: Vec<Settings> = scene.settings.iter().map(|s| Settings { timed: true, ..*s }).collect();
+    let mut playing = Playing::new(scene);
+    let mut times: [Vec<f64>; STAGES.len()] = Default::default();
+    let before = |p: &Playing<'_>| p.cloths[0].contact_tally().near;
+    let mut near = 0;
+    for step in 0..WARM_UP + TIMED {
+        playing.place();
+        if step == WARM_UP {
+            near = before(&playing);
+        }
+        let begun = Instant::now();
+        playing.take(&settings, &mut crew);
+        let us = begun.elapsed().as_secs_f64() * 1e6;
+        if step >= WARM_UP {
+            let stages = playing.cloths[0].stage_ns.map(|ns| ns as f64 * 1e-3);
+            times.iter_mut().zip(stages).for_each(|(all, us)| all.push(us));
+            times[program::STAGES.len()].push((us - stages.iter().sum::<f64>()).max(0.0));
+        }
+    }
+    let near = (before(&playing) - near) as f64 / TIMED as f64;
+    let work = Work::of(&scene.garments[0], &settings[0], &FirstStep::of(&playing.cloths[0], near));
+    Ok(Sample { work, stages_us: times.map(|mut all| quartile(&mut all)) })
+}
+
+/// What it takes two workers to meet, from a cloth that they share (us).
+fn meeting_us(scene: &Scene, costs: &Costs) -> Result<f64, PlanError> {
+    let mut crew = Crew::new(SHARES)?;
+    let mut playing = Playing::new(scene);
+    let (mut times, mut one) = (Vec::new(), Vec::new());
+    let mut alone = Playing::new(scene);
+    let mut nobody = Crew::new(1)?;
+    for step in 0..WARM_UP + TIMED {
+        playing.place();
+        wake(&mut crew);
+        let begun = Instant::now();
+        playing.take(&scene.settings, &mut crew);
+        let two = begun.elapsed();
+        alone.place();
+        let begun = Instant::now();
+        alone.take(&scene.settings, &mut nobody);
+        if step >= WARM_UP {
+            times.push(two.as_secs_f64() * 1e6);
+            one.push(begun.elapsed().as_secs_f64() * 1e6);
+        }
+    }
+    let first = FirstStep::of(&playing.cloths[0], 0.0);
+    let work = Work::of(&scene.garments[0], &scene.settings[0], &first);
+    let rest = costs.garment(&work).stages_us[STAGES.len() - 1];
+    let (two, one) = (quartile(&mut times), quartile(&mut one));
+    Ok(((two - rest - (one - rest) * work.share) / work.phases).max(0.0))
+}
+
+fn wake(crew: &mut Crew) {
+    if crew.wake() {
+        let woken = Instant::now();
+        while woken.elapsed() < BEFORE_CLOTH {
+            std::hint::spin_loop();
+        }
+    }
+}
+
+/// The stages of a frame in which nothing is worn (us).
+fn body_us(body: &Body, rig: &Rig, track: &[Joints], workers: usize) -> Result<[f64; STEP_STAGES.len()], PlanError> {
+    let settings = Settings { workers, ..Settings::default() };
+    let (mut frame, _reader) = Frame::new(body.clone(), rig, Vec::new(), settings)?;
+    frame.measure_every(0);
+    for k in 0..EMPTY_STEPS {
+        if let Some(joints) = track.get(k * track.len() / EMPTY_STEPS) {
+            frame.step(joints);
+        }
+    }
+    let half = |k: usize| frame.meters().stages[k].histogram().value_at_quantile(0.5) as f64 * 1e-3;
+    Ok(std::array::from_fn(half))
+}
+
+/// A particle's copy into a snapshot (us).
+fn copy_us() -> f64 {
+    const PARTICLES: usize = 4_096;
+    let from = vec![glam::Vec3A::ONE; PARTICLES];
+    let mut to = vec![Vec3::ZERO; PARTICLES];
+    let copy = || {
+        to.iter_mut().zip(black_box(&from)).for_each(|(t, p)| *t = (*p).into());
+        black_box(&to);
+    };
+    time::median_us(copy) / PARTICLES as f64
+}
+
+/// The lower quartile: what a machine takes where nothing else wants it, in most of the times.
+pub(super) fn quartile(values: &mut [f64]) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let quarter = values.len() / 4;
+    *values.select_nth_unstable_by(quarter, f64::total_cmp).1
+}

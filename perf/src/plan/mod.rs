@@ -1,0 +1,44 @@
+//! Plan: what a scene needs and takes, told before it runs.
+//!
+//! Reads: a scene's baked garments, colliders and motion. Writes: who can touch what, memory, the time of each stage as
+//! it is predicted, what each model is worth, whether the scene fits.
+//! Budget: some seconds, to learn what this machine needs for a unit of work, and to weigh the models.
+//! Thread: the caller's; the engine's workers where their hand-off is timed.
+
+pub mod calibrate;
+pub mod cost;
+mod fit;
+pub mod reach;
+pub mod report;
+pub mod scene;
+pub mod verdict;
+pub mod weigh;
+pub mod work;
+
+use thiserror::Error;
+use toile_assets::scene_file::SceneError;
+use toile_engine::colliders::ColliderError;
+use toile_engine::crew::CrewError;
+use toile_engine::frame::FrameError;
+
+use crate::scene_run::RunError;
+
+/// Why a scene cannot be planned.
+#[derive(Debug, Error)]
+pub enum PlanError {
+    /// Its colliders.
+    #[error(transparent)]
+    Colliders(#[from] ColliderError),
+    /// Its frame.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// Its file.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// A cloth by which the machine is known.
+    #[error(transparent)]
+    Calibration(#[from] SceneError),
+    /// The workers.
+    #[error(transparent)]
+    Crew(#[from] CrewError),
+}

@@ -1,0 +1,212 @@
+//! A scene as the plan sees it: baked garments, colliders, and where the bones are at every step.
+
+use glam::Affine3A;
+use toile_assets::body::Body;
+use toile_assets::garment::Garment;
+use toile_assets::limits::STEP_SECONDS;
+use toile_assets::rig::Rig;
+use toile_assets::scene_file::SceneFile;
+use toile_assets::skeleton::{BONES, Pose, Skeleton};
+use toile_engine::body::{Poser, palette};
+use toile_engine::cloth::{Cloth, Settings, Step};
+use toile_engine::colliders::{Colliders, RestSphere};
+use toile_engine::crew::Crew;
+use toile_engine::frame::{DRESS_STEPS, SETTLE_STEPS};
+use toile_sensors::clock::ticks_to_ns;
+use toile_sensors::frame::Joints;
+use toile_sensors::sample::sample;
+
+use super::PlanError;
+use crate::scene_run;
+
+/// Most steps of a session or a scene file that are played: ten seconds.
+pub const MOST_STEPS: usize = 1_200;
+
+/// What moves bones and colliders.
+#[derive(Debug, Clone)]
+pub enum Motion {
+    /// A shopper: the bones at the end of each step, the steps of dressing first.
+    Shopper(Box<[[Affine3A; BONES]]>),
+    /// A scene file.
+    File(Box<SceneFile>),
+}
+
+/// A scene.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// What reports call it.
+    pub name: String,
+    /// The garments, inner first.
+    pub garments: Vec<Garment>,
+    /// How each is stepped.
+    pub settings: Vec<Settings>,
+    /// What they meet, where it stands at the start.
+    pub colliders: Colliders,
+    /// What moves.
+    pub motion: Motion,
+    /// The shopper's skeleton, where there is a shopper.
+    pub skeleton: Option<Skeleton>,
+    /// Steps that only dress the shopper.
+    pub dressing: usize,
+    /// Time between two steps (us).
+    pub period_us: f64,
+}
+
+impl Scene {
+    /// A shopper in some garments, moved as a track of believable joints says.
+    ///
+    /// # Errors
+    /// Colliders that the engine does not take.
+    pub fn worn(
+        body: &Body,
+        rig: &Rig,
+        garments: Vec<Garment>,
+        settings: Settings,
+        track: &[Joints],
+    ) -> Result<Self, PlanError> {
+        let spheres = rig.spheres.each_ref().map(|s| RestSphere::on_bone(&body.skeleton, s.bone, s.offset, s.radius));
+        let mut colliders = Colliders::new(&spheres, &rig.capsules, true)?;
+        let poser = Poser::new(&body.skeleton).keeping_clear(&spheres, &rig.capsules);
+        let bones = poses(&body.skeleton, poser, track);
+        colliders.place(&rest_bones(&body.skeleton));
+        Ok(Self {
+            name: String::new(),
+            settings: vec![settings; garments.len()],
+            garments,
+            colliders,
+            motion: Motion::Shopper(bones.into()),
+            skeleton: Some(body.skeleton.clone()),
+            dressing: (DRESS_STEPS + SETTLE_STEPS) as usize,
+            period_us: f64::from(STEP_SECONDS) * 1e6,
+        })
+    }
+
+    /// A scene file.
+    ///
+    /// # Errors
+    /// A mesh that cannot be baked, colliders that the engine does not take.
+    pub fn file(file: SceneFile) -> Result<Self, PlanError> {
+        let (garments, colliders) = (scene_run::bake_all(&file)?, scene_run::placed(&file)?);
+        Ok(Self {
+            name: file.name.clone(),
+            settings: vec![scene_run::settings(&file); garments.len()],
+            garments,
+            colliders,
+            period_us: 1e6 / file.step_hz,
+            motion: Motion::File(Box::new(file)),
+            skeleton: None,
+            dressing: 0,
+        })
+    }
+
+    /// Steps that can be played.
+    pub fn steps(&self) -> usize {
+        match &self.motion {
+            Motion::Shopper(bones) => bones.len(),
+            Motion::File(file) => (file.steps() as usize).min(MOST_STEPS),
+        }
+    }
+
+    /// Where bones and colliders are at the end of a step, counted from 0.
+    pub fn place(&self, step: usize, bones: &mut [Affine3A; BONES], colliders: &mut Colliders) {
+        match &self.motion {
+            Motion::Shopper(all) => {
+                if let Some(at) = all.get(step) {
+                    *bones = *at;
+                }
+                colliders.place(bones);
+            }
+            Motion::File(file) => {
+                let end = (step + 1) as f64 / file.step_hz;
+                scene_run::place(colliders, file, end);
+                *bones = scene_run::palette(file, end);
+            }
+        }
+    }
+
+    /// Particles of all garments.
+    pub fn particles(&self) -> usize {
+        self.garments.iter().map(Garment::particles).sum()
+    }
+
+    /// The garments' states before the first step.
+    pub fn cloths(&self) -> Vec<Cloth> {
+        let ready = |g: &Garment, s: &Settings, c: Cloth| if s.wind.is_some() { c.in_wind(g) } else { c };
+        let all = self.garments.iter().zip(&self.settings);
+        all.map(|(g, s)| ready(g, s, Cloth::new(g, &self.colliders))).collect()
+    }
+}
+
+/// A scene under way.
+pub struct Playing<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The garments' states.
+    pub cloths: Vec<Cloth>,
+    /// The colliders as last placed.
+    pub colliders: Colliders,
+    /// The bones at the end of the last step.
+    pub bones: [Affine3A; BONES],
+    /// Steps taken.
+    pub step: usize,
+}
+
+impl<'a> Playing<'a> {
+    /// At its start.
+    pub fn new(scene: &'a Scene) -> Self {
+        let bones = scene.skeleton.as_ref().map_or([Affine3A::IDENTITY; BONES], rest_bones);
+        Self { scene, cloths: scene.cloths(), colliders: scene.colliders.clone(), bones, step: 0 }
+    }
+
+    /// Places what the next step meets.
+    pub fn place(&mut self) {
+        self.scene.place(self.step, &mut self.bones, &mut self.colliders);
+        self.step += 1;
+    }
+
+    /// The step of all garments with these settings, one of them shared by the workers, several one worker's each.
+    pub fn take(&mut self, settings: &[Settings], crew: &mut Crew) {
+        let Self { scene, cloths, colliders, bones, .. } = self;
+        let step = |i: usize| Step { palette: bones, colliders, settings: &settings[i] };
+        if let ([cloth], [garment]) = (&mut cloths[..], &scene.garments[..]) {
+            cloth.step_with(crew, garment, &step(0));
+        } else {
+            // A worker that panics has said so, and the guard of the next step repairs what it left.
+            let _ = crew.each(cloths, |i, cloth| cloth.step(&scene.garments[i], &step(i)));
+        }
+    }
+}
+
+/// The bones in the rest pose.
+pub fn rest_bones(skeleton: &Skeleton) -> [Affine3A; BONES] {
+    let mut bones = [Affine3A::IDENTITY; BONES];
+    palette(skeleton, &Pose::rest(skeleton), &mut bones);
+    bones
+}
+
+/// The bones at the end of each step: dressing as the frame does it, then the session.
+fn poses(skeleton: &Skeleton, mut poser: Poser, track: &[Joints]) -> Vec<[Affine3A; BONES]> {
+    let (Some(first), Some(last)) = (track.first(), track.last()) else { return Vec::new() };
+    let rest = Pose::rest(skeleton);
+    let goal = poser.pose(first, STEP_SECONDS);
+    let mut all = Vec::new();
+    let mut add = |pose: &Pose| {
+        let mut bones = [Affine3A::IDENTITY; BONES];
+        palette(skeleton, pose, &mut bones);
+        all.push(bones);
+    };
+    for step in 1..=DRESS_STEPS + SETTLE_STEPS {
+        let t = (step as f32 / DRESS_STEPS as f32).min(1.0);
+        let t = t * t * (3.0 - 2.0 * t);
+        let local = std::array::from_fn(|i| rest.local[i].slerp(goal.local[i], t));
+        add(&Pose { root: rest.root.lerp(goal.root, t), local });
+    }
+    for tick in 0..MOST_STEPS as u64 {
+        let now = first.time_ns + ticks_to_ns(tick);
+        if now > last.time_ns {
+            break;
+        }
+        add(&poser.pose(&sample(track, now).unwrap_or(*first), STEP_SECONDS));
+    }
+    all
+}

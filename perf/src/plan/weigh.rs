@@ -1,0 +1,239 @@
+//! What each model of the cloth is worth: the scene without it, or with one that it leaves out, against the scene as it is.
+//!
+//! Cloth is chaotic: a second after the least difference the folds of two runs are others. So moments of one run are gone on
+//! from, for 50 ms, with the model and without, and what is told is how far the particles are apart then.
+
+use std::time::Instant;
+
+use glam::Vec3A;
+use serde::Serialize;
+use toile_assets::garment::Garment;
+use toile_assets::garment::layout::{Bends, Diagonals, ENDED, Hubs, Links};
+use toile_engine::cloth::{Cloth, Quality, Settings, Step, Wind};
+use toile_engine::crew::Crew;
+
+use super::PlanError;
+use super::calibrate::quartile;
+use super::scene::{Playing, Scene};
+use super::work::STAGES;
+
+/// Steps of a window: 50 ms.
+const WINDOW: usize = 6;
+
+/// Most moments that are gone on from.
+const MOMENTS: usize = 8;
+
+/// Coefficients of cloth in air (1): the scene files' own defaults.
+const DRAG_LIFT: [f32; 2] = [0.1, 0.05];
+
+/// A model and what it is worth.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Weighed {
+    /// The model.
+    pub model: &'static str,
+    /// Whether the scene has it.
+    pub on: bool,
+    /// How far particles that move are from where they are in the scene as it is, after 50 ms: mean, 99 %, worst (mm).
+    pub error_mm: [f64; 3],
+    /// Time of a step with it, less that without it, on one core (us).
+    pub us: f64,
+}
+
+/// What playing the scene showed.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Played {
+    /// Time of the cloth's part of a step, median and 99 % (us), with the workers of the plan.
+    pub cloth_us: [f64; 2],
+    /// Pairs of particle and capsule that were near, a step, all garments.
+    pub near: u64,
+    /// Time of each stage on one core, all garments (us).
+    pub stages_us: [f64; STAGES.len()],
+    /// Steps that were played.
+    pub steps: usize,
+    /// Moments that were gone on from.
+    pub moments: usize,
+    /// The models.
+    pub models: Vec<Weighed>,
+}
+
+/// A scene changed by one model.
+struct Variant {
+    model: &'static str,
+    on: bool,
+    garments: Vec<Garment>,
+    settings: Vec<Settings>,
+}
+
+/// Plays a scene and weighs its models.
+///
+/// # Errors
+/// Where the workers cannot be started.
+pub fn play(scene: &Scene, workers: usize) -> Result<Played, PlanError> {
+    let mut crew = Crew::new(workers)?;
+    let variants = variants(scene);
+    let mut tallies: Vec<Tally> = variants.iter().map(|_| Tally::default()).collect();
+    let mut playing = Playing::new(scene);
+    let steps = scene.steps();
+    let apart = (steps.saturating_sub(scene.dressing) / MOMENTS).max(WINDOW);
+    let (mut times, mut moments) = (Vec::new(), 0);
+    for step in 0..steps {
+        let met = step >= scene.dressing;
+        if met && (step - scene.dressing) % apart == apart / 2 && step + WINDOW <= steps {
+            weigh(&playing, &variants, &mut tallies);
+            moments += 1;
+        }
+        playing.place();
+        crew.wake();
+        let begun = Instant::now();
+        playing.take(&scene.settings, &mut crew);
+        if met {
+            times.push(begun.elapsed().as_secs_f64() * 1e6);
+        }
+    }
+    times.sort_unstable_by(f64::total_cmp);
+    let at = |q: f64| times.get(((times.len() as f64 * q) as usize).min(times.len().saturating_sub(1))).copied();
+    let as_is = tallies.remove(0);
+    let stages_us = as_is.stages_us();
+    let models = variants[1..].iter().zip(tallies).map(|(v, tally)| tally.told(v, &as_is)).collect();
+    let cloth_us = [0.5, 0.99].map(|q| at(q).unwrap_or(0.0));
+    let near = playing.cloths.iter().map(|c| c.contact_tally().near).sum::<u64>() / steps.max(1) as u64;
+    Ok(Played { cloth_us, near, stages_us, steps: times.len(), moments, models })
+}
+
+/// The scene as it is, then each model left out that it has, then each added that it has not.
+fn variants(scene: &Scene) -> Vec<Variant> {
+    let mut all = Vec::new();
+    let mut add = |model, on, garment: &dyn Fn(&mut Garment), settings: &dyn Fn(&mut Settings)| {
+        let (mut garments, mut with) = (scene.garments.clone(), scene.settings.clone());
+        garments.iter_mut().for_each(garment);
+        with.iter_mut().for_each(settings);
+        all.push(Variant { model, on, garments, settings: with });
+    };
+    let (same, alike) = (|_: &mut Garment| (), |_: &mut Settings| ());
+    add("as it is", true, &same, &alike);
+    let (wind, tethers) = (scene.settings[0].wind, scene.settings[0].tethers);
+    let quality = scene.settings[0].quality;
+    add("bending", true, &without_bending, &alike);
+    add("shear", true, &without_shear, &alike);
+    add("friction", true, &|g| g.fabric.friction = 0.0, &alike);
+    add("continuous contact", true, &same, &|s| s.continuous = false);
+    add("damping by air", true, &|g| g.fabric.damping_per_s = 0.0, &alike);
+    match wind {
+        Some(_) => add("wind", true, &same, &|s| s.wind = None),
+        None => add("still air on each triangle", false, &same, &|s| s.wind = Some(still())),
+    }
+    if quality != Quality::Draft {
+        add("repeated passes over hoops and fibers", true, &same, &|s| s.quality = Quality::Draft);
+        let says = if tethers { "tethers" } else { "tethers in every substep" };
+        add(says, tethers, &same, &|s| s.tethers = !tethers);
+    }
+    if quality != Quality::Fine {
+        add("three times the substeps, shear in each (fine)", false, &same, &|s| s.quality = Quality::Fine);
+    }
+    add("threads that do not give (zero stretch)", false, &inextensible, &alike);
+    all
+}
+
+/// Air that does not move.
+fn still() -> Wind {
+    Wind { velocity: Vec3A::ZERO, drag: DRAG_LIFT[0], lift: DRAG_LIFT[1] }
+}
+
+fn without_bending(garment: &mut Garment) {
+    let layout = &mut garment.layout;
+    (layout.bends, layout.skewed, layout.hubs) = (Bends::default(), Bends::default(), Hubs::default());
+}
+
+fn without_shear(garment: &mut Garment) {
+    (garment.layout.diagonals, garment.layout.shear) = (Diagonals::default(), Links::default());
+}
+
+fn inextensible(garment: &mut Garment) {
+    let layout = &mut garment.layout;
+    let all = [&mut layout.weft.compliance, &mut layout.fibers.compliance, &mut layout.crossing.compliance];
+    all.into_iter().flat_map(|c| c.iter_mut()).filter(|c| **c < ENDED).for_each(|c| *c = 0.0);
+}
+
+/// What the windows of one variant came to.
+#[derive(Default)]
+struct Tally {
+    apart_mm: Vec<f32>,
+    /// The shortest step of each window (us): what nothing else of the machine got into.
+    times_us: Vec<f64>,
+    stages: [Vec<f64>; STAGES.len()],
+}
+
+impl Tally {
+    fn stages_us(&self) -> [f64; STAGES.len()] {
+        std::array::from_fn(|k| quartile(&mut self.stages[k].clone()))
+    }
+
+    fn told(mut self, variant: &Variant, as_is: &Self) -> Weighed {
+        self.apart_mm.sort_unstable_by(f32::total_cmp);
+        let n = self.apart_mm.len();
+        let mean = self.apart_mm.iter().map(|mm| f64::from(*mm)).sum::<f64>() / n.max(1) as f64;
+        let at = |rank: usize| self.apart_mm.get(rank).map_or(0.0, |mm| f64::from(*mm));
+        // Window by window, so that a machine that changes its pace does not count.
+        let mut more: Vec<f64> = as_is.times_us.iter().zip(&self.times_us).map(|(a, b)| a - b).collect();
+        more.sort_unstable_by(f64::total_cmp);
+        let us = more.get(more.len() / 2).copied().unwrap_or(0.0);
+        let us = if variant.on { us } else { -us };
+        let error_mm = [mean, at(n * 99 / 100), at(n.saturating_sub(1))];
+        Weighed { model: variant.model, on: variant.on, error_mm, us }
+    }
+}
+
+/// Goes on from where a run is, once with each variant; the first is what the others are held against.
+fn weigh(from: &Playing<'_>, variants: &[Variant], tallies: &mut [Tally]) {
+    let mut as_is: Vec<Box<[Vec3A]>> = Vec::new();
+    for (variant, tally) in variants.iter().zip(tallies) {
+        let ends = window(from, variant, tally);
+        if as_is.is_empty() {
+            as_is = ends;
+            continue;
+        }
+        for ((a, b), garment) in as_is.iter().zip(&ends).zip(&variant.garments) {
+            let free = a.iter().zip(b.iter()).zip(&garment.inverse_mass).filter(|(_, w)| **w > 0.0);
+            tally.apart_mm.extend(free.map(|((a, b), _)| a.distance(*b) * 1e3));
+        }
+    }
+}
+
+/// Plays a window and gives where the particles end. All variants enter through the same door: a cloth of their own,
+/// placed by a step, then put into the state of the run.
+fn window(from: &Playing<'_>, variant: &Variant, tally: &mut Tally) -> Vec<Box<[Vec3A]>> {
+    let colliders = from.colliders.clone();
+    let mut playing = Playing { scene: from.scene, cloths: Vec::new(), colliders, bones: from.bones, step: from.step };
+    let settings: Vec<Settings> = variant.settings.iter().map(|s| Settings { timed: true, ..*s }).collect();
+    for ((garment, settings), run) in variant.garments.iter().zip(&settings).zip(&from.cloths) {
+        let mut cloth = Cloth::new(garment, &playing.colliders);
+        if settings.wind.is_some() {
+            cloth = cloth.in_wind(garment);
+        }
+        cloth.step(garment, &Step { palette: &playing.bones, colliders: &playing.colliders, settings });
+        (0..garment.particles()).for_each(|i| cloth.disturb(i, run.positions[i], run.velocity(i)));
+        playing.cloths.push(cloth);
+    }
+    let mut shortest = f64::INFINITY;
+    for _ in 0..WINDOW {
+        playing.place();
+        let begun = Instant::now();
+        step(&mut playing, variant, &settings);
+        let us = begun.elapsed().as_secs_f64() * 1e6;
+        let sum = |k: usize| playing.cloths.iter().map(|c| c.stage_ns[k]).sum::<u64>() as f64 * 1e-3;
+        let rest = STAGES.len() - 1;
+        (0..rest).for_each(|k| tally.stages[k].push(sum(k)));
+        tally.stages[rest].push((us - (0..rest).map(sum).sum::<f64>()).max(0.0));
+        shortest = shortest.min(us);
+    }
+    tally.times_us.push(shortest);
+    playing.cloths.into_iter().map(|c| c.positions).collect()
+}
+
+/// A step of the variant's own garments, on one core.
+fn step(playing: &mut Playing<'_>, variant: &Variant, settings: &[Settings]) {
+    let Playing { cloths, colliders, bones, .. } = playing;
+    for ((cloth, garment), settings) in cloths.iter_mut().zip(&variant.garments).zip(settings) {
+        cloth.step(garment, &Step { palette: bones, colliders, settings });
+    }
+}

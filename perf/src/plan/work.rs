@@ -1,0 +1,189 @@
+//! How much work a step of a garment is, counted from its layout in units that each take about the same time: what one
+//! pass of the lanes does, and what is gathered one by one.
+
+use glam::Vec3;
+use toile_assets::garment::layout::{ENDED, Links, Tuples};
+use toile_assets::garment::{Garment, Part};
+use toile_engine::cloth::program::{self, BEFORE, Bending, Op};
+use toile_engine::cloth::{Cloth, Quality, Settings, bending, contact};
+use toile_engine::colliders::Colliders;
+
+/// Kinds of unit in each stage.
+pub const KINDS: usize = 3;
+
+/// The stages of the cloth as the engine meters them, and what none of them counts: the guard, the skinned particles'
+/// targets, the copy of the positions.
+pub const STAGES: [&str; 9] = ["predict", "bend", "shear", "weft", "fibers", "contact", "wind", "tethers", "rest"];
+
+/// What is counted in each stage, in one step.
+pub const UNITS: [[&str; KINDS]; STAGES.len()] = [
+    ["lanes of particles", "skinned particles", "tensions"],
+    ["lanes of stencils", "lanes of scattered stencils", "lanes of ring sums"],
+    ["lanes of links along fibers", "lanes of links", "lanes of scattered links"],
+    ["lanes of links", "lanes of scattered links", "phases"],
+    ["lanes of rows", "lanes of rows by index", "lanes of closed hoops"],
+    ["blocks of particles", "near pairs", "phases"],
+    ["lanes of triangles", "", ""],
+    ["lanes of particles", "", ""],
+    ["lanes of particles", "skinned particles", ""],
+];
+
+/// How much of each unit.
+pub type Counts = [[f64; KINDS]; STAGES.len()];
+
+/// Particles of a block of the broad phase.
+const BLOCK: f64 = 16.0;
+
+/// The work of one step of one garment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Work {
+    /// Units, in the order of [`UNITS`].
+    pub counts: Counts,
+    /// Phases: as often two workers meet.
+    pub phases: f64,
+    /// Share of the particles that the busier of two workers has.
+    pub share: f64,
+    /// Substeps.
+    pub substeps: u32,
+}
+
+/// Cloth nearer to the body than this, as it is laid on, counts as near (m): what it moves towards the body in a step, and
+/// the ease that gives way where it hangs.
+const NEAR_M: f32 = 0.015;
+
+/// Pairs of a particle that moves and a capsule that its part can touch, near as the garment is laid on.
+pub fn near(garment: &Garment, colliders: &Colliders) -> f64 {
+    let cones = colliders.cones_at(1.0);
+    let free = garment.parts.iter().zip(&garment.start).zip(&garment.inverse_mass).filter(|(_, w)| **w > 0.0);
+    let of = |((part, p), _): ((&Part, &Vec3), &f32)| {
+        let bits = contact::reach(*part, colliders);
+        let touches = |c: &usize| bits >> c & 1 != 0 && cones[*c].distance(*p).0 < NEAR_M;
+        (0..colliders.capsules().len()).filter(touches).count() as f64
+    };
+    free.map(of).sum()
+}
+
+/// What only a step tells: how it was prepared, and how much of the garment is near the body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FirstStep {
+    /// Substeps.
+    pub substeps: u32,
+    /// How bending goes on.
+    pub bend: bending::Pace,
+    /// Pairs of particle and capsule that are near.
+    pub near: f64,
+}
+
+impl FirstStep {
+    /// Of a cloth that was made, and stepped once.
+    pub fn of(cloth: &Cloth, near: f64) -> Self {
+        Self { substeps: cloth.substeps(), bend: cloth.bend_pace(), near }
+    }
+}
+
+impl Work {
+    /// Counts it.
+    pub fn of(garment: &Garment, settings: &Settings, first: &FirstStep) -> Self {
+        let count = Count { garment, quality: settings.quality, lanes: settings.width.lanes() };
+        let n = f64::from(first.substeps);
+        let (particles, fixed) = (count.vectors(garment.particles()), garment.fixed.len() as f64);
+        let held = settings.tethers || settings.quality == Quality::Draft;
+        let only = |on: bool, amount: f64| [if on { amount } else { 0.0 }, 0.0, 0.0];
+        let per = |counts: [f64; KINDS]| counts.map(|c| c * n);
+        let bent = n / f64::from(first.bend.every.max(1)) * f64::from(first.bend.stages);
+        // Shear along whole fibers acts in every second of an even number of substeps.
+        let half = first.substeps.is_multiple_of(2) && settings.quality != Quality::Fine;
+        let leaning = if half { 0.5 } else { 1.0 };
+        let [shear, scattered] = count.links(&garment.layout.shear.tuples);
+        let counts = [
+            per([particles, fixed, count.tensions()]),
+            count.stencils().map(|c| c * bent),
+            per([count.leaning() * leaning, shear, scattered]),
+            per(count.weft()),
+            per(count.fibers()),
+            [garment.particles() as f64 / BLOCK, first.near / BLOCK * n, n],
+            only(settings.wind.is_some(), count.vectors(garment.triangles.len())),
+            only(held, particles * n),
+            [particles, fixed, 0.0],
+        ];
+        let bending = Bending { sets: Bending::sets(&garment.layout), stages: first.bend.stages };
+        let each = bending.phases() + program::substep(&garment.layout, settings.quality).len();
+        let own = garment.layout.spans[0].iter().map(|s| f64::from(s.1)).sum::<f64>() / garment.particles() as f64;
+        Self {
+            counts,
+            phases: BEFORE.len() as f64 + n * each as f64,
+            share: own.max(1.0 - own),
+            substeps: first.substeps,
+        }
+    }
+}
+
+struct Count<'a> {
+    garment: &'a Garment,
+    quality: Quality,
+    lanes: usize,
+}
+
+impl Count<'_> {
+    /// Passes of the lanes over so many things side by side.
+    fn vectors(&self, things: usize) -> f64 {
+        things.div_ceil(self.lanes) as f64
+    }
+
+    /// Lanes of runs, and of what is in none.
+    fn links<const K: usize>(&self, tuples: &Tuples<K>) -> [f64; 2] {
+        let zigzags = tuples.zigzags.iter().flat_map(|z| [z.rungs.len, z.slants.len]);
+        let runs = zigzags.chain(tuples.runs.iter().map(|r| r.len));
+        [runs.map(|len| self.vectors(len as usize)).sum(), tuples.loose.len() as f64 / self.lanes as f64]
+    }
+
+    /// How often an operation is in a substep.
+    fn times(&self, wanted: Op) -> f64 {
+        program::substep(&self.garment.layout, self.quality).iter().filter(|op| **op == wanted).count() as f64
+    }
+
+    fn stencils(&self) -> [f64; KINDS] {
+        let layout = &self.garment.layout;
+        let ([three, three_loose], [four, four_loose]) =
+            (self.links(&layout.bends.tuples), self.links(&layout.skewed.tuples));
+        let more = 4.0 / 3.0;
+        let products = |g: &toile_assets::garment::layout::HubGroup| (g.count * g.points * g.sums) as usize;
+        let hubs = layout.hubs.groups.iter().map(|g| self.vectors(products(g))).sum();
+        [three + more * four, three_loose + more * four_loose, hubs]
+    }
+
+    fn leaning(&self) -> f64 {
+        self.garment.layout.diagonals.runs.iter().map(|r| self.vectors(r.len as usize)).sum()
+    }
+
+    fn weft(&self) -> [f64; KINDS] {
+        let weft = &self.garment.layout.weft.tuples;
+        let [runs, loose] = self.links(weft);
+        let passes = self.times(Op::Weft(0));
+        [runs * passes, loose * passes, weft.sets.len() as f64 * passes]
+    }
+
+    fn fibers(&self) -> [f64; KINDS] {
+        let layout = &self.garment.layout;
+        let rows: f64 = layout.fibers.rows.iter().map(|r| self.vectors(r.lanes as usize)).sum();
+        let listed = |closed: bool| {
+            let lists = layout.crossing.lists.iter().filter(|l| l.closed == closed);
+            lists.map(|l| l.links() as f64 * self.vectors(l.lanes as usize)).sum::<f64>()
+        };
+        let (whole, crossing) = (self.times(Op::Fibers), self.times(Op::Crossing(0)));
+        [rows * whole, listed(false) * crossing, listed(true) * crossing]
+    }
+
+    /// Tensions that a substep begins with none of.
+    fn tensions(&self) -> f64 {
+        let layout = &self.garment.layout;
+        let Links { tuples, compliance, .. } = &layout.weft;
+        let all = [
+            (compliance, tuples.count),
+            (&layout.fibers.compliance, layout.fibers.links),
+            (&layout.crossing.compliance, layout.crossing.rest.len()),
+        ];
+        let gives = |c: &[f32]| c.iter().any(|c| (1e-6..ENDED).contains(c));
+        all.into_iter().filter(|(c, _)| gives(c)).map(|(_, count)| count as f64).sum()
+    }
+}

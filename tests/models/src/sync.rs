@@ -1,0 +1,58 @@
+//! What stands in the models where the engine has `sync`: loom's atomics, threads and cells. A cell that is written while
+//! somebody reads it ends the model.
+
+use std::time::Duration;
+
+pub use loom::sync::atomic::{AtomicBool, AtomicPtr, AtomicU64, AtomicUsize};
+pub use loom::thread::{self, JoinHandle};
+
+/// One look, as more of them are the same to a model.
+pub const LOOKS_BEFORE_TAKING: u32 = 1;
+
+/// Lets the others run: without it a model of a waiting thread has no end.
+pub fn pause(_looks: u32) {
+    thread::yield_now();
+}
+
+/// A thread without work is tired at once: a model knows no time.
+pub struct Idle;
+
+impl Idle {
+    /// However long.
+    pub fn until(_awake: Duration) -> Self {
+        Self
+    }
+
+    /// Always.
+    pub fn is_over(&self, _looks: u32) -> bool {
+        true
+    }
+}
+
+/// A value that its users keep apart by other means, which the model checks.
+pub struct Slot<T>(loom::cell::UnsafeCell<T>);
+
+impl<T: Copy> Slot<T> {
+    /// With a first value.
+    pub fn new(value: T) -> Self {
+        Self(loom::cell::UnsafeCell::new(value))
+    }
+
+    /// The value.
+    ///
+    /// # Safety
+    /// Nobody writes it meanwhile, and the last write happened before.
+    pub unsafe fn read(&self) -> T {
+        // SAFETY: see above; the model ends where it does not hold.
+        self.0.with(|value| unsafe { *value })
+    }
+
+    /// Puts another value there.
+    ///
+    /// # Safety
+    /// Nobody reads or writes it meanwhile, and all that did happened before.
+    pub unsafe fn write(&self, new: T) {
+        // SAFETY: see above; the model ends where it does not hold.
+        self.0.with_mut(|value| unsafe { *value = new });
+    }
+}
