@@ -23,6 +23,7 @@ mod filters;
 mod gestures;
 mod kiosk;
 mod latency;
+mod measuring;
 mod pareto;
 mod plan;
 mod run;
@@ -43,6 +44,7 @@ pub use filters::FiltersArgs;
 pub use gestures::GesturesArgs;
 pub use kiosk::KioskArgs;
 pub use latency::{LatencyArgs, ReplayArgs};
+pub use measuring::MeasuringArgs;
 pub use pareto::ParetoArgs;
 pub use plan::{PlanArgs, PlanScene};
 pub use run::{RunArgs, RunScene};
@@ -75,6 +77,8 @@ pub enum Command {
     Colliders(CollidersArgs),
     /// `toile bench body`.
     BenchBody(BodiesArgs),
+    /// `toile bench measure`.
+    BenchMeasure(MeasuringArgs),
     /// `toile bench filters`.
     BenchFilters(FiltersArgs),
     /// `toile bench gestures`.
@@ -139,6 +143,10 @@ pub struct MeasureArgs {
     pub file: PathBuf,
     /// Camera description for a raw depth frame.
     pub camera: Option<PathBuf>,
+    /// Whether the shopper wears nothing that stands off the skin.
+    pub tight: bool,
+    /// Folder for a picture of the fitted body over the depth.
+    pub out: Option<PathBuf>,
     /// One JSON object on stdout in place of the summary.
     pub json: bool,
     /// No words on stderr.
@@ -237,6 +245,8 @@ fn measure() -> clap::Command {
                 .value_parser(value_parser!(PathBuf))
                 .help("Recording or depth frame"),
             path("camera", "J", "Camera of a raw depth frame, as JSON [default: the recording's own]"),
+            flag("tight", "The shopper wears nothing that stands off the skin: the body fit is not one-sided"),
+            path("out", "DIR", "Folder for a picture of the fitted body over the depth"),
             json(),
             quiet(),
         ])
@@ -270,10 +280,11 @@ fn bench() -> clap::Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands([
-            filters::grammar(),
             skinning::grammar(),
             skirt::grammar(),
             bodies::grammar(),
+            measuring::grammar(),
+            filters::grammar(),
             gestures::grammar(),
             depth::grammar(),
         ])
@@ -338,6 +349,8 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "measure" => Command::Measure(MeasureArgs {
             file: required(matches, "file")?,
             camera: matches.get_one("camera").cloned(),
+            tight: matches.get_flag("tight"),
+            out: matches.get_one("out").cloned(),
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         }),
@@ -375,6 +388,7 @@ fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
         Some(("depth", matches)) => Ok(Command::BenchDepth(depth::parse(matches))),
         Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
         Some(("body", matches)) => Ok(Command::BenchBody(bodies::args(matches)?)),
+        Some(("measure", matches)) => Ok(Command::BenchMeasure(measuring::args(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),
         _ => Err(AppError::internal("a benchmark without a name was let through")),
     }
