@@ -23,11 +23,13 @@ mod filters;
 mod gestures;
 mod kiosk;
 mod latency;
+mod measuring;
 mod pareto;
 mod plan;
 mod run;
 mod skinning;
 mod skirt;
+mod soak;
 mod torture;
 mod validate;
 
@@ -42,11 +44,13 @@ pub use filters::FiltersArgs;
 pub use gestures::GesturesArgs;
 pub use kiosk::KioskArgs;
 pub use latency::{LatencyArgs, ReplayArgs};
+pub use measuring::MeasuringArgs;
 pub use pareto::ParetoArgs;
 pub use plan::{PlanArgs, PlanScene};
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
 pub use skirt::SkirtArgs;
+pub use soak::SoakArgs;
 pub use torture::TortureArgs;
 pub use validate::ValidateArgs;
 
@@ -73,6 +77,8 @@ pub enum Command {
     Colliders(CollidersArgs),
     /// `toile bench body`.
     BenchBody(BodiesArgs),
+    /// `toile bench measure`.
+    BenchMeasure(MeasuringArgs),
     /// `toile bench filters`.
     BenchFilters(FiltersArgs),
     /// `toile bench gestures`.
@@ -97,6 +103,8 @@ pub enum Command {
     Kiosk(KioskArgs),
     /// `toile plan`.
     Plan(PlanArgs),
+    /// `toile soak`.
+    Soak(SoakArgs),
     /// `toile completions`.
     Completions(Shell),
     /// Help or version: text to print.
@@ -135,6 +143,10 @@ pub struct MeasureArgs {
     pub file: PathBuf,
     /// Camera description for a raw depth frame.
     pub camera: Option<PathBuf>,
+    /// Whether the shopper wears nothing that stands off the skin.
+    pub tight: bool,
+    /// Folder for a picture of the fitted body over the depth.
+    pub out: Option<PathBuf>,
     /// One JSON object on stdout in place of the summary.
     pub json: bool,
     /// No words on stderr.
@@ -191,6 +203,7 @@ pub fn command() -> clap::Command {
             latency::grammar(),
             plan::grammar(),
             latency::replay_grammar(),
+            soak::grammar(),
             kiosk::grammar(),
             completions(),
         ])
@@ -232,6 +245,8 @@ fn measure() -> clap::Command {
                 .value_parser(value_parser!(PathBuf))
                 .help("Recording or depth frame"),
             path("camera", "J", "Camera of a raw depth frame, as JSON [default: the recording's own]"),
+            flag("tight", "The shopper wears nothing that stands off the skin: the body fit is not one-sided"),
+            path("out", "DIR", "Folder for a picture of the fitted body over the depth"),
             json(),
             quiet(),
         ])
@@ -265,10 +280,11 @@ fn bench() -> clap::Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands([
-            filters::grammar(),
             skinning::grammar(),
             skirt::grammar(),
             bodies::grammar(),
+            measuring::grammar(),
+            filters::grammar(),
             gestures::grammar(),
             depth::grammar(),
         ])
@@ -333,6 +349,8 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "measure" => Command::Measure(MeasureArgs {
             file: required(matches, "file")?,
             camera: matches.get_one("camera").cloned(),
+            tight: matches.get_flag("tight"),
+            out: matches.get_one("out").cloned(),
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         }),
@@ -356,6 +374,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "latency" => Command::Latency(latency::args(matches)?),
         "plan" => Command::Plan(plan::args(matches)?),
         "replay" => Command::Replay(latency::replay_args(matches)?),
+        "soak" => Command::Soak(soak::args(matches)?),
         "kiosk" => Command::Kiosk(kiosk::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
@@ -369,6 +388,7 @@ fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
         Some(("depth", matches)) => Ok(Command::BenchDepth(depth::parse(matches))),
         Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
         Some(("body", matches)) => Ok(Command::BenchBody(bodies::args(matches)?)),
+        Some(("measure", matches)) => Ok(Command::BenchMeasure(measuring::args(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),
         _ => Err(AppError::internal("a benchmark without a name was let through")),
     }
