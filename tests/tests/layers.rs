@@ -61,7 +61,7 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
             &["oracle"],
             &["depth", "skinning", "skirt", "latency"],
             &["torture", "validate"],
-            &["pareto", "plan"],
+            &["pareto", "plan", "soak"],
         ],
     ),
 ];

@@ -18,14 +18,18 @@ mod body;
 mod colliders;
 mod convert;
 mod depth;
+mod doctor;
 mod filters;
 mod gestures;
+mod kiosk;
 mod latency;
+mod measuring;
 mod pareto;
 mod plan;
 mod run;
 mod skinning;
 mod skirt;
+mod soak;
 mod torture;
 mod validate;
 
@@ -35,14 +39,18 @@ pub use body::{BodyArgs, Wearer};
 pub use colliders::CollidersArgs;
 pub use convert::{ConvertArgs, KeptDepth};
 pub use depth::DepthArgs;
+pub use doctor::DoctorArgs;
 pub use filters::FiltersArgs;
 pub use gestures::GesturesArgs;
+pub use kiosk::KioskArgs;
 pub use latency::{LatencyArgs, ReplayArgs};
+pub use measuring::MeasuringArgs;
 pub use pareto::ParetoArgs;
 pub use plan::{PlanArgs, PlanScene};
 pub use run::{RunArgs, RunScene};
 pub use skinning::SkinningArgs;
 pub use skirt::SkirtArgs;
+pub use soak::SoakArgs;
 pub use torture::TortureArgs;
 pub use validate::ValidateArgs;
 
@@ -69,6 +77,8 @@ pub enum Command {
     Colliders(CollidersArgs),
     /// `toile bench body`.
     BenchBody(BodiesArgs),
+    /// `toile bench measure`.
+    BenchMeasure(MeasuringArgs),
     /// `toile bench filters`.
     BenchFilters(FiltersArgs),
     /// `toile bench gestures`.
@@ -89,8 +99,12 @@ pub enum Command {
     Latency(LatencyArgs),
     /// `toile replay`.
     Replay(ReplayArgs),
+    /// `toile kiosk`.
+    Kiosk(KioskArgs),
     /// `toile plan`.
     Plan(PlanArgs),
+    /// `toile soak`.
+    Soak(SoakArgs),
     /// `toile completions`.
     Completions(Shell),
     /// Help or version: text to print.
@@ -129,6 +143,10 @@ pub struct MeasureArgs {
     pub file: PathBuf,
     /// Camera description for a raw depth frame.
     pub camera: Option<PathBuf>,
+    /// Whether the shopper wears nothing that stands off the skin.
+    pub tight: bool,
+    /// Folder for a picture of the fitted body over the depth.
+    pub out: Option<PathBuf>,
     /// One JSON object on stdout in place of the summary.
     pub json: bool,
     /// No words on stderr.
@@ -148,15 +166,6 @@ pub struct RecordArgs {
     pub json: bool,
     /// No words on stderr.
     pub quiet: bool,
-}
-
-/// Arguments of `toile doctor`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DoctorArgs {
-    /// The folder whose writing is tried.
-    pub out: PathBuf,
-    /// One JSON object on stdout in place of the table.
-    pub json: bool,
 }
 
 /// Longest session that `record` makes (s); at 30 frames a second this is some hundred megabytes.
@@ -186,7 +195,7 @@ pub fn command() -> clap::Command {
             bake::grammar(),
             body::grammar(),
             run::grammar(),
-            doctor(),
+            doctor::grammar(),
             bench(),
             validate::grammar(),
             pareto::grammar(),
@@ -194,6 +203,8 @@ pub fn command() -> clap::Command {
             latency::grammar(),
             plan::grammar(),
             latency::replay_grammar(),
+            soak::grammar(),
+            kiosk::grammar(),
             completions(),
         ])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
@@ -234,6 +245,8 @@ fn measure() -> clap::Command {
                 .value_parser(value_parser!(PathBuf))
                 .help("Recording or depth frame"),
             path("camera", "J", "Camera of a raw depth frame, as JSON [default: the recording's own]"),
+            flag("tight", "The shopper wears nothing that stands off the skin: the body fit is not one-sided"),
+            path("out", "DIR", "Folder for a picture of the fitted body over the depth"),
             json(),
             quiet(),
         ])
@@ -261,23 +274,17 @@ fn record() -> clap::Command {
         .after_help("Example: make another session and watch it\n  toile record --out other.mcap --seed 7 && toile try-on --session other.mcap")
 }
 
-fn doctor() -> clap::Command {
-    clap::Command::new("doctor")
-        .about("Say what this machine has, and the exact cure for what is missing")
-        .args([path("out", "DIR", "Output folder whose writing is tried").default_value("out"), json()])
-        .after_help("Example: see why a kiosk misses its deadline\n  toile doctor")
-}
-
 fn bench() -> clap::Command {
     clap::Command::new("bench")
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands([
-            filters::grammar(),
             skinning::grammar(),
             skirt::grammar(),
             bodies::grammar(),
+            measuring::grammar(),
+            filters::grammar(),
             gestures::grammar(),
             depth::grammar(),
         ])
@@ -342,6 +349,8 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "measure" => Command::Measure(MeasureArgs {
             file: required(matches, "file")?,
             camera: matches.get_one("camera").cloned(),
+            tight: matches.get_flag("tight"),
+            out: matches.get_one("out").cloned(),
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         }),
@@ -354,7 +363,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         }),
         "convert" => Command::Convert(convert::args(matches)?),
         "run" => Command::Run(run::args(matches)?),
-        "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
+        "doctor" => Command::Doctor(doctor::args(matches)?),
         "bake" => Command::Bake(bake::args(matches)?),
         "body" if matches.get_flag("colliders") => Command::Colliders(colliders::args(matches)?),
         "body" => Command::Body(body::args(matches)?),
@@ -365,6 +374,8 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "latency" => Command::Latency(latency::args(matches)?),
         "plan" => Command::Plan(plan::args(matches)?),
         "replay" => Command::Replay(latency::replay_args(matches)?),
+        "soak" => Command::Soak(soak::args(matches)?),
+        "kiosk" => Command::Kiosk(kiosk::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
     })
@@ -377,6 +388,7 @@ fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
         Some(("depth", matches)) => Ok(Command::BenchDepth(depth::parse(matches))),
         Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
         Some(("body", matches)) => Ok(Command::BenchBody(bodies::args(matches)?)),
+        Some(("measure", matches)) => Ok(Command::BenchMeasure(measuring::args(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),
         _ => Err(AppError::internal("a benchmark without a name was let through")),
     }

@@ -135,6 +135,9 @@ pub fn install_panic_hook() {
         let what = payload.downcast_ref::<&str>().copied().or(owned).unwrap_or("no reason given");
         let cure = "please report this with the command you typed";
         say_line(&one_line(&format!("internal fault{place} ({what}); {cure}")));
+        if let Some(saved) = crate::crash::save() {
+            say_line(&one_line(&saved));
+        }
         if std::env::var_os("RUST_BACKTRACE").is_some() {
             usual(info);
         }

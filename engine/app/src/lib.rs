@@ -12,14 +12,18 @@ pub mod cli;
 mod colliders;
 pub mod completions;
 pub mod convert;
+pub mod crash;
 pub mod doctor;
 pub mod dump;
 pub mod exit;
 pub mod fit;
 pub mod gestures;
+pub mod heap;
+pub mod kiosk;
 pub mod latency;
 pub mod machine;
 pub mod measure;
+pub mod measuring;
 pub mod outfit;
 pub mod output;
 pub mod pareto;
@@ -30,9 +34,11 @@ pub mod replay;
 pub mod report;
 pub mod run;
 pub mod shopper;
+pub mod soak;
 pub mod summary;
 pub mod terminal;
 pub mod torture;
+pub mod tracking;
 pub mod try_on;
 pub mod validate;
 
@@ -79,6 +85,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Body(args) => body::run(args),
         Command::Colliders(args) => colliders::run(args),
         Command::BenchBody(args) => bodies::bench(args),
+        Command::BenchMeasure(args) => measuring::bench(args),
         Command::BenchFilters(args) => bench::filters(args),
         Command::BenchGestures(args) => gestures::run(args),
         Command::BenchDepth(args) => bench::depth(args),
@@ -90,6 +97,8 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Latency(args) => latency::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Replay(args) => replay::run(args),
+        Command::Soak(args) => soak::run(args),
+        Command::Kiosk(args) => kiosk::run(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }

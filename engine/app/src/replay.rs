@@ -3,27 +3,49 @@
 use std::fs;
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use toile_engine::clock::SimClock;
 use toile_engine::crew::Crew;
+use toile_engine::frame::Frame;
 use toile_engine::pace::physics::{Staged, Stepper};
-use toile_engine::pace::replay::replay;
+use toile_engine::pace::replay::{Replayed, replay};
 use toile_engine::pace::tape::{self, Entry};
 
 use crate::cli::ReplayArgs;
 use crate::exit::AppError;
 use crate::outfit::Recipe;
 use crate::report::{Document, hash_text};
+use crate::soak::{self, SoakRecipe};
 use crate::terminal;
 
 /// Largest recording that is read (bytes): a day at 15 kB a second.
 const MOST_BYTES: u64 = 2 << 30;
 
+/// How the scene of a recording is made.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Recorded {
+    /// By `toile soak`.
+    Soak(SoakRecipe),
+    /// By `toile latency`.
+    Session(Recipe),
+}
+
+impl Recorded {
+    /// The version of the program that wrote it.
+    fn version(&self) -> &str {
+        match self {
+            Self::Soak(recipe) => &recipe.version,
+            Self::Session(recipe) => &recipe.version,
+        }
+    }
+}
+
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReplayReport {
     /// What was on stage.
-    pub scene: Recipe,
+    pub scene: Recorded,
     /// Workers of a step, now.
     pub workers: usize,
     /// Steps taken.
@@ -42,21 +64,18 @@ pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
     let file = args.file.display();
     let bad = |what: &dyn std::fmt::Display| AppError::Input(format!("{file}: {what}"));
     let (text, entries) = tape::read(&read(&args.file)?).map_err(|e| bad(&e))?;
-    let recipe: Recipe = serde_json::from_str(&text)
+    let recorded: Recorded = serde_json::from_str(&text)
         .map_err(|e| bad(&format!("what it says of its scene is not understood ({e}); record the run again")))?;
-    let Some(Entry::Dressed(first)) = entries.first() else {
-        return Err(bad(&"it does not begin with how the shopper was dressed; record the run again"));
+    let (frame, out) = match &recorded {
+        Recorded::Soak(recipe) => soak::again(recipe.soak, &entries, args.workers)?,
+        Recorded::Session(recipe) => session(recipe, &entries, args.workers).map_err(|e| bad(&e))?,
     };
-    let (frame, _reader) = recipe.make(first)?;
-    let crew = Crew::new(args.workers).map_err(AppError::input)?;
-    let mut stepper = Stepper::new(Staged::new(frame.with_crew(crew)));
-    let out = replay(&mut stepper, &entries, &SimClock::default());
     let report = ReplayReport {
         workers: args.workers,
         ticks: out.ticks,
-        state_hash: hash_text(stepper.scene.frame.state_hash()),
+        state_hash: hash_text(frame.state_hash()),
         diverged_at: out.diverged_at,
-        scene: recipe,
+        scene: recorded,
     };
     if args.json {
         terminal::print_json(&Document::new("replay", report.clone()))?;
@@ -66,13 +85,26 @@ pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
     if let Some(tick) = out.gap_at {
         return Err(bad(&format!("the step before step {tick} was not recorded; raise {}", tape::ENTRIES_NAME)));
     }
-    let made_by = &report.scene.version;
+    let made_by = report.scene.version();
     report.diverged_at.map_or(Ok(()), |tick| {
         Err(AppError::Diverged(format!(
             "{file}: step {tick} ends in other bits than recorded by version {made_by}; replay it with that version on \
              a processor of the same kind"
         )))
     })
+}
+
+/// Takes a recording of `toile latency` again.
+fn session(recipe: &Recipe, entries: &[Entry], workers: usize) -> Result<(Frame, Replayed), AppError> {
+    let Some(Entry::Dressed(first)) = entries.first() else {
+        let what = "it does not begin with how the shopper was dressed; record the run again";
+        return Err(AppError::Input(what.to_owned()));
+    };
+    let (frame, _reader) = recipe.make(first)?;
+    let crew = Crew::new(workers).map_err(AppError::input)?;
+    let mut stepper = Stepper::new(Staged::new(frame.with_crew(crew)));
+    let out = replay(&mut stepper, entries, &SimClock::default());
+    Ok((stepper.scene.frame, out))
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, AppError> {

@@ -167,6 +167,13 @@ impl Frame {
         Self { settings: Settings { workers: crew.workers(), ..self.settings }, crew, ..self }
     }
 
+    /// Takes over the crew of a frame that leaves the stage, which gets this one's: no thread begins or ends.
+    pub fn take_crew(&mut self, from: &mut Self) {
+        std::mem::swap(&mut self.crew, &mut from.crew);
+        self.settings.workers = self.crew.workers();
+        from.settings.workers = from.crew.workers();
+    }
+
     /// Strain and penetration are measured every so many steps, for a loop that has other things to do with the time;
     /// 0 is never.
     pub fn measure_every(&mut self, steps: u64) {

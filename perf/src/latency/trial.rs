@@ -114,6 +114,7 @@ impl Told {
             What::SensorLost => self.say(event, "no sensor frame had come for half a second"),
             What::SensorBack => self.say(event, "the sensor came back"),
             What::Broken => self.say(event, "a worker panicked and the garments kept their places"),
+            What::Changed(_) => {}
             What::RolledBack => self.say(event, "a garment ended with what is no number and was rolled back"),
         }
     }

@@ -35,6 +35,8 @@ pub enum What {
     SensorLost,
     /// It has come back.
     SensorBack,
+    /// Another scene is stepped from this step on: its number.
+    Changed(u64),
     /// A worker panicked; the garments kept their last places.
     Broken,
     /// A garment ended a step with what is no number and was put back.

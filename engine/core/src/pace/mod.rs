@@ -5,6 +5,8 @@
 //! Thread: each of the three is a [`Turn`] on a thread of its own, or all of them one after the other against a simulated
 //! clock. Between them there is only a [`crate::relay`] or a bounded queue ([`queue`]).
 
+pub mod blackbox;
+pub mod change;
 pub mod event;
 pub mod governor;
 pub mod intake;

@@ -4,6 +4,7 @@ use toile_assets::limits::STEP_HZ;
 use toile_sensors::frame::Joints;
 
 use super::Turn;
+use super::change::Taker;
 use super::event::{Account, Counters, Event, Miss, SENSOR_LOST_NS, What};
 use super::governor::{Governor, LADDER, Rung};
 use super::intake::Intake;
@@ -39,6 +40,9 @@ pub trait Scene {
 
     /// A hash of the state.
     fn fingerprint(&self) -> u64;
+
+    /// Takes over what does not go with the scene before it: who works on the steps.
+    fn succeed(&mut self, _before: &mut Self) {}
 
     /// Steps that a worker broke off, and steps that a garment rolled back, so far.
     fn troubles(&self) -> [u64; 2];
@@ -82,6 +86,10 @@ impl Scene for Staged {
         self.frame.fingerprint()
     }
 
+    fn succeed(&mut self, before: &mut Self) {
+        self.frame.take_crew(&mut before.frame);
+    }
+
     fn troubles(&self) -> [u64; 2] {
         [self.frame.broken(), self.frame.cloths().iter().map(|c| c.events.rolled_back).sum()]
     }
@@ -117,6 +125,27 @@ impl<S: Scene> Stepper<S> {
         if self.intake.take(&seen.joints, end_of(scheduled_ns)) {
             self.newest = (seen.arrived_ns, seen.number);
         }
+    }
+
+    /// Changes the scene for another, which is set to the rung as it is; where somebody else comes with it nobody's motion
+    /// is carried on.
+    pub fn change(&mut self, scene: &mut S, afresh: bool) {
+        scene.succeed(&mut self.scene);
+        std::mem::swap(&mut self.scene, scene);
+        self.scene.set_rung(&LADDER[usize::from(self.rung).min(LADDER.len() - 1)]);
+        if afresh {
+            (self.intake, self.newest) = (Intake::default(), (0, 0));
+        }
+    }
+
+    /// The joints as a step that is due then (ns) would have them.
+    pub fn joints_for(&self, scheduled_ns: u64) -> Joints {
+        self.intake.at(end_of(scheduled_ns))
+    }
+
+    /// When the newest sensor frame was taken (ns); 0 is none.
+    pub fn seen_ns(&self) -> u64 {
+        self.intake.seen_ns().unwrap_or(0)
     }
 
     /// One step: the joints as they are at its end.
@@ -170,6 +199,17 @@ impl Gauges {
     }
 }
 
+/// When a step was due, begun and published (ns).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Taken {
+    /// When it was due.
+    pub scheduled_ns: u64,
+    /// When it began.
+    pub begun_ns: u64,
+    /// When it was published.
+    pub ended_ns: u64,
+}
+
 /// The ends of what the physics writes to, beside the snapshots.
 #[derive(Debug)]
 pub struct Outlets {
@@ -191,6 +231,8 @@ pub struct Physics<S, C, A> {
     governor: Governor,
     seen: Reader<Seen>,
     outlets: Outlets,
+    changes: Option<Taker<S>>,
+    taken: Taken,
     account: A,
     counters: Counters,
     troubles: [u64; 2],
@@ -215,6 +257,8 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
             governor: Governor::default(),
             seen,
             outlets,
+            changes: None,
+            taken: Taken::default(),
             account,
             counters: Counters::default(),
             tick: 0,
@@ -239,6 +283,17 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
         self
     }
 
+    /// The same, whose scene is changed for those that are handed to it.
+    #[must_use]
+    pub fn changing(self, changes: Taker<S>) -> Self {
+        Self { changes: Some(changes), ..self }
+    }
+
+    /// The last step.
+    pub fn taken(&self) -> Taken {
+        self.taken
+    }
+
     /// Steps taken so far, the first ones included.
     pub fn ticks(&self) -> u64 {
         self.tick
@@ -257,10 +312,12 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
         }
         let begun = self.clock.now_ns();
         self.drop_steps(&due, begun);
+        self.change(due.scheduled_ns);
         let news = self.look(due.scheduled_ns, begun);
         self.gauges.intake.add(self.clock.now_ns() - begun);
         self.stepper.step(due.scheduled_ns, begun, &self.clock);
         let ended = self.clock.now_ns();
+        self.taken = Taken { scheduled_ns: due.scheduled_ns, begun_ns: begun, ended_ns: ended };
         let counted = self.count(ended - due.scheduled_ns > PERIOD_NS);
         self.meter(&due, begun, ended, news);
         let miss = Miss {
@@ -300,6 +357,19 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
             self.gauges.response.add(late);
         }
         self.tell(due.scheduled_ns, What::Dropped(due.dropped));
+    }
+
+    /// Changes the scene, if another was handed over.
+    fn change(&mut self, scheduled_ns: u64) {
+        let Some(changes) = &mut self.changes else { return };
+        let stepper = &mut self.stepper;
+        let taken = changes.take(|change| stepper.change(&mut change.scene, change.afresh));
+        let Some((number, afresh)) = taken else { return };
+        self.troubles = self.stepper.scene.troubles();
+        if let Some(tape) = &mut self.outlets.tape {
+            tape.push(Entry::Changed { number, afresh });
+        }
+        self.tell(scheduled_ns, What::Changed(number));
     }
 
     /// Takes the newest sensor frame, if there is a new one; gives when it arrived (ns).

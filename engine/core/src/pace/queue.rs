@@ -56,6 +56,11 @@ pub fn bounded<T>(constant: &'static str, bound: usize) -> (Sender<T>, Receiver<
 }
 
 impl<T> Sender<T> {
+    /// Whether the next entry would be lost. Only this end fills the queue, so what is free stays free.
+    pub fn is_full(&self) -> bool {
+        self.0.entries.is_full()
+    }
+
     /// Pushes an entry; where there is no place it is lost and counted. Says whether it fitted. Waits for nobody.
     pub fn push(&mut self, entry: T) -> bool {
         let fits = self.0.entries.push(entry).is_ok();

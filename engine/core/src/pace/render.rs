@@ -1,6 +1,7 @@
 //! Render: the life that takes pictures of the newest snapshot, at the display's rate. Physics never waits for it.
 
 use super::Turn;
+use super::change::Taker;
 use super::schedule::{Due, Schedule};
 use crate::clock::Clock;
 use crate::frame::Snapshot;
@@ -30,6 +31,7 @@ pub struct Render<E, C> {
     clock: C,
     schedule: Schedule,
     reader: Reader<Snapshot>,
+    changes: Option<Taker<Reader<Snapshot>>>,
     /// From a snapshot's publication until its picture was taken.
     pub picture: Meter,
     /// How long the picture itself took.
@@ -53,6 +55,7 @@ impl<E: Eye, C: Clock> Render<E, C> {
             clock,
             schedule: Schedule::new(origin_ns, DISPLAY_HZ),
             reader,
+            changes: None,
             picture: Meter::new(),
             drawing: Meter::new(),
             total: Meter::new(),
@@ -69,8 +72,30 @@ impl<E: Eye, C: Clock> Render<E, C> {
         Self { from_ns, ..self }
     }
 
+    /// The same, which looks at other snapshots when their reader is handed to it.
+    #[must_use]
+    pub fn changing(self, changes: Taker<Reader<Snapshot>>) -> Self {
+        Self { changes: Some(changes), ..self }
+    }
+
+    /// One in the place of one that died, with what it held; the next picture is due now.
+    #[must_use]
+    pub fn begun_again(self) -> Self {
+        let schedule = Schedule::new(self.clock.now_ns(), DISPLAY_HZ);
+        Self { schedule, ..self }
+    }
+
+    /// Looks at another scene's snapshots from now on; gives back the end that it looked at, so that it is dropped
+    /// elsewhere.
+    pub fn watch(&mut self, reader: Reader<Snapshot>) -> Reader<Snapshot> {
+        std::mem::replace(&mut self.reader, reader)
+    }
+
     fn take(&mut self) {
         let begun = self.clock.now_ns();
+        if let Some(changes) = &mut self.changes {
+            changes.take(|change| std::mem::swap(&mut change.scene, &mut self.reader));
+        }
         let Some(snapshot) = self.reader.news() else { return };
         let times = snapshot.times;
         self.eye.look(snapshot);

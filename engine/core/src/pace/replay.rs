@@ -20,18 +20,36 @@ pub struct Replayed {
 /// Takes the recorded steps again. The scene is dressed as the recording says already; nothing stops at a difference, so
 /// that the rest of the run can be looked at.
 pub fn replay<S: Scene>(stepper: &mut Stepper<S>, entries: &[Entry], clock: &impl Clock) -> Replayed {
+    replay_changing(stepper, entries, clock, |_| None)
+}
+
+/// The same where scenes were changed: `make` makes the one of a number. One that cannot be made changes nothing, and the
+/// next step ends in other bits.
+pub fn replay_changing<S: Scene>(
+    stepper: &mut Stepper<S>,
+    entries: &[Entry],
+    clock: &impl Clock,
+    mut make: impl FnMut(u64) -> Option<S>,
+) -> Replayed {
     let mut out = Replayed::default();
+    // A recording may begin in the middle of a run, where somebody was dressed.
+    let mut next = None;
     // Frames are taken with the time of the step that knew them, which follows them.
     let mut waiting = None;
     for entry in entries {
         match entry {
             Entry::Dressed(_) => {}
+            Entry::Changed { number, afresh } => {
+                if let Some(mut scene) = make(*number) {
+                    stepper.change(&mut scene, *afresh);
+                }
+            }
             Entry::Seen(seen) => waiting = Some(seen),
             Entry::Step { tick, scheduled_ns, rung, fingerprint } => {
-                if *tick != out.ticks {
+                if next.is_some_and(|next| next != *tick) {
                     out.gap_at = out.gap_at.or(Some(*tick));
-                    out.ticks = *tick;
                 }
+                next = Some(tick + 1);
                 stepper.set_rung(*rung);
                 if let Some(seen) = waiting.take() {
                     stepper.take(seen, *scheduled_ns);

@@ -67,6 +67,13 @@ impl Source for Playback {
     }
 }
 
+/// A stamp that lies so far ahead of its frame's arrival is that of a clock that jumped (ns). Believing it would
+/// have every later frame look old.
+pub const AHEAD_NS: u64 = 20_000_000;
+
+/// A stamp that lies so far behind its frame's arrival is one too (ns).
+pub const BEHIND_NS: u64 = 1_000_000_000;
+
 /// A filtered frame on its way to the physics.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seen {
@@ -93,6 +100,11 @@ pub struct Sense<S, C> {
     writer: Writer<Seen>,
     count: u64,
     from_ns: u64,
+    last_ns: Option<u64>,
+    /// Frames whose stamp was that of a clock that had jumped; they count as seen when they arrived.
+    pub restamped: u64,
+    /// Frames that were no newer than the one before, which are passed over.
+    pub stale: u64,
     /// From a frame's arrival to its publication.
     pub filtering: Meter,
 }
@@ -100,13 +112,37 @@ pub struct Sense<S, C> {
 impl<S: Source, C: Clock> Sense<S, C> {
     /// At load.
     pub fn new(source: S, clock: C, writer: Writer<Seen>) -> Self {
-        Self { source, clock, filter: JointFilter::default(), writer, count: 0, from_ns: 0, filtering: Meter::new() }
+        Self {
+            source,
+            clock,
+            filter: JointFilter::default(),
+            writer,
+            count: 0,
+            from_ns: 0,
+            last_ns: None,
+            restamped: 0,
+            stale: 0,
+            filtering: Meter::new(),
+        }
     }
 
     /// The same, whose meter begins at this time (ns).
     #[must_use]
     pub fn metering_from(self, from_ns: u64) -> Self {
         Self { from_ns, ..self }
+    }
+
+    /// A frame with a stamp that can be believed; none where it is no news.
+    fn stamped(&mut self, raw: Joints, due: u64) -> Option<Joints> {
+        let jumped = raw.time_ns > due.saturating_add(AHEAD_NS) || raw.time_ns.saturating_add(BEHIND_NS) < due;
+        self.restamped += u64::from(jumped);
+        let time_ns = if jumped { due } else { raw.time_ns };
+        if self.last_ns.is_some_and(|last| time_ns <= last) {
+            self.stale += 1;
+            return None;
+        }
+        self.last_ns = Some(time_ns);
+        Some(Joints { time_ns, ..raw })
     }
 
     /// Frames published so far.
@@ -121,7 +157,9 @@ impl<S: Source, C: Clock> Turn for Sense<S, C> {
         if self.clock.now_ns() < due {
             return Some(due);
         }
-        if let Some(raw) = self.source.read() {
+        if let Some(raw) = self.source.read()
+            && let Some(raw) = self.stamped(raw, due)
+        {
             // It has been here since it was due, however late this thread is: nothing is left out of its latency.
             let arrived_ns = due.max(raw.time_ns);
             let joints = self.filter.push(&raw);
@@ -138,6 +176,41 @@ impl<S: Source, C: Clock> Turn for Sense<S, C> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn stamps_of_a_clock_that_jumped_and_frames_that_are_no_news_do_not_get_through() {
+        const MS: u64 = 1_000_000;
+        // When each frame arrives, and its stamp (ms): late, repeated, out of order, from tomorrow, from yesterday.
+        let told = [
+            (5_000, 4_980),
+            (5_033, 5_013),
+            (5_066, 5_013),
+            (5_100, 5_000),
+            (5_133, 90_000_000),
+            (5_166, 12),
+            (5_200, 5_180),
+        ];
+        struct Told(Vec<(u64, u64)>);
+        impl Source for Told {
+            fn next_ns(&self) -> Option<u64> {
+                self.0.first().map(|t| t.0 * MS)
+            }
+            fn read(&mut self) -> Option<Joints> {
+                Some(Joints::absent(self.0.remove(0).1 * MS))
+            }
+        }
+        let clock = crate::clock::SimClock::default();
+        let crate::relay::Relay { writer, mut reader } = crate::relay::Relay::new(&Seen::default());
+        let mut sense = Sense::new(Told(told.to_vec()), clock.clone(), writer);
+        let mut stamps = Vec::new();
+        while let Some(due) = sense.source.next_ns() {
+            clock.sleep_until(due);
+            sense.turn();
+            stamps.extend(reader.news().map(|seen| seen.joints.time_ns / MS));
+        }
+        assert_eq!(stamps, [4_980, 5_013, 5_133, 5_166, 5_180]);
+        assert_eq!((sense.restamped, sense.stale, sense.frames()), (2, 2, 5));
+    }
 
     #[test]
     fn a_recording_is_played_forth_and_back_at_its_own_pace() {

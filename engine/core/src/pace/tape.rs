@@ -29,6 +29,13 @@ const MOST_TEXT: usize = 1 << 20;
 pub enum Entry {
     /// The joints in which the shopper was dressed, before the first step.
     Dressed(Joints),
+    /// From the next step on another scene is stepped.
+    Changed {
+        /// Its number, from which the scene's text tells how it is made.
+        number: u64,
+        /// Whether another shopper came with it.
+        afresh: bool,
+    },
     /// A filtered frame that the next step knew.
     Seen(Seen),
     /// A step was taken.
@@ -49,7 +56,7 @@ pub enum Entry {
 pub enum TapeError {
     /// Another file.
     #[error(
-        "this is not a recording of a run (it does not begin with `toile-tape/1`); make one with `toile latency --record F`"
+        "this is not a recording of a run (it does not begin with `toile-tape/1`); make one with `toile latency --record F` or `toile soak --record F`"
     )]
     Magic,
     /// Cut off before the first step, or no text.
@@ -75,6 +82,10 @@ pub fn write(entry: &Entry, out: &mut Vec<u8>) {
         Entry::Dressed(joints) => {
             put_joints(joints, &mut body);
             b'd'
+        }
+        Entry::Changed { number, afresh } => {
+            [*number, u64::from(*afresh)].iter().for_each(|n| body.extend(n.to_le_bytes()));
+            b'c'
         }
         Entry::Seen(seen) => {
             [seen.number, seen.arrived_ns].iter().for_each(|n| body.extend(n.to_le_bytes()));
@@ -142,6 +153,7 @@ fn entry(kind: u8, body: &[u8]) -> Option<Entry> {
             let joints = joints(words.get(2..)?)?;
             Some(Entry::Seen(Seen { joints, number: word(0)?, arrived_ns: word(1)? }))
         }
+        b'c' if words.len() == 2 => Some(Entry::Changed { number: word(0)?, afresh: word(1)? != 0 }),
         b's' if words.len() == 4 => Some(Entry::Step {
             tick: word(0)?,
             scheduled_ns: word(1)?,
@@ -176,6 +188,7 @@ mod tests {
         vec![
             Entry::Dressed(joints),
             Entry::Seen(Seen { joints, arrived_ns: u64::MAX, number: 1 }),
+            Entry::Changed { number: 5, afresh: true },
             Entry::Step { tick: 0, scheduled_ns: 9, rung: 2, fingerprint: u64::MAX - 1 },
             Entry::Step { tick: 1, scheduled_ns: 10, rung: 0, fingerprint: 0 },
         ]
@@ -193,7 +206,7 @@ mod tests {
         assert_eq!(read(&bytes), Ok(("a scene".to_owned(), entries())));
         let step = 2 + 32 + 4;
         for cut in 1..=step {
-            assert_eq!(read(&bytes[..bytes.len() - cut]).unwrap().1, entries()[..3]);
+            assert_eq!(read(&bytes[..bytes.len() - cut]).unwrap().1, entries()[..4]);
         }
         assert_eq!(read(&bytes[..bytes.len() - step - 1]), Err(TapeError::Short), "no step is left");
         assert_eq!(read(&bytes[..20]), Err(TapeError::Short));

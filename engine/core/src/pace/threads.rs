@@ -1,6 +1,7 @@
 //! Threads: each life on a thread of its own, pinned and raised as far as the machine allows, ended by a flag.
 
 use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU64};
@@ -26,7 +27,7 @@ const LONGEST_START: Duration = Duration::from_secs(5);
 pub struct Stop(Arc<AtomicBool>);
 
 impl Stop {
-    /// Ends all lives within [`LONGEST_SLEEP_NS`].
+    /// Ends all lives within 50 ms.
     pub fn now(&self) {
         self.0.store(true, Relaxed);
     }
@@ -40,7 +41,7 @@ impl Stop {
 /// A life on its thread.
 #[derive(Debug)]
 pub struct Life<T> {
-    thread: JoinHandle<T>,
+    thread: JoinHandle<(T, bool)>,
     /// Turns taken so far: what a watchdog looks at.
     turns: Arc<AtomicU64>,
     placement: mpsc::Receiver<Placement>,
@@ -64,7 +65,13 @@ impl<T> Life<T> {
 
     /// Waits for its end, which [`Stop`] brings about, and gives back what lived; none where it panicked.
     pub fn join(self) -> Option<T> {
-        self.thread.join().ok()
+        self.thread.join().ok().and_then(|(life, whole)| whole.then_some(life))
+    }
+
+    /// The same, also where it panicked: what it held can serve the next one. What it was about when it died may be half
+    /// done.
+    pub fn salvage(self) -> Option<T> {
+        self.thread.join().ok().map(|(life, _)| life)
     }
 }
 
@@ -83,12 +90,15 @@ where
     let work = move || {
         // Nobody may listen.
         let _ = tell.send(roles::settle(role));
-        while !stop.is_set() {
-            let Some(next) = life.turn() else { break };
-            mine.fetch_add(1, Relaxed);
-            clock.sleep_until(next.min(clock.now_ns() + LONGEST_SLEEP_NS));
-        }
-        life
+        let live = || {
+            while !stop.is_set() {
+                let Some(next) = life.turn() else { break };
+                mine.fetch_add(1, Relaxed);
+                clock.sleep_until(next.min(clock.now_ns() + LONGEST_SLEEP_NS));
+            }
+        };
+        let whole = catch_unwind(AssertUnwindSafe(live)).is_ok();
+        (life, whole)
     };
     let thread = thread::Builder::new().name(format!("toile-{}", role.name())).spawn(work)?;
     Ok(Life { thread, turns, placement })
@@ -128,6 +138,24 @@ mod tests {
         let told = start(Role::Render, Counting(u64::MAX / 2, clock), clock, &stop).unwrap();
         stop.now();
         assert!(told.join().is_some());
+    }
+
+    struct Dying(u64);
+
+    impl Turn for Dying {
+        fn turn(&mut self) -> Option<u64> {
+            self.0 += 1;
+            // Without the hook: no words on the test's output.
+            if self.0 == 3 { std::panic::resume_unwind(Box::new(())) } else { Some(0) }
+        }
+    }
+
+    #[test]
+    fn what_a_dead_life_held_can_be_had_but_not_as_if_it_had_lived_on() {
+        let clock = RealClock::default();
+        let begun = || start(Role::Render, Dying(0), clock, &Stop::default()).unwrap();
+        assert!(begun().join().is_none());
+        assert_eq!(begun().salvage().unwrap().0, 3);
     }
 
     #[test]

@@ -9,9 +9,10 @@ use toile_sensors::frame::TrackedJoint;
 
 use super::*;
 use crate::clock::SimClock;
+use crate::pace::change::{Change, handover};
 use crate::pace::event::{EVENTS, EVENTS_NAME, NoAccount};
 use crate::pace::queue::{Receiver, bounded};
-use crate::pace::replay::replay;
+use crate::pace::replay::{replay, replay_changing};
 use crate::pace::sense::{Playback, Sense};
 use crate::pace::simulate::simulate;
 use crate::pace::tape::{ENTRIES, ENTRIES_NAME};
@@ -208,4 +209,38 @@ fn a_recorded_run_is_taken_again_bit_for_bit_and_a_difference_is_found_where_it_
     let mut lost = entries;
     lost.remove(lost.len() / 2);
     assert!(again(&lost).diverged_at.is_some() || again(&lost).gap_at.is_some());
+}
+
+#[test]
+fn another_scene_takes_the_place_between_two_steps_and_in_the_replay_too() {
+    let frames = recording(30);
+    let Rig { clock, sense, physics, events, tape } = rig(7, &frames, |_| MS);
+    let (mut giver, taker) = handover();
+    let mut rig = Rig { clock, sense, physics: physics.changing(taker), events, tape };
+    rig.physics = rig.physics.held_on(2);
+    for number in 1..=4 {
+        rig.run(number * 2 * SECOND_NS);
+        let scene = Toy::new(&rig.clock, |_| MS);
+        assert!(giver.give(Box::new(Change { scene, number, afresh: number % 2 == 0 })).is_ok());
+        rig.run(number * 2 * SECOND_NS + SECOND_NS);
+        let before = giver.returned().expect("the scene before");
+        assert!(before.scene.path.borrow().len() >= 200 && before.number == number);
+        assert_eq!(rig.physics.stepper.scene.share, 0.5, "the rung goes on");
+    }
+    let told: Vec<What> = rig.told().into_iter().map(|e| e.what).collect();
+    assert_eq!(told, (1..=4).map(What::Changed).collect::<Vec<_>>());
+    let entries: Vec<Entry> = std::iter::from_fn(|| rig.tape.pop()).collect();
+    let clock = SimClock::default();
+    let again = |entries: &[Entry]| {
+        let mut stepper = Stepper::new(Toy::new(&clock, |_| 0));
+        replay_changing(&mut stepper, entries, &clock, |_| Some(Toy::new(&clock, |_| 0)))
+    };
+    let out = again(&entries);
+    assert_eq!((out.ticks, out.diverged_at, out.gap_at), (rig.physics.ticks(), None, None));
+    assert_eq!(out.fingerprint, rig.physics.stepper.scene.hash);
+    // From where somebody came, which is where a black box begins; with a garment alone the shopper's motion is not known.
+    let from = |number: u64| entries.iter().position(|e| matches!(e, Entry::Changed { number: n, .. } if *n == number));
+    let late = again(&entries[from(2).unwrap()..]);
+    assert_eq!((late.diverged_at, late.gap_at, late.fingerprint), (None, None, out.fingerprint));
+    assert!(again(&entries[from(3).unwrap()..]).diverged_at.is_some());
 }

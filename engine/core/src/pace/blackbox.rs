@@ -1,0 +1,190 @@
+//! Black box: what a replay needs of the last seconds, kept in memory by whoever empties the tape's queue, for the moment at
+//! which something dies.
+//!
+//! A replay has to begin where the state is known, which is where a shopper was dressed. So the box keeps the run from the
+//! last such moment that lies [`KEPT_NS`] or more back: ten seconds at least, and the whole of the shopper's visit before
+//! them. The physics has no part in it.
+
+use std::collections::VecDeque;
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::queue::{Capacity, Receiver};
+use super::tape::{self, Entry};
+
+/// What is kept at least (ns).
+pub const KEPT_NS: u64 = 10_000_000_000;
+
+/// Room for each of two visits that is there, and touched, from the begin (bytes): nine minutes. Only a longer one takes memory
+/// while it goes on.
+pub const ROOM_BYTES: usize = 8 << 20;
+
+/// Longest visit that is kept whole (bytes): an hour at 15 kB a second. Of a longer one nothing is kept beyond it.
+pub const MOST_BYTES: usize = 56 << 20;
+
+/// Time between two tries to get at the box (us).
+const RETRY: Duration = Duration::from_micros(500);
+
+/// One visit.
+#[derive(Debug, Default)]
+struct Visit {
+    /// When its first step was due (ns).
+    from_ns: Option<u64>,
+    bytes: Vec<u8>,
+}
+
+#[derive(Debug)]
+struct Inner {
+    header: Vec<u8>,
+    entries: Receiver<Entry>,
+    visits: VecDeque<Visit>,
+    newest_ns: u64,
+    /// Storage of visits that were forgotten, for those to come.
+    spare: Vec<Vec<u8>>,
+}
+
+/// The box; shared by the thread that fills it and by whoever has to save it.
+#[derive(Debug)]
+pub struct BlackBox(Mutex<Inner>);
+
+impl BlackBox {
+    /// An empty box whose file begins with this header ([`tape::header`]); it empties this queue.
+    pub fn new(header: Vec<u8>, entries: Receiver<Entry>) -> Self {
+        // Written to once, so that the system has given it.
+        let room = || {
+            let mut bytes = vec![1; ROOM_BYTES];
+            bytes.clear();
+            bytes
+        };
+        let spare = vec![room(), room()];
+        Self(Mutex::new(Inner { header, entries, visits: VecDeque::with_capacity(16), newest_ns: 0, spare }))
+    }
+
+    /// Keeps an entry that comes from elsewhere: how the shopper was dressed before the first step.
+    pub fn keep(&self, entry: &Entry) {
+        self.locked().keep(entry);
+    }
+
+    /// Empties the queue; each entry is handed on as well.
+    pub fn drain(&self, mut each: impl FnMut(&Entry)) {
+        let mut inner = self.locked();
+        while let Some(entry) = inner.entries.pop() {
+            inner.keep(&entry);
+            each(&entry);
+        }
+    }
+
+    /// How full the queue was.
+    pub fn capacity(&self) -> Capacity {
+        self.locked().entries.capacity()
+    }
+
+    /// The file, with all that is still in the queue; none where nothing was stepped, or where the box is not to be had
+    /// within this time because who fills it died in the middle.
+    pub fn save(&self, within: Duration) -> Option<Vec<u8>> {
+        let until = Instant::now() + within;
+        let mut inner = loop {
+            match self.0.try_lock() {
+                Ok(inner) => break inner,
+                Err(TryLockError::Poisoned(inner)) => break inner.into_inner(),
+                Err(TryLockError::WouldBlock) if Instant::now() < until => thread::sleep(RETRY),
+                Err(TryLockError::WouldBlock) => return None,
+            }
+        };
+        while let Some(entry) = inner.entries.pop() {
+            inner.keep(&entry);
+        }
+        inner.visits.iter().any(|v| v.from_ns.is_some()).then(|| {
+            let mut file = inner.header.clone();
+            inner.visits.iter().for_each(|v| file.extend(&v.bytes));
+            file
+        })
+    }
+
+    fn locked(&self) -> MutexGuard<'_, Inner> {
+        // Bytes that were half written end the file early, which a reader bears.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Inner {
+    fn keep(&mut self, entry: &Entry) {
+        if matches!(entry, Entry::Dressed(_) | Entry::Changed { afresh: true, .. }) {
+            let bytes = self.spare.pop().unwrap_or_default();
+            self.visits.push_back(Visit { from_ns: None, bytes });
+        }
+        let Some(visit) = self.visits.back_mut() else { return };
+        if visit.bytes.len() < MOST_BYTES {
+            tape::write(entry, &mut visit.bytes);
+        }
+        if let Entry::Step { scheduled_ns, .. } = entry {
+            visit.from_ns = visit.from_ns.or(Some(*scheduled_ns));
+            self.newest_ns = *scheduled_ns;
+            self.forget();
+        }
+    }
+
+    /// Forgets visits that lie so far back that those after them are enough.
+    fn forget(&mut self) {
+        let enough = self.newest_ns.saturating_sub(KEPT_NS);
+        while self.visits.get(1).and_then(|v| v.from_ns).is_some_and(|from| from <= enough) {
+            if let Some(mut old) = self.visits.pop_front() {
+                old.bytes.clear();
+                self.spare.push(old.bytes);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use toile_sensors::clock::{SECOND_NS, ticks_to_ns};
+
+    use super::*;
+    use crate::pace::queue::bounded;
+
+    fn step(tick: u64) -> Entry {
+        Entry::Step { tick, scheduled_ns: ticks_to_ns(tick), rung: 0, fingerprint: tick }
+    }
+
+    /// The first and the last step of the file.
+    fn kept(file: &[u8]) -> (Entry, u64, u64) {
+        let (text, entries) = tape::read(file).unwrap();
+        assert_eq!(text, "a scene");
+        let ticks = entries.iter().filter_map(|e| if let Entry::Step { tick, .. } = e { Some(*tick) } else { None });
+        let ticks: Vec<u64> = ticks.collect();
+        (entries[0], ticks[0], ticks[ticks.len() - 1])
+    }
+
+    #[test]
+    fn the_last_ten_seconds_are_kept_from_where_somebody_was_dressed() {
+        let (mut sender, receiver) = bounded("", 4_096);
+        let black_box = BlackBox::new(tape::header("a scene"), receiver);
+        assert!(black_box.save(Duration::ZERO).is_none(), "nothing was stepped yet");
+        // A visit every 8 s for a minute, a garment changed in the middle of each.
+        for tick in 0..120 * 60 {
+            if tick % 480 == 0 {
+                sender.push(Entry::Changed { number: tick / 480, afresh: tick % 960 == 0 });
+            }
+            sender.push(step(tick));
+            if tick % 100 == 0 {
+                black_box.drain(|_| {});
+            }
+        }
+        // The rest is still in the queue.
+        let (first, from, to) = kept(&black_box.save(Duration::ZERO).unwrap());
+        assert_eq!((first, to), (Entry::Changed { number: 12, afresh: true }, 120 * 60 - 1));
+        assert_eq!(from, 120 * 48, "the visit that was there ten seconds ago");
+        assert!(ticks_to_ns(to) - ticks_to_ns(from) >= KEPT_NS && KEPT_NS == 10 * SECOND_NS);
+    }
+
+    #[test]
+    fn a_box_that_is_held_is_not_waited_for_without_end() {
+        let (_sender, receiver) = bounded("", 4);
+        let black_box = BlackBox::new(Vec::new(), receiver);
+        let held = black_box.locked();
+        assert!(black_box.save(Duration::from_millis(5)).is_none());
+        drop(held);
+    }
+}

@@ -1,0 +1,134 @@
+//! Camera: what a sensor of 30 Hz makes of the shopper, and what becomes of it when something is wrong with it.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+use toile_engine::clock::Clock;
+use toile_engine::pace::sense::Source;
+use toile_sensors::clock::SECOND_NS;
+use toile_sensors::frame::{Joints, TrackedJoint};
+use toile_sensors::rng::Rng;
+
+use super::script::{CAMERA_HZ, Fault, Kind, Script};
+
+/// From a frame's stamp to its arrival (ns).
+const DELAY_NS: u64 = 20_000_000;
+
+/// Noise of a joint (m).
+const NOISE_M: f32 = 0.002;
+
+/// Frames that wait in the camera while nobody reads; older ones are lost.
+const WAITING: u64 = 4;
+
+/// What a stamp of another day is off by (ns).
+const DAY_NS: u64 = 86_400 * SECOND_NS;
+
+/// Where somebody else stands (m).
+const BESIDE_M: Vec3 = Vec3::new(0.7, 0.0, -0.4);
+
+/// The camera.
+#[derive(Debug)]
+pub struct Camera<C> {
+    script: Arc<Script>,
+    clock: C,
+    origin_ns: u64,
+    next: u64,
+}
+
+impl<C: Clock> Camera<C> {
+    /// One whose first frame is of this time on the loop's clock (ns).
+    pub fn new(script: Arc<Script>, clock: C, origin_ns: u64) -> Self {
+        Self { script, clock, origin_ns, next: 0 }
+    }
+
+    /// What is seen in a frame, in time since the run's begin.
+    fn seen(&self, frame: u64) -> Joints {
+        let ns = stamp(frame);
+        let mut joints = Joints::absent(ns);
+        if let Some(visit) = self.script.visit_at(ns) {
+            let mut rng = Rng::new(self.script.plan.seed ^ frame);
+            let mut noise = || NOISE_M * rng.gaussian();
+            for (to, at) in joints.joints.iter_mut().zip(visit.joints(ns)) {
+                let position = at + Vec3::new(noise(), noise(), noise());
+                *to = TrackedJoint { position, confidence: 1.0 };
+            }
+        }
+        joints
+    }
+
+    /// The same frame when something is wrong; none where none comes.
+    fn spoilt(&self, frame: u64, fault: &Fault) -> Option<Joints> {
+        let ns = stamp(frame);
+        let mut rng = Rng::new(self.script.plan.seed ^ !frame);
+        Some(match fault.kind {
+            Kind::CameraLost => return None,
+            Kind::Frozen => Joints { time_ns: ns, ..self.seen(fault.from_ns.div_ceil(SECOND_NS / CAMERA_HZ)) },
+            Kind::Repeated => self.seen(frame - frame % 4),
+            Kind::OutOfOrder => self.seen(frame ^ 1),
+            Kind::NotNumbers | Kind::Infinite => {
+                let values = if fault.kind == Kind::NotNumbers {
+                    [f32::NAN; 3]
+                } else {
+                    [f32::INFINITY, -1e30, f32::NEG_INFINITY]
+                };
+                let mut joints = self.seen(frame);
+                for joint in &mut joints.joints {
+                    if rng.uniform() < 0.5 {
+                        let axis = rng.next_u64() as usize % 3;
+                        joint.position[axis] = values[axis];
+                    }
+                }
+                joints
+            }
+            Kind::Swapped => {
+                let (mut joints, script) = (self.seen(frame), &self.script);
+                let other = &script.visits[rng_place(fault, script.visits.len())];
+                let at = other.joints(other.from_ns + ns % (5 * SECOND_NS));
+                for (to, at) in joints.joints.iter_mut().zip(at) {
+                    *to = TrackedJoint { position: at + BESIDE_M, confidence: 1.0 };
+                }
+                joints
+            }
+            _ => self.seen(frame),
+        })
+    }
+}
+
+/// Somebody of so many, the same for as long as the fault lasts.
+fn rng_place(fault: &Fault, count: usize) -> usize {
+    Rng::new(fault.from_ns).next_u64() as usize % count
+}
+
+/// When a frame is taken, since the begin (ns).
+fn stamp(frame: u64) -> u64 {
+    frame / CAMERA_HZ * SECOND_NS + frame % CAMERA_HZ * SECOND_NS / CAMERA_HZ
+}
+
+impl<C: Clock + Send> Source for Camera<C> {
+    fn next_ns(&self) -> Option<u64> {
+        Some(self.origin_ns + stamp(self.next) + DELAY_NS)
+    }
+
+    fn read(&mut self) -> Option<Joints> {
+        // What nobody read is overwritten.
+        let since = self.clock.now_ns().saturating_sub(self.origin_ns + DELAY_NS);
+        let newest = since / SECOND_NS * CAMERA_HZ + since % SECOND_NS * CAMERA_HZ / SECOND_NS;
+        if newest > self.next + WAITING {
+            self.next = newest;
+        }
+        let frame = self.next;
+        self.next += 1;
+        let fault = self.script.fault_at(stamp(frame)).copied();
+        let joints = match fault {
+            Some(fault) => self.spoilt(frame, &fault)?,
+            None => self.seen(frame),
+        };
+        let at = self.origin_ns + joints.time_ns;
+        let time_ns = match fault.map(|f| f.kind) {
+            Some(Kind::StampsAhead) => at + DAY_NS,
+            Some(Kind::StampsBehind) => at.saturating_sub(DAY_NS),
+            _ => at,
+        };
+        Some(Joints { time_ns, ..joints })
+    }
+}

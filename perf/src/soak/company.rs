@@ -1,0 +1,103 @@
+//! Company: makes the scene of a number, outside of the loop: the shopper's body, what they put on, and how they stand.
+
+use std::sync::Arc;
+
+use toile_assets::body::Body;
+use toile_assets::garment::Garment;
+use toile_assets::rig::Rig;
+use toile_assets::wardrobe;
+use toile_engine::cloth::{Quality, Settings};
+use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::relay::Reader;
+use toile_sensors::frame::{Joints, TrackedJoint};
+
+use super::script::{Dressing, Script};
+use super::{SoakError, Weight};
+
+/// Of a light scene: distance between particles along the warp (mm) and their number around the body, the coarsest that a
+/// style may have.
+const LIGHT: (f32, usize) = (60.0, 16);
+
+/// Substeps of a light scene.
+const LIGHT_SUBSTEPS: u32 = 1;
+
+/// Every so many of the body's vertices are left in a light scene.
+const LIGHT_SKIN: usize = 16;
+
+/// Makes scenes, and keeps the last shopper's body.
+#[derive(Debug)]
+pub struct Company {
+    script: Arc<Script>,
+    last: Option<(usize, Body, Rig)>,
+}
+
+impl Company {
+    /// Of a script.
+    pub fn new(script: Arc<Script>) -> Self {
+        Self { script, last: None }
+    }
+
+    /// The scene of a number, the shopper dressed as they stood when it was asked for; stepped by one worker.
+    ///
+    /// # Errors
+    /// A number that the script does not have, a body or a garment that cannot be made.
+    pub fn make(&mut self, number: u64) -> Result<(Frame, Reader<Snapshot>), SoakError> {
+        let wrong = |reason: String| SoakError::Scene { number, reason };
+        let script = self.script.clone();
+        let dressing = script.dressings.get(number as usize).ok_or_else(|| wrong("the script has none".into()))?;
+        let light = script.plan.scene == Weight::Light;
+        let (body, rig) = self.shopper(dressing.visit).map_err(wrong)?;
+        let garment = garment(dressing, body, light).map_err(wrong)?;
+        let quality = if light { Quality::Draft } else { Quality::default() };
+        let settings = Settings { quality, workers: 1, ..Settings::default() };
+        let shown = if light { thinned(body) } else { body.clone() };
+        let (mut frame, reader) = Frame::new(shown, rig, vec![garment], settings)?;
+        let at = script.visits[dressing.visit].joints(dressing.at_ns);
+        let joints = at.map(|position| TrackedJoint { position, confidence: 1.0 });
+        frame.dress(&Joints { time_ns: dressing.at_ns, joints });
+        Ok((frame, reader))
+    }
+
+    fn shopper(&mut self, visit: usize) -> Result<(&Body, &Rig), String> {
+        if self.last.as_ref().is_none_or(|(last, ..)| *last != visit) {
+            let who = &self.script.visits[visit];
+            // Not every set of measures goes together; those of a size do.
+            let built = who.measures.iter().find_map(|m| Body::build(who.sex, m).ok());
+            let body = match built {
+                Some(body) => body,
+                None => {
+                    let average = toile_assets::body::Measures::average(who.sex);
+                    Body::build(who.sex, &average).map_err(|e| e.to_string())?
+                }
+            };
+            let rig = Rig::fit(&body);
+            self.last = Some((visit, body, rig));
+        }
+        self.last.as_ref().map(|(_, body, rig)| (body, rig)).ok_or_else(String::new)
+    }
+}
+
+fn garment(dressing: &Dressing, body: &Body, light: bool) -> Result<Garment, String> {
+    let mut style = wardrobe::style(dressing.outfit.style).map_err(|e| e.to_string())?;
+    if light {
+        (style.spacing_mm, style.columns) = LIGHT;
+    }
+    let mut garment = style.dress(&dressing.outfit.size, body).map_err(|e| e.to_string())?;
+    if light {
+        garment.substeps = LIGHT_SUBSTEPS;
+    }
+    Ok(garment)
+}
+
+/// The same body with fewer vertices to skin; nothing else of it is looked at any more.
+fn thinned(body: &Body) -> Body {
+    fn some<T: Clone>(all: &[T]) -> Vec<T> {
+        all.iter().step_by(LIGHT_SKIN).cloned().collect()
+    }
+    let mut thin = body.clone();
+    thin.mesh.positions = some(&body.mesh.positions);
+    thin.mesh.triangles = Vec::new();
+    thin.mesh.uvs = Vec::new();
+    (thin.normals, thin.weights) = (some(&body.normals), some(&body.weights));
+    thin
+}

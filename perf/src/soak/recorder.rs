@@ -1,0 +1,119 @@
+//! Recorder: empties the tape into the black box, and onto a disk that may be full.
+
+use std::fs::File;
+use std::io::{self, Write};
+use std::sync::Arc;
+
+use toile_engine::clock::Clock;
+use toile_engine::pace::Turn;
+use toile_engine::pace::blackbox::BlackBox;
+use toile_engine::pace::tape::{self, Entry};
+
+use super::lives::{Ground, Sign, Telling};
+use super::script::Kind;
+
+/// Time between two looks at the tape (ns).
+const LOOK_NS: u64 = 20_000_000;
+
+/// What waits for the disk at most (bytes): more than a minute. What is more is lost, and the recording ends there.
+const MOST_WAITING: usize = 1 << 20;
+
+/// The life.
+#[derive(Debug)]
+pub struct Recorder<C> {
+    ground: Ground<C>,
+    black_box: Arc<BlackBox>,
+    /// Where the recording goes; none lets it go nowhere.
+    file: Option<File>,
+    waiting: Vec<u8>,
+    ended: bool,
+    /// Steps, and a hash over the hashes of their states.
+    pub steps: u64,
+    /// See above.
+    pub hash: u64,
+    /// Writes that the disk refused.
+    pub refused: u64,
+    /// Bytes that were written.
+    pub written: u64,
+    /// Why the recording is not whole.
+    pub trouble: Option<String>,
+    wrote: Option<u64>,
+}
+
+impl<C: Clock> Recorder<C> {
+    /// At load; the header is written at once.
+    pub fn new(ground: Ground<C>, black_box: Arc<BlackBox>, file: Option<File>, header: &[u8]) -> Self {
+        let mut waiting = Vec::with_capacity(MOST_WAITING);
+        waiting.extend(header);
+        Self {
+            ground,
+            black_box,
+            file,
+            waiting,
+            ended: false,
+            steps: 0,
+            hash: 0xcbf2_9ce4_8422_2325,
+            refused: 0,
+            written: 0,
+            trouble: None,
+            wrote: None,
+        }
+    }
+
+    /// Takes what is there. For the end of a run too.
+    pub fn look(&mut self) {
+        let black_box = self.black_box.clone();
+        black_box.drain(|entry| self.take(entry));
+        self.write();
+    }
+
+    /// An entry; the first comes from who starts the run.
+    pub fn take(&mut self, entry: &Entry) {
+        if let Entry::Step { fingerprint, .. } = entry {
+            self.steps += 1;
+            self.hash = (self.hash ^ fingerprint).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+        }
+        if self.waiting.len() < MOST_WAITING && !self.ended {
+            tape::write(entry, &mut self.waiting);
+        } else if !self.ended {
+            self.ended = true;
+            self.trouble = Some("the disk was full for longer than a minute, and the recording ends there".into());
+        }
+    }
+
+    fn write(&mut self) {
+        if self.waiting.is_empty() {
+            return;
+        }
+        match self.put() {
+            Ok(()) => {
+                self.written += self.waiting.len() as u64;
+                self.waiting.clear();
+                self.wrote = Some(self.ground.clock.now_ns());
+            }
+            Err(_) => self.refused += 1,
+        }
+    }
+
+    /// Onto the disk, which is full when the script says so.
+    fn put(&mut self) -> io::Result<()> {
+        let now = self.ground.clock.now_ns().saturating_sub(self.ground.origin_ns);
+        if self.ground.script.fault_at(now).is_some_and(|f| f.kind == Kind::DiskFull) {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        self.file.as_mut().map_or(Ok(()), |file| file.write_all(&self.waiting))
+    }
+}
+
+impl<C: Clock> Turn for Recorder<C> {
+    fn turn(&mut self) -> Option<u64> {
+        self.look();
+        Some(self.ground.clock.now_ns() + LOOK_NS)
+    }
+}
+
+impl<C: Clock> Telling for Recorder<C> {
+    fn sign(&mut self) -> Option<Sign> {
+        self.wrote.take().map(Sign::Wrote)
+    }
+}

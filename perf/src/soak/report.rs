@@ -1,0 +1,292 @@
+//! What was found, as the JSON has it.
+
+use std::collections::BTreeMap;
+use std::collections::BTreeSet;
+
+use serde::Serialize;
+use toile_engine::meter::PERIOD_NS;
+
+use super::memory::{Sample, growth};
+use super::run::Ran;
+use super::script::Kind;
+use super::watch::Outcome;
+use super::{Options, Weight};
+use crate::latency::Warned;
+
+/// Longest that the pipeline may take to recover (ticks): 1 s.
+const PIPELINE_TICKS: f64 = 120.0;
+
+/// Longest that the solver may take to recover (ticks).
+const SOLVER_TICKS: f64 = 2.0;
+
+/// What resident memory may grow by (KiB/h); of a run that is shorter than an hour behind its warm-up, all in all.
+const GROWTH_KIB: f64 = 64.0;
+
+/// Shortest time behind the warm-up over which resident memory is judged (h): the system gives and takes pages in pieces that are
+/// large against what an hour may bring. What the allocator hands out is exact and is judged in every run.
+const LEAST_JUDGED_H: f64 = 0.5;
+
+/// Share of the run after which memory is to be flat.
+const WARM_UP: f64 = 0.25;
+
+/// What was checked.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Check {
+    /// What.
+    pub name: &'static str,
+    /// The most that passes.
+    pub limit: f64,
+    /// What was found; none where this machine or this run does not tell.
+    pub found: Option<f64>,
+    /// Whether it passed; what was not found did not fail either, and is named as not checked.
+    pub pass: bool,
+}
+
+impl Check {
+    fn new(name: &'static str, limit: f64, found: Option<f64>) -> Self {
+        Self { name, limit, found, pass: found.is_none_or(|found| found <= limit) }
+    }
+}
+
+/// The faults of one kind.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FaultKind {
+    /// Its name.
+    pub name: &'static str,
+    /// What shows that one is over.
+    pub recovered_when: &'static str,
+    /// How many there were.
+    pub injected: u64,
+    /// How many of them were recovered.
+    pub recovered: u64,
+    /// Time from the end of a fault until it was recovered (ms): mean and longest.
+    pub mean_ms: f64,
+    /// See above.
+    pub max_ms: f64,
+}
+
+/// All faults.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Faults {
+    /// How many there were.
+    pub injected: u64,
+    /// How many of them were recovered.
+    pub recovered: u64,
+    /// By kind.
+    pub kinds: Vec<FaultKind>,
+}
+
+/// Ticks of 1/120 s until all was well.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Recovery {
+    /// From the end of a fault until the pipeline had recovered, at most.
+    pub max: u64,
+    /// Steps in a row that the solver gave nothing sound, at most.
+    pub solver: u64,
+}
+
+/// Memory over the run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Memory {
+    /// `simulated` or `wall`: which hours these are.
+    pub hours_are: &'static str,
+    /// From when on it is to be flat, and until when (h).
+    pub from_h: f64,
+    /// See above.
+    pub until_h: f64,
+    /// Growth of what the allocator hands out (KiB/h).
+    pub heap_growth_kib_h: Option<f64>,
+    /// Growth of resident memory (KiB/h).
+    pub rss_growth_kib_h: Option<f64>,
+    /// Most that was resident (KiB).
+    pub rss_max_kib: Option<u64>,
+    /// All samples.
+    pub samples: Vec<Sample>,
+}
+
+/// Everything that was found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Soak {
+    /// The seed.
+    pub seed: u64,
+    /// `light` or `full`.
+    pub scene: Weight,
+    /// On threads and the system's clock.
+    pub real_time: bool,
+    /// Workers of a step.
+    pub workers: usize,
+    /// What the clock showed at the begin (h).
+    pub uptime_hours: u64,
+    /// Length on the loop's clock (h).
+    pub hours: f64,
+    /// Time that it took (s), and for each step (us).
+    pub wall_s: f64,
+    /// See above.
+    pub us_per_step: f64,
+    /// Steps.
+    pub ticks: u64,
+    /// Shoppers, and scenes that were handed over while the loop ran.
+    pub visits: usize,
+    /// See above.
+    pub changes: u64,
+    /// Garments in a size that were worn, of so many.
+    pub sizes: [usize; 2],
+    /// Numbers that were published and are none.
+    pub nonfinite: u64,
+    /// Allocations in the turns of sensor, physics and renderer; none where they are not counted.
+    pub allocations: Option<u64>,
+    /// Growth of resident memory behind the warm-up (KiB).
+    pub rss_growth_kib: Option<f64>,
+    /// The faults.
+    pub faults: Faults,
+    /// How long they took.
+    pub recovery_ticks: Recovery,
+    /// Steps that were published after their period, and those that were dropped; nearly all by stalls and jumps.
+    pub deadline_misses: u64,
+    /// Hash over the states of all steps.
+    pub state_hash: String,
+    /// The same of a second run, or of a replay of this one; none where there was none.
+    pub second_state_hash: Option<String>,
+    /// Furthest that joints were from the shopper's while nothing was wrong, on average over the joints (mm).
+    pub off_mm: f64,
+    /// Sensor frames: published, with a stamp that was not believed, no newer than the one before.
+    pub frames: [u64; 3],
+    /// Pictures, and times that the renderer was made to live again.
+    pub pictures: [u64; 2],
+    /// Memory.
+    pub memory: Memory,
+    /// What was checked.
+    pub checks: Vec<Check>,
+    /// How full every queue was.
+    pub capacities: Vec<Warned>,
+    /// What deserves attention, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl Soak {
+    /// Of a run; `second` is the hash of another run of the same.
+    pub fn new(ran: Ran, options: &Options, second: Option<u64>) -> Self {
+        let hours = options.plan.seconds as f64 / 3_600.0;
+        let faults = faults(&ran.watch.outcomes);
+        let memory = memory(&ran.watch.samples, hours, options.real_time);
+        let text = |hash: u64| format!("{hash:016x}");
+        let longest = ran.watch.outcomes.iter().filter_map(|o| o.recovered_ns).max().unwrap_or(0);
+        let recovery_ticks = Recovery { max: longest.div_ceil(PERIOD_NS), solver: ran.watch.steps.unsound };
+        let mut soak = Self {
+            seed: options.plan.seed,
+            scene: options.plan.scene,
+            real_time: options.real_time,
+            workers: options.workers,
+            uptime_hours: options.uptime_hours,
+            hours,
+            wall_s: ran.wall_s,
+            us_per_step: ran.wall_s * 1e6 / ran.steps.max(1) as f64,
+            ticks: ran.steps,
+            visits: ran.script.visits.len(),
+            changes: ran.changes,
+            sizes: sizes(&ran),
+            nonfinite: ran.nonfinite,
+            allocations: ran.allocations.map(|a| a.iter().sum()),
+            rss_growth_kib: memory.rss_growth_kib_h.map(|g| g * (memory.until_h - memory.from_h)),
+            faults,
+            recovery_ticks,
+            deadline_misses: ran.missed,
+            state_hash: text(ran.hash),
+            second_state_hash: second.map(text),
+            off_mm: f64::from(ran.watch.steps.off_m) * 1e3,
+            frames: ran.frames,
+            pictures: ran.pictures,
+            memory,
+            checks: Vec::new(),
+            capacities: ran.capacities.iter().map(|c| Warned::from(*c)).collect(),
+            warnings: ran.warnings,
+        };
+        soak.checks = checks(&soak, ran.broken[1]);
+        soak
+    }
+
+    /// What did not pass.
+    pub fn failed(&self) -> impl Iterator<Item = &Check> {
+        self.checks.iter().filter(|c| !c.pass)
+    }
+}
+
+/// Garments in a size that were worn, and how many there are.
+fn sizes(ran: &Ran) -> [usize; 2] {
+    let worn: BTreeSet<_> = ran.script.dressings.iter().take(ran.changes as usize + 1).map(|d| &d.outfit).collect();
+    let all = toile_assets::wardrobe::names().into_iter().filter_map(|name| {
+        let table = toile_assets::wardrobe::style(name).ok()?.sizes().ok()?;
+        Some(table.codes().len())
+    });
+    [worn.len(), all.sum()]
+}
+
+fn faults(outcomes: &[Outcome]) -> Faults {
+    let mut by_kind: BTreeMap<Kind, Vec<Option<u64>>> = BTreeMap::new();
+    outcomes.iter().for_each(|o| by_kind.entry(o.kind).or_default().push(o.recovered_ns));
+    let kinds: Vec<FaultKind> = by_kind
+        .into_iter()
+        .map(|(kind, all)| {
+            let times: Vec<f64> = all.iter().flatten().map(|ns| *ns as f64 * 1e-6).collect();
+            FaultKind {
+                name: kind.name(),
+                recovered_when: kind.recovered_by().words(),
+                injected: all.len() as u64,
+                recovered: times.len() as u64,
+                mean_ms: times.iter().sum::<f64>() / times.len().max(1) as f64,
+                max_ms: times.iter().copied().fold(0.0, f64::max),
+            }
+        })
+        .collect();
+    let sum = |of: fn(&FaultKind) -> u64| kinds.iter().map(of).sum();
+    Faults { injected: sum(|k| k.injected), recovered: sum(|k| k.recovered), kinds }
+}
+
+fn memory(samples: &[Sample], hours: f64, real_time: bool) -> Memory {
+    let from_h = hours * WARM_UP;
+    let settled: Vec<&Sample> = samples.iter().filter(|s| s.hours >= from_h).collect();
+    let slope = |of: fn(&Sample) -> Option<u64>| {
+        let points: Vec<(f64, u64)> = settled.iter().filter_map(|s| Some((s.hours, of(s)?))).collect();
+        growth(&points)
+    };
+    Memory {
+        hours_are: if real_time { "wall" } else { "simulated" },
+        from_h: settled.first().map_or(0.0, |s| s.hours),
+        until_h: settled.last().map_or(0.0, |s| s.hours),
+        heap_growth_kib_h: slope(|s| s.heap_kib),
+        rss_growth_kib_h: slope(|s| s.rss_kib),
+        rss_max_kib: samples.iter().filter_map(|s| s.rss_kib).max(),
+        samples: samples.to_vec(),
+    }
+}
+
+/// How far a figure of the settled samples moves.
+fn range(memory: &Memory, of: fn(&Sample) -> Option<u64>) -> Option<f64> {
+    let settled = memory.samples.iter().filter(|s| s.hours >= memory.from_h).filter_map(of);
+    let (least, most) = settled.fold((u64::MAX, 0), |(a, b), n| (a.min(n), b.max(n)));
+    (most >= least).then(|| (most - least) as f64)
+}
+
+fn checks(soak: &Soak, accepted: u64) -> Vec<Check> {
+    let (memory, faults) = (&soak.memory, &soak.faults);
+    let behind = memory.until_h - memory.from_h;
+    let most = GROWTH_KIB * behind.max(1.0);
+    let resident = soak.rss_growth_kib.filter(|_| behind >= LEAST_JUDGED_H);
+    let heap = memory.heap_growth_kib_h.map(|g| g * behind);
+    let differs = soak.second_state_hash.as_ref().map(|second| f64::from(u8::from(*second != soak.state_hash)));
+    let pipeline = (faults.injected > 0).then_some(soak.recovery_ticks.max as f64);
+    vec![
+        Check::new("numbers published that are none", 0.0, Some(soak.nonfinite as f64)),
+        Check::new("allocations in the loop", 0.0, soak.allocations.map(|n| n as f64)),
+        Check::new("memory handed out, growth behind the warm-up (KiB)", most, heap),
+        Check::new("resident memory, growth behind the warm-up (KiB)", most, resident),
+        Check::new("open files, change behind the warm-up", 0.0, range(memory, |s| s.files)),
+        Check::new("threads, change behind the warm-up", 0.0, range(memory, |s| s.threads)),
+        Check::new("faults that were not recovered", 0.0, Some((faults.injected - faults.recovered) as f64)),
+        Check::new("longest recovery of the pipeline (ticks)", PIPELINE_TICKS, pipeline),
+        Check::new("longest recovery of the solver (ticks)", SOLVER_TICKS, Some(soak.recovery_ticks.solver as f64)),
+        Check::new("broken garments that were accepted", 0.0, Some(accepted as f64)),
+        Check::new("entries lost by full queues", 0.0, Some(soak.capacities.iter().map(|c| c.lost as f64).sum())),
+        Check::new("states of a second run that differ", 0.0, differs),
+    ]
+}

@@ -1,0 +1,453 @@
+//! Script: who comes when, what they wear and how they move, and what goes wrong; all of it from a seed.
+
+use std::f64::consts::TAU;
+
+use glam::Vec3;
+use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::scene;
+use toile_assets::sizes::Population;
+use toile_assets::skeleton::{JOINTS, Skeleton};
+use toile_assets::wardrobe;
+use toile_engine::body::JointFrames;
+use toile_sensors::clock::SECOND_NS;
+use toile_sensors::rng::Rng;
+
+use super::{LEAST_APART_S, Plan, SoakError};
+
+/// Length of a visit (s), least and most.
+const VISIT_S: [f32; 2] = [60.0, 420.0];
+
+/// Time between two visits (s), in which nobody stands before the camera.
+const GAP_S: [f32; 2] = [3.0, 20.0];
+
+/// Time between two garments of a visit (s).
+const WORN_S: [f32; 2] = [25.0, 150.0];
+
+/// Length of a fault (s), where it has one and is not a stall.
+const FAULT_S: [f32; 2] = [0.5, 3.0];
+
+/// Length of a stall (s).
+const STALL_S: f32 = 2.0;
+
+/// Frames of the camera each second.
+pub const CAMERA_HZ: u64 = 30;
+
+/// What goes wrong. `until` is the end of the fault: from then on the time to its recovery counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// No frames come.
+    CameraLost,
+    /// The joints of the first frame again and again, with new stamps.
+    Frozen,
+    /// Each frame four times, stamp and all.
+    Repeated,
+    /// Every two frames change places.
+    OutOfOrder,
+    /// Half of the joints are NaN, and sure of it.
+    NotNumbers,
+    /// Half of the joints are infinite or beyond all measure.
+    Infinite,
+    /// The skeleton of somebody else, who stands beside.
+    Swapped,
+    /// Stamps from the next day.
+    StampsAhead,
+    /// Stamps from the day before.
+    StampsBehind,
+    /// The loop's clock jumps ahead, as after a suspended machine.
+    ClockJump,
+    /// The sensor's thread does nothing for two seconds.
+    SensorStall,
+    /// The physics thread does nothing for two seconds.
+    PhysicsStall,
+    /// The render thread does nothing for two seconds.
+    RenderStall,
+    /// The thread that records does nothing for two seconds.
+    RecorderStall,
+    /// The thread that makes scenes does nothing for two seconds.
+    FrontStall,
+    /// The recording's disk is full.
+    DiskFull,
+    /// Garment files that are broken in several ways are to be worn.
+    BrokenGarment,
+    /// The render thread panics.
+    RenderDeath,
+    /// 64 MiB are taken and written to.
+    MemoryPressure,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 19] = [
+        Self::CameraLost,
+        Self::Frozen,
+        Self::Repeated,
+        Self::OutOfOrder,
+        Self::NotNumbers,
+        Self::Infinite,
+        Self::Swapped,
+        Self::StampsAhead,
+        Self::StampsBehind,
+        Self::ClockJump,
+        Self::SensorStall,
+        Self::PhysicsStall,
+        Self::RenderStall,
+        Self::RecorderStall,
+        Self::FrontStall,
+        Self::DiskFull,
+        Self::BrokenGarment,
+        Self::RenderDeath,
+        Self::MemoryPressure,
+    ];
+
+    /// Its name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::CameraLost => "camera lost",
+            Self::Frozen => "frames frozen",
+            Self::Repeated => "frames repeated",
+            Self::OutOfOrder => "frames out of order",
+            Self::NotNumbers => "NaN joints",
+            Self::Infinite => "infinite joints",
+            Self::Swapped => "another's skeleton",
+            Self::StampsAhead => "stamps a day ahead",
+            Self::StampsBehind => "stamps a day behind",
+            Self::ClockJump => "clock jump",
+            Self::SensorStall => "sensor stall",
+            Self::PhysicsStall => "physics stall",
+            Self::RenderStall => "render stall",
+            Self::RecorderStall => "recorder stall",
+            Self::FrontStall => "front stall",
+            Self::DiskFull => "disk full",
+            Self::BrokenGarment => "broken garment file",
+            Self::RenderDeath => "render thread dies",
+            Self::MemoryPressure => "memory pressure",
+        }
+    }
+
+    /// By what it is seen to be over.
+    pub fn recovered_by(self) -> Sight {
+        match self {
+            Self::RenderStall | Self::RenderDeath => Sight::Picture,
+            Self::RecorderStall | Self::DiskFull => Sight::Recording,
+            Self::FrontStall => Sight::Front,
+            Self::BrokenGarment => Sight::Refusal,
+            Self::PhysicsStall | Self::MemoryPressure => Sight::Step,
+            _ => Sight::Following,
+        }
+    }
+
+    /// Length of one (s).
+    fn length(self, rng: &mut Rng) -> f32 {
+        match self {
+            Self::SensorStall | Self::PhysicsStall | Self::RenderStall | Self::RecorderStall | Self::FrontStall => {
+                STALL_S
+            }
+            Self::BrokenGarment | Self::RenderDeath => 0.0,
+            _ => between(rng, FAULT_S),
+        }
+    }
+}
+
+/// What shows that a fault is over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sight {
+    /// A step in time that knows a frame of after the fault, whose joints are within [`super::watch::FOLLOWS_M`] of where
+    /// the shopper is.
+    Following,
+    /// A step published in time that was due after it.
+    Step,
+    /// A picture of a snapshot of after it.
+    Picture,
+    /// The recorder wrote all that it had.
+    Recording,
+    /// The front takes its turn.
+    Front,
+    /// All the broken files were refused, with a word, and the next step was in time.
+    Refusal,
+}
+
+impl Sight {
+    /// In words, for the page.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Following => "the shopper is followed again",
+            Self::Step => "a step is published in time",
+            Self::Picture => "a picture of a newer snapshot is taken",
+            Self::Recording => "all that waited is written",
+            Self::Front => "the front takes its turn",
+            Self::Refusal => "all are refused, the next step is in time",
+        }
+    }
+}
+
+/// One fault, in time since the run's begin (ns).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Fault {
+    /// What.
+    pub kind: Kind,
+    /// When it begins.
+    pub from_ns: u64,
+    /// When it ends.
+    pub until_ns: u64,
+}
+
+/// A garment to wear.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Outfit {
+    /// Its name in the wardrobe.
+    pub style: &'static str,
+    /// Its size.
+    pub size: String,
+}
+
+/// A shopper before the mirror, in time since the run's begin (ns).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Visit {
+    /// When they come.
+    pub from_ns: u64,
+    /// When they go.
+    pub until_ns: u64,
+    /// Of which sex their body is.
+    pub sex: Sex,
+    /// Their measures, and those of the size that they are near to, which surely can be built.
+    pub measures: [Measures; 2],
+    /// Their bones as the camera's tracker has them (m).
+    skeleton: Skeleton,
+    /// How fast they move (1), and where they stand (m).
+    pace: f64,
+    place: Vec3,
+}
+
+impl Visit {
+    /// Where their joints are at a time, as they are in truth (m).
+    pub fn joints(&self, ns: u64) -> [Vec3; JOINTS] {
+        // Forth and back, as nobody jumps.
+        let length = f64::from(scene::LENGTH_S);
+        let seconds = ns.saturating_sub(self.from_ns) as f64 * 1e-9;
+        let along = (seconds * self.pace) % (2.0 * length);
+        let along = if along > length { 2.0 * length - along } else { along };
+        let mut at = JointFrames::new(&self.skeleton, &scene::shopper(&self.skeleton, along as f32)).position;
+        let sway =
+            Vec3::new(0.2 * (TAU * seconds / 19.0).sin() as f32, 0.0, 0.15 * (TAU * seconds / 13.0).sin() as f32);
+        at.iter_mut().for_each(|p| *p += self.place + sway);
+        at
+    }
+}
+
+/// A scene that is made and handed over, in time since the run's begin (ns). Its number is its place in the list.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Dressing {
+    /// When it is asked for: the shopper is dressed as they stand then.
+    pub at_ns: u64,
+    /// Whose, a place in the visits.
+    pub visit: usize,
+    /// What they put on.
+    pub outfit: Outfit,
+    /// Whether they have just come.
+    pub afresh: bool,
+}
+
+/// All that happens.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Script {
+    /// What was asked for.
+    pub plan: Plan,
+    /// The shoppers, in their order; the first is there from the begin.
+    pub visits: Vec<Visit>,
+    /// What they put on, in its order.
+    pub dressings: Vec<Dressing>,
+    /// What goes wrong, in its order.
+    pub faults: Vec<Fault>,
+}
+
+impl Script {
+    /// Writes it.
+    ///
+    /// # Errors
+    /// [`SoakError::Crowded`], and a wardrobe whose tables cannot be read.
+    pub fn write(plan: Plan) -> Result<Self, SoakError> {
+        let faults = faults(&plan)?;
+        let mut rng = Rng::new(plan.seed);
+        let wardrobe = Wardrobe::read()?;
+        let (mut visits, mut dressings, mut from) = (Vec::new(), Vec::new(), 0);
+        let mut order: Vec<usize> = Vec::new();
+        while from < plan.seconds * SECOND_NS {
+            // Every garment in every size once, in an order of its own, before any comes again.
+            if order.is_empty() {
+                order = shuffled(wardrobe.outfits.len(), &mut rng);
+            }
+            let first = order.pop().unwrap_or(0);
+            let visit = wardrobe.visit(first, from, &mut rng);
+            let mut at = from;
+            let mut outfit = wardrobe.outfits[first].0.clone();
+            while at < visit.until_ns.min(plan.seconds * SECOND_NS) {
+                dressings.push(Dressing { at_ns: at, visit: visits.len(), outfit, afresh: at == from });
+                at += ns(between(&mut rng, WORN_S));
+                outfit = wardrobe.near(visit.sex, &visit.measures[1], &mut rng);
+            }
+            from = visit.until_ns + ns(between(&mut rng, GAP_S));
+            visits.push(visit);
+        }
+        Ok(Self { plan, visits, dressings, faults })
+    }
+
+    /// Who stands before the camera at a time, if somebody does.
+    pub fn visit_at(&self, ns: u64) -> Option<&Visit> {
+        let after = self.visits.partition_point(|v| v.from_ns <= ns);
+        self.visits[..after].last().filter(|v| ns < v.until_ns)
+    }
+
+    /// The last fault that began before a time, if it goes on.
+    pub fn fault_at(&self, ns: u64) -> Option<&Fault> {
+        let after = self.faults.partition_point(|f| f.from_ns <= ns);
+        self.faults[..after].last().filter(|f| ns < f.until_ns)
+    }
+
+    /// The faults of a kind, in their order.
+    pub fn faults_of(&self, kind: Kind) -> impl Iterator<Item = &Fault> {
+        self.faults.iter().filter(move |f| f.kind == kind)
+    }
+}
+
+/// What there is to wear, with the body that each is cut for.
+struct Wardrobe {
+    outfits: Vec<(Outfit, Measures, Population)>,
+    /// Bones of an average woman and of an average man.
+    skeletons: [(f32, Skeleton); 2],
+}
+
+impl Wardrobe {
+    fn read() -> Result<Self, SoakError> {
+        let wrong = |e: &dyn std::fmt::Display| SoakError::Scene { number: 0, reason: e.to_string() };
+        let mut outfits = Vec::new();
+        for name in wardrobe::names() {
+            let table = wardrobe::style(name).map_err(|e| wrong(&e))?.sizes().map_err(|e| wrong(&e))?;
+            for size in table.codes() {
+                let body = table.size_body(size).map_err(|e| wrong(&e))?;
+                outfits.push((Outfit { style: name, size: size.into() }, body.into(), table.population));
+            }
+        }
+        let average = |sex| {
+            let measures = Measures::average(sex);
+            Body::build(sex, &measures).map(|b| (measures.stature, b.skeleton)).map_err(|e| wrong(&e))
+        };
+        Ok(Self { outfits, skeletons: [average(Sex::Female)?, average(Sex::Male)?] })
+    }
+
+    /// A shopper near to the size of an outfit.
+    fn visit(&self, outfit: usize, from_ns: u64, rng: &mut Rng) -> Visit {
+        let (_, near, population) = &self.outfits[outfit];
+        let sex = match population {
+            Population::Men => Sex::Male,
+            Population::Mixed if rng.uniform() < 0.5 => Sex::Male,
+            _ => Sex::Female,
+        };
+        let mut vary = |value: f32, share: f32| value * (1.0 + share * (2.0 * rng.uniform() - 1.0));
+        let own = Measures {
+            stature: vary(near.stature, 0.06),
+            shoulder_breadth: vary(near.shoulder_breadth, 0.02),
+            chest_girth: vary(near.chest_girth, 0.02),
+            waist_girth: vary(near.waist_girth, 0.03),
+            hip_girth: vary(near.hip_girth, 0.02),
+        };
+        let (stature, average) = &self.skeletons[usize::from(sex == Sex::Male)];
+        let skeleton = Skeleton { rest: average.rest.map(|p| p * (own.stature / stature)) };
+        let until_ns = from_ns + ns(between(rng, VISIT_S));
+        let pace = f64::from(between(rng, [0.6, 1.1]));
+        let place = Vec3::new(between(rng, [-0.4, 0.4]), 0.0, between(rng, [-0.3, 0.3]));
+        Visit { from_ns, until_ns, sex, measures: [own, *near], skeleton, pace, place }
+    }
+
+    /// Something to change into: of the sizes of a garment the nearest, or one beside it.
+    fn near(&self, sex: Sex, measures: &Measures, rng: &mut Rng) -> Outfit {
+        let fits = |p: &Population| *p == Population::Mixed || (*p == Population::Men) == (sex == Sex::Male);
+        let names: Vec<&str> = wardrobe::names().into_iter().filter(|n| self.of(n).any(|o| fits(&o.2))).collect();
+        let name = names[rng.next_u64() as usize % names.len()];
+        let sizes: Vec<_> = self.of(name).collect();
+        let off =
+            |m: &Measures| (m.chest_girth - measures.chest_girth).abs() + (m.hip_girth - measures.hip_girth).abs();
+        let nearest = (0..sizes.len()).min_by(|a, b| off(&sizes[*a].1).total_cmp(&off(&sizes[*b].1))).unwrap_or(0);
+        let beside = (nearest + rng.next_u64() as usize % 3).saturating_sub(1).min(sizes.len() - 1);
+        sizes[beside].0.clone()
+    }
+
+    fn of<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a (Outfit, Measures, Population)> {
+        self.outfits.iter().filter(move |o| o.0.style == name)
+    }
+}
+
+/// The faults: spread over the run, each kind as often as the others.
+fn faults(plan: &Plan) -> Result<Vec<Fault>, SoakError> {
+    let Plan { seed, seconds, faults, .. } = *plan;
+    if faults as u64 * LEAST_APART_S > seconds {
+        return Err(SoakError::Crowded { faults, seconds });
+    }
+    let mut rng = Rng::new(seed ^ 0x000f_a017);
+    let apart = seconds as f64 / faults.max(1) as f64;
+    let mut order = Vec::new();
+    let place = |i: usize| {
+        if order.is_empty() {
+            order = shuffled(Kind::ALL.len(), &mut rng);
+        }
+        let kind = Kind::ALL[order.pop().unwrap_or(0)];
+        let begin = (i as f64 + 0.15 + 0.1 * f64::from(rng.uniform())) * apart;
+        let from_ns = (begin * SECOND_NS as f64) as u64;
+        Fault { kind, from_ns, until_ns: from_ns + ns(kind.length(&mut rng)) }
+    };
+    Ok((0..faults).map(place).collect())
+}
+
+fn shuffled(count: usize, rng: &mut Rng) -> Vec<usize> {
+    let mut all: Vec<usize> = (0..count).collect();
+    for i in (1..count).rev() {
+        all.swap(i, rng.next_u64() as usize % (i + 1));
+    }
+    all
+}
+
+fn between(rng: &mut Rng, [least, most]: [f32; 2]) -> f32 {
+    least + (most - least) * rng.uniform()
+}
+
+fn ns(seconds: f32) -> u64 {
+    (f64::from(seconds) * SECOND_NS as f64) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::soak::Weight;
+
+    fn script(seed: u64) -> Script {
+        Script::write(Plan { seed, seconds: 8 * 3_600, faults: 1_000, scene: Weight::Light }).unwrap()
+    }
+
+    #[test]
+    fn eight_hours_see_every_size_and_every_fault_and_nothing_overlaps() {
+        let script = script(7);
+        let worn: BTreeSet<&Outfit> = script.dressings.iter().map(|d| &d.outfit).collect();
+        assert_eq!(worn.len(), Wardrobe::read().unwrap().outfits.len());
+        for kind in Kind::ALL {
+            assert!((52..=53).contains(&script.faults_of(kind).count()), "{kind:?}");
+        }
+        assert!(script.visits.windows(2).all(|v| v[0].until_ns + 3 * SECOND_NS <= v[1].from_ns));
+        assert!(script.dressings.windows(2).all(|d| d[0].at_ns < d[1].at_ns));
+        let crowded = Plan { seed: 1, seconds: 600, faults: 100, scene: Weight::Light };
+        let crowded = faults(&crowded).unwrap();
+        // A second and a half to recover in, at least.
+        assert!(crowded.windows(2).all(|f| f[0].until_ns + SECOND_NS * 3 / 2 <= f[1].from_ns), "{crowded:?}");
+    }
+
+    #[test]
+    fn a_seed_decides_on_everything_and_too_many_faults_are_refused() {
+        assert_eq!(script(3), script(3));
+        assert_ne!(script(3).faults, script(4).faults);
+        let plan = Plan { seed: 1, seconds: 60, faults: 11, scene: Weight::Light };
+        assert_eq!(
+            Script::write(plan).unwrap_err().to_string(),
+            "11 faults do not fit into 60 s; ask for 10 at most, or for a longer run"
+        );
+    }
+}
