@@ -8,6 +8,7 @@ pub mod ansur;
 pub mod depth;
 pub mod filters;
 pub mod latency;
+pub mod measuring;
 pub mod oracle;
 pub mod pareto;
 pub mod plan;

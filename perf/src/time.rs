@@ -27,9 +27,48 @@ pub fn median_us(mut job: impl FnMut()) -> f64 {
     runs[runs.len() / 2].as_secs_f64() * 1e6
 }
 
+/// A stopwatch for work that is too rare to be repeated: on Linux it counts the time that its thread has a core, so that
+/// other work on the machine is not told as this one's; elsewhere all time.
+pub struct OnCore {
+    begun: Instant,
+    had: Option<u64>,
+}
+
+impl OnCore {
+    /// Begins to count.
+    pub fn begin() -> Self {
+        Self { begun: Instant::now(), had: had_ns() }
+    }
+
+    /// What this thread needed since.
+    pub fn elapsed(&self) -> Duration {
+        match (self.had, had_ns()) {
+            (Some(before), Some(after)) => Duration::from_nanos(after.saturating_sub(before)),
+            _ => self.begun.elapsed(),
+        }
+    }
+}
+
+/// How long this thread had a core (ns), by Linux's scheduler.
+fn had_ns() -> Option<u64> {
+    std::fs::read_to_string("/proc/thread-self/schedstat").ok()?.split_whitespace().next()?.parse().ok()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn work_counts_and_no_more_than_all_time() {
+        let (watch, all) = (OnCore::begin(), Instant::now());
+        let mut x = 1u64;
+        while all.elapsed() < Duration::from_millis(60) {
+            (0..1000).for_each(|k| x = std::hint::black_box(x.wrapping_mul(k + 3)));
+        }
+        let worked = watch.elapsed();
+        assert!(worked > Duration::from_micros(100), "{worked:?}");
+        assert!(worked <= all.elapsed() + Duration::from_millis(10), "{worked:?} of {:?}", all.elapsed());
+    }
 
     #[test]
     fn the_median_is_of_many_runs_after_a_warm_up() {

@@ -66,18 +66,19 @@ pub(super) struct Model {
 
 /// What a calibration came to.
 pub(super) struct Found {
+    pub at: Vector,
     pub setting: Setting,
     pub readings: [f32; READINGS],
     pub steps: usize,
 }
 
-type Vector = [f64; PARAMETERS];
+pub(super) type Vector = [f64; PARAMETERS];
 
 /// The sum of squares around one setting: its value, half its gradient and half its curvature.
-struct Squares {
+pub(super) struct Squares {
     cost: f64,
     slope: Vector,
-    curve: [Vector; PARAMETERS],
+    pub curve: [Vector; PARAMETERS],
 }
 
 impl Squares {
@@ -112,7 +113,7 @@ impl Model {
     /// The base as it is.
     pub(super) fn as_drawn(&self) -> Found {
         let setting = Setting { sliders: [0.0; SLIDERS], scale: 1.0 };
-        Found { setting, readings: self.gauge.read(&self.morphs.base.positions, None), steps: 0 }
+        Found { at: [0.0; PARAMETERS], setting, readings: self.gauge.read(&self.morphs.base.positions, None), steps: 0 }
     }
 
     /// Finds the body that has the readings given and is like people in all others.
@@ -148,24 +149,24 @@ impl Model {
         }
         let setting = setting(&at);
         let readings = self.gauge.read(work.place(&setting), None);
-        Found { setting, readings, steps }
+        Found { at, setting, readings, steps }
     }
 }
 
-fn setting(at: &Vector) -> Setting {
+pub(super) fn setting(at: &Vector) -> Setting {
     Setting { sliders: std::array::from_fn(|k| at[k] as f32), scale: at[SLIDERS].exp() as f32 }
 }
 
 /// Buffers of one calibration.
-struct Work<'a> {
+pub(super) struct Work<'a> {
     model: &'a Model,
     positions: Vec<Vec3>,
     gradients: [Gradient; READINGS],
-    readings: [f32; READINGS],
+    pub readings: [f32; READINGS],
 }
 
 impl<'a> Work<'a> {
-    fn new(model: &'a Model) -> Self {
+    pub(super) fn new(model: &'a Model) -> Self {
         let gradients = std::array::from_fn(|_| Vec::new());
         Self { model, positions: model.morphs.base.positions.clone(), gradients, readings: [0.0; READINGS] }
     }
@@ -183,11 +184,9 @@ impl<'a> Work<'a> {
         given.iter().map(|(r, wanted)| f64::from((self.readings[r.index()] - wanted).abs())).fold(0.0, f64::max)
     }
 
-    fn squares(&mut self, at: &Vector, given: &[(Reading, f32)]) -> Squares {
+    pub(super) fn squares(&mut self, at: &Vector, given: &[(Reading, f32)]) -> Squares {
         let setting = setting(at);
-        self.place(&setting);
-        self.readings = self.model.gauge.read(&self.positions, Some(&mut self.gradients));
-        let jacobian: [Vector; READINGS] = std::array::from_fn(|r| self.row(r, &setting));
+        let jacobian = self.read(&setting);
         let mut squares = Squares::none();
         for &(reading, wanted) in given {
             let r = reading.index();
@@ -198,6 +197,13 @@ impl<'a> Work<'a> {
         self.head(at, &jacobian[Reading::Stature.index()], &mut squares);
         kept_together(at, &mut squares);
         squares
+    }
+
+    /// Reads the body of a setting, and how each reading changes with each parameter.
+    pub(super) fn read(&mut self, setting: &Setting) -> [Vector; READINGS] {
+        self.place(setting);
+        self.readings = self.model.gauge.read(&self.positions, Some(&mut self.gradients));
+        std::array::from_fn(|r| self.row(r, setting))
     }
 
     /// Adds the departure of the whole's scale from what the stature lets expect.
@@ -257,7 +263,7 @@ fn kept_together(at: &Vector, squares: &mut Squares) {
     }
 }
 
-fn bounds(parameter: usize) -> [f64; 2] {
+pub(super) fn bounds(parameter: usize) -> [f64; 2] {
     match LENGTHS.get(parameter) {
         Some(most) => [-most, *most],
         None if parameter == SLIDERS => [-SCALE, SCALE],

@@ -31,7 +31,7 @@ pub struct Fitted {
 }
 
 /// A sex's model, worked out on first use: some hundred milliseconds.
-fn model(sex: Sex) -> &'static Model {
+pub(super) fn model(sex: Sex) -> &'static Model {
     static WOMAN: LazyLock<Model> = LazyLock::new(|| Model::new(Base::new(Sex::Female)));
     static MAN: LazyLock<Model> = LazyLock::new(|| Model::new(Base::new(Sex::Male)));
     match sex {
@@ -129,7 +129,7 @@ impl Model {
         Some((given[freed].0.name(), given[freed].1))
     }
 
-    fn fitted(&self, found: &Found) -> Fitted {
+    pub(super) fn fitted(&self, found: &Found) -> Fitted {
         let base = &self.morphs.base;
         let positions = self.morphs.positions(&found.setting);
         let mut normals = vec![Vec3::ZERO; positions.len()];

@@ -18,6 +18,7 @@ mod people;
 mod proportions;
 mod reading;
 mod segments;
+pub mod shape;
 mod shares;
 mod skin;
 pub mod sound;

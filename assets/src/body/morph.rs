@@ -151,6 +151,11 @@ impl Morphs {
         (0..self.base.positions.len()).map(|v| self.place(v, setting)).collect()
     }
 
+    /// How the joints move a unit of a slider, before scaling.
+    pub(super) fn joint_moves(&self, slider: usize) -> &[Vec3; JOINTS] {
+        &self.joints[slider]
+    }
+
     /// The joints of a body: each goes with the surface around it.
     pub(super) fn skeleton(&self, setting: &Setting) -> Skeleton {
         let mut rest = self.base.skeleton.rest;

@@ -18,9 +18,12 @@ mod body;
 mod colliders;
 mod convert;
 mod depth;
+mod doctor;
 mod filters;
 mod gestures;
+mod kiosk;
 mod latency;
+mod measuring;
 mod pareto;
 mod plan;
 mod run;
@@ -36,9 +39,12 @@ pub use body::{BodyArgs, Wearer};
 pub use colliders::CollidersArgs;
 pub use convert::{ConvertArgs, KeptDepth};
 pub use depth::DepthArgs;
+pub use doctor::DoctorArgs;
 pub use filters::FiltersArgs;
 pub use gestures::GesturesArgs;
+pub use kiosk::KioskArgs;
 pub use latency::{LatencyArgs, ReplayArgs};
+pub use measuring::MeasuringArgs;
 pub use pareto::ParetoArgs;
 pub use plan::{PlanArgs, PlanScene};
 pub use run::{RunArgs, RunScene};
@@ -71,6 +77,8 @@ pub enum Command {
     Colliders(CollidersArgs),
     /// `toile bench body`.
     BenchBody(BodiesArgs),
+    /// `toile bench measure`.
+    BenchMeasure(MeasuringArgs),
     /// `toile bench filters`.
     BenchFilters(FiltersArgs),
     /// `toile bench gestures`.
@@ -91,6 +99,8 @@ pub enum Command {
     Latency(LatencyArgs),
     /// `toile replay`.
     Replay(ReplayArgs),
+    /// `toile kiosk`.
+    Kiosk(KioskArgs),
     /// `toile plan`.
     Plan(PlanArgs),
     /// `toile soak`.
@@ -133,6 +143,10 @@ pub struct MeasureArgs {
     pub file: PathBuf,
     /// Camera description for a raw depth frame.
     pub camera: Option<PathBuf>,
+    /// Whether the shopper wears nothing that stands off the skin.
+    pub tight: bool,
+    /// Folder for a picture of the fitted body over the depth.
+    pub out: Option<PathBuf>,
     /// One JSON object on stdout in place of the summary.
     pub json: bool,
     /// No words on stderr.
@@ -152,15 +166,6 @@ pub struct RecordArgs {
     pub json: bool,
     /// No words on stderr.
     pub quiet: bool,
-}
-
-/// Arguments of `toile doctor`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DoctorArgs {
-    /// The folder whose writing is tried.
-    pub out: PathBuf,
-    /// One JSON object on stdout in place of the table.
-    pub json: bool,
 }
 
 /// Longest session that `record` makes (s); at 30 frames a second this is some hundred megabytes.
@@ -190,7 +195,7 @@ pub fn command() -> clap::Command {
             bake::grammar(),
             body::grammar(),
             run::grammar(),
-            doctor(),
+            doctor::grammar(),
             bench(),
             validate::grammar(),
             pareto::grammar(),
@@ -199,6 +204,7 @@ pub fn command() -> clap::Command {
             plan::grammar(),
             latency::replay_grammar(),
             soak::grammar(),
+            kiosk::grammar(),
             completions(),
         ])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
@@ -239,6 +245,8 @@ fn measure() -> clap::Command {
                 .value_parser(value_parser!(PathBuf))
                 .help("Recording or depth frame"),
             path("camera", "J", "Camera of a raw depth frame, as JSON [default: the recording's own]"),
+            flag("tight", "The shopper wears nothing that stands off the skin: the body fit is not one-sided"),
+            path("out", "DIR", "Folder for a picture of the fitted body over the depth"),
             json(),
             quiet(),
         ])
@@ -266,23 +274,17 @@ fn record() -> clap::Command {
         .after_help("Example: make another session and watch it\n  toile record --out other.mcap --seed 7 && toile try-on --session other.mcap")
 }
 
-fn doctor() -> clap::Command {
-    clap::Command::new("doctor")
-        .about("Say what this machine has, and the exact cure for what is missing")
-        .args([path("out", "DIR", "Output folder whose writing is tried").default_value("out"), json()])
-        .after_help("Example: see why a kiosk misses its deadline\n  toile doctor")
-}
-
 fn bench() -> clap::Command {
     clap::Command::new("bench")
         .about("Time one part of the frame, with the error at that speed")
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands([
-            filters::grammar(),
             skinning::grammar(),
             skirt::grammar(),
             bodies::grammar(),
+            measuring::grammar(),
+            filters::grammar(),
             gestures::grammar(),
             depth::grammar(),
         ])
@@ -347,6 +349,8 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "measure" => Command::Measure(MeasureArgs {
             file: required(matches, "file")?,
             camera: matches.get_one("camera").cloned(),
+            tight: matches.get_flag("tight"),
+            out: matches.get_one("out").cloned(),
             json: matches.get_flag("json"),
             quiet: matches.get_flag("quiet"),
         }),
@@ -359,7 +363,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         }),
         "convert" => Command::Convert(convert::args(matches)?),
         "run" => Command::Run(run::args(matches)?),
-        "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
+        "doctor" => Command::Doctor(doctor::args(matches)?),
         "bake" => Command::Bake(bake::args(matches)?),
         "body" if matches.get_flag("colliders") => Command::Colliders(colliders::args(matches)?),
         "body" => Command::Body(body::args(matches)?),
@@ -371,6 +375,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "plan" => Command::Plan(plan::args(matches)?),
         "replay" => Command::Replay(latency::replay_args(matches)?),
         "soak" => Command::Soak(soak::args(matches)?),
+        "kiosk" => Command::Kiosk(kiosk::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
     })
@@ -383,6 +388,7 @@ fn bench_command(matches: &ArgMatches) -> Result<Command, AppError> {
         Some(("depth", matches)) => Ok(Command::BenchDepth(depth::parse(matches))),
         Some(("skinning", matches)) => Ok(Command::BenchSkinning(skinning::parse(matches)?)),
         Some(("body", matches)) => Ok(Command::BenchBody(bodies::args(matches)?)),
+        Some(("measure", matches)) => Ok(Command::BenchMeasure(measuring::args(matches)?)),
         Some(("skirt", matches)) => Ok(Command::BenchSkirt(skirt::parse(matches)?)),
         _ => Err(AppError::internal("a benchmark without a name was let through")),
     }
@@ -440,62 +446,4 @@ fn sentence(error: &clap::Error, place: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn parsed(line: &str) -> Result<Command, AppError> {
-        parse(line.split_whitespace().map(OsString::from).collect())
-    }
-
-    #[test]
-    fn the_grammar_is_sound() {
-        command().debug_assert();
-    }
-
-    #[test]
-    fn no_command_is_try_on() {
-        let plain = parsed("toile").unwrap();
-        assert_eq!(plain, parsed("toile try-on").unwrap());
-        let Command::TryOn(args) = plain else { panic!("{plain:?}") };
-        assert_eq!(args.out, PathBuf::from("out"));
-        assert!(args.session.is_none() && args.garments.is_empty() && args.pictures && !args.json);
-        assert_eq!(parsed("toile --json --garment a").unwrap(), parsed("toile try-on --json --garment a").unwrap());
-    }
-
-    #[test]
-    fn flags_may_stand_before_the_command() {
-        assert_eq!(parsed("toile --json doctor").unwrap(), parsed("toile doctor --json").unwrap());
-        assert_eq!(parsed("toile -q --json measure f").unwrap(), parsed("toile measure -q --json f").unwrap());
-    }
-
-    #[test]
-    fn garments_keep_their_order() {
-        let Command::TryOn(args) = parsed("toile --garment b --garment a --size 40").unwrap() else { panic!() };
-        assert_eq!(args.garments, ["b", "a"]);
-        assert_eq!(args.size.as_deref(), Some("40"));
-    }
-
-    #[test]
-    fn every_help_ends_with_an_example() {
-        fn check(command: &clap::Command) {
-            let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
-            assert!(after.starts_with("Example: ") && after.contains("\n  toile"), "{}", command.get_name());
-            command.get_subcommands().for_each(check);
-        }
-        check(&command());
-    }
-
-    #[test]
-    fn a_wrong_line_gives_one_sentence_with_its_cure() {
-        let lines =
-            ["toile --garmet x", "toile mesure", "toile bench", "toile measure", "toile record --out f --seed x"];
-        for line in lines {
-            let error = parsed(line).unwrap_err();
-            assert!(matches!(error, AppError::Usage(_)), "{line}");
-            let said = error.to_string();
-            assert!(said.contains("--help`") && !said.contains('\n'), "{said}");
-        }
-        let said = parsed("toile --garmet x").unwrap_err().to_string();
-        assert!(said.contains("--garmet") && said.contains("'--garment'"), "{said}");
-    }
-}
+mod tests;

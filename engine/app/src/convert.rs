@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use toile_assets::sizes::Population;
 use toile_sensors::segment::Segmenter;
 use toile_sensors::session::Session;
 use toile_sensors::source::{self, OpenOptions};
@@ -12,6 +13,7 @@ use crate::output::OutputFolder;
 use crate::report::{ConvertReport, Document};
 use crate::shopper::session_report;
 use crate::terminal;
+use crate::tracking;
 
 /// Runs `toile convert`.
 ///
@@ -22,10 +24,15 @@ pub fn run(args: &ConvertArgs) -> Result<(), AppError> {
     let mut session =
         source::open(&args.input, &OpenOptions { camera: args.camera.clone() }).map_err(AppError::input)?;
     let dropped = session.depth.len();
+    if args.fit && session.joints.is_empty() && !session.depth.is_empty() {
+        session.joints = tracking::joints(&session, Population::Mixed)?.1;
+        session.notes.push("the joints are those of the body fitted to the depth".to_owned());
+    }
     keep(&mut session, args.depth);
     if session.joints.is_empty() && session.depth.is_empty() {
         return Err(AppError::input(format!(
-            "{}: holds depth images alone, which show a person; give --depth shopper or --depth all to keep them",
+            "{}: holds depth images alone, which show a person; give --fit to keep the joints that they show, or --depth \
+             shopper or --depth all to keep the images",
             args.input.display()
         )));
     }

@@ -19,9 +19,11 @@ pub mod exit;
 pub mod fit;
 pub mod gestures;
 pub mod heap;
+pub mod kiosk;
 pub mod latency;
 pub mod machine;
 pub mod measure;
+pub mod measuring;
 pub mod outfit;
 pub mod output;
 pub mod pareto;
@@ -36,6 +38,7 @@ pub mod soak;
 pub mod summary;
 pub mod terminal;
 pub mod torture;
+pub mod tracking;
 pub mod try_on;
 pub mod validate;
 
@@ -82,6 +85,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Body(args) => body::run(args),
         Command::Colliders(args) => colliders::run(args),
         Command::BenchBody(args) => bodies::bench(args),
+        Command::BenchMeasure(args) => measuring::bench(args),
         Command::BenchFilters(args) => bench::filters(args),
         Command::BenchGestures(args) => gestures::run(args),
         Command::BenchDepth(args) => bench::depth(args),
@@ -94,6 +98,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Plan(args) => plan::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Soak(args) => soak::run(args),
+        Command::Kiosk(args) => kiosk::run(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }

@@ -227,10 +227,53 @@ pub struct MeasureReport {
     pub session: Session,
     /// The shopper's measures.
     pub measurements: Measurements,
+    /// Both ways of measuring, side by side; the body fit only where there is depth.
+    pub methods: Vec<Method>,
+    /// The fitted body; nothing without depth, or where none fits.
+    pub body: Option<FittedBody>,
     /// Pixels that carried a depth, mean over the frames.
     pub valid_pixels: u64,
     /// People seen.
     pub people: u32,
+    /// The files written.
+    pub files: Vec<PathBuf>,
+}
+
+/// What one way of measuring found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Method {
+    /// Its name.
+    pub method: &'static str,
+    /// What it takes.
+    pub measures: Vec<DefinedMeasure>,
+}
+
+/// A measure with its definition.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DefinedMeasure {
+    /// Its name.
+    pub name: &'static str,
+    /// Where the tape lies (EN 13402-1, ISO 8559-1).
+    pub definition: &'static str,
+    /// The value (mm).
+    pub value: f64,
+    /// Its standard deviation (mm).
+    pub sigma: f64,
+}
+
+/// How well a body fits the depth.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FittedBody {
+    /// How likely it is a woman's, 0 to 1.
+    pub woman: f64,
+    /// Whether the fit was one-sided, cloth lying outside the skin.
+    pub clothed: bool,
+    /// Frames that took part.
+    pub frames: u64,
+    /// Share of the shopper's surface that it explains, 0 to 1.
+    pub explained: f64,
+    /// Root mean square distance of the surface from the body's (mm).
+    pub off_mm: f64,
 }
 
 /// The body of `toile record`.

@@ -31,6 +31,17 @@ pub fn measure(report: &MeasureReport, paint: Paint) -> String {
     let mut text = String::new();
     session(&mut text, &report.session);
     measurements(&mut text, &report.measurements, paint);
+    for method in &report.methods {
+        heading(&mut text, &format!("By {}", method.method), paint);
+        for m in &method.measures {
+            line(&mut text, &format!("  {:17} {:6.0} mm +- {:.0}", m.name.replace('_', " "), m.value, m.sigma));
+        }
+    }
+    if let Some(b) = &report.body {
+        let cloth = if b.clothed { "one-sided, for cloth lies outside the skin" } else { "on the skin" };
+        let share = b.explained * 100.0;
+        line(&mut text, &format!("\nThe body explains {share:.0} % of the surface, {:.0} mm off; {cloth}", b.off_mm));
+    }
     line(&mut text, &format!("\nPeople: {}; pixels with a depth: {} a frame", report.people, report.valid_pixels));
     text
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::Affine3A;
 use toile_assets::body::{Body, Sex};
-use toile_assets::export::{Dressed, Worn, glb};
+use toile_assets::export::{self, Dressed, glb};
 use toile_assets::garment::Garment;
 use toile_assets::limits::STEP_HZ;
 use toile_assets::rig::Rig;
@@ -29,9 +29,13 @@ use crate::report::{self, Document, TryOn};
 use crate::shopper;
 use crate::summary;
 use crate::terminal::{self, Paint, Words};
+use crate::tracking;
 
 /// Fabric of a mesh that a user brings without saying what it is made of.
 const MESH_FABRIC: &str = "cotton-lawn";
+
+/// Said of a session without joints.
+const FROM_DEPTH: &str = "there are no joints: the body was fitted to the depth, and its joints are shown";
 
 /// What a user asked to wear: a garment of the wardrobe, or a mesh.
 enum Wanted {
@@ -47,27 +51,17 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let words = Words::new(args.quiet || args.json);
     let mut out = OutputFolder::prepare(&args.out)?;
     let wanted = wanted(args)?;
-    let session = shopper::open(args.session.as_deref(), None)?;
-    if session.joints.is_empty() {
-        return Err(AppError::Input(format!(
-            "session {} has depth but no joints, so that no pose can be shown; measure it with `toile measure`",
-            session.name
-        )));
-    }
+    let mut session = shopper::open(args.session.as_deref(), None)?;
     let (sex, population) = population(args, &wanted)?;
-    let measured = shopper::measure(&session, population)?;
-    let (body, measured, note) = match &args.body {
-        Some(Wearer::File(file)) => {
-            let imported = crate::body::wearer(file, sex)?;
-            let measured = shopper::of_body(measured, &imported.body);
-            let note = format!("the body shown is {}, and the measures are read off it", file.display());
-            (imported.body, measured, Some(note))
-        }
-        _ => {
-            let (body, note) = shopper::build(sex, &measured, population)?;
-            (body, measured, note)
-        }
-    };
+    let mut measured = shopper::measure(&session, population)?;
+    let mut fitted = None;
+    if session.joints.is_empty() {
+        let (found, joints) = tracking::joints(&session, population)?;
+        (session.joints, measured) = (joints, tracking::preferred(measured, &found));
+        session.notes.push(FROM_DEPTH.to_owned());
+        fitted = Some(found.body.body);
+    }
+    let Worn { body, measured, note } = worn(args, measured, (sex, population), fitted)?;
     let notes: Vec<String> = note.into_iter().chain(measured.notes.iter().cloned()).collect();
     let (garments, recommendations) = dress(&wanted, args, &measured, &body)?;
 
@@ -106,6 +100,33 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     } else {
         terminal::print(&summary::try_on(&document.body, Paint::for_stdout()))
     }
+}
+
+/// Who wears it.
+struct Worn {
+    body: Body,
+    measured: Measurements,
+    note: Option<String>,
+}
+
+/// The body to dress: a file's, the one fitted to the depth, or one built to the measures.
+fn worn(
+    args: &TryOnArgs,
+    measured: Measurements,
+    (sex, population): (Sex, Population),
+    fitted: Option<Body>,
+) -> Result<Worn, AppError> {
+    if let Some(Wearer::File(file)) = &args.body {
+        let imported = crate::body::wearer(file, sex)?;
+        let measured = shopper::of_body(measured, &imported.body);
+        let note = format!("the body shown is {}, and the measures are read off it", file.display());
+        return Ok(Worn { body: imported.body, measured, note: Some(note) });
+    }
+    let (body, note) = match fitted {
+        Some(body) => (body, None),
+        None => shopper::build(sex, &measured, population)?,
+    };
+    Ok(Worn { body, measured, note })
 }
 
 /// What to wear; the wardrobe's first garment if nothing is said. A name with a file behind it is a mesh.
@@ -218,13 +239,13 @@ fn play(
 fn dressed(frame: &Frame, snapshot: &Snapshot) -> Vec<u8> {
     let mut bones = [Affine3A::IDENTITY; BONES];
     palette(&frame.body().skeleton, frame.pose(), &mut bones);
-    let worn = frame.garments().iter().zip(&snapshot.garments).map(|(garment, positions)| Worn {
+    let worn = frame.garments().iter().zip(&snapshot.garments).map(|(garment, positions)| export::Worn {
         name: &garment.name,
         positions,
         triangles: &garment.triangles,
         srgb: garment.fabric.colour,
     });
-    let worn: Vec<Worn<'_>> = worn.collect();
+    let worn: Vec<export::Worn<'_>> = worn.collect();
     glb(&Dressed { body: frame.body(), palette: Some(&bones), worn: &worn })
 }
 

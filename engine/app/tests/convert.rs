@@ -6,6 +6,7 @@ use std::path::Path;
 
 use common::Scratch;
 use serde_json::Value;
+use toile_assets::skeleton::Joint;
 use toile_sensors::session::Session;
 use toile_sensors::source::{OpenOptions, open};
 
@@ -52,6 +53,38 @@ fn a_recording_of_depth_alone_is_not_converted_unasked() {
     // A wall is nobody: nothing of it is the shopper's.
     let (_, session) = converted(&scratch, "wall.u16le", "shopper.mcap", &["--depth", "shopper"]);
     assert_eq!(session.depth[0].valid_pixels(), 0);
+}
+
+/// Median distance between two tracks of a joint (m).
+fn apart(a: &Session, b: &Session, joint: Joint) -> f32 {
+    let pairs = a.joints.iter().zip(&b.joints).filter(|(p, _)| p.at(joint).is_believed());
+    let mut all: Vec<f32> = pairs.map(|(p, q)| p.at(joint).position.distance(q.at(joint).position)).collect();
+    all.sort_by(f32::total_cmp);
+    assert!(all.len() > 20, "{joint:?} is believed in {} frames", all.len());
+    all[all.len() / 2]
+}
+
+#[test]
+fn joints_are_fitted_to_depth_alone_where_that_is_asked_for_and_dress_a_shopper() {
+    let scratch = Scratch::new("convert-fit");
+    let original = recorded(&scratch);
+    let alone = Session { joints: Vec::new(), ..original.clone() };
+    std::fs::write(scratch.path().join("depth.mcap"), alone.to_bytes().expect("a session")).unwrap();
+    let (json, session) = converted(&scratch, "depth.mcap", "joints.mcap", &["--fit"]);
+    assert_eq!((json["joint_frames"].as_u64(), json["depth_frames"].as_u64()), (Some(30), Some(0)));
+    for joint in
+        [Joint::Pelvis, Joint::Head, Joint::LeftShoulder, Joint::RightElbow, Joint::LeftWrist, Joint::RightKnee]
+    {
+        let off = apart(&session, &original, joint);
+        assert!(off < 0.06, "{joint:?}: {off}");
+    }
+    let output = scratch.toile(&["try-on", "--session", "depth.mcap", "--out", "out", "--no-pictures", "--json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let json: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    assert!(json["physics"]["steps"].as_u64() > Some(100) && json["physics"]["nonfinite"] == 0, "{json}");
+    assert!(json["session"]["notes"].to_string().contains("fitted to the depth"), "{}", json["session"]);
+    let stature = json["measurements"]["stature_mm"]["value"].as_f64().expect("a stature");
+    assert!((stature - 1694.0).abs() < 20.0, "{stature}");
 }
 
 #[test]

@@ -40,6 +40,8 @@ const CHEST: std::ops::Range<f32> = 0.15..0.65;
 pub struct Cloud {
     /// Surface points, world (m).
     pub points: Vec<Vec3>,
+    /// Pixel that each of them comes from, row by row from the top left.
+    pub pixels: Vec<u32>,
     /// Distance between neighbouring points, across the view (m).
     pub pitch: f32,
     /// Median distance from the camera (m).
@@ -48,6 +50,17 @@ pub struct Cloud {
     pub elevation: f32,
     /// The picture's edge cuts the person off below.
     pub cut_below: bool,
+}
+
+impl Cloud {
+    /// The frame that the cloud comes from with nothing in it but this person.
+    pub fn alone(&self, frame: &DepthFrame) -> DepthFrame {
+        let mut depth_mm = vec![0; frame.depth_mm.len()].into_boxed_slice();
+        for &i in &self.pixels {
+            depth_mm[i as usize] = frame.depth_mm[i as usize];
+        }
+        DepthFrame { depth_mm, ..frame.clone() }
+    }
 }
 
 /// What one depth frame holds.
@@ -212,24 +225,34 @@ impl<'a> Grid<'a> {
         let mut depths: Vec<f32> = piece.iter().map(|&c| self.depth[c]).collect();
         depths.sort_unstable_by(f32::total_cmp);
         let distance = depths[depths.len() / 2];
-        let points = self.points(piece);
+        let (points, pixels) = self.points(piece);
         let [_, top] = extent(cells.iter().map(|p| p.y));
         let elevation = ((top - self.frame.camera_to_world.translation.y) / distance).atan();
-        Some(Cloud { cut_below: self.cut_below(piece, &cells), pitch: distance / focal, distance, elevation, points })
+        Some(Cloud {
+            cut_below: self.cut_below(piece, &cells),
+            pitch: distance / focal,
+            distance,
+            elevation,
+            points,
+            pixels,
+        })
     }
 
-    fn points(&self, piece: &[usize]) -> Vec<Vec3> {
-        let mut points = Vec::with_capacity(piece.len() * self.step * self.step);
+    fn points(&self, piece: &[usize]) -> (Vec<Vec3>, Vec<u32>) {
+        let width = self.frame.intrinsics.width as usize;
+        let room = piece.len() * self.step * self.step;
+        let (mut points, mut pixels) = (Vec::with_capacity(room), Vec::with_capacity(room));
         for &cell in piece {
             let near = self.depth[cell];
             for (u, v, mm) in self.pixels(cell / self.columns, cell % self.columns) {
                 let z = f32::from(mm) / 1000.0;
                 if mm != 0 && z - near < Self::same_surface(near) {
                     points.push(self.world(u as f32, v as f32, z));
+                    pixels.push((v * width + u) as u32);
                 }
             }
         }
-        points
+        (points, pixels)
     }
 
     /// Whether the lowest part of a piece lies along the picture's edge.

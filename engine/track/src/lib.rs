@@ -8,6 +8,7 @@ pub mod agreement;
 pub mod anthropometry;
 pub mod cloud;
 pub mod estimate;
+pub mod fit;
 pub mod gesture;
 mod joints;
 pub mod measure;

@@ -19,6 +19,25 @@ impl Default for Hint {
     }
 }
 
+/// Where a measure is taken, by its name: levels and definitions of EN 13402-1 and ISO 8559-1, which the tape of the
+/// parametric body follows. A girth is the convex hull of a horizontal slice of the torso without arms, or of one thigh.
+pub fn definition(name: &str) -> &'static str {
+    match name {
+        "stature" => "crown to floor; the body fit leaves out what it takes for hair and shoes, sections count both",
+        "shoulder_breadth" => "between the acromions (biacromial), not over the deltoids",
+        "arm_length" => "acromion over the bent elbow to the wrist bone",
+        "leg_length" | "inseam" => "crotch to floor (inside leg height)",
+        "torso_length" => "height of the 7th cervical vertebra less the inside leg height",
+        "neck_girth" => "2 cm below the Adam's apple, over the 7th cervical vertebra",
+        "chest_girth" => "at the bust points, under the armpits",
+        "underbust_girth" => "just below the breasts",
+        "waist_girth" => "natural waistline, midway between the lowest rib and the top of the hip bone",
+        "hip_girth" => "at the greatest protrusion of the buttocks",
+        "thigh_girth" => "one thigh at its greatest, below the crotch",
+        _ => "",
+    }
+}
+
 /// The measures that could be taken; `None` where the sensor did not see what is needed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Measures {

@@ -9,6 +9,7 @@ mod study;
 mod survey;
 mod table;
 
+pub(crate) use study::chosen;
 pub use study::{Errors, GIVEN, QUICK_MS, Spread, Study, StudyError, TOO_ROUGH, study};
 pub use survey::{Survey, SurveyError};
 pub use table::table;

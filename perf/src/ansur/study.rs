@@ -184,7 +184,7 @@ pub fn study(survey: &Survey, count: usize, seed: u64, told: &dyn Fn()) -> Resul
 }
 
 /// Which rows are drawn: the first of a shuffle (Fisher and Yates).
-fn chosen(people: usize, count: usize, seed: u64) -> Vec<usize> {
+pub(crate) fn chosen(people: usize, count: usize, seed: u64) -> Vec<usize> {
     let mut rows: Vec<usize> = (0..people).collect();
     let mut random = Random::new("ansur", seed);
     let count = count.min(people);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Arg, ArgMatches, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, value_parser};
 
 use super::{json, path, quiet, required, text};
 use crate::exit::AppError;
@@ -18,6 +18,8 @@ pub struct ConvertArgs {
     pub out: PathBuf,
     /// Which depth is kept.
     pub depth: KeptDepth,
+    /// Whether a recording without joints gets those of the body fitted to its depth.
+    pub fit: bool,
     /// One JSON object on stdout in place of the summary.
     pub json: bool,
     /// No words on stderr.
@@ -55,10 +57,17 @@ pub(super) fn grammar() -> clap::Command {
             text("depth", "D", "Depth to keep: none, the shopper's alone, or all")
                 .value_parser(["none", "shopper", "all"])
                 .default_value("none"),
+            Arg::new("fit")
+                .long("fit")
+                .action(ArgAction::SetTrue)
+                .help("Where there are no joints, fit the body to the depth and keep its joints"),
             json(),
             quiet(),
         ])
-        .after_help("Example: keep the joints of a recording, and no picture of anybody\n  toile convert shopper.csv --out shopper.mcap")
+        .after_help(
+            "Example: keep the joints of a recording, and no picture of anybody\n  toile convert shopper.csv --out \
+             shopper.mcap\nExample: the same of depth images alone\n  toile convert frames --fit --out shopper.mcap",
+        )
 }
 
 /// What a matched line asks for.
@@ -73,6 +82,7 @@ pub(super) fn args(matches: &ArgMatches) -> Result<ConvertArgs, AppError> {
         camera: matches.get_one("camera").cloned(),
         out: required(matches, "out")?,
         depth,
+        fit: matches.get_flag("fit"),
         json: matches.get_flag("json"),
         quiet: matches.get_flag("quiet"),
     })

@@ -1,0 +1,212 @@
+//! Normal equations of a least squares step: rows added up, then solved by Cholesky's factors.
+
+use toile_assets::body::shape::SHAPES;
+
+use super::figure::{POSE, Row, UNKNOWNS, WIDTH};
+
+/// `curve` is J^T W J (upper triangle), `slope` J^T W r, `cost` the weighted sum of squares.
+pub(super) struct Equations {
+    curve: Box<[Row; UNKNOWNS]>,
+    slope: Row,
+    pub cost: f64,
+}
+
+/// Half the cost around a state as a quadratic of the shape alone, the pose following it.
+pub(super) struct ShapeCurve {
+    /// Its curvature.
+    pub curve: [[f64; SHAPES]; SHAPES],
+    /// Its slope at the state.
+    pub slope: [f64; SHAPES],
+}
+
+impl Equations {
+    pub(super) fn new() -> Self {
+        Self { curve: Box::new([[0.0; WIDTH]; UNKNOWNS]), slope: [0.0; WIDTH], cost: 0.0 }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.curve.iter_mut().for_each(|row| row.fill(0.0));
+        self.slope.fill(0.0);
+        self.cost = 0.0;
+    }
+
+    /// Adds a residual of some weight with its row.
+    pub(super) fn add(&mut self, row: &Row, residual: f32, weight: f32) {
+        for i in 0..UNKNOWNS {
+            let by = weight * row[i];
+            if by != 0.0 {
+                // From the lanes that hold the diagonal on: what lies below it is not used.
+                let from = i & !7;
+                for (c, r) in self.curve[i][from..].iter_mut().zip(&row[from..]) {
+                    *c += by * r;
+                }
+            }
+        }
+        let by = weight * residual;
+        self.slope.iter_mut().zip(row).for_each(|(s, r)| *s += by * r);
+        self.cost += f64::from(by * residual);
+    }
+
+    /// Adds a residual of one unknown.
+    pub(super) fn add_one(&mut self, unknown: usize, residual: f32, weight: f32) {
+        self.curve[unknown][unknown] += weight;
+        self.slope[unknown] += weight * residual;
+        self.cost += f64::from(weight * residual * residual);
+    }
+
+    fn at(&self, i: usize, j: usize) -> f64 {
+        f64::from(self.curve[i.min(j)][i.max(j)])
+    }
+
+    /// The step to the least cost together with a quadratic of the shape; `damping` is a share of each diagonal.
+    pub(super) fn step(&self, shape: &ShapeCurve, damping: f64) -> [f64; UNKNOWNS] {
+        let mut a = vec![[0.0; UNKNOWNS]; UNKNOWNS];
+        let mut x = [0.0; UNKNOWNS];
+        for i in 0..UNKNOWNS {
+            for j in 0..=i {
+                a[i][j] = self.at(i, j);
+                if j >= POSE {
+                    a[i][j] += shape.curve[i - POSE][j - POSE];
+                }
+            }
+            a[i][i] = a[i][i] * (1.0 + damping) + 1e-9;
+            x[i] = -f64::from(self.slope[i]) - if i >= POSE { shape.slope[i - POSE] } else { 0.0 };
+        }
+        factor(&mut a, UNKNOWNS);
+        substitute(&a, &mut x);
+        x
+    }
+
+    /// The pose eliminated: what the frame says of the shape.
+    pub(super) fn shape(&self) -> ShapeCurve {
+        let mut a = vec![[0.0; UNKNOWNS]; UNKNOWNS];
+        let mut slope = [0.0; UNKNOWNS];
+        for i in 0..UNKNOWNS {
+            for j in 0..=i {
+                a[i][j] = self.at(i, j);
+            }
+            a[i][i] += 1e-9;
+            slope[i] = f64::from(self.slope[i]);
+        }
+        // Factors of the pose's block only: what is left of the shape's is its Schur complement.
+        for k in 0..POSE {
+            let pivot = a[k][k].max(1e-12);
+            for i in k + 1..UNKNOWNS {
+                let by = a[i][k] / pivot;
+                if by != 0.0 {
+                    for j in k + 1..=i {
+                        a[i][j] -= by * a[j][k];
+                    }
+                    slope[i] -= by * slope[k];
+                }
+            }
+        }
+        ShapeCurve {
+            curve: std::array::from_fn(|i| std::array::from_fn(|j| a[POSE + i.max(j)][POSE + i.min(j)])),
+            slope: std::array::from_fn(|i| slope[POSE + i]),
+        }
+    }
+}
+
+/// Lower factor of the lower triangle, in place.
+fn factor(a: &mut [[f64; UNKNOWNS]], n: usize) {
+    for i in 0..n {
+        for j in 0..=i {
+            let (above, here) = a.split_at(i);
+            let row = &here[0];
+            let other = if i == j { row } else { &above[j] };
+            let dot: f64 = row[..j].iter().zip(&other[..j]).map(|(p, q)| p * q).sum();
+            let rest = row[j] - dot;
+            a[i][j] = if i == j { rest.max(1e-12).sqrt() } else { rest / a[j][j] };
+        }
+    }
+}
+
+fn substitute(l: &[[f64; UNKNOWNS]], x: &mut [f64; UNKNOWNS]) {
+    for i in 0..UNKNOWNS {
+        let dot: f64 = (0..i).map(|k| l[i][k] * x[k]).sum();
+        x[i] = (x[i] - dot) / l[i][i];
+    }
+    for i in (0..UNKNOWNS).rev() {
+        let dot: f64 = (i + 1..UNKNOWNS).map(|k| l[k][i] * x[k]).sum();
+        x[i] = (x[i] - dot) / l[i][i];
+    }
+}
+
+/// Solves a symmetric positive system of the shape's size, and gives the inverse and the logarithm of the determinant.
+pub(super) fn invert(a: &[[f64; SHAPES]; SHAPES]) -> ([[f64; SHAPES]; SHAPES], f64) {
+    let mut l = [[0.0; SHAPES]; SHAPES];
+    let mut log = 0.0;
+    for i in 0..SHAPES {
+        for j in 0..=i {
+            let dot: f64 = (0..j).map(|k| l[i][k] * l[j][k]).sum();
+            l[i][j] = if i == j { (a[i][i] - dot).max(1e-12).sqrt() } else { (a[i][j] - dot) / l[j][j] };
+        }
+        log += 2.0 * l[i][i].ln();
+    }
+    let mut inverse = [[0.0; SHAPES]; SHAPES];
+    for column in 0..SHAPES {
+        let mut x = [0.0; SHAPES];
+        x[column] = 1.0;
+        for i in 0..SHAPES {
+            let dot: f64 = (0..i).map(|k| l[i][k] * x[k]).sum();
+            x[i] = (x[i] - dot) / l[i][i];
+        }
+        for i in (0..SHAPES).rev() {
+            let dot: f64 = (i + 1..SHAPES).map(|k| l[k][i] * x[k]).sum();
+            x[i] = (x[i] - dot) / l[i][i];
+        }
+        for i in 0..SHAPES {
+            inverse[i][column] = x[i];
+        }
+    }
+    (inverse, log)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows() -> Vec<(Row, f32)> {
+        (0..3 * UNKNOWNS)
+            .map(|k| {
+                let mut row = [0.0; WIDTH];
+                for (i, r) in row.iter_mut().enumerate().take(UNKNOWNS) {
+                    *r = ((k * 31 + i * 17) as f32 * 0.7).sin();
+                }
+                (row, (k as f32 * 0.3).cos())
+            })
+            .collect()
+    }
+
+    fn nothing() -> ShapeCurve {
+        ShapeCurve { curve: [[0.0; SHAPES]; SHAPES], slope: [0.0; SHAPES] }
+    }
+
+    #[test]
+    fn after_the_step_no_row_is_left_with_a_slope() {
+        let mut equations = Equations::new();
+        rows().iter().for_each(|(row, r)| equations.add(row, *r, 2.0));
+        let step = equations.step(&nothing(), 0.0);
+        let mut then = Equations::new();
+        for (row, r) in rows() {
+            let moved: f64 = row.iter().zip(&step).map(|(a, b)| f64::from(*a) * b).sum();
+            then.add(&row, r + moved as f32, 2.0);
+        }
+        assert!(then.slope[..UNKNOWNS].iter().all(|s| s.abs() < 2e-3), "{:?}", then.slope);
+        assert!(then.cost < equations.cost);
+    }
+
+    #[test]
+    fn eliminating_the_pose_leaves_the_same_shape() {
+        let mut equations = Equations::new();
+        rows().iter().for_each(|(row, r)| equations.add(row, *r, 1.0));
+        let whole = equations.step(&nothing(), 0.0);
+        let ShapeCurve { curve, slope } = equations.shape();
+        let (inverse, _) = invert(&curve);
+        for i in 0..SHAPES {
+            let step: f64 = -(0..SHAPES).map(|j| inverse[i][j] * slope[j]).sum::<f64>();
+            assert!((step - whole[POSE + i]).abs() < 1e-3, "{i}: {step} {}", whole[POSE + i]);
+        }
+    }
+}

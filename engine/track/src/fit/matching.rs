@@ -1,0 +1,189 @@
+//! Which sample of the body each cell of the picture shows: the nearest one that faces the camera as the cell does.
+
+use glam::{Vec2, Vec3};
+
+use super::figure::Figure;
+use super::view::{Cell, View};
+
+/// Least cosine between the normals of a cell and of the sample that it shows.
+const ALIKE: f32 = 0.35;
+
+/// Least cosine between a sample's normal and the direction to the camera: a little beyond the horizon, so that cells at
+/// the horizon find samples on either side.
+const FACING: f32 = -0.1;
+
+/// Least cosine between a cell's normal and the direction to the camera: seen more slantingly, a cell is a mean over too
+/// long a stretch of surface.
+const SLANTING: f32 = 0.25;
+
+/// Side of the buckets into which samples are sorted, in cells.
+const BUCKET: usize = 2;
+
+/// What the picture says of one sample.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Match {
+    /// Sum of the points that show it (m).
+    sum: Vec3,
+    /// How many they are.
+    pub count: f32,
+    /// Where it is seen, in cells, and its depth (m); meaningless if it does not face the camera.
+    pub seen: Vec2,
+    /// Its depth (m).
+    pub z: f32,
+    /// Whether it faces the camera, within the picture.
+    pub faces: bool,
+}
+
+impl Match {
+    /// Mean of the points that show it (m).
+    pub(super) fn mean(&self) -> Vec3 {
+        self.sum / self.count
+    }
+
+    /// Mean distance by which the body's surface lies outside of the points that show it (m), along the normal.
+    pub(super) fn outside(&self, point: Vec3, normal: Vec3) -> f32 {
+        normal.dot(point - self.mean())
+    }
+}
+
+/// The matches of one frame.
+pub(super) struct Matching {
+    /// One a sample.
+    pub of: Vec<Match>,
+    /// Share of the cells that some sample explains.
+    pub explained: f32,
+    /// Mean square distance of cells from their samples' planes, those of unexplained cells counted as the gate (m2).
+    pub off: f32,
+    /// Of how many cells one is looked at; it counts for all of them.
+    pub every: usize,
+    /// Samples by bucket: where each bucket starts, and the list.
+    start: Vec<u32>,
+    list: Vec<u32>,
+}
+
+impl Matching {
+    pub(super) fn new(samples: usize) -> Self {
+        Self {
+            of: vec![Match::default(); samples],
+            explained: 0.0,
+            off: 0.0,
+            every: 1,
+            start: Vec::new(),
+            list: Vec::new(),
+        }
+    }
+
+    /// Finds the matches within a distance (m).
+    pub(super) fn find(&mut self, view: &View, figure: &Figure, gate: f32) {
+        self.see(view, figure);
+        let (across, down) = (view.columns.div_ceil(BUCKET), view.rows.div_ceil(BUCKET));
+        self.sort(across, down);
+        let eye = view.eye();
+        let (mut explained, mut squares) = (0usize, 0.0);
+        for cell in view.cells.iter().step_by(self.every) {
+            let Some(i) = self.nearest(view, figure, cell, gate, [across, down]) else {
+                squares += gate * gate;
+                continue;
+            };
+            explained += 1;
+            squares += (figure.points[i] - cell.point).dot(figure.normals[i]).powi(2);
+            let slanting = cell.normal.dot((eye - cell.point).normalize_or_zero()) < SLANTING;
+            if !slanting || cell.normal == Vec3::ZERO {
+                let count = self.every as f32;
+                self.of[i].sum += cell.point * count;
+                self.of[i].count += count;
+            }
+        }
+        let n = view.cells.len().div_ceil(self.every).max(1) as f32;
+        (self.explained, self.off) = (explained as f32 / n, squares / n);
+    }
+
+    /// The sample nearest to a cell, in rings of buckets until no nearer one can come.
+    fn nearest(
+        &self,
+        view: &View,
+        figure: &Figure,
+        cell: &Cell,
+        gate: f32,
+        [across, down]: [usize; 2],
+    ) -> Option<usize> {
+        let (bc, br) = (cell.column as usize / BUCKET, cell.row as usize / BUCKET);
+        let width = BUCKET as f32 * view.cell_size(cell.point.distance(view.eye()));
+        let rings = (gate / width).ceil() as usize;
+        let mut best = (gate * gate, None);
+        let mut look = |from: u32, to: u32| {
+            for &i in &self.list[from as usize..to as usize] {
+                let off = figure.points[i as usize].distance_squared(cell.point);
+                let alike = || figure.normals[i as usize].dot(cell.normal) > ALIKE || cell.normal == Vec3::ZERO;
+                if off < best.0 && alike() {
+                    best = (off, Some(i as usize));
+                }
+            }
+            best
+        };
+        for ring in 0..=rings {
+            let (low, high) = (br.saturating_sub(ring), (br + ring).min(down - 1));
+            let (left, right) = (bc.saturating_sub(ring), (bc + ring).min(across - 1));
+            let mut found = (f32::MAX, None);
+            for r in low..=high {
+                let bucket = |c: usize| r * across + c;
+                if r + ring == br || r == br + ring {
+                    // A whole row of the ring: its buckets lie one after the other.
+                    found = look(self.start[bucket(left)], self.start[bucket(right) + 1]);
+                    continue;
+                }
+                if left + ring == bc {
+                    found = look(self.start[bucket(left)], self.start[bucket(left) + 1]);
+                }
+                if right == bc + ring && ring > 0 {
+                    found = look(self.start[bucket(right)], self.start[bucket(right) + 1]);
+                }
+            }
+            if found.1.is_some() && found.0 < (ring as f32 * width).powi(2) {
+                break;
+            }
+        }
+        best.1
+    }
+
+    /// Which samples face the camera, and where they are seen.
+    fn see(&mut self, view: &View, figure: &Figure) {
+        let eye = view.eye();
+        for ((m, point), normal) in self.of.iter_mut().zip(&figure.points).zip(&figure.normals) {
+            *m = Match::default();
+            let sight = eye - *point;
+            if normal.dot(sight) < FACING * sight.length() {
+                continue;
+            }
+            if let Some((seen, z)) = view.project(*point)
+                && view.place(seen).is_some()
+            {
+                (m.seen, m.z, m.faces) = (seen, z, true);
+            }
+        }
+    }
+
+    /// Sorts the facing samples into buckets.
+    fn sort(&mut self, across: usize, down: usize) {
+        self.start.clear();
+        self.start.resize(across * down + 1, 0);
+        let bucket = |m: &Match| {
+            let at = m.seen.round().max(Vec2::ZERO);
+            (at.y as usize / BUCKET).min(down - 1) * across + (at.x as usize / BUCKET).min(across - 1)
+        };
+        for m in self.of.iter().filter(|m| m.faces) {
+            self.start[bucket(m) + 1] += 1;
+        }
+        for b in 1..self.start.len() {
+            self.start[b] += self.start[b - 1];
+        }
+        self.list.clear();
+        self.list.resize(self.start[across * down] as usize, 0);
+        let mut next = self.start.clone();
+        for (i, m) in self.of.iter().enumerate().filter(|(_, m)| m.faces) {
+            let b = bucket(m);
+            self.list[next[b] as usize] = i as u32;
+            next[b] += 1;
+        }
+    }
+}

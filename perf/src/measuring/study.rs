@@ -1,0 +1,320 @@
+//! The study: people drawn from the survey, seen, measured in both ways, compared with what the tape reads on them.
+
+use serde::Serialize;
+use thiserror::Error;
+use toile_assets::body::{BodyError, Sex};
+use toile_assets::sizes::Population;
+use toile_assets::skeleton::Joint;
+use toile_sensors::frame::DepthFrame;
+use toile_sensors::source::synthetic::Rng;
+use toile_track::cloud;
+use toile_track::estimate::Estimate;
+use toile_track::fit::measuring::{self, TAKEN};
+use toile_track::fit::{self, BodyFit};
+use toile_track::measure;
+use toile_track::measures::Hint;
+
+use super::person::{GIVEN, Moment, Person};
+use super::sensor::{Sensor, Sight};
+use crate::ansur::{Survey, SurveyError};
+use crate::time::OnCore;
+
+/// What is studied.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// People drawn from each file.
+    pub people: usize,
+    /// Frames that each is measured from.
+    pub frames: usize,
+    /// Which people.
+    pub seed: u64,
+    /// The camera.
+    pub sensor: Sensor,
+}
+
+/// Why there is no study.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum StudyError {
+    /// The file.
+    #[error(transparent)]
+    Survey(#[from] SurveyError),
+    /// A person whose measures are outside of what bodies are built for.
+    #[error("the survey's line {line}: {source}")]
+    Person {
+        /// The line, from 1.
+        line: usize,
+        /// What is outside.
+        source: BodyError,
+    },
+}
+
+/// What one way of measuring said of one person, in the order of [`TAKEN`]; `None` where it takes no such measure.
+pub type Outcome = [Option<Estimate>; TAKEN.len()];
+
+/// One person: what is true, and what was measured.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// Sex.
+    pub sex: Sex,
+    /// Distance from the camera (m).
+    pub distance: f32,
+    /// What the tape reads, in the order of [`TAKEN`] (m).
+    pub truth: [f32; TAKEN.len()],
+    /// By the body fit; nothing where no body was found.
+    pub fit: Outcome,
+    /// By section and outline, proportions and the mean over the frames.
+    pub sections: Outcome,
+    /// How likely the fit took them for a woman.
+    pub woman: Option<f32>,
+    /// Each frame followed: its time and that of its stages (s), how far off the surface and the joints are (m).
+    followed: Vec<[f32; 7]>,
+    /// Time of the first frame (s).
+    start: Option<f32>,
+}
+
+/// How one measure agrees over the people.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Agreement {
+    /// Name of the measure.
+    pub measure: &'static str,
+    /// People for whom it was taken.
+    pub taken: usize,
+    /// The limit of ISO 20685 for the mean error (mm).
+    pub limit_mm: f64,
+    /// Mean error (mm).
+    pub bias_mm: f64,
+    /// The 95 % interval of the mean error: 1.96 standard errors either way (mm).
+    pub interval_mm: [f64; 2],
+    /// Mean absolute error (mm).
+    pub mean_absolute_mm: f64,
+    /// The same over the measure itself (%).
+    pub mean_absolute_percent: f64,
+    /// 95th percentile of the absolute error (mm).
+    pub p95_mm: f64,
+    /// Mean stated standard deviation (mm).
+    pub sigma_mm: f64,
+    /// Share of errors within two stated standard deviations.
+    pub within_two_sigma: f64,
+    /// Whether the interval lies inside the limit.
+    pub pass: bool,
+}
+
+/// What following people costs, frame by frame, at how good a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Following {
+    /// Frames followed, those in which somebody is found from nothing left out.
+    pub frames: usize,
+    /// Median and 95th percentile of the time that a frame has a core for (ms).
+    pub frame_ms: [f64; 2],
+    /// Median time of reading the picture, of posing and matching, of adding up, of solving (ms), other work on the
+    /// machine included.
+    pub stages_ms: [f64; 4],
+    /// Median time of finding somebody from nothing (ms).
+    pub start_ms: f64,
+    /// Mean root mean square distance of the surface from the body's (mm).
+    pub off_mm: f64,
+    /// Root mean square distance of the joints from the true ones, the hands' and the toes' left out (mm).
+    pub joints_mm: f64,
+}
+
+/// What a study found.
+#[derive(Debug, Clone, Serialize)]
+pub struct Study {
+    /// The camera.
+    pub sensor: &'static str,
+    /// People rendered.
+    pub people: usize,
+    /// Frames of each.
+    pub frames: usize,
+    /// People in whom no body was found.
+    pub lost: usize,
+    /// Share of people whose sex the fit took for the likelier one.
+    pub sex_right: f64,
+    /// The body fit frame by frame, as it follows people.
+    pub following: Following,
+    /// By the body fit.
+    pub fit: Vec<Agreement>,
+    /// By sections, proportions and the mean over time.
+    pub sections: Vec<Agreement>,
+}
+
+/// Measures `options.people` random people of each survey, without repeats; `told` hears of each.
+///
+/// # Errors
+/// A file that is no survey, or a person outside of all ranges.
+pub fn study(surveys: &[Survey], options: &Options, told: &dyn Fn(&Case)) -> Result<Study, StudyError> {
+    let mut cases = Vec::new();
+    for survey in surveys {
+        let sex = survey.sex()?;
+        let columns: Vec<Vec<f64>> = GIVEN.iter().map(|g| survey.column(g.1)).collect::<Result<_, _>>()?;
+        for row in crate::ansur::chosen(survey.people(), options.people, options.seed) {
+            let metres = std::array::from_fn(|k| (columns[k][row] * 1e-3) as f32);
+            let mut rng = Rng::new(options.seed ^ ((row as u64) << 20) ^ u64::from(sex == Sex::Male));
+            let person =
+                Person::new(sex, &metres, &mut rng).map_err(|source| StudyError::Person { line: row + 2, source })?;
+            let case = measured(&person, options, &mut rng);
+            told(&case);
+            cases.push(case);
+        }
+    }
+    Ok(summed(&cases, options))
+}
+
+fn measured(person: &Person, options: &Options, rng: &mut Rng) -> Case {
+    let sight = Sight::new(options.sensor, rng);
+    let frames = sight.frames(person, options.frames, rng);
+    let alone = |(f, truth): &(DepthFrame, Moment)| Some((cloud::people(f).people.first()?.alone(f), *truth));
+    let alone: Vec<(DepthFrame, Moment)> = frames.iter().filter_map(alone).collect();
+    let only: Vec<DepthFrame> = alone.iter().map(|a| a.0.clone()).collect();
+    let frames: Vec<DepthFrame> = frames.into_iter().map(|f| f.0).collect();
+    let bare = fit::Options { clothed: false, ..fit::Options::MEASURING };
+    let fitted = measuring::measure(&only, Population::Mixed, bare);
+    let sections = measure::measure(&[], &frames, &Hint::default()).ok();
+    let sections = sections.map_or([None; TAKEN.len()], |m| {
+        let s = &m.measures;
+        let mut all = [None; TAKEN.len()];
+        let places = [0, 1, 2, 3, 6, 8, 9];
+        let values = [s.stature, s.shoulder_breadth, s.arm_length, s.inseam, s.chest_girth, s.waist_girth, s.hip_girth];
+        places.into_iter().zip(values).for_each(|(i, v)| all[i] = v);
+        all
+    });
+    let (start, followed) = follow(person, &alone);
+    Case {
+        start,
+        followed,
+        sex: person.sex,
+        distance: sight.distance,
+        truth: TAKEN.map(|(_, girth, _)| girth.of(&person.readings)),
+        fit: fitted.as_ref().map_or([None; TAKEN.len()], |f| f.measures.map(Some)),
+        sections,
+        woman: fitted.map(|f| f.woman),
+    }
+}
+
+/// Frames of each person through which they are followed: the first finds them.
+const FOLLOWED: usize = 10;
+
+/// Follows a person through their first frames, as at 30 Hz.
+fn follow(person: &Person, frames: &[(DepthFrame, Moment)]) -> (Option<f32>, Vec<[f32; 7]>) {
+    let mut fit = BodyFit::new(person.sex, fit::Options { clothed: false, ..fit::Options::LIVE });
+    let (mut start, mut followed) = (None, Vec::new());
+    for (frame, truth) in frames.iter().take(FOLLOWED) {
+        let watch = OnCore::begin();
+        let seen = fit.push(frame);
+        let time = watch.elapsed().as_secs_f32();
+        if seen.started {
+            start = Some(time);
+        } else if seen.found {
+            let squares = HELD.map(|j| seen.joints.at(j).position.distance_squared(truth[j.index()]));
+            let joints = (squares.iter().sum::<f32>() / squares.len() as f32).sqrt();
+            let s = fit.stages();
+            followed.push([time, s.look, s.match_up, s.gather, s.solve, seen.off, joints]);
+        }
+    }
+    (start, followed)
+}
+
+/// Joints that are held against the true ones.
+const HELD: [Joint; 14] = [
+    Joint::Pelvis,
+    Joint::Chest,
+    Joint::Neck,
+    Joint::Head,
+    Joint::LeftShoulder,
+    Joint::LeftElbow,
+    Joint::LeftWrist,
+    Joint::RightShoulder,
+    Joint::RightElbow,
+    Joint::RightWrist,
+    Joint::LeftKnee,
+    Joint::LeftAnkle,
+    Joint::RightKnee,
+    Joint::RightAnkle,
+];
+
+fn following(cases: &[Case]) -> Following {
+    let all: Vec<&[f32; 7]> = cases.iter().flat_map(|c| &c.followed).collect();
+    let rank = |mut figures: Vec<f32>, share: f64| {
+        figures.sort_by(f32::total_cmp);
+        let place = (figures.len() as f64 * share) as usize;
+        figures.get(place).map_or(0.0, |f| f64::from(*f) * 1e3)
+    };
+    let column = |k: usize| all.iter().map(|f| f[k]).collect::<Vec<f32>>();
+    let n = all.len().max(1) as f64;
+    let squares: f64 = all.iter().map(|f| f64::from(f[6]).powi(2)).sum();
+    Following {
+        frames: all.len(),
+        frame_ms: [rank(column(0), 0.5), rank(column(0), 0.95)],
+        stages_ms: [1, 2, 3, 4].map(|k| rank(column(k), 0.5)),
+        start_ms: rank(cases.iter().filter_map(|c| c.start).collect(), 0.5),
+        off_mm: all.iter().map(|f| f64::from(f[5])).sum::<f64>() / n * 1e3,
+        joints_mm: (squares / n).sqrt() * 1e3,
+    }
+}
+
+fn summed(cases: &[Case], options: &Options) -> Study {
+    let right = |c: &&Case| c.woman.is_some_and(|w| (w > 0.5) == (c.sex == Sex::Female));
+    let found = cases.iter().filter(|c| c.woman.is_some()).count();
+    Study {
+        sensor: options.sensor.name(),
+        people: cases.len(),
+        frames: options.frames,
+        lost: cases.len() - found,
+        sex_right: cases.iter().filter(right).count() as f64 / found.max(1) as f64,
+        following: following(cases),
+        fit: agreements(cases, |c| &c.fit),
+        sections: agreements(cases, |c| &c.sections),
+    }
+}
+
+fn agreements(cases: &[Case], way: impl Fn(&Case) -> &Outcome) -> Vec<Agreement> {
+    let all = TAKEN.iter().enumerate().map(|(i, &(measure, _, limit))| {
+        let pairs: Vec<(Estimate, f32)> = cases.iter().filter_map(|c| Some((way(c)[i]?, c.truth[i]))).collect();
+        agreement(measure, f64::from(limit) * 1e3, &pairs)
+    });
+    all.filter(|a| a.taken > 0).collect()
+}
+
+fn agreement(measure: &'static str, limit_mm: f64, pairs: &[(Estimate, f32)]) -> Agreement {
+    let n = pairs.len().max(1) as f64;
+    let errors: Vec<f64> = pairs.iter().map(|(e, t)| f64::from(e.value - t) * 1e3).collect();
+    let bias = errors.iter().sum::<f64>() / n;
+    let variance = errors.iter().map(|e| (e - bias).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+    let half = 1.96 * (variance / n).sqrt();
+    let mut absolute: Vec<f64> = errors.iter().map(|e| e.abs()).collect();
+    absolute.sort_by(f64::total_cmp);
+    let relative: f64 = pairs.iter().zip(&errors).map(|((_, t), e)| e.abs() / f64::from(*t) * 0.1).sum();
+    let within = pairs.iter().filter(|(e, t)| (e.value - t).abs() <= 2.0 * e.sigma).count();
+    let last = absolute.len().saturating_sub(1);
+    Agreement {
+        measure,
+        taken: pairs.len(),
+        limit_mm,
+        bias_mm: bias,
+        interval_mm: [bias - half, bias + half],
+        mean_absolute_mm: absolute.iter().sum::<f64>() / n,
+        mean_absolute_percent: relative / n,
+        p95_mm: absolute.get((absolute.len() * 19 / 20).min(last)).copied().unwrap_or(0.0),
+        sigma_mm: pairs.iter().map(|(e, _)| f64::from(e.sigma) * 1e3).sum::<f64>() / n,
+        within_two_sigma: within as f64 / n,
+        pass: pairs.len() > 1 && bias.abs() + half <= limit_mm,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_interval_is_of_the_mean_and_a_pass_needs_all_of_it_inside() {
+        let pairs: Vec<(Estimate, f32)> =
+            (0..100).map(|i| (Estimate::new(1.0 + 0.001 * (i % 5) as f32, 0.002), 1.0)).collect();
+        let a = agreement("stature", 4.0, &pairs);
+        assert!((a.bias_mm - 2.0).abs() < 1e-3 && (a.mean_absolute_mm - 2.0).abs() < 1e-3);
+        let half = 1.96 * (2.0f64 * 100.0 / 99.0).sqrt() / 10.0;
+        assert!((a.interval_mm[1] - 2.0 - half).abs() < 1e-3, "{a:?}");
+        assert!(a.pass && !agreement("stature", 2.1, &pairs).pass);
+        assert!((a.within_two_sigma - 1.0).abs() < 1e-9 && (a.p95_mm - 4.0).abs() < 1e-3);
+        assert!(!agreement("stature", 4.0, &[]).pass, "nobody is no agreement");
+    }
+}
