@@ -22,8 +22,8 @@ const SOLVER_TICKS: f64 = 2.0;
 /// What resident memory may grow by (KiB/h); of a run that is shorter than an hour behind its warm-up, all in all.
 const GROWTH_KIB: f64 = 64.0;
 
-/// Shortest time behind the warm-up over which resident memory is judged (h): the system gives and takes pages in pieces that are
-/// large against what an hour may bring. What the allocator hands out is exact and is judged in every run.
+/// Shortest time behind the warm-up over which memory is judged (h): garments differ in size by more than what an hour may bring,
+/// and the system gives pages in larger pieces still. Of a shorter run the figures are told.
 const LEAST_JUDGED_H: f64 = 0.5;
 
 /// Share of the run after which memory is to be flat.
@@ -271,8 +271,8 @@ fn checks(soak: &Soak, accepted: u64) -> Vec<Check> {
     let (memory, faults) = (&soak.memory, &soak.faults);
     let behind = memory.until_h - memory.from_h;
     let most = GROWTH_KIB * behind.max(1.0);
-    let resident = soak.rss_growth_kib.filter(|_| behind >= LEAST_JUDGED_H);
-    let heap = memory.heap_growth_kib_h.map(|g| g * behind);
+    let judged = |growth: Option<f64>| growth.map(|g| g * behind).filter(|_| behind >= LEAST_JUDGED_H);
+    let [heap, resident] = [memory.heap_growth_kib_h, memory.rss_growth_kib_h].map(judged);
     let differs = soak.second_state_hash.as_ref().map(|second| f64::from(u8::from(*second != soak.state_hash)));
     let pipeline = (faults.injected > 0).then_some(soak.recovery_ticks.max as f64);
     vec![
