@@ -18,8 +18,10 @@ mod body;
 mod colliders;
 mod convert;
 mod depth;
+mod doctor;
 mod filters;
 mod gestures;
+mod kiosk;
 mod latency;
 mod measuring;
 mod pareto;
@@ -37,8 +39,10 @@ pub use body::{BodyArgs, Wearer};
 pub use colliders::CollidersArgs;
 pub use convert::{ConvertArgs, KeptDepth};
 pub use depth::DepthArgs;
+pub use doctor::DoctorArgs;
 pub use filters::FiltersArgs;
 pub use gestures::GesturesArgs;
+pub use kiosk::KioskArgs;
 pub use latency::{LatencyArgs, ReplayArgs};
 pub use measuring::MeasuringArgs;
 pub use pareto::ParetoArgs;
@@ -95,6 +99,8 @@ pub enum Command {
     Latency(LatencyArgs),
     /// `toile replay`.
     Replay(ReplayArgs),
+    /// `toile kiosk`.
+    Kiosk(KioskArgs),
     /// `toile plan`.
     Plan(PlanArgs),
     /// `toile soak`.
@@ -162,15 +168,6 @@ pub struct RecordArgs {
     pub quiet: bool,
 }
 
-/// Arguments of `toile doctor`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DoctorArgs {
-    /// The folder whose writing is tried.
-    pub out: PathBuf,
-    /// One JSON object on stdout in place of the table.
-    pub json: bool,
-}
-
 /// Longest session that `record` makes (s); at 30 frames a second this is some hundred megabytes.
 const MAX_RECORD_SECONDS: i64 = 600;
 
@@ -198,7 +195,7 @@ pub fn command() -> clap::Command {
             bake::grammar(),
             body::grammar(),
             run::grammar(),
-            doctor(),
+            doctor::grammar(),
             bench(),
             validate::grammar(),
             pareto::grammar(),
@@ -207,6 +204,7 @@ pub fn command() -> clap::Command {
             plan::grammar(),
             latency::replay_grammar(),
             soak::grammar(),
+            kiosk::grammar(),
             completions(),
         ])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
@@ -274,13 +272,6 @@ fn record() -> clap::Command {
             quiet(),
         ])
         .after_help("Example: make another session and watch it\n  toile record --out other.mcap --seed 7 && toile try-on --session other.mcap")
-}
-
-fn doctor() -> clap::Command {
-    clap::Command::new("doctor")
-        .about("Say what this machine has, and the exact cure for what is missing")
-        .args([path("out", "DIR", "Output folder whose writing is tried").default_value("out"), json()])
-        .after_help("Example: see why a kiosk misses its deadline\n  toile doctor")
 }
 
 fn bench() -> clap::Command {
@@ -372,7 +363,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         }),
         "convert" => Command::Convert(convert::args(matches)?),
         "run" => Command::Run(run::args(matches)?),
-        "doctor" => Command::Doctor(DoctorArgs { out: required(matches, "out")?, json: matches.get_flag("json") }),
+        "doctor" => Command::Doctor(doctor::args(matches)?),
         "bake" => Command::Bake(bake::args(matches)?),
         "body" if matches.get_flag("colliders") => Command::Colliders(colliders::args(matches)?),
         "body" => Command::Body(body::args(matches)?),
@@ -384,6 +375,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         "plan" => Command::Plan(plan::args(matches)?),
         "replay" => Command::Replay(latency::replay_args(matches)?),
         "soak" => Command::Soak(soak::args(matches)?),
+        "kiosk" => Command::Kiosk(kiosk::args(matches)?),
         "completions" => Command::Completions(required(matches, "shell")?),
         other => return Err(AppError::Internal(format!("command `{other}` is in the grammar but leads nowhere"))),
     })
@@ -454,62 +446,4 @@ fn sentence(error: &clap::Error, place: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn parsed(line: &str) -> Result<Command, AppError> {
-        parse(line.split_whitespace().map(OsString::from).collect())
-    }
-
-    #[test]
-    fn the_grammar_is_sound() {
-        command().debug_assert();
-    }
-
-    #[test]
-    fn no_command_is_try_on() {
-        let plain = parsed("toile").unwrap();
-        assert_eq!(plain, parsed("toile try-on").unwrap());
-        let Command::TryOn(args) = plain else { panic!("{plain:?}") };
-        assert_eq!(args.out, PathBuf::from("out"));
-        assert!(args.session.is_none() && args.garments.is_empty() && args.pictures && !args.json);
-        assert_eq!(parsed("toile --json --garment a").unwrap(), parsed("toile try-on --json --garment a").unwrap());
-    }
-
-    #[test]
-    fn flags_may_stand_before_the_command() {
-        assert_eq!(parsed("toile --json doctor").unwrap(), parsed("toile doctor --json").unwrap());
-        assert_eq!(parsed("toile -q --json measure f").unwrap(), parsed("toile measure -q --json f").unwrap());
-    }
-
-    #[test]
-    fn garments_keep_their_order() {
-        let Command::TryOn(args) = parsed("toile --garment b --garment a --size 40").unwrap() else { panic!() };
-        assert_eq!(args.garments, ["b", "a"]);
-        assert_eq!(args.size.as_deref(), Some("40"));
-    }
-
-    #[test]
-    fn every_help_ends_with_an_example() {
-        fn check(command: &clap::Command) {
-            let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
-            assert!(after.starts_with("Example: ") && after.contains("\n  toile"), "{}", command.get_name());
-            command.get_subcommands().for_each(check);
-        }
-        check(&command());
-    }
-
-    #[test]
-    fn a_wrong_line_gives_one_sentence_with_its_cure() {
-        let lines =
-            ["toile --garmet x", "toile mesure", "toile bench", "toile measure", "toile record --out f --seed x"];
-        for line in lines {
-            let error = parsed(line).unwrap_err();
-            assert!(matches!(error, AppError::Usage(_)), "{line}");
-            let said = error.to_string();
-            assert!(said.contains("--help`") && !said.contains('\n'), "{said}");
-        }
-        let said = parsed("toile --garmet x").unwrap_err().to_string();
-        assert!(said.contains("--garmet") && said.contains("'--garment'"), "{said}");
-    }
-}
+mod tests;

@@ -14,6 +14,8 @@ use crate::exit::AppError;
 use crate::report::Document;
 use crate::terminal::{self, Paint, Tone};
 
+pub(crate) use rights::may_lock_all;
+
 /// How one thing stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -112,6 +114,7 @@ fn examine(out: &Path) -> DoctorReport {
         processor::clock_source(),
         processor::clock_cost(),
         rights::priority(),
+        rights::placement(),
         rights::locked_memory(),
         rights::kernel(),
         surroundings::gpu(&adapters),

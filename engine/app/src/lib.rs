@@ -19,6 +19,7 @@ pub mod exit;
 pub mod fit;
 pub mod gestures;
 pub mod heap;
+pub mod kiosk;
 pub mod latency;
 pub mod machine;
 pub mod measure;
@@ -97,6 +98,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Plan(args) => plan::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Soak(args) => soak::run(args),
+        Command::Kiosk(args) => kiosk::run(args),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }

@@ -47,10 +47,15 @@ pub fn believable(session: &Session) -> Vec<Joints> {
 /// somebody is walking in, and legs are guesses.
 const WALK_IN_NS: u64 = SECOND_NS / 2;
 
+/// Whether somebody is seen: the hips are, without which nobody can be dressed.
+pub fn is_seen(frame: &Joints) -> bool {
+    const HIPS: [Joint; 3] = [Joint::Pelvis, Joint::LeftHip, Joint::RightHip];
+    HIPS.iter().all(|&j| frame.at(j).is_believed())
+}
+
 /// The frame at which a shopper can be dressed: the first, unless the hips are not seen in it.
 pub fn stands_from(track: &[Joints]) -> usize {
-    const HIPS: [Joint; 3] = [Joint::Pelvis, Joint::LeftHip, Joint::RightHip];
-    let seen = |frame: &Joints| HIPS.iter().all(|&j| frame.at(j).is_believed());
+    let seen = is_seen;
     match track.iter().position(seen) {
         None | Some(0) => 0,
         Some(first) => {

@@ -151,7 +151,7 @@ impl Kind {
 /// What shows that a fault is over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sight {
-    /// A step in time that knows a frame of after the fault, whose joints are within [`super::watch::FOLLOWS_M`] of where
+    /// A step in time that knows a frame of after the fault, whose joints are within `FOLLOWS_M` (watch.rs) of where
     /// the shopper is.
     Following,
     /// A step published in time that was due after it.

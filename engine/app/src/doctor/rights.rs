@@ -1,5 +1,7 @@
 //! What the kernel lets this process do: real-time priority, locked memory.
 
+use toile_engine::pace::roles::{self, Placement, Role};
+
 use super::{Check, field, kernel_file};
 
 /// `CAP_SYS_NICE`, real-time priority, in the capability masks of the kernel.
@@ -8,8 +10,8 @@ const CAP_SYS_NICE: u32 = 23;
 /// `CAP_IPC_LOCK`, locked memory without limit, in the same masks.
 const CAP_IPC_LOCK: u32 = 14;
 
-/// The priority that a kiosk's physics thread asks for: above the interrupts' 50, below the watchdogs' 99.
-const PRIORITY_WANTED: u64 = 80;
+/// The highest priority that the loop's threads ask for: the physics', below the interrupts' 50.
+const PRIORITY_WANTED: u64 = 40;
 
 /// Locked memory that a kiosk asks for (MiB), so that no step waits for a page.
 const LOCKED_WANTED_MIB: u64 = 1024;
@@ -39,6 +41,29 @@ pub fn priority() -> Check {
     }
 }
 
+/// What the physics thread gets here: tried on a thread that ends at once.
+pub fn placement() -> Check {
+    match std::thread::Builder::new().spawn(|| roles::settle(Role::Physics)).map(|thread| thread.join()) {
+        Ok(Ok(placement)) => placed(&placement),
+        _ => Check::unknown(PLACEMENT, PLACEMENT_FOR),
+    }
+}
+
+const PLACEMENT: &str = "pinning";
+const PLACEMENT_FOR: &str = "a kiosk's deadlines";
+
+fn placed(placement: &Placement) -> Check {
+    let core = placement.core.map_or_else(|| "not pinned".to_owned(), |core| format!("pinned to core {core}"));
+    let priority = placement.priority.map_or_else(|| "no real-time priority".to_owned(), |p| format!("priority {p}"));
+    let found = format!("physics {core}, {priority}");
+    // Each sentence ends with its cure.
+    let cures: Vec<&str> = placement.refused.iter().filter_map(|r| r.rsplit_once("; ")).map(|(_, cure)| cure).collect();
+    if cures.is_empty() {
+        return Check::ok(PLACEMENT, PLACEMENT_FOR, found);
+    }
+    Check::missing(PLACEMENT, PLACEMENT_FOR, found, cures.join("; "))
+}
+
 pub fn locked_memory() -> Check {
     let (name, use_for) = ("locked memory", "a kiosk's deadlines");
     if has_capability(&kernel_file("/proc/self/status").unwrap_or_default(), CAP_IPC_LOCK) {
@@ -53,6 +78,13 @@ pub fn locked_memory() -> Check {
     }
     let cure = format!("{}, then log in again", limits_line("memlock", LOCKED_WANTED_MIB * 1024));
     Check::missing(name, use_for, found, cure)
+}
+
+/// Whether memory may be locked without limit.
+pub fn may_lock_all() -> bool {
+    let limits = kernel_file("/proc/self/limits").unwrap_or_default();
+    has_capability(&kernel_file("/proc/self/status").unwrap_or_default(), CAP_IPC_LOCK)
+        || limit(&limits, "Max locked memory").is_some_and(|(soft, _)| soft == u64::MAX)
 }
 
 pub fn kernel() -> Check {
@@ -115,6 +147,22 @@ mod tests {
     const LIMITS_TEXT: &str = "Limit                     Soft Limit           Hard Limit           Units     \n\
         Max locked memory         8388608              unlimited            bytes     \n\
         Max realtime priority     10                   95                   \n";
+
+    #[test]
+    fn the_priority_that_is_looked_for_is_the_one_that_is_asked_for() {
+        assert_eq!(Role::Physics.priority().map(u64::from), Some(PRIORITY_WANTED));
+    }
+
+    #[test]
+    fn a_place_that_was_refused_is_told_with_its_cure() {
+        let all = Placement { role: Role::Physics, core: Some(1), priority: Some(40), refused: Vec::new() };
+        let fine = placed(&all);
+        assert_eq!((fine.found.as_str(), fine.cure), ("physics pinned to core 1, priority 40", None));
+        let refused = vec!["the physics thread has no real-time priority (no; reason); raise the limit".to_owned()];
+        let check = placed(&Placement { priority: None, refused, ..all });
+        assert_eq!(check.found, "physics pinned to core 1, no real-time priority");
+        assert_eq!(check.cure.as_deref(), Some("raise the limit"));
+    }
 
     #[test]
     fn limits_are_read_by_row() {

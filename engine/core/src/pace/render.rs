@@ -85,6 +85,12 @@ impl<E: Eye, C: Clock> Render<E, C> {
         Self { schedule, ..self }
     }
 
+    /// Looks at another scene's snapshots from now on; gives back the end that it looked at, so that it is dropped
+    /// elsewhere.
+    pub fn watch(&mut self, reader: Reader<Snapshot>) -> Reader<Snapshot> {
+        std::mem::replace(&mut self.reader, reader)
+    }
+
     fn take(&mut self) {
         let begun = self.clock.now_ns();
         if let Some(changes) = &mut self.changes {

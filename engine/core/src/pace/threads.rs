@@ -27,7 +27,7 @@ const LONGEST_START: Duration = Duration::from_secs(5);
 pub struct Stop(Arc<AtomicBool>);
 
 impl Stop {
-    /// Ends all lives within [`LONGEST_SLEEP_NS`].
+    /// Ends all lives within 50 ms.
     pub fn now(&self) {
         self.0.store(true, Relaxed);
     }

@@ -1,0 +1,58 @@
+//! Laws of the command line.
+
+use super::*;
+
+fn parsed(line: &str) -> Result<Command, AppError> {
+    parse(line.split_whitespace().map(OsString::from).collect())
+}
+
+#[test]
+fn the_grammar_is_sound() {
+    command().debug_assert();
+}
+
+#[test]
+fn no_command_is_try_on() {
+    let plain = parsed("toile").unwrap();
+    assert_eq!(plain, parsed("toile try-on").unwrap());
+    let Command::TryOn(args) = plain else { panic!("{plain:?}") };
+    assert_eq!(args.out, PathBuf::from("out"));
+    assert!(args.session.is_none() && args.garments.is_empty() && args.pictures && !args.json);
+    assert_eq!(parsed("toile --json --garment a").unwrap(), parsed("toile try-on --json --garment a").unwrap());
+}
+
+#[test]
+fn flags_may_stand_before_the_command() {
+    assert_eq!(parsed("toile --json doctor").unwrap(), parsed("toile doctor --json").unwrap());
+    assert_eq!(parsed("toile -q --json measure f").unwrap(), parsed("toile measure -q --json f").unwrap());
+}
+
+#[test]
+fn garments_keep_their_order() {
+    let Command::TryOn(args) = parsed("toile --garment b --garment a --size 40").unwrap() else { panic!() };
+    assert_eq!(args.garments, ["b", "a"]);
+    assert_eq!(args.size.as_deref(), Some("40"));
+}
+
+#[test]
+fn every_help_ends_with_an_example() {
+    fn check(command: &clap::Command) {
+        let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+        assert!(after.starts_with("Example: ") && after.contains("\n  toile"), "{}", command.get_name());
+        command.get_subcommands().for_each(check);
+    }
+    check(&command());
+}
+
+#[test]
+fn a_wrong_line_gives_one_sentence_with_its_cure() {
+    let lines = ["toile --garmet x", "toile mesure", "toile bench", "toile measure", "toile record --out f --seed x"];
+    for line in lines {
+        let error = parsed(line).unwrap_err();
+        assert!(matches!(error, AppError::Usage(_)), "{line}");
+        let said = error.to_string();
+        assert!(said.contains("--help`") && !said.contains('\n'), "{said}");
+    }
+    let said = parsed("toile --garmet x").unwrap_err().to_string();
+    assert!(said.contains("--garmet") && said.contains("'--garment'"), "{said}");
+}

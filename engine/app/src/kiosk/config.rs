@@ -1,0 +1,281 @@
+//! The configuration: TOML whose every key is known, the only state that a kiosk has.
+
+use std::fs;
+use std::net::SocketAddr;
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use toile_engine::cloth::Quality;
+use toile_engine::crew::SHARES;
+
+use super::keys;
+use super::session::Rules;
+use crate::exit::AppError;
+use crate::outfit::Wish;
+
+/// The default configuration with all keys explained.
+pub const EXAMPLE: &str = include_str!("../../systemd/kiosk.toml");
+
+/// Largest configuration that is read (bytes).
+const MOST_BYTES: u64 = 1 << 20;
+
+/// Everything that can be set.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// What is worn.
+    pub wear: Wear,
+    /// Where frames come from.
+    pub sensor: Sensor,
+    /// How long what has to last.
+    pub session: Times,
+    /// The health line.
+    pub health: Health,
+    /// What is asked of the machine.
+    pub machine: Wanted,
+    /// Figures for Prometheus.
+    pub metrics: Metrics,
+}
+
+/// What is worn.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Wear {
+    /// Garments of the wardrobe, inner first.
+    pub garments: Vec<String>,
+    /// A size for everybody.
+    pub size: Option<String>,
+    /// Tested settings of the cloth.
+    pub quality: String,
+}
+
+/// Where frames come from.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Sensor {
+    /// The kind of sensor.
+    pub source: Source,
+    /// The recording; none is the embedded one.
+    pub session: Option<PathBuf>,
+    /// Time between two rounds of a recording (s).
+    pub pause_s: f64,
+    /// Where VMC messages arrive.
+    pub vmc: SocketAddr,
+}
+
+/// A kind of sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Source {
+    /// A recording, played.
+    Session,
+    /// Virtual Motion Capture over UDP.
+    Vmc,
+}
+
+/// How long what has to last (s).
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Times {
+    /// Being seen until one has stepped in.
+    pub step_in_s: f64,
+    /// Measuring.
+    pub measure_s: f64,
+    /// Being unseen until one has left.
+    pub step_out_s: f64,
+    /// From then until everything is wiped.
+    pub wipe_s: f64,
+}
+
+/// The health line.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Health {
+    /// Time between two (s); 0 is never.
+    pub every_s: f64,
+}
+
+/// What is asked of the machine.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Wanted {
+    /// Workers of a step; none is as many as there are cores.
+    pub workers: Option<usize>,
+    /// Whether all memory is kept resident.
+    pub lock_memory: bool,
+}
+
+/// Figures for Prometheus.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Metrics {
+    /// Port on 127.0.0.1.
+    pub port: Option<u16>,
+}
+
+impl Default for Wear {
+    fn default() -> Self {
+        Self { garments: vec!["sun-dress".into()], size: None, quality: Quality::default().name().into() }
+    }
+}
+
+impl Default for Sensor {
+    fn default() -> Self {
+        let vmc = SocketAddr::from(([127, 0, 0, 1], toile_sensors::source::vmc::PORT));
+        Self { source: Source::Session, session: None, pause_s: 12.0, vmc }
+    }
+}
+
+impl Default for Times {
+    fn default() -> Self {
+        Self { step_in_s: 0.5, measure_s: 1.0, step_out_s: 2.0, wipe_s: 5.0 }
+    }
+}
+
+impl Default for Health {
+    fn default() -> Self {
+        Self { every_s: 60.0 }
+    }
+}
+
+impl Default for Wanted {
+    fn default() -> Self {
+        Self { workers: None, lock_memory: true }
+    }
+}
+
+impl Config {
+    /// Reads a file, or takes the defaults.
+    ///
+    /// # Errors
+    /// A file that cannot be read, an unknown key, a value that cannot be; each names the line.
+    pub fn open(path: Option<&Path>) -> Result<Self, AppError> {
+        let Some(path) = path else { return Ok(Self::default()) };
+        let file = path.display().to_string();
+        let refused = |e: std::io::Error| {
+            AppError::Input(format!(
+                "{file} cannot be read ({e}); name a file like `toile kiosk --print-config` prints"
+            ))
+        };
+        let bytes = fs::metadata(path).map_err(refused)?.len();
+        if bytes > MOST_BYTES {
+            return Err(AppError::Input(format!("{file} has {bytes} bytes, more than {MOST_BYTES}; shorten it")));
+        }
+        Self::parse(&file, &fs::read_to_string(path).map_err(refused)?)
+    }
+
+    /// Reads a text; `file` is its name in errors.
+    ///
+    /// # Errors
+    /// As [`Config::open`].
+    pub fn parse(file: &str, text: &str) -> Result<Self, AppError> {
+        keys::check(file, text)?;
+        let config: Self = toml::from_str(text).map_err(|e| keys::told(file, text, &e))?;
+        match config.fault() {
+            Some(fault) => Err(AppError::Input(format!("{file}: {fault}"))),
+            None => Ok(config),
+        }
+    }
+
+    /// The first value that cannot be, with the cure.
+    fn fault(&self) -> Option<String> {
+        let times = [
+            ("sensor.pause_s", self.sensor.pause_s, 0.0..=86_400.0),
+            ("session.step_in_s", self.session.step_in_s, 0.0..=60.0),
+            ("session.measure_s", self.session.measure_s, 0.5..=60.0),
+            ("session.step_out_s", self.session.step_out_s, 0.1..=600.0),
+            ("session.wipe_s", self.session.wipe_s, 0.0..=600.0),
+            ("health.every_s", self.health.every_s, 0.0..=86_400.0),
+        ];
+        let outside = |(key, value, range): &(&str, f64, RangeInclusive<f64>)| {
+            let (least, most) = (range.start(), range.end());
+            (!range.contains(value))
+                .then(|| format!("{key} = {value} is not within {least} .. {most} seconds; correct it"))
+        };
+        let workers = self.machine.workers.filter(|w| !(1..=SHARES).contains(w));
+        times
+            .iter()
+            .find_map(outside)
+            .or_else(|| workers.map(|w| format!("machine.workers = {w} is not 1 or {SHARES}; correct it")))
+            .or_else(|| self.wear.garments.is_empty().then(|| "wear.garments is empty; name a garment".into()))
+            .or_else(|| self.wear.quality.parse::<Quality>().err().map(|e| format!("wear.quality: {e}")))
+    }
+
+    /// What is worn.
+    pub fn wish(&self) -> Wish {
+        Wish {
+            garments: self.wear.garments.clone(),
+            size: self.wear.size.clone(),
+            quality: self.wear.quality.parse().unwrap_or_default(),
+        }
+    }
+
+    /// The rules of a session.
+    pub fn rules(&self) -> Rules {
+        let times = &self.session;
+        Rules { step_in_ns: ns(times.step_in_s), step_out_ns: ns(times.step_out_s), wipe_ns: ns(times.wipe_s) }
+    }
+}
+
+/// Seconds of the configuration, none of which is negative, as the loop counts them.
+pub fn ns(seconds: f64) -> u64 {
+    (seconds * 1e9) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_example_is_the_default_and_explains_every_key() {
+        assert_eq!(Config::parse("kiosk.toml", EXAMPLE).unwrap(), Config::default());
+        for (table, names) in keys::KEYS {
+            assert!(EXAMPLE.contains(&format!("\n[{table}]\n")), "{table}");
+            for name in names {
+                assert!(
+                    EXAMPLE.lines().any(|l| l.trim_start_matches("# ").starts_with(&format!("{name} = "))),
+                    "{name}"
+                );
+            }
+        }
+        // Every key that is commented out works once it is not.
+        let is_key = |line: &str| line.starts_with("# ") && line.contains(" = ");
+        let all = EXAMPLE.lines().map(|l| if is_key(l) { &l[2..] } else { l }).collect::<Vec<_>>().join("\n");
+        let all = Config::parse("all.toml", &all).unwrap();
+        assert_eq!(
+            (all.wear.size.as_deref(), all.machine.workers, all.metrics.port),
+            (Some("40"), Some(2), Some(9520))
+        );
+        assert!(all.sensor.session.is_some());
+    }
+
+    #[test]
+    fn an_empty_file_is_the_default() {
+        assert_eq!(Config::parse("empty.toml", "").unwrap(), Config::default());
+    }
+
+    #[test]
+    fn values_that_cannot_be_are_named_with_their_key() {
+        for (text, key) in [
+            ("[session]\nwipe_s = -1.0", "session.wipe_s"),
+            ("[session]\nmeasure_s = nan", "session.measure_s"),
+            ("[machine]\nworkers = 3", "machine.workers"),
+            ("[wear]\ngarments = []", "wear.garments"),
+            ("[wear]\nquality = \"best\"", "wear.quality"),
+        ] {
+            let said = Config::parse("k.toml", text).unwrap_err().to_string();
+            assert!(said.starts_with("k.toml: ") && said.contains(key), "{said}");
+        }
+    }
+
+    #[test]
+    fn a_value_of_another_kind_is_named_with_its_line() {
+        let said = Config::parse("k.toml", "[wear]\nquality = 3").unwrap_err().to_string();
+        assert!(said.starts_with("k.toml:2: ") && !said.contains('\n'), "{said}");
+        let said = Config::parse("k.toml", "\n[sensor]\nvmc = \"here\"").unwrap_err().to_string();
+        assert!(said.starts_with("k.toml:3: "), "{said}");
+        let said = Config::parse("k.toml", "[wear\n").unwrap_err().to_string();
+        assert!(said.starts_with("k.toml:1: "), "{said}");
+    }
+}

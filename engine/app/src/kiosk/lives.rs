@@ -1,0 +1,166 @@
+//! The loop's three lives with a stage between them, and the ends of their queues that the service holds.
+
+use std::io;
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use glam::Vec3;
+use toile_engine::clock::{Clock, RealClock};
+use toile_engine::frame::Snapshot;
+use toile_engine::meter::PERIOD_NS;
+use toile_engine::pace::event::{EVENTS, EVENTS_NAME, Event, NoAccount};
+use toile_engine::pace::physics::{Outlets, Physics};
+use toile_engine::pace::queue::{Capacity, Receiver, bounded};
+use toile_engine::pace::render::{Eye, Render};
+use toile_engine::pace::roles::{Placement, Role};
+use toile_engine::pace::sense::{Seen, Sense};
+use toile_engine::pace::threads::{self, Life, Stop};
+use toile_engine::relay::{Reader, Relay};
+use toile_sensors::frame::Joints;
+
+use super::change::Doors;
+use super::source::{FRAMES, FRAMES_NAME, Feed, Tapped};
+use super::stage::{Act, BEATS, BEATS_NAME, Beat, CHANGES, CHANGES_NAME, Stage, Staging, Watching, Wings};
+use super::watchdog::Pulse;
+
+/// Longest that lives are waited for when they are to end: five of their longest sleeps and a step.
+const LONGEST_END: Duration = Duration::from_millis(300);
+
+/// Who is there when the loop begins.
+pub struct Cast<S, E> {
+    /// The mannequin.
+    pub first: Act<S>,
+    /// Where its snapshots come out.
+    pub reader: Reader<Snapshot>,
+    /// Who makes pictures of them.
+    pub eye: E,
+    /// What the sensor reads.
+    pub feed: Feed,
+}
+
+/// The lives on their threads.
+pub struct Lives<S, E> {
+    clock: RealClock,
+    stop: Stop,
+    sensor: Life<Sense<Tapped, RealClock>>,
+    physics: Life<Physics<Stage<S>, RealClock, NoAccount>>,
+    render: Life<Watching<E>>,
+    /// What happened.
+    pub events: Receiver<Event>,
+    /// What each step came to.
+    pub beats: Receiver<Beat>,
+    /// What the sensor saw, unfiltered.
+    pub frames: Receiver<Joints>,
+    /// What the watchdog looks at.
+    pub pulse: Arc<Pulse>,
+}
+
+/// The lives, when they have ended; none is one that did not end in time.
+pub struct Ended<S, E> {
+    /// The sensor's.
+    pub sensor: Option<Sense<Tapped, RealClock>>,
+    /// The physics'.
+    pub physics: Option<Physics<Stage<S>, RealClock, NoAccount>>,
+    /// The render's.
+    pub render: Option<Render<E, RealClock>>,
+    /// How full the queues were.
+    pub capacities: [Capacity; 3],
+}
+
+impl<S: Staging + Send + 'static, E: Eye + 'static> Lives<S, E> {
+    /// Starts them. Also gives the service's ends of the stage.
+    ///
+    /// # Errors
+    /// Where the system gives no thread.
+    pub fn start(cast: Cast<S, E>, clock: RealClock) -> io::Result<(Self, Doors<S>)> {
+        let begin = clock.now_ns() + 2 * PERIOD_NS;
+        let pulse = Arc::new(Pulse::default());
+        let (tell, events) = bounded(EVENTS_NAME, EVENTS);
+        let (beat, beats) = bounded(BEATS_NAME, BEATS);
+        let (tap, frames) = bounded(FRAMES_NAME, FRAMES);
+        let ((call, next), (gone, left)) = (bounded(CHANGES_NAME, CHANGES), bounded(CHANGES_NAME, CHANGES));
+        let ((show, showing), (was, shown)) = (bounded(CHANGES_NAME, CHANGES), bounded(CHANGES_NAME, CHANGES));
+        let Relay { writer, reader: seen } = Relay::new(&Seen::default());
+        let sense = Sense::new(Tapped::new(cast.feed, tap), clock, writer);
+        let stage = Stage::new(cast.first, Wings { next, gone, beats: beat, pulse: pulse.clone() });
+        let outlets = Outlets { events: tell, tape: None };
+        let physics = Physics::new(stage, clock, begin, seen, outlets, NoAccount);
+        let render = Render::new(cast.eye, clock, begin, cast.reader);
+        let watching = Watching::new(render, showing, was, pulse.clone());
+        let stop = Stop::default();
+        let lives = Self {
+            sensor: threads::start(Role::Sensor, sense, clock, &stop)?,
+            physics: threads::start(Role::Physics, physics, clock, &stop)?,
+            render: threads::start(Role::Render, watching, clock, &stop)?,
+            clock,
+            stop,
+            events,
+            beats,
+            frames,
+            pulse,
+        };
+        Ok((lives, Doors { call, left, show, shown }))
+    }
+
+    /// The places that the threads got. Once.
+    pub fn placements(&self) -> Vec<Placement> {
+        [self.sensor.placement(), self.physics.placement(), self.render.placement()].into_iter().flatten().collect()
+    }
+
+    /// The time on the loop's clock (ns).
+    pub fn now_ns(&self) -> u64 {
+        self.clock.now_ns()
+    }
+
+    /// The first life that has ended, which none does by itself.
+    pub fn over(&self) -> Option<Role> {
+        let ended = [
+            (Role::Sensor, self.sensor.is_over()),
+            (Role::Physics, self.physics.is_over()),
+            (Role::Render, self.render.is_over()),
+        ];
+        ended.into_iter().find_map(|(role, over)| over.then_some(role))
+    }
+
+    /// Ends them, and waits for a bounded time: one that hangs is left to the end of the program.
+    pub fn end(self) -> Ended<S, E> {
+        self.stop.now();
+        let end = Instant::now() + LONGEST_END;
+        while Instant::now() < end && !(self.sensor.is_over() && self.physics.is_over() && self.render.is_over()) {
+            thread::sleep(Duration::from_millis(1));
+        }
+        Ended {
+            sensor: ended(self.sensor),
+            physics: ended(self.physics),
+            render: ended(self.render).map(|watching| watching.render),
+            capacities: [self.events.capacity(), self.beats.capacity(), self.frames.capacity()],
+        }
+    }
+}
+
+fn ended<T>(life: Life<T>) -> Option<T> {
+    if life.is_over() { life.join() } else { None }
+}
+
+/// A display that is not there: takes what it would be handed, the body and the garments in the order of their meshes.
+#[derive(Debug, Default)]
+pub struct Headless {
+    body: [Vec<Vec3>; 2],
+    garments: Vec<Vec<Vec3>>,
+}
+
+impl Eye for Headless {
+    fn look(&mut self, snapshot: &Snapshot) {
+        let [positions, normals] = &mut self.body;
+        for column in [&mut *positions, &mut *normals] {
+            column.resize(snapshot.skin.vertices(), Vec3::ZERO);
+        }
+        snapshot.skin.read(positions, normals);
+        self.garments.resize_with(snapshot.garments.len(), Vec::new);
+        for (to, from) in self.garments.iter_mut().zip(&snapshot.garments) {
+            to.clear();
+            to.extend_from_slice(from);
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Figures for Prometheus, on the loopback interface alone: one thread, one connection at a time, two kilobytes a
+//! question, a second an answer.
+
+use std::fmt::Write as _;
+use std::io::{self, Read, Write};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use toile_engine::relay::Reader;
+
+use super::session::State;
+use super::vitals::Vitals;
+
+/// Longest question (bytes).
+const MOST_BYTES: usize = 2048;
+
+/// Longest time that one who asks may take.
+const LONGEST: Duration = Duration::from_secs(1);
+
+/// Answers on this port of 127.0.0.1 (0 is any that is free) for as long as the program runs; gives where.
+///
+/// # Errors
+/// Where the port is taken, or the system gives no thread.
+pub fn serve(port: u16, mut vitals: Reader<Vitals>) -> io::Result<SocketAddr> {
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
+    let address = listener.local_addr()?;
+    let work = move || {
+        for stream in listener.incoming().flatten() {
+            // One who goes away before the answer has no use for it.
+            let _ = answer(stream, vitals.latest());
+        }
+    };
+    thread::Builder::new().name("toile-metrics".into()).spawn(work)?;
+    Ok(address)
+}
+
+fn answer(mut stream: TcpStream, vitals: &Vitals) -> io::Result<()> {
+    stream.set_write_timeout(Some(LONGEST))?;
+    let question = question(&mut stream)?;
+    let mut words = question.split(|b| *b == b' ');
+    let (status, body) = match (words.next(), words.next()) {
+        (Some(b"GET"), Some(b"/metrics")) => ("200 OK", text(vitals)),
+        (Some(b"GET"), _) => ("404 Not Found", "look at /metrics\n".to_owned()),
+        _ => ("405 Method Not Allowed", "only GET is answered\n".to_owned()),
+    };
+    let length = body.len();
+    let head = format!(
+        "HTTP/1.1 {status}\r\nContent-Type: text/plain; version=0.0.4; charset=utf-8\r\nContent-Length: {length}\r\n\
+         Connection: close\r\n\r\n"
+    );
+    stream.write_all(head.as_bytes())?;
+    stream.write_all(body.as_bytes())
+}
+
+/// Reads until the empty line, for a bounded time and length.
+fn question(stream: &mut TcpStream) -> io::Result<Vec<u8>> {
+    let end = Instant::now() + LONGEST;
+    let mut bytes = Vec::with_capacity(MOST_BYTES);
+    while !bytes.windows(4).any(|w| w == b"\r\n\r\n") {
+        let left = end.saturating_duration_since(Instant::now());
+        if left.is_zero() || bytes.len() >= MOST_BYTES {
+            return Err(io::ErrorKind::InvalidData.into());
+        }
+        stream.set_read_timeout(Some(left))?;
+        let mut some = [0; 512];
+        match stream.read(&mut some)? {
+            0 => return Err(io::ErrorKind::UnexpectedEof.into()),
+            n => bytes.extend_from_slice(&some[..n]),
+        }
+    }
+    Ok(bytes)
+}
+
+/// The figures in Prometheus' text format.
+fn text(vitals: &Vitals) -> String {
+    let seconds = |ns: u64| ns as f64 * 1e-9;
+    let rows: [(&str, &str, &str, f64); 9] = [
+        ("uptime_seconds", "gauge", "Time since the loop began.", seconds(vitals.uptime_ns)),
+        ("steps_total", "counter", "Physics steps taken.", vitals.steps as f64),
+        (
+            "step_p999_seconds",
+            "gauge",
+            "99.9 % of the steps since the last health line took no longer.",
+            vitals.step_p999_us * 1e-6,
+        ),
+        ("deadline_misses_total", "counter", "Steps that were late or dropped.", vitals.misses as f64),
+        ("rung", "gauge", "Quality given up: place in the governor's ladder.", f64::from(vitals.rung)),
+        ("nonfinite_total", "counter", "Steps rolled back because of a number that is none.", vitals.nonfinite as f64),
+        ("sessions_total", "counter", "Shoppers who stepped in.", vitals.sessions as f64),
+        ("pictures_total", "counter", "Pictures taken.", vitals.pictures as f64),
+        ("sensor_lost_total", "counter", "Times that the sensor was lost.", vitals.sensor_lost as f64),
+    ];
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    for (name, kind, help, value) in rows {
+        let _ = writeln!(text, "# HELP toile_{name} {help}\n# TYPE toile_{name} {kind}\ntoile_{name} {value}");
+    }
+    let _ = writeln!(text, "# HELP toile_state Where the session is.\n# TYPE toile_state gauge");
+    for state in State::ALL {
+        let _ = writeln!(text, "toile_state{{state=\"{}\"}} {}", state.name(), u8::from(state == vitals.state));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toile_engine::relay::Relay;
+
+    fn ask(address: SocketAddr, question: &[u8]) -> String {
+        let mut stream = TcpStream::connect(address).unwrap();
+        stream.write_all(question).unwrap();
+        let mut said = Vec::new();
+        // One who is not answered is hung up on.
+        let _ = stream.read_to_end(&mut said);
+        String::from_utf8(said).unwrap()
+    }
+
+    #[test]
+    fn figures_are_told_to_whoever_asks_on_loopback_and_nonsense_is_not_answered() {
+        let Relay { mut writer, reader } = Relay::new(&Vitals::default());
+        let address = serve(0, reader).unwrap();
+        assert!(address.ip().is_loopback());
+        writer.publish(Vitals { steps: 432_000, step_p999_us: 2_500.0, state: State::TryOn, ..Vitals::default() });
+        let said = ask(address, b"GET /metrics HTTP/1.1\r\nHost: x\r\n\r\n");
+        let (head, body) = said.split_once("\r\n\r\n").unwrap();
+        assert!(head.starts_with("HTTP/1.1 200 OK") && head.contains(&format!("Content-Length: {}", body.len())));
+        for line in ["toile_steps_total 432000", "toile_step_p999_seconds 0.0025", "toile_state{state=\"try-on\"} 1"] {
+            assert!(body.lines().any(|l| l == line), "{line}: {body}");
+        }
+        let is_metric = |line: &str| line.rsplit_once(' ').is_some_and(|(_, value)| value.parse::<f64>().is_ok());
+        assert!(body.lines().all(|l| l.starts_with("# ") || is_metric(l)), "{body}");
+        assert!(ask(address, b"GET / HTTP/1.1\r\n\r\n").starts_with("HTTP/1.1 404"));
+        assert!(ask(address, b"POST /metrics HTTP/1.1\r\n\r\n").starts_with("HTTP/1.1 405"));
+        assert_eq!(ask(address, &[b'x'; 3 * MOST_BYTES]), "", "too long");
+        // One who says nothing holds the others up for a second and no longer.
+        let silent = TcpStream::connect(address).unwrap();
+        let begun = Instant::now();
+        assert!(ask(address, b"GET /metrics HTTP/1.1\r\n\r\n").starts_with("HTTP/1.1 200"));
+        assert!(begun.elapsed() < 5 * LONGEST);
+        drop(silent);
+    }
+}

@@ -1,0 +1,127 @@
+//! What a run of the kiosk came to, as the JSON has it: figures of the machine, and nothing of a person.
+
+use serde::Serialize;
+use toile_engine::pace::physics::Gauges;
+use toile_engine::pace::queue::Capacity;
+use toile_perf::latency::{Placed, Quantiles, Warned};
+
+use super::lives::Ended;
+use super::session::State;
+use super::stage::Staging;
+use super::vitals::Vitals;
+
+/// The body of the JSON.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct KioskReport {
+    /// Time since the loop began (s).
+    pub seconds: f64,
+    /// From the start of the program until the first step and the first picture were made (ms); none where it ended before.
+    pub ready_ms: Option<f64>,
+    /// The states that were entered, in order; the first thousand.
+    pub states: Vec<State>,
+    /// Shoppers who stepped in.
+    pub sessions: u64,
+    /// Pictures taken.
+    pub frames: u64,
+    /// Pictures that fell out because the one before took too long.
+    pub dropped: u64,
+    /// Sensor frames.
+    pub sensor_frames: u64,
+    /// Steps taken.
+    pub steps: u64,
+    /// Steps given up after a late wake-up.
+    pub steps_dropped: u64,
+    /// Steps that were published after their period, and those given up.
+    pub deadline_misses: u64,
+    /// A step, begin to publication (us).
+    pub step_us: Quantiles,
+    /// A picture, from the look at the snapshot until it is handed to the display (us).
+    pub present_us: Quantiles,
+    /// From when a sensor frame was seen until the first picture that shows it was taken (us).
+    pub total_us: Quantiles,
+    /// Steps on each rung of the governor's ladder.
+    pub rungs: Vec<u64>,
+    /// Steps that were rolled back because of a number that is none.
+    pub nonfinite: u64,
+    /// Whether all memory was kept resident.
+    pub memory_locked: bool,
+    /// Where the threads ran.
+    pub threads: Vec<Placed>,
+    /// How full the queues were.
+    pub capacities: Vec<Warned>,
+    /// What did not go as it should, with the cure.
+    pub warnings: Vec<String>,
+}
+
+/// What the service knows of its run beside the lives.
+#[derive(Debug, Clone)]
+pub struct Course {
+    /// The last figures.
+    pub vitals: Vitals,
+    /// From the start of the program until it was ready (ms).
+    pub ready_ms: Option<f64>,
+    /// The states entered.
+    pub states: Vec<State>,
+    /// Where the threads ran.
+    pub threads: Vec<Placed>,
+    /// Whether all memory was kept resident.
+    pub memory_locked: bool,
+    /// What did not go as it should.
+    pub warnings: Vec<String>,
+}
+
+impl KioskReport {
+    /// Of lives that have ended.
+    pub fn of<S: Staging, E>(ended: &Ended<S, E>, course: Course) -> Self {
+        let nothing = Gauges::default();
+        let gauges = ended.physics.as_ref().map_or(&nothing, |physics| &physics.gauges);
+        let render = ended.render.as_ref();
+        let mut warnings = course.warnings;
+        warnings.extend(ended.capacities.iter().filter_map(Capacity::warning));
+        warnings.extend(course.threads.iter().flat_map(|t| t.refused.clone()));
+        Self {
+            seconds: (course.vitals.uptime_ns / 1_000_000) as f64 / 1e3,
+            ready_ms: course.ready_ms,
+            states: course.states,
+            sessions: course.vitals.sessions,
+            frames: render.map_or(0, |r| r.pictures),
+            dropped: render.map_or(0, |r| r.dropped),
+            sensor_frames: ended.sensor.as_ref().map_or(0, |s| s.frames()),
+            steps: gauges.steps,
+            steps_dropped: gauges.dropped,
+            deadline_misses: gauges.missed + gauges.dropped,
+            step_us: Quantiles::of(&gauges.step),
+            present_us: render.map(|r| Quantiles::of(&r.drawing)).unwrap_or_default(),
+            total_us: render.map(|r| Quantiles::of(&r.total)).unwrap_or_default(),
+            rungs: gauges.rungs.to_vec(),
+            nonfinite: course.vitals.nonfinite,
+            memory_locked: course.memory_locked,
+            threads: course.threads,
+            capacities: ended.capacities.map(Warned::from).to_vec(),
+            warnings,
+        }
+    }
+
+    /// The same for a person, a few lines.
+    pub fn summary(&self) -> String {
+        let states: Vec<&str> = self.states.iter().map(|s| s.name()).collect();
+        let ready = self.ready_ms.map_or_else(|| "never ready".to_owned(), |ms| format!("ready after {ms:.0} ms"));
+        let mut text = format!(
+            "Kiosk: {:.0} s, {ready}, {} sessions ({})\n  {} steps, {} of them late or dropped; a step took {:.0} us (p50), \
+             {:.0} us (p99.9)\n  {} pictures, {} dropped; {} sensor frames; {} nonfinite\n",
+            self.seconds,
+            self.sessions,
+            states.join(", "),
+            self.steps,
+            self.deadline_misses,
+            self.step_us.p50,
+            self.step_us.p999,
+            self.frames,
+            self.dropped,
+            self.sensor_frames,
+            self.nonfinite
+        );
+        self.warnings.iter().for_each(|w| text.push_str(&format!("  {w}\n")));
+        text
+    }
+}

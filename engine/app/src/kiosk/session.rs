@@ -1,0 +1,176 @@
+//! The session of one shopper as a machine of four states. It knows the time and what is seen, and nothing else: a
+//! window, a service without one and a test drive the same machine.
+
+use serde::Serialize;
+
+/// Where a session is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum State {
+    /// Nobody is there: the mirror shows what it can do.
+    Attract,
+    /// Somebody stands there and is measured.
+    Measuring,
+    /// They see themselves dressed.
+    TryOn,
+    /// They have left, or nobody is seen: what is known of them is about to be wiped.
+    Left,
+}
+
+impl State {
+    /// All of them, in the order of a session.
+    pub const ALL: [Self; 4] = [Self::Attract, Self::Measuring, Self::TryOn, Self::Left];
+
+    /// Its name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Attract => "attract",
+            Self::Measuring => "measuring",
+            Self::TryOn => "try-on",
+            Self::Left => "left",
+        }
+    }
+}
+
+/// How long what has to last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rules {
+    /// Somebody must be seen for so long to have stepped in (ns): a passer-by has not.
+    pub step_in_ns: u64,
+    /// Nobody must be seen for so long for the shopper to have left (ns): a turn or a lost frame is no leave.
+    pub step_out_ns: u64,
+    /// So long after that everything is wiped (ns): who comes back before goes on where they were.
+    pub wipe_ns: u64,
+}
+
+/// What the machine is told in each look.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Sight {
+    /// Whether a shopper is seen.
+    pub shopper: bool,
+    /// Whether a body of their measures stands dressed.
+    pub dressed: bool,
+}
+
+/// A change of state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Change {
+    /// The state before.
+    pub from: State,
+    /// The state from now on.
+    pub to: State,
+}
+
+/// The machine.
+#[derive(Debug, Clone)]
+pub struct Session {
+    rules: Rules,
+    state: State,
+    /// When the state was entered (ns).
+    entered_ns: u64,
+    /// Whether a shopper was seen in the last look, and since when that is so (ns).
+    seen: bool,
+    since_ns: u64,
+}
+
+impl Session {
+    /// Nobody is there, at this time (ns).
+    pub fn new(rules: Rules, now_ns: u64) -> Self {
+        Self { rules, state: State::Attract, entered_ns: now_ns, seen: false, since_ns: now_ns }
+    }
+
+    /// The state.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// How long the state has lasted (ns): what a countdown shows.
+    pub fn lasted_ns(&self, now_ns: u64) -> u64 {
+        now_ns.saturating_sub(self.entered_ns)
+    }
+
+    /// Looks at what is seen now; gives the change of state, where there is one. At most one a look.
+    pub fn look(&mut self, now_ns: u64, sight: Sight) -> Option<Change> {
+        if sight.shopper != self.seen {
+            (self.seen, self.since_ns) = (sight.shopper, now_ns);
+        }
+        let for_ns = now_ns.saturating_sub(self.since_ns);
+        let stepped_in = self.seen && for_ns >= self.rules.step_in_ns;
+        let stepped_out = !self.seen && for_ns >= self.rules.step_out_ns;
+        let to = match self.state {
+            State::Attract if stepped_in => State::Measuring,
+            State::Measuring | State::TryOn if stepped_out => State::Left,
+            State::Measuring if sight.dressed && self.seen => State::TryOn,
+            State::Left if stepped_in && sight.dressed => State::TryOn,
+            State::Left if stepped_in => State::Measuring,
+            State::Left if self.lasted_ns(now_ns) >= self.rules.wipe_ns => State::Attract,
+            _ => return None,
+        };
+        let from = std::mem::replace(&mut self.state, to);
+        self.entered_ns = now_ns;
+        Some(Change { from, to })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: u64 = 1_000_000;
+    const RULES: Rules = Rules { step_in_ns: 500 * MS, step_out_ns: 2_000 * MS, wipe_ns: 5_000 * MS };
+
+    /// The states that a session goes through: spans of what is seen, in ms; a look each 10 ms.
+    fn visited(spans: &[(u64, bool, bool)]) -> Vec<(u64, State)> {
+        let (mut session, mut now, mut states) = (Session::new(RULES, 0), 0, Vec::new());
+        for (length, shopper, dressed) in spans {
+            for _ in 0..length / 10 {
+                now += 10;
+                if let Some(change) = session.look(now * MS, Sight { shopper: *shopper, dressed: *dressed }) {
+                    assert_eq!(change.to, session.state());
+                    assert_ne!(change.from, change.to);
+                    states.push((now, change.to));
+                }
+            }
+        }
+        states
+    }
+
+    #[test]
+    fn a_whole_visit_goes_through_all_states_and_ends_where_it_began() {
+        let states = visited(&[(1_000, false, false), (1_000, true, false), (4_000, true, true), (8_000, false, true)]);
+        let expected =
+            [(1_510, State::Measuring), (2_010, State::TryOn), (8_010, State::Left), (13_010, State::Attract)];
+        assert_eq!(states, expected);
+    }
+
+    #[test]
+    fn a_passer_by_and_a_lost_frame_change_nothing() {
+        assert!(visited(&[(490, true, false), (100, false, false), (490, true, false)]).is_empty());
+        let blink = visited(&[(600, true, false), (1_900, false, true), (1_000, true, true)]);
+        assert_eq!(blink.iter().map(|s| s.1).collect::<Vec<_>>(), [State::Measuring, State::TryOn]);
+    }
+
+    #[test]
+    fn who_comes_back_in_time_goes_on_and_who_comes_later_begins_anew() {
+        let names = |spans: &[(u64, bool, bool)]| visited(spans).iter().map(|s| s.1).collect::<Vec<_>>();
+        let back = names(&[(600, true, true), (3_000, false, true), (1_000, true, true)]);
+        assert_eq!(back, [State::Measuring, State::TryOn, State::Left, State::TryOn]);
+        let unmeasured = names(&[(600, true, false), (3_000, false, false), (1_000, true, false)]);
+        assert_eq!(unmeasured, [State::Measuring, State::Left, State::Measuring]);
+        let late = names(&[(600, true, true), (7_500, false, true), (1_000, true, false)]);
+        assert_eq!(late, [State::Measuring, State::TryOn, State::Left, State::Attract, State::Measuring]);
+    }
+
+    #[test]
+    fn nobody_is_dressed_who_is_not_there() {
+        let gone = visited(&[(600, true, false), (1_500, false, true)]);
+        assert_eq!(gone.iter().map(|s| s.1).collect::<Vec<_>>(), [State::Measuring], "dressed, but not seen");
+    }
+
+    #[test]
+    fn names_are_those_of_the_json() {
+        for state in State::ALL {
+            assert_eq!(serde_json::to_value(state).unwrap(), state.name());
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! The tailor: measures a shopper and dresses a body of their size, on a thread of its own, which nothing waits for.
+
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+
+use toile_assets::body::{Measures, Sex};
+use toile_assets::sizes::Population;
+use toile_assets::wardrobe;
+use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::relay::Reader;
+use toile_sensors::frame::Joints;
+use toile_sensors::source::Session;
+
+use crate::exit::AppError;
+use crate::outfit::{Recipe, Wish};
+use crate::shopper;
+
+/// A body of somebody's size, dressed.
+pub struct Dressed {
+    /// The frame, with one worker.
+    pub frame: Frame,
+    /// Where its snapshots come out.
+    pub reader: Reader<Snapshot>,
+}
+
+/// Where measures are taken from.
+#[derive(Debug, Clone)]
+pub enum Model {
+    /// The recording that is played, with its depth.
+    Played(Arc<Session>),
+    /// The joints of the last second, which are all that a live sender gives.
+    Joints(Vec<Joints>),
+}
+
+/// The tailor.
+#[derive(Debug)]
+pub struct Tailor {
+    wish: Wish,
+    job: Option<JoinHandle<Result<Dressed, AppError>>>,
+    /// Whether the shopper that the job is for has left.
+    unwanted: bool,
+}
+
+/// What became of a job.
+pub enum Work {
+    /// Somebody is dressed.
+    Done(Box<Dressed>),
+    /// They could not be measured; why is not told to anybody, for it may tell of them.
+    Failed,
+    /// The tailor's thread panicked.
+    Died,
+}
+
+impl Tailor {
+    /// One who dresses everybody in this.
+    pub fn new(wish: Wish) -> Self {
+        Self { wish, job: None, unwanted: false }
+    }
+
+    /// Whether a job is under way, wanted or not.
+    pub fn is_busy(&self) -> bool {
+        self.job.is_some()
+    }
+
+    /// Begins with a shopper.
+    ///
+    /// # Errors
+    /// Where the system gives no thread.
+    pub fn begin(&mut self, model: Model) -> std::io::Result<()> {
+        let wish = self.wish.clone();
+        self.unwanted = false;
+        self.job = Some(thread::Builder::new().name("toile-tailor".into()).spawn(move || dress(&model, &wish))?);
+        Ok(())
+    }
+
+    /// The shopper has left: what comes of the job is thrown away.
+    pub fn forget(&mut self) {
+        self.unwanted = true;
+    }
+
+    /// What has come of a job, once, when it has ended.
+    pub fn look(&mut self) -> Option<Work> {
+        if !self.job.as_ref()?.is_finished() {
+            return None;
+        }
+        match self.job.take()?.join() {
+            Err(_) => Some(Work::Died),
+            _ if self.unwanted => None,
+            Ok(Ok(dressed)) => Some(Work::Done(Box::new(dressed))),
+            Ok(Err(_)) => Some(Work::Failed),
+        }
+    }
+}
+
+fn dress(model: &Model, wish: &Wish) -> Result<Dressed, AppError> {
+    let live;
+    let session = match model {
+        Model::Played(session) => session.as_ref(),
+        Model::Joints(joints) => {
+            live = Session { name: "live".into(), joints: joints.clone(), raw_scale_known: true, ..Session::default() };
+            &live
+        }
+    };
+    let track = shopper::believable(session);
+    let Some(first) = track.get(shopper::stands_from(&track)) else {
+        return Err(AppError::Input("nobody stands there".into()));
+    };
+    let (frame, reader) = Recipe::write(session, wish)?.make(first)?;
+    Ok(Dressed { frame, reader })
+}
+
+/// The mannequin that stands in the mirror while nobody is measured: the middle size of the outermost garment, as `pose` has it.
+///
+/// # Errors
+/// A garment that is not in the wardrobe, a size that is not made.
+pub fn mannequin(wish: &Wish, pose: &Joints) -> Result<Dressed, AppError> {
+    let names = if wish.garments.is_empty() { vec![wardrobe::names()[0].to_owned()] } else { wish.garments.clone() };
+    let (mut garments, mut body) = (Vec::new(), None);
+    for name in &names {
+        let style = wardrobe::style(name).map_err(AppError::input)?;
+        let table = style.sizes().map_err(AppError::input)?;
+        let codes = table.codes();
+        let size = wish.size.clone().unwrap_or_else(|| codes[codes.len() / 2].to_owned());
+        let sex = if table.population == Population::Men { Sex::Male } else { Sex::Female };
+        body = Some((sex, Measures::from(table.size_body(&size).map_err(AppError::input)?)));
+        garments.push((name.clone(), size));
+    }
+    let Some((sex, m)) = body else { return Err(AppError::Input("no garment is named; name one in [wear]".into())) };
+    let measures = [m.stature, m.shoulder_breadth, m.chest_girth, m.waist_girth, m.hip_girth];
+    let recipe = Recipe {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        session: "mannequin".to_owned(),
+        sex: if sex == Sex::Male { "male" } else { "female" }.to_owned(),
+        measures: measures.map(f32::to_bits),
+        garments,
+        quality: wish.quality.name().to_owned(),
+    };
+    let (frame, reader) = recipe.make(pose)?;
+    Ok(Dressed { frame, reader })
+}

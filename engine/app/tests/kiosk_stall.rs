@@ -1,0 +1,187 @@
+//! The watchdog starves where physics or render stands still, whatever else runs on: the service over real threads, with a
+//! scene and a display that can be made to hang.
+
+use std::io;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::{Arc, Mutex, OnceLock};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use toile::kiosk::change::Changing;
+use toile::kiosk::lives::{Cast, Headless, Lives};
+use toile::kiosk::manager::{Ending, Manager, News};
+use toile::kiosk::service::{Around, Plan, Service};
+use toile::kiosk::session::Rules;
+use toile::kiosk::source::{Feed, Visits};
+use toile::kiosk::stage::{Act, Staging};
+use toile::kiosk::tailor::{self, Tailor};
+use toile::outfit::Wish;
+use toile::shopper;
+use toile_engine::clock::{Clock, RealClock};
+use toile_engine::frame::{Frame, Snapshot, Times};
+use toile_engine::pace::governor::Rung;
+use toile_engine::pace::physics::{Scene, Staged};
+use toile_engine::pace::render::Eye;
+use toile_sensors::frame::Joints;
+
+/// Hangs whoever passes it while it is shut.
+type Gate = Arc<AtomicBool>;
+
+fn pass(gate: &Gate) {
+    // Relaxed: a flag that a test sets.
+    while gate.load(Relaxed) {
+        thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// The gate of whichever scene comes onto the stage.
+fn physics_gate() -> &'static Gate {
+    static GATE: OnceLock<Gate> = OnceLock::new();
+    GATE.get_or_init(Gate::default)
+}
+
+struct Gated(Staged, Gate);
+
+impl Gated {
+    fn new(frame: Frame) -> Self {
+        Self(Staged::new(frame), physics_gate().clone())
+    }
+}
+
+impl Scene for Gated {
+    fn step(&mut self, joints: &Joints, times: Times, clock: &impl Clock) {
+        pass(&self.1);
+        self.0.step(joints, times, clock);
+    }
+    fn set_rung(&mut self, rung: &Rung) {
+        self.0.set_rung(rung);
+    }
+    fn measure(&mut self) {
+        self.0.measure();
+    }
+    fn clear_meters(&mut self) {
+        self.0.clear_meters();
+    }
+    fn fingerprint(&self) -> u64 {
+        self.0.fingerprint()
+    }
+    fn troubles(&self) -> [u64; 2] {
+        self.0.troubles()
+    }
+}
+
+impl Staging for Gated {
+    fn take_over(&mut self, from: &mut Self) {
+        self.0.take_over(&mut from.0);
+    }
+}
+
+struct Display(Headless, Gate);
+
+impl Eye for Display {
+    fn look(&mut self, snapshot: &Snapshot) {
+        pass(&self.1);
+        self.0.look(snapshot);
+    }
+}
+
+/// A manager that writes down what it is told and when.
+struct Diary(Mutex<Vec<(Instant, News)>>);
+
+impl Diary {
+    /// Feedings between two times.
+    fn fed(&self, from: Instant, to: Instant) -> usize {
+        let told = self.0.lock().unwrap();
+        told.iter().filter(|(at, news)| *news == News::Alive && (from..to).contains(at)).count()
+    }
+
+    fn is_ready(&self) -> bool {
+        self.0.lock().unwrap().iter().any(|(_, news)| *news == News::Ready)
+    }
+}
+
+impl Manager for Diary {
+    fn patience(&self) -> Option<Duration> {
+        Some(Duration::from_millis(300))
+    }
+
+    fn tell(&self, news: News) -> io::Result<()> {
+        self.0.lock().unwrap().push((Instant::now(), news));
+        Ok(())
+    }
+}
+
+/// Runs the service, and meanwhile on another thread what is given.
+fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
+    let (session, clock) = (shopper::open(None, None).unwrap(), RealClock::default());
+    let pose = shopper::believable(&session)[0];
+    let wish = Wish::default();
+    let dressed = tailor::mannequin(&wish, &pose).unwrap();
+    // Nobody ever comes: the stall is the only thing that happens.
+    let feed = Feed::Played(Visits::new(&session.joints, clock.now_ns(), 3_600_000_000_000));
+    let first = Act { scene: Gated::new(dressed.frame), still: Some(pose) };
+    let cast = Cast { first, reader: dressed.reader, eye: Display(Headless::default(), display), feed };
+    let (lives, doors) = Lives::start(cast, clock).unwrap();
+    let second = 1_000_000_000;
+    let plan = Plan {
+        begun: Instant::now(),
+        length: Some(Duration::from_secs(120)),
+        rules: Rules { step_in_ns: second, step_out_ns: second, wipe_ns: second },
+        measure_ns: second,
+        health_ns: 0,
+        played: None,
+        memory_locked: false,
+        warnings: Vec::new(),
+    };
+    let ending = Ending::default();
+    thread::scope(|scope| {
+        scope.spawn(|| {
+            meanwhile();
+            ending.ask();
+        });
+        let say = |_: &str| {};
+        let around = Around {
+            manager: diary,
+            ending: &ending,
+            say: &say,
+            figures: None,
+            tailor: Tailor::new(wish),
+            stage: Gated::new,
+        };
+        Service::new(lives, Changing::new(doors), plan, around).run().unwrap();
+    });
+}
+
+/// Whatever was fed in a second, which has ten feedings where the machine is quiet.
+fn fed_in_a_second(diary: &Diary) -> usize {
+    let from = Instant::now();
+    thread::sleep(Duration::from_secs(1));
+    diary.fed(from, Instant::now())
+}
+
+fn starves_while(gate: &Gate, display: Gate) {
+    let diary = Diary(Mutex::default());
+    serve(&diary, display, || {
+        while !diary.is_ready() {
+            thread::sleep(Duration::from_millis(5));
+        }
+        assert!(fed_in_a_second(&diary) >= 2, "it is fed while all is well");
+        gate.store(true, Relaxed);
+        // What was counted before the gate was shut is fed once more.
+        thread::sleep(Duration::from_millis(300));
+        assert_eq!(fed_in_a_second(&diary), 0, "it is fed while a thread hangs");
+        gate.store(false, Relaxed);
+        thread::sleep(Duration::from_millis(300));
+        assert!(fed_in_a_second(&diary) >= 2, "it is fed again");
+    });
+    assert_eq!(diary.0.lock().unwrap().last().unwrap().1, News::Stopping);
+}
+
+#[test]
+fn the_watchdog_starves_where_a_turn_of_physics_or_of_render_hangs() {
+    // One after the other: the physics' gate is one for all scenes.
+    starves_while(physics_gate(), Gate::default());
+    let display = Gate::default();
+    starves_while(&display, display.clone());
+}
