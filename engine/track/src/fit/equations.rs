@@ -166,17 +166,12 @@ pub(super) fn invert(a: &[[f64; SHAPES]; SHAPES]) -> ([[f64; SHAPES]; SHAPES], f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use toile_sensors::source::synthetic::Rng;
 
     fn rows() -> Vec<(Row, f32)> {
-        (0..3 * UNKNOWNS)
-            .map(|k| {
-                let mut row = [0.0; WIDTH];
-                for (i, r) in row.iter_mut().enumerate().take(UNKNOWNS) {
-                    *r = ((k * 31 + i * 17) as f32 * 0.7).sin();
-                }
-                (row, (k as f32 * 0.3).cos())
-            })
-            .collect()
+        let mut rng = Rng::new(7);
+        let row = |rng: &mut Rng| std::array::from_fn(|i| if i < UNKNOWNS { rng.gaussian() } else { 0.0 });
+        (0..3 * UNKNOWNS).map(|_| (row(&mut rng), rng.gaussian())).collect()
     }
 
     fn nothing() -> ShapeCurve {
