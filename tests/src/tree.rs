@@ -13,8 +13,8 @@ pub const FLOORS: [(&str, &str); 10] = [
     ("engine/view", "toile-view"),
     ("perf", "toile-perf"),
     ("engine/app", "toile"),
-    ("tests", "toile-tests"),
     ("tests/models", "toile-models"),
+    ("tests", "toile-tests"),
 ];
 
 /// The workspace's folder.
