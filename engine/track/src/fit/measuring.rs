@@ -48,7 +48,7 @@ impl Girth {
 }
 
 /// What bodies of other shapes than the family's add to each error (m), in the order of [`TAKEN`]: the standard
-/// deviation that errors have beside what the fit itself states, over 80 people who are not those of docs/measuring.md
+/// deviation that errors have beside what the fit itself states, over 80 people of another draw than that of docs/measuring.md
 /// (`toile bench measure --people 40 --frames 4 --seed 78 --sensor azure`).
 const UNLIKE: [f32; TAKEN.len()] = [0.0035, 0.002, 0.004, 0.004, 0.004, 0.003, 0.016, 0.015, 0.020, 0.015, 0.007];
 
