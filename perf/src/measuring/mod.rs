@@ -15,4 +15,4 @@ mod study;
 pub use overlay::{Fit, overlay, posed};
 pub use person::{GIVEN, Moment, Person};
 pub use sensor::{Sensor, Sight};
-pub use study::{Agreement, Case, Following, Options, Outcome, Study, StudyError, study};
+pub use study::{Agreement, Case, Following, Options, Outcome, Study, study};

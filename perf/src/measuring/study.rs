@@ -1,8 +1,7 @@
 //! The study: people drawn from the survey, seen, measured in both ways, compared with what the tape reads on them.
 
 use serde::Serialize;
-use thiserror::Error;
-use toile_assets::body::{BodyError, Sex};
+use toile_assets::body::Sex;
 use toile_assets::sizes::Population;
 use toile_assets::skeleton::Joint;
 use toile_sensors::frame::DepthFrame;
@@ -16,7 +15,7 @@ use toile_track::measures::Hint;
 
 use super::person::{GIVEN, Moment, Person};
 use super::sensor::{Sensor, Sight};
-use crate::ansur::{Survey, SurveyError};
+use crate::ansur::{StudyError, Survey};
 use crate::time::OnCore;
 
 /// What is studied.
@@ -30,22 +29,6 @@ pub struct Options {
     pub seed: u64,
     /// The camera.
     pub sensor: Sensor,
-}
-
-/// Why there is no study.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum StudyError {
-    /// The file.
-    #[error(transparent)]
-    Survey(#[from] SurveyError),
-    /// A person whose measures are outside of what bodies are built for.
-    #[error("the survey's line {line}: {source}")]
-    Person {
-        /// The line, from 1.
-        line: usize,
-        /// What is outside.
-        source: BodyError,
-    },
 }
 
 /// What one way of measuring said of one person, in the order of [`TAKEN`]; `None` where it takes no such measure.
