@@ -85,7 +85,7 @@ fn plan(style: &Style, cut: &Body) -> Plan {
     });
     let front = columns / 4 - (columns as f32 * ARMHOLE_SHARE).round() as usize;
     let top = form.ring(underarm, chest, columns);
-    let neck = ((neck_mm * 1e-3 / top[front].x * front as f32).round() as usize).clamp(2, front - 2);
+    let neck = ((neck_mm * 1e-3 / top[front].x * front as f32).round() as usize).max(2).min(front - 1);
     let shoulder_rows = (1.15 * (levels.shoulder - underarm) / spacing).round().max(6.0) as usize;
     let sleeve_length = sleeve_mm * 1e-3;
     let sleeve_rows = (sleeve_length / spacing).round().max(4.0) as usize;
@@ -361,6 +361,13 @@ mod tests {
     use crate::body::{Measures, Sex};
     use crate::garment::shape::NO_VERTEX;
     use crate::wardrobe;
+
+    #[test]
+    fn the_coarsest_mesh_that_a_file_may_ask_for_is_drafted() {
+        let shopper = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+        let style = Style { columns: 16, spacing_mm: 60.0, ..wardrobe::style("t-shirt").unwrap() };
+        assert!(style.draft("M", &shopper).unwrap().faces.len() > 100);
+    }
 
     #[test]
     fn no_size_has_needles_or_gaps() {
