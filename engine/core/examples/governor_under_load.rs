@@ -104,7 +104,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 println!("{at:.3} s: rung {} to {}, which gives up {}", change.from, change.to, rung.gives_up);
             }
             What::Missed(miss) => {
-                println!("{at:.3} s: a step was published {:.1} ms after it was due", miss.total_ns as f64 * 1e-6)
+                println!("{at:.3} s: a step was published {:.1} ms after it was due", miss.total_ns as f64 * 1e-6);
             }
             _ => {}
         }
