@@ -18,7 +18,7 @@ use toile_engine::pace::queue::bounded;
 use toile_engine::pace::replay::{Replayed, replay};
 use toile_engine::pace::sense::{Playback, Seen, Sense};
 use toile_engine::pace::simulate::simulate;
-use toile_engine::pace::tape::{self, ENTRIES, ENTRIES_NAME, Entry};
+use toile_engine::pace::tape::{self, ENTRIES, ENTRIES_NAME, Entry, Tape};
 use toile_engine::relay::Relay;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::Joints;
@@ -73,7 +73,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let frames: Vec<Joints> = (0..60).map(seen).collect();
     let bytes = record(&frames)?;
-    let (size, mut entries) = tape::read(&bytes)?;
+    let Tape { text: size, mut entries, .. } = tape::read(&bytes)?;
     println!("recorded {} entries in {} kB", entries.len(), bytes.len() / 1_000);
 
     for workers in [1, 2] {
