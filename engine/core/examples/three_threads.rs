@@ -60,6 +60,11 @@ struct Display {
 }
 
 impl Eye for Display {
+    // The scene is never changed for another here, so there is nothing to put on.
+    type Outfit = ();
+
+    fn put_on(&mut self, _outfit: &mut ()) {}
+
     fn look(&mut self, snapshot: &Snapshot) {
         self.pictures += 1;
         self.bad += u64::from(snapshot.tick < self.newest);
