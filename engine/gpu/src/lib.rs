@@ -29,7 +29,16 @@ pub fn adapters() -> Vec<Adapter> {
 }
 
 #[cfg(feature = "wgpu")]
+pub mod cloth;
+#[cfg(feature = "wgpu")]
+pub mod device;
+#[cfg(feature = "wgpu")]
 mod native;
+#[cfg(feature = "wgpu")]
+pub mod wait;
+
+#[cfg(feature = "wgpu")]
+pub use native::describe;
 
 #[cfg(test)]
 mod tests {

@@ -60,7 +60,7 @@ pub fn every(load: &[f32], substeps: u32) -> u32 {
 }
 
 /// Stencils that are taken together: their curvatures stay in the nearest cache.
-const CHUNK: usize = 512;
+pub const CHUNK: usize = 512;
 
 /// Numbers between the coordinates of the curvatures: not a power of two, so that none of them hides another.
 const STRIDE: usize = CHUNK + MOST;

@@ -13,8 +13,9 @@ pub mod hubs;
 pub mod links;
 pub mod lists;
 pub mod measure;
+pub mod pins;
 pub mod predict;
-mod prepared;
+pub mod prepared;
 pub mod program;
 pub mod root;
 pub mod settings;
@@ -61,10 +62,8 @@ pub struct Cloth {
     pub positions: Box<[Vec3A]>,
     /// The particles as the kernels have them.
     pub(crate) state: State,
-    /// Where each skinned particle is at the start of the step (m) `[fixed]`.
-    fixed_start: Box<[Vec3A]>,
-    /// Where each skinned particle is at the end of the step (m) `[fixed]`.
-    fixed_end: Box<[Vec3A]>,
+    /// Where the skinned particles are to be.
+    pins: pins::Pins,
     /// What contact keeps from step to step.
     contacts: contact::Contacts,
     /// Room of each worker for a fiber's factors.
@@ -91,14 +90,12 @@ pub struct Cloth {
     pub stage_ns: [u64; STAGES.len()],
     /// Steps in a row that were rolled back.
     rolled: u32,
-    placed: bool,
 }
 
 impl Cloth {
     /// All storage of a garment, at rest where the garment starts; `colliders` says which capsules are which limb's.
     pub fn new(garment: &Garment, colliders: &Colliders) -> Self {
         let start: Box<[Vec3A]> = garment.start.iter().map(|&p| p.into()).collect();
-        let fixed: Box<[Vec3A]> = garment.fixed.iter().map(|&i| start[i as usize]).collect();
         let layout = &garment.layout;
         let needs = [bending::SCRATCH, fibers::scratch_len(&layout.fibers), lists::scratch_len(&layout.crossing)];
         let prepared = prepared::Prepared::new(garment);
@@ -107,8 +104,7 @@ impl Cloth {
         let scratch = || Store::zeros(needs.into_iter().max().unwrap_or(0));
         Self {
             state: State::new(&garment.start, &garment.inverse_mass),
-            fixed_start: fixed.clone(),
-            fixed_end: fixed,
+            pins: pins::Pins::new(garment),
             contacts: contact::Contacts::new(&layout.spans, &garment.parts, &garment.start, colliders),
             scratch: [scratch(), scratch()],
             room: stages::Room::new(if prepared.stiff() { start.len() } else { 0 }),
@@ -123,7 +119,6 @@ impl Cloth {
             events: guard::Events::default(),
             stage_ns: [0; STAGES.len()],
             rolled: 0,
-            placed: false,
             positions: start,
         }
     }
@@ -181,7 +176,7 @@ impl Cloth {
     pub fn bytes(&self) -> usize {
         self.state.bytes()
             + size_of_val(&*self.positions)
-            + 2 * size_of_val(&*self.fixed_start)
+            + self.pins.bytes()
             + self.contacts.bytes()
             + self.pushed.bytes()
             + self.faces.as_ref().map_or(0, wind::Faces::bytes)
@@ -209,7 +204,7 @@ impl Cloth {
 }
 
 /// Where a garment hangs: the middle of its skinned particles, or of all where it has none (m).
-fn centre(garment: &Garment) -> Vec3A {
+pub fn centre(garment: &Garment) -> Vec3A {
     let fixed = garment.fixed.iter().map(|&i| garment.start[i as usize]);
     let (sum, count) = if garment.fixed.is_empty() {
         (garment.start.iter().copied().sum::<glam::Vec3>(), garment.start.len())

@@ -25,22 +25,33 @@ pub struct Prepared {
     /// Substeps, their length (s), damping time: what the figures below were made for.
     made_for: Option<(u32, f32, f32)>,
     programs: [Box<[Op]>; 3],
+    /// The quality last asked for.
     pub quality: Quality,
+    /// Substeps of a step.
     pub substeps: u32,
+    /// Length of a substep (s).
     pub dt: f32,
+    /// Damping time of stretch over the substep (1).
     pub gamma: f32,
     /// Whether fibers pull more across themselves than one linearised solve can take.
     pub taut: bool,
     /// Shear along whole fibers acts every so many substeps, for all of them.
     pub shear_every: u32,
+    /// Gains of the shear links ([`links::prepare`]) `[places]`.
     pub shear_gain: Box<[f32]>,
+    /// Gains of the weft links `[places]`.
     pub weft_gain: Box<[f32]>,
+    /// Share of each stencil's stiffness that the substep carries ([`bending::weaken`]) `[places]`.
     pub bend_scale: Box<[f32]>,
+    /// The same of the skewed stencils `[places]`.
     pub skewed_scale: Box<[f32]>,
+    /// The same of the hubs `[hubs]`.
     pub hub_scale: Box<[f32]>,
+    /// How bending goes on.
     pub bend: bending::Pace,
     /// Bending's phases of a substep, and its stages where it is stiff.
     pub bending: Bending,
+    /// The stages of stiff bending; as many as `bending` says count.
     pub stages: [Stage; stages::MOST as usize],
     /// Whether there is room for stages.
     stiff: bool,
@@ -50,6 +61,7 @@ pub struct Prepared {
 }
 
 impl Prepared {
+    /// Storage for a garment; nothing is prepared yet. At load.
     pub fn new(garment: &Garment) -> Self {
         let layout = &garment.layout;
         let zeros = |n: usize| vec![0.0; n].into_boxed_slice();
@@ -79,7 +91,7 @@ impl Prepared {
         }
     }
 
-    /// Allocates nothing; a microsecond a hundred constraints, in steps in which the settings have changed.
+    /// Prepares for some settings. Allocates nothing; a microsecond a hundred constraints, in steps in which the settings have changed.
     pub fn make(&mut self, garment: &Garment, settings: &Settings) {
         // The bake speaks of steps of 1/120 s.
         let longer = (settings.step_seconds / STEP_SECONDS).max(1.0);
@@ -130,10 +142,12 @@ impl Prepared {
         self.soft[kind]
     }
 
+    /// The phases of a substep after bending, at the quality last asked for.
     pub fn program(&self) -> &[Op] {
         &self.programs[Quality::ALL.iter().position(|q| *q == self.quality).unwrap_or(0)]
     }
 
+    /// How bending goes on.
     pub fn bend_pace(&self) -> bending::Pace {
         self.bend
     }
@@ -143,10 +157,12 @@ impl Prepared {
         self.stiff
     }
 
+    /// Substeps of a step.
     pub fn substeps(&self) -> u32 {
         self.substeps
     }
 
+    /// Bytes held, but for those of the programs.
     pub fn bytes(&self) -> usize {
         4 * (self.shear_gain.len() + self.weft_gain.len() + self.bend_scale.len() + self.load.len())
     }

@@ -92,7 +92,7 @@ impl Cloth {
     fn begin(&mut self, garment: &Garment, step: &Step<'_>) -> Option<Carried> {
         let settings = step.settings;
         self.prepared.make(garment, settings);
-        self.attach(garment, step);
+        self.events.held_pins += self.pins.attach(garment, step.palette);
         let columns = self.state.columns();
         let width = settings.width;
         if !(width.run(guard::Sound(columns.x)) && width.run(guard::Sound(columns.v))) {
@@ -106,14 +106,14 @@ impl Cloth {
             RootStep::Carried(carried) => return Some(carried),
             RootStep::Keep(moved) => {
                 moved.apply(width, columns, all);
-                self.fixed_start.iter_mut().for_each(|p| *p = moved.point(*p));
+                self.pins.start.iter_mut().for_each(|p| *p = moved.point(*p));
                 // What the guard would roll back to goes along.
                 self.positions.iter_mut().for_each(|p| *p = moved.point(*p));
             }
             RootStep::Reset => {
                 let dressed = |i: usize| step.palette[0].transform_point3a(garment.start[i].into());
                 guard::roll_back(columns, &self.positions, dressed, 1.0);
-                self.fixed_start.copy_from_slice(&self.fixed_end);
+                self.pins.rest();
             }
         }
         self.events.teleports += 1;
@@ -143,28 +143,6 @@ impl Cloth {
         }
     }
 
-    /// Moves the skinned particles' targets on: the end of the last step is the start of this one.
-    fn attach(&mut self, garment: &Garment, step: &Step<'_>) {
-        self.fixed_start.copy_from_slice(&self.fixed_end);
-        for (k, (&i, w)) in garment.fixed.iter().zip(&garment.fixed_weights).enumerate() {
-            let rest = garment.start[i as usize].into();
-            let mut p = Vec3A::ZERO;
-            for (&bone, &weight) in w.bones.iter().zip(&w.weights) {
-                p += step.palette[bone as usize].transform_point3a(rest) * weight;
-            }
-            // A target that is not finite is not followed.
-            if p.is_finite() {
-                self.fixed_end[k] = p;
-            } else {
-                self.events.held_pins += 1;
-            }
-        }
-        if !self.placed {
-            self.fixed_start.copy_from_slice(&self.fixed_end);
-            self.placed = true;
-        }
-    }
-
     fn work<'a>(&'a mut self, garment: &'a Garment, step: &'a Step<'a>, carried: Option<Carried>) -> Work<'a> {
         let dt = self.prepared.dt;
         let [one, two] = &mut self.scratch;
@@ -180,7 +158,7 @@ impl Cloth {
             pushed: self.pushed.columns(),
             contacts: Own::new(self.contacts.owners()),
             limited: [AtomicU64::new(0), AtomicU64::new(0)],
-            fixed: [&self.fixed_start, &self.fixed_end],
+            fixed: [&self.pins.start, &self.pins.end],
             tension: self.tension.each_mut().map(Store::column),
             scratch: [one.column(), two.column()],
             room,

@@ -1,0 +1,57 @@
+//! Pins: where the skinned particles are to be at the start and at the end of a step.
+
+use glam::{Affine3A, Vec3A};
+use toile_assets::garment::Garment;
+use toile_assets::skeleton::BONES;
+
+/// The targets of a garment's skinned particles. All storage is made once.
+#[derive(Debug, Clone)]
+pub struct Pins {
+    /// At the start of the step, world (m) `[fixed]`.
+    pub start: Box<[Vec3A]>,
+    /// At the end of the step, world (m) `[fixed]`.
+    pub end: Box<[Vec3A]>,
+    placed: bool,
+}
+
+impl Pins {
+    /// Where the garment starts.
+    pub fn new(garment: &Garment) -> Self {
+        let rest: Box<[Vec3A]> = garment.fixed.iter().map(|&i| garment.start[i as usize].into()).collect();
+        Self { start: rest.clone(), end: rest, placed: false }
+    }
+
+    /// Moves the targets on: the end of the last step is the start of this one, the first step starts where it ends. Gives
+    /// how many targets were not finite and therefore not followed.
+    pub fn attach(&mut self, garment: &Garment, palette: &[Affine3A; BONES]) -> u64 {
+        self.start.copy_from_slice(&self.end);
+        let mut held = 0;
+        for (k, (&i, w)) in garment.fixed.iter().zip(&garment.fixed_weights).enumerate() {
+            let rest = garment.start[i as usize].into();
+            let mut p = Vec3A::ZERO;
+            for (&bone, &weight) in w.bones.iter().zip(&w.weights) {
+                p += palette[bone as usize].transform_point3a(rest) * weight;
+            }
+            if p.is_finite() {
+                self.end[k] = p;
+            } else {
+                held += 1;
+            }
+        }
+        if !self.placed {
+            self.rest();
+            self.placed = true;
+        }
+        held
+    }
+
+    /// The step starts where it ends: what is put somewhere else has not been dragged there.
+    pub fn rest(&mut self) {
+        self.start.copy_from_slice(&self.end);
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.start) + size_of_val(&*self.end)
+    }
+}

@@ -1,0 +1,268 @@
+//! Buffers: what the kernels read and write, made once at load; pipelines and what they are bound to.
+
+use bytemuck::Pod;
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use wgpu::{
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
+    BindingResource, BindingType, Buffer, BufferBinding, BufferBindingType, BufferUsages, ComputePipeline,
+    ComputePipelineDescriptor, PipelineLayoutDescriptor, ShaderModuleDescriptor, ShaderSource, ShaderStages,
+};
+
+use super::constants::Constants;
+use super::flat::Flat;
+use super::kernels::{Kernel, SHADERS};
+use super::program::Program;
+use crate::device::{Device, Needs};
+
+/// Bytes between two of the uniforms that a dispatch picks from: what every driver aligns to.
+pub const ALIGNED: u64 = 256;
+
+/// Numbers of a garment's report: held at the speed limit, unsound, rolled back in a row, rolled back.
+pub const REPORT: usize = 4;
+
+/// All buffers of a scene.
+#[derive(Debug)]
+pub struct Buffers {
+    /// A garment's constants `[garments]`.
+    pub garments: Buffer,
+    /// Places and inverse masses, where the substep began, velocities `[3 * particles]`.
+    pub state: Buffer,
+    /// Where each skinned particle is at the start and the end of the step `[2 * targets]`.
+    pub targets: Buffer,
+    /// Rest length, compliance, gain of the shear links.
+    pub shear_measures: Buffer,
+    /// The same of the weft links.
+    pub weft_measures: Buffer,
+    /// Shares of bending stiffness.
+    pub scales: Buffer,
+    /// What happened to each garment `[garments]`.
+    pub reports: Buffer,
+    /// Last good places `[particles]`.
+    pub good: Buffer,
+    /// Bound to every kernel.
+    pub scene: BindGroup,
+    /// Each kernel's pipeline and what it alone is bound to, by [`Kernel::number`].
+    pub kernels: Vec<(ComputePipeline, BindGroup)>,
+    bytes: u64,
+}
+
+/// What a scene asks of a device: its largest buffer and dispatch.
+pub fn needs(flat: &Flat, program: &Program) -> Needs {
+    let sizes = [
+        size_of_val(&*flat.start) * 3,
+        size_of_val(&*flat.shear.ends),
+        size_of_val(&*flat.weft.ends),
+        size_of_val(&*flat.diagonals.measures),
+        16 * flat.fibers.links,
+        48 * flat.lists.index.len(),
+        size_of_val(&*flat.bending.terms),
+        size_of_val(&*flat.bending.entries),
+        16 * flat.bending.items.len(),
+        16 * program.groups().len(),
+    ];
+    let workgroups = program.tables.iter().map(|(groups, _)| groups.groups.len() as u32).max().unwrap_or(0);
+    Needs { largest: sizes.into_iter().max().unwrap_or(0) as u64, workgroups }
+}
+
+/// Makes buffers, and counts their bytes.
+struct Maker<'a> {
+    device: &'a wgpu::Device,
+    bytes: u64,
+}
+
+impl Maker<'_> {
+    /// A buffer with these numbers; one number of none where there are none, because no buffer may be empty.
+    fn with<T: Pod>(&mut self, label: &str, numbers: &[T], more: BufferUsages) -> Buffer {
+        const NOTHING: [u8; 64] = [0; 64];
+        let bytes: &[u8] = bytemuck::cast_slice(numbers);
+        let contents = if bytes.is_empty() { &NOTHING[..] } else { bytes };
+        self.bytes += contents.len() as u64;
+        let usage = BufferUsages::STORAGE | more;
+        self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
+    }
+
+    /// A buffer of so many zeros of `size` bytes.
+    fn zeros(&mut self, label: &str, count: usize, size: usize) -> Buffer {
+        let len = (count.max(1) * size) as u64;
+        self.bytes += len;
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: len,
+            usage,
+            mapped_at_creation: false,
+        })
+    }
+
+    /// Uniforms of which a dispatch picks one.
+    fn uniforms(&mut self, label: &str, each: impl Iterator<Item = [u32; 4]>) -> Buffer {
+        let mut bytes = Vec::new();
+        for uniform in each {
+            bytes.extend_from_slice(bytemuck::cast_slice(&uniform));
+            bytes.resize(bytes.len().next_multiple_of(ALIGNED as usize), 0);
+        }
+        bytes.resize(bytes.len().max(ALIGNED as usize), 0);
+        self.bytes += bytes.len() as u64;
+        let usage = BufferUsages::UNIFORM;
+        self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents: &bytes, usage })
+    }
+}
+
+impl Buffers {
+    /// All of a scene, and the pipelines. `most` is the greatest number of substeps.
+    pub fn new(device: &Device, flat: &Flat, program: &Program, constants: &[Constants], most: u32) -> Self {
+        let mut make = Maker { device: &device.device, bytes: 0 };
+        let none = BufferUsages::empty();
+        let (to, from) = (BufferUsages::COPY_DST, BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
+        let still = vec![[0.0f32; 4]; flat.start.len()];
+        let state: Vec<[f32; 4]> = flat.start.iter().chain(&flat.start).chain(&still).copied().collect();
+        let entry = |e: &super::program::Entry| [program.tables[e.table].1, u32::from(e.fresh), flat.particles, 0];
+        let ops = make.uniforms("ops", program.entries().map(entry));
+        let moments = make.uniforms("moments", (0..most).map(|substep| [substep, 0, 0, 0]));
+        let groups = make.with("groups", &program.groups(), none);
+        let garments = make.with("garments", constants, to);
+        let state = make.with("state", &state, from);
+        let targets = make.zeros("targets", 2 * flat.targets as usize, 16);
+        let shear_measures = make.with("shear measures", &flat.shear.measures, to);
+        let weft_measures = make.with("weft measures", &flat.weft.measures, to);
+        let scales = make.with("scales", &flat.bending.scales, to);
+        let reports = make.zeros("reports", constants.len(), 4 * REPORT);
+        let good = make.with("good", &flat.start, from);
+        let start = make.with("start", &flat.start, none);
+        let pins = make.with("pins", &flat.pins, none);
+        let tethers = make.with("tethers", &flat.tethers, none);
+        let links = |make: &mut Maker<'_>, ends: &[[u32; 4]]| {
+            [make.with("ends", ends, none), make.zeros("tensions", ends.len(), 4)]
+        };
+        let [shear_ends, shear_tensions] = links(&mut make, &flat.shear.ends);
+        let [weft_ends, weft_tensions] = links(&mut make, &flat.weft.ends);
+        let heads = make.with("heads", &flat.diagonals.heads, none);
+        let leads = make.with("leads", &flat.diagonals.leads, none);
+        let leaning = make.with("leaning", &flat.diagonals.measures, none);
+        let kept = make.zeros("kept", flat.diagonals.leads.len(), 16);
+        let lengths = make.zeros("lengths", flat.diagonals.leads.len(), 4);
+        let bundles = make.with("bundles", &flat.fibers.bundles, none);
+        let rows = make.with("rows", &flat.fibers.rows, none);
+        let measures = make.with("measures", &flat.fibers.measures, none);
+        let factors = make.zeros("factors", flat.fibers.links, 16);
+        let sides = make.zeros("sides", flat.fibers.links, 8);
+        let lists = make.with("lists", &flat.lists.heads, none);
+        let index = make.with("index", &flat.lists.index, none);
+        let hoops = make.with("hoops", &flat.lists.measures, none);
+        let hooped = make.zeros("hooped", 3 * flat.lists.index.len(), 16);
+        let items = make.with("items", &flat.bending.items, none);
+        let terms = make.with("terms", &flat.bending.terms, none);
+        let curvatures = make.zeros("curvatures", flat.bending.items.len(), 16);
+        let starts = make.with("starts", &flat.bending.starts, none);
+        let entries = make.with("entries", &flat.bending.entries, none);
+        let own: [&[&Buffer]; Kernel::ALL.len()] = [
+            &[&good, &start],
+            &[&items, &terms, &scales, &curvatures],
+            &[&starts, &entries, &items, &terms, &curvatures],
+            &[&pins, &targets],
+            &[&heads, &leads, &leaning, &kept, &lengths],
+            &[&shear_ends, &shear_measures, &shear_tensions],
+            &[&weft_ends, &weft_measures, &weft_tensions],
+            &[&lists, &index, &hoops, &hooped],
+            &[&bundles, &rows, &measures, &factors, &sides],
+            &[&tethers],
+            &[&reports],
+            &[&reports],
+            &[&reports, &good, &start],
+            &[&reports, &good, &start],
+        ];
+        let bytes = make.bytes;
+        let layout = scene_layout(&device.device);
+        let kernels = kernels(&device.device, &layout, &own);
+        let scene = scene(&device.device, &layout, [&ops, &garments, &groups, &state, &moments]);
+        Self {
+            garments,
+            state,
+            targets,
+            shear_measures,
+            weft_measures,
+            scales,
+            reports,
+            good,
+            scene,
+            kernels,
+            bytes,
+        }
+    }
+
+    /// Bytes on the device.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+}
+
+fn bound(binding: u32, ty: BufferBindingType, dynamic: bool) -> BindGroupLayoutEntry {
+    let size = if dynamic { std::num::NonZeroU64::new(16) } else { None };
+    let ty = BindingType::Buffer { ty, has_dynamic_offset: dynamic, min_binding_size: size };
+    BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None }
+}
+
+fn scene_layout(device: &wgpu::Device) -> BindGroupLayout {
+    let storage = |binding, read_only| bound(binding, BufferBindingType::Storage { read_only }, false);
+    let uniform = |binding| bound(binding, BufferBindingType::Uniform, true);
+    device.create_bind_group_layout(&BindGroupLayoutDescriptor {
+        label: Some("scene"),
+        entries: &[uniform(0), storage(1, true), storage(2, true), storage(3, false), uniform(4)],
+    })
+}
+
+fn scene(device: &wgpu::Device, layout: &BindGroupLayout, buffers: [&Buffer; 5]) -> BindGroup {
+    let entries: Vec<_> = (0u32..)
+        .zip(buffers)
+        .map(|(binding, buffer)| {
+            // Of the uniforms one of many.
+            let size = if buffer.usage().contains(BufferUsages::UNIFORM) { Some(16) } else { None };
+            let size = size.and_then(std::num::NonZeroU64::new);
+            BindGroupEntry { binding, resource: BindingResource::Buffer(BufferBinding { buffer, offset: 0, size }) }
+        })
+        .collect();
+    device.create_bind_group(&BindGroupDescriptor { label: Some("scene"), layout, entries: &entries })
+}
+
+fn kernels(
+    device: &wgpu::Device,
+    scene: &BindGroupLayout,
+    own: &[&[&Buffer]; Kernel::ALL.len()],
+) -> Vec<(ComputePipeline, BindGroup)> {
+    let shaders: Vec<_> = SHADERS
+        .iter()
+        .map(|s| {
+            let source = ShaderSource::Wgsl(s.source().into());
+            let module = device.create_shader_module(ShaderModuleDescriptor { label: Some(s.name), source });
+            let storage = |(binding, read_only): (u32, &bool)| {
+                bound(binding, BufferBindingType::Storage { read_only: *read_only }, false)
+            };
+            let entries: Vec<_> = (0..).zip(s.reads).map(storage).collect();
+            let layout = BindGroupLayoutDescriptor { label: Some(s.name), entries: &entries };
+            (module, device.create_bind_group_layout(&layout))
+        })
+        .collect();
+    let pipeline = |kernel: Kernel| {
+        let (shader, entry) = kernel.entry();
+        let (module, layout) = &shaders[shader];
+        let whole = device.create_pipeline_layout(&PipelineLayoutDescriptor {
+            label: Some(entry),
+            bind_group_layouts: &[Some(scene), Some(layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_compute_pipeline(&ComputePipelineDescriptor {
+            label: Some(entry),
+            layout: Some(&whole),
+            module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        let entries: Vec<_> = (0u32..)
+            .zip(own[kernel.number()])
+            .map(|(binding, buffer)| BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            .collect();
+        (pipeline, device.create_bind_group(&BindGroupDescriptor { label: Some(entry), layout, entries: &entries }))
+    };
+    Kernel::ALL.map(pipeline).into()
+}

@@ -1,0 +1,164 @@
+//! Flat: baked garments as the kernels have them, one behind the other, in workgroups of 64.
+//!
+//! Reads: baked garments. Writes: the numbers of every buffer, and the workgroups of every dispatch.
+//! Budget: at load only, some milliseconds a garment.
+//! Thread: the loading thread.
+
+mod bending;
+mod diagonals;
+mod fibers;
+mod links;
+mod lists;
+
+use toile_assets::garment::Garment;
+
+pub use bending::{FlatBending, Scale};
+pub use diagonals::FlatDiagonals;
+pub use fibers::FlatFibers;
+pub use links::FlatLinks;
+pub use lists::FlatLists;
+
+use super::constants::SOFT_WEFT;
+
+/// Invocations of a workgroup: the least that fills the vectors of every GPU of today, which are 32 or 64 wide.
+pub const WIDTH: u32 = 64;
+
+/// A particle that is not skinned, among the pins.
+pub const FREE: u32 = u32::MAX;
+
+/// Where a garment lies in the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Span {
+    /// Its number among the garments as they lie.
+    pub garment: u32,
+    /// Its first particle.
+    pub first: u32,
+    /// Its particles.
+    pub len: u32,
+}
+
+/// The workgroups of a dispatch, garment after garment: the first garments' alone are a prefix.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Groups {
+    /// Garment, first item, number of items, and what else the kernel wants to know.
+    pub groups: Vec<[u32; 4]>,
+    /// Groups of the first so many garments and one `[garments]`.
+    ends: Vec<u32>,
+}
+
+impl Groups {
+    /// From here on they are this garment's.
+    pub fn begin(&mut self, garment: u32) {
+        self.ends.resize(garment as usize + 1, self.groups.len() as u32);
+    }
+
+    /// Appends one of the garment that has begun.
+    pub fn push(&mut self, group: [u32; 4]) {
+        self.groups.push(group);
+        if let Some(end) = self.ends.last_mut() {
+            *end = self.groups.len() as u32;
+        }
+    }
+
+    /// Appends what so many items of a garment need.
+    pub fn add(&mut self, garment: u32, first: u32, count: u32, what: u32) {
+        self.begin(garment);
+        for at in (0..count).step_by(WIDTH as usize) {
+            self.push([garment, first + at, (count - at).min(WIDTH), what]);
+        }
+    }
+
+    /// Workgroups of the first so many garments.
+    pub fn of(&self, garments: usize) -> u32 {
+        let last = garments.min(self.ends.len());
+        if last == 0 { 0 } else { self.ends[last - 1] }
+    }
+}
+
+/// A scene's garments, laid flat.
+#[derive(Debug, Clone, Default)]
+pub struct Flat {
+    /// The garments as they lie: those with the most substeps first.
+    pub order: Vec<usize>,
+    /// Where each lies, in that order.
+    pub spans: Vec<Span>,
+    /// Where each garment's targets begin, in that order, and how many there are in all.
+    pub pins_from: Vec<u32>,
+    /// Particles of all.
+    pub particles: u32,
+    /// Place at rest (m) and inverse mass (1/kg) `[particles]`.
+    pub start: Vec<[f32; 4]>,
+    /// Which target each particle follows, or [`FREE`] `[particles]`.
+    pub pins: Vec<u32>,
+    /// Skinned particles of all.
+    pub targets: u32,
+    /// Anchor, and bits of the length (m) of the way to it `[particles]`.
+    pub tethers: Vec<[u32; 2]>,
+    /// Workgroups over the particles.
+    pub everyone: Groups,
+    /// Shear links that lie in no fiber.
+    pub shear: FlatLinks,
+    /// Weft links.
+    pub weft: FlatLinks,
+    /// Fibers along the bias.
+    pub diagonals: FlatDiagonals,
+    /// Fibers along the warp.
+    pub fibers: FlatFibers,
+    /// Fibers by index list.
+    pub lists: FlatLists,
+    /// Bending.
+    pub bending: FlatBending,
+}
+
+impl Flat {
+    /// Lays garments flat.
+    pub fn new(garments: &[&Garment]) -> Self {
+        let mut order: Vec<usize> = (0..garments.len()).collect();
+        // By what they ask for at their own pace: any settings keep this order.
+        order.sort_by_key(|&k| (std::cmp::Reverse(garments[k].substeps), k));
+        let mut flat = Self { order: order.clone(), ..Self::default() };
+        for (number, &k) in order.iter().enumerate() {
+            flat.add(number as u32, garments[k]);
+        }
+        flat
+    }
+
+    fn add(&mut self, number: u32, garment: &Garment) {
+        let span = Span { garment: number, first: self.particles, len: garment.particles() as u32 };
+        let (layout, weights) = (&garment.layout, &garment.inverse_mass);
+        self.start.extend(garment.start.iter().zip(weights).map(|(p, w)| [p.x, p.y, p.z, *w]));
+        self.pins_from.push(self.targets);
+        let mut pins = vec![FREE; garment.particles()];
+        for (k, &i) in garment.fixed.iter().enumerate() {
+            pins[i as usize] = self.targets + k as u32;
+        }
+        self.pins.extend(pins);
+        self.targets += garment.fixed.len() as u32;
+        let tethers = layout.tethers.anchor.iter().zip(&layout.tethers.length);
+        self.tethers.extend(tethers.map(|(a, l)| [span.first + a, l.to_bits()]));
+        self.everyone.add(number, span.first, span.len, 0);
+        self.shear.add(&layout.shear, weights, span, 0);
+        self.weft.add(&layout.weft, weights, span, SOFT_WEFT);
+        self.diagonals.add(&layout.diagonals, weights, span);
+        self.fibers.add(&layout.fibers, span);
+        self.lists.add(&layout.crossing, span);
+        self.bending.add(layout, weights, span);
+        self.particles += span.len;
+        self.spans.push(span);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_garments_groups_are_a_prefix() {
+        let mut groups = Groups::default();
+        groups.add(0, 0, 130, 7);
+        groups.add(2, 200, 64, 7);
+        assert_eq!(groups.groups, [[0, 0, 64, 7], [0, 64, 64, 7], [0, 128, 2, 7], [2, 200, 64, 7]]);
+        assert_eq!([0, 1, 2, 3, 9].map(|n| groups.of(n)), [0, 3, 3, 4, 4]);
+        assert_eq!(Groups::default().of(3), 0);
+    }
+}

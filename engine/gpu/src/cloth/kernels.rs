@@ -1,0 +1,154 @@
+//! Kernels: the shaders, what each is bound to, and their pipelines.
+
+/// A kernel, in the order in which a step first runs it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Kernel {
+    /// The root has been put somewhere else.
+    Jump,
+    /// Curvatures.
+    Bending,
+    /// What they do to each particle.
+    Bent,
+    /// Gravity and air; skinned particles move on.
+    Predict,
+    /// Fibers along the bias.
+    Diagonals,
+    /// Shear links.
+    Shear,
+    /// Weft links.
+    Weft,
+    /// Fibers by index list: hoops, and what crosses.
+    Lists,
+    /// Warp fibers.
+    Fibers,
+    /// Tethers.
+    Tethers,
+    /// New velocities.
+    Settle,
+    /// Whether all is finite.
+    Guard,
+    /// The last good places.
+    Publish,
+    /// What the report says of the next step.
+    Conclude,
+}
+
+/// A shader's text, without what all have in common.
+#[derive(Debug, Clone, Copy)]
+pub struct Shader {
+    /// Its file's name.
+    pub name: &'static str,
+    text: &'static str,
+    /// Its storage buffers in the order of their bindings: whether each is only read.
+    pub reads: &'static [bool],
+}
+
+const COMMON: &str = include_str!("../shaders/common.wgsl");
+
+macro_rules! shader {
+    ($name:literal, $reads:expr) => {
+        Shader { name: $name, text: include_str!(concat!("../shaders/", $name, ".wgsl")), reads: &$reads }
+    };
+}
+
+/// All shaders.
+pub const SHADERS: [Shader; 12] = [
+    shader!("jump", [false, true]),
+    shader!("bending", [true, true, true, false]),
+    shader!("bent", [true, true, true, true, true]),
+    shader!("predict", [true, true]),
+    shader!("diagonals", [true, true, true, false, false]),
+    shader!("links", [true, true, false]),
+    shader!("lists", [true, true, true, false]),
+    shader!("fibers", [true, true, true, false, false]),
+    shader!("tethers", [true]),
+    shader!("settle", [false]),
+    shader!("guard", [false]),
+    shader!("publish", [false, false, true]),
+];
+
+impl Shader {
+    /// The whole text.
+    pub fn source(&self) -> String {
+        [COMMON, self.text].concat()
+    }
+}
+
+impl Kernel {
+    /// All kernels.
+    pub const ALL: [Self; 14] = [
+        Self::Jump,
+        Self::Bending,
+        Self::Bent,
+        Self::Predict,
+        Self::Diagonals,
+        Self::Shear,
+        Self::Weft,
+        Self::Lists,
+        Self::Fibers,
+        Self::Tethers,
+        Self::Settle,
+        Self::Guard,
+        Self::Publish,
+        Self::Conclude,
+    ];
+
+    /// Its number among [`Kernel::ALL`].
+    pub fn number(self) -> usize {
+        self as usize
+    }
+
+    /// Its shader among [`SHADERS`], and its entry point there.
+    pub fn entry(self) -> (usize, &'static str) {
+        let name = match self {
+            Self::Jump => "jump",
+            Self::Bending => "bending",
+            Self::Bent => "bent",
+            Self::Predict => "predict",
+            Self::Diagonals => "diagonals",
+            Self::Shear | Self::Weft => "links",
+            Self::Lists => "lists",
+            Self::Fibers => "fibers",
+            Self::Tethers => "tethers",
+            Self::Settle => "settle",
+            Self::Guard => "guard",
+            Self::Publish | Self::Conclude => "publish",
+        };
+        let shader = SHADERS.iter().position(|s| s.name == name).unwrap_or(0);
+        (shader, if self == Self::Conclude { "conclude" } else { name })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
+    use wgpu::naga::{AddressSpace, StorageAccess, front::wgsl};
+
+    #[test]
+    fn every_shader_is_valid_without_any_capability_and_bound_as_it_is_said_to_be() {
+        for shader in SHADERS {
+            let module = wgsl::parse_str(&shader.source())
+                .unwrap_or_else(|e| panic!("{}: {}", shader.name, e.emit_to_string(&shader.source())));
+            let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+            validator.validate(&module).unwrap_or_else(|e| panic!("{}: {e:?}", shader.name));
+            let mut reads = vec![None; shader.reads.len()];
+            for (_, variable) in module.global_variables.iter() {
+                let Some(binding) = variable.binding.filter(|b| b.group == 1) else { continue };
+                let AddressSpace::Storage { access } = variable.space else { panic!("{}: not storage", shader.name) };
+                reads[binding.binding as usize] = Some(!access.contains(StorageAccess::STORE));
+            }
+            let said: Vec<_> = shader.reads.iter().map(|r| Some(*r)).collect();
+            assert_eq!(reads, said, "{}", shader.name);
+        }
+    }
+
+    #[test]
+    fn every_kernel_has_its_number_and_its_entry_point() {
+        for (number, kernel) in Kernel::ALL.into_iter().enumerate() {
+            let (shader, entry) = kernel.entry();
+            assert_eq!(kernel.number(), number);
+            assert!(SHADERS[shader].source().contains(&format!("fn {entry}(")), "{kernel:?}");
+        }
+    }
+}

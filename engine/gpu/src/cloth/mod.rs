@@ -1,0 +1,152 @@
+//! The cloth on a GPU: all garments of a scene in one set of buffers, a dispatch a phase.
+//!
+//! Reads: baked garments, bone palettes, settings. Writes: positions, one step late.
+//! Budget: buffers and pipelines at load; in the frame no buffer, no pipeline and no wait, some 40 dispatches a substep.
+//! Thread: the one that calls [`Offload::step`]; not the physics thread of a garment that is on the CPU.
+//!
+//! The phases and their order are those of `toile_engine::cloth::program`; docs/gpu.md says which kernel gives the same
+//! bits as its twin and which only stays within a bound.
+
+mod buffers;
+pub mod constants;
+pub mod flat;
+pub mod kernels;
+pub mod program;
+mod read;
+pub mod ring;
+mod step;
+
+use glam::Vec3A;
+use toile_assets::garment::Garment;
+use toile_engine::cloth::pins::Pins;
+use toile_engine::cloth::prepared::Prepared;
+use toile_engine::cloth::root::RootMotion;
+use toile_engine::cloth::settings::MAX_SUBSTEPS;
+use toile_engine::cloth::{Quality, Settings, centre};
+
+use crate::device::{Choice, Device, GpuError};
+use buffers::{Buffers, needs};
+use constants::Constants;
+use flat::Flat;
+use program::Program;
+use ring::{Ring, Tally};
+
+pub use kernels::Kernel;
+pub use read::Report;
+
+/// What the surroundings do to one garment during one step.
+pub use toile_engine::cloth::Step;
+
+/// One garment's part on the CPU, in the order in which the caller gave them.
+#[derive(Debug)]
+struct Own {
+    prepared: Prepared,
+    pins: Pins,
+    root: RootMotion,
+    origin: Vec3A,
+    /// Where it is in the flat scene.
+    place: usize,
+    positions: Box<[Vec3A]>,
+    report: Report,
+}
+
+/// Garments that are stepped on a GPU. All storage is made once.
+#[derive(Debug)]
+pub struct Offload {
+    device: Device,
+    flat: Flat,
+    program: Program,
+    buffers: Buffers,
+    ring: Ring,
+    own: Vec<Own>,
+    /// As they lie.
+    constants: Vec<Constants>,
+    targets: Vec<[f32; 4]>,
+    /// Garments that make a substep, by its number, for the step under way.
+    active: Vec<u32>,
+    quality: Quality,
+    settings_seen: Option<Settings>,
+}
+
+impl Offload {
+    /// Opens a device for these garments and lays them out on it, at rest where each starts. At load: some tenths of a
+    /// second, most of them for the pipelines.
+    ///
+    /// # Errors
+    /// [`GpuError`]: no adapter, limits too small, or a garment or a setting that only the CPU can take.
+    pub fn new(choice: &Choice, garments: &[&Garment], settings: &Settings) -> Result<Self, GpuError> {
+        let settings = &settings.sound();
+        let mut prepared: Vec<Prepared> = garments.iter().map(|g| Prepared::new(g)).collect();
+        for (garment, prepared) in garments.iter().zip(&mut prepared) {
+            prepared.make(garment, settings);
+            takes(garment, prepared, settings)?;
+        }
+        let flat = Flat::new(garments);
+        let program = Program::new(&flat);
+        let device = Device::open(choice, needs(&flat, &program))?;
+        let constants: Vec<Constants> =
+            flat.order.iter().map(|&k| Constants::new(garments[k], &prepared[k], settings)).collect();
+        let buffers = Buffers::new(&device, &flat, &program, &constants, MAX_SUBSTEPS);
+        let back = buffers.good.size() + buffers.reports.size();
+        let ring = Ring::new(&device.device, back);
+        device.sound()?;
+        let own = (0..).zip(garments.iter().zip(prepared)).map(|(k, (garment, prepared))| Own {
+            prepared,
+            pins: Pins::new(garment),
+            root: RootMotion::new(settings.root),
+            origin: centre(garment),
+            place: flat.order.iter().position(|o| *o == k).unwrap_or(k),
+            positions: garment.start.iter().map(|p| Vec3A::from(*p)).collect(),
+            report: Report::default(),
+        });
+        let own = own.collect();
+        let targets = vec![[0.0; 4]; 2 * flat.targets as usize];
+        let active = vec![0; MAX_SUBSTEPS as usize];
+        let quality = settings.quality;
+        Ok(Self { device, program, buffers, ring, own, constants, targets, active, quality, flat, settings_seen: None })
+    }
+
+    /// The device.
+    pub fn device(&self) -> &Device {
+        &self.device
+    }
+
+    /// World positions (m) of a garment at the end of the newest step that has come back `[particles]`: always finite.
+    pub fn positions(&self, garment: usize) -> &[Vec3A] {
+        &self.own[garment].positions
+    }
+
+    /// What happened to a garment, as of the same step.
+    pub fn report(&self, garment: usize) -> Report {
+        self.own[garment].report
+    }
+
+    /// What became of the steps' results.
+    pub fn tally(&self) -> Tally {
+        self.ring.tally
+    }
+
+    /// Substeps of a step of a garment, as last prepared.
+    pub fn substeps(&self, garment: usize) -> u32 {
+        self.own[garment].prepared.substeps
+    }
+
+    /// Bytes on the device, but for what is on its way back.
+    pub fn bytes(&self) -> u64 {
+        self.buffers.bytes()
+    }
+}
+
+/// Whether a garment can be stepped here with these settings.
+fn takes(garment: &Garment, prepared: &Prepared, settings: &Settings) -> Result<(), GpuError> {
+    let root = settings.root;
+    let refused = [
+        (prepared.bend.stages > 1, "its bending is stiffer than a substep carries, which takes stages"),
+        (settings.wind.is_some(), "there is wind"),
+        ([root.linear, root.angular, root.centrifugal] != [1.0; 3], "part of the root's motion is not to be felt"),
+    ];
+    match refused.into_iter().find(|(is, _)| *is) {
+        None => Ok(()),
+        Some((_, what)) => Err(GpuError::Unsupported { garment: garment.name.clone(), what }),
+    }
+}

@@ -1,0 +1,122 @@
+//! The program of a step: which kernel runs over which workgroups, in the CPU's order (`cloth::program`).
+
+use toile_engine::cloth::Quality;
+
+use super::flat::{Flat, Groups};
+use super::kernels::Kernel;
+
+/// One dispatch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Entry {
+    /// What runs.
+    pub kernel: Kernel,
+    /// Its workgroups, among [`Program::tables`].
+    pub table: usize,
+    /// Whether tensions start from none.
+    pub fresh: bool,
+    /// Which constants are its own.
+    pub op: u32,
+}
+
+/// The dispatches of a step.
+#[derive(Debug, Clone, Default)]
+pub struct Program {
+    /// Workgroups that entries refer to, and where each begins among all.
+    pub tables: Vec<(Groups, u32)>,
+    /// Before the first substep, where a root has jumped.
+    pub jump: Vec<Entry>,
+    /// Each substep at the quality `draft`.
+    pub draft: Vec<Entry>,
+    /// Each substep at the others.
+    pub whole: Vec<Entry>,
+    /// After the last.
+    pub after: Vec<Entry>,
+}
+
+/// Tables of one kind, by number.
+struct Tables {
+    everyone: usize,
+    bending: usize,
+    diagonals: Vec<usize>,
+    shear: Vec<usize>,
+    weft: Vec<usize>,
+    lists: Vec<usize>,
+    fibers: usize,
+}
+
+impl Program {
+    /// Of a scene.
+    pub fn new(flat: &Flat) -> Self {
+        let mut this = Self::default();
+        let tables = Tables {
+            everyone: this.table(&flat.everyone),
+            bending: this.table(&flat.bending.groups),
+            diagonals: flat.diagonals.families.iter().map(|g| this.table(g)).collect(),
+            shear: flat.shear.halves.iter().map(|g| this.table(g)).collect(),
+            weft: flat.weft.halves.iter().map(|g| this.table(g)).collect(),
+            lists: flat.lists.sets.iter().map(|g| this.table(g)).collect(),
+            fibers: this.table(&flat.fibers.groups),
+        };
+        let all = |kernel| Entry { kernel, table: tables.everyone, fresh: false, op: 0 };
+        this.jump = vec![all(Kernel::Jump)];
+        this.draft = this.substep(&tables, false);
+        this.whole = this.substep(&tables, true);
+        this.after = vec![all(Kernel::Guard), all(Kernel::Publish), all(Kernel::Conclude)];
+        this.number();
+        this
+    }
+
+    /// Gives each entry the number of its constants; those of a draft are among the whole substep's.
+    fn number(&mut self) {
+        let whole = self.jump.iter_mut().chain(&mut self.whole).chain(&mut self.after);
+        (0..).zip(whole).for_each(|(op, entry)| entry.op = op);
+        for entry in &mut self.draft {
+            let same = |e: &&Entry| (e.kernel, e.table, e.fresh) == (entry.kernel, entry.table, entry.fresh);
+            entry.op = self.whole.iter().find(same).map_or(0, |e| e.op);
+        }
+    }
+
+    /// Each substep at a quality.
+    pub fn each(&self, quality: Quality) -> &[Entry] {
+        if quality == Quality::Draft { &self.draft } else { &self.whole }
+    }
+
+    /// Every entry there is: what has to have constants of its own.
+    pub fn entries(&self) -> impl Iterator<Item = &Entry> {
+        self.jump.iter().chain(&self.whole).chain(&self.after)
+    }
+
+    /// The workgroups of all tables, as one list.
+    pub fn groups(&self) -> Vec<[u32; 4]> {
+        self.tables.iter().flat_map(|(groups, _)| groups.groups.iter().copied()).collect()
+    }
+
+    fn table(&mut self, groups: &Groups) -> usize {
+        let first = self.tables.last().map_or(0, |(last, first)| first + last.groups.len() as u32);
+        self.tables.push((groups.clone(), first));
+        self.tables.len() - 1
+    }
+
+    /// A substep; `whole` solves hoops and fibers in turn.
+    fn substep(&self, tables: &Tables, whole: bool) -> Vec<Entry> {
+        let entry = |kernel, table, fresh| Entry { kernel, table, fresh, op: 0 };
+        let wefts = |fresh: bool| tables.weft.iter().map(move |&t| entry(Kernel::Weft, t, fresh));
+        let lists = |fresh: bool| tables.lists.iter().map(move |&t| entry(Kernel::Lists, t, fresh));
+        let fibers = |fresh: bool| lists(fresh).chain([entry(Kernel::Fibers, tables.fibers, fresh)]);
+        let mut entries = vec![
+            entry(Kernel::Bending, tables.bending, false),
+            entry(Kernel::Bent, tables.everyone, false),
+            entry(Kernel::Predict, tables.everyone, false),
+        ];
+        entries.extend(tables.diagonals.iter().map(|&t| entry(Kernel::Diagonals, t, false)));
+        entries.extend(tables.shear.iter().map(|&t| entry(Kernel::Shear, t, false)));
+        entries.extend(wefts(true).chain(fibers(true)));
+        if whole {
+            entries.extend(wefts(false).chain(wefts(false)).chain(fibers(false)).chain(wefts(false)).chain(wefts(false)));
+        }
+        entries.push(entry(Kernel::Tethers, tables.everyone, false));
+        entries.push(entry(Kernel::Settle, tables.everyone, false));
+        entries.retain(|e| !self.tables[e.table].0.groups.is_empty());
+        entries
+    }
+}

@@ -1,0 +1,137 @@
+//! Read: what comes back from the device, and doors for tests: a kernel alone, a state put there, a state read.
+
+use glam::Vec3A;
+use toile_assets::garment::Garment;
+use wgpu::{BufferDescriptor, BufferUsages, ComputePassDescriptor, MapMode};
+
+use super::buffers::REPORT;
+use super::kernels::Kernel;
+use super::{Offload, Step};
+use crate::device::GpuError;
+
+/// What happened to a garment that should not have, counted since it was made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Report {
+    /// Particle substeps that were held at the speed limit.
+    pub speed_limited: u32,
+    /// Steps that ended with a value that is not finite and were rolled back.
+    pub rolled_back: u32,
+    /// Skinned particles whose target was not finite and that were held.
+    pub held_pins: u64,
+}
+
+/// A garment's particles as the device has them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Particles {
+    /// World positions (m) `[particles]`.
+    pub x: Vec<Vec3A>,
+    /// Where the substep began (m) `[particles]`.
+    pub previous: Vec<Vec3A>,
+    /// Velocities (m/s) `[particles]`.
+    pub v: Vec<Vec3A>,
+}
+
+impl Offload {
+    /// Takes in the newest step that has come back, if any; waits for nothing.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`].
+    pub fn take(&mut self) -> Result<(), GpuError> {
+        self.device.sound()?;
+        // What a driver has to say about it comes by way of the device's own callbacks.
+        let _ = self.device.device.poll(wgpu::PollType::Poll);
+        let (own, spans) = (&mut self.own, &self.flat.spans);
+        let places = 16 * self.flat.particles as usize;
+        self.ring.take(|bytes| {
+            let (good, reports) = bytes.split_at(places.min(bytes.len()));
+            let good: &[[f32; 4]] = bytemuck::cast_slice(good);
+            let reports: &[[u32; REPORT]] = bytemuck::cast_slice(reports);
+            for own in own {
+                let (span, report) = (spans[own.place], reports[own.place]);
+                let from = &good[span.first as usize..(span.first + span.len) as usize];
+                own.positions.iter_mut().zip(from).for_each(|(to, p)| *to = Vec3A::new(p[0], p[1], p[2]));
+                (own.report.speed_limited, own.report.rolled_back) = (report[0], report[3]);
+            }
+        });
+        Ok(())
+    }
+
+    /// Waits for everything that was sent, and takes it in. Never in the frame.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`].
+    pub fn finish(&mut self) -> Result<(), GpuError> {
+        self.device.finish();
+        self.take()
+    }
+
+    /// Puts a garment's particles somewhere, with velocities (m, m/s): how tests and scenes disturb a garment.
+    pub fn disturb(&mut self, garment: usize, x: &[Vec3A], v: &[Vec3A]) {
+        let span = self.flat.spans[self.own[garment].place];
+        let weights = self.flat.start[span.first as usize..].iter().map(|s| s[3]);
+        let places: Vec<[f32; 4]> = x.iter().zip(weights).map(|(p, w)| [p.x, p.y, p.z, w]).collect();
+        let speeds: Vec<[f32; 4]> = v.iter().map(|v| [v.x, v.y, v.z, 0.0]).collect();
+        for (part, numbers) in [&places, &places, &speeds].into_iter().enumerate() {
+            let first = u64::from(part as u32 * self.flat.particles + span.first);
+            let some = &numbers[..numbers.len().min(span.len as usize)];
+            self.device.queue.write_buffer(&self.buffers.state, 16 * first, bytemuck::cast_slice(some));
+        }
+    }
+
+    /// Runs the dispatches of one kernel alone, as in one substep: how a test holds it against its twin. Where a kernel has
+    /// several passes in a substep, the first.
+    ///
+    /// # Errors
+    /// As [`Offload::step`].
+    pub fn only(
+        &mut self,
+        kernel: Kernel,
+        substep: u32,
+        garments: &[&Garment],
+        steps: &[Step<'_>],
+    ) -> Result<(), GpuError> {
+        let Some(first) = steps.first() else { return Ok(()) };
+        let settings = first.settings.sound();
+        self.prepare(garments, &settings)?;
+        self.begin(garments, steps, &settings);
+        let mut encoder = self.encoder();
+        {
+            let pass = ComputePassDescriptor { label: Some("only"), ..Default::default() };
+            let mut pass = encoder.begin_compute_pass(&pass);
+            let mut done = Vec::new();
+            for entry in self.program.entries().filter(|e| e.kernel == kernel) {
+                if !done.contains(&entry.table) {
+                    done.push(entry.table);
+                    self.dispatch(&mut pass, entry, substep, self.own.len());
+                }
+            }
+        }
+        self.device.queue.submit([encoder.finish()]);
+        self.device.sound()
+    }
+
+    /// Reads a garment's particles, and waits for them. Never in the frame.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`].
+    pub fn particles(&self, garment: usize) -> Result<Particles, GpuError> {
+        let state = &self.buffers.state;
+        let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
+        let descriptor = BufferDescriptor { label: Some("state"), size: state.size(), usage, mapped_at_creation: false };
+        let to = self.device.device.create_buffer(&descriptor);
+        let mut encoder = self.encoder();
+        encoder.copy_buffer_to_buffer(state, 0, &to, 0, state.size());
+        self.device.queue.submit([encoder.finish()]);
+        to.map_async(MapMode::Read, .., |_| {});
+        self.device.finish();
+        self.device.sound()?;
+        let bytes = to.get_mapped_range(..).map_err(|e| GpuError::Lost(e.to_string()))?;
+        let numbers: &[[f32; 4]] = bytemuck::cast_slice(&bytes);
+        let span = self.flat.spans[self.own[garment].place];
+        let part = |part: u32| {
+            let first = (part * self.flat.particles + span.first) as usize;
+            numbers[first..first + span.len as usize].iter().map(|p| Vec3A::new(p[0], p[1], p[2])).collect()
+        };
+        Ok(Particles { x: part(0), previous: part(1), v: part(2) })
+    }
+}

@@ -1,0 +1,120 @@
+// What every kernel of the cloth begins with: the scene's bindings, and the functions that the CPU's lanes have.
+//
+// Sums of products are written out in the CPU's order. Nothing here asks for a fused multiply-add; a driver may still
+// make one (WGSL allows it), and then a result is within a bound instead of bit for bit: docs/gpu.md.
+
+// One dispatch.
+struct Op {
+    // First of its workgroups in `groups`.
+    first: u32,
+    // 1 where tensions start from none.
+    fresh: u32,
+    // Particles of the scene: how far the three parts of `state` lie from each other.
+    particles: u32,
+    spare: u32,
+}
+
+// The moment of a dispatch.
+struct Now {
+    // Substep of the step.
+    substep: u32,
+}
+
+// What the settings make of a garment: see `constants.rs`, which has the same fields in the same order.
+struct Garment {
+    // Gravity over a substep (m/s), and what the air leaves of a velocity.
+    fall: vec3<f32>,
+    kept: f32,
+    // Length of a substep (s), its inverse, that squared, damping time over it.
+    dt: f32,
+    per_dt: f32,
+    per_dt2: f32,
+    gamma: f32,
+    // Length of the time that bending acts for (s), every so many substeps; 1 / dt^2 of shear, every so many.
+    bend_by: f32,
+    bend_every: u32,
+    shear_per_dt2: f32,
+    shear_every: u32,
+    // Farthest that a particle moves in a substep (m); substeps; see the bits below; nothing.
+    farthest: f32,
+    substeps: u32,
+    bits: u32,
+    spare: u32,
+    // The root, by its axes and its place: where a garment is dressed again.
+    root: array<vec4<f32>, 4>,
+    // What a jump of the root moves along, likewise.
+    motion: array<vec4<f32>, 4>,
+}
+
+// Bits of a garment: which constraints remember their tension, whether fibers are calmed, whether tethers hold.
+const SOFT_WEFT = 1u;
+const SOFT_FIBERS = 2u;
+const TAUT = 4u;
+const TETHERS = 8u;
+const SOFT_CROSSING = 64u;
+// Bits of a step: the garment is dressed again; it is carried along.
+const DRESS = 16u;
+const CARRY = 32u;
+
+@group(0) @binding(0) var<uniform> op: Op;
+@group(0) @binding(1) var<storage, read> garments: array<Garment>;
+// A workgroup's garment, first item, number of items, and what else the kernel wants to know.
+@group(0) @binding(2) var<storage, read> groups: array<vec4<u32>>;
+// Places and inverse masses, then where the substep began, then velocities: `particles` of each.
+@group(0) @binding(3) var<storage, read_write> state: array<vec4<f32>>;
+@group(0) @binding(4) var<uniform> now: Now;
+
+fn place(i: u32) -> vec3<f32> {
+    return state[i].xyz;
+}
+
+fn previous(i: u32) -> vec3<f32> {
+    return state[op.particles + i].xyz;
+}
+
+fn put(i: u32, x: vec3<f32>) {
+    state[i] = vec4<f32>(x, state[i].w);
+}
+
+// Inner product, summed from x to z.
+fn inner(a: vec3<f32>, b: vec3<f32>) -> f32 {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+// a > b ? a : b, as the lanes have it: the built-in leaves open what a number that is none gives.
+fn more_of(a: f32, b: f32) -> f32 {
+    return select(b, a, a > b);
+}
+
+// a < b ? a : b.
+fn less_of(a: f32, b: f32) -> f32 {
+    return select(b, a, a < b);
+}
+
+// 1 / sqrt(x) to 8e-7 (Walczyk, Moroz, Cieslinski 2021): the CPU's, operation by operation.
+fn reciprocal_root(x: f32) -> f32 {
+    var y = bitcast<f32>(0x5F1FFFF9u - (bitcast<u32>(x) >> 1u));
+    y = y * 0.70395225 * (2.3892446 - x * y * y);
+    return y * (1.5 - 0.5 * x * y * y);
+}
+
+// a / sqrt(x), a product earlier.
+fn times_reciprocal_root(a: f32, x: f32) -> f32 {
+    var y = bitcast<f32>(0x5F1FFFF9u - (bitcast<u32>(x) >> 1u));
+    y = y * 0.70395225 * (2.3892446 - x * y * y);
+    return (a * y) * (1.5 - 0.5 * x * y * y);
+}
+
+// A vector no longer than `reach`.
+fn limited(by: vec3<f32>, reach: f32) -> vec3<f32> {
+    let size2 = inner(by, by);
+    if (reach * reach < size2) {
+        return by * (reach * reciprocal_root(size2));
+    }
+    return by;
+}
+
+// Least pivot as a share of its diagonal; a pivot where there is no link; farthest move of one solve, in links.
+const LEAST_PIVOT = 1e-5;
+const NO_PIVOT = 1e-12;
+const FARTHEST = 0.5;

@@ -1,0 +1,67 @@
+// Links: stretch between two particles, one half of a set a dispatch, a link an invocation. Twin of `cloth/links.rs`.
+//
+// No two links of a dispatch share a particle: their order changes no bit.
+
+// Both ends, and the bits of the weights that they count with [links].
+@group(1) @binding(0) var<storage, read> ends: array<vec4<u32>>;
+// Rest length (m), compliance (m/N), gain; 1 where a link leads back to the beginning of a zigzag [links].
+@group(1) @binding(1) var<storage, read> measures: array<vec4<f32>>;
+// Tension of each link so far in the substep [links].
+@group(1) @binding(2) var<storage, read_write> tensions: array<f32>;
+
+@compute @workgroup_size(64)
+fn links(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let group = groups[op.first + at.x];
+    if (lane >= group.z) {
+        return;
+    }
+    let k = group.y + lane;
+    let g = group.x;
+    let ab = ends[k];
+    var wa = bitcast<f32>(ab.z);
+    var wb = bitcast<f32>(ab.w);
+    let rest = measures[k].x;
+    let gain = measures[k].z;
+    let gamma = garments[g].gamma;
+    // The fourth number tells whether these links may remember their tension.
+    let soft = (garments[g].bits & group.w) != 0u;
+    let a = state[ab.x];
+    let b = state[ab.y];
+    let d = b.xyz - a.xyz;
+    let length2 = inner(d, d);
+    var by_a: vec3<f32>;
+    var by_b: vec3<f32>;
+    if (gamma > 0.0 || soft) {
+        let inverse = reciprocal_root(length2);
+        if (measures[k].w > 0.5) {
+            wa = a.w;
+            wb = b.w;
+        }
+        var tension = 0.0;
+        var slack = 0.0;
+        if (soft) {
+            if (op.fresh == 0u) {
+                tension = tensions[k];
+            }
+            slack = tension * measures[k].y * garments[g].per_dt2;
+        }
+        var stretch = length2 * inverse - rest - slack;
+        if (gamma > 0.0) {
+            let moved = (b.xyz - previous(ab.y)) - (a.xyz - previous(ab.x));
+            stretch = stretch + inner(d, moved) * inverse * gamma;
+        }
+        let by = stretch * gain;
+        let pull = by * inverse;
+        by_a = d * (pull * wa);
+        by_b = d * (pull * wb);
+        if (soft) {
+            tensions[k] = tension + by;
+        }
+    } else {
+        let excess = 1.0 - times_reciprocal_root(rest, length2);
+        by_a = d * (excess * (gain * wa));
+        by_b = d * (excess * (gain * wb));
+    }
+    state[ab.x] = vec4<f32>(a.xyz + by_a, a.w);
+    state[ab.y] = vec4<f32>(b.xyz - by_b, b.w);
+}

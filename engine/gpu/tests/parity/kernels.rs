@@ -1,0 +1,218 @@
+//! A kernel at a time, on what is disturbed.
+
+use glam::Vec3A;
+use toile_assets::garment::Garment;
+use toile_assets::garment::layout::OWNERS;
+use toile_assets::scene::skirt::Stretch;
+use toile_engine::cloth::bending::{self, Bend};
+use toile_engine::cloth::pins::Pins;
+use toile_engine::cloth::prepared::Prepared;
+use toile_engine::cloth::state::{self, Columns, State};
+use toile_engine::cloth::{Settings, diagonals, fibers, hubs, links, lists, predict, settle, tethers};
+use toile_engine::lanes::{Store, Width};
+use toile_gpu::cloth::Kernel;
+
+use crate::scene::{apart, around, disturbed, nobody, offload, skirt, swaying, worn};
+
+/// What a kernel may be off by on a device that fuses products and sums (m, m/s). A tenth of the f32 rounding of a metre, a
+/// hundredfold: a fiber's system carries errors of its upper links down.
+const BOUND: f32 = 1e-5;
+
+/// A garment's CPU side of a substep.
+struct Twin<'a> {
+    garment: &'a Garment,
+    settings: &'a Settings,
+    prepared: Prepared,
+    state: State,
+    pins: Pins,
+}
+
+impl<'a> Twin<'a> {
+    fn new(garment: &'a Garment, settings: &'a Settings, x: &[Vec3A], v: &[Vec3A]) -> Self {
+        let mut prepared = Prepared::new(garment);
+        prepared.make(garment, settings);
+        let positions: Vec<_> = x.iter().map(|p| (*p).into()).collect();
+        let mut state = State::new(&positions, &garment.inverse_mass);
+        let columns = state.columns();
+        v.iter().enumerate().for_each(|(i, v)| state::set(columns.v, i, *v));
+        let mut pins = Pins::new(garment);
+        pins.attach(garment, &swaying(3));
+        Self { garment, settings, prepared, state, pins }
+    }
+
+    fn run(&mut self, kernel: Kernel) {
+        let (garment, layout, p) = (self.garment, &self.garment.layout, &self.prepared);
+        let columns = self.state.columns();
+        let width = self.settings.width;
+        let per_dt2 = (p.dt * p.dt).recip();
+        let room = [fibers::scratch_len(&layout.fibers), lists::scratch_len(&layout.crossing)];
+        let mut scratch = Store::zeros(bending::SCRATCH.max(room[0]).max(room[1]));
+        let tensions = layout.weft.tuples.count.max(layout.fibers.links).max(layout.crossing.rest.len());
+        let mut tension = Store::zeros(tensions);
+        let mut room = diagonals::Room::new(&layout.diagonals, garment.particles());
+        let spans = |owner: usize| &layout.spans[owner][..];
+        match kernel {
+            Kernel::Bent => bend(garment, p, columns, &mut scratch, width),
+            Kernel::Predict => {
+                for owner in 0..OWNERS {
+                    let kept = (-garment.fabric.damping_per_s * p.dt).exp();
+                    let (fall, pushed) = (self.settings.gravity * p.dt, None);
+                    width.run(predict::Predict { columns, spans: spans(owner), fall, pushed, kept, dt: p.dt });
+                }
+                let to = 1.0 / p.substeps as f32;
+                for (k, &i) in garment.fixed.iter().enumerate() {
+                    state::set(columns.x, i as usize, self.pins.start[k].lerp(self.pins.end[k], to));
+                }
+            }
+            Kernel::Diagonals => {
+                let (diagonals, gamma, per_dt2) = (&layout.diagonals, p.gamma, per_dt2 / p.shear_every as f32);
+                for strand in diagonals.families.iter().flatten() {
+                    let room = room.columns();
+                    width.run(diagonals::Solve { columns, diagonals, strand, room, per_dt2, gamma });
+                }
+            }
+            Kernel::Shear | Kernel::Weft => {
+                let weft = kernel == Kernel::Weft;
+                let (links, gain) =
+                    if weft { (&layout.weft, &p.weft_gain) } else { (&layout.shear, &p.shear_gain) };
+                for set in &links.tuples.sets {
+                    for owner in 0..OWNERS {
+                        let tension = (weft && p.soft(0)).then(|| (tension.column(), per_dt2));
+                        width.run(links::Solve { columns, links, gain, set, owner, gamma: p.gamma, tension });
+                    }
+                }
+            }
+            Kernel::Fibers => {
+                for owner in 0..OWNERS {
+                    width.run(fibers::Solve {
+                        columns,
+                        fibers: &layout.fibers,
+                        owner,
+                        scratch: scratch.column(),
+                        per_dt2,
+                        gamma: p.gamma,
+                        taut: p.taut,
+                        tension: p.soft(1).then(|| tension.column()),
+                    });
+                }
+            }
+            Kernel::Lists => {
+                for (set, owner) in (0..layout.crossing.sets.len()).flat_map(|s| [(s, 0), (s, 1)]) {
+                    let (lists, scratch) = (&layout.crossing, scratch.column());
+                    let tension = p.soft(2).then(|| tension.column());
+                    width.run(lists::Solve { columns, lists, set, owner, scratch, per_dt2, tension });
+                }
+            }
+            Kernel::Tethers => {
+                for owner in 0..OWNERS {
+                    width.run(tethers::Hold { columns, tethers: &layout.tethers, spans: spans(owner) });
+                }
+            }
+            Kernel::Settle => {
+                let max_speed = self.settings.max_speed;
+                for owner in 0..OWNERS {
+                    width.run(settle::Settle { columns, spans: spans(owner), max_speed, dt: p.dt });
+                }
+            }
+            other => panic!("{other:?} has no twin of its own"),
+        }
+    }
+
+    fn particles(&self) -> (Vec<Vec3A>, Vec<Vec3A>) {
+        let three = |c: [&[f32]; 3]| (0..c[0].len()).map(|i| Vec3A::new(c[0][i], c[1][i], c[2][i])).collect();
+        (three(self.state.positions()), three(self.state.velocities()))
+    }
+}
+
+/// Bending as a force, set by set.
+fn bend(garment: &Garment, p: &Prepared, columns: Columns<'_>, scratch: &mut Store, width: Width) {
+    let layout = &garment.layout;
+    let (w, from, to, by) = (columns.w, columns.x, columns.v, p.dt * p.bend.every as f32);
+    let some = p.bend.least < 1.0;
+    for set in 0..2usize {
+        for owner in 0..OWNERS {
+            if let Some(set) = layout.bends.tuples.sets.get(set) {
+                let (scale, scratch) = (some.then_some(&*p.bend_scale), scratch.column());
+                width.run(Bend { w, bends: &layout.bends, set, owner, from, to, by, scale, scratch });
+            }
+        }
+        for owner in 0..OWNERS {
+            if let Some(set) = layout.skewed.tuples.sets.get(set) {
+                let (scale, scratch) = (some.then_some(&*p.skewed_scale), scratch.column());
+                width.run(Bend { w, bends: &layout.skewed, set, owner, from, to, by, scale, scratch });
+            }
+        }
+        for owner in 0..OWNERS {
+            let (groups, scale) = (layout.hubs.sets[set][owner].clone(), some.then_some(&*p.hub_scale));
+            width.run(hubs::Bend { w, hubs: &layout.hubs, groups, from, to, by, scale });
+        }
+    }
+}
+
+/// Holds one kernel against its twin; a software adapter, which fuses nothing, to the bit.
+fn held(name: &str, garment: &Garment, settings: &Settings, kernel: Kernel) {
+    let Some(mut gpu) = offload(&[garment], settings) else { return };
+    let (mut x, v) = disturbed(garment);
+    if kernel == Kernel::Tethers {
+        // Drawn out by a tenth, so that tethers have something to hold.
+        x.iter_mut().for_each(|p| p.y -= 0.1 * (1.2 - p.y));
+    }
+    let mut twin = Twin::new(garment, settings, &x, &v);
+    twin.run(kernel);
+    let (palette, colliders) = (swaying(3), nobody());
+    let steps = [around(&palette, &colliders, settings)];
+    gpu.disturb(0, &x, &v);
+    if kernel == Kernel::Bent {
+        gpu.only(Kernel::Bending, 0, &[garment], &steps).expect("curvatures are found");
+    }
+    gpu.only(kernel, 0, &[garment], &steps).expect("the kernel runs");
+    let got = gpu.particles(0).expect("the state is read");
+    let expected = twin.particles();
+    let (same_x, all, most_x) = apart(&got.x, &expected.0);
+    let (same_v, _, most_v) = apart(&got.v, &expected.1);
+    let moved = apart(&expected.0, &x).2.max(apart(&expected.1, &v).2);
+    println!("{name} {kernel:?}: {same_x} and {same_v} of {all} the same, {most_x} m and {most_v} m/s apart");
+    assert!(most_x <= BOUND && most_v <= BOUND, "{name} {kernel:?}: {most_x} m, {most_v} m/s");
+    if gpu.device().adapter().kind == "software" {
+        assert_eq!((same_x, same_v), (all, all), "{name} {kernel:?}: {most_x} m, {most_v} m/s");
+    }
+    let empty = match kernel {
+        Kernel::Shear => garment.layout.shear.rest.is_empty(),
+        Kernel::Lists => garment.layout.crossing.lists.is_empty(),
+        Kernel::Diagonals => garment.layout.diagonals.families.is_empty(),
+        _ => false,
+    };
+    assert!(empty || moved > 0.0 || kernel == Kernel::Settle, "{name} {kernel:?}: nothing was asked of the kernel");
+}
+
+const KERNELS: [Kernel; 9] = [
+    Kernel::Bent,
+    Kernel::Predict,
+    Kernel::Diagonals,
+    Kernel::Shear,
+    Kernel::Weft,
+    Kernel::Lists,
+    Kernel::Fibers,
+    Kernel::Tethers,
+    Kernel::Settle,
+];
+
+#[test]
+fn every_kernel_gives_what_its_twin_gives_on_the_skirt() {
+    let settings = Settings { tethers: true, ..Settings::default() };
+    let damped = Settings { stretch_damping_s: 0.01, ..settings };
+    let (rigid, soft) = (skirt(24, Stretch::Inextensible), skirt(19, Stretch::Physical));
+    for kernel in KERNELS {
+        held("skirt", &rigid, &settings, kernel);
+        held("skirt that stretches", &soft, &settings, kernel);
+        held("skirt that damps", &rigid, &damped, kernel);
+    }
+}
+
+#[test]
+fn every_kernel_gives_what_its_twin_gives_on_a_garment_of_the_wardrobe() {
+    let (shirt, settings) = (worn("t-shirt"), Settings { tethers: true, ..Settings::default() });
+    for kernel in KERNELS {
+        held("shirt", &shirt, &settings, kernel);
+    }
+}

@@ -1,0 +1,7 @@
+//! Parity: each kernel against its twin on the CPU, whole steps against `Cloth::step`, and what happens when the device
+//! fails. `scene::offload` says where these tests can run: with CI=true a machine without an adapter fails them.
+
+mod device;
+mod kernels;
+mod scene;
+mod steps;

@@ -1,0 +1,80 @@
+//! What the tests step: the benchmark's skirt, a garment of the wardrobe, and how they are disturbed.
+
+use glam::{Affine3A, Quat, Vec3, Vec3A};
+use toile_assets::bake::bake;
+use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::garment::Garment;
+use toile_assets::scene::skirt::{self, Stretch};
+use toile_assets::skeleton::BONES;
+use toile_assets::wardrobe;
+use toile_engine::cloth::{Settings, Step};
+use toile_engine::colliders::Colliders;
+use toile_gpu::cloth::Offload;
+use toile_gpu::device::{Choice, GpuError};
+
+/// A palette of bones that stand in the rest pose.
+pub const REST: [Affine3A; BONES] = [Affine3A::IDENTITY; BONES];
+
+/// The benchmark's skirt of n x n particles.
+pub fn skirt(n: usize, stretch: Stretch) -> Garment {
+    let shape = skirt::shape(n);
+    bake("skirt", "one size", &shape, &skirt::fabric(&shape, stretch)).expect("the skirt bakes")
+}
+
+/// A garment of the wardrobe on the average woman.
+pub fn worn(name: &str) -> Garment {
+    let style = wardrobe::style(name).expect("the garment is built in");
+    let sizes = style.sizes().expect("it has sizes");
+    let size = sizes.codes()[1];
+    let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).expect("she can be built");
+    style.dress(size, &body).expect("it fits")
+}
+
+/// No body at all.
+pub fn nobody() -> Colliders {
+    Colliders::new(&[], &[], false).expect("nothing is not too much")
+}
+
+/// The root that sways and turns.
+pub fn swaying(step: usize) -> [Affine3A; BONES] {
+    let t = step as f32 / 120.0;
+    let turn = Quat::from_rotation_y(0.4 * (2.0 * t).sin());
+    let at = Vec3::new(0.05 * (5.0 * t).sin(), 0.02 * (4.0 * t).sin(), 0.03 * (3.0 * t).sin());
+    [Affine3A::from_rotation_translation(turn, at); BONES]
+}
+
+/// Surroundings of a step.
+pub fn around<'a>(palette: &'a [Affine3A; BONES], colliders: &'a Colliders, settings: &'a Settings) -> Step<'a> {
+    Step { palette, colliders, settings }
+}
+
+/// Places and velocities that are off by some millimetres and decimetres a second, the same in every run.
+pub fn disturbed(garment: &Garment) -> (Vec<Vec3A>, Vec<Vec3A>) {
+    let wave = |i: usize, k: f32| (i as f32 * k + 7.0 * k).sin();
+    let noise = |i: usize| Vec3A::new(wave(i, 1.37), wave(i, 2.11), wave(i, 0.77));
+    let free = |i: usize| if garment.inverse_mass[i] > 0.0 { 1.0 } else { 0.0 };
+    let x = garment.start.iter().enumerate().map(|(i, p)| Vec3A::from(*p) + noise(i) * (0.003 * free(i))).collect();
+    let v = (0..garment.particles()).map(|i| noise(i + 31) * (0.3 * free(i))).collect();
+    (x, v)
+}
+
+/// The garments on an adapter. None where this machine has none, which CI does not excuse.
+pub fn offload(garments: &[&Garment], settings: &Settings) -> Option<Offload> {
+    match Offload::new(&Choice::Fastest, garments, settings) {
+        Ok(offload) => Some(offload),
+        Err(error @ GpuError::NoAdapter(_)) => {
+            assert_ne!(std::env::var("CI").as_deref(), Ok("true"), "{error}");
+            eprintln!("not run: {error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// How two runs differ: numbers with the same bits, numbers, and the largest difference.
+pub fn apart(one: &[Vec3A], other: &[Vec3A]) -> (usize, usize, f32) {
+    assert_eq!(one.len(), other.len());
+    let pairs = one.iter().zip(other).flat_map(|(a, b)| a.to_array().into_iter().zip(b.to_array()));
+    // -0 and 0 are the same place.
+    pairs.fold((0, 0, 0.0), |(same, all, most), (a, b)| (same + usize::from(a == b), all + 1, (a - b).abs().max(most)))
+}

@@ -1,0 +1,84 @@
+//! Whole steps against the CPU's.
+
+use toile_assets::garment::Garment;
+use toile_assets::scene::skirt::Stretch;
+use toile_engine::cloth::{Cloth, Quality, Settings, measure};
+
+use crate::scene::{apart, around, nobody, offload, skirt, swaying, worn};
+
+/// Mean distance that a second of steps may leave between two devices of which one fuses products and sums (m).
+const MEAN: f32 = 1e-3;
+
+/// Steps garments on both; gives the mean distance (m) of each at the end, whether all bits are the same, and whether they
+/// have to be.
+fn both(garments: &[&Garment], settings: &Settings, steps: usize) -> Option<(Vec<f32>, bool, bool)> {
+    let mut gpu = offload(garments, settings)?;
+    let colliders = nobody();
+    let mut cloths: Vec<Cloth> = garments.iter().map(|g| Cloth::new(g, &colliders)).collect();
+    for n in 0..steps {
+        let palette = swaying(n);
+        let all: Vec<_> = garments.iter().map(|_| around(&palette, &colliders, settings)).collect();
+        for ((cloth, garment), step) in cloths.iter_mut().zip(garments).zip(&all) {
+            cloth.step(garment, step);
+        }
+        gpu.step(garments, &all).expect("the step is sent");
+    }
+    gpu.finish().expect("the last step comes back");
+    let (mut means, mut same) = (Vec::new(), true);
+    for (k, (cloth, garment)) in cloths.iter_mut().zip(garments).enumerate() {
+        let (alike, all, most) = apart(gpu.positions(k), &cloth.positions);
+        let pairs = gpu.positions(k).iter().zip(&*cloth.positions);
+        let mean = pairs.map(|(a, b)| a.distance(*b)).sum::<f32>() / cloth.positions.len() as f32;
+        let strain = measure::strain(cloth, garment).mean * 100.0;
+        println!("{}: {alike} of {all} the same, mean {mean} m, most {most} m, strain {strain} %", garment.name);
+        assert_eq!(gpu.report(k).rolled_back, 0);
+        assert_eq!(u64::from(gpu.report(k).speed_limited), cloth.events.speed_limited);
+        assert_eq!(gpu.substeps(k), cloth.substeps());
+        means.push(mean);
+        same &= alike == all;
+    }
+    Some((means, same, gpu.device().adapter().kind == "software"))
+}
+
+fn held(garments: &[&Garment], settings: &Settings, steps: usize) {
+    let Some((means, same, software)) = both(garments, settings, steps) else { return };
+    assert!(means.iter().all(|m| *m <= MEAN), "{means:?} m apart");
+    assert!(same || !software, "{means:?} m apart on an adapter that fuses nothing");
+}
+
+#[test]
+fn a_second_of_the_skirt_is_the_cpus() {
+    held(&[&skirt(20, Stretch::Inextensible)], &Settings::default(), 120);
+}
+
+#[test]
+fn every_quality_is_the_cpus() {
+    for quality in Quality::ALL {
+        let settings = Settings { quality, ..Settings::default() };
+        held(&[&skirt(16, Stretch::Physical)], &settings, 20);
+    }
+}
+
+#[test]
+fn garments_of_one_scene_do_not_see_each_other() {
+    let garments = [skirt(18, Stretch::Physical), worn("t-shirt"), skirt(26, Stretch::Inextensible)];
+    let garments: Vec<&Garment> = garments.iter().collect();
+    held(&garments, &Settings::default(), 12);
+    // With as many substeps for each, and with fewer than they ask for.
+    held(&garments, &Settings { substeps: Some(3), ..Settings::default() }, 4);
+    held(&garments, &Settings { substep_share: 0.5, ..Settings::default() }, 4);
+}
+
+#[test]
+fn a_run_gives_the_same_bits_again() {
+    let (garment, settings, colliders) = (skirt(16, Stretch::Inextensible), Settings::default(), nobody());
+    let run = || {
+        let mut gpu = offload(&[&garment], &settings)?;
+        for n in 0..10 {
+            gpu.step(&[&garment], &[around(&swaying(n), &colliders, &settings)]).expect("the step is sent");
+        }
+        gpu.finish().expect("the last step comes back");
+        Some(gpu.positions(0).to_vec())
+    };
+    assert_eq!(run(), run());
+}
