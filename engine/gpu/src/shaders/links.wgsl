@@ -4,7 +4,7 @@
 
 // Both ends, and the bits of the weights that they count with [links].
 @group(1) @binding(0) var<storage, read> ends: array<vec4<u32>>;
-// Rest length (m), compliance (m/N), gain; 1 where a link leads back to the beginning of a zigzag [links].
+// Rest length (m), compliance (m/N), gain [links].
 @group(1) @binding(1) var<storage, read> measures: array<vec4<f32>>;
 // Tension of each link so far in the substep [links].
 @group(1) @binding(2) var<storage, read_write> tensions: array<f32>;
@@ -18,8 +18,8 @@ fn links(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) 
     let k = group.y + lane;
     let g = group.x;
     let ab = ends[k];
-    var wa = bitcast<f32>(ab.z);
-    var wb = bitcast<f32>(ab.w);
+    let wa = bitcast<f32>(ab.z);
+    let wb = bitcast<f32>(ab.w);
     let rest = measures[k].x;
     let gain = measures[k].z;
     let gamma = garments[g].gamma;
@@ -33,10 +33,6 @@ fn links(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) 
     var by_b: vec3<f32>;
     if (gamma > 0.0 || soft) {
         let inverse = reciprocal_root(length2);
-        if (measures[k].w > 0.5) {
-            wa = a.w;
-            wb = b.w;
-        }
         var tension = 0.0;
         var slack = 0.0;
         if (soft) {

@@ -11,8 +11,7 @@ use super::{Groups, Span};
 pub struct FlatLinks {
     /// Both ends, and the bits of the weights (1/kg) that they count with `[links]`.
     pub ends: Vec<[u32; 4]>,
-    /// Rest length (m), compliance (m/N), gain (see [`FlatLinks::prepare`]); 1 where the link leads back to the beginning of
-    /// a zigzag, which counts with its own weights when there is compliance or damping `[links]`.
+    /// Rest length (m), compliance (m/N), gain (see [`FlatLinks::prepare`]), nothing `[links]`.
     pub measures: Vec<[f32; 4]>,
     /// Where each link's gain is among those of its garment `[links]`.
     places: Vec<u32>,
@@ -80,9 +79,6 @@ impl FlatLinks {
             let ends = zigzag.slant(t);
             let counted = if slants.alike { slants.first } else { ends };
             self.push(links, slants.place(t), ends, counted.map(|p| weights[p as usize]), span);
-            if let Some(last) = self.measures.last_mut() {
-                last[3] = 1.0;
-            }
         }
     }
 
