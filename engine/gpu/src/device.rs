@@ -18,7 +18,9 @@ pub enum GpuError {
     )]
     NoAdapter(String),
     /// The adapter's limits are below what the scene needs.
-    #[error("{adapter} allows {limit} of {has}, and this scene needs {needs}; use fewer or coarser garments, or the CPU")]
+    #[error(
+        "{adapter} allows {limit} of {has}, and this scene needs {needs}; use fewer or coarser garments, or the CPU"
+    )]
     TooSmall {
         /// The adapter.
         adapter: String,
@@ -185,10 +187,7 @@ fn choose(instance: &Instance, choice: &Choice) -> Result<wgpu::Adapter, GpuErro
     let mut found = block_on(instance.enumerate_adapters(Backends::PRIMARY));
     found.retain(|a| *choice == Choice::Fastest || a.get_info().device_type == DeviceType::Cpu);
     let kind = if *choice == Choice::Software { " that computes on the processor" } else { "" };
-    found
-        .into_iter()
-        .min_by_key(|a| rank(a.get_info().device_type))
-        .ok_or_else(|| GpuError::NoAdapter(kind.into()))
+    found.into_iter().min_by_key(|a| rank(a.get_info().device_type)).ok_or_else(|| GpuError::NoAdapter(kind.into()))
 }
 
 fn enough(needs: &Limits, has: &Limits, adapter: &str) -> Result<(), GpuError> {

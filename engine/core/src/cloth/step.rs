@@ -228,14 +228,7 @@ impl Work<'_> {
     }
 
     fn contact_settings(&self) -> contact::ContactSettings {
-        let fabric = &self.garment.fabric;
-        contact::ContactSettings {
-            offset_m: fabric.contact_offset_mm * 1e-3,
-            friction_static: fabric.friction * self.step.settings.static_friction,
-            friction_kinetic: fabric.friction,
-            step_seconds: self.step.settings.step_seconds,
-            continuous: self.step.settings.continuous,
-        }
+        contact::ContactSettings::new(&self.garment.fabric, self.step.settings)
     }
 
     fn run(&self, op: Op, substep: u32, share: usize) {

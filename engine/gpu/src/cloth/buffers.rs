@@ -1,6 +1,7 @@
 //! Buffers: what the kernels read and write, made once at load; pipelines and what they are bound to.
 
 use bytemuck::Pod;
+use toile_assets::limits::MAX_CAPSULES;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
@@ -12,6 +13,7 @@ use super::constants::Constants;
 use super::flat::Flat;
 use super::kernels::{Kernel, SHADERS};
 use super::program::Program;
+use super::touch::{FlatCone, FlatEnds, PLANES};
 use crate::device::{Device, Needs};
 
 /// Bytes between two of the uniforms that a dispatch picks from: what every driver aligns to.
@@ -39,6 +41,12 @@ pub struct Buffers {
     pub reports: Buffer,
     /// Last good places `[particles]`.
     pub good: Buffer,
+    /// Capsules, a set for the step and one for each substep of each garment.
+    pub cones: Buffer,
+    /// Their ends `[garments * MAX_CAPSULES]`.
+    pub ends: Buffer,
+    /// Planes `[garments * PLANES]`.
+    pub planes: Buffer,
     /// Bound to every kernel.
     pub scene: BindGroup,
     /// Each kernel's pipeline and what it alone is bound to, by [`Kernel::number`].
@@ -47,7 +55,7 @@ pub struct Buffers {
 }
 
 /// What a scene asks of a device: its largest buffer and dispatch.
-pub fn needs(flat: &Flat, program: &Program) -> Needs {
+pub fn needs(flat: &Flat, program: &Program, sets: usize) -> Needs {
     let sizes = [
         size_of_val(&*flat.start) * 3,
         size_of_val(&*flat.shear.ends),
@@ -59,6 +67,7 @@ pub fn needs(flat: &Flat, program: &Program) -> Needs {
         size_of_val(&*flat.bending.entries),
         16 * flat.bending.items.len(),
         16 * program.groups().len(),
+        flat.spans.len() * sets * MAX_CAPSULES * size_of::<FlatCone>(),
     ];
     let workgroups = program.tables.iter().map(|(groups, _)| groups.groups.len() as u32).max().unwrap_or(0);
     Needs { largest: sizes.into_iter().max().unwrap_or(0) as u64, workgroups }
@@ -109,8 +118,8 @@ impl Maker<'_> {
 }
 
 impl Buffers {
-    /// All of a scene, and the pipelines. `most` is the greatest number of substeps.
-    pub fn new(device: &Device, flat: &Flat, program: &Program, constants: &[Constants], most: u32) -> Self {
+    /// All of a scene, and the pipelines. `sets` of capsules there are for each garment, one more than substeps.
+    pub fn new(device: &Device, flat: &Flat, program: &Program, constants: &[Constants], sets: usize) -> Self {
         let mut make = Maker { device: &device.device, bytes: 0 };
         let none = BufferUsages::empty();
         let (to, from) = (BufferUsages::COPY_DST, BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
@@ -118,7 +127,7 @@ impl Buffers {
         let state: Vec<[f32; 4]> = flat.start.iter().chain(&flat.start).chain(&still).copied().collect();
         let entry = |e: &super::program::Entry| [program.tables[e.table].1, u32::from(e.fresh), flat.particles, 0];
         let ops = make.uniforms("ops", program.entries().map(entry));
-        let moments = make.uniforms("moments", (0..most).map(|substep| [substep, 0, 0, 0]));
+        let moments = make.uniforms("moments", (0..sets as u32).map(|substep| [substep, 0, 0, 0]));
         let groups = make.with("groups", &program.groups(), none);
         let garments = make.with("garments", constants, to);
         let state = make.with("state", &state, from);
@@ -150,6 +159,13 @@ impl Buffers {
         let index = make.with("index", &flat.lists.index, none);
         let hoops = make.with("hoops", &flat.lists.measures, none);
         let hooped = make.zeros("hooped", 3 * flat.lists.index.len(), 16);
+        let count = constants.len();
+        let cones = make.zeros("cones", count * sets * MAX_CAPSULES, size_of::<FlatCone>());
+        let ends = make.zeros("ends of capsules", count * MAX_CAPSULES, size_of::<FlatEnds>());
+        let planes = make.zeros("planes", count * PLANES, 16);
+        let reach = make.with("reach", &flat.reach, none);
+        let near = make.zeros("near", flat.reach.len(), 8);
+        let touch: &[&Buffer] = &[&cones, &ends, &planes, &reach, &near];
         let items = make.with("items", &flat.bending.items, none);
         let terms = make.with("terms", &flat.bending.terms, none);
         let curvatures = make.zeros("curvatures", flat.bending.items.len(), 16);
@@ -157,6 +173,7 @@ impl Buffers {
         let entries = make.with("entries", &flat.bending.entries, none);
         let own: [&[&Buffer]; Kernel::ALL.len()] = [
             &[&good, &start],
+            touch,
             &[&items, &terms, &scales, &curvatures],
             &[&starts, &entries, &items, &terms, &curvatures],
             &[&pins, &targets],
@@ -166,6 +183,7 @@ impl Buffers {
             &[&lists, &index, &hoops, &hooped],
             &[&bundles, &rows, &measures, &factors, &sides],
             &[&tethers],
+            touch,
             &[&reports],
             &[&reports],
             &[&reports, &good, &start],
@@ -184,6 +202,9 @@ impl Buffers {
             scales,
             reports,
             good,
+            cones,
+            ends,
+            planes,
             scene,
             kernels,
             bytes,

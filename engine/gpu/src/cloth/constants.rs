@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Affine3A;
 use toile_assets::garment::Garment;
+use toile_engine::cloth::contact::ContactSettings;
 use toile_engine::cloth::prepared::Prepared;
 use toile_engine::cloth::{Quality, Settings};
 
@@ -56,9 +57,13 @@ pub struct Constants {
     pub root: [[f32; 4]; 4],
     /// The root's motion, likewise, for [`CARRY`].
     pub motion: [[f32; 4]; 4],
+    /// Contact: offset (m), static and kinetic friction, length of the step (s).
+    pub how: [f32; 4],
+    /// Its first set of capsules, those to be believed, its planes, and where they begin.
+    pub touch: [u32; 4],
 }
 
-const _: () = assert!(size_of::<Constants>() == 192, "`Garment` in common.wgsl is 192 bytes");
+const _: () = assert!(size_of::<Constants>() == 224, "`Garment` in common.wgsl is 224 bytes");
 
 impl Constants {
     /// Of a garment that is prepared for these settings; no jump, the root where it is at rest.
@@ -66,6 +71,7 @@ impl Constants {
         let dt = prepared.dt;
         let per_dt2 = (dt * dt).recip();
         let bit = |holds: bool, bit: u32| if holds { bit } else { 0 };
+        let how = ContactSettings::new(&garment.fabric, settings);
         let tethered = settings.tethers || prepared.quality == Quality::Draft;
         Self {
             fall: (settings.gravity * dt).to_array(),
@@ -88,6 +94,8 @@ impl Constants {
             spare: 0,
             root: columns(&Affine3A::IDENTITY),
             motion: columns(&Affine3A::IDENTITY),
+            how: [how.offset_m, how.friction_static, how.friction_kinetic, how.step_seconds],
+            touch: [0; 4],
         }
     }
 }

@@ -5,6 +5,8 @@
 pub enum Kernel {
     /// The root has been put somewhere else.
     Jump,
+    /// Which capsules and planes each particle may touch in the step.
+    Near,
     /// Curvatures.
     Bending,
     /// What they do to each particle.
@@ -23,6 +25,8 @@ pub enum Kernel {
     Fibers,
     /// Tethers.
     Tethers,
+    /// Whatever touches is pushed out.
+    Contact,
     /// New velocities.
     Settle,
     /// Whether all is finite.
@@ -52,7 +56,7 @@ macro_rules! shader {
 }
 
 /// All shaders.
-pub const SHADERS: [Shader; 12] = [
+pub const SHADERS: [Shader; 13] = [
     shader!("jump", [false, true]),
     shader!("bending", [true, true, true, false]),
     shader!("bent", [true, true, true, true, true]),
@@ -62,6 +66,7 @@ pub const SHADERS: [Shader; 12] = [
     shader!("lists", [true, true, true, false]),
     shader!("fibers", [true, true, true, false, false]),
     shader!("tethers", [true]),
+    shader!("contact", [true, true, true, true, false]),
     shader!("settle", [false]),
     shader!("guard", [false]),
     shader!("publish", [false, false, true]),
@@ -76,8 +81,9 @@ impl Shader {
 
 impl Kernel {
     /// All kernels.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 16] = [
         Self::Jump,
+        Self::Near,
         Self::Bending,
         Self::Bent,
         Self::Predict,
@@ -87,6 +93,7 @@ impl Kernel {
         Self::Lists,
         Self::Fibers,
         Self::Tethers,
+        Self::Contact,
         Self::Settle,
         Self::Guard,
         Self::Publish,
@@ -110,12 +117,18 @@ impl Kernel {
             Self::Lists => "lists",
             Self::Fibers => "fibers",
             Self::Tethers => "tethers",
+            Self::Near | Self::Contact => "contact",
             Self::Settle => "settle",
             Self::Guard => "guard",
             Self::Publish | Self::Conclude => "publish",
         };
         let shader = SHADERS.iter().position(|s| s.name == name).unwrap_or(0);
-        (shader, if self == Self::Conclude { "conclude" } else { name })
+        let entry = match self {
+            Self::Near => "near",
+            Self::Conclude => "conclude",
+            _ => name,
+        };
+        (shader, entry)
     }
 }
 

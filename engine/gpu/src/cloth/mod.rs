@@ -15,14 +15,17 @@ pub mod program;
 mod read;
 pub mod ring;
 mod step;
+mod touch;
 
 use glam::Vec3A;
 use toile_assets::garment::Garment;
+use toile_assets::limits::MAX_CAPSULES;
 use toile_engine::cloth::pins::Pins;
 use toile_engine::cloth::prepared::Prepared;
 use toile_engine::cloth::root::RootMotion;
 use toile_engine::cloth::settings::MAX_SUBSTEPS;
 use toile_engine::cloth::{Quality, Settings, centre};
+use toile_engine::colliders::Colliders;
 
 use crate::device::{Choice, Device, GpuError};
 use buffers::{Buffers, needs};
@@ -30,6 +33,7 @@ use constants::Constants;
 use flat::Flat;
 use program::Program;
 use ring::{Ring, Tally};
+use touch::{FlatCone, FlatEnds, PLANES, Touch};
 
 pub use kernels::Kernel;
 pub use read::Report;
@@ -42,6 +46,7 @@ pub use toile_engine::cloth::Step;
 struct Own {
     prepared: Prepared,
     pins: Pins,
+    touch: Touch,
     root: RootMotion,
     origin: Vec3A,
     /// Where it is in the flat scene.
@@ -62,6 +67,11 @@ pub struct Offload {
     /// As they lie.
     constants: Vec<Constants>,
     targets: Vec<[f32; 4]>,
+    /// Capsules, `sets` of them for each garment as it lies; their ends; planes.
+    cones: Vec<FlatCone>,
+    ends: Vec<FlatEnds>,
+    planes: Vec<[f32; 4]>,
+    sets: usize,
     /// Garments that make a substep, by its number, for the step under way.
     active: Vec<u32>,
     quality: Quality,
@@ -69,30 +79,38 @@ pub struct Offload {
 }
 
 impl Offload {
-    /// Opens a device for these garments and lays them out on it, at rest where each starts. At load: some tenths of a
+    /// Opens a device for these garments and lays them out on it, at rest where each starts; `colliders` say which capsules
+    /// of each one's body are which limb's. At load: some tenths of a
     /// second, most of them for the pipelines.
     ///
     /// # Errors
     /// [`GpuError`]: no adapter, limits too small, or a garment or a setting that only the CPU can take.
-    pub fn new(choice: &Choice, garments: &[&Garment], settings: &Settings) -> Result<Self, GpuError> {
+    pub fn new(
+        choice: &Choice,
+        garments: &[&Garment],
+        colliders: &[&Colliders],
+        settings: &Settings,
+    ) -> Result<Self, GpuError> {
         let settings = &settings.sound();
         let mut prepared: Vec<Prepared> = garments.iter().map(|g| Prepared::new(g)).collect();
         for (garment, prepared) in garments.iter().zip(&mut prepared) {
             prepared.make(garment, settings);
             takes(garment, prepared, settings)?;
         }
-        let flat = Flat::new(garments);
+        let flat = Flat::new(garments, colliders);
         let program = Program::new(&flat);
-        let device = Device::open(choice, needs(&flat, &program))?;
+        let sets = 1 + most_substeps(garments, &prepared);
+        let device = Device::open(choice, needs(&flat, &program, sets))?;
         let constants: Vec<Constants> =
             flat.order.iter().map(|&k| Constants::new(garments[k], &prepared[k], settings)).collect();
-        let buffers = Buffers::new(&device, &flat, &program, &constants, MAX_SUBSTEPS);
+        let buffers = Buffers::new(&device, &flat, &program, &constants, sets);
         let back = buffers.good.size() + buffers.reports.size();
         let ring = Ring::new(&device.device, back);
         device.sound()?;
         let own = (0..).zip(garments.iter().zip(prepared)).map(|(k, (garment, prepared))| Own {
             prepared,
             pins: Pins::new(garment),
+            touch: Touch::new(),
             root: RootMotion::new(settings.root),
             origin: centre(garment),
             place: flat.order.iter().position(|o| *o == k).unwrap_or(k),
@@ -101,9 +119,29 @@ impl Offload {
         });
         let own = own.collect();
         let targets = vec![[0.0; 4]; 2 * flat.targets as usize];
-        let active = vec![0; MAX_SUBSTEPS as usize];
+        let count = garments.len();
+        let cones = vec![[[0.0; 4]; 6]; count * sets * MAX_CAPSULES];
+        let ends = vec![[[0.0; 4]; 4]; count * MAX_CAPSULES];
+        let planes = vec![[0.0; 4]; count * PLANES];
+        let active = vec![0; sets - 1];
         let quality = settings.quality;
-        Ok(Self { device, program, buffers, ring, own, constants, targets, active, quality, flat, settings_seen: None })
+        Ok(Self {
+            device,
+            flat,
+            program,
+            buffers,
+            ring,
+            own,
+            constants,
+            targets,
+            cones,
+            ends,
+            planes,
+            sets,
+            active,
+            quality,
+            settings_seen: None,
+        })
     }
 
     /// The device.
@@ -135,6 +173,13 @@ impl Offload {
     pub fn bytes(&self) -> u64 {
         self.buffers.bytes()
     }
+}
+
+/// The most substeps that a scene is laid out for: those of the best quality, or what the settings ask for now.
+fn most_substeps(garments: &[&Garment], prepared: &[Prepared]) -> usize {
+    let best = garments.iter().map(|g| Quality::Fine.substeps(g.substeps));
+    let now = prepared.iter().map(|p| p.substeps);
+    best.chain(now).max().unwrap_or(1).min(MAX_SUBSTEPS) as usize
 }
 
 /// Whether a garment can be stepped here with these settings.

@@ -25,6 +25,8 @@ pub struct Program {
     pub tables: Vec<(Groups, u32)>,
     /// Before the first substep, where a root has jumped.
     pub jump: Vec<Entry>,
+    /// Before the first substep.
+    pub before: Vec<Entry>,
     /// Each substep at the quality `draft`.
     pub draft: Vec<Entry>,
     /// Each substep at the others.
@@ -59,6 +61,7 @@ impl Program {
         };
         let all = |kernel| Entry { kernel, table: tables.everyone, fresh: false, op: 0 };
         this.jump = vec![all(Kernel::Jump)];
+        this.before = vec![all(Kernel::Near)];
         this.draft = this.substep(&tables, false);
         this.whole = this.substep(&tables, true);
         this.after = vec![all(Kernel::Guard), all(Kernel::Publish), all(Kernel::Conclude)];
@@ -68,7 +71,7 @@ impl Program {
 
     /// Gives each entry the number of its constants; those of a draft are among the whole substep's.
     fn number(&mut self) {
-        let whole = self.jump.iter_mut().chain(&mut self.whole).chain(&mut self.after);
+        let whole = self.jump.iter_mut().chain(&mut self.before).chain(&mut self.whole).chain(&mut self.after);
         (0..).zip(whole).for_each(|(op, entry)| entry.op = op);
         for entry in &mut self.draft {
             let same = |e: &&Entry| (e.kernel, e.table, e.fresh) == (entry.kernel, entry.table, entry.fresh);
@@ -83,7 +86,7 @@ impl Program {
 
     /// Every entry there is: what has to have constants of its own.
     pub fn entries(&self) -> impl Iterator<Item = &Entry> {
-        self.jump.iter().chain(&self.whole).chain(&self.after)
+        self.jump.iter().chain(&self.before).chain(&self.whole).chain(&self.after)
     }
 
     /// The workgroups of all tables, as one list.
@@ -112,9 +115,11 @@ impl Program {
         entries.extend(tables.shear.iter().map(|&t| entry(Kernel::Shear, t, false)));
         entries.extend(wefts(true).chain(fibers(true)));
         if whole {
-            entries.extend(wefts(false).chain(wefts(false)).chain(fibers(false)).chain(wefts(false)).chain(wefts(false)));
+            entries
+                .extend(wefts(false).chain(wefts(false)).chain(fibers(false)).chain(wefts(false)).chain(wefts(false)));
         }
         entries.push(entry(Kernel::Tethers, tables.everyone, false));
+        entries.push(entry(Kernel::Contact, tables.everyone, false));
         entries.push(entry(Kernel::Settle, tables.everyone, false));
         entries.retain(|e| !self.tables[e.table].0.groups.is_empty());
         entries

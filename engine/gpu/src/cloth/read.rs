@@ -117,7 +117,8 @@ impl Offload {
     pub fn particles(&self, garment: usize) -> Result<Particles, GpuError> {
         let state = &self.buffers.state;
         let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
-        let descriptor = BufferDescriptor { label: Some("state"), size: state.size(), usage, mapped_at_creation: false };
+        let descriptor =
+            BufferDescriptor { label: Some("state"), size: state.size(), usage, mapped_at_creation: false };
         let to = self.device.device.create_buffer(&descriptor);
         let mut encoder = self.encoder();
         encoder.copy_buffer_to_buffer(state, 0, &to, 0, state.size());

@@ -2,7 +2,9 @@
 
 use glam::Affine3A;
 use toile_assets::garment::Garment;
+use toile_assets::limits::MAX_CAPSULES;
 use toile_engine::cloth::Settings;
+use toile_engine::cloth::contact::ContactSettings;
 use toile_engine::cloth::root::RootStep;
 use wgpu::{CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor};
 
@@ -11,6 +13,7 @@ use super::constants::{CARRY, Constants, DRESS, columns};
 use super::flat::{Scale, WIDTH};
 use super::kernels::Kernel;
 use super::program::Entry;
+use super::touch::{self, FlatCone, PLANES};
 use super::{Offload, Step, takes};
 use crate::device::GpuError;
 
@@ -26,11 +29,11 @@ impl Offload {
         let Some(first) = steps.first() else { return Ok(()) };
         let settings = first.settings.sound();
         self.prepare(garments, &settings)?;
-        touches_nothing(garments, steps)?;
         let jumps = self.begin(garments, steps, &settings);
         let mut encoder = self.encoder();
         {
-            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor { label: Some("step"), ..Default::default() });
+            let mut pass =
+                encoder.begin_compute_pass(&ComputePassDescriptor { label: Some("step"), ..Default::default() });
             self.encode(&mut pass, jumps);
         }
         self.submit(encoder);
@@ -61,6 +64,10 @@ impl Offload {
             own.prepared.make(garment, settings);
             own.root.settings = settings.root;
             takes(garment, &own.prepared, settings)?;
+            if own.prepared.substeps as usize >= self.sets {
+                let what = "the settings ask for more substeps than it was laid out for";
+                return Err(GpuError::Unsupported { garment: garment.name.clone(), what });
+            }
         }
         for (place, &k) in self.flat.order.iter().enumerate() {
             let (prepared, queue, buffers) = (&self.own[k].prepared, &self.device.queue, &self.buffers);
@@ -117,9 +124,32 @@ impl Offload {
                 *to = [p.x, p.y, p.z, 0.0];
             }
         }
+        self.touch(garments, steps, settings);
         self.device.queue.write_buffer(&self.buffers.garments, 0, bytemuck::cast_slice(&self.constants));
         self.device.queue.write_buffer(&self.buffers.targets, 0, bytemuck::cast_slice(&self.targets));
         jumps
+    }
+
+    /// What each garment may touch, for every substep.
+    fn touch(&mut self, garments: &[&Garment], steps: &[Step<'_>], settings: &Settings) {
+        let queue = &self.device.queue;
+        for ((own, garment), step) in self.own.iter_mut().zip(garments).zip(steps) {
+            let (place, how) = (own.place, ContactSettings::new(&garment.fabric, settings));
+            let first = place * self.sets * MAX_CAPSULES;
+            let count = (1 + own.prepared.substeps as usize) * MAX_CAPSULES;
+            let cones = &mut self.cones[first..first + count];
+            let ends = &mut self.ends[place * MAX_CAPSULES..][..MAX_CAPSULES];
+            let planes = &mut self.planes[place * PLANES..][..PLANES];
+            let sound = own.touch.capsules(settings.width, step.colliders, &how, cones, ends);
+            let many = touch::planes(step.colliders, planes);
+            self.constants[place].touch = [(place * self.sets) as u32, sound, many, (place * PLANES) as u32];
+            if sound != 0 {
+                let at = (first * size_of::<FlatCone>()) as u64;
+                queue.write_buffer(&self.buffers.cones, at, bytemuck::cast_slice(cones));
+            }
+        }
+        queue.write_buffer(&self.buffers.ends, 0, bytemuck::cast_slice(&self.ends));
+        queue.write_buffer(&self.buffers.planes, 0, bytemuck::cast_slice(&self.planes));
     }
 
     /// All dispatches of a step.
@@ -128,6 +158,7 @@ impl Offload {
         if jumps {
             self.program.jump.iter().for_each(|entry| self.dispatch(pass, entry, 0, all));
         }
+        self.program.before.iter().for_each(|entry| self.dispatch(pass, entry, 0, all));
         for (substep, &active) in (0..).zip(&self.active).take_while(|(_, active)| **active > 0) {
             for entry in self.program.each(self.quality) {
                 self.dispatch(pass, entry, substep, active as usize);
@@ -151,19 +182,5 @@ impl Offload {
         pass.set_bind_group(0, &self.buffers.scene, &[entry.op, substep].map(|k| k * ALIGNED as u32));
         pass.set_bind_group(1, own, &[]);
         pass.dispatch_workgroups(groups, 1, 1);
-    }
-}
-
-/// Contact is the CPU's alone so far: where there is something to touch, the garment is refused.
-fn touches_nothing(garments: &[&Garment], steps: &[Step<'_>]) -> Result<(), GpuError> {
-    let touches = |step: &Step<'_>| {
-        let c = step.colliders;
-        !c.capsules().is_empty() || c.floor || !c.planes().is_empty()
-    };
-    match garments.iter().zip(steps).find(|(_, step)| touches(step)) {
-        None => Ok(()),
-        Some((garment, _)) => {
-            Err(GpuError::Unsupported { garment: garment.name.clone(), what: "there is a body or a floor to touch" })
-        }
     }
 }

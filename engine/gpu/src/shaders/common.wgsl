@@ -44,6 +44,10 @@ struct Garment {
     root: array<vec4<f32>, 4>,
     // What a jump of the root moves along, likewise.
     motion: array<vec4<f32>, 4>,
+    // Contact: offset (m), static and kinetic friction, length of the step (s).
+    how: vec4<f32>,
+    // Its first set of capsules, those to be believed, its planes, and where they begin.
+    touch: vec4<u32>,
 }
 
 // Bits of a garment: which constraints remember their tension, whether fibers are calmed, whether tethers hold.

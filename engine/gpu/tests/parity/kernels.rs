@@ -73,8 +73,7 @@ impl<'a> Twin<'a> {
             }
             Kernel::Shear | Kernel::Weft => {
                 let weft = kernel == Kernel::Weft;
-                let (links, gain) =
-                    if weft { (&layout.weft, &p.weft_gain) } else { (&layout.shear, &p.shear_gain) };
+                let (links, gain) = if weft { (&layout.weft, &p.weft_gain) } else { (&layout.shear, &p.shear_gain) };
                 for set in &links.tuples.sets {
                     for owner in 0..OWNERS {
                         let tension = (weft && p.soft(0)).then(|| (tension.column(), per_dt2));

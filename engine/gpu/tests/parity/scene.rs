@@ -1,6 +1,6 @@
 //! What the tests step: the benchmark's skirt, a garment of the wardrobe, and how they are disturbed.
 
-use glam::{Affine3A, Quat, Vec3, Vec3A};
+use glam::{Affine3A, DVec3, Quat, Vec3, Vec3A};
 use toile_assets::bake::bake;
 use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::garment::Garment;
@@ -8,7 +8,7 @@ use toile_assets::scene::skirt::{self, Stretch};
 use toile_assets::skeleton::BONES;
 use toile_assets::wardrobe;
 use toile_engine::cloth::{Settings, Step};
-use toile_engine::colliders::Colliders;
+use toile_engine::colliders::{Colliders, RestSphere};
 use toile_gpu::cloth::Offload;
 use toile_gpu::device::{Choice, GpuError};
 
@@ -28,6 +28,17 @@ pub fn worn(name: &str) -> Garment {
     let size = sizes.codes()[1];
     let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).expect("she can be built");
     style.dress(size, &body).expect("it fits")
+}
+
+/// The skirt's body of 16 spheres and 28 capsules, on a floor that its hem reaches.
+pub fn walker() -> Colliders {
+    let sphere =
+        |(p, r): ([f64; 3], f64)| RestSphere { bone: 0, centre: DVec3::from_array(p).as_vec3(), radius: r as f32 };
+    let mut colliders = Colliders::new(&skirt::JOINTS.map(sphere), &skirt::CAPSULES, true).expect("it is the scene's");
+    // A slope that the hem rests on.
+    let normal = Vec3::new(0.3, 1.0, 0.1).normalize();
+    colliders.set_planes(&[normal.extend(0.32)]).expect("one plane");
+    colliders
 }
 
 /// No body at all.
@@ -58,9 +69,15 @@ pub fn disturbed(garment: &Garment) -> (Vec<Vec3A>, Vec<Vec3A>) {
     (x, v)
 }
 
-/// The garments on an adapter. None where this machine has none, which CI does not excuse.
+/// The garments on an adapter, without bodies.
 pub fn offload(garments: &[&Garment], settings: &Settings) -> Option<Offload> {
-    match Offload::new(&Choice::Fastest, garments, settings) {
+    let nobody = nobody();
+    offload_worn(garments, &vec![&nobody; garments.len()], settings)
+}
+
+/// The garments on an adapter, each with its body. None where this machine has none, which CI does not excuse.
+pub fn offload_worn(garments: &[&Garment], colliders: &[&Colliders], settings: &Settings) -> Option<Offload> {
+    match Offload::new(&Choice::Fastest, garments, colliders, settings) {
         Ok(offload) => Some(offload),
         Err(error @ GpuError::NoAdapter(_)) => {
             assert_ne!(std::env::var("CI").as_deref(), Ok("true"), "{error}");

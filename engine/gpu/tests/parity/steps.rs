@@ -1,13 +1,17 @@
 //! Whole steps against the CPU's.
 
 use toile_assets::garment::Garment;
-use toile_assets::scene::skirt::Stretch;
+use toile_assets::scene::skirt::{self as scene, Motion, Stretch};
 use toile_engine::cloth::{Cloth, Quality, Settings, measure};
 
-use crate::scene::{apart, around, nobody, offload, skirt, swaying, worn};
+use crate::scene::{REST, apart, around, nobody, offload, offload_worn, skirt, swaying, walker, worn};
 
-/// Mean distance that a second of steps may leave between two devices of which one fuses products and sums (m).
-const MEAN: f32 = 1e-3;
+/// How the body walks.
+const MOTION: Motion = Motion::Walk;
+
+/// Mean distance that up to 20 steps, and a second of them, may leave between two devices of which one fuses products and
+/// sums (m). A hem that swings free doubles what sets it off every few steps: one last bit of one link grew to 3 um and 5 mm.
+const MEAN: [f32; 2] = [1e-4, 2e-2];
 
 /// Steps garments on both; gives the mean distance (m) of each at the end, whether all bits are the same, and whether they
 /// have to be.
@@ -42,13 +46,51 @@ fn both(garments: &[&Garment], settings: &Settings, steps: usize) -> Option<(Vec
 
 fn held(garments: &[&Garment], settings: &Settings, steps: usize) {
     let Some((means, same, software)) = both(garments, settings, steps) else { return };
-    assert!(means.iter().all(|m| *m <= MEAN), "{means:?} m apart");
+    let bound = MEAN[usize::from(steps > 20)];
+    assert!(means.iter().all(|m| *m <= bound), "{means:?} m apart");
     assert!(same || !software, "{means:?} m apart on an adapter that fuses nothing");
 }
 
 #[test]
 fn a_second_of_the_skirt_is_the_cpus() {
     held(&[&skirt(20, Stretch::Inextensible)], &Settings::default(), 120);
+}
+
+/// Steps the skirt on its walking body, `speed` times as fast as it walks.
+fn walked(n: usize, speed: f64, steps: usize) {
+    let (garment, settings) = (skirt(n, Stretch::Inextensible), Settings::default());
+    let mut colliders = walker();
+    let Some(mut gpu) = offload_worn(&[&garment], &[&colliders], &settings) else { return };
+    let mut cloth = Cloth::new(&garment, &colliders);
+    let mut palette = REST;
+    for k in 0..steps {
+        let time = speed * k as f64 / 120.0;
+        palette[0] = scene::root(MOTION, time);
+        colliders.place_spheres(&scene::spheres(MOTION, time));
+        let step = around(&palette, &colliders, &settings);
+        cloth.step(&garment, &step);
+        gpu.step(&[&garment], &[step]).expect("the step is sent");
+    }
+    gpu.finish().expect("the last step comes back");
+    let tally = cloth.contact_tally();
+    let (alike, all, most) = apart(gpu.positions(0), &cloth.positions);
+    println!("walking skirt x {speed}: {alike} of {all} the same, most {most} m, {tally:?}");
+    assert!(tally.near > 0, "the body was not met");
+    assert!(speed < 2.0 || tally.swept > 0, "nothing was fast");
+    let software = gpu.device().adapter().kind == "software";
+    assert!(!software || alike == all, "{most} m apart on an adapter that fuses nothing");
+    assert!(most < 0.05, "{most} m apart");
+    assert_eq!((gpu.report(0).rolled_back, cloth.events.rolled_back), (0, 0));
+}
+
+#[test]
+fn a_skirt_on_a_walking_body_is_the_cpus() {
+    walked(20, 1.0, 60);
+}
+
+#[test]
+fn what_is_fast_is_followed_as_on_the_cpu() {
+    walked(18, 6.0, 40);
 }
 
 #[test]

@@ -4,7 +4,7 @@
 //! Budget: 30 us a step to find what is near, 15 us a substep to push, for 4,096 particles and 28 capsules (32 at most).
 //! Thread: physics; each worker calls its own [`Owner`].
 
-mod cones;
+pub mod cones;
 mod near;
 mod patch;
 mod reach;
@@ -13,9 +13,11 @@ mod sweep;
 mod touch;
 
 use glam::Vec3;
+use toile_assets::fabric::Fabric;
 use toile_assets::garment::Part;
 use toile_assets::limits::MAX_CAPSULES;
 
+use super::Settings;
 use super::state::Columns;
 use crate::colliders::Colliders;
 use crate::lanes::Width;
@@ -42,8 +44,19 @@ pub struct ContactSettings {
 }
 
 impl ContactSettings {
+    /// Of a fabric, in steps with these settings.
+    pub fn new(fabric: &Fabric, settings: &Settings) -> Self {
+        Self {
+            offset_m: fabric.contact_offset_mm * 1e-3,
+            friction_static: fabric.friction * settings.static_friction,
+            friction_kinetic: fabric.friction,
+            step_seconds: settings.step_seconds,
+            continuous: settings.continuous,
+        }
+    }
+
     /// What moves less than this part of the smallest radius relative to a capsule is not followed.
-    fn quick(&self) -> f32 {
+    pub fn quick(&self) -> f32 {
         if self.continuous { QUICK } else { f32::MAX }
     }
 }

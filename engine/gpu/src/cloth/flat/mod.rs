@@ -11,6 +11,8 @@ mod links;
 mod lists;
 
 use toile_assets::garment::Garment;
+use toile_engine::cloth::contact::reach;
+use toile_engine::colliders::Colliders;
 
 pub use bending::{FlatBending, Scale};
 pub use diagonals::FlatDiagonals;
@@ -94,6 +96,8 @@ pub struct Flat {
     pub targets: u32,
     /// Anchor, and bits of the length (m) of the way to it `[particles]`.
     pub tethers: Vec<[u32; 2]>,
+    /// The capsules that each particle can touch at all, a bit each `[particles]`.
+    pub reach: Vec<u32>,
     /// Workgroups over the particles.
     pub everyone: Groups,
     /// Shear links that lie in no fiber.
@@ -111,14 +115,15 @@ pub struct Flat {
 }
 
 impl Flat {
-    /// Lays garments flat.
-    pub fn new(garments: &[&Garment]) -> Self {
+    /// Lays garments flat; `colliders` say which capsules are which limb's.
+    pub fn new(garments: &[&Garment], colliders: &[&Colliders]) -> Self {
         let mut order: Vec<usize> = (0..garments.len()).collect();
         // By what they ask for at their own pace: any settings keep this order.
         order.sort_by_key(|&k| (std::cmp::Reverse(garments[k].substeps), k));
         let mut flat = Self { order: order.clone(), ..Self::default() };
         for (number, &k) in order.iter().enumerate() {
             flat.add(number as u32, garments[k]);
+            flat.reach.extend(garments[k].parts.iter().map(|&part| reach(part, colliders[k])));
         }
         flat
     }
@@ -151,6 +156,66 @@ impl Flat {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use toile_assets::bake::bake;
+    use toile_assets::scene::skirt::{self, Stretch};
+
+    /// Two skirts, laid flat.
+    fn skirts() -> (Garment, Flat) {
+        let shape = skirt::shape(21);
+        let garment = bake("skirt", "one", &shape, &skirt::fabric(&shape, Stretch::Physical)).expect("it bakes");
+        let nobody = Colliders::new(&[], &[], false).expect("nothing is not too much");
+        let flat = Flat::new(&[&garment, &garment], &[&nobody, &nobody]);
+        (garment, flat)
+    }
+
+    /// The items of some workgroups.
+    fn items(groups: &Groups) -> impl Iterator<Item = usize> {
+        groups.groups.iter().flat_map(|g| g[1] as usize..(g[1] + g[2]) as usize)
+    }
+
+    fn once(particles: u32, moved: impl Iterator<Item = u32>) {
+        let mut seen = vec![false; particles as usize];
+        for p in moved {
+            assert!(!std::mem::replace(&mut seen[p as usize], true), "particle {p} is moved twice in a dispatch");
+        }
+    }
+
+    #[test]
+    fn no_two_invocations_of_a_dispatch_move_one_particle() {
+        let (_, flat) = skirts();
+        for links in [&flat.shear, &flat.weft] {
+            for half in &links.halves {
+                once(flat.particles, items(half).flat_map(|k| [links.ends[k][0], links.ends[k][1]]));
+            }
+        }
+        for family in &flat.diagonals.families {
+            let fiber = |k: usize| {
+                let [start, slot, links, apart] = flat.diagonals.heads[k];
+                let leads = &flat.diagonals.leads;
+                std::iter::once(start).chain((0..links).map(move |l| leads[(slot + l * apart) as usize]))
+            };
+            once(flat.particles, items(family).flat_map(fiber));
+        }
+        let fibers = &flat.fibers;
+        let rows = fibers.bundles.iter().flat_map(|b| &fibers.rows[b[2] as usize..(b[2] + b[3]) as usize]);
+        once(flat.particles, rows.flat_map(|r| r[0]..r[0] + r[1]));
+    }
+
+    #[test]
+    fn nothing_of_a_bake_is_lost() {
+        let (garment, flat) = skirts();
+        let layout = &garment.layout;
+        let count = |halves: &[Groups]| halves.iter().flat_map(items).count();
+        assert_eq!(count(&flat.weft.halves), 2 * layout.weft.tuples.count);
+        assert_eq!(count(&flat.shear.halves), 2 * layout.shear.tuples.count);
+        let links: u32 = flat.diagonals.heads.iter().map(|h| h[2]).sum();
+        assert_eq!(links as usize, 2 * layout.diagonals.count());
+        let bends = layout.bends.tuples.count + layout.skewed.tuples.count;
+        assert!(bends > 0 && flat.bending.items.len() >= 2 * bends);
+        assert_eq!(items(&flat.bending.groups).count(), flat.bending.items.len());
+        assert_eq!(flat.bending.starts.len(), flat.particles as usize + 1);
+        assert_eq!(flat.targets as usize, 2 * garment.fixed.len());
+    }
 
     #[test]
     fn the_first_garments_groups_are_a_prefix() {
