@@ -18,6 +18,8 @@ pub mod dump;
 pub mod exit;
 pub mod fit;
 pub mod gestures;
+#[cfg(any(test, feature = "kiosk"))]
+pub mod guest;
 pub mod heap;
 pub mod kiosk;
 pub mod latency;
@@ -41,6 +43,8 @@ pub mod torture;
 pub mod tracking;
 pub mod try_on;
 pub mod validate;
+#[cfg(feature = "kiosk")]
+pub mod window;
 
 use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};

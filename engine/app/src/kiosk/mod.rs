@@ -29,6 +29,7 @@ use std::time::{Duration, Instant};
 
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::pace::physics::Staged;
+use toile_engine::pace::render::Eye;
 use toile_engine::pace::threads;
 use toile_engine::relay::Writer;
 use toile_perf::latency::Placed;
@@ -59,8 +60,9 @@ pub fn run(args: &KioskArgs) -> Result<(), AppError> {
     if args.print_config {
         return terminal::print(config::EXAMPLE);
     }
-    if !args.headless {
-        return Err(AppError::Usage("`toile kiosk` has no window in this build; add `--headless`".into()));
+    if cfg!(not(feature = "kiosk")) && !args.headless {
+        let cure = "add `--headless`, or build with `--features kiosk`";
+        return Err(AppError::Usage(format!("`toile kiosk` has no window in this build; {cure}")));
     }
     let ending = Ending::listen().map_err(AppError::internal)?;
     let mut config = Config::open(args.config.as_deref())?;
@@ -69,12 +71,17 @@ pub fn run(args: &KioskArgs) -> Result<(), AppError> {
     }
     let words = Words::new(args.quiet);
     let figures = figures(&config)?;
-    let report = serve(args, &config, begun, &ending, &words, figures)?;
+    let report = if args.headless {
+        serve(args, &config, begun, &ending, &words, figures, || Ok(Headless::default()))?.0
+    } else {
+        seen(args, &config, begun, &ending, &words, figures)?
+    };
     if args.json { terminal::print_json(&Document::new("kiosk", report)) } else { terminal::print(&report.summary()) }
 }
 
-/// Sets everything up and runs until the end.
-fn serve(
+/// The same with a window.
+#[cfg(feature = "kiosk")]
+fn seen(
     args: &KioskArgs,
     config: &Config,
     begun: Instant,
@@ -82,6 +89,37 @@ fn serve(
     words: &Words,
     figures: Option<Writer<Vitals>>,
 ) -> Result<KioskReport, AppError> {
+    use crate::window;
+    let wanted = window::Wanted { windowed: args.windowed, height_mm: 1_920.0, begun, first: window::first() };
+    window::run(wanted, ending, |front| {
+        let (mut report, eye) = serve(args, config, begun, ending, words, figures, || Ok(front.eye()?.0))?;
+        report.window = eye.map(|mut glass: window::Glass| glass.report());
+        Ok(report)
+    })
+}
+
+#[cfg(not(feature = "kiosk"))]
+fn seen(
+    _: &KioskArgs,
+    _: &Config,
+    _: Instant,
+    _: &Ending,
+    _: &Words,
+    _: Option<Writer<Vitals>>,
+) -> Result<KioskReport, AppError> {
+    Err(AppError::Usage("`toile kiosk` has no window in this build; add `--headless`".into()))
+}
+
+/// Sets everything up and runs until the end.
+fn serve<E: Eye + 'static>(
+    args: &KioskArgs,
+    config: &Config,
+    begun: Instant,
+    ending: &Ending,
+    words: &Words,
+    figures: Option<Writer<Vitals>>,
+    eye: impl FnOnce() -> Result<E, AppError>,
+) -> Result<(KioskReport, Option<E>), AppError> {
     let wish = config.wish();
     let session = recording(config)?;
     // The mannequin stands as somebody does in the recording: a pose, and no body.
@@ -104,15 +142,16 @@ fn serve(
         warnings: locked.err().map(|e| e.to_string()).into_iter().collect(),
     };
     let first = Act { scene: Staged::new(dressed.frame.with_crew(crew)), still: Some(pose) };
-    let cast = Cast { first, reader: dressed.reader, eye: Headless::default(), feed };
+    let cast = Cast { first, reader: dressed.reader, eye: eye()?, feed };
     let (lives, doors) = Lives::start(cast, clock).map_err(AppError::internal)?;
     ending.orderly();
     let say = |line: &str| words.say(line);
     let around =
         Around { manager: &Systemd, ending, say: &say, figures, tailor: Tailor::new(wish), stage: Staged::new };
-    let (ended, mut course) = Service::new(lives, Changing::new(doors), plan, around).run()?;
+    let (mut ended, mut course) = Service::new(lives, Changing::new(doors), plan, around).run()?;
     course.threads.extend(worker.map(Placed::from));
-    Ok(KioskReport::of(&ended, course))
+    let report = KioskReport::of(&ended, course);
+    Ok((report, ended.render.take().map(|render| render.eye)))
 }
 
 /// The recording that is played, or for a live sensor the embedded one, whose shopper shows the mannequin how to stand.

@@ -1,0 +1,211 @@
+//! Glass: the render thread's eye. It hears what was done at the display, paints the newest screen over the newest
+//! snapshot, and shows both.
+
+use std::sync::{Arc, OnceLock};
+use std::time::Instant;
+
+use toile_engine::frame::Snapshot;
+use toile_engine::pace::queue::{Receiver, Sender};
+use toile_engine::pace::render::Eye;
+use toile_engine::relay::Reader;
+use winit::window::Window;
+
+use super::input::{Frame, Heard};
+use super::pace::Pace;
+use super::paint::{Display, Easel};
+use super::report::Figures;
+use super::wall::{Shown, Wall};
+use crate::guest::screen::{Action, Screen};
+use crate::kiosk::report::WindowReport;
+
+/// What was asked for that waits for the service.
+pub const ASKED: usize = 64;
+
+/// The name of the bound, as warnings give it.
+pub const ASKED_NAME: &str = "ASKED (engine/app/src/window/glass.rs)";
+
+/// Most devices that are lost one after the other, with no picture between them.
+const MOST_LOST: u32 = 3;
+
+/// A key that means something.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Key {
+    /// To the next control.
+    Tab,
+    /// To the one before.
+    BackTab,
+    /// Left.
+    Left,
+    /// Right.
+    Right,
+    /// Up.
+    Up,
+    /// Down.
+    Down,
+    /// Press what has the focus.
+    Enter,
+    /// Back.
+    Escape,
+}
+
+/// What somebody asks for at the display.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Asked {
+    /// A control was pressed.
+    Pressed(Action),
+    /// A key went down.
+    Key(Key),
+}
+
+/// The ends that the eye holds.
+pub struct Ends {
+    /// What was done at the display.
+    pub heard: Receiver<Heard>,
+    /// The window as it is.
+    pub frame: Reader<Frame>,
+    /// What is to be shown.
+    pub screens: Reader<Screen>,
+    /// What is asked for.
+    pub asked: Sender<Asked>,
+}
+
+/// The eye.
+pub struct Glass {
+    window: Arc<Window>,
+    ends: Ends,
+    easel: Easel,
+    wall: Option<Wall>,
+    pace: Pace,
+    figures: Figures,
+    /// Height of the display (mm).
+    height_mm: f32,
+    /// Why nothing can be drawn any more, told once.
+    fault: Arc<OnceLock<String>>,
+    lost_in_a_row: u32,
+    /// What the adapter was, when it is gone.
+    adapter: (String, bool),
+}
+
+impl Glass {
+    /// Looks at a window that is `height_mm` high. Opens the device.
+    ///
+    /// # Errors
+    /// Why nothing can draw, with the cure.
+    pub fn open(
+        window: Arc<Window>,
+        ends: Ends,
+        height_mm: f32,
+        begun: Instant,
+        fault: Arc<OnceLock<String>>,
+    ) -> Result<Self, String> {
+        let wall = Wall::open(&window)?;
+        let adapter = (wall.name.clone(), wall.software);
+        Ok(Self {
+            window,
+            ends,
+            easel: Easel::default(),
+            wall: Some(wall),
+            pace: Pace::default(),
+            figures: Figures::new(begun),
+            height_mm,
+            fault,
+            lost_in_a_row: 0,
+            adapter,
+        })
+    }
+
+    /// Who draws, and whether that is the processor.
+    pub fn adapter(&self) -> (&str, bool) {
+        (&self.adapter.0, self.adapter.1)
+    }
+
+    /// What it came to.
+    pub fn report(&mut self) -> WindowReport {
+        let size = self.ends.frame.latest().size;
+        self.figures.report(self.adapter.0.clone(), self.adapter.1, size)
+    }
+
+    /// Takes in what was done at the display, and hands on what it asks for.
+    fn hear(&mut self) {
+        while let Some(heard) = self.ends.heard.pop() {
+            self.pace.hurry();
+            let asked = match heard {
+                Heard::Key(key) => Some(Asked::Key(key)),
+                Heard::Touch(touch) => self.easel.touch(touch, self.ends.screens.latest()).map(Asked::Pressed),
+            };
+            if let Some(asked) = asked {
+                self.ends.asked.push(asked);
+            }
+        }
+    }
+
+    /// Draws a picture, if one is due.
+    pub fn draw(&mut self, snapshot: Option<&Snapshot>) {
+        self.hear();
+        let begun = Instant::now();
+        let frame = *self.ends.frame.latest();
+        if frame.hidden || frame.size.contains(&0) {
+            self.pace.hidden(begun);
+            self.figures.paused();
+        }
+        if !self.pace.is_due(begun) {
+            self.figures.rested += 1;
+            return;
+        }
+        if self.wall.is_none() {
+            self.open_anew();
+        }
+        let Some(wall) = &mut self.wall else { return };
+        let screen = self.ends.screens.latest();
+        let display = Display { size: frame.size, pixel_mm: self.height_mm / frame.size[1].max(1) as f32 };
+        let painted = self.easel.paint(screen, display);
+        wall.take_in(&painted);
+        let shown = wall.show(frame.size, &screen.stage, snapshot, &painted);
+        let software = wall.software;
+        let now = Instant::now();
+        match shown {
+            Shown::Yes => {
+                self.lost_in_a_row = 0;
+                self.figures.presented(begun, now);
+            }
+            Shown::No => {
+                self.figures.refused += 1;
+                self.figures.paused();
+            }
+            Shown::Lost => self.lose(),
+        }
+        self.pace.drawn(begun, now, software);
+    }
+
+    /// The device is gone, and with it every texture: the easel begins anew, so that it hands out all of them again.
+    fn lose(&mut self) {
+        self.figures.lost += 1;
+        self.figures.paused();
+        self.lost_in_a_row += 1;
+        (self.wall, self.easel) = (None, Easel::default());
+        if self.lost_in_a_row > MOST_LOST {
+            self.give_up("its device was lost again and again; update its driver or check the card".to_owned());
+        }
+    }
+
+    fn open_anew(&mut self) {
+        match Wall::open(&self.window) {
+            Ok(wall) => {
+                self.adapter = (wall.name.clone(), wall.software);
+                self.wall = Some(wall);
+            }
+            Err(why) => self.give_up(why),
+        }
+    }
+
+    fn give_up(&self, why: String) {
+        // Only the first reason counts.
+        _ = self.fault.set(why);
+    }
+}
+
+impl Eye for Glass {
+    fn look(&mut self, snapshot: &Snapshot) {
+        self.draw(Some(snapshot));
+    }
+}

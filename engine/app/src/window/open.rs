@@ -1,0 +1,133 @@
+//! Open: `toile kiosk` with a window. Main opens it and waits; the service begins on a thread of its own, and beside it the device
+//! is opened and shows its first picture while the mannequin is being dressed.
+
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::sync::{Arc, OnceLock};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use toile_engine::pace::queue::bounded;
+use toile_engine::pace::roles::{self, Role};
+use toile_engine::relay::Relay;
+use winit::window::Window;
+
+use super::glass::{ASKED, ASKED_NAME, Ends, Glass};
+use super::input::{Frame, HEARD, HEARD_NAME};
+use super::shell::{self, Farewell, Shell};
+use crate::exit::AppError;
+use crate::guest::screen::Screen;
+use crate::kiosk::manager::Ending;
+
+/// Longest that the window system may take to open a window.
+const LONGEST_OPEN: Duration = Duration::from_secs(10);
+
+/// What the window is to be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wanted {
+    /// Pixels of a window; none covers the display.
+    pub windowed: Option<[u32; 2]>,
+    /// Height of the display (mm).
+    pub height_mm: f32,
+    /// When the program began.
+    pub begun: Instant,
+    /// What is shown first.
+    pub first: Screen,
+}
+
+/// The window's ends that the service holds.
+pub struct Front {
+    /// What is to be shown.
+    pub screens: toile_engine::relay::Writer<Screen>,
+    /// What is asked for.
+    pub asked: toile_engine::pace::queue::Receiver<super::Asked>,
+    /// Why nothing can be drawn any more, if so.
+    pub fault: Arc<OnceLock<String>>,
+    eye: thread::JoinHandle<Result<Glass, String>>,
+}
+
+impl Front {
+    /// The eye, when its device is open.
+    ///
+    /// # Errors
+    /// Why nothing can draw, with the cure.
+    pub fn eye(self) -> Result<(Glass, Arc<OnceLock<String>>), AppError> {
+        let glass = self.eye.join().map_err(|_| AppError::Internal("the display's device panicked".into()))?;
+        Ok((glass.map_err(AppError::Device)?, self.fault))
+    }
+}
+
+/// Opens the window on this thread and runs `serve` on another until it returns; it is handed the window's other ends.
+///
+/// # Errors
+/// Those of `serve`; where there is no display, or where it went away.
+pub fn run<T: Send>(
+    wanted: Wanted,
+    ending: &Ending,
+    serve: impl FnOnce(Front) -> Result<T, AppError> + Send,
+) -> Result<T, AppError> {
+    let events = shell::event_loop()?;
+    let farewell = Farewell(events.create_proxy());
+    let (hear, heard) = bounded(HEARD_NAME, HEARD);
+    let (ask, asked) = bounded(ASKED_NAME, ASKED);
+    let frame = Relay::new(&Frame::default());
+    let screens = Relay::new(&wanted.first);
+    let (opened, window) = sync_channel(1);
+    let shell = Shell::new(wanted.windowed, hear, frame.writer, ending.clone(), opened);
+    let fault = Arc::new(OnceLock::new());
+    let ends = Ends { heard, frame: frame.reader, screens: screens.reader, asked: ask };
+    thread::scope(|scope| {
+        let eye = {
+            let (fault, wanted) = (fault.clone(), wanted.clone());
+            thread::Builder::new().name("toile-opening".into()).spawn(move || open(&window, ends, &wanted, fault))
+        };
+        let front = Front { screens: screens.writer, asked, fault, eye: eye.map_err(AppError::internal)? };
+        let service = thread::Builder::new().name("toile-service".into()).spawn_scoped(scope, move || {
+            // Dropped last, and also where the service panics: the window never outlives it.
+            let _farewell = farewell;
+            serve(front)
+        });
+        let service = service.map_err(AppError::internal)?;
+        let seen = shell.run(events);
+        ending.ask();
+        let served = service.join().unwrap_or_else(|_| Err(AppError::Internal("the service panicked".into())));
+        seen.and(served)
+    })
+}
+
+/// Waits for the window and makes its first picture. On the core of the render thread: a driver that draws on the processor
+/// starts threads of its own, which inherit it.
+fn open(
+    window: &Receiver<Result<Arc<Window>, String>>,
+    ends: Ends,
+    wanted: &Wanted,
+    fault: Arc<OnceLock<String>>,
+) -> Result<Glass, String> {
+    roles::settle(Role::Render);
+    let window = window.recv_timeout(LONGEST_OPEN).map_err(|_| "the window system opened no window; restart it")??;
+    let mut glass = Glass::open(window, ends, wanted.height_mm, wanted.begun, fault)?;
+    glass.draw(None);
+    Ok(glass)
+}
+
+/// What is shown before anything is known.
+pub fn first() -> Screen {
+    use crate::guest::screen::{Action, Block, Control, Look, Page, Stage};
+    let control =
+        |action, label: &str, look| Control { action, label: label.into(), detail: None, look, chosen: false };
+    Screen {
+        page: Page::Attract,
+        heading: "Try clothes on without changing".into(),
+        blocks: vec![Block::Text("Step onto the mark. You are measured in a second, and see yourself dressed.".into())],
+        controls: vec![
+            control(Action::Begin, "Begin", Look::Primary),
+            control(Action::Open(Page::Settings), "Settings", Look::Quiet),
+        ],
+        focus: 0,
+        stage: Stage::Mannequin,
+        type_scale: 1.0,
+        reach: 0.6,
+        reach_low: 0.1,
+        colours: vec![],
+        language: "en",
+    }
+}

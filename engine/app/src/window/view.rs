@@ -1,0 +1,30 @@
+//! View: from where the body is looked at, so that it stands in what the panel leaves free.
+
+use glam::Vec3;
+use toile_view::scene::{Bounds, Camera};
+
+/// Arm's reach beside the body (m): what stays in the picture when somebody lifts their arms.
+const HALF_REACH_M: f32 = 0.5;
+
+/// Height that is shown over a body, in statures.
+const HEADROOM: f32 = 1.03;
+
+/// A camera that frames a standing body of this stature at a place on the floor, turned by `yaw` (rad), within a part of the
+/// display: left, top, right, bottom as shares of it; `aspect` is the display's width over its height.
+pub fn camera(stature: f32, at: Vec3, yaw: f32, free: [f32; 4], aspect: f32) -> Camera {
+    let [left, top, right, bottom] = free;
+    let (wide, tall) = ((right - left).clamp(0.05, 1.0), (bottom - top).clamp(0.05, 1.0));
+    let reach = Vec3::new(HALF_REACH_M, 0.0, HALF_REACH_M * 0.5);
+    let box_of = Bounds { min: at - reach, max: at + reach + Vec3::Y * stature * HEADROOM };
+    // As if the free part were the whole picture ...
+    let near = Camera::framing(&box_of, yaw, aspect * wide / tall);
+    // ... of which the display shows more, all around.
+    let distance = near.distance / tall;
+    let seen = 2.0 * distance * (0.5 * near.fov_y).tan();
+    let (sin, cos) = yaw.sin_cos();
+    let right_hand = Vec3::new(cos, 0.0, -sin);
+    let aside = (0.5 - 0.5 * (left + right)) * seen * aspect;
+    let above = (0.5 - 0.5 * (top + bottom)) * seen;
+    let target = near.target + right_hand * aside - Vec3::Y * above;
+    Camera { target, distance, height: near.height, ..near }
+}
