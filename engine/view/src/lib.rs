@@ -6,6 +6,8 @@
 
 pub mod fitmap;
 pub mod image;
+#[cfg(feature = "view")]
+pub mod mirror;
 pub mod scene;
 pub mod sheet;
 pub mod text;
