@@ -18,6 +18,8 @@ pub mod dump;
 pub mod exit;
 pub mod fit;
 pub mod gestures;
+#[cfg(any(test, feature = "kiosk"))]
+pub mod guest;
 pub mod heap;
 pub mod kiosk;
 pub mod latency;
