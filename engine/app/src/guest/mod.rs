@@ -19,6 +19,6 @@ pub mod screen;
 pub mod shelf;
 pub mod sight;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod visit;
 pub mod words;

@@ -35,7 +35,7 @@ fn house() -> House {
 }
 
 /// A visit that is played, with a tailor who does what it is told within a second.
-struct Play {
+pub(crate) struct Play {
     model: Model,
     words: Words,
     now: u64,
@@ -50,7 +50,7 @@ struct Play {
 }
 
 impl Play {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let shelf = Arc::new(Shelf::stock().unwrap());
         Self {
             model: Model::new(house(), shelf, 0),
@@ -65,7 +65,7 @@ impl Play {
     }
 
     /// With somebody measured and dressed.
-    fn dressed() -> Self {
+    pub(crate) fn dressed() -> Self {
         let mut play = Self::new();
         play.see(Some(1));
         play.wait(6_000);
@@ -94,13 +94,13 @@ impl Play {
         self.pages.insert(self.model.page());
     }
 
-    fn see(&mut self, who: Option<u32>) {
+    pub(crate) fn see(&mut self, who: Option<u32>) {
         let seen = who.map(|who| Seen { people: 1, who: Some(who), head_mm: Some(1_560.0), ..Seen::default() });
         self.tell(Input::Seen(seen.unwrap_or_default()));
     }
 
     /// Lets time pass (ms).
-    fn wait(&mut self, ms: u64) {
+    pub(crate) fn wait(&mut self, ms: u64) {
         let end = self.now + ms * MS;
         while self.now < end {
             self.now += LOOK;
@@ -112,16 +112,16 @@ impl Play {
         }
     }
 
-    fn press(&mut self, action: Action) {
+    pub(crate) fn press(&mut self, action: Action) {
         assert!(self.screen().controls.iter().any(|c| c.action == action), "{action:?} on {:?}", self.model.page());
         self.tell(Input::Pressed(action));
     }
 
-    fn screen(&self) -> Screen {
+    pub(crate) fn screen(&self) -> Screen {
         Screen::of(&self.model, &self.words, &Mount::default())
     }
 
-    fn page(&self) -> Page {
+    pub(crate) fn page(&self) -> Page {
         self.model.page()
     }
 }

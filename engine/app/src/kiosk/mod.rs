@@ -30,6 +30,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use toile_engine::clock::{Clock, RealClock};
+use toile_engine::frame::Frame;
 use toile_engine::pace::physics::Staged;
 use toile_engine::pace::render::Eye;
 use toile_engine::pace::threads;
@@ -74,7 +75,9 @@ pub fn run(args: &KioskArgs) -> Result<(), AppError> {
     let words = Words::new(args.quiet);
     let figures = figures(&config)?;
     let report = if args.headless {
-        serve(args, &config, begun, &ending, &words, figures, || Ok(Headless::default()))?.0
+        let clock = RealClock::default();
+        let seeing = Seeing { eye: |_: &Frame| Ok(Headless::default()), stage: |frame| (Staged::new(frame), ()) };
+        serve(args, &config, (begun, clock), &ending, &words, figures, seeing)?.0
     } else {
         seen(args, &config, begun, &ending, &words, figures)?
     };
@@ -88,13 +91,29 @@ fn seen(
     config: &Config,
     begun: Instant,
     ending: &Ending,
-    words: &Words,
+    said: &Words,
     figures: Option<Writer<Vitals>>,
 ) -> Result<KioskReport, AppError> {
-    use crate::window;
-    let wanted = window::Wanted { windowed: args.windowed, height_mm: 1_920.0, begun, first: window::first() };
+    use crate::{guest, window};
+    let clock = RealClock::default();
+    let words = guest::words::Words::load()?;
+    let shelf = Arc::new(guest::shelf::Shelf::stock()?);
+    let house = guest::model::House {
+        rules: guest::model::Rules::usual(config.rules(), config::ns(config.session.measure_s), 180_000_000_000),
+        language: guest::words::Language::English,
+        large: false,
+        wear: config.wear.garments.clone(),
+    };
+    let model = guest::model::Model::new(house, shelf, clock.now_ns());
+    let first = guest::screen::Screen::of(&model, &words, &guest::layout::Mount::default());
+    let wanted = window::Wanted { windowed: args.windowed, height_mm: 1_210.0, begun, clock, motion: true, first };
     window::run(wanted, ending, |front| {
-        let (mut report, eye) = serve(args, config, begun, ending, words, figures, || Ok(front.eye()?.0))?;
+        let stage = |frame: Frame| {
+            let look = window::look::Look::of(&frame);
+            (Staged::new(frame), look)
+        };
+        let eye = |mannequin: &Frame| Ok(front.eye()?.0.seeing(window::look::Look::of(mannequin)));
+        let (mut report, eye) = serve(args, config, (begun, clock), ending, said, figures, Seeing { eye, stage })?;
         report.window = eye.map(|mut glass: window::Glass| glass.report());
         Ok(report)
     })
@@ -112,15 +131,21 @@ fn seen(
     Err(AppError::Usage("`toile kiosk` has no window in this build; add `--headless`".into()))
 }
 
+/// Who sees: the eye, once the mannequin is dressed, and what it has to know of a frame that takes the stage.
+struct Seeing<F, O> {
+    eye: F,
+    stage: fn(Frame) -> (Staged, O),
+}
+
 /// Sets everything up and runs until the end.
-fn serve<E: Eye + 'static>(
+fn serve<E: Eye<Outfit: Default> + 'static>(
     args: &KioskArgs,
     config: &Config,
-    begun: Instant,
+    (begun, clock): (Instant, RealClock),
     ending: &Ending,
     words: &Words,
     figures: Option<Writer<Vitals>>,
-    eye: impl FnOnce() -> Result<E, AppError>,
+    seeing: Seeing<impl FnOnce(&Frame) -> Result<E, AppError>, E::Outfit>,
 ) -> Result<(KioskReport, Option<E>), AppError> {
     let wish = config.wish();
     let session = recording(config)?;
@@ -128,7 +153,6 @@ fn serve<E: Eye + 'static>(
     let pose = shopper::believable(&session);
     let pose = pose[shopper::stands_from(&pose).min(pose.len() - 1)];
     let dressed = tailor::mannequin(&wish, &pose)?;
-    let clock = RealClock::default();
     let (feed, played) = feed(config, session, clock)?;
     let workers = config.machine.workers.unwrap_or_else(workers);
     let (crew, worker) = threads::crew(workers).map_err(AppError::input)?;
@@ -149,8 +173,9 @@ fn serve<E: Eye + 'static>(
         None => (None, None),
     };
     let Dressed { frame, reader, made } = dressed;
-    let first = Act { scene: Staged::new(frame.with_crew(crew)), reader, outfit: (), made };
-    let cast = Cast { first, eye: eye()?, feed, tape };
+    let eye = (seeing.eye)(&frame)?;
+    let first = Act { scene: Staged::new(frame.with_crew(crew)), reader, outfit: E::Outfit::default(), made };
+    let cast = Cast { first, eye, feed, tape };
     let (lives, doors) = Lives::start(cast, clock).map_err(AppError::internal)?;
     ending.orderly();
     let say = |line: &str| words.say(line);
@@ -161,7 +186,7 @@ fn serve<E: Eye + 'static>(
         say: &say,
         figures,
         tailor: Tailor::new(wish),
-        stage: |frame| (Staged::new(frame), ()),
+        stage: seeing.stage,
         pose,
         black_box,
     };

@@ -4,17 +4,22 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
+use toile_engine::clock::Clock;
 use toile_engine::frame::Snapshot;
 use toile_engine::pace::queue::{Receiver, Sender};
 use toile_engine::pace::render::Eye;
 use toile_engine::relay::Reader;
+use toile_view::mirror::Shown;
 use winit::window::Window;
 
 use super::input::{Frame, Heard};
+use super::open::Wanted;
 use super::pace::Pace;
 use super::paint::{Display, Easel};
 use super::report::Figures;
-use super::wall::{Shown, Wall};
+use super::look::{Look, Pair};
+use super::podium::Scene;
+use super::wall::Wall;
 use crate::guest::screen::{Action, Screen};
 use crate::kiosk::report::WindowReport;
 
@@ -67,6 +72,8 @@ pub struct Ends {
     pub screens: Reader<Screen>,
     /// What is asked for.
     pub asked: Sender<Asked>,
+    /// Two sizes to be compared, or none any more.
+    pub pairs: Receiver<Option<Box<Pair>>>,
 }
 
 /// The eye.
@@ -77,8 +84,12 @@ pub struct Glass {
     wall: Option<Wall>,
     pace: Pace,
     figures: Figures,
-    /// Height of the display (mm).
-    height_mm: f32,
+    wanted: Wanted,
+    /// Who stands there.
+    look: Look,
+    pair: Option<Box<Pair>>,
+    /// Whether the wall has yet to be told of them.
+    changed: bool,
     /// Why nothing can be drawn any more, told once.
     fault: Arc<OnceLock<String>>,
     lost_in_a_row: u32,
@@ -87,15 +98,14 @@ pub struct Glass {
 }
 
 impl Glass {
-    /// Looks at a window that is `height_mm` high. Opens the device.
+    /// Looks at a window. Opens the device.
     ///
     /// # Errors
     /// Why nothing can draw, with the cure.
     pub fn open(
         window: Arc<Window>,
         ends: Ends,
-        height_mm: f32,
-        begun: Instant,
+        wanted: Wanted,
         fault: Arc<OnceLock<String>>,
     ) -> Result<Self, String> {
         let wall = Wall::open(&window)?;
@@ -106,12 +116,28 @@ impl Glass {
             easel: Easel::default(),
             wall: Some(wall),
             pace: Pace::default(),
-            figures: Figures::new(begun),
-            height_mm,
+            figures: Figures::new(wanted.begun),
+            wanted,
+            look: Look::default(),
+            pair: None,
+            changed: false,
             fault,
             lost_in_a_row: 0,
             adapter,
         })
+    }
+
+    /// Compiles what bodies are drawn with, behind the first picture.
+    pub fn prepare(&mut self) {
+        if let Some(wall) = &mut self.wall {
+            wall.prepare();
+        }
+    }
+
+    /// Who stands there first.
+    #[must_use]
+    pub fn seeing(self, look: Look) -> Self {
+        Self { look, changed: true, ..self }
     }
 
     /// Who draws, and whether that is the processor.
@@ -142,12 +168,10 @@ impl Glass {
     /// Draws a picture, if one is due.
     pub fn draw(&mut self, snapshot: Option<&Snapshot>) {
         self.hear();
-        let begun = Instant::now();
-        let frame = *self.ends.frame.latest();
-        if frame.hidden || frame.size.contains(&0) {
-            self.pace.hidden(begun);
-            self.figures.paused();
+        while let Some(pair) = self.ends.pairs.pop() {
+            (self.pair, self.changed) = (pair, true);
         }
+        let begun = Instant::now();
         if !self.pace.is_due(begun) {
             self.figures.rested += 1;
             return;
@@ -155,26 +179,42 @@ impl Glass {
         if self.wall.is_none() {
             self.open_anew();
         }
-        let Some(wall) = &mut self.wall else { return };
-        let screen = self.ends.screens.latest();
-        let display = Display { size: frame.size, pixel_mm: self.height_mm / frame.size[1].max(1) as f32 };
-        let painted = self.easel.paint(screen, display);
-        wall.take_in(&painted);
-        let shown = wall.show(frame.size, &screen.stage, snapshot, &painted);
-        let software = wall.software;
+        let (shown, software) = self.paint(snapshot);
         let now = Instant::now();
+        self.pace.drawn(begun, now, software);
         match shown {
             Shown::Yes => {
                 self.lost_in_a_row = 0;
                 self.figures.presented(begun, now);
             }
-            Shown::No => {
+            Shown::Resting => {
+                self.pace.hidden(now);
+                self.figures.paused();
+            }
+            Shown::NewDevice => self.lose(),
+            Shown::Skipped | Shown::NewSurface => {
                 self.figures.refused += 1;
                 self.figures.paused();
             }
-            Shown::Lost => self.lose(),
         }
-        self.pace.drawn(begun, now, software);
+    }
+
+    /// Paints the newest screen over the newest snapshot; says also whether the processor did.
+    fn paint(&mut self, snapshot: Option<&Snapshot>) -> (Shown, bool) {
+        let Some(wall) = &mut self.wall else { return (Shown::Resting, false) };
+        if std::mem::take(&mut self.changed) {
+            wall.dress(&self.look, self.pair.as_deref());
+        }
+        if let Some(snapshot) = snapshot {
+            wall.take(snapshot, self.wanted.clock.now_ns());
+        }
+        let (frame, screen) = (*self.ends.frame.latest(), self.ends.screens.latest());
+        let display = Display { size: frame.size, pixel_mm: self.wanted.height_mm / frame.size[1].max(1) as f32 };
+        let painted = self.easel.paint(screen, display);
+        wall.take_in(&painted);
+        let time_s = self.wanted.motion.then(|| self.wanted.begun.elapsed().as_secs_f64());
+        let scene = Scene { stage: &screen.stage, colours: &screen.colours, free: painted.free, time_s };
+        (wall.show(frame, &scene, &painted), wall.software)
     }
 
     /// The device is gone, and with it every texture: the easel begins anew, so that it hands out all of them again.
@@ -182,7 +222,7 @@ impl Glass {
         self.figures.lost += 1;
         self.figures.paused();
         self.lost_in_a_row += 1;
-        (self.wall, self.easel) = (None, Easel::default());
+        (self.wall, self.easel, self.changed) = (None, Easel::default(), true);
         if self.lost_in_a_row > MOST_LOST {
             self.give_up("its device was lost again and again; update its driver or check the card".to_owned());
         }
@@ -205,6 +245,14 @@ impl Glass {
 }
 
 impl Eye for Glass {
+    type Outfit = Look;
+
+    fn put_on(&mut self, outfit: &mut Look) {
+        std::mem::swap(&mut self.look, outfit);
+        // Two sizes were those of whoever stood there before.
+        (self.pair, self.changed) = (None, true);
+    }
+
     fn look(&mut self, snapshot: &Snapshot) {
         self.draw(Some(snapshot));
     }

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use toile_assets::mesh::vertex_normals;
 use toile_engine::cloth::measure;
-use toile_engine::frame::Frame;
+use toile_engine::frame::{Frame, Snapshot};
 use toile_view::mirror::{Cloth, Material, Model, Shape, Weave};
 use toile_view::scene::MANNEQUIN;
 use toile_view::tuck::Cover;
@@ -14,8 +14,11 @@ const RECESS_M: f32 = 0.04;
 /// Strength of the sheen of cloth.
 const SHEEN: f32 = 0.5;
 
+/// Two sizes of the same outfit on the same body, draped: left and right.
+pub type Pair = [Look; 2];
+
 /// What is worn and who wears it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Look {
     /// The body, then the garments, inner first.
     pub model: Model,
@@ -28,6 +31,20 @@ pub struct Look {
 }
 
 impl Look {
+    /// Of a frame that was dressed, in rest as it lies in a snapshot of its own.
+    pub fn draped(frame: &Frame, snapshot: &Snapshot) -> Self {
+        let mut look = Self::of(frame);
+        let mut normals = vec![Vec3::ZERO; snapshot.skin.vertices()];
+        let points = snapshot.garments.iter().map(|g| g.to_vec());
+        for (surface, points) in look.model.surfaces.iter_mut().skip(1).zip(points) {
+            surface.rest = points;
+        }
+        if let Some(body) = look.model.surfaces.first_mut() {
+            snapshot.skin.read(&mut body.rest, &mut normals);
+        }
+        look
+    }
+
     /// Of a frame that was dressed.
     pub fn of(frame: &Frame) -> Self {
         let (body, garments) = (frame.body(), frame.garments());

@@ -19,14 +19,17 @@
 
 mod glass;
 mod input;
+pub mod look;
 mod open;
 mod pace;
 pub mod paint;
+mod podium;
 mod report;
 mod shell;
-pub mod varnish;
+mod varnish;
+mod view;
 mod wall;
 
 pub use crate::kiosk::report::WindowReport;
 pub use glass::{Asked, Glass, Key};
-pub use open::{Front, Wanted, first, run};
+pub use open::{Front, Wanted, run};

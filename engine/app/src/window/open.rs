@@ -6,13 +6,15 @@ use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use toile_engine::pace::queue::bounded;
+use toile_engine::clock::RealClock;
+use toile_engine::pace::queue::{self, Sender, bounded};
 use toile_engine::pace::roles::{self, Role};
-use toile_engine::relay::Relay;
+use toile_engine::relay::{Relay, Writer};
 use winit::window::Window;
 
-use super::glass::{ASKED, ASKED_NAME, Ends, Glass};
+use super::glass::{ASKED, Asked, ASKED_NAME, Ends, Glass};
 use super::input::{Frame, HEARD, HEARD_NAME};
+use super::look::Pair;
 use super::shell::{self, Farewell, Shell};
 use crate::exit::AppError;
 use crate::guest::screen::Screen;
@@ -21,8 +23,14 @@ use crate::kiosk::manager::Ending;
 /// Longest that the window system may take to open a window.
 const LONGEST_OPEN: Duration = Duration::from_secs(10);
 
+/// Pairs of sizes that wait to be shown.
+const PAIRS: usize = 4;
+
+/// The name of the bound, as warnings give it.
+const PAIRS_NAME: &str = "PAIRS (engine/app/src/window/open.rs)";
+
 /// What the window is to be.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Wanted {
     /// Pixels of a window; none covers the display.
     pub windowed: Option<[u32; 2]>,
@@ -30,6 +38,10 @@ pub struct Wanted {
     pub height_mm: f32,
     /// When the program began.
     pub begun: Instant,
+    /// The loop's clock.
+    pub clock: RealClock,
+    /// Whether anything moves by itself, such as a mannequin that turns.
+    pub motion: bool,
     /// What is shown first.
     pub first: Screen,
 }
@@ -37,9 +49,11 @@ pub struct Wanted {
 /// The window's ends that the service holds.
 pub struct Front {
     /// What is to be shown.
-    pub screens: toile_engine::relay::Writer<Screen>,
+    pub screens: Writer<Screen>,
     /// What is asked for.
-    pub asked: toile_engine::pace::queue::Receiver<super::Asked>,
+    pub asked: queue::Receiver<Asked>,
+    /// Two sizes to be compared, or none any more.
+    pub pairs: Sender<Option<Box<Pair>>>,
     /// Why nothing can be drawn any more, if so.
     pub fault: Arc<OnceLock<String>>,
     eye: thread::JoinHandle<Result<Glass, String>>,
@@ -71,16 +85,17 @@ pub fn run<T: Send>(
     let (ask, asked) = bounded(ASKED_NAME, ASKED);
     let frame = Relay::new(&Frame::default());
     let screens = Relay::new(&wanted.first);
+    let (show, pairs) = bounded(PAIRS_NAME, PAIRS);
     let (opened, window) = sync_channel(1);
     let shell = Shell::new(wanted.windowed, hear, frame.writer, ending.clone(), opened);
     let fault = Arc::new(OnceLock::new());
-    let ends = Ends { heard, frame: frame.reader, screens: screens.reader, asked: ask };
+    let ends = Ends { heard, frame: frame.reader, screens: screens.reader, asked: ask, pairs };
     thread::scope(|scope| {
         let eye = {
             let (fault, wanted) = (fault.clone(), wanted.clone());
             thread::Builder::new().name("toile-opening".into()).spawn(move || open(&window, ends, &wanted, fault))
         };
-        let front = Front { screens: screens.writer, asked, fault, eye: eye.map_err(AppError::internal)? };
+        let front = Front { screens: screens.writer, asked, pairs: show, fault, eye: eye.map_err(AppError::internal)? };
         let service = thread::Builder::new().name("toile-service".into()).spawn_scoped(scope, move || {
             // Dropped last, and also where the service panics: the window never outlives it.
             let _farewell = farewell;
@@ -104,30 +119,8 @@ fn open(
 ) -> Result<Glass, String> {
     roles::settle(Role::Render);
     let window = window.recv_timeout(LONGEST_OPEN).map_err(|_| "the window system opened no window; restart it")??;
-    let mut glass = Glass::open(window, ends, wanted.height_mm, wanted.begun, fault)?;
+    let mut glass = Glass::open(window, ends, wanted.clone(), fault)?;
     glass.draw(None);
+    glass.prepare();
     Ok(glass)
-}
-
-/// What is shown before anything is known.
-pub fn first() -> Screen {
-    use crate::guest::screen::{Action, Block, Control, Look, Page, Stage};
-    let control =
-        |action, label: &str, look| Control { action, label: label.into(), detail: None, look, chosen: false };
-    Screen {
-        page: Page::Attract,
-        heading: "Try clothes on without changing".into(),
-        blocks: vec![Block::Text("Step onto the mark. You are measured in a second, and see yourself dressed.".into())],
-        controls: vec![
-            control(Action::Begin, "Begin", Look::Primary),
-            control(Action::Open(Page::Settings), "Settings", Look::Quiet),
-        ],
-        focus: 0,
-        stage: Stage::Mannequin,
-        type_scale: 1.0,
-        reach: 0.6,
-        reach_low: 0.1,
-        colours: vec![],
-        language: "en",
-    }
 }

@@ -9,15 +9,19 @@ const HALF_REACH_M: f32 = 0.5;
 /// Height that is shown over a body, in statures.
 const HEADROOM: f32 = 1.03;
 
+/// The box around a standing body of this stature at a place on the floor, with the reach of its arms.
+pub fn stands(stature: f32, at: Vec3) -> Bounds {
+    let reach = Vec3::new(HALF_REACH_M, 0.0, HALF_REACH_M * 0.5);
+    Bounds { min: at - reach, max: at + reach + Vec3::Y * stature * HEADROOM }
+}
+
 /// A camera that frames a standing body of this stature at a place on the floor, turned by `yaw` (rad), within a part of the
 /// display: left, top, right, bottom as shares of it; `aspect` is the display's width over its height.
 pub fn camera(stature: f32, at: Vec3, yaw: f32, free: [f32; 4], aspect: f32) -> Camera {
     let [left, top, right, bottom] = free;
     let (wide, tall) = ((right - left).clamp(0.05, 1.0), (bottom - top).clamp(0.05, 1.0));
-    let reach = Vec3::new(HALF_REACH_M, 0.0, HALF_REACH_M * 0.5);
-    let box_of = Bounds { min: at - reach, max: at + reach + Vec3::Y * stature * HEADROOM };
     // As if the free part were the whole picture ...
-    let near = Camera::framing(&box_of, yaw, aspect * wide / tall);
+    let near = Camera::framing(&stands(stature, at), yaw, aspect * wide / tall);
     // ... of which the display shows more, all around.
     let distance = near.distance / tall;
     let seen = 2.0 * distance * (0.5 * near.fov_y).tan();

@@ -2,113 +2,139 @@
 //! is made anew where the device is lost.
 
 use std::sync::Arc;
+use std::thread;
 
+use thread_priority::{NormalThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy};
 use toile_engine::frame::Snapshot;
-use wgpu::{
-    CompositeAlphaMode, CurrentSurfaceTexture, Device, Instance, InstanceDescriptor, PresentMode, Queue, Surface,
-    SurfaceConfiguration, TextureFormat, TextureUsages, TextureViewDescriptor,
-};
+use toile_view::image::Size;
+use toile_view::mirror::{Choice, Gpu, Pace, Presenter, Shown};
 use winit::window::Window;
 
+use super::input::Frame;
+use super::look::{Look, Pair};
 use super::paint::Painted;
+use super::podium::{Podium, Scene};
 use super::varnish::Varnish;
-use crate::guest::screen::Stage;
-
-/// What became of a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shown {
-    /// It is on the display.
-    Yes,
-    /// The display takes none at the moment.
-    No,
-    /// The device is lost: everything has to be made anew.
-    Lost,
-}
 
 /// A device with a surface.
 pub struct Wall {
-    device: Device,
-    queue: Queue,
-    surface: Surface<'static>,
-    config: SurfaceConfiguration,
+    gpu: Gpu,
+    window: Arc<Window>,
+    presenter: Presenter<'static>,
     varnish: Varnish,
+    podium: Option<Podium>,
     /// The adapter's name.
     pub name: String,
     /// Whether the processor draws.
     pub software: bool,
-    configured: bool,
 }
 
 impl Wall {
-    /// Opens the best adapter that can show on the window.
+    /// Opens the best adapter that can show on the window. On the core of the render thread: a driver that draws on the processor
+    /// has threads of its own, which inherit it.
     ///
     /// # Errors
     /// Why there is none, with the cure.
     pub fn open(window: &Arc<Window>) -> Result<Self, String> {
-        let instance = Instance::new(InstanceDescriptor::new_without_display_handle());
-        let surface = instance.create_surface(window.clone()).map_err(|e| e.to_string())?;
-        let options = wgpu::RequestAdapterOptions { compatible_surface: Some(&surface), ..Default::default() };
-        let adapter = toile_gpu::wait::block_on(instance.request_adapter(&options)).map_err(|e| e.to_string())?;
-        let limits = wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits());
-        let wanted = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
-        let (device, queue) = toile_gpu::wait::block_on(adapter.request_device(&wanted)).map_err(|e| e.to_string())?;
-        let info = adapter.get_info();
-        let caps = surface.get_capabilities(&adapter);
-        let plain = [TextureFormat::Bgra8Unorm, TextureFormat::Rgba8Unorm];
-        let format = plain.into_iter().find(|f| caps.formats.contains(f)).or(caps.formats.first().copied());
-        let format = format.ok_or("the display takes no format")?;
-        let config = SurfaceConfiguration {
-            usage: TextureUsages::RENDER_ATTACHMENT,
-            format,
-            width: 0,
-            height: 0,
-            present_mode: PresentMode::AutoVsync,
-            desired_maximum_frame_latency: 2,
-            alpha_mode: CompositeAlphaMode::Auto,
-            view_formats: vec![],
-            color_space: Default::default(),
-        };
-        let varnish = Varnish::new(&device, format);
-        let software = info.device_type == wgpu::DeviceType::Cpu;
-        Ok(Self { device, queue, surface, config, varnish, name: info.name, software, configured: false })
+        let (mut gpu, mut surface) = open(window)?;
+        if gpu.is_software() {
+            // Its threads are made with the device, and inherit the place of the thread that makes it: once more, by one that
+            // stands behind everybody else.
+            drop((surface, gpu));
+            let again = || {
+                stand_back();
+                open(window)
+            };
+            let again = thread::scope(|scope| scope.spawn(again).join());
+            (gpu, surface) = again.map_err(|_| "the graphics driver panicked; install another one")??;
+        }
+        let size = window.inner_size();
+        let presenter = Presenter::new(&gpu, surface, Size::new(size.width, size.height), Pace::Display);
+        let presenter = presenter.ok_or("the graphics adapter cannot show on this display; choose another driver")?;
+        let varnish = Varnish::new(&gpu.device, presenter.format());
+        let (name, software) = (gpu.to_string(), gpu.is_software());
+        Ok(Self { gpu, window: window.clone(), presenter, varnish, podium: None, name, software })
+    }
+
+    /// Compiles what the body is drawn with, where that was not done yet: a first picture need not wait for it.
+    pub fn prepare(&mut self) {
+        if self.podium.is_none() {
+            self.podium = Some(Podium::new(&self.gpu, self.presenter.format()));
+        }
+    }
+
+    /// Who is drawn from now on.
+    pub fn dress(&mut self, look: &Look, pair: Option<&Pair>) {
+        self.prepare();
+        if let Some(podium) = &mut self.podium {
+            podium.dress(look, pair);
+        }
+    }
+
+    /// Takes in what a snapshot shows, at a time of its clock (ns).
+    pub fn take(&mut self, snapshot: &Snapshot, now_ns: u64) {
+        if let Some(podium) = &mut self.podium {
+            podium.take(snapshot, now_ns);
+        }
     }
 
     /// Takes in a painting's textures, which no picture may skip.
     pub fn take_in(&mut self, painted: &Painted) {
-        self.varnish.take_in(&self.device, &self.queue, painted);
+        self.varnish.take_in(&self.gpu.device, &self.gpu.queue, painted);
     }
 
     /// Draws and shows a picture.
-    pub fn show(&mut self, size: [u32; 2], _stage: &Stage, _snapshot: Option<&Snapshot>, painted: &Painted) -> Shown {
-        let [w, h] = size;
-        if w == 0 || h == 0 {
-            return Shown::No;
+    pub fn show(&mut self, frame: Frame, scene: &Scene<'_>, painted: &Painted) -> Shown {
+        let [width, height] = frame.size;
+        let size = Size::new(width, height);
+        if size != self.presenter.size() {
+            self.presenter.resize(size);
         }
-        if !self.configured || [self.config.width, self.config.height] != size {
-            (self.config.width, self.config.height, self.configured) = (w, h, true);
-            self.surface.configure(&self.device, &self.config);
-        }
-        let texture = match self.surface.get_current_texture() {
-            CurrentSurfaceTexture::Success(texture) => texture,
-            CurrentSurfaceTexture::Suboptimal(texture) => {
-                self.configured = false;
-                texture
+        self.presenter.set_hidden(frame.hidden);
+        let Self { gpu, presenter, varnish, podium, .. } = self;
+        let shown = presenter.present(gpu, |view, size| {
+            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            if let Some(podium) = podium {
+                podium.draw(&mut encoder, view, size, scene);
             }
-            CurrentSurfaceTexture::Lost => return Shown::Lost,
-            _ => {
-                self.configured = false;
-                return Shown::No;
-            }
-        };
-        let view = texture.texture.create_view(&TextureViewDescriptor::default());
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        self.varnish.draw((&self.device, &self.queue), &mut encoder, (&view, size), painted, true);
-        self.queue.submit([encoder.finish()]);
-        self.queue.present(texture);
+            let device = (&gpu.device, &gpu.queue);
+            varnish.draw(device, &mut encoder, (view, [size.width, size.height]), painted, podium.is_none());
+            gpu.queue.submit([encoder.finish()]);
+        });
         self.varnish.let_go(painted);
         if self.software {
-            _ = self.device.poll(wgpu::PollType::wait_indefinitely());
+            // What it costs is known only when it is done.
+            self.gpu.finish();
         }
-        Shown::Yes
+        match shown {
+            Shown::NewSurface => match self.gpu.instance.create_surface(self.window.clone()) {
+                Ok(surface) => {
+                    self.presenter.replace(surface);
+                    Shown::Skipped
+                }
+                Err(_) => Shown::NewDevice,
+            },
+            shown => shown,
+        }
     }
+}
+
+fn open(window: &Arc<Window>) -> Result<(Gpu, wgpu::Surface<'static>), String> {
+    let instance = Gpu::instance();
+    let surface = instance
+        .create_surface(window.clone())
+        .map_err(|e| format!("the window gives no surface to draw on ({e}); install a Vulkan driver"))?;
+    let gpu = Gpu::open(instance, Some(&surface), &Choice::Fastest).map_err(|e| e.to_string())?;
+    Ok((gpu, surface))
+}
+
+/// This thread, and those that it starts, run where nobody else wants to (Linux: SCHED_IDLE). Where the system does not let it,
+/// the share that [`super::pace`] keeps to is all that holds it back.
+fn stand_back() {
+    let policy = ThreadSchedulePolicy::Normal(NormalThreadSchedulePolicy::Idle);
+    let this = thread_priority::thread_native_id();
+    #[cfg(target_os = "linux")]
+    let _ = thread_priority::set_thread_priority_and_policy(this, ThreadPriority::Min, policy);
+    #[cfg(not(target_os = "linux"))]
+    let _ = thread_priority::set_current_thread_priority(ThreadPriority::Min);
 }

@@ -91,3 +91,5 @@ impl Easel {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod pages;
