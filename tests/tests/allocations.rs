@@ -122,6 +122,10 @@ fn no_garment_of_the_wardrobe_costs_an_allocation_a_step() {
 struct Glance(f32);
 
 impl Eye for Glance {
+    type Outfit = ();
+
+    fn put_on(&mut self, _outfit: &mut ()) {}
+
     fn look(&mut self, snapshot: &Snapshot) {
         self.0 += snapshot.skin.position(0).x;
     }

@@ -1,6 +1,7 @@
 //! `toile latency`: from what the sensor saw until a picture of it is taken, on this machine.
 
 use std::fs;
+use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use toile_engine::pace::tape::{self, Entry};
@@ -8,6 +9,7 @@ use toile_engine::pace::threads;
 use toile_perf::latency::{self, Cast, Goal, Latency, Options, Quantiles};
 
 use crate::cli::LatencyArgs;
+use crate::crash;
 use crate::exit::AppError;
 use crate::machine::Machine;
 use crate::outfit::Recipe;
@@ -47,12 +49,28 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     // Only now: a helper with a real-time priority shares its core with nobody who waits for it.
     let (crew, worker) = threads::crew(args.workers).map_err(AppError::input)?;
     words.say(&format!("running for {} s, with {} threads of load", args.seconds, args.load));
-    let options = Options { seconds: args.seconds, load: args.load, record: args.record.is_some(), rung: args.rung };
-    let text = serde_json::to_string(&recipe).map_err(AppError::internal)?;
-    let mut bytes = tape::header(&text);
-    tape::write(&Entry::Dressed(*first), &mut bytes);
-    let cast = Cast { frame: frame.with_crew(crew), reader, joints: &session.joints[from..], worker };
-    let found = latency::run(cast, &options, |entry| tape::write(entry, &mut bytes)).map_err(AppError::internal)?;
+    let options = Options { seconds: args.seconds, load: args.load, rung: args.rung };
+    let mut bytes = tape::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
+    let (black_box, tape) = crash::record(&recipe, args.out.join("crash.tape"))?;
+    let dressed = Entry::Dressed(*first);
+    black_box.keep(&dressed);
+    tape::write(&dressed, &mut bytes);
+    let (mut begun, recorded) = (None, args.record.is_some());
+    let empty = || {
+        black_box.drain(|entry| {
+            if recorded {
+                tape::write(entry, &mut bytes)
+            }
+        });
+        let begun: Instant = *begun.get_or_insert_with(Instant::now);
+        let crashes = args.crash_after.is_some_and(|s| begun.elapsed() >= Duration::from_secs(s));
+        assert!(!crashes, "the crash that --crash-after asked for");
+        black_box.capacity()
+    };
+    let cast = Cast { frame: frame.with_crew(crew), reader, joints: &session.joints[from..], worker, tape };
+    let found = latency::run(cast, &options, empty).map_err(AppError::internal);
+    crash::forget();
+    let found = found?;
     if let Some(path) = &args.record {
         let refused =
             |e| format!("recording {} cannot be written ({e}); name another file with --record", path.display());

@@ -9,10 +9,11 @@ use toile_engine::crew::Crew;
 use toile_engine::frame::Frame;
 use toile_engine::pace::physics::{Staged, Stepper};
 use toile_engine::pace::replay::{Replayed, replay};
-use toile_engine::pace::tape::{self, Entry};
+use toile_engine::pace::tape::{self, Entry, Tape};
 
 use crate::cli::ReplayArgs;
 use crate::exit::AppError;
+use crate::kiosk::recording::{self, KioskRecipe};
 use crate::outfit::Recipe;
 use crate::report::{Document, hash_text};
 use crate::soak::{self, SoakRecipe};
@@ -27,6 +28,8 @@ const MOST_BYTES: u64 = 2 << 30;
 pub enum Recorded {
     /// By `toile soak`.
     Soak(SoakRecipe),
+    /// By `toile kiosk`, which crashed.
+    Kiosk(KioskRecipe),
     /// By `toile latency`.
     Session(Recipe),
 }
@@ -36,6 +39,7 @@ impl Recorded {
     fn version(&self) -> &str {
         match self {
             Self::Soak(recipe) => &recipe.version,
+            Self::Kiosk(recipe) => &recipe.version,
             Self::Session(recipe) => &recipe.version,
         }
     }
@@ -63,11 +67,12 @@ pub struct ReplayReport {
 pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
     let file = args.file.display();
     let bad = |what: &dyn std::fmt::Display| AppError::Input(format!("{file}: {what}"));
-    let (text, entries) = tape::read(&read(&args.file)?).map_err(|e| bad(&e))?;
+    let Tape { text, notes, entries } = tape::read(&read(&args.file)?).map_err(|e| bad(&e))?;
     let recorded: Recorded = serde_json::from_str(&text)
         .map_err(|e| bad(&format!("what it says of its scene is not understood ({e}); record the run again")))?;
     let (frame, out) = match &recorded {
         Recorded::Soak(recipe) => soak::again(recipe.soak, &entries, args.workers)?,
+        Recorded::Kiosk(_) => recording::again(&notes, &entries, args.workers).map_err(|e| bad(&e))?,
         Recorded::Session(recipe) => session(recipe, &entries, args.workers).map_err(|e| bad(&e))?,
     };
     let report = ReplayReport {

@@ -10,7 +10,7 @@ use toile_engine::crew::Crew;
 use toile_engine::frame::Frame;
 use toile_engine::pace::physics::{Staged, Stepper};
 use toile_engine::pace::replay::{Replayed, replay_changing};
-use toile_engine::pace::tape::{self, Entry};
+use toile_engine::pace::tape::{self, Entry, Tape};
 use toile_perf::skirt::heap::HeapProbe;
 use toile_perf::soak::script::Script;
 use toile_perf::soak::{self, Check, Company, Options, Plan, Soak, SoakError, Tools};
@@ -136,7 +136,7 @@ fn second(options: &Options, hash: u64, kept: Option<&Path>, words: &Words) -> R
         return Ok(None);
     }
     words.say("the recording is taken again, with one worker");
-    let (_, entries) = tape::read(&fs::read(path).map_err(unread)?).map_err(AppError::internal)?;
+    let Tape { entries, .. } = tape::read(&fs::read(path).map_err(unread)?).map_err(AppError::internal)?;
     let (_, out) = again(options.plan, &entries, 1)?;
     let same = out.diverged_at.is_none() && out.gap_at.is_none();
     Ok(Some(if same { hash } else { !hash }))

@@ -285,3 +285,31 @@ fn the_unit_starts_what_there_is_with_the_rights_that_it_needs() {
         assert!(output.status.success() && !said.contains("toile.service"), "{said}");
     }
 }
+
+/// Where the configuration asks for it, and only there: two visits and the mannequin between them.
+#[test]
+fn a_crash_leaves_its_last_seconds_where_a_shop_asked_for_them_and_they_replay() {
+    let scratch = Scratch::new("kiosk-crash");
+    let run = |config: &str| {
+        fs::write(scratch.path().join("kiosk.toml"), config).unwrap();
+        let output = scratch.toile(&["kiosk", "--headless", "--config", "kiosk.toml", "--crash-after", "24"]);
+        assert_eq!(output.status.code(), Some(70));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let said = run(&format!("{QUICK}[crash]\nrecording = \"crash.tape\"\n"));
+    assert!(said.contains("toile replay crash.tape"), "{said}");
+    for workers in ["2", "1"] {
+        let output = scratch.toile(&["replay", "crash.tape", "--workers", workers, "--json"]);
+        let again: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!((output.status.code(), &again["diverged_at"]), (Some(0), &Value::Null), "{workers} workers");
+        assert!(again["ticks"].as_u64().unwrap() >= 9 * 120, "{again}");
+    }
+    let bytes = fs::read(scratch.path().join("crash.tape")).unwrap();
+    let notes = toile_engine::pace::tape::read(&bytes).unwrap().notes;
+    assert!(notes.iter().any(|n| n.text.contains("\"still\":false")), "a shopper was there: {notes:?}");
+    fs::remove_file(scratch.path().join("crash.tape")).unwrap();
+    let said = run(QUICK);
+    assert!(!said.contains("recorded"), "{said}");
+    let left: Vec<_> = fs::read_dir(scratch.path()).unwrap().flatten().map(|e| e.file_name()).collect();
+    assert_eq!(left, ["kiosk.toml"]);
+}

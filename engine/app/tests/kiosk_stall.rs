@@ -8,14 +8,13 @@ use std::sync::{Arc, Mutex, OnceLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use toile::kiosk::change::Changing;
+use toile::kiosk::change::{Act, Changing};
 use toile::kiosk::lives::{Cast, Headless, Lives};
 use toile::kiosk::manager::{Ending, Manager, News};
 use toile::kiosk::service::{Around, Plan, Service};
 use toile::kiosk::session::Rules;
 use toile::kiosk::source::{Feed, Visits};
-use toile::kiosk::stage::{Act, Staging};
-use toile::kiosk::tailor::{self, Tailor};
+use toile::kiosk::tailor::{self, Dressed, Tailor};
 use toile::outfit::Wish;
 use toile::shopper;
 use toile_engine::clock::{Clock, RealClock};
@@ -66,20 +65,21 @@ impl Scene for Gated {
     fn fingerprint(&self) -> u64 {
         self.0.fingerprint()
     }
+    fn succeed(&mut self, before: &mut Self) {
+        self.0.succeed(&mut before.0);
+    }
     fn troubles(&self) -> [u64; 2] {
         self.0.troubles()
-    }
-}
-
-impl Staging for Gated {
-    fn take_over(&mut self, from: &mut Self) {
-        self.0.take_over(&mut from.0);
     }
 }
 
 struct Display(Headless, Gate);
 
 impl Eye for Display {
+    type Outfit = ();
+
+    fn put_on(&mut self, _outfit: &mut ()) {}
+
     fn look(&mut self, snapshot: &Snapshot) {
         pass(&self.1);
         self.0.look(snapshot);
@@ -120,13 +120,15 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
     let dressed = tailor::mannequin(&wish, &pose).unwrap();
     // Nobody ever comes: the stall is the only thing that happens.
     let feed = Feed::Played(Visits::new(&session.joints, clock.now_ns(), 3_600_000_000_000));
-    let first = Act { scene: Gated::new(dressed.frame), still: Some(pose) };
-    let cast = Cast { first, reader: dressed.reader, eye: Display(Headless::default(), display), feed };
+    let Dressed { frame, reader, made } = dressed;
+    let first = Act { scene: Gated::new(frame), reader, outfit: (), made };
+    let cast = Cast { first, eye: Display(Headless::default(), display), feed, tape: None };
     let (lives, doors) = Lives::start(cast, clock).unwrap();
     let second = 1_000_000_000;
     let plan = Plan {
         begun: Instant::now(),
         length: Some(Duration::from_secs(120)),
+        crash_after: None,
         rules: Rules { step_in_ns: second, step_out_ns: second, wipe_ns: second },
         measure_ns: second,
         health_ns: 0,
@@ -147,9 +149,11 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
             say: &say,
             figures: None,
             tailor: Tailor::new(wish),
-            stage: Gated::new,
+            stage: |frame| (Gated::new(frame), ()),
+            pose,
+            black_box: None,
         };
-        Service::new(lives, Changing::new(doors), plan, around).run().unwrap();
+        Service::new(lives, Changing::new(doors, None), plan, around).run().unwrap();
     });
 }
 

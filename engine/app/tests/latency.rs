@@ -58,8 +58,8 @@ fn a_run_is_told_by_stage_and_replayed_bit_for_bit_with_two_workers_and_with_one
 
 /// One joint in one frame, half a millimetre: the replay says so with exit 6 and the step.
 fn diverges(scratch: &Scratch) {
-    use toile_engine::pace::tape::{self, Entry};
-    let (text, mut entries) = tape::read(&fs::read(scratch.path().join("run.tape")).unwrap()).unwrap();
+    use toile_engine::pace::tape::{self, Entry, Tape};
+    let Tape { text, mut entries, .. } = tape::read(&fs::read(scratch.path().join("run.tape")).unwrap()).unwrap();
     let frame = entries.iter().position(|e| matches!(e, Entry::Seen(seen) if seen.number == 20)).unwrap();
     let Entry::Seen(seen) = &mut entries[frame] else { unreachable!() };
     seen.joints.joints[0].position.y += 5e-4;
@@ -88,4 +88,16 @@ fn damaged(scratch: &Scratch) {
         assert_eq!(output.status.code(), Some(4), "{name}: {said}");
         assert!(said.contains(name) && said.lines().count() == 1, "{said}");
     }
+}
+
+#[test]
+fn a_crash_leaves_a_recording_that_replays() {
+    let scratch = Scratch::new("latency-crash");
+    let output = scratch.toile(&["latency", "--seconds", "5", "--crash-after", "3"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(70), "{said}");
+    assert!(said.contains("toile replay latency/crash.tape"), "{said}");
+    let (code, again) = object(&scratch, &["replay", "latency/crash.tape", "--workers", "1", "--json"]);
+    assert_eq!((code, &again["diverged_at"]), (Some(0), &Value::Null));
+    assert!(again["ticks"].as_u64().unwrap() >= 2 * 120, "{again}");
 }

@@ -6,9 +6,9 @@
 //! that a step leaves.
 
 use toile_engine::meter::PERIOD_NS;
-use toile_engine::pace::event::{Account, Counters, Miss};
+use toile_engine::pace::event::{Account, Counters, Event, Miss, What};
 
-use super::report::Cause;
+use super::report::{Attributed, Cause};
 
 /// Faults of one step from which on they are its cause: each takes one or two microseconds.
 const MANY_FAULTS: u64 = 200;
@@ -82,7 +82,7 @@ fn second_number(text: &[u8]) -> Option<u64> {
 
 /// Why a step was late; `before` is the cause of the step before, where that was late too. What is due to none of what is
 /// counted is some other's: a timer, the firmware, a hypervisor that ran another machine.
-pub fn cause(miss: &Miss, before: Option<Cause>) -> Cause {
+fn cause(miss: &Miss, before: Option<Cause>) -> Cause {
     let counted = &miss.counted;
     // It only began late because the one before ended late.
     if let Some(before) = before
@@ -98,6 +98,34 @@ pub fn cause(miss: &Miss, before: Option<Cause>) -> Cause {
         Cause::Preempted
     } else {
         Cause::Other
+    }
+}
+
+/// Adds up why steps were late, from what the loop tells.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Attributing {
+    /// The sums.
+    pub attributed: Attributed,
+    /// The last late step and its cause.
+    before: Option<(u64, Cause)>,
+    /// Steps that were dropped before one whose cause is not told yet.
+    dropped: u64,
+}
+
+impl Attributing {
+    /// Something happened; what is neither late nor dropped is passed over.
+    pub fn take(&mut self, event: &Event) {
+        match event.what {
+            What::Missed(miss) => {
+                let before = self.before.filter(|(tick, _)| *tick + 1 == event.tick).map(|(_, cause)| cause);
+                let cause = cause(&miss, before);
+                // Steps that were dropped before this one have its cause.
+                self.attributed.add(cause, 1 + std::mem::take(&mut self.dropped));
+                self.before = Some((event.tick, cause));
+            }
+            What::Dropped(steps) => self.dropped += steps,
+            _ => {}
+        }
     }
 }
 
@@ -121,6 +149,19 @@ mod tests {
         assert_eq!(cause(&miss(9, cpu(9)), Some(Cause::Other)), Cause::Solver, "late of its own");
         assert_eq!(second_number(b"8965 705528 2\n"), Some(705_528));
         assert_eq!(second_number(b""), None);
+    }
+
+    #[test]
+    fn dropped_steps_have_the_cause_of_the_one_in_their_place() {
+        let counted = Counters { cpu_ns: 9_000_000, ..Counters::default() };
+        let mut sums = Attributing::default();
+        let events = [(7, What::Dropped(3)), (7, What::Missed(miss(9, counted))), (8, What::SensorLost)];
+        let late_after =
+            [(8, What::Missed(miss(2, Counters::default()))), (20, What::Missed(miss(2, Counters::default())))];
+        for (tick, what) in events.into_iter().chain(late_after) {
+            sums.take(&Event { tick, scheduled_ns: 0, what });
+        }
+        assert_eq!(sums.attributed, Attributed { solver: 5, other: 1, ..Attributed::default() });
     }
 
     #[test]

@@ -15,6 +15,7 @@ mod load;
 mod report;
 mod trial;
 
+pub use account::{Attributing, ThreadAccount};
 pub use html::page;
 pub use report::{Attributed, Cause, Goal, Latency, Placed, Quality, Quantiles, Stage, Warned};
 pub use trial::{Cast, run};
@@ -29,8 +30,6 @@ pub struct Options {
     pub seconds: u32,
     /// Threads of load beside the loop.
     pub load: usize,
-    /// Whether the run is recorded.
-    pub record: bool,
     /// A rung of the governor's ladder that the run is held on; none lets it govern.
     pub rung: Option<u8>,
 }

@@ -12,19 +12,19 @@ use toile_engine::meter::{INTAKE, Meter, PERIOD_NS, STAGES, STEP_BUDGET_US};
 use toile_engine::pace::event::{EVENTS, EVENTS_NAME, Event, What};
 use toile_engine::pace::governor::LADDER;
 use toile_engine::pace::physics::{Outlets, Physics, Staged};
-use toile_engine::pace::queue::{Capacity, Receiver, bounded};
+use toile_engine::pace::queue::{Capacity, Receiver, Sender, bounded};
 use toile_engine::pace::render::{Eye, Render};
 use toile_engine::pace::roles::{Placement, Role};
 use toile_engine::pace::sense::{Playback, Seen, Sense};
-use toile_engine::pace::tape::{ENTRIES, ENTRIES_NAME, Entry};
+use toile_engine::pace::tape::Entry;
 use toile_engine::pace::threads::{self, Life, Stop};
 use toile_engine::relay::{Reader, Relay};
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::Joints;
 
-use super::account::{ThreadAccount, cause};
+use super::account::{Attributing, ThreadAccount};
 use super::load::Load;
-use super::report::{Attributed, Cause, Goal, Latency, Placed, Quality, Quantiles, Stage, Warned};
+use super::report::{Goal, Latency, Placed, Quality, Quantiles, Stage, Warned};
 use super::{LatencyError, Options, capacity, jitter};
 
 /// Time before the meters begin (s): caches fill, memory is touched for the first time.
@@ -60,6 +60,8 @@ pub struct Cast<'a> {
     pub joints: &'a [Joints],
     /// Where the crew's helper runs.
     pub worker: Option<Placement>,
+    /// Where what a replay needs goes.
+    pub tape: Sender<Entry>,
 }
 
 /// What a display would be handed: the body and the garments in the order of their meshes.
@@ -77,6 +79,10 @@ impl Picture {
 }
 
 impl Eye for Picture {
+    type Outfit = ();
+
+    fn put_on(&mut self, _outfit: &mut ()) {}
+
     fn look(&mut self, snapshot: &Snapshot) {
         let [positions, normals] = &mut self.body;
         snapshot.skin.read(positions, normals);
@@ -89,24 +95,15 @@ impl Eye for Picture {
 /// What came out of the queues.
 #[derive(Debug, Default)]
 struct Told {
-    attributed: Attributed,
-    before: Option<(u64, Cause)>,
-    dropped: u64,
+    late: Attributing,
     changes: Vec<[u64; 3]>,
     sentences: Vec<String>,
 }
 
 impl Told {
     fn take(&mut self, event: &Event) {
+        self.late.take(event);
         match event.what {
-            What::Missed(miss) => {
-                let before = self.before.filter(|(tick, _)| *tick + 1 == event.tick).map(|(_, cause)| cause);
-                let cause = cause(&miss, before);
-                // Steps that were dropped before this one have its cause.
-                self.attributed.add(cause, 1 + std::mem::take(&mut self.dropped));
-                self.before = Some((event.tick, cause));
-            }
-            What::Dropped(steps) => self.dropped += steps,
             What::Quality(change) if self.changes.len() < MOST_CHANGES => {
                 self.changes.push([event.tick, u64::from(change.from), u64::from(change.to)]);
             }
@@ -114,7 +111,7 @@ impl Told {
             What::SensorLost => self.say(event, "no sensor frame had come for half a second"),
             What::SensorBack => self.say(event, "the sensor came back"),
             What::Broken => self.say(event, "a worker panicked and the garments kept their places"),
-            What::Changed(_) => {}
+            What::Changed(_) | What::Missed(_) | What::Dropped(_) => {}
             What::RolledBack => self.say(event, "a garment ended with what is no number and was rolled back"),
         }
     }
@@ -135,7 +132,6 @@ struct Running {
     physics: Life<Physics<Staged, RealClock, ThreadAccount>>,
     render: Life<Render<Picture, RealClock>>,
     events: Receiver<Event>,
-    entries: Receiver<Entry>,
 }
 
 /// The lives, when they have ended.
@@ -151,15 +147,15 @@ impl Running {
         frame: Frame,
         mut reader: Reader<Snapshot>,
         joints: &[Joints],
+        tape: Sender<Entry>,
         options: &Options,
     ) -> Result<Self, LatencyError> {
         let clock = RealClock::default();
         let begin = clock.now_ns() + 10 * PERIOD_NS;
         let metered_ns = begin + WARM_UP_S * SECOND_NS;
         let (sender, events) = bounded(EVENTS_NAME, EVENTS);
-        let (tape, entries) = bounded(ENTRIES_NAME, ENTRIES);
         let Relay { writer, reader: seen } = Relay::new(&Seen::default());
-        let outlets = Outlets { events: sender, tape: options.record.then_some(tape) };
+        let outlets = Outlets { events: sender, tape: Some(tape) };
         let picture = Picture::of(reader.latest());
         let sense = Sense::new(Playback::new(joints, begin, u64::MAX), clock, writer).metering_from(metered_ns);
         let physics = Physics::new(Staged::new(frame), clock, begin, seen, outlets, ThreadAccount::new());
@@ -178,38 +174,43 @@ impl Running {
             stop,
             metered_ns,
             events,
-            entries,
         })
     }
 
     /// Lets it run until the end, and hands on what comes out of the queues.
-    fn watch(mut self, seconds: u32, told: &mut Told, keep: &mut impl FnMut(&Entry)) -> Result<Ended, LatencyError> {
+    fn watch(
+        mut self,
+        seconds: u32,
+        told: &mut Told,
+        empty: &mut impl FnMut() -> Capacity,
+    ) -> Result<Ended, LatencyError> {
         let end = self.metered_ns + u64::from(seconds) * SECOND_NS;
         while self.clock.now_ns() < end && !self.physics.is_over() {
             thread::sleep(LOOK);
-            drain(&mut self.events, &mut self.entries, told, keep);
+            drain(&mut self.events, told);
+            empty();
         }
         self.stop.now();
         let sensor = self.sensor.join().ok_or(LatencyError::Died("sensor"))?;
         let physics = self.physics.join().ok_or(LatencyError::Died("physics"))?;
         let render = self.render.join().ok_or(LatencyError::Died("render"))?;
-        drain(&mut self.events, &mut self.entries, told, keep);
-        Ok(Ended { sensor, physics, render, queues: [self.events.capacity(), self.entries.capacity()] })
+        drain(&mut self.events, told);
+        Ok(Ended { sensor, physics, render, queues: [self.events.capacity(), empty()] })
     }
 }
 
-/// Runs the loop for so long; `keep` is handed the entries of a recording as they come.
+/// Runs the loop for so long; `empty` is called fifty times a second and at the end, to empty the tape, and says how full it was.
 ///
 /// # Errors
 /// Where a thread cannot be started or ends before its time.
-pub fn run(cast: Cast<'_>, options: &Options, mut keep: impl FnMut(&Entry)) -> Result<Latency, LatencyError> {
+pub fn run(cast: Cast<'_>, options: &Options, mut empty: impl FnMut() -> Capacity) -> Result<Latency, LatencyError> {
     let load = Load::start(options.load)?;
     let jitter = jitter::measure(Duration::from_secs(u64::from(options.seconds.min(MOST_JITTER_S))))?;
-    let running = Running::start(cast.frame, cast.reader, cast.joints, options)?;
+    let running = Running::start(cast.frame, cast.reader, cast.joints, cast.tape, options)?;
     let placements = [running.sensor.placement(), running.physics.placement(), cast.worker, running.render.placement()];
     let threads: Vec<Placed> = placements.into_iter().flatten().map(Placed::from).collect();
     let mut told = Told::default();
-    let ended = running.watch(options.seconds, &mut told, &mut keep)?;
+    let ended = running.watch(options.seconds, &mut told, &mut empty)?;
     drop(load);
     Ok(report(&ended, options, threads, told, &jitter))
 }
@@ -240,7 +241,7 @@ fn report(ended: &Ended, options: &Options, threads: Vec<Placed>, told: Told, ji
         steps: gauges.steps,
         deadline_misses: gauges.missed + gauges.dropped,
         dropped: gauges.dropped,
-        attributed: told.attributed,
+        attributed: told.late.attributed,
         frames: snapshot.count + gauges.skipped,
         late_frames: later_than(&gauges.reaction, SNAPSHOT_US) + gauges.skipped,
         pictures: render.pictures,
@@ -289,15 +290,12 @@ fn goals(snapshot: Quantiles, total: Quantiles, step: Quantiles, response: Quant
     ]
 }
 
-/// Empties the queues. What happened before the meters began is not told.
-fn drain(events: &mut Receiver<Event>, entries: &mut Receiver<Entry>, told: &mut Told, keep: &mut impl FnMut(&Entry)) {
+/// Empties the queue. What happened before the meters began is not told.
+fn drain(events: &mut Receiver<Event>, told: &mut Told) {
     while let Some(event) = events.pop() {
         if event.tick >= WARM_UP_STEPS {
             told.take(&event);
         }
-    }
-    while let Some(entry) = entries.pop() {
-        keep(&entry);
     }
 }
 

@@ -2,11 +2,10 @@
 
 use toile_assets::wardrobe;
 use toile_engine::clock::Clock;
-use toile_engine::frame::Snapshot;
 use toile_engine::pace::Turn;
 use toile_engine::pace::change::{Change, Giver};
 use toile_engine::pace::physics::Staged;
-use toile_engine::relay::Reader;
+use toile_engine::pace::render::View;
 
 use super::company::Company;
 use super::lives::{Ground, Sign, Telling};
@@ -19,7 +18,7 @@ const MAKING_NS: u64 = 500_000_000;
 const LOOK_NS: u64 = 20_000_000;
 
 /// A scene that is made, and when it may be handed over (ns).
-type Made = (u64, Box<Change<Staged>>, Box<Change<Reader<Snapshot>>>);
+type Made = (u64, Box<Change<Staged>>, Box<Change<View<()>>>);
 
 /// The life.
 #[derive(Debug)]
@@ -27,11 +26,11 @@ pub struct Front<C> {
     ground: Ground<C>,
     company: Company,
     scenes: Giver<Staged>,
-    readers: Giver<Reader<Snapshot>>,
+    readers: Giver<View<()>>,
     /// The next dressing of the script.
     next: usize,
     made: Option<Made>,
-    reader: Option<Box<Change<Reader<Snapshot>>>>,
+    reader: Option<Box<Change<View<()>>>>,
     /// When broken garments are tried (ns), and how often that was done.
     broken: Box<[u64]>,
     tried: usize,
@@ -48,7 +47,7 @@ pub struct Front<C> {
 
 impl<C: Clock> Front<C> {
     /// At load; the first scene is on stage already.
-    pub fn new(ground: Ground<C>, company: Company, scenes: Giver<Staged>, readers: Giver<Reader<Snapshot>>) -> Self {
+    pub fn new(ground: Ground<C>, company: Company, scenes: Giver<Staged>, readers: Giver<View<()>>) -> Self {
         let broken = ground.script.faults_of(Kind::BrokenGarment).map(|f| ground.origin_ns + f.from_ns).collect();
         Self {
             ground,
@@ -79,7 +78,7 @@ impl<C: Clock> Front<C> {
         match self.company.make(number) {
             Ok((frame, reader)) => {
                 let scene = Box::new(Change { scene: Staged::new(frame), number, afresh });
-                let reader = Box::new(Change { scene: reader, number, afresh });
+                let reader = Box::new(Change { scene: View { reader, outfit: () }, number, afresh });
                 self.made = Some((at + MAKING_NS, scene, reader));
             }
             Err(error) => self.trouble = Some(error.to_string()),

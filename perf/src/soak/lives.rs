@@ -223,6 +223,10 @@ pub struct Eyewitness {
 }
 
 impl Eye for Eyewitness {
+    type Outfit = ();
+
+    fn put_on(&mut self, _outfit: &mut ()) {}
+
     fn look(&mut self, snapshot: &Snapshot) {
         let skin = (0..snapshot.skin.vertices()).step_by(SKIN_STEP);
         let skin = skin.filter(|v| !(snapshot.skin.position(*v).is_finite() && snapshot.skin.normal(*v).is_finite()));

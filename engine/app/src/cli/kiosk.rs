@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{ArgMatches, value_parser};
 
+use super::latency::crash_after;
 use super::{flag, json, path, quiet, text};
 use crate::exit::AppError;
 
@@ -21,6 +22,8 @@ pub struct KioskArgs {
     pub config: Option<PathBuf>,
     /// A recording to play in place of what the configuration names.
     pub session: Option<PathBuf>,
+    /// When it panics (s), to see what a crash leaves.
+    pub crash_after: Option<u64>,
     /// Only print the default configuration.
     pub print_config: bool,
     /// One JSON object on stdout at the end.
@@ -45,6 +48,7 @@ pub(super) fn grammar() -> clap::Command {
             path("config", "FILE", "Configuration in TOML [default: what --print-config prints]"),
             path("session", "F", "Recording to play as the sensor, again and again, in place of the configured one"),
             flag("print-config", "Print the default configuration with all keys explained, and end"),
+            crash_after(),
             json(),
             quiet(),
         ])
@@ -58,6 +62,7 @@ pub(super) fn args(matches: &ArgMatches) -> Result<KioskArgs, AppError> {
         seconds: matches.get_one("seconds").copied(),
         config: matches.get_one("config").cloned(),
         session: matches.get_one("session").cloned(),
+        crash_after: matches.get_one("crash-after").copied(),
         print_config: matches.get_flag("print-config"),
         json: matches.get_flag("json"),
         quiet: matches.get_flag("quiet"),

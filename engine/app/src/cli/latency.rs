@@ -34,6 +34,8 @@ pub struct LatencyArgs {
     pub rung: Option<u8>,
     /// Where the run is recorded.
     pub record: Option<PathBuf>,
+    /// When it panics (s), to see what a crash leaves.
+    pub crash_after: Option<u64>,
     /// Whether a missed goal fails the command.
     pub gate: bool,
     /// Where the page goes.
@@ -83,6 +85,7 @@ pub(super) fn grammar() -> clap::Command {
             text("rung", "R", "Hold the quality on a rung of the governor's ladder: 0 is all of it [default: governed]")
                 .value_parser(value_parser!(u8).range(0..LADDER.len() as i64)),
             path("record", "F", "Record the run, without images, for `toile replay`"),
+            crash_after(),
             flag("gate", "Exit with 3 where a goal is missed"),
             path("out", "DIR", "Folder for the page; it is made if missing").default_value("latency"),
             json(),
@@ -110,6 +113,11 @@ pub(super) fn replay_grammar() -> clap::Command {
 pub(super) fn workers() -> Arg {
     text("workers", "N", "Workers of a step, 1 or 2 [default: as many as there are cores]")
         .value_parser(value_parser!(u8).range(1..=SHARES as i64))
+}
+
+/// Every command that keeps its last seconds for a crash can be made to.
+pub(super) fn crash_after() -> Arg {
+    text("crash-after", "S", "Panic after so long, to see what a crash leaves").value_parser(value_parser!(u64))
 }
 
 fn cores() -> usize {
@@ -140,6 +148,7 @@ pub(super) fn args(matches: &ArgMatches) -> Result<LatencyArgs, AppError> {
         load,
         rung: matches.get_one("rung").copied(),
         record: matches.get_one("record").cloned(),
+        crash_after: matches.get_one("crash-after").copied(),
         gate: matches.get_flag("gate"),
         out: required(matches, "out")?,
         json: matches.get_flag("json"),

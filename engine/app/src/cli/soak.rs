@@ -6,6 +6,7 @@ use clap::{ArgMatches, value_parser};
 use toile_engine::crew::SHARES;
 use toile_perf::soak::{LEAST_APART_S, Options, Plan, Weight};
 
+use super::latency::crash_after;
 use super::{flag, json, path, quiet, required, text};
 use crate::exit::AppError;
 
@@ -69,8 +70,7 @@ pub(super) fn grammar() -> clap::Command {
                 .value_parser(value_parser!(u8).range(1..=SHARES as i64)),
             flag("once", "Make no second run to compare the bits with"),
             path("record", "F", "Record the run, without images, for `toile replay`"),
-            text("crash-after", "S", "Have the physics thread panic after so long, to see what a crash leaves")
-                .value_parser(value_parser!(u64)),
+            crash_after(),
             path("out", "DIR", "Folder for the record; it is made if missing").default_value("soak"),
             json(),
             quiet(),

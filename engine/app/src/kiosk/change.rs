@@ -1,50 +1,70 @@
 //! Who is to stand on the stage: the service's end of it. One change is under way at a time, and what leaves is freed here.
 
+use std::sync::Arc;
+
 use toile_engine::frame::Snapshot;
-use toile_engine::pace::queue::{Receiver, Sender};
+use toile_engine::pace::blackbox::BlackBox;
+use toile_engine::pace::change::{Change, Giver};
+use toile_engine::pace::physics::Scene;
+use toile_engine::pace::render::View;
 use toile_engine::relay::Reader;
+use toile_sensors::frame::Joints;
 
-use super::stage::Act;
+use super::lives::Doors;
+use super::recording::Made;
+use super::stage::Stage;
 
-/// The service's ends of the stage, as physics and as render have them.
-pub struct Doors<S> {
-    /// Acts for physics to step.
-    pub call: Sender<Box<Act<S>>>,
-    /// Acts that have left.
-    pub left: Receiver<Box<Act<S>>>,
-    /// Where render is to look.
-    pub show: Sender<Reader<Snapshot>>,
-    /// Where it looked before.
-    pub shown: Receiver<Reader<Snapshot>>,
+/// A scene, dressed, with what is drawn of it.
+pub struct Act<S, O> {
+    /// The scene.
+    pub scene: S,
+    /// Where its snapshots come out.
+    pub reader: Reader<Snapshot>,
+    /// What the eye has to know of it.
+    pub outfit: O,
+    /// How it was made.
+    pub made: Made,
 }
 
-/// An act and where its snapshots come out, as far as both are back.
-type Pair<S> = (Option<Box<Act<S>>>, Option<Reader<Snapshot>>);
+impl<S, O> Act<S, O> {
+    /// Where it stands still, whatever the sensor sees; none follows the sensor.
+    pub fn still(&self) -> Option<Joints> {
+        self.made.still.then_some(self.made.first)
+    }
+}
 
 /// Brings shoppers onto the stage and the mannequin back.
-pub struct Changing<S> {
-    doors: Doors<S>,
+pub struct Changing<S, O> {
+    scenes: Giver<Stage<S>>,
+    views: Giver<View<O>>,
     /// Who waits to be called.
-    waiting: Option<(Box<Act<S>>, Reader<Snapshot>)>,
-    /// The mannequin, while a shopper is on the stage.
-    mannequin: Pair<S>,
+    waiting: Option<(Act<S, O>, bool)>,
+    /// A mannequin that was not on the stage yet.
+    mannequin: Option<Act<S, O>>,
     /// Whether the mannequin is on the stage or called to it, and whether it is to be.
     is_still: bool,
     wants_still: bool,
-    /// Which of act and reader have yet to come back from a change.
+    /// Which of scene and view have yet to come back from a change.
     under_way: [bool; 2],
+    /// The last that was called; the first is 0.
+    number: u64,
+    black_box: Option<Arc<BlackBox>>,
 }
 
-impl<S> Changing<S> {
-    /// The mannequin is on the stage.
-    pub fn new(doors: Doors<S>) -> Self {
-        let mannequin = (None, None);
-        Self { doors, waiting: None, mannequin, is_still: true, wants_still: true, under_way: [false; 2] }
+impl<S: Scene, O> Changing<S, O> {
+    /// The mannequin is on the stage; where a black box is kept, it is told how each scene was made.
+    pub fn new(doors: Doors<S, O>, black_box: Option<Arc<BlackBox>>) -> Self {
+        let Doors { scenes, views } = doors;
+        let (is_still, wants_still, under_way) = (true, true, [false; 2]);
+        Self { scenes, views, waiting: None, mannequin: None, is_still, wants_still, under_way, number: 0, black_box }
     }
 
-    /// A shopper is to be on the stage, and to follow the sensor.
-    pub fn bring(&mut self, scene: S, reader: Reader<Snapshot>) {
-        self.waiting = Some((Box::new(Act { scene, still: None }), reader));
+    /// Somebody is to be on the stage, and to follow the sensor: another one than before (`afresh`), or the same in other
+    /// garments. Who still waits to be called is dropped.
+    pub fn bring(&mut self, act: Act<S, O>, afresh: bool) {
+        // A shopper who was never called is followed by one whom nobody has seen either.
+        let afresh = afresh || self.is_still || self.waiting.as_ref().is_some_and(|(_, afresh)| *afresh);
+        self.waiting = Some((act, afresh));
         self.wants_still = false;
     }
 
@@ -54,38 +74,50 @@ impl<S> Changing<S> {
         self.wants_still = true;
     }
 
-    /// Takes in what has left and calls who is due.
+    /// Whether a mannequin has to be made, for the next time that nobody is there. One is dressed anew each time, so that a
+    /// recording that begins with it can be taken again.
+    pub fn lacks_mannequin(&self) -> bool {
+        !self.is_still && self.mannequin.is_none()
+    }
+
+    /// The one that was made.
+    pub fn stand_by(&mut self, mannequin: Act<S, O>) {
+        self.mannequin = Some(mannequin);
+    }
+
+    /// Frees what has left and calls who is due.
     pub fn look(&mut self) {
-        // Whoever comes back was on before the one who is on now.
-        while let Some(act) = self.doors.left.pop() {
+        if self.scenes.returned().is_some() {
             self.under_way[0] = false;
-            self.mannequin.0 = (!self.is_still).then_some(act);
         }
-        while let Some(reader) = self.doors.shown.pop() {
+        if self.views.returned().is_some() {
             self.under_way[1] = false;
-            self.mannequin.1 = (!self.is_still).then_some(reader);
         }
         if self.under_way != [false; 2] {
             return;
         }
-        if !self.wants_still && self.is_still {
-            if let Some((act, reader)) = self.waiting.take() {
-                self.call(act, reader);
+        if !self.wants_still {
+            if let Some((act, afresh)) = self.waiting.take() {
+                self.call(act, afresh);
             }
-        } else if self.wants_still
-            && !self.is_still
-            && let (Some(act), Some(reader)) = (self.mannequin.0.take(), self.mannequin.1.take())
+        } else if !self.is_still
+            && let Some(mannequin) = self.mannequin.take()
         {
-            self.call(act, reader);
+            self.call(mannequin, true);
         }
     }
 
-    fn call(&mut self, act: Box<Act<S>>, reader: Reader<Snapshot>) {
-        self.is_still = !self.is_still;
-        self.under_way = [true; 2];
-        // Both queues are empty: one change is under way at a time.
-        self.doors.call.push(act);
-        self.doors.show.push(reader);
+    fn call(&mut self, act: Act<S, O>, afresh: bool) {
+        self.is_still = act.made.still;
+        self.number += 1;
+        if let Some(black_box) = &self.black_box {
+            black_box.describe(&act.made.note(self.number));
+        }
+        let (number, still) = (self.number, act.still());
+        let scene = Box::new(Change { scene: Stage::new(act.scene, still), number, afresh });
+        let view = Box::new(Change { scene: View { reader: act.reader, outfit: act.outfit }, number, afresh });
+        // Both are empty, since one change is under way at a time: nothing is given back.
+        self.under_way = [self.scenes.give(scene).is_ok(), self.views.give(view).is_ok()];
     }
 
     /// Whether nothing of a shopper is left: the mannequin is on the stage and nobody is on the way from it.
@@ -97,88 +129,124 @@ impl<S> Changing<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use toile_engine::clock::Clock;
     use toile_engine::frame::Times;
-    use toile_engine::pace::queue::bounded;
+    use toile_engine::pace::change::{Taker, handover};
+    use toile_engine::pace::governor::Rung;
     use toile_engine::relay::Relay;
     use toile_engine::skin::SkinningJob;
 
-    /// Stage and renderer as threads have them: one act each.
+    /// A number on the stage.
+    #[derive(Debug)]
+    struct Nth(u64);
+
+    impl Scene for Nth {
+        fn step(&mut self, _joints: &Joints, _times: Times, _clock: &impl Clock) {}
+        fn set_rung(&mut self, _rung: &Rung) {}
+        fn measure(&mut self) {}
+        fn clear_meters(&mut self) {}
+        fn fingerprint(&self) -> u64 {
+            self.0
+        }
+        fn troubles(&self) -> [u64; 2] {
+            [0; 2]
+        }
+    }
+
+    /// Physics and render as threads have them.
     struct Threads {
-        act: Box<Act<u8>>,
-        next: Receiver<Box<Act<u8>>>,
-        gone: Sender<Box<Act<u8>>>,
-        show: Receiver<Reader<Snapshot>>,
-        shown: Sender<Reader<Snapshot>>,
-        reader: Reader<Snapshot>,
+        scene: Stage<Nth>,
+        outfit: u64,
+        afresh: bool,
+        scenes: Taker<Stage<Nth>>,
+        views: Taker<View<u64>>,
     }
 
     impl Threads {
         fn turn(&mut self) {
-            if let Some(next) = self.next.pop() {
-                self.gone.push(std::mem::replace(&mut self.act, next));
+            let scene = &mut self.scene;
+            if let Some((_, afresh)) = self.scenes.take(|c| std::mem::swap(scene, &mut c.scene)) {
+                self.afresh = afresh;
             }
-            if let Some(next) = self.show.pop() {
-                self.shown.push(std::mem::replace(&mut self.reader, next));
-            }
+            let outfit = &mut self.outfit;
+            self.views.take(|c| std::mem::swap(outfit, &mut c.scene.outfit));
+        }
+
+        fn shown(&self) -> [u64; 2] {
+            [self.scene.fingerprint(), self.outfit]
         }
     }
 
-    /// Of nothing at all: no vertex, no garment.
-    fn reader() -> Reader<Snapshot> {
+    /// The mannequin is 0.
+    fn act(number: u64) -> Act<Nth, u64> {
         let skin = SkinningJob::new::<4>(&[], &[], &[]).unwrap().posed();
-        Relay::new(&Snapshot { tick: 0, times: Times::default(), skin, garments: Box::new([]) }).reader
+        let snapshot = Snapshot { tick: 0, times: Times::default(), skin, garments: Box::new([]) };
+        let made = Made::for_tests(number == 0);
+        Act { scene: Nth(number), reader: Relay::new(&snapshot).reader, outfit: number, made }
     }
 
-    fn set() -> (Changing<u8>, Threads) {
-        let ((call, next), (gone, left)) = (bounded("", 4), bounded("", 4));
-        let ((show, showing), (shown, back)) = (bounded("", 4), bounded("", 4));
-        let changing = Changing::new(Doors { call, left, show, shown: back });
-        let act = Box::new(Act { scene: 0, still: None });
-        (changing, Threads { act, next, gone, show: showing, shown, reader: reader() })
+    fn set() -> (Changing<Nth, u64>, Threads) {
+        let ((scenes, taken), (views, looked_at)) = (handover(), handover());
+        let threads =
+            Threads { scene: Stage::new(Nth(0), None), outfit: 0, afresh: false, scenes: taken, views: looked_at };
+        (Changing::new(Doors { scenes, views }, None), threads)
+    }
+
+    fn turns(changing: &mut Changing<Nth, u64>, threads: &mut Threads) {
+        for _ in 0..3 {
+            changing.look();
+            threads.turn();
+        }
+        changing.look();
     }
 
     #[test]
-    fn shoppers_come_and_the_mannequin_returns_each_time() {
+    fn shoppers_come_change_and_the_mannequin_returns_each_time() {
         let (mut changing, mut threads) = set();
-        for shopper in 1..4 {
-            changing.bring(shopper, reader());
-            for _ in 0..2 {
-                changing.look();
-                threads.turn();
-            }
-            assert_eq!(threads.act.scene, shopper);
-            assert!(!changing.is_wiped());
+        assert!(!changing.lacks_mannequin());
+        for shopper in [10, 20, 30] {
+            changing.bring(act(shopper), true);
+            turns(&mut changing, &mut threads);
+            assert_eq!((threads.shown(), threads.afresh), ([shopper; 2], true));
+            changing.bring(act(shopper + 1), false);
+            turns(&mut changing, &mut threads);
+            assert_eq!((threads.shown(), threads.afresh), ([shopper + 1; 2], false), "in other garments");
+            assert!(!changing.is_wiped() && changing.lacks_mannequin());
             changing.wipe();
-            for _ in 0..3 {
-                changing.look();
-                threads.turn();
-            }
-            changing.look();
-            assert_eq!(threads.act.scene, 0, "the mannequin");
-            assert!(changing.is_wiped());
+            turns(&mut changing, &mut threads);
+            assert!(!changing.is_wiped(), "the mannequin is not dressed yet");
+            changing.stand_by(act(0));
+            turns(&mut changing, &mut threads);
+            assert_eq!((threads.shown(), threads.afresh), ([0; 2], true), "the mannequin");
+            assert!(changing.is_wiped() && !changing.lacks_mannequin());
         }
     }
 
     #[test]
     fn who_leaves_before_the_stage_has_changed_is_wiped_all_the_same() {
         let (mut changing, mut threads) = set();
-        changing.bring(7, reader());
+        changing.bring(act(7), true);
         changing.look();
         // Called, but physics has not looked yet.
         changing.wipe();
+        changing.stand_by(act(0));
         changing.look();
         assert!(!changing.is_wiped());
-        for _ in 0..4 {
-            threads.turn();
-            changing.look();
-        }
-        assert_eq!(threads.act.scene, 0);
-        assert!(changing.is_wiped());
+        turns(&mut changing, &mut threads);
+        assert!(threads.shown() == [0; 2] && changing.is_wiped());
         // And one who was never called is not kept.
-        changing.bring(8, reader());
+        changing.bring(act(8), true);
         changing.wipe();
-        changing.look();
-        threads.turn();
-        assert!(threads.act.scene == 0 && changing.is_wiped());
+        turns(&mut changing, &mut threads);
+        assert!(threads.shown() == [0; 2] && changing.is_wiped());
+    }
+
+    #[test]
+    fn a_change_that_overtakes_the_first_still_brings_somebody_new() {
+        let (mut changing, mut threads) = set();
+        changing.bring(act(7), true);
+        changing.bring(act(8), false);
+        turns(&mut changing, &mut threads);
+        assert_eq!((threads.shown(), threads.afresh), ([8; 2], true));
     }
 }

@@ -36,6 +36,8 @@ pub struct Config {
     pub machine: Wanted,
     /// Figures for Prometheus.
     pub metrics: Metrics,
+    /// What is kept of a crash.
+    pub crash: Crash,
 }
 
 /// What is worn.
@@ -112,6 +114,14 @@ pub struct Wanted {
 pub struct Metrics {
     /// Port on 127.0.0.1.
     pub port: Option<u16>,
+}
+
+/// What is kept of a crash.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Crash {
+    /// Where the last ten seconds are written; none writes nothing.
+    pub recording: Option<PathBuf>,
 }
 
 impl Default for Wear {
@@ -247,7 +257,7 @@ mod tests {
             (all.wear.size.as_deref(), all.machine.workers, all.metrics.port),
             (Some("40"), Some(2), Some(9520))
         );
-        assert!(all.sensor.session.is_some());
+        assert!(all.sensor.session.is_some() && all.crash.recording.is_some());
     }
 
     #[test]

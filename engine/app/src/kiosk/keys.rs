@@ -7,13 +7,14 @@ use toml::de::{DeTable, DeValue};
 use crate::exit::AppError;
 
 /// Every table and its keys.
-pub const KEYS: [(&str, &[&str]); 6] = [
+pub const KEYS: [(&str, &[&str]); 7] = [
     ("wear", &["garments", "size", "quality"]),
     ("sensor", &["source", "session", "pause_s", "vmc"]),
     ("session", &["step_in_s", "measure_s", "step_out_s", "wipe_s"]),
     ("health", &["every_s"]),
     ("machine", &["workers", "lock_memory"]),
     ("metrics", &["port"]),
+    ("crash", &["recording"]),
 ];
 
 /// Refuses a text with a key that is not known.

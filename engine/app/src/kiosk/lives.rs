@@ -9,42 +9,53 @@ use glam::Vec3;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::Snapshot;
 use toile_engine::meter::PERIOD_NS;
-use toile_engine::pace::event::{EVENTS, EVENTS_NAME, Event, NoAccount};
-use toile_engine::pace::physics::{Outlets, Physics};
-use toile_engine::pace::queue::{Capacity, Receiver, bounded};
-use toile_engine::pace::render::{Eye, Render};
+use toile_engine::pace::change::{Giver, handover};
+use toile_engine::pace::event::{EVENTS, EVENTS_NAME, Event};
+use toile_engine::pace::physics::{Outlets, Physics, Scene};
+use toile_engine::pace::queue::{Capacity, Receiver, Sender, bounded};
+use toile_engine::pace::render::{Eye, Render, View};
 use toile_engine::pace::roles::{Placement, Role};
 use toile_engine::pace::sense::{Seen, Sense};
+use toile_engine::pace::tape::Entry;
 use toile_engine::pace::threads::{self, Life, Stop};
-use toile_engine::relay::{Reader, Relay};
+use toile_engine::relay::Relay;
+use toile_perf::latency::ThreadAccount;
 use toile_sensors::frame::Joints;
 
-use super::change::Doors;
+use super::change::Act;
 use super::source::{FRAMES, FRAMES_NAME, Feed, Tapped};
-use super::stage::{Act, BEATS, BEATS_NAME, Beat, CHANGES, CHANGES_NAME, Stage, Staging, Watching, Wings};
+use super::stage::{BEATS, BEATS_NAME, Beat, Stage, Watching};
 use super::watchdog::Pulse;
 
 /// Longest that lives are waited for when they are to end: five of their longest sleeps and a step.
 const LONGEST_END: Duration = Duration::from_millis(300);
 
 /// Who is there when the loop begins.
-pub struct Cast<S, E> {
+pub struct Cast<S, E: Eye> {
     /// The mannequin.
-    pub first: Act<S>,
-    /// Where its snapshots come out.
-    pub reader: Reader<Snapshot>,
-    /// Who makes pictures of them.
+    pub first: Act<S, E::Outfit>,
+    /// Who makes pictures, with the mannequin's outfit on already: that of `first` is what it leaves in its place.
     pub eye: E,
     /// What the sensor reads.
     pub feed: Feed,
+    /// Where what a replay needs goes, where somebody keeps it.
+    pub tape: Option<Sender<Entry>>,
+}
+
+/// The service's ends of the stage.
+pub struct Doors<S, O> {
+    /// To physics.
+    pub scenes: Giver<Stage<S>>,
+    /// To render.
+    pub views: Giver<View<O>>,
 }
 
 /// The lives on their threads.
-pub struct Lives<S, E> {
+pub struct Lives<S, E: Eye> {
     clock: RealClock,
     stop: Stop,
     sensor: Life<Sense<Tapped, RealClock>>,
-    physics: Life<Physics<Stage<S>, RealClock, NoAccount>>,
+    physics: Life<Physics<Stage<S>, RealClock, ThreadAccount>>,
     render: Life<Watching<E>>,
     /// What happened.
     pub events: Receiver<Event>,
@@ -57,37 +68,37 @@ pub struct Lives<S, E> {
 }
 
 /// The lives, when they have ended; none is one that did not end in time.
-pub struct Ended<S, E> {
+pub struct Ended<S, E: Eye> {
     /// The sensor's.
     pub sensor: Option<Sense<Tapped, RealClock>>,
     /// The physics'.
-    pub physics: Option<Physics<Stage<S>, RealClock, NoAccount>>,
+    pub physics: Option<Physics<Stage<S>, RealClock, ThreadAccount>>,
     /// The render's.
     pub render: Option<Render<E, RealClock>>,
     /// How full the queues were.
     pub capacities: [Capacity; 3],
 }
 
-impl<S: Staging + Send + 'static, E: Eye + 'static> Lives<S, E> {
+impl<S: Scene + Send + 'static, E: Eye + 'static> Lives<S, E> {
     /// Starts them. Also gives the service's ends of the stage.
     ///
     /// # Errors
     /// Where the system gives no thread.
-    pub fn start(cast: Cast<S, E>, clock: RealClock) -> io::Result<(Self, Doors<S>)> {
+    pub fn start(cast: Cast<S, E>, clock: RealClock) -> io::Result<(Self, Doors<S, E::Outfit>)> {
         let begin = clock.now_ns() + 2 * PERIOD_NS;
         let pulse = Arc::new(Pulse::default());
         let (tell, events) = bounded(EVENTS_NAME, EVENTS);
         let (beat, beats) = bounded(BEATS_NAME, BEATS);
         let (tap, frames) = bounded(FRAMES_NAME, FRAMES);
-        let ((call, next), (gone, left)) = (bounded(CHANGES_NAME, CHANGES), bounded(CHANGES_NAME, CHANGES));
-        let ((show, showing), (was, shown)) = (bounded(CHANGES_NAME, CHANGES), bounded(CHANGES_NAME, CHANGES));
+        let ((scenes, next), (views, showing)) = (handover(), handover());
         let Relay { writer, reader: seen } = Relay::new(&Seen::default());
         let sense = Sense::new(Tapped::new(cast.feed, tap), clock, writer);
-        let stage = Stage::new(cast.first, Wings { next, gone, beats: beat, pulse: pulse.clone() });
-        let outlets = Outlets { events: tell, tape: None };
-        let physics = Physics::new(stage, clock, begin, seen, outlets, NoAccount);
-        let render = Render::new(cast.eye, clock, begin, cast.reader);
-        let watching = Watching::new(render, showing, was, pulse.clone());
+        let still = cast.first.still();
+        let stage = Stage::new(cast.first.scene, still).begin(beat, pulse.clone());
+        let outlets = Outlets { events: tell, tape: cast.tape };
+        let physics = Physics::new(stage, clock, begin, seen, outlets, ThreadAccount::new()).changing(next);
+        let render = Render::new(cast.eye, clock, begin, cast.first.reader).changing(showing);
+        let watching = Watching::new(render, pulse.clone());
         let stop = Stop::default();
         let lives = Self {
             sensor: threads::start(Role::Sensor, sense, clock, &stop)?,
@@ -100,7 +111,7 @@ impl<S: Staging + Send + 'static, E: Eye + 'static> Lives<S, E> {
             frames,
             pulse,
         };
-        Ok((lives, Doors { call, left, show, shown }))
+        Ok((lives, Doors { scenes, views }))
     }
 
     /// The places that the threads got. Once.
@@ -151,6 +162,10 @@ pub struct Headless {
 }
 
 impl Eye for Headless {
+    type Outfit = ();
+
+    fn put_on(&mut self, _outfit: &mut ()) {}
+
     fn look(&mut self, snapshot: &Snapshot) {
         let [positions, normals] = &mut self.body;
         for column in [&mut *positions, &mut *normals] {

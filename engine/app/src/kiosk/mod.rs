@@ -5,7 +5,8 @@
 //! Thread: the loop's own; a service thread that looks, a tailor's thread while somebody is measured, one for figures.
 //!
 //! [`session`] is the machine of states that a window drives too; [`stage`] and [`change`] let another dressed body take the
-//! place of one that has left, without the loop's threads allocating or waiting.
+//! place of one that has left, without the loop's threads allocating or waiting; [`recording`] keeps the last seconds for a
+//! crash, where a shop asks for it.
 
 pub mod change;
 pub mod config;
@@ -15,6 +16,7 @@ pub mod manager;
 mod memory;
 #[cfg(feature = "metrics")]
 pub mod metrics;
+pub mod recording;
 pub mod report;
 pub mod service;
 pub mod session;
@@ -35,19 +37,19 @@ use toile_perf::latency::Placed;
 use toile_sensors::source::Session;
 
 use crate::cli::KioskArgs;
+use crate::crash;
 use crate::exit::AppError;
 use crate::report::Document;
 use crate::shopper;
 use crate::terminal::{self, Words};
-use change::Changing;
+use change::{Act, Changing};
 use config::{Config, Source};
 use lives::{Cast, Headless, Lives};
 use manager::{Ending, Systemd};
 use report::KioskReport;
 use service::{Around, Plan, Service};
 use source::{Feed, Visits};
-use stage::Act;
-use tailor::{Model, Tailor};
+use tailor::{Dressed, Model, Tailor};
 use vitals::Vitals;
 
 /// Runs `toile kiosk`.
@@ -96,6 +98,7 @@ fn serve(
     let plan = Plan {
         begun,
         length: args.seconds.map(|s| Duration::from_secs(s.into())),
+        crash_after: args.crash_after.map(Duration::from_secs),
         rules: config.rules(),
         measure_ns: config::ns(config.session.measure_s),
         health_ns: config::ns(config.health.every_s),
@@ -103,14 +106,30 @@ fn serve(
         memory_locked: config.machine.lock_memory && locked.is_ok(),
         warnings: locked.err().map(|e| e.to_string()).into_iter().collect(),
     };
-    let first = Act { scene: Staged::new(dressed.frame.with_crew(crew)), still: Some(pose) };
-    let cast = Cast { first, reader: dressed.reader, eye: Headless::default(), feed };
+    let (black_box, tape) = match config.crash.recording.clone() {
+        Some(path) => recording::keep(&dressed.made, path).map(|(black_box, tape)| (Some(black_box), Some(tape)))?,
+        None => (None, None),
+    };
+    let Dressed { frame, reader, made } = dressed;
+    let first = Act { scene: Staged::new(frame.with_crew(crew)), reader, outfit: (), made };
+    let cast = Cast { first, eye: Headless::default(), feed, tape };
     let (lives, doors) = Lives::start(cast, clock).map_err(AppError::internal)?;
     ending.orderly();
     let say = |line: &str| words.say(line);
-    let around =
-        Around { manager: &Systemd, ending, say: &say, figures, tailor: Tailor::new(wish), stage: Staged::new };
-    let (ended, mut course) = Service::new(lives, Changing::new(doors), plan, around).run()?;
+    let changing = Changing::new(doors, black_box.clone());
+    let around = Around {
+        manager: &Systemd,
+        ending,
+        say: &say,
+        figures,
+        tailor: Tailor::new(wish),
+        stage: |frame| (Staged::new(frame), ()),
+        pose,
+        black_box,
+    };
+    let ran = Service::new(lives, changing, plan, around).run();
+    crash::forget();
+    let (ended, mut course) = ran?;
     course.threads.extend(worker.map(Placed::from));
     Ok(KioskReport::of(&ended, course))
 }

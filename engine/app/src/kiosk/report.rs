@@ -1,13 +1,13 @@
 //! What a run of the kiosk came to, as the JSON has it: figures of the machine, and nothing of a person.
 
 use serde::Serialize;
-use toile_engine::pace::physics::Gauges;
+use toile_engine::pace::physics::{Gauges, Scene};
 use toile_engine::pace::queue::Capacity;
-use toile_perf::latency::{Placed, Quantiles, Warned};
+use toile_engine::pace::render::Eye;
+use toile_perf::latency::{Attributed, Placed, Quantiles, Warned};
 
 use super::lives::Ended;
 use super::session::State;
-use super::stage::Staging;
 use super::vitals::Vitals;
 
 /// The body of the JSON.
@@ -33,6 +33,8 @@ pub struct KioskReport {
     pub steps_dropped: u64,
     /// Steps that were published after their period, and those given up.
     pub deadline_misses: u64,
+    /// The same by their causes.
+    pub attributed: Attributed,
     /// A step, begin to publication (us).
     pub step_us: Quantiles,
     /// A picture, from the look at the snapshot until it is handed to the display (us).
@@ -62,6 +64,8 @@ pub struct Course {
     pub ready_ms: Option<f64>,
     /// The states entered.
     pub states: Vec<State>,
+    /// Why steps were late.
+    pub attributed: Attributed,
     /// Where the threads ran.
     pub threads: Vec<Placed>,
     /// Whether all memory was kept resident.
@@ -72,7 +76,7 @@ pub struct Course {
 
 impl KioskReport {
     /// Of lives that have ended.
-    pub fn of<S: Staging, E>(ended: &Ended<S, E>, course: Course) -> Self {
+    pub fn of<S: Scene, E: Eye>(ended: &Ended<S, E>, course: Course) -> Self {
         let nothing = Gauges::default();
         let gauges = ended.physics.as_ref().map_or(&nothing, |physics| &physics.gauges);
         let render = ended.render.as_ref();
@@ -90,6 +94,7 @@ impl KioskReport {
             steps: gauges.steps,
             steps_dropped: gauges.dropped,
             deadline_misses: gauges.missed + gauges.dropped,
+            attributed: course.attributed,
             step_us: Quantiles::of(&gauges.step),
             present_us: render.map(|r| Quantiles::of(&r.drawing)).unwrap_or_default(),
             total_us: render.map(|r| Quantiles::of(&r.total)).unwrap_or_default(),

@@ -1,21 +1,23 @@
 //! The service: looks at everything fifty times a second and decides; it steps nothing and draws nothing itself.
 
+use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use toile_engine::frame::Frame;
+use toile_engine::pace::blackbox::BlackBox;
+use toile_engine::pace::physics::Scene;
 use toile_engine::pace::render::Eye;
 use toile_engine::relay::Writer;
-use toile_perf::latency::Placed;
+use toile_perf::latency::{Attributed, Placed};
 use toile_sensors::frame::Joints;
 
-use super::change::Changing;
+use super::change::{Act, Changing};
 use super::lives::{Ended, Lives};
 use super::manager::{Ending, Manager, News};
 use super::report::Course;
 use super::session::{Change, Rules, Session, Sight, State};
-use super::stage::Staging;
-use super::tailor::{Dressed, Model, Tailor, Work};
+use super::tailor::{Dressed, Job, Model, Tailor, Work};
 use super::vitals::{Tally, Vitals};
 use super::watchdog::Watchdog;
 use crate::exit::AppError;
@@ -42,6 +44,8 @@ pub struct Plan {
     pub begun: Instant,
     /// When it ends by itself.
     pub length: Option<Duration>,
+    /// When it panics, to see what a crash leaves.
+    pub crash_after: Option<Duration>,
     /// The session's times.
     pub rules: Rules,
     /// Time over which a shopper is measured (ns).
@@ -57,7 +61,7 @@ pub struct Plan {
 }
 
 /// Everything that the service talks to beside the loop.
-pub struct Around<'a, S> {
+pub struct Around<'a, S, O> {
     /// Who manages it.
     pub manager: &'a dyn Manager,
     /// Whether it was told to end.
@@ -68,16 +72,20 @@ pub struct Around<'a, S> {
     pub figures: Option<Writer<Vitals>>,
     /// Who dresses shoppers.
     pub tailor: Tailor,
-    /// What a dressed frame becomes on the stage.
-    pub stage: fn(Frame) -> S,
+    /// What a dressed frame becomes on the stage, and what the eye has to know of it.
+    pub stage: fn(Frame) -> (S, O),
+    /// How the mannequin stands.
+    pub pose: Joints,
+    /// What is kept for a crash, where somebody asked for it.
+    pub black_box: Option<Arc<BlackBox>>,
 }
 
 /// The service while it runs.
-pub struct Service<'a, S: Staging, E> {
+pub struct Service<'a, S: Scene, E: Eye> {
     lives: Lives<S, E>,
-    changing: Changing<S>,
+    changing: Changing<S, E::Outfit>,
     plan: Plan,
-    around: Around<'a, S>,
+    around: Around<'a, S, E::Outfit>,
     session: Session,
     tally: Tally,
     dog: Option<Watchdog>,
@@ -93,15 +101,21 @@ pub struct Service<'a, S: Staging, E> {
     course: Course,
 }
 
-impl<'a, S: Staging + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
+impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
     /// Over lives that have begun.
-    pub fn new(lives: Lives<S, E>, changing: Changing<S>, plan: Plan, around: Around<'a, S>) -> Self {
+    pub fn new(
+        lives: Lives<S, E>,
+        changing: Changing<S, E::Outfit>,
+        plan: Plan,
+        around: Around<'a, S, E::Outfit>,
+    ) -> Self {
         let now = lives.now_ns();
         let threads = lives.placements().into_iter().map(Placed::from).collect();
         let course = Course {
             vitals: Vitals::default(),
             ready_ms: None,
             states: vec![State::Attract],
+            attributed: Attributed::default(),
             threads,
             memory_locked: plan.memory_locked,
             warnings: plan.warnings.clone(),
@@ -140,6 +154,8 @@ impl<'a, S: Staging + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
 
     fn is_time_over(&self) -> bool {
         let uptime = Duration::from_nanos(self.lives.now_ns() - self.began_ns);
+        let crashes = self.plan.crash_after.is_some_and(|after| uptime >= after);
+        assert!(!crashes, "the crash that --crash-after asked for");
         self.plan.length.is_some_and(|length| uptime >= length)
     }
 
@@ -201,6 +217,10 @@ impl<'a, S: Staging + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
     /// Takes what the tailor has made.
     fn work(&mut self) -> Result<(), AppError> {
         match self.around.tailor.look() {
+            Some(Work::Done(mannequin)) if mannequin.made.still => {
+                let act = self.act(*mannequin);
+                self.changing.stand_by(act);
+            }
             Some(Work::Done(dressed)) => (self.fitted, self.dressed) = (Some(dressed), true),
             Some(Work::Failed) => self.model.clear(),
             Some(Work::Died) => {
@@ -224,12 +244,20 @@ impl<'a, S: Staging + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
             State::TryOn => {
                 self.model.clear();
                 if let Some(fitted) = self.fitted.take() {
-                    self.changing.bring((self.around.stage)(fitted.frame), fitted.reader);
+                    let act = self.act(*fitted);
+                    self.changing.bring(act, true);
                 }
             }
             State::Left => {}
             State::Attract => self.wipe(),
         }
+    }
+
+    /// Somebody dressed, as the stage takes them.
+    fn act(&self, dressed: Dressed) -> Act<S, E::Outfit> {
+        let Dressed { frame, reader, made } = dressed;
+        let (scene, outfit) = (self.around.stage)(frame);
+        Act { scene, reader, outfit, made }
     }
 
     /// Forgets the shopper.
@@ -240,18 +268,25 @@ impl<'a, S: Staging + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
         self.changing.wipe();
     }
 
-    /// Sends the tailor to work when there is enough to measure.
+    /// Sends the tailor to work when there is enough to measure, or when there is no mannequin to come back.
     fn measure(&mut self, now: u64) -> Result<(), AppError> {
         let enough = self.session.lasted_ns(now) >= self.plan.measure_ns && self.model.len() >= FEWEST_FRAMES;
         let wanted = self.session.state() == State::Measuring && !self.dressed && !self.around.tailor.is_busy();
-        if !(enough && wanted) {
+        let job = if enough && wanted {
+            let model = self.plan.played.clone();
+            Job::Shopper(model.unwrap_or_else(|| Model::Joints(std::mem::take(&mut self.model))))
+        } else if self.changing.lacks_mannequin() && !self.around.tailor.is_busy() {
+            Job::Mannequin(Box::new(self.around.pose))
+        } else {
             return Ok(());
-        }
-        let model = self.plan.played.clone().unwrap_or_else(|| Model::Joints(std::mem::take(&mut self.model)));
-        self.around.tailor.begin(model).map_err(AppError::internal)
+        };
+        self.around.tailor.begin(job).map_err(AppError::internal)
     }
 
     fn count(&mut self) {
+        if let Some(black_box) = &self.around.black_box {
+            black_box.drain(|_| {});
+        }
         while let Some(beat) = self.lives.beats.pop() {
             self.tally.beat(&beat);
         }
@@ -260,6 +295,7 @@ impl<'a, S: Staging + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
         }
         let [_, pictures] = self.lives.pulse.count();
         let uptime = self.lives.now_ns() - self.began_ns;
+        self.course.attributed = self.tally.attributed();
         self.course.vitals = self.tally.vitals(uptime, self.session.state(), pictures);
         if let Some(figures) = &mut self.around.figures {
             figures.publish(self.course.vitals);

@@ -1,53 +1,25 @@
-//! The stage: the scene that physics steps and render looks at, and how another one takes its place without either of
-//! them allocating, freeing or waiting. What leaves the stage is handed back and freed elsewhere.
+//! The stage: the scene that physics steps, with what the service wants to know of each step. Another one takes its place by
+//! the loop's own handover ([`toile_engine::pace::change`]); what left is dropped elsewhere.
 
 use std::sync::Arc;
 
 use toile_engine::clock::{Clock, RealClock};
-use toile_engine::frame::{Snapshot, Times};
+use toile_engine::frame::Times;
 use toile_engine::meter::PERIOD_NS;
 use toile_engine::pace::Turn;
 use toile_engine::pace::governor::{LADDER, Rung};
-use toile_engine::pace::physics::{Scene, Staged};
-use toile_engine::pace::queue::{Receiver, Sender};
+use toile_engine::pace::physics::Scene;
+use toile_engine::pace::queue::Sender;
 use toile_engine::pace::render::{Eye, Render};
-use toile_engine::relay::Reader;
 use toile_sensors::frame::Joints;
 
 use super::watchdog::Pulse;
-
-/// Scenes on their way onto the stage or from it: one is ever under way.
-pub const CHANGES: usize = 4;
-
-/// The name of the bound, as warnings give it.
-pub const CHANGES_NAME: &str = "CHANGES (engine/app/src/kiosk/stage.rs)";
 
 /// Beats that wait to be counted: eight seconds.
 pub const BEATS: usize = 1024;
 
 /// The name of the bound, as warnings give it.
 pub const BEATS_NAME: &str = "BEATS (engine/app/src/kiosk/stage.rs)";
-
-/// A scene that can take the place of another.
-pub trait Staging: Scene {
-    /// Takes over what stays on the stage, such as the workers' threads.
-    fn take_over(&mut self, from: &mut Self);
-}
-
-impl Staging for Staged {
-    fn take_over(&mut self, from: &mut Self) {
-        self.frame.take_crew(&mut from.frame);
-    }
-}
-
-/// Who is on the stage.
-#[derive(Debug)]
-pub struct Act<S> {
-    /// The scene, dressed.
-    pub scene: S,
-    /// Where it stands still, whatever the sensor sees; none follows the sensor.
-    pub still: Option<Joints>,
-}
 
 /// What one step came to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,119 +34,111 @@ pub struct Beat {
     pub nonfinite: u64,
 }
 
-/// The physics' ends of the stage.
+/// What stays where scenes come and go.
 #[derive(Debug)]
-pub struct Wings<S> {
-    /// Who comes next.
-    pub next: Receiver<Box<Act<S>>>,
-    /// Who has left.
-    pub gone: Sender<Box<Act<S>>>,
+struct Wings {
     /// What each step came to.
-    pub beats: Sender<Beat>,
+    beats: Sender<Beat>,
     /// What the watchdog looks at.
-    pub pulse: Arc<Pulse>,
+    pulse: Arc<Pulse>,
+    /// Steps that were rolled back by those who have left: their own counts begin at 0.
+    past: u64,
 }
 
-/// The stage as physics steps it.
+/// A scene as physics steps it.
 #[derive(Debug)]
 pub struct Stage<S> {
-    act: Box<Act<S>>,
-    wings: Wings<S>,
-    rung: Rung,
+    scene: S,
+    /// Where it stands still, whatever the sensor sees; none follows the sensor.
+    still: Option<Joints>,
     place: u8,
-    /// What those who have left counted: their own counts begin at 0.
-    past: [u64; 2],
+    /// Of the scene that is stepped; the others have none.
+    wings: Option<Box<Wings>>,
 }
 
-impl<S: Staging> Stage<S> {
-    /// With somebody on it. At load.
-    pub fn new(first: Act<S>, wings: Wings<S>) -> Self {
-        Self { act: Box::new(first), wings, rung: LADDER[0], place: 0, past: [0; 2] }
+impl<S: Scene> Stage<S> {
+    /// A scene that waits for its turn, or that a replay steps. At load.
+    pub fn new(scene: S, still: Option<Joints>) -> Self {
+        Self { scene, still, place: 0, wings: None }
     }
 
-    /// The scene that is on it.
+    /// The same as the first that is stepped.
+    #[must_use]
+    pub fn begin(self, beats: Sender<Beat>, pulse: Arc<Pulse>) -> Self {
+        Self { wings: Some(Box::new(Wings { beats, pulse, past: 0 })), ..self }
+    }
+
+    /// The scene.
     pub fn scene(&self) -> &S {
-        &self.act.scene
+        &self.scene
     }
 
-    /// Lets the next one on, if somebody waits.
-    fn change(&mut self) {
-        let Some(mut next) = self.wings.next.pop() else { return };
-        next.scene.take_over(&mut self.act.scene);
-        next.scene.set_rung(&self.rung);
-        self.past = self.troubles();
-        let came_with = next.scene.troubles();
-        self.past = [0, 1].map(|k| self.past[k].saturating_sub(came_with[k]));
-        // The queue has room for all that there are.
-        self.wings.gone.push(std::mem::replace(&mut self.act, next));
+    /// The scene itself, when it is stepped no more.
+    pub fn into_scene(self) -> S {
+        self.scene
     }
 }
 
-impl<S: Staging> Scene for Stage<S> {
+impl<S: Scene> Scene for Stage<S> {
     fn step(&mut self, joints: &Joints, times: Times, clock: &impl Clock) {
-        self.change();
-        let still = self.act.still.as_ref();
-        self.act.scene.step(still.unwrap_or(joints), times, clock);
+        let joints = self.still.as_ref().unwrap_or(joints);
+        self.scene.step(joints, times, clock);
+        let Some(wings) = &mut self.wings else { return };
         let ended = clock.now_ns();
-        self.wings.pulse.step();
-        let [_, nonfinite] = self.troubles();
+        wings.pulse.step();
+        let [_, nonfinite] = self.scene.troubles();
         let step_ns = ended.saturating_sub(times.begun_ns);
         let late = ended.saturating_sub(times.scheduled_ns) > PERIOD_NS;
-        self.wings.beats.push(Beat { step_ns, late, rung: self.place, nonfinite });
+        wings.beats.push(Beat { step_ns, late, rung: self.place, nonfinite: wings.past + nonfinite });
     }
 
     fn set_rung(&mut self, rung: &Rung) {
-        self.rung = *rung;
         self.place = LADDER.iter().position(|r| r == rung).unwrap_or_default() as u8;
-        self.act.scene.set_rung(rung);
+        self.scene.set_rung(rung);
     }
 
     fn measure(&mut self) {
-        self.act.scene.measure();
+        self.scene.measure();
     }
 
     fn clear_meters(&mut self) {
-        self.act.scene.clear_meters();
+        self.scene.clear_meters();
     }
 
     fn fingerprint(&self) -> u64 {
-        self.act.scene.fingerprint()
+        self.scene.fingerprint()
+    }
+
+    fn succeed(&mut self, before: &mut Self) {
+        self.scene.succeed(&mut before.scene);
+        std::mem::swap(&mut self.wings, &mut before.wings);
+        let ([_, left], [_, came_with]) = (before.scene.troubles(), self.scene.troubles());
+        if let Some(wings) = &mut self.wings {
+            wings.past = (wings.past + left).saturating_sub(came_with);
+        }
     }
 
     fn troubles(&self) -> [u64; 2] {
-        let now = self.act.scene.troubles();
-        [0, 1].map(|k| self.past[k] + now[k])
+        self.scene.troubles()
     }
 }
 
-/// The render's life, whose scene changes with the stage's.
-#[derive(Debug)]
-pub struct Watching<E> {
+/// The render's life, whose pictures the watchdog counts.
+pub struct Watching<E: Eye> {
     /// The life itself.
     pub render: Render<E, RealClock>,
-    next: Receiver<Reader<Snapshot>>,
-    gone: Sender<Reader<Snapshot>>,
     pulse: Arc<Pulse>,
 }
 
 impl<E: Eye> Watching<E> {
-    /// Looks where `next` says, and hands back where it has looked.
-    pub fn new(
-        render: Render<E, RealClock>,
-        next: Receiver<Reader<Snapshot>>,
-        gone: Sender<Reader<Snapshot>>,
-        pulse: Arc<Pulse>,
-    ) -> Self {
-        Self { render, next, gone, pulse }
+    /// The same, watched.
+    pub fn new(render: Render<E, RealClock>, pulse: Arc<Pulse>) -> Self {
+        Self { render, pulse }
     }
 }
 
 impl<E: Eye> Turn for Watching<E> {
     fn turn(&mut self) -> Option<u64> {
-        if let Some(reader) = self.next.pop() {
-            let before = self.render.watch(reader);
-            self.gone.push(before);
-        }
         let next = self.render.turn();
         self.pulse.pictures(self.render.pictures);
         next
@@ -185,6 +149,7 @@ impl<E: Eye> Turn for Watching<E> {
 mod tests {
     use super::*;
     use toile_engine::clock::SimClock;
+    use toile_engine::pace::physics::Stepper;
     use toile_engine::pace::queue::bounded;
 
     /// A scene that says what it was asked.
@@ -210,48 +175,36 @@ mod tests {
         fn fingerprint(&self) -> u64 {
             u64::from(self.name)
         }
+        fn succeed(&mut self, before: &mut Self) {
+            std::mem::swap(&mut self.crew, &mut before.crew);
+        }
         fn troubles(&self) -> [u64; 2] {
             [0, self.rolled_back]
         }
     }
 
-    impl Staging for Said {
-        fn take_over(&mut self, from: &mut Self) {
-            std::mem::swap(&mut self.crew, &mut from.crew);
-        }
-    }
-
     #[test]
-    fn another_scene_takes_over_crew_quality_and_counts_and_the_first_comes_back_out() {
-        let (mut call, next) = bounded(CHANGES_NAME, CHANGES);
-        let (gone, mut left) = bounded(CHANGES_NAME, CHANGES);
+    fn another_scene_takes_over_crew_quality_and_counts() {
         let (beats, mut told) = bounded(BEATS_NAME, BEATS);
         let pulse = Arc::new(Pulse::default());
-        let still = Some(Joints::absent(7));
-        let first = Act { scene: Said { name: 1, crew: 9, ..Said::default() }, still };
-        let mut stage = Stage::new(first, Wings { next, gone, beats, pulse: pulse.clone() });
-        let clock = SimClock::default();
-        let step = |stage: &mut Stage<Said>| stage.step(&Joints::absent(50), Times::default(), &clock);
-        stage.set_rung(&LADDER[1]);
-        step(&mut stage);
-        assert!(call.push(Box::new(Act { scene: Said { name: 2, ..Said::default() }, still: None })));
-        step(&mut stage);
-        assert_eq!(stage.fingerprint(), 2);
-        assert_eq!((stage.scene().crew, stage.scene().substeps), (9, LADDER[1].substep_share));
-        assert_eq!(stage.scene().seen_ns, [50], "it follows the sensor");
-        let before = left.pop().unwrap();
-        assert_eq!(
-            (before.scene.name, before.scene.crew, &before.scene.seen_ns[..]),
-            (1, 0, &[7][..]),
-            "it stood still"
-        );
-        assert_eq!(stage.troubles(), [0, 2], "no count begins anew");
+        let first = Said { name: 1, crew: 9, ..Said::default() };
+        let stage = Stage::new(first, Some(Joints::absent(7))).begin(beats, pulse.clone());
+        let (mut stepper, clock) = (Stepper::new(stage), SimClock::default());
+        stepper.set_rung(1);
+        stepper.step(0, 0, &clock);
+        let mut other = Stage::new(Said { name: 2, ..Said::default() }, None);
+        stepper.change(&mut other, true);
+        stepper.step(0, 0, &clock);
+        let now = stepper.scene.scene();
+        assert_eq!((now.name, now.crew, now.substeps), (2, 9, LADDER[1].substep_share));
+        assert_ne!(now.seen_ns, [7], "it follows the sensor");
+        let before = other.scene();
+        assert_eq!((before.name, before.crew, &before.seen_ns[..]), (1, 0, &[7][..]), "it stood still");
         // Back on, with the counts that it left with.
-        assert!(call.push(before));
-        step(&mut stage);
-        assert_eq!(stage.troubles(), [0, 3]);
+        stepper.change(&mut other, true);
+        stepper.step(0, 0, &clock);
         let beats: Vec<(u8, u64)> = std::iter::from_fn(|| told.pop()).map(|b| (b.rung, b.nonfinite)).collect();
-        assert_eq!(beats, [(1, 1), (1, 2), (1, 3)]);
+        assert_eq!(beats, [(1, 1), (1, 2), (1, 3)], "no count begins anew");
         assert_eq!(pulse.count(), [3, 0]);
     }
 }

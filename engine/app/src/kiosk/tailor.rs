@@ -11,6 +11,7 @@ use toile_engine::relay::Reader;
 use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
 
+use super::recording::Made;
 use crate::exit::AppError;
 use crate::outfit::{Recipe, Wish};
 use crate::shopper;
@@ -21,6 +22,24 @@ pub struct Dressed {
     pub frame: Frame,
     /// Where its snapshots come out.
     pub reader: Reader<Snapshot>,
+    /// How it was made.
+    pub made: Made,
+}
+
+impl Dressed {
+    fn make(recipe: Recipe, first: &Joints, still: bool) -> Result<Self, AppError> {
+        let (frame, reader) = recipe.make(first)?;
+        Ok(Self { frame, reader, made: Made { recipe, first: *first, still } })
+    }
+}
+
+/// What is to be done.
+#[derive(Debug, Clone)]
+pub enum Job {
+    /// Measure a shopper and dress them.
+    Shopper(Model),
+    /// Dress the mannequin, as these joints stand.
+    Mannequin(Box<Joints>),
 }
 
 /// Where measures are taken from.
@@ -36,14 +55,14 @@ pub enum Model {
 #[derive(Debug)]
 pub struct Tailor {
     wish: Wish,
-    job: Option<JoinHandle<Result<Dressed, AppError>>>,
-    /// Whether the shopper that the job is for has left.
+    work: Option<JoinHandle<Result<Dressed, AppError>>>,
+    /// Whether the shopper that the work is for has left.
     unwanted: bool,
 }
 
 /// What became of a job.
 pub enum Work {
-    /// Somebody is dressed.
+    /// Somebody is dressed: a shopper, or the mannequin, which stands still.
     Done(Box<Dressed>),
     /// They could not be measured; why is not told to anybody, for it may tell of them.
     Failed,
@@ -54,22 +73,26 @@ pub enum Work {
 impl Tailor {
     /// One who dresses everybody in this.
     pub fn new(wish: Wish) -> Self {
-        Self { wish, job: None, unwanted: false }
+        Self { wish, work: None, unwanted: false }
     }
 
     /// Whether a job is under way, wanted or not.
     pub fn is_busy(&self) -> bool {
-        self.job.is_some()
+        self.work.is_some()
     }
 
-    /// Begins with a shopper.
+    /// Begins a job.
     ///
     /// # Errors
     /// Where the system gives no thread.
-    pub fn begin(&mut self, model: Model) -> std::io::Result<()> {
+    pub fn begin(&mut self, job: Job) -> std::io::Result<()> {
         let wish = self.wish.clone();
         self.unwanted = false;
-        self.job = Some(thread::Builder::new().name("toile-tailor".into()).spawn(move || dress(&model, &wish))?);
+        let work = move || match job {
+            Job::Shopper(model) => dress(&model, &wish),
+            Job::Mannequin(pose) => mannequin(&wish, &pose),
+        };
+        self.work = Some(thread::Builder::new().name("toile-tailor".into()).spawn(work)?);
         Ok(())
     }
 
@@ -80,11 +103,12 @@ impl Tailor {
 
     /// What has come of a job, once, when it has ended.
     pub fn look(&mut self) -> Option<Work> {
-        if !self.job.as_ref()?.is_finished() {
+        if !self.work.as_ref()?.is_finished() {
             return None;
         }
-        match self.job.take()?.join() {
+        match self.work.take()?.join() {
             Err(_) => Some(Work::Died),
+            Ok(Ok(dressed)) if dressed.made.still => Some(Work::Done(Box::new(dressed))),
             _ if self.unwanted => None,
             Ok(Ok(dressed)) => Some(Work::Done(Box::new(dressed))),
             Ok(Err(_)) => Some(Work::Failed),
@@ -105,8 +129,7 @@ fn dress(model: &Model, wish: &Wish) -> Result<Dressed, AppError> {
     let Some(first) = track.get(shopper::stands_from(&track)) else {
         return Err(AppError::Input("nobody stands there".into()));
     };
-    let (frame, reader) = Recipe::write(session, wish)?.make(first)?;
-    Ok(Dressed { frame, reader })
+    Dressed::make(Recipe::write(session, wish)?, first, false)
 }
 
 /// The mannequin that stands in the mirror while nobody is measured: the middle size of the outermost garment, as `pose` has it.
@@ -135,6 +158,5 @@ pub fn mannequin(wish: &Wish, pose: &Joints) -> Result<Dressed, AppError> {
         garments,
         quality: wish.quality.name().to_owned(),
     };
-    let (frame, reader) = recipe.make(pose)?;
-    Ok(Dressed { frame, reader })
+    Dressed::make(recipe, pose, true)
 }

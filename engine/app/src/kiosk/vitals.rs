@@ -5,6 +5,7 @@ use std::fmt::{self, Display, Formatter};
 
 use toile_engine::meter::Meter;
 use toile_engine::pace::event::{Event, What};
+use toile_perf::latency::{Attributed, Attributing};
 
 use super::session::State;
 use super::stage::Beat;
@@ -77,6 +78,8 @@ pub struct Tally {
     vitals: Vitals,
     /// Steps since the last health line.
     step: Meter,
+    /// Why steps were late.
+    late: Attributing,
 }
 
 impl Tally {
@@ -90,6 +93,7 @@ impl Tally {
 
     /// Something happened in the loop. Late steps are told by their beats.
     pub fn event(&mut self, event: &Event) {
+        self.late.take(event);
         match event.what {
             What::Dropped(steps) => self.vitals.misses += steps,
             What::SensorLost => self.vitals.sensor_lost += 1,
@@ -107,6 +111,11 @@ impl Tally {
         let h = self.step.histogram();
         let step_p999_us = h.value_at_quantile(0.999).min(h.max()) as f64 * 1e-3;
         Vitals { uptime_ns, state, pictures, step_p999_us, ..self.vitals }
+    }
+
+    /// Why steps were late.
+    pub fn attributed(&self) -> Attributed {
+        self.late.attributed
     }
 
     /// A health line was said: the next one is about the steps from now on.

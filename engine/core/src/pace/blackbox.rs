@@ -11,7 +11,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::queue::{Capacity, Receiver};
-use super::tape::{self, Entry};
+use super::tape::{self, Entry, Note};
 
 /// What is kept at least (ns).
 pub const KEPT_NS: u64 = 10_000_000_000;
@@ -31,6 +31,8 @@ const RETRY: Duration = Duration::from_micros(500);
 struct Visit {
     /// When its first step was due (ns).
     from_ns: Option<u64>,
+    /// Number of the scene that it began with.
+    first: u64,
     bytes: Vec<u8>,
 }
 
@@ -38,6 +40,8 @@ struct Visit {
 struct Inner {
     header: Vec<u8>,
     entries: Receiver<Entry>,
+    /// What was said of scenes that are kept or come next, with their numbers.
+    notes: VecDeque<(u64, Vec<u8>)>,
     visits: VecDeque<Visit>,
     newest_ns: u64,
     /// Storage of visits that were forgotten, for those to come.
@@ -58,12 +62,20 @@ impl BlackBox {
             bytes
         };
         let spare = vec![room(), room()];
-        Self(Mutex::new(Inner { header, entries, visits: VecDeque::with_capacity(16), newest_ns: 0, spare }))
+        let (notes, visits) = (VecDeque::with_capacity(16), VecDeque::with_capacity(16));
+        Self(Mutex::new(Inner { header, entries, notes, visits, newest_ns: 0, spare }))
     }
 
     /// Keeps an entry that comes from elsewhere: how the shopper was dressed before the first step.
     pub fn keep(&self, entry: &Entry) {
         self.locked().keep(entry);
+    }
+
+    /// Keeps how a scene is made, as long as it is kept itself. Before the scene is handed over; numbers grow.
+    pub fn describe(&self, note: &Note) {
+        let mut bytes = Vec::new();
+        tape::write_note(note, &mut bytes);
+        self.locked().notes.push_back((note.number, bytes));
     }
 
     /// Empties the queue; each entry is handed on as well.
@@ -97,6 +109,7 @@ impl BlackBox {
         }
         inner.visits.iter().any(|v| v.from_ns.is_some()).then(|| {
             let mut file = inner.header.clone();
+            inner.notes.iter().for_each(|(_, note)| file.extend(note));
             inner.visits.iter().for_each(|v| file.extend(&v.bytes));
             file
         })
@@ -110,9 +123,14 @@ impl BlackBox {
 
 impl Inner {
     fn keep(&mut self, entry: &Entry) {
-        if matches!(entry, Entry::Dressed(_) | Entry::Changed { afresh: true, .. }) {
+        let begins = match entry {
+            Entry::Dressed(_) => Some(0),
+            Entry::Changed { number, afresh: true } => Some(*number),
+            _ => None,
+        };
+        if let Some(first) = begins {
             let bytes = self.spare.pop().unwrap_or_default();
-            self.visits.push_back(Visit { from_ns: None, bytes });
+            self.visits.push_back(Visit { from_ns: None, first, bytes });
         }
         let Some(visit) = self.visits.back_mut() else { return };
         if visit.bytes.len() < MOST_BYTES {
@@ -134,12 +152,17 @@ impl Inner {
                 self.spare.push(old.bytes);
             }
         }
+        let first = self.visits.front().map_or(0, |visit| visit.first);
+        while self.notes.front().is_some_and(|(number, _)| *number < first) {
+            self.notes.pop_front();
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use toile_sensors::clock::{SECOND_NS, ticks_to_ns};
+    use toile_sensors::frame::Joints;
 
     use super::*;
     use crate::pace::queue::bounded;
@@ -150,8 +173,13 @@ mod tests {
 
     /// The first and the last step of the file.
     fn kept(file: &[u8]) -> (Entry, u64, u64) {
-        let (text, entries) = tape::read(file).unwrap();
+        let tape::Tape { text, notes, entries } = tape::read(file).unwrap();
         assert_eq!(text, "a scene");
+        let Entry::Changed { number: first, .. } = entries[0] else { panic!("{:?}", entries[0]) };
+        let described: Vec<u64> = notes.iter().map(|note| note.number).collect();
+        let changed =
+            entries.iter().filter_map(|e| if let Entry::Changed { number, .. } = e { Some(*number) } else { None });
+        assert_eq!(described, changed.collect::<Vec<_>>(), "each that is kept, from {first} on, and no other");
         let ticks = entries.iter().filter_map(|e| if let Entry::Step { tick, .. } = e { Some(*tick) } else { None });
         let ticks: Vec<u64> = ticks.collect();
         (entries[0], ticks[0], ticks[ticks.len() - 1])
@@ -165,7 +193,9 @@ mod tests {
         // A visit every 8 s for a minute, a garment changed in the middle of each.
         for tick in 0..120 * 60 {
             if tick % 480 == 0 {
-                sender.push(Entry::Changed { number: tick / 480, afresh: tick % 960 == 0 });
+                let number = tick / 480;
+                black_box.describe(&Note { number, first: Joints::absent(0), text: "another".into() });
+                sender.push(Entry::Changed { number, afresh: tick % 960 == 0 });
             }
             sender.push(step(tick));
             if tick % 100 == 0 {

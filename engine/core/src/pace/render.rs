@@ -19,19 +19,34 @@ const MOST_TOLD: u64 = 300;
 
 /// Who makes a picture of a snapshot.
 pub trait Eye: Send {
+    /// What else it has to know of a scene to draw it, such as triangles and colours: made elsewhere, changed with the scene.
+    type Outfit: Send;
+
+    /// From the next look on another scene is seen, with this outfit; what it leaves in its place is dropped elsewhere.
+    fn put_on(&mut self, outfit: &mut Self::Outfit);
+
     /// Makes it; returns when it is handed to the display, or would be.
     fn look(&mut self, snapshot: &Snapshot);
 }
 
+/// Where another scene's snapshots come out, and what is drawn of them.
+#[derive(Debug)]
+pub struct View<O> {
+    /// The snapshots.
+    pub reader: Reader<Snapshot>,
+    /// What the eye has to know.
+    pub outfit: O,
+}
+
 /// The render thread's life.
 #[derive(Debug)]
-pub struct Render<E, C> {
+pub struct Render<E: Eye, C> {
     /// Who draws.
     pub eye: E,
     clock: C,
     schedule: Schedule,
     reader: Reader<Snapshot>,
-    changes: Option<Taker<Reader<Snapshot>>>,
+    changes: Option<Taker<View<E::Outfit>>>,
     /// From a snapshot's publication until its picture was taken.
     pub picture: Meter,
     /// How long the picture itself took.
@@ -72,9 +87,9 @@ impl<E: Eye, C: Clock> Render<E, C> {
         Self { from_ns, ..self }
     }
 
-    /// The same, which looks at other snapshots when their reader is handed to it.
+    /// The same, which looks at another scene when it is handed to it.
     #[must_use]
-    pub fn changing(self, changes: Taker<Reader<Snapshot>>) -> Self {
+    pub fn changing(self, changes: Taker<View<E::Outfit>>) -> Self {
         Self { changes: Some(changes), ..self }
     }
 
@@ -85,16 +100,14 @@ impl<E: Eye, C: Clock> Render<E, C> {
         Self { schedule, ..self }
     }
 
-    /// Looks at another scene's snapshots from now on; gives back the end that it looked at, so that it is dropped
-    /// elsewhere.
-    pub fn watch(&mut self, reader: Reader<Snapshot>) -> Reader<Snapshot> {
-        std::mem::replace(&mut self.reader, reader)
-    }
-
     fn take(&mut self) {
         let begun = self.clock.now_ns();
         if let Some(changes) = &mut self.changes {
-            changes.take(|change| std::mem::swap(&mut change.scene, &mut self.reader));
+            let (reader, eye) = (&mut self.reader, &mut self.eye);
+            changes.take(|change| {
+                std::mem::swap(&mut change.scene.reader, reader);
+                eye.put_on(&mut change.scene.outfit);
+            });
         }
         let Some(snapshot) = self.reader.news() else { return };
         let times = snapshot.times;

@@ -24,6 +24,9 @@ pub const ENTRIES_NAME: &str = "ENTRIES (engine/core/src/pace/tape.rs)";
 /// Longest text about the scene (bytes).
 const MOST_TEXT: usize = 1 << 20;
 
+/// Longest text of a note (bytes): what a record holds beside the joints.
+pub const MOST_NOTE: usize = 8 * (u8::MAX as usize - 2 - 2 * JOINTS);
+
 /// What happened, in order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Entry {
@@ -49,6 +52,28 @@ pub enum Entry {
         /// Hash of the state that it ended in.
         fingerprint: u64,
     },
+}
+
+/// How a scene is made that the text at the begin does not tell of, because nobody knew of it then.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Note {
+    /// The scene's number.
+    pub number: u64,
+    /// The joints in which it was dressed.
+    pub first: Joints,
+    /// The rest in words; what is beyond [`MOST_NOTE`] bytes is cut off.
+    pub text: String,
+}
+
+/// Everything in a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tape {
+    /// The text about the scene.
+    pub text: String,
+    /// What was noted of scenes, in order.
+    pub notes: Vec<Note>,
+    /// What happened, in order.
+    pub entries: Vec<Entry>,
 }
 
 /// Why a tape cannot be read.
@@ -97,6 +122,21 @@ pub fn write(entry: &Entry, out: &mut Vec<u8>) {
             b's'
         }
     };
+    put(kind, &body, out);
+}
+
+/// Appends what is known of a scene to the bytes of a file.
+pub fn write_note(note: &Note, out: &mut Vec<u8>) {
+    let mut body = Vec::with_capacity(8 * usize::from(u8::MAX));
+    body.extend(note.number.to_le_bytes());
+    put_joints(&note.first, &mut body);
+    let cut = (0..=note.text.len().min(MOST_NOTE)).rev().find(|i| note.text.is_char_boundary(*i)).unwrap_or(0);
+    body.extend(&note.text.as_bytes()[..cut]);
+    body.resize(body.len().next_multiple_of(8), b' ');
+    put(b'm', &body, out);
+}
+
+fn put(kind: u8, body: &[u8], out: &mut Vec<u8>) {
     let start = out.len();
     out.extend([kind, (body.len() / 8) as u8]);
     out.extend(body);
@@ -116,11 +156,11 @@ fn check(bytes: &[u8]) -> u32 {
     bytes.iter().fold(0x811c_9dc5, |hash, byte| (hash ^ u32::from(*byte)).wrapping_mul(0x0100_0193))
 }
 
-/// Reads a file: the text about the scene, and the entries up to the end or the cut.
+/// Reads a file up to its end or the cut.
 ///
 /// # Errors
 /// [`TapeError`].
-pub fn read(bytes: &[u8]) -> Result<(String, Vec<Entry>), TapeError> {
+pub fn read(bytes: &[u8]) -> Result<Tape, TapeError> {
     let rest = bytes.strip_prefix(MAGIC).ok_or(TapeError::Magic)?;
     let (len, rest) = rest.split_first_chunk::<4>().ok_or(TapeError::Short)?;
     let len = u32::from_le_bytes(*len) as usize;
@@ -129,7 +169,7 @@ pub fn read(bytes: &[u8]) -> Result<(String, Vec<Entry>), TapeError> {
     }
     let (text, mut rest) = rest.split_at_checked(len).ok_or(TapeError::Short)?;
     let text = String::from_utf8(text.to_vec()).map_err(|_| TapeError::Damaged(MAGIC.len() + 4))?;
-    let mut entries = Vec::new();
+    let (mut notes, mut entries) = (Vec::new(), Vec::new());
     while let [_, eights, ..] = rest {
         let len = 2 + 8 * usize::from(*eights);
         let Some((record, after)) = rest.split_at_checked(len + 4) else { break };
@@ -137,11 +177,14 @@ pub fn read(bytes: &[u8]) -> Result<(String, Vec<Entry>), TapeError> {
         if check(&record[..len]).to_le_bytes() != record[len..] {
             return Err(damaged());
         }
-        entries.push(entry(record[0], &record[2..len]).ok_or_else(damaged)?);
+        match record[0] {
+            b'm' => notes.push(note(&record[2..len]).ok_or_else(damaged)?),
+            kind => entries.push(entry(kind, &record[2..len]).ok_or_else(damaged)?),
+        }
         rest = after;
     }
     let steps = entries.iter().any(|e| matches!(e, Entry::Step { .. }));
-    if steps { Ok((text, entries)) } else { Err(TapeError::Short) }
+    if steps { Ok(Tape { text, notes, entries }) } else { Err(TapeError::Short) }
 }
 
 fn entry(kind: u8, body: &[u8]) -> Option<Entry> {
@@ -162,6 +205,14 @@ fn entry(kind: u8, body: &[u8]) -> Option<Entry> {
         }),
         _ => None,
     }
+}
+
+fn note(body: &[u8]) -> Option<Note> {
+    let (words, []) = body.as_chunks::<8>() else { return None };
+    let (number, rest) = words.split_first()?;
+    let (first, text) = rest.split_at_checked(1 + 2 * JOINTS)?;
+    let text = String::from_utf8(text.as_flattened().to_vec()).ok()?;
+    Some(Note { number: u64::from_le_bytes(*number), first: joints(first)?, text: text.trim_end().to_owned() })
 }
 
 fn joints(words: &[[u8; 8]]) -> Option<Joints> {
@@ -194,19 +245,28 @@ mod tests {
         ]
     }
 
+    fn noted() -> Note {
+        Note { number: 3, first: Joints::absent(5), text: "a coat, grün".into() }
+    }
+
     fn file() -> Vec<u8> {
         let mut bytes = header("a scene");
+        write_note(&noted(), &mut bytes);
         entries().iter().for_each(|e| write(e, &mut bytes));
         bytes
+    }
+
+    fn whole() -> Tape {
+        Tape { text: "a scene".to_owned(), notes: vec![noted()], entries: entries() }
     }
 
     #[test]
     fn what_was_written_is_read_and_a_cut_file_up_to_the_cut() {
         let bytes = file();
-        assert_eq!(read(&bytes), Ok(("a scene".to_owned(), entries())));
+        assert_eq!(read(&bytes), Ok(whole()));
         let step = 2 + 32 + 4;
         for cut in 1..=step {
-            assert_eq!(read(&bytes[..bytes.len() - cut]).unwrap().1, entries()[..4]);
+            assert_eq!(read(&bytes[..bytes.len() - cut]).unwrap().entries, entries()[..4]);
         }
         assert_eq!(read(&bytes[..bytes.len() - step - 1]), Err(TapeError::Short), "no step is left");
         assert_eq!(read(&bytes[..20]), Err(TapeError::Short));
@@ -223,7 +283,7 @@ mod tests {
             // A length that grew beyond the end looks like a cut: then what came before is right.
             let right = match read(&bad) {
                 Err(_) => true,
-                Ok((_, found)) => found.len() < entries().len() && entries().starts_with(&found),
+                Ok(found) => found.entries.len() < entries().len() && entries().starts_with(&found.entries),
             };
             assert!(right, "byte {i}");
         }
