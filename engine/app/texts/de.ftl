@@ -1,196 +1,195 @@
-# What a shopper reads, in English. Lengths come in centimetres, already rounded; every language has the same words with
-# the same variables.
+# What a shopper reads, in German.
 
-language = English
+language = Deutsch
 
 # Nobody is there
-attract-heading = See how it fits, before you try it on
-attract-measure = Step onto the mark. The mirror measures you in a second.
-attract-fit = See yourself in your size, and where it is snug.
-attract-compare = Put two sizes side by side.
-attract-private = Nothing is kept and nothing is sent. When you leave, you are forgotten.
+attract-heading = Sehen Sie, wie es sitzt, bevor Sie es anprobieren
+attract-measure = Treten Sie auf die Markierung. Der Spiegel nimmt in einer Sekunde Maß.
+attract-fit = Sehen Sie sich in Ihrer Größe, und wo es eng wird.
+attract-compare = Stellen Sie zwei Größen nebeneinander.
+attract-private = Nichts wird gespeichert, nichts wird gesendet. Wenn Sie gehen, werden Sie vergessen.
 
 # Somebody has stepped in
-guide-heading = Stand on the mark
-guide-heading-seated = Face the mirror
-guide-pose = Feet apart, arms a little away from your body.
-guide-pose-seated = Sit upright, arms a little away from your body.
-guide-nearer = Come a little closer.
-guide-farther = Step back a little.
-guide-left = Move a little to your left.
-guide-right = Move a little to your right.
-guide-alone = One person at a time, please.
-guide-unseen = The mirror does not see you yet. Step onto the mark.
-guide-soon = Measuring begins in a moment.
+guide-heading = Stellen Sie sich auf die Markierung
+guide-heading-seated = Schauen Sie zum Spiegel
+guide-pose = Füße auseinander, die Arme etwas vom Körper weg.
+guide-pose-seated = Sitzen Sie aufrecht, die Arme etwas vom Körper weg.
+guide-nearer = Kommen Sie etwas näher.
+guide-farther = Gehen Sie einen Schritt zurück.
+guide-left = Gehen Sie etwas nach links.
+guide-right = Gehen Sie etwas nach rechts.
+guide-alone = Bitte nur eine Person auf einmal.
+guide-unseen = Der Spiegel sieht Sie noch nicht. Treten Sie auf die Markierung.
+guide-soon = Gleich geht es los.
 
 # Measuring
-measuring-heading = One moment, please
-measuring-body = Measuring
-measuring-dress = Putting the clothes on
+measuring-heading = Einen Moment, bitte
+measuring-body = Es wird Maß genommen
+measuring-dress = Die Kleidung wird angezogen
 
 # What could not be measured
-unmeasured-heading = That did not work
-unmeasured-why = The mirror needs to see you from head to knees, alone, for a second. Loose coats and bags hide the body.
-unmeasured-seated = Are you sitting? Then choose “I am sitting”.
-partly-heading = Measured as far as possible
-partly-missing = Not seen: { $parts }.
-partly-guess = There an average body of your height stands in, so these zones are less certain.
-partly-cure = A tape measure at the waist and hip makes it certain.
+unmeasured-heading = Das hat nicht geklappt
+unmeasured-why = Der Spiegel muss Sie eine Sekunde lang allein und vom Kopf bis zu den Knien sehen. Weite Mäntel und Taschen verdecken den Körper.
+unmeasured-seated = Sitzen Sie? Dann wählen Sie „Ich sitze“.
+partly-heading = Gemessen, so weit es geht
+partly-missing = Nicht zu sehen: { $parts }.
+partly-guess = Dort steht ein durchschnittlicher Körper Ihrer Größe. Diese Stellen sind weniger sicher.
+partly-cure = Ein Maßband an Taille und Hüfte macht es sicher.
 
 # The fitted body
-fitting-size = { $garment }, size { $size }
-fitting-best = Size { $size } fits you best.
-fitting-sure = We are { $percent } % sure.
-fitting-unsure = It is close: { $percent } % for this size.
-fitting-better = Size { $size } would fit you better.
-fitting-tape = Measure your { $zone } with a tape to be sure.
-fitting-smaller = Even the smallest size is meant for larger measures. You see the nearest.
-fitting-larger = Even the largest size is meant for smaller measures. You see the nearest.
-fitting-dressing = Putting it on
-fitting-refused = This could not be put on. You see what you wore before.
+fitting-size = { $garment }, Größe { $size }
+fitting-best = Größe { $size } passt Ihnen am besten.
+fitting-sure = Zu { $percent } % sicher.
+fitting-unsure = Es ist knapp: { $percent } % für diese Größe.
+fitting-better = Größe { $size } würde Ihnen besser passen.
+fitting-tape = Messen Sie Ihre { $zone } mit dem Maßband, um sicher zu sein.
+fitting-smaller = Auch die kleinste Größe ist für größere Maße gedacht. Sie sehen die nächstliegende.
+fitting-larger = Auch die größte Größe ist für kleinere Maße gedacht. Sie sehen die nächstliegende.
+fitting-dressing = Wird angezogen
+fitting-refused = Das ließ sich nicht anziehen. Sie sehen, was Sie vorher trugen.
 
 # The garments
-garments-heading = What would you like to try on?
-garments-worn = You are wearing it
-garments-take-off = Tap again to take it off
-garments-instead = Replaces: { $others }
-garment-sun-dress = Sun dress
-garment-t-shirt = T-shirt
-garment-wide-trousers = Wide trousers
-colour-of = Colour: { $colour }
-colour-own = As woven
-colour-coral = Coral
-colour-ivory = Ivory
-colour-sky = Sky blue
-colour-moss = Moss green
-colour-navy = Navy
-colour-denim = Denim blue
-colour-white = White
-colour-ochre = Ochre
-colour-brick = Brick red
-colour-charcoal = Charcoal
-colour-sand = Sand
+garments-heading = Was möchten Sie anprobieren?
+garments-worn = Das tragen Sie gerade
+garments-take-off = Noch einmal tippen, um es auszuziehen
+garments-instead = Statt: { $others }
+garment-sun-dress = Sommerkleid
+garment-t-shirt = T-Shirt
+garment-wide-trousers = Weite Hose
+colour-of = Farbe: { $colour }
+colour-own = Wie gewebt
+colour-coral = Koralle
+colour-ivory = Elfenbein
+colour-sky = Himmelblau
+colour-moss = Moosgrün
+colour-navy = Marineblau
+colour-denim = Jeansblau
+colour-white = Weiß
+colour-ochre = Ocker
+colour-brick = Ziegelrot
+colour-charcoal = Anthrazit
+colour-sand = Sandfarben
 
 # Fit by zone
-zones-heading = How size { $size } fits
+zones-heading = So sitzt Größe { $size }
 zones-held =
-    It hangs from the { $level ->
-        [neck] neck
-        [shoulders] shoulders
-        [bust] bust
-        [underbust] underbust
-        [waist] waist
-        [crotch] crotch
-       *[feet] feet
+    Es hält { $level ->
+        [neck] am Hals
+        [shoulders] an den Schultern
+        [bust] an der Brust
+        [underbust] unter der Brust
+        [waist] an der Taille
+        [crotch] im Schritt
+       *[feet] an den Füßen
     }.
-zone-chest = Chest
-zone-waist = Waist
-zone-hip = Hip
-fit-ease = { $zone }: { $feel }, about { $ease } cm ease ± { $sigma }
-fit-lack = { $zone }: { $feel }, about { $ease } cm too small ± { $sigma }
-fit-perhaps = { $fit } (perhaps { $feel })
-feel-too-tight = far too tight
-feel-tight = tight
-feel-snug = snug
-feel-right = just right
-feel-roomy = roomy
-feel-loose = loose
-feel-too-loose = far too loose
-legend-loose = loose
-legend-tight = tight
+zone-chest = Brust
+zone-waist = Taille
+zone-hip = Hüfte
+fit-ease = { $zone }: { $feel }, etwa { $ease } cm Spielraum ± { $sigma }
+fit-lack = { $zone }: { $feel }, etwa { $ease } cm zu klein ± { $sigma }
+fit-perhaps = { $fit } (vielleicht { $feel })
+feel-too-tight = viel zu eng
+feel-tight = eng
+feel-snug = körpernah
+feel-right = genau richtig
+feel-roomy = bequem
+feel-loose = weit
+feel-too-loose = viel zu weit
+legend-loose = weit
+legend-tight = eng
 
 # Why
-zone-heading = { $zone }: why?
-zone-body = Your { $zone } measures about { $body } cm, give or take { $sigma } cm.
-zone-garment = The garment measures { $garment } cm there.
-zone-comfort = { $least } to { $most } cm of ease feel right in this cut.
-zone-stretch = From { $least } cm stretch to { $most } cm of ease feels right in this cut.
-zone-primary = The size is chosen by this measure.
-zone-seen = It was measured on your body's surface.
-zone-bones = Only your height and shoulders were seen. The girth follows from them and is uncertain.
-zone-guessed = It could not be seen. An average for your height stands in.
-zone-surer-tape = A tape measure makes it certain.
-zone-surer-again = Measuring again without a coat or bag makes it surer.
+zone-heading = { $zone }: warum?
+zone-body = Ihre { $zone } misst etwa { $body } cm, plus oder minus { $sigma } cm.
+zone-garment = Das Kleidungsstück misst dort { $garment } cm.
+zone-comfort = Bei diesem Schnitt fühlen sich { $least } bis { $most } cm Spielraum richtig an.
+zone-stretch = Bei diesem Schnitt fühlt sich alles von { $least } cm Dehnung bis { $most } cm Spielraum richtig an.
+zone-primary = Nach diesem Maß wird die Größe gewählt.
+zone-seen = Es wurde an der Oberfläche Ihres Körpers gemessen.
+zone-bones = Nur Körpergröße und Schultern waren zu sehen. Der Umfang folgt daraus und ist unsicher.
+zone-guessed = Es war nicht zu sehen. Dort steht ein Durchschnitt für Ihre Körpergröße.
+zone-surer-tape = Ein Maßband macht es sicher.
+zone-surer-again = Ohne Mantel und Tasche noch einmal messen macht es sicherer.
 
 # Two sizes
-compare-heading = Size { $left } or { $right }?
-compare-zone = { $zone }: { $left } is { $left-feel }, { $right } is { $right-feel }
-compare-same = { $zone }: both are { $feel }
-compare-draping = Putting on both sizes
-compare-refused = Both sizes could not be put on. The words still hold.
+compare-heading = Größe { $left } oder { $right }?
+compare-zone = { $zone }: { $left } ist { $left-feel }, { $right } ist { $right-feel }
+compare-same = { $zone }: beide sind { $feel }
+compare-draping = Beide Größen werden angezogen
+compare-refused = Beide Größen ließen sich nicht anziehen. Die Worte gelten trotzdem.
 
 # The picture
-picture-heading = Your picture
-picture-taking = Taking the picture
-picture-scan = Scan the code with your phone. It holds the picture itself; nothing is sent.
+picture-heading = Ihr Bild
+picture-taking = Das Bild wird gemacht
+picture-scan = Scannen Sie den Code mit Ihrem Telefon. Er enthält das Bild selbst; nichts wird gesendet.
 picture-until =
     { $minutes ->
-        [0] It is deleted in less than a minute.
-        [one] It is deleted in { $minutes } minute.
-       *[other] It is deleted in { $minutes } minutes.
+        [0] Es wird in weniger als einer Minute gelöscht.
+        [one] Es wird in { $minutes } Minute gelöscht.
+       *[other] Es wird in { $minutes } Minuten gelöscht.
     }
-picture-failed = The picture did not work. Please try again.
+picture-failed = Das Bild hat nicht geklappt. Bitte versuchen Sie es noch einmal.
 
 # Settings
-settings-heading = Language and settings
-settings-stored = The mirror keeps nothing. It knows your measures only while you stand here, and forgets them when you leave.
+settings-heading = Sprache und Einstellungen
+settings-stored = Der Spiegel speichert nichts. Er kennt Ihre Maße nur, solange Sie hier stehen, und vergisst sie, wenn Sie gehen.
 settings-known =
     { $count ->
-        [0] It knows no measure of you.
-        [one] It knows { $count } measure of you now.
-       *[other] It knows { $count } measures of you now.
+        [0] Er kennt kein Maß von Ihnen.
+        [one] Er kennt gerade { $count } Maß von Ihnen.
+       *[other] Er kennt gerade { $count } Maße von Ihnen.
     }
 
 # Somebody else
-second-heading = Is it still you?
-second-why = Somebody else seems to stand here. What was shown is hidden.
+second-heading = Sind das noch Sie?
+second-why = Hier scheint jemand anders zu stehen. Was zu sehen war, ist verdeckt.
 second-seconds =
     { $seconds ->
-        [one] In { $seconds } second everything is forgotten.
-       *[other] In { $seconds } seconds everything is forgotten.
+        [one] In { $seconds } Sekunde wird alles vergessen.
+       *[other] In { $seconds } Sekunden wird alles vergessen.
     }
 
 # Nobody is seen
-leaving-heading = Are you still there?
+leaving-heading = Sind Sie noch da?
 leaving-seconds =
     { $seconds ->
-        [one] In { $seconds } second you are forgotten.
-       *[other] In { $seconds } seconds you are forgotten.
+        [one] In { $seconds } Sekunde werden Sie vergessen.
+       *[other] In { $seconds } Sekunden werden Sie vergessen.
     }
 
 # What can be pressed
-do-begin = Begin
-do-measure = Measure me
-do-measure-again = Measure again
-do-seated = I am sitting
-do-garments = Choose clothes
-do-zones = How does it fit?
-do-compare = Compare two sizes
-do-smaller = Smaller size
-do-larger = Larger size
-do-size = Size { $size }
-do-turn-left = Turn left
-do-turn-right = Turn right
-do-fit-map = Fit map
-do-picture = Take a picture
-do-show-picture = Show the picture
-do-delete-picture = Delete now
-do-settings = Language and settings
-do-large = Large type
-do-wear = Wear size { $size }
-do-go-on = Go on
-do-back = Back
-do-stay = I am still here
-do-still-me = It is still me
-do-begin-anew = Begin anew
-do-leave = I am done: forget me
+do-begin = Los geht’s
+do-measure = Maß nehmen
+do-measure-again = Noch einmal messen
+do-seated = Ich sitze
+do-garments = Kleidung wählen
+do-zones = Wie sitzt es?
+do-compare = Zwei Größen vergleichen
+do-smaller = Kleinere Größe
+do-larger = Größere Größe
+do-size = Größe { $size }
+do-turn-left = Nach links drehen
+do-turn-right = Nach rechts drehen
+do-fit-map = Passform in Farben
+do-picture = Bild machen
+do-show-picture = Bild zeigen
+do-delete-picture = Jetzt löschen
+do-settings = Sprache und Einstellungen
+do-large = Große Schrift
+do-wear = Größe { $size } tragen
+do-go-on = Weiter
+do-back = Zurück
+do-stay = Ich bin noch da
+do-still-me = Ich bin es noch
+do-begin-anew = Neu beginnen
+do-leave = Fertig: mich vergessen
 
 # Parts of the body that are measured
-part-stature = height
-part-shoulders = shoulders
-part-chest = chest
-part-waist = waist
-part-hip = hip
-part-legs = leg length
-list-and = { $first } and { $last }
+part-stature = Körpergröße
+part-shoulders = Schultern
+part-chest = Brust
+part-waist = Taille
+part-hip = Hüfte
+part-legs = Beinlänge
+list-and = { $first } und { $last }
 list-comma = { $first }, { $last }

@@ -1,196 +1,195 @@
-# What a shopper reads, in English. Lengths come in centimetres, already rounded; every language has the same words with
-# the same variables.
+# What a shopper reads, in Spanish.
 
-language = English
+language = Español
 
 # Nobody is there
-attract-heading = See how it fits, before you try it on
-attract-measure = Step onto the mark. The mirror measures you in a second.
-attract-fit = See yourself in your size, and where it is snug.
-attract-compare = Put two sizes side by side.
-attract-private = Nothing is kept and nothing is sent. When you leave, you are forgotten.
+attract-heading = Vea cómo le queda antes de probárselo
+attract-measure = Colóquese sobre la marca. El espejo toma sus medidas en un segundo.
+attract-fit = Véase en su talla y descubra dónde queda ceñido.
+attract-compare = Ponga dos tallas una al lado de la otra.
+attract-private = No se guarda ni se envía nada. Cuando se va, todo se olvida.
 
 # Somebody has stepped in
-guide-heading = Stand on the mark
-guide-heading-seated = Face the mirror
-guide-pose = Feet apart, arms a little away from your body.
-guide-pose-seated = Sit upright, arms a little away from your body.
-guide-nearer = Come a little closer.
-guide-farther = Step back a little.
-guide-left = Move a little to your left.
-guide-right = Move a little to your right.
-guide-alone = One person at a time, please.
-guide-unseen = The mirror does not see you yet. Step onto the mark.
-guide-soon = Measuring begins in a moment.
+guide-heading = Colóquese sobre la marca
+guide-heading-seated = Mire hacia el espejo
+guide-pose = Pies separados y brazos un poco apartados del cuerpo.
+guide-pose-seated = Siéntese con la espalda recta y los brazos un poco apartados del cuerpo.
+guide-nearer = Acérquese un poco.
+guide-farther = Dé un paso atrás.
+guide-left = Muévase un poco hacia su izquierda.
+guide-right = Muévase un poco hacia su derecha.
+guide-alone = De uno en uno, por favor.
+guide-unseen = El espejo aún no le ve. Colóquese sobre la marca.
+guide-soon = La medición empieza enseguida.
 
 # Measuring
-measuring-heading = One moment, please
-measuring-body = Measuring
-measuring-dress = Putting the clothes on
+measuring-heading = Un momento, por favor
+measuring-body = Tomando medidas
+measuring-dress = Poniendo la ropa
 
 # What could not be measured
-unmeasured-heading = That did not work
-unmeasured-why = The mirror needs to see you from head to knees, alone, for a second. Loose coats and bags hide the body.
-unmeasured-seated = Are you sitting? Then choose “I am sitting”.
-partly-heading = Measured as far as possible
-partly-missing = Not seen: { $parts }.
-partly-guess = There an average body of your height stands in, so these zones are less certain.
-partly-cure = A tape measure at the waist and hip makes it certain.
+unmeasured-heading = No ha funcionado
+unmeasured-why = El espejo necesita verle de la cabeza a las rodillas, sin nadie más, durante un segundo. Los abrigos amplios y los bolsos ocultan el cuerpo.
+unmeasured-seated = ¿Está en posición sentada? Elija «En posición sentada».
+partly-heading = Medido hasta donde es posible
+partly-missing = No se ha visto: { $parts }.
+partly-guess = Ahí se muestra un cuerpo medio de su estatura; esas zonas son menos seguras.
+partly-cure = Una cinta métrica en cintura y cadera lo deja claro.
 
 # The fitted body
-fitting-size = { $garment }, size { $size }
-fitting-best = Size { $size } fits you best.
-fitting-sure = We are { $percent } % sure.
-fitting-unsure = It is close: { $percent } % for this size.
-fitting-better = Size { $size } would fit you better.
-fitting-tape = Measure your { $zone } with a tape to be sure.
-fitting-smaller = Even the smallest size is meant for larger measures. You see the nearest.
-fitting-larger = Even the largest size is meant for smaller measures. You see the nearest.
-fitting-dressing = Putting it on
-fitting-refused = This could not be put on. You see what you wore before.
+fitting-size = { $garment }, talla { $size }
+fitting-best = La talla { $size } es la que mejor le queda.
+fitting-sure = Seguro al { $percent } %.
+fitting-unsure = Hay dudas: { $percent } % para esta talla.
+fitting-better = La talla { $size } le quedaría mejor.
+fitting-tape = Mida su contorno de { $zone } con una cinta para asegurarse.
+fitting-smaller = Incluso la talla más pequeña es para medidas mayores. Se muestra la más cercana.
+fitting-larger = Incluso la talla más grande es para medidas menores. Se muestra la más cercana.
+fitting-dressing = Poniendo la prenda
+fitting-refused = No se ha podido poner. Se muestra lo que llevaba antes.
 
 # The garments
-garments-heading = What would you like to try on?
-garments-worn = You are wearing it
-garments-take-off = Tap again to take it off
-garments-instead = Replaces: { $others }
-garment-sun-dress = Sun dress
-garment-t-shirt = T-shirt
-garment-wide-trousers = Wide trousers
-colour-of = Colour: { $colour }
-colour-own = As woven
+garments-heading = ¿Qué le gustaría probarse?
+garments-worn = La lleva puesta
+garments-take-off = Toque otra vez para quitarla
+garments-instead = Sustituye a: { $others }
+garment-sun-dress = Vestido de verano
+garment-t-shirt = Camiseta
+garment-wide-trousers = Pantalón ancho
+colour-of = Color: { $colour }
+colour-own = Tal como se teje
 colour-coral = Coral
-colour-ivory = Ivory
-colour-sky = Sky blue
-colour-moss = Moss green
-colour-navy = Navy
-colour-denim = Denim blue
-colour-white = White
-colour-ochre = Ochre
-colour-brick = Brick red
-colour-charcoal = Charcoal
-colour-sand = Sand
+colour-ivory = Marfil
+colour-sky = Azul cielo
+colour-moss = Verde musgo
+colour-navy = Azul marino
+colour-denim = Azul vaquero
+colour-white = Blanco
+colour-ochre = Ocre
+colour-brick = Rojo ladrillo
+colour-charcoal = Antracita
+colour-sand = Arena
 
 # Fit by zone
-zones-heading = How size { $size } fits
+zones-heading = Así queda la talla { $size }
 zones-held =
-    It hangs from the { $level ->
-        [neck] neck
-        [shoulders] shoulders
-        [bust] bust
-        [underbust] underbust
-        [waist] waist
-        [crotch] crotch
-       *[feet] feet
+    Se sujeta { $level ->
+        [neck] en el cuello
+        [shoulders] en los hombros
+        [bust] en el pecho
+        [underbust] bajo el pecho
+        [waist] en la cintura
+        [crotch] en la entrepierna
+       *[feet] en los pies
     }.
-zone-chest = Chest
-zone-waist = Waist
-zone-hip = Hip
-fit-ease = { $zone }: { $feel }, about { $ease } cm ease ± { $sigma }
-fit-lack = { $zone }: { $feel }, about { $ease } cm too small ± { $sigma }
-fit-perhaps = { $fit } (perhaps { $feel })
-feel-too-tight = far too tight
-feel-tight = tight
-feel-snug = snug
-feel-right = just right
-feel-roomy = roomy
-feel-loose = loose
-feel-too-loose = far too loose
-legend-loose = loose
-legend-tight = tight
+zone-chest = Pecho
+zone-waist = Cintura
+zone-hip = Cadera
+fit-ease = { $zone }: { $feel }, unos { $ease } cm de holgura ± { $sigma }
+fit-lack = { $zone }: { $feel }, le faltan unos { $ease } cm ± { $sigma }
+fit-perhaps = { $fit } (quizá { $feel })
+feel-too-tight = demasiado apretado
+feel-tight = apretado
+feel-snug = ceñido
+feel-right = perfecto
+feel-roomy = cómodo
+feel-loose = suelto
+feel-too-loose = demasiado suelto
+legend-loose = suelto
+legend-tight = apretado
 
 # Why
-zone-heading = { $zone }: why?
-zone-body = Your { $zone } measures about { $body } cm, give or take { $sigma } cm.
-zone-garment = The garment measures { $garment } cm there.
-zone-comfort = { $least } to { $most } cm of ease feel right in this cut.
-zone-stretch = From { $least } cm stretch to { $most } cm of ease feels right in this cut.
-zone-primary = The size is chosen by this measure.
-zone-seen = It was measured on your body's surface.
-zone-bones = Only your height and shoulders were seen. The girth follows from them and is uncertain.
-zone-guessed = It could not be seen. An average for your height stands in.
-zone-surer-tape = A tape measure makes it certain.
-zone-surer-again = Measuring again without a coat or bag makes it surer.
+zone-heading = { $zone }: ¿por qué?
+zone-body = Su contorno de { $zone } mide unos { $body } cm, con un margen de { $sigma } cm.
+zone-garment = La prenda mide ahí { $garment } cm.
+zone-comfort = En este corte resultan cómodos de { $least } a { $most } cm de holgura.
+zone-stretch = En este corte resulta cómodo desde { $least } cm de estiramiento hasta { $most } cm de holgura.
+zone-primary = La talla se elige por esta medida.
+zone-seen = Se ha medido sobre la superficie de su cuerpo.
+zone-bones = Solo se han visto su estatura y sus hombros. El contorno se deduce de ellos y es incierto.
+zone-guessed = No se ha podido ver. Se usa una media para su estatura.
+zone-surer-tape = Una cinta métrica lo deja claro.
+zone-surer-again = Medir otra vez sin abrigo ni bolso lo hace más seguro.
 
 # Two sizes
-compare-heading = Size { $left } or { $right }?
-compare-zone = { $zone }: { $left } is { $left-feel }, { $right } is { $right-feel }
-compare-same = { $zone }: both are { $feel }
-compare-draping = Putting on both sizes
-compare-refused = Both sizes could not be put on. The words still hold.
+compare-heading = ¿Talla { $left } o { $right }?
+compare-zone = { $zone }: la { $left } queda { $left-feel }; la { $right }, { $right-feel }
+compare-same = { $zone }: { $feel } en ambas tallas
+compare-draping = Poniendo las dos tallas
+compare-refused = No se han podido poner las dos tallas. Lo escrito sigue siendo válido.
 
 # The picture
-picture-heading = Your picture
-picture-taking = Taking the picture
-picture-scan = Scan the code with your phone. It holds the picture itself; nothing is sent.
+picture-heading = Su imagen
+picture-taking = Haciendo la imagen
+picture-scan = Escanee el código con su teléfono. Contiene la propia imagen; no se envía nada.
 picture-until =
     { $minutes ->
-        [0] It is deleted in less than a minute.
-        [one] It is deleted in { $minutes } minute.
-       *[other] It is deleted in { $minutes } minutes.
+        [0] Se borra en menos de un minuto.
+        [one] Se borra en { $minutes } minuto.
+       *[other] Se borra en { $minutes } minutos.
     }
-picture-failed = The picture did not work. Please try again.
+picture-failed = La imagen no ha salido. Inténtelo otra vez.
 
 # Settings
-settings-heading = Language and settings
-settings-stored = The mirror keeps nothing. It knows your measures only while you stand here, and forgets them when you leave.
+settings-heading = Idioma y ajustes
+settings-stored = El espejo no guarda nada. Solo conoce sus medidas mientras está aquí y las olvida cuando se va.
 settings-known =
     { $count ->
-        [0] It knows no measure of you.
-        [one] It knows { $count } measure of you now.
-       *[other] It knows { $count } measures of you now.
+        [0] No conoce ninguna medida suya.
+        [one] Ahora conoce { $count } medida suya.
+       *[other] Ahora conoce { $count } medidas suyas.
     }
 
 # Somebody else
-second-heading = Is it still you?
-second-why = Somebody else seems to stand here. What was shown is hidden.
+second-heading = ¿Sigue siendo usted?
+second-why = Parece que hay otra persona. Lo que se mostraba está oculto.
 second-seconds =
     { $seconds ->
-        [one] In { $seconds } second everything is forgotten.
-       *[other] In { $seconds } seconds everything is forgotten.
+        [one] En { $seconds } segundo se olvidará todo.
+       *[other] En { $seconds } segundos se olvidará todo.
     }
 
 # Nobody is seen
-leaving-heading = Are you still there?
+leaving-heading = ¿Sigue ahí?
 leaving-seconds =
     { $seconds ->
-        [one] In { $seconds } second you are forgotten.
-       *[other] In { $seconds } seconds you are forgotten.
+        [one] En { $seconds } segundo se olvidarán sus datos.
+       *[other] En { $seconds } segundos se olvidarán sus datos.
     }
 
 # What can be pressed
-do-begin = Begin
-do-measure = Measure me
-do-measure-again = Measure again
-do-seated = I am sitting
-do-garments = Choose clothes
-do-zones = How does it fit?
-do-compare = Compare two sizes
-do-smaller = Smaller size
-do-larger = Larger size
-do-size = Size { $size }
-do-turn-left = Turn left
-do-turn-right = Turn right
-do-fit-map = Fit map
-do-picture = Take a picture
-do-show-picture = Show the picture
-do-delete-picture = Delete now
-do-settings = Language and settings
-do-large = Large type
-do-wear = Wear size { $size }
-do-go-on = Go on
-do-back = Back
-do-stay = I am still here
-do-still-me = It is still me
-do-begin-anew = Begin anew
-do-leave = I am done: forget me
+do-begin = Empezar
+do-measure = Tomar mis medidas
+do-measure-again = Medir otra vez
+do-seated = En posición sentada
+do-garments = Elegir ropa
+do-zones = ¿Cómo queda?
+do-compare = Comparar dos tallas
+do-smaller = Talla menor
+do-larger = Talla mayor
+do-size = Talla { $size }
+do-turn-left = Girar a la izquierda
+do-turn-right = Girar a la derecha
+do-fit-map = Mapa de ajuste
+do-picture = Hacer una imagen
+do-show-picture = Mostrar la imagen
+do-delete-picture = Borrar ahora
+do-settings = Idioma y ajustes
+do-large = Letra grande
+do-wear = Llevar la talla { $size }
+do-go-on = Continuar
+do-back = Volver
+do-stay = Sigo aquí
+do-still-me = Sigo siendo yo
+do-begin-anew = Empezar de nuevo
+do-leave = He terminado: borrar todo
 
 # Parts of the body that are measured
-part-stature = height
-part-shoulders = shoulders
-part-chest = chest
-part-waist = waist
-part-hip = hip
-part-legs = leg length
-list-and = { $first } and { $last }
+part-stature = estatura
+part-shoulders = hombros
+part-chest = pecho
+part-waist = cintura
+part-hip = cadera
+part-legs = largo de pierna
+list-and = { $first } y { $last }
 list-comma = { $first }, { $last }

@@ -1,196 +1,195 @@
-# What a shopper reads, in English. Lengths come in centimetres, already rounded; every language has the same words with
-# the same variables.
+# What a shopper reads, in French.
 
-language = English
+language = Français
 
 # Nobody is there
-attract-heading = See how it fits, before you try it on
-attract-measure = Step onto the mark. The mirror measures you in a second.
-attract-fit = See yourself in your size, and where it is snug.
-attract-compare = Put two sizes side by side.
-attract-private = Nothing is kept and nothing is sent. When you leave, you are forgotten.
+attract-heading = Voyez comment ça tombe avant d’essayer
+attract-measure = Placez-vous sur le repère. Le miroir prend vos mesures en une seconde.
+attract-fit = Voyez-vous dans votre taille, et là où ça serre.
+attract-compare = Mettez deux tailles côte à côte.
+attract-private = Rien n’est conservé, rien n’est envoyé. Quand vous partez, tout est oublié.
 
 # Somebody has stepped in
-guide-heading = Stand on the mark
-guide-heading-seated = Face the mirror
-guide-pose = Feet apart, arms a little away from your body.
-guide-pose-seated = Sit upright, arms a little away from your body.
-guide-nearer = Come a little closer.
-guide-farther = Step back a little.
-guide-left = Move a little to your left.
-guide-right = Move a little to your right.
-guide-alone = One person at a time, please.
-guide-unseen = The mirror does not see you yet. Step onto the mark.
-guide-soon = Measuring begins in a moment.
+guide-heading = Placez-vous sur le repère
+guide-heading-seated = Tournez-vous vers le miroir
+guide-pose = Pieds écartés, bras un peu éloignés du corps.
+guide-pose-seated = Gardez le dos droit, bras un peu éloignés du corps.
+guide-nearer = Approchez-vous un peu.
+guide-farther = Reculez un peu.
+guide-left = Décalez-vous un peu vers votre gauche.
+guide-right = Décalez-vous un peu vers votre droite.
+guide-alone = Une personne à la fois, s’il vous plaît.
+guide-unseen = Le miroir ne vous voit pas encore. Placez-vous sur le repère.
+guide-soon = La mesure commence dans un instant.
 
 # Measuring
-measuring-heading = One moment, please
-measuring-body = Measuring
-measuring-dress = Putting the clothes on
+measuring-heading = Un instant, s’il vous plaît
+measuring-body = Prise de mesures
+measuring-dress = Habillage en cours
 
 # What could not be measured
-unmeasured-heading = That did not work
-unmeasured-why = The mirror needs to see you from head to knees, alone, for a second. Loose coats and bags hide the body.
-unmeasured-seated = Are you sitting? Then choose “I am sitting”.
-partly-heading = Measured as far as possible
-partly-missing = Not seen: { $parts }.
-partly-guess = There an average body of your height stands in, so these zones are less certain.
-partly-cure = A tape measure at the waist and hip makes it certain.
+unmeasured-heading = Cela n’a pas fonctionné
+unmeasured-why = Le miroir doit vous voir de la tête aux genoux, sans personne d’autre, pendant une seconde. Les manteaux amples et les sacs cachent le corps.
+unmeasured-seated = Vous êtes en position assise ? Choisissez « Je suis en position assise ».
+partly-heading = Mesures prises autant que possible
+partly-missing = Non visible : { $parts }.
+partly-guess = À la place figure un corps moyen de votre stature ; ces zones sont moins sûres.
+partly-cure = Un mètre ruban à la taille et aux hanches lève le doute.
 
 # The fitted body
-fitting-size = { $garment }, size { $size }
-fitting-best = Size { $size } fits you best.
-fitting-sure = We are { $percent } % sure.
-fitting-unsure = It is close: { $percent } % for this size.
-fitting-better = Size { $size } would fit you better.
-fitting-tape = Measure your { $zone } with a tape to be sure.
-fitting-smaller = Even the smallest size is meant for larger measures. You see the nearest.
-fitting-larger = Even the largest size is meant for smaller measures. You see the nearest.
-fitting-dressing = Putting it on
-fitting-refused = This could not be put on. You see what you wore before.
+fitting-size = { $garment }, taille { $size }
+fitting-best = La taille { $size } vous va le mieux.
+fitting-sure = Sûr à { $percent } %.
+fitting-unsure = On hésite : { $percent } % pour cette taille.
+fitting-better = La taille { $size } vous irait mieux.
+fitting-tape = Vérifiez votre tour de { $zone } au mètre ruban pour lever le doute.
+fitting-smaller = Même la plus petite taille est prévue pour des mesures plus grandes. Voici la plus proche.
+fitting-larger = Même la plus grande taille est prévue pour des mesures plus petites. Voici la plus proche.
+fitting-dressing = Habillage en cours
+fitting-refused = Impossible d’enfiler ce vêtement. Vous voyez ce que vous portiez avant.
 
 # The garments
-garments-heading = What would you like to try on?
-garments-worn = You are wearing it
-garments-take-off = Tap again to take it off
-garments-instead = Replaces: { $others }
-garment-sun-dress = Sun dress
+garments-heading = Que souhaitez-vous essayer ?
+garments-worn = Vous le portez
+garments-take-off = Touchez encore pour l’enlever
+garments-instead = Remplace : { $others }
+garment-sun-dress = Robe d’été
 garment-t-shirt = T-shirt
-garment-wide-trousers = Wide trousers
-colour-of = Colour: { $colour }
-colour-own = As woven
-colour-coral = Coral
-colour-ivory = Ivory
-colour-sky = Sky blue
-colour-moss = Moss green
-colour-navy = Navy
-colour-denim = Denim blue
-colour-white = White
-colour-ochre = Ochre
-colour-brick = Brick red
-colour-charcoal = Charcoal
-colour-sand = Sand
+garment-wide-trousers = Pantalon large
+colour-of = Couleur : { $colour }
+colour-own = Telle que tissée
+colour-coral = Corail
+colour-ivory = Ivoire
+colour-sky = Bleu ciel
+colour-moss = Vert mousse
+colour-navy = Bleu marine
+colour-denim = Bleu jean
+colour-white = Blanc
+colour-ochre = Ocre
+colour-brick = Rouge brique
+colour-charcoal = Anthracite
+colour-sand = Sable
 
 # Fit by zone
-zones-heading = How size { $size } fits
+zones-heading = Comment tombe la taille { $size }
 zones-held =
-    It hangs from the { $level ->
-        [neck] neck
-        [shoulders] shoulders
-        [bust] bust
-        [underbust] underbust
-        [waist] waist
-        [crotch] crotch
-       *[feet] feet
+    Le vêtement tient { $level ->
+        [neck] au cou
+        [shoulders] aux épaules
+        [bust] à la poitrine
+        [underbust] sous la poitrine
+        [waist] à la taille
+        [crotch] à l’entrejambe
+       *[feet] aux pieds
     }.
-zone-chest = Chest
-zone-waist = Waist
-zone-hip = Hip
-fit-ease = { $zone }: { $feel }, about { $ease } cm ease ± { $sigma }
-fit-lack = { $zone }: { $feel }, about { $ease } cm too small ± { $sigma }
-fit-perhaps = { $fit } (perhaps { $feel })
-feel-too-tight = far too tight
-feel-tight = tight
-feel-snug = snug
-feel-right = just right
-feel-roomy = roomy
-feel-loose = loose
-feel-too-loose = far too loose
-legend-loose = loose
-legend-tight = tight
+zone-chest = Poitrine
+zone-waist = Taille
+zone-hip = Hanches
+fit-ease = { $zone } : { $feel }, environ { $ease } cm d’aisance ± { $sigma }
+fit-lack = { $zone } : { $feel }, environ { $ease } cm trop petit ± { $sigma }
+fit-perhaps = { $fit } (peut-être { $feel })
+feel-too-tight = beaucoup trop serré
+feel-tight = serré
+feel-snug = près du corps
+feel-right = parfait
+feel-roomy = confortable
+feel-loose = large
+feel-too-loose = beaucoup trop large
+legend-loose = large
+legend-tight = serré
 
 # Why
-zone-heading = { $zone }: why?
-zone-body = Your { $zone } measures about { $body } cm, give or take { $sigma } cm.
-zone-garment = The garment measures { $garment } cm there.
-zone-comfort = { $least } to { $most } cm of ease feel right in this cut.
-zone-stretch = From { $least } cm stretch to { $most } cm of ease feels right in this cut.
-zone-primary = The size is chosen by this measure.
-zone-seen = It was measured on your body's surface.
-zone-bones = Only your height and shoulders were seen. The girth follows from them and is uncertain.
-zone-guessed = It could not be seen. An average for your height stands in.
-zone-surer-tape = A tape measure makes it certain.
-zone-surer-again = Measuring again without a coat or bag makes it surer.
+zone-heading = { $zone } : pourquoi ?
+zone-body = Votre tour de { $zone } mesure environ { $body } cm, à { $sigma } cm près.
+zone-garment = Le vêtement y mesure { $garment } cm.
+zone-comfort = Pour cette coupe, { $least } à { $most } cm d’aisance sont agréables.
+zone-stretch = Pour cette coupe, de { $least } cm d’étirement à { $most } cm d’aisance sont agréables.
+zone-primary = La taille est choisie d’après cette mesure.
+zone-seen = La mesure a été prise à la surface de votre corps.
+zone-bones = Seules votre stature et vos épaules étaient visibles. Le tour en est déduit et reste incertain.
+zone-guessed = Cette zone n’était pas visible. Une moyenne pour votre stature la remplace.
+zone-surer-tape = Un mètre ruban lève le doute.
+zone-surer-again = Une nouvelle mesure sans manteau ni sac sera plus sûre.
 
 # Two sizes
-compare-heading = Size { $left } or { $right }?
-compare-zone = { $zone }: { $left } is { $left-feel }, { $right } is { $right-feel }
-compare-same = { $zone }: both are { $feel }
-compare-draping = Putting on both sizes
-compare-refused = Both sizes could not be put on. The words still hold.
+compare-heading = Taille { $left } ou { $right } ?
+compare-zone = { $zone } : en { $left } { $left-feel }, en { $right } { $right-feel }
+compare-same = { $zone } : { $feel } dans les deux tailles
+compare-draping = Habillage dans les deux tailles
+compare-refused = Impossible d’enfiler les deux tailles. Les indications restent valables.
 
 # The picture
-picture-heading = Your picture
-picture-taking = Taking the picture
-picture-scan = Scan the code with your phone. It holds the picture itself; nothing is sent.
+picture-heading = Votre image
+picture-taking = L’image est en cours
+picture-scan = Scannez le code avec votre téléphone. Il contient l’image elle-même ; rien n’est envoyé.
 picture-until =
     { $minutes ->
-        [0] It is deleted in less than a minute.
-        [one] It is deleted in { $minutes } minute.
-       *[other] It is deleted in { $minutes } minutes.
+        [0] Elle sera effacée dans moins d’une minute.
+        [one] Elle sera effacée dans { $minutes } minute.
+       *[other] Elle sera effacée dans { $minutes } minutes.
     }
-picture-failed = The picture did not work. Please try again.
+picture-failed = L’image n’a pas fonctionné. Veuillez réessayer.
 
 # Settings
-settings-heading = Language and settings
-settings-stored = The mirror keeps nothing. It knows your measures only while you stand here, and forgets them when you leave.
+settings-heading = Langue et réglages
+settings-stored = Le miroir ne conserve rien. Il ne connaît vos mesures que tant que vous êtes là, et les oublie quand vous partez.
 settings-known =
     { $count ->
-        [0] It knows no measure of you.
-        [one] It knows { $count } measure of you now.
-       *[other] It knows { $count } measures of you now.
+        [0] Il ne connaît aucune de vos mesures.
+        [one] Il connaît actuellement { $count } de vos mesures.
+       *[other] Il connaît actuellement { $count } de vos mesures.
     }
 
 # Somebody else
-second-heading = Is it still you?
-second-why = Somebody else seems to stand here. What was shown is hidden.
+second-heading = Est-ce toujours vous ?
+second-why = Quelqu’un d’autre semble être là. Ce qui était affiché est masqué.
 second-seconds =
     { $seconds ->
-        [one] In { $seconds } second everything is forgotten.
-       *[other] In { $seconds } seconds everything is forgotten.
+        [one] Dans { $seconds } seconde, tout sera oublié.
+       *[other] Dans { $seconds } secondes, tout sera oublié.
     }
 
 # Nobody is seen
-leaving-heading = Are you still there?
+leaving-heading = Êtes-vous encore là ?
 leaving-seconds =
     { $seconds ->
-        [one] In { $seconds } second you are forgotten.
-       *[other] In { $seconds } seconds you are forgotten.
+        [one] Dans { $seconds } seconde, tout sera oublié.
+       *[other] Dans { $seconds } secondes, tout sera oublié.
     }
 
 # What can be pressed
-do-begin = Begin
-do-measure = Measure me
-do-measure-again = Measure again
-do-seated = I am sitting
-do-garments = Choose clothes
-do-zones = How does it fit?
-do-compare = Compare two sizes
-do-smaller = Smaller size
-do-larger = Larger size
-do-size = Size { $size }
-do-turn-left = Turn left
-do-turn-right = Turn right
-do-fit-map = Fit map
-do-picture = Take a picture
-do-show-picture = Show the picture
-do-delete-picture = Delete now
-do-settings = Language and settings
-do-large = Large type
-do-wear = Wear size { $size }
-do-go-on = Go on
-do-back = Back
-do-stay = I am still here
-do-still-me = It is still me
-do-begin-anew = Begin anew
-do-leave = I am done: forget me
+do-begin = Commencer
+do-measure = Prendre mes mesures
+do-measure-again = Mesurer à nouveau
+do-seated = Je suis en position assise
+do-garments = Choisir des vêtements
+do-zones = Comment ça tombe ?
+do-compare = Comparer deux tailles
+do-smaller = Taille en dessous
+do-larger = Taille au-dessus
+do-size = Taille { $size }
+do-turn-left = Tourner à gauche
+do-turn-right = Tourner à droite
+do-fit-map = Carte d’ajustement
+do-picture = Prendre une image
+do-show-picture = Montrer l’image
+do-delete-picture = Effacer maintenant
+do-settings = Langue et réglages
+do-large = Grands caractères
+do-wear = Porter la taille { $size }
+do-go-on = Continuer
+do-back = Retour
+do-stay = Je suis encore là
+do-still-me = C’est toujours moi
+do-begin-anew = Recommencer
+do-leave = J’ai fini : oubliez-moi
 
 # Parts of the body that are measured
-part-stature = height
-part-shoulders = shoulders
-part-chest = chest
-part-waist = waist
-part-hip = hip
-part-legs = leg length
-list-and = { $first } and { $last }
+part-stature = stature
+part-shoulders = épaules
+part-chest = poitrine
+part-waist = taille
+part-hip = hanches
+part-legs = longueur de jambe
+list-and = { $first } et { $last }
 list-comma = { $first }, { $last }

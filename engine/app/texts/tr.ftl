@@ -1,196 +1,195 @@
-# What a shopper reads, in English. Lengths come in centimetres, already rounded; every language has the same words with
-# the same variables.
+# What a shopper reads, in Turkish.
 
-language = English
+language = Türkçe
 
 # Nobody is there
-attract-heading = See how it fits, before you try it on
-attract-measure = Step onto the mark. The mirror measures you in a second.
-attract-fit = See yourself in your size, and where it is snug.
-attract-compare = Put two sizes side by side.
-attract-private = Nothing is kept and nothing is sent. When you leave, you are forgotten.
+attract-heading = Denemeden önce nasıl duracağını görün
+attract-measure = İşaretin üzerine geçin. Ayna bir saniyede ölçünüzü alır.
+attract-fit = Kendinizi kendi bedeninizde görün, nerede dar olduğunu anlayın.
+attract-compare = İki bedeni yan yana koyun.
+attract-private = Hiçbir şey saklanmaz, hiçbir şey gönderilmez. Ayrıldığınızda unutulursunuz.
 
 # Somebody has stepped in
-guide-heading = Stand on the mark
-guide-heading-seated = Face the mirror
-guide-pose = Feet apart, arms a little away from your body.
-guide-pose-seated = Sit upright, arms a little away from your body.
-guide-nearer = Come a little closer.
-guide-farther = Step back a little.
-guide-left = Move a little to your left.
-guide-right = Move a little to your right.
-guide-alone = One person at a time, please.
-guide-unseen = The mirror does not see you yet. Step onto the mark.
-guide-soon = Measuring begins in a moment.
+guide-heading = İşaretin üzerinde durun
+guide-heading-seated = Aynaya dönün
+guide-pose = Ayaklar ayrık, kollar gövdeden biraz uzakta.
+guide-pose-seated = Dik oturun, kollar gövdeden biraz uzakta.
+guide-nearer = Biraz yaklaşın.
+guide-farther = Biraz geri gidin.
+guide-left = Biraz solunuza geçin.
+guide-right = Biraz sağınıza geçin.
+guide-alone = Lütfen teker teker.
+guide-unseen = Ayna sizi henüz görmüyor. İşaretin üzerine geçin.
+guide-soon = Ölçüm birazdan başlıyor.
 
 # Measuring
-measuring-heading = One moment, please
-measuring-body = Measuring
-measuring-dress = Putting the clothes on
+measuring-heading = Bir dakika lütfen
+measuring-body = Ölçü alınıyor
+measuring-dress = Giysiler giydiriliyor
 
 # What could not be measured
-unmeasured-heading = That did not work
-unmeasured-why = The mirror needs to see you from head to knees, alone, for a second. Loose coats and bags hide the body.
-unmeasured-seated = Are you sitting? Then choose “I am sitting”.
-partly-heading = Measured as far as possible
-partly-missing = Not seen: { $parts }.
-partly-guess = There an average body of your height stands in, so these zones are less certain.
-partly-cure = A tape measure at the waist and hip makes it certain.
+unmeasured-heading = Olmadı
+unmeasured-why = Aynanın sizi bir saniye boyunca tek başınıza, baştan dize kadar görmesi gerekir. Bol paltolar ve çantalar vücudu kapatır.
+unmeasured-seated = Oturuyor musunuz? “Oturuyorum” seçeneğine dokunun.
+partly-heading = Mümkün olduğu kadar ölçüldü
+partly-missing = Görülemeyen: { $parts }.
+partly-guess = Bu bölgelerde boyunuza göre ortalama bir vücut kullanıldı; sonuç daha az kesindir.
+partly-cure = Bel ve kalçadan mezurayla alınan ölçü kesinlik sağlar.
 
 # The fitted body
-fitting-size = { $garment }, size { $size }
-fitting-best = Size { $size } fits you best.
-fitting-sure = We are { $percent } % sure.
-fitting-unsure = It is close: { $percent } % for this size.
-fitting-better = Size { $size } would fit you better.
-fitting-tape = Measure your { $zone } with a tape to be sure.
-fitting-smaller = Even the smallest size is meant for larger measures. You see the nearest.
-fitting-larger = Even the largest size is meant for smaller measures. You see the nearest.
-fitting-dressing = Putting it on
-fitting-refused = This could not be put on. You see what you wore before.
+fitting-size = { $garment }, { $size } beden
+fitting-best = Size en çok { $size } beden uyuyor.
+fitting-sure = %{ $percent } eminiz.
+fitting-unsure = Arada kaldık: bu beden için %{ $percent }.
+fitting-better = Size { $size } beden daha iyi olurdu.
+fitting-tape = Emin olmak için mezurayla ölçün: { $zone } çevresi.
+fitting-smaller = En küçük beden bile daha büyük ölçüler için. En yakınını görüyorsunuz.
+fitting-larger = En büyük beden bile daha küçük ölçüler için. En yakınını görüyorsunuz.
+fitting-dressing = Giydiriliyor
+fitting-refused = Bu giydirilemedi. Önceki giysinizi görüyorsunuz.
 
 # The garments
-garments-heading = What would you like to try on?
-garments-worn = You are wearing it
-garments-take-off = Tap again to take it off
-garments-instead = Replaces: { $others }
-garment-sun-dress = Sun dress
-garment-t-shirt = T-shirt
-garment-wide-trousers = Wide trousers
-colour-of = Colour: { $colour }
-colour-own = As woven
-colour-coral = Coral
-colour-ivory = Ivory
-colour-sky = Sky blue
-colour-moss = Moss green
-colour-navy = Navy
-colour-denim = Denim blue
-colour-white = White
-colour-ochre = Ochre
-colour-brick = Brick red
-colour-charcoal = Charcoal
-colour-sand = Sand
+garments-heading = Ne denemek istersiniz?
+garments-worn = Üzerinizde
+garments-take-off = Çıkarmak için yeniden dokunun
+garments-instead = Şunun yerine: { $others }
+garment-sun-dress = Yazlık elbise
+garment-t-shirt = Tişört
+garment-wide-trousers = Bol pantolon
+colour-of = Renk: { $colour }
+colour-own = Kumaşın kendi rengi
+colour-coral = Mercan
+colour-ivory = Fildişi
+colour-sky = Gök mavisi
+colour-moss = Yosun yeşili
+colour-navy = Lacivert
+colour-denim = Kot mavisi
+colour-white = Beyaz
+colour-ochre = Hardal
+colour-brick = Kiremit
+colour-charcoal = Antrasit
+colour-sand = Kum rengi
 
 # Fit by zone
-zones-heading = How size { $size } fits
+zones-heading = { $size } beden nasıl oturuyor
 zones-held =
-    It hangs from the { $level ->
-        [neck] neck
-        [shoulders] shoulders
-        [bust] bust
-        [underbust] underbust
-        [waist] waist
-        [crotch] crotch
-       *[feet] feet
-    }.
-zone-chest = Chest
-zone-waist = Waist
-zone-hip = Hip
-fit-ease = { $zone }: { $feel }, about { $ease } cm ease ± { $sigma }
-fit-lack = { $zone }: { $feel }, about { $ease } cm too small ± { $sigma }
-fit-perhaps = { $fit } (perhaps { $feel })
-feel-too-tight = far too tight
-feel-tight = tight
-feel-snug = snug
-feel-right = just right
-feel-roomy = roomy
-feel-loose = loose
-feel-too-loose = far too loose
-legend-loose = loose
-legend-tight = tight
+    Giysi { $level ->
+        [neck] boyunda
+        [shoulders] omuzlarda
+        [bust] göğüste
+        [underbust] göğüs altında
+        [waist] belde
+        [crotch] ağ kısmında
+       *[feet] ayaklarda
+    } durur.
+zone-chest = Göğüs
+zone-waist = Bel
+zone-hip = Kalça
+fit-ease = { $zone }: { $feel }, yaklaşık { $ease } cm bolluk ± { $sigma }
+fit-lack = { $zone }: { $feel }, yaklaşık { $ease } cm küçük ± { $sigma }
+fit-perhaps = { $fit } (belki { $feel })
+feel-too-tight = çok fazla dar
+feel-tight = dar
+feel-snug = vücuda oturan
+feel-right = tam kararında
+feel-roomy = rahat
+feel-loose = bol
+feel-too-loose = çok fazla bol
+legend-loose = bol
+legend-tight = dar
 
 # Why
-zone-heading = { $zone }: why?
-zone-body = Your { $zone } measures about { $body } cm, give or take { $sigma } cm.
-zone-garment = The garment measures { $garment } cm there.
-zone-comfort = { $least } to { $most } cm of ease feel right in this cut.
-zone-stretch = From { $least } cm stretch to { $most } cm of ease feels right in this cut.
-zone-primary = The size is chosen by this measure.
-zone-seen = It was measured on your body's surface.
-zone-bones = Only your height and shoulders were seen. The girth follows from them and is uncertain.
-zone-guessed = It could not be seen. An average for your height stands in.
-zone-surer-tape = A tape measure makes it certain.
-zone-surer-again = Measuring again without a coat or bag makes it surer.
+zone-heading = { $zone }: neden?
+zone-body = Ölçünüz: { $zone } çevresi yaklaşık { $body } cm, artı eksi { $sigma } cm.
+zone-garment = Giysi orada { $garment } cm.
+zone-comfort = Bu kesimde { $least } ile { $most } cm arası bolluk rahattır.
+zone-stretch = Bu kesimde { $least } cm esneme ile { $most } cm bolluk arası rahattır.
+zone-primary = Beden bu ölçüye göre seçilir.
+zone-seen = Vücudunuzun yüzeyinden ölçüldü.
+zone-bones = Yalnızca boyunuz ve omuzlarınız görüldü. Çevre bunlardan hesaplandı ve kesin değildir.
+zone-guessed = Görülemedi. Boyunuza göre bir ortalama kullanıldı.
+zone-surer-tape = Mezura kesinlik sağlar.
+zone-surer-again = Palto ve çanta olmadan yeniden ölçmek daha kesin sonuç verir.
 
 # Two sizes
-compare-heading = Size { $left } or { $right }?
-compare-zone = { $zone }: { $left } is { $left-feel }, { $right } is { $right-feel }
-compare-same = { $zone }: both are { $feel }
-compare-draping = Putting on both sizes
-compare-refused = Both sizes could not be put on. The words still hold.
+compare-heading = { $left } beden mi, { $right } beden mi?
+compare-zone = { $zone }: { $left } { $left-feel }, { $right } { $right-feel }
+compare-same = { $zone }: ikisi de { $feel }
+compare-draping = İki beden giydiriliyor
+compare-refused = İki beden giydirilemedi. Yazılanlar yine de geçerli.
 
 # The picture
-picture-heading = Your picture
-picture-taking = Taking the picture
-picture-scan = Scan the code with your phone. It holds the picture itself; nothing is sent.
+picture-heading = Resminiz
+picture-taking = Resim çekiliyor
+picture-scan = Kodu telefonunuzla okutun. Resim kodun içindedir; hiçbir şey gönderilmez.
 picture-until =
     { $minutes ->
-        [0] It is deleted in less than a minute.
-        [one] It is deleted in { $minutes } minute.
-       *[other] It is deleted in { $minutes } minutes.
+        [0] Bir dakikadan kısa sürede silinir.
+        [one] { $minutes } dakika içinde silinir.
+       *[other] { $minutes } dakika içinde silinir.
     }
-picture-failed = The picture did not work. Please try again.
+picture-failed = Resim çekilemedi. Lütfen yeniden deneyin.
 
 # Settings
-settings-heading = Language and settings
-settings-stored = The mirror keeps nothing. It knows your measures only while you stand here, and forgets them when you leave.
+settings-heading = Dil ve ayarlar
+settings-stored = Ayna hiçbir şey saklamaz. Ölçülerinizi yalnızca siz buradayken bilir, ayrıldığınızda unutur.
 settings-known =
     { $count ->
-        [0] It knows no measure of you.
-        [one] It knows { $count } measure of you now.
-       *[other] It knows { $count } measures of you now.
+        [0] Şu anda hiçbir ölçünüzü bilmiyor.
+        [one] Şu anda { $count } ölçünüzü biliyor.
+       *[other] Şu anda { $count } ölçünüzü biliyor.
     }
 
 # Somebody else
-second-heading = Is it still you?
-second-why = Somebody else seems to stand here. What was shown is hidden.
+second-heading = Hâlâ siz misiniz?
+second-why = Burada başka biri duruyor gibi. Gösterilenler gizlendi.
 second-seconds =
     { $seconds ->
-        [one] In { $seconds } second everything is forgotten.
-       *[other] In { $seconds } seconds everything is forgotten.
+        [one] { $seconds } saniye sonra her şey unutulacak.
+       *[other] { $seconds } saniye sonra her şey unutulacak.
     }
 
 # Nobody is seen
-leaving-heading = Are you still there?
+leaving-heading = Hâlâ burada mısınız?
 leaving-seconds =
     { $seconds ->
-        [one] In { $seconds } second you are forgotten.
-       *[other] In { $seconds } seconds you are forgotten.
+        [one] { $seconds } saniye sonra unutulacaksınız.
+       *[other] { $seconds } saniye sonra unutulacaksınız.
     }
 
 # What can be pressed
-do-begin = Begin
-do-measure = Measure me
-do-measure-again = Measure again
-do-seated = I am sitting
-do-garments = Choose clothes
-do-zones = How does it fit?
-do-compare = Compare two sizes
-do-smaller = Smaller size
-do-larger = Larger size
-do-size = Size { $size }
-do-turn-left = Turn left
-do-turn-right = Turn right
-do-fit-map = Fit map
-do-picture = Take a picture
-do-show-picture = Show the picture
-do-delete-picture = Delete now
-do-settings = Language and settings
-do-large = Large type
-do-wear = Wear size { $size }
-do-go-on = Go on
-do-back = Back
-do-stay = I am still here
-do-still-me = It is still me
-do-begin-anew = Begin anew
-do-leave = I am done: forget me
+do-begin = Başla
+do-measure = Ölçümü al
+do-measure-again = Yeniden ölç
+do-seated = Oturuyorum
+do-garments = Giysi seç
+do-zones = Nasıl oturuyor?
+do-compare = İki bedeni karşılaştır
+do-smaller = Küçük beden
+do-larger = Büyük beden
+do-size = { $size } beden
+do-turn-left = Sola döndür
+do-turn-right = Sağa döndür
+do-fit-map = Uyum haritası
+do-picture = Resim çek
+do-show-picture = Resmi göster
+do-delete-picture = Şimdi sil
+do-settings = Dil ve ayarlar
+do-large = Büyük yazı
+do-wear = { $size } bedeni giy
+do-go-on = Devam
+do-back = Geri
+do-stay = Buradayım
+do-still-me = Hâlâ benim
+do-begin-anew = Baştan başla
+do-leave = Bitti: beni unut
 
 # Parts of the body that are measured
-part-stature = height
-part-shoulders = shoulders
-part-chest = chest
-part-waist = waist
-part-hip = hip
-part-legs = leg length
-list-and = { $first } and { $last }
+part-stature = boy
+part-shoulders = omuz genişliği
+part-chest = göğüs
+part-waist = bel
+part-hip = kalça
+part-legs = bacak boyu
+list-and = { $first } ve { $last }
 list-comma = { $first }, { $last }
