@@ -1,7 +1,7 @@
 //! The device that draws: hardware where there is any, else a driver that draws on the processor.
 
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use toile_gpu::wait::block_on;
@@ -58,6 +58,7 @@ pub struct Gpu {
     /// What takes commands.
     pub queue: Queue,
     lost: Arc<AtomicBool>,
+    fault: Arc<OnceLock<String>>,
 }
 
 impl Gpu {
@@ -97,7 +98,17 @@ impl Gpu {
         let flag = Arc::clone(&lost);
         // Relaxed: the flag guards no other data; whoever draws asks for it at the next picture.
         device.set_device_lost_callback(move |_, _| flag.store(true, Ordering::Relaxed));
-        Ok(Self { instance, adapter, device, queue, lost })
+        let fault = Arc::new(OnceLock::new());
+        let (flag, first) = (Arc::clone(&lost), Arc::clone(&fault));
+        // Without this a driver that refuses something would end the program.
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            if matches!(error, wgpu::Error::OutOfMemory { .. }) {
+                flag.store(true, Ordering::Relaxed);
+            }
+            // Only the first tells the cause; what follows from it is not kept.
+            let _ = first.set(error.to_string().split_whitespace().collect::<Vec<_>>().join(" "));
+        }));
+        Ok(Self { instance, adapter, device, queue, lost, fault })
     }
 
     /// What the adapter says of itself.
@@ -110,11 +121,16 @@ impl Gpu {
         self.adapter.get_info().device_type == DeviceType::Cpu
     }
 
-    /// True once the device is gone: unplugged, reset by its driver, or destroyed. Everything made by it has to be made
+    /// True once the device is gone: unplugged, reset by its driver, destroyed, or out of memory. Everything made by it has to be made
     /// anew by another.
     pub fn lost(&self) -> bool {
         // Relaxed: see above.
         self.lost.load(Ordering::Relaxed)
+    }
+
+    /// The first thing that the driver refused, if any: what was asked of it then was not drawn.
+    pub fn fault(&self) -> Option<&str> {
+        self.fault.get().map(String::as_str)
     }
 
     /// Waits until everything that was submitted is done, so that time is measured whole.

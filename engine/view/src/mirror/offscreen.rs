@@ -27,6 +27,9 @@ pub enum OffscreenError {
     /// The device is gone.
     #[error("the graphics device was lost while a picture was drawn ({0}); start again or choose another adapter")]
     Lost(String),
+    /// The driver refused something.
+    #[error("the graphics driver refused to draw ({0}); update it or choose another adapter")]
+    Refused(String),
 }
 
 /// A texture to draw on, and the buffer that it is read through.
@@ -74,7 +77,7 @@ impl Offscreen {
     /// One view over the whole picture.
     ///
     /// # Errors
-    /// [`OffscreenError::Lost`].
+    /// [`OffscreenError::Lost`] or [`OffscreenError::Refused`].
     pub fn shoot(
         &self,
         gpu: &Gpu,
@@ -97,7 +100,7 @@ impl Offscreen {
     /// Reads back what was drawn.
     ///
     /// # Errors
-    /// [`OffscreenError::Lost`].
+    /// [`OffscreenError::Lost`] or [`OffscreenError::Refused`].
     pub fn read(&self, gpu: &Gpu) -> Result<Image, OffscreenError> {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let layout = wgpu::TexelCopyBufferLayout {
@@ -119,6 +122,9 @@ impl Offscreen {
         let lost = |e: &dyn std::fmt::Display| OffscreenError::Lost(e.to_string().replace('\n', " "));
         gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| lost(&e))?;
         heard.recv().map_err(|e| lost(&e))?.map_err(|e| lost(&e))?;
+        if let Some(fault) = gpu.fault() {
+            return Err(OffscreenError::Refused(fault.to_owned()));
+        }
         let mapped = self.buffer.get_mapped_range(..).map_err(|e| lost(&e))?;
         let mut image = Image::filled(self.size, [0; 3]);
         for (row, line) in image.rows_mut().zip(mapped.chunks_exact(row_bytes(self.size) as usize)) {

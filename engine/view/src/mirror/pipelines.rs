@@ -188,7 +188,7 @@ impl Pipelines {
                 buffers: &[per_vertex(VEC3, &[attribute(0, 0, true)])],
                 depth: Some(depth_state(BEAM_DEPTH, true, CompareFunction::Less, SLOPE_BIAS)),
                 samples: 1,
-                ..lit("depth", &depth, "cast", "")
+                ..lit("depth", &depth, "project", "")
             }
             .build(device),
             surface: Plan {

@@ -75,7 +75,7 @@ mod tests {
     #[test]
     fn every_shader_is_valid_without_any_extension() {
         let all = [
-            ("depth", depth(), vec!["cast"]),
+            ("depth", depth(), vec!["project"]),
             ("surface", surface(false), vec!["place", "paint"]),
             ("surface with threads", surface(true), vec!["place", "paint"]),
             ("backdrop", backdrop(), vec!["cover", "paint"]),

@@ -1,7 +1,7 @@
 // What stands behind the subject: a floor that curves up into a wall, or a picture that the subject's shadow falls on.
 
 @group(2) @binding(0) var behind: texture_2d<f32>;
-@group(2) @binding(1) var smooth_: sampler;
+@group(2) @binding(1) var linear: sampler;
 
 struct Ray {
     @builtin(position) clip: vec4<f32>,
@@ -61,9 +61,9 @@ fn clear(place: vec3<f32>) -> bool {
 }
 
 fn pool(place: vec3<f32>) -> f32 {
-    let from = place - frame.centre.xyz - vec3(0.0, 0.5 * frame.centre.w, 0.0);
-    let level = from - frame.away.xyz * dot(from, frame.away.xyz);
-    let far = (dot(level, level) + 0.15 * dot(from, from)) / (frame.least.w * frame.least.w);
+    let offset = place - frame.centre.xyz - vec3(0.0, 0.5 * frame.centre.w, 0.0);
+    let level = offset - frame.away.xyz * dot(offset, frame.away.xyz);
+    let far = (dot(level, level) + 0.15 * dot(offset, offset)) / (frame.least.w * frame.least.w);
     return 1.0 / (1.0 + far);
 }
 
@@ -89,7 +89,7 @@ fn paint(ray: Ray) -> @location(0) vec4<f32> {
     }
     if frame.picture.z > 0.5 {
         let at = ray.at * vec2(0.5, -0.5) * frame.picture.xy + 0.5;
-        let seen = textureSampleLevel(behind, smooth_, at, 0.0).xyz;
+        let seen = textureSampleLevel(behind, linear, at, 0.0).xyz;
         // Only the floor takes a shadow: how far away the picture's walls are, nobody knows.
         let dimmed = select(vec3(1.0), light / all, met.y > 0.999);
         return developed(seen * dimmed, ray.clip.xy);

@@ -2,7 +2,7 @@
 // so nothing spills into a neighbour's.
 
 @vertex
-fn cast(@location(0) position: vec3<f32>, @builtin(instance_index) number: u32) -> @builtin(position) vec4<f32> {
+fn project(@location(0) position: vec3<f32>, @builtin(instance_index) number: u32) -> @builtin(position) vec4<f32> {
     let place = vec4(position, 1.0);
     let u = dot(frame.beams[number].u, place);
     let v = dot(frame.beams[number].v, place);

@@ -77,16 +77,18 @@ fn stopped(beam: u32, place: vec3<f32>, fading: f32) -> f32 {
     let part = at - corner;
     let four = textureGather(depths, nearest, (corner + 1.0) / texels);
     let behind = (vec4(depth) - four) * frame.scope.x;
-    let shade = select(vec4(0.0), clamp(1.0 - behind * fading, vec4(0.0), vec4(1.0)), behind > vec4(0.0));
+    // Where a map is empty nothing stops the beam, however far below the map the place is.
+    let blocked = (behind > vec4(0.0)) & (four < vec4(1.0));
+    let shade = select(vec4(0.0), clamp(1.0 - behind * fading, vec4(0.0), vec4(1.0)), blocked);
     // A gather's order: lower left, lower right, upper right, upper left, v down.
     return mix(mix(shade.w, shade.z, part.x), mix(shade.x, shade.y, part.x), part.y);
 }
 
 // Beyond the ball that the depth maps look at, nothing stops a beam; its tile would be a neighbour's.
 fn in_scope(beam: u32, place: vec3<f32>) -> bool {
-    let from = place - 0.5 * (frame.least.xyz + frame.most.xyz);
+    let start = place - 0.5 * (frame.least.xyz + frame.most.xyz);
     let toward = frame.beams[beam].toward.xyz;
-    let across = from - toward * dot(from, toward);
+    let across = start - toward * dot(start, toward);
     return dot(across, across) < frame.scope.z;
 }
 
@@ -95,12 +97,12 @@ fn lit(first: u32, count: u32, place: Place) -> f32 {
     if count == 0u {
         return 1.0;
     }
-    let from = place.position + place.normal * frame.scope.y;
+    let start = place.position + place.normal * frame.scope.y;
     var arrived = 0.0;
     for (var i = first; i < first + count; i++) {
         arrived += 1.0;
-        if in_scope(i, from) {
-            arrived -= stopped(i, from, 0.0);
+        if in_scope(i, start) {
+            arrived -= stopped(i, start, 0.0);
         }
     }
     return arrived / f32(count);
@@ -110,7 +112,7 @@ fn lit(first: u32, count: u32, place: Place) -> f32 {
 fn open(place: Place) -> f32 {
     let first = u32(frame.counts.x + frame.counts.y);
     let count = u32(frame.counts.z);
-    let from = place.position + place.normal * (1.6 * frame.scope.y);
+    let start = place.position + place.normal * (1.6 * frame.scope.y);
     var arrived = 1e-4;
     var all = 1e-4;
     for (var i = first; i < first + count; i++) {
@@ -118,8 +120,8 @@ fn open(place: Place) -> f32 {
         if cosine > 0.02 {
             all += cosine;
             arrived += cosine;
-            if in_scope(i, from) {
-                arrived -= cosine * stopped(i, from, 1.0 / frame.fill_toward.w);
+            if in_scope(i, start) {
+                arrived -= cosine * stopped(i, start, 1.0 / frame.fill_toward.w);
             }
         }
     }
