@@ -13,12 +13,12 @@ use toile_view::mirror::Shown;
 use winit::window::Window;
 
 use super::input::{Frame, Heard};
+use super::look::{Look, Pair};
 use super::open::Wanted;
 use super::pace::Pace;
 use super::paint::{Display, Easel};
-use super::report::Figures;
-use super::look::{Look, Pair};
 use super::podium::Scene;
+use super::report::Figures;
 use super::wall::Wall;
 use crate::guest::screen::{Action, Screen};
 use crate::kiosk::report::WindowReport;
@@ -102,12 +102,7 @@ impl Glass {
     ///
     /// # Errors
     /// Why nothing can draw, with the cure.
-    pub fn open(
-        window: Arc<Window>,
-        ends: Ends,
-        wanted: Wanted,
-        fault: Arc<OnceLock<String>>,
-    ) -> Result<Self, String> {
+    pub fn open(window: Arc<Window>, ends: Ends, wanted: Wanted, fault: Arc<OnceLock<String>>) -> Result<Self, String> {
         let wall = Wall::open(&window)?;
         let adapter = (wall.name.clone(), wall.software);
         Ok(Self {
@@ -214,7 +209,7 @@ impl Glass {
         wall.take_in(&painted);
         let time_s = self.wanted.motion.then(|| self.wanted.begun.elapsed().as_secs_f64());
         let scene = Scene { stage: &screen.stage, colours: &screen.colours, free: painted.free, time_s };
-        (wall.show(frame, &scene, &painted), wall.software)
+        (wall.show(frame, &scene, painted), wall.software)
     }
 
     /// The device is gone, and with it every texture: the easel begins anew, so that it hands out all of them again.

@@ -17,6 +17,7 @@
 //! the picture is shown. Main sleeps in the window system, so that a close, a resize or a signal is answered while a slow
 //! driver draws.
 
+mod canvas;
 mod glass;
 mod input;
 pub mod look;

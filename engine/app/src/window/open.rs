@@ -12,7 +12,7 @@ use toile_engine::pace::roles::{self, Role};
 use toile_engine::relay::{Relay, Writer};
 use winit::window::Window;
 
-use super::glass::{ASKED, Asked, ASKED_NAME, Ends, Glass};
+use super::glass::{ASKED, ASKED_NAME, Asked, Ends, Glass};
 use super::input::{Frame, HEARD, HEARD_NAME};
 use super::look::Pair;
 use super::shell::{self, Farewell, Shell};

@@ -1,9 +1,10 @@
 //! Varnish: what is painted over the picture, on the GPU.
 
+use egui::TextureId;
 use egui_wgpu::{RendererOptions, ScreenDescriptor};
 use wgpu::{
-    Color, CommandEncoder, Device, LoadOp, Operations, Queue, RenderPassColorAttachment, RenderPassDescriptor, StoreOp,
-    TextureFormat, TextureView,
+    Color, CommandEncoder, Device, FilterMode, LoadOp, Operations, Queue, RenderPassColorAttachment,
+    RenderPassDescriptor, StoreOp, TextureFormat, TextureView,
 };
 
 use super::paint::Painted;
@@ -21,6 +22,14 @@ impl Varnish {
     pub fn new(device: &Device, format: TextureFormat) -> Self {
         let options = RendererOptions { dithering: false, ..RendererOptions::default() };
         Self { renderer: egui_wgpu::Renderer::new(device, format, options) }
+    }
+
+    /// Makes a picture known that is painted like any other texture, smoothly scaled.
+    pub fn hang(&mut self, device: &Device, picture: &TextureView, before: Option<TextureId>) -> TextureId {
+        if let Some(before) = before {
+            self.renderer.free_texture(&before);
+        }
+        self.renderer.register_native_texture(device, picture, FilterMode::Linear)
     }
 
     /// Takes in the changes of textures: for each painting, in order, whether or not it is drawn.

@@ -4,12 +4,15 @@
 use std::sync::Arc;
 use std::thread;
 
-use thread_priority::{NormalThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy};
+use thread_priority::ThreadPriority;
+#[cfg(target_os = "linux")]
+use thread_priority::{NormalThreadSchedulePolicy, ThreadPriorityValue, ThreadSchedulePolicy};
 use toile_engine::frame::Snapshot;
 use toile_view::image::Size;
 use toile_view::mirror::{Choice, Gpu, Pace, Presenter, Shown};
 use winit::window::Window;
 
+use super::canvas::Canvas;
 use super::input::Frame;
 use super::look::{Look, Pair};
 use super::paint::Painted;
@@ -23,6 +26,8 @@ pub struct Wall {
     presenter: Presenter<'static>,
     varnish: Varnish,
     podium: Option<Podium>,
+    /// What bodies are drawn on first, where the processor draws.
+    canvas: Option<Canvas>,
     /// The adapter's name.
     pub name: String,
     /// Whether the processor draws.
@@ -53,7 +58,7 @@ impl Wall {
         let presenter = presenter.ok_or("the graphics adapter cannot show on this display; choose another driver")?;
         let varnish = Varnish::new(&gpu.device, presenter.format());
         let (name, software) = (gpu.to_string(), gpu.is_software());
-        Ok(Self { gpu, window: window.clone(), presenter, varnish, podium: None, name, software })
+        Ok(Self { gpu, window: window.clone(), presenter, varnish, podium: None, canvas: None, name, software })
     }
 
     /// Compiles what the body is drawn with, where that was not done yet: a first picture need not wait for it.
@@ -84,24 +89,21 @@ impl Wall {
     }
 
     /// Draws and shows a picture.
-    pub fn show(&mut self, frame: Frame, scene: &Scene<'_>, painted: &Painted) -> Shown {
-        let [width, height] = frame.size;
-        let size = Size::new(width, height);
+    pub fn show(&mut self, frame: Frame, scene: &Scene<'_>, mut painted: Painted) -> Shown {
+        let size = Size::new(frame.size[0], frame.size[1]);
         if size != self.presenter.size() {
             self.presenter.resize(size);
         }
         self.presenter.set_hidden(frame.hidden);
-        let Self { gpu, presenter, varnish, podium, .. } = self;
-        let shown = presenter.present(gpu, |view, size| {
-            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            if let Some(podium) = podium {
-                podium.draw(&mut encoder, view, size, scene);
-            }
-            let device = (&gpu.device, &gpu.queue);
-            varnish.draw(device, &mut encoder, (view, [size.width, size.height]), painted, podium.is_none());
-            gpu.queue.submit([encoder.finish()]);
-        });
-        self.varnish.let_go(painted);
+        if self.software && self.podium.is_some() && size.width > 0 && size.height > 0 {
+            let before = self.canvas.take();
+            let (device, format) = (&self.gpu.device, self.presenter.format());
+            let canvas = Canvas::fit(before, size, device, format, &mut self.varnish);
+            painted = painted.over(canvas.id(), frame.size);
+            self.canvas = Some(canvas);
+        }
+        let shown = self.present(scene, &painted);
+        self.varnish.let_go(&painted);
         if self.software {
             // What it costs is known only when it is done.
             self.gpu.finish();
@@ -117,6 +119,22 @@ impl Wall {
             shown => shown,
         }
     }
+
+    fn present(&mut self, scene: &Scene<'_>, painted: &Painted) -> Shown {
+        let Self { gpu, presenter, varnish, podium, canvas, .. } = self;
+        presenter.present(gpu, |view, size| {
+            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            let mut bare = true;
+            if let Some(podium) = podium {
+                let (target, size) = canvas.as_ref().map_or((view, size), Canvas::target);
+                podium.draw(&mut encoder, target, size, scene);
+                bare = canvas.is_some();
+            }
+            let device = (&gpu.device, &gpu.queue);
+            varnish.draw(device, &mut encoder, (view, [size.width, size.height]), painted, bare);
+            gpu.queue.submit([encoder.finish()]);
+        })
+    }
 }
 
 fn open(window: &Arc<Window>) -> Result<(Gpu, wgpu::Surface<'static>), String> {
@@ -128,13 +146,21 @@ fn open(window: &Arc<Window>) -> Result<(Gpu, wgpu::Surface<'static>), String> {
     Ok((gpu, surface))
 }
 
-/// This thread, and those that it starts, run where nobody else wants to (Linux: SCHED_IDLE). Where the system does not let it,
-/// the share that [`super::pace`] keeps to is all that holds it back.
+/// This thread, and those that it starts, run behind the others (on Linux with a nice value of 9). Where the system does
+/// not let it, the share of [`super::pace`] is all that holds it back.
 fn stand_back() {
-    let policy = ThreadSchedulePolicy::Normal(NormalThreadSchedulePolicy::Idle);
-    let this = thread_priority::thread_native_id();
     #[cfg(target_os = "linux")]
-    let _ = thread_priority::set_thread_priority_and_policy(this, ThreadPriority::Min, policy);
+    {
+        let this = thread_priority::thread_native_id();
+        let policy = ThreadSchedulePolicy::Normal(NormalThreadSchedulePolicy::Other);
+        // A quarter of the way from the least to the most.
+        if let Ok(quarter) = ThreadPriorityValue::try_from(25) {
+            let priority = ThreadPriority::Crossplatform(quarter);
+            _ = thread_priority::set_thread_priority_and_policy(this, priority, policy);
+        }
+    }
     #[cfg(not(target_os = "linux"))]
-    let _ = thread_priority::set_current_thread_priority(ThreadPriority::Min);
+    {
+        _ = thread_priority::set_current_thread_priority(ThreadPriority::Min);
+    }
 }

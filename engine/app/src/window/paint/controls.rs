@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use egui::{Painter, Pos2, Rect, Vec2, pos2, vec2};
+use egui::{FontId, Painter, Pos2, Rect, Vec2, pos2, vec2};
 
 use super::layout::{Words, centred, words};
 use super::theme::{self, Sizes};
@@ -69,38 +69,66 @@ fn alike(a: &Look, b: &Look) -> bool {
 }
 
 impl Column<'_> {
-    /// Places a run of neighbours below `y`; gives where it ends.
-    fn grid(&self, run: Range<usize>, mut y: f32, buttons: &mut Vec<Button>) -> f32 {
+    /// Places a run of neighbours below `y`, in as many columns as make it lowest; gives where it ends.
+    fn grid(&self, run: Range<usize>, y: f32, buttons: &mut Vec<Button>) -> f32 {
+        let most = self.most_columns(&run);
+        let tries = (1..=most).map(|columns| self.rows(&run, columns, y));
+        let lowest = tries.min_by(|(_, a), (_, b)| a.total_cmp(b));
+        let Some((rows, end)) = lowest else { return y };
+        buttons.extend(rows);
+        end
+    }
+
+    /// So many columns that every word still stands unbroken in its button.
+    fn most_columns(&self, run: &Range<usize>) -> usize {
         let Self { controls, width, sizes, painter } = *self;
         let gap = sizes.gap();
         let wide = run.clone().map(|i| natural(&controls[i], sizes, painter)).fold(sizes.target, f32::max).min(width);
-        let room = (((width + gap) / (wide + gap)) as usize).clamp(1, MOST_COLUMNS);
-        let rows = run.len().div_ceil(room).max(1);
+        (((width + gap) / (wide + gap)) as usize).clamp(1, MOST_COLUMNS.min(run.len().max(1)))
+    }
+
+    /// A run in so many columns, and where it ends.
+    fn rows(&self, run: &Range<usize>, columns: usize, mut y: f32) -> (Vec<Button>, f32) {
+        let Self { controls, width, sizes, painter } = *self;
+        let gap = sizes.gap();
+        // The same number of rows with fewer, wider columns looks calmer.
+        let rows = run.len().div_ceil(columns).max(1);
         let columns = run.len().div_ceil(rows).max(1);
         let cell = ((width + gap) / columns as f32 - gap).floor();
+        let mut placed = Vec::with_capacity(run.len());
         for row in 0..rows {
             let first = run.start + row * columns;
             let of_row = first.min(run.end)..(first + columns).min(run.end);
-            let begun = buttons.len();
-            buttons.extend(of_row.map(|i| button(&controls[i], i, cell, sizes, painter)));
-            let of_row = &mut buttons[begun..];
+            let begun = placed.len();
+            placed.extend(of_row.map(|i| button(&controls[i], i, cell, sizes, painter)));
+            let of_row: &mut [Button] = &mut placed[begun..];
             let tall = of_row.iter().map(|b| b.rect.height()).fold(0.0, f32::max);
             for (column, button) in of_row.iter_mut().enumerate() {
                 button.rect = Rect::from_min_size(pos2(column as f32 * (cell + gap), y), vec2(cell, tall));
             }
             y += tall + if row + 1 < rows { gap } else { 0.0 };
         }
-        y
+        (placed, y)
     }
 }
 
-/// Width at which a control's words stand in one line, or as wide as three words of a long one.
+/// Least width at which a control looks well: its longest word in one piece, and its label in two lines.
 fn natural(control: &Control, sizes: Sizes, painter: &Painter) -> f32 {
-    let label = words(painter, &control.label, sizes.label(), theme::INK, f32::INFINITY).size().x;
-    let detail = control.detail.as_ref();
-    let detail = detail.map_or(0.0, |d| words(painter, d, sizes.small(), theme::INK, f32::INFINITY).size().x);
-    // A second line may break.
-    (label.max(detail * 0.6) + aside(control, sizes) + 2.0 * pad(sizes)).ceil()
+    let font = font(control, sizes);
+    let wide = |text: &str, font: FontId| words(painter, text, font, theme::INK, f32::INFINITY).size().x;
+    let longest = |text: &str, font: &FontId| text.split(' ').map(|w| wide(w, font.clone())).fold(0.0, f32::max);
+    let label = longest(&control.label, &font).max(wide(&control.label, font) * 0.62);
+    let detail = control.detail.as_ref().map_or(0.0, |d| longest(d, &sizes.small()).max(wide(d, sizes.small()) * 0.5));
+    (label.max(detail) + aside(control, sizes) + 2.0 * pad(sizes)).ceil() + 1.0
+}
+
+/// Type of a control's words.
+fn font(control: &Control, sizes: Sizes) -> FontId {
+    match control.look {
+        Look::Swatch(_) => sizes.small(),
+        Look::Quiet => sizes.text(),
+        _ => sizes.label(),
+    }
 }
 
 /// What the mark of a choice takes beside the words.
@@ -122,12 +150,7 @@ fn button(control: &Control, index: usize, width: f32, sizes: Sizes, painter: &P
     let room = width - aside(control, sizes) - 2.0 * pad(sizes);
     let dark = matches!(control.look, Look::Primary);
     let (ink, soft) = if dark { (theme::DARK, theme::DARK) } else { (theme::INK, theme::SOFT) };
-    let font = match control.look {
-        Look::Swatch(_) => sizes.small(),
-        Look::Quiet => sizes.text(),
-        _ => sizes.label(),
-    };
-    let label = centred(painter, &control.label, font, ink, room);
+    let label = centred(painter, &control.label, font(control, sizes), ink, room);
     let detail = control.detail.as_ref().map(|d| centred(painter, d, sizes.small(), soft, room));
     let words = label.size().y + detail.as_ref().map_or(0.0, |d| d.size().y);
     let disc = if matches!(control.look, Look::Swatch(_)) { disc(sizes) + sizes.gap() * 0.4 } else { 0.0 };

@@ -87,7 +87,7 @@ fn lay_at(screen: &Screen, sizes: Sizes, painter: &Painter) -> Laid {
     let window = Rect::from_min_size(pos2(left, h - low - tall), vec2(inner, tall));
     buttons.iter_mut().for_each(|b| b.shift(window.min.to_vec2()));
     // What is read stands above it.
-    let heading = words(painter, &screen.heading, sizes.heading(), theme::INK, inner);
+    let heading = head(painter, &screen.heading, sizes, inner);
     let mut blocks: Vec<Placed> =
         screen.blocks.iter().enumerate().map(|(i, b)| block(i, b, inner, sizes, painter)).collect();
     let read = heading.size().y + blocks.iter().map(|b| b.rect.height() + gap).sum::<f32>();
@@ -109,6 +109,19 @@ fn lay_at(screen: &Screen, sizes: Sizes, painter: &Painter) -> Laid {
     };
     let scrolls = (wanted - tall).max(0.0);
     Laid { sizes, panel, free, heading: (pos2(left, top), heading), blocks, buttons, window, scrolls, fits }
+}
+
+/// The heading, a little smaller where that saves it a second line.
+fn head(painter: &Painter, text: &str, sizes: Sizes, width: f32) -> Words {
+    let set = |share: f32| {
+        let font = sizes.heading();
+        words(painter, text, FontId { size: (font.size * share).round(), ..font }, theme::INK, width)
+    };
+    let large = set(1.0);
+    if large.rows.len() == 1 {
+        return large;
+    }
+    [0.93, 0.86, 0.8].into_iter().map(set).find(|smaller| smaller.rows.len() < large.rows.len()).unwrap_or(large)
 }
 
 /// A block at the origin.

@@ -16,8 +16,8 @@ pub mod layout;
 pub mod theme;
 pub mod touch;
 
-use egui::epaint::ClippedPrimitive;
-use egui::{Context, LayerId, RawInput, Rect, TexturesDelta, pos2};
+use egui::epaint::{ClippedPrimitive, Primitive};
+use egui::{Color32, Context, LayerId, Mesh, RawInput, Rect, TextureId, TexturesDelta, pos2, vec2};
 
 use crate::guest::screen::{Action, Screen};
 use layout::Laid;
@@ -41,6 +41,18 @@ pub struct Painted {
     pub textures: TexturesDelta,
     /// What the panel leaves of the display: left, top, right, bottom as shares.
     pub free: [f32; 4],
+}
+
+impl Painted {
+    /// The same over a picture that fills a display of this size.
+    #[must_use]
+    pub fn over(mut self, picture: TextureId, [width, height]: [u32; 2]) -> Self {
+        let whole = Rect::from_min_size(pos2(0.0, 0.0), vec2(width as f32, height as f32));
+        let mut mesh = Mesh::with_texture(picture);
+        mesh.add_rect_with_uv(whole, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+        self.shapes.insert(0, ClippedPrimitive { clip_rect: whole, primitive: Primitive::Mesh(mesh) });
+        self
+    }
 }
 
 /// Paints screens and finds what is pressed on them.
@@ -90,6 +102,6 @@ impl Easel {
 }
 
 #[cfg(test)]
-mod tests;
-#[cfg(test)]
 mod pages;
+#[cfg(test)]
+mod tests;

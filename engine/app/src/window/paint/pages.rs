@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use toile_view::image::{Image, Size};
+use toile_view::image::Size;
 use toile_view::mirror::{Choice, Gpu, Offscreen};
 
 use super::tests::DISPLAYS;
@@ -73,43 +73,48 @@ pub fn all(language: usize, large: bool) -> BTreeMap<String, Screen> {
 const PICTURES: &str = "TOILE_SCREENS";
 
 /// Draws what was painted, over a plain ground.
-fn picture(gpu: &Gpu, display: Display, painted: &Painted) -> Image {
-    let [width, height] = display.size;
-    let canvas = Offscreen::new(gpu, Size::new(width, height)).unwrap();
-    let mut varnish = Varnish::new(&gpu.device, Offscreen::FORMAT);
-    varnish.take_in(&gpu.device, &gpu.queue, painted);
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let view = canvas.target().create_view(&Default::default());
-    varnish.draw((&gpu.device, &gpu.queue), &mut encoder, (&view, display.size), painted, true);
-    gpu.queue.submit([encoder.finish()]);
-    canvas.read(gpu).unwrap()
+struct Proof {
+    gpu: Gpu,
+    varnish: Varnish,
+    folder: PathBuf,
 }
 
-/// Writes the page's picture.
-fn keep(gpu: &Gpu, display: Display, name: &str, painted: &Painted) {
-    let folder = PathBuf::from(std::env::var_os(PICTURES).unwrap());
-    std::fs::create_dir_all(&folder).unwrap();
-    let [w, h] = display.size;
-    let mut bytes = Vec::new();
-    picture(gpu, display, painted).write_png(&mut bytes).unwrap();
-    std::fs::write(folder.join(format!("{w}x{h}-{name}.png")), bytes).unwrap();
+impl Proof {
+    fn wanted() -> Option<Self> {
+        let folder = PathBuf::from(std::env::var_os(PICTURES)?);
+        std::fs::create_dir_all(&folder).unwrap();
+        let gpu = Gpu::offscreen(&Choice::Software).unwrap();
+        let varnish = Varnish::new(&gpu.device, Offscreen::FORMAT);
+        Some(Self { gpu, varnish, folder })
+    }
+
+    fn print(&mut self, display: Display, name: &str, painted: &Painted) {
+        let Self { gpu, varnish, folder } = self;
+        let [w, h] = display.size;
+        let canvas = Offscreen::new(gpu, Size::new(w, h)).unwrap();
+        varnish.take_in(&gpu.device, &gpu.queue, painted);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let view = canvas.target().create_view(&Default::default());
+        varnish.draw((&gpu.device, &gpu.queue), &mut encoder, (&view, display.size), painted, true);
+        gpu.queue.submit([encoder.finish()]);
+        varnish.let_go(painted);
+        let mut bytes = Vec::new();
+        canvas.read(gpu).unwrap().write_png(&mut bytes).unwrap();
+        std::fs::write(folder.join(format!("{w}x{h}-{name}.png")), bytes).unwrap();
+    }
 }
 
 #[test]
 fn every_page_in_every_language_has_its_place_on_every_display() {
-    let mut bad = Vec::new();
-    let gpu = std::env::var_os(PICTURES).map(|_| Gpu::offscreen(&Choice::Software).unwrap());
+    let (mut bad, mut easel, mut proof) = (Vec::new(), Easel::default(), Proof::wanted());
     for language in 0..Language::ALL.len() {
         for large in [false, true] {
             for (name, screen) in all(language, large) {
-                let mut easel = Easel::default();
                 for display in DISPLAYS {
                     let painted = easel.paint(&screen, display);
-                    if let Some(gpu) = &gpu {
+                    if let Some(proof) = &mut proof {
                         let size = if large { "large-" } else { "" };
-                        keep(gpu, display, &format!("{size}{}-{name}", screen.language), &painted);
-                        easel = Easel::default();
-                        easel.paint(&screen, display);
+                        proof.print(display, &format!("{size}{}-{name}", screen.language), &painted);
                     }
                     let laid = easel.laid().unwrap();
                     // Large type may scroll what is pressed; nothing that is read is ever cut off.
