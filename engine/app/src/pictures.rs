@@ -254,6 +254,19 @@ impl Pictures {
     }
 }
 
+/// A small picture of a dressed body, looked at from `yaw` (rad), its garments in these colours (linear RGB, inner first).
+pub fn glance(frame: &Frame, snapshot: &Snapshot, yaw: f32, colours: &[[f32; 3]], size: Size) -> Image {
+    let mut drawing = Drawing::new(frame);
+    for (cloth, colour) in drawing.cloths.iter_mut().zip(colours) {
+        cloth.colour = Vec3::from_array(*colour);
+    }
+    drawing.take(snapshot);
+    let surfaces = drawing.surfaces(None);
+    let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });
+    let camera = Camera::framing(&stage.bounds(), yaw, size.width as f32 / size.height as f32);
+    stage.render(&camera, size, Quality::Still)
+}
+
 /// How the session ended, as the stills show it.
 pub struct Ending<'a> {
     /// A value in -1 (loose) .. 1 (tight) for each particle of each garment.

@@ -69,6 +69,8 @@ pub struct Known {
     pub missing: Vec<Part>,
     /// Whether they sat.
     pub seated: bool,
+    /// How many measures are known.
+    pub count: u32,
 }
 
 impl Known {
@@ -78,7 +80,8 @@ impl Known {
         let taken = [m.stature, m.shoulder_breadth, m.chest_girth, m.waist_girth, m.hip_girth, m.inseam];
         let lacks = |(part, taken): (Part, Option<Estimate>)| taken.is_none().then_some(part);
         let missing = Part::ALL.into_iter().zip(taken).filter_map(lacks).collect();
-        Self { measured, missing, seated }
+        let count = m.named().iter().filter(|(_, taken)| taken.is_some()).count() as u32;
+        Self { measured, missing, seated, count }
     }
 
     /// What a girth rests on.

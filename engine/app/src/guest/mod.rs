@@ -8,6 +8,8 @@
 //! shows what leads where.
 
 mod actions;
+pub mod atelier;
+pub mod desk;
 pub mod fitting;
 mod keys;
 pub mod layout;
@@ -16,6 +18,7 @@ mod navigation;
 pub mod pages;
 pub mod picture;
 pub mod screen;
+pub mod setup;
 pub mod shelf;
 pub mod sight;
 #[cfg(test)]

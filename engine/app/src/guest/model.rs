@@ -75,6 +75,8 @@ pub struct House {
     pub large: bool,
     /// What everybody wears first, by name, inner first; those that the shelf does not have are left out.
     pub wear: Vec<String>,
+    /// The size that everybody wears first, where a garment is made in it; else each gets the one that fits.
+    pub size: Option<String>,
 }
 
 /// A key of a keyboard, or of a row of buttons.
@@ -106,20 +108,14 @@ pub enum Input {
     Gesture(Gesture),
     /// Somebody was measured.
     Measured(u32, Box<Known>),
-    /// They could not be.
-    NotMeasured(u32),
     /// A body of theirs stands dressed.
     Dressed(u32),
-    /// That cannot be put on.
-    NotDressed(u32),
     /// Both sizes are draped.
     Draped(u32),
-    /// They cannot be.
-    NotDraped(u32),
     /// The picture is taken.
     PictureTaken(u32, Code),
-    /// It is not.
-    NoPicture(u32),
+    /// What was asked for cannot be done.
+    Failed(u32),
 }
 
 /// What others are to do. Each that is replied to has a number.
@@ -199,6 +195,21 @@ impl Model {
     /// The state of the session.
     pub fn state(&self) -> State {
         self.session.state()
+    }
+
+    /// How long what has to last.
+    pub fn rules(&self) -> &Rules {
+        &self.house.rules
+    }
+
+    /// What was measured of the shopper.
+    pub fn known(&self) -> Option<&Known> {
+        self.visit.known.as_ref()
+    }
+
+    /// Whether what was asked for by this number is still to be put on.
+    pub fn awaits_dress(&self, number: u32) -> bool {
+        self.visit.dressing == Some(number)
     }
 
     /// The language that is shown.
@@ -411,35 +422,44 @@ impl Model {
         let is_asked = |asked: &mut Option<u32>, number| asked.take_if(|a| *a == number).is_some();
         match input {
             Input::Measured(number, known) => self.measured(number, *known, errands),
-            Input::NotMeasured(number) if self.number == number && matches!(visit.taking, Taking::Measuring(_)) => {
-                visit.taking = Taking::Failed;
-            }
             Input::Dressed(number) if is_asked(&mut visit.dressing, number) => {
-                (visit.dressed, visit.hidden) = (true, visit.asked_ns.is_some());
+                (visit.dressed, visit.hidden) = (true, false);
                 visit.worn = visit.outfit.clone();
                 self.put_on_at_last();
             }
-            Input::NotDressed(number) if is_asked(&mut visit.dressing, number) => {
-                if visit.worn.is_empty() {
-                    visit.taking = Taking::Failed;
-                } else {
-                    visit.outfit = visit.worn.clone();
-                    visit.refused = true;
-                    self.take_in_hand(None);
-                }
-            }
-            Input::Draped(number) | Input::NotDraped(number) => {
-                if let Some(pair) = visit.pair.as_mut()
-                    && is_asked(&mut pair.asked, number)
-                {
-                    pair.refused = matches!(input, Input::NotDraped(_));
+            Input::Draped(number) => {
+                if let Some(pair) = &mut visit.pair {
+                    is_asked(&mut pair.asked, number);
                 }
             }
             Input::PictureTaken(number, code) if is_asked(&mut visit.snapping, number) => {
                 visit.vault.put(code, self.now_ns + self.house.rules.picture_ns);
             }
-            Input::NoPicture(number) if is_asked(&mut visit.snapping, number) => visit.snap_failed = true,
+            Input::Failed(number) => self.failed(number),
             _ => {}
+        }
+    }
+
+    /// What was asked for cannot be done: what was there before stays.
+    fn failed(&mut self, number: u32) {
+        let visit = &mut self.visit;
+        let is_asked = |asked: &mut Option<u32>| asked.take_if(|a| *a == number).is_some();
+        if is_asked(&mut visit.dressing) {
+            if visit.worn.is_empty() {
+                visit.taking = Taking::Failed;
+                visit.known = None;
+            } else {
+                visit.outfit = visit.worn.clone();
+                visit.refused = true;
+                self.take_in_hand(None);
+                self.put_on_at_last();
+            }
+        } else if is_asked(&mut visit.snapping) {
+            visit.snap_failed = true;
+        } else if let Some(pair) = visit.pair.as_mut().filter(|pair| pair.asked == Some(number)) {
+            (pair.asked, pair.refused) = (None, true);
+        } else if self.number == number && matches!(visit.taking, Taking::Measuring(_)) {
+            visit.taking = Taking::Failed;
         }
     }
 
@@ -454,7 +474,9 @@ impl Model {
         // Sizes are chosen anew: measures may have changed.
         for i in 0..self.visit.outfit.len() {
             let item = self.visit.outfit[i].item;
-            if let Some(fit) = self.judge(item, None) {
+            let house = self.house.size.as_ref();
+            let wanted = house.and_then(|code| self.shelf.items.get(item)?.sizes.iter().position(|s| s == code));
+            if let Some(fit) = self.judge(item, wanted) {
                 self.visit.outfit[i].size = fit.size;
             }
         }

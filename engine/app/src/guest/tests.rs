@@ -31,6 +31,7 @@ fn house() -> House {
         language: Language::English,
         large: false,
         wear: vec!["sun-dress".into()],
+        size: None,
     }
 }
 
@@ -78,13 +79,13 @@ impl Play {
             let in_a_second = self.now + 700 * MS;
             let code = || picture::Code { side: 3, dark: vec![true; 9] };
             let reply = match &errand {
-                Errand::Measure { number, .. } if self.fails => Input::NotMeasured(*number),
+                Errand::Measure { number, .. } if self.fails => Input::Failed(*number),
                 Errand::Measure { number, .. } => Input::Measured(*number, Box::new(self.known.clone())),
-                Errand::Dress { number, .. } if self.fails => Input::NotDressed(*number),
+                Errand::Dress { number, .. } if self.fails => Input::Failed(*number),
                 Errand::Dress { number, .. } => Input::Dressed(*number),
-                Errand::DrapeTwo { number, .. } if self.fails => Input::NotDraped(*number),
+                Errand::DrapeTwo { number, .. } if self.fails => Input::Failed(*number),
                 Errand::DrapeTwo { number, .. } => Input::Draped(*number),
-                Errand::Snap { number, .. } if self.fails => Input::NoPicture(*number),
+                Errand::Snap { number, .. } if self.fails => Input::Failed(*number),
                 Errand::Snap { number, .. } => Input::PictureTaken(*number, code()),
                 Errand::Hide | Errand::Forget => Input::Tick,
             };

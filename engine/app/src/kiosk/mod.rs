@@ -10,6 +10,7 @@
 
 pub mod change;
 pub mod config;
+pub mod host;
 mod keys;
 pub mod lives;
 pub mod manager;

@@ -99,11 +99,10 @@ impl Teller<'_> {
     }
 
     pub(super) fn settings(&self) -> Vec<Block> {
-        let known = self.model.visit.known.as_ref();
-        let measures = known.map_or(0, |known| known.measured.measures.named().iter().flat_map(|m| m.1).count());
+        let measures = self.model.visit.known.as_ref().map_or(0, |known| known.count);
         vec![
             self.text(Key::SettingsStored),
-            Block::Text(self.tell(Key::SettingsKnown, &[("count", Value::Count(measures as u32))])),
+            Block::Text(self.tell(Key::SettingsKnown, &[("count", Value::Count(measures))])),
         ]
     }
 
