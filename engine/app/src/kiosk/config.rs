@@ -125,6 +125,8 @@ pub struct Display {
     pub language: String,
     /// Whether type is large before somebody chooses.
     pub large_type: bool,
+    /// Whether anything moves by itself: a mannequin that turns.
+    pub motion: bool,
     /// How long a picture that was asked for is kept.
     pub picture_minutes: f64,
     /// Where the mark is on the floor, in the sensor's world (x and z, m).
@@ -179,6 +181,7 @@ impl Default for Display {
             height_mm: 1210.0,
             language: LANGUAGES[0].into(),
             large_type: false,
+            motion: true,
             picture_minutes: 3.0,
             mark_m: None,
         }

@@ -26,6 +26,8 @@ pub mod stage;
 pub mod tailor;
 pub mod vitals;
 pub mod watchdog;
+#[cfg(feature = "kiosk")]
+mod windowed;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -47,6 +49,7 @@ use crate::shopper;
 use crate::terminal::{self, Words};
 use change::{Act, Changing};
 use config::{Config, Source};
+use host::Host;
 use lives::{Cast, Headless, Lives};
 use manager::{Ending, Systemd};
 use report::KioskReport;
@@ -64,10 +67,6 @@ pub fn run(args: &KioskArgs) -> Result<(), AppError> {
     if args.print_config {
         return terminal::print(config::EXAMPLE);
     }
-    if cfg!(not(feature = "kiosk")) && !args.headless {
-        let cure = "add `--headless`, or build with `--features kiosk`";
-        return Err(AppError::Usage(format!("`toile kiosk` has no window in this build; {cure}")));
-    }
     let ending = Ending::listen().map_err(AppError::internal)?;
     let mut config = Config::open(args.config.as_deref())?;
     if args.session.is_some() {
@@ -75,79 +74,68 @@ pub fn run(args: &KioskArgs) -> Result<(), AppError> {
     }
     let words = Words::new(args.quiet);
     let figures = figures(&config)?;
-    let report = if args.headless {
-        let clock = RealClock::default();
-        let seeing = Seeing { eye: |_: &Frame| Ok(Headless::default()), stage: |frame| (Staged::new(frame), ()) };
-        serve(args, &config, (begun, clock), &ending, &words, figures, seeing)?.0
-    } else {
-        seen(args, &config, begun, &ending, &words, figures)?
-    };
+    let clock = RealClock::default();
+    let given = Given { args, config: &config, begun, clock, ending: &ending, words: &words, figures };
+    let report = if args.headless { serve(given, headless())?.0 } else { seen(given)? };
     if args.json { terminal::print_json(&Document::new("kiosk", report)) } else { terminal::print(&report.summary()) }
 }
 
-/// The same with a window.
 #[cfg(feature = "kiosk")]
-fn seen(
-    args: &KioskArgs,
-    config: &Config,
-    begun: Instant,
-    ending: &Ending,
-    said: &Words,
-    figures: Option<Writer<Vitals>>,
-) -> Result<KioskReport, AppError> {
-    use crate::{guest, window};
-    let clock = RealClock::default();
-    let words = guest::words::Words::load()?;
-    let shelf = Arc::new(guest::shelf::Shelf::stock()?);
-    let house = guest::model::House {
-        rules: guest::model::Rules::usual(config.rules(), config::ns(config.session.measure_s), 180_000_000_000),
-        language: guest::words::Language::English,
-        large: false,
-        wear: config.wear.garments.clone(),
-    };
-    let model = guest::model::Model::new(house, shelf, clock.now_ns());
-    let first = guest::screen::Screen::of(&model, &words, &guest::layout::Mount::default());
-    let wanted = window::Wanted { windowed: args.windowed, height_mm: 1_210.0, begun, clock, motion: true, first };
-    window::run(wanted, ending, |front| {
-        let stage = |frame: Frame| {
-            let look = window::look::Look::of(&frame);
-            (Staged::new(frame), look)
-        };
-        let eye = |mannequin: &Frame| Ok(front.eye()?.0.seeing(window::look::Look::of(mannequin)));
-        let (mut report, eye) = serve(args, config, (begun, clock), ending, said, figures, Seeing { eye, stage })?;
-        report.window = eye.map(|mut glass: window::Glass| glass.report());
-        Ok(report)
-    })
-}
-
+use windowed::seen;
 #[cfg(not(feature = "kiosk"))]
-fn seen(
-    _: &KioskArgs,
-    _: &Config,
-    _: Instant,
-    _: &Ending,
-    _: &Words,
-    _: Option<Writer<Vitals>>,
-) -> Result<KioskReport, AppError> {
-    Err(AppError::Usage("`toile kiosk` has no window in this build; add `--headless`".into()))
+use without as seen;
+
+/// Where no window was built in.
+#[cfg(not(feature = "kiosk"))]
+fn without(_: Given<'_>) -> Result<KioskReport, AppError> {
+    let cure = "add `--headless`, or build with `--features kiosk`";
+    Err(AppError::Usage(format!("`toile kiosk` has no window in this build; {cure}")))
 }
 
-/// Who sees: the eye, once the mannequin is dressed, and what it has to know of a frame that takes the stage.
-struct Seeing<F, O> {
+/// What a run is given.
+struct Given<'a> {
+    args: &'a KioskArgs,
+    config: &'a Config,
+    /// When the program began.
+    begun: Instant,
+    /// The loop's clock.
+    clock: RealClock,
+    ending: &'a Ending,
+    words: &'a Words,
+    figures: Option<Writer<Vitals>>,
+}
+
+/// Who sees.
+struct Seeing<F, H, O> {
+    /// The eye, once the mannequin is dressed.
     eye: F,
+    /// What it has to know of a frame that takes the stage.
     stage: fn(Frame) -> (Staged, O),
+    /// Who decides what happens to shoppers, who are measured from the recording that is played, if one is; none is the session
+    /// alone.
+    host: H,
+}
+
+/// A host with what it holds.
+type Hosting<'a, O> = Option<Box<dyn Host<Staged, O> + 'a>>;
+
+/// A display that is not there.
+#[expect(clippy::type_complexity, reason = "a type of its own would hide what is given")]
+fn headless<'a>()
+-> Seeing<impl FnOnce(&Frame) -> Result<Headless, AppError>, impl FnOnce(Option<Model>) -> Hosting<'a, ()>, ()> {
+    Seeing { eye: |_: &Frame| Ok(Headless::default()), stage: |frame| (Staged::new(frame), ()), host: |_| None }
 }
 
 /// Sets everything up and runs until the end.
-fn serve<E: Eye<Outfit: Default> + 'static>(
-    args: &KioskArgs,
-    config: &Config,
-    (begun, clock): (Instant, RealClock),
-    ending: &Ending,
-    words: &Words,
-    figures: Option<Writer<Vitals>>,
-    seeing: Seeing<impl FnOnce(&Frame) -> Result<E, AppError>, E::Outfit>,
+fn serve<'a, E: Eye<Outfit: Default> + 'static>(
+    given: Given<'a>,
+    seeing: Seeing<
+        impl FnOnce(&Frame) -> Result<E, AppError>,
+        impl FnOnce(Option<Model>) -> Hosting<'a, E::Outfit>,
+        E::Outfit,
+    >,
 ) -> Result<(KioskReport, Option<E>), AppError> {
+    let Given { args, config, begun, clock, ending, words, figures } = given;
     let wish = config.wish();
     let session = recording(config)?;
     // The mannequin stands as somebody does in the recording: a pose, and no body.
@@ -191,7 +179,12 @@ fn serve<E: Eye<Outfit: Default> + 'static>(
         pose,
         black_box,
     };
-    let ran = Service::new(lives, changing, plan, around).run();
+    let host = (seeing.host)(plan.played.clone());
+    let service = Service::new(lives, changing, plan, around);
+    let ran = match host {
+        Some(host) => service.hosted_by(host).run(),
+        None => service.run(),
+    };
     crash::forget();
     let (mut ended, mut course) = ran?;
     course.threads.extend(worker.map(Placed::from));

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use toile_engine::clock::Clock;
 use toile_engine::frame::Snapshot;
-use toile_engine::pace::queue::{Receiver, Sender};
+use toile_engine::pace::queue::{Capacity, Receiver, Sender};
 use toile_engine::pace::render::Eye;
 use toile_engine::relay::Reader;
 use toile_view::mirror::Shown;
@@ -20,6 +20,7 @@ use super::paint::{Display, Easel};
 use super::podium::Scene;
 use super::report::Figures;
 use super::wall::Wall;
+use crate::guest::model::Button;
 use crate::guest::screen::{Action, Screen};
 use crate::kiosk::report::WindowReport;
 
@@ -32,34 +33,13 @@ pub const ASKED_NAME: &str = "ASKED (engine/app/src/window/glass.rs)";
 /// Most devices that are lost one after the other, with no picture between them.
 const MOST_LOST: u32 = 3;
 
-/// A key that means something.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Key {
-    /// To the next control.
-    Tab,
-    /// To the one before.
-    BackTab,
-    /// Left.
-    Left,
-    /// Right.
-    Right,
-    /// Up.
-    Up,
-    /// Down.
-    Down,
-    /// Press what has the focus.
-    Enter,
-    /// Back.
-    Escape,
-}
-
 /// What somebody asks for at the display.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Asked {
     /// A control was pressed.
     Pressed(Action),
     /// A key went down.
-    Key(Key),
+    Key(Button),
 }
 
 /// The ends that the eye holds.
@@ -135,15 +115,12 @@ impl Glass {
         Self { look, changed: true, ..self }
     }
 
-    /// Who draws, and whether that is the processor.
-    pub fn adapter(&self) -> (&str, bool) {
-        (&self.adapter.0, self.adapter.1)
-    }
-
-    /// What it came to.
-    pub fn report(&mut self) -> WindowReport {
+    /// What it came to, and what did not go as it should.
+    pub fn report(&mut self) -> (WindowReport, Vec<String>) {
         let size = self.ends.frame.latest().size;
-        self.figures.report(self.adapter.0.clone(), self.adapter.1, size)
+        let report = self.figures.report(self.adapter.0.clone(), self.adapter.1, size);
+        let capacities = [self.ends.heard.capacity(), self.ends.pairs.capacity()];
+        (report, capacities.iter().filter_map(Capacity::warning).collect())
     }
 
     /// Takes in what was done at the display, and hands on what it asks for.
@@ -236,6 +213,7 @@ impl Glass {
     fn give_up(&self, why: String) {
         // Only the first reason counts.
         _ = self.fault.set(why);
+        self.wanted.ending.ask();
     }
 }
 

@@ -4,8 +4,8 @@ use egui::{Pos2, pos2};
 use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, TouchPhase, WindowEvent};
 use winit::keyboard::{Key as Pressed, ModifiersState, NamedKey};
 
-use super::glass::Key;
 use super::paint::touch::Touch;
+use crate::guest::model::Button;
 
 /// Events that wait for the render thread: a second of a fast mouse.
 pub const HEARD: usize = 1024;
@@ -22,7 +22,7 @@ pub enum Heard {
     /// A finger or the mouse.
     Touch(Touch),
     /// A key went down.
-    Key(Key),
+    Key(Button),
 }
 
 /// The window as it is: the latest value counts.
@@ -105,15 +105,15 @@ impl Ears {
         }
         let Pressed::Named(named) = &event.logical_key else { return None };
         let key = match named {
-            NamedKey::Tab if self.modifiers.shift_key() => Key::BackTab,
-            NamedKey::Tab => Key::Tab,
-            NamedKey::ArrowLeft => Key::Left,
-            NamedKey::ArrowRight => Key::Right,
-            NamedKey::ArrowUp => Key::Up,
-            NamedKey::ArrowDown => Key::Down,
+            NamedKey::Tab if self.modifiers.shift_key() => Button::BackTab,
+            NamedKey::Tab => Button::Tab,
+            NamedKey::ArrowLeft => Button::Left,
+            NamedKey::ArrowRight => Button::Right,
+            NamedKey::ArrowUp => Button::Up,
+            NamedKey::ArrowDown => Button::Down,
             // A key that is held down presses once.
-            NamedKey::Enter | NamedKey::Space if !event.repeat => Key::Enter,
-            NamedKey::Escape if !event.repeat => Key::Escape,
+            NamedKey::Enter | NamedKey::Space if !event.repeat => Button::Enter,
+            NamedKey::Escape if !event.repeat => Button::Escape,
             _ => return None,
         };
         Some(Heard::Key(key))

@@ -32,5 +32,5 @@ mod view;
 mod wall;
 
 pub use crate::kiosk::report::WindowReport;
-pub use glass::{Asked, Glass, Key};
-pub use open::{Front, Wanted, run};
+pub use glass::{Asked, Glass};
+pub use open::{Front, Opening, Wanted, run};

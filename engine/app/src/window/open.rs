@@ -44,6 +44,8 @@ pub struct Wanted {
     pub motion: bool,
     /// What is shown first.
     pub first: Screen,
+    /// Who is told when the window is closed, or when nothing can draw on it any more.
+    pub ending: Ending,
 }
 
 /// The window's ends that the service holds.
@@ -54,31 +56,29 @@ pub struct Front {
     pub asked: queue::Receiver<Asked>,
     /// Two sizes to be compared, or none any more.
     pub pairs: Sender<Option<Box<Pair>>>,
-    /// Why nothing can be drawn any more, if so.
-    pub fault: Arc<OnceLock<String>>,
-    eye: thread::JoinHandle<Result<Glass, String>>,
+    /// The eye, which is being opened.
+    pub opening: Opening,
 }
 
-impl Front {
+/// A device that is being opened.
+pub struct Opening(thread::JoinHandle<Result<Glass, String>>);
+
+impl Opening {
     /// The eye, when its device is open.
     ///
     /// # Errors
     /// Why nothing can draw, with the cure.
-    pub fn eye(self) -> Result<(Glass, Arc<OnceLock<String>>), AppError> {
-        let glass = self.eye.join().map_err(|_| AppError::Internal("the display's device panicked".into()))?;
-        Ok((glass.map_err(AppError::Device)?, self.fault))
+    pub fn eye(self) -> Result<Glass, AppError> {
+        let glass = self.0.join().map_err(|_| AppError::Internal("the display's device panicked".into()))?;
+        glass.map_err(AppError::Device)
     }
 }
 
 /// Opens the window on this thread and runs `serve` on another until it returns; it is handed the window's other ends.
 ///
 /// # Errors
-/// Those of `serve`; where there is no display, or where it went away.
-pub fn run<T: Send>(
-    wanted: Wanted,
-    ending: &Ending,
-    serve: impl FnOnce(Front) -> Result<T, AppError> + Send,
-) -> Result<T, AppError> {
+/// Those of `serve`; where there is no display, where it went away, or where nothing can draw on it any more.
+pub fn run<T: Send>(wanted: Wanted, serve: impl FnOnce(Front) -> Result<T, AppError> + Send) -> Result<T, AppError> {
     let events = shell::event_loop()?;
     let farewell = Farewell(events.create_proxy());
     let (hear, heard) = bounded(HEARD_NAME, HEARD);
@@ -87,15 +87,17 @@ pub fn run<T: Send>(
     let screens = Relay::new(&wanted.first);
     let (show, pairs) = bounded(PAIRS_NAME, PAIRS);
     let (opened, window) = sync_channel(1);
+    let ending = wanted.ending.clone();
     let shell = Shell::new(wanted.windowed, hear, frame.writer, ending.clone(), opened);
     let fault = Arc::new(OnceLock::new());
     let ends = Ends { heard, frame: frame.reader, screens: screens.reader, asked: ask, pairs };
     thread::scope(|scope| {
         let eye = {
-            let (fault, wanted) = (fault.clone(), wanted.clone());
-            thread::Builder::new().name("toile-opening".into()).spawn(move || open(&window, ends, &wanted, fault))
+            let fault = fault.clone();
+            thread::Builder::new().name("toile-opening".into()).spawn(move || open(&window, ends, wanted, fault))
         };
-        let front = Front { screens: screens.writer, asked, pairs: show, fault, eye: eye.map_err(AppError::internal)? };
+        let opening = Opening(eye.map_err(AppError::internal)?);
+        let front = Front { screens: screens.writer, asked, pairs: show, opening };
         let service = thread::Builder::new().name("toile-service".into()).spawn_scoped(scope, move || {
             // Dropped last, and also where the service panics: the window never outlives it.
             let _farewell = farewell;
@@ -105,7 +107,10 @@ pub fn run<T: Send>(
         let seen = shell.run(events);
         ending.ask();
         let served = service.join().unwrap_or_else(|_| Err(AppError::Internal("the service panicked".into())));
-        seen.and(served)
+        match fault.get() {
+            Some(why) => Err(AppError::Device(format!("the display can be drawn on no more: {why}"))),
+            None => seen.and(served),
+        }
     })
 }
 
@@ -114,12 +119,12 @@ pub fn run<T: Send>(
 fn open(
     window: &Receiver<Result<Arc<Window>, String>>,
     ends: Ends,
-    wanted: &Wanted,
+    wanted: Wanted,
     fault: Arc<OnceLock<String>>,
 ) -> Result<Glass, String> {
     roles::settle(Role::Render);
     let window = window.recv_timeout(LONGEST_OPEN).map_err(|_| "the window system opened no window; restart it")??;
-    let mut glass = Glass::open(window, ends, wanted.clone(), fault)?;
+    let mut glass = Glass::open(window, ends, wanted, fault)?;
     glass.draw(None);
     glass.prepare();
     Ok(glass)

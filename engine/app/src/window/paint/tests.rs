@@ -116,15 +116,15 @@ fn a_list_that_is_longer_than_the_reach_scrolls_and_follows_the_focus() {
     easel.paint(&screen, DISPLAYS[0]);
     let scrolled = easel.finger.held().scrolled;
     let laid = easel.laid().unwrap();
-    let last = laid.buttons[59].rect.translate(egui::vec2(0.0, -scrolled));
+    let last = laid.buttons[59].rect.translate(vec2(0.0, -scrolled));
     assert!(laid.window.expand(1.0).contains_rect(last), "the focus is in sight");
     assert_eq!(easel.touch(Touch::Down(last.center()), &screen), None);
     assert_eq!(easel.touch(Touch::Up(last.center()), &screen), Some(Action::Garment(59)));
     // A drag scrolls and presses nothing.
     let from = last.center();
     easel.touch(Touch::Down(from), &screen);
-    easel.touch(Touch::Move(from + egui::vec2(0.0, 300.0)), &screen);
-    assert_eq!(easel.touch(Touch::Up(from + egui::vec2(0.0, 300.0)), &screen), None);
+    easel.touch(Touch::Move(from + vec2(0.0, 300.0)), &screen);
+    assert_eq!(easel.touch(Touch::Up(from + vec2(0.0, 300.0)), &screen), None);
     assert!(easel.finger.held().scrolled < scrolled);
 }
 
@@ -145,7 +145,7 @@ fn a_finger_presses_where_it_went_down_and_turns_beside_the_panel() {
     let free = easel.laid().unwrap().free.center();
     easel.touch(Touch::Down(free), &screen);
     let turned: Vec<_> =
-        (0..20).filter_map(|i| easel.touch(Touch::Move(free + egui::vec2(-30.0 * i as f32, 0.0)), &screen)).collect();
+        (0..20).filter_map(|i| easel.touch(Touch::Move(free + vec2(-30.0 * i as f32, 0.0)), &screen)).collect();
     assert!(turned.len() > 2 && turned.iter().all(|t| *t == Action::Turn(-1)), "{turned:?}");
 }
 
