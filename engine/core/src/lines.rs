@@ -210,7 +210,11 @@ impl Lines {
                 let (distance, outwards) = cones[bits.trailing_zeros() as usize].distance((*p).into());
                 bits &= bits - 1;
                 if distance < near {
-                    self.push((*p).into(), Vec3::from(*p) + outwards * NORMAL_M, if distance < 0.0 { RED } else { ORANGE });
+                    self.push(
+                        (*p).into(),
+                        Vec3::from(*p) + outwards * NORMAL_M,
+                        if distance < 0.0 { RED } else { ORANGE },
+                    );
                 }
             }
         }

@@ -82,7 +82,9 @@ impl Film {
         match codec {
             Some(_) if size.width % 2 + size.height % 2 > 0 => Err(FilmError::Odd(size)),
             Some(codec) if ffmpeg => Self::video(path, size, fps, codec),
-            _ => Self::png(if codec.is_some() { path.with_extension("png") } else { path.to_owned() }, size, frames, fps),
+            _ => {
+                Self::png(if codec.is_some() { path.with_extension("png") } else { path.to_owned() }, size, frames, fps)
+            }
         }
     }
 

@@ -1,8 +1,8 @@
 //! The device that draws: hardware where there is any, else a driver that draws on the processor.
 
 use std::fmt;
-use std::sync::{Arc, OnceLock};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use toile_gpu::wait::block_on;
 use wgpu::{Adapter, Backends, Device, DeviceType, Instance, InstanceDescriptor, Limits, Queue, Surface};

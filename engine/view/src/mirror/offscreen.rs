@@ -103,11 +103,8 @@ impl Offscreen {
     /// [`OffscreenError::Lost`] or [`OffscreenError::Refused`].
     pub fn read(&self, gpu: &Gpu) -> Result<Image, OffscreenError> {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(row_bytes(self.size)),
-            rows_per_image: None,
-        };
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes(self.size)), rows_per_image: None };
         encoder.copy_texture_to_buffer(
             self.target.as_image_copy(),
             wgpu::TexelCopyBufferInfo { buffer: &self.buffer, layout },

@@ -58,10 +58,7 @@ impl Layouts {
         Self {
             frame: make("frame", &[block(0, ShaderStages::VERTEX_FRAGMENT)]),
             depths: make("depths", &[texture(0, TextureSampleType::Depth), sampler(1, false)]),
-            surface: make(
-                "surface",
-                &[block(0, ShaderStages::FRAGMENT), texture(1, FILTERED), sampler(2, true)],
-            ),
+            surface: make("surface", &[block(0, ShaderStages::FRAGMENT), texture(1, FILTERED), sampler(2, true)]),
             behind: make("behind", &[texture(0, FILTERED), sampler(1, true)]),
             finished: make("finished", &[texture(0, FILTERED)]),
         }
@@ -111,11 +108,7 @@ impl Plan<'_> {
             bind_group_layouts: self.groups,
             immediate_size: 0,
         });
-        let target = [Some(ColorTargetState {
-            format: self.format,
-            blend: self.blend,
-            write_mask: ColorWrites::ALL,
-        })];
+        let target = [Some(ColorTargetState { format: self.format, blend: self.blend, write_mask: ColorWrites::ALL })];
         let topology =
             if self.strip { wgpu::PrimitiveTopology::TriangleStrip } else { wgpu::PrimitiveTopology::TriangleList };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {

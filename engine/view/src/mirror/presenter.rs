@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use wgpu::{
-    CompositeAlphaMode, CurrentSurfaceTexture, PresentMode, Surface, SurfaceConfiguration, SurfaceTexture, TextureFormat,
-    TextureUsages, TextureView,
+    CompositeAlphaMode, CurrentSurfaceTexture, PresentMode, Surface, SurfaceConfiguration, SurfaceTexture,
+    TextureFormat, TextureUsages, TextureView,
 };
 
 use super::gpu::Gpu;

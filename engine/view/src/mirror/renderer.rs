@@ -142,8 +142,7 @@ impl Renderer {
     /// # Errors
     /// [`ModelError`]: the first surface whose lists do not fit together; the model before stays then.
     pub fn set_model(&mut self, model: &Model) -> Result<(), ModelError> {
-        let maker =
-            Maker { device: &self.device, queue: &self.queue, layouts: &self.layouts, threads: &self.threads };
+        let maker = Maker { device: &self.device, queue: &self.queue, layouts: &self.layouts, threads: &self.threads };
         let scratch = &mut self.scratch;
         let made = model.surfaces.iter().enumerate().map(|(i, shape)| maker.make(scratch, i, shape));
         self.surfaces = made.collect::<Result<_, _>>()?;
@@ -215,8 +214,7 @@ impl Renderer {
 
     /// The lines to draw from now on, over whatever hides them.
     pub fn set_lines(&mut self, lines: &[Line]) {
-        let bytes: Vec<f32> =
-            lines.iter().flat_map(|l| [l.from, l.to, l.colour]).flat_map(|v| v.to_array()).collect();
+        let bytes: Vec<f32> = lines.iter().flat_map(|l| [l.from, l.to, l.colour]).flat_map(|v| v.to_array()).collect();
         let bytes: &[u8] = bytemuck::cast_slice(&bytes);
         if bytes.len() as u64 > self.lines.size() {
             self.lines = line_buffer(&self.device, bytes.len());
