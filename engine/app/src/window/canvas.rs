@@ -10,7 +10,7 @@ use wgpu::{
 use super::varnish::Varnish;
 
 /// Most pixels of a picture that the processor draws while physics runs beside it.
-const MOST_PIXELS: f32 = 260_000.0;
+const MOST_PIXELS: f32 = 360_000.0;
 
 /// A smaller picture.
 pub struct Canvas {

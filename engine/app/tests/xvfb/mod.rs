@@ -48,6 +48,18 @@ impl Picture {
         pairs.map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / count as f64
     }
 
+    /// Middle of what has this colour (pixels); none where nothing has.
+    pub fn middle_of(&self, colour: [u8; 3]) -> Option<[i32; 2]> {
+        let [width, _] = self.size;
+        let close = |p: &[u8]| p.iter().zip(colour).all(|(a, b)| a.abs_diff(b) < 12);
+        let found = self.rgb.chunks_exact(3).enumerate().filter(|(_, p)| close(p)).map(|(i, _)| (i % width, i / width));
+        let bounds = found.fold(None, |b: Option<[usize; 4]>, (x, y)| {
+            let [l, t, r, o] = b.unwrap_or([x, y, x, y]);
+            Some([l.min(x), t.min(y), r.max(x), o.max(y)])
+        });
+        bounds.map(|[l, t, r, b]| [(l + r) as i32 / 2, (t + b) as i32 / 2])
+    }
+
     pub fn read(path: &Path) -> Option<Self> {
         let mut reader = png::Decoder::new(BufReader::new(fs::File::open(path).ok()?)).read_info().ok()?;
         let mut rgb = vec![0; reader.output_buffer_size()?];

@@ -7,13 +7,19 @@ use egui::{Align, Color32, FontId, Galley, Painter, Pos2, Rect, TextFormat, Vec2
 
 use super::controls::{self, Button};
 use super::theme::{self, Sizes};
-use crate::guest::screen::{Block, Screen};
+use crate::guest::screen::{Block, Screen, Stage};
 
 /// How tight the panel may get, in the order of trying.
 const SQUEEZES: [f32; 6] = [1.0, 0.92, 0.84, 0.76, 0.68, 0.6];
 
 /// Most of a standing display's height that the panel covers.
 const MOST_PANEL: f32 = 0.7;
+
+/// The same where it stands before somebody who looks at themselves, if it can.
+const BESIDE_BODY: f32 = 0.48;
+
+/// Tighter than this only what has no place otherwise.
+const READ_WITH_EASE: f32 = 0.8;
 
 /// Share of a lying display's width that the panel takes.
 const SIDE: f32 = 0.42;
@@ -58,9 +64,13 @@ pub struct Laid {
 /// Lays a screen out on a display.
 pub fn lay(screen: &Screen, sizes: Sizes, painter: &Painter) -> Laid {
     let mut last = None;
+    let most = sizes.display[1] * if matches!(screen.stage, Stage::Mannequin) { MOST_PANEL } else { BESIDE_BODY };
     for squeeze in SQUEEZES {
         let laid = lay_at(screen, sizes.squeezed(squeeze), painter);
-        if laid.fits && laid.scrolls == 0.0 {
+        let whole = laid.fits && laid.scrolls == 0.0;
+        let small = sizes.landscape || laid.panel.height() <= most;
+        // Type is made smaller for the sake of the body only as long as it is read with ease.
+        if whole && (small || squeeze <= READ_WITH_EASE) {
             return laid;
         }
         // Where nothing fits, buttons that scroll are better than words that are cut off.
