@@ -37,7 +37,6 @@ pub struct Shell {
     state: Frame,
     ears: Ears,
     window: Option<Arc<Window>>,
-    focused: bool,
 }
 
 /// The window system's loop.
@@ -62,7 +61,7 @@ impl Shell {
         opened: SyncSender<Result<Arc<Window>, String>>,
     ) -> Self {
         let (state, ears, opened) = (Frame::default(), Ears::default(), Some(opened));
-        Self { windowed, heard, frame, ending, opened, state, ears, window: None, focused: false }
+        Self { windowed, heard, frame, ending, opened, state, ears, window: None }
     }
 
     /// Runs until the service has ended.
@@ -124,12 +123,10 @@ impl ApplicationHandler<Told> for Shell {
                 self.state.hidden = *hidden;
                 self.publish();
             }
-            WindowEvent::Focused(focused) => self.focused = *focused,
             WindowEvent::CursorMoved { .. } => self.cursor(true),
             WindowEvent::Touch(_) => self.cursor(false),
             _ => {}
         }
-        self.take_focus(&event);
         if let Some(heard) = self.ears.hear(&event) {
             self.heard.push(heard);
         }
@@ -137,16 +134,6 @@ impl ApplicationHandler<Told> for Shell {
 }
 
 impl Shell {
-    /// A kiosk's display may have no window manager, and then nobody else gives the window the keys.
-    fn take_focus(&self, event: &WindowEvent) {
-        use WindowEvent::{CursorEntered, MouseInput, Occluded, RedrawRequested, Resized, Touch};
-        let shown =
-            matches!(event, Resized(_) | RedrawRequested | Occluded(false) | CursorEntered { .. } | MouseInput { .. } | Touch(_));
-        if let Some(window) = self.window.as_ref().filter(|_| shown && !self.focused) {
-            window.focus_window();
-        }
-    }
-
     fn cursor(&self, visible: bool) {
         if let Some(window) = &self.window {
             window.set_cursor_visible(visible);

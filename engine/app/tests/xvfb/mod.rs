@@ -146,7 +146,24 @@ impl Display {
 
     /// The mouse presses at a place (pixels).
     pub fn click(&self, [x, y]: [i32; 2]) {
-        self.tool(&["mousemove", &x.to_string(), &y.to_string(), "sleep", "0.1", "mousedown", "1", "sleep", "0.1", "mouseup", "1"]);
+        self.tool(&[
+            "mousemove",
+            &x.to_string(),
+            &y.to_string(),
+            "sleep",
+            "0.1",
+            "mousedown",
+            "1",
+            "sleep",
+            "0.1",
+            "mouseup",
+            "1",
+        ]);
+    }
+
+    /// Gives a window the keys, as a window manager does; there is none here.
+    pub fn give_keys(&self, title: &str) {
+        self.tool(&["search", "--sync", "--name", title, "windowfocus"]);
     }
 
     /// A key, by its X name.
