@@ -11,12 +11,14 @@ use crate::body::{Measures, Sex};
 
 /// What a garment is, as far as sizing is concerned (EN 13402-2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum GarmentKind {
+    /// A dress.
     #[serde(rename = "dress")]
     Dress,
+    /// A T-shirt.
     #[serde(rename = "t-shirt")]
     Tshirt,
+    /// Trousers.
     #[serde(rename = "trousers")]
     Trousers,
 }
@@ -61,10 +63,12 @@ impl Girth {
 /// Whose bodies a table describes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "lowercase")]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Population {
+    /// Women.
     Women,
+    /// Men.
     Men,
+    /// Anybody: garments in unisex sizes, shoppers who did not say.
     Mixed,
 }
 

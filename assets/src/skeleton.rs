@@ -13,30 +13,52 @@ pub use bones::{BONE_CHAIN, BONES, TWISTS, Twist, bone_joint, bone_mirror, bone_
 /// Joints that a sensor may report and a pose may bend; each is the centre of the rotation that it names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
-#[expect(missing_docs, reason = "the names are the field's standard terms")]
 pub enum Joint {
+    /// Where the trunk hangs: the middle of the sacroiliac joints.
     Pelvis,
+    /// Of the lowest lumbar vertebra: trunk on pelvis.
     Spine,
+    /// Of the highest lumbar vertebra: rib cage on loins.
     Chest,
+    /// Of the middle of the neck.
     Neck,
+    /// Of skull on neck.
     Head,
+    /// Of the left collar bone on the breastbone.
     LeftClavicle,
+    /// Of the left upper arm.
     LeftShoulder,
+    /// Of the left forearm.
     LeftElbow,
+    /// Of the left hand.
     LeftWrist,
+    /// The knuckle of the left middle finger, where the fingers begin.
     LeftHand,
+    /// Of the left thigh.
     LeftHip,
+    /// Of the left shin.
     LeftKnee,
+    /// Of the left foot.
     LeftAnkle,
+    /// The ball of the left foot, where the toes begin.
     LeftToe,
+    /// Of the right collar bone on the breastbone.
     RightClavicle,
+    /// Of the right upper arm.
     RightShoulder,
+    /// Of the right forearm.
     RightElbow,
+    /// Of the right hand.
     RightWrist,
+    /// The knuckle of the right middle finger, where the fingers begin.
     RightHand,
+    /// Of the right thigh.
     RightHip,
+    /// Of the right shin.
     RightKnee,
+    /// Of the right foot.
     RightAnkle,
+    /// The ball of the right foot, where the toes begin.
     RightToe,
 }
 

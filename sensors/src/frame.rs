@@ -39,6 +39,11 @@ impl Joints {
         Self { time_ns, joints: [TrackedJoint { position: Vec3::ZERO, confidence: 0.0 }; JOINTS] }
     }
 
+    /// A moment at which all joints were seen, at these places (m): what a sensor without noise or loss would give.
+    pub fn seen(time_ns: u64, positions: [Vec3; JOINTS]) -> Self {
+        Self { time_ns, joints: positions.map(|position| TrackedJoint { position, confidence: 1.0 }) }
+    }
+
     /// One joint.
     pub fn at(&self, joint: Joint) -> &TrackedJoint {
         &self.joints[joint.index()]

@@ -83,6 +83,34 @@ fn no_file_is_longer_than_a_room() {
     }
 }
 
+/// Whether a manifest takes over the lints of the workspace, of which one asks for a word on every public item.
+fn takes_the_lints(manifest: &str) -> bool {
+    let table: toml::Table = manifest.parse().expect("a manifest is TOML");
+    table.get("lints").and_then(|lints| lints.get("workspace")?.as_bool()) == Some(true)
+}
+
+#[test]
+fn nothing_public_is_excused_from_saying_what_it_is() {
+    let workspace: toml::Table = tree::read(&tree::root().join("Cargo.toml")).parse().expect("a manifest is TOML");
+    assert_eq!(workspace["workspace"]["lints"]["rust"]["missing_docs"].as_str(), Some("warn"));
+    for (folder, name) in FLOORS {
+        assert!(
+            takes_the_lints(&tree::read(&tree::root().join(folder).join("Cargo.toml"))),
+            "{name} has lints of its own"
+        );
+    }
+    for file in all_rust_files() {
+        let excused = scan::tokens(&tree::read(&file)).iter().any(|t| t.text == "missing_docs");
+        assert!(!excused, "{} excuses an item from `missing_docs`", tree::name(&file));
+    }
+}
+
+#[test]
+fn lints_of_a_crates_own_are_found() {
+    assert!(takes_the_lints("[lints]\nworkspace = true"));
+    assert!(!takes_the_lints("[lints.rust]\nmissing_docs = \"allow\"") && !takes_the_lints("[package]\nname = \"x\""));
+}
+
 /// The first line of a text that names a path of one person's machine.
 fn machine_path(text: &str) -> Option<&str> {
     // Put together here, so that this file does not name them itself.

@@ -39,9 +39,10 @@ pub use reading::{Ansur, En, Readings, Vocabulary, Wanted};
 
 /// Which drawing a body is stretched from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Sex {
+    /// The woman's drawing.
     Female,
+    /// The man's drawing.
     Male,
 }
 
@@ -143,13 +144,18 @@ fn beside(other: Option<&(&'static str, f32)>) -> String {
 
 /// Parts of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Region {
+    /// Trunk, up to the neck.
     Torso,
+    /// Head, from the neck up.
     Head,
+    /// Left arm and hand.
     LeftArm,
+    /// Right arm and hand.
     RightArm,
+    /// Left leg and foot.
     LeftLeg,
+    /// Right leg and foot.
     RightLeg,
 }
 

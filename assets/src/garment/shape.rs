@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::Overrides;
-use crate::mesh::SkinWeights;
+use crate::mesh::{Influences, SkinWeights};
 
 /// In the fourth place of a [`Face`]: the face is a triangle.
 pub const NO_VERTEX: u32 = u32::MAX;
@@ -15,14 +15,15 @@ pub type Face = [u32; 4];
 /// The part of the body that a particle lies on: what it can touch. Between an arm and the trunk, or between two legs,
 /// cloth that met both would be pinched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Part {
     /// Any part of the body.
     #[default]
     All,
     /// Everything but the arms.
     Trunk,
+    /// The left arm.
     LeftArm,
+    /// The right arm.
     RightArm,
     /// Nothing: in the hollow of an armpit cloth is held by what surrounds it.
     Hollow,
@@ -69,6 +70,22 @@ impl Shape {
         (self.cut.len() - 1) as u32
     }
 
+    /// A rectangle of quads, the piece of cloth that needs no file. Vertex (row, column) is `row * columns + column`;
+    /// `place` gives where it is (m) and whether it is held. Weft runs along the rows, warp down the columns. What is held
+    /// follows the root bone.
+    pub fn sheet(rows: u32, columns: u32, place: impl Fn(u32, u32) -> (Vec3, bool)) -> Self {
+        let mut shape = Self::default();
+        for (row, column) in (0..rows).flat_map(|r| (0..columns).map(move |c| (r, c))) {
+            let (at, held) = place(row, column);
+            shape.push(at, at, held, Part::All);
+        }
+        let root = Influences::strongest([(0, 1.0)]).0;
+        shape.weights = vec![root; shape.cut.len()];
+        let quads = (1..rows).flat_map(|r| (1..columns).map(move |c| (r * columns, c)));
+        shape.faces = quads.map(|(row, c)| [row + c - 1, row + c, row - columns + c, row - columns + c - 1]).collect();
+        shape
+    }
+
     /// The faces as triangles; a quad is split along a-c, or along b-d where `split` says so.
     pub fn triangles(&self) -> Vec<[u32; 3]> {
         let mut out = Vec::with_capacity(self.faces.len() * 2);
@@ -82,5 +99,20 @@ impl Shape {
             }
         }
         out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sheet_faces_the_viewer_and_its_weft_runs_along_the_rows() {
+        let shape = Shape::sheet(3, 4, |r, c| (Vec3::new(c as f32, -(r as f32), 0.0), r == 0));
+        assert_eq!((shape.cut.len(), shape.weights.len(), shape.faces.len()), (12, 12, 6));
+        assert_eq!(shape.fixed.iter().filter(|held| **held).count(), 4);
+        for [a, b, c, d] in shape.faces.iter().map(|face| face.map(|v| shape.cut[v as usize])) {
+            assert_eq!([b - a, c - d, d - a, c - b], [Vec3::X, Vec3::X, Vec3::Y, Vec3::Y]);
+        }
     }
 }

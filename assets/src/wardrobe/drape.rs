@@ -56,9 +56,9 @@ impl<'a> Form<'a> {
         )
     }
 
-    /// The way from `front` over the shoulder to `back`, close to the body, both ends included.
-    pub fn over_shoulder(&self, front: Vec3, back: Vec3) -> Vec<Vec3> {
-        let x = 0.5 * (front.x + back.x);
+    /// The way from `front` to `back`, both ends included, close to the body, over the shoulder at a distance `x` from the
+    /// middle (m).
+    pub fn over_shoulder(&self, front: Vec3, back: Vec3, x: f32) -> Vec<Vec3> {
         let plane = Plane { origin: Vec3::X * x, u: Vec3::Z, v: Vec3::Y };
         let arm = if x > 0.0 { Region::LeftArm } else { Region::RightArm };
         let lowest = front.y.min(back.y);

@@ -110,6 +110,11 @@ pub fn parse(name: &str, text: &str) -> Result<Style, WardrobeError> {
     if !(16..=512).contains(&style.columns) {
         return Err(wrong(format!("columns is {}, outside of 16 to 512", style.columns)));
     }
+    if let Some(n) = style.substeps
+        && !(1..=64).contains(&n)
+    {
+        return Err(wrong(format!("substeps is {n}, outside of 1 to 64")));
+    }
     Ok(style)
 }
 
@@ -168,8 +173,10 @@ impl Style {
     pub fn dress(&self, size: &str, shopper: &Body) -> Result<Garment, WardrobeError> {
         let shape = self.draft(size, shopper)?;
         let fabric = Fabric::built_in(&self.fabric)?;
-        bake(&self.name, size, &shape, &fabric)
-            .map_err(|source| WardrobeError::Mesh { name: self.name.clone(), source })
+        let mut garment = bake(&self.name, size, &shape, &fabric)
+            .map_err(|source| WardrobeError::Mesh { name: self.name.clone(), source })?;
+        garment.substeps = self.substeps.unwrap_or(garment.substeps);
+        Ok(garment)
     }
 }
 

@@ -27,6 +27,9 @@ pub struct Style {
     pub ease_mm: Ease,
     /// The ease that a wearer finds good, least and most (mm): outside of it a zone is tight or loose.
     pub comfort_mm: Comfort,
+    /// Substeps of a step at the quality `shop`, where it was tried that as many do; left out, the bake counts them by the mesh.
+    #[serde(default)]
+    pub substeps: Option<u32>,
     /// The cut.
     pub cut: Cut,
     /// Solvers that are not left to the bake.
@@ -129,6 +132,17 @@ mod tests {
     use crate::garment::Direction;
     use crate::garment::solver::{Region, Solver};
     use crate::wardrobe;
+
+    #[test]
+    fn a_garment_file_may_name_its_substeps_within_reason() {
+        let text = include_str!("../../data/garments/sun-dress.toml");
+        assert_eq!(wardrobe::parse("dress", text).unwrap().substeps, None);
+        assert_eq!(wardrobe::parse("dress", &format!("substeps = 6\n{text}")).unwrap().substeps, Some(6));
+        for wrong in ["0", "65"] {
+            let said = wardrobe::parse("dress", &format!("substeps = {wrong}\n{text}")).unwrap_err().to_string();
+            assert!(said.contains("substeps is") && said.contains("1 to 64"), "{said}");
+        }
+    }
 
     #[test]
     fn a_garment_file_names_solvers_and_is_told_which_there_are() {

@@ -131,7 +131,7 @@ fn lay(plan: &Plan, form: Form<'_>) -> Vec<Vec3> {
         let ends = StrapEnds::new(plan, right);
         let pairs = ends.front.iter().zip(&ends.back).map(|(&f, &b)| (points[f as usize], points[b as usize]));
         let lines: Vec<Vec<Vec3>> =
-            pairs.map(|(f, b)| resample(&form.over_shoulder(f, b), plan.strap_rows + 2)).collect();
+            pairs.map(|(f, b)| resample(&form.over_shoulder(f, b, 0.5 * (f.x + b.x)), plan.strap_rows + 2)).collect();
         for r in 1..=plan.strap_rows {
             points.extend(lines.iter().map(|line| line[r]));
         }

@@ -28,8 +28,9 @@ const FREE_COLUMNS: usize = 3;
 /// Rows from the armhole's seam that lie in the hollow of the armpit.
 const HOLLOW_ROWS: usize = 3;
 
-/// The sleeve's rings turn from the armhole's plane to the arm's over this share of its rows.
-const SLEEVE_TURN: f32 = 0.5;
+/// The sleeve's rings turn from the armhole's plane to the arm's over this share of its rows. Over all but the hem's: where they
+/// turn faster, those below the arm lie so close that the mesh has needles.
+const SLEEVE_TURN: f32 = 0.9;
 
 struct Plan {
     /// Columns around the body, a multiple of 4.
@@ -84,7 +85,7 @@ fn plan(style: &Style, cut: &Body) -> Plan {
     });
     let front = columns / 4 - (columns as f32 * ARMHOLE_SHARE).round() as usize;
     let top = form.ring(underarm, chest, columns);
-    let neck = (0..front).find(|&c| top[c].x >= neck_mm * 1e-3).unwrap_or(front / 2).max(2);
+    let neck = ((neck_mm * 1e-3 / top[front].x * front as f32).round() as usize).max(2).min(front - 1);
     let shoulder_rows = (1.15 * (levels.shoulder - underarm) / spacing).round().max(6.0) as usize;
     let sleeve_length = sleeve_mm * 1e-3;
     let sleeve_rows = (sleeve_length / spacing).round().max(4.0) as usize;
@@ -231,26 +232,47 @@ fn lay(plan: &Plan, form: Form<'_>) -> Vec<Vec3> {
 
 /// Height of the side of the neck (m): where the column beside it crosses the shoulder.
 fn shoulder_line(plan: &Plan, form: Form<'_>, ring: &[Vec3]) -> f32 {
-    let front = ring[plan.neck];
-    let back = ring[plan.columns / 2 - plan.neck];
-    split_at_top(&form.over_shoulder(front, back)).0.last().map_or(front.y, |p| p.y)
+    over_shoulder(plan, form, ring, plan.neck as isize).0.last().map_or(0.0, |p| p.y)
+}
+
+/// The ways of one column from the underarm ring up to the shoulder, over the front and over the back. On the shoulder the
+/// columns lie evenly between the middle and the armhole; on the ring those at the side lie behind each other.
+fn over_shoulder(plan: &Plan, form: Form<'_>, ring: &[Vec3], c: isize) -> (Vec<Vec3>, Vec<Vec3>) {
+    let front = ring[Index::column(plan, c) as usize];
+    let back = ring[Index::column(plan, plan.columns as isize / 2 - c) as usize];
+    // The shopper's trunk may be broader or narrower there than the body of the size.
+    let half = ring[plan.front].x;
+    let top = half * c as f32 / plan.front as f32;
+    let (mut up, mut down) = split_at_top(&form.over_shoulder(front, back, top));
+    down.reverse();
+    lean(&mut up, front.x, top);
+    lean(&mut down, back.x, top);
+    (up, down)
+}
+
+/// Moves a rising line sideways, by its height: from one x below to another at its top (m).
+fn lean(line: &mut [Vec3], from: f32, to: f32) {
+    let (Some(low), Some(high)) = (line.first().map(|p| p.y), line.last().map(|p| p.y)) else { return };
+    for p in line {
+        p.x = from + (to - from) * ((p.y - low) / (high - low).max(1e-3)).clamp(0.0, 1.0);
+    }
 }
 
 /// Rows 1.. of the front and of the back panel in one column: up to the shoulder, or to the neckline.
 fn panel_column(plan: &Plan, form: Form<'_>, ring: &[Vec3], neck_height: f32, c: isize) -> (Vec<Vec3>, Vec<Vec3>) {
-    let front = ring[Index::column(plan, c) as usize];
-    let back = ring[Index::column(plan, plan.columns as isize / 2 - c) as usize];
-    let (mut up, mut down) = split_at_top(&form.over_shoulder(front, back));
-    down.reverse();
+    let (mut up, mut down) = over_shoulder(plan, form, ring, c);
     if c.unsigned_abs() < plan.neck {
-        // A round neckline: an ellipse from the sides of the neck down to the middle of the front, a flat one behind.
-        let side = c as f32 / plan.neck as f32;
-        let dip = (1.0 - side * side).sqrt();
+        // A round neckline from the sides of the neck down to the middle of the front, a flat one behind. Not an ellipse, whose
+        // steep sides would leave a few columns with links of half the neck's depth.
+        let dip = 1.0 - (c as f32 / plan.neck as f32).abs().powf(NECK_POWER);
         up = below(&up, neck_height - plan.front_neck * dip);
         down = below(&down, neck_height - BACK_NECK_SHARE * plan.front_neck * dip);
     }
     (rows_after(&up, plan.shoulder_rows), rows_after(&down, plan.shoulder_rows))
 }
+
+/// How round the neckline is: 2 is a parabola, more is flatter below and steeper at the sides.
+const NECK_POWER: f32 = 2.5;
 
 /// The back neckline is this share of the front's depth.
 const BACK_NECK_SHARE: f32 = 0.3;
@@ -331,4 +353,41 @@ fn drop_loose(shape: &mut Shape) {
     shape.worn = (0..used.len()).filter(kept).map(|i| shape.worn[i]).collect();
     shape.fixed = (0..used.len()).filter(kept).map(|i| shape.fixed[i]).collect();
     shape.parts = (0..used.len()).filter(kept).map(|i| shape.parts[i]).collect();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{Measures, Sex};
+    use crate::garment::shape::NO_VERTEX;
+    use crate::wardrobe;
+
+    #[test]
+    fn the_coarsest_mesh_that_a_file_may_ask_for_is_drafted() {
+        let shopper = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+        let style = Style { columns: 16, spacing_mm: 60.0, ..wardrobe::style("t-shirt").unwrap() };
+        assert!(style.draft("M", &shopper).unwrap().faces.len() > 100);
+    }
+
+    #[test]
+    fn no_size_has_needles_or_gaps() {
+        let style = wardrobe::style("t-shirt").unwrap();
+        let spacing = style.spacing_mm * 1e-3;
+        for sex in [Sex::Female, Sex::Male] {
+            let shopper = Body::build(sex, &Measures::average(sex)).unwrap();
+            for size in ["S", "M", "XL"] {
+                let shape = style.draft(size, &shopper).unwrap();
+                let corner = |v: u32| shape.cut[v as usize];
+                let edges = shape.faces.iter().flat_map(|face| {
+                    let ring: Vec<u32> = face.iter().copied().filter(|v| *v != NO_VERTEX).collect();
+                    (0..ring.len()).map(move |k| (ring[k], ring[(k + 1) % ring.len()])).collect::<Vec<_>>()
+                });
+                let lengths: Vec<f32> = edges.map(|(a, b)| corner(a).distance(corner(b))).collect();
+                let shortest = lengths.iter().copied().fold(f32::MAX, f32::min);
+                let longest = lengths.iter().copied().fold(0.0, f32::max);
+                // Where the neckline turns up, columns are as steep as it is.
+                assert!(shortest > 0.35 * spacing && longest < 5.5 * spacing, "{sex:?} {size}: {shortest} {longest}");
+            }
+        }
+    }
 }

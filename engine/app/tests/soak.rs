@@ -18,7 +18,7 @@ fn object(scratch: &Scratch, args: &[&str]) -> (Option<i32>, Value) {
 #[test]
 fn every_kind_of_fault_is_borne_and_a_second_run_is_the_same() {
     let scratch = Scratch::new("soak");
-    let (code, found) = object(&scratch, &["soak", "--minutes", "4", "--seed", "7", "--faults", "38", "--json"]);
+    let (code, found) = object(&scratch, &["soak", "--minutes", "4", "--seed", "7", "--faults", "40", "--json"]);
     assert_eq!(found["schema"], "toile.soak/1");
     let checks = found["checks"].as_array().unwrap();
     let failed: Vec<&Value> = checks.iter().filter(|c| c["pass"] != true).collect();
@@ -30,7 +30,7 @@ fn every_kind_of_fault_is_borne_and_a_second_run_is_the_same() {
         ["memory handed out", "resident memory"].map(|what| format!("{what}, growth behind the warm-up (KiB)"));
     assert!(cfg!(not(target_os = "linux")) || unchecked == memory, "{unchecked:?}");
     let kinds = found["faults"]["kinds"].as_array().unwrap();
-    assert_eq!(kinds.len(), 19, "{kinds:?}");
+    assert_eq!(kinds.len(), 20, "{kinds:?}");
     assert!(kinds.iter().all(|k| k["injected"] == 2 && k["recovered"] == 2), "{kinds:?}");
     assert!(found["recovery_ticks"]["max"].as_u64().unwrap() <= 120 && found["recovery_ticks"]["max"] != 0);
     assert_eq!((&found["nonfinite"], &found["allocations"]), (&Value::from(0), &Value::from(0)));

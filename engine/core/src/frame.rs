@@ -180,6 +180,11 @@ impl Frame {
         self.measure_every = steps;
     }
 
+    /// Spoils the state of every garment ([`Cloth::upset`]).
+    pub fn upset(&mut self, seed: u64) {
+        self.cloths.iter_mut().for_each(|cloth| cloth.upset(seed));
+    }
+
     /// What the governor gave up: the share of the substeps that is left, and whether there is wind.
     pub fn set_quality(&mut self, substep_share: f32, wind: Option<Wind>) {
         (self.settings.substep_share, self.settings.wind) = (substep_share, wind);

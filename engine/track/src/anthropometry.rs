@@ -10,11 +10,14 @@ use crate::estimate::Estimate;
 
 /// Heights as fractions of stature.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(missing_docs, reason = "named by the measure")]
 pub struct Levels {
+    /// Greatest protrusion of the buttocks.
     pub hip: f32,
+    /// Natural waistline.
     pub waist: f32,
+    /// Bust points.
     pub chest: f32,
+    /// Tips of the shoulder blades.
     pub acromion: f32,
 }
 
@@ -112,11 +115,14 @@ pub const fn guesses(population: Population) -> Guesses {
 /// What the camera's view of a torso says of its girth: an affine function of the section's breadth, of the tape's
 /// length over its front, and of the depth of the half ellipse that fits it (which says how square it is).
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(missing_docs, reason = "the formula names them")]
 pub struct GirthModel {
+    /// Girth where the others are 0 (m).
     pub offset: f32,
+    /// Girth a metre of breadth (1).
     pub breadth: f32,
+    /// Girth a metre of tape over the front (1).
     pub arc: f32,
+    /// Girth a metre of the fitted half ellipse's depth (1).
     pub front: f32,
     /// Standard deviation over bodies of other shapes (m).
     pub residual: f32,

@@ -26,10 +26,12 @@ const HIDDEN_CHEST: f32 = 0.04;
 
 /// Where the measures come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Source {
+    /// From depth frames alone.
     Depth,
+    /// From joints alone.
     Joints,
+    /// From both, each measure weighted by how sure it is.
     Both,
 }
 

@@ -63,6 +63,8 @@ pub struct Stepped {
     pub nonfinite: u64,
     /// Whether a garment was rolled back or kept its last places.
     pub rolled_back: bool,
+    /// Speed of the fastest particle (m/s).
+    pub fastest_m_s: f32,
 }
 
 impl Stepped {
@@ -154,12 +156,17 @@ pub struct Stepping<C> {
     ticks: u64,
     troubles: [u64; 2],
     crash_ns: Option<u64>,
+    /// When garments are spoilt (ns), and how many times they were.
+    upsets: Box<[u64]>,
+    upset: usize,
 }
 
 impl<C: Clock> Stepping<C> {
     /// At load.
     pub fn new(physics: Physics<Staged, C, NoAccount>, script: Arc<Script>, origin_ns: u64) -> Self {
-        Self { troubles: physics.stepper.scene.troubles(), physics, script, origin_ns, ticks: 0, crash_ns: None }
+        let troubles = physics.stepper.scene.troubles();
+        let upsets = script.faults_of(Kind::ClothUpset).map(|f| origin_ns + f.from_ns).collect();
+        Self { troubles, physics, script, origin_ns, ticks: 0, crash_ns: None, upsets, upset: 0 }
     }
 
     /// Panics at a time (ns), to see what a crash leaves.
@@ -185,10 +192,21 @@ fn nonfinite(scene: &Staged) -> u64 {
     (bones + cloths.map(|c| c.positions.iter().filter(|p| !p.is_finite()).count()).sum::<usize>()) as u64
 }
 
+/// Speed of the fastest particle (m/s); one that is no number is faster than all.
+fn fastest(scene: &Staged) -> f32 {
+    let cloths = scene.frame.cloths().iter();
+    let squares = cloths.flat_map(|cloth| (0..cloth.positions.len()).map(|i| cloth.velocity(i).length_squared()));
+    squares.fold(0.0f32, |most, square| if square <= most { most } else { square }).sqrt()
+}
+
 impl<C: Clock> Turn for Stepping<C> {
     fn turn(&mut self) -> Option<u64> {
         let crashes = self.crash_ns.is_some_and(|at| self.physics.taken().scheduled_ns >= at);
         assert!(!crashes, "the crash that --crash-after asked for");
+        if self.upsets.get(self.upset).is_some_and(|at| *at <= self.physics.now_ns()) {
+            self.physics.upset(self.script.plan.seed.wrapping_add(self.upset as u64));
+            self.upset += 1;
+        }
         self.physics.turn()
     }
 }
@@ -210,6 +228,7 @@ impl<C: Clock> Telling for Stepping<C> {
             off_m: self.off(taken.scheduled_ns),
             nonfinite: nonfinite(&stepper.scene),
             rolled_back: troubles[0] > before[0] || troubles[1] > before[1],
+            fastest_m_s: fastest(&stepper.scene),
         }))
     }
 }

@@ -18,6 +18,9 @@ use crate::skirt::heap::HeapProbe;
 /// wrong, which the report tells.
 pub const FOLLOWS_M: f32 = 0.08;
 
+/// No particle of cloth that a person moves is faster (m/s): a hand that strikes out reaches this.
+const CALM_M_S: f32 = 10.0;
+
 /// A fault that is not over after this time does not count as recovered (ns).
 const GIVEN_UP_NS: u64 = 5 * SECOND_NS;
 
@@ -248,6 +251,7 @@ fn over(by: Sight, until: u64, refused: &mut bool, sign: &Sign) -> Option<u64> {
             let follows = step.seen_ns >= until && step.off_m.is_none_or(|off| off <= FOLLOWS_M);
             (follows && good(step, until)).then_some(step.ended_ns)
         }
+        (Sight::Calm, Sign::Step(step)) => (step.fastest_m_s <= CALM_M_S && good(step, until)).then_some(step.ended_ns),
         (Sight::Step, Sign::Step(step)) => good(step, until).then_some(step.ended_ns),
         (Sight::Refusal, Sign::Step(step)) => (*refused && good(step, until)).then_some(step.ended_ns),
         (Sight::Refusal, Sign::Refused([begun, _])) => {

@@ -14,66 +14,184 @@ pub struct AvatarError {
 
 /// What is wrong, to stand behind the file's name.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[expect(missing_docs, reason = "each message says what its fields are")]
 pub enum Flaw {
+    /// The file cannot be read.
     #[error("it cannot be read ({reason}); give the path of a readable file")]
-    Read { reason: String },
+    Read {
+        /// What the system says.
+        reason: String,
+    },
+    /// The file is larger than [`MAX_BODY_BYTES`].
     #[error("it has {bytes} bytes, more than the {MAX_BODY_BYTES} that are read; reduce its mesh and its pictures")]
-    TooLarge { bytes: u64 },
+    TooLarge {
+        /// Its size (bytes).
+        bytes: u64,
+    },
     /// The text or the structure of the file; the reason holds the cure.
     #[error("{reason}")]
-    Syntax { reason: String },
+    Syntax {
+        /// What is wrong, and the cure.
+        reason: String,
+    },
+    /// No mesh has a skin.
     #[error("it has no mesh that hangs on a skeleton; export the body with its armature, skinning included")]
     NoSkin,
+    /// No mesh has the name that was asked for.
     #[error("it has no mesh named {name}, only {known}; name one of these, or none to take them all")]
-    NoMesh { name: String, known: String },
+    NoMesh {
+        /// The name.
+        name: String,
+        /// The names that there are.
+        known: String,
+    },
+    /// Too few vertices, or more than [`MAX_BODY_VERTICES`].
     #[error("it has {count} vertices, and a body has 4 to {MAX_BODY_VERTICES}; export a mesh of that size")]
-    Vertices { count: usize },
+    Vertices {
+        /// How many there are.
+        count: usize,
+    },
+    /// A coordinate that is no number.
     #[error("{what} {index} is not finite; mend the mesh where it was made and export it again")]
-    NotFinite { what: &'static str, index: usize },
+    NotFinite {
+        /// What it belongs to.
+        what: &'static str,
+        /// Which one of them.
+        index: usize,
+    },
+    /// A weight for a joint that the skin lacks.
     #[error("vertex {vertex} hangs on joint {joint}, but the skin has {joints}; bind the mesh to its armature again")]
-    JointRange { vertex: usize, joint: u32, joints: usize },
+    JointRange {
+        /// The vertex.
+        vertex: usize,
+        /// The joint that it names.
+        joint: u32,
+        /// How many the skin has.
+        joints: usize,
+    },
+    /// Weights that do not sum to 1.
     #[error("the weights of vertex {vertex} sum to {sum} instead of 1; normalise all weights before exporting")]
-    WeightSum { vertex: usize, sum: f32 },
+    WeightSum {
+        /// The vertex.
+        vertex: usize,
+        /// Their sum.
+        sum: f32,
+    },
+    /// A weight that is none.
     #[error("vertex {vertex} has the weight {weight}; weights lie between 0 and 1, so normalise them")]
-    Weight { vertex: usize, weight: f32 },
+    Weight {
+        /// The vertex.
+        vertex: usize,
+        /// The weight.
+        weight: f32,
+    },
+    /// A node that is its own ancestor.
     #[error("node \"{node}\" is below itself; make the armature a tree and export it again")]
-    Cycle { node: String },
+    Cycle {
+        /// Its name.
+        node: String,
+    },
+    /// A node with two parents.
     #[error("node \"{node}\" hangs from two parents; make the armature a tree and export it again")]
-    TwoParents { node: String },
+    TwoParents {
+        /// Its name.
+        node: String,
+    },
+    /// A node whose scale is negative.
     #[error("node \"{node}\" is mirrored by a negative scale; apply scales to the armature before exporting")]
-    Mirrored { node: String },
+    Mirrored {
+        /// Its name.
+        node: String,
+    },
+    /// A node whose scale is 0.
     #[error("node \"{node}\" is scaled to nothing; apply scales to the armature before exporting")]
-    Flat { node: String },
+    Flat {
+        /// Its name.
+        node: String,
+    },
+    /// A bind matrix that cannot be inverted.
     #[error("the inverse bind matrix of joint \"{joint}\" cannot be used; bind the mesh to its armature again")]
-    InverseBind { joint: String },
+    InverseBind {
+        /// The joint's name.
+        joint: String,
+    },
+    /// Joints without which there is no body.
     #[error(
         "no joint was found for {missing} (the names are most like those of {dialect}); name the bones as H-Anim, VRM, \
          Mixamo, Unreal or CMU do, or mark them as a VRM humanoid"
     )]
-    Missing { missing: String, dialect: &'static str },
+    Missing {
+        /// Ours that were not found.
+        missing: String,
+        /// The naming that the file's names are most like.
+        dialect: &'static str,
+    },
+    /// A joint that does not hang below the hips.
     #[error("joint \"{joint}\" has no way up to the hips, so there are several roots; hang every bone below the hips")]
-    Roots { joint: String },
+    Roots {
+        /// Its name.
+        joint: String,
+    },
+    /// A joint that hangs from another than in a body.
     #[error("joint \"{joint}\" hangs from \"{parent}\", where no body has it; check the names of both")]
-    Chain { joint: String, parent: String },
+    Chain {
+        /// Its name.
+        joint: String,
+        /// The name of what it hangs from.
+        parent: String,
+    },
+    /// A body that does not stand along an axis.
     #[error("from the hips to the head it points along {x:.2} {y:.2} {z:.2}, no axis; export it standing upright")]
-    Leaning { x: f32, y: f32, z: f32 },
+    Leaning {
+        /// From the hips to the head, along x (1).
+        x: f32,
+        /// Along y (1).
+        y: f32,
+        /// Along z (1).
+        z: f32,
+    },
+    /// Left and right are swapped.
     #[error("the toes point backwards, so left and right are swapped; mirror the mesh or rename its bones")]
     Swapped,
+    /// A height that is a person's in no unit of length.
     #[error(
         "it is {height} units tall, and no body is 0.5 to 2.6 m tall in metres, decimetres, centimetres or \
          millimetres; scale it to metres"
     )]
-    Units { height: f32 },
+    Units {
+        /// The height, in the file's units.
+        height: f32,
+    },
+    /// A surface that is not closed.
     #[error(
         "the surface is open at {count} edges outside of the head, the first between vertices {a} and {b} near \
          ({x:.2}, {y:.2}, {z:.2}) m; close the body, leave out its clothes, or allow holes"
     )]
-    Hole { count: usize, a: u32, b: u32, x: f32, y: f32, z: f32 },
+    Hole {
+        /// Open edges outside of the head.
+        count: usize,
+        /// One vertex of the first of them.
+        a: u32,
+        /// Its other vertex.
+        b: u32,
+        /// Where it is (m).
+        x: f32,
+        /// Where it is (m).
+        y: f32,
+        /// Where it is (m).
+        z: f32,
+    },
+    /// A level of the body that is not on the mesh.
     #[error("no {level} can be found on the trunk; check that the mesh is a body and hangs on the joints named for it")]
-    Level { level: &'static str },
+    Level {
+        /// Its name.
+        level: &'static str,
+    },
+    /// A target that the folder lacks.
     #[error("there is no target named {name}; name one of the folder's *.target.gz files")]
-    NoTarget { name: String },
+    NoTarget {
+        /// Its name.
+        name: String,
+    },
 }
 
 impl Flaw {

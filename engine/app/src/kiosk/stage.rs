@@ -109,6 +109,10 @@ impl<S: Scene> Scene for Stage<S> {
         self.scene.fingerprint()
     }
 
+    fn upset(&mut self, seed: u64) {
+        self.scene.upset(seed);
+    }
+
     fn succeed(&mut self, before: &mut Self) {
         self.scene.succeed(&mut before.scene);
         std::mem::swap(&mut self.wings, &mut before.wings);

@@ -41,6 +41,9 @@ pub trait Scene {
     /// A hash of the state.
     fn fingerprint(&self) -> u64;
 
+    /// Spoils the state, for a run that tries what is borne.
+    fn upset(&mut self, _seed: u64) {}
+
     /// Takes over what does not go with the scene before it: who works on the steps.
     fn succeed(&mut self, _before: &mut Self) {}
 
@@ -84,6 +87,10 @@ impl Scene for Staged {
 
     fn fingerprint(&self) -> u64 {
         self.frame.fingerprint()
+    }
+
+    fn upset(&mut self, seed: u64) {
+        self.frame.upset(seed);
     }
 
     fn succeed(&mut self, before: &mut Self) {
@@ -289,9 +296,22 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
         Self { changes: Some(changes), ..self }
     }
 
+    /// Spoils the state before the next step, and records that.
+    pub fn upset(&mut self, seed: u64) {
+        self.stepper.scene.upset(seed);
+        if let Some(tape) = &mut self.outlets.tape {
+            tape.push(Entry::Upset(seed));
+        }
+    }
+
     /// The last step.
     pub fn taken(&self) -> Taken {
         self.taken
+    }
+
+    /// The time on the loop's clock (ns).
+    pub fn now_ns(&self) -> u64 {
+        self.clock.now_ns()
     }
 
     /// Steps taken so far, the first ones included.

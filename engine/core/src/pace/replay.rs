@@ -45,6 +45,7 @@ pub fn replay_changing<S: Scene>(
                 }
             }
             Entry::Seen(seen) => waiting = Some(seen),
+            Entry::Upset(seed) => stepper.scene.upset(*seed),
             Entry::Step { tick, scheduled_ns, rung, fingerprint } => {
                 if next.is_some_and(|next| next != *tick) {
                     out.gap_at = out.gap_at.or(Some(*tick));

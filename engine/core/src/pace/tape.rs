@@ -41,6 +41,8 @@ pub enum Entry {
     },
     /// A filtered frame that the next step knew.
     Seen(Seen),
+    /// The state was spoilt by this seed before the next step, to try what is borne.
+    Upset(u64),
     /// A step was taken.
     Step {
         /// Its number.
@@ -116,6 +118,10 @@ pub fn write(entry: &Entry, out: &mut Vec<u8>) {
             [seen.number, seen.arrived_ns].iter().for_each(|n| body.extend(n.to_le_bytes()));
             put_joints(&seen.joints, &mut body);
             b'j'
+        }
+        Entry::Upset(seed) => {
+            body.extend(seed.to_le_bytes());
+            b'u'
         }
         Entry::Step { tick, scheduled_ns, rung, fingerprint } => {
             [*tick, *scheduled_ns, u64::from(*rung), *fingerprint].iter().for_each(|n| body.extend(n.to_le_bytes()));
@@ -197,6 +203,7 @@ fn entry(kind: u8, body: &[u8]) -> Option<Entry> {
             Some(Entry::Seen(Seen { joints, number: word(0)?, arrived_ns: word(1)? }))
         }
         b'c' if words.len() == 2 => Some(Entry::Changed { number: word(0)?, afresh: word(1)? != 0 }),
+        b'u' if words.len() == 1 => Some(Entry::Upset(word(0)?)),
         b's' if words.len() == 4 => Some(Entry::Step {
             tick: word(0)?,
             scheduled_ns: word(1)?,
@@ -240,6 +247,7 @@ mod tests {
             Entry::Dressed(joints),
             Entry::Seen(Seen { joints, arrived_ns: u64::MAX, number: 1 }),
             Entry::Changed { number: 5, afresh: true },
+            Entry::Upset(u64::MAX / 3),
             Entry::Step { tick: 0, scheduled_ns: 9, rung: 2, fingerprint: u64::MAX - 1 },
             Entry::Step { tick: 1, scheduled_ns: 10, rung: 0, fingerprint: 0 },
         ]
@@ -266,7 +274,7 @@ mod tests {
         assert_eq!(read(&bytes), Ok(whole()));
         let step = 2 + 32 + 4;
         for cut in 1..=step {
-            assert_eq!(read(&bytes[..bytes.len() - cut]).unwrap().entries, entries()[..4]);
+            assert_eq!(read(&bytes[..bytes.len() - cut]).unwrap().entries, entries()[..5]);
         }
         assert_eq!(read(&bytes[..bytes.len() - step - 1]), Err(TapeError::Short), "no step is left");
         assert_eq!(read(&bytes[..20]), Err(TapeError::Short));

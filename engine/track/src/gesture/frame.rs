@@ -7,9 +7,10 @@ use toile_sensors::frame::Joints;
 
 /// One of the shopper's own sides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Side {
+    /// Their left.
     Left,
+    /// Their right.
     Right,
 }
 

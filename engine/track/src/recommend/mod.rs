@@ -67,10 +67,12 @@ pub struct Offer<'a> {
 
 /// How a zone fits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Verdict {
+    /// Less ease than is comfortable.
     Tight,
+    /// Comfortable ease.
     Good,
+    /// More ease than is comfortable.
     Loose,
 }
 

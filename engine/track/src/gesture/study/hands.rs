@@ -11,10 +11,12 @@ use super::super::hand::{HandEye, HandShape, HandSight};
 
 /// What a hand is like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum HandPose {
+    /// Open, fingers spread.
     Spread,
+    /// Open, fingers together.
     Stretched,
+    /// Closed.
     Fist,
 }
 

@@ -20,24 +20,40 @@ struct Key {
 
 /// What a shopper does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Act {
+    /// A swipe, one of three.
     Swipe(Gesture),
+    /// A hand held out towards the mirror: to confirm.
     Hold,
+    /// Standing, weight shifted now and then.
     Stand,
+    /// Walking, arms swinging.
     Walk,
+    /// Turning around once.
     TurnAround,
+    /// Scratching the head.
     ScratchHead,
+    /// Putting on a jacket.
     PutOnJacket,
+    /// Pulling a shirt over the head.
     PullOverHead,
+    /// Raising both arms.
     RaiseArms,
+    /// Waving.
     Wave,
+    /// Holding and tapping a phone.
     HoldPhone,
+    /// Smoothing the garment with both hands.
     SmoothGarment,
+    /// Crossing the arms.
     CrossArms,
+    /// A hand put on the hip.
     HandOnHip,
+    /// Adjusting the collar.
     AdjustCollar,
+    /// Taking a hanger from the side.
     TakeHanger,
+    /// Talking with the hands.
     Talk,
 }
 

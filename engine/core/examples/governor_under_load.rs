@@ -1,0 +1,124 @@
+//! The governor under load: the machine becomes slow for a second, quality is given up so that steps stay in time, and
+//! comes back.
+//!
+//! `cargo run --release -p toile-engine --example governor_under_load`
+//!
+//! The loop runs against a simulated clock, which only its lives move: what a step costs is said here, so that the same
+//! load gives the same decisions on every machine.
+
+use std::error::Error;
+
+use toile_assets::body::Body;
+use toile_assets::rig::Rig;
+use toile_assets::{scene, wardrobe};
+use toile_engine::body::JointFrames;
+use toile_engine::clock::{Clock, SimClock};
+use toile_engine::cloth::{Settings, Wind};
+use toile_engine::frame::{Frame, Times};
+use toile_engine::pace::event::{EVENTS, EVENTS_NAME, NoAccount, What};
+use toile_engine::pace::governor::{LADDER, Rung};
+use toile_engine::pace::physics::{Outlets, Physics, Scene, Staged};
+use toile_engine::pace::queue::bounded;
+use toile_engine::pace::sense::{Playback, Seen, Sense};
+use toile_engine::pace::simulate::simulate;
+use toile_engine::relay::Relay;
+use toile_sensors::clock::SECOND_NS;
+use toile_sensors::frame::Joints;
+
+/// What a step costs at whole quality (ns), and while the load lasts.
+const COST_NS: [u64; 2] = [3_000_000, 10_500_000];
+/// When the load begins and ends (ns).
+const LOAD_NS: [u64; 2] = [SECOND_NS, 2 * SECOND_NS];
+/// Length of the run (ns).
+const LENGTH_NS: u64 = 8 * SECOND_NS;
+
+/// The dressed shopper on a machine whose speed is told.
+struct Loaded {
+    staged: Staged,
+    clock: SimClock,
+    share: f32,
+}
+
+impl Scene for Loaded {
+    fn step(&mut self, joints: &Joints, times: Times, clock: &impl Clock) {
+        let loaded = (LOAD_NS[0]..LOAD_NS[1]).contains(&times.scheduled_ns);
+        self.clock.spend((COST_NS[usize::from(loaded)] as f32 * self.share) as u64);
+        self.staged.step(joints, times, clock);
+    }
+
+    fn set_rung(&mut self, rung: &Rung) {
+        self.share = rung.substep_share;
+        self.staged.set_rung(rung);
+    }
+
+    fn measure(&mut self) {
+        self.staged.measure();
+    }
+
+    fn clear_meters(&mut self) {
+        self.staged.clear_meters();
+    }
+
+    fn fingerprint(&self) -> u64 {
+        self.staged.fingerprint()
+    }
+
+    fn troubles(&self) -> [u64; 2] {
+        self.staged.troubles()
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let body = Body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?;
+    let seen = |i: u64| {
+        let pose = scene::shopper(&body.skeleton, i as f32 / 30.0);
+        let at = JointFrames::new(&body.skeleton, &pose).position;
+        Joints::seen(i * SECOND_NS / 30, at)
+    };
+    let frames: Vec<Joints> = (0..240).map(seen).collect();
+    // Threads 40 mm apart: the load is what is shown here, not the dress.
+    let mut style = wardrobe::style("sun-dress")?;
+    (style.spacing_mm, style.columns) = (40.0, 40);
+    let dress = style.dress("38", &body)?;
+    let wind = Some(Wind { velocity: glam::Vec3A::X, drag: 1.2, lift: 0.6 });
+    let rig = Rig::fit(&body);
+    let (mut frame, _snapshots) = Frame::new(body, &rig, vec![dress], Settings { wind, ..Settings::default() })?;
+    frame.dress(&frames[0]);
+
+    let clock = SimClock::default();
+    let Relay { writer, reader } = Relay::new(&Seen::default());
+    let (sender, mut events) = bounded(EVENTS_NAME, EVENTS);
+    let scene = Loaded { staged: Staged::new(frame), clock: clock.clone(), share: 1.0 };
+    let outlets = Outlets { events: sender, tape: None };
+    let mut physics = Physics::new(scene, clock.clone(), 0, reader, outlets, NoAccount);
+    let mut sense = Sense::new(Playback::new(&frames, 0, 2), clock.clone(), writer);
+    simulate(&clock, &mut [&mut sense, &mut physics], LENGTH_NS);
+
+    let mut lowest = 0;
+    while let Some(event) = events.pop() {
+        let at = event.scheduled_ns as f64 / SECOND_NS as f64;
+        match event.what {
+            What::Quality(change) => {
+                lowest = lowest.max(change.to);
+                let rung = &LADDER[usize::from(change.to)];
+                println!("{at:.3} s: rung {} to {}, which gives up {}", change.from, change.to, rung.gives_up);
+            }
+            What::Missed(miss) => {
+                println!("{at:.3} s: a step was published {:.1} ms after it was due", miss.total_ns as f64 * 1e-6);
+            }
+            _ => {}
+        }
+    }
+    let gauges = &physics.gauges;
+    println!(
+        "{} steps, {} late, {} dropped; on each rung {:?}",
+        gauges.steps, gauges.missed, gauges.dropped, gauges.rungs
+    );
+    if lowest == 0 || physics.rung() != 0 {
+        return Err("quality was not given up, or did not come back".into());
+    }
+    if gauges.missed > 4 || gauges.dropped > 0 || physics.stepper.scene.troubles() != [0, 0] {
+        return Err("more steps were late than it takes to see that they are".into());
+    }
+    Ok(())
+}
