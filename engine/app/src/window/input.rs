@@ -119,3 +119,45 @@ impl Ears {
         Some(Heard::Key(key))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use winit::dpi::PhysicalPosition;
+    use winit::event::{DeviceId, Touch as Finger};
+
+    fn finger(id: u64, phase: TouchPhase, x: f64) -> WindowEvent {
+        let location = PhysicalPosition::new(x, 20.0);
+        WindowEvent::Touch(Finger { device_id: DeviceId::dummy(), phase, location, force: None, id })
+    }
+
+    fn mouse(state: ElementState) -> WindowEvent {
+        WindowEvent::MouseInput { device_id: DeviceId::dummy(), state, button: MouseButton::Left }
+    }
+
+    #[test]
+    fn the_first_finger_counts_until_it_is_lifted() {
+        let mut ears = Ears::default();
+        let at = |x: f32| pos2(x, 20.0);
+        assert_eq!(ears.hear(&finger(7, TouchPhase::Started, 10.0)), Some(Heard::Touch(Touch::Down(at(10.0)))));
+        assert_eq!(ears.hear(&finger(8, TouchPhase::Started, 90.0)), None, "a palm");
+        assert_eq!(ears.hear(&finger(8, TouchPhase::Ended, 90.0)), None);
+        assert_eq!(ears.hear(&finger(7, TouchPhase::Ended, 12.0)), Some(Heard::Touch(Touch::Up(at(12.0)))));
+        assert_eq!(ears.hear(&finger(8, TouchPhase::Started, 5.0)), Some(Heard::Touch(Touch::Down(at(5.0)))));
+        assert_eq!(ears.hear(&finger(8, TouchPhase::Cancelled, 5.0)), Some(Heard::Touch(Touch::Cancel)));
+        assert_eq!(ears.hear(&WindowEvent::Focused(false)), None, "nothing is held");
+    }
+
+    #[test]
+    fn the_mouse_is_told_while_its_button_is_down() {
+        let mut ears = Ears::default();
+        let moved =
+            |x: f64| WindowEvent::CursorMoved { device_id: DeviceId::dummy(), position: PhysicalPosition::new(x, 1.0) };
+        assert_eq!(ears.hear(&moved(3.0)), None);
+        assert_eq!(ears.hear(&mouse(ElementState::Pressed)), Some(Heard::Touch(Touch::Down(pos2(3.0, 1.0)))));
+        assert_eq!(ears.hear(&moved(4.0)), Some(Heard::Touch(Touch::Move(pos2(4.0, 1.0)))));
+        assert_eq!(ears.hear(&WindowEvent::Focused(false)), Some(Heard::Touch(Touch::Cancel)));
+        assert_eq!(ears.hear(&mouse(ElementState::Pressed)), Some(Heard::Touch(Touch::Down(pos2(4.0, 1.0)))));
+        assert_eq!(ears.hear(&mouse(ElementState::Released)), Some(Heard::Touch(Touch::Up(pos2(4.0, 1.0)))));
+    }
+}

@@ -80,3 +80,28 @@ impl Figures {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    #[test]
+    fn jitter_is_how_much_the_time_between_pictures_changes_and_a_pause_is_none() {
+        let begun = Instant::now();
+        let mut figures = Figures::new(begun);
+        let at = |ms: u64| begun + Duration::from_millis(ms);
+        for ms in [200, 216, 232, 258] {
+            figures.presented(at(ms - 5), at(ms));
+        }
+        figures.paused();
+        for ms in [9_000, 9_016] {
+            figures.presented(at(ms - 5), at(ms));
+        }
+        let report = figures.report("a".into(), true, [2, 3]);
+        assert_eq!((report.presented, report.first_picture_ms), (6, Some(200.0)));
+        assert_eq!((report.between_us.count, report.jitter_us.count), (4, 2));
+        // A meter keeps 1 % of a time.
+        assert!((report.jitter_us.max - 10_000.0).abs() < 200.0 && report.between_us.max < 27_000.0);
+    }
+}

@@ -33,3 +33,50 @@ pub fn camera(stature: f32, at: Vec3, yaw: f32, free: [f32; 4], aspect: f32) -> 
     // The eye stays at its height and looks down a little: from the height of the target it would see along the floor.
     Camera { target, distance, height: near.height + above, ..near }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec2;
+
+    /// Where a point is seen, as shares of the display from its upper left corner.
+    fn seen(camera: &Camera, aspect: f32, point: Vec3) -> Vec2 {
+        let (sin, cos) = camera.yaw.sin_cos();
+        let eye = camera.target + Vec3::new(sin, 0.0, cos) * camera.distance + Vec3::Y * camera.height;
+        let forward = (camera.target - eye).normalize();
+        let right = Vec3::new(cos, 0.0, -sin);
+        let up = right.cross(forward);
+        let to = point - eye;
+        let half = (0.5 * camera.fov_y).tan() * to.dot(forward);
+        Vec2::new(0.5 + 0.5 * to.dot(right) / (half * aspect), 0.5 - 0.5 * to.dot(up) / half)
+    }
+
+    #[test]
+    fn the_body_stands_whole_in_what_the_panel_leaves_free_from_every_side() {
+        for (free, aspect) in [
+            ([0.0, 0.0, 1.0, 0.4], 9.0 / 16.0),
+            ([0.0, 0.0, 1.0, 0.6], 9.0 / 16.0),
+            ([0.0, 0.0, 0.58, 1.0], 16.0 / 9.0),
+            ([0.0, 0.0, 1.0, 1.0], 1.0),
+        ] {
+            for stature in [1.5, 1.95] {
+                for yaw in [0.0, 0.8, 3.1, -1.6] {
+                    let at = Vec3::new(0.3, 0.0, 1.2);
+                    let camera = camera(stature, at, yaw, free, aspect);
+                    let (head, feet) = (at + Vec3::Y * stature, at);
+                    for point in [head, feet] {
+                        let p = seen(&camera, aspect, point);
+                        assert!(
+                            p.x > free[0] && p.x < free[2] && p.y > free[1] && p.y < free[3],
+                            "{free:?} {yaw}: {p}"
+                        );
+                    }
+                    let tall = seen(&camera, aspect, feet).y - seen(&camera, aspect, head).y;
+                    assert!(tall > 0.5 * (free[3] - free[1]), "{free:?}: it fills only {tall}");
+                    let eye = camera.target.y + camera.height;
+                    assert!(eye > 0.5 * stature, "the eye at {eye} sees along the floor");
+                }
+            }
+        }
+    }
+}

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align, Color32, FontId, Galley, Painter, Pos2, Rect, TextFormat, Vec2, pos2, vec2};
 
+use super::code;
 use super::controls::{self, Button};
 use super::theme::{self, Sizes};
 use crate::guest::screen::{Block, Screen, Stage};
@@ -13,10 +14,13 @@ use crate::guest::screen::{Block, Screen, Stage};
 const SQUEEZES: [f32; 6] = [1.0, 0.92, 0.84, 0.76, 0.68, 0.6];
 
 /// Most of a standing display's height that the panel covers.
-const MOST_PANEL: f32 = 0.7;
+const MOST_PANEL: f32 = 0.72;
 
 /// The same where it stands before somebody who looks at themselves, if it can.
 const BESIDE_BODY: f32 = 0.48;
+
+/// Most of the display's height that a code takes.
+const MOST_CODE: f32 = 0.5;
 
 /// Tighter than this only what has no place otherwise.
 const READ_WITH_EASE: f32 = 0.8;
@@ -64,7 +68,10 @@ pub struct Laid {
 /// Lays a screen out on a display.
 pub fn lay(screen: &Screen, sizes: Sizes, painter: &Painter) -> Laid {
     let mut last = None;
-    let most = sizes.display[1] * if matches!(screen.stage, Stage::Mannequin) { MOST_PANEL } else { BESIDE_BODY };
+    // A code is scanned from where one stands: it has all the room there is.
+    let code = screen.blocks.iter().any(|block| matches!(block, Block::Code { .. }));
+    let beside = !code && !matches!(screen.stage, Stage::Mannequin);
+    let most = sizes.display[1] * if beside { BESIDE_BODY } else { MOST_PANEL };
     for squeeze in SQUEEZES {
         let laid = lay_at(screen, sizes.squeezed(squeeze), painter);
         let whole = laid.fits && laid.scrolls == 0.0;
@@ -157,7 +164,9 @@ fn block(index: usize, block: &Block, width: f32, sizes: Sizes, painter: &Painte
                 ends.iter().map(|e| words(painter, e, sizes.small(), theme::SOFT, width * 0.48)).collect();
             (sizes.body * 0.9 + ends.iter().map(|e| e.size().y).fold(0.0, f32::max), ends)
         }
-        Block::Code { .. } => ((sizes.body * 14.0 * sizes.squeeze).min(width).round(), vec![]),
+        Block::Code { side, .. } => {
+            (code::side(*side, width.min(sizes.display[1] * MOST_CODE * sizes.squeeze)), vec![])
+        }
         Block::Countdown { seconds } => {
             let number = words(painter, &clock(*seconds), big(sizes), theme::INK, width);
             ((number.size().y * 1.3).round(), vec![number])
