@@ -56,31 +56,33 @@ pub enum Artist {
 }
 
 impl Artist {
-    /// Gets ready for a body and garments.
+    /// Finds what draws; before any long work.
     ///
     /// # Errors
     /// [`AppError::Usage`] where a GPU is asked for that was not built in, [`AppError::Device`] where there is none.
-    #[cfg(feature = "view")]
-    pub fn new(renderer: Renderer, body: &Body, garments: &[Garment]) -> Result<Self, AppError> {
+    pub fn open(renderer: Renderer) -> Result<Self, AppError> {
         match renderer {
             Renderer::Cpu => Ok(Self::Tracer),
-            Renderer::Gpu => Ok(Self::Mirror(Box::new(mirror::Mirror::new(body, garments)?))),
-        }
-    }
-
-    /// Gets ready for a body and garments.
-    ///
-    /// # Errors
-    /// [`AppError::Usage`] where a GPU is asked for that was not built in.
-    #[cfg(not(feature = "view"))]
-    pub fn new(renderer: Renderer, _body: &Body, _garments: &[Garment]) -> Result<Self, AppError> {
-        match renderer {
-            Renderer::Cpu => Ok(Self::Tracer),
+            #[cfg(feature = "view")]
+            Renderer::Gpu => Ok(Self::Mirror(Box::new(mirror::Mirror::open()?))),
+            #[cfg(not(feature = "view"))]
             Renderer::Gpu => Err(AppError::Usage(
                 "this build cannot draw on a GPU; build it with `cargo build --release --features view`, or leave out \
                  `--renderer gpu`"
                     .to_owned(),
             )),
+        }
+    }
+
+    /// Gets ready for a body and what it wears.
+    pub fn prepare(&mut self, body: &Body, garments: &[Garment]) {
+        match self {
+            // Rays need nothing but the surfaces of each picture.
+            Self::Tracer => {
+                let (_, _) = (body, garments);
+            }
+            #[cfg(feature = "view")]
+            Self::Mirror(mirror) => mirror.prepare(body, garments),
         }
     }
 
@@ -107,16 +109,17 @@ impl Artist {
         mut done: impl FnMut(),
     ) -> Result<Vec<Image>, AppError> {
         match self {
-            Self::Tracer => {
+            // Lines are refused where rays draw.
+            Self::Tracer if lines.is_empty() => {
                 let stage = Stage::build(Scene { surfaces, floor: true });
                 let shot = |camera: &Camera| {
                     let image = stage.render(camera, size, quality);
                     done();
                     image
                 };
-                let _ = lines;
                 Ok(look(&stage.bounds()).iter().map(shot).collect())
             }
+            Self::Tracer => Err(AppError::internal("lines were asked of the ray tracer")),
             #[cfg(feature = "view")]
             Self::Mirror(mirror) => {
                 mirror.take(surfaces, lines, quality)?;

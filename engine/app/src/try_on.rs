@@ -54,6 +54,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     if args.renderer == Renderer::Cpu && !args.lines.is_empty() {
         return Err(AppError::Usage("lines are drawn by the GPU alone; add `--renderer gpu`".to_owned()));
     }
+    let mut artist = Artist::open(args.renderer)?;
     let words = Words::new(args.quiet || args.json);
     let mut out = OutputFolder::prepare(&args.out)?;
     let wanted = wanted(args)?;
@@ -77,7 +78,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let track = shopper::believable(&session);
     let track = &track[shopper::stands_from(&track)..];
     let title = title(&recommendations);
-    let played = play(args, &words, &mut out, &mut frame, &mut reader, track, &title)?;
+    let played = play((args, &words, &title), &mut out, &mut artist, &mut frame, &mut reader, track)?;
 
     if args.glb {
         out.write("dressed.glb", &dressed(&frame, reader.latest()))?;
@@ -210,19 +211,18 @@ struct Played {
 
 /// Plays the session through the frame, 120 steps a second, and draws it.
 fn play(
-    args: &TryOnArgs,
-    words: &Words,
+    (args, words, title): (&TryOnArgs, &Words, &str),
     out: &mut OutputFolder,
+    artist: &mut Artist,
     frame: &mut Frame,
     reader: &mut Reader<Snapshot>,
     track: &[Joints],
-    title: &str,
 ) -> Result<Played, AppError> {
     let (Some(first), Some(last)) = (track.first(), track.last()) else {
         return Err(AppError::internal("a session without joints was let through"));
     };
     let steps = ns_to_ticks(last.time_ns - first.time_ns).max(1);
-    let mut artist = Artist::new(args.renderer, frame.body(), frame.garments())?;
+    artist.prepare(frame.body(), frame.garments());
     let mut pictures = None;
     if args.pictures {
         let bar = words.bar(Pictures::work(steps), "drawing");
@@ -237,11 +237,11 @@ fn play(
         frame.step(&joints);
         if let Some(pictures) = pictures.as_mut().filter(|p| p.wants(tick)) {
             draw_lines(&mut lines, &args.lines, frame);
-            pictures.add(&mut artist, reader.latest(), lines.as_slice())?;
+            pictures.add(artist, reader.latest(), lines.as_slice())?;
         }
         if let Some(video) = video.as_mut().filter(|_| Video::wants(tick)) {
             draw_lines(&mut lines, &args.lines, frame);
-            video.add(&mut artist, reader.latest(), lines.as_slice())?;
+            video.add(artist, reader.latest(), lines.as_slice())?;
         }
     }
     let drew = pictures.is_some() || video.is_some();
@@ -256,7 +256,7 @@ fn play(
         let facing = ahead.x.atan2(ahead.z);
         draw_lines(&mut lines, &args.lines, frame);
         let ending = Ending { tightness: &tightness, facing, title, lines: lines.as_slice() };
-        pictures.finish(out, &mut artist, reader.latest(), &ending)?;
+        pictures.finish(out, artist, reader.latest(), &ending)?;
     }
     let film = video.map(Video::finish).transpose()?;
     Ok(Played { renderer: drew.then(|| artist.describe()), film })

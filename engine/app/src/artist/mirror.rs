@@ -32,9 +32,14 @@ impl Mirror {
     ///
     /// # Errors
     /// [`AppError::Device`].
-    pub fn new(body: &Body, garments: &[Garment]) -> Result<Self, AppError> {
+    pub fn open() -> Result<Self, AppError> {
         let gpu = Gpu::offscreen(&Choice::Fastest)
             .map_err(|e: GpuError| device(format!("{e}; or leave out `--renderer gpu`")))?;
+        Ok(Self { gpu, model: Model::default(), still: None, motion: None, targets: Vec::new() })
+    }
+
+    /// Takes over a body and what it wears.
+    pub fn prepare(&mut self, body: &Body, garments: &[Garment]) {
         let skin = Shape {
             rest: body.mesh.positions.clone(),
             uv: None,
@@ -49,8 +54,8 @@ impl Mirror {
             colour: Vec3::from_array(g.fabric.colour.map(linear)),
             material: Material::Cloth((&g.fabric).into()),
         };
-        let surfaces = std::iter::once(skin).chain(garments.iter().map(cloth)).collect();
-        Ok(Self { gpu, model: Model { surfaces }, still: None, motion: None, targets: Vec::new() })
+        self.model = Model { surfaces: std::iter::once(skin).chain(garments.iter().map(cloth)).collect() };
+        (self.still, self.motion) = (None, None);
     }
 
     /// What draws.
