@@ -4,6 +4,7 @@
 //! Budget: the words and the parsing take under 10 ms; the work itself is budgeted by the rooms it calls.
 //! Thread: the main thread, which loads, starts the frame's threads and waits for them.
 
+pub mod artist;
 pub mod bake;
 pub mod bench;
 pub mod bodies;
@@ -14,6 +15,7 @@ pub mod completions;
 pub mod convert;
 pub mod crash;
 pub mod doctor;
+mod drawing;
 pub mod dump;
 pub mod exit;
 pub mod fit;
@@ -43,6 +45,7 @@ pub mod torture;
 pub mod tracking;
 pub mod try_on;
 pub mod validate;
+pub mod video;
 #[cfg(feature = "kiosk")]
 pub mod window;
 

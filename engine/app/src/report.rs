@@ -216,6 +216,8 @@ pub struct TryOn {
     pub physics: Physics,
     /// Hash of the last state, 16 hexadecimal digits; the same input gives the same.
     pub state_hash: String,
+    /// What drew the pictures; nothing where there are none.
+    pub renderer: Option<String>,
     /// The files written.
     pub files: Vec<PathBuf>,
 }

@@ -11,7 +11,7 @@ pub const FRESNEL: f32 = 0.04;
 pub const GLOSS: f32 = 18.0;
 
 /// Strength of the cloth's sheen at the most grazing angle (Burley 2012, "Physically based shading at Disney").
-pub const SHEEN: f32 = 0.35;
+const SHEEN: f32 = 0.35;
 
 /// How far the sheen takes the cloth's own colour rather than white.
 pub const SHEEN_TINT: f32 = 0.6;

@@ -4,15 +4,12 @@ use glam::Vec3;
 use toile_assets::mesh::vertex_normals;
 use toile_engine::cloth::measure;
 use toile_engine::frame::{Frame, Snapshot};
-use toile_view::mirror::{Cloth, Material, Model, Shape, Weave};
+use toile_view::mirror::{Material, Model, Shape};
 use toile_view::scene::MANNEQUIN;
 use toile_view::tuck::Cover;
 
 /// Skin under a garment counts as so much farther off (m): how far a bent body stands out of its capsules.
 const RECESS_M: f32 = 0.04;
-
-/// Strength of the sheen of cloth.
-const SHEEN: f32 = 0.5;
 
 /// Two sizes of the same outfit on the same body, draped: left and right.
 pub type Pair = [Look; 2];
@@ -76,7 +73,7 @@ impl Look {
                 uv: None,
                 triangles: garment.triangles.to_vec(),
                 colour: Vec3::from_array(garment.fabric.colour.map(toile_view::image::linear)),
-                material: Material::Cloth(Cloth { weave: Weave::Plain, pitch: glam::Vec2::splat(4e-4), sheen: SHEEN }),
+                material: Material::Cloth((&garment.fabric).into()),
             });
         }
         let tight = |(cloth, garment)| measure::tightness(cloth, garment, frame.colliders());

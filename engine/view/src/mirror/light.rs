@@ -91,7 +91,7 @@ impl Sight {
         };
         words.four([scale.x, scale.y, kind, 0.0]);
         words.four([self.size.width as f32, self.size.height as f32, 0.0, 0.0]);
-        words.four([scope.width, scope.offset, scope.reach * scope.reach, 0.0]);
+        words.four([scope.width, scope.offset, scope.reach * scope.reach, scope.width / quality.tile as f32]);
         debug_assert_eq!(words.0.len(), HEAD);
         let (columns, rows) = quality.grid();
         for (number, toward) in (0..).zip(beams(&studio, quality)) {

@@ -5,7 +5,6 @@
 //! Thread: render; it may wait for the display, which the physics thread never does.
 
 mod blend;
-pub mod film;
 mod gpu;
 mod light;
 mod model;
@@ -21,6 +20,7 @@ mod textures;
 mod threads;
 mod weave;
 
+pub use crate::film;
 pub use blend::Blend;
 pub use gpu::{Choice, Gpu, GpuError};
 pub use model::{Cloth, Material, Model, ModelError, Shape};
@@ -29,7 +29,7 @@ pub use presenter::{Pace, Presenter, REST, Shown};
 pub use quality::{MOST_BEAMS, Quality};
 pub use renderer::{Backdrop, MOST_VIEWS, Renderer, Viewport};
 pub use surface_state::{Event, Step, SurfaceState};
+pub use toile_assets::fabric::Weave;
 pub use toile_engine::lines::Line;
-pub use weave::Weave;
 /// The graphics library itself, for whoever hands over surfaces and targets.
 pub use wgpu;

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::weave::Weave;
+use toile_assets::fabric::{Fabric, Weave};
 
 /// All surfaces of a scene, in dressing order: the body, then garments from the skin outwards.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -48,6 +48,13 @@ pub struct Cloth {
     pub pitch: Vec2,
     /// Strength of the sheen at the most grazing angle (0..1).
     pub sheen: f32,
+}
+
+impl From<&Fabric> for Cloth {
+    fn from(fabric: &Fabric) -> Self {
+        let [weft, warp] = fabric.threads_per_cm;
+        Self { weave: fabric.weave, pitch: 0.01 / Vec2::new(weft, warp), sheen: fabric.sheen }
+    }
 }
 
 /// Why a surface cannot be drawn.

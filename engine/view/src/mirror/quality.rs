@@ -4,7 +4,7 @@
 pub const MOST_BEAMS: u32 = 112;
 
 /// What a picture is drawn with. Lamps and sky are taken apart into beams, parallel lights with a depth map each: one
-/// beam of a lamp gives a hard shadow, many the soft one of its disc.
+/// beam of a lamp gives a shadow whose edge is as soft everywhere, many the shadow of its disc.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Quality {
     /// Samples a pixel along edges: 1 or 4, which every driver has.
@@ -23,7 +23,7 @@ pub struct Quality {
 
 impl Quality {
     /// A live picture drawn by the processor, beside physics.
-    pub const LOW: Self = Self { samples: 1, key: 4, rim: 0, sky: 6, tile: 256, weave: false };
+    pub const LOW: Self = Self { samples: 1, key: 1, rim: 0, sky: 6, tile: 256, weave: false };
 
     /// A live picture drawn by graphics hardware.
     pub const HIGH: Self = Self { samples: 4, key: 12, rim: 6, sky: 40, tile: 384, weave: true };

@@ -11,6 +11,9 @@ const LIGHT: &str = include_str!("shaders/light.wgsl");
 /// Half the width of a line (pixels).
 const LINE_HALF_WIDTH: f32 = 0.9;
 
+/// How far from its place the shadow of a single beam is looked up (texels).
+const SOFTNESS: f32 = 1.6;
+
 /// Depth maps.
 pub fn depth() -> String {
     [&numbers(false), FRAME, include_str!("shaders/depth.wgsl")].concat()
@@ -45,7 +48,7 @@ fn numbers(weave: bool) -> String {
     format!(
         "const MOST_BEAMS = {MOST_BEAMS};\nconst FRESNEL = {:?};\nconst GLOSS = {:?};\nconst SHEEN_TINT = {:?};\n\
          const BOUNCE = {:?};\nconst DESATURATION = {:?};\nconst STEEPEST = {STEEPEST:?};\n\
-         const LINE_HALF_WIDTH = {LINE_HALF_WIDTH:?};\nconst WEAVE = {weave};\n\
+         const LINE_HALF_WIDTH = {LINE_HALF_WIDTH:?};\nconst SOFTNESS = {SOFTNESS:?};\nconst WEAVE = {weave};\n\
          const FIT_STEPS = array<vec3<f32>, {}>({});\n",
         shade::FRESNEL,
         shade::GLOSS,

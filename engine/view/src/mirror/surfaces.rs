@@ -1,13 +1,14 @@
 //! The surfaces as the device has them: buffers made once, written over from picture to picture.
 
 use glam::{Vec2, Vec3};
+use toile_assets::fabric::Weave;
 use toile_assets::mesh::vertex_normals;
 use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue, TextureView};
 
 use super::model::{Material, ModelError, Shape, check_triangles};
 use super::pipelines::Layouts;
 use super::threads::Threads;
-use super::weave::Weave;
+use super::weave::repeat;
 use crate::scene::Bounds;
 
 /// What is sent for a fit that is no number.
@@ -246,7 +247,7 @@ impl Drawn {
         let (kind, sheen, repeats) = match self.material {
             Material::Skin => (0.0, 0.0, Vec2::ZERO),
             Material::Cloth(cloth) => {
-                let repeat = (cloth.pitch * cloth.weave.repeat() as f32).max(Vec2::splat(1e-6));
+                let repeat = (cloth.pitch * repeat(cloth.weave) as f32).max(Vec2::splat(1e-6));
                 (1.0, cloth.sheen, 1.0 / repeat)
             }
             Material::Chart => (2.0, 0.0, Vec2::ZERO),

@@ -3,7 +3,8 @@
 use wgpu::{Device, Extent3d, Queue, Sampler, TextureView};
 
 use super::textures;
-use super::weave::{SIDE, Weave};
+use super::weave::{Relief, SIDE};
+use toile_assets::fabric::Weave;
 
 /// Every weave's relief.
 #[derive(Debug)]
@@ -19,7 +20,7 @@ impl Threads {
     /// Makes the reliefs, or a flat texel each where threads are not drawn.
     pub fn new(device: &Device, queue: &Queue, drawn: bool) -> Self {
         let map = |weave: Weave| {
-            let levels = if drawn { weave.levels() } else { vec![vec![[128, 128, 255, 255]]] };
+            let levels = if drawn { Relief(weave).levels() } else { vec![vec![[128, 128, 255, 255]]] };
             let side = if drawn { SIDE } else { 1 };
             upload(device, queue, side, &levels)
         };

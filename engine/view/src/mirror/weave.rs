@@ -5,17 +5,7 @@
 
 use std::f32::consts::{PI, TAU};
 
-/// How threads run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Weave {
-    /// Each weft thread over one warp thread and under the next.
-    #[default]
-    Plain,
-    /// Over two and under two, each row one thread further: a diagonal rib.
-    Twill,
-    /// Weft knit, the right side: columns of V-shaped stitches.
-    Knit,
-}
+use toile_assets::fabric::Weave;
 
 /// Texels of a map's side, a power of two.
 pub const SIDE: u32 = 128;
@@ -29,33 +19,36 @@ const GAP: f32 = 0.38;
 /// Greatest slope that a texel can hold.
 pub const STEEPEST: f32 = 2.0;
 
-impl Weave {
-    /// Threads of one repeat, along both sides.
-    pub fn repeat(self) -> u32 {
-        match self {
-            Self::Plain => 2,
-            Self::Twill => 4,
-            Self::Knit => 1,
-        }
+/// Threads of one repeat, along both sides.
+pub fn repeat(weave: Weave) -> u32 {
+    match weave {
+        Weave::Plain => 2,
+        Weave::Twill => 4,
+        Weave::Knit => 1,
     }
+}
 
+/// The relief of one repeat.
+#[derive(Debug, Clone, Copy)]
+pub struct Relief(pub Weave);
+
+impl Relief {
     /// Height over the middle surface, 0 (deepest gap) .. 1 (top of a thread), at a place in the repeat; both
     /// coordinates in threads.
     fn height(self, x: f32, y: f32) -> f32 {
-        match self {
-            Self::Plain | Self::Twill => self.woven(x, y),
-            Self::Knit => knitted(x, y),
+        match self.0 {
+            Weave::Plain | Weave::Twill => self.woven(x, y),
+            Weave::Knit => knitted(x, y),
         }
     }
 
     /// The higher of the two threads that cross here. Each is a rounded ridge that rises where it lies on top.
     fn woven(self, x: f32, y: f32) -> f32 {
-        let period = self.repeat() as f32;
         let (column, row) = (x.floor(), y.floor());
         let over = |column: f32, row: f32| {
-            let shift = if self == Self::Twill { column + row } else { 2.0 * (column + row) };
-            // One over one, or two over two, along the row.
-            if (shift.rem_euclid(if self == Self::Twill { period } else { 4.0 })) < 2.0 { 1.0 } else { 0.0 }
+            // Along the row one over one, or two over two.
+            let step = if self.0 == Weave::Twill { 1.0 } else { 2.0 };
+            if (step * (column + row)).rem_euclid(4.0) < 2.0 { 1.0 } else { 0.0 }
         };
         // How far up the warp (or the weft) lies here, eased towards the neighbours along its own run.
         let eased = |at: f32, here: f32, before: f32, after: f32| {
@@ -73,7 +66,7 @@ impl Weave {
     /// One repeat as texels `[SIDE x SIDE]`, rows from v = 0: slope along u, slope along v (both over the thread pitch,
     /// -[`STEEPEST`]..[`STEEPEST`]), and how open to light, each a byte; the fourth is unused.
     pub fn map(self) -> Vec<[u8; 4]> {
-        let threads = self.repeat() as f32;
+        let threads = repeat(self.0) as f32;
         let texel = threads / SIDE as f32;
         let height = |x: f32, y: f32| self.height(x.rem_euclid(threads), y.rem_euclid(threads));
         let slope = |rise: f32| ((rise * RELIEF / (2.0 * texel) / STEEPEST).clamp(-1.0, 1.0) * 127.0 + 128.0) as u8;
@@ -123,7 +116,7 @@ mod tests {
     #[test]
     fn every_weave_has_relief_that_averages_to_nothing() {
         for weave in [Weave::Plain, Weave::Twill, Weave::Knit] {
-            let map = weave.map();
+            let map = Relief(weave).map();
             let mean = |c: usize| map.iter().map(|t| f32::from(t[c]) - 128.0).sum::<f32>() / map.len() as f32;
             let rough = map.iter().filter(|t| t[0].abs_diff(128) > 12 || t[1].abs_diff(128) > 12).count();
             assert!(mean(0).abs() < 4.0 && mean(1).abs() < 4.0, "{weave:?} leans: {} {}", mean(0), mean(1));
@@ -134,10 +127,10 @@ mod tests {
     #[test]
     fn weaves_repeat_without_a_seam() {
         for weave in [Weave::Plain, Weave::Twill, Weave::Knit] {
-            let threads = weave.repeat() as f32;
+            let threads = repeat(weave) as f32;
             for i in 0..40 {
                 let at = i as f32 * threads / 40.0;
-                let (left, right) = (weave.height(1e-4, at), weave.height(threads - 1e-4, at));
+                let (left, right) = (Relief(weave).height(1e-4, at), Relief(weave).height(threads - 1e-4, at));
                 assert!((left - right).abs() < 0.06, "{weave:?} at {at}: {left} {right}");
             }
         }
@@ -145,7 +138,7 @@ mod tests {
 
     #[test]
     fn levels_halve_down_to_one_flat_texel() {
-        let levels = Weave::Twill.levels();
+        let levels = Relief(Weave::Twill).levels();
         assert_eq!(levels.len(), SIDE.ilog2() as usize + 1);
         assert!(levels.iter().enumerate().all(|(i, l)| l.len() == (SIDE as usize >> i).pow(2)));
         let last = levels[levels.len() - 1][0];
@@ -156,10 +149,10 @@ mod tests {
     fn twill_runs_diagonally_and_plain_does_not() {
         // Shifted by one thread along both, a twill looks as before; a plain weave too, but not along one alone.
         for (x, y) in [(0.3, 0.4), (1.6, 2.2), (2.5, 3.7)] {
-            let twill = |x: f32, y: f32| Weave::Twill.height(x % 4.0, y % 4.0);
+            let twill = |x: f32, y: f32| Relief(Weave::Twill).height(x % 4.0, y % 4.0);
             assert!((twill(x, y) - twill(x + 1.0, y + 3.0)).abs() < 1e-5);
         }
-        let plain = |x: f32, y: f32| Weave::Plain.height(x % 2.0, y % 2.0);
+        let plain = |x: f32, y: f32| Relief(Weave::Plain).height(x % 2.0, y % 2.0);
         assert!((plain(0.5, 0.8) - plain(1.5, 0.8)).abs() > 0.01);
     }
 }

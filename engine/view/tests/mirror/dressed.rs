@@ -1,12 +1,12 @@
 //! A dressed mannequin, for both ways of drawing: shared by the tests of the mirror and its example.
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::garment::Garment;
 use toile_assets::mesh::vertex_normals;
 use toile_assets::wardrobe;
 use toile_view::image::linear;
-use toile_view::mirror::{self, Model, Renderer, Shape, Weave};
+use toile_view::mirror::{self, Model, Renderer, Shape};
 use toile_view::scene::{Bounds, Colours, MANNEQUIN, Material, Surface};
 use toile_view::tuck::Cover;
 
@@ -74,7 +74,6 @@ impl Dressed {
 
     /// The same as the mirror takes them.
     pub fn model(&self) -> Model {
-        let look = mirror::Cloth { weave: Weave::Plain, pitch: Vec2::splat(5e-4), sheen: 0.35 };
         let skin = Shape {
             rest: self.body.clone(),
             uv: None,
@@ -87,7 +86,7 @@ impl Dressed {
             uv: None,
             triangles: self.garment.triangles.to_vec(),
             colour: self.colour,
-            material: mirror::Material::Cloth(look),
+            material: mirror::Material::Cloth((&self.garment.fabric).into()),
         };
         Model { surfaces: vec![skin, cloth] }
     }

@@ -44,7 +44,8 @@ struct Frame {
     picture: vec4<f32>,
     // Width and height (pixels).
     size: vec4<f32>,
-    // Width of the depth maps (m), gap to a surface (m), square of how far from the middle they reach (m2).
+    // Width of the depth maps (m), gap to a surface (m), square of how far from the middle they reach (m2),
+    // a texel (m).
     scope: vec4<f32>,
     beams: array<Beam, MOST_BEAMS>,
 }

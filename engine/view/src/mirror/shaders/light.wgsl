@@ -92,12 +92,28 @@ fn in_scope(beam: u32, place: vec3<f32>) -> bool {
     return dot(across, across) < frame.scope.z;
 }
 
+// Share of a single beam's light that arrives around a place: four looks on a turned square make its edge soft, as wide
+// everywhere (Reeves, Salesin and Cook 1987, "Rendering antialiased shadows with depth maps").
+fn softly(beam: u32, place: vec3<f32>) -> f32 {
+    if !in_scope(beam, place) {
+        return 1.0;
+    }
+    let a = normalize(frame.beams[beam].u.xyz) * (SOFTNESS * frame.scope.w);
+    let b = normalize(frame.beams[beam].v.xyz) * (SOFTNESS * frame.scope.w);
+    let dark = stopped(beam, place + a + 0.4 * b, 0.0) + stopped(beam, place + 0.4 * a - b, 0.0)
+        + stopped(beam, place - a - 0.4 * b, 0.0) + stopped(beam, place - 0.4 * a + b, 0.0);
+    return 1.0 - 0.25 * dark;
+}
+
 // Share of a lamp's light that arrives.
 fn lit(first: u32, count: u32, place: Place) -> f32 {
     if count == 0u {
         return 1.0;
     }
     let start = place.position + place.normal * frame.scope.y;
+    if count == 1u {
+        return softly(first, start);
+    }
     var arrived = 0.0;
     for (var i = first; i < first + count; i++) {
         arrived += 1.0;
