@@ -59,10 +59,16 @@ impl Model {
                 add(&[LargeType]);
             }
             Page::Guide if self.session.state() == State::Attract => add(&[Seated, Open(Page::Settings), Leave]),
-            Page::Guide => add(&[Measure, Seated, Open(Page::Settings), Leave]),
+            Page::Guide => {
+                add(&[Measure, Seated]);
+                self.go_on(&mut add);
+                add(&[Open(Page::Settings), Leave]);
+            }
             Page::Measuring => add(&[Leave]),
             Page::Unmeasured if self.visit.taking == Taking::Failed => {
-                add(&[Measure, Seated, Open(Page::Settings), Leave]);
+                add(&[Measure, Seated]);
+                self.go_on(&mut add);
+                add(&[Open(Page::Settings), Leave]);
             }
             Page::Unmeasured => add(&[Back, Measure, Seated, Leave]),
             Page::Fitting => self.fitting(&mut add),
@@ -94,6 +100,13 @@ impl Model {
             Page::Leaving => add(&[Stay, Leave]),
         }
         list
+    }
+
+    /// Who stands dressed need not be measured again.
+    fn go_on(&self, add: &mut impl FnMut(&[Action])) {
+        if self.visit.dressed {
+            add(&[Action::Back]);
+        }
     }
 
     fn fitting(&self, add: &mut impl FnMut(&[Action])) {

@@ -39,7 +39,7 @@ pub struct Rules {
     pub answer_ns: u64,
     /// Who touched something is there for so long, seen or not.
     pub touch_ns: u64,
-    /// Who began by touch and is not seen is waited for so long.
+    /// Who has touched something while nobody is seen is waited for so long.
     pub begin_ns: u64,
     /// A picture is kept for so long.
     pub picture_ns: u64,
@@ -302,7 +302,9 @@ impl Model {
                 State::Measuring | State::TryOn | State::Left => {}
             }
         }
-        let expired = self.visit.begun_ns.is_some_and(|t| self.now_ns - t >= rules.begin_ns);
+        // Who begins and does not come, or has chosen a language and walked on, leaves the display as it was.
+        let touched = self.visit.begun_ns.max(self.visit.touched_ns);
+        let expired = touched.is_some_and(|t| self.now_ns - t >= rules.begin_ns);
         if expired && self.session.state() == State::Attract {
             self.visit = Visit::new(self.house.language, self.house.large);
         }

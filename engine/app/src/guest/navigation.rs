@@ -93,6 +93,9 @@ impl Model {
     }
 
     pub(super) fn back(&mut self) {
+        if self.visit.open != Page::Settings && matches!(self.visit.taking, Taking::Guide { .. } | Taking::Failed) {
+            self.visit.taking = Taking::No;
+        }
         self.visit.open = self.visit.trail.pop().unwrap_or(Page::Fitting);
     }
 

@@ -9,6 +9,7 @@ use super::layout::Mount;
 use super::model::Model;
 use super::screen::{Action, Block, Control, Look, Page, Screen, Stage};
 use super::shelf::Item;
+use super::visit::Taking;
 use super::words::{Key, Language, Value, Voice, Words};
 use toile_view::image::linear;
 
@@ -100,6 +101,11 @@ impl Teller<'_> {
         self.item().and_then(|item| item.sizes.get(size)).map_or("", String::as_str)
     }
 
+    /// Whether somebody was measured, but not all of them.
+    fn is_partly(&self) -> bool {
+        self.model.visit.known.is_some() && self.model.visit.taking != Taking::Failed
+    }
+
     fn parts(&self, parts: &[Part]) -> String {
         let words: Vec<String> = parts.iter().map(|part| self.say(part.word())).collect();
         self.voice.list(&words)
@@ -112,7 +118,7 @@ impl Teller<'_> {
             Page::Guide if model.visit.seated => self.say(Key::GuideHeadingSeated),
             Page::Guide => self.say(Key::GuideHeading),
             Page::Measuring => self.say(Key::MeasuringHeading),
-            Page::Unmeasured if model.visit.known.is_some() => self.say(Key::PartlyHeading),
+            Page::Unmeasured if self.is_partly() => self.say(Key::PartlyHeading),
             Page::Unmeasured => self.say(Key::UnmeasuredHeading),
             Page::Fitting => self.worn_heading(),
             Page::Garments => self.say(Key::GarmentsHeading),
@@ -150,7 +156,6 @@ impl Teller<'_> {
     }
 
     fn label(&self, page: Page, action: Action) -> (String, Option<String>) {
-        let visit = &self.model.visit;
         let key = match action {
             Action::Garment(item) => return self.garment_label(item),
             Action::Colour(colour) => return (self.colour_name(colour), None),
@@ -167,7 +172,7 @@ impl Teller<'_> {
             Action::Open(Page::Compare) => Key::DoCompare,
             Action::Open(Page::Picture) => Key::DoShowPicture,
             Action::Open(_) => Key::DoSettings,
-            Action::Back if page == Page::Unmeasured && visit.known.is_some() => Key::DoGoOn,
+            Action::Back if page == Page::Unmeasured => Key::DoGoOn,
             Action::Back => Key::DoBack,
             Action::Turn(eighths) if eighths < 0 => Key::DoTurnLeft,
             Action::Turn(_) => Key::DoTurnRight,
@@ -195,10 +200,13 @@ impl Teller<'_> {
             | (Page::Compare, Action::Wear)
             | (Page::Picture, Action::DeletePicture | Action::TakePicture)
             | (Page::Second | Page::Leaving, Action::Stay) => {
-                let goes_on = page == Page::Unmeasured && self.model.visit.known.is_some();
-                if goes_on { Look::Plain } else { Look::Primary }
+                if page == Page::Unmeasured && self.is_partly() {
+                    Look::Plain
+                } else {
+                    Look::Primary
+                }
             }
-            (Page::Unmeasured, Action::Back) => Look::Primary,
+            (Page::Unmeasured, Action::Back) if self.is_partly() => Look::Primary,
             (_, Action::Back | Action::Leave | Action::Open(Page::Settings) | Action::LargeType) => Look::Quiet,
             (Page::Attract, Action::Language(_)) => Look::Quiet,
             _ => Look::Plain,

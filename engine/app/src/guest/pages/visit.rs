@@ -71,7 +71,7 @@ impl Teller<'_> {
     }
 
     pub(super) fn unmeasured(&self) -> Vec<Block> {
-        let Some(known) = &self.model.visit.known else {
+        let Some(known) = self.model.visit.known.as_ref().filter(|_| self.is_partly()) else {
             return vec![self.text(Key::UnmeasuredWhy), self.text(Key::UnmeasuredSeated)];
         };
         let parts = self.parts(&known.missing);

@@ -188,6 +188,41 @@ fn who_cannot_be_measured_is_told_and_may_try_again() {
 }
 
 #[test]
+fn who_is_measured_again_may_go_on_with_what_was_measured_before() {
+    let mut play = Play::dressed();
+    play.press(Action::Open(Page::Settings));
+    play.press(Action::Measure);
+    assert_eq!(play.page(), Page::Guide);
+    play.press(Action::Back);
+    assert_eq!(play.page(), Page::Fitting);
+    play.fails = true;
+    play.press(Action::Open(Page::Settings));
+    play.press(Action::Measure);
+    play.wait(8_000);
+    assert_eq!((play.page(), play.screen().heading.as_str()), (Page::Unmeasured, "That did not work"));
+    play.press(Action::Back);
+    assert_eq!(play.page(), Page::Fitting);
+    assert!(play.model.visit.known.is_some());
+}
+
+#[test]
+fn a_language_that_was_chosen_and_left_is_forgotten() {
+    let mut play = Play::new();
+    play.press(Action::Language(2));
+    play.press(Action::LargeType);
+    assert_eq!(play.screen().language, "fr");
+    play.wait(29_000);
+    assert_eq!(play.screen().language, "fr");
+    play.wait(2_000);
+    assert_eq!((play.screen().language, play.screen().type_scale), ("en", 1.0));
+    // Who chose it and steps in keeps it.
+    play.press(Action::Language(2));
+    play.see(Some(1));
+    play.wait(60_000);
+    assert_eq!((play.page(), play.screen().language), (Page::Fitting, "fr"));
+}
+
+#[test]
 fn who_sits_is_measured_as_far_as_possible_and_told_what_is_missing() {
     let mut play = Play::new();
     play.known.measured.measures.hip_girth = None;
