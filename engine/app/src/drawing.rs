@@ -81,6 +81,16 @@ impl Drawing {
         }
     }
 
+    /// The same with garments of other colours (linear RGB, inner first).
+    #[cfg(any(test, feature = "kiosk"))]
+    #[must_use]
+    pub fn coloured(mut self, colours: &[[f32; 3]]) -> Self {
+        for (cloth, colour) in self.cloths.iter_mut().zip(colours) {
+            cloth.colour = Vec3::from_array(*colour);
+        }
+        self
+    }
+
     /// Takes over a snapshot, from the outermost garment to the skin: each is drawn beneath what is worn over it.
     pub fn take(&mut self, snapshot: &Snapshot) {
         let mut over: Vec<[Vec3; 3]> = Vec::new();

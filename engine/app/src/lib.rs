@@ -55,6 +55,10 @@ use std::process::ExitCode;
 
 use cli::Command;
 use exit::{AppError, Code};
+#[cfg(not(feature = "kiosk"))]
+use kiosk::without_window as seen;
+#[cfg(feature = "kiosk")]
+use window::seen;
 
 /// Runs one command line, the program's name first, and returns what the process shall exit with.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
@@ -105,7 +109,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Plan(args) => plan::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Soak(args) => soak::run(args),
-        Command::Kiosk(args) => kiosk::run(args),
+        Command::Kiosk(args) => kiosk::run(args, seen),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }

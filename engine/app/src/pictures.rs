@@ -136,11 +136,11 @@ impl Pictures {
 }
 
 /// A small picture of a dressed body, looked at from `yaw` (rad), its garments in these colours (linear RGB, inner first).
+#[cfg(any(test, feature = "kiosk"))]
 pub fn glance(frame: &Frame, snapshot: &Snapshot, yaw: f32, colours: &[[f32; 3]], size: Size) -> Image {
-    let mut drawing = Drawing::new(frame);
-    for (cloth, colour) in drawing.cloths.iter_mut().zip(colours) {
-        cloth.colour = Vec3::from_array(*colour);
-    }
+    use toile_view::scene::Scene;
+    use toile_view::trace::Stage;
+    let mut drawing = Drawing::new(frame).coloured(colours);
     drawing.take(snapshot);
     let surfaces = drawing.surfaces(None);
     let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });

@@ -26,8 +26,6 @@ pub mod stage;
 pub mod tailor;
 pub mod vitals;
 pub mod watchdog;
-#[cfg(feature = "kiosk")]
-mod windowed;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -58,11 +56,11 @@ use source::{Feed, Visits};
 use tailor::{Dressed, Model, Tailor};
 use vitals::Vitals;
 
-/// Runs `toile kiosk`.
+/// Runs `toile kiosk`, with a window as `seen` does.
 ///
 /// # Errors
-/// A configuration, a session or a garment that cannot be used, a thread that ended while it ran.
-pub fn run(args: &KioskArgs) -> Result<(), AppError> {
+/// A configuration, a session or a garment that cannot be used, a thread that ended while it ran; those of `seen`.
+pub fn run(args: &KioskArgs, seen: fn(Given<'_>) -> Result<KioskReport, AppError>) -> Result<(), AppError> {
     let begun = Instant::now();
     if args.print_config {
         return terminal::print(config::EXAMPLE);
@@ -80,44 +78,45 @@ pub fn run(args: &KioskArgs) -> Result<(), AppError> {
     if args.json { terminal::print_json(&Document::new("kiosk", report)) } else { terminal::print(&report.summary()) }
 }
 
-#[cfg(feature = "kiosk")]
-use windowed::seen;
-#[cfg(not(feature = "kiosk"))]
-use without as seen;
-
 /// Where no window was built in.
-#[cfg(not(feature = "kiosk"))]
-fn without(_: Given<'_>) -> Result<KioskReport, AppError> {
+///
+/// # Errors
+/// That there is none, and the cure.
+pub fn without_window(_: Given<'_>) -> Result<KioskReport, AppError> {
     let cure = "add `--headless`, or build with `--features kiosk`";
     Err(AppError::Usage(format!("`toile kiosk` has no window in this build; {cure}")))
 }
 
 /// What a run is given.
-struct Given<'a> {
-    args: &'a KioskArgs,
-    config: &'a Config,
+pub struct Given<'a> {
+    /// The command line.
+    pub args: &'a KioskArgs,
+    /// The configuration.
+    pub config: &'a Config,
     /// When the program began.
-    begun: Instant,
+    pub begun: Instant,
     /// The loop's clock.
-    clock: RealClock,
-    ending: &'a Ending,
-    words: &'a Words,
+    pub clock: RealClock,
+    /// Whether it is to end.
+    pub ending: &'a Ending,
+    /// What is said on the way.
+    pub words: &'a Words,
     figures: Option<Writer<Vitals>>,
 }
 
 /// Who sees.
-struct Seeing<F, H, O> {
+pub struct Seeing<F, H, O> {
     /// The eye, once the mannequin is dressed.
-    eye: F,
+    pub eye: F,
     /// What it has to know of a frame that takes the stage.
-    stage: fn(Frame) -> (Staged, O),
+    pub stage: fn(Frame) -> (Staged, O),
     /// Who decides what happens to shoppers, who are measured from the recording that is played, if one is; none is the session
     /// alone.
-    host: H,
+    pub host: H,
 }
 
 /// A host with what it holds.
-type Hosting<'a, O> = Option<Box<dyn Host<Staged, O> + 'a>>;
+pub type Hosting<'a, O> = Option<Box<dyn Host<Staged, O> + 'a>>;
 
 /// A display that is not there.
 #[expect(clippy::type_complexity, reason = "a type of its own would hide what is given")]
@@ -126,8 +125,11 @@ fn headless<'a>()
     Seeing { eye: |_: &Frame| Ok(Headless::default()), stage: |frame| (Staged::new(frame), ()), host: |_| None }
 }
 
-/// Sets everything up and runs until the end.
-fn serve<'a, E: Eye<Outfit: Default> + 'static>(
+/// Sets everything up and runs until the end; gives the report, and the eye that looked.
+///
+/// # Errors
+/// As [`run`].
+pub fn serve<'a, E: Eye<Outfit: Default> + 'static>(
     given: Given<'a>,
     seeing: Seeing<
         impl FnOnce(&Frame) -> Result<E, AppError>,

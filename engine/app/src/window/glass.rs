@@ -109,6 +109,16 @@ impl Glass {
         }
     }
 
+    /// What is to be known where the processor draws.
+    pub fn slowness(&self) -> Option<String> {
+        let (name, software) = &self.adapter;
+        software.then(|| {
+            format!(
+                "the processor draws ({name}), so pictures are fewer and plainer; install a driver for a graphics card"
+            )
+        })
+    }
+
     /// Who stands there first.
     #[must_use]
     pub fn seeing(self, look: Look) -> Self {

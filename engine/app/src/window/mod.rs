@@ -19,6 +19,7 @@
 
 mod canvas;
 mod glass;
+mod hosted;
 mod input;
 pub mod look;
 mod open;
@@ -33,4 +34,4 @@ mod wall;
 
 pub use crate::kiosk::report::WindowReport;
 pub use glass::{Asked, Glass};
-pub use open::{Front, Opening, Wanted, run};
+pub use hosted::seen;

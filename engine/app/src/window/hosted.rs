@@ -4,20 +4,21 @@ use toile_engine::clock::Clock;
 use toile_engine::frame::Frame;
 use toile_engine::pace::physics::Staged;
 
-use super::report::KioskReport;
-use super::{Given, Hosting, Seeing, serve};
+use super::look::Look;
+use super::open::{self, Front, Wanted};
+use super::{Asked, Glass};
 use crate::exit::AppError;
 use crate::guest::desk;
 use crate::guest::model::Input;
 use crate::guest::setup::Setup;
-use crate::window::look::Look;
-use crate::window::{self, Asked, Front, Glass, Wanted};
+use crate::kiosk::report::KioskReport;
+use crate::kiosk::{Given, Hosting, Seeing, serve};
 
-/// Runs it.
+/// Runs `toile kiosk` at a window.
 ///
 /// # Errors
 /// As without a window; where there is no display, or nothing that can draw on it.
-pub(super) fn seen(given: Given<'_>) -> Result<KioskReport, AppError> {
+pub fn seen(given: Given<'_>) -> Result<KioskReport, AppError> {
     let display = &given.config.display;
     let setup = Setup::new(given.config, given.clock.now_ns())?;
     let wanted = Wanted {
@@ -29,12 +30,19 @@ pub(super) fn seen(given: Given<'_>) -> Result<KioskReport, AppError> {
         first: setup.first(),
         ending: given.ending.clone(),
     };
-    window::run(wanted, |front| {
+    open::run(wanted, |front| {
         let Front { screens, mut asked, pairs, opening } = front;
         let asked = Box::new(move || asked.pop().map(told));
         let ends = desk::Front { screens, asked, pairs, draped: Look::draped };
         let host = move |played| -> Hosting<'_, Look> { Some(Box::new(setup.desk(ends, played))) };
-        let eye = |mannequin: &Frame| Ok(opening.eye()?.seeing(Look::of(mannequin)));
+        let words = given.words;
+        let eye = |mannequin: &Frame| {
+            let glass = opening.eye()?;
+            if let Some(slow) = glass.slowness() {
+                words.say(&slow);
+            }
+            Ok(glass.seeing(Look::of(mannequin)))
+        };
         let (mut report, glass) = serve(given, Seeing { eye, stage, host })?;
         if let Some(mut glass) = glass {
             let (window, warnings) = Glass::report(&mut glass);
