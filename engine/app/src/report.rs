@@ -324,6 +324,7 @@ mod tests {
         let recommendation =
             Recommendation { garment: "trousers".into(), size: "40".into(), zones: vec![zone], ..Default::default() };
         TryOn {
+            renderer: None,
             session: Session::default(),
             measurements: Measurements::default(),
             recommendation,
