@@ -22,6 +22,9 @@ const BEAM: usize = 16;
 /// Size of the uniform block (bytes).
 pub const BLOCK: u64 = ((HEAD + BEAM * MOST_BEAMS as usize) * 4) as u64;
 
+// No more than every driver binds.
+const _: () = assert!(BLOCK <= 16 * 1024);
+
 /// Nearest and farthest depth that is drawn, in distances of the eye from the target.
 const NEAR: f32 = 0.05;
 const FAR: f32 = 4.0;
@@ -213,7 +216,6 @@ mod tests {
         }
         let nothing = Sight { subject: Bounds::EMPTY, stands: Bounds::EMPTY, ..sight() }.block(&Quality::LOW);
         assert!(nothing[..80].iter().all(|x| x.is_finite()), "an empty scene still has a camera");
-        assert!(BLOCK <= 16 * 1024, "no more than every driver binds");
     }
 
     /// The raster and the ray tracer see every point at the same place of the picture.
