@@ -74,7 +74,12 @@ pub fn run(args: &KioskArgs, seen: fn(Given<'_>) -> Result<KioskReport, AppError
     let figures = figures(&config)?;
     let clock = RealClock::default();
     let given = Given { args, config: &config, begun, clock, ending: &ending, words: &words, figures };
-    let report = if args.headless { serve(given, headless())?.0 } else { seen(given)? };
+    let report = if args.headless {
+        let eye = |_: &Frame| Ok(Headless::default());
+        serve(given, Seeing { eye, stage: |frame| (Staged::new(frame), ()), host: |_| None })?.0
+    } else {
+        seen(given)?
+    };
     if args.json { terminal::print_json(&Document::new("kiosk", report)) } else { terminal::print(&report.summary()) }
 }
 
@@ -118,25 +123,19 @@ pub struct Seeing<F, H, O> {
 /// A host with what it holds.
 pub type Hosting<'a, O> = Option<Box<dyn Host<Staged, O> + 'a>>;
 
-/// A display that is not there.
-#[expect(clippy::type_complexity, reason = "a type of its own would hide what is given")]
-fn headless<'a>()
--> Seeing<impl FnOnce(&Frame) -> Result<Headless, AppError>, impl FnOnce(Option<Model>) -> Hosting<'a, ()>, ()> {
-    Seeing { eye: |_: &Frame| Ok(Headless::default()), stage: |frame| (Staged::new(frame), ()), host: |_| None }
-}
-
 /// Sets everything up and runs until the end; gives the report, and the eye that looked.
 ///
 /// # Errors
 /// As [`run`].
-pub fn serve<'a, E: Eye<Outfit: Default> + 'static>(
+pub fn serve<'a, E, F, H>(
     given: Given<'a>,
-    seeing: Seeing<
-        impl FnOnce(&Frame) -> Result<E, AppError>,
-        impl FnOnce(Option<Model>) -> Hosting<'a, E::Outfit>,
-        E::Outfit,
-    >,
-) -> Result<(KioskReport, Option<E>), AppError> {
+    seeing: Seeing<F, H, E::Outfit>,
+) -> Result<(KioskReport, Option<E>), AppError>
+where
+    E: Eye<Outfit: Default> + 'static,
+    F: FnOnce(&Frame) -> Result<E, AppError>,
+    H: FnOnce(Option<Model>) -> Hosting<'a, E::Outfit>,
+{
     let Given { args, config, begun, clock, ending, words, figures } = given;
     let wish = config.wish();
     let session = recording(config)?;

@@ -4,7 +4,7 @@
 //! Budget: 2 ms a picture of the render thread's core; no picture waits for it, nor does physics.
 //! Thread: render.
 //!
-//! [`layout`] finds places, [`brush`] fills them, [`touch`] finds what was pressed in the same places. Sizes follow the
+//! [`layout`] finds places, `brush` fills them, [`touch`] finds what was pressed in the same places. Sizes follow the
 //! display: type from its height, touch targets from its millimetres.
 
 mod brush;
