@@ -30,6 +30,11 @@ pub fn adapters() -> Vec<Adapter> {
 
 #[cfg(feature = "wgpu")]
 mod native;
+#[cfg(feature = "wgpu")]
+pub mod wait;
+
+#[cfg(feature = "wgpu")]
+pub use native::describe;
 
 #[cfg(test)]
 mod tests {

@@ -1,12 +1,11 @@
 //! The adapters as wgpu finds them.
 
-use std::pin::pin;
 use std::sync::OnceLock;
-use std::task::{Context, Poll, Waker};
 
 use wgpu::{Backends, DeviceType, Instance, InstanceDescriptor};
 
 use crate::Adapter;
+use crate::wait::block_on;
 
 /// All adapters. The drivers are started once only: that takes long, and the hardware stays the same.
 pub fn adapters() -> Vec<Adapter> {
@@ -22,7 +21,8 @@ fn look() -> Vec<Adapter> {
     adapters
 }
 
-fn describe(info: &wgpu::AdapterInfo) -> Adapter {
+/// What an adapter says of itself.
+pub fn describe(info: &wgpu::AdapterInfo) -> Adapter {
     let kind = match info.device_type {
         DeviceType::DiscreteGpu => "discrete",
         DeviceType::IntegratedGpu => "integrated",
@@ -32,17 +32,4 @@ fn describe(info: &wgpu::AdapterInfo) -> Adapter {
     };
     let driver = format!("{} {}", info.driver, info.driver_info).trim().to_owned();
     Adapter { name: info.name.clone(), backend: info.backend.to_str().to_owned(), kind, driver }
-}
-
-/// Waits for a future that, outside a browser, is ready at the first look or soon after: no executor is worth its
-/// build time here.
-fn block_on<F: Future>(future: F) -> F::Output {
-    let mut future = pin!(future);
-    let mut context = Context::from_waker(Waker::noop());
-    loop {
-        if let Poll::Ready(output) = future.as_mut().poll(&mut context) {
-            return output;
-        }
-        std::thread::yield_now();
-    }
 }
