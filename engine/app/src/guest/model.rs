@@ -140,7 +140,7 @@ pub enum Errand {
         /// Its number.
         number: u32,
         /// Left, and right.
-        outfits: [Outfit; 2],
+        outfits: Box<[Outfit; 2]>,
     },
     /// Take a picture of the dressed body; [`Input::PictureTaken`].
     Snap {
@@ -543,7 +543,7 @@ impl Model {
         let number = self.next();
         let right = self.with_size(size);
         self.visit.pair = Some(Pair { other, asked: Some(number), refused: false });
-        let outfits = [self.visit.outfit.clone(), right];
+        let outfits = Box::new([self.visit.outfit.clone(), right]);
         let _ = errands.push(Errand::DrapeTwo { number, outfits });
     }
 
