@@ -47,7 +47,7 @@ pub enum Job {
     /// Dress somebody.
     Dress(Box<Client>, Outfit),
     /// Drape two outfits on them.
-    Two(Box<Client>, [Outfit; 2]),
+    Two(Box<Client>, Box<[Outfit; 2]>),
     /// Take a picture of them from an angle (rad).
     Snap(Box<Client>, Outfit, f32),
 }
@@ -139,8 +139,9 @@ impl Room {
             Job::Dress(client, outfit) => {
                 Done::Dressed(Box::new(Dressed::make(self.recipe(&client, &outfit)?, &client.pose, false)?))
             }
-            Job::Two(client, [left, right]) => {
-                Done::Two(Box::new([self.draped(&client, &left)?, self.draped(&client, &right)?]))
+            Job::Two(client, outfits) => {
+                let [left, right] = &*outfits;
+                Done::Two(Box::new([self.draped(&client, left)?, self.draped(&client, right)?]))
             }
             Job::Snap(client, outfit, yaw) => Done::Picture(self.picture(&client, &outfit, yaw)?),
         })
@@ -277,7 +278,9 @@ mod tests {
                 }
             }
         };
-        let Done::Two(two) = done(7, Job::Two(client.clone(), [outfit(1, 0), outfit(4, 0)])) else { panic!() };
+        let Done::Two(two) = done(7, Job::Two(client.clone(), Box::new([outfit(1, 0), outfit(4, 0)]))) else {
+            panic!()
+        };
         let wide = |d: &Draped| d.1.garments[0].iter().map(|p| p.x.abs()).fold(0.0, f32::max);
         assert_ne!(wide(&two[0]), wide(&two[1]));
         let Done::Picture(code) = done(8, Job::Snap(client.clone(), outfit(2, 3), 0.0)) else { panic!() };

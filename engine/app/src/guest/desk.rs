@@ -47,7 +47,7 @@ const PATIENCE: u64 = 4;
 struct Orders {
     measure: Option<(u32, tailor::Model, bool)>,
     dress: Option<(u32, Outfit)>,
-    two: Option<(u32, [Outfit; 2])>,
+    two: Option<(u32, Box<[Outfit; 2]>)>,
     snap: Option<(u32, Outfit, f32)>,
 }
 

@@ -13,6 +13,7 @@ pub mod desk;
 pub mod fitting;
 mod keys;
 pub mod layout;
+mod message;
 pub mod model;
 mod navigation;
 pub mod pages;
