@@ -9,7 +9,7 @@ use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
-use winit::window::{Fullscreen, Window, WindowId};
+use winit::window::{Fullscreen, Window, WindowAttributes, WindowId};
 
 use super::input::{Ears, Frame, Heard};
 use crate::exit::AppError;
@@ -79,7 +79,7 @@ impl Shell {
         let wanted = Window::default_attributes().with_title("Toile");
         let wanted = match self.windowed {
             Some([w, h]) => wanted.with_inner_size(PhysicalSize::new(w, h)),
-            None => wanted.with_fullscreen(Some(Fullscreen::Borderless(None))),
+            None => covering(on, wanted.with_decorations(false)),
         };
         let window = on.create_window(wanted).map_err(|e| format!("no window can be opened ({e})"))?;
         // A shop's screen shows no arrow until somebody moves a mouse.
@@ -89,6 +89,15 @@ impl Shell {
 
     fn publish(&mut self) {
         self.frame.publish(self.state);
+    }
+}
+
+/// A window over the whole display. Its place and size are said too: without a window manager nobody else sees to them.
+fn covering(on: &ActiveEventLoop, wanted: WindowAttributes) -> WindowAttributes {
+    let wanted = wanted.with_fullscreen(Some(Fullscreen::Borderless(None)));
+    match on.primary_monitor().or_else(|| on.available_monitors().next()) {
+        Some(display) => wanted.with_inner_size(display.size()).with_position(display.position()),
+        None => wanted,
     }
 }
 
