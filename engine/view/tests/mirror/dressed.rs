@@ -37,7 +37,8 @@ impl Dressed {
         let dressed = cover.dressed(&positions, &body.normals);
         let body_triangles = cover.tuck(&mut positions, &body.normals, &dressed, &body.mesh.triangles);
         let Bounds { min, max } = Bounds::of(&garment.start);
-        let fit = garment.start.iter().map(|p| 1.0 - 2.0 * (p.y - min.y) / (max.y - min.y)).collect();
+        let fit =
+            garment.start.iter().map(|p| (1.5 - 3.0 * (p.y - min.y) / (max.y - min.y)).clamp(-1.0, 1.0)).collect();
         Self {
             body: positions,
             body_normals: body.normals.clone(),
