@@ -59,7 +59,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     let empty = || {
         black_box.drain(|entry| {
             if recorded {
-                tape::write(entry, &mut bytes)
+                tape::write(entry, &mut bytes);
             }
         });
         let begun: Instant = *begun.get_or_insert_with(Instant::now);
