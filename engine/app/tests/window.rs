@@ -154,9 +154,11 @@ fn a_visit_by_mouse_and_keys_from_arriving_to_leaving() {
     kiosk.enter(0);
     kiosk.expect("5-garments");
     kiosk.display.key("Escape");
+    kiosk.expect("2-fitting");
     kiosk.click(4);
     kiosk.expect("6-compare");
     kiosk.display.key("Escape");
+    kiosk.expect("2-fitting");
     kiosk.click(7);
     // Every picture has a code of its own.
     kiosk.expect_within("7-picture", 45.0);
