@@ -335,6 +335,7 @@ mod tests {
             },
             others: Vec::new(),
             physics: Physics::default(),
+            renderer: None,
             state_hash: String::new(),
             files: vec!["out/front.png".into()],
         };

@@ -54,8 +54,6 @@ pub struct Sight {
     pub stands: Bounds,
     /// What stands behind it.
     pub behind: Behind,
-    /// True where the target takes sRGB bytes as they are.
-    pub encode: bool,
 }
 
 impl Sight {
@@ -87,13 +85,14 @@ impl Sight {
         let Bounds { min, max } = if empty { Bounds { min: Vec3::ZERO, max: Vec3::ONE } } else { self.subject };
         words.vec(min, POOL * size);
         words.vec(max, if empty { 0.0 } else { 1.0 });
-        words.four([quality.key, quality.rim, quality.sky, u32::from(self.encode)].map(|n| n as f32));
+        words.four([quality.key, quality.rim, quality.sky, 0].map(|n| n as f32));
         let (kind, scale) = match self.behind {
             Behind::Studio => (0.0, Vec2::ONE),
             Behind::Picture(scale) => (1.0, scale),
         };
         words.four([scale.x, scale.y, kind, 0.0]);
-        words.four([self.size.width as f32, self.size.height as f32, 0.0, 0.0]);
+        let maps = [quality.grid().0, quality.grid().1].map(|tiles| (tiles * quality.tile) as f32);
+        words.four([self.size.width as f32, self.size.height as f32, maps[0], maps[1]]);
         words.four([scope.width, scope.offset, scope.reach * scope.reach, scope.width / quality.tile as f32]);
         debug_assert_eq!(words.0.len(), HEAD);
         let (columns, rows) = quality.grid();
@@ -204,7 +203,7 @@ mod tests {
         let subject = Bounds { min: Vec3::new(-0.4, 0.0, -0.2), max: Vec3::new(0.4, 1.7, 0.3) };
         let size = Size::new(300, 500);
         let camera = Camera::framing(&subject, 0.4, 0.6);
-        Sight { camera, size, subject, stands: subject, behind: Behind::Studio, encode: false }
+        Sight { camera, size, subject, stands: subject, behind: Behind::Studio }
     }
 
     #[test]

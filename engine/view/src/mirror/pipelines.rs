@@ -8,7 +8,7 @@ use wgpu::{
 };
 
 use super::quality::Quality;
-use super::shaders;
+use super::shaders::{self, Made};
 
 /// Format of depth in a picture.
 pub const DEPTH: TextureFormat = TextureFormat::Depth32Float;
@@ -57,7 +57,14 @@ impl Layouts {
         };
         Self {
             frame: make("frame", &[block(0, ShaderStages::VERTEX_FRAGMENT)]),
-            depths: make("depths", &[texture(0, TextureSampleType::Depth), sampler(1, false)]),
+            depths: make(
+                "depths",
+                &[texture(0, TextureSampleType::Depth), sampler(1, false)].map(|e| BindGroupLayoutEntry {
+                    // Ambient occlusion may be found a vertex.
+                    visibility: ShaderStages::VERTEX_FRAGMENT,
+                    ..e
+                }),
+            ),
             surface: make("surface", &[block(0, ShaderStages::FRAGMENT), texture(1, FILTERED), sampler(2, true)]),
             behind: make("behind", &[texture(0, FILTERED), sampler(1, true)]),
             finished: make("finished", &[texture(0, FILTERED)]),
@@ -143,8 +150,12 @@ impl Pipelines {
             let source = wgpu::ShaderSource::Wgsl(text.into());
             device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source })
         };
-        let (depth, surface) = (module("depth", shaders::depth()), module("surface", shaders::surface(quality.weave)));
-        let (backdrop, lines) = (module("backdrop", shaders::backdrop()), module("lines", shaders::lines()));
+        let Quality { weave, by_vertex, .. } = *quality;
+        let made = Made { weave, by_vertex, encode: !format.is_srgb() };
+        let depth = module("depth", shaders::depth(made));
+        let surface = module("surface", shaders::surface(made));
+        let backdrop = module("backdrop", shaders::backdrop(made));
+        let lines = module("lines", shaders::lines(made));
         let blit = module("blit", shaders::blit());
         let (frame, depths) = (Some(&layouts.frame), Some(&layouts.depths));
         let lit = |label, module, vertex, fragment| Plan {

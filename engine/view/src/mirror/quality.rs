@@ -17,19 +17,21 @@ pub struct Quality {
     pub sky: u32,
     /// Width and height of a beam's depth map (texels).
     pub tile: u32,
+    /// Whether ambient occlusion is found a vertex and not a pixel: a body has fewer vertices than pixels.
+    pub by_vertex: bool,
     /// Whether threads are drawn. They are finer than a pixel unless the picture has more than about 1,500 rows.
     pub weave: bool,
 }
 
 impl Quality {
     /// A live picture drawn by the processor, beside physics.
-    pub const LOW: Self = Self { samples: 1, key: 1, rim: 0, sky: 6, tile: 256, weave: false };
+    pub const LOW: Self = Self { samples: 1, key: 1, rim: 0, sky: 5, tile: 192, by_vertex: true, weave: false };
 
     /// A live picture drawn by graphics hardware.
-    pub const HIGH: Self = Self { samples: 4, key: 12, rim: 6, sky: 40, tile: 384, weave: true };
+    pub const HIGH: Self = Self { samples: 4, key: 12, rim: 6, sky: 40, tile: 384, by_vertex: false, weave: true };
 
     /// A picture to be looked at: everything.
-    pub const STILL: Self = Self { samples: 4, key: 24, rim: 12, sky: 76, tile: 384, weave: true };
+    pub const STILL: Self = Self { samples: 4, key: 24, rim: 12, sky: 76, tile: 384, by_vertex: false, weave: true };
 
     /// The live picture that suits an adapter.
     pub const fn live(software: bool) -> Self {
@@ -81,10 +83,12 @@ mod tests {
 
     #[test]
     fn too_much_is_cut_down_and_nothing_is_made_enough() {
-        let greedy = Quality { samples: 16, key: 1000, rim: 5, sky: 5, tile: 9000, weave: true }.within_limits(8192);
+        let greedy = Quality { samples: 16, key: 1000, rim: 5, sky: 5, tile: 9000, by_vertex: false, weave: true }
+            .within_limits(8192);
         assert_eq!((greedy.samples, greedy.key, greedy.rim, greedy.sky), (4, MOST_BEAMS, 0, 0));
         assert!(greedy.tile * greedy.grid().0 <= 8192);
-        let none = Quality { samples: 0, key: 0, rim: 0, sky: 0, tile: 0, weave: false }.within_limits(2048);
+        let none =
+            Quality { samples: 0, key: 0, rim: 0, sky: 0, tile: 0, by_vertex: false, weave: false }.within_limits(2048);
         assert_eq!((none.samples, none.key, none.tile), (1, 1, 16));
     }
 }

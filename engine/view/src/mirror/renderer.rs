@@ -331,7 +331,7 @@ impl Renderer {
             _ => BehindKind::Studio,
         };
         let stands = self.subject.unwrap_or(subject);
-        Sight { camera: *camera, size, subject, stands, behind, encode: !self.format.is_srgb() }
+        Sight { camera: *camera, size, subject, stands, behind }
     }
 
     fn fit_canvas(&mut self, size: Size) {

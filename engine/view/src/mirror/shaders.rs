@@ -14,24 +14,35 @@ const LINE_HALF_WIDTH: f32 = 0.9;
 /// How far from its place the shadow of a single beam is looked up (texels).
 const SOFTNESS: f32 = 1.6;
 
-/// Depth maps.
-pub fn depth() -> String {
-    [&numbers(false), FRAME, include_str!("shaders/depth.wgsl")].concat()
+/// What a shader is made for: written into it as constants, so that what is not wanted costs nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Made {
+    /// Threads are drawn.
+    pub weave: bool,
+    /// Ambient occlusion is found a vertex and not a pixel.
+    pub by_vertex: bool,
+    /// The target takes sRGB bytes as they are.
+    pub encode: bool,
 }
 
-/// Body and garments, with their threads or without.
-pub fn surface(weave: bool) -> String {
-    [&numbers(weave), FRAME, LIGHT, include_str!("shaders/surface.wgsl")].concat()
+/// Depth maps.
+pub fn depth(made: Made) -> String {
+    [&numbers(made), FRAME, include_str!("shaders/depth.wgsl")].concat()
+}
+
+/// Body and garments.
+pub fn surface(made: Made) -> String {
+    [&numbers(made), FRAME, LIGHT, include_str!("shaders/surface.wgsl")].concat()
 }
 
 /// Studio or picture.
-pub fn backdrop() -> String {
-    [&numbers(false), FRAME, LIGHT, include_str!("shaders/backdrop.wgsl")].concat()
+pub fn backdrop(made: Made) -> String {
+    [&numbers(made), FRAME, LIGHT, include_str!("shaders/backdrop.wgsl")].concat()
 }
 
 /// Lines.
-pub fn lines() -> String {
-    [&numbers(false), FRAME, LIGHT, include_str!("shaders/lines.wgsl")].concat()
+pub fn lines(made: Made) -> String {
+    [&numbers(made), FRAME, LIGHT, include_str!("shaders/lines.wgsl")].concat()
 }
 
 /// The copy onto the target.
@@ -40,23 +51,28 @@ pub fn blit() -> String {
 }
 
 /// Constants that have their home in Rust.
-fn numbers(weave: bool) -> String {
+fn numbers(made: Made) -> String {
     let steps: Vec<String> = (0..fitmap::STEPS.len())
         .map(|i| fitmap::colour((i as f32 + 0.5) / 4.0 - 1.0))
         .map(|c| format!("vec3<f32>({:.7}, {:.7}, {:.7})", c.x, c.y, c.z))
         .collect();
+    let figures = [
+        ("FRESNEL", shade::FRESNEL),
+        ("GLOSS", shade::GLOSS),
+        ("SHEEN_TINT", shade::SHEEN_TINT),
+        ("BOUNCE", shade::BOUNCE),
+        ("DESATURATION", tone::DESATURATION),
+        ("STEEPEST", STEEPEST),
+        ("LINE_HALF_WIDTH", LINE_HALF_WIDTH),
+        ("SOFTNESS", SOFTNESS),
+    ];
+    let Made { weave, by_vertex, encode } = made;
+    let figures: String = figures.iter().map(|(name, value)| format!("const {name} = {value:?};\n")).collect();
+    let choices = [("WEAVE", weave), ("BY_VERTEX", by_vertex), ("ENCODE", encode)];
+    let choices: String = choices.iter().map(|(name, value)| format!("const {name} = {value};\n")).collect();
+    let (count, list) = (steps.len(), steps.join(", "));
     format!(
-        "const MOST_BEAMS = {MOST_BEAMS};\nconst FRESNEL = {:?};\nconst GLOSS = {:?};\nconst SHEEN_TINT = {:?};\n\
-         const BOUNCE = {:?};\nconst DESATURATION = {:?};\nconst STEEPEST = {STEEPEST:?};\n\
-         const LINE_HALF_WIDTH = {LINE_HALF_WIDTH:?};\nconst SOFTNESS = {SOFTNESS:?};\nconst WEAVE = {weave};\n\
-         const FIT_STEPS = array<vec3<f32>, {}>({});\n",
-        shade::FRESNEL,
-        shade::GLOSS,
-        shade::SHEEN_TINT,
-        shade::BOUNCE,
-        tone::DESATURATION,
-        steps.len(),
-        steps.join(", "),
+        "const MOST_BEAMS = {MOST_BEAMS};\n{figures}{choices}const FIT_STEPS = array<vec3<f32>, {count}>({list});\n"
     )
 }
 
@@ -75,26 +91,33 @@ mod tests {
         module
     }
 
+    fn all_made() -> impl Iterator<Item = Made> {
+        let bit = |i: u32, at: u32| i >> at & 1 == 1;
+        (0..8).map(move |i| Made { weave: bit(i, 0), by_vertex: bit(i, 1), encode: bit(i, 2) })
+    }
+
     #[test]
     fn every_shader_is_valid_without_any_extension() {
-        let all = [
-            ("depth", depth(), vec!["project"]),
-            ("surface", surface(false), vec!["place", "paint"]),
-            ("surface with threads", surface(true), vec!["place", "paint"]),
-            ("backdrop", backdrop(), vec!["cover", "paint"]),
-            ("lines", lines(), vec!["stretch", "shown", "hidden"]),
-            ("blit", blit(), vec!["cover", "copy"]),
-        ];
-        for (name, text, entries) in all {
-            let module = validate(name, &text);
-            let found: Vec<&str> = module.entry_points.iter().map(|e| e.name.as_str()).collect();
-            assert_eq!(found, entries, "{name}");
+        for made in all_made() {
+            let all = [
+                ("depth", depth(made), vec!["project"]),
+                ("surface", surface(made), vec!["place", "paint"]),
+                ("backdrop", backdrop(made), vec!["cover", "paint"]),
+                ("lines", lines(made), vec!["stretch", "shown", "hidden"]),
+                ("blit", blit(), vec!["cover", "copy"]),
+            ];
+            for (name, text, entries) in all {
+                let module = validate(name, &text);
+                let found: Vec<&str> = module.entry_points.iter().map(|e| e.name.as_str()).collect();
+                assert_eq!(found, entries, "{name}, {made:?}");
+            }
         }
     }
 
     #[test]
     fn every_shader_file_is_used() {
-        let used = [depth(), surface(true), backdrop(), lines(), blit()].concat();
+        let made = Made { weave: true, by_vertex: false, encode: true };
+        let used = [depth(made), surface(made), backdrop(made), lines(made), blit()].concat();
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/mirror/shaders");
         for file in std::fs::read_dir(folder).unwrap() {
             let text = std::fs::read_to_string(file.unwrap().path()).unwrap();
@@ -105,7 +128,7 @@ mod tests {
     /// The block that Rust fills is as large as the one that the shaders read.
     #[test]
     fn the_uniform_block_has_one_size() {
-        let module = validate("depth", &depth());
+        let module = validate("depth", &depth(Made { weave: false, by_vertex: false, encode: false }));
         let mut layouter = naga::proc::Layouter::default();
         layouter.update(module.to_ctx()).unwrap();
         let frame = module.types.iter().find(|(_, t)| t.name.as_deref() == Some("Frame")).unwrap().0;

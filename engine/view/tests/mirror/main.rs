@@ -17,7 +17,7 @@ use dressed::Dressed;
 const SIZE: Size = Size::new(240, 400);
 
 /// All beams of a still, on small maps: the same picture but for the sharpest shadows.
-const FINE: Quality = Quality { samples: 4, key: 12, rim: 6, sky: 30, tile: 192, weave: true };
+const FINE: Quality = Quality { samples: 4, key: 12, rim: 6, sky: 30, tile: 192, by_vertex: false, weave: true };
 
 /// The adapter. Where there is none a test has nothing to say, but where everything has to be tested it fails.
 fn gpu() -> Option<&'static Gpu> {

@@ -78,20 +78,18 @@ fn paint(ray: Ray) -> @location(0) vec4<f32> {
     place.kind = CHART;
     place.sheen = 0.0;
     place.eye = -direction;
+    place.grain = 4.0 * HALF_PI * noise(ray.clip.yx);
     // The cove stands out of the rim lamp's beam.
     let by_key = reflected(place, frame.key.xyz) * frame.key_colour.xyz;
     let around = glow(place);
-    var light = by_key + around;
-    let all = light;
-    if !clear(place.position) {
-        light = by_key * lit(0u, u32(frame.counts.x), place)
-            + around * mix(place.colour * BOUNCE, vec3(1.0), open(place));
-    }
+    let shaded = !clear(place.position);
+    let light = by_key * lit(0u, u32(frame.counts.x), place, shaded)
+        + around * mix(place.colour * BOUNCE, vec3(1.0), open(place, shaded));
     if frame.picture.z > 0.5 {
         let at = ray.at * vec2(0.5, -0.5) * frame.picture.xy + 0.5;
         let seen = textureSampleLevel(behind, linear, at, 0.0).xyz;
         // Only the floor takes a shadow: how far away the picture's walls are, nobody knows.
-        let dimmed = select(vec3(1.0), light / all, met.y > 0.999);
+        let dimmed = select(vec3(1.0), light / (by_key + around), met.y > 0.999);
         return developed(seen * dimmed, ray.clip.xy);
     }
     return developed(compress(light * pool(place.position)), ray.clip.xy);

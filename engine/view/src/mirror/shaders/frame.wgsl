@@ -38,11 +38,11 @@ struct Frame {
     least: vec4<f32>,
     // w: 1 where there is a subject.
     most: vec4<f32>,
-    // Beams of the key lamp, of the rim lamp, of the sky; 1 where sRGB bytes are written as they are.
+    // Beams of the key lamp, of the rim lamp, of the sky.
     counts: vec4<f32>,
     // Scale of the picture behind; 1 where there is one.
     picture: vec4<f32>,
-    // Width and height (pixels).
+    // Width and height (pixels), of the depth maps' texture (texels).
     size: vec4<f32>,
     // Width of the depth maps (m), gap to a surface (m), square of how far from the middle they reach (m2),
     // a texel (m).

@@ -16,7 +16,14 @@ struct Place {
     // Strength of cloth's sheen.
     sheen: f32,
     eye: vec3<f32>,
+    // A turn of each pixel's own (rad).
+    grain: f32,
 }
+
+const HALF_PI = 1.5707964;
+
+// The turn that never comes back to where it was (rad).
+const GOLDEN_TURN = 2.3999632;
 
 fn fifth(x: f32) -> f32 {
     return x * x * x * x * x;
@@ -69,94 +76,79 @@ fn glow(place: Place) -> vec3<f32> {
 // How much of one beam is stopped before a place: 0..1. What lies farther off than 1 / `fading` does not stop it, and
 // what lies nearer stops the less of it the farther it is; 0 stops all.
 fn stopped(beam: u32, place: vec3<f32>, fading: f32) -> f32 {
+    // Beyond the ball that the depth maps look at, nothing stops a beam; its tile would be a neighbour's.
+    let toward = frame.beams[beam].toward.xyz;
+    let arm = place - 0.5 * (frame.least.xyz + frame.most.xyz);
+    let across = arm - toward * dot(arm, toward);
+    let within = dot(across, across) < frame.scope.z;
     let p = vec4(place, 1.0);
-    let texels = vec2<f32>(textureDimensions(depths));
-    let at = vec2(dot(frame.beams[beam].u, p), dot(frame.beams[beam].v, p)) * texels - 0.5;
+    let at = vec2(dot(frame.beams[beam].u, p), dot(frame.beams[beam].v, p)) * frame.size.zw - 0.5;
     let depth = dot(frame.beams[beam].depth, p);
     let corner = floor(at);
     let part = at - corner;
-    let four = textureGather(depths, nearest, (corner + 1.0) / texels);
+    let four = textureGather(depths, nearest, (corner + 1.0) / frame.size.zw);
     let behind = (vec4(depth) - four) * frame.scope.x;
     // Where a map is empty nothing stops the beam, however far below the map the place is.
-    let blocked = (behind > vec4(0.0)) & (four < vec4(1.0));
+    let blocked = (behind > vec4(0.0)) & (four < vec4(1.0)) & vec4(within);
     let shade = select(vec4(0.0), clamp(1.0 - behind * fading, vec4(0.0), vec4(1.0)), blocked);
     // A gather's order: lower left, lower right, upper right, upper left, v down.
     return mix(mix(shade.w, shade.z, part.x), mix(shade.x, shade.y, part.x), part.y);
 }
 
-// Beyond the ball that the depth maps look at, nothing stops a beam; its tile would be a neighbour's.
-fn in_scope(beam: u32, place: vec3<f32>) -> bool {
-    let start = place - 0.5 * (frame.least.xyz + frame.most.xyz);
-    let toward = frame.beams[beam].toward.xyz;
-    let across = start - toward * dot(start, toward);
-    return dot(across, across) < frame.scope.z;
-}
+// Looks at a single beam.
+const SOFT_LOOKS = 4u;
 
-// Share of a single beam's light that arrives around a place: four looks on a turned square make its edge soft, as wide
-// everywhere (Reeves, Salesin and Cook 1987, "Rendering antialiased shadows with depth maps").
-fn softly(beam: u32, place: vec3<f32>) -> f32 {
-    if !in_scope(beam, place) {
-        return 1.0;
-    }
-    let a = normalize(frame.beams[beam].u.xyz) * (SOFTNESS * frame.scope.w);
-    let b = normalize(frame.beams[beam].v.xyz) * (SOFTNESS * frame.scope.w);
-    let dark = stopped(beam, place + a + 0.4 * b, 0.0) + stopped(beam, place + 0.4 * a - b, 0.0)
-        + stopped(beam, place - a - 0.4 * b, 0.0) + stopped(beam, place - 0.4 * a + b, 0.0);
-    return 1.0 - 0.25 * dark;
-}
-
-// Share of a lamp's light that arrives.
-fn lit(first: u32, count: u32, place: Place) -> f32 {
-    if count == 0u {
-        return 1.0;
-    }
+// Share of a lamp's light that arrives, where it is wanted. Drivers on the processor run both sides of every branch but no
+// turn of a loop that no pixel of a block takes, so what need not be looked up is left out by the loops' bounds.
+//
+// A single beam is looked up on a turned square, so that its edge is soft, as wide everywhere (Reeves, Salesin and Cook
+// 1987, "Rendering antialiased shadows with depth maps"). The beams of a disc are spread over the gaps between them, each
+// pixel its own way, as far as the subject is from where its shadow falls: grain in place of streaks.
+fn lit(first: u32, count: u32, place: Place, wanted: bool) -> f32 {
+    let single = count == 1u;
+    let looks = select(count, SOFT_LOOKS, single);
+    let turns = select(0u, looks, wanted);
     let start = place.position + place.normal * frame.scope.y;
-    if count == 1u {
-        return softly(first, start);
+    let arm = dot(0.5 * (frame.least.xyz + frame.most.xyz) - start, frame.beams[first].toward.xyz);
+    let gap = frame.key.w * max(arm - 0.25 * frame.scope.x, 0.0) / sqrt(f32(max(count, 1u)));
+    let spread = select(gap, SOFTNESS * frame.scope.w, single);
+    let a = normalize(frame.beams[first].u.xyz) * spread;
+    let b = normalize(frame.beams[first].v.xyz) * spread;
+    var turn = select(place.grain, 0.38, single);
+    let step = select(GOLDEN_TURN, HALF_PI, single);
+    var dark = 0.0;
+    for (var i = 0u; i < turns; i++) {
+        turn += step;
+        dark += stopped(first + select(i, 0u, single), start + a * cos(turn) + b * sin(turn), 0.0);
     }
-    var arrived = 0.0;
-    for (var i = first; i < first + count; i++) {
-        arrived += 1.0;
-        if in_scope(i, start) {
-            arrived -= stopped(i, start, 0.0);
-        }
-    }
-    return arrived / f32(count);
+    return 1.0 - dark / f32(max(looks, 1u));
 }
 
-// Share of ambient light that arrives.
-fn open(place: Place) -> f32 {
+// Share of ambient light that arrives, where it is wanted.
+fn open(place: Place, wanted: bool) -> f32 {
     let first = u32(frame.counts.x + frame.counts.y);
-    let count = u32(frame.counts.z);
+    let last = first + select(0u, u32(frame.counts.z), wanted);
     let start = place.position + place.normal * (1.6 * frame.scope.y);
-    var arrived = 1e-4;
+    var dark = 0.0;
     var all = 1e-4;
-    for (var i = first; i < first + count; i++) {
-        let cosine = dot(place.normal, frame.beams[i].toward.xyz);
-        if cosine > 0.02 {
-            all += cosine;
-            arrived += cosine;
-            if in_scope(i, start) {
-                arrived -= cosine * stopped(i, start, 1.0 / frame.fill_toward.w);
-            }
+    for (var i = first; i < last; i++) {
+        let cosine = max(dot(place.normal, frame.beams[i].toward.xyz), 0.0);
+        all += cosine;
+        for (var look = select(1u, 0u, cosine > 0.02); look < 1u; look++) {
+            dark += cosine * stopped(i, start, 1.0 / frame.fill_toward.w);
         }
     }
-    return arrived / all;
+    return 1.0 - dark / all;
 }
 
-// Light that a place on the subject sends to the eye.
-fn shine(place: Place) -> vec3<f32> {
+// Light that a place on the subject sends to the eye; `opening` is the share of ambient light that arrives.
+fn shine(place: Place, opening: f32) -> vec3<f32> {
     let key_count = u32(frame.counts.x);
-    var light = vec3(0.0);
     let by_key = reflected(place, frame.key.xyz) * frame.key_colour.xyz;
-    if dot(by_key, by_key) > 0.0 {
-        light += by_key * lit(0u, key_count, place);
-    }
     let by_rim = reflected(place, frame.rim.xyz) * frame.rim_colour.xyz;
-    if dot(by_rim, by_rim) > 0.0 {
-        light += by_rim * lit(key_count, u32(frame.counts.y), place);
-    }
-    return light + glow(place) * mix(place.colour * BOUNCE, vec3(1.0), open(place));
+    return by_key * lit(0u, key_count, place, dot(by_key, by_key) > 0.0)
+        + by_rim * lit(key_count, u32(frame.counts.y), place, dot(by_rim, by_rim) > 0.0)
+        + glow(place) * mix(place.colour * BOUNCE, vec3(1.0), opening);
 }
 
 // Scene light to display light (Khronos PBR Neutral).
@@ -175,9 +167,14 @@ fn compress(scene: vec3<f32>) -> vec3<f32> {
     return mix(light * (pressed / peak), vec3(pressed), grey);
 }
 
-fn srgb(linear: vec3<f32>) -> vec3<f32> {
-    let x = clamp(linear, vec3(0.0), vec3(1.0));
-    let high = 1.055 * pow(max(x, vec3(1e-6)), vec3(1.0 / 2.4)) - 0.055;
+// The sRGB curve by roots, which cost a processor less than powers (Chilliant 2012, "sRGB approximations for HLSL"): within
+// a quarter of a byte.
+fn srgb(light: vec3<f32>) -> vec3<f32> {
+    let x = clamp(light, vec3(0.0), vec3(1.0));
+    let s1 = sqrt(x);
+    let s2 = sqrt(s1);
+    let s3 = sqrt(s2);
+    let high = 0.662002687 * s1 + 0.684122060 * s2 - 0.323583601 * s3 - 0.0225411470 * x;
     return select(high, 12.92 * x, x <= vec3(0.0031308));
 }
 
@@ -188,11 +185,15 @@ fn hash(n: u32) -> u32 {
     return x ^ (x >> 16u);
 }
 
+// Noise of a pixel, 0..1.
+fn noise(pixel: vec2<f32>) -> f32 {
+    return f32(hash(u32(pixel.x) ^ hash(u32(pixel.y))) >> 8u) / 16777216.0;
+}
+
 // What the target takes, with half a byte of noise that hides the steps of the backdrop's gradient.
 fn developed(display: vec3<f32>, pixel: vec2<f32>) -> vec4<f32> {
-    let noise = f32(hash(u32(pixel.x) ^ hash(u32(pixel.y))) >> 8u) / 16777216.0 - 0.5;
-    let bytes = srgb(display) + noise / 255.0;
-    if frame.counts.w > 0.5 {
+    let bytes = srgb(display) + (noise(pixel) - 0.5) / 255.0;
+    if ENCODE {
         return vec4(bytes, 1.0);
     }
     let x = clamp(bytes, vec3(0.0), vec3(1.0));

@@ -18,6 +18,7 @@ struct Varying {
     @location(2) rest: vec3<f32>,
     @location(3) rest_normal: vec3<f32>,
     @location(4) fit: f32,
+    @location(5) opening: f32,
 }
 
 @vertex
@@ -40,6 +41,13 @@ fn place(
     out.rest = rest;
     out.rest_normal = rest_normal;
     out.fit = marks.x;
+    out.opening = 1.0;
+    if BY_VERTEX {
+        var place: Place;
+        place.position = position;
+        place.normal = normal * select(1.0, -1.0, dot(normal, sight) > 0.0);
+        out.opening = open(place, true);
+    }
     return out;
 }
 
@@ -103,6 +111,7 @@ fn paint(v: Varying, @builtin(front_facing) outside: bool) -> @location(0) vec4<
     place.kind = surface.colour.w;
     place.sheen = surface.cloth.x;
     place.eye = eye;
+    place.grain = 4.0 * HALF_PI * noise(v.clip.yx);
     if WEAVE && surface.cloth.y > 0.0 {
         let bent = woven(v, normal);
         normal = bent.xyz;
@@ -116,5 +125,9 @@ fn paint(v: Varying, @builtin(front_facing) outside: bool) -> @location(0) vec4<
         place.kind = CHART;
         place.sheen = 0.0;
     }
-    return developed(compress(shine(place)), v.clip.xy);
+    var opening = v.opening;
+    if !BY_VERTEX {
+        opening = open(place, true);
+    }
+    return developed(compress(shine(place, opening)), v.clip.xy);
 }
