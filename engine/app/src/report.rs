@@ -330,7 +330,6 @@ mod tests {
             recommendation,
             others: Vec::new(),
             physics: Physics::default(),
-            renderer: None,
             state_hash: hash_text(10),
             files: vec!["out/front.png".into()],
         }

@@ -335,7 +335,6 @@ mod tests {
             },
             others: Vec::new(),
             physics: Physics::default(),
-            renderer: None,
             state_hash: String::new(),
             files: vec!["out/front.png".into()],
         };

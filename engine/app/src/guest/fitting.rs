@@ -12,13 +12,18 @@ use crate::fit;
 
 /// A part of the body that is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Part {
+    /// From the floor to the top of the head.
     Stature,
+    /// The breadth of the shoulders.
     Shoulders,
+    /// The girth of the chest.
     Chest,
+    /// The girth of the waist.
     Waist,
+    /// The girth of the hip.
     Hip,
+    /// The length of the legs.
     Legs,
 }
 
@@ -99,14 +104,20 @@ impl Known {
 /// How a zone feels, from tight to loose. A garment is comfortable within the range that its file gives; its lower third is
 /// snug, its upper third roomy, and farther outside than a half of it is far too tight or loose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Feel {
+    /// Far below the comfortable range.
     TooTight,
+    /// Below it.
     Tight,
+    /// In its lower third.
     Snug,
+    /// In its middle third.
     Right,
+    /// In its upper third.
     Roomy,
+    /// Above it.
     Loose,
+    /// Far above it.
     TooLoose,
 }
 
@@ -188,9 +199,10 @@ pub struct Fit {
 
 /// A body for which no size is made: the nearest is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Outside {
+    /// The body is smaller than the smallest size is meant for.
     Smaller,
+    /// The body is larger than the largest size is meant for.
     Larger,
 }
 

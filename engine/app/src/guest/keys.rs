@@ -4,9 +4,8 @@ macro_rules! keys {
     ($($name:ident = $text:literal,)*) => {
         /// A word of the pages.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        #[expect(missing_docs, reason = "the texts say them")]
         pub enum Key {
-            $($name,)*
+            $(#[doc = concat!("The text `", $text, "`.")] $name,)*
         }
 
         impl Key {

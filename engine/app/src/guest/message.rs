@@ -75,15 +75,22 @@ pub struct House {
 
 /// A key of a keyboard, or of a row of buttons.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Button {
+    /// To the next control.
     Tab,
+    /// To the control before: Tab with Shift.
     BackTab,
+    /// To the control on the left, or before.
     Left,
+    /// To the control on the right, or after.
     Right,
+    /// To the control above, or before.
     Up,
+    /// To the control below, or after.
     Down,
+    /// Presses what has the focus.
     Enter,
+    /// Back.
     Escape,
 }
 

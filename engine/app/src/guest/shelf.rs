@@ -36,14 +36,20 @@ pub enum Layer {
 
 /// Where a garment is held, and does not slip on the body: the seven fitting levels of Ugur 2008, section 6.2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Held {
+    /// At the neck.
     Neck,
+    /// On the shoulders.
     Shoulders,
+    /// At the bust.
     Bust,
+    /// Below the bust.
     Underbust,
+    /// At the waist.
     Waist,
+    /// At the crotch.
     Crotch,
+    /// At the feet.
     Feet,
 }
 

@@ -9,14 +9,19 @@ use crate::exit::AppError;
 
 /// A language of the pages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Language {
+    /// `en`, in which all texts are whole.
     #[default]
     English,
+    /// `de`.
     German,
+    /// `fr`.
     French,
+    /// `es`.
     Spanish,
+    /// `tr`.
     Turkish,
+    /// `ja`.
     Japanese,
 }
 
