@@ -36,6 +36,42 @@ pub struct Fabric {
     pub comfortable_stretch: f32,
     /// Base colour of the cloth, sRGB 0..1.
     pub colour: [f32; 3],
+    /// How its threads run, as pictures show them.
+    #[serde(default)]
+    pub weave: Weave,
+    /// Threads in a centimetre along the weft and along the warp; of a knit, columns and rows of stitches (1/cm).
+    #[serde(default = "usual_threads")]
+    pub threads_per_cm: [f32; 2],
+    /// Strength of the sheen at the most grazing angle, as pictures show it (0..1).
+    #[serde(default = "usual_sheen")]
+    pub sheen: f32,
+}
+
+/// How threads run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Weave {
+    /// Each weft thread over one warp thread and under the next.
+    #[default]
+    Plain,
+    /// Over two and under two, each row one thread further: a diagonal rib.
+    Twill,
+    /// Weft knit, the right side: columns of V-shaped stitches.
+    Knit,
+}
+
+/// Threads of a shirting, where a file does not say (1/cm).
+pub const USUAL_THREADS: [f32; 2] = [24.0; 2];
+
+/// Sheen of matt cotton, where a file does not say.
+pub const USUAL_SHEEN: f32 = 0.35;
+
+fn usual_threads() -> [f32; 2] {
+    USUAL_THREADS
+}
+
+fn usual_sheen() -> f32 {
+    USUAL_SHEEN
 }
 
 /// What can be wrong with a fabric file.
@@ -160,7 +196,9 @@ impl Fabric {
             self.figure(key).map_or(Ok(()), |value| checked(key, value, low, high))?;
         }
         checked("comfortable_stretch", self.comfortable_stretch, 0.001, 1.0)?;
-        self.colour.iter().try_for_each(|&part| checked("colour", part, 0.0, 1.0))
+        self.colour.iter().try_for_each(|&part| checked("colour", part, 0.0, 1.0))?;
+        self.threads_per_cm.iter().try_for_each(|&count| checked("threads_per_cm", count, 1.0, 200.0))?;
+        checked("sheen", self.sheen, 0.0, 1.0)
     }
 }
 
@@ -175,6 +213,19 @@ mod tests {
         }
         let error = Fabric::built_in("tin").unwrap_err().to_string();
         assert!(error.contains("tin") && error.contains("cotton-lawn"), "{error}");
+    }
+
+    #[test]
+    fn threads_are_read_and_have_usual_figures() {
+        let text = include_str!("../data/fabrics/linen-twill.toml");
+        let twill = Fabric::parse("twill", text).unwrap();
+        assert_eq!((twill.weave, twill.threads_per_cm), (Weave::Twill, [18.0, 16.0]));
+        let silent = text.lines().filter(|l| !["weave", "threads", "sheen"].iter().any(|k| l.starts_with(k)));
+        let usual = Fabric::parse("usual", &silent.collect::<Vec<_>>().join("\n")).unwrap();
+        assert_eq!((usual.weave, usual.threads_per_cm, usual.sheen), (Weave::Plain, USUAL_THREADS, USUAL_SHEEN));
+        let gauze = text.replace("[18.0, 16.0]", "[18.0, 0.0]");
+        assert!(Fabric::parse("gauze", &gauze).unwrap_err().to_string().contains("threads_per_cm"));
+        assert!(Fabric::parse("felt", &text.replace("\"twill\"", "\"felt\"")).is_err());
     }
 
     #[test]

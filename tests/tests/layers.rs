@@ -49,7 +49,7 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
             &["colliders"],
             &["cloth"],
             &["frame"],
-            &["pace"],
+            &["pace", "lines"],
         ],
     ),
     (

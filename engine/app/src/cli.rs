@@ -8,8 +8,6 @@ use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use clap_complete::Shell;
 
-use toile_engine::cloth::Quality;
-
 use crate::exit::AppError;
 
 mod bake;
@@ -31,6 +29,7 @@ mod skinning;
 mod skirt;
 mod soak;
 mod torture;
+mod try_on;
 mod validate;
 
 pub use bake::BakeArgs;
@@ -52,6 +51,7 @@ pub use skinning::SkinningArgs;
 pub use skirt::SkirtArgs;
 pub use soak::SoakArgs;
 pub use torture::TortureArgs;
+pub use try_on::TryOnArgs;
 pub use validate::ValidateArgs;
 
 /// What the user asked for.
@@ -111,31 +111,6 @@ pub enum Command {
     Print(String),
 }
 
-/// Arguments of `toile try-on`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TryOnArgs {
-    /// A recording; `None` is the embedded session.
-    pub session: Option<PathBuf>,
-    /// Garments of the wardrobe or OBJ files, in dressing order; empty is the default garment.
-    pub garments: Vec<String>,
-    /// A size to wear in place of the recommended one.
-    pub size: Option<String>,
-    /// Whose body is shown; `None` is one of the measured size, of the sex that the garment is cut for.
-    pub body: Option<Wearer>,
-    /// Whether the dressed body is written as GLB.
-    pub glb: bool,
-    /// How the cloth is stepped.
-    pub quality: Quality,
-    /// Where the files go.
-    pub out: PathBuf,
-    /// Whether pictures are made.
-    pub pictures: bool,
-    /// One JSON object on stdout in place of the summary.
-    pub json: bool,
-    /// No words on stderr.
-    pub quiet: bool,
-}
-
 /// Arguments of `toile measure`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasureArgs {
@@ -188,7 +163,7 @@ pub fn command() -> clap::Command {
         .override_usage("toile [OPTIONS OF TRY-ON]\n       toile <COMMAND>")
         .subcommand_required(true)
         .subcommands([
-            try_on(),
+            try_on::grammar(),
             measure(),
             record(),
             convert::grammar(),
@@ -208,31 +183,6 @@ pub fn command() -> clap::Command {
             completions(),
         ])
         .after_help("Example: dress the shopper of the embedded session, and look at out/\n  toile")
-}
-
-fn try_on() -> clap::Command {
-    clap::Command::new("try-on")
-        .about("Measure a shopper, dress them, and write pictures and a report")
-        .long_about(
-            "Watches a session, measures the shopper, recommends a size zone by zone, lets the garment move on a body \
-             of that size for the whole session, and writes pictures and a report.",
-        )
-        .args([
-            path("session", "F", "Recording to watch: .mcap, Kinect CSV, Kinectron JSON or BVH [default: embedded]"),
-            text("garment", "G", "Garment of the wardrobe, or an OBJ file; repeat it to dress in layers, inner first")
-                .action(ArgAction::Append),
-            text("size", "S", "Size to wear, as the garment's table names it [default: the one that fits]"),
-            text("body", "B", "Body to show: female, male, or a file (.glb, .gltf, .vrm) [default: by the garment]"),
-            text("quality", "Q", "Tested settings of the cloth: draft, shop or fine")
-                .value_parser(Quality::ALL.map(Quality::name))
-                .default_value(Quality::default().name()),
-            path("out", "DIR", "Folder for the files; it is made if missing").default_value("out"),
-            flag("glb", "Write the dressed body at the session's end as dressed.glb too"),
-            flag("no-pictures", "Make no pictures: only the report and the physics"),
-            json(),
-            quiet(),
-        ])
-        .after_help("Example: see how a recorded shopper moves in wide trousers\n  toile try-on --session shopper.csv --garment wide-trousers --out fitting")
 }
 
 fn measure() -> clap::Command {
@@ -334,18 +284,7 @@ pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
         return Err(AppError::internal("a command line without a command was let through"));
     };
     Ok(match name {
-        "try-on" => Command::TryOn(TryOnArgs {
-            session: matches.get_one("session").cloned(),
-            garments: matches.get_many("garment").into_iter().flatten().cloned().collect(),
-            size: matches.get_one("size").cloned(),
-            body: matches.get_one::<String>("body").map(|b| Wearer::parse(b)).transpose()?,
-            glb: matches.get_flag("glb"),
-            quality: matches.get_one::<String>("quality").and_then(|q| q.parse().ok()).unwrap_or_default(),
-            out: required(matches, "out")?,
-            pictures: !matches.get_flag("no-pictures"),
-            json: matches.get_flag("json"),
-            quiet: matches.get_flag("quiet"),
-        }),
+        "try-on" => Command::TryOn(try_on::args(matches)?),
         "measure" => Command::Measure(MeasureArgs {
             file: required(matches, "file")?,
             camera: matches.get_one("camera").cloned(),

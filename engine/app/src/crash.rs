@@ -5,12 +5,9 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use serde::Serialize;
 use toile_engine::pace::blackbox::BlackBox;
 use toile_engine::pace::queue::{Sender, bounded};
-use toile_engine::pace::tape::{self, ENTRIES, ENTRIES_NAME, Entry};
-
-use crate::exit::AppError;
+use toile_engine::pace::tape::{ENTRIES, ENTRIES_NAME, Entry};
 
 /// Longest that a dying thread waits for the black box.
 const LONGEST_WAIT: Duration = Duration::from_millis(500);
@@ -23,16 +20,12 @@ pub fn keep(black_box: &Arc<BlackBox>, path: PathBuf) {
     *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some((black_box.clone(), path));
 }
 
-/// A box whose file begins with a text about the scene, kept from now on for a crash; and the end of the tape that fills it.
-///
-/// # Errors
-/// A text that cannot be written, which does not happen.
-pub fn record(scene: &impl Serialize, path: PathBuf) -> Result<(Arc<BlackBox>, Sender<Entry>), AppError> {
-    let header = tape::header(&serde_json::to_string(scene).map_err(AppError::internal)?);
+/// A box whose file begins with this header (`pace::tape::header`), kept from now on for a crash; and the end of the tape that fills it.
+pub fn record(header: Vec<u8>, path: PathBuf) -> (Arc<BlackBox>, Sender<Entry>) {
     let (sender, entries) = bounded(ENTRIES_NAME, ENTRIES);
     let black_box = Arc::new(BlackBox::new(header, entries));
     keep(&black_box, path);
-    Ok((black_box, sender))
+    (black_box, sender)
 }
 
 /// The run is over.

@@ -9,17 +9,29 @@ use crate::exit::AppError;
 use crate::report::{Recommendation, SizeChance, Tape, Zone};
 
 /// The size that fits, or the one asked for, judged at every zone that the garment reaches.
-pub fn choose(style: &Style, size: Option<&str>, measured: &Measurements) -> Result<Recommendation, AppError> {
+///
+/// # Errors
+/// A garment whose table or sizes cannot be used, a size that is not made.
+pub fn judge(
+    style: &Style,
+    size: Option<&str>,
+    measured: &Measurements,
+) -> Result<recommend::Recommendation, AppError> {
     let table = style.sizes().map_err(AppError::input)?;
     let sizes = made(style, &table).map_err(AppError::input)?;
     let range = |zone: Girth| style.comfort_mm.at(zone).map(|[least, most]| EaseRange { zone, least, most });
     let ease: Vec<EaseRange> = Girth::ALL.into_iter().filter_map(range).collect();
     let offer = Offer { garment: &style.name, kind: style.kind, table: &table, sizes: &sizes, ease: &ease };
-    let judged = match size {
+    match size {
         Some(size) => recommend::evaluate(measured, &offer, size),
         None => recommend::recommend(measured, &offer),
     }
-    .map_err(AppError::input)?;
+    .map_err(AppError::input)
+}
+
+/// The same as reports show it.
+pub fn choose(style: &Style, size: Option<&str>, measured: &Measurements) -> Result<Recommendation, AppError> {
+    let judged = judge(style, size, measured)?;
     let mm = |m: f32| (f64::from(m) * 1e4).round() / 10.0;
     let zones = judged.zones.iter().map(|fit| Zone {
         zone: fit.zone.name().into(),

@@ -51,7 +51,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     words.say(&format!("running for {} s, with {} threads of load", args.seconds, args.load));
     let options = Options { seconds: args.seconds, load: args.load, rung: args.rung };
     let mut bytes = tape::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
-    let (black_box, tape) = crash::record(&recipe, args.out.join("crash.tape"))?;
+    let (black_box, tape) = crash::record(bytes.clone(), args.out.join("crash.tape"));
     let dressed = Entry::Dressed(*first);
     black_box.keep(&dressed);
     tape::write(&dressed, &mut bytes);
@@ -59,7 +59,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     let empty = || {
         black_box.drain(|entry| {
             if recorded {
-                tape::write(entry, &mut bytes)
+                tape::write(entry, &mut bytes);
             }
         });
         let begun: Instant = *begun.get_or_insert_with(Instant::now);

@@ -4,6 +4,7 @@
 //! Budget: the words and the parsing take under 10 ms; the work itself is budgeted by the rooms it calls.
 //! Thread: the main thread, which loads, starts the frame's threads and waits for them.
 
+pub mod artist;
 pub mod bake;
 pub mod bench;
 pub mod bodies;
@@ -14,10 +15,13 @@ pub mod completions;
 pub mod convert;
 pub mod crash;
 pub mod doctor;
+mod drawing;
 pub mod dump;
 pub mod exit;
 pub mod fit;
 pub mod gestures;
+#[cfg(any(test, feature = "kiosk"))]
+pub mod guest;
 pub mod heap;
 pub mod kiosk;
 pub mod latency;
@@ -41,6 +45,9 @@ pub mod torture;
 pub mod tracking;
 pub mod try_on;
 pub mod validate;
+pub mod video;
+#[cfg(feature = "kiosk")]
+pub mod window;
 
 use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -48,6 +55,10 @@ use std::process::ExitCode;
 
 use cli::Command;
 use exit::{AppError, Code};
+#[cfg(not(feature = "kiosk"))]
+use kiosk::without_window as seen;
+#[cfg(feature = "kiosk")]
+use window::seen;
 
 /// Runs one command line, the program's name first, and returns what the process shall exit with.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
@@ -98,7 +109,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Plan(args) => plan::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Soak(args) => soak::run(args),
-        Command::Kiosk(args) => kiosk::run(args),
+        Command::Kiosk(args) => kiosk::run(args, seen),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }

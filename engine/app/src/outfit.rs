@@ -6,11 +6,13 @@ use toile_assets::garment::Garment;
 use toile_assets::rig::Rig;
 use toile_assets::sizes::Population;
 use toile_assets::wardrobe;
+use toile_assets::wardrobe::style::Style;
 use toile_engine::cloth::{Quality, Settings};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::relay::Reader;
 use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
+use toile_track::measure::Measurements;
 
 use crate::exit::AppError;
 use crate::{fit, shopper};
@@ -56,6 +58,20 @@ pub struct Wish {
     pub quality: Quality,
 }
 
+/// Whose bodies these garments are made for: the first of them that is not made for everybody decides.
+///
+/// # Errors
+/// A garment whose size table cannot be used.
+pub fn population(styles: &[Style]) -> Result<Population, AppError> {
+    let mut population = Population::Mixed;
+    for style in styles {
+        if population == Population::Mixed {
+            population = style.sizes().map_err(AppError::input)?.population;
+        }
+    }
+    Ok(population)
+}
+
 impl Recipe {
     /// Measures the shopper of a session and chooses the sizes.
     ///
@@ -69,27 +85,37 @@ impl Recipe {
         };
         let styles = names.iter().map(|name| wardrobe::style(name).map_err(AppError::input));
         let styles = styles.collect::<Result<Vec<_>, _>>()?;
-        let mut population = Population::Mixed;
-        for style in &styles {
-            if population == Population::Mixed {
-                population = style.sizes().map_err(AppError::input)?.population;
-            }
-        }
-        let sex = if population == Population::Men { Sex::Male } else { Sex::Female };
+        let population = population(&styles)?;
         let measured = shopper::measure(session, population)?;
-        let (body, _) = shopper::build(sex, &measured, population)?;
         let sizes = styles
             .iter()
             .map(|style| Ok((style.name.clone(), fit::choose(style, wish.size.as_deref(), &measured)?.size)));
+        let garments = sizes.collect::<Result<_, AppError>>()?;
+        Self::of(&session.name, &measured, population, garments, wish.quality)
+    }
+
+    /// Of somebody who was measured and has chosen what to wear: garments and sizes, inner first.
+    ///
+    /// # Errors
+    /// Measures that no body has.
+    pub fn of(
+        session: &str,
+        measured: &Measurements,
+        population: Population,
+        garments: Vec<(String, String)>,
+        quality: Quality,
+    ) -> Result<Self, AppError> {
+        let sex = if population == Population::Men { Sex::Male } else { Sex::Female };
+        let (body, _) = shopper::build(sex, measured, population)?;
         let m = &body.measures;
         let measures = [m.stature, m.shoulder_breadth, m.chest_girth, m.waist_girth, m.hip_girth];
         Ok(Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            session: session.name.clone(),
+            session: session.to_owned(),
             sex: if sex == Sex::Male { "male" } else { "female" }.to_owned(),
             measures: measures.map(f32::to_bits),
-            garments: sizes.collect::<Result<_, AppError>>()?,
-            quality: wish.quality.name().to_owned(),
+            garments,
+            quality: quality.name().to_owned(),
         })
     }
 

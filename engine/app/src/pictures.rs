@@ -4,19 +4,18 @@ use std::f32::consts::{FRAC_PI_2, PI};
 use std::fs::File;
 use std::io::BufWriter;
 
-use glam::Vec3;
 use indicatif::ProgressBar;
-use toile_assets::garment::Garment;
 use toile_assets::limits::STEP_HZ;
-use toile_assets::mesh::vertex_normals;
 use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::lines::Line;
 use toile_view::fitmap;
 use toile_view::image::{Animation, Image, Size};
-use toile_view::scene::{Bounds, Camera, Colours, MANNEQUIN, Material, Scene, Surface};
+use toile_view::scene::{Bounds, Camera};
 use toile_view::sheet;
-use toile_view::trace::{Quality, Stage};
-use toile_view::tuck::Cover;
+use toile_view::trace::Quality;
 
+use crate::artist::Artist;
+use crate::drawing::Drawing;
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 
@@ -59,118 +58,13 @@ impl Tempo {
 const SHEET_FRAMES: usize = 12;
 const SHEET_COLUMNS: usize = 6;
 
-/// Half the width of what an animation shows around the shopper: arms stretched out (m).
-const HALF_REACH_M: f32 = 0.62;
-
-/// Height of what an animation shows as a share of the stature: arms half raised.
-const HEADROOM: f32 = 1.04;
-
-/// How fast the camera follows the shopper across the floor (share of the way a frame).
-const FOLLOW: f32 = 0.35;
-
 /// Makes pictures while a session runs.
 pub struct Pictures {
     animation: Animation<BufWriter<File>>,
     tempo: Tempo,
     kept: Vec<(Image, u64)>,
     drawing: Drawing,
-    middle: Option<Vec3>,
-    stature: f32,
     bar: ProgressBar,
-}
-
-/// What is drawn: topology and colours, which the session does not change, and room for what it does.
-struct Drawing {
-    body: Vec<Vec3>,
-    normals: Vec<Vec3>,
-    /// Of the body, before it is drawn beneath the garments.
-    bounds: Bounds,
-    body_triangles: Vec<[u32; 3]>,
-    /// Triangles of the body that are drawn.
-    drawn: Vec<[u32; 3]>,
-    /// Body vertices under a garment.
-    dressed: Vec<bool>,
-    cloths: Vec<ClothDrawing>,
-}
-
-struct ClothDrawing {
-    /// Where the particles are drawn: beneath the garments worn over them.
-    points: Vec<Vec3>,
-    /// Particles under a garment worn over this one.
-    dressed: Vec<bool>,
-    triangles: Vec<[u32; 3]>,
-    /// Those of them that are drawn.
-    drawn: Vec<[u32; 3]>,
-    normals: Vec<Vec3>,
-    colour: Vec3,
-}
-
-impl Drawing {
-    fn new(frame: &Frame) -> Self {
-        let (body, garments) = (frame.body(), frame.garments());
-        let starts: Vec<&[Vec3]> = garments.iter().map(|g| &*g.start).collect();
-        let over = |first: usize| {
-            let worn = garments.iter().zip(&starts).skip(first);
-            Cover::new(worn.flat_map(|(g, points)| g.triangles.iter().map(|t| t.map(|i| points[i as usize]))))
-        };
-        let cloth = |(i, g): (usize, &Garment)| {
-            let mut normals = vec![Vec3::ZERO; g.particles()];
-            vertex_normals(&g.start, &g.triangles, &mut normals);
-            ClothDrawing {
-                points: g.start.to_vec(),
-                dressed: over(i + 1).dressed(&g.start, &normals),
-                drawn: g.triangles.to_vec(),
-                triangles: g.triangles.to_vec(),
-                normals,
-                colour: Vec3::from_array(g.fabric.colour.map(toile_view::image::linear)),
-            }
-        };
-        Self {
-            dressed: over(0).dressed(&body.mesh.positions, &body.normals),
-            body: body.mesh.positions.clone(),
-            normals: body.normals.clone(),
-            bounds: Bounds::of(&body.mesh.positions),
-            drawn: body.mesh.triangles.clone(),
-            body_triangles: body.mesh.triangles.clone(),
-            cloths: garments.iter().enumerate().map(cloth).collect(),
-        }
-    }
-
-    /// Takes over a snapshot, from the outermost garment to the skin: each is drawn beneath what is worn over it.
-    fn take(&mut self, snapshot: &Snapshot) {
-        let mut over: Vec<[Vec3; 3]> = Vec::new();
-        for (cloth, points) in self.cloths.iter_mut().zip(&snapshot.garments).rev() {
-            let ClothDrawing { points: at, dressed, triangles, drawn, normals, .. } = cloth;
-            at.copy_from_slice(points);
-            vertex_normals(at, triangles, normals);
-            *drawn = Cover::new(over.iter().copied()).tuck(at, normals, dressed, triangles);
-            over.extend(triangles.iter().map(|t| t.map(|i| at[i as usize])));
-        }
-        snapshot.skin.read(&mut self.body, &mut self.normals);
-        self.bounds = Bounds::of(&self.body);
-        let cover = Cover::new(over.into_iter());
-        self.drawn = cover.tuck(&mut self.body, &self.normals, &self.dressed, &self.body_triangles);
-    }
-
-    /// The surfaces of a picture; `map` gives each garment its colours by vertex instead of the fabric's.
-    fn surfaces<'a>(&'a self, map: Option<&'a [Vec<f32>]>) -> Vec<Surface<'a>> {
-        let mut surfaces = vec![Surface {
-            positions: &self.body,
-            normals: &self.normals,
-            triangles: &self.drawn,
-            colours: Colours::One(MANNEQUIN),
-            material: Material::Skin,
-        }];
-        for (i, cloth) in self.cloths.iter().enumerate() {
-            let (colours, material) = match map {
-                Some(map) => (Colours::Tightness(&map[i]), Material::Chart),
-                None => (Colours::One(cloth.colour), Material::Cloth),
-            };
-            let ClothDrawing { points, normals, drawn: triangles, .. } = cloth;
-            surfaces.push(Surface { positions: points, normals, triangles, colours, material });
-        }
-        surfaces
-    }
 }
 
 impl Pictures {
@@ -184,8 +78,6 @@ impl Pictures {
             tempo,
             kept: Vec::new(),
             drawing: Drawing::new(frame),
-            middle: None,
-            stature: frame.body().measures.stature,
             bar,
         })
     }
@@ -196,53 +88,42 @@ impl Pictures {
     }
 
     /// Draws a frame of the animation.
-    pub fn add(&mut self, snapshot: &Snapshot) -> Result<(), AppError> {
+    pub fn add(&mut self, artist: &mut Artist, snapshot: &Snapshot, lines: &[Line]) -> Result<(), AppError> {
         self.drawing.take(snapshot);
-        let camera = self.follow();
+        let camera = self.drawing.follow(MOTION);
         let surfaces = self.drawing.surfaces(None);
-        let image = Stage::build(Scene { surfaces: &surfaces, floor: true }).render(&camera, MOTION, Quality::Motion);
-        self.animation.push(&image).map_err(AppError::input)?;
-        self.kept.push((image, snapshot.tick));
+        for image in artist.draw(&surfaces, lines, (MOTION, Quality::Motion), |_| vec![camera], || {})? {
+            self.animation.push(&image).map_err(AppError::input)?;
+            self.kept.push((image, snapshot.tick));
+        }
         self.bar.inc(1);
         Ok(())
-    }
-
-    /// A camera before the place where the shopper stands; it turns with nobody and never zooms.
-    fn follow(&mut self) -> Camera {
-        let bounds = self.drawing.bounds;
-        let now = (bounds.min + bounds.max) * 0.5;
-        let middle = self.middle.map_or(now, |m| m.lerp(now, FOLLOW));
-        self.middle = Some(middle);
-        let reach = Vec3::new(HALF_REACH_M, 0.0, 0.2);
-        let at = Vec3::new(middle.x, 0.0, middle.z);
-        let shown = Bounds { min: at - reach, max: at + reach + Vec3::Y * self.stature * HEADROOM };
-        Camera::front(&shown, MOTION.width as f32 / MOTION.height as f32)
     }
 
     /// Finishes the animation; writes the contact sheet, and the stills of the last snapshot in the fabric's colours
     /// and in those of the fit map. `tightness` has a value in -1..1 for each particle of each garment, `facing` is the
     /// direction that the shopper looks in (rad from +z towards +x).
-    pub fn finish(mut self, out: &mut OutputFolder, snapshot: &Snapshot, ending: &Ending<'_>) -> Result<(), AppError> {
+    pub fn finish(
+        mut self,
+        out: &mut OutputFolder,
+        artist: &mut Artist,
+        snapshot: &Snapshot,
+        ending: &Ending<'_>,
+    ) -> Result<(), AppError> {
         self.animation.finish().map_err(AppError::input)?;
         debug_assert_eq!(self.kept.len(), self.tempo.frames as usize);
         contact_sheet(out, &self.kept)?;
         self.drawing.take(snapshot);
         let legend = fitmap::legend(3 * STILL.width / 4, sheet::PAPER);
+        let aspect = STILL.width as f32 / STILL.height as f32;
+        let look = |bounds: &Bounds| {
+            [0.0, FRAC_PI_2, PI].map(|turn| Camera::framing(bounds, ending.facing + turn, aspect)).to_vec()
+        };
         for (name, map, legend) in [("look.png", None, None), ("fit.png", Some(ending.tightness), Some(&legend))] {
             let surfaces = self.drawing.surfaces(map);
-            let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });
-            let aspect = STILL.width as f32 / STILL.height as f32;
-            let view = |turn: f32| {
-                let image = stage.render(
-                    &Camera::framing(&stage.bounds(), ending.facing + turn, aspect),
-                    STILL,
-                    Quality::Still,
-                );
-                self.bar.inc(1);
-                image
-            };
-            let [front, side, back] = [0.0, FRAC_PI_2, PI].map(view);
-            write_png(out, name, &sheet::triptych(&front, &side, &back, ending.title, legend))?;
+            let drawn = artist.draw(&surfaces, ending.lines, (STILL, Quality::Still), look, || self.bar.inc(1))?;
+            let [front, side, back] = &drawn[..] else { return Err(AppError::internal("three views were asked for")) };
+            write_png(out, name, &sheet::triptych(front, side, back, ending.title, legend))?;
         }
         self.bar.finish_and_clear();
         Ok(())
@@ -254,6 +135,19 @@ impl Pictures {
     }
 }
 
+/// A small picture of a dressed body, looked at from `yaw` (rad), its garments in these colours (linear RGB, inner first).
+#[cfg(any(test, feature = "kiosk"))]
+pub fn glance(frame: &Frame, snapshot: &Snapshot, yaw: f32, colours: &[[f32; 3]], size: Size) -> Image {
+    use toile_view::scene::Scene;
+    use toile_view::trace::Stage;
+    let mut drawing = Drawing::new(frame).coloured(colours);
+    drawing.take(snapshot);
+    let surfaces = drawing.surfaces(None);
+    let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });
+    let camera = Camera::framing(&stage.bounds(), yaw, size.width as f32 / size.height as f32);
+    stage.render(&camera, size, Quality::Still)
+}
+
 /// How the session ended, as the stills show it.
 pub struct Ending<'a> {
     /// A value in -1 (loose) .. 1 (tight) for each particle of each garment.
@@ -262,6 +156,8 @@ pub struct Ending<'a> {
     pub facing: f32,
     /// Words over the stills: a title, then smaller lines.
     pub title: &'a str,
+    /// Lines over the stills.
+    pub lines: &'a [Line],
 }
 
 fn contact_sheet(out: &mut OutputFolder, kept: &[(Image, u64)]) -> Result<(), AppError> {

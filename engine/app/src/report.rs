@@ -216,6 +216,8 @@ pub struct TryOn {
     pub physics: Physics,
     /// Hash of the last state, 16 hexadecimal digits; the same input gives the same.
     pub state_hash: String,
+    /// What drew the pictures; nothing where there are none.
+    pub renderer: Option<String>,
     /// The files written.
     pub files: Vec<PathBuf>,
 }
@@ -322,6 +324,7 @@ mod tests {
         let recommendation =
             Recommendation { garment: "trousers".into(), size: "40".into(), zones: vec![zone], ..Default::default() };
         TryOn {
+            renderer: None,
             session: Session::default(),
             measurements: Measurements::default(),
             recommendation,

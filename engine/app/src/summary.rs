@@ -324,6 +324,7 @@ mod tests {
             sentence: "Waist: tight.".into(),
         };
         let mut report = TryOn {
+            renderer: None,
             session: Session { name: "a.csv".into(), frames: 3, seconds: 0.1, notes: vec!["one drop".into()] },
             measurements: Measurements::default(),
             recommendation: Recommendation {

@@ -1,6 +1,6 @@
 //! `toile try-on`: one whole try-on, from a session to pictures and a report.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::Affine3A;
 use toile_assets::body::{Body, Sex};
@@ -14,12 +14,14 @@ use toile_assets::wardrobe::{self, style::Style};
 use toile_engine::body::palette;
 use toile_engine::cloth::{Settings, measure};
 use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::lines::{CAPACITY, Kind, Lines};
 use toile_engine::relay::Reader;
 use toile_sensors::clock::{ns_to_ticks, ticks_to_ns};
 use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_track::measure::Measurements;
 
+use crate::artist::{Artist, Renderer};
 use crate::cli::{TryOnArgs, Wearer};
 use crate::exit::AppError;
 use crate::fit;
@@ -30,6 +32,7 @@ use crate::shopper;
 use crate::summary;
 use crate::terminal::{self, Paint, Words};
 use crate::tracking;
+use crate::video::Video;
 
 /// Fabric of a mesh that a user brings without saying what it is made of.
 const MESH_FABRIC: &str = "cotton-lawn";
@@ -48,6 +51,10 @@ enum Wanted {
 /// # Errors
 /// Bad input, an output folder that cannot be written, or a closed stdout.
 pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
+    if args.renderer == Renderer::Cpu && !args.lines.is_empty() {
+        return Err(AppError::Usage("lines are drawn by the GPU alone; add `--renderer gpu`".to_owned()));
+    }
+    let mut artist = Artist::open(args.renderer)?;
     let words = Words::new(args.quiet || args.json);
     let mut out = OutputFolder::prepare(&args.out)?;
     let wanted = wanted(args)?;
@@ -71,14 +78,14 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let track = shopper::believable(&session);
     let track = &track[shopper::stands_from(&track)..];
     let title = title(&recommendations);
-    play(args, &words, &mut out, &mut frame, &mut reader, track, &title)?;
+    let played = play((args, &words, &title), &mut out, &mut artist, &mut frame, &mut reader, track)?;
 
     if args.glb {
         out.write("dressed.glb", &dressed(&frame, reader.latest()))?;
     }
     // The report names itself as well.
     out.stage("report.json")?;
-    let files = out.files();
+    let files = out.files().into_iter().chain(played.film).collect();
     let mut recommendations = recommendations.into_iter();
     let document = Document::new(
         "try-on",
@@ -89,6 +96,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
             others: recommendations.collect(),
             physics: physics(&frame),
             state_hash: report::hash_text(frame.state_hash()),
+            renderer: played.renderer,
             files,
         },
     );
@@ -194,33 +202,49 @@ fn dress(
     Ok((garments, recommendations))
 }
 
+/// What playing a session left behind.
+struct Played {
+    /// Who drew; nobody where no picture was asked for.
+    renderer: Option<String>,
+    film: Option<PathBuf>,
+}
+
 /// Plays the session through the frame, 120 steps a second, and draws it.
 fn play(
-    args: &TryOnArgs,
-    words: &Words,
+    (args, words, title): (&TryOnArgs, &Words, &str),
     out: &mut OutputFolder,
+    artist: &mut Artist,
     frame: &mut Frame,
     reader: &mut Reader<Snapshot>,
     track: &[Joints],
-    title: &str,
-) -> Result<(), AppError> {
+) -> Result<Played, AppError> {
     let (Some(first), Some(last)) = (track.first(), track.last()) else {
         return Err(AppError::internal("a session without joints was let through"));
     };
     let steps = ns_to_ticks(last.time_ns - first.time_ns).max(1);
+    artist.prepare(frame.body(), frame.garments());
     let mut pictures = None;
     if args.pictures {
         let bar = words.bar(Pictures::work(steps), "drawing");
         pictures = Some(Pictures::begin(out, frame, steps, bar)?);
     }
+    let film = |path: &PathBuf| Video::begin(path, frame, steps, words.bar(Video::work(steps), "filming"));
+    let mut video = args.video.as_ref().map(film).transpose()?;
+    let mut lines = Lines::new(if args.lines.is_empty() { 0 } else { CAPACITY });
     frame.dress(first);
     for tick in 0..steps {
         let joints = sample(track, first.time_ns + ticks_to_ns(tick)).unwrap_or(*first);
         frame.step(&joints);
         if let Some(pictures) = pictures.as_mut().filter(|p| p.wants(tick)) {
-            pictures.add(reader.latest())?;
+            draw_lines(&mut lines, &args.lines, frame);
+            pictures.add(artist, reader.latest(), lines.as_slice())?;
+        }
+        if let Some(video) = video.as_mut().filter(|_| Video::wants(tick)) {
+            draw_lines(&mut lines, &args.lines, frame);
+            video.add(artist, reader.latest(), lines.as_slice())?;
         }
     }
+    let drew = pictures.is_some() || video.is_some();
     if let Some(pictures) = pictures {
         let tightness: Vec<Vec<f32>> = frame
             .cloths()
@@ -230,9 +254,25 @@ fn play(
             .collect();
         let ahead = frame.pose().local[Joint::Pelvis.index()] * glam::Vec3::Z;
         let facing = ahead.x.atan2(ahead.z);
-        pictures.finish(out, reader.latest(), &Ending { tightness: &tightness, facing, title })?;
+        draw_lines(&mut lines, &args.lines, frame);
+        let ending = Ending { tightness: &tightness, facing, title, lines: lines.as_slice() };
+        pictures.finish(out, artist, reader.latest(), &ending)?;
     }
-    Ok(())
+    let film = video.map(Video::finish).transpose()?;
+    Ok(Played { renderer: drew.then(|| artist.describe()), film })
+}
+
+/// Fills in the lines that were asked for, of the frame as it is.
+fn draw_lines(lines: &mut Lines, kinds: &[Kind], frame: &Frame) {
+    lines.clear();
+    for &kind in kinds {
+        if kind == Kind::Colliders {
+            lines.add_colliders(frame.colliders());
+        }
+        for (cloth, garment) in frame.cloths().iter().zip(frame.garments()) {
+            lines.add_garment(kind, cloth, garment, frame.colliders());
+        }
+    }
 }
 
 /// The dressed body as it is drawn last: the body on its skeleton in that pose, the garments as they lie.

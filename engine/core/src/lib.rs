@@ -18,6 +18,7 @@ mod crew_tests;
 pub mod frame;
 pub mod hold;
 pub mod lanes;
+pub mod lines;
 pub mod meter;
 pub mod pace;
 pub mod relay;

@@ -16,7 +16,7 @@ use crate::{
 const LIFT: f32 = 5e-5;
 
 /// Least cosine between a shading normal and the eye: interpolated normals may turn away at the outline.
-const LEAST_FACING: f32 = 0.02;
+pub const LEAST_FACING: f32 = 0.02;
 
 /// Cosine between the normals of neighbouring pixels below which an edge runs between them.
 const CREASE: f32 = 0.8;

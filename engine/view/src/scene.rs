@@ -205,7 +205,7 @@ pub(crate) struct View {
     pub forward: Vec3,
     pub right: Vec3,
     pub up: Vec3,
-    half: Vec2,
+    pub half: Vec2,
 }
 
 impl View {

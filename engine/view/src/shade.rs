@@ -5,19 +5,19 @@ use glam::Vec3;
 use crate::scene::Material;
 
 /// Reflectance of any dielectric seen head-on. The tone curve takes it off again.
-const FRESNEL: f32 = 0.04;
+pub const FRESNEL: f32 = 0.04;
 
 /// Exponent of the mannequin's highlight: wide and soft, a matte lacquer.
-const GLOSS: f32 = 18.0;
+pub const GLOSS: f32 = 18.0;
 
 /// Strength of the cloth's sheen at the most grazing angle (Burley 2012, "Physically based shading at Disney").
 const SHEEN: f32 = 0.35;
 
 /// How far the sheen takes the cloth's own colour rather than white.
-const SHEEN_TINT: f32 = 0.6;
+pub const SHEEN_TINT: f32 = 0.6;
 
 /// Light that reaches an occluded place after all, reflected by what occludes it, times the place's own colour.
-const BOUNCE: f32 = 0.45;
+pub const BOUNCE: f32 = 0.45;
 
 /// A visible place on a surface.
 #[derive(Debug, Clone, Copy)]

@@ -43,6 +43,11 @@ impl Lamp {
         (self.toward + self.across[0] * at.x + self.across[1] * at.y).normalize()
     }
 
+    /// Tangent of the lamp's apparent radius.
+    pub fn breadth(&self) -> f32 {
+        self.across[0].length()
+    }
+
     /// Direction towards the lamp's middle.
     pub fn middle(&self) -> Vec3 {
         self.toward
@@ -54,11 +59,11 @@ impl Lamp {
 pub struct Studio {
     pub key: Lamp,
     pub rim: Lamp,
-    sky: Vec3,
-    ground: Vec3,
-    fill: Vec3,
-    fill_toward: Vec3,
-    subject: Bounds,
+    pub sky: Vec3,
+    pub ground: Vec3,
+    pub fill: Vec3,
+    pub fill_toward: Vec3,
+    pub subject: Bounds,
     pub cove: Cove,
 }
 
@@ -97,7 +102,7 @@ impl Studio {
         }
         let (min, max) = (self.subject.min - place, self.subject.max - place);
         // The box grown by the lamp's breadth as seen from here, against the ray to the lamp's middle.
-        let breadth = self.key.across[0].length() * min.abs().max(max.abs()).length();
+        let breadth = self.key.breadth() * min.abs().max(max.abs()).length();
         let inverse = self.key.toward.recip();
         let (a, b) = ((min - breadth) * inverse, (max + breadth) * inverse);
         let shaded = a.min(b).max_element().max(0.0) <= a.max(b).min_element();
@@ -119,22 +124,22 @@ impl Studio {
 #[derive(Debug, Clone, Copy)]
 pub struct Cove {
     /// The subject's middle on the floor.
-    centre: Vec3,
+    pub centre: Vec3,
     /// Level, away from the camera.
-    away: Vec3,
+    pub away: Vec3,
     /// The subject's height, the measure of everything here (m).
     size: f32,
-    floor: bool,
+    pub floor: bool,
 }
 
 /// Where the curve starts behind the subject, in subject heights.
-const DEPTH: f32 = 0.75;
+pub const DEPTH: f32 = 0.75;
 
 /// Radius of the curve, in subject heights: so wide that the preset cameras see no end of it, nor a line where it ends.
-const CURVE: f32 = 2.4;
+pub const CURVE: f32 = 2.4;
 
 /// Distance over which the pool of light around the subject falls to half, in subject heights.
-const POOL: f32 = 2.3;
+pub const POOL: f32 = 2.3;
 
 impl Cove {
     fn new(view: &View, bounds: Bounds, floor: bool) -> Self {

@@ -10,7 +10,7 @@ const SHOULDER: f32 = 0.8 - FRESNEL;
 const FRESNEL: f32 = 0.04;
 
 /// How fast compressed highlights lose their colour.
-const DESATURATION: f32 = 0.15;
+pub const DESATURATION: f32 = 0.15;
 
 /// Scene light to display light, both linear RGB: the Khronos PBR Neutral curve.
 pub fn compress(light: Vec3) -> Vec3 {

@@ -6,7 +6,7 @@
 
 use delaunator::{Point, triangulate};
 use glam::{DVec2, DVec3};
-use toile_assets::fabric::Fabric;
+use toile_assets::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
 use toile_assets::garment::shape::{NO_VERTEX, Part};
 use toile_assets::garment::{Face, Shape};
 use toile_assets::mesh::SkinWeights;
@@ -281,6 +281,9 @@ impl Cloth {
             contact_offset_mm: 1.0,
             comfortable_stretch: 0.1,
             colour: [0.5; 3],
+            weave: Weave::Plain,
+            threads_per_cm: USUAL_THREADS,
+            sheen: USUAL_SHEEN,
         }
     }
 }

@@ -15,7 +15,7 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
-use crate::fabric::Fabric;
+use crate::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
 use crate::garment::{Part, Shape};
 use crate::mesh::SkinWeights;
 
@@ -104,6 +104,9 @@ pub fn fabric(shape: &Shape, stretch: Stretch) -> Fabric {
         contact_offset_mm: 1.0,
         comfortable_stretch: 0.05,
         colour: [0.24, 0.42, 0.55],
+        weave: Weave::Plain,
+        threads_per_cm: USUAL_THREADS,
+        sheen: USUAL_SHEEN,
     }
 }
 

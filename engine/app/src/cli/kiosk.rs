@@ -1,5 +1,6 @@
 //! The grammar of `toile kiosk`.
 
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::{ArgMatches, value_parser};
@@ -16,6 +17,8 @@ const MOST_SECONDS: i64 = 366 * 86_400;
 pub struct KioskArgs {
     /// Whether it runs without a window.
     pub headless: bool,
+    /// Pixels of a window, where it is not to cover the display.
+    pub windowed: Option<[u32; 2]>,
     /// Length of the run (s); none is until it is told to end.
     pub seconds: Option<u32>,
     /// The configuration; none is the default one.
@@ -32,6 +35,18 @@ pub struct KioskArgs {
     pub quiet: bool,
 }
 
+/// Least and most pixels of a window, each way.
+const WINDOW: RangeInclusive<u32> = 240..=8192;
+
+/// Reads `540x960`.
+fn windowed(said: &str) -> Result<[u32; 2], String> {
+    let side = |text: &str| text.parse::<u32>().ok().filter(|n| WINDOW.contains(n));
+    let size = said.split_once('x').and_then(|(w, h)| Some([side(w)?, side(h)?]));
+    size.ok_or_else(|| {
+        format!("give two numbers of pixels from {} to {}, for example 540x960", WINDOW.start(), WINDOW.end())
+    })
+}
+
 /// The grammar of the command.
 pub(super) fn grammar() -> clap::Command {
     clap::Command::new("kiosk")
@@ -43,6 +58,9 @@ pub(super) fn grammar() -> clap::Command {
         )
         .args([
             flag("headless", "Without a window: pictures are taken and thrown away"),
+            text("windowed", "WxH", "In a window of so many pixels [default: it covers the display]")
+                .value_parser(windowed)
+                .conflicts_with("headless"),
             text("seconds", "S", "End after so many seconds [default: when told to]")
                 .value_parser(value_parser!(u32).range(1..=MOST_SECONDS)),
             path("config", "FILE", "Configuration in TOML [default: what --print-config prints]"),
@@ -59,6 +77,7 @@ pub(super) fn grammar() -> clap::Command {
 pub(super) fn args(matches: &ArgMatches) -> Result<KioskArgs, AppError> {
     Ok(KioskArgs {
         headless: matches.get_flag("headless"),
+        windowed: matches.get_one("windowed").copied(),
         seconds: matches.get_one("seconds").copied(),
         config: matches.get_one("config").cloned(),
         session: matches.get_one("session").cloned(),

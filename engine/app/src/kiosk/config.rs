@@ -34,6 +34,8 @@ pub struct Config {
     pub health: Health,
     /// What is asked of the machine.
     pub machine: Wanted,
+    /// The display, where there is one.
+    pub display: Display,
     /// Figures for Prometheus.
     pub metrics: Metrics,
     /// What is kept of a crash.
@@ -108,6 +110,29 @@ pub struct Wanted {
     pub lock_memory: bool,
 }
 
+/// Languages of the pages, by their tags (BCP 47).
+pub const LANGUAGES: [&str; 6] = ["en", "de", "fr", "es", "tr", "ja"];
+
+/// The display, and how every visit begins on it.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Display {
+    /// From the floor to the picture's lower edge (mm).
+    pub lower_edge_mm: f32,
+    /// Height of the picture (mm).
+    pub height_mm: f32,
+    /// The language before somebody chooses one.
+    pub language: String,
+    /// Whether type is large before somebody chooses.
+    pub large_type: bool,
+    /// Whether anything moves by itself: a mannequin that turns.
+    pub motion: bool,
+    /// How long a picture that was asked for is kept.
+    pub picture_minutes: f64,
+    /// Where the mark is on the floor, in the sensor's world (x and z, m).
+    pub mark_m: Option<[f32; 2]>,
+}
+
 /// Figures for Prometheus.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -149,9 +174,41 @@ impl Default for Health {
     }
 }
 
+impl Default for Display {
+    fn default() -> Self {
+        Self {
+            lower_edge_mm: 400.0,
+            height_mm: 1210.0,
+            language: LANGUAGES[0].into(),
+            large_type: false,
+            motion: true,
+            picture_minutes: 3.0,
+            mark_m: None,
+        }
+    }
+}
+
 impl Default for Wanted {
     fn default() -> Self {
         Self { workers: None, lock_memory: true }
+    }
+}
+
+impl Display {
+    /// The first value that cannot be, with the cure. Whether the controls are within reach is looked at where there are any.
+    fn fault(&self) -> Option<String> {
+        let (minutes, language) = (self.picture_minutes, &self.language);
+        let known = LANGUAGES.contains(&language.as_str());
+        let lengths = [self.lower_edge_mm, self.height_mm].into_iter().chain(self.mark_m.into_iter().flatten());
+        if !(0.1..=30.0).contains(&minutes) {
+            Some(format!("display.picture_minutes = {minutes} is not within 0.1 .. 30 minutes; correct it"))
+        } else if !known {
+            Some(format!("display.language = {language:?} is not spoken; choose one of {}", LANGUAGES.join(", ")))
+        } else if !lengths.into_iter().all(f32::is_finite) {
+            Some("a length in [display] is no number; correct it".into())
+        } else {
+            None
+        }
     }
 }
 
@@ -209,6 +266,7 @@ impl Config {
             .find_map(outside)
             .or_else(|| workers.map(|w| format!("machine.workers = {w} is not 1 or {SHARES}; correct it")))
             .or_else(|| self.wear.garments.is_empty().then(|| "wear.garments is empty; name a garment".into()))
+            .or_else(|| self.display.fault())
             .or_else(|| self.wear.quality.parse::<Quality>().err().map(|e| format!("wear.quality: {e}")))
     }
 
@@ -273,6 +331,9 @@ mod tests {
             ("[machine]\nworkers = 3", "machine.workers"),
             ("[wear]\ngarments = []", "wear.garments"),
             ("[wear]\nquality = \"best\"", "wear.quality"),
+            ("[display]\nlanguage = \"tlh\"", "display.language"),
+            ("[display]\npicture_minutes = 0.0", "display.picture_minutes"),
+            ("[display]\nmark_m = [0.0, nan]", "[display]"),
         ] {
             let said = Config::parse("k.toml", text).unwrap_err().to_string();
             assert!(said.starts_with("k.toml: ") && said.contains(key), "{said}");

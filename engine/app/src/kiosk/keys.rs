@@ -7,12 +7,13 @@ use toml::de::{DeTable, DeValue};
 use crate::exit::AppError;
 
 /// Every table and its keys.
-pub const KEYS: [(&str, &[&str]); 7] = [
+pub const KEYS: [(&str, &[&str]); 8] = [
     ("wear", &["garments", "size", "quality"]),
     ("sensor", &["source", "session", "pause_s", "vmc"]),
     ("session", &["step_in_s", "measure_s", "step_out_s", "wipe_s"]),
     ("health", &["every_s"]),
     ("machine", &["workers", "lock_memory"]),
+    ("display", &["lower_edge_mm", "height_mm", "language", "large_type", "motion", "picture_minutes", "mark_m"]),
     ("metrics", &["port"]),
     ("crash", &["recording"]),
 ];

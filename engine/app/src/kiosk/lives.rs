@@ -27,8 +27,9 @@ use super::source::{FRAMES, FRAMES_NAME, Feed, Tapped};
 use super::stage::{BEATS, BEATS_NAME, Beat, Stage, Watching};
 use super::watchdog::Pulse;
 
-/// Longest that lives are waited for when they are to end: five of their longest sleeps and a step.
-const LONGEST_END: Duration = Duration::from_millis(300);
+/// Longest that lives are waited for when they are to end: a picture that a busy processor draws; the others take a fifth of a
+/// second.
+const LONGEST_END: Duration = Duration::from_secs(3);
 
 /// Who is there when the loop begins.
 pub struct Cast<S, E: Eye> {

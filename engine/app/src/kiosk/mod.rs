@@ -10,6 +10,7 @@
 
 pub mod change;
 pub mod config;
+pub mod host;
 mod keys;
 pub mod lives;
 pub mod manager;
@@ -30,7 +31,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use toile_engine::clock::{Clock, RealClock};
+use toile_engine::frame::Frame;
 use toile_engine::pace::physics::Staged;
+use toile_engine::pace::render::Eye;
 use toile_engine::pace::threads;
 use toile_engine::relay::Writer;
 use toile_perf::latency::Placed;
@@ -44,6 +47,7 @@ use crate::shopper;
 use crate::terminal::{self, Words};
 use change::{Act, Changing};
 use config::{Config, Source};
+use host::Host;
 use lives::{Cast, Headless, Lives};
 use manager::{Ending, Systemd};
 use report::KioskReport;
@@ -52,17 +56,14 @@ use source::{Feed, Visits};
 use tailor::{Dressed, Model, Tailor};
 use vitals::Vitals;
 
-/// Runs `toile kiosk`.
+/// Runs `toile kiosk`, with a window as `seen` does.
 ///
 /// # Errors
-/// A configuration, a session or a garment that cannot be used, a thread that ended while it ran.
-pub fn run(args: &KioskArgs) -> Result<(), AppError> {
+/// A configuration, a session or a garment that cannot be used, a thread that ended while it ran; those of `seen`.
+pub fn run(args: &KioskArgs, seen: fn(Given<'_>) -> Result<KioskReport, AppError>) -> Result<(), AppError> {
     let begun = Instant::now();
     if args.print_config {
         return terminal::print(config::EXAMPLE);
-    }
-    if !args.headless {
-        return Err(AppError::Usage("`toile kiosk` has no window in this build; add `--headless`".into()));
     }
     let ending = Ending::listen().map_err(AppError::internal)?;
     let mut config = Config::open(args.config.as_deref())?;
@@ -71,26 +72,77 @@ pub fn run(args: &KioskArgs) -> Result<(), AppError> {
     }
     let words = Words::new(args.quiet);
     let figures = figures(&config)?;
-    let report = serve(args, &config, begun, &ending, &words, figures)?;
+    let clock = RealClock::default();
+    let given = Given { args, config: &config, begun, clock, ending: &ending, words: &words, figures };
+    let report = if args.headless {
+        let eye = |_: &Frame| Ok(Headless::default());
+        serve(given, Seeing { eye, stage: |frame| (Staged::new(frame), ()), host: |_| None })?.0
+    } else {
+        seen(given)?
+    };
     if args.json { terminal::print_json(&Document::new("kiosk", report)) } else { terminal::print(&report.summary()) }
 }
 
-/// Sets everything up and runs until the end.
-fn serve(
-    args: &KioskArgs,
-    config: &Config,
-    begun: Instant,
-    ending: &Ending,
-    words: &Words,
+/// Where no window was built in.
+///
+/// # Errors
+/// That there is none, and the cure.
+pub fn without_window(_: Given<'_>) -> Result<KioskReport, AppError> {
+    let cure = "add `--headless`, or build with `--features kiosk`";
+    Err(AppError::Usage(format!("`toile kiosk` has no window in this build; {cure}")))
+}
+
+/// What a run is given.
+pub struct Given<'a> {
+    /// The command line.
+    pub args: &'a KioskArgs,
+    /// The configuration.
+    pub config: &'a Config,
+    /// When the program began.
+    pub begun: Instant,
+    /// The loop's clock.
+    pub clock: RealClock,
+    /// Whether it is to end.
+    pub ending: &'a Ending,
+    /// What is said on the way.
+    pub words: &'a Words,
     figures: Option<Writer<Vitals>>,
-) -> Result<KioskReport, AppError> {
+}
+
+/// Who sees.
+pub struct Seeing<F, H, O> {
+    /// The eye, once the mannequin is dressed.
+    pub eye: F,
+    /// What it has to know of a frame that takes the stage.
+    pub stage: fn(Frame) -> (Staged, O),
+    /// Who decides what happens to shoppers, who are measured from the recording that is played, if one is; none is the session
+    /// alone.
+    pub host: H,
+}
+
+/// A host with what it holds.
+pub type Hosting<'a, O> = Option<Box<dyn Host<Staged, O> + 'a>>;
+
+/// Sets everything up and runs until the end; gives the report, and the eye that looked.
+///
+/// # Errors
+/// As [`run`].
+pub fn serve<'a, E, F, H>(
+    given: Given<'a>,
+    seeing: Seeing<F, H, E::Outfit>,
+) -> Result<(KioskReport, Option<E>), AppError>
+where
+    E: Eye<Outfit: Default> + 'static,
+    F: FnOnce(&Frame) -> Result<E, AppError>,
+    H: FnOnce(Option<Model>) -> Hosting<'a, E::Outfit>,
+{
+    let Given { args, config, begun, clock, ending, words, figures } = given;
     let wish = config.wish();
     let session = recording(config)?;
     // The mannequin stands as somebody does in the recording: a pose, and no body.
     let pose = shopper::believable(&session);
     let pose = pose[shopper::stands_from(&pose).min(pose.len() - 1)];
     let dressed = tailor::mannequin(&wish, &pose)?;
-    let clock = RealClock::default();
     let (feed, played) = feed(config, session, clock)?;
     let workers = config.machine.workers.unwrap_or_else(workers);
     let (crew, worker) = threads::crew(workers).map_err(AppError::input)?;
@@ -111,8 +163,9 @@ fn serve(
         None => (None, None),
     };
     let Dressed { frame, reader, made } = dressed;
-    let first = Act { scene: Staged::new(frame.with_crew(crew)), reader, outfit: (), made };
-    let cast = Cast { first, eye: Headless::default(), feed, tape };
+    let eye = (seeing.eye)(&frame)?;
+    let first = Act { scene: Staged::new(frame.with_crew(crew)), reader, outfit: E::Outfit::default(), made };
+    let cast = Cast { first, eye, feed, tape };
     let (lives, doors) = Lives::start(cast, clock).map_err(AppError::internal)?;
     ending.orderly();
     let say = |line: &str| words.say(line);
@@ -123,15 +176,21 @@ fn serve(
         say: &say,
         figures,
         tailor: Tailor::new(wish),
-        stage: |frame| (Staged::new(frame), ()),
+        stage: seeing.stage,
         pose,
         black_box,
     };
-    let ran = Service::new(lives, changing, plan, around).run();
+    let host = (seeing.host)(plan.played.clone());
+    let service = Service::new(lives, changing, plan, around);
+    let ran = match host {
+        Some(host) => service.hosted_by(host).run(),
+        None => service.run(),
+    };
     crash::forget();
-    let (ended, mut course) = ran?;
+    let (mut ended, mut course) = ran?;
     course.threads.extend(worker.map(Placed::from));
-    Ok(KioskReport::of(&ended, course))
+    let report = KioskReport::of(&ended, course);
+    Ok((report, ended.render.take().map(|render| render.eye)))
 }
 
 /// The recording that is played, or for a live sensor the embedded one, whose shopper shows the mannequin how to stand.

@@ -12,7 +12,7 @@ use toile_engine::pace::blackbox::BlackBox;
 use toile_engine::pace::physics::{Staged, Stepper};
 use toile_engine::pace::queue::Sender;
 use toile_engine::pace::replay::{Replayed, replay_changing};
-use toile_engine::pace::tape::{Entry, Note};
+use toile_engine::pace::tape::{self, Entry, Note};
 use toile_sensors::frame::Joints;
 
 use super::stage::Stage;
@@ -102,7 +102,8 @@ impl Made {
 /// A header that cannot be written, which does not happen.
 pub fn keep(first: &Made, path: PathBuf) -> Result<(Arc<BlackBox>, Sender<Entry>), AppError> {
     let recipe = KioskRecipe { version: env!("CARGO_PKG_VERSION").to_owned(), kiosk: Kind::Notes };
-    let (black_box, tape) = crash::record(&recipe, path)?;
+    let header = tape::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
+    let (black_box, tape) = crash::record(header, path);
     black_box.describe(&first.note(0));
     black_box.keep(&Entry::Changed { number: 0, afresh: true });
     Ok((black_box, tape))

@@ -53,6 +53,36 @@ pub struct KioskReport {
     pub capacities: Vec<Warned>,
     /// What did not go as it should, with the cure.
     pub warnings: Vec<String>,
+    /// The window, where there was one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub window: Option<WindowReport>,
+}
+
+/// The window's part of the JSON.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WindowReport {
+    /// Who draws.
+    pub adapter: String,
+    /// Whether that is the processor.
+    pub software: bool,
+    /// Pixels of the window.
+    pub size: [u32; 2],
+    /// From the start of the program until the first picture was presented (ms).
+    pub first_picture_ms: Option<f64>,
+    /// Pictures presented.
+    pub presented: u64,
+    /// Pictures that were due and not drawn, because the adapter is to rest or the window is hidden.
+    pub rested: u64,
+    /// Pictures for which the display gave no surface.
+    pub refused: u64,
+    /// Times that the device was lost and made anew.
+    pub lost: u64,
+    /// Painting and drawing a picture (us).
+    pub draw_us: Quantiles,
+    /// From one presented picture to the next (us).
+    pub between_us: Quantiles,
+    /// How much longer or shorter that was than the time before it (us): the jitter.
+    pub jitter_us: Quantiles,
 }
 
 /// What the service knows of its run beside the lives.
@@ -104,6 +134,7 @@ impl KioskReport {
             threads: course.threads,
             capacities: ended.capacities.map(Warned::from).to_vec(),
             warnings,
+            window: None,
         }
     }
 

@@ -1,4 +1,4 @@
-//! The service: looks at everything fifty times a second and decides; it steps nothing and draws nothing itself.
+//! The service: looks at everything fifty times a second and has a host decide; it steps nothing and draws nothing itself.
 
 use std::sync::Arc;
 use std::thread;
@@ -12,31 +12,22 @@ use toile_engine::relay::Writer;
 use toile_perf::latency::{Attributed, Placed};
 use toile_sensors::frame::Joints;
 
-use super::change::{Act, Changing};
+use super::change::Changing;
+use super::host::{Alone, Hall, Host};
 use super::lives::{Ended, Lives};
 use super::manager::{Ending, Manager, News};
 use super::report::Course;
-use super::session::{Change, Rules, Session, Sight, State};
-use super::tailor::{Dressed, Job, Model, Tailor, Work};
+use super::session::{Rules, State};
+use super::tailor::{Model, Tailor, Work};
 use super::vitals::{Tally, Vitals};
 use super::watchdog::Watchdog;
 use crate::exit::AppError;
-use crate::shopper;
 
 /// Time between two looks: the queues hold seconds, and a signal to end waits for no longer.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// A sensor frame older than this says nothing about who is there now (ns).
-const STALE_NS: u64 = 500_000_000;
-
 /// Most states that are told one by one.
 const MOST_STATES: usize = 1000;
-
-/// Most sensor frames that a shopper is measured from: the longest measuring at 60 Hz.
-const MOST_FRAMES: usize = 3600;
-
-/// Fewest frames that somebody can be measured from.
-const FEWEST_FRAMES: usize = 10;
 
 /// How the service behaves.
 pub struct Plan {
@@ -83,21 +74,22 @@ pub struct Around<'a, S, O> {
 /// The service while it runs.
 pub struct Service<'a, S: Scene, E: Eye> {
     lives: Lives<S, E>,
-    changing: Changing<S, E::Outfit>,
-    plan: Plan,
-    around: Around<'a, S, E::Outfit>,
-    session: Session,
+    hall: Hall<S, E::Outfit>,
+    host: Box<dyn Host<S, E::Outfit> + 'a>,
+    length: Option<Duration>,
+    crash_after: Option<Duration>,
+    begun: Instant,
+    every_ns: u64,
+    manager: &'a dyn Manager,
+    ending: &'a Ending,
+    say: &'a dyn Fn(&str),
+    figures: Option<Writer<Vitals>>,
+    black_box: Option<Arc<BlackBox>>,
     tally: Tally,
     dog: Option<Watchdog>,
     /// The loop's time when it began, and when the next health line is due (ns).
     began_ns: u64,
     health_ns: u64,
-    /// When a frame last came, and whether somebody was seen in it.
-    seen: (u64, bool),
-    /// What the shopper is measured from, and who was made of it.
-    model: Vec<Joints>,
-    fitted: Option<Box<Dressed>>,
-    dressed: bool,
     course: Course,
 }
 
@@ -120,22 +112,33 @@ impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
             memory_locked: plan.memory_locked,
             warnings: plan.warnings.clone(),
         };
+        let Around { manager, ending, say, figures, tailor, stage, pose, black_box } = around;
+        let host = Box::new(Alone::new(plan.rules, plan.measure_ns, plan.played, now));
         Self {
-            session: Session::new(plan.rules, now),
+            lives,
+            hall: Hall { changing, tailor, stage, pose },
+            host,
+            length: plan.length,
+            crash_after: plan.crash_after,
+            begun: plan.begun,
+            every_ns: plan.health_ns,
+            dog: Watchdog::new(manager.patience(), now),
+            manager,
+            ending,
+            say,
+            figures,
+            black_box,
             tally: Tally::default(),
-            dog: Watchdog::new(around.manager.patience(), now),
             began_ns: now,
             health_ns: now + plan.health_ns,
-            seen: (0, false),
-            model: Vec::new(),
-            fitted: None,
-            dressed: false,
             course,
-            lives,
-            changing,
-            plan,
-            around,
         }
+    }
+
+    /// The same with somebody else who decides what happens to whoever stands there: one with pages, for a window.
+    #[must_use]
+    pub fn hosted_by(self, host: Box<dyn Host<S, E::Outfit> + 'a>) -> Self {
+        Self { host, ..self }
     }
 
     /// Runs until it is told to end or its time is over. Gives what became of it, and of the lives.
@@ -143,7 +146,7 @@ impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
     /// # Errors
     /// Where a thread has ended that must not: whoever started the service starts it again.
     pub fn run(mut self) -> Result<(Ended<S, E>, Course), AppError> {
-        while !self.around.ending.is_asked() && !self.is_time_over() {
+        while !self.ending.is_asked() && !self.is_time_over() {
             self.look()?;
             thread::sleep(LOOK);
         }
@@ -154,9 +157,9 @@ impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
 
     fn is_time_over(&self) -> bool {
         let uptime = Duration::from_nanos(self.lives.now_ns() - self.began_ns);
-        let crashes = self.plan.crash_after.is_some_and(|after| uptime >= after);
+        let crashes = self.crash_after.is_some_and(|after| uptime >= after);
         assert!(!crashes, "the crash that --crash-after asked for");
-        self.plan.length.is_some_and(|length| uptime >= length)
+        self.length.is_some_and(|length| uptime >= length)
     }
 
     /// One look at everything.
@@ -169,14 +172,7 @@ impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
         }
         self.watch();
         let now = self.lives.now_ns();
-        let shopper = self.frames(now);
-        self.work()?;
-        let sight = Sight { shopper, dressed: self.dressed };
-        if let Some(change) = self.session.look(now, sight) {
-            self.change(change);
-        }
-        self.measure(now)?;
-        self.changing.look();
+        self.host(now)?;
         self.count();
         self.health(now);
         Ok(())
@@ -186,7 +182,7 @@ impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
     fn watch(&mut self) {
         let count = self.lives.pulse.count();
         if self.course.ready_ms.is_none() && count.iter().all(|n| *n > 0) {
-            self.course.ready_ms = Some((self.plan.begun.elapsed().as_secs_f64() * 1e4).round() / 10.0);
+            self.course.ready_ms = Some((self.begun.elapsed().as_secs_f64() * 1e4).round() / 10.0);
             self.tell(News::Ready);
         }
         let now = self.lives.now_ns();
@@ -196,95 +192,44 @@ impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
     }
 
     fn tell(&mut self, news: News) {
-        if let Err(e) = self.around.manager.tell(news)
+        if let Err(e) = self.manager.tell(news)
             && !self.course.warnings.iter().any(|w| w.starts_with("the service manager"))
         {
             self.course.warnings.push(format!("the service manager cannot be reached ({e}); check NOTIFY_SOCKET"));
         }
     }
 
-    /// Takes in what the sensor saw; gives whether somebody is there.
-    fn frames(&mut self, now: u64) -> bool {
+    /// Has the host decide, and does what is the service's to do.
+    fn host(&mut self, now: u64) -> Result<(), AppError> {
         while let Some(frame) = self.lives.frames.pop() {
-            self.seen = (frame.time_ns, shopper::is_seen(&frame));
-            if self.session.state() == State::Measuring && self.seen.1 && self.model.len() < MOST_FRAMES {
-                self.model.push(frame);
-            }
+            self.host.frame(frame);
         }
-        self.seen.1 && now.saturating_sub(self.seen.0) < STALE_NS
-    }
-
-    /// Takes what the tailor has made.
-    fn work(&mut self) -> Result<(), AppError> {
-        match self.around.tailor.look() {
+        match self.hall.tailor.look() {
             Some(Work::Done(mannequin)) if mannequin.made.still => {
-                let act = self.act(*mannequin);
-                self.changing.stand_by(act);
+                let act = self.hall.act(*mannequin);
+                self.hall.changing.stand_by(act);
             }
-            Some(Work::Done(dressed)) => (self.fitted, self.dressed) = (Some(dressed), true),
-            Some(Work::Failed) => self.model.clear(),
             Some(Work::Died) => {
                 return Err(AppError::Internal("the tailor's thread panicked; start the kiosk again".into()));
             }
+            Some(work) => self.host.work(work),
             None => {}
         }
+        if let Some(change) = self.host.look(now, &mut self.hall)? {
+            if self.course.states.len() < MOST_STATES {
+                self.course.states.push(change.to);
+            }
+            if change.to == State::Measuring {
+                self.tally.stepped_in(change.from == State::Attract);
+            }
+        }
+        self.hall.dress_mannequin()?;
+        self.hall.changing.look();
         Ok(())
     }
 
-    /// What a change of state brings about.
-    fn change(&mut self, change: Change) {
-        if self.course.states.len() < MOST_STATES {
-            self.course.states.push(change.to);
-        }
-        match change.to {
-            State::Measuring => {
-                self.tally.stepped_in(change.from == State::Attract);
-                self.model.clear();
-            }
-            State::TryOn => {
-                self.model.clear();
-                if let Some(fitted) = self.fitted.take() {
-                    let act = self.act(*fitted);
-                    self.changing.bring(act, true);
-                }
-            }
-            State::Left => {}
-            State::Attract => self.wipe(),
-        }
-    }
-
-    /// Somebody dressed, as the stage takes them.
-    fn act(&self, dressed: Dressed) -> Act<S, E::Outfit> {
-        let Dressed { frame, reader, made } = dressed;
-        let (scene, outfit) = (self.around.stage)(frame);
-        Act { scene, reader, outfit, made }
-    }
-
-    /// Forgets the shopper.
-    fn wipe(&mut self) {
-        self.model.clear();
-        (self.fitted, self.dressed) = (None, false);
-        self.around.tailor.forget();
-        self.changing.wipe();
-    }
-
-    /// Sends the tailor to work when there is enough to measure, or when there is no mannequin to come back.
-    fn measure(&mut self, now: u64) -> Result<(), AppError> {
-        let enough = self.session.lasted_ns(now) >= self.plan.measure_ns && self.model.len() >= FEWEST_FRAMES;
-        let wanted = self.session.state() == State::Measuring && !self.dressed && !self.around.tailor.is_busy();
-        let job = if enough && wanted {
-            let model = self.plan.played.clone();
-            Job::Shopper(model.unwrap_or_else(|| Model::Joints(std::mem::take(&mut self.model))))
-        } else if self.changing.lacks_mannequin() && !self.around.tailor.is_busy() {
-            Job::Mannequin(Box::new(self.around.pose))
-        } else {
-            return Ok(());
-        };
-        self.around.tailor.begin(job).map_err(AppError::internal)
-    }
-
     fn count(&mut self) {
-        if let Some(black_box) = &self.around.black_box {
+        if let Some(black_box) = &self.black_box {
             black_box.drain(|_| {});
         }
         while let Some(beat) = self.lives.beats.pop() {
@@ -296,16 +241,16 @@ impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
         let [_, pictures] = self.lives.pulse.count();
         let uptime = self.lives.now_ns() - self.began_ns;
         self.course.attributed = self.tally.attributed();
-        self.course.vitals = self.tally.vitals(uptime, self.session.state(), pictures);
-        if let Some(figures) = &mut self.around.figures {
+        self.course.vitals = self.tally.vitals(uptime, self.host.state(), pictures);
+        if let Some(figures) = &mut self.figures {
             figures.publish(self.course.vitals);
         }
     }
 
     fn health(&mut self, now: u64) {
-        if self.plan.health_ns > 0 && now >= self.health_ns {
-            self.health_ns += self.plan.health_ns;
-            (self.around.say)(&self.course.vitals.to_string());
+        if self.every_ns > 0 && now >= self.health_ns {
+            self.health_ns += self.every_ns;
+            (self.say)(&self.course.vitals.to_string());
             self.tally.said();
         }
     }

@@ -27,7 +27,11 @@ pub struct Dressed {
 }
 
 impl Dressed {
-    fn make(recipe: Recipe, first: &Joints, still: bool) -> Result<Self, AppError> {
+    /// Dresses a body by a recipe, in the joints of a moment.
+    ///
+    /// # Errors
+    /// A recipe of which no scene can be made.
+    pub fn make(recipe: Recipe, first: &Joints, still: bool) -> Result<Self, AppError> {
         let (frame, reader) = recipe.make(first)?;
         Ok(Self { frame, reader, made: Made { recipe, first: *first, still } })
     }

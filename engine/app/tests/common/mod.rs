@@ -23,6 +23,8 @@ impl Scratch {
     pub fn toile(&self, args: &[&str]) -> Output {
         let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
         command.stdin(Stdio::null()).env_remove("RUST_BACKTRACE").current_dir(&self.0);
+        // Graphics drivers complain on stderr where there is none.
+        command.env("XDG_RUNTIME_DIR", &self.0);
         command.args(args).output().expect("the built program starts")
     }
 }

@@ -1,0 +1,122 @@
+//! The mirror, off the screen, for the pictures of a try-on.
+
+use glam::Vec3;
+use toile_assets::body::Body;
+use toile_assets::garment::Garment;
+use toile_engine::lines::Line;
+use toile_view::image::{Image, Size, linear};
+use toile_view::mirror::{
+    self, Backdrop, Choice, Gpu, GpuError, Material, Model, ModelError, Offscreen, Renderer, Shape,
+};
+use toile_view::scene::{Camera, Colours, MANNEQUIN, Surface};
+use toile_view::trace::Quality;
+
+use crate::exit::AppError;
+
+/// A device, and what draws stills and frames on it; each is made when it is first asked for.
+pub struct Mirror {
+    gpu: Gpu,
+    model: Model,
+    still: Option<Renderer>,
+    motion: Option<Renderer>,
+    targets: Vec<Offscreen>,
+}
+
+/// A GPU that is not there or gives up is a device's fault, with its cure.
+fn device(error: impl std::fmt::Display) -> AppError {
+    AppError::Device(error.to_string())
+}
+
+impl Mirror {
+    /// Opens the fastest adapter.
+    ///
+    /// # Errors
+    /// [`AppError::Device`].
+    pub fn open() -> Result<Self, AppError> {
+        let gpu = Gpu::offscreen(&Choice::Fastest)
+            .map_err(|e: GpuError| device(format!("{e}; or leave out `--renderer gpu`")))?;
+        Ok(Self { gpu, model: Model::default(), still: None, motion: None, targets: Vec::new() })
+    }
+
+    /// Takes over a body and what it wears.
+    pub fn prepare(&mut self, body: &Body, garments: &[Garment]) {
+        let skin = Shape {
+            rest: body.mesh.positions.clone(),
+            uv: None,
+            triangles: body.mesh.triangles.clone(),
+            colour: MANNEQUIN,
+            material: Material::Skin,
+        };
+        let cloth = |g: &Garment| Shape {
+            rest: g.start.to_vec(),
+            uv: None,
+            triangles: g.triangles.to_vec(),
+            colour: Vec3::from_array(g.fabric.colour.map(linear)),
+            material: Material::Cloth((&g.fabric).into()),
+        };
+        self.model = Model { surfaces: std::iter::once(skin).chain(garments.iter().map(cloth)).collect() };
+        (self.still, self.motion) = (None, None);
+    }
+
+    /// What draws.
+    pub fn adapter(&self) -> String {
+        self.gpu.to_string()
+    }
+
+    /// Takes over the surfaces as they are, in the model's order.
+    pub fn take(&mut self, surfaces: &[Surface<'_>], lines: &[Line], quality: Quality) -> Result<(), AppError> {
+        let renderer = self.renderer(quality)?;
+        for (i, surface) in surfaces.iter().enumerate() {
+            dress(renderer, i, surface).map_err(AppError::internal)?;
+        }
+        renderer.set_lines(lines);
+        Ok(())
+    }
+
+    /// One picture of what was taken over.
+    pub fn shoot(&mut self, camera: &Camera, size: Size, quality: Quality) -> Result<Image, AppError> {
+        let at = match self.targets.iter().position(|t| t.size() == size) {
+            Some(at) => at,
+            None => {
+                self.targets.push(Offscreen::new(&self.gpu, size).map_err(device)?);
+                self.targets.len() - 1
+            }
+        };
+        self.renderer(quality)?;
+        let renderer = if quality == Quality::Still { &mut self.still } else { &mut self.motion };
+        let Some(renderer) = renderer else { return Err(AppError::internal("a renderer went missing")) };
+        self.targets[at].shoot(&self.gpu, renderer, camera, Backdrop::Studio).map_err(device)
+    }
+
+    fn renderer(&mut self, quality: Quality) -> Result<&mut Renderer, AppError> {
+        let frame = mirror::Quality { samples: 4, ..mirror::Quality::live(self.gpu.is_software()) };
+        let (place, plan) = match quality {
+            Quality::Still => (&mut self.still, mirror::Quality::STILL),
+            Quality::Motion => (&mut self.motion, frame),
+        };
+        let renderer = match place.take() {
+            Some(renderer) => renderer,
+            None => {
+                let mut renderer = Renderer::new(&self.gpu, Offscreen::FORMAT, plan);
+                renderer.set_model(&self.model).map_err(AppError::internal)?;
+                renderer
+            }
+        };
+        Ok(place.insert(renderer))
+    }
+}
+
+/// Brings one surface up to date.
+fn dress(renderer: &mut Renderer, at: usize, surface: &Surface<'_>) -> Result<(), ModelError> {
+    renderer.update(at, surface.positions, surface.normals)?;
+    renderer.set_triangles(at, surface.triangles)?;
+    match surface.colours {
+        Colours::One(colour) => {
+            renderer.set_fit(at, None)?;
+            renderer.set_colour(at, colour)
+        }
+        Colours::Tightness(fit) => renderer.set_fit(at, Some(fit)),
+        // No picture of a try-on is painted vertex by vertex.
+        Colours::PerVertex(_) => Ok(()),
+    }
+}

@@ -1,0 +1,140 @@
+//! What is drawn of a frame: body and garments, each beneath what is worn over it.
+
+use glam::Vec3;
+use toile_assets::garment::Garment;
+use toile_assets::mesh::vertex_normals;
+use toile_engine::frame::{Frame, Snapshot};
+use toile_view::image::Size;
+use toile_view::scene::{Bounds, Camera, Colours, MANNEQUIN, Material, Surface};
+use toile_view::tuck::Cover;
+
+/// Half the width of what an animation shows around the shopper: arms stretched out (m).
+const HALF_REACH_M: f32 = 0.62;
+
+/// Height of what an animation shows as a share of the stature: arms half raised.
+const HEADROOM: f32 = 1.04;
+
+/// How fast the camera follows the shopper across the floor (share of the way a frame).
+const FOLLOW: f32 = 0.35;
+
+/// What is drawn: topology and colours, which the session does not change, and room for what it does.
+pub struct Drawing {
+    body: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    /// Of the body, before it is drawn beneath the garments.
+    bounds: Bounds,
+    body_triangles: Vec<[u32; 3]>,
+    /// Triangles of the body that are drawn.
+    drawn: Vec<[u32; 3]>,
+    /// Body vertices under a garment.
+    dressed: Vec<bool>,
+    cloths: Vec<ClothDrawing>,
+    /// Where the camera looks.
+    middle: Option<Vec3>,
+    /// The shopper's height (m).
+    stature: f32,
+}
+
+struct ClothDrawing {
+    /// Where the particles are drawn: beneath the garments worn over them.
+    points: Vec<Vec3>,
+    /// Particles under a garment worn over this one.
+    dressed: Vec<bool>,
+    triangles: Vec<[u32; 3]>,
+    /// Those of them that are drawn.
+    drawn: Vec<[u32; 3]>,
+    normals: Vec<Vec3>,
+    colour: Vec3,
+}
+
+impl Drawing {
+    /// Room for a frame's body and garments, as they are put on.
+    pub fn new(frame: &Frame) -> Self {
+        let (body, garments) = (frame.body(), frame.garments());
+        let starts: Vec<&[Vec3]> = garments.iter().map(|g| &*g.start).collect();
+        let over = |first: usize| {
+            let worn = garments.iter().zip(&starts).skip(first);
+            Cover::new(worn.flat_map(|(g, points)| g.triangles.iter().map(|t| t.map(|i| points[i as usize]))))
+        };
+        let cloth = |(i, g): (usize, &Garment)| {
+            let mut normals = vec![Vec3::ZERO; g.particles()];
+            vertex_normals(&g.start, &g.triangles, &mut normals);
+            ClothDrawing {
+                points: g.start.to_vec(),
+                dressed: over(i + 1).dressed(&g.start, &normals),
+                drawn: g.triangles.to_vec(),
+                triangles: g.triangles.to_vec(),
+                normals,
+                colour: Vec3::from_array(g.fabric.colour.map(toile_view::image::linear)),
+            }
+        };
+        Self {
+            dressed: over(0).dressed(&body.mesh.positions, &body.normals),
+            body: body.mesh.positions.clone(),
+            normals: body.normals.clone(),
+            bounds: Bounds::of(&body.mesh.positions),
+            drawn: body.mesh.triangles.clone(),
+            body_triangles: body.mesh.triangles.clone(),
+            cloths: garments.iter().enumerate().map(cloth).collect(),
+            middle: None,
+            stature: body.measures.stature,
+        }
+    }
+
+    /// The same with garments of other colours (linear RGB, inner first).
+    #[cfg(any(test, feature = "kiosk"))]
+    #[must_use]
+    pub fn coloured(mut self, colours: &[[f32; 3]]) -> Self {
+        for (cloth, colour) in self.cloths.iter_mut().zip(colours) {
+            cloth.colour = Vec3::from_array(*colour);
+        }
+        self
+    }
+
+    /// Takes over a snapshot, from the outermost garment to the skin: each is drawn beneath what is worn over it.
+    pub fn take(&mut self, snapshot: &Snapshot) {
+        let mut over: Vec<[Vec3; 3]> = Vec::new();
+        for (cloth, points) in self.cloths.iter_mut().zip(&snapshot.garments).rev() {
+            let ClothDrawing { points: at, dressed, triangles, drawn, normals, .. } = cloth;
+            at.copy_from_slice(points);
+            vertex_normals(at, triangles, normals);
+            *drawn = Cover::new(over.iter().copied()).tuck(at, normals, dressed, triangles);
+            over.extend(triangles.iter().map(|t| t.map(|i| at[i as usize])));
+        }
+        snapshot.skin.read(&mut self.body, &mut self.normals);
+        self.bounds = Bounds::of(&self.body);
+        let cover = Cover::new(over.into_iter());
+        self.drawn = cover.tuck(&mut self.body, &self.normals, &self.dressed, &self.body_triangles);
+    }
+
+    /// The surfaces of a picture; `map` gives each garment its colours by vertex instead of the fabric's.
+    pub fn surfaces<'a>(&'a self, map: Option<&'a [Vec<f32>]>) -> Vec<Surface<'a>> {
+        let mut surfaces = vec![Surface {
+            positions: &self.body,
+            normals: &self.normals,
+            triangles: &self.drawn,
+            colours: Colours::One(MANNEQUIN),
+            material: Material::Skin,
+        }];
+        for (i, cloth) in self.cloths.iter().enumerate() {
+            let (colours, material) = match map {
+                Some(map) => (Colours::Tightness(&map[i]), Material::Chart),
+                None => (Colours::One(cloth.colour), Material::Cloth),
+            };
+            let ClothDrawing { points, normals, drawn: triangles, .. } = cloth;
+            surfaces.push(Surface { positions: points, normals, triangles, colours, material });
+        }
+        surfaces
+    }
+
+    /// A camera before the place where the shopper stands, for frames of one size; it turns with nobody and never zooms.
+    pub fn follow(&mut self, size: Size) -> Camera {
+        let now = (self.bounds.min + self.bounds.max) * 0.5;
+        let middle = self.middle.map_or(now, |m| m.lerp(now, FOLLOW));
+        self.middle = Some(middle);
+        let reach = Vec3::new(HALF_REACH_M, 0.0, 0.2);
+        let at = Vec3::new(middle.x, 0.0, middle.z);
+        let shown = Bounds { min: at - reach, max: at + reach + Vec3::Y * self.stature * HEADROOM };
+        Camera::front(&shown, size.width as f32 / size.height as f32)
+    }
+}

@@ -1,0 +1,74 @@
+//! The film of a try-on: the session at the speed of life.
+
+use std::path::{Path, PathBuf};
+
+use indicatif::ProgressBar;
+use toile_assets::limits::STEP_HZ;
+use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::lines::Line;
+use toile_view::film::Film;
+use toile_view::image::Size;
+use toile_view::trace::Quality;
+
+use crate::artist::Artist;
+use crate::drawing::Drawing;
+use crate::exit::AppError;
+
+/// Width and height of a frame: a display that stands upright, at half its resolution.
+const SIZE: Size = Size::new(540, 960);
+
+/// Frames a second.
+const FPS: u16 = 30;
+
+/// Steps from one frame to the next.
+const STRIDE: u64 = STEP_HZ as u64 / FPS as u64;
+
+/// Films a session while it runs.
+pub struct Video {
+    film: Film,
+    drawing: Drawing,
+    bar: ProgressBar,
+}
+
+impl Video {
+    /// Begins the film of a session of `steps` steps.
+    ///
+    /// # Errors
+    /// Bad input: a name or a place that no film can have.
+    pub fn begin(path: &Path, frame: &Frame, steps: u64, bar: ProgressBar) -> Result<Self, AppError> {
+        let film = Film::begin(path, SIZE, Self::work(steps) as u32, FPS).map_err(AppError::input)?;
+        Ok(Self { film, drawing: Drawing::new(frame), bar })
+    }
+
+    /// Frames of a session of so many steps.
+    pub fn work(steps: u64) -> u64 {
+        steps.div_ceil(STRIDE).max(1)
+    }
+
+    /// Whether the film wants the snapshot of this tick.
+    pub fn wants(tick: u64) -> bool {
+        tick.is_multiple_of(STRIDE)
+    }
+
+    /// Adds a frame.
+    ///
+    /// # Errors
+    /// A film that cannot be written, or a device that fails.
+    pub fn add(&mut self, artist: &mut Artist, snapshot: &Snapshot, lines: &[Line]) -> Result<(), AppError> {
+        self.drawing.take(snapshot);
+        let camera = self.drawing.follow(SIZE);
+        let surfaces = self.drawing.surfaces(None);
+        let images = artist.draw(&surfaces, lines, (SIZE, Quality::Motion), |_| vec![camera], || {})?;
+        self.bar.inc(1);
+        images.iter().try_for_each(|image| self.film.push(image)).map_err(AppError::input)
+    }
+
+    /// Ends the film; says which file it is.
+    ///
+    /// # Errors
+    /// A film that cannot be written.
+    pub fn finish(self) -> Result<PathBuf, AppError> {
+        self.bar.finish_and_clear();
+        self.film.finish().map_err(AppError::input)
+    }
+}

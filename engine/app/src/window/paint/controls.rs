@@ -1,0 +1,164 @@
+//! Controls: rows of buttons. Neighbours that look alike stand in one grid, so that what is seen has the order of the Tab key.
+
+use std::ops::Range;
+
+use egui::{FontId, Painter, Pos2, Rect, Vec2, pos2, vec2};
+
+use super::layout::{Words, centred, words};
+use super::theme::{self, Sizes};
+use crate::guest::screen::{Control, Look};
+
+/// Most columns of a grid.
+const MOST_COLUMNS: usize = 6;
+
+/// A button with its place.
+#[derive(Debug, Clone)]
+pub struct Button {
+    /// Its number on the screen.
+    pub index: usize,
+    /// Its place.
+    pub rect: Rect,
+    /// Its words, and its second line.
+    pub label: Words,
+    /// Its second line.
+    pub detail: Option<Words>,
+}
+
+impl Button {
+    /// Moves it.
+    pub fn shift(&mut self, by: Vec2) {
+        self.rect = self.rect.translate(by);
+    }
+}
+
+/// The column that buttons stand in.
+struct Column<'a> {
+    controls: &'a [Control],
+    width: f32,
+    sizes: Sizes,
+    painter: &'a Painter,
+}
+
+/// Buttons in a column of this width, from the origin down, and how high they are together.
+pub fn lay(controls: &[Control], width: f32, sizes: Sizes, painter: &Painter) -> (Vec<Button>, f32) {
+    let column = Column { controls, width, sizes, painter };
+    let (mut buttons, mut y) = (Vec::with_capacity(controls.len()), 0.0);
+    for run in runs(controls) {
+        if y > 0.0 {
+            y += sizes.gap();
+        }
+        y = column.grid(run, y, &mut buttons);
+    }
+    (buttons, y)
+}
+
+/// Neighbours that look alike.
+fn runs(controls: &[Control]) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for (i, control) in controls.iter().enumerate() {
+        match runs.last_mut() {
+            Some(run) if alike(&controls[run.start].look, &control.look) => run.end = i + 1,
+            _ => runs.push(i..i + 1),
+        }
+    }
+    runs
+}
+
+fn alike(a: &Look, b: &Look) -> bool {
+    !matches!(a, Look::Primary) && std::mem::discriminant(a) == std::mem::discriminant(b)
+}
+
+impl Column<'_> {
+    /// Places a run of neighbours below `y`, in as many columns as make it lowest; gives where it ends.
+    fn grid(&self, run: Range<usize>, y: f32, buttons: &mut Vec<Button>) -> f32 {
+        let most = self.most_columns(&run);
+        let tries = (1..=most).map(|columns| self.rows(&run, columns, y));
+        let lowest = tries.min_by(|(_, a), (_, b)| a.total_cmp(b));
+        let Some((rows, end)) = lowest else { return y };
+        buttons.extend(rows);
+        end
+    }
+
+    /// So many columns that every word still stands unbroken in its button.
+    fn most_columns(&self, run: &Range<usize>) -> usize {
+        let Self { controls, width, sizes, painter } = *self;
+        let gap = sizes.gap();
+        let wide = run.clone().map(|i| natural(&controls[i], sizes, painter)).fold(sizes.target, f32::max).min(width);
+        (((width + gap) / (wide + gap)) as usize).clamp(1, MOST_COLUMNS.min(run.len().max(1)))
+    }
+
+    /// A run in so many columns, and where it ends.
+    fn rows(&self, run: &Range<usize>, columns: usize, mut y: f32) -> (Vec<Button>, f32) {
+        let Self { controls, width, sizes, painter } = *self;
+        let gap = sizes.gap();
+        // The same number of rows with fewer, wider columns looks calmer.
+        let rows = run.len().div_ceil(columns).max(1);
+        let columns = run.len().div_ceil(rows).max(1);
+        let cell = ((width + gap) / columns as f32 - gap).floor();
+        let mut placed = Vec::with_capacity(run.len());
+        for row in 0..rows {
+            let first = run.start + row * columns;
+            let of_row = first.min(run.end)..(first + columns).min(run.end);
+            let begun = placed.len();
+            placed.extend(of_row.map(|i| button(&controls[i], i, cell, sizes, painter)));
+            let of_row: &mut [Button] = &mut placed[begun..];
+            let tall = of_row.iter().map(|b| b.rect.height()).fold(0.0, f32::max);
+            for (column, button) in of_row.iter_mut().enumerate() {
+                button.rect = Rect::from_min_size(pos2(column as f32 * (cell + gap), y), vec2(cell, tall));
+            }
+            y += tall + if row + 1 < rows { gap } else { 0.0 };
+        }
+        (placed, y)
+    }
+}
+
+/// Least width at which a control looks well: its longest word in one piece, and its label in two lines.
+fn natural(control: &Control, sizes: Sizes, painter: &Painter) -> f32 {
+    let font = font(control, sizes);
+    let wide = |text: &str, font: FontId| words(painter, text, font, theme::INK, f32::INFINITY).size().x;
+    let longest = |text: &str, font: &FontId| text.split(' ').map(|w| wide(w, font.clone())).fold(0.0, f32::max);
+    let label = longest(&control.label, &font).max(wide(&control.label, font) * 0.62);
+    let detail = control.detail.as_ref().map_or(0.0, |d| longest(d, &sizes.small()).max(wide(d, sizes.small()) * 0.5));
+    (label.max(detail) + aside(control, sizes) + 2.0 * pad(sizes)).ceil() + 1.0
+}
+
+/// Type of a control's words.
+fn font(control: &Control, sizes: Sizes) -> FontId {
+    match control.look {
+        Look::Swatch(_) => sizes.small(),
+        Look::Quiet => sizes.text(),
+        _ => sizes.label(),
+    }
+}
+
+/// What the mark of a choice takes beside the words.
+pub fn aside(control: &Control, sizes: Sizes) -> f32 {
+    if matches!(control.look, Look::Swatch(_)) || !control.chosen { 0.0 } else { (sizes.body * 1.5).round() }
+}
+
+/// Diameter of the disc that shows a colour.
+pub fn disc(sizes: Sizes) -> f32 {
+    (sizes.body * 1.7 * sizes.squeeze).max(sizes.target * 0.6).round()
+}
+
+/// Air within a button, left and right.
+pub fn pad(sizes: Sizes) -> f32 {
+    (sizes.body * 0.7 * sizes.squeeze).round()
+}
+
+fn button(control: &Control, index: usize, width: f32, sizes: Sizes, painter: &Painter) -> Button {
+    let room = width - aside(control, sizes) - 2.0 * pad(sizes);
+    let dark = matches!(control.look, Look::Primary);
+    let (ink, soft) = if dark { (theme::DARK, theme::DARK) } else { (theme::INK, theme::SOFT) };
+    let label = centred(painter, &control.label, font(control, sizes), ink, room);
+    let detail = control.detail.as_ref().map(|d| centred(painter, d, sizes.small(), soft, room));
+    let words = label.size().y + detail.as_ref().map_or(0.0, |d| d.size().y);
+    let disc = if matches!(control.look, Look::Swatch(_)) { disc(sizes) + sizes.gap() * 0.4 } else { 0.0 };
+    let air = match control.look {
+        Look::Primary => 1.9,
+        Look::Plain => 1.35,
+        Look::Quiet | Look::Swatch(_) => 0.9,
+    };
+    let tall = (words + disc + sizes.body * air * sizes.squeeze).max(sizes.target).round();
+    Button { index, rect: Rect::from_min_size(Pos2::ZERO, vec2(width, tall)), label, detail }
+}

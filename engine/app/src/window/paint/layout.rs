@@ -1,0 +1,229 @@
+//! Layout: where everything of a screen stands, before anything is painted: what a finger hits is what a test measures.
+
+use std::sync::Arc;
+
+use egui::text::{LayoutJob, TextWrapping};
+use egui::{Align, Color32, FontId, Galley, Painter, Pos2, Rect, TextFormat, Vec2, pos2, vec2};
+
+use super::code;
+use super::controls::{self, Button};
+use super::theme::{self, Sizes};
+use crate::guest::screen::{Block, Screen, Stage};
+
+/// How tight the panel may get, in the order of trying.
+const SQUEEZES: [f32; 6] = [1.0, 0.92, 0.84, 0.76, 0.68, 0.6];
+
+/// Most of a standing display's height that the panel covers.
+const MOST_PANEL: f32 = 0.72;
+
+/// The same where it stands before somebody who looks at themselves, if it can.
+const BESIDE_BODY: f32 = 0.48;
+
+/// Most of the display's height that a code takes.
+const MOST_CODE: f32 = 0.5;
+
+/// Tighter than this only what has no place otherwise.
+const READ_WITH_EASE: f32 = 0.8;
+
+/// Share of a lying display's width that the panel takes.
+const SIDE: f32 = 0.42;
+
+/// Text that has been set.
+pub type Words = Arc<Galley>;
+
+/// A block with its place.
+#[derive(Debug, Clone)]
+pub struct Placed {
+    /// Its number on the screen.
+    pub index: usize,
+    /// Its place.
+    pub rect: Rect,
+    /// Its words, where it has some.
+    pub words: Vec<Words>,
+}
+
+/// A screen that has been laid out.
+#[derive(Debug, Clone)]
+pub struct Laid {
+    /// The sizes that it came to.
+    pub sizes: Sizes,
+    /// The panel.
+    pub panel: Rect,
+    /// What the panel leaves of the display.
+    pub free: Rect,
+    /// The heading and its upper left corner.
+    pub heading: (Pos2, Words),
+    /// What stands below it.
+    pub blocks: Vec<Placed>,
+    /// What can be pressed; its rectangles are those at a scroll of 0.
+    pub buttons: Vec<Button>,
+    /// Where buttons are seen.
+    pub window: Rect,
+    /// How far they can be scrolled (pixels): 0 where all are seen.
+    pub scrolls: f32,
+    /// Whether everything has its place: false where the display is too small for what it is to show.
+    pub fits: bool,
+}
+
+/// Lays a screen out on a display.
+pub fn lay(screen: &Screen, sizes: Sizes, painter: &Painter) -> Laid {
+    let mut last = None;
+    // A code is scanned from where one stands: it has all the room there is.
+    let code = screen.blocks.iter().any(|block| matches!(block, Block::Code { .. }));
+    let beside = !code && !matches!(screen.stage, Stage::Mannequin);
+    let most = sizes.display[1] * if beside { BESIDE_BODY } else { MOST_PANEL };
+    for squeeze in SQUEEZES {
+        let laid = lay_at(screen, sizes.squeezed(squeeze), painter);
+        let whole = laid.fits && laid.scrolls == 0.0;
+        let small = sizes.landscape || laid.panel.height() <= most;
+        // Type is made smaller for the sake of the body only as long as it is read with ease.
+        if whole && (small || squeeze <= READ_WITH_EASE) {
+            return laid;
+        }
+        // Where nothing fits, buttons that scroll are better than words that are cut off.
+        let better =
+            last.as_ref().is_none_or(|before: &Laid| !before.fits || laid.fits && laid.scrolls < before.scrolls);
+        if better {
+            last = Some(laid);
+        }
+    }
+    last.unwrap_or_else(|| lay_at(screen, sizes, painter))
+}
+
+fn lay_at(screen: &Screen, sizes: Sizes, painter: &Painter) -> Laid {
+    let [w, h] = sizes.display;
+    let (margin, gap, air) = (sizes.margin(), sizes.gap(), sizes.air());
+    let column = if sizes.landscape { (w * SIDE).round() } else { w - 2.0 * air };
+    let inner = column - 2.0 * margin;
+    let left = w - air - column + margin;
+    // What can be pressed: from the lower edge of what is reached up, and never above the reach.
+    let (mut buttons, wanted) = controls::lay(&screen.controls, inner, sizes, painter);
+    let high = h * screen.reach.clamp(0.2, 1.0);
+    let low = (h * screen.reach_low).clamp(air + margin, (high - sizes.target).max(air + margin)).ceil();
+    let tall = wanted.min((high - low).max(sizes.target).floor());
+    let window = Rect::from_min_size(pos2(left, h - low - tall), vec2(inner, tall));
+    buttons.iter_mut().for_each(|b| b.shift(window.min.to_vec2()));
+    // What is read stands above it.
+    let heading = head(painter, &screen.heading, sizes, inner);
+    let mut blocks: Vec<Placed> =
+        screen.blocks.iter().enumerate().map(|(i, b)| block(i, b, inner, sizes, painter)).collect();
+    let read = heading.size().y + blocks.iter().map(|b| b.rect.height() + gap).sum::<f32>();
+    let space = if buttons.is_empty() { 0.0 } else { gap * 1.6 };
+    let top = (window.top() - space - read).round();
+    let ceiling = if sizes.landscape { air + margin } else { h * (1.0 - MOST_PANEL) };
+    let panel = Rect::from_min_max(pos2(left - margin, (top - margin).max(0.0)), pos2(w - air, h - low + margin));
+    let mut y = top + heading.size().y;
+    for placed in &mut blocks {
+        y += gap;
+        placed.rect = placed.rect.translate(vec2(left, y));
+        y += placed.rect.height();
+    }
+    let fits = top >= ceiling - 0.5 && y + space <= window.top() + 0.5;
+    let free = if sizes.landscape {
+        Rect::from_min_max(Pos2::ZERO, pos2(panel.left(), h))
+    } else {
+        Rect::from_min_max(Pos2::ZERO, pos2(w, panel.top()))
+    };
+    let scrolls = (wanted - tall).max(0.0);
+    Laid { sizes, panel, free, heading: (pos2(left, top), heading), blocks, buttons, window, scrolls, fits }
+}
+
+/// The heading, a little smaller where that saves it a second line.
+fn head(painter: &Painter, text: &str, sizes: Sizes, width: f32) -> Words {
+    let set = |share: f32| {
+        let font = sizes.heading();
+        words(painter, text, FontId { size: (font.size * share).round(), ..font }, theme::INK, width)
+    };
+    let large = set(1.0);
+    if large.rows.len() == 1 {
+        return large;
+    }
+    [0.93, 0.86, 0.8].into_iter().map(set).find(|smaller| smaller.rows.len() < large.rows.len()).unwrap_or(large)
+}
+
+/// A block at the origin.
+fn block(index: usize, block: &Block, width: f32, sizes: Sizes, painter: &Painter) -> Placed {
+    let text = |text: &str, room: f32| words(painter, text, sizes.text(), theme::INK, room);
+    let (height, set) = match block {
+        Block::Text(said) => {
+            let said = text(said, width);
+            (said.size().y, vec![said])
+        }
+        Block::PoseGuide { .. } => ((sizes.body * 13.0 * sizes.squeeze * sizes.squeeze).round(), vec![]),
+        Block::Progress { share, label } => {
+            let percent = text(&format!("{:.0} %", share.clamp(0.0, 1.0) * 100.0), width);
+            let label = text(label, width - percent.size().x - sizes.gap());
+            (label.size().y + sizes.body * 1.1, vec![label, percent])
+        }
+        Block::Fit { text: said, .. } => {
+            let said = text(said, width - gauge_width(sizes) - sizes.gap());
+            (said.size().y.max(sizes.body * 1.1), vec![said])
+        }
+        Block::Legend { ends } => {
+            let ends: Vec<Words> =
+                ends.iter().map(|e| words(painter, e, sizes.small(), theme::SOFT, width * 0.48)).collect();
+            (sizes.body * 0.9 + ends.iter().map(|e| e.size().y).fold(0.0, f32::max), ends)
+        }
+        Block::Code { side, .. } => {
+            (code::side(*side, width.min(sizes.display[1] * MOST_CODE * sizes.squeeze)), vec![])
+        }
+        Block::Countdown { seconds } => {
+            let number = words(painter, &clock(*seconds), big(sizes), theme::INK, width);
+            ((number.size().y * 1.3).round(), vec![number])
+        }
+    };
+    Placed { index, rect: Rect::from_min_size(Pos2::ZERO, vec2(width, height)), words: set }
+}
+
+/// Seconds as they are read: minutes where there are any.
+fn clock(seconds: u32) -> String {
+    if seconds < 60 { seconds.to_string() } else { format!("{}:{:02}", seconds / 60, seconds % 60) }
+}
+
+/// Width of the scale before a zone's fit.
+pub fn gauge_width(sizes: Sizes) -> f32 {
+    (sizes.body * 4.0).round()
+}
+
+/// Type of the seconds that are left.
+fn big(sizes: Sizes) -> FontId {
+    FontId { size: (sizes.body * 2.4).round(), ..sizes.heading() }
+}
+
+/// Sets words in a column, ragged right.
+pub fn words(painter: &Painter, text: &str, font: FontId, colour: Color32, width: f32) -> Words {
+    set(painter, text, font, colour, width, Align::LEFT)
+}
+
+/// Sets words in a column, centred.
+pub fn centred(painter: &Painter, text: &str, font: FontId, colour: Color32, width: f32) -> Words {
+    set(painter, text, font, colour, width, Align::Center)
+}
+
+fn set(painter: &Painter, text: &str, font: FontId, colour: Color32, width: f32, halign: Align) -> Words {
+    let line_height = Some((font.size * 1.28).round());
+    let format = TextFormat { font_id: font, color: colour, line_height, ..TextFormat::default() };
+    let wrap = TextWrapping { max_width: width.max(1.0), ..TextWrapping::default() };
+    painter.layout_job(LayoutJob { wrap, halign, ..LayoutJob::single_section(text.to_owned(), format) })
+}
+
+impl Laid {
+    /// The control at a point, with buttons scrolled so far.
+    pub fn hit(&self, at: Pos2, scrolled: f32) -> Option<usize> {
+        let inside = |b: &&Button| b.rect.translate(Vec2::new(0.0, -scrolled)).contains(at);
+        self.window
+            .expand(self.sizes.gap() * 0.5)
+            .contains(at)
+            .then(|| self.buttons.iter().find(inside))?
+            .map(|b| b.index)
+    }
+
+    /// The scroll nearest to this one at which a control is whole.
+    pub fn scroll_to(&self, index: usize, scrolled: f32) -> f32 {
+        let Some(button) = self.buttons.iter().find(|b| b.index == index) else { return 0.0 };
+        let air = self.sizes.gap();
+        let most = button.rect.top() - air - self.window.top();
+        let least = button.rect.bottom() + air - self.window.bottom();
+        scrolled.max(least).min(most).clamp(0.0, self.scrolls)
+    }
+}

@@ -1,0 +1,107 @@
+//! Paint: a screen as shapes, for a shop and not for whoever debugs it.
+//!
+//! Reads: a [`Screen`], the display's size, what a finger does. Writes: triangles and changes of textures; what was pressed.
+//! Budget: 2 ms a picture of the render thread's core; no picture waits for it, nor does physics.
+//! Thread: render.
+//!
+//! [`layout`] finds places, `brush` fills them, [`touch`] finds what was pressed in the same places. Sizes follow the
+//! display: type from its height, touch targets from its millimetres.
+
+mod brush;
+mod code;
+mod controls;
+mod figure;
+pub mod fonts;
+pub mod layout;
+pub mod theme;
+pub mod touch;
+
+use egui::epaint::{ClippedPrimitive, Primitive};
+use egui::{Color32, Context, LayerId, Mesh, RawInput, Rect, TextureId, TexturesDelta, pos2, vec2};
+
+use crate::guest::screen::{Action, Screen};
+use layout::Laid;
+use theme::Sizes;
+use touch::{Finger, Touch};
+
+/// A display: its pixels, and the size of one (mm).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Display {
+    /// Width and height (pixels).
+    pub size: [u32; 2],
+    /// Width and height of a pixel (mm).
+    pub pixel_mm: f32,
+}
+
+/// What is to be drawn.
+pub struct Painted {
+    /// Triangles, in the order of painting.
+    pub shapes: Vec<ClippedPrimitive>,
+    /// Changes of textures: each must reach the GPU, in order, whether or not the triangles are shown.
+    pub textures: TexturesDelta,
+    /// What the panel leaves of the display: left, top, right, bottom as shares.
+    pub free: [f32; 4],
+}
+
+impl Painted {
+    /// The same over a picture that fills a display of this size.
+    #[must_use]
+    pub fn over(mut self, picture: TextureId, [width, height]: [u32; 2]) -> Self {
+        let whole = Rect::from_min_size(pos2(0.0, 0.0), vec2(width as f32, height as f32));
+        let mut mesh = Mesh::with_texture(picture);
+        mesh.add_rect_with_uv(whole, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+        self.shapes.insert(0, ClippedPrimitive { clip_rect: whole, primitive: Primitive::Mesh(mesh) });
+        self
+    }
+}
+
+/// Paints screens and finds what is pressed on them.
+pub struct Easel {
+    context: Context,
+    finger: Finger,
+    laid: Option<Laid>,
+    begun: std::time::Instant,
+}
+
+impl Default for Easel {
+    fn default() -> Self {
+        let context = Context::default();
+        context.set_fonts(fonts::definitions());
+        Self { context, finger: Finger::default(), laid: None, begun: std::time::Instant::now() }
+    }
+}
+
+impl Easel {
+    /// Paints a screen.
+    pub fn paint(&mut self, screen: &Screen, display: Display) -> Painted {
+        let [w, h] = display.size.map(|n| n.max(1) as f32);
+        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(w, h));
+        let time = Some(self.begun.elapsed().as_secs_f64());
+        self.context.begin_pass(RawInput { screen_rect: Some(whole), time, ..RawInput::default() });
+        let painter = self.context.layer_painter(LayerId::background());
+        let sizes = Sizes::of([w, h], display.pixel_mm, screen.type_scale);
+        let laid = layout::lay(screen, sizes, &painter);
+        self.finger.follow(&laid, screen);
+        brush::paint(&laid, screen, self.finger.held(), &painter);
+        let free = [laid.free.left() / w, laid.free.top() / h, laid.free.right() / w, laid.free.bottom() / h];
+        self.laid = Some(laid);
+        let output = self.context.end_pass();
+        let shapes = self.context.tessellate(output.shapes, output.pixels_per_point);
+        Painted { shapes, textures: output.textures_delta, free }
+    }
+
+    /// A finger or the mouse; gives what was pressed.
+    pub fn touch(&mut self, touch: Touch, screen: &Screen) -> Option<Action> {
+        self.finger.touch(touch, self.laid.as_ref()?, screen)
+    }
+
+    /// The screen as it was laid out last.
+    pub fn laid(&self) -> Option<&Laid> {
+        self.laid.as_ref()
+    }
+}
+
+#[cfg(test)]
+mod pages;
+#[cfg(test)]
+mod tests;

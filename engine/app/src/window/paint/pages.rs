@@ -1,0 +1,130 @@
+//! Every page of the guest, in every language, on every display: a law of the layout, and pictures to look at.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use toile_view::image::Size;
+use toile_view::mirror::{Choice, Gpu, Offscreen};
+
+use super::tests::DISPLAYS;
+use super::*;
+use crate::guest::screen::{Action, Page};
+use crate::guest::tests::Play;
+use crate::guest::words::Language;
+use crate::window::varnish::Varnish;
+
+/// The pages of a visit in a language, and in large type.
+pub fn all(language: usize, large: bool) -> BTreeMap<String, Screen> {
+    let mut seen = BTreeMap::new();
+    let mut play = Play::new();
+    play.press(Action::Language(language));
+    if large {
+        play.press(Action::LargeType);
+    }
+    let mut keep = |name: &str, play: &Play| {
+        seen.insert(format!("{:02}-{name}", seen.len()), play.screen());
+    };
+    keep("attract", &play);
+    play.see(Some(1));
+    play.wait(1_500);
+    keep("guide", &play);
+    while play.page() == Page::Guide {
+        play.wait(100);
+    }
+    play.wait(500);
+    keep("measuring", &play);
+    while play.page() == Page::Measuring {
+        play.wait(100);
+    }
+    keep("fitting", &play);
+    play.press(Action::Open(Page::Garments));
+    keep("garments", &play);
+    play.press(Action::Back);
+    play.press(Action::Open(Page::Zones));
+    keep("zones", &play);
+    play.press(Action::Zone(1));
+    keep("zone", &play);
+    play.press(Action::Back);
+    play.press(Action::Open(Page::Compare));
+    play.wait(1_500);
+    keep("compare", &play);
+    play.press(Action::Back);
+    play.press(Action::Back);
+    play.press(Action::TakePicture);
+    play.wait(1_500);
+    keep("picture", &play);
+    play.press(Action::Back);
+    play.press(Action::Open(Page::Settings));
+    keep("settings", &play);
+    play.press(Action::Back);
+    play.see(Some(2));
+    play.wait(3_000);
+    keep("second", &play);
+    play.press(Action::Stay);
+    play.see(None);
+    while play.page() != Page::Leaving {
+        play.wait(100);
+    }
+    keep("leaving", &play);
+    seen
+}
+
+/// Where pictures of all pages go, to be looked at: `TOILE_SCREENS=/tmp/screens cargo test ... every_page`; needs a graphics driver.
+const PICTURES: &str = "TOILE_SCREENS";
+
+/// Draws what was painted, over a plain ground.
+struct Proof {
+    gpu: Gpu,
+    varnish: Varnish,
+    folder: PathBuf,
+}
+
+impl Proof {
+    fn wanted() -> Option<Self> {
+        let folder = PathBuf::from(std::env::var_os(PICTURES)?);
+        std::fs::create_dir_all(&folder).unwrap();
+        let gpu = Gpu::offscreen(&Choice::Software).unwrap();
+        let varnish = Varnish::new(&gpu.device, Offscreen::FORMAT);
+        Some(Self { gpu, varnish, folder })
+    }
+
+    fn print(&mut self, display: Display, name: &str, painted: &Painted) {
+        let Self { gpu, varnish, folder } = self;
+        let [w, h] = display.size;
+        let canvas = Offscreen::new(gpu, Size::new(w, h)).unwrap();
+        varnish.take_in(&gpu.device, &gpu.queue, painted);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let view = canvas.target().create_view(&Default::default());
+        varnish.draw((&gpu.device, &gpu.queue), &mut encoder, (&view, display.size), painted, true);
+        gpu.queue.submit([encoder.finish()]);
+        varnish.let_go(painted);
+        let mut bytes = Vec::new();
+        canvas.read(gpu).unwrap().write_png(&mut bytes).unwrap();
+        std::fs::write(folder.join(format!("{w}x{h}-{name}.png")), bytes).unwrap();
+    }
+}
+
+#[test]
+fn every_page_in_every_language_has_its_place_on_every_display() {
+    let (mut bad, mut easel, mut proof) = (Vec::new(), Easel::default(), Proof::wanted());
+    for language in 0..Language::ALL.len() {
+        for large in [false, true] {
+            for (name, screen) in all(language, large) {
+                for display in DISPLAYS {
+                    let painted = easel.paint(&screen, display);
+                    if let Some(proof) = &mut proof {
+                        let size = if large { "large-" } else { "" };
+                        proof.print(display, &format!("{size}{}-{name}", screen.language), &painted);
+                    }
+                    let laid = easel.laid().unwrap();
+                    // Large type may scroll what is pressed; nothing that is read is ever cut off.
+                    if !laid.fits || (laid.scrolls > 0.0 && !large) {
+                        let [w, h] = display.size;
+                        bad.push(format!("{name} {} {large} {w}x{h}: scrolls {:.0}", screen.language, laid.scrolls));
+                    }
+                }
+            }
+        }
+    }
+    assert!(bad.is_empty(), "{} of them:\n{}", bad.len(), bad.join("\n"));
+}

@@ -1,0 +1,126 @@
+//! Theme: the colours and the sizes of everything that is painted, from the display's size alone.
+
+use egui::{Color32, FontFamily, FontId};
+
+/// The panel that all words stand on, over the picture: dark enough that white on it has a contrast of more than 7:1 even
+/// where the picture behind is white (WCAG 2.2, success criterion 1.4.6).
+pub const PANEL: Color32 = Color32::from_rgba_premultiplied(14, 16, 19, 210);
+
+/// Words.
+pub const INK: Color32 = Color32::from_rgb(250, 248, 244);
+
+/// Second lines.
+pub const SOFT: Color32 = Color32::from_rgb(208, 205, 199);
+
+/// What most will want next, and the words on it.
+pub const PRIMARY: Color32 = Color32::from_rgb(246, 237, 222);
+
+/// Words on light ground.
+pub const DARK: Color32 = Color32::from_rgb(24, 25, 28);
+
+/// A plain button, its edge, and one that is chosen.
+pub const PLAIN: Color32 = Color32::from_rgba_premultiplied(30, 30, 30, 30);
+
+/// The edge of a plain button.
+pub const EDGE: Color32 = Color32::from_rgba_premultiplied(92, 92, 92, 92);
+
+/// A plain button that is chosen.
+pub const CHOSEN: Color32 = Color32::from_rgba_premultiplied(58, 58, 56, 58);
+
+/// A button under a finger.
+pub const PRESSED: Color32 = Color32::from_rgba_premultiplied(84, 84, 82, 84);
+
+/// The ring around what has the focus: a colour that nothing else has.
+pub const FOCUS: Color32 = Color32::from_rgb(255, 205, 96);
+
+/// Least size of a touch target (mm).
+pub const TARGET_MM: f32 = 20.0;
+
+/// Least height of a line of the body's type, as a share of the display's height.
+pub const LEAST_LINE: f32 = 1.0 / 60.0;
+
+/// The family of the words, and of headings.
+pub const BODY: FontFamily = FontFamily::Proportional;
+
+/// Sizes in pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sizes {
+    /// The display's width and height.
+    pub display: [f32; 2],
+    /// Type of a paragraph.
+    pub body: f32,
+    /// Least width and height of what can be pressed.
+    pub target: f32,
+    /// Whether the panel stands beside the picture.
+    pub landscape: bool,
+    /// How much tighter than it likes to be everything stands, 0.6 .. 1.
+    pub squeeze: f32,
+}
+
+impl Sizes {
+    /// Of a display of so many pixels, of which one measures so much (mm), with type so much larger than ordinary.
+    pub fn of(display: [f32; 2], pixel_mm: f32, type_scale: f32) -> Self {
+        let [w, h] = display;
+        let landscape = w > h;
+        let ordinary = (h / 42.0).min(w / 30.0).max(h * LEAST_LINE);
+        Self {
+            display,
+            body: (ordinary * type_scale.clamp(1.0, 2.0)).round(),
+            target: (TARGET_MM / pixel_mm.max(1e-3)).min(h * 0.1).ceil(),
+            landscape,
+            squeeze: 1.0,
+        }
+    }
+
+    /// The same, tighter: less air first, then smaller type, never below [`LEAST_LINE`].
+    #[must_use]
+    pub fn squeezed(self, share: f32) -> Self {
+        let least = (self.display[1] * LEAST_LINE).ceil();
+        Self { body: (self.body * share.max(0.75)).max(least.min(self.body)).round(), squeeze: share, ..self }
+    }
+
+    /// Type of the heading.
+    pub fn heading(&self) -> FontId {
+        FontId::new((self.body * 1.6).round(), FontFamily::Name("bold".into()))
+    }
+
+    /// Type of a paragraph.
+    pub fn text(&self) -> FontId {
+        FontId::new(self.body, BODY)
+    }
+
+    /// Type of a button.
+    pub fn label(&self) -> FontId {
+        FontId::new(self.body, FontFamily::Name("bold".into()))
+    }
+
+    /// Type of second lines: never below the least.
+    pub fn small(&self) -> FontId {
+        FontId::new((self.body * 0.84).max(self.display[1] * LEAST_LINE).round(), BODY)
+    }
+
+    /// Air around things.
+    pub fn gap(&self) -> f32 {
+        (self.body * 0.62 * self.squeeze).round()
+    }
+
+    /// Air between the panel's edge and what stands on it.
+    pub fn margin(&self) -> f32 {
+        (self.body * 1.3).round()
+    }
+
+    /// Air between the display's edge and the panel.
+    pub fn air(&self) -> f32 {
+        (self.body * 0.8).round()
+    }
+
+    /// Radius of a button's corners.
+    pub fn round(&self) -> f32 {
+        (self.body * 0.55).round()
+    }
+
+    /// Width of a fine line.
+    pub fn line(&self) -> f32 {
+        (self.body / 16.0).round().max(1.0)
+    }
+}

@@ -1,0 +1,166 @@
+//! Wall: the display as it is drawn on: a device, the window's surface, the picture and what is painted over it. All of it
+//! is made anew where the device is lost.
+
+use std::sync::Arc;
+use std::thread;
+
+use thread_priority::ThreadPriority;
+#[cfg(target_os = "linux")]
+use thread_priority::{NormalThreadSchedulePolicy, ThreadPriorityValue, ThreadSchedulePolicy};
+use toile_engine::frame::Snapshot;
+use toile_view::image::Size;
+use toile_view::mirror::{Choice, Gpu, Pace, Presenter, Shown};
+use winit::window::Window;
+
+use super::canvas::Canvas;
+use super::input::Frame;
+use super::look::{Look, Pair};
+use super::paint::Painted;
+use super::podium::{Podium, Scene};
+use super::varnish::Varnish;
+
+/// A device with a surface.
+pub struct Wall {
+    gpu: Gpu,
+    window: Arc<Window>,
+    presenter: Presenter<'static>,
+    varnish: Varnish,
+    podium: Option<Podium>,
+    /// What bodies are drawn on first, where the processor draws.
+    canvas: Option<Canvas>,
+    /// The adapter's name.
+    pub name: String,
+    /// Whether the processor draws.
+    pub software: bool,
+}
+
+impl Wall {
+    /// Opens the best adapter that can show on the window. On the core of the render thread: a driver that draws on the processor
+    /// has threads of its own, which inherit it.
+    ///
+    /// # Errors
+    /// Why there is none, with the cure.
+    pub fn open(window: &Arc<Window>) -> Result<Self, String> {
+        let (mut gpu, mut surface) = open(window)?;
+        if gpu.is_software() {
+            // Its threads are made with the device, and inherit the place of the thread that makes it: once more, by one that
+            // stands behind everybody else.
+            drop((surface, gpu));
+            let again = || {
+                stand_back();
+                open(window)
+            };
+            let again = thread::scope(|scope| scope.spawn(again).join());
+            (gpu, surface) = again.map_err(|_| "the graphics driver panicked; install another one")??;
+        }
+        let size = window.inner_size();
+        let presenter = Presenter::new(&gpu, surface, Size::new(size.width, size.height), Pace::Display);
+        let presenter = presenter.ok_or("the graphics adapter cannot show on this display; choose another driver")?;
+        let varnish = Varnish::new(&gpu.device, presenter.format());
+        let (name, software) = (gpu.to_string(), gpu.is_software());
+        Ok(Self { gpu, window: window.clone(), presenter, varnish, podium: None, canvas: None, name, software })
+    }
+
+    /// Compiles what the body is drawn with, where that was not done yet: a first picture need not wait for it.
+    pub fn prepare(&mut self) {
+        if self.podium.is_none() {
+            self.podium = Some(Podium::new(&self.gpu, self.presenter.format()));
+        }
+    }
+
+    /// Who is drawn from now on.
+    pub fn dress(&mut self, look: &Look, pair: Option<&Pair>) {
+        self.prepare();
+        if let Some(podium) = &mut self.podium {
+            podium.dress(look, pair);
+        }
+    }
+
+    /// Takes in what a snapshot shows, at a time of its clock (ns).
+    pub fn take(&mut self, snapshot: &Snapshot, now_ns: u64) {
+        if let Some(podium) = &mut self.podium {
+            podium.take(snapshot, now_ns);
+        }
+    }
+
+    /// Takes in a painting's textures, which no picture may skip.
+    pub fn take_in(&mut self, painted: &Painted) {
+        self.varnish.take_in(&self.gpu.device, &self.gpu.queue, painted);
+    }
+
+    /// Draws and shows a picture.
+    pub fn show(&mut self, frame: Frame, scene: &Scene<'_>, mut painted: Painted) -> Shown {
+        let size = Size::new(frame.size[0], frame.size[1]);
+        if size != self.presenter.size() {
+            self.presenter.resize(size);
+        }
+        self.presenter.set_hidden(frame.hidden);
+        if self.software && self.podium.is_some() && size.width > 0 && size.height > 0 {
+            let before = self.canvas.take();
+            let (device, format) = (&self.gpu.device, self.presenter.format());
+            let canvas = Canvas::fit(before, size, device, format, &mut self.varnish);
+            painted = painted.over(canvas.id(), frame.size);
+            self.canvas = Some(canvas);
+        }
+        let shown = self.present(scene, &painted);
+        self.varnish.let_go(&painted);
+        if self.software {
+            // What it costs is known only when it is done.
+            self.gpu.finish();
+        }
+        match shown {
+            Shown::NewSurface => match self.gpu.instance.create_surface(self.window.clone()) {
+                Ok(surface) => {
+                    self.presenter.replace(surface);
+                    Shown::Skipped
+                }
+                Err(_) => Shown::NewDevice,
+            },
+            shown => shown,
+        }
+    }
+
+    fn present(&mut self, scene: &Scene<'_>, painted: &Painted) -> Shown {
+        let Self { gpu, presenter, varnish, podium, canvas, .. } = self;
+        presenter.present(gpu, |view, size| {
+            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            let mut bare = true;
+            if let Some(podium) = podium {
+                let (target, size) = canvas.as_ref().map_or((view, size), Canvas::target);
+                podium.draw(&mut encoder, target, size, scene);
+                bare = canvas.is_some();
+            }
+            let device = (&gpu.device, &gpu.queue);
+            varnish.draw(device, &mut encoder, (view, [size.width, size.height]), painted, bare);
+            gpu.queue.submit([encoder.finish()]);
+        })
+    }
+}
+
+fn open(window: &Arc<Window>) -> Result<(Gpu, wgpu::Surface<'static>), String> {
+    let instance = Gpu::instance();
+    let surface = instance
+        .create_surface(window.clone())
+        .map_err(|e| format!("the window gives no surface to draw on ({e}); install a Vulkan driver"))?;
+    let gpu = Gpu::open(instance, Some(&surface), &Choice::Fastest).map_err(|e| e.to_string())?;
+    Ok((gpu, surface))
+}
+
+/// This thread, and those that it starts, run behind the others (on Linux with a nice value of 9). Where the system does
+/// not let it, the share of [`super::pace`] is all that holds it back.
+fn stand_back() {
+    #[cfg(target_os = "linux")]
+    {
+        let this = thread_priority::thread_native_id();
+        let policy = ThreadSchedulePolicy::Normal(NormalThreadSchedulePolicy::Other);
+        // A quarter of the way from the least to the most.
+        if let Ok(quarter) = ThreadPriorityValue::try_from(25) {
+            let priority = ThreadPriority::Crossplatform(quarter);
+            _ = thread_priority::set_thread_priority_and_policy(this, priority, policy);
+        }
+    }
+    #[cfg(not(target_os = "linux"))]
+    {
+        _ = thread_priority::set_current_thread_priority(ThreadPriority::Min);
+    }
+}

@@ -1,0 +1,99 @@
+//! Who draws: `--renderer`, `--lines` and `--video` of the built program, with a GPU built in or without.
+
+mod common;
+
+use std::process::Output;
+
+use common::Scratch;
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn lines_without_a_gpu_and_films_of_no_kind_are_refused() {
+    let scratch = Scratch::new("look-refused");
+    let lines = scratch.toile(&["try-on", "--lines", "tethers", "--out", "out"]);
+    assert_eq!(lines.status.code(), Some(2), "{}", said(&lines));
+    assert!(said(&lines).contains("--renderer gpu"), "{}", said(&lines));
+    let bones = scratch.toile(&["try-on", "--lines", "bones"]);
+    assert_eq!(bones.status.code(), Some(2), "{}", said(&bones));
+    let film = scratch.toile(&["try-on", "--video", "film.gif", "--no-pictures", "--quiet"]);
+    assert_eq!(film.status.code(), Some(4), "{}", said(&film));
+    assert!(said(&film).contains(".webm") && !scratch.path().join("film.gif").exists(), "{}", said(&film));
+}
+
+#[cfg(not(feature = "view"))]
+#[test]
+fn a_gpu_that_was_not_built_in_is_told_with_the_cure() {
+    let scratch = Scratch::new("look-without");
+    let output = scratch.toile(&["try-on", "--renderer", "gpu", "--quiet"]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("--features view"), "{}", said(&output));
+    assert!(!scratch.path().join("out").exists(), "nothing is left behind");
+}
+
+#[cfg(feature = "view")]
+mod built_in {
+    use std::fs::File;
+    use std::io::BufReader;
+    use std::process::{Command, Stdio};
+
+    use serde_json::Value;
+
+    use super::*;
+
+    /// Whether this machine has an adapter. Where there is none a test has nothing to say, but where everything has to
+    /// be tested it fails.
+    fn adapter() -> bool {
+        let found = !toile_gpu::adapters().is_empty();
+        let wanted = std::env::var("CI").is_ok_and(|v| v == "true");
+        assert!(found || !wanted, "CI=true, but there is no graphics adapter");
+        if !found {
+            println!("nothing was drawn: there is no graphics adapter");
+        }
+        found
+    }
+
+    fn frames(path: &std::path::Path) -> (u32, u32, u32) {
+        let reader = png::Decoder::new(BufReader::new(File::open(path).unwrap())).read_info().unwrap();
+        let info = reader.info();
+        (info.width, info.height, info.animation_control().map_or(1, |a| a.num_frames))
+    }
+
+    #[test]
+    fn the_mirror_draws_a_whole_try_on_and_its_film() {
+        if !adapter() {
+            return;
+        }
+        let scratch = Scratch::new("look-gpu");
+        let recorded = scratch.toile(&["record", "--out", "short.mcap", "--seconds", "2", "--quiet"]);
+        assert_eq!(recorded.status.code(), Some(0), "{}", said(&recorded));
+        let asked = ["try-on", "--session", "short.mcap", "--renderer", "gpu", "--lines", "colliders"];
+        let output = scratch.toile(&[&asked[..], &["--video", "film.png", "--json"]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert!(report["renderer"].as_str().unwrap().starts_with("gpu: "), "{}", report["renderer"]);
+        let files = report["files"].as_array().unwrap();
+        assert!(files.iter().any(|f| f == "film.png"), "{files:?}");
+        let steps = report["physics"]["steps"].as_u64().unwrap();
+        assert_eq!(frames(&scratch.path().join("film.png")), (540, 960, steps.div_ceil(4) as u32));
+        let (width, height, _) = frames(&scratch.path().join("out/look.png"));
+        assert!(width >= 3 * 480 && height >= 800);
+        assert_eq!(frames(&scratch.path().join("out/session.png")).0, 240);
+    }
+
+    /// The Vulkan loader reads its drivers from this place alone.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_machine_without_an_adapter_is_told_with_the_cure() {
+        let scratch = Scratch::new("look-none");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
+        command.args(["try-on", "--renderer", "gpu", "--quiet"]).current_dir(scratch.path()).stdin(Stdio::null());
+        let none = scratch.path().join("none.json");
+        let output = command.env("VK_DRIVER_FILES", &none).env("VK_ICD_FILENAMES", &none).output().unwrap();
+        assert_eq!(output.status.code(), Some(5), "{}", said(&output));
+        assert!(said(&output).contains("mesa-vulkan-drivers"), "{}", said(&output));
+        assert!(!scratch.path().join("out").exists(), "nothing is left behind");
+    }
+}

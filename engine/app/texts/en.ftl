@@ -1,0 +1,196 @@
+# What a shopper reads, in English. Lengths come in centimetres, already rounded; every language has the same words with
+# the same variables.
+
+language = English
+
+# Nobody is there
+attract-heading = See how it fits, before you try it on
+attract-measure = Step onto the mark. The mirror measures you in a second.
+attract-fit = See yourself in your size, and where it is snug.
+attract-compare = Put two sizes side by side.
+attract-private = Nothing is kept and nothing is sent. When you leave, you are forgotten.
+
+# Somebody has stepped in
+guide-heading = Stand on the mark
+guide-heading-seated = Face the mirror
+guide-pose = Feet apart, arms a little away from your body.
+guide-pose-seated = Sit upright, arms a little away from your body.
+guide-nearer = Come a little closer.
+guide-farther = Step back a little.
+guide-left = Move a little to your left.
+guide-right = Move a little to your right.
+guide-alone = One person at a time, please.
+guide-unseen = The mirror does not see you yet. Step onto the mark.
+guide-soon = Measuring begins in a moment.
+
+# Measuring
+measuring-heading = One moment, please
+measuring-body = Measuring
+measuring-dress = Putting the clothes on
+
+# What could not be measured
+unmeasured-heading = That did not work
+unmeasured-why = The mirror needs to see you from head to knees, alone, for a second. Loose coats and bags hide the body.
+unmeasured-seated = Are you sitting? Then choose “I am sitting”.
+partly-heading = Measured as far as possible
+partly-missing = Not seen: { $parts }.
+partly-guess = There an average body of your height stands in, so these zones are less certain.
+partly-cure = A tape measure at the waist and hip makes it certain.
+
+# The fitted body
+fitting-size = { $garment }, size { $size }
+fitting-best = Size { $size } fits you best.
+fitting-sure = We are { $percent } % sure.
+fitting-unsure = It is close: { $percent } % for this size.
+fitting-better = Size { $size } would fit you better.
+fitting-tape = Measure your { $zone } with a tape to be sure.
+fitting-smaller = Even the smallest size is meant for larger measures. You see the nearest.
+fitting-larger = Even the largest size is meant for smaller measures. You see the nearest.
+fitting-dressing = Putting it on
+fitting-refused = This could not be put on. You see what you wore before.
+
+# The garments
+garments-heading = What would you like to try on?
+garments-worn = You are wearing it
+garments-take-off = Tap again to take it off
+garments-instead = Replaces: { $others }
+garment-sun-dress = Sun dress
+garment-t-shirt = T-shirt
+garment-wide-trousers = Wide trousers
+colour-of = Colour: { $colour }
+colour-own = As woven
+colour-coral = Coral
+colour-ivory = Ivory
+colour-sky = Sky blue
+colour-moss = Moss green
+colour-navy = Navy
+colour-denim = Denim blue
+colour-white = White
+colour-ochre = Ochre
+colour-brick = Brick red
+colour-charcoal = Charcoal
+colour-sand = Sand
+
+# Fit by zone
+zones-heading = How size { $size } fits
+zones-held =
+    It hangs from the { $level ->
+        [neck] neck
+        [shoulders] shoulders
+        [bust] bust
+        [underbust] underbust
+        [waist] waist
+        [crotch] crotch
+       *[feet] feet
+    }.
+zone-chest = Chest
+zone-waist = Waist
+zone-hip = Hip
+fit-ease = { $zone }: { $feel }, about { $ease } cm ease ± { $sigma }
+fit-lack = { $zone }: { $feel }, about { $ease } cm too small ± { $sigma }
+fit-perhaps = { $fit } (perhaps { $feel })
+feel-too-tight = far too tight
+feel-tight = tight
+feel-snug = snug
+feel-right = just right
+feel-roomy = roomy
+feel-loose = loose
+feel-too-loose = far too loose
+legend-loose = loose
+legend-tight = tight
+
+# Why
+zone-heading = { $zone }: why?
+zone-body = Your { $zone } measures about { $body } cm, give or take { $sigma } cm.
+zone-garment = The garment measures { $garment } cm there.
+zone-comfort = { $least } to { $most } cm of ease feel right in this cut.
+zone-stretch = From { $least } cm stretch to { $most } cm of ease feels right in this cut.
+zone-primary = The size is chosen by this measure.
+zone-seen = It was measured on your body's surface.
+zone-bones = Only your height and shoulders were seen. The girth follows from them and is uncertain.
+zone-guessed = It could not be seen. An average for your height stands in.
+zone-surer-tape = A tape measure makes it certain.
+zone-surer-again = Measuring again without a coat or bag makes it surer.
+
+# Two sizes
+compare-heading = Size { $left } or { $right }?
+compare-zone = { $zone }: { $left } is { $left-feel }, { $right } is { $right-feel }
+compare-same = { $zone }: both are { $feel }
+compare-draping = Putting on both sizes
+compare-refused = Both sizes could not be put on. The words still hold.
+
+# The picture
+picture-heading = Your picture
+picture-taking = Taking the picture
+picture-scan = Scan the code with your phone. It holds the picture itself; nothing is sent.
+picture-until =
+    { $minutes ->
+        [0] It is deleted in less than a minute.
+        [one] It is deleted in { $minutes } minute.
+       *[other] It is deleted in { $minutes } minutes.
+    }
+picture-failed = The picture did not work. Please try again.
+
+# Settings
+settings-heading = Language and settings
+settings-stored = The mirror keeps nothing. It knows your measures only while you stand here, and forgets them when you leave.
+settings-known =
+    { $count ->
+        [0] It knows no measure of you.
+        [one] It knows { $count } measure of you now.
+       *[other] It knows { $count } measures of you now.
+    }
+
+# Somebody else
+second-heading = Is it still you?
+second-why = Somebody else seems to stand here. What was shown is hidden.
+second-seconds =
+    { $seconds ->
+        [one] In { $seconds } second everything is forgotten.
+       *[other] In { $seconds } seconds everything is forgotten.
+    }
+
+# Nobody is seen
+leaving-heading = Are you still there?
+leaving-seconds =
+    { $seconds ->
+        [one] In { $seconds } second you are forgotten.
+       *[other] In { $seconds } seconds you are forgotten.
+    }
+
+# What can be pressed
+do-begin = Begin
+do-measure = Measure me
+do-measure-again = Measure again
+do-seated = I am sitting
+do-garments = Choose clothes
+do-zones = How does it fit?
+do-compare = Compare two sizes
+do-smaller = Smaller size
+do-larger = Larger size
+do-size = Size { $size }
+do-turn-left = Turn left
+do-turn-right = Turn right
+do-fit-map = Fit map
+do-picture = Take a picture
+do-show-picture = Show the picture
+do-delete-picture = Delete now
+do-settings = Language and settings
+do-large = Large type
+do-wear = Wear size { $size }
+do-go-on = Go on
+do-back = Back
+do-stay = I am still here
+do-still-me = It is still me
+do-begin-anew = Begin anew
+do-leave = I am done: forget me
+
+# Parts of the body that are measured
+part-stature = height
+part-shoulders = shoulders
+part-chest = chest
+part-waist = waist
+part-hip = hip
+part-legs = leg length
+list-and = { $first } and { $last }
+list-comma = { $first }, { $last }

@@ -1,0 +1,195 @@
+# What a shopper reads, in Spanish.
+
+language = Español
+
+# Nobody is there
+attract-heading = Vea cómo le queda antes de probárselo
+attract-measure = Colóquese sobre la marca. El espejo toma sus medidas en un segundo.
+attract-fit = Véase en su talla y descubra dónde queda ceñido.
+attract-compare = Ponga dos tallas una al lado de la otra.
+attract-private = No se guarda ni se envía nada. Cuando se va, todo se olvida.
+
+# Somebody has stepped in
+guide-heading = Colóquese sobre la marca
+guide-heading-seated = Mire hacia el espejo
+guide-pose = Pies separados y brazos un poco apartados del cuerpo.
+guide-pose-seated = Siéntese con la espalda recta y los brazos un poco apartados del cuerpo.
+guide-nearer = Acérquese un poco.
+guide-farther = Dé un paso atrás.
+guide-left = Muévase un poco hacia su izquierda.
+guide-right = Muévase un poco hacia su derecha.
+guide-alone = De uno en uno, por favor.
+guide-unseen = El espejo aún no le ve. Colóquese sobre la marca.
+guide-soon = La medición empieza enseguida.
+
+# Measuring
+measuring-heading = Un momento, por favor
+measuring-body = Tomando medidas
+measuring-dress = Poniendo la ropa
+
+# What could not be measured
+unmeasured-heading = No ha funcionado
+unmeasured-why = El espejo necesita verle de la cabeza a las rodillas, sin nadie más, durante un segundo. Los abrigos amplios y los bolsos ocultan el cuerpo.
+unmeasured-seated = ¿Está en posición sentada? Elija «En posición sentada».
+partly-heading = Medido hasta donde es posible
+partly-missing = No se ha visto: { $parts }.
+partly-guess = Ahí se muestra un cuerpo medio de su estatura; esas zonas son menos seguras.
+partly-cure = Una cinta métrica en cintura y cadera lo deja claro.
+
+# The fitted body
+fitting-size = { $garment }, talla { $size }
+fitting-best = La talla { $size } es la que mejor le queda.
+fitting-sure = Seguro al { $percent } %.
+fitting-unsure = Hay dudas: { $percent } % para esta talla.
+fitting-better = La talla { $size } le quedaría mejor.
+fitting-tape = Mida su contorno de { $zone } con una cinta para asegurarse.
+fitting-smaller = Incluso la talla más pequeña es para medidas mayores. Se muestra la más cercana.
+fitting-larger = Incluso la talla más grande es para medidas menores. Se muestra la más cercana.
+fitting-dressing = Poniendo la prenda
+fitting-refused = No se ha podido poner. Se muestra lo que llevaba antes.
+
+# The garments
+garments-heading = ¿Qué le gustaría probarse?
+garments-worn = La lleva puesta
+garments-take-off = Toque otra vez para quitarla
+garments-instead = Sustituye a: { $others }
+garment-sun-dress = Vestido de verano
+garment-t-shirt = Camiseta
+garment-wide-trousers = Pantalón ancho
+colour-of = Color: { $colour }
+colour-own = Tal como se teje
+colour-coral = Coral
+colour-ivory = Marfil
+colour-sky = Azul cielo
+colour-moss = Verde musgo
+colour-navy = Azul marino
+colour-denim = Azul vaquero
+colour-white = Blanco
+colour-ochre = Ocre
+colour-brick = Rojo ladrillo
+colour-charcoal = Antracita
+colour-sand = Arena
+
+# Fit by zone
+zones-heading = Así queda la talla { $size }
+zones-held =
+    Se sujeta { $level ->
+        [neck] en el cuello
+        [shoulders] en los hombros
+        [bust] en el pecho
+        [underbust] bajo el pecho
+        [waist] en la cintura
+        [crotch] en la entrepierna
+       *[feet] en los pies
+    }.
+zone-chest = Pecho
+zone-waist = Cintura
+zone-hip = Cadera
+fit-ease = { $zone }: { $feel }, unos { $ease } cm de holgura ± { $sigma }
+fit-lack = { $zone }: { $feel }, le faltan unos { $ease } cm ± { $sigma }
+fit-perhaps = { $fit } (quizá { $feel })
+feel-too-tight = demasiado apretado
+feel-tight = apretado
+feel-snug = ceñido
+feel-right = perfecto
+feel-roomy = cómodo
+feel-loose = suelto
+feel-too-loose = demasiado suelto
+legend-loose = suelto
+legend-tight = apretado
+
+# Why
+zone-heading = { $zone }: ¿por qué?
+zone-body = Su contorno de { $zone } mide unos { $body } cm, con un margen de { $sigma } cm.
+zone-garment = La prenda mide ahí { $garment } cm.
+zone-comfort = En este corte resultan cómodos de { $least } a { $most } cm de holgura.
+zone-stretch = En este corte resulta cómodo desde { $least } cm de estiramiento hasta { $most } cm de holgura.
+zone-primary = La talla se elige por esta medida.
+zone-seen = Se ha medido sobre la superficie de su cuerpo.
+zone-bones = Solo se han visto su estatura y sus hombros. El contorno se deduce de ellos y es incierto.
+zone-guessed = No se ha podido ver. Se usa una media para su estatura.
+zone-surer-tape = Una cinta métrica lo deja claro.
+zone-surer-again = Medir otra vez sin abrigo ni bolso lo hace más seguro.
+
+# Two sizes
+compare-heading = ¿Talla { $left } o { $right }?
+compare-zone = { $zone }: la { $left } queda { $left-feel }; la { $right }, { $right-feel }
+compare-same = { $zone }: { $feel } en ambas tallas
+compare-draping = Poniendo las dos tallas
+compare-refused = No se han podido poner las dos tallas. Lo escrito sigue siendo válido.
+
+# The picture
+picture-heading = Su imagen
+picture-taking = Haciendo la imagen
+picture-scan = Escanee el código con su teléfono. Contiene la propia imagen; no se envía nada.
+picture-until =
+    { $minutes ->
+        [0] Se borra en menos de un minuto.
+        [one] Se borra en { $minutes } minuto.
+       *[other] Se borra en { $minutes } minutos.
+    }
+picture-failed = La imagen no ha salido. Inténtelo otra vez.
+
+# Settings
+settings-heading = Idioma y ajustes
+settings-stored = El espejo no guarda nada. Solo conoce sus medidas mientras está aquí y las olvida cuando se va.
+settings-known =
+    { $count ->
+        [0] No conoce ninguna medida suya.
+        [one] Ahora conoce { $count } medida suya.
+       *[other] Ahora conoce { $count } medidas suyas.
+    }
+
+# Somebody else
+second-heading = ¿Sigue siendo usted?
+second-why = Parece que hay otra persona. Lo que se mostraba está oculto.
+second-seconds =
+    { $seconds ->
+        [one] En { $seconds } segundo se olvidará todo.
+       *[other] En { $seconds } segundos se olvidará todo.
+    }
+
+# Nobody is seen
+leaving-heading = ¿Sigue ahí?
+leaving-seconds =
+    { $seconds ->
+        [one] En { $seconds } segundo se olvidarán sus datos.
+       *[other] En { $seconds } segundos se olvidarán sus datos.
+    }
+
+# What can be pressed
+do-begin = Empezar
+do-measure = Tomar mis medidas
+do-measure-again = Medir otra vez
+do-seated = En posición sentada
+do-garments = Elegir ropa
+do-zones = ¿Cómo queda?
+do-compare = Comparar dos tallas
+do-smaller = Talla menor
+do-larger = Talla mayor
+do-size = Talla { $size }
+do-turn-left = Girar a la izquierda
+do-turn-right = Girar a la derecha
+do-fit-map = Mapa de ajuste
+do-picture = Hacer una imagen
+do-show-picture = Mostrar la imagen
+do-delete-picture = Borrar ahora
+do-settings = Idioma y ajustes
+do-large = Letra grande
+do-wear = Llevar la talla { $size }
+do-go-on = Continuar
+do-back = Volver
+do-stay = Sigo aquí
+do-still-me = Sigo siendo yo
+do-begin-anew = Empezar de nuevo
+do-leave = He terminado: borrar todo
+
+# Parts of the body that are measured
+part-stature = estatura
+part-shoulders = hombros
+part-chest = pecho
+part-waist = cintura
+part-hip = cadera
+part-legs = largo de pierna
+list-and = { $first } y { $last }
+list-comma = { $first }, { $last }

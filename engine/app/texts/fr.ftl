@@ -1,0 +1,195 @@
+# What a shopper reads, in French.
+
+language = Français
+
+# Nobody is there
+attract-heading = Voyez comment ça tombe avant d’essayer
+attract-measure = Placez-vous sur le repère. Le miroir prend vos mesures en une seconde.
+attract-fit = Voyez-vous dans votre taille, et là où ça serre.
+attract-compare = Mettez deux tailles côte à côte.
+attract-private = Rien n’est conservé, rien n’est envoyé. Quand vous partez, tout est oublié.
+
+# Somebody has stepped in
+guide-heading = Placez-vous sur le repère
+guide-heading-seated = Tournez-vous vers le miroir
+guide-pose = Pieds écartés, bras un peu éloignés du corps.
+guide-pose-seated = Gardez le dos droit, bras un peu éloignés du corps.
+guide-nearer = Approchez-vous un peu.
+guide-farther = Reculez un peu.
+guide-left = Décalez-vous un peu vers votre gauche.
+guide-right = Décalez-vous un peu vers votre droite.
+guide-alone = Une personne à la fois, s’il vous plaît.
+guide-unseen = Le miroir ne vous voit pas encore. Placez-vous sur le repère.
+guide-soon = La mesure commence dans un instant.
+
+# Measuring
+measuring-heading = Un instant, s’il vous plaît
+measuring-body = Prise de mesures
+measuring-dress = Habillage en cours
+
+# What could not be measured
+unmeasured-heading = Cela n’a pas fonctionné
+unmeasured-why = Le miroir doit vous voir de la tête aux genoux, sans personne d’autre, pendant une seconde. Les manteaux amples et les sacs cachent le corps.
+unmeasured-seated = Vous êtes en position assise ? Choisissez « Je suis en position assise ».
+partly-heading = Mesures prises autant que possible
+partly-missing = Non visible : { $parts }.
+partly-guess = À la place figure un corps moyen de votre stature ; ces zones sont moins sûres.
+partly-cure = Un mètre ruban à la taille et aux hanches lève le doute.
+
+# The fitted body
+fitting-size = { $garment }, taille { $size }
+fitting-best = La taille { $size } vous va le mieux.
+fitting-sure = Sûr à { $percent } %.
+fitting-unsure = On hésite : { $percent } % pour cette taille.
+fitting-better = La taille { $size } vous irait mieux.
+fitting-tape = Vérifiez votre tour de { $zone } au mètre ruban pour lever le doute.
+fitting-smaller = Même la plus petite taille est prévue pour des mesures plus grandes. Voici la plus proche.
+fitting-larger = Même la plus grande taille est prévue pour des mesures plus petites. Voici la plus proche.
+fitting-dressing = Habillage en cours
+fitting-refused = Impossible d’enfiler ce vêtement. Vous voyez ce que vous portiez avant.
+
+# The garments
+garments-heading = Que souhaitez-vous essayer ?
+garments-worn = Vous le portez
+garments-take-off = Touchez encore pour l’enlever
+garments-instead = Remplace : { $others }
+garment-sun-dress = Robe d’été
+garment-t-shirt = T-shirt
+garment-wide-trousers = Pantalon large
+colour-of = Couleur : { $colour }
+colour-own = Telle que tissée
+colour-coral = Corail
+colour-ivory = Ivoire
+colour-sky = Bleu ciel
+colour-moss = Vert mousse
+colour-navy = Bleu marine
+colour-denim = Bleu jean
+colour-white = Blanc
+colour-ochre = Ocre
+colour-brick = Rouge brique
+colour-charcoal = Anthracite
+colour-sand = Sable
+
+# Fit by zone
+zones-heading = Comment tombe la taille { $size }
+zones-held =
+    Le vêtement tient { $level ->
+        [neck] au cou
+        [shoulders] aux épaules
+        [bust] à la poitrine
+        [underbust] sous la poitrine
+        [waist] à la taille
+        [crotch] à l’entrejambe
+       *[feet] aux pieds
+    }.
+zone-chest = Poitrine
+zone-waist = Taille
+zone-hip = Hanches
+fit-ease = { $zone } : { $feel }, environ { $ease } cm d’aisance ± { $sigma }
+fit-lack = { $zone } : { $feel }, environ { $ease } cm trop petit ± { $sigma }
+fit-perhaps = { $fit } (peut-être { $feel })
+feel-too-tight = beaucoup trop serré
+feel-tight = serré
+feel-snug = près du corps
+feel-right = parfait
+feel-roomy = confortable
+feel-loose = large
+feel-too-loose = beaucoup trop large
+legend-loose = large
+legend-tight = serré
+
+# Why
+zone-heading = { $zone } : pourquoi ?
+zone-body = Votre tour de { $zone } mesure environ { $body } cm, à { $sigma } cm près.
+zone-garment = Le vêtement y mesure { $garment } cm.
+zone-comfort = Pour cette coupe, { $least } à { $most } cm d’aisance sont agréables.
+zone-stretch = Pour cette coupe, de { $least } cm d’étirement à { $most } cm d’aisance sont agréables.
+zone-primary = La taille est choisie d’après cette mesure.
+zone-seen = La mesure a été prise à la surface de votre corps.
+zone-bones = Seules votre stature et vos épaules étaient visibles. Le tour en est déduit et reste incertain.
+zone-guessed = Cette zone n’était pas visible. Une moyenne pour votre stature la remplace.
+zone-surer-tape = Un mètre ruban lève le doute.
+zone-surer-again = Une nouvelle mesure sans manteau ni sac sera plus sûre.
+
+# Two sizes
+compare-heading = Taille { $left } ou { $right } ?
+compare-zone = { $zone } : en { $left } { $left-feel }, en { $right } { $right-feel }
+compare-same = { $zone } : { $feel } dans les deux tailles
+compare-draping = Habillage dans les deux tailles
+compare-refused = Impossible d’enfiler les deux tailles. Les indications restent valables.
+
+# The picture
+picture-heading = Votre image
+picture-taking = L’image est en cours
+picture-scan = Scannez le code avec votre téléphone. Il contient l’image elle-même ; rien n’est envoyé.
+picture-until =
+    { $minutes ->
+        [0] Elle sera effacée dans moins d’une minute.
+        [one] Elle sera effacée dans { $minutes } minute.
+       *[other] Elle sera effacée dans { $minutes } minutes.
+    }
+picture-failed = L’image n’a pas fonctionné. Veuillez réessayer.
+
+# Settings
+settings-heading = Langue et réglages
+settings-stored = Le miroir ne conserve rien. Il ne connaît vos mesures que tant que vous êtes là, et les oublie quand vous partez.
+settings-known =
+    { $count ->
+        [0] Il ne connaît aucune de vos mesures.
+        [one] Il connaît actuellement { $count } de vos mesures.
+       *[other] Il connaît actuellement { $count } de vos mesures.
+    }
+
+# Somebody else
+second-heading = Est-ce toujours vous ?
+second-why = Quelqu’un d’autre semble être là. Ce qui était affiché est masqué.
+second-seconds =
+    { $seconds ->
+        [one] Dans { $seconds } seconde, tout sera oublié.
+       *[other] Dans { $seconds } secondes, tout sera oublié.
+    }
+
+# Nobody is seen
+leaving-heading = Êtes-vous encore là ?
+leaving-seconds =
+    { $seconds ->
+        [one] Dans { $seconds } seconde, tout sera oublié.
+       *[other] Dans { $seconds } secondes, tout sera oublié.
+    }
+
+# What can be pressed
+do-begin = Commencer
+do-measure = Prendre mes mesures
+do-measure-again = Mesurer à nouveau
+do-seated = Je suis en position assise
+do-garments = Choisir des vêtements
+do-zones = Comment ça tombe ?
+do-compare = Comparer deux tailles
+do-smaller = Taille en dessous
+do-larger = Taille au-dessus
+do-size = Taille { $size }
+do-turn-left = Tourner à gauche
+do-turn-right = Tourner à droite
+do-fit-map = Carte d’ajustement
+do-picture = Prendre une image
+do-show-picture = Montrer l’image
+do-delete-picture = Effacer maintenant
+do-settings = Langue et réglages
+do-large = Grands caractères
+do-wear = Porter la taille { $size }
+do-go-on = Continuer
+do-back = Retour
+do-stay = Je suis encore là
+do-still-me = C’est toujours moi
+do-begin-anew = Recommencer
+do-leave = J’ai fini : oubliez-moi
+
+# Parts of the body that are measured
+part-stature = stature
+part-shoulders = épaules
+part-chest = poitrine
+part-waist = taille
+part-hip = hanches
+part-legs = longueur de jambe
+list-and = { $first } et { $last }
+list-comma = { $first }, { $last }

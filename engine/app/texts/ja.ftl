@@ -1,0 +1,191 @@
+# What a shopper reads, in Japanese.
+
+language = 日本語
+
+# Nobody is there
+attract-heading = 試着の前に、着た感じをご覧ください
+attract-measure = マークの上にお立ちください。鏡が1秒で採寸します。
+attract-fit = ご自分のサイズで着た姿と、きついところが分かります。
+attract-compare = 2つのサイズを並べて比べられます。
+attract-private = 何も保存せず、何も送信しません。離れると、すべて消えます。
+
+# Somebody has stepped in
+guide-heading = マークの上にお立ちください
+guide-heading-seated = 鏡のほうを向いてください
+guide-pose = 足を開き、腕を体から少し離してください。
+guide-pose-seated = 背筋を伸ばして座り、腕を体から少し離してください。
+guide-nearer = もう少し前へどうぞ。
+guide-farther = 少し後ろへお下がりください。
+guide-left = 少し左へお動きください。
+guide-right = 少し右へお動きください。
+guide-alone = お一人ずつお願いします。
+guide-unseen = まだお姿が見えません。マークの上にお立ちください。
+guide-soon = まもなく採寸を始めます。
+
+# Measuring
+measuring-heading = 少々お待ちください
+measuring-body = 採寸しています
+measuring-dress = 服を着せています
+
+# What could not be measured
+unmeasured-heading = うまく測れませんでした
+unmeasured-why = お一人で、頭からひざまでが1秒間見える必要があります。ゆったりしたコートやバッグは体を隠してしまいます。
+unmeasured-seated = 座っている場合は「座っています」をお選びください。
+partly-heading = 測れるところまで測りました
+partly-missing = 見えなかったところ：{ $parts }
+partly-guess = そこは同じ身長の平均的な体で補っているため、確かさが下がります。
+partly-cure = ウエストとヒップをメジャーで測ると確かになります。
+
+# The fitted body
+fitting-size = { $garment }　サイズ{ $size }
+fitting-best = いちばん合うのはサイズ{ $size }です。
+fitting-sure = 確かさは{ $percent }%です。
+fitting-unsure = 迷うところです。このサイズは{ $percent }%です。
+fitting-better = サイズ{ $size }のほうが合いそうです。
+fitting-tape = { $zone }をメジャーで測ると確かになります。
+fitting-smaller = いちばん小さいサイズでも大きめです。最も近いサイズを表示しています。
+fitting-larger = いちばん大きいサイズでも小さめです。最も近いサイズを表示しています。
+fitting-dressing = 着せています
+fitting-refused = この服は着せられませんでした。前の服を表示しています。
+
+# The garments
+garments-heading = どれを試しますか？
+garments-worn = 着用中です
+garments-take-off = もう一度触れると脱ぎます
+garments-instead = 入れ替え：{ $others }
+garment-sun-dress = サンドレス
+garment-t-shirt = Tシャツ
+garment-wide-trousers = ワイドパンツ
+colour-of = 色：{ $colour }
+colour-own = 生地の色
+colour-coral = コーラル
+colour-ivory = アイボリー
+colour-sky = スカイブルー
+colour-moss = モスグリーン
+colour-navy = ネイビー
+colour-denim = デニムブルー
+colour-white = ホワイト
+colour-ochre = マスタード
+colour-brick = れんが色
+colour-charcoal = チャコール
+colour-sand = サンドベージュ
+
+# Fit by zone
+zones-heading = サイズ{ $size }の着心地
+zones-held =
+    この服は{ $level ->
+        [neck] 首
+        [shoulders] 肩
+        [bust] 胸
+        [underbust] 胸の下
+        [waist] ウエスト
+        [crotch] 股
+       *[feet] 足
+    }で支えます。
+zone-chest = バスト
+zone-waist = ウエスト
+zone-hip = ヒップ
+fit-ease = { $zone }：{ $feel }、ゆとり約{ $ease } cm ± { $sigma }
+fit-lack = { $zone }：{ $feel }、約{ $ease } cm不足 ± { $sigma }
+fit-perhaps = { $fit }（{ $feel }かもしれません）
+feel-too-tight = かなりきつい
+feel-tight = きつい
+feel-snug = ぴったり
+feel-right = ちょうどよい
+feel-roomy = ゆったり
+feel-loose = ゆるい
+feel-too-loose = かなりゆるい
+legend-loose = ゆるい
+legend-tight = きつい
+
+# Why
+zone-heading = { $zone }：その理由
+zone-body = お客様の{ $zone }は約{ $body } cm（± { $sigma } cm）です。
+zone-garment = 服のその部分は{ $garment } cmです。
+zone-comfort = この型では、ゆとり{ $least }～{ $most } cmが快適です。
+zone-stretch = この型では、{ $least } cm伸びた状態からゆとり{ $most } cmまでが快適です。
+zone-primary = サイズはこの寸法で決まります。
+zone-seen = 体の表面から測りました。
+zone-bones = 見えたのは身長と肩だけです。この寸法はそこから求めたもので、確かではありません。
+zone-guessed = 見えなかったため、同じ身長の平均を使っています。
+zone-surer-tape = メジャーで測ると確かになります。
+zone-surer-again = コートやバッグなしで測り直すと、より確かになります。
+
+# Two sizes
+compare-heading = サイズ{ $left }と{ $right }、どちらにしますか？
+compare-zone = { $zone }：{ $left }は{ $left-feel }、{ $right }は{ $right-feel }
+compare-same = { $zone }：どちらも{ $feel }
+compare-draping = 2つのサイズを着せています
+compare-refused = 2つのサイズを着せられませんでした。説明はそのままご参考になります。
+
+# The picture
+picture-heading = お客様の画像
+picture-taking = 画像を作っています
+picture-scan = スマートフォンでコードを読み取ってください。画像はコードの中にあり、何も送信しません。
+picture-until =
+    { $minutes ->
+        [0] 1分以内に削除されます。
+       *[other] 約{ $minutes }分後に削除されます。
+    }
+picture-failed = 画像を作れませんでした。もう一度お試しください。
+
+# Settings
+settings-heading = 言語と設定
+settings-stored = 鏡は何も保存しません。寸法はここにいらっしゃる間だけ使い、離れると消えます。
+settings-known =
+    { $count ->
+        [0] 今、お客様の寸法はありません。
+       *[other] 今、お客様の寸法が{ $count }つあります。
+    }
+
+# Somebody else
+second-heading = 同じお客様ですか？
+second-why = 別の方がいらっしゃるようです。表示していた内容は隠しました。
+second-seconds =
+    { $seconds ->
+       *[other] { $seconds }秒後にすべて消えます。
+    }
+
+# Nobody is seen
+leaving-heading = まだいらっしゃいますか？
+leaving-seconds =
+    { $seconds ->
+       *[other] { $seconds }秒後にすべて消えます。
+    }
+
+# What can be pressed
+do-begin = はじめる
+do-measure = 採寸する
+do-measure-again = もう一度測る
+do-seated = 座っています
+do-garments = 服を選ぶ
+do-zones = 着心地を見る
+do-compare = サイズを比べる
+do-smaller = 小さいサイズ
+do-larger = 大きいサイズ
+do-size = サイズ{ $size }
+do-turn-left = 左へ回す
+do-turn-right = 右へ回す
+do-fit-map = フィットマップ
+do-picture = 画像を作る
+do-show-picture = 画像を見る
+do-delete-picture = 今すぐ削除
+do-settings = 言語と設定
+do-large = 大きな文字
+do-wear = サイズ{ $size }を着る
+do-go-on = 次へ
+do-back = 戻る
+do-stay = まだいます
+do-still-me = 同じ本人です
+do-begin-anew = 新しく始める
+do-leave = 終わる（すべて消す）
+
+# Parts of the body that are measured
+part-stature = 身長
+part-shoulders = 肩幅
+part-chest = バスト
+part-waist = ウエスト
+part-hip = ヒップ
+part-legs = 脚の長さ
+list-and = { $first }と{ $last }
+list-comma = { $first }、{ $last }

@@ -1,0 +1,195 @@
+# What a shopper reads, in Turkish.
+
+language = Türkçe
+
+# Nobody is there
+attract-heading = Denemeden önce nasıl duracağını görün
+attract-measure = İşaretin üzerine geçin. Ayna bir saniyede ölçünüzü alır.
+attract-fit = Kendinizi kendi bedeninizde görün, nerede dar olduğunu anlayın.
+attract-compare = İki bedeni yan yana koyun.
+attract-private = Hiçbir şey saklanmaz, hiçbir şey gönderilmez. Ayrıldığınızda unutulursunuz.
+
+# Somebody has stepped in
+guide-heading = İşaretin üzerinde durun
+guide-heading-seated = Aynaya dönün
+guide-pose = Ayaklar ayrık, kollar gövdeden biraz uzakta.
+guide-pose-seated = Dik oturun, kollar gövdeden biraz uzakta.
+guide-nearer = Biraz yaklaşın.
+guide-farther = Biraz geri gidin.
+guide-left = Biraz solunuza geçin.
+guide-right = Biraz sağınıza geçin.
+guide-alone = Lütfen teker teker.
+guide-unseen = Ayna sizi henüz görmüyor. İşaretin üzerine geçin.
+guide-soon = Ölçüm birazdan başlıyor.
+
+# Measuring
+measuring-heading = Bir dakika lütfen
+measuring-body = Ölçü alınıyor
+measuring-dress = Giysiler giydiriliyor
+
+# What could not be measured
+unmeasured-heading = Olmadı
+unmeasured-why = Aynanın sizi bir saniye boyunca tek başınıza, baştan dize kadar görmesi gerekir. Bol paltolar ve çantalar vücudu kapatır.
+unmeasured-seated = Oturuyor musunuz? “Oturuyorum” seçeneğine dokunun.
+partly-heading = Mümkün olduğu kadar ölçüldü
+partly-missing = Görülemeyen: { $parts }.
+partly-guess = Bu bölgelerde boyunuza göre ortalama bir vücut kullanıldı; sonuç daha az kesindir.
+partly-cure = Bel ve kalçadan mezurayla alınan ölçü kesinlik sağlar.
+
+# The fitted body
+fitting-size = { $garment }, { $size } beden
+fitting-best = Size en çok { $size } beden uyuyor.
+fitting-sure = %{ $percent } eminiz.
+fitting-unsure = Arada kaldık: bu beden için %{ $percent }.
+fitting-better = Size { $size } beden daha iyi olurdu.
+fitting-tape = Emin olmak için mezurayla ölçün: { $zone } çevresi.
+fitting-smaller = En küçük beden bile daha büyük ölçüler için. En yakınını görüyorsunuz.
+fitting-larger = En büyük beden bile daha küçük ölçüler için. En yakınını görüyorsunuz.
+fitting-dressing = Giydiriliyor
+fitting-refused = Bu giydirilemedi. Önceki giysinizi görüyorsunuz.
+
+# The garments
+garments-heading = Ne denemek istersiniz?
+garments-worn = Üzerinizde
+garments-take-off = Çıkarmak için yeniden dokunun
+garments-instead = Şunun yerine: { $others }
+garment-sun-dress = Yazlık elbise
+garment-t-shirt = Tişört
+garment-wide-trousers = Bol pantolon
+colour-of = Renk: { $colour }
+colour-own = Kumaşın kendi rengi
+colour-coral = Mercan
+colour-ivory = Fildişi
+colour-sky = Gök mavisi
+colour-moss = Yosun yeşili
+colour-navy = Lacivert
+colour-denim = Kot mavisi
+colour-white = Beyaz
+colour-ochre = Hardal
+colour-brick = Kiremit
+colour-charcoal = Antrasit
+colour-sand = Kum rengi
+
+# Fit by zone
+zones-heading = { $size } beden nasıl oturuyor
+zones-held =
+    Giysi { $level ->
+        [neck] boyunda
+        [shoulders] omuzlarda
+        [bust] göğüste
+        [underbust] göğüs altında
+        [waist] belde
+        [crotch] ağ kısmında
+       *[feet] ayaklarda
+    } durur.
+zone-chest = Göğüs
+zone-waist = Bel
+zone-hip = Kalça
+fit-ease = { $zone }: { $feel }, yaklaşık { $ease } cm bolluk ± { $sigma }
+fit-lack = { $zone }: { $feel }, yaklaşık { $ease } cm küçük ± { $sigma }
+fit-perhaps = { $fit } (belki { $feel })
+feel-too-tight = çok fazla dar
+feel-tight = dar
+feel-snug = vücuda oturan
+feel-right = tam kararında
+feel-roomy = rahat
+feel-loose = bol
+feel-too-loose = çok fazla bol
+legend-loose = bol
+legend-tight = dar
+
+# Why
+zone-heading = { $zone }: neden?
+zone-body = Ölçünüz: { $zone } çevresi yaklaşık { $body } cm, artı eksi { $sigma } cm.
+zone-garment = Giysi orada { $garment } cm.
+zone-comfort = Bu kesimde { $least } ile { $most } cm arası bolluk rahattır.
+zone-stretch = Bu kesimde { $least } cm esneme ile { $most } cm bolluk arası rahattır.
+zone-primary = Beden bu ölçüye göre seçilir.
+zone-seen = Vücudunuzun yüzeyinden ölçüldü.
+zone-bones = Yalnızca boyunuz ve omuzlarınız görüldü. Çevre bunlardan hesaplandı ve kesin değildir.
+zone-guessed = Görülemedi. Boyunuza göre bir ortalama kullanıldı.
+zone-surer-tape = Mezura kesinlik sağlar.
+zone-surer-again = Palto ve çanta olmadan yeniden ölçmek daha kesin sonuç verir.
+
+# Two sizes
+compare-heading = { $left } beden mi, { $right } beden mi?
+compare-zone = { $zone }: { $left } { $left-feel }, { $right } { $right-feel }
+compare-same = { $zone }: ikisi de { $feel }
+compare-draping = İki beden giydiriliyor
+compare-refused = İki beden giydirilemedi. Yazılanlar yine de geçerli.
+
+# The picture
+picture-heading = Resminiz
+picture-taking = Resim çekiliyor
+picture-scan = Kodu telefonunuzla okutun. Resim kodun içindedir; hiçbir şey gönderilmez.
+picture-until =
+    { $minutes ->
+        [0] Bir dakikadan kısa sürede silinir.
+        [one] { $minutes } dakika içinde silinir.
+       *[other] { $minutes } dakika içinde silinir.
+    }
+picture-failed = Resim çekilemedi. Lütfen yeniden deneyin.
+
+# Settings
+settings-heading = Dil ve ayarlar
+settings-stored = Ayna hiçbir şey saklamaz. Ölçülerinizi yalnızca siz buradayken bilir, ayrıldığınızda unutur.
+settings-known =
+    { $count ->
+        [0] Şu anda hiçbir ölçünüzü bilmiyor.
+        [one] Şu anda { $count } ölçünüzü biliyor.
+       *[other] Şu anda { $count } ölçünüzü biliyor.
+    }
+
+# Somebody else
+second-heading = Hâlâ siz misiniz?
+second-why = Burada başka biri duruyor gibi. Gösterilenler gizlendi.
+second-seconds =
+    { $seconds ->
+        [one] { $seconds } saniye sonra her şey unutulacak.
+       *[other] { $seconds } saniye sonra her şey unutulacak.
+    }
+
+# Nobody is seen
+leaving-heading = Hâlâ burada mısınız?
+leaving-seconds =
+    { $seconds ->
+        [one] { $seconds } saniye sonra unutulacaksınız.
+       *[other] { $seconds } saniye sonra unutulacaksınız.
+    }
+
+# What can be pressed
+do-begin = Başla
+do-measure = Ölçümü al
+do-measure-again = Yeniden ölç
+do-seated = Oturuyorum
+do-garments = Giysi seç
+do-zones = Nasıl oturuyor?
+do-compare = İki bedeni karşılaştır
+do-smaller = Küçük beden
+do-larger = Büyük beden
+do-size = { $size } beden
+do-turn-left = Sola döndür
+do-turn-right = Sağa döndür
+do-fit-map = Uyum haritası
+do-picture = Resim çek
+do-show-picture = Resmi göster
+do-delete-picture = Şimdi sil
+do-settings = Dil ve ayarlar
+do-large = Büyük yazı
+do-wear = { $size } bedeni giy
+do-go-on = Devam
+do-back = Geri
+do-stay = Buradayım
+do-still-me = Hâlâ benim
+do-begin-anew = Baştan başla
+do-leave = Bitti: beni unut
+
+# Parts of the body that are measured
+part-stature = boy
+part-shoulders = omuz genişliği
+part-chest = göğüs
+part-waist = bel
+part-hip = kalça
+part-legs = bacak boyu
+list-and = { $first } ve { $last }
+list-comma = { $first }, { $last }
