@@ -7,7 +7,7 @@ use wgpu::{
     TextureFormat, TextureUsages, TextureView,
 };
 
-use super::gpu::Gpu;
+use super::Gpu;
 use super::light::{BLOCK, Behind as BehindKind, Sight};
 use super::model::{Model, ModelError};
 use super::pipelines::{BEAM_DEPTH, Layouts, Pipelines};
