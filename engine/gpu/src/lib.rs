@@ -35,6 +35,8 @@ pub mod device;
 #[cfg(feature = "wgpu")]
 mod native;
 #[cfg(feature = "wgpu")]
+pub mod source;
+#[cfg(feature = "wgpu")]
 pub mod wait;
 
 #[cfg(feature = "wgpu")]

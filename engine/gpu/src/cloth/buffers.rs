@@ -41,6 +41,8 @@ pub struct Buffers {
     pub reports: Buffer,
     /// Last good places `[particles]`.
     pub good: Buffer,
+    /// Unit normals `[particles]`, where somebody draws.
+    pub normals: Buffer,
     /// Capsules, a set for the step and one for each substep of each garment.
     pub cones: Buffer,
     /// Their ends `[garments * MAX_CAPSULES]`.
@@ -67,6 +69,8 @@ pub fn needs(flat: &Flat, program: &Program, sets: usize) -> Needs {
         size_of_val(&*flat.bending.entries),
         16 * flat.bending.items.len(),
         16 * program.groups().len(),
+        size_of_val(&*flat.faces.meeting),
+        16 * flat.faces.corners.len(),
         flat.spans.len() * sets * MAX_CAPSULES * size_of::<FlatCone>(),
     ];
     let workgroups = program.tables.iter().map(|(groups, _)| groups.groups.len() as u32).max().unwrap_or(0);
@@ -136,7 +140,14 @@ impl Buffers {
         let weft_measures = make.with("weft measures", &flat.weft.measures, to);
         let scales = make.with("scales", &flat.bending.scales, to);
         let reports = make.zeros("reports", constants.len(), 4 * REPORT);
-        let good = make.with("good", &flat.start, from);
+        // What is drawn, too.
+        let shown = from | BufferUsages::VERTEX;
+        let good = make.with("good", &flat.start, shown);
+        let normals = make.with("normals", &flat.faces.normals, shown);
+        let corners = make.with("corners", &flat.faces.corners, none);
+        let areas = make.zeros("areas", flat.faces.corners.len(), 16);
+        let from = make.with("faces from", &flat.faces.starts, none);
+        let meeting = make.with("meeting", &flat.faces.meeting, none);
         let start = make.with("start", &flat.start, none);
         let pins = make.with("pins", &flat.pins, none);
         let tethers = make.with("tethers", &flat.tethers, none);
@@ -188,6 +199,8 @@ impl Buffers {
             &[&reports],
             &[&reports, &good, &start],
             &[&reports, &good, &start],
+            &[&corners, &good, &areas],
+            &[&from, &meeting, &areas, &normals],
         ];
         let bytes = make.bytes;
         let layout = scene_layout(&device.device);
@@ -202,6 +215,7 @@ impl Buffers {
             scales,
             reports,
             good,
+            normals,
             cones,
             ends,
             planes,

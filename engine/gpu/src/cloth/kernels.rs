@@ -35,6 +35,10 @@ pub enum Kernel {
     Publish,
     /// What the report says of the next step.
     Conclude,
+    /// Where somebody draws, the triangles' normals.
+    Faces,
+    /// And the particles', of one unit.
+    Normals,
 }
 
 /// A shader's text, without what all have in common.
@@ -56,7 +60,7 @@ macro_rules! shader {
 }
 
 /// All shaders.
-pub const SHADERS: [Shader; 13] = [
+pub const SHADERS: [Shader; 15] = [
     shader!("jump", [false, true]),
     shader!("bending", [true, true, true, false]),
     shader!("bent", [true, true, true, true, true]),
@@ -70,6 +74,8 @@ pub const SHADERS: [Shader; 13] = [
     shader!("settle", [false]),
     shader!("guard", [false]),
     shader!("publish", [false, false, true]),
+    shader!("faces", [true, true, false]),
+    shader!("normals", [true, true, true, false]),
 ];
 
 impl Shader {
@@ -81,7 +87,7 @@ impl Shader {
 
 impl Kernel {
     /// All kernels.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 18] = [
         Self::Jump,
         Self::Near,
         Self::Bending,
@@ -98,6 +104,8 @@ impl Kernel {
         Self::Guard,
         Self::Publish,
         Self::Conclude,
+        Self::Faces,
+        Self::Normals,
     ];
 
     /// Its number among [`Kernel::ALL`].
@@ -121,6 +129,8 @@ impl Kernel {
             Self::Settle => "settle",
             Self::Guard => "guard",
             Self::Publish | Self::Conclude => "publish",
+            Self::Faces => "faces",
+            Self::Normals => "normals",
         };
         let shader = SHADERS.iter().position(|s| s.name == name).unwrap_or(0);
         let entry = match self {

@@ -1,6 +1,6 @@
 //! The cloth on a GPU: all garments of a scene in one set of buffers, a dispatch a phase.
 //!
-//! Reads: baked garments, bone palettes, settings. Writes: positions, one step late.
+//! Reads: baked garments, bone palettes, settings. Writes: positions, one step late; for who draws on the same device, now.
 //! Budget: buffers and pipelines at load; in the frame no buffer, no pipeline and no wait, some 40 dispatches a substep.
 //! Thread: the one that calls [`Offload::step`]; not the physics thread of a garment that is on the CPU.
 //!
@@ -9,6 +9,7 @@
 
 mod buffers;
 pub mod constants;
+mod drawn;
 pub mod flat;
 pub mod kernels;
 pub mod program;
@@ -27,7 +28,7 @@ use toile_engine::cloth::settings::MAX_SUBSTEPS;
 use toile_engine::cloth::{Quality, Settings, centre};
 use toile_engine::colliders::Colliders;
 
-use crate::device::{Choice, Device, GpuError};
+use crate::device::{Choice, Device, GpuError, Needs};
 use buffers::{Buffers, needs};
 use constants::Constants;
 use flat::Flat;
@@ -53,6 +54,42 @@ struct Own {
     place: usize,
     positions: Box<[Vec3A]>,
     report: Report,
+}
+
+/// A scene that is laid out and has no device yet.
+struct Laid {
+    prepared: Vec<Prepared>,
+    flat: Flat,
+    program: Program,
+    /// Sets of capsules, one more than substeps.
+    sets: usize,
+}
+
+impl Laid {
+    /// Lays garments out; `drawn` keeps their normals as well.
+    fn new(
+        garments: &[&Garment],
+        colliders: &[&Colliders],
+        settings: &Settings,
+        drawn: bool,
+    ) -> Result<Self, GpuError> {
+        let mut prepared: Vec<Prepared> = garments.iter().map(|g| Prepared::new(g)).collect();
+        for (garment, prepared) in garments.iter().zip(&mut prepared) {
+            prepared.make(garment, settings);
+            takes(garment, prepared, settings)?;
+        }
+        let mut flat = Flat::new(garments, colliders);
+        if drawn {
+            flat.draw(garments);
+        }
+        let program = Program::new(&flat);
+        let sets = 1 + most_substeps(garments, &prepared);
+        Ok(Self { prepared, flat, program, sets })
+    }
+
+    fn needs(&self) -> Needs {
+        needs(&self.flat, &self.program, self.sets)
+    }
 }
 
 /// Garments that are stepped on a GPU. All storage is made once.
@@ -92,15 +129,40 @@ impl Offload {
         settings: &Settings,
     ) -> Result<Self, GpuError> {
         let settings = &settings.sound();
-        let mut prepared: Vec<Prepared> = garments.iter().map(|g| Prepared::new(g)).collect();
-        for (garment, prepared) in garments.iter().zip(&mut prepared) {
-            prepared.make(garment, settings);
-            takes(garment, prepared, settings)?;
-        }
-        let flat = Flat::new(garments, colliders);
-        let program = Program::new(&flat);
-        let sets = 1 + most_substeps(garments, &prepared);
-        let device = Device::open(choice, needs(&flat, &program, sets))?;
+        let laid = Laid::new(garments, colliders, settings, false)?;
+        let device = Device::open(choice, laid.needs())?;
+        Self::make(device, laid, garments, settings)
+    }
+
+    /// The same on a device that is open already and that draws them too: then normals are kept beside the places, and
+    /// [`Offload::source`] tells where both lie.
+    ///
+    /// # Errors
+    /// As [`Offload::new`]; limits too small where the device was opened for less than [`Offload::needs`].
+    pub fn drawn(
+        device: &Device,
+        garments: &[&Garment],
+        colliders: &[&Colliders],
+        settings: &Settings,
+    ) -> Result<Self, GpuError> {
+        let settings = &settings.sound();
+        let laid = Laid::new(garments, colliders, settings, true)?;
+        device.suffices(laid.needs())?;
+        Self::make(device.clone(), laid, garments, settings)
+    }
+
+    /// What a device has to be opened with to step these garments and to draw them. At load, some milliseconds a garment.
+    ///
+    /// # Errors
+    /// [`GpuError::Unsupported`].
+    pub fn needs(garments: &[&Garment], colliders: &[&Colliders], settings: &Settings) -> Result<Needs, GpuError> {
+        Ok(Laid::new(garments, colliders, &settings.sound(), true)?.needs())
+    }
+
+    fn make(device: Device, laid: Laid, garments: &[&Garment], settings: &Settings) -> Result<Self, GpuError> {
+        // On one that is lost no buffer can be made.
+        device.sound()?;
+        let Laid { prepared, flat, program, sets } = laid;
         let constants: Vec<Constants> =
             flat.order.iter().map(|&k| Constants::new(garments[k], &prepared[k], settings)).collect();
         let buffers = Buffers::new(&device, &flat, &program, &constants, sets);

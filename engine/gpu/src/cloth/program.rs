@@ -65,6 +65,10 @@ impl Program {
         this.draft = this.substep(&tables, false);
         this.whole = this.substep(&tables, true);
         this.after = vec![all(Kernel::Guard), all(Kernel::Publish), all(Kernel::Conclude)];
+        if !flat.faces.starts.is_empty() {
+            let faces = Entry { table: this.table(&flat.faces.groups), ..all(Kernel::Faces) };
+            this.after.extend([faces, all(Kernel::Normals)]);
+        }
         this.number();
         this
     }

@@ -2,7 +2,7 @@
 
 use glam::Vec3A;
 use toile_assets::garment::Garment;
-use wgpu::{BufferDescriptor, BufferUsages, ComputePassDescriptor, MapMode};
+use wgpu::{Buffer, BufferDescriptor, BufferUsages, ComputePassDescriptor, MapMode};
 
 use super::buffers::REPORT;
 use super::kernels::Kernel;
@@ -115,24 +115,29 @@ impl Offload {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn particles(&self, garment: usize) -> Result<Particles, GpuError> {
-        let state = &self.buffers.state;
+        let span = self.flat.spans[self.own[garment].place];
+        let all = self.fetch(&self.buffers.state)?;
+        let part = |part: u32| {
+            let first = (part * self.flat.particles + span.first) as usize;
+            all[first..first + span.len as usize].to_vec()
+        };
+        Ok(Particles { x: part(0), previous: part(1), v: part(2) })
+    }
+
+    /// Reads a buffer of threes, and waits for them.
+    pub(super) fn fetch(&self, from: &Buffer) -> Result<Vec<Vec3A>, GpuError> {
         let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
         let descriptor =
-            BufferDescriptor { label: Some("state"), size: state.size(), usage, mapped_at_creation: false };
+            BufferDescriptor { label: Some("fetched"), size: from.size(), usage, mapped_at_creation: false };
         let to = self.device.device.create_buffer(&descriptor);
         let mut encoder = self.encoder();
-        encoder.copy_buffer_to_buffer(state, 0, &to, 0, state.size());
+        encoder.copy_buffer_to_buffer(from, 0, &to, 0, from.size());
         self.device.queue.submit([encoder.finish()]);
         to.map_async(MapMode::Read, .., |_| {});
         self.device.finish();
         self.device.sound()?;
         let bytes = to.get_mapped_range(..).map_err(|e| GpuError::Lost(e.to_string()))?;
         let numbers: &[[f32; 4]] = bytemuck::cast_slice(&bytes);
-        let span = self.flat.spans[self.own[garment].place];
-        let part = |part: u32| {
-            let first = (part * self.flat.particles + span.first) as usize;
-            numbers[first..first + span.len as usize].iter().map(|p| Vec3A::new(p[0], p[1], p[2])).collect()
-        };
-        Ok(Particles { x: part(0), previous: part(1), v: part(2) })
+        Ok(numbers.iter().map(|p| Vec3A::new(p[0], p[1], p[2])).collect())
     }
 }

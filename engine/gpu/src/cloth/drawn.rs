@@ -1,0 +1,32 @@
+//! Drawn: the garments as they lie on the device, for whoever draws them there.
+
+use glam::Vec3A;
+
+use super::Offload;
+use crate::device::GpuError;
+use crate::source::Source;
+
+impl Offload {
+    /// Where a garment's places and normals lie on the device at the end of the newest step that was sent; none where it was
+    /// made by [`Offload::new`], without normals. It is asked for once: a step writes where the one before has written.
+    pub fn source(&self, garment: usize) -> Option<Source> {
+        if self.flat.faces.starts.is_empty() {
+            return None;
+        }
+        let span = self.flat.spans[self.own[garment].place];
+        Source::new(&self.device, [&self.buffers.good, &self.buffers.normals], span.first, span.len)
+    }
+
+    /// Reads a garment's unit normals `[particles]`, and waits for them; none where nobody draws. Never in the frame.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`].
+    pub fn normals(&self, garment: usize) -> Result<Vec<Vec3A>, GpuError> {
+        if self.flat.faces.starts.is_empty() {
+            return Ok(Vec::new());
+        }
+        let span = self.flat.spans[self.own[garment].place];
+        let all = self.fetch(&self.buffers.normals)?;
+        Ok(all[span.first as usize..(span.first + span.len) as usize].to_vec())
+    }
+}
