@@ -11,6 +11,7 @@ use toile_view::scene::{Bounds, Camera, Colours, Material, Scene};
 use toile_view::{fitmap, trace};
 
 mod dressed;
+mod offload;
 
 use dressed::Dressed;
 
