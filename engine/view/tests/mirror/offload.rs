@@ -12,6 +12,7 @@ use toile_gpu::cloth::Offload;
 use toile_view::image::Image;
 use toile_view::mirror::{Backdrop, Gpu, ModelError, Renderer};
 use toile_view::scene::{Bounds, Camera};
+use toile_view::tuck::Cover;
 
 use crate::dressed::{Dressed, wearer};
 use crate::{Choice, FINE, Offscreen, Quality, SIZE, gpu, pixels};
@@ -29,6 +30,11 @@ fn shirt() -> &'static Dressed {
 fn renderer(gpu: &Gpu, quality: Quality) -> Renderer {
     let mut renderer = Renderer::new(gpu, Offscreen::FORMAT, quality);
     shirt().put_on(&mut renderer, false);
+    // What the live picture has in the place of tucking the skin beneath every step's cloth.
+    let worn = shirt().garment.triangles.iter().map(|t| t.map(|i| shirt().garment.start[i as usize]));
+    let dressed = Cover::new(worn).dressed(&shirt().body, &shirt().body_normals);
+    let recess: Vec<f32> = dressed.into_iter().map(|d| if d { 0.04 } else { 0.0 }).collect();
+    renderer.set_recess(0, &recess).expect("one for each vertex");
     renderer
 }
 
