@@ -208,6 +208,26 @@ impl Offload {
         self.own[garment].prepared.substeps
     }
 
+    /// Whether these are the garments that it was made for, as far as can be told, and the settings ask for no more substeps than
+    /// it was laid out for.
+    pub fn holds(&self, garments: &[&Garment], settings: &Settings) -> bool {
+        let settings = settings.sound();
+        let fits = |(own, garment): (&Own, &&Garment)| {
+            own.positions.len() == garment.particles() && (settings.substeps_of(garment.substeps) as usize) < self.sets
+        };
+        garments.len() == self.own.len() && self.own.iter().zip(garments).all(fits)
+    }
+
+    /// Goes on from the same garments as they were laid out before: where their skinned particles were, how their roots moved.
+    pub fn succeed(&mut self, before: &Self) {
+        for (own, before) in self.own.iter_mut().zip(&before.own) {
+            if own.pins.start.len() == before.pins.start.len() {
+                own.pins = before.pins.clone();
+                own.root = before.root;
+            }
+        }
+    }
+
     /// Bytes on the device, but for what is on its way back.
     pub fn bytes(&self) -> u64 {
         self.buffers.bytes()

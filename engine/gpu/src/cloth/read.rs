@@ -4,7 +4,7 @@ use glam::Vec3A;
 use toile_assets::garment::Garment;
 use wgpu::{BufferDescriptor, BufferUsages, ComputePassDescriptor, MapMode};
 
-use super::buffers::REPORT;
+use super::buffers::{Buffers, REPORT};
 use super::kernels::Kernel;
 use super::meter::Meter;
 use super::{Offload, Step};
@@ -59,16 +59,23 @@ impl Offload {
         self.take()
     }
 
-    /// Puts a garment's particles somewhere, with velocities (m, m/s): how tests and scenes disturb a garment.
+    /// Puts a garment's particles somewhere, with velocities (m, m/s): how tests and scenes disturb a garment. What is finite is
+    /// the last good place as well.
     pub fn disturb(&mut self, garment: usize, x: &[Vec3A], v: &[Vec3A]) {
-        let span = self.flat.spans[self.own[garment].place];
-        let weights = self.flat.start[span.first as usize..].iter().map(|s| s[3]);
-        let places: Vec<[f32; 4]> = x.iter().zip(weights).map(|(p, w)| [p.x, p.y, p.z, w]).collect();
-        let speeds: Vec<[f32; 4]> = v.iter().map(|v| [v.x, v.y, v.z, 0.0]).collect();
-        for (part, numbers) in [&places, &places, &speeds].into_iter().enumerate() {
-            let first = u64::from(part as u32 * self.flat.particles + span.first);
-            let some = &numbers[..numbers.len().min(span.len as usize)];
-            self.opened.device.queue.write_buffer(&self.buffers.state, 16 * first, bytemuck::cast_slice(some));
+        let own = &mut self.own[garment];
+        let span = self.flat.spans[own.place];
+        let start = &self.flat.start[span.first as usize..(span.first + span.len) as usize];
+        for (good, x) in own.positions.iter_mut().zip(x).filter(|(_, x)| x.is_finite()) {
+            *good = *x;
+        }
+        let places: Vec<[f32; 4]> = x.iter().zip(start).map(|(p, s)| [p.x, p.y, p.z, s[3]]).collect();
+        let speeds: Vec<[f32; 4]> = v.iter().zip(start).map(|(v, _)| [v.x, v.y, v.z, 0.0]).collect();
+        let good: Vec<[f32; 4]> = own.positions.iter().map(|p| [p.x, p.y, p.z, 1.0]).collect();
+        let Buffers { state, good: last, .. } = &self.buffers;
+        let all = self.flat.particles;
+        for (buffer, part, numbers) in [(state, 0, &places), (state, 1, &places), (state, 2, &speeds), (last, 0, &good)] {
+            let at = 16 * u64::from(part * all + span.first);
+            self.opened.device.queue.write_buffer(buffer, at, bytemuck::cast_slice(numbers));
         }
     }
 
