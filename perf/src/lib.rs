@@ -5,6 +5,7 @@
 //! Thread: one, with nothing else running.
 
 pub mod ansur;
+pub mod backend;
 pub mod depth;
 pub mod filters;
 pub mod latency;

@@ -30,12 +30,12 @@ pub fn adapters() -> Vec<Adapter> {
 
 #[cfg(feature = "wgpu")]
 pub mod cloth;
-pub mod graphics;
-pub mod stepper;
 #[cfg(feature = "wgpu")]
 pub mod device;
+pub mod graphics;
 #[cfg(feature = "wgpu")]
 mod native;
+pub mod stepper;
 #[cfg(feature = "wgpu")]
 pub mod wait;
 

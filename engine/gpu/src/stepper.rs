@@ -7,6 +7,7 @@
 
 use std::fmt;
 use std::str::FromStr;
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use toile_assets::garment::Garment;
@@ -57,6 +58,67 @@ impl FromStr for Backend {
     }
 }
 
+/// By what the garments of a run are stepped: opened once, shared by all of its steppers.
+#[derive(Debug, Clone)]
+pub struct Means {
+    backend: Backend,
+    graphics: Result<Graphics, String>,
+    /// The first reason for which any of its steppers went over to the processor.
+    fallen: Arc<OnceLock<String>>,
+}
+
+impl Means {
+    /// The processor.
+    pub fn cpu() -> Self {
+        Self { backend: Backend::Cpu, graphics: Err(String::new()), fallen: Arc::default() }
+    }
+
+    /// What was asked for: opens the fastest device unless that is the processor. At load, some tenths of a second.
+    pub fn open(backend: Backend) -> Self {
+        match backend {
+            Backend::Cpu => Self::cpu(),
+            _ => Self { graphics: Graphics::open(), backend, fallen: Arc::default() },
+        }
+    }
+
+    /// A stepper for some garments.
+    pub fn stepper(&self) -> Stepper {
+        let mut stepper = Stepper { told: Some(Arc::clone(&self.fallen)), ..Stepper::default() };
+        match (self.backend, &self.graphics) {
+            (Backend::Cpu, _) => {}
+            (backend, Ok(graphics)) => {
+                stepper.graphics = Some(graphics.clone());
+                stepper.undecided = backend == Backend::Auto;
+            }
+            (_, Err(reason)) => stepper.fall(reason.clone()),
+        }
+        stepper
+    }
+
+    /// The device that was opened.
+    pub fn adapter(&self) -> Option<&Adapter> {
+        self.graphics.as_ref().ok().map(Graphics::adapter)
+    }
+
+    /// What was asked for.
+    pub fn asked(&self) -> Backend {
+        self.backend
+    }
+
+    /// Why the processor stepped although a device was asked for: the first reason, one sentence with the cure.
+    pub fn fallen(&self) -> Option<&str> {
+        let unopened = self.graphics.as_ref().err().filter(|_| self.backend != Backend::Cpu);
+        self.fallen.get().or(unopened).map(String::as_str)
+    }
+}
+
+impl From<Graphics> for Means {
+    /// A device that is open, and asked for.
+    fn from(graphics: Graphics) -> Self {
+        Self { backend: Backend::Gpu, graphics: Ok(graphics), fallen: Arc::default() }
+    }
+}
+
 /// Some garments, each with what the coming step does around it.
 #[derive(Debug)]
 pub struct Batch<'a, 'b> {
@@ -83,6 +145,8 @@ pub struct Stepper {
     graphics: Option<Graphics>,
     on_device: Option<Garments>,
     fallen: Option<String>,
+    /// Where the reason is kept for the whole run.
+    told: Option<Arc<OnceLock<String>>>,
     measured: Option<Measured>,
     undecided: bool,
 }
@@ -94,17 +158,6 @@ impl Stepper {
     /// The processor.
     pub fn cpu() -> Self {
         Self::default()
-    }
-
-    /// What was asked for, on a device that is open; where it could not be opened, the processor, for that reason.
-    pub fn new(backend: Backend, graphics: Result<&Graphics, &str>) -> Self {
-        match (backend, graphics) {
-            (Backend::Cpu, _) => Self::cpu(),
-            (_, Ok(graphics)) => {
-                Self { graphics: Some(graphics.clone()), undecided: backend == Backend::Auto, ..Self::default() }
-            }
-            (_, Err(reason)) => Self { fallen: Some(reason.to_owned()), ..Self::default() },
-        }
     }
 
     /// What steps: the device, or the processor.
@@ -152,6 +205,10 @@ impl Stepper {
 
     /// Gives the device up.
     fn fall(&mut self, reason: String) {
+        if let Some(told) = &self.told {
+            // Only the first is kept.
+            let _ = told.set(reason.clone());
+        }
         (self.graphics, self.on_device, self.fallen) = (None, None, Some(reason));
     }
 
@@ -229,9 +286,12 @@ mod tests {
 
     #[test]
     fn without_a_device_the_processor_steps_and_says_why() {
-        let stepper = Stepper::new(Backend::Gpu, Err("no adapter"));
+        let none = |backend| Means { backend, graphics: Err("no adapter".into()), fallen: Arc::default() };
+        let means = none(Backend::Gpu);
+        let stepper = means.stepper();
         assert_eq!((stepper.backend(), stepper.fallen()), (Backend::Cpu, Some("no adapter")));
-        let asked = Stepper::new(Backend::Cpu, Err("no adapter"));
-        assert_eq!(asked.fallen(), None, "nobody asked for a device");
+        assert_eq!(means.fallen(), Some("no adapter"));
+        let asked = none(Backend::Cpu);
+        assert_eq!((asked.stepper().fallen(), asked.fallen()), (None, None), "nobody asked for a device");
     }
 }

@@ -119,12 +119,7 @@ impl Offload {
         Self::lay(Arc::clone(opened), laid, garments, settings)
     }
 
-    fn lay(
-        opened: Arc<Opened>,
-        laid: Laid,
-        garments: &[&Garment],
-        settings: &Settings,
-    ) -> Result<Self, GpuError> {
+    fn lay(opened: Arc<Opened>, laid: Laid, garments: &[&Garment], settings: &Settings) -> Result<Self, GpuError> {
         let Laid { flat, program, prepared, sets } = laid;
         let settings = &settings.sound();
         let constants: Vec<Constants> =

@@ -73,7 +73,8 @@ impl Offload {
         let good: Vec<[f32; 4]> = own.positions.iter().map(|p| [p.x, p.y, p.z, 1.0]).collect();
         let Buffers { state, good: last, .. } = &self.buffers;
         let all = self.flat.particles;
-        for (buffer, part, numbers) in [(state, 0, &places), (state, 1, &places), (state, 2, &speeds), (last, 0, &good)] {
+        for (buffer, part, numbers) in [(state, 0, &places), (state, 1, &places), (state, 2, &speeds), (last, 0, &good)]
+        {
             let at = 16 * u64::from(part * all + span.first);
             self.opened.device.queue.write_buffer(buffer, at, bytemuck::cast_slice(numbers));
         }

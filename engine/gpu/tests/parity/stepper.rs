@@ -7,7 +7,7 @@ use toile_assets::garment::Garment;
 use toile_assets::scene::skirt::Stretch;
 use toile_engine::cloth::{Cloth, Settings};
 use toile_gpu::graphics::Graphics;
-use toile_gpu::stepper::{Backend, Batch, Stepper};
+use toile_gpu::stepper::{Backend, Batch, Means, Stepper};
 
 use crate::scene::{around, nobody, skirt, swaying};
 
@@ -38,7 +38,7 @@ fn a_device_gives_what_the_processor_gives_with_disturbances_and_other_settings_
     let cloths: Vec<Cloth> = garments.iter().map(|g| Cloth::new(g, &nobody())).collect();
     let [mut one, mut other] = [cloths.clone(), cloths];
     let mut cpu = Stepper::cpu();
-    let mut gpu = Stepper::new(Backend::Gpu, Ok(&graphics));
+    let mut gpu = Means::from(graphics.clone()).stepper();
     for n in 0..24 {
         // More substeps than the best quality has, for a while: it has to be laid out again.
         let many = (8..12).contains(&n).then_some(40);
@@ -67,7 +67,7 @@ fn a_device_that_is_lost_loses_no_garment_and_the_processor_goes_on_within_a_sec
     let Some(graphics) = graphics() else { return };
     let (garment, settings) = (skirt(14, Stretch::Inextensible), Settings::default());
     let mut cloths = [Cloth::new(&garment, &nobody())];
-    let mut stepper = Stepper::new(Backend::Gpu, Ok(&graphics));
+    let mut stepper = Means::from(graphics.clone()).stepper();
     for n in 0..4 {
         step(&mut stepper, &mut cloths, &[&garment], n, &settings);
     }
@@ -85,10 +85,13 @@ fn a_device_that_is_lost_loses_no_garment_and_the_processor_goes_on_within_a_sec
 
 #[test]
 fn what_is_faster_is_measured_and_steps() {
-    let Some(graphics) = graphics() else { return };
+    let means = Means::open(Backend::Auto);
+    if means.fallen().is_some() && graphics().is_none() {
+        return;
+    }
     let (garment, settings) = (skirt(10, Stretch::Inextensible), Settings::default());
     let mut cloths = [Cloth::new(&garment, &nobody())];
-    let mut stepper = Stepper::new(Backend::Auto, Ok(&graphics));
+    let mut stepper = means.stepper();
     step(&mut stepper, &mut cloths, &[&garment], 0, &settings);
     let measured = stepper.measured().expect("both were measured");
     let faster = if measured.cpu_us <= measured.gpu_us { Backend::Cpu } else { Backend::Gpu };
@@ -106,7 +109,7 @@ fn the_devices_clock_tells_what_the_stages_took() {
     let Some(graphics) = graphics() else { return };
     let (garment, settings) = (skirt(12, Stretch::Inextensible), Settings { timed: true, ..Settings::default() });
     let mut cloths = [Cloth::new(&garment, &nobody())];
-    let mut stepper = Stepper::new(Backend::Gpu, Ok(&graphics));
+    let mut stepper = Means::from(graphics.clone()).stepper();
     for n in 0..3 {
         step(&mut stepper, &mut cloths, &[&garment], n, &settings);
     }
