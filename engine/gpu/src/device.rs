@@ -175,6 +175,8 @@ impl Device {
         enough(&limits, &opened_on.limits(), &adapter.name)?;
         let request = opened_on.request_device(&wgpu::DeviceDescriptor {
             label: Some("toile"),
+            // A clock for the stages, where there is one; nothing depends on it.
+            required_features: opened_on.features() & wgpu::Features::TIMESTAMP_QUERY,
             required_limits: limits,
             memory_hints,
             ..Default::default()
@@ -189,11 +191,11 @@ impl Device {
         Ok(Self { instance, opened_on, device, queue, adapter, lost, fault })
     }
 
-    /// Whether it was opened with limits that suffice for a scene.
+    /// Whether a scene fits what the device was opened with.
     ///
     /// # Errors
-    /// [`GpuError::TooSmall`].
-    pub fn suffices(&self, needs: Needs) -> Result<(), GpuError> {
+    /// [`GpuError::TooSmall`], with the limit.
+    pub fn bears(&self, needs: Needs) -> Result<(), GpuError> {
         enough(&needs.limits(), &self.device.limits(), &self.adapter.name)
     }
 

@@ -8,13 +8,13 @@ use crate::source::Source;
 
 impl Offload {
     /// Where a garment's places and normals lie on the device at the end of the newest step that was sent; none where it was
-    /// made by [`Offload::new`], without normals. It is asked for once: a step writes where the one before has written.
+    /// made by [`Offload::new`] or [`Offload::on`], without normals. Ask once: a step writes where the one before has written, until garments are laid out anew.
     pub fn source(&self, garment: usize) -> Option<Source> {
         if self.flat.faces.starts.is_empty() {
             return None;
         }
         let span = self.flat.spans[self.own[garment].place];
-        Source::new(&self.device, [&self.buffers.good, &self.buffers.normals], span.first, span.len)
+        Source::new(&self.opened.device, [&self.buffers.good, &self.buffers.normals], span.first, span.len)
     }
 
     /// Reads a garment's unit normals `[particles]`, and waits for them; none where nobody draws. Never in the frame.

@@ -113,6 +113,21 @@ impl Kernel {
         self as usize
     }
 
+    /// Which of `toile_engine::cloth::program::STAGES` it counts towards.
+    pub fn stage(self) -> usize {
+        match self {
+            Self::Jump | Self::Predict | Self::Guard | Self::Publish | Self::Conclude => 0,
+            // What is drawn goes with what is published.
+            Self::Faces | Self::Normals => 0,
+            Self::Bending | Self::Bent => 1,
+            Self::Diagonals | Self::Shear => 2,
+            Self::Weft => 3,
+            Self::Lists | Self::Fibers => 4,
+            Self::Near | Self::Contact | Self::Settle => 5,
+            Self::Tethers => 7,
+        }
+    }
+
     /// Its shader among [`SHADERS`], and its entry point there.
     pub fn entry(self) -> (usize, &'static str) {
         let name = match self {

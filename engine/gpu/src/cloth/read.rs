@@ -4,21 +4,11 @@ use glam::Vec3A;
 use toile_assets::garment::Garment;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, ComputePassDescriptor, MapMode};
 
-use super::buffers::REPORT;
+use super::buffers::{Buffers, REPORT};
 use super::kernels::Kernel;
+use super::meter::Meter;
 use super::{Offload, Step};
 use crate::device::GpuError;
-
-/// What happened to a garment that should not have, counted since it was made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Report {
-    /// Particle substeps that were held at the speed limit.
-    pub speed_limited: u32,
-    /// Steps that ended with a value that is not finite and were rolled back.
-    pub rolled_back: u32,
-    /// Skinned particles whose target was not finite and that were held.
-    pub held_pins: u64,
-}
 
 /// A garment's particles as the device has them.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,22 +27,26 @@ impl Offload {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn take(&mut self) -> Result<(), GpuError> {
-        self.device.sound()?;
+        self.opened.device.sound()?;
         // What a driver has to say about it comes by way of the device's own callbacks.
-        let _ = self.device.device.poll(wgpu::PollType::Poll);
+        let _ = self.opened.device.device.poll(wgpu::PollType::Poll);
         let (own, spans) = (&mut self.own, &self.flat.spans);
         let places = 16 * self.flat.particles as usize;
         self.ring.take(|bytes| {
-            let (good, reports) = bytes.split_at(places.min(bytes.len()));
-            let good: &[[f32; 4]] = bytemuck::cast_slice(good);
+            let (good, rest) = bytes.split_at(places.min(bytes.len()));
+            let (speeds, reports) = rest.split_at(places.min(rest.len()));
+            let [good, speeds] = [good, speeds].map(bytemuck::cast_slice::<u8, [f32; 4]>);
             let reports: &[[u32; REPORT]] = bytemuck::cast_slice(reports);
             for own in own {
                 let (span, report) = (spans[own.place], reports[own.place]);
-                let from = &good[span.first as usize..(span.first + span.len) as usize];
-                own.positions.iter_mut().zip(from).for_each(|(to, p)| *to = Vec3A::new(p[0], p[1], p[2]));
-                (own.report.speed_limited, own.report.rolled_back) = (report[0], report[3]);
+                let all = span.first as usize..(span.first + span.len) as usize;
+                for (to, from) in [(&mut own.positions, good), (&mut own.velocities, speeds)] {
+                    to.iter_mut().zip(&from[all.clone()]).for_each(|(to, p)| *to = Vec3A::new(p[0], p[1], p[2]));
+                }
+                (own.events.speed_limited, own.events.rolled_back) = (report[0].into(), report[3].into());
             }
         });
+        self.meter.iter_mut().for_each(Meter::take);
         Ok(())
     }
 
@@ -61,20 +55,28 @@ impl Offload {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn finish(&mut self) -> Result<(), GpuError> {
-        self.device.finish();
+        self.opened.device.finish();
         self.take()
     }
 
-    /// Puts a garment's particles somewhere, with velocities (m, m/s): how tests and scenes disturb a garment.
+    /// Puts a garment's particles somewhere, with velocities (m, m/s): how tests and scenes disturb a garment. What is finite is
+    /// the last good place as well.
     pub fn disturb(&mut self, garment: usize, x: &[Vec3A], v: &[Vec3A]) {
-        let span = self.flat.spans[self.own[garment].place];
-        let weights = self.flat.start[span.first as usize..].iter().map(|s| s[3]);
-        let places: Vec<[f32; 4]> = x.iter().zip(weights).map(|(p, w)| [p.x, p.y, p.z, w]).collect();
-        let speeds: Vec<[f32; 4]> = v.iter().map(|v| [v.x, v.y, v.z, 0.0]).collect();
-        for (part, numbers) in [&places, &places, &speeds].into_iter().enumerate() {
-            let first = u64::from(part as u32 * self.flat.particles + span.first);
-            let some = &numbers[..numbers.len().min(span.len as usize)];
-            self.device.queue.write_buffer(&self.buffers.state, 16 * first, bytemuck::cast_slice(some));
+        let own = &mut self.own[garment];
+        let span = self.flat.spans[own.place];
+        let start = &self.flat.start[span.first as usize..(span.first + span.len) as usize];
+        for (good, x) in own.positions.iter_mut().zip(x).filter(|(_, x)| x.is_finite()) {
+            *good = *x;
+        }
+        let places: Vec<[f32; 4]> = x.iter().zip(start).map(|(p, s)| [p.x, p.y, p.z, s[3]]).collect();
+        let speeds: Vec<[f32; 4]> = v.iter().zip(start).map(|(v, _)| [v.x, v.y, v.z, 0.0]).collect();
+        let good: Vec<[f32; 4]> = own.positions.iter().map(|p| [p.x, p.y, p.z, 1.0]).collect();
+        let Buffers { state, good: last, .. } = &self.buffers;
+        let all = self.flat.particles;
+        for (buffer, part, numbers) in [(state, 0, &places), (state, 1, &places), (state, 2, &speeds), (last, 0, &good)]
+        {
+            let at = 16 * u64::from(part * all + span.first);
+            self.opened.device.queue.write_buffer(buffer, at, bytemuck::cast_slice(numbers));
         }
     }
 
@@ -106,8 +108,8 @@ impl Offload {
                 }
             }
         }
-        self.device.queue.submit([encoder.finish()]);
-        self.device.sound()
+        self.opened.device.queue.submit([encoder.finish()]);
+        self.opened.device.sound()
     }
 
     /// Reads a garment's particles, and waits for them. Never in the frame.
@@ -129,13 +131,13 @@ impl Offload {
         let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
         let descriptor =
             BufferDescriptor { label: Some("fetched"), size: from.size(), usage, mapped_at_creation: false };
-        let to = self.device.device.create_buffer(&descriptor);
+        let to = self.opened.device.device.create_buffer(&descriptor);
         let mut encoder = self.encoder();
         encoder.copy_buffer_to_buffer(from, 0, &to, 0, from.size());
-        self.device.queue.submit([encoder.finish()]);
+        self.opened.device.queue.submit([encoder.finish()]);
         to.map_async(MapMode::Read, .., |_| {});
-        self.device.finish();
-        self.device.sound()?;
+        self.opened.device.finish();
+        self.opened.device.sound()?;
         let bytes = to.get_mapped_range(..).map_err(|e| GpuError::Lost(e.to_string()))?;
         let numbers: &[[f32; 4]] = bytemuck::cast_slice(&bytes);
         Ok(numbers.iter().map(|p| Vec3A::new(p[0], p[1], p[2])).collect())

@@ -63,12 +63,12 @@ fn a_number_that_is_none_is_rolled_back_on_the_device() {
     gpu.disturb(0, &x, &v);
     gpu.step(&[&garment], &step).expect("the step is sent");
     gpu.finish().expect("it comes back");
-    assert_eq!(gpu.report(0).rolled_back, 1);
+    assert_eq!(gpu.events(0).rolled_back, 1);
     assert_eq!(gpu.positions(0), good);
     assert!(gpu.particles(0).expect("read").v.iter().all(|v| *v == Vec3A::ZERO));
     gpu.step(&[&garment], &step).expect("the step is sent");
     gpu.finish().expect("it comes back");
-    assert_eq!(gpu.report(0).rolled_back, 1, "one fault, one step");
+    assert_eq!(gpu.events(0).rolled_back, 1, "one fault, one step");
 }
 
 #[test]

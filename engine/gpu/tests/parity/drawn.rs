@@ -1,11 +1,14 @@
 //! What is drawn: normals against their twin, and one device for both.
 
+use std::sync::Arc;
+
 use glam::{Vec3, Vec3A};
 use toile_assets::garment::Garment;
 use toile_assets::mesh::vertex_normals;
 use toile_assets::scene::skirt::Stretch;
 use toile_engine::cloth::Settings;
 use toile_gpu::cloth::Offload;
+use toile_gpu::cloth::opened::Opened;
 use toile_gpu::device::{Choice, Device, GpuError, Needs};
 
 use crate::scene::{around, nobody, offload, skirt, swaying, worn};
@@ -40,7 +43,8 @@ fn normals_are_the_twins_before_and_after_every_step() {
     let (garments, colliders) = ([&one, &other], [&nobody, &nobody]);
     let needs = Offload::needs(&garments, &colliders, &settings).expect("the garments are taken");
     let Some(device) = device(needs) else { return };
-    let mut gpu = Offload::drawn(&device, &garments, &colliders, &settings).expect("the device has what they need");
+    let opened = Arc::new(Opened::on(device.clone()).expect("every driver takes the kernels"));
+    let mut gpu = Offload::drawn(&opened, &garments, &colliders, &settings).expect("the device has what they need");
     for n in 0..6 {
         if n > 0 {
             let palette = swaying(4 * n);
@@ -75,7 +79,8 @@ fn who_draws_nothing_pays_for_no_normals() {
 fn a_fault_of_one_side_is_known_to_the_other() {
     let (garment, settings, nobody) = (skirt(12, Stretch::Inextensible), Settings::default(), nobody());
     let Some(device) = device(Needs::default()) else { return };
-    let drawn = || Offload::drawn(&device, &[&garment], &[&nobody], &settings);
+    let opened = Arc::new(Opened::on(device.clone()).expect("every driver takes the kernels"));
+    let drawn = || Offload::drawn(&opened, &[&garment], &[&nobody], &settings);
     let mut gpu = drawn().expect("a small scene fits a device that was opened for none");
     device.lose();
     assert!(gpu.device().lost());
@@ -87,7 +92,7 @@ fn a_fault_of_one_side_is_known_to_the_other() {
 #[test]
 fn a_scene_too_large_for_the_device_is_refused_with_the_limit() {
     let Some(device) = device(Needs::default()) else { return };
-    assert_eq!(device.suffices(Needs { largest: 1 << 20, workgroups: 8 }), Ok(()));
-    let error = device.suffices(Needs { largest: 1 << 40, workgroups: 8 }).expect_err("it was opened for less");
+    assert_eq!(device.bears(Needs { largest: 1 << 20, workgroups: 8 }), Ok(()));
+    let error = device.bears(Needs { largest: 1 << 40, workgroups: 8 }).expect_err("it was opened for less");
     assert!(matches!(error, GpuError::TooSmall { .. }) && error.to_string().contains("buffer"), "{error}");
 }

@@ -5,4 +5,5 @@ mod device;
 mod drawn;
 mod kernels;
 mod scene;
+mod stepper;
 mod steps;

@@ -1,6 +1,6 @@
 //! A garment that is stepped on the device, drawn from there.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use glam::{Affine3A, Vec3, Vec3A};
 use toile_assets::mesh::vertex_normals;
@@ -9,6 +9,7 @@ use toile_assets::skeleton::BONES;
 use toile_engine::cloth::{Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_gpu::cloth::Offload;
+use toile_gpu::cloth::opened::Opened;
 use toile_view::image::Image;
 use toile_view::mirror::{Backdrop, Gpu, ModelError, Renderer};
 use toile_view::scene::{Bounds, Camera};
@@ -52,8 +53,9 @@ fn colliders() -> Colliders {
 
 /// The shirt twice, so that the one that is drawn begins somewhere in the buffers.
 fn offload(gpu: &Gpu, colliders: &Colliders) -> Offload {
+    let opened = Arc::new(Opened::on(gpu.clone()).expect("every driver takes the kernels"));
     let shirt = &shirt().garment;
-    let made = Offload::drawn(gpu, &[shirt, shirt], &[colliders, colliders], &Settings::default());
+    let made = Offload::drawn(&opened, &[shirt, shirt], &[colliders, colliders], &Settings::default());
     made.expect("a device that draws does the cloth as well")
 }
 
