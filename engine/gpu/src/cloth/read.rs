@@ -2,9 +2,11 @@
 
 use glam::Vec3A;
 use toile_assets::garment::Garment;
-use wgpu::{BufferDescriptor, BufferUsages, ComputePassDescriptor, MapMode};
+use toile_engine::cloth::guard::{self, Spoil};
+use wgpu::{Buffer, BufferDescriptor, BufferUsages, ComputePassDescriptor, MapMode};
 
 use super::buffers::REPORT;
+use super::flat::Span;
 use super::kernels::Kernel;
 use super::{Offload, Step};
 use crate::device::GpuError;
@@ -14,6 +16,8 @@ use crate::device::GpuError;
 pub struct Report {
     /// Particle substeps that were held at the speed limit.
     pub speed_limited: u32,
+    /// Particles that were not finite when a step began, or ran away; put back to their last good place.
+    pub repaired: u32,
     /// Steps that ended with a value that is not finite and were rolled back.
     pub rolled_back: u32,
     /// Skinned particles whose target was not finite and that were held.
@@ -51,6 +55,7 @@ impl Offload {
                 let from = &good[span.first as usize..(span.first + span.len) as usize];
                 own.positions.iter_mut().zip(from).for_each(|(to, p)| *to = Vec3A::new(p[0], p[1], p[2]));
                 (own.report.speed_limited, own.report.rolled_back) = (report[0], report[3]);
+                own.report.repaired = report[4];
             }
         });
         Ok(())
@@ -76,9 +81,36 @@ impl Offload {
             let some = &numbers[..numbers.len().min(span.len as usize)];
             self.device.queue.write_buffer(&self.buffers.state, 16 * first, bytemuck::cast_slice(some));
         }
+        // What is finite is a good place.
+        let finite = |p: &[f32; 4]| p.iter().all(|n| n.is_finite());
+        let mut first = u64::from(span.first);
+        for some in places[..places.len().min(span.len as usize)].chunk_by(|a, b| finite(a) == finite(b)) {
+            if some.iter().all(finite) {
+                self.device.queue.write_buffer(&self.buffers.good, 16 * first, bytemuck::cast_slice(some));
+            }
+            first += some.len() as u64;
+        }
     }
 
-    /// Runs the dispatches of one kernel alone, as in one substep: how a test holds it against its twin. Where a kernel has
+    /// Spoils the state between two steps, as a fault of the memory or of the driver would: what [`guard::spoil`] picks by
+    /// `seed`. Twin of `Cloth::upset`.
+    pub fn upset(&mut self, garment: usize, seed: u64) {
+        let span = self.flat.spans[self.own[garment].place];
+        if span.len == 0 {
+            return;
+        }
+        for (i, what) in guard::spoil(seed, span.len as usize) {
+            let at = span.first + i as u32;
+            let (first, numbers) = match what {
+                Spoil::Place(x) => (at, x.extend(self.flat.start[at as usize][3])),
+                Spoil::Velocity(v) => (2 * self.flat.particles + at, v.extend(0.0)),
+            };
+            let bytes = numbers.to_array();
+            self.device.queue.write_buffer(&self.buffers.state, 16 * u64::from(first), bytemuck::cast_slice(&bytes));
+        }
+    }
+
+    /// Runs the dispatches of one kernel alone, as in one substep, or one stage of it: how a test holds it against its twin. Where a kernel has
     /// several passes in a substep, the first.
     ///
     /// # Errors
@@ -115,24 +147,40 @@ impl Offload {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn particles(&self, garment: usize) -> Result<Particles, GpuError> {
-        let state = &self.buffers.state;
+        let numbers = self.numbers(&self.buffers.state)?;
+        let span = self.flat.spans[self.own[garment].place];
+        let part = |part: u32| vectors(&numbers[(part * self.flat.particles) as usize..], span);
+        Ok(Particles { x: part(0), previous: part(1), v: part(2) })
+    }
+
+    /// Reads the accelerations besides gravity of a garment's particles (m/s2) `[particles]`, and waits for them: the wind's and
+    /// the root's, of the last step that had any. Never in the frame.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`].
+    pub fn accelerations(&self, garment: usize) -> Result<Vec<Vec3A>, GpuError> {
+        let numbers = self.numbers(&self.buffers.pushed)?;
+        Ok(vectors(&numbers, self.flat.spans[self.own[garment].place]))
+    }
+
+    /// All that a buffer holds.
+    fn numbers(&self, from: &Buffer) -> Result<Vec<[f32; 4]>, GpuError> {
         let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
-        let descriptor =
-            BufferDescriptor { label: Some("state"), size: state.size(), usage, mapped_at_creation: false };
+        let descriptor = BufferDescriptor { label: Some("read"), size: from.size(), usage, mapped_at_creation: false };
         let to = self.device.device.create_buffer(&descriptor);
         let mut encoder = self.encoder();
-        encoder.copy_buffer_to_buffer(state, 0, &to, 0, state.size());
+        encoder.copy_buffer_to_buffer(from, 0, &to, 0, from.size());
         self.device.queue.submit([encoder.finish()]);
         to.map_async(MapMode::Read, .., |_| {});
         self.device.finish();
         self.device.sound()?;
         let bytes = to.get_mapped_range(..).map_err(|e| GpuError::Lost(e.to_string()))?;
-        let numbers: &[[f32; 4]] = bytemuck::cast_slice(&bytes);
-        let span = self.flat.spans[self.own[garment].place];
-        let part = |part: u32| {
-            let first = (part * self.flat.particles + span.first) as usize;
-            numbers[first..first + span.len as usize].iter().map(|p| Vec3A::new(p[0], p[1], p[2])).collect()
-        };
-        Ok(Particles { x: part(0), previous: part(1), v: part(2) })
+        Ok(bytemuck::cast_slice(&bytes).to_vec())
     }
+}
+
+/// A garment's part of some vectors.
+fn vectors(from: &[[f32; 4]], span: Span) -> Vec<Vec3A> {
+    let own = &from[span.first as usize..(span.first + span.len) as usize];
+    own.iter().map(|p| Vec3A::new(p[0], p[1], p[2])).collect()
 }
