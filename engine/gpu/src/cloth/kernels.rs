@@ -11,10 +11,10 @@ pub enum Kernel {
     Near,
     /// What presses each triangle in the wind.
     Wind,
-    /// What that does to each particle.
-    Blown,
     /// What of the root's motion is not to be felt.
     Carry,
+    /// What the wind does to each particle.
+    Blown,
     /// What comes before a stage of stiff bending, or behind the last.
     Turn,
     /// Curvatures of a stage.
@@ -104,8 +104,8 @@ impl Kernel {
         Self::Jump,
         Self::Near,
         Self::Wind,
-        Self::Blown,
         Self::Carry,
+        Self::Blown,
         Self::Turn,
         Self::Stage,
         Self::Staged,

@@ -63,7 +63,7 @@ impl Program {
         };
         let all = |kernel| Entry { kernel, table: tables.everyone, fresh: false, op: 0 };
         let first = [Kernel::Repair, Kernel::Jump, Kernel::Near];
-        let forces = [Entry { table: tables.wind, ..all(Kernel::Wind) }, all(Kernel::Blown), all(Kernel::Carry)];
+        let forces = [Entry { table: tables.wind, ..all(Kernel::Wind) }, all(Kernel::Carry), all(Kernel::Blown)];
         this.before = first.map(all).into_iter().chain(forces).collect();
         if stiff {
             let stage = Entry { table: tables.bending, ..all(Kernel::Stage) };

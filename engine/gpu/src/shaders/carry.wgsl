@@ -1,6 +1,9 @@
 // Carry: what of the root's motion the cloth is not to feel. Twin of `Compensate` in `cloth/root.rs`, where the equations are.
+//
+// The CPU has the wind's accelerations before it and adds to them; here `blown` adds to these. In one kernel a driver would
+// take the last sum of this and that one for a sum of three, and choose its order.
 
-// Accelerations besides gravity (m/s2): the wind's, to which this adds, or none yet [particles].
+// Accelerations besides gravity (m/s2) [particles].
 @group(1) @binding(0) var<storage, read_write> pushed: array<vec4<f32>>;
 
 // The acceleration of what is at r from the root's origin and moves with v.
@@ -13,8 +16,7 @@ fn felt(carried: array<vec4<f32>, 5>, r: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
 @compute @workgroup_size(64)
 fn carry(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let group = groups[op.first + at.x];
-    let bits = garments[group.x].bits;
-    if (lane >= group.z || (bits & COMPENSATE) == 0u) {
+    if (lane >= group.z || (garments[group.x].bits & COMPENSATE) == 0u) {
         return;
     }
     let i = group.y + lane;
@@ -26,9 +28,5 @@ fn carry(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) 
     // The midpoint rule.
     let a = felt(carried, r + (v - carried[1].xyz) * half, v + felt(carried, r, v) * half);
     state[velocity] = vec4<f32>(v, 0.0);
-    var sum = vec3<f32>(0.0);
-    if ((bits & WIND) != 0u) {
-        sum = pushed[i].xyz;
-    }
-    pushed[i] = vec4<f32>(sum + a, 0.0);
+    pushed[i] = vec4<f32>(a, 0.0);
 }

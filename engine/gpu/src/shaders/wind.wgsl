@@ -46,11 +46,12 @@ fn wind(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) l
     forces[group.y + lane] = vec4<f32>(force, 0.0);
 }
 
-// A particle an invocation.
+// A particle an invocation. What `carry` has found is added.
 @compute @workgroup_size(64)
 fn blown(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let group = groups[op.first + at.x];
-    if (lane >= group.z || (garments[group.x].bits & WIND) == 0u) {
+    let bits = garments[group.x].bits;
+    if (lane >= group.z || (bits & WIND) == 0u) {
         return;
     }
     let i = group.y + lane;
@@ -58,6 +59,9 @@ fn blown(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) 
     var sum = vec3<f32>(0.0);
     for (var t = starts[i]; t < starts[i + 1u]; t += 1u) {
         sum = sum + forces[around[t]].xyz * w;
+    }
+    if ((bits & COMPENSATE) != 0u) {
+        sum = sum + pushed[i].xyz;
     }
     pushed[i] = vec4<f32>(sum, 0.0);
 }

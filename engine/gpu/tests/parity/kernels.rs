@@ -251,6 +251,14 @@ fn alike(name: &str, software: bool, got: &[Vec3A], expected: &[Vec3A]) {
     assert!(!software || same == all, "{name}: {most} apart on an adapter that fuses nothing");
 }
 
+/// The wind's accelerations.
+fn blow(garment: &Garment, settings: &Settings, wind: &Wind, twin: &mut Twin<'_>, to: &mut Accelerations) {
+    let faces = Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, &garment.layout.owner);
+    for part in Part::ALL {
+        faces.blow(settings.width, part, wind, settings.step_seconds, twin.state.columns(), to.columns());
+    }
+}
+
 #[test]
 fn wind_gives_what_its_twin_gives() {
     let garments = [skirt(24, Stretch::Inextensible), worn("t-shirt")];
@@ -261,12 +269,8 @@ fn wind_gives_what_its_twin_gives() {
         let Some(mut gpu) = offload(&[garment], &settings) else { return };
         let (x, v) = disturbed(garment);
         let mut twin = Twin::new(garment, &settings, &x, &v);
-        let faces = Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, &garment.layout.owner);
         let mut pushed = Accelerations::new(garment.particles());
-        let dt = settings.step_seconds;
-        for part in Part::ALL {
-            faces.blow(settings.width, part, &wind, dt, twin.state.columns(), pushed.columns());
-        }
+        blow(garment, &settings, &wind, &mut twin, &mut pushed);
         gpu.disturb(0, &x, &v);
         let (palette, colliders) = (swaying(3), nobody());
         for kernel in [Kernel::Wind, Kernel::Blown] {
@@ -278,33 +282,41 @@ fn wind_gives_what_its_twin_gives() {
     }
 }
 
-#[test]
-fn carry_gives_what_its_twin_gives() {
+/// Holds what of the root is not to be felt against its twin, beside wind or without.
+fn carried(wind: Option<Wind>) {
     let root = RootSettings { linear: 0.3, angular: 0.1, centrifugal: 0.6, ..RootSettings::default() };
-    let (garment, settings) = (skirt(24, Stretch::Inextensible), Settings { root, ..Settings::default() });
+    let (garment, settings) = (skirt(24, Stretch::Inextensible), Settings { root, wind, ..Settings::default() });
     let Some(mut gpu) = offload(&[&garment], &settings) else { return };
     let (x, v) = disturbed(&garment);
     let mut twin = Twin::new(&garment, &settings, &x, &v);
     let mut pushed = Accelerations::new(garment.particles());
     let mut motion = RootMotion::new(root);
     gpu.disturb(0, &x, &v);
-    let colliders = nobody();
-    // The root is new in the first step and starts in the second.
-    for n in [3, 7, 9] {
+    if let Some(wind) = wind {
+        blow(&garment, &settings, &wind, &mut twin, &mut pushed);
+    }
+    let (colliders, software) = (nobody(), gpu.device().adapter().kind == "software");
+    // The root is new in the first, and starts in the second; `blown` goes last, as in a step.
+    for (kernel, n) in [(Kernel::Wind, 3), (Kernel::Carry, 7), (Kernel::Blown, 7)] {
         let palette = swaying(n);
-        let step = around(&palette, &colliders, &settings);
-        gpu.only(Kernel::Carry, 0, &[&garment], &[step]).expect("the kernel runs");
+        gpu.only(kernel, 0, &[&garment], &[around(&palette, &colliders, &settings)]).expect("the kernel runs");
         let at = palette[0] * glam::Affine3A::from_translation(centre(&garment).into());
-        if let RootStep::Carried(carried) = motion.advance(&at, settings.step_seconds) {
-            pushed = Accelerations::new(garment.particles());
+        let moved = motion.advance(&at, settings.step_seconds);
+        if let (Kernel::Carry, RootStep::Carried(carried)) = (kernel, moved) {
             let all = (0, garment.particles() as u32);
             carried.apply(settings.width, twin.state.columns(), all, pushed.columns());
         }
     }
+    let name = if wind.is_some() { "carry in the wind" } else { "carry" };
     let expected: Vec<Vec3A> = (0..garment.particles()).map(|i| pushed.of(i)).collect();
-    let software = gpu.device().adapter().kind == "software";
-    alike("carry, accelerations", software, &gpu.accelerations(0).expect("read"), &expected);
-    alike("carry, velocities", software, &gpu.particles(0).expect("read").v, &twin.particles().1);
+    alike(name, software, &gpu.accelerations(0).expect("read"), &expected);
+    alike(name, software, &gpu.particles(0).expect("read").v, &twin.particles().1);
+}
+
+#[test]
+fn carry_gives_what_its_twin_gives() {
+    carried(None);
+    carried(Some(Wind { velocity: Vec3A::new(4.0, 0.5, -3.0), drag: 0.6, lift: 0.2 }));
 }
 
 #[test]
