@@ -1,7 +1,7 @@
 // Carry: what of the root's motion the cloth is not to feel. Twin of `Compensate` in `cloth/root.rs`, where the equations are.
 //
-// The CPU has the wind's accelerations before it and adds to them; here `blown` adds to these. In one kernel a driver would
-// take the last sum of this and that one for a sum of three, and choose its order.
+// The CPU has the wind's accelerations before it and adds to them; here `blown` adds to these, because a compiler that
+// sees all of the sum in one kernel may add its parts in another order, and llvmpipe's gave another last bit.
 
 // Accelerations besides gravity (m/s2) [particles].
 @group(1) @binding(0) var<storage, read_write> pushed: array<vec4<f32>>;

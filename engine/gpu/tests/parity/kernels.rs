@@ -139,13 +139,14 @@ impl<'a> Twin<'a> {
                 j => Turn::Next(j + 1, p.stages[j as usize]),
             };
             width.run(stages::Take { columns, spans: &spans, room, turn });
+            if stage == last {
+                break;
+            }
             let (from_to, by) = match stage {
                 0 => ([room[1], room[0]], p.dt),
                 j => ([j, j + 1].map(|j| room[stages::place(j)]), p.stages[j as usize].forced * p.dt * p.dt),
             };
-            if stage < last {
-                push(garment, p, columns.w, from_to, by, scratch.column(), width);
-            }
+            push(garment, p, columns.w, from_to, by, scratch.column(), width);
         }
     }
 
@@ -321,10 +322,11 @@ fn carry_gives_what_its_twin_gives() {
 
 #[test]
 fn stages_give_what_their_twins_give() {
-    let garments = [worn("t-shirt"), skirt(32, Stretch::Inextensible)];
-    let mut most = 0;
-    for (garment, substeps) in garments.iter().flat_map(|g| [(g, None), (g, Some(1))]) {
-        let settings = Settings { substeps, ..Settings::default() };
+    let garment = &worn("t-shirt");
+    let mut seen = Vec::new();
+    for (substeps, longer) in [(3, 1.0), (1, 1.0), (1, 2.0), (1, 2.3), (1, 8.0), (1, 60.0)] {
+        let step_seconds = longer * Settings::default().step_seconds;
+        let settings = Settings { substeps: Some(substeps), step_seconds, ..Settings::default() };
         let Some(mut gpu) = offload(&[garment], &settings) else { return };
         let (x, v) = disturbed(garment);
         let mut twin = Twin::new(garment, &settings, &x, &v);
@@ -332,7 +334,7 @@ fn stages_give_what_their_twins_give() {
         if last < 2 {
             continue;
         }
-        most = most.max(last);
+        seen.push(last);
         twin.run_stages();
         gpu.disturb(0, &x, &v);
         let (palette, colliders) = (swaying(3), nobody());
@@ -347,7 +349,9 @@ fn stages_give_what_their_twins_give() {
         let name = format!("{} in {last} stages", garment.name);
         alike(&name, software, &gpu.particles(0).expect("read").v, &twin.particles().1);
     }
-    assert!(most > 2, "no garment was stiff");
+    // Odd and even numbers end in another part of the room; what is past the most is weakened.
+    assert!(seen.iter().any(|m| m % 2 == 0) && seen.iter().any(|m| m % 2 == 1), "{seen:?}");
+    assert_eq!(seen.iter().max(), Some(&stages::MOST));
 }
 
 #[test]
