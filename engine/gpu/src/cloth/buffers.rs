@@ -2,6 +2,7 @@
 
 use bytemuck::Pod;
 use toile_assets::limits::MAX_CAPSULES;
+use toile_engine::cloth::stages;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BindGroup, Buffer, BufferUsages};
 
@@ -16,15 +17,19 @@ use crate::device::Needs;
 /// Bytes between two of the uniforms that a dispatch picks from: what every driver aligns to.
 pub const ALIGNED: u64 = 256;
 
-/// Numbers of a garment's report: held at the speed limit, unsound, rolled back in a row, rolled back.
-pub const REPORT: usize = 4;
+/// Numbers of a garment's report: held at the speed limit, unsound, rolled back in a row, rolled back, repaired.
+pub const REPORT: usize = 5;
+
+/// Places in the buffer of stages for each garment.
+pub const STAGES: usize = stages::MOST as usize;
 
 /// All buffers of a scene.
 #[derive(Debug)]
 pub struct Buffers {
     /// A garment's constants `[garments]`.
     pub garments: Buffer,
-    /// Places and inverse masses, where the substep began, velocities `[3 * particles]`.
+    /// Places and inverse masses, where the substep began, velocities, and where bending may be stiffer than a substep
+    /// three more: see `turn.wgsl` `[3 or 6 * particles]`.
     pub state: Buffer,
     /// Where each skinned particle is at the start and the end of the step `[2 * targets]`.
     pub targets: Buffer,
@@ -34,6 +39,11 @@ pub struct Buffers {
     pub weft_measures: Buffer,
     /// Shares of bending stiffness.
     pub scales: Buffer,
+    /// Stages of bending: ahead, behind, forced, what the forces are multiplied by `[garments * STAGES]`; next to nothing
+    /// where there are none.
+    pub stages: Buffer,
+    /// Accelerations besides gravity (m/s2) `[particles]`.
+    pub pushed: Buffer,
     /// What happened to each garment `[garments]`.
     pub reports: Buffer,
     /// Last good places `[particles]`.
@@ -54,7 +64,7 @@ pub struct Buffers {
 /// What a scene asks of a device: its largest buffer and dispatch.
 pub fn needs(flat: &Flat, program: &Program, sets: usize) -> Needs {
     let sizes = [
-        size_of_val(&*flat.start) * 3,
+        size_of_val(&*flat.start) * parts(program),
         size_of_val(&*flat.shear.ends),
         size_of_val(&*flat.weft.ends),
         size_of_val(&*flat.diagonals.measures),
@@ -63,11 +73,17 @@ pub fn needs(flat: &Flat, program: &Program, sets: usize) -> Needs {
         size_of_val(&*flat.bending.terms),
         size_of_val(&*flat.bending.entries),
         16 * flat.bending.items.len(),
+        size_of_val(&*flat.wind.faces),
         16 * program.groups().len(),
         flat.spans.len() * sets * MAX_CAPSULES * size_of::<FlatCone>(),
     ];
     let workgroups = program.tables.iter().map(|(groups, _)| groups.groups.len() as u32).max().unwrap_or(0);
     Needs { largest: sizes.into_iter().max().unwrap_or(0) as u64, workgroups }
+}
+
+/// Parts of the state.
+fn parts(program: &Program) -> usize {
+    if program.stages.is_empty() { 3 } else { 6 }
 }
 
 /// Makes buffers, and counts their bytes.
@@ -122,10 +138,14 @@ impl Buffers {
         let none = BufferUsages::empty();
         let (to, from) = (BufferUsages::COPY_DST, BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
         let still = vec![[0.0f32; 4]; flat.start.len()];
-        let state: Vec<[f32; 4]> = flat.start.iter().chain(&flat.start).chain(&still).copied().collect();
+        let stills = (2..parts(program)).flat_map(|_| &still);
+        let state: Vec<[f32; 4]> = flat.start.iter().chain(&flat.start).chain(stills).copied().collect();
         let entry = |e: &super::program::Entry| [program.tables[e.table].1, u32::from(e.fresh), flat.particles, 0];
         let ops = make.uniforms("ops", program.entries().map(entry));
-        let moments = make.uniforms("moments", (0..sets as u32).map(|substep| [substep, 0, 0, 0]));
+        // Substeps, then stages.
+        let staged = if program.stages.is_empty() { 0 } else { 1 + STAGES as u32 };
+        let substeps = (0..sets as u32).map(|substep| [substep, 0, 0, 0]);
+        let moments = make.uniforms("moments", substeps.chain((0..staged).map(|stage| [0, stage, 0, 0])));
         let groups = make.with("groups", &program.groups(), none);
         let garments = make.with("garments", constants, to);
         let state = make.with("state", &state, from);
@@ -133,6 +153,12 @@ impl Buffers {
         let shear_measures = make.with("shear measures", &flat.shear.measures, to);
         let weft_measures = make.with("weft measures", &flat.weft.measures, to);
         let scales = make.with("scales", &flat.bending.scales, to);
+        let stages = make.zeros("stages", if staged == 0 { 0 } else { constants.len() * STAGES }, 16);
+        let pushed = make.zeros("pushed", flat.start.len(), 16);
+        let faces = make.with("faces", &flat.wind.faces, none);
+        let forces = make.zeros("forces", flat.wind.faces.len(), 16);
+        let corners = make.with("where faces begin", &flat.wind.starts, none);
+        let around = make.with("faces around", &flat.wind.around, none);
         let reports = make.zeros("reports", constants.len(), 4 * REPORT);
         let good = make.with("good", &flat.start, from);
         let start = make.with("start", &flat.start, none);
@@ -169,12 +195,22 @@ impl Buffers {
         let curvatures = make.zeros("curvatures", flat.bending.items.len(), 16);
         let starts = make.with("starts", &flat.bending.starts, none);
         let entries = make.with("entries", &flat.bending.entries, none);
+        let wind: &[&Buffer] = &[&faces, &forces, &corners, &around, &pushed];
+        let bending: &[&Buffer] = &[&items, &terms, &scales, &curvatures, &stages];
+        let bent: &[&Buffer] = &[&starts, &entries, &items, &terms, &curvatures];
         let own: [&[&Buffer]; Kernel::ALL.len()] = [
+            &[&reports, &good],
             &[&good, &start],
             touch,
-            &[&items, &terms, &scales, &curvatures],
-            &[&starts, &entries, &items, &terms, &curvatures],
-            &[&pins, &targets],
+            wind,
+            &[&pushed],
+            wind,
+            &[&pushed, &stages],
+            bending,
+            bent,
+            bending,
+            bent,
+            &[&pins, &targets, &pushed],
             &[&heads, &leads, &leaning, &kept, &lengths],
             &[&shear_ends, &shear_measures, &shear_tensions],
             &[&weft_ends, &weft_measures, &weft_tensions],
@@ -197,6 +233,8 @@ impl Buffers {
             shear_measures,
             weft_measures,
             scales,
+            stages,
+            pushed,
             reports,
             good,
             cones,

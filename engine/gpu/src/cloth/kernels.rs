@@ -3,15 +3,29 @@
 /// A kernel, in the order in which a step first runs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kernel {
+    /// Particles that are none go back.
+    Repair,
     /// The root has been put somewhere else.
     Jump,
     /// Which capsules and planes each particle may touch in the step.
     Near,
+    /// What presses each triangle in the wind.
+    Wind,
+    /// What of the root's motion is not to be felt.
+    Carry,
+    /// What the wind does to each particle.
+    Blown,
+    /// What comes before a stage of stiff bending, or behind the last.
+    Turn,
+    /// Curvatures of a stage.
+    Stage,
+    /// What they do to each particle.
+    Staged,
     /// Curvatures.
     Bending,
     /// What they do to each particle.
     Bent,
-    /// Gravity and air; skinned particles move on.
+    /// Gravity, air and wind; skinned particles move on.
     Predict,
     /// Fibers along the bias.
     Diagonals,
@@ -56,11 +70,15 @@ macro_rules! shader {
 }
 
 /// All shaders.
-pub const SHADERS: [Shader; 13] = [
+pub const SHADERS: [Shader; 17] = [
+    shader!("repair", [false, true]),
     shader!("jump", [false, true]),
-    shader!("bending", [true, true, true, false]),
+    shader!("wind", [true, false, true, true, false]),
+    shader!("carry", [false]),
+    shader!("turn", [true, true]),
+    shader!("bending", [true, true, true, false, true]),
     shader!("bent", [true, true, true, true, true]),
-    shader!("predict", [true, true]),
+    shader!("predict", [true, true, true]),
     shader!("diagonals", [true, true, true, false, false]),
     shader!("links", [true, true, false]),
     shader!("lists", [true, true, true, false]),
@@ -81,9 +99,16 @@ impl Shader {
 
 impl Kernel {
     /// All kernels.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 23] = [
+        Self::Repair,
         Self::Jump,
         Self::Near,
+        Self::Wind,
+        Self::Carry,
+        Self::Blown,
+        Self::Turn,
+        Self::Stage,
+        Self::Staged,
         Self::Bending,
         Self::Bent,
         Self::Predict,
@@ -100,6 +125,11 @@ impl Kernel {
         Self::Conclude,
     ];
 
+    /// Whether it runs stage by stage in a substep.
+    pub fn in_stages(self) -> bool {
+        matches!(self, Self::Turn | Self::Stage | Self::Staged)
+    }
+
     /// Its number among [`Kernel::ALL`].
     pub fn number(self) -> usize {
         self as usize
@@ -108,12 +138,14 @@ impl Kernel {
     /// Which of `toile_engine::cloth::program::STAGES` it counts towards.
     pub fn stage(self) -> usize {
         match self {
-            Self::Jump | Self::Predict | Self::Guard | Self::Publish | Self::Conclude => 0,
-            Self::Bending | Self::Bent => 1,
+            Self::Repair | Self::Jump | Self::Carry | Self::Predict => 0,
+            Self::Guard | Self::Publish | Self::Conclude => 0,
+            Self::Turn | Self::Stage | Self::Staged | Self::Bending | Self::Bent => 1,
             Self::Diagonals | Self::Shear => 2,
             Self::Weft => 3,
             Self::Lists | Self::Fibers => 4,
             Self::Near | Self::Contact | Self::Settle => 5,
+            Self::Wind | Self::Blown => 6,
             Self::Tethers => 7,
         }
     }
@@ -121,9 +153,13 @@ impl Kernel {
     /// Its shader among [`SHADERS`], and its entry point there.
     pub fn entry(self) -> (usize, &'static str) {
         let name = match self {
+            Self::Repair => "repair",
             Self::Jump => "jump",
-            Self::Bending => "bending",
-            Self::Bent => "bent",
+            Self::Wind | Self::Blown => "wind",
+            Self::Carry => "carry",
+            Self::Turn => "turn",
+            Self::Bending | Self::Stage => "bending",
+            Self::Bent | Self::Staged => "bent",
             Self::Predict => "predict",
             Self::Diagonals => "diagonals",
             Self::Shear | Self::Weft => "links",
@@ -138,6 +174,9 @@ impl Kernel {
         let shader = SHADERS.iter().position(|s| s.name == name).unwrap_or(0);
         let entry = match self {
             Self::Near => "near",
+            Self::Blown => "blown",
+            Self::Stage => "stage",
+            Self::Staged => "staged",
             Self::Conclude => "conclude",
             _ => name,
         };
@@ -167,6 +206,14 @@ mod tests {
             let said: Vec<_> = shader.reads.iter().map(|r| Some(*r)).collect();
             assert_eq!(reads, said, "{}", shader.name);
         }
+    }
+
+    #[test]
+    fn shaders_have_the_engines_limits() {
+        let most = format!("const MOST_STAGES = {}u;", toile_engine::cloth::stages::MOST);
+        let air = 0.25 * toile_engine::cloth::wind::AIR_DENSITY;
+        assert!(COMMON.contains(&most));
+        assert!(SHADERS.iter().any(|s| s.text.contains(&format!("const AIR = {air};"))));
     }
 
     #[test]

@@ -83,6 +83,8 @@ pub struct Offload {
     sets: usize,
     /// Garments that make a substep, by its number, for the step under way.
     active: Vec<u32>,
+    /// The most stages that any garment's bending takes, 0 where all is a force.
+    stages: u32,
     quality: Quality,
     settings_seen: Option<Settings>,
 }
@@ -92,7 +94,7 @@ impl Offload {
     /// of each one's body are which limb's. At load: some tenths of a second, most of them for the pipelines.
     ///
     /// # Errors
-    /// [`GpuError`]: no adapter, limits too small, or a garment or a setting that only the CPU can take.
+    /// [`GpuError`]: no adapter, or limits too small.
     pub fn new(
         choice: &Choice,
         garments: &[&Garment],
@@ -162,6 +164,7 @@ impl Offload {
             planes,
             sets,
             active,
+            stages: 0,
             quality: settings.quality,
             settings_seen: None,
         })
@@ -244,10 +247,9 @@ impl Laid {
         let mut prepared: Vec<Prepared> = garments.iter().map(|g| Prepared::new(g)).collect();
         for (garment, prepared) in garments.iter().zip(&mut prepared) {
             prepared.make(garment, settings);
-            takes(garment, prepared, settings)?;
         }
         let flat = Flat::new(garments, colliders);
-        let program = Program::new(&flat);
+        let program = Program::new(&flat, prepared.iter().any(Prepared::stiff));
         let sets = 1 + most_substeps(garments, &prepared);
         Ok(Self { flat, program, prepared, sets })
     }
@@ -264,16 +266,12 @@ fn most_substeps(garments: &[&Garment], prepared: &[Prepared]) -> usize {
     best.chain(now).max().unwrap_or(1).min(MAX_SUBSTEPS) as usize
 }
 
-/// Whether a garment can be stepped here with these settings.
-fn takes(garment: &Garment, prepared: &Prepared, settings: &Settings) -> Result<(), GpuError> {
-    let root = settings.root;
-    let refused = [
-        (prepared.bend.stages > 1, "its bending is stiffer than a substep carries, which takes stages"),
-        (settings.wind.is_some(), "there is wind"),
-        ([root.linear, root.angular, root.centrifugal] != [1.0; 3], "part of the root's motion is not to be felt"),
-    ];
-    match refused.into_iter().find(|(is, _)| *is) {
-        None => Ok(()),
-        Some((_, what)) => Err(GpuError::Unsupported { garment: garment.name.clone(), what }),
+/// Whether a garment can be stepped here with these settings: whether so many sets of capsules are one for the step and one
+/// for each substep.
+fn takes(garment: &Garment, prepared: &Prepared, sets: usize) -> Result<(), GpuError> {
+    if (prepared.substeps as usize) < sets {
+        return Ok(());
     }
+    let what = "the settings ask for more substeps than it was laid out for";
+    Err(GpuError::Unsupported { garment: garment.name.clone(), what })
 }
