@@ -33,6 +33,8 @@ pub mod cloth;
 #[cfg(feature = "wgpu")]
 pub mod device;
 #[cfg(feature = "wgpu")]
+mod maker;
+#[cfg(feature = "wgpu")]
 mod native;
 #[cfg(feature = "wgpu")]
 pub mod wait;

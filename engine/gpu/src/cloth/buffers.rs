@@ -1,12 +1,10 @@
 //! Buffers: what the kernels read and write, made once at load; pipelines and what they are bound to.
 
-use bytemuck::Pod;
 use toile_assets::limits::MAX_CAPSULES;
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
-    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
-    BindingResource, BindingType, Buffer, BufferBinding, BufferBindingType, BufferUsages, ComputePipeline,
-    ComputePipelineDescriptor, PipelineLayoutDescriptor, ShaderModuleDescriptor, ShaderSource, ShaderStages,
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindingResource,
+    Buffer, BufferBinding, BufferBindingType, BufferUsages, ComputePipeline, ComputePipelineDescriptor,
+    PipelineLayoutDescriptor, ShaderModuleDescriptor, ShaderSource,
 };
 
 use super::constants::Constants;
@@ -15,9 +13,7 @@ use super::kernels::{Kernel, SHADERS};
 use super::program::Program;
 use super::touch::{FlatCone, FlatEnds, PLANES};
 use crate::device::{Device, Needs};
-
-/// Bytes between two of the uniforms that a dispatch picks from: what every driver aligns to.
-pub const ALIGNED: u64 = 256;
+use crate::maker::{Maker, bound};
 
 /// Numbers of a garment's report: held at the speed limit, unsound, rolled back in a row, rolled back.
 pub const REPORT: usize = 4;
@@ -73,54 +69,10 @@ pub fn needs(flat: &Flat, program: &Program, sets: usize) -> Needs {
     Needs { largest: sizes.into_iter().max().unwrap_or(0) as u64, workgroups }
 }
 
-/// Makes buffers, and counts their bytes.
-struct Maker<'a> {
-    device: &'a wgpu::Device,
-    bytes: u64,
-}
-
-impl Maker<'_> {
-    /// A buffer with these numbers; one number of none where there are none, because no buffer may be empty.
-    fn with<T: Pod>(&mut self, label: &str, numbers: &[T], more: BufferUsages) -> Buffer {
-        const NOTHING: [u8; 64] = [0; 64];
-        let bytes: &[u8] = bytemuck::cast_slice(numbers);
-        let contents = if bytes.is_empty() { &NOTHING[..] } else { bytes };
-        self.bytes += contents.len() as u64;
-        let usage = BufferUsages::STORAGE | more;
-        self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
-    }
-
-    /// A buffer of so many zeros of `size` bytes.
-    fn zeros(&mut self, label: &str, count: usize, size: usize) -> Buffer {
-        let len = (count.max(1) * size) as u64;
-        self.bytes += len;
-        let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
-        self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: len,
-            usage,
-            mapped_at_creation: false,
-        })
-    }
-
-    /// Uniforms of which a dispatch picks one.
-    fn uniforms(&mut self, label: &str, each: impl Iterator<Item = [u32; 4]>) -> Buffer {
-        let mut bytes = Vec::new();
-        for uniform in each {
-            bytes.extend_from_slice(bytemuck::cast_slice(&uniform));
-            bytes.resize(bytes.len().next_multiple_of(ALIGNED as usize), 0);
-        }
-        bytes.resize(bytes.len().max(ALIGNED as usize), 0);
-        self.bytes += bytes.len() as u64;
-        let usage = BufferUsages::UNIFORM;
-        self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents: &bytes, usage })
-    }
-}
-
 impl Buffers {
     /// All of a scene, and the pipelines. `sets` of capsules there are for each garment, one more than substeps.
     pub fn new(device: &Device, flat: &Flat, program: &Program, constants: &[Constants], sets: usize) -> Self {
-        let mut make = Maker { device: &device.device, bytes: 0 };
+        let mut make = Maker::new(&device.device);
         let none = BufferUsages::empty();
         let (to, from) = (BufferUsages::COPY_DST, BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
         let still = vec![[0.0f32; 4]; flat.start.len()];
@@ -189,7 +141,7 @@ impl Buffers {
             &[&reports, &good, &start],
             &[&reports, &good, &start],
         ];
-        let bytes = make.bytes;
+        let bytes = make.bytes();
         let layout = scene_layout(&device.device);
         let kernels = kernels(&device.device, &layout, &own);
         let scene = scene(&device.device, &layout, [&ops, &garments, &groups, &state, &moments]);
@@ -215,12 +167,6 @@ impl Buffers {
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
-}
-
-fn bound(binding: u32, ty: BufferBindingType, dynamic: bool) -> BindGroupLayoutEntry {
-    let size = if dynamic { std::num::NonZeroU64::new(16) } else { None };
-    let ty = BindingType::Buffer { ty, has_dynamic_offset: dynamic, min_binding_size: size };
-    BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None }
 }
 
 fn scene_layout(device: &wgpu::Device) -> BindGroupLayout {

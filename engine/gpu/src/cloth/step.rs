@@ -8,7 +8,6 @@ use toile_engine::cloth::contact::ContactSettings;
 use toile_engine::cloth::root::RootStep;
 use wgpu::{CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor};
 
-use super::buffers::ALIGNED;
 use super::constants::{CARRY, Constants, DRESS, columns};
 use super::flat::{Scale, WIDTH};
 use super::kernels::Kernel;
@@ -16,6 +15,7 @@ use super::program::Entry;
 use super::touch::{self, FlatCone, PLANES};
 use super::{Offload, Step, takes};
 use crate::device::GpuError;
+use crate::maker::ALIGNED;
 
 impl Offload {
     /// Takes in what has come back, and sends the next step of every garment on its way; waits for nothing. `steps` has
