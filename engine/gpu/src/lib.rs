@@ -37,6 +37,8 @@ mod maker;
 #[cfg(feature = "wgpu")]
 mod native;
 #[cfg(feature = "wgpu")]
+mod shader;
+#[cfg(feature = "wgpu")]
 pub mod wait;
 
 #[cfg(feature = "wgpu")]

@@ -3,8 +3,7 @@
 use toile_assets::limits::MAX_CAPSULES;
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindingResource,
-    Buffer, BufferBinding, BufferBindingType, BufferUsages, ComputePipeline, ComputePipelineDescriptor,
-    PipelineLayoutDescriptor, ShaderModuleDescriptor, ShaderSource,
+    Buffer, BufferBinding, BufferBindingType, BufferUsages, ComputePipeline,
 };
 
 use super::constants::Constants;
@@ -14,6 +13,7 @@ use super::program::Program;
 use super::touch::{FlatCone, FlatEnds, PLANES};
 use crate::device::{Device, Needs};
 use crate::maker::{Maker, bound};
+use crate::shader::pipeline;
 
 /// Numbers of a garment's report: held at the speed limit, unsound, rolled back in a row, rolled back.
 pub const REPORT: usize = 4;
@@ -196,35 +196,11 @@ fn kernels(
     scene: &BindGroupLayout,
     own: &[&[&Buffer]; Kernel::ALL.len()],
 ) -> Vec<(ComputePipeline, BindGroup)> {
-    let shaders: Vec<_> = SHADERS
-        .iter()
-        .map(|s| {
-            let source = ShaderSource::Wgsl(s.source().into());
-            let module = device.create_shader_module(ShaderModuleDescriptor { label: Some(s.name), source });
-            let storage = |(binding, read_only): (u32, &bool)| {
-                bound(binding, BufferBindingType::Storage { read_only: *read_only }, false)
-            };
-            let entries: Vec<_> = (0..).zip(s.reads).map(storage).collect();
-            let layout = BindGroupLayoutDescriptor { label: Some(s.name), entries: &entries };
-            (module, device.create_bind_group_layout(&layout))
-        })
-        .collect();
+    let shaders: Vec<_> = SHADERS.iter().map(|s| s.module(device)).collect();
     let pipeline = |kernel: Kernel| {
         let (shader, entry) = kernel.entry();
         let (module, layout) = &shaders[shader];
-        let whole = device.create_pipeline_layout(&PipelineLayoutDescriptor {
-            label: Some(entry),
-            bind_group_layouts: &[Some(scene), Some(layout)],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_compute_pipeline(&ComputePipelineDescriptor {
-            label: Some(entry),
-            layout: Some(&whole),
-            module,
-            entry_point: Some(entry),
-            compilation_options: Default::default(),
-            cache: None,
-        });
+        let pipeline = pipeline(device, &[Some(scene), Some(layout)], module, entry);
         let entries: Vec<_> = (0u32..)
             .zip(own[kernel.number()])
             .map(|(binding, buffer)| BindGroupEntry { binding, resource: buffer.as_entire_binding() })
