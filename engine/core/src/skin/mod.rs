@@ -7,6 +7,7 @@
 mod check;
 mod dual;
 mod kernel;
+mod laid;
 mod layout;
 mod posed;
 mod prune;
@@ -25,6 +26,8 @@ use crate::crew::{Crew, SHARES};
 use crate::lanes::{Column, Width};
 
 pub use check::{SkinError, WEIGHT_TOLERANCE};
+pub use dual::{DualQuat, palette as dual_palette};
+pub use laid::Laid;
 pub use layout::Padding;
 pub use posed::Posed;
 pub use prune::{Pruning, pruning};
