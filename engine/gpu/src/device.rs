@@ -132,6 +132,14 @@ impl Device {
         &self.adapter
     }
 
+    /// Whether what a scene asks for is within the limits that the device was opened with.
+    ///
+    /// # Errors
+    /// [`GpuError::TooSmall`].
+    pub fn takes(&self, needs: Needs) -> Result<(), GpuError> {
+        enough(&needs.limits(), &self.device.limits(), &self.adapter.name)
+    }
+
     /// Whether the device is still there and has taken all that was asked of it.
     ///
     /// # Errors

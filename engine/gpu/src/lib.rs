@@ -39,6 +39,8 @@ mod native;
 #[cfg(feature = "wgpu")]
 mod shader;
 #[cfg(feature = "wgpu")]
+pub mod skin;
+#[cfg(feature = "wgpu")]
 pub mod wait;
 
 #[cfg(feature = "wgpu")]
