@@ -43,9 +43,15 @@ fn cross_product(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
+// 1, which no compiler knows. The CPU adds sums of two; Mesa takes a sum apart that is added to two products, but leaves one
+// that is a factor.
+fn one(run: vec4<u32>) -> f32 {
+    return f32(min(run.z, 1u));
+}
+
 // A coordinate of a point that a row of a matrix moves.
-fn moved_by(row: vec4<f32>, p: vec3<f32>) -> f32 {
-    return (row.x * p.x + row.y * p.y) + (row.z * p.z + row.w);
+fn moved_by(row: vec4<f32>, p: vec3<f32>, by: f32) -> f32 {
+    return (row.x * p.x + row.y * p.y) + (row.z * p.z + row.w) * by;
 }
 
 @compute @workgroup_size(64)
@@ -72,10 +78,11 @@ fn skin_linear(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_i
     }
     let p = own.position;
     let n = own.normal;
+    let by = one(run);
     let normal = vec3<f32>(inner(x.xyz, n), inner(y.xyz, n), inner(z.xyz, n));
     let squared = inner(normal, normal);
     let scale = select(0.0, reciprocal_root(squared), COLLAPSED < squared);
-    positions[own.place] = vec4<f32>(moved_by(x, p), moved_by(y, p), moved_by(z, p), 1.0);
+    positions[own.place] = vec4<f32>(moved_by(x, p, by), moved_by(y, p, by), moved_by(z, p, by), 1.0);
     normals[own.place] = vec4<f32>(normal * scale, 0.0);
 }
 
@@ -107,7 +114,8 @@ fn skin_dual(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_ind
     let factor = 2.0 / more_of(squared, COLLAPSED);
     let p = own.position;
     let n = own.normal;
-    let moved = cross_product(v, cross_product(v, p) + p * w + twin.xyz) + (twin.xyz * w - v * twin.w);
+    let along = (twin.xyz * w - v * twin.w) * one(run);
+    let moved = cross_product(v, cross_product(v, p) + p * w + twin.xyz) + along;
     let turned = cross_product(v, cross_product(v, n) + n * w);
     positions[own.place] = vec4<f32>(p + moved * factor, 1.0);
     normals[own.place] = vec4<f32>(n + turned * factor, 0.0);
