@@ -43,8 +43,8 @@ fn cross_product(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
-// 1, which no compiler knows. The CPU adds sums of two; Mesa takes a sum apart that is added to two products, but leaves one
-// that is a factor.
+// 1, which no compiler knows: the factor that makes a product of a sum. Of (a b + c d) + e Mesa makes (a b + e) + c d, but
+// not where e is a product.
 fn one(run: vec4<u32>) -> f32 {
     return f32(min(run.z, 1u));
 }

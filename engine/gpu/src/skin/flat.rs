@@ -138,9 +138,9 @@ mod tests {
                 let packed = [low.to_le_bytes(), high.to_le_bytes()].concat();
                 let given = if body == 0 { &few[place] } else { &many[place - 100] };
                 let given = |bone: u8| given.iter().filter(|(b, _)| *b == bone).map(|(_, w)| w).sum::<f32>();
-                for k in 1..bones as usize {
-                    let got = flat.weights[weight + (k - 1) * WIDTH as usize + lane];
-                    assert_eq!(got, given(packed[k]), "vertex {place}, bone {}", packed[k]);
+                for (row, &bone) in packed[1..bones as usize].iter().enumerate() {
+                    let got = flat.weights[weight + row * WIDTH as usize + lane];
+                    assert_eq!(got, given(bone), "vertex {place}, bone {bone}");
                 }
             }
         }
