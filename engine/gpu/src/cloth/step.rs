@@ -9,7 +9,7 @@ use toile_engine::cloth::prepared::Prepared;
 use toile_engine::cloth::root::RootStep;
 use wgpu::{CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor};
 
-use super::buffers::{ALIGNED, Buffers, STAGES};
+use super::buffers::{Buffers, STAGES};
 use super::constants::{CARRY, COMPENSATE, Constants, DRESS, carried, columns};
 use super::flat::{Scale, WIDTH};
 use super::kernels::Kernel;
@@ -17,6 +17,7 @@ use super::program::Entry;
 use super::touch::{self, FlatCone, PLANES};
 use super::{Offload, Step, takes};
 use crate::device::GpuError;
+use crate::maker::ALIGNED;
 
 impl Offload {
     /// Takes in what has come back, and sends the next step of every garment on its way; waits for nothing. `steps` has
