@@ -191,14 +191,6 @@ impl Device {
         Ok(Self { instance, opened_on, device, queue, adapter, lost, fault })
     }
 
-    /// Whether a scene fits what the device was opened with.
-    ///
-    /// # Errors
-    /// [`GpuError::TooSmall`], with the limit.
-    pub fn bears(&self, needs: Needs) -> Result<(), GpuError> {
-        enough(&needs.limits(), &self.device.limits(), &self.adapter.name)
-    }
-
     /// What the adapter says of itself.
     pub fn adapter(&self) -> &crate::Adapter {
         &self.adapter
@@ -225,6 +217,14 @@ impl Device {
     /// The first thing that went wrong, if any: what was asked for then was not drawn or computed.
     pub fn fault(&self) -> Option<&str> {
         self.fault.get().map(String::as_str)
+    }
+
+    /// Whether what a scene asks for is within the limits that the device was opened with.
+    ///
+    /// # Errors
+    /// [`GpuError::TooSmall`].
+    pub fn takes(&self, needs: Needs) -> Result<(), GpuError> {
+        enough(&needs.limits(), &self.device.limits(), &self.adapter.name)
     }
 
     /// Whether the device is still there and has taken all that was asked of it.

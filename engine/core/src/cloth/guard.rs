@@ -78,6 +78,32 @@ impl Kernel for Sound<'_> {
     }
 }
 
+/// What a soak writes over the state to try the guard.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Spoil {
+    /// A place (m).
+    Place(Vec3A),
+    /// A velocity (m/s).
+    Velocity(Vec3A),
+}
+
+/// Of `particles` eight that `seed` picks: two each get a place that is no number, an infinite velocity, a place beyond all
+/// measure, and a violent velocity.
+pub fn spoil(seed: u64, particles: usize) -> [(usize, Spoil); 8] {
+    let mut at = seed;
+    std::array::from_fn(|k| {
+        // Knuth's multiplier, and the upper bits, which are the better ones.
+        at = at.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let what = match k % 4 {
+            0 => Spoil::Place(Vec3A::NAN),
+            1 => Spoil::Velocity(Vec3A::INFINITY),
+            2 => Spoil::Place(Vec3A::splat(1e30)),
+            _ => Spoil::Velocity(Vec3A::new(900.0, -500.0, 700.0)),
+        };
+        ((at >> 33) as usize % particles.max(1), what)
+    })
+}
+
 /// Puts every particle that is not finite back to its last good place, at rest; gives how many.
 pub fn repair(columns: Columns<'_>, good: &[Vec3A]) -> u64 {
     let mut repaired = 0;

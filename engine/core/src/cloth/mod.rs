@@ -146,22 +146,17 @@ impl Cloth {
         }
     }
 
-    /// Spoils the state between two steps, as a fault of the memory or of the solver itself would: of eight particles that `seed`
-    /// picks, two each get a place that is no number, an infinite velocity, a place beyond all measure, and a violent velocity.
-    /// How a soak tries the guard; what was published stays.
+    /// Spoils the state between two steps, as a fault of the memory or of the solver itself would: what [`guard::spoil`] picks
+    /// by `seed`. How a soak tries the guard; what was published stays.
     pub fn upset(&mut self, seed: u64) {
+        if self.positions.is_empty() {
+            return;
+        }
         let columns = self.state.columns();
-        let mut at = seed;
-        for k in 0..8 {
-            // Knuth's multiplier, and the upper bits, which are the better ones.
-            at = at.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            let i = (at >> 33) as usize % self.positions.len().max(1);
-            match k % 4 {
-                _ if self.positions.is_empty() => {}
-                0 => state::set(columns.x, i, Vec3A::NAN),
-                1 => state::set(columns.v, i, Vec3A::INFINITY),
-                2 => state::set(columns.x, i, Vec3A::splat(1e30)),
-                _ => state::set(columns.v, i, Vec3A::new(900.0, -500.0, 700.0)),
+        for (i, what) in guard::spoil(seed, self.positions.len()) {
+            match what {
+                guard::Spoil::Place(x) => state::set(columns.x, i, x),
+                guard::Spoil::Velocity(v) => state::set(columns.v, i, v),
             }
         }
     }

@@ -158,14 +158,22 @@ impl RootMotion {
 /// The part of the root's motion that the cloth is not to feel in one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Carried {
-    origin: Vec3A,
-    velocity: Vec3A,
-    turning: Vec3A,
-    jolt: Vec3A,
-    twist: Vec3A,
-    angular: f32,
-    centrifugal: f32,
-    dt: f32,
+    /// Where the root was at the start of the step (m).
+    pub origin: Vec3A,
+    /// Its velocity over the step (m/s).
+    pub velocity: Vec3A,
+    /// Its angular velocity over the step (rad/s).
+    pub turning: Vec3A,
+    /// (1 - s_l) (V - V') (m/s).
+    pub jolt: Vec3A,
+    /// (1 - s_a) (w - w') (rad/s).
+    pub twist: Vec3A,
+    /// 1 - s_a.
+    pub angular: f32,
+    /// 1 - s_c.
+    pub centrifugal: f32,
+    /// Length of the step (s).
+    pub dt: f32,
 }
 
 impl Carried {

@@ -44,11 +44,27 @@ pub struct Wind {
     pub lift: f32,
 }
 
+impl Wind {
+    /// 1 / ((Cd + Cl) dt) for a step of `dt` seconds (1/s): what presses a triangle stays below its mass times this.
+    #[inline(always)]
+    pub fn bound(&self, dt: f32) -> f32 {
+        let most = self.drag.abs() + self.lift.abs();
+        1.0 / (most * dt).max(f32::MIN_POSITIVE)
+    }
+}
+
 /// Triangles `first + k`, k in `0..len`: no particle twice at one corner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Run3 {
     first: [u32; 3],
     len: u32,
+}
+
+impl Run3 {
+    fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + use<> {
+        let first = self.first;
+        (0..self.len).map(move |k| first.map(|i| i + k))
+    }
 }
 
 /// Triangles that one share adds up.
@@ -130,6 +146,36 @@ impl Faces {
         width.run(Blow { group: &self.groups[part as usize], wind, dt, at, to });
     }
 
+    /// Corners of every triangle, and the mass that moves with it (kg): part by part, in each the runs, then the loose ones.
+    pub fn triangles(&self) -> impl Iterator<Item = ([u32; 3], f32)> {
+        self.groups.iter().flat_map(|group| {
+            let [a, b, c] = &group.loose;
+            let loose = a.iter().zip(b).zip(c).map(|((a, b), c)| [*a, *b, *c]);
+            group.runs.iter().flat_map(Run3::triangles).chain(loose).zip(group.mass.iter().copied())
+        })
+    }
+
+    /// Calls `add` for every corner of every triangle in the order in which [`Faces::blow`] adds up its parts one after the
+    /// other, with the triangle's number among [`Faces::triangles`] and the particle.
+    pub fn sums(&self, mut add: impl FnMut(u32, u32)) {
+        let mut done = 0;
+        for group in &self.groups {
+            for run in &group.runs {
+                for from in (0..run.len).step_by(CHUNK) {
+                    let len = (run.len - from).min(CHUNK as u32);
+                    for first in run.first {
+                        (from..from + len).for_each(|k| add(done + k, first + k));
+                    }
+                }
+                done += run.len;
+            }
+            for k in 0..group.loose[0].len() {
+                group.loose.iter().for_each(|corner| add(done + k as u32, corner[k]));
+            }
+            done += group.loose[0].len() as u32;
+        }
+    }
+
     /// How many triangles lie in runs, and how many are loose.
     pub fn count(&self) -> [usize; 2] {
         let runs = self.groups.iter().flat_map(|g| &g.runs).map(|r| r.len as usize).sum();
@@ -169,13 +215,9 @@ impl Group {
             }
         }
         let (runs, short): (Vec<Run3>, Vec<Run3>) = all.into_iter().partition(|r| r.len >= SHORTEST_RUN);
-        let triangles = |r: &Run3| {
-            let first = r.first;
-            (0..r.len).map(move |k| first.map(|i| i + k))
-        };
-        let loose: Vec<[u32; 3]> = short.iter().flat_map(triangles).collect();
+        let loose: Vec<[u32; 3]> = short.iter().flat_map(Run3::triangles).collect();
         Self {
-            mass: runs.iter().flat_map(triangles).chain(loose.iter().copied()).map(|t| moved(&t)).collect(),
+            mass: runs.iter().flat_map(Run3::triangles).chain(loose.iter().copied()).map(|t| moved(&t)).collect(),
             loose: [0, 1, 2].map(|corner| loose.iter().map(|t| t[corner]).collect()),
             runs: runs.into(),
         }
@@ -258,12 +300,11 @@ struct Air<L> {
 impl<L: Lanes> Air<L> {
     #[inline(always)]
     fn new(wind: &Wind, dt: f32) -> Self {
-        let most = wind.drag.abs() + wind.lift.abs();
         Self {
             velocity: V3::splat(wind.velocity),
             drag: L::splat(wind.drag),
             lift: L::splat(wind.lift),
-            bound: L::splat(1.0 / (most * dt).max(f32::MIN_POSITIVE)),
+            bound: L::splat(wind.bound(dt)),
         }
     }
 

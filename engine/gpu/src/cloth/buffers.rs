@@ -1,8 +1,7 @@
 //! Buffers: what the kernels read and write, made once at load, and what each kernel is bound to.
 
-use bytemuck::Pod;
 use toile_assets::limits::MAX_CAPSULES;
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use toile_engine::cloth::stages;
 use wgpu::{BindGroup, Buffer, BufferUsages};
 
 use super::constants::Constants;
@@ -12,19 +11,21 @@ use super::opened::Opened;
 use super::program::Program;
 use super::touch::{FlatCone, FlatEnds, PLANES};
 use crate::device::Needs;
+use crate::maker::Maker;
 
-/// Bytes between two of the uniforms that a dispatch picks from: what every driver aligns to.
-pub const ALIGNED: u64 = 256;
+/// Numbers of a garment's report: held at the speed limit, unsound, rolled back in a row, rolled back, repaired.
+pub const REPORT: usize = 5;
 
-/// Numbers of a garment's report: held at the speed limit, unsound, rolled back in a row, rolled back.
-pub const REPORT: usize = 4;
+/// Places in the buffer of stages for each garment.
+pub const STAGES: usize = stages::MOST as usize;
 
 /// All buffers of a scene.
 #[derive(Debug)]
 pub struct Buffers {
     /// A garment's constants `[garments]`.
     pub garments: Buffer,
-    /// Places and inverse masses, where the substep began, velocities `[3 * particles]`.
+    /// Places and inverse masses, where the substep began, velocities, and where bending may be stiffer than a substep
+    /// three more: see `turn.wgsl` `[3 or 6 * particles]`.
     pub state: Buffer,
     /// Where each skinned particle is at the start and the end of the step `[2 * targets]`.
     pub targets: Buffer,
@@ -34,6 +35,11 @@ pub struct Buffers {
     pub weft_measures: Buffer,
     /// Shares of bending stiffness.
     pub scales: Buffer,
+    /// Stages of bending: ahead, behind, forced, what the forces are multiplied by `[garments * STAGES]`; next to nothing
+    /// where there are none.
+    pub stages: Buffer,
+    /// Accelerations besides gravity (m/s2) `[particles]`.
+    pub pushed: Buffer,
     /// What happened to each garment `[garments]`.
     pub reports: Buffer,
     /// Last good places `[particles]`.
@@ -56,7 +62,7 @@ pub struct Buffers {
 /// What a scene asks of a device: its largest buffer and dispatch.
 pub fn needs(flat: &Flat, program: &Program, sets: usize) -> Needs {
     let sizes = [
-        size_of_val(&*flat.start) * 3,
+        size_of_val(&*flat.start) * parts(program),
         size_of_val(&*flat.shear.ends),
         size_of_val(&*flat.weft.ends),
         size_of_val(&*flat.diagonals.measures),
@@ -65,6 +71,7 @@ pub fn needs(flat: &Flat, program: &Program, sets: usize) -> Needs {
         size_of_val(&*flat.bending.terms),
         size_of_val(&*flat.bending.entries),
         16 * flat.bending.items.len(),
+        size_of_val(&*flat.wind.faces),
         16 * program.groups().len(),
         size_of_val(&*flat.faces.meeting),
         16 * flat.faces.corners.len(),
@@ -74,62 +81,27 @@ pub fn needs(flat: &Flat, program: &Program, sets: usize) -> Needs {
     Needs { largest: sizes.into_iter().max().unwrap_or(0) as u64, workgroups }
 }
 
-/// Makes buffers, and counts their bytes.
-struct Maker<'a> {
-    device: &'a wgpu::Device,
-    bytes: u64,
-}
-
-impl Maker<'_> {
-    /// A buffer with these numbers; one number of none where there are none, because no buffer may be empty.
-    fn with<T: Pod>(&mut self, label: &str, numbers: &[T], more: BufferUsages) -> Buffer {
-        const NOTHING: [u8; 64] = [0; 64];
-        let bytes: &[u8] = bytemuck::cast_slice(numbers);
-        let contents = if bytes.is_empty() { &NOTHING[..] } else { bytes };
-        self.bytes += contents.len() as u64;
-        let usage = BufferUsages::STORAGE | more;
-        self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
-    }
-
-    /// A buffer of so many zeros of `size` bytes.
-    fn zeros(&mut self, label: &str, count: usize, size: usize) -> Buffer {
-        let len = (count.max(1) * size) as u64;
-        self.bytes += len;
-        let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
-        self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: len,
-            usage,
-            mapped_at_creation: false,
-        })
-    }
-
-    /// Uniforms of which a dispatch picks one.
-    fn uniforms(&mut self, label: &str, each: impl Iterator<Item = [u32; 4]>) -> Buffer {
-        let mut bytes = Vec::new();
-        for uniform in each {
-            bytes.extend_from_slice(bytemuck::cast_slice(&uniform));
-            bytes.resize(bytes.len().next_multiple_of(ALIGNED as usize), 0);
-        }
-        bytes.resize(bytes.len().max(ALIGNED as usize), 0);
-        self.bytes += bytes.len() as u64;
-        let usage = BufferUsages::UNIFORM;
-        self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents: &bytes, usage })
-    }
+/// Parts of the state.
+fn parts(program: &Program) -> usize {
+    if program.stages.is_empty() { 3 } else { 6 }
 }
 
 impl Buffers {
     /// All of a scene, on an open device. `sets` of capsules there are for each garment, one more than substeps.
     pub fn new(opened: &Opened, flat: &Flat, program: &Program, constants: &[Constants], sets: usize) -> Self {
         let (device, pipelines) = (&opened.device.device, &opened.pipelines);
-        let mut make = Maker { device, bytes: 0 };
+        let mut make = Maker::new(device);
         let none = BufferUsages::empty();
         let (to, from) = (BufferUsages::COPY_DST, BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
         let still = vec![[0.0f32; 4]; flat.start.len()];
-        let state: Vec<[f32; 4]> = flat.start.iter().chain(&flat.start).chain(&still).copied().collect();
+        let stills = (2..parts(program)).flat_map(|_| &still);
+        let state: Vec<[f32; 4]> = flat.start.iter().chain(&flat.start).chain(stills).copied().collect();
         let entry = |e: &super::program::Entry| [program.tables[e.table].1, u32::from(e.fresh), flat.particles, 0];
         let ops = make.uniforms("ops", program.entries().map(entry));
-        let moments = make.uniforms("moments", (0..sets as u32).map(|substep| [substep, 0, 0, 0]));
+        // Substeps, then stages.
+        let staged = if program.stages.is_empty() { 0 } else { 1 + STAGES as u32 };
+        let substeps = (0..sets as u32).map(|substep| [substep, 0, 0, 0]);
+        let moments = make.uniforms("moments", substeps.chain((0..staged).map(|stage| [0, stage, 0, 0])));
         let groups = make.with("groups", &program.groups(), none);
         let garments = make.with("garments", constants, to);
         let state = make.with("state", &state, from);
@@ -137,14 +109,20 @@ impl Buffers {
         let shear_measures = make.with("shear measures", &flat.shear.measures, to);
         let weft_measures = make.with("weft measures", &flat.weft.measures, to);
         let scales = make.with("scales", &flat.bending.scales, to);
+        let stages = make.zeros("stages", if staged == 0 { 0 } else { constants.len() * STAGES }, 16);
+        let pushed = make.zeros("pushed", flat.start.len(), 16);
+        let faces = make.with("faces", &flat.wind.faces, none);
+        let forces = make.zeros("forces", flat.wind.faces.len(), 16);
+        let corners = make.with("where faces begin", &flat.wind.starts, none);
+        let around = make.with("faces around", &flat.wind.around, none);
         let reports = make.zeros("reports", constants.len(), 4 * REPORT);
         // What is drawn, too.
         let shown = from | BufferUsages::VERTEX;
         let good = make.with("good", &flat.start, shown);
         let normals = make.with("normals", &flat.faces.normals, shown);
-        let corners = make.with("corners", &flat.faces.corners, none);
+        let triangles = make.with("triangles", &flat.faces.corners, none);
         let areas = make.zeros("areas", flat.faces.corners.len(), 16);
-        let from = make.with("faces from", &flat.faces.starts, none);
+        let meet = make.with("where triangles meet", &flat.faces.starts, none);
         let meeting = make.with("meeting", &flat.faces.meeting, none);
         let start = make.with("start", &flat.start, none);
         let pins = make.with("pins", &flat.pins, none);
@@ -180,12 +158,22 @@ impl Buffers {
         let curvatures = make.zeros("curvatures", flat.bending.items.len(), 16);
         let starts = make.with("starts", &flat.bending.starts, none);
         let entries = make.with("entries", &flat.bending.entries, none);
+        let wind: &[&Buffer] = &[&faces, &forces, &corners, &around, &pushed];
+        let bending: &[&Buffer] = &[&items, &terms, &scales, &curvatures, &stages];
+        let bent: &[&Buffer] = &[&starts, &entries, &items, &terms, &curvatures];
         let own: [&[&Buffer]; Kernel::ALL.len()] = [
+            &[&reports, &good],
             &[&good, &start],
             touch,
-            &[&items, &terms, &scales, &curvatures],
-            &[&starts, &entries, &items, &terms, &curvatures],
-            &[&pins, &targets],
+            wind,
+            &[&pushed],
+            wind,
+            &[&pushed, &stages],
+            bending,
+            bent,
+            bending,
+            bent,
+            &[&pins, &targets, &pushed],
             &[&heads, &leads, &leaning, &kept, &lengths],
             &[&shear_ends, &shear_measures, &shear_tensions],
             &[&weft_ends, &weft_measures, &weft_tensions],
@@ -197,10 +185,10 @@ impl Buffers {
             &[&reports],
             &[&reports, &good, &start],
             &[&reports, &good, &start],
-            &[&corners, &good, &areas],
-            &[&from, &meeting, &areas, &normals],
+            &[&triangles, &good, &areas],
+            &[&meet, &meeting, &areas, &normals],
         ];
-        let bytes = make.bytes;
+        let bytes = make.bytes();
         let scene = pipelines.scene(device, [&ops, &garments, &groups, &state, &moments]);
         let own = Kernel::ALL.map(|kernel| pipelines.own(device, kernel, own[kernel.number()])).into();
         Self {
@@ -210,6 +198,8 @@ impl Buffers {
             shear_measures,
             weft_measures,
             scales,
+            stages,
+            pushed,
             reports,
             good,
             normals,

@@ -5,7 +5,8 @@ use glam::Affine3A;
 use toile_assets::garment::Garment;
 use toile_engine::cloth::contact::ContactSettings;
 use toile_engine::cloth::prepared::Prepared;
-use toile_engine::cloth::{Quality, Settings};
+use toile_engine::cloth::root::Carried;
+use toile_engine::cloth::{Quality, Settings, Wind};
 
 /// Weft links remember their tension.
 pub const SOFT_WEFT: u32 = 1;
@@ -21,6 +22,10 @@ pub const DRESS: u32 = 16;
 pub const CARRY: u32 = 32;
 /// Fibers by index list remember their tension.
 pub const SOFT_CROSSING: u32 = 64;
+/// There is wind.
+pub const WIND: u32 = 128;
+/// In this step part of the root's motion is not to be felt.
+pub const COMPENSATE: u32 = 256;
 
 /// A garment's constants; the struct `Garment` of `shaders/common.wgsl`, field by field.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -52,7 +57,8 @@ pub struct Constants {
     pub substeps: u32,
     /// See the constants above.
     pub bits: u32,
-    spare: u32,
+    /// Stages of bending, 1 where it is a force.
+    pub stages: u32,
     /// The root's axes and its place: where the garment is dressed again.
     pub root: [[f32; 4]; 4],
     /// The root's motion, likewise, for [`CARRY`].
@@ -61,9 +67,15 @@ pub struct Constants {
     pub how: [f32; 4],
     /// Its first set of capsules, those to be believed, its planes, and where they begin.
     pub touch: [u32; 4],
+    /// Velocity of the air (m/s), drag coefficient.
+    pub air: [f32; 4],
+    /// Lift coefficient, 1 / ((Cd + Cl) dt) (1/s).
+    pub blow: [f32; 4],
+    /// What of the root's motion is not to be felt, for [`COMPENSATE`].
+    pub carried: [[f32; 4]; 5],
 }
 
-const _: () = assert!(size_of::<Constants>() == 224, "`Garment` in common.wgsl is 224 bytes");
+const _: () = assert!(size_of::<Constants>() == 336, "`Garment` in common.wgsl is 336 bytes");
 
 impl Constants {
     /// Of a garment that is prepared for these settings; no jump, the root where it is at rest.
@@ -72,6 +84,8 @@ impl Constants {
         let per_dt2 = (dt * dt).recip();
         let bit = |holds: bool, bit: u32| if holds { bit } else { 0 };
         let how = ContactSettings::new(&garment.fabric, settings);
+        let bound = |w: &Wind| w.bound(settings.step_seconds);
+        let wind = settings.wind.map(|w| (w.velocity.extend(w.drag), [w.lift, bound(&w), 0.0, 0.0]));
         let tethered = settings.tethers || prepared.quality == Quality::Draft;
         Self {
             fall: (settings.gravity * dt).to_array(),
@@ -90,12 +104,16 @@ impl Constants {
                 | bit(prepared.soft(1), SOFT_FIBERS)
                 | bit(prepared.soft(2), SOFT_CROSSING)
                 | bit(prepared.taut, TAUT)
-                | bit(tethered, TETHERS),
-            spare: 0,
+                | bit(tethered, TETHERS)
+                | bit(wind.is_some(), WIND),
+            stages: prepared.bending.stages,
             root: columns(&Affine3A::IDENTITY),
             motion: columns(&Affine3A::IDENTITY),
             how: [how.offset_m, how.friction_static, how.friction_kinetic, how.step_seconds],
             touch: [0; 4],
+            air: wind.map_or([0.0; 4], |(air, _)| air.to_array()),
+            blow: wind.map_or([0.0; 4], |(_, blow)| blow),
+            carried: [[0.0; 4]; 5],
         }
     }
 }
@@ -104,4 +122,16 @@ impl Constants {
 pub fn columns(motion: &Affine3A) -> [[f32; 4]; 4] {
     let m = motion.matrix3;
     [m.x_axis, m.y_axis, m.z_axis, motion.translation].map(|c| [c.x, c.y, c.z, 0.0])
+}
+
+/// What of the root's motion is not to be felt, as `Garment` of `common.wgsl` has it.
+pub fn carried(c: &Carried) -> [[f32; 4]; 5] {
+    let with = |v: glam::Vec3A, w: f32| [v.x, v.y, v.z, w];
+    [
+        with(c.origin, 0.5 * c.dt),
+        with(c.velocity, 2.0 * c.angular),
+        with(c.turning, c.centrifugal),
+        with(c.jolt, 0.0),
+        with(c.twist, 0.0),
+    ]
 }

@@ -3,6 +3,7 @@
 use glam::Vec3A;
 
 use super::Offload;
+use super::read::vectors;
 use crate::device::GpuError;
 use crate::source::Source;
 
@@ -25,8 +26,7 @@ impl Offload {
         if self.flat.faces.starts.is_empty() {
             return Ok(Vec::new());
         }
-        let span = self.flat.spans[self.own[garment].place];
-        let all = self.fetch(&self.buffers.normals)?;
-        Ok(all[span.first as usize..(span.first + span.len) as usize].to_vec())
+        let numbers = self.numbers(&self.buffers.normals)?;
+        Ok(vectors(&numbers, self.flat.spans[self.own[garment].place]))
     }
 }

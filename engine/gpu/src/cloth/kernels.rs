@@ -1,17 +1,35 @@
-//! Kernels: the shaders, what each is bound to, and their pipelines.
+//! Kernels: the shaders, and what each is bound to.
+
+use crate::shader::LANES;
+
+pub use crate::shader::Shader;
 
 /// A kernel, in the order in which a step first runs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kernel {
+    /// Particles that are none go back.
+    Repair,
     /// The root has been put somewhere else.
     Jump,
     /// Which capsules and planes each particle may touch in the step.
     Near,
+    /// What presses each triangle in the wind.
+    Wind,
+    /// What of the root's motion is not to be felt.
+    Carry,
+    /// What the wind does to each particle.
+    Blown,
+    /// What comes before a stage of stiff bending, or behind the last.
+    Turn,
+    /// Curvatures of a stage.
+    Stage,
+    /// What they do to each particle.
+    Staged,
     /// Curvatures.
     Bending,
     /// What they do to each particle.
     Bent,
-    /// Gravity and air; skinned particles move on.
+    /// Gravity, air and wind; skinned particles move on.
     Predict,
     /// Fibers along the bias.
     Diagonals,
@@ -41,30 +59,28 @@ pub enum Kernel {
     Normals,
 }
 
-/// A shader's text, without what all have in common.
-#[derive(Debug, Clone, Copy)]
-pub struct Shader {
-    /// Its file's name.
-    pub name: &'static str,
-    text: &'static str,
-    /// Its storage buffers in the order of their bindings: whether each is only read.
-    pub reads: &'static [bool],
-}
-
 const COMMON: &str = include_str!("../shaders/common.wgsl");
 
 macro_rules! shader {
     ($name:literal, $reads:expr) => {
-        Shader { name: $name, text: include_str!(concat!("../shaders/", $name, ".wgsl")), reads: &$reads }
+        Shader {
+            name: $name,
+            texts: &[LANES, COMMON, include_str!(concat!("../shaders/", $name, ".wgsl"))],
+            reads: &$reads,
+        }
     };
 }
 
 /// All shaders.
-pub const SHADERS: [Shader; 15] = [
+pub const SHADERS: [Shader; 19] = [
+    shader!("repair", [false, true]),
     shader!("jump", [false, true]),
-    shader!("bending", [true, true, true, false]),
+    shader!("wind", [true, false, true, true, false]),
+    shader!("carry", [false]),
+    shader!("turn", [true, true]),
+    shader!("bending", [true, true, true, false, true]),
     shader!("bent", [true, true, true, true, true]),
-    shader!("predict", [true, true]),
+    shader!("predict", [true, true, true]),
     shader!("diagonals", [true, true, true, false, false]),
     shader!("links", [true, true, false]),
     shader!("lists", [true, true, true, false]),
@@ -78,18 +94,18 @@ pub const SHADERS: [Shader; 15] = [
     shader!("normals", [true, true, true, false]),
 ];
 
-impl Shader {
-    /// The whole text.
-    pub fn source(&self) -> String {
-        [COMMON, self.text].concat()
-    }
-}
-
 impl Kernel {
     /// All kernels.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 25] = [
+        Self::Repair,
         Self::Jump,
         Self::Near,
+        Self::Wind,
+        Self::Carry,
+        Self::Blown,
+        Self::Turn,
+        Self::Stage,
+        Self::Staged,
         Self::Bending,
         Self::Bent,
         Self::Predict,
@@ -108,6 +124,11 @@ impl Kernel {
         Self::Normals,
     ];
 
+    /// Whether it runs stage by stage in a substep.
+    pub fn in_stages(self) -> bool {
+        matches!(self, Self::Turn | Self::Stage | Self::Staged)
+    }
+
     /// Its number among [`Kernel::ALL`].
     pub fn number(self) -> usize {
         self as usize
@@ -116,14 +137,16 @@ impl Kernel {
     /// Which of `toile_engine::cloth::program::STAGES` it counts towards.
     pub fn stage(self) -> usize {
         match self {
-            Self::Jump | Self::Predict | Self::Guard | Self::Publish | Self::Conclude => 0,
+            Self::Repair | Self::Jump | Self::Carry | Self::Predict => 0,
+            Self::Guard | Self::Publish | Self::Conclude => 0,
+            Self::Turn | Self::Stage | Self::Staged | Self::Bending | Self::Bent => 1,
             // What is drawn goes with what is published.
             Self::Faces | Self::Normals => 0,
-            Self::Bending | Self::Bent => 1,
             Self::Diagonals | Self::Shear => 2,
             Self::Weft => 3,
             Self::Lists | Self::Fibers => 4,
             Self::Near | Self::Contact | Self::Settle => 5,
+            Self::Wind | Self::Blown => 6,
             Self::Tethers => 7,
         }
     }
@@ -131,9 +154,13 @@ impl Kernel {
     /// Its shader among [`SHADERS`], and its entry point there.
     pub fn entry(self) -> (usize, &'static str) {
         let name = match self {
+            Self::Repair => "repair",
             Self::Jump => "jump",
-            Self::Bending => "bending",
-            Self::Bent => "bent",
+            Self::Wind | Self::Blown => "wind",
+            Self::Carry => "carry",
+            Self::Turn => "turn",
+            Self::Bending | Self::Stage => "bending",
+            Self::Bent | Self::Staged => "bent",
             Self::Predict => "predict",
             Self::Diagonals => "diagonals",
             Self::Shear | Self::Weft => "links",
@@ -150,6 +177,9 @@ impl Kernel {
         let shader = SHADERS.iter().position(|s| s.name == name).unwrap_or(0);
         let entry = match self {
             Self::Near => "near",
+            Self::Blown => "blown",
+            Self::Stage => "stage",
+            Self::Staged => "staged",
             Self::Conclude => "conclude",
             _ => name,
         };
@@ -160,25 +190,19 @@ impl Kernel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
-    use wgpu::naga::{AddressSpace, StorageAccess, front::wgsl};
+    use crate::shader::valid;
 
     #[test]
     fn every_shader_is_valid_without_any_capability_and_bound_as_it_is_said_to_be() {
-        for shader in SHADERS {
-            let module = wgsl::parse_str(&shader.source())
-                .unwrap_or_else(|e| panic!("{}: {}", shader.name, e.emit_to_string(&shader.source())));
-            let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
-            validator.validate(&module).unwrap_or_else(|e| panic!("{}: {e:?}", shader.name));
-            let mut reads = vec![None; shader.reads.len()];
-            for (_, variable) in module.global_variables.iter() {
-                let Some(binding) = variable.binding.filter(|b| b.group == 1) else { continue };
-                let AddressSpace::Storage { access } = variable.space else { panic!("{}: not storage", shader.name) };
-                reads[binding.binding as usize] = Some(!access.contains(StorageAccess::STORE));
-            }
-            let said: Vec<_> = shader.reads.iter().map(|r| Some(*r)).collect();
-            assert_eq!(reads, said, "{}", shader.name);
-        }
+        SHADERS.iter().for_each(|shader| valid(shader, 1));
+    }
+
+    #[test]
+    fn shaders_have_the_engines_limits() {
+        let most = format!("const MOST_STAGES = {}u;", toile_engine::cloth::stages::MOST);
+        let air = 0.25 * toile_engine::cloth::wind::AIR_DENSITY;
+        assert!(COMMON.contains(&most));
+        assert!(SHADERS.iter().any(|s| s.source().contains(&format!("const AIR = {air};"))));
     }
 
     #[test]

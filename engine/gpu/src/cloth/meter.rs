@@ -11,6 +11,7 @@ use wgpu::{
 
 use super::Offload;
 use super::ring::Ring;
+use super::step::Asked;
 use crate::device::Device;
 
 /// Most passes of a step that are metered, what one set of queries holds; later ones go unmetered with the last.
@@ -120,10 +121,10 @@ impl Meter {
 
 impl Offload {
     /// A whole step, a pass for each run of dispatches of one stage.
-    pub(super) fn metered(&self, encoder: &mut CommandEncoder, jumps: bool, meter: &mut Meter) {
+    pub(super) fn metered(&self, encoder: &mut CommandEncoder, asked: Asked, meter: &mut Meter) {
         meter.stages.clear();
         let mut entries = Vec::new();
-        self.entries(jumps, |entry, substep, garments| entries.push((entry, substep, garments)));
+        self.entries(asked, |entry, substep, garments| entries.push((entry, substep, garments)));
         for run in entries.chunk_by(|a, b| a.0.kernel.stage() == b.0.kernel.stage()) {
             let mut pass = meter.pass(encoder, run[0].0.kernel.stage() as u8);
             run.iter().for_each(|(entry, substep, garments)| self.dispatch(&mut pass, entry, *substep, *garments));

@@ -84,6 +84,8 @@ pub struct Offload {
     sets: usize,
     /// Garments that make a substep, by its number, for the step under way.
     active: Vec<u32>,
+    /// The most stages that any garment's bending takes, 0 where all is a force.
+    stages: u32,
     quality: Quality,
     settings_seen: Option<Settings>,
 }
@@ -93,14 +95,14 @@ impl Offload {
     /// of each one's body are which limb's. At load: some tenths of a second, most of them for the pipelines.
     ///
     /// # Errors
-    /// [`GpuError`]: no adapter, limits too small, or a garment or a setting that only the CPU can take.
+    /// [`GpuError`]: no adapter, or limits too small.
     pub fn new(
         choice: &Choice,
         garments: &[&Garment],
         colliders: &[&Colliders],
         settings: &Settings,
     ) -> Result<Self, GpuError> {
-        let laid = Laid::new(garments, colliders, settings, false)?;
+        let laid = Laid::new(garments, colliders, settings, false);
         let opened = Opened::new(choice, laid.needs())?;
         Self::lay(Arc::new(opened), laid, garments, settings)
     }
@@ -133,11 +135,8 @@ impl Offload {
     }
 
     /// What a device has to be opened with to step these garments and to draw them. At load: some milliseconds a garment.
-    ///
-    /// # Errors
-    /// [`GpuError::Unsupported`].
-    pub fn needs(garments: &[&Garment], colliders: &[&Colliders], settings: &Settings) -> Result<Needs, GpuError> {
-        Ok(Laid::new(garments, colliders, settings, true)?.needs())
+    pub fn needs(garments: &[&Garment], colliders: &[&Colliders], settings: &Settings) -> Needs {
+        Laid::new(garments, colliders, settings, true).needs()
     }
 
     fn on_either(
@@ -149,8 +148,8 @@ impl Offload {
     ) -> Result<Self, GpuError> {
         // On a device that is lost no buffer can be made.
         opened.device.sound()?;
-        let laid = Laid::new(garments, colliders, settings, drawn)?;
-        opened.device.bears(laid.needs())?;
+        let laid = Laid::new(garments, colliders, settings, drawn);
+        opened.device.takes(laid.needs())?;
         Self::lay(Arc::clone(opened), laid, garments, settings)
     }
 
@@ -197,6 +196,7 @@ impl Offload {
             planes,
             sets,
             active,
+            stages: 0,
             quality: settings.quality,
             settings_seen: None,
         })
@@ -275,25 +275,19 @@ struct Laid {
 
 impl Laid {
     /// Lays garments out; where they are `drawn`, what normals are made of as well.
-    fn new(
-        garments: &[&Garment],
-        colliders: &[&Colliders],
-        settings: &Settings,
-        drawn: bool,
-    ) -> Result<Self, GpuError> {
+    fn new(garments: &[&Garment], colliders: &[&Colliders], settings: &Settings, drawn: bool) -> Self {
         let settings = &settings.sound();
         let mut prepared: Vec<Prepared> = garments.iter().map(|g| Prepared::new(g)).collect();
         for (garment, prepared) in garments.iter().zip(&mut prepared) {
             prepared.make(garment, settings);
-            takes(garment, prepared, settings)?;
         }
         let mut flat = Flat::new(garments, colliders);
         if drawn {
             flat.draw(garments);
         }
-        let program = Program::new(&flat);
+        let program = Program::new(&flat, prepared.iter().any(Prepared::stiff));
         let sets = 1 + most_substeps(garments, &prepared);
-        Ok(Self { flat, program, prepared, sets })
+        Self { flat, program, prepared, sets }
     }
 
     fn needs(&self) -> Needs {
@@ -308,16 +302,12 @@ fn most_substeps(garments: &[&Garment], prepared: &[Prepared]) -> usize {
     best.chain(now).max().unwrap_or(1).min(MAX_SUBSTEPS) as usize
 }
 
-/// Whether a garment can be stepped here with these settings.
-fn takes(garment: &Garment, prepared: &Prepared, settings: &Settings) -> Result<(), GpuError> {
-    let root = settings.root;
-    let refused = [
-        (prepared.bend.stages > 1, "its bending is stiffer than a substep carries, which takes stages"),
-        (settings.wind.is_some(), "there is wind"),
-        ([root.linear, root.angular, root.centrifugal] != [1.0; 3], "part of the root's motion is not to be felt"),
-    ];
-    match refused.into_iter().find(|(is, _)| *is) {
-        None => Ok(()),
-        Some((_, what)) => Err(GpuError::Unsupported { garment: garment.name.clone(), what }),
+/// Whether a garment can be stepped here with these settings: whether so many sets of capsules are one for the step and one
+/// for each substep.
+fn takes(garment: &Garment, prepared: &Prepared, sets: usize) -> Result<(), GpuError> {
+    if (prepared.substeps as usize) < sets {
+        return Ok(());
     }
+    let what = "the settings ask for more substeps than it was laid out for";
+    Err(GpuError::Unsupported { garment: garment.name.clone(), what })
 }

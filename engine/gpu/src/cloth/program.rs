@@ -23,10 +23,10 @@ pub struct Entry {
 pub struct Program {
     /// Workgroups that entries refer to, and where each begins among all.
     pub tables: Vec<(Groups, u32)>,
-    /// Before the first substep, where a root has jumped.
-    pub jump: Vec<Entry>,
-    /// Before the first substep.
+    /// Before the first substep; of wind, jumps and what is not to be felt of the root only what the step has.
     pub before: Vec<Entry>,
+    /// Each stage of bending that is stiffer than a substep, and the first behind the last; none where none can be.
+    pub stages: Vec<Entry>,
     /// Each substep at the quality `draft`.
     pub draft: Vec<Entry>,
     /// Each substep at the others.
@@ -39,6 +39,7 @@ pub struct Program {
 struct Tables {
     everyone: usize,
     bending: usize,
+    wind: usize,
     diagonals: Vec<usize>,
     shear: Vec<usize>,
     weft: Vec<usize>,
@@ -47,12 +48,13 @@ struct Tables {
 }
 
 impl Program {
-    /// Of a scene.
-    pub fn new(flat: &Flat) -> Self {
+    /// Of a scene; `stiff` says whether any garment's bending may have to go in stages.
+    pub fn new(flat: &Flat, stiff: bool) -> Self {
         let mut this = Self::default();
         let tables = Tables {
             everyone: this.table(&flat.everyone),
             bending: this.table(&flat.bending.groups),
+            wind: this.table(&flat.wind.groups),
             diagonals: flat.diagonals.families.iter().map(|g| this.table(g)).collect(),
             shear: flat.shear.halves.iter().map(|g| this.table(g)).collect(),
             weft: flat.weft.halves.iter().map(|g| this.table(g)).collect(),
@@ -60,8 +62,13 @@ impl Program {
             fibers: this.table(&flat.fibers.groups),
         };
         let all = |kernel| Entry { kernel, table: tables.everyone, fresh: false, op: 0 };
-        this.jump = vec![all(Kernel::Jump)];
-        this.before = vec![all(Kernel::Near)];
+        let first = [Kernel::Repair, Kernel::Jump, Kernel::Near];
+        let forces = [Entry { table: tables.wind, ..all(Kernel::Wind) }, all(Kernel::Carry), all(Kernel::Blown)];
+        this.before = first.map(all).into_iter().chain(forces).collect();
+        if stiff {
+            let stage = Entry { table: tables.bending, ..all(Kernel::Stage) };
+            this.stages = vec![all(Kernel::Turn), stage, all(Kernel::Staged)];
+        }
         this.draft = this.substep(&tables, false);
         this.whole = this.substep(&tables, true);
         this.after = vec![all(Kernel::Guard), all(Kernel::Publish), all(Kernel::Conclude)];
@@ -75,7 +82,7 @@ impl Program {
 
     /// Gives each entry the number of its constants; those of a draft are among the whole substep's.
     fn number(&mut self) {
-        let whole = self.jump.iter_mut().chain(&mut self.before).chain(&mut self.whole).chain(&mut self.after);
+        let whole = self.before.iter_mut().chain(&mut self.stages).chain(&mut self.whole).chain(&mut self.after);
         (0..).zip(whole).for_each(|(op, entry)| entry.op = op);
         for entry in &mut self.draft {
             let same = |e: &&Entry| (e.kernel, e.table, e.fresh) == (entry.kernel, entry.table, entry.fresh);
@@ -90,7 +97,7 @@ impl Program {
 
     /// Every entry there is: what has to have constants of its own.
     pub fn entries(&self) -> impl Iterator<Item = &Entry> {
-        self.jump.iter().chain(&self.before).chain(&self.whole).chain(&self.after)
+        self.before.iter().chain(&self.stages).chain(&self.whole).chain(&self.after)
     }
 
     /// The workgroups of all tables, as one list.

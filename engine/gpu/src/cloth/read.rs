@@ -2,9 +2,11 @@
 
 use glam::Vec3A;
 use toile_assets::garment::Garment;
+use toile_engine::cloth::guard::{self, Spoil};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, ComputePassDescriptor, MapMode};
 
-use super::buffers::{Buffers, REPORT};
+use super::buffers::REPORT;
+use super::flat::Span;
 use super::kernels::Kernel;
 use super::meter::Meter;
 use super::{Offload, Step};
@@ -43,6 +45,7 @@ impl Offload {
                 for (to, from) in [(&mut own.positions, good), (&mut own.velocities, speeds)] {
                     to.iter_mut().zip(&from[all.clone()]).for_each(|(to, p)| *to = Vec3A::new(p[0], p[1], p[2]));
                 }
+                own.events.repaired = report[4].into();
                 (own.events.speed_limited, own.events.rolled_back) = (report[0].into(), report[3].into());
             }
         });
@@ -70,17 +73,45 @@ impl Offload {
         }
         let places: Vec<[f32; 4]> = x.iter().zip(start).map(|(p, s)| [p.x, p.y, p.z, s[3]]).collect();
         let speeds: Vec<[f32; 4]> = v.iter().zip(start).map(|(v, _)| [v.x, v.y, v.z, 0.0]).collect();
-        let good: Vec<[f32; 4]> = own.positions.iter().map(|p| [p.x, p.y, p.z, 1.0]).collect();
-        let Buffers { state, good: last, .. } = &self.buffers;
-        let all = self.flat.particles;
-        for (buffer, part, numbers) in [(state, 0, &places), (state, 1, &places), (state, 2, &speeds), (last, 0, &good)]
-        {
+        let (state, all) = (&self.buffers.state, self.flat.particles);
+        for (part, numbers) in (0..).zip([&places, &places, &speeds]) {
             let at = 16 * u64::from(part * all + span.first);
-            self.opened.device.queue.write_buffer(buffer, at, bytemuck::cast_slice(numbers));
+            self.opened.device.queue.write_buffer(state, at, bytemuck::cast_slice(numbers));
+        }
+        // What is finite is a good place.
+        let finite = |p: &[f32; 4]| p.iter().all(|n| n.is_finite());
+        let mut first = u64::from(span.first);
+        for some in places[..places.len().min(span.len as usize)].chunk_by(|a, b| finite(a) == finite(b)) {
+            if some.iter().all(finite) {
+                self.opened.device.queue.write_buffer(&self.buffers.good, 16 * first, bytemuck::cast_slice(some));
+            }
+            first += some.len() as u64;
         }
     }
 
-    /// Runs the dispatches of one kernel alone, as in one substep: how a test holds it against its twin. Where a kernel has
+    /// Spoils the state between two steps, as a fault of the memory or of the driver would: what [`guard::spoil`] picks by
+    /// `seed`. Twin of `Cloth::upset`.
+    pub fn upset(&mut self, garment: usize, seed: u64) {
+        let span = self.flat.spans[self.own[garment].place];
+        if span.len == 0 {
+            return;
+        }
+        for (i, what) in guard::spoil(seed, span.len as usize) {
+            let at = span.first + i as u32;
+            let (first, numbers) = match what {
+                Spoil::Place(x) => (at, x.extend(self.flat.start[at as usize][3])),
+                Spoil::Velocity(v) => (2 * self.flat.particles + at, v.extend(0.0)),
+            };
+            let bytes = numbers.to_array();
+            self.opened.device.queue.write_buffer(
+                &self.buffers.state,
+                16 * u64::from(first),
+                bytemuck::cast_slice(&bytes),
+            );
+        }
+    }
+
+    /// Runs the dispatches of one kernel alone, as in one substep, or one stage of it: how a test holds it against its twin. Where a kernel has
     /// several passes in a substep, the first.
     ///
     /// # Errors
@@ -117,20 +148,26 @@ impl Offload {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn particles(&self, garment: usize) -> Result<Particles, GpuError> {
+        let numbers = self.numbers(&self.buffers.state)?;
         let span = self.flat.spans[self.own[garment].place];
-        let all = self.fetch(&self.buffers.state)?;
-        let part = |part: u32| {
-            let first = (part * self.flat.particles + span.first) as usize;
-            all[first..first + span.len as usize].to_vec()
-        };
+        let part = |part: u32| vectors(&numbers[(part * self.flat.particles) as usize..], span);
         Ok(Particles { x: part(0), previous: part(1), v: part(2) })
     }
 
-    /// Reads a buffer of threes, and waits for them.
-    pub(super) fn fetch(&self, from: &Buffer) -> Result<Vec<Vec3A>, GpuError> {
+    /// Reads the accelerations besides gravity of a garment's particles (m/s2) `[particles]`, and waits for them: the wind's and
+    /// the root's, of the last step that had any. Never in the frame.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`].
+    pub fn accelerations(&self, garment: usize) -> Result<Vec<Vec3A>, GpuError> {
+        let numbers = self.numbers(&self.buffers.pushed)?;
+        Ok(vectors(&numbers, self.flat.spans[self.own[garment].place]))
+    }
+
+    /// All that a buffer holds.
+    pub(super) fn numbers(&self, from: &Buffer) -> Result<Vec<[f32; 4]>, GpuError> {
         let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
-        let descriptor =
-            BufferDescriptor { label: Some("fetched"), size: from.size(), usage, mapped_at_creation: false };
+        let descriptor = BufferDescriptor { label: Some("read"), size: from.size(), usage, mapped_at_creation: false };
         let to = self.opened.device.device.create_buffer(&descriptor);
         let mut encoder = self.encoder();
         encoder.copy_buffer_to_buffer(from, 0, &to, 0, from.size());
@@ -139,7 +176,12 @@ impl Offload {
         self.opened.device.finish();
         self.opened.device.sound()?;
         let bytes = to.get_mapped_range(..).map_err(|e| GpuError::Lost(e.to_string()))?;
-        let numbers: &[[f32; 4]] = bytemuck::cast_slice(&bytes);
-        Ok(numbers.iter().map(|p| Vec3A::new(p[0], p[1], p[2])).collect())
+        Ok(bytemuck::cast_slice(&bytes).to_vec())
     }
+}
+
+/// A garment's part of some vectors.
+pub(super) fn vectors(from: &[[f32; 4]], span: Span) -> Vec<Vec3A> {
+    let own = &from[span.first as usize..(span.first + span.len) as usize];
+    own.iter().map(|p| Vec3A::new(p[0], p[1], p[2])).collect()
 }

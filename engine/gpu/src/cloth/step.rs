@@ -5,36 +5,38 @@ use toile_assets::garment::Garment;
 use toile_assets::limits::MAX_CAPSULES;
 use toile_engine::cloth::Settings;
 use toile_engine::cloth::contact::ContactSettings;
+use toile_engine::cloth::prepared::Prepared;
 use toile_engine::cloth::root::RootStep;
 use wgpu::{CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor};
 
-use super::buffers::{ALIGNED, Buffers};
-use super::constants::{CARRY, Constants, DRESS, columns};
+use super::buffers::{Buffers, STAGES};
+use super::constants::{CARRY, COMPENSATE, Constants, DRESS, carried, columns};
 use super::flat::{Scale, WIDTH};
 use super::kernels::Kernel;
 use super::program::Entry;
 use super::touch::{self, FlatCone, PLANES};
 use super::{Offload, Step, takes};
 use crate::device::GpuError;
+use crate::maker::ALIGNED;
 
 impl Offload {
     /// Takes in what has come back, and sends the next step of every garment on its way; waits for nothing. `steps` has
     /// each garment's surroundings in their order; the settings are those of the first.
     ///
     /// # Errors
-    /// [`GpuError`]: the device was lost, or a setting that only the CPU can take. Nothing has been sent then, and the
+    /// [`GpuError`]: the device was lost, or the settings ask for too many substeps. Nothing has been sent then, and the
     /// positions are those that came back last.
     pub fn step(&mut self, garments: &[&Garment], steps: &[Step<'_>]) -> Result<(), GpuError> {
         self.take()?;
         let Some(first) = steps.first() else { return Ok(()) };
         let settings = first.settings.sound();
         self.prepare(garments, &settings)?;
-        let jumps = self.begin(garments, steps, &settings);
+        let asked = self.begin(garments, steps, &settings);
         let mut encoder = self.encoder();
         let meter = if settings.timed { self.meter.take() } else { None };
         match meter {
             Some(mut meter) => {
-                self.metered(&mut encoder, jumps, &mut meter);
+                self.metered(&mut encoder, asked, &mut meter);
                 self.submit(encoder);
                 meter.ask();
                 self.meter = Some(meter);
@@ -42,7 +44,7 @@ impl Offload {
             None => {
                 let descriptor = ComputePassDescriptor { label: Some("step"), ..Default::default() };
                 let mut pass = encoder.begin_compute_pass(&descriptor);
-                self.entries(jumps, |entry, substep, garments| self.dispatch(&mut pass, entry, substep, garments));
+                self.entries(asked, |entry, substep, garments| self.dispatch(&mut pass, entry, substep, garments));
                 drop(pass);
                 self.submit(encoder);
             }
@@ -57,7 +59,7 @@ impl Offload {
     /// Sends commands, and what they leave behind them back.
     fn submit(&mut self, mut encoder: CommandEncoder) {
         let Buffers { good, state, reports, .. } = &self.buffers;
-        let velocities = state.slice(2 * good.size()..);
+        let velocities = state.slice(2 * good.size()..3 * good.size());
         let place = self.ring.send(&mut encoder, &[good.slice(..), velocities, reports.slice(..)]);
         self.opened.device.queue.submit([encoder.finish()]);
         if let Some(place) = place {
@@ -75,11 +77,7 @@ impl Offload {
         for (own, garment) in self.own.iter_mut().zip(garments) {
             own.prepared.make(garment, settings);
             own.root.settings = settings.root;
-            takes(garment, &own.prepared, settings)?;
-            if own.prepared.substeps as usize >= self.sets {
-                let what = "the settings ask for more substeps than it was laid out for";
-                return Err(GpuError::Unsupported { garment: garment.name.clone(), what });
-            }
+            takes(garment, &own.prepared, self.sets)?;
         }
         for (place, &k) in self.flat.order.iter().enumerate() {
             let (prepared, queue, buffers) = (&self.own[k].prepared, &self.opened.device.queue, &self.buffers);
@@ -97,7 +95,13 @@ impl Offload {
             });
             let scales = bytemuck::cast_slice(&self.flat.bending.scales[range.clone()]);
             queue.write_buffer(&buffers.scales, 4 * range.start as u64, scales);
+            if prepared.bending.stages > 1 {
+                let (stages, first) = (stages(prepared), 16 * (place * STAGES) as u64);
+                queue.write_buffer(&buffers.stages, first, bytemuck::cast_slice(&stages));
+            }
         }
+        self.stages =
+            self.own.iter().map(|own| own.prepared.bending.stages).filter(|stages| *stages > 1).max().unwrap_or(0);
         for (substep, active) in (0..).zip(&mut self.active) {
             *active = self.own.iter().filter(|own| own.prepared.substeps > substep).count() as u32;
         }
@@ -106,9 +110,9 @@ impl Offload {
         Ok(())
     }
 
-    /// What comes before the substeps: targets of the skinned particles, the roots. Gives whether any root has jumped.
-    pub(super) fn begin(&mut self, garments: &[&Garment], steps: &[Step<'_>], settings: &Settings) -> bool {
-        let mut jumps = false;
+    /// What comes before the substeps: targets of the skinned particles, the roots.
+    pub(super) fn begin(&mut self, garments: &[&Garment], steps: &[Step<'_>], settings: &Settings) -> Asked {
+        let mut asked = Asked { wind: settings.wind.is_some(), ..Asked::default() };
         for ((own, garment), step) in self.own.iter_mut().zip(garments).zip(steps) {
             own.events.held_settings += u64::from(*settings != *step.settings);
             own.events.held_pins += own.pins.attach(garment, step.palette);
@@ -119,19 +123,24 @@ impl Offload {
             *constants = Constants::new(garment, &own.prepared, settings);
             constants.root = columns(&step.palette[0]);
             match own.root.advance(&root, settings.step_seconds) {
-                RootStep::Plain | RootStep::Carried(_) => {}
+                RootStep::Plain => {}
+                RootStep::Carried(felt_less) => {
+                    constants.bits |= COMPENSATE;
+                    constants.carried = carried(&felt_less);
+                    asked.carried = true;
+                }
                 RootStep::Keep(moved) => {
                     constants.bits |= CARRY;
                     constants.motion = columns(&moved.motion);
                     own.pins.start.iter_mut().for_each(|p| *p = moved.point(*p));
                     own.events.teleports += 1;
-                    jumps = true;
+                    asked.jumps = true;
                 }
                 RootStep::Reset => {
                     constants.bits |= DRESS;
                     own.pins.rest();
                     own.events.teleports += 1;
-                    jumps = true;
+                    asked.jumps = true;
                 }
             }
             let first = 2 * self.flat.pins_from[own.place] as usize;
@@ -143,7 +152,7 @@ impl Offload {
         self.touch(garments, steps, settings);
         self.opened.device.queue.write_buffer(&self.buffers.garments, 0, bytemuck::cast_slice(&self.constants));
         self.opened.device.queue.write_buffer(&self.buffers.targets, 0, bytemuck::cast_slice(&self.targets));
-        jumps
+        asked
     }
 
     /// What each garment may touch, for every substep.
@@ -168,21 +177,32 @@ impl Offload {
         queue.write_buffer(&self.buffers.planes, 0, bytemuck::cast_slice(&self.planes));
     }
 
-    /// All dispatches of a step, in their order: what runs, in which substep, over how many garments.
-    pub(super) fn entries<'a>(&'a self, jumps: bool, mut run: impl FnMut(&'a Entry, u32, usize)) {
+    /// All dispatches of a step, in their order: what runs, in which substep or stage, over how many garments.
+    pub(super) fn entries<'a>(&'a self, asked: Asked, mut run: impl FnMut(&'a Entry, u32, usize)) {
         let all = self.own.len();
-        if jumps {
-            self.program.jump.iter().for_each(|entry| run(entry, 0, all));
-        }
-        self.program.before.iter().for_each(|entry| run(entry, 0, all));
+        let before = self.program.before.iter().filter(|entry| asked.runs(entry.kernel));
+        before.for_each(|entry| run(entry, 0, all));
         for (substep, &active) in (0..).zip(&self.active).take_while(|(_, active)| **active > 0) {
+            self.staged(active as usize, &mut run);
             self.program.each(self.quality).iter().for_each(|entry| run(entry, substep, active as usize));
         }
         self.program.after.iter().for_each(|entry| run(entry, 0, all));
     }
 
-    /// One dispatch over the first so many garments.
-    pub(super) fn dispatch(&self, pass: &mut ComputePass<'_>, entry: &Entry, substep: u32, garments: usize) {
+    /// Those of bending that is stiffer than a substep: a turn before the forces of each stage, and one behind the last.
+    fn staged<'a>(&'a self, active: usize, run: &mut impl FnMut(&'a Entry, u32, usize)) {
+        if self.stages == 0 {
+            return;
+        }
+        for stage in 0..=self.stages {
+            let entries = self.program.stages.iter().filter(|e| stage < self.stages || e.kernel == Kernel::Turn);
+            entries.for_each(|entry| run(entry, stage, active));
+        }
+    }
+
+    /// One dispatch over the first so many garments, in a substep, or in a stage if the kernel has stages.
+    pub(super) fn dispatch(&self, pass: &mut ComputePass<'_>, entry: &Entry, at: u32, garments: usize) {
+        let moment = if entry.kernel.in_stages() { self.sets as u32 + at } else { at };
         let groups = match entry.kernel {
             // An invocation a garment.
             Kernel::Conclude => (garments as u32).div_ceil(WIDTH),
@@ -192,8 +212,41 @@ impl Offload {
             return;
         }
         pass.set_pipeline(self.opened.pipelines.of(entry.kernel));
-        pass.set_bind_group(0, &self.buffers.scene, &[entry.op, substep].map(|k| k * ALIGNED as u32));
+        pass.set_bind_group(0, &self.buffers.scene, &[entry.op, moment].map(|k| k * ALIGNED as u32));
         pass.set_bind_group(1, &self.buffers.own[entry.kernel.number()], &[]);
         pass.dispatch_workgroups(groups, 1, 1);
     }
+}
+
+/// Which dispatches before the substeps a step asks for that not every step does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Asked {
+    /// A root has jumped.
+    jumps: bool,
+    /// Part of a root's motion is not to be felt.
+    carried: bool,
+    /// There is wind.
+    wind: bool,
+}
+
+impl Asked {
+    /// Whether a kernel is to run.
+    fn runs(self, kernel: Kernel) -> bool {
+        match kernel {
+            Kernel::Jump => self.jumps,
+            Kernel::Carry => self.carried,
+            Kernel::Wind | Kernel::Blown => self.wind,
+            _ => true,
+        }
+    }
+}
+
+/// A garment's stages as `shaders/turn.wgsl` has them, and what their forces are multiplied by.
+fn stages(p: &Prepared) -> [[f32; 4]; STAGES] {
+    // The first stage's forces are those of the place ahead, over the substep.
+    let by = |j: usize, forced: f32| if j == 0 { p.dt } else { forced * p.dt * p.dt };
+    std::array::from_fn(|j| {
+        let s = p.stages[j];
+        [s.ahead, s.behind, s.forced, by(j, s.forced)]
+    })
 }

@@ -10,16 +10,10 @@
 @group(1) @binding(3) var<storage, read> terms: array<vec2<u32>>;
 @group(1) @binding(4) var<storage, read> curvatures: array<vec4<f32>>;
 
-@compute @workgroup_size(64)
-fn bent(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    let group = groups[op.first + at.x];
-    if (lane >= group.z || now.substep % garments[group.x].bend_every != 0u) {
-        return;
-    }
-    let i = group.y + lane;
-    let velocity = 2u * op.particles + i;
+// What pushes particle `i`, taken from what lies at a part of the state.
+fn push(part: u32, i: u32) {
     let w = state[i].w;
-    var v = state[velocity].xyz;
+    var v = state[part + i].xyz;
     for (var e = starts[i]; e < starts[i + 1u]; e += 1u) {
         let entry = entries[e];
         let curvature = entry.x & 0x3FFFFFFFu;
@@ -27,13 +21,34 @@ fn bent(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) l
         if (sums == 0u) {
             v = v - curvatures[curvature].xyz * bitcast<f32>(entry.y);
         } else {
-            var push = curvatures[curvature].xyz * bitcast<f32>(terms[items[curvature].x + entry.y].y);
+            var shove = curvatures[curvature].xyz * bitcast<f32>(terms[items[curvature].x + entry.y].y);
             for (var s = 1u; s < sums; s += 1u) {
                 let c = bitcast<f32>(terms[items[curvature + s].x + entry.y].y);
-                push = push + curvatures[curvature + s].xyz * c;
+                shove = shove + curvatures[curvature + s].xyz * c;
             }
-            v = v - push * w;
+            v = v - shove * w;
         }
     }
-    state[velocity] = vec4<f32>(v, 0.0);
+    state[part + i] = vec4<f32>(v, 0.0);
+}
+
+@compute @workgroup_size(64)
+fn bent(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let group = groups[op.first + at.x];
+    let g = group.x;
+    if (lane >= group.z || 1u < garments[g].stages || now.substep % garments[g].bend_every != 0u) {
+        return;
+    }
+    push(2u * op.particles, group.y + lane);
+}
+
+// The same in a stage: what is pushed is r, then the newest change of velocity.
+@compute @workgroup_size(64)
+fn staged(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let group = groups[op.first + at.x];
+    let last = garments[group.x].stages;
+    if (lane >= group.z || last < 2u || last <= now.stage) {
+        return;
+    }
+    push(select(after_stage(now.stage + 1u), room(0u), now.stage == 0u), group.y + lane);
 }

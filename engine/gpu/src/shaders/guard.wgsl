@@ -11,22 +11,14 @@ struct Report {
     rolled: u32,
     // All that were.
     rolled_back: u32,
+    // Particles that were put back when a step began.
+    repaired: u32,
 }
 
 @group(1) @binding(0) var<storage, read_write> reports: array<Report>;
 
-const FARTHEST_M = 10000.0;
-const LEAST = 1e-12;
-
-// What is next to nothing is nothing.
-fn calm(v: vec3<f32>) -> vec3<f32> {
-    return select(v, vec3<f32>(0.0), abs(v) < vec3<f32>(LEAST));
-}
-
-// Asked by the bits: a compiler may take every number for one.
 fn sound(v: vec3<f32>) -> bool {
-    let exponents = bitcast<vec3<u32>>(v) & vec3<u32>(0x7F800000u);
-    return all(exponents != vec3<u32>(0x7F800000u)) && all(abs(v) <= vec3<f32>(FARTHEST_M));
+    return finite(v) && within_reach(v);
 }
 
 @compute @workgroup_size(64)

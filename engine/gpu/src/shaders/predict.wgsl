@@ -1,9 +1,11 @@
-// Predict: gravity and air move every free particle; the skinned ones follow the body. Twin of `cloth/predict.rs`.
+// Predict: gravity, air and wind move every free particle; the skinned ones follow the body. Twin of `cloth/predict.rs`.
 
 // Which target each particle follows; NONE where it is free [particles].
 @group(1) @binding(0) var<storage, read> pins: array<u32>;
 // Where each skinned particle is at the start and at the end of the step [2 * pins].
 @group(1) @binding(1) var<storage, read> targets: array<vec4<f32>>;
+// Accelerations besides gravity (m/s2) [particles].
+@group(1) @binding(2) var<storage, read> pushed: array<vec4<f32>>;
 
 const NONE = 0xFFFFFFFFu;
 
@@ -21,7 +23,15 @@ fn predict(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index
     let velocity = 2u * op.particles + i;
     // A skinned particle has no velocity of its own.
     let kept = select(0.0, garments[g].kept, 0.0 < particle.w);
-    let v = (state[velocity].xyz + garments[g].fall) * kept;
+    var v = state[velocity].xyz;
+    // Stages have accelerated everything already.
+    if (garments[g].stages < 2u) {
+        v = v + garments[g].fall;
+        if ((garments[g].bits & (WIND | COMPENSATE)) != 0u) {
+            v = v + pushed[i].xyz * garments[g].dt;
+        }
+    }
+    v = v * kept;
     state[velocity] = vec4<f32>(v, 0.0);
     var to = x + v * garments[g].dt;
     let pin = pins[i];

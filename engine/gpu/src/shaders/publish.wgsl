@@ -6,6 +6,7 @@ struct Report {
     unsound: u32,
     rolled: u32,
     rolled_back: u32,
+    repaired: u32,
 }
 
 @group(1) @binding(0) var<storage, read_write> reports: array<Report>;
@@ -13,8 +14,6 @@ struct Report {
 @group(1) @binding(1) var<storage, read_write> good: array<vec4<f32>>;
 // Where each particle starts, in the rest pose [particles].
 @group(1) @binding(2) var<storage, read> start: array<vec4<f32>>;
-
-const FARTHEST_M = 10000.0;
 
 @compute @workgroup_size(64)
 fn publish(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
@@ -34,7 +33,7 @@ fn publish(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index
         let s = start[i].xyz;
         let root = garments[g].root;
         let dressed = root[0].xyz * s.x + root[1].xyz * s.y + root[2].xyz * s.z + root[3].xyz;
-        if (all(abs(dressed) <= vec3<f32>(FARTHEST_M))) {
+        if (within_reach(dressed)) {
             goal = goal * (1.0 - towards) + dressed * towards;
         }
     }

@@ -6,6 +6,7 @@ struct Report {
     unsound: atomic<u32>,
     rolled: u32,
     rolled_back: u32,
+    repaired: u32,
 }
 
 @group(1) @binding(0) var<storage, read_write> reports: array<Report>;

@@ -41,7 +41,7 @@ fn twin(positions: &[Vec3A], garment: &Garment) -> Vec<Vec3> {
 fn normals_are_the_twins_before_and_after_every_step() {
     let (one, other, settings, nobody) = (skirt(20, Stretch::Physical), worn("t-shirt"), Settings::default(), nobody());
     let (garments, colliders) = ([&one, &other], [&nobody, &nobody]);
-    let needs = Offload::needs(&garments, &colliders, &settings).expect("the garments are taken");
+    let needs = Offload::needs(&garments, &colliders, &settings);
     let Some(device) = device(needs) else { return };
     let opened = Arc::new(Opened::on(device.clone()).expect("every driver takes the kernels"));
     let mut gpu = Offload::drawn(&opened, &garments, &colliders, &settings).expect("the device has what they need");
@@ -92,7 +92,7 @@ fn a_fault_of_one_side_is_known_to_the_other() {
 #[test]
 fn a_scene_too_large_for_the_device_is_refused_with_the_limit() {
     let Some(device) = device(Needs::default()) else { return };
-    assert_eq!(device.bears(Needs { largest: 1 << 20, workgroups: 8 }), Ok(()));
-    let error = device.bears(Needs { largest: 1 << 40, workgroups: 8 }).expect_err("it was opened for less");
+    assert_eq!(device.takes(Needs { largest: 1 << 20, workgroups: 8 }), Ok(()));
+    let error = device.takes(Needs { largest: 1 << 40, workgroups: 8 }).expect_err("it was opened for less");
     assert!(matches!(error, GpuError::TooSmall { .. }) && error.to_string().contains("buffer"), "{error}");
 }

@@ -7,9 +7,14 @@ use toile_assets::scene::skirt::Stretch;
 use toile_engine::cloth::bending::{self, Bend};
 use toile_engine::cloth::pins::Pins;
 use toile_engine::cloth::prepared::Prepared;
+use toile_engine::cloth::root::{RootMotion, RootStep};
+use toile_engine::cloth::stages::{self, Turn};
 use toile_engine::cloth::state::{self, Columns, State};
-use toile_engine::cloth::{Settings, diagonals, fibers, hubs, links, lists, predict, settle, tethers};
-use toile_engine::lanes::{Store, Width};
+use toile_engine::cloth::wind::{Accelerations, Faces, Part};
+use toile_engine::cloth::{
+    RootSettings, Settings, Wind, centre, diagonals, fibers, hubs, links, lists, predict, settle, tethers,
+};
+use toile_engine::lanes::{Column, Store, Width};
 use toile_gpu::cloth::Kernel;
 
 use crate::scene::{apart, around, disturbed, nobody, offload, skirt, swaying, worn};
@@ -117,27 +122,68 @@ impl<'a> Twin<'a> {
         }
     }
 
+    /// All stages of bending that is stiffer than a substep.
+    fn run_stages(&mut self) {
+        let (garment, p) = (self.garment, &self.prepared);
+        let columns = self.state.columns();
+        let (width, spans) = (self.settings.width, [(0, garment.particles() as u32)]);
+        let mut room = stages::Room::new(garment.particles());
+        let room = room.columns();
+        let mut scratch = Store::zeros(bending::SCRATCH);
+        let last = p.bending.stages;
+        for stage in 0..=last {
+            let turn = match stage {
+                0 => Turn::Begin { fall: self.settings.gravity * p.dt, pushed: None, dt: p.dt },
+                j if j == last => Turn::End(j),
+                1 => Turn::First([p.stages[0], p.stages[1]]),
+                j => Turn::Next(j + 1, p.stages[j as usize]),
+            };
+            width.run(stages::Take { columns, spans: &spans, room, turn });
+            if stage == last {
+                break;
+            }
+            let (from_to, by) = match stage {
+                0 => ([room[1], room[0]], p.dt),
+                j => ([j, j + 1].map(|j| room[stages::place(j)]), p.stages[j as usize].forced * p.dt * p.dt),
+            };
+            push(garment, p, columns.w, from_to, by, scratch.column(), width);
+        }
+    }
+
     fn particles(&self) -> (Vec<Vec3A>, Vec<Vec3A>) {
         let three = |c: [&[f32]; 3]| (0..c[0].len()).map(|i| Vec3A::new(c[0][i], c[1][i], c[2][i])).collect();
         (three(self.state.positions()), three(self.state.velocities()))
     }
 }
 
-/// Bending as a force, set by set.
+/// Bending as a force.
 fn bend(garment: &Garment, p: &Prepared, columns: Columns<'_>, scratch: &mut Store, width: Width) {
+    let by = p.dt * p.bend.every as f32;
+    push(garment, p, columns.w, [columns.x, columns.v], by, scratch.column(), width);
+}
+
+/// What bends one thing and pushes another, set by set.
+fn push(
+    garment: &Garment,
+    p: &Prepared,
+    w: Column<'_>,
+    [from, to]: [[Column<'_>; 3]; 2],
+    by: f32,
+    scratch: Column<'_>,
+    width: Width,
+) {
     let layout = &garment.layout;
-    let (w, from, to, by) = (columns.w, columns.x, columns.v, p.dt * p.bend.every as f32);
     let some = p.bend.least < 1.0;
     for set in 0..2usize {
         for owner in 0..OWNERS {
             if let Some(set) = layout.bends.tuples.sets.get(set) {
-                let (scale, scratch) = (some.then_some(&*p.bend_scale), scratch.column());
+                let scale = some.then_some(&*p.bend_scale);
                 width.run(Bend { w, bends: &layout.bends, set, owner, from, to, by, scale, scratch });
             }
         }
         for owner in 0..OWNERS {
             if let Some(set) = layout.skewed.tuples.sets.get(set) {
-                let (scale, scratch) = (some.then_some(&*p.skewed_scale), scratch.column());
+                let scale = some.then_some(&*p.skewed_scale);
                 width.run(Bend { w, bends: &layout.skewed, set, owner, from, to, by, scale, scratch });
             }
         }
@@ -195,6 +241,118 @@ const KERNELS: [Kernel; 9] = [
     Kernel::Tethers,
     Kernel::Settle,
 ];
+
+/// Holds numbers against a twin's; a software adapter's to the bit.
+fn alike(name: &str, software: bool, got: &[Vec3A], expected: &[Vec3A]) {
+    let (same, all, most) = apart(got, expected);
+    let size = expected.iter().map(|v| v.length()).fold(0.0, f32::max);
+    println!("{name}: {same} of {all} the same, {most} apart of {size}");
+    assert!(size > 0.0, "{name}: nothing was asked of the kernels");
+    assert!(most <= BOUND * size.max(1.0), "{name}: {most} apart");
+    assert!(!software || same == all, "{name}: {most} apart on an adapter that fuses nothing");
+}
+
+/// The wind's accelerations.
+fn blow(garment: &Garment, settings: &Settings, wind: &Wind, twin: &mut Twin<'_>, to: &mut Accelerations) {
+    let faces = Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, &garment.layout.owner);
+    for part in Part::ALL {
+        faces.blow(settings.width, part, wind, settings.step_seconds, twin.state.columns(), to.columns());
+    }
+}
+
+#[test]
+fn wind_gives_what_its_twin_gives() {
+    let garments = [skirt(24, Stretch::Inextensible), worn("t-shirt")];
+    // Of moderate strength, and so strong that the bound holds it.
+    for (garment, speed) in garments.iter().flat_map(|g| [(g, 3.0), (g, 900.0)]) {
+        let wind = Wind { velocity: Vec3A::new(speed, 0.2, -0.5 * speed), drag: 0.8, lift: 0.3 };
+        let settings = Settings { wind: Some(wind), ..Settings::default() };
+        let Some(mut gpu) = offload(&[garment], &settings) else { return };
+        let (x, v) = disturbed(garment);
+        let mut twin = Twin::new(garment, &settings, &x, &v);
+        let mut pushed = Accelerations::new(garment.particles());
+        blow(garment, &settings, &wind, &mut twin, &mut pushed);
+        gpu.disturb(0, &x, &v);
+        let (palette, colliders) = (swaying(3), nobody());
+        for kernel in [Kernel::Wind, Kernel::Blown] {
+            gpu.only(kernel, 0, &[garment], &[around(&palette, &colliders, &settings)]).expect("the kernel runs");
+        }
+        let expected: Vec<Vec3A> = (0..garment.particles()).map(|i| pushed.of(i)).collect();
+        let software = gpu.device().adapter().kind == "software";
+        alike(&format!("{} in {speed} m/s", garment.name), software, &gpu.accelerations(0).expect("read"), &expected);
+    }
+}
+
+/// Holds what of the root is not to be felt against its twin, beside wind or without.
+fn carried(wind: Option<Wind>) {
+    let root = RootSettings { linear: 0.3, angular: 0.1, centrifugal: 0.6, ..RootSettings::default() };
+    let (garment, settings) = (skirt(24, Stretch::Inextensible), Settings { root, wind, ..Settings::default() });
+    let Some(mut gpu) = offload(&[&garment], &settings) else { return };
+    let (x, v) = disturbed(&garment);
+    let mut twin = Twin::new(&garment, &settings, &x, &v);
+    let mut pushed = Accelerations::new(garment.particles());
+    let mut motion = RootMotion::new(root);
+    gpu.disturb(0, &x, &v);
+    if let Some(wind) = wind {
+        blow(&garment, &settings, &wind, &mut twin, &mut pushed);
+    }
+    let (colliders, software) = (nobody(), gpu.device().adapter().kind == "software");
+    // The root is new in the first, and starts in the second; `blown` goes last, as in a step.
+    for (kernel, n) in [(Kernel::Wind, 3), (Kernel::Carry, 7), (Kernel::Blown, 7)] {
+        let palette = swaying(n);
+        gpu.only(kernel, 0, &[&garment], &[around(&palette, &colliders, &settings)]).expect("the kernel runs");
+        let at = palette[0] * glam::Affine3A::from_translation(centre(&garment).into());
+        let moved = motion.advance(&at, settings.step_seconds);
+        if let (Kernel::Carry, RootStep::Carried(carried)) = (kernel, moved) {
+            let all = (0, garment.particles() as u32);
+            carried.apply(settings.width, twin.state.columns(), all, pushed.columns());
+        }
+    }
+    let name = if wind.is_some() { "carry in the wind" } else { "carry" };
+    let expected: Vec<Vec3A> = (0..garment.particles()).map(|i| pushed.of(i)).collect();
+    alike(name, software, &gpu.accelerations(0).expect("read"), &expected);
+    alike(name, software, &gpu.particles(0).expect("read").v, &twin.particles().1);
+}
+
+#[test]
+fn carry_gives_what_its_twin_gives() {
+    carried(None);
+    carried(Some(Wind { velocity: Vec3A::new(4.0, 0.5, -3.0), drag: 0.6, lift: 0.2 }));
+}
+
+#[test]
+fn stages_give_what_their_twins_give() {
+    let garment = &worn("t-shirt");
+    let mut seen = Vec::new();
+    for (substeps, longer) in [(3, 1.0), (1, 1.0), (1, 2.0), (1, 2.3), (1, 8.0), (1, 60.0)] {
+        let step_seconds = longer * Settings::default().step_seconds;
+        let settings = Settings { substeps: Some(substeps), step_seconds, ..Settings::default() };
+        let Some(mut gpu) = offload(&[garment], &settings) else { return };
+        let (x, v) = disturbed(garment);
+        let mut twin = Twin::new(garment, &settings, &x, &v);
+        let last = twin.prepared.bending.stages;
+        if last < 2 {
+            continue;
+        }
+        seen.push(last);
+        twin.run_stages();
+        gpu.disturb(0, &x, &v);
+        let (palette, colliders) = (swaying(3), nobody());
+        for stage in 0..=last {
+            let kernels = [Kernel::Turn, Kernel::Stage, Kernel::Staged];
+            for kernel in kernels.into_iter().filter(|k| stage < last || *k == Kernel::Turn) {
+                let step = around(&palette, &colliders, &settings);
+                gpu.only(kernel, stage, &[garment], &[step]).expect("the kernel runs");
+            }
+        }
+        let software = gpu.device().adapter().kind == "software";
+        let name = format!("{} in {last} stages", garment.name);
+        alike(&name, software, &gpu.particles(0).expect("read").v, &twin.particles().1);
+    }
+    // Odd and even numbers end in another part of the room; what is past the most is weakened.
+    assert!(seen.iter().any(|m| m % 2 == 0) && seen.iter().any(|m| m % 2 == 1), "{seen:?}");
+    assert_eq!(seen.iter().max(), Some(&stages::MOST));
+}
 
 #[test]
 fn every_kernel_gives_what_its_twin_gives_on_the_skirt() {

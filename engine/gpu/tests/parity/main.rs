@@ -5,5 +5,6 @@ mod device;
 mod drawn;
 mod kernels;
 mod scene;
+mod skin;
 mod stepper;
 mod steps;

@@ -1,8 +1,9 @@
 //! Whole steps against the CPU's.
 
+use glam::Vec3A;
 use toile_assets::garment::Garment;
 use toile_assets::scene::skirt::{self as scene, Motion, Stretch};
-use toile_engine::cloth::{Cloth, Quality, Settings, measure};
+use toile_engine::cloth::{Cloth, Quality, RootSettings, Settings, Wind, measure};
 
 use crate::scene::{REST, apart, around, nobody, offload, offload_worn, skirt, swaying, walker, worn};
 
@@ -15,12 +16,13 @@ const MEAN: [f32; 2] = [1e-4, 2e-2];
 
 /// Steps garments on both; gives the mean distance (m) of each at the end, whether all bits are the same, and whether they
 /// have to be.
-fn both(garments: &[&Garment], settings: &Settings, steps: usize) -> Option<(Vec<f32>, bool, bool)> {
-    let mut gpu = offload(garments, settings)?;
+fn both(garments: &[&Garment], settings: impl Fn(usize) -> Settings, steps: usize) -> Option<(Vec<f32>, bool, bool)> {
+    let mut gpu = offload(garments, &settings(0))?;
     let colliders = nobody();
-    let mut cloths: Vec<Cloth> = garments.iter().map(|g| Cloth::new(g, &colliders)).collect();
+    let mut cloths: Vec<Cloth> = garments.iter().map(|g| Cloth::new(g, &colliders).in_wind(g)).collect();
     for n in 0..steps {
         let palette = swaying(n);
+        let settings = &settings(n);
         let all: Vec<_> = garments.iter().map(|_| around(&palette, &colliders, settings)).collect();
         for ((cloth, garment), step) in cloths.iter_mut().zip(garments).zip(&all) {
             cloth.step(garment, step);
@@ -45,7 +47,7 @@ fn both(garments: &[&Garment], settings: &Settings, steps: usize) -> Option<(Vec
 }
 
 fn held(garments: &[&Garment], settings: &Settings, steps: usize) {
-    let Some((means, same, software)) = both(garments, settings, steps) else { return };
+    let Some((means, same, software)) = both(garments, |_| *settings, steps) else { return };
     let bound = MEAN[usize::from(steps > 20)];
     assert!(means.iter().all(|m| *m <= bound), "{means:?} m apart");
     assert!(same || !software, "{means:?} m apart on an adapter that fuses nothing");
@@ -109,6 +111,38 @@ fn garments_of_one_scene_do_not_see_each_other() {
     // With as many substeps for each, and with fewer than they ask for.
     held(&garments, &Settings { substeps: Some(3), ..Settings::default() }, 4);
     held(&garments, &Settings { substep_share: 0.5, ..Settings::default() }, 4);
+}
+
+/// A gust, and a root of which little is felt.
+fn blown(wind: bool, carried: bool) -> Settings {
+    let wind = wind.then_some(Wind { velocity: Vec3A::new(4.0, 0.5, -3.0), drag: 0.6, lift: 0.2 });
+    let less = RootSettings { linear: 0.2, angular: 0.4, centrifugal: 0.5, ..RootSettings::default() };
+    Settings { wind, root: if carried { less } else { RootSettings::default() }, ..Settings::default() }
+}
+
+#[test]
+fn what_is_in_the_wind_is_blown_as_on_the_cpu() {
+    held(&[&skirt(18, Stretch::Inextensible), &worn("t-shirt")], &blown(true, false), 20);
+}
+
+#[test]
+fn what_is_not_to_feel_the_root_does_not_feel_it_as_on_the_cpu() {
+    let garments = [skirt(18, Stretch::Inextensible), worn("t-shirt")];
+    let garments: Vec<&Garment> = garments.iter().collect();
+    held(&garments, &blown(false, true), 20);
+    held(&garments, &blown(true, true), 8);
+}
+
+#[test]
+fn settings_may_change_from_step_to_step() {
+    let garments = [worn("t-shirt"), skirt(16, Stretch::Physical)];
+    let garments: Vec<&Garment> = garments.iter().collect();
+    // Bending in stages and as a force, with and without what else pushes the particles.
+    let each = [blown(false, false), blown(true, false), blown(true, true), blown(false, true)];
+    let few = |s: Settings| Settings { substep_share: 0.5, ..s };
+    let all: Vec<Settings> = each.into_iter().flat_map(|s| [s, few(s)]).collect();
+    let Some((_, same, software)) = both(&garments, |n| all[n % all.len()], 16) else { return };
+    assert!(same || !software, "another result on an adapter that fuses nothing");
 }
 
 #[test]

@@ -8,8 +8,10 @@ use toile_assets::rig::Rig;
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::{Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
+use toile_engine::skin::{Blend, SkinningJob};
 use toile_gpu::cloth::Offload;
 use toile_gpu::cloth::opened::Opened;
+use toile_gpu::skin::Skinning;
 use toile_view::image::Image;
 use toile_view::mirror::{Backdrop, Gpu, ModelError, Renderer};
 use toile_view::scene::{Bounds, Camera};
@@ -130,6 +132,30 @@ fn a_garment_that_was_not_stepped_yet_is_drawn_as_it_is_put_on() {
     let source = offload.source(1).expect("it was made to be drawn");
     renderer.follow(1, &source, Bounds::of(&shirt().garment.start)).expect("it lies on the same device");
     same(gpu, &shoot(gpu, &mut renderer), &put_on, "put on");
+}
+
+#[test]
+fn a_body_is_drawn_from_where_it_is_skinned() {
+    let Some(gpu) = gpu() else { return };
+    let body = wearer();
+    let job = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights).expect("it is a skin");
+    let mut skins = Skinning::new(gpu, &[&job, &job]).expect("two bodies fit every device");
+    let mut bent = REST;
+    bent.iter_mut().skip(1).step_by(2).for_each(|bone| *bone = Affine3A::from_rotation_z(0.03));
+    skins.step(gpu, Blend::Linear, &[&REST, &bent]).expect("the step is sent");
+    let mut renderer = renderer(gpu, Quality::LOW);
+    let put_on = shoot(gpu, &mut renderer);
+    let mut posed = job.posed();
+    job.run(Blend::Linear, &bent, &mut posed);
+    let (mut positions, mut normals) = (body.mesh.positions.clone(), body.normals.clone());
+    posed.read(&mut positions, &mut normals);
+    renderer.update(0, &positions, &normals).expect("one for each");
+    let by_cpu = shoot(gpu, &mut renderer);
+    assert!(by_cpu != put_on, "the body has moved");
+    let source = skins.source(gpu, 1).expect("it is the second");
+    renderer.follow(0, &source, Bounds::of(&positions)).expect("it lies on the same device");
+    same(gpu, &shoot(gpu, &mut renderer), &by_cpu, "a body");
+    assert!(skins.source(gpu, 2).is_none());
 }
 
 #[test]

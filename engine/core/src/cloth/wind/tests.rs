@@ -86,6 +86,26 @@ fn every_width_and_both_ways_to_share_give_the_same_bits() {
 }
 
 #[test]
+fn sums_in_the_order_that_is_told_are_the_same_bits() {
+    for (rows, n) in [(2, 3), (9, 100), (12, 150)] {
+        let (mut state, rest, triangles, owner) = crumpled(rows, n);
+        let faces = Faces::new(&triangles, &rest, state.weights(), &owner);
+        let blown = accelerations(&faces, Width::widest(), &SKIRT, &mut state);
+        let (columns, air) = (state.columns(), Air::<f32>::new(&SKIRT, DT));
+        let three = |from, corners: [u32; 3]| corners.map(|i| V3::<f32>::load(from, i as usize, 1));
+        let force = |(t, mass)| {
+            let V3 { x, y, z } = air.force(three(columns.x, t), three(columns.v, t), mass);
+            Vec3A::new(x, y, z)
+        };
+        let forces: Vec<Vec3A> = faces.triangles().map(force).collect();
+        assert_eq!(forces.len(), triangles.len());
+        let mut sums = vec![Vec3A::ZERO; rest.len()];
+        faces.sums(|t, i| sums[i as usize] += forces[t as usize] * columns.w.get(i as usize));
+        assert_eq!(sums, blown, "{rows} x {n}");
+    }
+}
+
+#[test]
 fn a_plain_f64_version_gives_the_same_to_five_digits() {
     let (mut state, rest, triangles, owner) = crumpled(9, 100);
     let faces = Faces::new(&triangles, &rest, state.weights(), &owner);

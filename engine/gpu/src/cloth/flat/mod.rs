@@ -10,6 +10,7 @@ mod faces;
 mod fibers;
 mod links;
 mod lists;
+mod wind;
 
 use toile_assets::garment::Garment;
 use toile_engine::cloth::contact::reach;
@@ -21,6 +22,7 @@ pub use faces::FlatFaces;
 pub use fibers::FlatFibers;
 pub use links::FlatLinks;
 pub use lists::FlatLists;
+pub use wind::FlatWind;
 
 use super::constants::SOFT_WEFT;
 
@@ -116,6 +118,8 @@ pub struct Flat {
     pub bending: FlatBending,
     /// Faces, where somebody draws.
     pub faces: FlatFaces,
+    /// Triangles in the wind.
+    pub wind: FlatWind,
 }
 
 impl Flat {
@@ -159,6 +163,7 @@ impl Flat {
         self.fibers.add(&layout.fibers, span);
         self.lists.add(&layout.crossing, span);
         self.bending.add(layout, weights, span);
+        self.wind.add(garment, span);
         self.particles += span.len;
         self.spans.push(span);
     }
@@ -226,6 +231,14 @@ mod tests {
         assert_eq!(items(&flat.bending.groups).count(), flat.bending.items.len());
         assert_eq!(flat.bending.starts.len(), flat.particles as usize + 1);
         assert_eq!(flat.targets as usize, 2 * garment.fixed.len());
+        assert_eq!(items(&flat.wind.groups).count(), 2 * garment.triangles.len());
+        assert_eq!(flat.wind.starts.len(), flat.particles as usize + 1);
+        for (i, around) in flat.wind.starts.windows(2).enumerate() {
+            let around = &flat.wind.around[around[0] as usize..around[1] as usize];
+            let corners = flat.wind.faces.iter().filter(|f| f[..3].contains(&(i as u32)));
+            assert_eq!(around.len(), corners.count(), "particle {i}");
+            assert!(around.iter().all(|f| flat.wind.faces[*f as usize][..3].contains(&(i as u32))));
+        }
     }
 
     #[test]
