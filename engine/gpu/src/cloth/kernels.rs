@@ -41,6 +41,8 @@ pub enum Kernel {
     Lists,
     /// Warp fibers.
     Fibers,
+    /// Those that are few and long.
+    Cyclic,
     /// Tethers.
     Tethers,
     /// Whatever touches is pushed out.
@@ -90,7 +92,7 @@ pub const SHADERS: [Shader; 17] = [
 
 impl Kernel {
     /// All kernels.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 24] = [
         Self::Repair,
         Self::Jump,
         Self::Near,
@@ -108,6 +110,7 @@ impl Kernel {
         Self::Weft,
         Self::Lists,
         Self::Fibers,
+        Self::Cyclic,
         Self::Tethers,
         Self::Contact,
         Self::Settle,
@@ -134,7 +137,7 @@ impl Kernel {
             Self::Turn | Self::Stage | Self::Staged | Self::Bending | Self::Bent => 1,
             Self::Diagonals | Self::Shear => 2,
             Self::Weft => 3,
-            Self::Lists | Self::Fibers => 4,
+            Self::Lists | Self::Fibers | Self::Cyclic => 4,
             Self::Near | Self::Contact | Self::Settle => 5,
             Self::Wind | Self::Blown => 6,
             Self::Tethers => 7,
@@ -155,7 +158,7 @@ impl Kernel {
             Self::Diagonals => "diagonals",
             Self::Shear | Self::Weft => "links",
             Self::Lists => "lists",
-            Self::Fibers => "fibers",
+            Self::Fibers | Self::Cyclic => "fibers",
             Self::Tethers => "tethers",
             Self::Near | Self::Contact => "contact",
             Self::Settle => "settle",
@@ -168,6 +171,7 @@ impl Kernel {
             Self::Blown => "blown",
             Self::Stage => "stage",
             Self::Staged => "staged",
+            Self::Cyclic => "cyclic",
             Self::Conclude => "conclude",
             _ => name,
         };
