@@ -5,6 +5,8 @@
 //! Thread: one, with nothing else running.
 
 pub mod ansur;
+pub mod backend;
+pub mod crossover;
 pub mod depth;
 pub mod filters;
 pub mod latency;
@@ -12,6 +14,7 @@ pub mod measuring;
 pub mod oracle;
 pub mod pareto;
 pub mod plan;
+pub mod plot;
 pub mod scene_run;
 pub mod skinning;
 pub mod skirt;

@@ -4,12 +4,16 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use stats_alloc::INSTRUMENTED_SYSTEM;
+use toile_gpu::stepper::Backend;
+use toile_perf::crossover;
 use toile_perf::depth;
 use toile_perf::filters::{self, FiltersError};
+use toile_perf::plot::raster;
 use toile_perf::skinning::{self, BenchError};
 use toile_perf::skirt::heap::{Heap, HeapProbe};
 use toile_perf::skirt::{self, SkirtError, table};
 
+use crate::backend;
 use crate::cli::{DepthArgs, FiltersArgs, SkinningArgs, SkirtArgs};
 use crate::exit::AppError;
 use crate::output::OutputFolder;
@@ -95,6 +99,9 @@ fn unskinned(error: BenchError) -> AppError {
 /// Where this machine or the engine cannot do what was asked for, and where stdout cannot be written.
 pub fn skirt(args: &SkirtArgs) -> Result<(), AppError> {
     let heap = HeapProbe::new(heap);
+    if args.table && args.options.backend != Backend::Cpu {
+        return crossover(args);
+    }
     if args.table {
         let words = Words::new(args.json);
         let table = table::run(&args.options, &heap, &mut |case| words.say(case));
@@ -104,10 +111,30 @@ pub fn skirt(args: &SkirtArgs) -> Result<(), AppError> {
         return terminal::print(&table.markdown());
     }
     let report = skirt::measure(&args.options, &heap).map_err(refused)?;
+    backend::say(&report.stepped_by);
     if args.json {
         return terminal::print_json(&Document::new("bench-skirt", report));
     }
     terminal::print(&summary::skirt(&report, Paint::for_stdout()))
+}
+
+/// Sizes and numbers of skirts on the processor and on a device.
+fn crossover(args: &SkirtArgs) -> Result<(), AppError> {
+    let words = Words::new(args.json);
+    let mut out = args.picture.as_deref().map(OutputFolder::prepare).transpose()?;
+    let study = crossover::run(&args.options, usize::MAX, &mut |case| words.say(case)).map_err(refused)?;
+    backend::say(&study.stepped_by);
+    if let Some(out) = &mut out {
+        let mut png = Vec::new();
+        raster::image(&crossover::chart(&study)).write_png(&mut png).map_err(AppError::internal)?;
+        out.write("crossover.png", &png)?;
+    }
+    let files = out.map(OutputFolder::commit).transpose()?;
+    if args.json {
+        return terminal::print_json(&Document::new("bench-skirt-crossover", study));
+    }
+    files.iter().flatten().for_each(|file| words.say(&file.display().to_string()));
+    terminal::print(&study.markdown())
 }
 
 /// The heap as the program's allocator counts it.

@@ -10,6 +10,7 @@ use clap_complete::Shell;
 
 use crate::exit::AppError;
 
+mod backend;
 mod bake;
 mod bodies;
 mod body;

@@ -5,7 +5,8 @@
 //! Thread: the main thread, which loads, starts the frame's threads and waits for them.
 
 pub mod artist;
-pub mod bake;
+pub mod backend;
+mod bake;
 pub mod bench;
 pub mod bodies;
 mod body;

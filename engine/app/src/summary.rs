@@ -137,6 +137,14 @@ pub fn skirt(report: &Report, paint: Paint) -> String {
         &mut text,
         &format!("  {quality}{substeps} substeps, {lanes} lanes, {threads} thread(s), {garments} skirt(s){wind}"),
     );
+    if let Some(adapter) = report.stepped_by.adapter.as_ref().filter(|_| report.stepped_by.backend == "gpu") {
+        let clock = report.device_us.map_or(String::new(), |us| format!("; by its own clock a step takes {us:.1} us"));
+        line(&mut text, &format!("  stepped by    {} ({}, {}){clock}", adapter.name, adapter.kind, adapter.driver));
+    }
+    if let Some(d) = report.decided_by {
+        let words = format!("a step took the processor {:.0} us, the device {:.0} us", d.cpu_us, d.gpu_us);
+        line(&mut text, &format!("  decided by    {words}: {} steps", report.stepped_by.backend));
+    }
     line(&mut text, &format!("  a step takes  {:.1} us, 99 % of them under {:.1} us", step_us.p50, step_us.p99));
     let (ratio, yardstick) = (report.y_ratio, report.yardstick_us);
     line(&mut text, &format!("  the yardstick {yardstick:.1} us: the step takes {ratio:.2} of it"));

@@ -6,6 +6,7 @@ use std::time::Instant;
 use serde::Serialize;
 use toile_perf::torture::{self, Report, Summary};
 
+use crate::backend;
 use crate::cli::TortureArgs;
 use crate::exit::AppError;
 use crate::report::Document;
@@ -30,6 +31,7 @@ pub fn run(args: &TortureArgs) -> Result<(), AppError> {
     let begun = Instant::now();
     let mut told = |s: &Summary| words.say(&format!("{}: {} of {} seeds", s.name, s.passed, s.seeds));
     let report = torture::run(&args.options, &mut told).map_err(AppError::internal)?;
+    backend::say(&report.stepped_by);
     let wall_s = begun.elapsed().as_secs_f64();
     let failed: Vec<&str> = report.failed().map(|s| s.name).collect();
     let verdict = match failed[..] {

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use toile_perf::validate::case::Row;
 use toile_perf::validate::run::{self, Report};
 
+use crate::backend;
 use crate::cli::ValidateArgs;
 use crate::exit::AppError;
 use crate::report::Document;
@@ -23,6 +24,7 @@ pub fn run(args: &ValidateArgs) -> Result<(), AppError> {
     };
     let report = run::run(&args.options, &told).map_err(AppError::internal)?;
     bar.finish_and_clear();
+    backend::say(&report.stepped_by);
     let [passed, gated] = report.passed;
     if args.json {
         terminal::print_json(&Document::new("validate", report))?;
@@ -149,7 +151,8 @@ mod tests {
 
     #[test]
     fn a_missed_target_is_a_failed_threshold() {
-        let report = Report { cases: vec![row()], passed: [0, 1], threads: 2, wall_s: 3.0 };
+        let report =
+            Report { cases: vec![row()], passed: [0, 1], threads: 2, stepped_by: Default::default(), wall_s: 3.0 };
         assert!(table(&report, Paint::none()).contains("0 of 1 targets met, 3 s on 2 thread(s)"));
         assert_eq!(report.failed().count(), 1);
     }

@@ -113,6 +113,8 @@ impl Device {
         enough(&limits, &adapter.limits(), &described.name)?;
         let request = adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("cloth"),
+            // A clock for the stages, where there is one; nothing depends on it.
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
             required_limits: limits,
             memory_hints: wgpu::MemoryHints::Performance,
             ..Default::default()
@@ -125,6 +127,14 @@ impl Device {
         let (lost, fault) = (Arc::new(AtomicBool::new(false)), Arc::new(OnceLock::new()));
         watch(&device, &lost, &fault);
         Ok(Self { device, queue, adapter: described, lost, fault })
+    }
+
+    /// Whether a scene fits what the device was opened with.
+    ///
+    /// # Errors
+    /// [`GpuError::TooSmall`], with the limit.
+    pub fn bears(&self, needs: Needs) -> Result<(), GpuError> {
+        enough(&needs.limits(), &self.device.limits(), &self.adapter.name)
     }
 
     /// What the adapter says of itself.

@@ -1,8 +1,8 @@
-//! The GPUs of this machine; the cloth that runs on them comes here too.
+//! The GPUs of this machine, the cloth on them, and the choice between them and the processor.
 //!
-//! Reads: what the graphics drivers tell. Writes: a list of adapters.
-//! Budget: at load only, up to some hundred milliseconds, which is what a driver takes to start.
-//! Thread: the loading thread; the physics thread never submits to or waits for a GPU.
+//! Reads: what the graphics drivers tell; baked garments and what surrounds them. Writes: a list of adapters; cloth.
+//! Budget: drivers and pipelines at load, up to some hundred milliseconds; in the frame what [`stepper`] and `cloth` say.
+//! Thread: the one that calls; the physics thread of garments that the processor steps never submits to or waits for a GPU.
 
 /// Whether GPU support is built in (feature `wgpu`).
 pub const BUILT_IN: bool = cfg!(feature = "wgpu");
@@ -32,8 +32,10 @@ pub fn adapters() -> Vec<Adapter> {
 pub mod cloth;
 #[cfg(feature = "wgpu")]
 pub mod device;
+pub mod graphics;
 #[cfg(feature = "wgpu")]
 mod native;
+pub mod stepper;
 #[cfg(feature = "wgpu")]
 pub mod wait;
 

@@ -1,11 +1,11 @@
 //! The charts of a report.
 
 use super::front;
-use super::plot::axis::Axis;
-use super::plot::chart::{Chart, Look, Series};
-use super::plot::tiles::{Cell, Tiles};
-use super::plot::{BLACK, Drawing, INKS};
 use super::report::{Drape, Fate, Point, Report, SceneReport, Survival};
+use crate::plot::axis::Axis;
+use crate::plot::chart::{Chart, Look, Series};
+use crate::plot::tiles::{Cell, Tiles};
+use crate::plot::{BLACK, Drawing, INKS};
 
 /// A chart under its file's name.
 pub struct Figure {

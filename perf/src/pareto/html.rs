@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use super::charts::Figure;
 use super::front;
-use super::plot::svg::{self, escaped};
 use super::report::{Drape, Point, Report, SceneReport};
+use crate::plot::svg::{self, escaped};
 
 const HEAD: &str = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>Toile: speed against \
 error</title>\n<style>\nbody { font-family: system-ui, sans-serif; background: #fff; color: #222; max-width: 1080px; \

@@ -14,7 +14,6 @@ mod drape;
 mod front;
 mod html;
 mod play;
-mod plot;
 mod reference;
 mod report;
 mod scenes;
@@ -123,7 +122,7 @@ pub fn files(report: &Report) -> Result<Vec<File>, ParetoError> {
     let mut files = vec![File { name: "points.csv".into(), bytes: report::csv(&report.points).into_bytes() }];
     for figure in &figures {
         let mut png = Vec::new();
-        plot::raster::image(&figure.drawing).write_png(&mut png)?;
+        crate::plot::raster::image(&figure.drawing).write_png(&mut png)?;
         files.push(File { name: format!("{}.png", figure.name), bytes: png });
     }
     files.push(File { name: "pareto.html".into(), bytes: html::page(report, &figures).into_bytes() });

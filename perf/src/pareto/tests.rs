@@ -1,9 +1,9 @@
 //! The front, the plots and a small sweep.
 
-use super::plot::axis::{Axis, figure};
-use super::plot::{Drawing, Mark, raster, svg};
 use super::report::Fate;
 use super::*;
+use crate::plot::axis::{Axis, figure};
+use crate::plot::{Anchor, Drawing, Mark, raster, svg};
 
 fn at(step_us: f64, error_mm: f64) -> Point {
     Point { scene: "s".into(), mesh: "m".into(), threads: 1, step_us, error_mm, ..Point::default() }
@@ -34,7 +34,7 @@ fn ticks_lie_on_the_axis_and_are_written_shortly() {
 #[test]
 fn a_drawing_is_the_same_marks_in_svg_and_in_pixels() {
     let line = Mark::Line { points: vec![[10.0, 10.5], [50.0, 10.5]], ink: [255, 0, 0], width: 1.0, dashed: false };
-    let words = Mark::text([30.0, 30.0], plot::Anchor::Middle, "a < b");
+    let words = Mark::text([30.0, 30.0], Anchor::Middle, "a < b");
     let drawing = Drawing { size: [60, 40], marks: vec![line, words] };
     let text = svg::text(&drawing);
     assert!(text.contains("10.0,10.5 50.0,10.5") && text.contains("a &lt; b") && text.contains("#ff0000"));

@@ -22,7 +22,9 @@ use toile_assets::body::BodyError;
 use toile_assets::garment::{MeshError, Shape};
 use toile_engine::colliders::ColliderError;
 use toile_engine::crew::CrewError;
+use toile_gpu::stepper::Means;
 
+use crate::backend::SteppedBy;
 use crate::yardstick::Yardstick;
 pub use gauge::{Frame, Gauge};
 use heap::HeapProbe;
@@ -81,13 +83,18 @@ const METERED_STEPS: usize = 240;
 /// # Errors
 /// Where the options cannot be met.
 pub fn measure(options: &Options, heap: &HeapProbe) -> Result<Report, SkirtError> {
-    measure_with(options, heap, |_| {})
+    measure_with(&Means::open(options.backend), options, heap, |_| {})
 }
 
 /// The same with a mesh that `change` has changed before it is baked.
-fn measure_with(options: &Options, heap: &HeapProbe, change: impl FnOnce(&mut Shape)) -> Result<Report, SkirtError> {
+fn measure_with(
+    means: &Means,
+    options: &Options,
+    heap: &HeapProbe,
+    change: impl FnOnce(&mut Shape),
+) -> Result<Report, SkirtError> {
     let yardstick = Yardstick::new()?;
-    let mut stage = Stage::with(options, heap, change)?;
+    let mut stage = Stage::by(means, options, heap, change)?;
     let mut run = Run::new(options, &stage, *heap);
     for _ in 0..WARM_UP {
         stage.prepare();
@@ -103,7 +110,11 @@ fn measure_with(options: &Options, heap: &HeapProbe, change: impl FnOnce(&mut Sh
     readings.push(yardstick.read_us());
     let mut report = run.report(&stage, quantile(&mut readings, 0.5));
     report.events = stage.events().since(before);
-    report.stages_us = stage.stages_us(METERED_STEPS).into_iter().collect();
+    let metered = METERED_STEPS.min(options.steps.max(1));
+    let (stages_us, device_us) = stage.stages_us(metered);
+    (report.stages_us, report.device_us) = (stages_us.into_iter().collect(), device_us);
+    report.stepped_by = SteppedBy::of(means, stage.stepper().backend());
+    report.decided_by = stage.stepper().measured().map(Into::into);
     Ok(report)
 }
 

@@ -3,6 +3,7 @@
 use toile_assets::scene::skirt::{self, Motion, Stretch};
 use toile_engine::cloth::{Quality, Settings, Wind};
 use toile_engine::lanes::Width;
+use toile_gpu::stepper::Backend;
 
 use super::SkirtError;
 
@@ -45,7 +46,12 @@ pub struct Options {
     pub runs: usize,
     /// Steps of a run.
     pub steps: usize,
+    /// What steps the skirts; the threads are the processor's.
+    pub backend: Backend,
 }
+
+/// Most skirts at once.
+pub const MAX_GARMENTS: usize = 64;
 
 /// Steps before the first that counts, by the scene.
 pub const WARM_UP: usize = 240;
@@ -70,6 +76,7 @@ impl Default for Options {
             step_s: toile_assets::limits::STEP_SECONDS,
             runs: 5,
             steps: 600,
+            backend: Backend::Cpu,
         }
     }
 }

@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 use toile_assets::scene::skirt::{Motion, Stretch};
+use toile_gpu::stepper::Measured;
 
 use super::options::{Mesh, Options};
+use crate::backend::SteppedBy;
 
 /// The distribution of a step's time (us).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -104,6 +106,21 @@ impl std::iter::Sum for Events {
     }
 }
 
+/// What both took for one step of these skirts, in step with the caller: medians of some steps at the start (us).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Decision {
+    /// The processor, with the threads that were asked for.
+    pub cpu_us: f64,
+    /// The graphics device.
+    pub gpu_us: f64,
+}
+
+impl From<Measured> for Decision {
+    fn from(Measured { cpu_us, gpu_us }: Measured) -> Self {
+        Self { cpu_us, gpu_us }
+    }
+}
+
 /// One run, complete.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Report {
@@ -151,7 +168,13 @@ pub struct Report {
     pub hem_winding_wrong: u64,
     /// Vertices that were not finite, summed over the frames.
     pub nonfinite: u64,
-    /// Mean time of each stage of a step (us), as far as the engine tells.
+    /// What stepped the skirts.
+    pub stepped_by: SteppedBy,
+    /// What `auto` was decided by.
+    pub decided_by: Option<Decision>,
+    /// Mean time of a step by the device's own clock, from its first kernel to its last (us), where it has one.
+    pub device_us: Option<f64>,
+    /// Mean time of each stage of a step (us), as far as the engine or the device tells.
     pub stages_us: BTreeMap<&'static str, f64>,
     /// Heap allocations a step, of all threads, where they are counted.
     pub allocations_per_step: Option<f64>,

@@ -11,9 +11,10 @@ use toile_engine::cloth::program::STAGES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_engine::crew::Crew;
+use toile_gpu::stepper::{Backend, Batch, Means, Stepper};
 
 use super::heap::{Heap, HeapProbe};
-use super::options::{MESH_SEED, Mesh, Options};
+use super::options::{MAX_GARMENTS, MESH_SEED, Mesh, Options};
 use super::report::Events;
 use super::{SkirtError, Spheres};
 
@@ -40,6 +41,7 @@ pub struct Stage {
     settings: Settings,
     colliders: Colliders,
     crew: Crew,
+    stepper: Stepper,
 }
 
 /// What a frame does between waking the cloth's helper and the cloth's step, posing and skinning the body, takes at
@@ -60,6 +62,19 @@ impl Stage {
     /// # Errors
     /// Where the options cannot be met.
     pub fn with(options: &Options, heap: &HeapProbe, change: impl FnOnce(&mut Shape)) -> Result<Self, SkirtError> {
+        Self::by(&Means::open(options.backend), options, heap, change)
+    }
+
+    /// The same by means that are open already.
+    ///
+    /// # Errors
+    /// Where the options cannot be met.
+    pub fn by(
+        means: &Means,
+        options: &Options,
+        heap: &HeapProbe,
+        change: impl FnOnce(&mut Shape),
+    ) -> Result<Self, SkirtError> {
         let side = options.side()?;
         let settings = options.settings()?;
         let mut shape = match options.mesh {
@@ -79,7 +94,7 @@ impl Stage {
         let colliders = Colliders::new(&rest, &skirt::CAPSULES, false)?;
         let new = || Cloth::new(&garment, &colliders);
         let ready = |cloth: Cloth| if options.wind { cloth.in_wind(&garment) } else { cloth };
-        let cloths = (0..options.garments.max(1)).map(|_| ready(new())).collect();
+        let cloths = (0..options.garments.clamp(1, MAX_GARMENTS)).map(|_| ready(new())).collect();
         let between = |a: Option<Heap>, b: Option<Heap>| u64::try_from(b?.live_bytes - a?.live_bytes).ok();
         let memory_bytes = between(before, baked).zip(between(baked, heap.read())).map(|(a, b)| [a, b]);
         let mut stage = Self {
@@ -95,6 +110,7 @@ impl Stage {
             settings,
             colliders,
             crew: Crew::new(options.threads)?,
+            stepper: means.stepper(),
         };
         // Where the body stands at time 0; the first step then sweeps as every other.
         stage.ask();
@@ -127,14 +143,16 @@ impl Stage {
     pub fn step(&mut self) {
         self.colliders.place_spheres(&self.spheres);
         let step = Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings };
-        let garment = &self.garment;
-        match &mut self.cloths[..] {
-            [cloth] => cloth.step_with(&mut self.crew, garment, &step),
-            cloths => {
-                let done = self.crew.each(cloths, |_, cloth| cloth.step(garment, &step));
-                done.expect("a share of the step panicked");
-            }
-        }
+        let (garments, steps) = ([&self.garment; MAX_GARMENTS], [step; MAX_GARMENTS]);
+        let count = self.cloths.len();
+        let mut batch = Batch { cloths: &mut self.cloths, garments: &garments[..count], steps: &steps[..count] };
+        let done = self.stepper.step(&mut batch, Some(&mut self.crew));
+        done.expect("a share of the step panicked");
+    }
+
+    /// What steps.
+    pub fn stepper(&self) -> &Stepper {
+        &self.stepper
     }
 
     /// Substeps of a step, once one has been taken.
@@ -157,18 +175,27 @@ impl Stage {
         self.cloths.iter().map(|c| Events::from(c.events)).sum()
     }
 
-    /// Takes some steps more with the engine's own meters on: the mean time of each stage of a step, all skirts (us).
-    pub fn stages_us(&mut self, steps: usize) -> Vec<(&'static str, f64)> {
+    /// Takes some steps more with the meters on, the engine's own or the device's clock: the mean time of each stage of a step, all
+    /// skirts, and on a device of the whole (us).
+    pub fn stages_us(&mut self, steps: usize) -> (Vec<(&'static str, f64)>, Option<f64>) {
         self.settings.timed = true;
-        let mut sums = [0; STAGES.len()];
+        let (mut sums, mut whole) = ([0.0; STAGES.len()], None);
         for _ in 0..steps {
             self.prepare();
             self.step();
-            let told = self.cloths.iter().map(|c| c.stage_ns);
-            told.for_each(|ns| sums.iter_mut().zip(ns).for_each(|(sum, ns)| *sum += ns));
+            if self.stepper.backend() == Backend::Gpu {
+                let Some(spent) = self.stepper.spent() else { continue };
+                sums.iter_mut().zip(spent.stages_ns).for_each(|(sum, ns)| *sum += ns);
+                whole = Some(whole.unwrap_or(0.0) + spent.whole_ns);
+            } else {
+                let told = self.cloths.iter().map(|c| c.stage_ns);
+                told.for_each(|ns| sums.iter_mut().zip(ns).for_each(|(sum, ns)| *sum += ns as f64));
+            }
         }
         self.settings.timed = false;
-        STAGES.into_iter().zip(sums).map(|(name, ns)| (name, ns as f64 * 1e-3 / steps as f64)).collect()
+        let mean = 1e-3 / steps as f64;
+        let stages = STAGES.into_iter().zip(sums).map(|(name, ns)| (name, ns * mean)).collect();
+        (stages, whole.map(|ns| ns * mean))
     }
 
     /// Mass of each particle that moves, 0 of one that is pinned (kg).

@@ -7,6 +7,7 @@ use serde::Serialize;
 use toile_assets::garment::Shape;
 use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_engine::lanes::Width;
+use toile_gpu::stepper::Means;
 
 use super::claim::{Claim, Row};
 use super::hard::{self, Fault, Recovery};
@@ -82,7 +83,8 @@ impl Maker<'_> {
         (self.told)(case);
         let mut options = self.base;
         change(&mut options);
-        let report = measure_with(&options, self.heap, reshape).map_err(|e: SkirtError| e.to_string())?;
+        let report = measure_with(&Means::open(options.backend), &options, self.heap, reshape)
+            .map_err(|e: SkirtError| e.to_string())?;
         self.runs.push(Named { case: case.into(), figures: report.clone() });
         Ok(report)
     }

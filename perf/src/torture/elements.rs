@@ -64,7 +64,10 @@ fn survived(site: &Site, shape: &Shape, random: &mut Random) -> Found {
     };
     // What is only worn badly starts so and unfolds to where the same cut always hangs; a bad cut is swung besides.
     let same_cut = shape.cut == sheet(PATCH).cut;
-    let trial =
-        if same_cut { Trial::new(&piece.garment, &site.settings) } else { swung(&piece, &site.settings, random) };
+    let trial = if same_cut {
+        Trial::new(site, &piece.garment, &site.settings)
+    } else {
+        swung(site, &piece, &site.settings, random)
+    };
     Found::back(trial, if same_cut { &site.patch.rest } else { &piece.rest })
 }

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::trial::{self, BACK_M, RECOVER_S, Recovery, Seen, Trial};
 use super::{Case, piece};
+use crate::backend::SteppedBy;
 
 /// What the rounding of a speed may add to its limit (1).
 const SPEED_SLACK: f32 = 1e-3;
@@ -188,6 +189,8 @@ impl Summary {
 pub struct Report {
     /// The quality's name.
     pub quality: &'static str,
+    /// What stepped the cloth.
+    pub stepped_by: SteppedBy,
     /// How far curtain, lawn, patch and tube are from the oracle's equilibrium when nothing is done to them (mm).
     pub undisturbed_mm: [f64; 4],
     /// One row a case.

@@ -23,9 +23,9 @@ const SLOWER: f64 = 1.5;
 /// knows; a minute later it is timed beside a copy that was kept as it was in the beginning.
 pub(super) fn long_rest(site: &Site, random: &mut Random, _: u64) -> Found {
     let size = random.decades(-44.0, -3.0);
-    let mut rested = Trial::at_rest(&site.patch, &site.settings);
+    let mut rested = Trial::at_rest(site, &site.patch, &site.settings);
     rested.disturb(|i, p| (p.with_z(size * if i % 2 == 0 { 1.0 } else { -0.5 }), Vec3::ZERO));
-    let mut fresh = Trial::at_rest(&site.patch, &site.settings);
+    let mut fresh = Trial::at_rest(site, &site.patch, &site.settings);
     fresh.disturb(|_, p| (p.with_z(random.between(-1e-3, 1e-3)), Vec3::ZERO));
     rested.run(REST_STEPS);
     let [new, old] = [&mut fresh, &mut rested].map(|_| Vec::with_capacity(TIMED));

@@ -22,7 +22,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use thiserror::Error;
 use toile_assets::garment::MeshError;
 use toile_engine::cloth::{Quality, Settings};
+use toile_gpu::stepper::{Backend, Means};
 
+use crate::backend::SteppedBy;
 use crate::oracle::OracleError;
 
 use found::Found;
@@ -103,17 +105,20 @@ pub struct Options {
     pub seeds: Range<u64>,
     /// How the cloth is stepped where a case does not choose for itself.
     pub quality: Quality,
+    /// What steps it.
+    pub backend: Backend,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { case: None, seeds: 0..SEEDS, quality: Quality::default() }
+        Self { case: None, seeds: 0..SEEDS, quality: Quality::default(), backend: Backend::Cpu }
     }
 }
 
 /// The pieces that cases share.
 #[derive(Debug)]
 struct Site {
+    by: Means,
     settings: Settings,
     curtain: Piece,
     lawn: Piece,
@@ -122,7 +127,7 @@ struct Site {
 }
 
 impl Site {
-    fn new(quality: Quality) -> Result<Self, TortureError> {
+    fn new(quality: Quality, by: Means) -> Result<Self, TortureError> {
         let settings = Settings { quality, workers: 1, ..Settings::default() };
         let fabric = piece::denim();
         Ok(Self {
@@ -131,6 +136,7 @@ impl Site {
             patch: Piece::new(&piece::sheet(PATCH), &fabric, &settings)?,
             tube: Piece::new(&piece::tube(TUBE, TUBE_RADIUS_M, 2.0 * TUBE_RADIUS_M), &fabric, &settings)?,
             settings,
+            by,
         })
     }
 }
@@ -140,7 +146,7 @@ impl Site {
 /// # Errors
 /// Where a piece cannot be baked or has no equilibrium, which would be an error of the bake or of the oracle.
 pub fn run(options: &Options, told: &mut dyn FnMut(&Summary)) -> Result<Report, TortureError> {
-    let site = Site::new(options.quality)?;
+    let site = Site::new(options.quality, Means::open(options.backend))?;
     let off = |piece: &Piece| piece.off() * 1e3;
     let undisturbed_mm = [off(&site.curtain), off(&site.lawn), off(&site.patch), off(&site.tube)];
     let mut report = Report { quality: options.quality.name(), undisturbed_mm, ..Report::default() };
@@ -151,6 +157,7 @@ pub fn run(options: &Options, told: &mut dyn FnMut(&Summary)) -> Result<Report, 
         report.summary.push(summary);
         report.cases.extend(outcomes);
     }
+    report.stepped_by = SteppedBy::of(&site.by, site.by.stepper().backend());
     Ok(report)
 }
 

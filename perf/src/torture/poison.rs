@@ -113,16 +113,15 @@ fn state_inputs() -> Vec<Input> {
 
 /// Puts a bad value into one input for some steps and lets the cloth come back.
 fn poisoned(site: &Site, mut trial: Trial<'_>, (name, put): &Input, value: f32, steps: usize) -> Found {
-    let good = trial.clone();
+    let (settings, palette, spheres) = (trial.settings, trial.palette.clone(), trial.spheres.clone());
+    let step_seconds = trial.colliders.step_seconds;
     trial.run(2);
     for _ in 0..steps {
         put(&mut trial, value);
         trial.step();
     }
-    trial.settings = good.settings;
-    trial.palette = good.palette;
-    trial.spheres = good.spheres;
-    trial.colliders.step_seconds = good.colliders.step_seconds;
+    (trial.settings, trial.palette, trial.spheres) = (settings, palette, spheres);
+    trial.colliders.step_seconds = step_seconds;
     let mut found = Found::back(trial, &site.curtain.rest);
     found.note = format!("{name} is {value} for {steps} steps");
     found
@@ -148,7 +147,7 @@ fn beside(site: &Site, random: &mut Random, seed: u64, inputs: &[Input]) -> Foun
     // They stand beside the cloth, and come through it where they are drawn away and back.
     let side = |x: f32| [Vec3::new(x, TOP.y - 0.1, 0.0).extend(0.05), Vec3::new(x, TOP.y - 0.4, 0.0).extend(0.05)];
     let spheres = [side(-0.4), side(0.4)].concat();
-    let mut trial = Trial::among(&site.curtain, &spheres, &[[0, 1], [2, 3]], &site.settings);
+    let mut trial = Trial::among(site, &site.curtain, &spheres, &[[0, 1], [2, 3]], &site.settings);
     trial.disturb(|i, _| (site.curtain.rest[i], Vec3::ZERO));
     poisoned(site, trial, &inputs[which], value, 1 + random.below(LONGEST))
 }
@@ -156,21 +155,21 @@ fn beside(site: &Site, random: &mut Random, seed: u64, inputs: &[Input]) -> Foun
 pub(super) fn settings(site: &Site, random: &mut Random, seed: u64) -> Found {
     let inputs = setting_inputs();
     let (which, value) = chosen(&inputs, &SETTINGS_VALUES, seed);
-    let trial = Trial::at_rest(&site.curtain, &site.settings);
+    let trial = Trial::at_rest(site, &site.curtain, &site.settings);
     poisoned(site, trial, &inputs[which], value, 1 + random.below(LONGEST))
 }
 
 pub(super) fn root_settings(site: &Site, random: &mut Random, seed: u64) -> Found {
     let inputs = root_inputs();
     let (which, value) = chosen(&inputs, &SETTINGS_VALUES, seed);
-    let trial = Trial::at_rest(&site.curtain, &site.settings);
+    let trial = Trial::at_rest(site, &site.curtain, &site.settings);
     poisoned(site, trial, &inputs[which], value, 1 + random.below(LONGEST))
 }
 
 pub(super) fn state(site: &Site, random: &mut Random, seed: u64) -> Found {
     let inputs = state_inputs();
     let (which, value) = chosen(&inputs, &VALUES, seed);
-    let trial = Trial::at_rest(&site.curtain, &site.settings);
+    let trial = Trial::at_rest(site, &site.curtain, &site.settings);
     poisoned(site, trial, &inputs[which], value, 1 + random.below(LONGEST))
 }
 

@@ -60,7 +60,7 @@ pub(super) fn stiffness_ratio(site: &Site, random: &mut Random, seed: u64) -> Fo
 /// Swings a cloth of a seed's own and compares it with where it hangs.
 fn own(site: &Site, shape: &Shape, fabric: &Fabric, random: &mut Random) -> Found {
     match Piece::new(shape, fabric, &site.settings) {
-        Ok(piece) => Found::back(swung(&piece, &site.settings, random), &piece.rest),
+        Ok(piece) => Found::back(swung(site, &piece, &site.settings, random), &piece.rest),
         Err(error) => Found { miss: Some(error.to_string()), ..Found::default() },
     }
 }
@@ -147,7 +147,7 @@ pub(super) fn heavy_chain(site: &Site, random: &mut Random, _: u64) -> Found {
     let along = Quat::from_axis_angle(random.direction(), random.between(0.0, 0.3)) * Vec3::NEG_Y;
     let chain = Chain { links: &links, masses: &masses, force_n: f32::INFINITY, along };
     let garment = chain.garment();
-    let mut trial = Trial::new(&garment, &settings(site, Some(100)));
+    let mut trial = Trial::new(site, &garment, &settings(site, Some(100)));
     let length = LINK_M * links.len() as f32;
     let mut off = 0.0f32;
     // Eight seconds: a free fall of 320 m, which is what 100 iterations come to.
@@ -167,7 +167,7 @@ pub(super) fn even_chain(site: &Site, random: &mut Random, _: u64) -> Found {
     let along = Quat::from_axis_angle(random.direction(), random.between(0.0, 1.0)) * Vec3::NEG_Y;
     let chain = Chain { links: &links, masses: &[1.0; NODES - 1], force_n: TOP_FORCE_N / 0.02, along };
     let garment = chain.garment();
-    let mut trial = Trial::new(&garment, &settings(site, None));
+    let mut trial = Trial::new(site, &garment, &settings(site, None));
     let recovery = trial.recover(&chain.rest(&garment));
     let force = (stretched(&trial, &links)[1] - 1.0) * chain.force_n;
     let mut found = Found { recovery: Some(recovery), ..Found::of(&trial) };
@@ -196,7 +196,7 @@ pub(super) fn strand(site: &Site, random: &mut Random, _: u64) -> Found {
     soft.for_each(|c| *c = short);
     garment.fabric.damping_per_s = 0.0;
     let settings = settings(site, None);
-    let mut trial = Trial::new(&garment, &settings);
+    let mut trial = Trial::new(site, &garment, &settings);
     let mut peak = 0.0f32;
     for _ in 0..(1.5 / FRAME_S) as usize {
         trial.step();

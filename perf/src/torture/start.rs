@@ -27,7 +27,7 @@ const TREMBLE_M: f32 = 1e-5;
 
 /// Puts the curtain's free particles elsewhere, at rest, and lets go.
 fn from(site: &Site, random: &mut Random, mut to: impl FnMut(usize, Vec3) -> Vec3) -> Found {
-    let mut trial = Trial::new(&site.curtain.garment, &site.settings);
+    let mut trial = Trial::new(site, &site.curtain.garment, &site.settings);
     trial.disturb(|i, p| (to(i, p) + random.point() * TREMBLE_M, Vec3::ZERO));
     Found::back(trial, &site.curtain.rest)
 }
@@ -39,7 +39,7 @@ pub(super) fn random_box(site: &Site, random: &mut Random, _: u64) -> Found {
 
 /// The same with lawn.
 pub(super) fn crumpled(site: &Site, random: &mut Random, _: u64) -> Found {
-    let mut trial = Trial::new(&site.lawn.garment, &site.settings);
+    let mut trial = Trial::new(site, &site.lawn.garment, &site.settings);
     trial.disturb(|_, _| (MIDDLE + random.point() * BOX_M, Vec3::ZERO));
     Found::back_anywhere(trial, &site.lawn.rest)
 }
@@ -85,9 +85,9 @@ pub(super) fn collapsed_cloth(site: &Site, random: &mut Random, _: u64) -> Found
 }
 
 /// A cloth that hangs askew, turned about its upper edge, each particle pushed another way.
-pub(super) fn swung<'a>(piece: &'a Piece, settings: &Settings, random: &mut Random) -> Trial<'a> {
+pub(super) fn swung<'a>(site: &Site, piece: &'a Piece, settings: &Settings, random: &mut Random) -> Trial<'a> {
     let turn = Quat::from_axis_angle(Vec3::X, random.between(-1.5, 1.5));
-    let mut trial = Trial::new(&piece.garment, settings);
+    let mut trial = Trial::new(site, &piece.garment, settings);
     trial.disturb(|_, p| (TOP + turn * (p - TOP), random.direction() * random.between(0.0, PUSH_M_S)));
     trial
 }
@@ -98,10 +98,10 @@ pub(super) fn long_step(site: &Site, random: &mut Random, _: u64) -> Found {
     let substeps = site.settings.quality.substeps(piece.garment.substeps);
     let step_seconds = site.settings.step_seconds * 4.0;
     let settings = Settings { step_seconds, substeps: Some(substeps), ..site.settings };
-    Found::back(swung(piece, &settings, random), &piece.rest)
+    Found::back(swung(site, piece, &settings, random), &piece.rest)
 }
 
 pub(super) fn one_iteration(site: &Site, random: &mut Random, _: u64) -> Found {
     let settings = Settings { quality: Quality::Draft, substeps: Some(1), ..site.settings };
-    Found::back(swung(&site.curtain, &settings, random), &site.curtain.rest)
+    Found::back(swung(site, &site.curtain, &settings, random), &site.curtain.rest)
 }

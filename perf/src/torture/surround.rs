@@ -43,7 +43,7 @@ pub(super) fn teleport(site: &Site, random: &mut Random, seed: u64) -> Found {
         spheres.extend(stays);
         capsules.extend([[2, 2], [3, 3], [4, 4]]);
     }
-    let mut trial = Trial::among(&site.curtain, &spheres, &capsules, &site.settings);
+    let mut trial = Trial::among(site, &site.curtain, &spheres, &capsules, &site.settings);
     let (mut side, mut step) = (1.0, 0);
     while step < STEPS {
         side = -side;
@@ -74,7 +74,7 @@ pub(super) fn squeeze(site: &Site, random: &mut Random, _: u64) -> Found {
         let [a, b] = [1.0, -1.0].map(|side: f32| middle + Vec3::Z * side * z);
         [capsule(a, halves[0], RADIUS_M), capsule(b, halves[1], RADIUS_M)].concat()
     };
-    let mut trial = Trial::among(&site.curtain, &at(far), &[[0, 1], [2, 3]], &site.settings);
+    let mut trial = Trial::among(site, &site.curtain, &at(far), &[[0, 1], [2, 3]], &site.settings);
     let move_by = speed * site.settings.step_seconds;
     let way = (far / move_by).ceil() as usize;
     for step in (0..=way).rev().chain(vec![0; STEPS]).chain(0..=way) {
@@ -89,7 +89,7 @@ pub(super) fn too_small(site: &Site, random: &mut Random, _: u64) -> Found {
     let body = |radius: f32| capsule(TOP - Vec3::Y * 0.55, Vec3::Y * 0.35, radius).to_vec();
     // The fabric keeps 3 mm; up to 5 mm of the body stand out of the tube.
     let radius = 2.0 * TUBE_RADIUS_M + random.between(-0.03, 0.005);
-    let mut trial = Trial::among(&site.tube, &body(radius), &[[0, 1]], &site.settings);
+    let mut trial = Trial::among(site, &site.tube, &body(radius), &[[0, 1]], &site.settings);
     trial.run(STEPS);
     trial.spheres = Some(body(0.001));
     Found::back(trial, &site.tube.rest)
@@ -99,7 +99,7 @@ pub(super) fn too_small(site: &Site, random: &mut Random, _: u64) -> Found {
 pub(super) fn spin(site: &Site, random: &mut Random, _: u64) -> Found {
     let axis = random.direction();
     let centre = TOP + Vec3::X * random.between(-0.1, 0.1);
-    let mut trial = Trial::at_rest(&site.curtain, &site.settings);
+    let mut trial = Trial::at_rest(site, &site.curtain, &site.settings);
     let a_step = std::f32::consts::TAU * TURNS_PER_S * site.settings.step_seconds;
     for step in 1..=STEPS {
         let turn = Quat::from_axis_angle(axis, a_step * (step % 12) as f32);

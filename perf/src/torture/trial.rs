@@ -6,7 +6,9 @@ use toile_assets::skeleton::BONES;
 use toile_engine::cloth::guard::Events;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
+use toile_gpu::stepper::{Batch, Stepper};
 
+use super::Site;
 use super::piece::{self, Piece};
 
 /// Within which a cloth counts as back (m).
@@ -37,7 +39,7 @@ pub struct Recovery {
 }
 
 /// A cloth among colliders.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Trial<'a> {
     /// The garment.
     pub garment: &'a Garment,
@@ -53,6 +55,7 @@ pub struct Trial<'a> {
     pub settings: Settings,
     /// What was seen so far.
     pub seen: Seen,
+    stepper: Stepper,
     before: Box<[Vec3A]>,
     /// The events up to which jumps were explained.
     told: Events,
@@ -60,32 +63,33 @@ pub struct Trial<'a> {
 
 impl<'a> Trial<'a> {
     /// A cloth as it starts, with nothing about it.
-    pub fn new(garment: &'a Garment, settings: &Settings) -> Self {
+    pub fn new(site: &Site, garment: &'a Garment, settings: &Settings) -> Self {
         let none = Colliders::new(&[], &[], false).expect("no colliders are within every limit");
         let cloth = Cloth::new(garment, &none).in_wind(garment);
-        Self::with(garment, cloth, none, settings)
+        Self::with(site, garment, cloth, none, settings)
     }
 
     /// A piece at rest, with nothing about it.
-    pub fn at_rest(piece: &'a Piece, settings: &Settings) -> Self {
+    pub fn at_rest(site: &Site, piece: &'a Piece, settings: &Settings) -> Self {
         let none = Colliders::new(&[], &[], false).expect("no colliders are within every limit");
-        Self::with(&piece.garment, piece.settled.clone(), none, settings)
+        Self::with(site, &piece.garment, piece.settled.clone(), none, settings)
     }
 
     /// A piece that hangs as it was cut, among spheres joined to capsules.
-    pub fn among(piece: &'a Piece, spheres: &[Vec4], capsules: &[[u8; 2]], settings: &Settings) -> Self {
+    pub fn among(site: &Site, piece: &'a Piece, spheres: &[Vec4], capsules: &[[u8; 2]], settings: &Settings) -> Self {
         let mut colliders = rig(spheres, capsules);
         colliders.place_spheres(spheres);
         let cloth = Cloth::new(&piece.garment, &colliders).in_wind(&piece.garment);
-        let mut this = Self::with(&piece.garment, cloth, colliders, settings);
+        let mut this = Self::with(site, &piece.garment, cloth, colliders, settings);
         this.spheres = Some(spheres.to_vec());
         this
     }
 
-    fn with(garment: &'a Garment, cloth: Cloth, colliders: Colliders, settings: &Settings) -> Self {
+    fn with(site: &Site, garment: &'a Garment, cloth: Cloth, colliders: Colliders, settings: &Settings) -> Self {
         Self {
             before: cloth.positions.clone(),
             told: cloth.events,
+            stepper: site.by.stepper(),
             garment,
             cloth,
             colliders,
@@ -113,8 +117,10 @@ impl<'a> Trial<'a> {
             None => self.colliders.place(&self.palette),
         }
         self.before.copy_from_slice(&self.cloth.positions);
-        let step = Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings };
-        self.cloth.step(self.garment, &step);
+        let steps = [Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings }];
+        let cloths = std::slice::from_mut(&mut self.cloth);
+        // Without a crew there is no worker that could panic.
+        let _ = self.stepper.step(&mut Batch { cloths, garments: &[self.garment], steps: &steps }, None);
         self.look();
     }
 

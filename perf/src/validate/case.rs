@@ -1,9 +1,10 @@
 //! A case: something with an exact answer, and how it is run at a level; and the rows that come of it.
 
 use serde::Serialize;
+use toile_gpu::stepper::{Backend, Means};
 
-use super::Level;
 use super::rig::{Rig, RigError};
+use super::{How, Level};
 
 /// What one run gave.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,7 +51,7 @@ impl Outcome {
 }
 
 /// How a case is run at a level.
-pub type Run = Box<dyn Fn(Level) -> Result<Outcome, RigError> + Send + Sync>;
+pub type Run = Box<dyn Fn(How<'_>) -> Result<Outcome, RigError> + Send + Sync>;
 
 /// Something with an exact answer.
 pub struct Case {
@@ -112,14 +113,17 @@ pub struct Row {
 }
 
 impl Case {
-    /// Runs the case at some levels and at the converged one, and tells a row of each that is asked for.
+    /// Runs the case at some levels by some means, and at the converged one, which the others are held against, by the processor;
+    /// tells a row of each that is asked for.
     ///
     /// # Errors
     /// Where the case's own mesh or colliders are refused.
-    pub fn rows(&self, levels: &[Level]) -> Result<Vec<Row>, RigError> {
-        let converged = (self.run)(Level::Converged)?;
+    pub fn rows(&self, levels: &[Level], by: &Means) -> Result<Vec<Row>, RigError> {
+        let converged = (self.run)(How { level: Level::Converged, by: &Means::cpu() })?;
+        let on_cpu = by.asked() == Backend::Cpu;
         let run = |level: &Level| {
-            let found = if *level == Level::Converged { converged } else { (self.run)(*level)? };
+            let known = on_cpu && *level == Level::Converged;
+            let found = if known { converged } else { (self.run)(How { level: *level, by })? };
             Ok(self.row(*level, &found, &converged))
         };
         levels.iter().map(run).collect()

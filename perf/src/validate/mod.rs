@@ -12,6 +12,16 @@ pub mod rig;
 pub mod run;
 
 use toile_engine::cloth::Quality;
+use toile_gpu::stepper::Means;
+
+/// How a case is run: the engine's settings, and what steps it.
+#[derive(Debug, Clone, Copy)]
+pub struct How<'a> {
+    /// The settings.
+    pub level: Level,
+    /// The processor, or a graphics device.
+    pub by: &'a Means,
+}
 
 /// How the engine is set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

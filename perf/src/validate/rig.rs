@@ -10,10 +10,11 @@ use toile_assets::garment::{Garment, MeshError, Shape};
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere};
+use toile_gpu::stepper::{Batch, Stepper};
 
-use super::Level;
 use super::case::Outcome;
 use super::mesh;
+use super::{How, Level};
 use crate::oracle::{Oracle, Problem, Solids};
 
 /// Why a case cannot be run.
@@ -67,6 +68,7 @@ pub struct Rig {
     pub cloth: Cloth,
     /// How it is stepped.
     pub settings: Settings,
+    stepper: Stepper,
     colliders: Colliders,
     palette: [Affine3A; BONES],
     particle: Vec<usize>,
@@ -78,7 +80,7 @@ impl Rig {
     ///
     /// # Errors
     /// Where the mesh or the colliders cannot be used.
-    pub fn new(shape: &Shape, cloth: &mesh::Cloth, level: Level, scenery: &Scenery) -> Result<Self, RigError> {
+    pub fn new(shape: &Shape, cloth: &mesh::Cloth, how: How<'_>, scenery: &Scenery) -> Result<Self, RigError> {
         let garment = bake("case", "one size", shape, &cloth.fabric())?;
         let ends = scenery.capsule.unwrap_or_default();
         let spheres = ends.map(|p| RestSphere { bone: 0, centre: p.as_vec3(), radius: scenery.radius as f32 });
@@ -93,7 +95,8 @@ impl Rig {
         garment.source.iter().enumerate().for_each(|(i, vertex)| particle[*vertex as usize] = i);
         Ok(Self {
             cloth: Cloth::new(&garment, &colliders),
-            settings: level.settings(&garment),
+            settings: how.level.settings(&garment),
+            stepper: how.by.stepper(),
             colliders,
             palette: [Affine3A::IDENTITY; BONES],
             particle,
@@ -104,9 +107,12 @@ impl Rig {
 
     /// One step, timed.
     pub fn step(&mut self) {
-        let Self { garment, cloth, settings, colliders, palette, times_ns, .. } = self;
+        let Self { garment, cloth, settings, colliders, palette, times_ns, stepper, .. } = self;
+        let steps = [Step { palette, colliders, settings }];
+        let mut batch = Batch { cloths: std::slice::from_mut(cloth), garments: &[garment], steps: &steps };
         let begun = Instant::now();
-        cloth.step(garment, &Step { palette, colliders, settings });
+        // Without a crew there is no worker that could panic.
+        let _ = stepper.step(&mut batch, None);
         times_ns.push(begun.elapsed().as_nanos() as u64);
     }
 
@@ -157,8 +163,8 @@ impl Rig {
     }
 
     /// What is read off it at rest, and off the oracle's equilibrium too in the converged setting.
-    pub fn told(&self, level: Level, read: impl Fn(&Seen<'_>) -> f64) -> Outcome {
-        let solved = if level == Level::Converged { self.solved().map(|seen| read(&seen)) } else { None };
+    pub fn told(&self, how: How<'_>, read: impl Fn(&Seen<'_>) -> f64) -> Outcome {
+        let solved = if how.level == Level::Converged { self.solved().map(|seen| read(&seen)) } else { None };
         Outcome { solved, ..Outcome::of(self, read(&self.seen())) }
     }
 

@@ -6,10 +6,12 @@ use std::sync::{Mutex, OnceLock};
 use std::time::Instant;
 
 use serde::Serialize;
+use toile_gpu::stepper::{Backend, Means};
 
 use super::case::{Case, Row};
 use super::rig::RigError;
 use super::{Level, cases};
+use crate::backend::SteppedBy;
 
 /// What is to be run.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,12 +26,14 @@ pub struct Options {
     pub threads: usize,
     /// One in so many cases of each name is run: a small version of the set.
     pub every: usize,
+    /// What steps the cloth.
+    pub backend: Backend,
 }
 
 impl Default for Options {
     fn default() -> Self {
         let threads = std::thread::available_parallelism().map_or(1, |n| n.get().min(2));
-        Self { case: None, parameter: None, levels: Level::ALL.to_vec(), threads, every: 1 }
+        Self { case: None, parameter: None, levels: Level::ALL.to_vec(), threads, every: 1, backend: Backend::Cpu }
     }
 }
 
@@ -42,6 +46,8 @@ pub struct Report {
     pub passed: [usize; 2],
     /// Threads that it was run on.
     pub threads: usize,
+    /// What stepped the cloth.
+    pub stepped_by: SteppedBy,
     /// How long it took (s).
     pub wall_s: f64,
 }
@@ -87,6 +93,7 @@ pub const NAMES: [&str; 20] = [
 pub fn run(options: &Options, told: &(impl Fn(usize) + Sync)) -> Result<Report, RigError> {
     let begun = Instant::now();
     let chosen = chosen(options);
+    let means = Means::open(options.backend);
     let rows = Mutex::new((0..chosen.len()).map(|_| None).collect::<Vec<_>>());
     let next = AtomicUsize::new(0);
     let work = || {
@@ -94,7 +101,7 @@ pub fn run(options: &Options, told: &(impl Fn(usize) + Sync)) -> Result<Report, 
             // Relaxed: the counter hands out numbers; results are published by the lock.
             let at = next.fetch_add(1, Relaxed);
             let Some(case) = chosen.get(at) else { return };
-            let found = case.rows(&options.levels);
+            let found = case.rows(&options.levels, &means);
             if let Ok(mut rows) = rows.lock() {
                 rows[at] = Some(found);
             }
@@ -119,6 +126,7 @@ pub fn run(options: &Options, told: &(impl Fn(usize) + Sync)) -> Result<Report, 
         cases,
         passed: [passed[0], passed[0] + passed[1]],
         threads: options.threads,
+        stepped_by: SteppedBy::of(&means, means.stepper().backend()),
         wall_s: begun.elapsed().as_secs_f64(),
     })
 }

@@ -1,11 +1,15 @@
 //! The grammar of `toile bench skirt`.
 
+use std::path::PathBuf;
+
 use clap::{ArgMatches, value_parser};
 use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_engine::cloth::Quality;
 use toile_engine::lanes::Width;
-use toile_perf::skirt::options::{Mesh, Options};
+use toile_gpu::stepper::Backend;
+use toile_perf::skirt::options::{MAX_GARMENTS, Mesh, Options};
 
+use super::backend::{asked_backend, backend};
 use super::{flag, json, required, text};
 use crate::exit::AppError;
 
@@ -16,6 +20,8 @@ pub struct SkirtArgs {
     pub options: Options,
     /// All rows of the table in place of one run.
     pub table: bool,
+    /// Folder for a chart of the table of sizes.
+    pub picture: Option<PathBuf>,
     /// One JSON object on stdout in place of the summary.
     pub json: bool,
 }
@@ -45,7 +51,7 @@ pub(super) fn grammar() -> clap::Command {
             flag("wind", "Wind of (1, 0, 0.5) m/s with drag 0.1 and lift 0.05"),
             text("threads", "T", "Threads that step").value_parser(["1", "2"]).default_value("1"),
             text("garments", "K", "Skirts to step, equal ones")
-                .value_parser(value_parser!(u64).range(1..=16))
+                .value_parser(value_parser!(u64).range(1..=MAX_GARMENTS as u64))
                 .default_value("1"),
             text("lanes", "L", "Lanes of the kernels [default: the widest of this processor]")
                 .value_parser(["1", "4", "8", "16"]),
@@ -59,7 +65,13 @@ pub(super) fn grammar() -> clap::Command {
             text("steps", "S", "Steps of a run")
                 .value_parser(value_parser!(u64).range(1..=MAX_STEPS))
                 .default_value("600"),
-            flag("table", "Run every row of the table of targets, in place of one run; takes some minutes"),
+            backend(),
+            flag(
+                "table",
+                "Run every row of the table of targets, in place of one run; with --backend gpu or auto, sizes and numbers of \
+                 skirts on the processor and on the device, and where they cross; takes some minutes",
+            ),
+            text("picture", "FOLDER", "With --table of a device: put the chart crossover.png there").requires("table"),
             json(),
         ])
         .after_help("Example: the cost and the error of a walk in a skirt of 16,384 vertices\n  toile bench skirt --verts 16384 --motion walk")
@@ -87,9 +99,15 @@ pub(super) fn parse(matches: &ArgMatches) -> Result<SkirtArgs, AppError> {
         substeps: matches.get_one("substeps").copied(),
         runs: count("runs")?,
         steps: count("steps")?,
+        backend: asked_backend(matches)?,
         ..Options::default()
     };
-    Ok(SkirtArgs { options, table: matches.get_flag("table"), json: matches.get_flag("json") })
+    let picture = matches.get_one::<String>("picture").map(PathBuf::from);
+    if picture.is_some() && options.backend == Backend::Cpu {
+        let words = "`--picture` draws the table of a device; add `--backend gpu` or leave it out";
+        return Err(AppError::Usage(words.to_owned()));
+    }
+    Ok(SkirtArgs { options, table: matches.get_flag("table"), picture, json: matches.get_flag("json") })
 }
 
 #[cfg(test)]
@@ -111,7 +129,7 @@ mod tests {
     fn every_option_arrives() {
         let args = parsed(
             "skirt --verts 1024 --motion fast --mesh irregular --stretch physical --wind --threads 2 --garments 3 \
-             --lanes 8 --quality fine --substeps 6 --runs 2 --steps 60 --table --json",
+             --lanes 8 --quality fine --substeps 6 --runs 2 --steps 60 --backend gpu --table --picture out --json",
         );
         let expected = Options {
             verts: 1_024,
@@ -126,8 +144,11 @@ mod tests {
             substeps: Some(6),
             runs: 2,
             steps: 60,
+            backend: Backend::Gpu,
             ..Options::default()
         };
-        assert_eq!(args, SkirtArgs { options: expected, table: true, json: true });
+        assert_eq!(args, SkirtArgs { options: expected, table: true, picture: Some("out".into()), json: true });
+        let line = "skirt --table --picture out".split_whitespace();
+        assert!(parse(&grammar().try_get_matches_from(line).unwrap()).is_err(), "there is no chart of the targets");
     }
 }

@@ -5,6 +5,7 @@ use clap::{Arg, ArgMatches, value_parser};
 use toile_engine::cloth::Quality;
 use toile_perf::torture::{CASES, Options, SEEDS};
 
+use super::backend::{asked_backend, backend};
 use super::{json, quiet, required, text};
 use crate::exit::AppError;
 
@@ -44,6 +45,7 @@ pub(super) fn grammar() -> clap::Command {
             text("quality", "Q", "Settings of the cloth where a case does not choose its own: draft, shop or fine")
                 .value_parser(Quality::ALL.map(Quality::name))
                 .default_value(Quality::default().name()),
+            backend(),
             json(),
             quiet(),
         ])
@@ -58,7 +60,7 @@ pub(super) fn args(matches: &ArgMatches) -> Result<TortureArgs, AppError> {
     };
     let quality = required::<String>(matches, "quality")?.parse().map_err(AppError::internal)?;
     Ok(TortureArgs {
-        options: Options { case: matches.get_one("case").cloned(), seeds, quality },
+        options: Options { case: matches.get_one("case").cloned(), seeds, quality, backend: asked_backend(matches)? },
         json: matches.get_flag("json"),
         quiet: matches.get_flag("quiet"),
     })
@@ -67,6 +69,7 @@ pub(super) fn args(matches: &ArgMatches) -> Result<TortureArgs, AppError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use toile_gpu::stepper::Backend;
 
     fn parsed(line: &str) -> Result<TortureArgs, AppError> {
         args(&grammar().try_get_matches_from(line.split_whitespace()).map_err(AppError::input)?)
@@ -79,8 +82,9 @@ mod tests {
 
     #[test]
     fn one_case_and_one_seed_can_be_named() {
-        let args = parsed("torture squeeze --seed 7 --quality fine --json -q").unwrap();
-        let options = Options { case: Some("squeeze".into()), seeds: 7..8, quality: Quality::Fine };
+        let args = parsed("torture squeeze --seed 7 --quality fine --backend auto --json -q").unwrap();
+        let (quality, backend) = (Quality::Fine, Backend::Auto);
+        let options = Options { case: Some("squeeze".into()), seeds: 7..8, quality, backend };
         assert_eq!(args, TortureArgs { options, json: true, quiet: true });
         assert_eq!(parsed("torture --seeds 3").unwrap().options.seeds, 0..3);
         for wrong in ["torture squeze", "torture --seeds 0", "torture --seed 1 --seeds 2"] {

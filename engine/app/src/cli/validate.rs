@@ -5,6 +5,7 @@ use clap::{Arg, ArgMatches, value_parser};
 use toile_perf::validate::Level;
 use toile_perf::validate::run::{NAMES, Options};
 
+use super::backend::{asked_backend, backend};
 use super::{json, quiet, required, text};
 use crate::exit::AppError;
 
@@ -44,6 +45,7 @@ pub(super) fn grammar() -> clap::Command {
                 .default_value("1"),
             text("threads", "T", "Threads that run cases side by side [default: 2, or as many cores as there are]")
                 .value_parser(["1", "2"]),
+            backend(),
             json(),
             quiet(),
         ])
@@ -60,6 +62,7 @@ pub(super) fn args(matches: &ArgMatches) -> Result<ValidateArgs, AppError> {
         levels: Level::ALL.into_iter().filter(|level| quality == "all" || level.name() == quality).collect(),
         threads: matches.get_one::<String>("threads").and_then(|t| t.parse().ok()).unwrap_or(usual.threads),
         every: usize::try_from(required::<u64>(matches, "every")?).map_err(AppError::internal)?,
+        backend: asked_backend(matches)?,
     };
     Ok(ValidateArgs { options, json: matches.get_flag("json"), quiet: matches.get_flag("quiet") })
 }

@@ -25,6 +25,22 @@ pub struct Events {
     pub held_colliders: u64,
 }
 
+impl std::ops::Add for Events {
+    type Output = Self;
+
+    fn add(self, more: Self) -> Self {
+        Self {
+            repaired: self.repaired + more.repaired,
+            rolled_back: self.rolled_back + more.rolled_back,
+            speed_limited: self.speed_limited + more.speed_limited,
+            held_pins: self.held_pins + more.held_pins,
+            held_settings: self.held_settings + more.held_settings,
+            teleports: self.teleports + more.teleports,
+            held_colliders: self.held_colliders + more.held_colliders,
+        }
+    }
+}
+
 /// Farthest from the origin that anything can be (m): beyond it, f32 no longer tells millimetres apart.
 const FARTHEST_M: f32 = 10_000.0;
 

@@ -161,6 +161,28 @@ impl Cloth {
         }
     }
 
+    /// The particles as the solver has them: what [`Cloth::disturb`] has put somewhere else is there already.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Takes over what somebody else has made of a step: positions and velocities `[particles]` (m, m/s), and the events so far.
+    pub fn take_over(&mut self, positions: &[Vec3A], velocities: &[Vec3A], events: guard::Events) {
+        let columns = self.state.columns();
+        for (i, (&x, &v)) in positions.iter().zip(velocities).enumerate().take(self.positions.len()) {
+            state::set(columns.x, i, x);
+            state::set(columns.previous, i, x);
+            state::set(columns.v, i, v);
+            self.positions[i] = x;
+        }
+        self.events = events;
+    }
+
+    /// Prepares for some settings, as a step with them does first.
+    pub fn prepare(&mut self, garment: &Garment, settings: &Settings) {
+        self.prepared.make(garment, &settings.sound());
+    }
+
     /// Kinetic energy (J).
     pub fn kinetic_energy(&self, garment: &Garment) -> f64 {
         let particles = garment.inverse_mass.iter().enumerate().filter(|(_, w)| **w > 0.0);

@@ -8,7 +8,6 @@ use toile_assets::limits::STEP_SECONDS;
 
 use super::links::Passes;
 use super::program::{self, Bending, Op};
-use super::settings::MAX_SUBSTEPS;
 use super::stages::{self, Stage};
 use super::{Quality, Settings, bending, fibers, hubs, links};
 
@@ -93,11 +92,7 @@ impl Prepared {
 
     /// Prepares for some settings. Allocates nothing; a microsecond a hundred constraints, in steps in which the settings have changed.
     pub fn make(&mut self, garment: &Garment, settings: &Settings) {
-        // The bake speaks of steps of 1/120 s.
-        let longer = (settings.step_seconds / STEP_SECONDS).max(1.0);
-        let chosen = (settings.quality.substeps(garment.substeps) as f32 * longer).ceil() as u32;
-        let whole = settings.substeps.unwrap_or(chosen) as f32;
-        let asked = ((whole * settings.substep_share).ceil() as u32).clamp(1, MAX_SUBSTEPS);
+        let asked = settings.substeps_of(garment.substeps);
         self.quality = settings.quality;
         let made_for = (asked, settings.step_seconds, settings.stretch_damping_s);
         if self.made_for == Some(made_for) {

@@ -1,21 +1,18 @@
-//! Buffers: what the kernels read and write, made once at load; pipelines and what they are bound to.
+//! Buffers: what the kernels read and write, made once at load, and what each kernel is bound to.
 
 use bytemuck::Pod;
 use toile_assets::limits::MAX_CAPSULES;
 use toile_engine::cloth::stages;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
-use wgpu::{
-    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
-    BindingResource, BindingType, Buffer, BufferBinding, BufferBindingType, BufferUsages, ComputePipeline,
-    ComputePipelineDescriptor, PipelineLayoutDescriptor, ShaderModuleDescriptor, ShaderSource, ShaderStages,
-};
+use wgpu::{BindGroup, Buffer, BufferUsages};
 
 use super::constants::Constants;
 use super::flat::Flat;
-use super::kernels::{Kernel, SHADERS};
+use super::kernels::Kernel;
+use super::opened::Opened;
 use super::program::Program;
 use super::touch::{FlatCone, FlatEnds, PLANES};
-use crate::device::{Device, Needs};
+use crate::device::Needs;
 
 /// Bytes between two of the uniforms that a dispatch picks from: what every driver aligns to.
 pub const ALIGNED: u64 = 256;
@@ -59,8 +56,8 @@ pub struct Buffers {
     pub planes: Buffer,
     /// Bound to every kernel.
     pub scene: BindGroup,
-    /// Each kernel's pipeline and what it alone is bound to, by [`Kernel::number`].
-    pub kernels: Vec<(ComputePipeline, BindGroup)>,
+    /// What each kernel alone is bound to, by [`Kernel::number`].
+    pub own: Vec<BindGroup>,
     bytes: u64,
 }
 
@@ -134,9 +131,10 @@ impl Maker<'_> {
 }
 
 impl Buffers {
-    /// All of a scene, and the pipelines. `sets` of capsules there are for each garment, one more than substeps.
-    pub fn new(device: &Device, flat: &Flat, program: &Program, constants: &[Constants], sets: usize) -> Self {
-        let mut make = Maker { device: &device.device, bytes: 0 };
+    /// All of a scene, on an open device. `sets` of capsules there are for each garment, one more than substeps.
+    pub fn new(opened: &Opened, flat: &Flat, program: &Program, constants: &[Constants], sets: usize) -> Self {
+        let (device, pipelines) = (&opened.device.device, &opened.pipelines);
+        let mut make = Maker { device, bytes: 0 };
         let none = BufferUsages::empty();
         let (to, from) = (BufferUsages::COPY_DST, BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
         let still = vec![[0.0f32; 4]; flat.start.len()];
@@ -226,9 +224,8 @@ impl Buffers {
             &[&reports, &good, &start],
         ];
         let bytes = make.bytes;
-        let layout = scene_layout(&device.device);
-        let kernels = kernels(&device.device, &layout, &own);
-        let scene = scene(&device.device, &layout, [&ops, &garments, &groups, &state, &moments]);
+        let scene = pipelines.scene(device, [&ops, &garments, &groups, &state, &moments]);
+        let own = Kernel::ALL.map(|kernel| pipelines.own(device, kernel, own[kernel.number()])).into();
         Self {
             garments,
             state,
@@ -244,7 +241,7 @@ impl Buffers {
             ends,
             planes,
             scene,
-            kernels,
+            own,
             bytes,
         }
     }
@@ -253,75 +250,4 @@ impl Buffers {
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
-}
-
-fn bound(binding: u32, ty: BufferBindingType, dynamic: bool) -> BindGroupLayoutEntry {
-    let size = if dynamic { std::num::NonZeroU64::new(16) } else { None };
-    let ty = BindingType::Buffer { ty, has_dynamic_offset: dynamic, min_binding_size: size };
-    BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None }
-}
-
-fn scene_layout(device: &wgpu::Device) -> BindGroupLayout {
-    let storage = |binding, read_only| bound(binding, BufferBindingType::Storage { read_only }, false);
-    let uniform = |binding| bound(binding, BufferBindingType::Uniform, true);
-    device.create_bind_group_layout(&BindGroupLayoutDescriptor {
-        label: Some("scene"),
-        entries: &[uniform(0), storage(1, true), storage(2, true), storage(3, false), uniform(4)],
-    })
-}
-
-fn scene(device: &wgpu::Device, layout: &BindGroupLayout, buffers: [&Buffer; 5]) -> BindGroup {
-    let entries: Vec<_> = (0u32..)
-        .zip(buffers)
-        .map(|(binding, buffer)| {
-            // Of the uniforms one of many.
-            let size = if buffer.usage().contains(BufferUsages::UNIFORM) { Some(16) } else { None };
-            let size = size.and_then(std::num::NonZeroU64::new);
-            BindGroupEntry { binding, resource: BindingResource::Buffer(BufferBinding { buffer, offset: 0, size }) }
-        })
-        .collect();
-    device.create_bind_group(&BindGroupDescriptor { label: Some("scene"), layout, entries: &entries })
-}
-
-fn kernels(
-    device: &wgpu::Device,
-    scene: &BindGroupLayout,
-    own: &[&[&Buffer]; Kernel::ALL.len()],
-) -> Vec<(ComputePipeline, BindGroup)> {
-    let shaders: Vec<_> = SHADERS
-        .iter()
-        .map(|s| {
-            let source = ShaderSource::Wgsl(s.source().into());
-            let module = device.create_shader_module(ShaderModuleDescriptor { label: Some(s.name), source });
-            let storage = |(binding, read_only): (u32, &bool)| {
-                bound(binding, BufferBindingType::Storage { read_only: *read_only }, false)
-            };
-            let entries: Vec<_> = (0..).zip(s.reads).map(storage).collect();
-            let layout = BindGroupLayoutDescriptor { label: Some(s.name), entries: &entries };
-            (module, device.create_bind_group_layout(&layout))
-        })
-        .collect();
-    let pipeline = |kernel: Kernel| {
-        let (shader, entry) = kernel.entry();
-        let (module, layout) = &shaders[shader];
-        let whole = device.create_pipeline_layout(&PipelineLayoutDescriptor {
-            label: Some(entry),
-            bind_group_layouts: &[Some(scene), Some(layout)],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_compute_pipeline(&ComputePipelineDescriptor {
-            label: Some(entry),
-            layout: Some(&whole),
-            module,
-            entry_point: Some(entry),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-        let entries: Vec<_> = (0u32..)
-            .zip(own[kernel.number()])
-            .map(|(binding, buffer)| BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-            .collect();
-        (pipeline, device.create_bind_group(&BindGroupDescriptor { label: Some(entry), layout, entries: &entries }))
-    };
-    Kernel::ALL.map(pipeline).into()
 }

@@ -135,6 +135,21 @@ impl Kernel {
         self as usize
     }
 
+    /// Which of `toile_engine::cloth::program::STAGES` it counts towards.
+    pub fn stage(self) -> usize {
+        match self {
+            Self::Repair | Self::Jump | Self::Carry | Self::Predict => 0,
+            Self::Guard | Self::Publish | Self::Conclude => 0,
+            Self::Bending | Self::Bent | Self::Turn | Self::Stage | Self::Staged => 1,
+            Self::Diagonals | Self::Shear => 2,
+            Self::Weft => 3,
+            Self::Lists | Self::Fibers => 4,
+            Self::Near | Self::Contact | Self::Settle => 5,
+            Self::Wind | Self::Blown => 6,
+            Self::Tethers => 7,
+        }
+    }
+
     /// Its shader among [`SHADERS`], and its entry point there.
     pub fn entry(self) -> (usize, &'static str) {
         let name = match self {

@@ -11,15 +11,20 @@ mod buffers;
 pub mod constants;
 pub mod flat;
 pub mod kernels;
+mod meter;
+pub mod opened;
 pub mod program;
 mod read;
 pub mod ring;
 mod step;
 mod touch;
 
+use std::sync::Arc;
+
 use glam::Vec3A;
 use toile_assets::garment::Garment;
 use toile_assets::limits::MAX_CAPSULES;
+use toile_engine::cloth::guard::Events;
 use toile_engine::cloth::pins::Pins;
 use toile_engine::cloth::prepared::Prepared;
 use toile_engine::cloth::root::RootMotion;
@@ -27,16 +32,18 @@ use toile_engine::cloth::settings::MAX_SUBSTEPS;
 use toile_engine::cloth::{Quality, Settings, centre};
 use toile_engine::colliders::Colliders;
 
-use crate::device::{Choice, Device, GpuError};
+use crate::device::{Choice, Device, GpuError, Needs};
 use buffers::{Buffers, needs};
 use constants::Constants;
 use flat::Flat;
+use meter::Meter;
+use opened::Opened;
 use program::Program;
 use ring::{Ring, Tally};
 use touch::{FlatCone, FlatEnds, PLANES, Touch};
 
 pub use kernels::Kernel;
-pub use read::Report;
+pub use meter::Spent;
 
 /// What the surroundings do to one garment during one step.
 pub use toile_engine::cloth::Step;
@@ -52,17 +59,19 @@ struct Own {
     /// Where it is in the flat scene.
     place: usize,
     positions: Box<[Vec3A]>,
-    report: Report,
+    velocities: Box<[Vec3A]>,
+    events: Events,
 }
 
 /// Garments that are stepped on a GPU. All storage is made once.
 #[derive(Debug)]
 pub struct Offload {
-    device: Device,
+    opened: Arc<Opened>,
     flat: Flat,
     program: Program,
     buffers: Buffers,
     ring: Ring,
+    meter: Option<Meter>,
     own: Vec<Own>,
     /// As they lie.
     constants: Vec<Constants>,
@@ -82,8 +91,7 @@ pub struct Offload {
 
 impl Offload {
     /// Opens a device for these garments and lays them out on it, at rest where each starts; `colliders` say which capsules
-    /// of each one's body are which limb's. At load: some tenths of a
-    /// second, most of them for the pipelines.
+    /// of each one's body are which limb's. At load: some tenths of a second, most of them for the pipelines.
     ///
     /// # Errors
     /// [`GpuError`]: no adapter, or limits too small.
@@ -93,21 +101,36 @@ impl Offload {
         colliders: &[&Colliders],
         settings: &Settings,
     ) -> Result<Self, GpuError> {
+        let laid = Laid::new(garments, colliders, settings)?;
+        let opened = Opened::new(choice, laid.needs())?;
+        Self::lay(Arc::new(opened), laid, garments, settings)
+    }
+
+    /// The same on a device that is open already. At load: some milliseconds a garment.
+    ///
+    /// # Errors
+    /// [`GpuError`]: limits too small.
+    pub fn on(
+        opened: &Arc<Opened>,
+        garments: &[&Garment],
+        colliders: &[&Colliders],
+        settings: &Settings,
+    ) -> Result<Self, GpuError> {
+        let laid = Laid::new(garments, colliders, settings)?;
+        opened.device.bears(laid.needs())?;
+        Self::lay(Arc::clone(opened), laid, garments, settings)
+    }
+
+    fn lay(opened: Arc<Opened>, laid: Laid, garments: &[&Garment], settings: &Settings) -> Result<Self, GpuError> {
+        let Laid { flat, program, prepared, sets } = laid;
         let settings = &settings.sound();
-        let mut prepared: Vec<Prepared> = garments.iter().map(|g| Prepared::new(g)).collect();
-        for (garment, prepared) in garments.iter().zip(&mut prepared) {
-            prepared.make(garment, settings);
-        }
-        let flat = Flat::new(garments, colliders);
-        let program = Program::new(&flat, prepared.iter().any(Prepared::stiff));
-        let sets = 1 + most_substeps(garments, &prepared);
-        let device = Device::open(choice, needs(&flat, &program, sets))?;
         let constants: Vec<Constants> =
             flat.order.iter().map(|&k| Constants::new(garments[k], &prepared[k], settings)).collect();
-        let buffers = Buffers::new(&device, &flat, &program, &constants, sets);
-        let back = buffers.good.size() + buffers.reports.size();
-        let ring = Ring::new(&device.device, back);
-        device.sound()?;
+        let buffers = Buffers::new(&opened, &flat, &program, &constants, sets);
+        let back = 2 * buffers.good.size() + buffers.reports.size();
+        let ring = Ring::new(&opened.device.device, back);
+        let meter = Meter::new(&opened.device);
+        opened.device.sound()?;
         let own = (0..).zip(garments.iter().zip(prepared)).map(|(k, (garment, prepared))| Own {
             prepared,
             pins: Pins::new(garment),
@@ -116,7 +139,8 @@ impl Offload {
             origin: centre(garment),
             place: flat.order.iter().position(|o| *o == k).unwrap_or(k),
             positions: garment.start.iter().map(|p| Vec3A::from(*p)).collect(),
-            report: Report::default(),
+            velocities: vec![Vec3A::ZERO; garment.particles()].into(),
+            events: Events::default(),
         });
         let own = own.collect();
         let targets = vec![[0.0; 4]; 2 * flat.targets as usize];
@@ -125,13 +149,13 @@ impl Offload {
         let ends = vec![[[0.0; 4]; 4]; count * MAX_CAPSULES];
         let planes = vec![[0.0; 4]; count * PLANES];
         let active = vec![0; sets - 1];
-        let quality = settings.quality;
         Ok(Self {
-            device,
+            opened,
             flat,
             program,
             buffers,
             ring,
+            meter,
             own,
             constants,
             targets,
@@ -141,14 +165,14 @@ impl Offload {
             sets,
             active,
             stages: 0,
-            quality,
+            quality: settings.quality,
             settings_seen: None,
         })
     }
 
     /// The device.
     pub fn device(&self) -> &Device {
-        &self.device
+        &self.opened.device
     }
 
     /// World positions (m) of a garment at the end of the newest step that has come back `[particles]`: always finite.
@@ -156,9 +180,20 @@ impl Offload {
         &self.own[garment].positions
     }
 
-    /// What happened to a garment, as of the same step.
-    pub fn report(&self, garment: usize) -> Report {
-        self.own[garment].report
+    /// Velocities (m/s) of a garment's particles at the end of the same step `[particles]`.
+    pub fn velocities(&self, garment: usize) -> &[Vec3A] {
+        &self.own[garment].velocities
+    }
+
+    /// What happened to a garment that should not have, counted since it was made: what the device counts as of the same step.
+    pub fn events(&self, garment: usize) -> Events {
+        self.own[garment].events
+    }
+
+    /// What the device spent on each stage of the last step that was metered and has come back; none where the adapter has no
+    /// clock for it, and before such a step (`Settings::timed`).
+    pub fn spent(&self) -> Option<Spent> {
+        self.meter.as_ref().and_then(Meter::spent)
     }
 
     /// What became of the steps' results.
@@ -171,9 +206,56 @@ impl Offload {
         self.own[garment].prepared.substeps
     }
 
+    /// Whether these are the garments that it was made for, as far as can be told, and the settings ask for no more substeps than
+    /// it was laid out for.
+    pub fn holds(&self, garments: &[&Garment], settings: &Settings) -> bool {
+        let settings = settings.sound();
+        let fits = |(own, garment): (&Own, &&Garment)| {
+            own.positions.len() == garment.particles() && (settings.substeps_of(garment.substeps) as usize) < self.sets
+        };
+        garments.len() == self.own.len() && self.own.iter().zip(garments).all(fits)
+    }
+
+    /// Goes on from the same garments as they were laid out before: where their skinned particles were, how their roots moved.
+    pub fn succeed(&mut self, before: &Self) {
+        for (own, before) in self.own.iter_mut().zip(&before.own) {
+            if own.pins.start.len() == before.pins.start.len() {
+                own.pins = before.pins.clone();
+                own.root = before.root;
+            }
+        }
+    }
+
     /// Bytes on the device, but for what is on its way back.
     pub fn bytes(&self) -> u64 {
         self.buffers.bytes()
+    }
+}
+
+/// A scene before it is on a device.
+struct Laid {
+    flat: Flat,
+    program: Program,
+    prepared: Vec<Prepared>,
+    /// Sets of capsules a garment: one more than substeps.
+    sets: usize,
+}
+
+impl Laid {
+    fn new(garments: &[&Garment], colliders: &[&Colliders], settings: &Settings) -> Result<Self, GpuError> {
+        let settings = &settings.sound();
+        let mut prepared: Vec<Prepared> = garments.iter().map(|g| Prepared::new(g)).collect();
+        for (garment, prepared) in garments.iter().zip(&mut prepared) {
+            prepared.make(garment, settings);
+        }
+        let flat = Flat::new(garments, colliders);
+        let program = Program::new(&flat, prepared.iter().any(Prepared::stiff));
+        let sets = 1 + most_substeps(garments, &prepared);
+        Ok(Self { flat, program, prepared, sets })
+    }
+
+    fn needs(&self) -> Needs {
+        needs(&self.flat, &self.program, self.sets)
     }
 }
 

@@ -5,24 +5,12 @@ use toile_assets::garment::Garment;
 use toile_engine::cloth::guard::{self, Spoil};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, ComputePassDescriptor, MapMode};
 
-use super::buffers::REPORT;
+use super::buffers::{Buffers, REPORT};
 use super::flat::Span;
 use super::kernels::Kernel;
+use super::meter::Meter;
 use super::{Offload, Step};
 use crate::device::GpuError;
-
-/// What happened to a garment that should not have, counted since it was made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Report {
-    /// Particle substeps that were held at the speed limit.
-    pub speed_limited: u32,
-    /// Particles that were not finite when a step began, or ran away; put back to their last good place.
-    pub repaired: u32,
-    /// Steps that ended with a value that is not finite and were rolled back.
-    pub rolled_back: u32,
-    /// Skinned particles whose target was not finite and that were held.
-    pub held_pins: u64,
-}
 
 /// A garment's particles as the device has them.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,23 +29,28 @@ impl Offload {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn take(&mut self) -> Result<(), GpuError> {
-        self.device.sound()?;
+        self.opened.device.sound()?;
         // What a driver has to say about it comes by way of the device's own callbacks.
-        let _ = self.device.device.poll(wgpu::PollType::Poll);
+        let _ = self.opened.device.device.poll(wgpu::PollType::Poll);
         let (own, spans) = (&mut self.own, &self.flat.spans);
         let places = 16 * self.flat.particles as usize;
         self.ring.take(|bytes| {
-            let (good, reports) = bytes.split_at(places.min(bytes.len()));
-            let good: &[[f32; 4]] = bytemuck::cast_slice(good);
+            let (good, rest) = bytes.split_at(places.min(bytes.len()));
+            let (speeds, reports) = rest.split_at(places.min(rest.len()));
+            let [good, speeds] = [good, speeds].map(bytemuck::cast_slice::<u8, [f32; 4]>);
             let reports: &[[u32; REPORT]] = bytemuck::cast_slice(reports);
             for own in own {
                 let (span, report) = (spans[own.place], reports[own.place]);
-                let from = &good[span.first as usize..(span.first + span.len) as usize];
-                own.positions.iter_mut().zip(from).for_each(|(to, p)| *to = Vec3A::new(p[0], p[1], p[2]));
-                (own.report.speed_limited, own.report.rolled_back) = (report[0], report[3]);
-                own.report.repaired = report[4];
+                let all = span.first as usize..(span.first + span.len) as usize;
+                for (to, from) in [(&mut own.positions, good), (&mut own.velocities, speeds)] {
+                    to.iter_mut().zip(&from[all.clone()]).for_each(|(to, p)| *to = Vec3A::new(p[0], p[1], p[2]));
+                }
+                let [limited, _, _, rolled_back, repaired] = report.map(u64::from);
+                (own.events.speed_limited, own.events.rolled_back) = (limited, rolled_back);
+                own.events.repaired = repaired;
             }
         });
+        self.meter.iter_mut().for_each(Meter::take);
         Ok(())
     }
 
@@ -66,29 +59,39 @@ impl Offload {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn finish(&mut self) -> Result<(), GpuError> {
-        self.device.finish();
+        self.opened.device.finish();
         self.take()
     }
 
-    /// Puts a garment's particles somewhere, with velocities (m, m/s): how tests and scenes disturb a garment.
+    /// Puts a garment's particles somewhere, with velocities (m, m/s): how tests and scenes disturb a garment. What is finite is
+    /// the last good place as well.
     pub fn disturb(&mut self, garment: usize, x: &[Vec3A], v: &[Vec3A]) {
-        let span = self.flat.spans[self.own[garment].place];
-        let weights = self.flat.start[span.first as usize..].iter().map(|s| s[3]);
-        let places: Vec<[f32; 4]> = x.iter().zip(weights).map(|(p, w)| [p.x, p.y, p.z, w]).collect();
-        let speeds: Vec<[f32; 4]> = v.iter().map(|v| [v.x, v.y, v.z, 0.0]).collect();
-        for (part, numbers) in [&places, &places, &speeds].into_iter().enumerate() {
-            let first = u64::from(part as u32 * self.flat.particles + span.first);
-            let some = &numbers[..numbers.len().min(span.len as usize)];
-            self.device.queue.write_buffer(&self.buffers.state, 16 * first, bytemuck::cast_slice(some));
+        self.put(garment, x, v, x);
+    }
+
+    /// The same with the last good places (m): of those that are not finite the device keeps its own.
+    pub fn put(&mut self, garment: usize, x: &[Vec3A], v: &[Vec3A], good: &[Vec3A]) {
+        let own = &mut self.own[garment];
+        let span = self.flat.spans[own.place];
+        let start = &self.flat.start[span.first as usize..(span.first + span.len) as usize];
+        let places: Vec<[f32; 4]> = x.iter().zip(start).map(|(p, s)| [p.x, p.y, p.z, s[3]]).collect();
+        let speeds: Vec<[f32; 4]> = v.iter().zip(start).map(|(v, _)| [v.x, v.y, v.z, 0.0]).collect();
+        let good: Vec<[f32; 4]> = good.iter().zip(start).map(|(p, _)| [p.x, p.y, p.z, 1.0]).collect();
+        let (Buffers { state, good: last, .. }, queue) = (&self.buffers, &self.opened.device.queue);
+        for (part, numbers) in (0..).zip([&places, &places, &speeds]) {
+            let at = 16 * u64::from(part * self.flat.particles + span.first);
+            queue.write_buffer(state, at, bytemuck::cast_slice(numbers));
         }
-        // What is finite is a good place.
         let finite = |p: &[f32; 4]| p.iter().all(|n| n.is_finite());
-        let mut first = u64::from(span.first);
-        for some in places[..places.len().min(span.len as usize)].chunk_by(|a, b| finite(a) == finite(b)) {
+        let mut first = 0;
+        for some in good.chunk_by(|a, b| finite(a) == finite(b)) {
             if some.iter().all(finite) {
-                self.device.queue.write_buffer(&self.buffers.good, 16 * first, bytemuck::cast_slice(some));
+                let at = 16 * (u64::from(span.first) + first as u64);
+                queue.write_buffer(last, at, bytemuck::cast_slice(some));
+                let to = own.positions[first..].iter_mut();
+                to.zip(some).for_each(|(to, p)| *to = Vec3A::new(p[0], p[1], p[2]));
             }
-            first += some.len() as u64;
+            first += some.len();
         }
     }
 
@@ -106,7 +109,8 @@ impl Offload {
                 Spoil::Velocity(v) => (2 * self.flat.particles + at, v.extend(0.0)),
             };
             let bytes = numbers.to_array();
-            self.device.queue.write_buffer(&self.buffers.state, 16 * u64::from(first), bytemuck::cast_slice(&bytes));
+            let queue = &self.opened.device.queue;
+            queue.write_buffer(&self.buffers.state, 16 * u64::from(first), bytemuck::cast_slice(&bytes));
         }
     }
 
@@ -138,8 +142,8 @@ impl Offload {
                 }
             }
         }
-        self.device.queue.submit([encoder.finish()]);
-        self.device.sound()
+        self.opened.device.queue.submit([encoder.finish()]);
+        self.opened.device.sound()
     }
 
     /// Reads a garment's particles, and waits for them. Never in the frame.
@@ -167,13 +171,13 @@ impl Offload {
     fn numbers(&self, from: &Buffer) -> Result<Vec<[f32; 4]>, GpuError> {
         let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
         let descriptor = BufferDescriptor { label: Some("read"), size: from.size(), usage, mapped_at_creation: false };
-        let to = self.device.device.create_buffer(&descriptor);
+        let to = self.opened.device.device.create_buffer(&descriptor);
         let mut encoder = self.encoder();
         encoder.copy_buffer_to_buffer(from, 0, &to, 0, from.size());
-        self.device.queue.submit([encoder.finish()]);
+        self.opened.device.queue.submit([encoder.finish()]);
         to.map_async(MapMode::Read, .., |_| {});
-        self.device.finish();
-        self.device.sound()?;
+        self.opened.device.finish();
+        self.opened.device.sound()?;
         let bytes = to.get_mapped_range(..).map_err(|e| GpuError::Lost(e.to_string()))?;
         Ok(bytemuck::cast_slice(&bytes).to_vec())
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use wgpu::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder, MapMode};
+use wgpu::{Buffer, BufferDescriptor, BufferSlice, BufferUsages, CommandEncoder, MapMode};
 
 /// Places to come back to: one that is read, one on its way, one to spare for a late driver.
 const PLACES: usize = 3;
@@ -47,7 +47,7 @@ impl Ring {
 
     /// Lets the parts of a step, one behind the other, be copied to a free place; gives the place, none where the step is
     /// dropped.
-    pub fn send(&mut self, encoder: &mut CommandEncoder, parts: &[&Buffer]) -> Option<usize> {
+    pub fn send(&mut self, encoder: &mut CommandEncoder, parts: &[BufferSlice<'_>]) -> Option<usize> {
         // Acquire: pairs with the callback's release, after which the buffer is ours again.
         let Some(free) = self.places.iter().position(|p| p.1.load(Ordering::Acquire) == FREE) else {
             self.tally.dropped += 1;
@@ -55,8 +55,9 @@ impl Ring {
         };
         let mut at = 0;
         for part in parts {
-            encoder.copy_buffer_to_buffer(part, 0, &self.places[free].0, at, part.size());
-            at += part.size();
+            let size = part.size();
+            encoder.copy_buffer_to_buffer(part.buffer(), part.offset(), &self.places[free].0, at, size);
+            at += size;
         }
         Some(free)
     }

@@ -9,7 +9,7 @@ use toile_engine::cloth::prepared::Prepared;
 use toile_engine::cloth::root::RootStep;
 use wgpu::{CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor};
 
-use super::buffers::{ALIGNED, STAGES};
+use super::buffers::{ALIGNED, Buffers, STAGES};
 use super::constants::{CARRY, COMPENSATE, Constants, DRESS, carried, columns};
 use super::flat::{Scale, WIDTH};
 use super::kernels::Kernel;
@@ -32,23 +32,35 @@ impl Offload {
         self.prepare(garments, &settings)?;
         let asked = self.begin(garments, steps, &settings);
         let mut encoder = self.encoder();
-        {
-            let mut pass =
-                encoder.begin_compute_pass(&ComputePassDescriptor { label: Some("step"), ..Default::default() });
-            self.encode(&mut pass, asked);
+        let meter = if settings.timed { self.meter.take() } else { None };
+        match meter {
+            Some(mut meter) => {
+                self.metered(&mut encoder, asked, &mut meter);
+                self.submit(encoder);
+                meter.ask();
+                self.meter = Some(meter);
+            }
+            None => {
+                let descriptor = ComputePassDescriptor { label: Some("step"), ..Default::default() };
+                let mut pass = encoder.begin_compute_pass(&descriptor);
+                self.entries(asked, |entry, substep, garments| self.dispatch(&mut pass, entry, substep, garments));
+                drop(pass);
+                self.submit(encoder);
+            }
         }
-        self.submit(encoder);
-        self.device.sound()
+        self.opened.device.sound()
     }
 
     pub(super) fn encoder(&self) -> CommandEncoder {
-        self.device.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("step") })
+        self.opened.device.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("step") })
     }
 
     /// Sends commands, and what they leave behind them back.
     fn submit(&mut self, mut encoder: CommandEncoder) {
-        let place = self.ring.send(&mut encoder, &[&self.buffers.good, &self.buffers.reports]);
-        self.device.queue.submit([encoder.finish()]);
+        let Buffers { good, state, reports, .. } = &self.buffers;
+        let velocities = state.slice(2 * good.size()..3 * good.size());
+        let place = self.ring.send(&mut encoder, &[good.slice(..), velocities, reports.slice(..)]);
+        self.opened.device.queue.submit([encoder.finish()]);
         if let Some(place) = place {
             self.ring.ask(place);
         }
@@ -67,7 +79,7 @@ impl Offload {
             takes(garment, &own.prepared, self.sets)?;
         }
         for (place, &k) in self.flat.order.iter().enumerate() {
-            let (prepared, queue, buffers) = (&self.own[k].prepared, &self.device.queue, &self.buffers);
+            let (prepared, queue, buffers) = (&self.own[k].prepared, &self.opened.device.queue, &self.buffers);
             for (links, gain, buffer) in [
                 (&mut self.flat.shear, &prepared.shear_gain, &buffers.shear_measures),
                 (&mut self.flat.weft, &prepared.weft_gain, &buffers.weft_measures),
@@ -86,11 +98,11 @@ impl Offload {
                 let (stages, first) = (stages(prepared), 16 * (place * STAGES) as u64);
                 queue.write_buffer(&buffers.stages, first, bytemuck::cast_slice(&stages));
             }
-            self.constants[place] = Constants::new(garments[k], prepared, settings);
         }
-        self.stages = self.constants.iter().map(|c| c.stages).filter(|stages| *stages > 1).max().unwrap_or(0);
+        let stages = self.own.iter().map(|own| own.prepared.bending.stages);
+        self.stages = stages.filter(|stages| *stages > 1).max().unwrap_or(0);
         for (substep, active) in (0..).zip(&mut self.active) {
-            *active = self.constants.iter().filter(|c| c.substeps > substep).count() as u32;
+            *active = self.own.iter().filter(|own| own.prepared.substeps > substep).count() as u32;
         }
         self.quality = settings.quality;
         self.settings_seen = Some(*settings);
@@ -101,10 +113,13 @@ impl Offload {
     pub(super) fn begin(&mut self, garments: &[&Garment], steps: &[Step<'_>], settings: &Settings) -> Asked {
         let mut asked = Asked { wind: settings.wind.is_some(), ..Asked::default() };
         for ((own, garment), step) in self.own.iter_mut().zip(garments).zip(steps) {
-            own.report.held_pins += own.pins.attach(garment, step.palette);
+            own.events.held_settings += u64::from(*settings != *step.settings);
+            own.events.held_pins += own.pins.attach(garment, step.palette);
+            own.events.held_colliders = step.colliders.held();
             let root = step.palette[0] * Affine3A::from_translation(own.origin.into());
             let constants = &mut self.constants[own.place];
-            constants.bits &= !(DRESS | CARRY | COMPENSATE);
+            // A garment's fabric may change between steps.
+            *constants = Constants::new(garment, &own.prepared, settings);
             constants.root = columns(&step.palette[0]);
             match own.root.advance(&root, settings.step_seconds) {
                 RootStep::Plain => {}
@@ -117,11 +132,13 @@ impl Offload {
                     constants.bits |= CARRY;
                     constants.motion = columns(&moved.motion);
                     own.pins.start.iter_mut().for_each(|p| *p = moved.point(*p));
+                    own.events.teleports += 1;
                     asked.jumps = true;
                 }
                 RootStep::Reset => {
                     constants.bits |= DRESS;
                     own.pins.rest();
+                    own.events.teleports += 1;
                     asked.jumps = true;
                 }
             }
@@ -132,14 +149,14 @@ impl Offload {
             }
         }
         self.touch(garments, steps, settings);
-        self.device.queue.write_buffer(&self.buffers.garments, 0, bytemuck::cast_slice(&self.constants));
-        self.device.queue.write_buffer(&self.buffers.targets, 0, bytemuck::cast_slice(&self.targets));
+        self.opened.device.queue.write_buffer(&self.buffers.garments, 0, bytemuck::cast_slice(&self.constants));
+        self.opened.device.queue.write_buffer(&self.buffers.targets, 0, bytemuck::cast_slice(&self.targets));
         asked
     }
 
     /// What each garment may touch, for every substep.
     fn touch(&mut self, garments: &[&Garment], steps: &[Step<'_>], settings: &Settings) {
-        let queue = &self.device.queue;
+        let queue = &self.opened.device.queue;
         for ((own, garment), step) in self.own.iter_mut().zip(garments).zip(steps) {
             let (place, how) = (own.place, ContactSettings::new(&garment.fabric, settings));
             let first = place * self.sets * MAX_CAPSULES;
@@ -159,28 +176,26 @@ impl Offload {
         queue.write_buffer(&self.buffers.planes, 0, bytemuck::cast_slice(&self.planes));
     }
 
-    /// All dispatches of a step.
-    fn encode(&self, pass: &mut ComputePass<'_>, asked: Asked) {
+    /// All dispatches of a step, in their order: what runs, in which substep or stage, over how many garments.
+    pub(super) fn entries<'a>(&'a self, asked: Asked, mut run: impl FnMut(&'a Entry, u32, usize)) {
         let all = self.own.len();
         let before = self.program.before.iter().filter(|entry| asked.runs(entry.kernel));
-        before.for_each(|entry| self.dispatch(pass, entry, 0, all));
+        before.for_each(|entry| run(entry, 0, all));
         for (substep, &active) in (0..).zip(&self.active).take_while(|(_, active)| **active > 0) {
-            self.encode_stages(pass, active as usize);
-            for entry in self.program.each(self.quality) {
-                self.dispatch(pass, entry, substep, active as usize);
-            }
+            self.stages(|entry, stage| run(entry, stage, active as usize));
+            self.program.each(self.quality).iter().for_each(|entry| run(entry, substep, active as usize));
         }
-        self.program.after.iter().for_each(|entry| self.dispatch(pass, entry, 0, all));
+        self.program.after.iter().for_each(|entry| run(entry, 0, all));
     }
 
     /// Those of bending that is stiffer than a substep: a turn before the forces of each stage, and one behind the last.
-    fn encode_stages(&self, pass: &mut ComputePass<'_>, active: usize) {
+    fn stages<'a>(&'a self, mut run: impl FnMut(&'a Entry, u32)) {
         if self.stages == 0 {
             return;
         }
         for stage in 0..=self.stages {
             let entries = self.program.stages.iter().filter(|e| stage < self.stages || e.kernel == Kernel::Turn);
-            entries.for_each(|entry| self.dispatch(pass, entry, stage, active));
+            entries.for_each(|entry| run(entry, stage));
         }
     }
 
@@ -195,10 +210,9 @@ impl Offload {
         if groups == 0 {
             return;
         }
-        let (pipeline, own) = &self.buffers.kernels[entry.kernel.number()];
-        pass.set_pipeline(pipeline);
+        pass.set_pipeline(self.opened.pipelines.of(entry.kernel));
         pass.set_bind_group(0, &self.buffers.scene, &[entry.op, moment].map(|k| k * ALIGNED as u32));
-        pass.set_bind_group(1, own, &[]);
+        pass.set_bind_group(1, &self.buffers.own[entry.kernel.number()], &[]);
         pass.dispatch_workgroups(groups, 1, 1);
     }
 }

@@ -56,12 +56,12 @@ fn a_step_that_ends_with_a_number_that_is_none_is_rolled_back_on_the_device() {
     gpu.disturb(0, &x, &v);
     gpu.step(&[&garment], &step).expect("the step is sent");
     gpu.finish().expect("it comes back");
-    assert_eq!((gpu.report(0).repaired, gpu.report(0).rolled_back), (0, 1));
+    assert_eq!((gpu.events(0).repaired, gpu.events(0).rolled_back), (0, 1));
     assert_eq!(gpu.positions(0), x);
     assert!(gpu.particles(0).expect("read").v.iter().all(|v| *v == Vec3A::ZERO));
     gpu.step(&[&garment], &step).expect("the step is sent");
     gpu.finish().expect("it comes back");
-    assert_eq!(gpu.report(0).rolled_back, 1, "one fault, one step");
+    assert_eq!(gpu.events(0).rolled_back, 1, "one fault, one step");
 }
 
 /// Steps a skirt on both after one particle got a place and a velocity; gives how many particles were repaired and how many
@@ -84,10 +84,10 @@ fn poisoned(place: Option<Vec3A>, velocity: Option<Vec3A>) -> Option<(u64, u64)>
         gpu.step(&[&garment], &[step]).expect("the step is sent");
     }
     gpu.finish().expect("the last step comes back");
-    let (report, events) = (gpu.report(0), cloth.events);
+    let (got, events) = (gpu.events(0), cloth.events);
     let (alike, all, most) = apart(gpu.positions(0), &cloth.positions);
-    println!("{place:?} {velocity:?}: {alike} of {all} the same, {report:?}");
-    let told = (u64::from(report.repaired), u64::from(report.rolled_back));
+    println!("{place:?} {velocity:?}: {alike} of {all} the same, {got:?}");
+    let told = (got.repaired, got.rolled_back);
     assert_eq!(told, (events.repaired, events.rolled_back), "{place:?} {velocity:?}");
     let software = gpu.device().adapter().kind == "software";
     assert!(!software || alike == all, "{place:?} {velocity:?}: {most} m apart");
@@ -124,10 +124,10 @@ fn what_spoils_the_state_is_repaired_as_on_the_cpu() {
     }
     gpu.finish().expect("the last step comes back");
     let (alike, all, most) = apart(gpu.positions(0), &cloth.positions);
-    let (report, events) = (gpu.report(0), cloth.events);
-    println!("spoilt six times: {alike} of {all} the same, {report:?}");
-    assert!(events.repaired >= 24 && events.repaired == u64::from(report.repaired), "{events:?} {report:?}");
-    assert_eq!(events.rolled_back, u64::from(report.rolled_back));
+    let (got, events) = (gpu.events(0), cloth.events);
+    println!("spoilt six times: {alike} of {all} the same, {got:?}");
+    assert!(events.repaired >= 24 && events.repaired == got.repaired, "{events:?} {got:?}");
+    assert_eq!(events.rolled_back, got.rolled_back);
     assert!(gpu.device().adapter().kind != "software" || alike == all, "{most} m apart");
 }
 

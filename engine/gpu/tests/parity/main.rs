@@ -4,4 +4,5 @@
 mod device;
 mod kernels;
 mod scene;
+mod stepper;
 mod steps;

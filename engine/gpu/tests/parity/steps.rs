@@ -37,8 +37,8 @@ fn both(garments: &[&Garment], settings: impl Fn(usize) -> Settings, steps: usiz
         let mean = pairs.map(|(a, b)| a.distance(*b)).sum::<f32>() / cloth.positions.len() as f32;
         let strain = measure::strain(cloth, garment).mean * 100.0;
         println!("{}: {alike} of {all} the same, mean {mean} m, most {most} m, strain {strain} %", garment.name);
-        assert_eq!(gpu.report(k).rolled_back, 0);
-        assert_eq!(u64::from(gpu.report(k).speed_limited), cloth.events.speed_limited);
+        assert_eq!(gpu.events(k).rolled_back, 0);
+        assert_eq!(gpu.events(k).speed_limited, cloth.events.speed_limited);
         assert_eq!(gpu.substeps(k), cloth.substeps());
         means.push(mean);
         same &= alike == all;
@@ -82,7 +82,7 @@ fn walked(n: usize, speed: f64, steps: usize) {
     let software = gpu.device().adapter().kind == "software";
     assert!(!software || alike == all, "{most} m apart on an adapter that fuses nothing");
     assert!(most < 0.05, "{most} m apart");
-    assert_eq!((gpu.report(0).rolled_back, cloth.events.rolled_back), (0, 0));
+    assert_eq!((gpu.events(0).rolled_back, cloth.events.rolled_back), (0, 0));
 }
 
 #[test]

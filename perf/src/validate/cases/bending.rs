@@ -1,11 +1,11 @@
 //! Strips bent by a load: the cantilever, Peirce's overhang, the tip-loaded elastica.
 //!
-//! All start straight and level and come to rest under the damping of [`DAMPING`], which holds nothing up.
+//! All start straight and how and come to rest under the damping of [`DAMPING`], which holds nothing up.
 
 use glam::DVec3;
 use toile_assets::garment::Shape;
 
-use crate::validate::Level;
+use crate::validate::How;
 use crate::validate::case::{Case, Outcome};
 use crate::validate::exact::elastica;
 use crate::validate::mesh::{Cloth, Hold, Strip, Style};
@@ -35,7 +35,7 @@ const RAW_GAMMAS: [f64; 3] = [1.0, 10.0, 100.0];
 /// Between these the target holds.
 const GATED: [f64; 2] = [0.3, 300.0];
 
-/// A clamped strip, level.
+/// A clamped strip, how.
 #[derive(Debug, Clone, Copy)]
 pub struct Cantilever {
     /// The strip.
@@ -53,7 +53,7 @@ impl Cantilever {
         Self { strip: Strip { length: LENGTH, width: WIDTH, rows, columns: rows / 3, style, ends }, gamma, load: 0.0 }
     }
 
-    /// Its shape, level along x.
+    /// Its shape, how along x.
     pub fn shape(&self) -> Shape {
         let mut shape = self.strip.shape(|along, across| DVec3::new(along, 0.0, across));
         if self.load > 0.0 {
@@ -78,12 +78,12 @@ impl Cantilever {
     }
 
     /// Lets it come to rest and reads a figure off its tip (m from the clamp).
-    fn hang(&self, level: Level, read: impl Fn(DVec3) -> f64) -> Result<Outcome, RigError> {
+    fn hang(&self, how: How<'_>, read: impl Fn(DVec3) -> f64) -> Result<Outcome, RigError> {
         let shape = self.shape();
-        let mut rig = Rig::new(&shape, &self.cloth(), level, &Scenery::default())?;
+        let mut rig = Rig::new(&shape, &self.cloth(), how, &Scenery::default())?;
         let settled = rig.rest(REST_S);
         let tip = self.tip(&shape);
-        Ok(rig.told(level, |seen| read(seen.mean(tip.iter().copied()))).settled(settled))
+        Ok(rig.told(how, |seen| read(seen.mean(tip.iter().copied()))).settled(settled))
     }
 }
 
@@ -102,7 +102,7 @@ pub fn cases() -> Vec<Case> {
 }
 
 fn cantilever(c: Cantilever) -> Case {
-    let run = move |level| c.hang(level, |tip| -tip.y / tip.x);
+    let run = move |how: How<'_>| c.hang(how, |tip| -tip.y / tip.x);
     Case {
         name: "cantilever",
         parameter: format!("Gamma {}", c.gamma),
@@ -126,10 +126,10 @@ const SECANTS: usize = 3;
 /// Gamma = (L/c)^3 from two lengths around the exact one.
 fn peirce() -> Case {
     let exact = elastica::overhang(PEIRCE);
-    let run = move |level| {
+    let run = move |how: How<'_>| {
         let angle = |length: f64| {
             let c = Cantilever::new(Style::Grid, ROWS[0], length.powi(3));
-            c.hang(level, |tip| (-tip.y / tip.x).atan() - PEIRCE)
+            c.hang(how, |tip| (-tip.y / tip.x).atan() - PEIRCE)
         };
         let (mut a, mut b) = (0.95 * exact, 1.05 * exact);
         let (mut at_a, mut at_b) = (angle(a)?, angle(b)?);
@@ -168,7 +168,7 @@ const TIP_LOAD: f64 = 2.0;
 fn tip_loaded(p: f64) -> Case {
     let ends = [Hold::Clamped, Hold::Free];
     let c = Cantilever { strip: Strip::narrow(LENGTH, ROWS[0], ends), gamma: p / TIP_LOAD, load: TIP_LOAD };
-    let run = move |level| c.hang(level, |tip| -tip.y / LENGTH);
+    let run = move |how: How<'_>| c.hang(how, |tip| -tip.y / LENGTH);
     Case {
         name: "elastica",
         parameter: format!("P L^2/B {p}"),

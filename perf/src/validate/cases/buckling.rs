@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use toile_assets::garment::Shape;
 
-use crate::validate::Level;
+use crate::validate::How;
 use crate::validate::case::{Case, Outcome};
 use crate::validate::exact::column::{self, Ends};
 use crate::validate::exact::plate;
@@ -79,7 +79,7 @@ fn nudge(rig: &mut Rig, shape: &Shape, form: impl Fn(f64) -> f64) {
 }
 
 /// An upright strip, clamped below, with a load on its top of so many times its own weight.
-fn upright(level: Level, gamma: f64, load: f64) -> Result<(Outcome, bool), RigError> {
+fn upright(how: How<'_>, gamma: f64, load: f64) -> Result<(Outcome, bool), RigError> {
     let strip = Strip::narrow(LENGTH, ROWS, [Hold::Clamped, Hold::Free]);
     let mut shape = strip.shape(|along, across| DVec3::new(across, along, 0.0));
     let tip: Vec<usize> = (0..shape.cut.len()).filter(|v| f64::from(-shape.cut[*v].y) > LENGTH - 1e-4).collect();
@@ -87,7 +87,7 @@ fn upright(level: Level, gamma: f64, load: f64) -> Result<(Outcome, bool), RigEr
     tip.iter().for_each(|&v| shape.heavier[v] = (1.0 + 2.0 * load * ROWS as f64) as f32);
     let bend = Cloth::PLAIN.density * G * LENGTH.powi(3) / gamma;
     let cloth = Cloth { bend, damping: DAMPING, ..Cloth::PLAIN };
-    let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+    let mut rig = Rig::new(&shape, &cloth, how, &Scenery::default())?;
     nudge(&mut rig, &shape, |s| s * s);
     let gave = gives_way(&mut rig, &tip, |p| p.z);
     Ok((Outcome::of(&rig, gamma), gave))
@@ -104,7 +104,7 @@ fn greenhill() -> Case {
         expected: exact,
         scale: None,
         target: Some(10.0),
-        run: Box::new(move |level| threshold(RANGE.map(|r| r * exact), |gamma| upright(level, gamma, 0.0))),
+        run: Box::new(move |how: How<'_>| threshold(RANGE.map(|r| r * exact), |gamma| upright(how, gamma, 0.0))),
     }
 }
 
@@ -117,10 +117,10 @@ const SHORTENING: f64 = 5e-4;
 
 fn euler(ends: Ends) -> Case {
     let exact = if ends == Ends::Free { column::loaded(1.0 / TOP_LOAD) } else { ends.critical() };
-    let run = move |level| {
+    let run = move |how: How<'_>| {
         threshold(RANGE.map(|r| r * exact), |p| match ends {
-            Ends::Free => upright(level, p / TOP_LOAD, TOP_LOAD),
-            _ => pressed(level, ends, p),
+            Ends::Free => upright(how, p / TOP_LOAD, TOP_LOAD),
+            _ => pressed(how, ends, p),
         })
     };
     Case {
@@ -137,7 +137,7 @@ fn euler(ends: Ends) -> Case {
 }
 
 /// A strip pressed between two ends that are too close, without weight.
-fn pressed(level: Level, ends: Ends, p: f64) -> Result<(Outcome, bool), RigError> {
+fn pressed(how: How<'_>, ends: Ends, p: f64) -> Result<(Outcome, bool), RigError> {
     let (first, last) = match ends {
         Ends::Pinned | Ends::Free => (Hold::Pinned, Hold::Pinned),
         Ends::ClampedPinned => (Hold::Clamped, Hold::Pinned),
@@ -147,7 +147,7 @@ fn pressed(level: Level, ends: Ends, p: f64) -> Result<(Outcome, bool), RigError
     let shape = strip.shape(|along, across| DVec3::new((along - 0.5 * LENGTH) * (1.0 - SHORTENING), across, 0.0));
     let force = Cloth::PLAIN.stretch * SHORTENING;
     let cloth = Cloth { bend: force * LENGTH * LENGTH / p, damping: DAMPING, ..Cloth::PLAIN };
-    let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+    let mut rig = Rig::new(&shape, &cloth, how, &Scenery::default())?;
     rig.settings.gravity = glam::Vec3A::ZERO;
     // As the ends allow: a kink at a clamp would hold more energy than the nudge itself.
     nudge(&mut rig, &shape, |s| match ends {
@@ -176,11 +176,11 @@ fn lateral(width: f64) -> Case {
         expected: exact,
         scale: None,
         target: Some(10.0),
-        run: Box::new(move |level| threshold(RANGE.map(|r| r * exact), |gamma| on_edge(level, width, gamma))),
+        run: Box::new(move |how: How<'_>| threshold(RANGE.map(|r| r * exact), |gamma| on_edge(how, width, gamma))),
     }
 }
 
-fn on_edge(level: Level, width: f64, gamma: f64) -> Result<(Outcome, bool), RigError> {
+fn on_edge(how: How<'_>, width: f64, gamma: f64) -> Result<(Outcome, bool), RigError> {
     let columns = (width * PLATE_ROWS as f64).round().max(2.0) as usize;
     let ends = [Hold::Clamped, Hold::Free];
     let strip = Strip { length: LENGTH, width: width * LENGTH, rows: PLATE_ROWS, columns, style: Style::Grid, ends };
@@ -188,7 +188,7 @@ fn on_edge(level: Level, width: f64, gamma: f64) -> Result<(Outcome, bool), RigE
     let bend = Cloth::PLAIN.density * G * LENGTH.powi(3) / gamma;
     // Stiffer in shear than most cloth, so that it does not sag in its plane instead.
     let cloth = Cloth { bend, bias: Some(bend), shear: 200.0, damping: DAMPING, ..Cloth::PLAIN };
-    let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+    let mut rig = Rig::new(&shape, &cloth, how, &Scenery::default())?;
     nudge(&mut rig, &shape, |s| s * s);
     let tip = row(&rig, &shape, LENGTH);
     let gave = gives_way(&mut rig, &tip, |p| p.z);

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec4};
 use toile_assets::garment::Shape;
 
-use crate::validate::Level;
+use crate::validate::How;
 use crate::validate::case::{Case, Outcome};
 use crate::validate::exact::string;
 use crate::validate::mesh::{Cloth, Hold, Strip, Style};
@@ -47,7 +47,7 @@ const ROPE_WATCH: (f64, f64) = (1.5, 0.02);
 /// A rope over half a turn of a post with a load at each end: the ratio of the two pulls at which it slips.
 fn capstan(mu: f64, load: f64) -> Case {
     let exact = string::capstan_heavy(mu, POST / rope_length() / load);
-    let run = move |level| threshold([1.0, exact * exact], |ratio| rope(level, mu, [load, load * ratio]));
+    let run = move |how: How<'_>| threshold([1.0, exact * exact], |ratio| rope(how, mu, [load, load * ratio]));
     Case {
         name: "capstan",
         parameter: format!("mu {mu}, load {load}"),
@@ -65,7 +65,7 @@ fn rope_length() -> f64 {
     PI * POST + 2.0 * HANGING
 }
 
-fn rope(level: Level, mu: f64, pulls: [f64; 2]) -> Result<(Outcome, bool), RigError> {
+fn rope(how: How<'_>, mu: f64, pulls: [f64; 2]) -> Result<(Outcome, bool), RigError> {
     let around = PI * POST;
     let strip = Strip::narrow(rope_length(), ROPE_ROWS, [Hold::Free, Hold::Free]);
     let worn = |along: f64, across: f64| {
@@ -93,7 +93,7 @@ fn rope(level: Level, mu: f64, pulls: [f64; 2]) -> Result<(Outcome, bool), RigEr
     let cloth = Cloth { friction: mu, damping: 5.0, stretch: 1e5, ..Cloth::PLAIN };
     let scenery =
         Scenery { capsule: Some([DVec3::NEG_Z * 0.2, DVec3::Z * 0.2]), radius: POST - GAP, ..Scenery::default() };
-    let mut rig = Rig::new(&shape, &cloth, level, &scenery)?;
+    let mut rig = Rig::new(&shape, &cloth, how, &scenery)?;
     let before = rig.mean(ends[1].iter().copied()).y;
     rig.run(ROPE_WATCH.0);
     let slipped = before - rig.mean(ends[1].iter().copied()).y > ROPE_WATCH.1;
@@ -123,11 +123,11 @@ const SLOPE_DEGREES: f64 = 2.0;
 
 fn incline(mu: f64) -> Case {
     let exact = mu.atan().to_degrees();
-    let run = move |level| {
+    let run = move |how: How<'_>| {
         threshold([0.3 * exact, (3.0 * exact).min(85.0)], |degrees| {
             let (shape, scenery) = patch(degrees.to_radians(), 0.0);
             let cloth = Cloth { friction: mu, ..Cloth::PLAIN };
-            let mut rig = Rig::new(&shape, &cloth, level, &scenery)?;
+            let mut rig = Rig::new(&shape, &cloth, how, &scenery)?;
             let vertices = rig.vertices();
             let before = rig.mean(0..vertices);
             rig.run(SLIDE.0);
@@ -150,10 +150,10 @@ fn incline(mu: f64) -> Case {
 
 /// A patch that is thrown along the floor: v^2 / 2 mu g.
 fn stopping(speed: f64, mu: f64) -> Case {
-    let run = move |level| {
+    let run = move |how: How<'_>| {
         let (shape, scenery) = patch(0.0, 0.0);
         let cloth = Cloth { friction: mu, ..Cloth::PLAIN };
-        let mut rig = Rig::new(&shape, &cloth, level, &scenery)?;
+        let mut rig = Rig::new(&shape, &cloth, how, &scenery)?;
         let vertices = rig.vertices();
         (0..vertices).for_each(|v| rig.put(v, rig.at(v), DVec3::X * speed));
         let settled = rig.rest(2.0 * speed / (mu * G) + 1.0);

@@ -1,11 +1,11 @@
 //! What must not matter: statics are the same when stiffnesses and mass are scaled together, when the mesh is renumbered,
-//! turned or mirrored, when the step is halved. Held against the engine's own cantilever at the same level.
+//! turned or mirrored, when the step is halved. Held against the engine's own cantilever at the same how.
 
 use glam::DQuat;
 use toile_assets::garment::Shape;
 use toile_assets::garment::shape::NO_VERTEX;
 
-use crate::validate::Level;
+use crate::validate::How;
 use crate::validate::case::{Case, Outcome};
 use crate::validate::mesh::{Cloth, Dice, Style};
 use crate::validate::rig::{Rig, RigError, Scenery};
@@ -49,9 +49,9 @@ pub fn cases() -> Vec<Case> {
 }
 
 fn case(style: Style, change: Change) -> Case {
-    let run = move |level| {
-        let (_, plain) = hung(style, None, level)?;
-        let (rig, changed) = hung(style, Some(change), level)?;
+    let run = move |how: How<'_>| {
+        let (_, plain) = hung(style, None, how)?;
+        let (rig, changed) = hung(style, Some(change), how)?;
         Ok(Outcome::of(&rig, changed / plain))
     };
     Case {
@@ -68,7 +68,7 @@ fn case(style: Style, change: Change) -> Case {
 }
 
 /// The rig at rest, and how far its tip has come down (m).
-fn hung(style: Style, change: Option<Change>, level: Level) -> Result<(Rig, f64), RigError> {
+fn hung(style: Style, change: Option<Change>, how: How<'_>) -> Result<(Rig, f64), RigError> {
     let c = Cantilever::new(style, ROWS, GAMMA);
     let (mut shape, mut cloth) = (c.shape(), c.cloth());
     // By place, so that the numbers may change.
@@ -87,7 +87,7 @@ fn hung(style: Style, change: Option<Change>, level: Level) -> Result<(Rig, f64)
         Some(Change::Mirrored) => mirror(&mut shape),
         Some(Change::HalfStep) | None => {}
     }
-    let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+    let mut rig = Rig::new(&shape, &cloth, how, &Scenery::default())?;
     if change == Some(Change::HalfStep) {
         rig.settings.step_seconds *= 0.5;
     }

@@ -1,6 +1,6 @@
 //! The cases, in the order of the table.
 //!
-//! Reads: exact values. Writes: cases that can be run at any level.
+//! Reads: exact values. Writes: cases that can be run at any how.
 //! Budget: nothing; a case costs when it is run.
 //! Thread: any.
 

@@ -4,11 +4,11 @@ use std::f64::consts::TAU;
 
 use glam::{DVec3, Vec3A};
 
-use crate::validate::Level;
 use crate::validate::case::{Case, Outcome};
 use crate::validate::exact::oscillation;
 use crate::validate::mesh::{Cloth, Hold, Strip, Style};
 use crate::validate::rig::{G, Rig, Scenery};
+use crate::validate::{How, Level};
 
 use super::trial::{crossings, peak, period};
 
@@ -67,11 +67,11 @@ const PERIODS: f64 = 5.0;
 /// that form.
 fn chain(n: usize) -> Case {
     let hz = oscillation::chain_mode_hz(n, 1.0, G);
-    let run = move |level| {
+    let run = move |how: How<'_>| {
         let strip = Strip::narrow(1.0, CHAIN_ROWS, [Hold::Pinned, Hold::Free]);
         let form = |along: f64| oscillation::j0(oscillation::j0_root(n) * (1.0 - along).max(0.0).sqrt());
         let shape = strip.shape(|along, across| DVec3::new(across, -along, AMPLITUDE * form(along)));
-        let mut rig = Rig::new(&shape, &Cloth::PLAIN, level, &Scenery::default())?;
+        let mut rig = Rig::new(&shape, &Cloth::PLAIN, how, &Scenery::default())?;
         let forms: Vec<f64> = shape.cut.iter().map(|p| form(f64::from(-p.y))).collect();
         let projection = |rig: &Rig| forms.iter().enumerate().map(|(v, f)| f * rig.at(v).z).sum();
         let (samples, step) = watch(&mut rig, PERIODS / hz, projection);
@@ -98,11 +98,11 @@ fn pendulum(degrees: f64, what: Swung) -> Case {
     let angle = degrees.to_radians();
     let exact = oscillation::pendulum(angle);
     let small = TAU / G.sqrt();
-    let run = move |level| {
+    let run = move |how: How<'_>| {
         let strip = Strip { width: 0.2, ..Strip::narrow(1.0, 1, [Hold::Pinned, Hold::Free]) };
         let shape = strip.shape(|along, across| DVec3::new(across, -along * angle.cos(), along * angle.sin()));
         let cloth = Cloth { stretch: f64::INFINITY, ..Cloth::PLAIN };
-        let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+        let mut rig = Rig::new(&shape, &cloth, how, &Scenery::default())?;
         let swing = |rig: &Rig| {
             let p = rig.mean((0..rig.vertices()).filter(|v| rig.moves(*v)));
             p.z.atan2(-p.y)
@@ -136,14 +136,14 @@ fn pendulum(degrees: f64, what: Swung) -> Case {
 /// hang on its sides without gravity. Its period is to depend neither on the substeps nor on what is solved in each.
 fn spring(substeps: Option<u32>) -> Case {
     let exact = TAU / 1_000f64.sqrt();
-    let run = move |level| {
+    let run = move |how: How<'_>| {
         let strip = Strip { width: 1.0, ..Strip::narrow(1.0, 1, [Hold::Pinned, Hold::Free]) };
         let shape = strip.shape(|along, across| DVec3::new(across, -1.5 * along, 0.0));
         // Half of the quad's mass is at its lower corners; shear hardly holds.
         let cloth = Cloth { density: 2.0, stretch: 1_000.0, shear: 1e-3, ..Cloth::PLAIN };
-        let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+        let mut rig = Rig::new(&shape, &cloth, how, &Scenery::default())?;
         rig.settings.gravity = Vec3A::ZERO;
-        if level != Level::Converged && substeps.is_some() {
+        if how.level != Level::Converged && substeps.is_some() {
             rig.settings.substeps = substeps;
         }
         let length = |rig: &Rig| -rig.mean((0..rig.vertices()).filter(|v| rig.moves(*v))).y - 1.0;
@@ -170,7 +170,7 @@ const WAVE_ROWS: usize = 120;
 fn wave(tension: f64, shear: f64) -> Case {
     let density = Cloth::PLAIN.density;
     let speed = (tension / density).sqrt();
-    let run = move |level| {
+    let run = move |how: How<'_>| {
         let cloth = Cloth { stretch: 2_000.0, shear, ..Cloth::PLAIN };
         let stretched = 1.0 + tension / cloth.stretch;
         let strip = Strip::narrow(2.4 / stretched, WAVE_ROWS, [Hold::Pinned, Hold::Pinned]);
@@ -179,7 +179,7 @@ fn wave(tension: f64, shear: f64) -> Case {
             let x = along * stretched - 1.2;
             DVec3::new(x, across, hump(x))
         });
-        let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+        let mut rig = Rig::new(&shape, &cloth, how, &Scenery::default())?;
         rig.settings.gravity = Vec3A::ZERO;
         let gauge = |x: f64| {
             let near = |v: &usize| (shape.worn[*v].x - x as f32).abs() < 0.51 * strip.link() as f32;
@@ -209,10 +209,10 @@ fn wave(tension: f64, shear: f64) -> Case {
 const FALL_S: f64 = 1.0;
 
 fn fall() -> Case {
-    let run = |level| {
+    let run = |how: How<'_>| {
         let strip = Strip { width: 0.2, columns: 8, ..Strip::narrow(0.2, 8, [Hold::Free, Hold::Free]) };
         let shape = strip.shape(|along, across| DVec3::new(along, 0.0, across));
-        let mut rig = Rig::new(&shape, &Cloth::PLAIN, level, &Scenery::default())?;
+        let mut rig = Rig::new(&shape, &Cloth::PLAIN, how, &Scenery::default())?;
         rig.run(FALL_S);
         let vertices = rig.vertices();
         Ok(Outcome::of(&rig, -rig.mean(0..vertices).y))
@@ -239,16 +239,16 @@ enum Kept {
     Loss,
 }
 
-/// A cloth that is let go level from one pinned side and swings undamped for a minute: its energy, in parts of what it has
+/// A cloth that is let go how from one pinned side and swings undamped for a minute: its energy, in parts of what it has
 /// above hanging straight.
 fn energy(which: Kept) -> Case {
-    let run = move |level| {
+    let run = move |how: How<'_>| {
         let (side, rows) = SWING;
         let strip = Strip { width: side, columns: rows, ..Strip::narrow(side, rows, [Hold::Pinned, Hold::Free]) };
         let shape = strip.shape(|along, across| DVec3::new(across, 0.0, along));
         let cloth = Cloth { bend: 13.6e-6, ..Cloth::PLAIN };
-        let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
-        let seconds = if level == Level::Converged { 0.1 * ENERGY_S } else { ENERGY_S };
+        let mut rig = Rig::new(&shape, &cloth, how, &Scenery::default())?;
+        let seconds = if how.level == Level::Converged { 0.1 * ENERGY_S } else { ENERGY_S };
         let whole = 0.5 * rig.mass() * G * side;
         let start = rig.energy();
         let (samples, _) = watch(&mut rig, seconds, |rig| (rig.energy() - start) / whole * 100.0);

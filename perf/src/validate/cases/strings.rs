@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::validate::How;
 use crate::validate::case::Case;
 use crate::validate::exact::string;
 use crate::validate::mesh::{Cloth, Hold, Strip, Style};
@@ -46,20 +47,20 @@ const SHEET: f64 = 0.3;
 const TALL: usize = 3;
 
 /// A sheet that is held along both upright sides sags by w L^2 / 8G in its middle, by shear alone: its upright threads
-/// only sink, its level ones turn.
+/// only sink, its how ones turn.
 fn shear(stiffness: f64) -> Case {
     let (rows, held) = (16, [Hold::Pinned, Hold::Pinned]);
     let tall = TALL as f64 * SHEET;
     let strip = Strip { width: tall, columns: TALL * rows, ..Strip::narrow(SHEET, rows, held) };
     let cloth = Cloth { shear: stiffness, damping: DAMPING, ..Cloth::PLAIN };
-    let run = move |level| {
+    let run = move |how: How<'_>| {
         let shape = strip.shape(|along, across| DVec3::new(along, across, 0.0));
-        let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+        let mut rig = Rig::new(&shape, &cloth, how, &Scenery::default())?;
         let settled = rig.rest(REST_S);
         let at = |v: usize, axis: usize, middle: f64| (f64::from(shape.worn[v][axis]) - middle).abs() < 1e-4;
         let middle = || (0..rig.vertices()).filter(|&v| at(v, 0, 0.5 * SHEET) && at(v, 1, 0.0));
         let before = middle().map(|v| f64::from(shape.worn[v].y)).sum::<f64>() / middle().count().max(1) as f64;
-        Ok(rig.told(level, |seen| before - seen.mean(middle()).y).settled(settled))
+        Ok(rig.told(how, |seen| before - seen.mean(middle()).y).settled(settled))
     };
     Case {
         name: "shear-sag",
@@ -91,16 +92,16 @@ enum Hung {
 fn strip(stretch: f64, shear: f64, what: Hung) -> Case {
     let strip = Strip::narrow(1.0, ROWS, [Hold::Pinned, Hold::Free]);
     let cloth = Cloth { stretch, shear, damping: DAMPING, ..Cloth::PLAIN };
-    let run = move |level| {
+    let run = move |how: How<'_>| {
         let shape = strip.shape(|along, across| DVec3::new(across, -along, 0.0));
-        let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+        let mut rig = Rig::new(&shape, &cloth, how, &Scenery::default())?;
         let settled = rig.rest(REST_S);
         let tip = || (0..rig.vertices()).filter(|v| shape.cut[*v].y < -1.0 + 1e-4);
         let read = |seen: &Seen<'_>| match what {
             Hung::Tip => -seen.mean(tip()).y - 1.0,
             Hung::Top => -seen.force_on_fixed(|_| true).y / (rig.mass() * G),
         };
-        Ok(rig.told(level, read).settled(settled))
+        Ok(rig.told(how, read).settled(settled))
     };
     let [name, unit] = match what {
         Hung::Tip => ["strip", "m"],
@@ -130,20 +131,20 @@ enum Slung {
 fn catenary(length: f64, shear: f64, what: Slung) -> Case {
     let strip = Strip::narrow(length, ROWS, [Hold::Pinned, Hold::Pinned]);
     let cloth = Cloth { stretch: 3e4, shear, damping: DAMPING, ..Cloth::PLAIN };
-    let run = move |level| {
+    let run = move |how: How<'_>| {
         let depth = (0.25 * length * length - 0.25).sqrt();
         let shape = strip.shape(|along, across| {
             let part = along / length;
             DVec3::new(part - 0.5, -depth * (1.0 - (2.0 * part - 1.0).abs()), across)
         });
-        let mut rig = Rig::new(&shape, &cloth, level, &Scenery::default())?;
+        let mut rig = Rig::new(&shape, &cloth, how, &Scenery::default())?;
         let settled = rig.rest(REST_S);
         let weight = cloth.density * G * strip.width * length;
         let read = |seen: &Seen<'_>| match what {
             Slung::Sag => -seen.lowest(),
             Slung::Tension => seen.force_on_fixed(|p| p.x < 0.0).x / weight,
         };
-        Ok(rig.told(level, read).settled(settled))
+        Ok(rig.told(how, read).settled(settled))
     };
     let exact = string::catenary(length);
     Case {

@@ -1,0 +1,132 @@
+//! Opened: a device with the pipelines of all kernels, to be shared by any number of scenes: another garment needs buffers
+//! only.
+
+use wgpu::{
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
+    BindingResource, BindingType, Buffer, BufferBinding, BufferBindingType, BufferUsages, ComputePipeline,
+    ComputePipelineDescriptor, PipelineLayoutDescriptor, ShaderModuleDescriptor, ShaderSource, ShaderStages,
+};
+
+use super::kernels::{Kernel, SHADERS};
+use crate::device::{Choice, Device, GpuError, Needs};
+
+/// An open device and its pipelines.
+#[derive(Debug)]
+pub struct Opened {
+    /// The device.
+    pub device: Device,
+    pub(super) pipelines: Pipelines,
+}
+
+impl Opened {
+    /// Opens the chosen adapter, for scenes that need no more than that. At load: some tenths of a second, most of them for the
+    /// pipelines.
+    ///
+    /// # Errors
+    /// [`GpuError`]: none there, limits below the needs, or one that does not open.
+    pub fn new(choice: &Choice, needs: Needs) -> Result<Self, GpuError> {
+        Self::on(Device::open(choice, needs)?)
+    }
+
+    /// On a device that is open already.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`] where the driver refuses a kernel.
+    pub fn on(device: Device) -> Result<Self, GpuError> {
+        let pipelines = Pipelines::new(&device.device);
+        device.sound()?;
+        Ok(Self { device, pipelines })
+    }
+}
+
+/// The pipelines, and the layouts of what they are bound to.
+#[derive(Debug)]
+pub struct Pipelines {
+    scene: BindGroupLayout,
+    /// By [`Kernel::number`].
+    kernels: Vec<(ComputePipeline, BindGroupLayout)>,
+}
+
+impl Pipelines {
+    fn new(device: &wgpu::Device) -> Self {
+        let scene = scene_layout(device);
+        let shaders: Vec<_> = SHADERS
+            .iter()
+            .map(|s| {
+                let source = ShaderSource::Wgsl(s.source().into());
+                let module = device.create_shader_module(ShaderModuleDescriptor { label: Some(s.name), source });
+                let storage = |(binding, read_only): (u32, &bool)| {
+                    bound(binding, BufferBindingType::Storage { read_only: *read_only }, false)
+                };
+                let entries: Vec<_> = (0..).zip(s.reads).map(storage).collect();
+                let layout = BindGroupLayoutDescriptor { label: Some(s.name), entries: &entries };
+                (module, device.create_bind_group_layout(&layout))
+            })
+            .collect();
+        let pipeline = |kernel: Kernel| {
+            let (shader, entry) = kernel.entry();
+            let (module, layout) = &shaders[shader];
+            let whole = device.create_pipeline_layout(&PipelineLayoutDescriptor {
+                label: Some(entry),
+                bind_group_layouts: &[Some(&scene), Some(layout)],
+                immediate_size: 0,
+            });
+            let pipeline = device.create_compute_pipeline(&ComputePipelineDescriptor {
+                label: Some(entry),
+                layout: Some(&whole),
+                module,
+                entry_point: Some(entry),
+                compilation_options: Default::default(),
+                cache: None,
+            });
+            (pipeline, layout.clone())
+        };
+        let kernels = Kernel::ALL.map(pipeline).into();
+        Self { scene, kernels }
+    }
+
+    /// A kernel's pipeline.
+    pub fn of(&self, kernel: Kernel) -> &ComputePipeline {
+        &self.kernels[kernel.number()].0
+    }
+
+    /// What every kernel is bound to.
+    pub fn scene(&self, device: &wgpu::Device, buffers: [&Buffer; 5]) -> BindGroup {
+        let entries: Vec<_> = (0u32..)
+            .zip(buffers)
+            .map(|(binding, buffer)| {
+                // Of the uniforms one of many.
+                let size = if buffer.usage().contains(BufferUsages::UNIFORM) { Some(16) } else { None };
+                let size = size.and_then(std::num::NonZeroU64::new);
+                BindGroupEntry { binding, resource: BindingResource::Buffer(BufferBinding { buffer, offset: 0, size }) }
+            })
+            .collect();
+        let descriptor = BindGroupDescriptor { label: Some("scene"), layout: &self.scene, entries: &entries };
+        device.create_bind_group(&descriptor)
+    }
+
+    /// What a kernel alone is bound to.
+    pub fn own(&self, device: &wgpu::Device, kernel: Kernel, buffers: &[&Buffer]) -> BindGroup {
+        let (_, layout) = &self.kernels[kernel.number()];
+        let entries: Vec<_> = (0u32..)
+            .zip(buffers)
+            .map(|(binding, buffer)| BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            .collect();
+        device.create_bind_group(&BindGroupDescriptor { label: Some(kernel.entry().1), layout, entries: &entries })
+    }
+}
+
+fn bound(binding: u32, ty: BufferBindingType, dynamic: bool) -> BindGroupLayoutEntry {
+    let size = if dynamic { std::num::NonZeroU64::new(16) } else { None };
+    let ty = BindingType::Buffer { ty, has_dynamic_offset: dynamic, min_binding_size: size };
+    BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None }
+}
+
+fn scene_layout(device: &wgpu::Device) -> BindGroupLayout {
+    let storage = |binding, read_only| bound(binding, BufferBindingType::Storage { read_only }, false);
+    let uniform = |binding| bound(binding, BufferBindingType::Uniform, true);
+    device.create_bind_group_layout(&BindGroupLayoutDescriptor {
+        label: Some("scene"),
+        entries: &[uniform(0), storage(1, true), storage(2, true), storage(3, false), uniform(4)],
+    })
+}

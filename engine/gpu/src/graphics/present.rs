@@ -1,0 +1,124 @@
+//! A device by wgpu.
+
+use std::sync::Arc;
+
+use glam::Vec3A;
+use toile_engine::cloth::Cloth;
+use toile_engine::cloth::guard::Events;
+use toile_engine::colliders::Colliders;
+
+use crate::Adapter;
+use crate::cloth::Offload;
+use crate::cloth::opened::Opened;
+use crate::device::{Choice, GpuError, Needs};
+use crate::stepper::Batch;
+
+pub use crate::cloth::Spent;
+
+/// An open device with the cloth's kernels; clones are the same device.
+#[derive(Debug, Clone)]
+pub struct Graphics(Arc<Opened>);
+
+/// Garments on a device.
+#[derive(Debug)]
+pub struct Garments {
+    offload: Offload,
+    /// What had happened to each before it was laid out here.
+    before: Vec<Events>,
+    room: [Vec<Vec3A>; 2],
+}
+
+impl Graphics {
+    /// Opens the fastest adapter.
+    ///
+    /// # Errors
+    /// One sentence with the cure: none there, or one that does not open.
+    pub fn open() -> Result<Self, String> {
+        Self::choose(&Choice::Fastest)
+    }
+
+    /// Opens the chosen adapter.
+    ///
+    /// # Errors
+    /// As [`Graphics::open`].
+    pub fn choose(choice: &Choice) -> Result<Self, String> {
+        Opened::new(choice, Needs::default()).map(|opened| Self(Arc::new(opened))).map_err(|e| e.to_string())
+    }
+
+    /// What the adapter says of itself.
+    pub fn adapter(&self) -> &Adapter {
+        self.0.device.adapter()
+    }
+
+    /// The device, and the kernels on it.
+    pub fn opened(&self) -> &Arc<Opened> {
+        &self.0
+    }
+}
+
+impl Garments {
+    /// Lays garments out on a device; those that were laid out `before` go on from there.
+    ///
+    /// # Errors
+    /// One sentence with the cure: a limit that is too small, or something that only the processor computes.
+    pub fn lay(graphics: &Graphics, batch: &Batch<'_, '_>, before: Option<&Self>) -> Result<Self, String> {
+        let Some(first) = batch.steps.first() else { return Err("there is no garment to step; give one".to_owned()) };
+        let colliders: Vec<&Colliders> = batch.steps.iter().map(|step| step.colliders).collect();
+        let mut offload = Offload::on(&graphics.0, batch.garments, &colliders, first.settings).map_err(said)?;
+        if let Some(before) = before {
+            offload.succeed(&before.offload);
+        }
+        let most = batch.cloths.iter().map(|c| c.positions.len()).max().unwrap_or(0);
+        // The colliders count for themselves.
+        let before = batch.cloths.iter().map(|c| Events { held_colliders: 0, ..c.events }).collect();
+        Ok(Self { offload, before, room: [(); 2].map(|()| Vec::with_capacity(most)) })
+    }
+
+    /// Whether these garments can be stepped as they are laid out: the settings may ask for more substeps.
+    pub fn holds(&self, batch: &Batch<'_, '_>) -> bool {
+        batch.steps.first().is_some_and(|step| self.offload.holds(batch.garments, step.settings))
+    }
+
+    /// One step: sends what has been disturbed, steps, waits for the result, and gives it to the cloths.
+    ///
+    /// # Errors
+    /// One sentence with the cure: the device is lost, or something that only the processor computes. The cloths then are as
+    /// before.
+    pub fn step(&mut self, batch: &mut Batch<'_, '_>) -> Result<(), String> {
+        for (k, cloth) in batch.cloths.iter().enumerate() {
+            self.send(k, cloth);
+        }
+        self.offload.step(batch.garments, batch.steps).map_err(said)?;
+        self.offload.finish().map_err(said)?;
+        for (k, cloth) in batch.cloths.iter_mut().enumerate() {
+            let events = self.before[k] + self.offload.events(k);
+            cloth.prepare(batch.garments[k], batch.steps[k].settings);
+            cloth.take_over(self.offload.positions(k), self.offload.velocities(k), events);
+        }
+        Ok(())
+    }
+
+    /// What the device spent on the last step that was timed.
+    pub fn spent(&self) -> Option<Spent> {
+        self.offload.spent()
+    }
+
+    /// A cloth's particles, where they are not as the device left them.
+    fn send(&mut self, k: usize, cloth: &Cloth) {
+        let vectors = |[x, y, z]: [&[f32]; 3], to: &mut Vec<Vec3A>| {
+            to.clear();
+            to.extend(x.iter().zip(y).zip(z).map(|((x, y), z)| Vec3A::new(*x, *y, *z)));
+        };
+        let [x, v] = &mut self.room;
+        vectors(cloth.state().positions(), x);
+        vectors(cloth.state().velocities(), v);
+        let same = |a: &[Vec3A], b: &[Vec3A]| a.iter().zip(b).all(|(a, b)| a == b);
+        if !(same(x, self.offload.positions(k)) && same(v, self.offload.velocities(k))) {
+            self.offload.put(k, x, v, &cloth.positions);
+        }
+    }
+}
+
+fn said(error: GpuError) -> String {
+    error.to_string()
+}

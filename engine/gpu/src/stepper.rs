@@ -1,0 +1,297 @@
+//! Stepper: garments stepped by the processor or by a graphics device, whichever was asked for or measures faster; what is
+//! read is a [`Cloth`] either way.
+//!
+//! A step is over when the call returns, on both: how benchmarks and validation need it. A frame loop that can take results a
+//! frame late drives `cloth::Offload` itself. Whatever goes wrong with the device, the processor goes on from the last places, and
+//! [`Stepper::fallen`] says why.
+
+use std::fmt;
+use std::str::FromStr;
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
+
+use toile_assets::garment::Garment;
+use toile_engine::cloth::{Cloth, Step};
+use toile_engine::crew::{Crew, Panicked};
+
+use crate::Adapter;
+use crate::graphics::{Garments, Graphics, Spent};
+
+/// What steps garments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Backend {
+    /// The processor.
+    #[default]
+    Cpu,
+    /// A graphics device, as long as there is one.
+    Gpu,
+    /// Whichever is faster with the garments at hand, measured when they are first stepped.
+    Auto,
+}
+
+impl Backend {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Cpu, Self::Gpu, Self::Auto];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Cpu => "cpu",
+            Self::Gpu => "gpu",
+            Self::Auto => "auto",
+        }
+    }
+}
+
+impl fmt::Display for Backend {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Backend {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let of = Self::ALL.into_iter().find(|b| b.name() == text);
+        of.ok_or_else(|| format!("`{text}` steps nothing; choose cpu, gpu or auto"))
+    }
+}
+
+/// By what the garments of a run are stepped: opened once, shared by all of its steppers.
+#[derive(Debug, Clone)]
+pub struct Means {
+    backend: Backend,
+    graphics: Result<Graphics, String>,
+    /// The first reason for which any of its steppers went over to the processor.
+    fallen: Arc<OnceLock<String>>,
+}
+
+impl Means {
+    /// The processor.
+    pub fn cpu() -> Self {
+        Self { backend: Backend::Cpu, graphics: Err(String::new()), fallen: Arc::default() }
+    }
+
+    /// What was asked for: opens the fastest device unless that is the processor. At load, some tenths of a second.
+    pub fn open(backend: Backend) -> Self {
+        match backend {
+            Backend::Cpu => Self::cpu(),
+            _ => Self { graphics: Graphics::open(), backend, fallen: Arc::default() },
+        }
+    }
+
+    /// A stepper for some garments.
+    pub fn stepper(&self) -> Stepper {
+        let mut stepper = Stepper { told: Some(Arc::clone(&self.fallen)), ..Stepper::default() };
+        match (self.backend, &self.graphics) {
+            (Backend::Cpu, _) => {}
+            (backend, Ok(graphics)) => {
+                stepper.graphics = Some(graphics.clone());
+                stepper.undecided = backend == Backend::Auto;
+            }
+            (_, Err(reason)) => stepper.fall(reason.clone()),
+        }
+        stepper
+    }
+
+    /// The device that was opened.
+    pub fn adapter(&self) -> Option<&Adapter> {
+        self.graphics.as_ref().ok().map(Graphics::adapter)
+    }
+
+    /// What was asked for.
+    pub fn asked(&self) -> Backend {
+        self.backend
+    }
+
+    /// Why the processor stepped although a device was asked for: the first reason, one sentence with the cure.
+    pub fn fallen(&self) -> Option<&str> {
+        let unopened = self.graphics.as_ref().err().filter(|_| self.backend != Backend::Cpu);
+        self.fallen.get().or(unopened).map(String::as_str)
+    }
+}
+
+impl From<Graphics> for Means {
+    /// A device that is open, and asked for.
+    fn from(graphics: Graphics) -> Self {
+        Self { backend: Backend::Gpu, graphics: Ok(graphics), fallen: Arc::default() }
+    }
+}
+
+/// Some garments, each with what the coming step does around it.
+#[derive(Debug)]
+pub struct Batch<'a, 'b> {
+    /// Their states.
+    pub cloths: &'a mut [Cloth],
+    /// What they are made of `[cloths]`.
+    pub garments: &'a [&'b Garment],
+    /// Their surroundings `[cloths]`; the settings are those of the first.
+    pub steps: &'a [Step<'b>],
+}
+
+/// What both took for one step of the garments at hand (us), the medians of some steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measured {
+    /// The processor, with the crew that was given.
+    pub cpu_us: f64,
+    /// The graphics device, until its result was there.
+    pub gpu_us: f64,
+}
+
+/// Steps garments.
+#[derive(Debug, Default)]
+pub struct Stepper {
+    graphics: Option<Graphics>,
+    on_device: Option<Garments>,
+    fallen: Option<String>,
+    /// Where the reason is kept for the whole run.
+    told: Option<Arc<OnceLock<String>>>,
+    measured: Option<Measured>,
+    undecided: bool,
+}
+
+/// Longest that either side is measured for (s), and the most steps.
+const MEASURING: (Duration, usize) = (Duration::from_millis(300), 25);
+
+impl Stepper {
+    /// The processor.
+    pub fn cpu() -> Self {
+        Self::default()
+    }
+
+    /// What steps: the device, or the processor.
+    pub fn backend(&self) -> Backend {
+        if self.graphics.is_some() { Backend::Gpu } else { Backend::Cpu }
+    }
+
+    /// The device that steps, if one does.
+    pub fn adapter(&self) -> Option<&Adapter> {
+        self.graphics.as_ref().map(Graphics::adapter)
+    }
+
+    /// Why the processor steps although a device was asked for: one sentence with the cure.
+    pub fn fallen(&self) -> Option<&str> {
+        self.fallen.as_deref()
+    }
+
+    /// What [`Backend::Auto`] was decided by.
+    pub fn measured(&self) -> Option<Measured> {
+        self.measured
+    }
+
+    /// What the device spent on the stages of the last step with `Settings::timed`, where it has a clock for it.
+    pub fn spent(&self) -> Option<Spent> {
+        self.on_device.as_ref().and_then(Garments::spent)
+    }
+
+    /// One step of each garment. With a crew the processor shares the work: one garment's, or the garments themselves.
+    ///
+    /// # Errors
+    /// [`Panicked`]: a worker of the crew has; only where garments are shared among them.
+    pub fn step(&mut self, batch: &mut Batch<'_, '_>, crew: Option<&mut Crew>) -> Result<(), Panicked> {
+        let mut crew = crew;
+        if std::mem::take(&mut self.undecided) {
+            self.decide(batch, crew.as_deref_mut())?;
+        }
+        if let Some(graphics) = &self.graphics {
+            match on_device(graphics, &mut self.on_device, batch) {
+                Ok(()) => return Ok(()),
+                Err(reason) => self.fall(reason),
+            }
+        }
+        on_processor(batch, crew)
+    }
+
+    /// Gives the device up.
+    fn fall(&mut self, reason: String) {
+        if let Some(told) = &self.told {
+            // Only the first is kept.
+            let _ = told.set(reason.clone());
+        }
+        (self.graphics, self.on_device, self.fallen) = (None, None, Some(reason));
+    }
+
+    /// Steps copies of the garments on both for a while, where they stand, and keeps the faster.
+    fn decide(&mut self, batch: &mut Batch<'_, '_>, mut crew: Option<&mut Crew>) -> Result<(), Panicked> {
+        let Some(graphics) = self.graphics.clone() else { return Ok(()) };
+        let mut copies = batch.cloths.to_vec();
+        let mut trial = Batch { cloths: &mut copies, garments: batch.garments, steps: batch.steps };
+        let mut laid = None;
+        let gpu_us = median_us(|| on_device(&graphics, &mut laid, &mut trial));
+        let mut copies = batch.cloths.to_vec();
+        let mut trial = Batch { cloths: &mut copies, garments: batch.garments, steps: batch.steps };
+        let cpu_us = median_us(|| on_processor(&mut trial, crew.as_deref_mut()))?;
+        match gpu_us {
+            Err(reason) => self.fall(reason),
+            Ok(gpu_us) => {
+                self.measured = Some(Measured { cpu_us, gpu_us });
+                if cpu_us <= gpu_us {
+                    self.graphics = None;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Median time (us) of some steps; the first, which lays everything out, does not count.
+fn median_us<E>(mut step: impl FnMut() -> Result<(), E>) -> Result<f64, E> {
+    step()?;
+    let (begun, mut times) = (Instant::now(), Vec::new());
+    while times.is_empty() || (times.len() < MEASURING.1 && begun.elapsed() < MEASURING.0) {
+        let start = Instant::now();
+        step()?;
+        times.push(start.elapsed().as_secs_f64() * 1e6);
+    }
+    times.sort_unstable_by(f64::total_cmp);
+    Ok(times[times.len() / 2])
+}
+
+fn on_processor(batch: &mut Batch<'_, '_>, crew: Option<&mut Crew>) -> Result<(), Panicked> {
+    let (garments, steps) = (batch.garments, batch.steps);
+    match (&mut *batch.cloths, crew) {
+        ([cloth], Some(crew)) => {
+            cloth.step_with(crew, garments[0], &steps[0]);
+            Ok(())
+        }
+        (cloths, Some(crew)) => crew.each(cloths, |k, cloth| cloth.step(garments[k], &steps[k])),
+        (cloths, None) => {
+            cloths.iter_mut().zip(garments).zip(steps).for_each(|((cloth, garment), step)| cloth.step(garment, step));
+            Ok(())
+        }
+    }
+}
+
+/// Lays the garments out the first time, and again where the settings ask for more than they were laid out for.
+fn on_device(graphics: &Graphics, on: &mut Option<Garments>, batch: &mut Batch<'_, '_>) -> Result<(), String> {
+    if on.as_ref().is_none_or(|on| !on.holds(batch)) {
+        let laid = Garments::lay(graphics, batch, on.as_ref())?;
+        *on = Some(laid);
+    }
+    on.as_mut().map_or(Ok(()), |on| on.step(batch))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_backend_is_what_its_name_says() {
+        for backend in Backend::ALL {
+            assert_eq!(backend.name().parse(), Ok(backend));
+        }
+        assert!("tpu".parse::<Backend>().unwrap_err().contains("cpu, gpu or auto"));
+    }
+
+    #[test]
+    fn without_a_device_the_processor_steps_and_says_why() {
+        let none = |backend| Means { backend, graphics: Err("no adapter".into()), fallen: Arc::default() };
+        let means = none(Backend::Gpu);
+        let stepper = means.stepper();
+        assert_eq!((stepper.backend(), stepper.fallen()), (Backend::Cpu, Some("no adapter")));
+        assert_eq!(means.fallen(), Some("no adapter"));
+        let asked = none(Backend::Cpu);
+        assert_eq!((asked.stepper().fallen(), asked.fallen()), (None, None), "nobody asked for a device");
+    }
+}

@@ -1,0 +1,122 @@
+//! The stepper: what is asked for steps, what is disturbed is taken along, and a device that fails loses no garment.
+
+use std::time::{Duration, Instant};
+
+use glam::Vec3A;
+use toile_assets::garment::Garment;
+use toile_assets::scene::skirt::Stretch;
+use toile_engine::cloth::{Cloth, Settings};
+use toile_gpu::graphics::Graphics;
+use toile_gpu::stepper::{Backend, Batch, Means, Stepper};
+
+use crate::scene::{around, nobody, skirt, swaying};
+
+/// An open device; none where this machine has none, which CI does not excuse.
+fn graphics() -> Option<Graphics> {
+    match Graphics::open() {
+        Ok(graphics) => Some(graphics),
+        Err(error) => {
+            assert_ne!(std::env::var("CI").as_deref(), Ok("true"), "{error}");
+            eprintln!("not run: {error}");
+            None
+        }
+    }
+}
+
+/// Steps cloths with a stepper.
+fn step(stepper: &mut Stepper, cloths: &mut [Cloth], garments: &[&Garment], n: usize, settings: &Settings) {
+    let (palette, colliders) = (swaying(n), nobody());
+    let steps: Vec<_> = garments.iter().map(|_| around(&palette, &colliders, settings)).collect();
+    stepper.step(&mut Batch { cloths, garments, steps: &steps }, None).expect("no worker panics");
+}
+
+#[test]
+fn a_device_gives_what_the_processor_gives_with_disturbances_and_other_settings_in_between() {
+    let Some(graphics) = graphics() else { return };
+    let garment = [skirt(14, Stretch::Physical), skirt(12, Stretch::Inextensible)];
+    let garments: Vec<&Garment> = garment.iter().collect();
+    let cloths: Vec<Cloth> = garments.iter().map(|g| Cloth::new(g, &nobody())).collect();
+    let [mut one, mut other] = [cloths.clone(), cloths];
+    let mut cpu = Stepper::cpu();
+    let mut gpu = Means::from(graphics.clone()).stepper();
+    for n in 0..24 {
+        // More substeps than the best quality has, for a while: it has to be laid out again.
+        let many = (8..12).contains(&n).then_some(40);
+        let settings = Settings { substeps: many, ..Settings::default() };
+        if n == 5 {
+            for cloths in [&mut one, &mut other] {
+                let at = cloths[1].positions[100];
+                cloths[1].disturb(100, at + Vec3A::X * 0.004, Vec3A::Y * 0.3);
+            }
+        }
+        step(&mut cpu, &mut one, &garments, n, &settings);
+        step(&mut gpu, &mut other, &garments, n, &settings);
+        assert_eq!(one[0].substeps(), other[0].substeps());
+    }
+    assert_eq!((gpu.backend(), gpu.fallen()), (Backend::Gpu, None));
+    let software = gpu.adapter().is_some_and(|a| a.kind == "software");
+    for (a, b) in one.iter().zip(&other) {
+        let most = a.positions.iter().zip(&b.positions).map(|(p, q)| p.distance(*q)).fold(0.0, f32::max);
+        assert!(if software { most == 0.0 } else { most < 1e-3 }, "{most} m apart");
+        assert_eq!(a.events, b.events);
+    }
+}
+
+#[test]
+fn a_device_that_is_lost_loses_no_garment_and_the_processor_goes_on_within_a_second() {
+    let Some(graphics) = graphics() else { return };
+    let (garment, settings) = (skirt(14, Stretch::Inextensible), Settings::default());
+    let mut cloths = [Cloth::new(&garment, &nobody())];
+    let mut stepper = Means::from(graphics.clone()).stepper();
+    for n in 0..4 {
+        step(&mut stepper, &mut cloths, &[&garment], n, &settings);
+    }
+    let before = cloths[0].positions.clone();
+    graphics.opened().device.lose();
+    let begun = Instant::now();
+    step(&mut stepper, &mut cloths, &[&garment], 4, &settings);
+    assert!(begun.elapsed() < Duration::from_secs(1), "it took {:?}", begun.elapsed());
+    assert_eq!(stepper.backend(), Backend::Cpu);
+    assert!(stepper.fallen().is_some_and(|why| why.contains("lost") && why.contains("CPU")), "{:?}", stepper.fallen());
+    let way = cloths[0].positions.iter().zip(&before).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+    assert!(way > 0.0 && way < 0.02, "it went on from where it was: {way} m");
+    assert_eq!(cloths[0].events.rolled_back, 0);
+}
+
+#[test]
+fn what_is_faster_is_measured_and_steps() {
+    let means = Means::open(Backend::Auto);
+    if means.fallen().is_some() && graphics().is_none() {
+        return;
+    }
+    let (garment, settings) = (skirt(10, Stretch::Inextensible), Settings::default());
+    let mut cloths = [Cloth::new(&garment, &nobody())];
+    let mut stepper = means.stepper();
+    step(&mut stepper, &mut cloths, &[&garment], 0, &settings);
+    let measured = stepper.measured().expect("both were measured");
+    let faster = if measured.cpu_us <= measured.gpu_us { Backend::Cpu } else { Backend::Gpu };
+    assert_eq!(stepper.backend(), faster, "{measured:?}");
+    assert_eq!(stepper.fallen(), None);
+    let mut alone = Cloth::new(&garment, &nobody());
+    let (palette, colliders) = (swaying(0), nobody());
+    alone.step(&garment, &around(&palette, &colliders, &settings));
+    let apart = alone.positions.iter().zip(&cloths[0].positions).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+    assert!(apart < 1e-5, "measuring has moved the garment by {apart} m");
+}
+
+#[test]
+fn the_devices_clock_tells_what_the_stages_took() {
+    let Some(graphics) = graphics() else { return };
+    let (garment, settings) = (skirt(12, Stretch::Inextensible), Settings { timed: true, ..Settings::default() });
+    let mut cloths = [Cloth::new(&garment, &nobody())];
+    let mut stepper = Means::from(graphics.clone()).stepper();
+    for n in 0..3 {
+        step(&mut stepper, &mut cloths, &[&garment], n, &settings);
+    }
+    // An adapter without a clock tells nothing.
+    let Some(spent) = stepper.spent() else { return };
+    let sum: f64 = spent.stages_ns.iter().sum();
+    assert!(sum > 0.0 && sum <= 1.001 * spent.whole_ns, "{spent:?}");
+    // Bending, weft, fibers and contact all take time.
+    assert!([1, 3, 4, 5].iter().all(|&stage| spent.stages_ns[stage] > 0.0), "{spent:?}");
+}
