@@ -129,17 +129,17 @@ impl Device {
         Ok(Self { device, queue, adapter: described, lost, fault })
     }
 
-    /// Whether a scene fits what the device was opened with.
-    ///
-    /// # Errors
-    /// [`GpuError::TooSmall`], with the limit.
-    pub fn bears(&self, needs: Needs) -> Result<(), GpuError> {
-        enough(&needs.limits(), &self.device.limits(), &self.adapter.name)
-    }
-
     /// What the adapter says of itself.
     pub fn adapter(&self) -> &crate::Adapter {
         &self.adapter
+    }
+
+    /// Whether what a scene asks for is within the limits that the device was opened with.
+    ///
+    /// # Errors
+    /// [`GpuError::TooSmall`].
+    pub fn takes(&self, needs: Needs) -> Result<(), GpuError> {
+        enough(&needs.limits(), &self.device.limits(), &self.adapter.name)
     }
 
     /// Whether the device is still there and has taken all that was asked of it.

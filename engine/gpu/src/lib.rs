@@ -34,7 +34,13 @@ pub mod cloth;
 pub mod device;
 pub mod graphics;
 #[cfg(feature = "wgpu")]
+mod maker;
+#[cfg(feature = "wgpu")]
 mod native;
+#[cfg(feature = "wgpu")]
+mod shader;
+#[cfg(feature = "wgpu")]
+pub mod skin;
 pub mod stepper;
 #[cfg(feature = "wgpu")]
 pub mod wait;

@@ -5,7 +5,7 @@ use toile_assets::skeleton::{BONE_CHAIN, BONES};
 
 /// A rigid motion as eight numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct DualQuat {
+pub struct DualQuat {
     /// The rotation: x, y, z, w.
     pub real: Vec4,
     /// Half the product of translation and rotation.
@@ -13,6 +13,7 @@ pub(super) struct DualQuat {
 }
 
 impl DualQuat {
+    /// No motion.
     pub const IDENTITY: Self = Self { real: Vec4::W, dual: Vec4::ZERO };
 
     /// The motion of a matrix of rotation and translation.
@@ -31,7 +32,7 @@ impl DualQuat {
 /// A palette's dual quaternions. Of the two that each rotation has, a bone takes the one on its parent's side, once a
 /// pose: the bones of a vertex are near each other in the skeleton, so the blend goes the short way without a test a
 /// vertex (or a block), and a limb twisted past half a turn in all, but not between two bones, is not torn.
-pub(super) fn palette(palette: &[Affine3A; BONES]) -> [DualQuat; BONES] {
+pub fn palette(palette: &[Affine3A; BONES]) -> [DualQuat; BONES] {
     let mut duals = [DualQuat::IDENTITY; BONES];
     for (bone, parent) in BONE_CHAIN {
         let own = DualQuat::of(&palette[bone]);

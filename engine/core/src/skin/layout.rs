@@ -49,6 +49,11 @@ impl Run {
         &palette[usize::from(self.bones[k]) % N]
     }
 
+    /// Its bones, the base first.
+    pub fn bones(&self) -> &[u8] {
+        &self.bones[..self.count]
+    }
+
     /// What a block costs, in operations a lane, linear; a run's preparation is left out.
     fn cost(count: usize) -> usize {
         51 + 24 * (count - 1)
@@ -139,7 +144,7 @@ impl Layout {
     pub fn bones_of(&self, vertex: usize) -> Vec<u8> {
         let block = self.slots[vertex] as usize / MOST;
         let run = self.runs.iter().find(|r| (r.first..r.first + r.blocks).contains(&block));
-        run.map(|r| r.bones[..r.count].to_vec()).unwrap_or_default()
+        run.map(|r| r.bones().to_vec()).unwrap_or_default()
     }
 
     pub fn padding(&self, width: Width) -> Padding {

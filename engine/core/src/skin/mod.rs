@@ -7,6 +7,7 @@
 mod check;
 mod dual;
 mod kernel;
+mod laid;
 mod layout;
 mod posed;
 mod prune;
@@ -25,6 +26,8 @@ use crate::crew::{Crew, SHARES};
 use crate::lanes::{Column, Width};
 
 pub use check::{SkinError, WEIGHT_TOLERANCE};
+pub use dual::{DualQuat, palette as dual_palette};
+pub use laid::Laid;
 pub use layout::Padding;
 pub use posed::Posed;
 pub use prune::{Pruning, pruning};
@@ -134,10 +137,10 @@ impl SkinningJob {
         crew.run(1, |_, share| work.runs(if share == 0 { 0..half } else { half..all })).is_ok()
     }
 
-    fn duals(&self, blend: Blend, palette: &[Affine3A; BONES]) -> [dual::DualQuat; BONES] {
+    fn duals(&self, blend: Blend, palette: &[Affine3A; BONES]) -> [DualQuat; BONES] {
         match blend {
-            Blend::Linear => [dual::DualQuat::IDENTITY; BONES],
-            Blend::Dual => dual::palette(palette),
+            Blend::Linear => [DualQuat::IDENTITY; BONES],
+            Blend::Dual => dual_palette(palette),
         }
     }
 }
@@ -147,7 +150,7 @@ struct Work<'a> {
     job: &'a SkinningJob,
     blend: Blend,
     palette: &'a [Affine3A; BONES],
-    duals: &'a [dual::DualQuat; BONES],
+    duals: &'a [DualQuat; BONES],
     out: Column<'a>,
 }
 

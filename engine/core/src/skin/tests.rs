@@ -8,7 +8,7 @@ use glam::{Affine3A, Quat, Vec3};
 use toile_assets::mesh::{Influences, SkinWeights, WideWeights};
 use toile_assets::skeleton::BONES;
 
-use super::{Blend, Posed, SkinError, SkinningJob, pruning};
+use super::{Blend, Posed, SkinError, SkinningJob, dual_palette, pruning};
 use crate::crew::Crew;
 use crate::lanes::Width;
 

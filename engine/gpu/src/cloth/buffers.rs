@@ -1,9 +1,7 @@
 //! Buffers: what the kernels read and write, made once at load, and what each kernel is bound to.
 
-use bytemuck::Pod;
 use toile_assets::limits::MAX_CAPSULES;
 use toile_engine::cloth::stages;
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BindGroup, Buffer, BufferUsages};
 
 use super::constants::Constants;
@@ -13,9 +11,7 @@ use super::opened::Opened;
 use super::program::Program;
 use super::touch::{FlatCone, FlatEnds, PLANES};
 use crate::device::Needs;
-
-/// Bytes between two of the uniforms that a dispatch picks from: what every driver aligns to.
-pub const ALIGNED: u64 = 256;
+use crate::maker::Maker;
 
 /// Numbers of a garment's report: held at the speed limit, unsound, rolled back in a row, rolled back, repaired.
 pub const REPORT: usize = 5;
@@ -86,55 +82,11 @@ fn parts(program: &Program) -> usize {
     if program.stages.is_empty() { 3 } else { 6 }
 }
 
-/// Makes buffers, and counts their bytes.
-struct Maker<'a> {
-    device: &'a wgpu::Device,
-    bytes: u64,
-}
-
-impl Maker<'_> {
-    /// A buffer with these numbers; one number of none where there are none, because no buffer may be empty.
-    fn with<T: Pod>(&mut self, label: &str, numbers: &[T], more: BufferUsages) -> Buffer {
-        const NOTHING: [u8; 64] = [0; 64];
-        let bytes: &[u8] = bytemuck::cast_slice(numbers);
-        let contents = if bytes.is_empty() { &NOTHING[..] } else { bytes };
-        self.bytes += contents.len() as u64;
-        let usage = BufferUsages::STORAGE | more;
-        self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
-    }
-
-    /// A buffer of so many zeros of `size` bytes.
-    fn zeros(&mut self, label: &str, count: usize, size: usize) -> Buffer {
-        let len = (count.max(1) * size) as u64;
-        self.bytes += len;
-        let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
-        self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: len,
-            usage,
-            mapped_at_creation: false,
-        })
-    }
-
-    /// Uniforms of which a dispatch picks one.
-    fn uniforms(&mut self, label: &str, each: impl Iterator<Item = [u32; 4]>) -> Buffer {
-        let mut bytes = Vec::new();
-        for uniform in each {
-            bytes.extend_from_slice(bytemuck::cast_slice(&uniform));
-            bytes.resize(bytes.len().next_multiple_of(ALIGNED as usize), 0);
-        }
-        bytes.resize(bytes.len().max(ALIGNED as usize), 0);
-        self.bytes += bytes.len() as u64;
-        let usage = BufferUsages::UNIFORM;
-        self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents: &bytes, usage })
-    }
-}
-
 impl Buffers {
     /// All of a scene, on an open device. `sets` of capsules there are for each garment, one more than substeps.
     pub fn new(opened: &Opened, flat: &Flat, program: &Program, constants: &[Constants], sets: usize) -> Self {
         let (device, pipelines) = (&opened.device.device, &opened.pipelines);
-        let mut make = Maker { device, bytes: 0 };
+        let mut make = Maker::new(device);
         let none = BufferUsages::empty();
         let (to, from) = (BufferUsages::COPY_DST, BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
         let still = vec![[0.0f32; 4]; flat.start.len()];
@@ -223,7 +175,7 @@ impl Buffers {
             &[&reports, &good, &start],
             &[&reports, &good, &start],
         ];
-        let bytes = make.bytes;
+        let bytes = make.bytes();
         let scene = pipelines.scene(device, [&ops, &garments, &groups, &state, &moments]);
         let own = Kernel::ALL.map(|kernel| pipelines.own(device, kernel, own[kernel.number()])).into();
         Self {

@@ -1,4 +1,8 @@
-//! Kernels: the shaders, what each is bound to, and their pipelines.
+//! Kernels: the shaders, and what each is bound to.
+
+use crate::shader::LANES;
+
+pub use crate::shader::Shader;
 
 /// A kernel, in the order in which a step first runs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -51,21 +55,15 @@ pub enum Kernel {
     Conclude,
 }
 
-/// A shader's text, without what all have in common.
-#[derive(Debug, Clone, Copy)]
-pub struct Shader {
-    /// Its file's name.
-    pub name: &'static str,
-    text: &'static str,
-    /// Its storage buffers in the order of their bindings: whether each is only read.
-    pub reads: &'static [bool],
-}
-
 const COMMON: &str = include_str!("../shaders/common.wgsl");
 
 macro_rules! shader {
     ($name:literal, $reads:expr) => {
-        Shader { name: $name, text: include_str!(concat!("../shaders/", $name, ".wgsl")), reads: &$reads }
+        Shader {
+            name: $name,
+            texts: &[LANES, COMMON, include_str!(concat!("../shaders/", $name, ".wgsl"))],
+            reads: &$reads,
+        }
     };
 }
 
@@ -89,13 +87,6 @@ pub const SHADERS: [Shader; 17] = [
     shader!("guard", [false]),
     shader!("publish", [false, false, true]),
 ];
-
-impl Shader {
-    /// The whole text.
-    pub fn source(&self) -> String {
-        [COMMON, self.text].concat()
-    }
-}
 
 impl Kernel {
     /// All kernels.
@@ -140,7 +131,7 @@ impl Kernel {
         match self {
             Self::Repair | Self::Jump | Self::Carry | Self::Predict => 0,
             Self::Guard | Self::Publish | Self::Conclude => 0,
-            Self::Bending | Self::Bent | Self::Turn | Self::Stage | Self::Staged => 1,
+            Self::Turn | Self::Stage | Self::Staged | Self::Bending | Self::Bent => 1,
             Self::Diagonals | Self::Shear => 2,
             Self::Weft => 3,
             Self::Lists | Self::Fibers => 4,
@@ -187,25 +178,11 @@ impl Kernel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
-    use wgpu::naga::{AddressSpace, StorageAccess, front::wgsl};
+    use crate::shader::valid;
 
     #[test]
     fn every_shader_is_valid_without_any_capability_and_bound_as_it_is_said_to_be() {
-        for shader in SHADERS {
-            let module = wgsl::parse_str(&shader.source())
-                .unwrap_or_else(|e| panic!("{}: {}", shader.name, e.emit_to_string(&shader.source())));
-            let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
-            validator.validate(&module).unwrap_or_else(|e| panic!("{}: {e:?}", shader.name));
-            let mut reads = vec![None; shader.reads.len()];
-            for (_, variable) in module.global_variables.iter() {
-                let Some(binding) = variable.binding.filter(|b| b.group == 1) else { continue };
-                let AddressSpace::Storage { access } = variable.space else { panic!("{}: not storage", shader.name) };
-                reads[binding.binding as usize] = Some(!access.contains(StorageAccess::STORE));
-            }
-            let said: Vec<_> = shader.reads.iter().map(|r| Some(*r)).collect();
-            assert_eq!(reads, said, "{}", shader.name);
-        }
+        SHADERS.iter().for_each(|shader| valid(shader, 1));
     }
 
     #[test]
@@ -213,7 +190,7 @@ mod tests {
         let most = format!("const MOST_STAGES = {}u;", toile_engine::cloth::stages::MOST);
         let air = 0.25 * toile_engine::cloth::wind::AIR_DENSITY;
         assert!(COMMON.contains(&most));
-        assert!(SHADERS.iter().any(|s| s.text.contains(&format!("const AIR = {air};"))));
+        assert!(SHADERS.iter().any(|s| s.source().contains(&format!("const AIR = {air};"))));
     }
 
     #[test]

@@ -117,7 +117,7 @@ impl Offload {
         settings: &Settings,
     ) -> Result<Self, GpuError> {
         let laid = Laid::new(garments, colliders, settings)?;
-        opened.device.bears(laid.needs())?;
+        opened.device.takes(laid.needs())?;
         Self::lay(Arc::clone(opened), laid, garments, settings)
     }
 

@@ -2,13 +2,14 @@
 //! only.
 
 use wgpu::{
-    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
-    BindingResource, BindingType, Buffer, BufferBinding, BufferBindingType, BufferUsages, ComputePipeline,
-    ComputePipelineDescriptor, PipelineLayoutDescriptor, ShaderModuleDescriptor, ShaderSource, ShaderStages,
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindingResource,
+    Buffer, BufferBinding, BufferBindingType, BufferUsages, ComputePipeline,
 };
 
 use super::kernels::{Kernel, SHADERS};
 use crate::device::{Choice, Device, GpuError, Needs};
+use crate::maker::bound;
+use crate::shader::pipeline;
 
 /// An open device and its pipelines.
 #[derive(Debug)]
@@ -50,36 +51,11 @@ pub struct Pipelines {
 impl Pipelines {
     fn new(device: &wgpu::Device) -> Self {
         let scene = scene_layout(device);
-        let shaders: Vec<_> = SHADERS
-            .iter()
-            .map(|s| {
-                let source = ShaderSource::Wgsl(s.source().into());
-                let module = device.create_shader_module(ShaderModuleDescriptor { label: Some(s.name), source });
-                let storage = |(binding, read_only): (u32, &bool)| {
-                    bound(binding, BufferBindingType::Storage { read_only: *read_only }, false)
-                };
-                let entries: Vec<_> = (0..).zip(s.reads).map(storage).collect();
-                let layout = BindGroupLayoutDescriptor { label: Some(s.name), entries: &entries };
-                (module, device.create_bind_group_layout(&layout))
-            })
-            .collect();
+        let shaders: Vec<_> = SHADERS.iter().map(|s| s.module(device)).collect();
         let pipeline = |kernel: Kernel| {
             let (shader, entry) = kernel.entry();
             let (module, layout) = &shaders[shader];
-            let whole = device.create_pipeline_layout(&PipelineLayoutDescriptor {
-                label: Some(entry),
-                bind_group_layouts: &[Some(&scene), Some(layout)],
-                immediate_size: 0,
-            });
-            let pipeline = device.create_compute_pipeline(&ComputePipelineDescriptor {
-                label: Some(entry),
-                layout: Some(&whole),
-                module,
-                entry_point: Some(entry),
-                compilation_options: Default::default(),
-                cache: None,
-            });
-            (pipeline, layout.clone())
+            (pipeline(device, &[Some(&scene), Some(layout)], module, entry), layout.clone())
         };
         let kernels = Kernel::ALL.map(pipeline).into();
         Self { scene, kernels }
@@ -114,12 +90,6 @@ impl Pipelines {
             .collect();
         device.create_bind_group(&BindGroupDescriptor { label: Some(kernel.entry().1), layout, entries: &entries })
     }
-}
-
-fn bound(binding: u32, ty: BufferBindingType, dynamic: bool) -> BindGroupLayoutEntry {
-    let size = if dynamic { std::num::NonZeroU64::new(16) } else { None };
-    let ty = BindingType::Buffer { ty, has_dynamic_offset: dynamic, min_binding_size: size };
-    BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None }
 }
 
 fn scene_layout(device: &wgpu::Device) -> BindGroupLayout {

@@ -5,7 +5,7 @@ use toile_assets::garment::Garment;
 use toile_engine::cloth::guard::{self, Spoil};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, ComputePassDescriptor, MapMode};
 
-use super::buffers::{Buffers, REPORT};
+use super::buffers::REPORT;
 use super::flat::Span;
 use super::kernels::Kernel;
 use super::meter::Meter;
@@ -45,9 +45,8 @@ impl Offload {
                 for (to, from) in [(&mut own.positions, good), (&mut own.velocities, speeds)] {
                     to.iter_mut().zip(&from[all.clone()]).for_each(|(to, p)| *to = Vec3A::new(p[0], p[1], p[2]));
                 }
-                let [limited, _, _, rolled_back, repaired] = report.map(u64::from);
-                (own.events.speed_limited, own.events.rolled_back) = (limited, rolled_back);
-                own.events.repaired = repaired;
+                own.events.repaired = report[4].into();
+                (own.events.speed_limited, own.events.rolled_back) = (report[0].into(), report[3].into());
             }
         });
         self.meter.iter_mut().for_each(Meter::take);
@@ -77,17 +76,17 @@ impl Offload {
         let places: Vec<[f32; 4]> = x.iter().zip(start).map(|(p, s)| [p.x, p.y, p.z, s[3]]).collect();
         let speeds: Vec<[f32; 4]> = v.iter().zip(start).map(|(v, _)| [v.x, v.y, v.z, 0.0]).collect();
         let good: Vec<[f32; 4]> = good.iter().zip(start).map(|(p, _)| [p.x, p.y, p.z, 1.0]).collect();
-        let (Buffers { state, good: last, .. }, queue) = (&self.buffers, &self.opened.device.queue);
+        let (buffers, queue) = (&self.buffers, &self.opened.device.queue);
         for (part, numbers) in (0..).zip([&places, &places, &speeds]) {
             let at = 16 * u64::from(part * self.flat.particles + span.first);
-            queue.write_buffer(state, at, bytemuck::cast_slice(numbers));
+            queue.write_buffer(&buffers.state, at, bytemuck::cast_slice(numbers));
         }
         let finite = |p: &[f32; 4]| p.iter().all(|n| n.is_finite());
         let mut first = 0;
         for some in good.chunk_by(|a, b| finite(a) == finite(b)) {
             if some.iter().all(finite) {
                 let at = 16 * (u64::from(span.first) + first as u64);
-                queue.write_buffer(last, at, bytemuck::cast_slice(some));
+                queue.write_buffer(&buffers.good, at, bytemuck::cast_slice(some));
                 let to = own.positions[first..].iter_mut();
                 to.zip(some).for_each(|(to, p)| *to = Vec3A::new(p[0], p[1], p[2]));
             }
@@ -109,8 +108,11 @@ impl Offload {
                 Spoil::Velocity(v) => (2 * self.flat.particles + at, v.extend(0.0)),
             };
             let bytes = numbers.to_array();
-            let queue = &self.opened.device.queue;
-            queue.write_buffer(&self.buffers.state, 16 * u64::from(first), bytemuck::cast_slice(&bytes));
+            self.opened.device.queue.write_buffer(
+                &self.buffers.state,
+                16 * u64::from(first),
+                bytemuck::cast_slice(&bytes),
+            );
         }
     }
 

@@ -9,7 +9,7 @@ use toile_engine::cloth::prepared::Prepared;
 use toile_engine::cloth::root::RootStep;
 use wgpu::{CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor};
 
-use super::buffers::{ALIGNED, Buffers, STAGES};
+use super::buffers::{Buffers, STAGES};
 use super::constants::{CARRY, COMPENSATE, Constants, DRESS, carried, columns};
 use super::flat::{Scale, WIDTH};
 use super::kernels::Kernel;
@@ -17,6 +17,7 @@ use super::program::Entry;
 use super::touch::{self, FlatCone, PLANES};
 use super::{Offload, Step, takes};
 use crate::device::GpuError;
+use crate::maker::ALIGNED;
 
 impl Offload {
     /// Takes in what has come back, and sends the next step of every garment on its way; waits for nothing. `steps` has
@@ -99,8 +100,8 @@ impl Offload {
                 queue.write_buffer(&buffers.stages, first, bytemuck::cast_slice(&stages));
             }
         }
-        let stages = self.own.iter().map(|own| own.prepared.bending.stages);
-        self.stages = stages.filter(|stages| *stages > 1).max().unwrap_or(0);
+        self.stages =
+            self.own.iter().map(|own| own.prepared.bending.stages).filter(|stages| *stages > 1).max().unwrap_or(0);
         for (substep, active) in (0..).zip(&mut self.active) {
             *active = self.own.iter().filter(|own| own.prepared.substeps > substep).count() as u32;
         }
@@ -182,20 +183,20 @@ impl Offload {
         let before = self.program.before.iter().filter(|entry| asked.runs(entry.kernel));
         before.for_each(|entry| run(entry, 0, all));
         for (substep, &active) in (0..).zip(&self.active).take_while(|(_, active)| **active > 0) {
-            self.stages(|entry, stage| run(entry, stage, active as usize));
+            self.staged(active as usize, &mut run);
             self.program.each(self.quality).iter().for_each(|entry| run(entry, substep, active as usize));
         }
         self.program.after.iter().for_each(|entry| run(entry, 0, all));
     }
 
     /// Those of bending that is stiffer than a substep: a turn before the forces of each stage, and one behind the last.
-    fn stages<'a>(&'a self, mut run: impl FnMut(&'a Entry, u32)) {
+    fn staged<'a>(&'a self, active: usize, run: &mut impl FnMut(&'a Entry, u32, usize)) {
         if self.stages == 0 {
             return;
         }
         for stage in 0..=self.stages {
             let entries = self.program.stages.iter().filter(|e| stage < self.stages || e.kernel == Kernel::Turn);
-            entries.for_each(|entry| run(entry, stage));
+            entries.for_each(|entry| run(entry, stage, active));
         }
     }
 

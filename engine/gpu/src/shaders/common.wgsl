@@ -1,7 +1,4 @@
-// What every kernel of the cloth begins with: the scene's bindings, and the functions that the CPU's lanes have.
-//
-// Sums of products are written out in the CPU's order. Nothing here asks for a fused multiply-add; a driver may still
-// make one (WGSL allows it), and then a result is within a bound instead of bit for bit: docs/gpu.md.
+// What every kernel of the cloth begins with, behind `lanes.wgsl`: the scene's bindings.
 
 // One dispatch.
 struct Op {
@@ -92,49 +89,6 @@ fn previous(i: u32) -> vec3<f32> {
 
 fn put(i: u32, x: vec3<f32>) {
     state[i] = vec4<f32>(x, state[i].w);
-}
-
-// Inner product, summed from x to z.
-fn inner(a: vec3<f32>, b: vec3<f32>) -> f32 {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-// Outer product.
-fn outer(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
-    return vec3<f32>(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-}
-
-// a > b ? a : b, as the lanes have it: the built-in leaves open what a number that is none gives.
-fn more_of(a: f32, b: f32) -> f32 {
-    return select(b, a, a > b);
-}
-
-// a < b ? a : b.
-fn less_of(a: f32, b: f32) -> f32 {
-    return select(b, a, a < b);
-}
-
-// 1 / sqrt(x) to 8e-7 (Walczyk, Moroz, Cieslinski 2021): the CPU's, operation by operation.
-fn reciprocal_root(x: f32) -> f32 {
-    var y = bitcast<f32>(0x5F1FFFF9u - (bitcast<u32>(x) >> 1u));
-    y = y * 0.70395225 * (2.3892446 - x * y * y);
-    return y * (1.5 - 0.5 * x * y * y);
-}
-
-// a / sqrt(x), a product earlier.
-fn times_reciprocal_root(a: f32, x: f32) -> f32 {
-    var y = bitcast<f32>(0x5F1FFFF9u - (bitcast<u32>(x) >> 1u));
-    y = y * 0.70395225 * (2.3892446 - x * y * y);
-    return (a * y) * (1.5 - 0.5 * x * y * y);
-}
-
-// A vector no longer than `reach`.
-fn limited(by: vec3<f32>, reach: f32) -> vec3<f32> {
-    let size2 = inner(by, by);
-    if (reach * reach < size2) {
-        return by * (reach * reciprocal_root(size2));
-    }
-    return by;
 }
 
 // Least pivot as a share of its diagonal; a pivot where there is no link; farthest move of one solve, in links.

@@ -84,10 +84,10 @@ fn poisoned(place: Option<Vec3A>, velocity: Option<Vec3A>) -> Option<(u64, u64)>
         gpu.step(&[&garment], &[step]).expect("the step is sent");
     }
     gpu.finish().expect("the last step comes back");
-    let (got, events) = (gpu.events(0), cloth.events);
+    let (report, events) = (gpu.events(0), cloth.events);
     let (alike, all, most) = apart(gpu.positions(0), &cloth.positions);
-    println!("{place:?} {velocity:?}: {alike} of {all} the same, {got:?}");
-    let told = (got.repaired, got.rolled_back);
+    println!("{place:?} {velocity:?}: {alike} of {all} the same, {report:?}");
+    let told = (report.repaired, report.rolled_back);
     assert_eq!(told, (events.repaired, events.rolled_back), "{place:?} {velocity:?}");
     let software = gpu.device().adapter().kind == "software";
     assert!(!software || alike == all, "{place:?} {velocity:?}: {most} m apart");
@@ -124,10 +124,10 @@ fn what_spoils_the_state_is_repaired_as_on_the_cpu() {
     }
     gpu.finish().expect("the last step comes back");
     let (alike, all, most) = apart(gpu.positions(0), &cloth.positions);
-    let (got, events) = (gpu.events(0), cloth.events);
-    println!("spoilt six times: {alike} of {all} the same, {got:?}");
-    assert!(events.repaired >= 24 && events.repaired == got.repaired, "{events:?} {got:?}");
-    assert_eq!(events.rolled_back, got.rolled_back);
+    let (report, events) = (gpu.events(0), cloth.events);
+    println!("spoilt six times: {alike} of {all} the same, {report:?}");
+    assert!(events.repaired >= 24 && events.repaired == report.repaired, "{events:?} {report:?}");
+    assert_eq!(events.rolled_back, report.rolled_back);
     assert!(gpu.device().adapter().kind != "software" || alike == all, "{most} m apart");
 }
 

@@ -4,5 +4,6 @@
 mod device;
 mod kernels;
 mod scene;
+mod skin;
 mod stepper;
 mod steps;

@@ -75,10 +75,15 @@ pub fn offload(garments: &[&Garment], settings: &Settings) -> Option<Offload> {
     offload_worn(garments, &vec![&nobody; garments.len()], settings)
 }
 
-/// The garments on an adapter, each with its body. None where this machine has none, which CI does not excuse.
+/// The garments on an adapter, each with its body.
 pub fn offload_worn(garments: &[&Garment], colliders: &[&Colliders], settings: &Settings) -> Option<Offload> {
-    match Offload::new(&Choice::Fastest, garments, colliders, settings) {
-        Ok(offload) => Some(offload),
+    opened(Offload::new(&Choice::Fastest, garments, colliders, settings))
+}
+
+/// What runs on an adapter: none where this machine has none, which CI does not excuse.
+pub fn opened<T>(opened: Result<T, GpuError>) -> Option<T> {
+    match opened {
+        Ok(opened) => Some(opened),
         Err(error @ GpuError::NoAdapter(_)) => {
             assert_ne!(std::env::var("CI").as_deref(), Ok("true"), "{error}");
             eprintln!("not run: {error}");

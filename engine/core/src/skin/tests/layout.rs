@@ -22,6 +22,32 @@ fn every_vertex_has_a_place_of_its_own_among_its_bones() {
 }
 
 #[test]
+fn a_loop_over_what_is_laid_gives_the_kernels_bits() {
+    let crowd = Crowd::<8>::new(1_501, 1.0);
+    let job = crowd.job();
+    let got = posed(&job, Blend::Dual, &crowd.palette);
+    let (duals, runs) = (dual_palette(&crowd.palette), job.runs().collect::<Vec<_>>());
+    let mut seen = vec![false; 1_501];
+    for laid in job.laid() {
+        assert!(!std::mem::replace(&mut seen[laid.vertex], true), "vertex {} is laid twice", laid.vertex);
+        assert_eq!((laid.position, laid.vertex), (crowd.positions[laid.vertex], laid.vertex));
+        let bones = runs[laid.run];
+        let base = duals[usize::from(bones[0])];
+        let (mut real, mut twin) = (base.real, base.dual);
+        for (bone, weight) in bones[1..].iter().zip(laid.weights) {
+            let bone = duals[usize::from(*bone)];
+            real += (bone.real - base.real) * weight;
+            twin += (bone.dual - base.dual) * weight;
+        }
+        let (v, w, u, s) = (real.truncate(), real.w, twin.truncate(), twin.w);
+        let squared = v.x * v.x + v.y * v.y + v.z * v.z + w * w;
+        let moved = v.cross(v.cross(laid.position) + laid.position * w + u) + (u * w - v * s);
+        assert_eq!(got.position(laid.vertex), laid.position + moved * (2.0 / squared), "vertex {}", laid.vertex);
+    }
+    assert!(seen.iter().all(|s| *s));
+}
+
+#[test]
 fn the_workers_share_blocks_alike_and_no_block_twice() {
     let job = Crowd::<4>::new(5_000, 1.0).job();
     let blocks = |runs: &[crate::skin::layout::Run]| runs.iter().map(|r| r.blocks).sum::<usize>();

@@ -1,0 +1,69 @@
+//! Maker: how buffers are made at load, and how a kernel is bound to them.
+
+use bytemuck::Pod;
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use wgpu::{BindGroupLayoutEntry, BindingType, Buffer, BufferBindingType, BufferUsages, ShaderStages};
+
+/// Bytes between two of the uniforms that a dispatch picks from: what every driver aligns to.
+pub const ALIGNED: u64 = 256;
+
+/// Makes buffers, and counts their bytes.
+pub struct Maker<'a> {
+    device: &'a wgpu::Device,
+    bytes: u64,
+}
+
+impl<'a> Maker<'a> {
+    /// On a device, with nothing made yet.
+    pub fn new(device: &'a wgpu::Device) -> Self {
+        Self { device, bytes: 0 }
+    }
+
+    /// Bytes of all that it has made.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// A storage buffer with these numbers; one number of none where there are none, because no buffer may be empty.
+    pub fn with<T: Pod>(&mut self, label: &str, numbers: &[T], more: BufferUsages) -> Buffer {
+        const NOTHING: [u8; 64] = [0; 64];
+        let bytes: &[u8] = bytemuck::cast_slice(numbers);
+        let contents = if bytes.is_empty() { &NOTHING[..] } else { bytes };
+        self.bytes += contents.len() as u64;
+        let usage = BufferUsages::STORAGE | more;
+        self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
+    }
+
+    /// A storage buffer of so many zeros of `size` bytes.
+    pub fn zeros(&mut self, label: &str, count: usize, size: usize) -> Buffer {
+        let len = (count.max(1) * size) as u64;
+        self.bytes += len;
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: len,
+            usage,
+            mapped_at_creation: false,
+        })
+    }
+
+    /// Uniforms of which a dispatch picks one.
+    pub fn uniforms(&mut self, label: &str, each: impl Iterator<Item = [u32; 4]>) -> Buffer {
+        let mut bytes = Vec::new();
+        for uniform in each {
+            bytes.extend_from_slice(bytemuck::cast_slice(&uniform));
+            bytes.resize(bytes.len().next_multiple_of(ALIGNED as usize), 0);
+        }
+        bytes.resize(bytes.len().max(ALIGNED as usize), 0);
+        self.bytes += bytes.len() as u64;
+        let usage = BufferUsages::UNIFORM;
+        self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents: &bytes, usage })
+    }
+}
+
+/// An entry of a layout; with `dynamic`, a uniform of which a dispatch picks one.
+pub fn bound(binding: u32, ty: BufferBindingType, dynamic: bool) -> BindGroupLayoutEntry {
+    let size = if dynamic { std::num::NonZeroU64::new(16) } else { None };
+    let ty = BindingType::Buffer { ty, has_dynamic_offset: dynamic, min_binding_size: size };
+    BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None }
+}
