@@ -179,6 +179,7 @@ impl Buffers {
             &[&weft_ends, &weft_measures, &weft_tensions],
             &[&lists, &index, &hoops, &hooped],
             &[&bundles, &rows, &measures, &factors, &sides],
+            &[&bundles, &rows, &measures, &factors, &sides],
             &[&tethers],
             touch,
             &[&reports],

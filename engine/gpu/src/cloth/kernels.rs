@@ -41,6 +41,8 @@ pub enum Kernel {
     Lists,
     /// Warp fibers.
     Fibers,
+    /// Those that are few and long.
+    Cyclic,
     /// Tethers.
     Tethers,
     /// Whatever touches is pushed out.
@@ -96,7 +98,7 @@ pub const SHADERS: [Shader; 19] = [
 
 impl Kernel {
     /// All kernels.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 26] = [
         Self::Repair,
         Self::Jump,
         Self::Near,
@@ -114,6 +116,7 @@ impl Kernel {
         Self::Weft,
         Self::Lists,
         Self::Fibers,
+        Self::Cyclic,
         Self::Tethers,
         Self::Contact,
         Self::Settle,
@@ -144,7 +147,7 @@ impl Kernel {
             Self::Faces | Self::Normals => 0,
             Self::Diagonals | Self::Shear => 2,
             Self::Weft => 3,
-            Self::Lists | Self::Fibers => 4,
+            Self::Lists | Self::Fibers | Self::Cyclic => 4,
             Self::Near | Self::Contact | Self::Settle => 5,
             Self::Wind | Self::Blown => 6,
             Self::Tethers => 7,
@@ -165,7 +168,7 @@ impl Kernel {
             Self::Diagonals => "diagonals",
             Self::Shear | Self::Weft => "links",
             Self::Lists => "lists",
-            Self::Fibers => "fibers",
+            Self::Fibers | Self::Cyclic => "fibers",
             Self::Tethers => "tethers",
             Self::Near | Self::Contact => "contact",
             Self::Settle => "settle",
@@ -180,6 +183,7 @@ impl Kernel {
             Self::Blown => "blown",
             Self::Stage => "stage",
             Self::Staged => "staged",
+            Self::Cyclic => "cyclic",
             Self::Conclude => "conclude",
             _ => name,
         };

@@ -110,7 +110,7 @@ impl Offload {
     /// The same on a device that is open already. At load: some milliseconds a garment.
     ///
     /// # Errors
-    /// [`GpuError`]: limits too small, or a garment or a setting that only the CPU can take.
+    /// [`GpuError`]: limits too small.
     pub fn on(
         opened: &Arc<Opened>,
         garments: &[&Garment],

@@ -114,7 +114,7 @@ impl Garments {
         vectors(cloth.state().velocities(), v);
         let same = |a: &[Vec3A], b: &[Vec3A]| a.iter().zip(b).all(|(a, b)| a == b);
         if !(same(x, self.offload.positions(k)) && same(v, self.offload.velocities(k))) {
-            self.offload.disturb(k, x, v);
+            self.offload.put(k, x, v, &cloth.positions);
         }
     }
 }

@@ -49,6 +49,10 @@ fn a_device_gives_what_the_processor_gives_with_disturbances_and_other_settings_
                 cloths[1].disturb(100, at + Vec3A::X * 0.004, Vec3A::Y * 0.3);
             }
         }
+        if n % 7 == 6 {
+            one[0].upset(n as u64);
+            other[0].upset(n as u64);
+        }
         step(&mut cpu, &mut one, &garments, n, &settings);
         step(&mut gpu, &mut other, &garments, n, &settings);
         assert_eq!(one[0].substeps(), other[0].substeps());
@@ -60,6 +64,7 @@ fn a_device_gives_what_the_processor_gives_with_disturbances_and_other_settings_
         assert!(if software { most == 0.0 } else { most < 1e-3 }, "{most} m apart");
         assert_eq!(a.events, b.events);
     }
+    assert!(one[0].events.repaired >= 12, "{:?}", one[0].events);
 }
 
 #[test]
