@@ -10,7 +10,7 @@ use toile_engine::colliders::Colliders;
 use crate::Adapter;
 use crate::cloth::Offload;
 use crate::cloth::opened::Opened;
-use crate::device::{Choice, GpuError, Needs};
+use crate::device::{Choice, Needs};
 use crate::stepper::Batch;
 
 pub use crate::cloth::Spent;
@@ -64,7 +64,7 @@ impl Garments {
     pub fn lay(graphics: &Graphics, batch: &Batch<'_, '_>, before: Option<&Self>) -> Result<Self, String> {
         let Some(first) = batch.steps.first() else { return Err("there is no garment to step; give one".to_owned()) };
         let colliders: Vec<&Colliders> = batch.steps.iter().map(|step| step.colliders).collect();
-        let mut offload = Offload::on(&graphics.0, batch.garments, &colliders, first.settings).map_err(said)?;
+        let mut offload = Offload::on(&graphics.0, batch.garments, &colliders, first.settings).map_err(|e| e.to_string())?;
         if let Some(before) = before {
             offload.succeed(&before.offload);
         }
@@ -88,8 +88,8 @@ impl Garments {
         for (k, cloth) in batch.cloths.iter().enumerate() {
             self.send(k, cloth);
         }
-        self.offload.step(batch.garments, batch.steps).map_err(said)?;
-        self.offload.finish().map_err(said)?;
+        self.offload.step(batch.garments, batch.steps).map_err(|e| e.to_string())?;
+        self.offload.finish().map_err(|e| e.to_string())?;
         for (k, cloth) in batch.cloths.iter_mut().enumerate() {
             let events = self.before[k] + self.offload.events(k);
             cloth.prepare(batch.garments[k], batch.steps[k].settings);
@@ -117,8 +117,4 @@ impl Garments {
             self.offload.put(k, x, v, &cloth.positions);
         }
     }
-}
-
-fn said(error: GpuError) -> String {
-    error.to_string()
 }
