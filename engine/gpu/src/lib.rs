@@ -28,6 +28,7 @@ pub fn adapters() -> Vec<Adapter> {
     Vec::new()
 }
 
+pub mod batch;
 #[cfg(feature = "wgpu")]
 pub mod cloth;
 #[cfg(feature = "wgpu")]

@@ -142,7 +142,8 @@ fn open(window: &Arc<Window>) -> Result<(Gpu, wgpu::Surface<'static>), String> {
     let surface = instance
         .create_surface(window.clone())
         .map_err(|e| format!("the window gives no surface to draw on ({e}); install a Vulkan driver"))?;
-    let gpu = Gpu::open_to_draw(instance, Some(&surface), &Choice::Fastest, Needs::default()).map_err(|e| e.to_string())?;
+    let gpu =
+        Gpu::open_to_draw(instance, Some(&surface), &Choice::Fastest, Needs::default()).map_err(|e| e.to_string())?;
     Ok((gpu, surface))
 }
 

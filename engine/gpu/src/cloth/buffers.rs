@@ -90,7 +90,7 @@ impl Buffers {
     /// All of a scene, on an open device. `sets` of capsules there are for each garment, one more than substeps.
     pub fn new(opened: &Opened, flat: &Flat, program: &Program, constants: &[Constants], sets: usize) -> Self {
         let (device, pipelines) = (&opened.device.device, &opened.pipelines);
-        let mut make = Maker::new(device);
+        let mut make = Maker::new(&opened.device);
         let none = BufferUsages::empty();
         let (to, from) = (BufferUsages::COPY_DST, BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
         let still = vec![[0.0f32; 4]; flat.start.len()];

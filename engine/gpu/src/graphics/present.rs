@@ -8,10 +8,10 @@ use toile_engine::cloth::guard::Events;
 use toile_engine::colliders::Colliders;
 
 use crate::Adapter;
+use crate::batch::Batch;
 use crate::cloth::Offload;
 use crate::cloth::opened::Opened;
 use crate::device::{Choice, Needs};
-use crate::stepper::Batch;
 
 pub use crate::cloth::Spent;
 
@@ -64,7 +64,8 @@ impl Garments {
     pub fn lay(graphics: &Graphics, batch: &Batch<'_, '_>, before: Option<&Self>) -> Result<Self, String> {
         let Some(first) = batch.steps.first() else { return Err("there is no garment to step; give one".to_owned()) };
         let colliders: Vec<&Colliders> = batch.steps.iter().map(|step| step.colliders).collect();
-        let mut offload = Offload::on(&graphics.0, batch.garments, &colliders, first.settings).map_err(|e| e.to_string())?;
+        let mut offload =
+            Offload::on(&graphics.0, batch.garments, &colliders, first.settings).map_err(|e| e.to_string())?;
         if let Some(before) = before {
             offload.succeed(&before.offload);
         }

@@ -61,7 +61,7 @@ impl Skinning {
         device.sound()?;
         let flat = FlatSkins::new(jobs);
         device.takes(of(&flat))?;
-        let buffers = Buffers::new(&device.device, &flat);
+        let buffers = Buffers::new(device, &flat);
         let ring = Ring::new(&device.device, buffers.positions.size() + buffers.normals.size());
         device.sound()?;
         let three = |numbers: &[[f32; 4]]| numbers.iter().map(|n| Vec3::new(n[0], n[1], n[2])).collect();

@@ -6,8 +6,9 @@ use glam::Vec3A;
 use toile_assets::garment::Garment;
 use toile_assets::scene::skirt::Stretch;
 use toile_engine::cloth::{Cloth, Settings};
+use toile_gpu::batch::Batch;
 use toile_gpu::graphics::Graphics;
-use toile_gpu::stepper::{Backend, Batch, Means, Stepper};
+use toile_gpu::stepper::{Backend, Means, Stepper};
 
 use crate::scene::{around, nobody, skirt, swaying};
 
