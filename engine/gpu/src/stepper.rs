@@ -254,7 +254,7 @@ fn on_processor(batch: &mut Batch<'_, '_>, crew: Option<&mut Crew>) -> Result<()
 /// Lays the garments out the first time, and again where the settings ask for more than they were laid out for.
 fn on_device(graphics: &Graphics, on: &mut Option<Garments>, batch: &mut Batch<'_, '_>) -> Result<(), String> {
     if on.as_ref().is_none_or(|on| !on.holds(batch)) {
-        let laid = Garments::lay(graphics, batch, on.as_ref())?;
+        let laid = Garments::lay(graphics, batch)?;
         *on = Some(laid);
     }
     on.as_mut().map_or(Ok(()), |on| on.step(batch))

@@ -163,13 +163,13 @@ impl Solve<'_> {
         let (x, n) = (self.columns.x, rungs.len as usize);
         let [a, b] = rungs.first.map(|f| f as usize);
         let like = [self.alike::<W>(rungs), self.alike::<W>(slants)];
-        let mut one = self.rung::<W>([a, b], self.rung_parameters::<W, ALIKE>(rungs, 0, like[0]));
+        let mut one = self.rung::<W, ALIKE>(rungs, 0, like[0]);
         // What the slants before have made of the first lane, the only one that they reach: kept apart, so that the
         // next slants need not wait for them.
         let mut behind = one.a;
         let mut t = W::N;
         while t + W::N <= n {
-            let next = self.rung::<W>([a + t, b + t], self.rung_parameters::<W, ALIKE>(rungs, t, like[0]));
+            let next = self.rung::<W, ALIKE>(rungs, t, like[0]);
             let p = self.slant_parameters::<W, ALIKE>(slants, t - W::N, [&one, &next], like[1]);
             let turned = slant(&mut one, &next, p);
             one.a = turned.with_first(behind);
@@ -199,18 +199,16 @@ impl Solve<'_> {
         one.store(x, [a + last, b + last]);
     }
 
-    /// A vector of rungs, solved.
+    /// A vector of rungs from the `t`-th on, solved; `like` are their parameters where all of the zigzag is alike.
     #[inline(always)]
-    fn rung<L: Numbers>(&self, [a, b]: [usize; 2], [rest, gain, wa, wb]: [L; 4]) -> Rungs<L> {
-        let x = self.columns.x;
+    fn rung<L: Numbers, const ALIKE: bool>(&self, rungs: &Run<2>, t: usize, like: [L; 4]) -> Rungs<L> {
+        let ([a, b], x) = (rungs.first.map(|f| f as usize + t), self.columns.x);
+        let [rest, gain, wa, wb] = if ALIKE { like } else { self.parameters::<L>(rungs, t, L::N) };
         let (pa, pb) = (V3::<L>::load(x, a, L::N), V3::load(x, b, L::N));
         let [by_a, by_b] = stiff(pb - pa, rest, gain, [wa, wb]);
-        Rungs { a: pa + by_a, b: pb - by_b, weights: [wa, wb] }
-    }
-
-    #[inline(always)]
-    fn rung_parameters<L: Numbers, const ALIKE: bool>(&self, rungs: &Run<2>, t: usize, like: [L; 4]) -> [L; 4] {
-        if ALIKE { like } else { self.parameters::<L>(rungs, t, L::N) }
+        // Rungs that are alike count with the masses of the first; slants that are not count with their own.
+        let weights = if ALIKE { [wa, wb] } else { [a, b].map(|p| L::load(self.columns.w, p)) };
+        Rungs { a: pa + by_a, b: pb - by_b, weights }
     }
 
     /// The slants' parameters: those of the first where all are alike, else the ends' weights are at hand.
@@ -222,17 +220,13 @@ impl Solve<'_> {
         [one, next]: [&Rungs<L>; 2],
         like: [L; 4],
     ) -> [L; 4] {
-        if ALIKE {
+        if ALIKE || slants.alike {
             return like;
         }
         let [a, b] = one.weights;
-        let weights = [b, a.with_first(next.weights[0]).rotate_down()];
-        if slants.alike {
-            return [like[0], like[1], weights[0], weights[1]];
-        }
         let (rest, gain, at) =
             (Column::read_only(&self.links.rest), Column::read_only(self.gain), slants.at as usize + t);
-        [L::load(rest, at), L::load(gain, at), weights[0], weights[1]]
+        [L::load(rest, at), L::load(gain, at), b, a.with_first(next.weights[0]).rotate_down()]
     }
 
     /// What `n` links of a run give by their compliance under the tension that they have (m).
@@ -362,140 +356,4 @@ fn part<L: Numbers>(from: Column<'_>, at: usize, n: usize) -> L {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::cloth::state::State;
-    use crate::lanes::Width;
-    use glam::Vec3;
-    use toile_assets::garment::Direction;
-    use toile_assets::garment::layout::{Run, Share, Tuples};
-
-    /// Links between particles i and i + n.
-    fn ladder(n: u32, rest: f32, compliance: f32) -> Links {
-        let share = Share { zigzags: 0..0, runs: 0..1, loose: 0..0, loose_at: n, loose_serial: n };
-        let set = Set { direction: Direction::Weft, crosses: false, shares: [share, Share::default()] };
-        let runs = [Run { first: [0, n], len: n, at: 0, serial: 0, alike: false }].into();
-        Links {
-            tuples: Tuples {
-                zigzags: [].into(),
-                runs,
-                loose: [].into(),
-                sets: [set].into(),
-                count: n as usize,
-                places: n as usize,
-            },
-            rest: vec![rest; n as usize].into(),
-            compliance: vec![compliance; n as usize].into(),
-        }
-    }
-
-    fn solved(width: Width, positions: &[Vec3], weights: &[f32], links: &Links, gamma: f32) -> Vec<Vec3> {
-        let mut state = State::new(positions, weights);
-        let mut gain = vec![0.0; links.rest.len()];
-        prepare(links, weights, [1.0, gamma], Passes::Many, &mut gain);
-        let set = &links.tuples.sets[0];
-        width.run(Solve { columns: state.columns(), links, gain: &gain, set, owner: 0, gamma, tension: None });
-        (0..positions.len()).map(|i| Vec3::from_array(state.positions().map(|a| a[i]))).collect()
-    }
-
-    #[test]
-    fn a_stiff_link_reaches_its_length_and_keeps_the_centre_of_mass() {
-        let p = solved(Width::widest(), &[Vec3::ZERO, Vec3::X * 2.0], &[1.0, 3.0], &ladder(1, 1.0, 0.0), 0.0);
-        assert!(((p[1] - p[0]).length() - 1.0).abs() < 2e-6);
-        assert!((p[0].x + p[1].x / 3.0 - 2.0 / 3.0).abs() < 2e-6);
-    }
-
-    #[test]
-    fn collapsed_and_fixed_links_do_nothing() {
-        for (w, b) in [([1.0, 1.0], Vec3::ZERO), ([0.0, 0.0], Vec3::X * 3.0)] {
-            assert_eq!(solved(Width::widest(), &[Vec3::ZERO, b], &w, &ladder(1, 1.0, 0.0), 0.0), [Vec3::ZERO, b]);
-        }
-    }
-
-    #[test]
-    fn every_width_gives_the_same_bits_and_f64_agrees() {
-        let n = 37;
-        let place = |i: u32| Vec3::new((i as f32 * 0.37).sin(), 0.1 * (i / n) as f32, (i as f32 * 0.71).cos()) * 0.3;
-        let positions: Vec<Vec3> = (0..2 * n).map(place).collect();
-        let weights: Vec<f32> = (0..2 * n).map(|i| if i % 5 == 0 { 0.0 } else { 1.0 + i as f32 }).collect();
-        let links = ladder(n, 0.12, 2.0);
-        let plain = solved(Width::One, &positions, &weights, &links, 0.25);
-        for width in Width::ALL.into_iter().filter(|w| w.available()) {
-            assert_eq!(solved(width, &positions, &weights, &links, 0.25), plain, "{width} lanes");
-        }
-        for i in 0..n as usize {
-            let (a, b) = (positions[i].as_dvec3(), positions[i + n as usize].as_dvec3());
-            let (wa, wb) = (f64::from(weights[i]), f64::from(weights[i + n as usize]));
-            if wa + wb == 0.0 {
-                continue;
-            }
-            let d = b - a;
-            // Nothing has moved yet in this substep: damping only weakens the pull.
-            let lambda = (d.length() - f64::from(0.12f32)) / (1.25 * (wa + wb) + 2.0);
-            let expected = b - d.normalize() * lambda * wb;
-            let error = (expected - plain[i + n as usize].as_dvec3()).length();
-            assert!(error < 1e-6, "link {i}: {error} m");
-        }
-    }
-
-    /// A zigzag of `n` rungs, closed or not, alike or not, between rails that lie one behind the other.
-    fn zigzag(n: u32, closed: bool, alike: bool) -> Links {
-        let slants = if closed { n } else { n - 1 };
-        let places = if alike { 1 } else { n };
-        let rungs = Run { first: [0, n], len: n, at: 0, serial: 0, alike };
-        let slants = Run { first: [n, 1], len: slants, at: places, serial: n, alike };
-        let share = Share { zigzags: 0..1, ..Share::default() };
-        let set = Set { direction: Direction::Weft, crosses: false, shares: [share, Share::default()] };
-        let count = places + if alike { 1 } else { slants.len };
-        Links {
-            tuples: Tuples {
-                zigzags: [Zigzag { rungs, slants }].into(),
-                sets: [set].into(),
-                count: (n + slants.len) as usize,
-                places: count as usize,
-                ..Tuples::default()
-            },
-            rest: (0..count).map(|i| if alike { 0.1 } else { 0.1 + 0.01 * (i % 7) as f32 }).collect(),
-            compliance: vec![0.0; count as usize].into(),
-        }
-    }
-
-    #[test]
-    fn a_zigzag_is_its_rungs_and_then_its_slants_at_every_width() {
-        let place = |i: u32| Vec3::new((i as f32 * 0.61).sin(), 0.3 * (i as f32).cos(), (i as f32 * 0.23).sin()) * 0.2;
-        for (n, closed, alike) in
-            (2..70).flat_map(|n| [(n, true, true), (n, false, true), (n, true, false), (n, false, false)])
-        {
-            let links = zigzag(n, closed, alike);
-            let positions: Vec<Vec3> = (0..2 * n).map(place).collect();
-            // Alike, but for what the rounding of a bake leaves.
-            let weight = |i: u32| if alike { 2.0 + 1e-6 * (i % 5) as f32 } else { (i % 4) as f32 };
-            let weights: Vec<f32> = (0..2 * n).map(weight).collect();
-            let counted = |at: usize, ends: [u32; 2]| match (alike, at) {
-                (false, _) => ends,
-                (true, 0) => [0, n],
-                (true, _) => [n, 1],
-            };
-            // One after the other, each as a ladder of one rung.
-            let mut expected = State::new(&positions, &weights);
-            let mut gain = vec![0.0; links.rest.len()];
-            prepare(&links, &weights, [1.0, 0.0], Passes::Many, &mut gain);
-            links.tuples.for_each(|at, [a, b]| {
-                let columns = expected.columns();
-                let [pa, pb] = [a, b].map(|i| state::get(columns.x, i as usize));
-                let d = V3::<f32> { x: pb.x - pa.x, y: pb.y - pa.y, z: pb.z - pa.z };
-                let counted = counted(at, [a, b]).map(|i| weights[i as usize]);
-                let [by_a, by_b] = stiff(d, links.rest[at], gain[at], counted);
-                let vector = |v: V3<f32>| glam::Vec3A::new(v.x, v.y, v.z);
-                state::set(columns.x, a as usize, pa + vector(by_a));
-                state::set(columns.x, b as usize, pb - vector(by_b));
-            });
-            let expected: Vec<Vec3> =
-                (0..2 * n as usize).map(|i| Vec3::from_array(expected.positions().map(|a| a[i]))).collect();
-            for width in Width::ALL.into_iter().filter(|w| w.available()) {
-                let got = solved(width, &positions, &weights, &links, 0.0);
-                assert_eq!(got, expected, "{width} lanes, {n} rungs, closed {closed}, alike {alike}");
-            }
-        }
-    }
-}
+mod tests;

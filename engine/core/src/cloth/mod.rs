@@ -178,6 +178,23 @@ impl Cloth {
         self.events = events;
     }
 
+    /// Where the skinned particles and the root were in the last step, and how the root moved: from where whoever steps it
+    /// elsewhere goes on.
+    pub fn course(&self) -> (&pins::Pins, &RootMotion) {
+        (&self.pins, &self.root)
+    }
+
+    /// Takes over the same of a step that was made elsewhere. Allocates nothing.
+    pub fn follow(&mut self, pins: &pins::Pins, root: &RootMotion) {
+        self.pins.copy(pins);
+        self.root = *root;
+    }
+
+    /// Whether it was made ready for wind.
+    pub fn feels_wind(&self) -> bool {
+        self.faces.is_some()
+    }
+
     /// Prepares for some settings, as a step with them does first.
     pub fn prepare(&mut self, garment: &Garment, settings: &Settings) {
         self.prepared.make(garment, &settings.sound());

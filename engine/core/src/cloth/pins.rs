@@ -50,6 +50,15 @@ impl Pins {
         self.start.copy_from_slice(&self.end);
     }
 
+    /// Takes over the targets of the same garment, where `from` is that.
+    pub fn copy(&mut self, from: &Self) {
+        if self.start.len() == from.start.len() {
+            self.start.copy_from_slice(&from.start);
+            self.end.copy_from_slice(&from.end);
+            self.placed = from.placed;
+        }
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.start) + size_of_val(&*self.end)

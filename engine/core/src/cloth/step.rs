@@ -95,7 +95,8 @@ impl Cloth {
         self.events.held_pins += self.pins.attach(garment, step.palette);
         let columns = self.state.columns();
         let width = settings.width;
-        if !(width.run(guard::Sound(columns.x)) && width.run(guard::Sound(columns.v))) {
+        // Both are looked at, because both are calmed.
+        if [columns.x, columns.v].map(|c| width.run(guard::Sound(c))) != [true; 2] {
             self.events.repaired += guard::repair(columns, &self.positions);
         }
         self.root.settings = settings.root;

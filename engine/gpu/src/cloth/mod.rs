@@ -30,7 +30,7 @@ use toile_engine::cloth::pins::Pins;
 use toile_engine::cloth::prepared::Prepared;
 use toile_engine::cloth::root::RootMotion;
 use toile_engine::cloth::settings::MAX_SUBSTEPS;
-use toile_engine::cloth::{Quality, Settings, centre};
+use toile_engine::cloth::{Cloth, Quality, Settings, centre};
 use toile_engine::colliders::Colliders;
 
 use crate::device::{Choice, Device, GpuError, Needs};
@@ -56,6 +56,7 @@ struct Own {
     pins: Pins,
     touch: Touch,
     root: RootMotion,
+    feels_wind: bool,
     origin: Vec3A,
     /// Where it is in the flat scene.
     place: usize,
@@ -168,6 +169,7 @@ impl Offload {
             pins: Pins::new(garment),
             touch: Touch::new(),
             root: RootMotion::new(settings.root),
+            feels_wind: true,
             origin: centre(garment),
             place: flat.order.iter().position(|o| *o == k).unwrap_or(k),
             positions: garment.start.iter().map(|p| Vec3A::from(*p)).collect(),
@@ -248,14 +250,22 @@ impl Offload {
         garments.len() == self.own.len() && self.own.iter().zip(garments).all(fits)
     }
 
-    /// Goes on from the same garments as they were laid out before: where their skinned particles were, how their roots moved.
-    pub fn succeed(&mut self, before: &Self) {
-        for (own, before) in self.own.iter_mut().zip(&before.own) {
-            if own.pins.start.len() == before.pins.start.len() {
-                own.pins = before.pins.clone();
-                own.root = before.root;
-            }
-        }
+    /// Goes on from where a cloth of the garment is: its last good places, at rest, its skinned particles and its root; in wind
+    /// if the cloth was made ready for it.
+    pub fn go_on(&mut self, garment: usize, cloth: &Cloth) {
+        let rest = vec![Vec3A::ZERO; cloth.positions.len()];
+        self.disturb(garment, &cloth.positions, &rest);
+        let own = &mut self.own[garment];
+        let (pins, root) = cloth.course();
+        own.pins.copy(pins);
+        own.root = *root;
+        own.feels_wind = cloth.feels_wind();
+    }
+
+    /// Where a garment's skinned particles and its root were in the last step that was sent: for [`Cloth::follow`].
+    pub fn course(&self, garment: usize) -> (&Pins, &RootMotion) {
+        let own = &self.own[garment];
+        (&own.pins, &own.root)
     }
 
     /// Bytes on the device, but for what is on its way back.

@@ -10,7 +10,7 @@ use toile_engine::cloth::root::RootStep;
 use wgpu::{CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor};
 
 use super::buffers::{Buffers, STAGES};
-use super::constants::{CARRY, COMPENSATE, Constants, DRESS, carried, columns};
+use super::constants::{CARRY, COMPENSATE, Constants, DRESS, WIND, carried, columns};
 use super::flat::{Scale, WIDTH};
 use super::kernels::Kernel;
 use super::program::Entry;
@@ -122,6 +122,7 @@ impl Offload {
             // A garment's fabric may change between steps.
             *constants = Constants::new(garment, &own.prepared, settings);
             constants.root = columns(&step.palette[0]);
+            constants.bits &= if own.feels_wind { u32::MAX } else { !WIND };
             match own.root.advance(&root, settings.step_seconds) {
                 RootStep::Plain => {}
                 RootStep::Carried(felt_less) => {

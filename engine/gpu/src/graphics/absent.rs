@@ -44,7 +44,7 @@ impl Garments {
     ///
     /// # Errors
     /// Never: there is no device.
-    pub fn lay(graphics: &Graphics, _: &Batch<'_, '_>, _: Option<&Self>) -> Result<Self, String> {
+    pub fn lay(graphics: &Graphics, _: &Batch<'_, '_>) -> Result<Self, String> {
         match graphics.0 {}
     }
 

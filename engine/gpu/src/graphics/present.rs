@@ -57,17 +57,23 @@ impl Graphics {
 }
 
 impl Garments {
-    /// Lays garments out on a device; those that were laid out `before` go on from there.
+    /// Lays garments out on a device, each where its cloth is.
     ///
     /// # Errors
     /// One sentence with the cure: a limit that is too small, or something that only the processor computes.
-    pub fn lay(graphics: &Graphics, batch: &Batch<'_, '_>, before: Option<&Self>) -> Result<Self, String> {
+    pub fn lay(graphics: &Graphics, batch: &Batch<'_, '_>) -> Result<Self, String> {
         let Some(first) = batch.steps.first() else { return Err("there is no garment to step; give one".to_owned()) };
         let colliders: Vec<&Colliders> = batch.steps.iter().map(|step| step.colliders).collect();
+<<<<<<< HEAD
         let mut offload =
             Offload::on(&graphics.0, batch.garments, &colliders, first.settings).map_err(|e| e.to_string())?;
         if let Some(before) = before {
             offload.succeed(&before.offload);
+=======
+        let mut offload = Offload::on(&graphics.0, batch.garments, &colliders, first.settings).map_err(said)?;
+        for (k, cloth) in batch.cloths.iter().enumerate() {
+            offload.go_on(k, cloth);
+>>>>>>> proof
         }
         let most = batch.cloths.iter().map(|c| c.positions.len()).max().unwrap_or(0);
         // The colliders count for themselves.
@@ -89,12 +95,23 @@ impl Garments {
         for (k, cloth) in batch.cloths.iter().enumerate() {
             self.send(k, cloth);
         }
+<<<<<<< HEAD
         self.offload.step(batch.garments, batch.steps).map_err(|e| e.to_string())?;
         self.offload.finish().map_err(|e| e.to_string())?;
+=======
+        let taken = self.offload.tally().taken;
+        self.offload.step(batch.garments, batch.steps).map_err(said)?;
+        self.offload.finish().map_err(said)?;
+        if self.offload.tally().taken == taken {
+            return Err(said(GpuError::Lost("a step did not come back".to_owned())));
+        }
+>>>>>>> proof
         for (k, cloth) in batch.cloths.iter_mut().enumerate() {
             let events = self.before[k] + self.offload.events(k);
             cloth.prepare(batch.garments[k], batch.steps[k].settings);
             cloth.take_over(self.offload.positions(k), self.offload.velocities(k), events);
+            let (pins, root) = self.offload.course(k);
+            cloth.follow(pins, root);
         }
         Ok(())
     }

@@ -2,15 +2,20 @@
 
 use std::time::{Duration, Instant};
 
-use glam::Vec3A;
+use glam::{Affine3A, Vec3, Vec3A};
 use toile_assets::garment::Garment;
 use toile_assets::scene::skirt::Stretch;
+<<<<<<< HEAD
 use toile_engine::cloth::{Cloth, Settings};
 use toile_gpu::batch::Batch;
+=======
+use toile_assets::skeleton::BONES;
+use toile_engine::cloth::{Cloth, Settings, Step, Wind};
+>>>>>>> proof
 use toile_gpu::graphics::Graphics;
 use toile_gpu::stepper::{Backend, Means, Stepper};
 
-use crate::scene::{around, nobody, skirt, swaying};
+use crate::scene::{REST, around, nobody, skirt, swaying};
 
 /// An open device; none where this machine has none, which CI does not excuse.
 fn graphics() -> Option<Graphics> {
@@ -66,6 +71,83 @@ fn a_device_gives_what_the_processor_gives_with_disturbances_and_other_settings_
         assert_eq!(a.events, b.events);
     }
     assert!(one[0].events.repaired >= 12, "{:?}", one[0].events);
+}
+
+/// A cloth with a past: it hung at rest and then somewhere else for a while, stepped by the processor.
+fn hung(garment: &Garment, root: &[Affine3A; BONES], wind: bool) -> Cloth {
+    let (colliders, settings) = (nobody(), Settings::default());
+    let cloth = Cloth::new(garment, &colliders);
+    let mut cloth = if wind { cloth.in_wind(garment) } else { cloth };
+    for palette in [&REST, root, root] {
+        cloth.step(garment, &around(palette, &colliders, &settings));
+    }
+    cloth
+}
+
+/// Steps `cloth` and `other` on both; the places and events are the same, to the bit where nothing is fused.
+fn same(cloth: &mut Cloth, other: &mut Cloth, gpu: &mut Stepper, garment: &Garment, step: &Step<'_>) {
+    let software = gpu.adapter().is_some_and(|a| a.kind == "software");
+    let one = std::slice::from_mut(cloth);
+    let mut batch = Batch { cloths: one, garments: &[garment], steps: &[*step] };
+    Stepper::cpu().step(&mut batch, None).expect("no worker panics");
+    let mut batch = Batch { cloths: std::slice::from_mut(other), garments: &[garment], steps: &[*step] };
+    gpu.step(&mut batch, None).expect("no worker panics");
+    let most = cloth.positions.iter().zip(&other.positions).map(|(p, q)| p.distance(*q)).fold(0.0, f32::max);
+    assert!(if software { most == 0.0 } else { most < 1e-4 }, "{most} m apart");
+    assert_eq!(cloth.events, other.events);
+}
+
+#[test]
+fn a_cloth_goes_on_from_its_past_on_the_device_and_from_there_on_the_processor() {
+    let Some(graphics) = graphics() else { return };
+    let garment = skirt(12, Stretch::Inextensible);
+    // Farther off than a root goes in a step, so that a past that is forgotten is a jump.
+    let far = |n: usize| swaying(n).map(|bone| Affine3A::from_translation(Vec3::X * 2.0) * bone);
+    let mut cpu = hung(&garment, &far(0), false);
+    let mut gpu = cpu.clone();
+    let mut stepper = Means::from(graphics.clone()).stepper();
+    let (colliders, settings) = (nobody(), Settings::default());
+    for n in 1..8 {
+        let palette = far(n);
+        if n == 5 {
+            graphics.opened().device.lose();
+        }
+        same(&mut cpu, &mut gpu, &mut stepper, &garment, &around(&palette, &colliders, &settings));
+        assert_eq!(gpu.events.teleports, 1, "it jumped there when it was stepped first, and never again");
+    }
+    assert_eq!(stepper.backend(), Backend::Cpu, "the device was lost");
+}
+
+#[test]
+fn wind_blows_only_what_was_made_ready_for_it() {
+    let Some(graphics) = graphics() else { return };
+    let garment = skirt(12, Stretch::Inextensible);
+    let air = Wind { velocity: Vec3A::new(4.0, 0.5, -3.0), drag: 0.6, lift: 0.2 };
+    let settings = Settings { wind: Some(air), ..Settings::default() };
+    for wind in [false, true] {
+        let mut cpu = hung(&garment, &swaying(0), wind);
+        let mut gpu = cpu.clone();
+        let mut stepper = Means::from(graphics.clone()).stepper();
+        for n in 1..5 {
+            same(&mut cpu, &mut gpu, &mut stepper, &garment, &around(&swaying(n), &nobody(), &settings));
+        }
+        assert_eq!(stepper.fallen(), None);
+    }
+}
+
+#[test]
+fn what_is_spoilt_before_the_first_step_goes_back_to_where_it_was() {
+    let Some(graphics) = graphics() else { return };
+    let garment = skirt(12, Stretch::Inextensible);
+    let mut cpu = hung(&garment, &swaying(0), false);
+    let at = cpu.positions.len() - 1;
+    cpu.disturb(at, Vec3A::NAN, Vec3A::ZERO);
+    let mut gpu = cpu.clone();
+    let mut stepper = Means::from(graphics).stepper();
+    for n in 1..5 {
+        same(&mut cpu, &mut gpu, &mut stepper, &garment, &around(&swaying(n), &nobody(), &Settings::default()));
+    }
+    assert_eq!((gpu.events.repaired, stepper.fallen()), (1, None));
 }
 
 #[test]

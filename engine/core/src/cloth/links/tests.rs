@@ -1,0 +1,162 @@
+//! Links against their lengths, against each other at every width, and against f64.
+
+use super::*;
+use crate::cloth::state::State;
+use crate::lanes::Width;
+use glam::Vec3;
+use toile_assets::garment::Direction;
+use toile_assets::garment::layout::{Run, Share, Tuples};
+
+/// Links between particles i and i + n.
+fn ladder(n: u32, rest: f32, compliance: f32) -> Links {
+    let share = Share { zigzags: 0..0, runs: 0..1, loose: 0..0, loose_at: n, loose_serial: n };
+    let set = Set { direction: Direction::Weft, crosses: false, shares: [share, Share::default()] };
+    let runs = [Run { first: [0, n], len: n, at: 0, serial: 0, alike: false }].into();
+    Links {
+        tuples: Tuples {
+            zigzags: [].into(),
+            runs,
+            loose: [].into(),
+            sets: [set].into(),
+            count: n as usize,
+            places: n as usize,
+        },
+        rest: vec![rest; n as usize].into(),
+        compliance: vec![compliance; n as usize].into(),
+    }
+}
+
+fn solved(width: Width, positions: &[Vec3], weights: &[f32], links: &Links, gamma: f32) -> Vec<Vec3> {
+    let mut state = State::new(positions, weights);
+    let mut gain = vec![0.0; links.rest.len()];
+    prepare(links, weights, [1.0, gamma], Passes::Many, &mut gain);
+    let set = &links.tuples.sets[0];
+    width.run(Solve { columns: state.columns(), links, gain: &gain, set, owner: 0, gamma, tension: None });
+    (0..positions.len()).map(|i| Vec3::from_array(state.positions().map(|a| a[i]))).collect()
+}
+
+#[test]
+fn a_stiff_link_reaches_its_length_and_keeps_the_centre_of_mass() {
+    let p = solved(Width::widest(), &[Vec3::ZERO, Vec3::X * 2.0], &[1.0, 3.0], &ladder(1, 1.0, 0.0), 0.0);
+    assert!(((p[1] - p[0]).length() - 1.0).abs() < 2e-6);
+    assert!((p[0].x + p[1].x / 3.0 - 2.0 / 3.0).abs() < 2e-6);
+}
+
+#[test]
+fn collapsed_and_fixed_links_do_nothing() {
+    for (w, b) in [([1.0, 1.0], Vec3::ZERO), ([0.0, 0.0], Vec3::X * 3.0)] {
+        assert_eq!(solved(Width::widest(), &[Vec3::ZERO, b], &w, &ladder(1, 1.0, 0.0), 0.0), [Vec3::ZERO, b]);
+    }
+}
+
+#[test]
+fn every_width_gives_the_same_bits_and_f64_agrees() {
+    let n = 37;
+    let place = |i: u32| Vec3::new((i as f32 * 0.37).sin(), 0.1 * (i / n) as f32, (i as f32 * 0.71).cos()) * 0.3;
+    let positions: Vec<Vec3> = (0..2 * n).map(place).collect();
+    let weights: Vec<f32> = (0..2 * n).map(|i| if i % 5 == 0 { 0.0 } else { 1.0 + i as f32 }).collect();
+    let links = ladder(n, 0.12, 2.0);
+    let plain = solved(Width::One, &positions, &weights, &links, 0.25);
+    for width in Width::ALL.into_iter().filter(|w| w.available()) {
+        assert_eq!(solved(width, &positions, &weights, &links, 0.25), plain, "{width} lanes");
+    }
+    for i in 0..n as usize {
+        let (a, b) = (positions[i].as_dvec3(), positions[i + n as usize].as_dvec3());
+        let (wa, wb) = (f64::from(weights[i]), f64::from(weights[i + n as usize]));
+        if wa + wb == 0.0 {
+            continue;
+        }
+        let d = b - a;
+        // Nothing has moved yet in this substep: damping only weakens the pull.
+        let lambda = (d.length() - f64::from(0.12f32)) / (1.25 * (wa + wb) + 2.0);
+        let expected = b - d.normalize() * lambda * wb;
+        let error = (expected - plain[i + n as usize].as_dvec3()).length();
+        assert!(error < 1e-6, "link {i}: {error} m");
+    }
+}
+
+/// A zigzag of `n` rungs, closed or not, rungs and slants alike or not, between rails that lie one behind the other.
+fn zigzag(n: u32, closed: bool, [rungs, slants]: [bool; 2]) -> Links {
+    let long = if closed { n } else { n - 1 };
+    let places = if rungs { 1 } else { n };
+    let count = places + if slants { 1 } else { long };
+    let rungs = Run { first: [0, n], len: n, at: 0, serial: 0, alike: rungs };
+    let slants = Run { first: [n, 1], len: long, at: places, serial: n, alike: slants };
+    let share = Share { zigzags: 0..1, ..Share::default() };
+    let set = Set { direction: Direction::Weft, crosses: false, shares: [share, Share::default()] };
+    Links {
+        tuples: Tuples {
+            zigzags: [Zigzag { rungs, slants }].into(),
+            sets: [set].into(),
+            count: (n + slants.len) as usize,
+            places: count as usize,
+            ..Tuples::default()
+        },
+        rest: (0..count).map(|i| 0.1 + 0.01 * (i % 7) as f32).collect(),
+        compliance: vec![0.0; count as usize].into(),
+    }
+}
+
+/// The particles of a zigzag, and their weights: the same but for what the rounding of a bake leaves, or not.
+fn rails(n: u32, same: bool) -> (Vec<Vec3>, Vec<f32>) {
+    let place = |i: u32| Vec3::new((i as f32 * 0.61).sin(), 0.3 * (i as f32).cos(), (i as f32 * 0.23).sin()) * 0.2;
+    let weight = |i: u32| if same { 2.0 + 1e-6 * (i % 5) as f32 } else { (i % 4) as f32 };
+    ((0..2 * n).map(place).collect(), (0..2 * n).map(weight).collect())
+}
+
+/// All lengths up to some vectors of the widest lanes, closed and open, with rungs and slants alike and not.
+fn zigzags() -> impl Iterator<Item = (u32, bool, [bool; 2])> {
+    let alike = [[true, true], [true, false], [false, true], [false, false]];
+    let forms = move |n| [true, false].into_iter().flat_map(move |closed| alike.map(|alike| (n, closed, alike)));
+    (2..70).flat_map(forms)
+}
+
+#[test]
+fn a_zigzag_is_its_rungs_and_then_its_slants_at_every_width() {
+    for (n, closed, alike) in zigzags() {
+        let links = zigzag(n, closed, alike);
+        let (positions, weights) = rails(n, alike.contains(&true));
+        // What is alike counts with the masses of the first of its run.
+        let counted = |serial: u32, ends: [u32; 2]| match (serial < n, alike) {
+            (true, [true, _]) => [0, n],
+            (false, [_, true]) => [n, 1],
+            _ => ends,
+        };
+        // One after the other, each as a ladder of one rung.
+        let mut expected = State::new(&positions, &weights);
+        let mut gain = vec![0.0; links.rest.len()];
+        prepare(&links, &weights, [1.0, 0.0], Passes::Many, &mut gain);
+        let mut serial = 0;
+        links.tuples.for_each(|at, [a, b]| {
+            let columns = expected.columns();
+            let [pa, pb] = [a, b].map(|i| state::get(columns.x, i as usize));
+            let d = V3::<f32> { x: pb.x - pa.x, y: pb.y - pa.y, z: pb.z - pa.z };
+            let counted = counted(serial, [a, b]).map(|i| weights[i as usize]);
+            let [by_a, by_b] = stiff(d, links.rest[at], gain[at], counted);
+            let vector = |v: V3<f32>| glam::Vec3A::new(v.x, v.y, v.z);
+            state::set(columns.x, a as usize, pa + vector(by_a));
+            state::set(columns.x, b as usize, pb - vector(by_b));
+            serial += 1;
+        });
+        let expected: Vec<Vec3> =
+            (0..2 * n as usize).map(|i| Vec3::from_array(expected.positions().map(|a| a[i]))).collect();
+        for width in Width::ALL.into_iter().filter(|w| w.available()) {
+            let got = solved(width, &positions, &weights, &links, 0.0);
+            assert_eq!(got, expected, "{width} lanes, {n} rungs, closed {closed}, alike {alike:?}");
+        }
+    }
+}
+
+/// Where links are alike the masses differ in their last bits; which ones count must not hang on the lanes.
+#[test]
+fn damped_zigzags_have_the_same_bits_at_every_width() {
+    for (n, closed, alike) in zigzags() {
+        let links = zigzag(n, closed, alike);
+        let (positions, weights) = rails(n, alike.contains(&true));
+        let plain = solved(Width::One, &positions, &weights, &links, 0.25);
+        for width in Width::ALL.into_iter().filter(|w| w.available()) {
+            let got = solved(width, &positions, &weights, &links, 0.25);
+            assert_eq!(got, plain, "{width} lanes, {n} rungs, closed {closed}, alike {alike:?}");
+        }
+    }
+}
