@@ -11,7 +11,7 @@ use crate::Adapter;
 use crate::batch::Batch;
 use crate::cloth::Offload;
 use crate::cloth::opened::Opened;
-use crate::device::{Choice, Needs};
+use crate::device::{Choice, GpuError, Needs};
 
 pub use crate::cloth::Spent;
 
@@ -64,16 +64,10 @@ impl Garments {
     pub fn lay(graphics: &Graphics, batch: &Batch<'_, '_>) -> Result<Self, String> {
         let Some(first) = batch.steps.first() else { return Err("there is no garment to step; give one".to_owned()) };
         let colliders: Vec<&Colliders> = batch.steps.iter().map(|step| step.colliders).collect();
-<<<<<<< HEAD
         let mut offload =
             Offload::on(&graphics.0, batch.garments, &colliders, first.settings).map_err(|e| e.to_string())?;
-        if let Some(before) = before {
-            offload.succeed(&before.offload);
-=======
-        let mut offload = Offload::on(&graphics.0, batch.garments, &colliders, first.settings).map_err(said)?;
         for (k, cloth) in batch.cloths.iter().enumerate() {
             offload.go_on(k, cloth);
->>>>>>> proof
         }
         let most = batch.cloths.iter().map(|c| c.positions.len()).max().unwrap_or(0);
         // The colliders count for themselves.
@@ -95,17 +89,12 @@ impl Garments {
         for (k, cloth) in batch.cloths.iter().enumerate() {
             self.send(k, cloth);
         }
-<<<<<<< HEAD
+        let taken = self.offload.tally().taken;
         self.offload.step(batch.garments, batch.steps).map_err(|e| e.to_string())?;
         self.offload.finish().map_err(|e| e.to_string())?;
-=======
-        let taken = self.offload.tally().taken;
-        self.offload.step(batch.garments, batch.steps).map_err(said)?;
-        self.offload.finish().map_err(said)?;
         if self.offload.tally().taken == taken {
-            return Err(said(GpuError::Lost("a step did not come back".to_owned())));
+            return Err(GpuError::Lost("a step did not come back".to_owned()).to_string());
         }
->>>>>>> proof
         for (k, cloth) in batch.cloths.iter_mut().enumerate() {
             let events = self.before[k] + self.offload.events(k);
             cloth.prepare(batch.garments[k], batch.steps[k].settings);

@@ -5,13 +5,9 @@ use std::time::{Duration, Instant};
 use glam::{Affine3A, Vec3, Vec3A};
 use toile_assets::garment::Garment;
 use toile_assets::scene::skirt::Stretch;
-<<<<<<< HEAD
-use toile_engine::cloth::{Cloth, Settings};
-use toile_gpu::batch::Batch;
-=======
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings, Step, Wind};
->>>>>>> proof
+use toile_gpu::batch::Batch;
 use toile_gpu::graphics::Graphics;
 use toile_gpu::stepper::{Backend, Means, Stepper};
 
