@@ -14,7 +14,7 @@ use toile_engine::crew::{Crew, Panicked};
 
 use crate::Adapter;
 use crate::batch::Batch;
-use crate::graphics::{Garments, Graphics, Spent};
+use crate::graphics::{Garments, Graphics, Spent, Work};
 
 /// What steps garments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -171,6 +171,11 @@ impl Stepper {
     /// What the device spent on the stages of the last step with `Settings::timed`, where it has a clock for it.
     pub fn spent(&self) -> Option<Spent> {
         self.on_device.as_ref().and_then(Garments::spent)
+    }
+
+    /// What a plain step asks of the device that steps, once one has been made.
+    pub fn work(&self) -> Option<Work> {
+        self.on_device.as_ref().map(Garments::work)
     }
 
     /// One step of each garment. With a crew the processor shares the work: one garment's, or the garments themselves.

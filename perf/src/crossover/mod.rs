@@ -31,7 +31,7 @@ const EACH: usize = 4_096;
 const PATIENCE: Duration = Duration::from_secs(4);
 
 /// The fewest and the most steps of a row, of which a third warms up.
-const STEPS: [usize; 2] = [9, 240];
+const STEPS: [usize; 2] = [3, 240];
 
 /// What a side has to say of one row.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -63,6 +63,10 @@ pub struct Row {
     pub device: Option<Side>,
     /// Time of a step by the device's own clock, from its first kernel to its last (us).
     pub device_us: Option<f64>,
+    /// Dispatches of a step on the device, one after the other.
+    pub dispatches: Option<u64>,
+    /// Bytes that its kernels ask for in a step, counted as if there were no cache.
+    pub bytes: Option<u64>,
     /// Why there is no device.
     pub missing: Option<String>,
 }
@@ -141,6 +145,7 @@ fn row(options: &Options, means: &Means) -> Result<Row, SkirtError> {
     let [first, second, third] = sides;
     let fallen = device.stepper().fallen().map(str::to_owned);
     let device_us = fallen.is_none().then(|| device.stages_us(3).1).flatten();
+    let work = device.stepper().work();
     Ok(Row {
         verts: options.verts,
         garments: options.garments,
@@ -149,6 +154,8 @@ fn row(options: &Options, means: &Means) -> Result<Row, SkirtError> {
         two: second,
         device: fallen.is_none().then_some(third),
         device_us,
+        dispatches: work.map(|w| w.dispatches),
+        bytes: work.map(|w| w.bytes),
         missing: fallen,
     })
 }
@@ -191,17 +198,24 @@ impl Study {
     /// The study as a table in Markdown.
     pub fn markdown(&self) -> String {
         let mut text = String::from(
-            "| Skirts x vertices | steps | one thread us | two threads us | device us, its own clock | strain one, device % mean | \
-             apart mm |\n|---|---|---|---|---|---|---|\n",
+            "| Skirts x vertices | steps | one thread us | two threads us | device us, its own clock | dispatches | MB asked for, GB/s | strain one, device % mean | \
+             apart mm |\n|---|---|---|---|---|---|---|---|---|\n",
         );
         for row in &self.rows {
             let of = |value: Option<f64>, digits: usize| value.map_or("-".into(), |v| format!("{v:.digits$}"));
             let device = [row.device.map(|d| d.step_us), row.device_us].map(|us| of(us, 0)).join(", ");
+            let dispatches = row.dispatches.map_or("-".into(), |n| n.to_string());
+            let rate = row.bytes.zip(row.device_us).map(|(bytes, us)| bytes as f64 * 1e-3 / us);
+            let asked = [of(row.bytes.map(|b| b as f64 * 1e-6), 1), of(rate, 1)].join(", ");
             let strain = [Some(row.one), row.device].map(|s| of(s.map(|s| s.strain_mean * 100.0), 3)).join(", ");
             let (apart, [one, two]) = (of(row.device.map(|d| d.apart_mm), 4), [row.one, row.two].map(|s| s.step_us));
             let head = format!("{} x {}", row.garments, row.verts);
             // Writing to a string cannot fail.
-            let _ = writeln!(text, "| {head} | {} | {one:.0} | {two:.0} | {device} | {strain} | {apart} |", row.steps);
+            let _ = writeln!(
+                text,
+                "| {head} | {} | {one:.0} | {two:.0} | {device} | {dispatches} | {asked} | {strain} | {apart} |",
+                row.steps
+            );
         }
         let said = |of: Option<f64>, what: &str| match of {
             None => "at no size tried".to_owned(),

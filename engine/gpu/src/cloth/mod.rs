@@ -19,6 +19,7 @@ mod read;
 pub mod ring;
 mod step;
 mod touch;
+pub mod work;
 
 use std::sync::Arc;
 

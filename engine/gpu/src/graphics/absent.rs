@@ -20,6 +20,15 @@ pub struct Spent {
     pub whole_ns: f64,
 }
 
+/// What a step asks of a device.
+#[derive(Debug, Clone, Copy)]
+pub struct Work {
+    /// Dispatches.
+    pub dispatches: u64,
+    /// Bytes.
+    pub bytes: u64,
+}
+
 /// Garments on a device.
 #[derive(Debug)]
 pub struct Garments(Infallible);
@@ -58,6 +67,11 @@ impl Garments {
     /// # Errors
     /// Never: there is no device.
     pub fn step(&mut self, _: &mut Batch<'_, '_>) -> Result<(), String> {
+        match self.0 {}
+    }
+
+    /// What a plain step asks of the device.
+    pub fn work(&self) -> Work {
         match self.0 {}
     }
 

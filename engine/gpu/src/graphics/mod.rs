@@ -12,6 +12,6 @@ mod absent;
 mod present;
 
 #[cfg(not(feature = "wgpu"))]
-pub use absent::{Garments, Graphics, Spent};
+pub use absent::{Garments, Graphics, Spent, Work};
 #[cfg(feature = "wgpu")]
-pub use present::{Garments, Graphics, Spent};
+pub use present::{Garments, Graphics, Spent, Work};

@@ -14,6 +14,7 @@ use crate::cloth::opened::Opened;
 use crate::device::{Choice, GpuError, Needs};
 
 pub use crate::cloth::Spent;
+pub use crate::cloth::work::Work;
 
 /// An open device with the cloth's kernels; clones are the same device.
 #[derive(Debug, Clone)]
@@ -103,6 +104,11 @@ impl Garments {
             cloth.follow(pins, root);
         }
         Ok(())
+    }
+
+    /// What a plain step asks of the device.
+    pub fn work(&self) -> Work {
+        self.offload.work()
     }
 
     /// What the device spent on the last step that was timed.

@@ -1,0 +1,102 @@
+//! Work: dispatches of a step and bytes that its kernels ask for, counted from how the garments lie. What bounds a device follows
+//! from these two and its own figures: a dispatch waits for the one before.
+
+use super::Offload;
+use super::flat::Flat;
+use super::kernels::Kernel;
+use super::program::Entry;
+use super::step::Asked;
+
+/// What a step asks of a device.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Work {
+    /// Dispatches, one after the other.
+    pub dispatches: u64,
+    /// Bytes that invocations read and write, as if there were no cache; what few of them ask for, capsules and constants, left out.
+    pub bytes: u64,
+}
+
+impl std::ops::AddAssign for Work {
+    fn add_assign(&mut self, more: Self) {
+        (self.dispatches, self.bytes) = (self.dispatches + more.dispatches, self.bytes + more.bytes);
+    }
+}
+
+impl Offload {
+    /// Of a plain step with the settings of the last one: no wind, no jump.
+    pub fn work(&self) -> Work {
+        let mut work = Work::default();
+        self.entries(Asked::default(), |entry, _, garments| {
+            let items = self.items(entry, garments);
+            if items > 0 {
+                work += Work { dispatches: 1, bytes: (items as f64 * each(&self.flat, entry.kernel)) as u64 };
+            }
+        });
+        work
+    }
+
+    /// Invocations that have something to do; of fibers that are solved by workgroups, the fibers.
+    fn items(&self, entry: &Entry, garments: usize) -> u64 {
+        let groups = &self.program.tables[entry.table].0;
+        groups.groups[..groups.of(garments) as usize].iter().map(|g| u64::from(g[2])).sum()
+    }
+}
+
+/// Bytes an item; of what is as long as its fiber or its list, the mean.
+fn each(flat: &Flat, kernel: Kernel) -> f64 {
+    let mean = |all: usize, of: usize| all as f64 / of.max(1) as f64;
+    let fibers = || flat.fibers.bundles.iter().map(|b| b[1] as usize).sum();
+    match kernel {
+        // Place, velocity, last good place.
+        Kernel::Repair | Kernel::Guard | Kernel::Publish => 64.0,
+        Kernel::Jump | Kernel::Carry => 96.0,
+        // Place, velocity, reach, what was found.
+        Kernel::Near => 44.0,
+        Kernel::Wind | Kernel::Blown => 120.0,
+        Kernel::Turn => 96.0,
+        // A term and its particle's place each; head, share, curvature.
+        Kernel::Bending | Kernel::Stage => 28.0 + 24.0 * mean(flat.bending.terms.len(), flat.bending.items.len()),
+        // An entry and its curvature each; ends of the list, place, velocity.
+        Kernel::Bent | Kernel::Staged => 56.0 + 24.0 * mean(flat.bending.entries.len(), flat.start.len()),
+        // Place, previous, velocity, pin.
+        Kernel::Predict => 84.0,
+        // A slot down: lead, measure, place, what is kept; up: the same and two places written.
+        Kernel::Diagonals => 16.0 + 160.0 * mean(flat.diagonals.leads.len(), flat.diagonals.heads.len()),
+        // Ends, measures, two places read and written.
+        Kernel::Shear | Kernel::Weft => 96.0,
+        // A row: index, place, measures, direction, factors, and back.
+        Kernel::Lists => 32.0 + 220.0 * mean(flat.lists.index.len(), flat.lists.heads.len()),
+        // A link down: place, measure, factors; up: factors, place read and written.
+        Kernel::Fibers => 32.0 + 104.0 * mean(flat.fibers.links, fibers()),
+        // A link: two places, measures, place written; the rest stays with the workgroup.
+        Kernel::Cyclic => 32.0 + 88.0 * mean(flat.fibers.links, fibers()),
+        Kernel::Tethers => 40.0,
+        // What was found, place and previous read and written.
+        Kernel::Contact => 72.0,
+        Kernel::Settle => 80.0,
+        Kernel::Conclude => 20.0,
+        _ => 64.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloth::flat::WIDTH;
+    use toile_assets::bake::bake;
+    use toile_assets::scene::skirt::{self, Stretch};
+    use toile_engine::colliders::Colliders;
+
+    #[test]
+    fn what_an_item_asks_for_grows_with_what_it_has() {
+        let bytes = |n| {
+            let shape = skirt::shape(n);
+            let garment = bake("skirt", "one", &shape, &skirt::fabric(&shape, Stretch::Physical)).expect("it bakes");
+            let nobody = Colliders::new(&[], &[], false).expect("nothing is not too much");
+            let flat = Flat::new(&[&garment], &[&nobody]);
+            (each(&flat, Kernel::Fibers), each(&flat, Kernel::Weft))
+        };
+        let ((short, link), (long, same)) = (bytes(16), bytes(32));
+        assert!(long > 1.8 * short && link == same && WIDTH == 64, "{short} {long}");
+    }
+}
