@@ -1,22 +1,31 @@
-//! The device that computes: opened once, with the smallest limits that the scene needs.
+//! The device that computes, and that may draw as well: opened once, with the smallest limits that this needs.
 
+use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
-use wgpu::{Backends, DeviceType, Instance, InstanceDescriptor, Limits};
+use wgpu::{Backends, DeviceType, Instance, InstanceDescriptor, Limits, MemoryHints, Surface};
 
 use crate::native::describe;
 use crate::wait::block_on;
 
-/// Why the cloth cannot be computed on a GPU. Whoever gets one goes on with the CPU.
+/// Why a GPU cannot compute the cloth, or draw it. Whoever gets one for the cloth goes on with the CPU.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum GpuError {
-    /// No driver answers, or none of the asked kind.
+    /// No driver answers, or none of the asked kind, or none that can show on the given surface.
     #[error(
-        "no graphics adapter was found{0}; install a Vulkan driver, for example the package mesa-vulkan-drivers, which \
-         computes on the processor, or use the CPU"
+        "no graphics adapter was found {0}; install a Vulkan driver, for example the package mesa-vulkan-drivers, which \
+         works on the processor, or do without a GPU"
     )]
-    NoAdapter(String),
+    NoAdapter(&'static str),
+    /// There are adapters, but none of the asked name.
+    #[error("no graphics adapter's name contains `{asked}`; there are {known}: choose one of these")]
+    Unknown {
+        /// The name asked for.
+        asked: String,
+        /// The names there are.
+        known: String,
+    },
     /// The adapter's limits are below what the scene needs.
     #[error(
         "{adapter} allows {limit} of {has}, and this scene needs {needs}; use fewer or coarser garments, or the CPU"
@@ -32,7 +41,9 @@ pub enum GpuError {
         needs: u64,
     },
     /// The adapter does not open.
-    #[error("the graphics adapter {adapter} cannot be opened ({reason}); update its driver or use the CPU")]
+    #[error(
+        "the graphics adapter {adapter} cannot be opened ({reason}); update its driver, choose another, or do without a GPU"
+    )]
     Refused {
         /// The adapter.
         adapter: String,
@@ -58,7 +69,9 @@ pub enum Choice {
     /// The fastest kind: a card of its own, a processor's graphics, a virtual one, a driver on the processor.
     #[default]
     Fastest,
-    /// One that computes on the processor: the same on every machine.
+    /// The first whose name contains this, whatever its case.
+    Named(String),
+    /// One that works on the processor: the same numbers and pictures on every machine.
     Software,
 }
 
@@ -86,12 +99,24 @@ impl Needs {
             ..least
         }
     }
+
+    /// The same for a device that draws as well, pictures as large as the adapter has them. Where no scene is known yet,
+    /// the cloth's storage buffers are asked for only if the adapter has so many: pictures alone need none.
+    fn limits_to_draw(self, has: &Limits) -> Limits {
+        let limits = self.limits().using_resolution(has.clone());
+        let most = if self == Self::default() { has.max_storage_buffers_per_shader_stage } else { u32::MAX };
+        Limits { max_storage_buffers_per_shader_stage: STORAGE_BUFFERS.min(most), ..limits }
+    }
 }
 
-/// An open device, and the queue that it is fed by.
-#[derive(Debug)]
+/// An open device, and the queue that it is fed by. Clones are the same device: whatever one of them meets, all know.
+#[derive(Debug, Clone)]
 pub struct Device {
-    /// What makes buffers and pipelines.
+    /// Where surfaces are made.
+    pub instance: Instance,
+    /// What it was opened on.
+    pub opened_on: wgpu::Adapter,
+    /// What makes buffers, textures and pipelines.
     pub device: wgpu::Device,
     /// What takes commands.
     pub queue: wgpu::Queue,
@@ -101,37 +126,97 @@ pub struct Device {
 }
 
 impl Device {
-    /// Opens the chosen adapter.
+    /// An instance without a window system of its own: it sees every driver of this machine.
+    pub fn instance() -> Instance {
+        Instance::new(InstanceDescriptor::new_without_display_handle())
+    }
+
+    /// Opens the chosen adapter, to compute.
     ///
     /// # Errors
-    /// [`GpuError`]: none there, limits below the needs, or one that does not open.
+    /// [`GpuError`]: none there, none of that name, limits below the needs, or one that does not open.
     pub fn open(choice: &Choice, needs: Needs) -> Result<Self, GpuError> {
-        let instance = Instance::new(InstanceDescriptor::new_without_display_handle());
-        let adapter = choose(&instance, choice)?;
-        let described = describe(&adapter.get_info());
-        let limits = needs.limits();
-        enough(&limits, &adapter.limits(), &described.name)?;
-        let request = adapter.request_device(&wgpu::DeviceDescriptor {
-            label: Some("cloth"),
+        let instance = Self::instance();
+        let adapter = choose(&instance, None, choice)?;
+        Self::on(instance, adapter, needs.limits(), MemoryHints::Performance)
+    }
+
+    /// Opens the chosen adapter, for pictures off the screen.
+    ///
+    /// # Errors
+    /// As [`Device::open_to_draw`].
+    pub fn offscreen(choice: &Choice) -> Result<Self, GpuError> {
+        Self::open_to_draw(Self::instance(), None, choice, Needs::default())
+    }
+
+    /// Opens the chosen adapter of an instance, one that can show on `surface` where one is given, to draw and to compute
+    /// a scene that needs so much. With the least needs any driver will do that draws; most scenes fit it too.
+    ///
+    /// # Errors
+    /// As [`Device::open`].
+    pub fn open_to_draw(
+        instance: Instance,
+        surface: Option<&Surface<'_>>,
+        choice: &Choice,
+        needs: Needs,
+    ) -> Result<Self, GpuError> {
+        let adapter = choose(&instance, surface, choice)?;
+        let limits = needs.limits_to_draw(&adapter.limits());
+        Self::on(instance, adapter, limits, MemoryHints::MemoryUsage)
+    }
+
+    fn on(
+        instance: Instance,
+        opened_on: wgpu::Adapter,
+        limits: Limits,
+        memory_hints: MemoryHints,
+    ) -> Result<Self, GpuError> {
+        let adapter = describe(&opened_on.get_info());
+        enough(&limits, &opened_on.limits(), &adapter.name)?;
+        let request = opened_on.request_device(&wgpu::DeviceDescriptor {
+            label: Some("toile"),
             // A clock for the stages, where there is one; nothing depends on it.
-            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_features: opened_on.features() & wgpu::Features::TIMESTAMP_QUERY,
             required_limits: limits,
-            memory_hints: wgpu::MemoryHints::Performance,
+            memory_hints,
             ..Default::default()
         });
         let refused = |e: wgpu::RequestDeviceError| GpuError::Refused {
-            adapter: described.name.clone(),
+            adapter: adapter.name.clone(),
             reason: one_line(&e.to_string()),
         };
         let (device, queue) = block_on(request).map_err(refused)?;
         let (lost, fault) = (Arc::new(AtomicBool::new(false)), Arc::new(OnceLock::new()));
         watch(&device, &lost, &fault);
-        Ok(Self { device, queue, adapter: described, lost, fault })
+        Ok(Self { instance, opened_on, device, queue, adapter, lost, fault })
     }
 
     /// What the adapter says of itself.
     pub fn adapter(&self) -> &crate::Adapter {
         &self.adapter
+    }
+
+    /// Whether both are the same device, opened once: only then can one draw what the other has computed.
+    pub fn is(&self, other: &Self) -> bool {
+        // Numbers that wgpu gives its devices repeat from instance to instance.
+        Arc::ptr_eq(&self.lost, &other.lost)
+    }
+
+    /// True where the processor does its work.
+    pub fn is_software(&self) -> bool {
+        self.opened_on.get_info().device_type == DeviceType::Cpu
+    }
+
+    /// True once the device is gone: unplugged, reset by its driver, given up, or out of memory. Everything made by it has
+    /// to be made anew by another.
+    pub fn lost(&self) -> bool {
+        // Relaxed: the flag guards no other data; whoever draws or steps asks for it the next time.
+        self.lost.load(Ordering::Relaxed)
+    }
+
+    /// The first thing that went wrong, if any: what was asked for then was not drawn or computed.
+    pub fn fault(&self) -> Option<&str> {
+        self.fault.get().map(String::as_str)
     }
 
     /// Whether what a scene asks for is within the limits that the device was opened with.
@@ -147,8 +232,7 @@ impl Device {
     /// # Errors
     /// [`GpuError::Lost`], with what the driver said first.
     pub fn sound(&self) -> Result<(), GpuError> {
-        // Relaxed: the flag guards no other data.
-        if !self.lost.load(Ordering::Relaxed) && self.fault.get().is_none() {
+        if !self.lost() && self.fault().is_none() {
             return Ok(());
         }
         Err(GpuError::Lost(self.fault.get().cloned().unwrap_or_else(|| "no reason was given".into())))
@@ -161,10 +245,17 @@ impl Device {
         self.lost.store(true, Ordering::Relaxed);
     }
 
-    /// Waits until everything that was submitted is done. Never in the frame.
+    /// Waits until everything that was submitted is done, so that time is measured whole. Never in the frame.
     pub fn finish(&self) {
         // A device that is lost has nothing left to wait for.
         let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
+    }
+}
+
+impl fmt::Display for Device {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let crate::Adapter { name, backend, kind, .. } = &self.adapter;
+        write!(f, "{name} ({backend}, {kind})")
     }
 }
 
@@ -176,8 +267,13 @@ fn watch(device: &wgpu::Device, lost: &Arc<AtomicBool>, fault: &Arc<OnceLock<Str
         // Relaxed: the flag guards no other data.
         flag.store(true, Ordering::Relaxed);
     });
-    let first = Arc::clone(fault);
+    let (flag, first) = (Arc::clone(lost), Arc::clone(fault));
     device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        if matches!(error, wgpu::Error::OutOfMemory { .. }) {
+            // Relaxed: see above.
+            flag.store(true, Ordering::Relaxed);
+        }
+        // Only the first tells the cause; what follows from it is not kept.
         let _ = first.set(one_line(&error.to_string()));
     }));
 }
@@ -186,18 +282,35 @@ fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-fn choose(instance: &Instance, choice: &Choice) -> Result<wgpu::Adapter, GpuError> {
-    let rank = |kind: DeviceType| match kind {
+/// Kinds of adapters, the fastest first.
+fn rank(kind: DeviceType) -> u8 {
+    match kind {
         DeviceType::DiscreteGpu => 0,
         DeviceType::IntegratedGpu => 1,
         DeviceType::VirtualGpu => 2,
         DeviceType::Other => 3,
         DeviceType::Cpu => 4,
-    };
+    }
+}
+
+fn choose(instance: &Instance, surface: Option<&Surface<'_>>, choice: &Choice) -> Result<wgpu::Adapter, GpuError> {
     let mut found = block_on(instance.enumerate_adapters(Backends::PRIMARY));
-    found.retain(|a| *choice == Choice::Fastest || a.get_info().device_type == DeviceType::Cpu);
-    let kind = if *choice == Choice::Software { " that computes on the processor" } else { "" };
-    found.into_iter().min_by_key(|a| rank(a.get_info().device_type)).ok_or_else(|| GpuError::NoAdapter(kind.into()))
+    found.sort_by_key(|a| rank(a.get_info().device_type));
+    found.retain(|a| surface.is_none_or(|s| a.is_surface_supported(s)));
+    let known: Vec<String> = found.iter().map(|a| a.get_info().name).collect();
+    let matches = |a: &wgpu::Adapter| match choice {
+        Choice::Fastest => true,
+        Choice::Named(name) => a.get_info().name.to_lowercase().contains(&name.to_lowercase()),
+        Choice::Software => a.get_info().device_type == DeviceType::Cpu,
+    };
+    found.into_iter().find(matches).ok_or_else(|| match choice {
+        Choice::Named(asked) if !known.is_empty() => {
+            GpuError::Unknown { asked: asked.clone(), known: known.join(", ") }
+        }
+        Choice::Software => GpuError::NoAdapter("that works on the processor"),
+        _ if surface.is_some() => GpuError::NoAdapter("that can show on this display"),
+        _ => GpuError::NoAdapter("on this machine"),
+    })
 }
 
 fn enough(needs: &Limits, has: &Limits, adapter: &str) -> Result<(), GpuError> {
@@ -221,6 +334,44 @@ mod tests {
         let least = Limits { max_storage_buffers_per_shader_stage: STORAGE_BUFFERS, ..Limits::downlevel_defaults() };
         assert_eq!(limits, least);
         assert_eq!(enough(&limits, &Limits::default(), "any"), Ok(()));
+    }
+
+    #[test]
+    fn a_device_that_draws_asks_for_the_adapters_pictures_and_for_no_more() {
+        let few = Limits { max_texture_dimension_2d: 9000, ..Limits::downlevel_defaults() };
+        let (least, scene) = (Needs::default(), Needs { largest: 1, workgroups: 1 });
+        assert_eq!(least.limits_to_draw(&few), few.clone(), "what draws needs no storage buffers");
+        assert_eq!(scene.limits_to_draw(&few).max_storage_buffers_per_shader_stage, STORAGE_BUFFERS);
+        let many = Limits { max_texture_dimension_2d: 9000, ..Limits::default() };
+        assert_eq!(least.limits_to_draw(&many), scene.limits_to_draw(&many), "the cloth's where they are there");
+    }
+
+    #[test]
+    fn hardware_comes_before_software() {
+        let kinds = [
+            DeviceType::DiscreteGpu,
+            DeviceType::IntegratedGpu,
+            DeviceType::VirtualGpu,
+            DeviceType::Other,
+            DeviceType::Cpu,
+        ];
+        assert!(kinds.map(rank).is_sorted_by(|a, b| a < b));
+    }
+
+    #[test]
+    fn every_refusal_names_a_cure() {
+        let (some, garment) = (String::from("x"), String::from("shirt"));
+        let errors = [
+            GpuError::NoAdapter("on this machine"),
+            GpuError::Unknown { asked: some.clone(), known: some.clone() },
+            GpuError::TooSmall { adapter: some.clone(), limit: "max_buffer_size", has: 1, needs: 2 },
+            GpuError::Refused { adapter: some.clone(), reason: some.clone() },
+            GpuError::Unsupported { garment, what: "there is wind" },
+            GpuError::Lost(some),
+        ];
+        for (error, cure) in errors.iter().zip(["install", "choose", "fewer", "update", "use the CPU", "on the CPU"]) {
+            assert!(error.to_string().contains(cure), "{error}");
+        }
     }
 
     #[test]

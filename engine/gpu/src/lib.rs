@@ -28,6 +28,7 @@ pub fn adapters() -> Vec<Adapter> {
     Vec::new()
 }
 
+pub mod batch;
 #[cfg(feature = "wgpu")]
 pub mod cloth;
 #[cfg(feature = "wgpu")]
@@ -41,6 +42,8 @@ mod native;
 mod shader;
 #[cfg(feature = "wgpu")]
 pub mod skin;
+#[cfg(feature = "wgpu")]
+pub mod source;
 pub mod stepper;
 #[cfg(feature = "wgpu")]
 pub mod wait;

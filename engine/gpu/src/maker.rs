@@ -1,21 +1,24 @@
 //! Maker: how buffers are made at load, and how a kernel is bound to them.
 
 use bytemuck::Pod;
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
-use wgpu::{BindGroupLayoutEntry, BindingType, Buffer, BufferBindingType, BufferUsages, ShaderStages};
+use wgpu::{
+    BindGroupLayoutEntry, BindingType, Buffer, BufferBindingType, BufferDescriptor, BufferUsages, ShaderStages,
+};
+
+use crate::device::Device;
 
 /// Bytes between two of the uniforms that a dispatch picks from: what every driver aligns to.
 pub const ALIGNED: u64 = 256;
 
 /// Makes buffers, and counts their bytes.
 pub struct Maker<'a> {
-    device: &'a wgpu::Device,
+    device: &'a Device,
     bytes: u64,
 }
 
 impl<'a> Maker<'a> {
     /// On a device, with nothing made yet.
-    pub fn new(device: &'a wgpu::Device) -> Self {
+    pub fn new(device: &'a Device) -> Self {
         Self { device, bytes: 0 }
     }
 
@@ -29,9 +32,7 @@ impl<'a> Maker<'a> {
         const NOTHING: [u8; 64] = [0; 64];
         let bytes: &[u8] = bytemuck::cast_slice(numbers);
         let contents = if bytes.is_empty() { &NOTHING[..] } else { bytes };
-        self.bytes += contents.len() as u64;
-        let usage = BufferUsages::STORAGE | more;
-        self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
+        self.filled(label, contents, BufferUsages::STORAGE | more)
     }
 
     /// A storage buffer of so many zeros of `size` bytes.
@@ -39,7 +40,7 @@ impl<'a> Maker<'a> {
         let len = (count.max(1) * size) as u64;
         self.bytes += len;
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
-        self.device.create_buffer(&wgpu::BufferDescriptor {
+        self.device.device.create_buffer(&BufferDescriptor {
             label: Some(label),
             size: len,
             usage,
@@ -55,9 +56,19 @@ impl<'a> Maker<'a> {
             bytes.resize(bytes.len().next_multiple_of(ALIGNED as usize), 0);
         }
         bytes.resize(bytes.len().max(ALIGNED as usize), 0);
-        self.bytes += bytes.len() as u64;
-        let usage = BufferUsages::UNIFORM;
-        self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents: &bytes, usage })
+        self.filled(label, &bytes, BufferUsages::UNIFORM)
+    }
+
+    /// A buffer with these bytes. Written by way of the queue: to map it at once, as wgpu's own helper does, panics on a device
+    /// that is lost or out of memory, where this is a fault that [`Device::sound`] tells.
+    fn filled(&mut self, label: &str, contents: &[u8], usage: BufferUsages) -> Buffer {
+        let size = contents.len() as u64;
+        self.bytes += size;
+        let usage = usage | BufferUsages::COPY_DST;
+        let descriptor = BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
+        let buffer = self.device.device.create_buffer(&descriptor);
+        self.device.queue.write_buffer(&buffer, 0, contents);
+        buffer
     }
 }
 

@@ -1,5 +1,5 @@
 //! Stepper: garments stepped by the processor or by a graphics device, whichever was asked for or measures faster; what is
-//! read is a [`Cloth`] either way.
+//! read is a [`Cloth`](toile_engine::cloth::Cloth) either way.
 //!
 //! A step is over when the call returns, on both: how benchmarks and validation need it. A frame loop that can take results a
 //! frame late drives `cloth::Offload` itself. Whatever goes wrong with the device, the processor goes on from the last places, and
@@ -10,11 +10,10 @@ use std::str::FromStr;
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
-use toile_assets::garment::Garment;
-use toile_engine::cloth::{Cloth, Step};
 use toile_engine::crew::{Crew, Panicked};
 
 use crate::Adapter;
+use crate::batch::Batch;
 use crate::graphics::{Garments, Graphics, Spent};
 
 /// What steps garments.
@@ -117,17 +116,6 @@ impl From<Graphics> for Means {
     fn from(graphics: Graphics) -> Self {
         Self { backend: Backend::Gpu, graphics: Ok(graphics), fallen: Arc::default() }
     }
-}
-
-/// Some garments, each with what the coming step does around it.
-#[derive(Debug)]
-pub struct Batch<'a, 'b> {
-    /// Their states.
-    pub cloths: &'a mut [Cloth],
-    /// What they are made of `[cloths]`.
-    pub garments: &'a [&'b Garment],
-    /// Their surroundings `[cloths]`; the settings are those of the first.
-    pub steps: &'a [Step<'b>],
 }
 
 /// What both took for one step of the garments at hand (us), the medians of some steps.

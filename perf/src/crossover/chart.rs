@@ -8,9 +8,12 @@ use crate::plot::{BLACK, Drawing, INKS};
 /// What 120 Hz leaves a step (us).
 const STEP_US: f64 = 1e6 / 120.0;
 
+/// A time of a row (us).
+type Us = fn(&Row) -> Option<f64>;
+
 /// Time a step over vertices in all, of one skirt and of several.
 pub fn chart(study: &Study) -> Drawing {
-    let sides: [(&str, fn(&Row) -> Option<f64>); 4] = [
+    let sides: [(&str, Us); 4] = [
         ("one thread", |row| Some(row.one.step_us)),
         ("two threads", |row| Some(row.two.step_us)),
         ("device, result there", |row| row.device.map(|side| side.step_us)),

@@ -205,7 +205,7 @@ impl Study {
         }
         let said = |of: Option<f64>, what: &str| match of {
             None => "at no size tried".to_owned(),
-            Some(x) if x == 0.0 => "at every size tried".to_owned(),
+            Some(0.0) => "at every size tried".to_owned(),
             Some(x) => format!("from {x:.0} {what} on"),
         };
         for (k, threads) in ["one thread", "two threads"].into_iter().enumerate() {

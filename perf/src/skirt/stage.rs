@@ -11,7 +11,8 @@ use toile_engine::cloth::program::STAGES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_engine::crew::Crew;
-use toile_gpu::stepper::{Backend, Batch, Means, Stepper};
+use toile_gpu::batch::Batch;
+use toile_gpu::stepper::{Backend, Means, Stepper};
 
 use super::heap::{Heap, HeapProbe};
 use super::options::{MAX_GARMENTS, MESH_SEED, Mesh, Options};

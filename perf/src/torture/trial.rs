@@ -6,7 +6,8 @@ use toile_assets::skeleton::BONES;
 use toile_engine::cloth::guard::Events;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
-use toile_gpu::stepper::{Batch, Stepper};
+use toile_gpu::batch::Batch;
+use toile_gpu::stepper::Stepper;
 
 use super::Site;
 use super::piece::{self, Piece};

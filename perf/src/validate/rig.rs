@@ -10,7 +10,8 @@ use toile_assets::garment::{Garment, MeshError, Shape};
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere};
-use toile_gpu::stepper::{Batch, Stepper};
+use toile_gpu::batch::Batch;
+use toile_gpu::stepper::Stepper;
 
 use super::case::Outcome;
 use super::mesh;

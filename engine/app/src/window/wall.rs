@@ -9,7 +9,7 @@ use thread_priority::ThreadPriority;
 use thread_priority::{NormalThreadSchedulePolicy, ThreadPriorityValue, ThreadSchedulePolicy};
 use toile_engine::frame::Snapshot;
 use toile_view::image::Size;
-use toile_view::mirror::{Choice, Gpu, Pace, Presenter, Shown};
+use toile_view::mirror::{Choice, Gpu, Needs, Pace, Presenter, Shown};
 use winit::window::Window;
 
 use super::canvas::Canvas;
@@ -142,7 +142,8 @@ fn open(window: &Arc<Window>) -> Result<(Gpu, wgpu::Surface<'static>), String> {
     let surface = instance
         .create_surface(window.clone())
         .map_err(|e| format!("the window gives no surface to draw on ({e}); install a Vulkan driver"))?;
-    let gpu = Gpu::open(instance, Some(&surface), &Choice::Fastest).map_err(|e| e.to_string())?;
+    let gpu =
+        Gpu::open_to_draw(instance, Some(&surface), &Choice::Fastest, Needs::default()).map_err(|e| e.to_string())?;
     Ok((gpu, surface))
 }
 

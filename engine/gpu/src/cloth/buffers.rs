@@ -44,6 +44,8 @@ pub struct Buffers {
     pub reports: Buffer,
     /// Last good places `[particles]`.
     pub good: Buffer,
+    /// Unit normals `[particles]`, where somebody draws.
+    pub normals: Buffer,
     /// Capsules, a set for the step and one for each substep of each garment.
     pub cones: Buffer,
     /// Their ends `[garments * MAX_CAPSULES]`.
@@ -71,6 +73,8 @@ pub fn needs(flat: &Flat, program: &Program, sets: usize) -> Needs {
         16 * flat.bending.items.len(),
         size_of_val(&*flat.wind.faces),
         16 * program.groups().len(),
+        size_of_val(&*flat.faces.meeting),
+        16 * flat.faces.corners.len(),
         flat.spans.len() * sets * MAX_CAPSULES * size_of::<FlatCone>(),
     ];
     let workgroups = program.tables.iter().map(|(groups, _)| groups.groups.len() as u32).max().unwrap_or(0);
@@ -86,7 +90,7 @@ impl Buffers {
     /// All of a scene, on an open device. `sets` of capsules there are for each garment, one more than substeps.
     pub fn new(opened: &Opened, flat: &Flat, program: &Program, constants: &[Constants], sets: usize) -> Self {
         let (device, pipelines) = (&opened.device.device, &opened.pipelines);
-        let mut make = Maker::new(device);
+        let mut make = Maker::new(&opened.device);
         let none = BufferUsages::empty();
         let (to, from) = (BufferUsages::COPY_DST, BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
         let still = vec![[0.0f32; 4]; flat.start.len()];
@@ -112,7 +116,14 @@ impl Buffers {
         let corners = make.with("where faces begin", &flat.wind.starts, none);
         let around = make.with("faces around", &flat.wind.around, none);
         let reports = make.zeros("reports", constants.len(), 4 * REPORT);
-        let good = make.with("good", &flat.start, from);
+        // What is drawn, too.
+        let shown = from | BufferUsages::VERTEX;
+        let good = make.with("good", &flat.start, shown);
+        let normals = make.with("normals", &flat.faces.normals, shown);
+        let triangles = make.with("triangles", &flat.faces.corners, none);
+        let areas = make.zeros("areas", flat.faces.corners.len(), 16);
+        let meet = make.with("where triangles meet", &flat.faces.starts, none);
+        let meeting = make.with("meeting", &flat.faces.meeting, none);
         let start = make.with("start", &flat.start, none);
         let pins = make.with("pins", &flat.pins, none);
         let tethers = make.with("tethers", &flat.tethers, none);
@@ -168,12 +179,15 @@ impl Buffers {
             &[&weft_ends, &weft_measures, &weft_tensions],
             &[&lists, &index, &hoops, &hooped],
             &[&bundles, &rows, &measures, &factors, &sides],
+            &[&bundles, &rows, &measures, &factors, &sides],
             &[&tethers],
             touch,
             &[&reports],
             &[&reports],
             &[&reports, &good, &start],
             &[&reports, &good, &start],
+            &[&triangles, &good, &areas],
+            &[&meet, &meeting, &areas, &normals],
         ];
         let bytes = make.bytes();
         let scene = pipelines.scene(device, [&ops, &garments, &groups, &state, &moments]);
@@ -189,6 +203,7 @@ impl Buffers {
             pushed,
             reports,
             good,
+            normals,
             cones,
             ends,
             planes,

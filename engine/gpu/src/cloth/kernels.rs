@@ -41,6 +41,8 @@ pub enum Kernel {
     Lists,
     /// Warp fibers.
     Fibers,
+    /// Those that are few and long.
+    Cyclic,
     /// Tethers.
     Tethers,
     /// Whatever touches is pushed out.
@@ -53,6 +55,10 @@ pub enum Kernel {
     Publish,
     /// What the report says of the next step.
     Conclude,
+    /// Where somebody draws, the triangles' normals.
+    Faces,
+    /// And the particles', of one unit.
+    Normals,
 }
 
 const COMMON: &str = include_str!("../shaders/common.wgsl");
@@ -68,7 +74,7 @@ macro_rules! shader {
 }
 
 /// All shaders.
-pub const SHADERS: [Shader; 17] = [
+pub const SHADERS: [Shader; 19] = [
     shader!("repair", [false, true]),
     shader!("jump", [false, true]),
     shader!("wind", [true, false, true, true, false]),
@@ -86,11 +92,13 @@ pub const SHADERS: [Shader; 17] = [
     shader!("settle", [false]),
     shader!("guard", [false]),
     shader!("publish", [false, false, true]),
+    shader!("faces", [true, true, false]),
+    shader!("normals", [true, true, true, false]),
 ];
 
 impl Kernel {
     /// All kernels.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 26] = [
         Self::Repair,
         Self::Jump,
         Self::Near,
@@ -108,12 +116,15 @@ impl Kernel {
         Self::Weft,
         Self::Lists,
         Self::Fibers,
+        Self::Cyclic,
         Self::Tethers,
         Self::Contact,
         Self::Settle,
         Self::Guard,
         Self::Publish,
         Self::Conclude,
+        Self::Faces,
+        Self::Normals,
     ];
 
     /// Whether it runs stage by stage in a substep.
@@ -132,9 +143,11 @@ impl Kernel {
             Self::Repair | Self::Jump | Self::Carry | Self::Predict => 0,
             Self::Guard | Self::Publish | Self::Conclude => 0,
             Self::Turn | Self::Stage | Self::Staged | Self::Bending | Self::Bent => 1,
+            // What is drawn goes with what is published.
+            Self::Faces | Self::Normals => 0,
             Self::Diagonals | Self::Shear => 2,
             Self::Weft => 3,
-            Self::Lists | Self::Fibers => 4,
+            Self::Lists | Self::Fibers | Self::Cyclic => 4,
             Self::Near | Self::Contact | Self::Settle => 5,
             Self::Wind | Self::Blown => 6,
             Self::Tethers => 7,
@@ -155,12 +168,14 @@ impl Kernel {
             Self::Diagonals => "diagonals",
             Self::Shear | Self::Weft => "links",
             Self::Lists => "lists",
-            Self::Fibers => "fibers",
+            Self::Fibers | Self::Cyclic => "fibers",
             Self::Tethers => "tethers",
             Self::Near | Self::Contact => "contact",
             Self::Settle => "settle",
             Self::Guard => "guard",
             Self::Publish | Self::Conclude => "publish",
+            Self::Faces => "faces",
+            Self::Normals => "normals",
         };
         let shader = SHADERS.iter().position(|s| s.name == name).unwrap_or(0);
         let entry = match self {
@@ -168,6 +183,7 @@ impl Kernel {
             Self::Blown => "blown",
             Self::Stage => "stage",
             Self::Staged => "staged",
+            Self::Cyclic => "cyclic",
             Self::Conclude => "conclude",
             _ => name,
         };

@@ -1,6 +1,6 @@
 //! The cloth on a GPU: all garments of a scene in one set of buffers, a dispatch a phase.
 //!
-//! Reads: baked garments, bone palettes, settings. Writes: positions, one step late.
+//! Reads: baked garments, bone palettes, settings. Writes: positions, one step late; for who draws on the same device, now.
 //! Budget: buffers and pipelines at load; in the frame no buffer, no pipeline and no wait, some 40 dispatches a substep.
 //! Thread: the one that calls [`Offload::step`]; not the physics thread of a garment that is on the CPU.
 //!
@@ -9,6 +9,7 @@
 
 mod buffers;
 pub mod constants;
+mod drawn;
 pub mod flat;
 pub mod kernels;
 mod meter;
@@ -102,7 +103,7 @@ impl Offload {
         colliders: &[&Colliders],
         settings: &Settings,
     ) -> Result<Self, GpuError> {
-        let laid = Laid::new(garments, colliders, settings)?;
+        let laid = Laid::new(garments, colliders, settings, false);
         let opened = Opened::new(choice, laid.needs())?;
         Self::lay(Arc::new(opened), laid, garments, settings)
     }
@@ -110,14 +111,45 @@ impl Offload {
     /// The same on a device that is open already. At load: some milliseconds a garment.
     ///
     /// # Errors
-    /// [`GpuError`]: limits too small, or a garment or a setting that only the CPU can take.
+    /// [`GpuError`]: limits too small.
     pub fn on(
         opened: &Arc<Opened>,
         garments: &[&Garment],
         colliders: &[&Colliders],
         settings: &Settings,
     ) -> Result<Self, GpuError> {
-        let laid = Laid::new(garments, colliders, settings)?;
+        Self::on_either(opened, garments, colliders, settings, false)
+    }
+
+    /// The same on a device that draws the garments too: then normals are kept beside the places, and [`Offload::source`]
+    /// tells where both lie.
+    ///
+    /// # Errors
+    /// As [`Offload::on`]; limits too small where the device was opened for less than [`Offload::needs`].
+    pub fn drawn(
+        opened: &Arc<Opened>,
+        garments: &[&Garment],
+        colliders: &[&Colliders],
+        settings: &Settings,
+    ) -> Result<Self, GpuError> {
+        Self::on_either(opened, garments, colliders, settings, true)
+    }
+
+    /// What a device has to be opened with to step these garments and to draw them. At load: some milliseconds a garment.
+    pub fn needs(garments: &[&Garment], colliders: &[&Colliders], settings: &Settings) -> Needs {
+        Laid::new(garments, colliders, settings, true).needs()
+    }
+
+    fn on_either(
+        opened: &Arc<Opened>,
+        garments: &[&Garment],
+        colliders: &[&Colliders],
+        settings: &Settings,
+        drawn: bool,
+    ) -> Result<Self, GpuError> {
+        // On a device that is lost no buffer can be made.
+        opened.device.sound()?;
+        let laid = Laid::new(garments, colliders, settings, drawn);
         opened.device.takes(laid.needs())?;
         Self::lay(Arc::clone(opened), laid, garments, settings)
     }
@@ -252,16 +284,20 @@ struct Laid {
 }
 
 impl Laid {
-    fn new(garments: &[&Garment], colliders: &[&Colliders], settings: &Settings) -> Result<Self, GpuError> {
+    /// Lays garments out; where they are `drawn`, what normals are made of as well.
+    fn new(garments: &[&Garment], colliders: &[&Colliders], settings: &Settings, drawn: bool) -> Self {
         let settings = &settings.sound();
         let mut prepared: Vec<Prepared> = garments.iter().map(|g| Prepared::new(g)).collect();
         for (garment, prepared) in garments.iter().zip(&mut prepared) {
             prepared.make(garment, settings);
         }
-        let flat = Flat::new(garments, colliders);
+        let mut flat = Flat::new(garments, colliders);
+        if drawn {
+            flat.draw(garments);
+        }
         let program = Program::new(&flat, prepared.iter().any(Prepared::stiff));
         let sets = 1 + most_substeps(garments, &prepared);
-        Ok(Self { flat, program, prepared, sets })
+        Self { flat, program, prepared, sets }
     }
 
     fn needs(&self) -> Needs {

@@ -32,8 +32,11 @@ impl Opened {
     /// On a device that is open already.
     ///
     /// # Errors
+    /// [`GpuError::TooSmall`] where it was opened for pictures alone, on an adapter that has no room for more;
     /// [`GpuError::Lost`] where the driver refuses a kernel.
     pub fn on(device: Device) -> Result<Self, GpuError> {
+        // Before anything is asked of it: a refusal would count as a fault for whoever draws there.
+        device.takes(Needs::default())?;
         let pipelines = Pipelines::new(&device.device);
         device.sound()?;
         Ok(Self { device, pipelines })

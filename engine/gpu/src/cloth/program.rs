@@ -45,6 +45,7 @@ struct Tables {
     weft: Vec<usize>,
     lists: Vec<usize>,
     fibers: usize,
+    cyclic: usize,
 }
 
 impl Program {
@@ -60,6 +61,7 @@ impl Program {
             weft: flat.weft.halves.iter().map(|g| this.table(g)).collect(),
             lists: flat.lists.sets.iter().map(|g| this.table(g)).collect(),
             fibers: this.table(&flat.fibers.groups),
+            cyclic: this.table(&flat.fibers.cyclic),
         };
         let all = |kernel| Entry { kernel, table: tables.everyone, fresh: false, op: 0 };
         let first = [Kernel::Repair, Kernel::Jump, Kernel::Near];
@@ -72,6 +74,10 @@ impl Program {
         this.draft = this.substep(&tables, false);
         this.whole = this.substep(&tables, true);
         this.after = vec![all(Kernel::Guard), all(Kernel::Publish), all(Kernel::Conclude)];
+        if !flat.faces.starts.is_empty() {
+            let faces = Entry { table: this.table(&flat.faces.groups), ..all(Kernel::Faces) };
+            this.after.extend([faces, all(Kernel::Normals)]);
+        }
         this.number();
         this
     }
@@ -112,7 +118,8 @@ impl Program {
         let entry = |kernel, table, fresh| Entry { kernel, table, fresh, op: 0 };
         let wefts = |fresh: bool| tables.weft.iter().map(move |&t| entry(Kernel::Weft, t, fresh));
         let lists = |fresh: bool| tables.lists.iter().map(move |&t| entry(Kernel::Lists, t, fresh));
-        let fibers = |fresh: bool| lists(fresh).chain([entry(Kernel::Fibers, tables.fibers, fresh)]);
+        let warps = [(Kernel::Fibers, tables.fibers), (Kernel::Cyclic, tables.cyclic)];
+        let fibers = |fresh: bool| lists(fresh).chain(warps.map(|(kernel, table)| entry(kernel, table, fresh)));
         let mut entries = vec![
             entry(Kernel::Bending, tables.bending, false),
             entry(Kernel::Bent, tables.everyone, false),

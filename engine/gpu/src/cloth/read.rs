@@ -65,27 +65,32 @@ impl Offload {
     /// Puts a garment's particles somewhere, with velocities (m, m/s): how tests and scenes disturb a garment. What is finite is
     /// the last good place as well.
     pub fn disturb(&mut self, garment: usize, x: &[Vec3A], v: &[Vec3A]) {
+        self.put(garment, x, v, x);
+    }
+
+    /// The same with the last good places (m): of those that are not finite the device keeps its own.
+    pub fn put(&mut self, garment: usize, x: &[Vec3A], v: &[Vec3A], good: &[Vec3A]) {
         let own = &mut self.own[garment];
         let span = self.flat.spans[own.place];
         let start = &self.flat.start[span.first as usize..(span.first + span.len) as usize];
-        for (good, x) in own.positions.iter_mut().zip(x).filter(|(_, x)| x.is_finite()) {
-            *good = *x;
-        }
         let places: Vec<[f32; 4]> = x.iter().zip(start).map(|(p, s)| [p.x, p.y, p.z, s[3]]).collect();
         let speeds: Vec<[f32; 4]> = v.iter().zip(start).map(|(v, _)| [v.x, v.y, v.z, 0.0]).collect();
-        let (state, all) = (&self.buffers.state, self.flat.particles);
+        let good: Vec<[f32; 4]> = good.iter().zip(start).map(|(p, _)| [p.x, p.y, p.z, 1.0]).collect();
+        let (buffers, queue) = (&self.buffers, &self.opened.device.queue);
         for (part, numbers) in (0..).zip([&places, &places, &speeds]) {
-            let at = 16 * u64::from(part * all + span.first);
-            self.opened.device.queue.write_buffer(state, at, bytemuck::cast_slice(numbers));
+            let at = 16 * u64::from(part * self.flat.particles + span.first);
+            queue.write_buffer(&buffers.state, at, bytemuck::cast_slice(numbers));
         }
-        // What is finite is a good place.
         let finite = |p: &[f32; 4]| p.iter().all(|n| n.is_finite());
-        let mut first = u64::from(span.first);
-        for some in places[..places.len().min(span.len as usize)].chunk_by(|a, b| finite(a) == finite(b)) {
+        let mut first = 0;
+        for some in good.chunk_by(|a, b| finite(a) == finite(b)) {
             if some.iter().all(finite) {
-                self.opened.device.queue.write_buffer(&self.buffers.good, 16 * first, bytemuck::cast_slice(some));
+                let at = 16 * (u64::from(span.first) + first as u64);
+                queue.write_buffer(&buffers.good, at, bytemuck::cast_slice(some));
+                let to = own.positions[first..].iter_mut();
+                to.zip(some).for_each(|(to, p)| *to = Vec3A::new(p[0], p[1], p[2]));
             }
-            first += some.len() as u64;
+            first += some.len();
         }
     }
 
@@ -165,7 +170,7 @@ impl Offload {
     }
 
     /// All that a buffer holds.
-    fn numbers(&self, from: &Buffer) -> Result<Vec<[f32; 4]>, GpuError> {
+    pub(super) fn numbers(&self, from: &Buffer) -> Result<Vec<[f32; 4]>, GpuError> {
         let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
         let descriptor = BufferDescriptor { label: Some("read"), size: from.size(), usage, mapped_at_creation: false };
         let to = self.opened.device.device.create_buffer(&descriptor);
@@ -181,7 +186,7 @@ impl Offload {
 }
 
 /// A garment's part of some vectors.
-fn vectors(from: &[[f32; 4]], span: Span) -> Vec<Vec3A> {
+pub(super) fn vectors(from: &[[f32; 4]], span: Span) -> Vec<Vec3A> {
     let own = &from[span.first as usize..(span.first + span.len) as usize];
     own.iter().map(|p| Vec3A::new(p[0], p[1], p[2])).collect()
 }

@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use toile_engine::cloth::program::STAGES;
 
 use crate::Adapter;
-use crate::stepper::Batch;
+use crate::batch::Batch;
 
 /// An open device.
 #[derive(Debug, Clone)]

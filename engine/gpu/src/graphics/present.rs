@@ -8,10 +8,10 @@ use toile_engine::cloth::guard::Events;
 use toile_engine::colliders::Colliders;
 
 use crate::Adapter;
+use crate::batch::Batch;
 use crate::cloth::Offload;
 use crate::cloth::opened::Opened;
 use crate::device::{Choice, GpuError, Needs};
-use crate::stepper::Batch;
 
 pub use crate::cloth::Spent;
 
@@ -64,7 +64,8 @@ impl Garments {
     pub fn lay(graphics: &Graphics, batch: &Batch<'_, '_>) -> Result<Self, String> {
         let Some(first) = batch.steps.first() else { return Err("there is no garment to step; give one".to_owned()) };
         let colliders: Vec<&Colliders> = batch.steps.iter().map(|step| step.colliders).collect();
-        let mut offload = Offload::on(&graphics.0, batch.garments, &colliders, first.settings).map_err(said)?;
+        let mut offload =
+            Offload::on(&graphics.0, batch.garments, &colliders, first.settings).map_err(|e| e.to_string())?;
         for (k, cloth) in batch.cloths.iter().enumerate() {
             offload.go_on(k, cloth);
         }
@@ -89,10 +90,10 @@ impl Garments {
             self.send(k, cloth);
         }
         let taken = self.offload.tally().taken;
-        self.offload.step(batch.garments, batch.steps).map_err(said)?;
-        self.offload.finish().map_err(said)?;
+        self.offload.step(batch.garments, batch.steps).map_err(|e| e.to_string())?;
+        self.offload.finish().map_err(|e| e.to_string())?;
         if self.offload.tally().taken == taken {
-            return Err(said(GpuError::Lost("a step did not come back".to_owned())));
+            return Err(GpuError::Lost("a step did not come back".to_owned()).to_string());
         }
         for (k, cloth) in batch.cloths.iter_mut().enumerate() {
             let events = self.before[k] + self.offload.events(k);
@@ -120,11 +121,7 @@ impl Garments {
         vectors(cloth.state().velocities(), v);
         let same = |a: &[Vec3A], b: &[Vec3A]| a.iter().zip(b).all(|(a, b)| a == b);
         if !(same(x, self.offload.positions(k)) && same(v, self.offload.velocities(k))) {
-            self.offload.disturb(k, x, v);
+            self.offload.put(k, x, v, &cloth.positions);
         }
     }
-}
-
-fn said(error: GpuError) -> String {
-    error.to_string()
 }

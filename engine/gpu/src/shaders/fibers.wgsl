@@ -1,4 +1,5 @@
-// Fibers: the tridiagonal system of each fiber's tensions, a fiber an invocation. Twin of `cloth/fibers.rs`.
+// Fibers: the tridiagonal system of each fiber's tensions, a fiber an invocation (`fibers`), or a workgroup where they are few
+// and long (`cyclic`). Twin of `cloth/fibers.rs`.
 //
 // Neighbouring invocations are neighbouring fibers of a bundle: what one row holds of them lies side by side.
 
@@ -232,5 +233,149 @@ fn fibers(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index)
     } else {
         down(false, fresh);
         back(fresh);
+    }
+}
+
+// Most links of a fiber that a workgroup solves, and how many of them an invocation has.
+const CYCLIC_MOST = 512u;
+const CYCLIC_EACH = 8u;
+const CYCLIC_STEPS = 9u;
+
+// First the direction and the stretch of each link; then its row: minus the entries to the links above and below, diagonal,
+// right-hand side; in the end its direction and its tension.
+var<workgroup> system: array<vec4<f32>, CYCLIC_MOST>;
+
+// A row that is not there: no entry beside the diagonal, and no right-hand side.
+fn row_of(link: i32) -> vec4<f32> {
+    if (link < 0 || link >= i32(links)) {
+        return vec4<f32>(0.0, 0.0, 1.0, 0.0);
+    }
+    return system[u32(link)];
+}
+
+// The motion of row `link + 1`, or of the first row for -1, of a system that is solved.
+fn shift_of(link: i32) {
+    let row = u32(link + 1);
+    var below = vec3<f32>(0.0);
+    var holds_below = 0.0;
+    if (row < links) {
+        let next = system[row];
+        below = next.xyz * next.w;
+        holds_below = more_of(next.w, -next.w) / more_of(measure(row).x, NO_PIVOT);
+    }
+    let w = weight(row);
+    let at = particle(row);
+    if (link < 0) {
+        put(at, place(at) + limited(below * w, measure(0u).x * FARTHEST));
+        return;
+    }
+    let own = system[u32(link)];
+    let rest = measure(u32(link)).x;
+    var by = (below - own.xyz * own.w) * w;
+    if ((garments[garment].bits & TAUT) != 0u) {
+        let holds = more_of(own.w, -own.w) / more_of(rest, NO_PIVOT);
+        by = calmed(by, own.xyz, w * (holds_below + holds));
+    }
+    put(at, place(at) + limited(by, rest * FARTHEST));
+}
+
+// The same system by parallel cyclic reduction (Hockney and Jesshope 1981; Zhang, Cohen, Owens 2010): in each step a row
+// loses its neighbours for those twice as far away, until it has none. The rounding is not the twin's.
+@compute @workgroup_size(64)
+fn cyclic(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let group = groups[op.first + at.x];
+    garment = group.x;
+    fiber = group.y;
+    bundle = bundles[group.w];
+    links = 0u;
+    while (links + 1u < bundle.count && fiber < rows[bundle.rows + links + 1u].y) {
+        links += 1u;
+    }
+    let fresh = op.fresh != 0u;
+    let gamma = garments[garment].gamma;
+    let per_dt2 = garments[garment].per_dt2;
+    let soften = gamma > 0.0 || (garments[garment].bits & SOFT_FIBERS) != 0u;
+    for (var k = 0u; k < CYCLIC_EACH; k += 1u) {
+        let link = k * 64u + lane;
+        if (link < links) {
+            let a = particle(link);
+            let b = particle(link + 1u);
+            let d = place(b) - place(a);
+            let length2 = inner(d, d);
+            let inverse = reciprocal_root(length2);
+            let normal = d * inverse;
+            let m = measure(link);
+            var stretch = length2 * inverse - m.x;
+            if (soften) {
+                let moved = (place(b) - previous(b)) - (place(a) - previous(a));
+                stretch = stretch + gamma * inner(normal, moved) - tension(link, fresh) * (m.y * per_dt2);
+            }
+            system[link] = vec4<f32>(normal, stretch);
+        }
+    }
+    workgroupBarrier();
+    // The normals stay with the invocation, for the pulls.
+    var normals: array<vec3<f32>, CYCLIC_EACH>;
+    var own: array<vec4<f32>, CYCLIC_EACH>;
+    var least: array<f32, CYCLIC_EACH>;
+    for (var k = 0u; k < CYCLIC_EACH; k += 1u) {
+        let link = k * 64u + lane;
+        own[k] = vec4<f32>(0.0, 0.0, 1.0, 0.0);
+        if (link < links) {
+            let w = weight(link);
+            let w_b = weight(link + 1u);
+            normals[k] = system[link].xyz;
+            let more = select(1.0, 1.0 + gamma, soften);
+            let diagonal = (w + w_b) * more + measure(link).y * per_dt2;
+            least[k] = more_of(diagonal * LEAST_PIVOT, NO_PIVOT);
+            var above = 0.0;
+            var below = 0.0;
+            if (link > 0u) {
+                above = w * more * inner(system[link].xyz, system[link - 1u].xyz);
+            }
+            if (link + 1u < links) {
+                below = w_b * more * inner(system[link].xyz, system[link + 1u].xyz);
+            }
+            own[k] = vec4<f32>(above, below, more_of(diagonal, NO_PIVOT), system[link].w);
+        }
+    }
+    for (var turn = 0u; turn < CYCLIC_STEPS; turn += 1u) {
+        workgroupBarrier();
+        for (var k = 0u; k < CYCLIC_EACH; k += 1u) {
+            system[k * 64u + lane] = own[k];
+        }
+        workgroupBarrier();
+        let stride = i32(1u << turn);
+        for (var k = 0u; k < CYCLIC_EACH; k += 1u) {
+            let link = i32(k * 64u + lane);
+            let up = row_of(link - stride);
+            let down = row_of(link + stride);
+            let by_up = own[k].x / up.z;
+            let by_down = own[k].y / down.z;
+            let diagonal = own[k].z - by_up * up.y - by_down * down.x;
+            let side = own[k].w + by_up * up.w + by_down * down.w;
+            own[k] = vec4<f32>(by_up * up.x, by_down * down.y, more_of(diagonal, least[k]), side);
+        }
+    }
+    workgroupBarrier();
+    for (var k = 0u; k < CYCLIC_EACH; k += 1u) {
+        let link = k * 64u + lane;
+        if (link < links) {
+            let lambda = own[k].w / own[k].z;
+            count(link, lambda, fresh);
+            system[link] = vec4<f32>(normals[k], lambda);
+        }
+    }
+    // All places have been read.
+    storageBarrier();
+    workgroupBarrier();
+    for (var k = 0u; k < CYCLIC_EACH; k += 1u) {
+        let link = i32(k * 64u + lane);
+        if (link < i32(links)) {
+            shift_of(link);
+        }
+    }
+    if (lane == 0u && links > 0u) {
+        shift_of(-1);
     }
 }

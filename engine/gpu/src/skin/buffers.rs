@@ -6,6 +6,7 @@ use wgpu::{BindGroup, BindGroupDescriptor, BindGroupEntry, Buffer, BufferUsages,
 
 use super::flat::FlatSkins;
 use super::kernels::{ROWS, SHADER, entry};
+use crate::device::Device;
 use crate::maker::Maker;
 use crate::shader::pipeline;
 
@@ -28,8 +29,9 @@ pub struct Buffers {
 
 impl Buffers {
     /// Of skins that are laid flat.
-    pub fn new(device: &wgpu::Device, flat: &FlatSkins) -> Self {
-        let mut make = Maker::new(device);
+    pub fn new(opened: &Device, flat: &FlatSkins) -> Self {
+        let device = &opened.device;
+        let mut make = Maker::new(opened);
         let (none, drawn) = (BufferUsages::empty(), BufferUsages::VERTEX | BufferUsages::COPY_SRC);
         let groups = make.with("groups of the skin", &flat.groups.groups, none);
         let runs = make.with("runs", &flat.runs, none);

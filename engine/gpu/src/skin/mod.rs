@@ -22,6 +22,7 @@ use wgpu::{Buffer, CommandEncoderDescriptor, ComputePassDescriptor};
 use crate::cloth::flat::Groups;
 use crate::cloth::ring::{Ring, Tally};
 use crate::device::{Device, GpuError, Needs};
+use crate::source::Source;
 use buffers::Buffers;
 use flat::FlatSkins;
 use kernels::{ROWS, stride};
@@ -60,7 +61,7 @@ impl Skinning {
         device.sound()?;
         let flat = FlatSkins::new(jobs);
         device.takes(of(&flat))?;
-        let buffers = Buffers::new(&device.device, &flat);
+        let buffers = Buffers::new(device, &flat);
         let ring = Ring::new(&device.device, buffers.positions.size() + buffers.normals.size());
         device.sound()?;
         let three = |numbers: &[[f32; 4]]| numbers.iter().map(|n| Vec3::new(n[0], n[1], n[2])).collect();
@@ -140,6 +141,14 @@ impl Skinning {
     /// On the device: unit normals likewise, the last number 0.
     pub fn normal_buffer(&self) -> &Buffer {
         &self.buffers.normals
+    }
+
+    /// Where a body's places and normals lie on the device, for whoever draws it there; none where there is no such body.
+    /// `device` is the one that they were laid out on. A bone that is not finite shows.
+    pub fn source(&self, device: &Device, body: usize) -> Option<Source> {
+        let span = self.spans.get(body)?;
+        let buffers = [&self.buffers.positions, &self.buffers.normals];
+        Source::new(device, buffers, span.start as u32, span.len() as u32)
     }
 
     /// What became of the steps' results.

@@ -2,6 +2,7 @@
 //! fails. `scene::offload` says where these tests can run: with CI=true a machine without an adapter fails them.
 
 mod device;
+mod drawn;
 mod kernels;
 mod scene;
 mod skin;

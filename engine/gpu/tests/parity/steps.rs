@@ -58,6 +58,14 @@ fn a_second_of_the_skirt_is_the_cpus() {
     held(&[&skirt(20, Stretch::Inextensible)], &Settings::default(), 120);
 }
 
+#[test]
+fn a_skirt_of_long_fibers_stays_near_the_cpus() {
+    let garment = skirt(98, Stretch::Inextensible);
+    let Some((means, same, _)) = both(&[&garment], |_| Settings::default(), 6) else { return };
+    assert!(!same, "cyclic reduction rounds otherwise: was it run?");
+    assert!(means[0] <= MEAN[0], "{means:?} m apart");
+}
+
 /// Steps the skirt on its walking body, `speed` times as fast as it walks.
 fn walked(n: usize, speed: f64, steps: usize) {
     let (garment, settings) = (skirt(n, Stretch::Inextensible), Settings::default());

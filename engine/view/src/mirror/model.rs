@@ -98,6 +98,12 @@ pub enum ModelError {
         /// The first such vertex.
         vertex: usize,
     },
+    /// What is to be drawn lies on another device.
+    #[error("surface {surface} lies on another graphics device than what draws it; open one device for both")]
+    Device {
+        /// The surface.
+        surface: usize,
+    },
 }
 
 impl Shape {

@@ -4,7 +4,7 @@ use std::sync::mpsc;
 
 use wgpu::{Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};
 
-use super::gpu::Gpu;
+use super::Gpu;
 use super::renderer::{Backdrop, Renderer, Viewport};
 use super::textures;
 use crate::image::{Image, Size};

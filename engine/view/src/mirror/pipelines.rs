@@ -1,5 +1,6 @@
 //! What the device is told once: shaders, the layouts of what they read, and the fixed states around them.
 
+use toile_gpu::source::STRIDE;
 use wgpu::{
     BindGroupLayout, BindGroupLayoutEntry, BindingType, BlendState, BufferBindingType, ColorTargetState, ColorWrites,
     CompareFunction, DepthBiasState, DepthStencilState, Device, Face, MultisampleState, PrimitiveState, RenderPipeline,
@@ -46,7 +47,8 @@ pub struct Pipelines {
     pub blit: RenderPipeline,
 }
 
-/// Strides of the vertex buffers: position, normal, marks, rest (place and normal), line.
+/// Strides of the vertex buffers: marks; rest (place and normal) and line; position and normal are the kernels'
+/// ([`STRIDE`]), so that a garment is drawn from where it is stepped.
 const VEC2: u64 = 8;
 const VEC3: u64 = 12;
 
@@ -189,7 +191,7 @@ impl Pipelines {
             depth: Plan {
                 fragment: None,
                 groups: &[frame],
-                buffers: &[per_vertex(VEC3, &[attribute(0, 0, true)])],
+                buffers: &[per_vertex(STRIDE, &[attribute(0, 0, true)])],
                 depth: Some(depth_state(BEAM_DEPTH, true, CompareFunction::Less, SLOPE_BIAS)),
                 samples: 1,
                 ..lit("depth", &depth, "project", "")
@@ -198,8 +200,8 @@ impl Pipelines {
             surface: Plan {
                 groups: &[frame, depths, Some(&layouts.surface)],
                 buffers: &[
-                    per_vertex(VEC3, &[attribute(0, 0, true)]),
-                    per_vertex(VEC3, &[attribute(1, 0, true)]),
+                    per_vertex(STRIDE, &[attribute(0, 0, true)]),
+                    per_vertex(STRIDE, &[attribute(1, 0, true)]),
                     per_vertex(VEC2, &[attribute(2, 0, false)]),
                     per_vertex(2 * VEC3, &[attribute(3, 0, true), attribute(4, VEC3, true)]),
                 ],

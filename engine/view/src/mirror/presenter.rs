@@ -7,7 +7,7 @@ use wgpu::{
     TextureFormat, TextureUsages, TextureView,
 };
 
-use super::gpu::Gpu;
+use super::Gpu;
 use super::surface_state::{Event, Step, SurfaceState};
 use crate::image::Size;
 
@@ -58,7 +58,7 @@ pub struct Presenter<'window> {
 impl<'window> Presenter<'window> {
     /// Sets a surface up for pictures of this size (pixels). `None` where the adapter cannot show on it.
     pub fn new(gpu: &Gpu, surface: Surface<'window>, size: Size, pace: Pace) -> Option<Self> {
-        let can = surface.get_capabilities(&gpu.adapter);
+        let can = surface.get_capabilities(&gpu.opened_on);
         let config = SurfaceConfiguration {
             usage: TextureUsages::RENDER_ATTACHMENT,
             format: format(&can.formats)?,

@@ -2,12 +2,13 @@
 
 use glam::{Vec2, Vec3};
 use toile_engine::lines::Line;
+use toile_gpu::source::Source;
 use wgpu::{
     BindGroup, Buffer, BufferUsages, CommandEncoder, Device, LoadOp, Operations, Queue, RenderPass, StoreOp,
     TextureFormat, TextureUsages, TextureView,
 };
 
-use super::gpu::Gpu;
+use super::Gpu;
 use super::light::{BLOCK, Behind as BehindKind, Sight};
 use super::model::{Model, ModelError};
 use super::pipelines::{BEAM_DEPTH, Layouts, Pipelines};
@@ -66,6 +67,7 @@ struct Slot {
 /// Draws a model. Everything that it holds lives on one device and is made anew when that is lost.
 #[derive(Debug)]
 pub struct Renderer {
+    gpu: Gpu,
     device: Device,
     queue: Queue,
     format: TextureFormat,
@@ -113,6 +115,7 @@ impl Renderer {
             slots: (0..MOST_VIEWS).map(|_| slot(&device, &layouts)).collect(),
             next: 0,
             scratch: Scratch::default(),
+            gpu: gpu.clone(),
             device,
             queue,
             format,
@@ -156,6 +159,19 @@ impl Renderer {
     /// [`ModelError`]: no such surface, another length, a place that is not finite. The last places stay then.
     pub fn update(&mut self, surface: usize, positions: &[Vec3], normals: &[Vec3]) -> Result<(), ModelError> {
         self.with(surface, |it, queue, scratch| it.update(queue, scratch, surface, positions, normals))
+    }
+
+    /// Draws a surface from where it lies on the renderer's own device, from the next picture on until the next
+    /// [`Renderer::update`]: nothing of it goes by way of the CPU. `within` is the box that it is in then (m), which the
+    /// shadows are made for: that of the places that came back last, and around it what it may have moved since.
+    ///
+    /// # Errors
+    /// [`ModelError`]: no such surface, another number of vertices, or another device. The last places stay then.
+    pub fn follow(&mut self, surface: usize, source: &Source, within: Bounds) -> Result<(), ModelError> {
+        if !source.device().is(&self.gpu) {
+            return Err(ModelError::Device { surface });
+        }
+        self.with(surface, |it, _, _| it.follow(surface, source, within))
     }
 
     /// Which triangles of a surface are drawn: at most as many as it has.
@@ -291,7 +307,7 @@ impl Renderer {
         pass.set_pipeline(&self.pipelines.depth);
         pass.set_bind_group(0, &slot.bind, &[]);
         for surface in self.surfaces.iter().filter(|s| s.visible && s.count > 0) {
-            pass.set_vertex_buffer(0, surface.positions.slice(..));
+            pass.set_vertex_buffer(0, surface.places()[0]);
             pass.set_index_buffer(surface.indices.slice(..), wgpu::IndexFormat::Uint32);
             pass.draw_indexed(0..surface.count, 0, 0..self.quality.beams());
         }
@@ -304,9 +320,9 @@ impl Renderer {
         pass.set_pipeline(&self.pipelines.surface);
         for surface in self.surfaces.iter().rev().filter(|s| s.visible && s.count > 0) {
             pass.set_bind_group(2, &surface.bind, &[]);
-            let buffers = [&surface.positions, &surface.normals, &surface.marks, &surface.rest];
-            for (at, buffer) in (0..).zip(buffers) {
-                pass.set_vertex_buffer(at, buffer.slice(..));
+            let [positions, normals] = surface.places();
+            for (at, part) in (0..).zip([positions, normals, surface.marks.slice(..), surface.rest.slice(..)]) {
+                pass.set_vertex_buffer(at, part);
             }
             pass.set_index_buffer(surface.indices.slice(..), wgpu::IndexFormat::Uint32);
             pass.draw_indexed(0..surface.count, 0, 0..1);

@@ -3,7 +3,8 @@
 use glam::{Vec2, Vec3};
 use toile_assets::fabric::Weave;
 use toile_assets::mesh::vertex_normals;
-use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue, TextureView};
+use toile_gpu::source::{STRIDE, Source};
+use wgpu::{BindGroup, Buffer, BufferSlice, BufferUsages, Device, Queue, TextureView};
 
 use super::model::{Material, ModelError, Shape, check_triangles};
 use super::pipelines::Layouts;
@@ -17,8 +18,10 @@ const NO_FIT: f32 = -9.0;
 /// One surface on the device.
 #[derive(Debug)]
 pub struct Drawn {
-    pub positions: Buffer,
-    pub normals: Buffer,
+    positions: Buffer,
+    normals: Buffer,
+    /// Where it is drawn from instead, until the next update.
+    source: Option<Source>,
     /// Fit and recess of each vertex.
     pub marks: Buffer,
     /// Place and normal at rest.
@@ -54,7 +57,7 @@ impl Scratch {
                 return Err(at);
             }
             bounds = bounds.grown(*v);
-            self.0.extend(v.to_array());
+            self.0.extend(padded(*v));
         }
         queue.write_buffer(buffer, 0, bytemuck::cast_slice(&self.0));
         Ok(bounds)
@@ -65,6 +68,11 @@ impl Scratch {
         self.0.extend(numbers);
         queue.write_buffer(buffer, 0, bytemuck::cast_slice(&self.0));
     }
+}
+
+/// As the kernels have it.
+fn padded(v: Vec3) -> [f32; 4] {
+    [v.x, v.y, v.z, 0.0]
 }
 
 /// What all surfaces are made with.
@@ -96,8 +104,9 @@ impl Maker<'_> {
         let block = buffer("surface", 32, BufferUsages::UNIFORM);
         let weave = if let Material::Cloth(cloth) = shape.material { cloth.weave } else { Weave::Plain };
         let mut drawn = Drawn {
-            positions: buffer("positions", vertices * 12, BufferUsages::VERTEX),
-            normals: buffer("normals", vertices * 12, BufferUsages::VERTEX),
+            positions: buffer("positions", vertices * STRIDE as usize, BufferUsages::VERTEX),
+            normals: buffer("normals", vertices * STRIDE as usize, BufferUsages::VERTEX),
+            source: None,
             marks: buffer("marks", vertices * 8, BufferUsages::VERTEX),
             rest: buffer("rest", vertices * 24, BufferUsages::VERTEX),
             indices: buffer("indices", shape.triangles.len() * 12, BufferUsages::INDEX),
@@ -157,10 +166,30 @@ impl Drawn {
         }
         let not_finite = |vertex| ModelError::NotFinite { surface, vertex };
         self.bounds = scratch.send(queue, &self.positions, positions).map_err(not_finite)?;
-        let clean = |n: &Vec3| if n.is_finite() { n.to_array() } else { [0.0; 3] };
-        let zeros = std::iter::repeat_n([0.0; 3], if normals.is_empty() { self.vertices } else { 0 });
+        let clean = |n: &Vec3| padded(if n.is_finite() { *n } else { Vec3::ZERO });
+        let zeros = std::iter::repeat_n([0.0; 4], if normals.is_empty() { self.vertices } else { 0 });
         scratch.write(queue, &self.normals, normals.iter().map(clean).chain(zeros).flatten());
+        self.source = None;
         Ok(())
+    }
+
+    /// Draws it from where it lies on the device until the next update; `within` is the box that it is in (m).
+    ///
+    /// # Errors
+    /// [`ModelError::Length`]; the last places stay then.
+    pub fn follow(&mut self, surface: usize, source: &Source, within: Bounds) -> Result<(), ModelError> {
+        self.check(surface, "vertices on the device", source.vertices())?;
+        self.source = Some(source.clone());
+        self.bounds = within;
+        Ok(())
+    }
+
+    /// The positions and the normals that are drawn.
+    pub fn places(&self) -> [BufferSlice<'_>; 2] {
+        match &self.source {
+            Some(source) => source.parts(),
+            None => [self.positions.slice(..), self.normals.slice(..)],
+        }
     }
 
     /// Draws these triangles of it from now on, at most as many as it was made with.

@@ -22,12 +22,17 @@ pub struct Dressed {
     pub fit: Vec<f32>,
 }
 
+/// A woman of middle size.
+pub fn wearer() -> Body {
+    let measures =
+        Measures { stature: 1.68, shoulder_breadth: 0.38, chest_girth: 0.90, waist_girth: 0.74, hip_girth: 0.98 };
+    Body::build(Sex::Female, &measures).expect("a usual body is built")
+}
+
 impl Dressed {
-    /// A garment of the wardrobe on a woman of middle size.
+    /// A garment of the wardrobe on her.
     pub fn new(name: &str, size: &str) -> Self {
-        let measures =
-            Measures { stature: 1.68, shoulder_breadth: 0.38, chest_girth: 0.90, waist_girth: 0.74, hip_girth: 0.98 };
-        let body = Body::build(Sex::Female, &measures).expect("a usual body is built");
+        let body = wearer();
         let style = wardrobe::style(name).expect("the wardrobe has it");
         let garment = style.dress(size, &body).expect("it is made in this size");
         let mut cloth_normals = vec![Vec3::ZERO; garment.particles()];

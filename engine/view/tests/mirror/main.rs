@@ -11,6 +11,7 @@ use toile_view::scene::{Bounds, Camera, Colours, Material, Scene};
 use toile_view::{fitmap, trace};
 
 mod dressed;
+mod offload;
 
 use dressed::Dressed;
 
@@ -272,9 +273,9 @@ fn the_same_picture_twice_has_the_same_bytes() {
 fn an_adapter_that_is_not_there_is_named_with_those_that_are() {
     let Some(gpu) = gpu() else { return };
     let error = Gpu::offscreen(&Choice::Named("no such card".into())).err().unwrap().to_string();
-    assert!(error.contains("no such card") && error.contains(&gpu.describe().name), "{error}");
-    let name = gpu.describe().name.to_uppercase();
-    assert_eq!(Gpu::offscreen(&Choice::Named(name)).unwrap().describe(), gpu.describe());
+    assert!(error.contains("no such card") && error.contains(&gpu.adapter().name), "{error}");
+    let name = gpu.adapter().name.to_uppercase();
+    assert_eq!(Gpu::offscreen(&Choice::Named(name)).unwrap().adapter(), gpu.adapter());
 }
 
 #[test]

@@ -18,6 +18,23 @@ pub struct FlatFibers {
     pub links: usize,
     /// Workgroups: the first fiber, how many, and the bundle.
     pub groups: Groups,
+    /// Workgroups of one fiber each, of bundles of few and long ones.
+    pub cyclic: Groups,
+}
+
+/// Links of a fiber from which on a workgroup is worth it: one invocation walks down and up all of them, two loads after each other a
+/// link, where cyclic reduction takes 9 steps for any; below, that does not outweigh four times the work.
+const LONG: u32 = 96;
+
+/// Most links that it has room for, `CYCLIC_MOST` of `shaders/fibers.wgsl`.
+const LONGEST: u32 = 512;
+
+/// Most fibers that are few: as many workgroups fill a large device, and from there on it is the work that counts.
+const FEW: u32 = 1_024;
+
+/// Whether a bundle's fibers are few and long, and of the solver that this is for.
+fn few_and_long(solver: Solver, fibers: u32, links: u32) -> bool {
+    solver == Solver::SemiImplicit && fibers <= FEW && (LONG..=LONGEST).contains(&links)
 }
 
 impl FlatFibers {
@@ -25,6 +42,7 @@ impl FlatFibers {
     pub fn add(&mut self, fibers: &Fibers, span: Span) {
         let (row, at) = (self.rows.len() as u32, self.measures.len() as u32);
         self.groups.begin(span.garment);
+        self.cyclic.begin(span.garment);
         for b in &fibers.bundles {
             let solver = match b.solver {
                 Solver::GaussSeidel => 0,
@@ -35,6 +53,10 @@ impl FlatFibers {
             let rows = [row + b.rows.start, b.rows.end - b.rows.start];
             let serial = self.links as u32 + b.serial;
             self.bundles.push([solver, b.lanes, rows[0], rows[1], at + b.at, serial, u32::from(b.alike), 0]);
+            if few_and_long(b.solver, b.lanes, rows[1].saturating_sub(1)) {
+                (0..b.lanes).for_each(|fiber| self.cyclic.push([span.garment, fiber, 1, bundle]));
+                continue;
+            }
             for first in (0..b.lanes).step_by(WIDTH as usize) {
                 self.groups.push([span.garment, first, (b.lanes - first).min(WIDTH), bundle]);
             }

@@ -6,6 +6,7 @@
 
 mod bending;
 mod diagonals;
+mod faces;
 mod fibers;
 mod links;
 mod lists;
@@ -17,6 +18,7 @@ use toile_engine::colliders::Colliders;
 
 pub use bending::{FlatBending, Scale};
 pub use diagonals::FlatDiagonals;
+pub use faces::FlatFaces;
 pub use fibers::FlatFibers;
 pub use links::FlatLinks;
 pub use lists::FlatLists;
@@ -114,6 +116,8 @@ pub struct Flat {
     pub lists: FlatLists,
     /// Bending.
     pub bending: FlatBending,
+    /// Faces, where somebody draws.
+    pub faces: FlatFaces,
     /// Triangles in the wind.
     pub wind: FlatWind,
 }
@@ -130,6 +134,13 @@ impl Flat {
             flat.reach.extend(garments[k].parts.iter().map(|&part| reach(part, colliders[k])));
         }
         flat
+    }
+
+    /// What normals are made of, for whoever draws.
+    pub fn draw(&mut self, garments: &[&Garment]) {
+        for (span, &k) in self.spans.iter().zip(&self.order) {
+            self.faces.add(garments[k], *span);
+        }
     }
 
     fn add(&mut self, number: u32, garment: &Garment) {

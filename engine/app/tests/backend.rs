@@ -1,0 +1,59 @@
+//! `--backend` as a user and a script meet it, on a machine without a graphics driver: the processor steps, and says why.
+
+mod common;
+
+use std::process::{Command, Stdio};
+
+use common::Scratch;
+use serde_json::Value;
+
+/// Runs it where no Vulkan driver can be found; gives the object on stdout, and stderr.
+fn toile(line: &str) -> (Value, String) {
+    let scratch = Scratch::new(&format!("backend-{}", line.len()));
+    let args: Vec<&str> = line.split_whitespace().collect();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
+    command.current_dir(scratch.path()).env("XDG_RUNTIME_DIR", scratch.path()).stdin(Stdio::null());
+    command.env("VK_DRIVER_FILES", "/nowhere").env("VK_ICD_FILENAMES", "/nowhere");
+    let output = command.args(&args).output().expect("the built program starts");
+    let words = String::from_utf8(output.stderr).expect("stderr is UTF-8");
+    assert_eq!(output.status.code(), Some(0), "{line}: {words}");
+    (serde_json::from_slice(&output.stdout).expect("stdout is exactly one JSON object"), words)
+}
+
+#[test]
+fn without_a_device_the_benchmark_goes_on_by_the_processor_and_says_why() {
+    let run = |backend: &str| toile(&format!("bench skirt --verts 256 --runs 1 --steps 4 --json --backend {backend}"));
+    let (plain, silent) = run("cpu");
+    assert_eq!((plain["stepped_by"]["fallen"].is_null(), silent.as_str()), (true, ""));
+    for backend in ["gpu", "auto"] {
+        let (found, words) = run(backend);
+        let by = &found["stepped_by"];
+        assert_eq!((by["asked"].as_str(), by["backend"].as_str()), (Some(backend), Some("cpu")));
+        let reason = by["fallen"].as_str().expect("it says why");
+        assert!(words.starts_with("the processor steps: ") && words.contains(reason), "{words}");
+        // Every reason has its cure: another build, or a driver.
+        assert!(reason.contains("--features gpu") || reason.contains("install"), "{reason}");
+        assert_eq!(found["state_hash"], plain["state_hash"], "no bit of it is another");
+    }
+}
+
+#[test]
+fn validation_and_torture_say_what_stepped() {
+    for line in ["validate spring --every 9 --json --backend gpu", "torture bad-state --seed 0 --json --backend gpu"] {
+        let (found, words) = toile(line);
+        let by = &found["stepped_by"];
+        assert_eq!((by["backend"].as_str(), by["fallen"].is_string()), (Some("cpu"), true), "{line}");
+        assert!(words.contains("the processor steps: "), "{line}: {words}");
+    }
+}
+
+#[test]
+fn the_table_of_a_device_is_made_without_one_and_says_so() {
+    let scratch = Scratch::new("backend-picture");
+    let output = scratch.toile(&["bench", "skirt", "--picture", "out"]);
+    assert_eq!(output.status.code(), Some(2), "there is no table to draw");
+    let output = scratch.toile(&["bench", "skirt", "--table", "--picture", "out"]);
+    assert_eq!(output.status.code(), Some(2), "the table of targets has no chart");
+    let words = String::from_utf8(output.stderr).expect("stderr is UTF-8");
+    assert!(words.contains("--backend gpu"), "{words}");
+}

@@ -1,0 +1,44 @@
+//! Faces: the triangles that meet at each particle, in the order in which the CPU sums their normals.
+
+use toile_assets::garment::Garment;
+use toile_assets::mesh::vertex_normals;
+
+use super::{Groups, Span};
+
+/// Faces of all garments.
+#[derive(Debug, Clone, Default)]
+pub struct FlatFaces {
+    /// Where each particle's begin in `meeting` `[particles + 1]`.
+    pub starts: Vec<u32>,
+    /// The triangles at each particle; one counts once a corner.
+    pub meeting: Vec<u32>,
+    /// Particles of each triangle, counter-clockwise seen from outside `[triangles]`.
+    pub corners: Vec<[u32; 3]>,
+    /// Unit normals where the garments start `[particles]`.
+    pub normals: Vec<[f32; 4]>,
+    /// Workgroups over the triangles.
+    pub groups: Groups,
+}
+
+impl FlatFaces {
+    /// Appends a garment's.
+    pub fn add(&mut self, garment: &Garment, span: Span) {
+        if self.starts.is_empty() {
+            self.starts.push(0);
+        }
+        let first = self.corners.len() as u32;
+        let mut at: Vec<Vec<u32>> = vec![Vec::new(); garment.particles()];
+        for (face, triangle) in (first..).zip(&garment.triangles) {
+            triangle.iter().for_each(|&i| at[i as usize].push(face));
+            self.corners.push(triangle.map(|i| span.first + i));
+        }
+        for faces in at {
+            self.meeting.extend(faces);
+            self.starts.push(self.meeting.len() as u32);
+        }
+        self.groups.add(span.garment, first, garment.triangles.len() as u32, 0);
+        let mut normals = vec![glam::Vec3::ZERO; garment.particles()];
+        vertex_normals(&garment.start, &garment.triangles, &mut normals);
+        self.normals.extend(normals.iter().map(|n| [n.x, n.y, n.z, 0.0]));
+    }
+}

@@ -1,0 +1,26 @@
+// Faces: each triangle's normal, twice its area long, a triangle an invocation. The first half of the twin of
+// `vertex_normals` in `assets/src/mesh.rs`; `normals` sums them, which in one kernel drivers may do in another order.
+
+// Particles of each triangle [3 * triangles].
+@group(1) @binding(0) var<storage, read> corners: array<u32>;
+// Last good places [particles].
+@group(1) @binding(1) var<storage, read> good: array<vec4<f32>>;
+@group(1) @binding(2) var<storage, read_write> areas: array<vec4<f32>>;
+
+// The cross product, written out in the CPU's order.
+fn across(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y);
+}
+
+@compute @workgroup_size(64)
+fn faces(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let group = groups[op.first + at.x];
+    if (lane >= group.z) {
+        return;
+    }
+    let face = group.y + lane;
+    let a = good[corners[3u * face]].xyz;
+    let b = good[corners[3u * face + 1u]].xyz;
+    let c = good[corners[3u * face + 2u]].xyz;
+    areas[face] = vec4<f32>(across(b - a, c - a), 0.0);
+}
