@@ -8,7 +8,7 @@ use toile_gpu::stepper::Means;
 pub struct SteppedBy {
     /// `cpu`, `gpu` or `auto`.
     pub asked: &'static str,
-    /// `cpu` or `gpu`.
+    /// `cpu`, `gpu`, or `both` where some garments went over to the processor or were decided otherwise.
     pub backend: &'static str,
     /// The graphics adapter that was opened.
     pub adapter: Option<Adapter>,
@@ -28,12 +28,12 @@ pub struct Adapter {
 }
 
 impl SteppedBy {
-    /// The means of a run, after it; `backend` is what its steppers ended with.
-    pub fn of(means: &Means, backend: toile_gpu::stepper::Backend) -> Self {
+    /// The means of a run, after it.
+    pub fn of(means: &Means) -> Self {
         let told = |a: &toile_gpu::Adapter| Adapter { name: a.name.clone(), kind: a.kind, driver: a.driver.clone() };
         Self {
             asked: means.asked().name(),
-            backend: backend.name(),
+            backend: means.used(),
             adapter: means.adapter().map(told),
             fallen: means.fallen().map(str::to_owned),
         }

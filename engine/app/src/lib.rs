@@ -6,7 +6,7 @@
 
 pub mod artist;
 pub mod backend;
-mod bake;
+pub mod bake;
 pub mod bench;
 pub mod bodies;
 mod body;

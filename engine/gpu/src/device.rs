@@ -3,6 +3,7 @@
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
+use std::time::Duration;
 
 use wgpu::{Backends, DeviceType, Instance, InstanceDescriptor, Limits, MemoryHints, Surface};
 
@@ -74,6 +75,10 @@ pub enum Choice {
     /// One that works on the processor: the same numbers and pictures on every machine.
     Software,
 }
+
+/// Longest that a graphics card may take for a step (s): a hundred times what a frame has. Whoever waits for it goes on with
+/// the CPU after that.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// What a scene asks of a device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -243,6 +248,34 @@ impl Device {
         self.device.destroy();
         // Relaxed: see above.
         self.lost.store(true, Ordering::Relaxed);
+    }
+
+    /// How long an answer may take: none for a driver that computes on the processor, which is slow but does not hang.
+    pub fn patience(&self) -> Option<Duration> {
+        (!self.is_software()).then_some(PATIENCE)
+    }
+
+    /// Gives the device up where it has not answered for longer than it may.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`].
+    pub fn answers(&self, waiting: Option<Duration>) -> Result<(), GpuError> {
+        if waiting.zip(self.patience()).is_some_and(|(waiting, patience)| waiting > patience) {
+            let _ = self.fault.set("it has not answered for a second".to_owned());
+            // Relaxed: see above.
+            self.lost.store(true, Ordering::Relaxed);
+        }
+        self.sound()
+    }
+
+    /// Waits until everything that was submitted is done, for as long as an answer may take. Never in the frame.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`].
+    pub fn done(&self) -> Result<(), GpuError> {
+        let wait = wgpu::PollType::Wait { submission_index: None, timeout: self.patience() };
+        let late = matches!(self.device.poll(wait), Err(wgpu::PollError::Timeout));
+        self.answers(late.then_some(Duration::MAX))
     }
 
     /// Waits until everything that was submitted is done, so that time is measured whole. Never in the frame.

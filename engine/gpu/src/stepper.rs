@@ -7,9 +7,11 @@
 
 use std::fmt;
 use std::str::FromStr;
+use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
+use toile_engine::cloth::Step;
 use toile_engine::crew::{Crew, Panicked};
 
 use crate::Adapter;
@@ -62,27 +64,40 @@ impl FromStr for Backend {
 pub struct Means {
     backend: Backend,
     graphics: Result<Graphics, String>,
-    /// The first reason for which any of its steppers went over to the processor.
-    fallen: Arc<OnceLock<String>>,
+    known: Arc<Known>,
+}
+
+/// Classes of scenes that are measured apart: by the bits of their particles' number.
+const CLASSES: usize = 32;
+
+/// What the steppers of a run have found out.
+#[derive(Debug, Default)]
+struct Known {
+    /// The first reason for which any of them went over to the processor.
+    fallen: OnceLock<String>,
+    /// What has stepped: 1 the processor, 2 the device.
+    used: AtomicU8,
+    /// What `auto` was decided by, of each class.
+    measured: [OnceLock<Measured>; CLASSES],
 }
 
 impl Means {
     /// The processor.
     pub fn cpu() -> Self {
-        Self { backend: Backend::Cpu, graphics: Err(String::new()), fallen: Arc::default() }
+        Self { backend: Backend::Cpu, graphics: Err(String::new()), known: Arc::default() }
     }
 
     /// What was asked for: opens the fastest device unless that is the processor. At load, some tenths of a second.
     pub fn open(backend: Backend) -> Self {
         match backend {
             Backend::Cpu => Self::cpu(),
-            _ => Self { graphics: Graphics::open(), backend, fallen: Arc::default() },
+            _ => Self { graphics: Graphics::open(), backend, known: Arc::default() },
         }
     }
 
     /// A stepper for some garments.
     pub fn stepper(&self) -> Stepper {
-        let mut stepper = Stepper { told: Some(Arc::clone(&self.fallen)), ..Stepper::default() };
+        let mut stepper = Stepper { known: Arc::clone(&self.known), ..Stepper::default() };
         match (self.backend, &self.graphics) {
             (Backend::Cpu, _) => {}
             (backend, Ok(graphics)) => {
@@ -99,6 +114,12 @@ impl Means {
         self.graphics.as_ref().ok().map(Graphics::adapter)
     }
 
+    /// What its steppers have stepped with so far: `cpu`, `gpu`, `both`, or `nothing`.
+    pub fn used(&self) -> &'static str {
+        // Relaxed: it orders nothing else.
+        ["nothing", "cpu", "gpu", "both"][usize::from(self.known.used.load(Ordering::Relaxed) & 3)]
+    }
+
     /// What was asked for.
     pub fn asked(&self) -> Backend {
         self.backend
@@ -107,14 +128,14 @@ impl Means {
     /// Why the processor stepped although a device was asked for: the first reason, one sentence with the cure.
     pub fn fallen(&self) -> Option<&str> {
         let unopened = self.graphics.as_ref().err().filter(|_| self.backend != Backend::Cpu);
-        self.fallen.get().or(unopened).map(String::as_str)
+        self.known.fallen.get().or(unopened).map(String::as_str)
     }
 }
 
 impl From<Graphics> for Means {
     /// A device that is open, and asked for.
     fn from(graphics: Graphics) -> Self {
-        Self { backend: Backend::Gpu, graphics: Ok(graphics), fallen: Arc::default() }
+        Self { backend: Backend::Gpu, graphics: Ok(graphics), known: Arc::default() }
     }
 }
 
@@ -133,13 +154,12 @@ pub struct Stepper {
     graphics: Option<Graphics>,
     on_device: Option<Garments>,
     fallen: Option<String>,
-    /// Where the reason is kept for the whole run.
-    told: Option<Arc<OnceLock<String>>>,
+    known: Arc<Known>,
     measured: Option<Measured>,
     undecided: bool,
 }
 
-/// Longest that either side is measured for (s), and the most steps.
+/// Longest that either side is measured for after the step that lays everything out and one more (s), and the most steps.
 const MEASURING: (Duration, usize) = (Duration::from_millis(300), 25);
 
 impl Stepper {
@@ -189,25 +209,40 @@ impl Stepper {
         }
         if let Some(graphics) = &self.graphics {
             match on_device(graphics, &mut self.on_device, batch) {
-                Ok(()) => return Ok(()),
+                Ok(()) => {
+                    self.uses(2);
+                    return Ok(());
+                }
                 Err(reason) => self.fall(reason),
             }
         }
+        self.uses(1);
         on_processor(batch, crew)
+    }
+
+    fn uses(&self, what: u8) {
+        // Relaxed: it orders nothing else.
+        self.known.used.fetch_or(what, Ordering::Relaxed);
     }
 
     /// Gives the device up.
     fn fall(&mut self, reason: String) {
-        if let Some(told) = &self.told {
-            // Only the first is kept.
-            let _ = told.set(reason.clone());
-        }
+        // Only the first is kept.
+        let _ = self.known.fallen.set(reason.clone());
         (self.graphics, self.on_device, self.fallen) = (None, None, Some(reason));
     }
 
-    /// Steps copies of the garments on both for a while, where they stand, and keeps the faster.
+    /// Steps copies of the garments on both for a while, where they stand, and keeps the faster; what another stepper of the run has
+    /// measured with about as many particles counts for this one.
     fn decide(&mut self, batch: &mut Batch<'_, '_>, mut crew: Option<&mut Crew>) -> Result<(), Panicked> {
         let Some(graphics) = self.graphics.clone() else { return Ok(()) };
+        let particles: usize = batch.cloths.iter().map(|c| c.positions.len()).sum();
+        let known = Arc::clone(&self.known);
+        let class = &known.measured[(particles.max(1).ilog2() as usize).min(CLASSES - 1)];
+        if let Some(measured) = class.get() {
+            self.settle(*measured);
+            return Ok(());
+        }
         let mut copies = batch.cloths.to_vec();
         let mut trial = Batch { cloths: &mut copies, garments: batch.garments, steps: batch.steps };
         let mut laid = None;
@@ -218,13 +253,18 @@ impl Stepper {
         match gpu_us {
             Err(reason) => self.fall(reason),
             Ok(gpu_us) => {
-                self.measured = Some(Measured { cpu_us, gpu_us });
-                if cpu_us <= gpu_us {
-                    self.graphics = None;
-                }
+                // Of two that measure at once, the first counts for both.
+                self.settle(*class.get_or_init(|| Measured { cpu_us, gpu_us }));
             }
         }
         Ok(())
+    }
+
+    fn settle(&mut self, measured: Measured) {
+        self.measured = Some(measured);
+        if measured.cpu_us <= measured.gpu_us {
+            self.graphics = None;
+        }
     }
 }
 
@@ -243,14 +283,16 @@ fn median_us<E>(mut step: impl FnMut() -> Result<(), E>) -> Result<f64, E> {
 
 fn on_processor(batch: &mut Batch<'_, '_>, crew: Option<&mut Crew>) -> Result<(), Panicked> {
     let (garments, steps) = (batch.garments, batch.steps);
+    let Some(first) = steps.first() else { return Ok(()) };
+    let step = |k: usize| Step { settings: first.settings, ..steps[k] };
     match (&mut *batch.cloths, crew) {
         ([cloth], Some(crew)) => {
-            cloth.step_with(crew, garments[0], &steps[0]);
+            cloth.step_with(crew, garments[0], &step(0));
             Ok(())
         }
-        (cloths, Some(crew)) => crew.each(cloths, |k, cloth| cloth.step(garments[k], &steps[k])),
+        (cloths, Some(crew)) => crew.each(cloths, |k, cloth| cloth.step(garments[k], &step(k))),
         (cloths, None) => {
-            cloths.iter_mut().zip(garments).zip(steps).for_each(|((cloth, garment), step)| cloth.step(garment, step));
+            cloths.iter_mut().zip(garments).enumerate().for_each(|(k, (cloth, garment))| cloth.step(garment, &step(k)));
             Ok(())
         }
     }
@@ -279,7 +321,7 @@ mod tests {
 
     #[test]
     fn without_a_device_the_processor_steps_and_says_why() {
-        let none = |backend| Means { backend, graphics: Err("no adapter".into()), fallen: Arc::default() };
+        let none = |backend| Means { backend, graphics: Err("no adapter".into()), known: Arc::default() };
         let means = none(Backend::Gpu);
         let stepper = means.stepper();
         assert_eq!((stepper.backend(), stepper.fallen()), (Backend::Cpu, Some("no adapter")));

@@ -113,7 +113,7 @@ fn measure_with(
     let metered = METERED_STEPS.min(options.steps.max(1));
     let (stages_us, device_us) = stage.stages_us(metered);
     (report.stages_us, report.device_us) = (stages_us.into_iter().collect(), device_us);
-    report.stepped_by = SteppedBy::of(means, stage.stepper().backend());
+    report.stepped_by = SteppedBy::of(means);
     report.decided_by = stage.stepper().measured().map(Into::into);
     Ok(report)
 }

@@ -172,7 +172,8 @@ pub struct Report {
     pub stepped_by: SteppedBy,
     /// What `auto` was decided by.
     pub decided_by: Option<Decision>,
-    /// Mean time of a step by the device's own clock, from its first kernel to its last (us), where it has one.
+    /// Mean time of a step by the device's own clock, from its first kernel to its last (us), where it has one: of steps that are
+    /// metered, which go in a pass a stage; a plain step is a little shorter.
     pub device_us: Option<f64>,
     /// Mean time of each stage of a step (us), as far as the engine or the device tells.
     pub stages_us: BTreeMap<&'static str, f64>,

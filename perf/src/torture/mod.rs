@@ -157,7 +157,7 @@ pub fn run(options: &Options, told: &mut dyn FnMut(&Summary)) -> Result<Report, 
         report.summary.push(summary);
         report.cases.extend(outcomes);
     }
-    report.stepped_by = SteppedBy::of(&site.by, site.by.stepper().backend());
+    report.stepped_by = SteppedBy::of(&site.by);
     Ok(report)
 }
 

@@ -126,7 +126,7 @@ pub fn run(options: &Options, told: &(impl Fn(usize) + Sync)) -> Result<Report, 
         cases,
         passed: [passed[0], passed[0] + passed[1]],
         threads: options.threads,
-        stepped_by: SteppedBy::of(&means, means.stepper().backend()),
+        stepped_by: SteppedBy::of(&means),
         wall_s: begun.elapsed().as_secs_f64(),
     })
 }

@@ -69,7 +69,8 @@ pub(super) fn grammar() -> clap::Command {
             flag(
                 "table",
                 "Run every row of the table of targets, in place of one run; with --backend gpu or auto, sizes and numbers of \
-                 skirts on the processor and on the device, and where they cross; takes some minutes",
+                 skirts on the processor and on the device, and where they cross, with threads, sizes and steps of its own; \
+                 takes some minutes",
             ),
             text("picture", "FOLDER", "With --table of a device: put the chart crossover.png there").requires("table"),
             json(),

@@ -50,7 +50,7 @@ impl Offload {
             }
         });
         self.meter.iter_mut().for_each(Meter::take);
-        Ok(())
+        self.opened.device.answers(self.ring.waiting())
     }
 
     /// Waits for everything that was sent, and takes it in. Never in the frame.
@@ -58,7 +58,12 @@ impl Offload {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn finish(&mut self) -> Result<(), GpuError> {
-        self.opened.device.finish();
+        self.opened.device.done()?;
+        // Another thread that polled the device may be about to say that it has come back.
+        while self.ring.waiting().is_some() {
+            self.opened.device.answers(self.ring.waiting())?;
+            std::thread::yield_now();
+        }
         self.take()
     }
 

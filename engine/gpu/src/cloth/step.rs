@@ -14,7 +14,7 @@ use super::constants::{CARRY, COMPENSATE, Constants, DRESS, WIND, carried, colum
 use super::flat::{Scale, WIDTH};
 use super::kernels::Kernel;
 use super::program::Entry;
-use super::touch::{self, FlatCone, PLANES};
+use super::touch::{self, PLANES};
 use super::{Offload, Step, takes};
 use crate::device::GpuError;
 use crate::maker::ALIGNED;
@@ -158,22 +158,21 @@ impl Offload {
 
     /// What each garment may touch, for every substep.
     fn touch(&mut self, garments: &[&Garment], steps: &[Step<'_>], settings: &Settings) {
-        let queue = &self.opened.device.queue;
+        let mut first = 0;
         for ((own, garment), step) in self.own.iter_mut().zip(garments).zip(steps) {
             let (place, how) = (own.place, ContactSettings::new(&garment.fabric, settings));
-            let first = place * self.sets * MAX_CAPSULES;
             let count = (1 + own.prepared.substeps as usize) * MAX_CAPSULES;
             let cones = &mut self.cones[first..first + count];
             let ends = &mut self.ends[place * MAX_CAPSULES..][..MAX_CAPSULES];
             let planes = &mut self.planes[place * PLANES..][..PLANES];
             let sound = own.touch.capsules(settings.width, step.colliders, &how, cones, ends);
             let many = touch::planes(step.colliders, planes);
-            self.constants[place].touch = [(place * self.sets) as u32, sound, many, (place * PLANES) as u32];
-            if sound != 0 {
-                let at = (first * size_of::<FlatCone>()) as u64;
-                queue.write_buffer(&self.buffers.cones, at, bytemuck::cast_slice(cones));
-            }
+            self.constants[place].touch = [(first / MAX_CAPSULES) as u32, sound, many, (place * PLANES) as u32];
+            // Only what can be touched takes room, one garment's behind the other's.
+            first += if sound != 0 { count } else { 0 };
         }
+        let queue = &self.opened.device.queue;
+        queue.write_buffer(&self.buffers.cones, 0, bytemuck::cast_slice(&self.cones[..first]));
         queue.write_buffer(&self.buffers.ends, 0, bytemuck::cast_slice(&self.ends));
         queue.write_buffer(&self.buffers.planes, 0, bytemuck::cast_slice(&self.planes));
     }

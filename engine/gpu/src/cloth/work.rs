@@ -26,13 +26,23 @@ impl Offload {
     /// Of a plain step with the settings of the last one: no wind, no jump.
     pub fn work(&self) -> Work {
         let mut work = Work::default();
-        self.entries(Asked::default(), |entry, _, garments| {
+        self.entries(Asked::default(), |entry, substep, garments| {
             let items = self.items(entry, garments);
             if items > 0 {
-                work += Work { dispatches: 1, bytes: (items as f64 * each(&self.flat, entry.kernel)) as u64 };
+                let bytes = if self.acts(entry.kernel, substep) { each(&self.flat, entry.kernel) } else { 0.0 };
+                work += Work { dispatches: 1, bytes: (items as f64 * bytes) as u64 };
             }
         });
         work
+    }
+
+    /// Whether a kernel does anything in a substep: bending and the bias pass some over, and bending that goes in stages all.
+    fn acts(&self, kernel: Kernel, substep: u32) -> bool {
+        self.own.iter().map(|own| &own.prepared).any(|p| match kernel {
+            Kernel::Bending | Kernel::Bent => p.bending.stages < 2 && substep.is_multiple_of(p.bend.every),
+            Kernel::Diagonals => substep.is_multiple_of(p.shear_every),
+            _ => true,
+        })
     }
 
     /// Invocations that have something to do; of fibers that are solved by workgroups, the fibers.
@@ -74,7 +84,8 @@ fn each(flat: &Flat, kernel: Kernel) -> f64 {
         // What was found, place and previous read and written.
         Kernel::Contact => 72.0,
         Kernel::Settle => 80.0,
-        Kernel::Conclude => 20.0,
+        // A garment an invocation.
+        Kernel::Conclude => 0.0,
         _ => 64.0,
     }
 }

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use glam::Vec3A;
-use toile_engine::cloth::Cloth;
+use toile_assets::garment::Garment;
 use toile_engine::cloth::guard::Events;
+use toile_engine::cloth::{Cloth, Settings};
 use toile_engine::colliders::Colliders;
 
 use crate::Adapter;
@@ -26,6 +27,8 @@ pub struct Garments {
     offload: Offload,
     /// What had happened to each before it was laid out here.
     before: Vec<Events>,
+    /// What each garment was made of, and where it lay in memory then.
+    made_of: Vec<(usize, u64)>,
     room: [Vec<Vec3A>; 2],
 }
 
@@ -65,20 +68,26 @@ impl Garments {
     pub fn lay(graphics: &Graphics, batch: &Batch<'_, '_>) -> Result<Self, String> {
         let Some(first) = batch.steps.first() else { return Err("there is no garment to step; give one".to_owned()) };
         let colliders: Vec<&Colliders> = batch.steps.iter().map(|step| step.colliders).collect();
+        let opened = bearing(graphics, batch, &colliders, first.settings)?;
         let mut offload =
-            Offload::on(&graphics.0, batch.garments, &colliders, first.settings).map_err(|e| e.to_string())?;
+            Offload::on(&opened, batch.garments, &colliders, first.settings).map_err(|e| e.to_string())?;
         for (k, cloth) in batch.cloths.iter().enumerate() {
             offload.go_on(k, cloth);
         }
         let most = batch.cloths.iter().map(|c| c.positions.len()).max().unwrap_or(0);
         // The colliders count for themselves.
         let before = batch.cloths.iter().map(|c| Events { held_colliders: 0, ..c.events }).collect();
-        Ok(Self { offload, before, room: [(); 2].map(|()| Vec::with_capacity(most)) })
+        let made_of = batch.garments.iter().map(|g| (address(g), fingerprint(g))).collect();
+        Ok(Self { offload, before, made_of, room: [(); 2].map(|()| Vec::with_capacity(most)) })
     }
 
     /// Whether these garments can be stepped as they are laid out: the settings may ask for more substeps.
     pub fn holds(&self, batch: &Batch<'_, '_>) -> bool {
+        // What lies where it lay is what it was: garments do not change while they are worn.
+        let same =
+            |(garment, (at, of)): (&&Garment, &(usize, u64))| address(garment) == *at || fingerprint(garment) == *of;
         batch.steps.first().is_some_and(|step| self.offload.holds(batch.garments, step.settings))
+            && batch.garments.iter().zip(&self.made_of).all(same)
     }
 
     /// One step: sends what has been disturbed, steps, waits for the result, and gives it to the cloths.
@@ -98,7 +107,7 @@ impl Garments {
         }
         for (k, cloth) in batch.cloths.iter_mut().enumerate() {
             let events = self.before[k] + self.offload.events(k);
-            cloth.prepare(batch.garments[k], batch.steps[k].settings);
+            cloth.prepare(batch.garments[k], batch.steps[0].settings);
             cloth.take_over(self.offload.positions(k), self.offload.velocities(k), events);
             let (pins, root) = self.offload.course(k);
             cloth.follow(pins, root);
@@ -130,4 +139,33 @@ impl Garments {
             self.offload.put(k, x, v, &cloth.positions);
         }
     }
+}
+
+fn address(garment: &Garment) -> usize {
+    std::ptr::from_ref(garment).addr()
+}
+
+/// FNV-1a over what a garment is laid out from: two with as many particles are told apart by it.
+fn fingerprint(garment: &Garment) -> u64 {
+    let layout = &garment.layout;
+    let numbers = [&garment.inverse_mass[..], &layout.weft.rest, &layout.weft.compliance, &layout.shear.compliance];
+    let fibers = [&layout.fibers.rest[..], &layout.fibers.compliance, &layout.crossing.rest];
+    let start = garment.start.iter().flat_map(|p| p.to_array());
+    let all = numbers.into_iter().chain(fibers).flatten().copied().chain(start);
+    all.fold(0xcbf2_9ce4_8422_2325, |hash, x| (hash ^ u64::from(x.to_bits())).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// The device, or the same adapter opened once more for a scene that asks for more than the least limits.
+fn bearing(
+    graphics: &Graphics,
+    batch: &Batch<'_, '_>,
+    colliders: &[&Colliders],
+    settings: &Settings,
+) -> Result<Arc<Opened>, String> {
+    let needs = Offload::needs(batch.garments, colliders, settings);
+    if graphics.0.device.takes(needs).is_ok() {
+        return Ok(Arc::clone(&graphics.0));
+    }
+    let same = Choice::Named(graphics.adapter().name.clone());
+    Opened::new(&same, needs).map(Arc::new).map_err(|e| e.to_string())
 }

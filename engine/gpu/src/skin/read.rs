@@ -39,7 +39,7 @@ impl Skinning {
                 to.iter_mut().zip(from).for_each(|(to, n)| *to = Vec3::new(n[0], n[1], n[2]));
             }
         });
-        Ok(())
+        device.answers(self.ring.waiting())
     }
 
     /// Waits for everything that was sent, and takes it in. Never in the frame.
@@ -47,7 +47,12 @@ impl Skinning {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn finish(&mut self, device: &Device) -> Result<(), GpuError> {
-        device.finish();
+        device.done()?;
+        // Another thread that polled the device may be about to say that it has come back.
+        while self.ring.waiting().is_some() {
+            device.answers(self.ring.waiting())?;
+            std::thread::yield_now();
+        }
         self.take(device)
     }
 }

@@ -204,3 +204,39 @@ fn the_devices_clock_tells_what_the_stages_took() {
     // Bending, weft, fibers and contact all take time.
     assert!([1, 3, 4, 5].iter().all(|&stage| spent.stages_ns[stage] > 0.0), "{spent:?}");
 }
+
+#[test]
+fn two_threads_on_one_device_lose_no_step() {
+    let Some(graphics) = graphics() else { return };
+    let means = Means::from(graphics);
+    let (garment, settings) = (skirt(8, Stretch::Inextensible), Settings::default());
+    let run = || {
+        let mut cloths = [Cloth::new(&garment, &nobody())];
+        let mut stepper = means.stepper();
+        (0..400).for_each(|n| step(&mut stepper, &mut cloths, &[&garment], n, &settings));
+        (stepper.fallen().map(str::to_owned), cloths[0].positions.clone())
+    };
+    let [one, other] = std::thread::scope(|scope| {
+        let threads = [scope.spawn(run), scope.spawn(run)];
+        threads.map(|thread| thread.join().expect("no thread panics"))
+    });
+    assert_eq!((one.0, other.0, means.fallen()), (None, None, None));
+    assert_eq!((one.1, means.used()), (other.1, "gpu"), "the same garment, the same bits");
+}
+
+#[test]
+fn another_garment_of_as_many_particles_is_laid_out_anew() {
+    let Some(graphics) = graphics() else { return };
+    let (one, other) = (skirt(10, Stretch::Physical), skirt(10, Stretch::Inextensible));
+    let (settings, mut stepper) = (Settings::default(), Means::from(graphics).stepper());
+    let start = [Cloth::new(&one, &nobody())];
+    let [mut on_cpu, mut on_gpu] = [start.clone(), start];
+    for n in 0..8 {
+        let garment = if n < 4 { &one } else { &other };
+        step(&mut Stepper::cpu(), &mut on_cpu, &[garment], n, &settings);
+        step(&mut stepper, &mut on_gpu, &[garment], n, &settings);
+    }
+    assert_eq!(stepper.fallen(), None);
+    let most = on_cpu[0].positions.iter().zip(&on_gpu[0].positions).map(|(p, q)| p.distance(*q)).fold(0.0, f32::max);
+    assert!(most < 1e-4, "{most} m apart");
+}

@@ -1,6 +1,6 @@
 //! Strips bent by a load: the cantilever, Peirce's overhang, the tip-loaded elastica.
 //!
-//! All start straight and how and come to rest under the damping of [`DAMPING`], which holds nothing up.
+//! All start straight and level and come to rest under the damping of [`DAMPING`], which holds nothing up.
 
 use glam::DVec3;
 use toile_assets::garment::Shape;
@@ -35,7 +35,7 @@ const RAW_GAMMAS: [f64; 3] = [1.0, 10.0, 100.0];
 /// Between these the target holds.
 const GATED: [f64; 2] = [0.3, 300.0];
 
-/// A clamped strip, how.
+/// A clamped strip, level.
 #[derive(Debug, Clone, Copy)]
 pub struct Cantilever {
     /// The strip.
@@ -53,7 +53,7 @@ impl Cantilever {
         Self { strip: Strip { length: LENGTH, width: WIDTH, rows, columns: rows / 3, style, ends }, gamma, load: 0.0 }
     }
 
-    /// Its shape, how along x.
+    /// Its shape, level along x.
     pub fn shape(&self) -> Shape {
         let mut shape = self.strip.shape(|along, across| DVec3::new(along, 0.0, across));
         if self.load > 0.0 {

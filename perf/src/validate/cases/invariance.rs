@@ -1,5 +1,5 @@
 //! What must not matter: statics are the same when stiffnesses and mass are scaled together, when the mesh is renumbered,
-//! turned or mirrored, when the step is halved. Held against the engine's own cantilever at the same how.
+//! turned or mirrored, when the step is halved. Held against the engine's own cantilever at the same level.
 
 use glam::DQuat;
 use toile_assets::garment::Shape;

@@ -1,6 +1,6 @@
 //! The cases, in the order of the table.
 //!
-//! Reads: exact values. Writes: cases that can be run at any how.
+//! Reads: exact values. Writes: cases that can be run at any level.
 //! Budget: nothing; a case costs when it is run.
 //! Thread: any.
 

@@ -239,7 +239,7 @@ enum Kept {
     Loss,
 }
 
-/// A cloth that is let go how from one pinned side and swings undamped for a minute: its energy, in parts of what it has
+/// A cloth that is let go level from one pinned side and swings undamped for a minute: its energy, in parts of what it has
 /// above hanging straight.
 fn energy(which: Kept) -> Case {
     let run = move |how: How<'_>| {

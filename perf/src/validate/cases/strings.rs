@@ -47,7 +47,7 @@ const SHEET: f64 = 0.3;
 const TALL: usize = 3;
 
 /// A sheet that is held along both upright sides sags by w L^2 / 8G in its middle, by shear alone: its upright threads
-/// only sink, its how ones turn.
+/// only sink, its level ones turn.
 fn shear(stiffness: f64) -> Case {
     let (rows, held) = (16, [Hold::Pinned, Hold::Pinned]);
     let tall = TALL as f64 * SHEET;

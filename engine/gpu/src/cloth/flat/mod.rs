@@ -215,6 +215,14 @@ mod tests {
         let fibers = &flat.fibers;
         let rows = fibers.bundles.iter().flat_map(|b| &fibers.rows[b[2] as usize..(b[2] + b[3]) as usize]);
         once(flat.particles, rows.flat_map(|r| r[0]..r[0] + r[1]));
+        assert!(!flat.lists.sets.is_empty(), "a skirt has hoops");
+        for set in &flat.lists.sets {
+            let fiber = |k: usize| {
+                let head = flat.lists.heads[k];
+                (0..head[2]).map(move |row| (head[0] + row * head[1]) as usize)
+            };
+            once(flat.particles, items(set).flat_map(fiber).map(|at| flat.lists.index[at]));
+        }
     }
 
     #[test]
