@@ -16,11 +16,11 @@ pub fn chart(study: &Study) -> Drawing {
     let sides: [(&str, Us); 4] = [
         ("one thread", |row| Some(row.one.step_us)),
         ("two threads", |row| Some(row.two.step_us)),
-        ("device, result there", |row| row.device.map(|side| side.step_us)),
-        ("device, its own clock", |row| row.device_us),
+        ("device", |row| row.device.map(|side| side.step_us)),
+        ("device's own clock", |row| row.device_us),
     ];
     let mut series = Vec::new();
-    for (several, words) in [(false, "one skirt"), (true, "skirts of 4,096")] {
+    for (several, words) in [(false, "one skirt"), (true, "4,096 each")] {
         for (k, (name, us)) in sides.iter().enumerate() {
             let chosen = |row: &&Row| if several { row.verts == EACH } else { row.garments == 1 };
             let point = |row: &Row| Some([(row.verts * row.garments) as f64, us(row)?]);
