@@ -9,8 +9,8 @@
 // The acceleration of what is at r from the root's origin and moves with v.
 fn felt(carried: array<vec4<f32>, 5>, r: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
     let turning = carried[2].xyz;
-    let around = outer(turning, r);
-    return outer(turning, v - carried[1].xyz - around) * carried[1].w + outer(turning, around) * carried[2].w;
+    let around = cross_product(turning, r);
+    return cross_product(turning, v - carried[1].xyz - around) * carried[1].w + cross_product(turning, around) * carried[2].w;
 }
 
 @compute @workgroup_size(64)
@@ -24,7 +24,7 @@ fn carry(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) 
     let carried = garments[group.x].carried;
     let half = carried[0].w;
     let r = place(i) - carried[0].xyz;
-    let v = state[velocity].xyz + carried[3].xyz + outer(carried[4].xyz, r);
+    let v = state[velocity].xyz + carried[3].xyz + cross_product(carried[4].xyz, r);
     // The midpoint rule.
     let a = felt(carried, r + (v - carried[1].xyz) * half, v + felt(carried, r, v) * half);
     state[velocity] = vec4<f32>(v, 0.0);

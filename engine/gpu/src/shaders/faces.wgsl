@@ -7,11 +7,6 @@
 @group(1) @binding(1) var<storage, read> good: array<vec4<f32>>;
 @group(1) @binding(2) var<storage, read_write> areas: array<vec4<f32>>;
 
-// The cross product, written out in the CPU's order.
-fn across(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
-    return vec3<f32>(a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y);
-}
-
 @compute @workgroup_size(64)
 fn faces(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let group = groups[op.first + at.x];
@@ -22,5 +17,5 @@ fn faces(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) 
     let a = good[corners[3u * face]].xyz;
     let b = good[corners[3u * face + 1u]].xyz;
     let c = good[corners[3u * face + 2u]].xyz;
-    areas[face] = vec4<f32>(across(b - a, c - a), 0.0);
+    areas[face] = vec4<f32>(cross_product(b - a, c - a), 0.0);
 }

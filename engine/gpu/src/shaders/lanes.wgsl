@@ -8,8 +8,8 @@ fn inner(a: vec3<f32>, b: vec3<f32>) -> f32 {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// Outer product.
-fn outer(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
+// Cross product, written out in the CPU's order.
+fn cross_product(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 

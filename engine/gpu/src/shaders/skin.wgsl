@@ -39,10 +39,6 @@ fn bone(run: vec4<u32>, k: u32) -> u32 {
     return run.w + ((four >> (8u * (k & 3u))) & 255u);
 }
 
-fn cross_product(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
-    return vec3<f32>(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-}
-
 // 1, which no compiler knows: the factor that makes a product of a sum. Of (a b + c d) + e Mesa makes (a b + e) + c d, but
 // not where e is a product.
 fn one(run: vec4<u32>) -> f32 {

@@ -33,7 +33,7 @@ fn wind(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) l
     let lift = garments[g].blow.x;
     let corner = place(face.x);
     let u = air.xyz - (speed(face.x) + speed(face.y) + speed(face.z)) * THIRD;
-    let normal = outer(place(face.y) - corner, place(face.z) - corner);
+    let normal = cross_product(place(face.y) - corner, place(face.z) - corner);
     let uu = inner(u, u);
     let un = inner(u, normal);
     let square = uu * inner(normal, normal);
