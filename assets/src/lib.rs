@@ -9,6 +9,7 @@ pub mod body;
 pub mod cone;
 pub mod export;
 pub mod fabric;
+pub mod file;
 pub mod garment;
 pub mod import;
 pub mod limits;
