@@ -11,7 +11,6 @@
 //! out where no skin is near to tell.
 
 mod fit;
-pub mod people;
 mod plan;
 mod report;
 mod shell;

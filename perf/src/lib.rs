@@ -4,17 +4,21 @@
 //! Budget: some seconds a benchmark; never inside the frame.
 //! Thread: one, with nothing else running.
 
+pub mod agreement;
 pub mod ansur;
 pub mod backend;
 pub mod crossover;
 pub mod depth;
 pub mod filters;
+pub mod gestures;
 pub mod latency;
 pub mod measuring;
 pub mod oracle;
 pub mod pareto;
+pub mod people;
 pub mod plan;
 pub mod plot;
+pub mod reliability;
 pub mod scene_run;
 pub mod skinning;
 pub mod skirt;

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use toile_track::gesture::study::{Act, Conditions, Count, Study, held_up, sequence};
+use toile_perf::gestures::{Act, Conditions, Count, GestureStudy, held_up, sequence};
 use toile_track::gesture::{Gestures, HandEye};
 
 use crate::cli::GesturesArgs;
@@ -23,7 +23,7 @@ const TIMED_AT: f32 = 2.0;
 /// Where stdout cannot be written.
 pub fn run(args: &GesturesArgs) -> Result<(), AppError> {
     let words = Words::new(args.json);
-    let study = Study::run(args.sequences, args.seed, &mut |case| words.say(case));
+    let study = GestureStudy::run(args.sequences, args.seed, &mut |case| words.say(case));
     let times = [joints_us(), hand_us()];
     if args.json {
         return terminal::print_json(&Document::new("bench-gestures", GesturesReport::new(&study, times)));
@@ -35,7 +35,7 @@ pub fn run(args: &GesturesArgs) -> Result<(), AppError> {
     terminal::print(&format!("{}{cost}", summary(&study)))
 }
 
-fn summary(study: &Study) -> String {
+fn summary(study: &GestureStudy) -> String {
     let mut text = String::new();
     for act in Act::GESTURES {
         let own = study.gestures.iter().filter(|(a, c, _)| *a == act && *c == Conditions::default());

@@ -4,7 +4,6 @@
 //! `Recommendation`. Budget: 1 s for 30 depth frames of 640 x 480, once a shopper; nothing here runs inside the frame.
 //! Thread: the sensor thread.
 
-pub mod agreement;
 pub mod anthropometry;
 pub mod cloud;
 pub mod estimate;

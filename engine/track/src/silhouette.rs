@@ -28,7 +28,7 @@ const HEAD_REACH: f32 = 0.13;
 const TOP_POINTS: usize = 4;
 
 /// Rows of pixels between the highest of them and the top of the head: half a row by itself, and what a Kinect loses of
-/// surface that it sees at a grazing angle (6.2 mm at 2.5 m, from mannequins; see `crate::agreement`).
+/// surface that it sees at a grazing angle (6.2 mm at 2.5 m, from mannequins; see `toile_perf::agreement`).
 const ROWS_LOST: f32 = 1.93;
 
 /// Radius of the top of the head (m): a camera below it sees the horizon of this sphere, not its top.

@@ -1,7 +1,7 @@
 //! The JSON of `toile bench gestures`.
 
 use serde::Serialize;
-use toile_track::gesture::study::{Act, Conditions, Count, GripRow, Study};
+use toile_perf::gestures::{Act, Conditions, Count, GripRow, GestureStudy};
 
 /// The body of `toile bench gestures`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -77,7 +77,7 @@ pub struct HandRow {
 
 impl GesturesReport {
     /// What a study found, and the times of a frame of joints and of one hand (us).
-    pub fn new(study: &Study, [joints_us, hand_us]: [f64; 2]) -> Self {
+    pub fn new(study: &GestureStudy, [joints_us, hand_us]: [f64; 2]) -> Self {
         Self {
             sequences: study.sequences,
             seed: study.seed,

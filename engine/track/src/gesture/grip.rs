@@ -18,7 +18,7 @@ const COOL_DOWN_NS: u64 = 300_000_000;
 
 /// The grip of one hand.
 #[derive(Debug, Clone)]
-pub(super) struct Grip {
+pub struct Grip {
     openness: f32,
     since_ns: u64,
     seen_ns: Option<u64>,
@@ -27,12 +27,13 @@ pub(super) struct Grip {
 }
 
 impl Grip {
-    pub(super) const fn new() -> Self {
+    /// A hand that was not seen yet.
+    pub const fn new() -> Self {
         Self { openness: 0.5, since_ns: 0, seen_ns: None, open: None, quiet_until_ns: 0 }
     }
 
     /// One frame: how open the hand is, `None` where it is not seen. Gives a change; what the hand is at first is none.
-    pub(super) fn step(&mut self, now: u64, openness: Option<f32>) -> Option<Gesture> {
+    pub fn step(&mut self, now: u64, openness: Option<f32>) -> Option<Gesture> {
         let lost = self.seen_ns.is_some_and(|seen| now - seen > LONGEST_GAP_NS);
         if lost {
             *self = Self { quiet_until_ns: self.quiet_until_ns, ..Self::new() };

@@ -195,7 +195,7 @@ impl HandEye {
 }
 
 /// Aspect, spread and gap of a fist, and by how much they differ from hand to hand: means over distances and deviations of
-/// the made-up hands of [`super::study`].
+/// the simulated hands of `toile bench gestures`.
 const FIST: [f32; 3] = [1.41, 0.325, 0.05];
 const SCATTER: [f32; 3] = [0.17, 0.06, 0.03];
 

@@ -12,7 +12,6 @@ mod grip;
 mod hand;
 mod hold;
 mod hull;
-pub mod study;
 mod swipe;
 mod trail;
 
@@ -20,10 +19,10 @@ use toile_assets::skeleton::Joint;
 use toile_sensors::frame::{DepthFrame, Joints};
 
 pub use frame::{Side, Trunk};
+pub use grip::Grip;
 pub use hand::{HandEye, HandShape, HandSight};
 
 use frame::{Facing, Scale};
-use grip::Grip;
 use hold::{Arms, Hold};
 use swipe::{Moment, Swipe};
 use trail::Trail;

@@ -9,7 +9,6 @@
 //! Where no size is sure, the measure is named whose exact knowledge would make the choice surest.
 
 mod chance;
-pub mod reliability;
 mod words;
 
 use toile_assets::sizes::{GarmentKind, Girth, SizeError, SizeTable};

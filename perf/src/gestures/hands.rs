@@ -1,13 +1,11 @@
-//! Made-up hands of spheres and cones before a depth camera: spread, stretched and closed.
+//! Simulated hands of spheres and cones before a depth camera: spread, stretched and closed.
 
 use std::f32::consts::TAU;
 
 use glam::{Quat, Vec3};
 use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::synthetic::{KinectNoise, Rng, SyntheticCamera};
-
-use super::super::grip::Grip;
-use super::super::hand::{HandEye, HandShape, HandSight};
+use toile_track::gesture::{Grip, HandEye, HandShape, HandSight};
 
 /// What a hand is like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

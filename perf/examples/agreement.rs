@@ -1,9 +1,9 @@
 //! The long study of synthetic agreement:
-//! `cargo run --release -p toile-track --example agreement -- SUBJECTS FRAMES SEED`.
+//! `cargo run --release -p toile-perf --example agreement -- SUBJECTS FRAMES SEED`.
 
 use std::process::ExitCode;
 
-use toile_track::agreement::{compare, study};
+use toile_perf::agreement::{compare, study};
 
 fn main() -> ExitCode {
     let numbers: Vec<u64> = std::env::args().skip(1).filter_map(|a| a.parse().ok()).collect();

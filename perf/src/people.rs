@@ -1,10 +1,10 @@
 //! Bodies that fits are judged on: sizes of EN 13402-3, and strangers drawn at random.
 
-use crate::body::{Body, BodyError, En, Sex, Wanted};
+use toile_assets::body::{Body, BodyError, En, Sex, Wanted};
 
 /// One of them: what it is called, its sex, and stature, bust or chest, waist and hip girth (m).
 #[derive(Debug, Clone, PartialEq)]
-pub struct Person {
+pub struct SizedPerson {
     /// What it is called.
     pub name: String,
     /// Which drawing it is stretched from.
@@ -14,8 +14,8 @@ pub struct Person {
 }
 
 /// A small, a middle and a large size of EN 13402-3: women 34, 42, 50 and men 46, 52, 58.
-pub fn sizes() -> Vec<Person> {
-    let of = |name: &str, sex, size| Person { name: name.into(), sex, size };
+pub fn sizes() -> Vec<SizedPerson> {
+    let of = |name: &str, sex, size| SizedPerson { name: name.into(), sex, size };
     vec![
         of("women 34", Sex::Female, [1.68, 0.80, 0.64, 0.88]),
         of("women 42", Sex::Female, [1.68, 0.96, 0.80, 1.04]),
@@ -28,7 +28,7 @@ pub fn sizes() -> Vec<Person> {
 
 /// People as they come, women and men in turn: chest and stature anywhere in their range, waist and hip by a drop from the
 /// chest. The same seed gives the same people.
-pub fn strangers(count: usize, seed: u64) -> Vec<Person> {
+pub fn strangers(count: usize, seed: u64) -> Vec<SizedPerson> {
     let mut state = seed;
     (0..count)
         .map(|i| {
@@ -39,12 +39,12 @@ pub fn strangers(count: usize, seed: u64) -> Vec<Person> {
             let waist = chest - if woman { draw(0.10, 0.20) } else { draw(0.06, 0.16) };
             let hip = chest + if woman { draw(0.02, 0.12) } else { draw(-0.06, 0.04) };
             let sex = if woman { Sex::Female } else { Sex::Male };
-            Person { name: format!("stranger {}", i + 1), sex, size: [stature, chest, waist, hip] }
+            SizedPerson { name: format!("stranger {}", i + 1), sex, size: [stature, chest, waist, hip] }
         })
         .collect()
 }
 
-impl Person {
+impl SizedPerson {
     /// Their body; where no body has these measures together, the nearest one.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! Gestures held against made-up shoppers, laws that they must obey, and what real sensors recorded.
+//! Gestures held against simulated shoppers, laws that they must obey, and what real sensors recorded.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use toile_assets::skeleton::Joint;
 use toile_sensors::filter::JointFilter;
 use toile_sensors::frame::{DepthFrame, Joints, TrackedJoint};
 use toile_sensors::source::{OpenOptions, open};
-use toile_track::gesture::study::{Act, Conditions, Count, count, events, held_up, sequence};
+use toile_perf::gestures::{Act, Conditions, Count, count, events, held_up, sequence};
 use toile_track::gesture::{Event, Gesture, Gestures, HandEye, HandSight, Side};
 
 /// The folder of recordings, or `None` where it is not set up; with CI=true that is a failure.
@@ -114,7 +114,7 @@ const MISSED: f32 = 0.08;
 const FALSE_PER_MINUTE: f32 = 0.25;
 
 #[test]
-fn made_up_gestures_are_recognised_and_nothing_else() {
+fn simulated_gestures_are_recognised_and_nothing_else() {
     let conditions = Conditions::default();
     for act in Act::GESTURES {
         let c = count(act, &conditions, 60, 5000);

@@ -1,10 +1,10 @@
 //! Whether the probabilities of sizes are true, on the women of ANSUR II:
-//! `cargo run --release -p toile-track --example reliability -- ANSUR_II_FEMALE.csv EVERY SEED` takes every EVERYth woman.
+//! `cargo run --release -p toile-perf --example reliability -- ANSUR_II_FEMALE.csv EVERY SEED` takes every EVERYth woman.
 
 use std::process::ExitCode;
 
 use toile_assets::sizes::{GarmentKind, SizeTable};
-use toile_track::recommend::reliability::{BINS, Bin, Girths, ansur, reliability};
+use toile_perf::reliability::{BINS, Bin, Girths, ansur, reliability};
 use toile_track::recommend::{EaseRange, MadeSize, Offer, Zone, ZoneGirth};
 
 /// Errors of the girths (m).

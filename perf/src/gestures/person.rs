@@ -1,4 +1,4 @@
-//! A made-up shopper: proportions of their own, arms that reach for a point, and a tracker that sees them.
+//! A simulated shopper: proportions of their own, arms that reach for a point, and a tracker that sees them.
 //!
 //! Nothing here is shared with the recogniser: the proportions are Drillis and Contini's (1966) with errors of their own,
 //! not those that it assumes.
@@ -23,9 +23,9 @@ const LOST: f32 = 0.01;
 /// Slow wander of a tracked wrist (m), as a tracker's inner point drifts over the limb.
 const WANDER: f32 = 0.012;
 
-/// Lengths of a made-up shopper (m).
+/// Lengths of a simulated shopper (m).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Person {
+pub(super) struct Shopper {
     pub stature: f32,
     /// Half of the distance of the shoulder joints.
     shoulder: f32,
@@ -36,7 +36,7 @@ pub(super) struct Person {
     palm: f32,
 }
 
-impl Person {
+impl Shopper {
     /// A random grown-up, or with `scale` a child or a giant of the same proportions.
     pub(super) fn new(rng: &mut Rng, scale: f32) -> Self {
         let [mean, sd] = STATURES[(rng.next_u64() & 1) as usize];

@@ -4,11 +4,10 @@
 //! that their true girths get.
 
 use toile_sensors::source::synthetic::Rng;
-
-use super::{Offer, RecommendError, Recommendation, Zone, recommend};
-use crate::estimate::Estimate;
-use crate::measure::{Measurements, Source};
-use crate::measures::Measures;
+use toile_track::estimate::Estimate;
+use toile_track::measure::{Measurements, Source};
+use toile_track::measures::Measures;
+use toile_track::recommend::{Offer, RecommendError, Recommendation, Zone, recommend};
 
 /// Chest, waist and hip girth of one person (m).
 pub type Girths = [f32; 3];

@@ -1,4 +1,4 @@
-//! How well gestures are recognised: made-up shoppers of many sizes, distances and speeds, who gesture and who do not.
+//! How well gestures are recognised: simulated shoppers of many sizes, distances and speeds, who gesture and who do not.
 //!
 //! Sequences run through the default joint filter as in the mirror. Events of the right kind are counted as hits, a
 //! gesture without one as a miss, every other event as false.
@@ -16,14 +16,14 @@ use toile_sensors::clock::SECOND_NS;
 use toile_sensors::filter::JointFilter;
 use toile_sensors::frame::Joints;
 use toile_sensors::source::synthetic::Rng;
+use toile_track::gesture::{Event, Gestures};
 
-use super::{Event, Gestures};
 use motion::Motion;
-use person::{Person, Tracker};
+use person::{Shopper, Tracker};
 
 pub use hands::{GripRow, HandPose, grips, held_up};
 pub use motion::Act;
-pub use table::Study;
+pub use table::GestureStudy;
 
 /// What is varied between the rows of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,7 +83,7 @@ impl Count {
 /// The joints of a random shopper who does something, filtered; the same seed gives the same bits.
 pub fn sequence(act: Act, conditions: &Conditions, seed: u64) -> Vec<Joints> {
     let mut rng = Rng::new(seed);
-    let person = Person::new(&mut rng, conditions.scale);
+    let person = Shopper::new(&mut rng, conditions.scale);
     let motion = Motion::new(act, &mut rng);
     let mut tracker = Tracker::new(&mut rng, conditions.distance);
     let facing = 0.15 * rng.gaussian();

@@ -22,10 +22,9 @@ use toile_assets::sizes::Population;
 use toile_sensors::frame::DepthFrame;
 use toile_sensors::frame::Intrinsics;
 use toile_sensors::source::synthetic::{KinectNoise, Rng, SyntheticCamera};
-
-use crate::estimate::Estimate;
-use crate::measure::{Measurements, measure};
-use crate::measures::Hint;
+use toile_track::estimate::Estimate;
+use toile_track::measure::{Measurements, measure};
+use toile_track::measures::Hint;
 
 /// Mean and lower Cholesky factor of the covariance of stature, biacromial breadth, chest, waist and buttock girth
 /// (m) in ANSUR II (public domain). The waist's mean is that of [`Measures::average`], because ANSUR measures another.
@@ -88,9 +87,9 @@ const ROOM: [Vec3; 6] = [
     Vec3::new(4.0, 3.0, -1.5),
 ];
 
-/// One subject: the reshaped body at rest, and what the tape reads.
+/// One subject: the mannequin, reshaped, at rest, and what the tape reads.
 #[derive(Debug, Clone)]
-pub struct Subject {
+pub struct Mannequin {
     /// The body; its `measures` are the tape's.
     pub body: Body,
 }
@@ -103,7 +102,7 @@ pub fn draw(sex: Sex, rng: &mut Rng) -> Measures {
     Measures { stature: m[0], shoulder_breadth: m[1], chest_girth: m[2], waist_girth: m[3], hip_girth: m[4] }
 }
 
-impl Subject {
+impl Mannequin {
     /// A random subject with a shape of their own.
     pub fn new(sex: Sex, rng: &mut Rng) -> Result<Self, BodyError> {
         let mut body = Body::build(sex, &draw(sex, rng))?;
@@ -194,7 +193,7 @@ fn reshape(body: &mut Body, ends: [f32; 3], [aspect, square, front]: [f32; 3]) {
 
 /// How one measure agrees over the subjects.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Agreement {
+pub struct MeasureAgreement {
     /// Name of the measure.
     pub measure: &'static str,
     /// Subjects for whom it could be taken.
@@ -213,11 +212,11 @@ pub struct Agreement {
     pub sigma: f32,
 }
 
-/// The measures compared, in the order of [`Subject::truth`].
+/// The measures compared, in the order of [`Mannequin::truth`].
 pub const COMPARED: [&str; 5] = ["stature", "shoulder_breadth", "chest_girth", "waist_girth", "hip_girth"];
 
 /// Compares what was measured with the truth, measure by measure.
-pub fn compare(results: &[(Measurements, [f32; 5])]) -> [Agreement; 5] {
+pub fn compare(results: &[(Measurements, [f32; 5])]) -> [MeasureAgreement; 5] {
     std::array::from_fn(|i| {
         let pairs: Vec<(Estimate, f32)> =
             results.iter().filter_map(|(m, truth)| Some((m.measures.named()[i].1?, truth[i]))).collect();
@@ -228,7 +227,7 @@ pub fn compare(results: &[(Measurements, [f32; 5])]) -> [Agreement; 5] {
         let mut absolute: Vec<f32> = errors.iter().map(|e| e.abs()).collect();
         absolute.sort_by(f32::total_cmp);
         let within = |k: f32| pairs.iter().filter(|(e, t)| (e.value - t).abs() < k * e.sigma).count() as f32 / n;
-        Agreement {
+        MeasureAgreement {
             measure: COMPARED[i],
             taken: pairs.len(),
             bias,
@@ -247,7 +246,7 @@ pub fn study(subjects: usize, frames: usize, seed: u64, sex_told: bool) -> Vec<(
     let mut results = Vec::new();
     for (i, sex) in (0..subjects as u64).flat_map(|i| [(i, Sex::Female), (i, Sex::Male)]) {
         let mut rng = Rng::new(seed + 2 * i + u64::from(sex == Sex::Male));
-        let Ok(subject) = Subject::new(sex, &mut rng) else { continue };
+        let Ok(subject) = Mannequin::new(sex, &mut rng) else { continue };
         let population = match (sex_told, sex) {
             (false, _) => Population::Mixed,
             (true, Sex::Female) => Population::Women,

@@ -1,13 +1,13 @@
 //! Fits the section models of `toile_track::anthropometry::Chart` on random subjects and prints the constants:
-//! `cargo run --release -p toile-track --example calibrate -- SUBJECTS FRAMES SEED`.
+//! `cargo run --release -p toile-perf --example calibrate -- SUBJECTS FRAMES SEED`.
 
 use std::process::ExitCode;
 
 use glam::{DMat4, DVec4};
 use toile_assets::body::Sex;
 use toile_assets::sizes::Population;
+use toile_perf::agreement::Mannequin;
 use toile_sensors::source::synthetic::Rng;
-use toile_track::agreement::Subject;
 use toile_track::anthropometry::LEVELS;
 use toile_track::estimate::temporal_mean;
 use toile_track::silhouette::{Reading, read};
@@ -22,7 +22,7 @@ struct Row {
 }
 
 fn row(sex: Sex, frames: usize, rng: &mut Rng) -> Option<Row> {
-    let subject = Subject::new(sex, rng).ok()?;
+    let subject = Mannequin::new(sex, rng).ok()?;
     let readings: Vec<Reading> = subject
         .seen(frames, rng)
         .iter()

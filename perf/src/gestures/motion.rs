@@ -1,9 +1,8 @@
-//! What a made-up shopper does: keys in time for both wrists and the trunk, minimum-jerk between them.
+//! What a simulated shopper does: keys in time for both wrists and the trunk, minimum-jerk between them.
 
 use glam::Vec3;
 use toile_sensors::source::synthetic::Rng;
-
-use super::super::Gesture;
+use toile_track::gesture::Gesture;
 
 /// A moment of a motion.
 #[derive(Debug, Clone, Copy)]

@@ -15,7 +15,7 @@ const SCALES: [f32; 3] = [0.7, 1.0, 1.2];
 
 /// The whole study.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Study {
+pub struct GestureStudy {
     /// Sequences a cell.
     pub sequences: u32,
     /// First seed.
@@ -37,7 +37,7 @@ fn columns() -> Vec<Conditions> {
     [&distances[..], &rates, &scales].concat()
 }
 
-impl Study {
+impl GestureStudy {
     /// Runs everything; `say` is told what is being done.
     pub fn run(sequences: u32, seed: u64, say: &mut dyn FnMut(&str)) -> Self {
         let mut gestures = Vec::new();
