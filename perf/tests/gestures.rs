@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use glam::{Quat, Vec3};
 use toile_assets::skeleton::Joint;
+use toile_perf::gestures::{Act, Conditions, Count, count, events, held_up, sequence};
 use toile_sensors::filter::JointFilter;
 use toile_sensors::frame::{DepthFrame, Joints, TrackedJoint};
 use toile_sensors::source::{OpenOptions, open};
-use toile_perf::gestures::{Act, Conditions, Count, count, events, held_up, sequence};
 use toile_track::gesture::{Event, Gesture, Gestures, HandEye, HandSight, Side};
 
 /// The folder of recordings, or `None` where it is not set up; with CI=true that is a failure.

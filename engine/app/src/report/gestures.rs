@@ -1,7 +1,7 @@
 //! The JSON of `toile bench gestures`.
 
 use serde::Serialize;
-use toile_perf::gestures::{Act, Conditions, Count, GripRow, GestureStudy};
+use toile_perf::gestures::{Act, Conditions, Count, GestureStudy, GripRow};
 
 /// The body of `toile bench gestures`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
