@@ -21,8 +21,6 @@ pub mod dump;
 pub mod exit;
 pub mod fit;
 pub mod gestures;
-#[cfg(any(test, feature = "kiosk"))]
-pub mod guest;
 pub mod heap;
 pub mod kiosk;
 pub mod latency;
@@ -47,6 +45,8 @@ pub mod tracking;
 pub mod try_on;
 pub mod validate;
 pub mod video;
+#[cfg(any(test, feature = "kiosk"))]
+pub mod visitor;
 #[cfg(feature = "kiosk")]
 pub mod window;
 
@@ -57,9 +57,9 @@ use std::process::ExitCode;
 use cli::Command;
 use exit::{AppError, Code};
 #[cfg(not(feature = "kiosk"))]
-use kiosk::without_window as seen;
+use kiosk::without_window as windowed;
 #[cfg(feature = "kiosk")]
-use window::seen;
+use window::run as windowed;
 
 /// Runs one command line, the program's name first, and returns what the process shall exit with.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
@@ -110,7 +110,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Plan(args) => plan::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Soak(args) => soak::run(args),
-        Command::Kiosk(args) => kiosk::run(args, seen),
+        Command::Kiosk(args) => kiosk::run(args, windowed),
         Command::Completions(shell) => completions::run(*shell),
         Command::Print(text) => terminal::print(text),
     }

@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 
 use toile::kiosk::change::{Act, Changing};
 use toile::kiosk::lives::{Cast, Headless, Lives};
-use toile::kiosk::manager::{Ending, Manager, News};
-use toile::kiosk::service::{Around, Plan, Service};
-use toile::kiosk::session::Rules;
+use toile::kiosk::service::{Service, ServiceEnvironment, ServiceOptions};
+use toile::kiosk::service_manager::{ServiceManager, ServiceStatus, StopSignal};
+use toile::kiosk::session::SessionTimes;
 use toile::kiosk::source::{Feed, Visits};
 use toile::kiosk::tailor::{self, Dressed, Tailor};
 use toile::outfit::Wish;
@@ -87,27 +87,27 @@ impl Eye for Display {
 }
 
 /// A manager that writes down what it is told and when.
-struct Diary(Mutex<Vec<(Instant, News)>>);
+struct Diary(Mutex<Vec<(Instant, ServiceStatus)>>);
 
 impl Diary {
     /// Feedings between two times.
     fn fed(&self, from: Instant, to: Instant) -> usize {
         let told = self.0.lock().unwrap();
-        told.iter().filter(|(at, news)| *news == News::Alive && (from..to).contains(at)).count()
+        told.iter().filter(|(at, status)| *status == ServiceStatus::Alive && (from..to).contains(at)).count()
     }
 
     fn is_ready(&self) -> bool {
-        self.0.lock().unwrap().iter().any(|(_, news)| *news == News::Ready)
+        self.0.lock().unwrap().iter().any(|(_, status)| *status == ServiceStatus::Ready)
     }
 }
 
-impl Manager for Diary {
-    fn patience(&self) -> Option<Duration> {
+impl ServiceManager for Diary {
+    fn watchdog_timeout(&self) -> Option<Duration> {
         Some(Duration::from_millis(300))
     }
 
-    fn tell(&self, news: News) -> io::Result<()> {
-        self.0.lock().unwrap().push((Instant::now(), news));
+    fn notify(&self, status: ServiceStatus) -> io::Result<()> {
+        self.0.lock().unwrap().push((Instant::now(), status));
         Ok(())
     }
 }
@@ -125,27 +125,27 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
     let cast = Cast { first, eye: Display(Headless::default(), display), feed, tape: None };
     let (lives, doors) = Lives::start(cast, clock).unwrap();
     let second = 1_000_000_000;
-    let plan = Plan {
+    let options = ServiceOptions {
         begun: Instant::now(),
         length: Some(Duration::from_secs(120)),
         crash_after: None,
-        rules: Rules { step_in_ns: second, step_out_ns: second, wipe_ns: second },
+        times: SessionTimes { step_in_ns: second, step_out_ns: second, wipe_ns: second },
         measure_ns: second,
         health_ns: 0,
         played: None,
         memory_locked: false,
         warnings: Vec::new(),
     };
-    let ending = Ending::default();
+    let stop = StopSignal::default();
     thread::scope(|scope| {
         scope.spawn(|| {
             meanwhile();
-            ending.ask();
+            stop.request();
         });
         let say = |_: &str| {};
-        let around = Around {
+        let environment = ServiceEnvironment {
             manager: diary,
-            ending: &ending,
+            stop: &stop,
             say: &say,
             figures: None,
             tailor: Tailor::new(wish),
@@ -153,7 +153,7 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
             pose,
             black_box: None,
         };
-        Service::new(lives, Changing::new(doors, None), plan, around).run().unwrap();
+        Service::new(lives, Changing::new(doors, None), options, environment).run().unwrap();
     });
 }
 
@@ -179,7 +179,7 @@ fn starves_while(gate: &Gate, display: Gate) {
         thread::sleep(Duration::from_millis(300));
         assert!(fed_in_a_second(&diary) >= 2, "it is fed again");
     });
-    assert_eq!(diary.0.lock().unwrap().last().unwrap().1, News::Stopping);
+    assert_eq!(diary.0.lock().unwrap().last().unwrap().1, ServiceStatus::Stopping);
 }
 
 #[test]

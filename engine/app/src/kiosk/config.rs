@@ -9,8 +9,8 @@ use serde::Deserialize;
 use toile_engine::cloth::Quality;
 use toile_engine::crew::SHARES;
 
-use super::keys;
-use super::session::Rules;
+use super::config_keys;
+use super::session::SessionTimes;
 use crate::exit::AppError;
 use crate::outfit::Wish;
 
@@ -25,27 +25,27 @@ const MOST_BYTES: u64 = 1 << 20;
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
     /// What is worn.
-    pub wear: Wear,
+    pub wear: WearConfig,
     /// Where frames come from.
-    pub sensor: Sensor,
+    pub sensor: SensorConfig,
     /// How long what has to last.
-    pub session: Times,
+    pub session: SessionConfig,
     /// The health line.
-    pub health: Health,
+    pub health: HealthConfig,
     /// What is asked of the machine.
-    pub machine: Wanted,
+    pub machine: MachineConfig,
     /// The display, where there is one.
-    pub display: Display,
+    pub display: DisplayConfig,
     /// Figures for Prometheus.
-    pub metrics: Metrics,
+    pub metrics: MetricsConfig,
     /// What is kept of a crash.
-    pub crash: Crash,
+    pub crash: CrashConfig,
 }
 
 /// What is worn.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Wear {
+pub struct WearConfig {
     /// Garments of the wardrobe, inner first.
     pub garments: Vec<String>,
     /// A size for everybody.
@@ -57,9 +57,9 @@ pub struct Wear {
 /// Where frames come from.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Sensor {
+pub struct SensorConfig {
     /// The kind of sensor.
-    pub source: Source,
+    pub source: SensorSource,
     /// The recording; none is the embedded one.
     pub session: Option<PathBuf>,
     /// Time between two rounds of a recording (s).
@@ -71,7 +71,7 @@ pub struct Sensor {
 /// A kind of sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Source {
+pub enum SensorSource {
     /// A recording, played.
     Session,
     /// Virtual Motion Capture over UDP.
@@ -81,7 +81,7 @@ pub enum Source {
 /// How long what has to last (s).
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Times {
+pub struct SessionConfig {
     /// Being seen until one has stepped in.
     pub step_in_s: f64,
     /// Measuring.
@@ -95,7 +95,7 @@ pub struct Times {
 /// The health line.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Health {
+pub struct HealthConfig {
     /// Time between two (s); 0 is never.
     pub every_s: f64,
 }
@@ -103,7 +103,7 @@ pub struct Health {
 /// What is asked of the machine.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Wanted {
+pub struct MachineConfig {
     /// Workers of a step; none is as many as there are cores.
     pub workers: Option<usize>,
     /// Whether all memory is kept resident.
@@ -116,7 +116,7 @@ pub const LANGUAGES: [&str; 6] = ["en", "de", "fr", "es", "tr", "ja"];
 /// The display, and how every visit begins on it.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Display {
+pub struct DisplayConfig {
     /// From the floor to the picture's lower edge (mm).
     pub lower_edge_mm: f32,
     /// Height of the picture (mm).
@@ -136,7 +136,7 @@ pub struct Display {
 /// Figures for Prometheus.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Metrics {
+pub struct MetricsConfig {
     /// Port on 127.0.0.1.
     pub port: Option<u16>,
 }
@@ -144,37 +144,37 @@ pub struct Metrics {
 /// What is kept of a crash.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Crash {
+pub struct CrashConfig {
     /// Where the last ten seconds are written; none writes nothing.
     pub recording: Option<PathBuf>,
 }
 
-impl Default for Wear {
+impl Default for WearConfig {
     fn default() -> Self {
         Self { garments: vec!["sun-dress".into()], size: None, quality: Quality::default().name().into() }
     }
 }
 
-impl Default for Sensor {
+impl Default for SensorConfig {
     fn default() -> Self {
         let vmc = SocketAddr::from(([127, 0, 0, 1], toile_sensors::source::vmc::PORT));
-        Self { source: Source::Session, session: None, pause_s: 12.0, vmc }
+        Self { source: SensorSource::Session, session: None, pause_s: 12.0, vmc }
     }
 }
 
-impl Default for Times {
+impl Default for SessionConfig {
     fn default() -> Self {
         Self { step_in_s: 0.5, measure_s: 1.0, step_out_s: 2.0, wipe_s: 5.0 }
     }
 }
 
-impl Default for Health {
+impl Default for HealthConfig {
     fn default() -> Self {
         Self { every_s: 60.0 }
     }
 }
 
-impl Default for Display {
+impl Default for DisplayConfig {
     fn default() -> Self {
         Self {
             lower_edge_mm: 400.0,
@@ -188,13 +188,13 @@ impl Default for Display {
     }
 }
 
-impl Default for Wanted {
+impl Default for MachineConfig {
     fn default() -> Self {
         Self { workers: None, lock_memory: true }
     }
 }
 
-impl Display {
+impl DisplayConfig {
     /// The first value that cannot be, with the cure. Whether the controls are within reach is looked at where there are any.
     fn fault(&self) -> Option<String> {
         let (minutes, language) = (self.picture_minutes, &self.language);
@@ -237,8 +237,8 @@ impl Config {
     /// # Errors
     /// As [`Config::open`].
     pub fn parse(file: &str, text: &str) -> Result<Self, AppError> {
-        keys::check(file, text)?;
-        let config: Self = toml::from_str(text).map_err(|e| keys::told(file, text, &e))?;
+        config_keys::check(file, text)?;
+        let config: Self = toml::from_str(text).map_err(|e| config_keys::told(file, text, &e))?;
         match config.fault() {
             Some(fault) => Err(AppError::Input(format!("{file}: {fault}"))),
             None => Ok(config),
@@ -280,9 +280,9 @@ impl Config {
     }
 
     /// The rules of a session.
-    pub fn rules(&self) -> Rules {
+    pub fn times(&self) -> SessionTimes {
         let times = &self.session;
-        Rules { step_in_ns: ns(times.step_in_s), step_out_ns: ns(times.step_out_s), wipe_ns: ns(times.wipe_s) }
+        SessionTimes { step_in_ns: ns(times.step_in_s), step_out_ns: ns(times.step_out_s), wipe_ns: ns(times.wipe_s) }
     }
 }
 
@@ -298,7 +298,7 @@ mod tests {
     #[test]
     fn the_example_is_the_default_and_explains_every_key() {
         assert_eq!(Config::parse("kiosk.toml", EXAMPLE).unwrap(), Config::default());
-        for (table, names) in keys::KEYS {
+        for (table, names) in config_keys::KEYS {
             assert!(EXAMPLE.contains(&format!("\n[{table}]\n")), "{table}");
             for name in names {
                 assert!(

@@ -1,5 +1,5 @@
-//! Figures for Prometheus, on the loopback interface alone: one thread, one connection at a time, two kilobytes a
-//! question, a second an answer.
+//! Metrics for Prometheus, on the loopback interface alone: one thread, one connection at a time, two kilobytes a
+//! request, a second a response.
 
 use std::fmt::Write as _;
 use std::io::{self, Read, Write};
@@ -9,38 +9,38 @@ use std::time::{Duration, Instant};
 
 use toile_engine::relay::Reader;
 
-use super::session::State;
-use super::vitals::Vitals;
+use super::health::HealthFigures;
+use super::session::SessionState;
 
-/// Longest question (bytes).
+/// Longest request (bytes).
 const MOST_BYTES: usize = 2048;
 
-/// Longest time that one who asks may take.
+/// Longest time that a request may take.
 const LONGEST: Duration = Duration::from_secs(1);
 
 /// Answers on this port of 127.0.0.1 (0 is any that is free) for as long as the program runs; gives where.
 ///
 /// # Errors
 /// Where the port is taken, or the system gives no thread.
-pub fn serve(port: u16, mut vitals: Reader<Vitals>) -> io::Result<SocketAddr> {
+pub fn serve(port: u16, mut figures: Reader<HealthFigures>) -> io::Result<SocketAddr> {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
     let address = listener.local_addr()?;
     let work = move || {
         for stream in listener.incoming().flatten() {
-            // One who goes away before the answer has no use for it.
-            let _ = answer(stream, vitals.latest());
+            // A client that goes away before the answer has no use for it.
+            let _ = answer(stream, figures.latest());
         }
     };
     thread::Builder::new().name("toile-metrics".into()).spawn(work)?;
     Ok(address)
 }
 
-fn answer(mut stream: TcpStream, vitals: &Vitals) -> io::Result<()> {
+fn answer(mut stream: TcpStream, figures: &HealthFigures) -> io::Result<()> {
     stream.set_write_timeout(Some(LONGEST))?;
     let question = question(&mut stream)?;
     let mut words = question.split(|b| *b == b' ');
     let (status, body) = match (words.next(), words.next()) {
-        (Some(b"GET"), Some(b"/metrics")) => ("200 OK", text(vitals)),
+        (Some(b"GET"), Some(b"/metrics")) => ("200 OK", text(figures)),
         (Some(b"GET"), _) => ("404 Not Found", "look at /metrics\n".to_owned()),
         _ => ("405 Method Not Allowed", "only GET is answered\n".to_owned()),
     };
@@ -73,23 +73,23 @@ fn question(stream: &mut TcpStream) -> io::Result<Vec<u8>> {
 }
 
 /// The figures in Prometheus' text format.
-fn text(vitals: &Vitals) -> String {
+fn text(figures: &HealthFigures) -> String {
     let seconds = |ns: u64| ns as f64 * 1e-9;
     let rows: [(&str, &str, &str, f64); 9] = [
-        ("uptime_seconds", "gauge", "Time since the loop began.", seconds(vitals.uptime_ns)),
-        ("steps_total", "counter", "Physics steps taken.", vitals.steps as f64),
+        ("uptime_seconds", "gauge", "Time since the loop began.", seconds(figures.uptime_ns)),
+        ("steps_total", "counter", "Physics steps taken.", figures.steps as f64),
         (
             "step_p999_seconds",
             "gauge",
             "99.9 % of the steps since the last health line took no longer.",
-            vitals.step_p999_us * 1e-6,
+            figures.step_p999_us * 1e-6,
         ),
-        ("deadline_misses_total", "counter", "Steps that were late or dropped.", vitals.misses as f64),
-        ("rung", "gauge", "Quality given up: place in the governor's ladder.", f64::from(vitals.rung)),
-        ("nonfinite_total", "counter", "Steps rolled back because of a number that is none.", vitals.nonfinite as f64),
-        ("sessions_total", "counter", "Shoppers who stepped in.", vitals.sessions as f64),
-        ("pictures_total", "counter", "Pictures taken.", vitals.pictures as f64),
-        ("sensor_lost_total", "counter", "Times that the sensor was lost.", vitals.sensor_lost as f64),
+        ("deadline_misses_total", "counter", "Steps that were late or dropped.", figures.misses as f64),
+        ("rung", "gauge", "Quality given up: place in the governor's ladder.", f64::from(figures.rung)),
+        ("nonfinite_total", "counter", "Steps rolled back because of a NaN or an infinity.", figures.nonfinite as f64),
+        ("sessions_total", "counter", "Shoppers who stepped in.", figures.sessions as f64),
+        ("frames_total", "counter", "Pictures taken.", figures.pictures as f64),
+        ("sensor_lost_total", "counter", "Times that the sensor was lost.", figures.sensor_lost as f64),
     ];
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -97,8 +97,8 @@ fn text(vitals: &Vitals) -> String {
         let _ = writeln!(text, "# HELP toile_{name} {help}\n# TYPE toile_{name} {kind}\ntoile_{name} {value}");
     }
     let _ = writeln!(text, "# HELP toile_state Where the session is.\n# TYPE toile_state gauge");
-    for state in State::ALL {
-        let _ = writeln!(text, "toile_state{{state=\"{}\"}} {}", state.name(), u8::from(state == vitals.state));
+    for state in SessionState::ALL {
+        let _ = writeln!(text, "toile_state{{state=\"{}\"}} {}", state.name(), u8::from(state == figures.state));
     }
     text
 }
@@ -118,11 +118,16 @@ mod tests {
     }
 
     #[test]
-    fn figures_are_told_to_whoever_asks_on_loopback_and_nonsense_is_not_answered() {
-        let Relay { mut writer, reader } = Relay::new(&Vitals::default());
+    fn figures_are_served_on_loopback_and_nonsense_is_not_answered() {
+        let Relay { mut writer, reader } = Relay::new(&HealthFigures::default());
         let address = serve(0, reader).unwrap();
         assert!(address.ip().is_loopback());
-        writer.publish(Vitals { steps: 432_000, step_p999_us: 2_500.0, state: State::TryOn, ..Vitals::default() });
+        writer.publish(HealthFigures {
+            steps: 432_000,
+            step_p999_us: 2_500.0,
+            state: SessionState::TryOn,
+            ..HealthFigures::default()
+        });
         let said = ask(address, b"GET /metrics HTTP/1.1\r\nHost: x\r\n\r\n");
         let (head, body) = said.split_once("\r\n\r\n").unwrap();
         assert!(head.starts_with("HTTP/1.1 200 OK") && head.contains(&format!("Content-Length: {}", body.len())));

@@ -1,30 +1,30 @@
-//! The kiosk: the whole loop, unattended, from shopper to shopper, until it is told to end.
+//! The kiosk: the whole loop, unattended, from shopper to shopper, until it is asked to end.
 //!
 //! Reads: a configuration, frames of a sensor. Writes: a health line, figures of the machine; nothing about a person.
-//! Budget: ready within 5 s of its start; a look at everything each 20 ms, under 100 us of the first core.
-//! Thread: the loop's own; a service thread that looks, a tailor's thread while somebody is measured, one for figures.
+//! Budget: ready within 5 s of its start; a round of the service each 20 ms, under 100 us of the first core.
+//! Thread: the loop's own; a service thread, a dressing thread while somebody is measured, one for metrics.
 //!
-//! [`session`] is the machine of states that a window drives too; [`stage`] and [`change`] let another dressed body take the
+//! [`session`] is the state machine that a window drives too; [`stage`] and [`change`] let another dressed body take the
 //! place of one that has left, without the loop's threads allocating or waiting; [`recording`] keeps the last seconds for a
 //! crash, where a shop asks for it.
 
 pub mod change;
 pub mod config;
-pub mod host;
-mod keys;
+mod config_keys;
+pub mod controller;
+pub mod health;
 pub mod lives;
-pub mod manager;
 mod memory;
 #[cfg(feature = "metrics")]
 pub mod metrics;
 pub mod recording;
 pub mod report;
 pub mod service;
+pub mod service_manager;
 pub mod session;
 pub mod source;
 pub mod stage;
 pub mod tailor;
-pub mod vitals;
 pub mod watchdog;
 
 use std::sync::Arc;
@@ -46,39 +46,39 @@ use crate::report::Document;
 use crate::shopper;
 use crate::terminal::{self, Words};
 use change::{Act, Changing};
-use config::{Config, Source};
-use host::Host;
+use config::{Config, SensorSource};
+use controller::SessionController;
+use health::HealthFigures;
 use lives::{Cast, Headless, Lives};
-use manager::{Ending, Systemd};
 use report::KioskReport;
-use service::{Around, Plan, Service};
+use service::{Service, ServiceEnvironment, ServiceOptions};
+use service_manager::{StopSignal, Systemd};
 use source::{Feed, Visits};
 use tailor::{Dressed, Model, Tailor};
-use vitals::Vitals;
 
-/// Runs `toile kiosk`, with a window as `seen` does.
+/// Runs `toile kiosk`; with a window, by `windowed`.
 ///
 /// # Errors
-/// A configuration, a session or a garment that cannot be used, a thread that ended while it ran; those of `seen`.
-pub fn run(args: &KioskArgs, seen: fn(Given<'_>) -> Result<KioskReport, AppError>) -> Result<(), AppError> {
+/// A configuration, a session or a garment that cannot be used, a thread that ended while it ran; those of `windowed`.
+pub fn run(args: &KioskArgs, windowed: fn(KioskRun<'_>) -> Result<KioskReport, AppError>) -> Result<(), AppError> {
     let begun = Instant::now();
     if args.print_config {
         return terminal::print(config::EXAMPLE);
     }
-    let ending = Ending::listen().map_err(AppError::internal)?;
+    let stop = StopSignal::listen().map_err(AppError::internal)?;
     let mut config = Config::open(args.config.as_deref())?;
     if args.session.is_some() {
-        (config.sensor.source, config.sensor.session) = (Source::Session, args.session.clone());
+        (config.sensor.source, config.sensor.session) = (SensorSource::Session, args.session.clone());
     }
     let words = Words::new(args.quiet);
     let figures = figures(&config)?;
     let clock = RealClock::default();
-    let given = Given { args, config: &config, begun, clock, ending: &ending, words: &words, figures };
+    let run = KioskRun { args, config: &config, begun, clock, stop: &stop, words: &words, figures };
     let report = if args.headless {
         let eye = |_: &Frame| Ok(Headless::default());
-        serve(given, Seeing { eye, stage: |frame| (Staged::new(frame), ()), host: |_| None })?.0
+        serve(run, Frontend { eye, stage: |frame| (Staged::new(frame), ()), controller: |_| None })?.0
     } else {
-        seen(given)?
+        windowed(run)?
     };
     if args.json { terminal::print_json(&Document::new("kiosk", report)) } else { terminal::print(&report.summary()) }
 }
@@ -87,13 +87,13 @@ pub fn run(args: &KioskArgs, seen: fn(Given<'_>) -> Result<KioskReport, AppError
 ///
 /// # Errors
 /// That there is none, and the cure.
-pub fn without_window(_: Given<'_>) -> Result<KioskReport, AppError> {
+pub fn without_window(_: KioskRun<'_>) -> Result<KioskReport, AppError> {
     let cure = "add `--headless`, or build with `--features kiosk`";
     Err(AppError::Usage(format!("`toile kiosk` has no window in this build; {cure}")))
 }
 
-/// What a run is given.
-pub struct Given<'a> {
+/// A run of the kiosk: its arguments, its configuration, and what it was started with.
+pub struct KioskRun<'a> {
     /// The command line.
     pub args: &'a KioskArgs,
     /// The configuration.
@@ -103,40 +103,39 @@ pub struct Given<'a> {
     /// The loop's clock.
     pub clock: RealClock,
     /// Whether it is to end.
-    pub ending: &'a Ending,
-    /// What is said on the way.
+    pub stop: &'a StopSignal,
+    /// Prints progress.
     pub words: &'a Words,
-    figures: Option<Writer<Vitals>>,
+    figures: Option<Writer<HealthFigures>>,
 }
 
-/// Who sees.
-pub struct Seeing<F, H, O> {
+/// How a run shows itself: without a display, or at a window.
+pub struct Frontend<F, H, O> {
     /// The eye, once the mannequin is dressed.
     pub eye: F,
     /// What it has to know of a frame that takes the stage.
     pub stage: fn(Frame) -> (Staged, O),
-    /// Who decides what happens to shoppers, who are measured from the recording that is played, if one is; none is the session
-    /// alone.
-    pub host: H,
+    /// Makes the controller, given the recording that shoppers are measured from, if one is played.
+    pub controller: H,
 }
 
-/// A host with what it holds.
-pub type Hosting<'a, O> = Option<Box<dyn Host<Staged, O> + 'a>>;
+/// A controller; none is that of the session alone.
+pub type BoxedController<'a, O> = Option<Box<dyn SessionController<Staged, O> + 'a>>;
 
 /// Sets everything up and runs until the end; gives the report, and the eye that looked.
 ///
 /// # Errors
 /// As [`run`].
 pub fn serve<'a, E, F, H>(
-    given: Given<'a>,
-    seeing: Seeing<F, H, E::Outfit>,
+    run: KioskRun<'a>,
+    frontend: Frontend<F, H, E::Outfit>,
 ) -> Result<(KioskReport, Option<E>), AppError>
 where
     E: Eye<Outfit: Default> + 'static,
     F: FnOnce(&Frame) -> Result<E, AppError>,
-    H: FnOnce(Option<Model>) -> Hosting<'a, E::Outfit>,
+    H: FnOnce(Option<Model>) -> BoxedController<'a, E::Outfit>,
 {
-    let Given { args, config, begun, clock, ending, words, figures } = given;
+    let KioskRun { args, config, begun, clock, stop, words, figures } = run;
     let wish = config.wish();
     let session = recording(config)?;
     // The mannequin stands as somebody does in the recording: a pose, and no body.
@@ -147,11 +146,11 @@ where
     let workers = config.machine.workers.unwrap_or_else(workers);
     let (crew, worker) = threads::crew(workers).map_err(AppError::input)?;
     let locked = if config.machine.lock_memory { memory::lock() } else { Ok(()) };
-    let plan = Plan {
+    let options = ServiceOptions {
         begun,
         length: args.seconds.map(|s| Duration::from_secs(s.into())),
         crash_after: args.crash_after.map(Duration::from_secs),
-        rules: config.rules(),
+        times: config.times(),
         measure_ns: config::ns(config.session.measure_s),
         health_ns: config::ns(config.health.every_s),
         played,
@@ -163,39 +162,39 @@ where
         None => (None, None),
     };
     let Dressed { frame, reader, made } = dressed;
-    let eye = (seeing.eye)(&frame)?;
+    let eye = (frontend.eye)(&frame)?;
     let first = Act { scene: Staged::new(frame.with_crew(crew)), reader, outfit: E::Outfit::default(), made };
     let cast = Cast { first, eye, feed, tape };
     let (lives, doors) = Lives::start(cast, clock).map_err(AppError::internal)?;
-    ending.orderly();
+    stop.graceful();
     let say = |line: &str| words.say(line);
     let changing = Changing::new(doors, black_box.clone());
-    let around = Around {
+    let environment = ServiceEnvironment {
         manager: &Systemd,
-        ending,
+        stop,
         say: &say,
         figures,
         tailor: Tailor::new(wish),
-        stage: seeing.stage,
+        stage: frontend.stage,
         pose,
         black_box,
     };
-    let host = (seeing.host)(plan.played.clone());
-    let service = Service::new(lives, changing, plan, around);
-    let ran = match host {
-        Some(host) => service.hosted_by(host).run(),
+    let controller = (frontend.controller)(options.played.clone());
+    let service = Service::new(lives, changing, options, environment);
+    let ran = match controller {
+        Some(controller) => service.controlled_by(controller).run(),
         None => service.run(),
     };
     crash::forget();
-    let (mut ended, mut course) = ran?;
-    course.threads.extend(worker.map(Placed::from));
-    let report = KioskReport::of(&ended, course);
+    let (mut ended, mut record) = ran?;
+    record.threads.extend(worker.map(Placed::from));
+    let report = KioskReport::of(&ended, record);
     Ok((report, ended.render.take().map(|render| render.eye)))
 }
 
 /// The recording that is played, or for a live sensor the embedded one, whose shopper shows the mannequin how to stand.
 fn recording(config: &Config) -> Result<Session, AppError> {
-    let path = config.sensor.session.as_deref().filter(|_| config.sensor.source == Source::Session);
+    let path = config.sensor.session.as_deref().filter(|_| config.sensor.source == SensorSource::Session);
     let session = shopper::open(path, None)?;
     if session.joints.is_empty() {
         return Err(AppError::Input(format!("session {} has no joints, so that no pose can be shown", session.name)));
@@ -206,7 +205,7 @@ fn recording(config: &Config) -> Result<Session, AppError> {
 /// What the sensor reads, and what shoppers are then measured from.
 fn feed(config: &Config, session: Session, clock: RealClock) -> Result<(Feed, Option<Model>), AppError> {
     let address = config.sensor.vmc;
-    if config.sensor.source == Source::Vmc {
+    if config.sensor.source == SensorSource::Vmc {
         let refused =
             |e| AppError::Device(format!("nothing can be received at {address} ({e}); name a free one in sensor.vmc"));
         return Ok((Feed::listen(address, clock).map_err(refused)?, None));
@@ -220,17 +219,17 @@ fn workers() -> usize {
 }
 
 #[cfg(feature = "metrics")]
-fn figures(config: &Config) -> Result<Option<Writer<Vitals>>, AppError> {
+fn figures(config: &Config) -> Result<Option<Writer<HealthFigures>>, AppError> {
     use toile_engine::relay::Relay;
     let Some(port) = config.metrics.port else { return Ok(None) };
-    let Relay { writer, reader } = Relay::new(&Vitals::default());
+    let Relay { writer, reader } = Relay::new(&HealthFigures::default());
     let refused = |e| AppError::Device(format!("port {port} of 127.0.0.1 cannot be opened ({e}); name a free one"));
     metrics::serve(port, reader).map_err(refused)?;
     Ok(Some(writer))
 }
 
 #[cfg(not(feature = "metrics"))]
-fn figures(config: &Config) -> Result<Option<Writer<Vitals>>, AppError> {
+fn figures(config: &Config) -> Result<Option<Writer<HealthFigures>>, AppError> {
     match config.metrics.port {
         None => Ok(None),
         Some(_) => Err(AppError::Input(

@@ -1,4 +1,4 @@
-//! What a run of the kiosk came to, as the JSON has it: figures of the machine, and nothing of a person.
+//! The report of a kiosk's run, as in the JSON: figures of the machine, and nothing of a person.
 
 use serde::Serialize;
 use toile_engine::pace::physics::{Gauges, Scene};
@@ -6,9 +6,9 @@ use toile_engine::pace::queue::Capacity;
 use toile_engine::pace::render::Eye;
 use toile_perf::latency::{Attributed, Placed, Quantiles, Warned};
 
+use super::health::HealthFigures;
 use super::lives::Ended;
-use super::session::State;
-use super::vitals::Vitals;
+use super::session::SessionState;
 
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -18,7 +18,7 @@ pub struct KioskReport {
     /// From the start of the program until the first step and the first picture were made (ms); none where it ended before.
     pub ready_ms: Option<f64>,
     /// The states that were entered, in order; the first thousand.
-    pub states: Vec<State>,
+    pub states: Vec<SessionState>,
     /// Shoppers who stepped in.
     pub sessions: u64,
     /// Pictures taken.
@@ -43,7 +43,7 @@ pub struct KioskReport {
     pub total_us: Quantiles,
     /// Steps on each rung of the governor's ladder.
     pub rungs: Vec<u64>,
-    /// Steps that were rolled back because of a number that is none.
+    /// Steps that were rolled back because of a NaN or an infinity.
     pub nonfinite: u64,
     /// Whether all memory was kept resident.
     pub memory_locked: bool,
@@ -61,9 +61,9 @@ pub struct KioskReport {
 /// The window's part of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WindowReport {
-    /// Who draws.
+    /// Name of the graphics adapter.
     pub adapter: String,
-    /// Whether that is the processor.
+    /// Whether that draws on the processor.
     pub software: bool,
     /// Pixels of the window.
     pub size: [u32; 2],
@@ -85,15 +85,15 @@ pub struct WindowReport {
     pub jitter_us: Quantiles,
 }
 
-/// What the service knows of its run beside the lives.
+/// What the service recorded of its run, beside the loop's threads.
 #[derive(Debug, Clone)]
-pub struct Course {
+pub struct RunRecord {
     /// The last figures.
-    pub vitals: Vitals,
+    pub figures: HealthFigures,
     /// From the start of the program until it was ready (ms).
     pub ready_ms: Option<f64>,
     /// The states entered.
-    pub states: Vec<State>,
+    pub states: Vec<SessionState>,
     /// Why steps were late.
     pub attributed: Attributed,
     /// Where the threads ran.
@@ -105,33 +105,33 @@ pub struct Course {
 }
 
 impl KioskReport {
-    /// Of lives that have ended.
-    pub fn of<S: Scene, E: Eye>(ended: &Ended<S, E>, course: Course) -> Self {
+    /// Of threads that have ended.
+    pub fn of<S: Scene, E: Eye>(ended: &Ended<S, E>, record: RunRecord) -> Self {
         let nothing = Gauges::default();
         let gauges = ended.physics.as_ref().map_or(&nothing, |physics| &physics.gauges);
         let render = ended.render.as_ref();
-        let mut warnings = course.warnings;
+        let mut warnings = record.warnings;
         warnings.extend(ended.capacities.iter().filter_map(Capacity::warning));
-        warnings.extend(course.threads.iter().flat_map(|t| t.refused.clone()));
+        warnings.extend(record.threads.iter().flat_map(|t| t.refused.clone()));
         Self {
-            seconds: (course.vitals.uptime_ns / 1_000_000) as f64 / 1e3,
-            ready_ms: course.ready_ms,
-            states: course.states,
-            sessions: course.vitals.sessions,
+            seconds: (record.figures.uptime_ns / 1_000_000) as f64 / 1e3,
+            ready_ms: record.ready_ms,
+            states: record.states,
+            sessions: record.figures.sessions,
             frames: render.map_or(0, |r| r.pictures),
             dropped: render.map_or(0, |r| r.dropped),
             sensor_frames: ended.sensor.as_ref().map_or(0, |s| s.frames()),
             steps: gauges.steps,
             steps_dropped: gauges.dropped,
             deadline_misses: gauges.missed + gauges.dropped,
-            attributed: course.attributed,
+            attributed: record.attributed,
             step_us: Quantiles::of(&gauges.step),
             present_us: render.map(|r| Quantiles::of(&r.drawing)).unwrap_or_default(),
             total_us: render.map(|r| Quantiles::of(&r.total)).unwrap_or_default(),
             rungs: gauges.rungs.to_vec(),
-            nonfinite: course.vitals.nonfinite,
-            memory_locked: course.memory_locked,
-            threads: course.threads,
+            nonfinite: record.figures.nonfinite,
+            memory_locked: record.memory_locked,
+            threads: record.threads,
             capacities: ended.capacities.map(Warned::from).to_vec(),
             warnings,
             window: None,

@@ -1,4 +1,4 @@
-//! The service: looks at everything fifty times a second and has a host decide; it steps nothing and draws nothing itself.
+//! The service: polls everything fifty times a second and has a controller decide; it steps nothing and draws nothing itself.
 
 use std::sync::Arc;
 use std::thread;
@@ -13,24 +13,24 @@ use toile_perf::latency::{Attributed, Placed};
 use toile_sensors::frame::Joints;
 
 use super::change::Changing;
-use super::host::{Alone, Hall, Host};
+use super::controller::{ControllerContext, HeadlessController, SessionController};
+use super::health::{HealthCounter, HealthFigures};
 use super::lives::{Ended, Lives};
-use super::manager::{Ending, Manager, News};
-use super::report::Course;
-use super::session::{Rules, State};
+use super::report::RunRecord;
+use super::service_manager::{ServiceManager, ServiceStatus, StopSignal};
+use super::session::{SessionState, SessionTimes};
 use super::tailor::{Model, Tailor, Work};
-use super::vitals::{Tally, Vitals};
 use super::watchdog::Watchdog;
 use crate::exit::AppError;
 
-/// Time between two looks: the queues hold seconds, and a signal to end waits for no longer.
-const LOOK: Duration = Duration::from_millis(20);
+/// Time between two rounds: the queues hold seconds, and a signal to end waits for no longer.
+const POLL: Duration = Duration::from_millis(20);
 
-/// Most states that are told one by one.
+/// Most states that are listed one by one.
 const MOST_STATES: usize = 1000;
 
-/// How the service behaves.
-pub struct Plan {
+/// Settings of the service.
+pub struct ServiceOptions {
     /// When the program was started.
     pub begun: Instant,
     /// When it ends by itself.
@@ -38,7 +38,7 @@ pub struct Plan {
     /// When it panics, to see what a crash leaves.
     pub crash_after: Option<Duration>,
     /// The session's times.
-    pub rules: Rules,
+    pub times: SessionTimes,
     /// Time over which a shopper is measured (ns).
     pub measure_ns: u64,
     /// Time between two health lines (ns); 0 is never.
@@ -51,16 +51,16 @@ pub struct Plan {
     pub warnings: Vec<String>,
 }
 
-/// Everything that the service talks to beside the loop.
-pub struct Around<'a, S, O> {
-    /// Who manages it.
-    pub manager: &'a dyn Manager,
-    /// Whether it was told to end.
-    pub ending: &'a Ending,
-    /// Where health lines go.
+/// What the service talks to beside the loop.
+pub struct ServiceEnvironment<'a, S, O> {
+    /// The service manager.
+    pub manager: &'a dyn ServiceManager,
+    /// Whether it is to end.
+    pub stop: &'a StopSignal,
+    /// Prints a health line.
     pub say: &'a dyn Fn(&str),
-    /// Where figures go for whoever asks for them.
-    pub figures: Option<Writer<Vitals>>,
+    /// Receives the figures, where metrics are served.
+    pub figures: Option<Writer<HealthFigures>>,
     /// Who dresses shoppers.
     pub tailor: Tailor,
     /// What a dressed frame becomes on the stage, and what the eye has to know of it.
@@ -74,23 +74,23 @@ pub struct Around<'a, S, O> {
 /// The service while it runs.
 pub struct Service<'a, S: Scene, E: Eye> {
     lives: Lives<S, E>,
-    hall: Hall<S, E::Outfit>,
-    host: Box<dyn Host<S, E::Outfit> + 'a>,
+    context: ControllerContext<S, E::Outfit>,
+    controller: Box<dyn SessionController<S, E::Outfit> + 'a>,
     length: Option<Duration>,
     crash_after: Option<Duration>,
     begun: Instant,
     every_ns: u64,
-    manager: &'a dyn Manager,
-    ending: &'a Ending,
+    manager: &'a dyn ServiceManager,
+    stop: &'a StopSignal,
     say: &'a dyn Fn(&str),
-    figures: Option<Writer<Vitals>>,
+    figures: Option<Writer<HealthFigures>>,
     black_box: Option<Arc<BlackBox>>,
-    tally: Tally,
+    counter: HealthCounter,
     dog: Option<Watchdog>,
     /// The loop's time when it began, and when the next health line is due (ns).
     began_ns: u64,
     health_ns: u64,
-    course: Course,
+    record: RunRecord,
 }
 
 impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
@@ -98,61 +98,61 @@ impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
     pub fn new(
         lives: Lives<S, E>,
         changing: Changing<S, E::Outfit>,
-        plan: Plan,
-        around: Around<'a, S, E::Outfit>,
+        options: ServiceOptions,
+        environment: ServiceEnvironment<'a, S, E::Outfit>,
     ) -> Self {
         let now = lives.now_ns();
         let threads = lives.placements().into_iter().map(Placed::from).collect();
-        let course = Course {
-            vitals: Vitals::default(),
+        let record = RunRecord {
+            figures: HealthFigures::default(),
             ready_ms: None,
-            states: vec![State::Attract],
+            states: vec![SessionState::Attract],
             attributed: Attributed::default(),
             threads,
-            memory_locked: plan.memory_locked,
-            warnings: plan.warnings.clone(),
+            memory_locked: options.memory_locked,
+            warnings: options.warnings.clone(),
         };
-        let Around { manager, ending, say, figures, tailor, stage, pose, black_box } = around;
-        let host = Box::new(Alone::new(plan.rules, plan.measure_ns, plan.played, now));
+        let ServiceEnvironment { manager, stop, say, figures, tailor, stage, pose, black_box } = environment;
+        let controller = Box::new(HeadlessController::new(options.times, options.measure_ns, options.played, now));
         Self {
             lives,
-            hall: Hall { changing, tailor, stage, pose },
-            host,
-            length: plan.length,
-            crash_after: plan.crash_after,
-            begun: plan.begun,
-            every_ns: plan.health_ns,
-            dog: Watchdog::new(manager.patience(), now),
+            context: ControllerContext { changing, tailor, stage, pose },
+            controller,
+            length: options.length,
+            crash_after: options.crash_after,
+            begun: options.begun,
+            every_ns: options.health_ns,
+            dog: Watchdog::new(manager.watchdog_timeout(), now),
             manager,
-            ending,
+            stop,
             say,
             figures,
             black_box,
-            tally: Tally::default(),
+            counter: HealthCounter::default(),
             began_ns: now,
-            health_ns: now + plan.health_ns,
-            course,
+            health_ns: now + options.health_ns,
+            record,
         }
     }
 
-    /// The same with somebody else who decides what happens to whoever stands there: one with pages, for a window.
+    /// The same with another controller: one with pages, for a window.
     #[must_use]
-    pub fn hosted_by(self, host: Box<dyn Host<S, E::Outfit> + 'a>) -> Self {
-        Self { host, ..self }
+    pub fn controlled_by(self, controller: Box<dyn SessionController<S, E::Outfit> + 'a>) -> Self {
+        Self { controller, ..self }
     }
 
-    /// Runs until it is told to end or its time is over. Gives what became of it, and of the lives.
+    /// Runs until it is told to end or its time is over. Returns a record of the run, and of the loop's threads.
     ///
     /// # Errors
     /// Where a thread has ended that must not: whoever started the service starts it again.
-    pub fn run(mut self) -> Result<(Ended<S, E>, Course), AppError> {
-        while !self.ending.is_asked() && !self.is_time_over() {
-            self.look()?;
-            thread::sleep(LOOK);
+    pub fn run(mut self) -> Result<(Ended<S, E>, RunRecord), AppError> {
+        while !self.stop.is_requested() && !self.is_time_over() {
+            self.poll()?;
+            thread::sleep(POLL);
         }
-        self.tell(News::Stopping);
+        self.notify(ServiceStatus::Stopping);
         self.count();
-        Ok((self.lives.end(), self.course))
+        Ok((self.lives.end(), self.record))
     }
 
     fn is_time_over(&self) -> bool {
@@ -162,8 +162,8 @@ impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
         self.length.is_some_and(|length| uptime >= length)
     }
 
-    /// One look at everything.
-    fn look(&mut self) -> Result<(), AppError> {
+    /// One round.
+    fn poll(&mut self) -> Result<(), AppError> {
         if let Some(role) = self.lives.over() {
             return Err(AppError::Internal(format!(
                 "the {} thread has ended while the kiosk ran; start the kiosk again",
@@ -172,7 +172,7 @@ impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
         }
         self.watch();
         let now = self.lives.now_ns();
-        self.host(now)?;
+        self.poll_controller(now)?;
         self.count();
         self.health(now);
         Ok(())
@@ -181,50 +181,50 @@ impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
     /// Feeds the watchdog, if physics and render got on; the first time that both have, the service is ready.
     fn watch(&mut self) {
         let count = self.lives.pulse.count();
-        if self.course.ready_ms.is_none() && count.iter().all(|n| *n > 0) {
-            self.course.ready_ms = Some((self.begun.elapsed().as_secs_f64() * 1e4).round() / 10.0);
-            self.tell(News::Ready);
+        if self.record.ready_ms.is_none() && count.iter().all(|n| *n > 0) {
+            self.record.ready_ms = Some((self.begun.elapsed().as_secs_f64() * 1e4).round() / 10.0);
+            self.notify(ServiceStatus::Ready);
         }
         let now = self.lives.now_ns();
         if self.dog.as_mut().is_some_and(|dog| dog.look(now, count)) {
-            self.tell(News::Alive);
+            self.notify(ServiceStatus::Alive);
         }
     }
 
-    fn tell(&mut self, news: News) {
-        if let Err(e) = self.manager.tell(news)
-            && !self.course.warnings.iter().any(|w| w.starts_with("the service manager"))
+    fn notify(&mut self, status: ServiceStatus) {
+        if let Err(e) = self.manager.notify(status)
+            && !self.record.warnings.iter().any(|w| w.starts_with("the service manager"))
         {
-            self.course.warnings.push(format!("the service manager cannot be reached ({e}); check NOTIFY_SOCKET"));
+            self.record.warnings.push(format!("the service manager cannot be reached ({e}); check NOTIFY_SOCKET"));
         }
     }
 
-    /// Has the host decide, and does what is the service's to do.
-    fn host(&mut self, now: u64) -> Result<(), AppError> {
+    /// Has the controller decide, and does what is the service's to do.
+    fn poll_controller(&mut self, now: u64) -> Result<(), AppError> {
         while let Some(frame) = self.lives.frames.pop() {
-            self.host.frame(frame);
+            self.controller.frame(frame);
         }
-        match self.hall.tailor.look() {
+        match self.context.tailor.look() {
             Some(Work::Done(mannequin)) if mannequin.made.still => {
-                let act = self.hall.act(*mannequin);
-                self.hall.changing.stand_by(act);
+                let act = self.context.act(*mannequin);
+                self.context.changing.stand_by(act);
             }
             Some(Work::Died) => {
                 return Err(AppError::Internal("the tailor's thread panicked; start the kiosk again".into()));
             }
-            Some(work) => self.host.work(work),
+            Some(work) => self.controller.work(work),
             None => {}
         }
-        if let Some(change) = self.host.look(now, &mut self.hall)? {
-            if self.course.states.len() < MOST_STATES {
-                self.course.states.push(change.to);
+        if let Some(change) = self.controller.poll(now, &mut self.context)? {
+            if self.record.states.len() < MOST_STATES {
+                self.record.states.push(change.to);
             }
-            if change.to == State::Measuring {
-                self.tally.stepped_in(change.from == State::Attract);
+            if change.to == SessionState::Measuring {
+                self.counter.stepped_in(change.from == SessionState::Attract);
             }
         }
-        self.hall.dress_mannequin()?;
-        self.hall.changing.look();
+        self.context.dress_mannequin()?;
+        self.context.changing.look();
         Ok(())
     }
 
@@ -233,25 +233,25 @@ impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
             black_box.drain(|_| {});
         }
         while let Some(beat) = self.lives.beats.pop() {
-            self.tally.beat(&beat);
+            self.counter.beat(&beat);
         }
         while let Some(event) = self.lives.events.pop() {
-            self.tally.event(&event);
+            self.counter.event(&event);
         }
         let [_, pictures] = self.lives.pulse.count();
         let uptime = self.lives.now_ns() - self.began_ns;
-        self.course.attributed = self.tally.attributed();
-        self.course.vitals = self.tally.vitals(uptime, self.host.state(), pictures);
+        self.record.attributed = self.counter.attributed();
+        self.record.figures = self.counter.figures(uptime, self.controller.state(), pictures);
         if let Some(figures) = &mut self.figures {
-            figures.publish(self.course.vitals);
+            figures.publish(self.record.figures);
         }
     }
 
     fn health(&mut self, now: u64) {
         if self.every_ns > 0 && now >= self.health_ns {
             self.health_ns += self.every_ns;
-            (self.say)(&self.course.vitals.to_string());
-            self.tally.said();
+            (self.say)(&self.record.figures.to_string());
+            self.counter.reported();
         }
     }
 }

@@ -1,12 +1,12 @@
-//! The session of one shopper as a machine of four states. It knows the time and what is seen, and nothing else: a
+//! The session of one shopper as a state machine of four states. It knows the time and what is seen, and nothing else: a
 //! window, a service without one and a test drive the same machine.
 
 use serde::Serialize;
 
-/// Where a session is.
+/// The state of a session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum State {
+pub enum SessionState {
     /// Nobody is there: the mirror shows what it can do.
     Attract,
     /// Somebody stands there and is measured.
@@ -17,7 +17,7 @@ pub enum State {
     Left,
 }
 
-impl State {
+impl SessionState {
     /// All of them, in the order of a session.
     pub const ALL: [Self; 4] = [Self::Attract, Self::Measuring, Self::TryOn, Self::Left];
 
@@ -32,9 +32,9 @@ impl State {
     }
 }
 
-/// How long what has to last.
+/// Times of a session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Rules {
+pub struct SessionTimes {
     /// Somebody must be seen for so long to have stepped in (ns): a passer-by has not.
     pub step_in_ns: u64,
     /// Nobody must be seen for so long for the shopper to have left (ns): a turn or a lost frame is no leave.
@@ -43,9 +43,9 @@ pub struct Rules {
     pub wipe_ns: u64,
 }
 
-/// What the machine is told in each look.
+/// The input of an update.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Sight {
+pub struct SessionInput {
     /// Whether a shopper is seen.
     pub shopper: bool,
     /// Whether a body of their measures stands dressed.
@@ -54,33 +54,33 @@ pub struct Sight {
 
 /// A change of state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Change {
+pub struct StateChange {
     /// The state before.
-    pub from: State,
+    pub from: SessionState,
     /// The state from now on.
-    pub to: State,
+    pub to: SessionState,
 }
 
-/// The machine.
+/// The state machine.
 #[derive(Debug, Clone)]
-pub struct Session {
-    rules: Rules,
-    state: State,
+pub struct SessionMachine {
+    times: SessionTimes,
+    state: SessionState,
     /// When the state was entered (ns).
     entered_ns: u64,
-    /// Whether a shopper was seen in the last look, and since when that is so (ns).
+    /// Whether a shopper was seen in the last update, and since when that is so (ns).
     seen: bool,
     since_ns: u64,
 }
 
-impl Session {
+impl SessionMachine {
     /// Nobody is there, at this time (ns).
-    pub fn new(rules: Rules, now_ns: u64) -> Self {
-        Self { rules, state: State::Attract, entered_ns: now_ns, seen: false, since_ns: now_ns }
+    pub fn new(times: SessionTimes, now_ns: u64) -> Self {
+        Self { times, state: SessionState::Attract, entered_ns: now_ns, seen: false, since_ns: now_ns }
     }
 
     /// The state.
-    pub fn state(&self) -> State {
+    pub fn state(&self) -> SessionState {
         self.state
     }
 
@@ -89,26 +89,26 @@ impl Session {
         now_ns.saturating_sub(self.entered_ns)
     }
 
-    /// Looks at what is seen now; gives the change of state, where there is one. At most one a look.
-    pub fn look(&mut self, now_ns: u64, sight: Sight) -> Option<Change> {
-        if sight.shopper != self.seen {
-            (self.seen, self.since_ns) = (sight.shopper, now_ns);
+    /// Takes what is seen now; returns the change of state, where there is one. At most one an update.
+    pub fn update(&mut self, now_ns: u64, input: SessionInput) -> Option<StateChange> {
+        if input.shopper != self.seen {
+            (self.seen, self.since_ns) = (input.shopper, now_ns);
         }
         let for_ns = now_ns.saturating_sub(self.since_ns);
-        let stepped_in = self.seen && for_ns >= self.rules.step_in_ns;
-        let stepped_out = !self.seen && for_ns >= self.rules.step_out_ns;
+        let stepped_in = self.seen && for_ns >= self.times.step_in_ns;
+        let stepped_out = !self.seen && for_ns >= self.times.step_out_ns;
         let to = match self.state {
-            State::Attract if stepped_in => State::Measuring,
-            State::Measuring | State::TryOn if stepped_out => State::Left,
-            State::Measuring if sight.dressed && self.seen => State::TryOn,
-            State::Left if stepped_in && sight.dressed => State::TryOn,
-            State::Left if stepped_in => State::Measuring,
-            State::Left if self.lasted_ns(now_ns) >= self.rules.wipe_ns => State::Attract,
+            SessionState::Attract if stepped_in => SessionState::Measuring,
+            SessionState::Measuring | SessionState::TryOn if stepped_out => SessionState::Left,
+            SessionState::Measuring if input.dressed && self.seen => SessionState::TryOn,
+            SessionState::Left if stepped_in && input.dressed => SessionState::TryOn,
+            SessionState::Left if stepped_in => SessionState::Measuring,
+            SessionState::Left if self.lasted_ns(now_ns) >= self.times.wipe_ns => SessionState::Attract,
             _ => return None,
         };
         let from = std::mem::replace(&mut self.state, to);
         self.entered_ns = now_ns;
-        Some(Change { from, to })
+        Some(StateChange { from, to })
     }
 }
 
@@ -117,15 +117,15 @@ mod tests {
     use super::*;
 
     const MS: u64 = 1_000_000;
-    const RULES: Rules = Rules { step_in_ns: 500 * MS, step_out_ns: 2_000 * MS, wipe_ns: 5_000 * MS };
+    const TIMES: SessionTimes = SessionTimes { step_in_ns: 500 * MS, step_out_ns: 2_000 * MS, wipe_ns: 5_000 * MS };
 
     /// The states that a session goes through: spans of what is seen, in ms; a look each 10 ms.
-    fn visited(spans: &[(u64, bool, bool)]) -> Vec<(u64, State)> {
-        let (mut session, mut now, mut states) = (Session::new(RULES, 0), 0, Vec::new());
+    fn visited(spans: &[(u64, bool, bool)]) -> Vec<(u64, SessionState)> {
+        let (mut session, mut now, mut states) = (SessionMachine::new(TIMES, 0), 0, Vec::new());
         for (length, shopper, dressed) in spans {
             for _ in 0..length / 10 {
                 now += 10;
-                if let Some(change) = session.look(now * MS, Sight { shopper: *shopper, dressed: *dressed }) {
+                if let Some(change) = session.update(now * MS, SessionInput { shopper: *shopper, dressed: *dressed }) {
                     assert_eq!(change.to, session.state());
                     assert_ne!(change.from, change.to);
                     states.push((now, change.to));
@@ -138,8 +138,12 @@ mod tests {
     #[test]
     fn a_whole_visit_goes_through_all_states_and_ends_where_it_began() {
         let states = visited(&[(1_000, false, false), (1_000, true, false), (4_000, true, true), (8_000, false, true)]);
-        let expected =
-            [(1_510, State::Measuring), (2_010, State::TryOn), (8_010, State::Left), (13_010, State::Attract)];
+        let expected = [
+            (1_510, SessionState::Measuring),
+            (2_010, SessionState::TryOn),
+            (8_010, SessionState::Left),
+            (13_010, SessionState::Attract),
+        ];
         assert_eq!(states, expected);
     }
 
@@ -147,29 +151,38 @@ mod tests {
     fn a_passer_by_and_a_lost_frame_change_nothing() {
         assert!(visited(&[(490, true, false), (100, false, false), (490, true, false)]).is_empty());
         let blink = visited(&[(600, true, false), (1_900, false, true), (1_000, true, true)]);
-        assert_eq!(blink.iter().map(|s| s.1).collect::<Vec<_>>(), [State::Measuring, State::TryOn]);
+        assert_eq!(blink.iter().map(|s| s.1).collect::<Vec<_>>(), [SessionState::Measuring, SessionState::TryOn]);
     }
 
     #[test]
     fn who_comes_back_in_time_goes_on_and_who_comes_later_begins_anew() {
         let names = |spans: &[(u64, bool, bool)]| visited(spans).iter().map(|s| s.1).collect::<Vec<_>>();
         let back = names(&[(600, true, true), (3_000, false, true), (1_000, true, true)]);
-        assert_eq!(back, [State::Measuring, State::TryOn, State::Left, State::TryOn]);
+        assert_eq!(back, [SessionState::Measuring, SessionState::TryOn, SessionState::Left, SessionState::TryOn]);
         let unmeasured = names(&[(600, true, false), (3_000, false, false), (1_000, true, false)]);
-        assert_eq!(unmeasured, [State::Measuring, State::Left, State::Measuring]);
+        assert_eq!(unmeasured, [SessionState::Measuring, SessionState::Left, SessionState::Measuring]);
         let late = names(&[(600, true, true), (7_500, false, true), (1_000, true, false)]);
-        assert_eq!(late, [State::Measuring, State::TryOn, State::Left, State::Attract, State::Measuring]);
+        assert_eq!(
+            late,
+            [
+                SessionState::Measuring,
+                SessionState::TryOn,
+                SessionState::Left,
+                SessionState::Attract,
+                SessionState::Measuring
+            ]
+        );
     }
 
     #[test]
     fn nobody_is_dressed_who_is_not_there() {
         let gone = visited(&[(600, true, false), (1_500, false, true)]);
-        assert_eq!(gone.iter().map(|s| s.1).collect::<Vec<_>>(), [State::Measuring], "dressed, but not seen");
+        assert_eq!(gone.iter().map(|s| s.1).collect::<Vec<_>>(), [SessionState::Measuring], "dressed, but not seen");
     }
 
     #[test]
     fn names_are_those_of_the_json() {
-        for state in State::ALL {
+        for state in SessionState::ALL {
             assert_eq!(serde_json::to_value(state).unwrap(), state.name());
         }
     }

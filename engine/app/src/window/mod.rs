@@ -1,14 +1,14 @@
 //! The kiosk's window.
 //!
-//! Reads: snapshots of the loop, the guest's [`Screen`](crate::guest::screen::Screen), touch, mouse and keys. Writes: pictures on the
+//! Reads: snapshots of the loop, the visitor's [`Screen`](crate::visitor::screen::Screen), touch, mouse and keys. Writes: pictures on the
 //! display, what was pressed.
 //! Budget: nothing of the physics' core: on a driver that draws on the processor, half of the first core at most.
 //! Thread: main waits for the window system; render paints and presents; the service decides on a thread of its own.
 //!
 //! ```text
-//! main     winit's events            -- Heard, a bounded queue; Frame, the latest value -->  render
-//! render   paint, tessellate, present  -- Asked, a bounded queue -->  service
-//! service  the guest's model           -- Screen, the latest value -->  render
+//! main     winit's events            -- InputEvent, a bounded queue; WindowState, the latest value -->  render
+//! render   paint, tessellate, present  -- UserEvent, a bounded queue -->  service
+//! service  the visitor's model         -- Screen, the latest value -->  render
 //! physics  steps                       -- Snapshot, the latest value -->  render
 //! ```
 //!
@@ -17,21 +17,22 @@
 //! the picture is shown. Main sleeps in the window system, so that a close, a resize or a signal is answered while a slow
 //! driver draws.
 
-mod canvas;
-mod glass;
-mod hosted;
+pub mod body_model;
+mod body_renderer;
+mod camera;
+mod event_loop;
+mod frame_pacing;
+mod frame_stats;
 mod input;
-pub mod look;
 mod open;
-mod pace;
+mod options;
+mod overlay;
 pub mod paint;
-mod podium;
-mod report;
-mod shell;
-mod varnish;
-mod view;
-mod wall;
+mod render_target;
+mod renderer;
+mod run;
+mod surface;
 
 pub use crate::kiosk::report::WindowReport;
-pub use glass::{Asked, Glass};
-pub use hosted::seen;
+pub use renderer::{UserEvent, WindowRenderer};
+pub use run::run;

@@ -1,24 +1,23 @@
-//! Open: `toile kiosk` with a window. Main opens it and waits; the service begins on a thread of its own, and beside it the device
+//! Opening the window. The main thread opens it and waits; the service starts on a thread of its own, and beside it the device
 //! is opened and shows its first picture while the mannequin is being dressed.
 
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, OnceLock};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use toile_engine::clock::RealClock;
 use toile_engine::pace::queue::{self, Sender, bounded};
 use toile_engine::pace::roles::{self, Role};
 use toile_engine::relay::{Relay, Writer};
 use winit::window::Window;
 
-use super::glass::{ASKED, ASKED_NAME, Asked, Ends, Glass};
-use super::input::{Frame, HEARD, HEARD_NAME};
-use super::look::Pair;
-use super::shell::{self, Farewell, Shell};
+use super::body_model::ModelPair;
+use super::event_loop::{self, CloseOnDrop, WindowApp};
+use super::input::{INPUT_EVENTS, INPUT_EVENTS_NAME, WindowState};
+use super::options::WindowOptions;
+use super::renderer::{RendererChannels, USER_EVENTS, USER_EVENTS_NAME, UserEvent, WindowRenderer};
 use crate::exit::AppError;
-use crate::guest::screen::Screen;
-use crate::kiosk::manager::Ending;
+use crate::visitor::screen::Screen;
 
 /// Longest that the window system may take to open a window.
 const LONGEST_OPEN: Duration = Duration::from_secs(10);
@@ -29,83 +28,73 @@ const PAIRS: usize = 4;
 /// The name of the bound, as warnings give it.
 const PAIRS_NAME: &str = "PAIRS (engine/app/src/window/open.rs)";
 
-/// What the window is to be.
-#[derive(Debug, Clone)]
-pub struct Wanted {
-    /// Pixels of a window; none covers the display.
-    pub windowed: Option<[u32; 2]>,
-    /// Height of the display (mm).
-    pub height_mm: f32,
-    /// When the program began.
-    pub begun: Instant,
-    /// The loop's clock.
-    pub clock: RealClock,
-    /// Whether anything moves by itself, such as a mannequin that turns.
-    pub motion: bool,
-    /// What is shown first.
-    pub first: Screen,
-    /// Who is told when the window is closed, or when nothing can draw on it any more.
-    pub ending: Ending,
-}
-
-/// The window's ends that the service holds.
-pub struct Front {
-    /// What is to be shown.
+/// The ends of the window's channels that the service holds.
+pub struct ServiceChannels {
+    /// Screens to show; the latest counts.
     pub screens: Writer<Screen>,
-    /// What is asked for.
-    pub asked: queue::Receiver<Asked>,
+    /// What the visitor asks for.
+    pub user_events: queue::Receiver<UserEvent>,
     /// Two sizes to be compared, or none any more.
-    pub pairs: Sender<Option<Box<Pair>>>,
-    /// The eye, which is being opened.
-    pub opening: Opening,
+    pub pairs: Sender<Option<Box<ModelPair>>>,
+    /// The renderer, which is being opened.
+    pub opening: OpeningRenderer,
 }
 
 /// A device that is being opened.
-pub struct Opening(thread::JoinHandle<Result<Glass, String>>);
+pub struct OpeningRenderer(thread::JoinHandle<Result<WindowRenderer, String>>);
 
-impl Opening {
-    /// The eye, when its device is open.
+impl OpeningRenderer {
+    /// Waits until its device is open.
     ///
     /// # Errors
     /// Why nothing can draw, with the cure.
-    pub fn eye(self) -> Result<Glass, AppError> {
-        let glass = self.0.join().map_err(|_| AppError::Internal("the display's device panicked".into()))?;
-        glass.map_err(AppError::Device)
+    pub fn finish(self) -> Result<WindowRenderer, AppError> {
+        let renderer = self.0.join().map_err(|_| AppError::Internal("the display's device panicked".into()))?;
+        renderer.map_err(AppError::Device)
     }
 }
 
-/// Opens the window on this thread and runs `serve` on another until it returns; it is handed the window's other ends.
+/// Opens the window on this thread and runs `serve` on another until it returns; it receives the other ends of the window's channels.
 ///
 /// # Errors
 /// Those of `serve`; where there is no display, where it went away, or where nothing can draw on it any more.
-pub fn run<T: Send>(wanted: Wanted, serve: impl FnOnce(Front) -> Result<T, AppError> + Send) -> Result<T, AppError> {
-    let events = shell::event_loop()?;
-    let farewell = Farewell(events.create_proxy());
-    let (hear, heard) = bounded(HEARD_NAME, HEARD);
-    let (ask, asked) = bounded(ASKED_NAME, ASKED);
-    let frame = Relay::new(&Frame::default());
-    let screens = Relay::new(&wanted.first);
+pub fn run<T: Send>(
+    options: WindowOptions,
+    serve: impl FnOnce(ServiceChannels) -> Result<T, AppError> + Send,
+) -> Result<T, AppError> {
+    let events = event_loop::event_loop()?;
+    let close = CloseOnDrop(events.create_proxy());
+    let (events_in, input_events) = bounded(INPUT_EVENTS_NAME, INPUT_EVENTS);
+    let (user_in, user_events) = bounded(USER_EVENTS_NAME, USER_EVENTS);
+    let window_state = Relay::new(&WindowState::default());
+    let screens = Relay::new(&options.first);
     let (show, pairs) = bounded(PAIRS_NAME, PAIRS);
     let (opened, window) = sync_channel(1);
-    let ending = wanted.ending.clone();
-    let shell = Shell::new(wanted.windowed, hear, frame.writer, ending.clone(), opened);
+    let stop = options.stop.clone();
+    let app = WindowApp::new(options.windowed, events_in, window_state.writer, stop.clone(), opened);
     let fault = Arc::new(OnceLock::new());
-    let ends = Ends { heard, frame: frame.reader, screens: screens.reader, asked: ask, pairs };
+    let channels = RendererChannels {
+        input_events,
+        window_state: window_state.reader,
+        screens: screens.reader,
+        user_events: user_in,
+        pairs,
+    };
     thread::scope(|scope| {
-        let eye = {
+        let renderer = {
             let fault = fault.clone();
-            thread::Builder::new().name("toile-opening".into()).spawn(move || open(&window, ends, wanted, fault))
+            thread::Builder::new().name("toile-opening".into()).spawn(move || open(&window, channels, options, fault))
         };
-        let opening = Opening(eye.map_err(AppError::internal)?);
-        let front = Front { screens: screens.writer, asked, pairs: show, opening };
+        let opening = OpeningRenderer(renderer.map_err(AppError::internal)?);
+        let channels = ServiceChannels { screens: screens.writer, user_events, pairs: show, opening };
         let service = thread::Builder::new().name("toile-service".into()).spawn_scoped(scope, move || {
             // Dropped last, and also where the service panics: the window never outlives it.
-            let _farewell = farewell;
-            serve(front)
+            let _close = close;
+            serve(channels)
         });
         let service = service.map_err(AppError::internal)?;
-        let seen = shell.run(events);
-        ending.ask();
+        let seen = app.run(events);
+        stop.request();
         let served = service.join().unwrap_or_else(|_| Err(AppError::Internal("the service panicked".into())));
         match fault.get() {
             Some(why) => Err(AppError::Device(format!("the display can be drawn on no more: {why}"))),
@@ -118,14 +107,14 @@ pub fn run<T: Send>(wanted: Wanted, serve: impl FnOnce(Front) -> Result<T, AppEr
 /// starts threads of its own, which inherit it.
 fn open(
     window: &Receiver<Result<Arc<Window>, String>>,
-    ends: Ends,
-    wanted: Wanted,
+    channels: RendererChannels,
+    options: WindowOptions,
     fault: Arc<OnceLock<String>>,
-) -> Result<Glass, String> {
+) -> Result<WindowRenderer, String> {
     roles::settle(Role::Render);
     let window = window.recv_timeout(LONGEST_OPEN).map_err(|_| "the window system opened no window; restart it")??;
-    let mut glass = Glass::open(window, ends, wanted, fault)?;
-    glass.draw(None);
-    glass.prepare();
-    Ok(glass)
+    let mut renderer = WindowRenderer::open(window, channels, options, fault)?;
+    renderer.draw(None);
+    renderer.prepare();
+    Ok(renderer)
 }

@@ -4,27 +4,27 @@ use std::ops::Range;
 
 use egui::{FontId, Painter, Pos2, Rect, Vec2, pos2, vec2};
 
-use super::layout::{Words, centred, words};
+use super::text::{SetText, centred, left_aligned};
 use super::theme::{self, Sizes};
-use crate::guest::screen::{Control, Look};
+use crate::visitor::screen::{Control, ControlStyle};
 
 /// Most columns of a grid.
 const MOST_COLUMNS: usize = 6;
 
 /// A button with its place.
 #[derive(Debug, Clone)]
-pub struct Button {
+pub struct ButtonBox {
     /// Its number on the screen.
     pub index: usize,
     /// Its place.
     pub rect: Rect,
     /// Its words, and its second line.
-    pub label: Words,
+    pub label: SetText,
     /// Its second line.
-    pub detail: Option<Words>,
+    pub detail: Option<SetText>,
 }
 
-impl Button {
+impl ButtonBox {
     /// Moves it.
     pub fn shift(&mut self, by: Vec2) {
         self.rect = self.rect.translate(by);
@@ -40,7 +40,7 @@ struct Column<'a> {
 }
 
 /// Buttons in a column of this width, from the origin down, and how high they are together.
-pub fn lay(controls: &[Control], width: f32, sizes: Sizes, painter: &Painter) -> (Vec<Button>, f32) {
+pub fn lay(controls: &[Control], width: f32, sizes: Sizes, painter: &Painter) -> (Vec<ButtonBox>, f32) {
     let column = Column { controls, width, sizes, painter };
     let (mut buttons, mut y) = (Vec::with_capacity(controls.len()), 0.0);
     for run in runs(controls) {
@@ -57,20 +57,20 @@ fn runs(controls: &[Control]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for (i, control) in controls.iter().enumerate() {
         match runs.last_mut() {
-            Some(run) if alike(&controls[run.start].look, &control.look) => run.end = i + 1,
+            Some(run) if alike(&controls[run.start].style, &control.style) => run.end = i + 1,
             _ => runs.push(i..i + 1),
         }
     }
     runs
 }
 
-fn alike(a: &Look, b: &Look) -> bool {
-    !matches!(a, Look::Primary) && std::mem::discriminant(a) == std::mem::discriminant(b)
+fn alike(a: &ControlStyle, b: &ControlStyle) -> bool {
+    !matches!(a, ControlStyle::Primary) && std::mem::discriminant(a) == std::mem::discriminant(b)
 }
 
 impl Column<'_> {
     /// Places a run of neighbours below `y`, in as many columns as make it lowest; gives where it ends.
-    fn grid(&self, run: Range<usize>, y: f32, buttons: &mut Vec<Button>) -> f32 {
+    fn grid(&self, run: Range<usize>, y: f32, buttons: &mut Vec<ButtonBox>) -> f32 {
         let most = self.most_columns(&run);
         let tries = (1..=most).map(|columns| self.rows(&run, columns, y));
         let lowest = tries.min_by(|(_, a), (_, b)| a.total_cmp(b));
@@ -88,7 +88,7 @@ impl Column<'_> {
     }
 
     /// A run in so many columns, and where it ends.
-    fn rows(&self, run: &Range<usize>, columns: usize, mut y: f32) -> (Vec<Button>, f32) {
+    fn rows(&self, run: &Range<usize>, columns: usize, mut y: f32) -> (Vec<ButtonBox>, f32) {
         let Self { controls, width, sizes, painter } = *self;
         let gap = sizes.gap();
         // The same number of rows with fewer, wider columns looks calmer.
@@ -101,7 +101,7 @@ impl Column<'_> {
             let of_row = first.min(run.end)..(first + columns).min(run.end);
             let begun = placed.len();
             placed.extend(of_row.map(|i| button(&controls[i], i, cell, sizes, painter)));
-            let of_row: &mut [Button] = &mut placed[begun..];
+            let of_row: &mut [ButtonBox] = &mut placed[begun..];
             let tall = of_row.iter().map(|b| b.rect.height()).fold(0.0, f32::max);
             for (column, button) in of_row.iter_mut().enumerate() {
                 button.rect = Rect::from_min_size(pos2(column as f32 * (cell + gap), y), vec2(cell, tall));
@@ -115,7 +115,7 @@ impl Column<'_> {
 /// Least width at which a control looks well: its longest word in one piece, and its label in two lines.
 fn natural(control: &Control, sizes: Sizes, painter: &Painter) -> f32 {
     let font = font(control, sizes);
-    let wide = |text: &str, font: FontId| words(painter, text, font, theme::INK, f32::INFINITY).size().x;
+    let wide = |text: &str, font: FontId| left_aligned(painter, text, font, theme::INK, f32::INFINITY).size().x;
     let longest = |text: &str, font: &FontId| text.split(' ').map(|w| wide(w, font.clone())).fold(0.0, f32::max);
     let label = longest(&control.label, &font).max(wide(&control.label, font) * 0.62);
     let detail = control.detail.as_ref().map_or(0.0, |d| longest(d, &sizes.small()).max(wide(d, sizes.small()) * 0.5));
@@ -124,16 +124,16 @@ fn natural(control: &Control, sizes: Sizes, painter: &Painter) -> f32 {
 
 /// Type of a control's words.
 fn font(control: &Control, sizes: Sizes) -> FontId {
-    match control.look {
-        Look::Swatch(_) => sizes.small(),
-        Look::Quiet => sizes.text(),
+    match control.style {
+        ControlStyle::Swatch(_) => sizes.small(),
+        ControlStyle::Quiet => sizes.text(),
         _ => sizes.label(),
     }
 }
 
 /// What the mark of a choice takes beside the words.
 pub fn aside(control: &Control, sizes: Sizes) -> f32 {
-    if matches!(control.look, Look::Swatch(_)) || !control.chosen { 0.0 } else { (sizes.body * 1.5).round() }
+    if matches!(control.style, ControlStyle::Swatch(_)) || !control.chosen { 0.0 } else { (sizes.body * 1.5).round() }
 }
 
 /// Diameter of the disc that shows a colour.
@@ -146,19 +146,19 @@ pub fn pad(sizes: Sizes) -> f32 {
     (sizes.body * 0.7 * sizes.squeeze).round()
 }
 
-fn button(control: &Control, index: usize, width: f32, sizes: Sizes, painter: &Painter) -> Button {
+fn button(control: &Control, index: usize, width: f32, sizes: Sizes, painter: &Painter) -> ButtonBox {
     let room = width - aside(control, sizes) - 2.0 * pad(sizes);
-    let dark = matches!(control.look, Look::Primary);
+    let dark = matches!(control.style, ControlStyle::Primary);
     let (ink, soft) = if dark { (theme::DARK, theme::DARK) } else { (theme::INK, theme::SOFT) };
     let label = centred(painter, &control.label, font(control, sizes), ink, room);
     let detail = control.detail.as_ref().map(|d| centred(painter, d, sizes.small(), soft, room));
     let words = label.size().y + detail.as_ref().map_or(0.0, |d| d.size().y);
-    let disc = if matches!(control.look, Look::Swatch(_)) { disc(sizes) + sizes.gap() * 0.4 } else { 0.0 };
-    let air = match control.look {
-        Look::Primary => 1.9,
-        Look::Plain => 1.35,
-        Look::Quiet | Look::Swatch(_) => 0.9,
+    let disc = if matches!(control.style, ControlStyle::Swatch(_)) { disc(sizes) + sizes.gap() * 0.4 } else { 0.0 };
+    let air = match control.style {
+        ControlStyle::Primary => 1.9,
+        ControlStyle::Plain => 1.35,
+        ControlStyle::Quiet | ControlStyle::Swatch(_) => 0.9,
     };
     let tall = (words + disc + sizes.body * air * sizes.squeeze).max(sizes.target).round();
-    Button { index, rect: Rect::from_min_size(Pos2::ZERO, vec2(width, tall)), label, detail }
+    ButtonBox { index, rect: Rect::from_min_size(Pos2::ZERO, vec2(width, tall)), label, detail }
 }

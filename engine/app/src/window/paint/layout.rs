@@ -1,14 +1,12 @@
 //! Layout: where everything of a screen stands, before anything is painted: what a finger hits is what a test measures.
 
-use std::sync::Arc;
+use egui::{FontId, Painter, Pos2, Rect, Vec2, pos2, vec2};
 
-use egui::text::{LayoutJob, TextWrapping};
-use egui::{Align, Color32, FontId, Galley, Painter, Pos2, Rect, TextFormat, Vec2, pos2, vec2};
-
-use super::code;
-use super::controls::{self, Button};
+use super::controls::{self, ButtonBox};
+use super::qr_code;
+use super::text::{SetText, left_aligned};
 use super::theme::{self, Sizes};
-use crate::guest::screen::{Block, Screen, Stage};
+use crate::visitor::screen::{Block, BodyView, Screen};
 
 /// How tight the panel may get, in the order of trying.
 const SQUEEZES: [f32; 6] = [1.0, 0.92, 0.84, 0.76, 0.68, 0.6];
@@ -28,23 +26,20 @@ const READ_WITH_EASE: f32 = 0.8;
 /// Share of a lying display's width that the panel takes.
 const SIDE: f32 = 0.42;
 
-/// Text that has been set.
-pub type Words = Arc<Galley>;
-
 /// A block with its place.
 #[derive(Debug, Clone)]
-pub struct Placed {
+pub struct PlacedBlock {
     /// Its number on the screen.
     pub index: usize,
     /// Its place.
     pub rect: Rect,
     /// Its words, where it has some.
-    pub words: Vec<Words>,
+    pub words: Vec<SetText>,
 }
 
 /// A screen that has been laid out.
 #[derive(Debug, Clone)]
-pub struct Laid {
+pub struct ScreenLayout {
     /// The sizes that it came to.
     pub sizes: Sizes,
     /// The panel.
@@ -52,11 +47,11 @@ pub struct Laid {
     /// What the panel leaves of the display.
     pub free: Rect,
     /// The heading and its upper left corner.
-    pub heading: (Pos2, Words),
+    pub heading: (Pos2, SetText),
     /// What stands below it.
-    pub blocks: Vec<Placed>,
+    pub blocks: Vec<PlacedBlock>,
     /// What can be pressed; its rectangles are those at a scroll of 0.
-    pub buttons: Vec<Button>,
+    pub buttons: Vec<ButtonBox>,
     /// Where buttons are seen.
     pub window: Rect,
     /// How far they can be scrolled (pixels): 0 where all are seen.
@@ -66,11 +61,11 @@ pub struct Laid {
 }
 
 /// Lays a screen out on a display.
-pub fn lay(screen: &Screen, sizes: Sizes, painter: &Painter) -> Laid {
+pub fn lay(screen: &Screen, sizes: Sizes, painter: &Painter) -> ScreenLayout {
     let mut last = None;
     // A code is scanned from where one stands: it has all the room there is.
     let code = screen.blocks.iter().any(|block| matches!(block, Block::Code { .. }));
-    let beside = !code && !matches!(screen.stage, Stage::Mannequin);
+    let beside = !code && !matches!(screen.body_view, BodyView::Mannequin);
     let most = sizes.display[1] * if beside { BESIDE_BODY } else { MOST_PANEL };
     for squeeze in SQUEEZES {
         let laid = lay_at(screen, sizes.squeezed(squeeze), painter);
@@ -81,8 +76,9 @@ pub fn lay(screen: &Screen, sizes: Sizes, painter: &Painter) -> Laid {
             return laid;
         }
         // Where nothing fits, buttons that scroll are better than words that are cut off.
-        let better =
-            last.as_ref().is_none_or(|before: &Laid| !before.fits || laid.fits && laid.scrolls < before.scrolls);
+        let better = last
+            .as_ref()
+            .is_none_or(|before: &ScreenLayout| !before.fits || laid.fits && laid.scrolls < before.scrolls);
         if better {
             last = Some(laid);
         }
@@ -90,7 +86,7 @@ pub fn lay(screen: &Screen, sizes: Sizes, painter: &Painter) -> Laid {
     last.unwrap_or_else(|| lay_at(screen, sizes, painter))
 }
 
-fn lay_at(screen: &Screen, sizes: Sizes, painter: &Painter) -> Laid {
+fn lay_at(screen: &Screen, sizes: Sizes, painter: &Painter) -> ScreenLayout {
     let [w, h] = sizes.display;
     let (margin, gap, air) = (sizes.margin(), sizes.gap(), sizes.air());
     let column = if sizes.landscape { (w * SIDE).round() } else { w - 2.0 * air };
@@ -105,7 +101,7 @@ fn lay_at(screen: &Screen, sizes: Sizes, painter: &Painter) -> Laid {
     buttons.iter_mut().for_each(|b| b.shift(window.min.to_vec2()));
     // What is read stands above it.
     let heading = head(painter, &screen.heading, sizes, inner);
-    let mut blocks: Vec<Placed> =
+    let mut blocks: Vec<PlacedBlock> =
         screen.blocks.iter().enumerate().map(|(i, b)| block(i, b, inner, sizes, painter)).collect();
     let read = heading.size().y + blocks.iter().map(|b| b.rect.height() + gap).sum::<f32>();
     let space = if buttons.is_empty() { 0.0 } else { gap * 1.6 };
@@ -125,14 +121,14 @@ fn lay_at(screen: &Screen, sizes: Sizes, painter: &Painter) -> Laid {
         Rect::from_min_max(Pos2::ZERO, pos2(w, panel.top()))
     };
     let scrolls = (wanted - tall).max(0.0);
-    Laid { sizes, panel, free, heading: (pos2(left, top), heading), blocks, buttons, window, scrolls, fits }
+    ScreenLayout { sizes, panel, free, heading: (pos2(left, top), heading), blocks, buttons, window, scrolls, fits }
 }
 
 /// The heading, a little smaller where that saves it a second line.
-fn head(painter: &Painter, text: &str, sizes: Sizes, width: f32) -> Words {
+fn head(painter: &Painter, text: &str, sizes: Sizes, width: f32) -> SetText {
     let set = |share: f32| {
         let font = sizes.heading();
-        words(painter, text, FontId { size: (font.size * share).round(), ..font }, theme::INK, width)
+        left_aligned(painter, text, FontId { size: (font.size * share).round(), ..font }, theme::INK, width)
     };
     let large = set(1.0);
     if large.rows.len() == 1 {
@@ -142,8 +138,8 @@ fn head(painter: &Painter, text: &str, sizes: Sizes, width: f32) -> Words {
 }
 
 /// A block at the origin.
-fn block(index: usize, block: &Block, width: f32, sizes: Sizes, painter: &Painter) -> Placed {
-    let text = |text: &str, room: f32| words(painter, text, sizes.text(), theme::INK, room);
+fn block(index: usize, block: &Block, width: f32, sizes: Sizes, painter: &Painter) -> PlacedBlock {
+    let text = |text: &str, room: f32| left_aligned(painter, text, sizes.text(), theme::INK, room);
     let (height, set) = match block {
         Block::Text(said) => {
             let said = text(said, width);
@@ -160,19 +156,19 @@ fn block(index: usize, block: &Block, width: f32, sizes: Sizes, painter: &Painte
             (said.size().y.max(sizes.body * 1.1), vec![said])
         }
         Block::Legend { ends } => {
-            let ends: Vec<Words> =
-                ends.iter().map(|e| words(painter, e, sizes.small(), theme::SOFT, width * 0.48)).collect();
+            let ends: Vec<SetText> =
+                ends.iter().map(|e| left_aligned(painter, e, sizes.small(), theme::SOFT, width * 0.48)).collect();
             (sizes.body * 0.9 + ends.iter().map(|e| e.size().y).fold(0.0, f32::max), ends)
         }
         Block::Code { side, .. } => {
-            (code::side(*side, width.min(sizes.display[1] * MOST_CODE * sizes.squeeze)), vec![])
+            (qr_code::side(*side, width.min(sizes.display[1] * MOST_CODE * sizes.squeeze)), vec![])
         }
         Block::Countdown { seconds } => {
-            let number = words(painter, &clock(*seconds), big(sizes), theme::INK, width);
+            let number = left_aligned(painter, &clock(*seconds), big(sizes), theme::INK, width);
             ((number.size().y * 1.3).round(), vec![number])
         }
     };
-    Placed { index, rect: Rect::from_min_size(Pos2::ZERO, vec2(width, height)), words: set }
+    PlacedBlock { index, rect: Rect::from_min_size(Pos2::ZERO, vec2(width, height)), words: set }
 }
 
 /// Seconds as they are read: minutes where there are any.
@@ -190,27 +186,10 @@ fn big(sizes: Sizes) -> FontId {
     FontId { size: (sizes.body * 2.4).round(), ..sizes.heading() }
 }
 
-/// Sets words in a column, ragged right.
-pub fn words(painter: &Painter, text: &str, font: FontId, colour: Color32, width: f32) -> Words {
-    set(painter, text, font, colour, width, Align::LEFT)
-}
-
-/// Sets words in a column, centred.
-pub fn centred(painter: &Painter, text: &str, font: FontId, colour: Color32, width: f32) -> Words {
-    set(painter, text, font, colour, width, Align::Center)
-}
-
-fn set(painter: &Painter, text: &str, font: FontId, colour: Color32, width: f32, halign: Align) -> Words {
-    let line_height = Some((font.size * 1.28).round());
-    let format = TextFormat { font_id: font, color: colour, line_height, ..TextFormat::default() };
-    let wrap = TextWrapping { max_width: width.max(1.0), ..TextWrapping::default() };
-    painter.layout_job(LayoutJob { wrap, halign, ..LayoutJob::single_section(text.to_owned(), format) })
-}
-
-impl Laid {
+impl ScreenLayout {
     /// The control at a point, with buttons scrolled so far.
     pub fn hit(&self, at: Pos2, scrolled: f32) -> Option<usize> {
-        let inside = |b: &&Button| b.rect.translate(Vec2::new(0.0, -scrolled)).contains(at);
+        let inside = |b: &&ButtonBox| b.rect.translate(Vec2::new(0.0, -scrolled)).contains(at);
         self.window
             .expand(self.sizes.gap() * 0.5)
             .contains(at)

@@ -4,29 +4,30 @@
 //! Budget: 2 ms a picture of the render thread's core; no picture waits for it, nor does physics.
 //! Thread: render.
 //!
-//! [`layout`] finds places, `brush` fills them, [`touch`] finds what was pressed in the same places. Sizes follow the
+//! [`layout`] finds places, `shapes` fills them, [`touch`] finds what was pressed in the same places. Sizes follow the
 //! display: type from its height, touch targets from its millimetres.
 
-mod brush;
-mod code;
 mod controls;
 mod figure;
 pub mod fonts;
 pub mod layout;
+mod qr_code;
+mod shapes;
+mod text;
 pub mod theme;
 pub mod touch;
 
 use egui::epaint::{ClippedPrimitive, Primitive};
 use egui::{Color32, Context, LayerId, Mesh, RawInput, Rect, TextureId, TexturesDelta, pos2, vec2};
 
-use crate::guest::screen::{Action, Screen};
-use layout::Laid;
+use crate::visitor::screen::{Action, Screen};
+use layout::ScreenLayout;
 use theme::Sizes;
-use touch::{Finger, Touch};
+use touch::{TouchEvent, TouchTracker};
 
 /// A display: its pixels, and the size of one (mm).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Display {
+pub struct DisplayMetrics {
     /// Width and height (pixels).
     pub size: [u32; 2],
     /// Width and height of a pixel (mm).
@@ -34,7 +35,7 @@ pub struct Display {
 }
 
 /// What is to be drawn.
-pub struct Painted {
+pub struct PaintedScreen {
     /// Triangles, in the order of painting.
     pub shapes: Vec<ClippedPrimitive>,
     /// Changes of textures: each must reach the GPU, in order, whether or not the triangles are shown.
@@ -43,7 +44,7 @@ pub struct Painted {
     pub free: [f32; 4],
 }
 
-impl Painted {
+impl PaintedScreen {
     /// The same over a picture that fills a display of this size.
     #[must_use]
     pub fn over(mut self, picture: TextureId, [width, height]: [u32; 2]) -> Self {
@@ -56,24 +57,24 @@ impl Painted {
 }
 
 /// Paints screens and finds what is pressed on them.
-pub struct Easel {
+pub struct ScreenPainter {
     context: Context,
-    finger: Finger,
-    laid: Option<Laid>,
+    finger: TouchTracker,
+    laid: Option<ScreenLayout>,
     begun: std::time::Instant,
 }
 
-impl Default for Easel {
+impl Default for ScreenPainter {
     fn default() -> Self {
         let context = Context::default();
         context.set_fonts(fonts::definitions());
-        Self { context, finger: Finger::default(), laid: None, begun: std::time::Instant::now() }
+        Self { context, finger: TouchTracker::default(), laid: None, begun: std::time::Instant::now() }
     }
 }
 
-impl Easel {
+impl ScreenPainter {
     /// Paints a screen.
-    pub fn paint(&mut self, screen: &Screen, display: Display) -> Painted {
+    pub fn paint(&mut self, screen: &Screen, display: DisplayMetrics) -> PaintedScreen {
         let [w, h] = display.size.map(|n| n.max(1) as f32);
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(w, h));
         let time = Some(self.begun.elapsed().as_secs_f64());
@@ -82,21 +83,21 @@ impl Easel {
         let sizes = Sizes::of([w, h], display.pixel_mm, screen.type_scale);
         let laid = layout::lay(screen, sizes, &painter);
         self.finger.follow(&laid, screen);
-        brush::paint(&laid, screen, self.finger.held(), &painter);
+        shapes::paint(&laid, screen, self.finger.feedback(), &painter);
         let free = [laid.free.left() / w, laid.free.top() / h, laid.free.right() / w, laid.free.bottom() / h];
         self.laid = Some(laid);
         let output = self.context.end_pass();
         let shapes = self.context.tessellate(output.shapes, output.pixels_per_point);
-        Painted { shapes, textures: output.textures_delta, free }
+        PaintedScreen { shapes, textures: output.textures_delta, free }
     }
 
     /// A finger or the mouse; gives what was pressed.
-    pub fn touch(&mut self, touch: Touch, screen: &Screen) -> Option<Action> {
+    pub fn touch(&mut self, touch: TouchEvent, screen: &Screen) -> Option<Action> {
         self.finger.touch(touch, self.laid.as_ref()?, screen)
     }
 
     /// The screen as it was laid out last.
-    pub fn laid(&self) -> Option<&Laid> {
+    pub fn laid(&self) -> Option<&ScreenLayout> {
         self.laid.as_ref()
     }
 }

@@ -8,10 +8,10 @@ use toile_view::mirror::{Choice, Gpu, Offscreen};
 
 use super::tests::DISPLAYS;
 use super::*;
-use crate::guest::screen::{Action, Page};
-use crate::guest::tests::Play;
-use crate::guest::words::Language;
-use crate::window::varnish::Varnish;
+use crate::visitor::screen::{Action, Page};
+use crate::visitor::tests::Play;
+use crate::visitor::texts::Language;
+use crate::window::overlay::Overlay;
 
 /// The pages of a visit in a language, and in large type.
 pub fn all(language: usize, large: bool) -> BTreeMap<String, Screen> {
@@ -75,29 +75,29 @@ const PICTURES: &str = "TOILE_SCREENS";
 /// Draws what was painted, over a plain ground.
 struct Proof {
     gpu: Gpu,
-    varnish: Varnish,
+    overlay: Overlay,
     folder: PathBuf,
 }
 
 impl Proof {
-    fn wanted() -> Option<Self> {
+    fn options() -> Option<Self> {
         let folder = PathBuf::from(std::env::var_os(PICTURES)?);
         std::fs::create_dir_all(&folder).unwrap();
         let gpu = Gpu::offscreen(&Choice::Software).unwrap();
-        let varnish = Varnish::new(&gpu.device, Offscreen::FORMAT);
-        Some(Self { gpu, varnish, folder })
+        let overlay = Overlay::new(&gpu.device, Offscreen::FORMAT);
+        Some(Self { gpu, overlay, folder })
     }
 
-    fn print(&mut self, display: Display, name: &str, painted: &Painted) {
-        let Self { gpu, varnish, folder } = self;
+    fn print(&mut self, display: DisplayMetrics, name: &str, painted: &PaintedScreen) {
+        let Self { gpu, overlay, folder } = self;
         let [w, h] = display.size;
         let canvas = Offscreen::new(gpu, Size::new(w, h)).unwrap();
-        varnish.take_in(&gpu.device, &gpu.queue, painted);
+        overlay.update_textures(&gpu.device, &gpu.queue, painted);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let view = canvas.target().create_view(&Default::default());
-        varnish.draw((&gpu.device, &gpu.queue), &mut encoder, (&view, display.size), painted, true);
+        overlay.draw((&gpu.device, &gpu.queue), &mut encoder, (&view, display.size), painted, true);
         gpu.queue.submit([encoder.finish()]);
-        varnish.let_go(painted);
+        overlay.free_textures(painted);
         let mut bytes = Vec::new();
         canvas.read(gpu).unwrap().write_png(&mut bytes).unwrap();
         std::fs::write(folder.join(format!("{w}x{h}-{name}.png")), bytes).unwrap();
@@ -106,17 +106,17 @@ impl Proof {
 
 #[test]
 fn every_page_in_every_language_has_its_place_on_every_display() {
-    let (mut bad, mut easel, mut proof) = (Vec::new(), Easel::default(), Proof::wanted());
+    let (mut bad, mut painter, mut proof) = (Vec::new(), ScreenPainter::default(), Proof::options());
     for language in 0..Language::ALL.len() {
         for large in [false, true] {
             for (name, screen) in all(language, large) {
                 for display in DISPLAYS {
-                    let painted = easel.paint(&screen, display);
+                    let painted = painter.paint(&screen, display);
                     if let Some(proof) = &mut proof {
                         let size = if large { "large-" } else { "" };
                         proof.print(display, &format!("{size}{}-{name}", screen.language), &painted);
                     }
-                    let laid = easel.laid().unwrap();
+                    let laid = painter.laid().unwrap();
                     // Large type may scroll what is pressed; nothing that is read is ever cut off.
                     if !laid.fits || (laid.scrolls > 0.0 && !large) {
                         let [w, h] = display.size;

@@ -1,26 +1,26 @@
 use super::theme::{INK, LEAST_LINE, PANEL, Sizes, TARGET_MM};
 use super::*;
-use crate::guest::screen::{Block, Control, Look, Page, Stage};
+use crate::visitor::screen::{Block, BodyView, Control, ControlStyle, Page};
 use egui::{Color32, FontFamily, FontId, Rgba};
 
 /// Displays that the screens are made for: standing and lying, large and small, with the size of a pixel (mm).
-pub const DISPLAYS: [Display; 4] = [
-    Display { size: [1080, 1920], pixel_mm: 0.63 },
-    Display { size: [1920, 1080], pixel_mm: 0.63 },
-    Display { size: [720, 1280], pixel_mm: 0.6 },
-    Display { size: [540, 960], pixel_mm: 1.26 },
+pub const DISPLAYS: [DisplayMetrics; 4] = [
+    DisplayMetrics { size: [1080, 1920], pixel_mm: 0.63 },
+    DisplayMetrics { size: [1920, 1080], pixel_mm: 0.63 },
+    DisplayMetrics { size: [720, 1280], pixel_mm: 0.6 },
+    DisplayMetrics { size: [540, 960], pixel_mm: 1.26 },
 ];
 
-fn control(action: Action, label: &str, look: Look) -> Control {
-    Control { action, label: label.into(), detail: None, look, chosen: false }
+fn control(action: Action, label: &str, style: ControlStyle) -> Control {
+    Control { action, label: label.into(), detail: None, style, chosen: false }
 }
 
 /// One of everything.
 fn full() -> Screen {
-    let mut controls = vec![control(Action::Measure, "Measure again", Look::Primary)];
-    controls.extend((0..5).map(|i| control(Action::Garment(i), "Wide trousers", Look::Plain)));
-    controls.extend((0..4).map(|i| control(Action::Colour(i), "Bottle green", Look::Swatch([0.1, 0.2, 0.3]))));
-    controls.push(control(Action::Back, "Back", Look::Quiet));
+    let mut controls = vec![control(Action::Measure, "Measure again", ControlStyle::Primary)];
+    controls.extend((0..5).map(|i| control(Action::Garment(i), "Wide trousers", ControlStyle::Plain)));
+    controls.extend((0..4).map(|i| control(Action::Colour(i), "Bottle green", ControlStyle::Swatch([0.1, 0.2, 0.3]))));
+    controls.push(control(Action::Back, "Back", ControlStyle::Quiet));
     controls[2].chosen = true;
     Screen {
         page: Page::Fitting,
@@ -32,7 +32,7 @@ fn full() -> Screen {
         ],
         controls,
         focus: 0,
-        stage: Stage::Shopper { yaw: 0.0, fit: true },
+        body_view: BodyView::Shopper { yaw: 0.0, fit: true },
         type_scale: 1.0,
         reach: 0.65,
         reach_low: 0.1,
@@ -41,18 +41,18 @@ fn full() -> Screen {
     }
 }
 
-fn laid(screen: &Screen, display: Display) -> (Easel, Painted) {
-    let mut easel = Easel::default();
-    let painted = easel.paint(screen, display);
-    (easel, painted)
+fn laid(screen: &Screen, display: DisplayMetrics) -> (ScreenPainter, PaintedScreen) {
+    let mut painter = ScreenPainter::default();
+    let painted = painter.paint(screen, display);
+    (painter, painted)
 }
 
 #[test]
 fn what_can_be_pressed_is_large_enough_apart_and_within_reach() {
     for display in DISPLAYS {
         let screen = full();
-        let (easel, _) = laid(&screen, display);
-        let laid = easel.laid().unwrap();
+        let (painter, _) = laid(&screen, display);
+        let laid = painter.laid().unwrap();
         let least = (TARGET_MM / display.pixel_mm).min(display.size[1] as f32 * 0.1);
         assert!(laid.fits && laid.scrolls == 0.0, "{display:?}");
         for (i, button) in laid.buttons.iter().enumerate() {
@@ -72,8 +72,8 @@ fn what_can_be_pressed_is_large_enough_apart_and_within_reach() {
 #[test]
 fn what_is_read_stands_in_its_order_and_on_the_panel() {
     for display in DISPLAYS {
-        let (easel, _) = laid(&full(), display);
-        let laid = easel.laid().unwrap();
+        let (painter, _) = laid(&full(), display);
+        let laid = painter.laid().unwrap();
         let mut y = laid.heading.0.y + laid.heading.1.size().y;
         for block in &laid.blocks {
             assert!(block.rect.top() >= y && laid.panel.contains_rect(block.rect), "{display:?}");
@@ -108,44 +108,45 @@ fn larger_type_is_larger() {
 #[test]
 fn a_list_that_is_longer_than_the_reach_scrolls_and_follows_the_focus() {
     let mut screen = full();
-    screen.controls = (0..60).map(|i| control(Action::Garment(i), &format!("Garment {i}"), Look::Plain)).collect();
+    screen.controls =
+        (0..60).map(|i| control(Action::Garment(i), &format!("Garment {i}"), ControlStyle::Plain)).collect();
     screen.reach = 0.35;
-    let (mut easel, _) = laid(&screen, DISPLAYS[0]);
-    assert!(easel.laid().unwrap().scrolls > 0.0);
+    let (mut painter, _) = laid(&screen, DISPLAYS[0]);
+    assert!(painter.laid().unwrap().scrolls > 0.0);
     screen.focus = 59;
-    easel.paint(&screen, DISPLAYS[0]);
-    let scrolled = easel.finger.held().scrolled;
-    let laid = easel.laid().unwrap();
+    painter.paint(&screen, DISPLAYS[0]);
+    let scrolled = painter.finger.feedback().scrolled;
+    let laid = painter.laid().unwrap();
     let last = laid.buttons[59].rect.translate(vec2(0.0, -scrolled));
     assert!(laid.window.expand(1.0).contains_rect(last), "the focus is in sight");
-    assert_eq!(easel.touch(Touch::Down(last.center()), &screen), None);
-    assert_eq!(easel.touch(Touch::Up(last.center()), &screen), Some(Action::Garment(59)));
+    assert_eq!(painter.touch(TouchEvent::Down(last.center()), &screen), None);
+    assert_eq!(painter.touch(TouchEvent::Up(last.center()), &screen), Some(Action::Garment(59)));
     // A drag scrolls and presses nothing.
     let from = last.center();
-    easel.touch(Touch::Down(from), &screen);
-    easel.touch(Touch::Move(from + vec2(0.0, 300.0)), &screen);
-    assert_eq!(easel.touch(Touch::Up(from + vec2(0.0, 300.0)), &screen), None);
-    assert!(easel.finger.held().scrolled < scrolled);
+    painter.touch(TouchEvent::Down(from), &screen);
+    painter.touch(TouchEvent::Move(from + vec2(0.0, 300.0)), &screen);
+    assert_eq!(painter.touch(TouchEvent::Up(from + vec2(0.0, 300.0)), &screen), None);
+    assert!(painter.finger.feedback().scrolled < scrolled);
 }
 
 #[test]
 fn a_finger_presses_where_it_went_down_and_turns_beside_the_panel() {
     let screen = full();
-    let (mut easel, _) = laid(&screen, DISPLAYS[0]);
-    let at = |easel: &Easel, i: usize| easel.laid().unwrap().buttons[i].rect.center();
-    let (one, other) = (at(&easel, 0), at(&easel, 3));
-    easel.touch(Touch::Down(one), &screen);
-    assert_eq!(easel.finger.held().pressed, Some(0));
-    assert_eq!(easel.touch(Touch::Up(one), &screen), Some(Action::Measure));
-    easel.touch(Touch::Down(one), &screen);
-    assert_eq!(easel.touch(Touch::Up(other), &screen), None, "it slid onto another");
-    easel.touch(Touch::Down(one), &screen);
-    easel.touch(Touch::Cancel, &screen);
-    assert_eq!(easel.touch(Touch::Up(one), &screen), None);
-    let free = easel.laid().unwrap().free.center();
-    easel.touch(Touch::Down(free), &screen);
+    let (mut painter, _) = laid(&screen, DISPLAYS[0]);
+    let at = |painter: &ScreenPainter, i: usize| painter.laid().unwrap().buttons[i].rect.center();
+    let (one, other) = (at(&painter, 0), at(&painter, 3));
+    painter.touch(TouchEvent::Down(one), &screen);
+    assert_eq!(painter.finger.feedback().pressed, Some(0));
+    assert_eq!(painter.touch(TouchEvent::Up(one), &screen), Some(Action::Measure));
+    painter.touch(TouchEvent::Down(one), &screen);
+    assert_eq!(painter.touch(TouchEvent::Up(other), &screen), None, "it slid onto another");
+    painter.touch(TouchEvent::Down(one), &screen);
+    painter.touch(TouchEvent::Cancel, &screen);
+    assert_eq!(painter.touch(TouchEvent::Up(one), &screen), None);
+    let free = painter.laid().unwrap().free.center();
+    painter.touch(TouchEvent::Down(free), &screen);
     let turned: Vec<_> =
-        (0..20).filter_map(|i| easel.touch(Touch::Move(free + vec2(-30.0 * i as f32, 0.0)), &screen)).collect();
+        (0..20).filter_map(|i| painter.touch(TouchEvent::Move(free + vec2(-30.0 * i as f32, 0.0)), &screen)).collect();
     assert!(turned.len() > 2 && turned.iter().all(|t| *t == Action::Turn(-1)), "{turned:?}");
 }
 
@@ -159,8 +160,8 @@ fn all_textures_reach_the_gpu_with_the_first_painting() {
 #[test]
 fn nothing_panics_on_a_display_that_is_none() {
     for size in [[0, 0], [1, 1], [240, 240], [8192, 240]] {
-        laid(&full(), Display { size, pixel_mm: 0.5 });
-        laid(&Screen { controls: vec![], blocks: vec![], ..full() }, Display { size, pixel_mm: 0.0 });
+        laid(&full(), DisplayMetrics { size, pixel_mm: 0.5 });
+        laid(&Screen { controls: vec![], blocks: vec![], ..full() }, DisplayMetrics { size, pixel_mm: 0.0 });
     }
 }
 
@@ -189,7 +190,7 @@ fn words_have_contrast_whatever_stands_behind_the_panel() {
 
 #[test]
 fn every_character_of_every_text_has_a_glyph_in_both_weights() {
-    let (easel, _) = laid(&full(), DISPLAYS[0]);
+    let (painter, _) = laid(&full(), DISPLAYS[0]);
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/texts");
     let mut missing = std::collections::BTreeSet::new();
     let mut read = 0;
@@ -199,7 +200,7 @@ fn every_character_of_every_text_has_a_glyph_in_both_weights() {
         read += 1;
         for c in text.chars().filter(|c| !c.is_whitespace()) {
             for family in [FontFamily::Proportional, FontFamily::Name(fonts::BOLD.into())] {
-                if !easel.context.fonts_mut(|f| f.has_glyph(&FontId::new(20.0, family.clone()), c)) {
+                if !painter.context.fonts_mut(|f| f.has_glyph(&FontId::new(20.0, family.clone()), c)) {
                     missing.insert((path.file_name().unwrap().to_owned(), c));
                 }
             }

@@ -2,9 +2,9 @@
 
 use egui::{Pos2, Vec2};
 
-use super::brush::Held;
-use super::layout::Laid;
-use crate::guest::screen::{Action, Screen, Stage};
+use super::layout::ScreenLayout;
+use super::shapes::TouchFeedback;
+use crate::visitor::screen::{Action, BodyView, Screen};
 
 /// How far a finger may wander and still press (in heights of a line).
 const STILL: f32 = 0.8;
@@ -14,7 +14,7 @@ const EIGHTHS: f32 = 8.0;
 
 /// What a finger or the mouse did, in pixels from the display's upper left corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Touch {
+pub enum TouchEvent {
     /// Down.
     Down(Pos2),
     /// Moved.
@@ -29,7 +29,7 @@ pub enum Touch {
 
 /// A finger that is down.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Down {
+struct ActiveTouch {
     began: Pos2,
     at: Pos2,
     on: Option<usize>,
@@ -43,22 +43,22 @@ struct Down {
 
 /// The finger.
 #[derive(Debug, Clone, Default)]
-pub struct Finger {
-    down: Option<Down>,
+pub struct TouchTracker {
+    down: Option<ActiveTouch>,
     scrolled: f32,
     /// The control that the view has followed last, by which a new focus is told.
     focus: Option<(usize, usize)>,
 }
 
-impl Finger {
+impl TouchTracker {
     /// What is seen of it.
-    pub fn held(&self) -> Held {
+    pub fn feedback(&self) -> TouchFeedback {
         let pressed = self.down.filter(|d| !d.drags).and_then(|d| d.on);
-        Held { pressed, scrolled: self.scrolled }
+        TouchFeedback { pressed, scrolled: self.scrolled }
     }
 
     /// Keeps what has the focus in sight when the focus moves, and the scroll within a layout that has changed.
-    pub fn follow(&mut self, laid: &Laid, screen: &Screen) {
+    pub fn follow(&mut self, laid: &ScreenLayout, screen: &Screen) {
         let focus = (screen.focus, screen.controls.len());
         if self.focus != Some(focus) {
             self.focus = Some(focus);
@@ -68,32 +68,32 @@ impl Finger {
     }
 
     /// Takes in what it did; gives what that asks for.
-    pub fn touch(&mut self, touch: Touch, laid: &Laid, screen: &Screen) -> Option<Action> {
+    pub fn touch(&mut self, touch: TouchEvent, laid: &ScreenLayout, screen: &Screen) -> Option<Action> {
         match touch {
-            Touch::Down(at) => {
+            TouchEvent::Down(at) => {
                 let on = laid.hit(at, self.scrolled);
                 let scrolled = self.scrolled;
-                self.down = Some(Down { began: at, at, on, scrolled, drags: false, turned: 0 });
+                self.down = Some(ActiveTouch { began: at, at, on, scrolled, drags: false, turned: 0 });
                 None
             }
-            Touch::Move(at) => self.moved(at, laid, screen),
-            Touch::Up(at) => {
+            TouchEvent::Move(at) => self.moved(at, laid, screen),
+            TouchEvent::Up(at) => {
                 let down = self.down.take()?;
                 let same = laid.hit(at, self.scrolled) == down.on && !down.drags;
                 same.then(|| screen.controls.get(down.on?).map(|c| c.action))?
             }
-            Touch::Cancel => {
+            TouchEvent::Cancel => {
                 self.down = None;
                 None
             }
-            Touch::Wheel(down) => {
+            TouchEvent::Wheel(down) => {
                 self.scrolled = (self.scrolled + down).clamp(0.0, laid.scrolls);
                 None
             }
         }
     }
 
-    fn moved(&mut self, at: Pos2, laid: &Laid, screen: &Screen) -> Option<Action> {
+    fn moved(&mut self, at: Pos2, laid: &ScreenLayout, screen: &Screen) -> Option<Action> {
         let down = self.down.as_mut()?;
         let way: Vec2 = at - down.began;
         down.at = at;
@@ -107,7 +107,7 @@ impl Finger {
             self.scrolled = (down.scrolled - way.y).clamp(0.0, laid.scrolls);
             return None;
         }
-        let turns = matches!(screen.stage, Stage::Shopper { .. } | Stage::Two { .. });
+        let turns = matches!(screen.body_view, BodyView::Shopper { .. } | BodyView::Two { .. });
         let eighths = (way.x / laid.sizes.display[0] * EIGHTHS).trunc() as i32;
         let by = (eighths - down.turned).clamp(-1, 1);
         down.turned += by;

@@ -1,0 +1,151 @@
+//! The controller of a session: decides when to measure and dress whoever stands there. Without a window that is the state
+//! machine of the session alone.
+
+use toile_engine::frame::Frame;
+use toile_engine::pace::physics::Scene;
+use toile_sensors::frame::Joints;
+
+use super::change::{Act, Changing};
+use super::session::{SessionInput, SessionMachine, SessionState, SessionTimes, StateChange};
+use super::tailor::{Dressed, Job, Model, Tailor, Work};
+use crate::exit::AppError;
+use crate::shopper;
+
+/// A sensor frame older than this says nothing about who is there at the moment (ns).
+pub const STALE_NS: u64 = 500_000_000;
+
+/// Most sensor frames that a shopper is measured from: the longest measuring at 60 Hz.
+pub const MOST_FRAMES: usize = 3600;
+
+/// Fewest frames that somebody can be measured from.
+pub const FEWEST_FRAMES: usize = 10;
+
+/// What a controller works with.
+pub struct ControllerContext<S, O> {
+    /// The stage.
+    pub changing: Changing<S, O>,
+    /// Who dresses the mannequin, and for a host without an atelier of its own shoppers too.
+    pub tailor: Tailor,
+    /// What a dressed frame becomes on the stage, and what the eye has to know of it.
+    pub stage: fn(Frame) -> (S, O),
+    /// How the mannequin stands.
+    pub pose: Joints,
+}
+
+impl<S: Scene, O> ControllerContext<S, O> {
+    /// Somebody dressed, as the stage takes them.
+    pub fn act(&self, dressed: Dressed) -> Act<S, O> {
+        let Dressed { frame, reader, made } = dressed;
+        let (scene, outfit) = (self.stage)(frame);
+        Act { scene, reader, outfit, made }
+    }
+
+    /// Sends the tailor to dress a mannequin, where there is none to come back and the tailor has the time.
+    ///
+    /// # Errors
+    /// Where the system gives no thread.
+    pub fn dress_mannequin(&mut self) -> Result<(), AppError> {
+        if !self.changing.lacks_mannequin() || self.tailor.is_busy() {
+            return Ok(());
+        }
+        self.tailor.begin(Job::Mannequin(Box::new(self.pose))).map_err(AppError::internal)
+    }
+}
+
+/// Decides what happens in a session.
+pub trait SessionController<S, O> {
+    /// The state of the session.
+    fn state(&self) -> SessionState;
+
+    /// Takes a frame of the sensor, unfiltered.
+    fn frame(&mut self, frame: Joints);
+
+    /// Takes what became of a job that it gave the tailor; mannequins are not its own.
+    fn work(&mut self, work: Work);
+
+    /// Decides, fifty times a second; returns the change of state, where there is one.
+    ///
+    /// # Errors
+    /// What ends the service.
+    fn poll(&mut self, now_ns: u64, context: &mut ControllerContext<S, O>) -> Result<Option<StateChange>, AppError>;
+}
+
+/// The session alone: everybody who steps in is measured and dressed in the same.
+pub struct HeadlessController {
+    session: SessionMachine,
+    /// Time over which a shopper is measured (ns).
+    measure_ns: u64,
+    /// The recording that shoppers are measured from, where one is played.
+    played: Option<Model>,
+    /// When a frame last came, and whether somebody was seen in it.
+    seen: (u64, bool),
+    /// What the shopper is measured from, and who was made of it.
+    model: Vec<Joints>,
+    fitted: Option<Box<Dressed>>,
+    dressed: bool,
+}
+
+impl HeadlessController {
+    /// Nobody is there, at this time (ns).
+    pub fn new(times: SessionTimes, measure_ns: u64, played: Option<Model>, now_ns: u64) -> Self {
+        let session = SessionMachine::new(times, now_ns);
+        Self { session, measure_ns, played, seen: (0, false), model: Vec::new(), fitted: None, dressed: false }
+    }
+
+    /// What a change of state brings about.
+    fn change<S: Scene, O>(&mut self, change: StateChange, context: &mut ControllerContext<S, O>) {
+        match change.to {
+            SessionState::Measuring => self.model.clear(),
+            SessionState::TryOn => {
+                self.model.clear();
+                if let Some(fitted) = self.fitted.take() {
+                    let act = context.act(*fitted);
+                    context.changing.bring(act, true);
+                }
+            }
+            SessionState::Left => {}
+            SessionState::Attract => {
+                self.model.clear();
+                (self.fitted, self.dressed) = (None, false);
+                context.tailor.forget();
+                context.changing.wipe();
+            }
+        }
+    }
+}
+
+impl<S: Scene, O> SessionController<S, O> for HeadlessController {
+    fn state(&self) -> SessionState {
+        self.session.state()
+    }
+
+    fn frame(&mut self, frame: Joints) {
+        self.seen = (frame.time_ns, shopper::is_seen(&frame));
+        if self.session.state() == SessionState::Measuring && self.seen.1 && self.model.len() < MOST_FRAMES {
+            self.model.push(frame);
+        }
+    }
+
+    fn work(&mut self, work: Work) {
+        match work {
+            Work::Done(dressed) => (self.fitted, self.dressed) = (Some(dressed), true),
+            Work::Failed | Work::Died => self.model.clear(),
+        }
+    }
+
+    fn poll(&mut self, now: u64, context: &mut ControllerContext<S, O>) -> Result<Option<StateChange>, AppError> {
+        let shopper = self.seen.1 && now.saturating_sub(self.seen.0) < STALE_NS;
+        let change = self.session.update(now, SessionInput { shopper, dressed: self.dressed });
+        if let Some(change) = change {
+            self.change(change, context);
+        }
+        let enough = self.session.lasted_ns(now) >= self.measure_ns && self.model.len() >= FEWEST_FRAMES;
+        let wanted = self.session.state() == SessionState::Measuring && !self.dressed && !context.tailor.is_busy();
+        if enough && wanted {
+            let model = self.played.clone();
+            let model = model.unwrap_or_else(|| Model::Joints(std::mem::take(&mut self.model)));
+            context.tailor.begin(Job::Shopper(model)).map_err(AppError::internal)?;
+        }
+        Ok(change)
+    }
+}

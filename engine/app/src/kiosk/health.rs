@@ -1,0 +1,152 @@
+//! Health: what a kiosk counts while it runs, and the health line. Counted and written by the service's thread, never
+//! by the loop's.
+
+use std::fmt::{self, Display, Formatter};
+
+use toile_engine::meter::Meter;
+use toile_engine::pace::event::{Event, What};
+use toile_perf::latency::{Attributed, Attributing};
+
+use super::session::SessionState;
+use super::stage::Beat;
+
+/// The figures as they are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HealthFigures {
+    /// Time since the loop began (ns).
+    pub uptime_ns: u64,
+    /// Where the session is.
+    pub state: SessionState,
+    /// Steps taken.
+    pub steps: u64,
+    /// 99.9 % of the steps since the last health line took no longer (us).
+    pub step_p999_us: f64,
+    /// Steps that were published after their period, and steps that were dropped.
+    pub misses: u64,
+    /// The place in the governor's ladder.
+    pub rung: u8,
+    /// Steps that were rolled back because of a NaN or an infinity.
+    pub nonfinite: u64,
+    /// Shoppers who stepped in.
+    pub sessions: u64,
+    /// Pictures taken.
+    pub pictures: u64,
+    /// Times that the sensor was lost.
+    pub sensor_lost: u64,
+}
+
+impl Default for HealthFigures {
+    fn default() -> Self {
+        Self {
+            uptime_ns: 0,
+            state: SessionState::Attract,
+            steps: 0,
+            step_p999_us: 0.0,
+            misses: 0,
+            rung: 0,
+            nonfinite: 0,
+            sessions: 0,
+            pictures: 0,
+            sensor_lost: 0,
+        }
+    }
+}
+
+impl Display for HealthFigures {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "health: up {} s, {}, {} steps, p99.9 of a step {:.2} ms, {} misses, rung {}, {} nonfinite, {} sessions, {} \
+             pictures, sensor lost {} times",
+            self.uptime_ns / 1_000_000_000,
+            self.state.name(),
+            self.steps,
+            self.step_p999_us * 1e-3,
+            self.misses,
+            self.rung,
+            self.nonfinite,
+            self.sessions,
+            self.pictures,
+            self.sensor_lost
+        )
+    }
+}
+
+/// Counts the figures.
+#[derive(Debug, Default)]
+pub struct HealthCounter {
+    figures: HealthFigures,
+    /// Steps since the last health line.
+    step: Meter,
+    /// Why steps were late.
+    late: Attributing,
+}
+
+impl HealthCounter {
+    /// A step.
+    pub fn beat(&mut self, beat: &Beat) {
+        self.step.add(beat.step_ns);
+        self.figures.steps += 1;
+        self.figures.misses += u64::from(beat.late);
+        (self.figures.rung, self.figures.nonfinite) = (beat.rung, beat.nonfinite);
+    }
+
+    /// Something happened in the loop. Late steps are reported by their beats.
+    pub fn event(&mut self, event: &Event) {
+        self.late.take(event);
+        match event.what {
+            What::Dropped(steps) => self.figures.misses += steps,
+            What::SensorLost => self.figures.sensor_lost += 1,
+            _ => {}
+        }
+    }
+
+    /// Somebody is measured, who counts where they are `new`.
+    pub fn stepped_in(&mut self, new: bool) {
+        self.figures.sessions += u64::from(new);
+    }
+
+    /// The figures now.
+    pub fn figures(&self, uptime_ns: u64, state: SessionState, pictures: u64) -> HealthFigures {
+        let h = self.step.histogram();
+        let step_p999_us = h.value_at_quantile(0.999).min(h.max()) as f64 * 1e-3;
+        HealthFigures { uptime_ns, state, pictures, step_p999_us, ..self.figures }
+    }
+
+    /// Why steps were late.
+    pub fn attributed(&self) -> Attributed {
+        self.late.attributed
+    }
+
+    /// A health line was printed: the next one is about the steps from now on.
+    pub fn reported(&mut self) {
+        self.step.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn beats_and_events_add_up_to_one_line() {
+        let mut counter = HealthCounter::default();
+        for i in 0..2_000 {
+            counter.beat(&Beat { step_ns: 2_000_000, late: i % 1_000 == 7, rung: 1, nonfinite: i / 1_000 });
+        }
+        for what in [What::Dropped(5), What::SensorLost, What::SensorBack, What::Missed(Default::default())] {
+            counter.event(&Event { tick: 0, scheduled_ns: 0, what });
+        }
+        counter.stepped_in(true);
+        counter.stepped_in(false);
+        let figures = counter.figures(61_000_000_000, SessionState::TryOn, 99);
+        let said = figures.to_string();
+        // A meter keeps 1 % of a time.
+        let expected = "health: up 61 s, try-on, 2000 steps, p99.9 of a step 2.01 ms, 7 misses, rung 1, 1 nonfinite, 1 \
+                        sessions, 99 pictures, sensor lost 1 times";
+        assert_eq!(said, expected);
+        counter.reported();
+        let next = counter.figures(0, SessionState::Attract, 0);
+        assert_eq!((next.steps, next.step_p999_us), (2_000, 0.0), "only the distribution begins anew");
+    }
+}

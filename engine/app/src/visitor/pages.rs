@@ -1,0 +1,234 @@
+//! Pages: the machine's page as a screen, in words.
+
+mod clothes;
+mod fit;
+mod visit;
+
+use super::model::VisitModel;
+use super::reach::DisplayMount;
+use super::screen::{Action, Block, BodyView, Control, ControlStyle, Page, Screen};
+use super::size_fit::BodyPart;
+use super::texts::{Language, TextKey, TextValue, Texts, Translation};
+use super::visit::MeasureProgress;
+use super::wardrobe::WardrobeItem;
+use toile_view::image::linear;
+
+/// Large type, as a multiple of the ordinary one.
+const LARGE: f32 = 1.35;
+
+impl Screen {
+    /// The screen of a moment, in the shopper's language, with its controls where they reach them.
+    pub fn of(model: &VisitModel, texts: &Texts, mount: &DisplayMount) -> Self {
+        let writer = PageWriter { model, texts, translation: texts.of(model.language()) };
+        let band = mount.band(model.visit.head_mm);
+        let page = model.page();
+        Self {
+            page,
+            heading: writer.heading(page),
+            blocks: writer.blocks(page),
+            controls: model.actions().iter().map(|action| writer.control(page, *action)).collect(),
+            focus: model.focus,
+            body_view: model.body_view(page),
+            type_scale: if model.visit.large { LARGE } else { 1.0 },
+            reach: band.high,
+            reach_low: band.low,
+            colours: model.colours(),
+            language: model.language().tag(),
+        }
+    }
+}
+
+impl VisitModel {
+    /// What stands behind a page.
+    fn body_view(&self, page: Page) -> BodyView {
+        let visit = &self.visit;
+        let yaw = self.yaw();
+        let shown = visit.dressed && !visit.hidden;
+        match page {
+            Page::Compare if shown && visit.pair.as_ref().is_some_and(|p| p.asked.is_none() && !p.refused) => {
+                BodyView::Two { yaw }
+            }
+            Page::Fitting | Page::Garments | Page::Compare | Page::Picture | Page::Settings | Page::Unmeasured
+                if shown =>
+            {
+                BodyView::Shopper { yaw, fit: false }
+            }
+            Page::Zones | Page::Zone if shown => BodyView::Shopper { yaw, fit: visit.fit_map },
+            _ => BodyView::Mannequin,
+        }
+    }
+
+    /// Colours of what stands on the stage.
+    fn colours(&self) -> Vec<[f32; 3]> {
+        let worn = if self.visit.worn.is_empty() { &self.visit.outfit } else { &self.visit.worn };
+        let colour = |w: &super::wardrobe::WornItem| self.wardrobe.items.get(w.item)?.colours.get(w.colour);
+        worn.iter().filter_map(colour).map(|c| c.srgb.map(linear)).collect()
+    }
+}
+
+/// A model in a language.
+struct PageWriter<'a> {
+    model: &'a VisitModel,
+    texts: &'a Texts,
+    translation: Translation<'a>,
+}
+
+impl PageWriter<'_> {
+    fn words(&self, key: TextKey) -> String {
+        self.translation.text(key)
+    }
+
+    fn format(&self, key: TextKey, values: &[(&str, TextValue)]) -> String {
+        self.translation.format(key, values)
+    }
+
+    fn paragraph(&self, key: TextKey) -> Block {
+        Block::Text(self.words(key))
+    }
+
+    /// The name of a garment.
+    fn garment(&self, item: &WardrobeItem) -> String {
+        item.word().map_or_else(|| item.style.title.clone(), |key| self.words(key))
+    }
+
+    /// The garment in hand.
+    fn item(&self) -> Option<&WardrobeItem> {
+        self.model.wardrobe.items.get(self.model.visit.in_hand)
+    }
+
+    /// The code of a size of the garment in hand.
+    fn size(&self, size: usize) -> &str {
+        self.item().and_then(|item| item.sizes.get(size)).map_or("", String::as_str)
+    }
+
+    /// Whether somebody was measured, but not all of them.
+    fn is_partly(&self) -> bool {
+        self.model.visit.known.is_some() && self.model.visit.progress != MeasureProgress::Failed
+    }
+
+    fn parts(&self, parts: &[BodyPart]) -> String {
+        let words: Vec<String> = parts.iter().map(|part| self.words(part.word())).collect();
+        self.translation.list(&words)
+    }
+
+    fn heading(&self, page: Page) -> String {
+        let model = self.model;
+        match page {
+            Page::Attract => self.words(TextKey::AttractHeading),
+            Page::Guide if model.visit.seated => self.words(TextKey::GuideHeadingSeated),
+            Page::Guide => self.words(TextKey::GuideHeading),
+            Page::Measuring => self.words(TextKey::MeasuringHeading),
+            Page::Unmeasured if self.is_partly() => self.words(TextKey::PartlyHeading),
+            Page::Unmeasured => self.words(TextKey::UnmeasuredHeading),
+            Page::Fitting => self.worn_heading(),
+            Page::Garments => self.words(TextKey::GarmentsHeading),
+            Page::Zones => self.zones_heading(),
+            Page::Zone => self.zone_heading(),
+            Page::Compare => self.compare_heading(),
+            Page::Picture => self.words(TextKey::PictureHeading),
+            Page::Settings => self.words(TextKey::SettingsHeading),
+            Page::Second => self.words(TextKey::SecondHeading),
+            Page::Leaving => self.words(TextKey::LeavingHeading),
+        }
+    }
+
+    fn blocks(&self, page: Page) -> Vec<Block> {
+        match page {
+            Page::Attract => self.attract(),
+            Page::Guide => self.guide(),
+            Page::Measuring => self.measuring(),
+            Page::Unmeasured => self.unmeasured(),
+            Page::Fitting => self.fitting(),
+            Page::Garments => self.garments(),
+            Page::Zones => self.zones(),
+            Page::Zone => self.zone(),
+            Page::Compare => self.compare(),
+            Page::Picture => self.picture(),
+            Page::Settings => self.settings(),
+            Page::Second => self.second(),
+            Page::Leaving => self.leaving(),
+        }
+    }
+
+    fn control(&self, page: Page, action: Action) -> Control {
+        let (label, detail) = self.label(page, action);
+        Control { action, label, detail, style: self.style(page, action), chosen: self.is_chosen(action) }
+    }
+
+    fn label(&self, page: Page, action: Action) -> (String, Option<String>) {
+        let key = match action {
+            Action::Garment(item) => return self.garment_label(item),
+            Action::Colour(colour) => return (self.colour_name(colour), None),
+            Action::Zone(zone) => return self.zone_label(zone),
+            Action::Size(step) => return self.size_label(page, step),
+            Action::Wear => return self.wear_label(),
+            Action::Language(place) => return self.language_label(place),
+            Action::Begin if page == Page::Second => TextKey::DoBeginAnew,
+            Action::Begin => TextKey::DoBegin,
+            Action::Measure if page == Page::Guide => TextKey::DoMeasure,
+            Action::Measure => TextKey::DoMeasureAgain,
+            Action::Open(Page::Garments) => TextKey::DoGarments,
+            Action::Open(Page::Zones) => TextKey::DoZones,
+            Action::Open(Page::Compare) => TextKey::DoCompare,
+            Action::Open(Page::Picture) => TextKey::DoShowPicture,
+            Action::Open(_) => TextKey::DoSettings,
+            Action::Back if page == Page::Unmeasured => TextKey::DoGoOn,
+            Action::Back => TextKey::DoBack,
+            Action::Turn(eighths) if eighths < 0 => TextKey::DoTurnLeft,
+            Action::Turn(_) => TextKey::DoTurnRight,
+            Action::FitMap => TextKey::DoFitMap,
+            Action::TakePicture => TextKey::DoPicture,
+            Action::DeletePicture => TextKey::DoDeletePicture,
+            Action::Stay if page == Page::Second => TextKey::DoStillMe,
+            Action::Stay => TextKey::DoStay,
+            Action::Leave => TextKey::DoLeave,
+            Action::LargeType => TextKey::DoLarge,
+            Action::Seated => TextKey::DoSeated,
+        };
+        (self.words(key), None)
+    }
+
+    fn style(&self, page: Page, action: Action) -> ControlStyle {
+        match (page, action) {
+            (_, Action::Colour(place)) => {
+                let colour = self.item().and_then(|item| item.colours.get(place));
+                colour.map_or(ControlStyle::Plain, |c| ControlStyle::Swatch(c.srgb.map(linear)))
+            }
+            (Page::Attract, Action::Begin)
+            | (Page::Guide | Page::Unmeasured, Action::Measure)
+            | (Page::Fitting, Action::Open(Page::Garments))
+            | (Page::Compare, Action::Wear)
+            | (Page::Picture, Action::DeletePicture | Action::TakePicture)
+            | (Page::Second | Page::Leaving, Action::Stay) => {
+                if page == Page::Unmeasured && self.is_partly() {
+                    ControlStyle::Plain
+                } else {
+                    ControlStyle::Primary
+                }
+            }
+            (Page::Unmeasured, Action::Back) if self.is_partly() => ControlStyle::Primary,
+            (_, Action::Back | Action::Leave | Action::Open(Page::Settings) | Action::LargeType) => ControlStyle::Quiet,
+            (Page::Attract, Action::Language(_)) => ControlStyle::Quiet,
+            _ => ControlStyle::Plain,
+        }
+    }
+
+    fn is_chosen(&self, action: Action) -> bool {
+        let visit = &self.model.visit;
+        match action {
+            Action::Garment(item) => visit.outfit.iter().any(|w| w.item == item),
+            Action::Colour(colour) => self.model.worn().is_some_and(|w| w.colour == colour),
+            Action::FitMap => visit.fit_map,
+            Action::Language(place) => Language::ALL.get(place) == Some(&visit.language),
+            Action::LargeType => visit.large,
+            Action::Seated => visit.seated,
+            _ => false,
+        }
+    }
+
+    /// A language in its own words, whatever is spoken at the moment.
+    fn language_label(&self, place: usize) -> (String, Option<String>) {
+        let language = Language::ALL.get(place).copied().unwrap_or_default();
+        (self.texts.of(language).text(TextKey::Language), None)
+    }
+}

@@ -1,0 +1,104 @@
+//! The fitted body and the garments to choose from.
+
+use super::super::screen::{Block, Page};
+use super::super::size_fit::OutOfRange;
+use super::super::texts::{TextKey, TextValue};
+use super::PageWriter;
+
+/// As sure as this, a size is simply the best.
+const SURE: f32 = toile_track::recommend::SURE;
+
+impl PageWriter<'_> {
+    pub(super) fn worn_heading(&self) -> String {
+        let (Some(item), Some(worn)) = (self.item(), self.model.worn()) else { return self.words(TextKey::DoGarments) };
+        let name = self.garment(item);
+        self.format(
+            TextKey::FittingSize,
+            &[("garment", TextValue::Text(&name)), ("size", TextValue::Text(self.size(worn.size)))],
+        )
+    }
+
+    pub(super) fn fitting(&self) -> Vec<Block> {
+        let mut blocks = Vec::new();
+        let visit = &self.model.visit;
+        if visit.dressing.is_some() {
+            blocks.push(Block::Progress { share: 0.5, label: self.words(TextKey::FittingDressing) });
+        }
+        if visit.refused {
+            blocks.push(self.paragraph(TextKey::FittingRefused));
+        }
+        let Some(fit) = &visit.fit else { return blocks };
+        let percent = ("percent", TextValue::Count((100.0 * fit.probability).round() as u32));
+        if fit.size == fit.best {
+            let size = TextValue::Text(self.size(fit.size));
+            blocks.push(Block::Text(self.format(TextKey::FittingBest, &[("size", size)])));
+            let how = if fit.probability >= SURE { TextKey::FittingSure } else { TextKey::FittingUnsure };
+            blocks.push(Block::Text(self.format(how, &[percent])));
+        } else {
+            let size = TextValue::Text(self.size(fit.best));
+            blocks.push(Block::Text(self.format(TextKey::FittingBetter, &[("size", size)])));
+        }
+        if let Some(zone) = fit.tape {
+            let zone = self.part(zone);
+            blocks.push(Block::Text(self.format(TextKey::FittingTape, &[("zone", TextValue::Text(&zone))])));
+        }
+        match fit.outside {
+            Some(OutOfRange::Smaller) => blocks.push(self.paragraph(TextKey::FittingSmaller)),
+            Some(OutOfRange::Larger) => blocks.push(self.paragraph(TextKey::FittingLarger)),
+            None => {}
+        }
+        blocks.extend(fit.zones.iter().map(|zone| self.fit_block(zone)));
+        blocks
+    }
+
+    pub(super) fn garments(&self) -> Vec<Block> {
+        let worn = self.model.worn();
+        let Some(colour) = worn.map(|w| self.colour_name(w.colour)) else { return Vec::new() };
+        let mut blocks = vec![Block::Text(self.worn_heading())];
+        blocks.push(Block::Text(self.format(TextKey::ColourOf, &[("colour", TextValue::Text(&colour))])));
+        if self.model.visit.refused {
+            blocks.push(self.paragraph(TextKey::FittingRefused));
+        }
+        blocks
+    }
+
+    pub(super) fn colour_name(&self, colour: usize) -> String {
+        let word = self.item().and_then(|item| item.colours.get(colour)).map(|c| c.word);
+        word.map(|key| self.words(key)).unwrap_or_default()
+    }
+
+    /// A garment's name, and what pressing it does.
+    pub(super) fn garment_label(&self, place: usize) -> (String, Option<String>) {
+        let wardrobe = &self.model.wardrobe.items;
+        let Some(item) = wardrobe.get(place) else { return Default::default() };
+        let visit = &self.model.visit;
+        let worn = visit.outfit.iter().any(|w| w.item == place);
+        let detail = if worn && visit.in_hand == place && visit.outfit.len() > 1 {
+            Some(self.words(TextKey::GarmentsTakeOff))
+        } else if worn {
+            Some(self.words(TextKey::GarmentsWorn))
+        } else {
+            let off = visit.outfit.iter().filter_map(|w| wardrobe.get(w.item)).filter(|other| other.excludes(item));
+            let names: Vec<String> = off.map(|other| self.garment(other)).collect();
+            let others = self.translation.list(&names);
+            (!names.is_empty()).then(|| self.format(TextKey::GarmentsInstead, &[("others", TextValue::Text(&others))]))
+        };
+        (self.garment(item), detail)
+    }
+
+    /// The size before or after, and which that is.
+    pub(super) fn size_label(&self, page: Page, step: i8) -> (String, Option<String>) {
+        let worn = self.model.worn().map(|w| w.size);
+        let pair = self.model.visit.pair.as_ref();
+        let (from, but) = if page == Page::Compare { (pair.map(|p| p.other.size), worn) } else { (worn, None) };
+        let key = if step < 0 { TextKey::DoSmaller } else { TextKey::DoLarger };
+        let next = from.and_then(|from| self.model.beside(from, step, but));
+        let named = |size| self.format(TextKey::DoSize, &[("size", TextValue::Text(self.size(size)))]);
+        (self.words(key), next.map(named))
+    }
+
+    pub(super) fn wear_label(&self) -> (String, Option<String>) {
+        let size = self.model.visit.pair.as_ref().map_or("", |pair| self.size(pair.other.size));
+        (self.format(TextKey::DoWear, &[("size", TextValue::Text(size))]), None)
+    }
+}

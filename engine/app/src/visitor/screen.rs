@@ -1,0 +1,193 @@
+//! Screen: everything that the display shows at a moment, as data. The window paints it, a test reads it; neither the words nor
+//! the order of things is decided by who paints.
+
+/// Which page is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Page {
+    /// Nobody is there: what the mirror can do, in turn.
+    Attract,
+    /// Somebody has stepped in: where and how to stand.
+    Guide,
+    /// Measures are being taken.
+    Measuring,
+    /// Somebody could not be measured, or not all of them: what is missing, and what can be done.
+    Unmeasured,
+    /// The fitted body, dressed.
+    Fitting,
+    /// The garments to choose from, in the order of dressing.
+    Garments,
+    /// Fit by zone.
+    Zones,
+    /// Why one zone fits as it does.
+    Zone,
+    /// Two sizes beside each other.
+    Compare,
+    /// A picture that was asked for, as a code to scan.
+    Picture,
+    /// Language, type size, seated mode, what is stored.
+    Settings,
+    /// Somebody else has stepped in.
+    Second,
+    /// Nobody is seen: everything is wiped soon.
+    Leaving,
+}
+
+/// What the three-dimensional part of the display shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum BodyView {
+    /// The mannequin, turning slowly.
+    Mannequin,
+    /// The shopper's body in what they wear.
+    Shopper {
+        /// Turn of the view around the body (rad), 0 from before, as a mirror shows.
+        yaw: f32,
+        /// Whether garments are painted as a fit map, with its legend.
+        fit: bool,
+    },
+    /// The same body in two sizes, left and right, under one yaw (rad).
+    Two {
+        /// Turn of both views (rad).
+        yaw: f32,
+    },
+}
+
+/// What pressing a control asks for. Indices are those of the lists that the screen was made from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Action {
+    /// Begin, where touch is how somebody says that they are there.
+    Begin,
+    /// Measure, or measure again.
+    Measure,
+    /// Open a page.
+    Open(Page),
+    /// Back to the page before.
+    Back,
+    /// Wear a garment of the shelf, or take it off.
+    Garment(usize),
+    /// The size before or after (-1, 1).
+    Size(i8),
+    /// A colour of the garment in hand.
+    Colour(usize),
+    /// A zone of the garment in hand.
+    Zone(usize),
+    /// Turn the view by so many eighths of a circle.
+    Turn(i8),
+    /// Show or hide the fit map.
+    FitMap,
+    /// A picture, please.
+    TakePicture,
+    /// Delete the picture now.
+    DeletePicture,
+    /// I am still here.
+    Stay,
+    /// I am done: forget me now.
+    Leave,
+    /// A language of the list.
+    Language(usize),
+    /// Larger or ordinary type.
+    LargeType,
+    /// Measure me seated, or standing.
+    Seated,
+    /// Wear the other one of the two sizes that are compared.
+    Wear,
+}
+
+/// How much a control stands out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ControlStyle {
+    /// What most will want next; one a page at most.
+    Primary,
+    /// Anything else.
+    Plain,
+    /// A way out or a setting.
+    Quiet,
+    /// A colour, linear RGB.
+    Swatch([f32; 3]),
+}
+
+/// Something that can be pressed, by finger, mouse, key or gesture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Control {
+    /// What it asks for.
+    pub action: Action,
+    /// Its words.
+    pub label: String,
+    /// A second, smaller line.
+    pub detail: Option<String>,
+    /// How much it stands out.
+    pub style: ControlStyle,
+    /// Whether it is what is chosen.
+    pub chosen: bool,
+}
+
+/// What stands between the heading and the controls.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Block {
+    /// A paragraph.
+    Text(String),
+    /// A figure that shows how to stand; its phase goes round from 0 to 1.
+    PoseGuide {
+        /// Where in its movement the figure is, 0 .. 1.
+        phase: f32,
+        /// A seated figure.
+        seated: bool,
+    },
+    /// How far something has got.
+    Progress {
+        /// 0 .. 1.
+        share: f32,
+        /// What is being done.
+        label: String,
+    },
+    /// The fit at one zone.
+    Fit {
+        /// The zone and its verdict in words, with the ease and its uncertainty.
+        text: String,
+        /// -1 (loose) .. 1 (tight), for the mark's colour.
+        tightness: f32,
+    },
+    /// The legend of the fit map, loose and tight.
+    Legend {
+        /// The word at the loose end and at the tight end.
+        ends: [String; 2],
+    },
+    /// A code to scan: `side` modules a side, row by row, dark is true.
+    Code {
+        /// Modules a side.
+        side: usize,
+        /// `[side * side]`.
+        dark: Vec<bool>,
+    },
+    /// Seconds that are left.
+    Countdown {
+        /// Whole seconds.
+        seconds: u32,
+    },
+}
+
+/// Everything that the display shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Screen {
+    /// Which page.
+    pub page: Page,
+    /// The line that is read first.
+    pub heading: String,
+    /// What stands below it, in order.
+    pub blocks: Vec<Block>,
+    /// What can be pressed, in the order of the Tab key.
+    pub controls: Vec<Control>,
+    /// Which control has the focus of keys and gestures.
+    pub focus: usize,
+    /// Behind all of it.
+    pub body_view: BodyView,
+    /// Scale of the type: 1 is ordinary.
+    pub type_scale: f32,
+    /// Upper edge of the controls over the display's lower edge, as a share of its height: within reach of the floor.
+    pub reach: f32,
+    /// Lower edge of the controls over the display's lower edge, as a share of its height: nobody has to stoop.
+    pub reach_low: f32,
+    /// Colours of the garments that are worn, linear RGB, inner first: the order of the snapshot's garments.
+    pub colours: Vec<[f32; 3]>,
+    /// Language, as BCP 47 (`en`, `de`, `fr`, `es`, `tr`, `ja`).
+    pub language: &'static str,
+}

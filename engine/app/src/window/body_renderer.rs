@@ -1,0 +1,213 @@
+//! The dressed body as it is drawn behind the panel: its surfaces on the device, what the newest snapshot moved, and
+//! from where it is looked at.
+
+use std::f32::consts::TAU;
+
+use glam::Vec3;
+use toile_assets::mesh::vertex_normals;
+use toile_engine::frame::Snapshot;
+use toile_view::image::Size;
+use toile_view::mirror::{Backdrop, Blend, Gpu, Model, Quality, Renderer, Viewport};
+use toile_view::scene::Bounds;
+use wgpu::{CommandEncoder, TextureFormat, TextureView};
+
+use super::body_model::{BodyModel, ModelPair};
+use super::camera;
+use crate::visitor::screen::BodyView;
+
+/// A mannequin turns once in so many seconds.
+const TURN_S: f64 = 36.0;
+
+/// How fast the view follows a body across the floor (share of the way a picture).
+const FOLLOW: f32 = 0.2;
+
+/// What is drawn of a moment.
+#[derive(Debug, Clone, Copy)]
+pub struct BodyScene<'a> {
+    /// What stands behind the panel.
+    pub body_view: &'a BodyView,
+    /// Colours of the garments, linear RGB, inner first.
+    pub colours: &'a [[f32; 3]],
+    /// What the panel leaves of the display: left, top, right, bottom as shares.
+    pub free: [f32; 4],
+    /// Time since the window was opened (s); a mannequin stands still without one.
+    pub time_s: Option<f64>,
+}
+
+/// A body with its garments, on a device.
+pub struct BodyRenderer {
+    renderer: Renderer,
+    /// Whether motion between snapshots is shown: where the processor draws, pictures are too far apart for it.
+    smooth: bool,
+    triangles: Vec<Vec<[u32; 3]>>,
+    /// Surfaces of the body and its garments; those of a pair follow.
+    worn: usize,
+    /// Surfaces of the left and of the right one.
+    pair: [usize; 2],
+    fit: Vec<Vec<f32>>,
+    statures: [f32; 3],
+    blends: Vec<Blend>,
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    /// Where the body stands (m), once it was seen.
+    at: Option<Vec3>,
+    /// What was painted last: colours, and whether as a fit map.
+    painted: (Vec<[f32; 3]>, bool),
+}
+
+impl BodyRenderer {
+    /// Without a body, on a device whose pictures have this format. Compiles shaders, which takes a tenth of a second or more.
+    pub fn new(gpu: &Gpu, format: TextureFormat) -> Self {
+        let software = gpu.is_software();
+        Self {
+            renderer: Renderer::new(gpu, format, Quality::live(software)),
+            smooth: !software,
+            triangles: Vec::new(),
+            worn: 0,
+            pair: [0; 2],
+            fit: Vec::new(),
+            statures: [1.7; 3],
+            blends: Vec::new(),
+            positions: Vec::new(),
+            normals: Vec::new(),
+            at: None,
+            painted: (Vec::new(), false),
+        }
+    }
+
+    /// Sets the body that is drawn, and two sizes of the same outfit beside it if there are any.
+    pub fn dress(&mut self, model: &BodyModel, pair: Option<&ModelPair>) {
+        let models = || std::iter::once(model).chain(pair.into_iter().flatten());
+        let surfaces = || models().flat_map(|m| &m.meshes.surfaces);
+        let meshes = Model { surfaces: surfaces().cloned().collect() };
+        // A body that cannot be drawn leaves the studio empty; words and controls are there all the same.
+        if self.renderer.set_model(&meshes).is_err() {
+            self.worn = 0;
+            return;
+        }
+        self.worn = model.meshes.surfaces.len();
+        self.pair = pair.map_or([0; 2], |pair| pair.each_ref().map(|m| m.meshes.surfaces.len()));
+        self.triangles = surfaces().map(|s| s.triangles.clone()).collect();
+        self.fit = model.fit.clone();
+        self.statures = [model.stature, pair.map_or(1.7, |p| p[0].stature), pair.map_or(1.7, |p| p[1].stature)];
+        self.blends = vec![Blend::new(); self.worn];
+        self.painted = (Vec::new(), false);
+        self.at = None;
+        for (i, recess) in models().flat_map(|m| &m.recess).enumerate() {
+            // Of the same model, so that it has the same length.
+            _ = self.renderer.set_recess(i, recess);
+        }
+    }
+
+    /// Takes over what a snapshot shows, at a time of its clock (ns).
+    pub fn take(&mut self, snapshot: &Snapshot, now_ns: u64) {
+        if self.worn != 1 + snapshot.garments.len() {
+            return;
+        }
+        let vertices = snapshot.skin.vertices();
+        self.positions.resize(vertices, Vec3::ZERO);
+        self.normals.resize(vertices, Vec3::ZERO);
+        snapshot.skin.read(&mut self.positions, &mut self.normals);
+        self.follow();
+        self.move_to(0, snapshot.times.published_ns, now_ns);
+        for (i, points) in snapshot.garments.iter().enumerate() {
+            self.positions.clear();
+            self.positions.extend_from_slice(points);
+            self.normals.clear();
+            self.normals.resize(points.len(), Vec3::ZERO);
+            vertex_normals(points, &self.triangles[i + 1], &mut self.normals);
+            self.move_to(i + 1, snapshot.times.published_ns, now_ns);
+        }
+    }
+
+    fn follow(&mut self) {
+        let bounds = Bounds::of(&self.positions);
+        if bounds.is_empty() {
+            return;
+        }
+        let middle = (bounds.min + bounds.max) * 0.5;
+        let now = Vec3::new(middle.x, 0.0, middle.z);
+        self.at = Some(self.at.map_or(now, |at| at.lerp(now, FOLLOW)));
+    }
+
+    /// A position that is NaN, or another body's, leaves a surface where it was.
+    fn move_to(&mut self, surface: usize, published_ns: u64, now_ns: u64) {
+        let Self { renderer, blends, positions, normals, smooth, .. } = self;
+        if !*smooth {
+            _ = renderer.update(surface, positions, normals);
+            return;
+        }
+        let blend = &mut blends[surface];
+        blend.push(published_ns, positions, normals);
+        let (positions, normals) = blend.at(blend.share(now_ns));
+        _ = renderer.update(surface, positions, normals);
+    }
+
+    /// Draws it over all of a view.
+    pub fn draw(&mut self, encoder: &mut CommandEncoder, target: &TextureView, size: Size, scene: &BodyScene<'_>) {
+        self.paint(scene);
+        match scene.body_view {
+            BodyView::Two { yaw } if self.pair[0] > 0 => {
+                let half = Size::new(size.width / 2, size.height);
+                let [left, top, right, bottom] = scene.free;
+                for side in 0..2 {
+                    self.show(self.worn + side * self.pair[0], self.pair[side]);
+                    let x = side as u32 * half.width;
+                    let free = if right < 1.0 { [0.0, top, 1.0, bottom] } else { [left, top, right, bottom] };
+                    let place = Viewport { x, y: 0, size: half };
+                    self.draw_body(encoder, target, place, (1 + side, Vec3::ZERO, *yaw), free);
+                }
+            }
+            view => {
+                let yaw = match view {
+                    BodyView::Shopper { yaw, .. } | BodyView::Two { yaw } => *yaw,
+                    BodyView::Mannequin => (scene.time_s.unwrap_or(1.5) / TURN_S * f64::from(TAU)) as f32 % TAU,
+                };
+                self.show(0, self.worn);
+                let at = self.at.unwrap_or_default();
+                self.draw_body(encoder, target, Viewport::whole(size), (0, at, yaw), scene.free);
+            }
+        }
+    }
+
+    fn draw_body(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        target: &TextureView,
+        place: Viewport,
+        (who, at, yaw): (usize, Vec3, f32),
+        free: [f32; 4],
+    ) {
+        let aspect = place.size.width as f32 / place.size.height.max(1) as f32;
+        let stature = self.statures[who];
+        self.renderer.set_subject(Some(camera::standing_bounds(stature, at)));
+        let camera = camera::camera(stature, at, yaw, free, aspect);
+        self.renderer.draw(encoder, target, place, &camera, Backdrop::Studio);
+    }
+
+    /// Only these surfaces are drawn.
+    fn show(&mut self, first: usize, count: usize) {
+        for surface in 0..self.triangles.len() {
+            _ = self.renderer.set_visible(surface, (first..first + count).contains(&surface));
+        }
+    }
+
+    /// Colours and fit map, where they have changed.
+    fn paint(&mut self, scene: &BodyScene<'_>) {
+        let fit = matches!(scene.body_view, BodyView::Shopper { fit: true, .. });
+        if (&*self.painted.0, self.painted.1) == (scene.colours, fit) {
+            return;
+        }
+        self.painted = (scene.colours.to_vec(), fit);
+        let [left, right] = self.pair;
+        let begins = [(0, self.worn), (self.worn, left), (self.worn + left, right)];
+        for (begin, count) in begins.into_iter().filter(|(_, count)| *count > 0) {
+            for (surface, colour) in (begin + 1..begin + count).zip(scene.colours) {
+                _ = self.renderer.set_colour(surface, Vec3::from_array(*colour));
+            }
+        }
+        for (surface, tight) in (1..self.worn).zip(&self.fit) {
+            _ = self.renderer.set_fit(surface, fit.then_some(tight.as_slice()));
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! The camera: from where the body is seen, so that it stands in what the panel leaves free.
+
+use glam::Vec3;
+use toile_view::scene::{Bounds, Camera};
+
+/// Arm's reach beside the body (m): what stays in the picture when somebody lifts their arms.
+const HALF_REACH_M: f32 = 0.5;
+
+/// Height that is shown over a body, in statures.
+const HEADROOM: f32 = 1.03;
+
+/// The box around a standing body of this stature at a place on the floor, with the reach of its arms.
+pub fn standing_bounds(stature: f32, at: Vec3) -> Bounds {
+    let reach = Vec3::new(HALF_REACH_M, 0.0, HALF_REACH_M * 0.5);
+    Bounds { min: at - reach, max: at + reach + Vec3::Y * stature * HEADROOM }
+}
+
+/// A camera that frames a standing body of this stature at a place on the floor, turned by `yaw` (rad), within a part of the
+/// display: left, top, right, bottom as shares of it; `aspect` is the display's width over its height.
+pub fn camera(stature: f32, at: Vec3, yaw: f32, free: [f32; 4], aspect: f32) -> Camera {
+    let [left, top, right, bottom] = free;
+    let (wide, tall) = ((right - left).clamp(0.05, 1.0), (bottom - top).clamp(0.05, 1.0));
+    // As if the free part were the whole picture ...
+    let near = Camera::framing(&standing_bounds(stature, at), yaw, aspect * wide / tall);
+    // ... of which the display shows more, all around.
+    let distance = near.distance / tall;
+    let seen = 2.0 * distance * (0.5 * near.fov_y).tan();
+    let (sin, cos) = yaw.sin_cos();
+    let right_hand = Vec3::new(cos, 0.0, -sin);
+    let aside = (0.5 - 0.5 * (left + right)) * seen * aspect;
+    let above = (0.5 - 0.5 * (top + bottom)) * seen;
+    let target = near.target + right_hand * aside - Vec3::Y * above;
+    // The eye stays at its height and looks down a little: from the height of the target it would see along the floor.
+    Camera { target, distance, height: near.height + above, ..near }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec2;
+
+    /// Where a point is seen, as shares of the display from its upper left corner.
+    fn seen(camera: &Camera, aspect: f32, point: Vec3) -> Vec2 {
+        let (sin, cos) = camera.yaw.sin_cos();
+        let eye = camera.target + Vec3::new(sin, 0.0, cos) * camera.distance + Vec3::Y * camera.height;
+        let forward = (camera.target - eye).normalize();
+        let right = Vec3::new(cos, 0.0, -sin);
+        let up = right.cross(forward);
+        let to = point - eye;
+        let half = (0.5 * camera.fov_y).tan() * to.dot(forward);
+        Vec2::new(0.5 + 0.5 * to.dot(right) / (half * aspect), 0.5 - 0.5 * to.dot(up) / half)
+    }
+
+    #[test]
+    fn the_body_stands_whole_in_what_the_panel_leaves_free_from_every_side() {
+        for (free, aspect) in [
+            ([0.0, 0.0, 1.0, 0.4], 9.0 / 16.0),
+            ([0.0, 0.0, 1.0, 0.6], 9.0 / 16.0),
+            ([0.0, 0.0, 0.58, 1.0], 16.0 / 9.0),
+            ([0.0, 0.0, 1.0, 1.0], 1.0),
+        ] {
+            for stature in [1.5, 1.95] {
+                for yaw in [0.0, 0.8, 3.1, -1.6] {
+                    let at = Vec3::new(0.3, 0.0, 1.2);
+                    let camera = camera(stature, at, yaw, free, aspect);
+                    let (head, feet) = (at + Vec3::Y * stature, at);
+                    for point in [head, feet] {
+                        let p = seen(&camera, aspect, point);
+                        assert!(
+                            p.x > free[0] && p.x < free[2] && p.y > free[1] && p.y < free[3],
+                            "{free:?} {yaw}: {p}"
+                        );
+                    }
+                    let tall = seen(&camera, aspect, feet).y - seen(&camera, aspect, head).y;
+                    assert!(tall > 0.5 * (free[3] - free[1]), "{free:?}: it fills only {tall}");
+                    let eye = camera.target.y + camera.height;
+                    assert!(eye > 0.5 * stature, "the eye at {eye} sees along the floor");
+                }
+            }
+        }
+    }
+}

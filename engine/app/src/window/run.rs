@@ -1,0 +1,70 @@
+//! The kiosk with a window: the visit's controller decides, the window's renderer draws.
+
+use toile_engine::clock::Clock;
+use toile_engine::frame::Frame;
+use toile_engine::pace::physics::Staged;
+
+use super::body_model::BodyModel;
+use super::open::{self, ServiceChannels};
+use super::options::WindowOptions;
+use super::{UserEvent, WindowRenderer};
+use crate::exit::AppError;
+use crate::kiosk::report::KioskReport;
+use crate::kiosk::{BoxedController, Frontend, KioskRun, serve};
+use crate::visitor::controller;
+use crate::visitor::model::Input;
+use crate::visitor::setup::VisitorSetup;
+
+/// Runs `toile kiosk` at a window.
+///
+/// # Errors
+/// As without a window; where there is no display, or nothing that can draw on it.
+pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, AppError> {
+    let display = &kiosk.config.display;
+    let setup = VisitorSetup::new(kiosk.config, kiosk.clock.now_ns())?;
+    let options = WindowOptions {
+        windowed: kiosk.args.windowed,
+        height_mm: display.height_mm,
+        begun: kiosk.begun,
+        clock: kiosk.clock,
+        motion: display.motion,
+        first: setup.first(),
+        stop: kiosk.stop.clone(),
+    };
+    open::run(options, |channels| {
+        let ServiceChannels { screens, mut user_events, pairs, opening } = channels;
+        let next_input = Box::new(move || user_events.pop().map(input));
+        let channels = controller::WindowChannels { screens, next_input, pairs, draped: BodyModel::draped };
+        let controller =
+            move |played| -> BoxedController<'_, BodyModel> { Some(Box::new(setup.controller(channels, played))) };
+        let words = kiosk.words;
+        let eye = |mannequin: &Frame| {
+            let renderer = opening.finish()?;
+            if let Some(slow) = renderer.slowness() {
+                words.say(&slow);
+            }
+            Ok(renderer.showing(BodyModel::of(mannequin)))
+        };
+        let (mut report, renderer) = serve(kiosk, Frontend { eye, stage, controller })?;
+        if let Some(mut renderer) = renderer {
+            let (window, warnings) = WindowRenderer::report(&mut renderer);
+            report.window = Some(window);
+            report.warnings.extend(warnings);
+        }
+        Ok(report)
+    })
+}
+
+/// A frame that takes the stage, and what is drawn of it.
+fn stage(frame: Frame) -> (Staged, BodyModel) {
+    let model = BodyModel::of(&frame);
+    (Staged::new(frame), model)
+}
+
+/// An event from the display as the visitor's model takes it.
+fn input(event: UserEvent) -> Input {
+    match event {
+        UserEvent::Pressed(action) => Input::Pressed(action),
+        UserEvent::Key(key) => Input::Key(key),
+    }
+}
