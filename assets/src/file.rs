@@ -22,17 +22,17 @@ pub struct FileKind {
 }
 
 /// Why a file was not read: what, where, and the cure.
-#[derive(Debug, Error)]
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum FileError {
     /// The system refused.
-    #[error("{path}: cannot be read ({error}); give the path of {name} that exists and that you may read", name = kind.name)]
+    #[error("{path}: cannot be read ({reason}); give the path of {name}, and check that you may read it", name = kind.name)]
     Refused {
         /// The file.
         path: String,
         /// What it should be.
         kind: FileKind,
         /// What the system said.
-        error: io::Error,
+        reason: String,
     },
     /// A folder, a FIFO, a socket or a device.
     #[error("{path}: it is {found}, not {name}; give the path of a regular file", name = kind.name)]
@@ -71,7 +71,7 @@ pub enum FileError {
 /// Where it is absent, not a regular file, or larger than its kind may be.
 pub fn read(path: &Path, kind: &FileKind) -> Result<Vec<u8>, FileError> {
     let shown = || path.display().to_string();
-    let refused = |error| FileError::Refused { path: shown(), kind: *kind, error };
+    let refused = |e: io::Error| FileError::Refused { path: shown(), kind: *kind, reason: e.to_string() };
     let too_large = |bytes| FileError::TooLarge { path: shown(), kind: *kind, bytes };
     let regular = |data: &Metadata| match irregular(data) {
         Some(found) => Err(FileError::NotRegular { path: shown(), kind: *kind, found }),

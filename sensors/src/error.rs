@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use toile_assets::file::FileError;
+
 /// Where in a file something is wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
@@ -29,25 +31,18 @@ impl fmt::Display for Place {
 /// Why a recording could not be opened or written.
 #[derive(Debug, thiserror::Error)]
 pub enum SourceError {
-    /// The file system refused.
+    /// The file cannot be read: absent, not a regular file, or too large.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A folder cannot be listed, or a file not written.
     #[error("{path}: cannot be {action}: {error}; check that the path exists and that you may use it")]
     Io {
-        /// The file.
+        /// The file or folder.
         path: String,
         /// "read" or "written".
         action: &'static str,
         /// What the system said.
         error: std::io::Error,
-    },
-    /// The file is larger than a session may be.
-    #[error("{path}: holds {bytes} bytes, more than the {limit} that are read; cut the recording into shorter pieces")]
-    TooLarge {
-        /// The file.
-        path: String,
-        /// Its size.
-        bytes: u64,
-        /// [`crate::limits::MAX_FILE_BYTES`].
-        limit: u64,
     },
     /// The content is of no known kind.
     #[error(

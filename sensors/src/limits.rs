@@ -1,8 +1,25 @@
 //! Every capacity of the sensor room: a named constant, its unit and its reason.
 
-/// Largest file that is read (bytes): ten minutes of raw 640x480 depth at 30 Hz would be 11 GB; what a fitting needs
-/// is half a minute, and a file is read whole.
+use toile_assets::file::FileKind;
+
+/// Largest recording that is read (bytes), be it one file or a folder: ten minutes of raw 640x480 depth at 30 Hz would
+/// be 11 GB; what a fitting needs is half a minute, and a file is read whole.
 pub const MAX_FILE_BYTES: u64 = 1 << 30;
+
+/// A recording, or one image of a folder of them.
+pub const RECORDING: FileKind =
+    FileKind { name: "a recording", max_bytes: MAX_FILE_BYTES, cure: "cut the recording into shorter pieces" };
+
+/// A camera's JSON or the calibration of several cameras: a page of text.
+pub const CAMERA: FileKind = FileKind {
+    name: "a camera description",
+    max_bytes: 1 << 20,
+    cure: "give the description of one camera, or of those of one recording",
+};
+
+/// The people of one image, as JSON: a few kilobytes each.
+pub const KEYPOINTS: FileKind =
+    FileKind { name: "the keypoints of one image", max_bytes: 1 << 20, cure: "give one JSON file an image" };
 
 /// Most joint frames of a session: half an hour of 120 Hz motion capture, 81 MB in memory.
 pub const MAX_JOINT_FRAMES: usize = 216_000;

@@ -9,6 +9,7 @@ use toile_assets::bake::survey::{Survey, survey};
 use toile_assets::bake::{self, weights};
 use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::fabric::Fabric;
+use toile_assets::file::{self, FileKind};
 use toile_assets::garment::{Garment, Shape};
 use toile_assets::import::obj;
 use toile_assets::sizes::Population;
@@ -22,8 +23,8 @@ use crate::terminal::{self, Paint, Tone};
 /// Fabric of a mesh where none is named.
 const MESH_FABRIC: &str = "cotton-lawn";
 
-/// Largest fabric file that is read (bytes); a fabric is a dozen lines.
-const MAX_FABRIC_BYTES: u64 = 1 << 16;
+/// A fabric file: a dozen lines.
+const FABRIC_FILE: FileKind = FileKind { name: "a fabric file", max_bytes: 1 << 16, cure: "give one fabric a file" };
 
 /// The body of `toile bake`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -210,20 +211,7 @@ fn fabric(name: &str) -> Result<Fabric, AppError> {
     if !path.exists() && !name.to_lowercase().ends_with(".toml") {
         return Fabric::built_in(name).map_err(AppError::input);
     }
-    let unread = |reason: String| {
-        AppError::Input(format!(
-            "fabric {name}: {reason}; give the path of a fabric file, or a fabric that is built in"
-        ))
-    };
-    let info = std::fs::metadata(path).map_err(|e| unread(e.to_string()))?;
-    if info.is_dir() || info.len() > MAX_FABRIC_BYTES {
-        return Err(unread(if info.is_dir() {
-            "it is a folder".into()
-        } else {
-            format!("it has {} bytes", info.len())
-        }));
-    }
-    let text = std::fs::read_to_string(path).map_err(|e| unread(e.to_string()))?;
+    let text = file::read_text(path, &FABRIC_FILE).map_err(AppError::input)?;
     Fabric::parse(name, &text).map_err(AppError::input)
 }
 

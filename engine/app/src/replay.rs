@@ -1,9 +1,7 @@
 //! `toile replay`: a recorded run taken again, bit for bit.
 
-use std::fs;
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
+use toile_assets::file::{self, FileKind};
 use toile_engine::clock::SimClock;
 use toile_engine::crew::Crew;
 use toile_engine::frame::Frame;
@@ -19,8 +17,12 @@ use crate::report::{Document, hash_text};
 use crate::soak::{self, SoakRecipe};
 use crate::terminal;
 
-/// Largest recording that is read (bytes): a day at 15 kB a second.
-const MOST_BYTES: u64 = 2 << 30;
+/// A recorded run: a day at 15 kB a second.
+const RUN: FileKind = FileKind {
+    name: "a file made by `toile latency --record`",
+    max_bytes: 2 << 30,
+    cure: "record a shorter run",
+};
 
 /// How the scene of a recording is made.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -67,7 +69,7 @@ pub struct ReplayReport {
 pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
     let file = args.file.display();
     let bad = |what: &dyn std::fmt::Display| AppError::Input(format!("{file}: {what}"));
-    let Tape { text, notes, entries } = tape::read(&read(&args.file)?).map_err(|e| bad(&e))?;
+    let Tape { text, notes, entries } = tape::read(&file::read(&args.file, &RUN).map_err(AppError::input)?).map_err(|e| bad(&e))?;
     let recorded: Recorded = serde_json::from_str(&text)
         .map_err(|e| bad(&format!("what it says of its scene is not understood ({e}); record the run again")))?;
     let (frame, out) = match &recorded {
@@ -112,17 +114,3 @@ fn session(recipe: &Recipe, entries: &[Entry], workers: usize) -> Result<(Frame,
     Ok((stepper.scene.frame, out))
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, AppError> {
-    let refused = |e: std::io::Error| {
-        AppError::Input(format!(
-            "{} cannot be read ({e}); name a file made by `toile latency --record`",
-            path.display()
-        ))
-    };
-    let bytes = fs::metadata(path).map_err(refused)?.len();
-    if bytes > MOST_BYTES {
-        let name = path.display();
-        return Err(AppError::Input(format!("{name} has {bytes} bytes, more than {MOST_BYTES}; record a shorter run")));
-    }
-    fs::read(path).map_err(refused)
-}

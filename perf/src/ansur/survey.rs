@@ -3,18 +3,21 @@
 use std::path::{Path, PathBuf};
 
 use toile_assets::body::Sex;
+use toile_assets::file::{self, FileError, FileKind};
+
+/// A survey as a table: ANSUR II has 3 MB and more people than any other that is public.
+const SURVEY: FileKind = FileKind {
+    name: "an ANSUR II file, such as ANSUR_II_FEMALE.csv",
+    max_bytes: 64 << 20,
+    cure: "leave out columns that are not measures",
+};
 
 /// Why the survey cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SurveyError {
     /// The file cannot be read.
-    #[error("{file}: {reason}; give the path of an ANSUR II file, such as ANSUR_II_FEMALE.csv")]
-    Unreadable {
-        /// The path.
-        file: String,
-        /// What the system said.
-        reason: String,
-    },
+    #[error(transparent)]
+    File(#[from] FileError),
     /// A measure that the file does not have.
     #[error("{file}: there is no column {column}; give a file of ANSUR II with `;` between its columns")]
     NoColumn {
@@ -47,15 +50,14 @@ impl Survey {
     /// Reads a file: `;` between columns, names in the first line.
     ///
     /// # Errors
-    /// [`SurveyError::Unreadable`].
-    pub fn read(file: &Path) -> Result<Self, SurveyError> {
-        let bytes = std::fs::read(file)
-            .map_err(|e| SurveyError::Unreadable { file: file.display().to_string(), reason: e.to_string() })?;
+    /// [`SurveyError::File`].
+    pub fn read(path: &Path) -> Result<Self, SurveyError> {
+        let bytes = file::read(path, &SURVEY)?;
         // One name has a letter that is not UTF-8; the measures are plain digits.
         let text = String::from_utf8_lossy(&bytes);
         let mut lines = text.lines().map(|l| l.split(';').map(|c| c.trim().to_owned()).collect::<Vec<_>>());
         let names = lines.next().unwrap_or_default();
-        Ok(Self { file: file.to_owned(), names, rows: lines.filter(|r| r.len() > 1).collect() })
+        Ok(Self { file: path.to_owned(), names, rows: lines.filter(|r| r.len() > 1).collect() })
     }
 
     /// Number of people.

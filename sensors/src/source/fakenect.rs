@@ -6,13 +6,15 @@
 
 use std::path::Path;
 
+use toile_assets::file;
+
 use super::camera::{self, Camera};
 use super::sequence::Sequence;
-use super::{OpenOptions, read_file, shown};
+use super::{OpenOptions, count_bytes, shown};
 use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place, SourceError};
 use crate::frame::Intrinsics;
-use crate::limits::{MAX_FILE_BYTES, MAX_FOLDER_FILES};
+use crate::limits::{CAMERA, MAX_FOLDER_FILES, RECORDING};
 use crate::session::Session;
 
 /// The list of a recording's files.
@@ -26,12 +28,12 @@ const CURE: &str = "record it again with fakenect-record";
 /// Reads all depth images of a recording.
 pub(super) fn read(folder: &Path, options: &OpenOptions) -> Result<Session, SourceError> {
     let index = folder.join(INDEX);
-    let text = read_file(&index)?;
+    let text = file::read(&index, &RECORDING)?;
     let names = names(&text).map_err(|fault| fault.at(&shown(&index)))?;
     let mut notes =
         vec!["raw 11-bit readings were turned into millimetres by the Kinect v1's usual formula".to_owned()];
     let camera = match &options.camera {
-        Some(json) => camera::read(&read_file(json)?).map_err(|fault| fault.at(&shown(json)))?,
+        Some(json) => camera::read(&file::read(json, &CAMERA)?).map_err(|fault| fault.at(&shown(json)))?,
         None => {
             notes.push("no camera was given: a Kinect v1 is assumed (f = 575.8 px, centred)".to_owned());
             Camera::pinhole(Intrinsics::KINECT_V1)
@@ -41,11 +43,8 @@ pub(super) fn read(folder: &Path, options: &OpenOptions) -> Result<Session, Sour
     let mut total = 0;
     for (time_ns, name) in names {
         let image = folder.join(name);
-        let bytes = read_file(&image)?;
-        total += bytes.len() as u64;
-        if total > MAX_FILE_BYTES {
-            return Err(SourceError::TooLarge { path: shown(folder), bytes: total, limit: MAX_FILE_BYTES });
-        }
+        let bytes = file::read(&image, &RECORDING)?;
+        count_bytes(&mut total, &bytes).map_err(|fault| fault.at(&shown(folder)))?;
         let at = |fault: Fault| fault.at(&shown(&image));
         let samples = samples(&bytes, &sequence.sensor()).map_err(at)?;
         let millimetres = samples.chunks_exact(2).map(|b| millimetres(u16::from_le_bytes([b[0], b[1]])));

@@ -4,13 +4,15 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use toile_assets::file;
+
 use super::camera;
 use super::raw_depth::{assumed_camera, samples};
 use super::sequence::{Sequence, assumed_time, untimed};
-use super::{OpenOptions, fakenect, png_depth, read_file, shown};
+use super::{OpenOptions, count_bytes, fakenect, png_depth, shown};
 use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place, SourceError};
-use crate::limits::{MAX_FILE_BYTES, MAX_FOLDER_FILES};
+use crate::limits::{MAX_FOLDER_FILES, RECORDING};
 use crate::session::Session;
 
 /// Endings of raw 16-bit images.
@@ -33,7 +35,7 @@ pub(super) fn read(folder: &Path, options: &OpenOptions) -> Result<Session, Sour
     let (images, beside) = list(folder)?;
     let mut notes = Vec::new();
     let camera = match options.camera.clone().or(beside) {
-        Some(json) => camera::read(&read_file(&json)?).map_err(|fault| fault.at(&shown(&json)))?,
+        Some(json) => camera::read(&file::read(&json, &crate::limits::CAMERA)?).map_err(|fault| fault.at(&shown(&json)))?,
         None => assumed_camera(&mut notes),
     };
     let clock = clock(&images);
@@ -43,11 +45,8 @@ pub(super) fn read(folder: &Path, options: &OpenOptions) -> Result<Session, Sour
     let mut sequence = Sequence::new(camera, notes).map_err(|fault| fault.at(&path))?;
     let mut total = 0;
     for (i, image) in images.iter().enumerate() {
-        let bytes = read_file(image)?;
-        total += bytes.len() as u64;
-        if total > MAX_FILE_BYTES {
-            return Err(SourceError::TooLarge { path, bytes: total, limit: MAX_FILE_BYTES });
-        }
+        let bytes = file::read(image, &RECORDING)?;
+        count_bytes(&mut total, &bytes).map_err(|fault| fault.at(&path))?;
         let time = clock.as_ref().map_or_else(|| assumed_time(i), |clock| clock[i]);
         push(&bytes, time, &mut sequence).map_err(|fault| fault.at(&shown(image)))?;
     }

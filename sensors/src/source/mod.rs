@@ -45,10 +45,12 @@ pub mod synthetic;
 mod tidy;
 pub mod vmc;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::limits::MAX_FILE_BYTES;
+use toile_assets::file;
+
+use crate::error::Fault;
+use crate::limits::{CAMERA, MAX_FILE_BYTES, RECORDING};
 
 pub use crate::error::{Place, SourceError};
 pub use crate::session::Session;
@@ -72,13 +74,13 @@ pub fn open(path: &Path, options: &OpenOptions) -> Result<Session, SourceError> 
         }
         return folder::read(path, options);
     }
-    let bytes = read_file(path)?;
+    let bytes = file::read(path, &RECORDING)?;
     #[cfg(feature = "openni2")]
     if bytes.starts_with(ONI_MAGIC) {
         return openni2::read(path, options);
     }
     let camera = match &options.camera {
-        Some(json) => Some((shown(json), read_file(json)?)),
+        Some(json) => Some((shown(json), file::read(json, &CAMERA)?)),
         None => None,
     };
     let name = path.file_stem().map_or_else(|| "session".to_owned(), |s| s.to_string_lossy().into_owned());
@@ -190,13 +192,14 @@ fn is_text(head: &[u8]) -> bool {
     head.iter().all(|b| *b >= 0x20 || b"\t\n\r".contains(b))
 }
 
-fn read_file(path: &Path) -> Result<Vec<u8>, SourceError> {
-    let refused = |error| SourceError::Io { path: shown(path), action: "read", error };
-    let bytes = fs::metadata(path).map_err(refused)?.len();
-    if bytes > MAX_FILE_BYTES {
-        return Err(SourceError::TooLarge { path: shown(path), bytes, limit: MAX_FILE_BYTES });
+/// Counts the bytes of a folder's files, which together are at most [`MAX_FILE_BYTES`].
+fn count_bytes(total: &mut u64, bytes: &[u8]) -> Result<(), Fault> {
+    *total += bytes.len() as u64;
+    if *total > MAX_FILE_BYTES {
+        let problem = format!("its files have more than the {MAX_FILE_BYTES} bytes that are read of a recording");
+        return Err(Fault::new(Place::Whole, problem, RECORDING.cure));
     }
-    fs::read(path).map_err(refused)
+    Ok(())
 }
 
 fn shown(path: &Path) -> String {

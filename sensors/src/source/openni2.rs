@@ -10,12 +10,14 @@ use std::path::Path;
 use std::ptr;
 use std::sync::{Mutex, PoisonError};
 
+use toile_assets::file;
+
 use super::camera::{self, Camera};
 use super::sequence::Sequence;
-use super::{OpenOptions, read_file, shown};
+use super::{OpenOptions, shown};
 use crate::error::{Fault, Place, SourceError};
 use crate::frame::Intrinsics;
-use crate::limits::MAX_DEPTH_FRAMES;
+use crate::limits::{CAMERA, MAX_DEPTH_FRAMES};
 use crate::session::{Session, too_many};
 
 /// Interface version 2.2, as the library wants it.
@@ -85,7 +87,7 @@ unsafe extern "C" {
 /// Reads a recording.
 pub(super) fn read(path: &Path, options: &OpenOptions) -> Result<Session, SourceError> {
     let camera = match &options.camera {
-        Some(json) => Some(camera::read(&read_file(json)?).map_err(|fault| fault.at(&shown(json)))?),
+        Some(json) => Some(camera::read(&file::read(json, &CAMERA)?).map_err(|fault| fault.at(&shown(json)))?),
         None => None,
     };
     let _alone = IN_USE.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,11 +1,11 @@
 //! The configuration: TOML whose every key is known, the only state that a kiosk has.
 
-use std::fs;
 use std::net::SocketAddr;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
+use toile_assets::file::{self, FileKind};
 use toile_engine::cloth::Quality;
 use toile_engine::crew::SHARES;
 
@@ -17,8 +17,12 @@ use crate::outfit::Wish;
 /// The default configuration with all keys explained.
 pub const EXAMPLE: &str = include_str!("../../systemd/kiosk.toml");
 
-/// Largest configuration that is read (bytes).
-const MOST_BYTES: u64 = 1 << 20;
+/// A configuration: a page or two of text.
+const CONFIGURATION: FileKind = FileKind {
+    name: "a configuration like `toile kiosk --print-config` prints",
+    max_bytes: 1 << 20,
+    cure: "shorten it",
+};
 
 /// Everything that can be set.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
@@ -219,17 +223,8 @@ impl Config {
     /// A file that cannot be read, an unknown key, a value that cannot be; each names the line.
     pub fn open(path: Option<&Path>) -> Result<Self, AppError> {
         let Some(path) = path else { return Ok(Self::default()) };
-        let file = path.display().to_string();
-        let refused = |e: std::io::Error| {
-            AppError::Input(format!(
-                "{file} cannot be read ({e}); name a file like `toile kiosk --print-config` prints"
-            ))
-        };
-        let bytes = fs::metadata(path).map_err(refused)?.len();
-        if bytes > MOST_BYTES {
-            return Err(AppError::Input(format!("{file} has {bytes} bytes, more than {MOST_BYTES}; shorten it")));
-        }
-        Self::parse(&file, &fs::read_to_string(path).map_err(refused)?)
+        let text = file::read_text(path, &CONFIGURATION).map_err(AppError::input)?;
+        Self::parse(&path.display().to_string(), &text)
     }
 
     /// Reads a text; `file` is its name in errors.

@@ -17,12 +17,14 @@ mod upright;
 
 use std::path::{Path, PathBuf};
 
+use toile_assets::file;
+
 use super::joint_map::JointMap;
-use super::{read_file, shown, tidy};
+use super::{count_bytes, shown, tidy};
 use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place, SourceError};
 use crate::frame::Joints;
-use crate::limits::{MAX_CAMERAS, MAX_JOINT_FRAMES};
+use crate::limits::{CAMERA, KEYPOINTS, MAX_CAMERAS, MAX_JOINT_FRAMES};
 use crate::session::{Session, too_many};
 use calibration::Rig;
 use keypoints::{People, View};
@@ -42,14 +44,15 @@ pub(super) fn open(folder: &Path) -> Result<Session, SourceError> {
     let whole = |problem: String| Fault::new(Place::Whole, problem, CURE).at(&shown(folder));
     let toml = list(folder)?.into_iter().find(|p| has_extension(p, "toml"));
     let toml = toml.ok_or_else(|| whole("the folder holds no calibration (.toml)".to_owned()))?;
-    let rig = calibration::read(&read_file(&toml)?).map_err(|fault| fault.at(&shown(&toml)))?;
+    let rig = calibration::read(&file::read(&toml, &CAMERA)?).map_err(|fault| fault.at(&shown(&toml)))?;
     let folders = camera_folders(folder)?;
     if folders.len() != rig.cameras.len() {
         return Err(whole(format!("{} folders of JSON files for {} cameras", folders.len(), rig.cameras.len())));
     }
     let mut views = Vec::with_capacity(folders.len());
+    let mut total = 0;
     for folder in &folders {
-        views.push(view(folder)?);
+        views.push(view(folder, &mut total)?);
     }
     let mut session = session(&rig, &views).map_err(|fault| fault.at(&shown(folder)))?;
     session.name = folder.file_name().map_or_else(|| "session".to_owned(), |s| s.to_string_lossy().into_owned());
@@ -57,15 +60,17 @@ pub(super) fn open(folder: &Path) -> Result<Session, SourceError> {
     Ok(session)
 }
 
-/// One camera's frames.
-fn view(folder: &Path) -> Result<View, SourceError> {
+/// One camera's frames; `total` counts the bytes of all cameras.
+fn view(folder: &Path, total: &mut u64) -> Result<View, SourceError> {
     let files: Vec<PathBuf> = list(folder)?.into_iter().filter(|p| has_extension(p, "json")).collect();
     if files.len() > MAX_JOINT_FRAMES {
         return Err(too_many(files.len()).at(&shown(folder)));
     }
     let mut frames = Vec::with_capacity(files.len());
-    for file in files {
-        frames.push(keypoints::read(&read_file(&file)?).map_err(|fault| fault.at(&shown(&file)))?);
+    for path in files {
+        let bytes = file::read(&path, &KEYPOINTS)?;
+        count_bytes(total, &bytes).map_err(|fault| fault.at(&shown(folder)))?;
+        frames.push(keypoints::read(&bytes).map_err(|fault| fault.at(&shown(&path)))?);
     }
     Ok(frames)
 }
@@ -173,8 +178,8 @@ mod tests {
     #[test]
     fn the_points_are_those_that_others_triangulated() {
         let Some(folder) = shared() else { return };
-        let rig = calibration::read(&read_file(&folder.join("Calib_qualisys.toml")).unwrap()).unwrap();
-        let views: Vec<View> = camera_folders(&folder).unwrap().iter().map(|f| view(f).unwrap()).collect();
+        let rig = calibration::read(&std::fs::read(folder.join("Calib_qualisys.toml")).unwrap()).unwrap();
+        let views: Vec<View> = camera_folders(&folder).unwrap().iter().map(|f| view(f, &mut 0).unwrap()).collect();
         assert_eq!(keypoints::format(&views, &mut Vec::new()), Format::OpenPose25B);
         let (names, frames) = markers(&folder);
         let known = [
