@@ -18,11 +18,8 @@ use crate::soak::{self, SoakRecipe};
 use crate::terminal;
 
 /// A recorded run: a day at 15 kB a second.
-const RUN: FileKind = FileKind {
-    name: "a file made by `toile latency --record`",
-    max_bytes: 2 << 30,
-    cure: "record a shorter run",
-};
+const RUN: FileKind =
+    FileKind { name: "a file made by `toile latency --record`", max_bytes: 2 << 30, cure: "record a shorter run" };
 
 /// How the scene of a recording is made.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -69,7 +66,8 @@ pub struct ReplayReport {
 pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
     let file = args.file.display();
     let bad = |what: &dyn std::fmt::Display| AppError::Input(format!("{file}: {what}"));
-    let Tape { text, notes, entries } = tape::read(&file::read(&args.file, &RUN).map_err(AppError::input)?).map_err(|e| bad(&e))?;
+    let Tape { text, notes, entries } =
+        tape::read(&file::read(&args.file, &RUN).map_err(AppError::input)?).map_err(|e| bad(&e))?;
     let recorded: Recorded = serde_json::from_str(&text)
         .map_err(|e| bad(&format!("what it says of its scene is not understood ({e}); record the run again")))?;
     let (frame, out) = match &recorded {
@@ -113,4 +111,3 @@ fn session(recipe: &Recipe, entries: &[Entry], workers: usize) -> Result<(Frame,
     let out = replay(&mut stepper, entries, &SimClock::default());
     Ok((stepper.scene.frame, out))
 }
-

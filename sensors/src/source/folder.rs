@@ -35,7 +35,9 @@ pub(super) fn read(folder: &Path, options: &OpenOptions) -> Result<Session, Sour
     let (images, beside) = list(folder)?;
     let mut notes = Vec::new();
     let camera = match options.camera.clone().or(beside) {
-        Some(json) => camera::read(&file::read(&json, &crate::limits::CAMERA)?).map_err(|fault| fault.at(&shown(&json)))?,
+        Some(json) => {
+            camera::read(&file::read(&json, &crate::limits::CAMERA)?).map_err(|fault| fault.at(&shown(&json)))?
+        }
         None => assumed_camera(&mut notes),
     };
     let clock = clock(&images);
