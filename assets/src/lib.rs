@@ -14,6 +14,7 @@ pub mod garment;
 pub mod import;
 pub mod limits;
 pub mod mesh;
+pub mod numeric;
 pub mod rig;
 pub mod scene;
 pub mod scene_file;

@@ -5,9 +5,9 @@ use std::process::ExitCode;
 
 use glam::{DMat4, DVec4};
 use toile_assets::body::Sex;
+use toile_assets::numeric::random::SplitMix64;
 use toile_assets::sizes::Population;
 use toile_perf::agreement::Mannequin;
-use toile_sensors::source::synthetic::Rng;
 use toile_track::anthropometry::LEVELS;
 use toile_track::estimate::temporal_mean;
 use toile_track::silhouette::{Reading, read};
@@ -21,7 +21,7 @@ struct Row {
     truth: [f32; 5],
 }
 
-fn row(sex: Sex, frames: usize, rng: &mut Rng) -> Option<Row> {
+fn row(sex: Sex, frames: usize, rng: &mut SplitMix64) -> Option<Row> {
     let subject = Mannequin::new(sex, rng).ok()?;
     let readings: Vec<Reading> = subject
         .seen(frames, rng)
@@ -85,7 +85,9 @@ fn main() -> ExitCode {
     };
     let all: Vec<Row> = (0..subjects)
         .flat_map(|i| [(i, Sex::Female), (i, Sex::Male)])
-        .filter_map(|(i, sex)| row(sex, frames as usize, &mut Rng::new(seed + 2 * i + u64::from(sex == Sex::Male))))
+        .filter_map(|(i, sex)| {
+            row(sex, frames as usize, &mut SplitMix64::new(seed + 2 * i + u64::from(sex == Sex::Male)))
+        })
         .collect();
     let of = |sex: Option<Sex>| all.iter().filter(|r| sex.is_none_or(|s| s == r.sex)).collect::<Vec<_>>();
     report("women", &of(Some(Sex::Female)));

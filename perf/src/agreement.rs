@@ -18,10 +18,11 @@
 
 use glam::{Affine3A, Quat, Vec3};
 use toile_assets::body::{Body, BodyError, Measures, Region, Sex, tape};
+use toile_assets::numeric::random::SplitMix64;
 use toile_assets::sizes::Population;
 use toile_sensors::frame::DepthFrame;
 use toile_sensors::frame::Intrinsics;
-use toile_sensors::source::synthetic::{KinectNoise, Rng, SyntheticCamera};
+use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, measure};
 use toile_track::measures::Hint;
@@ -95,7 +96,7 @@ pub struct Mannequin {
 }
 
 /// Draws a subject's five measures as they are distributed in ANSUR II, within two standard deviations.
-pub fn draw(sex: Sex, rng: &mut Rng) -> Measures {
+pub fn draw(sex: Sex, rng: &mut SplitMix64) -> Measures {
     let (mean, factor) = if sex == Sex::Female { WOMEN } else { MEN };
     let normal: [f32; 5] = std::array::from_fn(|_| rng.gaussian().clamp(-2.0, 2.0));
     let m: [f32; 5] = std::array::from_fn(|i| mean[i] + (0..=i).map(|j| factor[i][j] * normal[j]).sum::<f32>());
@@ -104,7 +105,7 @@ pub fn draw(sex: Sex, rng: &mut Rng) -> Measures {
 
 impl Mannequin {
     /// A random subject with a shape of their own.
-    pub fn new(sex: Sex, rng: &mut Rng) -> Result<Self, BodyError> {
+    pub fn new(sex: Sex, rng: &mut SplitMix64) -> Result<Self, BodyError> {
         let mut body = Body::build(sex, &draw(sex, rng))?;
         let mut three = |sd: [f32; 3]| -> [f32; 3] { std::array::from_fn(|i| sd[i] * rng.gaussian()) };
         let z = three([1.0; 3]);
@@ -136,7 +137,7 @@ impl Mannequin {
     }
 
     /// The swaying body as a Kinect sees it, before a wall and on a floor, in as many frames.
-    pub fn seen(&self, frames: usize, rng: &mut Rng) -> Vec<DepthFrame> {
+    pub fn seen(&self, frames: usize, rng: &mut SplitMix64) -> Vec<DepthFrame> {
         let eye = Vec3::new(0.0, EYE[1], EYE[2] + 0.1 * (rng.uniform() - 0.5));
         let camera = SyntheticCamera::looking_at(Intrinsics::KINECT_V1, eye, Vec3::new(0.0, EYE[1], 0.0));
         let mut noise = KinectNoise::new(rng.next_u64());
@@ -245,7 +246,7 @@ pub fn compare(results: &[(Measurements, [f32; 5])]) -> [MeasureAgreement; 5] {
 pub fn study(subjects: usize, frames: usize, seed: u64, sex_told: bool) -> Vec<(Measurements, [f32; 5])> {
     let mut results = Vec::new();
     for (i, sex) in (0..subjects as u64).flat_map(|i| [(i, Sex::Female), (i, Sex::Male)]) {
-        let mut rng = Rng::new(seed + 2 * i + u64::from(sex == Sex::Male));
+        let mut rng = SplitMix64::new(seed + 2 * i + u64::from(sex == Sex::Male));
         let Ok(subject) = Mannequin::new(sex, &mut rng) else { continue };
         let population = match (sex_told, sex) {
             (false, _) => Population::Mixed,

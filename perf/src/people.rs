@@ -1,6 +1,7 @@
 //! Bodies that fits are judged on: sizes of EN 13402-3, and strangers drawn at random.
 
 use toile_assets::body::{Body, BodyError, En, Sex, Wanted};
+use toile_assets::numeric::random::SplitMix64;
 
 /// One of them: what it is called, its sex, and stature, bust or chest, waist and hip girth (m).
 #[derive(Debug, Clone, PartialEq)]
@@ -29,10 +30,10 @@ pub fn sizes() -> Vec<SizedPerson> {
 /// People as they come, women and men in turn: chest and stature anywhere in their range, waist and hip by a drop from the
 /// chest. The same seed gives the same people.
 pub fn strangers(count: usize, seed: u64) -> Vec<SizedPerson> {
-    let mut state = seed;
+    let mut random = SplitMix64::new(seed);
     (0..count)
         .map(|i| {
-            let mut draw = |from: f32, to: f32| from + (to - from) * uniform(&mut state);
+            let mut draw = |from: f32, to: f32| random.between(from, to);
             let woman = i % 2 == 0;
             let stature = if woman { draw(1.52, 1.78) } else { draw(1.62, 1.95) };
             let chest = if woman { draw(0.82, 1.16) } else { draw(0.90, 1.20) };
@@ -58,13 +59,4 @@ impl SizedPerson {
             Err(error) => Err(error),
         }
     }
-}
-
-/// The next number of a SplitMix64 sequence (Steele, Lea and Flood 2014), 0 to 1.
-fn uniform(state: &mut u64) -> f32 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = *state;
-    z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ z >> 31) >> 40) as f32 / (1u32 << 24) as f32
 }

@@ -3,7 +3,7 @@
 //! Real people's girths are measured again with errors of a known sigma, and the size recommended is compared with the one
 //! that their true girths get.
 
-use toile_sensors::source::synthetic::Rng;
+use toile_assets::numeric::random::SplitMix64;
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, Source};
 use toile_track::measures::Measures;
@@ -83,7 +83,7 @@ fn measured(girths: Girths, sigmas: Girths) -> Measurements {
 /// # Errors
 /// Those of [`recommend`].
 pub fn reliability(people: &[Girths], offer: &Offer, sigma: f32, seed: u64) -> Result<Reliability, RecommendError> {
-    let mut rng = Rng::new(seed);
+    let mut rng = SplitMix64::new(seed);
     let none = Bin::default();
     let mut found = Reliability { sigma, bins: [none; BINS.len()], all: none, taped: none, untaped: none };
     for truth in people {

@@ -10,7 +10,6 @@ pub mod error;
 pub mod filter;
 pub mod frame;
 pub mod limits;
-pub mod rng;
 pub mod sample;
 pub mod segment;
 pub mod session;

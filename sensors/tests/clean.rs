@@ -1,12 +1,12 @@
 //! Smoothing and filling: what they do to noise, to edges and to holes, on surfaces that are known.
 
 use glam::Affine3A;
+use toile_assets::numeric::random::SplitMix64;
 use toile_sensors::depth::fill::Fill;
 use toile_sensors::depth::gaussian::Gaussian;
 use toile_sensors::depth::smooth::{EdgePreserving, plain};
 use toile_sensors::depth::{SensorNoise, Validity};
 use toile_sensors::frame::{DepthFrame, Intrinsics};
-use toile_sensors::rng::Rng;
 use toile_sensors::source::synthetic::KinectNoise;
 
 const K: Intrinsics = Intrinsics { width: 160, height: 120, fx: 575.8, fy: 575.8, cx: 79.5, cy: 59.5 };
@@ -28,7 +28,7 @@ fn rms(truth: &[f32], got: impl Fn(usize) -> f32) -> f64 {
 
 #[test]
 fn the_fast_filter_gives_the_bits_of_the_plain_one() {
-    let mut rng = Rng::new(5);
+    let mut rng = SplitMix64::new(5);
     for (width, height) in [(1, 1), (3, 2), (9, 40), (37, 23), (160, 120)] {
         let image: Vec<u16> = (0..width * height)
             .map(|i| match rng.next_u64() % 10 {
@@ -66,7 +66,7 @@ fn blur(out: &[f32], [near, far]: [f32; 2]) -> f32 {
 #[test]
 fn an_edge_stays_an_edge_where_the_gaussian_blurs_it() {
     let z: Vec<f32> = (0..K.pixels()).map(|i| if i % 160 < 80 { 2.3 } else { 2.5 }).collect();
-    let mut rng = Rng::new(8);
+    let mut rng = SplitMix64::new(8);
     let image: Vec<u16> =
         z.iter().map(|z| (z * 1e3 + rng.gaussian() * NOISE.sigma_mm(z * 1e3)).round() as u16).collect();
     let raw: Vec<f32> = image.iter().map(|d| f32::from(*d)).collect();

@@ -3,8 +3,8 @@
 mod common;
 
 use common::samples;
+use toile_assets::numeric::random::SplitMix64;
 use toile_sensors::session::{self, Session};
-use toile_sensors::source::synthetic::Rng;
 use toile_sensors::source::{SourceError, read_bytes};
 
 /// One recording of every kind: its name, its bytes, and the camera where it needs one.
@@ -82,7 +82,7 @@ fn a_long_recording_cut_in_the_middle_keeps_its_first_frames_and_says_so() {
 
 #[test]
 fn changed_bytes_do_no_harm() {
-    let mut rng = Rng::new(2024);
+    let mut rng = SplitMix64::new(2024);
     for (name, bytes, camera) in kinds() {
         for _ in 0..3000 {
             let mut changed = bytes.clone();
@@ -97,7 +97,7 @@ fn changed_bytes_do_no_harm() {
 
 #[test]
 fn runs_of_extreme_bytes_do_no_harm() {
-    let mut rng = Rng::new(7);
+    let mut rng = SplitMix64::new(7);
     for (name, bytes, camera) in kinds() {
         for _ in 0..2000 {
             let mut changed = bytes.clone();

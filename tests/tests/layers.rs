@@ -12,7 +12,7 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
     (
         "toile-assets",
         &[
-            &["limits", "cone"],
+            &["limits", "cone", "numeric"],
             &["skeleton"],
             &["mesh"],
             &["fabric", "body"],
@@ -29,7 +29,7 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
     (
         "toile-sensors",
         &[
-            &["error", "clock", "rng"],
+            &["error", "clock"],
             &["limits"],
             &["frame"],
             &["sample", "segment"],

@@ -5,26 +5,10 @@ use std::f32::consts::TAU;
 use glam::{DVec2, Vec2, Vec3};
 
 use crate::garment::shape::{Face, NO_VERTEX};
+use crate::numeric::random::SplitMix64;
 
 /// Positions (m) and faces.
 pub type TestMesh = (Vec<Vec3>, Vec<Face>);
-
-/// A small generator of its own: the same seed gives the same mesh.
-pub struct Dice(u64);
-
-impl Dice {
-    pub fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
-    }
-
-    /// Uniform in 0..1.
-    pub fn roll(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
 
 /// A tube of `columns` and `rows` of quads as large as they are wide, radius 1.
 pub fn tube(columns: u32, rows: u32) -> TestMesh {
@@ -71,10 +55,10 @@ pub fn scatter(width: f64, height: f64, spacing: f64, seed: u64) -> Vec<DVec2> {
     for k in 1..down as usize {
         points.extend([DVec2::new(0.0, side(k, down, height)), DVec2::new(width, side(k, down, height))]);
     }
-    let mut dice = Dice::new(seed);
+    let mut random = SplitMix64::new(seed);
     // Dart throwing: a point is kept if none lies nearer than the least distance.
     for _ in 0..(40.0 * across * down) as usize {
-        let p = DVec2::new(dice.roll() * width, dice.roll() * height);
+        let p = DVec2::new(random.uniform_f64() * width, random.uniform_f64() * height);
         if points.iter().all(|q| q.distance(p) > 0.75 * spacing) {
             points.push(p);
         }
@@ -124,7 +108,7 @@ pub fn rough_sheet(width: f64, height: f64, spacing: f64, seed: u64) -> TestMesh
 /// An irregular skirt: a cone from radius .18 m at the waist (y = 0) to .42 m, .78 m below, closed.
 pub fn rough_skirt(spacing: f64, seed: u64) -> TestMesh {
     let (inner, outer) = (0.18, 0.42);
-    let mut dice = Dice::new(seed);
+    let mut random = SplitMix64::new(seed);
     let mut points: Vec<DVec2> = Vec::new();
     for r in [inner, outer] {
         let n = (std::f64::consts::TAU * r / spacing).round() as usize;
@@ -133,8 +117,8 @@ pub fn rough_skirt(spacing: f64, seed: u64) -> TestMesh {
     let slope = 0.78 / (outer - inner);
     let lift = |p: DVec2| glam::DVec3::new(p.x, -(p.length() - inner) * slope, p.y);
     for _ in 0..(60.0 / spacing / spacing) as usize {
-        let r = inner + (outer - inner) * dice.roll();
-        let p = DVec2::from_angle(std::f64::consts::TAU * dice.roll()) * r;
+        let r = inner + (outer - inner) * random.uniform_f64();
+        let p = DVec2::from_angle(std::f64::consts::TAU * random.uniform_f64()) * r;
         if points.iter().all(|q| lift(*q).distance(lift(p)) > 0.75 * spacing) {
             points.push(p);
         }
@@ -153,10 +137,10 @@ pub fn rough_skirt(spacing: f64, seed: u64) -> TestMesh {
 
 /// The same mesh under other numbers: vertex i becomes `order[i]`; faces come in another order and begin elsewhere.
 pub fn renumbered((positions, faces): &TestMesh, seed: u64) -> (TestMesh, Vec<u32>) {
-    let mut dice = Dice::new(seed);
+    let mut random = SplitMix64::new(seed);
     let mut shuffle = |n: usize| {
         let mut order: Vec<u32> = (0..n as u32).collect();
-        (1..n).for_each(|i| order.swap(i, (dice.roll() * (i + 1) as f64) as usize));
+        (1..n).for_each(|i| order.swap(i, (random.uniform_f64() * (i + 1) as f64) as usize));
         order
     };
     let order = shuffle(positions.len());

@@ -11,6 +11,7 @@ use serde::Deserialize;
 
 use super::Sex;
 use super::reading::{READINGS, Reading};
+use crate::numeric::linear::{self, Pivot};
 
 /// What posing adds to lengths of the arm, which the body holds straight (m).
 #[derive(Debug, Clone, Copy)]
@@ -155,7 +156,7 @@ impl People {
             }
             spread[i][i] += stray[i] * stray[i];
         }
-        Self { mean, factor: cholesky(&spread) }
+        Self { mean, factor: lower_factor(spread) }
     }
 }
 
@@ -165,15 +166,10 @@ fn mean_of(table: &Table, reading: Reading, place: &BTreeMap<&str, usize>) -> f6
     table.column[place[name]].mean * 1e-3
 }
 
-/// Lower factor of a positive definite matrix.
-fn cholesky(a: &[[f64; READINGS]; READINGS]) -> [[f64; READINGS]; READINGS] {
-    let mut l = [[0.0; READINGS]; READINGS];
-    for i in 0..READINGS {
-        for j in 0..=i {
-            let dot: f64 = (0..j).map(|k| l[i][k] * l[j][k]).sum();
-            // Rounded correlations are at most 5e-4 off, far less than each reading's own error makes up for.
-            l[i][j] = if i == j { (a[i][i] - dot).max(1e-8).sqrt() } else { (a[i][j] - dot) / l[j][j] };
-        }
-    }
-    l
+/// Lower factor of a positive definite matrix; 0 above the diagonal.
+fn lower_factor(mut a: [[f64; READINGS]; READINGS]) -> [[f64; READINGS]; READINGS] {
+    // Rounded correlations are at most 5e-4 off, far less than each reading's own error makes up for.
+    linear::factor(&mut a, Pivot::AtLeast(1e-8));
+    a.iter_mut().enumerate().for_each(|(i, row)| row[i + 1..].fill(0.0));
+    a
 }

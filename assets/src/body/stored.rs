@@ -9,6 +9,7 @@ use glam::{Vec2, Vec3};
 
 use super::draw::Drawn;
 use super::{Region, Sex};
+use crate::numeric::hash;
 use crate::skeleton::{JOINTS, Skeleton};
 
 const MAGIC: &[u8; 8] = b"TOILEBDY";
@@ -90,7 +91,7 @@ impl Stored {
         for uv in &self.uvs {
             [uv.x, uv.y].iter().for_each(|x| out.extend(small((x * 65_535.0).round() as u32)));
         }
-        let hash = fnv(&out);
+        let hash = hash::of_bytes(&out);
         out.extend(hash.to_le_bytes());
         out
     }
@@ -101,7 +102,7 @@ impl Stored {
         if !body.starts_with(MAGIC) {
             return Err(StoredError::Format);
         }
-        if fnv(body) != u64::from_le_bytes(*hash) {
+        if hash::of_bytes(body) != u64::from_le_bytes(*hash) {
             return Err(StoredError::Damaged);
         }
         Reader(&body[8..]).stored().ok_or(StoredError::Format)
@@ -164,9 +165,4 @@ impl Reader<'_> {
         let uvs = self.many(points, |r| Some(Vec2::new(share(r)?, share(r)?)))?;
         self.0.is_empty().then_some(Stored { positions, skeletons, quads: faces, uvs, corners, charts, regions, twins })
     }
-}
-
-/// FNV-1a, 64 bits (Fowler, Noll and Vo).
-fn fnv(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3))
 }

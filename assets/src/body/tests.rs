@@ -6,37 +6,24 @@ use std::f32::consts::TAU;
 use glam::DVec3;
 
 use super::*;
+use crate::numeric::random::SplitMix64;
 use crate::skeleton::{BONES, Joint, TWISTS, bone_joint, bone_mirror};
 
-/// A linear congruential generator (Knuth's MMIX constants) that gives the same subjects in every run.
-struct Dice(u64);
-
-impl Dice {
-    /// Roughly normal, mean 0 and deviation 1, within 3.5 of it: twelve uniform draws summed.
-    fn normal(&mut self) -> f32 {
-        let draws = (0..12).map(|_| {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 40) as f32 / (1u64 << 24) as f32
-        });
-        (draws.sum::<f32>() - 6.0).clamp(-3.5, 3.5)
-    }
-}
-
 /// Somebody like the people of ANSUR II: girths that follow one another, by its deviations.
-fn somebody(sex: Sex, dice: &mut Dice) -> Measures {
+fn somebody(sex: Sex, random: &mut SplitMix64) -> Measures {
     let mean = Measures::average(sex);
     let [stature, shoulder, chest, waist, hip] = match sex {
         Sex::Female => [0.0642, 0.0183, 0.0827, 0.0999, 0.0759],
         Sex::Male => [0.0686, 0.0192, 0.0874, 0.1117, 0.0767],
     };
-    let stout = dice.normal();
-    let mut like = || 0.8 * stout + 0.6 * dice.normal();
+    let stout = random.gaussian().clamp(-3.5, 3.5);
+    let mut like = || 0.8 * stout + 0.6 * random.gaussian().clamp(-3.5, 3.5);
     Measures {
         chest_girth: mean.chest_girth + chest * like(),
         waist_girth: (mean.waist_girth + waist * like()).max(0.5),
         hip_girth: mean.hip_girth + hip * like(),
-        stature: mean.stature + stature * dice.normal(),
-        shoulder_breadth: mean.shoulder_breadth + shoulder * dice.normal(),
+        stature: mean.stature + stature * random.gaussian().clamp(-3.5, 3.5),
+        shoulder_breadth: mean.shoulder_breadth + shoulder * random.gaussian().clamp(-3.5, 3.5),
     }
 }
 
@@ -167,10 +154,10 @@ fn tape_reads_the_measures_wanted_on_a_grid() {
 
 #[test]
 fn anybody_like_ansurs_people_is_met() {
-    let mut dice = Dice(2012);
+    let mut random = SplitMix64::new(2012);
     for sex in [Sex::Female, Sex::Male] {
         for _ in 0..50 {
-            let wanted = somebody(sex, &mut dice);
+            let wanted = somebody(sex, &mut random);
             let body = Body::build(sex, &wanted).unwrap();
             assert!(worst(&wanted, &body.measures) < TOLERANCE, "{wanted:?} {:?}", body.measures);
         }

@@ -1,5 +1,7 @@
 //! Normal equations of the fit's least squares.
 
+use crate::numeric::linear::{self, Pivot};
+
 use super::plan::{MIDDLE, PAIRS};
 
 /// Centre and radius of each sphere that is not a mirror image.
@@ -48,26 +50,9 @@ impl System {
     pub(super) fn solve(&self, damping: f64) -> Option<Vector> {
         let mut lower = self.matrix.clone();
         let mut x = self.right;
-        for i in 0..UNKNOWNS {
-            lower[i][i] += damping * lower[i][i] + 1e-9;
-            for j in 0..=i {
-                let dot: f64 = (0..j).map(|k| lower[i][k] * lower[j][k]).sum();
-                let rest = lower[i][j] - dot;
-                lower[i][j] = match i == j {
-                    true if rest > 0.0 => rest.sqrt(),
-                    true => return None,
-                    false => rest / lower[j][j],
-                };
-            }
-        }
-        for i in 0..UNKNOWNS {
-            let dot: f64 = (0..i).map(|k| lower[i][k] * x[k]).sum();
-            x[i] = (x[i] - dot) / lower[i][i];
-        }
-        for i in (0..UNKNOWNS).rev() {
-            let dot: f64 = (i + 1..UNKNOWNS).map(|k| lower[k][i] * x[k]).sum();
-            x[i] = (x[i] - dot) / lower[i][i];
-        }
+        lower.iter_mut().enumerate().for_each(|(i, row)| row[i] += damping * row[i] + 1e-9);
+        linear::factor(&mut lower, Pivot::Positive)?;
+        linear::solve(&lower, &mut x);
         Some(x)
     }
 }

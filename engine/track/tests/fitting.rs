@@ -175,7 +175,7 @@ fn a_body_of_the_family_is_measured_and_twice_alike() {
 fn hostile_pictures_are_nobody_and_no_panic() {
     let (frame, _) = seen(Sex::Male, &Wanted::new(), turned(0.0, Vec3::ZERO));
     let n = frame.depth_mm.len();
-    let mut noise = toile_sensors::source::synthetic::Rng::new(3);
+    let mut noise = toile_assets::numeric::random::SplitMix64::new(3);
     let pictures: [Box<[u16]>; 4] = [
         vec![0; n].into_boxed_slice(),
         vec![u16::MAX; n].into_boxed_slice(),

@@ -1,7 +1,7 @@
 //! Recommending: laws that a size must obey.
 
+use toile_assets::numeric::random::SplitMix64;
 use toile_assets::sizes::{GarmentKind, SizeTable};
-use toile_sensors::source::synthetic::Rng;
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, Source};
 use toile_track::measures::Measures;
@@ -147,7 +147,7 @@ fn bad_offers_are_refused_in_one_sentence() {
 }
 
 /// A random person between the smallest and the largest size, with errors of up to 4 cm.
-fn anybody(rng: &mut Rng) -> ([f32; 3], f32) {
+fn anybody(rng: &mut SplitMix64) -> ([f32; 3], f32) {
     let chest = 0.76 + 0.5 * rng.uniform();
     ([chest, chest - 0.16 + 0.05 * rng.gaussian(), chest + 0.08 + 0.05 * rng.gaussian()], 0.04 * rng.uniform())
 }
@@ -155,7 +155,7 @@ fn anybody(rng: &mut Rng) -> ([f32; 3], f32) {
 #[test]
 fn probabilities_are_those_of_all_sizes_and_sum_to_one() {
     with(|offer| {
-        let mut rng = Rng::new(11);
+        let mut rng = SplitMix64::new(11);
         for _ in 0..100 {
             let ([chest, waist, hip], sigma) = anybody(&mut rng);
             let r = recommend(&person(chest, waist, hip, sigma), offer).unwrap();
@@ -174,7 +174,7 @@ fn a_larger_body_never_gets_a_smaller_size() {
             let r = recommend(&person(chest, waist, hip, sigma), offer).unwrap();
             offer.sizes.iter().position(|s| s.code == r.size).unwrap()
         };
-        let mut rng = Rng::new(12);
+        let mut rng = SplitMix64::new(12);
         for _ in 0..60 {
             let (body, sigma) = anybody(&mut rng);
             for zone in 0..3 {
@@ -189,7 +189,7 @@ fn a_larger_body_never_gets_a_smaller_size() {
 #[test]
 fn a_body_known_exactly_gets_a_certain_size_and_no_tape() {
     with(|offer| {
-        let mut rng = Rng::new(13);
+        let mut rng = SplitMix64::new(13);
         for _ in 0..60 {
             let ([chest, waist, hip], _) = anybody(&mut rng);
             let r = recommend(&person(chest, waist, hip, 0.0), offer).unwrap();

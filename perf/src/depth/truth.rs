@@ -3,11 +3,11 @@
 use glam::{Quat, Vec3};
 use serde::Serialize;
 use toile_assets::body::{Body, BodyError, Measures, Sex};
+use toile_assets::numeric::random::SplitMix64;
 use toile_sensors::depth::gaussian::Gaussian;
 use toile_sensors::depth::smooth::{EdgePreserving, plain};
 use toile_sensors::depth::{Clean, SensorNoise, Smoothing};
 use toile_sensors::frame::{DepthFrame, Intrinsics};
-use toile_sensors::rng::Rng;
 use toile_sensors::segment::{Segmenter, Zone};
 use toile_sensors::source::synthetic::room::{self, PERSON, View};
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
@@ -114,7 +114,7 @@ fn wall(k: &Intrinsics) -> Vec<u16> {
 /// Two walls, 2.3 and 2.5 m away, that meet in the middle of the image, with the sensor's noise along its axis alone, so
 /// that the edge is where it is.
 fn edge(k: &Intrinsics) -> Vec<u16> {
-    let mut rng = Rng::new(8);
+    let mut rng = SplitMix64::new(8);
     let mut pixel = |i: usize| {
         let z: f32 = if i % (k.width as usize) < k.width as usize / 2 { 2300.0 } else { 2500.0 };
         (z + rng.gaussian() * SensorNoise::KINECT_V1.sigma_mm(z)).round() as u16

@@ -1,11 +1,12 @@
 //! Motions whose truth is known, and what a sensor shows of them at 30 Hz.
 
 use glam::{Quat, Vec3};
+use toile_assets::numeric::random::SplitMix64;
 use toile_assets::skeleton::{JOINTS, Joint, Pose, Skeleton};
 use toile_engine::body::JointFrames;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::{Joints, TrackedJoint};
-use toile_sensors::source::synthetic::{JointNoise, Rng};
+use toile_sensors::source::synthetic::JointNoise;
 
 /// Frames a second.
 pub const HZ: f32 = 30.0;
@@ -28,7 +29,7 @@ pub fn time_ns(frame: usize) -> u64 {
 
 /// What is seen under noise of `sigma` (m) on each axis, without dropouts.
 pub fn under_noise(motion: &Motion, seconds: f32, sigma: f32, seed: u64) -> Seen {
-    let mut rng = Rng::new(seed);
+    let mut rng = SplitMix64::new(seed);
     see(motion, seconds, |truth| {
         let mut seen = *truth;
         for joint in seen.joints.iter_mut().filter(|j| j.confidence > 0.0) {

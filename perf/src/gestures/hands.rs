@@ -3,8 +3,9 @@
 use std::f32::consts::TAU;
 
 use glam::{Quat, Vec3};
+use toile_assets::numeric::random::SplitMix64;
 use toile_sensors::frame::{DepthFrame, Intrinsics};
-use toile_sensors::source::synthetic::{KinectNoise, Rng, SyntheticCamera};
+use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 use toile_track::gesture::{Grip, HandEye, HandShape, HandSight};
 
 /// What a hand is like.
@@ -113,7 +114,7 @@ impl Solid {
     }
 
     /// A hand of length 1 that faces +z with its fingers up, the wrist at the origin, and its forearm.
-    fn hand(pose: HandPose, rng: &mut Rng) -> Self {
+    fn hand(pose: HandPose, rng: &mut SplitMix64) -> Self {
         let mut solid = Self::default();
         let v = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
         solid.cone(v(0.0, -1.2, -0.05), v(0.0, -0.02, 0.0), [0.22, 0.145]);
@@ -166,7 +167,7 @@ struct Scene {
 }
 
 impl Scene {
-    fn new(distance: f32, rng: &mut Rng) -> Self {
+    fn new(distance: f32, rng: &mut SplitMix64) -> Self {
         let [mean, sd] = LENGTHS[(rng.next_u64() & 1) as usize];
         let length = mean + sd * rng.gaussian();
         // The window of a Kinect's image about the hand: the rest of the picture costs time and shows nothing.
@@ -188,7 +189,7 @@ impl Scene {
         }
     }
 
-    fn held(&self, pose: HandPose, rng: &mut Rng) -> Held {
+    fn held(&self, pose: HandPose, rng: &mut SplitMix64) -> Held {
         let mut solid = Solid::hand(pose, rng);
         let flip = if self.mirrored { Vec3::new(-1.0, 1.0, 1.0) } else { Vec3::ONE };
         let world = |p: Vec3| self.wrist + self.turn * (p * flip * self.length);
@@ -202,7 +203,7 @@ impl Scene {
     }
 
     /// One frame, and where a tracker says that the hand is; the hand trembles.
-    fn frame(&mut self, held: &Held, rng: &mut Rng) -> (DepthFrame, HandSight) {
+    fn frame(&mut self, held: &Held, rng: &mut SplitMix64) -> (DepthFrame, HandSight) {
         let mut off = |by: f32| Vec3::new(rng.gaussian(), rng.gaussian(), rng.gaussian()) * by;
         let shift = off(0.003);
         let moved: Vec<Vec3> = held.solid.positions.iter().map(|p| *p + shift).collect();
@@ -220,7 +221,7 @@ impl Scene {
 
 /// A spread hand held up at a distance (m): a frame, and where a tracker says that the hand is.
 pub fn held_up(distance: f32, seed: u64) -> (DepthFrame, HandSight) {
-    let mut rng = Rng::new(seed);
+    let mut rng = SplitMix64::new(seed);
     let mut scene = Scene::new(distance, &mut rng);
     let held = scene.held(HandPose::Spread, &mut rng);
     scene.frame(&held, &mut rng)
@@ -281,7 +282,7 @@ pub fn grips(distances: &[f32], hands: u32, seed: u64) -> Vec<GripRow> {
     for (k, &distance) in distances.iter().enumerate() {
         let mut sums = HandPose::ALL.map(|pose| Sum::new(pose, distance));
         for hand in 0..hands {
-            let mut rng = Rng::new(seed + 1_000_000 * (k as u64 + 1) + u64::from(hand));
+            let mut rng = SplitMix64::new(seed + 1_000_000 * (k as u64 + 1) + u64::from(hand));
             let mut scene = Scene::new(distance, &mut rng);
             let open = usize::from(hand % 2 == 1);
             let mut grip = Grip::new();

@@ -12,10 +12,10 @@ mod motion;
 mod person;
 mod table;
 
+use toile_assets::numeric::random::SplitMix64;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::filter::JointFilter;
 use toile_sensors::frame::Joints;
-use toile_sensors::source::synthetic::Rng;
 use toile_track::gesture::{Event, Gestures};
 
 use motion::Motion;
@@ -82,7 +82,7 @@ impl Count {
 
 /// The joints of a random shopper who does something, filtered; the same seed gives the same bits.
 pub fn sequence(act: Act, conditions: &Conditions, seed: u64) -> Vec<Joints> {
-    let mut rng = Rng::new(seed);
+    let mut rng = SplitMix64::new(seed);
     let person = Shopper::new(&mut rng, conditions.scale);
     let motion = Motion::new(act, &mut rng);
     let mut tracker = Tracker::new(&mut rng, conditions.distance);

@@ -1,7 +1,7 @@
 //! What a simulated shopper does: keys in time for both wrists and the trunk, minimum-jerk between them.
 
 use glam::Vec3;
-use toile_sensors::source::synthetic::Rng;
+use toile_assets::numeric::random::SplitMix64;
 use toile_track::gesture::Gesture;
 
 /// A moment of a motion.
@@ -123,7 +123,7 @@ const HANGING: Vec3 = Vec3::new(-0.42, -0.92, 0.08);
 
 /// Draws motions: both hands first hang.
 struct Draw<'a> {
-    rng: &'a mut Rng,
+    rng: &'a mut SplitMix64,
     keys: Vec<Key>,
     now: Key,
 }
@@ -389,7 +389,7 @@ impl Draw<'_> {
 
 impl Motion {
     /// A random way to do something, of the left hand as often as of the right.
-    pub(super) fn new(act: Act, rng: &mut Rng) -> Self {
+    pub(super) fn new(act: Act, rng: &mut SplitMix64) -> Self {
         let left_handed = rng.next_u64() & 1 == 0;
         let now = Key { time: 0.0, wrists: [mirrored(HANGING), HANGING], place: Vec3::ZERO, turn: 0.0 };
         let mut draw = Draw { rng, keys: vec![now], now };

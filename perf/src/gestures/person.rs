@@ -4,9 +4,10 @@
 //! not those that it assumes.
 
 use glam::{Quat, Vec3};
+use toile_assets::numeric::random::SplitMix64;
 use toile_assets::skeleton::Joint;
 use toile_sensors::frame::{Joints, TrackedJoint};
-use toile_sensors::source::synthetic::{JointNoise, Rng};
+use toile_sensors::source::synthetic::JointNoise;
 
 /// Mean and standard deviation of stature (m), ANSUR II women and men.
 const STATURES: [[f32; 2]; 2] = [[1.6285, 0.0642], [1.7562, 0.0686]];
@@ -38,7 +39,7 @@ pub(super) struct Shopper {
 
 impl Shopper {
     /// A random grown-up, or with `scale` a child or a giant of the same proportions.
-    pub(super) fn new(rng: &mut Rng, scale: f32) -> Self {
+    pub(super) fn new(rng: &mut SplitMix64, scale: f32) -> Self {
         let [mean, sd] = STATURES[(rng.next_u64() & 1) as usize];
         let stature = scale * (mean + sd * rng.gaussian().clamp(-2.5, 2.5));
         let mut part = |fraction: f32| stature * fraction * (1.0 + OWN * rng.gaussian());
@@ -103,17 +104,17 @@ impl Shopper {
 /// A tracker at some distance: jitter, slow wander of the wrists, joints lost.
 pub(super) struct Tracker {
     noise: JointNoise,
-    rng: Rng,
+    rng: SplitMix64,
     wander: [Vec3; 2],
 }
 
 impl Tracker {
     /// A tracker of a shopper `distance` away (m).
-    pub(super) fn new(rng: &mut Rng, distance: f32) -> Self {
+    pub(super) fn new(rng: &mut SplitMix64, distance: f32) -> Self {
         let sigma = JITTER_2M * (0.4 + 0.6 * (distance / 2.0).powi(2));
         Self {
             noise: JointNoise::with(rng.next_u64(), sigma, LOST),
-            rng: Rng::new(rng.next_u64()),
+            rng: SplitMix64::new(rng.next_u64()),
             wander: [Vec3::ZERO; 2],
         }
     }

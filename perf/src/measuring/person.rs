@@ -6,9 +6,9 @@ use glam::{Quat, Vec3};
 use toile_assets::body::shape::Shapes;
 use toile_assets::body::{Ansur, Body, BodyError, Readings, Region, Sex, Wanted};
 use toile_assets::mesh::vertex_normals;
+use toile_assets::numeric::random::SplitMix64;
 use toile_assets::skeleton::{BONES, JOINTS, Joint, Pose};
 use toile_engine::body::{JointFrames, palette};
-use toile_sensors::source::synthetic::Rng;
 
 /// What of the survey a person's body is built to, with the survey's names.
 pub const GIVEN: [(Ansur, &str); 12] = [
@@ -56,7 +56,7 @@ impl Person {
     ///
     /// # Errors
     /// A measure outside of all ranges.
-    pub fn new(sex: Sex, measures: &[f32; GIVEN.len()], rng: &mut Rng) -> Result<Self, BodyError> {
+    pub fn new(sex: Sex, measures: &[f32; GIVEN.len()], rng: &mut SplitMix64) -> Result<Self, BodyError> {
         let wanted = GIVEN.iter().zip(measures).fold(Wanted::new(), |w, (g, m)| w.with(g.0, *m));
         let shapes = Shapes::of(sex);
         let mut body = shapes.body(&shapes.wanted(&wanted)?).body;
@@ -73,7 +73,7 @@ impl Person {
 
     /// The surface of the swaying person at one moment, feet on the floor (m) `[vertices]`.
     /// Gives where their joints are.
-    pub fn stand(&self, rng: &mut Rng, positions: &mut Vec<Vec3>) -> Moment {
+    pub fn stand(&self, rng: &mut SplitMix64, positions: &mut Vec<Vec3>) -> Moment {
         let mut pose = self.pose;
         let mut sway = |joint: Joint, by: f32| {
             let turn = Vec3::new(rng.gaussian(), rng.gaussian(), rng.gaussian()) * by;
@@ -122,7 +122,7 @@ fn on_both_feet(body: &Body, pose: &mut Pose) {
 }
 
 /// Gives the trunk sections that the parametric body does not have, and all of the surface some roughness.
-fn sculpt(body: &mut Body, rng: &mut Rng) {
+fn sculpt(body: &mut Body, rng: &mut SplitMix64) {
     let stature = body.measures.stature;
     let mut strengths = [[(0.0, 0.0); KNOTS.len()]; HARMONICS.len()];
     for (row, (order, spread)) in strengths.iter_mut().zip(HARMONICS) {
@@ -172,7 +172,7 @@ fn blended(row: &[(f32, f32); KNOTS.len()], share: f32) -> f32 {
 }
 
 /// How a person stands when asked to: arms slightly out, nobody quite straight.
-fn standing(body: &Body, rng: &mut Rng) -> Pose {
+fn standing(body: &Body, rng: &mut SplitMix64) -> Pose {
     let mut pose = Pose::rest(&body.skeleton);
     let mut turn = |joint: Joint, usual: Vec3, spread: Vec3| {
         let by = usual + spread * Vec3::new(rng.gaussian(), rng.gaussian(), rng.gaussian());
@@ -200,7 +200,7 @@ mod tests {
 
     #[test]
     fn people_stand_on_both_feet() {
-        let mut rng = Rng::new(11);
+        let mut rng = SplitMix64::new(11);
         let measures = [1.65, 1.41, 0.98, 0.77, 0.46, 0.33, 0.93, 0.84, 1.01, 0.60, 0.80, 0.36];
         let person = Person::new(Sex::Female, &measures, &mut rng).expect("a body");
         let soles: Vec<usize> =

@@ -1,8 +1,9 @@
 //! The two depth cameras of the study, each a little other than it says.
 
 use glam::{Affine3A, Quat, Vec3};
+use toile_assets::numeric::random::SplitMix64;
 use toile_sensors::frame::{DepthFrame, Intrinsics};
-use toile_sensors::source::synthetic::{KinectNoise, Rng, SyntheticCamera};
+use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 
 use super::person::{Moment, Person};
 
@@ -79,7 +80,7 @@ pub struct Sight {
 
 impl Sight {
     /// A camera of a kind, before somebody at the origin.
-    pub fn new(sensor: Sensor, rng: &mut Rng) -> Self {
+    pub fn new(sensor: Sensor, rng: &mut SplitMix64) -> Self {
         let [near, far] = sensor.distances();
         let distance = near + (far - near) * rng.uniform();
         let told = sensor.told();
@@ -107,7 +108,7 @@ impl Sight {
     }
 
     /// The swaying person at 30 Hz, and where their joints are in each frame.
-    pub fn frames(&self, person: &Person, count: usize, rng: &mut Rng) -> Vec<(DepthFrame, Moment)> {
+    pub fn frames(&self, person: &Person, count: usize, rng: &mut SplitMix64) -> Vec<(DepthFrame, Moment)> {
         let mut kinect = KinectNoise::new(rng.next_u64());
         let mut positions = Vec::new();
         let mut image = vec![0.0; self.seen.intrinsics.pixels()];
@@ -134,7 +135,7 @@ impl Sight {
     }
 
     /// A time-of-flight image (mm, 0 = nothing) of a rendered one (m).
-    fn flight(&self, image: &[f32], rng: &mut Rng) -> Box<[u16]> {
+    fn flight(&self, image: &[f32], rng: &mut SplitMix64) -> Box<[u16]> {
         let (width, height) = (self.seen.intrinsics.width as usize, self.seen.intrinsics.height as usize);
         let mut out = vec![0u16; image.len()].into_boxed_slice();
         for v in 1..height - 1 {

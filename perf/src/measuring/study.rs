@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 use toile_assets::body::Sex;
+use toile_assets::numeric::random::SplitMix64;
 use toile_assets::sizes::Population;
 use toile_assets::skeleton::Joint;
 use toile_sensors::frame::DepthFrame;
-use toile_sensors::source::synthetic::Rng;
 use toile_track::cloud;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{self, TAKEN};
@@ -132,7 +132,7 @@ pub fn study(surveys: &[Survey], options: &Options, told: &dyn Fn(&Case)) -> Res
         let columns: Vec<Vec<f64>> = GIVEN.iter().map(|g| survey.column(g.1)).collect::<Result<_, _>>()?;
         for row in crate::ansur::chosen(survey.people(), options.people, options.seed) {
             let metres = std::array::from_fn(|k| (columns[k][row] * 1e-3) as f32);
-            let mut rng = Rng::new(options.seed ^ ((row as u64) << 20) ^ u64::from(sex == Sex::Male));
+            let mut rng = SplitMix64::new(options.seed ^ ((row as u64) << 20) ^ u64::from(sex == Sex::Male));
             let person =
                 Person::new(sex, &metres, &mut rng).map_err(|source| StudyError::Person { line: row + 2, source })?;
             let case = measured(&person, options, &mut rng);
@@ -143,7 +143,7 @@ pub fn study(surveys: &[Survey], options: &Options, told: &dyn Fn(&Case)) -> Res
     Ok(summed(&cases, options))
 }
 
-fn measured(person: &Person, options: &Options, rng: &mut Rng) -> Case {
+fn measured(person: &Person, options: &Options, rng: &mut SplitMix64) -> Case {
     let sight = Sight::new(options.sensor, rng);
     let frames = sight.frames(person, options.frames, rng);
     let alone = |(f, truth): &(DepthFrame, Moment)| Some((cloud::people(f).people.first()?.alone(f), *truth));

@@ -9,11 +9,11 @@ use glam::{Affine3A, Quat, Vec3, Vec3A};
 use serde::Serialize;
 use toile_assets::garment::{Garment, Part};
 use toile_assets::limits::MAX_CAPSULES;
+use toile_assets::numeric::random::SplitMix64;
 use toile_assets::skeleton::{BONES, Joint, Pose, Skeleton};
 use toile_engine::body::palette;
 use toile_engine::cloth::contact;
 use toile_engine::colliders::Colliders;
-use toile_sensors::rng::Rng;
 
 use super::scene::{Motion, Scene};
 
@@ -67,7 +67,7 @@ fn poses(scene: &Scene) -> Vec<Posed> {
     };
     match (&scene.motion, &scene.skeleton) {
         (Motion::Shopper(_), Some(skeleton)) => {
-            let mut rng = Rng::new(SEED);
+            let mut rng = SplitMix64::new(SEED);
             (0..POSES).map(|_| posed(random_bones(skeleton, &mut rng))).collect()
         }
         (Motion::File(file), _) => {
@@ -97,7 +97,7 @@ fn widest_deg(joint: Joint) -> f32 {
     }
 }
 
-fn random_bones(skeleton: &Skeleton, rng: &mut Rng) -> [Affine3A; BONES] {
+fn random_bones(skeleton: &Skeleton, rng: &mut SplitMix64) -> [Affine3A; BONES] {
     let mut pose = Pose::rest(skeleton);
     for joint in Joint::ALL {
         let mut side = || rng.uniform() * 2.0 - 1.0;

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use glam::Vec3;
+use toile_assets::numeric::random::SplitMix64;
 use toile_engine::clock::Clock;
 use toile_engine::pace::sense::Source;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::{Joints, TrackedJoint};
-use toile_sensors::rng::Rng;
 
 use super::script::{CAMERA_HZ, Fault, Kind, Script};
 
@@ -46,7 +46,7 @@ impl<C: Clock> Camera<C> {
         let ns = stamp(frame);
         let mut joints = Joints::absent(ns);
         if let Some(visit) = self.script.visit_at(ns) {
-            let mut rng = Rng::new(self.script.plan.seed ^ frame);
+            let mut rng = SplitMix64::new(self.script.plan.seed ^ frame);
             let mut noise = || NOISE_M * rng.gaussian();
             for (to, at) in joints.joints.iter_mut().zip(visit.joints(ns)) {
                 let position = at + Vec3::new(noise(), noise(), noise());
@@ -59,7 +59,7 @@ impl<C: Clock> Camera<C> {
     /// The same frame when something is wrong; none where none comes.
     fn spoilt(&self, frame: u64, fault: &Fault) -> Option<Joints> {
         let ns = stamp(frame);
-        let mut rng = Rng::new(self.script.plan.seed ^ !frame);
+        let mut rng = SplitMix64::new(self.script.plan.seed ^ !frame);
         Some(match fault.kind {
             Kind::CameraLost => return None,
             Kind::Frozen => Joints { time_ns: ns, ..self.seen(fault.from_ns.div_ceil(SECOND_NS / CAMERA_HZ)) },
@@ -96,7 +96,7 @@ impl<C: Clock> Camera<C> {
 
 /// Somebody of so many, the same for as long as the fault lasts.
 fn rng_place(fault: &Fault, count: usize) -> usize {
-    Rng::new(fault.from_ns).next_u64() as usize % count
+    SplitMix64::new(fault.from_ns).next_u64() as usize % count
 }
 
 /// When a frame is taken, since the begin (ns).

@@ -4,13 +4,13 @@ use std::f64::consts::TAU;
 
 use glam::Vec3;
 use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::numeric::random::SplitMix64;
 use toile_assets::scene;
 use toile_assets::sizes::Population;
 use toile_assets::skeleton::{JOINTS, Skeleton};
 use toile_assets::wardrobe;
 use toile_engine::body::JointFrames;
 use toile_sensors::clock::SECOND_NS;
-use toile_sensors::rng::Rng;
 
 use super::{LEAST_APART_S, Plan, SoakError};
 
@@ -142,7 +142,7 @@ impl Kind {
     }
 
     /// Length of one (s).
-    fn length(self, rng: &mut Rng) -> f32 {
+    fn length(self, rng: &mut SplitMix64) -> f32 {
         match self {
             Self::SensorStall | Self::PhysicsStall | Self::RenderStall | Self::RecorderStall | Self::FrontStall => {
                 STALL_S
@@ -274,7 +274,7 @@ impl Script {
     /// [`SoakError::Crowded`], and a wardrobe whose tables cannot be read.
     pub fn write(plan: Plan) -> Result<Self, SoakError> {
         let faults = faults(&plan)?;
-        let mut rng = Rng::new(plan.seed);
+        let mut rng = SplitMix64::new(plan.seed);
         let wardrobe = Wardrobe::read()?;
         let (mut visits, mut dressings, mut from) = (Vec::new(), Vec::new(), 0);
         let mut order: Vec<usize> = Vec::new();
@@ -342,7 +342,7 @@ impl Wardrobe {
     }
 
     /// A shopper near to the size of an outfit.
-    fn visit(&self, outfit: usize, from_ns: u64, rng: &mut Rng) -> Visit {
+    fn visit(&self, outfit: usize, from_ns: u64, rng: &mut SplitMix64) -> Visit {
         let (_, near, population) = &self.outfits[outfit];
         let sex = match population {
             Population::Men => Sex::Male,
@@ -366,7 +366,7 @@ impl Wardrobe {
     }
 
     /// Something to change into: of the sizes of a garment the nearest, or one beside it.
-    fn near(&self, sex: Sex, measures: &Measures, rng: &mut Rng) -> Outfit {
+    fn near(&self, sex: Sex, measures: &Measures, rng: &mut SplitMix64) -> Outfit {
         let fits = |p: &Population| *p == Population::Mixed || (*p == Population::Men) == (sex == Sex::Male);
         let names: Vec<&str> = wardrobe::names().into_iter().filter(|n| self.of(n).any(|o| fits(&o.2))).collect();
         let name = names[rng.next_u64() as usize % names.len()];
@@ -389,7 +389,7 @@ fn faults(plan: &Plan) -> Result<Vec<Fault>, SoakError> {
     if faults as u64 * LEAST_APART_S > seconds {
         return Err(SoakError::Crowded { faults, seconds });
     }
-    let mut rng = Rng::new(seed ^ 0x000f_a017);
+    let mut rng = SplitMix64::new(seed ^ 0x000f_a017);
     let apart = seconds as f64 / faults.max(1) as f64;
     let mut order = Vec::new();
     let place = |i: usize| {
@@ -404,7 +404,7 @@ fn faults(plan: &Plan) -> Result<Vec<Fault>, SoakError> {
     Ok((0..faults).map(place).collect())
 }
 
-fn shuffled(count: usize, rng: &mut Rng) -> Vec<usize> {
+fn shuffled(count: usize, rng: &mut SplitMix64) -> Vec<usize> {
     let mut all: Vec<usize> = (0..count).collect();
     for i in (1..count).rev() {
         all.swap(i, rng.next_u64() as usize % (i + 1));
@@ -412,7 +412,7 @@ fn shuffled(count: usize, rng: &mut Rng) -> Vec<usize> {
     all
 }
 
-fn between(rng: &mut Rng, [least, most]: [f32; 2]) -> f32 {
+fn between(rng: &mut SplitMix64, [least, most]: [f32; 2]) -> f32 {
     least + (most - least) * rng.uniform()
 }
 

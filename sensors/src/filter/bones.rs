@@ -60,11 +60,11 @@ impl BoneLength {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::source::synthetic::Rng;
+    use toile_assets::numeric::random::SplitMix64;
 
     #[test]
     fn the_estimate_is_the_median_and_outliers_do_not_count_more() {
-        let mut rng = Rng::new(1);
+        let mut rng = SplitMix64::new(1);
         let mut bone = BoneLength::default();
         for i in 0..3000 {
             let length = if i % 10 == 0 { 0.9 } else { 0.25 + 0.02 * rng.gaussian() };

@@ -1,6 +1,7 @@
 //! What is believed: the confidence gate of the live filter, and confidence derived where a format has none.
 
 use glam::Vec3;
+use toile_assets::numeric::statistics::quantile_of;
 use toile_assets::skeleton::{JOINTS, Joint};
 
 use crate::clock::seconds_between;
@@ -100,9 +101,8 @@ fn bone_confidence(seen: &[TrackedJoint; JOINTS], joint: Joint, medians: &[f32; 
 fn median_lengths(frames: &[Joints]) -> [f32; JOINTS] {
     let mut medians = [0.0; JOINTS];
     for joint in Joint::ALL {
-        let mut lengths: Vec<f32> = frames.iter().filter_map(|f| bone_length(f, joint)).collect();
-        lengths.sort_unstable_by(f32::total_cmp);
-        medians[joint.index()] = lengths.get(lengths.len() / 2).copied().unwrap_or(0.0);
+        let lengths = frames.iter().filter_map(|f| bone_length(f, joint));
+        medians[joint.index()] = quantile_of(lengths, 0.5).unwrap_or(0.0);
     }
     medians
 }

@@ -101,7 +101,7 @@ impl Holt {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::source::synthetic::Rng;
+    use toile_assets::numeric::random::SplitMix64;
 
     fn step(holt: &mut Holt, measured: Vec3, dt: f32, settings: &HoltSettings) {
         let trust = holt.trust(measured, dt, settings);
@@ -133,7 +133,7 @@ mod tests {
     }
 
     fn run(settings: &HoltSettings, seed: u64) -> Vec<(f32, f32)> {
-        let mut rng = Rng::new(seed);
+        let mut rng = SplitMix64::new(seed);
         let mut noise = || Vec3::new(rng.gaussian(), rng.gaussian(), rng.gaussian()) * 5e-3;
         let mut holt = Holt::start(noise());
         let mut track = Vec::new();

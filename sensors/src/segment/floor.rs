@@ -5,7 +5,7 @@ use glam::{Affine3A, Mat3, Vec3};
 
 use super::grid::sigma;
 use crate::frame::DepthFrame;
-use crate::rng::Rng;
+use toile_assets::numeric::random::SplitMix64;
 
 /// Planes that are tried where none is known, through points of the lower half of what is seen: where the floor holds a
 /// quarter of that half, all tries miss it once in a hundred times; half of it, which is usual, never.
@@ -136,7 +136,7 @@ fn sought(points: &[Vec3], up: Vec3) -> Option<Floor> {
     let middle = low.len() / 2;
     low.select_nth_unstable_by(middle, |a, b| a.dot(up).total_cmp(&b.dot(up)));
     low.truncate(middle);
-    let mut rng = Rng::new(0x000f_1008);
+    let mut rng = SplitMix64::new(0x000f_1008);
     let few: Vec<Vec3> = points.iter().copied().step_by(SPARSE).collect();
     let mut best: Option<(f32, Floor)> = None;
     for _ in 0..TRIES {

@@ -1,6 +1,7 @@
 //! Which pieces are people, and what else belongs to the shopper.
 
 use glam::{Vec2, Vec3};
+use toile_assets::numeric::statistics::quantile;
 
 use super::Person;
 use super::grid::{Grid, sigma};
@@ -215,7 +216,7 @@ fn place(grid: &Grid, cells: &[u32], numbers: &mut Vec<f32>) -> Vec2 {
     let mut median = |axis: usize| {
         numbers.clear();
         numbers.extend(cells.iter().map(|c| grid.place(*c as usize)[axis]));
-        quantile(numbers, 0.5)
+        quantile(numbers, 0.5).unwrap_or(0.0)
     };
     Vec2::new(median(0), median(1))
 }
@@ -229,7 +230,7 @@ fn person(grid: &Grid, cells: &[u32], numbers: &mut Vec<f32>) -> Option<Person> 
     let mut span = |value: &dyn Fn(usize) -> f32| {
         numbers.clear();
         numbers.extend(cells.iter().map(|c| value(*c as usize)));
-        [quantile(numbers, 0.01), quantile(numbers, 0.99)]
+        [0.01, 0.99].map(|share| quantile(numbers, share).unwrap_or(0.0))
     };
     let [bottom, top] = span(&|c| grid.height[c]);
     let [left, right] = span(&|c| grid.place(c).x);
@@ -242,7 +243,7 @@ fn person(grid: &Grid, cells: &[u32], numbers: &mut Vec<f32>) -> Option<Person> 
     numbers.clear();
     let low = cells.iter().filter(|c| grid.height[**c as usize] < 0.5 * (bottom + top));
     numbers.extend(low.map(|c| grid.place(*c as usize).x));
-    let axis = quantile(numbers, 0.5);
+    let axis = quantile(numbers, 0.5)?;
     let near = cells.iter().filter(|c| (grid.place(**c as usize).x - axis).abs() < 0.13);
     let crown = near.map(|c| grid.height[*c as usize]).fold(f32::MIN, f32::max);
     let is_person = [crown, top].into_iter().any(|crown| {
@@ -266,14 +267,7 @@ impl Band {
         if numbers.len() < 8 {
             return None;
         }
-        let breadth = quantile(numbers, 0.875) - quantile(numbers, 0.125);
+        let breadth = quantile(numbers, 0.875)? - quantile(numbers, 0.125)?;
         (self.breadth[0]..self.breadth[1]).contains(&breadth).then_some(breadth)
     }
-}
-
-/// The value below which a fraction lies; 0 of nothing. Reorders the values.
-fn quantile(values: &mut [f32], fraction: f32) -> f32 {
-    let Some(last) = values.len().checked_sub(1) else { return 0.0 };
-    let k = (last as f32 * fraction) as usize;
-    *values.select_nth_unstable_by(k, f32::total_cmp).1
 }

@@ -4,6 +4,7 @@
 //! is upright, in the median of a whole recording. Where a tracker has no neck, its chest or head does as well.
 
 use glam::{Quat, Vec3};
+use toile_assets::numeric::statistics::{median_of, quantile_of};
 use toile_assets::skeleton::Joint;
 
 use crate::error::{Fault, Place};
@@ -29,7 +30,7 @@ const FEET_SEEN: f32 = 0.1;
 
 /// Fraction of frames whose lower foot lies below the floor: half of the frames of somebody who stands, a quarter to
 /// allow for jumps.
-const STANDING: f32 = 0.25;
+const STANDING: f64 = 0.25;
 
 const LEGS: [[Joint; 4]; 2] = [
     [Joint::LeftHip, Joint::LeftKnee, Joint::LeftAnkle, Joint::LeftToe],
@@ -105,7 +106,7 @@ fn median_direction(frames: &[Joints], direction: impl Fn(&Joints) -> Option<Vec
     if all.len() * 10 < frames.len() {
         return None;
     }
-    let axis = |k: usize| median(all.iter().map(|d| d[k]).collect());
+    let axis = |k: usize| median_of(all.iter().map(|d| d[k]));
     Vec3::new(axis(0)?, axis(1)?, axis(2)?).try_normalize()
 }
 
@@ -113,11 +114,11 @@ fn median_direction(frames: &[Joints], direction: impl Fn(&Joints) -> Option<Vec
 fn floor(frames: &[Joints], notes: &mut Vec<String>) -> f32 {
     let feet: Vec<f32> = frames.iter().filter_map(lowest_sole).collect();
     if feet.len() as f32 >= FEET_SEEN * frames.len() as f32
-        && let Some(floor) = quantile(feet, STANDING)
+        && let Some(floor) = quantile_of(feet, STANDING)
     {
         return floor;
     }
-    let hips = median(frames.iter().filter_map(hip_height).collect());
+    let hips = median_of(frames.iter().filter_map(hip_height));
     let (leg, how) = leg_length(frames);
     if let (Some(hips), Some(leg)) = (hips, leg) {
         notes.push(format!("the feet are not seen: the floor is put {leg:.2} m below the hips, from {how}"));
@@ -125,7 +126,7 @@ fn floor(frames: &[Joints], notes: &mut Vec<String>) -> f32 {
     }
     let lowest = frames.iter().flat_map(|f| f.joints.iter()).filter(|j| j.is_believed()).map(|j| j.position.y);
     notes.push("neither feet nor hips are seen: the floor is put under the lowest joint".to_owned());
-    quantile(lowest.collect(), 0.05).unwrap_or(0.0)
+    quantile_of(lowest, 0.05).unwrap_or(0.0)
 }
 
 /// Where the floor would be under the lowest believed foot joint of a frame (m).
@@ -150,8 +151,8 @@ fn hip_height(frame: &Joints) -> Option<f32> {
 /// Hip to floor (m): thigh and shin as the sensor inferred them where that is a plausible leg for the torso, else by
 /// proportion.
 fn leg_length(frames: &[Joints]) -> (Option<f32>, &'static str) {
-    let torso = median(frames.iter().filter_map(|f| length(f, Joint::Pelvis, Joint::Chest)).collect());
-    let bone = |from, to| median(frames.iter().filter_map(|f| length(f, from, to)).collect());
+    let torso = median_of(frames.iter().filter_map(|f| length(f, Joint::Pelvis, Joint::Chest)));
+    let bone = |from, to| median_of(frames.iter().filter_map(|f| length(f, from, to)));
     let [[hip, knee, ankle, _], _] = LEGS;
     let inferred = bone(hip, knee).zip(bone(knee, ankle)).map(|(thigh, shin)| thigh + shin + ANKLE_HEIGHT);
     match (inferred, torso) {
@@ -175,17 +176,6 @@ fn centre(frames: &[Joints]) -> Vec3 {
     let pelvis: Vec<Vec3> = frames.iter().filter_map(|f| f.believed(Joint::Pelvis)).collect();
     let believed = || frames.iter().flat_map(|f| f.joints.iter()).filter(|j| j.is_believed()).map(|j| j.position);
     let all = if pelvis.is_empty() { believed().collect() } else { pelvis };
-    let axis = |k: usize| median(all.iter().map(|p| p[k]).collect()).unwrap_or(0.0);
+    let axis = |k: usize| median_of(all.iter().map(|p| p[k])).unwrap_or(0.0);
     Vec3::new(axis(0), 0.0, axis(2))
-}
-
-fn median(values: Vec<f32>) -> Option<f32> {
-    quantile(values, 0.5)
-}
-
-/// The value below which a fraction of the values lies; `None` of nothing.
-pub(super) fn quantile(mut values: Vec<f32>, fraction: f32) -> Option<f32> {
-    let last = values.len().checked_sub(1)?;
-    values.sort_unstable_by(f32::total_cmp);
-    values.get((last as f32 * fraction) as usize).copied()
 }

@@ -5,8 +5,8 @@
 //! jump is seen. Without world landmarks the image's own x, y and z are taken, in the unit that makes a plausible leg.
 
 use glam::{Vec2, Vec3};
+use toile_assets::numeric::statistics::median_of;
 
-use super::align::quantile;
 use super::mediapipe::{Landmark, POINTS, Person, tracked};
 use crate::frame::TrackedJoint;
 
@@ -129,7 +129,7 @@ fn from_images(people: &[Person], notes: &mut Vec<String>) -> Vec<[TrackedJoint;
     let images = || people.iter().filter_map(|p| p.image.as_ref());
     let legs: Vec<f32> = images().flat_map(|i| LEGS.map(|l| leg(i, l))).flatten().collect();
     // A trunk is six tenths of a leg; legs out of view are taken from it.
-    let unit = quantile(legs, 0.5).or_else(|| quantile(images().map(|i| i.height() / 0.6).collect(), 0.5));
+    let unit = median_of(legs).or_else(|| median_of(images().map(|i| i.height() / 0.6)));
     let scale = ASSUMED_STATURE * LEG_OF_STATURE / unit.unwrap_or(1.0).max(1.0);
     notes.push(format!(
         "no world landmarks are given: the image is scaled by leg length to a person of {ASSUMED_STATURE:.2} m"

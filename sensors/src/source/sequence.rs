@@ -1,8 +1,8 @@
 //! Depth images on their way into a session: straightened, counted, put in order of time, and set into our world.
 
 use glam::{Affine3A, Mat3, Vec3};
+use toile_assets::numeric::statistics::quantile_of;
 
-use super::align::quantile;
 use super::camera::Camera;
 use super::lens::Straighten;
 use crate::clock::SECOND_NS;
@@ -175,7 +175,7 @@ fn floor_of(frame: &DepthFrame) -> Option<Floor> {
 fn centre(depth: &mut [DepthFrame], floor: impl FnOnce(f32) -> f32) -> Result<(), Fault> {
     let first = depth.iter().find(|f| f.depth_mm.iter().any(|d| *d != 0));
     let points: Vec<Vec3> = first.map(|f| f.points().collect()).unwrap_or_default();
-    let axis = |k: usize, fraction| quantile(points.iter().map(|p| p[k]).collect(), fraction);
+    let axis = |k: usize, fraction| quantile_of(points.iter().map(|p| p[k]), fraction);
     let (Some(x), Some(low), Some(z)) = (axis(0, 0.5), axis(1, 0.002), axis(2, 0.5)) else {
         let cure = "record again with somebody in view";
         return Err(Fault::new(Place::Frame(0), "every depth image is empty", cure));

@@ -1,5 +1,7 @@
 //! Times put right: from 0, strictly increasing, bursts merged.
 
+use toile_assets::numeric::statistics::quantile_of;
+
 use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place};
 use crate::frame::Joints;
@@ -64,9 +66,7 @@ pub(super) fn most_frequent<T: PartialEq>(identities: impl Iterator<Item = T>) -
 }
 
 fn median_step_ns(frames: &[Joints]) -> u64 {
-    let mut steps: Vec<u64> = frames.windows(2).filter_map(|w| w[1].time_ns.checked_sub(w[0].time_ns)).collect();
-    steps.sort_unstable();
-    steps.get(steps.len() / 2).copied().unwrap_or(0)
+    quantile_of(frames.windows(2).filter_map(|w| w[1].time_ns.checked_sub(w[0].time_ns)), 0.5).unwrap_or(0)
 }
 
 fn describe(kept: &[Joints], period: u64, [total, merged, backwards]: [usize; 3], notes: &mut Vec<String>) {

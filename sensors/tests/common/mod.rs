@@ -7,6 +7,7 @@ pub mod skeletons;
 
 use std::path::{Path, PathBuf};
 
+use toile_assets::numeric::statistics::median_of;
 use toile_assets::skeleton::Joint;
 use toile_sensors::filter::JointFilter;
 use toile_sensors::frame::Joints;
@@ -36,9 +37,7 @@ pub fn filtered(session: &Session) -> Vec<Joints> {
 
 /// Median of a value over the frames that have it.
 pub fn median(values: impl Iterator<Item = f32>) -> f32 {
-    let mut all: Vec<f32> = values.collect();
-    all.sort_by(f32::total_cmp);
-    all[all.len() / 2]
+    median_of(values).expect("a frame has the value")
 }
 
 /// Mean and standard deviation.

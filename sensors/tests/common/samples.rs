@@ -1,10 +1,11 @@
 //! Small recordings of every kind, made here.
 
 use glam::{Affine3A, Vec3};
+use toile_assets::numeric::random::SplitMix64;
 use toile_assets::skeleton::Joint;
 use toile_sensors::frame::{DepthFrame, Intrinsics, Joints, TrackedJoint};
 use toile_sensors::session::Session;
-use toile_sensors::source::synthetic::{JointNoise, Rng};
+use toile_sensors::source::synthetic::JointNoise;
 
 /// A standing person, 1.7 m, facing +z with the arms down.
 pub fn standing(time_ns: u64) -> Joints {
@@ -38,8 +39,8 @@ pub fn session() -> Session {
     let mut noise = JointNoise::new(11);
     let joints = (0..30).map(|i| noise.apply(&standing(i * 33_333_333))).collect();
     let intrinsics = Intrinsics { width: 16, height: 12, fx: 14.0, fy: 14.0, cx: 7.5, cy: 5.5 };
-    let mut rng = Rng::new(3);
-    let image = |i: u64, rng: &mut Rng| DepthFrame {
+    let mut rng = SplitMix64::new(3);
+    let image = |i: u64, rng: &mut SplitMix64| DepthFrame {
         time_ns: i * 300_000_000,
         intrinsics,
         camera_to_world: Affine3A::from_translation(Vec3::Y),

@@ -4,22 +4,13 @@ use super::super::sound;
 use super::*;
 use crate::body::Region;
 use crate::body::reading::{Ansur, READINGS};
+use crate::numeric::random::SplitMix64;
 
 const SEXES: [Sex; 2] = [Sex::Female, Sex::Male];
 
-/// A linear congruential generator (Knuth's MMIX constants).
-struct Dice(u64);
-
-impl Dice {
-    fn unit(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 40) as f32 / (1u64 << 24) as f32
-    }
-}
-
 /// The measures of a body between the mean and another, both built from stature, chest, waist and hip.
-fn somebody(sex: Sex, dice: &mut Dice) -> Fitted {
-    let mut around = |mean: f32, by: f32| mean * (1.0 + by * (2.0 * dice.unit() - 1.0));
+fn somebody(sex: Sex, random: &mut SplitMix64) -> Fitted {
+    let mut around = |mean: f32, by: f32| mean * (1.0 + by * (2.0 * random.uniform() - 1.0));
     let m = Measures::average(sex);
     let stout = around(1.0, 0.18);
     let wanted = Wanted::new()
@@ -35,13 +26,13 @@ fn somebody(sex: Sex, dice: &mut Dice) -> Fitted {
 
 #[test]
 fn any_subset_of_a_bodys_own_measures_is_met() {
-    let mut dice = Dice(5);
+    let mut random = SplitMix64::new(5);
     for sex in SEXES {
         for _ in 0..12 {
-            let person = somebody(sex, &mut dice);
+            let person = somebody(sex, &mut random);
             let mut wanted = Wanted::new();
             for &m in En::ALL {
-                if dice.unit() < 0.5 {
+                if random.uniform() < 0.5 {
                     wanted = wanted.with(m, person.readings.of(m));
                 }
             }
@@ -94,7 +85,7 @@ fn what_is_not_given_follows_as_in_people() {
 #[test]
 fn tape_outside_agrees_with_the_gauge() {
     for sex in SEXES {
-        let f = somebody(sex, &mut Dice(9));
+        let f = somebody(sex, &mut SplitMix64::new(9));
         for (level, measure) in [
             (f.body.levels.chest, En::BustGirth),
             (f.body.levels.waist, En::WaistGirth),
@@ -143,7 +134,7 @@ fn gradients_are_those_of_the_readings() {
 #[test]
 fn sides_are_mirror_images_to_the_bit() {
     for sex in SEXES {
-        let body = somebody(sex, &mut Dice(3)).body;
+        let body = somebody(sex, &mut SplitMix64::new(3)).body;
         let twin = &model(sex).morphs.near.twin;
         for (v, &other) in twin.iter().enumerate() {
             for values in [&body.mesh.positions, &body.normals] {
@@ -163,7 +154,7 @@ fn soles_stay_on_the_floor() {
     for sex in SEXES {
         let drawn = &model(sex).morphs.base.positions;
         let soles: Vec<usize> = (0..drawn.len()).filter(|&v| drawn[v].y < 2e-3).collect();
-        let body = somebody(sex, &mut Dice(4)).body;
+        let body = somebody(sex, &mut SplitMix64::new(4)).body;
         let lowest = body.mesh.positions.iter().map(|p| p.y).fold(f32::MAX, f32::min);
         assert!(soles.len() > 8 && lowest.abs() < 1e-3, "{sex:?}: {} vertices, {lowest} m", soles.len());
         assert!(soles.iter().all(|&v| (body.mesh.positions[v].y - drawn[v].y).abs() < 1e-3));
@@ -172,11 +163,11 @@ fn soles_stay_on_the_floor() {
 
 #[test]
 fn morphed_bodies_stay_smooth_and_whole() {
-    let mut dice = Dice(8);
+    let mut random = SplitMix64::new(8);
     for sex in SEXES {
         let drawn = Body::drawn(sex);
         for _ in 0..6 {
-            let body = somebody(sex, &mut dice).body;
+            let body = somebody(sex, &mut random).body;
             let ratio = sound::roughness(&body.mesh) / sound::roughness(&drawn.mesh);
             assert!((0.8..1.10).contains(&ratio), "{sex:?}: roughness {ratio}");
             assert!(sound::unevenness(&body.mesh, &drawn.mesh) < 0.05);

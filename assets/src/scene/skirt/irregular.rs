@@ -12,6 +12,7 @@ use glam::DVec3;
 use super::{HEIGHT, RADIUS, hem, point, push};
 use crate::garment::Shape;
 use crate::garment::shape::NO_VERTEX;
+use crate::numeric::random::SplitMix64;
 
 /// Part of the spacing of the densest packing at which strewing starts; denser than this random darts never come.
 const FIRST_SPACING: f64 = 0.85;
@@ -45,25 +46,12 @@ pub fn irregular(n: usize, seed: u64) -> Shape {
     shape
 }
 
-/// The seeded generator SplitMix64 (Steele et al. 2014), uniform in 0 .. 1.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// A place on the cone, each square metre as likely as any other.
-    fn place(&mut self) -> Place {
-        let [top, more] = RADIUS;
-        let hem2 = (top + more).powi(2);
-        let r = (top * top + self.roll() * (hem2 - top * top)).sqrt();
-        [(r - top) / more, TAU * self.roll()]
-    }
+/// A random place on the cone, each square metre as likely as any other.
+fn random_place(random: &mut SplitMix64) -> Place {
+    let [top, more] = RADIUS;
+    let hem2 = (top + more).powi(2);
+    let r = (top * top + random.uniform_f64() * (hem2 - top * top)).sqrt();
+    [(r - top) / more, TAU * random.uniform_f64()]
 }
 
 /// Length of the cone from ring to hem along its side (m).
@@ -78,11 +66,11 @@ fn strew(places: &mut Vec<Place>, hem: &[Place], count: usize, seed: u64) {
     let mut spacing = FIRST_SPACING * (area / (count + hem.len()) as f64 * 2.0 / 3f64.sqrt()).sqrt();
     let mut board = Board::new(spacing);
     places.iter().chain(hem).for_each(|&place| board.add(place));
-    let mut dice = Dice(seed);
+    let mut random = SplitMix64::new(seed);
     let mut left = count;
     while left > 0 {
         for _ in 0..DARTS * count {
-            let place = dice.place();
+            let place = random_place(&mut random);
             // Between two vertices of a ring nothing keeps a dart away from the border, where it would leave a sliver.
             let inland = place[0].min(1.0 - place[0]) * slant() > BORDER * spacing;
             if left > 0 && inland && board.is_free(place, spacing) {

@@ -166,11 +166,11 @@ pub(super) fn invert(a: &[[f64; SHAPES]; SHAPES]) -> ([[f64; SHAPES]; SHAPES], f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_sensors::source::synthetic::Rng;
+    use toile_assets::numeric::random::SplitMix64;
 
     fn rows() -> Vec<(Row, f32)> {
-        let mut rng = Rng::new(7);
-        let row = |rng: &mut Rng| std::array::from_fn(|i| if i < UNKNOWNS { rng.gaussian() } else { 0.0 });
+        let mut rng = SplitMix64::new(7);
+        let row = |rng: &mut SplitMix64| std::array::from_fn(|i| if i < UNKNOWNS { rng.gaussian() } else { 0.0 });
         (0..3 * UNKNOWNS).map(|_| (row(&mut rng), rng.gaussian())).collect()
     }
 

@@ -4,7 +4,7 @@ use glam::Vec3;
 use toile_assets::skeleton::{JOINTS, Joint};
 
 use crate::frame::Joints;
-use crate::rng::Rng;
+use toile_assets::numeric::random::SplitMix64;
 
 /// Joints that a tracker loses: the ends of the limbs.
 const LOST: [Joint; 6] =
@@ -13,7 +13,7 @@ const LOST: [Joint; 6] =
 /// The noise, with its own generator: the same seed and frames give the same bits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointNoise {
-    rng: Rng,
+    rng: SplitMix64,
     /// Standard deviation of a position along each axis (m).
     sigma: f32,
     /// Chance that a joint of [`LOST`] is lost in a frame.
@@ -30,7 +30,7 @@ impl JointNoise {
 
     /// Jitter of `sigma` (m) and a chance of `dropout` a frame for each joint that can be lost.
     pub const fn with(seed: u64, sigma: f32, dropout: f32) -> Self {
-        Self { rng: Rng::new(seed), sigma, dropout, left: [0; JOINTS] }
+        Self { rng: SplitMix64::new(seed), sigma, dropout, left: [0; JOINTS] }
     }
 
     /// A frame as a tracker would give it. Lost joints have a confidence below the gate for 2 to 9 frames and wander by

@@ -12,7 +12,6 @@ use glam::{Affine3A, Mat3, Vec3};
 
 use crate::frame::{DepthFrame, Intrinsics};
 
-pub use crate::rng::Rng;
 pub use joints::JointNoise;
 pub use noise::{KinectNoise, axial_sigma, lateral_sigma};
 

@@ -5,7 +5,7 @@ use std::f32::consts::FRAC_PI_2;
 use glam::Vec3;
 
 use crate::frame::Intrinsics;
-use crate::rng::Rng;
+use toile_assets::numeric::random::SplitMix64;
 
 /// Disparity times depth (m): 35130 / z in centimetres, steps of 2.85 mm at 1 m, growing with the square of depth.
 const DISPARITY: f32 = 351.30;
@@ -50,13 +50,13 @@ pub fn lateral_sigma(theta: f32) -> f32 {
 /// rounding of its own, adds the half twice and pulls depth half a step nearer (6 mm at 2 m); here it is rounded once.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KinectNoise {
-    rng: Rng,
+    rng: SplitMix64,
 }
 
 impl KinectNoise {
     /// The noise of one sensor.
     pub const fn new(seed: u64) -> Self {
-        Self { rng: Rng::new(seed) }
+        Self { rng: SplitMix64::new(seed) }
     }
 
     /// A measured image (mm, 0 = nothing) of a rendered one (m, infinite = nothing), both `[width * height]`.
