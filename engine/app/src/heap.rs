@@ -7,6 +7,7 @@ use std::alloc::{GlobalAlloc, Layout};
 use std::cell::Cell;
 
 use stats_alloc::INSTRUMENTED_SYSTEM;
+use toile_perf::skirt::heap::Heap;
 
 thread_local! {
     /// Allocations of this thread. Without a destructor, so that it is there for as long as its thread is.
@@ -45,6 +46,15 @@ unsafe impl GlobalAlloc for Counted {
     unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
         // SAFETY: the block came from the same allocator through `alloc`; the contract is the same.
         unsafe { INSTRUMENTED_SYSTEM.dealloc(block, layout) }
+    }
+}
+
+/// The heap as the program's allocator counts it.
+pub fn counted() -> Heap {
+    let s = INSTRUMENTED_SYSTEM.stats();
+    Heap {
+        allocations: (s.allocations + s.reallocations) as u64,
+        live_bytes: s.bytes_allocated as i64 - s.bytes_deallocated as i64,
     }
 }
 

@@ -6,44 +6,28 @@
 
 pub mod artist;
 pub mod backend;
-pub mod bake;
-pub mod bench;
-pub mod bodies;
-mod body;
 pub mod cli;
-mod colliders;
-pub mod completions;
-pub mod convert;
+pub mod commands;
 pub mod crash;
-pub mod doctor;
 mod drawing;
 pub mod dump;
 pub mod exit;
 pub mod fit;
-pub mod gestures;
 pub mod heap;
 pub mod kiosk;
-pub mod latency;
 pub mod machine;
 pub mod measure;
-pub mod measuring;
 pub mod outfit;
 pub mod output;
-pub mod pareto;
 pub mod pictures;
 pub mod plan;
-pub mod record;
-pub mod replay;
 pub mod report;
 pub mod run;
 pub mod shopper;
-pub mod soak;
 pub mod summary;
 pub mod terminal;
-pub mod torture;
 pub mod tracking;
 pub mod try_on;
-pub mod validate;
 pub mod video;
 #[cfg(any(test, feature = "kiosk"))]
 pub mod visitor;
@@ -89,29 +73,23 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
     match command {
         Command::TryOn(args) => try_on::run(args),
         Command::Measure(args) => measure::run(args),
-        Command::Record(args) => record::run(args),
-        Command::Convert(args) => convert::run(args),
+        Command::Record(args) => commands::record::run(args),
+        Command::Convert(args) => commands::convert::run(args),
+        Command::Bake(args) => commands::bake::run(args),
+        Command::Body(args) if args.colliders => commands::colliders::run(args),
+        Command::Body(args) => commands::body::run(args),
         Command::Run(args) => run::run(args),
-        Command::Doctor(args) => doctor::run(args),
-        Command::Bake(args) => bake::run(args),
-        Command::Body(args) => body::run(args),
-        Command::Colliders(args) => colliders::run(args),
-        Command::BenchBody(args) => bodies::bench(args),
-        Command::BenchMeasure(args) => measuring::bench(args),
-        Command::BenchFilters(args) => bench::filters(args),
-        Command::BenchGestures(args) => gestures::run(args),
-        Command::BenchDepth(args) => bench::depth(args),
-        Command::BenchSkinning(args) => bench::skinning(args),
-        Command::BenchSkirt(args) => bench::skirt(args),
-        Command::Torture(args) => torture::run(args),
-        Command::Validate(args) => validate::run(args),
-        Command::Pareto(args) => pareto::run(args),
-        Command::Latency(args) => latency::run(args),
+        Command::Doctor(args) => commands::doctor::run(args),
+        Command::Bench(command) => commands::bench::run(command),
+        Command::Validate(args) => commands::validate::run(args),
+        Command::Pareto(args) => commands::pareto::run(args),
+        Command::Torture(args) => commands::torture::run(args),
+        Command::Latency(args) => commands::latency::run(args),
         Command::Plan(args) => plan::run(args),
-        Command::Replay(args) => replay::run(args),
-        Command::Soak(args) => soak::run(args),
+        Command::Replay(args) => commands::replay::run(args),
+        Command::Soak(args) => commands::soak::run(args),
         Command::Kiosk(args) => kiosk::run(args, windowed),
-        Command::Completions(shell) => completions::run(*shell),
+        Command::Completions(args) => commands::completions::run(args),
         Command::Print(text) => terminal::print(text),
     }
 }

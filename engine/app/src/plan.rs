@@ -17,9 +17,9 @@ use toile_perf::plan::weigh;
 use toile_perf::plan::work::STAGES;
 use toile_perf::skirt::heap::HeapProbe;
 
-use crate::bench::heap;
 use crate::cli::{PlanArgs, PlanScene, RunScene};
 use crate::exit::AppError;
+use crate::heap::counted;
 use crate::outfit::{Parts, Recipe, Wish};
 use crate::report::Document;
 use crate::shopper;
@@ -31,16 +31,17 @@ use crate::terminal::{self, Paint, Words};
 /// A scene that cannot be read or made, and [`AppError::Threshold`] for one that does not fit into its period.
 pub fn run(args: &PlanArgs) -> Result<(), AppError> {
     let words = Words::new(args.quiet || args.json);
-    let (scene, costs, memory) = match &args.scene {
-        PlanScene::Run(scene) => file(scene, args.workers)?,
-        PlanScene::Worn(session, wish) => worn(session.as_deref(), wish, args.workers)?,
+    let workers = args.workers.count();
+    let (scene, costs, memory) = match &args.scene() {
+        PlanScene::Run(scene) => file(scene, workers)?,
+        PlanScene::Worn(session, wish) => worn(session.as_deref(), wish, workers)?,
     };
-    let priced = Priced::of(&scene, &costs, args.workers);
-    let verdict = judge(&scene, &priced, &costs, args.workers);
+    let priced = Priced::of(&scene, &costs, workers);
+    let verdict = judge(&scene, &priced, &costs, workers);
     let mut plan = Plan {
         scene: scene.name.clone(),
         quality: scene.settings[0].quality.name(),
-        workers: args.workers,
+        workers,
         lanes: scene.settings[0].width.lanes(),
         period_us: scene.period_us,
         garments: garments(&scene, &priced),
@@ -54,7 +55,7 @@ pub fn run(args: &PlanArgs) -> Result<(), AppError> {
     };
     if plan.verdict.fits && !args.quick {
         words.say("playing it, with each model and without");
-        let played = weigh::play(&scene, args.workers).map_err(AppError::internal)?;
+        let played = weigh::play(&scene, workers).map_err(AppError::internal)?;
         let one_core = priced.times.iter().map(|t| t.one_us).sum();
         plan.held = Some(Held::of(priced.stages_us[CLOTH], one_core, &played));
         plan.played = Some(played);
@@ -107,7 +108,7 @@ fn worn(
         return Err(AppError::Input(format!("session {} has no joints, so that no pose can be shown", session.name)));
     }
     let recipe = Recipe::write(&session, wish)?;
-    let probe = HeapProbe::new(heap);
+    let probe = HeapProbe::new(counted);
     let before = probe.read();
     let parts = recipe.parts()?;
     let made = probe.read();

@@ -8,10 +8,10 @@ use toile_perf::skirt::heap::HeapProbe;
 use toile_perf::skirt::report::Events;
 use toile_perf::yardstick;
 
-use crate::bench::heap;
 use crate::cli::{RunArgs, RunScene};
 use crate::dump::Dump;
 use crate::exit::AppError;
+use crate::heap::counted;
 use crate::output::OutputFolder;
 use crate::report::{self, Document, RunGarment, RunReport};
 use crate::summary;
@@ -26,7 +26,7 @@ const MAX_FILES: u64 = 1_000_000;
 /// A scene that cannot be used, a folder that cannot be written, or a closed stdout.
 pub fn run(args: &RunArgs) -> Result<(), AppError> {
     let words = Words::new(args.quiet || args.json);
-    let scene = match &args.scene {
+    let scene = match &args.scene()? {
         RunScene::File(path) => SceneFile::read(path),
         RunScene::Example(name) => SceneFile::example(name),
     };
@@ -45,7 +45,7 @@ pub fn run(args: &RunArgs) -> Result<(), AppError> {
             OutputFolder::prepare(folder).map_err(|e| AppError::Input(e.to_string().replace("--out", "--dump")))?;
         dump = Some(Dump::new(folder, args.format, args.every));
     }
-    let mut runner = Runner::counting(scene, HeapProbe::new(heap)).map_err(AppError::input)?;
+    let mut runner = Runner::counting(scene, HeapProbe::new(counted)).map_err(AppError::input)?;
     play(&mut runner, &words, dump.as_mut())?;
     let dumped = dump.as_ref().map_or(0, Dump::frames);
     dump.map_or(Ok(()), Dump::finish)?;

@@ -125,7 +125,7 @@ fn worn(
     fitted: Option<Body>,
 ) -> Result<Worn, AppError> {
     if let Some(Wearer::File(file)) = &args.body {
-        let imported = crate::body::wearer(file, sex)?;
+        let imported = crate::commands::body::wearer(file, sex)?;
         let measured = shopper::of_body(measured, &imported.body);
         let note = format!("the body shown is {}, and the measures are read off it", file.display());
         return Ok(Worn { body: imported.body, measured, note: Some(note) });

@@ -1,6 +1,7 @@
 //! The embedded session is what `toile record` makes, and says of its shopper what the scene knows of her.
 
-use toile::{record, shopper};
+use toile::commands::record;
+use toile::shopper;
 use toile_assets::scene;
 use toile_assets::sizes::Population;
 

@@ -1,5 +1,7 @@
 //! Laws of the command line.
 
+use std::path::PathBuf;
+
 use super::*;
 
 fn parsed(line: &str) -> Result<Command, AppError> {

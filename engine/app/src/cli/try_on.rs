@@ -1,93 +1,106 @@
-//! The grammar of `toile try-on`.
+//! The arguments of `toile try-on`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use clap::{ArgAction, ArgMatches};
+use clap::ArgAction;
+use toile_assets::body::Sex;
 use toile_engine::cloth::Quality;
 use toile_engine::lines::Kind;
 
-use super::{Wearer, flag, json, path, quiet, required, text};
+use super::values::one_of;
 use crate::artist::Renderer;
-use crate::exit::AppError;
 
-/// Arguments of `toile try-on`.
-#[derive(Debug, Clone, PartialEq)]
+/// Measure a shopper, dress them, and write pictures and a report.
+///
+/// Watches a session, measures the shopper, recommends a size zone by zone, lets the garment move on a body of that size
+/// for the whole session, and writes pictures and a report.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(
+    after_help = "Example: see how a recorded shopper moves in wide trousers\n  toile try-on --session shopper.csv \
+                        --garment wide-trousers --out fitting"
+)]
 pub struct TryOnArgs {
-    /// A recording; `None` is the embedded session.
+    /// Recording to watch: .mcap, Kinect CSV, Kinectron JSON or BVH (default: the embedded session)
+    #[arg(long, value_name = "F")]
     pub session: Option<PathBuf>,
-    /// Garments of the wardrobe or OBJ files, in dressing order; empty is the default garment.
+    /// Garment of the wardrobe, or an OBJ file; repeat it to dress in layers, inner first
+    #[arg(long = "garment", value_name = "G")]
     pub garments: Vec<String>,
-    /// A size to wear in place of the recommended one.
+    /// Size to wear, as the garment's table names it (default: the one that fits)
+    #[arg(long, value_name = "S")]
     pub size: Option<String>,
-    /// Whose body is shown; `None` is one of the measured size, of the sex that the garment is cut for.
+    /// Body to show: female, male, or a file (.glb, .gltf, .vrm) (default: by the garment)
+    #[arg(long, value_name = "B", value_parser = Wearer::parse)]
     pub body: Option<Wearer>,
-    /// Whether the dressed body is written as GLB.
-    pub glb: bool,
-    /// How the cloth is stepped.
+    /// Tested settings of the cloth: draft, shop or fine
+    #[arg(
+        long,
+        value_name = "Q",
+        value_parser = one_of(Quality::ALL, Quality::name),
+        default_value = Quality::default().name()
+    )]
     pub quality: Quality,
-    /// Where the files go.
+    /// Folder for the files; it is made if missing
+    #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
-    /// Whether pictures are made.
+    /// Write the dressed body at the session's end as dressed.glb too
+    #[arg(long)]
+    pub glb: bool,
+    /// Make no pictures: only the report and the physics
+    #[arg(long = "no-pictures", action = ArgAction::SetFalse)]
     pub pictures: bool,
-    /// What draws them.
+    /// What draws: cpu, or gpu in a build with the feature `view`
+    #[arg(
+        long,
+        value_name = "R",
+        value_parser = one_of(Renderer::ALL, Renderer::name),
+        default_value = Renderer::default().name()
+    )]
     pub renderer: Renderer,
-    /// A film of the session to make.
+    /// Film of the session: .mp4 or .webm by ffmpeg, or .png, which every build makes itself
+    #[arg(long, value_name = "FILE")]
     pub video: Option<PathBuf>,
-    /// What lines are drawn over the pictures.
+    /// Lines over the gpu's pictures: fibers, colliders, contacts, tethers or velocity; repeat it
+    #[arg(long, value_name = "KIND", value_parser = one_of(Kind::ALL, Kind::name))]
     pub lines: Vec<Kind>,
-    /// One JSON object on stdout in place of the summary.
+    /// Print one JSON object, and nothing else, on stdout
+    #[arg(long)]
     pub json: bool,
-    /// No words on stderr.
+    /// Print nothing on stderr but errors
+    #[arg(long, short)]
     pub quiet: bool,
 }
 
-pub(super) fn grammar() -> clap::Command {
-    clap::Command::new("try-on")
-        .about("Measure a shopper, dress them, and write pictures and a report")
-        .long_about(
-            "Watches a session, measures the shopper, recommends a size zone by zone, lets the garment move on a body \
-             of that size for the whole session, and writes pictures and a report.",
-        )
-        .args([
-            path("session", "F", "Recording to watch: .mcap, Kinect CSV, Kinectron JSON or BVH [default: embedded]"),
-            text("garment", "G", "Garment of the wardrobe, or an OBJ file; repeat it to dress in layers, inner first")
-                .action(ArgAction::Append),
-            text("size", "S", "Size to wear, as the garment's table names it [default: the one that fits]"),
-            text("body", "B", "Body to show: female, male, or a file (.glb, .gltf, .vrm) [default: by the garment]"),
-            text("quality", "Q", "Tested settings of the cloth: draft, shop or fine")
-                .value_parser(Quality::ALL.map(Quality::name))
-                .default_value(Quality::default().name()),
-            path("out", "DIR", "Folder for the files; it is made if missing").default_value("out"),
-            flag("glb", "Write the dressed body at the session's end as dressed.glb too"),
-            flag("no-pictures", "Make no pictures: only the report and the physics"),
-            text("renderer", "R", "What draws: cpu, or gpu in a build with the feature `view`")
-                .value_parser(Renderer::ALL.map(Renderer::name))
-                .default_value(Renderer::default().name()),
-            path("video", "FILE", "Film of the session: .mp4 or .webm by ffmpeg, or .png, which every build makes itself"),
-            text("lines", "KIND", "Lines over the gpu's pictures: fibers, colliders, contacts, tethers or velocity; repeat it")
-                .value_parser(Kind::ALL.map(Kind::name))
-                .action(ArgAction::Append),
-            json(),
-            quiet(),
-        ])
-        .after_help("Example: see how a recorded shopper moves in wide trousers\n  toile try-on --session shopper.csv --garment wide-trousers --out fitting")
+/// Whose body is shown.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Wearer {
+    /// One of ours, of the measured size.
+    Ours(Sex),
+    /// One that others made.
+    File(PathBuf),
 }
 
-pub(super) fn args(matches: &ArgMatches) -> Result<TryOnArgs, AppError> {
-    let lines = matches.get_many::<String>("lines").into_iter();
-    Ok(TryOnArgs {
-        session: matches.get_one("session").cloned(),
-        garments: matches.get_many("garment").into_iter().flatten().cloned().collect(),
-        size: matches.get_one("size").cloned(),
-        body: matches.get_one::<String>("body").map(|b| Wearer::parse(b)).transpose()?,
-        glb: matches.get_flag("glb"),
-        quality: matches.get_one::<String>("quality").and_then(|q| q.parse().ok()).unwrap_or_default(),
-        out: required(matches, "out")?,
-        pictures: !matches.get_flag("no-pictures"),
-        renderer: matches.get_one::<String>("renderer").and_then(|r| r.parse().ok()).unwrap_or_default(),
-        video: matches.get_one("video").cloned(),
-        lines: lines.flatten().filter_map(|k| k.parse().ok()).collect(),
-        json: matches.get_flag("json"),
-        quiet: matches.get_flag("quiet"),
-    })
+impl Wearer {
+    /// What `--body` means: a word, or a file that is there or has an extension.
+    fn parse(word: &str) -> Result<Self, String> {
+        let path = Path::new(word);
+        match word {
+            "female" => Ok(Self::Ours(Sex::Female)),
+            "male" => Ok(Self::Ours(Sex::Male)),
+            _ if path.extension().is_some() || path.exists() => Ok(Self::File(path.into())),
+            _ => Err("it is neither female nor male nor a file".to_owned()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_is_a_word_or_a_file() {
+        assert_eq!(Wearer::parse("male").unwrap(), Wearer::Ours(Sex::Male));
+        assert_eq!(Wearer::parse("a.vrm").unwrap(), Wearer::File("a.vrm".into()));
+        assert!(Wearer::parse("tall").is_err());
+    }
 }

@@ -8,7 +8,7 @@ use crate::exit::AppError;
 #[cfg(target_os = "linux")]
 pub fn lock() -> Result<(), AppError> {
     use nix::sys::mman::{MlockAllFlags, mlockall};
-    if !crate::doctor::may_lock_all() {
+    if !crate::commands::doctor::may_lock_all() {
         return Err(AppError::Device(
             "memory is not locked, because the limit `memlock` is not unlimited; set LimitMEMLOCK=infinity".into(),
         ));

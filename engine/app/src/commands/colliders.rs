@@ -14,8 +14,7 @@ use toile_view::scene::{Camera, Colours, Material, Scene, Surface};
 use toile_view::sheet;
 use toile_view::trace::{Quality, Stage};
 
-use crate::body;
-use crate::cli::CollidersArgs;
+use crate::commands::body::{self, BodyArgs};
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::pictures::write_png;
@@ -76,13 +75,13 @@ struct Told {
 /// # Errors
 /// A file that does not become a body; [`AppError::Threshold`] where a body that is no stranger misses the goal, after
 /// the table.
-pub fn run(args: &CollidersArgs) -> Result<(), AppError> {
-    let words = Words::new(args.quiet || args.json);
-    let mut out = args.out.as_deref().map(OutputFolder::prepare).transpose()?;
-    let (bodies, shown) = match &args.body {
-        Some(file) => {
-            let body = body::import(file)?.0.body;
-            let name = file.file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+pub fn run(args: &BodyArgs) -> Result<(), AppError> {
+    let words = args.printing.words();
+    let mut out = args.pictures.then(|| OutputFolder::prepare(&args.out)).transpose()?;
+    let (bodies, shown) = match &args.file {
+        Some(_) => {
+            let body = body::import(args)?.0.body;
+            let name = body::file_name(args);
             (vec![fitted(name.clone(), &body, false)], vec![(name, body)])
         }
         None => ours(args, &words)?,
@@ -102,7 +101,7 @@ pub fn run(args: &CollidersArgs) -> Result<(), AppError> {
         out.commit()?;
     }
     let verdict = verdict(&told);
-    if args.json {
+    if args.printing.json {
         terminal::print_json(&Document::new("body-colliders", told))?;
     } else {
         terminal::print(&table(&told, Paint::for_stdout()))?;
@@ -114,7 +113,7 @@ pub fn run(args: &CollidersArgs) -> Result<(), AppError> {
 type Shown = Vec<(String, Body)>;
 
 /// Our own bodies of all sizes and the strangers; the middle sizes are shown.
-fn ours(args: &CollidersArgs, words: &Words) -> Result<(Vec<Fitted>, Shown), AppError> {
+fn ours(args: &BodyArgs, words: &Words) -> Result<(Vec<Fitted>, Shown), AppError> {
     let (sizes, strangers) = (people::sizes(), people::strangers(args.strangers, args.seed));
     let bar = words.bar((sizes.len() + strangers.len()) as u64, "fitting");
     let (mut bodies, mut shown) = (Vec::new(), Vec::new());

@@ -1,5 +1,8 @@
 //! `toile record`: a synthetic session, such as the embedded one: what a depth camera would see of a moving shopper.
 
+use std::path::PathBuf;
+
+use clap::value_parser;
 use glam::{Affine3A, Vec3};
 use toile_assets::body::Body;
 use toile_assets::scene;
@@ -12,12 +15,42 @@ use toile_sensors::frame::{Intrinsics, Joints, TrackedJoint};
 use toile_sensors::session::Session;
 use toile_sensors::source::synthetic::{JointNoise, KinectNoise, SyntheticCamera};
 
-use crate::cli::RecordArgs;
+use crate::cli::values::Printing;
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::report::{Document, RecordReport};
 use crate::shopper::session_report;
-use crate::terminal::{self, Words};
+use crate::terminal;
+
+/// Longest session that `record` makes (s); at 30 frames a second this is some hundred megabytes.
+const MAX_SECONDS: i64 = 600;
+
+/// Length of the embedded session (s), [`toile_assets::scene::LENGTH_S`] as the command line wants it.
+const DEFAULT_SECONDS: &str = "10";
+const _: () = assert!(scene::LENGTH_S == 10.0);
+
+/// Make a synthetic session, such as the embedded one.
+///
+/// Renders what a depth camera would see of a moving body, with the camera's noise, and writes it as a session. Without
+/// --seed and --seconds it makes the session that is embedded in the program.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(
+    after_help = "Example: make another session and watch it\n  toile record --out other.mcap --seed 7 && toile \
+                        try-on --session other.mcap"
+)]
+pub struct RecordArgs {
+    /// Session file to write
+    #[arg(long, value_name = "F.mcap")]
+    pub out: PathBuf,
+    /// Seed of the noise; the same seed gives the same bits
+    #[arg(long, value_name = "N", default_value = "1")]
+    pub seed: u64,
+    /// Length in seconds
+    #[arg(long, value_name = "S", value_parser = value_parser!(u32).range(1..=MAX_SECONDS), default_value = DEFAULT_SECONDS)]
+    pub seconds: u32,
+    #[command(flatten)]
+    printing: Printing,
+}
 
 /// Frames a second of the synthetic sensor, a Kinect's.
 const SENSOR_HZ: u64 = 30;
@@ -31,7 +64,7 @@ const CAMERA: Intrinsics = Intrinsics { width: 480, height: 640, fx: 575.8, fy: 
 /// # Errors
 /// An output file that cannot be written, or a closed stdout.
 pub fn run(args: &RecordArgs) -> Result<(), AppError> {
-    let words = Words::new(args.quiet || args.json);
+    let words = args.printing.words();
     let (folder, name) = place(args)?;
     let mut out = OutputFolder::prepare(&folder)?;
     let frames = u64::from(args.seconds) * SENSOR_HZ;
@@ -41,14 +74,14 @@ pub fn run(args: &RecordArgs) -> Result<(), AppError> {
     out.write(&name, &session.to_bytes().map_err(AppError::internal)?)?;
     let files = out.commit()?;
     let report = RecordReport { session: session_report(&session, &[]), seed: args.seed, files };
-    if args.json {
+    if args.printing.json {
         return terminal::print_json(&Document::new("record", report));
     }
     let (path, bytes) = (&report.files[0], report.files[0].metadata().map_or(0, |m| m.len()));
     terminal::print(&format!("{}: {} frames, {} KiB\n", path.display(), frames, bytes / 1024))
 }
 
-fn place(args: &RecordArgs) -> Result<(std::path::PathBuf, String), AppError> {
+fn place(args: &RecordArgs) -> Result<(PathBuf, String), AppError> {
     let name = args.out.file_name().and_then(|n| n.to_str());
     let Some(name) = name else {
         return Err(AppError::Usage(format!(

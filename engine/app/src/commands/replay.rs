@@ -1,5 +1,7 @@
 //! `toile replay`: a recorded run taken again, bit for bit.
 
+use std::path::PathBuf;
+
 use serde::{Deserialize, Serialize};
 use toile_assets::file::{self, FileKind};
 use toile_engine::clock::SimClock;
@@ -9,13 +11,30 @@ use toile_engine::pace::physics::{Staged, Stepper};
 use toile_engine::pace::replay::{Replayed, replay};
 use toile_engine::pace::tape::{self, Entry, Tape};
 
-use crate::cli::ReplayArgs;
+use crate::cli::values::WorkersArg;
+use crate::commands::soak::{self, SoakRecipe};
 use crate::exit::AppError;
 use crate::kiosk::recording::{self, KioskRecipe};
 use crate::outfit::Recipe;
 use crate::report::{Document, hash_text};
-use crate::soak::{self, SoakRecipe};
 use crate::terminal;
+
+/// Replay a recorded run and compare every step bit for bit.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(
+    after_help = "Example: record a run, and replay it with one worker in place of two\n  toile latency --seconds 10 \
+                        --record run.tape && toile replay run.tape --workers 1"
+)]
+pub struct ReplayArgs {
+    /// Recording of a run
+    #[arg(value_name = "F")]
+    pub file: PathBuf,
+    #[command(flatten)]
+    workers: WorkersArg,
+    /// Print one JSON object, and nothing else, on stdout
+    #[arg(long)]
+    pub json: bool,
+}
 
 /// A recorded run: a day at 15 kB a second.
 const RUN: FileKind =
@@ -64,6 +83,7 @@ pub struct ReplayReport {
 /// # Errors
 /// A file that is no recording, one with steps missing, and [`AppError::Diverged`] where the bits are others.
 pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
+    let workers = args.workers.count();
     let file = args.file.display();
     let bad = |what: &dyn std::fmt::Display| AppError::Input(format!("{file}: {what}"));
     let Tape { text, notes, entries } =
@@ -71,12 +91,12 @@ pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
     let recorded: Recorded = serde_json::from_str(&text)
         .map_err(|e| bad(&format!("what it says of its scene is not understood ({e}); record the run again")))?;
     let (frame, out) = match &recorded {
-        Recorded::Soak(recipe) => soak::again(recipe.soak, &entries, args.workers)?,
-        Recorded::Kiosk(_) => recording::again(&notes, &entries, args.workers).map_err(|e| bad(&e))?,
-        Recorded::Session(recipe) => session(recipe, &entries, args.workers).map_err(|e| bad(&e))?,
+        Recorded::Soak(recipe) => soak::again(recipe.soak, &entries, workers)?,
+        Recorded::Kiosk(_) => recording::again(&notes, &entries, workers).map_err(|e| bad(&e))?,
+        Recorded::Session(recipe) => session(recipe, &entries, workers).map_err(|e| bad(&e))?,
     };
     let report = ReplayReport {
-        workers: args.workers,
+        workers,
         ticks: out.ticks,
         state_hash: hash_text(frame.state_hash()),
         diverged_at: out.diverged_at,

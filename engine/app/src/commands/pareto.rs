@@ -1,14 +1,39 @@
 //! `toile pareto`: speed against error.
 
 use std::fmt::Write;
+use std::path::PathBuf;
 
-use toile_perf::pareto::{self, Drape, Point, Report, SceneReport};
+use clap::builder::PossibleValuesParser;
+use toile_perf::pareto::{self, Drape, Options, Point, Report, SCENES, SceneReport};
 
-use crate::cli::ParetoArgs;
+use crate::cli::values::Printing;
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::report::Document;
-use crate::terminal::{self, Paint, Tone, Words};
+use crate::terminal::{self, Paint, Tone};
+
+/// Plot speed against error over the cloth's settings, and report which are best.
+///
+/// Runs scenes under many settings (solvers, substeps, qualities, meshes, one and two threads), times a step of each and
+/// measures how far it ends from x*, the converged solution. Writes an HTML report, plots as PNG and a table of all points as
+/// CSV. docs/pareto.md describes x*.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(
+    after_help = "Example: see which settings of the skirt are worth their time\n  toile pareto skirt --out plots"
+)]
+pub struct ParetoArgs {
+    /// The one scene to measure (default: all)
+    #[arg(value_name = "SCENE", value_parser = PossibleValuesParser::new(SCENES))]
+    pub scene: Option<String>,
+    /// Folder for the files; it is made if missing
+    #[arg(long, value_name = "DIR", default_value = "pareto")]
+    pub out: PathBuf,
+    /// Few settings of small meshes: a look at whether it works
+    #[arg(long)]
+    pub quick: bool,
+    #[command(flatten)]
+    printing: Printing,
+}
 
 /// Units of the progress bar.
 const UNITS: f64 = 1_000.0;
@@ -18,17 +43,18 @@ const UNITS: f64 = 1_000.0;
 /// # Errors
 /// An output folder that cannot be written, a closed stdout.
 pub fn run(args: &ParetoArgs) -> Result<(), AppError> {
-    let words = Words::new(args.quiet || args.json);
+    let words = args.printing.words();
     let mut out = OutputFolder::prepare(&args.out)?;
     let bar = words.bar(UNITS as u64, "measuring");
     let told = |part: f64| bar.set_position((UNITS * part) as u64);
-    let report = pareto::run(&args.options, &told).map_err(AppError::internal)?;
+    let options = Options { scene: args.scene.clone(), quick: args.quick };
+    let report = pareto::run(&options, &told).map_err(AppError::internal)?;
     bar.finish_and_clear();
     for file in pareto::files(&report).map_err(AppError::internal)? {
         out.write(&file.name, &file.bytes)?;
     }
     let files = out.commit()?;
-    if args.json {
+    if args.printing.json {
         return terminal::print_json(&Document::new("pareto", report));
     }
     words.say(&format!("{} files in {}", files.len(), args.out.display()));

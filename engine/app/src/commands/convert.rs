@@ -7,13 +7,71 @@ use toile_sensors::segment::Segmenter;
 use toile_sensors::session::Session;
 use toile_sensors::source::{self, OpenOptions};
 
-use crate::cli::{ConvertArgs, KeptDepth};
+use crate::cli::values::{Printing, one_of};
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::report::{ConvertReport, Document};
 use crate::shopper::session_report;
 use crate::terminal;
 use crate::tracking;
+
+/// Turn any supported recording into a Toile session.
+///
+/// Reads a recording of joints or depth, moves it into Toile's world (metres, y up, floor at y = 0), and writes it as a
+/// session (MCAP). Joints alone are kept unless --depth asks for more: depth images show a person.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(
+    after_help = "Example: keep the joints of a recording, and no picture of anybody\n  toile convert shopper.csv \
+                        --out shopper.mcap\nExample: the same of depth images alone\n  toile convert frames --fit --out \
+                        shopper.mcap"
+)]
+pub struct ConvertArgs {
+    /// Recording, or folder of depth images
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// Session file to write
+    #[arg(long, value_name = "F.mcap")]
+    pub out: PathBuf,
+    /// Camera of depth images, as JSON (default: the recording's own)
+    #[arg(long, value_name = "J")]
+    pub camera: Option<PathBuf>,
+    /// Depth to keep: none, the shopper's alone, or all
+    #[arg(
+        long,
+        value_name = "D",
+        value_parser = one_of([KeptDepth::None, KeptDepth::Shopper, KeptDepth::All], KeptDepth::name),
+        default_value = KeptDepth::None.name()
+    )]
+    pub depth: KeptDepth,
+    /// Where there are no joints, fit the body to the depth and keep its joints
+    #[arg(long)]
+    pub fit: bool,
+    #[command(flatten)]
+    printing: Printing,
+}
+
+/// Which depth a converted session keeps.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum KeptDepth {
+    /// None: nothing that shows a person is written.
+    #[default]
+    None,
+    /// The shopper's pixels alone; frames without one are empty.
+    Shopper,
+    /// Whole images.
+    All,
+}
+
+impl KeptDepth {
+    /// Its name on the command line.
+    fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Shopper => "shopper",
+            Self::All => "all",
+        }
+    }
+}
 
 /// Runs `toile convert`.
 ///
@@ -46,7 +104,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), AppError> {
         depth_frames_left_out: (dropped - session.depth.len()) as u64,
         files: out.commit()?,
     };
-    if args.json {
+    if args.printing.json {
         return terminal::print_json(&Document::new("convert", report));
     }
     terminal::print(&told(&report, bytes.len()))

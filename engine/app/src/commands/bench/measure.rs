@@ -1,15 +1,71 @@
 //! `toile bench measure`: synthetic people measured, and held against what the tape reads on them.
 
 use std::fmt::Write;
+use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 use toile_perf::ansur::Survey;
-use toile_perf::measuring::{self, Agreement, Options, Study};
+use toile_perf::measuring::{self, Agreement, Options, Sensor, Study};
 
-use crate::cli::MeasuringArgs;
+use crate::cli::values::{Printing, count};
 use crate::exit::AppError;
 use crate::report::Document;
-use crate::terminal::{self, Paint, Tone, Words};
+use crate::terminal::{self, Paint, Tone};
+
+/// Most people of a file that are measured: more than any survey has.
+const MAX_PEOPLE: u64 = 100_000;
+
+/// Most frames of one person: ten seconds.
+const MAX_FRAMES: u64 = 300;
+
+/// The word for every camera.
+const BOTH: &str = "both";
+
+/// Measure synthetic people before synthetic cameras, and report the errors of both ways of measuring.
+///
+/// Draws random people of ANSUR II, gives each a shape of their own, renders a second of them swaying before a Kinect v1 at 2
+/// to 3 m and before a camera like the Azure Kinect at 2 to 2.5 m, and measures them by the body fit and by sections and
+/// proportions. Limits are those of ISO 20685 for the mean error; it is synthetic agreement, not accuracy on people. An
+/// interval beyond its limit makes the exit code 3.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(
+    after_help = "Example: ten women before the better camera\n  toile bench measure --ansur ANSUR_II_FEMALE.csv \
+                        --people 10 --sensor azure"
+)]
+pub struct MeasureBenchArgs {
+    /// A file of ANSUR II, such as ANSUR_II_FEMALE.csv; repeat it for the other sex
+    #[arg(long = "ansur", value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    /// People drawn from each file
+    #[arg(long, value_name = "N", value_parser = count(2..=MAX_PEOPLE), default_value = "100")]
+    people: usize,
+    /// Frames that each is measured from, at 30 Hz
+    #[arg(long, value_name = "F", value_parser = count(1..=MAX_FRAMES), default_value = "30")]
+    frames: usize,
+    /// Camera
+    #[arg(long, value_name = "S", value_parser = PossibleValuesParser::new(cameras()), default_value = BOTH)]
+    sensor: String,
+    /// Which people are drawn, and how they stand
+    #[arg(long, value_name = "S", default_value = "1")]
+    seed: u64,
+    #[command(flatten)]
+    printing: Printing,
+}
+
+/// The cameras that there are.
+const SENSORS: [Sensor; 2] = [Sensor::Kinect, Sensor::Azure];
+
+fn cameras() -> Vec<&'static str> {
+    SENSORS.map(Sensor::name).into_iter().chain([BOTH]).collect()
+}
+
+impl MeasureBenchArgs {
+    /// The cameras that people are measured by.
+    fn sensors(&self) -> impl Iterator<Item = Sensor> {
+        SENSORS.into_iter().filter(|s| self.sensor == BOTH || self.sensor == s.name())
+    }
+}
 
 /// The report as JSON has it.
 #[derive(Debug, Serialize)]
@@ -25,12 +81,12 @@ struct Report {
 /// # Errors
 /// [`AppError::Input`] for a file that is no survey; [`AppError::Threshold`] where the body fit misses a limit, after
 /// the tables.
-pub fn bench(args: &MeasuringArgs) -> Result<(), AppError> {
-    let words = Words::new(args.quiet || args.json);
+pub fn run(args: &MeasureBenchArgs) -> Result<(), AppError> {
+    let words = args.printing.words();
     let surveys: Vec<Survey> =
         args.files.iter().map(|f| Survey::read(f)).collect::<Result<_, _>>().map_err(AppError::input)?;
     let mut studies = Vec::new();
-    for &sensor in &args.sensors {
+    for sensor in args.sensors() {
         let people: usize = surveys.iter().map(|s| args.people.min(s.people())).sum();
         let bar = words.bar(people as u64, "measuring people");
         let options = Options { people: args.people, frames: args.frames, seed: args.seed, sensor };
@@ -39,7 +95,7 @@ pub fn bench(args: &MeasuringArgs) -> Result<(), AppError> {
     }
     let missed: Vec<String> = studies.iter().flat_map(missed).collect();
     let text: Vec<String> = studies.iter().map(|s| table(s, Paint::for_stdout())).collect();
-    if args.json {
+    if args.printing.json {
         terminal::print_json(&Document::new("bench-measure", Report { seed: args.seed, studies }))?;
     } else {
         terminal::print(&text.join("\n"))?;

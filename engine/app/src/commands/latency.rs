@@ -1,14 +1,17 @@
 //! `toile latency`: from what the sensor saw until a picture of it is taken, on this machine.
 
 use std::fs;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use clap::value_parser;
 use serde::Serialize;
+use toile_engine::pace::governor::LADDER;
 use toile_engine::pace::tape::{self, Entry};
 use toile_engine::pace::threads;
 use toile_perf::latency::{self, Cast, Goal, Latency, Options, Quantiles};
 
-use crate::cli::LatencyArgs;
+use crate::cli::values::{CrashArg, Printing, WorkersArg, WornArgs, cores};
 use crate::crash;
 use crate::exit::AppError;
 use crate::machine::Machine;
@@ -16,7 +19,71 @@ use crate::outfit::Recipe;
 use crate::output::OutputFolder;
 use crate::report::Document;
 use crate::shopper;
-use crate::terminal::{self, Paint, Tone, Words};
+use crate::terminal::{self, Paint, Tone};
+
+/// Longest run (s): a day.
+const MOST_SECONDS: i64 = 86_400;
+
+/// Most threads of load.
+const MOST_LOAD: i64 = 256;
+
+/// Time the way from the sensor to the picture on this machine, with the error at that speed.
+///
+/// Runs the whole loop in real time (sensor, physics with its worker, render) and reports how long each stage takes, from
+/// what the sensor saw until a picture is taken, corrected for coordinated omission; what was late and why; the machine's own
+/// jitter; the quality and the error that it ran at. Writes a page with histograms.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(after_help = "Example: see how late a kiosk may be while something else wants its cores\n  toile latency \
+                        --seconds 60 --load")]
+pub struct LatencyArgs {
+    /// Recording to play, forwards and backwards (default: the embedded session)
+    #[arg(long, value_name = "F")]
+    pub session: Option<PathBuf>,
+    #[command(flatten)]
+    worn: WornArgs,
+    /// Length of the run, after a first second that is not measured
+    #[arg(long, value_name = "S", value_parser = value_parser!(u32).range(1..=MOST_SECONDS), default_value = "30")]
+    pub seconds: u32,
+    #[command(flatten)]
+    workers: WorkersArg,
+    /// Threads of load beside the loop; as many as there are cores if N is left out
+    #[arg(
+        long,
+        value_name = "N",
+        num_args = 0..=1,
+        default_missing_value = "0",
+        value_parser = value_parser!(u32).range(0..=MOST_LOAD)
+    )]
+    pub load: Option<u32>,
+    /// Hold the quality on a rung of the governor's ladder: 0 is all of it (default: governed)
+    #[arg(long, value_name = "R", value_parser = value_parser!(u8).range(0..LADDER.len() as i64))]
+    pub rung: Option<u8>,
+    /// Record the run, without images, for `toile replay`
+    #[arg(long, value_name = "F")]
+    pub record: Option<PathBuf>,
+    #[command(flatten)]
+    crash: CrashArg,
+    /// Exit with 3 where a goal is missed
+    #[arg(long)]
+    pub gate: bool,
+    /// Folder for the page; it is made if missing
+    #[arg(long, value_name = "DIR", default_value = "latency")]
+    pub out: PathBuf,
+    #[command(flatten)]
+    printing: Printing,
+}
+
+impl LatencyArgs {
+    /// What the loop runs under.
+    fn options(&self) -> Options {
+        let load = match self.load {
+            None => 0,
+            Some(0) => cores(),
+            Some(threads) => threads as usize,
+        };
+        Options { seconds: self.seconds, load, rung: self.rung }
+    }
+}
 
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -27,7 +94,7 @@ pub struct LatencyReport {
     #[serde(flatten)]
     pub found: Latency,
     /// The files written.
-    pub files: Vec<std::path::PathBuf>,
+    pub files: Vec<PathBuf>,
 }
 
 /// Runs `toile latency`.
@@ -36,7 +103,7 @@ pub struct LatencyReport {
 /// A session without joints, a garment that is not in the wardrobe, files that cannot be written, and with `--gate` a goal
 /// that was missed.
 pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
-    let words = Words::new(args.quiet || args.json);
+    let words = args.printing.words();
     let mut out = OutputFolder::prepare(&args.out)?;
     let session = shopper::open(args.session.as_deref(), None)?;
     let track = shopper::believable(&session);
@@ -44,12 +111,12 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     let Some(first) = track.get(from) else {
         return Err(AppError::Input(format!("session {} has no joints, so that no pose can be shown", session.name)));
     };
-    let recipe = Recipe::write(&session, &args.wish)?;
+    let recipe = Recipe::write(&session, &args.worn.wish())?;
     let (frame, reader) = recipe.make(first)?;
     // Only now: a helper with a real-time priority shares its core with nobody who waits for it.
-    let (crew, worker) = threads::crew(args.workers).map_err(AppError::input)?;
-    words.say(&format!("running for {} s, with {} threads of load", args.seconds, args.load));
-    let options = Options { seconds: args.seconds, load: args.load, rung: args.rung };
+    let (crew, worker) = threads::crew(args.workers.count()).map_err(AppError::input)?;
+    let options = args.options();
+    words.say(&format!("running for {} s, with {} threads of load", options.seconds, options.load));
     let mut bytes = tape::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
     let (black_box, tape) = crash::record(bytes.clone(), args.out.join("crash.tape"));
     let dressed = Entry::Dressed(*first);
@@ -63,7 +130,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
             }
         });
         let begun: Instant = *begun.get_or_insert_with(Instant::now);
-        let crashes = args.crash_after.is_some_and(|s| begun.elapsed() >= Duration::from_secs(s));
+        let crashes = args.crash.after_s.is_some_and(|s| begun.elapsed() >= Duration::from_secs(s));
         assert!(!crashes, "the crash that --crash-after asked for");
         black_box.capacity()
     };
@@ -89,7 +156,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
         )
     });
     let report = LatencyReport { scene: recipe, found, files };
-    if args.json {
+    if args.printing.json {
         terminal::print_json(&Document::new("latency", report))?;
     } else {
         terminal::print(&table(&report, Paint::for_stdout()))?;

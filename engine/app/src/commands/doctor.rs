@@ -5,14 +5,25 @@ mod rights;
 mod surroundings;
 
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::cli::DoctorArgs;
 use crate::exit::AppError;
 use crate::report::Document;
 use crate::terminal::{self, Paint, Tone};
+
+/// Report what this machine has, and the exact cure for what is missing.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(after_help = "Example: see why a kiosk misses its deadline\n  toile doctor")]
+pub struct DoctorArgs {
+    /// Output folder whose writing is tried
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Print one JSON object, and nothing else, on stdout
+    #[arg(long)]
+    pub json: bool,
+}
 
 pub(crate) use rights::may_lock_all;
 

@@ -15,10 +15,32 @@ use toile_assets::import::obj;
 use toile_assets::sizes::Population;
 use toile_assets::wardrobe::{self, WardrobeError};
 
-use crate::cli::BakeArgs;
 use crate::exit::AppError;
 use crate::report::Document;
 use crate::terminal::{self, Paint, Tone};
+
+/// Bake a garment, and report what its mesh becomes: fibers, solvers, bending, memory.
+///
+/// Bakes one garment in one size, on the body that the size is cut for, and reports what the cloth will step over: how many
+/// edges the fibers of each direction cover, which solver they get, tethers and bending stencils, memory, time and substeps,
+/// and what in the mesh gives reason to worry.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(after_help = "Example: see whether a mesh of your own makes good cloth\n  toile bake my-skirt.obj --fabric \
+                        linen-twill")]
+pub struct BakeArgs {
+    /// Garment of the wardrobe, or an OBJ file
+    #[arg(value_name = "GARMENT")]
+    pub garment: String,
+    /// Size, as the garment's table names it (default: the middle of the table)
+    #[arg(long, value_name = "S")]
+    pub size: Option<String>,
+    /// Fabric that is built in, or a fabric file (.toml) (default: the garment's own)
+    #[arg(long, value_name = "F")]
+    pub fabric: Option<String>,
+    /// Print one JSON object, and nothing else, on stdout
+    #[arg(long)]
+    pub json: bool,
+}
 
 /// Fabric of a mesh where none is named.
 const MESH_FABRIC: &str = "cotton-lawn";

@@ -1,8 +1,9 @@
 //! `toile body`: a body that others made, imported, looked at, and written for other tools.
 
 use std::f32::consts::{FRAC_PI_2, PI};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use clap::ArgAction;
 use glam::Affine3A;
 use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::export::{Dressed, glb};
@@ -19,13 +20,86 @@ use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};
 use toile_view::sheet;
 use toile_view::trace::{Quality, Stage};
 
-use crate::cli::BodyArgs;
+use crate::cli::values::{Printing, count, one_of};
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::pictures::write_png;
 use crate::report::{BodyReport, Document, Followed, Influences, JointFound, Named, SurfaceReport};
 use crate::summary;
-use crate::terminal::{self, Paint, Words};
+use crate::terminal::{self, Paint};
+
+/// Most random bodies: some minutes' worth.
+const MAX_RANDOM: u64 = 10_000;
+
+/// Import a body that others made, and see what became of it.
+///
+/// Reads a skinned glTF 2.0 mesh (.glb, .gltf), a VRM avatar (.vrm) or a folder with MakeHuman's hm08 base, makes a body of
+/// it, and writes pictures of it at rest and walking, body.glb for other tools and for `toile try-on --body`, and a report of
+/// its measures, joints, weights, surface and collision body.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(after_help = "Example: make a body of MakeHuman's files, then dress it\n  toile body hm08 --target \
+                        caucasian-female-young --out ada && toile try-on --body ada/body.glb")]
+pub struct BodyArgs {
+    /// glTF, GLB or VRM file, or MakeHuman folder
+    #[arg(value_name = "FILE", required_unless_present = "colliders")]
+    pub file: Option<PathBuf>,
+    /// Report how closely the collision body follows the skin; without FILE, for our own bodies
+    #[arg(long)]
+    pub colliders: bool,
+    /// Bodies of random measures that --colliders takes besides the sizes
+    #[arg(long, value_name = "N", value_parser = count(0..=MAX_RANDOM), default_value = "20")]
+    pub strangers: usize,
+    /// Which random bodies are taken
+    #[arg(long, value_name = "S", default_value = "1")]
+    pub seed: u64,
+    /// Whose garments it wears: female or male
+    #[arg(long, value_name = "S", value_parser = one_of([Sex::Female, Sex::Male], sex_name), default_value = "female")]
+    pub sex: Sex,
+    /// Mesh to take; repeat it for more (default: all that are skinned)
+    #[arg(long = "mesh", value_name = "NAME")]
+    pub meshes: Vec<String>,
+    /// MakeHuman target to add; repeat it for more
+    #[arg(long = "target", value_name = "NAME[=SHARE]", value_parser = target)]
+    pub targets: Vec<(String, f32)>,
+    /// MakeHuman rig: game_engine or cmu_mb
+    #[arg(long, value_name = "NAME", default_value = "game_engine")]
+    pub rig: String,
+    /// Accept a surface that is open outside of the head
+    #[arg(long)]
+    pub allow_holes: bool,
+    /// Folder for the files; it is made if missing
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Make no pictures: only body.glb and the report
+    #[arg(long = "no-pictures", action = ArgAction::SetFalse)]
+    pub pictures: bool,
+    /// What is printed.
+    #[command(flatten)]
+    pub printing: Printing,
+}
+
+impl BodyArgs {
+    /// The file or folder to read; a line without --colliders has one.
+    pub fn input(&self) -> Result<&Path, AppError> {
+        let missing = || AppError::Usage("no body is given; see `toile body --help`".to_owned());
+        self.file.as_deref().ok_or_else(missing)
+    }
+}
+
+fn sex_name(sex: Sex) -> &'static str {
+    match sex {
+        Sex::Female => "female",
+        Sex::Male => "male",
+    }
+}
+
+/// A target with its share, which is all of it where none is given.
+fn target(text: &str) -> Result<(String, f32), String> {
+    let Some((name, share)) = text.split_once('=') else { return Ok((text.to_owned(), 1.0)) };
+    let number = share.parse::<f32>().ok().filter(|s| s.is_finite());
+    let share = number.ok_or_else(|| format!("there is no number behind `=`; give one such as --target {name}=0.5"))?;
+    Ok((name.to_owned(), share))
+}
 
 /// A picture of one side.
 const STILL: Size = Size::new(480, 800);
@@ -41,7 +115,7 @@ const VIEWS: [f32; 3] = [0.0, FRAC_PI_2, PI];
 /// # Errors
 /// A file that does not become a body, an output folder that cannot be written, or a closed stdout.
 pub fn run(args: &BodyArgs) -> Result<(), AppError> {
-    let words = Words::new(args.quiet || args.json);
+    let words = args.printing.words();
     let mut out = OutputFolder::prepare(&args.out)?;
     let (imported, rows) = import(args)?;
     if args.pictures {
@@ -57,7 +131,7 @@ pub fn run(args: &BodyArgs) -> Result<(), AppError> {
     let text = serde_json::to_string_pretty(&document).map_err(AppError::internal)?;
     out.write("report.json", format!("{text}\n").as_bytes())?;
     out.commit()?;
-    if args.json {
+    if args.printing.json {
         return terminal::print_json(&document);
     }
     terminal::print(&summary::body(&document.body, Paint::for_stdout()))
@@ -66,15 +140,16 @@ pub fn run(args: &BodyArgs) -> Result<(), AppError> {
 /// The body of a glTF file, or of a MakeHuman folder, with that program's own girths.
 pub fn import(args: &BodyArgs) -> Result<(avatar::Imported, Option<Vec<Named>>), AppError> {
     let options = avatar::Options { sex: args.sex, meshes: args.meshes.clone(), allow_holes: args.allow_holes };
-    if !args.file.is_dir() {
+    let file = args.input()?;
+    if !file.is_dir() {
         if !args.targets.is_empty() {
             let cure = "give the folder of a MakeHuman base or leave out --target";
-            return Err(AppError::Usage(format!("{} is no folder, so it has no targets; {cure}", args.file.display())));
+            return Err(AppError::Usage(format!("{} is no folder, so it has no targets; {cure}", file.display())));
         }
-        return Ok((avatar::read(&args.file, &options).map_err(AppError::input)?, None));
+        return Ok((avatar::read(file, &options).map_err(AppError::input)?, None));
     }
     let choice = makehuman::Choice { targets: args.targets.clone(), rig: args.rig.clone() };
-    let made = makehuman::read(&args.file, &choice, &options).map_err(AppError::input)?;
+    let made = makehuman::read(file, &choice, &options).map_err(AppError::input)?;
     let rows = made.girths.named().map(|(name, m)| named(name, m)).to_vec();
     Ok((made.imported, Some(rows)))
 }
@@ -104,8 +179,14 @@ fn named(name: &'static str, m: f32) -> Named {
     Named { name, value: (f64::from(m) * 1e4).round() / 10.0 }
 }
 
+/// The file's own name.
+pub fn file_name(args: &BodyArgs) -> String {
+    let name = args.file.as_deref().and_then(Path::file_name);
+    name.map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}
+
 fn title(args: &BodyArgs, body: &Body) -> String {
-    let name = args.file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let name = file_name(args);
     let line = measures(&body.measures).map(|(name, m)| format!("{name} {:.0} mm", named(name, m).value)).join("   ");
     format!("{name}\n{line}")
 }
@@ -145,12 +226,7 @@ fn draw(out: &mut OutputFolder, name: &str, body: &Body, title: &str, mut done: 
     write_png(out, name, &sheet::triptych(&front, &side, &back, title, None))
 }
 
-fn report(
-    args: &BodyArgs,
-    imported: &avatar::Imported,
-    rows: Option<Vec<Named>>,
-    files: Vec<std::path::PathBuf>,
-) -> BodyReport {
+fn report(args: &BodyArgs, imported: &avatar::Imported, rows: Option<Vec<Named>>, files: Vec<PathBuf>) -> BodyReport {
     let avatar::Imported { body, report } = imported;
     let l = &body.levels;
     let levels = [
@@ -167,7 +243,7 @@ fn report(
     let round = |x: f32| (f64::from(x) * 1e6).round() / 1e6;
     let pruned = &report.pruned;
     BodyReport {
-        file: args.file.clone(),
+        file: args.file.clone().unwrap_or_default(),
         dialect: report.dialect,
         vertices: body.mesh.positions.len(),
         triangles: body.mesh.triangles.len(),
@@ -191,5 +267,17 @@ fn report(
         colliders: Followed::of(&Rig::fit(body).report(body)),
         notes: report.notes.clone(),
         files,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn targets_have_shares() {
+        assert_eq!(target("a").unwrap(), ("a".to_owned(), 1.0));
+        assert_eq!(target("a=-0.5").unwrap(), ("a".to_owned(), -0.5));
+        assert!(target("a=b").unwrap_err().contains("--target a=0.5"));
     }
 }

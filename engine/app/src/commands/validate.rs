@@ -2,31 +2,87 @@
 
 use std::fmt::Write;
 
+use clap::builder::PossibleValuesParser;
+use toile_perf::validate::Level;
 use toile_perf::validate::case::Row;
-use toile_perf::validate::run::{self, Report};
+use toile_perf::validate::run::{self, NAMES, Options, Report};
 
 use crate::backend;
-use crate::cli::ValidateArgs;
+use crate::cli::values::{BackendArg, Printing, count};
 use crate::exit::AppError;
 use crate::report::Document;
-use crate::terminal::{self, Paint, Tone, Words};
+use crate::terminal::{self, Paint, Tone};
+
+/// Compare the cloth with exact solutions: each with its error and the time of a step.
+///
+/// Runs cases whose answer is known: strips that bend, columns that buckle, strings, pendulums, waves, friction. Each is run
+/// as garments are, in each quality, and with so many substeps that more change nothing. Targets are for the quality fine; a
+/// missed one is reported with its cause, and ends with exit code 3. docs/validate.md describes each case.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(
+    after_help = "Example: see how right the cantilever is as garments are stepped\n  toile validate cantilever \
+                        --quality fine"
+)]
+pub struct ValidateArgs {
+    /// The one case to run (default: all)
+    #[arg(value_name = "CASE", value_parser = PossibleValuesParser::new(NAMES))]
+    pub case: Option<String>,
+    /// Settings to report: one of them, or all
+    #[arg(long, value_name = "Q", value_parser = PossibleValuesParser::new(levels()), default_value = ALL_LEVELS)]
+    pub quality: String,
+    /// Only rows of the table with this parameter, such as 'Gamma 10' (default: all)
+    #[arg(long, value_name = "P")]
+    pub parameter: Option<String>,
+    /// Run one in K cases of each name: a quick look
+    #[arg(long, value_name = "K", value_parser = count(1..=1_000), default_value = "1")]
+    pub every: usize,
+    /// Threads that run cases side by side, 1 or 2 (default: 2, or as many cores as there are)
+    #[arg(long, value_name = "T", value_parser = count(1..=2))]
+    pub threads: Option<usize>,
+    #[command(flatten)]
+    backend: BackendArg,
+    #[command(flatten)]
+    printing: Printing,
+}
+
+/// The word for every quality.
+const ALL_LEVELS: &str = "all";
+
+fn levels() -> Vec<&'static str> {
+    Level::ALL.iter().map(|level| level.name()).chain([ALL_LEVELS]).collect()
+}
+
+impl ValidateArgs {
+    /// What is run.
+    fn options(&self) -> Options {
+        let wanted = |level: &Level| self.quality == ALL_LEVELS || level.name() == self.quality;
+        Options {
+            case: self.case.clone(),
+            parameter: self.parameter.clone(),
+            levels: Level::ALL.into_iter().filter(wanted).collect(),
+            threads: self.threads.unwrap_or(Options::default().threads),
+            every: self.every,
+            backend: self.backend.choice,
+        }
+    }
+}
 
 /// Runs `toile validate`.
 ///
 /// # Errors
 /// [`AppError::Threshold`] where a target was missed, after the table; a closed stdout.
 pub fn run(args: &ValidateArgs) -> Result<(), AppError> {
-    let words = Words::new(args.quiet || args.json);
+    let words = args.printing.words();
     let bar = words.bar(0, "validating");
     let told = |all: usize| {
         bar.set_length(all as u64);
         bar.inc(1);
     };
-    let report = run::run(&args.options, &told).map_err(AppError::internal)?;
+    let report = run::run(&args.options(), &told).map_err(AppError::internal)?;
     bar.finish_and_clear();
     backend::say(&report.stepped_by);
     let [passed, gated] = report.passed;
-    if args.json {
+    if args.printing.json {
         terminal::print_json(&Document::new("validate", report))?;
     } else {
         terminal::print(&table(&report, Paint::for_stdout()))?;
@@ -116,7 +172,24 @@ fn line(text: &mut String, words: &str) {
 
 #[cfg(test)]
 mod tests {
+    use clap::Parser;
+
     use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: ValidateArgs,
+    }
+
+    #[test]
+    fn a_case_and_a_quality_are_picked_and_unknown_ones_refused() {
+        let parsed = |line: &str| Line::try_parse_from(line.split_whitespace());
+        let options = parsed("validate cantilever --quality fine --every 6 --threads 1").unwrap().args.options();
+        assert_eq!(options.case.as_deref(), Some("cantilever"));
+        assert_eq!((options.levels, options.every, options.threads), (vec![Level::GATED], 6, 1));
+        assert!(parsed("validate cantilevr").is_err() && parsed("validate --quality best").is_err());
+    }
 
     fn row() -> Row {
         Row {

@@ -4,6 +4,7 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use clap::value_parser;
 use serde::{Deserialize, Serialize};
 use toile_engine::clock::SimClock;
 use toile_engine::crew::Crew;
@@ -13,15 +14,106 @@ use toile_engine::pace::replay::{Replayed, replay_changing};
 use toile_engine::pace::tape::{self, Entry, Tape};
 use toile_perf::skirt::heap::HeapProbe;
 use toile_perf::soak::script::Script;
-use toile_perf::soak::{self, Check, Company, Options, Plan, Soak, SoakError, Tools};
+use toile_perf::soak::{self, Check, Company, LEAST_APART_S, Options, Plan, Soak, SoakError, Tools, Weight};
 
-use crate::cli::SoakArgs;
+use crate::cli::values::{CrashArg, Printing, WorkersArg, one_of};
 use crate::exit::AppError;
 use crate::machine::Machine;
 use crate::output::OutputFolder;
 use crate::report::Document;
 use crate::terminal::{self, Paint, Tone, Words};
-use crate::{bench, crash, heap};
+use crate::{crash, heap};
+
+/// Longest run (h): five weeks.
+const MOST_HOURS: f64 = 840.0;
+
+/// Longest uptime (h): a hundred years.
+const MOST_UPTIME: u64 = 876_000;
+
+/// Time between two faults where their number is not given (s).
+const USUALLY_APART_S: u64 = 30;
+
+/// Run the whole loop for hours, with shoppers, garments and faults, and check it while it runs.
+///
+/// Runs the whole loop without a screen: shoppers of many sizes come and go, garments are changed, and with --faults
+/// everything goes wrong that can: the camera, the threads, the clocks, the disk, memory. Checks while it runs that nothing
+/// published is NaN or infinite, that the loop allocates nothing, that memory, files and threads stay as they are, that every
+/// fault is recovered and how fast, and that a second run ends in the same bits. Writes a record as a page and as JSON.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(
+    after_help = "Example: eight hours and a thousand faults in some minutes, then an hour in real time\n  toile soak \
+                        --hours 8 --faults 1000 && toile soak --hours 1 --real-time --faults"
+)]
+pub struct SoakArgs {
+    /// Length of the run on the loop's clock (default: 10)
+    #[arg(long, value_name = "M")]
+    pub minutes: Option<f64>,
+    /// The same in hours
+    #[arg(long, value_name = "H", conflicts_with = "minutes")]
+    pub hours: Option<f64>,
+    /// On threads and the system's clock (default: as fast as possible on a simulated one)
+    #[arg(long)]
+    pub real_time: bool,
+    /// Everything that happens follows from it
+    #[arg(long, value_name = "N", default_value = "1")]
+    pub seed: u64,
+    /// Inject so many faults, or one every half minute if N is left out
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "0")]
+    pub faults: Option<u64>,
+    /// What the clock shows at the start
+    #[arg(long, value_name = "H", value_parser = value_parser!(u64).range(0..=MOST_UPTIME), default_value = "0")]
+    pub uptime_hours: u64,
+    /// light: coarse garments, hours in minutes; full: the wardrobe as it is worn (default: full in real time, else light)
+    #[arg(long, value_name = "S", value_parser = one_of(Weight::ALL, Weight::name))]
+    pub scene: Option<Weight>,
+    #[command(flatten)]
+    workers: WorkersArg,
+    /// Make no second run to compare the bits with
+    #[arg(long)]
+    pub once: bool,
+    /// Record the run, without images, for `toile replay`
+    #[arg(long, value_name = "F")]
+    pub record: Option<PathBuf>,
+    #[command(flatten)]
+    crash: CrashArg,
+    /// Folder for the record; it is made if missing
+    #[arg(long, value_name = "DIR", default_value = "soak")]
+    pub out: PathBuf,
+    #[command(flatten)]
+    printing: Printing,
+}
+
+impl SoakArgs {
+    /// What is soaked, and how.
+    ///
+    /// # Errors
+    /// [`AppError::Usage`] for a run that is too long, and for more faults than fit into it.
+    fn options(&self) -> Result<Options, AppError> {
+        let hours = self.minutes.map(|minutes| minutes / 60.0).or(self.hours).unwrap_or(1.0 / 6.0);
+        if !(hours > 0.0 && hours <= MOST_HOURS) {
+            return Err(AppError::Usage(format!("a run lasts up to {MOST_HOURS} hours, not {hours}; choose less")));
+        }
+        let seconds = (hours * 3_600.0).ceil() as u64;
+        let faults = match self.faults {
+            None => 0,
+            Some(0) => seconds / USUALLY_APART_S,
+            Some(faults) => faults,
+        };
+        let most = seconds / LEAST_APART_S;
+        if faults > most {
+            return Err(AppError::Usage(format!(
+                "{faults} faults do not fit into {seconds} s; ask for {most} at most"
+            )));
+        }
+        let scene = self.scene.unwrap_or(if self.real_time { Weight::Full } else { Weight::Light });
+        Ok(Options {
+            plan: Plan { seed: self.seed, seconds, faults: faults as usize, scene },
+            uptime_hours: self.uptime_hours,
+            real_time: self.real_time,
+            workers: if self.real_time { self.workers.count() } else { 1 },
+        })
+    }
+}
 
 /// Largest recording of a run in real time that is replayed behind it (bytes): two hours and a half.
 const MOST_REPLAYED: u64 = 128 << 20;
@@ -50,39 +142,40 @@ struct Body {
 /// # Errors
 /// Files that cannot be written, a scene that cannot be made, and [`AppError::Threshold`] where a check failed.
 pub fn run(args: &SoakArgs) -> Result<(), AppError> {
-    let words = Words::new(args.quiet || args.json);
+    let words = args.printing.words();
+    let options = args.options()?;
     let mut out = OutputFolder::prepare(&args.out)?;
-    let recipe = SoakRecipe { version: env!("CARGO_PKG_VERSION").to_owned(), soak: args.options.plan };
+    let recipe = SoakRecipe { version: env!("CARGO_PKG_VERSION").to_owned(), soak: options.plan };
     let header = tape::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
     // A run in real time is compared with its own replay, so it is recorded in any case.
     let kept = match &args.record {
         Some(path) => Some(path.clone()),
-        None if args.options.real_time && !args.once => Some(out.stage("soak.tape")?),
+        None if options.real_time && !args.once => Some(out.stage("soak.tape")?),
         None => None,
     };
     let file = kept.as_deref().map(create).transpose()?;
     let crash_file = args.out.join("crash.tape");
     let tools = Tools {
-        heap: HeapProbe::new(bench::heap),
+        heap: HeapProbe::new(heap::counted),
         count: heap::probe(),
         file,
         header,
         keep: &|black_box| crash::keep(black_box, crash_file.clone()),
-        progress: &|seconds| words.say(&format!("{} of {} minutes", seconds / 60, args.options.plan.seconds / 60)),
-        crash_ns: args.crash_after.map(|s| s * 1_000_000_000),
+        progress: &|seconds| words.say(&format!("{} of {} minutes", seconds / 60, options.plan.seconds / 60)),
+        crash_ns: args.crash.after_s.map(|s| s * 1_000_000_000),
     };
-    let ran = soak::run(&args.options, &tools).map_err(refused)?;
+    let ran = soak::run(&options, &tools).map_err(refused)?;
     crash::forget();
-    let second = if args.once { None } else { second(&args.options, ran.hash, kept.as_deref(), &words)? };
-    let found = Soak::new(ran, &args.options, second);
+    let second = if args.once { None } else { second(&options, ran.hash, kept.as_deref(), &words)? };
+    let found = Soak::new(ran, &options, second);
     let machine = Machine::here();
     let machine = format!("{}, {} cores, {}", machine.cpu, machine.cores, machine.lanes);
-    out.write("soak.html", soak::page(&found, &machine, &typed(args)).as_bytes())?;
+    out.write("soak.html", soak::page(&found, &machine, &typed(args, &options)).as_bytes())?;
     let record = serde_json::to_vec_pretty(&Document::new("soak", &found)).map_err(AppError::internal)?;
     out.write("soak.json", &record)?;
     let mut files = out.commit()?;
     files.extend(args.record.clone());
-    tell(&Body { found, files }, args.json)
+    tell(&Body { found, files }, args.printing.json)
 }
 
 /// Prints what was found; an error where a check failed.
@@ -161,8 +254,8 @@ pub fn again(plan: Plan, entries: &[Entry], workers: usize) -> Result<(Frame, Re
 }
 
 /// What was typed, for the record.
-fn typed(args: &SoakArgs) -> String {
-    let Options { plan, uptime_hours, real_time, workers } = args.options;
+fn typed(args: &SoakArgs, options: &Options) -> String {
+    let Options { plan, uptime_hours, real_time, workers } = *options;
     let mut line = format!("toile soak --minutes {} --seed {}", plan.seconds as f64 / 60.0, plan.seed);
     if plan.faults > 0 {
         line += &format!(" --faults {}", plan.faults);
@@ -219,4 +312,41 @@ fn table(body: &Body, paint: Paint) -> String {
     lines.extend(found.warnings.iter().map(|w| paint.tone(&format!("  {w}"), Tone::Warn).into_owned()));
     lines.extend(body.files.iter().map(|f| format!("  {}", f.display())));
     lines.join("\n") + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: SoakArgs,
+    }
+
+    fn options(line: &str) -> Result<Options, AppError> {
+        Line::try_parse_from(line.split_whitespace()).map_err(AppError::input)?.args.options()
+    }
+
+    #[test]
+    fn ten_simulated_minutes_without_faults_are_the_default() {
+        let Options { plan, uptime_hours, real_time, workers } = options("soak").unwrap();
+        assert_eq!(plan, Plan { seed: 1, seconds: 600, faults: 0, scene: Weight::Light });
+        assert_eq!((uptime_hours, real_time, workers), (0, false, 1));
+    }
+
+    #[test]
+    fn faults_have_a_number_or_come_every_half_minute() {
+        assert_eq!(options("soak --hours 8 --faults 1000").unwrap().plan.faults, 1_000);
+        assert_eq!(options("soak --minutes 5 --faults").unwrap().plan.faults, 10);
+        let real = options("soak --hours 1 --real-time --uptime-hours 9936").unwrap();
+        assert_eq!((real.plan.scene, real.uptime_hours), (Weight::Full, 9_936));
+        for wrong in
+            ["soak --minutes 1 --faults 11", "soak --minutes 0", "soak --hours nan", "soak --minutes 1 --hours 1"]
+        {
+            assert!(options(wrong).is_err(), "{wrong}");
+        }
+    }
 }

@@ -3,13 +3,38 @@
 use std::hint::black_box;
 use std::time::Instant;
 
+use clap::value_parser;
 use toile_perf::gestures::{Act, Conditions, Count, GestureStudy, held_up, sequence};
 use toile_track::gesture::{Gestures, HandEye};
 
-use crate::cli::GesturesArgs;
 use crate::exit::AppError;
 use crate::report::{Document, GesturesReport};
 use crate::terminal::{self, Words};
+
+/// Most sequences of a cell: 70 cells of a millisecond each make it a quarter of an hour.
+const MAX_SEQUENCES: i64 = 10_000;
+
+/// Report how many gestures are missed, how many are seen where there are none, and what a frame costs.
+///
+/// Lets synthetic shoppers of many sizes, distances and speeds swipe, hold a hand out, open and close it, and do what people
+/// do before a mirror that is no gesture, seen by a sensor with noise and lost frames. Counts gestures missed and false
+/// events, and times the recogniser.
+#[derive(Debug, Clone, PartialEq, Eq, clap::Args)]
+#[command(after_help = "Example: the tables of docs/gestures.md\n  toile bench gestures --sequences 200 --table")]
+pub struct GesturesArgs {
+    /// Sequences of each gesture under each condition
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=MAX_SEQUENCES), default_value = "100")]
+    sequences: u32,
+    /// Seed of the first sequence
+    #[arg(long, value_name = "N", default_value = "1")]
+    seed: u64,
+    /// Print all tables in Markdown
+    #[arg(long)]
+    table: bool,
+    /// Print one JSON object, and nothing else, on stdout
+    #[arg(long)]
+    json: bool,
+}
 
 /// Runs that the median time is taken of.
 const RUNS: usize = 25;

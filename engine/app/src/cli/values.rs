@@ -1,0 +1,119 @@
+//! What several commands take: options that they share, and parsers of values.
+
+use std::ops::RangeBounds;
+
+use clap::builder::{PossibleValuesParser, RangedU64ValueParser, TypedValueParser};
+use toile_engine::cloth::Quality;
+use toile_engine::crew::SHARES;
+use toile_engine::lanes::Width;
+use toile_gpu::stepper::Backend;
+
+use crate::outfit::Wish;
+use crate::terminal::Words;
+
+/// What a command prints, and where.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::Args)]
+pub struct Printing {
+    /// Print one JSON object, and nothing else, on stdout
+    #[arg(long)]
+    pub json: bool,
+    /// Print nothing on stderr but errors
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+impl Printing {
+    /// Words for the person at the terminal: none beside JSON.
+    pub fn words(self) -> Words {
+        Words::new(self.quiet || self.json)
+    }
+}
+
+/// The option `--backend`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::Args)]
+pub struct BackendArg {
+    /// What steps the cloth: cpu; gpu, a graphics device, in a build with `--features gpu`; auto, whichever measures
+    /// faster at the start. Where there is no device the processor steps, and a line on stderr says so
+    #[arg(
+        id = "backend",
+        long,
+        value_name = "B",
+        value_parser = one_of(Backend::ALL, Backend::name),
+        default_value = Backend::Cpu.name()
+    )]
+    pub choice: Backend,
+}
+
+/// The option `--workers`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::Args)]
+pub struct WorkersArg {
+    /// Workers of a step, 1 or 2 (default: as many as there are cores)
+    #[arg(id = "workers", long, value_name = "N", value_parser = count(1..=SHARES as u64))]
+    choice: Option<usize>,
+}
+
+impl WorkersArg {
+    /// How many workers step.
+    pub fn count(self) -> usize {
+        self.choice.unwrap_or_else(|| cores().min(SHARES))
+    }
+}
+
+/// The option `--crash-after`: every command that keeps its last seconds for a crash can be made to crash.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::Args)]
+pub struct CrashArg {
+    /// Panic after so many seconds, to see what a crash leaves
+    #[arg(id = "crash-after", long, value_name = "S")]
+    pub after_s: Option<u64>,
+}
+
+/// What the shopper wears.
+#[derive(Debug, Clone, Default, PartialEq, clap::Args)]
+pub struct WornArgs {
+    /// Garment of the wardrobe; repeat it to dress in layers, inner first
+    #[arg(long = "garment", value_name = "G")]
+    pub garments: Vec<String>,
+    /// Size to wear (default: the one that fits)
+    #[arg(long, value_name = "S")]
+    pub size: Option<String>,
+    /// Tested settings of the cloth: draft, shop or fine
+    #[arg(
+        long,
+        value_name = "Q",
+        value_parser = one_of(Quality::ALL, Quality::name),
+        default_value = Quality::default().name()
+    )]
+    pub quality: Quality,
+}
+
+impl WornArgs {
+    /// The same as the scene's maker takes it.
+    pub fn wish(&self) -> Wish {
+        Wish { garments: self.garments.clone(), size: self.size.clone(), quality: self.quality }
+    }
+}
+
+/// Cores that this process may use; 1 where the system does not say.
+pub fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// A parser of names that stand for values.
+pub fn one_of<T, const N: usize>(all: [T; N], name: fn(T) -> &'static str) -> impl TypedValueParser<Value = T>
+where
+    T: Copy + Send + Sync + 'static,
+{
+    let value = move |said: String| all.into_iter().find(|value| name(*value) == said).ok_or("it has no such name");
+    PossibleValuesParser::new(all.map(name)).try_map(value)
+}
+
+/// A parser of numbers of things.
+pub fn count(range: impl RangeBounds<u64>) -> impl TypedValueParser<Value = usize> {
+    RangedU64ValueParser::<u64>::new().range(range).try_map(usize::try_from)
+}
+
+/// A parser of numbers of lanes.
+pub fn lanes() -> impl TypedValueParser<Value = Width> {
+    let width = |said: String| said.parse().ok().and_then(Width::of).ok_or("there is no such width");
+    PossibleValuesParser::new(["1", "4", "8", "16"]).try_map(width)
+}

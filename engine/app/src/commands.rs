@@ -1,0 +1,20 @@
+//! The commands, one file each: its arguments and what it does with them.
+//!
+//! Reads: parsed arguments. Writes: a report on stdout, words on stderr, files in the output folder.
+//! Budget: that of the rooms it calls.
+//! Thread: the main thread.
+
+pub mod bake;
+pub mod bench;
+pub mod body;
+pub mod colliders;
+pub mod completions;
+pub mod convert;
+pub mod doctor;
+pub mod latency;
+pub mod pareto;
+pub mod record;
+pub mod replay;
+pub mod soak;
+pub mod torture;
+pub mod validate;

@@ -1,0 +1,139 @@
+//! `toile bench skinning`: a body skinned by linear blending and by dual quaternions.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use toile_engine::lanes::Width;
+use toile_engine::skin::Blend;
+use toile_perf::skinning::{self, BenchError, Options, Subject};
+use toile_perf::yardstick;
+
+use crate::cli::values::{count, lanes};
+use crate::exit::AppError;
+use crate::output::OutputFolder;
+use crate::pictures::write_png;
+use crate::report::{Document, SkinningReport};
+use crate::summary;
+use crate::terminal::{self, Paint, Words};
+
+/// Most vertices: 4 million, about 1 GB of arrays.
+const MAX_VERTS: u64 = 1 << 22;
+
+/// Time the skinning of a body, linear and dual quaternions, against a plain loop and with its error.
+///
+/// Skins a surface by linear blending and by dual quaternions, positions and unit normals, and reports the time of each, its
+/// ratio to a plain scalar loop timed in turn with it, and its largest error against f64. Without --body every vertex has
+/// four influences; with it they are those of the shopper's body.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(
+    after_help = "Example: the cost of dual quaternions on two threads\n  toile bench skinning --dual --threads 2"
+)]
+pub struct SkinningArgs {
+    /// Vertices to skin (default: 15000, and with --body as many as the body has)
+    #[arg(long, value_name = "N", value_parser = count(1..=MAX_VERTS))]
+    verts: Option<usize>,
+    /// Report the figures of dual quaternions first
+    #[arg(long)]
+    dual: bool,
+    /// Skin the shopper's body with its own weights
+    #[arg(long)]
+    body: bool,
+    /// Threads that skin, 1 or 2
+    #[arg(long, value_name = "T", value_parser = count(1..=2), default_value = "1")]
+    threads: usize,
+    /// Lanes of the kernels (default: the widest of this processor)
+    #[arg(long, value_name = "L", value_parser = lanes())]
+    lanes: Option<Width>,
+    /// Run every row of the table, and the volumes of limbs; takes half a minute
+    #[arg(long)]
+    table: bool,
+    /// Draw the twist test into DIR/twist.png instead: the forearm by each blend, split and not
+    #[arg(long, value_name = "DIR")]
+    picture: Option<PathBuf>,
+    /// Print one JSON object, and nothing else, on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+impl SkinningArgs {
+    /// What is measured.
+    fn options(&self) -> Options {
+        Options {
+            subject: if self.body { Subject::Body } else { Subject::Four },
+            verts: self.verts.or((!self.body).then_some(yardstick::VERTICES)),
+            threads: self.threads,
+            lanes: self.lanes,
+        }
+    }
+}
+
+/// Runs `toile bench skinning`.
+///
+/// # Errors
+/// Where this machine cannot do what was asked for, and where stdout cannot be written.
+pub fn run(args: &SkinningArgs) -> Result<(), AppError> {
+    if let Some(folder) = &args.picture {
+        return twist(folder, args.json);
+    }
+    if args.table {
+        let words = Words::new(args.json);
+        let table = skinning::table::run(&mut |case| words.say(case)).map_err(refused)?;
+        if args.json {
+            return terminal::print_json(&Document::new("bench-skinning-table", table));
+        }
+        return terminal::print(&table.markdown());
+    }
+    let blend = if args.dual { Blend::Dual } else { Blend::Linear };
+    let report = SkinningReport::new(skinning::measure(&args.options()).map_err(refused)?, blend);
+    if args.json {
+        return terminal::print_json(&Document::new("bench-skinning", report));
+    }
+    terminal::print(&summary::skinning(&report, Paint::for_stdout()))
+}
+
+/// Draws the twist test.
+fn twist(folder: &Path, json: bool) -> Result<(), AppError> {
+    let mut out = OutputFolder::prepare(folder)?;
+    write_png(&mut out, "twist.png", &skinning::twist_picture().map_err(refused)?)?;
+    let files = out.commit()?;
+    if json {
+        return terminal::print_json(&Document::new("bench-skinning-picture", BTreeMap::from([("files", files)])));
+    }
+    terminal::print(&format!("{}\n", files[0].display()))
+}
+
+fn refused(error: BenchError) -> AppError {
+    match error {
+        BenchError::NoSuchLanes(_) | BenchError::Crew(_) => AppError::Device(error.to_string()),
+        BenchError::Body(_) | BenchError::Skin(_) => AppError::internal(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: SkinningArgs,
+    }
+
+    fn options(line: &str) -> Options {
+        Line::try_parse_from(line.split_whitespace()).unwrap().args.options()
+    }
+
+    #[test]
+    fn the_defaults_are_those_of_the_benchmark() {
+        assert_eq!(options("skinning"), Options::default());
+        assert_eq!(options("skinning --body").verts, None);
+    }
+
+    #[test]
+    fn every_option_arrives() {
+        let expected = Options { subject: Subject::Body, verts: Some(77), threads: 2, lanes: Some(Width::Four) };
+        assert_eq!(options("skinning --verts 77 --body --threads 2 --lanes 4"), expected);
+    }
+}

@@ -1,0 +1,251 @@
+//! `toile bench skirt`: the cloth in the scene that Toile and its peers share.
+
+use std::path::PathBuf;
+
+use clap::value_parser;
+use toile_assets::scene::skirt::{Motion, Stretch};
+use toile_engine::cloth::Quality;
+use toile_engine::lanes::Width;
+use toile_gpu::stepper::Backend;
+use toile_perf::crossover;
+use toile_perf::plot::raster;
+use toile_perf::skirt::heap::HeapProbe;
+use toile_perf::skirt::options::{MAX_GARMENTS, Mesh, Options};
+use toile_perf::skirt::{self, SkirtError, table};
+
+use crate::backend;
+use crate::cli::values::{BackendArg, count, lanes, one_of};
+use crate::exit::AppError;
+use crate::heap;
+use crate::output::OutputFolder;
+use crate::report::Document;
+use crate::summary;
+use crate::terminal::{self, Paint, Words};
+
+/// Most vertices: 512 a side.
+const MAX_VERTS: u64 = 1 << 18;
+
+/// Most steps a run, an hour of the scene.
+const MAX_STEPS: u64 = 432_000;
+
+/// Time the cloth in the scene that Toile and its peers share, with strain and penetration.
+///
+/// Steps the benchmark's skirt on a moving body: 240 steps to warm up, then runs of which the median is reported. Time,
+/// strain, penetration and all else come from the same steps; only the step itself is timed.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(after_help = "Example: the cost and the error of a walk in a skirt of 16,384 vertices\n  toile bench skirt \
+                        --verts 16384 --motion walk")]
+pub struct SkirtArgs {
+    /// Vertices, a square: 1024, 4096, 16384
+    #[arg(long, value_name = "N", value_parser = count(64..=MAX_VERTS), default_value = "4096")]
+    verts: usize,
+    /// What the body does
+    #[arg(
+        long,
+        value_name = "M",
+        value_parser = one_of([Motion::Walk, Motion::Fast, Motion::Settled], motion),
+        default_value = "walk"
+    )]
+    motion: Motion,
+    /// How the skirt is meshed
+    #[arg(long, value_name = "M", value_parser = one_of([Mesh::Grid, Mesh::Irregular], mesh), default_value = "grid")]
+    mesh: Mesh,
+    /// How its threads stretch: not at all, or 2000 N/m
+    #[arg(
+        long,
+        value_name = "S",
+        value_parser = one_of([Stretch::Inextensible, Stretch::Physical], stretch),
+        default_value = "inextensible"
+    )]
+    stretch: Stretch,
+    /// Wind of (1, 0, 0.5) m/s with drag 0.1 and lift 0.05
+    #[arg(long)]
+    wind: bool,
+    /// Threads that step, 1 or 2
+    #[arg(long, value_name = "T", value_parser = count(1..=2), default_value = "1")]
+    threads: usize,
+    /// Skirts to step, equal ones
+    #[arg(long, value_name = "K", value_parser = count(1..=MAX_GARMENTS as u64), default_value = "1")]
+    garments: usize,
+    /// Lanes of the kernels (default: the widest of this processor)
+    #[arg(long, value_name = "L", value_parser = lanes())]
+    lanes: Option<Width>,
+    /// Tested settings: draft, shop or fine (default: the engine's own)
+    #[arg(long, value_name = "Q", value_parser = one_of(Quality::ALL, Quality::name))]
+    quality: Option<Quality>,
+    /// Substeps of a step (default: the engine's own)
+    #[arg(long, value_name = "S", value_parser = value_parser!(u32).range(1..=1_000))]
+    substeps: Option<u32>,
+    /// Runs of which the median is reported
+    #[arg(long, value_name = "R", value_parser = count(1..=1_000), default_value = "5")]
+    runs: usize,
+    /// Steps of a run
+    #[arg(long, value_name = "S", value_parser = count(1..=MAX_STEPS), default_value = "600")]
+    steps: usize,
+    #[command(flatten)]
+    backend: BackendArg,
+    /// Run every row of the table of targets, in place of one run; with --backend gpu or auto, sizes and numbers of skirts on
+    /// the processor and on the device, and where they cross, with threads, sizes and steps of its own; takes some minutes
+    #[arg(long)]
+    table: bool,
+    /// With --table of a device: write the chart crossover.png there
+    #[arg(long, value_name = "FOLDER", requires = "table")]
+    picture: Option<PathBuf>,
+    /// Print one JSON object, and nothing else, on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+fn motion(motion: Motion) -> &'static str {
+    match motion {
+        Motion::Walk => "walk",
+        Motion::Fast => "fast",
+        Motion::Settled => "settled",
+    }
+}
+
+fn mesh(mesh: Mesh) -> &'static str {
+    match mesh {
+        Mesh::Grid => "grid",
+        Mesh::Irregular => "irregular",
+    }
+}
+
+fn stretch(stretch: Stretch) -> &'static str {
+    match stretch {
+        Stretch::Inextensible => "inextensible",
+        Stretch::Physical => "physical",
+    }
+}
+
+impl SkirtArgs {
+    /// The run.
+    ///
+    /// # Errors
+    /// [`AppError::Usage`] for a picture of a table that has none.
+    fn options(&self) -> Result<Options, AppError> {
+        if self.picture.is_some() && self.backend.choice == Backend::Cpu {
+            let words = "`--picture` draws the table of a device; add `--backend gpu` or leave it out";
+            return Err(AppError::Usage(words.to_owned()));
+        }
+        Ok(Options {
+            verts: self.verts,
+            motion: self.motion,
+            mesh: self.mesh,
+            stretch: self.stretch,
+            wind: self.wind,
+            threads: self.threads,
+            garments: self.garments,
+            lanes: self.lanes,
+            quality: self.quality,
+            substeps: self.substeps,
+            runs: self.runs,
+            steps: self.steps,
+            backend: self.backend.choice,
+            ..Options::default()
+        })
+    }
+}
+
+/// Runs `toile bench skirt`.
+///
+/// # Errors
+/// Where this machine or the engine cannot do what was asked for, and where stdout cannot be written.
+pub fn run(args: &SkirtArgs) -> Result<(), AppError> {
+    let options = args.options()?;
+    let heap = HeapProbe::new(heap::counted);
+    if args.table && options.backend != Backend::Cpu {
+        return crossover(args, &options);
+    }
+    if args.table {
+        let words = Words::new(args.json);
+        let table = table::run(&options, &heap, &mut |case| words.say(case));
+        if args.json {
+            return terminal::print_json(&Document::new("bench-skirt-table", table));
+        }
+        return terminal::print(&table.markdown());
+    }
+    let report = skirt::measure(&options, &heap).map_err(refused)?;
+    backend::say(&report.stepped_by);
+    if args.json {
+        return terminal::print_json(&Document::new("bench-skirt", report));
+    }
+    terminal::print(&summary::skirt(&report, Paint::for_stdout()))
+}
+
+/// Sizes and numbers of skirts on the processor and on a device.
+fn crossover(args: &SkirtArgs, options: &Options) -> Result<(), AppError> {
+    let words = Words::new(args.json);
+    let mut out = args.picture.as_deref().map(OutputFolder::prepare).transpose()?;
+    let study = crossover::run(options, usize::MAX, &mut |case| words.say(case)).map_err(refused)?;
+    backend::say(&study.stepped_by);
+    if let Some(out) = &mut out {
+        let mut png = Vec::new();
+        raster::image(&crossover::chart(&study)).write_png(&mut png).map_err(AppError::internal)?;
+        out.write("crossover.png", &png)?;
+    }
+    let files = out.map(OutputFolder::commit).transpose()?;
+    if args.json {
+        return terminal::print_json(&Document::new("bench-skirt-crossover", study));
+    }
+    files.iter().flatten().for_each(|file| words.say(&file.display().to_string()));
+    terminal::print(&study.markdown())
+}
+
+fn refused(error: SkirtError) -> AppError {
+    match error {
+        SkirtError::NotSquare { .. } => AppError::Usage(format!("{error}; see `toile bench skirt --help`")),
+        SkirtError::Unsupported { .. } | SkirtError::NoSuchLanes { .. } | SkirtError::Crew(_) => {
+            AppError::Device(error.to_string())
+        }
+        SkirtError::Mesh(_) | SkirtError::Colliders(_) | SkirtError::Body(_) => AppError::internal(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: SkirtArgs,
+    }
+
+    fn options(line: &str) -> Result<Options, AppError> {
+        Line::try_parse_from(line.split_whitespace()).unwrap().args.options()
+    }
+
+    #[test]
+    fn the_defaults_are_the_scenes_protocol() {
+        assert_eq!(options("skirt").unwrap(), Options::default());
+    }
+
+    #[test]
+    fn every_option_arrives() {
+        let found = options(
+            "skirt --verts 1024 --motion fast --mesh irregular --stretch physical --wind --threads 2 --garments 3 \
+             --lanes 8 --quality fine --substeps 6 --runs 2 --steps 60 --backend gpu --table --picture out --json",
+        );
+        let expected = Options {
+            verts: 1_024,
+            motion: Motion::Fast,
+            mesh: Mesh::Irregular,
+            stretch: Stretch::Physical,
+            wind: true,
+            threads: 2,
+            garments: 3,
+            lanes: Some(Width::Eight),
+            quality: Some(Quality::Fine),
+            substeps: Some(6),
+            runs: 2,
+            steps: 60,
+            backend: Backend::Gpu,
+            ..Options::default()
+        };
+        assert_eq!(found.unwrap(), expected);
+        assert!(options("skirt --table --picture out").is_err(), "there is no chart of the targets");
+    }
+}

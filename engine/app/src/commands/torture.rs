@@ -1,0 +1,166 @@
+//! `toile torture`: the hard cases, and whether the cloth bears them.
+
+use std::fmt::Write;
+use std::time::Instant;
+
+use clap::builder::PossibleValuesParser;
+use clap::value_parser;
+use serde::Serialize;
+use toile_engine::cloth::Quality;
+use toile_perf::torture::{self, CASES, Options, Report, SEEDS, Summary};
+
+use crate::backend;
+use crate::cli::values::{BackendArg, Printing, one_of};
+use crate::exit::AppError;
+use crate::report::Document;
+use crate::terminal::{self, Paint, Tone};
+
+/// Most seeds of a case: a day's work.
+const MAX_SEEDS: u64 = 100_000;
+
+/// Put the cloth into states that it should never meet, and see whether it comes back.
+///
+/// Runs the hard cases: cloth that starts inside the body, surroundings that jump, extreme ratios and steps, inputs that are
+/// NaN or infinite. Required are: nothing that is not finite is ever published, no particle is faster than the limit, and the
+/// cloth is back within 1 mm of its place of rest in 5 s where it has only one. A case that fails makes the exit code 3.
+/// docs/torture.md describes the cases.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(after_help = "Example: run one seed of a case once more\n  toile torture squeeze --seed 7")]
+pub struct TortureArgs {
+    /// One case (default: all of them)
+    #[arg(value_name = "CASE", value_parser = PossibleValuesParser::new(CASES.map(|case| case.name)))]
+    pub case: Option<String>,
+    /// Seeds of each case, from 0 on
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..=MAX_SEEDS), conflicts_with = "seed")]
+    pub seeds: Option<u64>,
+    /// One seed: what failed, once more
+    #[arg(long, value_name = "S", value_parser = value_parser!(u64).range(..u64::MAX))]
+    pub seed: Option<u64>,
+    /// Settings of the cloth where a case does not choose its own: draft, shop or fine
+    #[arg(
+        long,
+        value_name = "Q",
+        value_parser = one_of(Quality::ALL, Quality::name),
+        default_value = Quality::default().name()
+    )]
+    pub quality: Quality,
+    #[command(flatten)]
+    backend: BackendArg,
+    #[command(flatten)]
+    printing: Printing,
+}
+
+impl TortureArgs {
+    /// Which cases and seeds are run, and how.
+    fn options(&self) -> Options {
+        let seeds = match self.seed {
+            Some(seed) => seed..seed + 1,
+            None => 0..self.seeds.unwrap_or(SEEDS),
+        };
+        Options { case: self.case.clone(), seeds, quality: self.quality, backend: self.backend.choice }
+    }
+}
+
+/// The report as JSON has it.
+#[derive(Debug, Serialize)]
+struct Body {
+    /// What the cases came to.
+    #[serde(flatten)]
+    report: Report,
+    /// Time that it took (s).
+    wall_s: f64,
+}
+
+/// Runs `toile torture`.
+///
+/// # Errors
+/// [`AppError::Threshold`] where a case fails, after the report; a stdout that cannot be written.
+pub fn run(args: &TortureArgs) -> Result<(), AppError> {
+    let words = args.printing.words();
+    let begun = Instant::now();
+    let mut told = |s: &Summary| words.say(&format!("{}: {} of {} seeds", s.name, s.passed, s.seeds));
+    let report = torture::run(&args.options(), &mut told).map_err(AppError::internal)?;
+    backend::say(&report.stepped_by);
+    let wall_s = begun.elapsed().as_secs_f64();
+    let failed: Vec<&str> = report.failed().map(|s| s.name).collect();
+    let verdict = match failed[..] {
+        [] => Ok(()),
+        _ => Err(AppError::Threshold(format!(
+            "{} of {} cases failed ({}); run one seed of one again with `toile torture CASE --seed S`",
+            failed.len(),
+            report.summary.len(),
+            failed.join(", ")
+        ))),
+    };
+    if args.printing.json {
+        terminal::print_json(&Document::new("torture", Body { report, wall_s }))?;
+    } else {
+        terminal::print(&table(&report, wall_s, Paint::for_stdout()))?;
+    }
+    verdict
+}
+
+/// The report as people read it: one row a case.
+fn table(report: &Report, wall_s: f64, paint: Paint) -> String {
+    let mut text = format!(
+        "{:<18} {:>9} {:>9} {:>8} {:>8} {:>10}  {}\n",
+        "case", "passed", "no number", "m/s", "back s", "off mm", "worst seed"
+    );
+    for s in &report.summary {
+        let tone = if s.passed == s.seeds { Tone::Good } else { Tone::Warn };
+        let passed = format!("{:>9}", format!("{}/{}", s.passed, s.seeds));
+        let (back, off) = (figure(s.recovered_s.map(f64::from), 2), figure(s.hausdorff_mm, 3));
+        let _ = writeln!(
+            text,
+            "{:<18} {} {:>9} {:>8.2} {back:>8} {off:>10}  {}: {}",
+            s.name,
+            paint.tone(&passed, tone),
+            s.nonfinite,
+            s.max_speed,
+            s.worst_seed,
+            s.cause
+        );
+    }
+    let seeds: usize = report.summary.iter().map(|s| s.seeds).sum();
+    let _ = writeln!(text, "\n{seeds} runs in quality {}, {wall_s:.0} s", report.quality);
+    text
+}
+
+/// A figure, or a dash where there is none.
+fn figure(value: Option<f64>, digits: usize) -> String {
+    value.map_or_else(|| "-".into(), |v| format!("{v:.digits$}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+    use toile_gpu::stepper::Backend;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: TortureArgs,
+    }
+
+    fn options(line: &str) -> Result<Options, clap::Error> {
+        Ok(Line::try_parse_from(line.split_whitespace())?.args.options())
+    }
+
+    #[test]
+    fn all_cases_and_seeds_are_the_default() {
+        assert_eq!(options("torture").unwrap(), Options::default());
+    }
+
+    #[test]
+    fn one_case_and_one_seed_can_be_named() {
+        let (quality, backend) = (Quality::Fine, Backend::Auto);
+        let one = Options { case: Some("squeeze".into()), seeds: 7..8, quality, backend };
+        assert_eq!(options("torture squeeze --seed 7 --quality fine --backend auto --json -q").unwrap(), one);
+        assert_eq!(options("torture --seeds 3").unwrap().seeds, 0..3);
+        for wrong in ["torture squeez", "torture --seeds 0", "torture --seed 1 --seeds 2"] {
+            assert!(options(wrong).is_err(), "{wrong}");
+        }
+    }
+}
