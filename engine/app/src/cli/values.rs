@@ -36,7 +36,7 @@ pub struct BackendArg {
     /// faster at the start. Where there is no device the processor steps, and a line on stderr says so
     #[arg(
         id = "backend",
-        long,
+        long = "backend",
         value_name = "B",
         value_parser = one_of(Backend::ALL, Backend::name),
         default_value = Backend::Cpu.name()
@@ -48,7 +48,7 @@ pub struct BackendArg {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::Args)]
 pub struct WorkersArg {
     /// Workers of a step, 1 or 2 (default: as many as there are cores)
-    #[arg(id = "workers", long, value_name = "N", value_parser = count(1..=SHARES as u64))]
+    #[arg(id = "workers", long = "workers", value_name = "N", value_parser = count(1..=SHARES as u64))]
     choice: Option<usize>,
 }
 
@@ -63,7 +63,7 @@ impl WorkersArg {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::Args)]
 pub struct CrashArg {
     /// Panic after so many seconds, to see what a crash leaves
-    #[arg(id = "crash-after", long, value_name = "S")]
+    #[arg(id = "crash-after", long = "crash-after", value_name = "S")]
     pub after_s: Option<u64>,
 }
 
