@@ -25,6 +25,9 @@ const QUICK: &str =
 /// Longest that a shopper is waited for: on a machine that compiles something beside it, the tailor takes a visit or two.
 const LONGEST: Duration = Duration::from_secs(120);
 
+/// The empty file that is locked while a kiosk runs.
+const LOCK: &str = "toile-kiosk.lock";
+
 /// A kiosk that runs; it is killed with the test.
 struct Running(Child);
 
@@ -33,7 +36,7 @@ impl Running {
         let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
         command.args(["kiosk", "--headless", "--json"]).args(args).current_dir(scratch.path());
         command.env("NOTIFY_SOCKET", manager).env("WATCHDOG_USEC", "900000").env_remove("WATCHDOG_PID");
-        command.env_remove("RUST_BACKTRACE").env("TMPDIR", scratch.path());
+        command.env_remove("RUST_BACKTRACE").env("TMPDIR", scratch.path()).env("XDG_RUNTIME_DIR", scratch.path());
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         Self(command.spawn().expect("the built program starts"))
     }
@@ -146,7 +149,7 @@ fn a_visit_is_told_to_the_manager_leaves_nothing_behind_and_ends_when_told_to() 
     let mut running = Running::start(&scratch, &manager, &["--config", "kiosk.toml"]);
     watch(&mut running);
     #[cfg(target_os = "linux")]
-    assert_eq!(open_to_the_world(running.0.id()), [""; 0]);
+    assert_eq!(open_to_the_world(running.0.id()), [scratch.path().join(LOCK).display().to_string()]);
 
     running.terminate();
     let told_ns = Instant::now();
@@ -178,7 +181,8 @@ fn a_visit_is_told_to_the_manager_leaves_nothing_behind_and_ends_when_told_to() 
     assert!(alive as f64 > due / 120.0, "{alive} in {} s: less than once a second", due / 120.0);
     let mut left: Vec<_> = fs::read_dir(scratch.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
     left.sort();
-    assert_eq!(left, ["kiosk.toml", "manager"], "a visit left files behind");
+    assert_eq!(left, ["kiosk.toml", "manager", LOCK], "a visit left files behind");
+    assert_eq!(fs::metadata(scratch.path().join(LOCK)).unwrap().len(), 0, "the lock is an empty file");
 }
 
 /// Whether a process has a handler for SIGTERM yet.
@@ -247,6 +251,31 @@ fn what_cannot_be_used_is_refused_in_one_sentence() {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
+#[test]
+fn a_second_kiosk_says_that_one_runs_and_a_named_one_runs_beside_it() {
+    let scratch = Scratch::new("kiosk-second");
+    let mut first = Running::start(&scratch, Path::new("nowhere"), &[]);
+    let begun = Instant::now();
+    while !scratch.path().join(LOCK).exists() {
+        assert!(begun.elapsed() < LONGEST && first.0.try_wait().unwrap().is_none());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    // The file is there a moment before it is locked.
+    std::thread::sleep(Duration::from_millis(200));
+    let second = scratch.toile(&["kiosk", "--headless", "--seconds", "1"]);
+    let said = String::from_utf8(second.stderr).unwrap();
+    assert_eq!(second.status.code(), Some(5), "{said}");
+    assert!(said.contains("already runs") && said.contains("--instance") && said.lines().count() == 1, "{said}");
+    let named = scratch.toile(&["kiosk", "--headless", "--quiet", "--seconds", "1", "--instance", "left"]);
+    assert_eq!(named.status.code(), Some(0), "{}", String::from_utf8_lossy(&named.stderr));
+    assert!(scratch.path().join("toile-kiosk-left.lock").exists());
+    // Killed: the system releases the lock.
+    first.0.kill().unwrap();
+    first.0.wait().unwrap();
+    let next = scratch.toile(&["kiosk", "--headless", "--quiet", "--seconds", "1"]);
+    assert_eq!(next.status.code(), Some(0), "{}", String::from_utf8_lossy(&next.stderr));
+}
+
 /// The value of a unit's key.
 fn value<'a>(unit: &'a str, key: &str) -> &'a str {
     let find = |line: &'a str| line.strip_prefix(key)?.strip_prefix('=');
@@ -268,6 +297,7 @@ fn the_unit_starts_what_there_is_with_the_rights_that_it_needs() {
         ("ProtectSystem", "strict"),
         ("LimitCORE", "0"),
         ("LimitMEMLOCK", "infinity"),
+        ("RuntimeDirectory", "toile"),
         ("CapabilityBoundingSet", ""),
     ] {
         assert_eq!(value(&unit, key), expected, "{key}");
@@ -314,6 +344,7 @@ fn a_crash_leaves_its_last_seconds_where_a_shop_asked_for_them_and_they_replay()
     fs::remove_file(scratch.path().join("crash.tape")).unwrap();
     let said = run(QUICK);
     assert!(!said.contains("recorded"), "{said}");
-    let left: Vec<_> = fs::read_dir(scratch.path()).unwrap().flatten().map(|e| e.file_name()).collect();
-    assert_eq!(left, ["kiosk.toml"]);
+    let mut left: Vec<_> = fs::read_dir(scratch.path()).unwrap().flatten().map(|e| e.file_name()).collect();
+    left.sort();
+    assert_eq!(left, ["kiosk.toml", LOCK]);
 }

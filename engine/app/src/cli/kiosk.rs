@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use clap::value_parser;
 
+use crate::kiosk::instance;
+
 /// Longest run that is asked for by its length (s): a year.
 const MOST_SECONDS: i64 = 366 * 86_400;
 
@@ -34,6 +36,9 @@ pub struct KioskArgs {
     /// Configuration in TOML (default: what --print-config prints)
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
+    /// Name of this kiosk, where several run on one machine (default: only one may run)
+    #[arg(long, value_name = "NAME", value_parser = instance::name)]
+    pub instance: Option<String>,
     /// Recording to play as the sensor, again and again, in place of the configured one
     #[arg(long, value_name = "F")]
     pub session: Option<PathBuf>,

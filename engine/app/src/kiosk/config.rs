@@ -32,7 +32,7 @@ pub struct Config {
     pub wear: WearConfig,
     /// Where frames come from.
     pub sensor: SensorConfig,
-    /// How long what has to last.
+    /// Times of a session.
     pub session: SessionConfig,
     /// The health line.
     pub health: HealthConfig,
@@ -82,7 +82,7 @@ pub enum SensorSource {
     Vmc,
 }
 
-/// How long what has to last (s).
+/// Times of a session (s).
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SessionConfig {
@@ -209,7 +209,7 @@ impl DisplayConfig {
         } else if !known {
             Some(format!("display.language = {language:?} is not spoken; choose one of {}", LANGUAGES.join(", ")))
         } else if !lengths.into_iter().all(f32::is_finite) {
-            Some("a length in [display] is no number; correct it".into())
+            Some("a length in [display] is not a finite number; correct it".into())
         } else {
             None
         }

@@ -22,25 +22,25 @@ pub const FEWEST_FRAMES: usize = 10;
 
 /// What a controller works with.
 pub struct ControllerContext<S, O> {
-    /// The stage.
+    /// Hands scenes over to the loop.
     pub changing: Changing<S, O>,
-    /// Who dresses the mannequin, and for a host without an atelier of its own shoppers too.
+    /// Dresses the mannequin, and for a controller without a dressing worker of its own shoppers too.
     pub tailor: Tailor,
-    /// What a dressed frame becomes on the stage, and what the eye has to know of it.
+    /// A dressed frame as a scene of the loop, and what the renderer has to know of it.
     pub stage: fn(Frame) -> (S, O),
     /// How the mannequin stands.
     pub pose: Joints,
 }
 
 impl<S: Scene, O> ControllerContext<S, O> {
-    /// Somebody dressed, as the stage takes them.
+    /// Somebody dressed, as the loop takes them over.
     pub fn act(&self, dressed: Dressed) -> Act<S, O> {
         let Dressed { frame, reader, made } = dressed;
         let (scene, outfit) = (self.stage)(frame);
         Act { scene, reader, outfit, made }
     }
 
-    /// Sends the tailor to dress a mannequin, where there is none to come back and the tailor has the time.
+    /// Has a mannequin dressed, where there is none to come back and no other job is under way.
     ///
     /// # Errors
     /// Where the system gives no thread.
@@ -60,7 +60,7 @@ pub trait SessionController<S, O> {
     /// Takes a frame of the sensor, unfiltered.
     fn frame(&mut self, frame: Joints);
 
-    /// Takes what became of a job that it gave the tailor; mannequins are not its own.
+    /// Takes the result of a job that it gave; mannequins are not its own.
     fn work(&mut self, work: Work);
 
     /// Decides, fifty times a second; returns the change of state, where there is one.

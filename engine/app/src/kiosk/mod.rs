@@ -13,6 +13,7 @@ pub mod config;
 mod config_keys;
 pub mod controller;
 pub mod health;
+pub mod instance;
 pub mod lives;
 mod memory;
 #[cfg(feature = "metrics")]
@@ -49,6 +50,7 @@ use change::{Act, Changing};
 use config::{Config, SensorSource};
 use controller::SessionController;
 use health::HealthFigures;
+use instance::InstanceLock;
 use lives::{Cast, Headless, Lives};
 use report::KioskReport;
 use service::{Service, ServiceEnvironment, ServiceOptions};
@@ -59,7 +61,7 @@ use tailor::{Dressed, Model, Tailor};
 /// Runs `toile kiosk`; with a window, by `windowed`.
 ///
 /// # Errors
-/// A configuration, a session or a garment that cannot be used, a thread that ended while it ran; those of `windowed`.
+/// A kiosk that already runs, a configuration, a session or a garment that cannot be used, a thread that ended while it ran; those of `windowed`.
 pub fn run(args: &KioskArgs, windowed: fn(KioskRun<'_>) -> Result<KioskReport, AppError>) -> Result<(), AppError> {
     let begun = Instant::now();
     if args.print_config {
@@ -70,6 +72,7 @@ pub fn run(args: &KioskArgs, windowed: fn(KioskRun<'_>) -> Result<KioskReport, A
     if args.session.is_some() {
         (config.sensor.source, config.sensor.session) = (SensorSource::Session, args.session.clone());
     }
+    let _lock = InstanceLock::take(args.instance.as_deref())?;
     let words = Words::new(args.quiet);
     let figures = figures(&config)?;
     let clock = RealClock::default();
@@ -111,9 +114,9 @@ pub struct KioskRun<'a> {
 
 /// How a run shows itself: without a display, or at a window.
 pub struct Frontend<F, H, O> {
-    /// The eye, once the mannequin is dressed.
+    /// Makes the renderer, once the mannequin is dressed.
     pub eye: F,
-    /// What it has to know of a frame that takes the stage.
+    /// A dressed frame as a scene of the loop, and what the renderer has to know of it.
     pub stage: fn(Frame) -> (Staged, O),
     /// Makes the controller, given the recording that shoppers are measured from, if one is played.
     pub controller: H,
@@ -122,7 +125,7 @@ pub struct Frontend<F, H, O> {
 /// A controller; none is that of the session alone.
 pub type BoxedController<'a, O> = Option<Box<dyn SessionController<Staged, O> + 'a>>;
 
-/// Sets everything up and runs until the end; gives the report, and the eye that looked.
+/// Sets everything up and runs until the end; returns the report, and the renderer.
 ///
 /// # Errors
 /// As [`run`].

@@ -63,7 +63,7 @@ pub struct ServiceEnvironment<'a, S, O> {
     pub figures: Option<Writer<HealthFigures>>,
     /// Who dresses shoppers.
     pub tailor: Tailor,
-    /// What a dressed frame becomes on the stage, and what the eye has to know of it.
+    /// A dressed frame as a scene of the loop, and what the renderer has to know of it.
     pub stage: fn(Frame) -> (S, O),
     /// How the mannequin stands.
     pub pose: Joints,
@@ -94,7 +94,7 @@ pub struct Service<'a, S: Scene, E: Eye> {
 }
 
 impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
-    /// Over lives that have begun.
+    /// Over threads that have been started.
     pub fn new(
         lives: Lives<S, E>,
         changing: Changing<S, E::Outfit>,
@@ -141,7 +141,7 @@ impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
         Self { controller, ..self }
     }
 
-    /// Runs until it is told to end or its time is over. Returns a record of the run, and of the loop's threads.
+    /// Runs until it is asked to end or its time is over. Returns a record of the run, and of the loop's threads.
     ///
     /// # Errors
     /// Where a thread has ended that must not: whoever started the service starts it again.

@@ -59,8 +59,8 @@ impl ServiceManager for Systemd {
     }
 }
 
-/// Whether the service was told to end, by SIGTERM or SIGINT. A service whose only state is its configuration has nothing to
-/// save: before it runs, and where it is told a second time, it ends on the spot.
+/// Whether the service was asked to end, by SIGTERM or SIGINT. A service whose only state is its configuration has nothing to
+/// save: before it runs, and where it is asked a second time, it ends on the spot.
 ///
 /// SeqCst: a signal comes once; what it costs does not matter.
 #[derive(Debug, Clone, Default)]

@@ -119,7 +119,7 @@ mod tests {
     const MS: u64 = 1_000_000;
     const TIMES: SessionTimes = SessionTimes { step_in_ns: 500 * MS, step_out_ns: 2_000 * MS, wipe_ns: 5_000 * MS };
 
-    /// The states that a session goes through: spans of what is seen, in ms; a look each 10 ms.
+    /// The states that a session goes through: spans of what is seen, in ms; an update each 10 ms.
     fn visited(spans: &[(u64, bool, bool)]) -> Vec<(u64, SessionState)> {
         let (mut session, mut now, mut states) = (SessionMachine::new(TIMES, 0), 0, Vec::new());
         for (length, shopper, dressed) in spans {

@@ -21,7 +21,7 @@ use crate::kiosk::session::{SessionState, StateChange};
 use crate::kiosk::tailor::{self, Work};
 use crate::shopper;
 
-/// Two outfits, draped, as the eye has to know them: left and right.
+/// Two outfits, draped, as the renderer draws them: left and right.
 pub type OutfitPair<O> = Box<[O; 2]>;
 
 /// The next input from the display since the last poll, if any.
@@ -35,7 +35,7 @@ pub struct WindowChannels<'a, O> {
     pub next_input: NextInput<'a>,
     /// Where two outfits go, and none when they are to be seen no more.
     pub pairs: Sender<Option<OutfitPair<O>>>,
-    /// What the eye has to know of a frame as it lies in a snapshot.
+    /// What the renderer has to know of a frame as it lies in a snapshot.
     pub draped: fn(&Frame, &Snapshot) -> O,
 }
 
@@ -78,7 +78,7 @@ pub struct VisitController<'a, O> {
     made: Vec<toile_track::gesture::Gesture>,
     measuring: Option<OngoingMeasurement>,
     jobs: PendingJobs,
-    /// Whether the next who is dressed is another one than stands on the stage.
+    /// Whether the next who is dressed is another one than is shown.
     afresh: bool,
     shown: Option<Screen>,
 }

@@ -30,7 +30,7 @@ const DRAWN: Size = Size::new(192, 320);
 /// A frame that was dressed, and the snapshot of it.
 pub type DrapedFrame = (Frame, Snapshot);
 
-/// Who is dressed, and as they stand.
+/// Somebody who was measured, in the pose in which they are dressed.
 #[derive(Debug, Clone)]
 pub struct MeasuredVisitor {
     /// What was measured of them.
@@ -62,7 +62,7 @@ pub enum JobResult {
     Two(Box<[DrapedFrame; 2]>),
     /// The picture as a code.
     Picture(PictureCode),
-    /// It could not be done; why is not told to anybody, for it may tell of them.
+    /// It could not be done; why is not reported, for it may say something about them.
     Failed,
 }
 
@@ -88,7 +88,7 @@ pub struct DressingWorker {
 }
 
 impl DressingWorker {
-    /// Nobody is there.
+    /// Without a job.
     pub fn new(context: DressingContext) -> Self {
         Self { context: Arc::new(context), work: None, unwanted: false }
     }

@@ -1,4 +1,4 @@
-//! Message: what the machine of the pages is told and what it has others do, with the times that it keeps.
+//! Messages: the inputs of the visitor's model and its effects, with the times that it keeps.
 
 use toile_track::gesture::Gesture;
 
@@ -13,10 +13,10 @@ use crate::kiosk::session;
 /// Effects of one input, at most.
 const EFFECTS: usize = 8;
 
-/// What others are to do.
+/// The effects of one input.
 pub type Effects = heapless::Vec<Effect, EFFECTS>;
 
-/// How long what has to last (ns).
+/// Times of a visit (ns).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct VisitTimes {
     /// Stepping in, stepping out, wiping.
@@ -61,13 +61,13 @@ impl VisitTimes {
 /// How every visit begins.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VisitDefaults {
-    /// How long what has to last.
+    /// Times of a visit.
     pub times: VisitTimes,
     /// The language before somebody chooses one.
     pub language: Language,
     /// Whether type is large before somebody chooses.
     pub large: bool,
-    /// What everybody wears first, by name, inner first; those that the shelf does not have are left out.
+    /// What everybody wears first, by name, inner first; those that the wardrobe does not have are left out.
     pub wear: Vec<String>,
     /// The size that everybody wears first, where a garment is made in it; else each gets the one that fits.
     pub size: Option<String>,
@@ -94,14 +94,14 @@ pub enum NavigationKey {
     Escape,
 }
 
-/// What the machine is told. Replies carry the number of the errand; a reply to one that nobody waits for any more says nothing.
+/// An input of the model. Replies carry the number of the effect; a reply that nobody waits for any more is ignored.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Input {
     /// Time passes.
     Tick,
     /// What is seen; it holds until the next.
     Presence(Presence),
-    /// A control was pressed by finger or mouse. One that is not on the page says nothing.
+    /// A control was pressed by finger or mouse. One that is not on the page is ignored.
     Pressed(Action),
     /// A key.
     Key(NavigationKey),
@@ -119,7 +119,7 @@ pub enum Input {
     Failed(u32),
 }
 
-/// What others are to do. Each that is replied to has a number.
+/// An effect, which others carry out. Each that is replied to has a number.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Effect {
     /// Measure whoever stands there; [`Input::Measured`].
@@ -129,7 +129,7 @@ pub enum Effect {
         /// Whether they sit: nothing is to be taken from their legs and hips.
         seated: bool,
     },
-    /// Dress a body of the measures that were taken and let it take the stage; [`Input::Dressed`].
+    /// Dress a body of the measures that were taken and show it; [`Input::Dressed`].
     Dress {
         /// Its number.
         number: u32,
@@ -152,7 +152,7 @@ pub enum Effect {
         /// From where it is looked at (rad).
         yaw: f32,
     },
-    /// The mannequin is to take the stage at once: somebody else looks.
+    /// Show the mannequin at once: somebody else looks.
     Hide,
     /// The shopper has left: nothing of them is to stay anywhere.
     Forget,

@@ -1,10 +1,10 @@
-//! The guest: everything between a shopper and the mirror that is no picture: pages, words, what can be pressed, what is known.
+//! The visitor: everything between a shopper and the mirror but drawing: pages, texts, controls, what is known of them.
 //!
-//! Reads: what is seen, pressed and gestured; what the tailor has measured and dressed. Writes: one `Screen` for whoever paints,
-//! errands for the tailor; nothing to a disk or a network, and nothing of a shopper once they have left.
-//! Budget: 0.5 ms a look, 10 ms where a size is judged. Thread: the service's.
+//! Reads: what is seen, pressed and gestured; what was measured and dressed. Writes: one `Screen` for the renderer,
+//! jobs for the dressing worker; nothing to a disk or a network, and nothing of a shopper once they have left.
+//! Budget: 0.5 ms a poll, 10 ms where a size is judged. Thread: the service's.
 //!
-//! [`model`] is a machine that knows the time and its inputs, and nothing else; [`pages`] makes a [`screen::Screen`] of it. docs/screens.md
+//! [`model`] is a state machine that knows the time and its inputs, and nothing else; [`pages`] makes a [`screen::Screen`] of it. docs/screens.md
 //! shows what leads where.
 
 mod actions;

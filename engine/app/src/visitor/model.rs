@@ -1,7 +1,7 @@
-//! Model: the pages as a machine. It knows the time, what is seen, what is pressed and what the tailor says, and nothing else: a
-//! window, a service without one and a test drive the same machine.
+//! The model: the pages as a state machine. It knows the time, what is seen, what is pressed and what the dressing worker replies: a
+//! window, a service without one and a test drive the same model.
 //!
-//! It stands on the machine of [`crate::kiosk::session`], which decides who has stepped in and who has left, and adds the pages.
+//! It builds on the state machine of [`crate::kiosk::session`], which decides who has stepped in and who has left, and adds the pages.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use super::visit::{ComparedSizes, MeasureProgress, ViewTurn, Visit};
 use super::wardrobe::{Outfit, Wardrobe, WornItem};
 use crate::kiosk::session::{SessionInput, SessionMachine, SessionState};
 
-/// The machine.
+/// The model of a visit.
 #[derive(Debug, Clone)]
 pub struct VisitModel {
     pub(super) defaults: VisitDefaults,
@@ -54,7 +54,7 @@ impl VisitModel {
         self.session.state()
     }
 
-    /// How long what has to last.
+    /// Times of a visit.
     pub fn times(&self) -> &VisitTimes {
         &self.defaults.times
     }
@@ -95,7 +95,7 @@ impl VisitModel {
         }
     }
 
-    /// Takes an input; gives what others are to do.
+    /// Takes an input; returns its effects.
     pub fn update(&mut self, now_ns: u64, input: Input) -> Effects {
         self.now_ns = self.now_ns.max(now_ns);
         let before = self.page();
@@ -144,7 +144,7 @@ impl VisitModel {
         other || (self.seen.nearer && self.visit.shopper.is_some())
     }
 
-    /// What time brings about.
+    /// What the passing of time brings about.
     fn pass(&mut self, effects: &mut Effects) {
         let times = self.defaults.times;
         if self.seen.people > 0 {
@@ -200,7 +200,7 @@ impl VisitModel {
         let visit = &mut self.visit;
         (visit.asked_ns, visit.hidden) = (Some(self.now_ns), true);
         visit.picture.wipe();
-        // Whatever the tailor is at is for who stood there before.
+        // Work under way is for who stood there before.
         (visit.dressing, visit.snapping, visit.pair) = (None, None, None);
         if matches!(visit.progress, MeasureProgress::Measuring(_)) {
             visit.progress = MeasureProgress::Guide { ready_ns: None, not_before_ns: 0 };
@@ -283,7 +283,7 @@ impl VisitModel {
         self.number
     }
 
-    /// What the tailor says.
+    /// A reply of the dressing worker.
     fn reply(&mut self, input: Input, effects: &mut Effects) {
         let visit = &mut self.visit;
         let is_asked = |asked: &mut Option<u32>, number| asked.take_if(|a| *a == number).is_some();
@@ -292,7 +292,7 @@ impl VisitModel {
             Input::Dressed(number) if is_asked(&mut visit.dressing, number) => {
                 (visit.dressed, visit.hidden) = (true, false);
                 visit.worn = visit.outfit.clone();
-                self.put_on_at_last();
+                self.finish_dressing();
             }
             Input::Draped(number) => {
                 if let Some(pair) = &mut visit.pair {
@@ -319,7 +319,7 @@ impl VisitModel {
                 visit.outfit = visit.worn.clone();
                 visit.refused = true;
                 self.take_in_hand(None);
-                self.put_on_at_last();
+                self.finish_dressing();
             }
         } else if is_asked(&mut visit.snapping) {
             visit.snap_failed = true;
@@ -361,8 +361,8 @@ impl VisitModel {
         outfit
     }
 
-    /// Measured and dressed: who was measured in part is told so first.
-    fn put_on_at_last(&mut self) {
+    /// Measured and dressed: who was measured in part sees that first.
+    fn finish_dressing(&mut self) {
         if !matches!(self.visit.progress, MeasureProgress::Dressing(_)) {
             return;
         }

@@ -1,4 +1,4 @@
-//! Pages: the machine's page as a screen, in words.
+//! Pages: the model's page as a screen, in words.
 
 mod clothes;
 mod fit;
@@ -58,7 +58,7 @@ impl VisitModel {
         }
     }
 
-    /// Colours of what stands on the stage.
+    /// Colours of the garments that are shown.
     fn colours(&self) -> Vec<[f32; 3]> {
         let worn = if self.visit.worn.is_empty() { &self.visit.outfit } else { &self.visit.worn };
         let colour = |w: &super::wardrobe::WornItem| self.wardrobe.items.get(w.item)?.colours.get(w.colour);

@@ -1,4 +1,4 @@
-//! SessionInput: what the sensor's joints say of who is there: the same person or another, seated or standing, how tall, how far
+//! Presence: what the sensor's joints say of who is there: the same person or another, seated or standing, how tall, how far
 //! from the mark.
 //!
 //! One skeleton a frame arrives, that of whoever the sensor follows. Two people are told apart by the lengths of their bones, looked at
@@ -47,7 +47,7 @@ const SITTING: usize = 16;
 /// A thigh that falls less than this share of its length from hip to knee is that of somebody who sits: 30 degrees from level.
 const LEVEL: f32 = 0.5;
 
-/// BoneLengths by which people are told apart.
+/// Bones by whose lengths people are told apart.
 const BONES: [&[Joint]; 5] = {
     use Joint::*;
     [
@@ -61,7 +61,7 @@ const BONES: [&[Joint]; 5] = {
 
 type BoneLengths = [Option<f32>; BONES.len()];
 
-/// Looks at frames as they come.
+/// Takes frames as they come.
 #[derive(Debug, Clone, Default)]
 pub struct PresenceTracker {
     /// Where the mark is on the floor (m), if that is known.

@@ -1,4 +1,4 @@
-//! Layout: between which heights the controls stand, so that whoever is there reaches them.
+//! Reach: between which heights the controls stand, so that whoever is there reaches them.
 //!
 //! The bounds are those of the 2010 ADA Standards for Accessible Design, 308.2.1 (unobstructed forward reach) and 308.3.1
 //! (unobstructed side reach): at most 48 in (1,220 mm) and at least 15 in (380 mm) over the floor. What is kept here is the
@@ -50,7 +50,7 @@ impl DisplayMount {
     /// What is wrong with it, with the cure; none where controls of [`LEAST_BAND_MM`] fit between [`LOWEST_MM`] and [`HIGHEST_MM`].
     pub fn fault(&self) -> Option<String> {
         let Self { lower_edge_mm: low, height_mm: height } = *self;
-        // Reversed, so that what is no number is a fault too.
+        // Reversed, so that NaN is a fault too.
         if !((0.0..=2500.0).contains(&low) && (200.0..=4000.0).contains(&height)) {
             return Some(format!(
                 "display.lower_edge_mm = {low} and height_mm = {height} are not within 0 .. 2500 and 200 .. 4000 mm; correct them"

@@ -1,5 +1,5 @@
-//! Screen: everything that the display shows at a moment, as data. The window paints it, a test reads it; neither the words nor
-//! the order of things is decided by who paints.
+//! Screen: everything that the display shows at a moment, as data. The window paints it, a test reads it; the painter decides neither
+//! the words nor their order.
 
 /// Which page is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -62,7 +62,7 @@ pub enum Action {
     Open(Page),
     /// Back to the page before.
     Back,
-    /// Wear a garment of the shelf, or take it off.
+    /// Wear a garment of the wardrobe, or take it off.
     Garment(usize),
     /// The size before or after (-1, 1).
     Size(i8),

@@ -1,4 +1,4 @@
-//! Fitting: how a size sits at each zone, as a shopper reads it, and why.
+//! Fit of a size: how a size sits at each zone, as a shopper reads it, and why.
 
 use toile_assets::sizes::Girth;
 use toile_track::estimate::Estimate;

@@ -1,4 +1,4 @@
-//! Whole visits: the machine, its pages and its words, driven as sensor, finger, keyboard and tailor drive them.
+//! Whole visits: the model, its pages and its texts, driven as sensor, finger, keyboard and dressing worker drive them.
 
 mod privacy;
 mod texts;
@@ -21,7 +21,7 @@ use toile_view::image::Size;
 
 const MS: u64 = 1_000_000;
 
-/// Time between two looks.
+/// Time between two polls.
 const LOOK: u64 = 20 * MS;
 
 fn defaults() -> VisitDefaults {
@@ -35,18 +35,18 @@ fn defaults() -> VisitDefaults {
     }
 }
 
-/// A visit that is played, with a tailor who does what it is told within a second.
+/// A visit that is played, with a dressing worker that answers within a second.
 pub(crate) struct Play {
     model: VisitModel,
     texts: Texts,
     now: u64,
-    /// What the tailor has yet to say, and when.
+    /// Replies of the dressing worker that are due, and when.
     due: Vec<(u64, Input)>,
     known: VisitorMeasures,
     /// Effects in the order in which they were given.
     effects: Vec<Effect>,
     pages: BTreeSet<Page>,
-    /// What the tailor cannot do.
+    /// Whether the dressing worker fails.
     fails: bool,
 }
 

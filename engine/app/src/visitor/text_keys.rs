@@ -1,4 +1,4 @@
-//! Keys: the words that the pages use, each by its name in the texts.
+//! Text keys: the words that the pages use, each by its name in the texts.
 
 macro_rules! keys {
     ($($name:ident = $text:literal,)*) => {

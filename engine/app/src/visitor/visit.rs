@@ -40,7 +40,7 @@ pub(super) struct ViewTurn {
     pub since_ns: u64,
 }
 
-/// A thing that the tailor was asked for: its number, until it has come.
+/// A job that the dressing worker was given: its number, until its reply has come.
 pub(super) type PendingJob = Option<u32>;
 
 /// Two sizes beside each other.
@@ -69,7 +69,7 @@ pub(super) struct Visit {
     pub seated_said: bool,
     pub progress: MeasureProgress,
     pub known: Option<VisitorMeasures>,
-    /// What they wear, what they wore when it was last put on, and which of it is in hand (its place on the shelf).
+    /// What they wear, what they wore when it was last put on, and which of it is in hand (its place in the wardrobe).
     pub outfit: Outfit,
     pub worn: Outfit,
     pub in_hand: usize,

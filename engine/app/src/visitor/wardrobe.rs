@@ -79,7 +79,7 @@ enum BodyHalf {
     Lower,
 }
 
-/// A colour that a garment comes in: told by its name, for not everybody tells it by its look.
+/// A colour that a garment comes in, with its name, for not everybody tells colours apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Colour {
     /// Its name.
@@ -119,7 +119,7 @@ const LINEN: [Colour; 5] = [
     colour(TextKey::ColourCharcoal, [0.19, 0.20, 0.22]),
 ];
 
-/// A garment of the shelf.
+/// A garment of the wardrobe.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WardrobeItem {
     /// How it is cut and what it is made of.
@@ -185,7 +185,7 @@ fn palette(kind: GarmentKind, own: [f32; 3]) -> Vec<Colour> {
 /// A garment that is worn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct WornItem {
-    /// Its place on the shelf.
+    /// Its place in the wardrobe.
     pub item: usize,
     /// The place of its size among those that are made.
     pub size: usize,

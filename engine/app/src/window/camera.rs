@@ -30,7 +30,7 @@ pub fn camera(stature: f32, at: Vec3, yaw: f32, free: [f32; 4], aspect: f32) -> 
     let aside = (0.5 - 0.5 * (left + right)) * seen * aspect;
     let above = (0.5 - 0.5 * (top + bottom)) * seen;
     let target = near.target + right_hand * aside - Vec3::Y * above;
-    // The eye stays at its height and looks down a little: from the height of the target it would see along the floor.
+    // The camera stays at its height and looks down a little: from the height of the target it would see along the floor.
     Camera { target, distance, height: near.height + above, ..near }
 }
 

@@ -55,7 +55,7 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, AppError> {
     })
 }
 
-/// A frame that takes the stage, and what is drawn of it.
+/// A frame as a scene of the loop, and what is drawn of it.
 fn stage(frame: Frame) -> (Staged, BodyModel) {
     let model = BodyModel::of(&frame);
     (Staged::new(frame), model)

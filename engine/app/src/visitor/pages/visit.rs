@@ -8,7 +8,7 @@ use super::PageWriter;
 
 const SECOND_NS: u64 = 1_000_000_000;
 
-/// How long the mirror tells one of the things that it can do (ns).
+/// How long the mirror shows one of the things that it can do (ns).
 const TURN_NS: u64 = 5 * SECOND_NS;
 
 /// How long the figure that shows how to stand takes to go round (ns).
@@ -17,8 +17,8 @@ const POSE_NS: u64 = 4 * SECOND_NS;
 /// Share of the way to a dressed body that taking the measures is.
 const MEASURED: f32 = 0.5;
 
-/// What the tailor takes, about: half of what is left of the way is gone after it (ns).
-const TAILOR_NS: f32 = 1.5e9;
+/// What dressing takes, about: half of what is left of the way is gone after it (ns).
+const DRESSING_NS: f32 = 1.5e9;
 
 /// Whole seconds that are left, the last one included.
 fn seconds(ns: u64) -> u32 {
@@ -57,8 +57,8 @@ impl PageWriter<'_> {
 
     pub(super) fn measuring(&self) -> Vec<Block> {
         let since = |ns: u64| self.model.now_ns.saturating_sub(ns);
-        // The tailor does not say how far it is: the rest of the way is halved again and again.
-        let onwards = |from: f32, ns: u64| from + (1.0 - from) * (1.0 - (-(ns as f32) / TAILOR_NS).exp()) * 0.9;
+        // The dressing worker does not report how far it is: the rest of the way is halved again and again.
+        let onwards = |from: f32, ns: u64| from + (1.0 - from) * (1.0 - (-(ns as f32) / DRESSING_NS).exp()) * 0.9;
         let whole = self.model.defaults.times.measure_ns.max(1);
         let (share, label) = match self.model.visit.progress {
             MeasureProgress::Measuring(began) if since(began) < whole => {

@@ -213,7 +213,7 @@ fn face(control: &Control, button: &ButtonBox, rect: Rect, sizes: Sizes, painter
     }
 }
 
-/// A disc of a colour; light and dark ones are both told from the panel by their edge.
+/// A disc of a colour; its edge sets light and dark ones off from the panel.
 fn swatch(painter: &Painter, centre: Pos2, radius: f32, colour: [f32; 3], chosen: bool, sizes: Sizes) {
     let [r, g, b] = colour.map(|c| c.clamp(0.0, 1.0));
     let fill = Color32::from(Rgba::from_rgb(r, g, b));
