@@ -10,7 +10,7 @@ use toile_assets::wardrobe::{self, style::Style};
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::Settings;
 use toile_engine::frame::{Frame, Snapshot};
-use toile_engine::relay::Reader;
+use toile_engine::triple_buffer::Reader;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::filter::JointFilter;
 use toile_sensors::frame::{Joints, TrackedJoint};

@@ -11,14 +11,14 @@ use toile_engine::body::Poser;
 use toile_engine::body::filters::{LimitFilter, PoseFilter};
 use toile_engine::clock::{Clock, SimClock};
 use toile_engine::frame::Snapshot;
-use toile_engine::pace::Turn;
-use toile_engine::pace::event::{EVENTS, EVENTS_NAME, NoAccount, What};
-use toile_engine::pace::physics::{Outlets, Physics, Staged};
-use toile_engine::pace::queue::bounded;
-use toile_engine::pace::render::{Eye, Render};
-use toile_engine::pace::sense::{Playback, Seen, Sense};
-use toile_engine::pace::tape::{ENTRIES, ENTRIES_NAME};
-use toile_engine::relay::Relay;
+use toile_engine::frame_loop::ThreadLoop;
+use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, EventKind, NoCounters};
+use toile_engine::frame_loop::physics_thread::{FrameScene, PhysicsOutputs, PhysicsThread};
+use toile_engine::frame_loop::queue::bounded;
+use toile_engine::frame_loop::recording::{ENTRIES, ENTRIES_NAME};
+use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
+use toile_engine::frame_loop::sensor_thread::{Playback, SensorFrame, SensorThread};
+use toile_engine::triple_buffer::TripleBuffer;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::filter::angles::AngleFilter;
 use toile_sensors::filter::one_euro::OneEuroSettings;
@@ -121,12 +121,12 @@ fn no_garment_of_the_wardrobe_costs_an_allocation_a_step() {
 /// A picture that is only looked at.
 struct Glance(f32);
 
-impl Eye for Glance {
+impl Renderer for Glance {
     type Outfit = ();
 
-    fn put_on(&mut self, _outfit: &mut ()) {}
+    fn set_outfit(&mut self, _outfit: &mut ()) {}
 
-    fn look(&mut self, snapshot: &Snapshot) {
+    fn draw(&mut self, snapshot: &Snapshot) {
         self.0 += snapshot.skin.position(0).x;
     }
 }
@@ -139,29 +139,30 @@ fn no_turn_of_the_loop_costs_an_allocation_whatever_happens() {
     let (mut frame, reader) = stage::frame_and_reader(body, vec![garment]);
     frame.dress(&seen[0]);
     let clock = SimClock::default();
-    let Relay { writer, reader: news } = Relay::new(&Seen::default());
+    let TripleBuffer { writer, reader: news } = TripleBuffer::new(&SensorFrame::default());
     // Few places, so that both queues are full in the end as well.
     let (sender, mut events) = bounded(EVENTS_NAME, EVENTS / 64);
-    let (tape, entries) = bounded(ENTRIES_NAME, ENTRIES / 8);
-    let outlets = Outlets { events: sender, tape: Some(tape) };
-    let mut physics = Physics::new(Staged::new(frame), clock.clone(), 0, news, outlets, NoAccount).warming_up(60);
-    let mut sense = Sense::new(Playback::new(&seen, 0, 1), clock.clone(), writer);
-    let mut render = Render::new(Glance(0.0), clock.clone(), 0, reader);
+    let (recording, entries) = bounded(ENTRIES_NAME, ENTRIES / 8);
+    let outlets = PhysicsOutputs { events: sender, recording: Some(recording) };
+    let mut physics =
+        PhysicsThread::new(FrameScene::new(frame), clock.clone(), 0, news, outlets, NoCounters).warming_up(60);
+    let mut sense = SensorThread::new(Playback::new(&seen, 0, 1), clock.clone(), writer);
+    let mut render = RenderThread::new(Glance(0.0), clock.clone(), 0, reader);
     let found = allocations(|| {
         for tick in 0..360u64 {
             // The thread wakes late, steps are dropped, the sensor ends after two seconds.
             let late = if tick % 50 == 49 { 70_000_000 } else { 0 };
             clock.sleep_until(tick * SECOND_NS / 120);
             clock.spend(late);
-            sense.turn();
-            physics.turn();
-            render.turn();
+            sense.run_due();
+            physics.run_due();
+            render.run_due();
         }
     });
     assert_eq!(found, 0, "{found} allocations in {} steps", physics.ticks());
     assert!(physics.gauges.dropped > 0 && physics.ticks() > 300 && render.pictures > 100);
-    let told: Vec<What> = std::iter::from_fn(|| events.pop()).map(|e| e.what).collect();
-    assert!(told.iter().any(|w| matches!(w, What::Missed(_))), "{told:?}");
+    let told: Vec<EventKind> = std::iter::from_fn(|| events.pop()).map(|e| e.what).collect();
+    assert!(told.iter().any(|w| matches!(w, EventKind::Missed(_))), "{told:?}");
     let full = entries.capacity();
     assert!(full.lost > 0 && full.high_water == full.bound, "{full:?}");
 }

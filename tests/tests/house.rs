@@ -8,15 +8,15 @@ use toile_tests::tree::{self, FLOORS};
 /// Files that may hold unsafe code, each with its reason.
 const UNSAFE_FILES: [(&str, &str); 12] = [
     ("engine/app/src/heap.rs", "the program's allocator counts, for which it has to implement an unsafe trait"),
-    ("engine/core/src/crew/own.rs", "what belongs to a share is lent to whoever works on it"),
-    ("engine/core/src/crew/mod.rs", "a job that borrows the caller's stack is handed to another thread"),
+    ("engine/core/src/workers/per_share.rs", "what belongs to a share is lent to whoever works on it"),
+    ("engine/core/src/workers/mod.rs", "a job that borrows the caller's stack is handed to another thread"),
     ("engine/core/src/lanes/column.rs", "the workers of a step share its columns"),
     ("engine/core/src/lanes/x86.rs", "vector instructions that are picked at run time"),
     ("engine/core/src/lanes/x86/widths.rs", "the same"),
     ("engine/core/src/sync.rs", "a value that threads keep apart by other means"),
     ("tests/models/src/sync.rs", "the same value as the models have it"),
     ("tests/models/src/triple.rs", "the protocol of the triple buffer in a model"),
-    ("tests/models/tests/crew.rs", "plain memory that a model watches"),
+    ("tests/models/tests/workers.rs", "plain memory that a model watches"),
     ("sensors/src/source/openni2.rs", "OpenNI's C library is called"),
     ("tests/tests/allocations.rs", "a counting allocator has to implement an unsafe trait"),
 ];

@@ -42,14 +42,14 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
     (
         "toile-engine",
         &[
-            &["lanes", "relay", "sync", "clock", "meter", "cone"],
-            &["crew"],
-            &["body", "hold"],
+            &["lanes", "triple_buffer", "sync", "clock", "meter", "cone"],
+            &["workers"],
+            &["body", "jump_filter"],
             &["skin"],
             &["colliders"],
             &["cloth"],
             &["frame"],
-            &["pace", "lines"],
+            &["frame_loop", "lines"],
         ],
     ),
     (

@@ -5,25 +5,25 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use toile_engine::pace::blackbox::BlackBox;
-use toile_engine::pace::queue::{Sender, bounded};
-use toile_engine::pace::tape::{ENTRIES, ENTRIES_NAME, Entry};
+use toile_engine::frame_loop::flight_recorder::FlightRecorder;
+use toile_engine::frame_loop::queue::{Sender, bounded};
+use toile_engine::frame_loop::recording::{ENTRIES, ENTRIES_NAME, Entry};
 
 /// Longest that a dying thread waits for the black box.
 const LONGEST_WAIT: Duration = Duration::from_millis(500);
 
 /// What is saved, and where; one run at a time.
-static KEPT: Mutex<Option<(Arc<BlackBox>, PathBuf)>> = Mutex::new(None);
+static KEPT: Mutex<Option<(Arc<FlightRecorder>, PathBuf)>> = Mutex::new(None);
 
 /// From now on a panic of any thread writes this box there.
-pub fn keep(black_box: &Arc<BlackBox>, path: PathBuf) {
+pub fn keep(black_box: &Arc<FlightRecorder>, path: PathBuf) {
     *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some((black_box.clone(), path));
 }
 
-/// A box whose file begins with this header (`pace::tape::header`), kept from now on for a crash; and the end of the tape that fills it.
-pub fn record(header: Vec<u8>, path: PathBuf) -> (Arc<BlackBox>, Sender<Entry>) {
+/// A box whose file begins with this header (`frame_loop::recording::header`), kept from now on for a crash; and the end of the tape that fills it.
+pub fn record(header: Vec<u8>, path: PathBuf) -> (Arc<FlightRecorder>, Sender<Entry>) {
     let (sender, entries) = bounded(ENTRIES_NAME, ENTRIES);
-    let black_box = Arc::new(BlackBox::new(header, entries));
+    let black_box = Arc::new(FlightRecorder::new(header, entries));
     keep(&black_box, path);
     (black_box, sender)
 }

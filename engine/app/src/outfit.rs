@@ -9,7 +9,7 @@ use toile_assets::wardrobe;
 use toile_assets::wardrobe::style::Style;
 use toile_engine::cloth::{Quality, Settings};
 use toile_engine::frame::{Frame, Snapshot};
-use toile_engine::relay::Reader;
+use toile_engine::triple_buffer::Reader;
 use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
 use toile_track::measure::Measurements;

@@ -15,7 +15,7 @@ use toile_engine::body::palette;
 use toile_engine::cloth::{Settings, measure};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::lines::{CAPACITY, Kind, Lines};
-use toile_engine::relay::Reader;
+use toile_engine::triple_buffer::Reader;
 use toile_sensors::clock::{ns_to_ticks, ticks_to_ns};
 use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;

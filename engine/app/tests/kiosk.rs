@@ -302,9 +302,11 @@ fn the_unit_starts_what_there_is_with_the_rights_that_it_needs() {
     ] {
         assert_eq!(value(&unit, key), expected, "{key}");
     }
-    use toile_engine::pace::roles::Role;
-    let highest =
-        [Role::Sensor, Role::Physics, Role::Worker, Role::Render].into_iter().filter_map(Role::priority).max();
+    use toile_engine::frame_loop::thread_roles::ThreadRole;
+    let highest = [ThreadRole::Sensor, ThreadRole::Physics, ThreadRole::Worker, ThreadRole::Render]
+        .into_iter()
+        .filter_map(ThreadRole::priority)
+        .max();
     assert_eq!(value(&unit, "LimitRTPRIO").parse().ok(), highest, "the limit is what the threads ask for");
     assert!(value(&unit, "WatchdogSec").parse::<u64>().unwrap() >= 3, "a stall of two seconds is survived");
     let loopback = fs::read_to_string(folder.join("loopback.conf")).unwrap();
@@ -339,7 +341,7 @@ fn a_crash_leaves_its_last_seconds_where_a_shop_asked_for_them_and_they_replay()
         assert!(again["ticks"].as_u64().unwrap() >= 9 * 120, "{again}");
     }
     let bytes = fs::read(scratch.path().join("crash.tape")).unwrap();
-    let notes = toile_engine::pace::tape::read(&bytes).unwrap().notes;
+    let notes = toile_engine::frame_loop::recording::read(&bytes).unwrap().notes;
     assert!(notes.iter().any(|n| n.text.contains("\"still\":false")), "a shopper was there: {notes:?}");
     fs::remove_file(scratch.path().join("crash.tape")).unwrap();
     let said = run(QUICK);

@@ -19,9 +19,9 @@ use toile::outfit::Wish;
 use toile::shopper;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::{Frame, Snapshot, Times};
-use toile_engine::pace::governor::Rung;
-use toile_engine::pace::physics::{Scene, Staged};
-use toile_engine::pace::render::Eye;
+use toile_engine::frame_loop::governor::Rung;
+use toile_engine::frame_loop::physics_thread::{FrameScene, Scene};
+use toile_engine::frame_loop::render_thread::Renderer;
 use toile_sensors::frame::Joints;
 
 /// Hangs whoever passes it while it is shut.
@@ -40,11 +40,11 @@ fn physics_gate() -> &'static Gate {
     GATE.get_or_init(Gate::default)
 }
 
-struct Gated(Staged, Gate);
+struct Gated(FrameScene, Gate);
 
 impl Gated {
     fn new(frame: Frame) -> Self {
-        Self(Staged::new(frame), physics_gate().clone())
+        Self(FrameScene::new(frame), physics_gate().clone())
     }
 }
 
@@ -75,14 +75,14 @@ impl Scene for Gated {
 
 struct Display(Headless, Gate);
 
-impl Eye for Display {
+impl Renderer for Display {
     type Outfit = ();
 
-    fn put_on(&mut self, _outfit: &mut ()) {}
+    fn set_outfit(&mut self, _outfit: &mut ()) {}
 
-    fn look(&mut self, snapshot: &Snapshot) {
+    fn draw(&mut self, snapshot: &Snapshot) {
         pass(&self.1);
-        self.0.look(snapshot);
+        self.0.draw(snapshot);
     }
 }
 
@@ -122,7 +122,7 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
     let feed = Feed::Played(Visits::new(&session.joints, clock.now_ns(), 3_600_000_000_000));
     let Dressed { frame, reader, made } = dressed;
     let first = Act { scene: Gated::new(frame), reader, outfit: (), made };
-    let cast = Cast { first, eye: Display(Headless::default(), display), feed, tape: None };
+    let cast = Cast { first, renderer: Display(Headless::default(), display), feed, recording: None };
     let (lives, doors) = Lives::start(cast, clock).unwrap();
     let second = 1_000_000_000;
     let options = ServiceOptions {

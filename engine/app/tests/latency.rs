@@ -58,17 +58,18 @@ fn a_run_is_told_by_stage_and_replayed_bit_for_bit_with_two_workers_and_with_one
 
 /// One joint in one frame, half a millimetre: the replay says so with exit 6 and the step.
 fn diverges(scratch: &Scratch) {
-    use toile_engine::pace::tape::{self, Entry, Tape};
-    let Tape { text, mut entries, .. } = tape::read(&fs::read(scratch.path().join("run.tape")).unwrap()).unwrap();
-    let frame = entries.iter().position(|e| matches!(e, Entry::Seen(seen) if seen.number == 20)).unwrap();
-    let Entry::Seen(seen) = &mut entries[frame] else { unreachable!() };
+    use toile_engine::frame_loop::recording::{self, Entry, Recording};
+    let Recording { text, mut entries, .. } =
+        recording::read(&fs::read(scratch.path().join("run.tape")).unwrap()).unwrap();
+    let frame = entries.iter().position(|e| matches!(e, Entry::SensorFrame(seen) if seen.number == 20)).unwrap();
+    let Entry::SensorFrame(seen) = &mut entries[frame] else { unreachable!() };
     seen.joints.joints[0].position.y += 5e-4;
     seen.joints.joints[17].position.x += 5e-4;
     let Some(Entry::Step { tick: next, .. }) = entries[frame..].iter().find(|e| matches!(e, Entry::Step { .. })) else {
         panic!("no step after a frame")
     };
-    let mut bytes = tape::header(&text);
-    entries.iter().for_each(|e| tape::write(e, &mut bytes));
+    let mut bytes = recording::header(&text);
+    entries.iter().for_each(|e| recording::write(e, &mut bytes));
     fs::write(scratch.path().join("other.tape"), bytes).unwrap();
     let (code, again) = object(scratch, &["replay", "other.tape", "--json"]);
     let tick = again["diverged_at"].as_u64().unwrap();

@@ -26,9 +26,9 @@ use toile::visitor::model::Input;
 use toile::visitor::screen::{Action, Block, BodyView, Page, Screen};
 use toile::visitor::setup::VisitorSetup;
 use toile_engine::clock::{Clock, RealClock};
-use toile_engine::pace::physics::Staged;
-use toile_engine::pace::queue::{Receiver, Sender, bounded};
-use toile_engine::relay::{Reader, Relay};
+use toile_engine::frame_loop::physics_thread::FrameScene;
+use toile_engine::frame_loop::queue::{Receiver, Sender, bounded};
+use toile_engine::triple_buffer::{Reader, TripleBuffer};
 
 /// Longest that a page is waited for, beside compilers.
 const LONGEST: Duration = Duration::from_secs(180);
@@ -181,8 +181,8 @@ fn serve() -> Vec<SessionState> {
     let Dressed { frame, reader, made } = tailor::mannequin(&wish, &pose).unwrap();
     // They stand there for as long as the visit takes.
     let feed = Feed::Played(Visits::new(&session.joints, clock.now_ns(), 0));
-    let first = Act { scene: Staged::new(frame), reader, outfit: (), made };
-    let cast = Cast { first, eye: Headless::default(), feed, tape: None };
+    let first = Act { scene: FrameScene::new(frame), reader, outfit: (), made };
+    let cast = Cast { first, renderer: Headless::default(), feed, recording: None };
     let (lives, doors) = Lives::start(cast, clock).unwrap();
     let played = Some(Model::Played(Arc::new(session)));
     let options = ServiceOptions {
@@ -196,7 +196,7 @@ fn serve() -> Vec<SessionState> {
         memory_locked: false,
         warnings: Vec::new(),
     };
-    let screens = Relay::new(&setup.first());
+    let screens = TripleBuffer::new(&setup.first());
     let (asked, mut asks) = bounded("ASKED", 16);
     let (show, pairs) = bounded("PAIRS", 8);
     let mut finger = Finger { screens: screens.reader, asked, pairs, pages: Vec::new() };
@@ -219,7 +219,7 @@ fn serve() -> Vec<SessionState> {
             say: &say,
             figures: None,
             tailor: Tailor::new(wish),
-            stage: |frame| (Staged::new(frame), ()),
+            stage: |frame| (FrameScene::new(frame), ()),
             pose,
             black_box: None,
         };

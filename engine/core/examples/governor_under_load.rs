@@ -15,13 +15,13 @@ use toile_engine::body::JointFrames;
 use toile_engine::clock::{Clock, SimClock};
 use toile_engine::cloth::{Settings, Wind};
 use toile_engine::frame::{Frame, Times};
-use toile_engine::pace::event::{EVENTS, EVENTS_NAME, NoAccount, What};
-use toile_engine::pace::governor::{LADDER, Rung};
-use toile_engine::pace::physics::{Outlets, Physics, Scene, Staged};
-use toile_engine::pace::queue::bounded;
-use toile_engine::pace::sense::{Playback, Seen, Sense};
-use toile_engine::pace::simulate::simulate;
-use toile_engine::relay::Relay;
+use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, EventKind, NoCounters};
+use toile_engine::frame_loop::governor::{LADDER, Rung};
+use toile_engine::frame_loop::physics_thread::{FrameScene, PhysicsOutputs, PhysicsThread, Scene};
+use toile_engine::frame_loop::queue::bounded;
+use toile_engine::frame_loop::sensor_thread::{Playback, SensorFrame, SensorThread};
+use toile_engine::frame_loop::simulate::simulate;
+use toile_engine::triple_buffer::TripleBuffer;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::Joints;
 
@@ -34,7 +34,7 @@ const LENGTH_NS: u64 = 8 * SECOND_NS;
 
 /// The dressed shopper on a machine whose speed is told.
 struct Loaded {
-    staged: Staged,
+    staged: FrameScene,
     clock: SimClock,
     share: f32,
 }
@@ -86,24 +86,24 @@ fn main() -> Result<(), Box<dyn Error>> {
     frame.dress(&frames[0]);
 
     let clock = SimClock::default();
-    let Relay { writer, reader } = Relay::new(&Seen::default());
+    let TripleBuffer { writer, reader } = TripleBuffer::new(&SensorFrame::default());
     let (sender, mut events) = bounded(EVENTS_NAME, EVENTS);
-    let scene = Loaded { staged: Staged::new(frame), clock: clock.clone(), share: 1.0 };
-    let outlets = Outlets { events: sender, tape: None };
-    let mut physics = Physics::new(scene, clock.clone(), 0, reader, outlets, NoAccount);
-    let mut sense = Sense::new(Playback::new(&frames, 0, 2), clock.clone(), writer);
+    let scene = Loaded { staged: FrameScene::new(frame), clock: clock.clone(), share: 1.0 };
+    let outlets = PhysicsOutputs { events: sender, recording: None };
+    let mut physics = PhysicsThread::new(scene, clock.clone(), 0, reader, outlets, NoCounters);
+    let mut sense = SensorThread::new(Playback::new(&frames, 0, 2), clock.clone(), writer);
     simulate(&clock, &mut [&mut sense, &mut physics], LENGTH_NS);
 
     let mut lowest = 0;
     while let Some(event) = events.pop() {
         let at = event.scheduled_ns as f64 / SECOND_NS as f64;
         match event.what {
-            What::Quality(change) => {
+            EventKind::Quality(change) => {
                 lowest = lowest.max(change.to);
                 let rung = &LADDER[usize::from(change.to)];
                 println!("{at:.3} s: rung {} to {}, which gives up {}", change.from, change.to, rung.gives_up);
             }
-            What::Missed(miss) => {
+            EventKind::Missed(miss) => {
                 println!("{at:.3} s: a step was published {:.1} ms after it was due", miss.total_ns as f64 * 1e-6);
             }
             _ => {}

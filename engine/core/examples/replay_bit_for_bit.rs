@@ -12,14 +12,14 @@ use toile_engine::body::JointFrames;
 use toile_engine::clock::SimClock;
 use toile_engine::cloth::Settings;
 use toile_engine::frame::Frame;
-use toile_engine::pace::event::{EVENTS, EVENTS_NAME, NoAccount};
-use toile_engine::pace::physics::{Outlets, Physics, Staged, Stepper};
-use toile_engine::pace::queue::bounded;
-use toile_engine::pace::replay::{Replayed, replay};
-use toile_engine::pace::sense::{Playback, Seen, Sense};
-use toile_engine::pace::simulate::simulate;
-use toile_engine::pace::tape::{self, ENTRIES, ENTRIES_NAME, Entry, Tape};
-use toile_engine::relay::Relay;
+use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, NoCounters};
+use toile_engine::frame_loop::physics_thread::{FrameScene, PhysicsOutputs, PhysicsThread, SceneStepper};
+use toile_engine::frame_loop::queue::bounded;
+use toile_engine::frame_loop::recording::{self, ENTRIES, ENTRIES_NAME, Entry, Recording};
+use toile_engine::frame_loop::replay::{Replayed, replay};
+use toile_engine::frame_loop::sensor_thread::{Playback, SensorFrame, SensorThread};
+use toile_engine::frame_loop::simulate::simulate;
+use toile_engine::triple_buffer::TripleBuffer;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::Joints;
 
@@ -29,29 +29,29 @@ const LENGTH_NS: u64 = 2 * SECOND_NS;
 const MOVED: (u64, f32) = (30, 1e-3);
 
 /// The scene as its text in the recording says: whoever replays makes the very same.
-fn staged(size: &str, first: &Joints, workers: usize) -> Result<Staged, Box<dyn Error>> {
+fn staged(size: &str, first: &Joints, workers: usize) -> Result<FrameScene, Box<dyn Error>> {
     let body = Body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?;
     let rig = Rig::fit(&body);
     let dress = wardrobe::style("sun-dress")?.dress(size, &body)?;
     let (mut frame, _snapshots) = Frame::new(body, &rig, vec![dress], Settings { workers, ..Settings::default() })?;
     frame.dress(first);
-    Ok(Staged::new(frame))
+    Ok(FrameScene::new(frame))
 }
 
 /// A run against a simulated clock, as the bytes of a file.
 fn record(frames: &[Joints]) -> Result<Vec<u8>, Box<dyn Error>> {
     let (sender, _events) = bounded(EVENTS_NAME, EVENTS);
     let (recorder, mut entries) = bounded(ENTRIES_NAME, ENTRIES);
-    let Relay { writer, reader } = Relay::new(&Seen::default());
+    let TripleBuffer { writer, reader } = TripleBuffer::new(&SensorFrame::default());
     let clock = SimClock::default();
-    let outlets = Outlets { events: sender, tape: Some(recorder) };
-    let mut physics = Physics::new(staged("38", &frames[0], 1)?, clock.clone(), 0, reader, outlets, NoAccount);
-    let mut sense = Sense::new(Playback::new(frames, 0, 1), clock.clone(), writer);
+    let outlets = PhysicsOutputs { events: sender, recording: Some(recorder) };
+    let mut physics = PhysicsThread::new(staged("38", &frames[0], 1)?, clock.clone(), 0, reader, outlets, NoCounters);
+    let mut sense = SensorThread::new(Playback::new(frames, 0, 1), clock.clone(), writer);
     simulate(&clock, &mut [&mut sense, &mut physics], LENGTH_NS);
-    let mut bytes = tape::header("38");
-    tape::write(&Entry::Dressed(frames[0]), &mut bytes);
+    let mut bytes = recording::header("38");
+    recording::write(&Entry::Dressed(frames[0]), &mut bytes);
     while let Some(entry) = entries.pop() {
-        tape::write(&entry, &mut bytes);
+        recording::write(&entry, &mut bytes);
     }
     if let Some(warning) = entries.capacity().warning() {
         return Err(warning.into());
@@ -62,7 +62,7 @@ fn record(frames: &[Joints]) -> Result<Vec<u8>, Box<dyn Error>> {
 /// The same steps again, by the same function, with so many workers.
 fn again(size: &str, entries: &[Entry], workers: usize) -> Result<Replayed, Box<dyn Error>> {
     let Some(Entry::Dressed(first)) = entries.first() else { return Err("the recording dresses nobody".into()) };
-    Ok(replay(&mut Stepper::new(staged(size, first, workers)?), entries, &SimClock::default()))
+    Ok(replay(&mut SceneStepper::new(staged(size, first, workers)?), entries, &SimClock::default()))
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -73,7 +73,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let frames: Vec<Joints> = (0..60).map(seen).collect();
     let bytes = record(&frames)?;
-    let Tape { text: size, mut entries, .. } = tape::read(&bytes)?;
+    let Recording { text: size, mut entries, .. } = recording::read(&bytes)?;
     println!("recorded {} entries in {} kB", entries.len(), bytes.len() / 1_000);
 
     for workers in [1, 2] {
@@ -90,11 +90,11 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // The comparison is no formality. A joint that is a millimetre off is found in the step that first knew of it or the next:
     // the intake lets what it is off by fade in.
-    let moved = entries.iter().position(|e| matches!(e, Entry::Seen(seen) if seen.number == MOVED.0));
+    let moved = entries.iter().position(|e| matches!(e, Entry::SensorFrame(seen) if seen.number == MOVED.0));
     let moved = moved.ok_or("the recording has fewer frames than it should")?;
     let known = entries[moved..].iter().find_map(|e| if let Entry::Step { tick, .. } = e { Some(*tick) } else { None });
     let known = known.ok_or("no step follows the frame")?;
-    if let Entry::Seen(seen) = &mut entries[moved] {
+    if let Entry::SensorFrame(seen) = &mut entries[moved] {
         seen.joints.at_mut(Joint::LeftWrist).position.x += MOVED.1;
     }
     let Some(found) = again(&size, &entries, 1)?.diverged_at else { return Err("it was not found".into()) };

@@ -16,14 +16,14 @@ use toile_engine::body::JointFrames;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::cloth::Settings;
 use toile_engine::frame::{Frame, Snapshot};
-use toile_engine::pace::event::{EVENTS, EVENTS_NAME, NoAccount};
-use toile_engine::pace::physics::{Outlets, Physics, Staged};
-use toile_engine::pace::queue::bounded;
-use toile_engine::pace::render::{Eye, Render};
-use toile_engine::pace::roles::Role;
-use toile_engine::pace::sense::{Seen, Sense, Source};
-use toile_engine::pace::threads::{self, Stop};
-use toile_engine::relay::Relay;
+use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, NoCounters};
+use toile_engine::frame_loop::physics_thread::{FrameScene, PhysicsOutputs, PhysicsThread};
+use toile_engine::frame_loop::queue::bounded;
+use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
+use toile_engine::frame_loop::sensor_thread::{JointSource, SensorFrame, SensorThread};
+use toile_engine::frame_loop::thread_roles::ThreadRole;
+use toile_engine::frame_loop::threads::{self, Stop};
+use toile_engine::triple_buffer::TripleBuffer;
 use toile_sensors::clock::{SECOND_NS, ticks_to_ns};
 use toile_sensors::frame::Joints;
 
@@ -37,7 +37,7 @@ struct Camera {
     frames: u64,
 }
 
-impl Source for Camera {
+impl JointSource for Camera {
     fn next_ns(&self) -> Option<u64> {
         Some(self.origin_ns + self.frames * SECOND_NS / 30)
     }
@@ -59,13 +59,13 @@ struct Display {
     bad: u64,
 }
 
-impl Eye for Display {
+impl Renderer for Display {
     // The scene is never changed for another here, so there is nothing to put on.
     type Outfit = ();
 
-    fn put_on(&mut self, _outfit: &mut ()) {}
+    fn set_outfit(&mut self, _outfit: &mut ()) {}
 
-    fn look(&mut self, snapshot: &Snapshot) {
+    fn draw(&mut self, snapshot: &Snapshot) {
         self.pictures += 1;
         self.bad += u64::from(snapshot.tick < self.newest);
         self.bad += u64::from(snapshot.garments.iter().flatten().any(|p| !p.is_finite()));
@@ -82,27 +82,28 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut frame, snapshots) = Frame::new(body, &rig, vec![dress], Settings { workers: 1, ..Settings::default() })?;
     let first = Camera { skeleton: skeleton.clone(), origin_ns: 0, frames: 0 }.read();
     frame.dress(&first.ok_or("the camera gives no frame")?);
-    let (crew, _) = threads::crew(2)?;
+    let (pool, _) = threads::worker_pool(2)?;
 
     // Between the threads: the latest joints, the latest snapshot, and a bounded queue of what happened.
-    let Relay { writer, reader } = Relay::new(&Seen::default());
+    let TripleBuffer { writer, reader } = TripleBuffer::new(&SensorFrame::default());
     let (sender, mut events) = bounded(EVENTS_NAME, EVENTS);
     let clock = RealClock::default();
     let origin_ns = clock.now_ns() + SECOND_NS / 10;
-    let sense = Sense::new(Camera { skeleton, origin_ns, frames: 0 }, clock, writer);
-    let outlets = Outlets { events: sender, tape: None };
-    let physics = Physics::new(Staged::new(frame.with_crew(crew)), clock, origin_ns, reader, outlets, NoAccount);
-    let render = Render::new(Display::default(), clock, origin_ns + ticks_to_ns(1), snapshots);
+    let sense = SensorThread::new(Camera { skeleton, origin_ns, frames: 0 }, clock, writer);
+    let outlets = PhysicsOutputs { events: sender, recording: None };
+    let physics =
+        PhysicsThread::new(FrameScene::new(frame.with_workers(pool)), clock, origin_ns, reader, outlets, NoCounters);
+    let render = RenderThread::new(Display::default(), clock, origin_ns + ticks_to_ns(1), snapshots);
 
     let stop = Stop::default();
-    let sensor = threads::start(Role::Sensor, sense, clock, &stop)?;
-    let physics = threads::start(Role::Physics, physics, clock, &stop)?;
-    let render = threads::start(Role::Render, render, clock, &stop)?;
+    let sensor = threads::start(ThreadRole::Sensor, sense, clock, &stop)?;
+    let physics = threads::start(ThreadRole::Physics, physics, clock, &stop)?;
+    let render = threads::start(ThreadRole::Render, render, clock, &stop)?;
     std::thread::sleep(Duration::from_millis(SECONDS * 1_000 + 100));
     stop.now();
     let (sensor, physics, render) = (sensor.join(), physics.join(), render.join());
     let (sensor, physics) = (sensor.ok_or("the sensor panicked")?, physics.ok_or("the physics panicked")?);
-    let display = render.ok_or("the render panicked")?.eye;
+    let display = render.ok_or("the render panicked")?.renderer;
 
     let gauges = &physics.gauges;
     let us = |share| gauges.step.histogram().value_at_quantile(share) / 1_000;

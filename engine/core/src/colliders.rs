@@ -9,7 +9,7 @@ use thiserror::Error;
 use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES, STEP_SECONDS};
 use toile_assets::skeleton::BONES;
 
-use crate::hold::Hold;
+use crate::jump_filter::JumpFilter;
 
 pub use crate::cone::{Contact, PARKED, RestSphere, RoundCone};
 
@@ -70,7 +70,7 @@ pub struct Colliders {
     pub step_seconds: f32,
     placed: bool,
     root: Affine3A,
-    hold: Hold,
+    hold: JumpFilter,
 }
 
 impl Colliders {
@@ -100,7 +100,7 @@ impl Colliders {
             step_seconds: STEP_SECONDS,
             placed: false,
             root: Affine3A::IDENTITY,
-            hold: Hold::default(),
+            hold: JumpFilter::default(),
         })
     }
 

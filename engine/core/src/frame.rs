@@ -19,11 +19,11 @@ use crate::clock::{Clock, RealClock};
 use crate::cloth::measure::{self, Strain};
 use crate::cloth::{Cloth, Settings, Step, Wind};
 use crate::colliders::{ColliderError, Colliders, RestSphere};
-use crate::crew::{Crew, CrewError, SHARES};
 use crate::meter::{CLOTH, PLACE, POSE, PUBLISH, SKIN};
-use crate::relay::{Reader, Relay, Writer};
 use crate::skin::{Blend, Posed, SkinError, SkinningJob};
-use meters::Laps;
+use crate::triple_buffer::{Reader, TripleBuffer, Writer};
+use crate::workers::{SHARES, WorkerPool, WorkerPoolError};
+use meters::StageTimes;
 
 pub use meters::Meters;
 
@@ -78,7 +78,7 @@ pub enum FrameError {
     Skin(#[from] SkinError),
     /// The workers.
     #[error(transparent)]
-    Crew(#[from] CrewError),
+    WorkerPool(#[from] WorkerPoolError),
 }
 
 /// The scene in motion: a body, its colliders, its garments.
@@ -92,7 +92,7 @@ pub struct Frame {
     pose: Pose,
     palette: [Affine3A; BONES],
     colliders: Colliders,
-    crew: Crew,
+    pool: WorkerPool,
     /// Steps in which a worker panicked.
     broken: u64,
     skinning: SkinningJob,
@@ -124,13 +124,13 @@ impl Frame {
             skin: skinning.posed(),
             garments: garments.iter().map(|g| g.start.clone()).collect(),
         };
-        let Relay { writer, reader } = Relay::new(&snapshot);
+        let TripleBuffer { writer, reader } = TripleBuffer::new(&snapshot);
         let frame = Self {
             poser: Poser::new(&body.skeleton).keeping_clear(&spheres, &rig.capsules),
             pose: Pose::rest(&body.skeleton),
             palette: [Affine3A::IDENTITY; BONES],
             colliders,
-            crew: Crew::new(settings.workers.clamp(1, SHARES))?,
+            pool: WorkerPool::new(settings.workers.clamp(1, SHARES))?,
             broken: 0,
             skinning,
             skin: snapshot.skin,
@@ -157,21 +157,21 @@ impl Frame {
         for step in 1..=DRESS_STEPS + SETTLE_STEPS {
             let t = (step as f32 / DRESS_STEPS as f32).min(1.0);
             self.pose = blend(&rest, &goal, t * t * (3.0 - 2.0 * t));
-            self.advance(&mut Laps::from(clock.now_ns()), &clock);
+            self.advance(&mut StageTimes::from(clock.now_ns()), &clock);
         }
     }
 
     /// The same with another crew, one whose helper has a core of its own for example. At load.
     #[must_use]
-    pub fn with_crew(self, crew: Crew) -> Self {
-        Self { settings: Settings { workers: crew.workers(), ..self.settings }, crew, ..self }
+    pub fn with_workers(self, pool: WorkerPool) -> Self {
+        Self { settings: Settings { workers: pool.workers(), ..self.settings }, pool, ..self }
     }
 
     /// Takes over the crew of a frame that leaves the stage, which gets this one's: no thread begins or ends.
-    pub fn take_crew(&mut self, from: &mut Self) {
-        std::mem::swap(&mut self.crew, &mut from.crew);
-        self.settings.workers = self.crew.workers();
-        from.settings.workers = from.crew.workers();
+    pub fn swap_workers(&mut self, from: &mut Self) {
+        std::mem::swap(&mut self.pool, &mut from.pool);
+        self.settings.workers = self.pool.workers();
+        from.settings.workers = from.pool.workers();
     }
 
     /// Strain and penetration are measured every so many steps, for a loop that has other things to do with the time;
@@ -180,9 +180,9 @@ impl Frame {
         self.measure_every = steps;
     }
 
-    /// Spoils the state of every garment ([`Cloth::upset`]).
-    pub fn upset(&mut self, seed: u64) {
-        self.cloths.iter_mut().for_each(|cloth| cloth.upset(seed));
+    /// Spoils the state of every garment ([`Cloth::inject_fault`]).
+    pub fn inject_fault(&mut self, seed: u64) {
+        self.cloths.iter_mut().for_each(|cloth| cloth.inject_fault(seed));
     }
 
     /// What the governor gave up: the share of the substeps that is left, and whether there is wind.
@@ -199,9 +199,9 @@ impl Frame {
 
     /// The step itself, as the loop takes it: what it shows is published with these times.
     pub fn step_at(&mut self, joints: &Joints, times: Times, clock: &impl Clock) {
-        let mut laps = Laps::from(clock.now_ns());
+        let mut laps = StageTimes::from(clock.now_ns());
         // It wakes while the body is posed and skinned.
-        self.crew.wake();
+        self.pool.wake();
         self.pose = self.poser.pose(joints, STEP_SECONDS);
         self.advance(&mut laps, clock);
         self.publish(times, clock);
@@ -211,22 +211,22 @@ impl Frame {
     }
 
     /// The stages after the pose, in order.
-    fn advance(&mut self, laps: &mut Laps, clock: &impl Clock) {
+    fn advance(&mut self, laps: &mut StageTimes, clock: &impl Clock) {
         palette(&self.body.skeleton, &self.pose, &mut self.palette);
         laps.lap(POSE, clock.now_ns());
         // What a worker that panicked left out shows the body as it was.
-        let skinned = self.skinning.run_with(&mut self.crew, BLEND, &self.palette, &mut self.skin);
+        let skinned = self.skinning.run_with(&mut self.pool, BLEND, &self.palette, &mut self.skin);
         self.broken += u64::from(!skinned);
         laps.lap(SKIN, clock.now_ns());
         self.colliders.place(&self.palette);
         laps.lap(PLACE, clock.now_ns());
-        let Self { cloths, garments, crew, palette, colliders, settings, .. } = self;
+        let Self { cloths, garments, pool, palette, colliders, settings, .. } = self;
         let step = Step { palette, colliders, settings };
         match (&mut cloths[..], &garments[..]) {
             // One garment is shared by the workers; several are one worker's each.
-            ([cloth], [garment]) => cloth.step_with(crew, garment, &step),
+            ([cloth], [garment]) => cloth.step_with(pool, garment, &step),
             (cloths, garments) => {
-                let work = crew.each(cloths, |i, cloth| cloth.step(&garments[i], &step));
+                let work = pool.each(cloths, |i, cloth| cloth.step(&garments[i], &step));
                 // The garment whose step broke off keeps what it had published.
                 self.broken += u64::from(work.is_err());
             }

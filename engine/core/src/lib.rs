@@ -2,7 +2,7 @@
 //!
 //! Reads: filtered joints and baked assets. Writes: the body's bones and skin, the colliders, the snapshot to show.
 //! Budget: one step of 1/120 s within 8.3 ms, nothing allocated in it.
-//! Thread: the physics thread; `relay` stands between it and the others.
+//! Thread: the physics thread; a triple buffer stands between it and the others.
 
 pub mod body;
 pub mod clock;
@@ -10,18 +10,18 @@ pub mod cloth;
 pub mod colliders;
 pub mod cone;
 #[expect(unsafe_code, reason = "a job that borrows the caller's stack is handed to another thread")]
-pub mod crew;
+pub mod workers;
 // Not within the room's own file, which the models of the hand-offs include (tests/models).
-#[cfg(test)]
-#[path = "crew/tests.rs"]
-mod crew_tests;
 pub mod frame;
-pub mod hold;
+pub mod frame_loop;
+pub mod jump_filter;
 pub mod lanes;
 pub mod lines;
 pub mod meter;
-pub mod pace;
-pub mod relay;
 pub mod skin;
 #[expect(unsafe_code, reason = "a value that threads keep apart by other means")]
 pub mod sync;
+pub mod triple_buffer;
+#[cfg(test)]
+#[path = "workers/tests.rs"]
+mod workers_tests;

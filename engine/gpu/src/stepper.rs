@@ -12,7 +12,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use toile_engine::cloth::Step;
-use toile_engine::crew::{Crew, Panicked};
+use toile_engine::workers::{SharePanicked, WorkerPool};
 
 use crate::Adapter;
 use crate::batch::Batch;
@@ -201,11 +201,11 @@ impl Stepper {
     /// One step of each garment. With a crew the processor shares the work: one garment's, or the garments themselves.
     ///
     /// # Errors
-    /// [`Panicked`]: a worker of the crew has; only where garments are shared among them.
-    pub fn step(&mut self, batch: &mut Batch<'_, '_>, crew: Option<&mut Crew>) -> Result<(), Panicked> {
-        let mut crew = crew;
+    /// [`SharePanicked`]: a worker of the crew has; only where garments are shared among them.
+    pub fn step(&mut self, batch: &mut Batch<'_, '_>, pool: Option<&mut WorkerPool>) -> Result<(), SharePanicked> {
+        let mut pool = pool;
         if std::mem::take(&mut self.undecided) {
-            self.decide(batch, crew.as_deref_mut())?;
+            self.decide(batch, pool.as_deref_mut())?;
         }
         if let Some(graphics) = &self.graphics {
             match on_device(graphics, &mut self.on_device, batch) {
@@ -217,7 +217,7 @@ impl Stepper {
             }
         }
         self.uses(1);
-        on_processor(batch, crew)
+        on_processor(batch, pool)
     }
 
     fn uses(&self, what: u8) {
@@ -234,7 +234,7 @@ impl Stepper {
 
     /// Steps copies of the garments on both for a while, where they stand, and keeps the faster; what another stepper of the run has
     /// measured with about as many particles counts for this one.
-    fn decide(&mut self, batch: &mut Batch<'_, '_>, mut crew: Option<&mut Crew>) -> Result<(), Panicked> {
+    fn decide(&mut self, batch: &mut Batch<'_, '_>, mut pool: Option<&mut WorkerPool>) -> Result<(), SharePanicked> {
         let Some(graphics) = self.graphics.clone() else { return Ok(()) };
         let particles: usize = batch.cloths.iter().map(|c| c.positions.len()).sum();
         let known = Arc::clone(&self.known);
@@ -249,7 +249,7 @@ impl Stepper {
         let gpu_us = median_us(|| on_device(&graphics, &mut laid, &mut trial));
         let mut copies = batch.cloths.to_vec();
         let mut trial = Batch { cloths: &mut copies, garments: batch.garments, steps: batch.steps };
-        let cpu_us = median_us(|| on_processor(&mut trial, crew.as_deref_mut()))?;
+        let cpu_us = median_us(|| on_processor(&mut trial, pool.as_deref_mut()))?;
         match gpu_us {
             Err(reason) => self.fall(reason),
             Ok(gpu_us) => {
@@ -281,16 +281,16 @@ fn median_us<E>(mut step: impl FnMut() -> Result<(), E>) -> Result<f64, E> {
     Ok(times[times.len() / 2])
 }
 
-fn on_processor(batch: &mut Batch<'_, '_>, crew: Option<&mut Crew>) -> Result<(), Panicked> {
+fn on_processor(batch: &mut Batch<'_, '_>, pool: Option<&mut WorkerPool>) -> Result<(), SharePanicked> {
     let (garments, steps) = (batch.garments, batch.steps);
     let Some(first) = steps.first() else { return Ok(()) };
     let step = |k: usize| Step { settings: first.settings, ..steps[k] };
-    match (&mut *batch.cloths, crew) {
-        ([cloth], Some(crew)) => {
-            cloth.step_with(crew, garments[0], &step(0));
+    match (&mut *batch.cloths, pool) {
+        ([cloth], Some(pool)) => {
+            cloth.step_with(pool, garments[0], &step(0));
             Ok(())
         }
-        (cloths, Some(crew)) => crew.each(cloths, |k, cloth| cloth.step(garments[k], &step(k))),
+        (cloths, Some(pool)) => pool.each(cloths, |k, cloth| cloth.step(garments[k], &step(k))),
         (cloths, None) => {
             cloths.iter_mut().zip(garments).enumerate().for_each(|(k, (cloth, garment))| cloth.step(garment, &step(k)));
             Ok(())

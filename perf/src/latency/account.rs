@@ -5,8 +5,8 @@
 //! `/proc/thread-self/schedstat`: it is read behind steps that were late already, and ten times a second in the time
 //! that a step leaves.
 
+use toile_engine::frame_loop::event::{CounterSource, Counters, Event, EventKind, Miss};
 use toile_engine::meter::PERIOD_NS;
-use toile_engine::pace::event::{Account, Counters, Event, Miss, What};
 
 use super::report::{Attributed, Cause};
 
@@ -35,7 +35,7 @@ impl ThreadAccount {
 }
 
 #[cfg(target_os = "linux")]
-impl Account for ThreadAccount {
+impl CounterSource for ThreadAccount {
     fn counters(&mut self, closely: bool) -> Counters {
         use nix::sys::resource::{UsageWho, getrusage};
         use nix::time::{ClockId, clock_gettime};
@@ -68,7 +68,7 @@ impl ThreadAccount {
 }
 
 #[cfg(not(target_os = "linux"))]
-impl Account for ThreadAccount {
+impl CounterSource for ThreadAccount {
     fn counters(&mut self, _closely: bool) -> Counters {
         self.last
     }
@@ -116,14 +116,14 @@ impl Attributing {
     /// Something happened; what is neither late nor dropped is passed over.
     pub fn take(&mut self, event: &Event) {
         match event.what {
-            What::Missed(miss) => {
+            EventKind::Missed(miss) => {
                 let before = self.before.filter(|(tick, _)| *tick + 1 == event.tick).map(|(_, cause)| cause);
                 let cause = cause(&miss, before);
                 // Steps that were dropped before this one have its cause.
                 self.attributed.add(cause, 1 + std::mem::take(&mut self.dropped));
                 self.before = Some((event.tick, cause));
             }
-            What::Dropped(steps) => self.dropped += steps,
+            EventKind::Dropped(steps) => self.dropped += steps,
             _ => {}
         }
     }
@@ -155,9 +155,11 @@ mod tests {
     fn dropped_steps_have_the_cause_of_the_one_in_their_place() {
         let counted = Counters { cpu_ns: 9_000_000, ..Counters::default() };
         let mut sums = Attributing::default();
-        let events = [(7, What::Dropped(3)), (7, What::Missed(miss(9, counted))), (8, What::SensorLost)];
-        let late_after =
-            [(8, What::Missed(miss(2, Counters::default()))), (20, What::Missed(miss(2, Counters::default())))];
+        let events = [(7, EventKind::Dropped(3)), (7, EventKind::Missed(miss(9, counted))), (8, EventKind::SensorLost)];
+        let late_after = [
+            (8, EventKind::Missed(miss(2, Counters::default()))),
+            (20, EventKind::Missed(miss(2, Counters::default()))),
+        ];
         for (tick, what) in events.into_iter().chain(late_after) {
             sums.take(&Event { tick, scheduled_ns: 0, what });
         }

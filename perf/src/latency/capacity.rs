@@ -4,20 +4,20 @@ use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
 use toile_engine::cloth::settings::MAX_SUBSTEPS;
 use toile_engine::cloth::{Cloth, stages};
 use toile_engine::frame::Frame;
+use toile_engine::frame_loop::physics_thread::LoopMeters;
+use toile_engine::frame_loop::queue::Capacity;
+use toile_engine::frame_loop::schedule::MOST_CATCH_UP;
 use toile_engine::meter::PERIOD_NS;
-use toile_engine::pace::physics::Gauges;
-use toile_engine::pace::queue::Capacity;
-use toile_engine::pace::schedule::MOST_CATCH_UP;
 
 /// The bounds of the loop and of the frame.
-pub fn capacities(queues: &[Capacity], gauges: &Gauges, frame: &Frame) -> Vec<Capacity> {
+pub fn capacities(queues: &[Capacity], gauges: &LoopMeters, frame: &Frame) -> Vec<Capacity> {
     let late = gauges.late.histogram().max() / PERIOD_NS;
     let most = |count: fn(&Cloth) -> usize| frame.cloths().iter().map(count).max().unwrap_or(0);
     let room = |constant, bound, high_water| Capacity { constant, bound, high_water, lost: 0 };
     let colliders = frame.colliders();
     let mut all = queues.to_vec();
     all.push(Capacity {
-        constant: "MOST_CATCH_UP (engine/core/src/pace/schedule.rs)",
+        constant: "MOST_CATCH_UP (engine/core/src/frame_loop/schedule.rs)",
         bound: MOST_CATCH_UP as usize,
         high_water: late.min(MOST_CATCH_UP) as usize,
         lost: gauges.dropped,

@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use toile_assets::limits::STEP_HZ;
 use toile_engine::clock::{Clock, RealClock};
+use toile_engine::frame_loop::ThreadLoop;
+use toile_engine::frame_loop::schedule::{Due, Schedule};
+use toile_engine::frame_loop::thread_roles::ThreadRole;
+use toile_engine::frame_loop::threads::{self, Stop};
 use toile_engine::meter::{Meter, PERIOD_NS};
-use toile_engine::pace::Turn;
-use toile_engine::pace::roles::Role;
-use toile_engine::pace::schedule::{Due, Schedule};
-use toile_engine::pace::threads::{self, Stop};
 
 use super::LatencyError;
 
@@ -21,8 +21,8 @@ struct Empty {
     late: Meter,
 }
 
-impl Turn for Empty {
-    fn turn(&mut self) -> Option<u64> {
+impl ThreadLoop for Empty {
+    fn run_due(&mut self) -> Option<u64> {
         let now = self.clock.now_ns();
         match self.schedule.due(now) {
             Due::At(ns) => Some(ns),
@@ -41,7 +41,7 @@ impl Turn for Empty {
 pub fn measure(length: Duration) -> Result<Meter, LatencyError> {
     let clock = RealClock::default();
     let (stop, schedule) = (Stop::default(), Schedule::new(clock.now_ns() + PERIOD_NS, STEP_HZ));
-    let life = threads::start(Role::Physics, Empty { clock, schedule, late: Meter::new() }, clock, &stop)?;
+    let life = threads::start(ThreadRole::Physics, Empty { clock, schedule, late: Meter::new() }, clock, &stop)?;
     thread::sleep(length);
     stop.now();
     life.join().map(|empty| empty.late).ok_or(LatencyError::Died("jitter"))

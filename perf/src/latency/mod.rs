@@ -21,7 +21,7 @@ pub use report::{Attributed, Cause, Goal, Latency, Placed, Quality, Quantiles, S
 pub use trial::{Cast, run};
 
 use thiserror::Error;
-use toile_engine::crew::CrewError;
+use toile_engine::workers::WorkerPoolError;
 
 /// What is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +42,7 @@ pub enum LatencyError {
     Spawn(#[from] std::io::Error),
     /// The workers.
     #[error(transparent)]
-    Crew(#[from] CrewError),
+    WorkerPool(#[from] WorkerPoolError),
     /// A thread of the loop ended before its time.
     #[error("the {0} thread panicked; its message tells the cause")]
     Died(&'static str),

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use toile_engine::frame_loop::queue::Capacity;
+use toile_engine::frame_loop::thread_roles::Placement;
 use toile_engine::meter::Meter;
-use toile_engine::pace::queue::Capacity;
-use toile_engine::pace::roles::Placement;
 
 /// A distribution of times (us).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]

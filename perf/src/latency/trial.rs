@@ -8,17 +8,17 @@ use toile_assets::garment::Garment;
 use toile_assets::limits::STEP_HZ;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, Event, EventKind};
+use toile_engine::frame_loop::governor::LADDER;
+use toile_engine::frame_loop::physics_thread::{FrameScene, PhysicsOutputs, PhysicsThread};
+use toile_engine::frame_loop::queue::{Capacity, Receiver, Sender, bounded};
+use toile_engine::frame_loop::recording::Entry;
+use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
+use toile_engine::frame_loop::sensor_thread::{Playback, SensorFrame, SensorThread};
+use toile_engine::frame_loop::thread_roles::{Placement, ThreadRole};
+use toile_engine::frame_loop::threads::{self, LoopThread, Stop};
 use toile_engine::meter::{INTAKE, Meter, PERIOD_NS, STAGES, STEP_BUDGET_US};
-use toile_engine::pace::event::{EVENTS, EVENTS_NAME, Event, What};
-use toile_engine::pace::governor::LADDER;
-use toile_engine::pace::physics::{Outlets, Physics, Staged};
-use toile_engine::pace::queue::{Capacity, Receiver, Sender, bounded};
-use toile_engine::pace::render::{Eye, Render};
-use toile_engine::pace::roles::{Placement, Role};
-use toile_engine::pace::sense::{Playback, Seen, Sense};
-use toile_engine::pace::tape::Entry;
-use toile_engine::pace::threads::{self, Life, Stop};
-use toile_engine::relay::{Reader, Relay};
+use toile_engine::triple_buffer::{Reader, TripleBuffer};
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::Joints;
 
@@ -61,7 +61,7 @@ pub struct Cast<'a> {
     /// Where the crew's helper runs.
     pub worker: Option<Placement>,
     /// Where what a replay needs goes.
-    pub tape: Sender<Entry>,
+    pub recording: Sender<Entry>,
 }
 
 /// What a display would be handed: the body and the garments in the order of their meshes.
@@ -78,12 +78,12 @@ impl Picture {
     }
 }
 
-impl Eye for Picture {
+impl Renderer for Picture {
     type Outfit = ();
 
-    fn put_on(&mut self, _outfit: &mut ()) {}
+    fn set_outfit(&mut self, _outfit: &mut ()) {}
 
-    fn look(&mut self, snapshot: &Snapshot) {
+    fn draw(&mut self, snapshot: &Snapshot) {
         let [positions, normals] = &mut self.body;
         snapshot.skin.read(positions, normals);
         for (to, from) in self.garments.iter_mut().zip(&snapshot.garments) {
@@ -104,15 +104,15 @@ impl Told {
     fn take(&mut self, event: &Event) {
         self.late.take(event);
         match event.what {
-            What::Quality(change) if self.changes.len() < MOST_CHANGES => {
+            EventKind::Quality(change) if self.changes.len() < MOST_CHANGES => {
                 self.changes.push([event.tick, u64::from(change.from), u64::from(change.to)]);
             }
-            What::Quality(_) => {}
-            What::SensorLost => self.say(event, "no sensor frame had come for half a second"),
-            What::SensorBack => self.say(event, "the sensor came back"),
-            What::Broken => self.say(event, "a worker panicked and the garments kept their places"),
-            What::Changed(_) | What::Missed(_) | What::Dropped(_) => {}
-            What::RolledBack => self.say(event, "a garment ended with what is no number and was rolled back"),
+            EventKind::Quality(_) => {}
+            EventKind::SensorLost => self.say(event, "no sensor frame had come for half a second"),
+            EventKind::SensorBack => self.say(event, "the sensor came back"),
+            EventKind::Broken => self.say(event, "a worker panicked and the garments kept their places"),
+            EventKind::Changed(_) | EventKind::Missed(_) | EventKind::Dropped(_) => {}
+            EventKind::RolledBack => self.say(event, "a garment ended with what is no number and was rolled back"),
         }
     }
 
@@ -128,17 +128,17 @@ struct Running {
     clock: RealClock,
     stop: Stop,
     metered_ns: u64,
-    sensor: Life<Sense<Playback, RealClock>>,
-    physics: Life<Physics<Staged, RealClock, ThreadAccount>>,
-    render: Life<Render<Picture, RealClock>>,
+    sensor: LoopThread<SensorThread<Playback, RealClock>>,
+    physics: LoopThread<PhysicsThread<FrameScene, RealClock, ThreadAccount>>,
+    render: LoopThread<RenderThread<Picture, RealClock>>,
     events: Receiver<Event>,
 }
 
 /// The lives, when they have ended.
 struct Ended {
-    sensor: Sense<Playback, RealClock>,
-    physics: Physics<Staged, RealClock, ThreadAccount>,
-    render: Render<Picture, RealClock>,
+    sensor: SensorThread<Playback, RealClock>,
+    physics: PhysicsThread<FrameScene, RealClock, ThreadAccount>,
+    render: RenderThread<Picture, RealClock>,
     queues: [Capacity; 2],
 }
 
@@ -147,29 +147,29 @@ impl Running {
         frame: Frame,
         mut reader: Reader<Snapshot>,
         joints: &[Joints],
-        tape: Sender<Entry>,
+        recording: Sender<Entry>,
         options: &Options,
     ) -> Result<Self, LatencyError> {
         let clock = RealClock::default();
         let begin = clock.now_ns() + 10 * PERIOD_NS;
         let metered_ns = begin + WARM_UP_S * SECOND_NS;
         let (sender, events) = bounded(EVENTS_NAME, EVENTS);
-        let Relay { writer, reader: seen } = Relay::new(&Seen::default());
-        let outlets = Outlets { events: sender, tape: Some(tape) };
+        let TripleBuffer { writer, reader: seen } = TripleBuffer::new(&SensorFrame::default());
+        let outlets = PhysicsOutputs { events: sender, recording: Some(recording) };
         let picture = Picture::of(reader.latest());
-        let sense = Sense::new(Playback::new(joints, begin, u64::MAX), clock, writer).metering_from(metered_ns);
-        let physics = Physics::new(Staged::new(frame), clock, begin, seen, outlets, ThreadAccount::new());
+        let sense = SensorThread::new(Playback::new(joints, begin, u64::MAX), clock, writer).metering_from(metered_ns);
+        let physics = PhysicsThread::new(FrameScene::new(frame), clock, begin, seen, outlets, ThreadAccount::new());
         let physics = physics.warming_up(WARM_UP_STEPS);
         let physics = match options.rung {
             Some(rung) => physics.held_on(rung),
             None => physics,
         };
-        let render = Render::new(picture, clock, begin, reader).metering_from(metered_ns);
+        let render = RenderThread::new(picture, clock, begin, reader).metering_from(metered_ns);
         let stop = Stop::default();
         Ok(Self {
-            sensor: threads::start(Role::Sensor, sense, clock, &stop)?,
-            physics: threads::start(Role::Physics, physics, clock, &stop)?,
-            render: threads::start(Role::Render, render, clock, &stop)?,
+            sensor: threads::start(ThreadRole::Sensor, sense, clock, &stop)?,
+            physics: threads::start(ThreadRole::Physics, physics, clock, &stop)?,
+            render: threads::start(ThreadRole::Render, render, clock, &stop)?,
             clock,
             stop,
             metered_ns,
@@ -206,7 +206,7 @@ impl Running {
 pub fn run(cast: Cast<'_>, options: &Options, mut empty: impl FnMut() -> Capacity) -> Result<Latency, LatencyError> {
     let load = Load::start(options.load)?;
     let jitter = jitter::measure(Duration::from_secs(u64::from(options.seconds.min(MOST_JITTER_S))))?;
-    let running = Running::start(cast.frame, cast.reader, cast.joints, cast.tape, options)?;
+    let running = Running::start(cast.frame, cast.reader, cast.joints, cast.recording, options)?;
     let placements = [running.sensor.placement(), running.physics.placement(), cast.worker, running.render.placement()];
     let threads: Vec<Placed> = placements.into_iter().flatten().map(Placed::from).collect();
     let mut told = Told::default();

@@ -28,7 +28,7 @@ use toile_assets::garment::MeshError;
 use toile_assets::sizes::SizeError;
 use toile_assets::wardrobe::WardrobeError;
 use toile_engine::colliders::ColliderError;
-use toile_engine::crew::CrewError;
+use toile_engine::workers::WorkerPoolError;
 
 use crate::oracle::OracleError;
 use crate::skirt::SkirtError;
@@ -57,7 +57,7 @@ pub enum ParetoError {
     Colliders(#[from] ColliderError),
     /// The engine's workers.
     #[error(transparent)]
-    Crew(#[from] CrewError),
+    WorkerPool(#[from] WorkerPoolError),
     /// x*.
     #[error("x* was not found: {0}")]
     Oracle(#[from] OracleError),

@@ -10,7 +10,7 @@ use toile_assets::skeleton::BONES;
 use toile_engine::cloth::program::{self, Op};
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, measure};
 use toile_engine::colliders::Colliders;
-use toile_engine::crew::Crew;
+use toile_engine::workers::WorkerPool;
 
 use super::ParetoError;
 use super::subject::Subject;
@@ -93,19 +93,19 @@ impl<'a> Scene<'a> {
     }
 
     /// The step that ends at a tick; its time (ns).
-    fn step(&mut self, tick: u64, crew: &mut Crew) -> u64 {
+    fn step(&mut self, tick: u64, pool: &mut WorkerPool) -> u64 {
         self.subject.place(seconds(tick), &mut self.bones, &mut self.colliders);
-        wake(crew);
+        wake(pool);
         let begun = Instant::now();
         let step = Step { palette: &self.bones, colliders: &self.colliders, settings: &self.settings };
-        self.cloth.step_with(crew, self.garment, &step);
+        self.cloth.step_with(pool, self.garment, &step);
         begun.elapsed().as_nanos() as u64
     }
 
     /// Puts the cloth into a moment's state: a step with the body at rest there, which places pins and colliders, and
     /// then every particle where it was.
-    fn enter(&mut self, moment: &Moment, crew: &mut Crew) {
-        self.step(moment.tick, crew);
+    fn enter(&mut self, moment: &Moment, pool: &mut WorkerPool) {
+        self.step(moment.tick, pool);
         for (particle, &vertex) in self.garment.source.iter().enumerate() {
             let [at, velocity] = moment.state[vertex as usize];
             self.cloth.disturb(particle, at, velocity);
@@ -137,11 +137,11 @@ pub fn play_through(
     garment: &Garment,
     setting: Setting,
 ) -> Result<(Trace, Vec<Moment>), ParetoError> {
-    let mut crew = Crew::new(setting.threads.clamp(1, OWNERS))?;
+    let mut pool = WorkerPool::new(setting.threads.clamp(1, OWNERS))?;
     let mut scene = Scene::new(subject, garment, setting, 0);
     let (mut trace, mut moments, mut times_ns) = (Trace::default(), Vec::new(), Vec::new());
     for tick in 1..=subject.steps() {
-        times_ns.push(scene.step(tick, &mut crew));
+        times_ns.push(scene.step(tick, &mut pool));
         if tick % WINDOW == 0 || tick == subject.steps() {
             trace.add(tick, &mut scene);
         }
@@ -160,15 +160,15 @@ pub fn play_windows(
     setting: Setting,
     moments: &[Moment],
 ) -> Result<Trace, ParetoError> {
-    let mut crew = Crew::new(setting.threads.clamp(1, OWNERS))?;
+    let mut pool = WorkerPool::new(setting.threads.clamp(1, OWNERS))?;
     let (mut trace, mut times_ns) = (Trace::default(), Vec::new());
     let mut rolled_back = 0;
     let mut last = None;
     for moment in moments {
         let mut scene = Scene::new(subject, garment, setting, moment.tick);
-        scene.enter(moment, &mut crew);
+        scene.enter(moment, &mut pool);
         for tick in moment.tick + 1..=moment.tick + WINDOW {
-            times_ns.push(scene.step(tick, &mut crew));
+            times_ns.push(scene.step(tick, &mut pool));
         }
         trace.add(moment.tick + WINDOW, &mut scene);
         rolled_back += scene.cloth.events.rolled_back;
@@ -210,8 +210,8 @@ impl Trace {
 }
 
 /// Wakes the helper of two workers, and waits as long as the frame's other work would.
-fn wake(crew: &mut Crew) {
-    if crew.wake() {
+fn wake(pool: &mut WorkerPool) {
+    if pool.wake() {
         let woken = Instant::now();
         while woken.elapsed() < BEFORE_CLOTH {
             std::hint::spin_loop();

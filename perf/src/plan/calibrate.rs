@@ -13,9 +13,9 @@ use toile_assets::body::Body;
 use toile_assets::rig::Rig;
 use toile_assets::scene_file::{SceneFile, Source};
 use toile_engine::cloth::{Settings, program};
-use toile_engine::crew::{Crew, SHARES};
 use toile_engine::frame::Frame;
 use toile_engine::meter::STAGES as STEP_STAGES;
+use toile_engine::workers::{SHARES, WorkerPool};
 use toile_sensors::frame::Joints;
 
 use super::PlanError;
@@ -102,7 +102,7 @@ pub fn measure(body: Option<(&Body, &Rig, &[Joints])>, workers: usize) -> Result
 }
 
 fn sample(scene: &Scene) -> Result<Sample, PlanError> {
-    let mut crew = Crew::new(1)?;
+    let mut pool = WorkerPool::new(1)?;
     let settings: Vec<Settings> = scene.settings.iter().map(|s| Settings { timed: true, ..*s }).collect();
     let mut playing = Playing::new(scene);
     let mut times: [Vec<f64>; STAGES.len()] = Default::default();
@@ -114,7 +114,7 @@ fn sample(scene: &Scene) -> Result<Sample, PlanError> {
             near = before(&playing);
         }
         let begun = Instant::now();
-        playing.take(&settings, &mut crew);
+        playing.take(&settings, &mut pool);
         let us = begun.elapsed().as_secs_f64() * 1e6;
         if step >= WARM_UP {
             let stages = playing.cloths[0].stage_ns.map(|ns| ns as f64 * 1e-3);
@@ -129,16 +129,16 @@ fn sample(scene: &Scene) -> Result<Sample, PlanError> {
 
 /// What it takes two workers to meet, from a cloth that they share (us).
 fn meeting_us(scene: &Scene, costs: &Costs) -> Result<f64, PlanError> {
-    let mut crew = Crew::new(SHARES)?;
+    let mut pool = WorkerPool::new(SHARES)?;
     let mut playing = Playing::new(scene);
     let (mut times, mut one) = (Vec::new(), Vec::new());
     let mut alone = Playing::new(scene);
-    let mut nobody = Crew::new(1)?;
+    let mut nobody = WorkerPool::new(1)?;
     for step in 0..WARM_UP + TIMED {
         playing.place();
-        wake(&mut crew);
+        wake(&mut pool);
         let begun = Instant::now();
-        playing.take(&scene.settings, &mut crew);
+        playing.take(&scene.settings, &mut pool);
         let two = begun.elapsed();
         alone.place();
         let begun = Instant::now();
@@ -155,8 +155,8 @@ fn meeting_us(scene: &Scene, costs: &Costs) -> Result<f64, PlanError> {
     Ok(((two - rest - (one - rest) * work.share) / work.phases).max(0.0))
 }
 
-fn wake(crew: &mut Crew) {
-    if crew.wake() {
+fn wake(pool: &mut WorkerPool) {
+    if pool.wake() {
         let woken = Instant::now();
         while woken.elapsed() < BEFORE_CLOTH {
             std::hint::spin_loop();

@@ -1,7 +1,7 @@
 //! What a unit of work takes on this machine, and what a scene takes by that.
 
-use toile_engine::crew::SHARES;
 use toile_engine::meter::{CLOTH, PUBLISH};
+use toile_engine::workers::SHARES;
 
 use super::work::{KINDS, STAGES, Work};
 

@@ -18,8 +18,8 @@ pub mod work;
 use thiserror::Error;
 use toile_assets::scene_file::SceneError;
 use toile_engine::colliders::ColliderError;
-use toile_engine::crew::CrewError;
 use toile_engine::frame::FrameError;
+use toile_engine::workers::WorkerPoolError;
 
 use crate::scene_run::RunError;
 
@@ -40,5 +40,5 @@ pub enum PlanError {
     Calibration(#[from] SceneError),
     /// The workers.
     #[error(transparent)]
-    Crew(#[from] CrewError),
+    WorkerPool(#[from] WorkerPoolError),
 }

@@ -10,8 +10,8 @@ use toile_assets::skeleton::{BONES, Pose, Skeleton};
 use toile_engine::body::{Poser, palette};
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
-use toile_engine::crew::Crew;
 use toile_engine::frame::{DRESS_STEPS, SETTLE_STEPS};
+use toile_engine::workers::WorkerPool;
 use toile_sensors::clock::ticks_to_ns;
 use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
@@ -165,14 +165,14 @@ impl<'a> Playing<'a> {
     }
 
     /// The step of all garments with these settings, one of them shared by the workers, several one worker's each.
-    pub fn take(&mut self, settings: &[Settings], crew: &mut Crew) {
+    pub fn take(&mut self, settings: &[Settings], pool: &mut WorkerPool) {
         let Self { scene, cloths, colliders, bones, .. } = self;
         let step = |i: usize| Step { palette: bones, colliders, settings: &settings[i] };
         if let ([cloth], [garment]) = (&mut cloths[..], &scene.garments[..]) {
-            cloth.step_with(crew, garment, &step(0));
+            cloth.step_with(pool, garment, &step(0));
         } else {
             // A worker that panics has said so, and the guard of the next step repairs what it left.
-            let _ = crew.each(cloths, |i, cloth| cloth.step(&scene.garments[i], &step(i)));
+            let _ = pool.each(cloths, |i, cloth| cloth.step(&scene.garments[i], &step(i)));
         }
     }
 }

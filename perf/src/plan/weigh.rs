@@ -10,7 +10,7 @@ use serde::Serialize;
 use toile_assets::garment::Garment;
 use toile_assets::garment::layout::{Bends, Diagonals, ENDED, Hubs, Links};
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, Wind};
-use toile_engine::crew::Crew;
+use toile_engine::workers::WorkerPool;
 
 use super::PlanError;
 use super::calibrate::quartile;
@@ -69,7 +69,7 @@ struct Variant {
 /// # Errors
 /// Where the workers cannot be started.
 pub fn play(scene: &Scene, workers: usize) -> Result<Played, PlanError> {
-    let mut crew = Crew::new(workers)?;
+    let mut pool = WorkerPool::new(workers)?;
     let variants = variants(scene);
     let mut tallies: Vec<Tally> = variants.iter().map(|_| Tally::default()).collect();
     let mut playing = Playing::new(scene);
@@ -83,9 +83,9 @@ pub fn play(scene: &Scene, workers: usize) -> Result<Played, PlanError> {
             moments += 1;
         }
         playing.place();
-        crew.wake();
+        pool.wake();
         let begun = Instant::now();
-        playing.take(&scene.settings, &mut crew);
+        playing.take(&scene.settings, &mut pool);
         if met {
             times.push(begun.elapsed().as_secs_f64() * 1e6);
         }

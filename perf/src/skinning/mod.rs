@@ -16,9 +16,9 @@ use glam::Vec3;
 use serde::Serialize;
 use thiserror::Error;
 use toile_assets::body::BodyError;
-use toile_engine::crew::{Crew, CrewError};
 use toile_engine::lanes::Width;
 use toile_engine::skin::{Blend, Padding, Posed, SkinError, SkinningJob};
+use toile_engine::workers::{WorkerPool, WorkerPoolError};
 
 use crate::surface::Surface;
 use crate::time;
@@ -110,7 +110,7 @@ pub enum BenchError {
     Skin(#[from] SkinError),
     /// The workers.
     #[error(transparent)]
-    Crew(#[from] CrewError),
+    WorkerPool(#[from] WorkerPoolError),
     /// Lanes that this processor lacks.
     #[error("this processor has no {0} lanes; ask for fewer, or leave `--lanes` out")]
     NoSuchLanes(Width),
@@ -128,14 +128,14 @@ pub fn measure(options: &Options) -> Result<Skinning, BenchError> {
     let surface = subject(options)?;
     let mut job = SkinningJob::new(&surface.positions, &surface.normals, &surface.weights)?;
     job.width = width;
-    let mut crew = Crew::new(options.threads)?;
+    let mut pool = WorkerPool::new(options.threads)?;
     let yardstick = Yardstick::new()?;
     let mut rounds: [[Vec<f64>; 2]; 2] = Default::default();
     let mut yards = Vec::new();
     for _ in 0..ROUNDS {
         yards.push(yardstick.read_us());
         for (blend, [alone, whole]) in Blend::ALL.into_iter().zip(&mut rounds) {
-            let mut run = Run { job: &job, surface: &surface, crew: &mut crew, blend };
+            let mut run = Run { job: &job, surface: &surface, pool: &mut pool, blend };
             alone.push(run.us());
             whole.push(run.mesh_order_us());
         }
@@ -158,7 +158,7 @@ pub fn measure(options: &Options) -> Result<Skinning, BenchError> {
     Ok(Skinning {
         subject: options.subject,
         verts,
-        threads: crew.workers(),
+        threads: pool.workers(),
         lanes: width.lanes(),
         yardstick_us: median(yards.clone()),
         padding: job.padding(),
@@ -187,7 +187,7 @@ fn skinned(job: &SkinningJob, surface: &Surface, blend: Blend) -> Posed {
 struct Run<'a> {
     job: &'a SkinningJob,
     surface: &'a Surface,
-    crew: &'a mut Crew,
+    pool: &'a mut WorkerPool,
     blend: Blend,
 }
 
@@ -195,7 +195,7 @@ impl Run<'_> {
     fn us(&mut self) -> f64 {
         let mut posed = self.job.posed();
         time::median_us(|| {
-            self.job.run_with(self.crew, self.blend, black_box(&self.surface.palette), &mut posed);
+            self.job.run_with(self.pool, self.blend, black_box(&self.surface.palette), &mut posed);
             black_box(&posed);
         })
     }
@@ -204,7 +204,7 @@ impl Run<'_> {
         let mut posed = self.job.posed();
         let (mut positions, mut normals) = (vec![Vec3::ZERO; posed.vertices()], vec![Vec3::ZERO; posed.vertices()]);
         time::median_us(|| {
-            self.job.run_with(self.crew, self.blend, black_box(&self.surface.palette), &mut posed);
+            self.job.run_with(self.pool, self.blend, black_box(&self.surface.palette), &mut posed);
             posed.read(&mut positions, &mut normals);
             black_box((&positions, &normals));
         })

@@ -21,7 +21,7 @@ use thiserror::Error;
 use toile_assets::body::BodyError;
 use toile_assets::garment::{MeshError, Shape};
 use toile_engine::colliders::ColliderError;
-use toile_engine::crew::CrewError;
+use toile_engine::workers::WorkerPoolError;
 use toile_gpu::stepper::Means;
 
 use crate::backend::SteppedBy;
@@ -66,7 +66,7 @@ pub enum SkirtError {
     Colliders(#[from] ColliderError),
     /// The engine's workers.
     #[error(transparent)]
-    Crew(#[from] CrewError),
+    WorkerPool(#[from] WorkerPoolError),
     /// The yardstick's body.
     #[error(transparent)]
     Body(#[from] BodyError),

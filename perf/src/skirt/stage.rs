@@ -10,7 +10,7 @@ use toile_assets::skeleton::BONES;
 use toile_engine::cloth::program::STAGES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
-use toile_engine::crew::Crew;
+use toile_engine::workers::WorkerPool;
 use toile_gpu::batch::Batch;
 use toile_gpu::stepper::{Backend, Means, Stepper};
 
@@ -41,7 +41,7 @@ pub struct Stage {
     pub memory_bytes: Option<[u64; 2]>,
     settings: Settings,
     colliders: Colliders,
-    crew: Crew,
+    pool: WorkerPool,
     stepper: Stepper,
 }
 
@@ -110,7 +110,7 @@ impl Stage {
             memory_bytes,
             settings,
             colliders,
-            crew: Crew::new(options.threads)?,
+            pool: WorkerPool::new(options.threads)?,
             stepper: means.stepper(),
         };
         // Where the body stands at time 0; the first step then sweeps as every other.
@@ -123,7 +123,7 @@ impl Stage {
     pub fn prepare(&mut self) {
         self.tick += 1;
         self.ask();
-        if self.crew.wake() {
+        if self.pool.wake() {
             let woken = Instant::now();
             while woken.elapsed() < BEFORE_CLOTH {
                 std::hint::spin_loop();
@@ -147,7 +147,7 @@ impl Stage {
         let (garments, steps) = ([&self.garment; MAX_GARMENTS], [step; MAX_GARMENTS]);
         let count = self.cloths.len();
         let mut batch = Batch { cloths: &mut self.cloths, garments: &garments[..count], steps: &steps[..count] };
-        let done = self.stepper.step(&mut batch, Some(&mut self.crew));
+        let done = self.stepper.step(&mut batch, Some(&mut self.pool));
         done.expect("a share of the step panicked");
     }
 

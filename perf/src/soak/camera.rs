@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use toile_assets::numeric::random::SplitMix64;
 use toile_engine::clock::Clock;
-use toile_engine::pace::sense::Source;
+use toile_engine::frame_loop::sensor_thread::JointSource;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::{Joints, TrackedJoint};
 
@@ -104,7 +104,7 @@ fn stamp(frame: u64) -> u64 {
     frame / CAMERA_HZ * SECOND_NS + frame % CAMERA_HZ * SECOND_NS / CAMERA_HZ
 }
 
-impl<C: Clock + Send> Source for Camera<C> {
+impl<C: Clock + Send> JointSource for Camera<C> {
     fn next_ns(&self) -> Option<u64> {
         Some(self.origin_ns + stamp(self.next) + DELAY_NS)
     }

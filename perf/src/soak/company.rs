@@ -8,7 +8,7 @@ use toile_assets::rig::Rig;
 use toile_assets::wardrobe;
 use toile_engine::cloth::{Quality, Settings};
 use toile_engine::frame::{Frame, Snapshot};
-use toile_engine::relay::Reader;
+use toile_engine::triple_buffer::Reader;
 use toile_sensors::frame::{Joints, TrackedJoint};
 
 use super::script::{Dressing, Script};

@@ -2,10 +2,10 @@
 
 use toile_assets::wardrobe;
 use toile_engine::clock::Clock;
-use toile_engine::pace::Turn;
-use toile_engine::pace::change::{Change, Giver};
-use toile_engine::pace::physics::Staged;
-use toile_engine::pace::render::View;
+use toile_engine::frame_loop::ThreadLoop;
+use toile_engine::frame_loop::handover::{HandoverSender, SceneChange};
+use toile_engine::frame_loop::physics_thread::FrameScene;
+use toile_engine::frame_loop::render_thread::SceneView;
 
 use super::company::Company;
 use super::lives::{Ground, Sign, Telling};
@@ -18,19 +18,19 @@ const MAKING_NS: u64 = 500_000_000;
 const LOOK_NS: u64 = 20_000_000;
 
 /// A scene that is made, and when it may be handed over (ns).
-type Made = (u64, Box<Change<Staged>>, Box<Change<View<()>>>);
+type Made = (u64, Box<SceneChange<FrameScene>>, Box<SceneChange<SceneView<()>>>);
 
 /// The life.
 #[derive(Debug)]
 pub struct Front<C> {
     ground: Ground<C>,
     company: Company,
-    scenes: Giver<Staged>,
-    readers: Giver<View<()>>,
+    scenes: HandoverSender<FrameScene>,
+    readers: HandoverSender<SceneView<()>>,
     /// The next dressing of the script.
     next: usize,
     made: Option<Made>,
-    reader: Option<Box<Change<View<()>>>>,
+    reader: Option<Box<SceneChange<SceneView<()>>>>,
     /// When broken garments are tried (ns), and how often that was done.
     broken: Box<[u64]>,
     tried: usize,
@@ -47,7 +47,12 @@ pub struct Front<C> {
 
 impl<C: Clock> Front<C> {
     /// At load; the first scene is on stage already.
-    pub fn new(ground: Ground<C>, company: Company, scenes: Giver<Staged>, readers: Giver<View<()>>) -> Self {
+    pub fn new(
+        ground: Ground<C>,
+        company: Company,
+        scenes: HandoverSender<FrameScene>,
+        readers: HandoverSender<SceneView<()>>,
+    ) -> Self {
         let broken = ground.script.faults_of(Kind::BrokenGarment).map(|f| ground.origin_ns + f.from_ns).collect();
         Self {
             ground,
@@ -77,8 +82,8 @@ impl<C: Clock> Front<C> {
         self.next += 1;
         match self.company.make(number) {
             Ok((frame, reader)) => {
-                let scene = Box::new(Change { scene: Staged::new(frame), number, afresh });
-                let reader = Box::new(Change { scene: View { reader, outfit: () }, number, afresh });
+                let scene = Box::new(SceneChange { scene: FrameScene::new(frame), number, afresh });
+                let reader = Box::new(SceneChange { scene: SceneView { reader, outfit: () }, number, afresh });
                 self.made = Some((at + MAKING_NS, scene, reader));
             }
             Err(error) => self.trouble = Some(error.to_string()),
@@ -134,8 +139,8 @@ fn broken() -> [String; 6] {
     ]
 }
 
-impl<C: Clock> Turn for Front<C> {
-    fn turn(&mut self) -> Option<u64> {
+impl<C: Clock> ThreadLoop for Front<C> {
+    fn run_due(&mut self) -> Option<u64> {
         let now = self.ground.clock.now_ns();
         self.try_broken(now);
         self.make(now);

@@ -8,13 +8,13 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use toile_engine::clock::Clock;
 use toile_engine::frame::Snapshot;
+use toile_engine::frame_loop::ThreadLoop;
+use toile_engine::frame_loop::event::NoCounters;
+use toile_engine::frame_loop::physics_thread::{FrameScene, PhysicsThread, Scene};
+use toile_engine::frame_loop::queue::Sender;
+use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
+use toile_engine::frame_loop::sensor_thread::{JointSource, SensorThread};
 use toile_engine::meter::PERIOD_NS;
-use toile_engine::pace::Turn;
-use toile_engine::pace::event::NoAccount;
-use toile_engine::pace::physics::{Physics, Scene, Staged};
-use toile_engine::pace::queue::Sender;
-use toile_engine::pace::render::{Eye, Render};
-use toile_engine::pace::sense::{Sense, Source};
 
 use super::script::{Kind, Script};
 
@@ -80,7 +80,7 @@ impl Stepped {
 }
 
 /// A life that can be asked what it did in its last turn.
-pub trait Telling: Turn {
+pub trait Telling: ThreadLoop {
     /// What it did, if there is something to tell.
     fn sign(&mut self) -> Option<Sign>;
 }
@@ -121,15 +121,15 @@ impl<T, C: Clock + Clone> Lived<T, C> {
     }
 }
 
-impl<T: Telling, C: Clock> Turn for Lived<T, C> {
-    fn turn(&mut self) -> Option<u64> {
+impl<T: Telling, C: Clock> ThreadLoop for Lived<T, C> {
+    fn run_due(&mut self) -> Option<u64> {
         let now = self.clock.now_ns();
         let begun = self.stalls.partition_point(|[from, _]| *from <= now);
         if let Some([_, until]) = self.stalls[..begun].last().filter(|[_, until]| now < *until) {
             return Some(*until);
         }
         let before = self.count.map(|count| count());
-        let next = self.life.turn();
+        let next = self.life.run_due();
         if let Some((count, before)) = self.count.zip(before) {
             self.allocations += count() - before;
         }
@@ -140,7 +140,7 @@ impl<T: Telling, C: Clock> Turn for Lived<T, C> {
     }
 }
 
-impl<S: Source, C: Clock> Telling for Sense<S, C> {
+impl<S: JointSource, C: Clock> Telling for SensorThread<S, C> {
     fn sign(&mut self) -> Option<Sign> {
         None
     }
@@ -150,7 +150,7 @@ impl<S: Source, C: Clock> Telling for Sense<S, C> {
 #[derive(Debug)]
 pub struct Stepping<C> {
     /// The loop's own.
-    pub physics: Physics<Staged, C, NoAccount>,
+    pub physics: PhysicsThread<FrameScene, C, NoCounters>,
     script: Arc<Script>,
     origin_ns: u64,
     ticks: u64,
@@ -158,15 +158,15 @@ pub struct Stepping<C> {
     crash_ns: Option<u64>,
     /// When garments are spoilt (ns), and how many times they were.
     upsets: Box<[u64]>,
-    upset: usize,
+    inject_fault: usize,
 }
 
 impl<C: Clock> Stepping<C> {
     /// At load.
-    pub fn new(physics: Physics<Staged, C, NoAccount>, script: Arc<Script>, origin_ns: u64) -> Self {
+    pub fn new(physics: PhysicsThread<FrameScene, C, NoCounters>, script: Arc<Script>, origin_ns: u64) -> Self {
         let troubles = physics.stepper.scene.troubles();
         let upsets = script.faults_of(Kind::ClothUpset).map(|f| origin_ns + f.from_ns).collect();
-        Self { troubles, physics, script, origin_ns, ticks: 0, crash_ns: None, upsets, upset: 0 }
+        Self { troubles, physics, script, origin_ns, ticks: 0, crash_ns: None, upsets, inject_fault: 0 }
     }
 
     /// Panics at a time (ns), to see what a crash leaves.
@@ -185,7 +185,7 @@ impl<C: Clock> Stepping<C> {
 }
 
 /// Numbers of what a frame publishes that are none.
-fn nonfinite(scene: &Staged) -> u64 {
+fn nonfinite(scene: &FrameScene) -> u64 {
     let pose = scene.frame.pose();
     let bones = pose.local.iter().filter(|q| !q.is_finite()).count() + usize::from(!pose.root.is_finite());
     let cloths = scene.frame.cloths().iter();
@@ -193,21 +193,21 @@ fn nonfinite(scene: &Staged) -> u64 {
 }
 
 /// Speed of the fastest particle (m/s); one that is no number is faster than all.
-fn fastest(scene: &Staged) -> f32 {
+fn fastest(scene: &FrameScene) -> f32 {
     let cloths = scene.frame.cloths().iter();
     let squares = cloths.flat_map(|cloth| (0..cloth.positions.len()).map(|i| cloth.velocity(i).length_squared()));
     squares.fold(0.0f32, |most, square| if square <= most { most } else { square }).sqrt()
 }
 
-impl<C: Clock> Turn for Stepping<C> {
-    fn turn(&mut self) -> Option<u64> {
+impl<C: Clock> ThreadLoop for Stepping<C> {
+    fn run_due(&mut self) -> Option<u64> {
         let crashes = self.crash_ns.is_some_and(|at| self.physics.taken().scheduled_ns >= at);
         assert!(!crashes, "the crash that --crash-after asked for");
-        if self.upsets.get(self.upset).is_some_and(|at| *at <= self.physics.now_ns()) {
-            self.physics.upset(self.script.plan.seed.wrapping_add(self.upset as u64));
-            self.upset += 1;
+        if self.upsets.get(self.inject_fault).is_some_and(|at| *at <= self.physics.now_ns()) {
+            self.physics.inject_fault(self.script.plan.seed.wrapping_add(self.inject_fault as u64));
+            self.inject_fault += 1;
         }
-        self.physics.turn()
+        self.physics.run_due()
     }
 }
 
@@ -241,12 +241,12 @@ pub struct Eyewitness {
     published_ns: u64,
 }
 
-impl Eye for Eyewitness {
+impl Renderer for Eyewitness {
     type Outfit = ();
 
-    fn put_on(&mut self, _outfit: &mut ()) {}
+    fn set_outfit(&mut self, _outfit: &mut ()) {}
 
-    fn look(&mut self, snapshot: &Snapshot) {
+    fn draw(&mut self, snapshot: &Snapshot) {
         let skin = (0..snapshot.skin.vertices()).step_by(SKIN_STEP);
         let skin = skin.filter(|v| !(snapshot.skin.position(*v).is_finite() && snapshot.skin.normal(*v).is_finite()));
         let garments = snapshot.garments.iter().flatten().filter(|p| !p.is_finite());
@@ -259,7 +259,7 @@ impl Eye for Eyewitness {
 #[derive(Debug)]
 pub struct Showing<C> {
     /// The loop's own.
-    pub render: Render<Eyewitness, C>,
+    pub render: RenderThread<Eyewitness, C>,
     clock: C,
     deaths: Box<[u64]>,
     next: usize,
@@ -268,7 +268,7 @@ pub struct Showing<C> {
 
 impl<C: Clock + Clone> Showing<C> {
     /// At load.
-    pub fn new(render: Render<Eyewitness, C>, ground: &Ground<C>) -> Self {
+    pub fn new(render: RenderThread<Eyewitness, C>, ground: &Ground<C>) -> Self {
         let deaths = ground.script.faults_of(Kind::RenderDeath).map(|f| ground.origin_ns + f.from_ns).collect();
         Self { render, clock: ground.clock.clone(), deaths, next: 0, pictures: 0 }
     }
@@ -280,15 +280,15 @@ impl<C: Clock + Clone> Showing<C> {
     }
 }
 
-impl<C: Clock> Turn for Showing<C> {
-    fn turn(&mut self) -> Option<u64> {
+impl<C: Clock> ThreadLoop for Showing<C> {
+    fn run_due(&mut self) -> Option<u64> {
         let now = self.clock.now_ns();
         if self.deaths.get(self.next).is_some_and(|at| *at <= now) {
             self.next += 1;
             // Past the hook, which would take it for a fault of the program's own.
             resume_unwind(Box::new("a death of the script"));
         }
-        self.render.turn()
+        self.render.run_due()
     }
 }
 
@@ -296,7 +296,7 @@ impl<C: Clock> Telling for Showing<C> {
     fn sign(&mut self) -> Option<Sign> {
         let news = self.render.pictures > self.pictures;
         self.pictures = self.render.pictures;
-        news.then(|| Sign::Picture([self.clock.now_ns(), self.render.eye.published_ns]))
+        news.then(|| Sign::Picture([self.clock.now_ns(), self.render.renderer.published_ns]))
     }
 }
 
@@ -334,8 +334,8 @@ impl<C: Clock + Clone> Mortal<C> {
     }
 }
 
-impl<C: Clock + Clone> Turn for Mortal<C> {
-    fn turn(&mut self) -> Option<u64> {
+impl<C: Clock + Clone> ThreadLoop for Mortal<C> {
+    fn run_due(&mut self) -> Option<u64> {
         if self.pulse.dead.load(Relaxed) {
             if !self.pulse.revive.swap(false, Relaxed) {
                 return Some(self.clock.now_ns() + DEAD_NS);
@@ -344,7 +344,7 @@ impl<C: Clock + Clone> Turn for Mortal<C> {
             self.pulse.dead.store(false, Relaxed);
         }
         let lived = self.lived.as_mut()?;
-        match catch_unwind(AssertUnwindSafe(|| lived.turn())) {
+        match catch_unwind(AssertUnwindSafe(|| lived.run_due())) {
             Ok(next) => next,
             Err(_) => {
                 self.pulse.dead.store(true, Relaxed);

@@ -5,9 +5,9 @@ use std::io::{self, Write};
 use std::sync::Arc;
 
 use toile_engine::clock::Clock;
-use toile_engine::pace::Turn;
-use toile_engine::pace::blackbox::BlackBox;
-use toile_engine::pace::tape::{self, Entry};
+use toile_engine::frame_loop::ThreadLoop;
+use toile_engine::frame_loop::flight_recorder::FlightRecorder;
+use toile_engine::frame_loop::recording::{self, Entry};
 
 use super::lives::{Ground, Sign, Telling};
 use super::script::Kind;
@@ -22,7 +22,7 @@ const MOST_WAITING: usize = 1 << 20;
 #[derive(Debug)]
 pub struct Recorder<C> {
     ground: Ground<C>,
-    black_box: Arc<BlackBox>,
+    black_box: Arc<FlightRecorder>,
     /// Where the recording goes; none lets it go nowhere.
     file: Option<File>,
     waiting: Vec<u8>,
@@ -42,7 +42,7 @@ pub struct Recorder<C> {
 
 impl<C: Clock> Recorder<C> {
     /// At load; the header is written at once.
-    pub fn new(ground: Ground<C>, black_box: Arc<BlackBox>, file: Option<File>, header: &[u8]) -> Self {
+    pub fn new(ground: Ground<C>, black_box: Arc<FlightRecorder>, file: Option<File>, header: &[u8]) -> Self {
         let mut waiting = Vec::with_capacity(MOST_WAITING);
         waiting.extend(header);
         Self {
@@ -74,7 +74,7 @@ impl<C: Clock> Recorder<C> {
             self.hash = (self.hash ^ fingerprint).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
         }
         if self.waiting.len() < MOST_WAITING && !self.ended {
-            tape::write(entry, &mut self.waiting);
+            recording::write(entry, &mut self.waiting);
         } else if !self.ended {
             self.ended = true;
             self.trouble = Some("the disk was full for longer than a minute, and the recording ends there".into());
@@ -105,8 +105,8 @@ impl<C: Clock> Recorder<C> {
     }
 }
 
-impl<C: Clock> Turn for Recorder<C> {
-    fn turn(&mut self) -> Option<u64> {
+impl<C: Clock> ThreadLoop for Recorder<C> {
+    fn run_due(&mut self) -> Option<u64> {
         self.look();
         Some(self.ground.clock.now_ns() + LOOK_NS)
     }

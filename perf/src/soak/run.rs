@@ -6,20 +6,20 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use toile_engine::clock::{Clock, SimClock};
+use toile_engine::frame_loop::ThreadLoop;
+use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, Event, NoCounters};
+use toile_engine::frame_loop::flight_recorder::FlightRecorder;
+use toile_engine::frame_loop::handover::handover;
+use toile_engine::frame_loop::physics_thread::{FrameScene, PhysicsOutputs, PhysicsThread};
+use toile_engine::frame_loop::queue::{Capacity, Receiver, bounded};
+use toile_engine::frame_loop::recording::{ENTRIES, ENTRIES_NAME, Entry};
+use toile_engine::frame_loop::render_thread::RenderThread;
+use toile_engine::frame_loop::sensor_thread::{self, SensorThread};
+use toile_engine::frame_loop::simulate::simulate;
+use toile_engine::frame_loop::thread_roles::{Placement, ThreadRole};
+use toile_engine::frame_loop::threads::{self, LoopThread, Stop};
 use toile_engine::meter::PERIOD_NS;
-use toile_engine::pace::Turn;
-use toile_engine::pace::blackbox::BlackBox;
-use toile_engine::pace::change::handover;
-use toile_engine::pace::event::{EVENTS, EVENTS_NAME, Event, NoAccount};
-use toile_engine::pace::physics::{Outlets, Physics, Staged};
-use toile_engine::pace::queue::{Capacity, Receiver, bounded};
-use toile_engine::pace::render::Render;
-use toile_engine::pace::roles::{Placement, Role};
-use toile_engine::pace::sense::{self, Sense};
-use toile_engine::pace::simulate::simulate;
-use toile_engine::pace::tape::{ENTRIES, ENTRIES_NAME, Entry};
-use toile_engine::pace::threads::{self, Life, Stop};
-use toile_engine::relay::Relay;
+use toile_engine::triple_buffer::TripleBuffer;
 use toile_sensors::clock::SECOND_NS;
 
 use super::camera::Camera;
@@ -52,7 +52,7 @@ pub struct Tools<'a> {
     /// The begin of a recording.
     pub header: Vec<u8>,
     /// Is handed the black box before the first step, to save it should something die.
-    pub keep: &'a dyn Fn(&Arc<BlackBox>),
+    pub keep: &'a dyn Fn(&Arc<FlightRecorder>),
     /// Is told how far the run is (s).
     pub progress: &'a dyn Fn(u64),
     /// The physics thread panics after so long (ns): to see what a crash leaves.
@@ -104,14 +104,14 @@ pub(super) struct Seen {
 
 /// The lives, before they live.
 struct Lives<C: Clock> {
-    sensor: Lived<Sense<Camera<C>, C>, C>,
+    sensor: Lived<SensorThread<Camera<C>, C>, C>,
     physics: Lived<Stepping<C>, C>,
     render: Lived<Showing<C>, C>,
     recorder: Lived<Recorder<C>, C>,
     front: Lived<Front<C>, C>,
     watch: Watch<C>,
     events: Receiver<Event>,
-    black_box: Arc<BlackBox>,
+    black_box: Arc<FlightRecorder>,
     worker: Option<Placement>,
 }
 
@@ -137,8 +137,9 @@ impl<C: Jumping + Clone + Send> Lives<C> {
         let mut company = Company::new(script.clone());
         let (frame, reader) = company.make(0)?;
         let (frame, worker) = if options.workers > 1 {
-            let (crew, worker) = threads::crew(options.workers).map_err(toile_engine::frame::FrameError::from)?;
-            (frame.with_crew(crew), worker)
+            let (pool, worker) =
+                threads::worker_pool(options.workers).map_err(toile_engine::frame::FrameError::from)?;
+            (frame.with_workers(pool), worker)
         } else {
             (frame, None)
         };
@@ -146,16 +147,16 @@ impl<C: Jumping + Clone + Send> Lives<C> {
         let origin_ns = clock.now_ns() + 4 * PERIOD_NS;
         let ground = Ground { script: script.clone(), clock: clock.clone(), origin_ns, count: tools.count };
         let (sender, events) = bounded(EVENTS_NAME, EVENTS);
-        let (tape, entries) = bounded(ENTRIES_NAME, ENTRIES);
-        let Relay { writer, reader: seen } = Relay::new(&sense::Seen::default());
+        let (recording, entries) = bounded(ENTRIES_NAME, ENTRIES);
+        let TripleBuffer { writer, reader: seen } = TripleBuffer::new(&sensor_thread::SensorFrame::default());
         let (scenes, changes) = handover();
         let (readers, other_readers) = handover();
-        let outlets = Outlets { events: sender, tape: Some(tape) };
-        let physics = Physics::new(Staged::new(frame), clock.clone(), origin_ns, seen, outlets, NoAccount);
+        let outlets = PhysicsOutputs { events: sender, recording: Some(recording) };
+        let physics = PhysicsThread::new(FrameScene::new(frame), clock.clone(), origin_ns, seen, outlets, NoCounters);
         let mut stepping = Stepping::new(physics.changing(changes), script.clone(), origin_ns);
         stepping.crash_at(tools.crash_ns.map(|ns| origin_ns + ns));
-        let render = Render::new(Eyewitness::default(), clock.clone(), origin_ns, reader).changing(other_readers);
-        let black_box = Arc::new(BlackBox::new(tools.header.clone(), entries));
+        let render = RenderThread::new(Eyewitness::default(), clock.clone(), origin_ns, reader).changing(other_readers);
+        let black_box = Arc::new(FlightRecorder::new(tools.header.clone(), entries));
         let file = tools.file.as_ref().map(File::try_clone).transpose()?;
         let mut recorder = Recorder::new(ground.clone(), black_box.clone(), file, &tools.header);
         let first = Entry::Changed { number: 0, afresh: true };
@@ -168,7 +169,7 @@ impl<C: Jumping + Clone + Send> Lives<C> {
             signs.push(from);
             to
         };
-        let sense = Sense::new(Camera::new(script, clock.clone(), origin_ns), clock, writer);
+        let sense = SensorThread::new(Camera::new(script, clock.clone(), origin_ns), clock, writer);
         let sensor = Lived::new(sense, Kind::SensorStall, &ground, told());
         let physics = Lived::new(stepping, Kind::PhysicsStall, &ground, told());
         let render = Lived::new(Showing::new(render, &ground), Kind::RenderStall, &ground, told());
@@ -206,7 +207,7 @@ impl<C: Jumping + Clone + Send> Lives<C> {
             missed: gauges.missed + gauges.dropped,
             hash: self.recorder.life.hash,
             allocations: count.map(|_| [self.sensor.allocations, self.physics.allocations, self.render.allocations]),
-            nonfinite: steps.nonfinite + showing.render.eye.nonfinite,
+            nonfinite: steps.nonfinite + showing.render.renderer.nonfinite,
             changes: self.front.life.changes,
             frames: [sense.frames(), sense.restamped, sense.stale],
             pictures: [showing.render.pictures, self.watch.revived],
@@ -232,7 +233,7 @@ fn simulated(lives: Lives<SimClock>, clock: &SimClock, options: &Options, tools:
     while until < end {
         until = end.min(until + SLICE_NS);
         let mut emptied = Emptied(&mut events, clock.clone());
-        let all: &mut [&mut dyn Turn] =
+        let all: &mut [&mut dyn ThreadLoop] =
             &mut [&mut sensor, &mut physics, &mut mortal, &mut recorder, &mut front, &mut watch, &mut emptied];
         simulate(clock, all, until);
         (tools.progress)((until - watch.ground().origin_ns) / SECOND_NS);
@@ -244,15 +245,15 @@ fn simulated(lives: Lives<SimClock>, clock: &SimClock, options: &Options, tools:
 /// Empties the queue of events, which nobody tells anything here.
 struct Emptied<'a>(&'a mut Receiver<Event>, SimClock);
 
-impl Turn for Emptied<'_> {
-    fn turn(&mut self) -> Option<u64> {
+impl ThreadLoop for Emptied<'_> {
+    fn run_due(&mut self) -> Option<u64> {
         while self.0.pop().is_some() {}
         Some(self.1.now_ns() + SECOND_NS / 10)
     }
 }
 
 /// A life beside the loop, on a thread without a role.
-fn beside<T: Turn + Send + 'static>(
+fn beside<T: ThreadLoop + Send + 'static>(
     name: &str,
     mut life: T,
     clock: JumpClock,
@@ -260,7 +261,7 @@ fn beside<T: Turn + Send + 'static>(
 ) -> Result<JoinHandle<T>, SoakError> {
     let live = move || {
         while !stop.is_set() {
-            let Some(next) = life.turn() else { break };
+            let Some(next) = life.run_due() else { break };
             clock.sleep_until(next.min(clock.now_ns() + SECOND_NS / 20));
         }
         life
@@ -273,9 +274,9 @@ fn real(lives: Lives<JumpClock>, options: &Options, tools: &Tools<'_>) -> Result
     let Lives { sensor, physics, render, recorder, front, mut watch, mut events, black_box, worker } = lives;
     let (clock, stop) = (watch.ground().clock.clone(), Stop::default());
     let begin = |role, life| threads::start(role, life, clock.clone(), &stop);
-    let sensor = threads::start(Role::Sensor, sensor, clock.clone(), &stop)?;
-    let physics = threads::start(Role::Physics, physics, clock.clone(), &stop)?;
-    let mut render: Life<Lived<Showing<JumpClock>, JumpClock>> = begin(Role::Render, render)?;
+    let sensor = threads::start(ThreadRole::Sensor, sensor, clock.clone(), &stop)?;
+    let physics = threads::start(ThreadRole::Physics, physics, clock.clone(), &stop)?;
+    let mut render: LoopThread<Lived<Showing<JumpClock>, JumpClock>> = begin(ThreadRole::Render, render)?;
     let recorder = beside("record", recorder, clock.clone(), stop.clone())?;
     let front = beside("front", front, clock.clone(), stop.clone())?;
     let placed = [sensor.placement(), physics.placement(), worker, render.placement()];
@@ -283,12 +284,12 @@ fn real(lives: Lives<JumpClock>, options: &Options, tools: &Tools<'_>) -> Result
     let mut told = 0;
     while clock.now_ns() < end && !physics.is_over() {
         thread::sleep(WATCH);
-        watch.turn();
+        watch.run_due();
         while events.pop().is_some() {}
         if render.is_over() {
             let life = render.salvage().ok_or(SoakError::Died("render"))?;
             watch.revived += 1;
-            render = begin(Role::Render, life.begun_again())?;
+            render = begin(ThreadRole::Render, life.begun_again())?;
         }
         let seconds = clock.now_ns().saturating_sub(watch.ground().origin_ns) / SECOND_NS;
         if seconds >= told + 60 {

@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
 use toile_engine::clock::{Clock, RealClock, SimClock};
+use toile_engine::frame_loop::ThreadLoop;
+use toile_engine::frame_loop::queue::{Capacity, Receiver};
 use toile_engine::meter::PERIOD_NS;
-use toile_engine::pace::Turn;
-use toile_engine::pace::queue::{Capacity, Receiver};
 use toile_sensors::clock::SECOND_NS;
 
 use super::lives::{Ground, Pulse, Sign, Stepped};
@@ -280,8 +280,8 @@ impl Steps {
     }
 }
 
-impl<C: Jumping> Turn for Watch<C> {
-    fn turn(&mut self) -> Option<u64> {
+impl<C: Jumping> ThreadLoop for Watch<C> {
+    fn run_due(&mut self) -> Option<u64> {
         self.begin();
         self.look();
         self.revive();

@@ -1,14 +1,14 @@
 //! The hand-offs between threads, in every order in which they can run: the engine's own files, over atomics and threads
 //! that a model checker (loom) plays.
 //!
-//! Reads: engine/core/src/crew. Writes: nothing.
+//! Reads: engine/core/src/workers. Writes: nothing.
 //! Budget: a minute for all models.
 //! Thread: those of the models, which are played one after the other.
 
-#[path = "../../../engine/core/src/crew/mod.rs"]
-#[expect(unsafe_code, reason = "the engine's own file")]
-pub mod crew;
 #[expect(unsafe_code, reason = "the same contract over the model's cell")]
 pub mod sync;
 #[expect(unsafe_code, reason = "the protocol of the triple buffer, whose own atomics cannot be replaced")]
 pub mod triple;
+#[path = "../../../engine/core/src/workers/mod.rs"]
+#[expect(unsafe_code, reason = "the engine's own file")]
+pub mod workers;

@@ -1,4 +1,4 @@
-//! The protocol of the triple buffer that `relay` uses. The crate's own atomics cannot be replaced, so this is its algorithm
+//! The protocol of the triple buffer that `triple_buffer` uses. The crate's own atomics cannot be replaced, so this is its algorithm
 //! written again: three places, of which each side owns one and the third is exchanged, with a bit that says
 //! whether it is news. The orderings are parameters, so that the model can show which of them are needed.
 

@@ -4,8 +4,8 @@ use std::ops::RangeBounds;
 
 use clap::builder::{PossibleValuesParser, RangedU64ValueParser, TypedValueParser};
 use toile_engine::cloth::Quality;
-use toile_engine::crew::SHARES;
 use toile_engine::lanes::Width;
+use toile_engine::workers::SHARES;
 use toile_gpu::stepper::Backend;
 
 use crate::outfit::Wish;

@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 
 use clap::value_parser;
 use serde::Serialize;
-use toile_engine::pace::governor::LADDER;
-use toile_engine::pace::tape::{self, Entry};
-use toile_engine::pace::threads;
+use toile_engine::frame_loop::governor::LADDER;
+use toile_engine::frame_loop::recording::{self, Entry};
+use toile_engine::frame_loop::threads;
 use toile_perf::latency::{self, Cast, Goal, Latency, Options, Quantiles};
 
 use crate::cli::values::{CrashArg, Printing, WorkersArg, WornArgs, cores};
@@ -114,19 +114,19 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     let recipe = Recipe::write(&session, &args.worn.wish())?;
     let (frame, reader) = recipe.make(first)?;
     // Only now: a helper with a real-time priority shares its core with nobody who waits for it.
-    let (crew, worker) = threads::crew(args.workers.count()).map_err(AppError::input)?;
+    let (pool, worker) = threads::worker_pool(args.workers.count()).map_err(AppError::input)?;
     let options = args.options();
     words.say(&format!("running for {} s, with {} threads of load", options.seconds, options.load));
-    let mut bytes = tape::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
-    let (black_box, tape) = crash::record(bytes.clone(), args.out.join("crash.tape"));
+    let mut bytes = recording::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
+    let (black_box, recording) = crash::record(bytes.clone(), args.out.join("crash.tape"));
     let dressed = Entry::Dressed(*first);
     black_box.keep(&dressed);
-    tape::write(&dressed, &mut bytes);
+    recording::write(&dressed, &mut bytes);
     let (mut begun, recorded) = (None, args.record.is_some());
     let empty = || {
         black_box.drain(|entry| {
             if recorded {
-                tape::write(entry, &mut bytes);
+                recording::write(entry, &mut bytes);
             }
         });
         let begun: Instant = *begun.get_or_insert_with(Instant::now);
@@ -134,7 +134,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
         assert!(!crashes, "the crash that --crash-after asked for");
         black_box.capacity()
     };
-    let cast = Cast { frame: frame.with_crew(crew), reader, joints: &session.joints[from..], worker, tape };
+    let cast = Cast { frame: frame.with_workers(pool), reader, joints: &session.joints[from..], worker, recording };
     let found = latency::run(cast, &options, empty).map_err(AppError::internal);
     crash::forget();
     let found = found?;

@@ -5,16 +5,16 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 use toile_assets::file::{self, FileKind};
 use toile_engine::clock::SimClock;
-use toile_engine::crew::Crew;
 use toile_engine::frame::Frame;
-use toile_engine::pace::physics::{Staged, Stepper};
-use toile_engine::pace::replay::{Replayed, replay};
-use toile_engine::pace::tape::{self, Entry, Tape};
+use toile_engine::frame_loop::physics_thread::{FrameScene, SceneStepper};
+use toile_engine::frame_loop::recording::{self, Entry, Recording};
+use toile_engine::frame_loop::replay::{Replayed, replay};
+use toile_engine::workers::WorkerPool;
 
 use crate::cli::values::WorkersArg;
 use crate::commands::soak::{self, SoakRecipe};
 use crate::exit::AppError;
-use crate::kiosk::recording::{self, KioskRecipe};
+use crate::kiosk::recording::{KioskRecipe, again};
 use crate::outfit::Recipe;
 use crate::report::{Document, hash_text};
 use crate::terminal;
@@ -23,7 +23,7 @@ use crate::terminal;
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(
     after_help = "Example: record a run, and replay it with one worker in place of two\n  toile latency --seconds 10 \
-                        --record run.tape && toile replay run.tape --workers 1"
+                        --record run.recording && toile replay run.recording --workers 1"
 )]
 pub struct ReplayArgs {
     /// Recording of a run
@@ -86,13 +86,13 @@ pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
     let workers = args.workers.count();
     let file = args.file.display();
     let bad = |what: &dyn std::fmt::Display| AppError::Input(format!("{file}: {what}"));
-    let Tape { text, notes, entries } =
-        tape::read(&file::read(&args.file, &RUN).map_err(AppError::input)?).map_err(|e| bad(&e))?;
+    let Recording { text, notes, entries } =
+        recording::read(&file::read(&args.file, &RUN).map_err(AppError::input)?).map_err(|e| bad(&e))?;
     let recorded: Recorded = serde_json::from_str(&text)
         .map_err(|e| bad(&format!("what it says of its scene is not understood ({e}); record the run again")))?;
     let (frame, out) = match &recorded {
         Recorded::Soak(recipe) => soak::again(recipe.soak, &entries, workers)?,
-        Recorded::Kiosk(_) => recording::again(&notes, &entries, workers).map_err(|e| bad(&e))?,
+        Recorded::Kiosk(_) => again(&notes, &entries, workers).map_err(|e| bad(&e))?,
         Recorded::Session(recipe) => session(recipe, &entries, workers).map_err(|e| bad(&e))?,
     };
     let report = ReplayReport {
@@ -108,7 +108,7 @@ pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
         terminal::print(&format!("{} steps, state {}\n", report.ticks, report.state_hash))?;
     }
     if let Some(tick) = out.gap_at {
-        return Err(bad(&format!("the step before step {tick} was not recorded; raise {}", tape::ENTRIES_NAME)));
+        return Err(bad(&format!("the step before step {tick} was not recorded; raise {}", recording::ENTRIES_NAME)));
     }
     let made_by = report.scene.version();
     report.diverged_at.map_or(Ok(()), |tick| {
@@ -126,8 +126,8 @@ fn session(recipe: &Recipe, entries: &[Entry], workers: usize) -> Result<(Frame,
         return Err(AppError::Input(what.to_owned()));
     };
     let (frame, _reader) = recipe.make(first)?;
-    let crew = Crew::new(workers).map_err(AppError::input)?;
-    let mut stepper = Stepper::new(Staged::new(frame.with_crew(crew)));
+    let pool = WorkerPool::new(workers).map_err(AppError::input)?;
+    let mut stepper = SceneStepper::new(FrameScene::new(frame.with_workers(pool)));
     let out = replay(&mut stepper, entries, &SimClock::default());
     Ok((stepper.scene.frame, out))
 }

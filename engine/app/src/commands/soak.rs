@@ -7,11 +7,11 @@ use std::sync::Arc;
 use clap::value_parser;
 use serde::{Deserialize, Serialize};
 use toile_engine::clock::SimClock;
-use toile_engine::crew::Crew;
 use toile_engine::frame::Frame;
-use toile_engine::pace::physics::{Staged, Stepper};
-use toile_engine::pace::replay::{Replayed, replay_changing};
-use toile_engine::pace::tape::{self, Entry, Tape};
+use toile_engine::frame_loop::physics_thread::{FrameScene, SceneStepper};
+use toile_engine::frame_loop::recording::{self, Entry, Recording};
+use toile_engine::frame_loop::replay::{Replayed, replay_changing};
+use toile_engine::workers::WorkerPool;
 use toile_perf::skirt::heap::HeapProbe;
 use toile_perf::soak::script::Script;
 use toile_perf::soak::{self, Check, Company, LEAST_APART_S, Options, Plan, Soak, SoakError, Tools, Weight};
@@ -146,7 +146,7 @@ pub fn run(args: &SoakArgs) -> Result<(), AppError> {
     let options = args.options()?;
     let mut out = OutputFolder::prepare(&args.out)?;
     let recipe = SoakRecipe { version: env!("CARGO_PKG_VERSION").to_owned(), soak: options.plan };
-    let header = tape::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
+    let header = recording::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
     // A run in real time is compared with its own replay, so it is recorded in any case.
     let kept = match &args.record {
         Some(path) => Some(path.clone()),
@@ -229,7 +229,7 @@ fn second(options: &Options, hash: u64, kept: Option<&Path>, words: &Words) -> R
         return Ok(None);
     }
     words.say("the recording is taken again, with one worker");
-    let Tape { entries, .. } = tape::read(&fs::read(path).map_err(unread)?).map_err(AppError::internal)?;
+    let Recording { entries, .. } = recording::read(&fs::read(path).map_err(unread)?).map_err(AppError::internal)?;
     let (_, out) = again(options.plan, &entries, 1)?;
     let same = out.diverged_at.is_none() && out.gap_at.is_none();
     Ok(Some(if same { hash } else { !hash }))
@@ -245,10 +245,10 @@ pub fn again(plan: Plan, entries: &[Entry], workers: usize) -> Result<(Frame, Re
     };
     let mut company = Company::new(Arc::new(Script::write(plan).map_err(refused)?));
     let (frame, _reader) = company.make(*number).map_err(refused)?;
-    let crew = Crew::new(workers).map_err(AppError::input)?;
-    let mut stepper = Stepper::new(Staged::new(frame.with_crew(crew)));
+    let pool = WorkerPool::new(workers).map_err(AppError::input)?;
+    let mut stepper = SceneStepper::new(FrameScene::new(frame.with_workers(pool)));
     let out = replay_changing(&mut stepper, entries, &SimClock::default(), |number| {
-        company.make(number).ok().map(|(frame, _reader)| Staged::new(frame))
+        company.make(number).ok().map(|(frame, _reader)| FrameScene::new(frame))
     });
     Ok((stepper.scene.frame, out))
 }

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use toile_engine::frame::Snapshot;
-use toile_engine::pace::blackbox::BlackBox;
-use toile_engine::pace::change::{Change, Giver};
-use toile_engine::pace::physics::Scene;
-use toile_engine::pace::render::View;
-use toile_engine::relay::Reader;
+use toile_engine::frame_loop::flight_recorder::FlightRecorder;
+use toile_engine::frame_loop::handover::{HandoverSender, SceneChange};
+use toile_engine::frame_loop::physics_thread::Scene;
+use toile_engine::frame_loop::render_thread::SceneView;
+use toile_engine::triple_buffer::Reader;
 use toile_sensors::frame::Joints;
 
 use super::lives::Doors;
@@ -35,8 +35,8 @@ impl<S, O> Act<S, O> {
 
 /// Brings shoppers onto the stage and the mannequin back.
 pub struct Changing<S, O> {
-    scenes: Giver<Stage<S>>,
-    views: Giver<View<O>>,
+    scenes: HandoverSender<Stage<S>>,
+    views: HandoverSender<SceneView<O>>,
     /// Who waits to be called.
     waiting: Option<(Act<S, O>, bool)>,
     /// A mannequin that was not on the stage yet.
@@ -48,12 +48,12 @@ pub struct Changing<S, O> {
     under_way: [bool; 2],
     /// The last that was called; the first is 0.
     number: u64,
-    black_box: Option<Arc<BlackBox>>,
+    black_box: Option<Arc<FlightRecorder>>,
 }
 
 impl<S: Scene, O> Changing<S, O> {
     /// The mannequin is on the stage; where a black box is kept, it is told how each scene was made.
-    pub fn new(doors: Doors<S, O>, black_box: Option<Arc<BlackBox>>) -> Self {
+    pub fn new(doors: Doors<S, O>, black_box: Option<Arc<FlightRecorder>>) -> Self {
         let Doors { scenes, views } = doors;
         let (is_still, wants_still, under_way) = (true, true, [false; 2]);
         Self { scenes, views, waiting: None, mannequin: None, is_still, wants_still, under_way, number: 0, black_box }
@@ -114,8 +114,9 @@ impl<S: Scene, O> Changing<S, O> {
             black_box.describe(&act.made.note(self.number));
         }
         let (number, still) = (self.number, act.still());
-        let scene = Box::new(Change { scene: Stage::new(act.scene, still), number, afresh });
-        let view = Box::new(Change { scene: View { reader: act.reader, outfit: act.outfit }, number, afresh });
+        let scene = Box::new(SceneChange { scene: Stage::new(act.scene, still), number, afresh });
+        let view =
+            Box::new(SceneChange { scene: SceneView { reader: act.reader, outfit: act.outfit }, number, afresh });
         // Both are empty, since one change is under way at a time: nothing is given back.
         self.under_way = [self.scenes.give(scene).is_ok(), self.views.give(view).is_ok()];
     }
@@ -131,10 +132,10 @@ mod tests {
     use super::*;
     use toile_engine::clock::Clock;
     use toile_engine::frame::Times;
-    use toile_engine::pace::change::{Taker, handover};
-    use toile_engine::pace::governor::Rung;
-    use toile_engine::relay::Relay;
+    use toile_engine::frame_loop::governor::Rung;
+    use toile_engine::frame_loop::handover::{HandoverReceiver, handover};
     use toile_engine::skin::SkinningJob;
+    use toile_engine::triple_buffer::TripleBuffer;
 
     /// A number on the stage.
     #[derive(Debug)]
@@ -158,8 +159,8 @@ mod tests {
         scene: Stage<Nth>,
         outfit: u64,
         afresh: bool,
-        scenes: Taker<Stage<Nth>>,
-        views: Taker<View<u64>>,
+        scenes: HandoverReceiver<Stage<Nth>>,
+        views: HandoverReceiver<SceneView<u64>>,
     }
 
     impl Threads {
@@ -182,7 +183,7 @@ mod tests {
         let skin = SkinningJob::new::<4>(&[], &[], &[]).unwrap().posed();
         let snapshot = Snapshot { tick: 0, times: Times::default(), skin, garments: Box::new([]) };
         let made = Made::for_tests(number == 0);
-        Act { scene: Nth(number), reader: Relay::new(&snapshot).reader, outfit: number, made }
+        Act { scene: Nth(number), reader: TripleBuffer::new(&snapshot).reader, outfit: number, made }
     }
 
     fn set() -> (Changing<Nth, u64>, Threads) {

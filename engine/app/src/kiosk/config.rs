@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toile_assets::file::{self, FileKind};
 use toile_engine::cloth::Quality;
-use toile_engine::crew::SHARES;
+use toile_engine::workers::SHARES;
 
 use super::config_keys;
 use super::session::SessionTimes;

@@ -2,7 +2,7 @@
 //! machine of the session alone.
 
 use toile_engine::frame::Frame;
-use toile_engine::pace::physics::Scene;
+use toile_engine::frame_loop::physics_thread::Scene;
 use toile_sensors::frame::Joints;
 
 use super::change::{Act, Changing};

@@ -3,8 +3,8 @@
 
 use std::fmt::{self, Display, Formatter};
 
+use toile_engine::frame_loop::event::{Event, EventKind};
 use toile_engine::meter::Meter;
-use toile_engine::pace::event::{Event, What};
 use toile_perf::latency::{Attributed, Attributing};
 
 use super::session::SessionState;
@@ -95,8 +95,8 @@ impl HealthCounter {
     pub fn event(&mut self, event: &Event) {
         self.late.take(event);
         match event.what {
-            What::Dropped(steps) => self.figures.misses += steps,
-            What::SensorLost => self.figures.sensor_lost += 1,
+            EventKind::Dropped(steps) => self.figures.misses += steps,
+            EventKind::SensorLost => self.figures.sensor_lost += 1,
             _ => {}
         }
     }
@@ -134,7 +134,9 @@ mod tests {
         for i in 0..2_000 {
             counter.beat(&Beat { step_ns: 2_000_000, late: i % 1_000 == 7, rung: 1, nonfinite: i / 1_000 });
         }
-        for what in [What::Dropped(5), What::SensorLost, What::SensorBack, What::Missed(Default::default())] {
+        for what in
+            [EventKind::Dropped(5), EventKind::SensorLost, EventKind::SensorBack, EventKind::Missed(Default::default())]
+        {
             counter.event(&Event { tick: 0, scheduled_ns: 0, what });
         }
         counter.stepped_in(true);

@@ -8,17 +8,17 @@ use std::time::{Duration, Instant};
 use glam::Vec3;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::Snapshot;
+use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, Event};
+use toile_engine::frame_loop::handover::{HandoverSender, handover};
+use toile_engine::frame_loop::physics_thread::{PhysicsOutputs, PhysicsThread, Scene};
+use toile_engine::frame_loop::queue::{Capacity, Receiver, Sender, bounded};
+use toile_engine::frame_loop::recording::Entry;
+use toile_engine::frame_loop::render_thread::{RenderThread, Renderer, SceneView};
+use toile_engine::frame_loop::sensor_thread::{SensorFrame, SensorThread};
+use toile_engine::frame_loop::thread_roles::{Placement, ThreadRole};
+use toile_engine::frame_loop::threads::{self, LoopThread, Stop};
 use toile_engine::meter::PERIOD_NS;
-use toile_engine::pace::change::{Giver, handover};
-use toile_engine::pace::event::{EVENTS, EVENTS_NAME, Event};
-use toile_engine::pace::physics::{Outlets, Physics, Scene};
-use toile_engine::pace::queue::{Capacity, Receiver, Sender, bounded};
-use toile_engine::pace::render::{Eye, Render, View};
-use toile_engine::pace::roles::{Placement, Role};
-use toile_engine::pace::sense::{Seen, Sense};
-use toile_engine::pace::tape::Entry;
-use toile_engine::pace::threads::{self, Life, Stop};
-use toile_engine::relay::Relay;
+use toile_engine::triple_buffer::TripleBuffer;
 use toile_perf::latency::ThreadAccount;
 use toile_sensors::frame::Joints;
 
@@ -32,32 +32,32 @@ use super::watchdog::Pulse;
 const LONGEST_END: Duration = Duration::from_secs(3);
 
 /// Who is there when the loop begins.
-pub struct Cast<S, E: Eye> {
+pub struct Cast<S, E: Renderer> {
     /// The mannequin.
     pub first: Act<S, E::Outfit>,
     /// Who makes pictures, with the mannequin's outfit on already: that of `first` is what it leaves in its place.
-    pub eye: E,
+    pub renderer: E,
     /// What the sensor reads.
     pub feed: Feed,
     /// Where what a replay needs goes, where somebody keeps it.
-    pub tape: Option<Sender<Entry>>,
+    pub recording: Option<Sender<Entry>>,
 }
 
 /// The service's ends of the stage.
 pub struct Doors<S, O> {
     /// To physics.
-    pub scenes: Giver<Stage<S>>,
+    pub scenes: HandoverSender<Stage<S>>,
     /// To render.
-    pub views: Giver<View<O>>,
+    pub views: HandoverSender<SceneView<O>>,
 }
 
 /// The lives on their threads.
-pub struct Lives<S, E: Eye> {
+pub struct Lives<S, E: Renderer> {
     clock: RealClock,
     stop: Stop,
-    sensor: Life<Sense<Tapped, RealClock>>,
-    physics: Life<Physics<Stage<S>, RealClock, ThreadAccount>>,
-    render: Life<Watching<E>>,
+    sensor: LoopThread<SensorThread<Tapped, RealClock>>,
+    physics: LoopThread<PhysicsThread<Stage<S>, RealClock, ThreadAccount>>,
+    render: LoopThread<Watching<E>>,
     /// What happened.
     pub events: Receiver<Event>,
     /// What each step came to.
@@ -69,18 +69,18 @@ pub struct Lives<S, E: Eye> {
 }
 
 /// The lives, when they have ended; none is one that did not end in time.
-pub struct Ended<S, E: Eye> {
+pub struct Ended<S, E: Renderer> {
     /// The sensor's.
-    pub sensor: Option<Sense<Tapped, RealClock>>,
+    pub sensor: Option<SensorThread<Tapped, RealClock>>,
     /// The physics'.
-    pub physics: Option<Physics<Stage<S>, RealClock, ThreadAccount>>,
+    pub physics: Option<PhysicsThread<Stage<S>, RealClock, ThreadAccount>>,
     /// The render's.
-    pub render: Option<Render<E, RealClock>>,
+    pub render: Option<RenderThread<E, RealClock>>,
     /// How full the queues were.
     pub capacities: [Capacity; 3],
 }
 
-impl<S: Scene + Send + 'static, E: Eye + 'static> Lives<S, E> {
+impl<S: Scene + Send + 'static, E: Renderer + 'static> Lives<S, E> {
     /// Starts them. Also gives the service's ends of the stage.
     ///
     /// # Errors
@@ -92,19 +92,19 @@ impl<S: Scene + Send + 'static, E: Eye + 'static> Lives<S, E> {
         let (beat, beats) = bounded(BEATS_NAME, BEATS);
         let (tap, frames) = bounded(FRAMES_NAME, FRAMES);
         let ((scenes, next), (views, showing)) = (handover(), handover());
-        let Relay { writer, reader: seen } = Relay::new(&Seen::default());
-        let sense = Sense::new(Tapped::new(cast.feed, tap), clock, writer);
+        let TripleBuffer { writer, reader: seen } = TripleBuffer::new(&SensorFrame::default());
+        let sense = SensorThread::new(Tapped::new(cast.feed, tap), clock, writer);
         let still = cast.first.still();
         let stage = Stage::new(cast.first.scene, still).begin(beat, pulse.clone());
-        let outlets = Outlets { events: tell, tape: cast.tape };
-        let physics = Physics::new(stage, clock, begin, seen, outlets, ThreadAccount::new()).changing(next);
-        let render = Render::new(cast.eye, clock, begin, cast.first.reader).changing(showing);
+        let outlets = PhysicsOutputs { events: tell, recording: cast.recording };
+        let physics = PhysicsThread::new(stage, clock, begin, seen, outlets, ThreadAccount::new()).changing(next);
+        let render = RenderThread::new(cast.renderer, clock, begin, cast.first.reader).changing(showing);
         let watching = Watching::new(render, pulse.clone());
         let stop = Stop::default();
         let lives = Self {
-            sensor: threads::start(Role::Sensor, sense, clock, &stop)?,
-            physics: threads::start(Role::Physics, physics, clock, &stop)?,
-            render: threads::start(Role::Render, watching, clock, &stop)?,
+            sensor: threads::start(ThreadRole::Sensor, sense, clock, &stop)?,
+            physics: threads::start(ThreadRole::Physics, physics, clock, &stop)?,
+            render: threads::start(ThreadRole::Render, watching, clock, &stop)?,
             clock,
             stop,
             events,
@@ -126,11 +126,11 @@ impl<S: Scene + Send + 'static, E: Eye + 'static> Lives<S, E> {
     }
 
     /// The first life that has ended, which none does by itself.
-    pub fn over(&self) -> Option<Role> {
+    pub fn over(&self) -> Option<ThreadRole> {
         let ended = [
-            (Role::Sensor, self.sensor.is_over()),
-            (Role::Physics, self.physics.is_over()),
-            (Role::Render, self.render.is_over()),
+            (ThreadRole::Sensor, self.sensor.is_over()),
+            (ThreadRole::Physics, self.physics.is_over()),
+            (ThreadRole::Render, self.render.is_over()),
         ];
         ended.into_iter().find_map(|(role, over)| over.then_some(role))
     }
@@ -151,7 +151,7 @@ impl<S: Scene + Send + 'static, E: Eye + 'static> Lives<S, E> {
     }
 }
 
-fn ended<T>(life: Life<T>) -> Option<T> {
+fn ended<T>(life: LoopThread<T>) -> Option<T> {
     if life.is_over() { life.join() } else { None }
 }
 
@@ -162,12 +162,12 @@ pub struct Headless {
     garments: Vec<Vec<Vec3>>,
 }
 
-impl Eye for Headless {
+impl Renderer for Headless {
     type Outfit = ();
 
-    fn put_on(&mut self, _outfit: &mut ()) {}
+    fn set_outfit(&mut self, _outfit: &mut ()) {}
 
-    fn look(&mut self, snapshot: &Snapshot) {
+    fn draw(&mut self, snapshot: &Snapshot) {
         let [positions, normals] = &mut self.body;
         for column in [&mut *positions, &mut *normals] {
             column.resize(snapshot.skin.vertices(), Vec3::ZERO);

@@ -7,7 +7,7 @@ use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use toile_engine::relay::Reader;
+use toile_engine::triple_buffer::Reader;
 
 use super::health::HealthFigures;
 use super::session::SessionState;
@@ -106,7 +106,7 @@ fn text(figures: &HealthFigures) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_engine::relay::Relay;
+    use toile_engine::triple_buffer::TripleBuffer;
 
     fn ask(address: SocketAddr, question: &[u8]) -> String {
         let mut stream = TcpStream::connect(address).unwrap();
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn figures_are_served_on_loopback_and_nonsense_is_not_answered() {
-        let Relay { mut writer, reader } = Relay::new(&HealthFigures::default());
+        let TripleBuffer { mut writer, reader } = TripleBuffer::new(&HealthFigures::default());
         let address = serve(0, reader).unwrap();
         assert!(address.ip().is_loopback());
         writer.publish(HealthFigures {

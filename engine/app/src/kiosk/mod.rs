@@ -33,10 +33,10 @@ use std::time::{Duration, Instant};
 
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::Frame;
-use toile_engine::pace::physics::Staged;
-use toile_engine::pace::render::Eye;
-use toile_engine::pace::threads;
-use toile_engine::relay::Writer;
+use toile_engine::frame_loop::physics_thread::FrameScene;
+use toile_engine::frame_loop::render_thread::Renderer;
+use toile_engine::frame_loop::threads;
+use toile_engine::triple_buffer::Writer;
 use toile_perf::latency::Placed;
 use toile_sensors::source::Session;
 
@@ -78,8 +78,8 @@ pub fn run(args: &KioskArgs, windowed: fn(KioskRun<'_>) -> Result<KioskReport, A
     let clock = RealClock::default();
     let run = KioskRun { args, config: &config, begun, clock, stop: &stop, words: &words, figures };
     let report = if args.headless {
-        let eye = |_: &Frame| Ok(Headless::default());
-        serve(run, Frontend { eye, stage: |frame| (Staged::new(frame), ()), controller: |_| None })?.0
+        let renderer = |_: &Frame| Ok(Headless::default());
+        serve(run, Frontend { renderer, stage: |frame| (FrameScene::new(frame), ()), controller: |_| None })?.0
     } else {
         windowed(run)?
     };
@@ -115,15 +115,15 @@ pub struct KioskRun<'a> {
 /// How a run shows itself: without a display, or at a window.
 pub struct Frontend<F, H, O> {
     /// Makes the renderer, once the mannequin is dressed.
-    pub eye: F,
+    pub renderer: F,
     /// A dressed frame as a scene of the loop, and what the renderer has to know of it.
-    pub stage: fn(Frame) -> (Staged, O),
+    pub stage: fn(Frame) -> (FrameScene, O),
     /// Makes the controller, given the recording that shoppers are measured from, if one is played.
     pub controller: H,
 }
 
 /// A controller; none is that of the session alone.
-pub type BoxedController<'a, O> = Option<Box<dyn SessionController<Staged, O> + 'a>>;
+pub type BoxedController<'a, O> = Option<Box<dyn SessionController<FrameScene, O> + 'a>>;
 
 /// Sets everything up and runs until the end; returns the report, and the renderer.
 ///
@@ -134,7 +134,7 @@ pub fn serve<'a, E, F, H>(
     frontend: Frontend<F, H, E::Outfit>,
 ) -> Result<(KioskReport, Option<E>), AppError>
 where
-    E: Eye<Outfit: Default> + 'static,
+    E: Renderer<Outfit: Default> + 'static,
     F: FnOnce(&Frame) -> Result<E, AppError>,
     H: FnOnce(Option<Model>) -> BoxedController<'a, E::Outfit>,
 {
@@ -147,7 +147,7 @@ where
     let dressed = tailor::mannequin(&wish, &pose)?;
     let (feed, played) = feed(config, session, clock)?;
     let workers = config.machine.workers.unwrap_or_else(workers);
-    let (crew, worker) = threads::crew(workers).map_err(AppError::input)?;
+    let (pool, worker) = threads::worker_pool(workers).map_err(AppError::input)?;
     let locked = if config.machine.lock_memory { memory::lock() } else { Ok(()) };
     let options = ServiceOptions {
         begun,
@@ -160,14 +160,16 @@ where
         memory_locked: config.machine.lock_memory && locked.is_ok(),
         warnings: locked.err().map(|e| e.to_string()).into_iter().collect(),
     };
-    let (black_box, tape) = match config.crash.recording.clone() {
-        Some(path) => recording::keep(&dressed.made, path).map(|(black_box, tape)| (Some(black_box), Some(tape)))?,
+    let (black_box, recording) = match config.crash.recording.clone() {
+        Some(path) => {
+            recording::keep(&dressed.made, path).map(|(black_box, recording)| (Some(black_box), Some(recording)))?
+        }
         None => (None, None),
     };
     let Dressed { frame, reader, made } = dressed;
-    let eye = (frontend.eye)(&frame)?;
-    let first = Act { scene: Staged::new(frame.with_crew(crew)), reader, outfit: E::Outfit::default(), made };
-    let cast = Cast { first, eye, feed, tape };
+    let renderer = (frontend.renderer)(&frame)?;
+    let first = Act { scene: FrameScene::new(frame.with_workers(pool)), reader, outfit: E::Outfit::default(), made };
+    let cast = Cast { first, renderer, feed, recording };
     let (lives, doors) = Lives::start(cast, clock).map_err(AppError::internal)?;
     stop.graceful();
     let say = |line: &str| words.say(line);
@@ -192,7 +194,7 @@ where
     let (mut ended, mut record) = ran?;
     record.threads.extend(worker.map(Placed::from));
     let report = KioskReport::of(&ended, record);
-    Ok((report, ended.render.take().map(|render| render.eye)))
+    Ok((report, ended.render.take().map(|render| render.renderer)))
 }
 
 /// The recording that is played, or for a live sensor the embedded one, whose shopper shows the mannequin how to stand.
@@ -218,14 +220,14 @@ fn feed(config: &Config, session: Session, clock: RealClock) -> Result<(Feed, Op
 }
 
 fn workers() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from).min(toile_engine::crew::SHARES)
+    std::thread::available_parallelism().map_or(1, usize::from).min(toile_engine::workers::SHARES)
 }
 
 #[cfg(feature = "metrics")]
 fn figures(config: &Config) -> Result<Option<Writer<HealthFigures>>, AppError> {
-    use toile_engine::relay::Relay;
+    use toile_engine::triple_buffer::TripleBuffer;
     let Some(port) = config.metrics.port else { return Ok(None) };
-    let Relay { writer, reader } = Relay::new(&HealthFigures::default());
+    let TripleBuffer { writer, reader } = TripleBuffer::new(&HealthFigures::default());
     let refused = |e| AppError::Device(format!("port {port} of 127.0.0.1 cannot be opened ({e}); name a free one"));
     metrics::serve(port, reader).map_err(refused)?;
     Ok(Some(writer))

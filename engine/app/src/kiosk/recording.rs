@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use toile_engine::clock::SimClock;
-use toile_engine::crew::Crew;
 use toile_engine::frame::Frame;
-use toile_engine::pace::blackbox::BlackBox;
-use toile_engine::pace::physics::{Staged, Stepper};
-use toile_engine::pace::queue::Sender;
-use toile_engine::pace::replay::{Replayed, replay_changing};
-use toile_engine::pace::tape::{self, Entry, Note};
+use toile_engine::frame_loop::flight_recorder::FlightRecorder;
+use toile_engine::frame_loop::physics_thread::{FrameScene, SceneStepper};
+use toile_engine::frame_loop::queue::Sender;
+use toile_engine::frame_loop::recording::{self, Entry, SceneNote};
+use toile_engine::frame_loop::replay::{Replayed, replay_changing};
+use toile_engine::workers::WorkerPool;
 use toile_sensors::frame::Joints;
 
 use super::stage::Stage;
@@ -57,14 +57,14 @@ struct Said {
 
 impl Made {
     /// The same for a recording, under this number.
-    pub fn note(&self, number: u64) -> Note {
+    pub fn note(&self, number: u64) -> SceneNote {
         let said = Said { still: self.still, recipe: self.recipe.clone() };
         // Plain strings and numbers: it cannot fail, and a note without text is refused by the replay.
         let text = serde_json::to_string(&said).unwrap_or_default();
-        Note { number, first: self.first, text }
+        SceneNote { number, first: self.first, text }
     }
 
-    fn read(note: &Note) -> Result<Self, AppError> {
+    fn read(note: &SceneNote) -> Result<Self, AppError> {
         let Said { still, recipe } = serde_json::from_str(&note.text).map_err(|e| {
             AppError::Input(format!("what it says of scene {} is not understood ({e}); record it again", note.number))
         })?;
@@ -72,13 +72,13 @@ impl Made {
     }
 
     /// Makes it again; with one worker, until another scene's are taken over.
-    fn stage(&self, crew: Option<Crew>) -> Result<Stage<Staged>, AppError> {
+    fn stage(&self, pool: Option<WorkerPool>) -> Result<Stage<FrameScene>, AppError> {
         let (frame, _reader) = self.recipe.make(&self.first)?;
-        let frame = match crew {
-            Some(crew) => frame.with_crew(crew),
+        let frame = match pool {
+            Some(pool) => frame.with_workers(pool),
             None => frame,
         };
-        Ok(Stage::new(Staged::new(frame), self.still.then_some(self.first)))
+        Ok(Stage::new(FrameScene::new(frame), self.still.then_some(self.first)))
     }
 
     /// Of nobody.
@@ -100,20 +100,20 @@ impl Made {
 ///
 /// # Errors
 /// A header that cannot be written, which does not happen.
-pub fn keep(first: &Made, path: PathBuf) -> Result<(Arc<BlackBox>, Sender<Entry>), AppError> {
+pub fn keep(first: &Made, path: PathBuf) -> Result<(Arc<FlightRecorder>, Sender<Entry>), AppError> {
     let recipe = KioskRecipe { version: env!("CARGO_PKG_VERSION").to_owned(), kiosk: Kind::Notes };
-    let header = tape::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
-    let (black_box, tape) = crash::record(header, path);
+    let header = recording::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
+    let (black_box, recording) = crash::record(header, path);
     black_box.describe(&first.note(0));
     black_box.keep(&Entry::Changed { number: 0, afresh: true });
-    Ok((black_box, tape))
+    Ok((black_box, recording))
 }
 
 /// Takes a kiosk's recording again: the last frame, and what came out.
 ///
 /// # Errors
 /// A recording that does not begin where somebody was dressed, or a scene that cannot be made.
-pub fn again(notes: &[Note], entries: &[Entry], workers: usize) -> Result<(Frame, Replayed), AppError> {
+pub fn again(notes: &[SceneNote], entries: &[Entry], workers: usize) -> Result<(Frame, Replayed), AppError> {
     let Some((Entry::Changed { number, .. }, entries)) = entries.split_first() else {
         return Err(AppError::Input("it does not begin where somebody was dressed; record it again".into()));
     };
@@ -121,8 +121,8 @@ pub fn again(notes: &[Note], entries: &[Entry], workers: usize) -> Result<(Frame
         let unknown = || AppError::Input(format!("it does not say how scene {number} was made; record it again"));
         notes.iter().find(|note| note.number == number).ok_or_else(unknown).and_then(Made::read)
     };
-    let crew = Crew::new(workers).map_err(AppError::input)?;
-    let mut stepper = Stepper::new(made(*number)?.stage(Some(crew))?);
+    let pool = WorkerPool::new(workers).map_err(AppError::input)?;
+    let mut stepper = SceneStepper::new(made(*number)?.stage(Some(pool))?);
     let mut refused = None;
     let out = replay_changing(&mut stepper, entries, &SimClock::default(), |number| {
         let stage = made(number).and_then(|made| made.stage(None));

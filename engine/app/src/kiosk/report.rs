@@ -1,9 +1,9 @@
 //! The report of a kiosk's run, as in the JSON: figures of the machine, and nothing of a person.
 
 use serde::Serialize;
-use toile_engine::pace::physics::{Gauges, Scene};
-use toile_engine::pace::queue::Capacity;
-use toile_engine::pace::render::Eye;
+use toile_engine::frame_loop::physics_thread::{LoopMeters, Scene};
+use toile_engine::frame_loop::queue::Capacity;
+use toile_engine::frame_loop::render_thread::Renderer;
 use toile_perf::latency::{Attributed, Placed, Quantiles, Warned};
 
 use super::health::HealthFigures;
@@ -106,8 +106,8 @@ pub struct RunRecord {
 
 impl KioskReport {
     /// Of threads that have ended.
-    pub fn of<S: Scene, E: Eye>(ended: &Ended<S, E>, record: RunRecord) -> Self {
-        let nothing = Gauges::default();
+    pub fn of<S: Scene, E: Renderer>(ended: &Ended<S, E>, record: RunRecord) -> Self {
+        let nothing = LoopMeters::default();
         let gauges = ended.physics.as_ref().map_or(&nothing, |physics| &physics.gauges);
         let render = ended.render.as_ref();
         let mut warnings = record.warnings;

@@ -5,10 +5,10 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use toile_engine::frame::Frame;
-use toile_engine::pace::blackbox::BlackBox;
-use toile_engine::pace::physics::Scene;
-use toile_engine::pace::render::Eye;
-use toile_engine::relay::Writer;
+use toile_engine::frame_loop::flight_recorder::FlightRecorder;
+use toile_engine::frame_loop::physics_thread::Scene;
+use toile_engine::frame_loop::render_thread::Renderer;
+use toile_engine::triple_buffer::Writer;
 use toile_perf::latency::{Attributed, Placed};
 use toile_sensors::frame::Joints;
 
@@ -68,11 +68,11 @@ pub struct ServiceEnvironment<'a, S, O> {
     /// How the mannequin stands.
     pub pose: Joints,
     /// What is kept for a crash, where somebody asked for it.
-    pub black_box: Option<Arc<BlackBox>>,
+    pub black_box: Option<Arc<FlightRecorder>>,
 }
 
 /// The service while it runs.
-pub struct Service<'a, S: Scene, E: Eye> {
+pub struct Service<'a, S: Scene, E: Renderer> {
     lives: Lives<S, E>,
     context: ControllerContext<S, E::Outfit>,
     controller: Box<dyn SessionController<S, E::Outfit> + 'a>,
@@ -84,7 +84,7 @@ pub struct Service<'a, S: Scene, E: Eye> {
     stop: &'a StopSignal,
     say: &'a dyn Fn(&str),
     figures: Option<Writer<HealthFigures>>,
-    black_box: Option<Arc<BlackBox>>,
+    black_box: Option<Arc<FlightRecorder>>,
     counter: HealthCounter,
     dog: Option<Watchdog>,
     /// The loop's time when it began, and when the next health line is due (ns).
@@ -93,7 +93,7 @@ pub struct Service<'a, S: Scene, E: Eye> {
     record: RunRecord,
 }
 
-impl<'a, S: Scene + Send + 'static, E: Eye + 'static> Service<'a, S, E> {
+impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
     /// Over threads that have been started.
     pub fn new(
         lives: Lives<S, E>,

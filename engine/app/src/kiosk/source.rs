@@ -4,8 +4,8 @@ use std::io;
 use std::net::SocketAddr;
 
 use toile_engine::clock::{Clock, RealClock};
-use toile_engine::pace::queue::Sender;
-use toile_engine::pace::sense::Source;
+use toile_engine::frame_loop::queue::Sender;
+use toile_engine::frame_loop::sensor_thread::JointSource;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::Joints;
 use toile_sensors::source::vmc::VmcReceiver;
@@ -87,7 +87,7 @@ impl Feed {
     }
 }
 
-impl Source for Feed {
+impl JointSource for Feed {
     fn next_ns(&self) -> Option<u64> {
         Some(match self {
             Self::Played(visits) => visits.place(visits.next).time_ns,
@@ -127,7 +127,7 @@ impl Tapped {
     }
 }
 
-impl Source for Tapped {
+impl JointSource for Tapped {
     fn next_ns(&self) -> Option<u64> {
         self.feed.next_ns()
     }

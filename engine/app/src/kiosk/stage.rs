@@ -1,16 +1,16 @@
 //! The stage: the scene that physics steps, with what the service wants to know of each step. Another one takes its place by
-//! the loop's own handover ([`toile_engine::pace::change`]); what left is dropped elsewhere.
+//! the loop's own handover ([`toile_engine::frame_loop::handover`]); what left is dropped elsewhere.
 
 use std::sync::Arc;
 
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::Times;
+use toile_engine::frame_loop::ThreadLoop;
+use toile_engine::frame_loop::governor::{LADDER, Rung};
+use toile_engine::frame_loop::physics_thread::Scene;
+use toile_engine::frame_loop::queue::Sender;
+use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
 use toile_engine::meter::PERIOD_NS;
-use toile_engine::pace::Turn;
-use toile_engine::pace::governor::{LADDER, Rung};
-use toile_engine::pace::physics::Scene;
-use toile_engine::pace::queue::Sender;
-use toile_engine::pace::render::{Eye, Render};
 use toile_sensors::frame::Joints;
 
 use super::watchdog::Pulse;
@@ -109,8 +109,8 @@ impl<S: Scene> Scene for Stage<S> {
         self.scene.fingerprint()
     }
 
-    fn upset(&mut self, seed: u64) {
-        self.scene.upset(seed);
+    fn inject_fault(&mut self, seed: u64) {
+        self.scene.inject_fault(seed);
     }
 
     fn succeed(&mut self, before: &mut Self) {
@@ -128,22 +128,22 @@ impl<S: Scene> Scene for Stage<S> {
 }
 
 /// The render's life, whose pictures the watchdog counts.
-pub struct Watching<E: Eye> {
+pub struct Watching<E: Renderer> {
     /// The life itself.
-    pub render: Render<E, RealClock>,
+    pub render: RenderThread<E, RealClock>,
     pulse: Arc<Pulse>,
 }
 
-impl<E: Eye> Watching<E> {
+impl<E: Renderer> Watching<E> {
     /// The same, watched.
-    pub fn new(render: Render<E, RealClock>, pulse: Arc<Pulse>) -> Self {
+    pub fn new(render: RenderThread<E, RealClock>, pulse: Arc<Pulse>) -> Self {
         Self { render, pulse }
     }
 }
 
-impl<E: Eye> Turn for Watching<E> {
-    fn turn(&mut self) -> Option<u64> {
-        let next = self.render.turn();
+impl<E: Renderer> ThreadLoop for Watching<E> {
+    fn run_due(&mut self) -> Option<u64> {
+        let next = self.render.run_due();
         self.pulse.pictures(self.render.pictures);
         next
     }
@@ -153,14 +153,14 @@ impl<E: Eye> Turn for Watching<E> {
 mod tests {
     use super::*;
     use toile_engine::clock::SimClock;
-    use toile_engine::pace::physics::Stepper;
-    use toile_engine::pace::queue::bounded;
+    use toile_engine::frame_loop::physics_thread::SceneStepper;
+    use toile_engine::frame_loop::queue::bounded;
 
     /// A scene that says what it was asked.
     #[derive(Debug, Default)]
     struct Said {
         name: u8,
-        crew: u8,
+        pool: u8,
         rolled_back: u64,
         substeps: f32,
         seen_ns: Vec<u64>,
@@ -180,7 +180,7 @@ mod tests {
             u64::from(self.name)
         }
         fn succeed(&mut self, before: &mut Self) {
-            std::mem::swap(&mut self.crew, &mut before.crew);
+            std::mem::swap(&mut self.pool, &mut before.pool);
         }
         fn troubles(&self) -> [u64; 2] {
             [0, self.rolled_back]
@@ -191,19 +191,19 @@ mod tests {
     fn another_scene_takes_over_crew_quality_and_counts() {
         let (beats, mut told) = bounded(BEATS_NAME, BEATS);
         let pulse = Arc::new(Pulse::default());
-        let first = Said { name: 1, crew: 9, ..Said::default() };
+        let first = Said { name: 1, pool: 9, ..Said::default() };
         let stage = Stage::new(first, Some(Joints::absent(7))).begin(beats, pulse.clone());
-        let (mut stepper, clock) = (Stepper::new(stage), SimClock::default());
+        let (mut stepper, clock) = (SceneStepper::new(stage), SimClock::default());
         stepper.set_rung(1);
         stepper.step(0, 0, &clock);
         let mut other = Stage::new(Said { name: 2, ..Said::default() }, None);
         stepper.change(&mut other, true);
         stepper.step(0, 0, &clock);
         let now = stepper.scene.scene();
-        assert_eq!((now.name, now.crew, now.substeps), (2, 9, LADDER[1].substep_share));
+        assert_eq!((now.name, now.pool, now.substeps), (2, 9, LADDER[1].substep_share));
         assert_ne!(now.seen_ns, [7], "it follows the sensor");
         let before = other.scene();
-        assert_eq!((before.name, before.crew, &before.seen_ns[..]), (1, 0, &[7][..]), "it stood still");
+        assert_eq!((before.name, before.pool, &before.seen_ns[..]), (1, 0, &[7][..]), "it stood still");
         // Back on, with the counts that it left with.
         stepper.change(&mut other, true);
         stepper.step(0, 0, &clock);

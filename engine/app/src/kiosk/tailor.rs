@@ -7,7 +7,7 @@ use toile_assets::body::{Measures, Sex};
 use toile_assets::sizes::Population;
 use toile_assets::wardrobe;
 use toile_engine::frame::{Frame, Snapshot};
-use toile_engine::relay::Reader;
+use toile_engine::triple_buffer::Reader;
 use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
 

@@ -1,9 +1,9 @@
 //! The controller of a visit: feeds the visitor's model with what the sensor and the window report, and carries out its effects.
 
 use toile_engine::frame::{Frame, Snapshot};
-use toile_engine::pace::physics::Scene;
-use toile_engine::pace::queue::Sender;
-use toile_engine::relay::Writer;
+use toile_engine::frame_loop::physics_thread::Scene;
+use toile_engine::frame_loop::queue::Sender;
+use toile_engine::triple_buffer::Writer;
 use toile_sensors::filter::{FilterSettings, JointFilter};
 use toile_sensors::frame::Joints;
 use toile_track::gesture::Gestures;

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
 
-use toile_engine::pace::queue::Sender;
-use toile_engine::relay::Writer;
+use toile_engine::frame_loop::queue::Sender;
+use toile_engine::triple_buffer::Writer;
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
 use winit::event::WindowEvent;

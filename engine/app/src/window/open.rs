@@ -6,9 +6,9 @@ use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::Duration;
 
-use toile_engine::pace::queue::{self, Sender, bounded};
-use toile_engine::pace::roles::{self, Role};
-use toile_engine::relay::{Relay, Writer};
+use toile_engine::frame_loop::queue::{self, Sender, bounded};
+use toile_engine::frame_loop::thread_roles::{self, ThreadRole};
+use toile_engine::triple_buffer::{TripleBuffer, Writer};
 use winit::window::Window;
 
 use super::body_model::ModelPair;
@@ -66,8 +66,8 @@ pub fn run<T: Send>(
     let close = CloseOnDrop(events.create_proxy());
     let (events_in, input_events) = bounded(INPUT_EVENTS_NAME, INPUT_EVENTS);
     let (user_in, user_events) = bounded(USER_EVENTS_NAME, USER_EVENTS);
-    let window_state = Relay::new(&WindowState::default());
-    let screens = Relay::new(&options.first);
+    let window_state = TripleBuffer::new(&WindowState::default());
+    let screens = TripleBuffer::new(&options.first);
     let (show, pairs) = bounded(PAIRS_NAME, PAIRS);
     let (opened, window) = sync_channel(1);
     let stop = options.stop.clone();
@@ -111,7 +111,7 @@ fn open(
     options: WindowOptions,
     fault: Arc<OnceLock<String>>,
 ) -> Result<WindowRenderer, String> {
-    roles::settle(Role::Render);
+    thread_roles::apply(ThreadRole::Render);
     let window = window.recv_timeout(LONGEST_OPEN).map_err(|_| "the window system opened no window; restart it")??;
     let mut renderer = WindowRenderer::open(window, channels, options, fault)?;
     renderer.draw(None);

@@ -6,9 +6,9 @@ use std::time::Instant;
 
 use toile_engine::clock::Clock;
 use toile_engine::frame::Snapshot;
-use toile_engine::pace::queue::{Capacity, Receiver, Sender};
-use toile_engine::pace::render::Eye;
-use toile_engine::relay::Reader;
+use toile_engine::frame_loop::queue::{Capacity, Receiver, Sender};
+use toile_engine::frame_loop::render_thread::Renderer;
+use toile_engine::triple_buffer::Reader;
 use toile_view::mirror::Shown;
 use winit::window::Window;
 
@@ -237,16 +237,16 @@ impl WindowRenderer {
     }
 }
 
-impl Eye for WindowRenderer {
+impl Renderer for WindowRenderer {
     type Outfit = BodyModel;
 
-    fn put_on(&mut self, outfit: &mut BodyModel) {
+    fn set_outfit(&mut self, outfit: &mut BodyModel) {
         std::mem::swap(&mut self.model, outfit);
         // Two sizes were those of whoever stood there before.
         (self.pair, self.changed) = (None, true);
     }
 
-    fn look(&mut self, snapshot: &Snapshot) {
+    fn draw(&mut self, snapshot: &Snapshot) {
         self.draw(Some(snapshot));
     }
 }

@@ -2,7 +2,7 @@
 
 use toile_engine::clock::Clock;
 use toile_engine::frame::Frame;
-use toile_engine::pace::physics::Staged;
+use toile_engine::frame_loop::physics_thread::FrameScene;
 
 use super::body_model::BodyModel;
 use super::open::{self, ServiceChannels};
@@ -38,14 +38,14 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, AppError> {
         let controller =
             move |played| -> BoxedController<'_, BodyModel> { Some(Box::new(setup.controller(channels, played))) };
         let words = kiosk.words;
-        let eye = |mannequin: &Frame| {
+        let renderer = |mannequin: &Frame| {
             let renderer = opening.finish()?;
             if let Some(slow) = renderer.slowness() {
                 words.say(&slow);
             }
             Ok(renderer.showing(BodyModel::of(mannequin)))
         };
-        let (mut report, renderer) = serve(kiosk, Frontend { eye, stage, controller })?;
+        let (mut report, renderer) = serve(kiosk, Frontend { renderer, stage, controller })?;
         if let Some(mut renderer) = renderer {
             let (window, warnings) = WindowRenderer::report(&mut renderer);
             report.window = Some(window);
@@ -56,9 +56,9 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, AppError> {
 }
 
 /// A frame as a scene of the loop, and what is drawn of it.
-fn stage(frame: Frame) -> (Staged, BodyModel) {
+fn stage(frame: Frame) -> (FrameScene, BodyModel) {
     let model = BodyModel::of(&frame);
-    (Staged::new(frame), model)
+    (FrameScene::new(frame), model)
 }
 
 /// An event from the display as the visitor's model takes it.

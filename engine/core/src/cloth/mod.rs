@@ -148,7 +148,7 @@ impl Cloth {
 
     /// Spoils the state between two steps, as a fault of the memory or of the solver itself would: what [`guard::spoil`] picks
     /// by `seed`. How a soak tries the guard; what was published stays.
-    pub fn upset(&mut self, seed: u64) {
+    pub fn inject_fault(&mut self, seed: u64) {
         if self.positions.is_empty() {
             return;
         }

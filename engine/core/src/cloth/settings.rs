@@ -8,8 +8,8 @@ use toile_assets::limits::STEP_SECONDS;
 
 use super::root::RootSettings;
 use super::wind::Wind;
-use crate::crew::SHARES;
 use crate::lanes::Width;
+use crate::workers::SHARES;
 
 /// Tested combinations of substeps and of what is solved in each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

@@ -17,8 +17,8 @@ use super::{
     Cloth, Quality, Settings, Step, Wind, bending, contact, diagonals, fibers, guard, hubs, links, lists, predict,
     settle, tethers, wind,
 };
-use crate::crew::{Crew, Own};
 use crate::lanes::{Column, Store, Width};
+use crate::workers::{PerShare, WorkerPool};
 
 /// Everything that the phases of one step share.
 struct Work<'a> {
@@ -29,7 +29,7 @@ struct Work<'a> {
     faces: Option<(&'a wind::Faces, Wind)>,
     carried: Option<Carried>,
     pushed: [Column<'a>; 3],
-    contacts: Own<'a, contact::Owner>,
+    contacts: PerShare<'a, contact::Owner>,
     /// Particle substeps that each owner held at the speed limit.
     limited: [AtomicU64; OWNERS],
     fixed: [&'a [Vec3A]; 2],
@@ -68,15 +68,15 @@ impl Cloth {
     }
 
     /// The same with the crew's workers, a share each: the same bits.
-    pub fn step_with(&mut self, crew: &mut Crew, garment: &Garment, step: &Step<'_>) {
-        if crew.workers() < OWNERS || garment.layout.spans[1].is_empty() {
+    pub fn step_with(&mut self, pool: &mut WorkerPool, garment: &Garment, step: &Step<'_>) {
+        if pool.workers() < OWNERS || garment.layout.spans[1].is_empty() {
             return self.step(garment, step);
         }
         let settings = self.sound(step.settings);
         let step = &Step { settings: &settings, ..*step };
         let carried = self.begin(garment, step);
         let work = self.work(garment, step, carried);
-        let failed = crew.run(work.phases(), |phase, share| work.phase(phase, share)).is_err();
+        let failed = pool.run(work.phases(), |phase, share| work.phase(phase, share)).is_err();
         let limited = work.limited();
         self.end(garment, step, limited, failed);
     }
@@ -157,7 +157,7 @@ impl Cloth {
             faces: self.faces.as_ref().zip(step.settings.wind),
             carried,
             pushed: self.pushed.columns(),
-            contacts: Own::new(self.contacts.owners()),
+            contacts: PerShare::new(self.contacts.owners()),
             limited: [AtomicU64::new(0), AtomicU64::new(0)],
             fixed: [&self.pins.start, &self.pins.end],
             tension: self.tension.each_mut().map(Store::column),

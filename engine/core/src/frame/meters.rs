@@ -81,12 +81,12 @@ impl Meters {
 }
 
 /// How long each stage of a step took.
-pub(super) struct Laps {
+pub(super) struct StageTimes {
     pub(super) ns: [u64; STAGES.len()],
     last: u64,
 }
 
-impl Laps {
+impl StageTimes {
     pub(super) fn from(now_ns: u64) -> Self {
         Self { ns: [0; STAGES.len()], last: now_ns }
     }

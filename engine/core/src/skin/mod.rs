@@ -22,8 +22,8 @@ use glam::{Affine3A, Vec3};
 use toile_assets::mesh::Influences;
 use toile_assets::skeleton::BONES;
 
-use crate::crew::{Crew, SHARES};
 use crate::lanes::{Column, Width};
+use crate::workers::{SHARES, WorkerPool};
 
 pub use check::{SkinError, WEIGHT_TOLERANCE};
 pub use dual::{DualQuat, palette as dual_palette};
@@ -126,15 +126,21 @@ impl SkinningJob {
 
     /// The same with the crew's workers, a share each: the same bits. Says whether all was done: not where a worker
     /// panicked, which leaves a part of the surface as it was.
-    pub fn run_with(&self, crew: &mut Crew, blend: Blend, palette: &[Affine3A; BONES], posed: &mut Posed) -> bool {
-        if crew.workers() < SHARES {
+    pub fn run_with(
+        &self,
+        pool: &mut WorkerPool,
+        blend: Blend,
+        palette: &[Affine3A; BONES],
+        posed: &mut Posed,
+    ) -> bool {
+        if pool.workers() < SHARES {
             self.run(blend, palette, posed);
             return true;
         }
         let duals = self.duals(blend, palette);
         let work = Work { job: self, blend, palette, duals: &duals, out: posed.column() };
         let (half, all) = (self.layout.half, self.layout.runs.len());
-        crew.run(1, |_, share| work.runs(if share == 0 { 0..half } else { half..all })).is_ok()
+        pool.run(1, |_, share| work.runs(if share == 0 { 0..half } else { half..all })).is_ok()
     }
 
     fn duals(&self, blend: Blend, palette: &[Affine3A; BONES]) -> [DualQuat; BONES] {

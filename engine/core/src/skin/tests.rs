@@ -9,8 +9,8 @@ use toile_assets::mesh::{Influences, SkinWeights, WideWeights};
 use toile_assets::skeleton::BONES;
 
 use super::{Blend, Posed, SkinError, SkinningJob, dual_palette, pruning};
-use crate::crew::Crew;
 use crate::lanes::Width;
+use crate::workers::WorkerPool;
 
 /// A generator of our own: uniform in 0..1.
 fn uniform(state: &mut u64) -> f32 {
@@ -84,9 +84,9 @@ fn every_width_and_both_workers_give_the_same_bits() {
                 job.width = width;
                 assert_eq!(bits(&posed(&job, blend, &crowd.palette)), truth, "{N} influences, {blend}, {width} lanes");
                 for workers in [1, 2] {
-                    let mut crew = Crew::new(workers).unwrap();
+                    let mut pool = WorkerPool::new(workers).unwrap();
                     let mut shared = job.posed();
-                    assert!(job.run_with(&mut crew, blend, &crowd.palette, &mut shared));
+                    assert!(job.run_with(&mut pool, blend, &crowd.palette, &mut shared));
                     assert_eq!(bits(&shared), truth, "{N} influences, {blend}, {width} lanes, {workers} workers");
                 }
             }

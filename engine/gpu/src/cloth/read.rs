@@ -100,8 +100,8 @@ impl Offload {
     }
 
     /// Spoils the state between two steps, as a fault of the memory or of the driver would: what [`guard::spoil`] picks by
-    /// `seed`. Twin of `Cloth::upset`.
-    pub fn upset(&mut self, garment: usize, seed: u64) {
+    /// `seed`. Twin of `Cloth::inject_fault`.
+    pub fn inject_fault(&mut self, garment: usize, seed: u64) {
         let span = self.flat.spans[self.own[garment].place];
         if span.len == 0 {
             return;

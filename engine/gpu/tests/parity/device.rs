@@ -114,8 +114,8 @@ fn what_spoils_the_state_is_repaired_as_on_the_cpu() {
     let mut cloth = Cloth::new(&garment, &colliders);
     for n in 0..24 {
         if n % 4 == 3 {
-            cloth.upset(n);
-            gpu.upset(0, n);
+            cloth.inject_fault(n);
+            gpu.inject_fault(0, n);
         }
         let palette = swaying(n as usize);
         let step = around(&palette, &colliders, &settings);

@@ -52,8 +52,8 @@ fn a_device_gives_what_the_processor_gives_with_disturbances_and_other_settings_
             }
         }
         if n % 7 == 6 {
-            one[0].upset(n as u64);
-            other[0].upset(n as u64);
+            one[0].inject_fault(n as u64);
+            other[0].inject_fault(n as u64);
         }
         step(&mut cpu, &mut one, &garments, n, &settings);
         step(&mut gpu, &mut other, &garments, n, &settings);

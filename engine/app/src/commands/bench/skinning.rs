@@ -104,7 +104,7 @@ fn twist(folder: &Path, json: bool) -> Result<(), AppError> {
 
 fn refused(error: BenchError) -> AppError {
     match error {
-        BenchError::NoSuchLanes(_) | BenchError::Crew(_) => AppError::Device(error.to_string()),
+        BenchError::NoSuchLanes(_) | BenchError::WorkerPool(_) => AppError::Device(error.to_string()),
         BenchError::Body(_) | BenchError::Skin(_) => AppError::internal(error),
     }
 }

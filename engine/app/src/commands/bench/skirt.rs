@@ -195,7 +195,7 @@ fn crossover(args: &SkirtArgs, options: &Options) -> Result<(), AppError> {
 fn refused(error: SkirtError) -> AppError {
     match error {
         SkirtError::NotSquare { .. } => AppError::Usage(format!("{error}; see `toile bench skirt --help`")),
-        SkirtError::Unsupported { .. } | SkirtError::NoSuchLanes { .. } | SkirtError::Crew(_) => {
+        SkirtError::Unsupported { .. } | SkirtError::NoSuchLanes { .. } | SkirtError::WorkerPool(_) => {
             AppError::Device(error.to_string())
         }
         SkirtError::Mesh(_) | SkirtError::Colliders(_) | SkirtError::Body(_) => AppError::internal(error),

@@ -1,6 +1,6 @@
 //! What the kernel lets this process do: real-time priority, locked memory.
 
-use toile_engine::pace::roles::{self, Placement, Role};
+use toile_engine::frame_loop::thread_roles::{self, Placement, ThreadRole};
 
 use super::{Check, field, kernel_file};
 
@@ -43,7 +43,7 @@ pub fn priority() -> Check {
 
 /// What the physics thread gets here: tried on a thread that ends at once.
 pub fn placement() -> Check {
-    match std::thread::Builder::new().spawn(|| roles::settle(Role::Physics)).map(|thread| thread.join()) {
+    match std::thread::Builder::new().spawn(|| thread_roles::apply(ThreadRole::Physics)).map(|thread| thread.join()) {
         Ok(Ok(placement)) => placed(&placement),
         _ => Check::unknown(PLACEMENT, PLACEMENT_FOR),
     }
@@ -150,12 +150,12 @@ mod tests {
 
     #[test]
     fn the_priority_that_is_looked_for_is_the_one_that_is_asked_for() {
-        assert_eq!(Role::Physics.priority().map(u64::from), Some(PRIORITY_WANTED));
+        assert_eq!(ThreadRole::Physics.priority().map(u64::from), Some(PRIORITY_WANTED));
     }
 
     #[test]
     fn a_place_that_was_refused_is_told_with_its_cure() {
-        let all = Placement { role: Role::Physics, core: Some(1), priority: Some(40), refused: Vec::new() };
+        let all = Placement { role: ThreadRole::Physics, core: Some(1), priority: Some(40), refused: Vec::new() };
         let fine = placed(&all);
         assert_eq!((fine.found.as_str(), fine.cure), ("physics pinned to core 1, priority 40", None));
         let refused = vec!["the physics thread has no real-time priority (no; reason); raise the limit".to_owned()];

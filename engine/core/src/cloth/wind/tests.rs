@@ -1,6 +1,6 @@
 use super::super::state::State;
 use super::*;
-use crate::crew::Crew;
+use crate::workers::WorkerPool;
 
 const DT: f32 = 1.0 / 120.0;
 const SKIRT: Wind = Wind { velocity: Vec3A::new(1.0, 0.0, 0.5), drag: 0.1, lift: 0.05 };
@@ -76,7 +76,7 @@ fn every_width_and_both_ways_to_share_give_the_same_bits() {
                     (_, 0) => blow(Part::Crossing),
                     _ => (),
                 };
-                Crew::new(workers).unwrap().run(2, job).unwrap();
+                WorkerPool::new(workers).unwrap().run(2, job).unwrap();
                 for (i, a) in plain.iter().enumerate() {
                     assert_eq!(out.of(i), *a, "{workers} workers, particle {i}");
                 }

@@ -4,7 +4,7 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use loom::cell::Cell;
 use loom::sync::atomic::AtomicUsize;
-use toile_models::crew::{Crew, Own};
+use toile_models::workers::{PerShare, WorkerPool};
 
 /// Switches of threads that nothing but the scheduler asks for. Most faults of such protocols need no more than two (Musuvathi
 /// and Qadeer 2007, "Iterative context bounding").
@@ -28,10 +28,10 @@ unsafe impl Sync for Plain {}
 #[test]
 fn a_phase_sees_all_of_the_one_before_and_each_share_runs_once() {
     explore(|| {
-        let mut crew = Crew::new(2).unwrap();
+        let mut pool = WorkerPool::new(2).unwrap();
         let plain = Plain([Cell::new(0), Cell::new(0)]);
         let runs = [AtomicUsize::new(0), AtomicUsize::new(0)];
-        crew.run(2, |phase, share| {
+        pool.run(2, |phase, share| {
             let plain = &plain;
             if phase == 0 {
                 plain.0[share].set(share as u64 + 1);
@@ -51,12 +51,12 @@ fn a_phase_sees_all_of_the_one_before_and_each_share_runs_once() {
 #[test]
 fn one_run_after_another_never_gives_a_late_helper_an_old_job() {
     explore(|| {
-        let mut crew = Crew::new(2).unwrap();
+        let mut pool = WorkerPool::new(2).unwrap();
         for round in 0..2 {
             // The job lives on this stack frame only.
             let here = [AtomicUsize::new(0), AtomicUsize::new(0)];
-            crew.wake();
-            crew.run(1, |_, share| _ = here[share].fetch_add(1 + round, Relaxed)).unwrap();
+            pool.wake();
+            pool.run(1, |_, share| _ = here[share].fetch_add(1 + round, Relaxed)).unwrap();
             assert_eq!(here.map(|n| n.load(Relaxed)), [1 + round; 2]);
         }
     });
@@ -66,21 +66,21 @@ fn one_run_after_another_never_gives_a_late_helper_an_old_job() {
 fn a_helper_that_goes_to_sleep_is_woken_or_not_waited_for_and_always_leaves() {
     // The model ends with an error where a thread parks for ever: a lost wake-up.
     explore(|| {
-        let crew = Crew::new(2).unwrap();
-        crew.wake();
-        drop(crew);
+        let pool = WorkerPool::new(2).unwrap();
+        pool.wake();
+        drop(pool);
     });
 }
 
 #[test]
 fn what_belongs_to_a_share_is_lent_to_one_at_a_time() {
     explore(|| {
-        let mut crew = Crew::new(2).unwrap();
+        let mut pool = WorkerPool::new(2).unwrap();
         let mut numbers = [0u64, 10];
-        let lent = Own::new(&mut numbers);
+        let lent = PerShare::new(&mut numbers);
         let got = AtomicUsize::new(0);
         // Both want what is share 0's: a job that does not keep to its share.
-        crew.run(1, |_, _| {
+        pool.run(1, |_, _| {
             if lent.with(0, |n| *n += 1).is_some() {
                 got.fetch_add(1, Relaxed);
             }

@@ -9,10 +9,10 @@ use std::sync::mpsc;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use super::Turn;
-use super::roles::{self, Placement, Role};
+use super::ThreadLoop;
+use super::thread_roles::{self, Placement, ThreadRole};
 use crate::clock::Clock;
-use crate::crew::{Crew, CrewError};
+use crate::workers::{WorkerPool, WorkerPoolError};
 
 /// Longest sleep of a life (ns): after at most that it sees that it is to end.
 const LONGEST_SLEEP_NS: u64 = 50_000_000;
@@ -40,14 +40,14 @@ impl Stop {
 
 /// A life on its thread.
 #[derive(Debug)]
-pub struct Life<T> {
+pub struct LoopThread<T> {
     thread: JoinHandle<(T, bool)>,
     /// Turns taken so far: what a watchdog looks at.
     turns: Arc<AtomicU64>,
     placement: mpsc::Receiver<Placement>,
 }
 
-impl<T> Life<T> {
+impl<T> LoopThread<T> {
     /// Turns taken so far. Relaxed: a number to look at, which orders nothing.
     pub fn turns(&self) -> u64 {
         self.turns.load(Relaxed)
@@ -79,9 +79,9 @@ impl<T> Life<T> {
 ///
 /// # Errors
 /// Where the system gives no thread.
-pub fn start<T, C>(role: Role, mut life: T, clock: C, stop: &Stop) -> io::Result<Life<T>>
+pub fn start<T, C>(role: ThreadRole, mut life: T, clock: C, stop: &Stop) -> io::Result<LoopThread<T>>
 where
-    T: Turn + Send + 'static,
+    T: ThreadLoop + Send + 'static,
     C: Clock + Send + 'static,
 {
     let turns = Arc::new(AtomicU64::new(0));
@@ -89,10 +89,10 @@ where
     let (tell, placement) = mpsc::sync_channel(1);
     let work = move || {
         // Nobody may listen.
-        let _ = tell.send(roles::settle(role));
+        let _ = tell.send(thread_roles::apply(role));
         let live = || {
             while !stop.is_set() {
-                let Some(next) = life.turn() else { break };
+                let Some(next) = life.run_due() else { break };
                 mine.fetch_add(1, Relaxed);
                 clock.sleep_until(next.min(clock.now_ns() + LONGEST_SLEEP_NS));
             }
@@ -101,17 +101,17 @@ where
         (life, whole)
     };
     let thread = thread::Builder::new().name(format!("toile-{}", role.name())).spawn(work)?;
-    Ok(Life { thread, turns, placement })
+    Ok(LoopThread { thread, turns, placement })
 }
 
 /// The cloth's workers, the second on the core of its role. Gives the place that it got, where there is one.
 ///
 /// # Errors
-/// As [`Crew::new`].
-pub fn crew(workers: usize) -> Result<(Crew, Option<Placement>), CrewError> {
+/// As [`WorkerPool::new`].
+pub fn worker_pool(workers: usize) -> Result<(WorkerPool, Option<Placement>), WorkerPoolError> {
     let (tell, told) = mpsc::sync_channel(1);
-    let crew = Crew::beginning(workers, move || _ = tell.send(roles::settle(Role::Worker)))?;
-    Ok((crew, told.recv_timeout(LONGEST_START).ok()))
+    let pool = WorkerPool::beginning(workers, move || _ = tell.send(thread_roles::apply(ThreadRole::Worker)))?;
+    Ok((pool, told.recv_timeout(LONGEST_START).ok()))
 }
 
 #[cfg(test)]
@@ -121,8 +121,8 @@ mod tests {
 
     struct Counting(u64, RealClock);
 
-    impl Turn for Counting {
-        fn turn(&mut self) -> Option<u64> {
+    impl ThreadLoop for Counting {
+        fn run_due(&mut self) -> Option<u64> {
             self.0 += 1;
             (self.0 < 40).then(|| self.1.now_ns() + 100_000)
         }
@@ -131,19 +131,19 @@ mod tests {
     #[test]
     fn a_life_ends_by_itself_or_when_told() {
         let clock = RealClock::default();
-        let own = start(Role::Render, Counting(0, clock), clock, &Stop::default()).unwrap();
-        assert_eq!(own.placement().unwrap().role, Role::Render);
+        let own = start(ThreadRole::Render, Counting(0, clock), clock, &Stop::default()).unwrap();
+        assert_eq!(own.placement().unwrap().role, ThreadRole::Render);
         assert_eq!(own.join().unwrap().0, 40);
         let stop = Stop::default();
-        let told = start(Role::Render, Counting(u64::MAX / 2, clock), clock, &stop).unwrap();
+        let told = start(ThreadRole::Render, Counting(u64::MAX / 2, clock), clock, &stop).unwrap();
         stop.now();
         assert!(told.join().is_some());
     }
 
     struct Dying(u64);
 
-    impl Turn for Dying {
-        fn turn(&mut self) -> Option<u64> {
+    impl ThreadLoop for Dying {
+        fn run_due(&mut self) -> Option<u64> {
             self.0 += 1;
             // Without the hook: no words on the test's output.
             if self.0 == 3 { std::panic::resume_unwind(Box::new(())) } else { Some(0) }
@@ -153,16 +153,16 @@ mod tests {
     #[test]
     fn what_a_dead_life_held_can_be_had_but_not_as_if_it_had_lived_on() {
         let clock = RealClock::default();
-        let begun = || start(Role::Render, Dying(0), clock, &Stop::default()).unwrap();
+        let begun = || start(ThreadRole::Render, Dying(0), clock, &Stop::default()).unwrap();
         assert!(begun().join().is_none());
         assert_eq!(begun().salvage().unwrap().0, 3);
     }
 
     #[test]
     fn a_crew_of_two_says_where_its_worker_is() {
-        let (one, nobody) = crew(1).unwrap();
+        let (one, nobody) = worker_pool(1).unwrap();
         assert_eq!((one.workers(), nobody), (1, None));
-        let (two, worker) = crew(2).unwrap();
-        assert_eq!((two.workers(), worker.unwrap().role), (2, Role::Worker));
+        let (two, worker) = worker_pool(2).unwrap();
+        assert_eq!((two.workers(), worker.unwrap().role), (2, ThreadRole::Worker));
     }
 }

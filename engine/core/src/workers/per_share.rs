@@ -8,12 +8,12 @@ use super::SHARES;
 use crate::sync::AtomicPtr;
 
 /// One `T` a share, for a job that both workers call through a shared reference.
-pub struct Own<'a, T> {
+pub struct PerShare<'a, T> {
     places: [AtomicPtr<T>; SHARES],
     owner: PhantomData<&'a mut T>,
 }
 
-impl<'a, T: Send> Own<'a, T> {
+impl<'a, T: Send> PerShare<'a, T> {
     /// Lends out what is borrowed for so long.
     pub fn new(items: &'a mut [T; SHARES]) -> Self {
         Self { places: items.each_mut().map(|i| AtomicPtr::new(ptr::from_mut(i))), owner: PhantomData }
@@ -39,7 +39,7 @@ mod tests {
     #[test]
     fn each_share_has_its_own_and_nobody_has_it_twice() {
         let mut numbers = [1, 10];
-        let own = Own::new(&mut numbers);
+        let own = PerShare::new(&mut numbers);
         assert_eq!(
             own.with(0, |n| {
                 *n += 1;

@@ -1,12 +1,12 @@
 //! Events: what happened that somebody may want to know, handed out of the loop through a bounded queue.
 
-use super::governor::Change;
+use super::governor::QualityChange;
 
 /// Events that wait to be told: half a second in which every step has four.
 pub const EVENTS: usize = 256;
 
 /// The name of the bound, as warnings give it.
-pub const EVENTS_NAME: &str = "EVENTS (engine/core/src/pace/event.rs)";
+pub const EVENTS_NAME: &str = "EVENTS (engine/core/src/frame_loop/event.rs)";
 
 /// A gap between two sensor frames from which on the sensor counts as lost (ns): 15 frames of 30 Hz.
 pub const SENSOR_LOST_NS: u64 = 500_000_000;
@@ -19,14 +19,14 @@ pub struct Event {
     /// When the step was due (ns).
     pub scheduled_ns: u64,
     /// What happened.
-    pub what: What,
+    pub what: EventKind,
 }
 
 /// What can happen.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum What {
+pub enum EventKind {
     /// The governor gave up quality, or gave it back.
-    Quality(Change),
+    Quality(QualityChange),
     /// So many steps were given up before this one, because the thread woke too late.
     Dropped(u64),
     /// The step was not published within its period.
@@ -83,7 +83,7 @@ impl Counters {
 }
 
 /// Reads the calling thread's counters, allocating nothing.
-pub trait Account: Send {
+pub trait CounterSource: Send {
     /// The counters now. `closely` says that there is time for those that cost more: behind a step that was late already,
     /// and now and then in the time that a step leaves. The others are then as they were.
     fn counters(&mut self, closely: bool) -> Counters;
@@ -91,9 +91,9 @@ pub trait Account: Send {
 
 /// No counters.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct NoAccount;
+pub struct NoCounters;
 
-impl Account for NoAccount {
+impl CounterSource for NoCounters {
     fn counters(&mut self, _closely: bool) -> Counters {
         Counters::default()
     }

@@ -9,14 +9,14 @@ use toile_sensors::frame::TrackedJoint;
 
 use super::*;
 use crate::clock::SimClock;
-use crate::pace::change::{Change, handover};
-use crate::pace::event::{EVENTS, EVENTS_NAME, NoAccount};
-use crate::pace::queue::{Receiver, bounded};
-use crate::pace::replay::{replay, replay_changing};
-use crate::pace::sense::{Playback, Sense};
-use crate::pace::simulate::simulate;
-use crate::pace::tape::{ENTRIES, ENTRIES_NAME};
-use crate::relay::Relay;
+use crate::frame_loop::event::{EVENTS, EVENTS_NAME, NoCounters};
+use crate::frame_loop::handover::{SceneChange, handover};
+use crate::frame_loop::queue::{Receiver, bounded};
+use crate::frame_loop::recording::{ENTRIES, ENTRIES_NAME};
+use crate::frame_loop::replay::{replay, replay_changing};
+use crate::frame_loop::sensor_thread::{Playback, SensorThread};
+use crate::frame_loop::simulate::simulate;
+use crate::triple_buffer::TripleBuffer;
 
 const MS: u64 = 1_000_000;
 
@@ -76,22 +76,22 @@ fn recording(hz: u64) -> Vec<Joints> {
 
 struct Rig {
     clock: SimClock,
-    sense: Sense<Playback, SimClock>,
-    physics: Physics<Toy, SimClock, NoAccount>,
+    sense: SensorThread<Playback, SimClock>,
+    physics: PhysicsThread<Toy, SimClock, NoCounters>,
     events: Receiver<Event>,
-    tape: Receiver<Entry>,
+    recording: Receiver<Entry>,
 }
 
 /// A sensor and a loop that begin at an uptime (ns).
 fn rig(uptime: u64, frames: &[Joints], cost: fn(u64) -> u64) -> Rig {
     let clock = SimClock::starting_at(uptime);
-    let Relay { writer, reader } = Relay::new(&Seen::default());
+    let TripleBuffer { writer, reader } = TripleBuffer::new(&SensorFrame::default());
     let (sender, events) = bounded(EVENTS_NAME, EVENTS);
-    let (recorder, tape) = bounded(ENTRIES_NAME, 100 * ENTRIES);
-    let outlets = Outlets { events: sender, tape: Some(recorder) };
-    let physics = Physics::new(Toy::new(&clock, cost), clock.clone(), uptime, reader, outlets, NoAccount);
-    let sense = Sense::new(Playback::new(frames, uptime, 2), clock.clone(), writer);
-    Rig { clock, sense, physics, events, tape }
+    let (recorder, recording) = bounded(ENTRIES_NAME, 100 * ENTRIES);
+    let outlets = PhysicsOutputs { events: sender, recording: Some(recorder) };
+    let physics = PhysicsThread::new(Toy::new(&clock, cost), clock.clone(), uptime, reader, outlets, NoCounters);
+    let sense = SensorThread::new(Playback::new(frames, uptime, 2), clock.clone(), writer);
+    Rig { clock, sense, physics, events, recording }
 }
 
 impl Rig {
@@ -132,14 +132,17 @@ fn a_late_wake_up_is_made_up_for_or_dropped_and_told() {
     assert_eq!((rig.physics.gauges.steps, rig.physics.gauges.dropped), (240, 0), "made up for");
     let missed = rig.physics.gauges.missed;
     let told = rig.told();
-    assert!((1..=3).contains(&missed) && told.iter().all(|e| matches!(e.what, What::Missed(_))), "{missed} {told:?}");
+    assert!(
+        (1..=3).contains(&missed) && told.iter().all(|e| matches!(e.what, EventKind::Missed(_))),
+        "{missed} {told:?}"
+    );
     rig.clock.oversleep_once(500 * MS);
     rig.run(4 * SECOND_NS);
     let told = rig.told();
     let gauges = &rig.physics.gauges;
     assert_eq!(gauges.steps + gauges.dropped, 480, "no step is lost without being counted");
     assert!((50..60).contains(&gauges.dropped));
-    assert!(told.iter().any(|e| e.what == What::Dropped(gauges.dropped)), "{told:?}");
+    assert!(told.iter().any(|e| e.what == EventKind::Dropped(gauges.dropped)), "{told:?}");
     // Corrected for coordinated omission: the steps that could not be taken count with their lateness.
     assert_eq!(gauges.response.histogram().len(), 480);
     assert!(gauges.response.histogram().value_at_quantile(0.9) > 20 * MS);
@@ -156,7 +159,7 @@ fn quality_is_given_up_before_deadlines_and_comes_back_when_the_load_is_gone() {
     let gauges = &rig.physics.gauges;
     assert_eq!((gauges.steps, gauges.dropped), (1_200, 0));
     let changes: Vec<u8> =
-        told.iter().filter_map(|e| if let What::Quality(c) = e.what { Some(c.to) } else { None }).collect();
+        told.iter().filter_map(|e| if let EventKind::Quality(c) = e.what { Some(c.to) } else { None }).collect();
     assert_eq!(changes, [1, 2, 1, 0], "each change is told");
     assert!(gauges.missed <= 8, "{} steps were late until quality was given up", gauges.missed);
     assert_eq!(gauges.rungs.iter().sum::<u64>(), 1_200);
@@ -169,8 +172,8 @@ fn a_sensor_that_is_lost_and_found_is_told_and_the_body_stays() {
     frames.retain(|f| !(2 * SECOND_NS..4 * SECOND_NS).contains(&f.time_ns));
     let mut rig = rig(0, &frames, |_| MS);
     rig.run(6 * SECOND_NS);
-    let told: Vec<What> = rig.told().into_iter().map(|e| e.what).collect();
-    assert_eq!(told, [What::SensorLost, What::SensorBack]);
+    let told: Vec<EventKind> = rig.told().into_iter().map(|e| e.what).collect();
+    assert_eq!(told, [EventKind::SensorLost, EventKind::SensorBack]);
     let path = rig.physics.stepper.scene.path.borrow();
     assert!(path.iter().all(|x| x.is_finite() && x.abs() < 0.6));
 }
@@ -181,12 +184,12 @@ fn a_recorded_run_is_taken_again_bit_for_bit_and_a_difference_is_found_where_it_
     let mut rig = rig(7, &recording(15), cost);
     rig.clock.oversleep_once(100 * MS);
     rig.run(10 * SECOND_NS);
-    let entries: Vec<Entry> = std::iter::from_fn(|| rig.tape.pop()).collect();
+    let entries: Vec<Entry> = std::iter::from_fn(|| rig.recording.pop()).collect();
     let steps = rig.physics.gauges.steps;
     assert!(rig.physics.gauges.dropped > 0 && rig.physics.gauges.rungs[1] > 0, "a run with trouble in it");
     let again = |entries: &[Entry]| {
         let clock = SimClock::default();
-        replay(&mut Stepper::new(Toy::new(&clock, |_| 0)), entries, &clock)
+        replay(&mut SceneStepper::new(Toy::new(&clock, |_| 0)), entries, &clock)
     };
     let out = again(&entries);
     assert_eq!((out.ticks, out.diverged_at, out.gap_at), (steps, None, None));
@@ -196,7 +199,7 @@ fn a_recorded_run_is_taken_again_bit_for_bit_and_a_difference_is_found_where_it_
     let mut after = None;
     for entry in &mut changed[500..] {
         match entry {
-            Entry::Seen(seen) if after.is_none() => {
+            Entry::SensorFrame(seen) if after.is_none() => {
                 seen.joints.joints[4].position.x += 1e-3;
                 after = Some(u64::MAX);
             }
@@ -214,25 +217,25 @@ fn a_recorded_run_is_taken_again_bit_for_bit_and_a_difference_is_found_where_it_
 #[test]
 fn another_scene_takes_the_place_between_two_steps_and_in_the_replay_too() {
     let frames = recording(30);
-    let Rig { clock, sense, physics, events, tape } = rig(7, &frames, |_| MS);
+    let Rig { clock, sense, physics, events, recording } = rig(7, &frames, |_| MS);
     let (mut giver, taker) = handover();
-    let mut rig = Rig { clock, sense, physics: physics.changing(taker), events, tape };
+    let mut rig = Rig { clock, sense, physics: physics.changing(taker), events, recording };
     rig.physics = rig.physics.held_on(2);
     for number in 1..=4 {
         rig.run(number * 2 * SECOND_NS);
         let scene = Toy::new(&rig.clock, |_| MS);
-        assert!(giver.give(Box::new(Change { scene, number, afresh: number % 2 == 0 })).is_ok());
+        assert!(giver.give(Box::new(SceneChange { scene, number, afresh: number % 2 == 0 })).is_ok());
         rig.run(number * 2 * SECOND_NS + SECOND_NS);
         let before = giver.returned().expect("the scene before");
         assert!(before.scene.path.borrow().len() >= 200 && before.number == number);
         assert_eq!(rig.physics.stepper.scene.share, 0.5, "the rung goes on");
     }
-    let told: Vec<What> = rig.told().into_iter().map(|e| e.what).collect();
-    assert_eq!(told, (1..=4).map(What::Changed).collect::<Vec<_>>());
-    let entries: Vec<Entry> = std::iter::from_fn(|| rig.tape.pop()).collect();
+    let told: Vec<EventKind> = rig.told().into_iter().map(|e| e.what).collect();
+    assert_eq!(told, (1..=4).map(EventKind::Changed).collect::<Vec<_>>());
+    let entries: Vec<Entry> = std::iter::from_fn(|| rig.recording.pop()).collect();
     let clock = SimClock::default();
     let again = |entries: &[Entry]| {
-        let mut stepper = Stepper::new(Toy::new(&clock, |_| 0));
+        let mut stepper = SceneStepper::new(Toy::new(&clock, |_| 0));
         replay_changing(&mut stepper, entries, &clock, |_| Some(Toy::new(&clock, |_| 0)))
     };
     let out = again(&entries);

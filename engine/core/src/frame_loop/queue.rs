@@ -97,13 +97,13 @@ mod tests {
 
     #[test]
     fn a_full_queue_loses_the_newest_and_names_its_bound() {
-        let (mut sender, mut receiver) = bounded("PLACES (pace/queue.rs)", 3);
+        let (mut sender, mut receiver) = bounded("PLACES (frame_loop/queue.rs)", 3);
         assert_eq!(receiver.capacity().warning(), None);
         let fitted: Vec<bool> = (0..5).map(|i| sender.push(i)).collect();
         assert_eq!(fitted, [true, true, true, false, false]);
         let capacity = receiver.capacity();
         assert_eq!((capacity.high_water, capacity.lost, capacity.bound), (3, 2, 3));
-        assert!(capacity.warning().unwrap().ends_with("raise PLACES (pace/queue.rs)"));
+        assert!(capacity.warning().unwrap().ends_with("raise PLACES (frame_loop/queue.rs)"));
         assert_eq!(std::iter::from_fn(|| receiver.pop()).collect::<Vec<_>>(), [0, 1, 2]);
         assert!(sender.push(9) && receiver.pop() == Some(9));
     }

@@ -4,29 +4,29 @@
 //! Budget: one atomic exchange a publication; three copies of the value, made at load.
 //! Thread: one writer, one reader; values in between are skipped, which is what a picture or a pose wants.
 
-use triple_buffer::{Input, Output, TripleBuffer};
+use ::triple_buffer::{Input, Output};
 
-/// A channel of the latest value; [`Relay::new`] gives its two ends.
+/// A channel of the latest value; [`TripleBuffer::new`] gives its two ends.
 #[derive(Debug)]
-pub struct Relay<T: Send> {
+pub struct TripleBuffer<T: Send> {
     /// The end that publishes; moves to the producing thread.
     pub writer: Writer<T>,
     /// The end that looks; moves to the consuming thread.
     pub reader: Reader<T>,
 }
 
-/// The publishing end of a [`Relay`].
+/// The publishing end of a [`TripleBuffer`].
 #[derive(Debug)]
 pub struct Writer<T: Send>(Input<T>);
 
-/// The looking end of a [`Relay`].
+/// The looking end of a [`TripleBuffer`].
 #[derive(Debug)]
 pub struct Reader<T: Send>(Output<T>);
 
-impl<T: Clone + Send> Relay<T> {
-    /// A relay whose three copies all start as `initial`: storage inside a value keeps the size that it has here.
+impl<T: Clone + Send> TripleBuffer<T> {
+    /// A buffer whose three copies all start as `initial`: storage inside a value keeps the size that it has here.
     pub fn new(initial: &T) -> Self {
-        let (input, output) = TripleBuffer::new(initial).split();
+        let (input, output) = ::triple_buffer::TripleBuffer::new(initial).split();
         Self { writer: Writer(input), reader: Reader(output) }
     }
 }
@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn reader_sees_the_last_value_and_no_value_twice_as_news() {
-        let Relay { mut writer, mut reader } = Relay::new(&0_u32);
+        let TripleBuffer { mut writer, mut reader } = TripleBuffer::new(&0_u32);
         assert_eq!(*reader.latest(), 0);
         assert!(!writer.publish(1));
         assert!(writer.publish(2), "1 was never read");
@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn values_are_never_torn_and_never_go_back() {
-        let Relay { mut writer, mut reader } = Relay::new(&[0_u64; 64]);
+        let TripleBuffer { mut writer, mut reader } = TripleBuffer::new(&[0_u64; 64]);
         std::thread::scope(|scope| {
             scope.spawn(move || {
                 for i in 1..=20_000 {

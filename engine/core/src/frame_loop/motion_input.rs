@@ -52,7 +52,7 @@ struct Path {
 
 /// The joints from frame to frame.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Intake {
+pub struct MotionInput {
     paths: [Path; JOINTS],
     /// When the last frame was seen, and at which step's time it was taken (ns).
     seen_ns: Option<u64>,
@@ -62,14 +62,14 @@ pub struct Intake {
     poles: f32,
 }
 
-impl Default for Intake {
+impl Default for MotionInput {
     fn default() -> Self {
         let period = 1.0 / 30.0;
         Self { paths: [Path::default(); JOINTS], seen_ns: None, taken_ns: 0, period, poles: POLES / period }
     }
 }
 
-impl Intake {
+impl MotionInput {
     /// Takes a filtered frame, stamped on the loop's clock, in the step whose time is `now_ns`. One that is no newer than
     /// the last is passed over; says whether it was taken.
     pub fn take(&mut self, frame: &Joints, now_ns: u64) -> bool {

@@ -4,13 +4,13 @@
 //! for some 50 us a frame, and the renderer with what is left. Priorities are real-time ones where the system grants
 //! them (Linux: `CAP_SYS_NICE` or a limit of `rtprio`): a plain Linux kernel may otherwise wake a thread tens of
 //! milliseconds late under load. No thread with such a priority waits by spinning for longer than
-//! [`crate::crew::AWAKE`], far from the 950 ms a second at which Linux stops it.
+//! [`crate::workers::AWAKE`], far from the 950 ms a second at which Linux stops it.
 
 use thread_priority::{ThreadPriority, ThreadPriorityValue};
 
 /// What a thread does in the loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Role {
+pub enum ThreadRole {
     /// Reads and filters the sensor.
     Sensor,
     /// Steps the scene.
@@ -21,7 +21,7 @@ pub enum Role {
     Render,
 }
 
-impl Role {
+impl ThreadRole {
     /// Its name in reports, and of its thread with `toile-` before it.
     pub fn name(self) -> &'static str {
         match self {
@@ -57,7 +57,7 @@ impl Role {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Placement {
     /// The thread.
-    pub role: Role,
+    pub role: ThreadRole,
     /// The core that it is pinned to.
     pub core: Option<usize>,
     /// The real-time priority that it has.
@@ -67,7 +67,7 @@ pub struct Placement {
 }
 
 /// Gives the calling thread the place of its role, as far as the system lets it. At the thread's start.
-pub fn settle(role: Role) -> Placement {
+pub fn apply(role: ThreadRole) -> Placement {
     let mut placement = Placement { role, core: None, priority: None, refused: Vec::new() };
     pin(&mut placement);
     if let Some(priority) = role.priority() {
@@ -128,15 +128,15 @@ mod tests {
     #[test]
     fn physics_has_a_core_that_nothing_else_asks_for() {
         for cores in 2..16 {
-            for role in [Role::Sensor, Role::Worker, Role::Render] {
-                assert!(role.core(cores) < cores && role.core(cores) != Role::Physics.core(cores));
+            for role in [ThreadRole::Sensor, ThreadRole::Worker, ThreadRole::Render] {
+                assert!(role.core(cores) < cores && role.core(cores) != ThreadRole::Physics.core(cores));
             }
         }
     }
 
     #[test]
     fn a_thread_gets_its_place_or_says_what_it_lacks() {
-        let placement = std::thread::spawn(|| settle(Role::Physics)).join().unwrap();
+        let placement = std::thread::spawn(|| apply(ThreadRole::Physics)).join().unwrap();
         assert!(placement.core.is_some() || placement.refused.iter().any(|r| r.contains("pinned")));
         assert!(placement.priority.is_some() || placement.refused.iter().any(|r| r.contains("priority")));
         let asked = 2;

@@ -1,12 +1,12 @@
 //! Render: the life that takes pictures of the newest snapshot, at the display's rate. Physics never waits for it.
 
-use super::Turn;
-use super::change::Taker;
+use super::ThreadLoop;
+use super::handover::HandoverReceiver;
 use super::schedule::{Due, Schedule};
 use crate::clock::Clock;
 use crate::frame::Snapshot;
 use crate::meter::Meter;
-use crate::relay::Reader;
+use crate::triple_buffer::Reader;
 
 /// Pictures a second.
 pub const DISPLAY_HZ: u32 = 60;
@@ -18,20 +18,20 @@ const SENSOR_PERIOD_NS: u64 = 33_333_333;
 const MOST_TOLD: u64 = 300;
 
 /// Who makes a picture of a snapshot.
-pub trait Eye: Send {
+pub trait Renderer: Send {
     /// What else it has to know of a scene to draw it, such as triangles and colours: made elsewhere, changed with the scene.
     type Outfit: Send;
 
     /// From the next look on another scene is seen, with this outfit; what it leaves in its place is dropped elsewhere.
-    fn put_on(&mut self, outfit: &mut Self::Outfit);
+    fn set_outfit(&mut self, outfit: &mut Self::Outfit);
 
     /// Makes it; returns when it is handed to the display, or would be.
-    fn look(&mut self, snapshot: &Snapshot);
+    fn draw(&mut self, snapshot: &Snapshot);
 }
 
 /// Where another scene's snapshots come out, and what is drawn of them.
 #[derive(Debug)]
-pub struct View<O> {
+pub struct SceneView<O> {
     /// The snapshots.
     pub reader: Reader<Snapshot>,
     /// What the eye has to know.
@@ -40,13 +40,13 @@ pub struct View<O> {
 
 /// The render thread's life.
 #[derive(Debug)]
-pub struct Render<E: Eye, C> {
+pub struct RenderThread<E: Renderer, C> {
     /// Who draws.
-    pub eye: E,
+    pub renderer: E,
     clock: C,
     schedule: Schedule,
     reader: Reader<Snapshot>,
-    changes: Option<Taker<View<E::Outfit>>>,
+    changes: Option<HandoverReceiver<SceneView<E::Outfit>>>,
     /// From a snapshot's publication until its picture was taken.
     pub picture: Meter,
     /// How long the picture itself took.
@@ -62,11 +62,11 @@ pub struct Render<E: Eye, C> {
     from_ns: u64,
 }
 
-impl<E: Eye, C: Clock> Render<E, C> {
+impl<E: Renderer, C: Clock> RenderThread<E, C> {
     /// At load; the first picture is due at `origin_ns`.
-    pub fn new(eye: E, clock: C, origin_ns: u64, reader: Reader<Snapshot>) -> Self {
+    pub fn new(renderer: E, clock: C, origin_ns: u64, reader: Reader<Snapshot>) -> Self {
         Self {
-            eye,
+            renderer,
             clock,
             schedule: Schedule::new(origin_ns, DISPLAY_HZ),
             reader,
@@ -89,7 +89,7 @@ impl<E: Eye, C: Clock> Render<E, C> {
 
     /// The same, which looks at another scene when it is handed to it.
     #[must_use]
-    pub fn changing(self, changes: Taker<View<E::Outfit>>) -> Self {
+    pub fn changing(self, changes: HandoverReceiver<SceneView<E::Outfit>>) -> Self {
         Self { changes: Some(changes), ..self }
     }
 
@@ -103,15 +103,15 @@ impl<E: Eye, C: Clock> Render<E, C> {
     fn take(&mut self) {
         let begun = self.clock.now_ns();
         if let Some(changes) = &mut self.changes {
-            let (reader, eye) = (&mut self.reader, &mut self.eye);
+            let (reader, renderer) = (&mut self.reader, &mut self.renderer);
             changes.take(|change| {
                 std::mem::swap(&mut change.scene.reader, reader);
-                eye.put_on(&mut change.scene.outfit);
+                renderer.set_outfit(&mut change.scene.outfit);
             });
         }
         let Some(snapshot) = self.reader.news() else { return };
         let times = snapshot.times;
-        self.eye.look(snapshot);
+        self.renderer.draw(snapshot);
         let taken = self.clock.now_ns();
         if begun < self.from_ns {
             self.frame = times.frame;
@@ -131,8 +131,8 @@ impl<E: Eye, C: Clock> Render<E, C> {
     }
 }
 
-impl<E: Eye, C: Clock> Turn for Render<E, C> {
-    fn turn(&mut self) -> Option<u64> {
+impl<E: Renderer, C: Clock> ThreadLoop for RenderThread<E, C> {
+    fn run_due(&mut self) -> Option<u64> {
         match self.schedule.due(self.clock.now_ns()) {
             Due::At(ns) => Some(ns),
             Due::Now(mut tick) => {

@@ -11,7 +11,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::queue::{Capacity, Receiver};
-use super::tape::{self, Entry, Note};
+use super::recording::{self, Entry, SceneNote};
 
 /// What is kept at least (ns).
 pub const KEPT_NS: u64 = 10_000_000_000;
@@ -50,9 +50,9 @@ struct Inner {
 
 /// The box; shared by the thread that fills it and by whoever has to save it.
 #[derive(Debug)]
-pub struct BlackBox(Mutex<Inner>);
+pub struct FlightRecorder(Mutex<Inner>);
 
-impl BlackBox {
+impl FlightRecorder {
     /// An empty box whose file begins with this header ([`tape::header`]); it empties this queue.
     pub fn new(header: Vec<u8>, entries: Receiver<Entry>) -> Self {
         // Written to once, so that the system has given it.
@@ -72,9 +72,9 @@ impl BlackBox {
     }
 
     /// Keeps how a scene is made, as long as it is kept itself. Before the scene is handed over; numbers grow.
-    pub fn describe(&self, note: &Note) {
+    pub fn describe(&self, note: &SceneNote) {
         let mut bytes = Vec::new();
-        tape::write_note(note, &mut bytes);
+        recording::write_note(note, &mut bytes);
         self.locked().notes.push_back((note.number, bytes));
     }
 
@@ -134,7 +134,7 @@ impl Inner {
         }
         let Some(visit) = self.visits.back_mut() else { return };
         if visit.bytes.len() < MOST_BYTES {
-            tape::write(entry, &mut visit.bytes);
+            recording::write(entry, &mut visit.bytes);
         }
         if let Entry::Step { scheduled_ns, .. } = entry {
             visit.from_ns = visit.from_ns.or(Some(*scheduled_ns));
@@ -165,7 +165,7 @@ mod tests {
     use toile_sensors::frame::Joints;
 
     use super::*;
-    use crate::pace::queue::bounded;
+    use crate::frame_loop::queue::bounded;
 
     fn step(tick: u64) -> Entry {
         Entry::Step { tick, scheduled_ns: ticks_to_ns(tick), rung: 0, fingerprint: tick }
@@ -173,7 +173,7 @@ mod tests {
 
     /// The first and the last step of the file.
     fn kept(file: &[u8]) -> (Entry, u64, u64) {
-        let tape::Tape { text, notes, entries } = tape::read(file).unwrap();
+        let recording::Recording { text, notes, entries } = recording::read(file).unwrap();
         assert_eq!(text, "a scene");
         let Entry::Changed { number: first, .. } = entries[0] else { panic!("{:?}", entries[0]) };
         let described: Vec<u64> = notes.iter().map(|note| note.number).collect();
@@ -188,13 +188,13 @@ mod tests {
     #[test]
     fn the_last_ten_seconds_are_kept_from_where_somebody_was_dressed() {
         let (mut sender, receiver) = bounded("", 4_096);
-        let black_box = BlackBox::new(tape::header("a scene"), receiver);
+        let black_box = FlightRecorder::new(recording::header("a scene"), receiver);
         assert!(black_box.save(Duration::ZERO).is_none(), "nothing was stepped yet");
         // A visit every 8 s for a minute, a garment changed in the middle of each.
         for tick in 0..120 * 60 {
             if tick % 480 == 0 {
                 let number = tick / 480;
-                black_box.describe(&Note { number, first: Joints::absent(0), text: "another".into() });
+                black_box.describe(&SceneNote { number, first: Joints::absent(0), text: "another".into() });
                 sender.push(Entry::Changed { number, afresh: tick % 960 == 0 });
             }
             sender.push(step(tick));
@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn a_box_that_is_held_is_not_waited_for_without_end() {
         let (_sender, receiver) = bounded("", 4);
-        let black_box = BlackBox::new(Vec::new(), receiver);
+        let black_box = FlightRecorder::new(Vec::new(), receiver);
         let held = black_box.locked();
         assert!(black_box.save(Duration::from_millis(5)).is_none());
         drop(held);

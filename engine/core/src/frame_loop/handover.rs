@@ -7,11 +7,11 @@ use super::queue::{Receiver, Sender, bounded};
 pub const CHANGES: usize = 1;
 
 /// The name of the bound, as warnings give it.
-pub const CHANGES_NAME: &str = "CHANGES (engine/core/src/pace/change.rs)";
+pub const CHANGES_NAME: &str = "CHANGES (engine/core/src/frame_loop/handover.rs)";
 
 /// Something whole that takes another's place.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Change<S> {
+pub struct SceneChange<S> {
     /// What comes; what went, when it is back.
     pub scene: S,
     /// Its number, by which a recording names it.
@@ -22,30 +22,30 @@ pub struct Change<S> {
 
 /// The end of who makes scenes.
 #[derive(Debug)]
-pub struct Giver<S> {
-    to: Sender<Box<Change<S>>>,
-    back: Receiver<Box<Change<S>>>,
+pub struct HandoverSender<S> {
+    to: Sender<Box<SceneChange<S>>>,
+    back: Receiver<Box<SceneChange<S>>>,
 }
 
 /// The end of who steps or shows them.
 #[derive(Debug)]
-pub struct Taker<S> {
-    from: Receiver<Box<Change<S>>>,
-    back: Sender<Box<Change<S>>>,
+pub struct HandoverReceiver<S> {
+    from: Receiver<Box<SceneChange<S>>>,
+    back: Sender<Box<SceneChange<S>>>,
 }
 
 /// Both ends. At load.
-pub fn handover<S>() -> (Giver<S>, Taker<S>) {
+pub fn handover<S>() -> (HandoverSender<S>, HandoverReceiver<S>) {
     let ((to, from), (back, returned)) = (bounded(CHANGES_NAME, CHANGES), bounded(CHANGES_NAME, CHANGES));
-    (Giver { to, back: returned }, Taker { from, back })
+    (HandoverSender { to, back: returned }, HandoverReceiver { from, back })
 }
 
-impl<S> Giver<S> {
+impl<S> HandoverSender<S> {
     /// Offers a change; gives it back where one waits already.
     ///
     /// # Errors
     /// The change itself.
-    pub fn give(&mut self, change: Box<Change<S>>) -> Result<(), Box<Change<S>>> {
+    pub fn give(&mut self, change: Box<SceneChange<S>>) -> Result<(), Box<SceneChange<S>>> {
         if self.to.is_full() {
             return Err(change);
         }
@@ -54,15 +54,15 @@ impl<S> Giver<S> {
     }
 
     /// What was replaced, to be dropped here. The next change is not taken before that.
-    pub fn returned(&mut self) -> Option<Box<Change<S>>> {
+    pub fn returned(&mut self) -> Option<Box<SceneChange<S>>> {
         self.back.pop()
     }
 }
 
-impl<S> Taker<S> {
+impl<S> HandoverReceiver<S> {
     /// Has what was given put in its place, if something was, and sends back what `put` leaves in it; gives its number and
     /// whether somebody else comes.
-    pub fn take(&mut self, put: impl FnOnce(&mut Change<S>)) -> Option<(u64, bool)> {
+    pub fn take(&mut self, put: impl FnOnce(&mut SceneChange<S>)) -> Option<(u64, bool)> {
         // A box that did not fit into the way back would be dropped here.
         if self.back.is_full() {
             return None;
@@ -83,9 +83,11 @@ mod tests {
     fn what_is_given_takes_the_place_and_what_went_comes_back() {
         let (mut giver, mut taker) = handover();
         let mut here = "first".to_owned();
-        let take = |taker: &mut Taker<String>, here: &mut String| taker.take(|c| std::mem::swap(&mut c.scene, here));
+        let take = |taker: &mut HandoverReceiver<String>, here: &mut String| {
+            taker.take(|c| std::mem::swap(&mut c.scene, here))
+        };
         assert_eq!(take(&mut taker, &mut here), None);
-        let change = |scene: &str, number| Box::new(Change { scene: scene.to_owned(), number, afresh: true });
+        let change = |scene: &str, number| Box::new(SceneChange { scene: scene.to_owned(), number, afresh: true });
         giver.give(change("second", 1)).unwrap();
         assert_eq!(giver.give(change("third", 2)).unwrap_err().number, 2, "one waits already");
         assert_eq!((take(&mut taker, &mut here), here.as_str()), (Some((1, true)), "second"));

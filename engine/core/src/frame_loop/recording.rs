@@ -10,7 +10,7 @@ use thiserror::Error;
 use toile_assets::skeleton::JOINTS;
 use toile_sensors::frame::{Joints, TrackedJoint};
 
-use super::sense::Seen;
+use super::sensor_thread::SensorFrame;
 
 /// First bytes of a file.
 pub const MAGIC: &[u8] = b"toile-tape/1\n";
@@ -19,7 +19,7 @@ pub const MAGIC: &[u8] = b"toile-tape/1\n";
 pub const ENTRIES: usize = 1024;
 
 /// The name of the bound, as warnings give it.
-pub const ENTRIES_NAME: &str = "ENTRIES (engine/core/src/pace/tape.rs)";
+pub const ENTRIES_NAME: &str = "ENTRIES (engine/core/src/frame_loop/recording.rs)";
 
 /// Longest text about the scene (bytes).
 const MOST_TEXT: usize = 1 << 20;
@@ -40,9 +40,9 @@ pub enum Entry {
         afresh: bool,
     },
     /// A filtered frame that the next step knew.
-    Seen(Seen),
+    SensorFrame(SensorFrame),
     /// The state was spoilt by this seed before the next step, to try what is borne.
-    Upset(u64),
+    Fault(u64),
     /// A step was taken.
     Step {
         /// Its number.
@@ -58,7 +58,7 @@ pub enum Entry {
 
 /// How a scene is made that the text at the begin does not tell of, because nobody knew of it then.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Note {
+pub struct SceneNote {
     /// The scene's number.
     pub number: u64,
     /// The joints in which it was dressed.
@@ -69,18 +69,18 @@ pub struct Note {
 
 /// Everything in a file.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tape {
+pub struct Recording {
     /// The text about the scene.
     pub text: String,
     /// What was noted of scenes, in order.
-    pub notes: Vec<Note>,
+    pub notes: Vec<SceneNote>,
     /// What happened, in order.
     pub entries: Vec<Entry>,
 }
 
 /// Why a tape cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum TapeError {
+pub enum RecordingError {
     /// Another file.
     #[error(
         "this is not a recording of a run (it does not begin with `toile-tape/1`); make one with `toile latency --record F` or `toile soak --record F`"
@@ -114,12 +114,12 @@ pub fn write(entry: &Entry, out: &mut Vec<u8>) {
             [*number, u64::from(*afresh)].iter().for_each(|n| body.extend(n.to_le_bytes()));
             b'c'
         }
-        Entry::Seen(seen) => {
+        Entry::SensorFrame(seen) => {
             [seen.number, seen.arrived_ns].iter().for_each(|n| body.extend(n.to_le_bytes()));
             put_joints(&seen.joints, &mut body);
             b'j'
         }
-        Entry::Upset(seed) => {
+        Entry::Fault(seed) => {
             body.extend(seed.to_le_bytes());
             b'u'
         }
@@ -132,7 +132,7 @@ pub fn write(entry: &Entry, out: &mut Vec<u8>) {
 }
 
 /// Appends what is known of a scene to the bytes of a file.
-pub fn write_note(note: &Note, out: &mut Vec<u8>) {
+pub fn write_note(note: &SceneNote, out: &mut Vec<u8>) {
     let mut body = Vec::with_capacity(8 * usize::from(u8::MAX));
     body.extend(note.number.to_le_bytes());
     put_joints(&note.first, &mut body);
@@ -165,21 +165,21 @@ fn check(bytes: &[u8]) -> u32 {
 /// Reads a file up to its end or the cut.
 ///
 /// # Errors
-/// [`TapeError`].
-pub fn read(bytes: &[u8]) -> Result<Tape, TapeError> {
-    let rest = bytes.strip_prefix(MAGIC).ok_or(TapeError::Magic)?;
-    let (len, rest) = rest.split_first_chunk::<4>().ok_or(TapeError::Short)?;
+/// [`RecordingError`].
+pub fn read(bytes: &[u8]) -> Result<Recording, RecordingError> {
+    let rest = bytes.strip_prefix(MAGIC).ok_or(RecordingError::Magic)?;
+    let (len, rest) = rest.split_first_chunk::<4>().ok_or(RecordingError::Short)?;
     let len = u32::from_le_bytes(*len) as usize;
     if len > MOST_TEXT {
-        return Err(TapeError::Damaged(MAGIC.len()));
+        return Err(RecordingError::Damaged(MAGIC.len()));
     }
-    let (text, mut rest) = rest.split_at_checked(len).ok_or(TapeError::Short)?;
-    let text = String::from_utf8(text.to_vec()).map_err(|_| TapeError::Damaged(MAGIC.len() + 4))?;
+    let (text, mut rest) = rest.split_at_checked(len).ok_or(RecordingError::Short)?;
+    let text = String::from_utf8(text.to_vec()).map_err(|_| RecordingError::Damaged(MAGIC.len() + 4))?;
     let (mut notes, mut entries) = (Vec::new(), Vec::new());
     while let [_, eights, ..] = rest {
         let len = 2 + 8 * usize::from(*eights);
         let Some((record, after)) = rest.split_at_checked(len + 4) else { break };
-        let damaged = || TapeError::Damaged(bytes.len() - rest.len());
+        let damaged = || RecordingError::Damaged(bytes.len() - rest.len());
         if check(&record[..len]).to_le_bytes() != record[len..] {
             return Err(damaged());
         }
@@ -190,7 +190,7 @@ pub fn read(bytes: &[u8]) -> Result<Tape, TapeError> {
         rest = after;
     }
     let steps = entries.iter().any(|e| matches!(e, Entry::Step { .. }));
-    if steps { Ok(Tape { text, notes, entries }) } else { Err(TapeError::Short) }
+    if steps { Ok(Recording { text, notes, entries }) } else { Err(RecordingError::Short) }
 }
 
 fn entry(kind: u8, body: &[u8]) -> Option<Entry> {
@@ -200,10 +200,10 @@ fn entry(kind: u8, body: &[u8]) -> Option<Entry> {
         b'd' => Some(Entry::Dressed(joints(words)?)),
         b'j' => {
             let joints = joints(words.get(2..)?)?;
-            Some(Entry::Seen(Seen { joints, number: word(0)?, arrived_ns: word(1)? }))
+            Some(Entry::SensorFrame(SensorFrame { joints, number: word(0)?, arrived_ns: word(1)? }))
         }
         b'c' if words.len() == 2 => Some(Entry::Changed { number: word(0)?, afresh: word(1)? != 0 }),
-        b'u' if words.len() == 1 => Some(Entry::Upset(word(0)?)),
+        b'u' if words.len() == 1 => Some(Entry::Fault(word(0)?)),
         b's' if words.len() == 4 => Some(Entry::Step {
             tick: word(0)?,
             scheduled_ns: word(1)?,
@@ -214,12 +214,12 @@ fn entry(kind: u8, body: &[u8]) -> Option<Entry> {
     }
 }
 
-fn note(body: &[u8]) -> Option<Note> {
+fn note(body: &[u8]) -> Option<SceneNote> {
     let (words, []) = body.as_chunks::<8>() else { return None };
     let (number, rest) = words.split_first()?;
     let (first, text) = rest.split_at_checked(1 + 2 * JOINTS)?;
     let text = String::from_utf8(text.as_flattened().to_vec()).ok()?;
-    Some(Note { number: u64::from_le_bytes(*number), first: joints(first)?, text: text.trim_end().to_owned() })
+    Some(SceneNote { number: u64::from_le_bytes(*number), first: joints(first)?, text: text.trim_end().to_owned() })
 }
 
 fn joints(words: &[[u8; 8]]) -> Option<Joints> {
@@ -245,16 +245,16 @@ mod tests {
         joints.joints[3] = TrackedJoint { position: Vec3::new(0.1, -2.0, 3e-9), confidence: 0.25 };
         vec![
             Entry::Dressed(joints),
-            Entry::Seen(Seen { joints, arrived_ns: u64::MAX, number: 1 }),
+            Entry::SensorFrame(SensorFrame { joints, arrived_ns: u64::MAX, number: 1 }),
             Entry::Changed { number: 5, afresh: true },
-            Entry::Upset(u64::MAX / 3),
+            Entry::Fault(u64::MAX / 3),
             Entry::Step { tick: 0, scheduled_ns: 9, rung: 2, fingerprint: u64::MAX - 1 },
             Entry::Step { tick: 1, scheduled_ns: 10, rung: 0, fingerprint: 0 },
         ]
     }
 
-    fn noted() -> Note {
-        Note { number: 3, first: Joints::absent(5), text: "a coat, grün".into() }
+    fn noted() -> SceneNote {
+        SceneNote { number: 3, first: Joints::absent(5), text: "a coat, grün".into() }
     }
 
     fn file() -> Vec<u8> {
@@ -264,8 +264,8 @@ mod tests {
         bytes
     }
 
-    fn whole() -> Tape {
-        Tape { text: "a scene".to_owned(), notes: vec![noted()], entries: entries() }
+    fn whole() -> Recording {
+        Recording { text: "a scene".to_owned(), notes: vec![noted()], entries: entries() }
     }
 
     #[test]
@@ -276,9 +276,9 @@ mod tests {
         for cut in 1..=step {
             assert_eq!(read(&bytes[..bytes.len() - cut]).unwrap().entries, entries()[..5]);
         }
-        assert_eq!(read(&bytes[..bytes.len() - step - 1]), Err(TapeError::Short), "no step is left");
-        assert_eq!(read(&bytes[..20]), Err(TapeError::Short));
-        assert_eq!(read(b"toile"), Err(TapeError::Magic));
+        assert_eq!(read(&bytes[..bytes.len() - step - 1]), Err(RecordingError::Short), "no step is left");
+        assert_eq!(read(&bytes[..20]), Err(RecordingError::Short));
+        assert_eq!(read(b"toile"), Err(RecordingError::Magic));
     }
 
     #[test]

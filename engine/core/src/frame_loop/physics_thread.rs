@@ -3,20 +3,20 @@
 use toile_assets::limits::STEP_HZ;
 use toile_sensors::frame::Joints;
 
-use super::Turn;
-use super::change::Taker;
-use super::event::{Account, Counters, Event, Miss, SENSOR_LOST_NS, What};
+use super::ThreadLoop;
+use super::event::{CounterSource, Counters, Event, EventKind, Miss, SENSOR_LOST_NS};
 use super::governor::{Governor, LADDER, Rung};
-use super::intake::Intake;
+use super::handover::HandoverReceiver;
+use super::motion_input::MotionInput;
 use super::queue::Sender;
+use super::recording::Entry;
 use super::schedule::{Due, Schedule, Tick};
-use super::sense::Seen;
-use super::tape::Entry;
+use super::sensor_thread::SensorFrame;
 use crate::clock::Clock;
 use crate::cloth::Wind;
 use crate::frame::{Frame, Times};
 use crate::meter::{Meter, PERIOD_NS};
-use crate::relay::Reader;
+use crate::triple_buffer::Reader;
 
 /// Steps between two measurements of the error: ten a second, for they take as long as some substeps.
 pub const MEASURE_EVERY: u64 = 12;
@@ -42,7 +42,7 @@ pub trait Scene {
     fn fingerprint(&self) -> u64;
 
     /// Spoils the state, for a run that tries what is borne.
-    fn upset(&mut self, _seed: u64) {}
+    fn inject_fault(&mut self, _seed: u64) {}
 
     /// Takes over what does not go with the scene before it: who works on the steps.
     fn succeed(&mut self, _before: &mut Self) {}
@@ -53,14 +53,14 @@ pub trait Scene {
 
 /// The frame as the loop steps it.
 #[derive(Debug)]
-pub struct Staged {
+pub struct FrameScene {
     /// The frame.
     pub frame: Frame,
     /// The wind at whole quality.
     wind: Option<Wind>,
 }
 
-impl Staged {
+impl FrameScene {
     /// At load, when the shopper is dressed.
     pub fn new(mut frame: Frame) -> Self {
         frame.measure_every(MEASURE_EVERY);
@@ -68,7 +68,7 @@ impl Staged {
     }
 }
 
-impl Scene for Staged {
+impl Scene for FrameScene {
     fn step(&mut self, joints: &Joints, times: Times, clock: &impl Clock) {
         self.frame.step_at(joints, times, clock);
     }
@@ -89,12 +89,12 @@ impl Scene for Staged {
         self.frame.fingerprint()
     }
 
-    fn upset(&mut self, seed: u64) {
-        self.frame.upset(seed);
+    fn inject_fault(&mut self, seed: u64) {
+        self.frame.inject_fault(seed);
     }
 
     fn succeed(&mut self, before: &mut Self) {
-        self.frame.take_crew(&mut before.frame);
+        self.frame.swap_workers(&mut before.frame);
     }
 
     fn troubles(&self) -> [u64; 2] {
@@ -104,19 +104,19 @@ impl Scene for Staged {
 
 /// A scene and its intake: what the loop and a replay both step, by the same function.
 #[derive(Debug)]
-pub struct Stepper<S> {
+pub struct SceneStepper<S> {
     /// The scene.
     pub scene: S,
-    intake: Intake,
+    intake: MotionInput,
     /// The newest sensor frame.
     newest: (u64, u64),
     rung: u8,
 }
 
-impl<S: Scene> Stepper<S> {
+impl<S: Scene> SceneStepper<S> {
     /// A scene that has not seen anybody move yet.
     pub fn new(scene: S) -> Self {
-        Self { scene, intake: Intake::default(), newest: (0, 0), rung: 0 }
+        Self { scene, intake: MotionInput::default(), newest: (0, 0), rung: 0 }
     }
 
     /// From the next step on. A rung that there is not is the last.
@@ -128,7 +128,7 @@ impl<S: Scene> Stepper<S> {
     }
 
     /// A sensor frame, for the step that is due at `scheduled_ns`.
-    pub fn take(&mut self, seen: &Seen, scheduled_ns: u64) {
+    pub fn take(&mut self, seen: &SensorFrame, scheduled_ns: u64) {
         if self.intake.take(&seen.joints, end_of(scheduled_ns)) {
             self.newest = (seen.arrived_ns, seen.number);
         }
@@ -141,7 +141,7 @@ impl<S: Scene> Stepper<S> {
         std::mem::swap(&mut self.scene, scene);
         self.scene.set_rung(&LADDER[usize::from(self.rung).min(LADDER.len() - 1)]);
         if afresh {
-            (self.intake, self.newest) = (Intake::default(), (0, 0));
+            (self.intake, self.newest) = (MotionInput::default(), (0, 0));
         }
     }
 
@@ -171,7 +171,7 @@ fn end_of(scheduled_ns: u64) -> u64 {
 
 /// What the loop meters beside the frame's own stages; all in ns of the loop's clock.
 #[derive(Debug, Clone, Default)]
-pub struct Gauges {
+pub struct LoopMeters {
     /// From when a step was due until it began; of steps that were dropped, until the next began.
     pub late: Meter,
     /// The intake.
@@ -196,7 +196,7 @@ pub struct Gauges {
     pub skipped: u64,
 }
 
-impl Gauges {
+impl LoopMeters {
     /// Forgets everything, allocating nothing.
     fn clear(&mut self) {
         let Self { late, intake, step, response, wait, reaction, .. } = self;
@@ -208,7 +208,7 @@ impl Gauges {
 
 /// When a step was due, begun and published (ns).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Taken {
+pub struct StepTimes {
     /// When it was due.
     pub scheduled_ns: u64,
     /// When it began.
@@ -219,27 +219,27 @@ pub struct Taken {
 
 /// The ends of what the physics writes to, beside the snapshots.
 #[derive(Debug)]
-pub struct Outlets {
+pub struct PhysicsOutputs {
     /// What happened.
     pub events: Sender<Event>,
     /// What a replay needs, where somebody records.
-    pub tape: Option<Sender<Entry>>,
+    pub recording: Option<Sender<Entry>>,
 }
 
 /// The physics' life.
 #[derive(Debug)]
-pub struct Physics<S, C, A> {
+pub struct PhysicsThread<S, C, A> {
     /// What is stepped.
-    pub stepper: Stepper<S>,
+    pub stepper: SceneStepper<S>,
     /// What was metered.
-    pub gauges: Gauges,
+    pub gauges: LoopMeters,
     clock: C,
     schedule: Schedule,
     governor: Governor,
-    seen: Reader<Seen>,
-    outlets: Outlets,
-    changes: Option<Taker<S>>,
-    taken: Taken,
+    seen: Reader<SensorFrame>,
+    outlets: PhysicsOutputs,
+    changes: Option<HandoverReceiver<S>>,
+    taken: StepTimes,
     account: A,
     counters: Counters,
     troubles: [u64; 2],
@@ -252,20 +252,27 @@ pub struct Physics<S, C, A> {
     lost: bool,
 }
 
-impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
+impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
     /// At load; the first step is due at `origin_ns`.
-    pub fn new(scene: S, clock: C, origin_ns: u64, seen: Reader<Seen>, outlets: Outlets, account: A) -> Self {
+    pub fn new(
+        scene: S,
+        clock: C,
+        origin_ns: u64,
+        seen: Reader<SensorFrame>,
+        outlets: PhysicsOutputs,
+        account: A,
+    ) -> Self {
         Self {
             troubles: scene.troubles(),
-            stepper: Stepper::new(scene),
-            gauges: Gauges::default(),
+            stepper: SceneStepper::new(scene),
+            gauges: LoopMeters::default(),
             clock,
             schedule: Schedule::new(origin_ns, STEP_HZ),
             governor: Governor::default(),
             seen,
             outlets,
             changes: None,
-            taken: Taken::default(),
+            taken: StepTimes::default(),
             account,
             counters: Counters::default(),
             tick: 0,
@@ -292,20 +299,20 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
 
     /// The same, whose scene is changed for those that are handed to it.
     #[must_use]
-    pub fn changing(self, changes: Taker<S>) -> Self {
+    pub fn changing(self, changes: HandoverReceiver<S>) -> Self {
         Self { changes: Some(changes), ..self }
     }
 
     /// Spoils the state before the next step, and records that.
-    pub fn upset(&mut self, seed: u64) {
-        self.stepper.scene.upset(seed);
-        if let Some(tape) = &mut self.outlets.tape {
-            tape.push(Entry::Upset(seed));
+    pub fn inject_fault(&mut self, seed: u64) {
+        self.stepper.scene.inject_fault(seed);
+        if let Some(recording) = &mut self.outlets.recording {
+            recording.push(Entry::Fault(seed));
         }
     }
 
     /// The last step.
-    pub fn taken(&self) -> Taken {
+    pub fn taken(&self) -> StepTimes {
         self.taken
     }
 
@@ -337,7 +344,7 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
         self.gauges.intake.add(self.clock.now_ns() - begun);
         self.stepper.step(due.scheduled_ns, begun, &self.clock);
         let ended = self.clock.now_ns();
-        self.taken = Taken { scheduled_ns: due.scheduled_ns, begun_ns: begun, ended_ns: ended };
+        self.taken = StepTimes { scheduled_ns: due.scheduled_ns, begun_ns: begun, ended_ns: ended };
         let counted = self.count(ended - due.scheduled_ns > PERIOD_NS);
         self.meter(&due, begun, ended, news);
         let miss = Miss {
@@ -348,7 +355,7 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
         };
         if miss.total_ns > PERIOD_NS {
             self.gauges.missed += 1;
-            self.tell(due.scheduled_ns, What::Missed(miss));
+            self.tell(due.scheduled_ns, EventKind::Missed(miss));
         }
         self.record(due.scheduled_ns);
         self.govern(due.scheduled_ns, miss.step_ns);
@@ -376,7 +383,7 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
             self.gauges.late.add(late);
             self.gauges.response.add(late);
         }
-        self.tell(due.scheduled_ns, What::Dropped(due.dropped));
+        self.tell(due.scheduled_ns, EventKind::Dropped(due.dropped));
     }
 
     /// Changes the scene, if another was handed over.
@@ -386,10 +393,10 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
         let taken = changes.take(|change| stepper.change(&mut change.scene, change.afresh));
         let Some((number, afresh)) = taken else { return };
         self.troubles = self.stepper.scene.troubles();
-        if let Some(tape) = &mut self.outlets.tape {
-            tape.push(Entry::Changed { number, afresh });
+        if let Some(recording) = &mut self.outlets.recording {
+            recording.push(Entry::Changed { number, afresh });
         }
-        self.tell(scheduled_ns, What::Changed(number));
+        self.tell(scheduled_ns, EventKind::Changed(number));
     }
 
     /// Takes the newest sensor frame, if there is a new one; gives when it arrived (ns).
@@ -400,14 +407,14 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
             self.last = seen.number;
             self.last_ns = begun;
             self.stepper.take(&seen, scheduled_ns);
-            if let Some(tape) = &mut self.outlets.tape {
-                tape.push(Entry::Seen(seen));
+            if let Some(recording) = &mut self.outlets.recording {
+                recording.push(Entry::SensorFrame(seen));
             }
         }
         let lost = begun.saturating_sub(self.last_ns) > SENSOR_LOST_NS;
         if lost != self.lost {
             self.lost = lost;
-            self.tell(scheduled_ns, if lost { What::SensorLost } else { What::SensorBack });
+            self.tell(scheduled_ns, if lost { EventKind::SensorLost } else { EventKind::SensorBack });
         }
         news.map(|seen| seen.arrived_ns)
     }
@@ -430,38 +437,38 @@ impl<S: Scene, C: Clock, A: Account> Physics<S, C, A> {
     }
 
     fn record(&mut self, scheduled_ns: u64) {
-        if let Some(tape) = &mut self.outlets.tape {
+        if let Some(recording) = &mut self.outlets.recording {
             let fingerprint = self.stepper.scene.fingerprint();
             let (tick, rung) = (self.tick, self.governor.place());
-            tape.push(Entry::Step { tick, scheduled_ns, rung, fingerprint });
+            recording.push(Entry::Step { tick, scheduled_ns, rung, fingerprint });
         }
     }
 
     fn govern(&mut self, scheduled_ns: u64, step_ns: u64) {
         if let Some(change) = self.governor.after(step_ns) {
             self.stepper.set_rung(change.to);
-            self.tell(scheduled_ns, What::Quality(change));
+            self.tell(scheduled_ns, EventKind::Quality(change));
         }
     }
 
     fn look_for_trouble(&mut self, scheduled_ns: u64) {
         let now = self.stepper.scene.troubles();
         let before = std::mem::replace(&mut self.troubles, now);
-        for (k, what) in [What::Broken, What::RolledBack].into_iter().enumerate() {
+        for (k, what) in [EventKind::Broken, EventKind::RolledBack].into_iter().enumerate() {
             if now[k] > before[k] {
                 self.tell(scheduled_ns, what);
             }
         }
     }
 
-    fn tell(&mut self, scheduled_ns: u64, what: What) {
+    fn tell(&mut self, scheduled_ns: u64, what: EventKind) {
         // One that does not fit is counted by the queue.
         self.outlets.events.push(Event { tick: self.tick, scheduled_ns, what });
     }
 }
 
-impl<S: Scene, C: Clock, A: Account> Turn for Physics<S, C, A> {
-    fn turn(&mut self) -> Option<u64> {
+impl<S: Scene, C: Clock, A: CounterSource> ThreadLoop for PhysicsThread<S, C, A> {
+    fn run_due(&mut self) -> Option<u64> {
         match self.schedule.due(self.clock.now_ns()) {
             Due::At(ns) => Some(ns),
             Due::Now(tick) => {

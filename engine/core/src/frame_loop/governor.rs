@@ -48,7 +48,7 @@ const TOO_EARLY: u64 = 600;
 
 /// A change of rung.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Change {
+pub struct QualityChange {
     /// Place in [`LADDER`] before.
     pub from: u8,
     /// Place in [`LADDER`] from now on.
@@ -96,7 +96,7 @@ impl Governor {
     }
 
     /// A step took so long (ns). Gives the change of rung that the next step is to be taken with.
-    pub fn after(&mut self, step_ns: u64) -> Option<Change> {
+    pub fn after(&mut self, step_ns: u64) -> Option<QualityChange> {
         if self.held {
             return None;
         }
@@ -131,7 +131,7 @@ impl Governor {
         (self.long, self.longest_ns, self.steps) = (0, 0, 0);
     }
 
-    fn down(&mut self) -> Option<Change> {
+    fn down(&mut self) -> Option<QualityChange> {
         self.begin();
         let from = self.rung;
         if usize::from(from) + 1 == LADDER.len() {
@@ -143,14 +143,14 @@ impl Governor {
             self.since_up = TOO_EARLY;
         }
         self.rung += 1;
-        Some(Change { from, to: self.rung })
+        Some(QualityChange { from, to: self.rung })
     }
 
-    fn up(&mut self) -> Option<Change> {
+    fn up(&mut self) -> Option<QualityChange> {
         let from = self.rung;
         self.rung -= 1;
         self.since_up = 0;
-        Some(Change { from, to: self.rung })
+        Some(QualityChange { from, to: self.rung })
     }
 }
 

@@ -31,7 +31,7 @@ fn stamps(stutters: bool) -> Vec<u64> {
 
 /// The joint at each of 240 steps, seen with a delay of 10 ms.
 fn play(stamps: &[u64], truth: impl Fn(f64) -> f64) -> Vec<f64> {
-    let (mut intake, mut next) = (Intake::default(), 0);
+    let (mut intake, mut next) = (MotionInput::default(), 0);
     let mut path = Vec::new();
     for tick in 0..240 {
         let now = ticks_to_ns(tick) + 10 * MS;
@@ -120,7 +120,7 @@ fn a_sensor_that_falls_silent_leaves_the_body_near_where_it_was_and_at_rest() {
     let last = reach(0.8);
     assert!((path[239] - last).abs() < 1.6 * f64::from(FADE_S), "{} after {last}", path[239]);
     assert!((path[239] - path[230]).abs() < 1e-3, "it still moves");
-    let mut intake = Intake::default();
+    let mut intake = MotionInput::default();
     intake.take(&frame(0, 0.0), 0);
     intake.take(&frame(SECOND_NS / 30, 0.1), SECOND_NS / 30);
     // After a silence the next frame is taken as it is.
@@ -130,7 +130,7 @@ fn a_sensor_that_falls_silent_leaves_the_body_near_where_it_was_and_at_rest() {
 
 #[test]
 fn frames_out_of_order_repeated_absent_or_not_finite_do_no_harm() {
-    let mut intake = Intake::default();
+    let mut intake = MotionInput::default();
     assert_eq!(intake.at(5), Joints::absent(5));
     assert!(intake.take(&frame(100 * MS, 0.1), 101 * MS));
     assert!(!intake.take(&frame(100 * MS, 9.0), 102 * MS), "repeated");

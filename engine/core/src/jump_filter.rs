@@ -35,7 +35,7 @@ enum Doing {
 
 /// The spheres of one body from step to step.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Hold {
+pub struct JumpFilter {
     last: [Vec4; MAX_SPHERES],
     doing: [Doing; MAX_SPHERES],
     /// Sphere steps held because of a jump or of a number that is none.
@@ -44,13 +44,13 @@ pub struct Hold {
     pub followed: u64,
 }
 
-impl Default for Hold {
+impl Default for JumpFilter {
     fn default() -> Self {
         Self { last: [PARKED; MAX_SPHERES], doing: [Doing::Absent; MAX_SPHERES], held: 0, followed: 0 }
     }
 }
 
-impl Hold {
+impl JumpFilter {
     /// Changes the spheres `(x, y, z, radius)` of a step of `dt` seconds to where the cloth may meet them; says how many
     /// are not where they were said to be. `motion` is the root's in this step, in world space, finite. Spheres past [`MAX_SPHERES`] are left as they are.
     pub fn filter(&mut self, motion: &Affine3A, targets: &mut [Vec4], dt: f32) -> u32 {
@@ -103,7 +103,7 @@ mod tests {
     const HERE: Vec4 = Vec4::new(0.1, 0.5, 0.0, 0.06);
     const STILL: Affine3A = Affine3A::IDENTITY;
 
-    fn step(hold: &mut Hold, targets: [Vec4; 2]) -> [Vec4; 2] {
+    fn step(hold: &mut JumpFilter, targets: [Vec4; 2]) -> [Vec4; 2] {
         let mut targets = targets;
         hold.filter(&STILL, &mut targets, DT);
         targets
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn a_jump_of_one_frame_and_back_leaves_the_sphere_undisturbed() {
-        let mut hold = Hold::default();
+        let mut hold = JumpFilter::default();
         for k in 0..20 {
             let shift = Vec4::X * 0.02 * k as f32;
             let away = if k == 8 { Vec4::X } else { Vec4::ZERO };
@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn a_jump_that_lasts_is_followed_at_a_bounded_speed() {
-        let mut hold = Hold::default();
+        let mut hold = JumpFilter::default();
         step(&mut hold, [HERE; 2]);
         let there = HERE + Vec4::X;
         let mut last = HERE;
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn what_is_no_number_is_held_and_counted() {
-        let mut hold = Hold::default();
+        let mut hold = JumpFilter::default();
         // Before it was ever seen it stands where nothing is.
         assert_eq!(step(&mut hold, [Vec4::NAN, HERE]), [PARKED, HERE]);
         step(&mut hold, [HERE; 2]);
@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn a_held_sphere_goes_with_the_body_and_what_the_body_carries_does_not_jump() {
-        let mut hold = Hold::default();
+        let mut hold = JumpFilter::default();
         step(&mut hold, [HERE; 2]);
         let motion = Affine3A::from_rotation_y(1.0) * Affine3A::from_translation(Vec3::new(0.4, 0.0, 0.3));
         let carried = motion.transform_point3(HERE.xyz()).extend(HERE.w);

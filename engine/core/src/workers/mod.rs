@@ -14,9 +14,9 @@
 //!
 //! Between runs the helper spins for [`AWAKE`], then parks. Parking it and waking it are the only system calls of a run
 //! that goes as planned: at 120 Hz a helper that never slept would burn a whole core, and no other way of sleeping ends
-//! when the next step begins. [`Crew::wake`] hides the time of waking behind whatever comes before the cloth.
+//! when the next step begins. [`WorkerPool::wake`] hides the time of waking behind whatever comes before the cloth.
 
-mod own;
+mod per_share;
 
 use std::any::Any;
 use std::fmt;
@@ -31,7 +31,7 @@ use thiserror::Error;
 
 use crate::sync::{AtomicBool, AtomicU64, AtomicUsize, Idle, JoinHandle, LOOKS_BEFORE_TAKING, Slot, pause, thread};
 
-pub use own::Own;
+pub use per_share::PerShare;
 
 /// Shares of a phase, and most workers of a crew.
 pub const SHARES: usize = 2;
@@ -42,9 +42,9 @@ pub const AWAKE: Duration = Duration::from_micros(100);
 
 /// Why there is no crew.
 #[derive(Debug, Error)]
-pub enum CrewError {
+pub enum WorkerPoolError {
     /// Not 1 or 2.
-    #[error("a crew of {0} workers cannot be made, because a step has {SHARES} shares; ask for 1 or 2 workers")]
+    #[error("a pool of {0} workers cannot be made, because a step has {SHARES} shares; ask for 1 or 2 workers")]
     Workers(usize),
     /// The system gave no thread.
     #[error(
@@ -56,7 +56,7 @@ pub enum CrewError {
 /// A share of a run panicked; what came after it was not done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("share {share} of phase {phase} panicked and the rest of the run was left out; its message tells the cause")]
-pub struct Panicked {
+pub struct SharePanicked {
     /// The phase, counted from 0.
     pub phase: usize,
     /// The share, 0 or 1.
@@ -95,7 +95,7 @@ pub(crate) struct Board {
     job: Slot<Job>,
 }
 
-// SAFETY: the job's pointer is the only part that is not an atomic. `Crew::run` takes only jobs that are `Sync`, and the
+// SAFETY: the job's pointer is the only part that is not an atomic. `WorkerPool::run` takes only jobs that are `Sync`, and the
 // protocol above keeps reads and writes of the cell apart.
 unsafe impl Send for Board {}
 // SAFETY: as above.
@@ -127,7 +127,7 @@ impl Board {
     ///
     /// # Safety
     /// The caller holds this share of this ticket (share 1 by [`Self::claim`]), and it is not done yet. Then the run is
-    /// still on, because [`Crew::run`] waits for both shares of its last ticket: the job lives, and its cell is not
+    /// still on, because [`WorkerPool::run`] waits for both shares of its last ticket: the job lives, and its cell is not
     /// written.
     unsafe fn work(&self, ticket: u64, share: usize) {
         // SAFETY: see above; the write of the cell happened before `open` was stored, which this thread has acquired.
@@ -198,7 +198,7 @@ fn help(board: &Board) {
 
 /// Parks the helper unless there is work.
 ///
-/// All SeqCst, with those in [`Crew::run`], [`Crew::wake`] and `drop`: either the helper sees the new `open` (or
+/// All SeqCst, with those in [`WorkerPool::run`], [`WorkerPool::wake`] and `drop`: either the helper sees the new `open` (or
 /// `leaving`) or the other side sees it `asleep` and wakes it. With any weaker order both could look too early.
 fn sleep(board: &Board, ticket: u64) {
     board.asleep.0.store(true, SeqCst);
@@ -209,23 +209,23 @@ fn sleep(board: &Board, ticket: u64) {
 }
 
 /// The workers. A run borrows the crew, so two runs cannot overlap and a job cannot start another.
-pub struct Crew {
+pub struct WorkerPool {
     pub(crate) board: Arc<Board>,
     helper: Option<JoinHandle<()>>,
     last: u64,
     taken: u64,
 }
 
-impl Crew {
+impl WorkerPool {
     /// A crew of 1 or 2 workers; the second is a thread that lives as long as the crew. At load.
-    pub fn new(workers: usize) -> Result<Self, CrewError> {
+    pub fn new(workers: usize) -> Result<Self, WorkerPoolError> {
         Self::beginning(workers, || ())
     }
 
     /// The same, whose helper does something first, such as to ask for a core of its own.
-    pub fn beginning(workers: usize, begin: impl FnOnce() + Send + 'static) -> Result<Self, CrewError> {
+    pub fn beginning(workers: usize, begin: impl FnOnce() + Send + 'static) -> Result<Self, WorkerPoolError> {
         if !(1..=SHARES).contains(&workers) {
-            return Err(CrewError::Workers(workers));
+            return Err(WorkerPoolError::Workers(workers));
         }
         let board = Arc::new(Board::new());
         let theirs = board.clone();
@@ -262,7 +262,7 @@ impl Crew {
 
     /// Calls `job(phase, share)` for every phase below `phases`, in order, and for both shares of each; returns when
     /// all are done. After a panic nothing further is begun.
-    pub fn run<F: Fn(usize, usize) + Sync>(&mut self, phases: usize, job: F) -> Result<(), Panicked> {
+    pub fn run<F: Fn(usize, usize) + Sync>(&mut self, phases: usize, job: F) -> Result<(), SharePanicked> {
         /// # Safety
         /// `data` is an `F` that lives during the call.
         unsafe fn call<F: Fn(usize, usize)>(data: *const (), phase: usize, share: usize) {
@@ -289,7 +289,7 @@ impl Crew {
         // Relaxed: every `done` of the run was acquired.
         match board.failed.load(Relaxed).checked_sub(1) {
             None => Ok(()),
-            Some(place) => Err(Panicked {
+            Some(place) => Err(SharePanicked {
                 phase: (place / SHARES as u64 - first) as usize,
                 share: (place % SHARES as u64) as usize,
             }),
@@ -298,7 +298,11 @@ impl Crew {
 
     /// Calls `task(i, &mut items[i])` for every item, whichever worker is free: one garment each. Items should not
     /// depend on each other; those with most work come best first.
-    pub fn each<T: Send, F: Fn(usize, &mut T) + Sync>(&mut self, items: &mut [T], task: F) -> Result<(), Panicked> {
+    pub fn each<T: Send, F: Fn(usize, &mut T) + Sync>(
+        &mut self,
+        items: &mut [T],
+        task: F,
+    ) -> Result<(), SharePanicked> {
         let (next, items) = (AtomicUsize::new(0), Items::new(items));
         self.run(1, |_, _| {
             loop {
@@ -333,7 +337,7 @@ fn meet(board: &Board, ticket: u64, helped: bool) -> bool {
     true
 }
 
-impl Drop for Crew {
+impl Drop for WorkerPool {
     fn drop(&mut self) {
         let Some(helper) = self.helper.take() else { return };
         // SeqCst: see `sleep`. The wake-up is unconditional: it costs nothing here.
@@ -344,9 +348,9 @@ impl Drop for Crew {
     }
 }
 
-impl fmt::Debug for Crew {
+impl fmt::Debug for WorkerPool {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Crew").field("workers", &self.workers()).field("taken", &self.taken).finish()
+        f.debug_struct("WorkerPool").field("workers", &self.workers()).field("taken", &self.taken).finish()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Replay: a recorded run taken again, step by step, by the same function, and compared bit for bit.
 
-use super::physics::{Scene, Stepper};
-use super::tape::Entry;
+use super::physics_thread::{Scene, SceneStepper};
+use super::recording::Entry;
 use crate::clock::Clock;
 
 /// What came out of a replay.
@@ -19,14 +19,14 @@ pub struct Replayed {
 
 /// Takes the recorded steps again. The scene is dressed as the recording says already; nothing stops at a difference, so
 /// that the rest of the run can be looked at.
-pub fn replay<S: Scene>(stepper: &mut Stepper<S>, entries: &[Entry], clock: &impl Clock) -> Replayed {
+pub fn replay<S: Scene>(stepper: &mut SceneStepper<S>, entries: &[Entry], clock: &impl Clock) -> Replayed {
     replay_changing(stepper, entries, clock, |_| None)
 }
 
 /// The same where scenes were changed: `make` makes the one of a number. One that cannot be made changes nothing, and the
 /// next step ends in other bits.
 pub fn replay_changing<S: Scene>(
-    stepper: &mut Stepper<S>,
+    stepper: &mut SceneStepper<S>,
     entries: &[Entry],
     clock: &impl Clock,
     mut make: impl FnMut(u64) -> Option<S>,
@@ -44,8 +44,8 @@ pub fn replay_changing<S: Scene>(
                     stepper.change(&mut scene, *afresh);
                 }
             }
-            Entry::Seen(seen) => waiting = Some(seen),
-            Entry::Upset(seed) => stepper.scene.upset(*seed),
+            Entry::SensorFrame(seen) => waiting = Some(seen),
+            Entry::Fault(seed) => stepper.scene.inject_fault(*seed),
             Entry::Step { tick, scheduled_ns, rung, fingerprint } => {
                 if next.is_some_and(|next| next != *tick) {
                     out.gap_at = out.gap_at.or(Some(*tick));

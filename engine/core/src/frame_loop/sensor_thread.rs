@@ -3,13 +3,13 @@
 use toile_sensors::filter::JointFilter;
 use toile_sensors::frame::Joints;
 
-use super::Turn;
+use super::ThreadLoop;
 use crate::clock::Clock;
 use crate::meter::Meter;
-use crate::relay::Writer;
+use crate::triple_buffer::Writer;
 
 /// Where raw frames come from: a camera, a recording, a generator of faults.
-pub trait Source: Send {
+pub trait JointSource: Send {
     /// When the next frame arrives at the earliest, on the loop's clock (ns); none where there are no more.
     fn next_ns(&self) -> Option<u64>;
 
@@ -55,7 +55,7 @@ impl Playback {
     }
 }
 
-impl Source for Playback {
+impl JointSource for Playback {
     fn next_ns(&self) -> Option<u64> {
         self.place(self.next).map(|(_, ns)| self.origin_ns + ns)
     }
@@ -76,7 +76,7 @@ pub const BEHIND_NS: u64 = 1_000_000_000;
 
 /// A filtered frame on its way to the physics.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seen {
+pub struct SensorFrame {
     /// The filtered joints, stamped on the loop's clock.
     pub joints: Joints,
     /// When the frame arrived here (ns).
@@ -85,7 +85,7 @@ pub struct Seen {
     pub number: u64,
 }
 
-impl Default for Seen {
+impl Default for SensorFrame {
     fn default() -> Self {
         Self { joints: Joints::absent(0), arrived_ns: 0, number: 0 }
     }
@@ -93,11 +93,11 @@ impl Default for Seen {
 
 /// The sensor's life.
 #[derive(Debug)]
-pub struct Sense<S, C> {
+pub struct SensorThread<S, C> {
     source: S,
     clock: C,
     filter: JointFilter,
-    writer: Writer<Seen>,
+    writer: Writer<SensorFrame>,
     count: u64,
     from_ns: u64,
     last_ns: Option<u64>,
@@ -109,9 +109,9 @@ pub struct Sense<S, C> {
     pub filtering: Meter,
 }
 
-impl<S: Source, C: Clock> Sense<S, C> {
+impl<S: JointSource, C: Clock> SensorThread<S, C> {
     /// At load.
-    pub fn new(source: S, clock: C, writer: Writer<Seen>) -> Self {
+    pub fn new(source: S, clock: C, writer: Writer<SensorFrame>) -> Self {
         Self {
             source,
             clock,
@@ -151,8 +151,8 @@ impl<S: Source, C: Clock> Sense<S, C> {
     }
 }
 
-impl<S: Source, C: Clock> Turn for Sense<S, C> {
-    fn turn(&mut self) -> Option<u64> {
+impl<S: JointSource, C: Clock> ThreadLoop for SensorThread<S, C> {
+    fn run_due(&mut self) -> Option<u64> {
         let due = self.source.next_ns()?;
         if self.clock.now_ns() < due {
             return Some(due);
@@ -164,7 +164,7 @@ impl<S: Source, C: Clock> Turn for Sense<S, C> {
             let arrived_ns = due.max(raw.time_ns);
             let joints = self.filter.push(&raw);
             self.count += 1;
-            self.writer.publish(Seen { joints, arrived_ns, number: self.count });
+            self.writer.publish(SensorFrame { joints, arrived_ns, number: self.count });
             if arrived_ns >= self.from_ns {
                 self.filtering.add(self.clock.now_ns().saturating_sub(arrived_ns));
             }
@@ -191,7 +191,7 @@ mod tests {
             (5_200, 5_180),
         ];
         struct Told(Vec<(u64, u64)>);
-        impl Source for Told {
+        impl JointSource for Told {
             fn next_ns(&self) -> Option<u64> {
                 self.0.first().map(|t| t.0 * MS)
             }
@@ -200,12 +200,13 @@ mod tests {
             }
         }
         let clock = crate::clock::SimClock::default();
-        let crate::relay::Relay { writer, mut reader } = crate::relay::Relay::new(&Seen::default());
-        let mut sense = Sense::new(Told(told.to_vec()), clock.clone(), writer);
+        let crate::triple_buffer::TripleBuffer { writer, mut reader } =
+            crate::triple_buffer::TripleBuffer::new(&SensorFrame::default());
+        let mut sense = SensorThread::new(Told(told.to_vec()), clock.clone(), writer);
         let mut stamps = Vec::new();
         while let Some(due) = sense.source.next_ns() {
             clock.sleep_until(due);
-            sense.turn();
+            sense.run_due();
             stamps.extend(reader.news().map(|seen| seen.joints.time_ns / MS));
         }
         assert_eq!(stamps, [4_980, 5_013, 5_133, 5_166, 5_180]);
