@@ -101,8 +101,8 @@ pub fn read_text(path: &Path, kind: &FileKind) -> Result<String, FileError> {
     String::from_utf8(read(path, kind)?).map_err(not_text)
 }
 
-/// What a file is that is not regular.
-fn irregular(data: &Metadata) -> Option<&'static str> {
+/// What a file is that is not regular, with its article; `None` for a regular one.
+pub fn irregular(data: &Metadata) -> Option<&'static str> {
     let kind = data.file_type();
     if kind.is_file() {
         return None;

@@ -5,6 +5,8 @@ use std::io;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::output::OutputError;
+
 /// What the process exits with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
@@ -93,24 +95,21 @@ impl AppError {
 }
 
 impl From<io::Error> for AppError {
-    /// Only for errors of standard output: files are told by [`crate::output::OutputError`], which names them.
+    /// Only for errors of standard output: files are told by [`OutputError`], which names them.
     fn from(error: io::Error) -> Self {
         if error.kind() == io::ErrorKind::BrokenPipe { Self::StdoutClosed } else { Self::Stdout(error) }
     }
 }
 
-/// Makes `?` turn errors of the rooms into bad input, exit code 4.
-macro_rules! bad_input {
-    ($($error:ty),+ $(,)?) => { $(
-        impl From<$error> for AppError {
-            fn from(error: $error) -> Self {
-                Self::input(error)
-            }
+impl From<OutputError> for AppError {
+    /// An output that names no file is a line not understood; all else is a place that cannot be used.
+    fn from(error: OutputError) -> Self {
+        match error {
+            OutputError::NoFile { .. } => Self::Usage(error.to_string()),
+            _ => Self::input(error),
         }
-    )+ };
+    }
 }
-
-bad_input!(crate::output::OutputError);
 
 static PANICKED: AtomicBool = AtomicBool::new(false);
 

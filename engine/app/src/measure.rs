@@ -12,7 +12,7 @@ use toile_track::measures;
 
 use crate::cli::MeasureArgs;
 use crate::exit::AppError;
-use crate::output::OutputFolder;
+use crate::output::{Inputs, OutputFolder};
 use crate::pictures::write_png;
 use crate::report::{self, DefinedMeasure, Document, FittedBody, MeasureReport, Method};
 use crate::shopper;
@@ -26,7 +26,8 @@ use crate::tracking::{self, Alone};
 /// A file that cannot be read or shows nobody, a folder that cannot be written, or a closed stdout.
 pub fn run(args: &MeasureArgs) -> Result<(), AppError> {
     let session = shopper::open(Some(&args.file), args.camera.as_deref())?;
-    let mut out = args.out.as_deref().map(OutputFolder::prepare).transpose().map_err(AppError::input)?;
+    let out = args.out.as_deref().map(OutputFolder::prepare).transpose().map_err(AppError::input)?;
+    let mut out = out.map(|out| out.sparing(Inputs::new(args.camera.iter().chain([&args.file]))));
     let population = Population::Mixed;
     let measured = shopper::measure(&session, population)?;
     let alone = Alone::of(&session);

@@ -2,11 +2,16 @@
 //!
 //! A file is written under a temporary name in the folder itself, because only a rename within one file system is
 //! atomic. [`OutputFolder::commit`] renames all; dropping the folder before that takes everything back.
+//!
+//! A rename replaces whatever has the name. So a name that a device, a FIFO, a socket or a folder has is refused, and so
+//! is a file that the run reads.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+
+use toile_assets::file::irregular;
 
 /// Why a file cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -29,6 +34,26 @@ pub enum OutputError {
         /// What the system said.
         reason: io::Error,
     },
+    /// A path that ends in no file name.
+    #[error("`--out {path}` names no file; give one such as shopper.mcap")]
+    NoFile {
+        /// The path.
+        path: PathBuf,
+    },
+    /// What is there is not a regular file.
+    #[error("`{path}` is {found}, which is not overwritten; name another file or folder for the output")]
+    NotRegular {
+        /// The file under its final name.
+        path: PathBuf,
+        /// What it is, with its article.
+        found: &'static str,
+    },
+    /// What is there is read by the same run.
+    #[error("`{path}` is read by this command, and so is not overwritten; name another file or folder for the output")]
+    Input {
+        /// The file under its final name.
+        path: PathBuf,
+    },
     /// A name that would leave the folder.
     #[error("output file name `{name}` is not a plain file name; use one without a path")]
     Name {
@@ -38,6 +63,84 @@ pub enum OutputError {
 }
 
 const PART: &str = ".toile-part-";
+
+/// What makes a file one and the same by whatever path: device and inode.
+#[cfg(unix)]
+type Identity = (u64, u64);
+#[cfg(not(unix))]
+type Identity = PathBuf;
+
+#[cfg(unix)]
+fn identity(path: &Path) -> Option<Identity> {
+    use std::os::unix::fs::MetadataExt;
+    fs::metadata(path).ok().map(|data| (data.dev(), data.ino()))
+}
+
+#[cfg(not(unix))]
+fn identity(path: &Path) -> Option<Identity> {
+    fs::canonicalize(path).ok()
+}
+
+/// Files that a run reads, and folders of such files: none of them may be overwritten.
+#[derive(Debug, Clone, Default)]
+pub struct Inputs(Vec<Identity>);
+
+impl Inputs {
+    /// These files and folders; what is not there is not an input.
+    pub fn new<P: AsRef<Path>>(paths: impl IntoIterator<Item = P>) -> Self {
+        Self(paths.into_iter().filter_map(|path| identity(path.as_ref())).collect())
+    }
+
+    /// Refuses a place where writing would lose something: an input, or what is not a regular file, through links too.
+    ///
+    /// # Errors
+    /// [`OutputError::Input`], [`OutputError::NotRegular`].
+    pub fn check(&self, path: &Path) -> Result<(), OutputError> {
+        let Ok(there) = fs::symlink_metadata(path) else { return Ok(()) };
+        let found = if there.is_symlink() {
+            fs::metadata(path).map_or(Some("a link to nothing"), |target| irregular(&target))
+        } else {
+            irregular(&there)
+        };
+        if let Some(found) = found {
+            return Err(OutputError::NotRegular { path: path.to_path_buf(), found });
+        }
+        let whole = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        let read = whole.ancestors().filter_map(identity).any(|place| self.0.contains(&place));
+        if read { Err(OutputError::Input { path: path.to_path_buf() }) } else { Ok(()) }
+    }
+}
+
+/// One output file, which appears complete or not at all.
+#[derive(Debug)]
+pub struct OutputFile {
+    folder: OutputFolder,
+    name: String,
+}
+
+impl OutputFile {
+    /// Proves that this file can be written, before any work is begun.
+    ///
+    /// # Errors
+    /// [`OutputError`]: a path that names no file, a folder that cannot be written, and a place that
+    /// [`Inputs::check`] refuses.
+    pub fn prepare(path: &Path, inputs: Inputs) -> Result<Self, OutputError> {
+        let name = path.file_name().and_then(|name| name.to_str()).map(str::to_owned);
+        let name = name.ok_or_else(|| OutputError::NoFile { path: path.to_path_buf() })?;
+        inputs.check(path)?;
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        Ok(Self { folder: OutputFolder::prepare(folder)?.sparing(inputs), name })
+    }
+
+    /// Writes the whole file and returns its path, in a list as reports have it.
+    ///
+    /// # Errors
+    /// [`OutputError`] where it cannot be written.
+    pub fn write(mut self, bytes: &[u8]) -> Result<Vec<PathBuf>, OutputError> {
+        self.folder.write(&self.name, bytes)?;
+        self.folder.commit()
+    }
+}
 
 /// Files being written; nothing is visible under its own name before [`OutputFolder::commit`].
 #[derive(Debug)]
@@ -49,6 +152,8 @@ pub struct OutputFolder {
     files: Vec<(PathBuf, PathBuf)>,
     /// Their names; a name may be staged again.
     names: BTreeSet<String>,
+    /// What must not be overwritten.
+    inputs: Inputs,
 }
 
 impl OutputFolder {
@@ -63,10 +168,17 @@ impl OutputFolder {
             made: missing.map(Path::to_path_buf),
             files: Vec::new(),
             names: BTreeSet::new(),
+            inputs: Inputs::default(),
         };
         this.prove().map_err(|reason| OutputError::Folder { path: folder.to_path_buf(), reason })?;
         this.sweep();
         Ok(this)
+    }
+
+    /// The same, which refuses to overwrite these inputs.
+    pub fn sparing(mut self, inputs: Inputs) -> Self {
+        self.inputs = inputs;
+        self
     }
 
     /// The folder.
@@ -78,12 +190,13 @@ impl OutputFolder {
     /// writers go by it.
     ///
     /// # Errors
-    /// [`OutputError::Name`] for anything but a plain file name.
+    /// [`OutputError::Name`] for anything but a plain file name; a name that [`Inputs::check`] refuses.
     pub fn stage(&mut self, name: &str) -> Result<PathBuf, OutputError> {
         let plain = Path::new(name).file_name().is_some_and(|n| n == name);
         if !plain || name.starts_with(PART) {
             return Err(OutputError::Name { name: name.to_owned() });
         }
+        self.inputs.check(&self.folder.join(name))?;
         let part = self.part(name);
         if self.names.insert(name.to_owned()) {
             self.files.push((part.clone(), self.folder.join(name)));
@@ -114,10 +227,8 @@ impl OutputFolder {
         // All are looked for before the first is renamed: a promise not kept must not leave half a result.
         for (part, last) in &self.files {
             fs::metadata(part).map_err(|reason| OutputError::File { path: last.clone(), reason })?;
-            // Renaming onto a folder fails; it is found here, while nothing has been renamed.
-            if last.is_dir() {
-                return Err(OutputError::File { path: last.clone(), reason: io::ErrorKind::IsADirectory.into() });
-            }
+            // Looked at again while nothing has been renamed: it may have come up since.
+            self.inputs.check(last)?;
         }
         for (part, last) in &self.files {
             fs::rename(part, last).map_err(|reason| OutputError::File { path: last.clone(), reason })?;
@@ -232,6 +343,55 @@ mod tests {
         for name in ["../up.txt", "", "a/b", ".."] {
             assert!(matches!(out.stage(name), Err(OutputError::Name { .. })), "{name}");
         }
+    }
+
+    #[test]
+    fn an_input_is_not_overwritten_by_any_name() {
+        let folder = scratch("input");
+        fs::create_dir_all(folder.join("frames")).unwrap();
+        let (input, frame) = (folder.join("in.mcap"), folder.join("frames/0.png"));
+        fs::write(&input, b"kept").unwrap();
+        fs::write(&frame, b"kept").unwrap();
+        let inputs = || Inputs::new([input.clone(), folder.join("frames"), folder.join("absent")]);
+        let refused = |path: PathBuf| match OutputFile::prepare(&path, inputs()) {
+            Err(OutputError::Input { .. }) => {}
+            other => panic!("{}: {other:?}", path.display()),
+        };
+        refused(input.clone());
+        refused(folder.join("frames/../in.mcap"));
+        refused(frame);
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink(&input, folder.join("link.mcap")).unwrap();
+            fs::hard_link(&input, folder.join("second.mcap")).unwrap();
+            refused(folder.join("link.mcap"));
+            refused(folder.join("second.mcap"));
+        }
+        OutputFile::prepare(&folder.join("frames/new.mcap"), inputs()).unwrap().write(b"new").unwrap();
+        OutputFile::prepare(&folder.join("other.mcap"), inputs()).unwrap().write(b"new").unwrap();
+        assert_eq!(fs::read(&input).unwrap(), b"kept");
+        fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn what_is_no_regular_file_is_not_overwritten() {
+        let folder = scratch("irregular");
+        fs::create_dir_all(folder.join("a.png")).unwrap();
+        let mut out = OutputFolder::prepare(&folder).unwrap();
+        assert!(matches!(out.write("a.png", b"x"), Err(OutputError::NotRegular { found: "a folder", .. })));
+        #[cfg(unix)]
+        {
+            let socket = std::os::unix::net::UnixListener::bind(folder.join("b.png")).unwrap();
+            assert!(matches!(out.write("b.png", b"x"), Err(OutputError::NotRegular { found: "a socket", .. })));
+            drop(socket);
+            for (name, target) in [("c.png", "/dev/null"), ("d.png", "nothing")] {
+                std::os::unix::fs::symlink(target, folder.join(name)).unwrap();
+                assert!(matches!(out.write(name, b"x"), Err(OutputError::NotRegular { .. })), "{target}");
+            }
+            assert!(Inputs::default().check(Path::new("/dev/null")).is_err());
+        }
+        assert!(matches!(OutputFile::prepare(Path::new(".."), Inputs::default()), Err(OutputError::NoFile { .. })));
+        fs::remove_dir_all(&folder).unwrap();
     }
 
     #[test]

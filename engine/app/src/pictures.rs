@@ -4,7 +4,6 @@ use std::f32::consts::{FRAC_PI_2, PI};
 use std::fs::File;
 use std::io::BufWriter;
 
-use indicatif::ProgressBar;
 use toile_assets::limits::STEP_HZ;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::lines::Line;
@@ -18,6 +17,7 @@ use crate::artist::Artist;
 use crate::drawing::Drawing;
 use crate::exit::AppError;
 use crate::output::OutputFolder;
+use crate::terminal::Progress;
 
 /// A still: tall enough to see a hem's folds, small enough that three take a few seconds.
 const STILL: Size = Size::new(480, 800);
@@ -64,12 +64,12 @@ pub struct Pictures {
     tempo: Tempo,
     kept: Vec<(Image, u64)>,
     drawing: Drawing,
-    bar: ProgressBar,
+    bar: Progress,
 }
 
 impl Pictures {
     /// Begins the animation of a session of `steps` steps.
-    pub fn begin(out: &mut OutputFolder, frame: &Frame, steps: u64, bar: ProgressBar) -> Result<Self, AppError> {
+    pub fn begin(out: &mut OutputFolder, frame: &Frame, steps: u64, bar: Progress) -> Result<Self, AppError> {
         let tempo = Tempo::new(steps);
         let path = out.stage("session.png")?;
         let file = BufWriter::new(File::create(&path).map_err(AppError::input)?);

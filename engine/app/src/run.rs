@@ -41,8 +41,9 @@ pub fn run(args: &RunArgs) -> Result<(), AppError> {
             let cure = "give a larger --every or fewer --frames";
             return Err(AppError::Usage(format!("--dump would write {files} files, more than {MAX_FILES}; {cure}")));
         }
-        let folder =
-            OutputFolder::prepare(folder).map_err(|e| AppError::Input(e.to_string().replace("--out", "--dump")))?;
+        let folder = OutputFolder::prepare(folder)
+            .map_err(|e| AppError::Input(e.to_string().replace("--out", "--dump")))?
+            .sparing(args.inputs());
         dump = Some(Dump::new(folder, args.format, args.every));
     }
     let mut runner = Runner::counting(scene, HeapProbe::new(counted)).map_err(AppError::input)?;

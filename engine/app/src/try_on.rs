@@ -30,7 +30,7 @@ use crate::pictures::{Ending, Pictures};
 use crate::report::{self, Document, TryOn};
 use crate::shopper;
 use crate::summary;
-use crate::terminal::{self, Paint, Words};
+use crate::terminal::{self, Paint, Progress, Words};
 use crate::tracking;
 use crate::video::Video;
 
@@ -56,13 +56,18 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     }
     let mut artist = Artist::open(args.renderer)?;
     let words = Words::new(args.quiet || args.json);
-    let mut out = OutputFolder::prepare(&args.out)?;
+    let inputs = args.inputs();
+    // Without ffmpeg a video becomes an animated PNG beside it.
+    let films = args.video.iter().flat_map(|film| [film.clone(), film.with_extension("png")]);
+    films.into_iter().try_for_each(|film| inputs.check(&film))?;
+    let mut out = OutputFolder::prepare(&args.out)?.sparing(inputs);
     let wanted = wanted(args)?;
     let mut session = shopper::open(args.session.as_deref(), None)?;
     let (sex, population) = population(args, &wanted)?;
     let mut measured = shopper::measure(&session, population)?;
     let mut fitted = None;
     if session.joints.is_empty() {
+        words.say("there are no joints: fitting the body to the depth");
         let (found, joints) = tracking::joints(&session, population)?;
         (session.joints, measured) = (joints, tracking::preferred(measured, &found));
         session.notes.push(FROM_DEPTH.to_owned());
@@ -230,11 +235,13 @@ fn play(
     }
     let film = |path: &PathBuf| Video::begin(path, frame, steps, words.bar(Video::work(steps), "filming"));
     let mut video = args.video.as_ref().map(film).transpose()?;
+    let playing = (pictures.is_none() && video.is_none()).then(|| words.bar(steps, "playing"));
     let mut lines = Lines::new(if args.lines.is_empty() { 0 } else { CAPACITY });
     frame.dress(first);
     for tick in 0..steps {
         let joints = sample(track, first.time_ns + ticks_to_ns(tick)).unwrap_or(*first);
         frame.step(&joints);
+        playing.iter().for_each(|bar| bar.inc(1));
         if let Some(pictures) = pictures.as_mut().filter(|p| p.wants(tick)) {
             draw_lines(&mut lines, &args.lines, frame);
             pictures.add(artist, reader.latest(), lines.as_slice())?;
@@ -244,6 +251,7 @@ fn play(
             video.add(artist, reader.latest(), lines.as_slice())?;
         }
     }
+    playing.iter().for_each(Progress::finish_and_clear);
     let drew = pictures.is_some() || video.is_some();
     if let Some(pictures) = pictures {
         let tightness: Vec<Vec<f32>> = frame

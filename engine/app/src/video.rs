@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use indicatif::ProgressBar;
 use toile_assets::limits::STEP_HZ;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::lines::Line;
@@ -13,6 +12,7 @@ use toile_view::trace::Quality;
 use crate::artist::Artist;
 use crate::drawing::Drawing;
 use crate::exit::AppError;
+use crate::terminal::Progress;
 
 /// Width and height of a frame: a display that stands upright, at half its resolution.
 const SIZE: Size = Size::new(540, 960);
@@ -27,7 +27,7 @@ const STRIDE: u64 = STEP_HZ as u64 / FPS as u64;
 pub struct Video {
     film: Film,
     drawing: Drawing,
-    bar: ProgressBar,
+    bar: Progress,
 }
 
 impl Video {
@@ -35,7 +35,7 @@ impl Video {
     ///
     /// # Errors
     /// Bad input: a name or a place that no film can have.
-    pub fn begin(path: &Path, frame: &Frame, steps: u64, bar: ProgressBar) -> Result<Self, AppError> {
+    pub fn begin(path: &Path, frame: &Frame, steps: u64, bar: Progress) -> Result<Self, AppError> {
         let film = Film::begin(path, SIZE, Self::work(steps) as u32, FPS).map_err(AppError::input)?;
         Ok(Self { film, drawing: Drawing::new(frame), bar })
     }

@@ -1,6 +1,6 @@
 //! The arguments of `toile run`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
 use clap::value_parser;
@@ -9,6 +9,7 @@ use toile_assets::scene_file::examples;
 use super::values::one_of;
 use crate::dump::Format;
 use crate::exit::AppError;
+use crate::output::Inputs;
 
 /// Most steps that `run` takes: ten days at 120 Hz.
 const MAX_RUN_STEPS: u64 = 100_000_000;
@@ -79,5 +80,27 @@ impl RunArgs {
     pub fn scene(&self) -> Result<RunScene, AppError> {
         let scene = RunScene::of(self.scene.as_ref(), self.example.as_ref());
         scene.ok_or_else(|| AppError::Usage("no scene is given; see `toile run --help`".to_owned()))
+    }
+
+    /// The scene's file and all files that it names, which must not be overwritten.
+    pub fn inputs(&self) -> Inputs {
+        let Some(scene) = &self.scene else { return Inputs::default() };
+        let folder = scene.parent().unwrap_or(Path::new(""));
+        let text = std::fs::read_to_string(scene).unwrap_or_default();
+        let mut files = vec![scene.clone()];
+        if let Ok(table) = text.parse::<toml::Table>() {
+            strings(&toml::Value::Table(table), &mut |text| files.push(folder.join(text)));
+        }
+        Inputs::new(files)
+    }
+}
+
+/// Visits every string of a TOML value.
+fn strings(value: &toml::Value, visit: &mut impl FnMut(&str)) {
+    match value {
+        toml::Value::String(text) => visit(text),
+        toml::Value::Array(values) => values.iter().for_each(|value| strings(value, visit)),
+        toml::Value::Table(table) => table.values().for_each(|value| strings(value, visit)),
+        _ => {}
     }
 }

@@ -9,6 +9,7 @@ use toile_engine::lines::Kind;
 
 use super::values::one_of;
 use crate::artist::Renderer;
+use crate::output::Inputs;
 
 /// Measure a shopper, dress them, and write pictures and a report.
 ///
@@ -69,6 +70,15 @@ pub struct TryOnArgs {
     /// Print nothing on stderr but errors
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+impl TryOnArgs {
+    /// Files that are read, and so must not be overwritten.
+    pub fn inputs(&self) -> Inputs {
+        let body = if let Some(Wearer::File(file)) = &self.body { Some(file.as_path()) } else { None };
+        let garments = self.garments.iter().map(Path::new);
+        Inputs::new(self.session.as_deref().into_iter().chain(body).chain(garments))
+    }
 }
 
 /// Whose body is shown.

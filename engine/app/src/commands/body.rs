@@ -22,7 +22,7 @@ use toile_view::trace::{Quality, Stage};
 
 use crate::cli::values::{Printing, count, one_of};
 use crate::exit::AppError;
-use crate::output::OutputFolder;
+use crate::output::{Inputs, OutputFolder};
 use crate::pictures::write_png;
 use crate::report::{BodyReport, Document, Followed, Influences, JointFound, Named, SurfaceReport};
 use crate::summary;
@@ -116,7 +116,7 @@ const VIEWS: [f32; 3] = [0.0, FRAC_PI_2, PI];
 /// A file that does not become a body, an output folder that cannot be written, or a closed stdout.
 pub fn run(args: &BodyArgs) -> Result<(), AppError> {
     let words = args.printing.words();
-    let mut out = OutputFolder::prepare(&args.out)?;
+    let mut out = OutputFolder::prepare(&args.out)?.sparing(Inputs::new(&args.file));
     let (imported, rows) = import(args)?;
     if args.pictures {
         let bar = words.bar(2 * VIEWS.len() as u64, "drawing");

@@ -16,7 +16,7 @@ use toile_view::trace::{Quality, Stage};
 
 use crate::commands::body::{self, BodyArgs};
 use crate::exit::AppError;
-use crate::output::OutputFolder;
+use crate::output::{Inputs, OutputFolder};
 use crate::pictures::write_png;
 use crate::report::{Document, Followed};
 use crate::terminal::{self, Paint, Tone, Words};
@@ -77,7 +77,8 @@ struct Told {
 /// the table.
 pub fn run(args: &BodyArgs) -> Result<(), AppError> {
     let words = args.printing.words();
-    let mut out = args.pictures.then(|| OutputFolder::prepare(&args.out)).transpose()?;
+    let out = args.pictures.then(|| OutputFolder::prepare(&args.out)).transpose()?;
+    let mut out = out.map(|out| out.sparing(Inputs::new(&args.file)));
     let (bodies, shown) = match &args.file {
         Some(_) => {
             let body = body::import(args)?.0.body;

@@ -1,6 +1,6 @@
 //! `toile convert`: any supported recording as a session, without pictures of anybody unless they are asked for.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use toile_assets::sizes::Population;
 use toile_sensors::segment::Segmenter;
@@ -9,7 +9,7 @@ use toile_sensors::source::{self, OpenOptions};
 
 use crate::cli::values::{Printing, one_of};
 use crate::exit::AppError;
-use crate::output::OutputFolder;
+use crate::output::{Inputs, OutputFile};
 use crate::report::{ConvertReport, Document};
 use crate::shopper::session_report;
 use crate::terminal;
@@ -78,7 +78,8 @@ impl KeptDepth {
 /// # Errors
 /// A recording that cannot be read or of which nothing would be left, a file that cannot be written, a closed stdout.
 pub fn run(args: &ConvertArgs) -> Result<(), AppError> {
-    let (folder, name) = place(&args.out)?;
+    let inputs = Inputs::new(args.camera.iter().chain([&args.input]));
+    let out = OutputFile::prepare(&args.out, inputs)?;
     let mut session =
         source::open(&args.input, &OpenOptions { camera: args.camera.clone() }).map_err(AppError::input)?;
     let dropped = session.depth.len();
@@ -95,14 +96,12 @@ pub fn run(args: &ConvertArgs) -> Result<(), AppError> {
         )));
     }
     let bytes = session.to_bytes().map_err(AppError::input)?;
-    let mut out = OutputFolder::prepare(&folder)?;
-    out.write(&name, &bytes)?;
     let report = ConvertReport {
         session: session_report(&session, &[]),
         joint_frames: session.joints.len() as u64,
         depth_frames: session.depth.len() as u64,
         depth_frames_left_out: (dropped - session.depth.len()) as u64,
-        files: out.commit()?,
+        files: out.write(&bytes)?,
     };
     if args.printing.json {
         return terminal::print_json(&Document::new("convert", report));
@@ -124,15 +123,6 @@ fn keep(session: &mut Session, depth: KeptDepth) {
             session.notes.push("only the shopper's depth was kept".to_owned());
         }
     }
-}
-
-fn place(out: &Path) -> Result<(PathBuf, String), AppError> {
-    let name = out.file_name().and_then(|n| n.to_str());
-    let name = name.ok_or_else(|| {
-        AppError::Usage(format!("`--out {}` names no file; give one such as shopper.mcap", out.display()))
-    })?;
-    let folder = out.parent().filter(|p| !p.as_os_str().is_empty());
-    Ok((folder.map_or_else(|| ".".into(), Path::to_path_buf), name.to_owned()))
 }
 
 fn told(report: &ConvertReport, bytes: usize) -> String {

@@ -16,7 +16,7 @@ use crate::crash;
 use crate::exit::AppError;
 use crate::machine::Machine;
 use crate::outfit::Recipe;
-use crate::output::OutputFolder;
+use crate::output::{Inputs, OutputFolder};
 use crate::report::Document;
 use crate::shopper;
 use crate::terminal::{self, Paint, Tone};
@@ -67,7 +67,7 @@ pub struct LatencyArgs {
     #[arg(long)]
     pub gate: bool,
     /// Folder for the page; it is made if missing
-    #[arg(long, value_name = "DIR", default_value = "latency")]
+    #[arg(long, value_name = "DIR", default_value = "out/latency")]
     pub out: PathBuf,
     #[command(flatten)]
     printing: Printing,
@@ -104,7 +104,10 @@ pub struct LatencyReport {
 /// that was missed.
 pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     let words = args.printing.words();
-    let mut out = OutputFolder::prepare(&args.out)?;
+    let inputs = Inputs::new(&args.session);
+    let crash_file = args.out.join("crash.tape");
+    args.record.iter().chain([&crash_file]).try_for_each(|file| inputs.check(file))?;
+    let mut out = OutputFolder::prepare(&args.out)?.sparing(inputs);
     let session = shopper::open(args.session.as_deref(), None)?;
     let track = shopper::believable(&session);
     let from = shopper::stands_from(&track);
@@ -118,7 +121,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     let options = args.options();
     words.say(&format!("running for {} s, with {} threads of load", options.seconds, options.load));
     let mut bytes = recording::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
-    let (black_box, recording) = crash::record(bytes.clone(), args.out.join("crash.tape"));
+    let (black_box, recording) = crash::record(bytes.clone(), crash_file);
     let dressed = Entry::Dressed(*first);
     black_box.keep(&dressed);
     recording::write(&dressed, &mut bytes);

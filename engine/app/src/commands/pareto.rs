@@ -26,7 +26,7 @@ pub struct ParetoArgs {
     #[arg(value_name = "SCENE", value_parser = PossibleValuesParser::new(SCENES))]
     pub scene: Option<String>,
     /// Folder for the files; it is made if missing
-    #[arg(long, value_name = "DIR", default_value = "pareto")]
+    #[arg(long, value_name = "DIR", default_value = "out/pareto")]
     pub out: PathBuf,
     /// Few settings of small meshes: a look at whether it works
     #[arg(long)]

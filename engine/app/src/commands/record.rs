@@ -17,7 +17,7 @@ use toile_sensors::source::synthetic::{JointNoise, KinectNoise, SyntheticCamera}
 
 use crate::cli::values::Printing;
 use crate::exit::AppError;
-use crate::output::OutputFolder;
+use crate::output::{Inputs, OutputFile};
 use crate::report::{Document, RecordReport};
 use crate::shopper::session_report;
 use crate::terminal;
@@ -65,32 +65,18 @@ const CAMERA: Intrinsics = Intrinsics { width: 480, height: 640, fx: 575.8, fy: 
 /// An output file that cannot be written, or a closed stdout.
 pub fn run(args: &RecordArgs) -> Result<(), AppError> {
     let words = args.printing.words();
-    let (folder, name) = place(args)?;
-    let mut out = OutputFolder::prepare(&folder)?;
+    let out = OutputFile::prepare(&args.out, Inputs::default())?;
     let frames = u64::from(args.seconds) * SENSOR_HZ;
     let bar = words.bar(frames, "recording");
     let session = perform(args.seed, frames, || bar.inc(1))?;
     bar.finish_and_clear();
-    out.write(&name, &session.to_bytes().map_err(AppError::internal)?)?;
-    let files = out.commit()?;
+    let files = out.write(&session.to_bytes().map_err(AppError::internal)?)?;
     let report = RecordReport { session: session_report(&session, &[]), seed: args.seed, files };
     if args.printing.json {
         return terminal::print_json(&Document::new("record", report));
     }
     let (path, bytes) = (&report.files[0], report.files[0].metadata().map_or(0, |m| m.len()));
     terminal::print(&format!("{}: {} frames, {} KiB\n", path.display(), frames, bytes / 1024))
-}
-
-fn place(args: &RecordArgs) -> Result<(PathBuf, String), AppError> {
-    let name = args.out.file_name().and_then(|n| n.to_str());
-    let Some(name) = name else {
-        return Err(AppError::Usage(format!(
-            "`--out {}` names no file; give one such as shopper.mcap",
-            args.out.display()
-        )));
-    };
-    let folder = args.out.parent().filter(|p| !p.as_os_str().is_empty());
-    Ok((folder.map_or_else(|| ".".into(), std::path::Path::to_path_buf), name.to_owned()))
 }
 
 /// Lets the shopper of the scene perform before the synthetic camera. The same seed gives the same bits.

@@ -19,7 +19,7 @@ use toile_perf::soak::{self, Check, Company, LEAST_APART_S, Options, Plan, Soak,
 use crate::cli::values::{CrashArg, Printing, WorkersArg, one_of};
 use crate::exit::AppError;
 use crate::machine::Machine;
-use crate::output::OutputFolder;
+use crate::output::{Inputs, OutputFolder};
 use crate::report::Document;
 use crate::terminal::{self, Paint, Tone, Words};
 use crate::{crash, heap};
@@ -77,7 +77,7 @@ pub struct SoakArgs {
     #[command(flatten)]
     crash: CrashArg,
     /// Folder for the record; it is made if missing
-    #[arg(long, value_name = "DIR", default_value = "soak")]
+    #[arg(long, value_name = "DIR", default_value = "out/soak")]
     pub out: PathBuf,
     #[command(flatten)]
     printing: Printing,
@@ -144,6 +144,8 @@ struct Body {
 pub fn run(args: &SoakArgs) -> Result<(), AppError> {
     let words = args.printing.words();
     let options = args.options()?;
+    let crash_file = args.out.join("crash.tape");
+    args.record.iter().chain([&crash_file]).try_for_each(|file| Inputs::default().check(file))?;
     let mut out = OutputFolder::prepare(&args.out)?;
     let recipe = SoakRecipe { version: env!("CARGO_PKG_VERSION").to_owned(), soak: options.plan };
     let header = recording::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
@@ -154,7 +156,6 @@ pub fn run(args: &SoakArgs) -> Result<(), AppError> {
         None => None,
     };
     let file = kept.as_deref().map(create).transpose()?;
-    let crash_file = args.out.join("crash.tape");
     let tools = Tools {
         heap: HeapProbe::new(heap::counted),
         count: heap::probe(),
