@@ -1,4 +1,4 @@
-//! Fits the section models of `toile_track::anthropometry::Chart` on random subjects and prints the constants:
+//! Fits the section models of `toile_track::anthropometry::SilhouetteModel` on random subjects and prints the constants:
 //! `cargo run --release -p toile-perf --example calibrate -- SUBJECTS FRAMES SEED`.
 
 use std::process::ExitCode;
@@ -10,29 +10,29 @@ use toile_assets::sizes::Population;
 use toile_perf::agreement::Mannequin;
 use toile_track::anthropometry::LEVELS;
 use toile_track::estimate::temporal_mean;
-use toile_track::silhouette::{Reading, read};
-use toile_track::{cloud, section::Section};
+use toile_track::silhouette::{SilhouetteReading, read};
+use toile_track::{point_cloud, section::TorsoSection};
 
 /// What one subject shows: stature, outline of the shoulders, and three sections; and what is true.
-struct Row {
+struct SubjectRow {
     sex: Sex,
     seen: [f32; 2],
-    sections: [Option<Section>; 3],
+    sections: [Option<TorsoSection>; 3],
     truth: [f32; 5],
 }
 
-fn row(sex: Sex, frames: usize, rng: &mut SplitMix64) -> Option<Row> {
+fn row(sex: Sex, frames: usize, rng: &mut SplitMix64) -> Option<SubjectRow> {
     let subject = Mannequin::new(sex, rng).ok()?;
-    let readings: Vec<Reading> = subject
+    let readings: Vec<SilhouetteReading> = subject
         .seen(frames, rng)
         .iter()
-        .filter_map(|f| read(cloud::people(f).people.first()?, &LEVELS, Population::Mixed))
+        .filter_map(|f| read(point_cloud::find_people(f).people.first()?, &LEVELS, Population::Mixed))
         .collect();
-    let mean = |parameter: &dyn Fn(&Reading) -> Option<f32>| {
+    let mean = |parameter: &dyn Fn(&SilhouetteReading) -> Option<f32>| {
         temporal_mean(&readings.iter().filter_map(parameter).collect::<Vec<_>>()).map(|e| e.value)
     };
-    let section = |which: fn(&Reading) -> Option<Section>| {
-        Some(Section {
+    let section = |which: fn(&SilhouetteReading) -> Option<TorsoSection>| {
+        Some(TorsoSection {
             breadth: mean(&|r| Some(which(r)?.breadth))?,
             front: mean(&|r| Some(which(r)?.front))?,
             arc: mean(&|r| Some(which(r)?.arc))?,
@@ -40,7 +40,7 @@ fn row(sex: Sex, frames: usize, rng: &mut SplitMix64) -> Option<Row> {
     };
     let sections = [section(|r| r.chest), section(|r| r.waist), section(|r| r.hip)];
     let seen = [mean(&|r| r.stature)?, mean(&|r| r.shoulders)?];
-    Some(Row { sex, seen, sections, truth: subject.truth() })
+    Some(SubjectRow { sex, seen, sections, truth: subject.truth() })
 }
 
 /// Least squares of a length on up to three others and a constant; prints factors and the residual's deviation.
@@ -57,14 +57,14 @@ fn fit(name: &str, samples: &[(DVec4, f64)]) {
     println!("  {name:9} {factors:.4} residual {residual:.4} of {}", samples.len());
 }
 
-fn report(name: &str, rows: &[&Row]) {
+fn report(name: &str, rows: &[&SubjectRow]) {
     println!("{name}");
     let one = |x: f32| DVec4::new(1.0, f64::from(x), 0.0, 0.0);
-    let offset = |r: &&Row| (DVec4::X, f64::from(r.truth[0] - r.seen[0]));
+    let offset = |r: &&SubjectRow| (DVec4::X, f64::from(r.truth[0] - r.seen[0]));
     fit("stature", &rows.iter().map(offset).collect::<Vec<_>>());
     fit("shoulder", &rows.iter().map(|r| (one(r.seen[1]), f64::from(r.truth[1]))).collect::<Vec<_>>());
     for (k, name) in ["chest", "waist", "hip"].into_iter().enumerate() {
-        let sample = |r: &&Row| {
+        let sample = |r: &&SubjectRow| {
             let s = r.sections[k]?;
             Some((DVec4::new(1.0, s.breadth.into(), s.arc.into(), s.front.into()), f64::from(r.truth[2 + k])))
         };
@@ -83,7 +83,7 @@ fn main() -> ExitCode {
         eprintln!("give three numbers: subjects of each sex, frames, seed");
         return ExitCode::from(2);
     };
-    let all: Vec<Row> = (0..subjects)
+    let all: Vec<SubjectRow> = (0..subjects)
         .flat_map(|i| [(i, Sex::Female), (i, Sex::Male)])
         .filter_map(|(i, sex)| {
             row(sex, frames as usize, &mut SplitMix64::new(seed + 2 * i + u64::from(sex == Sex::Male)))

@@ -4,7 +4,7 @@
 use std::process::ExitCode;
 
 use toile_assets::sizes::{GarmentKind, SizeTable};
-use toile_perf::reliability::{BINS, Bin, Girths, ansur, reliability};
+use toile_perf::reliability::{BINS, ReliabilityBin, Girths, ansur, reliability};
 use toile_track::recommend::{EaseRange, MadeSize, Offer, Zone, ZoneGirth};
 
 /// Errors of the girths (m).
@@ -61,7 +61,7 @@ fn made(table: &SizeTable, code: &str) -> Result<MadeSize, toile_assets::sizes::
 }
 
 /// Stated and right in percent, the standard error, and how many people.
-fn cell(bin: &Bin) -> String {
+fn cell(bin: &ReliabilityBin) -> String {
     let [stated, right, error] = bin.rates().map(|r| 100.0 * r);
     if bin.people == 0 { "-".to_owned() } else { format!("{stated:.0} → {right:.0} ± {error:.0} ({})", bin.people) }
 }

@@ -17,7 +17,7 @@ pub const BINS: [f32; 6] = [0.0, 0.4, 0.5, 0.6, 0.7, 0.85];
 
 /// What was stated and what was right, of the people in one bin.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Bin {
+pub struct ReliabilityBin {
     /// People.
     pub people: u32,
     /// Sum of the stated probabilities.
@@ -26,7 +26,7 @@ pub struct Bin {
     pub right: u32,
 }
 
-impl Bin {
+impl ReliabilityBin {
     fn add(&mut self, stated: f32, right: bool) {
         self.people += 1;
         self.stated += stated;
@@ -47,13 +47,13 @@ pub struct Reliability {
     /// Standard deviation of the error of every girth (m).
     pub sigma: f32,
     /// By stated probability.
-    pub bins: [Bin; BINS.len()],
+    pub bins: [ReliabilityBin; BINS.len()],
     /// All people.
-    pub all: Bin,
+    pub all: ReliabilityBin,
     /// Those who were told to take a girth by tape: what was promised of it and what came of it.
-    pub taped: Bin,
+    pub taped: ReliabilityBin,
     /// The same people before.
-    pub untaped: Bin,
+    pub untaped: ReliabilityBin,
 }
 
 /// Reads the girths of a table of ANSUR II: `;` between columns, millimetres. `None` if it is not one.
@@ -84,7 +84,7 @@ fn measured(girths: Girths, sigmas: Girths) -> Measurements {
 /// Those of [`recommend`].
 pub fn reliability(people: &[Girths], offer: &Offer, sigma: f32, seed: u64) -> Result<Reliability, RecommendError> {
     let mut rng = SplitMix64::new(seed);
-    let none = Bin::default();
+    let none = ReliabilityBin::default();
     let mut found = Reliability { sigma, bins: [none; BINS.len()], all: none, taped: none, untaped: none };
     for truth in people {
         let seen = truth.map(|g| g + sigma * rng.gaussian());

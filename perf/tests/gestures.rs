@@ -8,7 +8,7 @@ use toile_perf::gestures::{Act, Conditions, Count, count, events, held_up, seque
 use toile_sensors::filter::JointFilter;
 use toile_sensors::frame::{DepthFrame, Joints, TrackedJoint};
 use toile_sensors::source::{OpenOptions, open};
-use toile_track::gesture::{Event, Gesture, Gestures, HandEye, HandSight, Side};
+use toile_track::gesture::{GestureEvent, Gesture, Gestures, HandSegmenter, HandRegion, Side};
 
 /// The folder of recordings, or `None` where it is not set up; with CI=true that is a failure.
 fn data() -> Option<PathBuf> {
@@ -21,7 +21,7 @@ fn data() -> Option<PathBuf> {
 }
 
 /// The events of a recording, filtered as in the mirror.
-fn recorded(folder: &std::path::Path, file: &str) -> (usize, Vec<Event>) {
+fn recorded(folder: &std::path::Path, file: &str) -> (usize, Vec<GestureEvent>) {
     let session = open(&folder.join(file), &OpenOptions::default()).unwrap_or_else(|e| panic!("{e}"));
     let mut filter = JointFilter::default();
     let frames: Vec<Joints> = session.joints.iter().map(|f| filter.push(f)).collect();
@@ -93,7 +93,7 @@ fn marked(frame: &DepthFrame, [u, v]: [f32; 2]) -> Vec3 {
 #[test]
 fn hands_in_real_depth_frames_are_told_open_from_closed() {
     let Some(root) = data() else { return };
-    let mut eye = HandEye::new();
+    let mut eye = HandSegmenter::new();
     for (number, palm, elbow, is_open) in MARKED {
         let file = root.join(format!("depth/skeltrack/depth-data-{number}.u16le"));
         let session = open(&file, &OpenOptions::default()).unwrap_or_else(|e| panic!("{e}"));
@@ -102,7 +102,7 @@ fn hands_in_real_depth_frames_are_told_open_from_closed() {
         // A man of average size.
         let length = 0.193;
         let along = (palm - elbow).normalize();
-        let sight = HandSight { palm, wrist: Some(palm - along * 0.3 * length), along, length };
+        let sight = HandRegion { palm, wrist: Some(palm - along * 0.3 * length), along, length };
         let shape = eye.shape(frame, &sight).unwrap();
         assert_eq!(shape.openness() > 0.5, is_open, "{number} at {palm}: {shape:?}");
     }
@@ -125,7 +125,7 @@ fn simulated_gestures_are_recognised_and_nothing_else() {
 }
 
 /// The frames of a swipe that is recognised.
-fn swipe() -> (Vec<Joints>, Vec<Event>) {
+fn swipe() -> (Vec<Joints>, Vec<GestureEvent>) {
     let frames = sequence(Act::Swipe(Gesture::SwipeLeft), &Conditions::default(), 2);
     let found = events(&frames);
     assert_eq!(found.iter().map(|e| e.gesture).collect::<Vec<_>>(), [Gesture::SwipeLeft]);
@@ -166,7 +166,7 @@ fn the_mirror_image_swipes_the_other_way_with_the_other_hand() {
 fn the_same_frames_give_the_same_events_and_a_reset_forgets_all() {
     let (frames, found) = swipe();
     let mut gestures = Gestures::new();
-    let mut run = || -> Vec<Event> {
+    let mut run = || -> Vec<GestureEvent> {
         gestures.reset();
         frames.iter().flat_map(|f| gestures.push(f, None)).flatten().collect()
     };
@@ -197,14 +197,14 @@ fn bad_frames_are_passed_over() {
 #[test]
 fn a_hand_outside_of_the_picture_or_without_depth_is_not_seen() {
     let (frame, sight) = held_up(2.0, 1);
-    let mut eye = HandEye::new();
+    let mut eye = HandSegmenter::new();
     let shape = eye.shape(&frame, &sight).unwrap();
     assert!(shape.openness() > 0.5, "{shape:?}");
-    let away = HandSight { palm: sight.palm + Vec3::X * 3.0, wrist: None, ..sight };
+    let away = HandRegion { palm: sight.palm + Vec3::X * 3.0, wrist: None, ..sight };
     assert_eq!(eye.shape(&frame, &away), None);
-    let behind = HandSight { palm: sight.palm + Vec3::Z * 9.0, wrist: None, ..sight };
+    let behind = HandRegion { palm: sight.palm + Vec3::Z * 9.0, wrist: None, ..sight };
     assert_eq!(eye.shape(&frame, &behind), None);
-    let nowhere = HandSight { palm: Vec3::splat(f32::NAN), ..sight };
+    let nowhere = HandRegion { palm: Vec3::splat(f32::NAN), ..sight };
     assert_eq!(eye.shape(&frame, &nowhere), None);
     let empty = DepthFrame { depth_mm: vec![0; frame.depth_mm.len()].into(), ..frame.clone() };
     assert_eq!(eye.shape(&empty, &sight), None);

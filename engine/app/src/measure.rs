@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use toile_assets::sizes::Population;
 use toile_perf::measuring::{Fit, overlay};
 use toile_track::estimate::Estimate;
-use toile_track::fit::Options;
-use toile_track::fit::measuring::{FittedMeasures, TAKEN};
+use toile_track::fit::FitOptions;
+use toile_track::fit::measuring::{FittedMeasures, MEASURES};
 use toile_track::measure::Measurements;
 use toile_track::measures;
 
@@ -31,7 +31,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), AppError> {
     let population = Population::Mixed;
     let measured = shopper::measure(&session, population)?;
     let alone = Alone::of(&session);
-    let options = Options { ground: alone.ground, clothed: !args.tight, ..Options::MEASURING };
+    let options = FitOptions { ground: alone.ground, clothed: !args.tight, ..FitOptions::MEASURING };
     let fitted = alone.measure(population, options);
     let mut files: Vec<PathBuf> = Vec::new();
     if let (Some(out), Some(fitted)) = (&mut out, &fitted) {
@@ -83,7 +83,7 @@ fn methods(measured: &Measurements, fitted: Option<&FittedMeasures>) -> Vec<Meth
     let sections = measured.measures.named().into_iter().filter_map(|(name, e)| Some(defined(name, e?))).collect();
     let mut all = vec![Method { method: "sections and proportions", measures: sections }];
     if let Some(fitted) = fitted {
-        let measures = TAKEN.iter().zip(&fitted.measures).map(|(t, e)| defined(t.0, *e)).collect();
+        let measures = MEASURES.iter().zip(&fitted.measures).map(|(t, e)| defined(t.0, *e)).collect();
         all.push(Method { method: "the body fit", measures });
     }
     all
@@ -94,7 +94,7 @@ fn defined(name: &'static str, estimate: Estimate) -> DefinedMeasure {
     DefinedMeasure { name, definition: measures::definition(name), value, sigma }
 }
 
-fn body(fitted: &FittedMeasures, options: Options) -> FittedBody {
+fn body(fitted: &FittedMeasures, options: FitOptions) -> FittedBody {
     let thousandths = |x: f32| (f64::from(x) * 1e3).round() / 1e3;
     FittedBody {
         woman: thousandths(fitted.woman),

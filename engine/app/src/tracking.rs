@@ -4,11 +4,11 @@ use toile_assets::body::Sex;
 use toile_assets::sizes::Population;
 use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::source::Session;
-use toile_track::cloud;
 use toile_track::fit::measuring::{self, FittedMeasures};
-use toile_track::fit::{Options, follow};
+use toile_track::fit::{FitOptions, tracker};
 use toile_track::measure::{FRAMES, Measurements};
 use toile_track::measures::Measures;
+use toile_track::point_cloud;
 
 use crate::exit::AppError;
 
@@ -26,7 +26,7 @@ impl Alone {
         let mut cut = 0;
         let mut frames = Vec::new();
         for frame in session.depth.iter().take(FRAMES) {
-            if let Some(person) = cloud::people(frame).people.first() {
+            if let Some(person) = point_cloud::find_people(frame).people.first() {
                 cut += usize::from(person.cut_below);
                 frames.push((frame.clone(), person.alone(frame)));
             }
@@ -36,7 +36,7 @@ impl Alone {
     }
 
     /// Measures them by the body fit; `None` if no body fits.
-    pub fn measure(&self, population: Population, options: Options) -> Option<FittedMeasures> {
+    pub fn measure(&self, population: Population, options: FitOptions) -> Option<FittedMeasures> {
         let only: Vec<DepthFrame> = self.frames.iter().map(|f| f.1.clone()).collect();
         measuring::measure(&only, population, options)
     }
@@ -48,7 +48,7 @@ impl Alone {
 /// [`AppError::Input`] where no body fits what is seen.
 pub fn joints(session: &Session, population: Population) -> Result<(FittedMeasures, Vec<Joints>), AppError> {
     let alone = Alone::of(session);
-    let measured = alone.measure(population, Options { ground: alone.ground, ..Options::MEASURING });
+    let measured = alone.measure(population, FitOptions { ground: alone.ground, ..FitOptions::MEASURING });
     let fitted = measured.ok_or_else(|| {
         AppError::Input(format!(
             "session {} has no joints, and no body fits its depth; record somebody who stands alone, facing the camera, \
@@ -57,7 +57,7 @@ pub fn joints(session: &Session, population: Population) -> Result<(FittedMeasur
         ))
     })?;
     let sex = if fitted.woman > 0.5 { Sex::Female } else { Sex::Male };
-    let joints = follow::follow(&session.depth, sex, Options { ground: alone.ground, ..Options::LIVE });
+    let joints = tracker::track(&session.depth, sex, FitOptions { ground: alone.ground, ..FitOptions::LIVE });
     Ok((fitted, joints))
 }
 

@@ -10,14 +10,14 @@ use crate::estimate::Estimate;
 
 /// Heights as fractions of stature.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Levels {
+pub struct LevelFractions {
     /// Greatest protrusion of the buttocks.
     pub hip: f32,
     /// Natural waistline.
     pub waist: f32,
     /// Bust points.
     pub chest: f32,
-    /// Tips of the shoulder blades.
+    /// Acromion (tip of the shoulder blade).
     pub acromion: f32,
 }
 
@@ -25,7 +25,7 @@ pub struct Levels {
 /// (+- .011 to .016) than the means of the sexes. ANSUR II has the chest (chestheight) at .719 of women's and .735 of
 /// men's stature; the natural waistline of EN 13402-1, midway between tenthribheight and iliocristaleheight, at .630
 /// and .621; the hip (buttockheight) at .512 and .505; the acromion (acromialheight) at .820 of both.
-pub const LEVELS: Levels = Levels { hip: 0.513, waist: 0.628, chest: 0.722, acromion: 0.820 };
+pub const LEVELS: LevelFractions = LevelFractions { hip: 0.513, waist: 0.628, chest: 0.722, acromion: 0.820 };
 
 /// Stature where nothing was measured: mean and standard deviation of ANSUR II.
 pub const fn stature(population: Population) -> Estimate {
@@ -65,7 +65,7 @@ impl Regression {
 
 /// Girths and breadth as a shopper's stature and shoulders let one guess them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Guesses {
+pub struct MeasureRegressions {
     /// Shoulder breadth (biacromialbreadth) from stature alone.
     pub shoulder: Regression,
     /// Chest girth (chestcircumference) from stature and shoulder breadth.
@@ -82,10 +82,10 @@ pub struct Guesses {
     pub arm: Regression,
 }
 
-/// The guesses for a population.
-pub const fn guesses(population: Population) -> Guesses {
+/// The regressions for a population.
+pub const fn regressions(population: Population) -> MeasureRegressions {
     match population {
-        Population::Women => Guesses {
+        Population::Women => MeasureRegressions {
             shoulder: Regression::new(0.1028, 0.1612, 0.0, 0.0151),
             chest: Regression::new(0.3052, 0.1820, 0.9452, 0.0786),
             waist: Regression::new(0.1051, 0.1985, 0.9814, 0.0982),
@@ -93,7 +93,7 @@ pub const fn guesses(population: Population) -> Guesses {
             inseam: Regression::new(-0.1791, 0.5904, 0.0, 0.0236),
             arm: Regression::new(-0.0495, 0.3642, 0.0, 0.0179),
         },
-        Population::Men => Guesses {
+        Population::Men => MeasureRegressions {
             shoulder: Regression::new(0.1546, 0.1486, 0.0, 0.0162),
             chest: Regression::new(0.1244, -0.0498, 2.4581, 0.0748),
             waist: Regression::new(-0.0019, 0.0066, 2.2349, 0.1050),
@@ -101,7 +101,7 @@ pub const fn guesses(population: Population) -> Guesses {
             inseam: Regression::new(-0.1763, 0.5821, 0.0, 0.0239),
             arm: Regression::new(-0.0411, 0.3611, 0.0, 0.0184),
         },
-        Population::Mixed => Guesses {
+        Population::Mixed => MeasureRegressions {
             shoulder: Regression::new(-0.0659, 0.2696, 0.0, 0.0193),
             chest: Regression::new(0.1315, 0.0569, 1.9853, 0.0776),
             waist: Regression::new(0.1546, 0.0565, 1.5697, 0.1023),
@@ -156,7 +156,7 @@ impl GirthModel {
 
 /// How a frame's readings become measures.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Chart {
+pub struct SilhouetteModel {
     /// Error of the top of the head (m).
     pub stature: f32,
     /// Shoulder breadth from the outline's breadth.
@@ -178,7 +178,7 @@ pub fn sensor_bias(distance: f32) -> f32 {
     HALF_PIXEL * distance
 }
 
-impl Chart {
+impl SilhouetteModel {
     /// The chart of a population.
     pub const fn of(population: Population) -> Self {
         match population {
@@ -195,7 +195,7 @@ impl Chart {
 // .1 degree makes it 4 mm and more. Shoulders: 8 to 9.6 mm; how much deltoid people wear over their acromions makes it
 // 10 mm (ANSUR II leaves 14 mm between the breadth over the deltoids and that between the acromions).
 
-const WOMEN: Chart = Chart {
+const WOMEN: SilhouetteModel = SilhouetteModel {
     stature: 0.005,
     shoulder: Regression::new(0.1367, 0.5435, 0.0, 0.010),
     chest: GirthModel::new([0.0008, 2.2574, 0.5986, -2.4354], 0.0319, CHEST_FRONTS),
@@ -203,7 +203,7 @@ const WOMEN: Chart = Chart {
     hip: GirthModel::new([0.0126, 0.7452, 1.9164, -1.5445], 0.0298, HIP_FRONTS),
 };
 
-const MEN: Chart = Chart {
+const MEN: SilhouetteModel = SilhouetteModel {
     stature: 0.005,
     shoulder: Regression::new(0.1543, 0.5352, 0.0, 0.010),
     chest: GirthModel::new([0.0299, 1.7057, 1.1023, -0.8837], 0.0387, CHEST_FRONTS),
@@ -211,7 +211,7 @@ const MEN: Chart = Chart {
     hip: GirthModel::new([0.0143, 1.0509, 1.6756, -0.9813], 0.0311, HIP_FRONTS),
 };
 
-const MIXED: Chart = Chart {
+const MIXED: SilhouetteModel = SilhouetteModel {
     stature: 0.005,
     shoulder: Regression::new(0.0914, 0.6581, 0.0, 0.010),
     chest: GirthModel::new([-0.0398, 2.7578, 0.4192, -0.8050], 0.0395, CHEST_FRONTS),

@@ -4,12 +4,12 @@ use toile_assets::limits::CONFIDENCE_GATE;
 use toile_assets::skeleton::Joint::{self, *};
 use toile_sensors::frame::Joints;
 
-use crate::anthropometry::{guesses, stature};
+use crate::anthropometry::{regressions, stature};
 use crate::estimate::{Estimate, temporal_mean};
 use crate::measures::{Hint, Measures};
 
 /// Where one kind of sensor puts its joints.
-struct Dialect {
+struct JointConvention {
     /// Path from pelvis over spine, chest and neck to the head, as a fraction of stature.
     trunk: f32,
     /// Hip over knee to ankle as a fraction of stature.
@@ -21,11 +21,11 @@ struct Dialect {
 /// Sensors without collar bones, the Kinect first: the pelvis at .53 of stature, the head joint in the middle of the
 /// head at .935, the leg after Drillis and Contini 1966 (.245 + .246); the shoulder joint a hand's thickness below and
 /// inside the acromion.
-const KINECT: Dialect = Dialect { trunk: 0.405, leg: 0.491, acromions: 1.15 };
+const KINECT: JointConvention = JointConvention { trunk: 0.405, leg: 0.491, acromions: 1.15 };
 
 /// Skeletons with collar bones: ours, read off the mannequins of `toile_assets::body` (the same for both sexes), whose
 /// head joint is where the skull turns on the neck.
-const HOUSE: Dialect = Dialect { trunk: 0.354, leg: 0.478, acromions: 1.107 };
+const OWN: JointConvention = JointConvention { trunk: 0.354, leg: 0.478, acromions: 1.107 };
 
 /// Relative errors of those factors: sensors and people differ by some centimetres in where a joint is; depth cameras
 /// place hips and ankles worse than the spine.
@@ -42,14 +42,14 @@ const FEWEST: usize = 3;
 /// Measures from the frames given; `None` if trunk and shoulders are both unseen.
 pub(crate) fn measures(frames: &[Joints], hint: &Hint) -> Option<Measures> {
     let common = stature(hint.population);
-    let dialect = if length(frames, &[LeftClavicle, RightClavicle]).is_some() { &HOUSE } else { &KINECT };
-    let seen = stature_of(frames, dialect);
+    let convention = if length(frames, &[LeftClavicle, RightClavicle]).is_some() { &OWN } else { &KINECT };
+    let seen = stature_of(frames, convention);
     let shoulders =
-        length(frames, &[LeftShoulder, RightShoulder]).map(|s| scaled(s, dialect.acromions, ACROMIONS_ERROR));
+        length(frames, &[LeftShoulder, RightShoulder]).map(|s| scaled(s, convention.acromions, ACROMIONS_ERROR));
     if seen.is_none() && shoulders.is_none() {
         return None;
     }
-    let guess = guesses(hint.population);
+    let regression = regressions(hint.population);
     let (stature, shoulder) = match (hint.scale_known, seen) {
         // What is measured is drawn towards what people commonly measure, because its error is nearly as large.
         (true, Some(seen)) => (seen.fuse(common), shoulders),
@@ -61,16 +61,16 @@ pub(crate) fn measures(frames: &[Joints], hint: &Hint) -> Option<Measures> {
         }
         (false, None) => (common, None),
     };
-    let usual = guess.shoulder.at(stature, Estimate::new(0.0, 0.0));
+    let usual = regression.shoulder.at(stature, Estimate::new(0.0, 0.0));
     let shoulder = shoulder.map_or(usual, |s| s.fuse(usual));
     Some(Measures {
         stature: Some(stature),
         shoulder_breadth: Some(shoulder),
-        chest_girth: Some(guess.chest.at(stature, shoulder)),
-        waist_girth: Some(guess.waist.at(stature, shoulder)),
-        hip_girth: Some(guess.hip.at(stature, shoulder)),
-        inseam: Some(guess.inseam.at(stature, Estimate::new(0.0, 0.0))),
-        arm_length: Some(guess.arm.at(stature, Estimate::new(0.0, 0.0))),
+        chest_girth: Some(regression.chest.at(stature, shoulder)),
+        waist_girth: Some(regression.waist.at(stature, shoulder)),
+        hip_girth: Some(regression.hip.at(stature, shoulder)),
+        inseam: Some(regression.inseam.at(stature, Estimate::new(0.0, 0.0))),
+        arm_length: Some(regression.arm.at(stature, Estimate::new(0.0, 0.0))),
     })
 }
 
@@ -85,16 +85,16 @@ fn believed(frame: &Joints, joint: Joint) -> bool {
     j.confidence >= CONFIDENCE_GATE && j.position.is_finite()
 }
 
-fn stature_of(frames: &[Joints], dialect: &Dialect) -> Option<Estimate> {
+fn stature_of(frames: &[Joints], convention: &JointConvention) -> Option<Estimate> {
     let trunk =
-        length(frames, &[Pelvis, Spine, Chest, Neck, Head]).map(|t| scaled(t, dialect.trunk.recip(), TRUNK_ERROR));
+        length(frames, &[Pelvis, Spine, Chest, Neck, Head]).map(|t| scaled(t, convention.trunk.recip(), TRUNK_ERROR));
     let left = length(frames, &[LeftHip, LeftKnee, LeftAnkle]);
     let right = length(frames, &[RightHip, RightKnee, RightAnkle]);
     let leg = match (left, right) {
         (Some(l), Some(r)) => Some(Estimate::new(0.5 * (l.value + r.value), l.sigma.hypot(r.sigma) * 0.5)),
         (one, other) => one.or(other),
     };
-    let leg = leg.map(|l| scaled(l, dialect.leg.recip(), LEG_ERROR));
+    let leg = leg.map(|l| scaled(l, convention.leg.recip(), LEG_ERROR));
     match (trunk, leg) {
         (Some(t), Some(l)) if (LEG_TO_TRUNK[0]..LEG_TO_TRUNK[1]).contains(&(l.value / t.value)) => Some(t.fuse(l)),
         (Some(t), Some(_) | None) => Some(t),

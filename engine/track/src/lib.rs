@@ -5,13 +5,13 @@
 //! Thread: the sensor thread.
 
 pub mod anthropometry;
-pub mod cloud;
 pub mod estimate;
 pub mod fit;
 pub mod gesture;
 mod joints;
 pub mod measure;
 pub mod measures;
+pub mod point_cloud;
 pub mod recommend;
 pub mod section;
 pub mod silhouette;

@@ -3,13 +3,13 @@
 use toile_assets::sizes::{Population, SizeBody};
 use toile_sensors::frame::{DepthFrame, Joints};
 
-use crate::anthropometry::{self, Chart, GirthModel, guesses};
-use crate::cloud::{self, Cloud};
+use crate::anthropometry::{self, GirthModel, SilhouetteModel, regressions};
 use crate::estimate::{Estimate, temporal_mean};
 use crate::joints;
 use crate::measures::{Hint, Measures};
-use crate::section::Section;
-use crate::silhouette::{self, Reading};
+use crate::point_cloud::{self, PersonCloud};
+use crate::section::TorsoSection;
+use crate::silhouette::{self, SilhouetteReading};
 
 /// Depth frames that are averaged: one second at 30 Hz (Gultepe 2013, section 6.4).
 pub const FRAMES: usize = 30;
@@ -144,26 +144,27 @@ fn from_joints(joints: &[Joints], hint: &Hint) -> Result<Measurements, MeasureEr
 }
 
 /// What the depth frames say, one reading a frame, and how many pixels and people they hold.
-struct Readings {
-    readings: Vec<Reading>,
+struct SilhouetteReadings {
+    readings: Vec<SilhouetteReading>,
     pixels: Vec<f32>,
     people: Vec<f32>,
     distances: Vec<f32>,
 }
 
 fn from_depth(depth: &[DepthFrame], hint: &Hint) -> Result<Measurements, MeasureError> {
-    let mut all = Readings { readings: Vec::new(), pixels: Vec::new(), people: Vec::new(), distances: Vec::new() };
+    let mut all =
+        SilhouetteReadings { readings: Vec::new(), pixels: Vec::new(), people: Vec::new(), distances: Vec::new() };
     let mut too_far = None;
     for frame in depth.iter().take(FRAMES) {
-        let scene = cloud::people(frame);
-        too_far = too_far.or(scene.too_far);
-        let Some(nearest) = scene.people.first() else { continue };
-        all.add(nearest, scene.people.len(), silhouette::read(nearest, &anthropometry::LEVELS, hint.population));
+        let view = point_cloud::find_people(frame);
+        too_far = too_far.or(view.too_far);
+        let Some(nearest) = view.people.first() else { continue };
+        all.add(nearest, view.people.len(), silhouette::read(nearest, &anthropometry::LEVELS, hint.population));
     }
     if all.pixels.is_empty() {
         let frames = depth.len().min(FRAMES);
         return Err(match too_far {
-            Some(distance) => MeasureError::TooFar { distance, limit: cloud::FARTHEST },
+            Some(distance) => MeasureError::TooFar { distance, limit: point_cloud::FARTHEST },
             None => MeasureError::Nobody { frames },
         });
     }
@@ -178,8 +179,8 @@ fn from_depth(depth: &[DepthFrame], hint: &Hint) -> Result<Measurements, Measure
     })
 }
 
-impl Readings {
-    fn add(&mut self, nearest: &Cloud, people: usize, reading: Option<Reading>) {
+impl SilhouetteReadings {
+    fn add(&mut self, nearest: &PersonCloud, people: usize, reading: Option<SilhouetteReading>) {
         self.pixels.push(nearest.points.len() as f32);
         self.people.push(people as f32);
         self.distances.push(nearest.distance);
@@ -187,7 +188,7 @@ impl Readings {
     }
 
     /// Mean of one parameter over the frames that show it; a third of them must.
-    fn mean(&self, parameter: impl Fn(&Reading) -> Option<f32>) -> Option<Estimate> {
+    fn mean(&self, parameter: impl Fn(&SilhouetteReading) -> Option<f32>) -> Option<Estimate> {
         let samples: Vec<f32> = self.readings.iter().filter_map(parameter).collect();
         if samples.len() * 3 < self.readings.len() {
             return None;
@@ -196,25 +197,25 @@ impl Readings {
     }
 
     fn measures(&self, hint: &Hint) -> Measures {
-        let chart = Chart::of(hint.population);
+        let model = SilhouetteModel::of(hint.population);
         let sensor = anthropometry::sensor_bias(median(&self.distances));
-        let stature = self.mean(|r| r.stature).map(|h| h.widened(chart.stature).widened(sensor));
-        let section = |which: fn(&Reading) -> Option<Section>, model: &GirthModel| {
-            let mean = |part: fn(&Section) -> f32| self.mean(|r| which(r).as_ref().map(part));
+        let stature = self.mean(|r| r.stature).map(|h| h.widened(model.stature).widened(sensor));
+        let section = |which: fn(&SilhouetteReading) -> Option<TorsoSection>, model: &GirthModel| {
+            let mean = |part: fn(&TorsoSection) -> f32| self.mean(|r| which(r).as_ref().map(part));
             let breadth = mean(|s| s.breadth)?.widened(sensor);
             Some(model.at(breadth, mean(|s| s.arc)?.widened(sensor), mean(|s| s.front)?))
         };
         let hidden = self.readings.iter().filter(|r| r.chest_hidden).count() * 2 > self.readings.len();
-        let guess = guesses(hint.population);
+        let regressions = regressions(hint.population);
         let nothing = Estimate::new(0.0, 0.0);
         Measures {
             stature,
-            shoulder_breadth: self.mean(|r| r.shoulders).map(|s| chart.shoulder.at(s.widened(sensor), nothing)),
-            chest_girth: section(|r| r.chest, &chart.chest).map(|c| if hidden { c.widened(HIDDEN_CHEST) } else { c }),
-            waist_girth: section(|r| r.waist, &chart.waist),
-            hip_girth: section(|r| r.hip, &chart.hip),
-            inseam: stature.map(|h| guess.inseam.at(h, nothing)),
-            arm_length: stature.map(|h| guess.arm.at(h, nothing)),
+            shoulder_breadth: self.mean(|r| r.shoulders).map(|s| model.shoulder.at(s.widened(sensor), nothing)),
+            chest_girth: section(|r| r.chest, &model.chest).map(|c| if hidden { c.widened(HIDDEN_CHEST) } else { c }),
+            waist_girth: section(|r| r.waist, &model.waist),
+            hip_girth: section(|r| r.hip, &model.hip),
+            inseam: stature.map(|h| regressions.inseam.at(h, nothing)),
+            arm_length: stature.map(|h| regressions.arm.at(h, nothing)),
         }
     }
 }
@@ -239,18 +240,18 @@ fn median(samples: &[f32]) -> f32 {
 
 impl Measurements {
     /// Five lengths to build a body from: what was measured, and for the rest what a body of that stature and those
-    /// shoulders has on average (then with that guess's sigma). In order: stature, shoulder breadth, chest, waist, hip.
+    /// shoulders has on average (then with the regression's sigma). In order: stature, shoulder breadth, chest, waist, hip.
     pub fn completed(&self, population: Population) -> [Estimate; 5] {
         let m = &self.measures;
-        let guess = guesses(population);
+        let regressions = regressions(population);
         let stature = m.stature.unwrap_or(anthropometry::stature(population));
-        let shoulder = m.shoulder_breadth.unwrap_or_else(|| guess.shoulder.at(stature, Estimate::new(0.0, 0.0)));
+        let shoulder = m.shoulder_breadth.unwrap_or_else(|| regressions.shoulder.at(stature, Estimate::new(0.0, 0.0)));
         [
             stature,
             shoulder,
-            m.chest_girth.unwrap_or_else(|| guess.chest.at(stature, shoulder)),
-            m.waist_girth.unwrap_or_else(|| guess.waist.at(stature, shoulder)),
-            m.hip_girth.unwrap_or_else(|| guess.hip.at(stature, shoulder)),
+            m.chest_girth.unwrap_or_else(|| regressions.chest.at(stature, shoulder)),
+            m.waist_girth.unwrap_or_else(|| regressions.waist.at(stature, shoulder)),
+            m.hip_girth.unwrap_or_else(|| regressions.hip.at(stature, shoulder)),
         ]
     }
 

@@ -1,4 +1,4 @@
-//! What measuring is told and what it gives: the types that every way of measuring shares.
+//! The measures and what is known beforehand: the types that every way of measuring shares.
 
 use toile_assets::sizes::Population;
 

@@ -2,14 +2,14 @@
 //! is at the levels of chest, waist and hip, the arms left out.
 //!
 //! Definitions are those of EN 13402-1 and ISO 8559-1: levels are fixed fractions of stature (see
-//! [`crate::anthropometry::Levels`]), not the widest or narrowest place, which lies 12 to 27 mm of girth away.
+//! [`crate::anthropometry::LevelFractions`]), not the widest or narrowest place, which lies 12 to 27 mm of girth away.
 
 use glam::{Vec2, Vec3};
 
-use crate::anthropometry::{Levels, stature};
-use crate::cloud::Cloud;
+use crate::anthropometry::{LevelFractions, stature};
 use crate::estimate::{Estimate, middle};
-use crate::section::{Section, torso};
+use crate::point_cloud::PersonCloud;
+use crate::section::{TorsoSection, measure_torso};
 use toile_assets::sizes::Population;
 
 /// The floor counts as given by the camera's pose if the feet end this near to y = 0 (m).
@@ -51,30 +51,30 @@ const BELOW_ARMPITS: f32 = 0.6;
 
 /// What one frame tells.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reading {
+pub struct SilhouetteReading {
     /// Top of the head above the floor (m), as the person stands: with hair and shoes; `None` if the feet are not seen.
     pub stature: Option<f32>,
     /// Breadth of the outline at the shoulders (m).
     pub shoulders: Option<f32>,
     /// The torso at chest level.
-    pub chest: Option<Section>,
+    pub chest: Option<TorsoSection>,
     /// The chest was hidden by arms or sleeves, and is carried on from below the armpits.
     pub chest_hidden: bool,
     /// The torso at waist level.
-    pub waist: Option<Section>,
+    pub waist: Option<TorsoSection>,
     /// The torso at hip level.
-    pub hip: Option<Section>,
+    pub hip: Option<TorsoSection>,
 }
 
 /// Reads one frame.
-pub fn read(cloud: &Cloud, levels: &Levels, population: Population) -> Option<Reading> {
-    let upright = Upright::new(cloud, population)?;
+pub fn read(cloud: &PersonCloud, levels: &LevelFractions, population: Population) -> Option<SilhouetteReading> {
+    let upright = UprightPerson::new(cloud, population)?;
     let section = |level: f32| upright.section(level);
     let shoulders = upright.shoulders(levels);
     // Raised arms pull sleeves and armpits into the chest's level; without an outline of the shoulders they are raised.
     let seen = shoulders.and_then(|_| section(levels.chest));
     let chest = seen.or_else(|| upright.below_armpits(levels)).or_else(|| section(levels.chest));
-    Some(Reading {
+    Some(SilhouetteReading {
         stature: upright.floor.map(|floor| upright.top - floor),
         shoulders,
         chest,
@@ -85,7 +85,7 @@ pub fn read(cloud: &Cloud, levels: &Levels, population: Population) -> Option<Re
 }
 
 /// A person's points turned to face +z, with the heights that everything is counted from.
-struct Upright {
+struct UprightPerson {
     /// Points relative to the body's axis, facing +z (m), lowest first.
     points: Vec<Vec3>,
     top: f32,
@@ -94,8 +94,8 @@ struct Upright {
     pitch: f32,
 }
 
-impl Upright {
-    fn new(cloud: &Cloud, population: Population) -> Option<Self> {
+impl UprightPerson {
+    fn new(cloud: &PersonCloud, population: Population) -> Option<Self> {
         let mut points = cloud.points.clone();
         points.sort_unstable_by(|a, b| a.y.total_cmp(&b.y));
         let bottom = points.get(points.len() / 300)?.y;
@@ -149,17 +149,17 @@ impl Upright {
         }
     }
 
-    fn section(&self, level: f32) -> Option<Section> {
+    fn section(&self, level: f32) -> Option<TorsoSection> {
         let y = self.at(level);
         // A picture that ends inside the band shows less than the band.
         let lowest = self.points.first()?.y;
-        (lowest < y - BAND).then(|| torso(band(&self.points, y - BAND, y + BAND), self.pitch)).flatten()
+        (lowest < y - BAND).then(|| measure_torso(band(&self.points, y - BAND, y + BAND), self.pitch)).flatten()
     }
 
     /// The chest where the arms hide its sides: the torso's edges between waist and armpits, carried on upwards.
-    fn below_armpits(&self, levels: &Levels) -> Option<Section> {
+    fn below_armpits(&self, levels: &LevelFractions) -> Option<TorsoSection> {
         let steps = 12;
-        let seen: Vec<(f32, Section)> = (0..steps)
+        let seen: Vec<(f32, TorsoSection)> = (0..steps)
             .filter_map(|i| {
                 let level = levels.waist + BELOW_ARMPITS * (levels.chest - levels.waist) * i as f32 / steps as f32;
                 Some((level, self.section(level)?))
@@ -168,7 +168,7 @@ impl Upright {
         if seen.len() * 2 < steps {
             return None;
         }
-        let line = |value: fn(&Section) -> f32| {
+        let line = |value: fn(&TorsoSection) -> f32| {
             let n = seen.len() as f32;
             let mean_x = seen.iter().map(|(x, _)| x).sum::<f32>() / n;
             let mean_y = seen.iter().map(|(_, s)| value(s)).sum::<f32>() / n;
@@ -176,11 +176,11 @@ impl Upright {
                 / seen.iter().map(|(x, _)| (x - mean_x).powi(2)).sum::<f32>();
             mean_y + slope * (levels.chest - mean_x)
         };
-        Some(Section { breadth: line(|s| s.breadth), front: line(|s| s.front), arc: line(|s| s.arc) })
+        Some(TorsoSection { breadth: line(|s| s.breadth), front: line(|s| s.front), arc: line(|s| s.arc) })
     }
 
     /// Breadth of the outline a little below the acromions' level, where it falls away from the shoulders.
-    fn shoulders(&self, levels: &Levels) -> Option<f32> {
+    fn shoulders(&self, levels: &LevelFractions) -> Option<f32> {
         let y = self.at(levels.acromion) - BELOW_ACROMION;
         let mut highest = [f32::NEG_INFINITY; 2 * OUTLINE];
         for p in band(&self.points, y - 0.02, self.top) {

@@ -10,10 +10,10 @@ use toile_assets::skeleton::Joint;
 use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::synthetic::SyntheticCamera;
 use toile_sensors::source::{OpenOptions, open};
-use toile_track::cloud;
-use toile_track::fit::follow::follow;
-use toile_track::fit::measuring::{self, TAKEN};
-use toile_track::fit::{BodyFit, Options};
+use toile_track::fit::measuring::{self, MEASURES};
+use toile_track::fit::tracker::track;
+use toile_track::fit::{BodyFit, FitOptions};
+use toile_track::point_cloud;
 
 /// A camera with half the pixels of an Azure Kinect each way, 2.3 m off and 1 m high.
 fn camera() -> SyntheticCamera {
@@ -42,21 +42,21 @@ fn seen_before(walls: &[[Vec3; 3]], sex: Sex, wanted: &Wanted<En>, place: Affine
     camera.render(&positions, &triangles, &mut image);
     let mm = |z: &f32| if z.is_finite() { (z * 1e3).round() as u16 } else { 0 };
     let joints = Joint::ALL.map(|j| place.transform_point3(fitted.body.skeleton.at(j)));
-    let measures = TAKEN.map(|t| t.1.of(&fitted.readings));
+    let measures = MEASURES.map(|t| t.1.of(&fitted.readings));
     (camera.frame(0, image.iter().map(mm).collect()), Truth { joints, measures })
 }
 
 /// What is true of the person in the picture.
 struct Truth {
     joints: [Vec3; toile_assets::skeleton::JOINTS],
-    measures: [f32; TAKEN.len()],
+    measures: [f32; MEASURES.len()],
 }
 
 fn turned(by: f32, to: Vec3) -> Affine3A {
     Affine3A::from_rotation_translation(Quat::from_rotation_y(by), to)
 }
 
-const BARE: Options = Options { clothed: false, ..Options::LIVE };
+const BARE: FitOptions = FitOptions { clothed: false, ..FitOptions::LIVE };
 
 #[test]
 fn joints_come_from_depth_alone() {
@@ -120,7 +120,7 @@ fn room() -> [[Vec3; 3]; 4] {
 }
 
 #[test]
-fn somebody_is_followed_through_a_room_that_is_seen_as_well() {
+fn somebody_is_tracked_through_a_room_that_is_seen_as_well() {
     let room = room();
     let step = |i: usize| turned(0.02 * i as f32, Vec3::new(-0.1 + 0.03 * i as f32, 0.0, 0.02 * i as f32));
     let frames: Vec<(DepthFrame, Truth)> =
@@ -134,7 +134,7 @@ fn somebody_is_followed_through_a_room_that_is_seen_as_well() {
     let (last, _) = seen_before(&room, Sex::Female, &Wanted::new(), turned(0.0, Vec3::new(40.0, 0.0, 0.0)));
     let only: Vec<DepthFrame> =
         frames.iter().map(|f| f.0.clone()).chain([DepthFrame { time_ns: 2_000_000_000, ..last }]).collect();
-    let joints = follow(&only, Sex::Female, BARE);
+    let joints = track(&only, Sex::Female, BARE);
     assert_eq!(joints.len(), 7);
     for (found, (frame, truth)) in joints.iter().zip(frames.drain(..)) {
         assert_eq!(found.time_ns, frame.time_ns);
@@ -149,7 +149,7 @@ fn somebody_is_followed_through_a_room_that_is_seen_as_well() {
 #[test]
 fn somebody_bare_who_is_taken_for_clothed_is_hardly_smaller() {
     let (frame, truth) = seen(Sex::Male, &Wanted::new().with(En::Stature, 1.82), turned(0.1, Vec3::ZERO));
-    let found = measuring::measure(&[frame.clone(), frame], Population::Men, Options::MEASURING).expect("a fit");
+    let found = measuring::measure(&[frame.clone(), frame], Population::Men, FitOptions::MEASURING).expect("a fit");
     let stature = found.named("stature").expect("taken");
     assert!((stature.value - truth.measures[0]).abs() < 0.015, "{stature:?} {}", truth.measures[0]);
 }
@@ -158,10 +158,10 @@ fn somebody_bare_who_is_taken_for_clothed_is_hardly_smaller() {
 fn a_body_of_the_family_is_measured_and_twice_alike() {
     let wanted = Wanted::new().with(En::Stature, 1.72).with(En::WaistGirth, 0.86);
     let (frame, truth) = seen(Sex::Female, &wanted, turned(0.05, Vec3::ZERO));
-    let options = Options { clothed: false, ..Options::MEASURING };
+    let options = FitOptions { clothed: false, ..FitOptions::MEASURING };
     let frames = vec![frame; 3];
     let first = measuring::measure(&frames, Population::Women, options).expect("a fit");
-    for ((name, ..), (estimate, truth)) in TAKEN.iter().zip(first.measures.iter().zip(truth.measures)) {
+    for ((name, ..), (estimate, truth)) in MEASURES.iter().zip(first.measures.iter().zip(truth.measures)) {
         // Half of the picture's pixels, one pose, no noise: what is left is what the back may be.
         assert!((estimate.value - truth).abs() < 0.02, "{name}: {estimate:?} against {truth}");
         assert!((0.001..0.06).contains(&estimate.sigma), "{name}: {estimate:?}");
@@ -209,8 +209,8 @@ fn a_whole_clothed_woman_is_fitted() {
     let options = OpenOptions { camera: Some(folder.join("chae_depth_camera.json")) };
     let session = open(&folder.join("chae_depth_mm_1024x512.u16le"), &options).unwrap();
     let frame = &session.depth[0];
-    let alone = cloud::people(frame).people[0].alone(frame);
-    let fitted = measuring::measure(&[alone], Population::Mixed, Options::MEASURING).expect("a fit");
+    let alone = point_cloud::find_people(frame).people[0].alone(frame);
+    let fitted = measuring::measure(&[alone], Population::Mixed, FitOptions::MEASURING).expect("a fit");
     assert!(fitted.explained > 0.9, "{}", fitted.explained);
     let stature = fitted.measures[0];
     // 1.750 m between the 0.2 and 99.8 percentiles, 1.782 m from end to end.

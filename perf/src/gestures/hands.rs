@@ -6,7 +6,7 @@ use glam::{Quat, Vec3};
 use toile_assets::numeric::random::SplitMix64;
 use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
-use toile_track::gesture::{Grip, HandEye, HandShape, HandSight};
+use toile_track::gesture::{Grip, HandSegmenter, HandShape, HandRegion};
 
 /// What a hand is like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -203,13 +203,13 @@ impl Scene {
     }
 
     /// One frame, and where a tracker says that the hand is; the hand trembles.
-    fn frame(&mut self, held: &Held, rng: &mut SplitMix64) -> (DepthFrame, HandSight) {
+    fn frame(&mut self, held: &Held, rng: &mut SplitMix64) -> (DepthFrame, HandRegion) {
         let mut off = |by: f32| Vec3::new(rng.gaussian(), rng.gaussian(), rng.gaussian()) * by;
         let shift = off(0.003);
         let moved: Vec<Vec3> = held.solid.positions.iter().map(|p| *p + shift).collect();
         self.camera.render(&moved, &held.solid.triangles, &mut self.image);
         let depth = self.noise.apply(&self.camera.intrinsics, &self.image);
-        let sight = HandSight {
+        let sight = HandRegion {
             palm: held.palm + off(OFF),
             wrist: Some(held.wrist + off(OFF)),
             along: (held.along + off(0.06)).normalize(),
@@ -220,7 +220,7 @@ impl Scene {
 }
 
 /// A spread hand held up at a distance (m): a frame, and where a tracker says that the hand is.
-pub fn held_up(distance: f32, seed: u64) -> (DepthFrame, HandSight) {
+pub fn held_up(distance: f32, seed: u64) -> (DepthFrame, HandRegion) {
     let mut rng = SplitMix64::new(seed);
     let mut scene = Scene::new(distance, &mut rng);
     let held = scene.held(HandPose::Spread, &mut rng);
@@ -278,7 +278,7 @@ impl Sum {
 /// Tells so many hands of each pose at each distance: each hand changes from an open pose to a fist and back.
 pub fn grips(distances: &[f32], hands: u32, seed: u64) -> Vec<GripRow> {
     let mut rows = Vec::new();
-    let mut eye = HandEye::new();
+    let mut eye = HandSegmenter::new();
     for (k, &distance) in distances.iter().enumerate() {
         let mut sums = HandPose::ALL.map(|pose| Sum::new(pose, distance));
         for hand in 0..hands {

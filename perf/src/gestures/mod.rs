@@ -16,7 +16,7 @@ use toile_assets::numeric::random::SplitMix64;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::filter::JointFilter;
 use toile_sensors::frame::Joints;
-use toile_track::gesture::{Event, Gestures};
+use toile_track::gesture::{GestureEvent, Gestures};
 
 use motion::Motion;
 use person::{Shopper, Tracker};
@@ -105,7 +105,7 @@ pub fn sequence(act: Act, conditions: &Conditions, seed: u64) -> Vec<Joints> {
 }
 
 /// The events of a sequence.
-pub fn events(frames: &[Joints]) -> Vec<Event> {
+pub fn events(frames: &[Joints]) -> Vec<GestureEvent> {
     let mut gestures = Gestures::new();
     frames.iter().flat_map(|f| gestures.push(f, None)).flatten().collect()
 }

@@ -6,12 +6,13 @@ use toile_assets::numeric::random::SplitMix64;
 use toile_assets::sizes::Population;
 use toile_assets::skeleton::Joint;
 use toile_sensors::frame::DepthFrame;
-use toile_track::cloud;
+use toile_track::point_cloud;
 use toile_track::estimate::Estimate;
-use toile_track::fit::measuring::{self, TAKEN};
+use toile_track::fit::measuring::{self, MEASURES};
 use toile_track::fit::{self, BodyFit};
 use toile_track::measure;
 use toile_track::measures::Hint;
+use toile_track::point_cloud;
 
 use super::person::{GIVEN, Moment, Person};
 use super::sensor::{Sensor, Sight};
@@ -31,8 +32,8 @@ pub struct Options {
     pub sensor: Sensor,
 }
 
-/// What one way of measuring said of one person, in the order of [`TAKEN`]; `None` where it takes no such measure.
-pub type Outcome = [Option<Estimate>; TAKEN.len()];
+/// What one way of measuring said of one person, in the order of [`MEASURES`]; `None` where it takes no such measure.
+pub type Outcome = [Option<Estimate>; MEASURES.len()];
 
 /// One person: what is true, and what was measured.
 #[derive(Debug, Clone)]
@@ -41,8 +42,8 @@ pub struct Case {
     pub sex: Sex,
     /// Distance from the camera (m).
     pub distance: f32,
-    /// What the tape reads, in the order of [`TAKEN`] (m).
-    pub truth: [f32; TAKEN.len()],
+    /// What the tape reads, in the order of [`MEASURES`] (m).
+    pub truth: [f32; MEASURES.len()],
     /// By the body fit; nothing where no body was found.
     pub fit: Outcome,
     /// By section and outline, proportions and the mean over the frames.
@@ -146,16 +147,17 @@ pub fn study(surveys: &[Survey], options: &Options, told: &dyn Fn(&Case)) -> Res
 fn measured(person: &Person, options: &Options, rng: &mut SplitMix64) -> Case {
     let sight = Sight::new(options.sensor, rng);
     let frames = sight.frames(person, options.frames, rng);
-    let alone = |(f, truth): &(DepthFrame, Moment)| Some((cloud::people(f).people.first()?.alone(f), *truth));
+    let alone =
+        |(f, truth): &(DepthFrame, Moment)| Some((point_cloud::find_people(f).people.first()?.alone(f), *truth));
     let alone: Vec<(DepthFrame, Moment)> = frames.iter().filter_map(alone).collect();
     let only: Vec<DepthFrame> = alone.iter().map(|a| a.0.clone()).collect();
     let frames: Vec<DepthFrame> = frames.into_iter().map(|f| f.0).collect();
-    let bare = fit::Options { clothed: false, ..fit::Options::MEASURING };
+    let bare = fit::FitOptions { clothed: false, ..fit::FitOptions::MEASURING };
     let fitted = measuring::measure(&only, Population::Mixed, bare);
     let sections = measure::measure(&[], &frames, &Hint::default()).ok();
-    let sections = sections.map_or([None; TAKEN.len()], |m| {
+    let sections = sections.map_or([None; MEASURES.len()], |m| {
         let s = &m.measures;
-        let mut all = [None; TAKEN.len()];
+        let mut all = [None; MEASURES.len()];
         let places = [0, 1, 2, 3, 6, 8, 9];
         let values = [s.stature, s.shoulder_breadth, s.arm_length, s.inseam, s.chest_girth, s.waist_girth, s.hip_girth];
         places.into_iter().zip(values).for_each(|(i, v)| all[i] = v);
@@ -167,8 +169,8 @@ fn measured(person: &Person, options: &Options, rng: &mut SplitMix64) -> Case {
         followed,
         sex: person.sex,
         distance: sight.distance,
-        truth: TAKEN.map(|(_, girth, _)| girth.of(&person.readings)),
-        fit: fitted.as_ref().map_or([None; TAKEN.len()], |f| f.measures.map(Some)),
+        truth: MEASURES.map(|(_, girth, _)| girth.of(&person.readings)),
+        fit: fitted.as_ref().map_or([None; MEASURES.len()], |f| f.measures.map(Some)),
         sections,
         woman: fitted.map(|f| f.woman),
     }
@@ -179,7 +181,7 @@ const FOLLOWED: usize = 10;
 
 /// Follows a person through their first frames, as at 30 Hz.
 fn follow(person: &Person, frames: &[(DepthFrame, Moment)]) -> (Option<f32>, Vec<[f32; 7]>) {
-    let mut fit = BodyFit::new(person.sex, fit::Options { clothed: false, ..fit::Options::LIVE });
+    let mut fit = BodyFit::new(person.sex, fit::FitOptions { clothed: false, ..fit::FitOptions::LIVE });
     let (mut start, mut followed) = (None, Vec::new());
     for (frame, truth) in frames.iter().take(FOLLOWED) {
         let watch = OnCore::begin();
@@ -251,7 +253,7 @@ fn summed(cases: &[Case], options: &Options) -> Study {
 }
 
 fn agreements(cases: &[Case], way: impl Fn(&Case) -> &Outcome) -> Vec<Agreement> {
-    let all = TAKEN.iter().enumerate().map(|(i, &(measure, _, limit))| {
+    let all = MEASURES.iter().enumerate().map(|(i, &(measure, _, limit))| {
         let pairs: Vec<(Estimate, f32)> = cases.iter().filter_map(|c| Some((way(c)[i]?, c.truth[i]))).collect();
         agreement(measure, f64::from(limit) * 1e3, &pairs)
     });

@@ -10,8 +10,8 @@ use toile_engine::cloth::Quality;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
-use toile_track::fit::Options;
-use toile_track::fit::measuring::TAKEN;
+use toile_track::fit::FitOptions;
+use toile_track::fit::measuring::MEASURES;
 use toile_view::image::{Size, linear};
 
 use super::picture::{self, PictureCode, RgbImage};
@@ -167,12 +167,12 @@ impl DressingContext {
         }
         let measured = shopper::measure(session, population)?;
         let alone = Alone::of(session);
-        let options = Options { ground: alone.ground, ..Options::MEASURING };
+        let options = FitOptions { ground: alone.ground, ..FitOptions::MEASURING };
         let fitted = if session.depth.is_empty() { None } else { alone.measure(population, options) };
         Ok(match fitted {
             Some(fitted) => {
                 let known = VisitorMeasures::new(tracking::preferred(measured, &fitted), false);
-                VisitorMeasures { count: TAKEN.len() as u32, ..known }
+                VisitorMeasures { count: MEASURES.len() as u32, ..known }
             }
             None => VisitorMeasures::new(measured, false),
         })

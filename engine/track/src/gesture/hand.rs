@@ -9,8 +9,8 @@
 use glam::{Affine3A, Vec3};
 use toile_sensors::frame::{DepthFrame, Joints};
 
-use super::frame::Side;
 use super::hull::{MARGIN, Mask, SIDE};
+use super::trunk::Side;
 
 /// Length of a hand, wrist to finger tip, over that of the arm, shoulder to wrist: .1118 of stature over .3315 (means
 /// of ANSUR II women and men: hand length, acromion-radiale plus radiale-stylion).
@@ -37,7 +37,7 @@ const SHRUNK: usize = 1;
 
 /// Where to look for a hand.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HandSight {
+pub struct HandRegion {
     /// Middle of the palm, world (m).
     pub palm: Vec3,
     /// Wrist, world (m): the forearm is cut off there; `None` where it is not known.
@@ -48,7 +48,7 @@ pub struct HandSight {
     pub length: f32,
 }
 
-impl HandSight {
+impl HandRegion {
     /// Where a frame of joints has a hand of a shopper whose arms are `arm` long (m); `None` where neither hand nor wrist
     /// is believed.
     pub fn of(joints: &Joints, side: Side, arm: f32) -> Option<Self> {
@@ -67,7 +67,7 @@ pub struct HandShape {
     pub solidity: f32,
     /// Area of the hull (squared hand lengths): large with fingers stretched.
     pub spread: f32,
-    /// How deep the outline lies under its hull at most (hand lengths): the seed's own measure.
+    /// How deep the outline lies under its hull at most (hand lengths): the measure of Gultepe 2013.
     pub gap: f32,
     /// Length over breadth: nearly 1 for a fist, about 2 for fingers stretched together.
     pub aspect: f32,
@@ -75,20 +75,20 @@ pub struct HandShape {
 
 /// Cuts hands out of depth frames; owns its buffers and allocates only when it is made.
 #[derive(Debug, Clone)]
-pub struct HandEye {
+pub struct HandSegmenter {
     /// Depth of each cell (m), 0 where there is no hand.
     depth: Box<[f32]>,
     mask: Mask,
 }
 
-impl Default for HandEye {
+impl Default for HandSegmenter {
     fn default() -> Self {
         Self::new()
     }
 }
 
 /// How the grid lies over the image.
-struct Grid {
+struct HandGrid {
     /// Pixels along a cell.
     step: usize,
     /// Pixel of the grid's first cell, which may lie outside of the image.
@@ -98,13 +98,13 @@ struct Grid {
     to_camera: Affine3A,
 }
 
-impl Grid {
-    fn new(frame: &DepthFrame, sight: &HandSight) -> Option<Self> {
+impl HandGrid {
+    fn new(frame: &DepthFrame, region: &HandRegion) -> Option<Self> {
         let to_camera = frame.camera_to_world.inverse();
-        let palm = to_camera.transform_point3(sight.palm);
+        let palm = to_camera.transform_point3(region.palm);
         let (u, v) = frame.intrinsics.project(palm)?;
         let pixel = palm.z / (frame.intrinsics.fx * frame.intrinsics.fy).sqrt();
-        let step = (sight.length / CELLS_PER_HAND / pixel).round().max(1.0);
+        let step = (region.length / CELLS_PER_HAND / pixel).round().max(1.0);
         let half = step * (SIDE / 2) as f32;
         // Far outside of the image there is no hand to be seen, and no number to be trusted.
         let limit = 1e6;
@@ -140,16 +140,16 @@ impl Grid {
     }
 }
 
-impl HandEye {
+impl HandSegmenter {
     /// Buffers for one hand at a time.
     pub fn new() -> Self {
         Self { depth: vec![0.0; SIDE * SIDE].into_boxed_slice(), mask: Mask::new() }
     }
 
     /// The outline of a hand; `None` where the frame shows none there.
-    pub fn shape(&mut self, frame: &DepthFrame, sight: &HandSight) -> Option<HandShape> {
-        let grid = Grid::new(frame, sight)?;
-        let seed = self.cut_out(frame, sight, &grid)?;
+    pub fn shape(&mut self, frame: &DepthFrame, region: &HandRegion) -> Option<HandShape> {
+        let grid = HandGrid::new(frame, region)?;
+        let seed = self.cut_out(frame, region, &grid)?;
         let z = self.depth[seed];
         let step = SAME_HAND + SAME_HAND_PER_M2 * z * z;
         let depth = &self.depth;
@@ -159,7 +159,7 @@ impl HandEye {
         }
         self.mask.fill_holes();
         let outline = self.mask.outline()?;
-        let cell = grid.pitch / sight.length;
+        let cell = grid.pitch / region.length;
         (outline.area * cell * cell >= SMALLEST).then_some(HandShape {
             solidity: outline.area / outline.hull,
             spread: outline.hull * cell * cell,
@@ -169,11 +169,11 @@ impl HandEye {
     }
 
     /// Fills the grid with what lies about the palm and beyond the wrist; gives the cell nearest to the palm.
-    fn cut_out(&mut self, frame: &DepthFrame, sight: &HandSight, grid: &Grid) -> Option<usize> {
-        let palm = grid.to_camera.transform_point3(sight.palm);
-        let wrist = sight.wrist.map(|w| grid.to_camera.transform_point3(w));
-        let along = grid.to_camera.transform_vector3(sight.along);
-        let reach = (REACH * sight.length).powi(2);
+    fn cut_out(&mut self, frame: &DepthFrame, region: &HandRegion, grid: &HandGrid) -> Option<usize> {
+        let palm = grid.to_camera.transform_point3(region.palm);
+        let wrist = region.wrist.map(|w| grid.to_camera.transform_point3(w));
+        let along = grid.to_camera.transform_vector3(region.along);
+        let reach = (REACH * region.length).powi(2);
         let mut nearest: Option<(usize, f32)> = None;
         self.depth.fill(0.0);
         let inside = MARGIN..SIDE - MARGIN;
@@ -212,7 +212,7 @@ impl HandShape {
         ((sum - CLOSED_OPEN[0]) / (CLOSED_OPEN[1] - CLOSED_OPEN[0])).clamp(0.0, 1.0)
     }
 
-    /// Open by the seed's measure alone: how deep the outline lies under its hull.
+    /// Open by the measure of Gultepe 2013 alone: how deep the outline lies under its hull.
     pub fn is_open_by_gap(&self) -> bool {
         self.gap > 0.1
     }

@@ -27,7 +27,7 @@ const TOGETHER: f32 = 0.4;
 
 /// Both hands at one moment, in arm lengths along the trunk's axes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Arms {
+pub(super) struct HoldInput {
     pub now: u64,
     /// Wrist.
     pub at: Vec3,
@@ -44,7 +44,7 @@ pub(super) struct Arms {
 
 /// A hand that is being held out.
 #[derive(Debug, Clone, Copy)]
-struct Held {
+struct HeldHand {
     at: Vec3,
     since: u64,
     confirmed: bool,
@@ -53,7 +53,7 @@ struct Held {
 /// The hold of one hand.
 #[derive(Debug, Clone)]
 pub(super) struct Hold {
-    held: Option<Held>,
+    held: Option<HeldHand>,
     seen_ns: u64,
 }
 
@@ -67,7 +67,7 @@ impl Hold {
     }
 
     /// One step with a hand that is seen. A hand confirms once, until it is drawn back or held out elsewhere.
-    pub(super) fn step(&mut self, arms: &Arms) -> Option<Gesture> {
+    pub(super) fn step(&mut self, arms: &HoldInput) -> Option<Gesture> {
         let lost = arms.now.saturating_sub(self.seen_ns) > LONGEST_GAP_NS;
         self.seen_ns = arms.now;
         let slack = if self.held.is_some() { SLACK } else { 0.0 };
@@ -76,7 +76,7 @@ impl Hold {
             self.held = None;
             return None;
         }
-        let begun = Held { at: arms.at, since: arms.now, confirmed: false };
+        let begun = HeldHand { at: arms.at, since: arms.now, confirmed: false };
         let held = self.held.get_or_insert(begun);
         if held.at.distance(arms.at) > WITHIN {
             *held = begun;

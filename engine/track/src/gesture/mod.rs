@@ -1,31 +1,31 @@
 //! Gestures: a hand swiped left, right or up, held out to confirm, opened or closed.
 //!
-//! Reads: filtered `Joints`, and a `DepthFrame` where hands shall be told open from closed. Writes: `Events`. Budget:
+//! Reads: filtered `Joints`, and a `DepthFrame` where open and closed hands shall be told apart. Writes: `GestureEvents`. Budget:
 //! 2 us a frame of joints, 2 ms a hand with depth; fixed state, no allocation after [`Gestures::new`].
 //! Thread: the sensor thread.
 //!
 //! Left and right are the shopper's own. Everything is measured in arm lengths from the middle of the shoulders along
 //! the trunk's own axes, so that the shopper's size, place and distance do not matter, nor a slow turn.
 
-mod frame;
 mod grip;
 mod hand;
 mod hold;
 mod hull;
+mod position_history;
 mod swipe;
-mod trail;
+mod trunk;
 
 use toile_assets::skeleton::Joint;
 use toile_sensors::frame::{DepthFrame, Joints};
 
-pub use frame::{Side, Trunk};
 pub use grip::Grip;
-pub use hand::{HandEye, HandShape, HandSight};
+pub use hand::{HandRegion, HandSegmenter, HandShape};
+pub use trunk::{Side, Trunk};
 
-use frame::{Facing, Scale};
-use hold::{Arms, Hold};
-use swipe::{Moment, Swipe};
-use trail::Trail;
+use hold::{Hold, HoldInput};
+use position_history::PositionHistory;
+use swipe::{Swipe, SwipeInput};
+use trunk::{ArmLength, TrunkDirection};
 
 /// Shortest time between two frames that are looked at (ns): a motion-capture system's 120 Hz carries nothing that 40 Hz
 /// does not, and would need longer trails.
@@ -77,30 +77,30 @@ impl Gesture {
 
 /// A gesture that has been recognised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Event {
+pub struct GestureEvent {
     /// When it was recognised (ns), the time of the frame.
     pub time_ns: u64,
     /// Whose hand: the shopper's own side.
     pub side: Side,
-    /// What it did.
+    /// The gesture.
     pub gesture: Gesture,
 }
 
 /// The events of one frame: at most one stroke and one grip a hand.
-pub type Events = [Option<Event>; 4];
+pub type GestureEvents = [Option<GestureEvent>; 4];
 
-/// What is remembered of one hand.
+/// State of one hand's recognisers.
 #[derive(Debug, Clone)]
-struct Hand {
-    trail: Trail,
+struct HandState {
+    history: PositionHistory,
     swipe: Swipe,
     hold: Hold,
     grip: Grip,
 }
 
-impl Hand {
+impl HandState {
     const fn new() -> Self {
-        Self { trail: Trail::new(), swipe: Swipe::new(), hold: Hold::new(), grip: Grip::new() }
+        Self { history: PositionHistory::new(), swipe: Swipe::new(), hold: Hold::new(), grip: Grip::new() }
     }
 }
 
@@ -109,11 +109,11 @@ impl Hand {
 pub struct Gestures {
     last_ns: Option<u64>,
     quiet_until_ns: u64,
-    scale: Scale,
-    facing: Facing,
-    trunk: Trail,
-    hands: [Hand; 2],
-    eye: HandEye,
+    scale: ArmLength,
+    facing: TrunkDirection,
+    trunk: PositionHistory,
+    hands: [HandState; 2],
+    segmenter: HandSegmenter,
 }
 
 impl Default for Gestures {
@@ -128,11 +128,11 @@ impl Gestures {
         Self {
             last_ns: None,
             quiet_until_ns: 0,
-            scale: Scale::new(),
-            facing: Facing::new(),
-            trunk: Trail::new(),
-            hands: [Hand::new(), Hand::new()],
-            eye: HandEye::new(),
+            scale: ArmLength::new(),
+            facing: TrunkDirection::new(),
+            trunk: PositionHistory::new(),
+            hands: [HandState::new(), HandState::new()],
+            segmenter: HandSegmenter::new(),
         }
     }
 
@@ -140,7 +140,7 @@ impl Gestures {
     pub fn reset(&mut self) {
         self.last_ns = None;
         self.quiet_until_ns = 0;
-        self.scale = Scale::new();
+        self.scale = ArmLength::new();
         self.rest();
     }
 
@@ -151,13 +151,13 @@ impl Gestures {
 
     /// Takes a frame of filtered joints, and the depth of about the same time where there is any. Frames that come less
     /// than 20 ms after the one before, or shortly before it, are passed over; a clock set back by more begins anew.
-    pub fn push(&mut self, joints: &Joints, depth: Option<&DepthFrame>) -> Events {
+    pub fn push(&mut self, joints: &Joints, depth: Option<&DepthFrame>) -> GestureEvents {
         let now = joints.time_ns;
         if self.last_ns.is_some_and(|last| last.saturating_sub(now) > LONGEST_GAP_NS) {
             self.reset();
         }
         match self.last_ns {
-            Some(last) if now < last.saturating_add(SHORTEST_STEP_NS) => return Events::default(),
+            Some(last) if now < last.saturating_add(SHORTEST_STEP_NS) => return GestureEvents::default(),
             Some(last) if now - last > LONGEST_GAP_NS => self.rest(),
             _ => {}
         }
@@ -165,12 +165,12 @@ impl Gestures {
         self.scale.see(joints);
         let (Some(arm), Some(trunk)) = (self.scale.arm(), Trunk::of(joints)) else {
             self.rest();
-            return Events::default();
+            return GestureEvents::default();
         };
         let trunk = self.facing.settled(trunk, now);
         self.trunk.push(now, trunk.origin / arm);
         let calm = self.trunk.velocity().is_some_and(|v| v.length() < WALKING) && trunk.forward.z > FACING;
-        let mut events = Events::default();
+        let mut events = GestureEvents::default();
         self.swipes(joints, &trunk, arm, calm, &mut events);
         if let Some(depth) = depth {
             self.grips(joints, depth, &trunk, arm, &mut events);
@@ -180,12 +180,12 @@ impl Gestures {
 
     /// Ends every gesture that has begun.
     fn rest(&mut self) {
-        self.facing = Facing::new();
-        self.trunk = Trail::new();
-        self.hands = [Hand::new(), Hand::new()];
+        self.facing = TrunkDirection::new();
+        self.trunk = PositionHistory::new();
+        self.hands = [HandState::new(), HandState::new()];
     }
 
-    fn swipes(&mut self, joints: &Joints, trunk: &Trunk, arm: f32, calm: bool, events: &mut Events) {
+    fn swipes(&mut self, joints: &Joints, trunk: &Trunk, arm: f32, calm: bool, events: &mut GestureEvents) {
         let now = joints.time_ns;
         let local = |joint: Joint| joints.believed(joint).map(|p| trunk.local(p) / arm);
         let at = Side::BOTH.map(|side| local(side.wrist()));
@@ -194,30 +194,31 @@ impl Gestures {
         for (i, side) in Side::BOTH.into_iter().enumerate() {
             let hand = &mut self.hands[i];
             if let Some(at) = at[i] {
-                hand.trail.push(now, at);
+                hand.history.push(now, at);
             }
-            let (Some(place), Some(velocity)) = (at[i], hand.trail.velocity()) else { continue };
+            let (Some(place), Some(velocity)) = (at[i], hand.history.velocity()) else { continue };
             let (other, other_reach) = (at[1 - i], reach[1 - i]);
-            let moment = Moment { now, at: place, velocity, other, head: local(Joint::Head), calm: calm && !cooling };
-            let arms = Arms { now, at: place, reach: reach[i], other, other_reach, calm, cooling };
+            let moment =
+                SwipeInput { now, at: place, velocity, other, head: local(Joint::Head), calm: calm && !cooling };
+            let arms = HoldInput { now, at: place, reach: reach[i], other, other_reach, calm, cooling };
             let held = hand.hold.step(&arms);
             let found = hand.swipe.step(&moment).or(held);
-            events[i] = found.map(|gesture| Event { time_ns: now, side, gesture });
+            events[i] = found.map(|gesture| GestureEvent { time_ns: now, side, gesture });
         }
         if events.iter().any(Option::is_some) {
             self.quiet_until_ns = now.saturating_add(COOL_DOWN_NS);
         }
     }
 
-    fn grips(&mut self, joints: &Joints, depth: &DepthFrame, trunk: &Trunk, arm: f32, events: &mut Events) {
+    fn grips(&mut self, joints: &Joints, depth: &DepthFrame, trunk: &Trunk, arm: f32, events: &mut GestureEvents) {
         let now = joints.time_ns;
         for (i, side) in Side::BOTH.into_iter().enumerate() {
             let presented = |wrist| swipe::is_presented(trunk.local(wrist) / arm);
-            let sight =
-                HandSight::of(joints, side, arm).filter(|_| joints.believed(side.wrist()).is_some_and(presented));
-            let shape = sight.and_then(|sight| self.eye.shape(depth, &sight));
+            let region =
+                HandRegion::of(joints, side, arm).filter(|_| joints.believed(side.wrist()).is_some_and(presented));
+            let shape = region.and_then(|region| self.segmenter.shape(depth, &region));
             let found = self.hands[i].grip.step(now, shape.map(|s| s.openness()));
-            events[2 + i] = found.map(|gesture| Event { time_ns: now, side, gesture });
+            events[2 + i] = found.map(|gesture| GestureEvent { time_ns: now, side, gesture });
         }
     }
 }

@@ -75,7 +75,7 @@ const WAY_BACK: f32 = 0.4;
 
 /// One hand at one moment, in arm lengths along the trunk's axes (left, up, forward of the middle of the shoulders).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Moment {
+pub(super) struct SwipeInput {
     pub now: u64,
     pub at: Vec3,
     /// Arm lengths/s.
@@ -88,7 +88,7 @@ pub(super) struct Moment {
 
 /// A direction that a stroke may have.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Axis {
+struct SwipeAxis {
     gesture: Gesture,
     along: Vec3,
     /// Across the axis in the plane of the view.
@@ -97,15 +97,15 @@ struct Axis {
     proving_ns: u64,
 }
 
-const AXES: [Axis; 3] = [
-    Axis { gesture: Gesture::SwipeLeft, along: Vec3::X, across: Vec3::Y, proving_ns: PROVING_NS[0] },
-    Axis { gesture: Gesture::SwipeRight, along: Vec3::NEG_X, across: Vec3::Y, proving_ns: PROVING_NS[0] },
-    Axis { gesture: Gesture::SwipeUp, along: Vec3::Y, across: Vec3::X, proving_ns: PROVING_NS[1] },
+const AXES: [SwipeAxis; 3] = [
+    SwipeAxis { gesture: Gesture::SwipeLeft, along: Vec3::X, across: Vec3::Y, proving_ns: PROVING_NS[0] },
+    SwipeAxis { gesture: Gesture::SwipeRight, along: Vec3::NEG_X, across: Vec3::Y, proving_ns: PROVING_NS[0] },
+    SwipeAxis { gesture: Gesture::SwipeUp, along: Vec3::Y, across: Vec3::X, proving_ns: PROVING_NS[1] },
 ];
 
 /// A hand that is presented and still.
 #[derive(Debug, Clone, Copy)]
-struct Still {
+struct StillHand {
     since: u64,
     at: Vec3,
     other: Option<Vec3>,
@@ -121,25 +121,25 @@ struct Stroke {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum State {
+enum SwipeState {
     Away,
-    Still(Still),
+    Still(StillHand),
     Stroke(Stroke),
-    Proving(Proof),
+    Proving(FinishedStroke),
 }
 
 /// A stroke that has ended, until it is believed.
 #[derive(Debug, Clone, Copy)]
-struct Proof {
+struct FinishedStroke {
     from: Vec3,
-    axis: Axis,
+    axis: SwipeAxis,
     length: f32,
     since: u64,
 }
 
 /// A stroke that was believed.
 #[derive(Debug, Clone, Copy)]
-struct Last {
+struct RecognisedStroke {
     from: Vec3,
     gesture: Gesture,
     at_ns: u64,
@@ -148,110 +148,111 @@ struct Last {
 /// The strokes and holds of one hand.
 #[derive(Debug, Clone)]
 pub(super) struct Swipe {
-    state: State,
+    state: SwipeState,
     seen_ns: u64,
-    last: Option<Last>,
+    last: Option<RecognisedStroke>,
 }
 
 impl Swipe {
     pub(super) const fn new() -> Self {
-        Self { state: State::Away, seen_ns: 0, last: None }
+        Self { state: SwipeState::Away, seen_ns: 0, last: None }
     }
 
     /// One step with a hand that is seen.
-    pub(super) fn step(&mut self, m: &Moment) -> Option<Gesture> {
+    pub(super) fn step(&mut self, m: &SwipeInput) -> Option<Gesture> {
         if m.now.saturating_sub(self.seen_ns) > LONGEST_GAP_NS || !m.calm {
-            self.state = State::Away;
+            self.state = SwipeState::Away;
         }
         self.seen_ns = m.now;
         let (state, found) = match self.state {
-            State::Away => (rest(m), None),
-            State::Still(still) => (still.step(m), None),
-            State::Stroke(stroke) => (stroke.step(m), None),
-            State::Proving(proof) => self.prove(m, proof),
+            SwipeState::Away => (rest(m), None),
+            SwipeState::Still(still) => (still.step(m), None),
+            SwipeState::Stroke(stroke) => (stroke.step(m), None),
+            SwipeState::Proving(proof) => self.prove(m, proof),
         };
         self.state = state;
         found
     }
 
     /// A stroke that has ended is believed if it does not turn back, and is not itself the way back.
-    fn prove(&mut self, m: &Moment, mut proof: Proof) -> (State, Option<Gesture>) {
+    fn prove(&mut self, m: &SwipeInput, mut proof: FinishedStroke) -> (SwipeState, Option<Gesture>) {
         let length = (m.at - proof.from).dot(proof.axis.along);
         proof.length = proof.length.max(length);
         if length < (1.0 - TURNED_BACK) * proof.length {
-            return (State::Away, None);
+            return (SwipeState::Away, None);
         }
         if m.now - proof.since < proof.axis.proving_ns {
-            return (State::Proving(proof), None);
+            return (SwipeState::Proving(proof), None);
         }
-        let Proof { from, axis, .. } = proof;
-        let undoes = |last: &Last| AXES.iter().any(|a| a.gesture == last.gesture && a.along == -axis.along);
-        let way_back = |last: &Last| m.now - last.at_ns < WAY_BACK_NS && m.at.distance(last.from) < WAY_BACK;
+        let FinishedStroke { from, axis, .. } = proof;
+        let undoes = |last: &RecognisedStroke| AXES.iter().any(|a| a.gesture == last.gesture && a.along == -axis.along);
+        let way_back =
+            |last: &RecognisedStroke| m.now - last.at_ns < WAY_BACK_NS && m.at.distance(last.from) < WAY_BACK;
         if self.last.is_some_and(|last| undoes(&last) && way_back(&last)) {
-            return (State::Away, None);
+            return (SwipeState::Away, None);
         }
-        self.last = Some(Last { from, gesture: axis.gesture, at_ns: m.now });
-        (State::Away, Some(axis.gesture))
+        self.last = Some(RecognisedStroke { from, gesture: axis.gesture, at_ns: m.now });
+        (SwipeState::Away, Some(axis.gesture))
     }
 }
 
 /// The state of a hand that takes part in no gesture.
-fn rest(m: &Moment) -> State {
+fn rest(m: &SwipeInput) -> SwipeState {
     if m.velocity.length() >= STILL || !is_presented(m.at) || !m.calm {
-        return State::Away;
+        return SwipeState::Away;
     }
-    State::Still(Still { since: m.now, at: m.at, other: m.other })
+    SwipeState::Still(StillHand { since: m.now, at: m.at, other: m.other })
 }
 
 pub(super) fn is_presented(at: Vec3) -> bool {
     at.z >= BEFORE && at.x.abs() <= SIDEWAYS && (HEIGHTS[0]..=HEIGHTS[1]).contains(&at.y)
 }
 
-impl Still {
-    fn step(mut self, m: &Moment) -> State {
+impl StillHand {
+    fn step(mut self, m: &SwipeInput) -> SwipeState {
         let speed = m.velocity.length();
         if speed >= SET_OFF {
             let was_still = m.now - self.since >= STILL_NS;
             let stroke = Stroke { from: self.at, other: self.other, since: m.now, fastest: speed };
-            return if was_still { State::Stroke(stroke) } else { State::Away };
+            return if was_still { SwipeState::Stroke(stroke) } else { SwipeState::Away };
         }
         if !is_presented(m.at) {
-            return State::Away;
+            return SwipeState::Away;
         }
         if speed < STILL {
             (self.at, self.other) = (m.at, m.other);
         }
-        State::Still(self)
+        SwipeState::Still(self)
     }
 }
 
 impl Stroke {
-    fn step(mut self, m: &Moment) -> State {
+    fn step(mut self, m: &SwipeInput) -> SwipeState {
         self.fastest = self.fastest.max(m.velocity.length());
         if m.now - self.since > LONGEST_STROKE_NS {
-            return State::Away;
+            return SwipeState::Away;
         }
         let moved = m.at - self.from;
-        let along = |a: &Axis| moved.dot(a.along);
-        let Some(axis) = AXES.into_iter().max_by(|a, b| along(a).total_cmp(&along(b))) else { return State::Away };
+        let along = |a: &SwipeAxis| moved.dot(a.along);
+        let Some(axis) = AXES.into_iter().max_by(|a, b| along(a).total_cmp(&along(b))) else { return SwipeState::Away };
         let length = along(&axis);
         if m.velocity.dot(axis.along) >= ENDED {
-            return State::Stroke(self);
+            return SwipeState::Stroke(self);
         }
         if length < LONG {
             // Slow before it is long: either it sets off late, as at a low rate, or it is none.
             let late = m.velocity.length() >= STILL;
-            return if late { State::Stroke(self) } else { rest(m) };
+            return if late { SwipeState::Stroke(self) } else { rest(m) };
         }
         if self.is_one(m, &axis, length) {
-            State::Proving(Proof { from: self.from, axis, length, since: m.now })
+            SwipeState::Proving(FinishedStroke { from: self.from, axis, length, since: m.now })
         } else {
             rest(m)
         }
     }
 
     /// Whether a movement that has ended was a stroke: fast, straight, of one hand, and not to the head.
-    fn is_one(&self, m: &Moment, axis: &Axis, length: f32) -> bool {
+    fn is_one(&self, m: &SwipeInput, axis: &SwipeAxis, length: f32) -> bool {
         let moved = m.at - self.from;
         let straight = moved.dot(axis.across).abs() <= ASIDE * length && moved.z.abs() <= DEEP * length;
         let alone = match (self.other, m.other) {

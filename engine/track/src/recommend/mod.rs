@@ -8,14 +8,14 @@
 //! mean penalty is least is recommended, and every size has the share of bodies that it suits best as its probability.
 //! Where no size is sure, the measure is named whose exact knowledge would make the choice surest.
 
-mod chance;
-mod words;
+mod probability;
+mod sentences;
 
 use toile_assets::sizes::{GarmentKind, Girth, SizeError, SizeTable};
 
 use crate::estimate::Estimate;
 use crate::measure::Measurements;
-use chance::{Chances, least};
+use probability::{SizeProbabilities, least};
 
 /// A zone of fit is where a girth is taken.
 pub type Zone = Girth;
@@ -23,7 +23,7 @@ pub type Zone = Girth;
 /// Finished girth of a garment at one zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ZoneGirth {
-    /// Where.
+    /// The zone.
     pub zone: Zone,
     /// Girth of the garment (m).
     pub girth_m: f32,
@@ -32,7 +32,7 @@ pub struct ZoneGirth {
 /// Ease (garment less body) that feels right at one zone; negative where the cloth is meant to stretch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EaseRange {
-    /// Where.
+    /// The zone.
     pub zone: Zone,
     /// Less than this is tight (m).
     pub least: f32,
@@ -52,9 +52,9 @@ pub struct MadeSize {
 /// A garment to choose a size of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Offer<'a> {
-    /// Its name.
+    /// Name of the garment.
     pub garment: &'a str,
-    /// Its kind, which says which measures are primary.
+    /// Kind of the garment, which decides its primary measures.
     pub kind: GarmentKind,
     /// The table that its sizes are designated by.
     pub table: &'a SizeTable,
@@ -89,7 +89,7 @@ impl Verdict {
 /// The fit at one zone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZoneFit {
-    /// Where.
+    /// The zone.
     pub zone: Zone,
     /// Whether the size is chosen by this zone.
     pub primary: bool,
@@ -106,7 +106,7 @@ pub struct ZoneFit {
 /// Another size that may suit as well.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunnerUp {
-    /// Its code.
+    /// Code of the size.
     pub size: String,
     /// Probability that it suits this person best.
     pub probability: f32,
@@ -114,17 +114,17 @@ pub struct RunnerUp {
 
 /// A size with its probability.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SizeChance {
-    /// Its code.
+pub struct SizeProbability {
+    /// Code of the size.
     pub size: String,
     /// Probability that it suits this person best, given the errors of the measures.
     pub probability: f32,
 }
 
-/// The measure to take by tape where no size is sure.
+/// Advice to take a girth by tape, where no size is sure.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tape {
-    /// Which girth.
+pub struct TapeAdvice {
+    /// The girth to take.
     pub zone: Zone,
     /// Probability of the most probable size that is to be expected once this girth is known exactly.
     pub probability: f32,
@@ -142,12 +142,12 @@ pub struct Recommendation {
     /// Probability that this size suits this person best, given the errors of the measures.
     pub probability: f32,
     /// All sizes that are made, smallest first; the probabilities sum to 1.
-    pub sizes: Vec<SizeChance>,
+    pub sizes: Vec<SizeProbability>,
     /// Whether no size is as probable as [`SURE`].
     pub uncertain: bool,
     /// The measure to take by tape, where that is so and a tape would help.
-    pub tape: Option<Tape>,
-    /// The whole in words: how sure the size is, what else may fit, what to do about it.
+    pub tape: Option<TapeAdvice>,
+    /// The recommendation in sentences: how sure the size is, what else may fit, what to do about it.
     pub verdict: String,
     /// Fit by zone, the primary ones first.
     pub zones: Vec<ZoneFit>,
@@ -165,7 +165,7 @@ pub enum RecommendError {
     NotDesignated {
         /// Name of the garment.
         garment: String,
-        /// Its kind.
+        /// Kind of the garment.
         kind: &'static str,
         /// Name of the table.
         table: String,
@@ -183,9 +183,9 @@ pub enum RecommendError {
     NotMade {
         /// Name of the garment.
         garment: String,
-        /// What was asked for.
+        /// The size asked for.
         size: String,
-        /// What there is.
+        /// The sizes that are made.
         sizes: String,
     },
     /// A size that the table does not know.
@@ -196,14 +196,14 @@ pub enum RecommendError {
 /// Weight of a zone that the size is chosen by, of one that it also promises to fit, and of any other.
 const WEIGHTS: [f32; 3] = [1.0, 0.2, 0.1];
 
-/// A runner-up less probable than this is not worth a word.
+/// A runner-up less probable than this is not named.
 const WORTH_NAMING: f32 = 0.05;
 
 /// A size less probable than this is not sure: one shopper in five would be sent to the rail again.
 pub const SURE: f32 = 0.8;
 
-/// A tape that makes the choice surer by less than this is not worth the trouble.
-const WORTH_A_TAPE: f32 = 0.02;
+/// A tape measurement is advised only if it raises the largest probability by at least this.
+const LEAST_TAPE_GAIN: f32 = 0.02;
 
 /// Recommends the size of a garment for a measured person.
 pub fn recommend(measured: &Measurements, offer: &Offer) -> Result<Recommendation, RecommendError> {
@@ -216,7 +216,7 @@ pub fn evaluate(measured: &Measurements, offer: &Offer, size: &str) -> Result<Re
 }
 
 /// A zone to judge by: its weight, comfortable range, and the body there.
-struct Judged {
+struct ScoredZone {
     ease: EaseRange,
     weight: f32,
     body: Estimate,
@@ -228,7 +228,7 @@ fn judge(measured: &Measurements, offer: &Offer, wanted: Option<&str>) -> Result
     for size in offer.sizes {
         offer.table.size(&size.code)?;
     }
-    let Chances { penalty, share } = Chances::of(&zones, offer.sizes);
+    let SizeProbabilities { penalty, share } = SizeProbabilities::of(&zones, offer.sizes);
     let best = least(&penalty);
     let chosen = match wanted {
         Some(code) => index(code).ok_or_else(|| RecommendError::NotMade {
@@ -244,34 +244,34 @@ fn judge(measured: &Measurements, offer: &Offer, wanted: Option<&str>) -> Result
         .filter(|&i| i == best || share[i] >= WORTH_NAMING)
         .map(|i| RunnerUp { size: offer.sizes[i].code.clone(), probability: share[i] });
     let sizes = offer.sizes.iter().zip(&share);
-    let sizes: Vec<_> = sizes.map(|(s, &p)| SizeChance { size: s.code.clone(), probability: p }).collect();
+    let sizes: Vec<_> = sizes.map(|(s, &p)| SizeProbability { size: s.code.clone(), probability: p }).collect();
     let uncertain = share.iter().all(|&p| p < SURE);
     let tape = if uncertain { tape(&zones, offer.sizes, &share) } else { None };
     Ok(Recommendation {
         garment: offer.garment.to_owned(),
         size: offer.sizes[chosen].code.clone(),
         probability: share[chosen],
-        verdict: words::verdict(&sizes, [chosen, best], tape.as_ref()),
+        verdict: sentences::verdict(&sizes, [chosen, best], tape.as_ref()),
         sizes,
         uncertain,
         tape,
-        zones: zones.iter().filter_map(|z| words::fit(z, &offer.sizes[chosen])).collect(),
+        zones: zones.iter().filter_map(|z| sentences::fit(z, &offer.sizes[chosen])).collect(),
         runner_up,
-        note: words::note(measured, offer, &zones),
+        note: sentences::note(measured, offer, &zones),
     })
 }
 
 /// The girth whose exact knowledge makes the choice surest, the first of equals; `None` where none is worth a tape.
-fn tape(zones: &[Judged], sizes: &[MadeSize], share: &[f32]) -> Option<Tape> {
+fn tape(zones: &[ScoredZone], sizes: &[MadeSize], share: &[f32]) -> Option<TapeAdvice> {
     let now = share.iter().copied().fold(0.0, f32::max);
     let mut best: Option<(Zone, f32)> = None;
     for (i, zone) in zones.iter().enumerate() {
-        let then = chance::once_known(zones, sizes, i);
-        if then > now + WORTH_A_TAPE && best.is_none_or(|(_, other)| then > other) {
+        let then = probability::once_known(zones, sizes, i);
+        if then > now + LEAST_TAPE_GAIN && best.is_none_or(|(_, other)| then > other) {
             best = Some((zone.ease.zone, then));
         }
     }
-    best.map(|(zone, probability)| Tape { zone, probability, sentence: words::tape(zone, now, probability) })
+    best.map(|(zone, probability)| TapeAdvice { zone, probability, sentence: sentences::tape(zone, now, probability) })
 }
 
 fn runner_up(share: &[f32], best: usize) -> Option<usize> {
@@ -279,7 +279,7 @@ fn runner_up(share: &[f32], best: usize) -> Option<usize> {
 }
 
 /// The zones that garment and ease ranges share, primary ones first.
-fn zones(measured: &Measurements, offer: &Offer) -> Result<Vec<Judged>, RecommendError> {
+fn zones(measured: &Measurements, offer: &Offer) -> Result<Vec<ScoredZone>, RecommendError> {
     let nothing = |what| RecommendError::Nothing { garment: offer.garment.to_owned(), what };
     let designation = offer.table.designation(offer.kind).ok_or_else(|| RecommendError::NotDesignated {
         garment: offer.garment.to_owned(),
@@ -293,11 +293,11 @@ fn zones(measured: &Measurements, offer: &Offer) -> Result<Vec<Judged>, Recommen
         z if designation.secondary.contains(&z) => 1,
         _ => 2,
     };
-    let mut zones: Vec<Judged> = offer
+    let mut zones: Vec<ScoredZone> = offer
         .ease
         .iter()
         .filter(|e| first.zones.iter().any(|z| z.zone == e.zone))
-        .map(|&ease| Judged {
+        .map(|&ease| ScoredZone {
             ease,
             weight: WEIGHTS[rank(ease.zone)],
             body: match ease.zone {

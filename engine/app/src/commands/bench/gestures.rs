@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use clap::value_parser;
 use toile_perf::gestures::{Act, Conditions, Count, GestureStudy, held_up, sequence};
-use toile_track::gesture::{Gestures, HandEye};
+use toile_track::gesture::{Gestures, HandSegmenter};
 
 use crate::exit::AppError;
 use crate::report::{Document, GesturesReport};
@@ -93,10 +93,10 @@ fn joints_us() -> f64 {
 /// Median time of one hand in a depth frame (us).
 fn hand_us() -> f64 {
     let (frame, sight) = held_up(TIMED_AT, 1);
-    let mut eye = HandEye::new();
+    let mut segmenter = HandSegmenter::new();
     median(|| {
         let start = Instant::now();
-        black_box(eye.shape(black_box(&frame), &sight));
+        black_box(segmenter.shape(black_box(&frame), &sight));
         start.elapsed().as_secs_f64() * 1e6
     })
 }

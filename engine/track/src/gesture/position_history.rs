@@ -15,12 +15,12 @@ const SHORTEST_NS: u64 = 30_000_000;
 
 /// The last places of something, by time.
 #[derive(Debug, Clone)]
-pub(super) struct Trail {
+pub(super) struct PositionHistory {
     places: [(u64, Vec3); PLACES],
     count: usize,
 }
 
-impl Trail {
+impl PositionHistory {
     pub(super) const fn new() -> Self {
         Self { places: [(0, Vec3::ZERO); PLACES], count: 0 }
     }
@@ -35,7 +35,7 @@ impl Trail {
         self.count += 1;
     }
 
-    /// Velocity at the newest place (units/s): the least-squares slope over the window; `None` with too short a trail.
+    /// Velocity at the newest place (units/s): the least-squares slope over the window; `None` with too short a history.
     pub(super) fn velocity(&self) -> Option<Vec3> {
         let places = &self.places[..self.count];
         let (now, _) = *places.last()?;
@@ -66,19 +66,19 @@ mod tests {
     #[test]
     fn a_steady_motion_has_its_velocity_at_any_rate_and_over_dropped_frames() {
         for step in [20_000_000, 33_333_333, 66_666_667, 125_000_000] {
-            let mut trail = Trail::new();
+            let mut history = PositionHistory::new();
             for i in (0..40).filter(|i| i % 7 != 3) {
                 let t = i * step;
-                trail.push(t, Vec3::new(2.0, -1.0, 0.5) * (t as f32 * 1e-9));
+                history.push(t, Vec3::new(2.0, -1.0, 0.5) * (t as f32 * 1e-9));
                 if i > 1 && i % 7 != 4 {
-                    let v = trail.velocity().unwrap();
+                    let v = history.velocity().unwrap();
                     assert!((v - Vec3::new(2.0, -1.0, 0.5)).length() < 1e-3, "{step} {i}: {v}");
                 }
             }
         }
-        let mut trail = Trail::new();
-        assert_eq!(trail.velocity(), None);
-        trail.push(5, Vec3::ONE);
-        assert_eq!(trail.velocity(), None);
+        let mut history = PositionHistory::new();
+        assert_eq!(history.velocity(), None);
+        history.push(5, Vec3::ONE);
+        assert_eq!(history.velocity(), None);
     }
 }

@@ -1,27 +1,27 @@
-//! Joints from a plain depth camera: the shopper parted from all else that is seen, and the body followed.
+//! Joints from a plain depth camera: the shopper is segmented from the scene, and the body model tracks them.
 
 use toile_assets::body::Sex;
 use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::segment::{Segmenter, Zone};
 
-use super::{BodyFit, Options, Seen};
+use super::{BodyFit, FitOptions, FittedFrame};
 
-/// A shopper followed through the frames of a depth camera, whatever else these show.
-pub struct Follower {
+/// Tracks a shopper through the frames of a depth camera, whatever else these show.
+pub struct BodyTracker {
     segmenter: Segmenter,
     fit: BodyFit,
     /// The last frame with nothing in it but the shopper.
     alone: Option<DepthFrame>,
 }
 
-impl Follower {
-    /// Nobody yet; the body is of the family of a sex, and the shopper whoever comes into the zone.
-    pub fn new(sex: Sex, zone: Zone, options: Options) -> Self {
+impl BodyTracker {
+    /// A tracker that has seen nobody; the body model is that of a sex, and the shopper is whoever enters the zone.
+    pub fn new(sex: Sex, zone: Zone, options: FitOptions) -> Self {
         Self { segmenter: Segmenter::new(zone), fit: BodyFit::new(sex, options), alone: None }
     }
 
-    /// Follows the shopper into the next frame. Whoever takes their place in the zone is found anew.
-    pub fn push(&mut self, frame: &DepthFrame) -> Seen {
+    /// Tracks the shopper in the next frame. Whoever takes their place in the zone starts a new fit.
+    pub fn push(&mut self, frame: &DepthFrame) -> FittedFrame {
         let mask = self.segmenter.push(frame).mask;
         let alone = match &mut self.alone {
             Some(alone) if alone.depth_mm.len() == frame.depth_mm.len() => alone,
@@ -46,8 +46,8 @@ impl Follower {
     }
 }
 
-/// The joints of a whole recording, one a frame; those of frames in which nobody is followed are absent.
-pub fn follow(frames: &[DepthFrame], sex: Sex, options: Options) -> Vec<Joints> {
-    let mut follower = Follower::new(sex, Zone::default(), options);
-    frames.iter().map(|frame| follower.push(frame).joints).collect()
+/// The joints of a whole recording, one a frame; absent in frames in which nobody is tracked.
+pub fn track(frames: &[DepthFrame], sex: Sex, options: FitOptions) -> Vec<Joints> {
+    let mut tracker = BodyTracker::new(sex, Zone::default(), options);
+    frames.iter().map(|frame| tracker.push(frame).joints).collect()
 }

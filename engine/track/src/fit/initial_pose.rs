@@ -1,13 +1,13 @@
-//! Where to begin: somebody stands there, facing the camera more or less, their arms in one of a few ways.
+//! The initial pose of the fit: a person standing about facing the camera, each arm in one of a few candidate poses.
 
 use glam::{Quat, Vec3};
 use toile_assets::body::shape::Shapes;
 use toile_assets::body::{En, Wanted};
 use toile_assets::skeleton::{JOINTS, Joint};
 
-use super::figure::{Cast, State};
-use super::turns::hanging;
-use super::view::View;
+use super::depth_cells::DepthCells;
+use super::joint_angles::hanging;
+use super::posed_body::{BodyModel, FitState};
 
 /// Half the depth of a pelvis (m).
 const HALF_PELVIS: f32 = 0.10;
@@ -15,29 +15,29 @@ const HALF_PELVIS: f32 = 0.10;
 /// Half of what a head and its hair are wide (m).
 const HEAD_REACH: f32 = 0.16;
 
-/// Statures that are believed at first sight (m).
+/// Statures accepted from the image's height (m).
 const STATURES: std::ops::Range<f32> = 1.35..2.15;
 
-/// Heights between which the pelvis is sought, over stature.
+/// Heights between which the pelvis is sought, as fractions of stature.
 const HIPS: [f32; 2] = [0.44, 0.60];
 
-/// One way in which somebody may hold an arm (rad): from the vertical, bend of the elbow, turn of the whole arm about the
-/// vertical, inwards positive, and about itself, the forearm upwards positive.
+/// A candidate pose of an arm (rad): angle from the vertical, bend of the elbow, rotation of the whole arm about the
+/// vertical (inwards positive) and about itself (forearm upwards positive).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Arm {
+pub(super) struct ArmPose {
     out: f32,
     bend: f32,
     inwards: f32,
     twist: f32,
 }
 
-const fn arm(out: f32, bend: f32, inwards: f32, twist: f32) -> Arm {
-    Arm { out, bend, inwards, twist }
+const fn arm(out: f32, bend: f32, inwards: f32, twist: f32) -> ArmPose {
+    ArmPose { out, bend, inwards, twist }
 }
 
 /// Hanging a little out, well out, a hand on the hip, a hand before the chest, stretched aside, a forearm ahead, a
 /// forearm hanging from a raised elbow, one upright above it, a hand beside the shoulder, an arm raised.
-pub(super) const ARMS: [Arm; 10] = [
+pub(super) const ARMS: [ArmPose; 10] = [
     arm(0.25, 0.1, 0.0, 0.0),
     arm(0.7, 0.1, 0.0, 0.0),
     arm(0.6, 1.6, 1.2, 0.0),
@@ -50,9 +50,9 @@ pub(super) const ARMS: [Arm; 10] = [
     arm(2.3, 0.3, 0.0, 0.0),
 ];
 
-/// Puts an arm of a state as told.
-pub(super) fn hold(cast: &Cast, state: &mut State, shoulder: Joint, arm: Arm) {
-    let rest = cast.shapes.skeleton(&state.shape);
+/// Sets an arm of a state to a candidate pose.
+pub(super) fn set_arm(model: &BodyModel, state: &mut FitState, shoulder: Joint, arm: ArmPose) {
+    let rest = model.shapes.skeleton(&state.shape);
     let left = shoulder == Joint::LeftShoulder;
     let elbow = if left { Joint::LeftElbow } else { Joint::RightElbow };
     let wrist = if left { Joint::LeftWrist } else { Joint::RightWrist };
@@ -62,13 +62,13 @@ pub(super) fn hold(cast: &Cast, state: &mut State, shoulder: Joint, arm: Arm) {
     let twist = Quat::from_axis_angle(along, side * arm.twist);
     state.local[shoulder.index()] = Quat::from_rotation_y(side * arm.inwards) * down * twist;
     state.local[wrist.index()] = Quat::IDENTITY;
-    if let Some(turn) = cast.turns.iter().find(|t| t.joint == elbow) {
+    if let Some(turn) = model.joint_angles.iter().find(|t| t.joint == elbow) {
         state.local[elbow.index()] = Quat::from_axis_angle(turn.axis, turn.range[0] + 10f32.to_radians() + arm.bend);
     }
 }
 
-/// A person of the picture's height, upright in the middle of what is seen, facing the camera.
-pub(super) fn upright(cast: &Cast, view: &View, ground: Option<f32>) -> State {
+/// A person of the image's height, upright at the middle of the cells, facing the camera.
+pub(super) fn upright(model: &BodyModel, view: &DepthCells, ground: Option<f32>) -> FitState {
     let mut heights: Vec<f32> = view.cells.iter().map(|c| c.point.y).collect();
     heights.sort_unstable_by(f32::total_cmp);
     let bottom = ground.unwrap_or(heights[heights.len() / 200]);
@@ -85,23 +85,23 @@ pub(super) fn upright(cast: &Cast, view: &View, ground: Option<f32>) -> State {
     let mut above: Vec<f32> = view.cells.iter().map(|c| c.point).filter(near).map(|p| p.y).collect();
     above.sort_unstable_by(f32::total_cmp);
     let top = above.len().checked_sub(3).map_or(heights[heights.len() - 1], |i| above[i]);
-    let shape = of_stature(cast.shapes, top - bottom);
-    let stature = cast.shapes.read(&shape).readings.of(En::Stature);
+    let shape = of_stature(model.shapes, top - bottom);
+    let stature = model.shapes.read(&shape).readings.of(En::Stature);
     let band = HIPS.map(|h| top - stature * (1.0 - h));
     let at = |axis: fn(&Vec3) -> f32, or: f32| middle(band[0], band[1], axis).unwrap_or(or);
     let surface = Vec3::new(at(|p| p.x, whole.x), 0.0, at(|p| p.z, whole.z));
-    let towards = (view.eye() - surface).with_y(0.0).normalize_or(Vec3::Z);
-    let pelvis = cast.shapes.skeleton(&shape).at(Joint::Pelvis).y;
+    let towards = (view.camera_position() - surface).with_y(0.0).normalize_or(Vec3::Z);
+    let pelvis = model.shapes.skeleton(&shape).at(Joint::Pelvis).y;
     let root = (surface - towards * HALF_PELVIS).with_y(top - stature + pelvis);
-    let mut state = State { root, local: [Quat::IDENTITY; JOINTS], shape };
+    let mut state = FitState { root, local: [Quat::IDENTITY; JOINTS], shape };
     state.local[0] = Quat::from_rotation_y(towards.x.atan2(towards.z));
     for shoulder in [Joint::LeftShoulder, Joint::RightShoulder] {
-        hold(cast, &mut state, shoulder, ARMS[0]);
+        set_arm(model, &mut state, shoulder, ARMS[0]);
     }
     state
 }
 
-/// What somebody of that stature has on average; the mean person where that cannot be a stature.
+/// The mean shape of people of that stature; the mean person where it is no plausible stature.
 fn of_stature(shapes: &Shapes, height: f32) -> toile_assets::body::shape::Shape {
     let wanted = Wanted::<En>::new().with(En::Stature, height);
     if STATURES.contains(&height) { shapes.wanted(&wanted).unwrap_or(*shapes.mean()) } else { *shapes.mean() }
@@ -113,15 +113,15 @@ mod tests {
     use toile_assets::body::Sex;
     use toile_assets::skeleton::Pose;
 
-    /// Where the wrists are with both arms held one way, relative to the shoulders, the right one's mirrored (m).
+    /// Positions of the wrists relative to the shoulders in one arm pose, the right one's mirrored (m).
     fn hands(way: usize) -> [Vec3; 2] {
         let shapes = Shapes::of(Sex::Male);
-        let cast = Cast::new(shapes, 0.1);
-        let mut state = State { root: Vec3::ZERO, local: [Quat::IDENTITY; JOINTS], shape: *shapes.mean() };
+        let model = BodyModel::new(shapes, 0.1);
+        let mut state = FitState { root: Vec3::ZERO, local: [Quat::IDENTITY; JOINTS], shape: *shapes.mean() };
         let rest = shapes.skeleton(shapes.mean());
         let pairs = [(Joint::LeftShoulder, Joint::LeftWrist), (Joint::RightShoulder, Joint::RightWrist)];
         pairs.map(|(shoulder, wrist)| {
-            hold(&cast, &mut state, shoulder, ARMS[way]);
+            set_arm(&model, &mut state, shoulder, ARMS[way]);
             let pose = Pose { root: Vec3::ZERO, local: state.local };
             let (mut turned, mut place) = (Quat::IDENTITY, Vec3::ZERO);
             let mut chain = vec![wrist];

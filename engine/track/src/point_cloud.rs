@@ -37,7 +37,7 @@ const CHEST: std::ops::Range<f32> = 0.15..0.65;
 
 /// One person, as the camera sees them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cloud {
+pub struct PersonCloud {
     /// Surface points, world (m).
     pub points: Vec<Vec3>,
     /// Pixel that each of them comes from, row by row from the top left.
@@ -52,7 +52,7 @@ pub struct Cloud {
     pub cut_below: bool,
 }
 
-impl Cloud {
+impl PersonCloud {
     /// The frame that the cloud comes from with nothing in it but this person.
     pub fn alone(&self, frame: &DepthFrame) -> DepthFrame {
         let mut depth_mm = vec![0; frame.depth_mm.len()].into_boxed_slice();
@@ -65,31 +65,31 @@ impl Cloud {
 
 /// What one depth frame holds.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Scene {
+pub struct PeopleInView {
     /// People, the nearest first.
-    pub people: Vec<Cloud>,
+    pub people: Vec<PersonCloud>,
     /// Distance of the nearest thing that would be a person but stands beyond [`FARTHEST`] (m).
     pub too_far: Option<f32>,
 }
 
 /// Finds the people of a frame.
-pub fn people(frame: &DepthFrame) -> Scene {
-    let grid = Grid::new(frame);
-    let mut scene = Scene { people: Vec::new(), too_far: None };
+pub fn find_people(frame: &DepthFrame) -> PeopleInView {
+    let grid = DepthGrid::new(frame);
+    let mut found = PeopleInView { people: Vec::new(), too_far: None };
     for piece in grid.pieces() {
         let Some(cloud) = grid.cloud(&piece) else { continue };
         if cloud.distance > FARTHEST {
-            scene.too_far = Some(scene.too_far.map_or(cloud.distance, |d| d.min(cloud.distance)));
+            found.too_far = Some(found.too_far.map_or(cloud.distance, |d| d.min(cloud.distance)));
         } else {
-            scene.people.push(cloud);
+            found.people.push(cloud);
         }
     }
-    scene.people.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-    scene
+    found.people.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+    found
 }
 
 /// The frame in cells of a few pixels, each with the depth of its nearest pixel (m), 0 where there is none or floor.
-struct Grid<'a> {
+struct DepthGrid<'a> {
     frame: &'a DepthFrame,
     step: usize,
     columns: usize,
@@ -97,7 +97,7 @@ struct Grid<'a> {
     depth: Vec<f32>,
 }
 
-impl<'a> Grid<'a> {
+impl<'a> DepthGrid<'a> {
     fn new(frame: &'a DepthFrame) -> Self {
         let Intrinsics { width, height, .. } = frame.intrinsics;
         let (width, height) = (width as usize, height as usize);
@@ -211,7 +211,7 @@ impl<'a> Grid<'a> {
     }
 
     /// The points of a piece, if it is as large as a person and shaped like one.
-    fn cloud(&self, piece: &[usize]) -> Option<Cloud> {
+    fn cloud(&self, piece: &[usize]) -> Option<PersonCloud> {
         let focal = (self.frame.intrinsics.fx * self.frame.intrinsics.fy).sqrt();
         let side = self.step as f32 / focal;
         let area: f32 = piece.iter().map(|&c| (self.depth[c] * side).powi(2)).sum();
@@ -228,7 +228,7 @@ impl<'a> Grid<'a> {
         let (points, pixels) = self.points(piece);
         let [_, top] = extent(cells.iter().map(|p| p.y));
         let elevation = ((top - self.frame.camera_to_world.translation.y) / distance).atan();
-        Some(Cloud {
+        Some(PersonCloud {
             cut_below: self.cut_below(piece, &cells),
             pitch: distance / focal,
             distance,

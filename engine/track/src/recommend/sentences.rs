@@ -1,17 +1,18 @@
-//! A recommendation in words.
+//! A recommendation in sentences.
 
-use super::chance::ease_of;
+use super::probability::ease_of;
 use super::{
-    EaseRange, Judged, MadeSize, Offer, SURE, SizeChance, Tape, Verdict, WEIGHTS, WORTH_NAMING, Zone, ZoneFit,
+    EaseRange, MadeSize, Offer, SURE, ScoredZone, SizeProbability, TapeAdvice, Verdict, WEIGHTS, WORTH_NAMING, Zone,
+    ZoneFit,
 };
 use crate::measure::Measurements;
 
-/// The whole in words, of the size chosen and the one that is best.
-pub(super) fn verdict(sizes: &[SizeChance], [chosen, best]: [usize; 2], tape: Option<&Tape>) -> String {
-    let SizeChance { size, probability } = &sizes[chosen];
+/// The verdict on the size chosen, beside the one that is best.
+pub(super) fn verdict(sizes: &[SizeProbability], [chosen, best]: [usize; 2], tape: Option<&TapeAdvice>) -> String {
+    let SizeProbability { size, probability } = &sizes[chosen];
     let percent = 100.0 * probability;
     if chosen != best {
-        let SizeChance { size: better, probability } = &sizes[best];
+        let SizeProbability { size: better, probability } = &sizes[best];
         return format!(
             "Size {size} was asked for ({percent:.0} % likely to be the best): size {better} would fit better ({:.0} %).",
             100.0 * probability
@@ -20,7 +21,7 @@ pub(super) fn verdict(sizes: &[SizeChance], [chosen, best]: [usize; 2], tape: Op
     if *probability >= SURE {
         return format!("Size {size} fits best: {percent:.0} % sure.");
     }
-    let mut others: Vec<&SizeChance> =
+    let mut others: Vec<&SizeProbability> =
         sizes.iter().filter(|s| s.size != *size && s.probability >= WORTH_NAMING).collect();
     others.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     let others: Vec<String> = others.iter().map(|s| format!("{} ({:.0} %)", s.size, 100.0 * s.probability)).collect();
@@ -43,7 +44,7 @@ pub(super) fn tape(zone: Zone, now: f32, then: f32) -> String {
 }
 
 /// How one zone fits.
-pub(super) fn fit(zone: &Judged, size: &MadeSize) -> Option<ZoneFit> {
+pub(super) fn fit(zone: &ScoredZone, size: &MadeSize) -> Option<ZoneFit> {
     let ease = ease_of(zone, size)?;
     let EaseRange { least, most, zone: at } = zone.ease;
     let verdict = match ease {
@@ -77,7 +78,7 @@ pub(super) fn fit(zone: &Judged, size: &MadeSize) -> Option<ZoneFit> {
 }
 
 /// What the person should know besides: that no size is made for them.
-pub(super) fn note(measured: &Measurements, offer: &Offer, zones: &[Judged]) -> Option<String> {
+pub(super) fn note(measured: &Measurements, offer: &Offer, zones: &[ScoredZone]) -> Option<String> {
     let primary = zones.first()?;
     let zone = primary.ease.zone;
     let smallest = offer.table.size(&offer.sizes.first()?.code).ok()?;

@@ -1,6 +1,6 @@
 //! How probable each size is: bodies drawn from the measures' errors, each given the size that suits it best.
 
-use super::{EaseRange, Judged, MadeSize};
+use super::{EaseRange, MadeSize, ScoredZone};
 
 /// Bodies drawn from the measures' errors: a probability is then known to about a hundredth. A power of two, so that
 /// the shares sum to exactly 1.
@@ -20,21 +20,21 @@ const TIGHT_TO_LOOSE: f32 = 2.0;
 const OFF_MIDDLE: f32 = 0.1;
 
 /// What the bodies say about each size.
-pub(super) struct Chances {
+pub(super) struct SizeProbabilities {
     /// Mean penalty (m of ease outside the comfortable range) `[sizes]`.
     pub penalty: Vec<f32>,
     /// Share of the bodies that the size suits best `[sizes]`; sums to 1.
     pub share: Vec<f32>,
 }
 
-impl Chances {
+impl SizeProbabilities {
     /// Judges all sizes on bodies with the measures' errors.
-    pub(super) fn of(zones: &[Judged], sizes: &[MadeSize]) -> Self {
+    pub(super) fn of(zones: &[ScoredZone], sizes: &[MadeSize]) -> Self {
         Self::drawn(BODIES, sizes, |body, i| zones[i].body.sigma * normal(body, i), zones)
     }
 
     /// Judges all sizes on `bodies` bodies; `error` is how much larger zone `i` of a body is than measured (m).
-    fn drawn(bodies: usize, sizes: &[MadeSize], error: impl Fn(usize, usize) -> f32, zones: &[Judged]) -> Self {
+    fn drawn(bodies: usize, sizes: &[MadeSize], error: impl Fn(usize, usize) -> f32, zones: &[ScoredZone]) -> Self {
         let mut chances = Self { penalty: vec![0.0; sizes.len()], share: vec![0.0; sizes.len()] };
         let mut each = vec![0.0; sizes.len()];
         let mut errors = vec![0.0; zones.len()];
@@ -57,23 +57,23 @@ impl Chances {
 /// over the values that the tape may read, of the largest probability given that value. It is never less than the
 /// largest probability now (Raiffa and Schlaifer 1961, expected value of perfect information, with the right size worth
 /// 1 and any other 0).
-pub(super) fn once_known(zones: &[Judged], sizes: &[MadeSize], known: usize) -> f32 {
+pub(super) fn once_known(zones: &[ScoredZone], sizes: &[MadeSize], known: usize) -> f32 {
     let taped = |stratum: usize| zones[known].body.sigma * quantile((stratum as f32 + 0.5) / TAPED as f32);
     let surest = |stratum: usize| {
         let error = |body: usize, i: usize| {
             if i == known { taped(stratum) } else { zones[i].body.sigma * normal(body, i) }
         };
-        Chances::drawn(BODIES_TAPED, sizes, error, zones).share.into_iter().fold(0.0, f32::max)
+        SizeProbabilities::drawn(BODIES_TAPED, sizes, error, zones).share.into_iter().fold(0.0, f32::max)
     };
     (0..TAPED).map(surest).sum::<f32>() / TAPED as f32
 }
 
 /// Ease of a size on the body as measured (m).
-pub(super) fn ease_of(zone: &Judged, size: &MadeSize) -> Option<f32> {
+pub(super) fn ease_of(zone: &ScoredZone, size: &MadeSize) -> Option<f32> {
     Some(size.zones.iter().find(|z| z.zone == zone.ease.zone)?.girth_m - zone.body.value)
 }
 
-fn penalty_at(zone: &Judged, ease: f32) -> f32 {
+fn penalty_at(zone: &ScoredZone, ease: f32) -> f32 {
     let EaseRange { least, most, .. } = zone.ease;
     let outside = TIGHT_TO_LOOSE * (least - ease).max(0.0) + (ease - most).max(0.0);
     outside + OFF_MIDDLE * (ease - 0.5 * (least + most)).abs()

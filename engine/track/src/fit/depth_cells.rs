@@ -1,4 +1,4 @@
-//! The shopper in one depth frame, in cells of a few pixels: mean points with normals, and the outline.
+//! The shopper in one depth frame, averaged into cells of a few pixels: mean points with normals, and the outline.
 
 use std::ops::Range;
 
@@ -12,68 +12,68 @@ const CELL: f32 = 0.013;
 /// Pixels of a cell farther than this behind its nearest belong to another surface (m).
 const SAME_SURFACE: f32 = 0.05;
 
-/// Share of a cell's pixels that must be there.
+/// Least fraction of a cell's pixels that are valid.
 const FILLED: f32 = 0.4;
 
 /// A cell of measured surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Cell {
+pub(super) struct DepthCell {
     /// Mean of its points, world (m).
     pub point: Vec3,
     /// Normal towards the camera (unit), or zero where its neighbours give none.
     pub normal: Vec3,
-    /// Its place in the grid.
+    /// Column in the grid, from the left.
     pub column: u16,
-    /// Its place in the grid.
+    /// Row in the grid, from the top.
     pub row: u16,
 }
 
-/// Cells around the shopper in which the nearest one is looked for: as far as samples are pulled in.
-const ROOM: usize = 12;
+/// Width of the border around the shopper in which nearest cells are known (cells): as far as samples are pulled in.
+const BORDER: usize = 12;
 
-/// Nothing there.
+/// Marks a place of the grid without a cell.
 const NONE: u32 = u32::MAX;
 
-/// One frame, seen in cells.
+/// One frame in cells.
 #[derive(Debug)]
-pub(super) struct View {
-    /// Cells of surface.
-    pub cells: Vec<Cell>,
-    /// Cells across and down.
+pub(super) struct DepthCells {
+    /// The cells that have a surface.
+    pub cells: Vec<DepthCell>,
+    /// Columns of the grid.
     pub columns: usize,
-    /// Cells across and down.
+    /// Rows of the grid.
     pub rows: usize,
-    /// Pixels of a cell's side.
+    /// Side of a cell (pixels).
     step: usize,
     intrinsics: Intrinsics,
     world_to_camera: Affine3A,
     camera_to_world: Affine3A,
-    /// Which of `cells` stands at each place of the grid.
+    /// Index into `cells` by place in the grid; [`NONE`] where there is none.
     at: Vec<u32>,
-    /// The nearest place of the grid that has a cell, within `reach`.
+    /// The nearest place of the grid that has a cell `[columns x rows]`, valid within `reach`.
     nearest: Vec<[u16; 2]>,
     depth: Vec<f32>,
-    /// The part of the grid that holds the shopper, and that with room around.
-    extent: Extent,
-    reach: Extent,
+    /// The part of the grid that holds the shopper, and the same with [`BORDER`] around it.
+    extent: CellRange,
+    reach: CellRange,
 }
 
 /// A part of the grid: first and end of its columns and rows.
 #[derive(Debug, Clone, Default, PartialEq)]
-struct Extent {
+struct CellRange {
     columns: Range<usize>,
     rows: Range<usize>,
 }
 
-impl Extent {
+impl CellRange {
     fn widened(&self, by: usize, columns: usize, rows: usize) -> Self {
         let wider = |r: &Range<usize>, end: usize| r.start.saturating_sub(by)..(r.end + by).min(end);
         Self { columns: wider(&self.columns, columns), rows: wider(&self.rows, rows) }
     }
 }
 
-impl View {
-    /// Nothing seen yet.
+impl DepthCells {
+    /// An empty grid.
     pub(super) fn new() -> Self {
         Self {
             cells: Vec::new(),
@@ -86,13 +86,13 @@ impl View {
             at: Vec::new(),
             nearest: Vec::new(),
             depth: Vec::new(),
-            extent: Extent::default(),
-            reach: Extent::default(),
+            extent: CellRange::default(),
+            reach: CellRange::default(),
         }
     }
 
-    /// Takes in a frame that holds nothing but the shopper. `false` if there is too little to see.
-    pub(super) fn look(&mut self, frame: &DepthFrame) -> bool {
+    /// Reads a frame that holds nothing but the shopper. `false` if it has too few cells.
+    pub(super) fn read(&mut self, frame: &DepthFrame) -> bool {
         self.intrinsics = frame.intrinsics;
         self.camera_to_world = frame.camera_to_world;
         self.world_to_camera = frame.camera_to_world.inverse();
@@ -103,18 +103,18 @@ impl View {
         self.columns = frame.intrinsics.width as usize / self.step;
         self.rows = frame.intrinsics.height as usize / self.step;
         self.extent = self.occupied(frame);
-        self.reach = self.extent.widened(ROOM, self.columns, self.rows);
+        self.reach = self.extent.widened(BORDER, self.columns, self.rows);
         self.read_cells(frame);
         self.read_normals();
         if self.cells.len() < FEWEST_CELLS {
             return false;
         }
-        self.spread();
+        self.distance_transform();
         true
     }
 
     /// The part of the grid that holds anything.
-    fn occupied(&self, frame: &DepthFrame) -> Extent {
+    fn occupied(&self, frame: &DepthFrame) -> CellRange {
         let width = frame.intrinsics.width as usize;
         let mut any = vec![0u16; width];
         let mut rows: Option<Range<usize>> = None;
@@ -129,7 +129,7 @@ impl View {
         let cells = |pixels: Range<usize>, most: usize| {
             (pixels.start / self.step).min(most)..pixels.end.div_ceil(self.step).min(most)
         };
-        Extent { columns: cells(first..end, self.columns), rows: cells(rows.unwrap_or(0..0), self.rows) }
+        CellRange { columns: cells(first..end, self.columns), rows: cells(rows.unwrap_or(0..0), self.rows) }
     }
 
     fn read_cells(&mut self, frame: &DepthFrame) {
@@ -152,14 +152,14 @@ impl View {
                 let point = self.camera_to_world.transform_point3(self.intrinsics.unproject(u, v, z));
                 self.at[row * self.columns + column] = self.cells.len() as u32;
                 self.depth[row * self.columns + column] = z;
-                self.cells.push(Cell { point, normal: Vec3::ZERO, column: column as u16, row: row as u16 });
+                self.cells.push(DepthCell { point, normal: Vec3::ZERO, column: column as u16, row: row as u16 });
             }
         }
     }
 
     fn read_normals(&mut self) {
         let (columns, rows) = (self.columns as isize, self.rows as isize);
-        let eye = self.eye();
+        let camera = self.camera_position();
         for i in 0..self.cells.len() {
             let (c, r) = (self.cells[i].column as isize, self.cells[i].row as isize);
             let here = self.depth[(r * columns + c) as usize];
@@ -182,20 +182,20 @@ impl View {
             let down = along(beside(0, -1), beside(0, 1));
             if let (Some(across), Some(down)) = (across, down) {
                 let normal = down.cross(across).normalize_or_zero();
-                self.cells[i].normal = if normal.dot(eye - self.cells[i].point) < 0.0 { -normal } else { normal };
+                self.cells[i].normal = if normal.dot(camera - self.cells[i].point) < 0.0 { -normal } else { normal };
             }
         }
     }
 
-    /// Finds each place's nearest cell (Danielsson 1980, in two passes).
-    fn spread(&mut self) {
+    /// Finds each place's nearest cell (Euclidean distance transform, Danielsson 1980, in two passes).
+    fn distance_transform(&mut self) {
         let columns = self.columns;
         self.nearest.clear();
         self.nearest.resize(columns * self.rows, [u16::MAX; 2]);
         for cell in &self.cells {
             self.nearest[cell.row as usize * columns + cell.column as usize] = [cell.column, cell.row];
         }
-        let Extent { columns: across, rows: down } = self.reach.clone();
+        let CellRange { columns: across, rows: down } = self.reach.clone();
         let off = |near: [u16; 2], c: usize, r: usize| {
             if near[0] == u16::MAX {
                 return u32::MAX;
@@ -228,12 +228,12 @@ impl View {
         }
     }
 
-    /// Where the camera stands (m).
-    pub(super) fn eye(&self) -> Vec3 {
+    /// Position of the camera, world (m).
+    pub(super) fn camera_position(&self) -> Vec3 {
         self.camera_to_world.translation.into()
     }
 
-    /// Place in the grid, in cells, at which a world point is seen, and its depth (m).
+    /// Projection of a world point (cells), and its depth (m).
     pub(super) fn project(&self, point: Vec3) -> Option<(Vec2, f32)> {
         let p = self.world_to_camera.transform_point3(point);
         let (u, v) = self.intrinsics.project(p)?;
@@ -255,7 +255,7 @@ impl View {
         if self.at[r * self.columns + c] != NONE {
             return None;
         }
-        // Farther out than is looked around, the nearest cell is the one of where that ends.
+        // Beyond the border the nearest cell is that of the border's edge.
         let c = c.clamp(self.reach.columns.start, self.reach.columns.end - 1);
         let r = r.clamp(self.reach.rows.start, self.reach.rows.end - 1);
         let near = self.nearest[r * self.columns + c];
@@ -274,7 +274,7 @@ impl View {
     }
 }
 
-/// Fewer cells than this are no person: a tenth of one at 4 m.
+/// Fewest cells of a person: a tenth of one at 4 m.
 const FEWEST_CELLS: usize = 200;
 
 fn mean_depth(frame: &DepthFrame) -> Option<f32> {

@@ -1,94 +1,95 @@
-//! Normal equations of a least squares step: rows added up, then solved by Cholesky's factors.
+//! Normal equations of a least squares step: Jacobian rows summed, then solved by Cholesky factorisation.
 
 use toile_assets::body::shape::SHAPES;
 
-use super::figure::{POSE, Row, UNKNOWNS, WIDTH};
+use super::posed_body::{JacobianRow, POSE, UNKNOWNS, WIDTH};
 
-/// `curve` is J^T W J (upper triangle), `slope` J^T W r, `cost` the weighted sum of squares.
-pub(super) struct Equations {
-    curve: Box<[Row; UNKNOWNS]>,
-    slope: Row,
+/// `hessian` is J^T W J (Gauss-Newton, upper triangle), `gradient` J^T W r, `cost` the weighted sum of squares.
+pub(super) struct NormalEquations {
+    hessian: Box<[JacobianRow; UNKNOWNS]>,
+    gradient: JacobianRow,
     pub cost: f64,
 }
 
 /// Half the cost around a state as a quadratic of the shape alone, the pose following it.
-pub(super) struct ShapeCurve {
-    /// Its curvature.
-    pub curve: [[f64; SHAPES]; SHAPES],
-    /// Its slope at the state.
-    pub slope: [f64; SHAPES],
+pub(super) struct ShapeQuadratic {
+    /// Second derivatives.
+    pub hessian: [[f64; SHAPES]; SHAPES],
+    /// First derivatives at the state.
+    pub gradient: [f64; SHAPES],
 }
 
-impl Equations {
+impl NormalEquations {
     pub(super) fn new() -> Self {
-        Self { curve: Box::new([[0.0; WIDTH]; UNKNOWNS]), slope: [0.0; WIDTH], cost: 0.0 }
+        Self { hessian: Box::new([[0.0; WIDTH]; UNKNOWNS]), gradient: [0.0; WIDTH], cost: 0.0 }
     }
 
     pub(super) fn clear(&mut self) {
-        self.curve.iter_mut().for_each(|row| row.fill(0.0));
-        self.slope.fill(0.0);
+        self.hessian.iter_mut().for_each(|row| row.fill(0.0));
+        self.gradient.fill(0.0);
         self.cost = 0.0;
     }
 
-    /// Adds a residual of some weight with its row.
-    pub(super) fn add(&mut self, row: &Row, residual: f32, weight: f32) {
+    /// Adds a weighted residual with its Jacobian row.
+    pub(super) fn add(&mut self, row: &JacobianRow, residual: f32, weight: f32) {
         for i in 0..UNKNOWNS {
             let by = weight * row[i];
             if by != 0.0 {
-                // From the lanes that hold the diagonal on: what lies below it is not used.
+                // Starts at the group of eight that holds the diagonal; entries below the diagonal are never read.
                 let from = i & !7;
-                for (c, r) in self.curve[i][from..].iter_mut().zip(&row[from..]) {
+                for (c, r) in self.hessian[i][from..].iter_mut().zip(&row[from..]) {
                     *c += by * r;
                 }
             }
         }
         let by = weight * residual;
-        self.slope.iter_mut().zip(row).for_each(|(s, r)| *s += by * r);
+        self.gradient.iter_mut().zip(row).for_each(|(s, r)| *s += by * r);
         self.cost += f64::from(by * residual);
     }
 
-    /// Adds a residual of one unknown.
+    /// Adds a weighted residual that depends on one unknown only, with derivative 1.
     pub(super) fn add_one(&mut self, unknown: usize, residual: f32, weight: f32) {
-        self.curve[unknown][unknown] += weight;
-        self.slope[unknown] += weight * residual;
+        self.hessian[unknown][unknown] += weight;
+        self.gradient[unknown] += weight * residual;
         self.cost += f64::from(weight * residual * residual);
     }
 
     fn at(&self, i: usize, j: usize) -> f64 {
-        f64::from(self.curve[i.min(j)][i.max(j)])
+        f64::from(self.hessian[i.min(j)][i.max(j)])
     }
 
-    /// The step to the least cost together with a quadratic of the shape; `damping` is a share of each diagonal.
-    pub(super) fn step(&self, shape: &ShapeCurve, damping: f64) -> [f64; UNKNOWNS] {
+    /// The Gauss-Newton step with a quadratic of the shape added; `damping` is a fraction of each diagonal
+    /// (Levenberg-Marquardt).
+    pub(super) fn step(&self, shape: &ShapeQuadratic, damping: f64) -> [f64; UNKNOWNS] {
         let mut a = vec![[0.0; UNKNOWNS]; UNKNOWNS];
         let mut x = [0.0; UNKNOWNS];
         for i in 0..UNKNOWNS {
             for j in 0..=i {
                 a[i][j] = self.at(i, j);
                 if j >= POSE {
-                    a[i][j] += shape.curve[i - POSE][j - POSE];
+                    a[i][j] += shape.hessian[i - POSE][j - POSE];
                 }
             }
             a[i][i] = a[i][i] * (1.0 + damping) + 1e-9;
-            x[i] = -f64::from(self.slope[i]) - if i >= POSE { shape.slope[i - POSE] } else { 0.0 };
+            x[i] = -f64::from(self.gradient[i]) - if i >= POSE { shape.gradient[i - POSE] } else { 0.0 };
         }
         factor(&mut a, UNKNOWNS);
         substitute(&a, &mut x);
         x
     }
 
-    /// The pose eliminated: what the frame says of the shape.
-    pub(super) fn shape(&self) -> ShapeCurve {
+    /// The pose eliminated (Schur complement): the frame's information about the shape alone.
+    pub(super) fn shape(&self) -> ShapeQuadratic {
         let mut a = vec![[0.0; UNKNOWNS]; UNKNOWNS];
-        let mut slope = [0.0; UNKNOWNS];
+        let mut gradient = [0.0; UNKNOWNS];
         for i in 0..UNKNOWNS {
             for j in 0..=i {
                 a[i][j] = self.at(i, j);
             }
             a[i][i] += 1e-9;
-            slope[i] = f64::from(self.slope[i]);
+            gradient[i] = f64::from(self.gradient[i]);
         }
-        // Factors of the pose's block only: what is left of the shape's is its Schur complement.
+        // Eliminates the pose's block only: what remains of the shape's block is its Schur complement.
         for k in 0..POSE {
             let pivot = a[k][k].max(1e-12);
             for i in k + 1..UNKNOWNS {
@@ -97,13 +98,13 @@ impl Equations {
                     for j in k + 1..=i {
                         a[i][j] -= by * a[j][k];
                     }
-                    slope[i] -= by * slope[k];
+                    gradient[i] -= by * gradient[k];
                 }
             }
         }
-        ShapeCurve {
-            curve: std::array::from_fn(|i| std::array::from_fn(|j| a[POSE + i.max(j)][POSE + i.min(j)])),
-            slope: std::array::from_fn(|i| slope[POSE + i]),
+        ShapeQuadratic {
+            hessian: std::array::from_fn(|i| std::array::from_fn(|j| a[POSE + i.max(j)][POSE + i.min(j)])),
+            gradient: std::array::from_fn(|i| gradient[POSE + i]),
         }
     }
 }
@@ -168,39 +169,39 @@ mod tests {
     use super::*;
     use toile_assets::numeric::random::SplitMix64;
 
-    fn rows() -> Vec<(Row, f32)> {
+    fn rows() -> Vec<(JacobianRow, f32)> {
         let mut rng = SplitMix64::new(7);
         let row = |rng: &mut SplitMix64| std::array::from_fn(|i| if i < UNKNOWNS { rng.gaussian() } else { 0.0 });
         (0..3 * UNKNOWNS).map(|_| (row(&mut rng), rng.gaussian())).collect()
     }
 
-    fn nothing() -> ShapeCurve {
-        ShapeCurve { curve: [[0.0; SHAPES]; SHAPES], slope: [0.0; SHAPES] }
+    fn nothing() -> ShapeQuadratic {
+        ShapeQuadratic { hessian: [[0.0; SHAPES]; SHAPES], gradient: [0.0; SHAPES] }
     }
 
     #[test]
     fn after_the_step_no_row_is_left_with_a_slope() {
-        let mut equations = Equations::new();
+        let mut equations = NormalEquations::new();
         rows().iter().for_each(|(row, r)| equations.add(row, *r, 2.0));
         let step = equations.step(&nothing(), 0.0);
-        let mut then = Equations::new();
+        let mut then = NormalEquations::new();
         for (row, r) in rows() {
             let moved: f64 = row.iter().zip(&step).map(|(a, b)| f64::from(*a) * b).sum();
             then.add(&row, r + moved as f32, 2.0);
         }
-        assert!(then.slope[..UNKNOWNS].iter().all(|s| s.abs() < 2e-3), "{:?}", then.slope);
+        assert!(then.gradient[..UNKNOWNS].iter().all(|s| s.abs() < 2e-3), "{:?}", then.gradient);
         assert!(then.cost < equations.cost);
     }
 
     #[test]
     fn eliminating_the_pose_leaves_the_same_shape() {
-        let mut equations = Equations::new();
+        let mut equations = NormalEquations::new();
         rows().iter().for_each(|(row, r)| equations.add(row, *r, 1.0));
         let whole = equations.step(&nothing(), 0.0);
-        let ShapeCurve { curve, slope } = equations.shape();
-        let (inverse, _) = invert(&curve);
+        let ShapeQuadratic { hessian, gradient } = equations.shape();
+        let (inverse, _) = invert(&hessian);
         for i in 0..SHAPES {
-            let step: f64 = -(0..SHAPES).map(|j| inverse[i][j] * slope[j]).sum::<f64>();
+            let step: f64 = -(0..SHAPES).map(|j| inverse[i][j] * gradient[j]).sum::<f64>();
             assert!((step - whole[POSE + i]).abs() < 1e-3, "{i}: {step} {}", whole[POSE + i]);
         }
     }

@@ -1,11 +1,12 @@
-//! Which sample of the body each cell of the picture shows: the nearest one that faces the camera as the cell does.
+//! Correspondences: the sample of the body that each depth cell shows, the nearest one that faces the camera as the
+//! cell does.
 
 use glam::{Vec2, Vec3};
 
-use super::figure::Figure;
-use super::view::{Cell, View};
+use super::depth_cells::{DepthCell, DepthCells};
+use super::posed_body::PosedBody;
 
-/// Least cosine between the normals of a cell and of the sample that it shows.
+/// Least cosine between the normals of a cell and of its sample.
 const ALIKE: f32 = 0.35;
 
 /// Least cosine between a sample's normal and the direction to the camera: a little beyond the horizon, so that cells at
@@ -19,52 +20,52 @@ const SLANTING: f32 = 0.25;
 /// Side of the buckets into which samples are sorted, in cells.
 const BUCKET: usize = 2;
 
-/// What the picture says of one sample.
+/// The cells that correspond to one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Match {
-    /// Sum of the points that show it (m).
+pub(super) struct Correspondence {
+    /// Sum of its cells' points, world (m).
     sum: Vec3,
-    /// How many they are.
+    /// Number of its cells.
     pub count: f32,
-    /// Where it is seen, in cells, and its depth (m); meaningless if it does not face the camera.
+    /// Its projection (cells); undefined if it does not face the camera.
     pub seen: Vec2,
-    /// Its depth (m).
+    /// Its depth before the camera (m); undefined if it does not face the camera.
     pub z: f32,
-    /// Whether it faces the camera, within the picture.
+    /// Whether it faces the camera and projects into the image.
     pub faces: bool,
 }
 
-impl Match {
-    /// Mean of the points that show it (m).
+impl Correspondence {
+    /// Mean of its cells' points (m).
     pub(super) fn mean(&self) -> Vec3 {
         self.sum / self.count
     }
 
-    /// Mean distance by which the body's surface lies outside of the points that show it (m), along the normal.
+    /// Distance of the body's surface outside that mean (m), along the normal.
     pub(super) fn outside(&self, point: Vec3, normal: Vec3) -> f32 {
         normal.dot(point - self.mean())
     }
 }
 
-/// The matches of one frame.
-pub(super) struct Matching {
-    /// One a sample.
-    pub of: Vec<Match>,
-    /// Share of the cells that some sample explains.
+/// The correspondences of one frame.
+pub(super) struct Correspondences {
+    /// The correspondence of each sample.
+    pub of: Vec<Correspondence>,
+    /// Fraction of the cells that have a sample.
     pub explained: f32,
-    /// Mean square distance of cells from their samples' planes, those of unexplained cells counted as the gate (m2).
+    /// Mean square distance of cells from their samples' planes, that of unexplained cells counted as the gate (m2).
     pub off: f32,
-    /// Of how many cells one is looked at; it counts for all of them.
+    /// One cell in this many is used, and counts for all of them.
     pub every: usize,
     /// Samples by bucket: where each bucket starts, and the list.
     start: Vec<u32>,
     list: Vec<u32>,
 }
 
-impl Matching {
+impl Correspondences {
     pub(super) fn new(samples: usize) -> Self {
         Self {
-            of: vec![Match::default(); samples],
+            of: vec![Correspondence::default(); samples],
             explained: 0.0,
             off: 0.0,
             every: 1,
@@ -73,21 +74,21 @@ impl Matching {
         }
     }
 
-    /// Finds the matches within a distance (m).
-    pub(super) fn find(&mut self, view: &View, figure: &Figure, gate: f32) {
-        self.see(view, figure);
+    /// Finds the correspondences within a distance (m).
+    pub(super) fn find(&mut self, view: &DepthCells, posed: &PosedBody, gate: f32) {
+        self.project(view, posed);
         let (across, down) = (view.columns.div_ceil(BUCKET), view.rows.div_ceil(BUCKET));
         self.sort(across, down);
-        let eye = view.eye();
+        let camera = view.camera_position();
         let (mut explained, mut squares) = (0usize, 0.0);
         for cell in view.cells.iter().step_by(self.every) {
-            let Some(i) = self.nearest(view, figure, cell, gate, [across, down]) else {
+            let Some(i) = self.nearest(view, posed, cell, gate, [across, down]) else {
                 squares += gate * gate;
                 continue;
             };
             explained += 1;
-            squares += (figure.points[i] - cell.point).dot(figure.normals[i]).powi(2);
-            let slanting = cell.normal.dot((eye - cell.point).normalize_or_zero()) < SLANTING;
+            squares += (posed.points[i] - cell.point).dot(posed.normals[i]).powi(2);
+            let slanting = cell.normal.dot((camera - cell.point).normalize_or_zero()) < SLANTING;
             if !slanting || cell.normal == Vec3::ZERO {
                 let count = self.every as f32;
                 self.of[i].sum += cell.point * count;
@@ -101,20 +102,20 @@ impl Matching {
     /// The sample nearest to a cell, in rings of buckets until no nearer one can come.
     fn nearest(
         &self,
-        view: &View,
-        figure: &Figure,
-        cell: &Cell,
+        view: &DepthCells,
+        posed: &PosedBody,
+        cell: &DepthCell,
         gate: f32,
         [across, down]: [usize; 2],
     ) -> Option<usize> {
         let (bc, br) = (cell.column as usize / BUCKET, cell.row as usize / BUCKET);
-        let width = BUCKET as f32 * view.cell_size(cell.point.distance(view.eye()));
+        let width = BUCKET as f32 * view.cell_size(cell.point.distance(view.camera_position()));
         let rings = (gate / width).ceil() as usize;
         let mut best = (gate * gate, None);
         let mut look = |from: u32, to: u32| {
             for &i in &self.list[from as usize..to as usize] {
-                let off = figure.points[i as usize].distance_squared(cell.point);
-                let alike = || figure.normals[i as usize].dot(cell.normal) > ALIKE || cell.normal == Vec3::ZERO;
+                let off = posed.points[i as usize].distance_squared(cell.point);
+                let alike = || posed.normals[i as usize].dot(cell.normal) > ALIKE || cell.normal == Vec3::ZERO;
                 if off < best.0 && alike() {
                     best = (off, Some(i as usize));
                 }
@@ -146,13 +147,13 @@ impl Matching {
         best.1
     }
 
-    /// Which samples face the camera, and where they are seen.
-    fn see(&mut self, view: &View, figure: &Figure) {
-        let eye = view.eye();
-        for ((m, point), normal) in self.of.iter_mut().zip(&figure.points).zip(&figure.normals) {
-            *m = Match::default();
-            let sight = eye - *point;
-            if normal.dot(sight) < FACING * sight.length() {
+    /// Finds the samples that face the camera, and projects them.
+    fn project(&mut self, view: &DepthCells, posed: &PosedBody) {
+        let camera = view.camera_position();
+        for ((m, point), normal) in self.of.iter_mut().zip(&posed.points).zip(&posed.normals) {
+            *m = Correspondence::default();
+            let to_camera = camera - *point;
+            if normal.dot(to_camera) < FACING * to_camera.length() {
                 continue;
             }
             if let Some((seen, z)) = view.project(*point)
@@ -167,7 +168,7 @@ impl Matching {
     fn sort(&mut self, across: usize, down: usize) {
         self.start.clear();
         self.start.resize(across * down + 1, 0);
-        let bucket = |m: &Match| {
+        let bucket = |m: &Correspondence| {
             let at = m.seen.round().max(Vec2::ZERO);
             (at.y as usize / BUCKET).min(down - 1) * across + (at.x as usize / BUCKET).min(across - 1)
         };

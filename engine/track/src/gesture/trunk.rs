@@ -36,7 +36,7 @@ impl Side {
     }
 }
 
-/// Arms shorter or longer than this (m, shoulder over elbow to wrist) are a tracker's mistake: from a child of 1.1 m to a
+/// HoldInput shorter or longer than this (m, shoulder over elbow to wrist) are a tracker's mistake: from a child of 1.1 m to a
 /// man of 2.1 m.
 const ARMS: [f32; 2] = [0.34, 0.80];
 
@@ -45,11 +45,11 @@ const SETTLE_S: f32 = 1.0;
 
 /// What is known of the arm's length.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scale {
+pub(super) struct ArmLength {
     arm: Option<(f32, u64)>,
 }
 
-impl Scale {
+impl ArmLength {
     pub(super) const fn new() -> Self {
         Self { arm: None }
     }
@@ -109,11 +109,11 @@ const TURN_S: f32 = 0.25;
 
 /// Which way the trunk has looked lately.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Facing {
+pub(super) struct TrunkDirection {
     left: Option<(Vec3, u64)>,
 }
 
-impl Facing {
+impl TrunkDirection {
     pub(super) const fn new() -> Self {
         Self { left: None }
     }

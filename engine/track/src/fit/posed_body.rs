@@ -1,4 +1,4 @@
-//! A body of some shape in some pose: where each sample of its surface lies, and how it moves with every unknown.
+//! A body of some shape in some pose: the position of each surface sample, and its derivatives by every unknown.
 //!
 //! Skinning is linear with one bone a joint. A sample `x = sum_j w_j (p_j + R_j (X - J_j))` of rest position `X` moves
 //! with a turn about the axis `a` through the joint at `p` by `sum_j w_j a x (x_j - p)` over the bones `j` that hang
@@ -9,10 +9,10 @@ use glam::{Mat3, Quat, Vec3};
 use toile_assets::body::shape::{SCALE, SHAPES, Shape, Shapes};
 use toile_assets::skeleton::{JOINTS, Joint, Skeleton, bone_joint};
 
-use super::turns::{TURNS, Turn, turns};
+use super::joint_angles::{ANGLES, JointAngle, joint_angles};
 
-/// Unknowns of the pose: the root's place, then the turns.
-pub(super) const POSE: usize = 3 + TURNS;
+/// Unknowns of the pose: the root's position, then the joint angles.
+pub(super) const POSE: usize = 3 + ANGLES;
 
 /// All unknowns: the pose, then the shape.
 pub(super) const UNKNOWNS: usize = POSE + SHAPES;
@@ -20,8 +20,8 @@ pub(super) const UNKNOWNS: usize = POSE + SHAPES;
 /// [`UNKNOWNS`] rounded up to whole lanes.
 pub(super) const WIDTH: usize = UNKNOWNS.next_multiple_of(8);
 
-/// How one number changes with every unknown.
-pub(super) type Row = [f32; WIDTH];
+/// Derivatives of one number by every unknown.
+pub(super) type JacobianRow = [f32; WIDTH];
 
 /// Most bones of one sample.
 const BONES_EACH: usize = 4;
@@ -29,12 +29,12 @@ const BONES_EACH: usize = 4;
 /// The middle of one face of the surface. Faces and not vertices, because a face is flat: where on it a measured point
 /// lies changes nothing, while beside a vertex the surface falls away from its tangent plane.
 #[derive(Debug, Clone)]
-pub(super) struct Sample {
-    /// Its face.
+pub(super) struct SurfaceSample {
+    /// Vertices of its face.
     pub corners: [u32; 4],
-    /// Its place on the drawn body (m).
+    /// Position on the base mesh (m).
     drawn: Vec3,
-    /// The sliders that move it: first and end in [`Cast::moves`].
+    /// The shape parameters that move it: first and end in [`BodyModel::moves`].
     moves: (u32, u32),
     /// Joints that carry it, with their shares.
     bones: [(u8, f32); BONES_EACH],
@@ -44,35 +44,35 @@ pub(super) struct Sample {
     pub hairy: bool,
 }
 
-impl Sample {
+impl SurfaceSample {
     /// The joints that carry it, with their shares.
     pub(super) fn bones(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
         self.bones.iter().filter(|b| b.1 > 0.0).map(|b| (b.0 as usize, b.1))
     }
 }
 
-/// One sex's samples and angles: what does not change from frame to frame.
-pub(super) struct Cast {
+/// One sex's surface samples and joint angles: constant over the frames.
+pub(super) struct BodyModel {
     pub shapes: &'static Shapes,
-    pub samples: Vec<Sample>,
-    /// Sliders and moves a unit of all samples.
+    pub samples: Vec<SurfaceSample>,
+    /// Shape parameter and displacement a unit (m), for all samples.
     moves: Vec<(u32, Vec3)>,
-    pub turns: [Turn; TURNS],
-    /// The turns of each joint: first and end.
+    pub joint_angles: [JointAngle; ANGLES],
+    /// The angles of each joint: first and end in `joint_angles`.
     of_joint: [(u8, u8); JOINTS],
 }
 
-/// Height below which the drawn body's surface is sole (m).
+/// Height below which the base mesh's surface is sole (m).
 const SOLE: f32 = 0.012;
 
-impl Cast {
+impl BodyModel {
     /// Samples at least about `spacing` (m) apart; every face for 0.
     pub(super) fn new(shapes: &'static Shapes, spacing: f32) -> Self {
-        let turns = turns(&shapes.skeleton(shapes.mean()));
+        let joint_angles = joint_angles(&shapes.skeleton(shapes.mean()));
         let mut of_joint = [(0u8, 0u8); JOINTS];
         for (i, joint) in Joint::ALL.into_iter().enumerate() {
-            let first = turns.iter().position(|t| t.joint == joint).unwrap_or(0);
-            let count = turns.iter().filter(|t| t.joint == joint).count();
+            let first = joint_angles.iter().position(|t| t.joint == joint).unwrap_or(0);
+            let count = joint_angles.iter().filter(|t| t.joint == joint).count();
             of_joint[i] = (first as u8, (first + count) as u8);
         }
         let mut taken = std::collections::BTreeSet::new();
@@ -84,22 +84,22 @@ impl Cast {
                 samples.push(sample);
             }
         }
-        Self { shapes, samples, moves, turns, of_joint }
+        Self { shapes, samples, moves, joint_angles, of_joint }
     }
 
-    /// The sliders that move a sample, and by how much a unit, before scaling (m).
-    fn moves(&self, sample: &Sample) -> &[(u32, Vec3)] {
+    /// The shape parameters that move a sample, and its displacement a unit before scaling (m).
+    fn moves(&self, sample: &SurfaceSample) -> &[(u32, Vec3)] {
         &self.moves[sample.moves.0 as usize..sample.moves.1 as usize]
     }
 
-    /// Where a sample lies on a shape in the rest pose (m).
-    fn place(&self, sample: &Sample, shape: &[f32; SHAPES], scale: f32) -> Vec3 {
+    /// Rest position of a sample on a shape (m).
+    fn place(&self, sample: &SurfaceSample, shape: &[f32; SHAPES], scale: f32) -> Vec3 {
         scale * self.moves(sample).iter().fold(sample.drawn, |p, &(k, d)| p + d * shape[k as usize])
     }
 }
 
 /// The mean of a face's corners.
-fn sample(shapes: &Shapes, corners: [u32; 4], moves: &mut Vec<(u32, Vec3)>) -> Sample {
+fn sample(shapes: &Shapes, corners: [u32; 4], moves: &mut Vec<(u32, Vec3)>) -> SurfaceSample {
     let base = shapes.base();
     let first = moves.len();
     let mut joints: Vec<(u8, f32)> = Vec::new();
@@ -124,42 +124,42 @@ fn sample(shapes: &Shapes, corners: [u32; 4], moves: &mut Vec<(u32, Vec3)>) -> S
         std::array::from_fn(|k| joints.get(k).map_or((0, 0.0), |j| (j.0, j.1 / whole)));
     let drawn = corners.map(|v| base.positions[v as usize]).iter().sum::<Vec3>() / 4.0;
     let hairy = [Joint::Head, Joint::Neck].iter().any(|j| j.index() == bones[0].0 as usize);
-    Sample { corners, drawn, moves: (first as u32, moves.len() as u32), bones, sole: drawn.y < SOLE, hairy }
+    SurfaceSample { corners, drawn, moves: (first as u32, moves.len() as u32), bones, sole: drawn.y < SOLE, hairy }
 }
 
-/// What is sought: pose and shape.
+/// The unknowns of the fit: pose and shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct State {
-    /// Place of the pelvis, world (m).
+pub(super) struct FitState {
+    /// Position of the pelvis, world (m).
     pub root: Vec3,
     /// Rotation of each joint relative to its parent; the pelvis' relative to the world.
     pub local: [Quat; JOINTS],
-    /// The shape.
+    /// Parameters of the shape.
     pub shape: Shape,
 }
 
-impl State {
-    /// The state a step (in the order of the unknowns) further.
-    pub(super) fn stepped(&self, cast: &Cast, step: &[f64; UNKNOWNS]) -> Self {
+impl FitState {
+    /// The state after a step, given in the order of the unknowns.
+    pub(super) fn stepped(&self, model: &BodyModel, step: &[f64; UNKNOWNS]) -> Self {
         let mut next = *self;
         next.root += Vec3::new(step[0] as f32, step[1] as f32, step[2] as f32);
         let mut turned = [Vec3::ZERO; JOINTS];
-        for (turn, by) in cast.turns.iter().zip(&step[3..]) {
+        for (turn, by) in model.joint_angles.iter().zip(&step[3..]) {
             turned[turn.joint.index()] += turn.axis * *by as f32;
         }
         for (local, by) in next.local.iter_mut().zip(turned) {
             *local = (Quat::from_scaled_axis(by) * *local).normalize();
         }
-        for (joint, &(first, end)) in next.local.iter_mut().zip(&cast.of_joint) {
-            // Turns about two axes, one after the other, come to one about the third as well.
+        for (joint, &(first, end)) in next.local.iter_mut().zip(&model.of_joint) {
+            // Rotations about two axes in turn also give one about the third, which is removed.
             if end - first < 3 {
                 let whole = joint.to_scaled_axis();
-                let axes = cast.turns[first as usize..end as usize].iter().map(|t| t.axis);
+                let axes = model.joint_angles[first as usize..end as usize].iter().map(|t| t.axis);
                 *joint = Quat::from_scaled_axis(axes.map(|a| a * a.dot(whole)).sum());
             }
         }
         for (k, s) in next.shape.iter_mut().enumerate() {
-            let [least, most] = cast.shapes.bounds(k);
+            let [least, most] = model.shapes.bounds(k);
             *s = (*s + step[POSE + k]).clamp(least, most);
         }
         next
@@ -167,63 +167,63 @@ impl State {
 }
 
 /// A posed body.
-pub(super) struct Figure {
+pub(super) struct PosedBody {
     rest: Skeleton,
     scale: f32,
     /// Rotation of each joint from rest to world, and its place.
     turned: [Mat3; JOINTS],
     pub place: [Vec3; JOINTS],
-    /// World axis of each turn.
-    axes: [Vec3; TURNS],
+    /// World axis of each joint angle.
+    axes: [Vec3; ANGLES],
     /// `dp_j/ds - R_j dJ_j/ds` of each joint and parameter.
     drift: Vec<[Vec3; SHAPES]>,
     /// Rest position, world position and world normal of each sample.
-    still: Vec<Vec3>,
+    rest_points: Vec<Vec3>,
     pub points: Vec<Vec3>,
     pub normals: Vec<Vec3>,
 }
 
-impl Figure {
-    pub(super) fn new(cast: &Cast) -> Self {
-        let n = cast.samples.len();
+impl PosedBody {
+    pub(super) fn new(model: &BodyModel) -> Self {
+        let n = model.samples.len();
         Self {
-            rest: cast.shapes.skeleton(cast.shapes.mean()),
+            rest: model.shapes.skeleton(model.shapes.mean()),
             scale: 1.0,
             turned: [Mat3::IDENTITY; JOINTS],
             place: [Vec3::ZERO; JOINTS],
-            axes: [Vec3::ZERO; TURNS],
+            axes: [Vec3::ZERO; ANGLES],
             drift: vec![[Vec3::ZERO; SHAPES]; JOINTS],
-            still: vec![Vec3::ZERO; n],
+            rest_points: vec![Vec3::ZERO; n],
             points: vec![Vec3::ZERO; n],
             normals: vec![Vec3::ZERO; n],
         }
     }
 
-    /// Poses the body; `still_normals` are those of its samples at rest.
-    pub(super) fn pose(&mut self, cast: &Cast, state: &State, still_normals: &[Vec3]) {
-        self.rest = cast.shapes.skeleton(&state.shape);
+    /// Poses the body; `rest_normals` are those of its samples at rest.
+    pub(super) fn pose(&mut self, model: &BodyModel, state: &FitState, rest_normals: &[Vec3]) {
+        self.rest = model.shapes.skeleton(&state.shape);
         self.scale = state.shape[SCALE].exp() as f32;
         self.joints(state);
-        for (axis, turn) in self.axes.iter_mut().zip(&cast.turns) {
+        for (axis, turn) in self.axes.iter_mut().zip(&model.joint_angles) {
             let parent = turn.joint.parent().map_or(Mat3::IDENTITY, |p| self.turned[p.index()]);
             *axis = parent * turn.axis;
         }
-        self.drifts(cast);
+        self.drifts(model);
         let shape = state.shape.map(|s| s as f32);
-        for (i, sample) in cast.samples.iter().enumerate() {
-            let still = cast.place(sample, &shape, self.scale);
+        for (i, sample) in model.samples.iter().enumerate() {
+            let rest_points = model.place(sample, &shape, self.scale);
             let (mut point, mut normal) = (Vec3::ZERO, Vec3::ZERO);
             for &(j, w) in sample.bones.iter().filter(|b| b.1 > 0.0) {
                 let j = j as usize;
-                point += w * (self.place[j] + self.turned[j] * (still - self.rest.rest[j]));
-                normal += w * (self.turned[j] * still_normals[i]);
+                point += w * (self.place[j] + self.turned[j] * (rest_points - self.rest.rest[j]));
+                normal += w * (self.turned[j] * rest_normals[i]);
             }
-            (self.still[i], self.points[i]) = (still, point);
+            (self.rest_points[i], self.points[i]) = (rest_points, point);
             self.normals[i] = normal.normalize_or_zero();
         }
     }
 
-    fn joints(&mut self, state: &State) {
+    fn joints(&mut self, state: &FitState) {
         for joint in Joint::ALL {
             let i = joint.index();
             let local = Mat3::from_quat(state.local[i]);
@@ -237,11 +237,11 @@ impl Figure {
         }
     }
 
-    fn drifts(&mut self, cast: &Cast) {
+    fn drifts(&mut self, model: &BodyModel) {
         for k in 0..SHAPES {
             let scale = self.scale;
             let rest = &self.rest.rest;
-            let joint = |j: usize| if k == SCALE { rest[j] } else { scale * cast.shapes.joint_moves(k)[j] };
+            let joint = |j: usize| if k == SCALE { rest[j] } else { scale * model.shapes.joint_moves(k)[j] };
             let mut moved = [Vec3::ZERO; JOINTS];
             for j in Joint::ALL {
                 let i = j.index();
@@ -253,33 +253,33 @@ impl Figure {
         }
     }
 
-    /// How high a sample lies above where it would on level ground at 0 (m).
+    /// Height of a sample above its height in the rest pose on level ground at 0 (m).
     pub(super) fn above_rest(&self, index: usize) -> f32 {
-        self.points[index].y - self.still[index].y
+        self.points[index].y - self.rest_points[index].y
     }
 
-    /// How [`Figure::above_rest`] changes with every unknown.
-    pub(super) fn row_above_rest(&self, cast: &Cast, index: usize) -> Row {
-        let mut row = self.row(cast, index, Vec3::Y);
-        for &(k, by) in cast.moves(&cast.samples[index]) {
+    /// Derivatives of [`PosedBody::above_rest`].
+    pub(super) fn row_above_rest(&self, model: &BodyModel, index: usize) -> JacobianRow {
+        let mut row = self.row(model, index, Vec3::Y);
+        for &(k, by) in model.moves(&model.samples[index]) {
             row[POSE + k as usize] -= self.scale * by.y;
         }
-        row[POSE + SCALE] -= self.still[index].y;
+        row[POSE + SCALE] -= self.rest_points[index].y;
         row
     }
 
-    /// How a sample's place along a direction changes with every unknown.
-    pub(super) fn row(&self, cast: &Cast, index: usize, along: Vec3) -> Row {
-        let sample = &cast.samples[index];
+    /// Derivatives of a sample's position along a direction.
+    pub(super) fn row(&self, model: &BodyModel, index: usize, along: Vec3) -> JacobianRow {
+        let sample = &model.samples[index];
         let mut row = [0.0; WIDTH];
         row[..3].copy_from_slice(&along.to_array());
         let mut inward = Vec3::ZERO;
         for &(j, w) in sample.bones.iter().filter(|b| b.1 > 0.0) {
             let bone = j as usize;
-            let at = self.place[bone] + self.turned[bone] * (self.still[index] - self.rest.rest[bone]);
+            let at = self.place[bone] + self.turned[bone] * (self.rest_points[index] - self.rest.rest[bone]);
             let mut above = Some(Joint::ALL[bone]);
             while let Some(joint) = above {
-                let (first, end) = cast.of_joint[joint.index()];
+                let (first, end) = model.of_joint[joint.index()];
                 if first < end {
                     let pull = w * (at - self.place[joint.index()]).cross(along);
                     for t in first as usize..end as usize {
@@ -294,10 +294,10 @@ impl Figure {
                 *r += along.dot(*drift);
             }
         }
-        for &(k, by) in cast.moves(sample) {
+        for &(k, by) in model.moves(sample) {
             row[POSE + k as usize] += self.scale * inward.dot(by);
         }
-        row[POSE + SCALE] += inward.dot(self.still[index]);
+        row[POSE + SCALE] += inward.dot(self.rest_points[index]);
         row
     }
 }
@@ -308,47 +308,47 @@ mod tests {
     use toile_assets::body::Sex;
 
     /// A bent, turned body of an unusual shape.
-    fn bent(cast: &Cast) -> State {
+    fn bent(model: &BodyModel) -> FitState {
         let mut state =
-            State { root: Vec3::new(0.3, 0.9, -0.2), local: [Quat::IDENTITY; JOINTS], shape: *cast.shapes.mean() };
+            FitState { root: Vec3::new(0.3, 0.9, -0.2), local: [Quat::IDENTITY; JOINTS], shape: *model.shapes.mean() };
         let mut step = [0.0; UNKNOWNS];
         for (i, s) in step.iter_mut().enumerate().skip(3) {
             let wave = (i as f64 * 1.7).sin();
             *s = if i < POSE { 0.4 * wave } else { 0.03 * wave };
         }
-        state = state.stepped(cast, &step);
+        state = state.stepped(model, &step);
         state
     }
 
     #[test]
     fn rows_are_the_change_of_a_sample_with_every_unknown() {
-        let cast = Cast::new(Shapes::of(Sex::Female), 0.12);
-        let state = bent(&cast);
-        let normals = vec![Vec3::Z; cast.samples.len()];
-        let mut figure = Figure::new(&cast);
-        let mut moved = Figure::new(&cast);
+        let model = BodyModel::new(Shapes::of(Sex::Female), 0.12);
+        let state = bent(&model);
+        let normals = vec![Vec3::Z; model.samples.len()];
+        let mut posed = PosedBody::new(&model);
+        let mut moved = PosedBody::new(&model);
         const BY: f64 = 2e-3;
         let mut worst = 0.0f32;
         for unknown in 0..UNKNOWNS {
-            // A bent joint with two axes loses what both turns come to about the third, which its rows leave out: they are
+            // A bent joint with two axes loses the rotation that both together give about the third, which its rows leave out: they are
             // exact where it is straight.
             let mut state = state;
-            if let Some(turn) = cast.turns.get(unknown.wrapping_sub(3))
-                && cast.turns.iter().filter(|other| other.joint == turn.joint).count() == 2
+            if let Some(turn) = model.joint_angles.get(unknown.wrapping_sub(3))
+                && model.joint_angles.iter().filter(|other| other.joint == turn.joint).count() == 2
             {
                 state.local[turn.joint.index()] = Quat::IDENTITY;
             }
-            figure.pose(&cast, &state, &normals);
+            posed.pose(&model, &state, &normals);
             let [before, after] = [-BY, BY].map(|by| {
                 let mut step = [0.0; UNKNOWNS];
                 step[unknown] = by;
-                moved.pose(&cast, &state.stepped(&cast, &step), &normals);
+                moved.pose(&model, &state.stepped(&model, &step), &normals);
                 moved.points.clone()
             });
-            for i in 0..cast.samples.len() {
+            for i in 0..model.samples.len() {
                 for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
                     let change = (after[i] - before[i]).dot(axis) / (2.0 * BY as f32);
-                    let off = (figure.row(&cast, i, axis)[unknown] - change).abs();
+                    let off = (posed.row(&model, i, axis)[unknown] - change).abs();
                     worst = worst.max(off);
                     assert!(off < 2e-3, "unknown {unknown} sample {i}: {change} off by {off}");
                 }
@@ -359,16 +359,16 @@ mod tests {
 
     #[test]
     fn the_rest_pose_is_the_body_itself() {
-        let cast = Cast::new(Shapes::of(Sex::Male), 0.03);
-        let shape = *cast.shapes.mean();
-        let rest = cast.shapes.skeleton(&shape);
-        let state = State { root: rest.at(Joint::Pelvis), local: [Quat::IDENTITY; JOINTS], shape };
-        let mut figure = Figure::new(&cast);
-        figure.pose(&cast, &state, &vec![Vec3::Y; cast.samples.len()]);
-        for (sample, point) in cast.samples.iter().zip(&figure.points) {
-            let corners = sample.corners.map(|v| cast.shapes.place(v as usize, &shape));
+        let model = BodyModel::new(Shapes::of(Sex::Male), 0.03);
+        let shape = *model.shapes.mean();
+        let rest = model.shapes.skeleton(&shape);
+        let state = FitState { root: rest.at(Joint::Pelvis), local: [Quat::IDENTITY; JOINTS], shape };
+        let mut posed = PosedBody::new(&model);
+        posed.pose(&model, &state, &vec![Vec3::Y; model.samples.len()]);
+        for (sample, point) in model.samples.iter().zip(&posed.points) {
+            let corners = sample.corners.map(|v| model.shapes.place(v as usize, &shape));
             assert!(point.distance(corners.iter().sum::<Vec3>() / 4.0) < 1e-5);
         }
-        assert!(cast.samples.iter().filter(|s| s.sole).count() > 10);
+        assert!(model.samples.iter().filter(|s| s.sole).count() > 10);
     }
 }
