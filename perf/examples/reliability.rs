@@ -4,7 +4,7 @@
 use std::process::ExitCode;
 
 use toile_assets::sizes::{GarmentKind, SizeTable};
-use toile_perf::reliability::{BINS, ReliabilityBin, Girths, ansur, reliability};
+use toile_perf::reliability::{BINS, Girths, ReliabilityBin, ansur, reliability};
 use toile_track::recommend::{EaseRange, MadeSize, Offer, Zone, ZoneGirth};
 
 /// Errors of the girths (m).

@@ -8,7 +8,7 @@ use toile_perf::gestures::{Act, Conditions, Count, count, events, held_up, seque
 use toile_sensors::filter::JointFilter;
 use toile_sensors::frame::{DepthFrame, Joints, TrackedJoint};
 use toile_sensors::source::{OpenOptions, open};
-use toile_track::gesture::{GestureEvent, Gesture, Gestures, HandSegmenter, HandRegion, Side};
+use toile_track::gesture::{Gesture, GestureEvent, Gestures, HandRegion, HandSegmenter, Side};
 
 /// The folder of recordings, or `None` where it is not set up; with CI=true that is a failure.
 fn data() -> Option<PathBuf> {

@@ -192,8 +192,8 @@ fn follow(person: &Person, frames: &[(DepthFrame, Moment)]) -> (Option<f32>, Vec
         } else if seen.found {
             let squares = HELD.map(|j| seen.joints.at(j).position.distance_squared(truth[j.index()]));
             let joints = (squares.iter().sum::<f32>() / squares.len() as f32).sqrt();
-            let s = fit.stages();
-            followed.push([time, s.look, s.match_up, s.gather, s.solve, seen.off, joints]);
+            let s = fit.times();
+            followed.push([time, s.cells, s.correspond, s.equations, s.solve, seen.off, joints]);
         }
     }
     (start, followed)
