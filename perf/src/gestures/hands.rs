@@ -6,7 +6,7 @@ use glam::{Quat, Vec3};
 use toile_assets::numeric::random::SplitMix64;
 use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
-use toile_track::gesture::{Grip, HandSegmenter, HandShape, HandRegion};
+use toile_track::gesture::{Grip, HandRegion, HandSegmenter, HandShape};
 
 /// What a hand is like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

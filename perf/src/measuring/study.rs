@@ -6,7 +6,6 @@ use toile_assets::numeric::random::SplitMix64;
 use toile_assets::sizes::Population;
 use toile_assets::skeleton::Joint;
 use toile_sensors::frame::DepthFrame;
-use toile_track::point_cloud;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{self, MEASURES};
 use toile_track::fit::{self, BodyFit};
