@@ -4,8 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The crates, lowest floor first: a crate imports only those before it. Folder and name.
-pub const FLOORS: [(&str, &str); 10] = [
+pub const FLOORS: [(&str, &str); 11] = [
     ("assets", "toile-assets"),
+    ("assets/sculpt", "toile-sculpt"),
     ("sensors", "toile-sensors"),
     ("engine/core", "toile-engine"),
     ("engine/track", "toile-track"),
@@ -52,9 +53,13 @@ pub fn files(folder: &Path, keep: impl Fn(&Path) -> bool) -> Vec<PathBuf> {
     found
 }
 
-/// Every Rust file below a folder, sorted.
+/// Every Rust file of the crate in a folder, sorted; those of crates that lie inside it are not its own.
 pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
-    files(folder, |path| path.extension().is_some_and(|e| e == "rs"))
+    let inner = |path: &Path| {
+        let between = path.ancestors().skip(1).take_while(|above| *above != folder);
+        between.into_iter().any(|above| above.join("Cargo.toml").exists())
+    };
+    files(folder, |path| path.extension().is_some_and(|e| e == "rs") && !inner(path))
 }
 
 /// A file's text.

@@ -8,7 +8,7 @@ use toile_tests::tree::{self, FLOORS};
 
 /// Rooms in the order in which data flows; a room imports only rooms of earlier rows, and those of no row are held
 /// to the general law alone: no circle.
-const ROOMS: [(&str, &[&[&str]]); 4] = [
+const ROOMS: [(&str, &[&[&str]]); 5] = [
     (
         "toile-assets",
         &[
@@ -26,6 +26,7 @@ const ROOMS: [(&str, &[&[&str]]); 4] = [
             &["scene_file"],
         ],
     ),
+    ("toile-sculpt", &[&["form", "subdivide"], &["lattice", "wrap"], &["draw"], &["unwrap"]]),
     (
         "toile-sensors",
         &[
@@ -196,6 +197,16 @@ fn manifests_depend_only_on_the_floors_below() {
     for (floor, (folder, name)) in FLOORS.iter().enumerate() {
         let wrong = upward(&tree::read(&tree::root().join(folder).join("Cargo.toml")), floor);
         assert!(wrong.is_empty(), "{name} depends on {wrong:?}, which is not below it");
+    }
+}
+
+#[test]
+fn what_ships_does_not_depend_on_what_draws_it() {
+    for (folder, name) in FLOORS {
+        let table: toml::Table =
+            tree::read(&tree::root().join(folder).join("Cargo.toml")).parse().expect("a manifest is TOML");
+        let ships = table.get("dependencies").and_then(toml::Value::as_table);
+        assert!(!ships.is_some_and(|d| d.contains_key("toile-sculpt")), "{name} needs the offline drawing to be built");
     }
 }
 

@@ -6,13 +6,10 @@
 
 pub mod base;
 mod calibrate;
-pub mod draw;
 mod fields;
 mod fitted;
-mod form;
 mod gauge;
 pub mod landmarks;
-pub mod lattice;
 mod morph;
 mod people;
 mod proportions;
@@ -23,12 +20,9 @@ mod shares;
 mod skin;
 pub mod sound;
 pub mod stored;
-mod subdivide;
 pub mod tape;
 #[cfg(test)]
 mod tests;
-pub mod unwrap;
-mod wrap;
 
 use glam::Vec3;
 

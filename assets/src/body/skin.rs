@@ -5,20 +5,8 @@
 
 use glam::Vec3;
 
-use super::Region;
 use crate::mesh::SkinWeights;
 use crate::skeleton::{BONES, Joint, Skeleton, Twist};
-
-/// The region of a final vertex.
-pub(super) fn region(part: Vec3, position: Vec3) -> Region {
-    let left = position.x > 0.0;
-    match part {
-        p if p.x > 0.5 => [Region::RightArm, Region::LeftArm][usize::from(left)],
-        p if p.y > 0.5 => [Region::RightLeg, Region::LeftLeg][usize::from(left)],
-        p if p.z > 0.5 => Region::Head,
-        _ => Region::Torso,
-    }
-}
 
 /// A ramp from 0 at `-width` to 1 at `+width`, with level ends.
 fn ramp(x: f32, width: f32) -> f32 {

@@ -1,4 +1,4 @@
-//! The drawn bodies as they are stored: `data/body/base.bin`, written by the example `bodies`.
+//! The drawn bodies as they are stored: `data/body/base.bin`, written by `toile-sculpt`.
 //!
 //! Little endian. Magic `TOILEBDY`, version, counts of vertices, quads and texture points (u32 each); positions of the
 //! woman, then the man (3 f32 a vertex, m); rest joints of both (3 f32 a joint, m); quads (4 u16), texture corners (4 u16
@@ -7,7 +7,6 @@
 
 use glam::{Vec2, Vec3};
 
-use super::draw::Drawn;
 use super::{Region, Sex};
 use crate::numeric::hash;
 use crate::skeleton::{JOINTS, Skeleton};
@@ -40,10 +39,14 @@ pub struct Stored {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum StoredError {
     /// Other bytes, another version, or cut short.
-    #[error("the stored bodies are not a file of version {VERSION} in full: write it again with the example `bodies`")]
+    #[error(
+        "the stored bodies are not a file of version {VERSION} in full: write it again with `cargo run --release -p toile-sculpt`"
+    )]
     Format,
     /// The hash does not agree.
-    #[error("the stored bodies are damaged, their hash does not agree: write the file again with the example `bodies`")]
+    #[error(
+        "the stored bodies are damaged, their hash does not agree: write the file again with `cargo run --release -p toile-sculpt`"
+    )]
     Damaged,
 }
 
@@ -51,22 +54,6 @@ const REGIONS: [Region; 6] =
     [Region::Torso, Region::Head, Region::LeftArm, Region::RightArm, Region::LeftLeg, Region::RightLeg];
 
 impl Stored {
-    /// Puts two drawn bodies of the same grid and their atlas together.
-    pub fn new([woman, man]: [Drawn; 2], uvs: Vec<Vec2>, corners: Vec<[u32; 4]>) -> Self {
-        assert_eq!(woman.quads, man.quads, "both bodies have one grid");
-        let charts = woman.charts.iter().map(|c| c.number()).collect();
-        Self {
-            positions: [woman.positions, man.positions],
-            skeletons: [woman.skeleton, man.skeleton],
-            quads: woman.quads,
-            uvs,
-            corners,
-            charts,
-            regions: woman.regions,
-            twins: woman.twins,
-        }
-    }
-
     /// Which of the two a sex's is.
     pub fn index(sex: Sex) -> usize {
         usize::from(sex == Sex::Male)

@@ -1,13 +1,13 @@
 //! A base body as it is drawn, from all sides and near to.
 //!
 //! `cargo run --release -p toile-view --example body FOLDER [female|male] [VIEW]...` writes one PNG file a view; with
-//! `DRAWINGS=FOLDER` the drawings are read from there instead of from the program.
+//! `DRAWINGS=FOLDER` the drawings are read from there instead of from `assets/sculpt/data`.
 
 use std::{error::Error, fs::File, io::BufWriter, path::Path, time::Instant};
 
 use glam::Vec3;
-use toile_assets::body::draw::{Drawn, draw};
 use toile_assets::mesh::vertex_normals;
+use toile_sculpt::{Drawn, draw};
 use toile_view::{
     image::{Image, Size},
     scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface},
@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         if !asked(sex) && (asked("female") || asked("male")) {
             continue;
         }
-        let drawings = std::env::var("DRAWINGS").unwrap_or_else(|_| "assets/data/body".to_owned());
+        let drawings = std::env::var("DRAWINGS").unwrap_or_else(|_| "assets/sculpt/data".to_owned());
         let text = std::fs::read_to_string(Path::new(&drawings).join(sex).with_extension("toml"))?;
         let start = Instant::now();
         let drawn = draw(&text)?;

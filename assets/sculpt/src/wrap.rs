@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-use super::form::Form;
-use super::subdivide::Quads;
+use crate::form::Form;
+use crate::subdivide::Quads;
 
 /// A mesh on its way to a form: the left half is moved, the right one is its mirror image.
 pub(super) struct Wrapping<'a> {

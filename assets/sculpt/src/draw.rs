@@ -2,14 +2,15 @@
 
 use glam::Vec3;
 
-use super::Region;
-use super::form::{Drawing, Form};
-use super::lattice::{Chart, Lattice};
-use super::subdivide::Quads;
-use super::wrap::Wrapping;
-use crate::skeleton::Skeleton;
+use crate::form::{Drawing, Form};
+use crate::lattice;
+use crate::lattice::chart::Chart;
+use crate::subdivide::Quads;
+use crate::wrap::Wrapping;
+use toile_assets::body::Region;
+use toile_assets::skeleton::Skeleton;
 
-/// A base body as it leaves the drawing board.
+/// A base body as it is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawn {
     /// Closed surface (m) `[vertices]`.
@@ -33,7 +34,7 @@ const SURFACE_ROUNDS: usize = 10;
 /// Draws a body from the text of its drawing.
 pub fn draw(text: &str) -> Result<Drawn, toml::de::Error> {
     let form = Form::new(toml::from_str::<Drawing>(text)?);
-    let lattice = Lattice::new(&form);
+    let lattice = lattice::over(&form);
     let coarse = Quads::new(lattice.points.len(), lattice.faces.clone());
     let slide: Vec<f32> = lattice.tags.iter().map(|t| t.slide).collect();
     let mut cage = lattice.points.clone();
@@ -60,7 +61,7 @@ pub fn draw(text: &str) -> Result<Drawn, toml::de::Error> {
 }
 
 /// The part of the body of each vertex: by majority of what the cage around it is.
-fn regions(coarse: &Quads, lattice: &Lattice, positions: &[Vec3]) -> Vec<Region> {
+fn regions(coarse: &Quads, lattice: &lattice::Lattice, positions: &[Vec3]) -> Vec<Region> {
     let part = |r: Region| match r {
         Region::Torso => Vec3::ZERO,
         Region::LeftArm | Region::RightArm => Vec3::X,
@@ -69,5 +70,16 @@ fn regions(coarse: &Quads, lattice: &Lattice, positions: &[Vec3]) -> Vec<Region>
     };
     let parts: Vec<Vec3> = lattice.tags.iter().map(|t| part(t.region)).collect();
     let shares = coarse.refine(&parts);
-    shares.iter().zip(positions).map(|(&part, &p)| super::skin::region(part, p)).collect()
+    shares.iter().zip(positions).map(|(&part, &p)| region(part, p)).collect()
+}
+
+/// The region of a vertex, by its shares of arm, leg and head (x, y, z).
+fn region(part: Vec3, position: Vec3) -> Region {
+    let left = position.x > 0.0;
+    match part {
+        p if p.x > 0.5 => [Region::RightArm, Region::LeftArm][usize::from(left)],
+        p if p.y > 0.5 => [Region::RightLeg, Region::LeftLeg][usize::from(left)],
+        p if p.z > 0.5 => Region::Head,
+        _ => Region::Torso,
+    }
 }

@@ -7,8 +7,8 @@
 
 use glam::{Mat2, Vec2, Vec3};
 
-use super::draw::Drawn;
-use super::lattice::CHARTS;
+use crate::draw::Drawn;
+use crate::lattice::chart::CHARTS;
 
 /// Steps of the descent; it settles within these.
 const STEPS: usize = 240;

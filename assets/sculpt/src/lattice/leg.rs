@@ -4,10 +4,11 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 
+use super::cage::{HALF, LEG, Lattice, cast};
+use super::chart::Chart;
 use super::digit::Digit;
-use super::{Chart, HALF, LEG, Lattice, cast};
-use crate::body::Region;
-use crate::body::form::Form;
+use crate::form::Form;
+use toile_assets::body::Region;
 
 impl Lattice {
     pub(super) fn lay_leg(&mut self, form: &Form, low: &[u32; HALF]) {

@@ -4,8 +4,9 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 
-use super::{Chart, Lattice};
-use crate::body::Region;
+use super::cage::Lattice;
+use super::chart::Chart;
+use toile_assets::body::Region;
 
 /// A finger or toe to be laid.
 pub(super) struct Digit<'a> {

@@ -3,9 +3,9 @@
 use glam::{Mat3, Vec3};
 use serde::Deserialize;
 
+use super::group::{Frame, Group, GroupRow};
 use super::parts::{smooth_max, smooth_min};
-use super::{Frame, Group, GroupRow};
-use crate::skeleton::{JOINTS, Joint, Skeleton};
+use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 
 /// One sex's drawing; lengths in millimetres, x left, y up, z forwards.
 #[derive(Debug, Deserialize)]

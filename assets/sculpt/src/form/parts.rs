@@ -4,7 +4,7 @@ use glam::{EulerRot, Mat3, Quat, Vec3};
 use serde::Deserialize;
 
 use super::spline::Spline;
-use crate::cone::round_cone;
+use toile_assets::cone::round_cone;
 
 /// A limb or trunk: superellipse sections across a straight axis.
 #[derive(Debug, Deserialize)]
@@ -28,7 +28,7 @@ pub(super) struct TubeRow {
 /// A chain of balls joined by round cones.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(in crate::body) struct Chain {
+pub(super) struct Chain {
     #[serde(rename = "name")]
     pub _name: String,
     pub blend: f32,

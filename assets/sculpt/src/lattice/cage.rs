@@ -1,99 +1,26 @@
-//! The cage's grid: rings of quads over trunk, head, limbs, fingers and toes, joined into one closed surface.
-//!
-//! Reads: a form, asked where its surface lies. Writes: the cage's vertices, quads and regions.
-//! Budget: some seconds a body; only the drawing of a base body asks, never a running fitting room.
-//! Thread: the drawing thread.
-//!
-//! The left half is laid out and mirrored. Rings of the trunk have 24 columns (13 in a half, both middles included).
-//! Three rows and three columns are left open for an arm of 12; half the lowest ring and three vertices along the
-//! crotch start a leg of 16. The hand's ring of 12 splits into four fingers of 6 (two between each pair), 8 around two
-//! rows of the palm grow the thumb; the foot's 16 split into a big toe of 8 and four toes of 6. The head's 24 close in
-//! a patch of 6 by 6. All faces are quads.
-
-mod arm;
-mod digit;
-mod leg;
-mod trunk;
+//! The cage while it grows: vertices, quads, and what each belongs to.
 
 use std::collections::BTreeMap;
 
 use glam::Vec3;
+use toile_assets::body::Region;
 
-use super::Region;
-use super::form::Form;
+use super::chart::Chart;
 
 /// Columns of half a trunk ring, both middles included.
-const HALF: usize = 13;
+pub(crate) const HALF: usize = 13;
 /// Columns of an arm's and a leg's ring.
-const ARM: usize = 12;
-const LEG: usize = 16;
+pub(crate) const ARM: usize = 12;
+pub(crate) const LEG: usize = 16;
 /// The armhole's first column and its width; its first row is so many below the trunk's last.
-const HOLE: usize = 5;
-const HOLE_ROWS: usize = 3;
+pub(crate) const HOLE: usize = 5;
+pub(crate) const HOLE_ROWS: usize = 3;
 /// Rows of the trunk above the armhole's upper edge, the base of the neck included.
-const ABOVE_HOLE: usize = 3;
-/// A piece of the texture atlas.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Chart {
-    /// Trunk and neck, from side to side.
-    Front,
-    /// The same behind.
-    Back,
-    /// Face and forehead.
-    Face,
-    /// Back and crown of the head.
-    Nape,
-    /// An ear.
-    Ear(bool),
-    /// Upper side of an arm, with the hand's back.
-    ArmUpper(bool),
-    /// Lower side of an arm, with the palm.
-    ArmLower(bool),
-    /// Front of a leg, with the instep.
-    LegFront(bool),
-    /// Back of a leg.
-    LegBack(bool),
-    /// Sole of a foot.
-    Sole(bool),
-}
-
-/// Number of pieces of the atlas.
-pub const CHARTS: usize = 16;
-
-impl Chart {
-    /// Its number, below [`CHARTS`].
-    pub fn number(self) -> u8 {
-        match self {
-            Self::Front => 0,
-            Self::Back => 1,
-            Self::Face => 2,
-            Self::Nape => 3,
-            Self::Ear(right) => 4 + u8::from(right),
-            Self::ArmUpper(right) => 6 + u8::from(right),
-            Self::ArmLower(right) => 8 + u8::from(right),
-            Self::LegFront(right) => 10 + u8::from(right),
-            Self::LegBack(right) => 12 + u8::from(right),
-            Self::Sole(right) => 14 + u8::from(right),
-        }
-    }
-
-    /// The same piece of the other side; each variant's flag says whether it is the right one.
-    fn mirror(self) -> Self {
-        match self {
-            Self::Ear(_) => Self::Ear(true),
-            Self::ArmUpper(_) => Self::ArmUpper(true),
-            Self::ArmLower(_) => Self::ArmLower(true),
-            Self::LegFront(_) => Self::LegFront(true),
-            Self::LegBack(_) => Self::LegBack(true),
-            Self::Sole(_) => Self::Sole(true),
-            both => both,
-        }
-    }
-}
+pub(crate) const ABOVE_HOLE: usize = 3;
 
 /// What a vertex of the cage belongs to.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Tag {
+pub(crate) struct Tag {
     pub region: Region,
     /// How far the vertex may slide along the surface while the mesh is evened out, 0 to 1.
     pub slide: f32,
@@ -101,7 +28,7 @@ pub(super) struct Tag {
 
 /// The cage with its starting points (mm).
 #[derive(Debug, Default)]
-pub(super) struct Lattice {
+pub(crate) struct Lattice {
     pub points: Vec<Vec3>,
     pub tags: Vec<Tag>,
     pub faces: Vec<[u32; 4]>,
@@ -111,29 +38,19 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    /// The whole cage over a form.
-    pub(super) fn new(form: &Form) -> Self {
-        let mut half = Self::default();
-        let trunk = half.lay_trunk(form);
-        half.lay_leg(form, &trunk[0]);
-        half.lay_arm(form, &trunk);
-        half.orient();
-        half.mirrored()
-    }
-
-    fn push(&mut self, point: Vec3, region: Region, slide: f32) -> u32 {
+    pub(crate) fn push(&mut self, point: Vec3, region: Region, slide: f32) -> u32 {
         self.points.push(point);
         self.tags.push(Tag { region, slide });
         self.points.len() as u32 - 1
     }
 
-    fn quad(&mut self, corners: [u32; 4], chart: Chart) {
+    pub(crate) fn quad(&mut self, corners: [u32; 4], chart: Chart) {
         self.faces.push(corners);
         self.charts.push(chart);
     }
 
     /// A band between two closed rings; the chart of each column's quad is asked for.
-    fn band(&mut self, from: &[u32], to: &[u32], chart: impl Fn(usize) -> Chart) {
+    pub(crate) fn band(&mut self, from: &[u32], to: &[u32], chart: impl Fn(usize) -> Chart) {
         for k in 0..from.len() {
             let n = (k + 1) % from.len();
             self.quad([from[k], from[n], to[n], to[k]], chart(k));
@@ -141,7 +58,7 @@ impl Lattice {
     }
 
     /// Turns faces so that neighbours run against each other along their common edge, and all look outwards.
-    fn orient(&mut self) {
+    pub(crate) fn orient(&mut self) {
         let mut sides: BTreeMap<(u32, u32), Vec<usize>> = BTreeMap::new();
         for (f, q) in self.faces.iter().enumerate() {
             for k in 0..4 {
@@ -181,7 +98,7 @@ impl Lattice {
     }
 
     /// The left half with its mirror image.
-    fn mirrored(mut self) -> Self {
+    pub(crate) fn mirrored(mut self) -> Self {
         let left = self.points.len();
         let middle = |p: Vec3| p.x.abs() < 1e-6;
         let mut twins: Vec<u32> = (0..left as u32).collect();
@@ -216,8 +133,8 @@ fn flipped([a, b, c, d]: [u32; 4]) -> [u32; 4] {
     [a, d, c, b]
 }
 
-/// Where a ray from inside leaves a form (mm): marched in steps, then halved.
-fn cast(from: Vec3, way: Vec3, distance: impl Fn(Vec3) -> f32) -> Vec3 {
+/// Where a ray from inside leaves a form (mm): marched in steps, then bisected.
+pub(crate) fn cast(from: Vec3, way: Vec3, distance: impl Fn(Vec3) -> f32) -> Vec3 {
     const STEP: f32 = 2.0;
     let mut far = STEP;
     while far < 400.0 && distance(from + way * far) < 0.0 {

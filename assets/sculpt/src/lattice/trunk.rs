@@ -4,9 +4,10 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 
-use super::{ABOVE_HOLE, Chart, HALF, HOLE, HOLE_ROWS, Lattice, cast};
-use crate::body::Region;
-use crate::body::form::{Form, GridRow};
+use super::cage::{ABOVE_HOLE, HALF, HOLE, HOLE_ROWS, Lattice, cast};
+use super::chart::Chart;
+use crate::form::{Form, GridRow};
+use toile_assets::body::Region;
 
 /// The ear's column of quads and its rows, in the head's rings.
 const EAR_COLUMN: usize = 8;

@@ -2,10 +2,11 @@
 
 use glam::Vec3;
 
+use super::cage::{ABOVE_HOLE, ARM, HALF, HOLE, HOLE_ROWS, Lattice, cast};
+use super::chart::Chart;
 use super::digit::Digit;
-use super::{ABOVE_HOLE, ARM, Chart, HALF, HOLE, HOLE_ROWS, Lattice, cast};
-use crate::body::Region;
-use crate::body::form::Form;
+use crate::form::Form;
+use toile_assets::body::Region;
 
 impl Lattice {
     pub(super) fn lay_arm(&mut self, form: &Form, trunk: &[[u32; HALF]]) {

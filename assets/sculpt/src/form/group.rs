@@ -1,28 +1,14 @@
-//! The form of a body: a drawing in sections, muscles and hollows, asked for its distance from any point.
-//!
-//! Reads: a drawing in `data/body/`. Writes: distances (mm), negative inside.
-//! Budget: about a microsecond a question; only the drawing of a base body asks, never a running fitting room.
-//! Thread: the drawing thread.
-//!
-//! The trunk and the limbs are superellipse sections along an axis, so that breadth, depth and girth are what the table
-//! says; fillets join them (smooth minimum); ellipsoids and round cones add muscles, fingers and toes; Gaussian bumps
-//! finish the surface.
+//! Parts that blend into one another, and the frame they stand in.
 
-mod drawing;
-mod parts;
-mod spline;
-
-pub(super) use drawing::{Drawing, Form, GridRow};
-
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 use serde::Deserialize;
 
-use parts::{Ball, Bump, Chain, Tube, TubeRow, smooth_max, smooth_min};
+use super::parts::{Ball, Bump, Chain, Tube, TubeRow, smooth_max, smooth_min};
 
 /// A group of parts in one frame; lengths in millimetres.
 #[derive(Debug, Deserialize, Default)]
 #[serde(deny_unknown_fields)]
-pub(super) struct GroupRow {
+pub(crate) struct GroupRow {
     #[serde(default)]
     tube: Vec<TubeRow>,
     #[serde(default)]
@@ -33,12 +19,12 @@ pub(super) struct GroupRow {
     bump: Vec<Bump>,
     /// Digits: they join the group, but not one another.
     #[serde(default)]
-    pub(super) digit: Vec<Chain>,
+    pub(crate) digit: Vec<Chain>,
 }
 
 /// Parts that blend into one another.
 #[derive(Debug)]
-pub(super) struct Group {
+pub(crate) struct Group {
     tubes: Vec<Tube>,
     chains: Vec<Chain>,
     balls: Vec<Ball>,
@@ -53,7 +39,7 @@ fn with_twins<T: Clone>(parts: &[T], twin: impl Fn(&T) -> Option<T>) -> Vec<T> {
 
 impl Group {
     /// `paired`: parts beside the middle have their twin on the other side.
-    pub(super) fn new(row: &GroupRow, paired: bool) -> Self {
+    pub(crate) fn new(row: &GroupRow, paired: bool) -> Self {
         Self {
             tubes: row.tube.iter().map(Tube::new).collect(),
             chains: with_twins(&row.chain, |c| c.mirrored().filter(|_| paired)),
@@ -64,7 +50,7 @@ impl Group {
     }
 
     /// Distance to the group's surface.
-    pub(super) fn distance(&self, p: Vec3) -> f32 {
+    pub(crate) fn distance(&self, p: Vec3) -> f32 {
         let mut d = f32::MAX;
         for tube in &self.tubes {
             d = smooth_min(d, tube.distance(p), tube.blend);
@@ -87,24 +73,24 @@ impl Group {
     }
 
     /// Balls of a digit.
-    pub(super) fn digit(&self, k: usize) -> Vec<(Vec3, f32)> {
+    pub(crate) fn digit(&self, k: usize) -> Vec<(Vec3, f32)> {
         self.digits[k].balls.iter().map(|b| (Vec3::new(b[0], b[1], b[2]), b[3])).collect()
     }
 }
 
 /// A frame of its own: where its origin stands and where its axes point.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
+pub(crate) struct Frame {
     pub origin: Vec3,
-    pub axes: glam::Mat3,
+    pub axes: Mat3,
 }
 
 impl Frame {
-    pub(super) fn inward(&self, p: Vec3) -> Vec3 {
+    pub(crate) fn inward(&self, p: Vec3) -> Vec3 {
         self.axes.transpose() * (p - self.origin)
     }
 
-    pub(super) fn out(&self, p: Vec3) -> Vec3 {
+    pub(crate) fn out(&self, p: Vec3) -> Vec3 {
         self.origin + self.axes * p
     }
 }

@@ -1,0 +1,43 @@
+//! The base bodies as they are drawn: a form in sections, a grid laid on it, and the grid's texture atlas.
+//!
+//! Reads: a drawing in `assets/sculpt/data`. Writes: [`Drawn`] bodies, and the file `assets/data/body/base.bin` that
+//! `toile-assets` reads.
+//! Budget: some seconds a body; nothing that runs in a shop depends on this crate.
+//! Thread: one.
+
+pub mod draw;
+mod form;
+mod lattice;
+mod subdivide;
+pub mod unwrap;
+mod wrap;
+
+pub use draw::{Drawn, draw};
+pub use unwrap::unwrap;
+
+use toile_assets::body::stored::Stored;
+
+/// Draws a woman and a man from the texts of their drawings, and puts both with one atlas into what is stored.
+///
+/// # Errors
+/// A drawing that is no TOML or lacks a part.
+///
+/// # Panics
+/// Where the two drawings do not give the same grid.
+pub fn stored(drawings: [&str; 2]) -> Result<Stored, toml::de::Error> {
+    let bodies = [draw(drawings[0])?, draw(drawings[1])?];
+    let (uvs, corners) = unwrap(&bodies);
+    let [woman, man] = bodies;
+    assert_eq!(woman.quads, man.quads, "both bodies have one grid");
+    let charts = woman.charts.iter().map(|c| c.number()).collect();
+    Ok(Stored {
+        positions: [woman.positions, man.positions],
+        skeletons: [woman.skeleton, man.skeleton],
+        quads: woman.quads,
+        uvs,
+        corners,
+        charts,
+        regions: woman.regions,
+        twins: woman.twins,
+    })
+}
