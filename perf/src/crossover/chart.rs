@@ -2,8 +2,8 @@
 
 use super::{EACH, Row, Study};
 use crate::plot::axis::Axis;
-use crate::plot::chart::{Chart, Look, Series};
-use crate::plot::{BLACK, Drawing, INKS};
+use crate::plot::chart::{Chart, SeriesStyle, Series};
+use crate::plot::{BLACK, Drawing, SERIES_COLOURS};
 
 /// What 120 Hz leaves a step (us).
 const STEP_US: f64 = 1e6 / 120.0;
@@ -26,7 +26,7 @@ pub fn chart(study: &Study) -> Drawing {
             let point = |row: &Row| Some([(row.verts * row.garments) as f64, us(row)?]);
             let points: Vec<[f64; 2]> = study.rows.iter().filter(chosen).filter_map(point).collect();
             if points.len() > usize::from(several) {
-                let look = Look { dashed: several, ..Look::joined(INKS[k]) };
+                let style = SeriesStyle { dashed: several, ..SeriesStyle::joined(SERIES_COLOURS[k]) };
                 series.push(Series { name: format!("{name}, {words}"), points, look });
             }
         }
@@ -37,7 +37,7 @@ pub fn chart(study: &Study) -> Drawing {
     let budget = Series {
         name: "120 steps a second".into(),
         points: vec![[x.range[0], STEP_US], [x.range[1], STEP_US]],
-        look: Look { dashed: true, ..Look::line(BLACK, 1.0) },
+        style: SeriesStyle { dashed: true, ..SeriesStyle::line(BLACK, 1.0) },
     };
     series.push(budget);
     let device = study.stepped_by.adapter.as_ref().map_or("no device".into(), |a| format!("{} ({})", a.name, a.kind));

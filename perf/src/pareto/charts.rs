@@ -3,9 +3,9 @@
 use super::front;
 use super::report::{Drape, Fate, Point, Report, SceneReport, Survival};
 use crate::plot::axis::Axis;
-use crate::plot::chart::{Chart, Look, Series};
+use crate::plot::chart::{Chart, SeriesStyle, Series};
 use crate::plot::tiles::{Cell, Tiles};
-use crate::plot::{BLACK, Drawing, INKS};
+use crate::plot::{BLACK, Drawing, SERIES_COLOURS};
 
 /// A chart under its file's name.
 pub struct Figure {
@@ -59,12 +59,12 @@ pub fn figures(report: &Report) -> Vec<Figure> {
 }
 
 /// A series for each group, by what x is.
-fn by_group(points: &[&Point], look: fn([u8; 3]) -> Look, x: impl Fn(&Point) -> f64) -> Vec<Series> {
+fn by_group(points: &[&Point], style: fn([u8; 3]) -> SeriesStyle, x: impl Fn(&Point) -> f64) -> Vec<Series> {
     let group = |(k, (solver, quality, name)): (usize, &(&str, &str, &str))| {
         let of = points.iter().filter(|p| p.solver == *solver && p.quality == *quality && p.threads == 1);
         let mut points: Vec<[f64; 2]> = of.map(|p| [x(p), p.error_mm]).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        Series { name: (*name).into(), points, look: look(INKS[k]) }
+        Series { name: (*name).into(), points, style: style(SERIES_COLOURS[k]) }
     };
     GROUPS.iter().enumerate().map(group).filter(|s| !s.points.is_empty()).collect()
 }
@@ -85,22 +85,22 @@ fn titled(scene: &SceneReport, words: &str) -> String {
 }
 
 fn speed(scene: &SceneReport, points: &[&Point], all: &[Point]) -> Chart {
-    let mut series = by_group(points, Look::dots, |p| p.step_us);
+    let mut series = by_group(points, SeriesStyle::dots, |p| p.step_us);
     let two: Vec<[f64; 2]> = points.iter().filter(|p| p.threads == 2).map(|p| [p.step_us, p.error_mm]).collect();
     if !two.is_empty() {
-        let look = Look { dot: 2.5, ..Look::dots([150; 3]) };
+        let style = SeriesStyle { dot: 2.5, ..SeriesStyle::dots([150; 3]) };
         series.push(Series { name: "mixed, two threads".into(), points: two, look });
     }
     for (threads, words) in [(1, "front, one thread"), (2, "front, two threads")] {
         let found = front::of(all, &scene.scene, &scene.mesh, threads);
         let points: Vec<[f64; 2]> = found.iter().map(|p| [p.step_us, p.error_mm]).collect();
         if !points.is_empty() {
-            let look = Look { dashed: threads == 2, ..Look::line(BLACK, 1.6) };
-            series.push(Series { name: words.into(), points, look });
+            let style = SeriesStyle { dashed: threads == 2, ..SeriesStyle::line(BLACK, 1.6) };
+            series.push(Series { name: words.into(), points, style });
         }
     }
     let own = points.iter().filter(|p| p.default && p.threads == 1).map(|p| [p.step_us, p.error_mm]).collect();
-    series.push(Series { name: "a quality's own".into(), points: own, look: Look::rings(BLACK) });
+    series.push(Series { name: "a quality's own".into(), points: own, look: SeriesStyle::rings(BLACK) });
     let mut chart = framed(titled(scene, "error against time"), [("median time of a step (us)", true), ERROR], series);
     chart.x.range[1] = chart.x.range[1].max(STEP_US * 1.3);
     chart.rules.push((STEP_US, "120 Hz: 8.33 ms"));
@@ -108,12 +108,12 @@ fn speed(scene: &SceneReport, points: &[&Point], all: &[Point]) -> Chart {
 }
 
 fn substeps(scene: &SceneReport, points: &[&Point]) -> Chart {
-    let series = by_group(points, Look::joined, |p| f64::from(p.substeps));
+    let series = by_group(points, SeriesStyle::joined, |p| f64::from(p.substeps));
     framed(titled(scene, "convergence by substeps"), [("substeps of a step", true), ERROR], series)
 }
 
 fn iterations(scene: &SceneReport, points: &[&Point]) -> Chart {
-    let series = by_group(points, Look::joined, |p| f64::from(p.substeps) * p.iterations as f64);
+    let series = by_group(points, SeriesStyle::joined, |p| f64::from(p.substeps) * p.iterations as f64);
     let x = ("iterations of a step: substeps x passes over the weft", true);
     framed(titled(scene, "convergence by iterations"), [x, ERROR], series)
 }
@@ -129,30 +129,30 @@ fn meshes(name: &str, report: &Report) -> Chart {
         };
         let mut points: Vec<[f64; 2]> = scenes.iter().filter_map(point).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        series.push(Series { name: format!("{quality}, its own substeps"), points, look: Look::joined(INKS[k]) });
+        series.push(Series { name: format!("{quality}, its own substeps"), points, look: SeriesStyle::joined(SERIES_COLOURS[k]) });
     }
     let x = ("mean length of an edge (mm)", true);
     framed(format!("{name}: error against mesh size"), [x, ERROR], series)
 }
 
 fn energy(scene: &SceneReport) -> Chart {
-    let inks = [BLACK, INKS[0], INKS[1], INKS[2]];
-    let runs = scene.energy.iter().zip(inks.into_iter().cycle());
-    let series = runs.map(|(run, ink)| {
-        let look = Look { dashed: ink == BLACK, ..Look::line(ink, 1.8) };
-        Series { name: run.setting.clone(), points: run.frames.clone(), look }
+    let colours = [BLACK, SERIES_COLOURS[0], SERIES_COLOURS[1], SERIES_COLOURS[2]];
+    let runs = scene.energy.iter().zip(colours.into_iter().cycle());
+    let series = runs.map(|(run, colour)| {
+        let style = SeriesStyle { dashed: colour == BLACK, ..SeriesStyle::line(colour, 1.8) };
+        Series { name: run.setting.clone(), points: run.frames.clone(), style }
     });
     let axes = [("time (s)", false), ("energy: motion, weight, bending, stretch (J)", false)];
     framed(titled(scene, "energy by frame"), axes, series.collect())
 }
 
 fn map(survival: &Survival) -> Tiles {
-    let ink = |fate: Fate| match fate {
+    let colour = |fate: Fate| match fate {
         Fate::Stable => FATES[0],
         Fate::Strained => FATES[1],
         Fate::RolledBack => FATES[2],
     };
-    let cell = |(fate, strain): (&Fate, &f64)| Cell { ink: ink(*fate), words: format!("{:.1} %", 100.0 * strain) };
+    let cell = |(fate, strain): (&Fate, &f64)| Cell { colour: colour(*fate), words: format!("{:.1} %", 100.0 * strain) };
     let row = |(fates, strains): (&Vec<Fate>, &Vec<f64>)| fates.iter().zip(strains).map(cell).collect();
     let limit = 100.0 * survival.strained_p99;
     Tiles {
@@ -176,8 +176,8 @@ fn samplings(drape: &Drape) -> Chart {
     let ours = drape.samplings.iter().map(|s| [s.spacing_cm, s.mean_cm]).filter(|p| p[1] > 0.0).collect();
     let theirs = drape.samplings.iter().filter_map(|s| Some([s.spacing_cm, s.published_cm?])).collect();
     let series = vec![
-        Series { name: "to the finest".into(), points: ours, look: Look::joined(INKS[0]) },
-        Series { name: "MIRAGES, to a real cloth".into(), points: theirs, look: Look::joined(INKS[1]) },
+        Series { name: "to the finest".into(), points: ours, look: SeriesStyle::joined(SERIES_COLOURS[0]) },
+        Series { name: "MIRAGES, to a real cloth".into(), points: theirs, look: SeriesStyle::joined(SERIES_COLOURS[1]) },
     ];
     let axes = [("sampling (cm)", true), ("mean distance (cm)", true)];
     framed("drape: a tablecloth of 1 m by sampling".into(), axes, series)

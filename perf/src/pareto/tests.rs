@@ -33,7 +33,7 @@ fn ticks_lie_on_the_axis_and_are_written_shortly() {
 
 #[test]
 fn a_drawing_is_the_same_marks_in_svg_and_in_pixels() {
-    let line = Mark::Line { points: vec![[10.0, 10.5], [50.0, 10.5]], ink: [255, 0, 0], width: 1.0, dashed: false };
+    let line = Mark::Line { points: vec![[10.0, 10.5], [50.0, 10.5]], colour: [255, 0, 0], width: 1.0, dashed: false };
     let words = Mark::text([30.0, 30.0], Anchor::Middle, "a < b");
     let drawing = Drawing { size: [60, 40], marks: vec![line, words] };
     let text = svg::text(&drawing);
@@ -41,7 +41,7 @@ fn a_drawing_is_the_same_marks_in_svg_and_in_pixels() {
     let image = raster::image(&drawing);
     assert_eq!(image.pixel(30, 10), Some([255, 0, 0]));
     assert_eq!(image.pixel(30, 13), Some([255; 3]));
-    assert!((20..40).any(|x| image.pixel(x, 30).is_some_and(|p| p[0] < 128)), "no ink of the words");
+    assert!((20..40).any(|x| image.pixel(x, 30).is_some_and(|p| p[0] < 128)), "no colour of the words");
 }
 
 #[test]

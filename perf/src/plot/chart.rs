@@ -1,13 +1,13 @@
 //! A chart: series over two axes, rules, a legend at the right.
 
 use super::axis::{Axis, figure};
-use super::{Anchor, BLACK, Drawing, Ink, Mark, PALE, RULE};
+use super::{Anchor, BLACK, Drawing, Colour, Mark, PALE, RULE};
 
 /// How a series is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Look {
+pub struct SeriesStyle {
     /// Its colour.
-    pub ink: Ink,
+    pub colour: Colour,
     /// Width of the line that joins its points (pixels), 0 for none.
     pub line: f64,
     /// Whether that is dashed.
@@ -18,25 +18,25 @@ pub struct Look {
     pub ring: bool,
 }
 
-impl Look {
+impl SeriesStyle {
     /// Points joined by a thin line.
-    pub fn joined(ink: Ink) -> Self {
-        Self { ink, line: 1.5, dashed: false, dot: 3.5, ring: false }
+    pub fn joined(colour: Colour) -> Self {
+        Self { colour, line: 1.5, dashed: false, dot: 3.5, ring: false }
     }
 
     /// A line alone.
-    pub fn line(ink: Ink, width: f64) -> Self {
-        Self { ink, line: width, dashed: false, dot: 0.0, ring: false }
+    pub fn line(colour: Colour, width: f64) -> Self {
+        Self { colour, line: width, dashed: false, dot: 0.0, ring: false }
     }
 
     /// Points alone.
-    pub fn dots(ink: Ink) -> Self {
-        Self { ink, line: 0.0, dashed: false, dot: 3.5, ring: false }
+    pub fn dots(colour: Colour) -> Self {
+        Self { colour, line: 0.0, dashed: false, dot: 3.5, ring: false }
     }
 
     /// Wide rings around points.
-    pub fn rings(ink: Ink) -> Self {
-        Self { ink, line: 0.0, dashed: false, dot: 8.0, ring: true }
+    pub fn rings(colour: Colour) -> Self {
+        Self { colour, line: 0.0, dashed: false, dot: 8.0, ring: true }
     }
 }
 
@@ -48,7 +48,7 @@ pub struct Series {
     /// Its points.
     pub points: Vec<[f64; 2]>,
     /// How they are drawn.
-    pub look: Look,
+    pub style: SeriesStyle,
 }
 
 /// Series over two axes.
@@ -111,7 +111,7 @@ impl Chart {
         let Some(x) = self.across(value) else { return };
         let [_, _, top, bottom] = edges();
         let points = vec![[x, top], [x, bottom]];
-        marks.push(Mark::Line { points, ink: RULE, width: 1.5, dashed: true });
+        marks.push(Mark::Line { points, colour: RULE, width: 1.5, dashed: true });
         let y = top + 12.0 + 20.0 * number as f64;
         marks.push(Mark::text([x - 6.0, y], Anchor::Right, words));
     }
@@ -119,12 +119,12 @@ impl Chart {
     fn series(&self, series: &Series, marks: &mut Vec<Mark>) {
         let place = |p: &[f64; 2]| Some([self.across(p[0])?, self.up(p[1])?]);
         let points: Vec<[f64; 2]> = series.points.iter().filter_map(place).collect();
-        let Look { ink, line, dashed, dot, ring } = series.look;
+        let SeriesStyle { colour, line, dashed, dot, ring } = series.style;
         if line > 0.0 && points.len() > 1 {
-            marks.push(Mark::Line { points: points.clone(), ink, width: line, dashed });
+            marks.push(Mark::Line { points: points.clone(), colour, width: line, dashed });
         }
         if dot > 0.0 {
-            marks.extend(points.into_iter().map(|at| Mark::Dot { at, radius: dot, ink, ring }));
+            marks.extend(points.into_iter().map(|at| Mark::Dot { at, radius: dot, colour, ring }));
         }
     }
 
@@ -132,12 +132,12 @@ impl Chart {
         let [_, right, top, _] = edges();
         for (k, series) in self.series.iter().enumerate() {
             let (x, y) = (right + 18.0, top + 12.0 + LEGEND_LINE * k as f64);
-            let Look { ink, line, dashed, dot, ring } = series.look;
+            let SeriesStyle { colour, line, dashed, dot, ring } = series.style;
             if line > 0.0 {
-                marks.push(Mark::Line { points: vec![[x, y], [x + 26.0, y]], ink, width: line, dashed });
+                marks.push(Mark::Line { points: vec![[x, y], [x + 26.0, y]], colour, width: line, dashed });
             }
             if dot > 0.0 {
-                marks.push(Mark::Dot { at: [x + 13.0, y], radius: dot, ink, ring });
+                marks.push(Mark::Dot { at: [x + 13.0, y], radius: dot, colour, ring });
             }
             marks.push(Mark::text([x + 34.0, y], Anchor::Left, series.name.clone()));
         }

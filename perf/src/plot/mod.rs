@@ -1,29 +1,30 @@
-//! Plots: a chart is described once, laid out as marks, and drawn as SVG text or as pixels.
+//! Plots: a chart is described once, laid out as marks, and drawn as SVG text or as pixels; and the page that shows it.
 //!
-//! Reads: series of points, or a grid of cells. Writes: a [`Drawing`], an SVG, an image.
+//! Reads: series of points, or a grid of cells. Writes: a [`Drawing`], an SVG, an image, a page of HTML.
 //! Budget: milliseconds a chart; never inside the frame.
 //! Thread: the caller's.
 
 pub mod axis;
 pub mod chart;
+pub mod page;
 pub mod raster;
 pub mod svg;
 pub mod tiles;
 
 /// An sRGB colour.
-pub type Ink = [u8; 3];
+pub type Colour = [u8; 3];
 
 /// Text, axes.
-pub const BLACK: Ink = [34, 34, 34];
+pub const BLACK: Colour = [34, 34, 34];
 
 /// Lines of the grid.
-pub const PALE: Ink = [225, 225, 225];
+pub const PALE: Colour = [225, 225, 225];
 
 /// Rules across a chart.
-pub const RULE: Ink = [190, 40, 40];
+pub const RULE: Colour = [190, 40, 40];
 
 /// Inks of series, apart for most colour-blind eyes (Okabe & Ito 2008).
-pub const INKS: [Ink; 6] = [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [86, 180, 233], [230, 159, 0]];
+pub const SERIES_COLOURS: [Colour; 6] = [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [86, 180, 233], [230, 159, 0]];
 
 /// Which end of a text lies where it is put.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,7 +45,7 @@ pub enum Mark {
         /// Its corners.
         points: Vec<[f64; 2]>,
         /// Its colour.
-        ink: Ink,
+        colour: Colour,
         /// Its width.
         width: f64,
         /// Whether it is dashed.
@@ -57,7 +58,7 @@ pub enum Mark {
         /// Its radius.
         radius: f64,
         /// Its colour.
-        ink: Ink,
+        colour: Colour,
         /// Whether it is a ring.
         ring: bool,
     },
@@ -68,7 +69,7 @@ pub enum Mark {
         /// Width and height.
         size: [f64; 2],
         /// Its colour.
-        ink: Ink,
+        colour: Colour,
     },
     /// One line of text, centred on a height.
     Text {
@@ -90,8 +91,8 @@ impl Mark {
     }
 
     /// A straight line.
-    pub fn line(from: [f64; 2], to: [f64; 2], ink: Ink) -> Self {
-        Self::Line { points: vec![from, to], ink, width: 1.0, dashed: false }
+    pub fn line(from: [f64; 2], to: [f64; 2], colour: Colour) -> Self {
+        Self::Line { points: vec![from, to], colour, width: 1.0, dashed: false }
     }
 }
 

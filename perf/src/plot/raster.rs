@@ -3,7 +3,7 @@
 use toile_view::image::{Image, Size};
 use toile_view::text::{TextSize, draw};
 
-use super::{Anchor, BLACK, Drawing, Ink, Mark};
+use super::{Anchor, BLACK, Drawing, Colour, Mark};
 
 /// Lengths of a dash and of the gap behind it (pixels).
 const DASH: [f64; 2] = [7.0, 5.0];
@@ -16,16 +16,16 @@ pub fn image(drawing: &Drawing) -> Image {
     let mut image = Image::filled(Size::new(drawing.size[0], drawing.size[1]), [255; 3]);
     for mark in &drawing.marks {
         match mark {
-            Mark::Line { points, ink, width, dashed } => {
+            Mark::Line { points, colour, width, dashed } => {
                 for ends in points.windows(2) {
                     let pieces = if *dashed { dashes(ends[0], ends[1]) } else { vec![[ends[0], ends[1]]] };
-                    pieces.into_iter().for_each(|piece| line(&mut image, piece, *width, *ink));
+                    pieces.into_iter().for_each(|piece| line(&mut image, piece, *width, *colour));
                 }
             }
-            Mark::Dot { at, radius, ink, ring } => dot(&mut image, *at, *radius, *ink, *ring),
-            Mark::Box { at, size, ink } => {
+            Mark::Dot { at, radius, colour, ring } => dot(&mut image, *at, *radius, *colour, *ring),
+            Mark::Box { at, size, colour } => {
                 let size = Size::new(size[0].round() as u32, size[1].round() as u32);
-                image.fill(at[0].round() as i32, at[1].round() as i32, size, *ink);
+                image.fill(at[0].round() as i32, at[1].round() as i32, size, *colour);
             }
             Mark::Text { at, anchor, words, large } => text(&mut image, *at, *anchor, words, *large),
         }
@@ -45,7 +45,7 @@ fn text(image: &mut Image, at: [f64; 2], anchor: Anchor, words: &str, large: boo
     draw(image, left.round() as i32, top.round() as i32, words, size, BLACK);
 }
 
-fn line(image: &mut Image, [a, b]: [[f64; 2]; 2], width: f64, ink: Ink) {
+fn line(image: &mut Image, [a, b]: [[f64; 2]; 2], width: f64, colour: Colour) {
     let along = [b[0] - a[0], b[1] - a[1]];
     let length2 = along[0].powi(2) + along[1].powi(2);
     let distance = |p: [f64; 2]| {
@@ -56,19 +56,19 @@ fn line(image: &mut Image, [a, b]: [[f64; 2]; 2], width: f64, ink: Ink) {
     };
     let low = [a[0].min(b[0]), a[1].min(b[1])];
     let high = [a[0].max(b[0]), a[1].max(b[1])];
-    cover(image, [low, high], width, ink, |p| 0.5 * width - distance(p));
+    cover(image, [low, high], width, colour, |p| 0.5 * width - distance(p));
 }
 
-fn dot(image: &mut Image, at: [f64; 2], radius: f64, ink: Ink, ring: bool) {
+fn dot(image: &mut Image, at: [f64; 2], radius: f64, colour: Colour, ring: bool) {
     let inside = |p: [f64; 2]| {
         let r = (p[0] - at[0]).hypot(p[1] - at[1]);
         if ring { RING - (r - radius).abs() } else { radius - r }
     };
-    cover(image, [at, at], radius + RING, ink, inside);
+    cover(image, [at, at], radius + RING, colour, inside);
 }
 
-/// Lays ink on every pixel near a box by how deep it is inside of a mark (pixels), half at its edge.
-fn cover(image: &mut Image, [low, high]: [[f64; 2]; 2], room: f64, ink: Ink, inside: impl Fn([f64; 2]) -> f64) {
+/// Lays colour on every pixel near a box by how deep it is inside of a mark (pixels), half at its edge.
+fn cover(image: &mut Image, [low, high]: [[f64; 2]; 2], room: f64, colour: Colour, inside: impl Fn([f64; 2]) -> f64) {
     let first = |v: f64| (v - room - 1.0).floor().max(0.0) as u32;
     let last = |v: f64, most: u32| ((v + room + 1.0).ceil().max(0.0) as u32).min(most.saturating_sub(1));
     let size = image.size();
@@ -76,7 +76,7 @@ fn cover(image: &mut Image, [low, high]: [[f64; 2]; 2], room: f64, ink: Ink, ins
         for x in first(low[0])..=last(high[0], size.width) {
             let share = (inside([f64::from(x) + 0.5, f64::from(y) + 0.5]) + 0.5).clamp(0.0, 1.0);
             if let (Some(old), true) = (image.pixel(x, y), share > 0.0) {
-                let mixed = |k: usize| (f64::from(old[k]) * (1.0 - share) + f64::from(ink[k]) * share).round() as u8;
+                let mixed = |k: usize| (f64::from(old[k]) * (1.0 - share) + f64::from(colour[k]) * share).round() as u8;
                 image.fill(x as i32, y as i32, Size::new(1, 1), [mixed(0), mixed(1), mixed(2)]);
             }
         }

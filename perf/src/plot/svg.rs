@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Anchor, Drawing, Ink, Mark};
+use super::{Anchor, Drawing, Colour, Mark};
 
 /// The SVG element.
 pub fn text(drawing: &Drawing) -> String {
@@ -22,23 +22,23 @@ pub fn text(drawing: &Drawing) -> String {
 
 fn element(mark: &Mark) -> String {
     match mark {
-        Mark::Line { points, ink, width, dashed } => {
+        Mark::Line { points, colour, width, dashed } => {
             let points: Vec<String> = points.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
             let dash = if *dashed { " stroke-dasharray=\"7 5\"" } else { "" };
-            let (points, ink) = (points.join(" "), hex(*ink));
-            format!("<polyline points=\"{points}\" fill=\"none\" stroke=\"{ink}\" stroke-width=\"{width}\"{dash}/>")
+            let (points, colour) = (points.join(" "), hex(*colour));
+            format!("<polyline points=\"{points}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"{dash}/>")
         }
-        Mark::Dot { at: [x, y], radius, ink, ring } => {
-            let ink = hex(*ink);
+        Mark::Dot { at: [x, y], radius, colour, ring } => {
+            let colour = hex(*colour);
             let paint = if *ring {
-                format!("fill=\"none\" stroke=\"{ink}\" stroke-width=\"2\"")
+                format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"")
             } else {
-                format!("fill=\"{ink}\"")
+                format!("fill=\"{colour}\"")
             };
             format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" {paint}/>")
         }
-        Mark::Box { at: [x, y], size: [w, h], ink } => {
-            format!("<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{w:.1}\" height=\"{h:.1}\" fill=\"{}\"/>", hex(*ink))
+        Mark::Box { at: [x, y], size: [w, h], colour } => {
+            format!("<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{w:.1}\" height=\"{h:.1}\" fill=\"{}\"/>", hex(*colour))
         }
         Mark::Text { at: [x, y], anchor, words, large } => {
             let anchor = match anchor {
@@ -56,7 +56,7 @@ fn element(mark: &Mark) -> String {
     }
 }
 
-fn hex([r, g, b]: Ink) -> String {
+fn hex([r, g, b]: Colour) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
