@@ -18,6 +18,7 @@ pub mod pareto;
 pub mod people;
 pub mod plan;
 pub mod plot;
+mod random;
 pub mod reliability;
 pub mod scene_run;
 pub mod skinning;

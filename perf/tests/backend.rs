@@ -12,8 +12,8 @@ use toile_gpu::stepper::{Backend, Means};
 use toile_perf::backend::SteppedBy;
 use toile_perf::oracle::{Oracle, Problem, adapter, measure};
 use toile_perf::skirt::heap::HeapProbe;
-use toile_perf::skirt::options::Options;
-use toile_perf::skirt::{Gauge, Stage};
+use toile_perf::skirt::options::SkirtOptions;
+use toile_perf::skirt::{Gauge, SkirtScene};
 use toile_perf::torture;
 use toile_perf::validate::{Level, run};
 
@@ -60,24 +60,24 @@ struct Ran {
     strains: Vec<[f64; 2]>,
     /// Where the particles are at the end (m).
     at: Vec<DVec3>,
-    stage: Stage,
+    scene: SkirtScene,
 }
 
 /// Ten seconds of a skirt; `nudge` may touch it before each step.
-fn ran(means: &Means, options: &Options, mut nudge: impl FnMut(&mut Stage)) -> Ran {
-    let mut stage = Stage::by(means, options, &HeapProbe::none(), |_| {}).expect("the scene is as it should be");
-    let mut gauge = Gauge::new(&stage);
+fn ran(means: &Means, options: &SkirtOptions, mut nudge: impl FnMut(&mut SkirtScene)) -> Ran {
+    let mut scene = SkirtScene::by(means, options, &HeapProbe::none(), |_| {}).expect("the scene is as it should be");
+    let mut gauge = Gauge::new(&scene);
     let mut strains = Vec::new();
     for step in 1..=STEPS {
-        stage.prepare();
-        nudge(&mut stage);
-        stage.step();
-        let frame = gauge.read(&stage.cloths[0].positions, &stage.spheres);
+        scene.prepare();
+        nudge(&mut scene);
+        scene.step();
+        let frame = gauge.read(&scene.cloths[0].positions, &scene.spheres);
         assert_eq!(frame.nonfinite, 0, "step {step}");
         strains.push([frame.strain_mean, frame.strain_p99]);
     }
-    assert_eq!(stage.stepper().fallen(), None, "the device was given up");
-    Ran { strains, at: adapter::positions(&stage.cloths[0].positions), stage }
+    assert_eq!(scene.stepper().fallen(), None, "the device was given up");
+    Ran { strains, at: adapter::positions(&scene.cloths[0].positions), scene }
 }
 
 /// The means of a run of strains (1).
@@ -100,8 +100,8 @@ fn hold(one: &Ran, other: &Ran) {
     assert!(apart.mean_m < SWING_M, "{apart:?}");
 }
 
-fn walking() -> Options {
-    Options { verts: WALKING, motion: Motion::Walk, ..Options::default() }
+fn walking() -> SkirtOptions {
+    SkirtOptions { verts: WALKING, motion: Motion::Walk, ..SkirtOptions::default() }
 }
 
 #[test]
@@ -109,12 +109,12 @@ fn ten_seconds_of_the_walking_skirt_are_the_processors() {
     let Some(means) = device() else { return };
     let cpu = ran(&Means::cpu(), &walking(), |_| {});
     let gpu = ran(&means, &walking(), |_| {});
-    assert_eq!((cpu.stage.stepper().backend(), gpu.stage.stepper().backend()), (Backend::Cpu, Backend::Gpu));
+    assert_eq!((cpu.scene.stepper().backend(), gpu.scene.stepper().backend()), (Backend::Cpu, Backend::Gpu));
     hold(&cpu, &gpu);
     if exact(&means) {
         assert_eq!(cpu.strains, gpu.strains);
         assert_eq!(measure::apart(&cpu.at, &gpu.at).max_m, 0.0);
-        assert_eq!(cpu.stage.state_hash(), gpu.stage.state_hash());
+        assert_eq!(cpu.scene.state_hash(), gpu.scene.state_hash());
     }
 }
 
@@ -125,19 +125,19 @@ fn last_bits_alone_stay_within_what_a_device_may_be_off() {
     let plain = ran(&Means::cpu(), &walking(), |_| {});
     for seed in 1..=NUDGED {
         let mut chance = seed;
-        let nudged = ran(&Means::cpu(), &walking(), |stage| nudge(stage, &mut chance));
+        let nudged = ran(&Means::cpu(), &walking(), |scene| nudge(scene, &mut chance));
         assert!(measure::apart(&plain.at, &nudged.at).max_m > 0.0, "nothing was nudged");
         hold(&plain, &nudged);
     }
 }
 
 /// Changes the last bit of the heights of about half of the free particles.
-fn nudge(stage: &mut Stage, chance: &mut u64) {
-    for i in 0..stage.garment.particles() {
+fn nudge(scene: &mut SkirtScene, chance: &mut u64) {
+    for i in 0..scene.garment.particles() {
         // Knuth's multiplier, and the upper bits, which are the better ones.
         *chance = chance.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        if stage.garment.inverse_mass[i] > 0.0 {
-            let cloth = &mut stage.cloths[0];
+        if scene.garment.inverse_mass[i] > 0.0 {
+            let cloth = &mut scene.cloths[0];
             let (at, velocity) = (cloth.positions[i], cloth.velocity(i));
             let y = f32::from_bits(at.y.to_bits() ^ (*chance >> 63) as u32);
             cloth.disturb(i, Vec3A::new(at.x, y, at.z), velocity);
@@ -148,18 +148,18 @@ fn nudge(stage: &mut Stage, chance: &mut u64) {
 #[test]
 fn the_settled_skirt_is_as_near_to_the_oracle_as_the_processors() {
     let Some(means) = device() else { return };
-    let options = Options {
+    let options = SkirtOptions {
         verts: 16 * 16,
         motion: Motion::Settled,
         stretch: Stretch::Inextensible,
         quality: Some(Quality::Fine),
-        ..Options::default()
+        ..SkirtOptions::default()
     };
     let [cpu, gpu] = [&Means::cpu(), &means].map(|means| {
-        let Ran { at, stage, .. } = ran(means, &options, |_| {});
-        let [_, solids] = adapter::solids(stage.colliders());
-        let mut problem = Problem::of(&stage.garment);
-        problem.reach = adapter::reach(&stage.garment, stage.colliders());
+        let Ran { at, scene, .. } = ran(means, &options, |_| {});
+        let [_, solids] = adapter::solids(scene.colliders());
+        let mut problem = Problem::of(&scene.garment);
+        problem.reach = adapter::reach(&scene.garment, scene.colliders());
         let solved = Oracle::new(problem).and_then(|mut o| o.equilibrium(&at, &solids)).expect("there is one");
         assert!(solved.report.stable, "{:?}", solved.report);
         measure::apart(&at, &solved.state.x).mean_m
@@ -207,7 +207,7 @@ fn what_comes_back_on_the_processor_comes_back_on_the_device() {
     let Some(means) = device() else { return };
     for case in TORTURED {
         let [cpu, gpu] = [Backend::Cpu, Backend::Gpu].map(|backend| {
-            let options = torture::Options { case: Some(case.into()), seeds: 0..1, backend, ..Default::default() };
+            let options = torture::TortureOptions { case: Some(case.into()), seeds: 0..1, backend, ..Default::default() };
             torture::run(&options, &mut |_| {}).expect("the pieces are as they should be")
         });
         stepped_on_the_device(&gpu.stepped_by);

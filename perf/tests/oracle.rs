@@ -4,33 +4,33 @@ use glam::DVec3;
 use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_engine::cloth::Quality;
 use toile_perf::oracle::{Oracle, Problem, Solved, State, Step, adapter, measure};
-use toile_perf::skirt::Stage;
+use toile_perf::skirt::SkirtScene;
 use toile_perf::skirt::heap::HeapProbe;
-use toile_perf::skirt::options::Options;
+use toile_perf::skirt::options::SkirtOptions;
 
 /// The skirt of `side` x `side` particles on the standing body.
-fn skirt(side: usize, substeps: Option<u32>) -> Stage {
-    let options = Options {
+fn skirt(side: usize, substeps: Option<u32>) -> SkirtScene {
+    let options = SkirtOptions {
         verts: side * side,
         motion: Motion::Settled,
         stretch: Stretch::Inextensible,
         quality: Some(Quality::Fine),
         substeps,
-        ..Options::default()
+        ..SkirtOptions::default()
     };
-    Stage::new(&options, &HeapProbe::none()).unwrap()
+    SkirtScene::new(&options, &HeapProbe::none()).unwrap()
 }
 
-fn run(stage: &mut Stage, steps: usize) {
+fn run(scene: &mut SkirtScene, steps: usize) {
     for _ in 0..steps {
-        stage.prepare();
-        stage.step();
+        scene.prepare();
+        scene.step();
     }
 }
 
-fn oracle(stage: &Stage) -> Oracle {
-    let mut problem = Problem::of(&stage.garment);
-    problem.reach = adapter::reach(&stage.garment, stage.colliders());
+fn oracle(scene: &SkirtScene) -> Oracle {
+    let mut problem = Problem::of(&scene.garment);
+    problem.reach = adapter::reach(&scene.garment, scene.colliders());
     Oracle::new(problem).unwrap()
 }
 
@@ -49,11 +49,11 @@ fn length(x: &[DVec3]) -> f64 {
 
 /// The engine's skirt after ten seconds, and the nearest equilibrium without friction.
 fn at_rest(side: usize) -> (Vec<DVec3>, Solved, Oracle) {
-    let mut stage = skirt(side, None);
-    run(&mut stage, 1_200);
-    let x = adapter::positions(&stage.cloths[0].positions);
-    let [_, solids] = adapter::solids(stage.colliders());
-    let mut oracle = oracle(&stage);
+    let mut scene = skirt(side, None);
+    run(&mut scene, 1_200);
+    let x = adapter::positions(&scene.cloths[0].positions);
+    let [_, solids] = adapter::solids(scene.colliders());
+    let mut oracle = oracle(&scene);
     let solved = oracle.equilibrium(&x, &solids).unwrap();
     (x, solved, oracle)
 }
@@ -88,21 +88,21 @@ fn the_engines_skirt_settles_near_the_equilibrium() {
 #[test]
 fn the_engine_swings_as_the_oracle_does() {
     let (substeps, steps) = (8, 12);
-    let mut stage = skirt(8, Some(substeps));
-    let mut oracle = oracle(&stage);
+    let mut scene = skirt(8, Some(substeps));
+    let mut oracle = oracle(&scene);
     let dt = 1.0 / 120.0 / f64::from(substeps);
-    let kept = (-f64::from(stage.garment.fabric.damping_per_s) * dt).exp();
-    let [_, solids] = adapter::solids(stage.colliders());
+    let kept = (-f64::from(scene.garment.fabric.damping_per_s) * dt).exp();
+    let [_, solids] = adapter::solids(scene.colliders());
     let step = Step { kept, solids: [solids.clone(), solids], ..Step::of(dt) };
     // Pushed aside, and not evenly: a cone of threads that do not stretch stands by itself.
     let mut start = State::at_rest(&oracle.problem().start);
     for i in (0..start.x.len()).filter(|i| !oracle.problem().pinned(*i)) {
         start.v[i] = DVec3::new(0.3 + start.x[i].z, 0.0, 1.0 - start.x[i].y);
-        stage.cloths[0].disturb(i, start.x[i].as_vec3().into(), start.v[i].as_vec3().into());
+        scene.cloths[0].disturb(i, start.x[i].as_vec3().into(), start.v[i].as_vec3().into());
     }
     let solved = oracle.trajectory(&start, steps * substeps as usize, |_| step.clone()).unwrap();
-    run(&mut stage, steps);
-    let x = adapter::positions(&stage.cloths[0].positions);
+    run(&mut scene, steps);
+    let x = adapter::positions(&scene.cloths[0].positions);
     let end = &solved.last().unwrap().state.x;
     let (moved, apart) = (measure::apart(end, &start.x), measure::apart(end, &x));
     let iterations: usize = solved.iter().map(|s| s.report.iterations).sum();

@@ -4,10 +4,10 @@ use std::thread;
 
 use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_engine::lanes::Width;
-use toile_perf::skirt::hard::{Fault, Recovery, heavy_hem, patches, recover};
+use toile_perf::skirt::hard::{SkirtFault, SkirtRecovery, heavy_hem, patches, recover};
 use toile_perf::skirt::heap::HeapProbe;
-use toile_perf::skirt::options::{Mesh, Options, WARM_UP};
-use toile_perf::skirt::{Frame, Gauge, Stage};
+use toile_perf::skirt::options::{SkirtMesh, SkirtOptions, WARM_UP};
+use toile_perf::skirt::{FrameErrors, Gauge, SkirtScene};
 
 /// Steps that are measured after the warm-up: a cycle of the walk, two of the fast motion.
 const STEPS: usize = 120;
@@ -16,22 +16,22 @@ const STEPS: usize = 120;
 const DEEPEST_M: f32 = 1e-3;
 
 /// The smallest skirt of the scene.
-fn small() -> Options {
-    Options { verts: 1_024, ..Options::default() }
+fn small() -> SkirtOptions {
+    SkirtOptions { verts: 1_024, ..SkirtOptions::default() }
 }
 
-fn stage(options: &Options) -> Stage {
-    Stage::new(options, &HeapProbe::none()).expect("the scene can be built")
+fn scene(options: &SkirtOptions) -> SkirtScene {
+    SkirtScene::new(options, &HeapProbe::none()).expect("the scene can be built")
 }
 
 /// Means of strain mean and 99th percentile, worst of all else, over the steps after the warm-up.
-fn run(stage: &mut Stage) -> Frame {
-    let mut gauge = Gauge::new(stage);
-    let mut sum = Frame::default();
+fn run(scene: &mut SkirtScene) -> FrameErrors {
+    let mut gauge = Gauge::new(scene);
+    let mut sum = FrameErrors::default();
     for step in 0..WARM_UP + STEPS {
-        stage.prepare();
-        stage.step();
-        let frame = gauge.read(&stage.cloths[0].positions, &stage.spheres);
+        scene.prepare();
+        scene.step();
+        let frame = gauge.read(&scene.cloths[0].positions, &scene.spheres);
         assert_eq!(frame.nonfinite, 0, "step {step}");
         if step >= WARM_UP {
             sum.strain_mean += frame.strain_mean / STEPS as f64;
@@ -44,13 +44,13 @@ fn run(stage: &mut Stage) -> Frame {
             sum.wrong_legs += frame.wrong_legs;
         }
     }
-    assert_eq!(stage.events().rolled_back, 0);
+    assert_eq!(scene.events().rolled_back, 0);
     sum
 }
 
 /// Strain mean and 99th percentile stay below bounds (%), nothing is inside the body, the hem is around both legs.
-fn holds(name: &str, options: &Options, [mean, p99]: [f64; 2]) {
-    let found = run(&mut stage(options));
+fn holds(name: &str, options: &SkirtOptions, [mean, p99]: [f64; 2]) {
+    let found = run(&mut scene(options));
     eprintln!("{name}: {found:?}");
     assert!(found.strain_mean * 100.0 <= mean && found.strain_mean > 0.0, "{name}: {found:?}");
     assert!(found.strain_p99 * 100.0 <= p99, "{name}: {found:?}");
@@ -65,31 +65,31 @@ fn a_walk_strains_the_skirt_by_a_fifth_of_a_per_cent() {
 
 #[test]
 fn a_walk_in_cloth_that_stretches_does_the_same() {
-    holds("walk, 2,000 N/m", &Options { stretch: Stretch::Physical, ..small() }, [0.2, 2.0]);
+    holds("walk, 2,000 N/m", &SkirtOptions { stretch: Stretch::Physical, ..small() }, [0.2, 2.0]);
 }
 
 #[test]
 fn a_walk_in_an_irregular_mesh_does_twice_that() {
-    holds("irregular", &Options { mesh: Mesh::Irregular, ..small() }, [0.4, 4.0]);
+    holds("irregular", &SkirtOptions { mesh: SkirtMesh::Irregular, ..small() }, [0.4, 4.0]);
 }
 
 #[test]
 fn in_fast_motion_no_leg_comes_out_of_the_skirt() {
-    holds("fast", &Options { motion: Motion::Fast, ..small() }, [1.0, 10.0]);
+    holds("fast", &SkirtOptions { motion: Motion::Fast, ..small() }, [1.0, 10.0]);
 }
 
 #[test]
 fn a_skirt_left_alone_hangs_at_its_elastic_strain_and_comes_to_rest() {
     for stretch in [Stretch::Inextensible, Stretch::Physical] {
-        let options = Options { motion: Motion::Settled, stretch, ..small() };
-        let mut stage = stage(&options);
+        let options = SkirtOptions { motion: Motion::Settled, stretch, ..small() };
+        let mut scene = scene(&options);
         // Ten seconds: the air takes two thirds of the speed in each.
         for _ in 0..1_200 {
-            stage.prepare();
-            stage.step();
+            scene.prepare();
+            scene.step();
         }
-        let frame = Gauge::new(&stage).read(&stage.cloths[0].positions, &stage.spheres);
-        let energy = stage.kinetic_energy();
+        let frame = Gauge::new(&scene).read(&scene.cloths[0].positions, &scene.spheres);
+        let energy = scene.kinetic_energy();
         eprintln!("{stretch:?}: {frame:?}, {energy} J");
         assert!(frame.beyond_mean <= 0.000_5, "{stretch:?}: {frame:?}");
         // The half per cent that is aimed at is missed at the substeps that the bake chooses: 1.1 %, compression in the row
@@ -102,18 +102,18 @@ fn a_skirt_left_alone_hangs_at_its_elastic_strain_and_comes_to_rest() {
 #[test]
 fn no_substep_count_pumps_energy_into_a_skirt_at_rest() {
     for substeps in [2, 8, 32] {
-        let mut stage = stage(&Options { motion: Motion::Settled, substeps: Some(substeps), ..small() });
+        let mut scene = scene(&SkirtOptions { motion: Motion::Settled, substeps: Some(substeps), ..small() });
         for _ in 0..1_200 {
-            stage.prepare();
-            stage.step();
+            scene.prepare();
+            scene.step();
         }
-        let energy = stage.kinetic_energy();
+        let energy = scene.kinetic_energy();
         eprintln!("{substeps} substeps: {energy} J");
         assert!(energy <= 1e-3, "{substeps} substeps: {energy} J");
     }
 }
 
-fn after(fault: Fault) -> Recovery {
+fn after(fault: SkirtFault) -> SkirtRecovery {
     let found = recover(&small(), fault, &HeapProbe::none()).expect("the scene can be built");
     eprintln!("{fault:?}: {found:?}");
     assert_eq!(found.nonfinite, 0, "{fault:?}: {found:?}");
@@ -122,7 +122,7 @@ fn after(fault: Fault) -> Recovery {
 
 #[test]
 fn a_leg_that_jumps_a_metre_and_back_is_forgotten_in_half_a_second() {
-    let found = after(Fault::Jump);
+    let found = after(SkirtFault::Jump);
     assert!(found.worst_stretch <= 1.0, "{found:?}");
     assert!(found.recovered_steps <= 60, "{found:?}");
 }
@@ -131,7 +131,7 @@ fn a_leg_that_jumps_a_metre_and_back_is_forgotten_in_half_a_second() {
 fn nothing_that_is_no_number_is_published_or_stays() {
     thread::scope(|scope| {
         for value in [f32::NAN, f32::INFINITY] {
-            for fault in [Fault::Collider(value), Fault::Particle(value), Fault::Pin(value)] {
+            for fault in [SkirtFault::Collider(value), SkirtFault::Particle(value), SkirtFault::Pin(value)] {
                 scope.spawn(move || {
                     let found = after(fault);
                     assert!(found.recovered_steps <= 2, "{fault:?}: {found:?}");
@@ -146,14 +146,14 @@ const STEADY: f64 = 1.5;
 
 #[test]
 fn long_steps_and_unequal_masses_are_stable() {
-    let slow = stage(&Options { step_s: 1.0 / 30.0, ..small() });
-    let patched = Stage::with(&small(), &HeapProbe::none(), patches).expect("the scene can be built");
-    let hemmed = Stage::with(&small(), &HeapProbe::none(), heavy_hem).expect("the scene can be built");
-    for (name, mut stage) in [("dt = 1/30", slow), ("patches", patched), ("heavy hem", hemmed)] {
-        let [first, last] = [(); 2].map(|()| run(&mut stage));
+    let slow = scene(&SkirtOptions { step_s: 1.0 / 30.0, ..small() });
+    let patched = SkirtScene::with(&small(), &HeapProbe::none(), patches).expect("the scene can be built");
+    let hemmed = SkirtScene::with(&small(), &HeapProbe::none(), heavy_hem).expect("the scene can be built");
+    for (name, mut scene) in [("dt = 1/30", slow), ("patches", patched), ("heavy hem", hemmed)] {
+        let [first, last] = [(); 2].map(|()| run(&mut scene));
         eprintln!("{name}: {first:?}, then {last:?}");
         assert!(last.strain_mean <= STEADY * first.strain_mean, "{name}: {first:?}, then {last:?}");
-        let farthest = stage.cloths[0].positions.iter().map(|p| p.length()).fold(0.0, f32::max);
+        let farthest = scene.cloths[0].positions.iter().map(|p| p.length()).fold(0.0, f32::max);
         assert!(farthest < 3.0, "{name}: a part of the skirt is {farthest} m away");
     }
 }
@@ -161,12 +161,12 @@ fn long_steps_and_unequal_masses_are_stable() {
 #[test]
 fn every_width_and_every_run_gives_the_same_bits() {
     let play = |width: Width| {
-        let mut stage = stage(&Options { motion: Motion::Fast, lanes: Some(width), ..small() });
+        let mut scene = scene(&SkirtOptions { motion: Motion::Fast, lanes: Some(width), ..small() });
         for _ in 0..STEPS {
-            stage.prepare();
-            stage.step();
+            scene.prepare();
+            scene.step();
         }
-        stage.state_hash()
+        scene.state_hash()
     };
     let widest = play(Width::widest());
     assert_eq!(widest, play(Width::widest()));
@@ -179,13 +179,13 @@ fn every_width_and_every_run_gives_the_same_bits() {
 fn an_irregular_skirt_has_the_same_bits_with_two_workers_and_at_every_width() {
     let play = |threads: usize, width: Width| {
         let stepped =
-            Options { mesh: Mesh::Irregular, lanes: Some(width), verts: 9_216, threads, ..Options::default() };
-        let mut stage = stage(&stepped);
+            SkirtOptions { mesh: SkirtMesh::Irregular, lanes: Some(width), verts: 9_216, threads, ..SkirtOptions::default() };
+        let mut scene = scene(&stepped);
         for _ in 0..8 {
-            stage.prepare();
-            stage.step();
+            scene.prepare();
+            scene.step();
         }
-        stage.state_hash()
+        scene.state_hash()
     };
     let one = play(1, Width::widest());
     for width in Width::ALL.into_iter().filter(|w| w.available()) {
@@ -205,13 +205,13 @@ const GOLDEN_STEPS: usize = 40;
 fn one_worker_and_two_give_the_golden_bits_with_and_without_wind() {
     let play = |threads: usize, wind: bool| {
         // Large enough to be shared by two workers.
-        let options = Options { verts: 9_216, threads, wind, ..Options::default() };
-        let mut stage = stage(&options);
+        let options = SkirtOptions { verts: 9_216, threads, wind, ..SkirtOptions::default() };
+        let mut scene = scene(&options);
         for _ in 0..GOLDEN_STEPS {
-            stage.prepare();
-            stage.step();
+            scene.prepare();
+            scene.step();
         }
-        stage.state_hash()
+        scene.state_hash()
     };
     let one = play(1, false);
     assert_eq!(play(2, false), one, "two workers");

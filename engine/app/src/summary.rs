@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use toile_perf::skirt::report::Report;
+use toile_perf::skirt::report::SkirtReport;
 
 use crate::report::{
     BodyReport, Measure, MeasureReport, Measurements, Physics, Recommendation, RunReport, Session, SkinningReport,
@@ -127,8 +127,8 @@ pub fn skinning(report: &SkinningReport, paint: Paint) -> String {
 }
 
 /// The summary of a run of the skirt: no time without the error reached at it.
-pub fn skirt(report: &Report, paint: Paint) -> String {
-    let Report { verts, motion, mesh, stretch, substeps, lanes, threads, garments, strain, step_us, .. } = report;
+pub fn skirt(report: &SkirtReport, paint: Paint) -> String {
+    let SkirtReport { verts, motion, mesh, stretch, substeps, lanes, threads, garments, strain, step_us, .. } = report;
     let mut text = String::new();
     line(&mut text, &paint.tone(&format!("A skirt of {verts} vertices ({mesh}, {stretch}), {motion}"), Tone::Strong));
     let quality = format!("quality {}, ", report.quality);
@@ -310,7 +310,7 @@ mod tests {
 
     #[test]
     fn a_skirt_summary_says_time_and_error_and_warns_of_what_should_not_be() {
-        let mut report = Report { verts: 4_096, y_ratio: 0.58, motion: "walk", ..Report::default() };
+        let mut report = SkirtReport { verts: 4_096, y_ratio: 0.58, motion: "walk", ..SkirtReport::default() };
         report.strain.mean = 0.0014;
         report.memory_bytes = Some(420_000);
         let text = skirt(&report, Paint::none());

@@ -8,7 +8,7 @@ use toile_assets::body::{Ansur, Body, BodyError, Fitted, Sex, Vocabulary, Wanted
 use toile_assets::mesh::Mesh;
 
 use super::survey::{Survey, SurveyError};
-use crate::torture::Random;
+use crate::random::Random;
 
 /// The measures that each person is built from, the survey's name for them, and the error allowed by ISO 20685 (m):
 /// heights, breadths and small girths 4 mm, large girths 9 mm. A sleeve is several bones long: it is held to the 4 mm, too.

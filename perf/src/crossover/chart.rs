@@ -1,6 +1,6 @@
 //! The chart of a crossover: time a step over the particles of the scene.
 
-use super::{EACH, Row, Study};
+use super::study::{Crossover, CrossoverRow, EACH};
 use crate::plot::axis::Axis;
 use crate::plot::chart::{Chart, SeriesStyle, Series};
 use crate::plot::{BLACK, Drawing, SERIES_COLOURS};
@@ -9,11 +9,11 @@ use crate::plot::{BLACK, Drawing, SERIES_COLOURS};
 const STEP_US: f64 = 1e6 / 120.0;
 
 /// A time of a row (us).
-type Us = fn(&Row) -> Option<f64>;
+type TimeOf = fn(&CrossoverRow) -> Option<f64>;
 
 /// Time a step over vertices in all, of one skirt and of several.
-pub fn chart(study: &Study) -> Drawing {
-    let sides: [(&str, Us); 4] = [
+pub fn chart(study: &Crossover) -> Drawing {
+    let sides: [(&str, TimeOf); 4] = [
         ("one thread", |row| Some(row.one.step_us)),
         ("two threads", |row| Some(row.two.step_us)),
         ("device", |row| row.device.map(|side| side.step_us)),
@@ -22,12 +22,12 @@ pub fn chart(study: &Study) -> Drawing {
     let mut series = Vec::new();
     for (several, words) in [(false, "one skirt"), (true, "4,096 each")] {
         for (k, (name, us)) in sides.iter().enumerate() {
-            let chosen = |row: &&Row| if several { row.verts == EACH } else { row.garments == 1 };
-            let point = |row: &Row| Some([(row.verts * row.garments) as f64, us(row)?]);
+            let chosen = |row: &&CrossoverRow| if several { row.verts == EACH } else { row.garments == 1 };
+            let point = |row: &CrossoverRow| Some([(row.verts * row.garments) as f64, us(row)?]);
             let points: Vec<[f64; 2]> = study.rows.iter().filter(chosen).filter_map(point).collect();
             if points.len() > usize::from(several) {
                 let style = SeriesStyle { dashed: several, ..SeriesStyle::joined(SERIES_COLOURS[k]) };
-                series.push(Series { name: format!("{name}, {words}"), points, look });
+                series.push(Series { name: format!("{name}, {words}"), points, style });
             }
         }
     }

@@ -89,7 +89,7 @@ fn speed(scene: &SceneReport, points: &[&Point], all: &[Point]) -> Chart {
     let two: Vec<[f64; 2]> = points.iter().filter(|p| p.threads == 2).map(|p| [p.step_us, p.error_mm]).collect();
     if !two.is_empty() {
         let style = SeriesStyle { dot: 2.5, ..SeriesStyle::dots([150; 3]) };
-        series.push(Series { name: "mixed, two threads".into(), points: two, look });
+        series.push(Series { name: "mixed, two threads".into(), points: two, style });
     }
     for (threads, words) in [(1, "front, one thread"), (2, "front, two threads")] {
         let found = front::of(all, &scene.scene, &scene.mesh, threads);
@@ -100,7 +100,7 @@ fn speed(scene: &SceneReport, points: &[&Point], all: &[Point]) -> Chart {
         }
     }
     let own = points.iter().filter(|p| p.default && p.threads == 1).map(|p| [p.step_us, p.error_mm]).collect();
-    series.push(Series { name: "a quality's own".into(), points: own, look: SeriesStyle::rings(BLACK) });
+    series.push(Series { name: "a quality's own".into(), points: own, style: SeriesStyle::rings(BLACK) });
     let mut chart = framed(titled(scene, "error against time"), [("median time of a step (us)", true), ERROR], series);
     chart.x.range[1] = chart.x.range[1].max(STEP_US * 1.3);
     chart.rules.push((STEP_US, "120 Hz: 8.33 ms"));
@@ -129,7 +129,7 @@ fn meshes(name: &str, report: &Report) -> Chart {
         };
         let mut points: Vec<[f64; 2]> = scenes.iter().filter_map(point).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        series.push(Series { name: format!("{quality}, its own substeps"), points, look: SeriesStyle::joined(SERIES_COLOURS[k]) });
+        series.push(Series { name: format!("{quality}, its own substeps"), points, style: SeriesStyle::joined(SERIES_COLOURS[k]) });
     }
     let x = ("mean length of an edge (mm)", true);
     framed(format!("{name}: error against mesh size"), [x, ERROR], series)
@@ -176,8 +176,8 @@ fn samplings(drape: &Drape) -> Chart {
     let ours = drape.samplings.iter().map(|s| [s.spacing_cm, s.mean_cm]).filter(|p| p[1] > 0.0).collect();
     let theirs = drape.samplings.iter().filter_map(|s| Some([s.spacing_cm, s.published_cm?])).collect();
     let series = vec![
-        Series { name: "to the finest".into(), points: ours, look: SeriesStyle::joined(SERIES_COLOURS[0]) },
-        Series { name: "MIRAGES, to a real cloth".into(), points: theirs, look: SeriesStyle::joined(SERIES_COLOURS[1]) },
+        Series { name: "to the finest".into(), points: ours, style: SeriesStyle::joined(SERIES_COLOURS[0]) },
+        Series { name: "MIRAGES, to a real cloth".into(), points: theirs, style: SeriesStyle::joined(SERIES_COLOURS[1]) },
     ];
     let axes = [("sampling (cm)", true), ("mean distance (cm)", true)];
     framed("drape: a tablecloth of 1 m by sampling".into(), axes, series)

@@ -6,8 +6,8 @@ use toile_assets::scene::skirt;
 use super::ParetoError;
 use super::report::{Fate, Survival};
 use crate::skirt::heap::HeapProbe;
-use crate::skirt::options::Options;
-use crate::skirt::{Gauge, SkirtError, Stage};
+use crate::skirt::options::SkirtOptions;
+use crate::skirt::{Gauge, SkirtError, SkirtScene};
 
 /// Vertices a side.
 const SIDE: usize = 24;
@@ -48,23 +48,23 @@ pub fn map(quick: bool) -> Result<Survival, ParetoError> {
 
 /// Walks once; what became of the skirt, and its strain in the second half.
 fn run(ratio: f64, step_s: f64) -> Result<(Fate, f64), SkirtError> {
-    let options = Options { verts: SIDE * SIDE, substeps: Some(SUBSTEPS), step_s: step_s as f32, ..Options::default() };
+    let options = SkirtOptions { verts: SIDE * SIDE, substeps: Some(SUBSTEPS), step_s: step_s as f32, ..SkirtOptions::default() };
     let heavy = |shape: &mut Shape| {
         shape.heavier = vec![1.0; shape.cut.len()];
         skirt::hem(SIDE).for_each(|v| shape.heavier[v] = ratio as f32);
     };
-    let mut stage = Stage::with(&options, &HeapProbe::none(), heavy)?;
-    let mut gauge = Gauge::new(&stage);
+    let mut scene = SkirtScene::with(&options, &HeapProbe::none(), heavy)?;
+    let mut gauge = Gauge::new(&scene);
     let steps = (SECONDS / step_s).round() as u64;
     let mut worst = 0.0f64;
     for step in 0..steps {
-        stage.prepare();
-        stage.step();
+        scene.prepare();
+        scene.step();
         if step >= steps / 2 {
-            worst = worst.max(gauge.read(&stage.cloths[0].positions, &stage.spheres).strain_p99);
+            worst = worst.max(gauge.read(&scene.cloths[0].positions, &scene.spheres).strain_p99);
         }
     }
-    let fate = match (stage.events().rolled_back, worst <= STRAINED_P99) {
+    let fate = match (scene.events().rolled_back, worst <= STRAINED_P99) {
         (0, true) => Fate::Stable,
         (0, false) => Fate::Strained,
         _ => Fate::RolledBack,

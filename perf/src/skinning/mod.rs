@@ -2,7 +2,7 @@
 //!
 //! Reads: the scene's shopper in the middle of a step. Writes: times, ratios to the yardstick, errors against f64, lanes.
 //! Budget: some seconds a measurement.
-//! Thread: the caller's, and the crew's where two are asked for.
+//! Thread: the caller's, and the pool's where two are asked for.
 
 mod oracle;
 mod picture;

@@ -34,7 +34,7 @@ impl Claim {
 
 /// One row.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Row {
+pub struct TargetRow {
     /// The case.
     pub case: String,
     /// What is asked.
@@ -47,7 +47,7 @@ pub struct Row {
     pub peers: String,
 }
 
-impl Row {
+impl TargetRow {
     /// The row of a case's claims, or of the reason why there are none.
     pub fn new(case: &str, peers: &str, claims: Result<Vec<Claim>, &String>) -> Self {
         let (target, got, met) = match claims {
@@ -83,15 +83,15 @@ mod tests {
     #[test]
     fn a_row_is_met_when_each_claim_is() {
         let claims = |y: f64| Ok(vec![Claim::most("time", y, 0.7, " Y"), Claim::percent("strain", 0.0014, 0.2)]);
-        let row = Row::new("walk", "NvCloth", claims(0.58));
+        let row = TargetRow::new("walk", "NvCloth", claims(0.58));
         assert!(row.met);
         assert_eq!(row.target, "time <= 0.7 Y, strain <= 0.2 %");
         assert_eq!(row.got, "time 0.58 Y, strain 0.14 %");
-        assert!(!Row::new("walk", "", claims(0.71)).met);
-        assert!(!Row::new("walk", "", claims(f64::NAN)).met, "what was not measured is not met");
-        assert!(!Row::new("walk", "", Err(&"no wind".into())).met);
-        assert!(!Row::new("walk", "", Ok(vec![Claim::count("wrong", 1)])).met);
-        assert!(Row::new("walk", "", Ok(vec![Claim::percent("strain", 9.0, f64::INFINITY)])).met, "only told");
+        assert!(!TargetRow::new("walk", "", claims(0.71)).met);
+        assert!(!TargetRow::new("walk", "", claims(f64::NAN)).met, "what was not measured is not met");
+        assert!(!TargetRow::new("walk", "", Err(&"no wind".into())).met);
+        assert!(!TargetRow::new("walk", "", Ok(vec![Claim::count("wrong", 1)])).met);
+        assert!(TargetRow::new("walk", "", Ok(vec![Claim::percent("strain", 9.0, f64::INFINITY)])).met, "only told");
     }
 
     #[test]

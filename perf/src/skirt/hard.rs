@@ -5,16 +5,16 @@ use serde::Serialize;
 use toile_assets::garment::Shape;
 use toile_assets::scene::skirt;
 
-use super::SkirtError;
-use super::gauge::{Frame, Gauge};
+use super::error::SkirtError;
+use super::gauge::{FrameErrors, Gauge};
 use super::heap::HeapProbe;
-use super::options::{Options, WARM_UP};
+use super::options::{SkirtOptions, WARM_UP};
 use super::report::Events;
-use super::stage::Stage;
+use super::scene::SkirtScene;
 
 /// Something that is wrong for one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Fault {
+pub enum SkirtFault {
     /// The left lower leg is 1 m to the side, and back in the next frame.
     Jump,
     /// A sphere of the body, all of it this value.
@@ -37,7 +37,7 @@ const STAYS: usize = 30;
 
 /// How the skirt took a fault.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Recovery {
+pub struct SkirtRecovery {
     /// Greatest mean strain of a frame of the same skirt undisturbed, over the same steps.
     pub baseline_mean: f64,
     /// Greatest 99th percentile of a frame of the same.
@@ -59,15 +59,15 @@ pub struct Recovery {
 ///
 /// # Errors
 /// Where the options cannot be met.
-pub fn recover(options: &Options, fault: Fault, heap: &HeapProbe) -> Result<Recovery, SkirtError> {
+pub fn recover(options: &SkirtOptions, fault: SkirtFault, heap: &HeapProbe) -> Result<SkirtRecovery, SkirtError> {
     let (undisturbed, _) = watch(options, None, heap)?;
     let (frames, events) = watch(options, Some(fault), heap)?;
-    let greatest = |of: fn(&Frame) -> f64, frames: &[Frame]| frames.iter().map(of).fold(0.0, f64::max);
+    let greatest = |of: fn(&FrameErrors) -> f64, frames: &[FrameErrors]| frames.iter().map(of).fold(0.0, f64::max);
     let baseline_mean = greatest(|f| f.strain_mean, &undisturbed);
     let baseline_p99 = greatest(|f| f.strain_p99, &undisturbed);
     let back =
-        |f: &Frame| f.nonfinite == 0 && f.strain_mean <= BACK * baseline_mean && f.strain_p99 <= BACK * baseline_p99;
-    Ok(Recovery {
+        |f: &FrameErrors| f.nonfinite == 0 && f.strain_mean <= BACK * baseline_mean && f.strain_p99 <= BACK * baseline_p99;
+    Ok(SkirtRecovery {
         baseline_mean,
         baseline_p99,
         baseline_stretch: greatest(|f| f.stretch_max, &undisturbed),
@@ -79,33 +79,33 @@ pub fn recover(options: &Options, fault: Fault, heap: &HeapProbe) -> Result<Reco
 }
 
 /// The frames from the fault on, and what happened in them.
-fn watch(options: &Options, fault: Option<Fault>, heap: &HeapProbe) -> Result<(Vec<Frame>, Events), SkirtError> {
-    let mut stage = Stage::new(options, heap)?;
-    let mut gauge = Gauge::new(&stage);
+fn watch(options: &SkirtOptions, fault: Option<SkirtFault>, heap: &HeapProbe) -> Result<(Vec<FrameErrors>, Events), SkirtError> {
+    let mut scene = SkirtScene::new(options, heap)?;
+    let mut gauge = Gauge::new(&scene);
     for _ in 0..WARM_UP {
-        stage.prepare();
-        stage.step();
+        scene.prepare();
+        scene.step();
     }
-    let before = stage.events();
-    let frames = (0..WATCHED).map(|after| step(&mut stage, &mut gauge, fault.filter(|_| after == 0))).collect();
-    Ok((frames, stage.events().since(before)))
+    let before = scene.events();
+    let frames = (0..WATCHED).map(|after| step(&mut scene, &mut gauge, fault.filter(|_| after == 0))).collect();
+    Ok((frames, scene.events().since(before)))
 }
 
-fn step(stage: &mut Stage, gauge: &mut Gauge, fault: Option<Fault>) -> Frame {
-    stage.prepare();
-    let asked = stage.spheres;
+fn step(scene: &mut SkirtScene, gauge: &mut Gauge, fault: Option<SkirtFault>) -> FrameErrors {
+    scene.prepare();
+    let asked = scene.spheres;
     match fault {
         None => {}
-        Some(Fault::Jump) => [7, 9].into_iter().for_each(|s| stage.spheres[s].x += 1.0),
-        Some(Fault::Collider(value)) => stage.spheres[7] = Vec4::splat(value),
-        Some(Fault::Particle(value)) => {
-            let middle = stage.particle_of()[stage.side * stage.side / 2];
-            stage.spoil(middle as usize, Vec3A::splat(value));
+        Some(SkirtFault::Jump) => [7, 9].into_iter().for_each(|s| scene.spheres[s].x += 1.0),
+        Some(SkirtFault::Collider(value)) => scene.spheres[7] = Vec4::splat(value),
+        Some(SkirtFault::Particle(value)) => {
+            let middle = scene.particle_of()[scene.side * scene.side / 2];
+            scene.spoil(middle as usize, Vec3A::splat(value));
         }
-        Some(Fault::Pin(value)) => stage.palette[0] = Affine3A::from_translation(Vec3::splat(value)),
+        Some(SkirtFault::Pin(value)) => scene.palette[0] = Affine3A::from_translation(Vec3::splat(value)),
     }
-    stage.step();
-    gauge.read(&stage.cloths[0].positions, &asked)
+    scene.step();
+    gauge.read(&scene.cloths[0].positions, &asked)
 }
 
 /// Vertices a side of a patch.

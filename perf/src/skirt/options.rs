@@ -5,11 +5,11 @@ use toile_engine::cloth::{Quality, Settings, Wind};
 use toile_engine::lanes::Width;
 use toile_gpu::stepper::Backend;
 
-use super::SkirtError;
+use super::error::SkirtError;
 
 /// How the skirt is meshed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Mesh {
+pub enum SkirtMesh {
     /// Rows and columns.
     #[default]
     Grid,
@@ -19,13 +19,13 @@ pub enum Mesh {
 
 /// One run of the benchmark.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
+pub struct SkirtOptions {
     /// Vertices; a square.
     pub verts: usize,
     /// What the body does.
     pub motion: Motion,
     /// How the skirt is meshed.
-    pub mesh: Mesh,
+    pub mesh: SkirtMesh,
     /// How its threads stretch.
     pub stretch: Stretch,
     /// Wind of the scene.
@@ -59,13 +59,13 @@ pub const WARM_UP: usize = 240;
 /// Seed of the irregular mesh.
 pub const MESH_SEED: u64 = 1;
 
-impl Default for Options {
+impl Default for SkirtOptions {
     /// 4,096 vertices, walk, one thread, five runs of 600 steps.
     fn default() -> Self {
         Self {
             verts: 4_096,
             motion: Motion::Walk,
-            mesh: Mesh::Grid,
+            mesh: SkirtMesh::Grid,
             stretch: Stretch::Inextensible,
             wind: false,
             threads: 1,
@@ -81,7 +81,7 @@ impl Default for Options {
     }
 }
 
-impl Options {
+impl SkirtOptions {
     /// Vertices a side.
     ///
     /// # Errors

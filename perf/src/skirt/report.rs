@@ -6,7 +6,7 @@ use serde::Serialize;
 use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_gpu::stepper::Measured;
 
-use super::options::{Mesh, Options};
+use super::options::{SkirtMesh, SkirtOptions};
 use crate::backend::SteppedBy;
 
 /// The distribution of a step's time (us).
@@ -24,7 +24,7 @@ pub struct StepMicros {
 
 /// How far warp and weft edges are from their length, as a part of it (0.01 is 1 %).
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Strain {
+pub struct SkirtStrain {
     /// Mean of |l/l0 - 1| over edges and frames.
     pub mean: f64,
     /// Mean of the frames' 99th percentiles.
@@ -123,7 +123,7 @@ impl From<Measured> for Decision {
 
 /// One run, complete.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Report {
+pub struct SkirtReport {
     /// Vertices of one skirt.
     pub verts: usize,
     /// `walk`, `fast` or `settled`.
@@ -160,8 +160,8 @@ pub struct Report {
     pub y_ratio: f64,
     /// Median step a vertex (ns).
     pub ns_per_vertex: f64,
-    /// Strain of the same steps.
-    pub strain: Strain,
+    /// SkirtStrain of the same steps.
+    pub strain: SkirtStrain,
     /// Penetration of the same steps.
     pub penetration_mm: Penetration,
     /// Frames in which the hem did not go around each leg exactly once.
@@ -193,15 +193,15 @@ pub struct Report {
     pub state_hash: String,
 }
 
-impl Report {
+impl SkirtReport {
     /// A report that says what was asked for, and nothing yet of how it went.
-    pub fn of(options: &Options) -> Self {
+    pub fn of(options: &SkirtOptions) -> Self {
         Self {
             verts: options.verts,
             motion: motion(options.motion),
             mesh: match options.mesh {
-                Mesh::Grid => "grid",
-                Mesh::Irregular => "irregular",
+                SkirtMesh::Grid => "grid",
+                SkirtMesh::Irregular => "irregular",
             },
             stretch: match options.stretch {
                 Stretch::Inextensible => "inextensible",

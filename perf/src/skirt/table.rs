@@ -9,29 +9,30 @@ use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_engine::lanes::Width;
 use toile_gpu::stepper::Means;
 
-use super::claim::{Claim, Row};
-use super::hard::{self, Fault, Recovery};
+use super::claim::{Claim, TargetRow};
+use super::error::SkirtError;
+use super::hard::{self, SkirtFault, SkirtRecovery};
 use super::heap::HeapProbe;
-use super::options::{Mesh, Options};
-use super::report::Report;
-use super::{SkirtError, measure_with};
+use super::options::{SkirtMesh, SkirtOptions};
+use super::report::SkirtReport;
+use super::measure::measure_with;
 
 /// The whole table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Table {
+pub struct TargetTable {
     /// Targets that were met, and how many there are.
     pub met: [usize; 2],
     /// A row a target.
-    pub rows: Vec<Row>,
+    pub rows: Vec<TargetRow>,
     /// The runs they come from.
-    pub runs: Vec<Named<Report>>,
+    pub runs: Vec<CaseFigures<SkirtReport>>,
     /// The faults they come from.
-    pub faults: Vec<Named<Recovery>>,
+    pub faults: Vec<CaseFigures<SkirtRecovery>>,
 }
 
 /// Figures and what they are of.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Named<T> {
+pub struct CaseFigures<T> {
     /// The case.
     pub case: String,
     /// Its figures.
@@ -40,8 +41,8 @@ pub struct Named<T> {
 }
 
 /// Runs all rows with the runs, steps, quality and substeps of `base`; `told` hears what is being run.
-pub fn run(base: &Options, heap: &HeapProbe, told: &mut dyn FnMut(&str)) -> Table {
-    let mut maker = Maker { base: *base, heap, told, rows: Vec::new(), runs: Vec::new(), faults: Vec::new() };
+pub fn run(base: &SkirtOptions, heap: &HeapProbe, told: &mut dyn FnMut(&str)) -> TargetTable {
+    let mut maker = TableRun { base: *base, heap, told, rows: Vec::new(), runs: Vec::new(), faults: Vec::new() };
     maker.one_thread();
     maker.sizes();
     maker.threads();
@@ -51,32 +52,32 @@ pub fn run(base: &Options, heap: &HeapProbe, told: &mut dyn FnMut(&str)) -> Tabl
     maker.faults();
     maker.stable();
     let met = maker.rows.iter().filter(|r| r.met).count();
-    Table { met: [met, maker.rows.len()], rows: maker.rows, runs: maker.runs, faults: maker.faults }
+    TargetTable { met: [met, maker.rows.len()], rows: maker.rows, runs: maker.runs, faults: maker.faults }
 }
 
-type Outcome<T> = Result<T, String>;
+type Measured<T> = Result<T, String>;
 
-struct Maker<'a> {
-    base: Options,
+struct TableRun<'a> {
+    base: SkirtOptions,
     heap: &'a HeapProbe,
     told: &'a mut dyn FnMut(&str),
-    rows: Vec<Row>,
-    runs: Vec<Named<Report>>,
-    faults: Vec<Named<Recovery>>,
+    rows: Vec<TargetRow>,
+    runs: Vec<CaseFigures<SkirtReport>>,
+    faults: Vec<CaseFigures<SkirtRecovery>>,
 }
 
-impl Maker<'_> {
+impl TableRun<'_> {
     /// A run of the case, or the one made before.
-    fn measured(&mut self, case: &str, change: impl FnOnce(&mut Options)) -> Outcome<Report> {
+    fn measured(&mut self, case: &str, change: impl FnOnce(&mut SkirtOptions)) -> Measured<SkirtReport> {
         self.measured_with(case, change, |_| {})
     }
 
     fn measured_with(
         &mut self,
         case: &str,
-        change: impl FnOnce(&mut Options),
+        change: impl FnOnce(&mut SkirtOptions),
         reshape: impl FnOnce(&mut Shape),
-    ) -> Outcome<Report> {
+    ) -> Measured<SkirtReport> {
         if let Some(run) = self.runs.iter().find(|r| r.case == case) {
             return Ok(run.figures.clone());
         }
@@ -85,20 +86,20 @@ impl Maker<'_> {
         change(&mut options);
         let report = measure_with(&Means::open(options.backend), &options, self.heap, reshape)
             .map_err(|e: SkirtError| e.to_string())?;
-        self.runs.push(Named { case: case.into(), figures: report.clone() });
+        self.runs.push(CaseFigures { case: case.into(), figures: report.clone() });
         Ok(report)
     }
 
-    fn walk(&mut self) -> Outcome<Report> {
+    fn walk(&mut self) -> Measured<SkirtReport> {
         self.measured("walk", |_| {})
     }
 
-    fn fast(&mut self) -> Outcome<Report> {
+    fn fast(&mut self) -> Measured<SkirtReport> {
         self.measured("fast", |o| o.motion = Motion::Fast)
     }
 
-    fn row<T>(&mut self, case: &str, peers: &str, of: &Outcome<T>, claims: impl Fn(&T) -> Vec<Claim>) {
-        self.rows.push(Row::new(case, peers, of.as_ref().map(claims)));
+    fn row<T>(&mut self, case: &str, peers: &str, of: &Measured<T>, claims: impl Fn(&T) -> Vec<Claim>) {
+        self.rows.push(TargetRow::new(case, peers, of.as_ref().map(claims)));
     }
 
     fn one_thread(&mut self) {
@@ -112,7 +113,7 @@ impl Maker<'_> {
         }
         let run = self.measured("walk with wind", |o| o.wind = true);
         self.row("the same with wind", "NvCloth 2.4 Y and 12 Y", &run, |r| timed(r, 0.9, [0.2, 2.0]));
-        let run = self.measured("walk, irregular", |o| o.mesh = Mesh::Irregular);
+        let run = self.measured("walk, irregular", |o| o.mesh = SkirtMesh::Irregular);
         self.row("a skirt of as many vertices meshed irregularly", "", &run, |r| timed(r, 1.2, [0.4, 4.0]));
         let run = self.fast();
         self.row("fast motion", "NvCloth 5.0 / 38 % at 7.2 Y", &run, |r| {
@@ -128,10 +129,10 @@ impl Maker<'_> {
                 o.verts = verts;
             })
         });
-        let sizes: Outcome<Vec<Report>> = sizes.into_iter().collect();
+        let sizes: Measured<Vec<SkirtReport>> = sizes.into_iter().collect();
         let peers = "NvCloth: strain grows 4 times";
         self.row("1,024 to 16,384 vertices, substeps chosen by the bake", peers, &sizes, |runs| {
-            let strain = |r: &Report| Claim::percent(&format!("strain mean at {}", r.verts), r.strain.mean, 0.2);
+            let strain = |r: &SkirtReport| Claim::percent(&format!("strain mean at {}", r.verts), r.strain.mean, 0.2);
             let times = runs.iter().map(|r| r.ns_per_vertex);
             let (most, least) = (times.clone().fold(0.0, f64::max), times.fold(f64::MAX, f64::min));
             let spread = Claim::most("time a vertex, greatest over least", most / least, 1.6, "");
@@ -164,10 +165,10 @@ impl Maker<'_> {
                 (o.motion, o.substeps) = (Motion::Settled, Some(substeps));
             })
         });
-        let energies: Outcome<Vec<Report>> = energies.into_iter().collect();
+        let energies: Measured<Vec<SkirtReport>> = energies.into_iter().collect();
         self.row("settled: energy of motion at any substep count", "", &energies, |runs| {
             let claim =
-                |r: &Report| Claim::most(&format!("{} substeps", r.substeps), r.kinetic_energy_max_mj, 1.0, " mJ");
+                |r: &SkirtReport| Claim::most(&format!("{} substeps", r.substeps), r.kinetic_energy_max_mj, 1.0, " mJ");
             runs.iter().map(claim).collect()
         });
     }
@@ -175,7 +176,7 @@ impl Maker<'_> {
     fn contact_and_memory(&mut self) {
         let runs = pair(self.walk(), self.fast());
         self.row("penetration, walk and fast", "Bullet: 20-35 % of vertices inside", &runs, |runs| {
-            let of = |r: &Report| {
+            let of = |r: &SkirtReport| {
                 let depth = Claim::most(&format!("{}: deepest", r.motion), r.penetration_mm.max, 1.0, " mm");
                 [depth, Claim::count("left inside at the end of a run", r.penetration_mm.left_inside)]
             };
@@ -190,7 +191,7 @@ impl Maker<'_> {
     }
 
     fn physical(&mut self) {
-        let physical = |o: &mut Options| o.stretch = Stretch::Physical;
+        let physical = |o: &mut SkirtOptions| o.stretch = Stretch::Physical;
         let run = self.measured("walk, 2,000 N/m", physical);
         self.row("walk with 2,000 N/m", "", &run, |r| timed(r, 0.7, [0.2, 2.0]));
         let run = self.measured("fast, 2,000 N/m", |o| (o.motion, o.stretch) = (Motion::Fast, Stretch::Physical));
@@ -201,12 +202,12 @@ impl Maker<'_> {
         let mut recovered = |case: &str, fault| {
             (self.told)(case);
             let found = hard::recover(&self.base, fault, self.heap).map_err(|e| e.to_string())?;
-            self.faults.push(Named { case: case.into(), figures: found });
+            self.faults.push(CaseFigures { case: case.into(), figures: found });
             Ok(found)
         };
-        let jump = recovered("a leg jumps 1 m and back", Fault::Jump);
+        let jump = recovered("a leg jumps 1 m and back", SkirtFault::Jump);
         let kinds =
-            [("collider", Fault::Collider as fn(f32) -> Fault), ("particle", Fault::Particle), ("pin", Fault::Pin)];
+            [("collider", SkirtFault::Collider as fn(f32) -> SkirtFault), ("particle", SkirtFault::Particle), ("pin", SkirtFault::Pin)];
         let values = [("NaN", f32::NAN), ("infinite", f32::INFINITY)];
         let mut found = Vec::new();
         for (kind, fault) in kinds {
@@ -238,22 +239,22 @@ impl Maker<'_> {
     }
 }
 
-fn pair(a: Outcome<Report>, b: Outcome<Report>) -> Outcome<[Report; 2]> {
+fn pair(a: Measured<SkirtReport>, b: Measured<SkirtReport>) -> Measured<[SkirtReport; 2]> {
     Ok([a?, b?])
 }
 
 /// Time, strain mean and 99th percentile (%) at most.
-fn timed(r: &Report, y: f64, [mean, p99]: [f64; 2]) -> Vec<Claim> {
+fn timed(r: &SkirtReport, y: f64, [mean, p99]: [f64; 2]) -> Vec<Claim> {
     let time = Claim::most("time", r.y_ratio, y, " Y");
     vec![time, Claim::percent("strain mean", r.strain.mean, mean), Claim::percent("p99", r.strain.p99, p99)]
 }
 
-fn part_of([alone, both]: &[Report; 2], most: f64) -> Vec<Claim> {
+fn part_of([alone, both]: &[SkirtReport; 2], most: f64) -> Vec<Claim> {
     vec![Claim::most("of the time on one", both.step_us.p50 / alone.step_us.p50, most, "")]
 }
 
 /// Stable: nothing is lost, and strain does not grow from the first run to the last; the figures are told.
-fn steady(r: &Report) -> Vec<Claim> {
+fn steady(r: &SkirtReport) -> Vec<Claim> {
     let [first, last] = [r.strain.run_mean.first(), r.strain.run_mean.last()].map(|x| x.copied().unwrap_or(f64::NAN));
     let told = |what, got| Claim::percent(what, got, f64::INFINITY);
     vec![
@@ -266,12 +267,12 @@ fn steady(r: &Report) -> Vec<Claim> {
     ]
 }
 
-impl Table {
+impl TargetTable {
     /// The table as Markdown, and below it the figures of each run.
     pub fn markdown(&self) -> String {
         let mut text = String::from("| case | target | got | met | peers |\n|---|---|---|---|---|\n");
         // Writing to a string cannot fail.
-        for Row { case, target, got, met, peers } in &self.rows {
+        for TargetRow { case, target, got, met, peers } in &self.rows {
             let met = if *met { "yes" } else { "**no**" };
             let _ = writeln!(text, "| {case} | {target} | {got} | {met} | {peers} |");
         }
@@ -279,7 +280,7 @@ impl Table {
             "\n| run | us p50 / p99 | Y | substeps, lanes | strain mean / p99 / max % | deepest mm | MB | hash |\n",
         );
         text.push_str("|---|---|---|---|---|---|---|---|\n");
-        for Named { case, figures: r } in &self.runs {
+        for CaseFigures { case, figures: r } in &self.runs {
             let [mean, p99, max] = [r.strain.mean, r.strain.p99, r.strain.max].map(|s| s * 100.0);
             let memory = r.memory_bytes.map_or_else(String::new, |b| format!("{:.3}", b as f64 * 1e-6));
             let _ = writeln!(
@@ -300,9 +301,9 @@ mod tests {
     #[test]
     fn every_row_is_there_whatever_fails() {
         // Nine vertices are no scene: every run is refused, and every row says so.
-        let base = Options { verts: 9, runs: 1, steps: 1, ..Options::default() };
+        let base = SkirtOptions { verts: 9, runs: 1, steps: 1, ..SkirtOptions::default() };
         let mut said = 0;
-        let mut maker = Maker {
+        let mut maker = TableRun {
             base,
             heap: &HeapProbe::none(),
             told: &mut |_| said += 1,

@@ -4,12 +4,12 @@ use glam::Vec3;
 use toile_assets::bake::bake;
 use toile_assets::garment::{MeshError, Shape};
 
-use super::Site;
-use super::found::Found;
+use super::outcome::TrialFindings;
 use super::piece::{PATCH, Piece, denim, sheet};
-use super::random::Random;
+use super::pieces::Pieces;
 use super::start::swung;
 use super::trial::Trial;
+use crate::random::Random;
 
 /// What is wrong with the mesh, seed after seed.
 const FLAWS: u64 = 7;
@@ -18,7 +18,7 @@ const FLAWS: u64 = 7;
 const SLIVER_M: f32 = 1.5e-6;
 
 /// Every second seed or so has a flaw that the bake must refuse; the others are baked and have to hang as they should.
-pub(super) fn bad_elements(site: &Site, random: &mut Random, seed: u64) -> Found {
+pub(super) fn bad_elements(pieces: &Pieces, random: &mut Random, seed: u64) -> TrialFindings {
     let mut shape = sheet(PATCH);
     let [columns, rows] = PATCH;
     let face = random.below(shape.faces.len());
@@ -44,30 +44,30 @@ pub(super) fn bad_elements(site: &Site, random: &mut Random, seed: u64) -> Found
             }
         }
     }
-    if seed % FLAWS < 3 { refused(&shape, face) } else { survived(site, &shape, random) }
+    if seed % FLAWS < 3 { refused(&shape, face) } else { survived(pieces, &shape, random) }
 }
 
 /// A mesh that must not become a garment.
-fn refused(shape: &Shape, face: usize) -> Found {
+fn refused(shape: &Shape, face: usize) -> TrialFindings {
     match bake("torture", "one", shape, &denim()) {
-        Err(error @ MeshError::Degenerate { .. }) => Found { note: error.to_string(), ..Found::default() },
-        Err(error) => Found { miss: Some(format!("refused for another reason: {error}")), ..Found::default() },
-        Ok(_) => Found { miss: Some(format!("face {face} was baked")), ..Found::default() },
+        Err(error @ MeshError::Degenerate { .. }) => TrialFindings { note: error.to_string(), ..TrialFindings::default() },
+        Err(error) => TrialFindings { miss: Some(format!("refused for another reason: {error}")), ..TrialFindings::default() },
+        Ok(_) => TrialFindings { miss: Some(format!("face {face} was baked")), ..TrialFindings::default() },
     }
 }
 
 /// A mesh that can be baked, and must then hang.
-fn survived(site: &Site, shape: &Shape, random: &mut Random) -> Found {
-    let piece = match Piece::new(shape, &denim(), &site.settings) {
+fn survived(pieces: &Pieces, shape: &Shape, random: &mut Random) -> TrialFindings {
+    let piece = match Piece::new(shape, &denim(), &pieces.settings) {
         Ok(piece) => piece,
-        Err(error) => return Found { miss: Some(error.to_string()), ..Found::default() },
+        Err(error) => return TrialFindings { miss: Some(error.to_string()), ..TrialFindings::default() },
     };
     // What is only worn badly starts so and unfolds to where the same cut always hangs; a bad cut is swung besides.
     let same_cut = shape.cut == sheet(PATCH).cut;
     let trial = if same_cut {
-        Trial::new(site, &piece.garment, &site.settings)
+        Trial::new(pieces, &piece.garment, &pieces.settings)
     } else {
-        swung(site, &piece, &site.settings, random)
+        swung(pieces, &piece, &pieces.settings, random)
     };
-    Found::back(trial, if same_cut { &site.patch.rest } else { &piece.rest })
+    TrialFindings::back(trial, if same_cut { &pieces.patch.rest } else { &piece.rest })
 }

@@ -5,10 +5,10 @@ use std::time::Instant;
 
 use glam::Vec3;
 
-use super::Site;
-use super::found::Found;
-use super::random::Random;
+use super::outcome::TrialFindings;
+use super::pieces::Pieces;
 use super::trial::Trial;
+use crate::random::Random;
 
 /// Steps at rest: a minute.
 const REST_STEPS: usize = 7_200;
@@ -21,11 +21,11 @@ const SLOWER: f64 = 1.5;
 
 /// The curtain hangs in its plane but for a last trembling across it, from a thousandth of a metre to nothing that f32
 /// knows; a minute later it is timed beside a copy that was kept as it was in the beginning.
-pub(super) fn long_rest(site: &Site, random: &mut Random, _: u64) -> Found {
+pub(super) fn long_rest(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFindings {
     let size = random.decades(-44.0, -3.0);
-    let mut rested = Trial::at_rest(site, &site.patch, &site.settings);
+    let mut rested = Trial::at_rest(pieces, &pieces.patch, &pieces.settings);
     rested.disturb(|i, p| (p.with_z(size * if i % 2 == 0 { 1.0 } else { -0.5 }), Vec3::ZERO));
-    let mut fresh = Trial::at_rest(site, &site.patch, &site.settings);
+    let mut fresh = Trial::at_rest(pieces, &pieces.patch, &pieces.settings);
     fresh.disturb(|_, p| (p.with_z(random.between(-1e-3, 1e-3)), Vec3::ZERO));
     rested.run(REST_STEPS);
     let [new, old] = [&mut fresh, &mut rested].map(|_| Vec::with_capacity(TIMED));
@@ -39,7 +39,7 @@ pub(super) fn long_rest(site: &Site, random: &mut Random, _: u64) -> Found {
     }
     let [new, old] = times.map(median);
     let tiny = denormal(&rested);
-    let mut found = Found::back(rested, &site.patch.rest);
+    let mut found = TrialFindings::back(rested, &pieces.patch.rest);
     let ratio = old / new;
     found.note = format!("a step takes {ratio:.2} times as long after a minute's rest; {tiny} denormal numbers");
     found.miss = (ratio > SLOWER).then(|| found.note.clone());

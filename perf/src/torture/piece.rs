@@ -11,7 +11,7 @@ use toile_assets::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::Colliders;
 
-use super::TortureError;
+use super::error::TortureError;
 use crate::oracle::{Oracle, OracleError, Problem, Solids};
 
 /// Columns and rows of the curtain: 360 particles of which the upper row is held.

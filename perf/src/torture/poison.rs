@@ -1,14 +1,14 @@
-//! Cases of inputs that are no numbers or beyond all measure: each input and value at a time, for some steps, while the
+//! Cases of inputs that are not finite or beyond all measure: each input and value at a time, for some steps, while the
 //! cloth hangs at rest; then all is as before.
 
 use glam::{Vec3, Vec3A, Vec4};
 use toile_engine::cloth::Wind;
 
-use super::Site;
-use super::found::Found;
+use super::outcome::TrialFindings;
 use super::piece::TOP;
-use super::random::Random;
+use super::pieces::Pieces;
 use super::trial::Trial;
+use crate::random::Random;
 
 /// What stands in place of a number.
 const VALUES: [f32; 4] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30];
@@ -20,18 +20,18 @@ const SETTINGS_VALUES: [f32; 8] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1
 const LONGEST: usize = 24;
 
 /// One input: its name, and how a value is put there.
-type Input = (String, Box<dyn Fn(&mut Trial<'_>, f32)>);
+type BadInput = (String, Box<dyn Fn(&mut Trial<'_>, f32)>);
 
-fn input(name: &str, put: impl Fn(&mut Trial<'_>, f32) + 'static) -> Input {
+fn input(name: &str, put: impl Fn(&mut Trial<'_>, f32) + 'static) -> BadInput {
     (name.into(), Box::new(put))
 }
 
 /// The inputs of the cloth's colliders: three fields of a sphere and its radius, all of them, their step.
-fn surrounding_inputs() -> Vec<Input> {
+fn surrounding_inputs() -> Vec<BadInput> {
     let sphere = |t: &mut Trial<'_>, change: &dyn Fn(&mut Vec4)| {
         t.spheres.iter_mut().flatten().take(1).for_each(change);
     };
-    let mut inputs: Vec<Input> =
+    let mut inputs: Vec<BadInput> =
         (0..4).map(|k| input(&format!("number {k} of a sphere"), move |t, v| sphere(t, &|s| s[k] = v))).collect();
     inputs.push(input("a sphere", move |t, v| sphere(t, &|s| *s = Vec4::splat(v))));
     inputs.push(input("all spheres", |t, v| t.spheres.iter_mut().flatten().for_each(|s| *s = Vec4::splat(v))));
@@ -40,7 +40,7 @@ fn surrounding_inputs() -> Vec<Input> {
 }
 
 /// The inputs of the bones: all twelve numbers of the two that the pins follow.
-fn bone_inputs() -> Vec<Input> {
+fn bone_inputs() -> Vec<BadInput> {
     let mut inputs = Vec::new();
     for bone in [0, 1] {
         // Bones are an affine map each: three columns and a place.
@@ -55,13 +55,13 @@ fn bone_inputs() -> Vec<Input> {
 }
 
 /// The inputs of the settings.
-fn setting_inputs() -> Vec<Input> {
+fn setting_inputs() -> Vec<BadInput> {
     let wind = |t: &mut Trial<'_>, change: &dyn Fn(&mut Wind)| {
         let mut wind = Wind { velocity: Vec3A::ZERO, drag: 1.0, lift: 0.5 };
         change(&mut wind);
         t.settings.wind = Some(wind);
     };
-    let mut inputs: Vec<Input> =
+    let mut inputs: Vec<BadInput> =
         (0..3).map(|k| input(&format!("gravity {k}"), move |t, v| t.settings.gravity[k] = v)).collect();
     for k in 0..3 {
         inputs.push(input(&format!("wind {k}"), move |t, v| wind(t, &|w| w.velocity[k] = v)));
@@ -76,7 +76,7 @@ fn setting_inputs() -> Vec<Input> {
 }
 
 /// The rest of the settings: the root's, and the substeps at both ends of their range.
-fn root_inputs() -> Vec<Input> {
+fn root_inputs() -> Vec<BadInput> {
     vec![
         input("root.linear", |t, v| t.settings.root.linear = v),
         input("root.angular", |t, v| t.settings.root.angular = v),
@@ -89,7 +89,7 @@ fn root_inputs() -> Vec<Input> {
 }
 
 /// The numbers of the state: of one particle, of a tenth of them, of all.
-fn state_inputs() -> Vec<Input> {
+fn state_inputs() -> Vec<BadInput> {
     let mut inputs = Vec::new();
     for (whose, every) in [("one", usize::MAX), ("a tenth", 10), ("all", 1)] {
         for k in 0..6 {
@@ -112,7 +112,7 @@ fn state_inputs() -> Vec<Input> {
 }
 
 /// Puts a bad value into one input for some steps and lets the cloth come back.
-fn poisoned(site: &Site, mut trial: Trial<'_>, (name, put): &Input, value: f32, steps: usize) -> Found {
+fn poisoned(pieces: &Pieces, mut trial: Trial<'_>, (name, put): &BadInput, value: f32, steps: usize) -> TrialFindings {
     let (settings, palette, spheres) = (trial.settings, trial.palette.clone(), trial.spheres.clone());
     let step_seconds = trial.colliders.step_seconds;
     trial.run(2);
@@ -122,55 +122,55 @@ fn poisoned(site: &Site, mut trial: Trial<'_>, (name, put): &Input, value: f32, 
     }
     (trial.settings, trial.palette, trial.spheres) = (settings, palette, spheres);
     trial.colliders.step_seconds = step_seconds;
-    let mut found = Found::back(trial, &site.curtain.rest);
+    let mut found = TrialFindings::back(trial, &pieces.curtain.rest);
     found.note = format!("{name} is {value} for {steps} steps");
     found
 }
 
 /// The input and the value of a seed: seeds in a row go through all of them, and begin again.
-fn chosen(inputs: &[Input], values: &[f32], seed: u64) -> (usize, f32) {
+fn chosen(inputs: &[BadInput], values: &[f32], seed: u64) -> (usize, f32) {
     let k = (seed % (inputs.len() * values.len()) as u64) as usize;
     (k / values.len(), values[k % values.len()])
 }
 
-pub(super) fn surroundings(site: &Site, random: &mut Random, seed: u64) -> Found {
-    beside(site, random, seed, &surrounding_inputs())
+pub(super) fn surroundings(pieces: &Pieces, random: &mut Random, seed: u64) -> TrialFindings {
+    beside(pieces, random, seed, &surrounding_inputs())
 }
 
-pub(super) fn bones(site: &Site, random: &mut Random, seed: u64) -> Found {
-    beside(site, random, seed, &bone_inputs())
+pub(super) fn bones(pieces: &Pieces, random: &mut Random, seed: u64) -> TrialFindings {
+    beside(pieces, random, seed, &bone_inputs())
 }
 
 /// A bad value in what is around the curtain.
-fn beside(site: &Site, random: &mut Random, seed: u64, inputs: &[Input]) -> Found {
+fn beside(pieces: &Pieces, random: &mut Random, seed: u64, inputs: &[BadInput]) -> TrialFindings {
     let (which, value) = chosen(inputs, &VALUES, seed);
     // They stand beside the cloth, and come through it where they are drawn away and back.
     let side = |x: f32| [Vec3::new(x, TOP.y - 0.1, 0.0).extend(0.05), Vec3::new(x, TOP.y - 0.4, 0.0).extend(0.05)];
     let spheres = [side(-0.4), side(0.4)].concat();
-    let mut trial = Trial::among(site, &site.curtain, &spheres, &[[0, 1], [2, 3]], &site.settings);
-    trial.disturb(|i, _| (site.curtain.rest[i], Vec3::ZERO));
-    poisoned(site, trial, &inputs[which], value, 1 + random.below(LONGEST))
+    let mut trial = Trial::among(pieces, &pieces.curtain, &spheres, &[[0, 1], [2, 3]], &pieces.settings);
+    trial.disturb(|i, _| (pieces.curtain.rest[i], Vec3::ZERO));
+    poisoned(pieces, trial, &inputs[which], value, 1 + random.below(LONGEST))
 }
 
-pub(super) fn settings(site: &Site, random: &mut Random, seed: u64) -> Found {
+pub(super) fn settings(pieces: &Pieces, random: &mut Random, seed: u64) -> TrialFindings {
     let inputs = setting_inputs();
     let (which, value) = chosen(&inputs, &SETTINGS_VALUES, seed);
-    let trial = Trial::at_rest(site, &site.curtain, &site.settings);
-    poisoned(site, trial, &inputs[which], value, 1 + random.below(LONGEST))
+    let trial = Trial::at_rest(pieces, &pieces.curtain, &pieces.settings);
+    poisoned(pieces, trial, &inputs[which], value, 1 + random.below(LONGEST))
 }
 
-pub(super) fn root_settings(site: &Site, random: &mut Random, seed: u64) -> Found {
+pub(super) fn root_settings(pieces: &Pieces, random: &mut Random, seed: u64) -> TrialFindings {
     let inputs = root_inputs();
     let (which, value) = chosen(&inputs, &SETTINGS_VALUES, seed);
-    let trial = Trial::at_rest(site, &site.curtain, &site.settings);
-    poisoned(site, trial, &inputs[which], value, 1 + random.below(LONGEST))
+    let trial = Trial::at_rest(pieces, &pieces.curtain, &pieces.settings);
+    poisoned(pieces, trial, &inputs[which], value, 1 + random.below(LONGEST))
 }
 
-pub(super) fn state(site: &Site, random: &mut Random, seed: u64) -> Found {
+pub(super) fn state(pieces: &Pieces, random: &mut Random, seed: u64) -> TrialFindings {
     let inputs = state_inputs();
     let (which, value) = chosen(&inputs, &VALUES, seed);
-    let trial = Trial::at_rest(site, &site.curtain, &site.settings);
-    poisoned(site, trial, &inputs[which], value, 1 + random.below(LONGEST))
+    let trial = Trial::at_rest(pieces, &pieces.curtain, &pieces.settings);
+    poisoned(pieces, trial, &inputs[which], value, 1 + random.below(LONGEST))
 }
 
 #[cfg(test)]

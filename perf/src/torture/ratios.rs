@@ -7,12 +7,12 @@ use toile_assets::garment::{Garment, Part, Shape};
 use toile_assets::mesh::SkinWeights;
 use toile_engine::cloth::Settings;
 
-use super::Site;
-use super::found::Found;
+use super::outcome::TrialFindings;
 use super::piece::{DAMPING_PER_S, PATCH, Piece, TOP, denim, sheet};
-use super::random::Random;
+use super::pieces::Pieces;
 use super::start::swung;
 use super::trial::Trial;
+use crate::random::Random;
 
 /// Half of the decades between the lightest and the heaviest particle.
 const HALF_DECADES: f32 = 2.5;
@@ -36,7 +36,7 @@ const FRAME_S: f32 = 1.0 / 60.0;
 const TOP_FORCE_N: f32 = 190.0;
 
 /// Every particle another mass; at least one of the lightest and one of the heaviest.
-pub(super) fn mass_ratio(site: &Site, random: &mut Random, _: u64) -> Found {
+pub(super) fn mass_ratio(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFindings {
     let mut shape = sheet(PATCH);
     let count = shape.cut.len();
     shape.heavier = (0..count).map(|_| random.decades(-HALF_DECADES, HALF_DECADES)).collect();
@@ -44,29 +44,29 @@ pub(super) fn mass_ratio(site: &Site, random: &mut Random, _: u64) -> Found {
     let ends = [free(random), free(random)];
     shape.heavier[ends[0]] = 10f32.powf(-HALF_DECADES);
     shape.heavier[ends[1]] = 10f32.powf(HALF_DECADES);
-    own(site, &shape, &denim(), random)
+    own(pieces, &shape, &denim(), random)
 }
 
 /// Threads one way 10,000 times stiffer than the other way.
-pub(super) fn stiffness_ratio(site: &Site, random: &mut Random, seed: u64) -> Found {
+pub(super) fn stiffness_ratio(pieces: &Pieces, random: &mut Random, seed: u64) -> TrialFindings {
     let soft = random.decades(1.0, 2.0);
     let stiff = soft * 1e4;
     let [warp, weft] = if seed.is_multiple_of(2) { [soft, stiff] } else { [stiff, soft] };
     let shear_n_m = random.decades(0.5, 3.0);
     let fabric = Fabric { stretch_warp_n_m: warp, stretch_weft_n_m: weft, shear_n_m, ..denim() };
-    own(site, &sheet(PATCH), &fabric, random)
+    own(pieces, &sheet(PATCH), &fabric, random)
 }
 
 /// Swings a cloth of a seed's own and compares it with where it hangs.
-fn own(site: &Site, shape: &Shape, fabric: &Fabric, random: &mut Random) -> Found {
-    match Piece::new(shape, fabric, &site.settings) {
-        Ok(piece) => Found::back(swung(site, &piece, &site.settings, random), &piece.rest),
-        Err(error) => Found { miss: Some(error.to_string()), ..Found::default() },
+fn own(pieces: &Pieces, shape: &Shape, fabric: &Fabric, random: &mut Random) -> TrialFindings {
+    match Piece::new(shape, fabric, &pieces.settings) {
+        Ok(piece) => TrialFindings::back(swung(pieces, &piece, &pieces.settings, random), &piece.rest),
+        Err(error) => TrialFindings { miss: Some(error.to_string()), ..TrialFindings::default() },
     }
 }
 
 /// A chain as the engine can have it: a ribbon of two equal columns, each with half of every mass, without bending.
-struct Chain<'a> {
+struct RibbonChain<'a> {
     /// Length of each link (m).
     links: &'a [f32],
     /// Mass of each particle but the first, which is held (kg).
@@ -80,7 +80,7 @@ struct Chain<'a> {
 /// Width of the ribbons (m).
 const RIBBON_M: f32 = 0.01;
 
-impl Chain<'_> {
+impl RibbonChain<'_> {
     /// The garment; vertices row by row, two a row.
     fn garment(&self) -> Garment {
         let mut shape = Shape::default();
@@ -135,19 +135,19 @@ fn stretched(trial: &Trial<'_>, links: &[f32]) -> [f32; 2] {
     [lengths.iter().sum::<f32>() / links.iter().sum::<f32>(), lengths[0] / links[0]]
 }
 
-fn settings(site: &Site, substeps: Option<u32>) -> Settings {
-    Settings { gravity: Vec3::new(0.0, -G, 0.0).into(), step_seconds: FRAME_S, substeps, ..site.settings }
+fn settings(pieces: &Pieces, substeps: Option<u32>) -> Settings {
+    Settings { gravity: Vec3::new(0.0, -G, 0.0).into(), step_seconds: FRAME_S, substeps, ..pieces.settings }
 }
 
 /// The Small Steps chain (Macklin et al. 2019): 100 substeps a frame, the last particle 100,000 times heavier.
-pub(super) fn heavy_chain(site: &Site, random: &mut Random, _: u64) -> Found {
+pub(super) fn heavy_chain(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFindings {
     let links = [LINK_M; NODES - 1];
     let mut masses = [1.0; NODES - 1];
     masses[NODES - 2] = 1e5;
     let along = Quat::from_axis_angle(random.direction(), random.between(0.0, 0.3)) * Vec3::NEG_Y;
-    let chain = Chain { links: &links, masses: &masses, force_n: f32::INFINITY, along };
+    let chain = RibbonChain { links: &links, masses: &masses, force_n: f32::INFINITY, along };
     let garment = chain.garment();
-    let mut trial = Trial::new(site, &garment, &settings(site, Some(100)));
+    let mut trial = Trial::new(pieces, &garment, &settings(pieces, Some(100)));
     let length = LINK_M * links.len() as f32;
     let mut off = 0.0f32;
     // Eight seconds: a free fall of 320 m, which is what 100 iterations come to.
@@ -155,22 +155,22 @@ pub(super) fn heavy_chain(site: &Site, random: &mut Random, _: u64) -> Found {
         trial.step();
         off = off.max((stretched(&trial, &links)[0] - 1.0).abs() * length);
     }
-    let mut found = Found::back(trial, &chain.rest(&garment));
+    let mut found = TrialFindings::back(trial, &chain.rest(&garment));
     found.note = format!("at most {:.3} mm off its length", off * 1e3);
     found.miss = (off >= PUBLISHED_M).then(|| format!("{off:.2} m off its length, {PUBLISHED_M} m are published"));
     found
 }
 
 /// The same with particles of 1 kg and links that give 2 % under 190 N: its top link says what it carries.
-pub(super) fn even_chain(site: &Site, random: &mut Random, _: u64) -> Found {
+pub(super) fn even_chain(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFindings {
     let links = [LINK_M; NODES - 1];
     let along = Quat::from_axis_angle(random.direction(), random.between(0.0, 1.0)) * Vec3::NEG_Y;
-    let chain = Chain { links: &links, masses: &[1.0; NODES - 1], force_n: TOP_FORCE_N / 0.02, along };
+    let chain = RibbonChain { links: &links, masses: &[1.0; NODES - 1], force_n: TOP_FORCE_N / 0.02, along };
     let garment = chain.garment();
-    let mut trial = Trial::new(site, &garment, &settings(site, None));
+    let mut trial = Trial::new(pieces, &garment, &settings(pieces, None));
     let recovery = trial.recover(&chain.rest(&garment));
     let force = (stretched(&trial, &links)[1] - 1.0) * chain.force_n;
-    let mut found = Found { recovery: Some(recovery), ..Found::of(&trial) };
+    let mut found = TrialFindings { recovery: Some(recovery), ..TrialFindings::of(&trial) };
     found.note = format!("{force:.2} N at the top, {TOP_FORCE_N} N expected");
     found.miss = ((force / TOP_FORCE_N - 1.0).abs() > 0.02).then(|| found.note.clone());
     found
@@ -178,7 +178,7 @@ pub(super) fn even_chain(site: &Site, random: &mut Random, _: u64) -> Found {
 
 /// The strand of the TinyVBD experiment, let go 30 degrees above the horizontal: 19 springs of 1e8 N/m, 18 of 5 cm and
 /// the last of 10 cm, with 1,000 kg at the end.
-pub(super) fn strand(site: &Site, random: &mut Random, _: u64) -> Found {
+pub(super) fn strand(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFindings {
     const SPRING_N_M: f32 = 1e8;
     /// Greatest mean strain of the first swing, and at rest (1).
     const ALLOWED: [f32; 2] = [0.02, 0.005];
@@ -188,15 +188,15 @@ pub(super) fn strand(site: &Site, random: &mut Random, _: u64) -> Found {
     masses[NODES - 2] = 1_000.0;
     let level = Quat::from_rotation_y(random.between(-3.0, 3.0)) * Vec3::X;
     let along = level * 0.75f32.sqrt() + Vec3::Y * 0.5;
-    let chain = Chain { links: &links, masses: &masses, force_n: SPRING_N_M * 0.05, along };
+    let chain = RibbonChain { links: &links, masses: &masses, force_n: SPRING_N_M * 0.05, along };
     let mut garment = chain.garment();
     // A spring of twice the length is to be as stiff as the others, not half as stiff.
     let [short, long] = [0.05, 0.1].map(|l| l / (0.5 * chain.force_n));
     let soft = garment.layout.fibers.compliance.iter_mut().filter(|c| (**c / long - 1.0).abs() < 0.1);
     soft.for_each(|c| *c = short);
     garment.fabric.damping_per_s = 0.0;
-    let settings = settings(site, None);
-    let mut trial = Trial::new(site, &garment, &settings);
+    let settings = settings(pieces, None);
+    let mut trial = Trial::new(pieces, &garment, &settings);
     let mut peak = 0.0f32;
     for _ in 0..(1.5 / FRAME_S) as usize {
         trial.step();
@@ -211,7 +211,7 @@ pub(super) fn strand(site: &Site, random: &mut Random, _: u64) -> Found {
     rest.iter_mut().zip(&calm.source).filter(|(_, v)| **v as usize / 2 == NODES - 1).for_each(|(p, _)| p.y += less);
     let recovery = trial.recover(&rest);
     let still = stretched(&trial, &links)[0] - 1.0;
-    let mut found = Found { recovery: Some(recovery), ..Found::of(&trial) };
+    let mut found = TrialFindings { recovery: Some(recovery), ..TrialFindings::of(&trial) };
     found.note = format!("strain {:.2} % in the first swing, {:.3} % at rest", peak * 100.0, still * 100.0);
     found.miss = (peak > ALLOWED[0] || still > ALLOWED[1]).then(|| found.note.clone());
     found

@@ -9,8 +9,8 @@ use toile_engine::colliders::{Colliders, RestSphere};
 use toile_gpu::batch::Batch;
 use toile_gpu::stepper::Stepper;
 
-use super::Site;
 use super::piece::{self, Piece};
+use super::pieces::Pieces;
 
 /// Within which a cloth counts as back (m).
 pub const BACK_M: f64 = 1e-3;
@@ -20,7 +20,7 @@ pub const RECOVER_S: f32 = 5.0;
 
 /// What a cloth did.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Seen {
+pub struct TrialFigures {
     /// Positions and velocities published that were not finite, summed over the steps.
     pub nonfinite: u64,
     /// Greatest speed of a free particle (m/s).
@@ -32,7 +32,7 @@ pub struct Seen {
 
 /// How a cloth came back.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Recovery {
+pub struct TrialRecovery {
     /// Time from which on it stayed within [`BACK_M`] of its place of rest (s).
     pub after_s: Option<f32>,
     /// Hausdorff distance to its place of rest at the end (m).
@@ -55,7 +55,7 @@ pub struct Trial<'a> {
     /// How it is stepped.
     pub settings: Settings,
     /// What was seen so far.
-    pub seen: Seen,
+    pub seen: TrialFigures,
     stepper: Stepper,
     before: Box<[Vec3A]>,
     /// The events up to which jumps were explained.
@@ -64,40 +64,40 @@ pub struct Trial<'a> {
 
 impl<'a> Trial<'a> {
     /// A cloth as it starts, with nothing about it.
-    pub fn new(site: &Site, garment: &'a Garment, settings: &Settings) -> Self {
+    pub fn new(pieces: &Pieces, garment: &'a Garment, settings: &Settings) -> Self {
         let none = Colliders::new(&[], &[], false).expect("no colliders are within every limit");
         let cloth = Cloth::new(garment, &none).in_wind(garment);
-        Self::with(site, garment, cloth, none, settings)
+        Self::with(pieces, garment, cloth, none, settings)
     }
 
     /// A piece at rest, with nothing about it.
-    pub fn at_rest(site: &Site, piece: &'a Piece, settings: &Settings) -> Self {
+    pub fn at_rest(pieces: &Pieces, piece: &'a Piece, settings: &Settings) -> Self {
         let none = Colliders::new(&[], &[], false).expect("no colliders are within every limit");
-        Self::with(site, &piece.garment, piece.settled.clone(), none, settings)
+        Self::with(pieces, &piece.garment, piece.settled.clone(), none, settings)
     }
 
     /// A piece that hangs as it was cut, among spheres joined to capsules.
-    pub fn among(site: &Site, piece: &'a Piece, spheres: &[Vec4], capsules: &[[u8; 2]], settings: &Settings) -> Self {
+    pub fn among(pieces: &Pieces, piece: &'a Piece, spheres: &[Vec4], capsules: &[[u8; 2]], settings: &Settings) -> Self {
         let mut colliders = rig(spheres, capsules);
         colliders.place_spheres(spheres);
         let cloth = Cloth::new(&piece.garment, &colliders).in_wind(&piece.garment);
-        let mut this = Self::with(site, &piece.garment, cloth, colliders, settings);
+        let mut this = Self::with(pieces, &piece.garment, cloth, colliders, settings);
         this.spheres = Some(spheres.to_vec());
         this
     }
 
-    fn with(site: &Site, garment: &'a Garment, cloth: Cloth, colliders: Colliders, settings: &Settings) -> Self {
+    fn with(pieces: &Pieces, garment: &'a Garment, cloth: Cloth, colliders: Colliders, settings: &Settings) -> Self {
         Self {
             before: cloth.positions.clone(),
             told: cloth.events,
-            stepper: site.by.stepper(),
+            stepper: pieces.means.stepper(),
             garment,
             cloth,
             colliders,
             spheres: None,
             palette: Box::new([Affine3A::IDENTITY; BONES]),
             settings: *settings,
-            seen: Seen::default(),
+            seen: TrialFigures::default(),
         }
     }
 
@@ -120,7 +120,7 @@ impl<'a> Trial<'a> {
         self.before.copy_from_slice(&self.cloth.positions);
         let steps = [Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings }];
         let cloths = std::slice::from_mut(&mut self.cloth);
-        // Without a crew there is no worker that could panic.
+        // Without a worker pool there is no worker that could panic.
         let _ = self.stepper.step(&mut Batch { cloths, garments: &[self.garment], steps: &steps }, None);
         self.look();
     }
@@ -150,14 +150,14 @@ impl<'a> Trial<'a> {
     }
 
     /// Lets it come to rest, for [`RECOVER_S`].
-    pub fn recover(&mut self, rest: &[Vec3]) -> Recovery {
+    pub fn recover(&mut self, rest: &[Vec3]) -> TrialRecovery {
         let dt = self.settings.step_seconds;
         let mut since = None;
         for step in 1..=(RECOVER_S / dt).round() as usize {
             self.step();
             since = if is_near(&self.cloth.positions, rest) { since.or(Some(step as f32 * dt)) } else { None };
         }
-        Recovery { after_s: since, hausdorff_m: hausdorff(&self.cloth.positions, rest) }
+        TrialRecovery { after_s: since, hausdorff_m: hausdorff(&self.cloth.positions, rest) }
     }
 }
 

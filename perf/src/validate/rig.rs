@@ -112,7 +112,7 @@ impl Rig {
         let steps = [Step { palette, colliders, settings }];
         let mut batch = Batch { cloths: std::slice::from_mut(cloth), garments: &[garment], steps: &steps };
         let begun = Instant::now();
-        // Without a crew there is no worker that could panic.
+        // Without a worker pool there is no worker that could panic.
         let _ = stepper.step(&mut batch, None);
         times_ns.push(begun.elapsed().as_nanos() as u64);
     }

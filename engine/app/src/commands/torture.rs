@@ -7,7 +7,7 @@ use clap::builder::PossibleValuesParser;
 use clap::value_parser;
 use serde::Serialize;
 use toile_engine::cloth::Quality;
-use toile_perf::torture::{self, CASES, Options, Report, SEEDS, Summary};
+use toile_perf::torture::{self, CASES, TortureOptions, TortureReport, SEEDS, CaseSummary};
 
 use crate::backend;
 use crate::cli::values::{BackendArg, Printing, one_of};
@@ -52,12 +52,12 @@ pub struct TortureArgs {
 
 impl TortureArgs {
     /// Which cases and seeds are run, and how.
-    fn options(&self) -> Options {
+    fn options(&self) -> TortureOptions {
         let seeds = match self.seed {
             Some(seed) => seed..seed + 1,
             None => 0..self.seeds.unwrap_or(SEEDS),
         };
-        Options { case: self.case.clone(), seeds, quality: self.quality, backend: self.backend.choice }
+        TortureOptions { case: self.case.clone(), seeds, quality: self.quality, backend: self.backend.choice }
     }
 }
 
@@ -66,7 +66,7 @@ impl TortureArgs {
 struct Body {
     /// What the cases came to.
     #[serde(flatten)]
-    report: Report,
+    report: TortureReport,
     /// Time that it took (s).
     wall_s: f64,
 }
@@ -78,7 +78,7 @@ struct Body {
 pub fn run(args: &TortureArgs) -> Result<(), AppError> {
     let words = args.printing.words();
     let begun = Instant::now();
-    let mut told = |s: &Summary| words.say(&format!("{}: {} of {} seeds", s.name, s.passed, s.seeds));
+    let mut told = |s: &CaseSummary| words.say(&format!("{}: {} of {} seeds", s.name, s.passed, s.seeds));
     let report = torture::run(&args.options(), &mut told).map_err(AppError::internal)?;
     backend::say(&report.stepped_by);
     let wall_s = begun.elapsed().as_secs_f64();
@@ -101,7 +101,7 @@ pub fn run(args: &TortureArgs) -> Result<(), AppError> {
 }
 
 /// The report as people read it: one row a case.
-fn table(report: &Report, wall_s: f64, paint: Paint) -> String {
+fn table(report: &TortureReport, wall_s: f64, paint: Paint) -> String {
     let mut text = format!(
         "{:<18} {:>9} {:>9} {:>8} {:>8} {:>10}  {}\n",
         "case", "passed", "no number", "m/s", "back s", "off mm", "worst seed"
@@ -144,19 +144,19 @@ mod tests {
         args: TortureArgs,
     }
 
-    fn options(line: &str) -> Result<Options, clap::Error> {
+    fn options(line: &str) -> Result<TortureOptions, clap::Error> {
         Ok(Line::try_parse_from(line.split_whitespace())?.args.options())
     }
 
     #[test]
     fn all_cases_and_seeds_are_the_default() {
-        assert_eq!(options("torture").unwrap(), Options::default());
+        assert_eq!(options("torture").unwrap(), TortureOptions::default());
     }
 
     #[test]
     fn one_case_and_one_seed_can_be_named() {
         let (quality, backend) = (Quality::Fine, Backend::Auto);
-        let one = Options { case: Some("squeeze".into()), seeds: 7..8, quality, backend };
+        let one = TortureOptions { case: Some("squeeze".into()), seeds: 7..8, quality, backend };
         assert_eq!(options("torture squeeze --seed 7 --quality fine --backend auto --json -q").unwrap(), one);
         assert_eq!(options("torture --seeds 3").unwrap().seeds, 0..3);
         for wrong in ["torture squeez", "torture --seeds 0", "torture --seed 1 --seeds 2"] {

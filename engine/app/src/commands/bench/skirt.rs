@@ -10,7 +10,7 @@ use toile_gpu::stepper::Backend;
 use toile_perf::crossover;
 use toile_perf::plot::raster;
 use toile_perf::skirt::heap::HeapProbe;
-use toile_perf::skirt::options::{MAX_GARMENTS, Mesh, Options};
+use toile_perf::skirt::options::{MAX_GARMENTS, SkirtMesh, SkirtOptions};
 use toile_perf::skirt::{self, SkirtError, table};
 
 use crate::backend;
@@ -48,8 +48,8 @@ pub struct SkirtArgs {
     )]
     motion: Motion,
     /// How the skirt is meshed
-    #[arg(long, value_name = "M", value_parser = one_of([Mesh::Grid, Mesh::Irregular], mesh), default_value = "grid")]
-    mesh: Mesh,
+    #[arg(long, value_name = "M", value_parser = one_of([SkirtMesh::Grid, SkirtMesh::Irregular], mesh), default_value = "grid")]
+    mesh: SkirtMesh,
     /// How its threads stretch: not at all, or 2000 N/m
     #[arg(
         long,
@@ -104,10 +104,10 @@ fn motion(motion: Motion) -> &'static str {
     }
 }
 
-fn mesh(mesh: Mesh) -> &'static str {
+fn mesh(mesh: SkirtMesh) -> &'static str {
     match mesh {
-        Mesh::Grid => "grid",
-        Mesh::Irregular => "irregular",
+        SkirtMesh::Grid => "grid",
+        SkirtMesh::Irregular => "irregular",
     }
 }
 
@@ -123,12 +123,12 @@ impl SkirtArgs {
     ///
     /// # Errors
     /// [`AppError::Usage`] for a picture of a table that has none.
-    fn options(&self) -> Result<Options, AppError> {
+    fn options(&self) -> Result<SkirtOptions, AppError> {
         if self.picture.is_some() && self.backend.choice == Backend::Cpu {
             let words = "`--picture` draws the table of a device; add `--backend gpu` or leave it out";
             return Err(AppError::Usage(words.to_owned()));
         }
-        Ok(Options {
+        Ok(SkirtOptions {
             verts: self.verts,
             motion: self.motion,
             mesh: self.mesh,
@@ -142,7 +142,7 @@ impl SkirtArgs {
             runs: self.runs,
             steps: self.steps,
             backend: self.backend.choice,
-            ..Options::default()
+            ..SkirtOptions::default()
         })
     }
 }
@@ -174,7 +174,7 @@ pub fn run(args: &SkirtArgs) -> Result<(), AppError> {
 }
 
 /// Sizes and numbers of skirts on the processor and on a device.
-fn crossover(args: &SkirtArgs, options: &Options) -> Result<(), AppError> {
+fn crossover(args: &SkirtArgs, options: &SkirtOptions) -> Result<(), AppError> {
     let words = Words::new(args.json);
     let mut out = args.picture.as_deref().map(OutputFolder::prepare).transpose()?;
     let study = crossover::run(options, usize::MAX, &mut |case| words.say(case)).map_err(refused)?;
@@ -214,13 +214,13 @@ mod tests {
         args: SkirtArgs,
     }
 
-    fn options(line: &str) -> Result<Options, AppError> {
+    fn options(line: &str) -> Result<SkirtOptions, AppError> {
         Line::try_parse_from(line.split_whitespace()).unwrap().args.options()
     }
 
     #[test]
     fn the_defaults_are_the_scenes_protocol() {
-        assert_eq!(options("skirt").unwrap(), Options::default());
+        assert_eq!(options("skirt").unwrap(), SkirtOptions::default());
     }
 
     #[test]
@@ -229,10 +229,10 @@ mod tests {
             "skirt --verts 1024 --motion fast --mesh irregular --stretch physical --wind --threads 2 --garments 3 \
              --lanes 8 --quality fine --substeps 6 --runs 2 --steps 60 --backend gpu --table --picture out --json",
         );
-        let expected = Options {
+        let expected = SkirtOptions {
             verts: 1_024,
             motion: Motion::Fast,
-            mesh: Mesh::Irregular,
+            mesh: SkirtMesh::Irregular,
             stretch: Stretch::Physical,
             wind: true,
             threads: 2,
@@ -243,7 +243,7 @@ mod tests {
             runs: 2,
             steps: 60,
             backend: Backend::Gpu,
-            ..Options::default()
+            ..SkirtOptions::default()
         };
         assert_eq!(found.unwrap(), expected);
         assert!(options("skirt --table --picture out").is_err(), "there is no chart of the targets");

@@ -3,8 +3,8 @@
 use glam::Vec3;
 use serde::Serialize;
 
-use super::trial::{self, BACK_M, RECOVER_S, Recovery, Seen, Trial};
-use super::{Case, piece};
+use super::piece;
+use super::trial::{self, BACK_M, RECOVER_S, TrialRecovery, TrialFigures, Trial};
 use crate::backend::SteppedBy;
 
 /// What the rounding of a speed may add to its limit (1).
@@ -12,20 +12,20 @@ const SPEED_SLACK: f32 = 1e-3;
 
 /// What a trial found.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Found {
+pub struct TrialFindings {
     /// What was seen of the cloth.
-    pub seen: Seen,
+    pub seen: TrialFigures,
     /// The speed that no free particle may exceed (m/s); none where there was no cloth.
     pub limit: Option<f32>,
     /// How it came back, where there is one place to come back to.
-    pub recovery: Option<Recovery>,
+    pub recovery: Option<TrialRecovery>,
     /// What else was to be met and was not.
     pub miss: Option<String>,
     /// Figures of the case's own.
     pub note: String,
 }
 
-impl Found {
+impl TrialFindings {
     /// What a trial saw that has no one place to come back to.
     pub fn of(trial: &Trial<'_>) -> Self {
         Self { seen: trial.seen, limit: Some(trial.settings.max_speed), ..Self::default() }
@@ -48,7 +48,7 @@ impl Found {
             match near.map(|x| trial::hausdorff(&trial.cloth.positions, &x)) {
                 Ok(off) => {
                     let after_s = (off <= BACK_M).then_some(RECOVER_S);
-                    found.recovery = Some(Recovery { after_s, hausdorff_m: off });
+                    found.recovery = Some(TrialRecovery { after_s, hausdorff_m: off });
                     found.note = format!("folds; {:.1} mm from lying flat", recovery.hausdorff_m * 1e3);
                 }
                 Err(error) => found.note = error.to_string(),
@@ -59,9 +59,9 @@ impl Found {
 
     /// The first thing that is not as it has to be.
     fn cause(&self) -> Option<String> {
-        let Seen { nonfinite, max_speed, .. } = self.seen;
+        let TrialFigures { nonfinite, max_speed, .. } = self.seen;
         if nonfinite > 0 {
-            return Some(format!("{nonfinite} numbers published that are none"));
+            return Some(format!("{nonfinite} positions or velocities that are not finite"));
         }
         if self.limit.is_some_and(|limit| max_speed > limit * (1.0 + SPEED_SLACK)) {
             return Some(format!("{max_speed:.1} m/s, over the limit"));
@@ -80,7 +80,7 @@ impl Found {
 
 /// One seed of one case.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Outcome {
+pub struct SeedOutcome {
     /// The case.
     pub name: &'static str,
     /// The seed.
@@ -105,12 +105,12 @@ pub struct Outcome {
     pub note: String,
 }
 
-impl Outcome {
+impl SeedOutcome {
     /// The verdict on what a trial found.
-    pub(super) fn of(case: &Case, seed: u64, found: Found) -> Self {
+    pub(super) fn of(name: &'static str, seed: u64, found: TrialFindings) -> Self {
         let cause = found.cause();
         Self {
-            name: case.name,
+            name,
             seed,
             nonfinite: found.seen.nonfinite,
             max_speed: found.seen.max_speed,
@@ -125,9 +125,9 @@ impl Outcome {
     }
 }
 
-impl Outcome {
+impl SeedOutcome {
     /// What was wrong and what was done, or the case's own figures.
-    fn told(&self) -> String {
+    fn text(&self) -> String {
         match &self.cause {
             Some(cause) if self.note.is_empty() || *cause == self.note => cause.clone(),
             Some(cause) => format!("{cause} ({})", self.note),
@@ -138,7 +138,7 @@ impl Outcome {
 
 /// All seeds of one case.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Summary {
+pub struct CaseSummary {
     /// The case.
     pub name: &'static str,
     /// What is done.
@@ -147,7 +147,7 @@ pub struct Summary {
     pub seeds: usize,
     /// Seeds in which all was as it has to be.
     pub passed: usize,
-    /// Numbers published that were none.
+    /// Positions and velocities published that were not finite.
     pub nonfinite: u64,
     /// Greatest speed of a free particle (m/s).
     pub max_speed: f32,
@@ -161,17 +161,17 @@ pub struct Summary {
     pub cause: String,
 }
 
-impl Summary {
+impl CaseSummary {
     /// What the seeds of a case have in common.
-    pub(super) fn of(case: &Case, outcomes: &[Outcome]) -> Self {
-        let far = |o: &&Outcome| (!o.pass, o.hausdorff_mm.unwrap_or(0.0));
+    pub(super) fn of(name: &'static str, about: &'static str, outcomes: &[SeedOutcome]) -> Self {
+        let far = |o: &&SeedOutcome| (!o.pass, o.hausdorff_mm.unwrap_or(0.0));
         let worst = outcomes.iter().max_by(|a, b| {
             let (a, b) = (far(a), far(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         });
         Self {
-            name: case.name,
-            about: case.about,
+            name,
+            about,
             seeds: outcomes.len(),
             passed: outcomes.iter().filter(|o| o.pass).count(),
             nonfinite: outcomes.iter().map(|o| o.nonfinite).sum(),
@@ -179,14 +179,14 @@ impl Summary {
             recovered_s: outcomes.iter().filter_map(|o| o.recovered_s).reduce(f32::max),
             hausdorff_mm: outcomes.iter().filter_map(|o| o.hausdorff_mm).reduce(f64::max),
             worst_seed: worst.map_or(0, |o| o.seed),
-            cause: worst.map_or_else(String::new, Outcome::told),
+            cause: worst.map_or_else(String::new, SeedOutcome::text),
         }
     }
 }
 
 /// The body of `toile torture`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Report {
+pub struct TortureReport {
     /// The quality's name.
     pub quality: &'static str,
     /// What stepped the cloth.
@@ -194,14 +194,14 @@ pub struct Report {
     /// How far curtain, lawn, patch and tube are from the oracle's equilibrium when nothing is done to them (mm).
     pub undisturbed_mm: [f64; 4],
     /// One row a case.
-    pub summary: Vec<Summary>,
+    pub summary: Vec<CaseSummary>,
     /// One entry a case and seed, in their order.
-    pub cases: Vec<Outcome>,
+    pub cases: Vec<SeedOutcome>,
 }
 
-impl Report {
+impl TortureReport {
     /// Cases of which any seed failed.
-    pub fn failed(&self) -> impl Iterator<Item = &Summary> {
+    pub fn failed(&self) -> impl Iterator<Item = &CaseSummary> {
         self.summary.iter().filter(|s| s.passed < s.seeds)
     }
 }

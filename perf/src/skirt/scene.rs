@@ -14,15 +14,18 @@ use toile_engine::workers::WorkerPool;
 use toile_gpu::batch::Batch;
 use toile_gpu::stepper::{Backend, Means, Stepper};
 
+use super::error::SkirtError;
 use super::heap::{Heap, HeapProbe};
-use super::options::{MAX_GARMENTS, MESH_SEED, Mesh, Options};
+use super::options::{MAX_GARMENTS, MESH_SEED, SkirtMesh, SkirtOptions};
 use super::report::Events;
-use super::{SkirtError, Spheres};
+
+/// The body's spheres: centre and radius, world (m).
+pub type Spheres = [Vec4; skirt::SPHERES];
 
 /// One or several skirts on one body.
-pub struct Stage {
+pub struct SkirtScene {
     /// What was asked for.
-    pub options: Options,
+    pub options: SkirtOptions,
     /// Vertices a side.
     pub side: usize,
     /// The mesh that was baked.
@@ -49,12 +52,12 @@ pub struct Stage {
 /// least so long; the helper is awake by then.
 const BEFORE_CLOTH: Duration = Duration::from_micros(80);
 
-impl Stage {
+impl SkirtScene {
     /// The scene at its start.
     ///
     /// # Errors
     /// Where the options cannot be met.
-    pub fn new(options: &Options, heap: &HeapProbe) -> Result<Self, SkirtError> {
+    pub fn new(options: &SkirtOptions, heap: &HeapProbe) -> Result<Self, SkirtError> {
         Self::with(options, heap, |_| {})
     }
 
@@ -62,7 +65,7 @@ impl Stage {
     ///
     /// # Errors
     /// Where the options cannot be met.
-    pub fn with(options: &Options, heap: &HeapProbe, change: impl FnOnce(&mut Shape)) -> Result<Self, SkirtError> {
+    pub fn with(options: &SkirtOptions, heap: &HeapProbe, change: impl FnOnce(&mut Shape)) -> Result<Self, SkirtError> {
         Self::by(&Means::open(options.backend), options, heap, change)
     }
 
@@ -72,15 +75,15 @@ impl Stage {
     /// Where the options cannot be met.
     pub fn by(
         means: &Means,
-        options: &Options,
+        options: &SkirtOptions,
         heap: &HeapProbe,
         change: impl FnOnce(&mut Shape),
     ) -> Result<Self, SkirtError> {
         let side = options.side()?;
         let settings = options.settings()?;
         let mut shape = match options.mesh {
-            Mesh::Grid => skirt::shape(side),
-            Mesh::Irregular => skirt::irregular(side, MESH_SEED),
+            SkirtMesh::Grid => skirt::shape(side),
+            SkirtMesh::Irregular => skirt::irregular(side, MESH_SEED),
         };
         let fabric = skirt::fabric(&shape, options.stretch);
         change(&mut shape);
@@ -98,7 +101,7 @@ impl Stage {
         let cloths = (0..options.garments.clamp(1, MAX_GARMENTS)).map(|_| ready(new())).collect();
         let between = |a: Option<Heap>, b: Option<Heap>| u64::try_from(b?.live_bytes - a?.live_bytes).ok();
         let memory_bytes = between(before, baked).zip(between(baked, heap.read())).map(|(a, b)| [a, b]);
-        let mut stage = Self {
+        let mut scene = Self {
             options: *options,
             side,
             shape,
@@ -114,9 +117,9 @@ impl Stage {
             stepper: means.stepper(),
         };
         // Where the body stands at time 0; the first step then sweeps as every other.
-        stage.ask();
-        stage.colliders.place_spheres(&stage.spheres);
-        Ok(stage)
+        scene.ask();
+        scene.colliders.place_spheres(&scene.spheres);
+        Ok(scene)
     }
 
     /// Asks the scene where body and root are at the end of the coming step. Not timed.
