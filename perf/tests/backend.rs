@@ -207,7 +207,8 @@ fn what_comes_back_on_the_processor_comes_back_on_the_device() {
     let Some(means) = device() else { return };
     for case in TORTURED {
         let [cpu, gpu] = [Backend::Cpu, Backend::Gpu].map(|backend| {
-            let options = torture::TortureOptions { case: Some(case.into()), seeds: 0..1, backend, ..Default::default() };
+            let options =
+                torture::TortureOptions { case: Some(case.into()), seeds: 0..1, backend, ..Default::default() };
             torture::run(&options, &mut |_| {}).expect("the pieces are as they should be")
         });
         stepped_on_the_device(&gpu.stepped_by);

@@ -178,8 +178,13 @@ fn every_width_and_every_run_gives_the_same_bits() {
 #[test]
 fn an_irregular_skirt_has_the_same_bits_with_two_workers_and_at_every_width() {
     let play = |threads: usize, width: Width| {
-        let stepped =
-            SkirtOptions { mesh: SkirtMesh::Irregular, lanes: Some(width), verts: 9_216, threads, ..SkirtOptions::default() };
+        let stepped = SkirtOptions {
+            mesh: SkirtMesh::Irregular,
+            lanes: Some(width),
+            verts: 9_216,
+            threads,
+            ..SkirtOptions::default()
+        };
         let mut scene = scene(&stepped);
         for _ in 0..8 {
             scene.prepare();

@@ -2,7 +2,7 @@
 
 use super::study::{Crossover, CrossoverRow, EACH};
 use crate::plot::axis::Axis;
-use crate::plot::chart::{Chart, SeriesStyle, Series};
+use crate::plot::chart::{Chart, Series, SeriesStyle};
 use crate::plot::{BLACK, Drawing, SERIES_COLOURS};
 
 /// What 120 Hz leaves a step (us).

@@ -125,7 +125,9 @@ fn crossing(points: &[[f64; 2]]) -> Option<f64> {
 
 /// One row: the device first, which may be the slowest by far.
 fn row(options: &SkirtOptions, means: &Means) -> Result<CrossoverRow, SkirtError> {
-    let scene = |means: &Means, threads| SkirtScene::by(means, &SkirtOptions { threads, ..*options }, &HeapProbe::none(), |_| {});
+    let scene = |means: &Means, threads| {
+        SkirtScene::by(means, &SkirtOptions { threads, ..*options }, &HeapProbe::none(), |_| {})
+    };
     let (mut one, mut two) = (scene(&Means::cpu(), 1)?, scene(&Means::cpu(), 2)?);
     let mut device = scene(means, 1)?;
     // A step of each, to know how many there can be, after the first, which lays everything out.

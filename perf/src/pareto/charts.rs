@@ -3,7 +3,7 @@
 use super::front;
 use super::report::{Drape, Fate, Point, Report, SceneReport, Survival};
 use crate::plot::axis::Axis;
-use crate::plot::chart::{Chart, SeriesStyle, Series};
+use crate::plot::chart::{Chart, Series, SeriesStyle};
 use crate::plot::tiles::{Cell, Tiles};
 use crate::plot::{BLACK, Drawing, SERIES_COLOURS};
 
@@ -129,7 +129,11 @@ fn meshes(name: &str, report: &Report) -> Chart {
         };
         let mut points: Vec<[f64; 2]> = scenes.iter().filter_map(point).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        series.push(Series { name: format!("{quality}, its own substeps"), points, style: SeriesStyle::joined(SERIES_COLOURS[k]) });
+        series.push(Series {
+            name: format!("{quality}, its own substeps"),
+            points,
+            style: SeriesStyle::joined(SERIES_COLOURS[k]),
+        });
     }
     let x = ("mean length of an edge (mm)", true);
     framed(format!("{name}: error against mesh size"), [x, ERROR], series)
@@ -152,7 +156,8 @@ fn map(survival: &Survival) -> Tiles {
         Fate::Strained => FATES[1],
         Fate::RolledBack => FATES[2],
     };
-    let cell = |(fate, strain): (&Fate, &f64)| Cell { colour: colour(*fate), words: format!("{:.1} %", 100.0 * strain) };
+    let cell =
+        |(fate, strain): (&Fate, &f64)| Cell { colour: colour(*fate), words: format!("{:.1} %", 100.0 * strain) };
     let row = |(fates, strains): (&Vec<Fate>, &Vec<f64>)| fates.iter().zip(strains).map(cell).collect();
     let limit = 100.0 * survival.strained_p99;
     Tiles {
@@ -177,7 +182,11 @@ fn samplings(drape: &Drape) -> Chart {
     let theirs = drape.samplings.iter().filter_map(|s| Some([s.spacing_cm, s.published_cm?])).collect();
     let series = vec![
         Series { name: "to the finest".into(), points: ours, style: SeriesStyle::joined(SERIES_COLOURS[0]) },
-        Series { name: "MIRAGES, to a real cloth".into(), points: theirs, style: SeriesStyle::joined(SERIES_COLOURS[1]) },
+        Series {
+            name: "MIRAGES, to a real cloth".into(),
+            points: theirs,
+            style: SeriesStyle::joined(SERIES_COLOURS[1]),
+        },
     ];
     let axes = [("sampling (cm)", true), ("mean distance (cm)", true)];
     framed("drape: a tablecloth of 1 m by sampling".into(), axes, series)

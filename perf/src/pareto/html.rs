@@ -5,8 +5,7 @@ use super::front;
 use super::report::{Drape, Point, Report, SceneReport};
 use crate::plot::page::{Entry, Page};
 
-const FRONT: [&str; 7] =
-    ["front, one thread", "substeps", "iterations", "step us", "mean mm", "max mm", "strain %"];
+const FRONT: [&str; 7] = ["front, one thread", "substeps", "iterations", "step us", "mean mm", "max mm", "strain %"];
 
 const SAMPLINGS: [&str; 6] = ["sampling", "particles", "mean cm", "max cm", "published cm", "step us"];
 

@@ -48,7 +48,8 @@ pub fn map(quick: bool) -> Result<Survival, ParetoError> {
 
 /// Walks once; what became of the skirt, and its strain in the second half.
 fn run(ratio: f64, step_s: f64) -> Result<(Fate, f64), SkirtError> {
-    let options = SkirtOptions { verts: SIDE * SIDE, substeps: Some(SUBSTEPS), step_s: step_s as f32, ..SkirtOptions::default() };
+    let options =
+        SkirtOptions { verts: SIDE * SIDE, substeps: Some(SUBSTEPS), step_s: step_s as f32, ..SkirtOptions::default() };
     let heavy = |shape: &mut Shape| {
         shape.heavier = vec![1.0; shape.cut.len()];
         skirt::hem(SIDE).for_each(|v| shape.heavier[v] = ratio as f32);

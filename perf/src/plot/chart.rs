@@ -1,7 +1,7 @@
 //! A chart: series over two axes, rules, a legend at the right.
 
 use super::axis::{Axis, figure};
-use super::{Anchor, BLACK, Drawing, Colour, Mark, PALE, RULE};
+use super::{Anchor, BLACK, Colour, Drawing, Mark, PALE, RULE};
 
 /// How a series is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]

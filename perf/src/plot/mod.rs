@@ -24,7 +24,8 @@ pub const PALE: Colour = [225, 225, 225];
 pub const RULE: Colour = [190, 40, 40];
 
 /// Inks of series, apart for most colour-blind eyes (Okabe & Ito 2008).
-pub const SERIES_COLOURS: [Colour; 6] = [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [86, 180, 233], [230, 159, 0]];
+pub const SERIES_COLOURS: [Colour; 6] =
+    [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [86, 180, 233], [230, 159, 0]];
 
 /// Which end of a text lies where it is put.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use toile_view::image::{Image, Size};
 use toile_view::text::{TextSize, draw};
 
-use super::{Anchor, BLACK, Drawing, Colour, Mark};
+use super::{Anchor, BLACK, Colour, Drawing, Mark};
 
 /// Lengths of a dash and of the gap behind it (pixels).
 const DASH: [f64; 2] = [7.0, 5.0];

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Anchor, Drawing, Colour, Mark};
+use super::{Anchor, Colour, Drawing, Mark};
 
 /// The SVG element.
 pub fn text(drawing: &Drawing) -> String {

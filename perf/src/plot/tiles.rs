@@ -1,6 +1,6 @@
 //! A grid of coloured cells with words in them.
 
-use super::{Anchor, Drawing, Colour, Mark};
+use super::{Anchor, Colour, Drawing, Mark};
 
 /// One cell.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,7 @@ use toile_assets::scene::skirt::{self, CAPSULES};
 use toile_engine::cone::RoundCone;
 
 use super::options::SkirtMesh;
-use super::scene::{Spheres, SkirtScene};
+use super::scene::{SkirtScene, Spheres};
 use super::winding;
 
 /// Depth from which a vertex counts as inside (m): a hundred times the last bit of f32 where the skirt is.
@@ -89,7 +89,8 @@ impl Gauge {
 
     /// Measures one skirt on the body as it was asked for.
     pub fn read(&mut self, positions: &[Vec3A], spheres: &Spheres) -> FrameErrors {
-        let mut frame = FrameErrors { nonfinite: positions.iter().filter(|p| !p.is_finite()).count(), ..FrameErrors::default() };
+        let mut frame =
+            FrameErrors { nonfinite: positions.iter().filter(|p| !p.is_finite()).count(), ..FrameErrors::default() };
         self.strain(positions, &mut frame);
         self.penetration(positions, spheres, &mut frame);
         self.loop_points.clear();

@@ -65,8 +65,9 @@ pub fn recover(options: &SkirtOptions, fault: SkirtFault, heap: &HeapProbe) -> R
     let greatest = |of: fn(&FrameErrors) -> f64, frames: &[FrameErrors]| frames.iter().map(of).fold(0.0, f64::max);
     let baseline_mean = greatest(|f| f.strain_mean, &undisturbed);
     let baseline_p99 = greatest(|f| f.strain_p99, &undisturbed);
-    let back =
-        |f: &FrameErrors| f.nonfinite == 0 && f.strain_mean <= BACK * baseline_mean && f.strain_p99 <= BACK * baseline_p99;
+    let back = |f: &FrameErrors| {
+        f.nonfinite == 0 && f.strain_mean <= BACK * baseline_mean && f.strain_p99 <= BACK * baseline_p99
+    };
     Ok(SkirtRecovery {
         baseline_mean,
         baseline_p99,
@@ -79,7 +80,11 @@ pub fn recover(options: &SkirtOptions, fault: SkirtFault, heap: &HeapProbe) -> R
 }
 
 /// The frames from the fault on, and what happened in them.
-fn watch(options: &SkirtOptions, fault: Option<SkirtFault>, heap: &HeapProbe) -> Result<(Vec<FrameErrors>, Events), SkirtError> {
+fn watch(
+    options: &SkirtOptions,
+    fault: Option<SkirtFault>,
+    heap: &HeapProbe,
+) -> Result<(Vec<FrameErrors>, Events), SkirtError> {
     let mut scene = SkirtScene::new(options, heap)?;
     let mut gauge = Gauge::new(&scene);
     for _ in 0..WARM_UP {

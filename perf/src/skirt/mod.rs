@@ -19,4 +19,4 @@ mod winding;
 pub use error::SkirtError;
 pub use gauge::{FrameErrors, Gauge};
 pub use measure::measure;
-pub use scene::{Spheres, SkirtScene};
+pub use scene::{SkirtScene, Spheres};

@@ -13,9 +13,9 @@ use super::claim::{Claim, TargetRow};
 use super::error::SkirtError;
 use super::hard::{self, SkirtFault, SkirtRecovery};
 use super::heap::HeapProbe;
+use super::measure::measure_with;
 use super::options::{SkirtMesh, SkirtOptions};
 use super::report::SkirtReport;
-use super::measure::measure_with;
 
 /// The whole table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -206,8 +206,11 @@ impl TableRun<'_> {
             Ok(found)
         };
         let jump = recovered("a leg jumps 1 m and back", SkirtFault::Jump);
-        let kinds =
-            [("collider", SkirtFault::Collider as fn(f32) -> SkirtFault), ("particle", SkirtFault::Particle), ("pin", SkirtFault::Pin)];
+        let kinds = [
+            ("collider", SkirtFault::Collider as fn(f32) -> SkirtFault),
+            ("particle", SkirtFault::Particle),
+            ("pin", SkirtFault::Pin),
+        ];
         let values = [("NaN", f32::NAN), ("infinite", f32::INFINITY)];
         let mut found = Vec::new();
         for (kind, fault) in kinds {

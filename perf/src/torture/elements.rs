@@ -50,8 +50,12 @@ pub(super) fn bad_elements(pieces: &Pieces, random: &mut Random, seed: u64) -> T
 /// A mesh that must not become a garment.
 fn refused(shape: &Shape, face: usize) -> TrialFindings {
     match bake("torture", "one", shape, &denim()) {
-        Err(error @ MeshError::Degenerate { .. }) => TrialFindings { note: error.to_string(), ..TrialFindings::default() },
-        Err(error) => TrialFindings { miss: Some(format!("refused for another reason: {error}")), ..TrialFindings::default() },
+        Err(error @ MeshError::Degenerate { .. }) => {
+            TrialFindings { note: error.to_string(), ..TrialFindings::default() }
+        }
+        Err(error) => {
+            TrialFindings { miss: Some(format!("refused for another reason: {error}")), ..TrialFindings::default() }
+        }
         Ok(_) => TrialFindings { miss: Some(format!("face {face} was baked")), ..TrialFindings::default() },
     }
 }

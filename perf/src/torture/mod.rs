@@ -21,4 +21,4 @@ mod trial;
 pub use cases::{CASES, TortureCase};
 pub use error::TortureError;
 pub use outcome::{CaseSummary, SeedOutcome, TortureReport};
-pub use run::{TortureOptions, SEEDS, run};
+pub use run::{SEEDS, TortureOptions, run};

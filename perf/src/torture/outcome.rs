@@ -4,7 +4,7 @@ use glam::Vec3;
 use serde::Serialize;
 
 use super::piece;
-use super::trial::{self, BACK_M, RECOVER_S, TrialRecovery, TrialFigures, Trial};
+use super::trial::{self, BACK_M, RECOVER_S, Trial, TrialFigures, TrialRecovery};
 use crate::backend::SteppedBy;
 
 /// What the rounding of a speed may add to its limit (1).

@@ -9,7 +9,7 @@ use toile_gpu::stepper::{Backend, Means};
 
 use super::cases::{CASES, TortureCase};
 use super::error::TortureError;
-use super::outcome::{SeedOutcome, TortureReport, CaseSummary};
+use super::outcome::{CaseSummary, SeedOutcome, TortureReport};
 use super::piece::Piece;
 use super::pieces::Pieces;
 use crate::backend::SteppedBy;

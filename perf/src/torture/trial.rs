@@ -77,7 +77,13 @@ impl<'a> Trial<'a> {
     }
 
     /// A piece that hangs as it was cut, among spheres joined to capsules.
-    pub fn among(pieces: &Pieces, piece: &'a Piece, spheres: &[Vec4], capsules: &[[u8; 2]], settings: &Settings) -> Self {
+    pub fn among(
+        pieces: &Pieces,
+        piece: &'a Piece,
+        spheres: &[Vec4],
+        capsules: &[[u8; 2]],
+        settings: &Settings,
+    ) -> Self {
         let mut colliders = rig(spheres, capsules);
         colliders.place_spheres(spheres);
         let cloth = Cloth::new(&piece.garment, &colliders).in_wind(&piece.garment);

@@ -7,7 +7,7 @@ use clap::builder::PossibleValuesParser;
 use clap::value_parser;
 use serde::Serialize;
 use toile_engine::cloth::Quality;
-use toile_perf::torture::{self, CASES, TortureOptions, TortureReport, SEEDS, CaseSummary};
+use toile_perf::torture::{self, CASES, CaseSummary, SEEDS, TortureOptions, TortureReport};
 
 use crate::backend;
 use crate::cli::values::{BackendArg, Printing, one_of};
