@@ -20,4 +20,5 @@ pub mod scene;
 pub mod scene_file;
 pub mod sizes;
 pub mod skeleton;
+pub mod toml_keys;
 pub mod wardrobe;

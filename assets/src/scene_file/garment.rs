@@ -2,7 +2,7 @@
 
 use glam::{EulerRot, Quat, Vec3};
 
-use super::error::{SceneError, nearest};
+use super::error::SceneError;
 use super::source::Source;
 use super::table::Table;
 use super::track::Track;
@@ -15,6 +15,7 @@ use crate::import::obj::FREE;
 use crate::import::plain::{PlainMesh, parse_obj};
 use crate::mesh::SkinWeights;
 use crate::skeleton::BONES;
+use crate::toml_keys;
 
 /// A garment's extent may lie between these (m): what is smaller or larger was given in another unit.
 const EXTENT_M: [f32; 2] = [0.005, 200.0];
@@ -155,7 +156,7 @@ fn fabric(table: &Table<'_>, source: Source<'_>) -> Result<Fabric, SceneError> {
     let built_in = |table: &Table<'_>, key: &str, name: &str| {
         let unknown = |e: &dyn std::fmt::Display| {
             let all = Fabric::all().unwrap_or_default();
-            let meant = nearest(name, all.iter().map(|f| f.name.as_str()));
+            let meant = toml_keys::nearest(name, all.iter().map(|f| f.name.as_str()));
             let cure = meant.map_or_else(|| "choose one of them".into(), |m| format!("did you mean \"{m}\"?"));
             table.wrong(key, format!("is unknown: {e}; {cure}"))
         };

@@ -6,8 +6,9 @@ use glam::{DVec3, Vec3};
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::error::{Document, SceneError, nearest};
+use super::error::{Document, SceneError};
 use super::schema::{self, Key, Kind};
+use crate::toml_keys;
 
 /// One table, all of whose keys are known.
 #[derive(Debug, Clone, Copy)]
@@ -30,22 +31,9 @@ impl<'t> Table<'t> {
         name: &'static str,
         at: usize,
     ) -> Result<Self, SceneError> {
-        for key in entries.keys() {
-            let word: &str = key.get_ref();
-            if schema::of(name).any(|k| k.name == word) {
-                continue;
-            }
-            let meant = nearest(word, schema::of(name).map(|k| k.name));
-            let place = if name.is_empty() { "a scene".to_owned() } else { format!("[{name}]") };
-            let cure = match meant {
-                Some(meant) => format!("did you mean \"{meant}\"?"),
-                None => {
-                    let known = schema::of(name).map(|k| k.name).collect::<Vec<_>>();
-                    format!("delete it, or use one of {}", known.join(", "))
-                }
-            };
-            return Err(document.error(key.span().start, format!("{place} has no key \"{word}\"; {cure}")));
-        }
+        let known: Vec<&str> = schema::of(name).map(|key| key.name).collect();
+        let place = if name.is_empty() { "a scene".to_owned() } else { format!("[{name}]") };
+        toml_keys::check(entries, &place, &known).map_err(|unknown| document.error(unknown.at, unknown.message))?;
         Ok(Self { document, entries, name, at })
     }
 

@@ -229,7 +229,7 @@ fn what_cannot_be_used_is_refused_in_one_sentence() {
     fs::write(scratch.path().join("bad.toml"), "[wear]\ngarmets = [\"t-shirt\"]\n").unwrap();
     fs::write(scratch.path().join("other.toml"), "[wear]\ngarments = [\"tent\"]\n").unwrap();
     for (args, code, says) in [
-        (&["--headless", "--config", "bad.toml"][..], 4, "bad.toml:2: `garmets`"),
+        (&["--headless", "--config", "bad.toml"][..], 4, "bad.toml:2: [wear] has no key \"garmets\""),
         (&["--headless", "--config", "other.toml"], 4, "tent"),
         (&["--headless", "--config", "none.toml"], 4, "none.toml"),
         (&["--headless", "--session", "none.csv"], 4, "none.csv"),
