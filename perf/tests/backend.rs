@@ -8,10 +8,10 @@
 use glam::{DVec3, Vec3A};
 use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_engine::cloth::Quality;
+use toile_fitting::heap::HeapProbe;
 use toile_gpu::stepper::{Backend, Means};
 use toile_perf::backend::SteppedBy;
 use toile_perf::oracle::{Oracle, Problem, adapter, measure};
-use toile_perf::skirt::heap::HeapProbe;
 use toile_perf::skirt::options::SkirtOptions;
 use toile_perf::skirt::{Gauge, SkirtScene};
 use toile_perf::torture;

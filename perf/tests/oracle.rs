@@ -3,9 +3,9 @@
 use glam::DVec3;
 use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_engine::cloth::Quality;
+use toile_fitting::heap::HeapProbe;
 use toile_perf::oracle::{Oracle, Problem, Solved, State, Step, adapter, measure};
 use toile_perf::skirt::SkirtScene;
-use toile_perf::skirt::heap::HeapProbe;
 use toile_perf::skirt::options::SkirtOptions;
 
 /// The skirt of `side` x `side` particles on the standing body.

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The crates, lowest floor first: a crate imports only those before it. Folder and name.
-pub const FLOORS: [(&str, &str); 11] = [
+pub const FLOORS: [(&str, &str); 12] = [
     ("assets", "toile-assets"),
     ("assets/sculpt", "toile-sculpt"),
     ("sensors", "toile-sensors"),
@@ -12,6 +12,7 @@ pub const FLOORS: [(&str, &str); 11] = [
     ("engine/track", "toile-track"),
     ("engine/gpu", "toile-gpu"),
     ("engine/view", "toile-view"),
+    ("engine/fitting", "toile-fitting"),
     ("perf", "toile-perf"),
     ("engine/app", "toile"),
     ("tests/models", "toile-models"),

@@ -4,8 +4,8 @@ use std::thread;
 
 use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_engine::lanes::Width;
+use toile_fitting::heap::HeapProbe;
 use toile_perf::skirt::hard::{SkirtFault, SkirtRecovery, heavy_hem, patches, recover};
-use toile_perf::skirt::heap::HeapProbe;
 use toile_perf::skirt::options::{SkirtMesh, SkirtOptions, WARM_UP};
 use toile_perf::skirt::{FrameErrors, Gauge, SkirtScene};
 

@@ -10,7 +10,7 @@ use std::io::Write as _;
 use glam::Vec3;
 use toile_assets::garment::check::corners;
 use toile_assets::scene_file::UserMesh;
-use toile_perf::scene_run::Runner;
+use toile_fitting::scene::Runner;
 
 use crate::exit::AppError;
 use crate::output::OutputFolder;

@@ -5,6 +5,8 @@ use std::io;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use toile_fitting::FittingError;
+
 use crate::output::OutputError;
 
 /// What the process exits with.
@@ -111,6 +113,16 @@ impl From<OutputError> for AppError {
     }
 }
 
+impl From<FittingError> for AppError {
+    fn from(error: FittingError) -> Self {
+        match error {
+            FittingError::Input(text) => Self::Input(text),
+            FittingError::Device(text) => Self::Device(text),
+            FittingError::Internal(text) => Self::Internal(text),
+        }
+    }
+}
+
 static PANICKED: AtomicBool = AtomicBool::new(false);
 
 /// Whether any thread has panicked since [`install_panic_hook`].
@@ -134,7 +146,7 @@ pub fn install_panic_hook() {
         let what = payload.downcast_ref::<&str>().copied().or(owned).unwrap_or("no reason given");
         let cure = "please report this with the command you typed";
         say_line(&one_line(&format!("internal fault{place} ({what}); {cure}")));
-        if let Some(saved) = crate::crash::save() {
+        if let Some(saved) = toile_fitting::live::crash::save() {
             say_line(&one_line(&saved));
         }
         if std::env::var_os("RUST_BACKTRACE").is_some() {

@@ -7,7 +7,7 @@ use std::alloc::{GlobalAlloc, Layout};
 use std::cell::Cell;
 
 use stats_alloc::INSTRUMENTED_SYSTEM;
-use toile_perf::skirt::heap::Heap;
+use toile_fitting::heap::Heap;
 
 thread_local! {
     /// Allocations of this thread. Without a destructor, so that it is there for as long as its thread is.

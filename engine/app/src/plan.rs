@@ -7,22 +7,24 @@ use toile_engine::cloth::Cloth;
 use toile_engine::colliders::Colliders;
 use toile_engine::frame::Frame;
 use toile_engine::meter::CLOTH;
-use toile_perf::plan::calibrate;
-use toile_perf::plan::cost::Costs;
-use toile_perf::plan::reach::reach;
-use toile_perf::plan::report::{self, GarmentPlan, Held, Memory, Plan};
-use toile_perf::plan::scene::Scene;
-use toile_perf::plan::verdict::{Priced, Verdict, judge};
-use toile_perf::plan::weigh;
-use toile_perf::plan::work::STAGES;
-use toile_perf::skirt::heap::HeapProbe;
+use toile_fitting::dress::measured::{self, Told};
+use toile_fitting::dress::recipe::{Parts, Recipe};
+use toile_fitting::dress::session;
+use toile_fitting::dress::wish::Wish;
+use toile_fitting::heap::HeapProbe;
+use toile_fitting::plan::calibrate;
+use toile_fitting::plan::cost::Costs;
+use toile_fitting::plan::reach::reach;
+use toile_fitting::plan::report::{self, GarmentPlan, Held, Memory, Plan};
+use toile_fitting::plan::scene::Scene;
+use toile_fitting::plan::verdict::{Priced, Verdict, judge};
+use toile_fitting::plan::weigh;
+use toile_fitting::plan::work::STAGES;
 
 use crate::cli::{PlanArgs, PlanScene, RunScene};
 use crate::exit::AppError;
 use crate::heap::counted;
-use crate::outfit::{Parts, Recipe, Wish};
 use crate::report::Document;
-use crate::shopper;
 use crate::terminal::{self, Paint, Words};
 
 /// Runs `toile plan`.
@@ -101,23 +103,21 @@ fn worn(
     wish: &Wish,
     workers: usize,
 ) -> Result<(Scene, Costs, Vec<Memory>), AppError> {
-    let session = shopper::open(session, None)?;
-    let track = shopper::believable(&session);
-    let track = &track[shopper::stands_from(&track)..];
-    if track.is_empty() {
-        return Err(AppError::Input(format!("session {} has no joints, so that no pose can be shown", session.name)));
-    }
-    let recipe = Recipe::write(&session, wish)?;
+    let mut session = session::open(session, None)?;
+    let measured = measured::measure(&session, Told { sex: wish.sex, ..Told::default() })?;
+    measured::add_joints(&mut session, &measured)?;
+    let track = session::standing(&session)?;
+    let recipe = Recipe::choose(&session.name, &measured, wish)?;
     let probe = HeapProbe::new(counted);
     let before = probe.read();
     let parts = recipe.parts()?;
     let made = probe.read();
     let baked: usize = parts.garments.iter().map(toile_assets::garment::Garment::bytes).sum();
     let body = before.zip(made).map_or(0, |(a, b)| (b.live_bytes - a.live_bytes - baked as i64).max(0));
-    let costs = calibrate::measure(Some((&parts.body, &parts.rig, track)), workers).map_err(AppError::internal)?;
+    let costs = calibrate::measure(Some((&parts.body, &parts.rig, &track)), workers).map_err(AppError::internal)?;
     let frame = frame_bytes(&parts, &probe)?;
     let Parts { body: shape, rig, garments, settings } = parts;
-    let mut scene = Scene::worn(&shape, &rig, garments, settings, track).map_err(AppError::input)?;
+    let mut scene = Scene::worn(&shape, &rig, garments, settings, &track).map_err(AppError::input)?;
     scene.name = recipe.words();
     let mut memory = vec![part("body", body as usize)];
     memory.extend(cloth_memory(&scene));

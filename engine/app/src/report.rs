@@ -9,6 +9,7 @@ use crate::machine::Machine;
 mod body;
 mod colliders;
 mod gestures;
+pub mod measures;
 mod run;
 mod skinning;
 

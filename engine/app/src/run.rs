@@ -3,10 +3,10 @@
 use toile_assets::scene_file::SceneFile;
 use toile_engine::cloth::Cloth;
 use toile_engine::cloth::program::STAGES;
-use toile_perf::scene_run::Runner;
-use toile_perf::skirt::heap::HeapProbe;
+use toile_fitting::heap::HeapProbe;
+use toile_fitting::scene::Runner;
+use toile_fitting::scene::yardstick;
 use toile_perf::skirt::report::Events;
-use toile_perf::yardstick;
 
 use crate::cli::{RunArgs, RunScene};
 use crate::dump::Dump;

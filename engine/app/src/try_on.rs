@@ -1,50 +1,34 @@
 //! `toile try-on`: one whole try-on, from a session to pictures and a report.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use glam::Affine3A;
-use toile_assets::body::{Body, Sex};
+use toile_assets::body::Body;
 use toile_assets::export::{self, Dressed, glb};
 use toile_assets::garment::Garment;
 use toile_assets::limits::STEP_HZ;
 use toile_assets::rig::Rig;
-use toile_assets::sizes::Population;
 use toile_assets::skeleton::{BONES, Joint};
-use toile_assets::wardrobe::{self, style::Style};
 use toile_engine::body::palette;
 use toile_engine::cloth::{Settings, measure};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::lines::{CAPACITY, Kind, Lines};
 use toile_engine::triple_buffer::Reader;
-use toile_sensors::clock::{ns_to_ticks, ticks_to_ns};
+use toile_fitting::dress::measured::{self, Measured, Told};
+use toile_fitting::dress::player::Player;
+use toile_fitting::dress::wish::{self, Choice, Wish};
+use toile_fitting::dress::{body, session};
 use toile_sensors::frame::Joints;
-use toile_sensors::sample::sample;
-use toile_track::measure::Measurements;
 
 use crate::artist::{Artist, Renderer};
 use crate::cli::{TryOnArgs, Wearer};
 use crate::exit::AppError;
-use crate::fit;
 use crate::output::OutputFolder;
 use crate::pictures::{Ending, Pictures};
-use crate::report::{self, Document, TryOn};
-use crate::shopper;
+use crate::report::{self, Document, Recommendation, TryOn};
 use crate::summary;
 use crate::terminal::{self, Paint, Progress, Words};
-use crate::tracking;
 use crate::video::Video;
-
-/// Fabric of a mesh that a user brings without saying what it is made of.
-const MESH_FABRIC: &str = "cotton-lawn";
-
-/// Said of a session without joints.
-const FROM_DEPTH: &str = "there are no joints: the body was fitted to the depth, and its joints are shown";
-
-/// What a user asked to wear: a garment of the wardrobe, or a mesh.
-enum Wanted {
-    Style(Box<Style>),
-    Mesh(String),
-}
 
 /// Runs `toile try-on`.
 ///
@@ -61,29 +45,25 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let films = args.video.iter().flat_map(|film| [film.clone(), film.with_extension("png")]);
     films.into_iter().try_for_each(|film| inputs.check(&film))?;
     let mut out = OutputFolder::prepare(&args.out)?.sparing(inputs);
-    let wanted = wanted(args)?;
-    let mut session = shopper::open(args.session.as_deref(), None)?;
-    let (sex, population) = population(args, &wanted)?;
-    let mut measured = shopper::measure(&session, population)?;
-    let mut fitted = None;
-    if session.joints.is_empty() {
-        words.say("there are no joints: fitting the body to the depth");
-        let (found, joints) = tracking::joints(&session, population)?;
-        (session.joints, measured) = (joints, tracking::preferred(measured, &found));
-        session.notes.push(FROM_DEPTH.to_owned());
-        fitted = Some(found.body.body);
+    let wish = wish(args);
+    let choices = wish.choices()?;
+    let mut session = session::open(args.session.as_deref(), None)?;
+    let mut measured = measured::measure(&session, Told { sex: wish.sex, ..Told::default() })?;
+    let has_joints = !session.joints.is_empty();
+    if !has_joints {
+        words.say("there are no joints: the fitted body is followed through the depth");
     }
-    let Worn { body, measured, note } = worn(args, measured, (sex, population), fitted)?;
-    let notes: Vec<String> = note.into_iter().chain(measured.notes.iter().cloned()).collect();
-    let (garments, recommendations) = dress(&wanted, args, &measured, &body)?;
+    measured::add_joints(&mut session, &measured)?;
+    let track = session::standing(&session)?;
+    let (body, note) = worn_body(args, &mut measured, &choices, has_joints)?;
+    let notes: Vec<String> = note.into_iter().chain(measured.best.notes.iter().cloned()).collect();
+    let (garments, recommendations) = put_on(&choices, args.size.as_deref(), &measured, &body)?;
 
     let rig = Rig::fit(&body);
     let settings = Settings { quality: args.quality, ..Settings::default() };
     let (mut frame, mut reader) = Frame::new(body, &rig, garments, settings).map_err(AppError::internal)?;
-    let track = shopper::believable(&session);
-    let track = &track[shopper::stands_from(&track)..];
     let title = title(&recommendations);
-    let played = play((args, &words, &title), &mut out, &mut artist, &mut frame, &mut reader, track)?;
+    let played = play((args, &words, &title), &mut out, &mut artist, &mut frame, &mut reader, &track)?;
 
     if args.glb {
         out.write("dressed.glb", &dressed(&frame, reader.latest()))?;
@@ -95,8 +75,8 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let document = Document::new(
         "try-on",
         TryOn {
-            session: shopper::session_report(&session, &notes),
-            measurements: shopper::measures_report(&measured, population),
+            session: report::measures::session(&session, &notes),
+            measurements: report::measures::measurements(&measured.best, measured.population),
             recommendation: recommendations.next().unwrap_or_default(),
             others: recommendations.collect(),
             physics: physics(&frame),
@@ -115,99 +95,57 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     }
 }
 
-/// Who wears it.
-struct Worn {
-    body: Body,
-    measured: Measurements,
-    note: Option<String>,
+fn wish(args: &TryOnArgs) -> Wish {
+    let sex = if let Some(Wearer::Ours(sex)) = args.body { Some(sex) } else { None };
+    Wish { garments: args.garments.clone(), size: args.size.clone(), quality: args.quality, sex }
 }
 
-/// The body to dress: a file's, the one fitted to the depth, or one built to the measures.
-fn worn(
+/// The body to dress: a file's, whose measures then count; the one fitted to the depth, where there was nothing else; otherwise
+/// one built to the measures. Also gives what there is to say about it.
+fn worn_body(
     args: &TryOnArgs,
-    measured: Measurements,
-    (sex, population): (Sex, Population),
-    fitted: Option<Body>,
-) -> Result<Worn, AppError> {
+    measured: &mut Measured,
+    choices: &[Choice],
+    has_joints: bool,
+) -> Result<(Body, Option<String>), AppError> {
+    let sex = measured.sex(wish::population_of(choices)?);
     if let Some(Wearer::File(file)) = &args.body {
         let imported = crate::commands::body::wearer(file, sex)?;
-        let measured = shopper::of_body(measured, &imported.body);
+        measured.best = body::read_off(measured.best.clone(), &imported.body);
         let note = format!("the body shown is {}, and the measures are read off it", file.display());
-        return Ok(Worn { body: imported.body, measured, note: Some(note) });
+        return Ok((imported.body, Some(note)));
     }
-    let (body, note) = match fitted {
-        Some(body) => (body, None),
-        None => shopper::build(sex, &measured, population)?,
-    };
-    Ok(Worn { body, measured, note })
-}
-
-/// What to wear; the wardrobe's first garment if nothing is said. A name with a file behind it is a mesh.
-fn wanted(args: &TryOnArgs) -> Result<Vec<Wanted>, AppError> {
-    let default = [wardrobe::names()[0].to_owned()];
-    let names = if args.garments.is_empty() { default.as_slice() } else { &args.garments };
-    names
-        .iter()
-        .map(|name| {
-            let is_file = Path::new(name).exists() || name.to_lowercase().ends_with(".obj");
-            if is_file && !wardrobe::names().contains(&name.as_str()) {
-                return Ok(Wanted::Mesh(name.clone()));
-            }
-            wardrobe::style(name).map(|s| Wanted::Style(Box::new(s))).map_err(AppError::input)
-        })
-        .collect()
-}
-
-/// Whose body is shown: as asked for, otherwise whom the first garment with sizes is cut for; women for all others.
-fn population(args: &TryOnArgs, wanted: &[Wanted]) -> Result<(Sex, Population), AppError> {
-    let asked = if let Some(Wearer::Ours(sex)) = args.body { Some(sex) } else { None };
-    let mut of = Population::Mixed;
-    for style in wanted.iter().filter_map(|w| if let Wanted::Style(s) = w { Some(s) } else { None }) {
-        let population = style.sizes().map_err(AppError::input)?.population;
-        if population != Population::Mixed {
-            of = population;
-            break;
-        }
+    match &measured.fitted {
+        Some(fitted) if !has_joints => Ok((fitted.body.body.clone(), None)),
+        _ => Ok(body::build(sex, &measured.best, Some(sex).into())?),
     }
-    let sex = asked.unwrap_or(if of == Population::Men { Sex::Male } else { Sex::Female });
-    let known = asked.map_or(of, |sex| Population::from(Some(sex)));
-    Ok((sex, known))
 }
 
 /// Sizes and bakes every garment.
-fn dress(
-    wanted: &[Wanted],
-    args: &TryOnArgs,
-    measured: &Measurements,
+fn put_on(
+    choices: &[Choice],
+    size: Option<&str>,
+    measured: &Measured,
     body: &Body,
-) -> Result<(Vec<Garment>, Vec<report::Recommendation>), AppError> {
+) -> Result<(Vec<Garment>, Vec<Recommendation>), AppError> {
     let (mut garments, mut recommendations) = (Vec::new(), Vec::new());
-    for item in wanted {
-        match item {
-            Wanted::Style(style) => {
-                let fitted = fit::choose(style, args.size.as_deref(), measured)?;
-                garments.push(style.dress(&fitted.size, body).map_err(AppError::input)?);
-                recommendations.push(fitted);
-            }
-            Wanted::Mesh(path) => {
-                if let Some(size) = &args.size {
-                    let (name, size) = (path.clone(), size.clone());
-                    return Err(AppError::input(wardrobe::WardrobeError::NoSizes { name, size }));
-                }
-                let garment = wardrobe::dress_mesh(Path::new(path), MESH_FABRIC, body).map_err(AppError::input)?;
-                recommendations.push(report::Recommendation {
-                    garment: path.clone(),
-                    size: garment.size.clone(),
-                    ..Default::default()
-                });
-                garments.push(garment);
-            }
-        }
+    for choice in choices {
+        let worn = wish::put_on(choice, size, &measured.best, body)?;
+        recommendations.push(match (worn.fit, choice) {
+            (Some(fit), _) => fit.into(),
+            (None, Choice::Mesh(path)) => Recommendation {
+                garment: path.display().to_string(),
+                size: worn.garment.size.clone(),
+                ..Recommendation::default()
+            },
+            (None, Choice::Style(_)) => Recommendation::default(),
+        });
+        garments.push(worn.garment);
     }
     Ok((garments, recommendations))
 }
 
-/// What playing a session left behind.
+/// EventKind playing a session left behind.
 struct Played {
     /// Who drew; nobody where no picture was asked for.
     renderer: Option<String>,
@@ -223,10 +161,8 @@ fn play(
     reader: &mut Reader<Snapshot>,
     track: &[Joints],
 ) -> Result<Played, AppError> {
-    let (Some(first), Some(last)) = (track.first(), track.last()) else {
-        return Err(AppError::internal("a session without joints was let through"));
-    };
-    let steps = ns_to_ticks(last.time_ns - first.time_ns).max(1);
+    let mut player = Player::new(track);
+    let steps = player.steps();
     artist.prepare(frame.body(), frame.garments());
     let mut pictures = None;
     if args.pictures {
@@ -237,10 +173,9 @@ fn play(
     let mut video = args.video.as_ref().map(film).transpose()?;
     let playing = (pictures.is_none() && video.is_none()).then(|| words.bar(steps, "playing"));
     let mut lines = Lines::new(if args.lines.is_empty() { 0 } else { CAPACITY });
-    frame.dress(first);
+    frame.dress(&track[0]);
     for tick in 0..steps {
-        let joints = sample(track, first.time_ns + ticks_to_ns(tick)).unwrap_or(*first);
-        frame.step(&joints);
+        frame.step(&player.step());
         playing.iter().for_each(|bar| bar.inc(1));
         if let Some(pictures) = pictures.as_mut().filter(|p| p.wants(tick)) {
             draw_lines(&mut lines, &args.lines, frame);
@@ -298,8 +233,8 @@ fn dressed(frame: &Frame, snapshot: &Snapshot) -> Vec<u8> {
 }
 
 /// Words over the stills: the first garment and its size, then each zone.
-fn title(recommendations: &[report::Recommendation]) -> String {
-    let line = |r: &report::Recommendation| {
+fn title(recommendations: &[Recommendation]) -> String {
+    let line = |r: &Recommendation| {
         let zones = r.zones.iter().map(|z| format!("{} {} ({:+.0} mm)", z.zone, z.verdict, z.ease_mm));
         format!("{}, size {}\n{}", r.garment, r.size, zones.collect::<Vec<_>>().join("   "))
     };

@@ -1,9 +1,9 @@
 //! The embedded session is what `toile record` makes, and says of its shopper what the scene knows of her.
 
 use toile::commands::record;
-use toile::shopper;
 use toile_assets::scene;
-use toile_assets::sizes::Population;
+use toile_fitting::dress::measured::{self, Told};
+use toile_fitting::dress::session;
 
 /// Frames that are made again: the second in which the shopper is measured.
 const FRAMES: u64 = 30;
@@ -13,7 +13,7 @@ const SEED: u64 = 1;
 
 #[test]
 fn the_embedded_session_can_be_made_again() {
-    let embedded = shopper::open(None, None).unwrap();
+    let embedded = session::open(None, None).unwrap();
     let again = record::perform(SEED, FRAMES, || ()).unwrap();
     // Not by bits: sines and roots of another C library may round otherwise.
     for (a, b) in again.joints.iter().zip(&embedded.joints) {
@@ -32,10 +32,10 @@ fn the_embedded_session_can_be_made_again() {
 
 #[test]
 fn the_shopper_is_measured_as_she_is() {
-    let session = shopper::open(None, None).unwrap();
-    let measured = shopper::measure(&session, Population::Women).unwrap();
+    let session = session::open(None, None).unwrap();
+    let measured = measured::measure(&session, Told::default()).unwrap();
     let truth = scene::SHOPPER.1;
-    let [stature, shoulder, chest, waist, hip] = measured.completed(Population::Women);
+    let [stature, shoulder, chest, waist, hip] = measured.best.completed(measured.population);
     let told = [
         ("stature", stature, truth.stature),
         ("shoulder breadth", shoulder, truth.shoulder_breadth),

@@ -8,20 +8,22 @@ use std::sync::{Arc, Mutex, OnceLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use toile::kiosk::change::{Act, Changing};
-use toile::kiosk::lives::{Cast, Headless, Lives};
 use toile::kiosk::service::{Service, ServiceEnvironment, ServiceOptions};
 use toile::kiosk::service_manager::{ServiceManager, ServiceStatus, StopSignal};
 use toile::kiosk::session::SessionTimes;
-use toile::kiosk::source::{Feed, Visits};
-use toile::kiosk::tailor::{self, Dressed, Tailor};
-use toile::outfit::Wish;
-use toile::shopper;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::{Frame, Snapshot, Times};
 use toile_engine::frame_loop::governor::Rung;
 use toile_engine::frame_loop::physics_thread::{FrameScene, Scene};
 use toile_engine::frame_loop::render_thread::Renderer;
+use toile_fitting::dress::wish::Wish;
+use toile_fitting::dress::{dressed, session};
+use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
+use toile_fitting::live::dresser::Dresser;
+use toile_fitting::live::lateness::ThreadAccount;
+use toile_fitting::live::live_loop::LiveLoop;
+use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
+use toile_fitting::live::source::{Feed, Visits};
 use toile_sensors::frame::Joints;
 
 /// Hangs whoever passes it while it is shut.
@@ -73,7 +75,7 @@ impl Scene for Gated {
     }
 }
 
-struct Display(Headless, Gate);
+struct Display(HeadlessRenderer, Gate);
 
 impl Renderer for Display {
     type Outfit = ();
@@ -114,16 +116,16 @@ impl ServiceManager for Diary {
 
 /// Runs the service, and meanwhile on another thread what is given.
 fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
-    let (session, clock) = (shopper::open(None, None).unwrap(), RealClock::default());
-    let pose = shopper::believable(&session)[0];
+    let (session, clock) = (session::open(None, None).unwrap(), RealClock::default());
+    let pose = session::filtered(&session)[0];
     let wish = Wish::default();
-    let dressed = tailor::mannequin(&wish, &pose).unwrap();
+    let dressed = dressed::mannequin(&wish, &pose).unwrap();
     // Nobody ever comes: the stall is the only thing that happens.
-    let feed = Feed::Played(Visits::new(&session.joints, clock.now_ns(), 3_600_000_000_000));
-    let Dressed { frame, reader, made } = dressed;
-    let first = Act { scene: Gated::new(frame), reader, outfit: (), made };
-    let cast = Cast { first, renderer: Display(Headless::default(), display), feed, recording: None };
-    let (lives, doors) = Lives::start(cast, clock).unwrap();
+    let source = Feed::Played(Visits::new(&session.joints, clock.now_ns(), 3_600_000_000_000));
+    let first = DressedScene::new(dressed, |frame| (Gated::new(frame), ()));
+    let renderer = Display(HeadlessRenderer::default(), display);
+    let parts = LoopParts { first, renderer, source, account: ThreadAccount::new(), recording: None };
+    let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).unwrap();
     let second = 1_000_000_000;
     let options = ServiceOptions {
         begun: Instant::now(),
@@ -148,12 +150,12 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
             stop: &stop,
             say: &say,
             figures: None,
-            tailor: Tailor::new(wish),
+            dresser: Dresser::new(wish),
             stage: |frame| (Gated::new(frame), ()),
             pose,
             black_box: None,
         };
-        Service::new(lives, Changing::new(doors, None), options, environment).run().unwrap();
+        Service::new(live, SceneChanger::new(handover, true, None), options, environment).run().unwrap();
     });
 }
 
@@ -172,7 +174,7 @@ fn starves_while(gate: &Gate, display: Gate) {
         }
         assert!(fed_in_a_second(&diary) >= 2, "it is fed while all is well");
         gate.store(true, Relaxed);
-        // What was counted before the gate was shut is fed once more.
+        // EventKind was counted before the gate was shut is fed once more.
         thread::sleep(Duration::from_millis(300));
         assert_eq!(fed_in_a_second(&diary), 0, "it is fed while a thread hangs");
         gate.store(false, Relaxed);

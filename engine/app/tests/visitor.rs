@@ -12,15 +12,10 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use toile::kiosk::change::{Act, Changing};
 use toile::kiosk::config::Config;
-use toile::kiosk::lives::{Cast, Headless, Lives};
 use toile::kiosk::service::{Service, ServiceEnvironment, ServiceOptions};
 use toile::kiosk::service_manager::{ServiceManager, ServiceStatus, StopSignal};
 use toile::kiosk::session::SessionState;
-use toile::kiosk::source::{Feed, Visits};
-use toile::kiosk::tailor::{self, Dressed, Model, Tailor};
-use toile::shopper;
 use toile::visitor::controller::{OutfitPair, WindowChannels};
 use toile::visitor::model::Input;
 use toile::visitor::screen::{Action, Block, BodyView, Page, Screen};
@@ -29,6 +24,13 @@ use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame_loop::physics_thread::FrameScene;
 use toile_engine::frame_loop::queue::{Receiver, Sender, bounded};
 use toile_engine::triple_buffer::{Reader, TripleBuffer};
+use toile_fitting::dress::{dressed, session};
+use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
+use toile_fitting::live::dresser::{Dresser, ShopperSource};
+use toile_fitting::live::lateness::ThreadAccount;
+use toile_fitting::live::live_loop::LiveLoop;
+use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
+use toile_fitting::live::source::{Feed, Visits};
 
 /// Longest that a page is waited for, beside compilers.
 const LONGEST: Duration = Duration::from_secs(180);
@@ -119,7 +121,7 @@ fn is_progress(block: &Block) -> bool {
     matches!(block, Block::Progress { .. })
 }
 
-/// What the process has open that could keep or send something: files that may be written, sockets of any kind.
+/// EventKind the process has open that could keep or send something: files that may be written, sockets of any kind.
 fn open_to_the_world() -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     for entry in fs::read_dir("/proc/self/fd").unwrap().flatten() {
@@ -174,17 +176,17 @@ fn serve() -> Vec<SessionState> {
     let clock = RealClock::default();
     let config = Config::parse("kiosk.toml", "[wear]\nquality = \"draft\"").unwrap();
     let setup = VisitorSetup::new(&config, clock.now_ns()).unwrap();
-    let session = shopper::open(None, None).unwrap();
-    let track = shopper::believable(&session);
-    let pose = track[shopper::stands_from(&track)];
+    let session = session::open(None, None).unwrap();
+    let pose = session::standing(&session).unwrap()[0];
     let wish = config.wish();
-    let Dressed { frame, reader, made } = tailor::mannequin(&wish, &pose).unwrap();
+    let dressed = dressed::mannequin(&wish, &pose).unwrap();
     // They stand there for as long as the visit takes.
-    let feed = Feed::Played(Visits::new(&session.joints, clock.now_ns(), 0));
-    let first = Act { scene: FrameScene::new(frame), reader, outfit: (), made };
-    let cast = Cast { first, renderer: Headless::default(), feed, recording: None };
-    let (lives, doors) = Lives::start(cast, clock).unwrap();
-    let played = Some(Model::Played(Arc::new(session)));
+    let source = Feed::Played(Visits::new(&session.joints, clock.now_ns(), 0));
+    let first = DressedScene::new(dressed, |frame| (FrameScene::new(frame), ()));
+    let renderer = HeadlessRenderer::default();
+    let parts = LoopParts { first, renderer, source, account: ThreadAccount::new(), recording: None };
+    let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).unwrap();
+    let played = Some(ShopperSource::Recording(Arc::new(session)));
     let options = ServiceOptions {
         begun: Instant::now(),
         length: Some(5 * LONGEST),
@@ -218,13 +220,13 @@ fn serve() -> Vec<SessionState> {
             stop: &stop,
             say: &say,
             figures: None,
-            tailor: Tailor::new(wish),
+            dresser: Dresser::new(wish),
             stage: |frame| (FrameScene::new(frame), ()),
             pose,
             black_box: None,
         };
-        let service = Service::new(lives, Changing::new(doors, None), options, environment);
-        let (_, record) = service.controlled_by(Box::new(setup.controller(window, played))).run().unwrap();
+        let service = Service::new(live, SceneChanger::new(handover, true, None), options, environment);
+        let (_, _, record) = service.controlled_by(Box::new(setup.controller(window, played))).run().unwrap();
         hand.join().expect("the visit goes through all pages");
         record.states
     })

@@ -7,9 +7,9 @@ use serde::Serialize;
 use toile_gpu::stepper::{Backend, Means};
 
 use crate::backend::SteppedBy;
-use crate::skirt::heap::HeapProbe;
 use crate::skirt::options::SkirtOptions;
 use crate::skirt::{Gauge, SkirtError, SkirtScene};
+use toile_fitting::heap::HeapProbe;
 
 /// Vertices of a single skirt.
 const SIZES: [usize; 5] = [1_024, 4_096, 16_384, 65_536, 262_144];

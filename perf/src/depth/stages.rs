@@ -10,7 +10,7 @@ use toile_sensors::depth::{Clean, Cloud, SensorNoise};
 use toile_sensors::segment::Segmenter;
 
 use super::truth::{GAUSSIAN_PX, Scene};
-use crate::time::median_us;
+use toile_fitting::timing::median_us;
 
 /// What each stage takes for one frame (us, median).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]

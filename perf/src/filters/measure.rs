@@ -9,7 +9,7 @@ use toile_sensors::source::Session;
 
 use super::motions::{self, HZ, Seen};
 use super::{Recorded, Row, rows};
-use crate::time;
+use toile_fitting::timing;
 
 /// The joint that is looked at: the end of the longest chain.
 const HAND: Joint = Joint::LeftHand;
@@ -68,7 +68,7 @@ fn run(filter: &mut dyn Filter, seen: &[Joints]) -> Vec<Joints> {
 
 /// Time a frame (us).
 fn cost(seen: &Seen, filter: &mut dyn Filter) -> f64 {
-    let us = time::median_us(|| {
+    let us = timing::median_us(|| {
         filter.reset();
         seen.seen.iter().for_each(|frame| {
             std::hint::black_box(filter.push(frame));

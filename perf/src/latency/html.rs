@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-use super::report::{Latency, Quantiles, Stage};
+use toile_fitting::live::report::Quantiles;
+
+use super::report::{Latency, Stage};
 
 const HEAD: &str = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>Toile: latency</title>\n\
 <style>\nbody { font-family: system-ui, sans-serif; background: #fff; color: #222; max-width: 1080px; margin: 2em auto; \

@@ -7,7 +7,6 @@
 //! Every time counts from when something was due, never from when a late thread came to it, and a step that was dropped
 //! counts as late as the one in its place: the figures are corrected for coordinated omission. The first second is not metered.
 
-mod account;
 mod capacity;
 mod html;
 mod jitter;
@@ -15,9 +14,8 @@ mod load;
 mod report;
 mod trial;
 
-pub use account::{Attributing, ThreadAccount};
 pub use html::page;
-pub use report::{Attributed, Cause, Goal, Latency, Placed, Quality, Quantiles, Stage, Warned};
+pub use report::{Goal, Latency, Quality, Stage};
 pub use trial::{Cast, run};
 
 use thiserror::Error;

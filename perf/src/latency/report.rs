@@ -1,45 +1,19 @@
-//! What was found, as the JSON has it.
+//! EventKind was found, as the JSON has it.
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use toile_engine::frame_loop::queue::Capacity;
-use toile_engine::frame_loop::thread_roles::Placement;
 use toile_engine::meter::Meter;
-
-/// A distribution of times (us).
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-pub struct Quantiles {
-    /// Median.
-    pub p50: f64,
-    /// 99 %.
-    pub p99: f64,
-    /// 99.9 %.
-    pub p999: f64,
-    /// The longest.
-    pub max: f64,
-    /// How many.
-    pub count: u64,
-}
-
-impl Quantiles {
-    /// Of a meter.
-    pub fn of(meter: &Meter) -> Self {
-        let h = meter.histogram();
-        let us = |ns: u64| (ns as f64 * 1e-2).round() * 0.1;
-        let at = |q: f64| us(h.value_at_quantile(q).min(h.max()));
-        Self { p50: at(0.5), p99: at(0.99), p999: at(0.999), max: us(h.max()), count: h.len() }
-    }
-}
+use toile_fitting::live::report::{Attributed, Quantiles, QueueUse, ThreadPlacement};
 
 /// One stage between the sensor and the picture.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Stage {
     /// Its name.
     pub name: &'static str,
-    /// What it may take (us), where it has a budget.
+    /// EventKind it may take (us), where it has a budget.
     pub budget_us: Option<u64>,
-    /// What it took (us).
+    /// EventKind it took (us).
     pub us: Quantiles,
     /// Times and how many were near them, for the plot: upper bound (us), count.
     #[serde(skip)]
@@ -63,83 +37,6 @@ impl Stage {
     }
 }
 
-/// Why a step was late.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Cause {
-    /// Its core was taken away, or none was free.
-    Preempted,
-    /// Memory was not there yet.
-    PageFault,
-    /// The step itself computed for too long.
-    Solver,
-    /// None of what is counted: a timer, the firmware, a hypervisor.
-    Other,
-}
-
-/// Late steps by their causes, the dropped ones included.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct Attributed {
-    /// [`Cause::Preempted`].
-    pub preempted: u64,
-    /// [`Cause::PageFault`].
-    pub page_fault: u64,
-    /// [`Cause::Solver`].
-    pub solver: u64,
-    /// [`Cause::Other`].
-    pub other: u64,
-}
-
-impl Attributed {
-    /// Adds so many of a cause.
-    pub fn add(&mut self, cause: Cause, count: u64) {
-        *match cause {
-            Cause::Preempted => &mut self.preempted,
-            Cause::PageFault => &mut self.page_fault,
-            Cause::Solver => &mut self.solver,
-            Cause::Other => &mut self.other,
-        } += count;
-    }
-}
-
-/// Where a thread ran.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Placed {
-    /// The thread.
-    pub thread: &'static str,
-    /// The core that it was pinned to.
-    pub core: Option<usize>,
-    /// Its real-time priority.
-    pub priority: Option<u8>,
-    /// What it did not get, and the cure.
-    pub refused: Vec<String>,
-}
-
-impl From<Placement> for Placed {
-    fn from(p: Placement) -> Self {
-        Self { thread: p.role.name(), core: p.core, priority: p.priority, refused: p.refused }
-    }
-}
-
-/// How full something bounded was.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Warned {
-    /// The constant that bounds it.
-    pub constant: &'static str,
-    /// Its bound.
-    pub bound: usize,
-    /// The most that was in it.
-    pub high_water: usize,
-    /// What did not fit.
-    pub lost: u64,
-}
-
-impl From<Capacity> for Warned {
-    fn from(c: Capacity) -> Self {
-        Self { constant: c.constant, bound: c.bound, high_water: c.high_water, lost: c.lost }
-    }
-}
-
 /// The quality that the run was at, and the error that comes of it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Quality {
@@ -153,7 +50,7 @@ pub struct Quality {
     pub free: usize,
     /// Steps on each rung of the governor's ladder, whole quality first.
     pub rungs: Vec<u64>,
-    /// What is given up on each.
+    /// EventKind is given up on each.
     pub gives_up: Vec<&'static str>,
     /// Each change of rung, in order: step, from, to; the first hundred.
     pub changes: Vec<[u64; 3]>,
@@ -161,18 +58,18 @@ pub struct Quality {
     pub strain: [f64; 3],
     /// Deepest penetration in these steps (mm).
     pub penetration_mm: f64,
-    /// Steps that were rolled back because of a number that is none.
+    /// Steps that were rolled back because of a NaN or an infinity.
     pub nonfinite: u64,
 }
 
 /// A goal and what was reached.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Goal {
-    /// What is held against the limit.
+    /// EventKind is held against the limit.
     pub name: &'static str,
     /// The limit.
     pub limit_us: f64,
-    /// What was measured.
+    /// EventKind was measured.
     pub us: f64,
     /// Whether it keeps to it.
     pub pass: bool,
@@ -195,7 +92,7 @@ pub struct Latency {
     /// Workers of a step.
     pub workers: usize,
     /// Where the threads ran.
-    pub threads: Vec<Placed>,
+    pub threads: Vec<ThreadPlacement>,
     /// From the sensor to the picture, stage by stage.
     pub stages: Vec<Stage>,
     /// The same by name (us).
@@ -226,11 +123,11 @@ pub struct Latency {
     pub pictures: u64,
     /// The quality, and its error.
     pub quality: Quality,
-    /// What is to be reached on a quiet machine of two cores.
+    /// EventKind is to be reached on a quiet machine of two cores.
     pub goals: Vec<Goal>,
     /// How full everything was that has a bound.
-    pub capacities: Vec<Warned>,
-    /// What deserves attention, one sentence each.
+    pub capacities: Vec<QueueUse>,
+    /// EventKind deserves attention, one sentence each.
     pub warnings: Vec<String>,
     /// Hash of the last state.
     pub state_hash: String,

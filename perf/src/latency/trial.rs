@@ -1,37 +1,39 @@
-//! The run itself: the three lives on their threads, and this one, which empties the queues.
+//! The run itself: the loop on its threads, and this one, which empties the queues.
 
 use std::thread;
 use std::time::Duration;
 
-use glam::Vec3;
 use toile_assets::garment::Garment;
 use toile_assets::limits::STEP_HZ;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::{Frame, Snapshot};
-use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, Event, EventKind};
+use toile_engine::frame_loop::event::{Event, EventKind};
 use toile_engine::frame_loop::governor::LADDER;
-use toile_engine::frame_loop::physics_thread::{FrameScene, PhysicsOutputs, PhysicsThread};
-use toile_engine::frame_loop::queue::{Capacity, Receiver, Sender, bounded};
+use toile_engine::frame_loop::physics_thread::FrameScene;
+use toile_engine::frame_loop::queue::{Capacity, Sender};
 use toile_engine::frame_loop::recording::Entry;
-use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
-use toile_engine::frame_loop::sensor_thread::{Playback, SensorFrame, SensorThread};
-use toile_engine::frame_loop::thread_roles::{Placement, ThreadRole};
-use toile_engine::frame_loop::threads::{self, LoopThread, Stop};
+use toile_engine::frame_loop::render_thread::RenderThread;
+use toile_engine::frame_loop::sensor_thread::Playback;
+use toile_engine::frame_loop::thread_roles::Placement;
 use toile_engine::meter::{INTAKE, Meter, PERIOD_NS, STAGES, STEP_BUDGET_US};
-use toile_engine::triple_buffer::{Reader, TripleBuffer};
+use toile_engine::triple_buffer::Reader;
+use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts, LoopQueues, PhysicsLoop, SensorLoop};
+use toile_fitting::live::lateness::{LatenessAttribution, ThreadAccount};
+use toile_fitting::live::live_loop::LiveLoop;
+use toile_fitting::live::report::{Quantiles, QueueUse, ThreadPlacement};
+use toile_fitting::live::scene_changer::DressedScene;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::Joints;
 
-use super::account::{Attributing, ThreadAccount};
 use super::load::Load;
-use super::report::{Goal, Latency, Placed, Quality, Quantiles, Stage, Warned};
+use super::report::{Goal, Latency, Quality, Stage};
 use super::{LatencyError, Options, capacity, jitter};
 
 /// Time before the meters begin (s): caches fill, memory is touched for the first time.
 const WARM_UP_S: u64 = 1;
 const WARM_UP_STEPS: u64 = WARM_UP_S * STEP_HZ as u64;
 
-/// What filtering a sensor frame may take (us).
+/// EventKind filtering a sensor frame may take (us).
 const FILTER_US: u64 = 50;
 
 /// Longest time for which the machine's own jitter is measured (s).
@@ -61,41 +63,13 @@ pub struct Cast<'a> {
     /// Where the crew's helper runs.
     pub worker: Option<Placement>,
     /// Where what a replay needs goes.
-    pub recording: Sender<Entry>,
+    pub tape: Sender<Entry>,
 }
 
-/// What a display would be handed: the body and the garments in the order of their meshes.
-#[derive(Debug)]
-struct Picture {
-    body: [Box<[Vec3]>; 2],
-    garments: Box<[Box<[Vec3]>]>,
-}
-
-impl Picture {
-    fn of(snapshot: &Snapshot) -> Self {
-        let zeros = || vec![Vec3::ZERO; snapshot.skin.vertices()].into_boxed_slice();
-        Self { body: [zeros(), zeros()], garments: snapshot.garments.clone() }
-    }
-}
-
-impl Renderer for Picture {
-    type Outfit = ();
-
-    fn set_outfit(&mut self, _outfit: &mut ()) {}
-
-    fn draw(&mut self, snapshot: &Snapshot) {
-        let [positions, normals] = &mut self.body;
-        snapshot.skin.read(positions, normals);
-        for (to, from) in self.garments.iter_mut().zip(&snapshot.garments) {
-            to.copy_from_slice(from);
-        }
-    }
-}
-
-/// What came out of the queues.
+/// EventKind came out of the queues.
 #[derive(Debug, Default)]
 struct Told {
-    late: Attributing,
+    late: LatenessAttribution,
     changes: Vec<[u64; 3]>,
     sentences: Vec<String>,
 }
@@ -123,22 +97,17 @@ impl Told {
     }
 }
 
-/// The three lives on their threads, and the ends of their queues.
+/// The loop while it runs, with a renderer that only takes what it would draw.
 struct Running {
-    clock: RealClock,
-    stop: Stop,
+    live: LiveLoop<FrameScene, HeadlessRenderer, Playback>,
     metered_ns: u64,
-    sensor: LoopThread<SensorThread<Playback, RealClock>>,
-    physics: LoopThread<PhysicsThread<FrameScene, RealClock, ThreadAccount>>,
-    render: LoopThread<RenderThread<Picture, RealClock>>,
-    events: Receiver<Event>,
 }
 
-/// The lives, when they have ended.
+/// The loop when it has ended.
 struct Ended {
-    sensor: SensorThread<Playback, RealClock>,
-    physics: PhysicsThread<FrameScene, RealClock, ThreadAccount>,
-    render: RenderThread<Picture, RealClock>,
+    sensor: SensorLoop<Playback, RealClock>,
+    physics: PhysicsLoop<FrameScene, RealClock, ThreadAccount>,
+    render: RenderThread<HeadlessRenderer, RealClock>,
     queues: [Capacity; 2],
 }
 
@@ -151,30 +120,21 @@ impl Running {
         options: &Options,
     ) -> Result<Self, LatencyError> {
         let clock = RealClock::default();
-        let begin = clock.now_ns() + 10 * PERIOD_NS;
-        let metered_ns = begin + WARM_UP_S * SECOND_NS;
-        let (sender, events) = bounded(EVENTS_NAME, EVENTS);
-        let TripleBuffer { writer, reader: seen } = TripleBuffer::new(&SensorFrame::default());
-        let outlets = PhysicsOutputs { events: sender, recording: Some(recording) };
-        let picture = Picture::of(reader.latest());
-        let sense = SensorThread::new(Playback::new(joints, begin, u64::MAX), clock, writer).metering_from(metered_ns);
-        let physics = PhysicsThread::new(FrameScene::new(frame), clock, begin, seen, outlets, ThreadAccount::new());
-        let physics = physics.warming_up(WARM_UP_STEPS);
-        let physics = match options.rung {
-            Some(rung) => physics.held_on(rung),
-            None => physics,
+        let begin_ns = clock.now_ns() + 10 * PERIOD_NS;
+        let metered_ns = begin_ns + WARM_UP_S * SECOND_NS;
+        let renderer = HeadlessRenderer::sized_for(reader.latest());
+        let scene = FrameScene::new(frame);
+        let first = DressedScene { scene, reader, outfit: (), still: None, note: None, number: None };
+        let source = Playback::new(joints, begin_ns, u64::MAX);
+        let parts = LoopParts { first, renderer, source, account: ThreadAccount::new(), recording: Some(recording) };
+        let options = LoopOptions {
+            begin_ns,
+            warm_up_steps: WARM_UP_STEPS,
+            metered_from_ns: metered_ns,
+            held_rung: options.rung,
         };
-        let render = RenderThread::new(picture, clock, begin, reader).metering_from(metered_ns);
-        let stop = Stop::default();
-        Ok(Self {
-            sensor: threads::start(ThreadRole::Sensor, sense, clock, &stop)?,
-            physics: threads::start(ThreadRole::Physics, physics, clock, &stop)?,
-            render: threads::start(ThreadRole::Render, render, clock, &stop)?,
-            clock,
-            stop,
-            metered_ns,
-            events,
-        })
+        let (live, _handover) = LiveLoop::start(parts, clock, options)?;
+        Ok(Self { live, metered_ns })
     }
 
     /// Lets it run until the end, and hands on what comes out of the queues.
@@ -185,17 +145,18 @@ impl Running {
         empty: &mut impl FnMut() -> Capacity,
     ) -> Result<Ended, LatencyError> {
         let end = self.metered_ns + u64::from(seconds) * SECOND_NS;
-        while self.clock.now_ns() < end && !self.physics.is_over() {
+        while self.live.now_ns() < end && self.live.threads.look()?.is_none() {
             thread::sleep(LOOK);
-            drain(&mut self.events, told);
+            drain(&mut self.live.queues, told);
             empty();
         }
-        self.stop.now();
-        let sensor = self.sensor.join().ok_or(LatencyError::Died("sensor"))?;
-        let physics = self.physics.join().ok_or(LatencyError::Died("physics"))?;
-        let render = self.render.join().ok_or(LatencyError::Died("render"))?;
-        drain(&mut self.events, told);
-        Ok(Ended { sensor, physics, render, queues: [self.events.capacity(), empty()] })
+        let mut queues = self.live.queues;
+        let ended = self.live.threads.end();
+        let sensor = ended.sensor.ok_or(LatencyError::Died("sensor"))?;
+        let physics = ended.physics.ok_or(LatencyError::Died("physics"))?;
+        let render = ended.render.ok_or(LatencyError::Died("render"))?.render;
+        drain(&mut queues, told);
+        Ok(Ended { sensor, physics, render, queues: [queues.events.capacity(), empty()] })
     }
 }
 
@@ -206,19 +167,19 @@ impl Running {
 pub fn run(cast: Cast<'_>, options: &Options, mut empty: impl FnMut() -> Capacity) -> Result<Latency, LatencyError> {
     let load = Load::start(options.load)?;
     let jitter = jitter::measure(Duration::from_secs(u64::from(options.seconds.min(MOST_JITTER_S))))?;
-    let running = Running::start(cast.frame, cast.reader, cast.joints, cast.recording, options)?;
-    let placements = [running.sensor.placement(), running.physics.placement(), cast.worker, running.render.placement()];
-    let threads: Vec<Placed> = placements.into_iter().flatten().map(Placed::from).collect();
+    let running = Running::start(cast.frame, cast.reader, cast.joints, cast.tape, options)?;
+    let placements = running.live.threads.placements().iter().cloned().chain(cast.worker);
+    let threads: Vec<ThreadPlacement> = placements.map(ThreadPlacement::from).collect();
     let mut told = Told::default();
     let ended = running.watch(options.seconds, &mut told, &mut empty)?;
     drop(load);
     Ok(report(&ended, options, threads, told, &jitter))
 }
 
-/// What it comes to.
-fn report(ended: &Ended, options: &Options, threads: Vec<Placed>, told: Told, jitter: &Meter) -> Latency {
+/// EventKind it comes to.
+fn report(ended: &Ended, options: &Options, threads: Vec<ThreadPlacement>, told: Told, jitter: &Meter) -> Latency {
     let Ended { physics, render, queues, .. } = ended;
-    let (gauges, frame) = (&physics.gauges, &physics.stepper.scene.frame);
+    let (gauges, frame) = (&physics.gauges, &physics.stepper.scene.scene().frame);
     let stages = stages(ended, jitter);
     let [step, response] = [&gauges.step, &gauges.response].map(Quantiles::of);
     let [snapshot, total] = [&gauges.reaction, &render.total].map(Quantiles::of);
@@ -247,7 +208,7 @@ fn report(ended: &Ended, options: &Options, threads: Vec<Placed>, told: Told, ji
         pictures: render.pictures,
         quality: quality(frame, &gauges.rungs, told.changes),
         goals: goals(snapshot, total, step, response),
-        capacities: capacities.into_iter().map(Warned::from).collect(),
+        capacities: capacities.into_iter().map(QueueUse::from).collect(),
         warnings,
         state_hash: format!("{:016x}", frame.state_hash()),
     }
@@ -256,7 +217,7 @@ fn report(ended: &Ended, options: &Options, threads: Vec<Placed>, told: Told, ji
 /// From the sensor to the picture, then the whole of it, then the machine.
 fn stages(ended: &Ended, jitter: &Meter) -> Vec<Stage> {
     let Ended { sensor, physics, render, .. } = ended;
-    let (gauges, meters) = (&physics.gauges, physics.stepper.scene.frame.meters());
+    let (gauges, meters) = (&physics.gauges, physics.stepper.scene.scene().frame.meters());
     let mut stages = vec![
         Stage::of("filter", Some(FILTER_US), &sensor.filtering),
         Stage::of("wait for a step", Some(PERIOD_NS / 1_000), &gauges.wait),
@@ -290,13 +251,15 @@ fn goals(snapshot: Quantiles, total: Quantiles, step: Quantiles, response: Quant
     ]
 }
 
-/// Empties the queue. What happened before the meters began is not told.
-fn drain(events: &mut Receiver<Event>, told: &mut Told) {
-    while let Some(event) = events.pop() {
+/// Empties the queues. EventKind happened before the meters began does not count.
+fn drain(queues: &mut LoopQueues, told: &mut Told) {
+    while let Some(event) = queues.events.pop() {
         if event.tick >= WARM_UP_STEPS {
             told.take(&event);
         }
     }
+    while queues.step_reports.pop().is_some() {}
+    while queues.frames.pop().is_some() {}
 }
 
 fn quality(frame: &Frame, rungs: &[u64], changes: Vec<[u64; 3]>) -> Quality {

@@ -7,12 +7,10 @@
 //! What the study renders is not what the fit assumes: the bodies have sections that the parametric body cannot have,
 //! stand in poses of their own, are skinned with twist, and are seen by a camera that is not quite as it says.
 
-mod overlay;
 mod person;
 mod sensor;
 mod study;
 
-pub use overlay::{Fit, overlay, posed};
 pub use person::{GIVEN, Moment, Person};
 pub use sensor::{Sensor, Sight};
 pub use study::{Agreement, Case, Following, Options, Outcome, Study, study};

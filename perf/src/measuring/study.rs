@@ -16,7 +16,7 @@ use toile_track::point_cloud;
 use super::person::{GIVEN, Moment, Person};
 use super::sensor::{Sensor, Sight};
 use crate::ansur::{StudyError, Survey};
-use crate::time::OnCore;
+use toile_fitting::timing::OnCore;
 
 /// What is studied.
 #[derive(Debug, Clone, Copy, PartialEq)]

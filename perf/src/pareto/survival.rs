@@ -5,9 +5,9 @@ use toile_assets::scene::skirt;
 
 use super::ParetoError;
 use super::report::{Fate, Survival};
-use crate::skirt::heap::HeapProbe;
 use crate::skirt::options::SkirtOptions;
 use crate::skirt::{Gauge, SkirtError, SkirtScene};
+use toile_fitting::heap::HeapProbe;
 
 /// Vertices a side.
 const SIDE: usize = 24;

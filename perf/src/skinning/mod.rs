@@ -20,9 +20,9 @@ use toile_engine::lanes::Width;
 use toile_engine::skin::{Blend, Padding, Posed, SkinError, SkinningJob};
 use toile_engine::workers::{WorkerPool, WorkerPoolError};
 
-use crate::surface::Surface;
-use crate::time;
-use crate::yardstick::{self, Yardstick};
+use toile_fitting::scene::surface::Surface;
+use toile_fitting::scene::yardstick::{self, Yardstick};
+use toile_fitting::timing;
 
 pub use oracle::Error as PositionError;
 pub use picture::twist_picture;
@@ -31,7 +31,7 @@ pub use shapes::{Apart, Hinge, Shapes, Twist, shapes};
 /// Rounds of a measurement: yardstick and kernels in turn, so that both see the machine as it is. An odd number.
 const ROUNDS: usize = 5;
 
-/// What is skinned.
+/// EventKind is skinned.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Subject {
@@ -45,7 +45,7 @@ pub enum Subject {
 /// A measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
-    /// What is skinned.
+    /// EventKind is skinned.
     pub subject: Subject,
     /// Vertices; nothing for as many as the body has.
     pub verts: Option<usize>,
@@ -61,7 +61,7 @@ impl Default for Options {
     }
 }
 
-/// What one blend costs, and how exact it is.
+/// EventKind one blend costs, and how exact it is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Timing {
     /// Time of one pass over all vertices, positions and unit normals (us, median).
@@ -78,10 +78,10 @@ pub struct Timing {
     pub max_normal_error_rad: f64,
 }
 
-/// What skinning costs on this machine.
+/// EventKind skinning costs on this machine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Skinning {
-    /// What was skinned.
+    /// EventKind was skinned.
     pub subject: Subject,
     /// Vertices skinned.
     pub verts: usize,
@@ -128,14 +128,14 @@ pub fn measure(options: &Options) -> Result<Skinning, BenchError> {
     let surface = subject(options)?;
     let mut job = SkinningJob::new(&surface.positions, &surface.normals, &surface.weights)?;
     job.width = width;
-    let mut pool = WorkerPool::new(options.threads)?;
+    let mut crew = WorkerPool::new(options.threads)?;
     let yardstick = Yardstick::new()?;
     let mut rounds: [[Vec<f64>; 2]; 2] = Default::default();
     let mut yards = Vec::new();
     for _ in 0..ROUNDS {
         yards.push(yardstick.read_us());
         for (blend, [alone, whole]) in Blend::ALL.into_iter().zip(&mut rounds) {
-            let mut run = Run { job: &job, surface: &surface, pool: &mut pool, blend };
+            let mut run = Run { job: &job, surface: &surface, crew: &mut crew, blend };
             alone.push(run.us());
             whole.push(run.mesh_order_us());
         }
@@ -158,7 +158,7 @@ pub fn measure(options: &Options) -> Result<Skinning, BenchError> {
     Ok(Skinning {
         subject: options.subject,
         verts,
-        threads: pool.workers(),
+        threads: crew.workers(),
         lanes: width.lanes(),
         yardstick_us: median(yards.clone()),
         padding: job.padding(),
@@ -183,19 +183,19 @@ fn skinned(job: &SkinningJob, surface: &Surface, blend: Blend) -> Posed {
     posed
 }
 
-/// What is timed.
+/// EventKind is timed.
 struct Run<'a> {
     job: &'a SkinningJob,
     surface: &'a Surface,
-    pool: &'a mut WorkerPool,
+    crew: &'a mut WorkerPool,
     blend: Blend,
 }
 
 impl Run<'_> {
     fn us(&mut self) -> f64 {
         let mut posed = self.job.posed();
-        time::median_us(|| {
-            self.job.run_with(self.pool, self.blend, black_box(&self.surface.palette), &mut posed);
+        timing::median_us(|| {
+            self.job.run_with(self.crew, self.blend, black_box(&self.surface.palette), &mut posed);
             black_box(&posed);
         })
     }
@@ -203,8 +203,8 @@ impl Run<'_> {
     fn mesh_order_us(&mut self) -> f64 {
         let mut posed = self.job.posed();
         let (mut positions, mut normals) = (vec![Vec3::ZERO; posed.vertices()], vec![Vec3::ZERO; posed.vertices()]);
-        time::median_us(|| {
-            self.job.run_with(self.pool, self.blend, black_box(&self.surface.palette), &mut posed);
+        timing::median_us(|| {
+            self.job.run_with(self.crew, self.blend, black_box(&self.surface.palette), &mut posed);
             posed.read(&mut positions, &mut normals);
             black_box((&positions, &normals));
         })

@@ -5,7 +5,7 @@ use toile_assets::mesh::SkinWeights;
 use toile_assets::skeleton::{BONE_CHAIN, BONES};
 use toile_engine::skin::{Blend, Posed};
 
-use crate::surface::Surface;
+use toile_fitting::scene::surface::Surface;
 
 /// The largest errors of a posed surface; no number where one of its numbers is none.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

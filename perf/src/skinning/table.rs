@@ -7,7 +7,7 @@ use toile_engine::lanes::Width;
 use toile_engine::skin::Padding;
 
 use super::{BenchError, Options, Shapes, Skinning, Subject, Timing, measure, shapes};
-use crate::yardstick;
+use toile_fitting::scene::yardstick;
 
 /// Most of the yardstick that a thread may take for as many vertices: linear, dual.
 pub const TARGETS: [f64; 2] = [0.12, 0.2];

@@ -179,9 +179,9 @@ fn elastic_strains(scene: &SkirtScene, particle_of: &[u32]) -> Vec<f64> {
 mod tests {
     use toile_assets::scene::skirt::Stretch;
 
-    use super::super::heap::HeapProbe;
     use super::super::options::SkirtOptions;
     use super::*;
+    use toile_fitting::heap::HeapProbe;
 
     fn scene(mesh: SkirtMesh, stretch: Stretch) -> SkirtScene {
         let options = SkirtOptions { verts: 1_024, mesh, stretch, ..SkirtOptions::default() };

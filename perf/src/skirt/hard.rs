@@ -7,10 +7,10 @@ use toile_assets::scene::skirt;
 
 use super::error::SkirtError;
 use super::gauge::{FrameErrors, Gauge};
-use super::heap::HeapProbe;
 use super::options::{SkirtOptions, WARM_UP};
 use super::report::Events;
 use super::scene::SkirtScene;
+use toile_fitting::heap::HeapProbe;
 
 /// Something that is wrong for one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]

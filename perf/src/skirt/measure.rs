@@ -7,12 +7,12 @@ use toile_gpu::stepper::Means;
 
 use super::error::SkirtError;
 use super::gauge::{FrameErrors, Gauge};
-use super::heap::HeapProbe;
 use super::options::{SkirtOptions, WARM_UP};
 use super::report::{self, SkirtReport};
 use super::scene::SkirtScene;
 use crate::backend::SteppedBy;
-use crate::yardstick::Yardstick;
+use toile_fitting::heap::HeapProbe;
+use toile_fitting::scene::yardstick::Yardstick;
 
 /// Steps at the end over which the greatest energy of motion is looked for: a second.
 const RESTING_STEPS: usize = 120;

@@ -8,7 +8,6 @@ pub mod claim;
 mod error;
 mod gauge;
 pub mod hard;
-pub mod heap;
 mod measure;
 pub mod options;
 pub mod report;

@@ -15,9 +15,9 @@ use toile_gpu::batch::Batch;
 use toile_gpu::stepper::{Backend, Means, Stepper};
 
 use super::error::SkirtError;
-use super::heap::{Heap, HeapProbe};
 use super::options::{MAX_GARMENTS, MESH_SEED, SkirtMesh, SkirtOptions};
 use super::report::Events;
+use toile_fitting::heap::{Heap, HeapProbe};
 
 /// The body's spheres: centre and radius, world (m).
 pub type Spheres = [Vec4; skirt::SPHERES];

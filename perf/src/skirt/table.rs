@@ -12,10 +12,10 @@ use toile_gpu::stepper::Means;
 use super::claim::{Claim, TargetRow};
 use super::error::SkirtError;
 use super::hard::{self, SkirtFault, SkirtRecovery};
-use super::heap::HeapProbe;
 use super::measure::measure_with;
 use super::options::{SkirtMesh, SkirtOptions};
 use super::report::SkirtReport;
+use toile_fitting::heap::HeapProbe;
 
 /// The whole table.
 #[derive(Debug, Clone, PartialEq, Serialize)]

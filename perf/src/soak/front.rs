@@ -3,9 +3,9 @@
 use toile_assets::wardrobe;
 use toile_engine::clock::Clock;
 use toile_engine::frame_loop::ThreadLoop;
-use toile_engine::frame_loop::handover::{HandoverSender, SceneChange};
 use toile_engine::frame_loop::physics_thread::FrameScene;
-use toile_engine::frame_loop::render_thread::SceneView;
+use toile_fitting::live::assembly::SceneHandover;
+use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 
 use super::company::Company;
 use super::lives::{Ground, Sign, Telling};
@@ -17,28 +17,21 @@ const MAKING_NS: u64 = 500_000_000;
 /// Time between two looks (ns).
 const LOOK_NS: u64 = 20_000_000;
 
-/// A scene that is made, and when it may be handed over (ns).
-type Made = (u64, Box<SceneChange<FrameScene>>, Box<SceneChange<SceneView<()>>>);
-
 /// The life.
-#[derive(Debug)]
 pub struct Front<C> {
     ground: Ground<C>,
     company: Company,
-    scenes: HandoverSender<FrameScene>,
-    readers: HandoverSender<SceneView<()>>,
+    changer: SceneChanger<FrameScene, ()>,
     /// The next dressing of the script.
     next: usize,
-    made: Option<Made>,
-    reader: Option<Box<SceneChange<SceneView<()>>>>,
+    /// A scene that is made, when it may be handed over (ns), and whether another shopper comes with it.
+    made: Option<(u64, DressedScene<FrameScene, ()>, bool)>,
     /// When broken garments are tried (ns), and how often that was done.
     broken: Box<[u64]>,
     tried: usize,
-    /// Scenes that were handed over.
-    pub changes: u64,
-    /// Broken garments that were refused, and that were not.
+    /// Broken garments that were refused.
     pub refused: u64,
-    /// See above.
+    /// Broken garments that were accepted.
     pub accepted: u64,
     /// Why a scene could not be made; the one before stays on.
     pub trouble: Option<String>,
@@ -46,30 +39,27 @@ pub struct Front<C> {
 }
 
 impl<C: Clock> Front<C> {
-    /// At load; the first scene is on stage already.
-    pub fn new(
-        ground: Ground<C>,
-        company: Company,
-        scenes: HandoverSender<FrameScene>,
-        readers: HandoverSender<SceneView<()>>,
-    ) -> Self {
+    /// At load; the first scene is shown already.
+    pub fn new(ground: Ground<C>, company: Company, handover: SceneHandover<FrameScene, ()>) -> Self {
         let broken = ground.script.faults_of(Kind::BrokenGarment).map(|f| ground.origin_ns + f.from_ns).collect();
         Self {
             ground,
             company,
-            scenes,
-            readers,
+            changer: SceneChanger::new(handover, false, None),
             next: 1,
             made: None,
-            reader: None,
             broken,
             tried: 0,
-            changes: 0,
             refused: 0,
             accepted: 0,
             trouble: None,
             refusal: None,
         }
+    }
+
+    /// Scenes that were handed over.
+    pub fn changes(&self) -> u64 {
+        self.changer.changes()
     }
 
     /// Makes the scene that is due, if one is.
@@ -82,30 +72,22 @@ impl<C: Clock> Front<C> {
         self.next += 1;
         match self.company.make(number) {
             Ok((frame, reader)) => {
-                let scene = Box::new(SceneChange { scene: FrameScene::new(frame), number, afresh });
-                let reader = Box::new(SceneChange { scene: SceneView { reader, outfit: () }, number, afresh });
-                self.made = Some((at + MAKING_NS, scene, reader));
+                let scene = FrameScene::new(frame);
+                let scene = DressedScene { scene, reader, outfit: (), still: None, note: None, number: Some(number) };
+                self.made = Some((at + MAKING_NS, scene, afresh));
             }
             Err(error) => self.trouble = Some(error.to_string()),
         }
     }
 
-    /// Hands over what is ready, and drops what came back.
+    /// Has what is ready shown.
     fn hand_over(&mut self, now: u64) {
-        drop(self.scenes.returned());
-        drop(self.readers.returned());
-        if self.reader.is_none()
-            && let Some((_, scene, reader)) = self.made.take_if(|(at, ..)| *at <= now)
+        if !self.changer.is_waiting()
+            && let Some((_, scene, afresh)) = self.made.take_if(|(at, ..)| *at <= now)
         {
-            match self.scenes.give(scene) {
-                Ok(()) => {
-                    self.changes += 1;
-                    self.reader = Some(reader);
-                }
-                Err(scene) => self.made = Some((now, scene, reader)),
-            }
+            self.changer.show(scene, afresh);
         }
-        self.reader = self.reader.take().and_then(|reader| self.readers.give(reader).err());
+        self.changer.update();
     }
 
     fn try_broken(&mut self, now: u64) {

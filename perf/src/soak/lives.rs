@@ -10,11 +10,13 @@ use toile_engine::clock::Clock;
 use toile_engine::frame::Snapshot;
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::event::NoCounters;
-use toile_engine::frame_loop::physics_thread::{FrameScene, PhysicsThread, Scene};
+use toile_engine::frame_loop::physics_thread::{FrameScene, Scene};
 use toile_engine::frame_loop::queue::Sender;
-use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
+use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::frame_loop::sensor_thread::{JointSource, SensorThread};
 use toile_engine::meter::PERIOD_NS;
+use toile_fitting::live::assembly::{PhysicsLoop, RenderLoop};
+use toile_fitting::live::running::Restart;
 
 use super::script::{Kind, Script};
 
@@ -33,7 +35,7 @@ const DEAD_NS: u64 = 5_000_000;
 /// Every so many vertices of the skin are looked at in a picture; the garments all.
 const SKIN_STEP: usize = 4;
 
-/// What a life did.
+/// EventKind a life did.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sign {
     /// A step.
@@ -81,7 +83,7 @@ impl Stepped {
 
 /// A life that can be asked what it did in its last turn.
 pub trait Telling: ThreadLoop {
-    /// What it did, if there is something to tell.
+    /// EventKind it did, if there is something to tell.
     fn sign(&mut self) -> Option<Sign>;
 }
 
@@ -99,7 +101,7 @@ pub struct Lived<T, C> {
     signs: Sender<Sign>,
 }
 
-/// What every life needs besides itself.
+/// EventKind every life needs besides itself.
 #[derive(Debug, Clone)]
 pub struct Ground<C> {
     /// The script.
@@ -150,7 +152,7 @@ impl<S: JointSource, C: Clock> Telling for SensorThread<S, C> {
 #[derive(Debug)]
 pub struct Stepping<C> {
     /// The loop's own.
-    pub physics: PhysicsThread<FrameScene, C, NoCounters>,
+    pub physics: PhysicsLoop<FrameScene, C, NoCounters>,
     script: Arc<Script>,
     origin_ns: u64,
     ticks: u64,
@@ -158,15 +160,15 @@ pub struct Stepping<C> {
     crash_ns: Option<u64>,
     /// When garments are spoilt (ns), and how many times they were.
     upsets: Box<[u64]>,
-    inject_fault: usize,
+    upset: usize,
 }
 
 impl<C: Clock> Stepping<C> {
     /// At load.
-    pub fn new(physics: PhysicsThread<FrameScene, C, NoCounters>, script: Arc<Script>, origin_ns: u64) -> Self {
+    pub fn new(physics: PhysicsLoop<FrameScene, C, NoCounters>, script: Arc<Script>, origin_ns: u64) -> Self {
         let troubles = physics.stepper.scene.troubles();
         let upsets = script.faults_of(Kind::ClothUpset).map(|f| origin_ns + f.from_ns).collect();
-        Self { troubles, physics, script, origin_ns, ticks: 0, crash_ns: None, upsets, inject_fault: 0 }
+        Self { troubles, physics, script, origin_ns, ticks: 0, crash_ns: None, upsets, upset: 0 }
     }
 
     /// Panics at a time (ns), to see what a crash leaves.
@@ -203,9 +205,9 @@ impl<C: Clock> ThreadLoop for Stepping<C> {
     fn run_due(&mut self) -> Option<u64> {
         let crashes = self.crash_ns.is_some_and(|at| self.physics.taken().scheduled_ns >= at);
         assert!(!crashes, "the crash that --crash-after asked for");
-        if self.upsets.get(self.inject_fault).is_some_and(|at| *at <= self.physics.now_ns()) {
-            self.physics.inject_fault(self.script.plan.seed.wrapping_add(self.inject_fault as u64));
-            self.inject_fault += 1;
+        if self.upsets.get(self.upset).is_some_and(|at| *at <= self.physics.now_ns()) {
+            self.physics.inject_fault(self.script.plan.seed.wrapping_add(self.upset as u64));
+            self.upset += 1;
         }
         self.physics.run_due()
     }
@@ -226,9 +228,9 @@ impl<C: Clock> Telling for Stepping<C> {
             ended_ns: taken.ended_ns,
             seen_ns: stepper.seen_ns(),
             off_m: self.off(taken.scheduled_ns),
-            nonfinite: nonfinite(&stepper.scene),
+            nonfinite: nonfinite(stepper.scene.scene()),
             rolled_back: troubles[0] > before[0] || troubles[1] > before[1],
-            fastest_m_s: fastest(&stepper.scene),
+            fastest_m_s: fastest(stepper.scene.scene()),
         }))
     }
 }
@@ -256,10 +258,9 @@ impl Renderer for Eyewitness {
 }
 
 /// The renderer, who dies when the script says so.
-#[derive(Debug)]
 pub struct Showing<C> {
     /// The loop's own.
-    pub render: RenderThread<Eyewitness, C>,
+    pub render: RenderLoop<Eyewitness, C>,
     clock: C,
     deaths: Box<[u64]>,
     next: usize,
@@ -268,15 +269,15 @@ pub struct Showing<C> {
 
 impl<C: Clock + Clone> Showing<C> {
     /// At load.
-    pub fn new(render: RenderThread<Eyewitness, C>, ground: &Ground<C>) -> Self {
+    pub fn new(render: RenderLoop<Eyewitness, C>, ground: &Ground<C>) -> Self {
         let deaths = ground.script.faults_of(Kind::RenderDeath).map(|f| ground.origin_ns + f.from_ns).collect();
         Self { render, clock: ground.clock.clone(), deaths, next: 0, pictures: 0 }
     }
+}
 
-    /// One in the place of one that died.
-    #[must_use]
-    pub fn begun_again(self) -> Self {
-        Self { render: self.render.begun_again(), ..self }
+impl<C: Clock + Clone> Restart for Showing<C> {
+    fn restarted(self) -> Self {
+        Self { render: self.render.restarted(), ..self }
     }
 }
 
@@ -294,17 +295,16 @@ impl<C: Clock> ThreadLoop for Showing<C> {
 
 impl<C: Clock> Telling for Showing<C> {
     fn sign(&mut self) -> Option<Sign> {
-        let news = self.render.pictures > self.pictures;
-        self.pictures = self.render.pictures;
-        news.then(|| Sign::Picture([self.clock.now_ns(), self.render.renderer.published_ns]))
+        let render = &self.render.render;
+        let news = render.pictures > self.pictures;
+        self.pictures = render.pictures;
+        news.then(|| Sign::Picture([self.clock.now_ns(), render.renderer.published_ns]))
     }
 }
 
-impl<C: Clock + Clone> Lived<Showing<C>, C> {
-    /// See [`Showing::begun_again`].
-    #[must_use]
-    pub fn begun_again(self) -> Self {
-        Self { life: self.life.begun_again(), ..self }
+impl<C: Clock + Clone> Restart for Lived<Showing<C>, C> {
+    fn restarted(self) -> Self {
+        Self { life: self.life.restarted(), ..self }
     }
 }
 
@@ -318,11 +318,10 @@ pub struct Pulse {
 }
 
 /// The renderer on the simulated clock: a panic ends it until somebody has it begin again.
-#[derive(Debug)]
 pub struct Mortal<C> {
     /// It; none for the moment in which it begins again.
     pub lived: Option<Lived<Showing<C>, C>>,
-    /// What the watch sees of it. Relaxed: one thread plays all parts.
+    /// EventKind the watch sees of it. Relaxed: one thread plays all parts.
     pub pulse: Arc<Pulse>,
     clock: C,
 }
@@ -340,7 +339,7 @@ impl<C: Clock + Clone> ThreadLoop for Mortal<C> {
             if !self.pulse.revive.swap(false, Relaxed) {
                 return Some(self.clock.now_ns() + DEAD_NS);
             }
-            self.lived = self.lived.take().map(Lived::begun_again);
+            self.lived = self.lived.take().map(Restart::restarted);
             self.pulse.dead.store(false, Relaxed);
         }
         let lived = self.lived.as_mut()?;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::skirt::heap::HeapProbe;
+use toile_fitting::heap::HeapProbe;
 
 /// What the process held at one moment; none where the system does not say.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]

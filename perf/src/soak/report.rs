@@ -11,7 +11,7 @@ use super::run::Ran;
 use super::script::Kind;
 use super::watch::Outcome;
 use super::{Options, Weight};
-use crate::latency::Warned;
+use toile_fitting::live::report::QueueUse;
 
 /// Longest that the pipeline may take to recover (ticks): 1 s.
 const PIPELINE_TICKS: f64 = 120.0;
@@ -158,7 +158,7 @@ pub struct Soak {
     /// What was checked.
     pub checks: Vec<Check>,
     /// How full every queue was.
-    pub capacities: Vec<Warned>,
+    pub capacities: Vec<QueueUse>,
     /// What deserves attention, one sentence each.
     pub warnings: Vec<String>,
 }
@@ -198,7 +198,7 @@ impl Soak {
             pictures: ran.pictures,
             memory,
             checks: Vec::new(),
-            capacities: ran.capacities.iter().map(|c| Warned::from(*c)).collect(),
+            capacities: ran.capacities.iter().map(|c| QueueUse::from(*c)).collect(),
             warnings: ran.warnings,
         };
         soak.checks = checks(&soak, ran.broken[1]);

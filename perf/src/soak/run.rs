@@ -7,19 +7,18 @@ use std::time::{Duration, Instant};
 
 use toile_engine::clock::{Clock, SimClock};
 use toile_engine::frame_loop::ThreadLoop;
-use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, Event, NoCounters};
+use toile_engine::frame_loop::event::NoCounters;
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
-use toile_engine::frame_loop::handover::handover;
-use toile_engine::frame_loop::physics_thread::{FrameScene, PhysicsOutputs, PhysicsThread};
-use toile_engine::frame_loop::queue::{Capacity, Receiver, bounded};
+use toile_engine::frame_loop::physics_thread::FrameScene;
+use toile_engine::frame_loop::queue::{Capacity, bounded};
 use toile_engine::frame_loop::recording::{ENTRIES, ENTRIES_NAME, Entry};
-use toile_engine::frame_loop::render_thread::RenderThread;
-use toile_engine::frame_loop::sensor_thread::{self, SensorThread};
 use toile_engine::frame_loop::simulate::simulate;
-use toile_engine::frame_loop::thread_roles::{Placement, ThreadRole};
-use toile_engine::frame_loop::threads::{self, LoopThread, Stop};
+use toile_engine::frame_loop::thread_roles::Placement;
+use toile_engine::frame_loop::threads::{self, Stop};
 use toile_engine::meter::PERIOD_NS;
-use toile_engine::triple_buffer::TripleBuffer;
+use toile_fitting::live::assembly::{Assembly, LoopOptions, LoopParts, LoopQueues, SensorLoop, assemble};
+use toile_fitting::live::running::{EndedLoops, Loops, RunningLoop};
+use toile_fitting::live::scene_changer::DressedScene;
 use toile_sensors::clock::SECOND_NS;
 
 use super::camera::Camera;
@@ -30,7 +29,7 @@ use super::recorder::Recorder;
 use super::script::{Kind, Script};
 use super::watch::{JumpClock, Jumping, Watch};
 use super::{Options, SoakError};
-use crate::skirt::heap::HeapProbe;
+use toile_fitting::heap::HeapProbe;
 
 /// Time between two looks at what the process holds (ns): simulated, and in real time.
 const SAMPLE_NS: [u64; 2] = [60 * SECOND_NS, 5 * SECOND_NS];
@@ -41,7 +40,7 @@ const SLICE_NS: u64 = 300 * SECOND_NS;
 /// Time between two turns of the watch in real time.
 const WATCH: Duration = Duration::from_millis(5);
 
-/// What the program lends to a run.
+/// EventKind the program lends to a run.
 pub struct Tools<'a> {
     /// Reads the heap.
     pub heap: HeapProbe,
@@ -59,9 +58,9 @@ pub struct Tools<'a> {
     pub crash_ns: Option<u64>,
 }
 
-/// What the lives came to.
+/// EventKind the lives came to.
 pub struct Ran {
-    /// What happened by plan.
+    /// EventKind happened by plan.
     pub script: Arc<Script>,
     /// Steps, those that were not published in their period or dropped, and a hash over the hashes of their states.
     pub steps: u64,
@@ -83,19 +82,19 @@ pub struct Ran {
     pub disk: [u64; 2],
     /// Broken garments refused and accepted.
     pub broken: [u64; 2],
-    /// What the watch saw.
+    /// EventKind the watch saw.
     pub(super) watch: Seen,
     /// How full every queue was.
     pub capacities: Vec<Capacity>,
     /// Where the threads ran.
     pub threads: Vec<Placement>,
-    /// What deserves attention.
+    /// EventKind deserves attention.
     pub warnings: Vec<String>,
     /// Time that it took (s).
     pub wall_s: f64,
 }
 
-/// What the watch saw.
+/// EventKind the watch saw.
 pub(super) struct Seen {
     pub outcomes: Vec<super::watch::Outcome>,
     pub steps: super::watch::Steps,
@@ -104,13 +103,13 @@ pub(super) struct Seen {
 
 /// The lives, before they live.
 struct Lives<C: Clock> {
-    sensor: Lived<SensorThread<Camera<C>, C>, C>,
+    sensor: Lived<SensorLoop<Camera<C>, C>, C>,
     physics: Lived<Stepping<C>, C>,
     render: Lived<Showing<C>, C>,
     recorder: Lived<Recorder<C>, C>,
     front: Lived<Front<C>, C>,
     watch: Watch<C>,
-    events: Receiver<Event>,
+    queues: LoopQueues,
     black_box: Arc<FlightRecorder>,
     worker: Option<Placement>,
 }
@@ -137,25 +136,25 @@ impl<C: Jumping + Clone + Send> Lives<C> {
         let mut company = Company::new(script.clone());
         let (frame, reader) = company.make(0)?;
         let (frame, worker) = if options.workers > 1 {
-            let (pool, worker) =
+            let (crew, worker) =
                 threads::worker_pool(options.workers).map_err(toile_engine::frame::FrameError::from)?;
-            (frame.with_workers(pool), worker)
+            (frame.with_workers(crew), worker)
         } else {
             (frame, None)
         };
         // Making the first scene took its time.
         let origin_ns = clock.now_ns() + 4 * PERIOD_NS;
         let ground = Ground { script: script.clone(), clock: clock.clone(), origin_ns, count: tools.count };
-        let (sender, events) = bounded(EVENTS_NAME, EVENTS);
         let (recording, entries) = bounded(ENTRIES_NAME, ENTRIES);
-        let TripleBuffer { writer, reader: seen } = TripleBuffer::new(&sensor_thread::SensorFrame::default());
-        let (scenes, changes) = handover();
-        let (readers, other_readers) = handover();
-        let outlets = PhysicsOutputs { events: sender, recording: Some(recording) };
-        let physics = PhysicsThread::new(FrameScene::new(frame), clock.clone(), origin_ns, seen, outlets, NoCounters);
-        let mut stepping = Stepping::new(physics.changing(changes), script.clone(), origin_ns);
+        let scene = FrameScene::new(frame);
+        let first = DressedScene { scene, reader, outfit: (), still: None, note: None, number: None };
+        let source = Camera::new(script.clone(), clock.clone(), origin_ns);
+        let renderer = Eyewitness::default();
+        let parts = LoopParts { first, renderer, source, account: NoCounters, recording: Some(recording) };
+        let assembly = assemble(parts, &clock, LoopOptions { begin_ns: origin_ns, ..LoopOptions::default() });
+        let Assembly { loops, queues, handover } = assembly;
+        let mut stepping = Stepping::new(loops.physics, script, origin_ns);
         stepping.crash_at(tools.crash_ns.map(|ns| origin_ns + ns));
-        let render = RenderThread::new(Eyewitness::default(), clock.clone(), origin_ns, reader).changing(other_readers);
         let black_box = Arc::new(FlightRecorder::new(tools.header.clone(), entries));
         let file = tools.file.as_ref().map(File::try_clone).transpose()?;
         let mut recorder = Recorder::new(ground.clone(), black_box.clone(), file, &tools.header);
@@ -169,19 +168,18 @@ impl<C: Jumping + Clone + Send> Lives<C> {
             signs.push(from);
             to
         };
-        let sense = SensorThread::new(Camera::new(script, clock.clone(), origin_ns), clock, writer);
-        let sensor = Lived::new(sense, Kind::SensorStall, &ground, told());
+        let sensor = Lived::new(loops.sensor, Kind::SensorStall, &ground, told());
         let physics = Lived::new(stepping, Kind::PhysicsStall, &ground, told());
-        let render = Lived::new(Showing::new(render, &ground), Kind::RenderStall, &ground, told());
+        let render = Lived::new(Showing::new(loops.render, &ground), Kind::RenderStall, &ground, told());
         let recorder = Lived::new(recorder, Kind::RecorderStall, &ground, told());
-        let front = Front::new(ground.clone(), company, scenes, readers);
+        let front = Front::new(ground.clone(), company, handover);
         let front = Lived::new(front, Kind::FrontStall, &ground, told());
         let every = SAMPLE_NS[usize::from(options.real_time)];
         let watch = Watch::new(ground, signs, tools.heap, every);
-        Ok(Self { sensor, physics, render, recorder, front, watch, events, black_box, worker })
+        Ok(Self { sensor, physics, render, recorder, front, watch, queues, black_box, worker })
     }
 
-    /// What they came to, when they have ended.
+    /// EventKind they came to, when they have ended.
     fn ended(mut self, threads: Vec<Placement>) -> Ran {
         self.recorder.life.look();
         self.watch.close();
@@ -194,7 +192,7 @@ impl<C: Jumping + Clone + Send> Lives<C> {
             lost: a.lost + b.lost,
             ..a
         });
-        let mut capacities = vec![self.events.capacity(), self.black_box.capacity()];
+        let mut capacities = vec![self.queues.events.capacity(), self.black_box.capacity()];
         capacities.extend(signs);
         let mut warnings: Vec<String> = capacities.iter().filter_map(Capacity::warning).collect();
         warnings.extend(self.recorder.life.trouble.clone());
@@ -207,10 +205,10 @@ impl<C: Jumping + Clone + Send> Lives<C> {
             missed: gauges.missed + gauges.dropped,
             hash: self.recorder.life.hash,
             allocations: count.map(|_| [self.sensor.allocations, self.physics.allocations, self.render.allocations]),
-            nonfinite: steps.nonfinite + showing.render.renderer.nonfinite,
-            changes: self.front.life.changes,
+            nonfinite: steps.nonfinite + showing.render.render.renderer.nonfinite,
+            changes: self.front.life.changes(),
             frames: [sense.frames(), sense.restamped, sense.stale],
-            pictures: [showing.render.pictures, self.watch.revived],
+            pictures: [showing.render.render.pictures, self.watch.revived],
             disk: [self.recorder.life.refused, self.recorder.life.written],
             broken: [self.front.life.refused, self.front.life.accepted],
             watch: Seen { outcomes: self.watch.outcomes, steps, samples: self.watch.samples },
@@ -224,7 +222,7 @@ impl<C: Jumping + Clone + Send> Lives<C> {
 
 /// One after the other.
 fn simulated(lives: Lives<SimClock>, clock: &SimClock, options: &Options, tools: &Tools<'_>) -> Ran {
-    let Lives { mut sensor, mut physics, render, mut recorder, mut front, mut watch, mut events, black_box, worker } =
+    let Lives { mut sensor, mut physics, render, mut recorder, mut front, mut watch, mut queues, black_box, worker } =
         lives;
     let mut mortal = Mortal::new(render, clock.clone());
     watch.pulse = Some(mortal.pulse.clone());
@@ -232,24 +230,30 @@ fn simulated(lives: Lives<SimClock>, clock: &SimClock, options: &Options, tools:
     let mut until = watch.ground().origin_ns;
     while until < end {
         until = end.min(until + SLICE_NS);
-        let mut emptied = Emptied(&mut events, clock.clone());
+        let mut emptied = Emptied(&mut queues, clock.clone());
         let all: &mut [&mut dyn ThreadLoop] =
             &mut [&mut sensor, &mut physics, &mut mortal, &mut recorder, &mut front, &mut watch, &mut emptied];
         simulate(clock, all, until);
         (tools.progress)((until - watch.ground().origin_ns) / SECOND_NS);
     }
     let Some(render) = mortal.lived else { unreachable!("it is taken only within a turn") };
-    Lives { sensor, physics, render, recorder, front, watch, events, black_box, worker }.ended(Vec::new())
+    Lives { sensor, physics, render, recorder, front, watch, queues, black_box, worker }.ended(Vec::new())
 }
 
-/// Empties the queue of events, which nobody tells anything here.
-struct Emptied<'a>(&'a mut Receiver<Event>, SimClock);
+/// Empties the queues, whose readers in a kiosk do not run here.
+struct Emptied<'a>(&'a mut LoopQueues, SimClock);
 
 impl ThreadLoop for Emptied<'_> {
     fn run_due(&mut self) -> Option<u64> {
-        while self.0.pop().is_some() {}
+        empty(self.0);
         Some(self.1.now_ns() + SECOND_NS / 10)
     }
+}
+
+fn empty(queues: &mut LoopQueues) {
+    while queues.events.pop().is_some() {}
+    while queues.step_reports.pop().is_some() {}
+    while queues.frames.pop().is_some() {}
 }
 
 /// A life beside the loop, on a thread without a role.
@@ -271,26 +275,22 @@ fn beside<T: ThreadLoop + Send + 'static>(
 
 /// Each on its thread; the watch on this one.
 fn real(lives: Lives<JumpClock>, options: &Options, tools: &Tools<'_>) -> Result<Ran, SoakError> {
-    let Lives { sensor, physics, render, recorder, front, mut watch, mut events, black_box, worker } = lives;
+    let Lives { sensor, physics, render, recorder, front, mut watch, mut queues, black_box, worker } = lives;
     let (clock, stop) = (watch.ground().clock.clone(), Stop::default());
-    let begin = |role, life| threads::start(role, life, clock.clone(), &stop);
-    let sensor = threads::start(ThreadRole::Sensor, sensor, clock.clone(), &stop)?;
-    let physics = threads::start(ThreadRole::Physics, physics, clock.clone(), &stop)?;
-    let mut render: LoopThread<Lived<Showing<JumpClock>, JumpClock>> = begin(ThreadRole::Render, render)?;
+    let mut threads = RunningLoop::start(Loops { sensor, physics, render }, clock.clone())?;
     let recorder = beside("record", recorder, clock.clone(), stop.clone())?;
     let front = beside("front", front, clock.clone(), stop.clone())?;
-    let placed = [sensor.placement(), physics.placement(), worker, render.placement()];
+    let placed: Vec<Placement> = threads.placements().iter().cloned().chain(worker).collect();
     let end = watch.ground().origin_ns + options.plan.seconds * SECOND_NS;
     let mut told = 0;
-    while clock.now_ns() < end && !physics.is_over() {
+    while clock.now_ns() < end {
         thread::sleep(WATCH);
         watch.run_due();
-        while events.pop().is_some() {}
-        if render.is_over() {
-            let life = render.salvage().ok_or(SoakError::Died("render"))?;
-            watch.revived += 1;
-            render = begin(ThreadRole::Render, life.begun_again())?;
+        empty(&mut queues);
+        if let Some(role) = threads.look()? {
+            return Err(SoakError::Died(role.name()));
         }
+        watch.revived = threads.revived();
         let seconds = clock.now_ns().saturating_sub(watch.ground().origin_ns) / SECOND_NS;
         if seconds >= told + 60 {
             told = seconds;
@@ -299,11 +299,12 @@ fn real(lives: Lives<JumpClock>, options: &Options, tools: &Tools<'_>) -> Result
     }
     stop.now();
     let died = SoakError::Died;
-    let physics = physics.join().ok_or(died("physics"))?;
-    let sensor = sensor.join().ok_or(died("sensor"))?;
-    let render = render.join().ok_or(died("render"))?;
+    let EndedLoops { sensor, physics, render } = threads.end();
+    let physics = physics.ok_or(died("physics"))?;
+    let sensor = sensor.ok_or(died("sensor"))?;
+    let render = render.ok_or(died("render"))?;
     let recorder = recorder.join().map_err(|_| died("recorder"))?;
     let front = front.join().map_err(|_| died("front"))?;
-    let lives = Lives { sensor, physics, render, recorder, front, watch, events, black_box, worker: None };
-    Ok(lives.ended(placed.into_iter().flatten().collect()))
+    let lives = Lives { sensor, physics, render, recorder, front, watch, queues, black_box, worker: None };
+    Ok(lives.ended(placed))
 }

@@ -12,7 +12,7 @@ use toile_sensors::clock::SECOND_NS;
 use super::lives::{Ground, Pulse, Sign, Stepped};
 use super::memory::Sample;
 use super::script::{Fault, Kind, Sight};
-use crate::skirt::heap::HeapProbe;
+use toile_fitting::heap::HeapProbe;
 
 /// A step follows the shopper whose joints are this far from theirs on average (m): twice what they are at worst while nothing is
 /// wrong, which the report tells.

@@ -7,7 +7,7 @@ use toile_assets::scene_file::examples;
 
 use super::RunScene;
 use super::values::{WorkersArg, WornArgs};
-use crate::outfit::Wish;
+use toile_fitting::dress::wish::Wish;
 
 /// What is planned.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,8 +8,8 @@ use toile_engine::lanes::Width;
 use toile_engine::workers::SHARES;
 use toile_gpu::stepper::Backend;
 
-use crate::outfit::Wish;
 use crate::terminal::Words;
+use toile_fitting::dress::wish::Wish;
 
 /// What a command prints, and where.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::Args)]
@@ -89,7 +89,7 @@ pub struct WornArgs {
 impl WornArgs {
     /// The same as the scene's maker takes it.
     pub fn wish(&self) -> Wish {
-        Wish { garments: self.garments.clone(), size: self.size.clone(), quality: self.quality }
+        Wish { garments: self.garments.clone(), size: self.size.clone(), quality: self.quality, sex: None }
     }
 }
 

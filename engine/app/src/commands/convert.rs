@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use toile_assets::sizes::Population;
+use toile_fitting::dress::measured::{self, Told};
 use toile_sensors::segment::Segmenter;
 use toile_sensors::session::Session;
 use toile_sensors::source::{self, OpenOptions};
@@ -10,10 +10,8 @@ use toile_sensors::source::{self, OpenOptions};
 use crate::cli::values::{Printing, one_of};
 use crate::exit::AppError;
 use crate::output::{Inputs, OutputFile};
-use crate::report::{ConvertReport, Document};
-use crate::shopper::session_report;
+use crate::report::{self, ConvertReport, Document};
 use crate::terminal;
-use crate::tracking;
 
 /// Turn any supported recording into a Toile session.
 ///
@@ -84,8 +82,8 @@ pub fn run(args: &ConvertArgs) -> Result<(), AppError> {
         source::open(&args.input, &OpenOptions { camera: args.camera.clone() }).map_err(AppError::input)?;
     let dropped = session.depth.len();
     if args.fit && session.joints.is_empty() && !session.depth.is_empty() {
-        session.joints = tracking::joints(&session, Population::Mixed)?.1;
-        session.notes.push("the joints are those of the body fitted to the depth".to_owned());
+        let measured = measured::measure(&session, Told::default())?;
+        measured::add_joints(&mut session, &measured)?;
     }
     keep(&mut session, args.depth);
     if session.joints.is_empty() && session.depth.is_empty() {
@@ -97,7 +95,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), AppError> {
     }
     let bytes = session.to_bytes().map_err(AppError::input)?;
     let report = ConvertReport {
-        session: session_report(&session, &[]),
+        session: report::measures::session(&session, &[]),
         joint_frames: session.joints.len() as u64,
         depth_frames: session.depth.len() as u64,
         depth_frames_left_out: (dropped - session.depth.len()) as u64,

@@ -9,17 +9,19 @@ use serde::Serialize;
 use toile_engine::frame_loop::governor::LADDER;
 use toile_engine::frame_loop::recording::{self, Entry};
 use toile_engine::frame_loop::threads;
-use toile_perf::latency::{self, Cast, Goal, Latency, Options, Quantiles};
+use toile_fitting::dress::measured::{self, Told};
+use toile_fitting::dress::recipe::Recipe;
+use toile_fitting::dress::session;
+use toile_fitting::live::report::Quantiles;
+use toile_perf::latency::{self, Cast, Goal, Latency, Options};
 
 use crate::cli::values::{CrashArg, Printing, WorkersArg, WornArgs, cores};
-use crate::crash;
 use crate::exit::AppError;
 use crate::machine::Machine;
-use crate::outfit::Recipe;
 use crate::output::{Inputs, OutputFolder};
 use crate::report::Document;
-use crate::shopper;
 use crate::terminal::{self, Paint, Tone};
+use toile_fitting::live::crash;
 
 /// Longest run (s): a day.
 const MOST_SECONDS: i64 = 86_400;
@@ -74,7 +76,7 @@ pub struct LatencyArgs {
 }
 
 impl LatencyArgs {
-    /// What the loop runs under.
+    /// EventKind the loop runs under.
     fn options(&self) -> Options {
         let load = match self.load {
             None => 0,
@@ -88,9 +90,9 @@ impl LatencyArgs {
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LatencyReport {
-    /// What was on stage.
+    /// EventKind was on stage.
     pub scene: Recipe,
-    /// What was found.
+    /// EventKind was found.
     #[serde(flatten)]
     pub found: Latency,
     /// The files written.
@@ -108,16 +110,17 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     let crash_file = args.out.join("crash.tape");
     args.record.iter().chain([&crash_file]).try_for_each(|file| inputs.check(file))?;
     let mut out = OutputFolder::prepare(&args.out)?.sparing(inputs);
-    let session = shopper::open(args.session.as_deref(), None)?;
-    let track = shopper::believable(&session);
-    let from = shopper::stands_from(&track);
-    let Some(first) = track.get(from) else {
-        return Err(AppError::Input(format!("session {} has no joints, so that no pose can be shown", session.name)));
-    };
-    let recipe = Recipe::write(&session, &args.worn.wish())?;
+    let session = session::open(args.session.as_deref(), None)?;
+    let track = session::standing(&session)?;
+    let first = &track[0];
+    // The loop's sensor thread filters the raw frames itself.
+    let from = session.joints.len() - track.len();
+    let wish = args.worn.wish();
+    let measured = measured::measure(&session, Told { sex: wish.sex, ..Told::default() })?;
+    let recipe = Recipe::choose(&session.name, &measured, &wish)?;
     let (frame, reader) = recipe.make(first)?;
     // Only now: a helper with a real-time priority shares its core with nobody who waits for it.
-    let (pool, worker) = threads::worker_pool(args.workers.count()).map_err(AppError::input)?;
+    let (crew, worker) = threads::worker_pool(args.workers.count()).map_err(AppError::input)?;
     let options = args.options();
     words.say(&format!("running for {} s, with {} threads of load", options.seconds, options.load));
     let mut bytes = recording::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
@@ -137,7 +140,8 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
         assert!(!crashes, "the crash that --crash-after asked for");
         black_box.capacity()
     };
-    let cast = Cast { frame: frame.with_workers(pool), reader, joints: &session.joints[from..], worker, recording };
+    let cast =
+        Cast { frame: frame.with_workers(crew), reader, joints: &session.joints[from..], worker, tape: recording };
     let found = latency::run(cast, &options, empty).map_err(AppError::internal);
     crash::forget();
     let found = found?;

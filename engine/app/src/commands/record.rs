@@ -18,8 +18,7 @@ use toile_sensors::source::synthetic::{JointNoise, KinectNoise, SyntheticCamera}
 use crate::cli::values::Printing;
 use crate::exit::AppError;
 use crate::output::{Inputs, OutputFile};
-use crate::report::{Document, RecordReport};
-use crate::shopper::session_report;
+use crate::report::{self, Document, RecordReport};
 use crate::terminal;
 
 /// Longest session that `record` makes (s); at 30 frames a second this is some hundred megabytes.
@@ -71,7 +70,7 @@ pub fn run(args: &RecordArgs) -> Result<(), AppError> {
     let session = perform(args.seed, frames, || bar.inc(1))?;
     bar.finish_and_clear();
     let files = out.write(&session.to_bytes().map_err(AppError::internal)?)?;
-    let report = RecordReport { session: session_report(&session, &[]), seed: args.seed, files };
+    let report = RecordReport { session: report::measures::session(&session, &[]), seed: args.seed, files };
     if args.printing.json {
         return terminal::print_json(&Document::new("record", report));
     }

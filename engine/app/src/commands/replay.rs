@@ -10,20 +10,21 @@ use toile_engine::frame_loop::physics_thread::{FrameScene, SceneStepper};
 use toile_engine::frame_loop::recording::{self, Entry, Recording};
 use toile_engine::frame_loop::replay::{Replayed, replay};
 use toile_engine::workers::WorkerPool;
+use toile_fitting::dress::recipe::Recipe;
 
 use crate::cli::values::WorkersArg;
 use crate::commands::soak::{self, SoakRecipe};
 use crate::exit::AppError;
-use crate::kiosk::recording::{KioskRecipe, again};
-use crate::outfit::Recipe;
 use crate::report::{Document, hash_text};
 use crate::terminal;
+use toile_fitting::live::recording as kiosk_recording;
+use toile_fitting::live::recording::KioskRecipe;
 
 /// Replay a recorded run and compare every step bit for bit.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(
     after_help = "Example: record a run, and replay it with one worker in place of two\n  toile latency --seconds 10 \
-                        --record run.recording && toile replay run.recording --workers 1"
+                        --record run.tape && toile replay run.tape --workers 1"
 )]
 pub struct ReplayArgs {
     /// Recording of a run
@@ -66,7 +67,7 @@ impl Recorded {
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReplayReport {
-    /// What was on stage.
+    /// EventKind was on stage.
     pub scene: Recorded,
     /// Workers of a step, now.
     pub workers: usize,
@@ -92,7 +93,7 @@ pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
         .map_err(|e| bad(&format!("what it says of its scene is not understood ({e}); record the run again")))?;
     let (frame, out) = match &recorded {
         Recorded::Soak(recipe) => soak::again(recipe.soak, &entries, workers)?,
-        Recorded::Kiosk(_) => again(&notes, &entries, workers).map_err(|e| bad(&e))?,
+        Recorded::Kiosk(_) => kiosk_recording::again(&notes, &entries, workers).map_err(|e| bad(&e))?,
         Recorded::Session(recipe) => session(recipe, &entries, workers).map_err(|e| bad(&e))?,
     };
     let report = ReplayReport {
@@ -126,8 +127,8 @@ fn session(recipe: &Recipe, entries: &[Entry], workers: usize) -> Result<(Frame,
         return Err(AppError::Input(what.to_owned()));
     };
     let (frame, _reader) = recipe.make(first)?;
-    let pool = WorkerPool::new(workers).map_err(AppError::input)?;
-    let mut stepper = SceneStepper::new(FrameScene::new(frame.with_workers(pool)));
+    let crew = WorkerPool::new(workers).map_err(AppError::input)?;
+    let mut stepper = SceneStepper::new(FrameScene::new(frame.with_workers(crew)));
     let out = replay(&mut stepper, entries, &SimClock::default());
     Ok((stepper.scene.frame, out))
 }

@@ -12,17 +12,18 @@ use toile_engine::frame_loop::physics_thread::{FrameScene, SceneStepper};
 use toile_engine::frame_loop::recording::{self, Entry, Recording};
 use toile_engine::frame_loop::replay::{Replayed, replay_changing};
 use toile_engine::workers::WorkerPool;
-use toile_perf::skirt::heap::HeapProbe;
+use toile_fitting::heap::HeapProbe;
+use toile_fitting::live::crash;
 use toile_perf::soak::script::Script;
 use toile_perf::soak::{self, Check, Company, LEAST_APART_S, Options, Plan, Soak, SoakError, Tools, Weight};
 
 use crate::cli::values::{CrashArg, Printing, WorkersArg, one_of};
 use crate::exit::AppError;
+use crate::heap;
 use crate::machine::Machine;
 use crate::output::{Inputs, OutputFolder};
 use crate::report::Document;
 use crate::terminal::{self, Paint, Tone, Words};
-use crate::{crash, heap};
 
 /// Longest run (h): five weeks.
 const MOST_HOURS: f64 = 840.0;
@@ -60,7 +61,7 @@ pub struct SoakArgs {
     /// Inject so many faults, or one every half minute if N is left out
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "0")]
     pub faults: Option<u64>,
-    /// What the clock shows at the start
+    /// EventKind the clock shows at the start
     #[arg(long, value_name = "H", value_parser = value_parser!(u64).range(0..=MOST_UPTIME), default_value = "0")]
     pub uptime_hours: u64,
     /// light: coarse garments, hours in minutes; full: the wardrobe as it is worn (default: full in real time, else light)
@@ -84,7 +85,7 @@ pub struct SoakArgs {
 }
 
 impl SoakArgs {
-    /// What is soaked, and how.
+    /// EventKind is soaked, and how.
     ///
     /// # Errors
     /// [`AppError::Usage`] for a run that is too long, and for more faults than fit into it.
@@ -123,14 +124,14 @@ const MOST_REPLAYED: u64 = 128 << 20;
 pub struct SoakRecipe {
     /// Version of the program that wrote it.
     pub version: String,
-    /// What was soaked.
+    /// EventKind was soaked.
     pub soak: Plan,
 }
 
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Body {
-    /// What was found.
+    /// EventKind was found.
     #[serde(flatten)]
     found: Soak,
     /// The files written.
@@ -246,15 +247,15 @@ pub fn again(plan: Plan, entries: &[Entry], workers: usize) -> Result<(Frame, Re
     };
     let mut company = Company::new(Arc::new(Script::write(plan).map_err(refused)?));
     let (frame, _reader) = company.make(*number).map_err(refused)?;
-    let pool = WorkerPool::new(workers).map_err(AppError::input)?;
-    let mut stepper = SceneStepper::new(FrameScene::new(frame.with_workers(pool)));
+    let crew = WorkerPool::new(workers).map_err(AppError::input)?;
+    let mut stepper = SceneStepper::new(FrameScene::new(frame.with_workers(crew)));
     let out = replay_changing(&mut stepper, entries, &SimClock::default(), |number| {
         company.make(number).ok().map(|(frame, _reader)| FrameScene::new(frame))
     });
     Ok((stepper.scene.frame, out))
 }
 
-/// What was typed, for the record.
+/// EventKind was typed, for the record.
 fn typed(args: &SoakArgs, options: &Options) -> String {
     let Options { plan, uptime_hours, real_time, workers } = *options;
     let mut line = format!("toile soak --minutes {} --seed {}", plan.seconds as f64 / 60.0, plan.seed);

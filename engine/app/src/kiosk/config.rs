@@ -12,7 +12,7 @@ use toile_engine::workers::SHARES;
 use super::config_keys;
 use super::session::SessionTimes;
 use crate::exit::AppError;
-use crate::outfit::Wish;
+use toile_fitting::dress::wish::Wish;
 
 /// The default configuration with all keys explained.
 pub const EXAMPLE: &str = include_str!("../../systemd/kiosk.toml");
@@ -271,6 +271,7 @@ impl Config {
             garments: self.wear.garments.clone(),
             size: self.wear.size.clone(),
             quality: self.wear.quality.parse().unwrap_or_default(),
+            sex: None,
         }
     }
 

@@ -3,13 +3,14 @@
 
 use toile_engine::frame::Frame;
 use toile_engine::frame_loop::physics_thread::Scene;
+use toile_fitting::dress::dressed::Dressed;
+use toile_fitting::dress::session;
+use toile_fitting::live::dresser::{DressJob, DressOutcome, Dresser, ShopperSource};
+use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 use toile_sensors::frame::Joints;
 
-use super::change::{Act, Changing};
 use super::session::{SessionInput, SessionMachine, SessionState, SessionTimes, StateChange};
-use super::tailor::{Dressed, Job, Model, Tailor, Work};
 use crate::exit::AppError;
-use crate::shopper;
 
 /// A sensor frame older than this says nothing about who is there at the moment (ns).
 pub const STALE_NS: u64 = 500_000_000;
@@ -20,12 +21,12 @@ pub const MOST_FRAMES: usize = 3600;
 /// Fewest frames that somebody can be measured from.
 pub const FEWEST_FRAMES: usize = 10;
 
-/// What a controller works with.
+/// EventKind a controller works with.
 pub struct ControllerContext<S, O> {
-    /// Hands scenes over to the loop.
-    pub changing: Changing<S, O>,
-    /// Dresses the mannequin, and for a controller without a dressing worker of its own shoppers too.
-    pub tailor: Tailor,
+    /// How scenes are changed.
+    pub changer: SceneChanger<S, O>,
+    /// Dresses the mannequin, and shoppers where no window does.
+    pub dresser: Dresser,
     /// A dressed frame as a scene of the loop, and what the renderer has to know of it.
     pub stage: fn(Frame) -> (S, O),
     /// How the mannequin stands.
@@ -33,11 +34,9 @@ pub struct ControllerContext<S, O> {
 }
 
 impl<S: Scene, O> ControllerContext<S, O> {
-    /// Somebody dressed, as the loop takes them over.
-    pub fn act(&self, dressed: Dressed) -> Act<S, O> {
-        let Dressed { frame, reader, made } = dressed;
-        let (scene, outfit) = (self.stage)(frame);
-        Act { scene, reader, outfit, made }
+    /// Somebody dressed, as the loop takes them.
+    pub fn scene(&self, dressed: Dressed) -> DressedScene<S, O> {
+        DressedScene::new(dressed, self.stage)
     }
 
     /// Has a mannequin dressed, where there is none to come back and no other job is under way.
@@ -45,10 +44,10 @@ impl<S: Scene, O> ControllerContext<S, O> {
     /// # Errors
     /// Where the system gives no thread.
     pub fn dress_mannequin(&mut self) -> Result<(), AppError> {
-        if !self.changing.lacks_mannequin() || self.tailor.is_busy() {
+        if !self.changer.lacks_mannequin() || self.dresser.is_busy() {
             return Ok(());
         }
-        self.tailor.begin(Job::Mannequin(Box::new(self.pose))).map_err(AppError::internal)
+        self.dresser.begin(DressJob::Mannequin(Box::new(self.pose))).map_err(AppError::internal)
     }
 }
 
@@ -61,12 +60,12 @@ pub trait SessionController<S, O> {
     fn frame(&mut self, frame: Joints);
 
     /// Takes the result of a job that it gave; mannequins are not its own.
-    fn work(&mut self, work: Work);
+    fn work(&mut self, work: DressOutcome);
 
     /// Decides, fifty times a second; returns the change of state, where there is one.
     ///
     /// # Errors
-    /// What ends the service.
+    /// EventKind ends the service.
     fn poll(&mut self, now_ns: u64, context: &mut ControllerContext<S, O>) -> Result<Option<StateChange>, AppError>;
 }
 
@@ -76,10 +75,10 @@ pub struct HeadlessController {
     /// Time over which a shopper is measured (ns).
     measure_ns: u64,
     /// The recording that shoppers are measured from, where one is played.
-    played: Option<Model>,
+    played: Option<ShopperSource>,
     /// When a frame last came, and whether somebody was seen in it.
     seen: (u64, bool),
-    /// What the shopper is measured from, and who was made of it.
+    /// EventKind the shopper is measured from, and who was made of it.
     model: Vec<Joints>,
     fitted: Option<Box<Dressed>>,
     dressed: bool,
@@ -87,28 +86,28 @@ pub struct HeadlessController {
 
 impl HeadlessController {
     /// Nobody is there, at this time (ns).
-    pub fn new(times: SessionTimes, measure_ns: u64, played: Option<Model>, now_ns: u64) -> Self {
+    pub fn new(times: SessionTimes, measure_ns: u64, played: Option<ShopperSource>, now_ns: u64) -> Self {
         let session = SessionMachine::new(times, now_ns);
         Self { session, measure_ns, played, seen: (0, false), model: Vec::new(), fitted: None, dressed: false }
     }
 
-    /// What a change of state brings about.
+    /// EventKind a change of state brings about.
     fn change<S: Scene, O>(&mut self, change: StateChange, context: &mut ControllerContext<S, O>) {
         match change.to {
             SessionState::Measuring => self.model.clear(),
             SessionState::TryOn => {
                 self.model.clear();
                 if let Some(fitted) = self.fitted.take() {
-                    let act = context.act(*fitted);
-                    context.changing.bring(act, true);
+                    let act = context.scene(*fitted);
+                    context.changer.show(act, true);
                 }
             }
             SessionState::Left => {}
             SessionState::Attract => {
                 self.model.clear();
                 (self.fitted, self.dressed) = (None, false);
-                context.tailor.forget();
-                context.changing.wipe();
+                context.dresser.forget();
+                context.changer.wipe();
             }
         }
     }
@@ -120,16 +119,16 @@ impl<S: Scene, O> SessionController<S, O> for HeadlessController {
     }
 
     fn frame(&mut self, frame: Joints) {
-        self.seen = (frame.time_ns, shopper::is_seen(&frame));
+        self.seen = (frame.time_ns, session::is_present(&frame));
         if self.session.state() == SessionState::Measuring && self.seen.1 && self.model.len() < MOST_FRAMES {
             self.model.push(frame);
         }
     }
 
-    fn work(&mut self, work: Work) {
+    fn work(&mut self, work: DressOutcome) {
         match work {
-            Work::Done(dressed) => (self.fitted, self.dressed) = (Some(dressed), true),
-            Work::Failed | Work::Died => self.model.clear(),
+            DressOutcome::Done(dressed) => (self.fitted, self.dressed) = (Some(dressed), true),
+            DressOutcome::Failed | DressOutcome::Panicked => self.model.clear(),
         }
     }
 
@@ -140,11 +139,11 @@ impl<S: Scene, O> SessionController<S, O> for HeadlessController {
             self.change(change, context);
         }
         let enough = self.session.lasted_ns(now) >= self.measure_ns && self.model.len() >= FEWEST_FRAMES;
-        let wanted = self.session.state() == SessionState::Measuring && !self.dressed && !context.tailor.is_busy();
+        let wanted = self.session.state() == SessionState::Measuring && !self.dressed && !context.dresser.is_busy();
         if enough && wanted {
             let model = self.played.clone();
-            let model = model.unwrap_or_else(|| Model::Joints(std::mem::take(&mut self.model)));
-            context.tailor.begin(Job::Shopper(model)).map_err(AppError::internal)?;
+            let model = model.unwrap_or_else(|| ShopperSource::Joints(std::mem::take(&mut self.model)));
+            context.dresser.begin(DressJob::Shopper(model)).map_err(AppError::internal)?;
         }
         Ok(change)
     }

@@ -5,10 +5,11 @@ use std::fmt::{self, Display, Formatter};
 
 use toile_engine::frame_loop::event::{Event, EventKind};
 use toile_engine::meter::Meter;
-use toile_perf::latency::{Attributed, Attributing};
+use toile_fitting::live::lateness::LatenessAttribution;
+use toile_fitting::live::live_scene::StepReport;
+use toile_fitting::live::report::Attributed;
 
 use super::session::SessionState;
-use super::stage::Beat;
 
 /// The figures as they are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,16 +80,16 @@ pub struct HealthCounter {
     /// Steps since the last health line.
     step: Meter,
     /// Why steps were late.
-    late: Attributing,
+    late: LatenessAttribution,
 }
 
 impl HealthCounter {
     /// A step.
-    pub fn beat(&mut self, beat: &Beat) {
-        self.step.add(beat.step_ns);
+    pub fn step(&mut self, step: &StepReport) {
+        self.step.add(step.step_ns);
         self.figures.steps += 1;
-        self.figures.misses += u64::from(beat.late);
-        (self.figures.rung, self.figures.nonfinite) = (beat.rung, beat.nonfinite);
+        self.figures.misses += u64::from(step.late);
+        (self.figures.rung, self.figures.nonfinite) = (step.rung, step.nonfinite);
     }
 
     /// Something happened in the loop. Late steps are reported by their beats.
@@ -132,7 +133,7 @@ mod tests {
     fn beats_and_events_add_up_to_one_line() {
         let mut counter = HealthCounter::default();
         for i in 0..2_000 {
-            counter.beat(&Beat { step_ns: 2_000_000, late: i % 1_000 == 7, rung: 1, nonfinite: i / 1_000 });
+            counter.step(&StepReport { step_ns: 2_000_000, late: i % 1_000 == 7, rung: 1, nonfinite: i / 1_000 });
         }
         for what in
             [EventKind::Dropped(5), EventKind::SensorLost, EventKind::SensorBack, EventKind::Missed(Default::default())]

@@ -8,25 +8,18 @@
 //! place of one that has left, without the loop's threads allocating or waiting; [`recording`] keeps the last seconds for a
 //! crash, where a shop asks for it.
 
-pub mod change;
 pub mod config;
 mod config_keys;
 pub mod controller;
 pub mod health;
 pub mod instance;
-pub mod lives;
 mod memory;
 #[cfg(feature = "metrics")]
 pub mod metrics;
-pub mod recording;
 pub mod report;
 pub mod service;
 pub mod service_manager;
 pub mod session;
-pub mod source;
-pub mod stage;
-pub mod tailor;
-pub mod watchdog;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -37,26 +30,29 @@ use toile_engine::frame_loop::physics_thread::FrameScene;
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::frame_loop::threads;
 use toile_engine::triple_buffer::Writer;
-use toile_perf::latency::Placed;
+use toile_fitting::dress::dressed;
+use toile_fitting::dress::session as sessions;
+use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
+use toile_fitting::live::dresser::{Dresser, ShopperSource};
+use toile_fitting::live::lateness::ThreadAccount;
+use toile_fitting::live::live_loop::LiveLoop;
+use toile_fitting::live::report::ThreadPlacement;
+use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
+use toile_fitting::live::source::{Feed, Visits};
+use toile_fitting::live::{crash, recording};
 use toile_sensors::source::Session;
 
 use crate::cli::KioskArgs;
-use crate::crash;
 use crate::exit::AppError;
 use crate::report::Document;
-use crate::shopper;
 use crate::terminal::{self, Words};
-use change::{Act, Changing};
 use config::{Config, SensorSource};
 use controller::SessionController;
 use health::HealthFigures;
 use instance::InstanceLock;
-use lives::{Cast, Headless, Lives};
 use report::KioskReport;
 use service::{Service, ServiceEnvironment, ServiceOptions};
 use service_manager::{StopSignal, Systemd};
-use source::{Feed, Visits};
-use tailor::{Dressed, Model, Tailor};
 
 /// Runs `toile kiosk`; with a window, by `windowed`.
 ///
@@ -78,8 +74,8 @@ pub fn run(args: &KioskArgs, windowed: fn(KioskRun<'_>) -> Result<KioskReport, A
     let clock = RealClock::default();
     let run = KioskRun { args, config: &config, begun, clock, stop: &stop, words: &words, figures };
     let report = if args.headless {
-        let renderer = |_: &Frame| Ok(Headless::default());
-        serve(run, Frontend { renderer, stage: |frame| (FrameScene::new(frame), ()), controller: |_| None })?.0
+        let eye = |_: &Frame| Ok(HeadlessRenderer::default());
+        serve(run, Frontend { renderer: eye, stage: |frame| (FrameScene::new(frame), ()), controller: |_| None })?.0
     } else {
         windowed(run)?
     };
@@ -136,18 +132,17 @@ pub fn serve<'a, E, F, H>(
 where
     E: Renderer<Outfit: Default> + 'static,
     F: FnOnce(&Frame) -> Result<E, AppError>,
-    H: FnOnce(Option<Model>) -> BoxedController<'a, E::Outfit>,
+    H: FnOnce(Option<ShopperSource>) -> BoxedController<'a, E::Outfit>,
 {
     let KioskRun { args, config, begun, clock, stop, words, figures } = run;
     let wish = config.wish();
-    let session = recording(config)?;
+    let session = played_session(config)?;
     // The mannequin stands as somebody does in the recording: a pose, and no body.
-    let pose = shopper::believable(&session);
-    let pose = pose[shopper::stands_from(&pose).min(pose.len() - 1)];
-    let dressed = tailor::mannequin(&wish, &pose)?;
+    let pose = sessions::standing(&session)?[0];
+    let dressed = dressed::mannequin(&wish, &pose)?;
     let (feed, played) = feed(config, session, clock)?;
     let workers = config.machine.workers.unwrap_or_else(workers);
-    let (pool, worker) = threads::worker_pool(workers).map_err(AppError::input)?;
+    let (crew, worker) = threads::worker_pool(workers).map_err(AppError::input)?;
     let locked = if config.machine.lock_memory { memory::lock() } else { Ok(()) };
     let options = ServiceOptions {
         begun,
@@ -160,55 +155,50 @@ where
         memory_locked: config.machine.lock_memory && locked.is_ok(),
         warnings: locked.err().map(|e| e.to_string()).into_iter().collect(),
     };
-    let (black_box, recording) = match config.crash.recording.clone() {
+    let (black_box, tape) = match config.crash.recording.clone() {
         Some(path) => {
-            recording::keep(&dressed.made, path).map(|(black_box, recording)| (Some(black_box), Some(recording)))?
+            recording::keep(&dressed.dressing, path).map(|(black_box, tape)| (Some(black_box), Some(tape)))?
         }
         None => (None, None),
     };
-    let Dressed { frame, reader, made } = dressed;
-    let renderer = (frontend.renderer)(&frame)?;
-    let first = Act { scene: FrameScene::new(frame.with_workers(pool)), reader, outfit: E::Outfit::default(), made };
-    let cast = Cast { first, renderer, feed, recording };
-    let (lives, doors) = Lives::start(cast, clock).map_err(AppError::internal)?;
+    let renderer = (frontend.renderer)(&dressed.frame)?;
+    let first = DressedScene::new(dressed, |frame| (FrameScene::new(frame.with_workers(crew)), E::Outfit::default()));
+    let parts = LoopParts { first, renderer, source: feed, account: ThreadAccount::new(), recording: tape };
+    let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).map_err(AppError::internal)?;
     stop.graceful();
     let say = |line: &str| words.say(line);
-    let changing = Changing::new(doors, black_box.clone());
+    let changer = SceneChanger::new(handover, true, black_box.clone());
     let environment = ServiceEnvironment {
         manager: &Systemd,
         stop,
         say: &say,
         figures,
-        tailor: Tailor::new(wish),
+        dresser: Dresser::new(wish),
         stage: frontend.stage,
         pose,
         black_box,
     };
     let controller = (frontend.controller)(options.played.clone());
-    let service = Service::new(lives, changing, options, environment);
+    let service = Service::new(live, changer, options, environment);
     let ran = match controller {
         Some(controller) => service.controlled_by(controller).run(),
         None => service.run(),
     };
     crash::forget();
-    let (mut ended, mut record) = ran?;
-    record.threads.extend(worker.map(Placed::from));
-    let report = KioskReport::of(&ended, record);
-    Ok((report, ended.render.take().map(|render| render.renderer)))
+    let (ended, capacities, mut record) = ran?;
+    record.threads.extend(worker.map(ThreadPlacement::from));
+    let report = KioskReport::of(&ended, capacities, record);
+    Ok((report, ended.render.map(|watched| watched.render.renderer)))
 }
 
 /// The recording that is played, or for a live sensor the embedded one, whose shopper shows the mannequin how to stand.
-fn recording(config: &Config) -> Result<Session, AppError> {
+fn played_session(config: &Config) -> Result<Session, AppError> {
     let path = config.sensor.session.as_deref().filter(|_| config.sensor.source == SensorSource::Session);
-    let session = shopper::open(path, None)?;
-    if session.joints.is_empty() {
-        return Err(AppError::Input(format!("session {} has no joints, so that no pose can be shown", session.name)));
-    }
-    Ok(session)
+    Ok(sessions::open(path, None)?)
 }
 
-/// What the sensor reads, and what shoppers are then measured from.
-fn feed(config: &Config, session: Session, clock: RealClock) -> Result<(Feed, Option<Model>), AppError> {
+/// EventKind the sensor reads, and what shoppers are then measured from.
+fn feed(config: &Config, session: Session, clock: RealClock) -> Result<(Feed, Option<ShopperSource>), AppError> {
     let address = config.sensor.vmc;
     if config.sensor.source == SensorSource::Vmc {
         let refused =
@@ -216,7 +206,7 @@ fn feed(config: &Config, session: Session, clock: RealClock) -> Result<(Feed, Op
         return Ok((Feed::listen(address, clock).map_err(refused)?, None));
     }
     let visits = Visits::new(&session.joints, clock.now_ns(), config::ns(config.sensor.pause_s));
-    Ok((Feed::Played(visits), Some(Model::Played(Arc::new(session)))))
+    Ok((Feed::Played(visits), Some(ShopperSource::Recording(Arc::new(session)))))
 }
 
 fn workers() -> usize {

@@ -4,10 +4,11 @@ use serde::Serialize;
 use toile_engine::frame_loop::physics_thread::{LoopMeters, Scene};
 use toile_engine::frame_loop::queue::Capacity;
 use toile_engine::frame_loop::render_thread::Renderer;
-use toile_perf::latency::{Attributed, Placed, Quantiles, Warned};
+use toile_fitting::live::live_loop::EndedLive;
+use toile_fitting::live::report::{Attributed, Quantiles, QueueUse, ThreadPlacement};
+use toile_fitting::live::source::Feed;
 
 use super::health::HealthFigures;
-use super::lives::Ended;
 use super::session::SessionState;
 
 /// The body of the JSON.
@@ -25,6 +26,8 @@ pub struct KioskReport {
     pub frames: u64,
     /// Pictures that fell out because the one before took too long.
     pub dropped: u64,
+    /// Times that the render thread panicked and was started again.
+    pub revived: u64,
     /// Sensor frames.
     pub sensor_frames: u64,
     /// Steps taken.
@@ -48,10 +51,10 @@ pub struct KioskReport {
     /// Whether all memory was kept resident.
     pub memory_locked: bool,
     /// Where the threads ran.
-    pub threads: Vec<Placed>,
+    pub threads: Vec<ThreadPlacement>,
     /// How full the queues were.
-    pub capacities: Vec<Warned>,
-    /// What did not go as it should, with the cure.
+    pub capacities: Vec<QueueUse>,
+    /// EventKind did not go as it should, with the cure.
     pub warnings: Vec<String>,
     /// The window, where there was one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -85,7 +88,7 @@ pub struct WindowReport {
     pub jitter_us: Quantiles,
 }
 
-/// What the service recorded of its run, beside the loop's threads.
+/// EventKind the service recorded of its run, beside the loop's threads.
 #[derive(Debug, Clone)]
 pub struct RunRecord {
     /// The last figures.
@@ -96,22 +99,28 @@ pub struct RunRecord {
     pub states: Vec<SessionState>,
     /// Why steps were late.
     pub attributed: Attributed,
+    /// Times that the render thread was revived.
+    pub revived: u64,
     /// Where the threads ran.
-    pub threads: Vec<Placed>,
+    pub threads: Vec<ThreadPlacement>,
     /// Whether all memory was kept resident.
     pub memory_locked: bool,
-    /// What did not go as it should.
+    /// EventKind did not go as it should.
     pub warnings: Vec<String>,
 }
 
 impl KioskReport {
     /// Of threads that have ended.
-    pub fn of<S: Scene, E: Renderer>(ended: &Ended<S, E>, record: RunRecord) -> Self {
+    pub fn of<S: Scene, E: Renderer>(
+        ended: &EndedLive<S, E, Feed>,
+        capacities: [Capacity; 3],
+        record: RunRecord,
+    ) -> Self {
         let nothing = LoopMeters::default();
         let gauges = ended.physics.as_ref().map_or(&nothing, |physics| &physics.gauges);
-        let render = ended.render.as_ref();
+        let render = ended.render.as_ref().map(|watched| &watched.render);
         let mut warnings = record.warnings;
-        warnings.extend(ended.capacities.iter().filter_map(Capacity::warning));
+        warnings.extend(capacities.iter().filter_map(Capacity::warning));
         warnings.extend(record.threads.iter().flat_map(|t| t.refused.clone()));
         Self {
             seconds: (record.figures.uptime_ns / 1_000_000) as f64 / 1e3,
@@ -120,6 +129,7 @@ impl KioskReport {
             sessions: record.figures.sessions,
             frames: render.map_or(0, |r| r.pictures),
             dropped: render.map_or(0, |r| r.dropped),
+            revived: record.revived,
             sensor_frames: ended.sensor.as_ref().map_or(0, |s| s.frames()),
             steps: gauges.steps,
             steps_dropped: gauges.dropped,
@@ -132,7 +142,7 @@ impl KioskReport {
             nonfinite: record.figures.nonfinite,
             memory_locked: record.memory_locked,
             threads: record.threads,
-            capacities: ended.capacities.map(Warned::from).to_vec(),
+            capacities: capacities.map(QueueUse::from).to_vec(),
             warnings,
             window: None,
         }

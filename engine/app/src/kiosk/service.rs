@@ -7,20 +7,22 @@ use std::time::{Duration, Instant};
 use toile_engine::frame::Frame;
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
 use toile_engine::frame_loop::physics_thread::Scene;
+use toile_engine::frame_loop::queue::Capacity;
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::triple_buffer::Writer;
-use toile_perf::latency::{Attributed, Placed};
+use toile_fitting::live::dresser::{DressOutcome, Dresser, ShopperSource};
+use toile_fitting::live::live_loop::{EndedLive, LiveLoop};
+use toile_fitting::live::report::{Attributed, ThreadPlacement};
+use toile_fitting::live::scene_changer::SceneChanger;
+use toile_fitting::live::source::Feed;
+use toile_fitting::live::watchdog::Watchdog;
 use toile_sensors::frame::Joints;
 
-use super::change::Changing;
 use super::controller::{ControllerContext, HeadlessController, SessionController};
 use super::health::{HealthCounter, HealthFigures};
-use super::lives::{Ended, Lives};
 use super::report::RunRecord;
 use super::service_manager::{ServiceManager, ServiceStatus, StopSignal};
 use super::session::{SessionState, SessionTimes};
-use super::tailor::{Model, Tailor, Work};
-use super::watchdog::Watchdog;
 use crate::exit::AppError;
 
 /// Time between two rounds: the queues hold seconds, and a signal to end waits for no longer.
@@ -44,14 +46,14 @@ pub struct ServiceOptions {
     /// Time between two health lines (ns); 0 is never.
     pub health_ns: u64,
     /// The recording that shoppers are measured from, where one is played.
-    pub played: Option<Model>,
+    pub played: Option<ShopperSource>,
     /// Whether all memory is kept resident.
     pub memory_locked: bool,
-    /// What did not go as it should before the loop began.
+    /// EventKind did not go as it should before the loop began.
     pub warnings: Vec<String>,
 }
 
-/// What the service talks to beside the loop.
+/// EventKind the service talks to beside the loop.
 pub struct ServiceEnvironment<'a, S, O> {
     /// The service manager.
     pub manager: &'a dyn ServiceManager,
@@ -62,18 +64,21 @@ pub struct ServiceEnvironment<'a, S, O> {
     /// Receives the figures, where metrics are served.
     pub figures: Option<Writer<HealthFigures>>,
     /// Who dresses shoppers.
-    pub tailor: Tailor,
-    /// A dressed frame as a scene of the loop, and what the renderer has to know of it.
+    pub dresser: Dresser,
+    /// EventKind a dressed frame becomes in the loop, and what the renderer has to know of it.
     pub stage: fn(Frame) -> (S, O),
     /// How the mannequin stands.
     pub pose: Joints,
-    /// What is kept for a crash, where somebody asked for it.
+    /// EventKind is kept for a crash, where somebody asked for it.
     pub black_box: Option<Arc<FlightRecorder>>,
 }
 
+/// EventKind is left of a run: the loops, how full their queues were, and the record.
+pub type ServiceEnd<S, E> = (EndedLive<S, E, Feed>, [Capacity; 3], RunRecord);
+
 /// The service while it runs.
 pub struct Service<'a, S: Scene, E: Renderer> {
-    lives: Lives<S, E>,
+    live: LiveLoop<S, E, Feed>,
     context: ControllerContext<S, E::Outfit>,
     controller: Box<dyn SessionController<S, E::Outfit> + 'a>,
     length: Option<Duration>,
@@ -96,27 +101,28 @@ pub struct Service<'a, S: Scene, E: Renderer> {
 impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
     /// Over threads that have been started.
     pub fn new(
-        lives: Lives<S, E>,
-        changing: Changing<S, E::Outfit>,
+        live: LiveLoop<S, E, Feed>,
+        changer: SceneChanger<S, E::Outfit>,
         options: ServiceOptions,
         environment: ServiceEnvironment<'a, S, E::Outfit>,
     ) -> Self {
-        let now = lives.now_ns();
-        let threads = lives.placements().into_iter().map(Placed::from).collect();
+        let now = live.now_ns();
+        let threads = live.threads.placements().iter().cloned().map(ThreadPlacement::from).collect();
         let record = RunRecord {
             figures: HealthFigures::default(),
             ready_ms: None,
             states: vec![SessionState::Attract],
             attributed: Attributed::default(),
+            revived: 0,
             threads,
             memory_locked: options.memory_locked,
             warnings: options.warnings.clone(),
         };
-        let ServiceEnvironment { manager, stop, say, figures, tailor, stage, pose, black_box } = environment;
+        let ServiceEnvironment { manager, stop, say, figures, dresser, stage, pose, black_box } = environment;
         let controller = Box::new(HeadlessController::new(options.times, options.measure_ns, options.played, now));
         Self {
-            lives,
-            context: ControllerContext { changing, tailor, stage, pose },
+            live,
+            context: ControllerContext { changer, dresser, stage, pose },
             controller,
             length: options.length,
             crash_after: options.crash_after,
@@ -145,18 +151,19 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
     ///
     /// # Errors
     /// Where a thread has ended that must not: whoever started the service starts it again.
-    pub fn run(mut self) -> Result<(Ended<S, E>, RunRecord), AppError> {
+    pub fn run(mut self) -> Result<ServiceEnd<S, E>, AppError> {
         while !self.stop.is_requested() && !self.is_time_over() {
             self.poll()?;
             thread::sleep(POLL);
         }
         self.notify(ServiceStatus::Stopping);
         self.count();
-        Ok((self.lives.end(), self.record))
+        let (ended, capacities) = self.live.end();
+        Ok((ended, capacities, self.record))
     }
 
     fn is_time_over(&self) -> bool {
-        let uptime = Duration::from_nanos(self.lives.now_ns() - self.began_ns);
+        let uptime = Duration::from_nanos(self.live.now_ns() - self.began_ns);
         let crashes = self.crash_after.is_some_and(|after| uptime >= after);
         assert!(!crashes, "the crash that --crash-after asked for");
         self.length.is_some_and(|length| uptime >= length)
@@ -164,14 +171,14 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
 
     /// One round.
     fn poll(&mut self) -> Result<(), AppError> {
-        if let Some(role) = self.lives.over() {
+        if let Some(role) = self.live.threads.look().map_err(AppError::internal)? {
             return Err(AppError::Internal(format!(
                 "the {} thread has ended while the kiosk ran; start the kiosk again",
                 role.name()
             )));
         }
         self.watch();
-        let now = self.lives.now_ns();
+        let now = self.live.now_ns();
         self.poll_controller(now)?;
         self.count();
         self.health(now);
@@ -180,12 +187,12 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
 
     /// Feeds the watchdog, if physics and render got on; the first time that both have, the service is ready.
     fn watch(&mut self) {
-        let count = self.lives.pulse.count();
+        let count = self.live.queues.progress.count();
         if self.record.ready_ms.is_none() && count.iter().all(|n| *n > 0) {
             self.record.ready_ms = Some((self.begun.elapsed().as_secs_f64() * 1e4).round() / 10.0);
             self.notify(ServiceStatus::Ready);
         }
-        let now = self.lives.now_ns();
+        let now = self.live.now_ns();
         if self.dog.as_mut().is_some_and(|dog| dog.look(now, count)) {
             self.notify(ServiceStatus::Alive);
         }
@@ -201,16 +208,16 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
 
     /// Has the controller decide, and does what is the service's to do.
     fn poll_controller(&mut self, now: u64) -> Result<(), AppError> {
-        while let Some(frame) = self.lives.frames.pop() {
+        while let Some(frame) = self.live.queues.frames.pop() {
             self.controller.frame(frame);
         }
-        match self.context.tailor.look() {
-            Some(Work::Done(mannequin)) if mannequin.made.still => {
-                let act = self.context.act(*mannequin);
-                self.context.changing.stand_by(act);
+        match self.context.dresser.poll() {
+            Some(DressOutcome::Done(mannequin)) if mannequin.dressing.still => {
+                let scene = self.context.scene(*mannequin);
+                self.context.changer.stand_by(scene);
             }
-            Some(Work::Died) => {
-                return Err(AppError::Internal("the tailor's thread panicked; start the kiosk again".into()));
+            Some(DressOutcome::Panicked) => {
+                return Err(AppError::Internal("the dresser's thread panicked; start the kiosk again".into()));
             }
             Some(work) => self.controller.work(work),
             None => {}
@@ -224,7 +231,7 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
             }
         }
         self.context.dress_mannequin()?;
-        self.context.changing.look();
+        self.context.changer.update();
         Ok(())
     }
 
@@ -232,14 +239,15 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
         if let Some(black_box) = &self.black_box {
             black_box.drain(|_| {});
         }
-        while let Some(beat) = self.lives.beats.pop() {
-            self.counter.beat(&beat);
+        while let Some(step) = self.live.queues.step_reports.pop() {
+            self.counter.step(&step);
         }
-        while let Some(event) = self.lives.events.pop() {
+        while let Some(event) = self.live.queues.events.pop() {
             self.counter.event(&event);
         }
-        let [_, pictures] = self.lives.pulse.count();
-        let uptime = self.lives.now_ns() - self.began_ns;
+        let [_, pictures] = self.live.queues.progress.count();
+        let uptime = self.live.now_ns() - self.began_ns;
+        self.record.revived = self.live.threads.revived();
         self.record.attributed = self.counter.attributed();
         self.record.figures = self.counter.figures(uptime, self.controller.state(), pictures);
         if let Some(figures) = &mut self.figures {

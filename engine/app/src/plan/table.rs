@@ -1,8 +1,8 @@
 //! A plan as people read it.
 
-use toile_perf::plan::report::Plan;
-use toile_perf::plan::weigh::Played;
-use toile_perf::plan::work::STAGES;
+use toile_fitting::plan::report::Plan;
+use toile_fitting::plan::weigh::Played;
+use toile_fitting::plan::work::STAGES;
 
 use crate::terminal::{Paint, Tone};
 

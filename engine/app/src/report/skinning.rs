@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 use toile_engine::skin::Blend;
+use toile_fitting::scene::yardstick;
 use toile_perf::skinning::table::Row;
 use toile_perf::skinning::{Skinning, Timing};
-use toile_perf::yardstick;
 
 /// The body of `toile bench skinning`.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -4,6 +4,8 @@ use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::queue::Sender;
 use toile_engine::triple_buffer::Writer;
+use toile_fitting::dress::session;
+use toile_fitting::live::dresser::{DressOutcome, ShopperSource};
 use toile_sensors::filter::{FilterSettings, JointFilter};
 use toile_sensors::frame::Joints;
 use toile_track::gesture::Gestures;
@@ -18,8 +20,6 @@ use super::wardrobe::Outfit;
 use crate::exit::AppError;
 use crate::kiosk::controller::{ControllerContext, FEWEST_FRAMES, MOST_FRAMES, STALE_NS, SessionController};
 use crate::kiosk::session::{SessionState, StateChange};
-use crate::kiosk::tailor::{self, Work};
-use crate::shopper;
 
 /// Two outfits, draped, as the renderer draws them: left and right.
 pub type OutfitPair<O> = Box<[O; 2]>;
@@ -31,11 +31,11 @@ pub type NextInput<'a> = Box<dyn FnMut() -> Option<Input> + 'a>;
 pub struct WindowChannels<'a, O> {
     /// Where screens go: the latest is shown.
     pub screens: Writer<Screen>,
-    /// What is asked for at the display: the end of a bounded queue.
+    /// EventKind is asked for at the display: the end of a bounded queue.
     pub next_input: NextInput<'a>,
     /// Where two outfits go, and none when they are to be seen no more.
     pub pairs: Sender<Option<OutfitPair<O>>>,
-    /// What the renderer has to know of a frame as it lies in a snapshot.
+    /// EventKind the renderer has to know of a frame as it lies in a snapshot.
     pub draped: fn(&Frame, &Snapshot) -> O,
 }
 
@@ -45,7 +45,7 @@ const PATIENCE: u64 = 4;
 /// Jobs that wait for the worker: the last of each kind.
 #[derive(Default)]
 struct PendingJobs {
-    measure: Option<(u32, tailor::Model, bool)>,
+    measure: Option<(u32, ShopperSource, bool)>,
     dress: Option<(u32, Outfit)>,
     two: Option<(u32, Box<[Outfit; 2]>)>,
     snap: Option<(u32, Outfit, f32)>,
@@ -67,7 +67,7 @@ pub struct VisitController<'a, O> {
     window: WindowChannels<'a, O>,
     worker: DressingWorker,
     /// The recording that shoppers are measured from, where one is played.
-    played: Option<tailor::Model>,
+    played: Option<ShopperSource>,
     presence: PresenceTracker,
     filter: JointFilter,
     gestures: Gestures,
@@ -89,7 +89,7 @@ impl<'a, O> VisitController<'a, O> {
         (model, texts, mount): (VisitModel, Texts, DisplayMount),
         window: WindowChannels<'a, O>,
         context: DressingContext,
-        played: Option<tailor::Model>,
+        played: Option<ShopperSource>,
         mark: Option<[f32; 2]>,
     ) -> Self {
         Self {
@@ -142,7 +142,7 @@ impl<'a, O> VisitController<'a, O> {
     fn clear<S: Scene>(&mut self, context: &mut ControllerContext<S, O>) {
         self.worker.forget();
         (self.jobs, self.measuring, self.afresh) = (PendingJobs::default(), None, true);
-        context.changing.wipe();
+        context.changer.wipe();
         self.window.pairs.push(None);
     }
 
@@ -151,12 +151,12 @@ impl<'a, O> VisitController<'a, O> {
         let input = match done {
             JobResult::Measured(known) => Input::Measured(number, known),
             JobResult::Dressed(dressed) => {
-                // What was asked for before something else was is not shown.
+                // EventKind was asked for before something else was is not shown.
                 if !self.model.awaits_dress(number) {
                     return;
                 }
-                let act = context.act(*dressed);
-                context.changing.bring(act, std::mem::take(&mut self.afresh));
+                let act = context.scene(*dressed);
+                context.changer.show(act, std::mem::take(&mut self.afresh));
                 Input::Dressed(number)
             }
             JobResult::Two(two) => {
@@ -180,7 +180,7 @@ impl<'a, O> VisitController<'a, O> {
         }
         let Some(OngoingMeasurement { number, seated, frames, .. }) = self.measuring.take() else { return };
         if enough {
-            let model = self.played.clone().unwrap_or(tailor::Model::Joints(frames));
+            let model = self.played.clone().unwrap_or(ShopperSource::Joints(frames));
             self.jobs.measure = Some((number, model, seated));
         } else {
             self.update(now, Input::Failed(number), context);
@@ -227,19 +227,19 @@ impl<S: Scene, O> SessionController<S, O> for VisitController<'_, O> {
     fn frame(&mut self, frame: Joints) {
         self.seen = (frame.time_ns, self.presence.push(&frame));
         let filtered = self.filter.push(&frame);
-        if shopper::is_seen(&filtered) {
+        if session::is_present(&filtered) {
             self.pose = Some(filtered);
         }
         self.made.extend(self.gestures.push(&filtered, None).into_iter().flatten().map(|event| event.gesture));
         if let Some(measuring) = &mut self.measuring
-            && shopper::is_seen(&frame)
+            && session::is_present(&frame)
             && measuring.frames.len() < MOST_FRAMES
         {
             measuring.frames.push(frame);
         }
     }
 
-    fn work(&mut self, _work: Work) {}
+    fn work(&mut self, _work: DressOutcome) {}
 
     fn poll(&mut self, now: u64, context: &mut ControllerContext<S, O>) -> Result<Option<StateChange>, AppError> {
         let from = self.model.state();

@@ -2,15 +2,16 @@
 //! nothing waits for.
 
 use std::sync::Arc;
-use std::thread::{self, JoinHandle};
 
-use toile_assets::sizes::Population;
-use toile_assets::skeleton::Joint;
 use toile_engine::cloth::Quality;
 use toile_engine::frame::{Frame, Snapshot};
+use toile_fitting::dress::dressed::Dressed;
+use toile_fitting::dress::measured::{self, Told};
+use toile_fitting::dress::recipe::Recipe;
+use toile_fitting::dress::wish;
+use toile_fitting::live::background::{BackgroundJob, Finished};
+use toile_fitting::live::dresser::ShopperSource;
 use toile_sensors::frame::Joints;
-use toile_sensors::source::Session;
-use toile_track::fit::FitOptions;
 use toile_track::fit::measuring::MEASURES;
 use toile_view::image::{Size, linear};
 
@@ -18,11 +19,7 @@ use super::picture::{self, PictureCode, RgbImage};
 use super::size_fit::VisitorMeasures;
 use super::wardrobe::{Outfit, Wardrobe};
 use crate::exit::AppError;
-use crate::kiosk::tailor::{Dressed, Model};
-use crate::outfit::{self, Recipe};
 use crate::pictures::glance;
-use crate::shopper;
-use crate::tracking::{self, Alone};
 
 /// Size at which a picture is drawn, to be made smaller: twice the largest that a code holds.
 const DRAWN: Size = Size::new(192, 320);
@@ -43,7 +40,7 @@ pub struct MeasuredVisitor {
 #[derive(Debug, Clone)]
 pub enum DressingJob {
     /// Measure somebody, seated or standing.
-    Measure(Model, bool),
+    Measure(ShopperSource, bool),
     /// Dress somebody.
     Dress(Box<MeasuredVisitor>, Outfit),
     /// Drape two outfits on them.
@@ -73,29 +70,23 @@ pub struct DressingContext {
     pub wardrobe: Arc<Wardrobe>,
     /// How their cloth is stepped.
     pub quality: Quality,
-    /// Whose proportions apply where something was not seen.
-    pub population: Population,
 }
 
 /// The worker.
-#[derive(Debug)]
 pub struct DressingWorker {
     context: Arc<DressingContext>,
-    /// The job's number and its thread.
-    work: Option<(u32, JoinHandle<Result<JobResult, AppError>>)>,
-    /// Whether the shopper that the work is for has left.
-    unwanted: bool,
+    job: BackgroundJob<(u32, Result<JobResult, AppError>)>,
 }
 
 impl DressingWorker {
     /// Without a job.
     pub fn new(context: DressingContext) -> Self {
-        Self { context: Arc::new(context), work: None, unwanted: false }
+        Self { context: Arc::new(context), job: BackgroundJob::default() }
     }
 
     /// Whether a job is under way, wanted or not.
     pub fn is_busy(&self) -> bool {
-        self.work.is_some()
+        self.job.is_running()
     }
 
     /// Begins a job, by its number.
@@ -104,15 +95,12 @@ impl DressingWorker {
     /// Where the system gives no thread.
     pub fn begin(&mut self, number: u32, job: DressingJob) -> std::io::Result<()> {
         let context = self.context.clone();
-        self.unwanted = false;
-        let work = thread::Builder::new().name("toile-worker".into()).spawn(move || context.work(job))?;
-        self.work = Some((number, work));
-        Ok(())
+        self.job.start("toile-visitor", move || (number, context.work(job)))
     }
 
     /// The shopper has left: what comes of the job is thrown away.
     pub fn forget(&mut self) {
-        self.unwanted = true;
+        self.job.abandon();
     }
 
     /// What has come of a job, once, when it has ended.
@@ -120,14 +108,14 @@ impl DressingWorker {
     /// # Errors
     /// Where its thread panicked.
     pub fn poll(&mut self) -> Result<Option<(u32, JobResult)>, AppError> {
-        if !self.work.as_ref().is_some_and(|(_, work)| work.is_finished()) {
-            return Ok(None);
-        }
-        let Some((number, work)) = self.work.take() else { return Ok(None) };
-        match work.join() {
-            Err(_) => Err(AppError::Internal("the dressing thread panicked; start the kiosk again".into())),
-            Ok(_) if self.unwanted => Ok(None),
-            Ok(done) => Ok(Some((number, done.unwrap_or(JobResult::Failed)))),
+        match self.job.poll() {
+            Some(Finished::Panicked) => {
+                Err(AppError::Internal("the dressing thread panicked; start the kiosk again".into()))
+            }
+            Some(Finished::Done { value: (number, done), wanted: true }) => {
+                Ok(Some((number, done.unwrap_or(JobResult::Failed))))
+            }
+            Some(Finished::Done { .. }) | None => Ok(None),
         }
     }
 }
@@ -135,7 +123,7 @@ impl DressingWorker {
 impl DressingContext {
     fn work(&self, job: DressingJob) -> Result<JobResult, AppError> {
         Ok(match job {
-            DressingJob::Measure(model, seated) => JobResult::Measured(Box::new(self.measure(&model, seated)?)),
+            DressingJob::Measure(model, seated) => JobResult::Measured(Box::new(self.measure(model, seated)?)),
             DressingJob::Dress(client, outfit) => {
                 JobResult::Dressed(Box::new(Dressed::make(self.recipe(&client, &outfit)?, &client.pose, false)?))
             }
@@ -147,34 +135,13 @@ impl DressingContext {
         })
     }
 
-    /// Measures whoever stands or sits there. A body that is fitted to depth gives eleven measures and is better than
-    /// sections; joints alone give less; of who sits nothing is taken from legs and hips, which a chair hides.
-    fn measure(&self, model: &Model, seated: bool) -> Result<VisitorMeasures, AppError> {
-        let population = self.population;
-        let live;
-        let session = match model {
-            Model::Played(session) => session.as_ref(),
-            Model::Joints(joints) => {
-                live = joints_alone(joints.clone());
-                &live
-            }
-        };
-        if seated {
-            let above = joints_alone(session.joints.iter().map(above_the_chair).collect());
-            let mut measured = shopper::measure(&above, population)?;
-            (measured.measures.hip_girth, measured.measures.inseam) = (None, None);
-            return Ok(VisitorMeasures::new(measured, true));
-        }
-        let measured = shopper::measure(session, population)?;
-        let alone = Alone::of(session);
-        let options = FitOptions { ground: alone.ground, ..FitOptions::MEASURING };
-        let fitted = if session.depth.is_empty() { None } else { alone.measure(population, options) };
-        Ok(match fitted {
-            Some(fitted) => {
-                let known = VisitorMeasures::new(tracking::preferred(measured, &fitted), false);
-                VisitorMeasures { count: MEASURES.len() as u32, ..known }
-            }
-            None => VisitorMeasures::new(measured, false),
+    /// Measures whoever stands or sits there.
+    fn measure(&self, source: ShopperSource, seated: bool) -> Result<VisitorMeasures, AppError> {
+        let measured = measured::measure(&source.session(), Told { seated, ..Told::default() })?;
+        let known = VisitorMeasures { population: measured.population, ..VisitorMeasures::new(measured.best, seated) };
+        Ok(match measured.fitted {
+            Some(_) => VisitorMeasures { count: MEASURES.len() as u32, ..known },
+            None => known,
         })
     }
 
@@ -191,8 +158,8 @@ impl DressingContext {
             styles.push(item.style.clone());
             garments.push((item.style.name.clone(), size.clone()));
         }
-        let population = outfit::population(&styles)?;
-        Recipe::of("shopper", &client.known.measured, population, garments, self.quality)
+        let sex = measured::sex(client.known.population, wish::population(&styles)?);
+        Ok(Recipe::of("shopper", &client.known.measured, sex, garments, self.quality)?)
     }
 
     fn draped(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<DrapedFrame, AppError> {
@@ -212,55 +179,39 @@ impl DressingContext {
     }
 }
 
-fn joints_alone(joints: Vec<Joints>) -> Session {
-    Session { name: "live".into(), joints, raw_scale_known: true, ..Session::default() }
-}
-
-/// A frame without what a chair hides.
-fn above_the_chair(frame: &Joints) -> Joints {
-    use Joint::*;
-    let mut above = *frame;
-    for joint in [LeftHip, LeftKnee, LeftAnkle, LeftToe, RightHip, RightKnee, RightAnkle, RightToe] {
-        above.at_mut(joint).confidence = 0.0;
-    }
-    above
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::visitor::size_fit::{BodyPart, MeasureBasis};
     use crate::visitor::wardrobe::WornItem;
     use toile_assets::sizes::Girth;
+    use toile_fitting::dress::session;
+    use toile_sensors::source::Session;
 
     fn context() -> DressingContext {
-        DressingContext {
-            wardrobe: Arc::new(Wardrobe::stock().unwrap()),
-            quality: Quality::Draft,
-            population: Population::Women,
-        }
+        DressingContext { wardrobe: Arc::new(Wardrobe::stock().unwrap()), quality: Quality::Draft }
     }
 
     fn session() -> Session {
-        shopper::open(None, None).unwrap()
+        session::open(None, None).unwrap()
     }
 
     #[test]
     fn depth_gives_eleven_measures_joints_fewer_and_a_chair_fewest() {
         let (context, session) = (context(), session());
-        let depth = context.measure(&Model::Played(Arc::new(session.clone())), false).unwrap();
+        let depth = context.measure(ShopperSource::Recording(Arc::new(session.clone())), false).unwrap();
         assert!(depth.missing.is_empty() && depth.count == 11 && !depth.seated);
         assert_eq!(depth.basis(Girth::Waist), MeasureBasis::Seen);
         let stature = depth.measured.measures.stature.unwrap();
         assert!((stature.value - 1.694).abs() < 0.02, "{stature:?}");
-        let joints = context.measure(&Model::Joints(session.joints.clone()), false).unwrap();
+        let joints = context.measure(ShopperSource::Joints(session.joints.clone()), false).unwrap();
         assert!(joints.count < depth.count && joints.basis(Girth::Waist) == MeasureBasis::Bones);
-        let seated = context.measure(&Model::Played(Arc::new(session)), true).unwrap();
+        let seated = context.measure(ShopperSource::Recording(Arc::new(session)), true).unwrap();
         assert!(seated.count < joints.count && seated.seated);
         assert_eq!(seated.missing, [BodyPart::Hip, BodyPart::Legs]);
         assert_eq!(seated.basis(Girth::Hip), MeasureBasis::Guessed);
         assert!(matches!(
-            context.work(DressingJob::Measure(Model::Joints(Vec::new()), false)),
+            context.work(DressingJob::Measure(ShopperSource::Joints(Vec::new()), false)),
             Err(AppError::Input(_))
         ));
     }
@@ -268,9 +219,9 @@ mod tests {
     #[test]
     fn two_sizes_of_one_garment_are_draped_apart_and_a_picture_is_a_code() {
         let (context, session) = (context(), session());
-        let track = shopper::believable(&session);
-        let pose = track[shopper::stands_from(&track)];
-        let known = context.measure(&Model::Joints(session.joints), false).unwrap();
+        let track = session::filtered(&session);
+        let pose = track[session::first_standing(&track)];
+        let known = context.measure(ShopperSource::Joints(session.joints), false).unwrap();
         let item = context.wardrobe.find("t-shirt").unwrap();
         let outfit = |size, colour| -> Outfit { [WornItem { item, size, colour }].into_iter().collect() };
         let client = Box::new(MeasuredVisitor { known, pose });
@@ -284,7 +235,7 @@ mod tests {
                         assert_eq!(n, number);
                         return done;
                     }
-                    None => thread::sleep(std::time::Duration::from_millis(5)),
+                    None => std::thread::sleep(std::time::Duration::from_millis(5)),
                 }
             }
         };
@@ -297,7 +248,7 @@ mod tests {
         let JobResult::Picture(code) = done(8, DressingJob::Snap(client.clone(), outfit(2, 3), 0.0)) else { panic!() };
         assert!(code.side >= 101 && code.dark.len() == code.side * code.side, "{code:?}");
         let JobResult::Dressed(dressed) = done(9, DressingJob::Dress(client.clone(), outfit(2, 3))) else { panic!() };
-        assert_eq!(dressed.made.recipe.garments, [("t-shirt".to_owned(), "S".to_owned())]);
+        assert_eq!(dressed.dressing.recipe.garments, [("t-shirt".to_owned(), "S".to_owned())]);
         let JobResult::Failed = done(10, DressingJob::Dress(client.clone(), outfit(99, 0))) else { panic!() };
         // Who has left gets nothing.
         worker.begin(11, DressingJob::Dress(client, outfit(2, 3))).unwrap();

@@ -7,9 +7,8 @@
 
 use glam::Vec3;
 use toile_assets::skeleton::Joint;
+use toile_fitting::dress::session;
 use toile_sensors::frame::Joints;
-
-use crate::shopper;
 
 /// What is seen at a moment.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -91,7 +90,7 @@ impl PresenceTracker {
 
     /// Takes a frame.
     pub fn push(&mut self, frame: &Joints) -> Presence {
-        let Some(hips) = frame.believed(Joint::Pelvis).filter(|_| shopper::is_seen(frame)) else {
+        let Some(hips) = frame.believed(Joint::Pelvis).filter(|_| session::is_present(frame)) else {
             return Presence::default();
         };
         let leapt = self
@@ -174,14 +173,13 @@ fn differ(a: &BoneLengths, b: &BoneLengths) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shopper;
 
     const FRAME_NS: u64 = 33_333_333;
 
     /// Somebody of the embedded session, so much larger, moved aside, at a time.
     fn frames(scale: f32, aside: f32, from_ns: u64) -> Vec<Joints> {
-        let track = shopper::believable(&shopper::open(None, None).unwrap());
-        let begin = shopper::stands_from(&track);
+        let track = session::filtered(&session::open(None, None).unwrap());
+        let begin = session::first_standing(&track);
         let moved = |(i, f): (u64, &Joints)| {
             let mut frame = Joints { time_ns: from_ns + i * FRAME_NS, ..*f };
             frame.joints.iter_mut().for_each(|j| j.position = j.position * scale + Vec3::X * aside);

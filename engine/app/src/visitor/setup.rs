@@ -11,8 +11,7 @@ use super::texts::{Language, Texts};
 use super::wardrobe::Wardrobe;
 use crate::exit::AppError;
 use crate::kiosk::config::{self, Config};
-use crate::kiosk::tailor;
-use crate::outfit;
+use toile_fitting::live::dresser::ShopperSource;
 
 /// A minute (s).
 const MINUTE_S: f64 = 60.0;
@@ -54,13 +53,7 @@ impl VisitorSetup {
             wear: config.wear.garments.clone(),
             size: config.wear.size.clone(),
         };
-        let worn: Vec<_> = defaults.wear.iter().filter_map(|name| wardrobe.find(name)).collect();
-        let worn: Vec<_> = worn.into_iter().map(|place| wardrobe.items[place].style.clone()).collect();
-        let context = DressingContext {
-            wardrobe: wardrobe.clone(),
-            quality: config.wish().quality,
-            population: outfit::population(&worn)?,
-        };
+        let context = DressingContext { wardrobe: wardrobe.clone(), quality: config.wish().quality };
         let model = VisitModel::new(defaults, wardrobe, now_ns);
         Ok(Self { model, texts: Texts::load()?, mount, context, mark: display.mark_m })
     }
@@ -71,7 +64,7 @@ impl VisitorSetup {
     }
 
     /// At work behind a window. `played` is the recording that shoppers are measured from, where one is played.
-    pub fn controller<O>(self, window: WindowChannels<'_, O>, played: Option<tailor::Model>) -> VisitController<'_, O> {
+    pub fn controller<O>(self, window: WindowChannels<'_, O>, played: Option<ShopperSource>) -> VisitController<'_, O> {
         VisitController::new((self.model, self.texts, self.mount), window, self.context, played, self.mark)
     }
 }

@@ -1,6 +1,7 @@
 //! Fit of a size: how a size sits at each zone, as a shopper reads it, and why.
 
-use toile_assets::sizes::Girth;
+use toile_assets::sizes::{Girth, Population};
+use toile_fitting::dress::size;
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, Source};
 use toile_track::recommend::Recommendation;
@@ -8,7 +9,6 @@ use toile_track::recommend::Recommendation;
 use super::texts::TextKey;
 use super::wardrobe::WardrobeItem;
 use crate::exit::AppError;
-use crate::fit;
 
 /// A part of the body that is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -76,6 +76,8 @@ pub struct VisitorMeasures {
     pub seated: bool,
     /// How many measures are known.
     pub count: u32,
+    /// Whose proportions apply where something was not seen.
+    pub population: Population,
 }
 
 impl VisitorMeasures {
@@ -86,7 +88,7 @@ impl VisitorMeasures {
         let lacks = |(part, taken): (BodyPart, Option<Estimate>)| taken.is_none().then_some(part);
         let missing = BodyPart::ALL.into_iter().zip(taken).filter_map(lacks).collect();
         let count = m.named().iter().filter(|(_, taken)| taken.is_some()).count() as u32;
-        Self { measured, missing, seated, count }
+        Self { measured, missing, seated, count, population: Population::Mixed }
     }
 
     /// What a girth rests on.
@@ -212,7 +214,7 @@ pub enum OutOfRange {
 /// A garment that no size can be named of.
 pub fn judge(item: &WardrobeItem, known: &VisitorMeasures, size: Option<usize>) -> Result<SizeFit, AppError> {
     let code = size.and_then(|s| item.sizes.get(s)).map(String::as_str);
-    let judged = fit::judge(&item.style, code, &known.measured)?;
+    let judged = size::judge(&item.style, code, &known.measured)?;
     let place = |code: &str| item.sizes.iter().position(|s| s == code);
     let chosen = place(&judged.size).unwrap_or_default();
     let best = judged.sizes.iter().max_by(|a, b| a.probability.total_cmp(&b.probability));

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use toile_engine::meter::Meter;
-use toile_perf::latency::Quantiles;
+use toile_fitting::live::report::Quantiles;
 
 use crate::kiosk::report::WindowReport;
 

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use toile_engine::lanes::Width;
 use toile_engine::skin::Blend;
+use toile_fitting::scene::yardstick;
 use toile_perf::skinning::{self, BenchError, Options, Subject};
-use toile_perf::yardstick;
 
 use crate::cli::values::{count, lanes};
 use crate::exit::AppError;

@@ -13,86 +13,64 @@ use toile_engine::frame_loop::queue::Sender;
 use toile_engine::frame_loop::recording::{self, Entry, SceneNote};
 use toile_engine::frame_loop::replay::{Replayed, replay_changing};
 use toile_engine::workers::WorkerPool;
-use toile_sensors::frame::Joints;
 
-use super::stage::Stage;
-use crate::crash;
-use crate::exit::AppError;
-use crate::outfit::Recipe;
+use super::crash;
+use super::live_scene::LiveScene;
+use crate::FittingError;
+use crate::dress::dressed::Dressing;
+use crate::dress::recipe::Recipe;
 
-/// What a recording of the kiosk says of itself.
+/// EventKind a recording of the kiosk says of itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct KioskRecipe {
     /// Version of the program that wrote it.
     pub version: String,
-    /// What it is of.
-    pub kiosk: Kind,
+    /// EventKind it is of.
+    pub kiosk: SceneNaming,
 }
 
 /// How a kiosk's recording names its scenes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Kind {
+pub enum SceneNaming {
     /// Each by a note of its number.
     Notes,
 }
 
-/// How a scene was made.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Made {
-    /// Body, garments and quality.
-    pub recipe: Recipe,
-    /// The joints in which it was dressed.
-    pub first: Joints,
-    /// Whether it stands still there, as the mannequin does.
-    pub still: bool,
-}
-
 /// The text of a note.
 #[derive(Serialize, Deserialize)]
-struct Said {
+struct DressingNote {
     still: bool,
     recipe: Recipe,
 }
 
-impl Made {
+impl Dressing {
     /// The same for a recording, under this number.
     pub fn note(&self, number: u64) -> SceneNote {
-        let said = Said { still: self.still, recipe: self.recipe.clone() };
+        let said = DressingNote { still: self.still, recipe: self.recipe.clone() };
         // Plain strings and numbers: it cannot fail, and a note without text is refused by the replay.
         let text = serde_json::to_string(&said).unwrap_or_default();
         SceneNote { number, first: self.first, text }
     }
 
-    fn read(note: &SceneNote) -> Result<Self, AppError> {
-        let Said { still, recipe } = serde_json::from_str(&note.text).map_err(|e| {
-            AppError::Input(format!("what it says of scene {} is not understood ({e}); record it again", note.number))
+    fn read(note: &SceneNote) -> Result<Self, FittingError> {
+        let DressingNote { still, recipe } = serde_json::from_str(&note.text).map_err(|e| {
+            FittingError::Input(format!(
+                "what it says of scene {} is not understood ({e}); record it again",
+                note.number
+            ))
         })?;
         Ok(Self { recipe, first: note.first, still })
     }
 
     /// Makes it again; with one worker, until another scene's are taken over.
-    fn stage(&self, pool: Option<WorkerPool>) -> Result<Stage<FrameScene>, AppError> {
+    fn scene(&self, crew: Option<WorkerPool>) -> Result<LiveScene<FrameScene>, FittingError> {
         let (frame, _reader) = self.recipe.make(&self.first)?;
-        let frame = match pool {
-            Some(pool) => frame.with_workers(pool),
+        let frame = match crew {
+            Some(crew) => frame.with_workers(crew),
             None => frame,
         };
-        Ok(Stage::new(FrameScene::new(frame), self.still.then_some(self.first)))
-    }
-
-    /// Of nobody.
-    #[cfg(test)]
-    pub fn for_tests(still: bool) -> Self {
-        let recipe = Recipe {
-            version: String::new(),
-            session: String::new(),
-            sex: "female".into(),
-            measures: [0; 5],
-            garments: Vec::new(),
-            quality: "shop".into(),
-        };
-        Self { recipe, first: Joints::absent(0), still }
+        Ok(LiveScene::new(FrameScene::new(frame), self.stands()))
     }
 }
 
@@ -100,32 +78,32 @@ impl Made {
 ///
 /// # Errors
 /// A header that cannot be written, which does not happen.
-pub fn keep(first: &Made, path: PathBuf) -> Result<(Arc<FlightRecorder>, Sender<Entry>), AppError> {
-    let recipe = KioskRecipe { version: env!("CARGO_PKG_VERSION").to_owned(), kiosk: Kind::Notes };
-    let header = recording::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
-    let (black_box, recording) = crash::record(header, path);
+pub fn keep(first: &Dressing, path: PathBuf) -> Result<(Arc<FlightRecorder>, Sender<Entry>), FittingError> {
+    let recipe = KioskRecipe { version: env!("CARGO_PKG_VERSION").to_owned(), kiosk: SceneNaming::Notes };
+    let header = recording::header(&serde_json::to_string(&recipe).map_err(FittingError::internal)?);
+    let (black_box, tape) = crash::record(header, path);
     black_box.describe(&first.note(0));
     black_box.keep(&Entry::Changed { number: 0, afresh: true });
-    Ok((black_box, recording))
+    Ok((black_box, tape))
 }
 
 /// Takes a kiosk's recording again: the last frame, and what came out.
 ///
 /// # Errors
 /// A recording that does not begin where somebody was dressed, or a scene that cannot be made.
-pub fn again(notes: &[SceneNote], entries: &[Entry], workers: usize) -> Result<(Frame, Replayed), AppError> {
+pub fn again(notes: &[SceneNote], entries: &[Entry], workers: usize) -> Result<(Frame, Replayed), FittingError> {
     let Some((Entry::Changed { number, .. }, entries)) = entries.split_first() else {
-        return Err(AppError::Input("it does not begin where somebody was dressed; record it again".into()));
+        return Err(FittingError::Input("it does not begin where somebody was dressed; record it again".into()));
     };
     let made = |number: u64| {
-        let unknown = || AppError::Input(format!("it does not say how scene {number} was made; record it again"));
-        notes.iter().find(|note| note.number == number).ok_or_else(unknown).and_then(Made::read)
+        let unknown = || FittingError::Input(format!("it does not say how scene {number} was made; record it again"));
+        notes.iter().find(|note| note.number == number).ok_or_else(unknown).and_then(Dressing::read)
     };
-    let pool = WorkerPool::new(workers).map_err(AppError::input)?;
-    let mut stepper = SceneStepper::new(made(*number)?.stage(Some(pool))?);
+    let crew = WorkerPool::new(workers).map_err(FittingError::input)?;
+    let mut stepper = SceneStepper::new(made(*number)?.scene(Some(crew))?);
     let mut refused = None;
     let out = replay_changing(&mut stepper, entries, &SimClock::default(), |number| {
-        let stage = made(number).and_then(|made| made.stage(None));
+        let stage = made(number).and_then(|made| made.scene(None));
         stage.map_err(|e| refused = refused.take().or(Some(e))).ok()
     });
     match refused {

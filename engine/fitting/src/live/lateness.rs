@@ -1,4 +1,4 @@
-//! What the system counts of the physics thread, and what that says of a step that was late.
+//! EventKind the system counts of the physics thread, and what that says of a step that was late.
 //!
 //! Each step costs two system calls that touch no file: `getrusage(RUSAGE_THREAD)` for faults and lost cores, and the
 //! thread's CPU clock; together under a microsecond. How long the thread waited for a core while it was ready stands only in
@@ -80,7 +80,7 @@ fn second_number(text: &[u8]) -> Option<u64> {
     std::str::from_utf8(text).ok()?.split_ascii_whitespace().nth(1)?.parse().ok()
 }
 
-/// Why a step was late; `before` is the cause of the step before, where that was late too. What is due to none of what is
+/// Why a step was late; `before` is the cause of the step before, where that was late too. EventKind is due to none of what is
 /// counted is some other's: a timer, the firmware, a hypervisor that ran another machine.
 fn cause(miss: &Miss, before: Option<Cause>) -> Cause {
     let counted = &miss.counted;
@@ -103,7 +103,7 @@ fn cause(miss: &Miss, before: Option<Cause>) -> Cause {
 
 /// Adds up why steps were late, from what the loop tells.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Attributing {
+pub struct LatenessAttribution {
     /// The sums.
     pub attributed: Attributed,
     /// The last late step and its cause.
@@ -112,7 +112,7 @@ pub struct Attributing {
     dropped: u64,
 }
 
-impl Attributing {
+impl LatenessAttribution {
     /// Something happened; what is neither late nor dropped is passed over.
     pub fn take(&mut self, event: &Event) {
         match event.what {
@@ -154,7 +154,7 @@ mod tests {
     #[test]
     fn dropped_steps_have_the_cause_of_the_one_in_their_place() {
         let counted = Counters { cpu_ns: 9_000_000, ..Counters::default() };
-        let mut sums = Attributing::default();
+        let mut sums = LatenessAttribution::default();
         let events = [(7, EventKind::Dropped(3)), (7, EventKind::Missed(miss(9, counted))), (8, EventKind::SensorLost)];
         let late_after = [
             (8, EventKind::Missed(miss(2, Counters::default()))),

@@ -1,4 +1,4 @@
-//! What the sensor's thread reads: a recording played round after round with nobody there in between, or a live sender.
+//! EventKind the sensor's thread reads: a recording played round after round with nobody there in between, or a live sender.
 
 use std::io;
 use std::net::SocketAddr;
@@ -14,7 +14,7 @@ use toile_sensors::source::vmc::VmcReceiver;
 pub const FRAMES: usize = 64;
 
 /// The name of the bound, as warnings give it.
-pub const FRAMES_NAME: &str = "FRAMES (engine/app/src/kiosk/source.rs)";
+pub const FRAMES_NAME: &str = "FRAMES (engine/fitting/src/live/source.rs)";
 
 /// Time between two frames in which nobody is seen (ns): a camera of 30 Hz.
 const EMPTY_NS: u64 = SECOND_NS / 30;
@@ -61,7 +61,7 @@ impl Visits {
 
 /// A live sender of Virtual Motion Capture messages.
 #[derive(Debug)]
-pub struct Live {
+pub struct LiveSender {
     receiver: VmcReceiver,
     clock: RealClock,
     next_ns: u64,
@@ -73,7 +73,7 @@ pub enum Feed {
     /// A recording.
     Played(Visits),
     /// A sender.
-    Live(Box<Live>),
+    Live(Box<LiveSender>),
 }
 
 impl Feed {
@@ -83,7 +83,7 @@ impl Feed {
     /// Where the address cannot be bound.
     pub fn listen(address: SocketAddr, clock: RealClock) -> io::Result<Self> {
         let receiver = VmcReceiver::bind(address)?;
-        Ok(Self::Live(Box::new(Live { receiver, clock, next_ns: clock.now_ns() })))
+        Ok(Self::Live(Box::new(LiveSender { receiver, clock, next_ns: clock.now_ns() })))
     }
 }
 
@@ -115,19 +115,19 @@ impl JointSource for Feed {
 
 /// A source whose frames somebody else looks at too, as they come: unfiltered.
 #[derive(Debug)]
-pub struct Tapped {
-    feed: Feed,
+pub struct Tapped<F> {
+    feed: F,
     tap: Sender<Joints>,
 }
 
-impl Tapped {
+impl<F> Tapped<F> {
     /// Each frame of the feed is also pushed there.
-    pub fn new(feed: Feed, tap: Sender<Joints>) -> Self {
+    pub fn new(feed: F, tap: Sender<Joints>) -> Self {
         Self { feed, tap }
     }
 }
 
-impl JointSource for Tapped {
+impl<F: JointSource> JointSource for Tapped<F> {
     fn next_ns(&self) -> Option<u64> {
         self.feed.next_ns()
     }

@@ -1,9 +1,9 @@
-//! The stage: the scene that physics steps, with what the service wants to know of each step. Another one takes its place by
+//! The scene as the physics thread steps it, with what its watchers want to know of each step. Another one takes its place by
 //! the loop's own handover ([`toile_engine::frame_loop::handover`]); what left is dropped elsewhere.
 
 use std::sync::Arc;
 
-use toile_engine::clock::{Clock, RealClock};
+use toile_engine::clock::Clock;
 use toile_engine::frame::Times;
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::governor::{LADDER, Rung};
@@ -13,59 +13,60 @@ use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
 use toile_engine::meter::PERIOD_NS;
 use toile_sensors::frame::Joints;
 
-use super::watchdog::Pulse;
+use super::running::Restart;
+use super::watchdog::Progress;
 
 /// Beats that wait to be counted: eight seconds.
-pub const BEATS: usize = 1024;
+pub const STEP_REPORTS: usize = 1024;
 
 /// The name of the bound, as warnings give it.
-pub const BEATS_NAME: &str = "BEATS (engine/app/src/kiosk/stage.rs)";
+pub const STEP_REPORTS_NAME: &str = "STEP_REPORTS (engine/fitting/src/live/live_scene.rs)";
 
-/// What one step came to.
+/// EventKind one step came to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Beat {
+pub struct StepReport {
     /// From its begin to its publication (ns).
     pub step_ns: u64,
     /// Whether it was published after its period.
     pub late: bool,
     /// The place in the governor's ladder.
     pub rung: u8,
-    /// Steps so far that were rolled back, because of a number that is none.
+    /// Steps so far that were rolled back, because of a NaN or an infinity.
     pub nonfinite: u64,
 }
 
-/// What stays where scenes come and go.
+/// EventKind stays where scenes come and go.
 #[derive(Debug)]
-struct Wings {
-    /// What each step came to.
-    beats: Sender<Beat>,
-    /// What the watchdog looks at.
-    pulse: Arc<Pulse>,
+struct StepReporting {
+    /// EventKind each step came to.
+    reports: Sender<StepReport>,
+    /// EventKind the watchdog looks at.
+    progress: Arc<Progress>,
     /// Steps that were rolled back by those who have left: their own counts begin at 0.
     past: u64,
 }
 
 /// A scene as physics steps it.
 #[derive(Debug)]
-pub struct Stage<S> {
+pub struct LiveScene<S> {
     scene: S,
     /// Where it stands still, whatever the sensor sees; none follows the sensor.
     still: Option<Joints>,
     place: u8,
     /// Of the scene that is stepped; the others have none.
-    wings: Option<Box<Wings>>,
+    reporting: Option<Box<StepReporting>>,
 }
 
-impl<S: Scene> Stage<S> {
+impl<S: Scene> LiveScene<S> {
     /// A scene that waits for its turn, or that a replay steps. At load.
     pub fn new(scene: S, still: Option<Joints>) -> Self {
-        Self { scene, still, place: 0, wings: None }
+        Self { scene, still, place: 0, reporting: None }
     }
 
     /// The same as the first that is stepped.
     #[must_use]
-    pub fn begin(self, beats: Sender<Beat>, pulse: Arc<Pulse>) -> Self {
-        Self { wings: Some(Box::new(Wings { beats, pulse, past: 0 })), ..self }
+    pub fn reporting(self, reports: Sender<StepReport>, progress: Arc<Progress>) -> Self {
+        Self { reporting: Some(Box::new(StepReporting { reports, progress, past: 0 })), ..self }
     }
 
     /// The scene.
@@ -79,17 +80,17 @@ impl<S: Scene> Stage<S> {
     }
 }
 
-impl<S: Scene> Scene for Stage<S> {
+impl<S: Scene> Scene for LiveScene<S> {
     fn step(&mut self, joints: &Joints, times: Times, clock: &impl Clock) {
         let joints = self.still.as_ref().unwrap_or(joints);
         self.scene.step(joints, times, clock);
-        let Some(wings) = &mut self.wings else { return };
+        let Some(reporting) = &mut self.reporting else { return };
         let ended = clock.now_ns();
-        wings.pulse.step();
+        reporting.progress.step();
         let [_, nonfinite] = self.scene.troubles();
         let step_ns = ended.saturating_sub(times.begun_ns);
         let late = ended.saturating_sub(times.scheduled_ns) > PERIOD_NS;
-        wings.beats.push(Beat { step_ns, late, rung: self.place, nonfinite: wings.past + nonfinite });
+        reporting.reports.push(StepReport { step_ns, late, rung: self.place, nonfinite: reporting.past + nonfinite });
     }
 
     fn set_rung(&mut self, rung: &Rung) {
@@ -115,10 +116,10 @@ impl<S: Scene> Scene for Stage<S> {
 
     fn succeed(&mut self, before: &mut Self) {
         self.scene.succeed(&mut before.scene);
-        std::mem::swap(&mut self.wings, &mut before.wings);
+        std::mem::swap(&mut self.reporting, &mut before.reporting);
         let ([_, left], [_, came_with]) = (before.scene.troubles(), self.scene.troubles());
-        if let Some(wings) = &mut self.wings {
-            wings.past = (wings.past + left).saturating_sub(came_with);
+        if let Some(reporting) = &mut self.reporting {
+            reporting.past = (reporting.past + left).saturating_sub(came_with);
         }
     }
 
@@ -127,24 +128,30 @@ impl<S: Scene> Scene for Stage<S> {
     }
 }
 
-/// The render's life, whose pictures the watchdog counts.
-pub struct Watching<E: Renderer> {
-    /// The life itself.
-    pub render: RenderThread<E, RealClock>,
-    pulse: Arc<Pulse>,
+/// The render loop, whose pictures the watchdog counts.
+pub struct WatchedRenderer<E: Renderer, C> {
+    /// The loop itself.
+    pub render: RenderThread<E, C>,
+    progress: Arc<Progress>,
 }
 
-impl<E: Renderer> Watching<E> {
+impl<E: Renderer, C: Clock> WatchedRenderer<E, C> {
     /// The same, watched.
-    pub fn new(render: RenderThread<E, RealClock>, pulse: Arc<Pulse>) -> Self {
-        Self { render, pulse }
+    pub fn new(render: RenderThread<E, C>, progress: Arc<Progress>) -> Self {
+        Self { render, progress }
     }
 }
 
-impl<E: Renderer> ThreadLoop for Watching<E> {
+impl<E: Renderer, C: Clock> Restart for WatchedRenderer<E, C> {
+    fn restarted(self) -> Self {
+        Self { render: self.render.begun_again(), ..self }
+    }
+}
+
+impl<E: Renderer, C: Clock> ThreadLoop for WatchedRenderer<E, C> {
     fn run_due(&mut self) -> Option<u64> {
         let next = self.render.run_due();
-        self.pulse.pictures(self.render.pictures);
+        self.progress.pictures(self.render.pictures);
         next
     }
 }
@@ -160,7 +167,7 @@ mod tests {
     #[derive(Debug, Default)]
     struct Said {
         name: u8,
-        pool: u8,
+        crew: u8,
         rolled_back: u64,
         substeps: f32,
         seen_ns: Vec<u64>,
@@ -180,7 +187,7 @@ mod tests {
             u64::from(self.name)
         }
         fn succeed(&mut self, before: &mut Self) {
-            std::mem::swap(&mut self.pool, &mut before.pool);
+            std::mem::swap(&mut self.crew, &mut before.crew);
         }
         fn troubles(&self) -> [u64; 2] {
             [0, self.rolled_back]
@@ -189,26 +196,26 @@ mod tests {
 
     #[test]
     fn another_scene_takes_over_crew_quality_and_counts() {
-        let (beats, mut told) = bounded(BEATS_NAME, BEATS);
-        let pulse = Arc::new(Pulse::default());
-        let first = Said { name: 1, pool: 9, ..Said::default() };
-        let stage = Stage::new(first, Some(Joints::absent(7))).begin(beats, pulse.clone());
+        let (reports, mut told) = bounded(STEP_REPORTS_NAME, STEP_REPORTS);
+        let progress = Arc::new(Progress::default());
+        let first = Said { name: 1, crew: 9, ..Said::default() };
+        let stage = LiveScene::new(first, Some(Joints::absent(7))).reporting(reports, progress.clone());
         let (mut stepper, clock) = (SceneStepper::new(stage), SimClock::default());
         stepper.set_rung(1);
         stepper.step(0, 0, &clock);
-        let mut other = Stage::new(Said { name: 2, ..Said::default() }, None);
+        let mut other = LiveScene::new(Said { name: 2, ..Said::default() }, None);
         stepper.change(&mut other, true);
         stepper.step(0, 0, &clock);
         let now = stepper.scene.scene();
-        assert_eq!((now.name, now.pool, now.substeps), (2, 9, LADDER[1].substep_share));
+        assert_eq!((now.name, now.crew, now.substeps), (2, 9, LADDER[1].substep_share));
         assert_ne!(now.seen_ns, [7], "it follows the sensor");
         let before = other.scene();
-        assert_eq!((before.name, before.pool, &before.seen_ns[..]), (1, 0, &[7][..]), "it stood still");
+        assert_eq!((before.name, before.crew, &before.seen_ns[..]), (1, 0, &[7][..]), "it stood still");
         // Back on, with the counts that it left with.
         stepper.change(&mut other, true);
         stepper.step(0, 0, &clock);
-        let beats: Vec<(u8, u64)> = std::iter::from_fn(|| told.pop()).map(|b| (b.rung, b.nonfinite)).collect();
-        assert_eq!(beats, [(1, 1), (1, 2), (1, 3)], "no count begins anew");
-        assert_eq!(pulse.count(), [3, 0]);
+        let reports: Vec<(u8, u64)> = std::iter::from_fn(|| told.pop()).map(|b| (b.rung, b.nonfinite)).collect();
+        assert_eq!(reports, [(1, 1), (1, 2), (1, 3)], "no count begins anew");
+        assert_eq!(progress.count(), [3, 0]);
     }
 }

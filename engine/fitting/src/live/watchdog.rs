@@ -7,16 +7,16 @@ use std::time::Duration;
 /// Longest time between two feedings (ns), however patient the manager is: a state page shows that it is alive.
 const LONGEST_NS: u64 = 5_000_000_000;
 
-/// What the loop's threads count up while they get on.
+/// EventKind the loop's threads count up while they get on.
 ///
 /// Relaxed: numbers to look at, which order nothing.
 #[derive(Debug, Default)]
-pub struct Pulse {
+pub struct Progress {
     steps: AtomicU64,
     pictures: AtomicU64,
 }
 
-impl Pulse {
+impl Progress {
     /// A step was published.
     pub fn step(&self) {
         self.steps.fetch_add(1, Relaxed);

@@ -6,8 +6,8 @@ use std::hint::black_box;
 use glam::Affine3A;
 use toile_assets::body::BodyError;
 
-use crate::surface::Surface;
-use crate::time;
+use super::surface::Surface;
+use crate::timing;
 
 /// Vertices of the yardstick, by the benchmark scene.
 pub const VERTICES: usize = 15_000;
@@ -44,7 +44,7 @@ impl Yardstick {
     /// Its time on this machine now (us, median of many passes).
     pub fn read_us(&self) -> f64 {
         let mut posed = vec![[[0.0; 3]; 2]; VERTICES];
-        time::median_us(|| {
+        timing::median_us(|| {
             blend(black_box(&self.palette), black_box(&self.vertices), &mut posed);
             black_box(&posed);
         })

@@ -1,4 +1,4 @@
-//! Outfit: a shopper, dressed, made from a recipe that a recording carries along, so that a replay makes the very same.
+//! The recipe of a dressed shopper, which a recording carries along so that a replay makes the very same.
 
 use serde::{Deserialize, Serialize};
 use toile_assets::body::{Body, Measures, Sex};
@@ -11,11 +11,12 @@ use toile_engine::cloth::{Quality, Settings};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
 use toile_sensors::frame::Joints;
-use toile_sensors::source::Session;
 use toile_track::measure::Measurements;
 
-use crate::exit::AppError;
-use crate::{fit, shopper};
+use super::measured::Measured;
+use super::wish::{self, Wish};
+use super::{body, size};
+use crate::FittingError;
 
 /// How a scene is made.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -34,7 +35,7 @@ pub struct Recipe {
     pub quality: String,
 }
 
-/// What a scene is made of.
+/// EventKind a scene is made of.
 #[derive(Debug, Clone)]
 pub struct Parts {
     /// The shopper's body.
@@ -47,51 +48,18 @@ pub struct Parts {
     pub settings: Settings,
 }
 
-/// What is asked for.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Wish {
-    /// Garments of the wardrobe, inner first; empty is the first of the wardrobe.
-    pub garments: Vec<String>,
-    /// A size in place of the recommended one.
-    pub size: Option<String>,
-    /// How the cloth is stepped.
-    pub quality: Quality,
-}
-
-/// Whose bodies these garments are made for: the first of them that is not made for everybody decides.
-///
-/// # Errors
-/// A garment whose size table cannot be used.
-pub fn population(styles: &[Style]) -> Result<Population, AppError> {
-    let mut population = Population::Mixed;
-    for style in styles {
-        if population == Population::Mixed {
-            population = style.sizes().map_err(AppError::input)?.population;
-        }
-    }
-    Ok(population)
-}
-
 impl Recipe {
-    /// Measures the shopper of a session and chooses the sizes.
+    /// Of somebody who was measured, in the sizes that fit them or the one that is asked for.
     ///
     /// # Errors
-    /// A session that nobody can be measured in, a garment that is not in the wardrobe, a size that is not made.
-    pub fn write(session: &Session, wish: &Wish) -> Result<Self, AppError> {
-        let names: Vec<&str> = if wish.garments.is_empty() {
-            vec![wardrobe::names()[0]]
-        } else {
-            wish.garments.iter().map(String::as_str).collect()
-        };
-        let styles = names.iter().map(|name| wardrobe::style(name).map_err(AppError::input));
-        let styles = styles.collect::<Result<Vec<_>, _>>()?;
-        let population = population(&styles)?;
-        let measured = shopper::measure(session, population)?;
-        let sizes = styles
-            .iter()
-            .map(|style| Ok((style.name.clone(), fit::choose(style, wish.size.as_deref(), &measured)?.size)));
-        let garments = sizes.collect::<Result<_, AppError>>()?;
-        Self::of(&session.name, &measured, population, garments, wish.quality)
+    /// A garment that is not in the wardrobe, a size that is not made, measures that no body has.
+    pub fn choose(session: &str, measured: &Measured, wish: &Wish) -> Result<Self, FittingError> {
+        let styles = wish.styles()?;
+        let size = |style: &Style| size::judge(style, wish.size.as_deref(), &measured.best).map(|fit| fit.size);
+        let garments = styles.iter().map(|style| Ok((style.name.clone(), size(style)?)));
+        let garments = garments.collect::<Result<_, FittingError>>()?;
+        let sex = measured.sex(wish::population(&styles)?);
+        Self::of(session, &measured.best, sex, garments, wish.quality)
     }
 
     /// Of somebody who was measured and has chosen what to wear: garments and sizes, inner first.
@@ -101,39 +69,42 @@ impl Recipe {
     pub fn of(
         session: &str,
         measured: &Measurements,
-        population: Population,
+        sex: Sex,
         garments: Vec<(String, String)>,
         quality: Quality,
-    ) -> Result<Self, AppError> {
-        let sex = if population == Population::Men { Sex::Male } else { Sex::Female };
-        let (body, _) = shopper::build(sex, measured, population)?;
-        let m = &body.measures;
+    ) -> Result<Self, FittingError> {
+        let (body, _) = body::build(sex, measured, Population::from(Some(sex)))?;
+        Ok(Self::of_body(session, sex, &body.measures, garments, quality))
+    }
+
+    /// Of a body of these measures.
+    pub fn of_body(session: &str, sex: Sex, m: &Measures, garments: Vec<(String, String)>, quality: Quality) -> Self {
         let measures = [m.stature, m.shoulder_breadth, m.chest_girth, m.waist_girth, m.hip_girth];
-        Ok(Self {
+        Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             session: session.to_owned(),
             sex: if sex == Sex::Male { "male" } else { "female" }.to_owned(),
             measures: measures.map(f32::to_bits),
             garments,
             quality: quality.name().to_owned(),
-        })
+        }
     }
 
     /// The shopper's body, its colliders, the garments on it, and how they are stepped with one worker.
     ///
     /// # Errors
     /// A recipe of which no scene can be made, because it was tampered with or comes from another version.
-    pub fn parts(&self) -> Result<Parts, AppError> {
+    pub fn parts(&self) -> Result<Parts, FittingError> {
         let sex = if self.sex == "male" { Sex::Male } else { Sex::Female };
         let [stature, shoulder_breadth, chest_girth, waist_girth, hip_girth] = self.measures.map(f32::from_bits);
         let measures = Measures { stature, shoulder_breadth, chest_girth, waist_girth, hip_girth };
-        let body = Body::build(sex, &measures).map_err(AppError::input)?;
+        let body = Body::build(sex, &measures).map_err(FittingError::input)?;
         let garments = self.garments.iter().map(|(name, size)| {
-            let style = wardrobe::style(name).map_err(AppError::input)?;
-            style.dress(size, &body).map_err(AppError::input)
+            let style = wardrobe::style(name).map_err(FittingError::input)?;
+            style.dress(size, &body).map_err(FittingError::input)
         });
-        let garments = garments.collect::<Result<Vec<_>, AppError>>()?;
-        let quality = self.quality.parse().map_err(AppError::Input)?;
+        let garments = garments.collect::<Result<Vec<_>, FittingError>>()?;
+        let quality = self.quality.parse().map_err(FittingError::Input)?;
         let settings = Settings { quality, workers: 1, ..Settings::default() };
         Ok(Parts { rig: Rig::fit(&body), body, garments, settings })
     }
@@ -143,14 +114,14 @@ impl Recipe {
     ///
     /// # Errors
     /// As [`Self::parts`].
-    pub fn make(&self, first: &Joints) -> Result<(Frame, Reader<Snapshot>), AppError> {
+    pub fn make(&self, first: &Joints) -> Result<(Frame, Reader<Snapshot>), FittingError> {
         let Parts { body, rig, garments, settings } = self.parts()?;
-        let (mut frame, reader) = Frame::new(body, &rig, garments, settings).map_err(AppError::input)?;
+        let (mut frame, reader) = Frame::new(body, &rig, garments, settings).map_err(FittingError::input)?;
         frame.dress(first);
         Ok((frame, reader))
     }
 
-    /// What is worn, in a line.
+    /// EventKind is worn, in a line.
     pub fn words(&self) -> String {
         let worn: Vec<String> = self.garments.iter().map(|(name, size)| format!("{name} in {size}")).collect();
         format!("session {}, {}, quality {}", self.session, worn.join(" and "), self.quality)

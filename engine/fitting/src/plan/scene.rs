@@ -17,7 +17,7 @@ use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 
 use super::PlanError;
-use crate::scene_run;
+use crate::scene;
 
 /// Most steps of a session or a scene file that are played: ten seconds.
 pub const MOST_STEPS: usize = 1_200;
@@ -86,10 +86,10 @@ impl Scene {
     /// # Errors
     /// A mesh that cannot be baked, colliders that the engine does not take.
     pub fn file(file: SceneFile) -> Result<Self, PlanError> {
-        let (garments, colliders) = (scene_run::bake_all(&file)?, scene_run::placed(&file)?);
+        let (garments, colliders) = (scene::bake_all(&file)?, scene::placed(&file)?);
         Ok(Self {
             name: file.name.clone(),
-            settings: vec![scene_run::settings(&file); garments.len()],
+            settings: vec![scene::settings(&file); garments.len()],
             garments,
             colliders,
             period_us: 1e6 / file.step_hz,
@@ -118,8 +118,8 @@ impl Scene {
             }
             Motion::File(file) => {
                 let end = (step + 1) as f64 / file.step_hz;
-                scene_run::place(colliders, file, end);
-                *bones = scene_run::palette(file, end);
+                scene::place(colliders, file, end);
+                *bones = scene::palette(file, end);
             }
         }
     }

@@ -1,10 +1,10 @@
 //! A picture of a fitted body over the depth frame that it was fitted to.
 
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 use toile_assets::body::Body;
 use toile_assets::mesh::vertex_normals;
-use toile_assets::skeleton::{BONES, Pose};
-use toile_engine::body::palette;
+use toile_assets::skeleton::Pose;
+use toile_fitting::dress::depth::posed;
 use toile_sensors::frame::DepthFrame;
 use toile_sensors::source::synthetic::SyntheticCamera;
 use toile_view::image::{Image, Size};
@@ -32,16 +32,6 @@ const MARGIN: f32 = 0.12;
 const FULL: f32 = 0.04;
 
 const GROUND: [u8; 3] = [246, 246, 244];
-
-/// The posed surface of a body (m) `[vertices]`.
-pub fn posed(body: &Body, pose: &Pose) -> Vec<Vec3> {
-    let mut bones = [Affine3A::IDENTITY; BONES];
-    palette(&body.skeleton, pose, &mut bones);
-    let skinned = |(p, weights): (&Vec3, &toile_assets::mesh::SkinWeights)| {
-        weights.iter().map(|(bone, w)| w * bones[bone as usize].transform_point3(*p)).sum::<Vec3>()
-    };
-    body.mesh.positions.iter().zip(&body.weights).map(skinned).collect()
-}
 
 /// Three panels, seen from the camera and the right way up: the depth, the body over it, and how far the depth lies
 /// before (blue) or behind (red) the body's surface, in full colour from 4 cm.

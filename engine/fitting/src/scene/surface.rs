@@ -15,7 +15,7 @@ const ADDED_WEIGHT: f32 = 0.08;
 
 /// Vertices at rest with their weights, and the palette that poses them.
 #[derive(Debug, Clone)]
-pub(crate) struct Surface {
+pub struct Surface {
     /// Rest position (m) `[vertices]`.
     pub positions: Vec<Vec3>,
     /// Rest normal, unit `[vertices]`.
@@ -28,6 +28,9 @@ pub(crate) struct Surface {
 
 impl Surface {
     /// The shopper's vertices in their order, each once.
+    ///
+    /// # Errors
+    /// Where the scene's shopper cannot be built.
     pub fn body() -> Result<Self, BodyError> {
         let (sex, measures) = scene::SHOPPER;
         let body = Body::build(sex, &measures)?;
@@ -37,6 +40,9 @@ impl Surface {
     }
 
     /// The shopper's vertices, repeated until there are `vertices`.
+    ///
+    /// # Errors
+    /// As [`Self::body`].
     pub fn new(vertices: usize) -> Result<Self, BodyError> {
         Ok(Self::body()?.repeated(vertices))
     }

@@ -23,7 +23,7 @@ use super::cost::Costs;
 use super::fit::fit;
 use super::scene::{Playing, Scene};
 use super::work::{FirstStep, STAGES, Work};
-use crate::time;
+use crate::timing;
 
 /// Steps of each cloth that are not timed, and those that are.
 const WARM_UP: usize = 24;
@@ -187,7 +187,7 @@ fn copy_us() -> f64 {
         to.iter_mut().zip(black_box(&from)).for_each(|(t, p)| *t = (*p).into());
         black_box(&to);
     };
-    time::median_us(copy) / PARTICLES as f64
+    timing::median_us(copy) / PARTICLES as f64
 }
 
 /// The lower quartile: what a machine takes where nothing else wants it, in most of the times.

@@ -21,7 +21,7 @@ use toile_engine::colliders::ColliderError;
 use toile_engine::frame::FrameError;
 use toile_engine::workers::WorkerPoolError;
 
-use crate::scene_run::RunError;
+use crate::scene::RunError;
 
 /// Why a scene cannot be planned.
 #[derive(Debug, Error)]

@@ -1,0 +1,30 @@
+//! Sessions and measures as reports show them.
+
+use toile_assets::sizes::Population;
+use toile_sensors::source;
+use toile_track::estimate::Estimate;
+
+use super::{Measure, Measurements, Session};
+
+/// The session, with more sentences beside its own.
+pub fn session(session: &source::Session, more: &[String]) -> Session {
+    Session {
+        name: session.name.clone(),
+        frames: session.joints.len().max(session.depth.len()) as u64,
+        seconds: session.duration_ns() as f64 * 1e-9,
+        notes: session.notes.iter().chain(more).cloned().collect(),
+    }
+}
+
+/// An estimate (m) in millimetres; tenths of a millimetre are all that a measure deserves.
+pub fn in_mm(estimate: Estimate) -> Measure {
+    let mm = |x: f32| (f64::from(x) * 1e4).round() / 10.0;
+    Measure { value: mm(estimate.value), sigma: mm(estimate.sigma) }
+}
+
+/// The measures of the contract; what could not be seen is what such a body has on average, with that sigma.
+pub fn measurements(measured: &toile_track::measure::Measurements, population: Population) -> Measurements {
+    let [stature_mm, shoulder_breadth_mm, chest_girth_mm, waist_girth_mm, hip_girth_mm] =
+        measured.completed(population).map(in_mm);
+    Measurements { stature_mm, shoulder_breadth_mm, chest_girth_mm, waist_girth_mm, hip_girth_mm }
+}

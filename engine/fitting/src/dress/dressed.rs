@@ -1,0 +1,84 @@
+//! Somebody dressed: a shopper of the measures that were taken, or the mannequin that stands in for one.
+
+use toile_assets::body::{Measures, Sex};
+use toile_assets::sizes::Population;
+use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::triple_buffer::Reader;
+use toile_sensors::frame::Joints;
+use toile_sensors::source::Session;
+
+use super::measured::{self, Told};
+use super::recipe::Recipe;
+use super::session;
+use super::wish::Wish;
+use crate::FittingError;
+
+/// How somebody was dressed: enough to make the same again.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dressing {
+    /// Body, garments and quality.
+    pub recipe: Recipe,
+    /// The joints in which they were dressed.
+    pub first: Joints,
+    /// Whether they stand still there, as the mannequin does.
+    pub still: bool,
+}
+
+impl Dressing {
+    /// The joints in which they stand still; `None` follows the sensor.
+    pub fn stands(&self) -> Option<Joints> {
+        self.still.then_some(self.first)
+    }
+}
+
+/// A body of somebody's size, dressed.
+#[derive(Debug)]
+pub struct Dressed {
+    /// The frame, with one worker.
+    pub frame: Frame,
+    /// Where its snapshots come out.
+    pub reader: Reader<Snapshot>,
+    /// How it was made.
+    pub dressing: Dressing,
+}
+
+impl Dressed {
+    /// Dresses a body by a recipe, as `first` stands.
+    ///
+    /// # Errors
+    /// A recipe of which no scene can be made.
+    pub fn make(recipe: Recipe, first: &Joints, still: bool) -> Result<Self, FittingError> {
+        let (frame, reader) = recipe.make(first)?;
+        Ok(Self { frame, reader, dressing: Dressing { recipe, first: *first, still } })
+    }
+}
+
+/// Measures the shopper of a session and dresses them as they stand.
+///
+/// # Errors
+/// A session that nobody can be measured or dressed in, a garment or a size that there is not.
+pub fn shopper(session: &Session, wish: &Wish) -> Result<Dressed, FittingError> {
+    let track = session::standing(session)?;
+    let measured = measured::measure(session, Told { sex: wish.sex, ..Told::default() })?;
+    Dressed::make(Recipe::choose(&session.name, &measured, wish)?, &track[0], false)
+}
+
+/// The mannequin that stands in the mirror while nobody is measured: the middle size of the outermost garment, as `pose` has it.
+///
+/// # Errors
+/// A garment that is not in the wardrobe, a size that is not made.
+pub fn mannequin(wish: &Wish, pose: &Joints) -> Result<Dressed, FittingError> {
+    let (mut garments, mut body) = (Vec::new(), None);
+    for style in wish.styles()? {
+        let table = style.sizes().map_err(FittingError::input)?;
+        let codes = table.codes();
+        let size = wish.size.clone().unwrap_or_else(|| codes[codes.len() / 2].to_owned());
+        let sex = if table.population == Population::Men { Sex::Male } else { Sex::Female };
+        body = Some((sex, Measures::from(table.size_body(&size).map_err(FittingError::input)?)));
+        garments.push((style.name.clone(), size));
+    }
+    let Some((sex, measures)) = body else {
+        return Err(FittingError::Input("no garment is named; name one in [wear]".into()));
+    };
+    Dressed::make(Recipe::of_body("mannequin", sex, &measures, garments, wish.quality), pose, true)
+}

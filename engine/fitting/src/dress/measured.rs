@@ -1,0 +1,153 @@
+//! The one way to measure a shopper: by the body fitted to their depth where one fits, by sections and proportions otherwise.
+//!
+//! Whose proportions apply is told, or found by the fit; what is worn does not decide it, so that the same session gives the
+//! same measures whatever is tried on.
+
+use toile_assets::body::Sex;
+use toile_assets::sizes::Population;
+use toile_assets::skeleton::Joint;
+use toile_sensors::frame::Joints;
+use toile_sensors::source::Session;
+use toile_track::fit::measuring::FittedMeasures;
+use toile_track::measure::{self, Measurements};
+use toile_track::measures::{Hint, Measures};
+
+use super::depth::Surface;
+use super::session;
+use crate::FittingError;
+
+/// The fit is believed to know a shopper's sex where it is this sure (probability): otherwise both sexes' proportions count.
+const SURE_OF_SEX: f32 = 0.95;
+
+/// Said of a session without joints.
+pub const FROM_DEPTH: &str = "there are no joints: the body was fitted to the depth, and its joints are shown";
+
+/// What is known of a shopper before they are measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Told {
+    /// Whose proportions apply, if that was told.
+    pub sex: Option<Sex>,
+    /// Whether they wear everyday clothes, which the body lies beneath; otherwise tight ones.
+    pub clothed: bool,
+    /// Whether they sit: nothing is taken from legs and hips, which a chair hides.
+    pub seated: bool,
+}
+
+impl Default for Told {
+    fn default() -> Self {
+        Self { sex: None, clothed: true, seated: false }
+    }
+}
+
+/// What was measured of a shopper.
+#[derive(Debug, Clone)]
+pub struct Measured {
+    /// The best that is known: every report, size and body follows from it.
+    pub best: Measurements,
+    /// The same by sections and proportions alone.
+    pub sections: Measurements,
+    /// The same by the body fit, where there is depth and a body fits it.
+    pub fitted: Option<FittedMeasures>,
+    /// The shopper's surface; empty without depth.
+    pub surface: Surface,
+    /// Whose proportions apply where something was not seen.
+    pub population: Population,
+}
+
+impl Measured {
+    /// The sex of the body to show: as told or found, otherwise whom the garments are made for, women for all others.
+    pub fn sex(&self, garments: Population) -> Sex {
+        sex(self.population, garments)
+    }
+}
+
+/// The sex of the body to show for a shopper of this population, in garments that are made for that one.
+pub fn sex(shopper: Population, garments: Population) -> Sex {
+    let known = if shopper == Population::Mixed { garments } else { shopper };
+    if known == Population::Men { Sex::Male } else { Sex::Female }
+}
+
+/// Measures whoever stands or sits in a session.
+///
+/// # Errors
+/// A session that shows nobody who can be measured.
+pub fn measure(session: &Session, told: Told) -> Result<Measured, FittingError> {
+    if told.seated {
+        return seated(session, told);
+    }
+    let surface = Surface::of(session);
+    let fitted = surface.measure(Population::from(told.sex), told.clothed);
+    let population = population(told.sex, fitted.as_ref());
+    let sections = by_sections(session, population)?;
+    let best = fitted.as_ref().map_or_else(|| sections.clone(), |fitted| preferred(&sections, fitted));
+    Ok(Measured { best, sections, fitted, surface, population })
+}
+
+/// The joints of a session that has none: the fitted body is followed through its depth, and a note says so. Does nothing
+/// where there are joints.
+///
+/// # Errors
+/// Depth that no body fits.
+pub fn add_joints(session: &mut Session, measured: &Measured) -> Result<(), FittingError> {
+    if !session.joints.is_empty() {
+        return Ok(());
+    }
+    let fitted = measured.fitted.as_ref().ok_or_else(|| {
+        FittingError::Input(format!(
+            "session {} has no joints, and no body fits its depth; record somebody who stands alone, facing the camera, \
+             arms slightly out",
+            session.name
+        ))
+    })?;
+    session.joints = measured.surface.follow(session, fitted);
+    session.notes.push(FROM_DEPTH.to_owned());
+    Ok(())
+}
+
+fn seated(session: &Session, told: Told) -> Result<Measured, FittingError> {
+    let population = Population::from(told.sex);
+    let above = session::of_joints(session.joints.iter().map(above_the_chair).collect());
+    let mut sections = by_sections(&above, population)?;
+    (sections.measures.hip_girth, sections.measures.inseam) = (None, None);
+    let surface = Surface { frames: Vec::new(), ground: None };
+    Ok(Measured { best: sections.clone(), sections, fitted: None, surface, population })
+}
+
+fn by_sections(session: &Session, population: Population) -> Result<Measurements, FittingError> {
+    let hint = Hint { population, scale_known: session.raw_scale_known };
+    measure::measure(&session.joints, &session.depth, &hint).map_err(FittingError::input)
+}
+
+fn population(told: Option<Sex>, fitted: Option<&FittedMeasures>) -> Population {
+    match (told, fitted) {
+        (Some(sex), _) => Population::from(Some(sex)),
+        (None, Some(fitted)) if fitted.woman >= SURE_OF_SEX => Population::Women,
+        (None, Some(fitted)) if fitted.woman <= 1.0 - SURE_OF_SEX => Population::Men,
+        _ => Population::Mixed,
+    }
+}
+
+/// What the body fit says in place of what sections and proportions say.
+fn preferred(sections: &Measurements, fitted: &FittedMeasures) -> Measurements {
+    let of = |name| fitted.named(name);
+    let measures = Measures {
+        stature: of("stature"),
+        shoulder_breadth: of("shoulder_breadth"),
+        chest_girth: of("chest_girth"),
+        waist_girth: of("waist_girth"),
+        hip_girth: of("hip_girth"),
+        inseam: of("leg_length"),
+        arm_length: of("arm_length"),
+    };
+    Measurements { measures, ..sections.clone() }
+}
+
+/// A frame without what a chair hides.
+fn above_the_chair(frame: &Joints) -> Joints {
+    use Joint::*;
+    let mut above = *frame;
+    for joint in [LeftHip, LeftKnee, LeftAnkle, LeftToe, RightHip, RightKnee, RightAnkle, RightToe] {
+        above.at_mut(joint).confidence = 0.0;
+    }
+    above
+}

@@ -1,0 +1,129 @@
+//! What is to be worn.
+
+use std::path::{Path, PathBuf};
+
+use toile_assets::body::{Body, Sex};
+use toile_assets::garment::Garment;
+use toile_assets::sizes::Population;
+use toile_assets::wardrobe;
+use toile_assets::wardrobe::style::Style;
+use toile_engine::cloth::Quality;
+use toile_track::measure::Measurements;
+use toile_track::recommend::Recommendation;
+
+use super::size;
+use crate::FittingError;
+
+/// Fabric of a mesh that a user brings without saying what it is made of.
+const MESH_FABRIC: &str = "cotton-lawn";
+
+/// What is asked for.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Wish {
+    /// Garments of the wardrobe or mesh files, inner first; empty is the first of the wardrobe.
+    pub garments: Vec<String>,
+    /// A size in place of the recommended one.
+    pub size: Option<String>,
+    /// How the cloth is stepped.
+    pub quality: Quality,
+    /// The shopper's sex, if it was told.
+    pub sex: Option<Sex>,
+}
+
+/// A garment to wear.
+#[derive(Debug, Clone)]
+pub enum Choice {
+    /// One of the wardrobe.
+    Style(Box<Style>),
+    /// A mesh of the user's own.
+    Mesh(PathBuf),
+}
+
+/// A garment on the body, and how its size fits; a mesh has no sizes.
+#[derive(Debug, Clone)]
+pub struct Worn {
+    /// The garment, baked.
+    pub garment: Garment,
+    /// How it fits.
+    pub fit: Option<Recommendation>,
+}
+
+impl Wish {
+    /// The garments that are named: one of the wardrobe, or else a mesh, where a file of that name exists.
+    ///
+    /// # Errors
+    /// A name that is neither.
+    pub fn choices(&self) -> Result<Vec<Choice>, FittingError> {
+        self.names().into_iter().map(choice).collect()
+    }
+
+    /// The same for who takes garments of the wardrobe alone.
+    ///
+    /// # Errors
+    /// A name that is not in the wardrobe.
+    pub fn styles(&self) -> Result<Vec<Style>, FittingError> {
+        self.names().into_iter().map(|name| wardrobe::style(name).map_err(FittingError::input)).collect()
+    }
+
+    fn names(&self) -> Vec<&str> {
+        if self.garments.is_empty() {
+            vec![wardrobe::names()[0]]
+        } else {
+            self.garments.iter().map(String::as_str).collect()
+        }
+    }
+}
+
+fn choice(name: &str) -> Result<Choice, FittingError> {
+    let is_file = Path::new(name).exists() || name.to_lowercase().ends_with(".obj");
+    if is_file && !wardrobe::names().contains(&name) {
+        return Ok(Choice::Mesh(name.into()));
+    }
+    wardrobe::style(name).map(|style| Choice::Style(Box::new(style))).map_err(FittingError::input)
+}
+
+/// Whose bodies these garments are made for: the first of them that is not made for everybody decides.
+///
+/// # Errors
+/// A garment whose size table cannot be used.
+pub fn population<'a>(styles: impl IntoIterator<Item = &'a Style>) -> Result<Population, FittingError> {
+    for style in styles {
+        let population = style.sizes().map_err(FittingError::input)?.population;
+        if population != Population::Mixed {
+            return Ok(population);
+        }
+    }
+    Ok(Population::Mixed)
+}
+
+/// The same for choices; a mesh is made for everybody.
+///
+/// # Errors
+/// As [`population`].
+pub fn population_of(choices: &[Choice]) -> Result<Population, FittingError> {
+    population(
+        choices.iter().filter_map(|choice| if let Choice::Style(style) = choice { Some(&**style) } else { None }),
+    )
+}
+
+/// Sizes a garment for measures and bakes it onto a body.
+///
+/// # Errors
+/// A size that is not made, a size asked for of a mesh, a mesh that cannot be used.
+pub fn put_on(choice: &Choice, size: Option<&str>, measured: &Measurements, body: &Body) -> Result<Worn, FittingError> {
+    match (choice, size) {
+        (Choice::Style(style), size) => {
+            let fit = size::judge(style, size, measured)?;
+            let garment = style.dress(&fit.size, body).map_err(FittingError::input)?;
+            Ok(Worn { garment, fit: Some(fit) })
+        }
+        (Choice::Mesh(path), Some(size)) => {
+            let (name, size) = (path.display().to_string(), size.to_owned());
+            Err(FittingError::input(wardrobe::WardrobeError::NoSizes { name, size }))
+        }
+        (Choice::Mesh(path), None) => {
+            let garment = wardrobe::dress_mesh(path, MESH_FABRIC, body).map_err(FittingError::input)?;
+            Ok(Worn { garment, fit: None })
+        }
+    }
+}

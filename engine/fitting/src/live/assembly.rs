@@ -1,0 +1,171 @@
+//! The one assembly of the loop: sensor, physics and renderer, joined by the latest value, bounded queues and a handover of scenes.
+//! The kiosk, the latency benchmark and the soak test run this one; what they differ in are the source, the renderer, the clock, and
+//! what a test wraps around the three loops.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+use toile_engine::clock::Clock;
+use toile_engine::frame::Snapshot;
+use toile_engine::frame_loop::event::{CounterSource, EVENTS, EVENTS_NAME, Event};
+use toile_engine::frame_loop::handover::{HandoverSender, handover};
+use toile_engine::frame_loop::physics_thread::{PhysicsOutputs, PhysicsThread, Scene};
+use toile_engine::frame_loop::queue::{Capacity, Receiver, Sender, bounded};
+use toile_engine::frame_loop::recording::Entry;
+use toile_engine::frame_loop::render_thread::{RenderThread, Renderer, SceneView};
+use toile_engine::frame_loop::sensor_thread::{JointSource, SensorFrame, SensorThread};
+use toile_engine::triple_buffer::TripleBuffer;
+use toile_sensors::frame::Joints;
+
+use super::live_scene::{LiveScene, STEP_REPORTS, STEP_REPORTS_NAME, StepReport, WatchedRenderer};
+use super::running::Loops;
+use super::scene_changer::DressedScene;
+use super::source::{FRAMES, FRAMES_NAME, Tapped};
+use super::watchdog::Progress;
+
+/// EventKind the loop begins with.
+pub struct LoopParts<S, E: Renderer, F, A> {
+    /// Whoever is shown first.
+    pub first: DressedScene<S, E::Outfit>,
+    /// The renderer, which knows the outfit of the first already: that of `first` is what it leaves in its place.
+    pub renderer: E,
+    /// EventKind the sensor reads.
+    pub source: F,
+    /// EventKind the system counts of the physics thread.
+    pub account: A,
+    /// Where what a replay needs goes, where somebody keeps it.
+    pub recording: Option<Sender<Entry>>,
+}
+
+/// How the loop runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LoopOptions {
+    /// When the first step is due (ns on the loop's clock).
+    pub begin_ns: u64,
+    /// Steps after which the meters begin.
+    pub warm_up_steps: u64,
+    /// When the meters of sensor and renderer begin (ns on the loop's clock).
+    pub metered_from_ns: u64,
+    /// A rung of the governor's ladder that the run is held on; `None` lets it govern.
+    pub held_rung: Option<u8>,
+}
+
+/// The sensor thread's loop.
+pub type SensorLoop<F, C> = SensorThread<Tapped<F>, C>;
+
+/// The physics thread's loop.
+pub type PhysicsLoop<S, C, A> = PhysicsThread<LiveScene<S>, C, A>;
+
+/// The render thread's loop.
+pub type RenderLoop<E, C> = WatchedRenderer<E, C>;
+
+/// The ends by which scenes are handed over.
+pub struct SceneHandover<S, O> {
+    /// To physics.
+    pub scenes: HandoverSender<LiveScene<S>>,
+    /// To the renderer.
+    pub views: HandoverSender<SceneView<O>>,
+}
+
+/// The ends of the queues that whoever looks after the loop empties.
+#[derive(Debug)]
+pub struct LoopQueues {
+    /// EventKind happened.
+    pub events: Receiver<Event>,
+    /// EventKind each step came to.
+    pub step_reports: Receiver<StepReport>,
+    /// EventKind the sensor saw, unfiltered.
+    pub frames: Receiver<Joints>,
+    /// EventKind the watchdog looks at.
+    pub progress: Arc<Progress>,
+}
+
+impl LoopQueues {
+    /// How full the queues were.
+    pub fn capacities(&self) -> [Capacity; 3] {
+        [self.events.capacity(), self.step_reports.capacity(), self.frames.capacity()]
+    }
+}
+
+/// The loop, joined and not started.
+pub struct Assembly<S, E: Renderer, F, A, C> {
+    /// The three loops, to be run by threads or one after the other.
+    pub loops: Loops<SensorLoop<F, C>, PhysicsLoop<S, C, A>, RenderLoop<E, C>>,
+    /// EventKind they report.
+    pub queues: LoopQueues,
+    /// How scenes are changed.
+    pub handover: SceneHandover<S, E::Outfit>,
+}
+
+/// Joins the parts. All storage is allocated here.
+pub fn assemble<S, E, F, A, C>(parts: LoopParts<S, E, F, A>, clock: &C, options: LoopOptions) -> Assembly<S, E, F, A, C>
+where
+    S: Scene,
+    E: Renderer,
+    F: JointSource,
+    A: CounterSource,
+    C: Clock + Clone,
+{
+    let LoopParts { first, renderer, source, account, recording } = parts;
+    let LoopOptions { begin_ns, warm_up_steps, metered_from_ns, held_rung } = options;
+    let progress = Arc::new(Progress::default());
+    let (event_sender, events) = bounded(EVENTS_NAME, EVENTS);
+    let (report_sender, step_reports) = bounded(STEP_REPORTS_NAME, STEP_REPORTS);
+    let (tap, frames) = bounded(FRAMES_NAME, FRAMES);
+    let ((scenes, next_scene), (views, next_view)) = (handover(), handover());
+    let TripleBuffer { writer, reader: seen } = TripleBuffer::new(&SensorFrame::default());
+    let sensor = SensorThread::new(Tapped::new(source, tap), clock.clone(), writer).metering_from(metered_from_ns);
+    let scene = LiveScene::new(first.scene, first.still).reporting(report_sender, progress.clone());
+    let outputs = PhysicsOutputs { events: event_sender, recording };
+    let physics = PhysicsThread::new(scene, clock.clone(), begin_ns, seen, outputs, account)
+        .changing(next_scene)
+        .warming_up(warm_up_steps);
+    let physics = match held_rung {
+        Some(rung) => physics.held_on(rung),
+        None => physics,
+    };
+    let render = RenderThread::new(renderer, clock.clone(), begin_ns, first.reader)
+        .changing(next_view)
+        .metering_from(metered_from_ns);
+    let render = WatchedRenderer::new(render, progress.clone());
+    Assembly {
+        loops: Loops { sensor, physics, render },
+        queues: LoopQueues { events, step_reports, frames, progress },
+        handover: SceneHandover { scenes, views },
+    }
+}
+
+/// A renderer without a display: takes what it would be handed, the body and the garments in the order of their meshes.
+#[derive(Debug, Default)]
+pub struct HeadlessRenderer {
+    body: [Vec<Vec3>; 2],
+    garments: Vec<Vec<Vec3>>,
+}
+
+impl HeadlessRenderer {
+    /// One that allocates nothing while it sees a scene like that of this snapshot.
+    pub fn sized_for(snapshot: &Snapshot) -> Self {
+        let mut renderer = Self::default();
+        renderer.draw(snapshot);
+        renderer
+    }
+}
+
+impl Renderer for HeadlessRenderer {
+    type Outfit = ();
+
+    fn set_outfit(&mut self, _outfit: &mut ()) {}
+
+    fn draw(&mut self, snapshot: &Snapshot) {
+        let [positions, normals] = &mut self.body;
+        for column in [&mut *positions, &mut *normals] {
+            column.resize(snapshot.skin.vertices(), Vec3::ZERO);
+        }
+        snapshot.skin.read(positions, normals);
+        self.garments.resize_with(snapshot.garments.len(), Vec::new);
+        for (to, from) in self.garments.iter_mut().zip(&snapshot.garments) {
+            to.clear();
+            to.extend_from_slice(from);
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! The dresser: measures a shopper and dresses a body of their size, or dresses the mannequin, in the background.
+
+use std::sync::Arc;
+
+use toile_sensors::frame::Joints;
+use toile_sensors::source::Session;
+
+use super::background::{BackgroundJob, Finished};
+use crate::FittingError;
+use crate::dress::dressed::{self, Dressed};
+use crate::dress::session;
+use crate::dress::wish::Wish;
+
+/// EventKind is to be done.
+#[derive(Debug, Clone)]
+pub enum DressJob {
+    /// Measure a shopper and dress them.
+    Shopper(ShopperSource),
+    /// Dress the mannequin, as these joints stand.
+    Mannequin(Box<Joints>),
+}
+
+/// Where a shopper is measured from.
+#[derive(Debug, Clone)]
+pub enum ShopperSource {
+    /// The recording that is played, with its depth.
+    Recording(Arc<Session>),
+    /// The joints of the last second, which are all that a live sender gives.
+    Joints(Vec<Joints>),
+}
+
+impl ShopperSource {
+    /// The same as a session.
+    pub fn session(self) -> Arc<Session> {
+        match self {
+            Self::Recording(session) => session,
+            Self::Joints(joints) => Arc::new(session::of_joints(joints)),
+        }
+    }
+}
+
+/// EventKind became of a job.
+pub enum DressOutcome {
+    /// Somebody is dressed: a shopper, or the mannequin, which stands still.
+    Done(Box<Dressed>),
+    /// They could not be measured; why is not reported to anybody, for it may tell of them.
+    Failed,
+    /// The thread panicked.
+    Panicked,
+}
+
+/// Dresses everybody in the same.
+#[derive(Debug)]
+pub struct Dresser {
+    wish: Wish,
+    job: BackgroundJob<Result<Dressed, FittingError>>,
+}
+
+impl Dresser {
+    /// One that dresses everybody as this wish says.
+    pub fn new(wish: Wish) -> Self {
+        Self { wish, job: BackgroundJob::default() }
+    }
+
+    /// Whether a job is under way, wanted or not.
+    pub fn is_busy(&self) -> bool {
+        self.job.is_running()
+    }
+
+    /// Begins a job.
+    ///
+    /// # Errors
+    /// Where the system gives no thread.
+    pub fn begin(&mut self, job: DressJob) -> std::io::Result<()> {
+        let wish = self.wish.clone();
+        self.job.start("toile-dresser", move || match job {
+            DressJob::Shopper(source) => dressed::shopper(&source.session(), &wish),
+            DressJob::Mannequin(pose) => dressed::mannequin(&wish, &pose),
+        })
+    }
+
+    /// The shopper has left: what comes of their job is thrown away. A mannequin is kept, for it tells of nobody.
+    pub fn forget(&mut self) {
+        self.job.abandon();
+    }
+
+    /// EventKind has come of a job, once, when it has ended.
+    pub fn poll(&mut self) -> Option<DressOutcome> {
+        match self.job.poll()? {
+            Finished::Panicked => Some(DressOutcome::Panicked),
+            Finished::Done { value: Ok(dressed), wanted } if wanted || dressed.dressing.still => {
+                Some(DressOutcome::Done(Box::new(dressed)))
+            }
+            Finished::Done { value: Err(_), wanted: true } => Some(DressOutcome::Failed),
+            Finished::Done { .. } => None,
+        }
+    }
+}

@@ -1,0 +1,22 @@
+//! The loop that keeps a dressed body in motion: its threads, how they are joined, and what happens when one of them does not
+//! get on.
+//!
+//! Reads: frames of a sensor, dressed scenes that are handed over. Writes: snapshots to a renderer, step reports, events.
+//! Budget: ready within 5 s of its start; the loop's own budget in the frame.
+//! Thread: sensor, physics and render threads of its own; the caller's, which looks at the queues some fifty times a second.
+//!
+//! [`assembly`] joins the three loops and [`running`] runs them: the kiosk, the latency benchmark and the soak test alike.
+
+pub mod assembly;
+pub mod background;
+pub mod crash;
+pub mod dresser;
+pub mod lateness;
+pub mod live_loop;
+pub mod live_scene;
+pub mod recording;
+pub mod report;
+pub mod running;
+pub mod scene_changer;
+pub mod source;
+pub mod watchdog;
