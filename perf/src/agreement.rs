@@ -19,6 +19,7 @@
 use glam::{Affine3A, Quat, Vec3};
 use toile_assets::body::{Body, BodyError, Measures, Region, Sex, tape};
 use toile_assets::numeric::random::SplitMix64;
+use toile_assets::numeric::statistics::quantile;
 use toile_assets::sizes::Population;
 use toile_sensors::frame::DepthFrame;
 use toile_sensors::frame::Intrinsics;
@@ -226,15 +227,15 @@ pub fn compare(results: &[(Measurements, [f32; 5])]) -> [MeasureAgreement; 5] {
         let bias = errors.iter().sum::<f32>() / n;
         let deviation = (errors.iter().map(|e| (e - bias).powi(2)).sum::<f32>() / n).sqrt();
         let mut absolute: Vec<f32> = errors.iter().map(|e| e.abs()).collect();
-        absolute.sort_by(f32::total_cmp);
+        let mean_absolute = absolute.iter().sum::<f32>() / n;
         let within = |k: f32| pairs.iter().filter(|(e, t)| (e.value - t).abs() < k * e.sigma).count() as f32 / n;
         MeasureAgreement {
             measure: COMPARED[i],
             taken: pairs.len(),
             bias,
             deviation,
-            mean_absolute: absolute.iter().sum::<f32>() / n,
-            p95: absolute.get((absolute.len() * 19 / 20).min(absolute.len().saturating_sub(1))).copied().unwrap_or(0.0),
+            mean_absolute,
+            p95: quantile(&mut absolute, 0.95).unwrap_or(0.0),
             covered: [within(1.0), within(2.0)],
             sigma: pairs.iter().map(|(e, _)| e.sigma).sum::<f32>() / n,
         }

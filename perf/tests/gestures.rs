@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use glam::{Quat, Vec3};
 use toile_assets::skeleton::Joint;
-use toile_perf::gestures::{Act, Conditions, Count, count, events, held_up, sequence};
+use toile_perf::gestures::{Act, GestureConditions, GestureCount, count, events, held_up, sequence};
 use toile_sensors::filter::JointFilter;
 use toile_sensors::frame::{DepthFrame, Joints, TrackedJoint};
 use toile_sensors::source::{OpenOptions, open};
@@ -115,18 +115,18 @@ const FALSE_PER_MINUTE: f32 = 0.25;
 
 #[test]
 fn simulated_gestures_are_recognised_and_nothing_else() {
-    let conditions = Conditions::default();
+    let conditions = GestureConditions::default();
     for act in Act::GESTURES {
         let c = count(act, &conditions, 60, 5000);
         assert!(c.miss_rate() <= MISSED && c.wrong <= 1, "{act:?}: {c:?}");
     }
-    let all = Act::OTHERS.map(|act| count(act, &conditions, 30, 6000)).into_iter().fold(Count::default(), Count::and);
+    let all = Act::OTHERS.map(|act| count(act, &conditions, 30, 6000)).into_iter().fold(GestureCount::default(), GestureCount::and);
     assert!(all.wrong_per_minute() <= FALSE_PER_MINUTE, "{all:?}");
 }
 
 /// The frames of a swipe that is recognised.
 fn swipe() -> (Vec<Joints>, Vec<GestureEvent>) {
-    let frames = sequence(Act::Swipe(Gesture::SwipeLeft), &Conditions::default(), 2);
+    let frames = sequence(Act::Swipe(Gesture::SwipeLeft), &GestureConditions::default(), 2);
     let found = events(&frames);
     assert_eq!(found.iter().map(|e| e.gesture).collect::<Vec<_>>(), [Gesture::SwipeLeft]);
     (frames, found)

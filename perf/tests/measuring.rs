@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use toile_perf::ansur::Survey;
-use toile_perf::measuring::{Options, Sensor, Study, study};
+use toile_perf::measuring::{MeasuringOptions, Sensor, MeasuringStudy, study};
 
 /// The folder of shared data; absent data is a failure in continuous integration.
 fn folder() -> Option<PathBuf> {
@@ -34,8 +34,8 @@ fn people_before_both_cameras_are_found_and_measured() {
     let surveys = surveys(&folder);
     assert_eq!(surveys.len(), 2);
     for sensor in [Sensor::Kinect, Sensor::Azure] {
-        let options = Options { people: 2, frames: 3, seed: 5, sensor };
-        let found: Study = study(&surveys, &options, &|_| ()).expect("a study");
+        let options = MeasuringOptions { people: 2, frames: 3, seed: 5, sensor };
+        let found: MeasuringStudy = study(&surveys, &options, &|_| ()).expect("a study");
         assert_eq!((found.people, found.lost), (4, 0));
         assert_eq!(found.sex_right, 1.0, "{}", found.sensor);
         for (name, limit) in LIMITS {

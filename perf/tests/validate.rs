@@ -3,8 +3,8 @@
 use std::sync::OnceLock;
 
 use toile_perf::validate::Level;
-use toile_perf::validate::case::Row;
-use toile_perf::validate::run::{Options, run};
+use toile_perf::validate::case::ValidationRow;
+use toile_perf::validate::run::{ValidationOptions, run};
 
 /// What is run: cheap enough for a build without optimisation.
 const QUICK: [(&str, &str); 6] = [
@@ -16,18 +16,18 @@ const QUICK: [(&str, &str); 6] = [
     ("stopping", "1 m/s, mu 0.3"),
 ];
 
-fn options(case: &str, parameter: &str) -> Options {
-    Options {
+fn options(case: &str, parameter: &str) -> ValidationOptions {
+    ValidationOptions {
         case: Some(case.into()),
         parameter: Some(parameter.into()),
         levels: vec![Level::GATED],
-        ..Options::default()
+        ..ValidationOptions::default()
     }
 }
 
 /// Their rows, made once.
-fn rows() -> &'static [Row] {
-    static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
+fn rows() -> &'static [ValidationRow] {
+    static ROWS: OnceLock<Vec<ValidationRow>> = OnceLock::new();
     ROWS.get_or_init(|| {
         let one = |(case, parameter): (&str, &str)| {
             run(&options(case, parameter), &|_| {}).expect("the cases' own meshes can be baked").cases
@@ -37,7 +37,7 @@ fn rows() -> &'static [Row] {
 }
 
 /// The rows of a case that are on a grid or on alternating triangles.
-fn regular(name: &str) -> impl Iterator<Item = &'static Row> {
+fn regular(name: &str) -> impl Iterator<Item = &'static ValidationRow> {
     rows().iter().filter(move |row| row.name == name && row.mesh != "unstructured")
 }
 
@@ -72,7 +72,7 @@ fn statics_are_those_of_the_oracle() {
 #[test]
 fn rows_are_the_same_on_two_threads() {
     let on = |threads| {
-        let options = Options { threads, parameter: None, every: 3, ..options("spring", "") };
+        let options = ValidationOptions { threads, parameter: None, every: 3, ..options("spring", "") };
         let rows = run(&options, &|_| {}).expect("the cases' own meshes can be baked").cases;
         rows.into_iter().map(|row| (row.parameter, row.got.to_bits())).collect::<Vec<_>>()
     };

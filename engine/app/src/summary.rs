@@ -282,7 +282,7 @@ fn line(text: &mut String, words: &str) {
 #[cfg(test)]
 mod tests {
     use toile_engine::skin::{Blend, Padding};
-    use toile_perf::skinning::{Skinning, Subject, Timing};
+    use toile_perf::skinning::{Skinning, SkinningSubject, Timing};
 
     use super::*;
     use crate::report::Zone;
@@ -292,7 +292,7 @@ mod tests {
         let timing = Timing { us: 5.0, ns_per_vertex: 5.0, max_error_m: 2.5e-7, ..Timing::default() };
         let padding = Padding { vertices: 1000, lanes: 1010, blocks: 64, runs: 9, influences: 2000, blended: 2100 };
         let found = Skinning {
-            subject: Subject::Body,
+            subject: SkinningSubject::Body,
             verts: 1000,
             threads: 1,
             lanes: 16,

@@ -1,6 +1,8 @@
-//! Timing: a job is warmed up, run many times, and its median is told.
+//! Timing: a job is warmed up, run many times, and its median is given.
 
 use std::time::{Duration, Instant};
+
+use toile_assets::numeric::statistics::median_of;
 
 /// Runs before the first that counts: caches, branch predictors and the clock of the core settle in them.
 const WARM_UP: usize = 3;
@@ -23,12 +25,11 @@ pub fn median_us(mut job: impl FnMut()) -> f64 {
         job();
         runs.push(start.elapsed());
     }
-    runs.sort_unstable();
-    runs[runs.len() / 2].as_secs_f64() * 1e6
+    median_of(runs.iter().map(Duration::as_secs_f64)).unwrap_or(0.0) * 1e6
 }
 
 /// A stopwatch for work that is too rare to be repeated: on Linux it counts the time that its thread has a core, so that
-/// other work on the machine is not told as this one's; elsewhere all time.
+/// other work on the machine is not counted as this one's; elsewhere all time.
 pub struct OnCore {
     begun: Instant,
     had: Option<u64>,

@@ -6,9 +6,10 @@ use serde::Serialize;
 use thiserror::Error;
 use toile_assets::body::{Ansur, Body, BodyError, Fitted, Sex, Vocabulary, Wanted, sound};
 use toile_assets::mesh::Mesh;
+use toile_assets::numeric::statistics::quantile;
 
 use super::survey::{Survey, SurveyError};
-use crate::random::Random;
+use crate::random::CaseRandom;
 
 /// The measures that each person is built from, the survey's name for them, and the error allowed by ISO 20685 (m):
 /// heights, breadths and small girths 4 mm, large girths 9 mm. A sleeve is several bones long: it is held to the 4 mm, too.
@@ -75,7 +76,7 @@ pub struct Spread {
 
 /// How one measure came out over the people.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Errors {
+pub struct MeasureErrors {
     /// What it is called.
     pub measure: &'static str,
     /// Whether the bodies were built to it; else it was expected from the others.
@@ -96,7 +97,7 @@ pub struct Errors {
 
 /// What a study of one sex found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Study {
+pub struct BodyStudy {
     /// `women` or `men`.
     pub people: &'static str,
     /// How many were drawn from the survey.
@@ -104,7 +105,7 @@ pub struct Study {
     /// Of how many.
     pub of: usize,
     /// Errors, measure by measure.
-    pub measures: Vec<Errors>,
+    pub measures: Vec<MeasureErrors>,
     /// People whose measures no body has together within 2 mm; their nearest body is counted with its errors.
     pub unreachable: usize,
     /// Time of one calibration, the whole body included (ms).
@@ -127,7 +128,7 @@ pub struct Study {
     pub wrong: f64,
 }
 
-impl Study {
+impl BodyStudy {
     /// Whether every given measure is within its limit for everybody, and no body looks wrong.
     pub fn passes(&self) -> bool {
         self.measures.iter().all(|m| m.within.is_none_or(|w| w == 1.0)) && self.wrong == 0.0
@@ -140,7 +141,7 @@ impl Study {
 }
 
 /// One person's body and what it took.
-struct Built {
+struct BuiltBody {
     row: usize,
     fitted: Fitted,
     reached: bool,
@@ -151,7 +152,7 @@ struct Built {
 ///
 /// # Errors
 /// A file that is no survey, or a person outside of all ranges.
-pub fn study(survey: &Survey, count: usize, seed: u64, told: &dyn Fn()) -> Result<Study, StudyError> {
+pub fn study(survey: &Survey, count: usize, seed: u64, told: &dyn Fn()) -> Result<BodyStudy, StudyError> {
     let sex = survey.sex()?;
     let columns: Vec<Vec<f64>> = GIVEN.iter().map(|g| survey.column(g.1)).collect::<Result<_, _>>()?;
     if survey.people() == 0 {
@@ -170,7 +171,7 @@ pub fn study(survey: &Survey, count: usize, seed: u64, told: &dyn Fn()) -> Resul
             Err(BodyError::Unreachable { nearest, .. }) => (*nearest, false),
             Err(source) => return Err(StudyError::Person { line: row + 2, source }),
         };
-        built.push(Built { row, fitted, reached, ms });
+        built.push(BuiltBody { row, fitted, reached, ms });
         told();
     }
     let mut measures = Vec::new();
@@ -186,7 +187,7 @@ pub fn study(survey: &Survey, count: usize, seed: u64, told: &dyn Fn()) -> Resul
 /// Which rows are drawn: the first of a shuffle (Fisher and Yates).
 pub(crate) fn chosen(people: usize, count: usize, seed: u64) -> Vec<usize> {
     let mut rows: Vec<usize> = (0..people).collect();
-    let mut random = Random::new("ansur", seed);
+    let mut random = CaseRandom::new("ansur", seed);
     let count = count.min(people);
     for i in 0..count {
         let other = i + random.below(people - i);
@@ -196,12 +197,12 @@ pub(crate) fn chosen(people: usize, count: usize, seed: u64) -> Vec<usize> {
     rows
 }
 
-fn errors(measure: Ansur, limit: Option<f32>, column: &[f64], built: &[Built]) -> Errors {
+fn errors(measure: Ansur, limit: Option<f32>, column: &[f64], built: &[BuiltBody]) -> MeasureErrors {
     let off: Vec<f64> = built.iter().map(|b| f64::from(b.fitted.readings.of(measure)) * 1e3 - column[b.row]).collect();
     let n = off.len().max(1) as f64;
     let amounts = spread(off.iter().map(|e| e.abs()).collect());
     let limit_mm = limit.map(|l| f64::from(l) * 1e3);
-    Errors {
+    MeasureErrors {
         measure: measure.name(),
         given: limit.is_some(),
         limit_mm,
@@ -213,14 +214,14 @@ fn errors(measure: Ansur, limit: Option<f32>, column: &[f64], built: &[Built]) -
     }
 }
 
-fn looks(sex: Sex, base: &Body, of: usize, measures: Vec<Errors>, built: &[Built]) -> Study {
+fn looks(sex: Sex, base: &Body, of: usize, measures: Vec<MeasureErrors>, built: &[BuiltBody]) -> BodyStudy {
     let base_roughness = sound::roughness(&base.mesh);
-    let rough = |b: &Built| sound::roughness(&b.fitted.body.mesh) / base_roughness;
+    let rough = |b: &BuiltBody| sound::roughness(&b.fitted.body.mesh) / base_roughness;
     let roughness: Vec<f32> = built.iter().map(rough).collect();
     let crossed: Vec<[bool; 2]> = built.iter().map(|b| crossed(&b.fitted.body.mesh)).collect();
     let wrong = roughness.iter().zip(&crossed).filter(|(r, [folded, _])| **r > TOO_ROUGH || *folded).count();
-    let of_all = |f: &dyn Fn(&Built) -> f64| spread(built.iter().map(f).collect());
-    Study {
+    let of_all = |f: &dyn Fn(&BuiltBody) -> f64| spread(built.iter().map(f).collect());
+    BodyStudy {
         people: if sex == Sex::Female { "women" } else { "men" },
         drawn: built.len(),
         of,
@@ -246,12 +247,8 @@ fn crossed(mesh: &Mesh) -> [bool; 2] {
 }
 
 fn spread(mut figures: Vec<f64>) -> Spread {
-    figures.sort_by(f64::total_cmp);
-    let at = |share: f64| {
-        let last = figures.len().saturating_sub(1);
-        figures.get((share * figures.len() as f64) as usize).or(figures.get(last)).copied().unwrap_or(0.0)
-    };
-    Spread { median: at(0.5), p95: at(0.95), p99: at(0.99), max: figures.last().copied().unwrap_or(0.0) }
+    let mut at = |share: f64| quantile(&mut figures, share).unwrap_or(0.0);
+    Spread { median: at(0.5), p95: at(0.95), p99: at(0.99), max: at(1.0) }
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Crossover: from which size, and from how many garments on, a graphics device is worth it.
+//! Study: from which size, and from how many garments on, a graphics device is worth it.
 //!
 //! Reads: the benchmark's skirt at several sizes and in several numbers. Writes: time and error of one and two threads of the
 //! processor and of the device, the sizes at which their curves cross, and a chart.

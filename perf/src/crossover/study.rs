@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
+use toile_assets::numeric::statistics::median;
 use toile_gpu::stepper::{Backend, Means};
 
 use crate::backend::SteppedBy;
@@ -183,9 +184,8 @@ fn watched(scene: &mut SkirtScene, steps: usize, gauge: &mut Gauge) -> SideFigur
             frames += 1;
         }
     }
-    times.sort_unstable_by(f64::total_cmp);
     let [strain_mean, strain_p99] = sums.map(|sum| sum / f64::from(frames.max(1)));
-    SideFigures { step_us: times[times.len() / 2], strain_mean, strain_p99, apart_mm: 0.0 }
+    SideFigures { step_us: median(&mut times).unwrap_or(0.0), strain_mean, strain_p99, apart_mm: 0.0 }
 }
 
 /// Mean distance of the particles of all skirts (mm).

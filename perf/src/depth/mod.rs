@@ -14,8 +14,8 @@ use serde::Serialize;
 use toile_assets::body::BodyError;
 use toile_sensors::frame::Intrinsics;
 
-pub use stages::Stages;
-pub use truth::Errors;
+pub use stages::StageTimes;
+pub use truth::DepthErrors;
 
 /// Cameras of the table: half a Kinect's, a Kinect's, and about an Azure Kinect's straightened.
 const CAMERAS: [(&str, Intrinsics); 3] = [
@@ -29,45 +29,45 @@ pub const SMOOTHING_TARGET_US: f64 = 3_000.0;
 
 /// One camera's row.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
+pub struct DepthRow {
     /// The image's size.
     pub image: &'static str,
     /// Pixels of the shopper.
     pub shopper_pixels: usize,
     /// Times (us, median).
     #[serde(flatten)]
-    pub stages_us: Stages,
+    pub stages_us: StageTimes,
     /// Errors of the same frames.
     #[serde(flatten)]
-    pub errors: Errors,
+    pub errors: DepthErrors,
 }
 
 /// The table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Table {
+pub struct DepthTable {
     /// Longest that smoothing may take for a whole image of 640 x 480 (us).
     pub smoothing_target_us: f64,
     /// A row for each camera.
-    pub rows: Vec<Row>,
+    pub rows: Vec<DepthRow>,
 }
 
 /// Runs the benchmark; `say` hears of each camera.
 ///
 /// # Errors
 /// Where the people cannot be made.
-pub fn run(say: &mut dyn FnMut(&str)) -> Result<Table, BodyError> {
+pub fn run(say: &mut dyn FnMut(&str)) -> Result<DepthTable, BodyError> {
     let people = truth::People::new()?;
     let mut rows = Vec::new();
     for (image, intrinsics) in CAMERAS {
         say(image);
         let scene = people.before(intrinsics);
         let (stages_us, shopper_pixels) = stages::time(&scene);
-        rows.push(Row { image, shopper_pixels, stages_us, errors: truth::errors(&scene) });
+        rows.push(DepthRow { image, shopper_pixels, stages_us, errors: truth::errors(&scene) });
     }
-    Ok(Table { smoothing_target_us: SMOOTHING_TARGET_US, rows })
+    Ok(DepthTable { smoothing_target_us: SMOOTHING_TARGET_US, rows })
 }
 
-impl Table {
+impl DepthTable {
     /// The table for a person to read.
     pub fn markdown(&self) -> String {
         let mut text = String::from(
@@ -127,10 +127,10 @@ mod tests {
             errors.body_rms_mm[1] < 0.6 * errors.body_rms_mm[0] && errors.wall_rms_mm[1] < 0.34 * errors.wall_rms_mm[0]
         );
         assert!(errors.edge_px[1] < errors.edge_px[2], "{errors:?}");
-        let row = Row { image: "640 x 480", shopper_pixels: 1, stages_us: Stages::default(), errors };
-        let late = Stages { smooth_whole: 3_001.0, ..Stages::default() };
-        let told = |row: Row| Table { smoothing_target_us: SMOOTHING_TARGET_US, rows: vec![row] }.markdown();
+        let row = DepthRow { image: "640 x 480", shopper_pixels: 1, stages_us: StageTimes::default(), errors };
+        let late = StageTimes { smooth_whole: 3_001.0, ..StageTimes::default() };
+        let told = |row: DepthRow| DepthTable { smoothing_target_us: SMOOTHING_TARGET_US, rows: vec![row] }.markdown();
         assert!(told(row.clone()).ends_with(": met.\n"));
-        assert!(told(Row { stages_us: late, ..row }).ends_with(": missed.\n"));
+        assert!(told(DepthRow { stages_us: late, ..row }).ends_with(": missed.\n"));
     }
 }

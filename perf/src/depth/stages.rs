@@ -9,12 +9,12 @@ use toile_sensors::depth::smooth::{EdgePreserving, plain};
 use toile_sensors::depth::{Clean, Cloud, SensorNoise};
 use toile_sensors::segment::Segmenter;
 
-use super::truth::{GAUSSIAN_PX, Scene};
+use super::truth::{GAUSSIAN_PX, DepthScene};
 use toile_fitting::timing::median_us;
 
 /// What each stage takes for one frame (us, median).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Stages {
+pub struct StageTimes {
     /// The shopper found: cells, floor, pieces, people, mask.
     pub segment: f64,
     /// Holes filled.
@@ -34,7 +34,7 @@ pub struct Stages {
 }
 
 /// Times the stages on a scene; gives the shopper's pixels too.
-pub(super) fn time(scene: &Scene) -> (Stages, usize) {
+pub(super) fn time(scene: &DepthScene) -> (StageTimes, usize) {
     let frame = &scene.frame;
     let width = frame.intrinsics.width as usize;
     let noise = SensorNoise::KINECT_V1;
@@ -47,7 +47,7 @@ pub(super) fn time(scene: &Scene) -> (Stages, usize) {
     smoother.run(width, &depth, &noise, &mut out);
     let smoothed = out.clone();
     let (mut cloud, mut clean) = (Cloud::default(), Clean::default());
-    let stages = Stages {
+    let stages = StageTimes {
         segment: median_us(|| {
             black_box(segmenter.push(black_box(frame)));
         }),

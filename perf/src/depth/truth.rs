@@ -28,14 +28,14 @@ const OUTLINE: isize = 4;
 pub(super) struct People([Body; 2]);
 
 /// What a camera sees of them, and what is really there.
-pub(super) struct Scene {
+pub(super) struct DepthScene {
     view: View,
     pub frame: DepthFrame,
 }
 
 /// Errors of the stages: raw, edge-preserving and Gaussian where there are three.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Errors {
+pub struct DepthErrors {
     /// Of the shopper's points along the camera's z, root mean square (mm).
     pub body_rms_mm: [f64; 3],
     /// Of a wall at 2.5 m, root mean square (mm).
@@ -57,7 +57,7 @@ impl People {
     }
 
     /// Both before a camera, the shopper 2.5 m from it.
-    pub fn before(&self, intrinsics: Intrinsics) -> Scene {
+    pub fn before(&self, intrinsics: Intrinsics) -> DepthScene {
         let camera = SyntheticCamera::looking_at(intrinsics, Vec3::new(0.0, 1.2, 2.5), Vec3::new(0.0, 0.9, 0.0));
         let [shopper, other] = &self.0;
         let turned = Quat::from_rotation_y(0.3);
@@ -66,11 +66,11 @@ impl People {
             [(&shopper.mesh.positions, &shopper.mesh.triangles), (&moved, &other.mesh.triangles)];
         let view = room::view(&camera, -0.9, &people);
         let depth = KinectNoise::new(11).apply(&intrinsics, &view.z);
-        Scene { view, frame: camera.frame(0, depth) }
+        DepthScene { view, frame: camera.frame(0, depth) }
     }
 }
 
-pub(super) fn errors(scene: &Scene) -> Errors {
+pub(super) fn errors(scene: &DepthScene) -> DepthErrors {
     let (leaked_px, missed_percent) = mask_errors(scene);
     let k = scene.frame.intrinsics;
     let noise = SensorNoise::KINECT_V1;
@@ -81,7 +81,7 @@ pub(super) fn errors(scene: &Scene) -> Errors {
     let raw = &scene.frame.depth_mm;
     EdgePreserving::default().run(k.width as usize, raw, &noise, &mut fast);
     let twin = plain(k.width as usize, raw, &noise);
-    Errors {
+    DepthErrors {
         body_rms_mm: [Smoothing::None, Smoothing::EdgePreserving(noise), Smoothing::Gaussian(GAUSSIAN_PX)]
             .map(|smoothing| body_rms_mm(scene, smoothing)),
         wall_rms_mm: three(&k, &wall).each_ref().map(|z| flat(z)),
@@ -128,7 +128,7 @@ fn edge_px(k: &Intrinsics, z: &[f32]) -> f64 {
     between as f64 / f64::from(k.height)
 }
 
-fn body_rms_mm(scene: &Scene, smoothing: Smoothing) -> f64 {
+fn body_rms_mm(scene: &DepthScene, smoothing: Smoothing) -> f64 {
     let mut clean = Clean::new(Zone::default(), smoothing);
     let (_, cloud) = clean.push(&scene.frame);
     let inverse = scene.frame.camera_to_world.inverse();
@@ -137,7 +137,7 @@ fn body_rms_mm(scene: &Scene, smoothing: Smoothing) -> f64 {
     rms(errors.filter(|e| e.abs() < OUTLIER).map(|e| f64::from(e) * 1e3))
 }
 
-fn mask_errors(scene: &Scene) -> (usize, f64) {
+fn mask_errors(scene: &DepthScene) -> (usize, f64) {
     let mut segmenter = Segmenter::default();
     let mask = segmenter.push(&scene.frame).mask;
     let k = scene.frame.intrinsics;

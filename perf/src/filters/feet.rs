@@ -3,6 +3,7 @@
 use glam::Vec3;
 use serde::Serialize;
 use toile_assets::limits::STEP_SECONDS;
+use toile_assets::numeric::statistics::quantile;
 use toile_assets::skeleton::{Joint, Skeleton};
 use toile_engine::body::ground::soles;
 use toile_engine::body::{JointFrames, Poser};
@@ -30,7 +31,7 @@ const TOES: [Joint; 2] = [Joint::LeftToe, Joint::RightToe];
 
 /// What becomes of the feet of one recording.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Slide {
+pub struct FootSlide {
     /// The recording.
     pub name: String,
     /// How long feet stand, both feet's time added (s).
@@ -55,15 +56,15 @@ pub struct Slide {
 }
 
 /// Watches one recording.
-pub fn slide(session: &Session, body: &Skeleton) -> Slide {
-    let truth = Truth::new(&session.joints);
+pub fn slide(session: &Session, body: &Skeleton) -> FootSlide {
+    let truth = TrueFeet::new(&session.joints);
     let seconds = session.duration_ns() as f32 * 1e-9;
     let motion = |t: f32| sample(&session.joints, (f64::from(t) * 1e9) as u64).unwrap_or(session.joints[0]);
     let seen = motions::by_kinect(&motion, seconds, 7);
     let mut filter = JointFilter::default();
     let filtered: Vec<Joints> = seen.seen.iter().map(|frame| filter.push(frame)).collect();
-    let sliding = Watched::new(&filtered, Poser::new(body).letting_feet_slide(), body);
-    let kept = Watched::new(&filtered, Poser::new(body), body);
+    let sliding = PosedFeet::new(&filtered, Poser::new(body).letting_feet_slide(), body);
+    let kept = PosedFeet::new(&filtered, Poser::new(body), body);
     let ticks: Vec<u64> = (0..kept.soles.len() as u64).collect();
     let true_toes: Vec<[Vec3; 2]> = ticks.iter().map(|t| truth.toes(ticks_to_ns(*t))).collect();
     let planted = |tick: usize, foot: usize| truth.stands(ticks_to_ns(tick as u64), foot);
@@ -81,7 +82,7 @@ pub fn slide(session: &Session, body: &Skeleton) -> Slide {
     let air: Vec<usize> = (0..kept.lowest.len()).filter(|tick| truth.flies(late(*tick))).collect();
     let glued = air.iter().filter(|tick| kept.lowest[**tick] < AIR).count();
     let highest = |values: &mut dyn Iterator<Item = f32>| f64::from(values.fold(0.0, f32::max)) * 1e3;
-    Slide {
+    FootSlide {
         name: session.name.clone(),
         planted_s: way(&true_toes).1,
         truth_mm_s: way(&true_toes).0,
@@ -96,13 +97,13 @@ pub fn slide(session: &Session, body: &Skeleton) -> Slide {
 }
 
 /// A body posed 120 times a second: the balls of its feet, the toes that were seen, and its lowest sole (m).
-struct Watched {
+struct PosedFeet {
     soles: Vec<[Vec3; 2]>,
     seen: Vec<[Vec3; 2]>,
     lowest: Vec<f32>,
 }
 
-impl Watched {
+impl PosedFeet {
     /// Poses filtered frames as the frame loop does: between the last two.
     fn new(track: &[Joints], mut poser: Poser, body: &Skeleton) -> Self {
         let mut out = Self { soles: Vec::new(), seen: Vec::new(), lowest: Vec::new() };
@@ -121,17 +122,16 @@ impl Watched {
 }
 
 /// The recording without noise.
-struct Truth<'a> {
+struct TrueFeet<'a> {
     frames: &'a [Joints],
     /// Height at which toes stand (m).
     floor: f32,
 }
 
-impl<'a> Truth<'a> {
+impl<'a> TrueFeet<'a> {
     fn new(frames: &'a [Joints]) -> Self {
         let mut heights: Vec<f32> = frames.iter().flat_map(|f| TOES.map(|toe| f.at(toe).position.y)).collect();
-        heights.sort_unstable_by(f32::total_cmp);
-        Self { frames, floor: heights.get(heights.len() / 10).copied().unwrap_or(0.0) }
+        Self { frames, floor: quantile(&mut heights, 0.1).unwrap_or(0.0) }
     }
 
     fn toes(&self, time_ns: u64) -> [Vec3; 2] {

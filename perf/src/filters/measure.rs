@@ -1,14 +1,15 @@
 //! Jitter, lag and overshoot of a filtered track.
 
 use glam::Vec3;
+use toile_assets::numeric::statistics::quantile;
 use toile_assets::skeleton::{Joint, Skeleton};
 use toile_sensors::filter::Filter;
 use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_sensors::source::Session;
 
-use super::motions::{self, HZ, Seen};
-use super::{Recorded, Row, rows};
+use super::motions::{self, HZ, NoisyMotion};
+use super::{RecordedFigures, FilterRow, rows};
 use toile_fitting::timing;
 
 /// The joint that is looked at: the end of the longest chain.
@@ -27,7 +28,7 @@ const DELAYS: std::ops::Range<i32> = -100..250;
 const SLOW: f32 = 0.1;
 
 /// Measures one filter on all motions and recordings.
-pub fn row(name: &str, body: &Skeleton, sessions: &[Session]) -> Row {
+pub fn row(name: &str, body: &Skeleton, sessions: &[Session]) -> FilterRow {
     let fresh = || rows::filter(name, body).expect("a row of the table");
     let mean = |of: &dyn Fn(u64) -> f64| (0..SEEDS).map(of).sum::<f64>() / SEEDS as f64;
     let step = |seed| {
@@ -40,7 +41,7 @@ pub fn row(name: &str, body: &Skeleton, sessions: &[Session]) -> Row {
         let track = run(&mut *fresh(), &seen.seen);
         (seen, track)
     };
-    Row {
+    FilterRow {
         name: name.to_owned(),
         still_jitter_mm: mean(&|seed| {
             let seen = motions::under_noise(&motions::still(body), 6.0, SIGMA, seed);
@@ -67,7 +68,7 @@ fn run(filter: &mut dyn Filter, seen: &[Joints]) -> Vec<Joints> {
 }
 
 /// Time a frame (us).
-fn cost(seen: &Seen, filter: &mut dyn Filter) -> f64 {
+fn cost(seen: &NoisyMotion, filter: &mut dyn Filter) -> f64 {
     let us = timing::median_us(|| {
         filter.reset();
         seen.seen.iter().for_each(|frame| {
@@ -78,7 +79,7 @@ fn cost(seen: &Seen, filter: &mut dyn Filter) -> f64 {
 }
 
 /// Deviation from the truth along an axis, once the filter has settled (mm).
-fn still_jitter(seen: &Seen, track: &[Joints]) -> f64 {
+fn still_jitter(seen: &NoisyMotion, track: &[Joints]) -> f64 {
     let off: Vec<Vec3> =
         seen.truth.iter().zip(track).skip(30).map(|(t, f)| f.at(HAND).position - t.at(HAND).position).collect();
     // What stays is an offset, of bones that are locked to another length, and no jitter.
@@ -87,7 +88,7 @@ fn still_jitter(seen: &Seen, track: &[Joints]) -> f64 {
 }
 
 /// The delay at which a track fits the truth best within a time (ms), and the 99th percentile of its error then (mm).
-fn lag((seen, track): &(Seen, Vec<Joints>), within: std::ops::Range<f32>) -> (f64, f64) {
+fn lag((seen, track): &(NoisyMotion, Vec<Joints>), within: std::ops::Range<f32>) -> (f64, f64) {
     let frames = || (0..track.len()).filter(|i| within.contains(&(*i as f32 / HZ)));
     let errors = |delay: i32| -> Vec<f32> {
         let at = |i: usize| track[i].time_ns.saturating_add_signed(-i64::from(delay) * 1_000_000);
@@ -97,8 +98,7 @@ fn lag((seen, track): &(Seen, Vec<Joints>), within: std::ops::Range<f32>) -> (f6
     let cost = |delay: i32| errors(delay).iter().map(|e| e * e).sum::<f32>();
     let best = DELAYS.min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(0);
     let mut errors = errors(best);
-    errors.sort_unstable_by(f32::total_cmp);
-    (f64::from(best), f64::from(errors[errors.len() * 99 / 100]) * 1e3)
+    (f64::from(best), f64::from(quantile(&mut errors, 0.99).unwrap_or(0.0)) * 1e3)
 }
 
 /// Deviation of the forearm's length (mm).
@@ -123,7 +123,7 @@ fn rms(values: impl Iterator<Item = f32>) -> f64 {
 
 /// A recorded right wrist, whose hand waves in the recordings: its jitter about its own smooth course while it is slow, and its
 /// delay against the raw hand's smooth course.
-fn recorded(session: &Session, filter: &mut dyn Filter) -> Recorded {
+fn recorded(session: &Session, filter: &mut dyn Filter) -> RecordedFigures {
     const WAVING: Joint = Joint::RightWrist;
     let course = |track: &[Joints]| -> Vec<Vec3> { track.iter().map(|f| f.at(WAVING).position).collect() };
     let (raw, out) = (course(&session.joints), course(&run(filter, &session.joints)));
@@ -136,7 +136,7 @@ fn recorded(session: &Session, filter: &mut dyn Filter) -> Recorded {
         inner().map(|i| out[i].distance_squared(between(&seconds, &truth, seconds[i] - delay as f32 * 1e-3))).sum()
     };
     let lag = DELAYS.min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(0);
-    Recorded { name: session.name.clone(), jitter_mm: jitter, lag_ms: f64::from(lag) }
+    RecordedFigures { name: session.name.clone(), jitter_mm: jitter, lag_ms: f64::from(lag) }
 }
 
 /// Frames to each side that a smooth course is taken from.

@@ -12,12 +12,12 @@ pub mod table;
 
 use serde::Serialize;
 
-pub use feet::Slide;
+pub use feet::FootSlide;
 pub use rows::{NAMES, filter};
 
 /// What one filter does to the motions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
+pub struct FilterRow {
     /// Its name.
     pub name: String,
     /// Deviation of a resting joint along an axis, about the truth (mm).
@@ -33,14 +33,14 @@ pub struct Row {
     /// Deviation of the forearm's length (mm).
     pub bone_mm: f64,
     /// A recorded wave, if a folder of recordings is given.
-    pub recorded: Vec<Recorded>,
+    pub recorded: Vec<RecordedFigures>,
     /// Time a frame (us).
     pub us: f64,
 }
 
 /// What one filter does to a recording, whose truth nobody knows: compared with its own smooth course.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Recorded {
+pub struct RecordedFigures {
     /// The recording.
     pub name: String,
     /// Deviation of the hand from its own smooth course while it is slow (mm).

@@ -12,10 +12,10 @@ use toile_sensors::source::synthetic::JointNoise;
 pub const HZ: f32 = 30.0;
 
 /// A motion: the truth at any time (s).
-pub type Motion<'a> = dyn Fn(f32) -> Joints + 'a;
+pub type JointMotion<'a> = dyn Fn(f32) -> Joints + 'a;
 
 /// The truth and what is seen of it, frame by frame.
-pub struct Seen {
+pub struct NoisyMotion {
     /// As it is.
     pub truth: Vec<Joints>,
     /// As the sensor shows it.
@@ -28,7 +28,7 @@ pub fn time_ns(frame: usize) -> u64 {
 }
 
 /// What is seen under noise of `sigma` (m) on each axis, without dropouts.
-pub fn under_noise(motion: &Motion, seconds: f32, sigma: f32, seed: u64) -> Seen {
+pub fn under_noise(motion: &JointMotion, seconds: f32, sigma: f32, seed: u64) -> NoisyMotion {
     let mut rng = SplitMix64::new(seed);
     see(motion, seconds, |truth| {
         let mut seen = *truth;
@@ -40,16 +40,16 @@ pub fn under_noise(motion: &Motion, seconds: f32, sigma: f32, seed: u64) -> Seen
 }
 
 /// What a Kinect shows: jitter, and hands and feet that are lost for some frames.
-pub fn by_kinect(motion: &Motion, seconds: f32, seed: u64) -> Seen {
+pub fn by_kinect(motion: &JointMotion, seconds: f32, seed: u64) -> NoisyMotion {
     let mut noise = JointNoise::new(seed);
     see(motion, seconds, |truth| noise.apply(truth))
 }
 
-fn see(motion: &Motion, seconds: f32, mut show: impl FnMut(&Joints) -> Joints) -> Seen {
+fn see(motion: &JointMotion, seconds: f32, mut show: impl FnMut(&Joints) -> Joints) -> NoisyMotion {
     let truth: Vec<Joints> =
         (0..(seconds * HZ) as usize).map(|i| Joints { time_ns: time_ns(i), ..motion(i as f32 / HZ) }).collect();
     let seen = truth.iter().map(&mut show).collect();
-    Seen { truth, seen }
+    NoisyMotion { truth, seen }
 }
 
 /// Somebody who stands.

@@ -36,9 +36,9 @@ pub const DEFAULT: &str = "default: hold and damped, adaptive Holt";
 const LEAD: f32 = 0.038;
 
 /// Several filters, one after the other.
-struct Chain(Vec<Box<dyn Filter>>);
+struct FilterChain(Vec<Box<dyn Filter>>);
 
-impl Filter for Chain {
+impl Filter for FilterChain {
     fn push(&mut self, frame: &Joints) -> Joints {
         self.0.iter_mut().fold(*frame, |joints, filter| filter.push(&joints))
     }
@@ -49,9 +49,9 @@ impl Filter for Chain {
 }
 
 /// No filter.
-struct None;
+struct Unfiltered;
 
-impl Filter for None {
+impl Filter for Unfiltered {
     fn push(&mut self, frame: &Joints) -> Joints {
         *frame
     }
@@ -73,7 +73,7 @@ pub fn filter(name: &str, body: &Skeleton) -> Option<Box<dyn Filter>> {
     };
     let euro = |min_cutoff| Smoothing::OneEuro(OneEuroSettings { min_cutoff, beta: 10.0 });
     Some(match name {
-        "none" => Box::new(None),
+        "none" => Box::new(Unfiltered),
         "gate, hold and blend" => Box::new(of(Smoothing::None, 0.0)),
         "Holt .5/.5/.5" => Box::new(of(classic(0.5, 0.5, 0.5), 0.0)),
         "Holt .7/.3/0" => Box::new(of(classic(0.7, 0.3, 0.0), 0.0)),
@@ -90,11 +90,11 @@ pub fn filter(name: &str, body: &Skeleton) -> Option<Box<dyn Filter>> {
         DEFAULT => Box::new(JointFilter::default()),
         "the same, bones of the session" => Box::new(of(Smoothing::default(), 1.0)),
         "the same, predicted by 38 ms" => {
-            Box::new(Chain(vec![Box::new(JointFilter::default()), Box::new(Predictor::new(LEAD))]))
+            Box::new(FilterChain(vec![Box::new(JointFilter::default()), Box::new(Predictor::new(LEAD))]))
         }
         "the same, posed" => {
-            Box::new(Chain(vec![Box::new(JointFilter::default()), Box::new(PoseFilter::new(Poser::new(body)))]))
+            Box::new(FilterChain(vec![Box::new(JointFilter::default()), Box::new(PoseFilter::new(Poser::new(body)))]))
         }
-        _ => return Option::None,
+        _ => return None,
     })
 }

@@ -8,7 +8,7 @@ use toile_assets::body::Body;
 use toile_assets::scene;
 use toile_sensors::source::{OpenOptions, Session, open};
 
-use super::{FiltersError, NAMES, Row, Slide, feet, measure, rows};
+use super::{FiltersError, NAMES, FilterRow, FootSlide, feet, measure, rows};
 
 /// Recordings of a waving hand, in a folder of recordings.
 const WAVES: [&str; 2] =
@@ -33,11 +33,11 @@ const REFERENCE: [(&str, [f64; 3]); 5] = [
 
 /// All figures.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Table {
+pub struct FilterTable {
     /// Filters.
-    pub rows: Vec<Row>,
+    pub rows: Vec<FilterRow>,
     /// Feet; none without a folder of recordings.
-    pub feet: Vec<Slide>,
+    pub feet: Vec<FootSlide>,
 }
 
 /// Measures all filters, or only the default, and the feet of the recordings, if there is a folder of them; `told` hears
@@ -45,7 +45,7 @@ pub struct Table {
 ///
 /// # Errors
 /// Where the scene's shopper cannot be built, or a recording cannot be read.
-pub fn run(data: Option<&Path>, all: bool, told: &mut dyn FnMut(&str)) -> Result<Table, FiltersError> {
+pub fn run(data: Option<&Path>, all: bool, told: &mut dyn FnMut(&str)) -> Result<FilterTable, FiltersError> {
     let body = Body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?.skeleton;
     let sessions = |files: &[&str]| -> Result<Vec<Session>, FiltersError> {
         let Some(data) = data else { return Ok(Vec::new()) };
@@ -62,10 +62,10 @@ pub fn run(data: Option<&Path>, all: bool, told: &mut dyn FnMut(&str)) -> Result
         told(&session.name);
         slides.push(feet::slide(&session, &body));
     }
-    Ok(Table { rows: found, feet: slides })
+    Ok(FilterTable { rows: found, feet: slides })
 }
 
-impl Table {
+impl FilterTable {
     /// The tables as Markdown.
     pub fn markdown(&self) -> String {
         let mut text = String::new();

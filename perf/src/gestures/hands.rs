@@ -83,12 +83,12 @@ const FINGERS: [([f32; 2], f32, f32, f32); 4] = [
 
 /// A surface under construction.
 #[derive(Default)]
-struct Solid {
+struct HandMesh {
     positions: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
 }
 
-impl Solid {
+impl HandMesh {
     /// A cone with round ends between two points.
     fn cone(&mut self, a: Vec3, b: Vec3, [ra, rb]: [f32; 2]) {
         const AROUND: u32 = 10;
@@ -147,15 +147,15 @@ impl Solid {
 }
 
 /// One hand held up before a camera, in one pose.
-struct Held {
-    solid: Solid,
+struct HeldHand {
+    solid: HandMesh,
     wrist: Vec3,
     palm: Vec3,
     along: Vec3,
 }
 
 /// A place to hold a hand up at, and the person it belongs to.
-struct Scene {
+struct HandScene {
     camera: SyntheticCamera,
     noise: KinectNoise,
     length: f32,
@@ -166,7 +166,7 @@ struct Scene {
     image: Vec<f32>,
 }
 
-impl Scene {
+impl HandScene {
     fn new(distance: f32, rng: &mut SplitMix64) -> Self {
         let [mean, sd] = LENGTHS[(rng.next_u64() & 1) as usize];
         let length = mean + sd * rng.gaussian();
@@ -189,8 +189,8 @@ impl Scene {
         }
     }
 
-    fn held(&self, pose: HandPose, rng: &mut SplitMix64) -> Held {
-        let mut solid = Solid::hand(pose, rng);
+    fn held(&self, pose: HandPose, rng: &mut SplitMix64) -> HeldHand {
+        let mut solid = HandMesh::hand(pose, rng);
         let flip = if self.mirrored { Vec3::new(-1.0, 1.0, 1.0) } else { Vec3::ONE };
         let world = |p: Vec3| self.wrist + self.turn * (p * flip * self.length);
         solid.positions.iter_mut().for_each(|p| *p = world(*p));
@@ -199,11 +199,11 @@ impl Scene {
         let trunk = [[-0.25, -0.6], [0.25, -0.6], [-0.25, 0.1], [0.25, 0.1]];
         solid.positions.extend(trunk.map(|[x, y]| Vec3::new(x + 0.15, y, -0.45)));
         solid.triangles.extend([[0, 1, 2], [1, 3, 2]].map(|t| t.map(|i| first + i)));
-        Held { solid, wrist: self.wrist, palm: world(Vec3::new(0.0, 0.3, 0.0)), along: self.turn * Vec3::Y }
+        HeldHand { solid, wrist: self.wrist, palm: world(Vec3::new(0.0, 0.3, 0.0)), along: self.turn * Vec3::Y }
     }
 
     /// One frame, and where a tracker says that the hand is; the hand trembles.
-    fn frame(&mut self, held: &Held, rng: &mut SplitMix64) -> (DepthFrame, HandRegion) {
+    fn frame(&mut self, held: &HeldHand, rng: &mut SplitMix64) -> (DepthFrame, HandRegion) {
         let mut off = |by: f32| Vec3::new(rng.gaussian(), rng.gaussian(), rng.gaussian()) * by;
         let shift = off(0.003);
         let moved: Vec<Vec3> = held.solid.positions.iter().map(|p| *p + shift).collect();
@@ -222,18 +222,18 @@ impl Scene {
 /// A spread hand held up at a distance (m): a frame, and where a tracker says that the hand is.
 pub fn held_up(distance: f32, seed: u64) -> (DepthFrame, HandRegion) {
     let mut rng = SplitMix64::new(seed);
-    let mut scene = Scene::new(distance, &mut rng);
+    let mut scene = HandScene::new(distance, &mut rng);
     let held = scene.held(HandPose::Spread, &mut rng);
     scene.frame(&held, &mut rng)
 }
 
 /// What is summed up of one pose at one distance.
-struct Sum {
+struct GripSum {
     row: GripRow,
     shapes: Vec<HandShape>,
 }
 
-impl Sum {
+impl GripSum {
     fn new(pose: HandPose, distance: f32) -> Self {
         let row = GripRow {
             pose,
@@ -280,10 +280,10 @@ pub fn grips(distances: &[f32], hands: u32, seed: u64) -> Vec<GripRow> {
     let mut rows = Vec::new();
     let mut eye = HandSegmenter::new();
     for (k, &distance) in distances.iter().enumerate() {
-        let mut sums = HandPose::ALL.map(|pose| Sum::new(pose, distance));
+        let mut sums = HandPose::ALL.map(|pose| GripSum::new(pose, distance));
         for hand in 0..hands {
             let mut rng = SplitMix64::new(seed + 1_000_000 * (k as u64 + 1) + u64::from(hand));
-            let mut scene = Scene::new(distance, &mut rng);
+            let mut scene = HandScene::new(distance, &mut rng);
             let open = usize::from(hand % 2 == 1);
             let mut grip = Grip::new();
             let mut time_ns = 0;
@@ -304,7 +304,7 @@ pub fn grips(distances: &[f32], hands: u32, seed: u64) -> Vec<GripRow> {
                 sums[i].row.false_events += found.saturating_sub(wanted);
             }
         }
-        rows.extend(sums.map(Sum::row));
+        rows.extend(sums.map(GripSum::row));
     }
     rows
 }

@@ -18,7 +18,7 @@ use toile_sensors::filter::JointFilter;
 use toile_sensors::frame::Joints;
 use toile_track::gesture::{GestureEvent, Gestures};
 
-use motion::Motion;
+use motion::GestureMotion;
 use person::{Shopper, Tracker};
 
 pub use hands::{GripRow, HandPose, grips, held_up};
@@ -27,7 +27,7 @@ pub use table::GestureStudy;
 
 /// What is varied between the rows of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Conditions {
+pub struct GestureConditions {
     /// Distance of the shopper from the camera (m).
     pub distance: f32,
     /// Frames a second.
@@ -38,7 +38,7 @@ pub struct Conditions {
     pub scale: f32,
 }
 
-impl Default for Conditions {
+impl Default for GestureConditions {
     fn default() -> Self {
         Self { distance: 2.0, rate: 30.0, dropped: 0.03, scale: 1.0 }
     }
@@ -46,7 +46,7 @@ impl Default for Conditions {
 
 /// How often an act was recognised.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Count {
+pub struct GestureCount {
     /// Sequences.
     pub sequences: u32,
     /// Sequences that gave the right event.
@@ -57,7 +57,7 @@ pub struct Count {
     pub seconds: f32,
 }
 
-impl Count {
+impl GestureCount {
     /// Part of the gestures that were missed.
     pub fn miss_rate(&self) -> f32 {
         1.0 - self.hits as f32 / self.sequences.max(1) as f32
@@ -81,10 +81,10 @@ impl Count {
 }
 
 /// The joints of a random shopper who does something, filtered; the same seed gives the same bits.
-pub fn sequence(act: Act, conditions: &Conditions, seed: u64) -> Vec<Joints> {
+pub fn sequence(act: Act, conditions: &GestureConditions, seed: u64) -> Vec<Joints> {
     let mut rng = SplitMix64::new(seed);
     let person = Shopper::new(&mut rng, conditions.scale);
-    let motion = Motion::new(act, &mut rng);
+    let motion = GestureMotion::new(act, &mut rng);
     let mut tracker = Tracker::new(&mut rng, conditions.distance);
     let facing = 0.15 * rng.gaussian();
     let mut filter = JointFilter::default();
@@ -111,8 +111,8 @@ pub fn events(frames: &[Joints]) -> Vec<GestureEvent> {
 }
 
 /// Runs an act so many times.
-pub fn count(act: Act, conditions: &Conditions, sequences: u32, seed: u64) -> Count {
-    let mut count = Count { sequences, ..Count::default() };
+pub fn count(act: Act, conditions: &GestureConditions, sequences: u32, seed: u64) -> GestureCount {
+    let mut count = GestureCount { sequences, ..GestureCount::default() };
     for i in 0..sequences {
         let frames = sequence(act, conditions, seed + u64::from(i));
         let found = events(&frames);

@@ -6,7 +6,7 @@ use toile_track::gesture::Gesture;
 
 /// A moment of a motion.
 #[derive(Debug, Clone, Copy)]
-struct Key {
+struct Keyframe {
     /// Time since the motion began (s).
     time: f32,
     /// Wrists, left and right (arm lengths along the trunk's axes from the middle of the shoulders).
@@ -114,25 +114,25 @@ impl Act {
 }
 
 /// A motion in time.
-pub(super) struct Motion {
-    keys: Vec<Key>,
+pub(super) struct GestureMotion {
+    keys: Vec<Keyframe>,
 }
 
 /// The right wrist's place; the left one's is mirrored.
 const HANGING: Vec3 = Vec3::new(-0.42, -0.92, 0.08);
 
 /// Draws motions: both hands first hang.
-struct Draw<'a> {
+struct MotionBuilder<'a> {
     rng: &'a mut SplitMix64,
-    keys: Vec<Key>,
-    now: Key,
+    keys: Vec<Keyframe>,
+    now: Keyframe,
 }
 
 fn mirrored(p: Vec3) -> Vec3 {
     p * Vec3::new(-1.0, 1.0, 1.0)
 }
 
-impl Draw<'_> {
+impl MotionBuilder<'_> {
     fn between(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * self.rng.uniform()
     }
@@ -387,12 +387,12 @@ impl Draw<'_> {
     }
 }
 
-impl Motion {
+impl GestureMotion {
     /// A random way to do something, of the left hand as often as of the right.
     pub(super) fn new(act: Act, rng: &mut SplitMix64) -> Self {
         let left_handed = rng.next_u64() & 1 == 0;
-        let now = Key { time: 0.0, wrists: [mirrored(HANGING), HANGING], place: Vec3::ZERO, turn: 0.0 };
-        let mut draw = Draw { rng, keys: vec![now], now };
+        let now = Keyframe { time: 0.0, wrists: [mirrored(HANGING), HANGING], place: Vec3::ZERO, turn: 0.0 };
+        let mut draw = MotionBuilder { rng, keys: vec![now], now };
         draw.rest(0.6, 1.2);
         match act {
             // Mirrored below, so that the shopper's left stays their left.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Act, Conditions, Count, GripRow, count, grips};
+use super::{Act, GestureConditions, GestureCount, GripRow, count, grips};
 
 /// Distances of the tables (m).
 const DISTANCES: [f32; 4] = [1.2, 2.0, 2.8, 3.5];
@@ -21,19 +21,19 @@ pub struct GestureStudy {
     /// First seed.
     pub seed: u64,
     /// Gestures under the conditions of each column of each table.
-    pub gestures: Vec<(Act, Conditions, Count)>,
+    pub gestures: Vec<(Act, GestureConditions, GestureCount)>,
     /// What is no gesture, over all distances.
-    pub others: Vec<(Act, Count)>,
+    pub others: Vec<(Act, GestureCount)>,
     /// Hands open and closed.
     pub grips: Vec<GripRow>,
 }
 
 /// Conditions of all columns, in the order of the tables.
-fn columns() -> Vec<Conditions> {
-    let usual = Conditions::default();
-    let distances = DISTANCES.map(|distance| Conditions { distance, ..usual });
-    let rates = RATES.map(|[rate, dropped]| Conditions { rate, dropped, ..usual });
-    let scales = SCALES.map(|scale| Conditions { scale, ..usual });
+fn columns() -> Vec<GestureConditions> {
+    let usual = GestureConditions::default();
+    let distances = DISTANCES.map(|distance| GestureConditions { distance, ..usual });
+    let rates = RATES.map(|[rate, dropped]| GestureConditions { rate, dropped, ..usual });
+    let scales = SCALES.map(|scale| GestureConditions { scale, ..usual });
     [&distances[..], &rates, &scales].concat()
 }
 
@@ -49,8 +49,8 @@ impl GestureStudy {
         let mut others = Vec::new();
         for act in Act::OTHERS {
             say(act.name());
-            let at = |distance| count(act, &Conditions { distance, ..Conditions::default() }, sequences, seed);
-            others.push((act, DISTANCES.map(at).into_iter().fold(Count::default(), Count::and)));
+            let at = |distance| count(act, &GestureConditions { distance, ..GestureConditions::default() }, sequences, seed);
+            others.push((act, DISTANCES.map(at).into_iter().fold(GestureCount::default(), GestureCount::and)));
         }
         say("hands");
         let grips = grips(&DISTANCES, sequences.div_ceil(4), seed);
@@ -67,7 +67,7 @@ impl GestureStudy {
     }
 
     fn gesture_table(&self, text: &mut String) {
-        let percent = |c: &Count| format!("{:.1}", 100.0 * c.miss_rate());
+        let percent = |c: &GestureCount| format!("{:.1}", 100.0 * c.miss_rate());
         let distances = DISTANCES.map(|d| format!("{d} m"));
         let rates = RATES.map(|[rate, dropped]| format!("{rate} Hz, {:.0} % lost", 100.0 * dropped));
         let scales = SCALES.map(|s| format!("size {s}"));
@@ -77,7 +77,7 @@ impl GestureStudy {
         for act in Act::GESTURES {
             let own: Vec<_> = self.gestures.iter().filter(|(a, ..)| *a == act).collect();
             let mut cells: Vec<String> = own.iter().map(|(_, _, c)| percent(c)).collect();
-            let all = own.iter().fold(Count::default(), |sum, (_, _, c)| sum.and(*c));
+            let all = own.iter().fold(GestureCount::default(), |sum, (_, _, c)| sum.and(*c));
             cells.push(format!("{} in {}", all.wrong, all.sequences));
             row(text, act.name(), cells.iter().map(String::as_str));
         }
@@ -87,7 +87,7 @@ impl GestureStudy {
         text.push('\n');
         row(text, "no gesture", ["sequences", "minutes", "false events", "a minute"].into_iter());
         row(text, "---", ["---"; 4].into_iter());
-        let all = self.others.iter().fold(Count::default(), |sum, (_, c)| sum.and(*c));
+        let all = self.others.iter().fold(GestureCount::default(), |sum, (_, c)| sum.and(*c));
         for (name, c) in self.others.iter().map(|(act, c)| (act.name(), c)).chain([("**all**", &all)]) {
             let cells = [
                 c.sequences.to_string(),

@@ -11,6 +11,6 @@ mod person;
 mod sensor;
 mod study;
 
-pub use person::{GIVEN, Moment, Person};
-pub use sensor::{Sensor, Sight};
-pub use study::{Agreement, Case, Following, Options, Outcome, Study, study};
+pub use person::{GIVEN, JointPositions, SurveyPerson};
+pub use sensor::{Sensor, StudyCamera};
+pub use study::{MeasuringAgreement, MeasuredPerson, Following, MeasuringOptions, Estimates, MeasuringStudy, study};

@@ -38,10 +38,10 @@ const KNOTS: [f32; 6] = [0.44, 0.52, 0.58, 0.64, 0.72, 0.82];
 const BUMPS: f32 = 0.0008;
 
 /// Where the joints are at one moment, world (m).
-pub type Moment = [Vec3; JOINTS];
+pub type JointPositions = [Vec3; JOINTS];
 
 /// A person who can stand before a camera.
-pub struct Person {
+pub struct SurveyPerson {
     /// Sex.
     pub sex: Sex,
     body: Body,
@@ -50,7 +50,7 @@ pub struct Person {
     pose: Pose,
 }
 
-impl Person {
+impl SurveyPerson {
     /// Builds a person of the survey, by their measures in the order of [`GIVEN`] (m). Where no body has all of them
     /// together, the nearest; what is true of them is read off in any case.
     ///
@@ -73,7 +73,7 @@ impl Person {
 
     /// The surface of the swaying person at one moment, feet on the floor (m) `[vertices]`.
     /// Gives where their joints are.
-    pub fn stand(&self, rng: &mut SplitMix64, positions: &mut Vec<Vec3>) -> Moment {
+    pub fn stand(&self, rng: &mut SplitMix64, positions: &mut Vec<Vec3>) -> JointPositions {
         let mut pose = self.pose;
         let mut sway = |joint: Joint, by: f32| {
             let turn = Vec3::new(rng.gaussian(), rng.gaussian(), rng.gaussian()) * by;
@@ -202,7 +202,7 @@ mod tests {
     fn people_stand_on_both_feet() {
         let mut rng = SplitMix64::new(11);
         let measures = [1.65, 1.41, 0.98, 0.77, 0.46, 0.33, 0.93, 0.84, 1.01, 0.60, 0.80, 0.36];
-        let person = Person::new(Sex::Female, &measures, &mut rng).expect("a body");
+        let person = SurveyPerson::new(Sex::Female, &measures, &mut rng).expect("a body");
         let soles: Vec<usize> =
             (0..person.body.mesh.positions.len()).filter(|&v| person.body.mesh.positions[v].y < 0.002).collect();
         let mut surface = Vec::new();

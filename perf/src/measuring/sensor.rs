@@ -5,7 +5,7 @@ use toile_assets::numeric::random::SplitMix64;
 use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 
-use super::person::{Moment, Person};
+use super::person::{JointPositions, SurveyPerson};
 
 /// A kind of depth camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,7 +69,7 @@ const EDGE: f32 = 0.05;
 const GRAZING: f32 = 0.12;
 
 /// A person before a camera.
-pub struct Sight {
+pub struct StudyCamera {
     told: SyntheticCamera,
     seen: SyntheticCamera,
     sensor: Sensor,
@@ -78,7 +78,7 @@ pub struct Sight {
     pub distance: f32,
 }
 
-impl Sight {
+impl StudyCamera {
     /// A camera of a kind, before somebody at the origin.
     pub fn new(sensor: Sensor, rng: &mut SplitMix64) -> Self {
         let [near, far] = sensor.distances();
@@ -108,7 +108,7 @@ impl Sight {
     }
 
     /// The swaying person at 30 Hz, and where their joints are in each frame.
-    pub fn frames(&self, person: &Person, count: usize, rng: &mut SplitMix64) -> Vec<(DepthFrame, Moment)> {
+    pub fn frames(&self, person: &SurveyPerson, count: usize, rng: &mut SplitMix64) -> Vec<(DepthFrame, JointPositions)> {
         let mut kinect = KinectNoise::new(rng.next_u64());
         let mut positions = Vec::new();
         let mut image = vec![0.0; self.seen.intrinsics.pixels()];

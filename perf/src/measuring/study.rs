@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use toile_assets::body::Sex;
+use toile_assets::numeric::statistics::quantile;
 use toile_assets::numeric::random::SplitMix64;
 use toile_assets::sizes::Population;
 use toile_assets::skeleton::Joint;
@@ -13,14 +14,14 @@ use toile_track::measure;
 use toile_track::measures::Hint;
 use toile_track::point_cloud;
 
-use super::person::{GIVEN, Moment, Person};
-use super::sensor::{Sensor, Sight};
+use super::person::{GIVEN, JointPositions, SurveyPerson};
+use super::sensor::{Sensor, StudyCamera};
 use crate::ansur::{StudyError, Survey};
 use toile_fitting::timing::OnCore;
 
 /// What is studied.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
+pub struct MeasuringOptions {
     /// People drawn from each file.
     pub people: usize,
     /// Frames that each is measured from.
@@ -32,11 +33,11 @@ pub struct Options {
 }
 
 /// What one way of measuring said of one person, in the order of [`MEASURES`]; `None` where it takes no such measure.
-pub type Outcome = [Option<Estimate>; MEASURES.len()];
+pub type Estimates = [Option<Estimate>; MEASURES.len()];
 
 /// One person: what is true, and what was measured.
 #[derive(Debug, Clone)]
-pub struct Case {
+pub struct MeasuredPerson {
     /// Sex.
     pub sex: Sex,
     /// Distance from the camera (m).
@@ -44,9 +45,9 @@ pub struct Case {
     /// What the tape reads, in the order of [`MEASURES`] (m).
     pub truth: [f32; MEASURES.len()],
     /// By the body fit; nothing where no body was found.
-    pub fit: Outcome,
+    pub fit: Estimates,
     /// By section and outline, proportions and the mean over the frames.
-    pub sections: Outcome,
+    pub sections: Estimates,
     /// How likely the fit took them for a woman.
     pub woman: Option<f32>,
     /// Each frame followed: its time and that of its stages (s), how far off the surface and the joints are (m).
@@ -57,7 +58,7 @@ pub struct Case {
 
 /// How one measure agrees over the people.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Agreement {
+pub struct MeasuringAgreement {
     /// Name of the measure.
     pub measure: &'static str,
     /// People for whom it was taken.
@@ -102,7 +103,7 @@ pub struct Following {
 
 /// What a study found.
 #[derive(Debug, Clone, Serialize)]
-pub struct Study {
+pub struct MeasuringStudy {
     /// The camera.
     pub sensor: &'static str,
     /// People rendered.
@@ -116,16 +117,16 @@ pub struct Study {
     /// The body fit frame by frame, as it follows people.
     pub following: Following,
     /// By the body fit.
-    pub fit: Vec<Agreement>,
+    pub fit: Vec<MeasuringAgreement>,
     /// By sections, proportions and the mean over time.
-    pub sections: Vec<Agreement>,
+    pub sections: Vec<MeasuringAgreement>,
 }
 
 /// Measures `options.people` random people of each survey, without repeats; `told` hears of each.
 ///
 /// # Errors
 /// A file that is no survey, or a person outside of all ranges.
-pub fn study(surveys: &[Survey], options: &Options, told: &dyn Fn(&Case)) -> Result<Study, StudyError> {
+pub fn study(surveys: &[Survey], options: &MeasuringOptions, told: &dyn Fn(&MeasuredPerson)) -> Result<MeasuringStudy, StudyError> {
     let mut cases = Vec::new();
     for survey in surveys {
         let sex = survey.sex()?;
@@ -134,7 +135,7 @@ pub fn study(surveys: &[Survey], options: &Options, told: &dyn Fn(&Case)) -> Res
             let metres = std::array::from_fn(|k| (columns[k][row] * 1e-3) as f32);
             let mut rng = SplitMix64::new(options.seed ^ ((row as u64) << 20) ^ u64::from(sex == Sex::Male));
             let person =
-                Person::new(sex, &metres, &mut rng).map_err(|source| StudyError::Person { line: row + 2, source })?;
+                SurveyPerson::new(sex, &metres, &mut rng).map_err(|source| StudyError::Person { line: row + 2, source })?;
             let case = measured(&person, options, &mut rng);
             told(&case);
             cases.push(case);
@@ -143,12 +144,12 @@ pub fn study(surveys: &[Survey], options: &Options, told: &dyn Fn(&Case)) -> Res
     Ok(summed(&cases, options))
 }
 
-fn measured(person: &Person, options: &Options, rng: &mut SplitMix64) -> Case {
-    let sight = Sight::new(options.sensor, rng);
+fn measured(person: &SurveyPerson, options: &MeasuringOptions, rng: &mut SplitMix64) -> MeasuredPerson {
+    let sight = StudyCamera::new(options.sensor, rng);
     let frames = sight.frames(person, options.frames, rng);
     let alone =
-        |(f, truth): &(DepthFrame, Moment)| Some((point_cloud::find_people(f).people.first()?.alone(f), *truth));
-    let alone: Vec<(DepthFrame, Moment)> = frames.iter().filter_map(alone).collect();
+        |(f, truth): &(DepthFrame, JointPositions)| Some((point_cloud::find_people(f).people.first()?.alone(f), *truth));
+    let alone: Vec<(DepthFrame, JointPositions)> = frames.iter().filter_map(alone).collect();
     let only: Vec<DepthFrame> = alone.iter().map(|a| a.0.clone()).collect();
     let frames: Vec<DepthFrame> = frames.into_iter().map(|f| f.0).collect();
     let bare = fit::FitOptions { clothed: false, ..fit::FitOptions::MEASURING };
@@ -163,7 +164,7 @@ fn measured(person: &Person, options: &Options, rng: &mut SplitMix64) -> Case {
         all
     });
     let (start, followed) = follow(person, &alone);
-    Case {
+    MeasuredPerson {
         start,
         followed,
         sex: person.sex,
@@ -179,7 +180,7 @@ fn measured(person: &Person, options: &Options, rng: &mut SplitMix64) -> Case {
 const FOLLOWED: usize = 10;
 
 /// Follows a person through their first frames, as at 30 Hz.
-fn follow(person: &Person, frames: &[(DepthFrame, Moment)]) -> (Option<f32>, Vec<[f32; 7]>) {
+fn follow(person: &SurveyPerson, frames: &[(DepthFrame, JointPositions)]) -> (Option<f32>, Vec<[f32; 7]>) {
     let mut fit = BodyFit::new(person.sex, fit::FitOptions { clothed: false, ..fit::FitOptions::LIVE });
     let (mut start, mut followed) = (None, Vec::new());
     for (frame, truth) in frames.iter().take(FOLLOWED) {
@@ -216,13 +217,9 @@ const HELD: [Joint; 14] = [
     Joint::RightAnkle,
 ];
 
-fn following(cases: &[Case]) -> Following {
+fn following(cases: &[MeasuredPerson]) -> Following {
     let all: Vec<&[f32; 7]> = cases.iter().flat_map(|c| &c.followed).collect();
-    let rank = |mut figures: Vec<f32>, share: f64| {
-        figures.sort_by(f32::total_cmp);
-        let place = (figures.len() as f64 * share) as usize;
-        figures.get(place).map_or(0.0, |f| f64::from(*f) * 1e3)
-    };
+    let rank = |mut figures: Vec<f32>, share: f64| quantile(&mut figures, share).map_or(0.0, |f| f64::from(f) * 1e3);
     let column = |k: usize| all.iter().map(|f| f[k]).collect::<Vec<f32>>();
     let n = all.len().max(1) as f64;
     let squares: f64 = all.iter().map(|f| f64::from(f[6]).powi(2)).sum();
@@ -236,10 +233,10 @@ fn following(cases: &[Case]) -> Following {
     }
 }
 
-fn summed(cases: &[Case], options: &Options) -> Study {
-    let right = |c: &&Case| c.woman.is_some_and(|w| (w > 0.5) == (c.sex == Sex::Female));
+fn summed(cases: &[MeasuredPerson], options: &MeasuringOptions) -> MeasuringStudy {
+    let right = |c: &&MeasuredPerson| c.woman.is_some_and(|w| (w > 0.5) == (c.sex == Sex::Female));
     let found = cases.iter().filter(|c| c.woman.is_some()).count();
-    Study {
+    MeasuringStudy {
         sensor: options.sensor.name(),
         people: cases.len(),
         frames: options.frames,
@@ -251,7 +248,7 @@ fn summed(cases: &[Case], options: &Options) -> Study {
     }
 }
 
-fn agreements(cases: &[Case], way: impl Fn(&Case) -> &Outcome) -> Vec<Agreement> {
+fn agreements(cases: &[MeasuredPerson], way: impl Fn(&MeasuredPerson) -> &Estimates) -> Vec<MeasuringAgreement> {
     let all = MEASURES.iter().enumerate().map(|(i, &(measure, _, limit))| {
         let pairs: Vec<(Estimate, f32)> = cases.iter().filter_map(|c| Some((way(c)[i]?, c.truth[i]))).collect();
         agreement(measure, f64::from(limit) * 1e3, &pairs)
@@ -259,26 +256,25 @@ fn agreements(cases: &[Case], way: impl Fn(&Case) -> &Outcome) -> Vec<Agreement>
     all.filter(|a| a.taken > 0).collect()
 }
 
-fn agreement(measure: &'static str, limit_mm: f64, pairs: &[(Estimate, f32)]) -> Agreement {
+fn agreement(measure: &'static str, limit_mm: f64, pairs: &[(Estimate, f32)]) -> MeasuringAgreement {
     let n = pairs.len().max(1) as f64;
     let errors: Vec<f64> = pairs.iter().map(|(e, t)| f64::from(e.value - t) * 1e3).collect();
     let bias = errors.iter().sum::<f64>() / n;
     let variance = errors.iter().map(|e| (e - bias).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
     let half = 1.96 * (variance / n).sqrt();
     let mut absolute: Vec<f64> = errors.iter().map(|e| e.abs()).collect();
-    absolute.sort_by(f64::total_cmp);
     let relative: f64 = pairs.iter().zip(&errors).map(|((_, t), e)| e.abs() / f64::from(*t) * 0.1).sum();
     let within = pairs.iter().filter(|(e, t)| (e.value - t).abs() <= 2.0 * e.sigma).count();
-    let last = absolute.len().saturating_sub(1);
-    Agreement {
+    let mean = absolute.iter().sum::<f64>() / n;
+    MeasuringAgreement {
         measure,
         taken: pairs.len(),
         limit_mm,
         bias_mm: bias,
         interval_mm: [bias - half, bias + half],
-        mean_absolute_mm: absolute.iter().sum::<f64>() / n,
+        mean_absolute_mm: mean,
         mean_absolute_percent: relative / n,
-        p95_mm: absolute.get((absolute.len() * 19 / 20).min(last)).copied().unwrap_or(0.0),
+        p95_mm: quantile(&mut absolute, 0.95).unwrap_or(0.0),
         sigma_mm: pairs.iter().map(|(e, _)| f64::from(e.sigma) * 1e3).sum::<f64>() / n,
         within_two_sigma: within as f64 / n,
         pass: pairs.len() > 1 && bias.abs() + half <= limit_mm,

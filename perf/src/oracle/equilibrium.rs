@@ -7,9 +7,12 @@ use glam::DVec3;
 
 use super::energy::friction::Friction;
 use super::energy::load::Load;
+use super::error::OracleError;
+use super::options::Step;
 use super::problem::Problem;
-use super::settle::{Oracle, Task, weight};
-use super::{OracleError, Solids, Solved, State, Step};
+use super::settle::{Oracle, SolveTask, weight};
+use super::solids::Solids;
+use super::solution::{Solved, State};
 
 /// Shift that statics start with (1/s2): an implicit step of a tenth of a second.
 const FIRST_SHIFT: f64 = 100.0;
@@ -57,7 +60,7 @@ impl Oracle {
         // What is found depends on the start alone.
         self.forget();
         let (weight, mu) = (weight(self.problem()), self.problem().friction);
-        let task = |from: Vec<DVec3>, problem: &Problem| Task {
+        let task = |from: Vec<DVec3>, problem: &Problem| SolveTask {
             load: Load::Weight { gravity: problem.gravity, from: start.to_vec() },
             from,
             held: [weight / shortest(problem), weight / CONTACT_M],

@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use super::energy::Landscape;
+use super::energy::TotalEnergy;
 use super::system::System;
 
 /// Substitutions at most.
@@ -32,7 +32,7 @@ pub struct Leaps {
 
 impl Leaps {
     /// The multipliers of the next round, where a leap is due: links are near, but more than `goal` off.
-    pub fn take(&mut self, landscape: &Landscape<'_>, system: &mut System, x: &[DVec3], goal: f64) -> Option<Vec<f64>> {
+    pub fn take(&mut self, landscape: &TotalEnergy<'_>, system: &mut System, x: &[DVec3], goal: f64) -> Option<Vec<f64>> {
         let off = landscape.springs.strain_off(x);
         self.failed |= self.before.is_some_and(|before| off > 0.5 * before);
         let due = !self.failed && off > goal && off < NEAR;
@@ -44,7 +44,7 @@ impl Leaps {
 
 /// Multipliers that would do away with what links are off at `x`, to first order; nothing where the exact Hessian is not
 /// positive definite there.
-fn leap(landscape: &Landscape<'_>, system: &mut System, x: &[DVec3]) -> Option<Vec<f64>> {
+fn leap(landscape: &TotalEnergy<'_>, system: &mut System, x: &[DVec3]) -> Option<Vec<f64>> {
     let springs = &landscape.springs;
     let mut left = springs.lag(x);
     let size = dot(&left, &left);

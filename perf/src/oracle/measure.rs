@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::State;
 use super::energy::bends;
 use super::problem::Problem;
+use super::solution::State;
 
 /// Energies of a state (J).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -28,7 +28,7 @@ impl Energies {
 
 /// Strain of links (1), compression counted as stretch is.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Strain {
+pub struct LinkStrain {
     /// Mean of the absolute values.
     pub mean: f64,
     /// Largest absolute value.
@@ -55,19 +55,19 @@ pub fn strains(problem: &Problem, x: &[DVec3]) -> Vec<f64> {
 }
 
 /// Strain of all links together.
-pub fn strain(problem: &Problem, x: &[DVec3]) -> Strain {
+pub fn strain(problem: &Problem, x: &[DVec3]) -> LinkStrain {
     let each = strains(problem, x);
     let sum: f64 = each.iter().map(|s| s.abs()).sum();
-    Strain { mean: sum / each.len().max(1) as f64, max: each.iter().fold(0.0, |most: f64, s| most.max(s.abs())) }
+    LinkStrain { mean: sum / each.len().max(1) as f64, max: each.iter().fold(0.0, |most: f64, s| most.max(s.abs())) }
 }
 
 fn strain_of(ends: [u32; 2], rest: f64, x: &[DVec3]) -> f64 {
     x[ends[0] as usize].distance(x[ends[1] as usize]) / rest - 1.0
 }
 
-/// Distances between the particles of two states (m).
+/// Apart between the particles of two states (m).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Apart {
+pub struct Distances {
     /// Mean over the particles.
     pub mean_m: f64,
     /// Largest.
@@ -75,7 +75,7 @@ pub struct Apart {
 }
 
 /// How far each particle of a state is from the same particle of another.
-pub fn apart(a: &[DVec3], b: &[DVec3]) -> Apart {
+pub fn apart(a: &[DVec3], b: &[DVec3]) -> Distances {
     let each = || a.iter().zip(b).map(|(a, b)| a.distance(*b));
-    Apart { mean_m: each().sum::<f64>() / a.len().max(1) as f64, max_m: each().fold(0.0, f64::max) }
+    Distances { mean_m: each().sum::<f64>() / a.len().max(1) as f64, max_m: each().fold(0.0, f64::max) }
 }

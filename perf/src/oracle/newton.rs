@@ -14,7 +14,7 @@
 
 use glam::DVec3;
 
-use super::energy::Landscape;
+use super::energy::TotalEnergy;
 use super::system::System;
 
 /// Part of the promised gain that a step has to reach, that makes it a poor one, and a good one.
@@ -49,7 +49,7 @@ const PATIENCE: u32 = 6;
 
 /// What carries over from iteration to iteration and from round to round.
 #[derive(Debug, Clone, Copy)]
-pub struct Stance {
+pub struct NewtonState {
     /// Multiple of the masses added to the Hessian (1/s2).
     pub shift: f64,
     /// Iterations so far.
@@ -58,7 +58,7 @@ pub struct Stance {
     waiting: u32,
 }
 
-impl Stance {
+impl NewtonState {
     /// Nothing known yet.
     pub fn new(shift: f64) -> Self {
         Self { shift, iterations: 0, wait: 1, waiting: 0 }
@@ -72,7 +72,7 @@ impl Stance {
 
 /// When to stop.
 #[derive(Debug, Clone, Copy)]
-pub struct Aim {
+pub struct StopRule {
     /// Largest force that may be left on a particle (N).
     pub residual_n: f64,
     /// Most iterations in all.
@@ -87,11 +87,11 @@ pub fn residual(gradient: &[DVec3]) -> f64 {
 /// Moves `x` to where the gradient is as small as asked for. Gives the residual that is left (N): above that where
 /// iterations ran out or nothing more can be gained.
 pub fn minimise(
-    landscape: &Landscape<'_>,
+    landscape: &TotalEnergy<'_>,
     system: &mut System,
     x: &mut Vec<DVec3>,
-    stance: &mut Stance,
-    aim: Aim,
+    stance: &mut NewtonState,
+    aim: StopRule,
 ) -> f64 {
     let mut gradient = landscape.gradient(x);
     let mut left = residual(&gradient);
@@ -123,11 +123,11 @@ pub fn minimise(
 
 /// The step of the exact Hessian if a shift makes it positive definite, else that of the projected one.
 fn direction(
-    landscape: &Landscape<'_>,
+    landscape: &TotalEnergy<'_>,
     system: &mut System,
     x: &[DVec3],
     gradient: &[DVec3],
-    stance: &mut Stance,
+    stance: &mut NewtonState,
 ) -> Option<Vec<DVec3>> {
     let shift = stance.shift;
     let tries = if stance.waiting == 0 { TRIES } else { 0 };
@@ -159,7 +159,7 @@ fn direction(
 }
 
 /// A step that was tried.
-struct Trial {
+struct TriedStep {
     next: Vec<DVec3>,
     /// What was gained, as part of what was promised; where rounding hides it, 1 if the residual got less, else -1.
     gain: f64,
@@ -169,12 +169,12 @@ struct Trial {
 
 /// Where a step, along the links' bends, leads and what it gains.
 fn try_step(
-    landscape: &Landscape<'_>,
+    landscape: &TotalEnergy<'_>,
     system: &System,
     x: &[DVec3],
     (gradient, step): (&[DVec3], &[DVec3]),
     shift: f64,
-) -> Trial {
+) -> TriedStep {
     let before = landscape.value(x);
     let (next, value) = bent(landscape, system, x, step);
     let slope: f64 = gradient.iter().zip(step).map(|(g, d)| g.dot(*d)).sum();
@@ -188,12 +188,12 @@ fn try_step(
     } else {
         (before - value) / promised
     };
-    Trial { next, gain, faint }
+    TriedStep { next, gain, faint }
 }
 
 /// Positions after a step and the energy there (J), with what the turning of links adds taken back as long as that lowers
 /// the energy.
-fn bent(landscape: &Landscape<'_>, system: &System, x: &[DVec3], step: &[DVec3]) -> (Vec<DVec3>, f64) {
+fn bent(landscape: &TotalEnergy<'_>, system: &System, x: &[DVec3], step: &[DVec3]) -> (Vec<DVec3>, f64) {
     let after = |by: &[DVec3]| -> Vec<DVec3> { x.iter().zip(by).map(|(p, d)| *p + *d).collect() };
     let mut next = after(step);
     let mut value = landscape.value(&next);

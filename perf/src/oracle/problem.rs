@@ -4,7 +4,7 @@ use glam::DVec3;
 use toile_assets::garment::Garment;
 use toile_assets::garment::layout::{Bends, ENDED, Fibers, Hubs, Links, Lists};
 
-use super::OracleError;
+use super::error::OracleError;
 
 /// Stretch between two particles: energy (1/2) C^2 / compliance of C = |b - a| - rest, in tension and in compression.
 #[derive(Debug, Clone, Copy, PartialEq)]

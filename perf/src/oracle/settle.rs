@@ -6,12 +6,15 @@ use super::energy::contact::Contact;
 use super::energy::friction::Friction;
 use super::energy::links::Springs;
 use super::energy::load::Load;
-use super::energy::{Landscape, Violation};
+use super::energy::TotalEnergy;
+use super::error::OracleError;
 use super::leap::Leaps;
-use super::newton::{self, Aim, Stance};
+use super::newton::{self, StopRule, NewtonState};
+use super::options::{OracleOptions, Step};
 use super::problem::{Problem, expect};
+use super::solids::Solids;
+use super::solution::{SolveReport, Solved, State, Violation};
 use super::system::System;
-use super::{Options, OracleError, Report, Solids, Solved, State, Step};
 
 /// Residual of the first round (N); later rounds ask for [`SHARPER`] of the one before.
 const FIRST_RESIDUAL_N: f64 = 1e-5;
@@ -36,13 +39,13 @@ pub struct Oracle {
     problem: Problem,
     system: System,
     /// What counts as solved.
-    pub options: Options,
+    pub options: OracleOptions,
     tension: Vec<f64>,
     pressure: Vec<f64>,
 }
 
 /// What one solution is made with.
-pub(super) struct Task {
+pub(super) struct SolveTask {
     /// Weight or inertia.
     pub load: Load,
     /// Where to start from (m).
@@ -64,7 +67,7 @@ impl Oracle {
         problem.check()?;
         let system = System::new(&problem);
         let tension = vec![0.0; problem.links.len()];
-        Ok(Self { problem, system, options: Options::default(), tension, pressure: Vec::new() })
+        Ok(Self { problem, system, options: OracleOptions::default(), tension, pressure: Vec::new() })
     }
 
     /// What is solved.
@@ -95,7 +98,7 @@ impl Oracle {
         let mut from = state.x.clone();
         (0..p.particles()).filter(|i| p.pinned(*i)).for_each(|i| from[i] = target[i]);
         let held = [heaviest_link(p) * per_dt2, p.mass.iter().copied().fold(0.0, f64::max) * per_dt2];
-        let task = Task { load: Load::Inertia { target, per_dt2 }, from, held, stiffer: STEP_STIFFER, shift: 0.0 };
+        let task = SolveTask { load: Load::Inertia { target, per_dt2 }, from, held, stiffer: STEP_STIFFER, shift: 0.0 };
         let slip_m = self.options.creep_m_s * dt;
         let both = || [step.solids[0].shapes(), step.solids[1].shapes()];
         let friction = (p.friction > 0.0).then(|| Friction::new(p.friction, slip_m, &state.x, both()));
@@ -149,7 +152,7 @@ impl Oracle {
     /// Rounds until residual and constraints are within their tolerances.
     pub(super) fn solve(
         &mut self,
-        task: Task,
+        task: SolveTask,
         solids: &Solids,
         friction: Option<Friction<'_>>,
     ) -> Result<Solved, OracleError> {
@@ -158,7 +161,7 @@ impl Oracle {
         let asked = options.residual_n * weight;
         let rho = stiffness(&options, &task, asked);
         let goal = asked.max(rounding(&task.from) * rho[0].max(rho[1]));
-        let mut landscape = Landscape {
+        let mut landscape = TotalEnergy {
             problem: &self.problem,
             load: task.load,
             springs: Springs::new(&self.problem.links, rho[0], std::mem::take(&mut self.tension)),
@@ -169,10 +172,10 @@ impl Oracle {
         if let Some(friction) = &mut landscape.friction {
             friction.update(&x, &landscape.contact.touches(&x));
         }
-        let mut stance = Stance::new(task.shift);
+        let mut stance = NewtonState::new(task.shift);
         let factored = self.system.factored;
-        let mut aim = Aim { residual_n: goal.max(FIRST_RESIDUAL_N * weight), most: options.most_iterations };
-        let mut report = Report::default();
+        let mut aim = StopRule { residual_n: goal.max(FIRST_RESIDUAL_N * weight), most: options.most_iterations };
+        let mut report = SolveReport::default();
         let mut done = false;
         let mut leaps = Leaps::default();
         let (mut tension_n, mut touches) = (Vec::new(), Vec::new());
@@ -206,7 +209,7 @@ impl Oracle {
 
 /// Stiffness of the multipliers of links and contact (N/m): so much that few rounds are needed, but not so much that the
 /// rounding of positions alone is a force above the goal (N).
-fn stiffness(options: &Options, task: &Task, goal: f64) -> [f64; 2] {
+fn stiffness(options: &OracleOptions, task: &SolveTask, goal: f64) -> [f64; 2] {
     let most = goal / rounding(&task.from);
     let least = [options.link_stiffness_n_m, options.contact_stiffness_n_m];
     [0, 1].map(|k| {
@@ -221,7 +224,7 @@ fn rounding(x: &[DVec3]) -> f64 {
 }
 
 /// Whether constraints are met.
-fn within(v: &Violation, options: &Options, weight: f64) -> bool {
+fn within(v: &Violation, options: &OracleOptions, weight: f64) -> bool {
     let apart = v.penetration_m.max(v.gap_m) <= options.gap_m;
     v.strain <= options.strain && apart && v.friction_n <= options.friction_n * weight
 }

@@ -53,15 +53,15 @@ impl Solids {
     }
 
     /// All of them ready to be asked.
-    pub(super) fn shapes(&self) -> Vec<Surface> {
-        let cones = self.cones.iter().map(|[a, b]| Surface::Cone(Cone::new(*a, *b)));
-        cones.chain(self.planes.iter().map(|p| Surface::Plane(*p))).collect()
+    pub(super) fn shapes(&self) -> Vec<SolidSurface> {
+        let cones = self.cones.iter().map(|[a, b]| SolidSurface::Cone(Cone::new(*a, *b)));
+        cones.chain(self.planes.iter().map(|p| SolidSurface::Plane(*p))).collect()
     }
 }
 
 /// A point seen from a solid.
 #[derive(Debug, Clone, Copy)]
-pub struct Sight {
+pub struct SolidDistance {
     /// Its gradient, the unit outward normal.
     pub normal: DVec3,
     /// Its second derivative (1/m): positive semi-definite.
@@ -74,14 +74,14 @@ pub struct Sight {
 
 /// One solid, ready to be asked.
 #[derive(Debug, Clone, Copy)]
-pub enum Surface {
+pub enum SolidSurface {
     /// A round cone.
     Cone(Cone),
     /// A plane.
     Plane(Plane),
 }
 
-impl Surface {
+impl SolidSurface {
     /// Distance only (m).
     pub fn distance(&self, p: DVec3) -> f64 {
         match self {
@@ -91,16 +91,16 @@ impl Surface {
     }
 
     /// Distance with its derivatives.
-    pub fn sight(&self, p: DVec3) -> Sight {
+    pub fn sight(&self, p: DVec3) -> SolidDistance {
         match self {
             Self::Cone(cone) => cone.sight(p),
-            Self::Plane(plane) => Sight { normal: plane.normal, curvature: DMat3::ZERO, along: 0.0, radius: 0.0 },
+            Self::Plane(plane) => SolidDistance { normal: plane.normal, curvature: DMat3::ZERO, along: 0.0, radius: 0.0 },
         }
     }
 
     /// How far the material point of the surface that is seen so has moved since it was at `before` (m): with the axis,
     /// and around it as the axis turns; to first order in the turn.
-    pub fn carried(&self, before: &Self, sight: &Sight) -> DVec3 {
+    pub fn carried(&self, before: &Self, sight: &SolidDistance) -> DVec3 {
         let (Self::Cone(now), Self::Cone(then)) = (self, before) else { return DVec3::ZERO };
         let (moved, turned) =
             (now.a.centre - then.a.centre, (now.b.centre - then.b.centre) - (now.a.centre - then.a.centre));
@@ -128,7 +128,7 @@ enum Part {
     Second,
 }
 
-struct Foot {
+struct ConeFoot {
     distance: f64,
     part: Part,
     /// Height along the axis (m).
@@ -152,7 +152,7 @@ impl Cone {
         Self { a, b, axis: gap / length, length, cosine: (1.0 - sine * sine).max(0.0).sqrt(), sine }
     }
 
-    fn foot(&self, p: DVec3) -> Foot {
+    fn foot(&self, p: DVec3) -> ConeFoot {
         let v = p - self.a.centre;
         let y = v.dot(self.axis);
         let out = v - self.axis * y;
@@ -165,10 +165,10 @@ impl Cone {
         } else {
             (Part::Side, r * self.cosine + y * self.sine - self.a.radius)
         };
-        Foot { distance, part, y, out, r }
+        ConeFoot { distance, part, y, out, r }
     }
 
-    fn sight(&self, p: DVec3) -> Sight {
+    fn sight(&self, p: DVec3) -> SolidDistance {
         let foot = self.foot(p);
         match foot.part {
             Part::First => self.ball(p, self.a, 0.0),
@@ -178,7 +178,7 @@ impl Cone {
                 let around = self.axis.cross(out);
                 let bent = self.cosine / foot.r.max(1e-12);
                 let along = (foot.y - foot.r * self.sine / self.cosine) / self.length;
-                Sight {
+                SolidDistance {
                     normal: out * self.cosine + self.axis * self.sine,
                     curvature: outer(around, around) * bent,
                     along,
@@ -188,12 +188,12 @@ impl Cone {
         }
     }
 
-    fn ball(&self, p: DVec3, ball: Ball, along: f64) -> Sight {
+    fn ball(&self, p: DVec3, ball: Ball, along: f64) -> SolidDistance {
         let v = p - ball.centre;
         let far = v.length();
         let normal = if far > 1e-12 { v / far } else { self.axis.any_orthonormal_vector() };
         let curvature = (DMat3::IDENTITY - outer(normal, normal)) * far.max(1e-12).recip();
-        Sight { normal, curvature, along, radius: ball.radius }
+        SolidDistance { normal, curvature, along, radius: ball.radius }
     }
 }
 

@@ -5,21 +5,23 @@ mod exact;
 mod sliding;
 
 use glam::DVec3;
+use toile_assets::numeric::random::SplitMix64;
 
 use super::*;
 
 /// Standard gravity as the engine has it.
 const GRAVITY: DVec3 = DVec3::new(0.0, -9.81, 0.0);
 
-/// Numbers in -1..1 from a seed (splitmix64).
-struct Random(u64);
+/// Numbers in -1..1 from a seed.
+struct Random(SplitMix64);
 
 impl Random {
+    fn new(seed: u64) -> Self {
+        Self(SplitMix64::new(seed))
+    }
+
     fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        2.0 * self.0.uniform_f64() - 1.0
     }
 
     fn vector(&mut self) -> DVec3 {

@@ -1,14 +1,14 @@
 //! The charts of a report.
 
 use super::front;
-use super::report::{Drape, Fate, Point, Report, SceneReport, Survival};
+use super::report::{Drape, Fate, Point, ParetoReport, SceneReport, Survival};
 use crate::plot::axis::Axis;
 use crate::plot::chart::{Chart, Series, SeriesStyle};
 use crate::plot::tiles::{Cell, Tiles};
 use crate::plot::{BLACK, Drawing, SERIES_COLOURS};
 
 /// A chart under its file's name.
-pub struct Figure {
+pub struct NamedDrawing {
     /// The file's name without its ending.
     pub name: String,
     /// The chart.
@@ -32,9 +32,9 @@ const GROUPS: [(&str, &str, &str); 6] = [
 ];
 
 /// All charts that the figures give.
-pub fn figures(report: &Report) -> Vec<Figure> {
+pub fn figures(report: &ParetoReport) -> Vec<NamedDrawing> {
     let mut all = Vec::new();
-    let mut add = |name: String, drawing: Drawing| all.push(Figure { name, drawing });
+    let mut add = |name: String, drawing: Drawing| all.push(NamedDrawing { name, drawing });
     for scene in report.scenes.iter().filter(|s| s.main) {
         let of = |p: &&Point| p.scene == scene.scene && p.mesh == scene.mesh;
         let points: Vec<&Point> = report.points.iter().filter(of).collect();
@@ -119,7 +119,7 @@ fn iterations(scene: &SceneReport, points: &[&Point]) -> Chart {
 }
 
 /// Error of the qualities' own settings over the meshes of a scene, and what their x* may itself be off.
-fn meshes(name: &str, report: &Report) -> Chart {
+fn meshes(name: &str, report: &ParetoReport) -> Chart {
     let scenes: Vec<&SceneReport> = report.scenes.iter().filter(|s| s.scene == name).collect();
     let mut series = Vec::new();
     for (k, quality) in ["draft", "shop", "fine"].into_iter().enumerate() {

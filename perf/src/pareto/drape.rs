@@ -14,7 +14,7 @@ use toile_engine::colliders::{Colliders, RestSphere};
 use super::ParetoError;
 use super::play::{Setting, play};
 use super::report::{Drape, Sampling};
-use super::subject::{Choice, Drive, Subject, Truth};
+use super::meshed_scene::{SolverChoice, SceneMotion, MeshedScene, ReferenceKind};
 
 /// Cells a side of the cloth, with the published distance to a real cloth (cm) (INRIA MIRAGES 2006).
 const SAMPLINGS: [(usize, f64); 4] = [(20, 3.01), (50, 1.42), (100, 0.90), (200, 0.82)];
@@ -37,7 +37,7 @@ pub fn study(quick: bool, told: &dyn Fn(f64)) -> Result<Drape, ParetoError> {
     for (k, (cells, _)) in samplings.iter().enumerate() {
         told(work(k) / work(samplings.len()));
         let subject = tablecloth(*cells, SECONDS[usize::from(!quick)])?;
-        let garment = subject.bake(Choice::Mixed)?;
+        let garment = subject.bake(SolverChoice::Mixed)?;
         let run = play(&subject, &garment, Setting { quality: Quality::Shop, substeps: None, threads: 1 })?;
         runs.push((*cells, run));
     }
@@ -82,7 +82,7 @@ fn held(cells: usize, row: usize, column: usize) -> bool {
     within(row) && within(column)
 }
 
-fn tablecloth(cells: usize, seconds: f64) -> Result<Subject, ParetoError> {
+fn tablecloth(cells: usize, seconds: f64) -> Result<MeshedScene, ParetoError> {
     let mut shape = Shape::default();
     for row in 0..=cells {
         for column in 0..=cells {
@@ -110,16 +110,16 @@ fn tablecloth(cells: usize, seconds: f64) -> Result<Subject, ParetoError> {
     let mut colliders = Colliders::new(&spheres, &[[0, 1], [1, 2], [2, 3], [3, 0]], false)?;
     let placed = spheres.map(|s| s.centre.extend(s.radius));
     colliders.place_spheres(&placed);
-    Ok(Subject {
+    Ok(MeshedScene {
         scene: "drape",
         mesh: format!("{cells} x {cells}"),
         main: true,
         shape,
         fabric,
-        drive: Drive::Still,
+        drive: SceneMotion::Still,
         colliders,
         seconds,
-        truth: Truth::Trajectory,
+        truth: ReferenceKind::Trajectory,
     })
 }
 

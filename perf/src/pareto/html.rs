@@ -1,8 +1,8 @@
 //! The report as one page.
 
-use super::charts::Figure;
+use super::charts::NamedDrawing;
 use super::front;
-use super::report::{Drape, Point, Report, SceneReport};
+use super::report::{Drape, Point, ParetoReport, SceneReport};
 use crate::plot::page::{Entry, Page};
 
 const FRONT: [&str; 7] = ["front, one thread", "substeps", "iterations", "step us", "mean mm", "max mm", "strain %"];
@@ -10,7 +10,7 @@ const FRONT: [&str; 7] = ["front, one thread", "substeps", "iterations", "step u
 const SAMPLINGS: [&str; 6] = ["sampling", "particles", "mean cm", "max cm", "published cm", "step us"];
 
 /// The page.
-pub fn page(report: &Report, figures: &[Figure]) -> String {
+pub fn page(report: &ParetoReport, figures: &[NamedDrawing]) -> String {
     let mut page = Page::new("Toile: speed against error");
     page.title("Speed against error").paragraph(
         "Every point is one setting of one scene: the median time of a step of 1/120 s, and the mean distance of the \
@@ -31,13 +31,13 @@ pub fn page(report: &Report, figures: &[Figure]) -> String {
     page.finish()
 }
 
-fn draw(page: &mut Page, figures: &[Figure], is: impl Fn(&str) -> bool) {
+fn draw(page: &mut Page, figures: &[NamedDrawing], is: impl Fn(&str) -> bool) {
     for figure in figures.iter().filter(|figure| is(&figure.name)) {
         page.drawing(&figure.drawing);
     }
 }
 
-fn section(page: &mut Page, report: &Report, scene: &SceneReport, figures: &[Figure]) {
+fn section(page: &mut Page, report: &ParetoReport, scene: &SceneReport, figures: &[NamedDrawing]) {
     let (reference, gap) = (&scene.reference, scene.reference_gap_mm);
     page.section(&scene.scene);
     page.paragraph(&format!("x* is {reference}; it is itself uncertain by about {gap:.3} mm."));

@@ -17,7 +17,7 @@ mod play;
 mod reference;
 mod report;
 mod scenes;
-mod subject;
+mod meshed_scene;
 mod survival;
 mod sweep;
 
@@ -32,7 +32,7 @@ use toile_engine::workers::WorkerPoolError;
 
 use crate::oracle::OracleError;
 use crate::skirt::SkirtError;
-pub use report::{Drape, File, Point, Report, Sampling, SceneReport, Survival};
+pub use report::{Drape, ReportFile, Point, ParetoReport, Sampling, SceneReport, Survival};
 
 /// Why the figures cannot be taken.
 #[derive(Debug, Error)]
@@ -74,7 +74,7 @@ pub enum ParetoError {
 
 /// What is to be measured.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Options {
+pub struct ParetoOptions {
     /// The one scene; all of them if not given.
     pub scene: Option<String>,
     /// Few settings of small meshes: whether the command works, not what the engine can do.
@@ -88,12 +88,12 @@ pub const SCENES: [&str; 6] = ["cantilever", "skirt", "sun-dress", "t-shirt", "w
 ///
 /// # Errors
 /// Where a scene cannot be set up, or the oracle finds no x*.
-pub fn run(options: &Options, told: &dyn Fn(f64)) -> Result<Report, ParetoError> {
+pub fn run(options: &ParetoOptions, told: &dyn Fn(f64)) -> Result<ParetoReport, ParetoError> {
     let names: Vec<&str> = match &options.scene {
         Some(name) => vec![*SCENES.iter().find(|s| *s == name).ok_or_else(|| ParetoError::Unknown(name.clone()))?],
         None => SCENES.to_vec(),
     };
-    let mut report = Report { quick: options.quick, ..Report::default() };
+    let mut report = ParetoReport { quick: options.quick, ..ParetoReport::default() };
     for (k, name) in names.iter().enumerate() {
         let part = |share: f64| told((k as f64 + share) / names.len() as f64);
         if *name == "drape" {
@@ -117,15 +117,15 @@ pub fn run(options: &Options, told: &dyn Fn(f64)) -> Result<Report, ParetoError>
 ///
 /// # Errors
 /// Where a plot cannot be encoded.
-pub fn files(report: &Report) -> Result<Vec<File>, ParetoError> {
+pub fn files(report: &ParetoReport) -> Result<Vec<ReportFile>, ParetoError> {
     let figures = charts::figures(report);
-    let mut files = vec![File { name: "points.csv".into(), bytes: report::csv(&report.points).into_bytes() }];
+    let mut files = vec![ReportFile { name: "points.csv".into(), bytes: report::csv(&report.points).into_bytes() }];
     for figure in &figures {
         let mut png = Vec::new();
         crate::plot::raster::image(&figure.drawing).write_png(&mut png)?;
-        files.push(File { name: format!("{}.png", figure.name), bytes: png });
+        files.push(ReportFile { name: format!("{}.png", figure.name), bytes: png });
     }
-    files.push(File { name: "pareto.html".into(), bytes: html::page(report, &figures).into_bytes() });
+    files.push(ReportFile { name: "pareto.html".into(), bytes: html::page(report, &figures).into_bytes() });
     Ok(files)
 }
 

@@ -6,6 +6,7 @@ use glam::{Affine3A, DVec3, Vec3A};
 use toile_assets::garment::Garment;
 use toile_assets::garment::layout::OWNERS;
 use toile_assets::limits::STEP_SECONDS;
+use toile_assets::numeric::statistics::median;
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::program::{self, Op};
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, measure};
@@ -13,7 +14,7 @@ use toile_engine::colliders::Colliders;
 use toile_engine::workers::WorkerPool;
 
 use super::ParetoError;
-use super::subject::Subject;
+use super::meshed_scene::MeshedScene;
 use crate::oracle::measure::energies;
 use crate::oracle::{Problem, State};
 
@@ -52,7 +53,7 @@ pub struct Trace {
 
 /// A moment of a run, from which windows start.
 #[derive(Debug, Clone)]
-pub struct Moment {
+pub struct WindowStart {
     /// Steps from the scene's start.
     tick: u64,
     /// Position (m) and velocity (m/s) by vertex.
@@ -67,8 +68,8 @@ pub const WINDOW: u64 = 6;
 const APART: u64 = 15;
 
 /// One cloth in its surroundings.
-struct Scene<'a> {
-    subject: &'a Subject,
+struct SteppedCloth<'a> {
+    subject: &'a MeshedScene,
     garment: &'a Garment,
     cloth: Cloth,
     settings: Settings,
@@ -77,9 +78,9 @@ struct Scene<'a> {
     problem: Problem,
 }
 
-impl<'a> Scene<'a> {
+impl<'a> SteppedCloth<'a> {
     /// At its start, or at a tick.
-    fn new(subject: &'a Subject, garment: &'a Garment, setting: Setting, tick: u64) -> Self {
+    fn new(subject: &'a MeshedScene, garment: &'a Garment, setting: Setting, tick: u64) -> Self {
         let settings = Settings {
             quality: setting.quality,
             substeps: setting.substeps,
@@ -104,7 +105,7 @@ impl<'a> Scene<'a> {
 
     /// Puts the cloth into a moment's state: a step with the body at rest there, which places pins and colliders, and
     /// then every particle where it was.
-    fn enter(&mut self, moment: &Moment, pool: &mut WorkerPool) {
+    fn enter(&mut self, moment: &WindowStart, pool: &mut WorkerPool) {
         self.step(moment.tick, pool);
         for (particle, &vertex) in self.garment.source.iter().enumerate() {
             let [at, velocity] = moment.state[vertex as usize];
@@ -112,12 +113,12 @@ impl<'a> Scene<'a> {
         }
     }
 
-    fn moment(&self, tick: u64) -> Moment {
+    fn moment(&self, tick: u64) -> WindowStart {
         let mut state = vec![[Vec3A::ZERO; 2]; self.garment.source.len()];
         for (particle, &vertex) in self.garment.source.iter().enumerate() {
             state[vertex as usize] = [self.cloth.positions[particle], self.cloth.velocity(particle)];
         }
-        Moment { tick, state }
+        WindowStart { tick, state }
     }
 }
 
@@ -127,18 +128,18 @@ fn seconds(tick: u64) -> f64 {
 }
 
 /// Runs a scene from its start to its end.
-pub fn play(subject: &Subject, garment: &Garment, setting: Setting) -> Result<Trace, ParetoError> {
+pub fn play(subject: &MeshedScene, garment: &Garment, setting: Setting) -> Result<Trace, ParetoError> {
     Ok(play_through(subject, garment, setting)?.0)
 }
 
 /// The same, with the moments from which windows are to start.
 pub fn play_through(
-    subject: &Subject,
+    subject: &MeshedScene,
     garment: &Garment,
     setting: Setting,
-) -> Result<(Trace, Vec<Moment>), ParetoError> {
+) -> Result<(Trace, Vec<WindowStart>), ParetoError> {
     let mut pool = WorkerPool::new(setting.threads.clamp(1, OWNERS))?;
-    let mut scene = Scene::new(subject, garment, setting, 0);
+    let mut scene = SteppedCloth::new(subject, garment, setting, 0);
     let (mut trace, mut moments, mut times_ns) = (Trace::default(), Vec::new(), Vec::new());
     for tick in 1..=subject.steps() {
         times_ns.push(scene.step(tick, &mut pool));
@@ -155,17 +156,17 @@ pub fn play_through(
 
 /// Runs a window from each of some moments; a frame is the end of one.
 pub fn play_windows(
-    subject: &Subject,
+    subject: &MeshedScene,
     garment: &Garment,
     setting: Setting,
-    moments: &[Moment],
+    moments: &[WindowStart],
 ) -> Result<Trace, ParetoError> {
     let mut pool = WorkerPool::new(setting.threads.clamp(1, OWNERS))?;
     let (mut trace, mut times_ns) = (Trace::default(), Vec::new());
     let mut rolled_back = 0;
     let mut last = None;
     for moment in moments {
-        let mut scene = Scene::new(subject, garment, setting, moment.tick);
+        let mut scene = SteppedCloth::new(subject, garment, setting, moment.tick);
         scene.enter(moment, &mut pool);
         for tick in moment.tick + 1..=moment.tick + WINDOW {
             times_ns.push(scene.step(tick, &mut pool));
@@ -183,8 +184,8 @@ pub fn play_windows(
 
 impl Trace {
     /// A frame.
-    fn add(&mut self, tick: u64, scene: &mut Scene<'_>) {
-        let Scene { garment, cloth, problem, .. } = scene;
+    fn add(&mut self, tick: u64, scene: &mut SteppedCloth<'_>) {
+        let SteppedCloth { garment, cloth, problem, .. } = scene;
         let place = |p: Vec3A| p.as_dvec3();
         let state = State {
             x: cloth.positions.iter().map(|p| place(*p)).collect(),
@@ -194,13 +195,12 @@ impl Trace {
         self.strain[0] += f64::from(strain.mean);
         self.strain[1] += f64::from(strain.p99);
         self.energy.push([seconds(tick), energies(problem, &state).total_j()]);
-        self.frames.push(Subject::by_vertex(garment, |p| state.x[p]));
+        self.frames.push(MeshedScene::by_vertex(garment, |p| state.x[p]));
     }
 
     /// What is known at the end.
     fn close(&mut self, cloth: &Cloth, garment: &Garment, mut times_ns: Vec<u64>) {
-        times_ns.sort_unstable();
-        self.step_us = times_ns.get(times_ns.len() / 2).map_or(0.0, |ns| *ns as f64 * 1e-3);
+        self.step_us = median(&mut times_ns).map_or(0.0, |ns| ns as f64 * 1e-3);
         self.strain = self.strain.map(|sum| sum / self.frames.len().max(1) as f64);
         self.rolled_back = cloth.events.rolled_back;
         self.substeps = cloth.substeps();

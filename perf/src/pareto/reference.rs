@@ -5,8 +5,8 @@ use toile_assets::garment::Garment;
 use toile_engine::cloth::Quality;
 
 use super::ParetoError;
-use super::play::{Moment, Setting, Trace, WINDOW, play, play_through, play_windows};
-use super::subject::{Choice, Subject, Truth};
+use super::play::{WindowStart, Setting, Trace, WINDOW, play, play_through, play_windows};
+use super::meshed_scene::{SolverChoice, MeshedScene, ReferenceKind};
 use crate::oracle::{Oracle, Problem, Solids};
 
 /// Substeps of the reference: beyond them a substep's motion comes near to what f32 can tell at a metre.
@@ -26,25 +26,25 @@ pub struct Reference {
     /// How far it may be off (mm).
     pub gap_mm: f64,
     /// The moments that are gone on from, where it is no equilibrium.
-    moments: Vec<Moment>,
+    moments: Vec<WindowStart>,
     /// The run that they are of.
     pub run: Option<Trace>,
 }
 
 impl Reference {
     /// Finds x*.
-    pub fn of(subject: &Subject, quick: bool) -> Result<Self, ParetoError> {
+    pub fn of(subject: &MeshedScene, quick: bool) -> Result<Self, ParetoError> {
         match subject.truth {
-            Truth::Equilibrium => equilibrium(subject),
-            Truth::Trajectory => trajectory(subject, if quick { QUICK_SUBSTEPS } else { SUBSTEPS }),
+            ReferenceKind::Equilibrium => equilibrium(subject),
+            ReferenceKind::Trajectory => trajectory(subject, if quick { QUICK_SUBSTEPS } else { SUBSTEPS }),
         }
     }
 
     /// Runs a setting as x* asks for.
-    pub fn play(&self, subject: &Subject, garment: &Garment, setting: Setting) -> Result<Trace, ParetoError> {
+    pub fn play(&self, subject: &MeshedScene, garment: &Garment, setting: Setting) -> Result<Trace, ParetoError> {
         match subject.truth {
-            Truth::Equilibrium => play(subject, garment, setting),
-            Truth::Trajectory => play_windows(subject, garment, setting, &self.moments),
+            ReferenceKind::Equilibrium => play(subject, garment, setting),
+            ReferenceKind::Trajectory => play_windows(subject, garment, setting, &self.moments),
         }
     }
 
@@ -62,25 +62,25 @@ impl Reference {
     }
 }
 
-fn free(subject: &Subject) -> Vec<usize> {
+fn free(subject: &MeshedScene) -> Vec<usize> {
     (0..subject.shape.fixed.len()).filter(|&v| !subject.shape.fixed[v]).collect()
 }
 
-fn equilibrium(subject: &Subject) -> Result<Reference, ParetoError> {
-    let garment = subject.bake(Choice::Mixed)?;
+fn equilibrium(subject: &MeshedScene) -> Result<Reference, ParetoError> {
+    let garment = subject.bake(SolverChoice::Mixed)?;
     let problem = Problem::of(&garment);
     let start = problem.start.clone();
     let solved = Oracle::new(problem)?.equilibrium(&start, &Solids::default())?;
     let words =
         format!("the oracle's equilibrium (Newton in f64, {:.1e} N left on any particle)", solved.report.residual_n);
-    let frames = vec![Subject::by_vertex(&garment, |p| solved.state.x[p])];
+    let frames = vec![MeshedScene::by_vertex(&garment, |p| solved.state.x[p])];
     let longest = frames[0].iter().map(|x| x.length()).fold(0.0, f64::max);
     let gap_mm = 1e3 * solved.report.violation.strain.abs() * longest;
     Ok(Reference { frames, free: free(subject), words, gap_mm, moments: Vec::new(), run: None })
 }
 
-fn trajectory(subject: &Subject, substeps: u32) -> Result<Reference, ParetoError> {
-    let garment = subject.bake(Choice::Mixed)?;
+fn trajectory(subject: &MeshedScene, substeps: u32) -> Result<Reference, ParetoError> {
+    let garment = subject.bake(SolverChoice::Mixed)?;
     let of = |substeps| Setting { quality: Quality::Fine, substeps: Some(substeps), threads: 1 };
     let (run, moments) = play_through(subject, &garment, of(substeps / 8))?;
     let star = play_windows(subject, &garment, of(substeps), &moments)?;

@@ -134,7 +134,7 @@ pub struct Drape {
 
 /// All figures of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Report {
+pub struct ParetoReport {
     /// Whether it was a quick look: few settings of small meshes.
     pub quick: bool,
     /// Every setting of every scene.
@@ -149,7 +149,7 @@ pub struct Report {
 
 /// A file of the report.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct File {
+pub struct ReportFile {
     /// Its name.
     pub name: String,
     /// What it holds.

@@ -11,8 +11,8 @@ use toile_assets::wardrobe;
 use toile_engine::colliders::{Colliders, RestSphere};
 
 use super::ParetoError;
-use super::subject::{Drive, Subject, Truth};
-use crate::validate::mesh::{Cloth, Hold, Strip, Style};
+use super::meshed_scene::{SceneMotion, MeshedScene, ReferenceKind};
+use crate::validate::mesh::{CaseFabric, EndSupport, Strip, MeshStyle};
 
 /// Time of the walk that is compared (s): the legs swing once to and fro.
 const WALK_S: f64 = 1.0;
@@ -30,7 +30,7 @@ const CANTILEVER: [f64; 4] = [10.0, 0.3, 0.1, 10.0];
 const G: f64 = 9.81;
 
 /// A scene in all its meshes; the first is the one that every setting is run on.
-pub fn subjects(name: &str, quick: bool) -> Result<Vec<Subject>, ParetoError> {
+pub fn subjects(name: &str, quick: bool) -> Result<Vec<MeshedScene>, ParetoError> {
     match name {
         "cantilever" => {
             let rows: &[usize] = if quick { &[24, 12] } else { &[24, 12, 36, 48] };
@@ -44,42 +44,42 @@ pub fn subjects(name: &str, quick: bool) -> Result<Vec<Subject>, ParetoError> {
     }
 }
 
-fn cantilever(rows: usize, main: bool) -> Result<Subject, ParetoError> {
+fn cantilever(rows: usize, main: bool) -> Result<MeshedScene, ParetoError> {
     let [gamma, length, width, damping] = CANTILEVER;
-    let ends = [Hold::Clamped, Hold::Free];
-    let strip = Strip { length, width, rows, columns: rows / 3, style: Style::Grid, ends };
-    let bend = Cloth::PLAIN.density * G * length.powi(3) / gamma;
-    Ok(Subject {
+    let ends = [EndSupport::Clamped, EndSupport::Free];
+    let strip = Strip { length, width, rows, columns: rows / 3, style: MeshStyle::Grid, ends };
+    let bend = CaseFabric::PLAIN.density * G * length.powi(3) / gamma;
+    Ok(MeshedScene {
         scene: "cantilever",
         mesh: format!("grid {rows} x {}", rows / 3),
         main,
         shape: strip.shape(|along, across| DVec3::new(along, 0.0, across)),
-        fabric: Cloth { bend, damping, ..Cloth::PLAIN }.fabric(),
-        drive: Drive::Still,
+        fabric: CaseFabric { bend, damping, ..CaseFabric::PLAIN }.fabric(),
+        drive: SceneMotion::Still,
         colliders: Colliders::new(&[], &[], false)?,
         seconds: HANG_S,
-        truth: Truth::Equilibrium,
+        truth: ReferenceKind::Equilibrium,
     })
 }
 
-fn walk(side: usize, main: bool, quick: bool) -> Result<Subject, ParetoError> {
+fn walk(side: usize, main: bool, quick: bool) -> Result<MeshedScene, ParetoError> {
     let shape = skirt::shape(side);
     let rest =
         skirt::JOINTS.map(|(p, r)| RestSphere { bone: 0, centre: DVec3::from_array(p).as_vec3(), radius: r as f32 });
-    Ok(Subject {
+    Ok(MeshedScene {
         scene: "skirt",
         mesh: format!("grid {side} x {side}"),
         main,
         fabric: skirt::fabric(&shape, Stretch::Inextensible),
         shape,
-        drive: Drive::Skirt(Motion::Walk),
+        drive: SceneMotion::Skirt(Motion::Walk),
         colliders: Colliders::new(&rest, &skirt::CAPSULES, false)?,
         seconds: if quick { 0.5 } else { WALK_S },
-        truth: Truth::Trajectory,
+        truth: ReferenceKind::Trajectory,
     })
 }
 
-fn worn(name: &str, quick: bool) -> Result<Subject, ParetoError> {
+fn worn(name: &str, quick: bool) -> Result<MeshedScene, ParetoError> {
     let style = wardrobe::style(name)?;
     let table = style.sizes()?;
     let sex = if table.population == Population::Men { Sex::Male } else { Sex::Female };
@@ -90,16 +90,16 @@ fn worn(name: &str, quick: bool) -> Result<Subject, ParetoError> {
     let spheres = rig.spheres.each_ref().map(|s| RestSphere::on_bone(&body.skeleton, s.bone, s.offset, s.radius));
     let shape = style.draft(&size, &body)?;
     let scene = super::SCENES.into_iter().find(|s| *s == name).ok_or_else(|| ParetoError::Unknown(name.into()))?;
-    Ok(Subject {
+    Ok(MeshedScene {
         scene,
         mesh: format!("size {size}"),
         main: true,
         shape,
         fabric: Fabric::built_in(&style.fabric)?,
-        drive: Drive::Mannequin(Box::new(body.skeleton.clone()), Box::new(shopper(&body.skeleton, 0.0))),
+        drive: SceneMotion::Mannequin(Box::new(body.skeleton.clone()), Box::new(shopper(&body.skeleton, 0.0))),
         colliders: Colliders::new(&spheres, &rig.capsules, true)?,
         seconds: if quick { 0.5 } else { STAND_S },
-        truth: Truth::Trajectory,
+        truth: ReferenceKind::Trajectory,
     })
 }
 

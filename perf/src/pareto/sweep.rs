@@ -7,7 +7,7 @@ use super::ParetoError;
 use super::play::{Setting, Trace, iterations, play};
 use super::reference::Reference;
 use super::report::{EnergyRun, Point, SceneReport};
-use super::subject::{Choice, Subject};
+use super::meshed_scene::{SolverChoice, MeshedScene};
 
 /// Substeps that are tried beside a garment's own.
 const SUBSTEPS: [u32; 8] = [1, 2, 4, 6, 8, 12, 16, 32];
@@ -22,17 +22,17 @@ const FAR_BEYOND_US: f64 = 25_000.0;
 const BACKEND: &str = "cpu";
 
 /// Runs every setting of a scene and holds each against x*.
-pub fn sweep(subject: &Subject, quick: bool, told: &dyn Fn(f64)) -> Result<(Vec<Point>, SceneReport), ParetoError> {
+pub fn sweep(subject: &MeshedScene, quick: bool, told: &dyn Fn(f64)) -> Result<(Vec<Point>, SceneReport), ParetoError> {
     let reference = Reference::of(subject, quick)?;
     let mut points = Vec::new();
     let mut energy: Vec<EnergyRun> = Vec::new();
     if let Some(run) = &reference.run {
         energy.push(EnergyRun { setting: format!("fine, {} substeps", run.substeps), frames: run.energy.clone() });
     }
-    let choices: &[Choice] = match (subject.main, quick) {
-        (true, false) => &Choice::ALL,
-        (true, true) => &[Choice::Mixed, Choice::GaussSeidel],
-        (false, _) => &[Choice::Mixed],
+    let choices: &[SolverChoice] = match (subject.main, quick) {
+        (true, false) => &SolverChoice::ALL,
+        (true, true) => &[SolverChoice::Mixed, SolverChoice::GaussSeidel],
+        (false, _) => &[SolverChoice::Mixed],
     };
     for (k, &choice) in choices.iter().enumerate() {
         let garment = subject.bake(choice)?;
@@ -56,7 +56,7 @@ pub fn sweep(subject: &Subject, quick: bool, told: &dyn Fn(f64)) -> Result<(Vec<
             points.push(found);
         }
     }
-    let garment = subject.bake(Choice::Mixed)?;
+    let garment = subject.bake(SolverChoice::Mixed)?;
     let scene = SceneReport {
         scene: subject.scene.into(),
         mesh: subject.mesh.clone(),
@@ -72,8 +72,8 @@ pub fn sweep(subject: &Subject, quick: bool, told: &dyn Fn(f64)) -> Result<(Vec<
 
 /// What is tried with one choice of solvers: every quality with the bake's own, on one worker and on two; `shop` with the
 /// others; on meshes beside the main one the qualities' own substeps alone.
-fn settings(subject: &Subject, garment: &Garment, choice: Choice, quick: bool) -> Vec<Setting> {
-    let mixed = choice == Choice::Mixed;
+fn settings(subject: &MeshedScene, garment: &Garment, choice: SolverChoice, quick: bool) -> Vec<Setting> {
+    let mixed = choice == SolverChoice::Mixed;
     let qualities = if mixed { &Quality::ALL[..] } else { &[Quality::Shop] };
     let threads = if mixed && subject.main && !quick { &[1, 2][..] } else { &[1] };
     let tried = if quick { &QUICK_SUBSTEPS[..] } else { &SUBSTEPS };
@@ -92,9 +92,9 @@ fn settings(subject: &Subject, garment: &Garment, choice: Choice, quick: bool) -
 }
 
 fn point(
-    subject: &Subject,
+    subject: &MeshedScene,
     garment: &Garment,
-    choice: Choice,
+    choice: SolverChoice,
     setting: Setting,
     run: &Trace,
     reference: &Reference,
@@ -108,7 +108,7 @@ fn point(
         quality: setting.quality.name(),
         substeps: run.substeps,
         iterations: iterations(garment, setting.quality),
-        default: choice == Choice::Mixed && run.substeps == setting.quality.substeps(garment.substeps),
+        default: choice == SolverChoice::Mixed && run.substeps == setting.quality.substeps(garment.substeps),
         backend: BACKEND,
         threads: setting.threads,
         step_us: run.step_us,

@@ -46,7 +46,7 @@ fn a_drawing_is_the_same_marks_in_svg_and_in_pixels() {
 
 #[test]
 fn more_substeps_come_nearer_to_x_star() {
-    let options = Options { scene: Some("cantilever".into()), quick: true };
+    let options = ParetoOptions { scene: Some("cantilever".into()), quick: true };
     let report = run(&options, &|_| {}).unwrap();
     let error = |substeps: u32| {
         let of = |p: &&Point| p.solver == "mixed" && p.quality == "fine" && p.substeps == substeps;
@@ -69,7 +69,7 @@ fn the_survival_map_knows_a_light_hem_at_a_short_step_as_stable() {
 
 #[test]
 fn an_unknown_scene_is_said_so() {
-    let options = Options { scene: Some("hat".into()), quick: true };
+    let options = ParetoOptions { scene: Some("hat".into()), quick: true };
     let said = run(&options, &|_| {}).unwrap_err().to_string();
     assert!(said.contains("hat") && said.contains("--help"));
 }

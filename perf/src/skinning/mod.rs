@@ -4,6 +4,7 @@
 //! Budget: some seconds a measurement.
 //! Thread: the caller's, and the pool's where two are asked for.
 
+mod error;
 mod oracle;
 mod picture;
 mod shapes;
@@ -14,27 +15,27 @@ use std::hint::black_box;
 
 use glam::Vec3;
 use serde::Serialize;
-use thiserror::Error;
-use toile_assets::body::BodyError;
+use toile_assets::numeric::statistics::median_of;
 use toile_engine::lanes::Width;
-use toile_engine::skin::{Blend, Padding, Posed, SkinError, SkinningJob};
-use toile_engine::workers::{WorkerPool, WorkerPoolError};
+use toile_engine::skin::{Blend, Padding, Posed, SkinningJob};
+use toile_engine::workers::WorkerPool;
 
 use toile_fitting::scene::surface::Surface;
 use toile_fitting::scene::yardstick::{self, Yardstick};
 use toile_fitting::timing;
 
-pub use oracle::Error as PositionError;
+pub use error::SkinningError;
+pub use oracle::SurfaceErrors;
 pub use picture::twist_picture;
-pub use shapes::{Apart, Hinge, Shapes, Twist, shapes};
+pub use shapes::{BlendDistance, BentJoint, Shapes, TwistVolume, shapes};
 
 /// Rounds of a measurement: yardstick and kernels in turn, so that both see the machine as it is. An odd number.
 const ROUNDS: usize = 5;
 
-/// EventKind is skinned.
+/// What is skinned.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Subject {
+pub enum SkinningSubject {
     /// As many vertices as are asked for, each of exactly four influences.
     #[default]
     Four,
@@ -44,9 +45,9 @@ pub enum Subject {
 
 /// A measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Options {
-    /// EventKind is skinned.
-    pub subject: Subject,
+pub struct SkinningOptions {
+    /// What is skinned.
+    pub subject: SkinningSubject,
     /// Vertices; nothing for as many as the body has.
     pub verts: Option<usize>,
     /// Workers, 1 or 2.
@@ -55,9 +56,9 @@ pub struct Options {
     pub lanes: Option<Width>,
 }
 
-impl Default for Options {
+impl Default for SkinningOptions {
     fn default() -> Self {
-        Self { subject: Subject::Four, verts: Some(yardstick::VERTICES), threads: 1, lanes: None }
+        Self { subject: SkinningSubject::Four, verts: Some(yardstick::VERTICES), threads: 1, lanes: None }
     }
 }
 
@@ -78,11 +79,11 @@ pub struct Timing {
     pub max_normal_error_rad: f64,
 }
 
-/// EventKind skinning costs on this machine.
+/// What skinning costs on this machine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Skinning {
-    /// EventKind was skinned.
-    pub subject: Subject,
+    /// What was skinned.
+    pub subject: SkinningSubject,
     /// Vertices skinned.
     pub verts: usize,
     /// Workers.
@@ -99,43 +100,26 @@ pub struct Skinning {
     pub dual: Timing,
 }
 
-/// Why the benchmark cannot run.
-#[derive(Debug, Error)]
-pub enum BenchError {
-    /// The shopper's body.
-    #[error(transparent)]
-    Body(#[from] BodyError),
-    /// The shopper's skin.
-    #[error(transparent)]
-    Skin(#[from] SkinError),
-    /// The workers.
-    #[error(transparent)]
-    WorkerPool(#[from] WorkerPoolError),
-    /// Lanes that this processor lacks.
-    #[error("this processor has no {0} lanes; ask for fewer, or leave `--lanes` out")]
-    NoSuchLanes(Width),
-}
-
 /// Times the engine's skinning, both blends, and finds its errors.
 ///
 /// # Errors
 /// Where the processor lacks the lanes asked for, and where the scene's shopper or the workers cannot be made.
-pub fn measure(options: &Options) -> Result<Skinning, BenchError> {
+pub fn measure(options: &SkinningOptions) -> Result<Skinning, SkinningError> {
     let width = options.lanes.unwrap_or_else(Width::widest);
     if !width.available() {
-        return Err(BenchError::NoSuchLanes(width));
+        return Err(SkinningError::NoSuchLanes(width));
     }
     let surface = subject(options)?;
     let mut job = SkinningJob::new(&surface.positions, &surface.normals, &surface.weights)?;
     job.width = width;
-    let mut crew = WorkerPool::new(options.threads)?;
+    let mut pool = WorkerPool::new(options.threads)?;
     let yardstick = Yardstick::new()?;
     let mut rounds: [[Vec<f64>; 2]; 2] = Default::default();
     let mut yards = Vec::new();
     for _ in 0..ROUNDS {
         yards.push(yardstick.read_us());
         for (blend, [alone, whole]) in Blend::ALL.into_iter().zip(&mut rounds) {
-            let mut run = Run { job: &job, surface: &surface, crew: &mut crew, blend };
+            let mut run = TimedSkinning { job: &job, surface: &surface, pool: &mut pool, blend };
             alone.push(run.us());
             whole.push(run.mesh_order_us());
         }
@@ -143,14 +127,14 @@ pub fn measure(options: &Options) -> Result<Skinning, BenchError> {
     let verts = job.vertices();
     let of_yard = verts as f64 / yardstick::VERTICES as f64;
     let timing = |blend: Blend, [alone, whole]: &[Vec<f64>; 2]| {
-        let ratios = alone.iter().zip(&yards).map(|(us, yard)| us / (yard * of_yard)).collect();
+        let ratios = alone.iter().zip(&yards).map(|(us, yard)| us / (yard * of_yard));
         let error = oracle::compare(&surface, blend, &skinned(&job, &surface, blend));
-        let us = median(alone.clone());
+        let us = median_of(alone.iter().copied()).unwrap_or(0.0);
         Timing {
             us,
             ns_per_vertex: us * 1e3 / verts as f64,
-            y_ratio: median(ratios),
-            mesh_order_us: median(whole.clone()),
+            y_ratio: median_of(ratios).unwrap_or(0.0),
+            mesh_order_us: median_of(whole.iter().copied()).unwrap_or(0.0),
             max_error_m: error.position_m,
             max_normal_error_rad: error.normal_rad,
         }
@@ -158,21 +142,21 @@ pub fn measure(options: &Options) -> Result<Skinning, BenchError> {
     Ok(Skinning {
         subject: options.subject,
         verts,
-        threads: crew.workers(),
+        threads: pool.workers(),
         lanes: width.lanes(),
-        yardstick_us: median(yards.clone()),
+        yardstick_us: median_of(yards.iter().copied()).unwrap_or(0.0),
         padding: job.padding(),
         linear: timing(Blend::Linear, &rounds[0]),
         dual: timing(Blend::Dual, &rounds[1]),
     })
 }
 
-fn subject(options: &Options) -> Result<Surface, BodyError> {
+fn subject(options: &SkinningOptions) -> Result<Surface, BodyError> {
     let body = Surface::body()?;
     let verts = options.verts.unwrap_or(body.positions.len()).max(1);
     Ok(match options.subject {
-        Subject::Four => body.repeated(verts).with_four_influences(),
-        Subject::Body => body.repeated(verts),
+        SkinningSubject::Four => body.repeated(verts).with_four_influences(),
+        SkinningSubject::Body => body.repeated(verts),
     })
 }
 
@@ -183,19 +167,19 @@ fn skinned(job: &SkinningJob, surface: &Surface, blend: Blend) -> Posed {
     posed
 }
 
-/// EventKind is timed.
-struct Run<'a> {
+/// What is timed.
+struct TimedSkinning<'a> {
     job: &'a SkinningJob,
     surface: &'a Surface,
-    crew: &'a mut WorkerPool,
+    pool: &'a mut WorkerPool,
     blend: Blend,
 }
 
-impl Run<'_> {
+impl TimedSkinning<'_> {
     fn us(&mut self) -> f64 {
         let mut posed = self.job.posed();
         timing::median_us(|| {
-            self.job.run_with(self.crew, self.blend, black_box(&self.surface.palette), &mut posed);
+            self.job.run_with(self.pool, self.blend, black_box(&self.surface.palette), &mut posed);
             black_box(&posed);
         })
     }
@@ -204,17 +188,11 @@ impl Run<'_> {
         let mut posed = self.job.posed();
         let (mut positions, mut normals) = (vec![Vec3::ZERO; posed.vertices()], vec![Vec3::ZERO; posed.vertices()]);
         timing::median_us(|| {
-            self.job.run_with(self.crew, self.blend, black_box(&self.surface.palette), &mut posed);
+            self.job.run_with(self.pool, self.blend, black_box(&self.surface.palette), &mut posed);
             posed.read(&mut positions, &mut normals);
             black_box((&positions, &normals));
         })
     }
-}
-
-/// The middle of an odd number of figures.
-fn median(mut figures: Vec<f64>) -> f64 {
-    figures.sort_by(f64::total_cmp);
-    figures[figures.len() / 2]
 }
 
 #[cfg(test)]
@@ -223,8 +201,8 @@ mod tests {
 
     #[test]
     fn both_kernels_are_timed_at_their_errors() {
-        for subject in [Subject::Four, Subject::Body] {
-            let found = measure(&Options { subject, verts: Some(1_001), ..Options::default() }).unwrap();
+        for subject in [SkinningSubject::Four, SkinningSubject::Body] {
+            let found = measure(&SkinningOptions { subject, verts: Some(1_001), ..SkinningOptions::default() }).unwrap();
             assert_eq!((found.verts, found.padding.vertices), (1_001, 1_001));
             assert!(found.yardstick_us > 0.0 && found.padding.lanes >= 1_001);
             for timing in [found.linear, found.dual] {
@@ -239,7 +217,7 @@ mod tests {
 
     #[test]
     fn every_vertex_of_the_synthetic_surface_has_four_influences() {
-        let surface = subject(&Options { verts: Some(3_000), ..Options::default() }).unwrap();
+        let surface = subject(&SkinningOptions { verts: Some(3_000), ..SkinningOptions::default() }).unwrap();
         for w in &surface.weights {
             assert_eq!(w.iter().count(), 4);
             assert!((w.weights.iter().sum::<f32>() - 1.0).abs() < 1e-6);

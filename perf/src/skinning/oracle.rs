@@ -9,7 +9,7 @@ use toile_fitting::scene::surface::Surface;
 
 /// The largest errors of a posed surface; no number where one of its numbers is none.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Error {
+pub struct SurfaceErrors {
     /// Of a position (m).
     pub position_m: f64,
     /// Of a normal (rad), as the distance of the two unit vectors.
@@ -17,9 +17,9 @@ pub struct Error {
 }
 
 /// Compares a posed surface with the oracle.
-pub fn compare(surface: &Surface, blend: Blend, posed: &Posed) -> Error {
+pub fn compare(surface: &Surface, blend: Blend, posed: &Posed) -> SurfaceErrors {
     let duals = duals(&surface.palette);
-    let mut worst = Error::default();
+    let mut worst = SurfaceErrors::default();
     for v in 0..posed.vertices() {
         let rest = [surface.positions[v], surface.normals[v]].map(|x| x.as_dvec3());
         let [p, n] = match blend {
@@ -55,9 +55,9 @@ fn linear(palette: &[Affine3A; BONES], weights: &SkinWeights, [p, n]: [DVec3; 2]
 }
 
 /// Rotation and dual part of each bone, on its parent's side.
-type Duals = [[DQuat; 2]; BONES];
+type DualBones = [[DQuat; 2]; BONES];
 
-fn duals(palette: &[Affine3A; BONES]) -> Duals {
+fn duals(palette: &[Affine3A; BONES]) -> DualBones {
     let mut duals = [[DQuat::IDENTITY; 2]; BONES];
     for (bone, parent) in BONE_CHAIN {
         let (turn, shift) = wide(&palette[bone]);
@@ -70,7 +70,7 @@ fn duals(palette: &[Affine3A; BONES]) -> Duals {
 }
 
 /// The blended motion taken apart into rotation and translation, and applied one after the other.
-fn dual(duals: &Duals, weights: &SkinWeights, [p, n]: [DVec3; 2]) -> [DVec3; 2] {
+fn dual(duals: &DualBones, weights: &SkinWeights, [p, n]: [DVec3; 2]) -> [DVec3; 2] {
     let mut sum = [DVec4::ZERO; 2];
     for (bone, weight) in weights.iter() {
         let [real, dual] = duals[usize::from(bone)];

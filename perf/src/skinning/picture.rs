@@ -12,7 +12,7 @@ use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};
 use toile_view::sheet;
 use toile_view::trace::{self, Quality};
 
-use super::BenchError;
+use super::error::SkinningError;
 use super::shapes::{posed, unsplit};
 
 /// One panel (pixels).
@@ -33,7 +33,7 @@ const COLUMNS: [(&str, Blend, bool); 4] = [
 ///
 /// # Errors
 /// Where the shopper cannot be built.
-pub fn twist_picture() -> Result<Image, BenchError> {
+pub fn twist_picture() -> Result<Image, SkinningError> {
     let (sex, measures) = scene::SHOPPER;
     let body = Body::build(sex, &measures)?;
     let plain: Vec<SkinWeights> = body.weights.iter().map(unsplit).collect();
@@ -49,7 +49,7 @@ pub fn twist_picture() -> Result<Image, BenchError> {
     Ok(sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), COLUMNS.len(), &captions))
 }
 
-fn panel(body: &Body, weights: &[SkinWeights], degrees: f32, blend: Blend) -> Result<Image, BenchError> {
+fn panel(body: &Body, weights: &[SkinWeights], degrees: f32, blend: Blend) -> Result<Image, SkinningError> {
     let skeleton = &body.skeleton;
     let axis = skeleton.offset(Joint::LeftWrist).normalize();
     let mut pose = Pose::rest(skeleton);

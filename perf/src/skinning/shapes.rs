@@ -10,12 +10,12 @@ use toile_assets::skeleton::{self, BONES, Joint, Pose};
 use toile_engine::body::{JointFrames, palette};
 use toile_engine::skin::{Blend, SkinningJob};
 
-use super::BenchError;
-use super::solid::Solid;
+use super::error::SkinningError;
+use super::solid::ClosedSurface;
 
 /// Volume that a twisted limb keeps (1).
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Twist {
+pub struct TwistVolume {
     /// The cylinder, the shopper's forearm with every triangle cut into 16 before it is skinned, so that what is lost
     /// is lost by skinning, or the forearm as it is meshed, whose triangles lose some more.
     pub of: &'static str,
@@ -35,7 +35,7 @@ pub struct Twist {
 
 /// What a bent joint of the shopper looks like, linear and dual.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Hinge {
+pub struct BentJoint {
     /// The joint.
     pub of: &'static str,
     /// Bend (degrees).
@@ -52,7 +52,7 @@ pub struct Hinge {
 
 /// How far apart the two blends put the shopper's skin in the scene's ten seconds.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Apart {
+pub struct BlendDistance {
     /// Trunk and head, or arms and legs.
     pub of: &'static str,
     /// Mean distance over vertices and moments (mm).
@@ -67,18 +67,18 @@ pub struct Apart {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Shapes {
     /// The blends against each other.
-    pub apart: Vec<Apart>,
+    pub apart: Vec<BlendDistance>,
     /// Twisted limbs.
-    pub twists: Vec<Twist>,
+    pub twists: Vec<TwistVolume>,
     /// Bent joints.
-    pub hinges: Vec<Hinge>,
+    pub hinges: Vec<BentJoint>,
 }
 
 /// Poses cylinder and shopper, and measures what is left of them.
 ///
 /// # Errors
 /// Where the shopper cannot be built.
-pub fn shapes() -> Result<Shapes, BenchError> {
+pub fn shapes() -> Result<Shapes, SkinningError> {
     let (sex, measures) = scene::SHOPPER;
     let body = Body::build(sex, &measures)?;
     let mut twists = Vec::new();
@@ -104,9 +104,9 @@ pub fn shapes() -> Result<Shapes, BenchError> {
 fn twist(
     of: &'static str,
     degrees: f64,
-    kept: impl Fn(bool, Blend) -> Result<f64, BenchError>,
-) -> Result<Twist, BenchError> {
-    Ok(Twist {
+    kept: impl Fn(bool, Blend) -> Result<f64, SkinningError>,
+) -> Result<TwistVolume, SkinningError> {
+    Ok(TwistVolume {
         of,
         degrees,
         theory: 1.0 - (1.0 - degrees.to_radians().cos()) / 3.0,
@@ -118,8 +118,8 @@ fn twist(
 }
 
 /// The left forearm's segment of the skeleton.
-fn segment() -> &'static skeleton::Twist {
-    skeleton::Twist::towards(Joint::LeftWrist).expect("forearms are split")
+fn segment() -> &'static skeleton::TwistVolume {
+    skeleton::TwistVolume::towards(Joint::LeftWrist).expect("forearms are split")
 }
 
 /// Its bones, or only the first and the last.
@@ -135,7 +135,7 @@ pub(super) fn posed<const N: usize>(
     weights: &[Influences<N>],
     palette: &[Affine3A; BONES],
     blend: Blend,
-) -> Result<Vec<Vec3>, BenchError> {
+) -> Result<Vec<Vec3>, SkinningError> {
     let job = SkinningJob::new(points, &vec![Vec3::Y; points.len()], weights)?;
     let mut posed = job.posed();
     job.run(blend, palette, &mut posed);
@@ -143,7 +143,7 @@ pub(super) fn posed<const N: usize>(
 }
 
 /// Volume kept by a unit cylinder whose twist grows linearly from end to end.
-fn cylinder(degrees: f64, split: bool, blend: Blend) -> Result<f64, BenchError> {
+fn cylinder(degrees: f64, split: bool, blend: Blend) -> Result<f64, SkinningError> {
     const RINGS: usize = 421;
     const SIDES: usize = 96;
     let chain = chain(split);
@@ -178,7 +178,7 @@ fn cylinder(degrees: f64, split: bool, blend: Blend) -> Result<f64, BenchError> 
 
 /// The shopper's left forearm, from elbow to wrist, and how it is skinned.
 struct Forearm {
-    solid: Solid,
+    solid: ClosedSurface,
     points: Vec<Vec3>,
     weights: Vec<WideWeights>,
 }
@@ -192,7 +192,7 @@ impl Forearm {
             let along = (points[v as usize] - elbow).dot(wrist - elbow) / elbow.distance_squared(wrist);
             body.regions[v as usize] == Region::LeftArm && (0.0..=1.0).contains(&along)
         };
-        let solid = Solid::cut(&body.mesh.triangles, inside);
+        let solid = ClosedSurface::cut(&body.mesh.triangles, inside);
         let weights = body.weights.iter().map(|w| wide(&if split { *w } else { unsplit(w) })).collect();
         let mut forearm = Self { solid, points, weights };
         (0..rounds).for_each(|_| forearm.refine());
@@ -210,7 +210,7 @@ impl Forearm {
     }
 
     /// Volume kept when the hand is turned about the forearm.
-    fn kept(&self, body: &Body, degrees: f64, blend: Blend) -> Result<f64, BenchError> {
+    fn kept(&self, body: &Body, degrees: f64, blend: Blend) -> Result<f64, SkinningError> {
         let axis = body.skeleton.offset(Joint::LeftWrist).normalize();
         let mut pose = Pose::rest(&body.skeleton);
         pose.local[Joint::LeftWrist.index()] = Quat::from_axis_angle(axis, degrees.to_radians() as f32);
@@ -240,7 +240,7 @@ pub(super) fn unsplit(weights: &SkinWeights) -> SkinWeights {
 /// What is within this distance of a joint (m) is looked at.
 const NEAR_M: f32 = 0.12;
 
-fn hinge(body: &Body, of: &'static str, joint: Joint, bends: Vec3, degrees: f64) -> Result<Hinge, BenchError> {
+fn hinge(body: &Body, of: &'static str, joint: Joint, bends: Vec3, degrees: f64) -> Result<BentJoint, SkinningError> {
     let (skeleton, points) = (&body.skeleton, &body.mesh.positions);
     let root = joint.parent().expect("a hinge has a bone above it");
     let end = Joint::ALL.into_iter().find(|j| j.parent() == Some(joint)).expect("and one below it");
@@ -255,8 +255,8 @@ fn hinge(body: &Body, of: &'static str, joint: Joint, bends: Vec3, degrees: f64)
     };
     let (rest, bent) = (at(&Pose::rest(skeleton)), at(&pose));
     let near: Vec<usize> = (0..points.len()).filter(|&v| points[v].distance(rest[1]) < NEAR_M).collect();
-    let solid = Solid::cut(&body.mesh.triangles, |v| points[v as usize].distance(rest[1]) < NEAR_M);
-    let mut found = Hinge { of, degrees, volume: [0.0; 2], bulge: [0.0; 2], bulge_mm: [0.0; 2], thinnest: [0.0; 2] };
+    let solid = ClosedSurface::cut(&body.mesh.triangles, |v| points[v as usize].distance(rest[1]) < NEAR_M);
+    let mut found = BentJoint { of, degrees, volume: [0.0; 2], bulge: [0.0; 2], bulge_mm: [0.0; 2], thinnest: [0.0; 2] };
     // Away from the inner side of the bend, where flesh meets flesh.
     let outwards = ((bent[1] - bent[0]).normalize() - (bent[2] - bent[1]).normalize()).normalize();
     for (k, blend) in Blend::ALL.into_iter().enumerate() {
@@ -277,12 +277,12 @@ fn hinge(body: &Body, of: &'static str, joint: Joint, bends: Vec3, degrees: f64)
 /// Moments of the scene that are looked at: ten a second.
 const MOMENTS: usize = 100;
 
-fn apart(body: &Body) -> Result<Vec<Apart>, BenchError> {
+fn apart(body: &Body) -> Result<Vec<BlendDistance>, SkinningError> {
     let (skeleton, points) = (&body.skeleton, &body.mesh.positions);
     let limb = |v: usize| !matches!(body.regions[v], Region::Torso | Region::Head);
-    let whole = Solid::of(body.mesh.triangles.clone());
+    let whole = ClosedSurface::of(body.mesh.triangles.clone());
     let mut found =
-        ["trunk and head", "arms and legs"].map(|of| Apart { of, body_volume: [1.0; 2], ..Apart::default() });
+        ["trunk and head", "arms and legs"].map(|of| BlendDistance { of, body_volume: [1.0; 2], ..BlendDistance::default() });
     let mut counts = [0usize; 2];
     for moment in 0..MOMENTS {
         let mut bones = [Affine3A::IDENTITY; BONES];

@@ -6,13 +6,13 @@ use glam::{DVec3, Vec3};
 
 /// A part of a closed surface and the rims where it was cut out.
 #[derive(Debug, Clone)]
-pub struct Solid {
+pub struct ClosedSurface {
     triangles: Vec<[u32; 3]>,
     /// Edges that have the part on their left, a rim each.
     rims: Vec<Vec<[u32; 2]>>,
 }
 
-impl Solid {
+impl ClosedSurface {
     /// The triangles whose vertices are all inside.
     pub fn cut(triangles: &[[u32; 3]], inside: impl Fn(u32) -> bool) -> Self {
         Self::of(triangles.iter().copied().filter(|t| t.iter().all(|&v| inside(v))).collect())
@@ -92,10 +92,10 @@ mod tests {
                 triangles.extend([[a, b, b + 4], [a, b + 4, a + 4]]);
             }
         }
-        let whole = Solid::cut(&triangles, |_| true);
+        let whole = ClosedSurface::cut(&triangles, |_| true);
         assert_eq!(whole.rims.len(), 0);
         assert!((whole.volume(&points).abs() - 4.0).abs() < 1e-9);
-        let part = Solid::cut(&triangles, |v| (4..16).contains(&v));
+        let part = ClosedSurface::cut(&triangles, |v| (4..16).contains(&v));
         assert_eq!(part.rims.len(), 2);
         assert!((part.volume(&points).abs() - 2.0).abs() < 1e-9, "{}", part.volume(&points));
         let fine = part.refined(|[a, b]| {

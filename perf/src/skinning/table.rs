@@ -6,7 +6,7 @@ use serde::Serialize;
 use toile_engine::lanes::Width;
 use toile_engine::skin::Padding;
 
-use super::{BenchError, Options, Shapes, Skinning, Subject, Timing, measure, shapes};
+use super::{SkinningError, SkinningOptions, Shapes, Skinning, SkinningSubject, Timing, measure, shapes};
 use toile_fitting::scene::yardstick;
 
 /// Most of the yardstick that a thread may take for as many vertices: linear, dual.
@@ -14,9 +14,9 @@ pub const TARGETS: [f64; 2] = [0.12, 0.2];
 
 /// One measurement as the table has it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
+pub struct SkinningRow {
     /// What was skinned.
-    pub subject: Subject,
+    pub subject: SkinningSubject,
     /// Vertices.
     pub verts: usize,
     /// Workers.
@@ -41,7 +41,7 @@ pub struct Row {
     pub dual: Timing,
 }
 
-impl From<Skinning> for Row {
+impl From<Skinning> for SkinningRow {
     fn from(found: Skinning) -> Self {
         let Padding { vertices, blocks, runs, influences, blended, .. } = found.padding;
         let of_each = |count: usize| count as f64 / vertices.max(1) as f64;
@@ -64,9 +64,9 @@ impl From<Skinning> for Row {
 
 /// The whole table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Table {
+pub struct SkinningTable {
     /// The measurements.
-    pub rows: Vec<Row>,
+    pub rows: Vec<SkinningRow>,
     /// Volumes and bulges.
     #[serde(flatten)]
     pub shapes: Shapes,
@@ -76,27 +76,27 @@ pub struct Table {
 ///
 /// # Errors
 /// Where the scene's shopper or the workers cannot be made.
-pub fn run(told: &mut dyn FnMut(&str)) -> Result<Table, BenchError> {
+pub fn run(told: &mut dyn FnMut(&str)) -> Result<SkinningTable, SkinningError> {
     let mut rows = Vec::new();
-    let mut add = |options: Options| -> Result<(), BenchError> {
+    let mut add = |options: SkinningOptions| -> Result<(), SkinningError> {
         told(&format!("{:?}, {} thread(s), lanes {:?}", options.subject, options.threads, options.lanes));
         rows.push(measure(&options)?.into());
         Ok(())
     };
     for (subject, verts) in
-        [(Subject::Four, Some(yardstick::VERTICES)), (Subject::Body, Some(yardstick::VERTICES)), (Subject::Body, None)]
+        [(SkinningSubject::Four, Some(yardstick::VERTICES)), (SkinningSubject::Body, Some(yardstick::VERTICES)), (SkinningSubject::Body, None)]
     {
         for threads in [1, 2] {
-            add(Options { subject, verts, threads, lanes: None })?;
+            add(SkinningOptions { subject, verts, threads, lanes: None })?;
         }
     }
     for width in Width::ALL.into_iter().rev().skip(1).filter(|w| w.available()) {
-        add(Options { lanes: Some(width), ..Options::default() })?;
+        add(SkinningOptions { lanes: Some(width), ..SkinningOptions::default() })?;
     }
-    Ok(Table { rows, shapes: shapes()? })
+    Ok(SkinningTable { rows, shapes: shapes()? })
 }
 
-impl Table {
+impl SkinningTable {
     /// The table as Markdown.
     pub fn markdown(&self) -> String {
         let mut text = String::new();
@@ -116,7 +116,7 @@ impl Table {
             let timing = |t: &Timing| {
                 format!("{:.1}, **{:.3}**, {:.2} um | {:.1}", t.us, t.y_ratio, t.max_error_m * 1e6, t.mesh_order_us)
             };
-            let surface = if r.subject == Subject::Four { "four influences each" } else { "the body's own weights" };
+            let surface = if r.subject == SkinningSubject::Four { "four influences each" } else { "the body's own weights" };
             put(
                 text,
                 &format!(

@@ -48,7 +48,7 @@ pub struct FrameErrors {
 struct Edge {
     ends: [u32; 2],
     rest: f64,
-    /// SkirtStrain by the weight below it.
+    /// Strain by the weight below it.
     elastic: f64,
 }
 
@@ -157,7 +157,7 @@ impl Capsule {
     }
 }
 
-/// SkirtStrain of the warp edge below each row of the hanging grid by the weight of what is below it: T / (E w), with E the
+/// Strain of the warp edge below each row of the hanging grid by the weight of what is below it: T / (E w), with E the
 /// fabric's stiffness and w the width of cloth that the edge carries. 0 where threads do not stretch, and for an
 /// irregular mesh, whose threads run across rows.
 fn elastic_strains(scene: &SkirtScene, particle_of: &[u32]) -> Vec<f64> {

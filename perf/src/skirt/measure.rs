@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use toile_assets::garment::Shape;
+use toile_assets::numeric::statistics::{median, quantile};
 use toile_gpu::stepper::Means;
 
 use super::error::SkirtError;
@@ -50,7 +51,7 @@ pub(super) fn measure_with(
         run.end_run();
     }
     readings.push(yardstick.read_us());
-    let mut report = run.report(&scene, quantile(&mut readings, 0.5));
+    let mut report = run.report(&scene, median(&mut readings).unwrap_or(0.0));
     report.events = scene.events().since(before);
     let metered = METERED_STEPS.min(options.steps.max(1));
     let (stages_us, device_us) = scene.stages_us(metered);
@@ -142,7 +143,7 @@ impl SkirtRun {
 
     fn end_run(&mut self) {
         let mut run = self.times[self.first..].to_vec();
-        self.medians.push(quantile(&mut run, 0.5));
+        self.medians.push(median(&mut run).unwrap_or(0.0));
         self.first = self.times.len();
         self.left_inside += self.last_inside;
         self.marks.push([self.sums[0], self.frames as f64]);
@@ -150,8 +151,8 @@ impl SkirtRun {
 
     fn report(mut self, scene: &SkirtScene, yardstick_us: f64) -> SkirtReport {
         let [mean, p99, inside, beyond] = self.sums.map(|sum| sum / self.frames as f64);
-        let p50 = quantile(&mut self.medians.clone(), 0.5);
-        let mut time = |part| quantile(&mut self.times, part);
+        let p50 = median(&mut self.medians.clone()).unwrap_or(0.0);
+        let mut time = |part| quantile(&mut self.times, part).unwrap_or(0.0);
         SkirtReport {
             quality: scene.settings().quality.name(),
             lanes: scene.settings().width.lanes(),
@@ -188,10 +189,4 @@ impl SkirtRun {
             ..SkirtReport::of(&self.options)
         }
     }
-}
-
-/// The value below which a part (0..1) of the values lies.
-fn quantile(values: &mut [f64], part: f64) -> f64 {
-    let rank = ((values.len() - 1) as f64 * part).round() as usize;
-    *values.select_nth_unstable_by(rank, f64::total_cmp).1
 }

@@ -160,7 +160,7 @@ pub struct SkirtReport {
     pub y_ratio: f64,
     /// Median step a vertex (ns).
     pub ns_per_vertex: f64,
-    /// SkirtStrain of the same steps.
+    /// Strain of the same steps.
     pub strain: SkirtStrain,
     /// Penetration of the same steps.
     pub penetration_mm: Penetration,

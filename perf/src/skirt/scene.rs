@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use glam::{Affine3A, Vec3, Vec3A, Vec4};
 use toile_assets::bake::bake;
 use toile_assets::garment::{Garment, Shape};
+use toile_assets::numeric::hash;
 use toile_assets::scene::skirt;
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::program::STAGES;
@@ -226,8 +227,7 @@ impl SkirtScene {
         let particles = self.particle_of();
         let of = |c: &Cloth, p: u32| [c.positions[p as usize], c.velocity(p as usize)];
         let numbers = self.cloths.iter().flat_map(|c| particles.iter().flat_map(move |&p| of(c, p)));
-        let bytes = numbers.flat_map(|v| v.to_array()).flat_map(|x| x.to_bits().to_le_bytes());
-        bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+        hash::of_numbers(numbers.flat_map(|v| v.to_array()))
     }
 
     /// Puts one particle of the first skirt where it cannot be, as a fault of memory would.

@@ -3,7 +3,7 @@
 use super::outcome::TrialFindings;
 use super::pieces::Pieces;
 use super::{elements, long_rest, poison, ratios, start, surround};
-use crate::random::Random;
+use crate::random::CaseRandom;
 
 /// One case.
 #[derive(Debug, Clone, Copy)]
@@ -12,7 +12,7 @@ pub struct TortureCase {
     pub name: &'static str,
     /// What is done, in a few words.
     pub about: &'static str,
-    pub(super) run: fn(&Pieces, &mut Random, u64) -> TrialFindings,
+    pub(super) run: fn(&Pieces, &mut CaseRandom, u64) -> TrialFindings,
 }
 
 /// Every case, in the order of the table.

@@ -9,7 +9,7 @@ use super::piece::{PATCH, Piece, denim, sheet};
 use super::pieces::Pieces;
 use super::start::swung;
 use super::trial::Trial;
-use crate::random::Random;
+use crate::random::CaseRandom;
 
 /// What is wrong with the mesh, seed after seed.
 const FLAWS: u64 = 7;
@@ -18,7 +18,7 @@ const FLAWS: u64 = 7;
 const SLIVER_M: f32 = 1.5e-6;
 
 /// Every second seed or so has a flaw that the bake must refuse; the others are baked and have to hang as they should.
-pub(super) fn bad_elements(pieces: &Pieces, random: &mut Random, seed: u64) -> TrialFindings {
+pub(super) fn bad_elements(pieces: &Pieces, random: &mut CaseRandom, seed: u64) -> TrialFindings {
     let mut shape = sheet(PATCH);
     let [columns, rows] = PATCH;
     let face = random.below(shape.faces.len());
@@ -61,7 +61,7 @@ fn refused(shape: &Shape, face: usize) -> TrialFindings {
 }
 
 /// A mesh that can be baked, and must then hang.
-fn survived(pieces: &Pieces, shape: &Shape, random: &mut Random) -> TrialFindings {
+fn survived(pieces: &Pieces, shape: &Shape, random: &mut CaseRandom) -> TrialFindings {
     let piece = match Piece::new(shape, &denim(), &pieces.settings) {
         Ok(piece) => piece,
         Err(error) => return TrialFindings { miss: Some(error.to_string()), ..TrialFindings::default() },

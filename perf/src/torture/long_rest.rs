@@ -4,11 +4,12 @@
 use std::time::Instant;
 
 use glam::Vec3;
+use toile_assets::numeric::statistics::median;
 
 use super::outcome::TrialFindings;
 use super::pieces::Pieces;
 use super::trial::Trial;
-use crate::random::Random;
+use crate::random::CaseRandom;
 
 /// Steps at rest: a minute.
 const REST_STEPS: usize = 7_200;
@@ -21,7 +22,7 @@ const SLOWER: f64 = 1.5;
 
 /// The curtain hangs in its plane but for a last trembling across it, from a thousandth of a metre to nothing that f32
 /// knows; a minute later it is timed beside a copy that was kept as it was in the beginning.
-pub(super) fn long_rest(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFindings {
+pub(super) fn long_rest(pieces: &Pieces, random: &mut CaseRandom, _: u64) -> TrialFindings {
     let size = random.decades(-44.0, -3.0);
     let mut rested = Trial::at_rest(pieces, &pieces.patch, &pieces.settings);
     rested.disturb(|i, p| (p.with_z(size * if i % 2 == 0 { 1.0 } else { -0.5 }), Vec3::ZERO));
@@ -37,18 +38,13 @@ pub(super) fn long_rest(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFi
             times.push(begun.elapsed().as_nanos() as f64);
         }
     }
-    let [new, old] = times.map(median);
+    let [new, old] = times.map(|mut times| median(&mut times).unwrap_or(f64::NAN));
     let tiny = denormal(&rested);
     let mut found = TrialFindings::back(rested, &pieces.patch.rest);
     let ratio = old / new;
     found.note = format!("a step takes {ratio:.2} times as long after a minute's rest; {tiny} denormal numbers");
     found.miss = (ratio > SLOWER).then(|| found.note.clone());
     found
-}
-
-fn median(mut times: Vec<f64>) -> f64 {
-    times.sort_unstable_by(f64::total_cmp);
-    times[times.len() / 2]
 }
 
 /// Numbers of the state that are smaller than the smallest normal one, and not 0.

@@ -8,7 +8,7 @@ use super::outcome::TrialFindings;
 use super::piece::TOP;
 use super::pieces::Pieces;
 use super::trial::Trial;
-use crate::random::Random;
+use crate::random::CaseRandom;
 
 /// What stands in place of a number.
 const VALUES: [f32; 4] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30];
@@ -133,16 +133,16 @@ fn chosen(inputs: &[BadInput], values: &[f32], seed: u64) -> (usize, f32) {
     (k / values.len(), values[k % values.len()])
 }
 
-pub(super) fn surroundings(pieces: &Pieces, random: &mut Random, seed: u64) -> TrialFindings {
+pub(super) fn surroundings(pieces: &Pieces, random: &mut CaseRandom, seed: u64) -> TrialFindings {
     beside(pieces, random, seed, &surrounding_inputs())
 }
 
-pub(super) fn bones(pieces: &Pieces, random: &mut Random, seed: u64) -> TrialFindings {
+pub(super) fn bones(pieces: &Pieces, random: &mut CaseRandom, seed: u64) -> TrialFindings {
     beside(pieces, random, seed, &bone_inputs())
 }
 
 /// A bad value in what is around the curtain.
-fn beside(pieces: &Pieces, random: &mut Random, seed: u64, inputs: &[BadInput]) -> TrialFindings {
+fn beside(pieces: &Pieces, random: &mut CaseRandom, seed: u64, inputs: &[BadInput]) -> TrialFindings {
     let (which, value) = chosen(inputs, &VALUES, seed);
     // They stand beside the cloth, and come through it where they are drawn away and back.
     let side = |x: f32| [Vec3::new(x, TOP.y - 0.1, 0.0).extend(0.05), Vec3::new(x, TOP.y - 0.4, 0.0).extend(0.05)];
@@ -152,21 +152,21 @@ fn beside(pieces: &Pieces, random: &mut Random, seed: u64, inputs: &[BadInput]) 
     poisoned(pieces, trial, &inputs[which], value, 1 + random.below(LONGEST))
 }
 
-pub(super) fn settings(pieces: &Pieces, random: &mut Random, seed: u64) -> TrialFindings {
+pub(super) fn settings(pieces: &Pieces, random: &mut CaseRandom, seed: u64) -> TrialFindings {
     let inputs = setting_inputs();
     let (which, value) = chosen(&inputs, &SETTINGS_VALUES, seed);
     let trial = Trial::at_rest(pieces, &pieces.curtain, &pieces.settings);
     poisoned(pieces, trial, &inputs[which], value, 1 + random.below(LONGEST))
 }
 
-pub(super) fn root_settings(pieces: &Pieces, random: &mut Random, seed: u64) -> TrialFindings {
+pub(super) fn root_settings(pieces: &Pieces, random: &mut CaseRandom, seed: u64) -> TrialFindings {
     let inputs = root_inputs();
     let (which, value) = chosen(&inputs, &SETTINGS_VALUES, seed);
     let trial = Trial::at_rest(pieces, &pieces.curtain, &pieces.settings);
     poisoned(pieces, trial, &inputs[which], value, 1 + random.below(LONGEST))
 }
 
-pub(super) fn state(pieces: &Pieces, random: &mut Random, seed: u64) -> TrialFindings {
+pub(super) fn state(pieces: &Pieces, random: &mut CaseRandom, seed: u64) -> TrialFindings {
     let inputs = state_inputs();
     let (which, value) = chosen(&inputs, &VALUES, seed);
     let trial = Trial::at_rest(pieces, &pieces.curtain, &pieces.settings);

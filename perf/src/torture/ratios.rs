@@ -12,7 +12,7 @@ use super::piece::{DAMPING_PER_S, PATCH, Piece, TOP, denim, sheet};
 use super::pieces::Pieces;
 use super::start::swung;
 use super::trial::Trial;
-use crate::random::Random;
+use crate::random::CaseRandom;
 
 /// Half of the decades between the lightest and the heaviest particle.
 const HALF_DECADES: f32 = 2.5;
@@ -36,11 +36,11 @@ const FRAME_S: f32 = 1.0 / 60.0;
 const TOP_FORCE_N: f32 = 190.0;
 
 /// Every particle another mass; at least one of the lightest and one of the heaviest.
-pub(super) fn mass_ratio(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFindings {
+pub(super) fn mass_ratio(pieces: &Pieces, random: &mut CaseRandom, _: u64) -> TrialFindings {
     let mut shape = sheet(PATCH);
     let count = shape.cut.len();
     shape.heavier = (0..count).map(|_| random.decades(-HALF_DECADES, HALF_DECADES)).collect();
-    let free = |random: &mut Random| PATCH[0] + random.below(count - PATCH[0]);
+    let free = |random: &mut CaseRandom| PATCH[0] + random.below(count - PATCH[0]);
     let ends = [free(random), free(random)];
     shape.heavier[ends[0]] = 10f32.powf(-HALF_DECADES);
     shape.heavier[ends[1]] = 10f32.powf(HALF_DECADES);
@@ -48,7 +48,7 @@ pub(super) fn mass_ratio(pieces: &Pieces, random: &mut Random, _: u64) -> TrialF
 }
 
 /// Threads one way 10,000 times stiffer than the other way.
-pub(super) fn stiffness_ratio(pieces: &Pieces, random: &mut Random, seed: u64) -> TrialFindings {
+pub(super) fn stiffness_ratio(pieces: &Pieces, random: &mut CaseRandom, seed: u64) -> TrialFindings {
     let soft = random.decades(1.0, 2.0);
     let stiff = soft * 1e4;
     let [warp, weft] = if seed.is_multiple_of(2) { [soft, stiff] } else { [stiff, soft] };
@@ -58,7 +58,7 @@ pub(super) fn stiffness_ratio(pieces: &Pieces, random: &mut Random, seed: u64) -
 }
 
 /// Swings a cloth of a seed's own and compares it with where it hangs.
-fn own(pieces: &Pieces, shape: &Shape, fabric: &Fabric, random: &mut Random) -> TrialFindings {
+fn own(pieces: &Pieces, shape: &Shape, fabric: &Fabric, random: &mut CaseRandom) -> TrialFindings {
     match Piece::new(shape, fabric, &pieces.settings) {
         Ok(piece) => TrialFindings::back(swung(pieces, &piece, &pieces.settings, random), &piece.rest),
         Err(error) => TrialFindings { miss: Some(error.to_string()), ..TrialFindings::default() },
@@ -140,7 +140,7 @@ fn settings(pieces: &Pieces, substeps: Option<u32>) -> Settings {
 }
 
 /// The Small Steps chain (Macklin et al. 2019): 100 substeps a frame, the last particle 100,000 times heavier.
-pub(super) fn heavy_chain(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFindings {
+pub(super) fn heavy_chain(pieces: &Pieces, random: &mut CaseRandom, _: u64) -> TrialFindings {
     let links = [LINK_M; NODES - 1];
     let mut masses = [1.0; NODES - 1];
     masses[NODES - 2] = 1e5;
@@ -162,7 +162,7 @@ pub(super) fn heavy_chain(pieces: &Pieces, random: &mut Random, _: u64) -> Trial
 }
 
 /// The same with particles of 1 kg and links that give 2 % under 190 N: its top link says what it carries.
-pub(super) fn even_chain(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFindings {
+pub(super) fn even_chain(pieces: &Pieces, random: &mut CaseRandom, _: u64) -> TrialFindings {
     let links = [LINK_M; NODES - 1];
     let along = Quat::from_axis_angle(random.direction(), random.between(0.0, 1.0)) * Vec3::NEG_Y;
     let chain = RibbonChain { links: &links, masses: &[1.0; NODES - 1], force_n: TOP_FORCE_N / 0.02, along };
@@ -178,7 +178,7 @@ pub(super) fn even_chain(pieces: &Pieces, random: &mut Random, _: u64) -> TrialF
 
 /// The strand of the TinyVBD experiment, let go 30 degrees above the horizontal: 19 springs of 1e8 N/m, 18 of 5 cm and
 /// the last of 10 cm, with 1,000 kg at the end.
-pub(super) fn strand(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFindings {
+pub(super) fn strand(pieces: &Pieces, random: &mut CaseRandom, _: u64) -> TrialFindings {
     const SPRING_N_M: f32 = 1e8;
     /// Greatest mean strain of the first swing, and at rest (1).
     const ALLOWED: [f32; 2] = [0.02, 0.005];

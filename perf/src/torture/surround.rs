@@ -6,7 +6,7 @@ use super::outcome::TrialFindings;
 use super::piece::TOP;
 use super::pieces::{Pieces, TUBE_RADIUS_M};
 use super::trial::Trial;
-use crate::random::Random;
+use crate::random::CaseRandom;
 
 /// Radius of the capsules (m).
 const RADIUS_M: f32 = 0.06;
@@ -30,7 +30,7 @@ fn capsule(middle: Vec3, half: Vec3, radius: f32) -> [Vec4; 2] {
 
 /// A capsule that jumps from one side to the other every few steps: every second seed alone, so that all colliders jump
 /// and the engine takes it for another body; else beside three spheres that stay.
-pub(super) fn teleport(pieces: &Pieces, random: &mut Random, seed: u64) -> TrialFindings {
+pub(super) fn teleport(pieces: &Pieces, random: &mut CaseRandom, seed: u64) -> TrialFindings {
     let stays = [1.0, 1.2, 1.4].map(|x| Vec4::new(x, TOP.y, 0.0, RADIUS_M));
     let half = random.direction() * REACH_M;
     let mut place = |side: f32| {
@@ -60,7 +60,7 @@ pub(super) fn teleport(pieces: &Pieces, random: &mut Random, seed: u64) -> Trial
 }
 
 /// Two capsules come from both sides until they overlap, stay, and go.
-pub(super) fn squeeze(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFindings {
+pub(super) fn squeeze(pieces: &Pieces, random: &mut CaseRandom, _: u64) -> TrialFindings {
     let middle = TOP + Vec3::new(random.between(-0.05, 0.05), random.between(-0.4, -0.1), random.between(-0.05, 0.05));
     let halves = [0, 1].map(|_| {
         let d = random.direction();
@@ -85,7 +85,7 @@ pub(super) fn squeeze(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFind
 }
 
 /// The tube starts about a body twice as wide as it was cut for, below the ring that it hangs by; then the body is gone.
-pub(super) fn too_small(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFindings {
+pub(super) fn too_small(pieces: &Pieces, random: &mut CaseRandom, _: u64) -> TrialFindings {
     let body = |radius: f32| capsule(TOP - Vec3::Y * 0.55, Vec3::Y * 0.35, radius).to_vec();
     // The fabric keeps 3 mm; up to 5 mm of the body stand out of the tube.
     let radius = 2.0 * TUBE_RADIUS_M + random.between(-0.03, 0.005);
@@ -96,7 +96,7 @@ pub(super) fn too_small(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFi
 }
 
 /// The pins turn about an axis through the upper edge, and stop.
-pub(super) fn spin(pieces: &Pieces, random: &mut Random, _: u64) -> TrialFindings {
+pub(super) fn spin(pieces: &Pieces, random: &mut CaseRandom, _: u64) -> TrialFindings {
     let axis = random.direction();
     let centre = TOP + Vec3::X * random.between(-0.1, 0.1);
     let mut trial = Trial::at_rest(pieces, &pieces.curtain, &pieces.settings);

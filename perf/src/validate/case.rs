@@ -3,12 +3,12 @@
 use serde::Serialize;
 use toile_gpu::stepper::{Backend, Means};
 
-use super::rig::{Rig, RigError};
-use super::{How, Level};
+use super::specimen::{Specimen, SpecimenError, Placement};
+use super::{CaseSetup, Level};
 
 /// What one run gave.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outcome {
+pub struct CaseOutcome {
     /// The figure, in the case's unit.
     pub got: f64,
     /// Median time of a step (us).
@@ -25,21 +25,27 @@ pub struct Outcome {
     pub solved: Option<f64>,
 }
 
-impl Outcome {
-    /// A figure read off a rig.
-    pub fn of(rig: &Rig, got: f64) -> Self {
+impl CaseOutcome {
+    /// A figure read off a specimen.
+    pub fn of(specimen: &Specimen, got: f64) -> Self {
         Self {
             got,
-            step_us: rig.step_us(),
-            substeps: rig.cloth.substeps(),
-            bend_kept: rig.cloth.bend_pace().least,
+            step_us: specimen.step_us(),
+            substeps: specimen.cloth.substeps(),
+            bend_kept: specimen.cloth.bend_pace().least,
             settled: true,
-            rolled_back: rig.cloth.events.rolled_back,
+            rolled_back: specimen.cloth.events.rolled_back,
             solved: None,
         }
     }
 
-    /// A figure that no rig has given.
+    /// What is read off a specimen at rest, and off the oracle's equilibrium too in the converged setting.
+    pub fn at_rest(specimen: &Specimen, setup: CaseSetup<'_>, read: impl Fn(&Placement<'_>) -> f64) -> Self {
+        let solved = if setup.level == Level::Converged { specimen.solved().map(|seen| read(&seen)) } else { None };
+        Self { solved, ..Self::of(specimen, read(&specimen.seen())) }
+    }
+
+    /// A figure that no specimen has given.
     pub fn none(got: f64) -> Self {
         Self { got, step_us: 0.0, substeps: 0, bend_kept: 1.0, settled: true, rolled_back: 0, solved: None }
     }
@@ -51,10 +57,10 @@ impl Outcome {
 }
 
 /// How a case is run at a level.
-pub type Run = Box<dyn Fn(How<'_>) -> Result<Outcome, RigError> + Send + Sync>;
+pub type RunCase = Box<dyn Fn(CaseSetup<'_>) -> Result<CaseOutcome, SpecimenError> + Send + Sync>;
 
 /// Something with an exact answer.
-pub struct Case {
+pub struct ValidationCase {
     /// Its name; what `toile validate CASE` takes.
     pub name: &'static str,
     /// Which one of the name it is.
@@ -69,15 +75,15 @@ pub struct Case {
     pub expected: f64,
     /// What an error is a part of, where it is not the exact value: of a value of 0 nothing is a part.
     pub scale: Option<f64>,
-    /// Largest error (%) at the quality `fine`; none where the row only tells.
+    /// Largest error (%) at the quality `fine`; none where the row is only reported.
     pub target: Option<f64>,
     /// Runs it.
-    pub run: Run,
+    pub run: RunCase,
 }
 
 /// One line of the table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
+pub struct ValidationRow {
     /// The case.
     pub name: &'static str,
     /// Which one of it.
@@ -112,18 +118,18 @@ pub struct Row {
     pub cause: Option<String>,
 }
 
-impl Case {
+impl ValidationCase {
     /// Runs the case at some levels by some means, and at the converged one, which the others are held against, by the processor;
-    /// tells a row of each that is asked for.
+    /// a row of each that is asked for.
     ///
     /// # Errors
     /// Where the case's own mesh or colliders are refused.
-    pub fn rows(&self, levels: &[Level], by: &Means) -> Result<Vec<Row>, RigError> {
-        let converged = (self.run)(How { level: Level::Converged, by: &Means::cpu() })?;
+    pub fn rows(&self, levels: &[Level], by: &Means) -> Result<Vec<ValidationRow>, SpecimenError> {
+        let converged = (self.run)(CaseSetup { level: Level::Converged, means: &Means::cpu() })?;
         let on_cpu = by.asked() == Backend::Cpu;
         let run = |level: &Level| {
             let known = on_cpu && *level == Level::Converged;
-            let found = if known { converged } else { (self.run)(How { level: *level, by })? };
+            let found = if known { converged } else { (self.run)(CaseSetup { level: *level, means: by })? };
             Ok(self.row(*level, &found, &converged))
         };
         levels.iter().map(run).collect()
@@ -133,14 +139,14 @@ impl Case {
         (from - to) / self.scale.unwrap_or(self.expected).abs() * 100.0
     }
 
-    fn row(&self, level: Level, found: &Outcome, converged: &Outcome) -> Row {
+    fn row(&self, level: Level, found: &CaseOutcome, converged: &CaseOutcome) -> ValidationRow {
         let error = self.percent(found.got, self.expected);
         // Without the oracle the converged setting stands for the truth; it cannot be held against itself.
         let stands_in = (level != Level::Converged).then_some(converged.got);
         let truth = converged.solved.or(stands_in);
         let target = self.target.filter(|_| level == Level::GATED);
         let pass = target.map(|most| error.abs() <= most && found.rolled_back == 0);
-        let mut row = Row {
+        let mut row = ValidationRow {
             name: self.name,
             parameter: self.parameter.clone(),
             quality: level.name(),
@@ -167,7 +173,7 @@ impl Case {
 }
 
 /// Why a row fails, from what its run has left behind.
-fn cause(found: &Outcome, row: &Row) -> String {
+fn cause(found: &CaseOutcome, row: &ValidationRow) -> String {
     if found.rolled_back > 0 {
         return format!("{} steps were rolled back by the guard", found.rolled_back);
     }
@@ -183,12 +189,12 @@ fn cause(found: &Outcome, row: &Row) -> String {
             format!("solver: {solver:+.1} % from what the same mesh converges to at {} substeps", found.substeps)
         }
         (Some(_), Some(model)) => format!("mesh: it converges to {model:+.1} % of what is exact"),
-        _ => "not told apart".into(),
+        _ => "of unknown cause".into(),
     }
 }
 
 /// What is known to lie behind a miss, whatever its figures.
-fn known(row: &Row) -> Option<&'static str> {
+fn known(row: &ValidationRow) -> Option<&'static str> {
     match (row.name, row.mesh) {
         ("capstan", _) => Some("contact and fibers are solved in turn: a heavy load on a light rope slips early"),
         ("euler", _) => Some(

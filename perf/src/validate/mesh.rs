@@ -10,10 +10,11 @@ use toile_assets::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
 use toile_assets::garment::shape::{NO_VERTEX, Part};
 use toile_assets::garment::{Face, Shape};
 use toile_assets::mesh::SkinWeights;
+use toile_assets::numeric::random::SplitMix64;
 
 /// How a strip is meshed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Style {
+pub enum MeshStyle {
     /// Quads in rows and columns.
     Grid,
     /// The same points, triangles with diagonals that alternate.
@@ -25,7 +26,7 @@ pub enum Style {
     UnstructuredRaw,
 }
 
-impl Style {
+impl MeshStyle {
     /// Those that every case of several meshes is run on.
     pub const ALL: [Self; 3] = [Self::Grid, Self::Alternating, Self::Unstructured];
 
@@ -47,7 +48,7 @@ impl Style {
 
 /// How an end of a strip is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Hold {
+pub enum EndSupport {
     /// Not at all.
     Free,
     /// In its place, at any angle: one fixed row.
@@ -68,15 +69,15 @@ pub struct Strip {
     /// Links across.
     pub columns: usize,
     /// How it is meshed.
-    pub style: Style,
+    pub style: MeshStyle,
     /// How its first row and its last row are held.
-    pub ends: [Hold; 2],
+    pub ends: [EndSupport; 2],
 }
 
 impl Strip {
     /// A grid two particles wide with as square cells as that gives: all that a case in a plane needs.
-    pub fn narrow(length: f64, rows: usize, ends: [Hold; 2]) -> Self {
-        Self { length, width: length / rows as f64, rows, columns: 1, style: Style::Grid, ends }
+    pub fn narrow(length: f64, rows: usize, ends: [EndSupport; 2]) -> Self {
+        Self { length, width: length / rows as f64, rows, columns: 1, style: MeshStyle::Grid, ends }
     }
 
     /// Length of a link down the warp (m).
@@ -100,14 +101,14 @@ impl Strip {
 
     /// First and last row of the mesh, rows behind the clamps counted, as numbers of links from the first that counts.
     fn span(&self) -> [i64; 2] {
-        let behind = |hold: Hold| i64::from(hold == Hold::Clamped);
+        let behind = |hold: EndSupport| i64::from(hold == EndSupport::Clamped);
         [-behind(self.ends[0]), self.rows as i64 + behind(self.ends[1])]
     }
 
     /// Whether the points at a distance along the strip are fixed.
     fn holds(&self, along: f64) -> bool {
         let near = 1e-6 * self.length;
-        (self.ends[0] != Hold::Free && along < near) || (self.ends[1] != Hold::Free && along > self.length - near)
+        (self.ends[0] != EndSupport::Free && along < near) || (self.ends[1] != EndSupport::Free && along > self.length - near)
     }
 
     fn row(&self, row: i64) -> impl Iterator<Item = DVec2> {
@@ -127,7 +128,7 @@ impl Strip {
         let (strewn, mut kept): (Vec<DVec2>, Vec<DVec2>) = all.partition(inner);
         let held = kept.len();
         self.strew(strewn.len(), &mut kept);
-        let rounds = if self.style == Style::Unstructured { RELAX } else { 0 };
+        let rounds = if self.style == MeshStyle::Unstructured { RELAX } else { 0 };
         for _ in 0..rounds {
             relax(&mut kept, held);
         }
@@ -136,19 +137,19 @@ impl Strip {
 
     /// Strews points as far from each other as can be (best candidates; Mitchell 1991).
     fn strew(&self, count: usize, points: &mut Vec<DVec2>) {
-        let mut dice = Dice(1);
+        let mut random = SplitMix64::new(1);
         let link = self.link();
         // So far from the rim at least that no triangle there is a sliver.
         let rim = 0.5 * link;
         for _ in 0..count {
-            let throw = |dice: &mut Dice| {
-                let along = rim + (self.length - 2.0 * rim) * dice.roll();
-                DVec2::new(along, (self.width - 2.0 * rim) * (dice.roll() - 0.5))
+            let throw = |random: &mut SplitMix64| {
+                let along = rim + (self.length - 2.0 * rim) * random.uniform_f64();
+                DVec2::new(along, (self.width - 2.0 * rim) * (random.uniform_f64() - 0.5))
             };
             let room = |p: DVec2| points.iter().map(|q| p.distance_squared(*q)).fold(f64::MAX, f64::min);
             let mut best = (0.0, DVec2::ZERO);
             for _ in 0..CANDIDATES {
-                let p = throw(&mut dice);
+                let p = throw(&mut random);
                 let found = room(p);
                 if found > best.0 {
                     best = (found, p);
@@ -169,7 +170,7 @@ impl Strip {
             let at = |r: u32, c: u32| r * across + c;
             [at(r + 1, c), at(r + 1, c + 1), at(r, c + 1), at(r, c)]
         };
-        if self.style == Style::Grid {
+        if self.style == MeshStyle::Grid {
             return cells.map(quad).collect();
         }
         let halves = |cell: (u32, u32)| {
@@ -208,20 +209,6 @@ fn relax(points: &mut [DVec2], held: usize) {
 /// Candidates of which the best becomes a point.
 const CANDIDATES: usize = 60;
 
-/// The seeded generator SplitMix64 (Steele et al. 2014), uniform in 0 .. 1.
-pub struct Dice(pub u64);
-
-impl Dice {
-    /// The next number.
-    pub fn roll(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
 /// Delaunay triangles, counter-clockwise seen from the front of the cut.
 fn delaunay(points: &[DVec2]) -> Vec<Face> {
     let flat: Vec<Point> = points.iter().map(|p| Point { x: p.y, y: -p.x }).collect();
@@ -241,7 +228,7 @@ fn delaunay(points: &[DVec2]) -> Vec<Face> {
 
 /// A fabric made for a case.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cloth {
+pub struct CaseFabric {
     /// Mass per area (kg/m2).
     pub density: f64,
     /// Tensile stiffness along warp and weft (N/m).
@@ -258,7 +245,7 @@ pub struct Cloth {
     pub friction: f64,
 }
 
-impl Cloth {
+impl CaseFabric {
     /// The median of the measured fabrics in weight, as stiff in tension and shear as a cotton lawn; it does not bend.
     pub const PLAIN: Self =
         Self { density: 0.2, stretch: 6_000.0, shear: 60.0, bend: 0.0, bias: None, damping: 0.0, friction: 0.3 };

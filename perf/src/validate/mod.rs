@@ -8,19 +8,19 @@ pub mod case;
 mod cases;
 pub mod exact;
 pub mod mesh;
-pub mod rig;
 pub mod run;
+pub mod specimen;
 
 use toile_engine::cloth::Quality;
 use toile_gpu::stepper::Means;
 
 /// How a case is run: the engine's settings, and what steps it.
 #[derive(Debug, Clone, Copy)]
-pub struct How<'a> {
+pub struct CaseSetup<'a> {
     /// The settings.
     pub level: Level,
     /// The processor, or a graphics device.
-    pub by: &'a Means,
+    pub means: &'a Means,
 }
 
 /// How the engine is set.

@@ -8,19 +8,19 @@ use std::time::Instant;
 use serde::Serialize;
 use toile_gpu::stepper::{Backend, Means};
 
-use super::case::{Case, Row};
-use super::rig::RigError;
+use super::case::{ValidationCase, ValidationRow};
+use super::specimen::SpecimenError;
 use super::{Level, cases};
 use crate::backend::SteppedBy;
 
 /// What is to be run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Options {
+pub struct ValidationOptions {
     /// The one name of which cases are run, or all.
     pub case: Option<String>,
     /// Of these only what has this parameter, as the table says it, or all.
     pub parameter: Option<String>,
-    /// The levels that rows are told of.
+    /// The levels that rows are reported of.
     pub levels: Vec<Level>,
     /// Threads: cases are independent of each other.
     pub threads: usize,
@@ -30,7 +30,7 @@ pub struct Options {
     pub backend: Backend,
 }
 
-impl Default for Options {
+impl Default for ValidationOptions {
     fn default() -> Self {
         let threads = std::thread::available_parallelism().map_or(1, |n| n.get().min(2));
         Self { case: None, parameter: None, levels: Level::ALL.to_vec(), threads, every: 1, backend: Backend::Cpu }
@@ -39,9 +39,9 @@ impl Default for Options {
 
 /// The table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Report {
+pub struct ValidationReport {
     /// Rows in the order of the cases.
-    pub cases: Vec<Row>,
+    pub cases: Vec<ValidationRow>,
     /// Rows with a target that was met, and all with one.
     pub passed: [usize; 2],
     /// Threads that it was run on.
@@ -52,9 +52,9 @@ pub struct Report {
     pub wall_s: f64,
 }
 
-impl Report {
+impl ValidationReport {
     /// The rows whose target was missed.
-    pub fn failed(&self) -> impl Iterator<Item = &Row> {
+    pub fn failed(&self) -> impl Iterator<Item = &ValidationRow> {
         self.cases.iter().filter(|row| row.pass == Some(false))
     }
 }
@@ -86,11 +86,11 @@ pub const NAMES: [&str; 20] = [
     "invariance",
 ];
 
-/// Runs cases; `told` hears of each that is done, and of how many.
+/// Runs cases; `progress` is called after each that is done, with how many there are.
 ///
 /// # Errors
 /// Where a case's own mesh or colliders are refused.
-pub fn run(options: &Options, told: &(impl Fn(usize) + Sync)) -> Result<Report, RigError> {
+pub fn run(options: &ValidationOptions, progress: &(impl Fn(usize) + Sync)) -> Result<ValidationReport, SpecimenError> {
     let begun = Instant::now();
     let chosen = chosen(options);
     let means = Means::open(options.backend);
@@ -105,7 +105,7 @@ pub fn run(options: &Options, told: &(impl Fn(usize) + Sync)) -> Result<Report, 
             if let Ok(mut rows) = rows.lock() {
                 rows[at] = Some(found);
             }
-            told(chosen.len());
+            progress(chosen.len());
         }
     };
     std::thread::scope(|scope| {
@@ -122,7 +122,7 @@ pub fn run(options: &Options, told: &(impl Fn(usize) + Sync)) -> Result<Report, 
         cases.extend(found?);
     }
     let passed = [true, false].map(|pass| cases.iter().filter(|row| row.pass == Some(pass)).count());
-    Ok(Report {
+    Ok(ValidationReport {
         cases,
         passed: [passed[0], passed[0] + passed[1]],
         threads: options.threads,
@@ -132,18 +132,18 @@ pub fn run(options: &Options, told: &(impl Fn(usize) + Sync)) -> Result<Report, 
 }
 
 /// All cases, made once: their exact values take seconds.
-fn all() -> &'static [Case] {
-    static ALL: OnceLock<Vec<Case>> = OnceLock::new();
+fn all() -> &'static [ValidationCase] {
+    static ALL: OnceLock<Vec<ValidationCase>> = OnceLock::new();
     ALL.get_or_init(cases::all)
 }
 
 /// The cases that are run.
-fn chosen(options: &Options) -> Vec<&'static Case> {
-    let named = |case: &Case| options.case.as_ref().is_none_or(|name| name == case.name);
-    let wanted = |case: &Case| named(case) && options.parameter.as_ref().is_none_or(|p| *p == case.parameter);
+fn chosen(options: &ValidationOptions) -> Vec<&'static ValidationCase> {
+    let named = |case: &ValidationCase| options.case.as_ref().is_none_or(|name| name == case.name);
+    let wanted = |case: &ValidationCase| named(case) && options.parameter.as_ref().is_none_or(|p| *p == case.parameter);
     let mut number = 0;
     let mut before = "";
-    let mut one_in = |case: &Case| {
+    let mut one_in = |case: &ValidationCase| {
         number = if case.name == before { number + 1 } else { 0 };
         before = case.name;
         number % options.every.max(1) == 0

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use toile_perf::pareto::{self, Drape, Options, Point, Report, SCENES, SceneReport};
+use toile_perf::pareto::{self, Drape, ParetoOptions, Point, ParetoReport, SCENES, SceneReport};
 
 use crate::cli::values::Printing;
 use crate::exit::AppError;
@@ -47,7 +47,7 @@ pub fn run(args: &ParetoArgs) -> Result<(), AppError> {
     let mut out = OutputFolder::prepare(&args.out)?;
     let bar = words.bar(UNITS as u64, "measuring");
     let told = |part: f64| bar.set_position((UNITS * part) as u64);
-    let options = Options { scene: args.scene.clone(), quick: args.quick };
+    let options = ParetoOptions { scene: args.scene.clone(), quick: args.quick };
     let report = pareto::run(&options, &told).map_err(AppError::internal)?;
     bar.finish_and_clear();
     for file in pareto::files(&report).map_err(AppError::internal)? {
@@ -62,7 +62,7 @@ pub fn run(args: &ParetoArgs) -> Result<(), AppError> {
 }
 
 /// The fronts as people read them.
-fn table(report: &Report, paint: Paint) -> String {
+fn table(report: &ParetoReport, paint: Paint) -> String {
     let mut text = String::new();
     for scene in report.scenes.iter().filter(|s| s.main) {
         fronts(&mut text, report, scene, paint);
@@ -73,7 +73,7 @@ fn table(report: &Report, paint: Paint) -> String {
     text
 }
 
-fn fronts(text: &mut String, report: &Report, scene: &SceneReport, paint: Paint) {
+fn fronts(text: &mut String, report: &ParetoReport, scene: &SceneReport, paint: Paint) {
     let title = format!("{}, {}, {} particles, one thread", scene.scene, scene.mesh, scene.particles);
     line(text, &paint.tone(&title, Tone::Strong));
     line(text, &format!("  x*: {}; itself uncertain by about {:.3} mm", scene.reference, scene.reference_gap_mm));
@@ -156,7 +156,7 @@ mod tests {
         };
         let scene = SceneReport { scene: "skirt".into(), mesh: "grid".into(), main: true, ..SceneReport::default() };
         let points = vec![point("fine", 0.25, true, false), point("shop", 9.87, false, true)];
-        let report = Report { points, scenes: vec![scene], ..Report::default() };
+        let report = ParetoReport { points, scenes: vec![scene], ..ParetoReport::default() };
         let text = table(&report, Paint::none());
         assert!(text.contains("0.250") && text.contains("mixed, fine, 4 substeps of 3 passes"), "{text}");
         assert!(text.contains("shop with 4 substeps, is not on the front: 123 us, 9.870 mm"), "{text}");

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use clap::builder::PossibleValuesParser;
 use toile_perf::validate::Level;
-use toile_perf::validate::case::Row;
-use toile_perf::validate::run::{self, NAMES, Options, Report};
+use toile_perf::validate::case::ValidationRow;
+use toile_perf::validate::run::{self, NAMES, ValidationOptions, ValidationReport};
 
 use crate::backend;
 use crate::cli::values::{BackendArg, Printing, count};
@@ -54,13 +54,13 @@ fn levels() -> Vec<&'static str> {
 
 impl ValidateArgs {
     /// What is run.
-    fn options(&self) -> Options {
+    fn options(&self) -> ValidationOptions {
         let wanted = |level: &Level| self.quality == ALL_LEVELS || level.name() == self.quality;
-        Options {
+        ValidationOptions {
             case: self.case.clone(),
             parameter: self.parameter.clone(),
             levels: Level::ALL.into_iter().filter(wanted).collect(),
-            threads: self.threads.unwrap_or(Options::default().threads),
+            threads: self.threads.unwrap_or(ValidationOptions::default().threads),
             every: self.every,
             backend: self.backend.choice,
         }
@@ -97,7 +97,7 @@ pub fn run(args: &ValidateArgs) -> Result<(), AppError> {
 }
 
 /// The table as people read it.
-fn table(report: &Report, paint: Paint) -> String {
+fn table(report: &ValidationReport, paint: Paint) -> String {
     let mut text = String::new();
     let head = format!(
         "{:11} {:24} {:12} {:>5} {:9} {:>4} {:>10} {:>10} {:9} {:>9} {:>9} {:>9}  {}",
@@ -124,7 +124,7 @@ fn table(report: &Report, paint: Paint) -> String {
     text
 }
 
-fn told(row: &Row, paint: Paint) -> String {
+fn told(row: &ValidationRow, paint: Paint) -> String {
     let solver = row.solver_error.map_or_else(|| "-".into(), percent);
     let verdict = match (row.pass, &row.cause) {
         (None, _) => "".into(),
@@ -137,7 +137,7 @@ fn told(row: &Row, paint: Paint) -> String {
                 .into()
         }
     };
-    let Row { name, parameter, mesh, resolution, quality, substeps, unit, step_us, .. } = row;
+    let ValidationRow { name, parameter, mesh, resolution, quality, substeps, unit, step_us, .. } = row;
     let [expected, got] = [row.expected, row.got].map(figure);
     let error = percent(row.error_percent);
     format!(
@@ -191,8 +191,8 @@ mod tests {
         assert!(parsed("validate cantilevr").is_err() && parsed("validate --quality best").is_err());
     }
 
-    fn row() -> Row {
-        Row {
+    fn row() -> ValidationRow {
+        ValidationRow {
             name: "cantilever",
             parameter: "Gamma 10".into(),
             quality: "fine",
@@ -218,14 +218,14 @@ mod tests {
         for part in ["cantilever", "Gamma 10", "1.067", "1.167", "+9.37", "-0.50", "84.2", "MISSED, 5.0 %", "coarse"] {
             assert!(text.contains(part), "{part} is not in {text}");
         }
-        let told_only = Row { pass: None, cause: None, solver_error: None, ..row() };
+        let told_only = ValidationRow { pass: None, cause: None, solver_error: None, ..row() };
         assert!(told(&told_only, Paint::none()).ends_with("84.2"));
     }
 
     #[test]
     fn a_missed_target_is_a_failed_threshold() {
         let report =
-            Report { cases: vec![row()], passed: [0, 1], threads: 2, stepped_by: Default::default(), wall_s: 3.0 };
+            ValidationReport { cases: vec![row()], passed: [0, 1], threads: 2, stepped_by: Default::default(), wall_s: 3.0 };
         assert!(table(&report, Paint::none()).contains("0 of 1 targets met, 3 s on 2 thread(s)"));
         assert_eq!(report.failed().count(), 1);
     }

@@ -1,7 +1,7 @@
 //! The JSON of `toile bench gestures`.
 
 use serde::Serialize;
-use toile_perf::gestures::{Act, Conditions, Count, GestureStudy, GripRow};
+use toile_perf::gestures::{Act, GestureConditions, GestureCount, GestureStudy, GripRow};
 
 /// The body of `toile bench gestures`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -90,7 +90,7 @@ impl GesturesReport {
     }
 }
 
-fn gesture((act, c, count): &(Act, Conditions, Count)) -> GestureRow {
+fn gesture((act, c, count): &(Act, GestureConditions, GestureCount)) -> GestureRow {
     GestureRow {
         gesture: act.name(),
         distance_m: c.distance,
@@ -102,7 +102,7 @@ fn gesture((act, c, count): &(Act, Conditions, Count)) -> GestureRow {
     }
 }
 
-fn other((act, count): &(Act, Count)) -> OtherRow {
+fn other((act, count): &(Act, GestureCount)) -> OtherRow {
     OtherRow {
         act: act.name(),
         minutes: count.seconds / 60.0,

@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 use toile_engine::skin::Blend;
-use toile_fitting::scene::yardstick;
-use toile_perf::skinning::table::Row;
+use toile_perf::skinning::table::SkinningRow;
 use toile_perf::skinning::{Skinning, Timing};
 
 /// The body of `toile bench skinning`.
@@ -23,7 +22,7 @@ pub struct SkinningReport {
     pub yardstick_verts: usize,
     /// What was skinned, its lanes, and the figures of both blends.
     #[serde(flatten)]
-    pub found: Row,
+    pub found: SkinningRow,
 }
 
 impl SkinningReport {

@@ -10,7 +10,8 @@
 use glam::DVec3;
 
 use super::super::problem::Problem;
-use super::super::solids::{Surface, outer};
+use super::super::solids::{SolidSurface, outer};
+use super::super::solution::Touch;
 use super::super::system::System;
 
 /// All pairs of particle and solid.
@@ -18,26 +19,15 @@ use super::super::system::System;
 pub struct Contact<'a> {
     problem: &'a Problem,
     /// The solids.
-    pub surfaces: Vec<Surface>,
+    pub surfaces: Vec<SolidSurface>,
     rho: f64,
     /// Force of the round before (N) `[particles][solids]`.
     pub multiplier: Vec<f64>,
 }
 
-/// A particle that is pressed against a solid.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touch {
-    /// The particle.
-    pub particle: usize,
-    /// The solid, cones first.
-    pub solid: usize,
-    /// Force along the normal (N).
-    pub force_n: f64,
-}
-
 impl<'a> Contact<'a> {
     /// Contact with multipliers that start at `multiplier`, or at 0 where they are of another length.
-    pub fn new(problem: &'a Problem, surfaces: Vec<Surface>, rho: f64, multiplier: Vec<f64>) -> Self {
+    pub fn new(problem: &'a Problem, surfaces: Vec<SolidSurface>, rho: f64, multiplier: Vec<f64>) -> Self {
         let pairs = problem.particles() * surfaces.len();
         let multiplier = if multiplier.len() == pairs { multiplier } else { vec![0.0; pairs] };
         Self { problem, surfaces, rho, multiplier }
@@ -45,7 +35,7 @@ impl<'a> Contact<'a> {
 
     /// Whether a particle can meet a solid at all.
     fn meets(&self, particle: usize, solid: usize) -> bool {
-        let open = self.problem.reach.is_empty() || solid >= 32 || matches!(self.surfaces[solid], Surface::Plane(_));
+        let open = self.problem.reach.is_empty() || solid >= 32 || matches!(self.surfaces[solid], SolidSurface::Plane(_));
         !self.problem.pinned(particle) && (open || self.problem.reach[particle] >> solid & 1 == 1)
     }
 

@@ -7,13 +7,13 @@
 
 use glam::{DMat3, DVec3};
 
-use super::super::solids::{Surface, outer};
+use super::super::solids::{SolidSurface, outer};
+use super::super::solution::Touch;
 use super::super::system::System;
-use super::contact::Touch;
 
 /// One contact as the round before left it.
 #[derive(Debug, Clone, Copy)]
-struct Grip {
+struct StickyContact {
     particle: usize,
     solid: usize,
     normal: DVec3,
@@ -33,17 +33,17 @@ pub struct Friction<'a> {
     /// Particles at the start of the step (m).
     pub start: &'a [DVec3],
     /// The solids at the start and the end of the step.
-    pub surfaces: [Vec<Surface>; 2],
-    grips: Vec<Grip>,
+    pub surfaces: [Vec<SolidSurface>; 2],
+    grips: Vec<StickyContact>,
 }
 
 impl<'a> Friction<'a> {
     /// No contact has been seen yet.
-    pub fn new(coefficient: f64, slack_m: f64, start: &'a [DVec3], surfaces: [Vec<Surface>; 2]) -> Self {
+    pub fn new(coefficient: f64, slack_m: f64, start: &'a [DVec3], surfaces: [Vec<SolidSurface>; 2]) -> Self {
         Self { coefficient, slack_m, start, surfaces, grips: Vec::new() }
     }
 
-    fn slip(grip: &Grip, x: &[DVec3]) -> DVec3 {
+    fn slip(grip: &StickyContact, x: &[DVec3]) -> DVec3 {
         let moved = x[grip.particle] - grip.anchor;
         moved - grip.normal * grip.normal.dot(moved)
     }
@@ -88,7 +88,7 @@ impl<'a> Friction<'a> {
             let sight = self.surfaces[1][t.solid].sight(x[t.particle]);
             let carried = self.surfaces[1][t.solid].carried(&self.surfaces[0][t.solid], &sight);
             let anchor = self.start[t.particle] + carried;
-            Grip {
+            StickyContact {
                 particle: t.particle,
                 solid: t.solid,
                 normal: sight.normal,
@@ -96,7 +96,7 @@ impl<'a> Friction<'a> {
                 anchor,
             }
         };
-        let next: Vec<Grip> = touches.iter().map(grip).collect();
+        let next: Vec<StickyContact> = touches.iter().map(grip).collect();
         let change = largest_change(&self.grips, &next);
         self.grips = next;
         change
@@ -104,9 +104,9 @@ impl<'a> Friction<'a> {
 }
 
 /// Both lists are in order of particle and solid.
-fn largest_change(old: &[Grip], new: &[Grip]) -> f64 {
-    let key = |g: &Grip| (g.particle, g.solid);
-    let find = |all: &[Grip], g: &Grip| {
+fn largest_change(old: &[StickyContact], new: &[StickyContact]) -> f64 {
+    let key = |g: &StickyContact| (g.particle, g.solid);
+    let find = |all: &[StickyContact], g: &StickyContact| {
         all.binary_search_by_key(&key(g), key).ok().map_or(DVec3::ZERO, |k| all[k].normal * all[k].most)
     };
     let changes = new.iter().map(|g| (g.normal * g.most - find(old, g)).length());

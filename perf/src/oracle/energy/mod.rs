@@ -13,6 +13,7 @@ pub mod load;
 use glam::{DMat3, DVec3};
 
 use super::problem::Problem;
+use super::solution::Violation;
 use super::system::System;
 use contact::Contact;
 use friction::Friction;
@@ -21,7 +22,7 @@ use load::Load;
 
 /// The sum of all.
 #[derive(Debug)]
-pub struct Landscape<'a> {
+pub struct TotalEnergy<'a> {
     /// What is solved.
     pub problem: &'a Problem,
     /// Weight or inertia.
@@ -34,20 +35,7 @@ pub struct Landscape<'a> {
     pub friction: Option<Friction<'a>>,
 }
 
-/// How far a state is from what the multipliers are to bring about.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Violation {
-    /// Strain by which a stiff link is off the length that its tension asks for (1).
-    pub strain: f64,
-    /// Deepest penetration (m).
-    pub penetration_m: f64,
-    /// Widest gap across which a contact force acts (m).
-    pub gap_m: f64,
-    /// Change of a friction force's limit since the round before (N).
-    pub friction_n: f64,
-}
-
-impl Landscape<'_> {
+impl TotalEnergy<'_> {
     /// Energy (J), with what multipliers add.
     pub fn value(&self, x: &[DVec3]) -> f64 {
         let friction = self.friction.as_ref().map_or(0.0, |f| f.value(x));

@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use super::super::energy::Landscape;
+use super::super::energy::TotalEnergy;
 use super::super::energy::contact::Contact;
 use super::super::energy::friction::Friction;
 use super::super::energy::links::Springs;
 use super::super::energy::load::Load;
-use super::super::solids::Surface;
+use super::super::solids::SolidSurface;
 use super::super::system::System;
 use super::{Ball, Plane, Problem, Random, Solids, State, furniture, square};
 
@@ -21,14 +21,14 @@ fn crumpled(problem: &Problem, random: &mut Random) -> Vec<DVec3> {
 }
 
 /// All energies at once, with multipliers that are not 0.
-fn landscape<'a>(problem: &'a Problem, start: &'a [DVec3], random: &mut Random, load: Load) -> Landscape<'a> {
+fn landscape<'a>(problem: &'a Problem, start: &'a [DVec3], random: &mut Random, load: Load) -> TotalEnergy<'a> {
     let multiplier = problem.links.iter().map(|_| 0.05 * random.unit()).collect();
     let surfaces = furniture().shapes();
     let pressure = (0..problem.particles() * surfaces.len()).map(|_| 1e-3 * random.unit().max(0.0)).collect();
     let contact = Contact::new(problem, surfaces.clone(), 50.0, pressure);
     let mut friction = Friction::new(0.4, 2e-3, start, [surfaces.clone(), surfaces]);
     friction.update(start, &contact.touches(start));
-    Landscape {
+    TotalEnergy {
         problem,
         load,
         springs: Springs::new(&problem.links, 200.0, multiplier),
@@ -62,7 +62,7 @@ fn direction(problem: &Problem, random: &mut Random) -> Vec<DVec3> {
 fn gradients_are_the_differences_of_values() {
     let problem = square(6);
     for load in [inertia, weight] {
-        let mut random = Random(1);
+        let mut random = Random::new(1);
         let start = crumpled(&problem, &mut random);
         let x = crumpled(&problem, &mut random);
         let sum = landscape(&problem, &start, &mut random, load(&problem));
@@ -81,7 +81,7 @@ fn the_exact_hessian_is_the_difference_of_gradients() {
     let problem = square(6);
     let mut system = System::new(&problem);
     for load in [inertia, weight] {
-        let mut random = Random(2);
+        let mut random = Random::new(2);
         let start = crumpled(&problem, &mut random);
         let x = crumpled(&problem, &mut random);
         let sum = landscape(&problem, &start, &mut random, load(&problem));
@@ -104,7 +104,7 @@ fn the_exact_hessian_is_the_difference_of_gradients() {
 #[test]
 fn the_projected_hessian_is_positive_and_above_the_exact_one() {
     let problem = square(6);
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     let start = crumpled(&problem, &mut random);
     let x: Vec<DVec3> = problem.start.iter().map(|p| *p * 0.8 + random.vector() * 1e-3).collect();
     let sum = landscape(&problem, &start, &mut random, weight(&problem));
@@ -122,7 +122,7 @@ fn the_projected_hessian_is_positive_and_above_the_exact_one() {
 #[test]
 fn the_factors_solve_the_system() {
     let problem = square(7);
-    let mut random = Random(4);
+    let mut random = Random::new(4);
     let start = crumpled(&problem, &mut random);
     let sum = landscape(&problem, &start, &mut random, inertia(&problem));
     let mut system = System::new(&problem);
@@ -148,7 +148,7 @@ fn slow_distance([a, b]: [Ball; 2], p: DVec3) -> f64 {
 
 #[test]
 fn distances_are_those_to_the_hull_with_their_derivatives() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for _ in 0..300 {
         let mut ball = || Ball { centre: random.vector() * 0.3, radius: 0.05 + 0.04 * random.unit() };
         let cone = [ball(), ball()];
@@ -186,7 +186,7 @@ fn surfaces_carry_what_lies_on_them() {
         Solids { cones: vec![ends], planes: vec![Plane { normal: DVec3::Y, offset_m: 0.0 }] }.shapes()
     };
     let p = DVec3::new(0.1, 0.051, 0.0);
-    let carried = |before: &[Surface], now: &[Surface]| now[0].carried(&before[0], &now[0].sight(p));
+    let carried = |before: &[SolidSurface], now: &[SolidSurface]| now[0].carried(&before[0], &now[0].sight(p));
     let moved = carried(&cone(DVec3::ZERO, 0.0), &cone(DVec3::new(1e-3, 2e-3, 3e-3), 0.0));
     assert!((moved - DVec3::new(1e-3, 2e-3, 3e-3)).length() < 1e-12);
     let turned = carried(&cone(DVec3::ZERO, -1e-4), &cone(DVec3::ZERO, 0.0));

@@ -5,11 +5,11 @@
 use glam::DVec3;
 use toile_assets::garment::Shape;
 
-use crate::validate::How;
-use crate::validate::case::{Case, Outcome};
+use crate::validate::CaseSetup;
+use crate::validate::case::{ValidationCase, CaseOutcome};
 use crate::validate::exact::elastica;
-use crate::validate::mesh::{Cloth, Hold, Strip, Style};
-use crate::validate::rig::{G, Rig, RigError, Scenery};
+use crate::validate::mesh::{CaseFabric, EndSupport, Strip, MeshStyle};
+use crate::validate::specimen::{G, Specimen, SpecimenError, Surroundings};
 
 /// Length of the strips (m): a sleeve's.
 pub const LENGTH: f64 = 0.3;
@@ -48,8 +48,8 @@ pub struct Cantilever {
 
 impl Cantilever {
     /// One of the cantilevers of the table.
-    pub fn new(style: Style, rows: usize, gamma: f64) -> Self {
-        let ends = [Hold::Clamped, Hold::Free];
+    pub fn new(style: MeshStyle, rows: usize, gamma: f64) -> Self {
+        let ends = [EndSupport::Clamped, EndSupport::Free];
         Self { strip: Strip { length: LENGTH, width: WIDTH, rows, columns: rows / 3, style, ends }, gamma, load: 0.0 }
     }
 
@@ -67,9 +67,9 @@ impl Cantilever {
     }
 
     /// Its cloth.
-    pub fn cloth(&self) -> Cloth {
-        let weight = Cloth::PLAIN.density * G;
-        Cloth { bend: weight * LENGTH.powi(3) / self.gamma, damping: DAMPING, ..Cloth::PLAIN }
+    pub fn cloth(&self) -> CaseFabric {
+        let weight = CaseFabric::PLAIN.density * G;
+        CaseFabric { bend: weight * LENGTH.powi(3) / self.gamma, damping: DAMPING, ..CaseFabric::PLAIN }
     }
 
     fn tip(&self, shape: &Shape) -> Vec<usize> {
@@ -78,32 +78,32 @@ impl Cantilever {
     }
 
     /// Lets it come to rest and reads a figure off its tip (m from the clamp).
-    fn hang(&self, how: How<'_>, read: impl Fn(DVec3) -> f64) -> Result<Outcome, RigError> {
+    fn hang(&self, setup: CaseSetup<'_>, read: impl Fn(DVec3) -> f64) -> Result<CaseOutcome, SpecimenError> {
         let shape = self.shape();
-        let mut rig = Rig::new(&shape, &self.cloth(), how, &Scenery::default())?;
-        let settled = rig.rest(REST_S);
+        let mut specimen = Specimen::new(&shape, &self.cloth(), setup, &Surroundings::default())?;
+        let settled = specimen.rest(REST_S);
         let tip = self.tip(&shape);
-        Ok(rig.told(how, |seen| read(seen.mean(tip.iter().copied()))).settled(settled))
+        Ok(CaseOutcome::at_rest(&specimen, setup, |seen| read(seen.mean(tip.iter().copied()))).settled(settled))
     }
 }
 
 /// The cases of this room.
-pub fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<ValidationCase> {
     let mut all = Vec::new();
-    for style in Style::ALL {
+    for style in MeshStyle::ALL {
         for rows in ROWS {
             all.extend(GAMMAS.map(|gamma| cantilever(Cantilever::new(style, rows, gamma))));
         }
     }
-    all.extend(RAW_GAMMAS.map(|gamma| cantilever(Cantilever::new(Style::UnstructuredRaw, ROWS[0], gamma))));
+    all.extend(RAW_GAMMAS.map(|gamma| cantilever(Cantilever::new(MeshStyle::UnstructuredRaw, ROWS[0], gamma))));
     all.push(peirce());
     all.extend([0.5, 1.0, 2.0, 5.0, 10.0].map(tip_loaded));
     all
 }
 
-fn cantilever(c: Cantilever) -> Case {
-    let run = move |how: How<'_>| c.hang(how, |tip| -tip.y / tip.x);
-    Case {
+fn cantilever(c: Cantilever) -> ValidationCase {
+    let run = move |setup: CaseSetup<'_>| c.hang(setup, |tip| -tip.y / tip.x);
+    ValidationCase {
         name: "cantilever",
         parameter: format!("Gamma {}", c.gamma),
         mesh: c.strip.style.name(),
@@ -124,12 +124,12 @@ const SECANTS: usize = 3;
 
 /// The length at which the chord hangs at 41.5 degrees, in bending lengths c = (B/w)^(1/3), by the secant method over
 /// Gamma = (L/c)^3 from two lengths around the exact one.
-fn peirce() -> Case {
+fn peirce() -> ValidationCase {
     let exact = elastica::overhang(PEIRCE);
-    let run = move |how: How<'_>| {
+    let run = move |setup: CaseSetup<'_>| {
         let angle = |length: f64| {
-            let c = Cantilever::new(Style::Grid, ROWS[0], length.powi(3));
-            c.hang(how, |tip| (-tip.y / tip.x).atan() - PEIRCE)
+            let c = Cantilever::new(MeshStyle::Grid, ROWS[0], length.powi(3));
+            c.hang(setup, |tip| (-tip.y / tip.x).atan() - PEIRCE)
         };
         let (mut a, mut b) = (0.95 * exact, 1.05 * exact);
         let (mut at_a, mut at_b) = (angle(a)?, angle(b)?);
@@ -146,12 +146,12 @@ fn peirce() -> Case {
         // Where the oracle's chord crosses, by the slope between the last two.
         let slope = (at_b.got - at_a.got) / (b - a);
         let solved = at_b.solved.map(|off| b - off / slope);
-        Ok(Outcome { got: b, solved, ..at_b })
+        Ok(CaseOutcome { got: b, solved, ..at_b })
     };
-    Case {
+    ValidationCase {
         name: "peirce",
         parameter: "chord 41.5 deg".into(),
-        mesh: Style::Grid.name(),
+        mesh: MeshStyle::Grid.name(),
         resolution: ROWS[0],
         unit: "L/c",
         expected: exact,
@@ -165,14 +165,14 @@ fn peirce() -> Case {
 /// the rest weighs is part of the exact value.
 const TIP_LOAD: f64 = 2.0;
 
-fn tip_loaded(p: f64) -> Case {
-    let ends = [Hold::Clamped, Hold::Free];
+fn tip_loaded(p: f64) -> ValidationCase {
+    let ends = [EndSupport::Clamped, EndSupport::Free];
     let c = Cantilever { strip: Strip::narrow(LENGTH, ROWS[0], ends), gamma: p / TIP_LOAD, load: TIP_LOAD };
-    let run = move |how: How<'_>| c.hang(how, |tip| -tip.y / LENGTH);
-    Case {
+    let run = move |setup: CaseSetup<'_>| c.hang(setup, |tip| -tip.y / LENGTH);
+    ValidationCase {
         name: "elastica",
         parameter: format!("P L^2/B {p}"),
-        mesh: Style::Grid.name(),
+        mesh: MeshStyle::Grid.name(),
         resolution: ROWS[0],
         unit: "drop/L",
         expected: elastica::tip(c.gamma, p).drop,

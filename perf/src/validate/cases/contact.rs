@@ -5,19 +5,19 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec4};
 use toile_assets::garment::Shape;
 
-use crate::validate::How;
-use crate::validate::case::{Case, Outcome};
+use crate::validate::CaseSetup;
+use crate::validate::case::{ValidationCase, CaseOutcome};
 use crate::validate::exact::string;
-use crate::validate::mesh::{Cloth, Hold, Strip, Style};
-use crate::validate::rig::{G, Rig, RigError, Scenery};
+use crate::validate::mesh::{CaseFabric, EndSupport, Strip, MeshStyle};
+use crate::validate::specimen::{G, Specimen, SpecimenError, Surroundings};
 
-use super::trial::threshold;
+use super::search::threshold;
 
 /// The gap that cloth keeps from a surface (m), as the cases' fabric has it.
 const GAP: f64 = 1e-3;
 
 /// The cases of this room.
-pub fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<ValidationCase> {
     let mut all = Vec::new();
     for load in ROPE_LOADS {
         all.extend([0.3, 0.6].map(|mu| capstan(mu, load)));
@@ -45,13 +45,13 @@ const ROPE_LOADS: [f64; 2] = [4.0, 20.0];
 const ROPE_WATCH: (f64, f64) = (1.5, 0.02);
 
 /// A rope over half a turn of a post with a load at each end: the ratio of the two pulls at which it slips.
-fn capstan(mu: f64, load: f64) -> Case {
+fn capstan(mu: f64, load: f64) -> ValidationCase {
     let exact = string::capstan_heavy(mu, POST / rope_length() / load);
-    let run = move |how: How<'_>| threshold([1.0, exact * exact], |ratio| rope(how, mu, [load, load * ratio]));
-    Case {
+    let run = move |setup: CaseSetup<'_>| threshold([1.0, exact * exact], |ratio| rope(setup, mu, [load, load * ratio]));
+    ValidationCase {
         name: "capstan",
         parameter: format!("mu {mu}, load {load}"),
-        mesh: Style::Grid.name(),
+        mesh: MeshStyle::Grid.name(),
         resolution: ROPE_ROWS,
         unit: "T2/T1",
         expected: exact,
@@ -65,9 +65,9 @@ fn rope_length() -> f64 {
     PI * POST + 2.0 * HANGING
 }
 
-fn rope(how: How<'_>, mu: f64, pulls: [f64; 2]) -> Result<(Outcome, bool), RigError> {
+fn rope(setup: CaseSetup<'_>, mu: f64, pulls: [f64; 2]) -> Result<(CaseOutcome, bool), SpecimenError> {
     let around = PI * POST;
-    let strip = Strip::narrow(rope_length(), ROPE_ROWS, [Hold::Free, Hold::Free]);
+    let strip = Strip::narrow(rope_length(), ROPE_ROWS, [EndSupport::Free, EndSupport::Free]);
     let worn = |along: f64, across: f64| {
         let s = along - HANGING;
         if s < 0.0 {
@@ -90,14 +90,14 @@ fn rope(how: How<'_>, mu: f64, pulls: [f64; 2]) -> Result<(Outcome, bool), RigEr
     for (end, pull) in ends.iter().zip(pulls) {
         end.iter().for_each(|&v| shape.heavier[v] = ((pull - hanging) / half) as f32);
     }
-    let cloth = Cloth { friction: mu, damping: 5.0, stretch: 1e5, ..Cloth::PLAIN };
-    let scenery =
-        Scenery { capsule: Some([DVec3::NEG_Z * 0.2, DVec3::Z * 0.2]), radius: POST - GAP, ..Scenery::default() };
-    let mut rig = Rig::new(&shape, &cloth, how, &scenery)?;
-    let before = rig.mean(ends[1].iter().copied()).y;
-    rig.run(ROPE_WATCH.0);
-    let slipped = before - rig.mean(ends[1].iter().copied()).y > ROPE_WATCH.1;
-    Ok((Outcome::of(&rig, pulls[1] / pulls[0]), slipped))
+    let cloth = CaseFabric { friction: mu, damping: 5.0, stretch: 1e5, ..CaseFabric::PLAIN };
+    let surroundings =
+        Surroundings { capsule: Some([DVec3::NEG_Z * 0.2, DVec3::Z * 0.2]), radius: POST - GAP, ..Surroundings::default() };
+    let mut specimen = Specimen::new(&shape, &cloth, setup, &surroundings)?;
+    let before = specimen.mean(ends[1].iter().copied()).y;
+    specimen.run(ROPE_WATCH.0);
+    let slipped = before - specimen.mean(ends[1].iter().copied()).y > ROPE_WATCH.1;
+    Ok((CaseOutcome::of(&specimen, pulls[1] / pulls[0]), slipped))
 }
 
 /// Side of the patch (m) and its links.
@@ -105,14 +105,14 @@ const PATCH: (f64, usize) = (0.05, 5);
 
 /// A patch that lies on a plane through the origin which falls along +x at an angle (rad), at its gap; x is where its
 /// middle is along the slope.
-fn patch(angle: f64, x: f64) -> (Shape, Scenery) {
+fn patch(angle: f64, x: f64) -> (Shape, Surroundings) {
     let (side, links) = PATCH;
-    let strip = Strip { width: side, columns: links, ..Strip::narrow(side, links, [Hold::Free, Hold::Free]) };
+    let strip = Strip { width: side, columns: links, ..Strip::narrow(side, links, [EndSupport::Free, EndSupport::Free]) };
     let (sin, cos) = angle.sin_cos();
     let (down, up) = (DVec3::new(cos, -sin, 0.0), DVec3::new(sin, cos, 0.0));
     let shape = strip.shape(|along, across| down * (x + along - 0.5 * side) + up * GAP + DVec3::Z * across);
     let plane = Vec4::new(sin as f32, cos as f32, 0.0, 0.0);
-    (shape, Scenery { planes: vec![plane], ..Scenery::default() })
+    (shape, Surroundings { planes: vec![plane], ..Surroundings::default() })
 }
 
 /// How long the patch is watched (s) and how far it must slide (m).
@@ -121,24 +121,24 @@ const SLIDE: (f64, f64) = (1.0, 0.005);
 /// Target of the slope's angle (degrees).
 const SLOPE_DEGREES: f64 = 2.0;
 
-fn incline(mu: f64) -> Case {
+fn incline(mu: f64) -> ValidationCase {
     let exact = mu.atan().to_degrees();
-    let run = move |how: How<'_>| {
+    let run = move |setup: CaseSetup<'_>| {
         threshold([0.3 * exact, (3.0 * exact).min(85.0)], |degrees| {
-            let (shape, scenery) = patch(degrees.to_radians(), 0.0);
-            let cloth = Cloth { friction: mu, ..Cloth::PLAIN };
-            let mut rig = Rig::new(&shape, &cloth, how, &scenery)?;
-            let vertices = rig.vertices();
-            let before = rig.mean(0..vertices);
-            rig.run(SLIDE.0);
-            let slid = rig.mean(0..vertices).distance(before) > SLIDE.1;
-            Ok((Outcome::of(&rig, degrees), slid))
+            let (shape, surroundings) = patch(degrees.to_radians(), 0.0);
+            let cloth = CaseFabric { friction: mu, ..CaseFabric::PLAIN };
+            let mut specimen = Specimen::new(&shape, &cloth, setup, &surroundings)?;
+            let vertices = specimen.vertices();
+            let before = specimen.mean(0..vertices);
+            specimen.run(SLIDE.0);
+            let slid = specimen.mean(0..vertices).distance(before) > SLIDE.1;
+            Ok((CaseOutcome::of(&specimen, degrees), slid))
         })
     };
-    Case {
+    ValidationCase {
         name: "incline",
         parameter: format!("mu {mu}"),
-        mesh: Style::Grid.name(),
+        mesh: MeshStyle::Grid.name(),
         resolution: PATCH.1,
         unit: "deg",
         expected: exact,
@@ -149,20 +149,20 @@ fn incline(mu: f64) -> Case {
 }
 
 /// A patch that is thrown along the floor: v^2 / 2 mu g.
-fn stopping(speed: f64, mu: f64) -> Case {
-    let run = move |how: How<'_>| {
-        let (shape, scenery) = patch(0.0, 0.0);
-        let cloth = Cloth { friction: mu, ..Cloth::PLAIN };
-        let mut rig = Rig::new(&shape, &cloth, how, &scenery)?;
-        let vertices = rig.vertices();
-        (0..vertices).for_each(|v| rig.put(v, rig.at(v), DVec3::X * speed));
-        let settled = rig.rest(2.0 * speed / (mu * G) + 1.0);
-        Ok(Outcome::of(&rig, rig.mean(0..vertices).x).settled(settled))
+fn stopping(speed: f64, mu: f64) -> ValidationCase {
+    let run = move |setup: CaseSetup<'_>| {
+        let (shape, surroundings) = patch(0.0, 0.0);
+        let cloth = CaseFabric { friction: mu, ..CaseFabric::PLAIN };
+        let mut specimen = Specimen::new(&shape, &cloth, setup, &surroundings)?;
+        let vertices = specimen.vertices();
+        (0..vertices).for_each(|v| specimen.put(v, specimen.at(v), DVec3::X * speed));
+        let settled = specimen.rest(2.0 * speed / (mu * G) + 1.0);
+        Ok(CaseOutcome::of(&specimen, specimen.mean(0..vertices).x).settled(settled))
     };
-    Case {
+    ValidationCase {
         name: "stopping",
         parameter: format!("{speed} m/s, mu {mu}"),
-        mesh: Style::Grid.name(),
+        mesh: MeshStyle::Grid.name(),
         resolution: PATCH.1,
         unit: "m",
         expected: speed * speed / (2.0 * mu * G),

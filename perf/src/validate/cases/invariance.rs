@@ -4,11 +4,12 @@
 use glam::DQuat;
 use toile_assets::garment::Shape;
 use toile_assets::garment::shape::NO_VERTEX;
+use toile_assets::numeric::random::SplitMix64;
 
-use crate::validate::How;
-use crate::validate::case::{Case, Outcome};
-use crate::validate::mesh::{Cloth, Dice, Style};
-use crate::validate::rig::{Rig, RigError, Scenery};
+use crate::validate::CaseSetup;
+use crate::validate::case::{ValidationCase, CaseOutcome};
+use crate::validate::mesh::{CaseFabric, MeshStyle};
+use crate::validate::specimen::{Specimen, SpecimenError, Surroundings};
 
 use super::bending::{Cantilever, REST_S};
 
@@ -44,17 +45,17 @@ impl Change {
 }
 
 /// The cases of this room.
-pub fn cases() -> Vec<Case> {
-    Style::ALL.into_iter().flat_map(|style| Change::ALL.map(|change| case(style, change))).collect()
+pub fn cases() -> Vec<ValidationCase> {
+    MeshStyle::ALL.into_iter().flat_map(|style| Change::ALL.map(|change| case(style, change))).collect()
 }
 
-fn case(style: Style, change: Change) -> Case {
-    let run = move |how: How<'_>| {
-        let (_, plain) = hung(style, None, how)?;
-        let (rig, changed) = hung(style, Some(change), how)?;
-        Ok(Outcome::of(&rig, changed / plain))
+fn case(style: MeshStyle, change: Change) -> ValidationCase {
+    let run = move |setup: CaseSetup<'_>| {
+        let (_, plain) = hung(style, None, setup)?;
+        let (specimen, changed) = hung(style, Some(change), setup)?;
+        Ok(CaseOutcome::of(&specimen, changed / plain))
     };
-    Case {
+    ValidationCase {
         name: "invariance",
         parameter: change.name().into(),
         mesh: style.name(),
@@ -67,17 +68,17 @@ fn case(style: Style, change: Change) -> Case {
     }
 }
 
-/// The rig at rest, and how far its tip has come down (m).
-fn hung(style: Style, change: Option<Change>, how: How<'_>) -> Result<(Rig, f64), RigError> {
+/// The specimen at rest, and how far its tip has come down (m).
+fn hung(style: MeshStyle, change: Option<Change>, setup: CaseSetup<'_>) -> Result<(Specimen, f64), SpecimenError> {
     let c = Cantilever::new(style, ROWS, GAMMA);
     let (mut shape, mut cloth) = (c.shape(), c.cloth());
     // By place, so that the numbers may change.
     let mut tip: Vec<bool> = shape.worn.iter().map(|p| p.x > (c.strip.length - 1e-5) as f32).collect();
     match change {
         Some(Change::Scaled) => {
-            let Cloth { density, stretch, shear, bend, .. } = cloth;
+            let CaseFabric { density, stretch, shear, bend, .. } = cloth;
             let [density, stretch, shear, bend] = [density, stretch, shear, bend].map(|x| 3.0 * x);
-            cloth = Cloth { density, stretch, shear, bend, ..cloth };
+            cloth = CaseFabric { density, stretch, shear, bend, ..cloth };
         }
         Some(Change::Renumbered) => tip = renumber(&mut shape, &tip),
         Some(Change::Turned) => {
@@ -87,21 +88,21 @@ fn hung(style: Style, change: Option<Change>, how: How<'_>) -> Result<(Rig, f64)
         Some(Change::Mirrored) => mirror(&mut shape),
         Some(Change::HalfStep) | None => {}
     }
-    let mut rig = Rig::new(&shape, &cloth, how, &Scenery::default())?;
+    let mut specimen = Specimen::new(&shape, &cloth, setup, &Surroundings::default())?;
     if change == Some(Change::HalfStep) {
-        rig.settings.step_seconds *= 0.5;
+        specimen.settings.step_seconds *= 0.5;
     }
-    rig.rest(REST_S);
-    let drop = -rig.mean((0..tip.len()).filter(|v| tip[*v])).y;
-    Ok((rig, drop))
+    specimen.rest(REST_S);
+    let drop = -specimen.mean((0..tip.len()).filter(|v| tip[*v])).y;
+    Ok((specimen, drop))
 }
 
 /// Shuffles the vertices and the faces; gives the tip by its new numbers.
 fn renumber(shape: &mut Shape, tip: &[bool]) -> Vec<bool> {
-    let mut dice = Dice(7);
+    let mut random = SplitMix64::new(7);
     let count = shape.cut.len();
     let mut old: Vec<usize> = (0..count).collect();
-    (1..count).rev().for_each(|i| old.swap(i, (dice.roll() * (i + 1) as f64) as usize));
+    (1..count).rev().for_each(|i| old.swap(i, (random.uniform_f64() * (i + 1) as f64) as usize));
     let mut new = vec![0u32; count];
     old.iter().enumerate().for_each(|(i, o)| new[*o] = i as u32);
     fn moved<T: Copy>(of: &[T], old: &[usize]) -> Vec<T> {
@@ -115,7 +116,7 @@ fn renumber(shape: &mut Shape, tip: &[bool]) -> Vec<bool> {
     let corner = |v: u32| if v == NO_VERTEX { v } else { new[v as usize] };
     shape.faces = shape.faces.iter().map(|f| f.map(corner)).collect();
     let faces = shape.faces.len();
-    (1..faces).rev().for_each(|i| shape.faces.swap(i, (dice.roll() * (i + 1) as f64) as usize));
+    (1..faces).rev().for_each(|i| shape.faces.swap(i, (random.uniform_f64() * (i + 1) as f64) as usize));
     moved(tip, &old)
 }
 

@@ -9,13 +9,13 @@ mod buckling;
 mod contact;
 mod invariance;
 mod motion;
+mod search;
 mod strings;
-mod trial;
 
-use super::case::Case;
+use super::case::ValidationCase;
 
 /// All cases.
-pub fn all() -> Vec<Case> {
+pub fn all() -> Vec<ValidationCase> {
     let rooms = [bending::cases, buckling::cases, strings::cases, motion::cases, contact::cases, invariance::cases];
     rooms.into_iter().flat_map(|cases| cases()).collect()
 }

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use crate::validate::How;
-use crate::validate::case::Case;
+use crate::validate::CaseSetup;
+use crate::validate::case::ValidationCase;
 use crate::validate::exact::string;
-use crate::validate::mesh::{Cloth, Hold, Strip, Style};
-use crate::validate::rig::{G, Rig, Scenery, Seen};
+use crate::validate::mesh::{CaseFabric, EndSupport, Strip, MeshStyle};
+use crate::validate::specimen::{G, Specimen, Surroundings, Placement};
 
 /// Links along them.
 const ROWS: usize = 32;
@@ -21,10 +21,10 @@ const REST_S: f64 = 6.0;
 const SHEAR: f64 = 1.0;
 
 /// That of a woven cloth (N/m).
-const CLOTH: f64 = Cloth::PLAIN.shear;
+const CLOTH: f64 = CaseFabric::PLAIN.shear;
 
 /// The cases of this room.
-pub fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<ValidationCase> {
     let mut all = Vec::new();
     for stretch in [60.0, 600.0, 6_000.0] {
         all.extend([Hung::Tip, Hung::Top].map(|what| strip(stretch, SHEAR, what)));
@@ -48,24 +48,24 @@ const TALL: usize = 3;
 
 /// A sheet that is held along both upright sides sags by w L^2 / 8G in its middle, by shear alone: its upright threads
 /// only sink, its level ones turn.
-fn shear(stiffness: f64) -> Case {
-    let (rows, held) = (16, [Hold::Pinned, Hold::Pinned]);
+fn shear(stiffness: f64) -> ValidationCase {
+    let (rows, held) = (16, [EndSupport::Pinned, EndSupport::Pinned]);
     let tall = TALL as f64 * SHEET;
     let strip = Strip { width: tall, columns: TALL * rows, ..Strip::narrow(SHEET, rows, held) };
-    let cloth = Cloth { shear: stiffness, damping: DAMPING, ..Cloth::PLAIN };
-    let run = move |how: How<'_>| {
+    let cloth = CaseFabric { shear: stiffness, damping: DAMPING, ..CaseFabric::PLAIN };
+    let run = move |setup: CaseSetup<'_>| {
         let shape = strip.shape(|along, across| DVec3::new(along, across, 0.0));
-        let mut rig = Rig::new(&shape, &cloth, how, &Scenery::default())?;
-        let settled = rig.rest(REST_S);
+        let mut specimen = Specimen::new(&shape, &cloth, setup, &Surroundings::default())?;
+        let settled = specimen.rest(REST_S);
         let at = |v: usize, axis: usize, middle: f64| (f64::from(shape.worn[v][axis]) - middle).abs() < 1e-4;
-        let middle = || (0..rig.vertices()).filter(|&v| at(v, 0, 0.5 * SHEET) && at(v, 1, 0.0));
+        let middle = || (0..specimen.vertices()).filter(|&v| at(v, 0, 0.5 * SHEET) && at(v, 1, 0.0));
         let before = middle().map(|v| f64::from(shape.worn[v].y)).sum::<f64>() / middle().count().max(1) as f64;
-        Ok(rig.told(how, |seen| before - seen.mean(middle()).y).settled(settled))
+        Ok(CaseOutcome::at_rest(&specimen, setup, |seen| before - seen.mean(middle()).y).settled(settled))
     };
-    Case {
+    ValidationCase {
         name: "shear-sag",
         parameter: format!("G {stiffness} N/m"),
-        mesh: Style::Grid.name(),
+        mesh: MeshStyle::Grid.name(),
         resolution: rows,
         unit: "m",
         expected: cloth.density * G * SHEET * SHEET / (8.0 * stiffness),
@@ -89,28 +89,28 @@ enum Hung {
     Top,
 }
 
-fn strip(stretch: f64, shear: f64, what: Hung) -> Case {
-    let strip = Strip::narrow(1.0, ROWS, [Hold::Pinned, Hold::Free]);
-    let cloth = Cloth { stretch, shear, damping: DAMPING, ..Cloth::PLAIN };
-    let run = move |how: How<'_>| {
+fn strip(stretch: f64, shear: f64, what: Hung) -> ValidationCase {
+    let strip = Strip::narrow(1.0, ROWS, [EndSupport::Pinned, EndSupport::Free]);
+    let cloth = CaseFabric { stretch, shear, damping: DAMPING, ..CaseFabric::PLAIN };
+    let run = move |setup: CaseSetup<'_>| {
         let shape = strip.shape(|along, across| DVec3::new(across, -along, 0.0));
-        let mut rig = Rig::new(&shape, &cloth, how, &Scenery::default())?;
-        let settled = rig.rest(REST_S);
-        let tip = || (0..rig.vertices()).filter(|v| shape.cut[*v].y < -1.0 + 1e-4);
-        let read = |seen: &Seen<'_>| match what {
+        let mut specimen = Specimen::new(&shape, &cloth, setup, &Surroundings::default())?;
+        let settled = specimen.rest(REST_S);
+        let tip = || (0..specimen.vertices()).filter(|v| shape.cut[*v].y < -1.0 + 1e-4);
+        let read = |seen: &Placement<'_>| match what {
             Hung::Tip => -seen.mean(tip()).y - 1.0,
-            Hung::Top => -seen.force_on_fixed(|_| true).y / (rig.mass() * G),
+            Hung::Top => -seen.force_on_fixed(|_| true).y / (specimen.mass() * G),
         };
-        Ok(rig.told(how, read).settled(settled))
+        Ok(CaseOutcome::at_rest(&specimen, setup, read).settled(settled))
     };
     let [name, unit] = match what {
         Hung::Tip => ["strip", "m"],
         Hung::Top => ["top-force", "T/weight"],
     };
-    Case {
+    ValidationCase {
         name,
         parameter: format!("E {stretch} N/m{}", sheared(shear)),
-        mesh: Style::Grid.name(),
+        mesh: MeshStyle::Grid.name(),
         resolution: ROWS,
         unit,
         expected: if what == Hung::Tip { cloth.density * G / (2.0 * stretch) } else { 1.0 },
@@ -128,29 +128,29 @@ enum Slung {
 }
 
 /// A strip between two points a metre apart, let go from a V.
-fn catenary(length: f64, shear: f64, what: Slung) -> Case {
-    let strip = Strip::narrow(length, ROWS, [Hold::Pinned, Hold::Pinned]);
-    let cloth = Cloth { stretch: 3e4, shear, damping: DAMPING, ..Cloth::PLAIN };
-    let run = move |how: How<'_>| {
+fn catenary(length: f64, shear: f64, what: Slung) -> ValidationCase {
+    let strip = Strip::narrow(length, ROWS, [EndSupport::Pinned, EndSupport::Pinned]);
+    let cloth = CaseFabric { stretch: 3e4, shear, damping: DAMPING, ..CaseFabric::PLAIN };
+    let run = move |setup: CaseSetup<'_>| {
         let depth = (0.25 * length * length - 0.25).sqrt();
         let shape = strip.shape(|along, across| {
             let part = along / length;
             DVec3::new(part - 0.5, -depth * (1.0 - (2.0 * part - 1.0).abs()), across)
         });
-        let mut rig = Rig::new(&shape, &cloth, how, &Scenery::default())?;
-        let settled = rig.rest(REST_S);
+        let mut specimen = Specimen::new(&shape, &cloth, setup, &Surroundings::default())?;
+        let settled = specimen.rest(REST_S);
         let weight = cloth.density * G * strip.width * length;
-        let read = |seen: &Seen<'_>| match what {
+        let read = |seen: &Placement<'_>| match what {
             Slung::Sag => -seen.lowest(),
             Slung::Tension => seen.force_on_fixed(|p| p.x < 0.0).x / weight,
         };
-        Ok(rig.told(how, read).settled(settled))
+        Ok(CaseOutcome::at_rest(&specimen, setup, read).settled(settled))
     };
     let exact = string::catenary(length);
-    Case {
+    ValidationCase {
         name: "catenary",
         parameter: format!("length {length}, {}{}", if what == Slung::Sag { "sag" } else { "pull" }, sheared(shear)),
-        mesh: Style::Grid.name(),
+        mesh: MeshStyle::Grid.name(),
         resolution: ROWS,
         unit: if what == Slung::Sag { "spans" } else { "T0/weight" },
         expected: if what == Slung::Sag { exact.sag } else { exact.tension },

@@ -7,6 +7,8 @@
 //! add Gamma/2 int N_xx w_x^2 + 2 N_xy w_x w_y + N_yy w_y^2. It gives way where the sum is no longer positive definite,
 //! which Cholesky's factorisation tells.
 
+use toile_assets::numeric::linear::{self, Pivot};
+
 use super::bisect;
 
 /// Powers of x and of y; with one more each the result moves by less than a thousandth.
@@ -67,22 +69,9 @@ fn derivatives(i: usize, j: usize, x: f64, y: f64, b: f64) -> [f64; 5] {
 
 /// Whether stiff + gamma load is positive definite.
 fn positive(stiff: &Matrix, load: &Matrix, gamma: f64) -> bool {
-    let mut l = vec![[0.0f64; N]; N];
-    for i in 0..N {
-        for j in 0..=i {
-            let done: f64 = (0..j).map(|k| l[i][k] * l[j][k]).sum();
-            let left = stiff[i][j] + gamma * load[i][j] - done;
-            if i == j {
-                if left <= 0.0 {
-                    return false;
-                }
-                l[i][i] = left.sqrt();
-            } else {
-                l[i][j] = left / l[j][j];
-            }
-        }
-    }
-    true
+    let mut sum = stiff.clone();
+    sum.iter_mut().flatten().zip(load.iter().flatten()).for_each(|(s, l)| *s += gamma * l);
+    linear::factor(&mut sum, Pivot::Positive).is_some()
 }
 
 /// Points and weights of Gauss-Legendre quadrature on -1 .. 1: roots of the Legendre polynomial by Newton's method.

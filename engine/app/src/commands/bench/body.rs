@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use serde::Serialize;
-use toile_perf::ansur::{self, Errors, Study, Survey};
+use toile_perf::ansur::{self, MeasureErrors, BodyStudy, Survey};
 
 use crate::cli::values::{Printing, count};
 use crate::exit::AppError;
@@ -44,12 +44,12 @@ struct Report {
     /// The seed by which people were drawn.
     seed: u64,
     /// One study a file.
-    studies: Vec<Study>,
+    studies: Vec<BodyStudy>,
 }
 
 /// Runs `toile bench body`.
 ///
-/// # Errors
+/// # MeasureErrors
 /// [`AppError::Input`] for a file that is no survey; [`AppError::Threshold`] where a limit was missed, after the table.
 pub fn run(args: &BodyBenchArgs) -> Result<(), AppError> {
     let words = args.printing.words();
@@ -78,7 +78,7 @@ pub fn run(args: &BodyBenchArgs) -> Result<(), AppError> {
 }
 
 /// One study as people read it.
-fn table(study: &Study, paint: Paint) -> String {
+fn table(study: &BodyStudy, paint: Paint) -> String {
     let mut text = String::new();
     let title = format!("{} of {} {} of the survey", study.drawn, study.of, study.people);
     let _ = writeln!(text, "{}", paint.tone(&title, Tone::Strong));
@@ -115,7 +115,7 @@ fn table(study: &Study, paint: Paint) -> String {
     text
 }
 
-fn told(row: &Errors, paint: Paint) -> String {
+fn told(row: &MeasureErrors, paint: Paint) -> String {
     let within = row.within.map_or_else(|| "-".into(), |w| format!("{:.1} %", w * 100.0));
     let limit = row.limit_mm.map_or_else(|| "follows".into(), |l| format!("{l:.0}"));
     let line = format!(

@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use clap::value_parser;
-use toile_perf::gestures::{Act, Conditions, Count, GestureStudy, held_up, sequence};
+use toile_perf::gestures::{Act, GestureConditions, GestureCount, GestureStudy, held_up, sequence};
 use toile_track::gesture::{Gestures, HandSegmenter};
 
 use crate::exit::AppError;
@@ -63,11 +63,11 @@ pub fn run(args: &GesturesArgs) -> Result<(), AppError> {
 fn summary(study: &GestureStudy) -> String {
     let mut text = String::new();
     for act in Act::GESTURES {
-        let own = study.gestures.iter().filter(|(a, c, _)| *a == act && *c == Conditions::default());
-        let all = own.fold(Count::default(), |sum, (_, _, count)| sum.and(*count));
+        let own = study.gestures.iter().filter(|(a, c, _)| *a == act && *c == GestureConditions::default());
+        let all = own.fold(GestureCount::default(), |sum, (_, _, count)| sum.and(*count));
         text.push_str(&format!("{:12} {:4.1} % missed at 2 m and 30 Hz\n", act.name(), 100.0 * all.miss_rate()));
     }
-    let others = study.others.iter().fold(Count::default(), |sum, (_, count)| sum.and(*count));
+    let others = study.others.iter().fold(GestureCount::default(), |sum, (_, count)| sum.and(*count));
     let [frames, wrong, unseen] =
         study.grips.iter().fold([0, 0, 0], |s, r| [s[0] + r.frames, s[1] + r.wrong, s[2] + r.unseen]);
     let percent = 100.0 * (wrong + unseen) as f32 / frames.max(1) as f32;
@@ -78,7 +78,7 @@ fn summary(study: &GestureStudy) -> String {
 
 /// Median time of a frame of joints (us).
 fn joints_us() -> f64 {
-    let frames = sequence(Act::Talk, &Conditions::default(), 1);
+    let frames = sequence(Act::Talk, &GestureConditions::default(), 1);
     let each = frames.len().max(1) as f64;
     median(|| {
         let mut gestures = Gestures::new();

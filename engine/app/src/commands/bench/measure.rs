@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 use toile_perf::ansur::Survey;
-use toile_perf::measuring::{self, Agreement, Options, Sensor, Study};
+use toile_perf::measuring::{self, MeasuringAgreement, MeasuringOptions, Sensor, MeasuringStudy};
 
 use crate::cli::values::{Printing, count};
 use crate::exit::AppError;
@@ -73,7 +73,7 @@ struct Report {
     /// The seed by which people were drawn.
     seed: u64,
     /// One study a camera.
-    studies: Vec<Study>,
+    studies: Vec<MeasuringStudy>,
 }
 
 /// Runs `toile bench measure`.
@@ -89,7 +89,7 @@ pub fn run(args: &MeasureBenchArgs) -> Result<(), AppError> {
     for sensor in args.sensors() {
         let people: usize = surveys.iter().map(|s| args.people.min(s.people())).sum();
         let bar = words.bar(people as u64, "measuring people");
-        let options = Options { people: args.people, frames: args.frames, seed: args.seed, sensor };
+        let options = MeasuringOptions { people: args.people, frames: args.frames, seed: args.seed, sensor };
         studies.push(measuring::study(&surveys, &options, &|_| bar.inc(1)).map_err(AppError::input)?);
         bar.finish_and_clear();
     }
@@ -107,12 +107,12 @@ pub fn run(args: &MeasureBenchArgs) -> Result<(), AppError> {
 }
 
 /// Measures whose interval is not inside the limit.
-fn missed(study: &Study) -> Vec<String> {
+fn missed(study: &MeasuringStudy) -> Vec<String> {
     study.fit.iter().filter(|a| !a.pass).map(|a| format!("{} ({})", a.measure, study.sensor)).collect()
 }
 
 /// One study as people read it.
-fn table(study: &Study, paint: Paint) -> String {
+fn table(study: &MeasuringStudy, paint: Paint) -> String {
     let mut text = String::new();
     let title = format!("{}: {} people, {} frames each", study.sensor, study.people, study.frames);
     let _ = writeln!(text, "{}", paint.tone(&title, Tone::Strong));
@@ -160,7 +160,7 @@ fn table(study: &Study, paint: Paint) -> String {
     text
 }
 
-fn told(a: &Agreement, paint: Paint) -> String {
+fn told(a: &MeasuringAgreement, paint: Paint) -> String {
     let interval = format!("{:+.1} .. {:+.1}", a.interval_mm[0], a.interval_mm[1]);
     let line = format!(
         "  {:<24} {:>6} {:>6.0} {:>+7.1} {:>17} {:>7.1} {:>7.2} {:>7.1} {:>7.1} {:>5.0}%",

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use toile_engine::lanes::Width;
 use toile_engine::skin::Blend;
+use toile_perf::skinning::{self, SkinningError, SkinningOptions, SkinningSubject};
 use toile_fitting::scene::yardstick;
-use toile_perf::skinning::{self, BenchError, Options, Subject};
 
 use crate::cli::values::{count, lanes};
 use crate::exit::AppError;
@@ -57,9 +57,9 @@ pub struct SkinningArgs {
 
 impl SkinningArgs {
     /// What is measured.
-    fn options(&self) -> Options {
-        Options {
-            subject: if self.body { Subject::Body } else { Subject::Four },
+    fn options(&self) -> SkinningOptions {
+        SkinningOptions {
+            subject: if self.body { SkinningSubject::Body } else { SkinningSubject::Four },
             verts: self.verts.or((!self.body).then_some(yardstick::VERTICES)),
             threads: self.threads,
             lanes: self.lanes,
@@ -102,10 +102,10 @@ fn twist(folder: &Path, json: bool) -> Result<(), AppError> {
     terminal::print(&format!("{}\n", files[0].display()))
 }
 
-fn refused(error: BenchError) -> AppError {
+fn refused(error: SkinningError) -> AppError {
     match error {
-        BenchError::NoSuchLanes(_) | BenchError::WorkerPool(_) => AppError::Device(error.to_string()),
-        BenchError::Body(_) | BenchError::Skin(_) => AppError::internal(error),
+        SkinningError::NoSuchLanes(_) | SkinningError::WorkerPool(_) => AppError::Device(error.to_string()),
+        SkinningError::Body(_) | SkinningError::Skin(_) => AppError::internal(error),
     }
 }
 
@@ -121,19 +121,19 @@ mod tests {
         args: SkinningArgs,
     }
 
-    fn options(line: &str) -> Options {
+    fn options(line: &str) -> SkinningOptions {
         Line::try_parse_from(line.split_whitespace()).unwrap().args.options()
     }
 
     #[test]
     fn the_defaults_are_those_of_the_benchmark() {
-        assert_eq!(options("skinning"), Options::default());
+        assert_eq!(options("skinning"), SkinningOptions::default());
         assert_eq!(options("skinning --body").verts, None);
     }
 
     #[test]
     fn every_option_arrives() {
-        let expected = Options { subject: Subject::Body, verts: Some(77), threads: 2, lanes: Some(Width::Four) };
+        let expected = SkinningOptions { subject: SkinningSubject::Body, verts: Some(77), threads: 2, lanes: Some(Width::Four) };
         assert_eq!(options("skinning --verts 77 --body --threads 2 --lanes 4"), expected);
     }
 }

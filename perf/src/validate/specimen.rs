@@ -1,4 +1,4 @@
-//! A rig: one piece of cloth in the engine, stepped and read in the numbers of its shape.
+//! A specimen: one piece of cloth in the engine, stepped and read in the numbers of its shape.
 
 use std::time::Instant;
 
@@ -7,20 +7,20 @@ use thiserror::Error;
 use toile_assets::bake::bake;
 use toile_assets::garment::layout::{Bends, ENDED, Hubs};
 use toile_assets::garment::{Garment, MeshError, Shape};
+use toile_assets::numeric::statistics::median_of;
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere};
 use toile_gpu::batch::Batch;
 use toile_gpu::stepper::Stepper;
 
-use super::case::Outcome;
 use super::mesh;
-use super::{How, Level};
+use super::{CaseSetup, Level};
 use crate::oracle::{Oracle, Problem, Solids};
 
 /// Why a case cannot be run.
 #[derive(Debug, Error)]
-pub enum RigError {
+pub enum SpecimenError {
     /// A mesh that cannot be baked.
     #[error("a case's mesh cannot be baked: {0}")]
     Mesh(#[from] MeshError),
@@ -31,7 +31,7 @@ pub enum RigError {
 
 /// What a case collides with.
 #[derive(Debug, Clone, Default)]
-pub struct Scenery {
+pub struct Surroundings {
     /// Ends of one capsule and its radius (m).
     pub capsule: Option<[DVec3; 2]>,
     /// Its radius (m).
@@ -62,7 +62,7 @@ pub struct Link {
 }
 
 /// One piece of cloth in the engine.
-pub struct Rig {
+pub struct Specimen {
     /// What is stepped.
     pub garment: Garment,
     /// Its state.
@@ -76,19 +76,19 @@ pub struct Rig {
     times_ns: Vec<u64>,
 }
 
-impl Rig {
+impl Specimen {
     /// Bakes a shape and puts it where it is worn, at rest.
     ///
     /// # Errors
     /// Where the mesh or the colliders cannot be used.
-    pub fn new(shape: &Shape, cloth: &mesh::Cloth, how: How<'_>, scenery: &Scenery) -> Result<Self, RigError> {
+    pub fn new(shape: &Shape, cloth: &mesh::CaseFabric, setup: CaseSetup<'_>, surroundings: &Surroundings) -> Result<Self, SpecimenError> {
         let garment = bake("case", "one size", shape, &cloth.fabric())?;
-        let ends = scenery.capsule.unwrap_or_default();
-        let spheres = ends.map(|p| RestSphere { bone: 0, centre: p.as_vec3(), radius: scenery.radius as f32 });
+        let ends = surroundings.capsule.unwrap_or_default();
+        let spheres = ends.map(|p| RestSphere { bone: 0, centre: p.as_vec3(), radius: surroundings.radius as f32 });
         let (spheres, capsules): (&[RestSphere], &[[u8; 2]]) =
-            if scenery.capsule.is_some() { (&spheres, &[[0, 1]]) } else { (&[], &[]) };
+            if surroundings.capsule.is_some() { (&spheres, &[[0, 1]]) } else { (&[], &[]) };
         let mut colliders = Colliders::new(spheres, capsules, false)?;
-        colliders.set_planes(&scenery.planes)?;
+        colliders.set_planes(&surroundings.planes)?;
         let placed: Vec<Vec4> = spheres.iter().map(|s| s.centre.extend(s.radius)).collect();
         // Twice, so that they stand still from the first step on.
         (0..2).for_each(|_| colliders.place_spheres(&placed));
@@ -96,8 +96,8 @@ impl Rig {
         garment.source.iter().enumerate().for_each(|(i, vertex)| particle[*vertex as usize] = i);
         Ok(Self {
             cloth: Cloth::new(&garment, &colliders),
-            settings: how.level.settings(&garment),
-            stepper: how.by.stepper(),
+            settings: setup.level.settings(&garment),
+            stepper: setup.means.stepper(),
             colliders,
             palette: [Affine3A::IDENTITY; BONES],
             particle,
@@ -148,25 +148,19 @@ impl Rig {
     }
 
     /// Where everything is.
-    pub fn seen(&self) -> Seen<'_> {
+    pub fn seen(&self) -> Placement<'_> {
         let at = self.cloth.positions.iter().map(|p| p.as_dvec3()).collect();
-        Seen { garment: &self.garment, particle: &self.particle, at }
+        Placement { garment: &self.garment, particle: &self.particle, at }
     }
 
     /// Where everything would be at rest: the oracle's equilibrium of the very same garment, searched for from where the
     /// engine has brought it. Nothing where none is found.
-    pub fn solved(&self) -> Option<Seen<'_>> {
+    pub fn solved(&self) -> Option<Placement<'_>> {
         let mut problem = Problem::of(&self.garment);
         problem.gravity = self.settings.gravity.as_dvec3();
         let start: Vec<DVec3> = self.cloth.positions.iter().map(|p| p.as_dvec3()).collect();
         let solved = Oracle::new(problem).ok()?.equilibrium(&start, &Solids::default()).ok()?;
-        Some(Seen { garment: &self.garment, particle: &self.particle, at: solved.state.x })
-    }
-
-    /// What is read off it at rest, and off the oracle's equilibrium too in the converged setting.
-    pub fn told(&self, how: How<'_>, read: impl Fn(&Seen<'_>) -> f64) -> Outcome {
-        let solved = if how.level == Level::Converged { self.solved().map(|seen| read(&seen)) } else { None };
-        Outcome { solved, ..Outcome::of(self, read(&self.seen())) }
+        Some(Placement { garment: &self.garment, particle: &self.particle, at: solved.state.x })
     }
 
     /// Where a vertex of the shape is (m).
@@ -223,21 +217,19 @@ impl Rig {
 
     /// Median time of a step (us).
     pub fn step_us(&self) -> f64 {
-        let mut sorted = self.times_ns.clone();
-        sorted.sort_unstable();
-        sorted.get(sorted.len() / 2).map_or(0.0, |ns| *ns as f64 * 1e-3)
+        median_of(self.times_ns.iter().copied()).map_or(0.0, |ns| ns as f64 * 1e-3)
     }
 }
 
 /// Where the particles of a garment are, read in the numbers of its shape.
-pub struct Seen<'a> {
+pub struct Placement<'a> {
     garment: &'a Garment,
     particle: &'a [usize],
     /// Positions (m) `[particles]`.
     at: Vec<DVec3>,
 }
 
-impl Seen<'_> {
+impl Placement<'_> {
     /// Where a vertex of the shape is (m).
     pub fn at(&self, vertex: usize) -> DVec3 {
         self.at[self.particle[vertex]]

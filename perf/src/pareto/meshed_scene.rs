@@ -14,7 +14,7 @@ use super::ParetoError;
 
 /// What fibers are solved by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Choice {
+pub enum SolverChoice {
     /// All of them by Gauss-Seidel.
     GaussSeidel,
     /// Warp and weft whole, by the tridiagonal system.
@@ -25,7 +25,7 @@ pub enum Choice {
     ZeroStretch,
 }
 
-impl Choice {
+impl SolverChoice {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Mixed, Self::GaussSeidel, Self::SemiImplicit, Self::ZeroStretch];
 
@@ -53,7 +53,7 @@ impl Choice {
 
 /// What moves the pins and the colliders.
 #[derive(Debug, Clone)]
-pub enum Drive {
+pub enum SceneMotion {
     /// Nothing.
     Still,
     /// The benchmark's body.
@@ -67,7 +67,7 @@ pub const POSE_S: f64 = 0.75;
 
 /// What x* is held against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Truth {
+pub enum ReferenceKind {
     /// The oracle's equilibrium, at the end.
     Equilibrium,
     /// A run with very many substeps, in frames along the way.
@@ -76,7 +76,7 @@ pub enum Truth {
 
 /// A scene in one mesh.
 #[derive(Debug, Clone)]
-pub struct Subject {
+pub struct MeshedScene {
     /// Its name.
     pub scene: &'static str,
     /// Its mesh's name.
@@ -88,18 +88,18 @@ pub struct Subject {
     /// The fabric.
     pub fabric: Fabric,
     /// What moves.
-    pub drive: Drive,
+    pub drive: SceneMotion,
     /// The colliders before their first placement.
     pub colliders: Colliders,
     /// Time that is run (s).
     pub seconds: f64,
     /// What its x* is.
-    pub truth: Truth,
+    pub truth: ReferenceKind,
 }
 
-impl Subject {
+impl MeshedScene {
     /// The garment, its fibers solved as asked for.
-    pub fn bake(&self, choice: Choice) -> Result<Garment, ParetoError> {
+    pub fn bake(&self, choice: SolverChoice) -> Result<Garment, ParetoError> {
         let mut shape = self.shape.clone();
         shape.solver = choice.overrides(shape.solver);
         Ok(bake(self.scene, "one", &shape, &self.fabric)?)
@@ -113,15 +113,15 @@ impl Subject {
     /// Places bones and colliders where they are at a time (s).
     pub fn place(&self, time: f64, bones: &mut [Affine3A; BONES], colliders: &mut Colliders) {
         match &self.drive {
-            Drive::Still => {
+            SceneMotion::Still => {
                 let stay: Vec<Vec4> = colliders.end().to_vec();
                 colliders.place_spheres(&stay);
             }
-            Drive::Skirt(motion) => {
+            SceneMotion::Skirt(motion) => {
                 bones[0] = skirt::root(*motion, time);
                 colliders.place_spheres(&skirt::spheres(*motion, time));
             }
-            Drive::Mannequin(skeleton, goal) => {
+            SceneMotion::Mannequin(skeleton, goal) => {
                 palette(skeleton, &on_the_way(skeleton, goal, (time / POSE_S).clamp(0.0, 1.0) as f32), bones);
                 colliders.place(bones);
             }

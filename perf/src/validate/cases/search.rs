@@ -1,7 +1,7 @@
 //! Trials: searches for the value at which something gives way, and times at which something passes zero.
 
-use crate::validate::case::Outcome;
-use crate::validate::rig::RigError;
+use crate::validate::case::CaseOutcome;
+use crate::validate::specimen::SpecimenError;
 
 /// Halvings of a search: the last interval is half a per cent of a factor of ten.
 const HALVINGS: usize = 9;
@@ -13,8 +13,8 @@ const HALVINGS: usize = 9;
 /// As the trial.
 pub fn threshold(
     range: [f64; 2],
-    trial: impl Fn(f64) -> Result<(Outcome, bool), RigError>,
-) -> Result<Outcome, RigError> {
+    trial: impl Fn(f64) -> Result<(CaseOutcome, bool), SpecimenError>,
+) -> Result<CaseOutcome, SpecimenError> {
     let [mut low, mut high] = range;
     let mut last = None;
     for _ in 0..HALVINGS {
@@ -24,7 +24,7 @@ pub fn threshold(
         last = Some(outcome);
     }
     let got = (low * high).sqrt();
-    Ok(last.map_or(Outcome::none(got), |outcome| Outcome { got, ..outcome }))
+    Ok(last.map_or(CaseOutcome::none(got), |outcome| CaseOutcome { got, ..outcome }))
 }
 
 /// Times at which samples taken every `step` seconds from time 0 pass zero, between two samples along the straight line.
@@ -66,7 +66,7 @@ mod tests {
 
     #[test]
     fn a_threshold_is_found_to_half_a_per_cent() {
-        let found = threshold([1.0, 10.0], |x| Ok((Outcome::none(x), x > 3.21))).unwrap();
+        let found = threshold([1.0, 10.0], |x| Ok((CaseOutcome::none(x), x > 3.21))).unwrap();
         assert!((found.got / 3.21 - 1.0).abs() < 5e-3);
     }
 }
