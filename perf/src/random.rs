@@ -14,11 +14,6 @@ impl CaseRandom {
         Self(SplitMix64::new(hash::of_bytes(case.as_bytes()) ^ seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)))
     }
 
-    /// A number from 0 to 1, 1 excluded.
-    pub fn unit(&mut self) -> f32 {
-        self.0.uniform()
-    }
-
     /// A number of a range.
     pub fn between(&mut self, low: f32, high: f32) -> f32 {
         self.0.between(low, high)
@@ -58,7 +53,7 @@ mod tests {
     fn a_seed_of_a_case_gives_its_numbers_and_no_others() {
         let some = |case: &str, seed: u64| {
             let mut random = CaseRandom::new(case, seed);
-            [(); 8].map(|()| random.unit())
+            [(); 8].map(|()| random.between(0.0, 1.0))
         };
         assert_eq!(some("a", 1), some("a", 1));
         assert_ne!(some("a", 1), some("a", 2));

@@ -185,7 +185,8 @@ fn what_validates_on_the_processor_validates_on_the_device() {
     for (case, parameter) in VALIDATED {
         let [cpu, gpu] = [Backend::Cpu, Backend::Gpu].map(|backend| {
             let (case, parameter) = (Some(case.into()), Some(parameter.into()));
-            let options = run::ValidationOptions { case, parameter, levels: vec![Level::GATED], threads: 1, every: 1, backend };
+            let options =
+                run::ValidationOptions { case, parameter, levels: vec![Level::GATED], threads: 1, every: 1, backend };
             run::run(&options, &|_| {}).expect("the cases' own meshes can be baked")
         });
         stepped_on_the_device(&gpu.stepped_by);

@@ -120,7 +120,10 @@ fn simulated_gestures_are_recognised_and_nothing_else() {
         let c = count(act, &conditions, 60, 5000);
         assert!(c.miss_rate() <= MISSED && c.wrong <= 1, "{act:?}: {c:?}");
     }
-    let all = Act::OTHERS.map(|act| count(act, &conditions, 30, 6000)).into_iter().fold(GestureCount::default(), GestureCount::and);
+    let all = Act::OTHERS
+        .map(|act| count(act, &conditions, 30, 6000))
+        .into_iter()
+        .fold(GestureCount::default(), GestureCount::and);
     assert!(all.wrong_per_minute() <= FALSE_PER_MINUTE, "{all:?}");
 }
 

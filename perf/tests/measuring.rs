@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use toile_perf::ansur::Survey;
-use toile_perf::measuring::{MeasuringOptions, Sensor, MeasuringStudy, study};
+use toile_perf::measuring::{MeasuringOptions, MeasuringStudy, Sensor, study};
 
 /// The folder of shared data; absent data is a failure in continuous integration.
 fn folder() -> Option<PathBuf> {

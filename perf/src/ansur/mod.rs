@@ -10,6 +10,6 @@ mod survey;
 mod table;
 
 pub(crate) use study::chosen;
-pub use study::{MeasureErrors, GIVEN, QUICK_MS, Spread, BodyStudy, StudyError, TOO_ROUGH, study};
+pub use study::{BodyStudy, GIVEN, MeasureErrors, QUICK_MS, Spread, StudyError, TOO_ROUGH, study};
 pub use survey::{Survey, SurveyError};
 pub use table::table;

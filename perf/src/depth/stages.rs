@@ -8,9 +8,9 @@ use toile_sensors::depth::gaussian::Gaussian;
 use toile_sensors::depth::smooth::{EdgePreserving, plain};
 use toile_sensors::depth::{Clean, Cloud, SensorNoise};
 use toile_sensors::segment::Segmenter;
+use toile_fitting::timing::median_us;
 
 use super::truth::{GAUSSIAN_PX, DepthScene};
-use toile_fitting::timing::median_us;
 
 /// What each stage takes for one frame (us, median).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]

@@ -7,10 +7,10 @@ use toile_sensors::filter::Filter;
 use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_sensors::source::Session;
+use toile_fitting::timing;
 
 use super::motions::{self, HZ, NoisyMotion};
 use super::{RecordedFigures, FilterRow, rows};
-use toile_fitting::timing;
 
 /// The joint that is looked at: the end of the longest chain.
 const HAND: Joint = Joint::LeftHand;

@@ -8,7 +8,7 @@ use toile_assets::body::Body;
 use toile_assets::scene;
 use toile_sensors::source::{OpenOptions, Session, open};
 
-use super::{FiltersError, NAMES, FilterRow, FootSlide, feet, measure, rows};
+use super::{FilterRow, FiltersError, FootSlide, NAMES, feet, measure, rows};
 
 /// Recordings of a waving hand, in a folder of recordings.
 const WAVES: [&str; 2] =

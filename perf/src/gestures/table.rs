@@ -49,7 +49,8 @@ impl GestureStudy {
         let mut others = Vec::new();
         for act in Act::OTHERS {
             say(act.name());
-            let at = |distance| count(act, &GestureConditions { distance, ..GestureConditions::default() }, sequences, seed);
+            let at =
+                |distance| count(act, &GestureConditions { distance, ..GestureConditions::default() }, sequences, seed);
             others.push((act, DISTANCES.map(at).into_iter().fold(GestureCount::default(), GestureCount::and)));
         }
         say("hands");

@@ -13,4 +13,4 @@ mod study;
 
 pub use person::{GIVEN, JointPositions, SurveyPerson};
 pub use sensor::{Sensor, StudyCamera};
-pub use study::{MeasuringAgreement, MeasuredPerson, Following, MeasuringOptions, Estimates, MeasuringStudy, study};
+pub use study::{Estimates, Following, MeasuredPerson, MeasuringAgreement, MeasuringOptions, MeasuringStudy, study};

@@ -108,7 +108,12 @@ impl StudyCamera {
     }
 
     /// The swaying person at 30 Hz, and where their joints are in each frame.
-    pub fn frames(&self, person: &SurveyPerson, count: usize, rng: &mut SplitMix64) -> Vec<(DepthFrame, JointPositions)> {
+    pub fn frames(
+        &self,
+        person: &SurveyPerson,
+        count: usize,
+        rng: &mut SplitMix64,
+    ) -> Vec<(DepthFrame, JointPositions)> {
         let mut kinect = KinectNoise::new(rng.next_u64());
         let mut positions = Vec::new();
         let mut image = vec![0.0; self.seen.intrinsics.pixels()];

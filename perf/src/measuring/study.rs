@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 use toile_assets::body::Sex;
-use toile_assets::numeric::statistics::quantile;
 use toile_assets::numeric::random::SplitMix64;
+use toile_assets::numeric::statistics::quantile;
 use toile_assets::sizes::Population;
 use toile_assets::skeleton::Joint;
 use toile_sensors::frame::DepthFrame;
@@ -126,7 +126,11 @@ pub struct MeasuringStudy {
 ///
 /// # Errors
 /// A file that is no survey, or a person outside of all ranges.
-pub fn study(surveys: &[Survey], options: &MeasuringOptions, told: &dyn Fn(&MeasuredPerson)) -> Result<MeasuringStudy, StudyError> {
+pub fn study(
+    surveys: &[Survey],
+    options: &MeasuringOptions,
+    told: &dyn Fn(&MeasuredPerson),
+) -> Result<MeasuringStudy, StudyError> {
     let mut cases = Vec::new();
     for survey in surveys {
         let sex = survey.sex()?;
@@ -134,8 +138,8 @@ pub fn study(surveys: &[Survey], options: &MeasuringOptions, told: &dyn Fn(&Meas
         for row in crate::ansur::chosen(survey.people(), options.people, options.seed) {
             let metres = std::array::from_fn(|k| (columns[k][row] * 1e-3) as f32);
             let mut rng = SplitMix64::new(options.seed ^ ((row as u64) << 20) ^ u64::from(sex == Sex::Male));
-            let person =
-                SurveyPerson::new(sex, &metres, &mut rng).map_err(|source| StudyError::Person { line: row + 2, source })?;
+            let person = SurveyPerson::new(sex, &metres, &mut rng)
+                .map_err(|source| StudyError::Person { line: row + 2, source })?;
             let case = measured(&person, options, &mut rng);
             told(&case);
             cases.push(case);
@@ -147,8 +151,9 @@ pub fn study(surveys: &[Survey], options: &MeasuringOptions, told: &dyn Fn(&Meas
 fn measured(person: &SurveyPerson, options: &MeasuringOptions, rng: &mut SplitMix64) -> MeasuredPerson {
     let sight = StudyCamera::new(options.sensor, rng);
     let frames = sight.frames(person, options.frames, rng);
-    let alone =
-        |(f, truth): &(DepthFrame, JointPositions)| Some((point_cloud::find_people(f).people.first()?.alone(f), *truth));
+    let alone = |(f, truth): &(DepthFrame, JointPositions)| {
+        Some((point_cloud::find_people(f).people.first()?.alone(f), *truth))
+    };
     let alone: Vec<(DepthFrame, JointPositions)> = frames.iter().filter_map(alone).collect();
     let only: Vec<DepthFrame> = alone.iter().map(|a| a.0.clone()).collect();
     let frames: Vec<DepthFrame> = frames.into_iter().map(|f| f.0).collect();

@@ -32,7 +32,13 @@ pub struct Leaps {
 
 impl Leaps {
     /// The multipliers of the next round, where a leap is due: links are near, but more than `goal` off.
-    pub fn take(&mut self, landscape: &TotalEnergy<'_>, system: &mut System, x: &[DVec3], goal: f64) -> Option<Vec<f64>> {
+    pub fn take(
+        &mut self,
+        landscape: &TotalEnergy<'_>,
+        system: &mut System,
+        x: &[DVec3],
+        goal: f64,
+    ) -> Option<Vec<f64>> {
         let off = landscape.springs.strain_off(x);
         self.failed |= self.before.is_some_and(|before| off > 0.5 * before);
         let due = !self.failed && off > goal && off < NEAR;

@@ -2,14 +2,14 @@
 
 use glam::DVec3;
 
+use super::energy::TotalEnergy;
 use super::energy::contact::Contact;
 use super::energy::friction::Friction;
 use super::energy::links::Springs;
 use super::energy::load::Load;
-use super::energy::TotalEnergy;
 use super::error::OracleError;
 use super::leap::Leaps;
-use super::newton::{self, StopRule, NewtonState};
+use super::newton::{self, NewtonState, StopRule};
 use super::options::{OracleOptions, Step};
 use super::problem::{Problem, expect};
 use super::solids::Solids;

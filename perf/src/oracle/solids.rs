@@ -94,7 +94,9 @@ impl SolidSurface {
     pub fn sight(&self, p: DVec3) -> SolidDistance {
         match self {
             Self::Cone(cone) => cone.sight(p),
-            Self::Plane(plane) => SolidDistance { normal: plane.normal, curvature: DMat3::ZERO, along: 0.0, radius: 0.0 },
+            Self::Plane(plane) => {
+                SolidDistance { normal: plane.normal, curvature: DMat3::ZERO, along: 0.0, radius: 0.0 }
+            }
         }
     }
 

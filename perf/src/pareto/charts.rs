@@ -1,7 +1,7 @@
 //! The charts of a report.
 
 use super::front;
-use super::report::{Drape, Fate, Point, ParetoReport, SceneReport, Survival};
+use super::report::{Drape, Fate, ParetoReport, Point, SceneReport, Survival};
 use crate::plot::axis::Axis;
 use crate::plot::chart::{Chart, Series, SeriesStyle};
 use crate::plot::tiles::{Cell, Tiles};

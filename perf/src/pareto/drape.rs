@@ -12,9 +12,9 @@ use toile_engine::cloth::Quality;
 use toile_engine::colliders::{Colliders, RestSphere};
 
 use super::ParetoError;
+use super::meshed_scene::{MeshedScene, ReferenceKind, SceneMotion, SolverChoice};
 use super::play::{Setting, play};
 use super::report::{Drape, Sampling};
-use super::meshed_scene::{SolverChoice, SceneMotion, MeshedScene, ReferenceKind};
 
 /// Cells a side of the cloth, with the published distance to a real cloth (cm) (INRIA MIRAGES 2006).
 const SAMPLINGS: [(usize, f64); 4] = [(20, 3.01), (50, 1.42), (100, 0.90), (200, 0.82)];

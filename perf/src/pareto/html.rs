@@ -2,7 +2,7 @@
 
 use super::charts::NamedDrawing;
 use super::front;
-use super::report::{Drape, Point, ParetoReport, SceneReport};
+use super::report::{Drape, ParetoReport, Point, SceneReport};
 use crate::plot::page::{Entry, Page};
 
 const FRONT: [&str; 7] = ["front, one thread", "substeps", "iterations", "step us", "mean mm", "max mm", "strain %"];

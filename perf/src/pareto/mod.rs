@@ -13,11 +13,11 @@ mod charts;
 mod drape;
 mod front;
 mod html;
+mod meshed_scene;
 mod play;
 mod reference;
 mod report;
 mod scenes;
-mod meshed_scene;
 mod survival;
 mod sweep;
 
@@ -32,7 +32,7 @@ use toile_engine::workers::WorkerPoolError;
 
 use crate::oracle::OracleError;
 use crate::skirt::SkirtError;
-pub use report::{Drape, ReportFile, Point, ParetoReport, Sampling, SceneReport, Survival};
+pub use report::{Drape, ParetoReport, Point, ReportFile, Sampling, SceneReport, Survival};
 
 /// Why the figures cannot be taken.
 #[derive(Debug, Error)]

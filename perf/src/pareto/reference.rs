@@ -5,8 +5,8 @@ use toile_assets::garment::Garment;
 use toile_engine::cloth::Quality;
 
 use super::ParetoError;
-use super::play::{WindowStart, Setting, Trace, WINDOW, play, play_through, play_windows};
-use super::meshed_scene::{SolverChoice, MeshedScene, ReferenceKind};
+use super::meshed_scene::{MeshedScene, ReferenceKind, SolverChoice};
+use super::play::{Setting, Trace, WINDOW, WindowStart, play, play_through, play_windows};
 use crate::oracle::{Oracle, Problem, Solids};
 
 /// Substeps of the reference: beyond them a substep's motion comes near to what f32 can tell at a metre.

@@ -11,8 +11,8 @@ use toile_assets::wardrobe;
 use toile_engine::colliders::{Colliders, RestSphere};
 
 use super::ParetoError;
-use super::meshed_scene::{SceneMotion, MeshedScene, ReferenceKind};
-use crate::validate::mesh::{CaseFabric, EndSupport, Strip, MeshStyle};
+use super::meshed_scene::{MeshedScene, ReferenceKind, SceneMotion};
+use crate::validate::mesh::{CaseFabric, EndSupport, MeshStyle, Strip};
 
 /// Time of the walk that is compared (s): the legs swing once to and fro.
 const WALK_S: f64 = 1.0;

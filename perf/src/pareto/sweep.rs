@@ -4,10 +4,10 @@ use toile_assets::garment::Garment;
 use toile_engine::cloth::Quality;
 
 use super::ParetoError;
+use super::meshed_scene::{MeshedScene, SolverChoice};
 use super::play::{Setting, Trace, iterations, play};
 use super::reference::Reference;
 use super::report::{EnergyRun, Point, SceneReport};
-use super::meshed_scene::{SolverChoice, MeshedScene};
 
 /// Substeps that are tried beside a garment's own.
 const SUBSTEPS: [u32; 8] = [1, 2, 4, 6, 8, 12, 16, 32];

@@ -15,6 +15,7 @@ use std::hint::black_box;
 
 use glam::Vec3;
 use serde::Serialize;
+use toile_assets::body::BodyError;
 use toile_assets::numeric::statistics::median_of;
 use toile_engine::lanes::Width;
 use toile_engine::skin::{Blend, Padding, Posed, SkinningJob};
@@ -27,7 +28,7 @@ use toile_fitting::timing;
 pub use error::SkinningError;
 pub use oracle::SurfaceErrors;
 pub use picture::twist_picture;
-pub use shapes::{BlendDistance, BentJoint, Shapes, TwistVolume, shapes};
+pub use shapes::{BentJoint, BlendDistance, Shapes, TwistVolume, shapes};
 
 /// Rounds of a measurement: yardstick and kernels in turn, so that both see the machine as it is. An odd number.
 const ROUNDS: usize = 5;
@@ -202,7 +203,8 @@ mod tests {
     #[test]
     fn both_kernels_are_timed_at_their_errors() {
         for subject in [SkinningSubject::Four, SkinningSubject::Body] {
-            let found = measure(&SkinningOptions { subject, verts: Some(1_001), ..SkinningOptions::default() }).unwrap();
+            let found =
+                measure(&SkinningOptions { subject, verts: Some(1_001), ..SkinningOptions::default() }).unwrap();
             assert_eq!((found.verts, found.padding.vertices), (1_001, 1_001));
             assert!(found.yardstick_us > 0.0 && found.padding.lanes >= 1_001);
             for timing in [found.linear, found.dual] {

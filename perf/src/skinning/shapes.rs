@@ -118,8 +118,8 @@ fn twist(
 }
 
 /// The left forearm's segment of the skeleton.
-fn segment() -> &'static skeleton::TwistVolume {
-    skeleton::TwistVolume::towards(Joint::LeftWrist).expect("forearms are split")
+fn segment() -> &'static skeleton::Twist {
+    skeleton::Twist::towards(Joint::LeftWrist).expect("forearms are split")
 }
 
 /// Its bones, or only the first and the last.
@@ -256,7 +256,8 @@ fn hinge(body: &Body, of: &'static str, joint: Joint, bends: Vec3, degrees: f64)
     let (rest, bent) = (at(&Pose::rest(skeleton)), at(&pose));
     let near: Vec<usize> = (0..points.len()).filter(|&v| points[v].distance(rest[1]) < NEAR_M).collect();
     let solid = ClosedSurface::cut(&body.mesh.triangles, |v| points[v as usize].distance(rest[1]) < NEAR_M);
-    let mut found = BentJoint { of, degrees, volume: [0.0; 2], bulge: [0.0; 2], bulge_mm: [0.0; 2], thinnest: [0.0; 2] };
+    let mut found =
+        BentJoint { of, degrees, volume: [0.0; 2], bulge: [0.0; 2], bulge_mm: [0.0; 2], thinnest: [0.0; 2] };
     // Away from the inner side of the bend, where flesh meets flesh.
     let outwards = ((bent[1] - bent[0]).normalize() - (bent[2] - bent[1]).normalize()).normalize();
     for (k, blend) in Blend::ALL.into_iter().enumerate() {
@@ -281,8 +282,11 @@ fn apart(body: &Body) -> Result<Vec<BlendDistance>, SkinningError> {
     let (skeleton, points) = (&body.skeleton, &body.mesh.positions);
     let limb = |v: usize| !matches!(body.regions[v], Region::Torso | Region::Head);
     let whole = ClosedSurface::of(body.mesh.triangles.clone());
-    let mut found =
-        ["trunk and head", "arms and legs"].map(|of| BlendDistance { of, body_volume: [1.0; 2], ..BlendDistance::default() });
+    let mut found = ["trunk and head", "arms and legs"].map(|of| BlendDistance {
+        of,
+        body_volume: [1.0; 2],
+        ..BlendDistance::default()
+    });
     let mut counts = [0usize; 2];
     for moment in 0..MOMENTS {
         let mut bones = [Affine3A::IDENTITY; BONES];

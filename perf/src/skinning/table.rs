@@ -5,9 +5,9 @@ use std::fmt::Write;
 use serde::Serialize;
 use toile_engine::lanes::Width;
 use toile_engine::skin::Padding;
+use toile_fitting::scene::yardstick;
 
 use super::{SkinningError, SkinningOptions, Shapes, Skinning, SkinningSubject, Timing, measure, shapes};
-use toile_fitting::scene::yardstick;
 
 /// Most of the yardstick that a thread may take for as many vertices: linear, dual.
 pub const TARGETS: [f64; 2] = [0.12, 0.2];
@@ -83,9 +83,11 @@ pub fn run(told: &mut dyn FnMut(&str)) -> Result<SkinningTable, SkinningError> {
         rows.push(measure(&options)?.into());
         Ok(())
     };
-    for (subject, verts) in
-        [(SkinningSubject::Four, Some(yardstick::VERTICES)), (SkinningSubject::Body, Some(yardstick::VERTICES)), (SkinningSubject::Body, None)]
-    {
+    for (subject, verts) in [
+        (SkinningSubject::Four, Some(yardstick::VERTICES)),
+        (SkinningSubject::Body, Some(yardstick::VERTICES)),
+        (SkinningSubject::Body, None),
+    ] {
         for threads in [1, 2] {
             add(SkinningOptions { subject, verts, threads, lanes: None })?;
         }
@@ -116,7 +118,8 @@ impl SkinningTable {
             let timing = |t: &Timing| {
                 format!("{:.1}, **{:.3}**, {:.2} um | {:.1}", t.us, t.y_ratio, t.max_error_m * 1e6, t.mesh_order_us)
             };
-            let surface = if r.subject == SkinningSubject::Four { "four influences each" } else { "the body's own weights" };
+            let surface =
+                if r.subject == SkinningSubject::Four { "four influences each" } else { "the body's own weights" };
             put(
                 text,
                 &format!(

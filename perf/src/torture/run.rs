@@ -68,7 +68,8 @@ fn of_seeds(case: &TortureCase, pieces: &Pieces, seeds: Range<u64>) -> Vec<SeedO
     let work = || {
         // Relaxed: who takes which seed orders nothing else; the results are handed over by the lock.
         while let Some(&seed) = seeds.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let outcome = SeedOutcome::of(case.name, seed, (case.run)(pieces, &mut CaseRandom::new(case.name, seed), seed));
+            let outcome =
+                SeedOutcome::of(case.name, seed, (case.run)(pieces, &mut CaseRandom::new(case.name, seed), seed));
             let place = (seed - seeds[0]) as usize;
             if let Ok(mut done) = done.lock() {
                 done[place] = Some(outcome);

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use toile_gpu::stepper::{Backend, Means};
 
-use super::specimen::{Specimen, SpecimenError, Placement};
+use super::specimen::{Placement, Specimen, SpecimenError};
 use super::{CaseSetup, Level};
 
 /// What one run gave.

@@ -108,7 +108,8 @@ impl Strip {
     /// Whether the points at a distance along the strip are fixed.
     fn holds(&self, along: f64) -> bool {
         let near = 1e-6 * self.length;
-        (self.ends[0] != EndSupport::Free && along < near) || (self.ends[1] != EndSupport::Free && along > self.length - near)
+        (self.ends[0] != EndSupport::Free && along < near)
+            || (self.ends[1] != EndSupport::Free && along > self.length - near)
     }
 
     fn row(&self, row: i64) -> impl Iterator<Item = DVec2> {

@@ -81,7 +81,12 @@ impl Specimen {
     ///
     /// # Errors
     /// Where the mesh or the colliders cannot be used.
-    pub fn new(shape: &Shape, cloth: &mesh::CaseFabric, setup: CaseSetup<'_>, surroundings: &Surroundings) -> Result<Self, SpecimenError> {
+    pub fn new(
+        shape: &Shape,
+        cloth: &mesh::CaseFabric,
+        setup: CaseSetup<'_>,
+        surroundings: &Surroundings,
+    ) -> Result<Self, SpecimenError> {
         let garment = bake("case", "one size", shape, &cloth.fabric())?;
         let ends = surroundings.capsule.unwrap_or_default();
         let spheres = ends.map(|p| RestSphere { bone: 0, centre: p.as_vec3(), radius: surroundings.radius as f32 });

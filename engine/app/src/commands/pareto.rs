@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use toile_perf::pareto::{self, Drape, ParetoOptions, Point, ParetoReport, SCENES, SceneReport};
+use toile_perf::pareto::{self, Drape, ParetoOptions, ParetoReport, Point, SCENES, SceneReport};
 
 use crate::cli::values::Printing;
 use crate::exit::AppError;

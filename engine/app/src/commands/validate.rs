@@ -224,8 +224,13 @@ mod tests {
 
     #[test]
     fn a_missed_target_is_a_failed_threshold() {
-        let report =
-            ValidationReport { cases: vec![row()], passed: [0, 1], threads: 2, stepped_by: Default::default(), wall_s: 3.0 };
+        let report = ValidationReport {
+            cases: vec![row()],
+            passed: [0, 1],
+            threads: 2,
+            stepped_by: Default::default(),
+            wall_s: 3.0,
+        };
         assert!(table(&report, Paint::none()).contains("0 of 1 targets met, 3 s on 2 thread(s)"));
         assert_eq!(report.failed().count(), 1);
     }

@@ -35,7 +35,8 @@ impl<'a> Contact<'a> {
 
     /// Whether a particle can meet a solid at all.
     fn meets(&self, particle: usize, solid: usize) -> bool {
-        let open = self.problem.reach.is_empty() || solid >= 32 || matches!(self.surfaces[solid], SolidSurface::Plane(_));
+        let open =
+            self.problem.reach.is_empty() || solid >= 32 || matches!(self.surfaces[solid], SolidSurface::Plane(_));
         !self.problem.pinned(particle) && (open || self.problem.reach[particle] >> solid & 1 == 1)
     }
 

@@ -6,9 +6,9 @@ use glam::DVec3;
 use toile_assets::garment::Shape;
 
 use crate::validate::CaseSetup;
-use crate::validate::case::{ValidationCase, CaseOutcome};
+use crate::validate::case::{CaseOutcome, ValidationCase};
 use crate::validate::exact::elastica;
-use crate::validate::mesh::{CaseFabric, EndSupport, Strip, MeshStyle};
+use crate::validate::mesh::{CaseFabric, EndSupport, MeshStyle, Strip};
 use crate::validate::specimen::{G, Specimen, SpecimenError, Surroundings};
 
 /// Length of the strips (m): a sleeve's.

@@ -9,10 +9,10 @@ use glam::DVec3;
 use toile_assets::garment::Shape;
 
 use crate::validate::CaseSetup;
-use crate::validate::case::{ValidationCase, CaseOutcome};
+use crate::validate::case::{CaseOutcome, ValidationCase};
 use crate::validate::exact::column::{self, Ends};
 use crate::validate::exact::plate;
-use crate::validate::mesh::{CaseFabric, EndSupport, Strip, MeshStyle};
+use crate::validate::mesh::{CaseFabric, EndSupport, MeshStyle, Strip};
 use crate::validate::specimen::{G, Specimen, SpecimenError, Surroundings};
 
 use super::bending::LENGTH;
@@ -104,7 +104,9 @@ fn greenhill() -> ValidationCase {
         expected: exact,
         scale: None,
         target: Some(10.0),
-        run: Box::new(move |setup: CaseSetup<'_>| threshold(RANGE.map(|r| r * exact), |gamma| upright(setup, gamma, 0.0))),
+        run: Box::new(move |setup: CaseSetup<'_>| {
+            threshold(RANGE.map(|r| r * exact), |gamma| upright(setup, gamma, 0.0))
+        }),
     }
 }
 
@@ -176,14 +178,17 @@ fn lateral(width: f64) -> ValidationCase {
         expected: exact,
         scale: None,
         target: Some(10.0),
-        run: Box::new(move |setup: CaseSetup<'_>| threshold(RANGE.map(|r| r * exact), |gamma| on_edge(setup, width, gamma))),
+        run: Box::new(move |setup: CaseSetup<'_>| {
+            threshold(RANGE.map(|r| r * exact), |gamma| on_edge(setup, width, gamma))
+        }),
     }
 }
 
 fn on_edge(setup: CaseSetup<'_>, width: f64, gamma: f64) -> Result<(CaseOutcome, bool), SpecimenError> {
     let columns = (width * PLATE_ROWS as f64).round().max(2.0) as usize;
     let ends = [EndSupport::Clamped, EndSupport::Free];
-    let strip = Strip { length: LENGTH, width: width * LENGTH, rows: PLATE_ROWS, columns, style: MeshStyle::Grid, ends };
+    let strip =
+        Strip { length: LENGTH, width: width * LENGTH, rows: PLATE_ROWS, columns, style: MeshStyle::Grid, ends };
     let shape = strip.shape(|along, across| DVec3::new(along, across, 0.0));
     let bend = CaseFabric::PLAIN.density * G * LENGTH.powi(3) / gamma;
     // Stiffer in shear than most cloth, so that it does not sag in its plane instead.

@@ -6,9 +6,9 @@ use glam::{DVec3, Vec4};
 use toile_assets::garment::Shape;
 
 use crate::validate::CaseSetup;
-use crate::validate::case::{ValidationCase, CaseOutcome};
+use crate::validate::case::{CaseOutcome, ValidationCase};
 use crate::validate::exact::string;
-use crate::validate::mesh::{CaseFabric, EndSupport, Strip, MeshStyle};
+use crate::validate::mesh::{CaseFabric, EndSupport, MeshStyle, Strip};
 use crate::validate::specimen::{G, Specimen, SpecimenError, Surroundings};
 
 use super::search::threshold;
@@ -47,7 +47,8 @@ const ROPE_WATCH: (f64, f64) = (1.5, 0.02);
 /// A rope over half a turn of a post with a load at each end: the ratio of the two pulls at which it slips.
 fn capstan(mu: f64, load: f64) -> ValidationCase {
     let exact = string::capstan_heavy(mu, POST / rope_length() / load);
-    let run = move |setup: CaseSetup<'_>| threshold([1.0, exact * exact], |ratio| rope(setup, mu, [load, load * ratio]));
+    let run =
+        move |setup: CaseSetup<'_>| threshold([1.0, exact * exact], |ratio| rope(setup, mu, [load, load * ratio]));
     ValidationCase {
         name: "capstan",
         parameter: format!("mu {mu}, load {load}"),
@@ -91,8 +92,11 @@ fn rope(setup: CaseSetup<'_>, mu: f64, pulls: [f64; 2]) -> Result<(CaseOutcome, 
         end.iter().for_each(|&v| shape.heavier[v] = ((pull - hanging) / half) as f32);
     }
     let cloth = CaseFabric { friction: mu, damping: 5.0, stretch: 1e5, ..CaseFabric::PLAIN };
-    let surroundings =
-        Surroundings { capsule: Some([DVec3::NEG_Z * 0.2, DVec3::Z * 0.2]), radius: POST - GAP, ..Surroundings::default() };
+    let surroundings = Surroundings {
+        capsule: Some([DVec3::NEG_Z * 0.2, DVec3::Z * 0.2]),
+        radius: POST - GAP,
+        ..Surroundings::default()
+    };
     let mut specimen = Specimen::new(&shape, &cloth, setup, &surroundings)?;
     let before = specimen.mean(ends[1].iter().copied()).y;
     specimen.run(ROPE_WATCH.0);
@@ -107,7 +111,8 @@ const PATCH: (f64, usize) = (0.05, 5);
 /// middle is along the slope.
 fn patch(angle: f64, x: f64) -> (Shape, Surroundings) {
     let (side, links) = PATCH;
-    let strip = Strip { width: side, columns: links, ..Strip::narrow(side, links, [EndSupport::Free, EndSupport::Free]) };
+    let strip =
+        Strip { width: side, columns: links, ..Strip::narrow(side, links, [EndSupport::Free, EndSupport::Free]) };
     let (sin, cos) = angle.sin_cos();
     let (down, up) = (DVec3::new(cos, -sin, 0.0), DVec3::new(sin, cos, 0.0));
     let shape = strip.shape(|along, across| down * (x + along - 0.5 * side) + up * GAP + DVec3::Z * across);

@@ -7,7 +7,7 @@ use toile_assets::garment::shape::NO_VERTEX;
 use toile_assets::numeric::random::SplitMix64;
 
 use crate::validate::CaseSetup;
-use crate::validate::case::{ValidationCase, CaseOutcome};
+use crate::validate::case::{CaseOutcome, ValidationCase};
 use crate::validate::mesh::{CaseFabric, MeshStyle};
 use crate::validate::specimen::{Specimen, SpecimenError, Surroundings};
 

@@ -4,9 +4,9 @@ use std::f64::consts::TAU;
 
 use glam::{DVec3, Vec3A};
 
-use crate::validate::case::{ValidationCase, CaseOutcome};
+use crate::validate::case::{CaseOutcome, ValidationCase};
 use crate::validate::exact::oscillation;
-use crate::validate::mesh::{CaseFabric, EndSupport, Strip, MeshStyle};
+use crate::validate::mesh::{CaseFabric, EndSupport, MeshStyle, Strip};
 use crate::validate::specimen::{G, Specimen, Surroundings};
 use crate::validate::{CaseSetup, Level};
 
@@ -77,7 +77,11 @@ fn chain(n: usize) -> ValidationCase {
         let (samples, step) = watch(&mut specimen, PERIODS / hz, projection);
         Ok(CaseOutcome::of(&specimen, period(&crossings(&samples, step)).recip()))
     };
-    ValidationCase { target: Some(3.0), run: Box::new(run), ..case("chain-mode", format!("mode {n}"), CHAIN_ROWS, "Hz", hz) }
+    ValidationCase {
+        target: Some(3.0),
+        run: Box::new(run),
+        ..case("chain-mode", format!("mode {n}"), CHAIN_ROWS, "Hz", hz)
+    }
 }
 
 /// What is read off a pendulum.
@@ -123,9 +127,11 @@ fn pendulum(degrees: f64, what: Swung) -> ValidationCase {
         Swung::Period => {
             ValidationCase { target: Some(1.0), run, ..case("pendulum", format!("{degrees} deg"), 1, "T/T0", exact) }
         }
-        Swung::Whole => {
-            ValidationCase { target: Some(1.0), run, ..case("pendulum", format!("{degrees} deg, whole"), 1, "T/T0", exact) }
-        }
+        Swung::Whole => ValidationCase {
+            target: Some(1.0),
+            run,
+            ..case("pendulum", format!("{degrees} deg, whole"), 1, "T/T0", exact)
+        },
         Swung::Loss => {
             ValidationCase { scale: Some(100.0), run, ..case("pendulum", format!("{degrees} deg, lost"), 1, "%", 0.0) }
         }
@@ -146,7 +152,8 @@ fn spring(substeps: Option<u32>) -> ValidationCase {
         if setup.level != Level::Converged && substeps.is_some() {
             specimen.settings.substeps = substeps;
         }
-        let length = |specimen: &Specimen| -specimen.mean((0..specimen.vertices()).filter(|v| specimen.moves(*v))).y - 1.0;
+        let length =
+            |specimen: &Specimen| -specimen.mean((0..specimen.vertices()).filter(|v| specimen.moves(*v))).y - 1.0;
         let (samples, step) = watch(&mut specimen, PERIODS * exact, length);
         Ok(CaseOutcome::of(&specimen, period(&crossings(&samples, step))))
     };
@@ -244,7 +251,8 @@ enum Kept {
 fn energy(which: Kept) -> ValidationCase {
     let run = move |setup: CaseSetup<'_>| {
         let (side, rows) = SWING;
-        let strip = Strip { width: side, columns: rows, ..Strip::narrow(side, rows, [EndSupport::Pinned, EndSupport::Free]) };
+        let strip =
+            Strip { width: side, columns: rows, ..Strip::narrow(side, rows, [EndSupport::Pinned, EndSupport::Free]) };
         let shape = strip.shape(|along, across| DVec3::new(across, 0.0, along));
         let cloth = CaseFabric { bend: 13.6e-6, ..CaseFabric::PLAIN };
         let mut specimen = Specimen::new(&shape, &cloth, setup, &Surroundings::default())?;

@@ -3,10 +3,10 @@
 use glam::DVec3;
 
 use crate::validate::CaseSetup;
-use crate::validate::case::ValidationCase;
+use crate::validate::case::{CaseOutcome, ValidationCase};
 use crate::validate::exact::string;
-use crate::validate::mesh::{CaseFabric, EndSupport, Strip, MeshStyle};
-use crate::validate::specimen::{G, Specimen, Surroundings, Placement};
+use crate::validate::mesh::{CaseFabric, EndSupport, MeshStyle, Strip};
+use crate::validate::specimen::{G, Placement, Specimen, Surroundings};
 
 /// Links along them.
 const ROWS: usize = 32;

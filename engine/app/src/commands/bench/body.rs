@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use serde::Serialize;
-use toile_perf::ansur::{self, MeasureErrors, BodyStudy, Survey};
+use toile_perf::ansur::{self, BodyStudy, MeasureErrors, Survey};
 
 use crate::cli::values::{Printing, count};
 use crate::exit::AppError;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 use toile_perf::ansur::Survey;
-use toile_perf::measuring::{self, MeasuringAgreement, MeasuringOptions, Sensor, MeasuringStudy};
+use toile_perf::measuring::{self, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Sensor};
 
 use crate::cli::values::{Printing, count};
 use crate::exit::AppError;

@@ -133,7 +133,8 @@ mod tests {
 
     #[test]
     fn every_option_arrives() {
-        let expected = SkinningOptions { subject: SkinningSubject::Body, verts: Some(77), threads: 2, lanes: Some(Width::Four) };
+        let expected =
+            SkinningOptions { subject: SkinningSubject::Body, verts: Some(77), threads: 2, lanes: Some(Width::Four) };
         assert_eq!(options("skinning --verts 77 --body --threads 2 --lanes 4"), expected);
     }
 }
