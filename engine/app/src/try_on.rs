@@ -145,7 +145,7 @@ fn put_on(
     Ok((garments, recommendations))
 }
 
-/// EventKind playing a session left behind.
+/// What playing a session left behind.
 struct Played {
     /// Who drew; nobody where no picture was asked for.
     renderer: Option<String>,

@@ -174,7 +174,7 @@ fn starves_while(gate: &Gate, display: Gate) {
         }
         assert!(fed_in_a_second(&diary) >= 2, "it is fed while all is well");
         gate.store(true, Relaxed);
-        // EventKind was counted before the gate was shut is fed once more.
+        // What was counted before the gate was shut is fed once more.
         thread::sleep(Duration::from_millis(300));
         assert_eq!(fed_in_a_second(&diary), 0, "it is fed while a thread hangs");
         gate.store(false, Relaxed);

@@ -121,7 +121,7 @@ fn is_progress(block: &Block) -> bool {
     matches!(block, Block::Progress { .. })
 }
 
-/// EventKind the process has open that could keep or send something: files that may be written, sockets of any kind.
+/// What the process has open that could keep or send something: files that may be written, sockets of any kind.
 fn open_to_the_world() -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     for entry in fs::read_dir("/proc/self/fd").unwrap().flatten() {

@@ -1,4 +1,4 @@
-//! EventKind was found, as the JSON has it.
+//! What was found, as the JSON has it.
 
 use std::collections::BTreeMap;
 
@@ -11,9 +11,9 @@ use toile_fitting::live::report::{Attributed, Quantiles, QueueUse, ThreadPlaceme
 pub struct Stage {
     /// Its name.
     pub name: &'static str,
-    /// EventKind it may take (us), where it has a budget.
+    /// What it may take (us), where it has a budget.
     pub budget_us: Option<u64>,
-    /// EventKind it took (us).
+    /// What it took (us).
     pub us: Quantiles,
     /// Times and how many were near them, for the plot: upper bound (us), count.
     #[serde(skip)]
@@ -50,7 +50,7 @@ pub struct Quality {
     pub free: usize,
     /// Steps on each rung of the governor's ladder, whole quality first.
     pub rungs: Vec<u64>,
-    /// EventKind is given up on each.
+    /// What is given up on each.
     pub gives_up: Vec<&'static str>,
     /// Each change of rung, in order: step, from, to; the first hundred.
     pub changes: Vec<[u64; 3]>,
@@ -65,11 +65,11 @@ pub struct Quality {
 /// A goal and what was reached.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Goal {
-    /// EventKind is held against the limit.
+    /// What is held against the limit.
     pub name: &'static str,
     /// The limit.
     pub limit_us: f64,
-    /// EventKind was measured.
+    /// What was measured.
     pub us: f64,
     /// Whether it keeps to it.
     pub pass: bool,
@@ -123,11 +123,11 @@ pub struct Latency {
     pub pictures: u64,
     /// The quality, and its error.
     pub quality: Quality,
-    /// EventKind is to be reached on a quiet machine of two cores.
+    /// What is to be reached on a quiet machine of two cores.
     pub goals: Vec<Goal>,
     /// How full everything was that has a bound.
     pub capacities: Vec<QueueUse>,
-    /// EventKind deserves attention, one sentence each.
+    /// What deserves attention, one sentence each.
     pub warnings: Vec<String>,
     /// Hash of the last state.
     pub state_hash: String,

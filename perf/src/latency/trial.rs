@@ -33,7 +33,7 @@ use super::{LatencyError, Options, capacity, jitter};
 const WARM_UP_S: u64 = 1;
 const WARM_UP_STEPS: u64 = WARM_UP_S * STEP_HZ as u64;
 
-/// EventKind filtering a sensor frame may take (us).
+/// What filtering a sensor frame may take (us).
 const FILTER_US: u64 = 50;
 
 /// Longest time for which the machine's own jitter is measured (s).
@@ -66,7 +66,7 @@ pub struct Cast<'a> {
     pub tape: Sender<Entry>,
 }
 
-/// EventKind came out of the queues.
+/// What came out of the queues.
 #[derive(Debug, Default)]
 struct Told {
     late: LatenessAttribution,
@@ -176,7 +176,7 @@ pub fn run(cast: Cast<'_>, options: &Options, mut empty: impl FnMut() -> Capacit
     Ok(report(&ended, options, threads, told, &jitter))
 }
 
-/// EventKind it comes to.
+/// What it comes to.
 fn report(ended: &Ended, options: &Options, threads: Vec<ThreadPlacement>, told: Told, jitter: &Meter) -> Latency {
     let Ended { physics, render, queues, .. } = ended;
     let (gauges, frame) = (&physics.gauges, &physics.stepper.scene.scene().frame);
@@ -251,7 +251,7 @@ fn goals(snapshot: Quantiles, total: Quantiles, step: Quantiles, response: Quant
     ]
 }
 
-/// Empties the queues. EventKind happened before the meters began does not count.
+/// Empties the queues. What happened before the meters began does not count.
 fn drain(queues: &mut LoopQueues, told: &mut Told) {
     while let Some(event) = queues.events.pop() {
         if event.tick >= WARM_UP_STEPS {

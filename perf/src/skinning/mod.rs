@@ -63,7 +63,7 @@ impl Default for SkinningOptions {
     }
 }
 
-/// EventKind one blend costs, and how exact it is.
+/// What one blend costs, and how exact it is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Timing {
     /// Time of one pass over all vertices, positions and unit normals (us, median).

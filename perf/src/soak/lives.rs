@@ -35,7 +35,7 @@ const DEAD_NS: u64 = 5_000_000;
 /// Every so many vertices of the skin are looked at in a picture; the garments all.
 const SKIN_STEP: usize = 4;
 
-/// EventKind a life did.
+/// What a life did.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sign {
     /// A step.
@@ -83,7 +83,7 @@ impl Stepped {
 
 /// A life that can be asked what it did in its last turn.
 pub trait Telling: ThreadLoop {
-    /// EventKind it did, if there is something to tell.
+    /// What it did, if there is something to tell.
     fn sign(&mut self) -> Option<Sign>;
 }
 
@@ -101,7 +101,7 @@ pub struct Lived<T, C> {
     signs: Sender<Sign>,
 }
 
-/// EventKind every life needs besides itself.
+/// What every life needs besides itself.
 #[derive(Debug, Clone)]
 pub struct Ground<C> {
     /// The script.
@@ -321,7 +321,7 @@ pub struct Pulse {
 pub struct Mortal<C> {
     /// It; none for the moment in which it begins again.
     pub lived: Option<Lived<Showing<C>, C>>,
-    /// EventKind the watch sees of it. Relaxed: one thread plays all parts.
+    /// What the watch sees of it. Relaxed: one thread plays all parts.
     pub pulse: Arc<Pulse>,
     clock: C,
 }

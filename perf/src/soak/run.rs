@@ -40,7 +40,7 @@ const SLICE_NS: u64 = 300 * SECOND_NS;
 /// Time between two turns of the watch in real time.
 const WATCH: Duration = Duration::from_millis(5);
 
-/// EventKind the program lends to a run.
+/// What the program lends to a run.
 pub struct Tools<'a> {
     /// Reads the heap.
     pub heap: HeapProbe,
@@ -58,9 +58,9 @@ pub struct Tools<'a> {
     pub crash_ns: Option<u64>,
 }
 
-/// EventKind the lives came to.
+/// What the lives came to.
 pub struct Ran {
-    /// EventKind happened by plan.
+    /// What happened by plan.
     pub script: Arc<Script>,
     /// Steps, those that were not published in their period or dropped, and a hash over the hashes of their states.
     pub steps: u64,
@@ -82,19 +82,19 @@ pub struct Ran {
     pub disk: [u64; 2],
     /// Broken garments refused and accepted.
     pub broken: [u64; 2],
-    /// EventKind the watch saw.
+    /// What the watch saw.
     pub(super) watch: Seen,
     /// How full every queue was.
     pub capacities: Vec<Capacity>,
     /// Where the threads ran.
     pub threads: Vec<Placement>,
-    /// EventKind deserves attention.
+    /// What deserves attention.
     pub warnings: Vec<String>,
     /// Time that it took (s).
     pub wall_s: f64,
 }
 
-/// EventKind the watch saw.
+/// What the watch saw.
 pub(super) struct Seen {
     pub outcomes: Vec<super::watch::Outcome>,
     pub steps: super::watch::Steps,
@@ -179,7 +179,7 @@ impl<C: Jumping + Clone + Send> Lives<C> {
         Ok(Self { sensor, physics, render, recorder, front, watch, queues, black_box, worker })
     }
 
-    /// EventKind they came to, when they have ended.
+    /// What they came to, when they have ended.
     fn ended(mut self, threads: Vec<Placement>) -> Ran {
         self.recorder.life.look();
         self.watch.close();

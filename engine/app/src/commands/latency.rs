@@ -76,7 +76,7 @@ pub struct LatencyArgs {
 }
 
 impl LatencyArgs {
-    /// EventKind the loop runs under.
+    /// What the loop runs under.
     fn options(&self) -> Options {
         let load = match self.load {
             None => 0,
@@ -90,9 +90,9 @@ impl LatencyArgs {
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LatencyReport {
-    /// EventKind was on stage.
+    /// What was on stage.
     pub scene: Recipe,
-    /// EventKind was found.
+    /// What was found.
     #[serde(flatten)]
     pub found: Latency,
     /// The files written.

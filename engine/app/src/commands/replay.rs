@@ -67,7 +67,7 @@ impl Recorded {
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReplayReport {
-    /// EventKind was on stage.
+    /// What was on stage.
     pub scene: Recorded,
     /// Workers of a step, now.
     pub workers: usize,

@@ -61,7 +61,7 @@ pub struct SoakArgs {
     /// Inject so many faults, or one every half minute if N is left out
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "0")]
     pub faults: Option<u64>,
-    /// EventKind the clock shows at the start
+    /// What the clock shows at the start
     #[arg(long, value_name = "H", value_parser = value_parser!(u64).range(0..=MOST_UPTIME), default_value = "0")]
     pub uptime_hours: u64,
     /// light: coarse garments, hours in minutes; full: the wardrobe as it is worn (default: full in real time, else light)
@@ -85,7 +85,7 @@ pub struct SoakArgs {
 }
 
 impl SoakArgs {
-    /// EventKind is soaked, and how.
+    /// What is soaked, and how.
     ///
     /// # Errors
     /// [`AppError::Usage`] for a run that is too long, and for more faults than fit into it.
@@ -124,14 +124,14 @@ const MOST_REPLAYED: u64 = 128 << 20;
 pub struct SoakRecipe {
     /// Version of the program that wrote it.
     pub version: String,
-    /// EventKind was soaked.
+    /// What was soaked.
     pub soak: Plan,
 }
 
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Body {
-    /// EventKind was found.
+    /// What was found.
     #[serde(flatten)]
     found: Soak,
     /// The files written.
@@ -255,7 +255,7 @@ pub fn again(plan: Plan, entries: &[Entry], workers: usize) -> Result<(Frame, Re
     Ok((stepper.scene.frame, out))
 }
 
-/// EventKind was typed, for the record.
+/// What was typed, for the record.
 fn typed(args: &SoakArgs, options: &Options) -> String {
     let Options { plan, uptime_hours, real_time, workers } = *options;
     let mut line = format!("toile soak --minutes {} --seed {}", plan.seconds as f64 / 60.0, plan.seed);

@@ -21,7 +21,7 @@ pub const MOST_FRAMES: usize = 3600;
 /// Fewest frames that somebody can be measured from.
 pub const FEWEST_FRAMES: usize = 10;
 
-/// EventKind a controller works with.
+/// What a controller works with.
 pub struct ControllerContext<S, O> {
     /// How scenes are changed.
     pub changer: SceneChanger<S, O>,
@@ -65,7 +65,7 @@ pub trait SessionController<S, O> {
     /// Decides, fifty times a second; returns the change of state, where there is one.
     ///
     /// # Errors
-    /// EventKind ends the service.
+    /// What ends the service.
     fn poll(&mut self, now_ns: u64, context: &mut ControllerContext<S, O>) -> Result<Option<StateChange>, AppError>;
 }
 
@@ -78,7 +78,7 @@ pub struct HeadlessController {
     played: Option<ShopperSource>,
     /// When a frame last came, and whether somebody was seen in it.
     seen: (u64, bool),
-    /// EventKind the shopper is measured from, and who was made of it.
+    /// What the shopper is measured from, and who was made of it.
     model: Vec<Joints>,
     fitted: Option<Box<Dressed>>,
     dressed: bool,
@@ -91,7 +91,7 @@ impl HeadlessController {
         Self { session, measure_ns, played, seen: (0, false), model: Vec::new(), fitted: None, dressed: false }
     }
 
-    /// EventKind a change of state brings about.
+    /// What a change of state brings about.
     fn change<S: Scene, O>(&mut self, change: StateChange, context: &mut ControllerContext<S, O>) {
         match change.to {
             SessionState::Measuring => self.model.clear(),

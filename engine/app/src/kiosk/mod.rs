@@ -197,7 +197,7 @@ fn played_session(config: &Config) -> Result<Session, AppError> {
     Ok(sessions::open(path, None)?)
 }
 
-/// EventKind the sensor reads, and what shoppers are then measured from.
+/// What the sensor reads, and what shoppers are then measured from.
 fn feed(config: &Config, session: Session, clock: RealClock) -> Result<(Feed, Option<ShopperSource>), AppError> {
     let address = config.sensor.vmc;
     if config.sensor.source == SensorSource::Vmc {

@@ -54,7 +54,7 @@ pub struct KioskReport {
     pub threads: Vec<ThreadPlacement>,
     /// How full the queues were.
     pub capacities: Vec<QueueUse>,
-    /// EventKind did not go as it should, with the cure.
+    /// What did not go as it should, with the cure.
     pub warnings: Vec<String>,
     /// The window, where there was one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -88,7 +88,7 @@ pub struct WindowReport {
     pub jitter_us: Quantiles,
 }
 
-/// EventKind the service recorded of its run, beside the loop's threads.
+/// What the service recorded of its run, beside the loop's threads.
 #[derive(Debug, Clone)]
 pub struct RunRecord {
     /// The last figures.
@@ -105,7 +105,7 @@ pub struct RunRecord {
     pub threads: Vec<ThreadPlacement>,
     /// Whether all memory was kept resident.
     pub memory_locked: bool,
-    /// EventKind did not go as it should.
+    /// What did not go as it should.
     pub warnings: Vec<String>,
 }
 

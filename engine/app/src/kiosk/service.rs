@@ -49,11 +49,11 @@ pub struct ServiceOptions {
     pub played: Option<ShopperSource>,
     /// Whether all memory is kept resident.
     pub memory_locked: bool,
-    /// EventKind did not go as it should before the loop began.
+    /// What did not go as it should before the loop began.
     pub warnings: Vec<String>,
 }
 
-/// EventKind the service talks to beside the loop.
+/// What the service talks to beside the loop.
 pub struct ServiceEnvironment<'a, S, O> {
     /// The service manager.
     pub manager: &'a dyn ServiceManager,
@@ -65,15 +65,15 @@ pub struct ServiceEnvironment<'a, S, O> {
     pub figures: Option<Writer<HealthFigures>>,
     /// Who dresses shoppers.
     pub dresser: Dresser,
-    /// EventKind a dressed frame becomes in the loop, and what the renderer has to know of it.
+    /// What a dressed frame becomes in the loop, and what the renderer has to know of it.
     pub stage: fn(Frame) -> (S, O),
     /// How the mannequin stands.
     pub pose: Joints,
-    /// EventKind is kept for a crash, where somebody asked for it.
+    /// What is kept for a crash, where somebody asked for it.
     pub black_box: Option<Arc<FlightRecorder>>,
 }
 
-/// EventKind is left of a run: the loops, how full their queues were, and the record.
+/// What is left of a run: the loops, how full their queues were, and the record.
 pub type ServiceEnd<S, E> = (EndedLive<S, E, Feed>, [Capacity; 3], RunRecord);
 
 /// The service while it runs.

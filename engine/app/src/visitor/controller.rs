@@ -31,11 +31,11 @@ pub type NextInput<'a> = Box<dyn FnMut() -> Option<Input> + 'a>;
 pub struct WindowChannels<'a, O> {
     /// Where screens go: the latest is shown.
     pub screens: Writer<Screen>,
-    /// EventKind is asked for at the display: the end of a bounded queue.
+    /// What is asked for at the display: the end of a bounded queue.
     pub next_input: NextInput<'a>,
     /// Where two outfits go, and none when they are to be seen no more.
     pub pairs: Sender<Option<OutfitPair<O>>>,
-    /// EventKind the renderer has to know of a frame as it lies in a snapshot.
+    /// What the renderer has to know of a frame as it lies in a snapshot.
     pub draped: fn(&Frame, &Snapshot) -> O,
 }
 
@@ -151,7 +151,7 @@ impl<'a, O> VisitController<'a, O> {
         let input = match done {
             JobResult::Measured(known) => Input::Measured(number, known),
             JobResult::Dressed(dressed) => {
-                // EventKind was asked for before something else was is not shown.
+                // What was asked for before something else was is not shown.
                 if !self.model.awaits_dress(number) {
                     return;
                 }

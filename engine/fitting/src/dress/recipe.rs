@@ -35,7 +35,7 @@ pub struct Recipe {
     pub quality: String,
 }
 
-/// EventKind a scene is made of.
+/// What a scene is made of.
 #[derive(Debug, Clone)]
 pub struct Parts {
     /// The shopper's body.
@@ -121,7 +121,7 @@ impl Recipe {
         Ok((frame, reader))
     }
 
-    /// EventKind is worn, in a line.
+    /// What is worn, in a line.
     pub fn words(&self) -> String {
         let worn: Vec<String> = self.garments.iter().map(|(name, size)| format!("{name} in {size}")).collect();
         format!("session {}, {}, quality {}", self.session, worn.join(" and "), self.quality)

@@ -23,15 +23,15 @@ use super::scene_changer::DressedScene;
 use super::source::{FRAMES, FRAMES_NAME, Tapped};
 use super::watchdog::Progress;
 
-/// EventKind the loop begins with.
+/// What the loop begins with.
 pub struct LoopParts<S, E: Renderer, F, A> {
     /// Whoever is shown first.
     pub first: DressedScene<S, E::Outfit>,
     /// The renderer, which knows the outfit of the first already: that of `first` is what it leaves in its place.
     pub renderer: E,
-    /// EventKind the sensor reads.
+    /// What the sensor reads.
     pub source: F,
-    /// EventKind the system counts of the physics thread.
+    /// What the system counts of the physics thread.
     pub account: A,
     /// Where what a replay needs goes, where somebody keeps it.
     pub recording: Option<Sender<Entry>>,
@@ -70,13 +70,13 @@ pub struct SceneHandover<S, O> {
 /// The ends of the queues that whoever looks after the loop empties.
 #[derive(Debug)]
 pub struct LoopQueues {
-    /// EventKind happened.
+    /// What happened.
     pub events: Receiver<Event>,
-    /// EventKind each step came to.
+    /// What each step came to.
     pub step_reports: Receiver<StepReport>,
-    /// EventKind the sensor saw, unfiltered.
+    /// What the sensor saw, unfiltered.
     pub frames: Receiver<Joints>,
-    /// EventKind the watchdog looks at.
+    /// What the watchdog looks at.
     pub progress: Arc<Progress>,
 }
 
@@ -91,7 +91,7 @@ impl LoopQueues {
 pub struct Assembly<S, E: Renderer, F, A, C> {
     /// The three loops, to be run by threads or one after the other.
     pub loops: Loops<SensorLoop<F, C>, PhysicsLoop<S, C, A>, RenderLoop<E, C>>,
-    /// EventKind they report.
+    /// What they report.
     pub queues: LoopQueues,
     /// How scenes are changed.
     pub handover: SceneHandover<S, E::Outfit>,

@@ -8,7 +8,7 @@ use std::thread::{self, JoinHandle};
 pub enum Finished<T> {
     /// It gave this; whether somebody still wants it.
     Done {
-        /// EventKind it gave.
+        /// What it gave.
         value: T,
         /// Whether nobody abandoned it.
         wanted: bool,
@@ -51,7 +51,7 @@ impl<T: Send + 'static> BackgroundJob<T> {
         self.abandoned = true;
     }
 
-    /// EventKind has come of the job, once, when it has ended.
+    /// What has come of the job, once, when it has ended.
     pub fn poll(&mut self) -> Option<Finished<T>> {
         let thread = self.thread.take_if(|thread| thread.is_finished())?;
         Some(match thread.join() {

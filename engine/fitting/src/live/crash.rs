@@ -12,7 +12,7 @@ use toile_engine::frame_loop::recording::{ENTRIES, ENTRIES_NAME, Entry};
 /// Longest that a dying thread waits for the black box.
 const LONGEST_WAIT: Duration = Duration::from_millis(500);
 
-/// EventKind is saved, and where; one run at a time.
+/// What is saved, and where; one run at a time.
 static KEPT: Mutex<Option<(Arc<FlightRecorder>, PathBuf)>> = Mutex::new(None);
 
 /// From now on a panic of any thread writes this box there.

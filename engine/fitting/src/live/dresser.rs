@@ -11,7 +11,7 @@ use crate::dress::dressed::{self, Dressed};
 use crate::dress::session;
 use crate::dress::wish::Wish;
 
-/// EventKind is to be done.
+/// What is to be done.
 #[derive(Debug, Clone)]
 pub enum DressJob {
     /// Measure a shopper and dress them.
@@ -39,7 +39,7 @@ impl ShopperSource {
     }
 }
 
-/// EventKind became of a job.
+/// What became of a job.
 pub enum DressOutcome {
     /// Somebody is dressed: a shopper, or the mannequin, which stands still.
     Done(Box<Dressed>),
@@ -84,7 +84,7 @@ impl Dresser {
         self.job.abandon();
     }
 
-    /// EventKind has come of a job, once, when it has ended.
+    /// What has come of a job, once, when it has ended.
     pub fn poll(&mut self) -> Option<DressOutcome> {
         match self.job.poll()? {
             Finished::Panicked => Some(DressOutcome::Panicked),

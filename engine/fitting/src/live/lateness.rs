@@ -1,4 +1,4 @@
-//! EventKind the system counts of the physics thread, and what that says of a step that was late.
+//! What the system counts of the physics thread, and what that says of a step that was late.
 //!
 //! Each step costs two system calls that touch no file: `getrusage(RUSAGE_THREAD)` for faults and lost cores, and the
 //! thread's CPU clock; together under a microsecond. How long the thread waited for a core while it was ready stands only in
@@ -80,7 +80,7 @@ fn second_number(text: &[u8]) -> Option<u64> {
     std::str::from_utf8(text).ok()?.split_ascii_whitespace().nth(1)?.parse().ok()
 }
 
-/// Why a step was late; `before` is the cause of the step before, where that was late too. EventKind is due to none of what is
+/// Why a step was late; `before` is the cause of the step before, where that was late too. What is due to none of what is
 /// counted is some other's: a timer, the firmware, a hypervisor that ran another machine.
 fn cause(miss: &Miss, before: Option<Cause>) -> Cause {
     let counted = &miss.counted;

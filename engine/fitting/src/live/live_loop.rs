@@ -24,7 +24,7 @@ pub type LiveThreads<S, E, F> = RunningLoop<
     RealClock,
 >;
 
-/// EventKind they left when they ended.
+/// What they left when they ended.
 pub type EndedLive<S, E, F> =
     EndedLoops<SensorLoop<F, RealClock>, PhysicsLoop<S, RealClock, ThreadAccount>, RenderLoop<E, RealClock>>;
 
@@ -32,7 +32,7 @@ pub type EndedLive<S, E, F> =
 pub struct LiveLoop<S: Scene, E: Renderer, F: JointSource> {
     /// The threads.
     pub threads: LiveThreads<S, E, F>,
-    /// EventKind they report.
+    /// What they report.
     pub queues: LoopQueues,
 }
 

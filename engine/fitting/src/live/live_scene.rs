@@ -22,7 +22,7 @@ pub const STEP_REPORTS: usize = 1024;
 /// The name of the bound, as warnings give it.
 pub const STEP_REPORTS_NAME: &str = "STEP_REPORTS (engine/fitting/src/live/live_scene.rs)";
 
-/// EventKind one step came to.
+/// What one step came to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StepReport {
     /// From its begin to its publication (ns).
@@ -35,12 +35,12 @@ pub struct StepReport {
     pub nonfinite: u64,
 }
 
-/// EventKind stays where scenes come and go.
+/// What stays where scenes come and go.
 #[derive(Debug)]
 struct StepReporting {
-    /// EventKind each step came to.
+    /// What each step came to.
     reports: Sender<StepReport>,
-    /// EventKind the watchdog looks at.
+    /// What the watchdog looks at.
     progress: Arc<Progress>,
     /// Steps that were rolled back by those who have left: their own counts begin at 0.
     past: u64,

@@ -20,12 +20,12 @@ use crate::FittingError;
 use crate::dress::dressed::Dressing;
 use crate::dress::recipe::Recipe;
 
-/// EventKind a recording of the kiosk says of itself.
+/// What a recording of the kiosk says of itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct KioskRecipe {
     /// Version of the program that wrote it.
     pub version: String,
-    /// EventKind it is of.
+    /// What it is of.
     pub kiosk: SceneNaming,
 }
 

@@ -1,4 +1,4 @@
-//! EventKind a run of the loop came to, as reports have it.
+//! What a run of the loop came to, as reports have it.
 
 use serde::Serialize;
 use toile_engine::frame_loop::queue::Capacity;
@@ -78,7 +78,7 @@ pub struct ThreadPlacement {
     pub core: Option<usize>,
     /// Its real-time priority.
     pub priority: Option<u8>,
-    /// EventKind it did not get, and the cure.
+    /// What it did not get, and the cure.
     pub refused: Vec<String>,
 }
 
@@ -97,7 +97,7 @@ pub struct QueueUse {
     pub bound: usize,
     /// The most that was in it.
     pub high_water: usize,
-    /// EventKind did not fit.
+    /// What did not fit.
     pub lost: u64,
 }
 

@@ -38,7 +38,7 @@ pub struct Loops<A, P, R> {
     pub render: R,
 }
 
-/// EventKind the threads left when they ended; `None` where one did not end in time, or panicked.
+/// What the threads left when they ended; `None` where one did not end in time, or panicked.
 #[derive(Debug)]
 pub struct EndedLoops<A, P, R> {
     /// The sensor's.

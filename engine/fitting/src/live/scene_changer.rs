@@ -22,11 +22,11 @@ pub struct DressedScene<S, O> {
     pub scene: S,
     /// Where its snapshots come out.
     pub reader: Reader<Snapshot>,
-    /// EventKind the renderer has to know of it.
+    /// What the renderer has to know of it.
     pub outfit: O,
     /// How it stands, whatever the sensor sees; `None` follows the sensor.
     pub still: Option<Joints>,
-    /// EventKind a recording says of it; the number is that of the change.
+    /// What a recording says of it; the number is that of the change.
     pub note: Option<SceneNote>,
     /// Its number, where a script numbers scenes; otherwise changes are counted.
     pub number: Option<u64>,

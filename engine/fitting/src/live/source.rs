@@ -1,4 +1,4 @@
-//! EventKind the sensor's thread reads: a recording played round after round with nobody there in between, or a live sender.
+//! What the sensor's thread reads: a recording played round after round with nobody there in between, or a live sender.
 
 use std::io;
 use std::net::SocketAddr;

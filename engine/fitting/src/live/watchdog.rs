@@ -7,7 +7,7 @@ use std::time::Duration;
 /// Longest time between two feedings (ns), however patient the manager is: a state page shows that it is alive.
 const LONGEST_NS: u64 = 5_000_000_000;
 
-/// EventKind the loop's threads count up while they get on.
+/// What the loop's threads count up while they get on.
 ///
 /// Relaxed: numbers to look at, which order nothing.
 #[derive(Debug, Default)]
