@@ -3,14 +3,14 @@
 use std::hint::black_box;
 
 use serde::Serialize;
+use toile_fitting::timing::median_us;
 use toile_sensors::depth::fill::Fill;
 use toile_sensors::depth::gaussian::Gaussian;
 use toile_sensors::depth::smooth::{EdgePreserving, plain};
 use toile_sensors::depth::{Clean, Cloud, SensorNoise};
 use toile_sensors::segment::Segmenter;
-use toile_fitting::timing::median_us;
 
-use super::truth::{GAUSSIAN_PX, DepthScene};
+use super::truth::{DepthScene, GAUSSIAN_PX};
 
 /// What each stage takes for one frame (us, median).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]

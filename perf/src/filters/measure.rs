@@ -3,14 +3,14 @@
 use glam::Vec3;
 use toile_assets::numeric::statistics::quantile;
 use toile_assets::skeleton::{Joint, Skeleton};
+use toile_fitting::timing;
 use toile_sensors::filter::Filter;
 use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_sensors::source::Session;
-use toile_fitting::timing;
 
 use super::motions::{self, HZ, NoisyMotion};
-use super::{RecordedFigures, FilterRow, rows};
+use super::{FilterRow, RecordedFigures, rows};
 
 /// The joint that is looked at: the end of the longest chain.
 const HAND: Joint = Joint::LeftHand;

@@ -7,7 +7,7 @@ use toile_engine::lanes::Width;
 use toile_engine::skin::Padding;
 use toile_fitting::scene::yardstick;
 
-use super::{SkinningError, SkinningOptions, Shapes, Skinning, SkinningSubject, Timing, measure, shapes};
+use super::{Shapes, Skinning, SkinningError, SkinningOptions, SkinningSubject, Timing, measure, shapes};
 
 /// Most of the yardstick that a thread may take for as many vertices: linear, dual.
 pub const TARGETS: [f64; 2] = [0.12, 0.2];

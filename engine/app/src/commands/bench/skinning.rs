@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use toile_engine::lanes::Width;
 use toile_engine::skin::Blend;
-use toile_perf::skinning::{self, SkinningError, SkinningOptions, SkinningSubject};
 use toile_fitting::scene::yardstick;
+use toile_perf::skinning::{self, SkinningError, SkinningOptions, SkinningSubject};
 
 use crate::cli::values::{count, lanes};
 use crate::exit::AppError;
