@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use toile_engine::skin::Blend;
+use toile_fitting::scene::yardstick;
 use toile_perf::skinning::table::SkinningRow;
 use toile_perf::skinning::{Skinning, Timing};
 
