@@ -48,7 +48,7 @@ pub use try_on::{TryOnArgs, Wearer};
     override_usage = "toile [OPTIONS OF TRY-ON]\n       toile <COMMAND>",
     after_help = "Example: dress the shopper of the embedded session, and look at out/\n  toile"
 )]
-struct Line {
+struct CommandLine {
     #[command(subcommand)]
     command: Command,
 }
@@ -100,7 +100,7 @@ pub enum Command {
 
 /// All commands with their options and help, for the manual and for completions.
 pub fn command() -> clap::Command {
-    Line::command()
+    CommandLine::command()
 }
 
 /// Parses a command line, the program's name first.
@@ -109,7 +109,7 @@ pub fn command() -> clap::Command {
 /// [`AppError::Usage`] with one sentence.
 pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
     let args = with_default_command(args);
-    match Line::try_parse_from(&args) {
+    match CommandLine::try_parse_from(&args) {
         Ok(line) => Ok(line.command),
         Err(error) => help_or_error(&error, &args),
     }

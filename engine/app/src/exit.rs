@@ -65,12 +65,12 @@ pub enum AppError {
 }
 
 impl AppError {
-    /// Bad input, told by the error of the room that read it: `.map_err(AppError::input)?`.
+    /// Bad input, described by the error of the module that read it: `.map_err(AppError::input)?`.
     pub fn input(error: impl Display) -> Self {
         Self::Input(error.to_string())
     }
 
-    /// A fault of Toile's own, told by an error that ought not to happen.
+    /// A fault of Toile's own: an error that should not happen.
     pub fn internal(error: impl Display) -> Self {
         Self::Internal(error.to_string())
     }
@@ -88,8 +88,8 @@ impl AppError {
         }
     }
 
-    /// Says the error on stderr, as one line: `toile: ...`.
-    pub fn tell(&self) {
+    /// Prints the error on stderr, as one line: `toile: ...`.
+    pub fn print(&self) {
         if !matches!(self, Self::StdoutClosed) {
             say_line(&one_line(&self.to_string()));
         }
@@ -97,7 +97,7 @@ impl AppError {
 }
 
 impl From<io::Error> for AppError {
-    /// Only for errors of standard output: files are told by [`OutputError`], which names them.
+    /// Only for errors of standard output: files have [`OutputError`], which names them.
     fn from(error: io::Error) -> Self {
         if error.kind() == io::ErrorKind::BrokenPipe { Self::StdoutClosed } else { Self::Stdout(error) }
     }
@@ -123,6 +123,10 @@ impl From<FittingError> for AppError {
     }
 }
 
+/// What a panic prints: where it happened means nothing to a user, and the cure is how those who know learn it.
+const INTERNAL_FAULT: &str = "internal fault; please report the command you typed, with what it prints when \
+                              RUST_BACKTRACE=1 is set";
+
 static PANICKED: AtomicBool = AtomicBool::new(false);
 
 /// Whether any thread has panicked since [`install_panic_hook`].
@@ -131,8 +135,8 @@ pub fn panicked() -> bool {
     PANICKED.load(Ordering::Relaxed)
 }
 
-/// Makes the first panic say one sentence in place of a trace; later ones, its consequences, say nothing.
-/// With `RUST_BACKTRACE` set the usual message and trace are kept.
+/// Makes the first panic print one sentence in place of a message about the source; later ones, its consequences, print
+/// nothing. With `RUST_BACKTRACE` set the usual message and trace follow, for the report.
 pub fn install_panic_hook() {
     let usual = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
@@ -140,12 +144,7 @@ pub fn install_panic_hook() {
         if PANICKED.swap(true, Ordering::Relaxed) {
             return;
         }
-        let place = info.location().map_or_else(String::new, |at| format!(" at {}:{}", at.file(), at.line()));
-        let payload = info.payload();
-        let owned = payload.downcast_ref::<String>().map(String::as_str);
-        let what = payload.downcast_ref::<&str>().copied().or(owned).unwrap_or("no reason given");
-        let cure = "please report this with the command you typed";
-        say_line(&one_line(&format!("internal fault{place} ({what}); {cure}")));
+        say_line(INTERNAL_FAULT);
         if let Some(saved) = toile_fitting::live::crash::save() {
             say_line(&one_line(&saved));
         }

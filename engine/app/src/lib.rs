@@ -4,11 +4,10 @@
 //! Budget: the words and the parsing take under 10 ms; the work itself is budgeted by the rooms it calls.
 //! Thread: the main thread, which loads, starts the frame's threads and waits for them.
 
-pub mod artist;
 pub mod backend;
 pub mod cli;
 pub mod commands;
-mod drawing;
+mod drawn_frame;
 pub mod dump;
 pub mod exit;
 pub mod fit;
@@ -20,6 +19,7 @@ pub mod output;
 mod overlay;
 pub mod pictures;
 pub mod plan;
+pub mod renderer;
 pub mod report;
 pub mod run;
 pub mod summary;
@@ -49,7 +49,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     guarded(|| cli::parse(args).and_then(|command| dispatch(&command))).into()
 }
 
-/// Does some work, says its error if it has one, and turns a panic, on any thread, into [`Code::Internal`].
+/// Does some work, prints its error if it has one, and turns a panic, on any thread, into [`Code::Internal`].
 pub fn guarded(work: impl FnOnce() -> Result<(), AppError>) -> Code {
     // Unwinding rather than leaving at once lets an output folder take back its unfinished files. Nothing that the
     // work has touched is looked at again, so it need not be unwind-safe.
@@ -57,12 +57,12 @@ pub fn guarded(work: impl FnOnce() -> Result<(), AppError>) -> Code {
     let code = match outcome {
         Ok(Ok(())) => Code::Ok,
         Ok(Err(error)) => {
-            error.tell();
+            error.print();
             error.code()
         }
         Err(_) => Code::Internal,
     };
-    // A panic on another thread was told by the hook; whatever this thread made of it, the run has failed.
+    // A panic on another thread was reported by the hook; whatever this thread made of it, the run has failed.
     if exit::panicked() { Code::Internal } else { code }
 }
 

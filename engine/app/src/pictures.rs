@@ -13,10 +13,10 @@ use toile_view::scene::{Bounds, Camera};
 use toile_view::sheet;
 use toile_view::trace::Quality;
 
-use crate::artist::Artist;
-use crate::drawing::Drawing;
+use crate::drawn_frame::DrawnFrame;
 use crate::exit::AppError;
 use crate::output::OutputFolder;
+use crate::renderer::PictureRenderer;
 use crate::terminal::Progress;
 
 /// A still: tall enough to see a hem's folds, small enough that three take a few seconds.
@@ -37,14 +37,14 @@ const MOST_FRAMES: u64 = 100;
 
 /// How an animation shows a session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Tempo {
+struct AnimationTiming {
     /// Steps from one frame to the next.
     stride: u64,
     frames: u32,
     fps: u16,
 }
 
-impl Tempo {
+impl AnimationTiming {
     fn new(steps: u64) -> Self {
         let steps = steps.max(1);
         let fits = |stride: &u64| steps.div_ceil(*stride) <= MOST_FRAMES;
@@ -61,38 +61,38 @@ const SHEET_COLUMNS: usize = 6;
 /// Makes pictures while a session runs.
 pub struct Pictures {
     animation: Animation<BufWriter<File>>,
-    tempo: Tempo,
+    timing: AnimationTiming,
     kept: Vec<(Image, u64)>,
-    drawing: Drawing,
+    frame: DrawnFrame,
     bar: Progress,
 }
 
 impl Pictures {
     /// Begins the animation of a session of `steps` steps.
     pub fn begin(out: &mut OutputFolder, frame: &Frame, steps: u64, bar: Progress) -> Result<Self, AppError> {
-        let tempo = Tempo::new(steps);
+        let timing = AnimationTiming::new(steps);
         let path = out.stage("session.png")?;
         let file = BufWriter::new(File::create(&path).map_err(AppError::input)?);
         Ok(Self {
-            animation: Animation::new(file, MOTION, tempo.frames, tempo.fps).map_err(AppError::input)?,
-            tempo,
+            animation: Animation::new(file, MOTION, timing.frames, timing.fps).map_err(AppError::input)?,
+            timing,
             kept: Vec::new(),
-            drawing: Drawing::new(frame),
+            frame: DrawnFrame::new(frame),
             bar,
         })
     }
 
     /// Whether the animation wants the snapshot of this tick.
     pub fn wants(&self, tick: u64) -> bool {
-        tick.is_multiple_of(self.tempo.stride)
+        tick.is_multiple_of(self.timing.stride)
     }
 
     /// Draws a frame of the animation.
-    pub fn add(&mut self, artist: &mut Artist, snapshot: &Snapshot, lines: &[Line]) -> Result<(), AppError> {
-        self.drawing.take(snapshot);
-        let camera = self.drawing.follow(MOTION);
-        let surfaces = self.drawing.surfaces(None);
-        for image in artist.draw(&surfaces, lines, (MOTION, Quality::Motion), |_| vec![camera], || {})? {
+    pub fn add(&mut self, renderer: &mut PictureRenderer, snapshot: &Snapshot, lines: &[Line]) -> Result<(), AppError> {
+        self.frame.update(snapshot);
+        let camera = self.frame.follow(MOTION);
+        let surfaces = self.frame.surfaces(None);
+        for image in renderer.draw(&surfaces, lines, (MOTION, Quality::Motion), |_| vec![camera], || {})? {
             self.animation.push(&image).map_err(AppError::input)?;
             self.kept.push((image, snapshot.tick));
         }
@@ -106,24 +106,24 @@ impl Pictures {
     pub fn finish(
         mut self,
         out: &mut OutputFolder,
-        artist: &mut Artist,
+        renderer: &mut PictureRenderer,
         snapshot: &Snapshot,
-        ending: &Ending<'_>,
+        end: &FinalState<'_>,
     ) -> Result<(), AppError> {
         self.animation.finish().map_err(AppError::input)?;
-        debug_assert_eq!(self.kept.len(), self.tempo.frames as usize);
+        debug_assert_eq!(self.kept.len(), self.timing.frames as usize);
         contact_sheet(out, &self.kept)?;
-        self.drawing.take(snapshot);
+        self.frame.update(snapshot);
         let legend = fitmap::legend(3 * STILL.width / 4, sheet::PAPER);
         let aspect = STILL.width as f32 / STILL.height as f32;
         let look = |bounds: &Bounds| {
-            [0.0, FRAC_PI_2, PI].map(|turn| Camera::framing(bounds, ending.facing + turn, aspect)).to_vec()
+            [0.0, FRAC_PI_2, PI].map(|turn| Camera::framing(bounds, end.facing + turn, aspect)).to_vec()
         };
-        for (name, map, legend) in [("look.png", None, None), ("fit.png", Some(ending.tightness), Some(&legend))] {
-            let surfaces = self.drawing.surfaces(map);
-            let drawn = artist.draw(&surfaces, ending.lines, (STILL, Quality::Still), look, || self.bar.inc(1))?;
+        for (name, map, legend) in [("look.png", None, None), ("fit.png", Some(end.tightness), Some(&legend))] {
+            let surfaces = self.frame.surfaces(map);
+            let drawn = renderer.draw(&surfaces, end.lines, (STILL, Quality::Still), look, || self.bar.inc(1))?;
             let [front, side, back] = &drawn[..] else { return Err(AppError::internal("three views were asked for")) };
-            write_png(out, name, &sheet::triptych(front, side, back, ending.title, legend))?;
+            write_png(out, name, &sheet::triptych(front, side, back, end.title, legend))?;
         }
         self.bar.finish_and_clear();
         Ok(())
@@ -131,7 +131,7 @@ impl Pictures {
 
     /// Pictures that a session of `steps` steps takes: the animation's frames, and the stills.
     pub fn work(steps: u64) -> u64 {
-        u64::from(Tempo::new(steps).frames) + STILLS
+        u64::from(AnimationTiming::new(steps).frames) + STILLS
     }
 }
 
@@ -140,16 +140,16 @@ impl Pictures {
 pub fn glance(frame: &Frame, snapshot: &Snapshot, yaw: f32, colours: &[[f32; 3]], size: Size) -> Image {
     use toile_view::scene::Scene;
     use toile_view::trace::Stage;
-    let mut drawing = Drawing::new(frame).coloured(colours);
-    drawing.take(snapshot);
-    let surfaces = drawing.surfaces(None);
+    let mut drawn = DrawnFrame::new(frame).coloured(colours);
+    drawn.update(snapshot);
+    let surfaces = drawn.surfaces(None);
     let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });
     let camera = Camera::framing(&stage.bounds(), yaw, size.width as f32 / size.height as f32);
     stage.render(&camera, size, Quality::Still)
 }
 
 /// How the session ended, as the stills show it.
-pub struct Ending<'a> {
+pub struct FinalState<'a> {
     /// A value in -1 (loose) .. 1 (tight) for each particle of each garment.
     pub tightness: &'a [Vec<f32>],
     /// The direction in which the shopper looks (rad from +z towards +x).
@@ -185,12 +185,12 @@ mod tests {
     #[test]
     fn animations_run_at_the_speed_of_life_while_they_can() {
         for (steps, stride, fps) in [(1, 12, 10), (1_195, 12, 10), (3_111, 40, 3), (4_652, 60, 2), (12_000, 120, 1)] {
-            let tempo = Tempo::new(steps);
-            assert_eq!((tempo.stride, tempo.fps), (stride, fps), "{steps} steps");
-            assert_eq!(tempo.stride * u64::from(tempo.fps), u64::from(STEP_HZ));
-            assert!((1..=MOST_FRAMES).contains(&u64::from(tempo.frames)));
+            let timing = AnimationTiming::new(steps);
+            assert_eq!((timing.stride, timing.fps), (stride, fps), "{steps} steps");
+            assert_eq!(timing.stride * u64::from(timing.fps), u64::from(STEP_HZ));
+            assert!((1..=MOST_FRAMES).contains(&u64::from(timing.frames)));
         }
-        let hour = Tempo::new(3_600 * u64::from(STEP_HZ));
+        let hour = AnimationTiming::new(3_600 * u64::from(STEP_HZ));
         assert!(u64::from(hour.frames) <= MOST_FRAMES && hour.fps == 1);
     }
 }

@@ -158,13 +158,13 @@ pub fn skirt(report: &SkirtReport, paint: Paint) -> String {
     for (stage, us) in &report.stages_us {
         line(&mut text, &format!("  {stage:13} {us:.1} us"));
     }
-    let told = |x: Option<String>| x.unwrap_or_else(|| "not counted".into());
-    let memory = told(report.memory_bytes.map(|b| format!("{:.3} MB", b as f64 * 1e-6)));
+    let counted = |x: Option<String>| x.unwrap_or_else(|| "not counted".into());
+    let memory = counted(report.memory_bytes.map(|b| format!("{:.3} MB", b as f64 * 1e-6)));
     line(
         &mut text,
         &format!(
             "  memory        {memory}; allocations a step: {}",
-            told(report.allocations_per_step.map(|a| a.to_string()))
+            counted(report.allocations_per_step.map(|a| a.to_string()))
         ),
     );
     line(

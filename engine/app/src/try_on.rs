@@ -20,11 +20,11 @@ use toile_fitting::dress::wish::{self, Choice, Wish};
 use toile_fitting::dress::{body, session};
 use toile_sensors::frame::Joints;
 
-use crate::artist::{Artist, Renderer};
 use crate::cli::{TryOnArgs, Wearer};
 use crate::exit::AppError;
 use crate::output::OutputFolder;
-use crate::pictures::{Ending, Pictures};
+use crate::pictures::{FinalState, Pictures};
+use crate::renderer::{PictureRenderer, RendererChoice};
 use crate::report::{self, Document, Recommendation, TryOn};
 use crate::summary;
 use crate::terminal::{self, Paint, Progress, Words};
@@ -35,10 +35,10 @@ use crate::video::Video;
 /// # Errors
 /// Bad input, an output folder that cannot be written, or a closed stdout.
 pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
-    if args.renderer == Renderer::Cpu && !args.lines.is_empty() {
+    if args.renderer == RendererChoice::Cpu && !args.lines.is_empty() {
         return Err(AppError::Usage("lines are drawn by the GPU alone; add `--renderer gpu`".to_owned()));
     }
-    let mut artist = Artist::open(args.renderer)?;
+    let mut renderer = PictureRenderer::open(args.renderer)?;
     let words = Words::new(args.quiet || args.json);
     let inputs = args.inputs();
     // Without ffmpeg a video becomes an animated PNG beside it.
@@ -63,7 +63,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let settings = Settings { quality: args.quality, ..Settings::default() };
     let (mut frame, mut reader) = Frame::new(body, &rig, garments, settings).map_err(AppError::internal)?;
     let title = title(&recommendations);
-    let played = play((args, &words, &title), &mut out, &mut artist, &mut frame, &mut reader, &track)?;
+    let played = play((args, &words, &title), &mut out, &mut renderer, &mut frame, &mut reader, &track)?;
 
     if args.glb {
         out.write("dressed.glb", &dressed(&frame, reader.latest()))?;
@@ -156,14 +156,14 @@ struct Played {
 fn play(
     (args, words, title): (&TryOnArgs, &Words, &str),
     out: &mut OutputFolder,
-    artist: &mut Artist,
+    renderer: &mut PictureRenderer,
     frame: &mut Frame,
     reader: &mut Reader<Snapshot>,
     track: &[Joints],
 ) -> Result<Played, AppError> {
     let mut player = Player::new(track);
     let steps = player.steps();
-    artist.prepare(frame.body(), frame.garments());
+    renderer.prepare(frame.body(), frame.garments());
     let mut pictures = None;
     if args.pictures {
         let bar = words.bar(Pictures::work(steps), "drawing");
@@ -179,11 +179,11 @@ fn play(
         playing.iter().for_each(|bar| bar.inc(1));
         if let Some(pictures) = pictures.as_mut().filter(|p| p.wants(tick)) {
             draw_lines(&mut lines, &args.lines, frame);
-            pictures.add(artist, reader.latest(), lines.as_slice())?;
+            pictures.add(renderer, reader.latest(), lines.as_slice())?;
         }
         if let Some(video) = video.as_mut().filter(|_| Video::wants(tick)) {
             draw_lines(&mut lines, &args.lines, frame);
-            video.add(artist, reader.latest(), lines.as_slice())?;
+            video.add(renderer, reader.latest(), lines.as_slice())?;
         }
     }
     playing.iter().for_each(Progress::finish_and_clear);
@@ -198,11 +198,11 @@ fn play(
         let ahead = frame.pose().local[Joint::Pelvis.index()] * glam::Vec3::Z;
         let facing = ahead.x.atan2(ahead.z);
         draw_lines(&mut lines, &args.lines, frame);
-        let ending = Ending { tightness: &tightness, facing, title, lines: lines.as_slice() };
-        pictures.finish(out, artist, reader.latest(), &ending)?;
+        let ending = FinalState { tightness: &tightness, facing, title, lines: lines.as_slice() };
+        pictures.finish(out, renderer, reader.latest(), &ending)?;
     }
     let film = video.map(Video::finish).transpose()?;
-    Ok(Played { renderer: drew.then(|| artist.describe()), film })
+    Ok(Played { renderer: drew.then(|| renderer.describe()), film })
 }
 
 /// Fills in the lines that were asked for, of the frame as it is.

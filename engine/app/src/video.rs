@@ -9,9 +9,9 @@ use toile_view::film::Film;
 use toile_view::image::Size;
 use toile_view::trace::Quality;
 
-use crate::artist::Artist;
-use crate::drawing::Drawing;
+use crate::drawn_frame::DrawnFrame;
 use crate::exit::AppError;
+use crate::renderer::PictureRenderer;
 use crate::terminal::Progress;
 
 /// Width and height of a frame: a display that stands upright, at half its resolution.
@@ -26,7 +26,7 @@ const STRIDE: u64 = STEP_HZ as u64 / FPS as u64;
 /// Films a session while it runs.
 pub struct Video {
     film: Film,
-    drawing: Drawing,
+    frame: DrawnFrame,
     bar: Progress,
 }
 
@@ -37,7 +37,7 @@ impl Video {
     /// Bad input: a name or a place that no film can have.
     pub fn begin(path: &Path, frame: &Frame, steps: u64, bar: Progress) -> Result<Self, AppError> {
         let film = Film::begin(path, SIZE, Self::work(steps) as u32, FPS).map_err(AppError::input)?;
-        Ok(Self { film, drawing: Drawing::new(frame), bar })
+        Ok(Self { film, frame: DrawnFrame::new(frame), bar })
     }
 
     /// Frames of a session of so many steps.
@@ -54,11 +54,11 @@ impl Video {
     ///
     /// # Errors
     /// A film that cannot be written, or a device that fails.
-    pub fn add(&mut self, artist: &mut Artist, snapshot: &Snapshot, lines: &[Line]) -> Result<(), AppError> {
-        self.drawing.take(snapshot);
-        let camera = self.drawing.follow(SIZE);
-        let surfaces = self.drawing.surfaces(None);
-        let images = artist.draw(&surfaces, lines, (SIZE, Quality::Motion), |_| vec![camera], || {})?;
+    pub fn add(&mut self, renderer: &mut PictureRenderer, snapshot: &Snapshot, lines: &[Line]) -> Result<(), AppError> {
+        self.frame.update(snapshot);
+        let camera = self.frame.follow(SIZE);
+        let surfaces = self.frame.surfaces(None);
+        let images = renderer.draw(&surfaces, lines, (SIZE, Quality::Motion), |_| vec![camera], || {})?;
         self.bar.inc(1);
         images.iter().try_for_each(|image| self.film.push(image)).map_err(AppError::input)
     }

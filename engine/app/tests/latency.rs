@@ -43,7 +43,7 @@ fn a_run_is_told_by_stage_and_replayed_bit_for_bit_with_two_workers_and_with_one
         let [used, bound] = ["high_water", "bound"].map(|k| row[k].as_u64().unwrap());
         assert!((least..=bound).contains(&used), "{row}");
     }
-    let page = fs::read_to_string(scratch.path().join("latency/latency.html")).unwrap();
+    let page = fs::read_to_string(scratch.path().join("out/latency/latency.html")).unwrap();
     assert!(page.matches("<svg").count() >= 12 && page.trim_end().ends_with("</html>"));
 
     for workers in ["2", "1"] {
@@ -98,7 +98,7 @@ fn a_crash_leaves_a_recording_that_replays() {
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(70), "{said}");
     assert!(said.contains("toile replay latency/crash.tape"), "{said}");
-    let (code, again) = object(&scratch, &["replay", "latency/crash.tape", "--workers", "1", "--json"]);
+    let (code, again) = object(&scratch, &["replay", "out/latency/crash.tape", "--workers", "1", "--json"]);
     assert_eq!((code, &again["diverged_at"]), (Some(0), &Value::Null));
     assert!(again["ticks"].as_u64().unwrap() >= 2 * 120, "{again}");
 }

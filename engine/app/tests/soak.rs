@@ -42,9 +42,9 @@ fn every_kind_of_fault_is_borne_and_a_second_run_is_the_same() {
         "{found}"
     );
     assert!(whole("changes") >= 2 && found["pictures"][1] == 2 && found["off_mm"].as_f64().unwrap() < 80.0);
-    let page = fs::read_to_string(scratch.path().join("soak/soak.html")).unwrap();
+    let page = fs::read_to_string(scratch.path().join("out/soak/soak.html")).unwrap();
     assert!(page.contains("<svg") && page.trim_end().ends_with("</html>") && !page.contains("http://cdn"));
-    let record: Value = serde_json::from_slice(&fs::read(scratch.path().join("soak/soak.json")).unwrap()).unwrap();
+    let record: Value = serde_json::from_slice(&fs::read(scratch.path().join("out/soak/soak.json")).unwrap()).unwrap();
     assert_eq!(record["state_hash"], found["state_hash"]);
 }
 
@@ -83,11 +83,11 @@ fn a_crash_leaves_its_last_ten_seconds_and_they_replay() {
     let output = scratch.toile(&["soak", "--minutes", "2", "--crash-after", "70", "--once"]);
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(70), "{said}");
-    assert!(said.contains("toile replay soak/crash.tape"), "{said}");
-    let (code, again) = object(&scratch, &["replay", "soak/crash.tape", "--json"]);
+    assert!(said.contains("toile replay out/soak/crash.tape"), "{said}");
+    let (code, again) = object(&scratch, &["replay", "out/soak/crash.tape", "--json"]);
     assert_eq!((code, &again["diverged_at"]), (Some(0), &Value::Null));
     assert!(again["ticks"].as_u64().unwrap() >= 10 * 120, "{again}");
     // A recording has no picture in it: some 15 kB a second.
-    let bytes = fs::metadata(scratch.path().join("soak/crash.tape")).unwrap().len();
+    let bytes = fs::metadata(scratch.path().join("out/soak/crash.tape")).unwrap().len();
     assert!(bytes < again["ticks"].as_u64().unwrap() * 300, "{bytes} bytes");
 }

@@ -8,8 +8,8 @@ use toile_engine::cloth::Quality;
 use toile_engine::lines::Kind;
 
 use super::values::one_of;
-use crate::artist::Renderer;
 use crate::output::Inputs;
+use crate::renderer::RendererChoice;
 
 /// Measure a shopper, dress them, and write pictures and a report.
 ///
@@ -54,10 +54,10 @@ pub struct TryOnArgs {
     #[arg(
         long,
         value_name = "R",
-        value_parser = one_of(Renderer::ALL, Renderer::name),
-        default_value = Renderer::default().name()
+        value_parser = one_of(RendererChoice::ALL, RendererChoice::name),
+        default_value = RendererChoice::default().name()
     )]
-    pub renderer: Renderer,
+    pub renderer: RendererChoice,
     /// Film of the session: .mp4 or .webm by ffmpeg, or .png, which every build makes itself
     #[arg(long, value_name = "FILE")]
     pub video: Option<PathBuf>,

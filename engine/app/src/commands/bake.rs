@@ -64,19 +64,19 @@ pub struct BakeReport {
     /// Vertices that do not move.
     pub fixed: usize,
     /// How many edges the fibers of each kind cover.
-    pub edges: Edges,
+    pub edges: EdgeCounts,
     /// How many fibers of two edges or more there are.
-    pub fibers: Fibers,
+    pub fibers: FiberCounts,
     /// How the cloth hangs.
-    pub hanging: Hanging,
+    pub hanging: HangingCounts,
     /// How many fibers each solver has.
-    pub solvers: Vec<Solver>,
+    pub solvers: Vec<SolverCounts>,
     /// Sets in which the constraints are solved.
-    pub sets: Sets,
+    pub sets: SetCounts,
     /// Tethers.
     pub tethers: usize,
     /// Bending stencils by direction.
-    pub stencils: Stencils,
+    pub stencils: StencilCounts,
     /// Memory of the baked garment (bytes).
     pub bytes: usize,
     /// Time that baking took, drafting and this survey left out (ms).
@@ -91,7 +91,7 @@ pub struct BakeReport {
 
 /// Edges by what covers them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Edges {
+pub struct EdgeCounts {
     /// All of them.
     pub all: usize,
     /// In fibers down the warp.
@@ -108,7 +108,7 @@ pub struct Edges {
 
 /// Fibers by direction.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Fibers {
+pub struct FiberCounts {
     /// Down the warp.
     pub warp: usize,
     /// Along the weft, open or closed.
@@ -121,7 +121,7 @@ pub struct Fibers {
 
 /// How the cloth hangs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Hanging {
+pub struct HangingCounts {
     /// Vertices that can move.
     pub free: usize,
     /// Those of them that one warp fiber joins to a fixed vertex.
@@ -134,7 +134,7 @@ pub struct Hanging {
 
 /// What one solver has to do.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Solver {
+pub struct SolverCounts {
     /// Its name, as garment files call it.
     pub solver: &'static str,
     /// Fibers; edges alone count as one each.
@@ -145,8 +145,8 @@ pub struct Solver {
 
 /// Sets in which nothing shares a particle.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Sets {
-    /// Families of fibers along the bias that are solved whole.
+pub struct SetCounts {
+    /// Families of fibers along the bias that are solved directly.
     pub diagonals: usize,
     /// Their edges.
     pub diagonal_edges: usize,
@@ -164,7 +164,7 @@ pub struct Sets {
 
 /// Bending stencils by direction.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Stencils {
+pub struct StencilCounts {
     /// Along the warp.
     pub warp: usize,
     /// Along the weft.
@@ -186,7 +186,7 @@ pub fn run(args: &BakeArgs) -> Result<(), AppError> {
 }
 
 /// A shape with the names that it goes by.
-struct Drafted {
+struct DraftedShape {
     name: String,
     size: String,
     fabric: String,
@@ -205,7 +205,7 @@ fn bake(args: &BakeArgs) -> Result<BakeReport, AppError> {
 }
 
 /// Cuts the garment on the body of its size, or reads the mesh.
-fn draft(args: &BakeArgs) -> Result<Drafted, AppError> {
+fn draft(args: &BakeArgs) -> Result<DraftedShape, AppError> {
     let name = &args.garment;
     let is_file = Path::new(name).exists() || name.to_lowercase().ends_with(".obj");
     if is_file && !wardrobe::names().contains(&name.as_str()) {
@@ -215,7 +215,7 @@ fn draft(args: &BakeArgs) -> Result<Drafted, AppError> {
         let mut shape = obj::read(Path::new(name)).map_err(AppError::input)?;
         let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
         shape.weights = weights::transfer(&body, &shape.worn, |_, _| true);
-        return Ok(Drafted { name: name.clone(), size: "one size".into(), fabric: MESH_FABRIC.into(), shape });
+        return Ok(DraftedShape { name: name.clone(), size: "one size".into(), fabric: MESH_FABRIC.into(), shape });
     }
     let style = wardrobe::style(name).map_err(AppError::input)?;
     let table = style.sizes().map_err(AppError::input)?;
@@ -224,7 +224,7 @@ fn draft(args: &BakeArgs) -> Result<Drafted, AppError> {
     let wearer = if table.population == Population::Men { Sex::Male } else { Sex::Female };
     let body = style.body(&size, wearer).map_err(AppError::input)?;
     let shape = style.draft(&size, &body).map_err(AppError::input)?;
-    Ok(Drafted { name: style.name.clone(), size, fabric: style.fabric.clone(), shape })
+    Ok(DraftedShape { name: style.name.clone(), size, fabric: style.fabric.clone(), shape })
 }
 
 /// A fabric by its name, or from a file.
@@ -240,7 +240,7 @@ fn fabric(name: &str) -> Result<Fabric, AppError> {
 fn report(garment: &Garment, found: Survey, bake_ms: f64) -> BakeReport {
     let covered = &found.coverage;
     let layout = &garment.layout;
-    let solver = |s: &bake::survey::Solved| Solver { solver: s.solver.name(), fibers: s.fibers, edges: s.edges };
+    let solver = |s: &bake::survey::Solved| SolverCounts { solver: s.solver.name(), fibers: s.fibers, edges: s.edges };
     BakeReport {
         garment: garment.name.clone(),
         size: garment.size.clone(),
@@ -248,7 +248,7 @@ fn report(garment: &Garment, found: Survey, bake_ms: f64) -> BakeReport {
         vertices: found.vertices,
         triangles: found.triangles,
         fixed: found.fixed,
-        edges: Edges {
+        edges: EdgeCounts {
             all: covered.edges,
             warp: covered.warp,
             weft: covered.weft,
@@ -256,20 +256,20 @@ fn report(garment: &Garment, found: Survey, bake_ms: f64) -> BakeReport {
             bias: covered.bias,
             loose: covered.loose,
         },
-        fibers: Fibers {
+        fibers: FiberCounts {
             warp: covered.fibers[0],
             weft: covered.fibers[1],
             bias: covered.fibers[2],
             longest: covered.longest,
         },
-        hanging: Hanging {
+        hanging: HangingCounts {
             free: covered.free,
             by_one_fiber: covered.hanging,
             by_several: covered.hanging_on,
             share: covered.hanging_share(),
         },
         solvers: found.solvers.iter().map(solver).collect(),
-        sets: Sets {
+        sets: SetCounts {
             diagonals: layout.diagonals.families.len(),
             diagonal_edges: layout.diagonals.count(),
             shear: layout.shear.tuples.sets.len(),
@@ -279,7 +279,7 @@ fn report(garment: &Garment, found: Survey, bake_ms: f64) -> BakeReport {
             crossing: layout.crossing.sets.len(),
         },
         tethers: found.tethers,
-        stencils: Stencils { warp: found.stencils[0], weft: found.stencils[1], bias: found.stencils[2] },
+        stencils: StencilCounts { warp: found.stencils[0], weft: found.stencils[1], bias: found.stencils[2] },
         bytes: garment.bytes(),
         bake_ms,
         substeps: garment.substeps,
@@ -351,7 +351,7 @@ mod tests {
     fn every_garment_of_the_wardrobe_is_covered_and_hangs() {
         for name in wardrobe::names() {
             let report = bake(&args(name)).unwrap();
-            let Edges { all, warp, weft, hoops, bias, loose } = report.edges;
+            let EdgeCounts { all, warp, weft, hoops, bias, loose } = report.edges;
             assert_eq!(warp + weft + hoops + bias + loose, all, "{name}");
             assert_eq!(report.hanging.free + report.fixed, report.vertices, "{name}");
             assert_eq!(report.tethers, report.hanging.free, "{name}: something hangs from nothing");

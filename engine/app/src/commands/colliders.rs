@@ -2,6 +2,7 @@
 
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;
+use std::path::PathBuf;
 use std::time::Instant;
 
 use glam::Vec3;
@@ -47,7 +48,7 @@ const CAPSULES: [Vec3; 6] = [
 
 /// One body and its fit.
 #[derive(Debug, Serialize)]
-struct Fitted {
+struct FittedColliders {
     name: String,
     /// Stature, chest, waist and hip girth as the tape reads them (mm).
     measures_mm: [f64; 4],
@@ -59,15 +60,15 @@ struct Fitted {
 
 /// What the command says as JSON.
 #[derive(Debug, Serialize)]
-struct Told {
+struct CollidersReport {
     spheres: usize,
     capsules: usize,
     mean_goal_mm: f32,
     p95_goal_mm: f32,
-    bodies: Vec<Fitted>,
+    bodies: Vec<FittedColliders>,
     /// Bodies and zones that miss the goal.
     missed: Vec<[String; 2]>,
-    files: Vec<std::path::PathBuf>,
+    files: Vec<PathBuf>,
 }
 
 /// Runs `toile body --colliders`.
@@ -97,15 +98,15 @@ pub fn run(args: &BodyArgs) -> Result<(), AppError> {
         bar.finish_and_clear();
     }
     let files = out.as_ref().map_or_else(Vec::new, OutputFolder::files);
-    let told = told(bodies, files);
+    let report = report(bodies, files);
     if let Some(out) = out {
         out.commit()?;
     }
-    let verdict = verdict(&told);
+    let verdict = verdict(&report);
     if args.printing.json {
-        terminal::print_json(&Document::new("body-colliders", told))?;
+        terminal::print_json(&Document::new("body-colliders", report))?;
     } else {
-        terminal::print(&table(&told, Paint::for_stdout()))?;
+        terminal::print(&table(&report, Paint::for_stdout()))?;
     }
     verdict
 }
@@ -114,7 +115,7 @@ pub fn run(args: &BodyArgs) -> Result<(), AppError> {
 type Shown = Vec<(String, Body)>;
 
 /// Our own bodies of all sizes and the strangers; the middle sizes are shown.
-fn ours(args: &BodyArgs, words: &Words) -> Result<(Vec<Fitted>, Shown), AppError> {
+fn ours(args: &BodyArgs, words: &Words) -> Result<(Vec<FittedColliders>, Shown), AppError> {
     let (sizes, strangers) = (people::sizes(), people::strangers(args.strangers, args.seed));
     let bar = words.bar((sizes.len() + strangers.len()) as u64, "fitting");
     let (mut bodies, mut shown) = (Vec::new(), Vec::new());
@@ -130,20 +131,20 @@ fn ours(args: &BodyArgs, words: &Words) -> Result<(Vec<Fitted>, Shown), AppError
     Ok((bodies, shown))
 }
 
-fn fitted(name: String, body: &Body, stranger: bool) -> Fitted {
+fn fitted(name: String, body: &Body, stranger: bool) -> FittedColliders {
     let begun = Instant::now();
     let rig = Rig::fit(body);
     let fit_ms = (begun.elapsed().as_secs_f64() * 1e5).round() / 100.0;
     let m = &body.measures;
     let measures_mm =
         [m.stature, m.chest_girth, m.waist_girth, m.hip_girth].map(|m| (f64::from(m) * 1e4).round() / 10.0);
-    Fitted { name, measures_mm, fit_ms, zones: Followed::of(&rig.report(body)), stranger }
+    FittedColliders { name, measures_mm, fit_ms, zones: Followed::of(&rig.report(body)), stranger }
 }
 
-fn told(bodies: Vec<Fitted>, files: Vec<std::path::PathBuf>) -> Told {
+fn report(bodies: Vec<FittedColliders>, files: Vec<PathBuf>) -> CollidersReport {
     let zones = bodies.iter().flat_map(|b| b.zones.iter().map(move |z| (b, z)));
     let missed = zones.filter(|(_, z)| z.meets == Some(false)).map(|(b, z)| [b.name.clone(), z.zone.to_owned()]);
-    Told {
+    CollidersReport {
         spheres: toile_assets::rig::SPHERES,
         capsules: toile_assets::limits::MAX_CAPSULES,
         mean_goal_mm: MEAN_GOAL_MM,
@@ -154,9 +155,9 @@ fn told(bodies: Vec<Fitted>, files: Vec<std::path::PathBuf>) -> Told {
     }
 }
 
-fn verdict(told: &Told) -> Result<(), AppError> {
-    let sized = |name: &String| told.bodies.iter().any(|b| b.name == *name && !b.stranger);
-    let missed: Vec<String> = told
+fn verdict(report: &CollidersReport) -> Result<(), AppError> {
+    let sized = |name: &String| report.bodies.iter().any(|b| b.name == *name && !b.stranger);
+    let missed: Vec<String> = report
         .missed
         .iter()
         .filter(|[name, _]| sized(name))
@@ -169,12 +170,13 @@ fn verdict(told: &Told) -> Result<(), AppError> {
 }
 
 /// The table as people read it.
-fn table(told: &Told, paint: Paint) -> String {
+fn table(report: &CollidersReport, paint: Paint) -> String {
     let mut text = String::new();
-    let (mean, p95) = (told.mean_goal_mm, told.p95_goal_mm);
-    let head = format!("{} spheres, {} capsules; skin to their union, mean and 95 % (mm)", told.spheres, told.capsules);
+    let (mean, p95) = (report.mean_goal_mm, report.p95_goal_mm);
+    let head =
+        format!("{} spheres, {} capsules; skin to their union, mean and 95 % (mm)", report.spheres, report.capsules);
     let _ = writeln!(text, "{}", paint.tone(&head, Tone::Strong));
-    let sized: Vec<&Fitted> = told.bodies.iter().filter(|b| !b.stranger).collect();
+    let sized: Vec<&FittedColliders> = report.bodies.iter().filter(|b| !b.stranger).collect();
     let _ = write!(text, "{:10}", "");
     let names: String = sized.iter().map(|b| format!(" {:>12}", b.name)).collect();
     let _ = writeln!(text, "{names}");
@@ -188,21 +190,21 @@ fn table(told: &Told, paint: Paint) -> String {
         }
         let _ = writeln!(text, "{}", if zone.meets.is_some() { format!("  goal {mean} {p95}") } else { String::new() });
     }
-    worst(&mut text, told, paint);
+    worst(&mut text, report, paint);
     text
 }
 
 /// Of all bodies, zone by zone.
-fn worst(text: &mut String, told: &Told, paint: Paint) {
-    let count = told.bodies.len();
+fn worst(text: &mut String, report: &CollidersReport, paint: Paint) {
+    let count = report.bodies.len();
     let title = format!("All {count} bodies: mean of the means, else the worst (mm)");
     let _ = writeln!(text, "\n{}", paint.tone(&title, Tone::Strong));
     let names = ["signed", "mean", "95 %", "outside", "inside", "mean", "95 %", "above", "below"];
     let _ = writeln!(text, "{:10} {:-^39} {:-^31}", "", " skin to union ", " union to skin ");
     let names: String = names.iter().map(|name| format!("{name:>8}")).collect();
     let _ = writeln!(text, "{:10}{names}", "");
-    for (i, zone) in told.bodies.first().map_or(&[][..], |b| &b.zones).iter().enumerate() {
-        let all = |of: &dyn Fn(&Followed) -> f64| told.bodies.iter().map(|b| of(&b.zones[i])).collect::<Vec<_>>();
+    for (i, zone) in report.bodies.first().map_or(&[][..], |b| &b.zones).iter().enumerate() {
+        let all = |of: &dyn Fn(&Followed) -> f64| report.bodies.iter().map(|b| of(&b.zones[i])).collect::<Vec<_>>();
         let mean = |of: &dyn Fn(&Followed) -> f64| all(of).iter().sum::<f64>() / count as f64;
         let most = |of: &dyn Fn(&Followed) -> f64| all(of).into_iter().fold(0.0, f64::max);
         let figures = [
@@ -219,11 +221,11 @@ fn worst(text: &mut String, told: &Told, paint: Paint) {
         let figures: String = figures.iter().map(|figure| format!("{figure:8.1}")).collect();
         let _ = writeln!(text, "{:10}{figures}", zone.zone);
     }
-    let mut times: Vec<f64> = told.bodies.iter().map(|b| b.fit_ms).collect();
+    let mut times: Vec<f64> = report.bodies.iter().map(|b| b.fit_ms).collect();
     times.sort_by(f64::total_cmp);
     let (median, longest) = (times.get(count / 2).copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
     let _ = writeln!(text, "a fit takes {median:.0} ms (median), {longest:.0} ms (max), once a body");
-    for [name, zone] in &told.missed {
+    for [name, zone] in &report.missed {
         let _ = writeln!(text, "{}", paint.tone(&format!("{name} misses the goal at the {zone}"), Tone::Warn));
     }
 }

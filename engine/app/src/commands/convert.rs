@@ -104,7 +104,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), AppError> {
     if args.printing.json {
         return terminal::print_json(&Document::new("convert", report));
     }
-    terminal::print(&told(&report, bytes.len()))
+    terminal::print(&summary(&report, bytes.len()))
 }
 
 /// Leaves of a session's depth what is asked for.
@@ -123,7 +123,7 @@ fn keep(session: &mut Session, depth: KeptDepth) {
     }
 }
 
-fn told(report: &ConvertReport, bytes: usize) -> String {
+fn summary(report: &ConvertReport, bytes: usize) -> String {
     let mut text = format!(
         "{}: {} joint frames, {} depth frames, {} KiB\n",
         report.files[0].display(),

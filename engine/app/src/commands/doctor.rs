@@ -35,7 +35,7 @@ pub enum Status {
     Ok,
     /// Not there, or not as it should be; the cure says how to mend it.
     Missing,
-    /// This machine does not tell.
+    /// This machine does not say.
     Unknown,
 }
 
@@ -69,7 +69,7 @@ impl Check {
     }
 
     fn unknown(name: &'static str, needed_for: &'static str) -> Self {
-        Self { name, status: Status::Unknown, found: "this machine does not tell".into(), needed_for, cure: None }
+        Self { name, status: Status::Unknown, found: "this machine does not say".into(), needed_for, cure: None }
     }
 }
 

@@ -46,9 +46,9 @@ pub fn run(args: &ParetoArgs) -> Result<(), AppError> {
     let words = args.printing.words();
     let mut out = OutputFolder::prepare(&args.out)?;
     let bar = words.bar(UNITS as u64, "measuring");
-    let told = |part: f64| bar.set_position((UNITS * part) as u64);
+    let progress = |part: f64| bar.set_position((UNITS * part) as u64);
     let options = ParetoOptions { scene: args.scene.clone(), quick: args.quick };
-    let report = pareto::run(&options, &told).map_err(AppError::internal)?;
+    let report = pareto::run(&options, &progress).map_err(AppError::internal)?;
     bar.finish_and_clear();
     for file in pareto::files(&report).map_err(AppError::internal)? {
         out.write(&file.name, &file.bytes)?;
@@ -121,11 +121,11 @@ fn samplings(text: &mut String, drape: &Drape, paint: Paint) {
     );
     for s in &drape.samplings {
         let published = s.published_cm.map_or_else(|| "-".into(), |cm| format!("{cm:.2}"));
-        let told = format!(
+        let row = format!(
             "  {:>9} {:>9} {:>9.3} {:>9.2} {published:>12} {:>9.0}",
             s.spacing_cm, s.particles, s.mean_cm, s.max_cm, s.step_us
         );
-        line(text, &told);
+        line(text, &row);
     }
 }
 

@@ -109,7 +109,9 @@ pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
         terminal::print(&format!("{} steps, state {}\n", report.ticks, report.state_hash))?;
     }
     if let Some(tick) = out.gap_at {
-        return Err(bad(&format!("the step before step {tick} was not recorded; raise {}", recording::ENTRIES_NAME)));
+        return Err(bad(&format!(
+            "the step before step {tick} was not recorded; record it again on a quieter machine"
+        )));
     }
     let made_by = report.scene.version();
     report.diverged_at.map_or(Ok(()), |tick| {

@@ -130,7 +130,7 @@ pub struct SoakRecipe {
 
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct Body {
+struct SoakDocument {
     /// What was found.
     #[serde(flatten)]
     found: Soak,
@@ -177,21 +177,21 @@ pub fn run(args: &SoakArgs) -> Result<(), AppError> {
     out.write("soak.json", &record)?;
     let mut files = out.commit()?;
     files.extend(args.record.clone());
-    tell(&Body { found, files }, args.printing.json)
+    report(&SoakDocument { found, files }, args.printing.json)
 }
 
 /// Prints what was found; an error where a check failed.
-fn tell(body: &Body, json: bool) -> Result<(), AppError> {
+fn report(report: &SoakDocument, json: bool) -> Result<(), AppError> {
     if json {
-        terminal::print_json(&Document::new("soak", body))?;
+        terminal::print_json(&Document::new("soak", report))?;
     } else {
-        terminal::print(&table(body, Paint::for_stdout()))?;
+        terminal::print(&table(report, Paint::for_stdout()))?;
     }
-    let failed: Vec<&str> = body.found.failed().map(|c| c.name).collect();
+    let failed: Vec<&str> = report.found.failed().map(|c| c.name).collect();
     if failed.is_empty() {
         return Ok(());
     }
-    let (failed, seed) = (failed.join("; "), body.found.seed);
+    let (failed, seed) = (failed.join("; "), report.found.seed);
     Err(AppError::Threshold(format!("not borne: {failed}; run it again with --seed {seed} --record F and replay F")))
 }
 
@@ -273,8 +273,8 @@ fn typed(args: &SoakArgs, options: &Options) -> String {
 }
 
 /// The figures as people read them.
-fn table(body: &Body, paint: Paint) -> String {
-    let found = &body.found;
+fn table(report: &SoakDocument, paint: Paint) -> String {
+    let found = &report.found;
     let title = format!(
         "Soak: {:.2} h, {} steps in {:.0} s ({:.0} us a step), {} scene, seed {}",
         found.hours,
@@ -312,7 +312,7 @@ fn table(body: &Body, paint: Paint) -> String {
     }
     lines.push(format!("\n  state {}", found.state_hash));
     lines.extend(found.warnings.iter().map(|w| paint.tone(&format!("  {w}"), Tone::Warn).into_owned()));
-    lines.extend(body.files.iter().map(|f| format!("  {}", f.display())));
+    lines.extend(report.files.iter().map(|f| format!("  {}", f.display())));
     lines.join("\n") + "\n"
 }
 

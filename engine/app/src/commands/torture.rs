@@ -63,7 +63,7 @@ impl TortureArgs {
 
 /// The report as JSON has it.
 #[derive(Debug, Serialize)]
-struct Body {
+struct TortureDocument {
     /// What the cases came to.
     #[serde(flatten)]
     report: TortureReport,
@@ -78,8 +78,8 @@ struct Body {
 pub fn run(args: &TortureArgs) -> Result<(), AppError> {
     let words = args.printing.words();
     let begun = Instant::now();
-    let mut told = |s: &CaseSummary| words.say(&format!("{}: {} of {} seeds", s.name, s.passed, s.seeds));
-    let report = torture::run(&args.options(), &mut told).map_err(AppError::internal)?;
+    let mut progress = |s: &CaseSummary| words.say(&format!("{}: {} of {} seeds", s.name, s.passed, s.seeds));
+    let report = torture::run(&args.options(), &mut progress).map_err(AppError::internal)?;
     backend::say(&report.stepped_by);
     let wall_s = begun.elapsed().as_secs_f64();
     let failed: Vec<&str> = report.failed().map(|s| s.name).collect();
@@ -93,7 +93,7 @@ pub fn run(args: &TortureArgs) -> Result<(), AppError> {
         ))),
     };
     if args.printing.json {
-        terminal::print_json(&Document::new("torture", Body { report, wall_s }))?;
+        terminal::print_json(&Document::new("torture", TortureDocument { report, wall_s }))?;
     } else {
         terminal::print(&table(&report, wall_s, Paint::for_stdout()))?;
     }
@@ -104,7 +104,7 @@ pub fn run(args: &TortureArgs) -> Result<(), AppError> {
 fn table(report: &TortureReport, wall_s: f64, paint: Paint) -> String {
     let mut text = format!(
         "{:<18} {:>9} {:>9} {:>8} {:>8} {:>10}  {}\n",
-        "case", "passed", "no number", "m/s", "back s", "off mm", "worst seed"
+        "case", "passed", "NaN", "m/s", "back s", "off mm", "worst seed"
     );
     for s in &report.summary {
         let tone = if s.passed == s.seeds { Tone::Good } else { Tone::Warn };

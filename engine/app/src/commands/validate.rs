@@ -74,11 +74,11 @@ impl ValidateArgs {
 pub fn run(args: &ValidateArgs) -> Result<(), AppError> {
     let words = args.printing.words();
     let bar = words.bar(0, "validating");
-    let told = |all: usize| {
+    let progress = |all: usize| {
         bar.set_length(all as u64);
         bar.inc(1);
     };
-    let report = run::run(&args.options(), &told).map_err(AppError::internal)?;
+    let report = run::run(&args.options(), &progress).map_err(AppError::internal)?;
     bar.finish_and_clear();
     backend::say(&report.stepped_by);
     let [passed, gated] = report.passed;
@@ -117,14 +117,14 @@ fn table(report: &ValidationReport, paint: Paint) -> String {
     );
     line(&mut text, &paint.tone(head.trim_end(), Tone::Strong));
     for row in &report.cases {
-        line(&mut text, &told(row, paint));
+        line(&mut text, &row_text(row, paint));
     }
     let ([passed, gated], threads, wall) = (report.passed, report.threads, report.wall_s);
     line(&mut text, &format!("\n{passed} of {gated} targets met, {wall:.0} s on {threads} thread(s)"));
     text
 }
 
-fn told(row: &ValidationRow, paint: Paint) -> String {
+fn row_text(row: &ValidationRow, paint: Paint) -> String {
     let solver = row.solver_error.map_or_else(|| "-".into(), percent);
     let verdict = match (row.pass, &row.cause) {
         (None, _) => "".into(),
@@ -213,13 +213,13 @@ mod tests {
     }
 
     #[test]
-    fn a_row_tells_its_error_beside_its_time_and_why_it_missed() {
-        let text = told(&row(), Paint::none());
+    fn a_row_shows_its_error_beside_its_time_and_why_it_missed() {
+        let text = row_text(&row(), Paint::none());
         for part in ["cantilever", "Gamma 10", "1.067", "1.167", "+9.37", "-0.50", "84.2", "MISSED, 5.0 %", "coarse"] {
             assert!(text.contains(part), "{part} is not in {text}");
         }
-        let told_only = ValidationRow { pass: None, cause: None, solver_error: None, ..row() };
-        assert!(told(&told_only, Paint::none()).ends_with("84.2"));
+        let without_target = ValidationRow { pass: None, cause: None, solver_error: None, ..row() };
+        assert!(row_text(&without_target, Paint::none()).ends_with("84.2"));
     }
 
     #[test]

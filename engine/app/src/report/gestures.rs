@@ -63,7 +63,7 @@ pub struct HandRow {
     pub distance_m: f32,
     /// Frames.
     pub frames: u32,
-    /// Frames told wrong.
+    /// Frames classified wrongly.
     pub wrong: u32,
     /// Frames in which no hand was found.
     pub unseen: u32,

@@ -40,7 +40,7 @@ pub struct BodyBenchArgs {
 
 /// The report as JSON has it.
 #[derive(Debug, Serialize)]
-struct Report {
+struct BodyBenchReport {
     /// The seed by which people were drawn.
     seed: u64,
     /// One study a file.
@@ -69,7 +69,7 @@ pub fn run(args: &BodyBenchArgs) -> Result<(), AppError> {
         ))),
     };
     if args.printing.json {
-        terminal::print_json(&Document::new("bench-body", Report { seed: args.seed, studies }))?;
+        terminal::print_json(&Document::new("bench-body", BodyBenchReport { seed: args.seed, studies }))?;
     } else {
         let tables: Vec<String> = studies.iter().map(|s| table(s, Paint::for_stdout())).collect();
         terminal::print(&tables.join("\n"))?;
@@ -88,7 +88,7 @@ fn table(study: &BodyStudy, paint: Paint) -> String {
         "measure (mm)", "limit", "bias", "mean", "95 %", "max", "within"
     );
     for row in &study.measures {
-        let _ = writeln!(text, "{}", told(row, paint));
+        let _ = writeln!(text, "{}", row_text(row, paint));
     }
     let (ms, rough, bent) = (study.calibration_ms, study.roughness, study.unevenness);
     let _ = writeln!(
@@ -115,7 +115,7 @@ fn table(study: &BodyStudy, paint: Paint) -> String {
     text
 }
 
-fn told(row: &MeasureErrors, paint: Paint) -> String {
+fn row_text(row: &MeasureErrors, paint: Paint) -> String {
     let within = row.within.map_or_else(|| "-".into(), |w| format!("{:.1} %", w * 100.0));
     let limit = row.limit_mm.map_or_else(|| "follows".into(), |l| format!("{l:.0}"));
     let line = format!(

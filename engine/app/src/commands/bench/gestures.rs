@@ -72,7 +72,9 @@ fn summary(study: &GestureStudy) -> String {
         study.grips.iter().fold([0, 0, 0], |s, r| [s[0] + r.frames, s[1] + r.wrong, s[2] + r.unseen]);
     let percent = 100.0 * (wrong + unseen) as f32 / frames.max(1) as f32;
     text.push_str(&format!("false events {:4.2} a minute of what is no gesture\n", others.wrong_per_minute()));
-    text.push_str(&format!("hands        {percent:4.1} % of the frames told wrong or not at all, 1.2 to 3.5 m\n"));
+    text.push_str(&format!(
+        "hands        {percent:4.1} % of the frames classified wrongly or not at all, 1.2 to 3.5 m\n"
+    ));
     text
 }
 

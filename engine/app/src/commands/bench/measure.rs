@@ -69,7 +69,7 @@ impl MeasureBenchArgs {
 
 /// The report as JSON has it.
 #[derive(Debug, Serialize)]
-struct Report {
+struct MeasureBenchReport {
     /// The seed by which people were drawn.
     seed: u64,
     /// One study a camera.
@@ -96,7 +96,7 @@ pub fn run(args: &MeasureBenchArgs) -> Result<(), AppError> {
     let missed: Vec<String> = studies.iter().flat_map(missed).collect();
     let text: Vec<String> = studies.iter().map(|s| table(s, Paint::for_stdout())).collect();
     if args.printing.json {
-        terminal::print_json(&Document::new("bench-measure", Report { seed: args.seed, studies }))?;
+        terminal::print_json(&Document::new("bench-measure", MeasureBenchReport { seed: args.seed, studies }))?;
     } else {
         terminal::print(&text.join("\n"))?;
     }
@@ -132,7 +132,7 @@ fn table(study: &MeasuringStudy, paint: Paint) -> String {
             "in 2s"
         );
         for row in rows {
-            let _ = writeln!(text, "{}", told(row, paint));
+            let _ = writeln!(text, "{}", row_text(row, paint));
         }
     }
     let _ = writeln!(
@@ -160,7 +160,7 @@ fn table(study: &MeasuringStudy, paint: Paint) -> String {
     text
 }
 
-fn told(a: &MeasuringAgreement, paint: Paint) -> String {
+fn row_text(a: &MeasuringAgreement, paint: Paint) -> String {
     let interval = format!("{:+.1} .. {:+.1}", a.interval_mm[0], a.interval_mm[1]);
     let line = format!(
         "  {:<24} {:>6} {:>6.0} {:>+7.1} {:>17} {:>7.1} {:>7.2} {:>7.1} {:>7.1} {:>5.0}%",

@@ -1,4 +1,4 @@
-//! What is drawn of a frame: body and garments, each beneath what is worn over it.
+//! A frame as it is drawn: body and garments, each beneath what is worn over it.
 
 use glam::Vec3;
 use toile_assets::garment::Garment;
@@ -17,8 +17,8 @@ const HEADROOM: f32 = 1.04;
 /// How fast the camera follows the shopper across the floor (share of the way a frame).
 const FOLLOW: f32 = 0.35;
 
-/// What is drawn: topology and colours, which the session does not change, and room for what it does.
-pub struct Drawing {
+/// Body and garments as they are drawn: topology and colours, which stay, and room for the positions, which change.
+pub struct DrawnFrame {
     body: Vec<Vec3>,
     normals: Vec<Vec3>,
     /// Of the body, before it is drawn beneath the garments.
@@ -28,14 +28,14 @@ pub struct Drawing {
     drawn: Vec<[u32; 3]>,
     /// Body vertices under a garment.
     dressed: Vec<bool>,
-    cloths: Vec<ClothDrawing>,
+    cloths: Vec<DrawnGarment>,
     /// Where the camera looks.
     middle: Option<Vec3>,
     /// The shopper's height (m).
     stature: f32,
 }
 
-struct ClothDrawing {
+struct DrawnGarment {
     /// Where the particles are drawn: beneath the garments worn over them.
     points: Vec<Vec3>,
     /// Particles under a garment worn over this one.
@@ -47,7 +47,7 @@ struct ClothDrawing {
     colour: Vec3,
 }
 
-impl Drawing {
+impl DrawnFrame {
     /// Room for a frame's body and garments, as they are put on.
     pub fn new(frame: &Frame) -> Self {
         let (body, garments) = (frame.body(), frame.garments());
@@ -59,7 +59,7 @@ impl Drawing {
         let cloth = |(i, g): (usize, &Garment)| {
             let mut normals = vec![Vec3::ZERO; g.particles()];
             vertex_normals(&g.start, &g.triangles, &mut normals);
-            ClothDrawing {
+            DrawnGarment {
                 points: g.start.to_vec(),
                 dressed: over(i + 1).dressed(&g.start, &normals),
                 drawn: g.triangles.to_vec(),
@@ -91,11 +91,11 @@ impl Drawing {
         self
     }
 
-    /// Takes over a snapshot, from the outermost garment to the skin: each is drawn beneath what is worn over it.
-    pub fn take(&mut self, snapshot: &Snapshot) {
+    /// Updates all positions from a snapshot, from the outermost garment to the skin: each is drawn beneath what is worn over it.
+    pub fn update(&mut self, snapshot: &Snapshot) {
         let mut over: Vec<[Vec3; 3]> = Vec::new();
         for (cloth, points) in self.cloths.iter_mut().zip(&snapshot.garments).rev() {
-            let ClothDrawing { points: at, dressed, triangles, drawn, normals, .. } = cloth;
+            let DrawnGarment { points: at, dressed, triangles, drawn, normals, .. } = cloth;
             at.copy_from_slice(points);
             vertex_normals(at, triangles, normals);
             *drawn = Cover::new(over.iter().copied()).tuck(at, normals, dressed, triangles);
@@ -121,13 +121,13 @@ impl Drawing {
                 Some(map) => (Colours::Tightness(&map[i]), Material::Chart),
                 None => (Colours::One(cloth.colour), Material::Cloth),
             };
-            let ClothDrawing { points, normals, drawn: triangles, .. } = cloth;
+            let DrawnGarment { points, normals, drawn: triangles, .. } = cloth;
             surfaces.push(Surface { positions: points, normals, triangles, colours, material });
         }
         surfaces
     }
 
-    /// A camera before the place where the shopper stands, for frames of one size; it turns with nobody and never zooms.
+    /// A camera before the place where the shopper stands, for frames of one size; it never turns and never zooms.
     pub fn follow(&mut self, size: Size) -> Camera {
         let now = (self.bounds.min + self.bounds.max) * 0.5;
         let middle = self.middle.map_or(now, |m| m.lerp(now, FOLLOW));

@@ -1,6 +1,4 @@
-//! The artist: who draws the pictures of a try-on, the processor by rays or a GPU by triangles.
-
-use std::str::FromStr;
+//! What draws the pictures of a try-on: the processor by rays, or a GPU by triangles.
 
 use toile_assets::body::Body;
 use toile_assets::garment::Garment;
@@ -12,19 +10,19 @@ use toile_view::trace::{Quality, Stage};
 use crate::exit::AppError;
 
 #[cfg(feature = "view")]
-mod mirror;
+mod gpu;
 
-/// What draws.
+/// Which renderer draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Renderer {
+pub enum RendererChoice {
     /// The ray tracer, on every core.
     #[default]
     Cpu,
-    /// The mirror, on a GPU or a driver that draws on the processor.
+    /// Rasterised on a GPU, or by a driver that draws on the processor.
     Gpu,
 }
 
-impl Renderer {
+impl RendererChoice {
     /// All of them.
     pub const ALL: [Self; 2] = [Self::Cpu, Self::Gpu];
 
@@ -37,36 +35,27 @@ impl Renderer {
     }
 }
 
-impl FromStr for Renderer {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let of = Self::ALL.into_iter().find(|r| r.name() == text);
-        of.ok_or_else(|| format!("`{text}` draws nothing; choose cpu or gpu"))
-    }
-}
-
-/// Draws one shopper and what they wear.
-pub enum Artist {
+/// Draws pictures of one shopper and what they wear.
+pub enum PictureRenderer {
     /// By rays.
-    Tracer,
+    RayTracer,
     /// By triangles.
     #[cfg(feature = "view")]
-    Mirror(Box<mirror::Mirror>),
+    Gpu(Box<gpu::GpuRenderer>),
 }
 
-impl Artist {
-    /// Finds what draws; before any long work.
+impl PictureRenderer {
+    /// Opens the renderer, before any long work.
     ///
     /// # Errors
     /// [`AppError::Usage`] where a GPU is asked for that was not built in, [`AppError::Device`] where there is none.
-    pub fn open(renderer: Renderer) -> Result<Self, AppError> {
+    pub fn open(renderer: RendererChoice) -> Result<Self, AppError> {
         match renderer {
-            Renderer::Cpu => Ok(Self::Tracer),
+            RendererChoice::Cpu => Ok(Self::RayTracer),
             #[cfg(feature = "view")]
-            Renderer::Gpu => Ok(Self::Mirror(Box::new(mirror::Mirror::open()?))),
+            RendererChoice::Gpu => Ok(Self::Gpu(Box::new(gpu::GpuRenderer::open()?))),
             #[cfg(not(feature = "view"))]
-            Renderer::Gpu => Err(AppError::Usage(
+            RendererChoice::Gpu => Err(AppError::Usage(
                 "this build cannot draw on a GPU; build it with `cargo build --release --features view`, or leave out \
                  `--renderer gpu`"
                     .to_owned(),
@@ -78,20 +67,20 @@ impl Artist {
     pub fn prepare(&mut self, body: &Body, garments: &[Garment]) {
         match self {
             // Rays need nothing but the surfaces of each picture.
-            Self::Tracer => {
+            Self::RayTracer => {
                 let (_, _) = (body, garments);
             }
             #[cfg(feature = "view")]
-            Self::Mirror(mirror) => mirror.prepare(body, garments),
+            Self::Gpu(gpu) => gpu.prepare(body, garments),
         }
     }
 
-    /// Who it is, for reports.
+    /// Its name and device, for reports.
     pub fn describe(&self) -> String {
         match self {
-            Self::Tracer => Renderer::Cpu.name().to_owned(),
+            Self::RayTracer => RendererChoice::Cpu.name().to_owned(),
             #[cfg(feature = "view")]
-            Self::Mirror(mirror) => format!("{}: {}", Renderer::Gpu.name(), mirror.adapter()),
+            Self::Gpu(gpu) => format!("{}: {}", RendererChoice::Gpu.name(), gpu.adapter()),
         }
     }
 
@@ -110,7 +99,7 @@ impl Artist {
     ) -> Result<Vec<Image>, AppError> {
         match self {
             // Lines are refused where rays draw.
-            Self::Tracer if lines.is_empty() => {
+            Self::RayTracer if lines.is_empty() => {
                 let stage = Stage::build(Scene { surfaces, floor: true });
                 let shot = |camera: &Camera| {
                     let image = stage.render(camera, size, quality);
@@ -119,31 +108,18 @@ impl Artist {
                 };
                 Ok(look(&stage.bounds()).iter().map(shot).collect())
             }
-            Self::Tracer => Err(AppError::internal("lines were asked of the ray tracer")),
+            Self::RayTracer => Err(AppError::internal("lines were asked of the ray tracer")),
             #[cfg(feature = "view")]
-            Self::Mirror(mirror) => {
-                mirror.take(surfaces, lines, quality)?;
+            Self::Gpu(gpu) => {
+                gpu.update(surfaces, lines, quality)?;
                 let bounds = surfaces.iter().fold(Bounds::EMPTY, |b, s| b.union(Bounds::of(s.positions)));
                 let mut images = Vec::new();
                 for camera in look(&bounds) {
-                    images.push(mirror.shoot(&camera, size, quality)?);
+                    images.push(gpu.picture(&camera, size, quality)?);
                     done();
                 }
                 Ok(images)
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_renderer_is_found_by_its_name() {
-        for renderer in Renderer::ALL {
-            assert_eq!(renderer.name().parse(), Ok(renderer));
-        }
-        assert!("pencil".parse::<Renderer>().unwrap_err().contains("cpu or gpu"));
     }
 }

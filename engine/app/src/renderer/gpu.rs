@@ -1,4 +1,4 @@
-//! The mirror, off the screen, for the pictures of a try-on.
+//! The GPU renderer, off the screen, for the pictures of a try-on.
 
 use glam::Vec3;
 use toile_assets::body::Body;
@@ -14,7 +14,7 @@ use toile_view::trace::Quality;
 use crate::exit::AppError;
 
 /// A device, and what draws stills and frames on it; each is made when it is first asked for.
-pub struct Mirror {
+pub struct GpuRenderer {
     gpu: Gpu,
     model: Model,
     still: Option<Renderer>,
@@ -27,7 +27,7 @@ fn device(error: impl std::fmt::Display) -> AppError {
     AppError::Device(error.to_string())
 }
 
-impl Mirror {
+impl GpuRenderer {
     /// Opens the fastest adapter.
     ///
     /// # Errors
@@ -38,7 +38,7 @@ impl Mirror {
         Ok(Self { gpu, model: Model::default(), still: None, motion: None, targets: Vec::new() })
     }
 
-    /// Takes over a body and what it wears.
+    /// Prepares for a body and what it wears.
     pub fn prepare(&mut self, body: &Body, garments: &[Garment]) {
         let skin = Shape {
             rest: body.mesh.positions.clone(),
@@ -58,13 +58,13 @@ impl Mirror {
         (self.still, self.motion) = (None, None);
     }
 
-    /// What draws.
+    /// Name and device of the adapter.
     pub fn adapter(&self) -> String {
         self.gpu.to_string()
     }
 
-    /// Takes over the surfaces as they are, in the model's order.
-    pub fn take(&mut self, surfaces: &[Surface<'_>], lines: &[Line], quality: Quality) -> Result<(), AppError> {
+    /// Updates the surfaces, in the model's order.
+    pub fn update(&mut self, surfaces: &[Surface<'_>], lines: &[Line], quality: Quality) -> Result<(), AppError> {
         let renderer = self.renderer(quality)?;
         for (i, surface) in surfaces.iter().enumerate() {
             dress(renderer, i, surface).map_err(AppError::internal)?;
@@ -73,8 +73,8 @@ impl Mirror {
         Ok(())
     }
 
-    /// One picture of what was taken over.
-    pub fn shoot(&mut self, camera: &Camera, size: Size, quality: Quality) -> Result<Image, AppError> {
+    /// Draws one picture of the surfaces as they were last updated.
+    pub fn picture(&mut self, camera: &Camera, size: Size, quality: Quality) -> Result<Image, AppError> {
         let at = match self.targets.iter().position(|t| t.size() == size) {
             Some(at) => at,
             None => {
@@ -84,7 +84,7 @@ impl Mirror {
         };
         self.renderer(quality)?;
         let renderer = if quality == Quality::Still { &mut self.still } else { &mut self.motion };
-        let Some(renderer) = renderer else { return Err(AppError::internal("a renderer went missing")) };
+        let Some(renderer) = renderer else { return Err(AppError::internal("a renderer is missing")) };
         self.targets[at].shoot(&self.gpu, renderer, camera, Backdrop::Studio).map_err(device)
     }
 
