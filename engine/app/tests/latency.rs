@@ -97,7 +97,7 @@ fn a_crash_leaves_a_recording_that_replays() {
     let output = scratch.toile(&["latency", "--seconds", "5", "--crash-after", "3"]);
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(70), "{said}");
-    assert!(said.contains("toile replay latency/crash.tape"), "{said}");
+    assert!(said.contains("toile replay out/latency/crash.tape"), "{said}");
     let (code, again) = object(&scratch, &["replay", "out/latency/crash.tape", "--workers", "1", "--json"]);
     assert_eq!((code, &again["diverged_at"]), (Some(0), &Value::Null));
     assert!(again["ticks"].as_u64().unwrap() >= 2 * 120, "{again}");
