@@ -116,12 +116,12 @@ impl ServiceManager for Diary {
 
 /// Runs the service, and meanwhile on another thread what is given.
 fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
-    let (session, clock) = (session::open(None, None).unwrap(), RealClock::default());
+    let (session, clock) = (Arc::new(session::open(None, None).unwrap()), RealClock::default());
     let pose = session::filtered(&session)[0];
     let wish = Wish::default();
     let dressed = dressed::mannequin(&wish, &pose).unwrap();
     // Nobody ever comes: the stall is the only thing that happens.
-    let source = Feed::Played(Visits::new(&session.joints, clock.now_ns(), 3_600_000_000_000));
+    let source = Feed::Played(Visits::of(&session, clock.now_ns(), 3_600_000_000_000));
     let first = DressedScene::new(dressed, |frame| (Gated::new(frame), ()));
     let renderer = Display(HeadlessRenderer::default(), display);
     let parts = LoopParts { first, renderer, source, account: ThreadAccount::new(), recording: None };

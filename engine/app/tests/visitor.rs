@@ -176,17 +176,17 @@ fn serve() -> Vec<SessionState> {
     let clock = RealClock::default();
     let config = Config::parse("kiosk.toml", "[wear]\nquality = \"draft\"").unwrap();
     let setup = VisitorSetup::new(&config, clock.now_ns()).unwrap();
-    let session = session::open(None, None).unwrap();
+    let session = Arc::new(session::open(None, None).unwrap());
     let pose = session::standing(&session).unwrap()[0];
     let wish = config.wish();
     let dressed = dressed::mannequin(&wish, &pose).unwrap();
     // They stand there for as long as the visit takes.
-    let source = Feed::Played(Visits::new(&session.joints, clock.now_ns(), 0));
+    let source = Feed::Played(Visits::of(&session, clock.now_ns(), 0));
     let first = DressedScene::new(dressed, |frame| (FrameScene::new(frame), ()));
     let renderer = HeadlessRenderer::default();
     let parts = LoopParts { first, renderer, source, account: ThreadAccount::new(), recording: None };
     let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).unwrap();
-    let played = Some(ShopperSource::Recording(Arc::new(session)));
+    let played = Some(ShopperSource::Recording(session));
     let options = ServiceOptions {
         begun: Instant::now(),
         length: Some(5 * LONGEST),

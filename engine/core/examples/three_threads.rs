@@ -20,7 +20,7 @@ use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, NoCounters};
 use toile_engine::frame_loop::physics_thread::{FrameScene, PhysicsOutputs, PhysicsThread};
 use toile_engine::frame_loop::queue::bounded;
 use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
-use toile_engine::frame_loop::sensor_thread::{JointSource, SensorFrame, SensorThread};
+use toile_engine::frame_loop::sensor_thread::{FrameSource, SensorFrame, SensorThread, SourceFrame};
 use toile_engine::frame_loop::thread_roles::ThreadRole;
 use toile_engine::frame_loop::threads::{self, Stop};
 use toile_engine::triple_buffer::TripleBuffer;
@@ -37,17 +37,17 @@ struct Camera {
     frames: u64,
 }
 
-impl JointSource for Camera {
+impl FrameSource for Camera {
     fn next_ns(&self) -> Option<u64> {
         Some(self.origin_ns + self.frames * SECOND_NS / 30)
     }
 
-    fn read(&mut self) -> Option<Joints> {
+    fn read(&mut self) -> Option<SourceFrame> {
         let time_ns = self.next_ns()?;
         self.frames += 1;
         let seconds = (time_ns - self.origin_ns) as f64 / SECOND_NS as f64;
         let at = JointFrames::new(&self.skeleton, &scene::shopper(&self.skeleton, seconds as f32)).position;
-        Some(Joints::seen(time_ns, at))
+        Some(Joints::seen(time_ns, at).into())
     }
 }
 
@@ -81,7 +81,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let skeleton = body.skeleton.clone();
     let (mut frame, snapshots) = Frame::new(body, &rig, vec![dress], Settings { workers: 1, ..Settings::default() })?;
     let first = Camera { skeleton: skeleton.clone(), origin_ns: 0, frames: 0 }.read();
-    frame.dress(&first.ok_or("the camera gives no frame")?);
+    frame.dress(&first.ok_or("the camera gives no frame")?.joints);
     let (pool, _) = threads::worker_pool(2)?;
 
     // Between the threads: the latest joints, the latest snapshot, and a bounded queue of what happened.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use toile_assets::numeric::random::SplitMix64;
 use toile_engine::clock::Clock;
-use toile_engine::frame_loop::sensor_thread::JointSource;
+use toile_engine::frame_loop::sensor_thread::{FrameSource, SourceFrame};
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::{Joints, TrackedJoint};
 
@@ -104,12 +104,12 @@ fn stamp(frame: u64) -> u64 {
     frame / CAMERA_HZ * SECOND_NS + frame % CAMERA_HZ * SECOND_NS / CAMERA_HZ
 }
 
-impl<C: Clock + Send> JointSource for Camera<C> {
+impl<C: Clock + Send> FrameSource for Camera<C> {
     fn next_ns(&self) -> Option<u64> {
         Some(self.origin_ns + stamp(self.next) + DELAY_NS)
     }
 
-    fn read(&mut self) -> Option<Joints> {
+    fn read(&mut self) -> Option<SourceFrame> {
         // What nobody read is overwritten.
         let since = self.clock.now_ns().saturating_sub(self.origin_ns + DELAY_NS);
         let newest = since / SECOND_NS * CAMERA_HZ + since % SECOND_NS * CAMERA_HZ / SECOND_NS;
@@ -129,6 +129,6 @@ impl<C: Clock + Send> JointSource for Camera<C> {
             Some(Kind::StampsBehind) => at.saturating_sub(DAY_NS),
             _ => at,
         };
-        Some(Joints { time_ns, ..joints })
+        Some(Joints { time_ns, ..joints }.into())
     }
 }

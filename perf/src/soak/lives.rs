@@ -13,7 +13,7 @@ use toile_engine::frame_loop::event::NoCounters;
 use toile_engine::frame_loop::physics_thread::{FrameScene, Scene};
 use toile_engine::frame_loop::queue::Sender;
 use toile_engine::frame_loop::render_thread::Renderer;
-use toile_engine::frame_loop::sensor_thread::{JointSource, SensorThread};
+use toile_engine::frame_loop::sensor_thread::{FrameSource, SensorThread};
 use toile_engine::meter::PERIOD_NS;
 use toile_fitting::live::assembly::{PhysicsLoop, RenderLoop};
 use toile_fitting::live::running::Restart;
@@ -142,7 +142,7 @@ impl<T: Telling, C: Clock> ThreadLoop for Lived<T, C> {
     }
 }
 
-impl<S: JointSource, C: Clock> Telling for SensorThread<S, C> {
+impl<S: FrameSource, C: Clock> Telling for SensorThread<S, C> {
     fn sign(&mut self) -> Option<Sign> {
         None
     }

@@ -3,6 +3,7 @@
 
 use toile_engine::frame::Frame;
 use toile_engine::frame_loop::physics_thread::Scene;
+use toile_engine::frame_loop::sensor_thread::ObservedFrame;
 use toile_fitting::dress::dressed::Dressed;
 use toile_fitting::dress::session;
 use toile_fitting::live::dresser::{DressJob, DressOutcome, Dresser, ShopperSource};
@@ -56,8 +57,8 @@ pub trait SessionController<S, O> {
     /// The state of the session.
     fn state(&self) -> SessionState;
 
-    /// Takes a frame of the sensor, unfiltered.
-    fn frame(&mut self, frame: Joints);
+    /// Takes a frame of the sensor, as it came and filtered.
+    fn frame(&mut self, frame: ObservedFrame);
 
     /// Takes the result of a job that it gave; mannequins are not its own.
     fn work(&mut self, work: DressOutcome);
@@ -118,7 +119,8 @@ impl<S: Scene, O> SessionController<S, O> for HeadlessController {
         self.session.state()
     }
 
-    fn frame(&mut self, frame: Joints) {
+    fn frame(&mut self, frame: ObservedFrame) {
+        let frame = frame.raw;
         self.seen = (frame.time_ns, session::is_present(&frame));
         if self.session.state() == SessionState::Measuring && self.seen.1 && self.model.len() < MOST_FRAMES {
             self.model.push(frame);

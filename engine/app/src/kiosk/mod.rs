@@ -205,8 +205,9 @@ fn feed(config: &Config, session: Session, clock: RealClock) -> Result<(Feed, Op
             |e| AppError::Device(format!("nothing can be received at {address} ({e}); name a free one in sensor.vmc"));
         return Ok((Feed::listen(address, clock).map_err(refused)?, None));
     }
-    let visits = Visits::new(&session.joints, clock.now_ns(), config::ns(config.sensor.pause_s));
-    Ok((Feed::Played(visits), Some(ShopperSource::Recording(Arc::new(session)))))
+    let session = Arc::new(session);
+    let visits = Visits::of(&session, clock.now_ns(), config::ns(config.sensor.pause_s));
+    Ok((Feed::Played(visits), Some(ShopperSource::Recording(session))))
 }
 
 fn workers() -> usize {

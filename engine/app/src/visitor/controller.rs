@@ -3,10 +3,10 @@
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::queue::Sender;
+use toile_engine::frame_loop::sensor_thread::ObservedFrame;
 use toile_engine::triple_buffer::Writer;
 use toile_fitting::dress::session;
 use toile_fitting::live::dresser::{DressOutcome, ShopperSource};
-use toile_sensors::filter::{FilterSettings, JointFilter};
 use toile_sensors::frame::Joints;
 use toile_track::gesture::Gestures;
 
@@ -69,7 +69,6 @@ pub struct VisitController<'a, O> {
     /// The recording that shoppers are measured from, where one is played.
     played: Option<ShopperSource>,
     presence: PresenceTracker,
-    filter: JointFilter,
     gestures: Gestures,
     /// When a frame last came (ns), what was seen in it, and the last in which somebody stood.
     seen: (u64, Presence),
@@ -100,7 +99,6 @@ impl<'a, O> VisitController<'a, O> {
             worker: DressingWorker::new(context),
             played,
             presence: PresenceTracker::new(mark),
-            filter: JointFilter::new(FilterSettings::default()),
             gestures: Gestures::new(),
             seen: (0, Presence::default()),
             pose: None,
@@ -224,18 +222,19 @@ impl<S: Scene, O> SessionController<S, O> for VisitController<'_, O> {
         self.model.state()
     }
 
-    fn frame(&mut self, frame: Joints) {
-        self.seen = (frame.time_ns, self.presence.push(&frame));
-        let filtered = self.filter.push(&frame);
+    fn frame(&mut self, frame: ObservedFrame) {
+        let ObservedFrame { raw, filtered, depth } = frame;
+        self.seen = (raw.time_ns, self.presence.push(&raw));
         if session::is_present(&filtered) {
             self.pose = Some(filtered);
         }
-        self.made.extend(self.gestures.push(&filtered, None).into_iter().flatten().map(|event| event.gesture));
+        let depth = depth.as_ref().map(|image| image.frame());
+        self.made.extend(self.gestures.push(&filtered, depth).into_iter().flatten().map(|event| event.gesture));
         if let Some(measuring) = &mut self.measuring
-            && session::is_present(&frame)
+            && session::is_present(&raw)
             && measuring.frames.len() < MOST_FRAMES
         {
-            measuring.frames.push(frame);
+            measuring.frames.push(raw);
         }
     }
 

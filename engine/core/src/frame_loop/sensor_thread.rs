@@ -1,20 +1,69 @@
 //! Sense: the sensor's life. A frame comes, is filtered, and is published as the latest.
 
+use std::fmt::Debug;
+use std::sync::Arc;
+
 use toile_sensors::filter::JointFilter;
-use toile_sensors::frame::Joints;
+use toile_sensors::frame::{DepthFrame, Joints};
 
 use super::ThreadLoop;
+use super::queue::Sender;
 use crate::clock::Clock;
 use crate::meter::Meter;
 use crate::triple_buffer::Writer;
 
+/// Frames that wait to be looked at by whoever observes the sensor: two seconds of 30 Hz.
+pub const OBSERVED: usize = 64;
+
+/// The name of the bound, as warnings give it.
+pub const OBSERVED_NAME: &str = "OBSERVED (engine/core/src/frame_loop/sensor_thread.rs)";
+
+/// A depth image that is shared and not copied on its way: a camera's own, or one of a recording that is held as a whole.
+pub trait DepthImage: Debug + Send + Sync {
+    /// The image.
+    fn frame(&self) -> &DepthFrame;
+}
+
+impl DepthImage for DepthFrame {
+    fn frame(&self) -> &DepthFrame {
+        self
+    }
+}
+
+/// What a sensor gives at a moment: joints with the hands' states, and depth of about the same time where it has any.
+#[derive(Debug, Clone)]
+pub struct SourceFrame {
+    /// The joints as the sensor has them, stamped on the loop's clock.
+    pub joints: Joints,
+    /// The depth image, shared: nothing is copied on its way.
+    pub depth: Option<Arc<dyn DepthImage>>,
+}
+
+impl From<Joints> for SourceFrame {
+    /// A frame of a sensor without depth.
+    fn from(joints: Joints) -> Self {
+        Self { joints, depth: None }
+    }
+}
+
+/// A frame as the sensor thread took it, for whoever observes the sensor beside the physics. It was filtered once, for both.
+#[derive(Debug, Clone)]
+pub struct ObservedFrame {
+    /// The joints as the sensor had them, with a stamp that can be believed: what measures are taken from.
+    pub raw: Joints,
+    /// The same after the filter, as the physics has them.
+    pub filtered: Joints,
+    /// The depth image, where there is one.
+    pub depth: Option<Arc<dyn DepthImage>>,
+}
+
 /// Where raw frames come from: a camera, a recording, a generator of faults.
-pub trait JointSource: Send {
+pub trait FrameSource: Send {
     /// When the next frame arrives at the earliest, on the loop's clock (ns); none where there are no more.
     fn next_ns(&self) -> Option<u64>;
 
     /// The frame that has arrived, stamped on the loop's clock; none where nothing is there after all.
-    fn read(&mut self) -> Option<Joints>;
+    fn read(&mut self) -> Option<SourceFrame>;
 }
 
 /// A recording played in time, again and again: each frame arrives at the time that is its stamp.
@@ -55,15 +104,15 @@ impl Playback {
     }
 }
 
-impl JointSource for Playback {
+impl FrameSource for Playback {
     fn next_ns(&self) -> Option<u64> {
         self.place(self.next).map(|(_, ns)| self.origin_ns + ns)
     }
 
-    fn read(&mut self) -> Option<Joints> {
+    fn read(&mut self) -> Option<SourceFrame> {
         let (i, ns) = self.place(self.next)?;
         self.next += 1;
-        Some(Joints { time_ns: self.origin_ns + ns, ..self.frames[i] })
+        Some(Joints { time_ns: self.origin_ns + ns, ..self.frames[i] }.into())
     }
 }
 
@@ -98,6 +147,7 @@ pub struct SensorThread<S, C> {
     clock: C,
     filter: JointFilter,
     writer: Writer<SensorFrame>,
+    observer: Option<Sender<ObservedFrame>>,
     count: u64,
     from_ns: u64,
     last_ns: Option<u64>,
@@ -109,7 +159,7 @@ pub struct SensorThread<S, C> {
     pub filtering: Meter,
 }
 
-impl<S: JointSource, C: Clock> SensorThread<S, C> {
+impl<S: FrameSource, C: Clock> SensorThread<S, C> {
     /// At load.
     pub fn new(source: S, clock: C, writer: Writer<SensorFrame>) -> Self {
         Self {
@@ -117,6 +167,7 @@ impl<S: JointSource, C: Clock> SensorThread<S, C> {
             clock,
             filter: JointFilter::default(),
             writer,
+            observer: None,
             count: 0,
             from_ns: 0,
             last_ns: None,
@@ -130,6 +181,12 @@ impl<S: JointSource, C: Clock> SensorThread<S, C> {
     #[must_use]
     pub fn metering_from(self, from_ns: u64) -> Self {
         Self { from_ns, ..self }
+    }
+
+    /// The same, whose frames somebody else looks at too.
+    #[must_use]
+    pub fn observed_by(self, observer: Sender<ObservedFrame>) -> Self {
+        Self { observer: Some(observer), ..self }
     }
 
     /// A frame with a stamp that can be believed; none where it is no news.
@@ -151,20 +208,23 @@ impl<S: JointSource, C: Clock> SensorThread<S, C> {
     }
 }
 
-impl<S: JointSource, C: Clock> ThreadLoop for SensorThread<S, C> {
+impl<S: FrameSource, C: Clock> ThreadLoop for SensorThread<S, C> {
     fn run_due(&mut self) -> Option<u64> {
         let due = self.source.next_ns()?;
         if self.clock.now_ns() < due {
             return Some(due);
         }
-        if let Some(raw) = self.source.read()
-            && let Some(raw) = self.stamped(raw, due)
+        if let Some(SourceFrame { joints, depth }) = self.source.read()
+            && let Some(raw) = self.stamped(joints, due)
         {
             // It has been here since it was due, however late this thread is: nothing is left out of its latency.
             let arrived_ns = due.max(raw.time_ns);
             let joints = self.filter.push(&raw);
             self.count += 1;
             self.writer.publish(SensorFrame { joints, arrived_ns, number: self.count });
+            if let Some(observer) = &mut self.observer {
+                observer.push(ObservedFrame { raw, filtered: joints, depth });
+            }
             if arrived_ns >= self.from_ns {
                 self.filtering.add(self.clock.now_ns().saturating_sub(arrived_ns));
             }
@@ -191,12 +251,12 @@ mod tests {
             (5_200, 5_180),
         ];
         struct Told(Vec<(u64, u64)>);
-        impl JointSource for Told {
+        impl FrameSource for Told {
             fn next_ns(&self) -> Option<u64> {
                 self.0.first().map(|t| t.0 * MS)
             }
-            fn read(&mut self) -> Option<Joints> {
-                Some(Joints::absent(self.0.remove(0).1 * MS))
+            fn read(&mut self) -> Option<SourceFrame> {
+                Some(Joints::absent(self.0.remove(0).1 * MS).into())
             }
         }
         let clock = crate::clock::SimClock::default();
@@ -219,7 +279,7 @@ mod tests {
         let mut source = Playback::new(&frames, 1_000, 3);
         let mut times = Vec::new();
         while let Some(due) = source.next_ns() {
-            let frame = source.read().unwrap();
+            let frame = source.read().unwrap().joints;
             assert_eq!(frame.time_ns, due);
             times.push(due - 1_000);
         }

@@ -13,14 +13,14 @@ use toile_engine::frame_loop::physics_thread::{PhysicsOutputs, PhysicsThread, Sc
 use toile_engine::frame_loop::queue::{Capacity, Receiver, Sender, bounded};
 use toile_engine::frame_loop::recording::Entry;
 use toile_engine::frame_loop::render_thread::{RenderThread, Renderer, SceneView};
-use toile_engine::frame_loop::sensor_thread::{JointSource, SensorFrame, SensorThread};
+use toile_engine::frame_loop::sensor_thread::{
+    FrameSource, OBSERVED, OBSERVED_NAME, ObservedFrame, SensorFrame, SensorThread,
+};
 use toile_engine::triple_buffer::TripleBuffer;
-use toile_sensors::frame::Joints;
 
 use super::live_scene::{LiveScene, STEP_REPORTS, STEP_REPORTS_NAME, StepReport, WatchedRenderer};
 use super::running::Loops;
 use super::scene_changer::DressedScene;
-use super::source::{FRAMES, FRAMES_NAME, Tapped};
 use super::watchdog::Progress;
 
 /// What the loop begins with.
@@ -51,7 +51,7 @@ pub struct LoopOptions {
 }
 
 /// The sensor thread's loop.
-pub type SensorLoop<F, C> = SensorThread<Tapped<F>, C>;
+pub type SensorLoop<F, C> = SensorThread<F, C>;
 
 /// The physics thread's loop.
 pub type PhysicsLoop<S, C, A> = PhysicsThread<LiveScene<S>, C, A>;
@@ -74,8 +74,8 @@ pub struct LoopQueues {
     pub events: Receiver<Event>,
     /// What each step came to.
     pub step_reports: Receiver<StepReport>,
-    /// What the sensor saw, unfiltered.
-    pub frames: Receiver<Joints>,
+    /// What the sensor saw, as it came and filtered.
+    pub frames: Receiver<ObservedFrame>,
     /// What the watchdog looks at.
     pub progress: Arc<Progress>,
 }
@@ -102,7 +102,7 @@ pub fn assemble<S, E, F, A, C>(parts: LoopParts<S, E, F, A>, clock: &C, options:
 where
     S: Scene,
     E: Renderer,
-    F: JointSource,
+    F: FrameSource,
     A: CounterSource,
     C: Clock + Clone,
 {
@@ -111,10 +111,10 @@ where
     let progress = Arc::new(Progress::default());
     let (event_sender, events) = bounded(EVENTS_NAME, EVENTS);
     let (report_sender, step_reports) = bounded(STEP_REPORTS_NAME, STEP_REPORTS);
-    let (tap, frames) = bounded(FRAMES_NAME, FRAMES);
+    let (observer, frames) = bounded(OBSERVED_NAME, OBSERVED);
     let ((scenes, next_scene), (views, next_view)) = (handover(), handover());
     let TripleBuffer { writer, reader: seen } = TripleBuffer::new(&SensorFrame::default());
-    let sensor = SensorThread::new(Tapped::new(source, tap), clock.clone(), writer).metering_from(metered_from_ns);
+    let sensor = SensorThread::new(source, clock.clone(), writer).metering_from(metered_from_ns).observed_by(observer);
     let scene = LiveScene::new(first.scene, first.still).reporting(report_sender, progress.clone());
     let outputs = PhysicsOutputs { events: event_sender, recording };
     let physics = PhysicsThread::new(scene, clock.clone(), begin_ns, seen, outputs, account)

@@ -6,7 +6,7 @@ use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::queue::Capacity;
 use toile_engine::frame_loop::render_thread::Renderer;
-use toile_engine::frame_loop::sensor_thread::JointSource;
+use toile_engine::frame_loop::sensor_thread::FrameSource;
 use toile_engine::meter::PERIOD_NS;
 
 use super::assembly::{self, LoopOptions, LoopParts, LoopQueues, PhysicsLoop, RenderLoop, SceneHandover, SensorLoop};
@@ -29,7 +29,7 @@ pub type EndedLive<S, E, F> =
     EndedLoops<SensorLoop<F, RealClock>, PhysicsLoop<S, RealClock, ThreadAccount>, RenderLoop<E, RealClock>>;
 
 /// The loop while it runs.
-pub struct LiveLoop<S: Scene, E: Renderer, F: JointSource> {
+pub struct LiveLoop<S: Scene, E: Renderer, F: FrameSource> {
     /// The threads.
     pub threads: LiveThreads<S, E, F>,
     /// What they report.
@@ -40,7 +40,7 @@ impl<S, E, F> LiveLoop<S, E, F>
 where
     S: Scene + Send + 'static,
     E: Renderer + 'static,
-    F: JointSource + 'static,
+    F: FrameSource + 'static,
 {
     /// Joins the parts and starts the threads. Also gives the ends by which scenes are handed over.
     ///

@@ -1,20 +1,16 @@
 //! What the sensor's thread reads: a recording played round after round with nobody there in between, or a live sender.
 
+use std::fmt;
 use std::io;
 use std::net::SocketAddr;
+use std::sync::Arc;
 
 use toile_engine::clock::{Clock, RealClock};
-use toile_engine::frame_loop::queue::Sender;
-use toile_engine::frame_loop::sensor_thread::JointSource;
+use toile_engine::frame_loop::sensor_thread::{DepthImage, FrameSource, SourceFrame};
 use toile_sensors::clock::SECOND_NS;
-use toile_sensors::frame::Joints;
+use toile_sensors::frame::{DepthFrame, Joints};
+use toile_sensors::source::Session;
 use toile_sensors::source::vmc::VmcReceiver;
-
-/// Frames that wait to be looked at by the service: two seconds of 30 Hz.
-pub const FRAMES: usize = 64;
-
-/// The name of the bound, as warnings give it.
-pub const FRAMES_NAME: &str = "FRAMES (engine/fitting/src/live/source.rs)";
 
 /// Time between two frames in which nobody is seen (ns): a camera of 30 Hz.
 const EMPTY_NS: u64 = SECOND_NS / 30;
@@ -26,7 +22,7 @@ const LOOK_NS: u64 = SECOND_NS / 240;
 /// pause too.
 #[derive(Debug, Clone)]
 pub struct Visits {
-    frames: Box<[Joints]>,
+    frames: Box<[SourceFrame]>,
     origin_ns: u64,
     /// Frames of a pause.
     empty: u64,
@@ -37,25 +33,73 @@ pub struct Visits {
 }
 
 impl Visits {
+    /// Of a recording, with the depth of about the time of each frame, from this time on (ns), for ever.
+    pub fn of(session: &Arc<Session>, origin_ns: u64, pause_ns: u64) -> Self {
+        let frame = |joints: &Joints| {
+            let index = depth_at(session, joints.time_ns);
+            let image = |index| Arc::new(RecordedDepth { session: session.clone(), index }) as Arc<dyn DepthImage>;
+            SourceFrame { joints: *joints, depth: index.map(image) }
+        };
+        Self::new(session.joints.iter().map(frame).collect(), origin_ns, pause_ns)
+    }
+
     /// From this time on (ns), for ever.
-    pub fn new(frames: &[Joints], origin_ns: u64, pause_ns: u64) -> Self {
-        let first = frames.first().map_or(0, |f| f.time_ns);
-        let frames: Box<[Joints]> = frames.iter().map(|f| Joints { time_ns: f.time_ns - first, ..*f }).collect();
+    pub fn new(mut frames: Box<[SourceFrame]>, origin_ns: u64, pause_ns: u64) -> Self {
+        let first = frames.first().map_or(0, |f| f.joints.time_ns);
+        frames.iter_mut().for_each(|f| f.joints.time_ns -= first);
         let empty = pause_ns / EMPTY_NS;
         let pause_ns = empty * EMPTY_NS;
-        let round_ns = pause_ns + frames.last().map_or(0, |f| f.time_ns) + EMPTY_NS;
+        let round_ns = pause_ns + frames.last().map_or(0, |f| f.joints.time_ns) + EMPTY_NS;
         Self { frames, origin_ns, empty, pause_ns, round_ns, next: 0 }
     }
 
-    /// The frame at a place of the endless sequence.
-    fn place(&self, at: u64) -> Joints {
+    /// The frame at a place of the endless sequence, its place among the recorded ones, and its time (ns).
+    fn place(&self, at: u64) -> (Option<&SourceFrame>, u64) {
         let count = self.empty + self.frames.len() as u64;
         let (round, i) = (at / count, at % count);
         let begin = self.origin_ns + round * self.round_ns;
         match i.checked_sub(self.empty).and_then(|i| self.frames.get(i as usize)) {
-            Some(frame) => Joints { time_ns: begin + self.pause_ns + frame.time_ns, ..*frame },
-            None => Joints::absent(begin + i * EMPTY_NS),
+            Some(frame) => (Some(frame), begin + self.pause_ns + frame.joints.time_ns),
+            None => (None, begin + i * EMPTY_NS),
         }
+    }
+
+    fn frame(&self, at: u64) -> SourceFrame {
+        match self.place(at) {
+            (Some(frame), time_ns) => {
+                SourceFrame { joints: Joints { time_ns, ..frame.joints }, depth: frame.depth.clone() }
+            }
+            (None, time_ns) => Joints::absent(time_ns).into(),
+        }
+    }
+}
+
+/// Farthest that depth may be from the joints that it is shown with (ns): half of a frame of 30 Hz.
+const SAME_MOMENT_NS: u64 = SECOND_NS / 60;
+
+/// The depth image of a session at about this time.
+fn depth_at(session: &Session, time_ns: u64) -> Option<usize> {
+    let after = session.depth.partition_point(|depth| depth.time_ns < time_ns);
+    let near = |i: &usize| session.depth.get(*i).is_some_and(|d| d.time_ns.abs_diff(time_ns) <= SAME_MOMENT_NS);
+    [after.wrapping_sub(1), after].into_iter().filter(near).min_by_key(|i| session.depth[*i].time_ns.abs_diff(time_ns))
+}
+
+/// One depth image of a recording, which is held as a whole.
+#[derive(Clone)]
+struct RecordedDepth {
+    session: Arc<Session>,
+    index: usize,
+}
+
+impl fmt::Debug for RecordedDepth {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "depth image {} of {}", self.index, self.session.name)
+    }
+}
+
+impl DepthImage for RecordedDepth {
+    fn frame(&self) -> &DepthFrame {
+        &self.session.depth[self.index]
     }
 }
 
@@ -87,18 +131,18 @@ impl Feed {
     }
 }
 
-impl JointSource for Feed {
+impl FrameSource for Feed {
     fn next_ns(&self) -> Option<u64> {
         Some(match self {
-            Self::Played(visits) => visits.place(visits.next).time_ns,
+            Self::Played(visits) => visits.place(visits.next).1,
             Self::Live(live) => live.next_ns,
         })
     }
 
-    fn read(&mut self) -> Option<Joints> {
+    fn read(&mut self) -> Option<SourceFrame> {
         match self {
             Self::Played(visits) => {
-                let frame = visits.place(visits.next);
+                let frame = visits.frame(visits.next);
                 visits.next += 1;
                 Some(frame)
             }
@@ -107,35 +151,9 @@ impl JointSource for Feed {
                 live.next_ns = now + LOOK_NS;
                 // Stamped as it arrives: a sender's own clock is seconds off after some days. A broken socket gives
                 // nothing, which the loop tells as a lost sensor.
-                live.receiver.poll(now).ok().flatten().map(|joints| Joints { time_ns: now, ..joints })
+                live.receiver.poll(now).ok().flatten().map(|joints| Joints { time_ns: now, ..joints }.into())
             }
         }
-    }
-}
-
-/// A source whose frames somebody else looks at too, as they come: unfiltered.
-#[derive(Debug)]
-pub struct Tapped<F> {
-    feed: F,
-    tap: Sender<Joints>,
-}
-
-impl<F> Tapped<F> {
-    /// Each frame of the feed is also pushed there.
-    pub fn new(feed: F, tap: Sender<Joints>) -> Self {
-        Self { feed, tap }
-    }
-}
-
-impl<F: JointSource> JointSource for Tapped<F> {
-    fn next_ns(&self) -> Option<u64> {
-        self.feed.next_ns()
-    }
-
-    fn read(&mut self) -> Option<Joints> {
-        let frame = self.feed.read()?;
-        self.tap.push(frame);
-        Some(frame)
     }
 }
 
@@ -143,16 +161,17 @@ impl<F: JointSource> JointSource for Tapped<F> {
 mod tests {
     use super::*;
     use toile_assets::skeleton::Joint;
+    use toile_sensors::frame::Intrinsics;
 
     #[test]
     fn a_recording_comes_again_and_again_and_nobody_is_there_between() {
         let mut frames = [500, 500 + EMPTY_NS].map(Joints::absent);
         frames.iter_mut().for_each(|frame| frame.at_mut(Joint::Pelvis).confidence = 1.0);
-        let mut feed = Feed::Played(Visits::new(&frames, 1_000, 2 * EMPTY_NS + 7));
+        let mut feed = Feed::Played(Visits::new(frames.map(SourceFrame::from).into(), 1_000, 2 * EMPTY_NS + 7));
         let mut told = Vec::new();
         for _ in 0..9 {
             let due = feed.next_ns().unwrap();
-            let frame = feed.read().unwrap();
+            let frame = feed.read().unwrap().joints;
             assert_eq!(frame.time_ns, due);
             told.push(((due - 1_000) / EMPTY_NS, frame.at(Joint::Pelvis).is_believed()));
         }
@@ -163,8 +182,8 @@ mod tests {
     #[test]
     fn a_pause_of_nothing_plays_on() {
         let frames = [0, EMPTY_NS].map(Joints::absent);
-        let mut feed = Feed::Played(Visits::new(&frames, 0, 0));
-        let times: Vec<u64> = (0..4).map(|_| feed.read().unwrap().time_ns).collect();
+        let mut feed = Feed::Played(Visits::new(frames.map(SourceFrame::from).into(), 0, 0));
+        let times: Vec<u64> = (0..4).map(|_| feed.read().unwrap().joints.time_ns).collect();
         assert_eq!(times, [0, EMPTY_NS, 2 * EMPTY_NS, 3 * EMPTY_NS]);
     }
 
@@ -176,5 +195,24 @@ mod tests {
         clock.sleep_until(due);
         assert!(feed.read().is_none());
         assert!(feed.next_ns().unwrap() >= due + LOOK_NS);
+    }
+
+    #[test]
+    fn depth_comes_with_the_joints_of_its_moment() {
+        let depth = |time_ns: u64| DepthFrame {
+            time_ns,
+            intrinsics: Intrinsics { width: 1, height: 1, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0 },
+            camera_to_world: glam::Affine3A::IDENTITY,
+            depth_mm: Box::new([0]),
+        };
+        let session = Arc::new(Session {
+            joints: [0, 33, 66, 100].map(|ms| Joints::absent(ms * 1_000_000)).to_vec(),
+            depth: [3, 70].map(|ms| depth(ms * 1_000_000)).to_vec(),
+            ..Session::default()
+        });
+        let mut feed = Feed::Played(Visits::of(&session, 0, 0));
+        let seen: Vec<Option<u64>> =
+            (0..4).map(|_| feed.read().unwrap().depth.map(|d| d.frame().time_ns / 1_000_000)).collect();
+        assert_eq!(seen, [Some(3), None, Some(70), None]);
     }
 }
