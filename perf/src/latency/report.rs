@@ -21,7 +21,7 @@ pub struct Stage {
 }
 
 /// Bars a decade of a plot.
-const BARS: f64 = 12.0;
+pub const BARS: f64 = 12.0;
 
 impl Stage {
     /// Of a meter.

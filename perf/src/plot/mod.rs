@@ -6,6 +6,7 @@
 
 pub mod axis;
 pub mod chart;
+pub mod histogram;
 pub mod page;
 pub mod raster;
 pub mod svg;
@@ -71,6 +72,8 @@ pub enum Mark {
         size: [f64; 2],
         /// Its colour.
         colour: Colour,
+        /// What a page shows where somebody points at it.
+        hint: Option<String>,
     },
     /// One line of text, centred on a height.
     Text {

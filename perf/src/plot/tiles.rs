@@ -52,14 +52,14 @@ impl Tiles {
         for (r, row) in self.cells.iter().enumerate() {
             for (c, cell) in row.iter().enumerate() {
                 let at = [left + CELL[0] * c as f64, top + CELL[1] * r as f64];
-                marks.push(Mark::Box { at, size: CELL.map(|s| s - 2.0), colour: cell.colour });
+                marks.push(Mark::Box { at, size: CELL.map(|s| s - 2.0), colour: cell.colour, hint: None });
                 marks.push(text(at[0] + 0.5 * CELL[0], at[1] + 0.5 * CELL[1], Anchor::Middle, &cell.words));
             }
         }
         let below = top + CELL[1] * self.rows.len() as f64 + 24.0;
         for (k, (colour, words)) in self.legend.iter().enumerate() {
             let y = below + 26.0 * k as f64;
-            marks.push(Mark::Box { at: [left, y - 8.0], size: [24.0, 16.0], colour: *colour });
+            marks.push(Mark::Box { at: [left, y - 8.0], size: [24.0, 16.0], colour: *colour, hint: None });
             marks.push(text(left + 34.0, y, Anchor::Left, words));
         }
         let width = left + CELL[0] * self.columns.len() as f64 + 60.0;
