@@ -2,7 +2,7 @@
 
 use toile_fitting::live::report::{Quantiles, QueueUse, ThreadPlacement};
 
-use super::report::{BARS, Goal, Latency, Stage};
+use super::report::{BARS, Goal, Latency, LatencyStage};
 use crate::plot::histogram::Histogram;
 use crate::plot::page::{Entry, Page};
 
@@ -21,11 +21,9 @@ pub fn page(report: &Latency, machine: &str, scene: &str) -> String {
     page.section("Goals").table(&["goal", "limit us", "reached us", ""], report.goals.iter().map(goal));
     page.section("What was late").paragraph(&misses(report));
     quality(&mut page, report);
-    page.section("Stages").table(
-        &["stage", "budget us", "p50", "p99", "p99.9", "max", "count"],
-        report.stages.iter().map(stage),
-    );
-    for Stage { name, bars, budget_us, .. } in &report.stages {
+    page.section("Stages")
+        .table(&["stage", "budget us", "p50", "p99", "p99.9", "max", "count"], report.stages.iter().map(stage));
+    for LatencyStage { name, bars, budget_us, .. } in &report.stages {
         let budget_us = budget_us.map(|us| us as f64);
         page.drawing(&Histogram { title: name, bars, bars_per_decade: BARS, budget_us }.draw());
     }
@@ -71,7 +69,7 @@ fn quality(page: &mut Page, report: &Latency) {
     page.table(&["given up", "steps"], rungs);
 }
 
-fn stage(stage: &Stage) -> Vec<Entry> {
+fn stage(stage: &LatencyStage) -> Vec<Entry> {
     let budget = stage.budget_us.map_or_else(String::new, |us| us.to_string());
     let Quantiles { p50, p99, p999, max, count } = stage.us;
     let times = [p50, p99, p999, max].map(|us| Entry::Figure(format!("{us:.1}")));

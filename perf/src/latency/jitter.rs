@@ -15,13 +15,13 @@ use super::LatencyError;
 
 /// The empty loop.
 #[derive(Debug)]
-struct Empty {
+struct EmptyLoop {
     clock: RealClock,
     schedule: Schedule,
     late: Meter,
 }
 
-impl ThreadLoop for Empty {
+impl ThreadLoop for EmptyLoop {
     fn run_due(&mut self) -> Option<u64> {
         let now = self.clock.now_ns();
         match self.schedule.due(now) {
@@ -41,7 +41,7 @@ impl ThreadLoop for Empty {
 pub fn measure(length: Duration) -> Result<Meter, LatencyError> {
     let clock = RealClock::default();
     let (stop, schedule) = (Stop::default(), Schedule::new(clock.now_ns() + PERIOD_NS, STEP_HZ));
-    let life = threads::start(ThreadRole::Physics, Empty { clock, schedule, late: Meter::new() }, clock, &stop)?;
+    let life = threads::start(ThreadRole::Physics, EmptyLoop { clock, schedule, late: Meter::new() }, clock, &stop)?;
     thread::sleep(length);
     stop.now();
     life.join().map(|empty| empty.late).ok_or(LatencyError::Died("jitter"))

@@ -12,12 +12,12 @@ const BYTES: usize = 32 << 20;
 
 /// Threads of load; they end when this does.
 #[derive(Debug)]
-pub struct Load {
+pub struct LoadThreads {
     stop: Arc<AtomicBool>,
     threads: Vec<JoinHandle<()>>,
 }
 
-impl Load {
+impl LoadThreads {
     /// So many threads, at normal priority and on any core.
     ///
     /// # Errors
@@ -33,7 +33,7 @@ impl Load {
     }
 }
 
-impl Drop for Load {
+impl Drop for LoadThreads {
     fn drop(&mut self) {
         // Relaxed: the flag carries nothing else.
         self.stop.store(true, Relaxed);

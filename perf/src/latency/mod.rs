@@ -12,18 +12,18 @@ mod html;
 mod jitter;
 mod load;
 mod report;
-mod trial;
+mod run;
 
 pub use html::page;
-pub use report::{Goal, Latency, Quality, Stage};
-pub use trial::{Cast, run};
+pub use report::{Goal, Latency, LatencyStage, QualityFigures};
+pub use run::{LatencyInputs, run};
 
 use thiserror::Error;
 use toile_engine::workers::WorkerPoolError;
 
 /// What is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Options {
+pub struct LatencyOptions {
     /// Length of the run (s), after a first second.
     pub seconds: u32,
     /// Threads of load beside the loop.

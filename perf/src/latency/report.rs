@@ -8,7 +8,7 @@ use toile_fitting::live::report::{Attributed, Quantiles, QueueUse, ThreadPlaceme
 
 /// One stage between the sensor and the picture.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Stage {
+pub struct LatencyStage {
     /// Its name.
     pub name: &'static str,
     /// What it may take (us), where it has a budget.
@@ -23,7 +23,7 @@ pub struct Stage {
 /// Bars a decade of a plot.
 pub const BARS: f64 = 12.0;
 
-impl Stage {
+impl LatencyStage {
     /// Of a meter.
     pub fn of(name: &'static str, budget_us: Option<u64>, meter: &Meter) -> Self {
         let mut bars = BTreeMap::new();
@@ -39,7 +39,7 @@ impl Stage {
 
 /// The quality that the run was at, and the error that comes of it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Quality {
+pub struct QualityFigures {
     /// The tested settings.
     pub name: &'static str,
     /// Substeps at whole quality.
@@ -94,7 +94,7 @@ pub struct Latency {
     /// Where the threads ran.
     pub threads: Vec<ThreadPlacement>,
     /// From the sensor to the picture, stage by stage.
-    pub stages: Vec<Stage>,
+    pub stages: Vec<LatencyStage>,
     /// The same by name (us).
     pub stages_us: BTreeMap<&'static str, Quantiles>,
     /// From when a sensor frame was seen until the first picture that shows it was taken (us).
@@ -122,7 +122,7 @@ pub struct Latency {
     /// Pictures taken.
     pub pictures: u64,
     /// The quality, and its error.
-    pub quality: Quality,
+    pub quality: QualityFigures,
     /// What is to be reached on a quiet machine of two cores.
     pub goals: Vec<Goal>,
     /// How full everything was that has a bound.

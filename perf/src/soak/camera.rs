@@ -9,7 +9,7 @@ use toile_engine::frame_loop::sensor_thread::{FrameSource, SourceFrame};
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::{Joints, TrackedJoint};
 
-use super::script::{CAMERA_HZ, Fault, Kind, Script};
+use super::scenario::{CAMERA_HZ, Fault, FaultKind, Scenario};
 
 /// From a frame's stamp to its arrival (ns).
 const DELAY_NS: u64 = 20_000_000;
@@ -29,7 +29,7 @@ const BESIDE_M: Vec3 = Vec3::new(0.7, 0.0, -0.4);
 /// The camera.
 #[derive(Debug)]
 pub struct Camera<C> {
-    script: Arc<Script>,
+    scenario: Arc<Scenario>,
     clock: C,
     origin_ns: u64,
     next: u64,
@@ -37,16 +37,16 @@ pub struct Camera<C> {
 
 impl<C: Clock> Camera<C> {
     /// One whose first frame is of this time on the loop's clock (ns).
-    pub fn new(script: Arc<Script>, clock: C, origin_ns: u64) -> Self {
-        Self { script, clock, origin_ns, next: 0 }
+    pub fn new(scenario: Arc<Scenario>, clock: C, origin_ns: u64) -> Self {
+        Self { scenario, clock, origin_ns, next: 0 }
     }
 
     /// What is seen in a frame, in time since the run's begin.
     fn seen(&self, frame: u64) -> Joints {
         let ns = stamp(frame);
         let mut joints = Joints::absent(ns);
-        if let Some(visit) = self.script.visit_at(ns) {
-            let mut rng = SplitMix64::new(self.script.plan.seed ^ frame);
+        if let Some(visit) = self.scenario.visit_at(ns) {
+            let mut rng = SplitMix64::new(self.scenario.plan.seed ^ frame);
             let mut noise = || NOISE_M * rng.gaussian();
             for (to, at) in joints.joints.iter_mut().zip(visit.joints(ns)) {
                 let position = at + Vec3::new(noise(), noise(), noise());
@@ -59,14 +59,14 @@ impl<C: Clock> Camera<C> {
     /// The same frame when something is wrong; none where none comes.
     fn spoilt(&self, frame: u64, fault: &Fault) -> Option<Joints> {
         let ns = stamp(frame);
-        let mut rng = SplitMix64::new(self.script.plan.seed ^ !frame);
+        let mut rng = SplitMix64::new(self.scenario.plan.seed ^ !frame);
         Some(match fault.kind {
-            Kind::CameraLost => return None,
-            Kind::Frozen => Joints { time_ns: ns, ..self.seen(fault.from_ns.div_ceil(SECOND_NS / CAMERA_HZ)) },
-            Kind::Repeated => self.seen(frame - frame % 4),
-            Kind::OutOfOrder => self.seen(frame ^ 1),
-            Kind::NotNumbers | Kind::Infinite => {
-                let values = if fault.kind == Kind::NotNumbers {
+            FaultKind::CameraLost => return None,
+            FaultKind::Frozen => Joints { time_ns: ns, ..self.seen(fault.from_ns.div_ceil(SECOND_NS / CAMERA_HZ)) },
+            FaultKind::Repeated => self.seen(frame - frame % 4),
+            FaultKind::OutOfOrder => self.seen(frame ^ 1),
+            FaultKind::NanJoints | FaultKind::Infinite => {
+                let values = if fault.kind == FaultKind::NanJoints {
                     [f32::NAN; 3]
                 } else {
                     [f32::INFINITY, -1e30, f32::NEG_INFINITY]
@@ -80,9 +80,9 @@ impl<C: Clock> Camera<C> {
                 }
                 joints
             }
-            Kind::Swapped => {
-                let (mut joints, script) = (self.seen(frame), &self.script);
-                let other = &script.visits[rng_place(fault, script.visits.len())];
+            FaultKind::Swapped => {
+                let (mut joints, scenario) = (self.seen(frame), &self.scenario);
+                let other = &scenario.visits[rng_place(fault, scenario.visits.len())];
                 let at = other.joints(other.from_ns + ns % (5 * SECOND_NS));
                 for (to, at) in joints.joints.iter_mut().zip(at) {
                     *to = TrackedJoint { position: at + BESIDE_M, confidence: 1.0 };
@@ -118,15 +118,15 @@ impl<C: Clock + Send> FrameSource for Camera<C> {
         }
         let frame = self.next;
         self.next += 1;
-        let fault = self.script.fault_at(stamp(frame)).copied();
+        let fault = self.scenario.fault_at(stamp(frame)).copied();
         let joints = match fault {
             Some(fault) => self.spoilt(frame, &fault)?,
             None => self.seen(frame),
         };
         let at = self.origin_ns + joints.time_ns;
         let time_ns = match fault.map(|f| f.kind) {
-            Some(Kind::StampsAhead) => at + DAY_NS,
-            Some(Kind::StampsBehind) => at.saturating_sub(DAY_NS),
+            Some(FaultKind::StampsAhead) => at + DAY_NS,
+            Some(FaultKind::StampsBehind) => at.saturating_sub(DAY_NS),
             _ => at,
         };
         Some(Joints { time_ns, ..joints }.into())

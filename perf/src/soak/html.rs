@@ -2,9 +2,9 @@
 
 use toile_fitting::live::report::QueueUse;
 
-use super::memory::Sample;
-use super::report::{Check, FaultKind, Memory, Soak};
-use super::watch::FOLLOWS_M;
+use super::fault_monitor::FOLLOWS_M;
+use super::memory::MemorySample;
+use super::report::{FaultKindFigures, MemoryFigures, Soak, SoakCheck};
 use crate::plot::axis::Axis;
 use crate::plot::chart::{Chart, Series, SeriesStyle};
 use crate::plot::page::{Entry, Page};
@@ -56,13 +56,7 @@ fn seen(soak: &Soak) -> String {
         "{} shoppers came and went; {} scenes were handed to the running loop, {} of {} garments and sizes were worn. {} \
          sensor frames were taken, {} pictures shown. {} steps missed their deadline or were dropped, by stalls and jumps of \
          the clock where the run is simulated.",
-        soak.visits,
-        soak.changes,
-        soak.sizes[0],
-        soak.sizes[1],
-        soak.frames[0],
-        soak.pictures[0],
-        soak.deadline_misses
+        soak.visits, soak.changes, soak.sizes[0], soak.sizes[1], soak.frames[0], soak.pictures[0], soak.deadline_misses
     )
 }
 
@@ -76,7 +70,7 @@ fn figure(value: f64) -> String {
 }
 
 fn checks(page: &mut Page, soak: &Soak) {
-    let row = |Check { name, limit, found, pass }: &Check| {
+    let row = |SoakCheck { name, limit, found, pass }: &SoakCheck| {
         let verdict = match (found, pass) {
             (None, _) => Entry::words("not checked"),
             (_, true) => Entry::Good("passed".into()),
@@ -98,7 +92,7 @@ fn faults(page: &mut Page, soak: &Soak) {
     if soak.faults.kinds.is_empty() {
         return;
     }
-    let row = |k: &FaultKind| {
+    let row = |k: &FaultKindFigures| {
         let recovered = k.recovered >= k.injected && k.max_ms <= LIMIT_MS;
         let judged = |text: String| if recovered { Entry::Figure(text) } else { Entry::Bad(text) };
         vec![
@@ -121,7 +115,7 @@ fn faults(page: &mut Page, soak: &Soak) {
 }
 
 /// Resident memory and the heap over the run.
-fn memory(page: &mut Page, memory: &Memory) {
+fn memory(page: &mut Page, memory: &MemoryFigures) {
     let kib = |growth: Option<f64>| growth.map_or_else(|| "-".into(), |g| format!("{g:.1}"));
     page.section("Memory").paragraph(&format!(
         "Growth behind the warm-up, per {} hour: {} KiB resident, {} KiB handed out by the allocator (median of all slopes).",
@@ -134,8 +128,8 @@ fn memory(page: &mut Page, memory: &Memory) {
     }
 }
 
-fn plot(memory: &Memory) -> Drawing {
-    let series = |name: &str, colour: usize, kib: fn(&Sample) -> Option<u64>| Series {
+fn plot(memory: &MemoryFigures) -> Drawing {
+    let series = |name: &str, colour: usize, kib: fn(&MemorySample) -> Option<u64>| Series {
         name: name.into(),
         points: memory.samples.iter().filter_map(|s| Some([s.hours, kib(s)? as f64 / 1024.0])).collect(),
         style: SeriesStyle::line(SERIES_COLOURS[colour], 1.5),

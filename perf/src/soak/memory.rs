@@ -6,7 +6,7 @@ use toile_fitting::heap::HeapProbe;
 
 /// What the process held at one moment; none where the system does not say.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-pub struct Sample {
+pub struct MemorySample {
     /// Time since the begin, on the loop's clock (h).
     pub hours: f64,
     /// Resident memory (KiB).
@@ -19,7 +19,7 @@ pub struct Sample {
     pub threads: Option<u64>,
 }
 
-impl Sample {
+impl MemorySample {
     /// Now.
     pub fn take(hours: f64, heap: &HeapProbe) -> Self {
         let heap_kib = heap.read().map(|h| h.live_bytes.max(0) as u64 / 1024);
@@ -72,7 +72,7 @@ mod tests {
     #[test]
     #[cfg(target_os = "linux")]
     fn the_process_holds_something() {
-        let sample = Sample::take(0.0, &HeapProbe::none());
+        let sample = MemorySample::take(0.0, &HeapProbe::none());
         assert!(sample.rss_kib.unwrap() > 500 && sample.threads.unwrap() >= 1 && sample.files.unwrap() >= 3);
     }
 }

@@ -1,4 +1,4 @@
-//! Recorder: empties the tape into the black box, and onto a disk that may be full.
+//! Empties the queue of recorded entries into the flight recorder, and onto a disk that may be full.
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -9,27 +9,27 @@ use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
 use toile_engine::frame_loop::recording::{self, Entry};
 
-use super::lives::{Ground, Sign, Telling};
-use super::script::Kind;
+use super::observed_loops::{Observation, ObservedLoop, RunContext};
+use super::scenario::FaultKind;
 
-/// Time between two looks at the tape (ns).
+/// Time between two looks at the queue (ns).
 const LOOK_NS: u64 = 20_000_000;
 
 /// What waits for the disk at most (bytes): more than a minute. What is more is lost, and the recording ends there.
 const MOST_WAITING: usize = 1 << 20;
 
-/// The life.
+/// The thread that records.
 #[derive(Debug)]
-pub struct Recorder<C> {
-    ground: Ground<C>,
+pub struct RecorderLoop<C> {
+    context: RunContext<C>,
     black_box: Arc<FlightRecorder>,
     /// Where the recording goes; none lets it go nowhere.
     file: Option<File>,
     waiting: Vec<u8>,
     ended: bool,
-    /// Steps, and a hash over the hashes of their states.
+    /// Steps.
     pub steps: u64,
-    /// See above.
+    /// A hash over the hashes of their states.
     pub hash: u64,
     /// Writes that the disk refused.
     pub refused: u64,
@@ -40,13 +40,13 @@ pub struct Recorder<C> {
     wrote: Option<u64>,
 }
 
-impl<C: Clock> Recorder<C> {
+impl<C: Clock> RecorderLoop<C> {
     /// At load; the header is written at once.
-    pub fn new(ground: Ground<C>, black_box: Arc<FlightRecorder>, file: Option<File>, header: &[u8]) -> Self {
+    pub fn new(context: RunContext<C>, black_box: Arc<FlightRecorder>, file: Option<File>, header: &[u8]) -> Self {
         let mut waiting = Vec::with_capacity(MOST_WAITING);
         waiting.extend(header);
         Self {
-            ground,
+            context,
             black_box,
             file,
             waiting,
@@ -89,31 +89,31 @@ impl<C: Clock> Recorder<C> {
             Ok(()) => {
                 self.written += self.waiting.len() as u64;
                 self.waiting.clear();
-                self.wrote = Some(self.ground.clock.now_ns());
+                self.wrote = Some(self.context.clock.now_ns());
             }
             Err(_) => self.refused += 1,
         }
     }
 
-    /// Onto the disk, which is full when the script says so.
+    /// Onto the disk, which is full when the scenario says so.
     fn put(&mut self) -> io::Result<()> {
-        let now = self.ground.clock.now_ns().saturating_sub(self.ground.origin_ns);
-        if self.ground.script.fault_at(now).is_some_and(|f| f.kind == Kind::DiskFull) {
+        let now = self.context.clock.now_ns().saturating_sub(self.context.origin_ns);
+        if self.context.scenario.fault_at(now).is_some_and(|f| f.kind == FaultKind::DiskFull) {
             return Err(io::ErrorKind::StorageFull.into());
         }
         self.file.as_mut().map_or(Ok(()), |file| file.write_all(&self.waiting))
     }
 }
 
-impl<C: Clock> ThreadLoop for Recorder<C> {
+impl<C: Clock> ThreadLoop for RecorderLoop<C> {
     fn run_due(&mut self) -> Option<u64> {
         self.look();
-        Some(self.ground.clock.now_ns() + LOOK_NS)
+        Some(self.context.clock.now_ns() + LOOK_NS)
     }
 }
 
-impl<C: Clock> Telling for Recorder<C> {
-    fn sign(&mut self) -> Option<Sign> {
-        self.wrote.take().map(Sign::Wrote)
+impl<C: Clock> ObservedLoop for RecorderLoop<C> {
+    fn observation(&mut self) -> Option<Observation> {
+        self.wrote.take().map(Observation::Wrote)
     }
 }

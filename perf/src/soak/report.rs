@@ -6,11 +6,11 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 use toile_engine::meter::PERIOD_NS;
 
-use super::memory::{Sample, growth};
-use super::run::Ran;
-use super::script::Kind;
-use super::watch::Outcome;
-use super::{Options, Weight};
+use super::fault_monitor::FaultOutcome;
+use super::memory::{MemorySample, growth};
+use super::options::{SceneWeight, SoakOptions};
+use super::run::SoakRun;
+use super::scenario::FaultKind;
 use toile_fitting::live::report::QueueUse;
 
 /// Longest that the pipeline may take to recover (ticks): 1 s.
@@ -23,7 +23,7 @@ const SOLVER_TICKS: f64 = 2.0;
 const GROWTH_KIB: f64 = 64.0;
 
 /// Shortest time behind the warm-up over which memory is judged (h): garments differ in size by more than what an hour may bring,
-/// and the system gives pages in larger pieces still. Of a shorter run the figures are told.
+/// and the system gives pages in larger pieces still. Of a shorter run the figures are only reported.
 const LEAST_JUDGED_H: f64 = 0.5;
 
 /// Share of the run after which memory is to be flat.
@@ -31,18 +31,18 @@ const WARM_UP: f64 = 0.25;
 
 /// What was checked.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Check {
+pub struct SoakCheck {
     /// What.
     pub name: &'static str,
     /// The most that passes.
     pub limit: f64,
-    /// What was found; none where this machine or this run does not tell.
+    /// What was found; none where this machine or this run does not say.
     pub found: Option<f64>,
     /// Whether it passed; what was not found did not fail either, and is named as not checked.
     pub pass: bool,
 }
 
-impl Check {
+impl SoakCheck {
     fn new(name: &'static str, limit: f64, found: Option<f64>) -> Self {
         Self { name, limit, found, pass: found.is_none_or(|found| found <= limit) }
     }
@@ -50,7 +50,7 @@ impl Check {
 
 /// The faults of one kind.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FaultKind {
+pub struct FaultKindFigures {
     /// Its name.
     pub name: &'static str,
     /// What shows that one is over.
@@ -59,26 +59,26 @@ pub struct FaultKind {
     pub injected: u64,
     /// How many of them were recovered.
     pub recovered: u64,
-    /// Time from the end of a fault until it was recovered (ms): mean and longest.
+    /// Mean time from the end of a fault until it was recovered (ms).
     pub mean_ms: f64,
-    /// See above.
+    /// The longest such time (ms).
     pub max_ms: f64,
 }
 
 /// All faults.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Faults {
+pub struct FaultFigures {
     /// How many there were.
     pub injected: u64,
     /// How many of them were recovered.
     pub recovered: u64,
     /// By kind.
-    pub kinds: Vec<FaultKind>,
+    pub kinds: Vec<FaultKindFigures>,
 }
 
 /// Ticks of 1/120 s until all was well.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Recovery {
+pub struct RecoveryTicks {
     /// From the end of a fault until the pipeline had recovered, at most.
     pub max: u64,
     /// Steps in a row that the solver gave nothing sound, at most.
@@ -87,12 +87,12 @@ pub struct Recovery {
 
 /// Memory over the run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Memory {
+pub struct MemoryFigures {
     /// `simulated` or `wall`: which hours these are.
     pub hours_are: &'static str,
-    /// From when on it is to be flat, and until when (h).
+    /// From when on it is to be flat (h).
     pub from_h: f64,
-    /// See above.
+    /// Until when (h).
     pub until_h: f64,
     /// Growth of what the allocator hands out (KiB/h).
     pub heap_growth_kib_h: Option<f64>,
@@ -101,7 +101,7 @@ pub struct Memory {
     /// Most that was resident (KiB).
     pub rss_max_kib: Option<u64>,
     /// All samples.
-    pub samples: Vec<Sample>,
+    pub samples: Vec<MemorySample>,
 }
 
 /// Everything that was found.
@@ -110,7 +110,7 @@ pub struct Soak {
     /// The seed.
     pub seed: u64,
     /// `light` or `full`.
-    pub scene: Weight,
+    pub scene: SceneWeight,
     /// On threads and the system's clock.
     pub real_time: bool,
     /// Workers of a step.
@@ -119,28 +119,28 @@ pub struct Soak {
     pub uptime_hours: u64,
     /// Length on the loop's clock (h).
     pub hours: f64,
-    /// Time that it took (s), and for each step (us).
+    /// Time that it took (s).
     pub wall_s: f64,
-    /// See above.
+    /// Time of each step, everything included (us).
     pub us_per_step: f64,
     /// Steps.
     pub ticks: u64,
-    /// Shoppers, and scenes that were handed over while the loop ran.
+    /// Shoppers.
     pub visits: usize,
-    /// See above.
+    /// Scenes that were handed over while the loop ran.
     pub changes: u64,
     /// Garments in a size that were worn, of so many.
     pub sizes: [usize; 2],
-    /// Numbers that were published and are none.
+    /// Positions, bones and normals that were published and are not finite.
     pub nonfinite: u64,
     /// Allocations in the turns of sensor, physics and renderer; none where they are not counted.
     pub allocations: Option<u64>,
     /// Growth of resident memory behind the warm-up (KiB).
     pub rss_growth_kib: Option<f64>,
     /// The faults.
-    pub faults: Faults,
+    pub faults: FaultFigures,
     /// How long they took.
-    pub recovery_ticks: Recovery,
+    pub recovery_ticks: RecoveryTicks,
     /// Steps that were published after their period, and those that were dropped; nearly all by stalls and jumps.
     pub deadline_misses: u64,
     /// Hash over the states of all steps.
@@ -151,12 +151,12 @@ pub struct Soak {
     pub off_mm: f64,
     /// Sensor frames: published, with a stamp that was not believed, no newer than the one before.
     pub frames: [u64; 3],
-    /// Pictures, and times that the renderer was made to live again.
+    /// Pictures, and times that the renderer was restarted.
     pub pictures: [u64; 2],
     /// Memory.
-    pub memory: Memory,
+    pub memory: MemoryFigures,
     /// What was checked.
-    pub checks: Vec<Check>,
+    pub checks: Vec<SoakCheck>,
     /// How full every queue was.
     pub capacities: Vec<QueueUse>,
     /// What deserves attention, one sentence each.
@@ -165,13 +165,13 @@ pub struct Soak {
 
 impl Soak {
     /// Of a run; `second` is the hash of another run of the same.
-    pub fn new(ran: Ran, options: &Options, second: Option<u64>) -> Self {
+    pub fn new(ran: SoakRun, options: &SoakOptions, second: Option<u64>) -> Self {
         let hours = options.plan.seconds as f64 / 3_600.0;
-        let faults = faults(&ran.watch.outcomes);
-        let memory = memory(&ran.watch.samples, hours, options.real_time);
+        let faults = faults(&ran.monitor.outcomes);
+        let memory = memory(&ran.monitor.samples, hours, options.real_time);
         let text = |hash: u64| format!("{hash:016x}");
-        let longest = ran.watch.outcomes.iter().filter_map(|o| o.recovered_ns).max().unwrap_or(0);
-        let recovery_ticks = Recovery { max: longest.div_ceil(PERIOD_NS), solver: ran.watch.steps.unsound };
+        let longest = ran.monitor.outcomes.iter().filter_map(|o| o.recovered_ns).max().unwrap_or(0);
+        let recovery_ticks = RecoveryTicks { max: longest.div_ceil(PERIOD_NS), solver: ran.monitor.steps.unsound };
         let mut soak = Self {
             seed: options.plan.seed,
             scene: options.plan.scene,
@@ -182,7 +182,7 @@ impl Soak {
             wall_s: ran.wall_s,
             us_per_step: ran.wall_s * 1e6 / ran.steps.max(1) as f64,
             ticks: ran.steps,
-            visits: ran.script.visits.len(),
+            visits: ran.scenario.visits.len(),
             changes: ran.changes,
             sizes: sizes(&ran),
             nonfinite: ran.nonfinite,
@@ -193,7 +193,7 @@ impl Soak {
             deadline_misses: ran.missed,
             state_hash: text(ran.hash),
             second_state_hash: second.map(text),
-            off_mm: f64::from(ran.watch.steps.off_m) * 1e3,
+            off_mm: f64::from(ran.monitor.steps.off_m) * 1e3,
             frames: ran.frames,
             pictures: ran.pictures,
             memory,
@@ -206,14 +206,14 @@ impl Soak {
     }
 
     /// What did not pass.
-    pub fn failed(&self) -> impl Iterator<Item = &Check> {
+    pub fn failed(&self) -> impl Iterator<Item = &SoakCheck> {
         self.checks.iter().filter(|c| !c.pass)
     }
 }
 
 /// Garments in a size that were worn, and how many there are.
-fn sizes(ran: &Ran) -> [usize; 2] {
-    let worn: BTreeSet<_> = ran.script.dressings.iter().take(ran.changes as usize + 1).map(|d| &d.outfit).collect();
+fn sizes(ran: &SoakRun) -> [usize; 2] {
+    let worn: BTreeSet<_> = ran.scenario.requests.iter().take(ran.changes as usize + 1).map(|d| &d.outfit).collect();
     let all = toile_assets::wardrobe::names().into_iter().filter_map(|name| {
         let table = toile_assets::wardrobe::style(name).ok()?.sizes().ok()?;
         Some(table.codes().len())
@@ -221,14 +221,14 @@ fn sizes(ran: &Ran) -> [usize; 2] {
     [worn.len(), all.sum()]
 }
 
-fn faults(outcomes: &[Outcome]) -> Faults {
-    let mut by_kind: BTreeMap<Kind, Vec<Option<u64>>> = BTreeMap::new();
+fn faults(outcomes: &[FaultOutcome]) -> FaultFigures {
+    let mut by_kind: BTreeMap<FaultKind, Vec<Option<u64>>> = BTreeMap::new();
     outcomes.iter().for_each(|o| by_kind.entry(o.kind).or_default().push(o.recovered_ns));
-    let kinds: Vec<FaultKind> = by_kind
+    let kinds: Vec<FaultKindFigures> = by_kind
         .into_iter()
         .map(|(kind, all)| {
             let times: Vec<f64> = all.iter().flatten().map(|ns| *ns as f64 * 1e-6).collect();
-            FaultKind {
+            FaultKindFigures {
                 name: kind.name(),
                 recovered_when: kind.recovered_by().words(),
                 injected: all.len() as u64,
@@ -238,18 +238,18 @@ fn faults(outcomes: &[Outcome]) -> Faults {
             }
         })
         .collect();
-    let sum = |of: fn(&FaultKind) -> u64| kinds.iter().map(of).sum();
-    Faults { injected: sum(|k| k.injected), recovered: sum(|k| k.recovered), kinds }
+    let sum = |of: fn(&FaultKindFigures) -> u64| kinds.iter().map(of).sum();
+    FaultFigures { injected: sum(|k| k.injected), recovered: sum(|k| k.recovered), kinds }
 }
 
-fn memory(samples: &[Sample], hours: f64, real_time: bool) -> Memory {
+fn memory(samples: &[MemorySample], hours: f64, real_time: bool) -> MemoryFigures {
     let from_h = hours * WARM_UP;
-    let settled: Vec<&Sample> = samples.iter().filter(|s| s.hours >= from_h).collect();
-    let slope = |of: fn(&Sample) -> Option<u64>| {
+    let settled: Vec<&MemorySample> = samples.iter().filter(|s| s.hours >= from_h).collect();
+    let slope = |of: fn(&MemorySample) -> Option<u64>| {
         let points: Vec<(f64, u64)> = settled.iter().filter_map(|s| Some((s.hours, of(s)?))).collect();
         growth(&points)
     };
-    Memory {
+    MemoryFigures {
         hours_are: if real_time { "wall" } else { "simulated" },
         from_h: settled.first().map_or(0.0, |s| s.hours),
         until_h: settled.last().map_or(0.0, |s| s.hours),
@@ -261,13 +261,13 @@ fn memory(samples: &[Sample], hours: f64, real_time: bool) -> Memory {
 }
 
 /// How far a figure of the settled samples moves.
-fn range(memory: &Memory, of: fn(&Sample) -> Option<u64>) -> Option<f64> {
+fn range(memory: &MemoryFigures, of: fn(&MemorySample) -> Option<u64>) -> Option<f64> {
     let settled = memory.samples.iter().filter(|s| s.hours >= memory.from_h).filter_map(of);
     let (least, most) = settled.fold((u64::MAX, 0), |(a, b), n| (a.min(n), b.max(n)));
     (most >= least).then(|| (most - least) as f64)
 }
 
-fn checks(soak: &Soak, accepted: u64) -> Vec<Check> {
+fn checks(soak: &Soak, accepted: u64) -> Vec<SoakCheck> {
     let (memory, faults) = (&soak.memory, &soak.faults);
     let behind = memory.until_h - memory.from_h;
     let most = GROWTH_KIB * behind.max(1.0);
@@ -276,17 +276,17 @@ fn checks(soak: &Soak, accepted: u64) -> Vec<Check> {
     let differs = soak.second_state_hash.as_ref().map(|second| f64::from(u8::from(*second != soak.state_hash)));
     let pipeline = (faults.injected > 0).then_some(soak.recovery_ticks.max as f64);
     vec![
-        Check::new("numbers published that are none", 0.0, Some(soak.nonfinite as f64)),
-        Check::new("allocations in the loop", 0.0, soak.allocations.map(|n| n as f64)),
-        Check::new("memory handed out, growth behind the warm-up (KiB)", most, heap),
-        Check::new("resident memory, growth behind the warm-up (KiB)", most, resident),
-        Check::new("open files, change behind the warm-up", 0.0, range(memory, |s| s.files)),
-        Check::new("threads, change behind the warm-up", 0.0, range(memory, |s| s.threads)),
-        Check::new("faults that were not recovered", 0.0, Some((faults.injected - faults.recovered) as f64)),
-        Check::new("longest recovery of the pipeline (ticks)", PIPELINE_TICKS, pipeline),
-        Check::new("longest recovery of the solver (ticks)", SOLVER_TICKS, Some(soak.recovery_ticks.solver as f64)),
-        Check::new("broken garments that were accepted", 0.0, Some(accepted as f64)),
-        Check::new("entries lost by full queues", 0.0, Some(soak.capacities.iter().map(|c| c.lost as f64).sum())),
-        Check::new("states of a second run that differ", 0.0, differs),
+        SoakCheck::new("values published that are not finite", 0.0, Some(soak.nonfinite as f64)),
+        SoakCheck::new("allocations in the loop", 0.0, soak.allocations.map(|n| n as f64)),
+        SoakCheck::new("memory handed out, growth behind the warm-up (KiB)", most, heap),
+        SoakCheck::new("resident memory, growth behind the warm-up (KiB)", most, resident),
+        SoakCheck::new("open files, change behind the warm-up", 0.0, range(memory, |s| s.files)),
+        SoakCheck::new("threads, change behind the warm-up", 0.0, range(memory, |s| s.threads)),
+        SoakCheck::new("faults that were not recovered", 0.0, Some((faults.injected - faults.recovered) as f64)),
+        SoakCheck::new("longest recovery of the pipeline (ticks)", PIPELINE_TICKS, pipeline),
+        SoakCheck::new("longest recovery of the solver (ticks)", SOLVER_TICKS, Some(soak.recovery_ticks.solver as f64)),
+        SoakCheck::new("broken garments that were accepted", 0.0, Some(accepted as f64)),
+        SoakCheck::new("entries lost by full queues", 0.0, Some(soak.capacities.iter().map(|c| c.lost as f64).sum())),
+        SoakCheck::new("states of a second run that differ", 0.0, differs),
     ]
 }

@@ -1,4 +1,4 @@
-//! Run: puts the lives together and lets them live, one after the other on a simulated clock or each on its thread.
+//! Puts the loops together and runs them, one after the other on a simulated clock or each on its thread.
 
 use std::fs::File;
 use std::sync::Arc;
@@ -22,26 +22,30 @@ use toile_fitting::live::scene_changer::DressedScene;
 use toile_sensors::clock::SECOND_NS;
 
 use super::camera::Camera;
-use super::company::Company;
-use super::front::Front;
-use super::lives::{Allocations, Eyewitness, Ground, Lived, Mortal, SIGNS, SIGNS_NAME, Showing, Sign, Stepping};
-use super::recorder::Recorder;
-use super::script::{Kind, Script};
-use super::watch::{JumpClock, Jumping, Watch};
-use super::{Options, SoakError};
+use super::error::SoakError;
+use super::fault_monitor::{FaultMonitor, JumpClock, JumpableClock};
+use super::observed_loops::{
+    Allocations, CheckingRenderer, OBSERVATIONS, OBSERVATIONS_NAME, Observation, ObservedPhysics, ObservedRender,
+    RestartableRender, RunContext, ScriptedLoop,
+};
+use super::options::SoakOptions;
+use super::recorder::RecorderLoop;
+use super::scenario::{FaultKind, Scenario};
+use super::scene_loop::SceneLoop;
+use super::scene_maker::SceneMaker;
 use toile_fitting::heap::HeapProbe;
 
 /// Time between two looks at what the process holds (ns): simulated, and in real time.
 const SAMPLE_NS: [u64; 2] = [60 * SECOND_NS, 5 * SECOND_NS];
 
-/// Length of the slices between which progress is told (ns).
+/// Length of the slices between which progress is reported (ns).
 const SLICE_NS: u64 = 300 * SECOND_NS;
 
-/// Time between two turns of the watch in real time.
+/// Time between two turns of the fault monitor in real time.
 const WATCH: Duration = Duration::from_millis(5);
 
 /// What the program lends to a run.
-pub struct Tools<'a> {
+pub struct SoakTools<'a> {
     /// Reads the heap.
     pub heap: HeapProbe,
     /// Counts the allocations of the calling thread.
@@ -50,7 +54,7 @@ pub struct Tools<'a> {
     pub file: Option<File>,
     /// The begin of a recording.
     pub header: Vec<u8>,
-    /// Is handed the black box before the first step, to save it should something die.
+    /// Is handed the flight recorder before the first step, to save it should something die.
     pub keep: &'a dyn Fn(&Arc<FlightRecorder>),
     /// Is told how far the run is (s).
     pub progress: &'a dyn Fn(u64),
@@ -58,32 +62,32 @@ pub struct Tools<'a> {
     pub crash_ns: Option<u64>,
 }
 
-/// What the lives came to.
-pub struct Ran {
-    /// What happened by plan.
-    pub script: Arc<Script>,
-    /// Steps, those that were not published in their period or dropped, and a hash over the hashes of their states.
+/// What a run came to.
+pub struct SoakRun {
+    /// What was to happen.
+    pub scenario: Arc<Scenario>,
+    /// Steps.
     pub steps: u64,
-    /// See above.
+    /// Steps that were not published in their period, or dropped.
     pub missed: u64,
-    /// See above.
+    /// A hash over the hashes of the states of all steps.
     pub hash: u64,
     /// Allocations in the turns of sensor, physics and renderer.
     pub allocations: Option<[u64; 3]>,
-    /// Numbers of published states and pictures that are none.
+    /// Positions, bones and normals of published states and pictures that are not finite.
     pub nonfinite: u64,
     /// Scenes that were handed over.
     pub changes: u64,
     /// Sensor frames: published, with a stamp that was not believed, no newer than the one before.
     pub frames: [u64; 3],
-    /// Pictures, and times that the renderer was made to live again.
+    /// Pictures, and times that the renderer was restarted.
     pub pictures: [u64; 2],
     /// Writes of the recording that the disk refused, and bytes written.
     pub disk: [u64; 2],
     /// Broken garments refused and accepted.
     pub broken: [u64; 2],
-    /// What the watch saw.
-    pub(super) watch: Seen,
+    /// What the fault monitor found.
+    pub(super) monitor: MonitorFindings,
     /// How full every queue was.
     pub capacities: Vec<Capacity>,
     /// Where the threads ran.
@@ -94,21 +98,21 @@ pub struct Ran {
     pub wall_s: f64,
 }
 
-/// What the watch saw.
-pub(super) struct Seen {
-    pub outcomes: Vec<super::watch::Outcome>,
-    pub steps: super::watch::Steps,
-    pub samples: Vec<super::memory::Sample>,
+/// What the fault monitor found.
+pub(super) struct MonitorFindings {
+    pub outcomes: Vec<super::fault_monitor::FaultOutcome>,
+    pub steps: super::fault_monitor::StepTotals,
+    pub samples: Vec<super::memory::MemorySample>,
 }
 
-/// The lives, before they live.
-struct Lives<C: Clock> {
-    sensor: Lived<SensorLoop<Camera<C>, C>, C>,
-    physics: Lived<Stepping<C>, C>,
-    render: Lived<Showing<C>, C>,
-    recorder: Lived<Recorder<C>, C>,
-    front: Lived<Front<C>, C>,
-    watch: Watch<C>,
+/// The loops, before they run.
+struct SoakLoops<C: Clock> {
+    sensor: ScriptedLoop<SensorLoop<Camera<C>, C>, C>,
+    physics: ScriptedLoop<ObservedPhysics<C>, C>,
+    render: ScriptedLoop<ObservedRender<C>, C>,
+    recorder: ScriptedLoop<RecorderLoop<C>, C>,
+    scenes: ScriptedLoop<SceneLoop<C>, C>,
+    monitor: FaultMonitor<C>,
     queues: LoopQueues,
     black_box: Arc<FlightRecorder>,
     worker: Option<Placement>,
@@ -118,23 +122,23 @@ struct Lives<C: Clock> {
 ///
 /// # Errors
 /// Too many faults, a first scene that cannot be made, and a thread that ends before its time.
-pub fn run(options: &Options, tools: &Tools<'_>) -> Result<Ran, SoakError> {
-    let script = Arc::new(Script::write(options.plan)?);
+pub fn run(options: &SoakOptions, tools: &SoakTools<'_>) -> Result<SoakRun, SoakError> {
+    let scenario = Arc::new(Scenario::write(options.plan)?);
     let (origin, begun) = (options.uptime_hours * 3_600 * SECOND_NS, Instant::now());
     let ran = if options.real_time {
         let clock = JumpClock::starting_at(origin);
-        real(Lives::new(options, script, clock, tools)?, options, tools)
+        real(SoakLoops::new(options, scenario, clock, tools)?, options, tools)
     } else {
         let clock = SimClock::starting_at(origin);
-        Ok(simulated(Lives::new(options, script, clock.clone(), tools)?, &clock, options, tools))
+        Ok(simulated(SoakLoops::new(options, scenario, clock.clone(), tools)?, &clock, options, tools))
     };
-    ran.map(|ran| Ran { wall_s: begun.elapsed().as_secs_f64(), ..ran })
+    ran.map(|ran| SoakRun { wall_s: begun.elapsed().as_secs_f64(), ..ran })
 }
 
-impl<C: Jumping + Clone + Send> Lives<C> {
-    fn new(options: &Options, script: Arc<Script>, clock: C, tools: &Tools<'_>) -> Result<Self, SoakError> {
-        let mut company = Company::new(script.clone());
-        let (frame, reader) = company.make(0)?;
+impl<C: JumpableClock + Clone + Send> SoakLoops<C> {
+    fn new(options: &SoakOptions, scenario: Arc<Scenario>, clock: C, tools: &SoakTools<'_>) -> Result<Self, SoakError> {
+        let mut scene_maker = SceneMaker::new(scenario.clone());
+        let (frame, reader) = scene_maker.make(0)?;
         let (frame, worker) = if options.workers > 1 {
             let (crew, worker) =
                 threads::worker_pool(options.workers).map_err(toile_engine::frame::FrameError::from)?;
@@ -144,74 +148,75 @@ impl<C: Jumping + Clone + Send> Lives<C> {
         };
         // Making the first scene took its time.
         let origin_ns = clock.now_ns() + 4 * PERIOD_NS;
-        let ground = Ground { script: script.clone(), clock: clock.clone(), origin_ns, count: tools.count };
+        let context = RunContext { scenario: scenario.clone(), clock: clock.clone(), origin_ns, count: tools.count };
         let (recording, entries) = bounded(ENTRIES_NAME, ENTRIES);
         let scene = FrameScene::new(frame);
         let first = DressedScene { scene, reader, outfit: (), still: None, note: None, number: None };
-        let source = Camera::new(script.clone(), clock.clone(), origin_ns);
-        let renderer = Eyewitness::default();
+        let source = Camera::new(scenario.clone(), clock.clone(), origin_ns);
+        let renderer = CheckingRenderer::default();
         let parts = LoopParts { first, renderer, source, account: NoCounters, recording: Some(recording) };
         let assembly = assemble(parts, &clock, LoopOptions { begin_ns: origin_ns, ..LoopOptions::default() });
         let Assembly { loops, queues, handover } = assembly;
-        let mut stepping = Stepping::new(loops.physics, script, origin_ns);
+        let mut stepping = ObservedPhysics::new(loops.physics, scenario, origin_ns);
         stepping.crash_at(tools.crash_ns.map(|ns| origin_ns + ns));
         let black_box = Arc::new(FlightRecorder::new(tools.header.clone(), entries));
         let file = tools.file.as_ref().map(File::try_clone).transpose()?;
-        let mut recorder = Recorder::new(ground.clone(), black_box.clone(), file, &tools.header);
+        let mut recorder = RecorderLoop::new(context.clone(), black_box.clone(), file, &tools.header);
         let first = Entry::Changed { number: 0, afresh: true };
         black_box.keep(&first);
         recorder.take(&first);
         (tools.keep)(&black_box);
-        let mut signs = Vec::new();
-        let mut told = || {
-            let (to, from) = bounded::<Sign>(SIGNS_NAME, SIGNS);
-            signs.push(from);
+        let mut observations = Vec::new();
+        let mut queue = || {
+            let (to, from) = bounded::<Observation>(OBSERVATIONS_NAME, OBSERVATIONS);
+            observations.push(from);
             to
         };
-        let sensor = Lived::new(loops.sensor, Kind::SensorStall, &ground, told());
-        let physics = Lived::new(stepping, Kind::PhysicsStall, &ground, told());
-        let render = Lived::new(Showing::new(loops.render, &ground), Kind::RenderStall, &ground, told());
-        let recorder = Lived::new(recorder, Kind::RecorderStall, &ground, told());
-        let front = Front::new(ground.clone(), company, handover);
-        let front = Lived::new(front, Kind::FrontStall, &ground, told());
+        let sensor = ScriptedLoop::new(loops.sensor, FaultKind::SensorStall, &context, queue());
+        let physics = ScriptedLoop::new(stepping, FaultKind::PhysicsStall, &context, queue());
+        let render =
+            ScriptedLoop::new(ObservedRender::new(loops.render, &context), FaultKind::RenderStall, &context, queue());
+        let recorder = ScriptedLoop::new(recorder, FaultKind::RecorderStall, &context, queue());
+        let scenes = SceneLoop::new(context.clone(), scene_maker, handover);
+        let scenes = ScriptedLoop::new(scenes, FaultKind::SceneStall, &context, queue());
         let every = SAMPLE_NS[usize::from(options.real_time)];
-        let watch = Watch::new(ground, signs, tools.heap, every);
-        Ok(Self { sensor, physics, render, recorder, front, watch, queues, black_box, worker })
+        let monitor = FaultMonitor::new(context, observations, tools.heap, every);
+        Ok(Self { sensor, physics, render, recorder, scenes, monitor, queues, black_box, worker })
     }
 
-    /// What they came to, when they have ended.
-    fn ended(mut self, threads: Vec<Placement>) -> Ran {
-        self.recorder.life.look();
-        self.watch.close();
-        let count = self.watch.ground().count;
-        let (sense, stepping, showing) = (&self.sensor.life, &self.physics.life, &self.render.life);
+    /// What they came to, once they have ended.
+    fn ended(mut self, threads: Vec<Placement>) -> SoakRun {
+        self.recorder.inner.look();
+        self.monitor.close();
+        let count = self.monitor.context().count;
+        let (sense, stepping, showing) = (&self.sensor.inner, &self.physics.inner, &self.render.inner);
         let gauges = &stepping.physics.gauges;
-        // The fullest of the queues of signs stands for all.
-        let signs = self.watch.capacities().reduce(|a, b| Capacity {
+        // The fullest of the queues of observations stands for all.
+        let observations = self.monitor.capacities().reduce(|a, b| Capacity {
             high_water: a.high_water.max(b.high_water),
             lost: a.lost + b.lost,
             ..a
         });
         let mut capacities = vec![self.queues.events.capacity(), self.black_box.capacity()];
-        capacities.extend(signs);
+        capacities.extend(observations);
         let mut warnings: Vec<String> = capacities.iter().filter_map(Capacity::warning).collect();
-        warnings.extend(self.recorder.life.trouble.clone());
-        warnings.extend(self.front.life.trouble.clone());
+        warnings.extend(self.recorder.inner.trouble.clone());
+        warnings.extend(self.scenes.inner.trouble.clone());
         warnings.extend(threads.iter().flat_map(|t| t.refused.clone()));
-        let steps = self.watch.steps;
-        Ran {
-            script: self.watch.ground().script.clone(),
+        let steps = self.monitor.steps;
+        SoakRun {
+            scenario: self.monitor.context().scenario.clone(),
             steps: stepping.physics.ticks(),
             missed: gauges.missed + gauges.dropped,
-            hash: self.recorder.life.hash,
+            hash: self.recorder.inner.hash,
             allocations: count.map(|_| [self.sensor.allocations, self.physics.allocations, self.render.allocations]),
             nonfinite: steps.nonfinite + showing.render.render.renderer.nonfinite,
-            changes: self.front.life.changes(),
+            changes: self.scenes.inner.changes(),
             frames: [sense.frames(), sense.restamped, sense.stale],
-            pictures: [showing.render.render.pictures, self.watch.revived],
-            disk: [self.recorder.life.refused, self.recorder.life.written],
-            broken: [self.front.life.refused, self.front.life.accepted],
-            watch: Seen { outcomes: self.watch.outcomes, steps, samples: self.watch.samples },
+            pictures: [showing.render.render.pictures, self.monitor.revived],
+            disk: [self.recorder.inner.refused, self.recorder.inner.written],
+            broken: [self.scenes.inner.refused, self.scenes.inner.accepted],
+            monitor: MonitorFindings { outcomes: self.monitor.outcomes, steps, samples: self.monitor.samples },
             capacities,
             threads,
             warnings,
@@ -221,29 +226,38 @@ impl<C: Jumping + Clone + Send> Lives<C> {
 }
 
 /// One after the other.
-fn simulated(lives: Lives<SimClock>, clock: &SimClock, options: &Options, tools: &Tools<'_>) -> Ran {
-    let Lives { mut sensor, mut physics, render, mut recorder, mut front, mut watch, mut queues, black_box, worker } =
-        lives;
-    let mut mortal = Mortal::new(render, clock.clone());
-    watch.pulse = Some(mortal.pulse.clone());
-    let end = watch.ground().origin_ns + options.plan.seconds * SECOND_NS;
-    let mut until = watch.ground().origin_ns;
+fn simulated(loops: SoakLoops<SimClock>, clock: &SimClock, options: &SoakOptions, tools: &SoakTools<'_>) -> SoakRun {
+    let SoakLoops {
+        mut sensor,
+        mut physics,
+        render,
+        mut recorder,
+        mut scenes,
+        mut monitor,
+        mut queues,
+        black_box,
+        worker,
+    } = loops;
+    let mut restartable = RestartableRender::new(render, clock.clone());
+    monitor.health = Some(restartable.health.clone());
+    let end = monitor.context().origin_ns + options.plan.seconds * SECOND_NS;
+    let mut until = monitor.context().origin_ns;
     while until < end {
         until = end.min(until + SLICE_NS);
-        let mut emptied = Emptied(&mut queues, clock.clone());
+        let mut emptied = QueueDrain(&mut queues, clock.clone());
         let all: &mut [&mut dyn ThreadLoop] =
-            &mut [&mut sensor, &mut physics, &mut mortal, &mut recorder, &mut front, &mut watch, &mut emptied];
+            &mut [&mut sensor, &mut physics, &mut restartable, &mut recorder, &mut scenes, &mut monitor, &mut emptied];
         simulate(clock, all, until);
-        (tools.progress)((until - watch.ground().origin_ns) / SECOND_NS);
+        (tools.progress)((until - monitor.context().origin_ns) / SECOND_NS);
     }
-    let Some(render) = mortal.lived else { unreachable!("it is taken only within a turn") };
-    Lives { sensor, physics, render, recorder, front, watch, queues, black_box, worker }.ended(Vec::new())
+    let Some(render) = restartable.render else { unreachable!("it is taken only within a turn") };
+    SoakLoops { sensor, physics, render, recorder, scenes, monitor, queues, black_box, worker }.ended(Vec::new())
 }
 
 /// Empties the queues, whose readers in a kiosk do not run here.
-struct Emptied<'a>(&'a mut LoopQueues, SimClock);
+struct QueueDrain<'a>(&'a mut LoopQueues, SimClock);
 
-impl ThreadLoop for Emptied<'_> {
+impl ThreadLoop for QueueDrain<'_> {
     fn run_due(&mut self) -> Option<u64> {
         empty(self.0);
         Some(self.1.now_ns() + SECOND_NS / 10)
@@ -256,44 +270,44 @@ fn empty(queues: &mut LoopQueues) {
     while queues.frames.pop().is_some() {}
 }
 
-/// A life beside the loop, on a thread without a role.
+/// A loop beside those of the kiosk, on a thread without a role.
 fn beside<T: ThreadLoop + Send + 'static>(
     name: &str,
-    mut life: T,
+    mut inner: T,
     clock: JumpClock,
     stop: Stop,
 ) -> Result<JoinHandle<T>, SoakError> {
     let live = move || {
         while !stop.is_set() {
-            let Some(next) = life.run_due() else { break };
+            let Some(next) = inner.run_due() else { break };
             clock.sleep_until(next.min(clock.now_ns() + SECOND_NS / 20));
         }
-        life
+        inner
     };
     Ok(thread::Builder::new().name(format!("toile-{name}")).spawn(live)?)
 }
 
-/// Each on its thread; the watch on this one.
-fn real(lives: Lives<JumpClock>, options: &Options, tools: &Tools<'_>) -> Result<Ran, SoakError> {
-    let Lives { sensor, physics, render, recorder, front, mut watch, mut queues, black_box, worker } = lives;
-    let (clock, stop) = (watch.ground().clock.clone(), Stop::default());
+/// Each on its thread; the fault monitor on this one.
+fn real(loops: SoakLoops<JumpClock>, options: &SoakOptions, tools: &SoakTools<'_>) -> Result<SoakRun, SoakError> {
+    let SoakLoops { sensor, physics, render, recorder, scenes, mut monitor, mut queues, black_box, worker } = loops;
+    let (clock, stop) = (monitor.context().clock.clone(), Stop::default());
     let mut threads = RunningLoop::start(Loops { sensor, physics, render }, clock.clone())?;
     let recorder = beside("record", recorder, clock.clone(), stop.clone())?;
-    let front = beside("front", front, clock.clone(), stop.clone())?;
+    let scenes = beside("scenes", scenes, clock.clone(), stop.clone())?;
     let placed: Vec<Placement> = threads.placements().iter().cloned().chain(worker).collect();
-    let end = watch.ground().origin_ns + options.plan.seconds * SECOND_NS;
-    let mut told = 0;
+    let end = monitor.context().origin_ns + options.plan.seconds * SECOND_NS;
+    let mut reported = 0;
     while clock.now_ns() < end {
         thread::sleep(WATCH);
-        watch.run_due();
+        monitor.run_due();
         empty(&mut queues);
         if let Some(role) = threads.look()? {
             return Err(SoakError::Died(role.name()));
         }
-        watch.revived = threads.revived();
-        let seconds = clock.now_ns().saturating_sub(watch.ground().origin_ns) / SECOND_NS;
-        if seconds >= told + 60 {
-            told = seconds;
+        monitor.revived = threads.revived();
+        let seconds = clock.now_ns().saturating_sub(monitor.context().origin_ns) / SECOND_NS;
+        if seconds >= reported + 60 {
+            reported = seconds;
             (tools.progress)(seconds);
         }
     }
@@ -304,7 +318,7 @@ fn real(lives: Lives<JumpClock>, options: &Options, tools: &Tools<'_>) -> Result
     let sensor = sensor.ok_or(died("sensor"))?;
     let render = render.ok_or(died("render"))?;
     let recorder = recorder.join().map_err(|_| died("recorder"))?;
-    let front = front.join().map_err(|_| died("front"))?;
-    let lives = Lives { sensor, physics, render, recorder, front, watch, queues, black_box, worker: None };
-    Ok(lives.ended(placed))
+    let scenes = scenes.join().map_err(|_| died("scene"))?;
+    let loops = SoakLoops { sensor, physics, render, recorder, scenes, monitor, queues, black_box, worker: None };
+    Ok(loops.ended(placed))
 }

@@ -13,7 +13,7 @@ use toile_fitting::dress::measured::{self, Told};
 use toile_fitting::dress::recipe::Recipe;
 use toile_fitting::dress::session;
 use toile_fitting::live::report::Quantiles;
-use toile_perf::latency::{self, Cast, Goal, Latency, Options};
+use toile_perf::latency::{self, Goal, Latency, LatencyInputs, LatencyOptions};
 
 use crate::cli::values::{CrashArg, Printing, WorkersArg, WornArgs, cores};
 use crate::exit::AppError;
@@ -77,20 +77,20 @@ pub struct LatencyArgs {
 
 impl LatencyArgs {
     /// What the loop runs under.
-    fn options(&self) -> Options {
+    fn options(&self) -> LatencyOptions {
         let load = match self.load {
             None => 0,
             Some(0) => cores(),
             Some(threads) => threads as usize,
         };
-        Options { seconds: self.seconds, load, rung: self.rung }
+        LatencyOptions { seconds: self.seconds, load, rung: self.rung }
     }
 }
 
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LatencyReport {
-    /// What was on stage.
+    /// What was run.
     pub scene: Recipe,
     /// What was found.
     #[serde(flatten)]
@@ -140,9 +140,9 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
         assert!(!crashes, "the crash that --crash-after asked for");
         black_box.capacity()
     };
-    let cast =
-        Cast { frame: frame.with_workers(crew), reader, joints: &session.joints[from..], worker, tape: recording };
-    let found = latency::run(cast, &options, empty).map_err(AppError::internal);
+    let loop_inputs =
+        LatencyInputs { frame: frame.with_workers(crew), reader, joints: &session.joints[from..], worker, recording };
+    let found = latency::run(loop_inputs, &options, empty).map_err(AppError::internal);
     crash::forget();
     let found = found?;
     if let Some(path) = &args.record {

@@ -14,8 +14,10 @@ use toile_engine::frame_loop::replay::{Replayed, replay_changing};
 use toile_engine::workers::WorkerPool;
 use toile_fitting::heap::HeapProbe;
 use toile_fitting::live::crash;
-use toile_perf::soak::script::Script;
-use toile_perf::soak::{self, Check, Company, LEAST_APART_S, Options, Plan, Soak, SoakError, Tools, Weight};
+use toile_perf::soak::scenario::Scenario;
+use toile_perf::soak::{
+    self, LEAST_APART_S, SceneMaker, SceneWeight, Soak, SoakCheck, SoakError, SoakOptions, SoakPlan, SoakTools,
+};
 
 use crate::cli::values::{CrashArg, Printing, WorkersArg, one_of};
 use crate::exit::AppError;
@@ -65,8 +67,8 @@ pub struct SoakArgs {
     #[arg(long, value_name = "H", value_parser = value_parser!(u64).range(0..=MOST_UPTIME), default_value = "0")]
     pub uptime_hours: u64,
     /// light: coarse garments, hours in minutes; full: the wardrobe as it is worn (default: full in real time, else light)
-    #[arg(long, value_name = "S", value_parser = one_of(Weight::ALL, Weight::name))]
-    pub scene: Option<Weight>,
+    #[arg(long, value_name = "S", value_parser = one_of(SceneWeight::ALL, SceneWeight::name))]
+    pub scene: Option<SceneWeight>,
     #[command(flatten)]
     workers: WorkersArg,
     /// Make no second run to compare the bits with
@@ -89,7 +91,7 @@ impl SoakArgs {
     ///
     /// # Errors
     /// [`AppError::Usage`] for a run that is too long, and for more faults than fit into it.
-    fn options(&self) -> Result<Options, AppError> {
+    fn options(&self) -> Result<SoakOptions, AppError> {
         let hours = self.minutes.map(|minutes| minutes / 60.0).or(self.hours).unwrap_or(1.0 / 6.0);
         if !(hours > 0.0 && hours <= MOST_HOURS) {
             return Err(AppError::Usage(format!("a run lasts up to {MOST_HOURS} hours, not {hours}; choose less")));
@@ -106,9 +108,9 @@ impl SoakArgs {
                 "{faults} faults do not fit into {seconds} s; ask for {most} at most"
             )));
         }
-        let scene = self.scene.unwrap_or(if self.real_time { Weight::Full } else { Weight::Light });
-        Ok(Options {
-            plan: Plan { seed: self.seed, seconds, faults: faults as usize, scene },
+        let scene = self.scene.unwrap_or(if self.real_time { SceneWeight::Full } else { SceneWeight::Light });
+        Ok(SoakOptions {
+            plan: SoakPlan { seed: self.seed, seconds, faults: faults as usize, scene },
             uptime_hours: self.uptime_hours,
             real_time: self.real_time,
             workers: if self.real_time { self.workers.count() } else { 1 },
@@ -125,7 +127,7 @@ pub struct SoakRecipe {
     /// Version of the program that wrote it.
     pub version: String,
     /// What was soaked.
-    pub soak: Plan,
+    pub soak: SoakPlan,
 }
 
 /// The body of the JSON.
@@ -157,7 +159,7 @@ pub fn run(args: &SoakArgs) -> Result<(), AppError> {
         None => None,
     };
     let file = kept.as_deref().map(create).transpose()?;
-    let tools = Tools {
+    let tools = SoakTools {
         heap: HeapProbe::new(heap::counted),
         count: heap::probe(),
         file,
@@ -210,10 +212,10 @@ fn create(path: &Path) -> Result<File, AppError> {
 
 /// The hash of another run: of the same script, or, where the machine's own time decided, of the replay of the recording. None
 /// where the recording is too long.
-fn second(options: &Options, hash: u64, kept: Option<&Path>, words: &Words) -> Result<Option<u64>, AppError> {
+fn second(options: &SoakOptions, hash: u64, kept: Option<&Path>, words: &Words) -> Result<Option<u64>, AppError> {
     if !options.real_time {
         words.say("once more, to compare");
-        let tools = Tools {
+        let tools = SoakTools {
             heap: HeapProbe::none(),
             count: None,
             file: None,
@@ -241,23 +243,23 @@ fn second(options: &Options, hash: u64, kept: Option<&Path>, words: &Words) -> R
 ///
 /// # Errors
 /// A recording that does not begin where somebody was dressed, and a scene that cannot be made.
-pub fn again(plan: Plan, entries: &[Entry], workers: usize) -> Result<(Frame, Replayed), AppError> {
+pub fn again(plan: SoakPlan, entries: &[Entry], workers: usize) -> Result<(Frame, Replayed), AppError> {
     let Some((Entry::Changed { number, .. }, entries)) = entries.split_first() else {
         return Err(AppError::Input("the recording does not begin where somebody was dressed; record it again".into()));
     };
-    let mut company = Company::new(Arc::new(Script::write(plan).map_err(refused)?));
-    let (frame, _reader) = company.make(*number).map_err(refused)?;
+    let mut scene_maker = SceneMaker::new(Arc::new(Scenario::write(plan).map_err(refused)?));
+    let (frame, _reader) = scene_maker.make(*number).map_err(refused)?;
     let crew = WorkerPool::new(workers).map_err(AppError::input)?;
     let mut stepper = SceneStepper::new(FrameScene::new(frame.with_workers(crew)));
     let out = replay_changing(&mut stepper, entries, &SimClock::default(), |number| {
-        company.make(number).ok().map(|(frame, _reader)| FrameScene::new(frame))
+        scene_maker.make(number).ok().map(|(frame, _reader)| FrameScene::new(frame))
     });
     Ok((stepper.scene.frame, out))
 }
 
 /// What was typed, for the record.
-fn typed(args: &SoakArgs, options: &Options) -> String {
-    let Options { plan, uptime_hours, real_time, workers } = *options;
+fn typed(args: &SoakArgs, options: &SoakOptions) -> String {
+    let SoakOptions { plan, uptime_hours, real_time, workers } = *options;
     let mut line = format!("toile soak --minutes {} --seed {}", plan.seconds as f64 / 60.0, plan.seed);
     if plan.faults > 0 {
         line += &format!(" --faults {}", plan.faults);
@@ -289,7 +291,7 @@ fn table(report: &SoakDocument, paint: Paint) -> String {
         "  {} shoppers, {} changes of scene, {} of {} garments and sizes worn, {} steps late or dropped",
         found.visits, found.changes, found.sizes[0], found.sizes[1], found.deadline_misses
     ));
-    for Check { name, limit, found, pass } in &found.checks {
+    for SoakCheck { name, limit, found, pass } in &found.checks {
         let (word, tone) = match (found, pass) {
             (None, _) => ("not checked", Tone::Warn),
             (_, true) => ("passed", Tone::Good),
@@ -328,14 +330,14 @@ mod tests {
         args: SoakArgs,
     }
 
-    fn options(line: &str) -> Result<Options, AppError> {
+    fn options(line: &str) -> Result<SoakOptions, AppError> {
         Line::try_parse_from(line.split_whitespace()).map_err(AppError::input)?.args.options()
     }
 
     #[test]
     fn ten_simulated_minutes_without_faults_are_the_default() {
-        let Options { plan, uptime_hours, real_time, workers } = options("soak").unwrap();
-        assert_eq!(plan, Plan { seed: 1, seconds: 600, faults: 0, scene: Weight::Light });
+        let SoakOptions { plan, uptime_hours, real_time, workers } = options("soak").unwrap();
+        assert_eq!(plan, SoakPlan { seed: 1, seconds: 600, faults: 0, scene: SceneWeight::Light });
         assert_eq!((uptime_hours, real_time, workers), (0, false, 1));
     }
 
@@ -344,7 +346,7 @@ mod tests {
         assert_eq!(options("soak --hours 8 --faults 1000").unwrap().plan.faults, 1_000);
         assert_eq!(options("soak --minutes 5 --faults").unwrap().plan.faults, 10);
         let real = options("soak --hours 1 --real-time --uptime-hours 9936").unwrap();
-        assert_eq!((real.plan.scene, real.uptime_hours), (Weight::Full, 9_936));
+        assert_eq!((real.plan.scene, real.uptime_hours), (SceneWeight::Full, 9_936));
         for wrong in
             ["soak --minutes 1 --faults 11", "soak --minutes 0", "soak --hours nan", "soak --minutes 1 --hours 1"]
         {

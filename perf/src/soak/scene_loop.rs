@@ -1,4 +1,4 @@
-//! Front: makes scenes when they are asked for, and hands them over; drops those that come back. Tries garments that are broken.
+//! Makes scenes when they are asked for, and hands them over; drops those that come back. Tries garments that are broken.
 
 use toile_assets::wardrobe;
 use toile_engine::clock::Clock;
@@ -7,9 +7,9 @@ use toile_engine::frame_loop::physics_thread::FrameScene;
 use toile_fitting::live::assembly::SceneHandover;
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 
-use super::company::Company;
-use super::lives::{Ground, Sign, Telling};
-use super::script::Kind;
+use super::observed_loops::{Observation, ObservedLoop, RunContext};
+use super::scenario::FaultKind;
+use super::scene_maker::SceneMaker;
 
 /// A garment that was asked for is handed over no sooner than this (ns): what making it takes, on the simulated clock.
 const MAKING_NS: u64 = 500_000_000;
@@ -17,12 +17,12 @@ const MAKING_NS: u64 = 500_000_000;
 /// Time between two looks (ns).
 const LOOK_NS: u64 = 20_000_000;
 
-/// The life.
-pub struct Front<C> {
-    ground: Ground<C>,
-    company: Company,
+/// The thread that makes scenes.
+pub struct SceneLoop<C> {
+    context: RunContext<C>,
+    scene_maker: SceneMaker,
     changer: SceneChanger<FrameScene, ()>,
-    /// The next dressing of the script.
+    /// The next request of the scenario.
     next: usize,
     /// A scene that is made, when it may be handed over (ns), and whether another shopper comes with it.
     made: Option<(u64, DressedScene<FrameScene, ()>, bool)>,
@@ -38,13 +38,14 @@ pub struct Front<C> {
     refusal: Option<[u64; 2]>,
 }
 
-impl<C: Clock> Front<C> {
+impl<C: Clock> SceneLoop<C> {
     /// At load; the first scene is shown already.
-    pub fn new(ground: Ground<C>, company: Company, handover: SceneHandover<FrameScene, ()>) -> Self {
-        let broken = ground.script.faults_of(Kind::BrokenGarment).map(|f| ground.origin_ns + f.from_ns).collect();
+    pub fn new(context: RunContext<C>, scene_maker: SceneMaker, handover: SceneHandover<FrameScene, ()>) -> Self {
+        let broken =
+            context.scenario.faults_of(FaultKind::BrokenGarment).map(|f| context.origin_ns + f.from_ns).collect();
         Self {
-            ground,
-            company,
+            context,
+            scene_maker,
             changer: SceneChanger::new(handover, false, None),
             next: 1,
             made: None,
@@ -64,13 +65,13 @@ impl<C: Clock> Front<C> {
 
     /// Makes the scene that is due, if one is.
     fn make(&mut self, now: u64) {
-        let Some(dressing) = self.ground.script.dressings.get(self.next) else { return };
-        let (at, number, afresh) = (self.ground.origin_ns + dressing.at_ns, self.next as u64, dressing.afresh);
+        let Some(request) = self.context.scenario.requests.get(self.next) else { return };
+        let (at, number, afresh) = (self.context.origin_ns + request.at_ns, self.next as u64, request.afresh);
         if now < at || self.made.is_some() {
             return;
         }
         self.next += 1;
-        match self.company.make(number) {
+        match self.scene_maker.make(number) {
             Ok((frame, reader)) => {
                 let scene = FrameScene::new(frame);
                 let scene = DressedScene { scene, reader, outfit: (), still: None, note: None, number: Some(number) };
@@ -101,11 +102,11 @@ impl<C: Clock> Front<C> {
                 Err(_) => self.refused += 1,
             }
         }
-        self.refusal = Some([now, self.ground.clock.now_ns()]);
+        self.refusal = Some([now, self.context.clock.now_ns()]);
     }
 }
 
-/// Garment files that nobody can wear: cut off, with a number that is none or beyond measure, without what they need, with what
+/// Garment files that nobody can wear: cut off, with NaN or a number beyond measure, without what they need, with what
 /// nobody knows, and noise.
 fn broken() -> [String; 6] {
     const GARMENT: &str = include_str!("../../../assets/data/garments/sun-dress.toml");
@@ -121,20 +122,20 @@ fn broken() -> [String; 6] {
     ]
 }
 
-impl<C: Clock> ThreadLoop for Front<C> {
+impl<C: Clock> ThreadLoop for SceneLoop<C> {
     fn run_due(&mut self) -> Option<u64> {
-        let now = self.ground.clock.now_ns();
+        let now = self.context.clock.now_ns();
         self.try_broken(now);
         self.make(now);
         self.hand_over(now);
-        Some(self.ground.clock.now_ns() + LOOK_NS)
+        Some(self.context.clock.now_ns() + LOOK_NS)
     }
 }
 
-impl<C: Clock> Telling for Front<C> {
-    fn sign(&mut self) -> Option<Sign> {
-        let refusal = self.refusal.take().map(Sign::Refused);
-        Some(refusal.unwrap_or_else(|| Sign::Front(self.ground.clock.now_ns())))
+impl<C: Clock> ObservedLoop for SceneLoop<C> {
+    fn observation(&mut self) -> Option<Observation> {
+        let refusal = self.refusal.take().map(Observation::Refused);
+        Some(refusal.unwrap_or_else(|| Observation::SceneMaker(self.context.clock.now_ns())))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Company: makes the scene of a number, outside of the loop: the shopper's body, what they put on, and how they stand.
+//! Makes the scene of a number, outside of the loop: the shopper's body, what they put on, and how they stand.
 
 use std::sync::Arc;
 
@@ -11,8 +11,9 @@ use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
 use toile_sensors::frame::{Joints, TrackedJoint};
 
-use super::script::{Dressing, Script};
-use super::{SoakError, Weight};
+use super::error::SoakError;
+use super::options::SceneWeight;
+use super::scenario::{Scenario, SceneRequest};
 
 /// Of a light scene: distance between particles along the warp (mm) and their number around the body, the coarsest that a
 /// style may have.
@@ -26,41 +27,41 @@ const LIGHT_SKIN: usize = 16;
 
 /// Makes scenes, and keeps the last shopper's body.
 #[derive(Debug)]
-pub struct Company {
-    script: Arc<Script>,
+pub struct SceneMaker {
+    scenario: Arc<Scenario>,
     last: Option<(usize, Body, Rig)>,
 }
 
-impl Company {
-    /// Of a script.
-    pub fn new(script: Arc<Script>) -> Self {
-        Self { script, last: None }
+impl SceneMaker {
+    /// Of a scenario.
+    pub fn new(scenario: Arc<Scenario>) -> Self {
+        Self { scenario, last: None }
     }
 
     /// The scene of a number, the shopper dressed as they stood when it was asked for; stepped by one worker.
     ///
     /// # Errors
-    /// A number that the script does not have, a body or a garment that cannot be made.
+    /// A number that the scenario does not have, a body or a garment that cannot be made.
     pub fn make(&mut self, number: u64) -> Result<(Frame, Reader<Snapshot>), SoakError> {
         let wrong = |reason: String| SoakError::Scene { number, reason };
-        let script = self.script.clone();
-        let dressing = script.dressings.get(number as usize).ok_or_else(|| wrong("the script has none".into()))?;
-        let light = script.plan.scene == Weight::Light;
-        let (body, rig) = self.shopper(dressing.visit).map_err(wrong)?;
-        let garment = garment(dressing, body, light).map_err(wrong)?;
+        let scenario = self.scenario.clone();
+        let request = scenario.requests.get(number as usize).ok_or_else(|| wrong("the scenario has none".into()))?;
+        let light = scenario.plan.scene == SceneWeight::Light;
+        let (body, rig) = self.shopper(request.visit).map_err(wrong)?;
+        let garment = garment(request, body, light).map_err(wrong)?;
         let quality = if light { Quality::Draft } else { Quality::default() };
         let settings = Settings { quality, workers: 1, ..Settings::default() };
         let shown = if light { thinned(body) } else { body.clone() };
         let (mut frame, reader) = Frame::new(shown, rig, vec![garment], settings)?;
-        let at = script.visits[dressing.visit].joints(dressing.at_ns);
+        let at = scenario.visits[request.visit].joints(request.at_ns);
         let joints = at.map(|position| TrackedJoint { position, confidence: 1.0 });
-        frame.dress(&Joints { time_ns: dressing.at_ns, joints });
+        frame.dress(&Joints { time_ns: request.at_ns, joints });
         Ok((frame, reader))
     }
 
     fn shopper(&mut self, visit: usize) -> Result<(&Body, &Rig), String> {
         if self.last.as_ref().is_none_or(|(last, ..)| *last != visit) {
-            let who = &self.script.visits[visit];
+            let who = &self.scenario.visits[visit];
             // Not every set of measures goes together; those of a size do.
             let built = who.measures.iter().find_map(|m| Body::build(who.sex, m).ok());
             let body = match built {
@@ -77,12 +78,12 @@ impl Company {
     }
 }
 
-fn garment(dressing: &Dressing, body: &Body, light: bool) -> Result<Garment, String> {
-    let mut style = wardrobe::style(dressing.outfit.style).map_err(|e| e.to_string())?;
+fn garment(request: &SceneRequest, body: &Body, light: bool) -> Result<Garment, String> {
+    let mut style = wardrobe::style(request.outfit.style).map_err(|e| e.to_string())?;
     if light {
         (style.spacing_mm, style.columns) = LIGHT;
     }
-    let mut garment = style.dress(&dressing.outfit.size, body).map_err(|e| e.to_string())?;
+    let mut garment = style.dress(&request.outfit.size, body).map_err(|e| e.to_string())?;
     if light {
         garment.substeps = LIGHT_SUBSTEPS;
     }

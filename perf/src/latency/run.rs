@@ -25,9 +25,9 @@ use toile_fitting::live::scene_changer::DressedScene;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::Joints;
 
-use super::load::Load;
-use super::report::{Goal, Latency, Quality, Stage};
-use super::{LatencyError, Options, capacity, jitter};
+use super::load::LoadThreads;
+use super::report::{Goal, Latency, LatencyStage, QualityFigures};
+use super::{LatencyError, LatencyOptions, capacity, jitter};
 
 /// Time before the meters begin (s): caches fill, memory is touched for the first time.
 const WARM_UP_S: u64 = 1;
@@ -46,35 +46,35 @@ const SNAPSHOT_US: f64 = 12_000.0;
 /// 20 ms and a display of 17 ms (Waltemate et al. 2016).
 const PICTURE_US: f64 = 38_000.0;
 
-/// Most changes of quality that are told one by one.
+/// Most changes of quality that are reported one by one.
 const MOST_CHANGES: usize = 100;
 
 /// Time between two looks at the queues: they hold seconds.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Who is on stage: a shopper, dressed, and how they moved.
-pub struct Cast<'a> {
-    /// The frame, dressed; its crew is of the workers that are asked for.
+/// What is run: a shopper, dressed, and how they moved.
+pub struct LatencyInputs<'a> {
+    /// The frame, dressed; its worker pool is of the workers that are asked for.
     pub frame: Frame,
     /// Where its snapshots come out.
     pub reader: Reader<Snapshot>,
     /// The session's joints as the sensor gave them.
     pub joints: &'a [Joints],
-    /// Where the crew's helper runs.
+    /// Where the pool's helper runs.
     pub worker: Option<Placement>,
     /// Where what a replay needs goes.
-    pub tape: Sender<Entry>,
+    pub recording: Sender<Entry>,
 }
 
 /// What came out of the queues.
 #[derive(Debug, Default)]
-struct Told {
+struct LoopEvents {
     late: LatenessAttribution,
     changes: Vec<[u64; 3]>,
     sentences: Vec<String>,
 }
 
-impl Told {
+impl LoopEvents {
     fn take(&mut self, event: &Event) {
         self.late.take(event);
         match event.what {
@@ -86,7 +86,7 @@ impl Told {
             EventKind::SensorBack => self.say(event, "the sensor came back"),
             EventKind::Broken => self.say(event, "a worker panicked and the garments kept their places"),
             EventKind::Changed(_) | EventKind::Missed(_) | EventKind::Dropped(_) => {}
-            EventKind::RolledBack => self.say(event, "a garment ended with what is no number and was rolled back"),
+            EventKind::RolledBack => self.say(event, "a garment ended with NaN or infinity and was rolled back"),
         }
     }
 
@@ -98,26 +98,26 @@ impl Told {
 }
 
 /// The loop while it runs, with a renderer that only takes what it would draw.
-struct Running {
+struct MeteredLoop {
     live: LiveLoop<FrameScene, HeadlessRenderer, Playback>,
     metered_ns: u64,
 }
 
 /// The loop when it has ended.
-struct Ended {
+struct EndedRun {
     sensor: SensorLoop<Playback, RealClock>,
     physics: PhysicsLoop<FrameScene, RealClock, ThreadAccount>,
     render: RenderThread<HeadlessRenderer, RealClock>,
     queues: [Capacity; 2],
 }
 
-impl Running {
+impl MeteredLoop {
     fn start(
         frame: Frame,
         mut reader: Reader<Snapshot>,
         joints: &[Joints],
         recording: Sender<Entry>,
-        options: &Options,
+        options: &LatencyOptions,
     ) -> Result<Self, LatencyError> {
         let clock = RealClock::default();
         let begin_ns = clock.now_ns() + 10 * PERIOD_NS;
@@ -141,13 +141,13 @@ impl Running {
     fn watch(
         mut self,
         seconds: u32,
-        told: &mut Told,
+        events: &mut LoopEvents,
         empty: &mut impl FnMut() -> Capacity,
-    ) -> Result<Ended, LatencyError> {
+    ) -> Result<EndedRun, LatencyError> {
         let end = self.metered_ns + u64::from(seconds) * SECOND_NS;
         while self.live.now_ns() < end && self.live.threads.look()?.is_none() {
             thread::sleep(LOOK);
-            drain(&mut self.live.queues, told);
+            drain(&mut self.live.queues, events);
             empty();
         }
         let mut queues = self.live.queues;
@@ -155,30 +155,40 @@ impl Running {
         let sensor = ended.sensor.ok_or(LatencyError::Died("sensor"))?;
         let physics = ended.physics.ok_or(LatencyError::Died("physics"))?;
         let render = ended.render.ok_or(LatencyError::Died("render"))?.render;
-        drain(&mut queues, told);
-        Ok(Ended { sensor, physics, render, queues: [queues.events.capacity(), empty()] })
+        drain(&mut queues, events);
+        Ok(EndedRun { sensor, physics, render, queues: [queues.events.capacity(), empty()] })
     }
 }
 
-/// Runs the loop for so long; `empty` is called fifty times a second and at the end, to empty the tape, and says how full it was.
+/// Runs the loop for so long; `empty` is called fifty times a second and at the end, to empty the recording's queue, and says how full it was.
 ///
 /// # Errors
 /// Where a thread cannot be started or ends before its time.
-pub fn run(cast: Cast<'_>, options: &Options, mut empty: impl FnMut() -> Capacity) -> Result<Latency, LatencyError> {
-    let load = Load::start(options.load)?;
+pub fn run(
+    inputs: LatencyInputs<'_>,
+    options: &LatencyOptions,
+    mut empty: impl FnMut() -> Capacity,
+) -> Result<Latency, LatencyError> {
+    let load = LoadThreads::start(options.load)?;
     let jitter = jitter::measure(Duration::from_secs(u64::from(options.seconds.min(MOST_JITTER_S))))?;
-    let running = Running::start(cast.frame, cast.reader, cast.joints, cast.tape, options)?;
-    let placements = running.live.threads.placements().iter().cloned().chain(cast.worker);
+    let running = MeteredLoop::start(inputs.frame, inputs.reader, inputs.joints, inputs.recording, options)?;
+    let placements = running.live.threads.placements().iter().cloned().chain(inputs.worker);
     let threads: Vec<ThreadPlacement> = placements.map(ThreadPlacement::from).collect();
-    let mut told = Told::default();
-    let ended = running.watch(options.seconds, &mut told, &mut empty)?;
+    let mut events = LoopEvents::default();
+    let ended = running.watch(options.seconds, &mut events, &mut empty)?;
     drop(load);
-    Ok(report(&ended, options, threads, told, &jitter))
+    Ok(report(&ended, options, threads, events, &jitter))
 }
 
 /// What it comes to.
-fn report(ended: &Ended, options: &Options, threads: Vec<ThreadPlacement>, told: Told, jitter: &Meter) -> Latency {
-    let Ended { physics, render, queues, .. } = ended;
+fn report(
+    ended: &EndedRun,
+    options: &LatencyOptions,
+    threads: Vec<ThreadPlacement>,
+    events: LoopEvents,
+    jitter: &Meter,
+) -> Latency {
+    let EndedRun { physics, render, queues, .. } = ended;
     let (gauges, frame) = (&physics.gauges, &physics.stepper.scene.scene().frame);
     let stages = stages(ended, jitter);
     let [step, response] = [&gauges.step, &gauges.response].map(Quantiles::of);
@@ -186,7 +196,7 @@ fn report(ended: &Ended, options: &Options, threads: Vec<ThreadPlacement>, told:
     let capacities = capacity::capacities(queues, gauges, frame);
     let mut warnings = capacity::warnings(&capacities, frame);
     warnings.extend(threads.iter().flat_map(|t| t.refused.clone()));
-    warnings.extend(told.sentences);
+    warnings.extend(events.sentences);
     Latency {
         seconds: options.seconds,
         load_threads: options.load,
@@ -202,11 +212,11 @@ fn report(ended: &Ended, options: &Options, threads: Vec<ThreadPlacement>, told:
         steps: gauges.steps,
         deadline_misses: gauges.missed + gauges.dropped,
         dropped: gauges.dropped,
-        attributed: told.late.attributed,
+        attributed: events.late.attributed,
         frames: snapshot.count + gauges.skipped,
         late_frames: later_than(&gauges.reaction, SNAPSHOT_US) + gauges.skipped,
         pictures: render.pictures,
-        quality: quality(frame, &gauges.rungs, told.changes),
+        quality: quality(frame, &gauges.rungs, events.changes),
         goals: goals(snapshot, total, step, response),
         capacities: capacities.into_iter().map(QueueUse::from).collect(),
         warnings,
@@ -215,22 +225,22 @@ fn report(ended: &Ended, options: &Options, threads: Vec<ThreadPlacement>, told:
 }
 
 /// From the sensor to the picture, then the whole of it, then the machine.
-fn stages(ended: &Ended, jitter: &Meter) -> Vec<Stage> {
-    let Ended { sensor, physics, render, .. } = ended;
+fn stages(ended: &EndedRun, jitter: &Meter) -> Vec<LatencyStage> {
+    let EndedRun { sensor, physics, render, .. } = ended;
     let (gauges, meters) = (&physics.gauges, physics.stepper.scene.scene().frame.meters());
     let mut stages = vec![
-        Stage::of("filter", Some(FILTER_US), &sensor.filtering),
-        Stage::of("wait for a step", Some(PERIOD_NS / 1_000), &gauges.wait),
-        Stage::of(STAGES[INTAKE].name, Some(STAGES[INTAKE].budget_us), &gauges.intake),
+        LatencyStage::of("filter", Some(FILTER_US), &sensor.filtering),
+        LatencyStage::of("wait for a step", Some(PERIOD_NS / 1_000), &gauges.wait),
+        LatencyStage::of(STAGES[INTAKE].name, Some(STAGES[INTAKE].budget_us), &gauges.intake),
     ];
     let own = STAGES.iter().zip(&meters.stages).skip(INTAKE + 1);
-    stages.extend(own.map(|(stage, meter)| Stage::of(stage.name, Some(stage.budget_us), meter)));
-    stages.push(Stage::of("step", Some(STEP_BUDGET_US), &gauges.step));
-    stages.push(Stage::of("snapshot", Some(SNAPSHOT_US as u64), &gauges.reaction));
-    stages.push(Stage::of("wait for a picture", None, &render.picture));
-    stages.push(Stage::of("picture", None, &render.drawing));
-    stages.push(Stage::of("total", Some(PICTURE_US as u64), &render.total));
-    stages.push(Stage::of("empty loop", None, jitter));
+    stages.extend(own.map(|(stage, meter)| LatencyStage::of(stage.name, Some(stage.budget_us), meter)));
+    stages.push(LatencyStage::of("step", Some(STEP_BUDGET_US), &gauges.step));
+    stages.push(LatencyStage::of("snapshot", Some(SNAPSHOT_US as u64), &gauges.reaction));
+    stages.push(LatencyStage::of("wait for a picture", None, &render.picture));
+    stages.push(LatencyStage::of("picture", None, &render.drawing));
+    stages.push(LatencyStage::of("total", Some(PICTURE_US as u64), &render.total));
+    stages.push(LatencyStage::of("empty loop", None, jitter));
     stages
 }
 
@@ -252,22 +262,22 @@ fn goals(snapshot: Quantiles, total: Quantiles, step: Quantiles, response: Quant
 }
 
 /// Empties the queues. What happened before the meters began does not count.
-fn drain(queues: &mut LoopQueues, told: &mut Told) {
+fn drain(queues: &mut LoopQueues, events: &mut LoopEvents) {
     while let Some(event) = queues.events.pop() {
         if event.tick >= WARM_UP_STEPS {
-            told.take(&event);
+            events.take(&event);
         }
     }
     while queues.step_reports.pop().is_some() {}
     while queues.frames.pop().is_some() {}
 }
 
-fn quality(frame: &Frame, rungs: &[u64], changes: Vec<[u64; 3]>) -> Quality {
+fn quality(frame: &Frame, rungs: &[u64], changes: Vec<[u64; 3]>) -> QualityFigures {
     let (meters, settings) = (frame.meters(), frame.settings());
     let strain = meters.strain();
     let whole = frame.garments().iter().map(|g| settings.quality.substeps(g.substeps)).max().unwrap_or(0);
     let free = |g: &Garment| g.inverse_mass.iter().filter(|w| **w > 0.0).count();
-    Quality {
+    QualityFigures {
         name: settings.quality.name(),
         substeps: whole,
         particles: frame.garments().iter().map(Garment::particles).sum(),

@@ -1,4 +1,5 @@
-//! Watch: brings about what no life does to itself, looks at what the lives tell, and measures how long each fault takes to be over.
+//! Injects the faults that no loop brings about itself, looks at what the loops report, and measures how long each fault
+//! takes to be over.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -9,13 +10,13 @@ use toile_engine::frame_loop::queue::{Capacity, Receiver};
 use toile_engine::meter::PERIOD_NS;
 use toile_sensors::clock::SECOND_NS;
 
-use super::lives::{Ground, Pulse, Sign, Stepped};
-use super::memory::Sample;
-use super::script::{Fault, Kind, Sight};
+use super::memory::MemorySample;
+use super::observed_loops::{Observation, ObservedStep, RenderHealth, RunContext};
+use super::scenario::{Fault, FaultKind, RecoverySign};
 use toile_fitting::heap::HeapProbe;
 
 /// A step follows the shopper whose joints are this far from theirs on average (m): twice what they are at worst while nothing is
-/// wrong, which the report tells.
+/// wrong, which the report says.
 pub const FOLLOWS_M: f32 = 0.08;
 
 /// No particle of cloth that a person moves is faster (m/s): a hand that strikes out reaches this.
@@ -31,12 +32,12 @@ const LOOK_NS: u64 = 10_000_000;
 const PRESSURE_BYTES: usize = 64 << 20;
 
 /// A clock that can be made to jump ahead.
-pub trait Jumping: Clock {
+pub trait JumpableClock: Clock {
     /// Jumps (ns).
     fn jump(&self, ns: u64);
 }
 
-impl Jumping for SimClock {
+impl JumpableClock for SimClock {
     fn jump(&self, ns: u64) {
         self.spend(ns);
     }
@@ -66,7 +67,7 @@ impl Clock for JumpClock {
     }
 }
 
-impl Jumping for JumpClock {
+impl JumpableClock for JumpClock {
     fn jump(&self, ns: u64) {
         self.ahead.spend(ns);
     }
@@ -74,17 +75,17 @@ impl Jumping for JumpClock {
 
 /// A fault that is over, or was given up.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outcome {
+pub struct FaultOutcome {
     /// What.
-    pub kind: Kind,
+    pub kind: FaultKind,
     /// From its end to what shows that it is over (ns); none where nothing did.
     pub recovered_ns: Option<u64>,
 }
 
 /// What steps came to.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Steps {
-    /// Numbers of published states that are none.
+pub struct StepTotals {
+    /// Positions and bones of published states that are not finite.
     pub nonfinite: u64,
     /// Steps in a row that were rolled back or not finite, at most.
     pub unsound: u64,
@@ -93,74 +94,80 @@ pub struct Steps {
     pub off_m: f32,
 }
 
-/// The life.
-pub struct Watch<C> {
-    ground: Ground<C>,
-    signs: Vec<Receiver<Sign>>,
+/// The fault monitor, a loop of its own.
+pub struct FaultMonitor<C> {
+    context: RunContext<C>,
+    observations: Vec<Receiver<Observation>>,
     heap: HeapProbe,
-    /// The next fault of the script, and those that are not over.
+    /// The next fault of the scenario, and those that are not over.
     next: usize,
     open: Vec<(Fault, bool)>,
     /// What became of those that are.
-    pub outcomes: Vec<Outcome>,
+    pub outcomes: Vec<FaultOutcome>,
     /// What steps came to.
-    pub steps: Steps,
+    pub steps: StepTotals,
     /// What the process held, from time to time.
-    pub samples: Vec<Sample>,
+    pub samples: Vec<MemorySample>,
     every_ns: u64,
     sampled_ns: u64,
     pressure: Option<(u64, Vec<u8>)>,
     /// When nothing that was wrong is to be seen any more (ns).
     calm_ns: u64,
     /// The renderer, where there is no thread to ask.
-    pub pulse: Option<Arc<Pulse>>,
-    /// How often it was made to live again.
+    pub health: Option<Arc<RenderHealth>>,
+    /// How often it was restarted.
     pub revived: u64,
 }
 
 /// Time after a fault, and after somebody came, in which joints may be off (ns).
 const CALM_NS: u64 = 3 * SECOND_NS;
 
-impl<C: Jumping> Watch<C> {
+impl<C: JumpableClock> FaultMonitor<C> {
     /// At load; a sample is taken every so often (ns).
-    pub fn new(ground: Ground<C>, signs: Vec<Receiver<Sign>>, heap: HeapProbe, every_ns: u64) -> Self {
-        let outcomes = Vec::with_capacity(ground.script.faults.len());
-        let samples = Vec::with_capacity((ground.script.plan.seconds * SECOND_NS / every_ns) as usize + 2);
+    pub fn new(
+        context: RunContext<C>,
+        observations: Vec<Receiver<Observation>>,
+        heap: HeapProbe,
+        every_ns: u64,
+    ) -> Self {
+        let outcomes = Vec::with_capacity(context.scenario.faults.len());
+        let samples = Vec::with_capacity((context.scenario.plan.seconds * SECOND_NS / every_ns) as usize + 2);
         Self {
-            signs,
+            observations,
             heap,
             next: 0,
             open: Vec::with_capacity(8),
             outcomes,
-            steps: Steps::default(),
+            steps: StepTotals::default(),
             samples,
             every_ns,
             sampled_ns: 0,
             pressure: None,
             calm_ns: CALM_NS,
-            pulse: None,
+            health: None,
             revived: 0,
-            ground,
+            context,
         }
     }
 
-    /// What all lives have in common.
-    pub fn ground(&self) -> &Ground<C> {
-        &self.ground
+    /// What all loops have in common.
+    pub fn context(&self) -> &RunContext<C> {
+        &self.context
     }
 
     /// Time since the begin (ns).
     fn now(&self) -> u64 {
-        self.ground.clock.now_ns().saturating_sub(self.ground.origin_ns)
+        self.context.clock.now_ns().saturating_sub(self.context.origin_ns)
     }
 
     /// Begins the faults that are due.
     fn begin(&mut self) {
-        while let Some(fault) = self.ground.script.faults.get(self.next).filter(|f| f.from_ns <= self.now()).copied() {
+        while let Some(fault) = self.context.scenario.faults.get(self.next).filter(|f| f.from_ns <= self.now()).copied()
+        {
             self.next += 1;
             match fault.kind {
-                Kind::ClockJump => self.ground.clock.jump(fault.until_ns.saturating_sub(self.now())),
-                Kind::MemoryPressure => {
+                FaultKind::ClockJump => self.context.clock.jump(fault.until_ns.saturating_sub(self.now())),
+                FaultKind::MemoryPressure => {
                     // Written to, so that the system has to find it.
                     self.pressure = Some((fault.until_ns, vec![1; PRESSURE_BYTES]));
                 }
@@ -168,24 +175,25 @@ impl<C: Jumping> Watch<C> {
             }
             self.open.push((fault, false));
         }
-        self.pressure.take_if(|(until, _)| *until <= self.ground.clock.now_ns().saturating_sub(self.ground.origin_ns));
+        self.pressure
+            .take_if(|(until, _)| *until <= self.context.clock.now_ns().saturating_sub(self.context.origin_ns));
     }
 
     fn look(&mut self) {
-        for i in 0..self.signs.len() {
-            while let Some(sign) = self.signs[i].pop() {
-                if let Sign::Step(step) = &sign {
+        for i in 0..self.observations.len() {
+            while let Some(observation) = self.observations[i].pop() {
+                if let Observation::Step(step) = &observation {
                     let calm = self.calm(step.scheduled_ns);
                     self.steps.take(step, calm);
                 }
-                self.recover(&sign);
+                self.recover(&observation);
             }
         }
         let (now, outcomes) = (self.now(), &mut self.outcomes);
         self.open.retain(|(fault, _)| {
             let waits = now < fault.until_ns + GIVEN_UP_NS;
             if !waits {
-                outcomes.push(Outcome { kind: fault.kind, recovered_ns: None });
+                outcomes.push(FaultOutcome { kind: fault.kind, recovered_ns: None });
             }
             waits
         });
@@ -194,22 +202,22 @@ impl<C: Jumping> Watch<C> {
     /// Whether nothing was wrong at a step and long before it, and nobody had just come.
     fn calm(&mut self, scheduled_ns: u64) -> bool {
         // Of the time that the step's joints are for.
-        let at = (scheduled_ns + PERIOD_NS).saturating_sub(self.ground.origin_ns);
-        let came = self.ground.script.visit_at(at).is_some_and(|v| at < v.from_ns + CALM_NS);
+        let at = (scheduled_ns + PERIOD_NS).saturating_sub(self.context.origin_ns);
+        let came = self.context.scenario.visit_at(at).is_some_and(|v| at < v.from_ns + CALM_NS);
         if came || !self.open.is_empty() || self.pressure.is_some() {
             self.calm_ns = at + CALM_NS;
         }
         at >= self.calm_ns
     }
 
-    /// Closes the faults that a sign shows to be over.
-    fn recover(&mut self, sign: &Sign) {
-        let (origin, outcomes) = (self.ground.origin_ns, &mut self.outcomes);
+    /// Closes the faults that an observation shows to be over.
+    fn recover(&mut self, observation: &Observation) {
+        let (origin, outcomes) = (self.context.origin_ns, &mut self.outcomes);
         self.open.retain_mut(|(fault, refused)| {
             let until = origin + fault.until_ns;
-            let over = over(fault.kind.recovered_by(), until, refused, sign);
+            let over = over(fault.kind.recovered_by(), until, refused, observation);
             if let Some(at) = over {
-                outcomes.push(Outcome { kind: fault.kind, recovered_ns: Some(at.saturating_sub(until)) });
+                outcomes.push(FaultOutcome { kind: fault.kind, recovered_ns: Some(at.saturating_sub(until)) });
             }
             over.is_none()
         });
@@ -219,13 +227,13 @@ impl<C: Jumping> Watch<C> {
         if self.pressure.is_none() && self.now() >= self.sampled_ns {
             self.sampled_ns = self.now() + self.every_ns;
             let hours = self.now() as f64 / (3_600.0 * SECOND_NS as f64);
-            self.samples.push(Sample::take(hours, &self.heap));
+            self.samples.push(MemorySample::take(hours, &self.heap));
         }
     }
 
     fn revive(&mut self) {
-        let Some(pulse) = &self.pulse else { return };
-        if pulse.dead.load(Relaxed) && !pulse.revive.swap(true, Relaxed) {
+        let Some(health) = &self.health else { return };
+        if health.dead.load(Relaxed) && !health.revive.swap(true, Relaxed) {
             self.revived += 1;
         }
     }
@@ -235,42 +243,46 @@ impl<C: Jumping> Watch<C> {
         self.look();
         let now = self.now();
         let late = self.open.drain(..).filter(|(fault, _)| fault.until_ns + SECOND_NS <= now);
-        self.outcomes.extend(late.map(|(fault, _)| Outcome { kind: fault.kind, recovered_ns: None }));
+        self.outcomes.extend(late.map(|(fault, _)| FaultOutcome { kind: fault.kind, recovered_ns: None }));
     }
 
-    /// How full the queues of signs were.
+    /// How full the queues of observations were.
     pub fn capacities(&self) -> impl Iterator<Item = Capacity> {
-        self.signs.iter().map(Receiver::capacity)
+        self.observations.iter().map(Receiver::capacity)
     }
 }
 
-/// When a fault that ended at `until` was over, if a sign shows it; `refused` keeps that its files were.
-fn over(by: Sight, until: u64, refused: &mut bool, sign: &Sign) -> Option<u64> {
-    match (by, sign) {
-        (Sight::Following, Sign::Step(step)) => {
+/// When a fault that ended at `until` was over, if an observation shows it; `refused` keeps that its files were.
+fn over(by: RecoverySign, until: u64, refused: &mut bool, observation: &Observation) -> Option<u64> {
+    match (by, observation) {
+        (RecoverySign::Following, Observation::Step(step)) => {
             let follows = step.seen_ns >= until && step.off_m.is_none_or(|off| off <= FOLLOWS_M);
             (follows && good(step, until)).then_some(step.ended_ns)
         }
-        (Sight::Calm, Sign::Step(step)) => (step.fastest_m_s <= CALM_M_S && good(step, until)).then_some(step.ended_ns),
-        (Sight::Step, Sign::Step(step)) => good(step, until).then_some(step.ended_ns),
-        (Sight::Refusal, Sign::Step(step)) => (*refused && good(step, until)).then_some(step.ended_ns),
-        (Sight::Refusal, Sign::Refused([begun, _])) => {
+        (RecoverySign::Calm, Observation::Step(step)) => {
+            (step.fastest_m_s <= CALM_M_S && good(step, until)).then_some(step.ended_ns)
+        }
+        (RecoverySign::Step, Observation::Step(step)) => good(step, until).then_some(step.ended_ns),
+        (RecoverySign::Refusal, Observation::Step(step)) => (*refused && good(step, until)).then_some(step.ended_ns),
+        (RecoverySign::Refusal, Observation::Refused([begun, _])) => {
             *refused |= *begun >= until;
             None
         }
-        (Sight::Picture, Sign::Picture([taken, published])) => (*published >= until).then_some(*taken),
-        (Sight::Recording, Sign::Wrote(at)) | (Sight::Front, Sign::Front(at)) => (*at >= until).then_some(*at),
+        (RecoverySign::Picture, Observation::Picture([taken, published])) => (*published >= until).then_some(*taken),
+        (RecoverySign::Recording, Observation::Wrote(at)) | (RecoverySign::SceneMaker, Observation::SceneMaker(at)) => {
+            (*at >= until).then_some(*at)
+        }
         _ => None,
     }
 }
 
 /// Whether a step of after a time was in time and can be shown.
-fn good(step: &Stepped, until: u64) -> bool {
+fn good(step: &ObservedStep, until: u64) -> bool {
     step.scheduled_ns >= until && step.in_time() && step.is_sound()
 }
 
-impl Steps {
-    fn take(&mut self, step: &Stepped, calm: bool) {
+impl StepTotals {
+    fn take(&mut self, step: &ObservedStep, calm: bool) {
         self.nonfinite += step.nonfinite;
         self.unsound_now = if step.is_sound() { 0 } else { self.unsound_now + 1 };
         self.unsound = self.unsound.max(self.unsound_now);
@@ -280,12 +292,12 @@ impl Steps {
     }
 }
 
-impl<C: Jumping> ThreadLoop for Watch<C> {
+impl<C: JumpableClock> ThreadLoop for FaultMonitor<C> {
     fn run_due(&mut self) -> Option<u64> {
         self.begin();
         self.look();
         self.revive();
         self.sample();
-        Some(self.ground.clock.now_ns() + LOOK_NS)
+        Some(self.context.clock.now_ns() + LOOK_NS)
     }
 }

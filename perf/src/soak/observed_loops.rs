@@ -1,5 +1,5 @@
-//! Lives: the loop's own, each with what the soak does to it and asks of it: it stalls when the script says so, its allocations are
-//! counted, and it tells what it did.
+//! The loop's own threads, each with what the soak does to it and asks of it: it stalls when the scenario says so, its
+//! allocations are counted, and it reports what it did.
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
@@ -18,50 +18,50 @@ use toile_engine::meter::PERIOD_NS;
 use toile_fitting::live::assembly::{PhysicsLoop, RenderLoop};
 use toile_fitting::live::running::Restart;
 
-use super::script::{Kind, Script};
+use super::scenario::{FaultKind, Scenario};
 
 /// Allocations of the calling thread so far.
 pub type Allocations = fn() -> u64;
 
-/// Signs that wait to be looked at: three seconds of all lives.
-pub const SIGNS: usize = 1_024;
+/// Observations that wait to be looked at: three seconds of all loops.
+pub const OBSERVATIONS: usize = 1_024;
 
 /// The name of the bound, as warnings give it.
-pub const SIGNS_NAME: &str = "SIGNS (perf/src/soak/lives.rs)";
+pub const OBSERVATIONS_NAME: &str = "OBSERVATIONS (perf/src/soak/observed_loops.rs)";
 
-/// Time between two looks of a dead life at whether it is to live again (ns).
+/// Time between two looks of a dead renderer at whether it is to begin again (ns).
 const DEAD_NS: u64 = 5_000_000;
 
 /// Every so many vertices of the skin are looked at in a picture; the garments all.
 const SKIN_STEP: usize = 4;
 
-/// What a life did.
+/// What a loop did.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Sign {
+pub enum Observation {
     /// A step.
-    Step(Stepped),
+    Step(ObservedStep),
     /// A picture was taken at a time, of a snapshot of another (ns).
     Picture([u64; 2]),
     /// The recorder had nothing left to write (ns).
     Wrote(u64),
-    /// The front took a turn (ns).
-    Front(u64),
-    /// The front began to try broken garments, and was through with them (ns).
+    /// The thread that makes scenes took a turn (ns).
+    SceneMaker(u64),
+    /// It began to try broken garments, and was through with them (ns).
     Refused([u64; 2]),
 }
 
 /// A step as it was taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stepped {
-    /// When it was due, and when it was published (ns).
+pub struct ObservedStep {
+    /// When it was due (ns).
     pub scheduled_ns: u64,
-    /// See above.
+    /// When it was published (ns).
     pub ended_ns: u64,
     /// When the newest sensor frame in it was taken (ns).
     pub seen_ns: u64,
     /// Mean distance of its joints from the shopper's (m); none where nobody is there.
     pub off_m: Option<f32>,
-    /// Numbers of the published state that are none.
+    /// Positions and bones of the published state that are not finite.
     pub nonfinite: u64,
     /// Whether a garment was rolled back or kept its last places.
     pub rolled_back: bool,
@@ -69,7 +69,7 @@ pub struct Stepped {
     pub fastest_m_s: f32,
 }
 
-impl Stepped {
+impl ObservedStep {
     /// Whether it was published within its period.
     pub fn in_time(&self) -> bool {
         self.ended_ns - self.scheduled_ns <= PERIOD_NS
@@ -81,31 +81,31 @@ impl Stepped {
     }
 }
 
-/// A life that can be asked what it did in its last turn.
-pub trait Telling: ThreadLoop {
-    /// What it did, if there is something to tell.
-    fn sign(&mut self) -> Option<Sign>;
+/// A loop that reports what it did in its last turn.
+pub trait ObservedLoop: ThreadLoop {
+    /// What it did, if there is something to report.
+    fn observation(&mut self) -> Option<Observation>;
 }
 
-/// A life under the script.
+/// A loop under the scenario.
 #[derive(Debug)]
-pub struct Lived<T, C> {
-    /// The life.
-    pub life: T,
+pub struct ScriptedLoop<T, C> {
+    /// The loop.
+    pub inner: T,
     /// Allocations in its turns.
     pub allocations: u64,
     clock: C,
     /// When it does nothing (ns on the loop's clock).
     stalls: Box<[[u64; 2]]>,
     count: Option<Allocations>,
-    signs: Sender<Sign>,
+    observations: Sender<Observation>,
 }
 
-/// What every life needs besides itself.
+/// What every loop needs besides itself.
 #[derive(Debug, Clone)]
-pub struct Ground<C> {
-    /// The script.
-    pub script: Arc<Script>,
+pub struct RunContext<C> {
+    /// The scenario.
+    pub scenario: Arc<Scenario>,
     /// The loop's clock.
     pub clock: C,
     /// When the run begins (ns).
@@ -114,16 +114,16 @@ pub struct Ground<C> {
     pub count: Option<Allocations>,
 }
 
-impl<T, C: Clock + Clone> Lived<T, C> {
-    /// A life that stalls as a kind says. At load.
-    pub fn new(life: T, stall: Kind, ground: &Ground<C>, signs: Sender<Sign>) -> Self {
-        let at = |ns: u64| ground.origin_ns + ns;
-        let stalls = ground.script.faults_of(stall).map(|f| [at(f.from_ns), at(f.until_ns)]).collect();
-        Self { life, allocations: 0, clock: ground.clock.clone(), stalls, count: ground.count, signs }
+impl<T, C: Clock + Clone> ScriptedLoop<T, C> {
+    /// A loop that stalls as a kind says. At load.
+    pub fn new(inner: T, stall: FaultKind, context: &RunContext<C>, observations: Sender<Observation>) -> Self {
+        let at = |ns: u64| context.origin_ns + ns;
+        let stalls = context.scenario.faults_of(stall).map(|f| [at(f.from_ns), at(f.until_ns)]).collect();
+        Self { inner, allocations: 0, clock: context.clock.clone(), stalls, count: context.count, observations }
     }
 }
 
-impl<T: Telling, C: Clock> ThreadLoop for Lived<T, C> {
+impl<T: ObservedLoop, C: Clock> ThreadLoop for ScriptedLoop<T, C> {
     fn run_due(&mut self) -> Option<u64> {
         let now = self.clock.now_ns();
         let begun = self.stalls.partition_point(|[from, _]| *from <= now);
@@ -131,44 +131,44 @@ impl<T: Telling, C: Clock> ThreadLoop for Lived<T, C> {
             return Some(*until);
         }
         let before = self.count.map(|count| count());
-        let next = self.life.run_due();
+        let next = self.inner.run_due();
         if let Some((count, before)) = self.count.zip(before) {
             self.allocations += count() - before;
         }
-        if let Some(sign) = self.life.sign() {
-            self.signs.push(sign);
+        if let Some(observation) = self.inner.observation() {
+            self.observations.push(observation);
         }
         next
     }
 }
 
-impl<S: FrameSource, C: Clock> Telling for SensorThread<S, C> {
-    fn sign(&mut self) -> Option<Sign> {
+impl<S: FrameSource, C: Clock> ObservedLoop for SensorThread<S, C> {
+    fn observation(&mut self) -> Option<Observation> {
         None
     }
 }
 
 /// The physics, looked at behind each step.
 #[derive(Debug)]
-pub struct Stepping<C> {
+pub struct ObservedPhysics<C> {
     /// The loop's own.
     pub physics: PhysicsLoop<FrameScene, C, NoCounters>,
-    script: Arc<Script>,
+    scenario: Arc<Scenario>,
     origin_ns: u64,
     ticks: u64,
     troubles: [u64; 2],
     crash_ns: Option<u64>,
     /// When garments are spoilt (ns), and how many times they were.
-    upsets: Box<[u64]>,
-    upset: usize,
+    spoils: Box<[u64]>,
+    spoilt: usize,
 }
 
-impl<C: Clock> Stepping<C> {
+impl<C: Clock> ObservedPhysics<C> {
     /// At load.
-    pub fn new(physics: PhysicsLoop<FrameScene, C, NoCounters>, script: Arc<Script>, origin_ns: u64) -> Self {
+    pub fn new(physics: PhysicsLoop<FrameScene, C, NoCounters>, scenario: Arc<Scenario>, origin_ns: u64) -> Self {
         let troubles = physics.stepper.scene.troubles();
-        let upsets = script.faults_of(Kind::ClothUpset).map(|f| origin_ns + f.from_ns).collect();
-        Self { troubles, physics, script, origin_ns, ticks: 0, crash_ns: None, upsets, upset: 0 }
+        let spoils = scenario.faults_of(FaultKind::ClothSpoilt).map(|f| origin_ns + f.from_ns).collect();
+        Self { troubles, physics, scenario, origin_ns, ticks: 0, crash_ns: None, spoils, spoilt: 0 }
     }
 
     /// Panics at a time (ns), to see what a crash leaves.
@@ -179,14 +179,14 @@ impl<C: Clock> Stepping<C> {
     /// Mean distance of a step's joints from where the shopper is at its end (m).
     fn off(&self, scheduled_ns: u64) -> Option<f32> {
         let now = (scheduled_ns + PERIOD_NS).saturating_sub(self.origin_ns);
-        let at = self.script.visit_at(now)?.joints(now);
+        let at = self.scenario.visit_at(now)?.joints(now);
         let joints = self.physics.stepper.joints_for(scheduled_ns).joints;
         let sum: f32 = joints.iter().zip(&at).map(|(joint, at)| joint.position.distance(*at)).sum();
         Some(sum / at.len() as f32)
     }
 }
 
-/// Numbers of what a frame publishes that are none.
+/// Positions and bones of what a frame publishes that are not finite.
 fn nonfinite(scene: &FrameScene) -> u64 {
     let pose = scene.frame.pose();
     let bones = pose.local.iter().filter(|q| !q.is_finite()).count() + usize::from(!pose.root.is_finite());
@@ -194,27 +194,27 @@ fn nonfinite(scene: &FrameScene) -> u64 {
     (bones + cloths.map(|c| c.positions.iter().filter(|p| !p.is_finite()).count()).sum::<usize>()) as u64
 }
 
-/// Speed of the fastest particle (m/s); one that is no number is faster than all.
+/// Speed of the fastest particle (m/s); NaN is faster than all.
 fn fastest(scene: &FrameScene) -> f32 {
     let cloths = scene.frame.cloths().iter();
     let squares = cloths.flat_map(|cloth| (0..cloth.positions.len()).map(|i| cloth.velocity(i).length_squared()));
     squares.fold(0.0f32, |most, square| if square <= most { most } else { square }).sqrt()
 }
 
-impl<C: Clock> ThreadLoop for Stepping<C> {
+impl<C: Clock> ThreadLoop for ObservedPhysics<C> {
     fn run_due(&mut self) -> Option<u64> {
         let crashes = self.crash_ns.is_some_and(|at| self.physics.taken().scheduled_ns >= at);
         assert!(!crashes, "the crash that --crash-after asked for");
-        if self.upsets.get(self.upset).is_some_and(|at| *at <= self.physics.now_ns()) {
-            self.physics.inject_fault(self.script.plan.seed.wrapping_add(self.upset as u64));
-            self.upset += 1;
+        if self.spoils.get(self.spoilt).is_some_and(|at| *at <= self.physics.now_ns()) {
+            self.physics.inject_fault(self.scenario.plan.seed.wrapping_add(self.spoilt as u64));
+            self.spoilt += 1;
         }
         self.physics.run_due()
     }
 }
 
-impl<C: Clock> Telling for Stepping<C> {
-    fn sign(&mut self) -> Option<Sign> {
+impl<C: Clock> ObservedLoop for ObservedPhysics<C> {
+    fn observation(&mut self) -> Option<Observation> {
         if self.physics.ticks() == self.ticks {
             return None;
         }
@@ -223,7 +223,7 @@ impl<C: Clock> Telling for Stepping<C> {
         let troubles = stepper.scene.troubles();
         // Those of a scene that was just handed over are less.
         let before = std::mem::replace(&mut self.troubles, troubles);
-        Some(Sign::Step(Stepped {
+        Some(Observation::Step(ObservedStep {
             scheduled_ns: taken.scheduled_ns,
             ended_ns: taken.ended_ns,
             seen_ns: stepper.seen_ns(),
@@ -235,15 +235,15 @@ impl<C: Clock> Telling for Stepping<C> {
     }
 }
 
-/// Who looks at pictures.
+/// A renderer that looks at what it would draw.
 #[derive(Debug, Default)]
-pub struct Eyewitness {
-    /// Numbers of the snapshots that are none.
+pub struct CheckingRenderer {
+    /// Positions and normals of the snapshots that are not finite.
     pub nonfinite: u64,
     published_ns: u64,
 }
 
-impl Renderer for Eyewitness {
+impl Renderer for CheckingRenderer {
     type Outfit = ();
 
     fn set_outfit(&mut self, _outfit: &mut ()) {}
@@ -257,96 +257,97 @@ impl Renderer for Eyewitness {
     }
 }
 
-/// The renderer, who dies when the script says so.
-pub struct Showing<C> {
+/// The render thread, which panics when the scenario says so.
+pub struct ObservedRender<C> {
     /// The loop's own.
-    pub render: RenderLoop<Eyewitness, C>,
+    pub render: RenderLoop<CheckingRenderer, C>,
     clock: C,
-    deaths: Box<[u64]>,
+    panics: Box<[u64]>,
     next: usize,
     pictures: u64,
 }
 
-impl<C: Clock + Clone> Showing<C> {
+impl<C: Clock + Clone> ObservedRender<C> {
     /// At load.
-    pub fn new(render: RenderLoop<Eyewitness, C>, ground: &Ground<C>) -> Self {
-        let deaths = ground.script.faults_of(Kind::RenderDeath).map(|f| ground.origin_ns + f.from_ns).collect();
-        Self { render, clock: ground.clock.clone(), deaths, next: 0, pictures: 0 }
+    pub fn new(render: RenderLoop<CheckingRenderer, C>, context: &RunContext<C>) -> Self {
+        let panics =
+            context.scenario.faults_of(FaultKind::RenderPanic).map(|f| context.origin_ns + f.from_ns).collect();
+        Self { render, clock: context.clock.clone(), panics, next: 0, pictures: 0 }
     }
 }
 
-impl<C: Clock + Clone> Restart for Showing<C> {
+impl<C: Clock + Clone> Restart for ObservedRender<C> {
     fn restarted(self) -> Self {
         Self { render: self.render.restarted(), ..self }
     }
 }
 
-impl<C: Clock> ThreadLoop for Showing<C> {
+impl<C: Clock> ThreadLoop for ObservedRender<C> {
     fn run_due(&mut self) -> Option<u64> {
         let now = self.clock.now_ns();
-        if self.deaths.get(self.next).is_some_and(|at| *at <= now) {
+        if self.panics.get(self.next).is_some_and(|at| *at <= now) {
             self.next += 1;
             // Past the hook, which would take it for a fault of the program's own.
-            resume_unwind(Box::new("a death of the script"));
+            resume_unwind(Box::new("a panic of the scenario"));
         }
         self.render.run_due()
     }
 }
 
-impl<C: Clock> Telling for Showing<C> {
-    fn sign(&mut self) -> Option<Sign> {
+impl<C: Clock> ObservedLoop for ObservedRender<C> {
+    fn observation(&mut self) -> Option<Observation> {
         let render = &self.render.render;
         let news = render.pictures > self.pictures;
         self.pictures = render.pictures;
-        news.then(|| Sign::Picture([self.clock.now_ns(), render.renderer.published_ns]))
+        news.then(|| Observation::Picture([self.clock.now_ns(), render.renderer.published_ns]))
     }
 }
 
-impl<C: Clock + Clone> Restart for Lived<Showing<C>, C> {
+impl<C: Clock + Clone> Restart for ScriptedLoop<ObservedRender<C>, C> {
     fn restarted(self) -> Self {
-        Self { life: self.life.restarted(), ..self }
+        Self { inner: self.inner.restarted(), ..self }
     }
 }
 
-/// Whether the renderer lives, where there is no thread to ask.
+/// Whether the renderer runs, where there is no thread to ask.
 #[derive(Debug, Default)]
-pub struct Pulse {
+pub struct RenderHealth {
     /// It has died.
     pub dead: AtomicBool,
-    /// It is to live again.
+    /// It is to begin again.
     pub revive: AtomicBool,
 }
 
 /// The renderer on the simulated clock: a panic ends it until somebody has it begin again.
-pub struct Mortal<C> {
+pub struct RestartableRender<C> {
     /// It; none for the moment in which it begins again.
-    pub lived: Option<Lived<Showing<C>, C>>,
+    pub render: Option<ScriptedLoop<ObservedRender<C>, C>>,
     /// What the watch sees of it. Relaxed: one thread plays all parts.
-    pub pulse: Arc<Pulse>,
+    pub health: Arc<RenderHealth>,
     clock: C,
 }
 
-impl<C: Clock + Clone> Mortal<C> {
+impl<C: Clock + Clone> RestartableRender<C> {
     /// At load.
-    pub fn new(lived: Lived<Showing<C>, C>, clock: C) -> Self {
-        Self { lived: Some(lived), pulse: Arc::default(), clock }
+    pub fn new(render: ScriptedLoop<ObservedRender<C>, C>, clock: C) -> Self {
+        Self { render: Some(render), health: Arc::default(), clock }
     }
 }
 
-impl<C: Clock + Clone> ThreadLoop for Mortal<C> {
+impl<C: Clock + Clone> ThreadLoop for RestartableRender<C> {
     fn run_due(&mut self) -> Option<u64> {
-        if self.pulse.dead.load(Relaxed) {
-            if !self.pulse.revive.swap(false, Relaxed) {
+        if self.health.dead.load(Relaxed) {
+            if !self.health.revive.swap(false, Relaxed) {
                 return Some(self.clock.now_ns() + DEAD_NS);
             }
-            self.lived = self.lived.take().map(Restart::restarted);
-            self.pulse.dead.store(false, Relaxed);
+            self.render = self.render.take().map(Restart::restarted);
+            self.health.dead.store(false, Relaxed);
         }
-        let lived = self.lived.as_mut()?;
-        match catch_unwind(AssertUnwindSafe(|| lived.run_due())) {
+        let render = self.render.as_mut()?;
+        match catch_unwind(AssertUnwindSafe(|| render.run_due())) {
             Ok(next) => next,
             Err(_) => {
-                self.pulse.dead.store(true, Relaxed);
+                self.health.dead.store(true, Relaxed);
                 Some(self.clock.now_ns() + DEAD_NS)
             }
         }

@@ -1,4 +1,4 @@
-//! Script: who comes when, what they wear and how they move, and what goes wrong; all of it from a seed.
+//! Scenario: who comes when, what they wear and how they move, and what goes wrong; all of it from a seed.
 
 use std::f64::consts::TAU;
 
@@ -12,7 +12,8 @@ use toile_assets::wardrobe;
 use toile_engine::body::JointFrames;
 use toile_sensors::clock::SECOND_NS;
 
-use super::{LEAST_APART_S, Plan, SoakError};
+use super::error::SoakError;
+use super::options::{LEAST_APART_S, SoakPlan};
 
 /// Length of a visit (s), least and most.
 const VISIT_S: [f32; 2] = [60.0, 420.0];
@@ -34,7 +35,7 @@ pub const CAMERA_HZ: u64 = 30;
 
 /// What goes wrong. `until` is the end of the fault: from then on the time to its recovery counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum FaultKind {
     /// No frames come.
     CameraLost,
     /// The joints of the first frame again and again, with new stamps.
@@ -44,7 +45,7 @@ pub enum Kind {
     /// Every two frames change places.
     OutOfOrder,
     /// Half of the joints are NaN, and sure of it.
-    NotNumbers,
+    NanJoints,
     /// Half of the joints are infinite or beyond all measure.
     Infinite,
     /// The skeleton of somebody else, who stands beside.
@@ -53,8 +54,8 @@ pub enum Kind {
     StampsAhead,
     /// Stamps from the day before.
     StampsBehind,
-    /// Particles of every garment that are no numbers, infinite, beyond all measure or violent, from one step to the next.
-    ClothUpset,
+    /// Particles of every garment that are NaN, infinite, beyond all measure or violent, from one step to the next.
+    ClothSpoilt,
     /// The loop's clock jumps ahead, as after a suspended machine.
     ClockJump,
     /// The sensor's thread does nothing for two seconds.
@@ -66,39 +67,39 @@ pub enum Kind {
     /// The thread that records does nothing for two seconds.
     RecorderStall,
     /// The thread that makes scenes does nothing for two seconds.
-    FrontStall,
+    SceneStall,
     /// The recording's disk is full.
     DiskFull,
     /// Garment files that are broken in several ways are to be worn.
     BrokenGarment,
     /// The render thread panics.
-    RenderDeath,
+    RenderPanic,
     /// 64 MiB are taken and written to.
     MemoryPressure,
 }
 
-impl Kind {
+impl FaultKind {
     /// All of them.
     pub const ALL: [Self; 20] = [
         Self::CameraLost,
         Self::Frozen,
         Self::Repeated,
         Self::OutOfOrder,
-        Self::NotNumbers,
+        Self::NanJoints,
         Self::Infinite,
         Self::Swapped,
         Self::StampsAhead,
         Self::StampsBehind,
-        Self::ClothUpset,
+        Self::ClothSpoilt,
         Self::ClockJump,
         Self::SensorStall,
         Self::PhysicsStall,
         Self::RenderStall,
         Self::RecorderStall,
-        Self::FrontStall,
+        Self::SceneStall,
         Self::DiskFull,
         Self::BrokenGarment,
-        Self::RenderDeath,
+        Self::RenderPanic,
         Self::MemoryPressure,
     ];
 
@@ -109,45 +110,45 @@ impl Kind {
             Self::Frozen => "frames frozen",
             Self::Repeated => "frames repeated",
             Self::OutOfOrder => "frames out of order",
-            Self::NotNumbers => "NaN joints",
+            Self::NanJoints => "NaN joints",
             Self::Infinite => "infinite joints",
             Self::Swapped => "another's skeleton",
             Self::StampsAhead => "stamps a day ahead",
             Self::StampsBehind => "stamps a day behind",
-            Self::ClothUpset => "cloth spoilt",
+            Self::ClothSpoilt => "cloth spoilt",
             Self::ClockJump => "clock jump",
             Self::SensorStall => "sensor stall",
             Self::PhysicsStall => "physics stall",
             Self::RenderStall => "render stall",
             Self::RecorderStall => "recorder stall",
-            Self::FrontStall => "front stall",
+            Self::SceneStall => "scene thread stall",
             Self::DiskFull => "disk full",
             Self::BrokenGarment => "broken garment file",
-            Self::RenderDeath => "render thread dies",
+            Self::RenderPanic => "render thread dies",
             Self::MemoryPressure => "memory pressure",
         }
     }
 
     /// By what it is seen to be over.
-    pub fn recovered_by(self) -> Sight {
+    pub fn recovered_by(self) -> RecoverySign {
         match self {
-            Self::RenderStall | Self::RenderDeath => Sight::Picture,
-            Self::RecorderStall | Self::DiskFull => Sight::Recording,
-            Self::FrontStall => Sight::Front,
-            Self::BrokenGarment => Sight::Refusal,
-            Self::PhysicsStall | Self::MemoryPressure => Sight::Step,
-            Self::ClothUpset => Sight::Calm,
-            _ => Sight::Following,
+            Self::RenderStall | Self::RenderPanic => RecoverySign::Picture,
+            Self::RecorderStall | Self::DiskFull => RecoverySign::Recording,
+            Self::SceneStall => RecoverySign::SceneMaker,
+            Self::BrokenGarment => RecoverySign::Refusal,
+            Self::PhysicsStall | Self::MemoryPressure => RecoverySign::Step,
+            Self::ClothSpoilt => RecoverySign::Calm,
+            _ => RecoverySign::Following,
         }
     }
 
     /// Length of one (s).
     fn length(self, rng: &mut SplitMix64) -> f32 {
         match self {
-            Self::SensorStall | Self::PhysicsStall | Self::RenderStall | Self::RecorderStall | Self::FrontStall => {
+            Self::SensorStall | Self::PhysicsStall | Self::RenderStall | Self::RecorderStall | Self::SceneStall => {
                 STALL_S
             }
-            Self::BrokenGarment | Self::RenderDeath | Self::ClothUpset => 0.0,
+            Self::BrokenGarment | Self::RenderPanic | Self::ClothSpoilt => 0.0,
             _ => between(rng, FAULT_S),
         }
     }
@@ -155,24 +156,24 @@ impl Kind {
 
 /// What shows that a fault is over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sight {
+pub enum RecoverySign {
     /// A step in time that knows a frame of after the fault, whose joints are within 80 mm of where the shopper is on average.
     Following,
     /// A step published in time that was due after it.
     Step,
-    /// A step in time in which every particle is where a number says and none is faster than cloth that a person moves.
+    /// A step in time in which every particle is finite and none is faster than cloth that a person moves.
     Calm,
     /// A picture of a snapshot of after it.
     Picture,
     /// The recorder wrote all that it had.
     Recording,
-    /// The front takes its turn.
-    Front,
+    /// The thread that makes scenes takes its turn.
+    SceneMaker,
     /// All the broken files were refused, with a word, and the next step was in time.
     Refusal,
 }
 
-impl Sight {
+impl RecoverySign {
     /// In words, for the page.
     pub fn words(self) -> &'static str {
         match self {
@@ -181,7 +182,7 @@ impl Sight {
             Self::Calm => "no particle is out of measure or violent",
             Self::Picture => "a picture of a newer snapshot is taken",
             Self::Recording => "all that waited is written",
-            Self::Front => "the front takes its turn",
+            Self::SceneMaker => "the scene thread takes its turn",
             Self::Refusal => "all are refused, the next step is in time",
         }
     }
@@ -191,7 +192,7 @@ impl Sight {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fault {
     /// What.
-    pub kind: Kind,
+    pub kind: FaultKind,
     /// When it begins.
     pub from_ns: u64,
     /// When it ends.
@@ -200,7 +201,7 @@ pub struct Fault {
 
 /// A garment to wear.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Outfit {
+pub struct WornSize {
     /// Its name in the wardrobe.
     pub style: &'static str,
     /// Its size.
@@ -243,40 +244,40 @@ impl Visit {
 
 /// A scene that is made and handed over, in time since the run's begin (ns). Its number is its place in the list.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Dressing {
+pub struct SceneRequest {
     /// When it is asked for: the shopper is dressed as they stand then.
     pub at_ns: u64,
     /// Whose, a place in the visits.
     pub visit: usize,
     /// What they put on.
-    pub outfit: Outfit,
+    pub outfit: WornSize,
     /// Whether they have just come.
     pub afresh: bool,
 }
 
 /// All that happens.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Script {
+pub struct Scenario {
     /// What was asked for.
-    pub plan: Plan,
+    pub plan: SoakPlan,
     /// The shoppers, in their order; the first is there from the begin.
     pub visits: Vec<Visit>,
     /// What they put on, in its order.
-    pub dressings: Vec<Dressing>,
+    pub requests: Vec<SceneRequest>,
     /// What goes wrong, in its order.
     pub faults: Vec<Fault>,
 }
 
-impl Script {
+impl Scenario {
     /// Writes it.
     ///
     /// # Errors
     /// [`SoakError::Crowded`], and a wardrobe whose tables cannot be read.
-    pub fn write(plan: Plan) -> Result<Self, SoakError> {
+    pub fn write(plan: SoakPlan) -> Result<Self, SoakError> {
         let faults = faults(&plan)?;
         let mut rng = SplitMix64::new(plan.seed);
         let wardrobe = Wardrobe::read()?;
-        let (mut visits, mut dressings, mut from) = (Vec::new(), Vec::new(), 0);
+        let (mut visits, mut requests, mut from) = (Vec::new(), Vec::new(), 0);
         let mut order: Vec<usize> = Vec::new();
         while from < plan.seconds * SECOND_NS {
             // Every garment in every size once, in an order of its own, before any comes again.
@@ -288,14 +289,14 @@ impl Script {
             let mut at = from;
             let mut outfit = wardrobe.outfits[first].0.clone();
             while at < visit.until_ns.min(plan.seconds * SECOND_NS) {
-                dressings.push(Dressing { at_ns: at, visit: visits.len(), outfit, afresh: at == from });
+                requests.push(SceneRequest { at_ns: at, visit: visits.len(), outfit, afresh: at == from });
                 at += ns(between(&mut rng, WORN_S));
                 outfit = wardrobe.near(visit.sex, &visit.measures[1], &mut rng);
             }
             from = visit.until_ns + ns(between(&mut rng, GAP_S));
             visits.push(visit);
         }
-        Ok(Self { plan, visits, dressings, faults })
+        Ok(Self { plan, visits, requests, faults })
     }
 
     /// Who stands before the camera at a time, if somebody does.
@@ -311,14 +312,14 @@ impl Script {
     }
 
     /// The faults of a kind, in their order.
-    pub fn faults_of(&self, kind: Kind) -> impl Iterator<Item = &Fault> {
+    pub fn faults_of(&self, kind: FaultKind) -> impl Iterator<Item = &Fault> {
         self.faults.iter().filter(move |f| f.kind == kind)
     }
 }
 
 /// What there is to wear, with the body that each is cut for.
 struct Wardrobe {
-    outfits: Vec<(Outfit, Measures, Population)>,
+    outfits: Vec<(WornSize, Measures, Population)>,
     /// Bones of an average woman and of an average man.
     skeletons: [(f32, Skeleton); 2],
 }
@@ -331,7 +332,7 @@ impl Wardrobe {
             let table = wardrobe::style(name).map_err(|e| wrong(&e))?.sizes().map_err(|e| wrong(&e))?;
             for size in table.codes() {
                 let body = table.size_body(size).map_err(|e| wrong(&e))?;
-                outfits.push((Outfit { style: name, size: size.into() }, body.into(), table.population));
+                outfits.push((WornSize { style: name, size: size.into() }, body.into(), table.population));
             }
         }
         let average = |sex| {
@@ -366,7 +367,7 @@ impl Wardrobe {
     }
 
     /// Something to change into: of the sizes of a garment the nearest, or one beside it.
-    fn near(&self, sex: Sex, measures: &Measures, rng: &mut SplitMix64) -> Outfit {
+    fn near(&self, sex: Sex, measures: &Measures, rng: &mut SplitMix64) -> WornSize {
         let fits = |p: &Population| *p == Population::Mixed || (*p == Population::Men) == (sex == Sex::Male);
         let names: Vec<&str> = wardrobe::names().into_iter().filter(|n| self.of(n).any(|o| fits(&o.2))).collect();
         let name = names[rng.next_u64() as usize % names.len()];
@@ -378,14 +379,14 @@ impl Wardrobe {
         sizes[beside].0.clone()
     }
 
-    fn of<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a (Outfit, Measures, Population)> {
+    fn of<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a (WornSize, Measures, Population)> {
         self.outfits.iter().filter(move |o| o.0.style == name)
     }
 }
 
 /// The faults: spread over the run, each kind as often as the others.
-fn faults(plan: &Plan) -> Result<Vec<Fault>, SoakError> {
-    let Plan { seed, seconds, faults, .. } = *plan;
+fn faults(plan: &SoakPlan) -> Result<Vec<Fault>, SoakError> {
+    let SoakPlan { seed, seconds, faults, .. } = *plan;
     if faults as u64 * LEAST_APART_S > seconds {
         return Err(SoakError::Crowded { faults, seconds });
     }
@@ -394,9 +395,9 @@ fn faults(plan: &Plan) -> Result<Vec<Fault>, SoakError> {
     let mut order = Vec::new();
     let place = |i: usize| {
         if order.is_empty() {
-            order = shuffled(Kind::ALL.len(), &mut rng);
+            order = shuffled(FaultKind::ALL.len(), &mut rng);
         }
-        let kind = Kind::ALL[order.pop().unwrap_or(0)];
+        let kind = FaultKind::ALL[order.pop().unwrap_or(0)];
         let begin = (i as f64 + 0.15 + 0.1 * f64::from(rng.uniform())) * apart;
         let from_ns = (begin * SECOND_NS as f64) as u64;
         Fault { kind, from_ns, until_ns: from_ns + ns(kind.length(&mut rng)) }
@@ -425,23 +426,23 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::soak::Weight;
+    use crate::soak::SceneWeight;
 
-    fn script(seed: u64) -> Script {
-        Script::write(Plan { seed, seconds: 8 * 3_600, faults: 1_000, scene: Weight::Light }).unwrap()
+    fn scenario(seed: u64) -> Scenario {
+        Scenario::write(SoakPlan { seed, seconds: 8 * 3_600, faults: 1_000, scene: SceneWeight::Light }).unwrap()
     }
 
     #[test]
     fn eight_hours_see_every_size_and_every_fault_and_nothing_overlaps() {
-        let script = script(7);
-        let worn: BTreeSet<&Outfit> = script.dressings.iter().map(|d| &d.outfit).collect();
+        let scenario = scenario(7);
+        let worn: BTreeSet<&WornSize> = scenario.requests.iter().map(|d| &d.outfit).collect();
         assert_eq!(worn.len(), Wardrobe::read().unwrap().outfits.len());
-        for kind in Kind::ALL {
-            assert_eq!(script.faults_of(kind).count(), 50, "{kind:?}");
+        for kind in FaultKind::ALL {
+            assert_eq!(scenario.faults_of(kind).count(), 50, "{kind:?}");
         }
-        assert!(script.visits.windows(2).all(|v| v[0].until_ns + 3 * SECOND_NS <= v[1].from_ns));
-        assert!(script.dressings.windows(2).all(|d| d[0].at_ns < d[1].at_ns));
-        let crowded = Plan { seed: 1, seconds: 600, faults: 100, scene: Weight::Light };
+        assert!(scenario.visits.windows(2).all(|v| v[0].until_ns + 3 * SECOND_NS <= v[1].from_ns));
+        assert!(scenario.requests.windows(2).all(|d| d[0].at_ns < d[1].at_ns));
+        let crowded = SoakPlan { seed: 1, seconds: 600, faults: 100, scene: SceneWeight::Light };
         let crowded = faults(&crowded).unwrap();
         // A second and a half to recover in, at least.
         assert!(crowded.windows(2).all(|f| f[0].until_ns + SECOND_NS * 3 / 2 <= f[1].from_ns), "{crowded:?}");
@@ -449,11 +450,11 @@ mod tests {
 
     #[test]
     fn a_seed_decides_on_everything_and_too_many_faults_are_refused() {
-        assert_eq!(script(3), script(3));
-        assert_ne!(script(3).faults, script(4).faults);
-        let plan = Plan { seed: 1, seconds: 60, faults: 11, scene: Weight::Light };
+        assert_eq!(scenario(3), scenario(3));
+        assert_ne!(scenario(3).faults, scenario(4).faults);
+        let plan = SoakPlan { seed: 1, seconds: 60, faults: 11, scene: SceneWeight::Light };
         assert_eq!(
-            Script::write(plan).unwrap_err().to_string(),
+            Scenario::write(plan).unwrap_err().to_string(),
             "11 faults do not fit into 60 s; ask for 10 at most, or for a longer run"
         );
     }

@@ -1,0 +1,36 @@
+//! Why nothing can be soaked.
+
+use thiserror::Error;
+use toile_engine::frame::FrameError;
+
+use super::options::LEAST_APART_S;
+
+/// Why nothing can be soaked.
+#[derive(Debug, Error)]
+pub enum SoakError {
+    /// Too many faults.
+    #[error("{faults} faults do not fit into {seconds} s; ask for {} at most, or for a longer run", .seconds / LEAST_APART_S)]
+    Crowded {
+        /// What was asked for.
+        faults: usize,
+        /// The length of the run (s).
+        seconds: u64,
+    },
+    /// A shopper or a garment.
+    #[error("scene {number} cannot be made: {reason}")]
+    Scene {
+        /// Its number.
+        number: u64,
+        /// Why.
+        reason: String,
+    },
+    /// A frame.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// The system gave no thread, or no file.
+    #[error("the run could not be started ({0}); raise the limits of threads and files")]
+    Start(#[from] std::io::Error),
+    /// A thread of the loop ended before its time.
+    #[error("the {0} thread panicked; its message tells the cause")]
+    Died(&'static str),
+}

@@ -1,0 +1,55 @@
+//! What is soaked, and how it is run.
+
+use serde::{Deserialize, Serialize};
+
+/// What is soaked: all that decides on the bits of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SoakPlan {
+    /// Everything follows from it.
+    pub seed: u64,
+    /// Length on the loop's clock (s).
+    pub seconds: u64,
+    /// Faults that are injected.
+    pub faults: usize,
+    /// How heavy the scenes are.
+    pub scene: SceneWeight,
+}
+
+/// How it is run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SoakOptions {
+    /// What is soaked.
+    pub plan: SoakPlan,
+    /// What the clock shows at the begin (h).
+    pub uptime_hours: u64,
+    /// On threads and the system's clock, in place of one after the other on a simulated one.
+    pub real_time: bool,
+    /// Workers of a step; 1 where the clock is simulated.
+    pub workers: usize,
+}
+
+/// How heavy the scenes are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SceneWeight {
+    /// Threads so far apart that a step costs some 50 us, and one in sixteen of the body's vertices: for hours in minutes.
+    Light,
+    /// The wardrobe as shoppers wear it.
+    Full,
+}
+
+impl SceneWeight {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Light, Self::Full];
+
+    /// Its name in options and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Light => "light",
+            Self::Full => "full",
+        }
+    }
+}
+
+/// Shortest time between two faults (s): the longest of three seconds, one to recover in, and some to see that it lasts.
+pub const LEAST_APART_S: u64 = 6;
