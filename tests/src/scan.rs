@@ -16,6 +16,21 @@ pub struct NamedPath {
     pub segments: Vec<String>,
     /// The line it starts on, from 1.
     pub line: usize,
+    /// How the source names it.
+    pub role: Role,
+    /// The name it has in this file: what stands after `as`, or else its last segment.
+    pub alias: String,
+}
+
+/// How a source names a path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// In code.
+    Code,
+    /// By a private `use`.
+    Import,
+    /// By a `use` that hands it on: `pub use`, `pub(crate) use`.
+    ReExport,
 }
 
 /// The tokens of a source without comments; a string or character is left as the single mark `"`.
@@ -130,21 +145,27 @@ fn character(text: &str) -> Option<usize> {
     (chars.next() == Some('\'')).then(|| 2 + first.len_utf8())
 }
 
-/// The tokens less the items under `#[cfg(test)]`.
+/// The tokens less the items under `#[cfg(test)]` or `#[cfg(all(test, ..))]`.
 pub fn without_tests(tokens: &[Token]) -> Vec<Token> {
-    let mark = ["#", "[", "cfg", "(", "test", ")", "]"];
     let mut kept = Vec::with_capacity(tokens.len());
     let mut at = 0;
     while at < tokens.len() {
-        let here = &tokens[at..];
-        if here.len() >= mark.len() && here.iter().zip(mark).all(|(t, m)| t.text == m) {
-            at += mark.len() + item_length(&here[mark.len()..]);
+        if let Some(mark) = test_mark(&tokens[at..]) {
+            at += mark + item_length(&tokens[at + mark..]);
         } else {
             kept.push(tokens[at].clone());
             at += 1;
         }
     }
     kept
+}
+
+/// Length of the attribute that keeps the item behind it for tests, if the tokens begin with one.
+fn test_mark(tokens: &[Token]) -> Option<usize> {
+    let opens = |words: &[&str]| tokens.len() > words.len() && tokens.iter().zip(words).all(|(t, w)| t.text == *w);
+    let plain = opens(&["#", "[", "cfg", "(", "test", ")"]);
+    let with_more = opens(&["#", "[", "cfg", "(", "all", "(", "test", ","]);
+    (plain || with_more).then(|| tokens.iter().position(|t| t.text == "]").map_or(tokens.len(), |end| end + 1))
 }
 
 /// Tokens of one item: up to a `;` or the end of its braces, whichever comes first outside brackets.
@@ -168,15 +189,27 @@ fn item_length(tokens: &[Token]) -> usize {
 
 /// Every path that starts with `crate`, `super`, `self` or a crate of the house, and every path of a `use`.
 pub fn paths(tokens: &[Token]) -> Vec<NamedPath> {
+    let of_the_house = |word: &str| ["crate", "super", "self", "toile"].contains(&word) || word.starts_with("toile_");
+    all_paths(tokens).into_iter().filter(|p| p.role != Role::Code || of_the_house(&p.segments[0])).collect()
+}
+
+/// Every path of a `use`, and every path of two or more segments in the code.
+pub fn all_paths(tokens: &[Token]) -> Vec<NamedPath> {
     let mut found = Vec::new();
     let mut at = 0;
     while at < tokens.len() {
-        let before = at.checked_sub(1).map_or("", |b| tokens[b].text.as_str());
         let text = tokens[at].text.as_str();
-        let named = ["crate", "super", "self"].contains(&text) || text == "toile" || text.starts_with("toile_");
+        let behind = |by: usize| at.checked_sub(by).map_or("", |b| tokens[b].text.as_str());
         let followed = tokens.get(at + 1).is_some_and(|t| t.text == "::");
-        if before != "::" && text != "use" && followed && (named || before == "use") {
-            at = spread(tokens, at, &[], &mut found);
+        let imported = behind(1) == "use";
+        let role = match behind(2) {
+            "pub" | ")" if imported => Role::ReExport,
+            _ if imported => Role::Import,
+            _ => Role::Code,
+        };
+        let begins = text.starts_with(is_word) && text != "use" && behind(1) != "::";
+        if begins && (followed || imported) {
+            at = spread(tokens, at, &[], role, &mut found);
         } else {
             at += 1;
         }
@@ -185,7 +218,7 @@ pub fn paths(tokens: &[Token]) -> Vec<NamedPath> {
 }
 
 /// Reads one path or use tree from `at`, adds what it names, and returns where it ends.
-fn spread(tokens: &[Token], mut at: usize, prefix: &[String], found: &mut Vec<NamedPath>) -> usize {
+fn spread(tokens: &[Token], mut at: usize, prefix: &[String], role: Role, found: &mut Vec<NamedPath>) -> usize {
     let Some(first) = tokens.get(at) else { return at };
     let line = first.line;
     let mut segments = prefix.to_vec();
@@ -194,7 +227,7 @@ fn spread(tokens: &[Token], mut at: usize, prefix: &[String], found: &mut Vec<Na
         if text(at) == "{" {
             at += 1;
             while at < tokens.len() && text(at) != "}" {
-                at = if text(at) == "," { at + 1 } else { spread(tokens, at, &segments, found).max(at + 1) };
+                at = if text(at) == "," { at + 1 } else { spread(tokens, at, &segments, role, found).max(at + 1) };
             }
             return at + 1;
         }
@@ -208,10 +241,16 @@ fn spread(tokens: &[Token], mut at: usize, prefix: &[String], found: &mut Vec<Na
         }
         at += 1;
     }
-    if text(at) == "as" {
+    // `a::{self}` names `a`.
+    if segments.len() > 1 && segments.last().is_some_and(|last| last == "self") {
+        segments.pop();
+    }
+    let mut alias = segments.last().cloned().unwrap_or_default();
+    if role != Role::Code && text(at) == "as" {
+        text(at + 1).clone_into(&mut alias);
         at += 2;
     }
-    found.push(NamedPath { segments, line });
+    found.push(NamedPath { segments, line, role, alias });
     at
 }
 
@@ -251,6 +290,14 @@ mod tests {
             use crate::kept::N;
         "###;
         assert_eq!(named(source), ["crate::kept::N"]);
+    }
+
+    #[test]
+    fn a_path_has_the_name_that_the_file_gives_it() {
+        let found = all_paths(&tokens("pub use a::{B as C, d::{self, E}}; use f::G; fn h() { G::new::<u8>() }"));
+        let said: Vec<(&str, Role)> = found.iter().map(|p| (p.alias.as_str(), p.role)).collect();
+        let again = Role::ReExport;
+        assert_eq!(said, [("C", again), ("d", again), ("E", again), ("G", Role::Import), ("new", Role::Code)]);
     }
 
     #[test]

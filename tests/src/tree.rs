@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The crates, lowest floor first: a crate imports only those before it. Folder and name.
-pub const FLOORS: [(&str, &str); 12] = [
+/// The crates, lowest floor first: a crate imports only those before it. Folder and name. A new crate gets a line here;
+/// the order of its rooms stands in its own `lib.rs`, as groups of `mod` parted by blank lines.
+pub const FLOORS: &[(&str, &str)] = &[
     ("assets", "toile-assets"),
     ("assets/sculpt", "toile-sculpt"),
     ("sensors", "toile-sensors"),
@@ -54,11 +55,16 @@ pub fn files(folder: &Path, keep: impl Fn(&Path) -> bool) -> Vec<PathBuf> {
     found
 }
 
-/// Every Rust file of the crate in a folder, sorted; those of crates that lie inside it are not its own.
+/// Every Rust file of a crate, sorted.
+pub fn crate_files(folder: &str) -> Vec<PathBuf> {
+    rust_files(&root().join(folder))
+}
+
+/// Every Rust file below a folder, sorted; those of crates that lie inside it are not its own.
 pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let inner = |path: &Path| {
-        let between = path.ancestors().skip(1).take_while(|above| *above != folder);
-        between.into_iter().any(|above| above.join("Cargo.toml").exists())
+        let mut between = path.ancestors().skip(1).take_while(|above| *above != folder);
+        between.any(|above| above.join("Cargo.toml").exists())
     };
     files(folder, |path| path.extension().is_some_and(|e| e == "rs") && !inner(path))
 }

@@ -26,7 +26,7 @@ use toile_sensors::filter::predict::Predictor;
 use toile_sensors::filter::smoothing::Smoothing;
 use toile_sensors::filter::{Filter, FilterSettings, JointFilter};
 use toile_sensors::sample::between;
-use toile_tests::stage;
+use toile_tests::dressed;
 
 thread_local! {
     /// Allocations of this thread; the test's own, because the harness allocates on others meanwhile.
@@ -93,14 +93,14 @@ const SENSOR_FRAMES: u64 = 45;
 #[test]
 fn no_garment_of_the_wardrobe_costs_an_allocation_a_step() {
     for name in wardrobe::names() {
-        let body = stage::shopper();
+        let body = dressed::shopper();
         // The sensor's frames are its own thread's business and are made beforehand.
         let first = 40;
         let seen: Vec<_> = (first..first + SENSOR_FRAMES)
-            .map(|i| stage::joints(&body, i * 1_000_000_000 / stage::SENSOR_HZ))
+            .map(|i| dressed::joints(&body, i * 1_000_000_000 / dressed::SENSOR_HZ))
             .collect();
         let mut filter = JointFilter::default();
-        let mut frame = stage::dressed(&[name], &seen);
+        let mut frame = dressed::dressed(&[name], &seen);
         let mut last = filter.push(&seen[0]);
         let found = allocations(|| {
             for raw in &seen[1..] {
@@ -133,10 +133,10 @@ impl Renderer for Glance {
 
 #[test]
 fn no_turn_of_the_loop_costs_an_allocation_whatever_happens() {
-    let body = stage::shopper();
-    let garment = stage::dress_coarsely("sun-dress", &body);
-    let seen: Vec<_> = (40..100).map(|i| stage::joints(&body, i * SECOND_NS / stage::SENSOR_HZ)).collect();
-    let (mut frame, reader) = stage::frame_and_reader(body, vec![garment]);
+    let body = dressed::shopper();
+    let garment = dressed::dress_coarsely("sun-dress", &body);
+    let seen: Vec<_> = (40..100).map(|i| dressed::joints(&body, i * SECOND_NS / dressed::SENSOR_HZ)).collect();
+    let (mut frame, reader) = dressed::frame_and_reader(body, vec![garment]);
     frame.dress(&seen[0]);
     let clock = SimClock::default();
     let TripleBuffer { writer, reader: news } = TripleBuffer::new(&SensorFrame::default());
@@ -170,8 +170,9 @@ fn no_turn_of_the_loop_costs_an_allocation_whatever_happens() {
 #[test]
 fn no_filter_of_joints_allocates_a_frame() {
     let settings = FilterSettings { smoothing: Smoothing::OneEuro(OneEuroSettings::default()), bone_pull: 1.0 };
-    let body = stage::shopper();
-    let seen: Vec<_> = (0..SENSOR_FRAMES).map(|i| stage::joints(&body, i * 1_000_000_000 / stage::SENSOR_HZ)).collect();
+    let body = dressed::shopper();
+    let seen: Vec<_> =
+        (0..SENSOR_FRAMES).map(|i| dressed::joints(&body, i * 1_000_000_000 / dressed::SENSOR_HZ)).collect();
     let mut locked = JointFilter::new(FilterSettings { bone_pull: 1.0, ..FilterSettings::default() });
     locked.lock_bones(&body.skeleton);
     let filters: [(&str, Box<dyn Filter>); 6] = [

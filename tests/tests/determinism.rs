@@ -6,13 +6,13 @@ use toile_engine::frame::Frame;
 use toile_sensors::clock::ticks_to_ns;
 use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
-use toile_tests::stage;
+use toile_tests::dressed;
 
 /// Two seconds of the scene, in which the arms rise and the walk begins.
 const STEPS: u64 = 240;
 
 fn play(track: &[Joints]) -> Frame {
-    let mut frame = stage::dressed(&["sun-dress"], track);
+    let mut frame = dressed::dressed(&["sun-dress"], track);
     let start = track[0].time_ns;
     for tick in 0..STEPS {
         frame.step(&sample(track, start + ticks_to_ns(tick)).expect("a track with frames"));
@@ -22,7 +22,7 @@ fn play(track: &[Joints]) -> Frame {
 
 #[test]
 fn two_runs_end_in_the_same_bits_and_another_input_in_others() {
-    let track = stage::track(&stage::shopper(), 1.8, 2.1);
+    let track = dressed::track(&dressed::shopper(), 1.8, 2.1);
     let mut other = track.clone();
     // One joint, one sensor frame, one millimetre.
     other[20].joints[6].position.y += 1e-3;
@@ -32,7 +32,7 @@ fn two_runs_end_in_the_same_bits_and_another_input_in_others() {
         let [a, b, c] = runs.map(|run| run.join().expect("a run that ends"));
         (a, b, c)
     });
-    assert!(stage::is_finite(&first));
+    assert!(dressed::is_finite(&first));
     assert_eq!(first.state_hash(), second.state_hash());
     assert_eq!(first.pose(), second.pose());
     assert!(first.cloths()[0].positions == second.cloths()[0].positions, "equal hashes of unequal states");

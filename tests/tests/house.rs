@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use toile_tests::exceptions;
+use toile_tests::items::{self, Item, ItemKind};
 use toile_tests::scan;
 use toile_tests::tree::{self, FLOORS};
 
@@ -25,7 +27,7 @@ const UNSAFE_FILES: [(&str, &str); 12] = [
 const MAX_LINES: usize = 500;
 
 fn all_rust_files() -> Vec<PathBuf> {
-    FLOORS.iter().flat_map(|(folder, _)| tree::rust_files(&tree::root().join(folder))).collect()
+    FLOORS.iter().flat_map(|(folder, _)| tree::crate_files(folder)).collect()
 }
 
 /// Which of a door's four lines its opening comment lacks.
@@ -34,19 +36,32 @@ fn missing_lines(source: &str) -> Vec<&'static str> {
     ["Reads:", "Writes:", "Budget:", "Thread:"].into_iter().filter(|word| !opening.contains(word)).collect()
 }
 
+/// Whether a file is the door of a crate or a room: `lib.rs`, `mod.rs`, or `foo.rs` beside a `foo/` that holds more
+/// than tests.
 fn is_door(file: &Path) -> bool {
     let in_src = file.components().any(|c| c.as_os_str() == "src");
-    in_src && file.file_name().is_some_and(|name| name == "lib.rs" || name == "mod.rs")
+    let named_so = file.file_name().is_some_and(|name| name == "lib.rs" || name == "mod.rs");
+    let beside = || {
+        let folder = file.with_extension("");
+        let real = |f: &PathBuf| f.file_stem().is_some_and(|stem| stem != "tests");
+        folder.is_dir() && !folder.ends_with("tests") && tree::rust_files(&folder).iter().any(real)
+    };
+    in_src && (named_so || beside())
 }
 
 #[test]
 fn every_door_says_what_it_reads_writes_costs_and_where_it_runs() {
     let doors: Vec<PathBuf> = all_rust_files().into_iter().filter(|f| is_door(f)).collect();
     assert!(doors.len() >= FLOORS.len(), "only {} doors were found", doors.len());
-    for file in doors {
-        let missing = missing_lines(&tree::read(&file));
-        assert!(missing.is_empty(), "{} opens without {missing:?}", tree::name(&file));
-    }
+    let incomplete = doors.iter().filter(|file| !missing_lines(&tree::read(file)).is_empty());
+    exceptions::hold("doors_without_their_four_lines", &incomplete.map(|file| tree::name(file)).collect());
+}
+
+#[test]
+fn a_file_beside_its_folder_is_a_door() {
+    let src = tree::root().join("tests/src");
+    assert!(is_door(&src.join("lib.rs")) && is_door(&tree::root().join("assets/src/rig.rs")));
+    assert!(!is_door(&src.join("tree.rs")) && !is_door(&tree::root().join("tests/tests/house.rs")));
 }
 
 #[test]
@@ -81,6 +96,31 @@ fn no_file_is_longer_than_a_room() {
         let lines = tree::read(&file).lines().count();
         assert!(lines <= MAX_LINES, "{} has {lines} lines, more than {MAX_LINES}: split it", tree::name(&file));
     }
+}
+
+/// Most lines of a function, from `fn` to its closing brace: a kernel's or a scheduler's.
+const MAX_FUNCTION_LINES: usize = 120;
+
+/// The functions of a source that are too long.
+fn long_functions(source: &str) -> Vec<Item> {
+    let long = |item: &Item| item.kind == ItemKind::Function && item.lines() > MAX_FUNCTION_LINES;
+    items::items(&scan::tokens(source)).into_iter().filter(long).collect()
+}
+
+#[test]
+fn no_function_is_longer_than_a_kernel() {
+    let files = all_rust_files();
+    let long = files.iter().flat_map(|file| {
+        long_functions(&tree::read(file)).into_iter().map(move |item| format!("{} {}", tree::name(file), item.name))
+    });
+    exceptions::hold("long_functions", &long.collect());
+}
+
+#[test]
+fn a_long_function_is_found() {
+    let body = |lines: usize| format!("impl A {{\n    fn f() {{\n{}    }}\n}}", "        g(); // }\n".repeat(lines));
+    assert!(long_functions(&body(MAX_FUNCTION_LINES - 2)).is_empty());
+    assert_eq!(long_functions(&body(MAX_FUNCTION_LINES - 1))[0].name, "f");
 }
 
 /// Whether a manifest takes over the lints of the workspace, of which one asks for a word on every public item.

@@ -14,7 +14,7 @@ use toile_sensors::clock::ticks_to_ns;
 use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_tests::cloth::{plain_fabric, sheet};
-use toile_tests::stage;
+use toile_tests::dressed;
 
 /// Gravity of the default settings (m/s2).
 const G: f32 = 9.81;
@@ -84,9 +84,9 @@ fn a_hanging_strip_stretches_by_its_weight_whatever_the_substeps() {
 
 /// The scene's shopper in a sun dress of a coarse mesh, dressed as she stands at the begin of a track.
 fn coarse(track: &[Joints]) -> Frame {
-    let body = stage::shopper();
-    let garment = stage::dress_coarsely("sun-dress", &body);
-    let mut frame = stage::frame(body, vec![garment]);
+    let body = dressed::shopper();
+    let garment = dressed::dress_coarsely("sun-dress", &body);
+    let mut frame = dressed::frame(body, vec![garment]);
     frame.dress(&track[0]);
     frame
 }
@@ -104,7 +104,7 @@ fn play(frame: &mut Frame, track: &[Joints], mut look: impl FnMut(u64, &Frame)) 
 
 #[test]
 fn pinned_particles_never_leave_the_skin() {
-    let track = stage::track(&stage::shopper(), 3.2, 2.0);
+    let track = dressed::track(&dressed::shopper(), 3.2, 2.0);
     let mut farthest = 0.0f32;
     play(&mut coarse(&track), &track, |tick, frame| {
         let (garment, cloth) = (&frame.garments()[0], &frame.cloths()[0]);
@@ -129,13 +129,13 @@ fn kinetic_energy(frame: &Frame) -> f32 {
 
 #[test]
 fn a_garment_at_rest_settles() {
-    let track = stage::track(&stage::shopper(), 0.0, 0.1);
+    let track = dressed::track(&dressed::shopper(), 0.0, 0.1);
     let mut frame = coarse(&track);
     let seconds = 3;
     let mut energy = Vec::new();
     for _ in 0..seconds * STEP_HZ {
         frame.step(&track[0]);
-        assert!(stage::is_finite(&frame));
+        assert!(dressed::is_finite(&frame));
         energy.push(kinetic_energy(&frame));
     }
     let mean = |part: &[f32]| part.iter().sum::<f32>() / part.len() as f32;
@@ -149,7 +149,7 @@ fn a_garment_at_rest_settles() {
 
 #[test]
 fn joints_that_are_no_numbers_leave_no_trace() {
-    let track = stage::track(&stage::shopper(), 1.6, 3.5);
+    let track = dressed::track(&dressed::shopper(), 1.6, 3.5);
     let mut frame = coarse(&track);
     let mut poser = Poser::new(&frame.body().skeleton);
     let mut off = 0.0;
@@ -163,7 +163,7 @@ fn joints_that_are_no_numbers_leave_no_trace() {
             }
         }
         frame.step(&dirty);
-        assert!(stage::is_finite(&frame), "tick {tick}");
+        assert!(dressed::is_finite(&frame), "tick {tick}");
         let pose = poser.pose(&clean, STEP_SECONDS);
         let turns = pose.local.iter().zip(&frame.pose().local).map(|(a, b)| a.angle_between(*b));
         off = turns.fold(pose.root.distance(frame.pose().root), f32::max);
@@ -176,7 +176,7 @@ fn joints_that_are_no_numbers_leave_no_trace() {
 
 #[test]
 fn a_shopper_who_is_suddenly_elsewhere_keeps_her_dress() {
-    let mut track = stage::track(&stage::shopper(), 0.0, 4.0);
+    let mut track = dressed::track(&dressed::shopper(), 0.0, 4.0);
     for frame in &mut track[30..] {
         frame.joints.iter_mut().for_each(|j| j.position += Vec3::new(2.0, 0.0, -0.5));
     }
@@ -187,7 +187,7 @@ fn a_shopper_who_is_suddenly_elsewhere_keeps_her_dress() {
     for tick in 0..480u64 {
         let latest = track[(tick / 4) as usize];
         frame.step(&latest);
-        assert!(stage::is_finite(&frame), "tick {tick}");
+        assert!(dressed::is_finite(&frame), "tick {tick}");
         arrived = frame.pose().root.x;
         worst = worst.max(measure::strain(&mut frame.cloths()[0].clone(), &frame.garments()[0]).max);
     }
@@ -210,14 +210,14 @@ const CALM_PENETRATION_M: f32 = 0.010;
 #[test]
 fn calm_motion_stretches_little_and_stays_outside_of_the_body() {
     // She stands, then lifts the arms: no fast motion yet.
-    let track = stage::track(&stage::shopper(), 1.0, 1.5);
+    let track = dressed::track(&dressed::shopper(), 1.0, 1.5);
     assert_eq!(CALM_STRAIN_P99.map(|(name, _)| name)[..], toile_assets::wardrobe::names()[..]);
     std::thread::scope(|scope| {
         for (name, most) in CALM_STRAIN_P99 {
             let track = &track;
             scope.spawn(move || {
-                let mut frame = stage::dressed(&[name], track);
-                play(&mut frame, track, |tick, frame| assert!(stage::is_finite(frame), "{name}: tick {tick}"));
+                let mut frame = dressed::dressed(&[name], track);
+                play(&mut frame, track, |tick, frame| assert!(dressed::is_finite(frame), "{name}: tick {tick}"));
                 let strain = frame.meters().strain();
                 let deepest = frame.meters().penetration_max;
                 eprintln!("{name}: {strain:?}, deepest {:.1} mm", deepest * 1e3);

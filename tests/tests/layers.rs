@@ -1,79 +1,12 @@
-//! Imports point upstream only: a crate imports the floors below it, a room the rooms before it.
+//! Imports point upstream only: a crate imports the floors below it, a room the rooms before it, a file no file that
+//! imports it back.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
 
+use toile_tests::exceptions;
+use toile_tests::imports::{self, Arrow, CrateFiles, Module};
 use toile_tests::scan::{self, NamedPath};
 use toile_tests::tree::{self, FLOORS};
-
-/// Rooms in the order in which data flows; a room imports only rooms of earlier rows, and those of no row are held
-/// to the general law alone: no circle.
-const ROOMS: [(&str, &[&[&str]]); 5] = [
-    (
-        "toile-assets",
-        &[
-            &["limits", "cone", "numeric"],
-            &["skeleton"],
-            &["mesh"],
-            &["fabric", "body"],
-            &["sizes"],
-            &["rig"],
-            &["garment"],
-            &["import", "bake"],
-            &["export"],
-            &["wardrobe"],
-            &["scene"],
-            &["scene_file"],
-        ],
-    ),
-    ("toile-sculpt", &[&["form", "subdivide"], &["lattice", "wrap"], &["draw"], &["unwrap"]]),
-    (
-        "toile-sensors",
-        &[
-            &["error", "clock"],
-            &["limits"],
-            &["frame"],
-            &["sample", "segment"],
-            &["depth"],
-            &["filter"],
-            &["session"],
-            &["source"],
-        ],
-    ),
-    (
-        "toile-engine",
-        &[
-            &["lanes", "triple_buffer", "sync", "clock", "meter", "cone"],
-            &["workers"],
-            &["body", "jump_filter"],
-            &["skin"],
-            &["colliders"],
-            &["cloth"],
-            &["frame"],
-            &["frame_loop", "lines"],
-        ],
-    ),
-    (
-        "toile-perf",
-        &[
-            &["time"],
-            &["surface"],
-            &["yardstick"],
-            &["oracle"],
-            &["depth", "skinning", "skirt", "latency"],
-            &["torture", "validate"],
-            &["pareto", "plan", "soak"],
-        ],
-    ),
-];
-
-/// One arrow between rooms of a crate.
-#[derive(Debug, Clone, PartialEq, Eq)]
-struct Arrow {
-    from: String,
-    to: String,
-    place: String,
-}
 
 /// Which of the house's crates a path names, as a floor.
 fn floor_of(path: &NamedPath) -> Option<usize> {
@@ -81,86 +14,51 @@ fn floor_of(path: &NamedPath) -> Option<usize> {
     FLOORS.iter().position(|(_, name)| *name == first)
 }
 
-/// The names that a crate's root re-exports, each with the room it comes from.
-fn re_exports(root: &str, rooms: &BTreeSet<String>) -> BTreeMap<String, String> {
-    let paths = scan::paths(&scan::without_tests(&scan::tokens(root)));
-    let inside = paths.into_iter().map(|mut path| {
-        path.segments.retain(|s| s != "crate" && s != "self");
-        path.segments
-    });
-    inside.filter(|s| s.len() > 1 && rooms.contains(&s[0])).map(|s| (s[s.len() - 1].clone(), s[0].clone())).collect()
-}
-
-/// The room that a path of a file leads to, if it leads to another than the file's own.
-fn room_of(path: &NamedPath, module: &[String], exports: &BTreeMap<String, String>) -> Option<String> {
-    let segments: Vec<&str> = path.segments.iter().map(String::as_str).collect();
-    let ups = segments.iter().take_while(|s| **s == "super").count();
-    let full: Vec<&str> = match *segments.first()? {
-        "crate" => segments[1..].to_vec(),
-        "super" => {
-            let stay = module.len().checked_sub(ups)?;
-            module[..stay].iter().map(String::as_str).chain(segments[ups..].iter().copied()).collect()
+/// The arrows between rooms that do not lead to an earlier group of the crate's door.
+fn against_the_flow<'a>(arrows: &'a BTreeSet<Arrow>, groups: &[Vec<String>]) -> Vec<&'a Arrow> {
+    let group = |room: &String| groups.iter().position(|group| group.contains(room));
+    let mut wrong = Vec::new();
+    for arrow in arrows {
+        // The root is the door of the crate: it names every room, and what it defines has no group.
+        let (Some(from), Some(to)) = (arrow.from.first(), arrow.to.first()) else { continue };
+        if from != to && group(to) >= group(from) {
+            wrong.push(arrow);
         }
-        _ => return None,
-    };
-    let room = full.first()?;
-    let room = exports.get(*room).map_or(*room, String::as_str);
-    (Some(room) != module.first().map(String::as_str)).then(|| room.to_owned())
+    }
+    wrong
 }
 
-/// All arrows of a file, from its room to others.
-fn arrows(source: &str, module: &[String], place: &str, exports: &BTreeMap<String, String>) -> Vec<Arrow> {
-    // The root is the door of the crate: it names every room.
-    let Some(from) = module.first() else { return Vec::new() };
-    let paths = scan::paths(&scan::without_tests(&scan::tokens(source)));
-    let leads = paths.iter().filter_map(|p| Some((p.line, room_of(p, module, exports)?)));
-    leads.map(|(line, to)| Arrow { from: from.clone(), to, place: format!("{place}:{line}") }).collect()
+/// Whether an arrow leads to a door above the file: to the module that holds the file's own, or one further up.
+fn leads_to_a_door(arrow: &Arrow) -> bool {
+    arrow.from.len() > arrow.to.len() && arrow.from.starts_with(&arrow.to)
 }
 
-/// The arrows that point to the same or a later row.
-fn against_the_flow<'a>(arrows: &'a [Arrow], rows: &[&[&str]]) -> Vec<&'a Arrow> {
-    let row = |room: &str| rows.iter().position(|row| row.contains(&room));
-    arrows.iter().filter(|a| row(&a.from).zip(row(&a.to)).is_some_and(|(from, to)| to >= from)).collect()
+fn pairs<'a>(arrows: impl Iterator<Item = &'a Arrow>) -> Vec<(Module, Module)> {
+    arrows.map(|a| (a.from.clone(), a.to.clone())).collect()
 }
 
-/// The arrows that lie on a circle.
-fn on_a_circle(arrows: &[Arrow]) -> Vec<&Arrow> {
-    let reaches = |start: &str, goal: &str| {
-        let mut seen = BTreeSet::new();
-        let mut open = vec![start];
-        while let Some(room) = open.pop() {
-            if seen.insert(room) {
-                let next = arrows.iter().filter(|a| a.from == room).map(|a| a.to.as_str());
-                open.extend(next.collect::<Vec<_>>());
-            }
-        }
-        seen.contains(goal)
-    };
-    arrows.iter().filter(|a| reaches(&a.to, &a.from)).collect()
+/// The circles of files, arrows to a file's own doors left out.
+fn file_circles(arrows: &BTreeSet<Arrow>) -> Vec<BTreeSet<Module>> {
+    imports::circles(&pairs(arrows.iter().filter(|a| !leads_to_a_door(a))))
 }
 
-fn is_test_file(file: &Path) -> bool {
-    file.file_stem().is_some_and(|stem| stem == "tests")
-}
-
-/// All arrows between the rooms of one crate.
-fn crate_arrows(folder: &str) -> Vec<Arrow> {
-    let src = tree::root().join(folder).join("src");
-    let files = tree::rust_files(&src);
-    let rooms: BTreeSet<String> = files.iter().filter_map(|f| tree::module_path(&src, f).into_iter().next()).collect();
-    let door = files.iter().find(|f| f.ends_with("src/lib.rs"));
-    let exports = door.map(|d| re_exports(&tree::read(d), &rooms)).unwrap_or_default();
-    let real = files.iter().filter(|f| !is_test_file(f));
-    let found = real.flat_map(|f| arrows(&tree::read(f), &tree::module_path(&src, f), &tree::name(f), &exports));
-    // A name that is neither a room nor re-exported stands in the root itself.
-    found.filter(|a| rooms.contains(&a.to)).collect()
+/// The doors that define what a file below them uses, while they use that file, straight or by way of others: each
+/// with the arrows from below.
+fn doors_in_circles(arrows: &BTreeSet<Arrow>) -> BTreeMap<Module, Vec<&Arrow>> {
+    let circles = imports::circles(&pairs(arrows.iter()));
+    let together = |a: &Arrow| circles.iter().any(|circle| circle.contains(&a.from) && circle.contains(&a.to));
+    let mut found = BTreeMap::<Module, Vec<&Arrow>>::new();
+    for arrow in arrows.iter().filter(|a| leads_to_a_door(a) && together(a)) {
+        found.entry(arrow.to.clone()).or_default().push(arrow);
+    }
+    found
 }
 
 #[test]
 fn crates_import_only_the_floors_below() {
     let mut wrong = Vec::new();
     for (floor, (folder, name)) in FLOORS.iter().enumerate() {
-        for file in tree::rust_files(&tree::root().join(folder)) {
+        for file in tree::crate_files(folder) {
             for path in scan::paths(&scan::tokens(&tree::read(&file))) {
                 if floor_of(&path).is_some_and(|to| to > floor) {
                     wrong.push(format!("{}:{} {name} imports {}", tree::name(&file), path.line, path.segments[0]));
@@ -169,6 +67,46 @@ fn crates_import_only_the_floors_below() {
         }
     }
     assert!(wrong.is_empty(), "imports that point up:\n{}", wrong.join("\n"));
+}
+
+/// The benchmarks' crate: evidence for whoever builds the house, nothing for who runs it.
+const BENCHMARKS: &str = "toile-perf";
+
+/// The commands that measure the engine, files and folders.
+const BENCH_COMMANDS: [&str; 7] =
+    ["bench.rs", "bench/", "latency.rs", "pareto.rs", "soak.rs", "torture.rs", "validate.rs"];
+
+/// Whether a file may import the benchmarks: they themselves, the tests, and the program's bench commands.
+fn may_import_benchmarks(place: &str) -> bool {
+    let command = place.strip_prefix("engine/app/src/commands/");
+    let measures =
+        command.is_some_and(|of| BENCH_COMMANDS.iter().any(|c| of == *c || (c.ends_with('/') && of.starts_with(c))));
+    place.starts_with("perf/") || place.starts_with("tests/") || measures
+}
+
+#[test]
+fn only_the_bench_commands_import_the_benchmarks() {
+    let mut found = BTreeSet::new();
+    for (folder, _) in FLOORS {
+        for file in tree::crate_files(folder) {
+            let place = tree::name(&file);
+            let paths = scan::paths(&scan::without_tests(&scan::tokens(&tree::read(&file))));
+            let imports = |path: &NamedPath| path.segments[0].replace('_', "-") == BENCHMARKS;
+            if !may_import_benchmarks(&place) && paths.iter().any(imports) {
+                found.insert(place);
+            }
+        }
+    }
+    exceptions::hold("imports_of_the_benchmarks", &found);
+}
+
+#[test]
+fn only_the_program_and_the_tests_depend_on_the_benchmarks() {
+    for (folder, name) in FLOORS {
+        let table: toml::Table = tree::read(&tree::root().join(folder).join("Cargo.toml")).parse().unwrap();
+        let depends = dependencies(&table).iter().any(|d| d == BENCHMARKS);
+        assert!(!depends || ["toile", "toile-tests"].contains(name), "{name} depends on the benchmarks");
+    }
 }
 
 /// The crates of the house that a manifest depends on in any way, for all targets.
@@ -201,16 +139,6 @@ fn manifests_depend_only_on_the_floors_below() {
 }
 
 #[test]
-fn what_ships_does_not_depend_on_what_draws_it() {
-    for (folder, name) in FLOORS {
-        let table: toml::Table =
-            tree::read(&tree::root().join(folder).join("Cargo.toml")).parse().expect("a manifest is TOML");
-        let ships = table.get("dependencies").and_then(toml::Value::as_table);
-        assert!(!ships.is_some_and(|d| d.contains_key("toile-sculpt")), "{name} needs the offline drawing to be built");
-    }
-}
-
-#[test]
 fn the_workspace_has_no_crate_without_a_floor() {
     let table: toml::Table = tree::read(&tree::root().join("Cargo.toml")).parse().expect("a manifest is TOML");
     let members: BTreeSet<&str> =
@@ -220,74 +148,173 @@ fn the_workspace_has_no_crate_without_a_floor() {
 
 #[test]
 fn rooms_import_only_upstream() {
+    let mut found = BTreeSet::new();
     for (folder, name) in FLOORS {
-        let Some((_, rows)) = ROOMS.iter().find(|(of, _)| *of == name) else { continue };
-        let found = crate_arrows(folder);
-        let wrong = against_the_flow(&found, rows);
-        assert!(wrong.is_empty(), "{name}: arrows against the flow of data: {wrong:#?}");
+        let Ok(door) = std::fs::read_to_string(tree::root().join(folder).join("src/lib.rs")) else { continue };
+        let arrows = CrateFiles::read(folder).arrows();
+        for arrow in against_the_flow(&arrows, &imports::groups(&door)) {
+            println!("{} -> {}::{}", arrow.place, arrow.to.join("::"), arrow.item);
+            found.insert(format!("{name} {} -> {}", arrow.from[0], arrow.to[0]));
+        }
     }
+    exceptions::hold("rooms_against_the_flow", &found);
 }
 
 #[test]
-fn rooms_import_in_no_circle() {
-    for (folder, name) in FLOORS {
-        let found = crate_arrows(folder);
-        let wrong = on_a_circle(&found);
-        assert!(wrong.is_empty(), "{name}: arrows on a circle: {wrong:#?}");
+fn files_import_in_no_circle() {
+    let mut found = BTreeSet::new();
+    for (folder, _) in FLOORS {
+        let files = CrateFiles::read(folder);
+        let circles = file_circles(&files.arrows());
+        found.extend(circles.iter().map(|c| c.iter().map(|m| files.place(m)).collect::<Vec<_>>().join(", ")));
     }
+    exceptions::hold("circles_of_files", &found);
 }
 
-/// The law against made-up sources: a forbidden arrow is found however it is written.
+#[test]
+fn doors_define_nothing_for_files_that_they_use() {
+    let mut found = BTreeSet::new();
+    for (folder, _) in FLOORS {
+        let files = CrateFiles::read(folder);
+        for (door, from) in doors_in_circles(&files.arrows()) {
+            let items: BTreeSet<&str> = from.iter().map(|a| a.item.as_str()).collect();
+            println!("{} defines for files that it uses: {items:?}", files.place(&door));
+            found.insert(files.place(&door).to_owned());
+        }
+    }
+    exceptions::hold("circles_by_way_of_a_door", &found);
+}
+
+/// The laws against made-up sources: a forbidden arrow is found however it is written.
 mod the_law_itself {
     use super::*;
 
-    const ROWS: &[&[&str]] = &[&["lanes"], &["body"], &["skin"], &["cloth"]];
+    const DOOR: &str = "pub mod lanes;\n\npub mod body;\n\npub mod skin;\n\n#[cfg(x)]\npub(crate) mod cloth;\n\n\
+                        pub use cloth::state::{Cloth, Step};";
 
-    fn wrong(source: &str, module: &[&str]) -> usize {
-        let rooms = ["lanes", "body", "skin", "cloth"].map(str::to_owned).into();
-        let exports = re_exports("pub mod cloth; pub use cloth::state::{Cloth, Step};", &rooms);
-        let module: Vec<String> = module.iter().map(|m| (*m).to_owned()).collect();
-        against_the_flow(&arrows(source, &module, "made_up.rs", &exports), ROWS).len()
+    fn made_up(sources: &[(&str, &str)]) -> BTreeSet<Arrow> {
+        let module = |name: &str| name.split("::").filter(|part| !part.is_empty()).map(str::to_owned).collect();
+        let files = sources.iter().map(|(name, text)| (module(name), format!("{name}.rs"), (*text).to_owned()));
+        CrateFiles::new(files.collect()).arrows()
+    }
+
+    fn wrong(module: &str, source: &str) -> usize {
+        let mut sources = vec![
+            ("", DOOR),
+            ("lanes", "pub struct F32x8; pub fn add() {}"),
+            ("body", "pub struct Pose;"),
+            ("skin", ""),
+            ("skin::palette", ""),
+            ("cloth", "mod contact; pub mod state; pub fn step() {}"),
+            ("cloth::contact", ""),
+            ("cloth::state", "pub struct Cloth; pub struct Step;"),
+        ];
+        let place = sources.iter().position(|(name, _)| *name == module).unwrap();
+        let source = [sources[place].1, source].concat();
+        sources[place].1 = &source;
+        against_the_flow(&made_up(&sources), &imports::groups(DOOR)).len()
     }
 
     #[test]
     fn arrows_against_the_flow_are_found() {
         let forbidden = [
-            ("use crate::cloth::Cloth;", &["body"][..]),
-            ("use crate::{lanes::F32x8, cloth};", &["skin"]),
-            ("use super::cloth::Step;", &["skin"]),
-            ("use super::super::cloth;", &["skin", "palette"]),
-            ("fn f(c: &crate::cloth::Cloth) {}", &["body"]),
-            ("use crate::Cloth;", &["body"]),
-            ("use crate::{lanes, Step as Moment};", &["skin", "palette"]),
+            ("body", "use crate::cloth::state::Cloth;"),
+            ("skin", "use crate::{lanes::F32x8, cloth}; fn f() { cloth::step() }"),
+            ("skin", "use super::cloth::state::Step;"),
+            ("skin::palette", "use super::super::cloth; fn f(c: cloth::state::Cloth) {}"),
+            ("body", "fn f(c: &crate::cloth::state::Cloth) {}"),
+            ("body", "use crate::Cloth;"),
+            ("skin::palette", "use crate::{lanes, Step as Moment};"),
         ];
-        for (source, module) in forbidden {
-            assert_eq!(wrong(source, module), 1, "{source}");
+        for (module, source) in forbidden {
+            assert_eq!(wrong(module, source), 1, "{source}");
         }
     }
 
     #[test]
     fn arrows_with_the_flow_and_inside_a_room_pass() {
         let allowed = [
-            ("use crate::body::Pose;", &["skin"][..]),
-            ("use crate::lanes;", &["cloth"]),
-            ("use super::state::Cloth;", &["cloth", "contact"]),
-            ("use crate::Cloth;", &["cloth", "contact"]),
-            ("// use crate::cloth::Cloth;", &["body"]),
-            ("#[cfg(test)] mod tests { use crate::cloth::Cloth; }", &["body"]),
-            ("use crate::cloth::Cloth;", &[]),
+            ("skin", "use crate::body::Pose;"),
+            ("cloth", "use crate::lanes; fn f() { lanes::add() }"),
+            ("cloth::contact", "use super::state::Cloth;"),
+            ("cloth::contact", "use crate::Cloth;"),
+            ("body", "// use crate::cloth::state::Cloth;"),
+            ("body", "#[cfg(test)] mod tests { use crate::cloth::state::Cloth; }"),
+            ("", "use crate::cloth::state::Cloth;"),
         ];
-        for (source, module) in allowed {
-            assert_eq!(wrong(source, module), 0, "{source}");
+        for (module, source) in allowed {
+            assert_eq!(wrong(module, source), 0, "{source}");
         }
     }
 
     #[test]
-    fn circles_are_found_and_trees_are_not() {
-        let arrow = |from: &str, to: &str| Arrow { from: from.into(), to: to.into(), place: String::new() };
-        let circle = [arrow("a", "b"), arrow("b", "c"), arrow("c", "a"), arrow("a", "d")];
-        assert_eq!(on_a_circle(&circle), circle[..3].iter().collect::<Vec<_>>());
-        assert!(on_a_circle(&[arrow("a", "b"), arrow("a", "c"), arrow("b", "c")]).is_empty());
+    fn rooms_of_one_group_do_not_import_each_other() {
+        let arrows = made_up(&[("", ""), ("a", "use crate::b::B;"), ("b", "pub struct B;")]);
+        assert_eq!(against_the_flow(&arrows, &imports::groups("mod a;\nmod b;")).len(), 1);
+        assert_eq!(against_the_flow(&arrows, &imports::groups("mod b;\n\nmod a;")).len(), 0);
+        assert_eq!(against_the_flow(&arrows, &imports::groups("mod a;\n\nmod b;")).len(), 1);
+    }
+
+    #[test]
+    fn circles_of_files_are_found_through_doors_and_aliases() {
+        let circle = [
+            ("", "pub mod room;"),
+            ("room", "mod a; mod b; mod c; pub use a::A; pub use b::B;"),
+            ("room::a", "use super::b; pub struct A(b::B);"),
+            ("room::b", "use crate::room::A; pub struct B; fn f(c: super::c::C) {}"),
+            ("room::c", "pub struct C;"),
+        ];
+        let found = file_circles(&made_up(&circle));
+        assert_eq!(found.len(), 1);
+        let names: Vec<&String> = found[0].iter().filter_map(|m| m.last()).collect();
+        assert_eq!(names, ["a", "b"]);
+        assert!(doors_in_circles(&made_up(&circle)).is_empty());
+    }
+
+    #[test]
+    fn a_door_may_hand_on_and_call_but_not_define_for_what_it_calls() {
+        let child = ("room::a", "use super::Kind; pub fn open(kind: Kind) {}");
+        let shows = [
+            ("room", "mod a; mod kind; pub use a::open; pub use kind::Kind;"),
+            child,
+            ("room::kind", "pub enum Kind {}"),
+        ];
+        let calls = [("room", "mod a; mod kind; pub use kind::Kind; pub fn all() { a::open() }"), child, shows[2]];
+        let defines = [("room", "mod a; pub enum Kind {}"), child];
+        for fine in [&shows[..], &calls, &defines] {
+            let arrows = made_up(fine);
+            assert!(doors_in_circles(&arrows).is_empty() && file_circles(&arrows).is_empty(), "{}", fine[0].1);
+        }
+        let both = [("room", "mod a; pub enum Kind {} pub fn all(kind: Kind) { a::open(kind) }"), child];
+        let again = [("room", "mod a; pub use a::open; pub enum Kind {} pub fn all(kind: Kind) { open(kind) }"), child];
+        for wrong in [&both[..], &again] {
+            let arrows = made_up(wrong);
+            assert_eq!(doors_in_circles(&arrows).len(), 1, "{}", wrong[0].1);
+        }
+    }
+
+    #[test]
+    fn files_of_tests_make_no_circle() {
+        let arrows = made_up(&[
+            ("", "mod a; mod b; #[cfg(test)] mod made;"),
+            ("a", "pub struct A; #[cfg(test)] mod tests;"),
+            ("a::tests", "use crate::b::B;"),
+            ("b", "use crate::a::A; pub struct B;"),
+            ("made", "use crate::b::B;"),
+        ]);
+        assert_eq!(arrows.len(), 1);
+    }
+
+    #[test]
+    fn imports_of_the_benchmarks_are_allowed_in_bench_commands_alone() {
+        for fine in
+            ["engine/app/src/commands/bench/skirt.rs", "engine/app/src/commands/soak.rs", "tests/tests/skirt.rs"]
+        {
+            assert!(may_import_benchmarks(fine), "{fine}");
+        }
+        for wrong in ["engine/kiosk/src/service.rs", "engine/app/src/commands/run.rs", "engine/app/src/soak.rs"] {
+            assert!(!may_import_benchmarks(wrong), "{wrong}");
+        }
     }
 
     #[test]

@@ -17,7 +17,7 @@ use toile_sensors::filter::JointFilter;
 use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_sensors::source::{OpenOptions, open};
-use toile_tests::{recordings, stage};
+use toile_tests::{dressed, recordings};
 
 /// A recording, what is worn in it, and the most strain that the 99th percentile of the edges may have, averaged over
 /// the steps: a jump flings a dress about, and the T-shirt is tight at the armpits.
@@ -69,8 +69,8 @@ fn filtered(file: &Path) -> Vec<Joints> {
 /// An average woman in these garments, through a recording.
 fn play(track: &[Joints], worn: &[&str]) -> (Frame, Figures) {
     let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).expect("the average woman");
-    let garments = worn.iter().map(|name| stage::dress(name, &body)).collect();
-    let mut frame = stage::frame(body, garments);
+    let garments = worn.iter().map(|name| dressed::dress(name, &body)).collect();
+    let mut frame = dressed::frame(body, garments);
     frame.dress(&track[0]);
     let mut figures = Figures::default();
     let start = track[0].time_ns;
@@ -78,7 +78,7 @@ fn play(track: &[Joints], worn: &[&str]) -> (Frame, Figures) {
         let before = *frame.pose();
         frame.step(&sample(track, start + ticks_to_ns(tick)).expect("a track with frames"));
         figures.look(&before, frame.pose());
-        assert!(stage::is_finite(&frame), "tick {tick}");
+        assert!(dressed::is_finite(&frame), "tick {tick}");
     }
     (frame, figures)
 }

@@ -1,0 +1,68 @@
+//! What the laws let pass, by name: `tests/exceptions.toml`, which only may shrink.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::tree;
+
+/// The exceptions of one law: each with its reason.
+pub type Exceptions = BTreeMap<String, String>;
+
+/// The exceptions of a law, as the file has them.
+///
+/// # Panics
+/// Where the file is not a table of tables of reasons.
+pub fn of(law: &str) -> Exceptions {
+    read(&tree::read(&tree::root().join("tests/exceptions.toml")), law)
+}
+
+fn read(text: &str, law: &str) -> Exceptions {
+    let table: toml::Table = text.parse().unwrap_or_else(|e| panic!("tests/exceptions.toml: {e}"));
+    let Some(rows) = table.get(law) else { return Exceptions::new() };
+    let rows = rows.as_table().unwrap_or_else(|| panic!("tests/exceptions.toml: {law} is a table"));
+    let reason = |value: &toml::Value| value.as_str().expect("a reason is a text").trim().to_owned();
+    rows.iter().map(|(name, value)| (name.clone(), reason(value))).collect()
+}
+
+/// What a law has to say: violations that are not excepted, and exceptions that nothing needs any more or that give no
+/// reason; empty where all is well.
+pub fn judge(law: &str, found: &BTreeSet<String>, excepted: &Exceptions) -> String {
+    let mut said = String::new();
+    for name in found.iter().filter(|name| !excepted.contains_key(*name)) {
+        said.push_str(&format!("{law}: {name:?} breaks the law\n"));
+    }
+    for (name, reason) in excepted {
+        if !found.contains(name) {
+            said.push_str(&format!("{law}: {name:?} is not needed any more: take it out of tests/exceptions.toml\n"));
+        } else if reason.is_empty() {
+            said.push_str(&format!("{law}: {name:?} is excepted without a reason\n"));
+        }
+    }
+    said
+}
+
+/// Holds a law over what was found.
+///
+/// # Panics
+/// Where a violation is not excepted, or an exception is not needed.
+pub fn hold(law: &str, found: &BTreeSet<String>) {
+    let said = judge(law, found, &of(law));
+    assert!(said.is_empty(), "\n{said}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_exception_is_named_needed_and_justified() {
+        let text = "[circles]\n\"a, b\" = \"why\"\n\"c, d\" = \"\"\n\"e, f\" = \"once\"\n[others]\n\"g\" = \"why\"";
+        let found = ["a, b", "c, d", "h"].map(str::to_owned).into();
+        let said = judge("circles", &found, &read(text, "circles"));
+        let lines: Vec<&str> = said.lines().collect();
+        assert_eq!(lines.len(), 3, "{said}");
+        assert!(lines[0].contains("\"h\" breaks"));
+        assert!(lines[1].contains("\"c, d\" is excepted without"));
+        assert!(lines[2].contains("\"e, f\" is not needed"));
+        assert!(judge("none", &BTreeSet::new(), &read(text, "none")).is_empty());
+    }
+}
