@@ -1,7 +1,7 @@
 //! Backend: what the garments of a run were stepped by, as reports have it.
 
 use serde::Serialize;
-use toile_gpu::stepper::Means;
+use toile_gpu::backend::Backends;
 
 /// What stepped, and why not what was asked for.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
@@ -29,13 +29,13 @@ pub struct Adapter {
 
 impl SteppedBy {
     /// The means of a run, after it.
-    pub fn of(means: &Means) -> Self {
+    pub fn of(means: &Backends) -> Self {
         let told = |a: &toile_gpu::Adapter| Adapter { name: a.name.clone(), kind: a.kind, driver: a.driver.clone() };
         Self {
             asked: means.asked().name(),
             backend: means.used(),
             adapter: means.adapter().map(told),
-            fallen: means.fallen().map(str::to_owned),
+            fallen: means.fallback().map(str::to_owned),
         }
     }
 }

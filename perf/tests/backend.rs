@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3A};
 use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_engine::cloth::Quality;
 use toile_fitting::heap::HeapProbe;
-use toile_gpu::stepper::{Backend, Means};
+use toile_gpu::backend::{Backend, Backends};
 use toile_perf::backend::SteppedBy;
 use toile_perf::oracle::{Oracle, Problem, adapter, measure};
 use toile_perf::skirt::options::SkirtOptions;
@@ -37,12 +37,12 @@ const STRAIN: [f64; 2] = [0.01, 0.4];
 const SWING_M: f64 = 0.1;
 
 /// Whatever steps on a device; none where this machine has none, which CI does not excuse.
-fn device() -> Option<Means> {
-    let means = Means::open(Backend::Gpu);
+fn device() -> Option<Backends> {
+    let means = Backends::open(Backend::Gpu);
     if means.adapter().is_some() {
         return Some(means);
     }
-    let reason = means.fallen().unwrap_or("it was not opened");
+    let reason = means.fallback().unwrap_or("it was not opened");
     assert!(toile_gpu::adapters().is_empty(), "{reason}");
     assert_ne!(std::env::var("CI").as_deref(), Ok("true"), "{reason}");
     eprintln!("not run: {reason}");
@@ -50,7 +50,7 @@ fn device() -> Option<Means> {
 }
 
 /// Whether a device has to give the processor's bits.
-fn exact(means: &Means) -> bool {
+fn exact(means: &Backends) -> bool {
     means.adapter().is_some_and(|a| a.kind == "software")
 }
 
@@ -64,7 +64,7 @@ struct Ran {
 }
 
 /// Ten seconds of a skirt; `nudge` may touch it before each step.
-fn ran(means: &Means, options: &SkirtOptions, mut nudge: impl FnMut(&mut SkirtScene)) -> Ran {
+fn ran(means: &Backends, options: &SkirtOptions, mut nudge: impl FnMut(&mut SkirtScene)) -> Ran {
     let mut scene = SkirtScene::by(means, options, &HeapProbe::none(), |_| {}).expect("the scene is as it should be");
     let mut gauge = Gauge::new(&scene);
     let mut strains = Vec::new();
@@ -76,7 +76,7 @@ fn ran(means: &Means, options: &SkirtOptions, mut nudge: impl FnMut(&mut SkirtSc
         assert_eq!(frame.nonfinite, 0, "step {step}");
         strains.push([frame.strain_mean, frame.strain_p99]);
     }
-    assert_eq!(scene.stepper().fallen(), None, "the device was given up");
+    assert_eq!(scene.stepper().fallback(), None, "the device was given up");
     Ran { strains, at: adapter::positions(&scene.cloths[0].positions), scene }
 }
 
@@ -107,7 +107,7 @@ fn walking() -> SkirtOptions {
 #[test]
 fn ten_seconds_of_the_walking_skirt_are_the_processors() {
     let Some(means) = device() else { return };
-    let cpu = ran(&Means::cpu(), &walking(), |_| {});
+    let cpu = ran(&Backends::cpu(), &walking(), |_| {});
     let gpu = ran(&means, &walking(), |_| {});
     assert_eq!((cpu.scene.stepper().backend(), gpu.scene.stepper().backend()), (Backend::Cpu, Backend::Gpu));
     hold(&cpu, &gpu);
@@ -122,10 +122,10 @@ fn ten_seconds_of_the_walking_skirt_are_the_processors() {
 /// change, other ones in every run.
 #[test]
 fn last_bits_alone_stay_within_what_a_device_may_be_off() {
-    let plain = ran(&Means::cpu(), &walking(), |_| {});
+    let plain = ran(&Backends::cpu(), &walking(), |_| {});
     for seed in 1..=NUDGED {
         let mut chance = seed;
-        let nudged = ran(&Means::cpu(), &walking(), |scene| nudge(scene, &mut chance));
+        let nudged = ran(&Backends::cpu(), &walking(), |scene| nudge(scene, &mut chance));
         assert!(measure::apart(&plain.at, &nudged.at).max_m > 0.0, "nothing was nudged");
         hold(&plain, &nudged);
     }
@@ -155,7 +155,7 @@ fn the_settled_skirt_is_as_near_to_the_oracle_as_the_processors() {
         quality: Some(Quality::Fine),
         ..SkirtOptions::default()
     };
-    let [cpu, gpu] = [&Means::cpu(), &means].map(|means| {
+    let [cpu, gpu] = [&Backends::cpu(), &means].map(|means| {
         let Ran { at, scene, .. } = ran(means, &options, |_| {});
         let [_, solids] = adapter::solids(scene.colliders());
         let mut problem = Problem::of(&scene.garment);

@@ -4,9 +4,9 @@ use glam::Vec3;
 use toile_assets::garment::Garment;
 use toile_assets::mesh::vertex_normals;
 use toile_engine::frame::{Frame, Snapshot};
+use toile_view::hidden_skin::CoveringCloth;
 use toile_view::image::Size;
 use toile_view::scene::{Bounds, Camera, Colours, MANNEQUIN, Material, Surface};
-use toile_view::tuck::Cover;
 
 /// Half the width of what an animation shows around the shopper: arms stretched out (m).
 const HALF_REACH_M: f32 = 0.62;
@@ -54,7 +54,7 @@ impl DrawnFrame {
         let starts: Vec<&[Vec3]> = garments.iter().map(|g| &*g.start).collect();
         let over = |first: usize| {
             let worn = garments.iter().zip(&starts).skip(first);
-            Cover::new(worn.flat_map(|(g, points)| g.triangles.iter().map(|t| t.map(|i| points[i as usize]))))
+            CoveringCloth::new(worn.flat_map(|(g, points)| g.triangles.iter().map(|t| t.map(|i| points[i as usize]))))
         };
         let cloth = |(i, g): (usize, &Garment)| {
             let mut normals = vec![Vec3::ZERO; g.particles()];
@@ -98,13 +98,13 @@ impl DrawnFrame {
             let DrawnGarment { points: at, dressed, triangles, drawn, normals, .. } = cloth;
             at.copy_from_slice(points);
             vertex_normals(at, triangles, normals);
-            *drawn = Cover::new(over.iter().copied()).tuck(at, normals, dressed, triangles);
+            *drawn = CoveringCloth::new(over.iter().copied()).hide_skin(at, normals, dressed, triangles);
             over.extend(triangles.iter().map(|t| t.map(|i| at[i as usize])));
         }
         snapshot.skin.read(&mut self.body, &mut self.normals);
         self.bounds = Bounds::of(&self.body);
-        let cover = Cover::new(over.into_iter());
-        self.drawn = cover.tuck(&mut self.body, &self.normals, &self.dressed, &self.body_triangles);
+        let cover = CoveringCloth::new(over.into_iter());
+        self.drawn = cover.hide_skin(&mut self.body, &self.normals, &self.dressed, &self.body_triangles);
     }
 
     /// The surfaces of a picture; `map` gives each garment its colours by vertex instead of the fabric's.
@@ -118,7 +118,7 @@ impl DrawnFrame {
         }];
         for (i, cloth) in self.cloths.iter().enumerate() {
             let (colours, material) = match map {
-                Some(map) => (Colours::Tightness(&map[i]), Material::Chart),
+                Some(map) => (Colours::Tightness(&map[i]), Material::Diffuse),
                 None => (Colours::One(cloth.colour), Material::Cloth),
             };
             let DrawnGarment { points, normals, drawn: triangles, .. } = cloth;

@@ -7,11 +7,11 @@ use std::io::BufWriter;
 use toile_assets::limits::STEP_HZ;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::lines::Line;
-use toile_view::fitmap;
+use toile_view::contact_sheet;
+use toile_view::fit_map;
 use toile_view::image::{Animation, Image, Size};
 use toile_view::scene::{Bounds, Camera};
-use toile_view::sheet;
-use toile_view::trace::Quality;
+use toile_view::trace::TraceQuality;
 
 use crate::drawn_frame::DrawnFrame;
 use crate::exit::AppError;
@@ -92,7 +92,7 @@ impl Pictures {
         self.frame.update(snapshot);
         let camera = self.frame.follow(MOTION);
         let surfaces = self.frame.surfaces(None);
-        for image in renderer.draw(&surfaces, lines, (MOTION, Quality::Motion), |_| vec![camera], || {})? {
+        for image in renderer.draw(&surfaces, lines, (MOTION, TraceQuality::Motion), |_| vec![camera], || {})? {
             self.animation.push(&image).map_err(AppError::input)?;
             self.kept.push((image, snapshot.tick));
         }
@@ -114,16 +114,16 @@ impl Pictures {
         debug_assert_eq!(self.kept.len(), self.timing.frames as usize);
         contact_sheet(out, &self.kept)?;
         self.frame.update(snapshot);
-        let legend = fitmap::legend(3 * STILL.width / 4, sheet::PAPER);
+        let legend = fit_map::legend(3 * STILL.width / 4, contact_sheet::PAPER);
         let aspect = STILL.width as f32 / STILL.height as f32;
         let look = |bounds: &Bounds| {
             [0.0, FRAC_PI_2, PI].map(|turn| Camera::framing(bounds, end.facing + turn, aspect)).to_vec()
         };
         for (name, map, legend) in [("look.png", None, None), ("fit.png", Some(end.tightness), Some(&legend))] {
             let surfaces = self.frame.surfaces(map);
-            let drawn = renderer.draw(&surfaces, end.lines, (STILL, Quality::Still), look, || self.bar.inc(1))?;
+            let drawn = renderer.draw(&surfaces, end.lines, (STILL, TraceQuality::Still), look, || self.bar.inc(1))?;
             let [front, side, back] = &drawn[..] else { return Err(AppError::internal("three views were asked for")) };
-            write_png(out, name, &sheet::triptych(front, side, back, end.title, legend))?;
+            write_png(out, name, &contact_sheet::triptych(front, side, back, end.title, legend))?;
         }
         self.bar.finish_and_clear();
         Ok(())
@@ -139,13 +139,13 @@ impl Pictures {
 #[cfg(any(test, feature = "kiosk"))]
 pub fn glance(frame: &Frame, snapshot: &Snapshot, yaw: f32, colours: &[[f32; 3]], size: Size) -> Image {
     use toile_view::scene::Scene;
-    use toile_view::trace::Stage;
+    use toile_view::trace::TracedScene;
     let mut drawn = DrawnFrame::new(frame).coloured(colours);
     drawn.update(snapshot);
     let surfaces = drawn.surfaces(None);
-    let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });
+    let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
     let camera = Camera::framing(&stage.bounds(), yaw, size.width as f32 / size.height as f32);
-    stage.render(&camera, size, Quality::Still)
+    stage.render(&camera, size, TraceQuality::Still)
 }
 
 /// How the session ended, as the stills show it.
@@ -168,7 +168,7 @@ fn contact_sheet(out: &mut OutputFolder, kept: &[(Image, u64)]) -> Result<(), Ap
     let captions: Vec<String> =
         picks.iter().map(|&i| format!("{:.1} s", kept[i].1 as f64 / f64::from(STEP_HZ))).collect();
     let captions: Vec<&str> = captions.iter().map(String::as_str).collect();
-    write_png(out, "contact-sheet.png", &sheet::contact_sheet(&images, SHEET_COLUMNS, &captions))
+    write_png(out, "contact-sheet.png", &contact_sheet::contact_sheet(&images, SHEET_COLUMNS, &captions))
 }
 
 /// Writes an image as a file of the output folder.

@@ -5,7 +5,7 @@ use toile_assets::garment::Garment;
 use toile_engine::lines::Line;
 use toile_view::image::{Image, Size};
 use toile_view::scene::{Bounds, Camera, Scene, Surface};
-use toile_view::trace::{Quality, Stage};
+use toile_view::trace::{TraceQuality, TracedScene};
 
 use crate::exit::AppError;
 
@@ -93,14 +93,14 @@ impl PictureRenderer {
         &mut self,
         surfaces: &[Surface<'_>],
         lines: &[Line],
-        (size, quality): (Size, Quality),
+        (size, quality): (Size, TraceQuality),
         look: impl Fn(&Bounds) -> Vec<Camera>,
         mut done: impl FnMut(),
     ) -> Result<Vec<Image>, AppError> {
         match self {
             // Lines are refused where rays draw.
             Self::RayTracer if lines.is_empty() => {
-                let stage = Stage::build(Scene { surfaces, floor: true });
+                let stage = TracedScene::build(Scene { surfaces, floor: true });
                 let shot = |camera: &Camera| {
                     let image = stage.render(camera, size, quality);
                     done();

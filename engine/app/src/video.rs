@@ -1,13 +1,13 @@
-//! The film of a try-on: the session at the speed of life.
+//! The video of a try-on: the session at the speed of life.
 
 use std::path::{Path, PathBuf};
 
 use toile_assets::limits::STEP_HZ;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::lines::Line;
-use toile_view::film::Film;
 use toile_view::image::Size;
-use toile_view::trace::Quality;
+use toile_view::trace::TraceQuality;
+use toile_view::video::VideoWriter;
 
 use crate::drawn_frame::DrawnFrame;
 use crate::exit::AppError;
@@ -25,19 +25,19 @@ const STRIDE: u64 = STEP_HZ as u64 / FPS as u64;
 
 /// Films a session while it runs.
 pub struct Video {
-    film: Film,
+    video: VideoWriter,
     frame: DrawnFrame,
     bar: Progress,
 }
 
 impl Video {
-    /// Begins the film of a session of `steps` steps.
+    /// Begins the video of a session of `steps` steps.
     ///
     /// # Errors
-    /// Bad input: a name or a place that no film can have.
+    /// Bad input: a name or a place that no video can have.
     pub fn begin(path: &Path, frame: &Frame, steps: u64, bar: Progress) -> Result<Self, AppError> {
-        let film = Film::begin(path, SIZE, Self::work(steps) as u32, FPS).map_err(AppError::input)?;
-        Ok(Self { film, frame: DrawnFrame::new(frame), bar })
+        let video = VideoWriter::begin(path, SIZE, Self::work(steps) as u32, FPS).map_err(AppError::input)?;
+        Ok(Self { video, frame: DrawnFrame::new(frame), bar })
     }
 
     /// Frames of a session of so many steps.
@@ -45,7 +45,7 @@ impl Video {
         steps.div_ceil(STRIDE).max(1)
     }
 
-    /// Whether the film wants the snapshot of this tick.
+    /// Whether the video wants the snapshot of this tick.
     pub fn wants(tick: u64) -> bool {
         tick.is_multiple_of(STRIDE)
     }
@@ -53,22 +53,22 @@ impl Video {
     /// Adds a frame.
     ///
     /// # Errors
-    /// A film that cannot be written, or a device that fails.
+    /// A video that cannot be written, or a device that fails.
     pub fn add(&mut self, renderer: &mut PictureRenderer, snapshot: &Snapshot, lines: &[Line]) -> Result<(), AppError> {
         self.frame.update(snapshot);
         let camera = self.frame.follow(SIZE);
         let surfaces = self.frame.surfaces(None);
-        let images = renderer.draw(&surfaces, lines, (SIZE, Quality::Motion), |_| vec![camera], || {})?;
+        let images = renderer.draw(&surfaces, lines, (SIZE, TraceQuality::Motion), |_| vec![camera], || {})?;
         self.bar.inc(1);
-        images.iter().try_for_each(|image| self.film.push(image)).map_err(AppError::input)
+        images.iter().try_for_each(|image| self.video.push(image)).map_err(AppError::input)
     }
 
-    /// Ends the film; says which file it is.
+    /// Ends the video; says which file it is.
     ///
     /// # Errors
-    /// A film that cannot be written.
+    /// A video that cannot be written.
     pub fn finish(self) -> Result<PathBuf, AppError> {
         self.bar.finish_and_clear();
-        self.film.finish().map_err(AppError::input)
+        self.video.finish().map_err(AppError::input)
     }
 }

@@ -1,4 +1,4 @@
-//! The device that computes, and that may draw as well: opened once, with the smallest limits that this needs.
+//! A graphics device for compute and for drawing: opened once, with the smallest limits that suffice.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use wgpu::{Backends, DeviceType, Instance, InstanceDescriptor, Limits, MemoryHints, Surface};
 
-use crate::native::describe;
+use crate::adapters::describe;
 use crate::wait::block_on;
 
 /// Why a GPU cannot compute the cloth, or draw it. Whoever gets one for the cloth goes on with the CPU.
@@ -66,7 +66,7 @@ pub enum GpuError {
 
 /// Which adapter is wanted.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub enum Choice {
+pub enum AdapterChoice {
     /// The fastest kind: a card of its own, a processor's graphics, a virtual one, a driver on the processor.
     #[default]
     Fastest,
@@ -82,7 +82,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 
 /// What a scene asks of a device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Needs {
+pub struct DeviceNeeds {
     /// Its largest buffer (bytes).
     pub largest: u64,
     /// Workgroups of its largest dispatch.
@@ -92,7 +92,7 @@ pub struct Needs {
 /// Storage buffers that a kernel sees at most: three of the scene, five of its own.
 pub const STORAGE_BUFFERS: u32 = 8;
 
-impl Needs {
+impl DeviceNeeds {
     /// As limits: those that every driver has, but for these three.
     fn limits(self) -> Limits {
         let least = Limits::downlevel_defaults();
@@ -140,7 +140,7 @@ impl Device {
     ///
     /// # Errors
     /// [`GpuError`]: none there, none of that name, limits below the needs, or one that does not open.
-    pub fn open(choice: &Choice, needs: Needs) -> Result<Self, GpuError> {
+    pub fn open(choice: &AdapterChoice, needs: DeviceNeeds) -> Result<Self, GpuError> {
         let instance = Self::instance();
         let adapter = choose(&instance, None, choice)?;
         Self::on(instance, adapter, needs.limits(), MemoryHints::Performance)
@@ -150,8 +150,8 @@ impl Device {
     ///
     /// # Errors
     /// As [`Device::open_to_draw`].
-    pub fn offscreen(choice: &Choice) -> Result<Self, GpuError> {
-        Self::open_to_draw(Self::instance(), None, choice, Needs::default())
+    pub fn offscreen(choice: &AdapterChoice) -> Result<Self, GpuError> {
+        Self::open_to_draw(Self::instance(), None, choice, DeviceNeeds::default())
     }
 
     /// Opens the chosen adapter of an instance, one that can show on `surface` where one is given, to draw and to compute
@@ -162,8 +162,8 @@ impl Device {
     pub fn open_to_draw(
         instance: Instance,
         surface: Option<&Surface<'_>>,
-        choice: &Choice,
-        needs: Needs,
+        choice: &AdapterChoice,
+        needs: DeviceNeeds,
     ) -> Result<Self, GpuError> {
         let adapter = choose(&instance, surface, choice)?;
         let limits = needs.limits_to_draw(&adapter.limits());
@@ -196,7 +196,7 @@ impl Device {
         Ok(Self { instance, opened_on, device, queue, adapter, lost, fault })
     }
 
-    /// What the adapter says of itself.
+    /// Name, backend and driver of the adapter.
     pub fn adapter(&self) -> &crate::Adapter {
         &self.adapter
     }
@@ -228,7 +228,7 @@ impl Device {
     ///
     /// # Errors
     /// [`GpuError::TooSmall`].
-    pub fn takes(&self, needs: Needs) -> Result<(), GpuError> {
+    pub fn takes(&self, needs: DeviceNeeds) -> Result<(), GpuError> {
         enough(&needs.limits(), &self.device.limits(), &self.adapter.name)
     }
 
@@ -306,7 +306,7 @@ fn watch(device: &wgpu::Device, lost: &Arc<AtomicBool>, fault: &Arc<OnceLock<Str
             // Relaxed: see above.
             flag.store(true, Ordering::Relaxed);
         }
-        // Only the first tells the cause; what follows from it is not kept.
+        // Only the first error names the cause; later ones follow from it.
         let _ = first.set(one_line(&error.to_string()));
     }));
 }
@@ -326,21 +326,25 @@ fn rank(kind: DeviceType) -> u8 {
     }
 }
 
-fn choose(instance: &Instance, surface: Option<&Surface<'_>>, choice: &Choice) -> Result<wgpu::Adapter, GpuError> {
+fn choose(
+    instance: &Instance,
+    surface: Option<&Surface<'_>>,
+    choice: &AdapterChoice,
+) -> Result<wgpu::Adapter, GpuError> {
     let mut found = block_on(instance.enumerate_adapters(Backends::PRIMARY));
     found.sort_by_key(|a| rank(a.get_info().device_type));
     found.retain(|a| surface.is_none_or(|s| a.is_surface_supported(s)));
     let known: Vec<String> = found.iter().map(|a| a.get_info().name).collect();
     let matches = |a: &wgpu::Adapter| match choice {
-        Choice::Fastest => true,
-        Choice::Named(name) => a.get_info().name.to_lowercase().contains(&name.to_lowercase()),
-        Choice::Software => a.get_info().device_type == DeviceType::Cpu,
+        AdapterChoice::Fastest => true,
+        AdapterChoice::Named(name) => a.get_info().name.to_lowercase().contains(&name.to_lowercase()),
+        AdapterChoice::Software => a.get_info().device_type == DeviceType::Cpu,
     };
     found.into_iter().find(matches).ok_or_else(|| match choice {
-        Choice::Named(asked) if !known.is_empty() => {
+        AdapterChoice::Named(asked) if !known.is_empty() => {
             GpuError::Unknown { asked: asked.clone(), known: known.join(", ") }
         }
-        Choice::Software => GpuError::NoAdapter("that works on the processor"),
+        AdapterChoice::Software => GpuError::NoAdapter("that works on the processor"),
         _ if surface.is_some() => GpuError::NoAdapter("that can show on this display"),
         _ => GpuError::NoAdapter("on this machine"),
     })
@@ -363,7 +367,7 @@ mod tests {
 
     #[test]
     fn what_every_driver_has_is_all_that_a_small_scene_asks_for() {
-        let limits = Needs { largest: 1 << 20, workgroups: 9 }.limits();
+        let limits = DeviceNeeds { largest: 1 << 20, workgroups: 9 }.limits();
         let least = Limits { max_storage_buffers_per_shader_stage: STORAGE_BUFFERS, ..Limits::downlevel_defaults() };
         assert_eq!(limits, least);
         assert_eq!(enough(&limits, &Limits::default(), "any"), Ok(()));
@@ -372,7 +376,7 @@ mod tests {
     #[test]
     fn a_device_that_draws_asks_for_the_adapters_pictures_and_for_no_more() {
         let few = Limits { max_texture_dimension_2d: 9000, ..Limits::downlevel_defaults() };
-        let (least, scene) = (Needs::default(), Needs { largest: 1, workgroups: 1 });
+        let (least, scene) = (DeviceNeeds::default(), DeviceNeeds { largest: 1, workgroups: 1 });
         assert_eq!(least.limits_to_draw(&few), few.clone(), "what draws needs no storage buffers");
         assert_eq!(scene.limits_to_draw(&few).max_storage_buffers_per_shader_stage, STORAGE_BUFFERS);
         let many = Limits { max_texture_dimension_2d: 9000, ..Limits::default() };
@@ -409,7 +413,7 @@ mod tests {
 
     #[test]
     fn a_limit_that_is_too_small_is_named() {
-        let limits = Needs { largest: 1 << 40, workgroups: 9 }.limits();
+        let limits = DeviceNeeds { largest: 1 << 40, workgroups: 9 }.limits();
         let error = enough(&limits, &Limits::default(), "a small card").expect_err("a terabyte is too much");
         assert!(matches!(&error, GpuError::TooSmall { needs, .. } if *needs == 1 << 40), "{error}");
     }

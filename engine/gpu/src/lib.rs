@@ -1,7 +1,7 @@
 //! The GPUs of this machine, the cloth on them, and the choice between them and the processor.
 //!
-//! Reads: what the graphics drivers tell; baked garments and what surrounds them. Writes: a list of adapters; cloth.
-//! Budget: drivers and pipelines at load, up to some hundred milliseconds; in the frame what [`stepper`] and `cloth` say.
+//! Reads: adapter information of the graphics drivers; baked garments and their surroundings. Writes: a list of adapters; cloth.
+//! Budget: drivers and pipelines at load, up to some hundred milliseconds; in the frame what [`backend`] and `cloth` say.
 //! Thread: the one that calls; the physics thread of garments that the processor steps never submits to or waits for a GPU.
 
 /// Whether GPU support is built in (feature `wgpu`).
@@ -16,40 +16,40 @@ pub struct Adapter {
     pub backend: String,
     /// `discrete`, `integrated`, `virtual`, `software` or `other`.
     pub kind: &'static str,
-    /// The driver's name and version, as far as it tells them.
+    /// The driver's name and version, where it reports them.
     pub driver: String,
 }
 
 /// All adapters, real devices before software ones; none where GPU support is not built in.
 pub fn adapters() -> Vec<Adapter> {
     #[cfg(feature = "wgpu")]
-    return native::adapters();
+    return adapters::adapters();
     #[cfg(not(feature = "wgpu"))]
     Vec::new()
 }
 
-pub mod batch;
+#[cfg(feature = "wgpu")]
+mod adapters;
+pub mod backend;
+#[cfg(feature = "wgpu")]
+mod buffer_builder;
 #[cfg(feature = "wgpu")]
 pub mod cloth;
+pub mod cloth_batch;
 #[cfg(feature = "wgpu")]
 pub mod device;
 pub mod graphics;
-#[cfg(feature = "wgpu")]
-mod maker;
-#[cfg(feature = "wgpu")]
-mod native;
 #[cfg(feature = "wgpu")]
 mod shader;
 #[cfg(feature = "wgpu")]
 pub mod skin;
 #[cfg(feature = "wgpu")]
-pub mod source;
-pub mod stepper;
+pub mod vertex_source;
 #[cfg(feature = "wgpu")]
 pub mod wait;
 
 #[cfg(feature = "wgpu")]
-pub use native::describe;
+pub use adapters::describe;
 
 #[cfg(test)]
 mod tests {

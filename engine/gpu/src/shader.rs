@@ -1,21 +1,21 @@
-//! Shader: a kernel's text, what it is bound to, and its pipeline.
+//! A compute shader: its text, its bindings and its pipeline.
 
 use wgpu::{
     BindGroupLayout, BindGroupLayoutDescriptor, BufferBindingType, ComputePipeline, ComputePipelineDescriptor,
     PipelineLayoutDescriptor, ShaderModule, ShaderModuleDescriptor, ShaderSource,
 };
 
-use crate::maker::bound;
+use crate::buffer_builder::bound;
 
 /// The functions that the CPU's lanes have: what every shader begins with.
 pub(crate) const LANES: &str = include_str!("shaders/lanes.wgsl");
 
-/// A shader's text, and what it is bound to.
+/// A shader's text and bindings.
 #[derive(Debug, Clone, Copy)]
 pub struct Shader {
     /// Its file's name.
     pub name: &'static str,
-    /// What it has in common with others, and its own.
+    /// Shared snippets, then its own text.
     pub(crate) texts: &'static [&'static str],
     /// Its storage buffers in the order of their bindings: whether each is only read.
     pub reads: &'static [bool],

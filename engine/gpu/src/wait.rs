@@ -1,4 +1,4 @@
-//! Waiting for what wgpu promises.
+//! Blocks on wgpu's futures.
 
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};

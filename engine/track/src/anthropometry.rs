@@ -1,4 +1,4 @@
-//! What bodies are like: proportions and regressions of ANSUR II, and what the camera's view of a torso says of it.
+//! Anthropometry: proportions and regressions of ANSUR II, and girths from the camera's view of a torso.
 //!
 //! ANSUR II (US Army Natick TR-15/007, 2014; public domain) holds 93 measures of 1,986 women and 4,082 men. "Mixed" is
 //! as many women as men. All regressions are ordinary least squares in metres, with the standard deviation of the
@@ -63,7 +63,7 @@ impl Regression {
     }
 }
 
-/// Girths and breadth as a shopper's stature and shoulders let one guess them.
+/// Regressions of measures on stature and shoulder breadth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasureRegressions {
     /// Shoulder breadth (biacromialbreadth) from stature alone.
@@ -112,7 +112,7 @@ pub const fn regressions(population: Population) -> MeasureRegressions {
     }
 }
 
-/// What the camera's view of a torso says of its girth: an affine function of the section's breadth, of the tape's
+/// Girth of a torso from the camera's view of it: an affine function of the section's breadth, of the tape's
 /// length over its front, and of the depth of the half ellipse that fits it (which says how square it is).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GirthModel {
@@ -154,7 +154,7 @@ impl GirthModel {
     }
 }
 
-/// How a frame's readings become measures.
+/// Models of all measures that are read from the silhouette.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SilhouetteModel {
     /// Error of the top of the head (m).
@@ -179,7 +179,7 @@ pub fn sensor_bias(distance: f32) -> f32 {
 }
 
 impl SilhouetteModel {
-    /// The chart of a population.
+    /// The models of a population.
     pub const fn of(population: Population) -> Self {
         match population {
             Population::Women => WOMEN,

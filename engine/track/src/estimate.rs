@@ -1,4 +1,4 @@
-//! A measured length and how far to believe it.
+//! A measured length and its uncertainty.
 
 /// A length with the standard deviation of its error.
 #[derive(Debug, Clone, Copy, PartialEq)]

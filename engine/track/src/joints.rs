@@ -8,7 +8,7 @@ use crate::anthropometry::{regressions, stature};
 use crate::estimate::{Estimate, temporal_mean};
 use crate::measures::{Hint, Measures};
 
-/// Where one kind of sensor puts its joints.
+/// Where one kind of sensor places its joints.
 struct JointConvention {
     /// Path from pelvis over spine, chest and neck to the head, as a fraction of stature.
     trunk: f32,

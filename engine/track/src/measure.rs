@@ -49,7 +49,7 @@ impl Source {
 /// What [`measure`] found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measurements {
-    /// The measures.
+    /// The measures taken.
     pub measures: Measures,
     /// Depth pixels on the person, median over the frames; 0 without depth.
     pub valid_pixels: usize,
@@ -59,7 +59,7 @@ pub struct Measurements {
     pub frames: usize,
     /// Where the measures come from.
     pub source: Source,
-    /// What could not be taken, and why: one sentence each.
+    /// One sentence for each measure that could not be taken, with the reason.
     pub notes: Vec<String>,
 }
 
@@ -87,7 +87,7 @@ pub enum MeasureError {
          than {limit:.1} m."
     )]
     TooFar {
-        /// Distance (m).
+        /// Distance from the camera (m).
         distance: f32,
         /// Farthest that is measured (m).
         limit: f32,
@@ -143,7 +143,7 @@ fn from_joints(joints: &[Joints], hint: &Hint) -> Result<Measurements, MeasureEr
     Ok(Measurements { measures, valid_pixels: 0, people: 1, frames: second.len(), source: Source::Joints, notes })
 }
 
-/// What the depth frames say, one reading a frame, and how many pixels and people they hold.
+/// The readings of all depth frames, with their pixels and people.
 struct SilhouetteReadings {
     readings: Vec<SilhouetteReading>,
     pixels: Vec<f32>,

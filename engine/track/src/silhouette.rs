@@ -49,7 +49,7 @@ const SHOULDER_LINE: f32 = 0.02;
 /// Part of the way from waist to chest that sleeves and armpits leave alone.
 const BELOW_ARMPITS: f32 = 0.6;
 
-/// What one frame tells.
+/// The reading of one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SilhouetteReading {
     /// Top of the head above the floor (m), as the person stands: with hair and shoes; `None` if the feet are not seen.

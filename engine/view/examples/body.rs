@@ -9,10 +9,10 @@ use glam::Vec3;
 use toile_assets::mesh::vertex_normals;
 use toile_sculpt::{Drawn, draw};
 use toile_view::{
+    contact_sheet,
     image::{Image, Size},
     scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface},
-    sheet,
-    trace::{Quality, Stage},
+    trace::{TraceQuality, TracedScene},
 };
 
 /// A view: name, target as shares of the stature (x, y, z), height of what is seen (share), turns (degrees), height of the
@@ -75,7 +75,7 @@ fn picture(drawn: &Drawn, &(_, target, tall, turns, tilt, fov_y): &View, checks:
         material: Material::Skin,
     };
     let surfaces = [surface];
-    let stage = Stage::build(Scene { surfaces: &surfaces, floor: tilt >= 0.0 });
+    let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: tilt >= 0.0 });
     let stature = positions.iter().map(|p| p.y).fold(0.0, f32::max);
     let size = if tall > 1.0 { Size::new(560, 900) } else { Size::new(560, 560) };
     let images: Vec<Image> = turns
@@ -89,10 +89,10 @@ fn picture(drawn: &Drawn, &(_, target, tall, turns, tilt, fov_y): &View, checks:
                 distance,
                 fov_y,
             };
-            stage.render_on(2, &camera, size, Quality::Motion).0
+            stage.render_on(2, &camera, size, TraceQuality::Motion).0
         })
         .collect();
-    sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), turns.len(), &vec![""; turns.len()])
+    contact_sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), turns.len(), &vec![""; turns.len()])
 }
 
 type Soup = (Vec<Vec3>, Vec<Vec3>, Vec<[u32; 3]>, Vec<Vec3>);

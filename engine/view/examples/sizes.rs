@@ -8,10 +8,10 @@ use std::{error::Error, fs::File, io::BufWriter, path::Path};
 
 use toile_assets::body::{Ansur, Body, En, Sex, Wanted};
 use toile_view::{
+    contact_sheet,
     image::{Image, Size},
     scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface},
-    sheet,
-    trace::{Quality, Stage},
+    trace::{TraceQuality, TracedScene},
 };
 
 const TURNS: [f32; 4] = [0.0, 45.0, 90.0, 180.0];
@@ -70,14 +70,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let images: Vec<Image> = six.iter().map(|(_, body)| picture(body, QUARTER, TOGETHER)).collect();
     let captions: Vec<&str> = six.iter().map(|(name, _)| name.as_str()).collect();
-    save(&folder, "bodies", &sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), SIZES[0].len(), &captions))
+    save(
+        &folder,
+        "bodies",
+        &contact_sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), SIZES[0].len(), &captions),
+    )
 }
 
 /// One row a body, one column a side.
 fn write(folder: &str, name: &str, bodies: &[(String, Body)]) -> Result<(), Box<dyn Error>> {
     let images: Vec<Image> = bodies.iter().flat_map(|(_, body)| TURNS.map(|turn| picture(body, turn, SIDES))).collect();
     let captions: Vec<&str> = bodies.iter().flat_map(|(name, _)| [name.as_str(), "", "", ""]).collect();
-    save(folder, name, &sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), TURNS.len(), &captions))
+    save(folder, name, &contact_sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), TURNS.len(), &captions))
 }
 
 fn save(folder: &str, name: &str, sheet: &Image) -> Result<(), Box<dyn Error>> {
@@ -95,7 +99,7 @@ fn picture(body: &Body, turn: f32, size: Size) -> Image {
         colours: Colours::PerVertex(&colours),
         material: Material::Skin,
     }];
-    let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });
+    let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
     // The same camera for all, so that sizes can be compared.
     let camera = Camera {
         target: glam::Vec3::new(0.0, 0.93, 0.0),
@@ -104,5 +108,5 @@ fn picture(body: &Body, turn: f32, size: Size) -> Image {
         distance: 4.9,
         fov_y: 0.42,
     };
-    stage.render_on(2, &camera, size, Quality::Motion).0
+    stage.render_on(2, &camera, size, TraceQuality::Motion).0
 }

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crate::tone;
+use crate::tone_mapping;
 use png::{BitDepth, ColorType, Compression, Encoder, Filter, SrgbRenderingIntent};
 
 /// Why a picture could not be written.
@@ -16,7 +16,7 @@ pub enum Error {
     FrameSize {
         /// Number of the frame, from 0.
         index: u32,
-        /// Its size.
+        /// Its width and height (pixels).
         got: Size,
         /// The animation's size.
         want: Size,
@@ -34,9 +34,9 @@ pub enum Error {
 /// Width and height (pixels).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Size {
-    /// Columns.
+    /// Width (pixels).
     pub width: u32,
-    /// Rows.
+    /// Height (pixels).
     pub height: u32,
 }
 
@@ -62,7 +62,7 @@ pub struct Image {
 
 /// Linear light of an sRGB value, both 0..1: for colours that are given as people write them.
 pub fn linear(srgb: f32) -> f32 {
-    tone::decode(srgb)
+    tone_mapping::decode(srgb)
 }
 
 /// A rectangle of pixels.
@@ -227,7 +227,7 @@ impl<W: Write> Animation<W> {
         Ok(())
     }
 
-    /// Ends the file.
+    /// Writes the end of the file.
     ///
     /// # Errors
     /// [`Error::Png`] when the writer fails or frames are missing.

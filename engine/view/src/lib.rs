@@ -1,26 +1,26 @@
-//! Pictures: a CPU ray-traced still, a turning animation, a film, the fit map's colours and the contact sheet; behind the
-//! feature `view` the mirror, which draws on a GPU.
+//! Pictures: a CPU ray tracer for stills, animations and videos, the fit map's colours and the contact sheet; behind the
+//! feature `view` the rasteriser, which draws on a GPU for the display.
 //!
 //! Reads: borrowed triangle surfaces (positions, normals, colours). Writes: sRGB images, PNG and animated PNG.
 //! Budget: not in the frame; three stills of 480 x 800 within 6 s and a 220 x 360 frame within 120 ms on two cores.
 //! Thread: the caller's, which lends every core for the length of one picture.
 
-pub mod film;
-pub mod fitmap;
+pub mod bvh;
+pub mod contact_sheet;
+pub mod fit_map;
+pub mod hidden_skin;
 pub mod image;
 #[cfg(feature = "view")]
-pub mod mirror;
+pub mod raster;
 pub mod scene;
-pub mod sheet;
 pub mod text;
 pub mod trace;
-pub mod tree;
-pub mod tuck;
+pub mod video;
 
-mod develop;
-mod expose;
-mod sample;
-mod shade;
-mod stage;
-mod studio;
-mod tone;
+mod lighting;
+mod ray_tracer;
+mod sampling;
+mod shading;
+mod shadow_filter;
+mod tone_mapping;
+mod traced_scene;

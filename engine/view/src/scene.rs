@@ -4,7 +4,7 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::{Vec2, Vec3};
 
-use crate::fitmap;
+use crate::fit_map;
 
 /// Linear RGB of the mannequin: a warm light grey-beige that lets any garment speak.
 pub const MANNEQUIN: Vec3 = Vec3::new(0.60, 0.53, 0.465);
@@ -23,7 +23,7 @@ const FILL: Vec2 = Vec2::new(0.86, 0.87);
 pub struct Scene<'a> {
     /// Body and garments. Triangles with a missing or non-finite vertex or without area are skipped.
     pub surfaces: &'a [Surface<'a>],
-    /// Stands the subject in a studio whose floor (y = 0) catches its shadow; else before a plain backdrop.
+    /// Whether the subject stands on a floor (y = 0) that takes its shadow; otherwise before a plain wall.
     pub floor: bool,
 }
 
@@ -36,9 +36,9 @@ pub struct Surface<'a> {
     pub normals: &'a [Vec3],
     /// Vertex indices `[triangles]`.
     pub triangles: &'a [[u32; 3]],
-    /// Base colour.
+    /// Base colours, linear RGB.
     pub colours: Colours<'a>,
-    /// How it meets light.
+    /// How the surface reflects light.
     pub material: Material,
 }
 
@@ -66,7 +66,7 @@ impl Colours<'_> {
             Self::PerVertex(colours) => of(colours),
             Self::Tightness(values) => {
                 let at = |i: u32| values.get(i as usize).copied().unwrap_or(f32::NAN);
-                fitmap::colour((0..3).map(|k| at(corners[k]) * weights[k]).sum())
+                fit_map::colour((0..3).map(|k| at(corners[k]) * weights[k]).sum())
             }
         };
         if colour.is_finite() { colour.clamp(Vec3::ZERO, Vec3::ONE) } else { NO_COLOUR }
@@ -80,16 +80,16 @@ pub enum Material {
     Skin,
     /// Woven cloth: two-sided, diffuse, with a soft sheen at grazing angles.
     Cloth,
-    /// A painted map such as the fit map: two-sided, diffuse alone, so that its colours match their legend.
-    Chart,
+    /// Two-sided, diffuse alone, so that the colours of a map match their legend.
+    Diffuse,
 }
 
 /// An axis-aligned box (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// Least corner.
+    /// Least coordinates (m).
     pub min: Vec3,
-    /// Greatest corner.
+    /// Greatest coordinates (m).
     pub max: Vec3,
 }
 
@@ -187,20 +187,20 @@ impl Camera {
     }
 
     /// The camera's frame, ready to make rays.
-    pub(crate) fn view(&self, aspect: f32) -> View {
+    pub(crate) fn view(&self, aspect: f32) -> CameraFrame {
         let (sin, cos) = self.yaw.sin_cos();
         let back = Vec3::new(sin, 0.0, cos);
         let origin = self.target + back * self.distance.max(1e-3) + Vec3::Y * self.height;
         let forward = (self.target - origin).normalize_or(-back);
         let right = Vec3::new(cos, 0.0, -sin);
         let half = (0.5 * self.fov_y).tan();
-        View { origin, forward, right, up: right.cross(forward), half: Vec2::new(half * aspect, half) }
+        CameraFrame { origin, forward, right, up: right.cross(forward), half: Vec2::new(half * aspect, half) }
     }
 }
 
 /// A camera's frame: the eye, its axes, and the half extents of the picture at distance one.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct View {
+pub(crate) struct CameraFrame {
     pub origin: Vec3,
     pub forward: Vec3,
     pub right: Vec3,
@@ -208,7 +208,7 @@ pub(crate) struct View {
     pub half: Vec2,
 }
 
-impl View {
+impl CameraFrame {
     /// Direction through a point of the picture, both coordinates 0..1 from the upper left.
     pub fn direction(&self, at: Vec2) -> Vec3 {
         let x = (2.0 * at.x - 1.0) * self.half.x;

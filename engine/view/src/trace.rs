@@ -1,6 +1,6 @@
-//! The picture: a scene made ready, and its three passes: survey, expose, develop.
+//! Rendering a picture by ray tracing: a scene and its three passes (first hits, light, shadow filter).
 //!
-//! Every number that jitters comes from the pixel and the sample's number (`sample`), and every pixel is written by one
+//! Every number that jitters comes from the pixel and the sample's number (`sampling`), and every pixel is written by one
 //! thread alone, so a picture has the same bytes for any number of threads.
 
 use std::{
@@ -10,75 +10,75 @@ use std::{
 };
 
 use crate::{
-    develop::develop,
-    expose::{Guide, Plan, Shot, Texel},
     image::{Image, Size},
+    lighting::Lighting,
+    ray_tracer::{PixelLight, PrimaryHit, RayTracer, SampleCounts},
     scene::{Camera, Scene},
-    studio::Studio,
+    shadow_filter::filter_and_tone_map,
 };
 
-pub use crate::stage::Stage;
+pub use crate::traced_scene::TracedScene;
 
-/// How much work a picture is worth.
+/// Quality of a ray-traced picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Quality {
-    /// To be looked at: eight samples a pixel, four times as many along edges.
+pub enum TraceQuality {
+    /// A still: eight samples a pixel, four times as many along edges.
     Still,
     /// One frame of an animation: two samples a pixel, eight along edges.
     Motion,
 }
 
-impl Quality {
-    fn plan(self) -> Plan {
+impl TraceQuality {
+    fn samples(self) -> SampleCounts {
         match self {
-            Self::Still => Plan { inside: 8, edge: 32, reach: 3 },
-            Self::Motion => Plan { inside: 2, edge: 8, reach: 3 },
+            Self::Still => SampleCounts { inside: 8, edge: 32, reach: 3 },
+            Self::Motion => SampleCounts { inside: 2, edge: 8, reach: 3 },
         }
     }
 }
 
-/// Renders one picture: builds the tree and looks once. Several views of one scene share a [`Stage`].
-pub fn render(scene: &Scene<'_>, camera: &Camera, size: Size, quality: Quality) -> Image {
-    Stage::build(*scene).render(camera, size, quality)
+/// Renders one picture: builds the tree and looks once. Several views of one scene share a [`TracedScene`].
+pub fn render(scene: &Scene<'_>, camera: &Camera, size: Size, quality: TraceQuality) -> Image {
+    TracedScene::build(*scene).render(camera, size, quality)
 }
 
 /// One picture's cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Cost {
+pub struct TraceCost {
     /// Rays walked through the tree: from the eye, for shadows, for occlusion.
     pub rays: u64,
 }
 
-impl Stage<'_> {
+impl TracedScene<'_> {
     /// The picture from one camera, on all cores.
-    pub fn render(&self, camera: &Camera, size: Size, quality: Quality) -> Image {
+    pub fn render(&self, camera: &Camera, size: Size, quality: TraceQuality) -> Image {
         self.render_on(thread::available_parallelism().map_or(1, NonZero::get), camera, size, quality).0
     }
 
     /// The picture and its cost, on this many threads; the bytes do not depend on how many.
-    pub fn render_on(&self, threads: usize, camera: &Camera, size: Size, quality: Quality) -> (Image, Cost) {
+    pub fn render_on(&self, threads: usize, camera: &Camera, size: Size, quality: TraceQuality) -> (Image, TraceCost) {
         let view = camera.view(size.width as f32 / size.height.max(1) as f32);
-        let studio = Studio::new(&view, self.bounds(), self.scene.floor);
-        let shot = Shot::new(self, studio, view, size, quality.plan());
-        self.take(&shot, threads)
+        let lighting = Lighting::new(&view, self.bounds(), self.scene.floor);
+        let tracer = RayTracer::new(self, lighting, view, size, quality.samples());
+        self.render_passes(&tracer, threads)
     }
 
     /// The three passes over all pixels.
-    pub(crate) fn take(&self, shot: &Shot<'_>, threads: usize) -> (Image, Cost) {
-        let size = shot.size;
+    pub(crate) fn render_passes(&self, tracer: &RayTracer<'_>, threads: usize) -> (Image, TraceCost) {
+        let size = tracer.size;
         let (width, pixels) = (size.width.max(1) as usize, size.width as usize * size.height as usize);
-        let mut guides = vec![Guide::default(); pixels];
-        by_rows(threads, guides.chunks_mut(width), |y, row| shot.survey(y, row));
-        let mut texels = vec![Texel::default(); pixels];
-        by_rows(threads, texels.chunks_mut(width), |y, row| shot.expose(y, &guides, row));
+        let mut hits = vec![PrimaryHit::default(); pixels];
+        by_rows(threads, hits.chunks_mut(width), |y, row| tracer.trace_primary(y, row));
+        let mut lights = vec![PixelLight::default(); pixels];
+        by_rows(threads, lights.chunks_mut(width), |y, row| tracer.trace_light(y, &hits, row));
         let mut image = Image::filled(size, [0; 3]);
-        by_rows(threads, image.rows_mut(), |y, row| develop(y, shot, &guides, &texels, row));
-        let rays = texels.iter().map(|t| u64::from(t.rays)).sum::<u64>() + pixels as u64;
-        (image, Cost { rays })
+        by_rows(threads, image.rows_mut(), |y, row| filter_and_tone_map(y, tracer, &hits, &lights, row));
+        let rays = lights.iter().map(|t| u64::from(t.rays)).sum::<u64>() + pixels as u64;
+        (image, TraceCost { rays })
     }
 }
 
-/// Lends every row to one of the threads, which takes the next row that nobody has taken.
+/// Distributes the rows over the threads; each takes the next free row.
 fn by_rows<R: Send>(threads: usize, rows: impl Iterator<Item = R> + Send, work: impl Fn(u32, R) + Sync) {
     let rows = Mutex::new((0..).zip(rows));
     thread::scope(|scope| {
@@ -101,7 +101,7 @@ mod tests {
     use super::*;
     use crate::{
         scene::{Colours, Material, Surface},
-        tone,
+        tone_mapping,
     };
 
     /// A ball of radius 0.5 around (0, 1, 0): positions, normals, triangles.
@@ -127,7 +127,7 @@ mod tests {
     fn a_white_ball_vanishes_in_the_furnace() {
         let (positions, normals, triangles) = ball();
         let level = 0.6;
-        for material in [Material::Skin, Material::Cloth, Material::Chart] {
+        for material in [Material::Skin, Material::Cloth, Material::Diffuse] {
             let surface = Surface {
                 positions: &positions,
                 normals: &normals,
@@ -136,12 +136,13 @@ mod tests {
                 material,
             };
             let surfaces = [surface];
-            let stage = Stage::build(Scene { surfaces: &surfaces, floor: false });
+            let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: false });
             let size = Size::new(40, 40);
             let view = Camera::front(&stage.bounds(), 1.0).view(1.0);
-            let studio = Studio::furnace(&view, stage.bounds(), level);
-            let (image, _) = stage.take(&Shot::new(&stage, studio, view, size, Quality::Still.plan()), 1);
-            let want = tone::bytes(tone::compress(Vec3::splat(level)), 0.0);
+            let lighting = Lighting::furnace(&view, stage.bounds(), level);
+            let (image, _) =
+                stage.render_passes(&RayTracer::new(&stage, lighting, view, size, TraceQuality::Still.samples()), 1);
+            let want = tone_mapping::bytes(tone_mapping::compress(Vec3::splat(level)), 0.0);
             for (x, y) in [(20, 20), (12, 20), (20, 10), (26, 26), (20, 31), (8, 20)] {
                 let got = image.pixel(x, y).unwrap();
                 let far = got.iter().zip(want).map(|(a, b)| a.abs_diff(b)).max().unwrap();

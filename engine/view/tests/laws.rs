@@ -5,10 +5,10 @@ use std::io::Cursor;
 
 use glam::Vec3;
 use toile_view::{
+    bvh::{Bvh, Hit, Ray},
     image::{Animation, Error, Image, Size},
     scene::{Bounds, Camera, Colours, MANNEQUIN, Material, Scene, Surface},
-    trace::{Quality, Stage, render},
-    tree::{Hit, Ray, Tree},
+    trace::{TraceQuality, TracedScene, render},
 };
 
 /// A small generator of its own (Marsaglia 2003, xorshift), so that runs repeat.
@@ -55,7 +55,7 @@ fn the_tree_agrees_with_brute_force() {
                 [centre + dice.point() * size, centre + dice.point() * size, centre + dice.point() * size]
             })
             .collect();
-        let tree = Tree::build(faces.iter().copied());
+        let tree = Bvh::build(faces.iter().copied());
         assert_eq!(tree.len(), count);
         let mut hits = 0;
         for i in 0..1500 {
@@ -86,7 +86,7 @@ fn the_tree_agrees_with_brute_force() {
 #[test]
 fn many_triangles_in_one_place_still_make_a_tree() {
     let face = [Vec3::ZERO, Vec3::X, Vec3::Y];
-    let tree = Tree::build((0..5000).map(|_| face));
+    let tree = Bvh::build((0..5000).map(|_| face));
     let hit = tree.closest(&Ray::new(Vec3::new(0.2, 0.2, 1.0), -Vec3::Z), 9.0);
     assert!((hit.expect("all are there").distance - 1.0).abs() < 1e-6);
 }
@@ -133,9 +133,9 @@ impl Still {
 fn bytes_do_not_depend_on_the_number_of_threads() {
     let still = Still::new();
     let surfaces = [still.surface(Material::Cloth)];
-    let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });
+    let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
     let (size, camera) = (Size::new(61, 83), Camera::framing(&stage.bounds(), 0.7, 61.0 / 83.0));
-    for quality in [Quality::Motion, Quality::Still] {
+    for quality in [TraceQuality::Motion, TraceQuality::Still] {
         let (one, cost) = stage.render_on(1, &camera, size, quality);
         assert!(cost.rays > 5000, "{cost:?}");
         for threads in [2, 3, 7] {
@@ -162,18 +162,18 @@ fn bad_meshes_are_skipped_and_the_good_remain() {
     let empty = Surface { positions: &[], normals: &[], triangles: &[], colours: Colours::PerVertex(&[]), ..good[0] };
     let surfaces = [empty, spoilt, empty];
     let (size, camera) = (Size::new(40, 40), Camera::front(&Bounds::of(&still.positions), 1.0));
-    let want = render(&Scene { surfaces: &good, floor: true }, &camera, size, Quality::Motion);
-    let got = render(&Scene { surfaces: &surfaces, floor: true }, &camera, size, Quality::Motion);
+    let want = render(&Scene { surfaces: &good, floor: true }, &camera, size, TraceQuality::Motion);
+    let got = render(&Scene { surfaces: &surfaces, floor: true }, &camera, size, TraceQuality::Motion);
     assert!(want == got, "the broken triangles left a trace");
 
     let bare = Surface { normals: &[], colours: Colours::PerVertex(&[]), ..good[0] };
     for surfaces in [&[][..], &[empty][..], &[bare][..]] {
         for floor in [true, false] {
-            let image = render(&Scene { surfaces, floor }, &camera, size, Quality::Motion);
+            let image = render(&Scene { surfaces, floor }, &camera, size, TraceQuality::Motion);
             assert_eq!(image.bytes().len(), 40 * 40 * 3);
         }
     }
-    let nothing = render(&Scene { surfaces: &good, floor: true }, &camera, Size::new(0, 5), Quality::Motion);
+    let nothing = render(&Scene { surfaces: &good, floor: true }, &camera, Size::new(0, 5), TraceQuality::Motion);
     assert!(nothing.bytes().is_empty());
 }
 
@@ -201,13 +201,13 @@ fn presets_look_from_their_side_and_frame_the_box() {
         normals: &[],
         triangles: &triangles,
         colours: Colours::One(colour),
-        material: Material::Chart,
+        material: Material::Diffuse,
     };
     let surfaces = [paint(&left, Vec3::X), paint(&front, Vec3::Y)];
-    let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });
+    let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
     let size = Size::new(120, 120);
     let middle = |camera: &Camera, channel: usize| {
-        let image = stage.render(camera, size, Quality::Motion);
+        let image = stage.render(camera, size, TraceQuality::Motion);
         let coloured = |x: u32, y: u32| {
             let p = image.pixel(x, y).unwrap().map(u32::from);
             p[channel] > 40 && (0..3).all(|c| c == channel || p[c] * 2 < p[channel])
@@ -229,11 +229,12 @@ fn presets_look_from_their_side_and_frame_the_box() {
 fn a_shadow_falls_on_the_floor_and_away_from_the_key_light() {
     let still = Still::new();
     let surfaces = [still.surface(Material::Cloth)];
-    let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });
-    let bare = Stage::build(Scene { surfaces: &[], floor: true });
+    let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
+    let bare = TracedScene::build(Scene { surfaces: &[], floor: true });
     let camera = Camera { target: Vec3::new(0.0, 0.3, 0.0), yaw: 0.0, height: 1.5, distance: 3.0, fov_y: 0.6 };
     let size = Size::new(120, 120);
-    let (with, without) = (stage.render(&camera, size, Quality::Motion), bare.render(&camera, size, Quality::Motion));
+    let (with, without) =
+        (stage.render(&camera, size, TraceQuality::Motion), bare.render(&camera, size, TraceQuality::Motion));
     let sum = |image: &Image, columns: std::ops::Range<u32>| -> i64 {
         let pixels = (60..110).flat_map(|y| columns.clone().map(move |x| (x, y)));
         pixels.map(|(x, y)| i64::from(image.pixel(x, y).unwrap()[1])).sum()
@@ -249,7 +250,7 @@ fn a_png_holds_what_was_put_in() {
     let still = Still::new();
     let surfaces = [still.surface(Material::Cloth)];
     let camera = Camera::front(&Bounds::of(&still.positions), 1.0);
-    let image = render(&Scene { surfaces: &surfaces, floor: true }, &camera, Size::new(37, 29), Quality::Motion);
+    let image = render(&Scene { surfaces: &surfaces, floor: true }, &camera, Size::new(37, 29), TraceQuality::Motion);
     let mut file = Vec::new();
     image.write_png(&mut file).unwrap();
     let mut reader = png::Decoder::new(Cursor::new(&file)).read_info().unwrap();
@@ -319,7 +320,7 @@ fn the_mannequin_comes_out_warm_and_light() {
     let still = Still::new();
     let skin = Surface { colours: Colours::One(MANNEQUIN), ..still.surface(Material::Skin) };
     let camera = Camera { height: 1.2, ..Camera::front(&Bounds::of(&still.positions), 1.0) };
-    let image = render(&Scene { surfaces: &[skin], floor: true }, &camera, Size::new(60, 60), Quality::Still);
+    let image = render(&Scene { surfaces: &[skin], floor: true }, &camera, Size::new(60, 60), TraceQuality::Still);
     let [r, g, b] = image.pixel(30, 30).unwrap();
     assert!(r >= g && g >= b && r < 250 && b > 90, "{r} {g} {b}");
 }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use toile_assets::numeric::statistics::median;
-use toile_gpu::stepper::{Backend, Means};
+use toile_gpu::backend::{Backend, Backends};
 
 use crate::backend::SteppedBy;
 use crate::skirt::options::SkirtOptions;
@@ -87,7 +87,7 @@ pub struct Crossover {
 /// Where the options cannot be met.
 pub fn run(base: &SkirtOptions, most: usize, told: &mut dyn FnMut(&str)) -> Result<Crossover, SkirtError> {
     // Of `auto` both sides are wanted just so.
-    let means = Means::open(Backend::Gpu);
+    let means = Backends::open(Backend::Gpu);
     let sizes = SIZES.into_iter().map(|verts| (verts, 1));
     let counts = COUNTS.into_iter().map(|garments| (EACH, garments)).filter(|(_, n)| *n > 1);
     let mut rows: Vec<CrossoverRow> = Vec::new();
@@ -125,11 +125,11 @@ fn crossing(points: &[[f64; 2]]) -> Option<f64> {
 }
 
 /// One row: the device first, which may be the slowest by far.
-fn row(options: &SkirtOptions, means: &Means) -> Result<CrossoverRow, SkirtError> {
-    let scene = |means: &Means, threads| {
+fn row(options: &SkirtOptions, means: &Backends) -> Result<CrossoverRow, SkirtError> {
+    let scene = |means: &Backends, threads| {
         SkirtScene::by(means, &SkirtOptions { threads, ..*options }, &HeapProbe::none(), |_| {})
     };
-    let (mut one, mut two) = (scene(&Means::cpu(), 1)?, scene(&Means::cpu(), 2)?);
+    let (mut one, mut two) = (scene(&Backends::cpu(), 1)?, scene(&Backends::cpu(), 2)?);
     let mut device = scene(means, 1)?;
     // A step of each, to know how many there can be, after the first, which lays everything out.
     let second = |scene: &mut SkirtScene| {
@@ -145,7 +145,7 @@ fn row(options: &SkirtOptions, means: &Means) -> Result<CrossoverRow, SkirtError
         side.apart_mm = apart_mm(scene, &one);
     }
     let [first, second, third] = sides;
-    let fallen = device.stepper().fallen().map(str::to_owned);
+    let fallen = device.stepper().fallback().map(str::to_owned);
     let device_us = fallen.is_none().then(|| device.stages_us(3).1).flatten();
     let work = device.stepper().work();
     Ok(CrossoverRow {

@@ -7,10 +7,10 @@ use toile_assets::scene;
 use toile_assets::skeleton::{BONES, Joint, Pose};
 use toile_engine::body::palette;
 use toile_engine::skin::Blend;
+use toile_view::contact_sheet;
 use toile_view::image::{Image, Size};
 use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};
-use toile_view::sheet;
-use toile_view::trace::{self, Quality};
+use toile_view::trace::{self, TraceQuality};
 
 use super::error::SkinningError;
 use super::shapes::{posed, unsplit};
@@ -46,7 +46,7 @@ pub fn twist_picture() -> Result<Image, SkinningError> {
         }
     }
     let captions: Vec<&str> = captions.iter().map(String::as_str).collect();
-    Ok(sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), COLUMNS.len(), &captions))
+    Ok(contact_sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), COLUMNS.len(), &captions))
 }
 
 fn panel(body: &Body, weights: &[SkinWeights], degrees: f32, blend: Blend) -> Result<Image, SkinningError> {
@@ -68,5 +68,5 @@ fn panel(body: &Body, weights: &[SkinWeights], degrees: f32, blend: Blend) -> Re
     }];
     let middle = skeleton.at(Joint::LeftElbow).lerp(skeleton.at(Joint::LeftWrist), 0.85);
     let camera = Camera { target: middle, yaw: 0.5, height: 0.25, distance: 1.15, fov_y: 0.42 };
-    Ok(trace::render(&Scene { surfaces: &surfaces, floor: false }, &camera, PANEL, Quality::Still))
+    Ok(trace::render(&Scene { surfaces: &surfaces, floor: false }, &camera, PANEL, TraceQuality::Still))
 }

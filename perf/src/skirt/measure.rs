@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use toile_assets::garment::Shape;
 use toile_assets::numeric::statistics::{median, quantile};
-use toile_gpu::stepper::Means;
+use toile_gpu::backend::Backends;
 
 use super::error::SkirtError;
 use super::gauge::{FrameErrors, Gauge};
@@ -26,12 +26,12 @@ const METERED_STEPS: usize = 240;
 /// # Errors
 /// Where the options cannot be met.
 pub fn measure(options: &SkirtOptions, heap: &HeapProbe) -> Result<SkirtReport, SkirtError> {
-    measure_with(&Means::open(options.backend), options, heap, |_| {})
+    measure_with(&Backends::open(options.backend), options, heap, |_| {})
 }
 
 /// The same with a mesh that `change` has changed before it is baked.
 pub(super) fn measure_with(
-    means: &Means,
+    means: &Backends,
     options: &SkirtOptions,
     heap: &HeapProbe,
     change: impl FnOnce(&mut Shape),

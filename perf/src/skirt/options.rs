@@ -3,7 +3,7 @@
 use toile_assets::scene::skirt::{self, Motion, Stretch};
 use toile_engine::cloth::{Quality, Settings, Wind};
 use toile_engine::lanes::Width;
-use toile_gpu::stepper::Backend;
+use toile_gpu::backend::Backend;
 
 use super::error::SkirtError;
 

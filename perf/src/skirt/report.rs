@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 use toile_assets::scene::skirt::{Motion, Stretch};
-use toile_gpu::stepper::Measured;
+use toile_gpu::backend::BackendTimes;
 
 use super::options::{SkirtMesh, SkirtOptions};
 use crate::backend::SteppedBy;
@@ -115,8 +115,8 @@ pub struct Decision {
     pub gpu_us: f64,
 }
 
-impl From<Measured> for Decision {
-    fn from(Measured { cpu_us, gpu_us }: Measured) -> Self {
+impl From<BackendTimes> for Decision {
+    fn from(BackendTimes { cpu_us, gpu_us }: BackendTimes) -> Self {
         Self { cpu_us, gpu_us }
     }
 }

@@ -12,8 +12,8 @@ use toile_engine::cloth::program::STAGES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_engine::workers::WorkerPool;
-use toile_gpu::batch::Batch;
-use toile_gpu::stepper::{Backend, Means, Stepper};
+use toile_gpu::backend::{Backend, Backends, ClothStepper};
+use toile_gpu::cloth_batch::ClothBatch;
 
 use super::error::SkirtError;
 use super::options::{MAX_GARMENTS, MESH_SEED, SkirtMesh, SkirtOptions};
@@ -46,7 +46,7 @@ pub struct SkirtScene {
     settings: Settings,
     colliders: Colliders,
     pool: WorkerPool,
-    stepper: Stepper,
+    stepper: ClothStepper,
 }
 
 /// What a frame does between waking the cloth's helper and the cloth's step, posing and skinning the body, takes at
@@ -67,7 +67,7 @@ impl SkirtScene {
     /// # Errors
     /// Where the options cannot be met.
     pub fn with(options: &SkirtOptions, heap: &HeapProbe, change: impl FnOnce(&mut Shape)) -> Result<Self, SkirtError> {
-        Self::by(&Means::open(options.backend), options, heap, change)
+        Self::by(&Backends::open(options.backend), options, heap, change)
     }
 
     /// The same by means that are open already.
@@ -75,7 +75,7 @@ impl SkirtScene {
     /// # Errors
     /// Where the options cannot be met.
     pub fn by(
-        means: &Means,
+        means: &Backends,
         options: &SkirtOptions,
         heap: &HeapProbe,
         change: impl FnOnce(&mut Shape),
@@ -150,13 +150,13 @@ impl SkirtScene {
         let step = Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings };
         let (garments, steps) = ([&self.garment; MAX_GARMENTS], [step; MAX_GARMENTS]);
         let count = self.cloths.len();
-        let mut batch = Batch { cloths: &mut self.cloths, garments: &garments[..count], steps: &steps[..count] };
+        let mut batch = ClothBatch { cloths: &mut self.cloths, garments: &garments[..count], steps: &steps[..count] };
         let done = self.stepper.step(&mut batch, Some(&mut self.pool));
         done.expect("a share of the step panicked");
     }
 
     /// What steps.
-    pub fn stepper(&self) -> &Stepper {
+    pub fn stepper(&self) -> &ClothStepper {
         &self.stepper
     }
 

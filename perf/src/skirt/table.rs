@@ -7,7 +7,7 @@ use serde::Serialize;
 use toile_assets::garment::Shape;
 use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_engine::lanes::Width;
-use toile_gpu::stepper::Means;
+use toile_gpu::backend::Backends;
 
 use super::claim::{Claim, TargetRow};
 use super::error::SkirtError;
@@ -84,7 +84,7 @@ impl TableRun<'_> {
         (self.told)(case);
         let mut options = self.base;
         change(&mut options);
-        let report = measure_with(&Means::open(options.backend), &options, self.heap, reshape)
+        let report = measure_with(&Backends::open(options.backend), &options, self.heap, reshape)
             .map_err(|e: SkirtError| e.to_string())?;
         self.runs.push(CaseFigures { case: case.into(), figures: report.clone() });
         Ok(report)

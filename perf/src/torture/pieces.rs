@@ -1,7 +1,7 @@
 //! The pieces of cloth that cases share.
 
 use toile_engine::cloth::{Quality, Settings};
-use toile_gpu::stepper::Means;
+use toile_gpu::backend::Backends;
 
 use super::error::TortureError;
 use super::piece::{self, CURTAIN, PATCH, Piece};
@@ -14,7 +14,7 @@ pub const TUBE_RADIUS_M: f32 = 0.07;
 #[derive(Debug)]
 pub struct Pieces {
     /// What steps them.
-    pub means: Means,
+    pub means: Backends,
     /// How they are stepped.
     pub settings: Settings,
     /// A sheet of denim.
@@ -32,7 +32,7 @@ impl Pieces {
     ///
     /// # Errors
     /// Where a piece cannot be baked or has no equilibrium.
-    pub fn new(quality: Quality, means: Means) -> Result<Self, TortureError> {
+    pub fn new(quality: Quality, means: Backends) -> Result<Self, TortureError> {
         let settings = Settings { quality, workers: 1, ..Settings::default() };
         let fabric = piece::denim();
         Ok(Self {

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use toile_engine::cloth::Quality;
-use toile_gpu::stepper::{Backend, Means};
+use toile_gpu::backend::{Backend, Backends};
 
 use super::cases::{CASES, TortureCase};
 use super::error::TortureError;
@@ -45,7 +45,7 @@ impl Default for TortureOptions {
 /// # Errors
 /// Where a piece cannot be baked or has no equilibrium, which would be an error of the bake or of the oracle.
 pub fn run(options: &TortureOptions, told: &mut dyn FnMut(&CaseSummary)) -> Result<TortureReport, TortureError> {
-    let pieces = Pieces::new(options.quality, Means::open(options.backend))?;
+    let pieces = Pieces::new(options.quality, Backends::open(options.backend))?;
     let off = |piece: &Piece| piece.off() * 1e3;
     let undisturbed_mm = [off(&pieces.curtain), off(&pieces.lawn), off(&pieces.patch), off(&pieces.tube)];
     let mut report = TortureReport { quality: options.quality.name(), undisturbed_mm, ..TortureReport::default() };

@@ -6,8 +6,8 @@ use toile_assets::skeleton::BONES;
 use toile_engine::cloth::guard::Events;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
-use toile_gpu::batch::Batch;
-use toile_gpu::stepper::Stepper;
+use toile_gpu::backend::ClothStepper;
+use toile_gpu::cloth_batch::ClothBatch;
 
 use super::piece::{self, Piece};
 use super::pieces::Pieces;
@@ -56,7 +56,7 @@ pub struct Trial<'a> {
     pub settings: Settings,
     /// What was seen so far.
     pub seen: TrialFigures,
-    stepper: Stepper,
+    stepper: ClothStepper,
     before: Box<[Vec3A]>,
     /// The events up to which jumps were explained.
     told: Events,
@@ -127,7 +127,7 @@ impl<'a> Trial<'a> {
         let steps = [Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings }];
         let cloths = std::slice::from_mut(&mut self.cloth);
         // Without a worker pool there is no worker that could panic.
-        let _ = self.stepper.step(&mut Batch { cloths, garments: &[self.garment], steps: &steps }, None);
+        let _ = self.stepper.step(&mut ClothBatch { cloths, garments: &[self.garment], steps: &steps }, None);
         self.look();
     }
 

@@ -1,7 +1,7 @@
 //! A case: something with an exact answer, and how it is run at a level; and the rows that come of it.
 
 use serde::Serialize;
-use toile_gpu::stepper::{Backend, Means};
+use toile_gpu::backend::{Backend, Backends};
 
 use super::specimen::{Placement, Specimen, SpecimenError};
 use super::{CaseSetup, Level};
@@ -124,8 +124,8 @@ impl ValidationCase {
     ///
     /// # Errors
     /// Where the case's own mesh or colliders are refused.
-    pub fn rows(&self, levels: &[Level], by: &Means) -> Result<Vec<ValidationRow>, SpecimenError> {
-        let converged = (self.run)(CaseSetup { level: Level::Converged, means: &Means::cpu() })?;
+    pub fn rows(&self, levels: &[Level], by: &Backends) -> Result<Vec<ValidationRow>, SpecimenError> {
+        let converged = (self.run)(CaseSetup { level: Level::Converged, means: &Backends::cpu() })?;
         let on_cpu = by.asked() == Backend::Cpu;
         let run = |level: &Level| {
             let known = on_cpu && *level == Level::Converged;

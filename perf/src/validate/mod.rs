@@ -12,7 +12,7 @@ pub mod run;
 pub mod specimen;
 
 use toile_engine::cloth::Quality;
-use toile_gpu::stepper::Means;
+use toile_gpu::backend::Backends;
 
 /// How a case is run: the engine's settings, and what steps it.
 #[derive(Debug, Clone, Copy)]
@@ -20,7 +20,7 @@ pub struct CaseSetup<'a> {
     /// The settings.
     pub level: Level,
     /// The processor, or a graphics device.
-    pub means: &'a Means,
+    pub means: &'a Backends,
 }
 
 /// How the engine is set.

@@ -6,7 +6,7 @@ use std::sync::{Mutex, OnceLock};
 use std::time::Instant;
 
 use serde::Serialize;
-use toile_gpu::stepper::{Backend, Means};
+use toile_gpu::backend::{Backend, Backends};
 
 use super::case::{ValidationCase, ValidationRow};
 use super::specimen::SpecimenError;
@@ -93,7 +93,7 @@ pub const NAMES: [&str; 20] = [
 pub fn run(options: &ValidationOptions, progress: &(impl Fn(usize) + Sync)) -> Result<ValidationReport, SpecimenError> {
     let begun = Instant::now();
     let chosen = chosen(options);
-    let means = Means::open(options.backend);
+    let means = Backends::open(options.backend);
     let rows = Mutex::new((0..chosen.len()).map(|_| None).collect::<Vec<_>>());
     let next = AtomicUsize::new(0);
     let work = || {

@@ -11,8 +11,8 @@ use toile_assets::numeric::statistics::median_of;
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere};
-use toile_gpu::batch::Batch;
-use toile_gpu::stepper::Stepper;
+use toile_gpu::backend::ClothStepper;
+use toile_gpu::cloth_batch::ClothBatch;
 
 use super::mesh;
 use super::{CaseSetup, Level};
@@ -69,7 +69,7 @@ pub struct Specimen {
     pub cloth: Cloth,
     /// How it is stepped.
     pub settings: Settings,
-    stepper: Stepper,
+    stepper: ClothStepper,
     colliders: Colliders,
     palette: [Affine3A; BONES],
     particle: Vec<usize>,
@@ -115,7 +115,7 @@ impl Specimen {
     pub fn step(&mut self) {
         let Self { garment, cloth, settings, colliders, palette, times_ns, stepper, .. } = self;
         let steps = [Step { palette, colliders, settings }];
-        let mut batch = Batch { cloths: std::slice::from_mut(cloth), garments: &[garment], steps: &steps };
+        let mut batch = ClothBatch { cloths: std::slice::from_mut(cloth), garments: &[garment], steps: &steps };
         let begun = Instant::now();
         // Without a worker pool there is no worker that could panic.
         let _ = stepper.step(&mut batch, None);

@@ -6,7 +6,7 @@ use clap::builder::{PossibleValuesParser, RangedU64ValueParser, TypedValueParser
 use toile_engine::cloth::Quality;
 use toile_engine::lanes::Width;
 use toile_engine::workers::SHARES;
-use toile_gpu::stepper::Backend;
+use toile_gpu::backend::Backend;
 
 use crate::terminal::Words;
 use toile_fitting::dress::wish::Wish;

@@ -15,10 +15,10 @@ use toile_engine::body::{JointFrames, Poser, palette};
 use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
 use toile_sensors::frame::{Joints, TrackedJoint};
+use toile_view::contact_sheet;
 use toile_view::image::Size;
 use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};
-use toile_view::sheet;
-use toile_view::trace::{Quality, Stage};
+use toile_view::trace::{TraceQuality, TracedScene};
 
 use crate::cli::values::{Printing, count, one_of};
 use crate::exit::AppError;
@@ -216,14 +216,14 @@ fn draw(out: &mut OutputFolder, name: &str, body: &Body, title: &str, mut done: 
         colours: Colours::One(MANNEQUIN),
         material: Material::Skin,
     }];
-    let stage = Stage::build(Scene { surfaces: &surfaces, floor: true });
+    let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
     let aspect = STILL.width as f32 / STILL.height as f32;
     let [front, side, back] = VIEWS.map(|turn| {
-        let image = stage.render(&Camera::framing(&stage.bounds(), turn, aspect), STILL, Quality::Still);
+        let image = stage.render(&Camera::framing(&stage.bounds(), turn, aspect), STILL, TraceQuality::Still);
         done();
         image
     });
-    write_png(out, name, &sheet::triptych(&front, &side, &back, title, None))
+    write_png(out, name, &contact_sheet::triptych(&front, &side, &back, title, None))
 }
 
 fn report(args: &BodyArgs, imported: &avatar::Imported, rows: Option<Vec<Named>>, files: Vec<PathBuf>) -> BodyReport {

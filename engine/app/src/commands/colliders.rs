@@ -10,10 +10,10 @@ use serde::Serialize;
 use toile_assets::body::Body;
 use toile_assets::rig::{MEAN_GOAL_MM, P95_GOAL_MM, Rig};
 use toile_perf::people;
+use toile_view::contact_sheet;
 use toile_view::image::Size;
 use toile_view::scene::{Camera, Colours, Material, Scene, Surface};
-use toile_view::sheet;
-use toile_view::trace::{Quality, Stage};
+use toile_view::trace::{TraceQuality, TracedScene};
 
 use crate::commands::body::{self, BodyArgs};
 use crate::exit::AppError;
@@ -253,15 +253,15 @@ fn drawn(body: &Body) -> toile_view::image::Image {
             material: Material::Skin,
         },
     ];
-    let stages = [0, 1].map(|i| Stage::build(Scene { surfaces: &surfaces[i..=i], floor: true }));
+    let stages = [0, 1].map(|i| TracedScene::build(Scene { surfaces: &surfaces[i..=i], floor: true }));
     let bounds = stages[0].bounds();
     let aspect = STILL.width as f32 / STILL.height as f32;
     let images: Vec<_> = stages
         .iter()
         .flat_map(|stage| {
-            VIEWS.map(|turn| stage.render(&Camera::framing(&bounds, turn, aspect), STILL, Quality::Still))
+            VIEWS.map(|turn| stage.render(&Camera::framing(&bounds, turn, aspect), STILL, TraceQuality::Still))
         })
         .collect();
     let captions = ["skin: red stands out by 20 mm", "blue lies below by 20 mm", "", "capsules", "", ""];
-    sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), VIEWS.len(), &captions)
+    contact_sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), VIEWS.len(), &captions)
 }

@@ -134,7 +134,7 @@ fn figure(value: Option<f64>, digits: usize) -> String {
 #[cfg(test)]
 mod tests {
     use clap::Parser;
-    use toile_gpu::stepper::Backend;
+    use toile_gpu::backend::Backend;
 
     use super::*;
 

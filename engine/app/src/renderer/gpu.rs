@@ -1,15 +1,14 @@
 //! The GPU renderer, off the screen, for the pictures of a try-on.
 
-use glam::Vec3;
 use toile_assets::body::Body;
 use toile_assets::garment::Garment;
 use toile_engine::lines::Line;
-use toile_view::image::{Image, Size, linear};
-use toile_view::mirror::{
-    self, Backdrop, Choice, Gpu, GpuError, Material, Model, ModelError, Offscreen, Renderer, Shape,
+use toile_view::image::{Image, Size};
+use toile_view::raster::{
+    AdapterChoice, Backdrop, Gpu, GpuError, Model, ModelError, Offscreen, RenderQuality, Renderer,
 };
-use toile_view::scene::{Camera, Colours, MANNEQUIN, Surface};
-use toile_view::trace::Quality;
+use toile_view::scene::{Camera, Colours, Surface};
+use toile_view::trace::TraceQuality;
 
 use crate::exit::AppError;
 
@@ -33,28 +32,14 @@ impl GpuRenderer {
     /// # Errors
     /// [`AppError::Device`].
     pub fn open() -> Result<Self, AppError> {
-        let gpu = Gpu::offscreen(&Choice::Fastest)
+        let gpu = Gpu::offscreen(&AdapterChoice::Fastest)
             .map_err(|e: GpuError| device(format!("{e}; or leave out `--renderer gpu`")))?;
         Ok(Self { gpu, model: Model::default(), still: None, motion: None, targets: Vec::new() })
     }
 
     /// Prepares for a body and what it wears.
     pub fn prepare(&mut self, body: &Body, garments: &[Garment]) {
-        let skin = Shape {
-            rest: body.mesh.positions.clone(),
-            uv: None,
-            triangles: body.mesh.triangles.clone(),
-            colour: MANNEQUIN,
-            material: Material::Skin,
-        };
-        let cloth = |g: &Garment| Shape {
-            rest: g.start.to_vec(),
-            uv: None,
-            triangles: g.triangles.to_vec(),
-            colour: Vec3::from_array(g.fabric.colour.map(linear)),
-            material: Material::Cloth((&g.fabric).into()),
-        };
-        self.model = Model { surfaces: std::iter::once(skin).chain(garments.iter().map(cloth)).collect() };
+        self.model = Model::of_outfit(body, garments);
         (self.still, self.motion) = (None, None);
     }
 
@@ -64,7 +49,7 @@ impl GpuRenderer {
     }
 
     /// Updates the surfaces, in the model's order.
-    pub fn update(&mut self, surfaces: &[Surface<'_>], lines: &[Line], quality: Quality) -> Result<(), AppError> {
+    pub fn update(&mut self, surfaces: &[Surface<'_>], lines: &[Line], quality: TraceQuality) -> Result<(), AppError> {
         let renderer = self.renderer(quality)?;
         for (i, surface) in surfaces.iter().enumerate() {
             dress(renderer, i, surface).map_err(AppError::internal)?;
@@ -74,7 +59,7 @@ impl GpuRenderer {
     }
 
     /// Draws one picture of the surfaces as they were last updated.
-    pub fn picture(&mut self, camera: &Camera, size: Size, quality: Quality) -> Result<Image, AppError> {
+    pub fn picture(&mut self, camera: &Camera, size: Size, quality: TraceQuality) -> Result<Image, AppError> {
         let at = match self.targets.iter().position(|t| t.size() == size) {
             Some(at) => at,
             None => {
@@ -83,16 +68,16 @@ impl GpuRenderer {
             }
         };
         self.renderer(quality)?;
-        let renderer = if quality == Quality::Still { &mut self.still } else { &mut self.motion };
+        let renderer = if quality == TraceQuality::Still { &mut self.still } else { &mut self.motion };
         let Some(renderer) = renderer else { return Err(AppError::internal("a renderer is missing")) };
-        self.targets[at].shoot(&self.gpu, renderer, camera, Backdrop::Studio).map_err(device)
+        self.targets[at].shoot(&self.gpu, renderer, camera, Backdrop::Curved).map_err(device)
     }
 
-    fn renderer(&mut self, quality: Quality) -> Result<&mut Renderer, AppError> {
-        let frame = mirror::Quality { samples: 4, ..mirror::Quality::live(self.gpu.is_software()) };
+    fn renderer(&mut self, quality: TraceQuality) -> Result<&mut Renderer, AppError> {
+        let frame = RenderQuality { samples: 4, ..RenderQuality::live(self.gpu.is_software()) };
         let (place, plan) = match quality {
-            Quality::Still => (&mut self.still, mirror::Quality::STILL),
-            Quality::Motion => (&mut self.motion, frame),
+            TraceQuality::Still => (&mut self.still, RenderQuality::STILL),
+            TraceQuality::Motion => (&mut self.motion, frame),
         };
         let renderer = match place.take() {
             Some(renderer) => renderer,

@@ -4,9 +4,8 @@ use glam::Vec3;
 use toile_assets::mesh::vertex_normals;
 use toile_engine::cloth::measure;
 use toile_engine::frame::{Frame, Snapshot};
-use toile_view::mirror::{Material, Model, Shape};
-use toile_view::scene::MANNEQUIN;
-use toile_view::tuck::Cover;
+use toile_view::hidden_skin::CoveringCloth;
+use toile_view::raster::Model;
 
 /// Skin under a garment counts as so much farther off (m): how far a bent body stands out of its capsules.
 const RECESS_M: f32 = 0.04;
@@ -47,7 +46,7 @@ impl BodyModel {
         let (body, garments) = (frame.body(), frame.garments());
         let over = |first: usize| {
             let worn = garments.iter().skip(first);
-            Cover::new(worn.flat_map(|g| g.triangles.iter().map(|t| t.map(|i| g.start[i as usize]))))
+            CoveringCloth::new(worn.flat_map(|g| g.triangles.iter().map(|t| t.map(|i| g.start[i as usize]))))
         };
         let recess = |first: usize, positions: &[Vec3], normals: &[Vec3]| {
             let dressed = over(first).dressed(positions, normals);
@@ -55,30 +54,15 @@ impl BodyModel {
             let depth = RECESS_M * (garments.len() + 1 - first) as f32 / (garments.len() + 1) as f32;
             dressed.into_iter().map(|d| if d { depth.max(RECESS_M * 0.25) } else { 0.0 }).collect()
         };
-        let skin = Shape {
-            rest: body.mesh.positions.clone(),
-            uv: None,
-            triangles: body.mesh.triangles.clone(),
-            colour: MANNEQUIN,
-            material: Material::Skin,
-        };
         let mut recesses = vec![recess(0, &body.mesh.positions, &body.normals)];
-        let mut surfaces = vec![skin];
         for (i, garment) in garments.iter().enumerate() {
             let mut normals = vec![Vec3::ZERO; garment.particles()];
             vertex_normals(&garment.start, &garment.triangles, &mut normals);
             recesses.push(recess(i + 1, &garment.start, &normals));
-            surfaces.push(Shape {
-                rest: garment.start.to_vec(),
-                uv: None,
-                triangles: garment.triangles.to_vec(),
-                colour: Vec3::from_array(garment.fabric.colour.map(toile_view::image::linear)),
-                material: Material::Cloth((&garment.fabric).into()),
-            });
         }
         let tight = |(cloth, garment)| measure::tightness(cloth, garment, frame.colliders());
         Self {
-            meshes: Model { surfaces },
+            meshes: Model::of_outfit(body, garments),
             recess: recesses,
             fit: frame.cloths().iter().zip(garments).map(tight).collect(),
             stature: body.measures.stature,

@@ -7,7 +7,7 @@ use glam::Vec3;
 use toile_assets::mesh::vertex_normals;
 use toile_engine::frame::Snapshot;
 use toile_view::image::Size;
-use toile_view::mirror::{Backdrop, Blend, Gpu, Model, Quality, Renderer, Viewport};
+use toile_view::raster::{Backdrop, Gpu, Model, RenderQuality, Renderer, SurfaceInterpolation, Viewport};
 use toile_view::scene::Bounds;
 use wgpu::{CommandEncoder, TextureFormat, TextureView};
 
@@ -46,7 +46,7 @@ pub struct BodyRenderer {
     pair: [usize; 2],
     fit: Vec<Vec<f32>>,
     statures: [f32; 3],
-    blends: Vec<Blend>,
+    blends: Vec<SurfaceInterpolation>,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
     /// Where the body stands (m), once it was seen.
@@ -60,7 +60,7 @@ impl BodyRenderer {
     pub fn new(gpu: &Gpu, format: TextureFormat) -> Self {
         let software = gpu.is_software();
         Self {
-            renderer: Renderer::new(gpu, format, Quality::live(software)),
+            renderer: Renderer::new(gpu, format, RenderQuality::live(software)),
             smooth: !software,
             triangles: Vec::new(),
             worn: 0,
@@ -90,7 +90,7 @@ impl BodyRenderer {
         self.triangles = surfaces().map(|s| s.triangles.clone()).collect();
         self.fit = model.fit.clone();
         self.statures = [model.stature, pair.map_or(1.7, |p| p[0].stature), pair.map_or(1.7, |p| p[1].stature)];
-        self.blends = vec![Blend::new(); self.worn];
+        self.blends = vec![SurfaceInterpolation::new(); self.worn];
         self.painted = (Vec::new(), false);
         self.at = None;
         for (i, recess) in models().flat_map(|m| &m.recess).enumerate() {
@@ -182,7 +182,7 @@ impl BodyRenderer {
         let stature = self.statures[who];
         self.renderer.set_subject(Some(camera::standing_bounds(stature, at)));
         let camera = camera::camera(stature, at, yaw, free, aspect);
-        self.renderer.draw(encoder, target, place, &camera, Backdrop::Studio);
+        self.renderer.draw(encoder, target, place, &camera, Backdrop::Curved);
     }
 
     /// Only these surfaces are drawn.

@@ -9,7 +9,7 @@ use toile_engine::frame::Snapshot;
 use toile_engine::frame_loop::queue::{Capacity, Receiver, Sender};
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::triple_buffer::Reader;
-use toile_view::mirror::Shown;
+use toile_view::raster::PresentOutcome;
 use winit::window::Window;
 
 use super::body_model::{BodyModel, ModelPair};
@@ -172,16 +172,16 @@ impl WindowRenderer {
         let now = Instant::now();
         self.pacer.drawn(begun, now, software);
         match shown {
-            Shown::Yes => {
+            PresentOutcome::Yes => {
                 self.lost_in_a_row = 0;
                 self.stats.presented(begun, now);
             }
-            Shown::Resting => {
+            PresentOutcome::Resting => {
                 self.pacer.hidden(now);
                 self.stats.paused();
             }
-            Shown::NewDevice => self.lose_device(),
-            Shown::Skipped | Shown::NewSurface => {
+            PresentOutcome::NewDevice => self.lose_device(),
+            PresentOutcome::Skipped | PresentOutcome::NewSurface => {
                 self.stats.refused += 1;
                 self.stats.paused();
             }
@@ -189,8 +189,8 @@ impl WindowRenderer {
     }
 
     /// Paints the newest screen over the newest snapshot; says also whether the processor did.
-    fn paint(&mut self, snapshot: Option<&Snapshot>) -> (Shown, bool) {
-        let Some(surface) = &mut self.surface else { return (Shown::Resting, false) };
+    fn paint(&mut self, snapshot: Option<&Snapshot>) -> (PresentOutcome, bool) {
+        let Some(surface) = &mut self.surface else { return (PresentOutcome::Resting, false) };
         if std::mem::take(&mut self.changed) {
             surface.dress(&self.model, self.pair.as_deref());
         }

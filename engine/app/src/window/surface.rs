@@ -9,7 +9,7 @@ use thread_priority::ThreadPriority;
 use thread_priority::{NormalThreadSchedulePolicy, ThreadPriorityValue, ThreadSchedulePolicy};
 use toile_engine::frame::Snapshot;
 use toile_view::image::Size;
-use toile_view::mirror::{Choice, Gpu, Needs, Pace, Presenter, Shown};
+use toile_view::raster::{AdapterChoice, DeviceNeeds, Gpu, PresentOutcome, PresentPacing, Presenter};
 use winit::window::Window;
 
 use super::body_model::{BodyModel, ModelPair};
@@ -54,7 +54,7 @@ impl WindowSurface {
             (gpu, surface) = again.map_err(|_| "the graphics driver panicked; install another one")??;
         }
         let size = window.inner_size();
-        let presenter = Presenter::new(&gpu, surface, Size::new(size.width, size.height), Pace::Display);
+        let presenter = Presenter::new(&gpu, surface, Size::new(size.width, size.height), PresentPacing::Display);
         let presenter = presenter.ok_or("the graphics adapter cannot show on this display; choose another driver")?;
         let overlay = Overlay::new(&gpu.device, presenter.format());
         let (name, software) = (gpu.to_string(), gpu.is_software());
@@ -89,7 +89,12 @@ impl WindowSurface {
     }
 
     /// Draws and shows a picture.
-    pub fn show(&mut self, window_state: WindowState, scene: &BodyScene<'_>, mut painted: PaintedScreen) -> Shown {
+    pub fn show(
+        &mut self,
+        window_state: WindowState,
+        scene: &BodyScene<'_>,
+        mut painted: PaintedScreen,
+    ) -> PresentOutcome {
         let size = Size::new(window_state.size[0], window_state.size[1]);
         if size != self.presenter.size() {
             self.presenter.resize(size);
@@ -109,18 +114,18 @@ impl WindowSurface {
             self.gpu.finish();
         }
         match shown {
-            Shown::NewSurface => match self.gpu.instance.create_surface(self.window.clone()) {
+            PresentOutcome::NewSurface => match self.gpu.instance.create_surface(self.window.clone()) {
                 Ok(surface) => {
                     self.presenter.replace(surface);
-                    Shown::Skipped
+                    PresentOutcome::Skipped
                 }
-                Err(_) => Shown::NewDevice,
+                Err(_) => PresentOutcome::NewDevice,
             },
             shown => shown,
         }
     }
 
-    fn present(&mut self, scene: &BodyScene<'_>, painted: &PaintedScreen) -> Shown {
+    fn present(&mut self, scene: &BodyScene<'_>, painted: &PaintedScreen) -> PresentOutcome {
         let Self { gpu, presenter, overlay, body, low_res, .. } = self;
         presenter.present(gpu, |view, size| {
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -142,8 +147,8 @@ fn open(window: &Arc<Window>) -> Result<(Gpu, wgpu::Surface<'static>), String> {
     let surface = instance
         .create_surface(window.clone())
         .map_err(|e| format!("the window gives no surface to draw on ({e}); install a Vulkan driver"))?;
-    let gpu =
-        Gpu::open_to_draw(instance, Some(&surface), &Choice::Fastest, Needs::default()).map_err(|e| e.to_string())?;
+    let gpu = Gpu::open_to_draw(instance, Some(&surface), &AdapterChoice::Fastest, DeviceNeeds::default())
+        .map_err(|e| e.to_string())?;
     Ok((gpu, surface))
 }
 

@@ -1,4 +1,4 @@
-//! Constants: what the settings make of a garment, as `shaders/common.wgsl` has it.
+//! A garment's constants for the kernels, from its settings, as `shaders/common.wgsl` declares them.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Affine3A;
@@ -8,32 +8,32 @@ use toile_engine::cloth::prepared::Prepared;
 use toile_engine::cloth::root::Carried;
 use toile_engine::cloth::{Quality, Settings, Wind};
 
-/// Weft links remember their tension.
+/// Flag: weft links keep their tension between passes (soft constraints).
 pub const SOFT_WEFT: u32 = 1;
-/// Fibers remember theirs.
+/// Flag: warp fibers keep theirs.
 pub const SOFT_FIBERS: u32 = 2;
-/// Fibers are calmed across themselves.
+/// Flag: fibers are damped across themselves.
 pub const TAUT: u32 = 4;
-/// Tethers hold.
+/// Flag: tethers act.
 pub const TETHERS: u32 = 8;
-/// In this step the garment is dressed again where the root now is.
+/// Flag: in this step the garment is put back to its rest pose at the root.
 pub const DRESS: u32 = 16;
-/// In this step it is carried along with the root.
+/// Flag: in this step the garment is moved along with the root.
 pub const CARRY: u32 = 32;
-/// Fibers by index list remember their tension.
+/// Flag: fibers by index list keep their tension.
 pub const SOFT_CROSSING: u32 = 64;
-/// There is wind.
+/// Flag: there is wind.
 pub const WIND: u32 = 128;
-/// In this step part of the root's motion is not to be felt.
+/// Flag: in this step part of the root's motion is compensated.
 pub const COMPENSATE: u32 = 256;
 
 /// A garment's constants; the struct `Garment` of `shaders/common.wgsl`, field by field.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Constants {
+pub struct GarmentConstants {
     /// Gravity over a substep (m/s).
     pub fall: [f32; 3],
-    /// What the air leaves of a velocity in a substep.
+    /// Fraction of a velocity that is left after a substep of air damping.
     pub kept: f32,
     /// Length of a substep (s).
     pub dt: f32,
@@ -55,7 +55,7 @@ pub struct Constants {
     pub farthest: f32,
     /// Substeps of a step.
     pub substeps: u32,
-    /// See the constants above.
+    /// Flags, [`SOFT_WEFT`] and the following constants.
     pub bits: u32,
     /// Stages of bending, 1 where it is a force.
     pub stages: u32,
@@ -75,9 +75,9 @@ pub struct Constants {
     pub carried: [[f32; 4]; 5],
 }
 
-const _: () = assert!(size_of::<Constants>() == 336, "`Garment` in common.wgsl is 336 bytes");
+const _: () = assert!(size_of::<GarmentConstants>() == 336, "`Garment` in common.wgsl is 336 bytes");
 
-impl Constants {
+impl GarmentConstants {
     /// Of a garment that is prepared for these settings; no jump, the root where it is at rest.
     pub fn new(garment: &Garment, prepared: &Prepared, settings: &Settings) -> Self {
         let dt = prepared.dt;

@@ -1,4 +1,4 @@
-//! Kernels: the shaders, and what each is bound to.
+//! The compute kernels: their shaders, entry points and bindings.
 
 use crate::shader::LANES;
 
@@ -7,28 +7,28 @@ pub use crate::shader::Shader;
 /// A kernel, in the order in which a step first runs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kernel {
-    /// Particles that are none go back.
+    /// Non-finite or unreachable particles go back to their last good positions.
     Repair,
-    /// The root has been put somewhere else.
-    Jump,
-    /// Which capsules and planes each particle may touch in the step.
-    Near,
-    /// What presses each triangle in the wind.
+    /// Moves garments whose root has jumped.
+    Teleport,
+    /// Finds the capsules and planes that each particle may touch in the step (broad phase).
+    ContactCandidates,
+    /// Wind force on each triangle.
     Wind,
-    /// What of the root's motion is not to be felt.
-    Carry,
-    /// What the wind does to each particle.
-    Blown,
-    /// What comes before a stage of stiff bending, or behind the last.
-    Turn,
+    /// Acceleration that compensates part of the root's motion.
+    RootCompensation,
+    /// Sums the wind forces of the triangles around each particle.
+    WindForces,
+    /// Combines the velocity changes of the stages of stiff bending, before each stage and after the last.
+    StageCombine,
     /// Curvatures of a stage.
-    Stage,
-    /// What they do to each particle.
-    Staged,
+    StageCurvatures,
+    /// Bending forces of a stage, by particle.
+    StageForces,
     /// Curvatures.
-    Bending,
-    /// What they do to each particle.
-    Bent,
+    BendingCurvatures,
+    /// Bending forces, by particle.
+    BendingForces,
     /// Gravity, air and wind; skinned particles move on.
     Predict,
     /// Fibers along the bias.
@@ -37,37 +37,40 @@ pub enum Kernel {
     Shear,
     /// Weft links.
     Weft,
-    /// Fibers by index list: hoops, and what crosses.
+    /// Fibers by index list: hoops and crossing fibers.
     Lists,
     /// Warp fibers.
     Fibers,
-    /// Those that are few and long.
+    /// Long warp fibers, by cyclic reduction.
     Cyclic,
     /// Tethers.
     Tethers,
-    /// Whatever touches is pushed out.
+    /// Contact with capsules and planes, with friction.
     Contact,
-    /// New velocities.
+    /// Velocity update.
     Settle,
-    /// Whether all is finite.
+    /// Checks that all values are finite and within reach.
     Guard,
-    /// The last good places.
+    /// Updates the last good positions, or rolls back to them.
     Publish,
-    /// What the report says of the next step.
-    Conclude,
-    /// Where somebody draws, the triangles' normals.
+    /// Counts the roll-backs of each garment.
+    UpdateReports,
+    /// Area normals of the triangles, for garments that are drawn.
     Faces,
-    /// And the particles', of one unit.
+    /// Unit normals of the particles, likewise.
     Normals,
 }
 
 const COMMON: &str = include_str!("../shaders/common.wgsl");
 
+/// The report that several kernels write: its struct and its binding, 0 of group 1.
+const REPORT: &str = include_str!("../shaders/report.wgsl");
+
 macro_rules! shader {
-    ($name:literal, $reads:expr) => {
+    ($name:literal, $reads:expr $(, $shared:ident)?) => {
         Shader {
             name: $name,
-            texts: &[LANES, COMMON, include_str!(concat!("../shaders/", $name, ".wgsl"))],
+            texts: &[LANES, COMMON, $($shared,)? include_str!(concat!("../shaders/", $name, ".wgsl"))],
             reads: &$reads,
         }
     };
@@ -75,13 +78,13 @@ macro_rules! shader {
 
 /// All shaders.
 pub const SHADERS: [Shader; 19] = [
-    shader!("repair", [false, true]),
-    shader!("jump", [false, true]),
+    shader!("repair", [false, true], REPORT),
+    shader!("teleport", [false, true]),
     shader!("wind", [true, false, true, true, false]),
-    shader!("carry", [false]),
-    shader!("turn", [true, true]),
-    shader!("bending", [true, true, true, false, true]),
-    shader!("bent", [true, true, true, true, true]),
+    shader!("root_compensation", [false]),
+    shader!("stage_combine", [true, true]),
+    shader!("bending_curvatures", [true, true, true, false, true]),
+    shader!("bending_forces", [true, true, true, true, true]),
     shader!("predict", [true, true, true]),
     shader!("diagonals", [true, true, true, false, false]),
     shader!("links", [true, true, false]),
@@ -89,9 +92,9 @@ pub const SHADERS: [Shader; 19] = [
     shader!("fibers", [true, true, true, false, false]),
     shader!("tethers", [true]),
     shader!("contact", [true, true, true, true, false]),
-    shader!("settle", [false]),
-    shader!("guard", [false]),
-    shader!("publish", [false, false, true]),
+    shader!("settle", [false], REPORT),
+    shader!("guard", [false], REPORT),
+    shader!("publish", [false, false, true], REPORT),
     shader!("faces", [true, true, false]),
     shader!("normals", [true, true, true, false]),
 ];
@@ -100,16 +103,16 @@ impl Kernel {
     /// All kernels.
     pub const ALL: [Self; 26] = [
         Self::Repair,
-        Self::Jump,
-        Self::Near,
+        Self::Teleport,
+        Self::ContactCandidates,
         Self::Wind,
-        Self::Carry,
-        Self::Blown,
-        Self::Turn,
-        Self::Stage,
-        Self::Staged,
-        Self::Bending,
-        Self::Bent,
+        Self::RootCompensation,
+        Self::WindForces,
+        Self::StageCombine,
+        Self::StageCurvatures,
+        Self::StageForces,
+        Self::BendingCurvatures,
+        Self::BendingForces,
         Self::Predict,
         Self::Diagonals,
         Self::Shear,
@@ -122,14 +125,14 @@ impl Kernel {
         Self::Settle,
         Self::Guard,
         Self::Publish,
-        Self::Conclude,
+        Self::UpdateReports,
         Self::Faces,
         Self::Normals,
     ];
 
     /// Whether it runs stage by stage in a substep.
     pub fn in_stages(self) -> bool {
-        matches!(self, Self::Turn | Self::Stage | Self::Staged)
+        matches!(self, Self::StageCombine | Self::StageCurvatures | Self::StageForces)
     }
 
     /// Its number among [`Kernel::ALL`].
@@ -140,16 +143,20 @@ impl Kernel {
     /// Which of `toile_engine::cloth::program::STAGES` it counts towards.
     pub fn stage(self) -> usize {
         match self {
-            Self::Repair | Self::Jump | Self::Carry | Self::Predict => 0,
-            Self::Guard | Self::Publish | Self::Conclude => 0,
-            Self::Turn | Self::Stage | Self::Staged | Self::Bending | Self::Bent => 1,
+            Self::Repair | Self::Teleport | Self::RootCompensation | Self::Predict => 0,
+            Self::Guard | Self::Publish | Self::UpdateReports => 0,
+            Self::StageCombine
+            | Self::StageCurvatures
+            | Self::StageForces
+            | Self::BendingCurvatures
+            | Self::BendingForces => 1,
             // What is drawn goes with what is published.
             Self::Faces | Self::Normals => 0,
             Self::Diagonals | Self::Shear => 2,
             Self::Weft => 3,
             Self::Lists | Self::Fibers | Self::Cyclic => 4,
-            Self::Near | Self::Contact | Self::Settle => 5,
-            Self::Wind | Self::Blown => 6,
+            Self::ContactCandidates | Self::Contact | Self::Settle => 5,
+            Self::Wind | Self::WindForces => 6,
             Self::Tethers => 7,
         }
     }
@@ -158,33 +165,33 @@ impl Kernel {
     pub fn entry(self) -> (usize, &'static str) {
         let name = match self {
             Self::Repair => "repair",
-            Self::Jump => "jump",
-            Self::Wind | Self::Blown => "wind",
-            Self::Carry => "carry",
-            Self::Turn => "turn",
-            Self::Bending | Self::Stage => "bending",
-            Self::Bent | Self::Staged => "bent",
+            Self::Teleport => "teleport",
+            Self::Wind | Self::WindForces => "wind",
+            Self::RootCompensation => "root_compensation",
+            Self::StageCombine => "stage_combine",
+            Self::BendingCurvatures | Self::StageCurvatures => "bending_curvatures",
+            Self::BendingForces | Self::StageForces => "bending_forces",
             Self::Predict => "predict",
             Self::Diagonals => "diagonals",
             Self::Shear | Self::Weft => "links",
             Self::Lists => "lists",
             Self::Fibers | Self::Cyclic => "fibers",
             Self::Tethers => "tethers",
-            Self::Near | Self::Contact => "contact",
+            Self::ContactCandidates | Self::Contact => "contact",
             Self::Settle => "settle",
             Self::Guard => "guard",
-            Self::Publish | Self::Conclude => "publish",
+            Self::Publish | Self::UpdateReports => "publish",
             Self::Faces => "faces",
             Self::Normals => "normals",
         };
         let shader = SHADERS.iter().position(|s| s.name == name).unwrap_or(0);
         let entry = match self {
-            Self::Near => "near",
-            Self::Blown => "blown",
-            Self::Stage => "stage",
-            Self::Staged => "staged",
+            Self::ContactCandidates => "contact_candidates",
+            Self::WindForces => "wind_forces",
+            Self::StageCurvatures => "stage_curvatures",
+            Self::StageForces => "stage_forces",
             Self::Cyclic => "cyclic",
-            Self::Conclude => "conclude",
+            Self::UpdateReports => "update_reports",
             _ => name,
         };
         (shader, entry)

@@ -1,6 +1,6 @@
 //! The cloth on a GPU: all garments of a scene in one set of buffers, a dispatch a phase.
 //!
-//! Reads: baked garments, bone palettes, settings. Writes: positions, one step late; for who draws on the same device, now.
+//! Reads: baked garments, bone palettes, settings. Writes: positions, one step late; vertex buffers on the device, at once.
 //! Budget: buffers and pipelines at load; in the frame no buffer, no pipeline and no wait, some 40 dispatches a substep.
 //! Thread: the one that calls [`Offload::step`]; not the physics thread of a garment that is on the CPU.
 //!
@@ -8,18 +8,19 @@
 //! bits as its twin and which only stays within a bound.
 
 mod buffers;
+pub mod cloth_device;
 pub mod constants;
-mod drawn;
+mod contact_data;
 pub mod flat;
 pub mod kernels;
-mod meter;
-pub mod opened;
 pub mod program;
 mod read;
-pub mod ring;
+pub mod readback;
+mod scene_buffers;
+mod stage_timer;
 mod step;
-mod touch;
-pub mod work;
+pub mod step_work;
+mod vertex_sources;
 
 use std::sync::Arc;
 
@@ -34,32 +35,32 @@ use toile_engine::cloth::settings::MAX_SUBSTEPS;
 use toile_engine::cloth::{Cloth, Quality, Settings, centre};
 use toile_engine::colliders::Colliders;
 
-use crate::device::{Choice, Device, GpuError, Needs};
-use buffers::{Buffers, needs};
-use constants::Constants;
+use crate::device::{AdapterChoice, Device, DeviceNeeds, GpuError};
+use buffers::{ClothBuffers, needs};
+use cloth_device::ClothDevice;
+use constants::GarmentConstants;
+use contact_data::{ContactData, FlatCone, FlatEnds, PLANES};
 use flat::Flat;
-use meter::Meter;
-use opened::Opened;
-use program::Program;
-use ring::{Ring, Tally};
-use touch::{FlatCone, FlatEnds, PLANES, Touch};
+use program::StepProgram;
+use readback::{ReadbackCounts, ReadbackRing};
+use stage_timer::StageTimer;
 
 pub use kernels::Kernel;
-pub use meter::Spent;
+pub use stage_timer::StageTimes;
 
-/// What the surroundings do to one garment during one step.
+/// The surroundings of one garment during one step.
 pub use toile_engine::cloth::Step;
 
-/// One garment's part on the CPU, in the order in which the caller gave them.
+/// One garment's state on the CPU, in the caller's order.
 #[derive(Debug)]
-struct Own {
+struct GarmentState {
     prepared: Prepared,
     pins: Pins,
-    touch: Touch,
+    touch: ContactData,
     root: RootMotion,
     feels_wind: bool,
     origin: Vec3A,
-    /// Where it is in the flat scene.
+    /// Its index in the flat scene.
     place: usize,
     positions: Box<[Vec3A]>,
     velocities: Box<[Vec3A]>,
@@ -69,15 +70,15 @@ struct Own {
 /// Garments that are stepped on a GPU. All storage is made once.
 #[derive(Debug)]
 pub struct Offload {
-    opened: Arc<Opened>,
+    opened: Arc<ClothDevice>,
     flat: Flat,
-    program: Program,
-    buffers: Buffers,
-    ring: Ring,
-    meter: Option<Meter>,
-    own: Vec<Own>,
-    /// As they lie.
-    constants: Vec<Constants>,
+    program: StepProgram,
+    buffers: ClothBuffers,
+    ring: ReadbackRing,
+    meter: Option<StageTimer>,
+    own: Vec<GarmentState>,
+    /// Constants of the garments, in the flat scene's order.
+    constants: Vec<GarmentConstants>,
     targets: Vec<[f32; 4]>,
     /// Capsules, `sets` of them for each garment as it lies; their ends; planes.
     cones: Vec<FlatCone>,
@@ -99,13 +100,13 @@ impl Offload {
     /// # Errors
     /// [`GpuError`]: no adapter, or limits too small.
     pub fn new(
-        choice: &Choice,
+        choice: &AdapterChoice,
         garments: &[&Garment],
         colliders: &[&Colliders],
         settings: &Settings,
     ) -> Result<Self, GpuError> {
-        let laid = Laid::new(garments, colliders, settings, false);
-        let opened = Opened::new(choice, laid.needs())?;
+        let laid = SceneLayout::new(garments, colliders, settings, false);
+        let opened = ClothDevice::new(choice, laid.needs())?;
         Self::lay(Arc::new(opened), laid, garments, settings)
     }
 
@@ -114,7 +115,7 @@ impl Offload {
     /// # Errors
     /// [`GpuError`]: limits too small.
     pub fn on(
-        opened: &Arc<Opened>,
+        opened: &Arc<ClothDevice>,
         garments: &[&Garment],
         colliders: &[&Colliders],
         settings: &Settings,
@@ -128,7 +129,7 @@ impl Offload {
     /// # Errors
     /// As [`Offload::on`]; limits too small where the device was opened for less than [`Offload::needs`].
     pub fn drawn(
-        opened: &Arc<Opened>,
+        opened: &Arc<ClothDevice>,
         garments: &[&Garment],
         colliders: &[&Colliders],
         settings: &Settings,
@@ -137,12 +138,12 @@ impl Offload {
     }
 
     /// What a device has to be opened with to step these garments and to draw them. At load: some milliseconds a garment.
-    pub fn needs(garments: &[&Garment], colliders: &[&Colliders], settings: &Settings) -> Needs {
-        Laid::new(garments, colliders, settings, true).needs()
+    pub fn needs(garments: &[&Garment], colliders: &[&Colliders], settings: &Settings) -> DeviceNeeds {
+        SceneLayout::new(garments, colliders, settings, true).needs()
     }
 
     fn on_either(
-        opened: &Arc<Opened>,
+        opened: &Arc<ClothDevice>,
         garments: &[&Garment],
         colliders: &[&Colliders],
         settings: &Settings,
@@ -150,25 +151,30 @@ impl Offload {
     ) -> Result<Self, GpuError> {
         // On a device that is lost no buffer can be made.
         opened.device.sound()?;
-        let laid = Laid::new(garments, colliders, settings, drawn);
+        let laid = SceneLayout::new(garments, colliders, settings, drawn);
         opened.device.takes(laid.needs())?;
         Self::lay(Arc::clone(opened), laid, garments, settings)
     }
 
-    fn lay(opened: Arc<Opened>, laid: Laid, garments: &[&Garment], settings: &Settings) -> Result<Self, GpuError> {
-        let Laid { flat, program, prepared, sets } = laid;
+    fn lay(
+        opened: Arc<ClothDevice>,
+        laid: SceneLayout,
+        garments: &[&Garment],
+        settings: &Settings,
+    ) -> Result<Self, GpuError> {
+        let SceneLayout { flat, program, prepared, sets } = laid;
         let settings = &settings.sound();
-        let constants: Vec<Constants> =
-            flat.order.iter().map(|&k| Constants::new(garments[k], &prepared[k], settings)).collect();
-        let buffers = Buffers::new(&opened, &flat, &program, &constants, sets);
+        let constants: Vec<GarmentConstants> =
+            flat.order.iter().map(|&k| GarmentConstants::new(garments[k], &prepared[k], settings)).collect();
+        let buffers = ClothBuffers::new(&opened, &flat, &program, &constants, sets);
         let back = 2 * buffers.good.size() + buffers.reports.size();
-        let ring = Ring::new(&opened.device.device, back);
-        let meter = Meter::new(&opened.device);
+        let ring = ReadbackRing::new(&opened.device.device, back);
+        let meter = StageTimer::new(&opened.device);
         opened.device.sound()?;
-        let own = (0..).zip(garments.iter().zip(prepared)).map(|(k, (garment, prepared))| Own {
+        let own = (0..).zip(garments.iter().zip(prepared)).map(|(k, (garment, prepared))| GarmentState {
             prepared,
             pins: Pins::new(garment),
-            touch: Touch::new(),
+            touch: ContactData::new(),
             root: RootMotion::new(settings.root),
             feels_wind: true,
             origin: centre(garment),
@@ -205,7 +211,7 @@ impl Offload {
         })
     }
 
-    /// The device.
+    /// The device that steps them.
     pub fn device(&self) -> &Device {
         &self.opened.device
     }
@@ -227,12 +233,12 @@ impl Offload {
 
     /// What the device spent on each stage of the last step that was metered and has come back; none where the adapter has no
     /// clock for it, and before such a step (`Settings::timed`).
-    pub fn spent(&self) -> Option<Spent> {
-        self.meter.as_ref().and_then(Meter::spent)
+    pub fn spent(&self) -> Option<StageTimes> {
+        self.meter.as_ref().and_then(StageTimer::spent)
     }
 
     /// What became of the steps' results.
-    pub fn tally(&self) -> Tally {
+    pub fn tally(&self) -> ReadbackCounts {
         self.ring.tally
     }
 
@@ -241,11 +247,11 @@ impl Offload {
         self.own[garment].prepared.substeps
     }
 
-    /// Whether these are the garments that it was made for, as far as can be told, and the settings ask for no more substeps than
+    /// Whether these are the garments that it was made for, as far as can be checked, and the settings ask for no more substeps than
     /// it was laid out for.
     pub fn holds(&self, garments: &[&Garment], settings: &Settings) -> bool {
         let settings = settings.sound();
-        let fits = |(own, garment): (&Own, &&Garment)| {
+        let fits = |(own, garment): (&GarmentState, &&Garment)| {
             own.positions.len() == garment.particles() && (settings.substeps_of(garment.substeps) as usize) < self.sets
         };
         garments.len() == self.own.len() && self.own.iter().zip(garments).all(fits)
@@ -276,15 +282,15 @@ impl Offload {
 }
 
 /// A scene before it is on a device.
-struct Laid {
+struct SceneLayout {
     flat: Flat,
-    program: Program,
+    program: StepProgram,
     prepared: Vec<Prepared>,
     /// Sets of capsules a garment: one more than substeps.
     sets: usize,
 }
 
-impl Laid {
+impl SceneLayout {
     /// Lays garments out; where they are `drawn`, what normals are made of as well.
     fn new(garments: &[&Garment], colliders: &[&Colliders], settings: &Settings, drawn: bool) -> Self {
         let settings = &settings.sound();
@@ -296,12 +302,12 @@ impl Laid {
         if drawn {
             flat.draw(garments);
         }
-        let program = Program::new(&flat, prepared.iter().any(Prepared::stiff));
+        let program = StepProgram::new(&flat, prepared.iter().any(Prepared::stiff));
         let sets = 1 + most_substeps(garments, &prepared);
         Self { flat, program, prepared, sets }
     }
 
-    fn needs(&self) -> Needs {
+    fn needs(&self) -> DeviceNeeds {
         needs(&self.flat, &self.program, self.sets)
     }
 }

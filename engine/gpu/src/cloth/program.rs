@@ -2,17 +2,17 @@
 
 use toile_engine::cloth::Quality;
 
-use super::flat::{Flat, Groups};
+use super::flat::{Flat, Workgroups};
 use super::kernels::Kernel;
 
-/// One dispatch.
+/// One dispatch of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Entry {
-    /// What runs.
+pub struct Dispatch {
+    /// The kernel.
     pub kernel: Kernel,
-    /// Its workgroups, among [`Program::tables`].
+    /// Its workgroups, among [`StepProgram::tables`].
     pub table: usize,
-    /// Whether tensions start from none.
+    /// Whether tensions start from zero.
     pub fresh: bool,
     /// Which constants are its own.
     pub op: u32,
@@ -20,23 +20,23 @@ pub struct Entry {
 
 /// The dispatches of a step.
 #[derive(Debug, Clone, Default)]
-pub struct Program {
+pub struct StepProgram {
     /// Workgroups that entries refer to, and where each begins among all.
-    pub tables: Vec<(Groups, u32)>,
+    pub tables: Vec<(Workgroups, u32)>,
     /// Before the first substep; of wind, jumps and what is not to be felt of the root only what the step has.
-    pub before: Vec<Entry>,
+    pub before: Vec<Dispatch>,
     /// Each stage of bending that is stiffer than a substep, and the first behind the last; none where none can be.
-    pub stages: Vec<Entry>,
+    pub stages: Vec<Dispatch>,
     /// Each substep at the quality `draft`.
-    pub draft: Vec<Entry>,
+    pub draft: Vec<Dispatch>,
     /// Each substep at the others.
-    pub whole: Vec<Entry>,
+    pub whole: Vec<Dispatch>,
     /// After the last.
-    pub after: Vec<Entry>,
+    pub after: Vec<Dispatch>,
 }
 
-/// Tables of one kind, by number.
-struct Tables {
+/// WorkgroupTables of one kind, by number.
+struct WorkgroupTables {
     everyone: usize,
     bending: usize,
     wind: usize,
@@ -48,11 +48,11 @@ struct Tables {
     cyclic: usize,
 }
 
-impl Program {
+impl StepProgram {
     /// Of a scene; `stiff` says whether any garment's bending may have to go in stages.
     pub fn new(flat: &Flat, stiff: bool) -> Self {
         let mut this = Self::default();
-        let tables = Tables {
+        let tables = WorkgroupTables {
             everyone: this.table(&flat.everyone),
             bending: this.table(&flat.bending.groups),
             wind: this.table(&flat.wind.groups),
@@ -63,19 +63,23 @@ impl Program {
             fibers: this.table(&flat.fibers.groups),
             cyclic: this.table(&flat.fibers.cyclic),
         };
-        let all = |kernel| Entry { kernel, table: tables.everyone, fresh: false, op: 0 };
-        let first = [Kernel::Repair, Kernel::Jump, Kernel::Near];
-        let forces = [Entry { table: tables.wind, ..all(Kernel::Wind) }, all(Kernel::Carry), all(Kernel::Blown)];
+        let all = |kernel| Dispatch { kernel, table: tables.everyone, fresh: false, op: 0 };
+        let first = [Kernel::Repair, Kernel::Teleport, Kernel::ContactCandidates];
+        let forces = [
+            Dispatch { table: tables.wind, ..all(Kernel::Wind) },
+            all(Kernel::RootCompensation),
+            all(Kernel::WindForces),
+        ];
         this.before = first.map(all).into_iter().chain(forces).collect();
         if stiff {
-            let stage = Entry { table: tables.bending, ..all(Kernel::Stage) };
-            this.stages = vec![all(Kernel::Turn), stage, all(Kernel::Staged)];
+            let stage = Dispatch { table: tables.bending, ..all(Kernel::StageCurvatures) };
+            this.stages = vec![all(Kernel::StageCombine), stage, all(Kernel::StageForces)];
         }
         this.draft = this.substep(&tables, false);
         this.whole = this.substep(&tables, true);
-        this.after = vec![all(Kernel::Guard), all(Kernel::Publish), all(Kernel::Conclude)];
+        this.after = vec![all(Kernel::Guard), all(Kernel::Publish), all(Kernel::UpdateReports)];
         if !flat.faces.starts.is_empty() {
-            let faces = Entry { table: this.table(&flat.faces.groups), ..all(Kernel::Faces) };
+            let faces = Dispatch { table: this.table(&flat.faces.groups), ..all(Kernel::Faces) };
             this.after.extend([faces, all(Kernel::Normals)]);
         }
         this.number();
@@ -87,18 +91,18 @@ impl Program {
         let whole = self.before.iter_mut().chain(&mut self.stages).chain(&mut self.whole).chain(&mut self.after);
         (0..).zip(whole).for_each(|(op, entry)| entry.op = op);
         for entry in &mut self.draft {
-            let same = |e: &&Entry| (e.kernel, e.table, e.fresh) == (entry.kernel, entry.table, entry.fresh);
+            let same = |e: &&Dispatch| (e.kernel, e.table, e.fresh) == (entry.kernel, entry.table, entry.fresh);
             entry.op = self.whole.iter().find(same).map_or(0, |e| e.op);
         }
     }
 
     /// Each substep at a quality.
-    pub fn each(&self, quality: Quality) -> &[Entry] {
+    pub fn each(&self, quality: Quality) -> &[Dispatch] {
         if quality == Quality::Draft { &self.draft } else { &self.whole }
     }
 
     /// Every entry there is: what has to have constants of its own.
-    pub fn entries(&self) -> impl Iterator<Item = &Entry> {
+    pub fn entries(&self) -> impl Iterator<Item = &Dispatch> {
         self.before.iter().chain(&self.stages).chain(&self.whole).chain(&self.after)
     }
 
@@ -107,22 +111,22 @@ impl Program {
         self.tables.iter().flat_map(|(groups, _)| groups.groups.iter().copied()).collect()
     }
 
-    fn table(&mut self, groups: &Groups) -> usize {
+    fn table(&mut self, groups: &Workgroups) -> usize {
         let first = self.tables.last().map_or(0, |(last, first)| first + last.groups.len() as u32);
         self.tables.push((groups.clone(), first));
         self.tables.len() - 1
     }
 
     /// A substep; `whole` solves hoops and fibers in turn.
-    fn substep(&self, tables: &Tables, whole: bool) -> Vec<Entry> {
-        let entry = |kernel, table, fresh| Entry { kernel, table, fresh, op: 0 };
+    fn substep(&self, tables: &WorkgroupTables, whole: bool) -> Vec<Dispatch> {
+        let entry = |kernel, table, fresh| Dispatch { kernel, table, fresh, op: 0 };
         let wefts = |fresh: bool| tables.weft.iter().map(move |&t| entry(Kernel::Weft, t, fresh));
         let lists = |fresh: bool| tables.lists.iter().map(move |&t| entry(Kernel::Lists, t, fresh));
         let warps = [(Kernel::Fibers, tables.fibers), (Kernel::Cyclic, tables.cyclic)];
         let fibers = |fresh: bool| lists(fresh).chain(warps.map(|(kernel, table)| entry(kernel, table, fresh)));
         let mut entries = vec![
-            entry(Kernel::Bending, tables.bending, false),
-            entry(Kernel::Bent, tables.everyone, false),
+            entry(Kernel::BendingCurvatures, tables.bending, false),
+            entry(Kernel::BendingForces, tables.everyone, false),
             entry(Kernel::Predict, tables.everyone, false),
         ];
         entries.extend(tables.diagonals.iter().map(|&t| entry(Kernel::Diagonals, t, false)));

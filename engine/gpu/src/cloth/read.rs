@@ -1,4 +1,4 @@
-//! Read: what comes back from the device, and doors for tests: a kernel alone, a state put there, a state read.
+//! Results that come back from the device, and access for tests: a single kernel, a state written, a state read.
 
 use glam::Vec3A;
 use toile_assets::garment::Garment;
@@ -6,9 +6,9 @@ use toile_engine::cloth::guard::{self, Spoil};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, ComputePassDescriptor, MapMode};
 
 use super::buffers::REPORT;
-use super::flat::Span;
+use super::flat::GarmentSpan;
 use super::kernels::Kernel;
-use super::meter::Meter;
+use super::stage_timer::StageTimer;
 use super::{Offload, Step};
 use crate::device::GpuError;
 
@@ -49,7 +49,7 @@ impl Offload {
                 (own.events.speed_limited, own.events.rolled_back) = (report[0].into(), report[3].into());
             }
         });
-        self.meter.iter_mut().for_each(Meter::take);
+        self.meter.iter_mut().for_each(StageTimer::take);
         self.opened.device.answers(self.ring.waiting())
     }
 
@@ -191,7 +191,7 @@ impl Offload {
 }
 
 /// A garment's part of some vectors.
-pub(super) fn vectors(from: &[[f32; 4]], span: Span) -> Vec<Vec3A> {
+pub(super) fn vectors(from: &[[f32; 4]], span: GarmentSpan) -> Vec<Vec3A> {
     let own = &from[span.first as usize..(span.first + span.len) as usize];
     own.iter().map(|p| Vec3A::new(p[0], p[1], p[2])).collect()
 }

@@ -1,4 +1,4 @@
-//! One step: what the CPU has to say of it, and its dispatches.
+//! One step: what the CPU writes to the device for it, and its dispatches.
 
 use glam::Affine3A;
 use toile_assets::garment::Garment;
@@ -9,15 +9,15 @@ use toile_engine::cloth::prepared::Prepared;
 use toile_engine::cloth::root::RootStep;
 use wgpu::{CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor};
 
-use super::buffers::{Buffers, STAGES};
-use super::constants::{CARRY, COMPENSATE, Constants, DRESS, WIND, carried, columns};
-use super::flat::{Scale, WIDTH};
+use super::buffers::{ClothBuffers, STAGES};
+use super::constants::{CARRY, COMPENSATE, DRESS, GarmentConstants, WIND, carried, columns};
+use super::contact_data::{self, PLANES};
+use super::flat::{BendingScale, WIDTH};
 use super::kernels::Kernel;
-use super::program::Entry;
-use super::touch::{self, PLANES};
+use super::program::Dispatch;
 use super::{Offload, Step, takes};
+use crate::buffer_builder::ALIGNED;
 use crate::device::GpuError;
-use crate::maker::ALIGNED;
 
 impl Offload {
     /// Takes in what has come back, and sends the next step of every garment on its way; waits for nothing. `steps` has
@@ -58,7 +58,7 @@ impl Offload {
 
     /// Sends commands, and what they leave behind them back.
     fn submit(&mut self, mut encoder: CommandEncoder) {
-        let Buffers { good, state, reports, .. } = &self.buffers;
+        let ClothBuffers { good, state, reports, .. } = &self.buffers;
         let velocities = state.slice(2 * good.size()..3 * good.size());
         let place = self.ring.send(&mut encoder, &[good.slice(..), velocities, reports.slice(..)]);
         self.opened.device.queue.submit([encoder.finish()]);
@@ -89,9 +89,9 @@ impl Offload {
                 queue.write_buffer(buffer, 16 * range.start as u64, bytemuck::cast_slice(&links.measures[range]));
             }
             let range = self.flat.bending.prepare(place, |scale| match scale {
-                Scale::Bend(at) => prepared.bend_scale[at as usize],
-                Scale::Skewed(at) => prepared.skewed_scale[at as usize],
-                Scale::Hub(number) => prepared.hub_scale[number as usize],
+                BendingScale::Bend(at) => prepared.bend_scale[at as usize],
+                BendingScale::Skewed(at) => prepared.skewed_scale[at as usize],
+                BendingScale::Hub(number) => prepared.hub_scale[number as usize],
             });
             let scales = bytemuck::cast_slice(&self.flat.bending.scales[range.clone()]);
             queue.write_buffer(&buffers.scales, 4 * range.start as u64, scales);
@@ -111,8 +111,8 @@ impl Offload {
     }
 
     /// What comes before the substeps: targets of the skinned particles, the roots.
-    pub(super) fn begin(&mut self, garments: &[&Garment], steps: &[Step<'_>], settings: &Settings) -> Asked {
-        let mut asked = Asked { wind: settings.wind.is_some(), ..Asked::default() };
+    pub(super) fn begin(&mut self, garments: &[&Garment], steps: &[Step<'_>], settings: &Settings) -> StepConditions {
+        let mut asked = StepConditions { wind: settings.wind.is_some(), ..StepConditions::default() };
         for ((own, garment), step) in self.own.iter_mut().zip(garments).zip(steps) {
             own.events.held_settings += u64::from(*settings != *step.settings);
             own.events.held_pins += own.pins.attach(garment, step.palette);
@@ -120,7 +120,7 @@ impl Offload {
             let root = step.palette[0] * Affine3A::from_translation(own.origin.into());
             let constants = &mut self.constants[own.place];
             // A garment's fabric may change between steps.
-            *constants = Constants::new(garment, &own.prepared, settings);
+            *constants = GarmentConstants::new(garment, &own.prepared, settings);
             constants.root = columns(&step.palette[0]);
             constants.bits &= if own.feels_wind { u32::MAX } else { !WIND };
             match own.root.advance(&root, settings.step_seconds) {
@@ -166,7 +166,7 @@ impl Offload {
             let ends = &mut self.ends[place * MAX_CAPSULES..][..MAX_CAPSULES];
             let planes = &mut self.planes[place * PLANES..][..PLANES];
             let sound = own.touch.capsules(settings.width, step.colliders, &how, cones, ends);
-            let many = touch::planes(step.colliders, planes);
+            let many = contact_data::planes(step.colliders, planes);
             self.constants[place].touch = [(first / MAX_CAPSULES) as u32, sound, many, (place * PLANES) as u32];
             // Only what can be touched takes room, one garment's behind the other's.
             first += if sound != 0 { count } else { 0 };
@@ -178,7 +178,7 @@ impl Offload {
     }
 
     /// All dispatches of a step, in their order: what runs, in which substep or stage, over how many garments.
-    pub(super) fn entries<'a>(&'a self, asked: Asked, mut run: impl FnMut(&'a Entry, u32, usize)) {
+    pub(super) fn entries<'a>(&'a self, asked: StepConditions, mut run: impl FnMut(&'a Dispatch, u32, usize)) {
         let all = self.own.len();
         let before = self.program.before.iter().filter(|entry| asked.runs(entry.kernel));
         before.for_each(|entry| run(entry, 0, all));
@@ -190,22 +190,23 @@ impl Offload {
     }
 
     /// Those of bending that is stiffer than a substep: a turn before the forces of each stage, and one behind the last.
-    fn staged<'a>(&'a self, active: usize, run: &mut impl FnMut(&'a Entry, u32, usize)) {
+    fn staged<'a>(&'a self, active: usize, run: &mut impl FnMut(&'a Dispatch, u32, usize)) {
         if self.stages == 0 {
             return;
         }
         for stage in 0..=self.stages {
-            let entries = self.program.stages.iter().filter(|e| stage < self.stages || e.kernel == Kernel::Turn);
+            let entries =
+                self.program.stages.iter().filter(|e| stage < self.stages || e.kernel == Kernel::StageCombine);
             entries.for_each(|entry| run(entry, stage, active));
         }
     }
 
     /// One dispatch over the first so many garments, in a substep, or in a stage if the kernel has stages.
-    pub(super) fn dispatch(&self, pass: &mut ComputePass<'_>, entry: &Entry, at: u32, garments: usize) {
+    pub(super) fn dispatch(&self, pass: &mut ComputePass<'_>, entry: &Dispatch, at: u32, garments: usize) {
         let moment = if entry.kernel.in_stages() { self.sets as u32 + at } else { at };
         let groups = match entry.kernel {
             // An invocation a garment.
-            Kernel::Conclude => (garments as u32).div_ceil(WIDTH),
+            Kernel::UpdateReports => (garments as u32).div_ceil(WIDTH),
             _ => self.program.tables[entry.table].0.of(garments),
         };
         if groups == 0 {
@@ -220,28 +221,28 @@ impl Offload {
 
 /// Which dispatches before the substeps a step asks for that not every step does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Asked {
-    /// A root has jumped.
+pub(super) struct StepConditions {
+    /// Whether a root has jumped.
     jumps: bool,
-    /// Part of a root's motion is not to be felt.
+    /// Whether part of a root's motion is compensated.
     carried: bool,
-    /// There is wind.
+    /// Whether there is wind.
     wind: bool,
 }
 
-impl Asked {
+impl StepConditions {
     /// Whether a kernel is to run.
     fn runs(self, kernel: Kernel) -> bool {
         match kernel {
-            Kernel::Jump => self.jumps,
-            Kernel::Carry => self.carried,
-            Kernel::Wind | Kernel::Blown => self.wind,
+            Kernel::Teleport => self.jumps,
+            Kernel::RootCompensation => self.carried,
+            Kernel::Wind | Kernel::WindForces => self.wind,
             _ => true,
         }
     }
 }
 
-/// A garment's stages as `shaders/turn.wgsl` has them, and what their forces are multiplied by.
+/// A garment's stages as `shaders/stage_combine.wgsl` has them, and what their forces are multiplied by.
 fn stages(p: &Prepared) -> [[f32; 4]; STAGES] {
     // The first stage's forces are those of the place ahead, over the substep.
     let by = |j: usize, forced: f32| if j == 0 { p.dt } else { forced * p.dt * p.dt };

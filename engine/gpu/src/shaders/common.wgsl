@@ -75,7 +75,7 @@ const MOST_STAGES = 160u;
 // A workgroup's garment, first item, number of items, and what else the kernel wants to know.
 @group(0) @binding(2) var<storage, read> groups: array<vec4<u32>>;
 // Places and inverse masses, then where the substep began, then velocities: `particles` of each; behind them, where bending
-// can be stiffer than a substep, its room: see `turn.wgsl`.
+// can be stiffer than a substep, its room: see `stage_combine.wgsl`.
 @group(0) @binding(3) var<storage, read_write> state: array<vec4<f32>>;
 @group(0) @binding(4) var<uniform> now: Now;
 

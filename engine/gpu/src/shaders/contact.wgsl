@@ -89,7 +89,7 @@ fn depth_behind(plane: vec4<f32>, x: vec3<f32>) -> f32 {
 }
 
 @compute @workgroup_size(64)
-fn near(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+fn contact_candidates(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let group = groups[op.first + at.x];
     if (lane >= group.z) {
         return;

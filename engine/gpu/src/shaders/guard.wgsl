@@ -1,22 +1,6 @@
 // Guard: whether every number of a garment is finite and within reach; those that are next to nothing become nothing.
 // Twin of `Sound` in `cloth/guard.rs`.
 
-// What happened to a garment, counted since it was made.
-struct Report {
-    // Particle substeps held at the speed limit.
-    limited: atomic<u32>,
-    // Not 0 where something in this step is not sound.
-    unsound: atomic<u32>,
-    // Steps in a row that were rolled back.
-    rolled: u32,
-    // All that were.
-    rolled_back: u32,
-    // Particles that were put back when a step began.
-    repaired: u32,
-}
-
-@group(1) @binding(0) var<storage, read_write> reports: array<Report>;
-
 fn sound(v: vec3<f32>) -> bool {
     return finite(v) && within_reach(v);
 }

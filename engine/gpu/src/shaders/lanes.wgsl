@@ -13,7 +13,7 @@ fn cross_product(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
-// a > b ? a : b, as the lanes have it: the built-in leaves open what a number that is none gives.
+// a > b ? a : b, as the lanes have it: the built-in does not define the result for NaN.
 fn more_of(a: f32, b: f32) -> f32 {
     return select(b, a, a > b);
 }

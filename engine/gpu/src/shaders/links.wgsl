@@ -23,7 +23,7 @@ fn links(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) 
     let rest = measures[k].x;
     let gain = measures[k].z;
     let gamma = garments[g].gamma;
-    // The fourth number tells whether these links may remember their tension.
+    // The fourth number is not 0 where these links may keep their tension.
     let soft = (garments[g].bits & group.w) != 0u;
     let a = state[ab.x];
     let b = state[ab.y];

@@ -1,4 +1,4 @@
-// Normals: unit normals for whoever draws, of what `faces` has found, a particle an invocation. The second half of the twin
+// Normals: unit normals for drawing, from the areas of `faces`, a particle an invocation. The second half of the twin
 // of `vertex_normals` in `assets/src/mesh.rs`.
 
 // Where each particle's faces begin [particles + 1].

@@ -1,15 +1,6 @@
 // Publish: a sound garment's places are the last good ones; one that is not sound goes back to them, at rest, and drawn to
 // where it was dressed when that happens again and again. Twin of `roll_back` in `cloth/guard.rs`.
 
-struct Report {
-    limited: u32,
-    unsound: u32,
-    rolled: u32,
-    rolled_back: u32,
-    repaired: u32,
-}
-
-@group(1) @binding(0) var<storage, read_write> reports: array<Report>;
 // Last good places [particles].
 @group(1) @binding(1) var<storage, read_write> good: array<vec4<f32>>;
 // Where each particle starts, in the rest pose [particles].
@@ -23,7 +14,7 @@ fn publish(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index
     }
     let i = group.y + lane;
     let g = group.x;
-    if (reports[g].unsound == 0u) {
+    if (atomicLoad(&reports[g].unsound) == 0u) {
         good[i] = vec4<f32>(place(i), 1.0);
         return;
     }
@@ -43,18 +34,18 @@ fn publish(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index
     good[i] = vec4<f32>(goal, 1.0);
 }
 
-// After all particles: what the report says of the next step. A garment an invocation.
+// After all particles: counts the roll-backs and clears the report for the next step. A garment an invocation.
 @compute @workgroup_size(64)
-fn conclude(@builtin(global_invocation_id) at: vec3<u32>) {
+fn update_reports(@builtin(global_invocation_id) at: vec3<u32>) {
     let g = at.x;
     if (g >= arrayLength(&reports)) {
         return;
     }
-    if (reports[g].unsound == 0u) {
+    if (atomicLoad(&reports[g].unsound) == 0u) {
         reports[g].rolled = 0u;
     } else {
         reports[g].rolled += 1u;
         reports[g].rolled_back += 1u;
-        reports[g].unsound = 0u;
+        atomicStore(&reports[g].unsound, 0u);
     }
 }

@@ -1,17 +1,7 @@
-// Repair: at the start of a step a particle whose place or velocity is none, or that is out of reach, goes back to its last
+// Repair: at the start of a step a particle whose position or velocity is not finite, or that is out of reach, goes back to its last
 // good place, at rest; what is next to nothing becomes nothing. Twin of `Sound` and `repair` in `cloth/guard.rs`, as
 // `Cloth::begin` runs them.
 
-// See `guard.wgsl`.
-struct Report {
-    limited: u32,
-    unsound: u32,
-    rolled: u32,
-    rolled_back: u32,
-    repaired: atomic<u32>,
-}
-
-@group(1) @binding(0) var<storage, read_write> reports: array<Report>;
 // Last good places [particles].
 @group(1) @binding(1) var<storage, read> good: array<vec4<f32>>;
 

@@ -1,16 +1,5 @@
 // Settle: velocities from where the particles came to lie, limited. Twin of `cloth/settle.rs`.
 
-// What happened to a garment: see `guard.wgsl`.
-struct Report {
-    limited: atomic<u32>,
-    unsound: atomic<u32>,
-    rolled: u32,
-    rolled_back: u32,
-    repaired: u32,
-}
-
-@group(1) @binding(0) var<storage, read_write> reports: array<Report>;
-
 @compute @workgroup_size(64)
 fn settle(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let group = groups[op.first + at.x];

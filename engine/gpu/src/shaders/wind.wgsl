@@ -46,9 +46,9 @@ fn wind(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) l
     forces[group.y + lane] = vec4<f32>(force, 0.0);
 }
 
-// A particle an invocation. What `carry` has found is added.
+// A particle an invocation. What `root_compensation` has found is added.
 @compute @workgroup_size(64)
-fn blown(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+fn wind_forces(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let group = groups[op.first + at.x];
     let bits = garments[group.x].bits;
     if (lane >= group.z || (bits & WIND) == 0u) {

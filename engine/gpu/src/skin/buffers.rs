@@ -1,4 +1,4 @@
-//! Buffers: what the kernels read and write, made once at load; pipelines and what they are bound to.
+//! The skinning kernels' buffers, made once at load; pipelines and bind groups.
 
 use toile_assets::skeleton::BONES;
 use toile_engine::skin::Blend;
@@ -6,13 +6,13 @@ use wgpu::{BindGroup, BindGroupDescriptor, BindGroupEntry, Buffer, BufferUsages,
 
 use super::flat::FlatSkins;
 use super::kernels::{ROWS, SHADER, entry};
+use crate::buffer_builder::BufferBuilder;
 use crate::device::Device;
-use crate::maker::Maker;
 use crate::shader::pipeline;
 
 /// What stays on the device.
 #[derive(Debug)]
-pub struct Buffers {
+pub struct SkinBuffers {
     /// Every body's bones: rows of matrices, or dual quaternions, one bone behind the other.
     pub palette: Buffer,
     /// Places (m) in the order of the meshes, 1 behind each `[vertices]`.
@@ -23,15 +23,15 @@ pub struct Buffers {
     pub bound: BindGroup,
     /// Of each blend, in the order of [`Blend::ALL`].
     pub pipelines: [ComputePipeline; 2],
-    /// Bytes of all.
+    /// Bytes of all buffers.
     pub bytes: u64,
 }
 
-impl Buffers {
+impl SkinBuffers {
     /// Of skins that are laid flat.
     pub fn new(opened: &Device, flat: &FlatSkins) -> Self {
         let device = &opened.device;
-        let mut make = Maker::new(opened);
+        let mut make = BufferBuilder::new(opened);
         let (none, drawn) = (BufferUsages::empty(), BufferUsages::VERTEX | BufferUsages::COPY_SRC);
         let groups = make.with("groups of the skin", &flat.groups.groups, none);
         let runs = make.with("runs", &flat.runs, none);

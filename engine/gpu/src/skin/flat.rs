@@ -1,18 +1,18 @@
-//! Flat: skins as the kernels have them, one behind the other, in workgroups of 64.
+//! Skins flattened into the kernels' arrays, one behind the other, in workgroups of 64.
 
 use std::ops::Range;
 
 use glam::Vec3;
 use toile_assets::skeleton::BONES;
-use toile_engine::skin::{Laid, SkinningJob};
+use toile_engine::skin::{SceneLayout, SkinningJob};
 
-use crate::cloth::flat::{Groups, WIDTH};
+use crate::cloth::flat::{WIDTH, Workgroups};
 
 /// A vertex at rest; the struct `Vertex` of `shaders/skin.wgsl`, field by field.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct FlatVertex {
-    /// Its place (m).
+    /// Rest position (m).
     pub position: [f32; 3],
     /// Its run, counted over all bodies.
     pub run: u32,
@@ -30,7 +30,7 @@ pub struct FlatSkins {
     /// The vertices of each body, in the order of its mesh.
     pub spans: Vec<Range<usize>>,
     /// Workgroups: body, first vertex as laid, number of vertices, first weight.
-    pub groups: Groups,
+    pub groups: Workgroups,
     /// Eight bones, a byte each; how many; the body's first bone in the palette `[runs]`.
     pub runs: Vec<[u32; 4]>,
     /// Vertices in the order of their runs, body after body `[vertices]`.
@@ -63,7 +63,7 @@ impl FlatSkins {
         let (first, first_run) = (self.vertices.len(), self.runs.len() as u32);
         let bones: Vec<&[u8]> = job.runs().collect();
         self.runs.extend(bones.iter().map(|bones| run(body, bones)));
-        let laid: Vec<Laid> = job.laid().collect();
+        let laid: Vec<SceneLayout> = job.laid().collect();
         self.groups.begin(body);
         for group in laid.chunks(WIDTH as usize) {
             let at = [self.vertices.len(), group.len(), self.weights.len()].map(|n| n as u32);

@@ -1,4 +1,4 @@
-//! Kernels: the two blends, and what they are bound to.
+//! The kernels of the two blends, and their bindings.
 
 use toile_engine::skin::Blend;
 

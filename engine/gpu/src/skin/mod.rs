@@ -1,7 +1,7 @@
 //! Skinning on a GPU: all bodies of a scene in one dispatch.
 //!
-//! Reads: skins that are laid out, bone palettes. Writes: positions and unit normals, which stay on the device for whoever
-//! draws them, and come back one step late for whoever asks.
+//! Reads: skins that are laid out, bone palettes. Writes: positions and unit normals, which stay on the device for the
+//! renderer, and come back one step late on request.
 //! Budget: buffers and pipelines at load; in the frame no buffer, no pipeline and no wait, 3 kB a body and one dispatch.
 //! Thread: the one that calls [`Skinning::step`]; not the physics thread, whose skin is `toile_engine::skin`.
 //!
@@ -19,11 +19,11 @@ use toile_assets::skeleton::BONES;
 use toile_engine::skin::{Blend, DualQuat, SkinningJob, dual_palette};
 use wgpu::{Buffer, CommandEncoderDescriptor, ComputePassDescriptor};
 
-use crate::cloth::flat::Groups;
-use crate::cloth::ring::{Ring, Tally};
-use crate::device::{Device, GpuError, Needs};
-use crate::source::Source;
-use buffers::Buffers;
+use crate::cloth::flat::Workgroups;
+use crate::cloth::readback::{ReadbackCounts, ReadbackRing};
+use crate::device::{Device, DeviceNeeds, GpuError};
+use crate::vertex_source::VertexSource;
+use buffers::SkinBuffers;
 use flat::FlatSkins;
 use kernels::{ROWS, stride};
 
@@ -32,9 +32,9 @@ use kernels::{ROWS, stride};
 pub struct Skinning {
     /// The vertices of each body among all.
     spans: Vec<Range<usize>>,
-    groups: Groups,
-    buffers: Buffers,
-    ring: Ring,
+    groups: Workgroups,
+    buffers: SkinBuffers,
+    ring: ReadbackRing,
     /// What is sent of the bones `[bodies][BONES][ROWS]`; where a bone needs less, it lies closer.
     palette: Box<[[f32; 4]]>,
     positions: Box<[Vec3]>,
@@ -44,12 +44,12 @@ pub struct Skinning {
 }
 
 /// What these skins ask of a device.
-pub fn needs(jobs: &[&SkinningJob]) -> Needs {
+pub fn needs(jobs: &[&SkinningJob]) -> DeviceNeeds {
     of(&FlatSkins::new(jobs))
 }
 
-fn of(flat: &FlatSkins) -> Needs {
-    Needs { largest: flat.largest() as u64, workgroups: flat.groups.groups.len() as u32 }
+fn of(flat: &FlatSkins) -> DeviceNeeds {
+    DeviceNeeds { largest: flat.largest() as u64, workgroups: flat.groups.groups.len() as u32 }
 }
 
 impl Skinning {
@@ -61,8 +61,8 @@ impl Skinning {
         device.sound()?;
         let flat = FlatSkins::new(jobs);
         device.takes(of(&flat))?;
-        let buffers = Buffers::new(device, &flat);
-        let ring = Ring::new(&device.device, buffers.positions.size() + buffers.normals.size());
+        let buffers = SkinBuffers::new(device, &flat);
+        let ring = ReadbackRing::new(&device.device, buffers.positions.size() + buffers.normals.size());
         device.sound()?;
         let three = |numbers: &[[f32; 4]]| numbers.iter().map(|n| Vec3::new(n[0], n[1], n[2])).collect();
         Ok(Self {
@@ -143,16 +143,16 @@ impl Skinning {
         &self.buffers.normals
     }
 
-    /// Where a body's places and normals lie on the device, for whoever draws it there; none where there is no such body.
+    /// A body's positions and normals on the device, for a renderer there; `None` where there is no such body.
     /// `device` is the one that they were laid out on. A bone that is not finite shows.
-    pub fn source(&self, device: &Device, body: usize) -> Option<Source> {
+    pub fn source(&self, device: &Device, body: usize) -> Option<VertexSource> {
         let span = self.spans.get(body)?;
         let buffers = [&self.buffers.positions, &self.buffers.normals];
-        Source::new(device, buffers, span.start as u32, span.len() as u32)
+        VertexSource::new(device, buffers, span.start as u32, span.len() as u32)
     }
 
     /// What became of the steps' results.
-    pub fn tally(&self) -> Tally {
+    pub fn tally(&self) -> ReadbackCounts {
         self.ring.tally
     }
 

@@ -1,4 +1,4 @@
-//! Read: what comes back from the device.
+//! Results that come back from the device.
 
 use glam::Vec3;
 

@@ -8,8 +8,8 @@ use toile_assets::mesh::vertex_normals;
 use toile_assets::scene::skirt::Stretch;
 use toile_engine::cloth::Settings;
 use toile_gpu::cloth::Offload;
-use toile_gpu::cloth::opened::Opened;
-use toile_gpu::device::{Choice, Device, GpuError, Needs};
+use toile_gpu::cloth::cloth_device::ClothDevice;
+use toile_gpu::device::{AdapterChoice, Device, DeviceNeeds, GpuError};
 
 use crate::scene::{around, nobody, offload, skirt, swaying, worn};
 
@@ -18,8 +18,8 @@ use crate::scene::{around, nobody, offload, skirt, swaying, worn};
 const BOUND: f32 = 1e-4;
 
 /// A device that draws. None where this machine has no adapter, which CI does not excuse.
-fn device(needs: Needs) -> Option<Device> {
-    match Device::open_to_draw(Device::instance(), None, &Choice::Fastest, needs) {
+fn device(needs: DeviceNeeds) -> Option<Device> {
+    match Device::open_to_draw(Device::instance(), None, &AdapterChoice::Fastest, needs) {
         Ok(device) => Some(device),
         Err(error @ GpuError::NoAdapter(_)) => {
             assert_ne!(std::env::var("CI").as_deref(), Ok("true"), "{error}");
@@ -43,7 +43,7 @@ fn normals_are_the_twins_before_and_after_every_step() {
     let (garments, colliders) = ([&one, &other], [&nobody, &nobody]);
     let needs = Offload::needs(&garments, &colliders, &settings);
     let Some(device) = device(needs) else { return };
-    let opened = Arc::new(Opened::on(device.clone()).expect("every driver takes the kernels"));
+    let opened = Arc::new(ClothDevice::on(device.clone()).expect("every driver takes the kernels"));
     let mut gpu = Offload::drawn(&opened, &garments, &colliders, &settings).expect("the device has what they need");
     for n in 0..6 {
         if n > 0 {
@@ -78,8 +78,8 @@ fn who_draws_nothing_pays_for_no_normals() {
 #[test]
 fn a_fault_of_one_side_is_known_to_the_other() {
     let (garment, settings, nobody) = (skirt(12, Stretch::Inextensible), Settings::default(), nobody());
-    let Some(device) = device(Needs::default()) else { return };
-    let opened = Arc::new(Opened::on(device.clone()).expect("every driver takes the kernels"));
+    let Some(device) = device(DeviceNeeds::default()) else { return };
+    let opened = Arc::new(ClothDevice::on(device.clone()).expect("every driver takes the kernels"));
     let drawn = || Offload::drawn(&opened, &[&garment], &[&nobody], &settings);
     let mut gpu = drawn().expect("a small scene fits a device that was opened for none");
     device.lose();
@@ -91,8 +91,8 @@ fn a_fault_of_one_side_is_known_to_the_other() {
 
 #[test]
 fn a_scene_too_large_for_the_device_is_refused_with_the_limit() {
-    let Some(device) = device(Needs::default()) else { return };
-    assert_eq!(device.takes(Needs { largest: 1 << 20, workgroups: 8 }), Ok(()));
-    let error = device.takes(Needs { largest: 1 << 40, workgroups: 8 }).expect_err("it was opened for less");
+    let Some(device) = device(DeviceNeeds::default()) else { return };
+    assert_eq!(device.takes(DeviceNeeds { largest: 1 << 20, workgroups: 8 }), Ok(()));
+    let error = device.takes(DeviceNeeds { largest: 1 << 40, workgroups: 8 }).expect_err("it was opened for less");
     assert!(matches!(error, GpuError::TooSmall { .. }) && error.to_string().contains("buffer"), "{error}");
 }

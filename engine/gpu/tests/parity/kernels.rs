@@ -57,7 +57,7 @@ impl<'a> Twin<'a> {
         let mut room = diagonals::Room::new(&layout.diagonals, garment.particles());
         let spans = |owner: usize| &layout.spans[owner][..];
         match kernel {
-            Kernel::Bent => bend(garment, p, columns, &mut scratch, width),
+            Kernel::BendingForces => bend(garment, p, columns, &mut scratch, width),
             Kernel::Predict => {
                 for owner in 0..OWNERS {
                     let kept = (-garment.fabric.damping_per_s * p.dt).exp();
@@ -207,8 +207,8 @@ fn held(name: &str, garment: &Garment, settings: &Settings, kernel: Kernel) {
     let (palette, colliders) = (swaying(3), nobody());
     let steps = [around(&palette, &colliders, settings)];
     gpu.disturb(0, &x, &v);
-    if kernel == Kernel::Bent {
-        gpu.only(Kernel::Bending, 0, &[garment], &steps).expect("curvatures are found");
+    if kernel == Kernel::BendingForces {
+        gpu.only(Kernel::BendingCurvatures, 0, &[garment], &steps).expect("curvatures are found");
     }
     gpu.only(kernel, 0, &[garment], &steps).expect("the kernel runs");
     let got = gpu.particles(0).expect("the state is read");
@@ -231,7 +231,7 @@ fn held(name: &str, garment: &Garment, settings: &Settings, kernel: Kernel) {
 }
 
 const KERNELS: [Kernel; 9] = [
-    Kernel::Bent,
+    Kernel::BendingForces,
     Kernel::Predict,
     Kernel::Diagonals,
     Kernel::Shear,
@@ -302,7 +302,7 @@ fn wind_gives_what_its_twin_gives() {
         blow(garment, &settings, &wind, &mut twin, &mut pushed);
         gpu.disturb(0, &x, &v);
         let (palette, colliders) = (swaying(3), nobody());
-        for kernel in [Kernel::Wind, Kernel::Blown] {
+        for kernel in [Kernel::Wind, Kernel::WindForces] {
             gpu.only(kernel, 0, &[garment], &[around(&palette, &colliders, &settings)]).expect("the kernel runs");
         }
         let expected: Vec<Vec3A> = (0..garment.particles()).map(|i| pushed.of(i)).collect();
@@ -326,12 +326,12 @@ fn carried(wind: Option<Wind>) {
     }
     let (colliders, software) = (nobody(), gpu.device().adapter().kind == "software");
     // The root is new in the first, and starts in the second; `blown` goes last, as in a step.
-    for (kernel, n) in [(Kernel::Wind, 3), (Kernel::Carry, 7), (Kernel::Blown, 7)] {
+    for (kernel, n) in [(Kernel::Wind, 3), (Kernel::RootCompensation, 7), (Kernel::WindForces, 7)] {
         let palette = swaying(n);
         gpu.only(kernel, 0, &[&garment], &[around(&palette, &colliders, &settings)]).expect("the kernel runs");
         let at = palette[0] * glam::Affine3A::from_translation(centre(&garment).into());
         let moved = motion.advance(&at, settings.step_seconds);
-        if let (Kernel::Carry, RootStep::Carried(carried)) = (kernel, moved) {
+        if let (Kernel::RootCompensation, RootStep::Carried(carried)) = (kernel, moved) {
             let all = (0, garment.particles() as u32);
             carried.apply(settings.width, twin.state.columns(), all, pushed.columns());
         }
@@ -367,8 +367,8 @@ fn stages_give_what_their_twins_give() {
         gpu.disturb(0, &x, &v);
         let (palette, colliders) = (swaying(3), nobody());
         for stage in 0..=last {
-            let kernels = [Kernel::Turn, Kernel::Stage, Kernel::Staged];
-            for kernel in kernels.into_iter().filter(|k| stage < last || *k == Kernel::Turn) {
+            let kernels = [Kernel::StageCombine, Kernel::StageCurvatures, Kernel::StageForces];
+            for kernel in kernels.into_iter().filter(|k| stage < last || *k == Kernel::StageCombine) {
                 let step = around(&palette, &colliders, &settings);
                 gpu.only(kernel, stage, &[garment], &[step]).expect("the kernel runs");
             }

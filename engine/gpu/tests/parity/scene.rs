@@ -10,7 +10,7 @@ use toile_assets::wardrobe;
 use toile_engine::cloth::{Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_gpu::cloth::Offload;
-use toile_gpu::device::{Choice, GpuError};
+use toile_gpu::device::{AdapterChoice, GpuError};
 
 /// A palette of bones that stand in the rest pose.
 pub const REST: [Affine3A; BONES] = [Affine3A::IDENTITY; BONES];
@@ -77,7 +77,7 @@ pub fn offload(garments: &[&Garment], settings: &Settings) -> Option<Offload> {
 
 /// The garments on an adapter, each with its body.
 pub fn offload_worn(garments: &[&Garment], colliders: &[&Colliders], settings: &Settings) -> Option<Offload> {
-    opened(Offload::new(&Choice::Fastest, garments, colliders, settings))
+    opened(Offload::new(&AdapterChoice::Fastest, garments, colliders, settings))
 }
 
 /// What runs on an adapter: none where this machine has none, which CI does not excuse.

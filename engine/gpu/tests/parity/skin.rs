@@ -9,7 +9,7 @@ use toile_assets::scene::shopper;
 use toile_assets::skeleton::{BONES, Joint, Pose, Skeleton};
 use toile_engine::body::palette;
 use toile_engine::skin::{Blend, SkinningJob};
-use toile_gpu::device::{Choice, Device, GpuError};
+use toile_gpu::device::{AdapterChoice, Device, GpuError};
 use toile_gpu::skin::{Skinning, needs};
 use wgpu::BufferUsages;
 
@@ -70,7 +70,7 @@ fn poses(skeleton: &Skeleton) -> Vec<(&'static str, Palette)> {
 
 /// A device for skins, and the skins on it.
 fn skinning(jobs: &[&SkinningJob]) -> Option<(Device, Skinning)> {
-    let device = opened(Device::open(&Choice::Fastest, needs(jobs)))?;
+    let device = opened(Device::open(&AdapterChoice::Fastest, needs(jobs)))?;
     let skinning = Skinning::new(&device, jobs).expect("the device was opened for it");
     Some((device, skinning))
 }
@@ -216,7 +216,7 @@ fn a_device_that_is_too_small_or_lost_is_named_and_the_last_skin_stays() {
     gpu.step(&device, Blend::Linear, &[&REST]).expect("the step is sent");
     gpu.finish(&device).expect("it comes back");
     let before = gpu.positions(0).to_vec();
-    let large = toile_gpu::device::Needs { largest: 1 << 40, workgroups: 1 };
+    let large = toile_gpu::device::DeviceNeeds { largest: 1 << 40, workgroups: 1 };
     assert!(matches!(device.takes(large), Err(GpuError::TooSmall { .. })));
     device.lose();
     assert!(matches!(gpu.step(&device, Blend::Linear, &[&REST]), Err(GpuError::Lost(_))));

@@ -49,7 +49,7 @@ impl Correspondence {
 
 /// The correspondences of one frame.
 pub(super) struct Correspondences {
-    /// The correspondence of each sample.
+    /// The correspondence of each sample `[samples]`.
     pub of: Vec<Correspondence>,
     /// Fraction of the cells that have a sample.
     pub explained: f32,

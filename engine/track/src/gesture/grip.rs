@@ -32,7 +32,7 @@ impl Grip {
         Self { openness: 0.5, since_ns: 0, seen_ns: None, open: None, quiet_until_ns: 0 }
     }
 
-    /// One frame: how open the hand is, `None` where it is not seen. Gives a change; what the hand is at first is none.
+    /// One frame: how open the hand is, `None` where it is not seen. Gives a change; the first state is not one.
     pub fn step(&mut self, now: u64, openness: Option<f32>) -> Option<Gesture> {
         let lost = self.seen_ns.is_some_and(|seen| now - seen > LONGEST_GAP_NS);
         if lost {

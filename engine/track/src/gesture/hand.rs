@@ -1,7 +1,7 @@
-//! One hand in a depth frame: cut out around its joint, and its outline held against the convex hull.
+//! One hand in a depth frame: segmented around its joint, and its outline compared with the convex hull.
 //!
 //! After Gultepe 2013, appendix C: region of interest by the body's own size, two dilations and one erosion, contour,
-//! convex hull, and what lies between contour and hull tells an open hand. Changed: the region is sized by the arm, not
+//! convex hull, and the gaps between contour and hull show an open hand. Changed: the region is sized by the arm, not
 //! by head and neck, which every tracker puts elsewhere; the grid's cells are a fixed part of the hand, so that distance
 //! and resolution do not matter; the forearm is cut off at the wrist; and the hull's own area counts besides, for
 //! fingers held together leave no gaps.

@@ -29,7 +29,7 @@ const TOGETHER: f32 = 0.4;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HoldInput {
     pub now: u64,
-    /// Wrist.
+    /// Position of the wrist.
     pub at: Vec3,
     /// Wrist from its shoulder.
     pub reach: Option<Vec3>,
@@ -38,7 +38,7 @@ pub(super) struct HoldInput {
     pub other_reach: Option<Vec3>,
     /// Whether the shopper faces the mirror and does not walk.
     pub calm: bool,
-    /// Whether something was recognised just now: the time starts anew.
+    /// Whether something was recognised just now: the time of holding starts over.
     pub cooling: bool,
 }
 

@@ -1,4 +1,4 @@
-//! The outline of a hand on a small grid: smoothed, holes filled, and held against its convex hull.
+//! The outline of a hand on a small grid: smoothed, holes filled, and compared with its convex hull.
 
 use glam::Vec2;
 
@@ -8,7 +8,7 @@ pub(super) const SIDE: usize = 112;
 /// Cells at the border that stay empty, so that growing and flooding need no bounds of their own.
 pub(super) const MARGIN: usize = 3;
 
-/// All cells.
+/// Number of cells.
 const CELLS: usize = SIDE * SIDE;
 
 /// A set of cells, with what is needed to work on it.

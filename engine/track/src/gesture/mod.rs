@@ -150,7 +150,7 @@ impl Gestures {
     }
 
     /// Takes a frame of filtered joints, and the depth of about the same time where there is any. Frames that come less
-    /// than 20 ms after the one before, or shortly before it, are passed over; a clock set back by more begins anew.
+    /// than 20 ms after the one before, or shortly before it, are passed over; after a clock set back by more it starts over.
     pub fn push(&mut self, joints: &Joints, depth: Option<&DepthFrame>) -> GestureEvents {
         let now = joints.time_ns;
         if self.last_ns.is_some_and(|last| last.saturating_sub(now) > LONGEST_GAP_NS) {

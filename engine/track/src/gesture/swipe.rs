@@ -240,7 +240,7 @@ impl Stroke {
             return SwipeState::Stroke(self);
         }
         if length < LONG {
-            // Slow before it is long: either it sets off late, as at a low rate, or it is none.
+            // Slow before it is long: either it sets off late, as at a low rate, or it is no stroke.
             let late = m.velocity.length() >= STILL;
             return if late { SwipeState::Stroke(self) } else { rest(m) };
         }

@@ -8,9 +8,9 @@ use toile_sensors::frame::Joints;
 /// One of the shopper's own sides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Side {
-    /// Their left.
+    /// The shopper's left.
     Left,
-    /// Their right.
+    /// The shopper's right.
     Right,
 }
 

@@ -7,7 +7,7 @@ use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_engine::cloth::Quality;
 use toile_engine::lanes::Width;
 use toile_fitting::heap::HeapProbe;
-use toile_gpu::stepper::Backend;
+use toile_gpu::backend::Backend;
 use toile_perf::crossover;
 use toile_perf::plot::raster;
 use toile_perf::skirt::options::{MAX_GARMENTS, SkirtMesh, SkirtOptions};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use toile_view::image::Size;
-use toile_view::mirror::{Choice, Gpu, Offscreen};
+use toile_view::raster::{AdapterChoice, Gpu, Offscreen};
 
 use super::tests::DISPLAYS;
 use super::*;
@@ -83,7 +83,7 @@ impl Proof {
     fn options() -> Option<Self> {
         let folder = PathBuf::from(std::env::var_os(PICTURES)?);
         std::fs::create_dir_all(&folder).unwrap();
-        let gpu = Gpu::offscreen(&Choice::Software).unwrap();
+        let gpu = Gpu::offscreen(&AdapterChoice::Software).unwrap();
         let overlay = Overlay::new(&gpu.device, Offscreen::FORMAT);
         Some(Self { gpu, overlay, folder })
     }

@@ -9,7 +9,7 @@ use super::text::SetText;
 use super::theme::{self, Sizes};
 use super::{figure, qr_code};
 use crate::visitor::screen::{Block, Control, ControlStyle, Screen};
-use toile_view::fitmap;
+use toile_view::fit_map;
 
 /// How touch shows on the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -96,13 +96,13 @@ fn progress(share: f32, rect: Rect, words: &[SetText], sizes: Sizes, painter: &P
 
 /// The colour of a step of the fit map.
 fn step(i: usize) -> Color32 {
-    let [r, g, b] = fitmap::STEPS[i.min(fitmap::STEPS.len() - 1)];
+    let [r, g, b] = fit_map::STEPS[i.min(fit_map::STEPS.len() - 1)];
     Color32::from_rgb(r, g, b)
 }
 
 /// Eight cells from loose to tight.
 fn cells(rect: Rect, painter: &Painter) -> impl Fn(usize) -> Rect + use<> {
-    let count = fitmap::STEPS.len();
+    let count = fit_map::STEPS.len();
     let cell = move |i: usize| {
         let x = |i: usize| rect.left() + rect.width() * i as f32 / count as f32;
         Rect::from_min_max(pos2(x(i), rect.top()), pos2(x(i + 1) - 2.0, rect.bottom()))
@@ -120,7 +120,7 @@ fn fit(tightness: f32, rect: Rect, words: &[SetText], sizes: Sizes, painter: &Pa
         vec2(gauge_width(sizes), tall),
     );
     let cell = cells(scale, painter);
-    if let Some(i) = fitmap::step(tightness) {
+    if let Some(i) = fit_map::step(tightness) {
         let mark = cell(i).expand2(vec2(2.0, sizes.body * 0.26));
         painter.rect_filled(mark, 4.0, step(i));
         painter.rect_stroke(mark, 4.0, Stroke::new(sizes.line() * 2.0, theme::INK), StrokeKind::Outside);

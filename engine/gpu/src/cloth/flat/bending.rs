@@ -2,14 +2,14 @@
 
 use toile_assets::garment::layout::{Bends, Hubs, OWNERS, Run, Share};
 
-use super::{Groups, Span};
+use super::{GarmentSpan, Workgroups};
 
 /// Stencils that the CPU takes together: within them it pushes first all the middles, then all the first ends, and so on.
 const CHUNK: usize = toile_engine::cloth::bending::CHUNK;
 
 /// Which of a garment's scales a curvature has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scale {
+pub enum BendingScale {
     /// A stencil's, by its place.
     Bend(u32),
     /// A skewed stencil's, by its place.
@@ -28,7 +28,7 @@ pub struct FlatBending {
     /// Share of the stiffness that the substep carries `[curvatures]`.
     pub scales: Vec<f32>,
     /// Which scale that is `[curvatures]`.
-    sources: Vec<Scale>,
+    sources: Vec<BendingScale>,
     /// Each garment's curvatures `[garments]`.
     ranges: Vec<std::ops::Range<usize>>,
     /// Where each particle's entries begin `[particles + 1]`.
@@ -37,7 +37,7 @@ pub struct FlatBending {
     /// for a hub the particle's place among its terms.
     pub entries: Vec<[u32; 2]>,
     /// Workgroups over the curvatures.
-    pub groups: Groups,
+    pub groups: Workgroups,
 }
 
 /// What pushes particles, in order: the particle within the garment, and the entry.
@@ -45,12 +45,12 @@ type Pushes = Vec<(u32, [u32; 2])>;
 
 impl FlatBending {
     /// Appends a garment's: the sets in their order, in each the stencils, the skewed ones, the hubs.
-    pub fn add(&mut self, layout: &toile_assets::garment::Layout, weights: &[f32], span: Span) {
+    pub fn add(&mut self, layout: &toile_assets::garment::Layout, weights: &[f32], span: GarmentSpan) {
         let (begun, mut pushes) = (self.items.len(), Pushes::new());
         let sets = layout.bends.tuples.sets.len().max(layout.skewed.tuples.sets.len()).max(layout.hubs.sets());
         for set in 0..sets {
-            self.stencils(&layout.bends, set, weights, span, Scale::Bend, &mut pushes);
-            self.stencils(&layout.skewed, set, weights, span, Scale::Skewed, &mut pushes);
+            self.stencils(&layout.bends, set, weights, span, BendingScale::Bend, &mut pushes);
+            self.stencils(&layout.skewed, set, weights, span, BendingScale::Skewed, &mut pushes);
             self.hubs(&layout.hubs, set, span, &mut pushes);
         }
         // By particle, each one's in their order.
@@ -74,8 +74,8 @@ impl FlatBending {
         bends: &Bends<K>,
         set: usize,
         weights: &[f32],
-        span: Span,
-        scale: fn(u32) -> Scale,
+        span: GarmentSpan,
+        scale: fn(u32) -> BendingScale,
         pushes: &mut Pushes,
     ) {
         let Some(set) = bends.tuples.sets.get(set) else { return };
@@ -108,8 +108,8 @@ impl FlatBending {
         &mut self,
         bends: &Bends<K>,
         share: &Share,
-        span: Span,
-        scale: fn(u32) -> Scale,
+        span: GarmentSpan,
+        scale: fn(u32) -> BendingScale,
     ) -> Vec<(Run<K>, u32)> {
         let mut laid = Vec::new();
         for run in &bends.tuples.runs[share.runs.start as usize..share.runs.end as usize] {
@@ -126,8 +126,8 @@ impl FlatBending {
         &mut self,
         particles: impl IntoIterator<Item = u32>,
         coefficient: impl Fn(usize) -> f32,
-        scale: Scale,
-        span: Span,
+        scale: BendingScale,
+        span: GarmentSpan,
     ) {
         let first = self.terms.len();
         let terms = particles.into_iter().enumerate().map(|(k, v)| [span.first + v, coefficient(k).to_bits()]);
@@ -137,7 +137,7 @@ impl FlatBending {
         self.sources.push(scale);
     }
 
-    fn hubs(&mut self, hubs: &Hubs, set: usize, span: Span, pushes: &mut Pushes) {
+    fn hubs(&mut self, hubs: &Hubs, set: usize, span: GarmentSpan, pushes: &mut Pushes) {
         let Some(owners) = hubs.sets.get(set) else { return };
         for group in (0..OWNERS).flat_map(|o| &hubs.groups[owners[o].start as usize..owners[o].end as usize]) {
             let (points, sums) = (group.points as usize, group.sums as usize);
@@ -146,7 +146,7 @@ impl FlatBending {
                 let c = &hubs.coefficients[group.coefficients as usize + hub * points * sums..][..points * sums];
                 let number = self.items.len() as u32;
                 for sum in 0..sums {
-                    let scale = Scale::Hub(group.number + hub as u32);
+                    let scale = BendingScale::Hub(group.number + hub as u32);
                     self.curvature(v.iter().copied(), |k| c[k * sums + sum], scale, span);
                 }
                 pushes.extend(v.iter().enumerate().map(|(k, &v)| (v, [number | group.sums << 30, k as u32])));
@@ -155,7 +155,7 @@ impl FlatBending {
     }
 
     /// Writes a garment's scales, which its settings have made; gives the range of curvatures.
-    pub fn prepare(&mut self, garment: usize, scale: impl Fn(Scale) -> f32) -> std::ops::Range<usize> {
+    pub fn prepare(&mut self, garment: usize, scale: impl Fn(BendingScale) -> f32) -> std::ops::Range<usize> {
         let range = self.ranges[garment].clone();
         for (to, source) in self.scales[range.clone()].iter_mut().zip(&self.sources[range.clone()]) {
             *to = scale(*source);

@@ -2,7 +2,7 @@
 
 use toile_assets::garment::layout::{Diagonals, Strand};
 
-use super::{Groups, Span, WIDTH};
+use super::{GarmentSpan, WIDTH, Workgroups};
 
 /// Fibers along the bias, of all garments.
 #[derive(Debug, Clone, Default)]
@@ -14,7 +14,7 @@ pub struct FlatDiagonals {
     /// Rest length (m), compliance (m/N), weights of both ends (1/kg) `[slots]`.
     pub measures: Vec<[f32; 4]>,
     /// Families in the order of solving.
-    pub families: Vec<Groups>,
+    pub families: Vec<Workgroups>,
 }
 
 /// A link of a fiber: where it leads, and its measures.
@@ -22,13 +22,13 @@ type Link = (u32, [f32; 4]);
 
 impl FlatDiagonals {
     /// Appends a garment's.
-    pub fn add(&mut self, diagonals: &Diagonals, weights: &[f32], span: Span) {
+    pub fn add(&mut self, diagonals: &Diagonals, weights: &[f32], span: GarmentSpan) {
         for (f, strands) in diagonals.families.iter().enumerate() {
             let mut fibers = followed(diagonals, strands, weights);
             // Fibers of one workgroup are about as long.
             fibers.sort_by_key(|(_, links)| std::cmp::Reverse(links.len()));
             if self.families.len() <= f {
-                self.families.push(Groups::default());
+                self.families.push(Workgroups::default());
             }
             self.families[f].begin(span.garment);
             for some in fibers.chunks(WIDTH as usize) {
@@ -37,7 +37,7 @@ impl FlatDiagonals {
         }
     }
 
-    fn interleave(&mut self, fibers: &[(u32, Vec<Link>)], family: usize, span: Span) {
+    fn interleave(&mut self, fibers: &[(u32, Vec<Link>)], family: usize, span: GarmentSpan) {
         let (head, slot, apart) = (self.heads.len() as u32, self.leads.len(), fibers.len());
         let longest = fibers.iter().map(|(_, links)| links.len()).max().unwrap_or(0);
         self.leads.resize(slot + longest * apart, 0);

@@ -3,7 +3,7 @@
 use toile_assets::garment::Garment;
 use toile_assets::mesh::vertex_normals;
 
-use super::{Groups, Span};
+use super::{GarmentSpan, Workgroups};
 
 /// Faces of all garments.
 #[derive(Debug, Clone, Default)]
@@ -17,12 +17,12 @@ pub struct FlatFaces {
     /// Unit normals where the garments start `[particles]`.
     pub normals: Vec<[f32; 4]>,
     /// Workgroups over the triangles.
-    pub groups: Groups,
+    pub groups: Workgroups,
 }
 
 impl FlatFaces {
     /// Appends a garment's.
-    pub fn add(&mut self, garment: &Garment, span: Span) {
+    pub fn add(&mut self, garment: &Garment, span: GarmentSpan) {
         if self.starts.is_empty() {
             self.starts.push(0);
         }

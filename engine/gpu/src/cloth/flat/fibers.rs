@@ -3,7 +3,7 @@
 use toile_assets::garment::Solver;
 use toile_assets::garment::layout::Fibers;
 
-use super::{Groups, Span, WIDTH};
+use super::{GarmentSpan, WIDTH, Workgroups};
 
 /// Bundles of all garments.
 #[derive(Debug, Clone, Default)]
@@ -17,9 +17,9 @@ pub struct FlatFibers {
     /// Links of all bundles.
     pub links: usize,
     /// Workgroups: the first fiber, how many, and the bundle.
-    pub groups: Groups,
+    pub groups: Workgroups,
     /// Workgroups of one fiber each, of bundles of few and long ones.
-    pub cyclic: Groups,
+    pub cyclic: Workgroups,
 }
 
 /// Links of a fiber from which on a workgroup is worth it: one invocation walks down and up all of them, two loads after each other a
@@ -39,7 +39,7 @@ fn few_and_long(solver: Solver, fibers: u32, links: u32) -> bool {
 
 impl FlatFibers {
     /// Appends a garment's.
-    pub fn add(&mut self, fibers: &Fibers, span: Span) {
+    pub fn add(&mut self, fibers: &Fibers, span: GarmentSpan) {
         let (row, at) = (self.rows.len() as u32, self.measures.len() as u32);
         self.groups.begin(span.garment);
         self.cyclic.begin(span.garment);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use toile_assets::garment::layout::{Links, Run, Zigzag};
 
-use super::{Groups, Span};
+use super::{GarmentSpan, Workgroups};
 
 /// Links of one kind, of all garments, garment after garment.
 #[derive(Debug, Clone, Default)]
@@ -18,12 +18,12 @@ pub struct FlatLinks {
     /// Each garment's links `[garments]`.
     ranges: Vec<Range<usize>>,
     /// Halves of sets, in the order of solving: rungs, runs and loose links; then slants.
-    pub halves: Vec<Groups>,
+    pub halves: Vec<Workgroups>,
 }
 
 impl FlatLinks {
     /// Appends a garment's; `bit` is what the kernel asks the garment's bits for before it remembers tensions.
-    pub fn add(&mut self, links: &Links, weights: &[f32], span: Span, bit: u32) {
+    pub fn add(&mut self, links: &Links, weights: &[f32], span: GarmentSpan, bit: u32) {
         let begun = self.ends.len();
         for (s, set) in links.tuples.sets.iter().enumerate() {
             for half in 0..2 {
@@ -56,12 +56,12 @@ impl FlatLinks {
 
     fn group(&mut self, half: usize, first: usize, garment: u32, bit: u32) {
         while self.halves.len() <= half {
-            self.halves.push(Groups::default());
+            self.halves.push(Workgroups::default());
         }
         self.halves[half].add(garment, first as u32, (self.ends.len() - first) as u32, bit);
     }
 
-    fn row(&mut self, links: &Links, run: &Run<2>, len: u32, weights: &[f32], span: Span) {
+    fn row(&mut self, links: &Links, run: &Run<2>, len: u32, weights: &[f32], span: GarmentSpan) {
         for t in 0..len.min(run.len) {
             let ends = run.first.map(|f| f + t);
             // What is alike counts with the masses of the first.
@@ -70,7 +70,7 @@ impl FlatLinks {
         }
     }
 
-    fn slants(&mut self, links: &Links, zigzag: &Zigzag, weights: &[f32], span: Span) {
+    fn slants(&mut self, links: &Links, zigzag: &Zigzag, weights: &[f32], span: GarmentSpan) {
         let slants = &zigzag.slants;
         let open = if zigzag.closed() { slants.len - 1 } else { slants.len };
         self.row(links, slants, open, weights, span);
@@ -82,7 +82,7 @@ impl FlatLinks {
         }
     }
 
-    fn push(&mut self, links: &Links, place: usize, [a, b]: [u32; 2], [wa, wb]: [f32; 2], span: Span) {
+    fn push(&mut self, links: &Links, place: usize, [a, b]: [u32; 2], [wa, wb]: [f32; 2], span: GarmentSpan) {
         self.ends.push([span.first + a, span.first + b, wa.to_bits(), wb.to_bits()]);
         self.measures.push([links.rest[place], links.compliance[place], 0.0, 0.0]);
         self.places.push(place as u32);

@@ -3,7 +3,7 @@
 use toile_assets::garment::Solver;
 use toile_assets::garment::layout::Lists;
 
-use super::{Groups, Span};
+use super::{GarmentSpan, Workgroups};
 
 /// A fiber closes.
 const CLOSED: u32 = 1;
@@ -15,17 +15,17 @@ const ZERO_STRETCH: u32 = 2;
 pub struct FlatLists {
     /// First index, distance of the rows, rows, bits; first measure, first of what is kept, nothing, nothing `[fibers]`.
     pub heads: Vec<[u32; 8]>,
-    /// Particles.
+    /// Particles of all lists.
     pub index: Vec<u32>,
     /// Rest length (m) and compliance (m/N).
     pub measures: Vec<[f32; 2]>,
     /// Sets in the order of solving.
-    pub sets: Vec<Groups>,
+    pub sets: Vec<Workgroups>,
 }
 
 impl FlatLists {
     /// Appends a garment's.
-    pub fn add(&mut self, lists: &Lists, span: Span) {
+    pub fn add(&mut self, lists: &Lists, span: GarmentSpan) {
         let (index, at) = (self.index.len() as u32, self.measures.len() as u32);
         for (s, owners) in lists.sets.iter().enumerate() {
             let first = self.heads.len() as u32;
@@ -38,7 +38,7 @@ impl FlatLists {
                 }
             }
             if self.sets.len() <= s {
-                self.sets.push(Groups::default());
+                self.sets.push(Workgroups::default());
             }
             self.sets[s].add(span.garment, first, self.heads.len() as u32 - first, 0);
         }

@@ -1,4 +1,4 @@
-//! Flat: baked garments as the kernels have them, one behind the other, in workgroups of 64.
+//! Baked garments flattened into the kernels' arrays, one behind the other, in workgroups of 64.
 //!
 //! Reads: baked garments. Writes: the numbers of every buffer, and the workgroups of every dispatch.
 //! Budget: at load only, some milliseconds a garment.
@@ -16,7 +16,7 @@ use toile_assets::garment::Garment;
 use toile_engine::cloth::contact::reach;
 use toile_engine::colliders::Colliders;
 
-pub use bending::{FlatBending, Scale};
+pub use bending::{BendingScale, FlatBending};
 pub use diagonals::FlatDiagonals;
 pub use faces::FlatFaces;
 pub use fibers::FlatFibers;
@@ -34,25 +34,25 @@ pub const FREE: u32 = u32::MAX;
 
 /// Where a garment lies in the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Span {
+pub struct GarmentSpan {
     /// Its number among the garments as they lie.
     pub garment: u32,
     /// Its first particle.
     pub first: u32,
-    /// Its particles.
+    /// Number of its particles.
     pub len: u32,
 }
 
 /// The workgroups of a dispatch, garment after garment: the first garments' alone are a prefix.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Groups {
+pub struct Workgroups {
     /// Garment, first item, number of items, and what else the kernel wants to know.
     pub groups: Vec<[u32; 4]>,
-    /// Groups of the first so many garments and one `[garments]`.
+    /// Workgroups of the first so many garments and one `[garments]`.
     ends: Vec<u32>,
 }
 
-impl Groups {
+impl Workgroups {
     /// From here on they are this garment's.
     pub fn begin(&mut self, garment: u32) {
         self.ends.resize(garment as usize + 1, self.groups.len() as u32);
@@ -87,7 +87,7 @@ pub struct Flat {
     /// The garments as they lie: those with the most substeps first.
     pub order: Vec<usize>,
     /// Where each lies, in that order.
-    pub spans: Vec<Span>,
+    pub spans: Vec<GarmentSpan>,
     /// Where each garment's targets begin, in that order, and how many there are in all.
     pub pins_from: Vec<u32>,
     /// Particles of all.
@@ -103,7 +103,7 @@ pub struct Flat {
     /// The capsules that each particle can touch at all, a bit each `[particles]`.
     pub reach: Vec<u32>,
     /// Workgroups over the particles.
-    pub everyone: Groups,
+    pub everyone: Workgroups,
     /// Shear links that lie in no fiber.
     pub shear: FlatLinks,
     /// Weft links.
@@ -116,7 +116,7 @@ pub struct Flat {
     pub lists: FlatLists,
     /// Bending.
     pub bending: FlatBending,
-    /// Faces, where somebody draws.
+    /// Triangles and normals, for garments that are drawn.
     pub faces: FlatFaces,
     /// Triangles in the wind.
     pub wind: FlatWind,
@@ -136,7 +136,7 @@ impl Flat {
         flat
     }
 
-    /// What normals are made of, for whoever draws.
+    /// Adds what normals are computed from, for drawing.
     pub fn draw(&mut self, garments: &[&Garment]) {
         for (span, &k) in self.spans.iter().zip(&self.order) {
             self.faces.add(garments[k], *span);
@@ -144,7 +144,7 @@ impl Flat {
     }
 
     fn add(&mut self, number: u32, garment: &Garment) {
-        let span = Span { garment: number, first: self.particles, len: garment.particles() as u32 };
+        let span = GarmentSpan { garment: number, first: self.particles, len: garment.particles() as u32 };
         let (layout, weights) = (&garment.layout, &garment.inverse_mass);
         self.start.extend(garment.start.iter().zip(weights).map(|(p, w)| [p.x, p.y, p.z, *w]));
         self.pins_from.push(self.targets);
@@ -185,7 +185,7 @@ mod tests {
     }
 
     /// The items of some workgroups.
-    fn items(groups: &Groups) -> impl Iterator<Item = usize> {
+    fn items(groups: &Workgroups) -> impl Iterator<Item = usize> {
         groups.groups.iter().flat_map(|g| g[1] as usize..(g[1] + g[2]) as usize)
     }
 
@@ -238,7 +238,7 @@ mod tests {
     fn nothing_of_a_bake_is_lost() {
         let (garment, flat) = skirts();
         let layout = &garment.layout;
-        let count = |halves: &[Groups]| halves.iter().flat_map(items).count();
+        let count = |halves: &[Workgroups]| halves.iter().flat_map(items).count();
         assert_eq!(count(&flat.weft.halves), 2 * layout.weft.tuples.count);
         assert_eq!(count(&flat.shear.halves), 2 * layout.shear.tuples.count);
         let links: u32 = flat.diagonals.heads.iter().map(|h| h[2]).sum();
@@ -260,11 +260,11 @@ mod tests {
 
     #[test]
     fn the_first_garments_groups_are_a_prefix() {
-        let mut groups = Groups::default();
+        let mut groups = Workgroups::default();
         groups.add(0, 0, 130, 7);
         groups.add(2, 200, 64, 7);
         assert_eq!(groups.groups, [[0, 0, 64, 7], [0, 64, 64, 7], [0, 128, 2, 7], [2, 200, 64, 7]]);
         assert_eq!([0, 1, 2, 3, 9].map(|n| groups.of(n)), [0, 3, 3, 4, 4]);
-        assert_eq!(Groups::default().of(3), 0);
+        assert_eq!(Workgroups::default().of(3), 0);
     }
 }

@@ -3,7 +3,7 @@
 use toile_assets::garment::Garment;
 use toile_engine::cloth::wind::Faces;
 
-use super::{Groups, Span};
+use super::{GarmentSpan, Workgroups};
 
 /// Triangles of all garments.
 #[derive(Debug, Clone, Default)]
@@ -15,12 +15,12 @@ pub struct FlatWind {
     /// The triangles around each particle, in order.
     pub around: Vec<u32>,
     /// Workgroups over the triangles.
-    pub groups: Groups,
+    pub groups: Workgroups,
 }
 
 impl FlatWind {
     /// Appends a garment's.
-    pub fn add(&mut self, garment: &Garment, span: Span) {
+    pub fn add(&mut self, garment: &Garment, span: GarmentSpan) {
         let faces = Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, &garment.layout.owner);
         let begun = self.faces.len() as u32;
         let flat = faces.triangles().map(|([a, b, c], mass)| {

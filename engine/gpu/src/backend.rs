@@ -1,0 +1,340 @@
+//! Steps garments on the processor or on a graphics device, as asked for or whichever measures faster; the result is a
+//! [`Cloth`](toile_engine::cloth::Cloth) either way.
+//!
+//! A step is over when the call returns, on both: how benchmarks and validation need it. A frame loop that can take results a
+//! frame late drives `cloth::Offload` itself. Whatever goes wrong with the device, the processor goes on from the last places, and
+//! [`ClothStepper::fallback`] says why.
+
+use std::fmt;
+use std::str::FromStr;
+use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
+
+use toile_engine::cloth::Step;
+use toile_engine::workers::{SharePanicked, WorkerPool};
+
+use crate::Adapter;
+use crate::cloth_batch::ClothBatch;
+use crate::graphics::{DeviceGarments, Graphics, StageTimes, StepWork};
+
+/// Where garments are stepped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Backend {
+    /// The processor.
+    #[default]
+    Cpu,
+    /// A graphics device, as long as there is one.
+    Gpu,
+    /// Whichever is faster with these garments, measured when they are first stepped.
+    Auto,
+}
+
+impl Backend {
+    /// All backends.
+    pub const ALL: [Self; 3] = [Self::Cpu, Self::Gpu, Self::Auto];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Cpu => "cpu",
+            Self::Gpu => "gpu",
+            Self::Auto => "auto",
+        }
+    }
+}
+
+impl fmt::Display for Backend {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Backend {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let of = Self::ALL.into_iter().find(|b| b.name() == text);
+        of.ok_or_else(|| format!("`{text}` steps nothing; choose cpu, gpu or auto"))
+    }
+}
+
+/// The backend of a run: opened once, shared by all of its steppers.
+#[derive(Debug, Clone)]
+pub struct Backends {
+    backend: Backend,
+    graphics: Result<Graphics, String>,
+    known: Arc<SharedFindings>,
+}
+
+/// Classes of scenes that are measured apart: by the bits of their particles' number.
+const CLASSES: usize = 32;
+
+/// Results that the steppers of a run share.
+#[derive(Debug, Default)]
+struct SharedFindings {
+    /// The first reason for which any of them went over to the processor.
+    fallback: OnceLock<String>,
+    /// What has stepped: 1 the processor, 2 the device.
+    used: AtomicU8,
+    /// What `auto` was decided by, of each class.
+    measured: [OnceLock<BackendTimes>; CLASSES],
+}
+
+impl Backends {
+    /// The processor.
+    pub fn cpu() -> Self {
+        Self { backend: Backend::Cpu, graphics: Err(String::new()), known: Arc::default() }
+    }
+
+    /// What was asked for: opens the fastest device unless that is the processor. At load, some tenths of a second.
+    pub fn open(backend: Backend) -> Self {
+        match backend {
+            Backend::Cpu => Self::cpu(),
+            _ => Self { graphics: Graphics::open(), backend, known: Arc::default() },
+        }
+    }
+
+    /// A stepper for some garments.
+    pub fn stepper(&self) -> ClothStepper {
+        let mut stepper = ClothStepper { known: Arc::clone(&self.known), ..ClothStepper::default() };
+        match (self.backend, &self.graphics) {
+            (Backend::Cpu, _) => {}
+            (backend, Ok(graphics)) => {
+                stepper.graphics = Some(graphics.clone());
+                stepper.undecided = backend == Backend::Auto;
+            }
+            (_, Err(reason)) => stepper.fall_back(reason.clone()),
+        }
+        stepper
+    }
+
+    /// The device that was opened.
+    pub fn adapter(&self) -> Option<&Adapter> {
+        self.graphics.as_ref().ok().map(Graphics::adapter)
+    }
+
+    /// What its steppers have stepped with so far: `cpu`, `gpu`, `both`, or `nothing`.
+    pub fn used(&self) -> &'static str {
+        // Relaxed: it orders nothing else.
+        ["nothing", "cpu", "gpu", "both"][usize::from(self.known.used.load(Ordering::Relaxed) & 3)]
+    }
+
+    /// What was asked for.
+    pub fn asked(&self) -> Backend {
+        self.backend
+    }
+
+    /// Why the processor stepped although a device was asked for: the first reason, one sentence with the cure.
+    pub fn fallback(&self) -> Option<&str> {
+        let unopened = self.graphics.as_ref().err().filter(|_| self.backend != Backend::Cpu);
+        self.known.fallback.get().or(unopened).map(String::as_str)
+    }
+}
+
+impl From<Graphics> for Backends {
+    /// A device that is open, and asked for.
+    fn from(graphics: Graphics) -> Self {
+        Self { backend: Backend::Gpu, graphics: Ok(graphics), known: Arc::default() }
+    }
+}
+
+/// Time of one step on both backends (us), medians of some steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BackendTimes {
+    /// The processor, with the worker pool that was given.
+    pub cpu_us: f64,
+    /// The graphics device, until its result was there.
+    pub gpu_us: f64,
+}
+
+/// Steps garments.
+#[derive(Debug, Default)]
+pub struct ClothStepper {
+    graphics: Option<Graphics>,
+    on_device: Option<DeviceGarments>,
+    fallback: Option<String>,
+    known: Arc<SharedFindings>,
+    measured: Option<BackendTimes>,
+    undecided: bool,
+}
+
+/// Longest that either side is measured for after the step that lays everything out and one more (s), and the most steps.
+const MEASURING: (Duration, usize) = (Duration::from_millis(300), 25);
+
+impl ClothStepper {
+    /// The processor.
+    pub fn cpu() -> Self {
+        Self::default()
+    }
+
+    /// What steps: the device, or the processor.
+    pub fn backend(&self) -> Backend {
+        if self.graphics.is_some() { Backend::Gpu } else { Backend::Cpu }
+    }
+
+    /// The device that steps, if one does.
+    pub fn adapter(&self) -> Option<&Adapter> {
+        self.graphics.as_ref().map(Graphics::adapter)
+    }
+
+    /// Why the processor steps although a device was asked for: one sentence with the cure.
+    pub fn fallback(&self) -> Option<&str> {
+        self.fallback.as_deref()
+    }
+
+    /// What [`Backend::Auto`] was decided by.
+    pub fn measured(&self) -> Option<BackendTimes> {
+        self.measured
+    }
+
+    /// What the device spent on the stages of the last step with `Settings::timed`, where it has a clock for it.
+    pub fn spent(&self) -> Option<StageTimes> {
+        self.on_device.as_ref().and_then(DeviceGarments::spent)
+    }
+
+    /// What a plain step asks of the device that steps, once one has been made.
+    pub fn work(&self) -> Option<StepWork> {
+        self.on_device.as_ref().map(DeviceGarments::work)
+    }
+
+    /// One step of each garment. With a pool the processor shares the work: one garment's, or the garments themselves.
+    ///
+    /// # Errors
+    /// [`SharePanicked`]: a worker of the pool has; only where garments are shared among them.
+    pub fn step(&mut self, batch: &mut ClothBatch<'_, '_>, pool: Option<&mut WorkerPool>) -> Result<(), SharePanicked> {
+        let mut pool = pool;
+        if std::mem::take(&mut self.undecided) {
+            self.decide(batch, pool.as_deref_mut())?;
+        }
+        if let Some(graphics) = &self.graphics {
+            match on_device(graphics, &mut self.on_device, batch) {
+                Ok(()) => {
+                    self.uses(2);
+                    return Ok(());
+                }
+                Err(reason) => self.fall_back(reason),
+            }
+        }
+        self.uses(1);
+        on_processor(batch, pool)
+    }
+
+    fn uses(&self, what: u8) {
+        // Relaxed: it orders nothing else.
+        self.known.used.fetch_or(what, Ordering::Relaxed);
+    }
+
+    /// Switches to the processor.
+    fn fall_back(&mut self, reason: String) {
+        // Only the first is kept.
+        let _ = self.known.fallback.set(reason.clone());
+        (self.graphics, self.on_device, self.fallback) = (None, None, Some(reason));
+    }
+
+    /// Steps copies of the garments on both for a while, where they stand, and keeps the faster; what another stepper of the run has
+    /// measured with about as many particles counts for this one.
+    fn decide(
+        &mut self,
+        batch: &mut ClothBatch<'_, '_>,
+        mut pool: Option<&mut WorkerPool>,
+    ) -> Result<(), SharePanicked> {
+        let Some(graphics) = self.graphics.clone() else { return Ok(()) };
+        let particles: usize = batch.cloths.iter().map(|c| c.positions.len()).sum();
+        let known = Arc::clone(&self.known);
+        let class = &known.measured[(particles.max(1).ilog2() as usize).min(CLASSES - 1)];
+        if let Some(measured) = class.get() {
+            self.settle(*measured);
+            return Ok(());
+        }
+        let mut copies = batch.cloths.to_vec();
+        let mut trial = ClothBatch { cloths: &mut copies, garments: batch.garments, steps: batch.steps };
+        let mut laid = None;
+        let gpu_us = median_us(|| on_device(&graphics, &mut laid, &mut trial));
+        let mut copies = batch.cloths.to_vec();
+        let mut trial = ClothBatch { cloths: &mut copies, garments: batch.garments, steps: batch.steps };
+        let cpu_us = median_us(|| on_processor(&mut trial, pool.as_deref_mut()))?;
+        match gpu_us {
+            Err(reason) => self.fall_back(reason),
+            Ok(gpu_us) => {
+                // Of two that measure at once, the first counts for both.
+                self.settle(*class.get_or_init(|| BackendTimes { cpu_us, gpu_us }));
+            }
+        }
+        Ok(())
+    }
+
+    fn settle(&mut self, measured: BackendTimes) {
+        self.measured = Some(measured);
+        if measured.cpu_us <= measured.gpu_us {
+            self.graphics = None;
+        }
+    }
+}
+
+/// Median time (us) of some steps; the first, which lays everything out, does not count.
+fn median_us<E>(mut step: impl FnMut() -> Result<(), E>) -> Result<f64, E> {
+    step()?;
+    let (begun, mut times) = (Instant::now(), Vec::new());
+    while times.is_empty() || (times.len() < MEASURING.1 && begun.elapsed() < MEASURING.0) {
+        let start = Instant::now();
+        step()?;
+        times.push(start.elapsed().as_secs_f64() * 1e6);
+    }
+    times.sort_unstable_by(f64::total_cmp);
+    Ok(times[times.len() / 2])
+}
+
+fn on_processor(batch: &mut ClothBatch<'_, '_>, pool: Option<&mut WorkerPool>) -> Result<(), SharePanicked> {
+    let (garments, steps) = (batch.garments, batch.steps);
+    let Some(first) = steps.first() else { return Ok(()) };
+    let step = |k: usize| Step { settings: first.settings, ..steps[k] };
+    match (&mut *batch.cloths, pool) {
+        ([cloth], Some(pool)) => {
+            cloth.step_with(pool, garments[0], &step(0));
+            Ok(())
+        }
+        (cloths, Some(pool)) => pool.each(cloths, |k, cloth| cloth.step(garments[k], &step(k))),
+        (cloths, None) => {
+            cloths.iter_mut().zip(garments).enumerate().for_each(|(k, (cloth, garment))| cloth.step(garment, &step(k)));
+            Ok(())
+        }
+    }
+}
+
+/// Uploads the garments the first time, and again where the settings need larger buffers.
+fn on_device(
+    graphics: &Graphics,
+    on: &mut Option<DeviceGarments>,
+    batch: &mut ClothBatch<'_, '_>,
+) -> Result<(), String> {
+    if on.as_ref().is_none_or(|on| !on.holds(batch)) {
+        let laid = DeviceGarments::lay(graphics, batch)?;
+        *on = Some(laid);
+    }
+    on.as_mut().map_or(Ok(()), |on| on.step(batch))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_backend_is_what_its_name_says() {
+        for backend in Backend::ALL {
+            assert_eq!(backend.name().parse(), Ok(backend));
+        }
+        assert!("tpu".parse::<Backend>().unwrap_err().contains("cpu, gpu or auto"));
+    }
+
+    #[test]
+    fn without_a_device_the_processor_steps_and_says_why() {
+        let none = |backend| Backends { backend, graphics: Err("no adapter".into()), known: Arc::default() };
+        let means = none(Backend::Gpu);
+        let stepper = means.stepper();
+        assert_eq!((stepper.backend(), stepper.fallback()), (Backend::Cpu, Some("no adapter")));
+        assert_eq!(means.fallback(), Some("no adapter"));
+        let asked = none(Backend::Cpu);
+        assert_eq!((asked.stepper().fallback(), asked.fallback()), (None, None), "nobody asked for a device");
+    }
+}
