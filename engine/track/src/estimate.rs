@@ -1,5 +1,7 @@
 //! A measured length and its uncertainty.
 
+use toile_assets::numeric::statistics::median_of;
+
 /// A length with the standard deviation of its error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
@@ -47,22 +49,15 @@ const MAD_TO_SIGMA: f32 = 1.4826;
 pub fn temporal_mean(samples: &[f32]) -> Option<Estimate> {
     let mut sorted: Vec<f32> = samples.iter().copied().filter(|s| s.is_finite()).collect();
     sorted.sort_by(f32::total_cmp);
-    let median = middle(&sorted)?;
-    let mut spread: Vec<f32> = sorted.iter().map(|s| (s - median).abs()).collect();
-    spread.sort_by(f32::total_cmp);
+    let median = median_of(sorted.iter().copied())?;
+    let spread = median_of(sorted.iter().map(|s| (s - median).abs()))?;
     // A frame or two alike make the deviation zero; a millimetre keeps their neighbours.
-    let reach = OUTLIER * (MAD_TO_SIGMA * middle(&spread)?).max(1e-3);
+    let reach = OUTLIER * (MAD_TO_SIGMA * spread).max(1e-3);
     let kept: Vec<f32> = sorted.into_iter().filter(|s| (s - median).abs() <= reach).collect();
     let n = kept.len() as f32;
     let mean = kept.iter().sum::<f32>() / n;
     let variance = kept.iter().map(|s| (s - mean).powi(2)).sum::<f32>() / (n - 1.0).max(1.0);
     Some(Estimate { value: mean, sigma: (variance / n).sqrt() })
-}
-
-/// Median of sorted samples.
-pub(crate) fn middle(sorted: &[f32]) -> Option<f32> {
-    let n = sorted.len();
-    (n > 0).then(|| 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]))
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The measures of the person before the sensor, each with its error, from one second of depth and joints.
 
+use toile_assets::numeric::statistics::median_of;
 use toile_assets::sizes::{Population, SizeBody};
 use toile_sensors::frame::{DepthFrame, Joints};
 
@@ -232,10 +233,9 @@ fn missing(measures: &Measures) -> Vec<String> {
     why.iter().filter(|(m, _)| m.is_none()).map(|(_, sentence)| (*sentence).to_owned()).collect()
 }
 
+/// Median of the samples; 0 of none.
 fn median(samples: &[f32]) -> f32 {
-    let mut sorted = samples.to_vec();
-    sorted.sort_by(f32::total_cmp);
-    crate::estimate::middle(&sorted).unwrap_or(0.0)
+    median_of(samples.iter().copied()).unwrap_or(0.0)
 }
 
 impl Measurements {

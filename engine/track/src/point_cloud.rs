@@ -1,6 +1,7 @@
 //! The people in one depth frame, as world points: floor off, then connected pieces of surface that look like a person.
 
 use glam::Vec3;
+use toile_assets::numeric::statistics::quantile_of;
 use toile_sensors::frame::{DepthFrame, Intrinsics};
 
 /// Nearer than this a structured-light or time-of-flight camera sees nothing (m).
@@ -222,9 +223,7 @@ impl<'a> DepthGrid<'a> {
         if !looks_human(&cells) {
             return None;
         }
-        let mut depths: Vec<f32> = piece.iter().map(|&c| self.depth[c]).collect();
-        depths.sort_unstable_by(f32::total_cmp);
-        let distance = depths[depths.len() / 2];
+        let distance = quantile_of(piece.iter().map(|&c| self.depth[c]), 0.5)?;
         let (points, pixels) = self.points(piece);
         let [_, top] = extent(cells.iter().map(|p| p.y));
         let elevation = ((top - self.frame.camera_to_world.translation.y) / distance).atan();
@@ -288,9 +287,8 @@ fn looks_human(cells: &[Vec3]) -> bool {
         return false;
     }
     // Raised hands are higher than the head, so the head is sought above the middle of the lower half.
-    let mut low: Vec<f32> = cells.iter().filter(|p| p.y < 0.5 * (bottom + top)).map(|p| p.x).collect();
-    low.sort_unstable_by(f32::total_cmp);
-    let axis = low[low.len() / 2];
+    let low = cells.iter().filter(|p| p.y < 0.5 * (bottom + top)).map(|p| p.x);
+    let Some(axis) = quantile_of(low, 0.5) else { return false };
     let [_, crown] = extent(cells.iter().filter(|p| (p.x - axis).abs() < 0.13).map(|p| p.y));
     // Someone half hidden behind another has their axis elsewhere: then their highest point is their head.
     head_and_chest(cells, axis, crown) || head_and_chest(cells, axis, top)

@@ -1,6 +1,7 @@
 //! One horizontal slice of a measure_torso as a depth camera sees it: its front half, between two edges.
 
 use glam::{Mat3, Vec2, Vec3};
+use toile_assets::numeric::statistics::quantile_of;
 
 /// SliceColumns in which a slice is sorted, to either side of the axis.
 const COLUMNS: usize = 60;
@@ -65,9 +66,8 @@ impl SliceColumns {
                 sorted[column].push(p.z);
             }
         }
-        let mut trunk: Vec<f32> = sorted[COLUMNS - 8..COLUMNS + 8].concat();
-        trunk.sort_by(f32::total_cmp);
-        let reference = trunk.get(trunk.len() / 2).copied().unwrap_or(0.0);
+        let trunk = sorted[COLUMNS - 8..COLUMNS + 8].iter().flatten().copied();
+        let reference = quantile_of(trunk, 0.5).unwrap_or(0.0);
         let mut columns = Self { depth: [0.0; 2 * COLUMNS], count: [0; 2 * COLUMNS] };
         for (i, depths) in sorted.iter().enumerate() {
             let own = depths.iter().filter(|&&z| z < reference + HELD_BEFORE);

@@ -7,9 +7,10 @@
 use glam::{Vec2, Vec3};
 
 use crate::anthropometry::{LevelFractions, stature};
-use crate::estimate::{Estimate, middle};
+use crate::estimate::Estimate;
 use crate::point_cloud::PersonCloud;
 use crate::section::{TorsoSection, measure_torso};
+use toile_assets::numeric::statistics::median_of;
 use toile_assets::sizes::Population;
 
 /// The floor counts as given by the camera's pose if the feet end this near to y = 0 (m).
@@ -101,7 +102,7 @@ impl UprightPerson {
         let bottom = points.get(points.len() / 300)?.y;
         let rough_top = points[points.len() - 1 - points.len() / 300].y;
         let trunk = band(&points, bottom + 0.45 * (rough_top - bottom), bottom + 0.8 * (rough_top - bottom));
-        let axis = Vec2::new(median(trunk.iter().map(|p| p.x))?, median(trunk.iter().map(|p| p.z))?);
+        let axis = Vec2::new(median_of(trunk.iter().map(|p| p.x))?, median_of(trunk.iter().map(|p| p.z))?);
         for p in &mut points {
             *p -= Vec3::new(axis.x, 0.0, axis.y);
         }
@@ -217,12 +218,6 @@ fn band(points: &[Vec3], from: f32, to: f32) -> &[Vec3] {
     let start = points.partition_point(|p| p.y < from);
     let end = points.partition_point(|p| p.y < to);
     &points[start..end.max(start)]
-}
-
-fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
-    let mut sorted: Vec<f32> = values.collect();
-    sorted.sort_unstable_by(f32::total_cmp);
-    middle(&sorted)
 }
 
 /// The top of the head near the axis (m).

@@ -103,7 +103,7 @@ impl Lighting {
         REACH * self.backdrop.size
     }
 
-    /// True for a place on the backdrop that no shadow of the subject can touch.
+    /// True for a place on the backdrop that no shadow of the subject can reach.
     pub fn clear(&self, place: Vec3) -> bool {
         if !self.backdrop.floor || self.subject.is_empty() {
             return true;
@@ -146,7 +146,7 @@ pub const DEPTH: f32 = 0.75;
 /// Radius of the curve, in subject heights: so wide that the preset cameras see no end of it, nor a line where it ends.
 pub const CURVE: f32 = 2.4;
 
-/// Distance over which the pool of light around the subject falls to half, in subject heights.
+/// Distance over which the light around the subject falls to half, in subject heights.
 pub const POOL: f32 = 2.3;
 
 impl CurvedBackdrop {
@@ -188,7 +188,7 @@ impl CurvedBackdrop {
         (if dw > 0.0 && wall > 0.0 { wall } else { 1e3 * self.size }, -self.away)
     }
 
-    /// How bright the pool of light is at a place (1 at the subject).
+    /// Brightness of the light on the backdrop at a place (1 at the subject).
     pub fn pool(&self, place: Vec3) -> f32 {
         let from = place - self.centre - Vec3::Y * (0.5 * self.size);
         let level = from - self.away * from.dot(self.away);

@@ -15,7 +15,7 @@ use crate::{
 /// Gap between a surface and the rays that leave it, in subject heights.
 const RAY_OFFSET: f32 = 5e-5;
 
-/// Least cosine between a shading normal and the eye: interpolated normals may turn away at the outline.
+/// Least cosine between a shading normal and the direction to the camera: interpolated normals may turn away at the outline.
 pub const LEAST_FACING: f32 = 0.02;
 
 /// Cosine between the normals of neighbouring pixels below which an edge runs between them.
@@ -149,7 +149,7 @@ impl<'a> RayTracer<'a> {
         Ray::new(self.view.origin, self.view.direction((Vec2::new(x as f32, y as f32) + at) * scale))
     }
 
-    /// True if a pixel next to this one sees something unlike.
+    /// True if a neighbouring pixel belongs to another surface or lies beyond a crease.
     fn is_on_edge(&self, x: u32, y: u32, hit_here: &PrimaryHit, hits: &[PrimaryHit]) -> bool {
         let (columns, rows) = (x.saturating_sub(1)..=x + 1, y.saturating_sub(1)..=y + 1);
         let step = STEP * self.grain(hit_here.position);
@@ -163,7 +163,7 @@ impl<'a> RayTracer<'a> {
         })
     }
 
-    /// Adds what one ray sees to a pixel.
+    /// Adds the light along one ray to a pixel.
     fn add_ray(&self, ray: &Ray, sample: PixelSample, light_here: &mut PixelLight) {
         if !light_here.clear {
             light_here.rays += 1;
@@ -175,7 +175,7 @@ impl<'a> RayTracer<'a> {
         self.add_light(&point, Vec3::splat(self.lighting.backdrop.pool(point.position)), sample, light_here);
     }
 
-    /// Adds the light that a point sends to the eye, times `filter`.
+    /// Adds the light that a point sends to the camera, times `filter`.
     fn add_light(&self, point: &SurfacePoint, filter: Vec3, sample: PixelSample, light_here: &mut PixelLight) {
         let painted = !light_here.clear && (point.on_subject || !self.lighting.clear(point.position));
         let lamps: [(&AreaLight, SampleDimension); 2] =

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use crate::fit_map;
 
-/// Linear RGB of the mannequin: a warm light grey-beige that lets any garment speak.
+/// Linear RGB of the mannequin: a light grey-beige, neutral beside any garment.
 pub const MANNEQUIN: Vec3 = Vec3::new(0.60, 0.53, 0.465);
 
 /// Linear RGB where a surface's own colour is missing or not finite.
@@ -133,9 +133,9 @@ pub struct Camera {
     pub target: Vec3,
     /// Turn around the vertical (rad), from +z towards +x.
     pub yaw: f32,
-    /// Height of the eye over the target (m).
+    /// Height of the camera over the target (m).
     pub height: f32,
-    /// Horizontal distance of the eye from the target (m).
+    /// Horizontal distance of the camera from the target (m).
     pub distance: f32,
     /// Vertical field of view (rad).
     pub fov_y: f32,
@@ -163,7 +163,7 @@ impl Camera {
         let whole = !bounds.is_empty() && bounds.min.is_finite() && bounds.max.is_finite();
         let bounds = if whole { *bounds } else { Bounds { min: Vec3::ZERO, max: Vec3::ONE } };
         let tall = bounds.max.y - bounds.min.y;
-        // The eye stands a little above the middle, which opens the floor without bending the verticals.
+        // The camera is a little above the middle, which shows the floor without converging verticals.
         let camera = |yaw: f32, distance: f32| Self {
             target: (bounds.min + bounds.max) * 0.5,
             yaw,
@@ -198,7 +198,7 @@ impl Camera {
     }
 }
 
-/// A camera's frame: the eye, its axes, and the half extents of the picture at distance one.
+/// A camera's frame: its position, its axes, and the half extents of the picture at distance one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CameraFrame {
     pub origin: Vec3,
@@ -216,7 +216,7 @@ impl CameraFrame {
         (self.forward + self.right * x + self.up * y).normalize()
     }
 
-    /// Width of what is seen at the depth of a point (m).
+    /// Width of the view at the depth of a point (m).
     pub fn width_at(&self, point: Vec3) -> f32 {
         2.0 * self.half.x * (point - self.origin).dot(self.forward).max(0.0)
     }

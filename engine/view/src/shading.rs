@@ -1,4 +1,4 @@
-//! How materials answer light.
+//! Reflection of light by the materials.
 
 use glam::Vec3;
 
@@ -24,14 +24,14 @@ pub const BOUNCE: f32 = 0.45;
 pub struct SurfacePoint {
     /// Where shadow and occlusion rays start (m).
     pub position: Vec3,
-    /// Unit normal to shade with, facing the eye.
+    /// Unit normal to shade with, facing the camera.
     pub normal: Vec3,
-    /// Unit normal of the triangle, facing the eye.
+    /// Unit normal of the triangle, facing the camera.
     pub flat: Vec3,
     /// Base colour, linear RGB.
     pub colour: Vec3,
     pub material: Material,
-    /// Unit direction to the eye.
+    /// Unit direction to the camera.
     pub eye: Vec3,
     /// True on the subject, false on the backdrop.
     pub on_subject: bool,
@@ -43,7 +43,7 @@ impl SurfacePoint {
         Self { position, normal, flat: normal, colour, material: Material::Diffuse, eye, on_subject: false }
     }
 
-    /// Share of a lamp's light sent to the eye, the cosine included; the lamp stands at `toward`.
+    /// Share of a lamp's light sent to the camera, the cosine included; the lamp stands at `toward`.
     pub fn reflect(&self, toward: Vec3) -> Vec3 {
         let cosine = self.normal.dot(toward);
         if cosine <= 0.0 {
@@ -64,7 +64,7 @@ impl SurfacePoint {
         answer * cosine
     }
 
-    /// Ambient light sent to the eye: `around` is what the surface receives, `mirrored` what comes from the mirror
+    /// Ambient light sent to the camera: `around` is what the surface receives, `mirrored` what comes from the mirror
     /// direction. Reflection takes from diffusion, so nothing gives back more than it gets.
     pub fn glow(&self, around: Vec3, mirrored: Vec3) -> Vec3 {
         let grazing = fifth(1.0 - self.normal.dot(self.eye).clamp(0.0, 1.0));

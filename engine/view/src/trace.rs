@@ -37,7 +37,7 @@ impl TraceQuality {
     }
 }
 
-/// Renders one picture: builds the tree and looks once. Several views of one scene share a [`TracedScene`].
+/// Renders one picture, hierarchy included. Several views of one scene share a [`TracedScene`].
 pub fn render(scene: &Scene<'_>, camera: &Camera, size: Size, quality: TraceQuality) -> Image {
     TracedScene::build(*scene).render(camera, size, quality)
 }
@@ -45,7 +45,7 @@ pub fn render(scene: &Scene<'_>, camera: &Camera, size: Size, quality: TraceQual
 /// One picture's cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct TraceCost {
-    /// Rays walked through the tree: from the eye, for shadows, for occlusion.
+    /// Rays traced: from the camera, for shadows, for occlusion.
     pub rays: u64,
 }
 

@@ -30,7 +30,7 @@ impl<'a> TracedScene<'a> {
         Self { scene, bvh: Bvh::build(faces), starts }
     }
 
-    /// The box around everything that can be seen.
+    /// The box around all triangles.
     pub fn bounds(&self) -> Bounds {
         self.bvh.bounds()
     }

@@ -3,6 +3,7 @@
 use glam::{Quat, Vec3};
 use toile_assets::body::shape::Shapes;
 use toile_assets::body::{En, Wanted};
+use toile_assets::numeric::statistics::quantile_of;
 use toile_assets::skeleton::{JOINTS, Joint};
 
 use super::depth_cells::DepthCells;
@@ -73,10 +74,8 @@ pub(super) fn upright(model: &BodyModel, view: &DepthCells, ground: Option<f32>)
     heights.sort_unstable_by(f32::total_cmp);
     let bottom = ground.unwrap_or(heights[heights.len() / 200]);
     let middle = |from: f32, to: f32, axis: fn(&Vec3) -> f32| {
-        let mut band: Vec<f32> =
-            view.cells.iter().filter(|c| (from..to).contains(&c.point.y)).map(|c| axis(&c.point)).collect();
-        band.sort_unstable_by(f32::total_cmp);
-        band.get(band.len() / 2).copied()
+        let band = view.cells.iter().filter(|c| (from..to).contains(&c.point.y)).map(|c| axis(&c.point));
+        quantile_of(band, 0.5)
     };
     let all = [heights[0], heights[heights.len() - 1] + 1.0];
     let whole =

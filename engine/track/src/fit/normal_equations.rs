@@ -1,6 +1,7 @@
 //! Normal equations of a least squares step: Jacobian rows summed, then solved by Cholesky factorisation.
 
 use toile_assets::body::shape::SHAPES;
+use toile_assets::numeric::linear::{self, Pivot};
 
 use super::posed_body::{JacobianRow, POSE, UNKNOWNS, WIDTH};
 
@@ -73,8 +74,8 @@ impl NormalEquations {
             a[i][i] = a[i][i] * (1.0 + damping) + 1e-9;
             x[i] = -f64::from(self.gradient[i]) - if i >= POSE { shape.gradient[i - POSE] } else { 0.0 };
         }
-        factor(&mut a, UNKNOWNS);
-        substitute(&a, &mut x);
+        factored(&mut a);
+        linear::solve(&a, &mut x);
         x
     }
 
@@ -109,60 +110,21 @@ impl NormalEquations {
     }
 }
 
-/// Lower factor of the lower triangle, in place.
-fn factor(a: &mut [[f64; UNKNOWNS]], n: usize) {
-    for i in 0..n {
-        for j in 0..=i {
-            let (above, here) = a.split_at(i);
-            let row = &here[0];
-            let other = if i == j { row } else { &above[j] };
-            let dot: f64 = row[..j].iter().zip(&other[..j]).map(|(p, q)| p * q).sum();
-            let rest = row[j] - dot;
-            a[i][j] = if i == j { rest.max(1e-12).sqrt() } else { rest / a[j][j] };
-        }
-    }
-}
-
-fn substitute(l: &[[f64; UNKNOWNS]], x: &mut [f64; UNKNOWNS]) {
-    for i in 0..UNKNOWNS {
-        let dot: f64 = (0..i).map(|k| l[i][k] * x[k]).sum();
-        x[i] = (x[i] - dot) / l[i][i];
-    }
-    for i in (0..UNKNOWNS).rev() {
-        let dot: f64 = (i + 1..UNKNOWNS).map(|k| l[k][i] * x[k]).sum();
-        x[i] = (x[i] - dot) / l[i][i];
-    }
-}
-
-/// Solves a symmetric positive system of the shape's size, and gives the inverse and the logarithm of the determinant.
+/// The inverse of a symmetric positive matrix of the shape's size, and the logarithm of its determinant.
 pub(super) fn invert(a: &[[f64; SHAPES]; SHAPES]) -> ([[f64; SHAPES]; SHAPES], f64) {
-    let mut l = [[0.0; SHAPES]; SHAPES];
-    let mut log = 0.0;
-    for i in 0..SHAPES {
-        for j in 0..=i {
-            let dot: f64 = (0..j).map(|k| l[i][k] * l[j][k]).sum();
-            l[i][j] = if i == j { (a[i][i] - dot).max(1e-12).sqrt() } else { (a[i][j] - dot) / l[j][j] };
-        }
-        log += 2.0 * l[i][i].ln();
-    }
-    let mut inverse = [[0.0; SHAPES]; SHAPES];
-    for column in 0..SHAPES {
-        let mut x = [0.0; SHAPES];
-        x[column] = 1.0;
-        for i in 0..SHAPES {
-            let dot: f64 = (0..i).map(|k| l[i][k] * x[k]).sum();
-            x[i] = (x[i] - dot) / l[i][i];
-        }
-        for i in (0..SHAPES).rev() {
-            let dot: f64 = (i + 1..SHAPES).map(|k| l[k][i] * x[k]).sum();
-            x[i] = (x[i] - dot) / l[i][i];
-        }
-        for i in 0..SHAPES {
-            inverse[i][column] = x[i];
-        }
-    }
-    (inverse, log)
+    let mut l = *a;
+    factored(&mut l);
+    (linear::inverse(&l), linear::log_determinant(&l))
 }
+
+/// Puts the Cholesky factor in the place of the lower triangle; small pivots are raised.
+fn factored<const N: usize>(a: &mut [[f64; N]]) {
+    let done = linear::factor(a, LEAST_PIVOT);
+    debug_assert!(done.is_some(), "raised pivots are never refused");
+}
+
+/// Pivots below this are raised to it: directions that no residual constrains.
+const LEAST_PIVOT: Pivot = Pivot::AtLeast(1e-12);
 
 #[cfg(test)]
 mod tests {
