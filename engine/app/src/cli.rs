@@ -13,27 +13,19 @@ use crate::commands::body::BodyArgs;
 use crate::commands::completions::CompletionsArgs;
 use crate::commands::convert::ConvertArgs;
 use crate::commands::doctor::DoctorArgs;
+use crate::commands::kiosk::KioskArgs;
 use crate::commands::latency::LatencyArgs;
+use crate::commands::measure::MeasureArgs;
 use crate::commands::pareto::ParetoArgs;
+use crate::commands::plan::PlanArgs;
 use crate::commands::record::RecordArgs;
 use crate::commands::replay::ReplayArgs;
+use crate::commands::run::RunArgs;
 use crate::commands::soak::SoakArgs;
 use crate::commands::torture::TortureArgs;
+use crate::commands::try_on::TryOnArgs;
 use crate::commands::validate::ValidateArgs;
 use crate::exit::AppError;
-
-mod kiosk;
-mod measure;
-mod plan;
-mod run;
-mod try_on;
-pub mod values;
-
-pub use kiosk::KioskArgs;
-pub use measure::MeasureArgs;
-pub use plan::{PlanArgs, PlanScene};
-pub use run::{RunArgs, RunScene};
-pub use try_on::{TryOnArgs, Wearer};
 
 /// A real-time virtual fitting room: measures a shopper and dresses a body of their size.
 ///

@@ -4,27 +4,23 @@
 //! Budget: the words and the parsing take under 10 ms; the work itself is budgeted by the rooms it calls.
 //! Thread: the main thread, which loads, starts the frame's threads and waits for them.
 
+pub mod arguments;
 pub mod backend;
 pub mod cli;
 pub mod commands;
 mod drawn_frame;
-pub mod dump;
 pub mod exit;
 pub mod fit;
 pub mod heap;
 pub mod kiosk;
 pub mod machine;
-pub mod measure;
 pub mod output;
 mod overlay;
 pub mod pictures;
-pub mod plan;
 pub mod renderer;
 pub mod report;
-pub mod run;
 pub mod summary;
 pub mod terminal;
-pub mod try_on;
 pub mod video;
 #[cfg(any(test, feature = "kiosk"))]
 pub mod visitor;
@@ -68,25 +64,25 @@ pub fn guarded(work: impl FnOnce() -> Result<(), AppError>) -> Code {
 
 fn dispatch(command: &Command) -> Result<(), AppError> {
     match command {
-        Command::TryOn(args) => try_on::run(args),
-        Command::Measure(args) => measure::run(args),
+        Command::TryOn(args) => commands::try_on::run(args),
+        Command::Measure(args) => commands::measure::run(args),
         Command::Record(args) => commands::record::run(args),
         Command::Convert(args) => commands::convert::run(args),
         Command::Bake(args) => commands::bake::run(args),
         Command::Body(args) if args.colliders => commands::colliders::run(args),
         Command::Body(args) => commands::body::run(args),
-        Command::Run(args) => run::run(args),
+        Command::Run(args) => commands::run::run(args),
         Command::Doctor(args) => commands::doctor::run(args),
         Command::Bench(command) => commands::bench::run(command),
         Command::Validate(args) => commands::validate::run(args),
         Command::Pareto(args) => commands::pareto::run(args),
         Command::Torture(args) => commands::torture::run(args),
         Command::Latency(args) => commands::latency::run(args),
-        Command::Plan(args) => plan::run(args),
+        Command::Plan(args) => commands::plan::run(args),
         Command::Replay(args) => commands::replay::run(args),
         Command::Soak(args) => commands::soak::run(args),
         Command::Kiosk(args) => kiosk::run(args, windowed),
-        Command::Completions(args) => commands::completions::run(args),
+        Command::Completions(args) => commands::completions::run(args, cli::command()),
         Command::Print(text) => terminal::print(text),
     }
 }

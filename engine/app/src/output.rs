@@ -186,6 +186,14 @@ impl OutputFolder {
         &self.folder
     }
 
+    /// Refuses these names, before any work is begun, where they could not be written.
+    ///
+    /// # Errors
+    /// What [`Inputs::check`] refuses.
+    pub fn check(&self, names: &[&str]) -> Result<(), OutputError> {
+        names.iter().try_for_each(|name| self.inputs.check(&self.folder.join(name)))
+    }
+
     /// Promises a file of this name and returns the temporary path to write it to. The extension is kept, as some
     /// writers go by it.
     ///

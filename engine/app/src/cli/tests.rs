@@ -19,7 +19,7 @@ fn no_command_is_try_on() {
     assert_eq!(plain, parsed("toile try-on").unwrap());
     let Command::TryOn(args) = plain else { panic!("{plain:?}") };
     assert_eq!(args.out, PathBuf::from("out"));
-    assert!(args.session.is_none() && args.garments.is_empty() && args.pictures && !args.json);
+    assert!(args.session.is_none() && args.garments.is_empty() && args.pictures);
     assert_eq!(parsed("toile --json --garment a").unwrap(), parsed("toile try-on --json --garment a").unwrap());
 }
 

@@ -20,7 +20,7 @@ use toile_view::image::Size;
 use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
-use crate::cli::values::{Printing, count, one_of};
+use crate::arguments::{Printing, count, one_of};
 use crate::exit::AppError;
 use crate::output::{Inputs, OutputFolder};
 use crate::pictures::write_png;
@@ -117,6 +117,7 @@ const VIEWS: [f32; 3] = [0.0, FRAC_PI_2, PI];
 pub fn run(args: &BodyArgs) -> Result<(), AppError> {
     let words = args.printing.words();
     let mut out = OutputFolder::prepare(&args.out)?.sparing(Inputs::new(&args.file));
+    out.check(&["body.glb", "body.png", "walking.png", "report.json"])?;
     let (imported, rows) = import(args)?;
     if args.pictures {
         let bar = words.bar(2 * VIEWS.len() as u64, "drawing");

@@ -3,7 +3,6 @@
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap_complete::{Shell, generate};
 
-use crate::cli;
 use crate::exit::AppError;
 use crate::terminal;
 
@@ -20,12 +19,12 @@ pub struct CompletionsArgs {
     pub shell: Shell,
 }
 
-/// Writes the completions for one shell to stdout.
+/// Writes the completions of all commands for one shell to stdout.
 ///
 /// # Errors
 /// Only where stdout cannot be written.
-pub fn run(args: &CompletionsArgs) -> Result<(), AppError> {
+pub fn run(args: &CompletionsArgs, mut all: clap::Command) -> Result<(), AppError> {
     let mut script = Vec::new();
-    generate(args.shell, &mut cli::command(), "toile", &mut script);
+    generate(args.shell, &mut all, "toile", &mut script);
     terminal::print(&String::from_utf8_lossy(&script))
 }

@@ -7,7 +7,7 @@ use toile_sensors::segment::Segmenter;
 use toile_sensors::session::Session;
 use toile_sensors::source::{self, OpenOptions};
 
-use crate::cli::values::{Printing, one_of};
+use crate::arguments::{Printing, one_of};
 use crate::exit::AppError;
 use crate::output::{Inputs, OutputFile};
 use crate::report::{self, ConvertReport, Document};

@@ -15,7 +15,7 @@ use toile_fitting::dress::session;
 use toile_fitting::live::report::Quantiles;
 use toile_perf::latency::{self, Goal, Latency, LatencyInputs, LatencyOptions};
 
-use crate::cli::values::{CrashArg, Printing, WorkersArg, WornArgs, cores};
+use crate::arguments::{CrashArg, Printing, WorkersArg, WornArgs, cores};
 use crate::exit::AppError;
 use crate::machine::Machine;
 use crate::output::{Inputs, OutputFolder};

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use toile_perf::pareto::{self, Drape, ParetoOptions, ParetoReport, Point, SCENES, SceneReport};
 
-use crate::cli::values::Printing;
+use crate::arguments::Printing;
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::report::Document;

@@ -15,7 +15,7 @@ use toile_sensors::frame::{Intrinsics, Joints, TrackedJoint};
 use toile_sensors::session::Session;
 use toile_sensors::source::synthetic::{JointNoise, KinectNoise, SyntheticCamera};
 
-use crate::cli::values::Printing;
+use crate::arguments::Printing;
 use crate::exit::AppError;
 use crate::output::{Inputs, OutputFile};
 use crate::report::{self, Document, RecordReport};

@@ -12,7 +12,7 @@ use toile_engine::frame_loop::replay::{Replayed, replay};
 use toile_engine::workers::WorkerPool;
 use toile_fitting::dress::recipe::Recipe;
 
-use crate::cli::values::WorkersArg;
+use crate::arguments::WorkersArg;
 use crate::commands::soak::{self, SoakRecipe};
 use crate::exit::AppError;
 use crate::report::{Document, hash_text};

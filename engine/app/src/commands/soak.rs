@@ -19,7 +19,7 @@ use toile_perf::soak::{
     self, LEAST_APART_S, SceneMaker, SceneWeight, Soak, SoakCheck, SoakError, SoakOptions, SoakPlan, SoakTools,
 };
 
-use crate::cli::values::{CrashArg, Printing, WorkersArg, one_of};
+use crate::arguments::{CrashArg, Printing, WorkersArg, one_of};
 use crate::exit::AppError;
 use crate::heap;
 use crate::machine::Machine;

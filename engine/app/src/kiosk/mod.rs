@@ -42,7 +42,7 @@ use toile_fitting::live::source::{Feed, Visits};
 use toile_fitting::live::{crash, recording};
 use toile_sensors::source::Session;
 
-use crate::cli::KioskArgs;
+use crate::commands::kiosk::KioskArgs;
 use crate::exit::AppError;
 use crate::report::Document;
 use crate::terminal::{self, Words};
@@ -69,7 +69,7 @@ pub fn run(args: &KioskArgs, windowed: fn(KioskRun<'_>) -> Result<KioskReport, A
         (config.sensor.source, config.sensor.session) = (SensorSource::Session, args.session.clone());
     }
     let _lock = InstanceLock::take(args.instance.as_deref())?;
-    let words = Words::new(args.quiet);
+    let words = Words::new(args.printing.quiet);
     let figures = figures(&config)?;
     let clock = RealClock::default();
     let run = KioskRun { args, config: &config, begun, clock, stop: &stop, words: &words, figures };
@@ -79,7 +79,11 @@ pub fn run(args: &KioskArgs, windowed: fn(KioskRun<'_>) -> Result<KioskReport, A
     } else {
         windowed(run)?
     };
-    if args.json { terminal::print_json(&Document::new("kiosk", report)) } else { terminal::print(&report.summary()) }
+    if args.printing.json {
+        terminal::print_json(&Document::new("kiosk", report))
+    } else {
+        terminal::print(&report.summary())
+    }
 }
 
 /// Where no window was built in.

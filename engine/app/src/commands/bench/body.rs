@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 use toile_perf::ansur::{self, BodyStudy, MeasureErrors, Survey};
 
-use crate::cli::values::{Printing, count};
+use crate::arguments::{Printing, count};
 use crate::exit::AppError;
 use crate::report::Document;
 use crate::terminal::{self, Paint, Tone};

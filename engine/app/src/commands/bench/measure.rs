@@ -8,7 +8,7 @@ use serde::Serialize;
 use toile_perf::ansur::Survey;
 use toile_perf::measuring::{self, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Sensor};
 
-use crate::cli::values::{Printing, count};
+use crate::arguments::{Printing, count};
 use crate::exit::AppError;
 use crate::report::Document;
 use crate::terminal::{self, Paint, Tone};

@@ -8,7 +8,7 @@ use toile_engine::skin::Blend;
 use toile_fitting::scene::yardstick;
 use toile_perf::skinning::{self, SkinningError, SkinningOptions, SkinningSubject};
 
-use crate::cli::values::{count, lanes};
+use crate::arguments::{count, lanes};
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::pictures::write_png;

@@ -13,8 +13,8 @@ use toile_perf::plot::raster;
 use toile_perf::skirt::options::{MAX_GARMENTS, SkirtMesh, SkirtOptions};
 use toile_perf::skirt::{self, SkirtError, table};
 
+use crate::arguments::{BackendArg, count, lanes, one_of};
 use crate::backend;
-use crate::cli::values::{BackendArg, count, lanes, one_of};
 use crate::exit::AppError;
 use crate::heap;
 use crate::output::OutputFolder;

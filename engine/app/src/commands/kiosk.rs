@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use clap::value_parser;
 
+use crate::arguments::Printing;
+
 use crate::kiosk::instance;
 
 /// Longest run that is asked for by its length (s): a year.
@@ -48,12 +50,9 @@ pub struct KioskArgs {
     /// Panic after so many seconds, to see what a crash leaves
     #[arg(long, value_name = "S")]
     pub crash_after: Option<u64>,
-    /// Print one JSON object, and nothing else, on stdout
-    #[arg(long)]
-    pub json: bool,
-    /// Print nothing on stderr but errors
-    #[arg(long, short)]
-    pub quiet: bool,
+    /// What is printed.
+    #[command(flatten)]
+    pub printing: Printing,
 }
 
 /// Reads `540x960`.

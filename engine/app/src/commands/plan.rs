@@ -2,7 +2,9 @@
 
 mod table;
 
-use toile_assets::scene_file::SceneFile;
+use clap::builder::PossibleValuesParser;
+use std::path::PathBuf;
+use toile_assets::scene_file::examples;
 use toile_engine::cloth::Cloth;
 use toile_engine::colliders::Colliders;
 use toile_engine::frame::Frame;
@@ -21,18 +23,80 @@ use toile_fitting::plan::verdict::{Priced, Verdict, judge};
 use toile_fitting::plan::weigh;
 use toile_fitting::plan::work::STAGES;
 
-use crate::cli::{PlanArgs, PlanScene, RunScene};
+use crate::arguments::{Printing, WorkersArg, WornArgs};
+use crate::commands::run::RunScene;
 use crate::exit::AppError;
 use crate::heap::counted;
 use crate::report::Document;
-use crate::terminal::{self, Paint, Words};
+use crate::terminal::{self, Paint};
+
+/// What is planned.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PlanScene {
+    /// A scene of `toile run`.
+    Run(RunScene),
+    /// A shopper of a session, or of the embedded one, dressed.
+    Worn(Option<PathBuf>, Wish),
+}
+
+/// What a shopper's scene is made of; a scene file has none of it.
+const WORN: [&str; 4] = ["session", "garments", "size", "quality"];
+
+/// Say what a scene needs, whether it fits into its time, and what each model is worth, before it runs.
+///
+/// Counts the work of a scene and learns what this machine takes for it: which colliders each part of a garment can ever
+/// touch, memory by part, the predicted time of each stage against its budget. Then plays ten seconds of it: how the
+/// prediction held, and for each model the error of leaving it out and the time that it takes. A scene that cannot fit is
+/// refused with exit code 3 and the cure, before anything is played.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(after_help = "Example: see whether a shirt and trousers fit at the finest quality\n  toile plan --garment \
+                        t-shirt --garment wide-trousers --quality fine")]
+pub struct PlanArgs {
+    /// Scene file of `toile run` (default: the shopper of the embedded session, dressed)
+    #[arg(value_name = "SCENE.toml", conflicts_with_all = WORN)]
+    scene: Option<PathBuf>,
+    /// A scene file that comes with the program
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_parser = PossibleValuesParser::new(examples::names()),
+        conflicts_with = "scene",
+        conflicts_with_all = WORN
+    )]
+    example: Option<String>,
+    /// Recording that the shopper comes from (default: the embedded session)
+    #[arg(long, value_name = "F")]
+    session: Option<PathBuf>,
+    #[command(flatten)]
+    worn: WornArgs,
+    #[command(flatten)]
+    workers: WorkersArg,
+    /// Play nothing: no measured error, no models weighed
+    #[arg(long)]
+    pub quick: bool,
+    /// List what this machine takes for each unit of work
+    #[arg(long)]
+    pub costs: bool,
+    #[command(flatten)]
+    printing: Printing,
+}
+
+impl PlanArgs {
+    /// The scene.
+    pub fn scene(&self) -> PlanScene {
+        match RunScene::of(self.scene.as_ref(), self.example.as_ref()) {
+            Some(scene) => PlanScene::Run(scene),
+            None => PlanScene::Worn(self.session.clone(), self.worn.wish()),
+        }
+    }
+}
 
 /// Runs `toile plan`.
 ///
 /// # Errors
 /// A scene that cannot be read or made, and [`AppError::Threshold`] for one that does not fit into its period.
 pub fn run(args: &PlanArgs) -> Result<(), AppError> {
-    let words = Words::new(args.quiet || args.json);
+    let words = args.printing.words();
     let workers = args.workers.count();
     let (scene, costs, memory) = match &args.scene() {
         PlanScene::Run(scene) => file(scene, workers)?,
@@ -63,7 +127,7 @@ pub fn run(args: &PlanArgs) -> Result<(), AppError> {
         plan.played = Some(played);
     }
     let refused = (!plan.verdict.fits).then(|| AppError::Threshold(refusal(&plan.scene, &plan.verdict)));
-    if args.json {
+    if args.printing.json {
         terminal::print_json(&Document::new("plan", plan))?;
     } else {
         terminal::print(&table::table(&plan, args.costs, Paint::for_stdout()))?;
@@ -86,11 +150,7 @@ fn refusal(scene: &str, verdict: &Verdict) -> String {
 
 /// A scene file.
 fn file(scene: &RunScene, workers: usize) -> Result<(Scene, Costs, Vec<Memory>), AppError> {
-    let file = match scene {
-        RunScene::File(path) => SceneFile::read(path),
-        RunScene::Example(name) => SceneFile::example(name),
-    };
-    let scene = Scene::file(file.map_err(AppError::input)?).map_err(AppError::input)?;
+    let scene = Scene::file(scene.read()?).map_err(AppError::input)?;
     let costs = calibrate::measure(None, workers).map_err(AppError::internal)?;
     let mut memory = vec![part("colliders", size_of::<Colliders>())];
     memory.extend(cloth_memory(&scene));

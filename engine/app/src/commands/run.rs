@@ -1,6 +1,12 @@
 //! `toile run`: any scene of the user's own, headless.
 
+mod dump;
+
+use clap::builder::PossibleValuesParser;
+use clap::value_parser;
+use std::path::{Path, PathBuf};
 use toile_assets::scene_file::SceneFile;
+use toile_assets::scene_file::examples;
 use toile_engine::cloth::Cloth;
 use toile_engine::cloth::program::STAGES;
 use toile_fitting::heap::HeapProbe;
@@ -8,14 +14,117 @@ use toile_fitting::scene::Runner;
 use toile_fitting::scene::yardstick;
 use toile_perf::skirt::report::Events;
 
-use crate::cli::{RunArgs, RunScene};
-use crate::dump::Dump;
+use crate::arguments::{Printing, one_of};
 use crate::exit::AppError;
 use crate::heap::counted;
+use crate::output::Inputs;
 use crate::output::OutputFolder;
 use crate::report::{self, Document, RunGarment, RunReport};
 use crate::summary;
 use crate::terminal::{self, Paint, Words};
+use dump::{Dump, Format};
+
+/// Most steps that `run` takes: ten days at 120 Hz.
+const MAX_RUN_STEPS: u64 = 100_000_000;
+
+/// Where the scene of `toile run` comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RunScene {
+    /// A file.
+    File(PathBuf),
+    /// A scene inside the program.
+    Example(String),
+}
+
+impl RunScene {
+    /// Reads the scene.
+    ///
+    /// # Errors
+    /// [`AppError::Input`] for a scene that cannot be used.
+    pub fn read(&self) -> Result<SceneFile, AppError> {
+        let scene = match self {
+            Self::File(path) => SceneFile::read(path),
+            Self::Example(name) => SceneFile::example(name),
+        };
+        scene.map_err(AppError::input)
+    }
+
+    /// The scene that these arguments name, if they name one.
+    pub fn of(file: Option<&PathBuf>, example: Option<&String>) -> Option<Self> {
+        file.cloned().map(Self::File).or_else(|| example.cloned().map(Self::Example))
+    }
+}
+
+/// Run any scene of your own: meshes, pins, fabric, colliders and their motion.
+///
+/// Runs a scene file without pictures: garments from OBJ, glTF or built-in meshes, pins, fabrics, spheres, capsules and
+/// planes with their motion from CSV, gravity, wind and settings. It reports time and strain together, and writes positions
+/// for your own tools. docs/scene.md describes the file.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(
+    after_help = "Example: let a cloth fall on a ball, and write where it is 30 times a second\n  toile run --example \
+                        cloth-on-sphere --dump positions --every 4"
+)]
+pub struct RunArgs {
+    /// Scene file
+    #[arg(value_name = "SCENE.toml", required_unless_present = "example", conflicts_with = "example")]
+    scene: Option<PathBuf>,
+    /// Run a scene that comes with the program
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(examples::names()))]
+    example: Option<String>,
+    /// Steps to run (default: the scene's duration)
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..=MAX_RUN_STEPS))]
+    pub frames: Option<u64>,
+    /// Folder for the positions of every vertex; it is made if missing
+    #[arg(long, value_name = "DIR")]
+    pub dump: Option<PathBuf>,
+    /// How positions are written: csv or ply
+    #[arg(
+        long = "dump-format",
+        value_name = "F",
+        value_parser = one_of([Format::Csv, Format::Ply], Format::ending),
+        default_value = Format::Csv.ending()
+    )]
+    pub format: Format,
+    /// Write positions every K steps
+    #[arg(long, value_name = "K", value_parser = value_parser!(u64).range(1..=MAX_RUN_STEPS), default_value = "1")]
+    pub every: u64,
+    #[command(flatten)]
+    printing: Printing,
+}
+
+impl RunArgs {
+    /// The scene.
+    ///
+    /// # Errors
+    /// None that the command line lets through.
+    pub fn scene(&self) -> Result<RunScene, AppError> {
+        let scene = RunScene::of(self.scene.as_ref(), self.example.as_ref());
+        scene.ok_or_else(|| AppError::Usage("no scene is given; see `toile run --help`".to_owned()))
+    }
+
+    /// The scene's file and all files that it names, which must not be overwritten.
+    pub fn inputs(&self) -> Inputs {
+        let Some(scene) = &self.scene else { return Inputs::default() };
+        let folder = scene.parent().unwrap_or(Path::new(""));
+        let text = std::fs::read_to_string(scene).unwrap_or_default();
+        let mut files = vec![scene.clone()];
+        if let Ok(table) = text.parse::<toml::Table>() {
+            strings(&toml::Value::Table(table), &mut |text| files.push(folder.join(text)));
+        }
+        Inputs::new(files)
+    }
+}
+
+/// Visits every string of a TOML value.
+fn strings(value: &toml::Value, visit: &mut impl FnMut(&str)) {
+    match value {
+        toml::Value::String(text) => visit(text),
+        toml::Value::Array(values) => values.iter().for_each(|value| strings(value, visit)),
+        toml::Value::Table(table) => table.values().for_each(|value| strings(value, visit)),
+        _ => {}
+    }
+}
 
 /// Most files that one dump writes: beyond it a folder is slow to list, and the disk fills unnoticed.
 const MAX_FILES: u64 = 1_000_000;
@@ -25,12 +134,8 @@ const MAX_FILES: u64 = 1_000_000;
 /// # Errors
 /// A scene that cannot be used, a folder that cannot be written, or a closed stdout.
 pub fn run(args: &RunArgs) -> Result<(), AppError> {
-    let words = Words::new(args.quiet || args.json);
-    let scene = match &args.scene()? {
-        RunScene::File(path) => SceneFile::read(path),
-        RunScene::Example(name) => SceneFile::example(name),
-    };
-    let mut scene = scene.map_err(AppError::input)?;
+    let words = args.printing.words();
+    let mut scene = args.scene()?.read()?;
     if let Some(frames) = args.frames {
         shorten(&mut scene, frames)?;
     }
@@ -50,9 +155,9 @@ pub fn run(args: &RunArgs) -> Result<(), AppError> {
     play(&mut runner, &words, dump.as_mut())?;
     let dumped = dump.as_ref().map_or(0, Dump::frames);
     dump.map_or(Ok(()), Dump::finish)?;
-    let yardstick_us = if args.json { Some(yardstick::measure().map_err(AppError::internal)?) } else { None };
+    let yardstick_us = if args.printing.json { Some(yardstick::measure().map_err(AppError::internal)?) } else { None };
     let report = report(&runner, args, dumped, yardstick_us);
-    if args.json {
+    if args.printing.json {
         return terminal::print_json(&Document::new("run", report));
     }
     terminal::print(&summary::run(&report, Paint::for_stdout()))

@@ -8,7 +8,7 @@ use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasures, MEASURES};
 use toile_track::measures;
 
-use crate::cli::MeasureArgs;
+use crate::arguments::Printing;
 use crate::exit::AppError;
 use crate::output::{Inputs, OutputFolder};
 use crate::overlay::{Fit, overlay};
@@ -17,6 +17,26 @@ use crate::report::measures::in_mm;
 use crate::report::{self, DefinedMeasure, Document, FittedBody, MeasureReport, Method};
 use crate::summary;
 use crate::terminal::{self, Paint};
+
+/// Measure the person in a recording or a depth frame.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(after_help = "Example: get the measures as JSON\n  toile measure shopper.mcap --json")]
+pub struct MeasureArgs {
+    /// Recording or depth frame
+    #[arg(value_name = "F")]
+    pub file: PathBuf,
+    /// Camera of a raw depth frame, as JSON (default: the recording's own)
+    #[arg(long, value_name = "J")]
+    pub camera: Option<PathBuf>,
+    /// The shopper wears nothing that stands off the skin: the body fit is not one-sided
+    #[arg(long)]
+    pub tight: bool,
+    /// Folder for a picture of the fitted body over the depth
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    printing: Printing,
+}
 
 /// Runs `toile measure`.
 ///
@@ -48,7 +68,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), AppError> {
         people: measured.best.people as u32,
         files,
     };
-    if args.json {
+    if args.printing.json {
         return terminal::print_json(&Document::new("measure", report));
     }
     terminal::print(&summary::measure(&report, Paint::for_stdout()))
