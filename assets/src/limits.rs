@@ -14,6 +14,16 @@ pub const MAX_SPHERES: usize = 2 * MAX_CAPSULES;
 /// of 32 are whole lanes of every width: the last four cost nothing where nothing is near them.
 pub const MAX_CAPSULES: usize = 32;
 
+/// Garments that one body wears at once: the eight layers of Ugur 2008, from underwear to an overcoat.
+pub const MAX_GARMENTS: usize = 8;
+
+/// Garments of one scene file: as many skirts side by side as the largest benchmark has.
+pub const MAX_SCENE_GARMENTS: usize = 64;
+
+/// Vertices of all garments of one scene file. Each takes some 700 bytes baked and in motion, so that a scene stays below a
+/// gigabyte; at the engine's rate a step of so many takes a second.
+pub const MAX_SCENE_VERTICES: usize = 1 << 20;
+
 /// Planes beside the floor: the four walls of a changing room.
 pub const MAX_PLANES: usize = 4;
 

@@ -30,6 +30,7 @@ pub use garment::{SceneGarment, UserMesh};
 pub use source::Source;
 pub use track::Track;
 
+use crate::limits::{MAX_SCENE_GARMENTS, MAX_SCENE_VERTICES};
 use crate::scene::skirt::{self, Motion};
 use error::Document;
 use table::Table;
@@ -210,11 +211,25 @@ fn garments(root: &Table<'_>, loading: &mut Loading<'_>) -> Result<Vec<SceneGarm
     if tables.is_empty() {
         return Err(root.error("garment is missing; give at least one table [[garment]] with a mesh, grid or tube"));
     }
+    if let Some(table) = tables.get(MAX_SCENE_GARMENTS) {
+        let count = tables.len();
+        return Err(
+            table.error(format!("the scene has {count} garments, more than {MAX_SCENE_GARMENTS}; leave some out"))
+        );
+    }
     let mut garments: Vec<SceneGarment> = Vec::new();
+    let mut vertices = 0;
     for (i, table) in tables.iter().enumerate() {
         let garment = SceneGarment::load(table, i + 1, loading)?;
         if garments.iter().any(|g| g.name == garment.name) {
             return Err(table.wrong("name", format!("\"{}\" stands twice; give each garment its own", garment.name)));
+        }
+        vertices += garment.mesh.start.len();
+        if vertices > MAX_SCENE_VERTICES {
+            return Err(table.error(format!(
+                "the garments so far have {vertices} vertices, more than the {MAX_SCENE_VERTICES} that one scene may have; take \
+                 coarser meshes or fewer garments (`toile plan` says what fits into real time)"
+            )));
         }
         garments.push(garment);
     }

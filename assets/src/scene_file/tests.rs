@@ -388,3 +388,16 @@ fn every_example_is_a_scene() {
     let error = SceneFile::example("hat").unwrap_err().to_string();
     assert!(error.contains("hat") && error.contains("flag-in-wind"), "{error}");
 }
+
+#[test]
+fn a_scene_beyond_all_measure_is_refused_before_it_is_baked() {
+    let grid = |rows: usize, i: usize| {
+        format!("[[garment]]\nname = \"g{i}\"\ngrid = {{ rows = {rows}, columns = {rows}, width = 1, height = 1 }}\n")
+    };
+    let large: String = (0..40).map(|i| grid(512, i)).collect();
+    let (line, says) = refusal(&format!("duration = 1\n{large}"));
+    assert!(line == 14 && says.contains("1310720 vertices, more than the 1048576"), "line {line}: {says}");
+    let many: String = (0..65).map(|i| grid(2, i)).collect();
+    let (_, says) = refusal(&format!("duration = 1\n{many}"));
+    assert!(says.contains("65 garments, more than 64"), "{says}");
+}

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toile_assets::body::{Body, Sex};
 use toile_assets::garment::Garment;
+use toile_assets::limits::MAX_GARMENTS;
 use toile_assets::sizes::Population;
 use toile_assets::wardrobe;
 use toile_assets::wardrobe::style::Style;
@@ -54,6 +55,7 @@ impl Wish {
     /// # Errors
     /// A name that is neither.
     pub fn choices(&self) -> Result<Vec<Choice>, FittingError> {
+        self.check_count()?;
         self.names().into_iter().map(choice).collect()
     }
 
@@ -62,7 +64,18 @@ impl Wish {
     /// # Errors
     /// A name that is not in the wardrobe.
     pub fn styles(&self) -> Result<Vec<Style>, FittingError> {
+        self.check_count()?;
         self.names().into_iter().map(|name| wardrobe::style(name).map_err(FittingError::input)).collect()
+    }
+
+    fn check_count(&self) -> Result<(), FittingError> {
+        let count = self.garments.len();
+        if count > MAX_GARMENTS {
+            return Err(FittingError::Input(format!(
+                "{count} garments are asked for, and a body wears at most {MAX_GARMENTS} at once; leave some out"
+            )));
+        }
+        Ok(())
     }
 
     fn names(&self) -> Vec<&str> {
@@ -125,5 +138,18 @@ pub fn put_on(choice: &Choice, size: Option<&str>, measured: &Measurements, body
             let garment = wardrobe::dress_mesh(path, MESH_FABRIC, body).map_err(FittingError::input)?;
             Ok(Worn { garment, fit: None })
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nobody_wears_forty_shirts() {
+        let wish = Wish { garments: vec!["t-shirt".to_owned(); 40], ..Wish::default() };
+        let refused = wish.choices().unwrap_err();
+        assert!(matches!(&refused, FittingError::Input(text) if text.contains("at most 8")), "{refused}");
+        assert_eq!(wish.styles().unwrap_err(), refused);
     }
 }

@@ -1,0 +1,104 @@
+//! One answer: the same recording gives the same measures, the same size and the same verdicts by whichever door it comes in.
+
+mod common;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use common::Scratch;
+use serde_json::Value;
+use toile_assets::wardrobe;
+use toile_fitting::dress::measured::{self, Told};
+use toile_fitting::dress::wish::Wish;
+use toile_fitting::dress::{session, size};
+use toile_fitting::live::dresser::{DressJob, DressOutcome, Dresser, ShopperSource};
+
+/// The measures of the contract.
+const MEASURES: [&str; 5] = ["stature_mm", "shoulder_breadth_mm", "chest_girth_mm", "waist_girth_mm", "hip_girth_mm"];
+
+/// What the program prints as JSON.
+fn json(scratch: &Scratch, args: &[&str]) -> Value {
+    let args: Vec<&str> = args.iter().copied().chain(["--json"]).collect();
+    let out = scratch.toile(&args);
+    assert!(out.status.success(), "{args:?}: {}", String::from_utf8_lossy(&out.stderr));
+    serde_json::from_slice(&out.stdout).unwrap()
+}
+
+/// Zones with ease and verdict, as try-on reports them.
+fn zones(recommendation: &Value) -> Vec<(String, f64, String)> {
+    let zone = |z: &Value| {
+        (z["zone"].as_str().unwrap().into(), z["ease_mm"].as_f64().unwrap(), z["verdict"].as_str().unwrap().into())
+    };
+    recommendation["zones"].as_array().unwrap().iter().map(zone).collect()
+}
+
+/// The headless kiosk's door: its dresser, with the recording that it plays.
+fn dressed_by_the_kiosk(path: &Path, garment: &str) -> (String, [f32; 5]) {
+    let wish = Wish { garments: vec![garment.to_owned()], ..Wish::default() };
+    let mut dresser = Dresser::new(wish);
+    let recording = Arc::new(session::open(Some(path), None).unwrap());
+    dresser.begin(DressJob::Shopper(ShopperSource::Recording(recording))).unwrap();
+    let dressed = loop {
+        match dresser.poll() {
+            Some(DressOutcome::Done(dressed)) => break dressed,
+            Some(_) => panic!("nobody was dressed"),
+            None => std::thread::sleep(std::time::Duration::from_millis(5)),
+        }
+    };
+    let recipe = &dressed.dressing.recipe;
+    (recipe.garments[0].1.clone(), recipe.measures.map(f32::from_bits))
+}
+
+fn one_answer(path: &Path, garment: &str) {
+    let file = path.to_str().unwrap();
+    let scratch = Scratch::new(&format!("one-answer-{garment}"));
+    let measured = json(&scratch, &["measure", file]);
+    let worn = ["--session", file, "--garment", garment, "--quality", "draft"];
+    let tried = json(&scratch, &[&["try-on", "--no-pictures"], &worn[..]].concat());
+    let planned = json(&scratch, &[&["plan", "--quick"], &worn[..]].concat());
+    for name in MEASURES {
+        assert_eq!(measured["measurements"][name], tried["measurements"][name], "{file}: {name}");
+    }
+    let recommended = &tried["recommendation"];
+    let size_code = recommended["size"].as_str().unwrap();
+    assert_eq!(planned["garments"][0]["size"], size_code, "{file}: plan");
+    let (kiosk_size, kiosk_body) = dressed_by_the_kiosk(path, garment);
+    assert_eq!(kiosk_size, size_code, "{file}: kiosk");
+    // The body that the kiosk shows has the measures that are reported, where no two of them contradict each other.
+    for (name, body) in MEASURES.iter().zip(kiosk_body) {
+        let told = tried["measurements"][name]["value"].as_f64().unwrap();
+        assert!((f64::from(body) * 1e3 - told).abs() < 0.1, "{file}: {name} {told} is {body} m on the kiosk's body");
+    }
+    // What the window judges by: the same function on the same measures.
+    let session = session::open(Some(path), None).unwrap();
+    let known = measured::measure(&session, Told::default()).unwrap();
+    let judged = size::judge(&wardrobe::style(garment).unwrap(), None, &known.best).unwrap();
+    let by_window: Vec<(String, f64, String)> = judged
+        .zones
+        .iter()
+        .map(|z| (z.zone.name().into(), (f64::from(z.ease) * 1e4).round() / 10.0, z.verdict.name().into()))
+        .collect();
+    assert_eq!(judged.size, size_code);
+    assert_eq!(by_window, zones(recommended), "{file}: verdicts");
+}
+
+#[test]
+fn the_embedded_session_has_one_answer() {
+    let embedded = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/data/sessions/shopper.mcap");
+    for garment in ["sun-dress", "wide-trousers", "t-shirt"] {
+        one_answer(&embedded, garment);
+    }
+}
+
+#[test]
+fn a_recording_of_joints_alone_has_one_answer() {
+    let Some(data) = std::env::var_os("TOILE_DATA") else {
+        assert!(std::env::var_os("CI").is_none(), "CI needs TOILE_DATA");
+        return;
+    };
+    let folder = PathBuf::from(data).join("skeleton/labanotation-kinect2");
+    let mut recordings: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    recordings.sort();
+    let csv = recordings.iter().find(|path| path.extension().is_some_and(|e| e == "csv")).unwrap();
+    one_answer(csv, "sun-dress");
+}
