@@ -55,6 +55,7 @@ fn one_answer(path: &Path, garment: &str) {
     let measured = json(&scratch, &["measure", file]);
     let worn = ["--session", file, "--garment", garment, "--quality", "draft"];
     let tried = json(&scratch, &[&["try-on", "--no-pictures"], &worn[..]].concat());
+    assert!(scratch.path().join("out/report.json").is_file(), "what a command writes goes under out/");
     let planned = json(&scratch, &[&["plan", "--quick"], &worn[..]].concat());
     for name in MEASURES {
         assert_eq!(measured["measurements"][name], tried["measurements"][name], "{file}: {name}");
