@@ -29,13 +29,13 @@ pub struct Adapter {
 
 impl SteppedBy {
     /// The means of a run, after it.
-    pub fn of(means: &Backends) -> Self {
-        let told = |a: &toile_gpu::Adapter| Adapter { name: a.name.clone(), kind: a.kind, driver: a.driver.clone() };
+    pub fn of(backends: &Backends) -> Self {
+        let adapter = |a: &toile_gpu::Adapter| Adapter { name: a.name.clone(), kind: a.kind, driver: a.driver.clone() };
         Self {
-            asked: means.asked().name(),
-            backend: means.used(),
-            adapter: means.adapter().map(told),
-            fallen: means.fallback().map(str::to_owned),
+            asked: backends.asked().name(),
+            backend: backends.used(),
+            adapter: backends.adapter().map(adapter),
+            fallen: backends.fallback().map(str::to_owned),
         }
     }
 }

@@ -4,10 +4,11 @@
 //! that their true girths get.
 
 use toile_assets::numeric::random::SplitMix64;
+use toile_assets::sizes::{GarmentKind, SizeError, SizeTable};
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, Source};
 use toile_track::measures::Measures;
-use toile_track::recommend::{Offer, RecommendError, Recommendation, Zone, recommend};
+use toile_track::recommend::{EaseRange, MadeSize, Offer, RecommendError, Recommendation, Zone, ZoneGirth, recommend};
 
 /// Chest, waist and hip girth of one person (m).
 pub type Girths = [f32; 3];
@@ -82,21 +83,21 @@ fn measured(girths: Girths, sigmas: Girths) -> Measurements {
 ///
 /// # Errors
 /// Those of [`recommend`].
-pub fn reliability(people: &[Girths], offer: &Offer, sigma: f32, seed: u64) -> Result<Reliability, RecommendError> {
+fn reliability(people: &[Girths], offer: &Offer, sigma: f32, seed: u64) -> Result<Reliability, RecommendError> {
     let mut rng = SplitMix64::new(seed);
     let none = ReliabilityBin::default();
     let mut found = Reliability { sigma, bins: [none; BINS.len()], all: none, taped: none, untaped: none };
     for truth in people {
         let seen = truth.map(|g| g + sigma * rng.gaussian());
         let best = recommend(&measured(*truth, [0.0; 3]), offer)?.size;
-        let told = recommend(&measured(seen, [sigma; 3]), offer)?;
-        let right = told.size == best;
-        let bin = BINS.iter().rposition(|low| told.probability >= *low).unwrap_or(0);
-        found.bins[bin].add(told.probability, right);
-        found.all.add(told.probability, right);
-        if let Some(tape) = &told.tape {
+        let given = recommend(&measured(seen, [sigma; 3]), offer)?;
+        let right = given.size == best;
+        let bin = BINS.iter().rposition(|low| given.probability >= *low).unwrap_or(0);
+        found.bins[bin].add(given.probability, right);
+        found.all.add(given.probability, right);
+        if let Some(tape) = &given.tape {
             let after = taped(*truth, seen, sigma, tape.zone, offer)?;
-            found.untaped.add(told.probability, right);
+            found.untaped.add(given.probability, right);
             found.taped.add(tape.probability, after.size == best);
         }
     }
@@ -109,6 +110,30 @@ fn taped(truth: Girths, seen: Girths, sigma: f32, zone: Zone, offer: &Offer) -> 
     let (mut girths, mut sigmas) = (seen, [sigma; 3]);
     (girths[known], sigmas[known]) = (truth[known], 0.0);
     recommend(&measured(girths, sigmas), offer)
+}
+
+/// A dress with this much ease over the body of each size (m): chest, waist, hip.
+const MADE_EASE: [f32; 3] = [0.06, 0.08, 0.10];
+
+/// Ease that feels right, least and most (m).
+const RIGHT_EASE: [[f32; 2]; 3] = [[0.03, 0.09], [0.03, 0.15], [0.05, 0.20]];
+
+/// [`reliability`] of the recommendations of a dress in women's sizes.
+///
+/// # Errors
+/// Those of [`recommend`], and a table of sizes that cannot be read.
+pub fn of_dress(people: &[Girths], sigma: f32, seed: u64) -> Result<Reliability, RecommendError> {
+    let table = SizeTable::embedded("women")?;
+    let made = |code: &str| {
+        let body = table.size_body(code)?;
+        let girths = [body.chest_girth, body.waist_girth, body.hip_girth];
+        let zones = [0, 1, 2].map(|i| ZoneGirth { zone: Zone::ALL[i], girth_m: girths[i] + MADE_EASE[i] });
+        Ok(MadeSize { code: code.to_owned(), zones: zones.to_vec() })
+    };
+    let sizes = table.codes().into_iter().map(made).collect::<Result<Vec<_>, SizeError>>()?;
+    let ease = [0, 1, 2].map(|i| EaseRange { zone: Zone::ALL[i], least: RIGHT_EASE[i][0], most: RIGHT_EASE[i][1] });
+    let offer = Offer { garment: "dress", kind: GarmentKind::Dress, table: &table, sizes: &sizes, ease: &ease };
+    reliability(people, &offer, sigma, seed)
 }
 
 #[cfg(test)]

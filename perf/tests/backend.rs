@@ -38,11 +38,11 @@ const SWING_M: f64 = 0.1;
 
 /// Whatever steps on a device; none where this machine has none, which CI does not excuse.
 fn device() -> Option<Backends> {
-    let means = Backends::open(Backend::Gpu);
-    if means.adapter().is_some() {
-        return Some(means);
+    let backends = Backends::open(Backend::Gpu);
+    if backends.adapter().is_some() {
+        return Some(backends);
     }
-    let reason = means.fallback().unwrap_or("it was not opened");
+    let reason = backends.fallback().unwrap_or("it was not opened");
     assert!(toile_gpu::adapters().is_empty(), "{reason}");
     assert_ne!(std::env::var("CI").as_deref(), Ok("true"), "{reason}");
     eprintln!("not run: {reason}");
@@ -50,8 +50,8 @@ fn device() -> Option<Backends> {
 }
 
 /// Whether a device has to give the processor's bits.
-fn exact(means: &Backends) -> bool {
-    means.adapter().is_some_and(|a| a.kind == "software")
+fn exact(backends: &Backends) -> bool {
+    backends.adapter().is_some_and(|a| a.kind == "software")
 }
 
 /// What ten seconds of a skirt gave.
@@ -64,8 +64,8 @@ struct Ran {
 }
 
 /// Ten seconds of a skirt; `nudge` may touch it before each step.
-fn ran(means: &Backends, options: &SkirtOptions, mut nudge: impl FnMut(&mut SkirtScene)) -> Ran {
-    let mut scene = SkirtScene::by(means, options, &HeapProbe::none(), |_| {}).expect("the scene is as it should be");
+fn ran(backends: &Backends, options: &SkirtOptions, mut nudge: impl FnMut(&mut SkirtScene)) -> Ran {
+    let mut scene = SkirtScene::by(backends, options, &HeapProbe::none(), |_| {}).expect("the scene is as it should be");
     let mut gauge = Gauge::new(&scene);
     let mut strains = Vec::new();
     for step in 1..=STEPS {
@@ -106,12 +106,12 @@ fn walking() -> SkirtOptions {
 
 #[test]
 fn ten_seconds_of_the_walking_skirt_are_the_processors() {
-    let Some(means) = device() else { return };
+    let Some(backends) = device() else { return };
     let cpu = ran(&Backends::cpu(), &walking(), |_| {});
-    let gpu = ran(&means, &walking(), |_| {});
+    let gpu = ran(&backends, &walking(), |_| {});
     assert_eq!((cpu.scene.stepper().backend(), gpu.scene.stepper().backend()), (Backend::Cpu, Backend::Gpu));
     hold(&cpu, &gpu);
-    if exact(&means) {
+    if exact(&backends) {
         assert_eq!(cpu.strains, gpu.strains);
         assert_eq!(measure::apart(&cpu.at, &gpu.at).max_m, 0.0);
         assert_eq!(cpu.scene.state_hash(), gpu.scene.state_hash());
@@ -147,7 +147,7 @@ fn nudge(scene: &mut SkirtScene, chance: &mut u64) {
 
 #[test]
 fn the_settled_skirt_is_as_near_to_the_oracle_as_the_processors() {
-    let Some(means) = device() else { return };
+    let Some(backends) = device() else { return };
     let options = SkirtOptions {
         verts: 16 * 16,
         motion: Motion::Settled,
@@ -155,8 +155,8 @@ fn the_settled_skirt_is_as_near_to_the_oracle_as_the_processors() {
         quality: Some(Quality::Fine),
         ..SkirtOptions::default()
     };
-    let [cpu, gpu] = [&Backends::cpu(), &means].map(|means| {
-        let Ran { at, scene, .. } = ran(means, &options, |_| {});
+    let [cpu, gpu] = [&Backends::cpu(), &backends].map(|backends| {
+        let Ran { at, scene, .. } = ran(backends, &options, |_| {});
         let [_, solids] = adapter::solids(scene.colliders());
         let mut problem = Problem::of(&scene.garment);
         problem.reach = adapter::reach(&scene.garment, scene.colliders());
@@ -166,7 +166,7 @@ fn the_settled_skirt_is_as_near_to_the_oracle_as_the_processors() {
     });
     println!("{cpu:e} m and {gpu:e} m from the oracle");
     assert!(cpu < 1e-3 && gpu < 1e-3, "{cpu} m and {gpu} m from the oracle");
-    assert!((gpu / cpu - 1.0).abs() < if exact(&means) { f64::EPSILON } else { 0.01 }, "{cpu} m and {gpu} m");
+    assert!((gpu / cpu - 1.0).abs() < if exact(&backends) { f64::EPSILON } else { 0.01 }, "{cpu} m and {gpu} m");
 }
 
 /// A run's word on what stepped it.
@@ -181,7 +181,7 @@ const VALIDATED: [(&str, &str); 4] =
 
 #[test]
 fn what_validates_on_the_processor_validates_on_the_device() {
-    let Some(means) = device() else { return };
+    let Some(backends) = device() else { return };
     for (case, parameter) in VALIDATED {
         let [cpu, gpu] = [Backend::Cpu, Backend::Gpu].map(|backend| {
             let (case, parameter) = (Some(case.into()), Some(parameter.into()));
@@ -194,18 +194,18 @@ fn what_validates_on_the_processor_validates_on_the_device() {
         for (a, b) in cpu.cases.iter().zip(&gpu.cases) {
             println!("{case} {parameter} {}: {} and {} {}", a.mesh, a.got, b.got, a.unit);
             assert_eq!(a.pass, b.pass, "{a:?}\n{b:?}");
-            assert!(!exact(&means) || a.got.to_bits() == b.got.to_bits(), "{a:?}\n{b:?}");
+            assert!(!exact(&backends) || a.got.to_bits() == b.got.to_bits(), "{a:?}\n{b:?}");
         }
         assert!(gpu.passed[0] > 0, "nothing of {case} {parameter} passes");
     }
 }
 
-/// What jumps, is no number, turns and is pressed.
+/// What jumps, is NaN, turns and is pressed.
 const TORTURED: [&str; 6] = ["teleport", "bad-state", "bad-settings", "bad-root-settings", "spin", "squeeze"];
 
 #[test]
 fn what_comes_back_on_the_processor_comes_back_on_the_device() {
-    let Some(means) = device() else { return };
+    let Some(backends) = device() else { return };
     for case in TORTURED {
         let [cpu, gpu] = [Backend::Cpu, Backend::Gpu].map(|backend| {
             let options =
@@ -220,6 +220,6 @@ fn what_comes_back_on_the_processor_comes_back_on_the_device() {
             a[0].hausdorff_mm, b[0].hausdorff_mm, a[0].recovered_s, b[0].recovered_s
         );
         assert!(a[0].pass && b[0].pass, "{a:?}\n{b:?}");
-        assert!(!exact(&means) || a == b, "{a:?}\n{b:?}");
+        assert!(!exact(&backends) || a == b, "{a:?}\n{b:?}");
     }
 }

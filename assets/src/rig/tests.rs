@@ -1,40 +1,19 @@
 //! The collision body against brute force and against its own promises.
 
 use super::*;
-use crate::body::{Ansur, Measures, Sex, Wanted};
+use crate::body::{Measures, Sex};
 
-/// The 5th, 50th and 95th percentile of ANSUR II (m): stature, neck, chest, waist at the navel, buttocks, crotch height,
-/// sleeve from the spine, biacromial breadth.
-const PERCENTILES: [(Sex, [[f32; 8]; 3]); 2] = [
-    (
-        Sex::Female,
-        [
-            [1.525, 0.302, 0.824, 0.710, 0.901, 0.712, 0.746, 0.335],
-            [1.626, 0.328, 0.940, 0.852, 1.018, 0.780, 0.805, 0.365],
-            [1.740, 0.363, 1.094, 1.040, 1.156, 0.857, 0.870, 0.396],
-        ],
-    ),
-    (
-        Sex::Male,
-        [
-            [1.648, 0.360, 0.922, 0.768, 0.899, 0.771, 0.831, 0.384],
-            [1.755, 0.395, 1.056, 0.937, 1.017, 0.845, 0.895, 0.415],
-            [1.870, 0.443, 1.207, 1.131, 1.149, 0.925, 0.963, 0.447],
-        ],
-    ),
-];
-
+/// Small, average and large bodies of both sexes.
 fn people() -> Vec<(String, Body)> {
-    let surveyed = PERCENTILES.into_iter().flat_map(|(sex, rows)| rows.map(|row| (sex, row)));
-    let surveyed = surveyed.map(|(sex, row)| {
-        use Ansur::*;
-        let girths = [NeckCircumference, ChestCircumference, WaistCircumferenceOmphalion, ButtockCircumference];
-        let lengths = [CrotchHeight, SleeveLengthSpineWrist, BiacromialBreadth];
-        let measures = [Stature].into_iter().chain(girths).chain(lengths);
-        let wanted = measures.zip(row).fold(Wanted::new(), |w, (m, value)| w.with(m, value));
-        (format!("{sex:?} {row:?}"), Body::fitted(sex, &wanted).unwrap().body)
-    });
-    surveyed.collect()
+    let sized = |sex: Sex, scale: f32| {
+        let m = Measures::average(sex);
+        let [stature, shoulder_breadth] = [m.stature, m.shoulder_breadth].map(|length| length * scale);
+        let [chest_girth, waist_girth, hip_girth] =
+            [m.chest_girth, m.waist_girth, m.hip_girth].map(|girth| girth * scale);
+        let measures = Measures { stature, shoulder_breadth, chest_girth, waist_girth, hip_girth };
+        (format!("{sex:?} {scale}"), Body::build(sex, &measures).unwrap())
+    };
+    [Sex::Female, Sex::Male].into_iter().flat_map(|sex| [0.95, 1.0, 1.05].map(|scale| sized(sex, scale))).collect()
 }
 
 #[test]

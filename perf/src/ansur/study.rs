@@ -122,7 +122,7 @@ pub struct BodyStudy {
     pub rough: usize,
     /// Bodies that are folded: an edge pierces a triangle that lies within [`sound::FOLDED_WITHIN`] edges along the surface.
     pub folded: usize,
-    /// Bodies of which two parts touch and press into each other, such as thighs: no flaw, but told.
+    /// Bodies of which two parts touch and press into each other, such as thighs: no flaw, but reported.
     pub touching: usize,
     /// Share of bodies that look wrong: too rough or folded.
     pub wrong: f64,
@@ -148,11 +148,11 @@ struct BuiltBody {
     ms: f64,
 }
 
-/// Builds `count` random people of a survey file, without repeats; `told` hears of each.
+/// Builds `count` random people of a survey file, without repeats; `progress` is called after each.
 ///
 /// # Errors
 /// A file that is no survey, or a person outside of all ranges.
-pub fn study(survey: &Survey, count: usize, seed: u64, told: &dyn Fn()) -> Result<BodyStudy, StudyError> {
+pub fn study(survey: &Survey, count: usize, seed: u64, progress: &dyn Fn()) -> Result<BodyStudy, StudyError> {
     let sex = survey.sex()?;
     let columns: Vec<Vec<f64>> = GIVEN.iter().map(|g| survey.column(g.1)).collect::<Result<_, _>>()?;
     if survey.people() == 0 {
@@ -172,7 +172,7 @@ pub fn study(survey: &Survey, count: usize, seed: u64, told: &dyn Fn()) -> Resul
             Err(source) => return Err(StudyError::Person { line: row + 2, source }),
         };
         built.push(BuiltBody { row, fitted, reached, ms });
-        told();
+        progress();
     }
     let mut measures = Vec::new();
     for ((measure, _, limit), column) in GIVEN.iter().zip(&columns) {

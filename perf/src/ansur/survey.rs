@@ -26,7 +26,7 @@ pub enum SurveyError {
         /// The column's name.
         column: String,
     },
-    /// A cell that is no number.
+    /// A cell that does not hold a number.
     #[error("{file}: line {line}: {column} is no number of millimetres; repair the line or leave it out")]
     NoNumber {
         /// The path.

@@ -81,19 +81,19 @@ pub struct Crossover {
     pub from_garments: [Option<f64>; 2],
 }
 
-/// Runs the rows that have no more vertices in all than `most`; `told` hears what is being run.
+/// Runs the rows that have no more vertices in all than `most`; `progress` is given what is being run.
 ///
 /// # Errors
 /// Where the options cannot be met.
-pub fn run(base: &SkirtOptions, most: usize, told: &mut dyn FnMut(&str)) -> Result<Crossover, SkirtError> {
+pub fn run(base: &SkirtOptions, most: usize, progress: &mut dyn FnMut(&str)) -> Result<Crossover, SkirtError> {
     // Of `auto` both sides are wanted just so.
-    let means = Backends::open(Backend::Gpu);
+    let backends = Backends::open(Backend::Gpu);
     let sizes = SIZES.into_iter().map(|verts| (verts, 1));
     let counts = COUNTS.into_iter().map(|garments| (EACH, garments)).filter(|(_, n)| *n > 1);
     let mut rows: Vec<CrossoverRow> = Vec::new();
     for (verts, garments) in sizes.chain(counts).filter(|(verts, n)| verts * n <= most) {
-        told(&format!("{garments} x {verts} vertices"));
-        rows.push(row(&SkirtOptions { verts, garments, ..*base }, &means)?);
+        progress(&format!("{garments} x {verts} vertices"));
+        rows.push(row(&SkirtOptions { verts, garments, ..*base }, &backends)?);
     }
     let single = |row: &&CrossoverRow| row.garments == 1;
     let sizes: Vec<&CrossoverRow> = rows.iter().filter(single).collect();
@@ -104,7 +104,7 @@ pub fn run(base: &SkirtOptions, most: usize, told: &mut dyn FnMut(&str)) -> Resu
     };
     let sides: [fn(&CrossoverRow) -> f64; 2] = [|row| row.one.step_us, |row| row.two.step_us];
     Ok(Crossover {
-        stepped_by: SteppedBy::of(&means),
+        stepped_by: SteppedBy::of(&backends),
         quality: base.quality.unwrap_or_default().name(),
         from_vertices: sides.map(|side| from(&sizes, |row| row.verts as f64, side)),
         from_garments: sides.map(|side| from(&counts, |row| row.garments as f64, side)),
@@ -125,12 +125,12 @@ fn crossing(points: &[[f64; 2]]) -> Option<f64> {
 }
 
 /// One row: the device first, which may be the slowest by far.
-fn row(options: &SkirtOptions, means: &Backends) -> Result<CrossoverRow, SkirtError> {
-    let scene = |means: &Backends, threads| {
-        SkirtScene::by(means, &SkirtOptions { threads, ..*options }, &HeapProbe::none(), |_| {})
+fn row(options: &SkirtOptions, backends: &Backends) -> Result<CrossoverRow, SkirtError> {
+    let scene = |backends: &Backends, threads| {
+        SkirtScene::by(backends, &SkirtOptions { threads, ..*options }, &HeapProbe::none(), |_| {})
     };
     let (mut one, mut two) = (scene(&Backends::cpu(), 1)?, scene(&Backends::cpu(), 2)?);
-    let mut device = scene(means, 1)?;
+    let mut device = scene(backends, 1)?;
     // A step of each, to know how many there can be, after the first, which lays everything out.
     let second = |scene: &mut SkirtScene| {
         timed(scene);

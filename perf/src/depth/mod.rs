@@ -51,7 +51,7 @@ pub struct DepthTable {
     pub rows: Vec<DepthRow>,
 }
 
-/// Runs the benchmark; `say` hears of each camera.
+/// Runs the benchmark; `say` is given the name of each camera.
 ///
 /// # Errors
 /// Where the people cannot be made.

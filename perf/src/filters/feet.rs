@@ -36,22 +36,21 @@ pub struct FootSlide {
     pub name: String,
     /// How long feet stand, both feet's time added (s).
     pub planted_s: f64,
-    /// Way of standing feet, mm a second: as truly recorded, as the filter shows them, on the body posed with feet that
-    /// slide, and with feet that are kept.
+    /// How far standing feet move as they were recorded (mm/s).
     pub truth_mm_s: f64,
-    /// See above.
+    /// The same as the filter shows them (mm/s).
     pub filtered_mm_s: f64,
-    /// See above.
+    /// The same on the body posed with feet that may slide (mm/s).
     pub posed_mm_s: f64,
-    /// See above.
+    /// The same with planted feet (mm/s).
     pub kept_mm_s: f64,
-    /// How long the person is truly in the air (s), and of that the share in which the body is not.
+    /// How long the person is truly in the air (s).
     pub air_s: f64,
-    /// See above.
+    /// Share of that time in which the posed body is not in the air (0..1).
     pub glued_share: f64,
-    /// Highest that the true lower toe rises, and our lowest sole (mm).
+    /// Highest that the true lower toe rises (mm).
     pub true_rise_mm: f64,
-    /// See above.
+    /// Highest that the body's lowest sole rises (mm).
     pub rise_mm: f64,
 }
 

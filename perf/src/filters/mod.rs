@@ -22,9 +22,9 @@ pub struct FilterRow {
     pub name: String,
     /// Deviation of a resting joint along an axis, about the truth (mm).
     pub still_jitter_mm: f64,
-    /// A reach of 0.5 m in 0.6 s: delay at which it fits the truth best (ms), and how far it passes the end (mm).
+    /// A reach of 0.5 m in 0.6 s: delay at which it fits the truth best (ms).
     pub step_lag_ms: f64,
-    /// See above.
+    /// How far that reach passes its end (mm).
     pub step_overshoot_mm: f64,
     /// A forearm that waves once a second under a Kinect's noise and dropouts: delay (ms).
     pub wave_lag_ms: f64,

@@ -40,12 +40,12 @@ pub struct FilterTable {
     pub feet: Vec<FootSlide>,
 }
 
-/// Measures all filters, or only the default, and the feet of the recordings, if there is a folder of them; `told` hears
+/// Measures all filters, or only the default, and the feet of the recordings, if there is a folder of them; `progress` is given
 /// what is being run.
 ///
 /// # Errors
 /// Where the scene's shopper cannot be built, or a recording cannot be read.
-pub fn run(data: Option<&Path>, all: bool, told: &mut dyn FnMut(&str)) -> Result<FilterTable, FiltersError> {
+pub fn run(data: Option<&Path>, all: bool, progress: &mut dyn FnMut(&str)) -> Result<FilterTable, FiltersError> {
     let body = Body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?.skeleton;
     let sessions = |files: &[&str]| -> Result<Vec<Session>, FiltersError> {
         let Some(data) = data else { return Ok(Vec::new()) };
@@ -54,12 +54,12 @@ pub fn run(data: Option<&Path>, all: bool, told: &mut dyn FnMut(&str)) -> Result
     let waves = sessions(&WAVES)?;
     let mut found = Vec::new();
     for name in NAMES.into_iter().filter(|name| all || *name == rows::DEFAULT) {
-        told(name);
+        progress(name);
         found.push(measure::row(name, &body, &waves));
     }
     let mut slides = Vec::new();
     for session in sessions(&FEET)? {
-        told(&session.name);
+        progress(&session.name);
         slides.push(feet::slide(&session, &body));
     }
     Ok(FilterTable { rows: found, feet: slides })

@@ -33,7 +33,7 @@ impl HandPose {
     }
 }
 
-/// How hands of one pose were told at one distance.
+/// How hands of one pose were classified at one distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GripRow {
     /// The pose; its changes are those into it.
@@ -42,13 +42,13 @@ pub struct GripRow {
     pub distance: f32,
     /// Frames.
     pub frames: u32,
-    /// Frames told wrong, frames without a hand, and frames told wrong by one feature alone.
+    /// Frames classified wrongly.
     pub wrong: u32,
     /// Frames in which no hand was found.
     pub unseen: u32,
-    /// Frames told wrong by the gap alone.
+    /// Frames classified wrongly by the gap alone.
     pub wrong_by_gap: u32,
-    /// Frames told wrong by solidity alone.
+    /// Frames classified wrongly by solidity alone.
     pub wrong_by_solidity: u32,
     /// Changes from another pose.
     pub changes: u32,

@@ -38,7 +38,7 @@ fn columns() -> Vec<GestureConditions> {
 }
 
 impl GestureStudy {
-    /// Runs everything; `say` is told what is being done.
+    /// Runs everything; `say` is given what is being done.
     pub fn run(sequences: u32, seed: u64, say: &mut dyn FnMut(&str)) -> Self {
         let mut gestures = Vec::new();
         for act in Act::GESTURES {

@@ -42,6 +42,6 @@ pub enum LatencyError {
     #[error(transparent)]
     WorkerPool(#[from] WorkerPoolError),
     /// A thread of the loop ended before its time.
-    #[error("the {0} thread panicked; its message tells the cause")]
+    #[error("the {0} thread panicked; its message says why")]
     Died(&'static str),
 }

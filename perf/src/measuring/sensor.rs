@@ -26,7 +26,7 @@ impl Sensor {
     }
 
     /// What the camera says of itself.
-    const fn told(self) -> Intrinsics {
+    const fn stated(self) -> Intrinsics {
         match self {
             Self::Kinect => Intrinsics::KINECT_V1,
             Self::Azure => Intrinsics { width: 640, height: 576, fx: 504.0, fy: 504.0, cx: 320.0, cy: 330.0 },
@@ -70,7 +70,7 @@ const GRAZING: f32 = 0.12;
 
 /// A person before a camera.
 pub struct StudyCamera {
-    told: SyntheticCamera,
+    stated: SyntheticCamera,
     seen: SyntheticCamera,
     sensor: Sensor,
     offset: f32,
@@ -83,9 +83,9 @@ impl StudyCamera {
     pub fn new(sensor: Sensor, rng: &mut SplitMix64) -> Self {
         let [near, far] = sensor.distances();
         let distance = near + (far - near) * rng.uniform();
-        let told = sensor.told();
+        let stated = sensor.stated();
         let mut camera =
-            SyntheticCamera::looking_at(told, Vec3::new(0.0, EYE, distance), Vec3::new(0.0, EYE - 0.05, 0.0));
+            SyntheticCamera::looking_at(stated, Vec3::new(0.0, EYE, distance), Vec3::new(0.0, EYE - 0.05, 0.0));
         if sensor == Sensor::Kinect {
             // 43 degrees are too few for a whole person at 2 m: it stands on its side.
             let roll = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2);
@@ -93,18 +93,18 @@ impl StudyCamera {
         }
         let scale = 1.0 + FOCAL * rng.gaussian();
         let intrinsics = Intrinsics {
-            fx: told.fx * scale,
-            fy: told.fy * scale,
-            cx: told.cx + PRINCIPAL * rng.gaussian(),
-            cy: told.cy + PRINCIPAL * rng.gaussian(),
-            ..told
+            fx: stated.fx * scale,
+            fy: stated.fy * scale,
+            cx: stated.cx + PRINCIPAL * rng.gaussian(),
+            cy: stated.cy + PRINCIPAL * rng.gaussian(),
+            ..stated
         };
         let place = camera.camera_to_world.translation + glam::Vec3A::Y * (HEIGHT * rng.gaussian());
         let tilt = Quat::from_rotation_x(TILT * rng.gaussian());
         let turned = Affine3A::from_quat(tilt).matrix3 * camera.camera_to_world.matrix3;
         let camera_to_world = Affine3A { matrix3: turned, translation: place };
         let offset = if sensor == Sensor::Azure { OFFSET * rng.gaussian() } else { 0.0 };
-        Self { told: camera, seen: SyntheticCamera { intrinsics, camera_to_world }, sensor, offset, distance }
+        Self { stated: camera, seen: SyntheticCamera { intrinsics, camera_to_world }, sensor, offset, distance }
     }
 
     /// The swaying person at 30 Hz, and where their joints are in each frame.
@@ -134,7 +134,7 @@ impl StudyCamera {
                 Sensor::Kinect => kinect.apply(&self.seen.intrinsics, &image),
                 Sensor::Azure => self.flight(&image, rng),
             };
-            frames.push((self.told.frame(i * 33_333_333, depth), moment));
+            frames.push((self.stated.frame(i * 33_333_333, depth), moment));
         }
         frames
     }

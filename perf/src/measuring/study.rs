@@ -32,7 +32,7 @@ pub struct MeasuringOptions {
     pub sensor: Sensor,
 }
 
-/// What one way of measuring said of one person, in the order of [`MEASURES`]; `None` where it takes no such measure.
+/// What one way of measuring gave of one person, in the order of [`MEASURES`]; `None` where it takes no such measure.
 pub type Estimates = [Option<Estimate>; MEASURES.len()];
 
 /// One person: what is true, and what was measured.
@@ -122,14 +122,14 @@ pub struct MeasuringStudy {
     pub sections: Vec<MeasuringAgreement>,
 }
 
-/// Measures `options.people` random people of each survey, without repeats; `told` hears of each.
+/// Measures `options.people` random people of each survey, without repeats; `progress` is called after each.
 ///
 /// # Errors
 /// A file that is no survey, or a person outside of all ranges.
 pub fn study(
     surveys: &[Survey],
     options: &MeasuringOptions,
-    told: &dyn Fn(&MeasuredPerson),
+    progress: &dyn Fn(&MeasuredPerson),
 ) -> Result<MeasuringStudy, StudyError> {
     let mut cases = Vec::new();
     for survey in surveys {
@@ -141,7 +141,7 @@ pub fn study(
             let person = SurveyPerson::new(sex, &metres, &mut rng)
                 .map_err(|source| StudyError::Person { line: row + 2, source })?;
             let case = measured(&person, options, &mut rng);
-            told(&case);
+            progress(&case);
             cases.push(case);
         }
     }

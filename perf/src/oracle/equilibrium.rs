@@ -29,7 +29,7 @@ const NUDGE_M: f64 = 1e-5;
 /// How often a saddle is left.
 const MOST_NUDGES: u64 = 6;
 
-/// Length of the step that tells how hard particles press (s).
+/// Length of the step that shows how hard particles press (s).
 const PRESSING_S: f64 = 0.01;
 
 /// Motion below which friction is not yet whole in statics (m).

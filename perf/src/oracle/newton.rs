@@ -23,7 +23,7 @@ const GAIN: [f64; 3] = [0.01, 0.3, 0.7];
 /// What the shift is multiplied by after a good, a poor and a refused step.
 const SHIFT: [f64; 3] = [0.2, 2.0, 6.0];
 
-/// Rounding of an energy, relative to its size, and what must stand out of it for a gain to be told.
+/// Rounding of an energy, relative to its size, and what must stand out of it for a gain to be seen.
 const ROUNDING: [f64; 2] = [1e-14, 1e3];
 
 /// A shift below this (1/s2) is none: an implicit step of half a minute.
@@ -44,7 +44,7 @@ const MOST_WAIT: u32 = 8;
 /// Times that the bend of the links is followed.
 const BENDS: usize = 6;
 
-/// Steps in a row that may be refused where energies no longer tell anything.
+/// Steps in a row that may be refused where energies no longer say anything.
 const PATIENCE: u32 = 6;
 
 /// What carries over from iteration to iteration and from round to round.

@@ -29,20 +29,20 @@ const DAMPING_PER_S: f32 = 6.0;
 const SECONDS: [f64; 2] = [1.5, 3.0];
 
 /// The study; a quick one leaves the finest sampling out.
-pub fn study(quick: bool, told: &dyn Fn(f64)) -> Result<Drape, ParetoError> {
+pub fn study(quick: bool, progress: &dyn Fn(f64)) -> Result<Drape, ParetoError> {
     let samplings = &SAMPLINGS[..if quick { 3 } else { 4 }];
     // A step costs by its particles and more, so nearly all of the work is the last.
     let work = |upto: usize| samplings[..upto].iter().map(|(n, _)| (n * n) as f64).sum::<f64>();
     let mut runs = Vec::new();
     for (k, (cells, _)) in samplings.iter().enumerate() {
-        told(work(k) / work(samplings.len()));
+        progress(work(k) / work(samplings.len()));
         let subject = tablecloth(*cells, SECONDS[usize::from(!quick)])?;
         let garment = subject.bake(SolverChoice::Mixed)?;
         let run = play(&subject, &garment, Setting { quality: Quality::Shop, substeps: None, threads: 1 })?;
         runs.push((*cells, run));
     }
     let (finest, fine) = runs.last().map(|(n, run)| (*n, run.frames.last())).unwrap_or_default();
-    let told = runs.iter().zip(samplings).map(|((cells, run), (_, published))| {
+    let samplings = runs.iter().zip(samplings).map(|((cells, run), (_, published))| {
         let [mean_cm, max_cm] = match (run.frames.last(), fine) {
             (Some(x), Some(fine)) => apart_cm((*cells, x), (finest, fine)),
             _ => [0.0; 2],
@@ -57,7 +57,7 @@ pub fn study(quick: bool, told: &dyn Fn(f64)) -> Result<Drape, ParetoError> {
             fastest_mm_s: 1e3 * run.fastest_m_s,
         }
     });
-    Ok(Drape { setup: setup(finest), samplings: told.collect() })
+    Ok(Drape { setup: setup(finest), samplings: samplings.collect() })
 }
 
 fn setup(finest: usize) -> String {

@@ -39,7 +39,7 @@ impl SolverChoice {
         }
     }
 
-    /// What is said of the fibers, over what the garment's file says. Shear is soft and always swept.
+    /// The fibers' solver, in place of what the garment's file says. Shear is soft and always swept.
     fn overrides(self, of_file: Overrides) -> Overrides {
         let all = |solver| Overrides { warp: Some(solver), weft: Some(solver), ..Overrides::default() };
         match self {

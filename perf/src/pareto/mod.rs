@@ -6,7 +6,7 @@
 //!
 //! x* of the cantilever is the oracle's equilibrium. Cloth that moves or folds has no equilibrium to be held against, and
 //! within a second the folds of any two runs differ. Its x* is what moments of one run become in 50 ms with 128 substeps
-//! of the quality `fine`; every setting goes on from the same moments. How far half as many substeps end from it is told
+//! of the quality `fine`; every setting goes on from the same moments. How far half as many substeps end from it is reported
 //! beside it and bounds what the errors mean.
 
 mod charts;
@@ -84,18 +84,18 @@ pub struct ParetoOptions {
 /// Names of all scenes, in the order in which they are run.
 pub const SCENES: [&str; 6] = ["cantilever", "skirt", "sun-dress", "t-shirt", "wide-trousers", "drape"];
 
-/// Takes all figures that are asked for; `told` hears the part of the work that is done (0..1).
+/// Takes all figures that are asked for; `progress` is given the part of the work that is done (0..1).
 ///
 /// # Errors
 /// Where a scene cannot be set up, or the oracle finds no x*.
-pub fn run(options: &ParetoOptions, told: &dyn Fn(f64)) -> Result<ParetoReport, ParetoError> {
+pub fn run(options: &ParetoOptions, progress: &dyn Fn(f64)) -> Result<ParetoReport, ParetoError> {
     let names: Vec<&str> = match &options.scene {
         Some(name) => vec![*SCENES.iter().find(|s| *s == name).ok_or_else(|| ParetoError::Unknown(name.clone()))?],
         None => SCENES.to_vec(),
     };
     let mut report = ParetoReport { quick: options.quick, ..ParetoReport::default() };
     for (k, name) in names.iter().enumerate() {
-        let part = |share: f64| told((k as f64 + share) / names.len() as f64);
+        let part = |share: f64| progress((k as f64 + share) / names.len() as f64);
         if *name == "drape" {
             report.drape = Some(drape::study(options.quick, &part)?);
             continue;

@@ -9,7 +9,7 @@ use super::meshed_scene::{MeshedScene, ReferenceKind, SolverChoice};
 use super::play::{Setting, Trace, WINDOW, WindowStart, play, play_through, play_windows};
 use crate::oracle::{Oracle, Problem, Solids};
 
-/// Substeps of the reference: beyond them a substep's motion comes near to what f32 can tell at a metre.
+/// Substeps of the reference: beyond them a substep's motion comes near to the resolution of f32 at a metre.
 pub const SUBSTEPS: u32 = 128;
 
 /// The same for a quick look.

@@ -1,4 +1,4 @@
-//! What is told: points, scenes, the survival map, the drape study; as JSON and CSV.
+//! What is reported: points, scenes, the survival map, the drape study; as JSON and CSV.
 
 use std::fmt::Write;
 

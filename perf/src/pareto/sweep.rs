@@ -22,7 +22,11 @@ const FAR_BEYOND_US: f64 = 25_000.0;
 const BACKEND: &str = "cpu";
 
 /// Runs every setting of a scene and holds each against x*.
-pub fn sweep(subject: &MeshedScene, quick: bool, told: &dyn Fn(f64)) -> Result<(Vec<Point>, SceneReport), ParetoError> {
+pub fn sweep(
+    subject: &MeshedScene,
+    quick: bool,
+    progress: &dyn Fn(f64),
+) -> Result<(Vec<Point>, SceneReport), ParetoError> {
     let reference = Reference::of(subject, quick)?;
     let mut points = Vec::new();
     let mut energy: Vec<EnergyRun> = Vec::new();
@@ -39,7 +43,7 @@ pub fn sweep(subject: &MeshedScene, quick: bool, told: &dyn Fn(f64)) -> Result<(
         let settings = settings(subject, &garment, choice, quick);
         let mut beyond = None;
         for (done, setting) in settings.iter().enumerate() {
-            told((k as f64 + done as f64 / settings.len() as f64) / choices.len() as f64);
+            progress((k as f64 + done as f64 / settings.len() as f64) / choices.len() as f64);
             if beyond.is_some_and(|limit: Setting| limit.quality == setting.quality && limit.threads == setting.threads)
             {
                 continue;

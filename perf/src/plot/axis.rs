@@ -58,7 +58,7 @@ impl Axis {
     }
 }
 
-/// A tick's value as it is written: as few digits as tell it.
+/// A tick's value as it is written: with as few digits as it takes.
 pub fn figure(value: f64) -> String {
     let size = value.abs();
     if value != 0.0 && !(1e-3..1e5).contains(&size) {

@@ -32,7 +32,7 @@ pub fn compare(surface: &Surface, blend: Blend, posed: &Posed) -> SurfaceErrors 
     worst
 }
 
-/// The larger error. Not `f64::max`, which passes over what is not a number.
+/// The larger error. Not `f64::max`, which passes over NaN.
 fn worse(worst: f64, error: f64) -> f64 {
     if error > worst || error.is_nan() { error } else { worst }
 }

@@ -72,14 +72,14 @@ pub struct SkinningTable {
     pub shapes: Shapes,
 }
 
-/// Measures all rows; `told` hears what is being run.
+/// Measures all rows; `progress` is given what is being run.
 ///
 /// # Errors
 /// Where the scene's shopper or the workers cannot be made.
-pub fn run(told: &mut dyn FnMut(&str)) -> Result<SkinningTable, SkinningError> {
+pub fn run(progress: &mut dyn FnMut(&str)) -> Result<SkinningTable, SkinningError> {
     let mut rows = Vec::new();
     let mut add = |options: SkinningOptions| -> Result<(), SkinningError> {
-        told(&format!("{:?}, {} thread(s), lanes {:?}", options.subject, options.threads, options.lanes));
+        progress(&format!("{:?}, {} thread(s), lanes {:?}", options.subject, options.threads, options.lanes));
         rows.push(measure(&options)?.into());
         Ok(())
     };

@@ -12,12 +12,12 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// A figure in a unit; an infinite `most` only tells it. What is not a number is never enough.
+    /// A figure in a unit; an infinite `most` only reports it. NaN is never enough.
     pub fn most(what: &str, got: f64, most: f64, unit: &'static str) -> Self {
         Self { what: what.into(), got, most, unit }
     }
 
-    /// A part of 1, told and bounded in per cent.
+    /// A part of 1, reported and bounded in per cent.
     pub fn percent(what: &str, got: f64, most: f64) -> Self {
         Self::most(what, got * 100.0, most, " %")
     }
@@ -52,7 +52,7 @@ impl TargetRow {
     pub fn new(case: &str, peers: &str, claims: Result<Vec<Claim>, &String>) -> Self {
         let (target, got, met) = match claims {
             Ok(claims) => {
-                (told(&claims, bound), told(&claims, |c| figure(c.got, c.unit)), claims.iter().all(Claim::met))
+                (joined(&claims, bound), joined(&claims, |c| figure(c.got, c.unit)), claims.iter().all(Claim::met))
             }
             Err(reason) => (String::new(), format!("not measured: {reason}"), false),
         };
@@ -60,12 +60,12 @@ impl TargetRow {
     }
 }
 
-fn told(claims: &[Claim], value: impl Fn(&Claim) -> String) -> String {
+fn joined(claims: &[Claim], value: impl Fn(&Claim) -> String) -> String {
     claims.iter().map(|c| format!("{} {}", c.what, value(c))).collect::<Vec<_>>().join(", ")
 }
 
 fn bound(claim: &Claim) -> String {
-    if claim.most == f64::INFINITY { "told".into() } else { format!("<= {}{}", claim.most, claim.unit) }
+    if claim.most == f64::INFINITY { "reported".into() } else { format!("<= {}{}", claim.most, claim.unit) }
 }
 
 /// Three digits that count, and no more.
@@ -91,12 +91,15 @@ mod tests {
         assert!(!TargetRow::new("walk", "", claims(f64::NAN)).met, "what was not measured is not met");
         assert!(!TargetRow::new("walk", "", Err(&"no wind".into())).met);
         assert!(!TargetRow::new("walk", "", Ok(vec![Claim::count("wrong", 1)])).met);
-        assert!(TargetRow::new("walk", "", Ok(vec![Claim::percent("strain", 9.0, f64::INFINITY)])).met, "only told");
+        assert!(
+            TargetRow::new("walk", "", Ok(vec![Claim::percent("strain", 9.0, f64::INFINITY)])).met,
+            "only reported"
+        );
     }
 
     #[test]
     fn figures_have_three_digits_that_count() {
-        let told = [0.0, 0.001_234_5, 0.5, 12.345, 1_234.5].map(|x| figure(x, ""));
-        assert_eq!(told, ["0", "0.00123", "0.5", "12.3", "1234"].map(String::from));
+        let texts = [0.0, 0.001_234_5, 0.5, 12.345, 1_234.5].map(|x| figure(x, ""));
+        assert_eq!(texts, ["0", "0.00123", "0.5", "12.3", "1234"].map(String::from));
     }
 }

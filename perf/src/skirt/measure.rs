@@ -21,7 +21,7 @@ const RESTING_STEPS: usize = 120;
 /// Steps after the last that counts in which the engine times its stages, which costs some time of its own.
 const METERED_STEPS: usize = 240;
 
-/// Runs the scene as asked, and tells time and error of the same steps.
+/// Runs the scene as asked, and reports time and error of the same steps.
 ///
 /// # Errors
 /// Where the options cannot be met.
@@ -31,13 +31,13 @@ pub fn measure(options: &SkirtOptions, heap: &HeapProbe) -> Result<SkirtReport, 
 
 /// The same with a mesh that `change` has changed before it is baked.
 pub(super) fn measure_with(
-    means: &Backends,
+    backends: &Backends,
     options: &SkirtOptions,
     heap: &HeapProbe,
     change: impl FnOnce(&mut Shape),
 ) -> Result<SkirtReport, SkirtError> {
     let yardstick = Yardstick::new()?;
-    let mut scene = SkirtScene::by(means, options, heap, change)?;
+    let mut scene = SkirtScene::by(backends, options, heap, change)?;
     let mut run = SkirtRun::new(options, &scene, *heap);
     for _ in 0..WARM_UP {
         scene.prepare();
@@ -56,7 +56,7 @@ pub(super) fn measure_with(
     let metered = METERED_STEPS.min(options.steps.max(1));
     let (stages_us, device_us) = scene.stages_us(metered);
     (report.stages_us, report.device_us) = (stages_us.into_iter().collect(), device_us);
-    report.stepped_by = SteppedBy::of(means);
+    report.stepped_by = SteppedBy::of(backends);
     report.decided_by = scene.stepper().measured().map(Into::into);
     Ok(report)
 }

@@ -42,7 +42,7 @@ pub struct SkirtOptions {
     pub substeps: Option<u32>,
     /// Length of a step (s), 1/120 unless a case asks for another.
     pub step_s: f32,
-    /// Runs of which the median is told.
+    /// Runs of which the median is reported.
     pub runs: usize,
     /// Steps of a run.
     pub steps: usize,

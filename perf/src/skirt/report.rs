@@ -175,7 +175,7 @@ pub struct SkirtReport {
     /// Mean time of a step by the device's own clock, from its first kernel to its last (us), where it has one: of steps that are
     /// metered, which go in a pass a stage; a plain step is a little shorter.
     pub device_us: Option<f64>,
-    /// Mean time of each stage of a step (us), as far as the engine or the device tells.
+    /// Mean time of each stage of a step (us), as far as the engine or the device reports them.
     pub stages_us: BTreeMap<&'static str, f64>,
     /// Heap allocations a step, of all threads, where they are counted.
     pub allocations_per_step: Option<f64>,

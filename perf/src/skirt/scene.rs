@@ -75,7 +75,7 @@ impl SkirtScene {
     /// # Errors
     /// Where the options cannot be met.
     pub fn by(
-        means: &Backends,
+        backends: &Backends,
         options: &SkirtOptions,
         heap: &HeapProbe,
         change: impl FnOnce(&mut Shape),
@@ -115,7 +115,7 @@ impl SkirtScene {
             settings,
             colliders,
             pool: WorkerPool::new(options.threads)?,
-            stepper: means.stepper(),
+            stepper: backends.stepper(),
         };
         // Where the body stands at time 0; the first step then sweeps as every other.
         scene.ask();
@@ -193,8 +193,8 @@ impl SkirtScene {
                 sums.iter_mut().zip(spent.stages_ns).for_each(|(sum, ns)| *sum += ns);
                 whole = Some(whole.unwrap_or(0.0) + spent.whole_ns);
             } else {
-                let told = self.cloths.iter().map(|c| c.stage_ns);
-                told.for_each(|ns| sums.iter_mut().zip(ns).for_each(|(sum, ns)| *sum += ns as f64));
+                let stages = self.cloths.iter().map(|c| c.stage_ns);
+                stages.for_each(|ns| sums.iter_mut().zip(ns).for_each(|(sum, ns)| *sum += ns as f64));
             }
         }
         self.settings.timed = false;

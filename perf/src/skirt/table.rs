@@ -40,9 +40,9 @@ pub struct CaseFigures<T> {
     pub figures: T,
 }
 
-/// Runs all rows with the runs, steps, quality and substeps of `base`; `told` hears what is being run.
-pub fn run(base: &SkirtOptions, heap: &HeapProbe, told: &mut dyn FnMut(&str)) -> TargetTable {
-    let mut maker = TableRun { base: *base, heap, told, rows: Vec::new(), runs: Vec::new(), faults: Vec::new() };
+/// Runs all rows with the runs, steps, quality and substeps of `base`; `progress` is given what is being run.
+pub fn run(base: &SkirtOptions, heap: &HeapProbe, progress: &mut dyn FnMut(&str)) -> TargetTable {
+    let mut maker = TableRun { base: *base, heap, progress, rows: Vec::new(), runs: Vec::new(), faults: Vec::new() };
     maker.one_thread();
     maker.sizes();
     maker.threads();
@@ -60,7 +60,7 @@ type Measured<T> = Result<T, String>;
 struct TableRun<'a> {
     base: SkirtOptions,
     heap: &'a HeapProbe,
-    told: &'a mut dyn FnMut(&str),
+    progress: &'a mut dyn FnMut(&str),
     rows: Vec<TargetRow>,
     runs: Vec<CaseFigures<SkirtReport>>,
     faults: Vec<CaseFigures<SkirtRecovery>>,
@@ -81,7 +81,7 @@ impl TableRun<'_> {
         if let Some(run) = self.runs.iter().find(|r| r.case == case) {
             return Ok(run.figures.clone());
         }
-        (self.told)(case);
+        (self.progress)(case);
         let mut options = self.base;
         change(&mut options);
         let report = measure_with(&Backends::open(options.backend), &options, self.heap, reshape)
@@ -200,7 +200,7 @@ impl TableRun<'_> {
 
     fn faults(&mut self) {
         let mut recovered = |case: &str, fault| {
-            (self.told)(case);
+            (self.progress)(case);
             let found = hard::recover(&self.base, fault, self.heap).map_err(|e| e.to_string())?;
             self.faults.push(CaseFigures { case: case.into(), figures: found });
             Ok(found)
@@ -256,17 +256,17 @@ fn part_of([alone, both]: &[SkirtReport; 2], most: f64) -> Vec<Claim> {
     vec![Claim::most("of the time on one", both.step_us.p50 / alone.step_us.p50, most, "")]
 }
 
-/// Stable: nothing is lost, and strain does not grow from the first run to the last; the figures are told.
+/// Stable: nothing is lost, and strain does not grow from the first run to the last; the figures are reported.
 fn steady(r: &SkirtReport) -> Vec<Claim> {
     let [first, last] = [r.strain.run_mean.first(), r.strain.run_mean.last()].map(|x| x.copied().unwrap_or(f64::NAN));
-    let told = |what, got| Claim::percent(what, got, f64::INFINITY);
+    let unbounded = |what, got| Claim::percent(what, got, f64::INFINITY);
     vec![
         Claim::count("vertices not finite", r.nonfinite),
         Claim::count("steps taken back", r.events.rolled_back),
         Claim::most("strain of the last run over the first's", last / first, 1.5, ""),
-        told("strain mean", r.strain.mean),
-        told("p99", r.strain.p99),
-        told("worst stretch", r.strain.max),
+        unbounded("strain mean", r.strain.mean),
+        unbounded("p99", r.strain.p99),
+        unbounded("worst stretch", r.strain.max),
     ]
 }
 
@@ -309,7 +309,7 @@ mod tests {
         let mut maker = TableRun {
             base,
             heap: &HeapProbe::none(),
-            told: &mut |_| said += 1,
+            progress: &mut |_| said += 1,
             rows: Vec::new(),
             runs: Vec::new(),
             faults: Vec::new(),

@@ -31,6 +31,6 @@ pub enum SoakError {
     #[error("the run could not be started ({0}); raise the limits of threads and files")]
     Start(#[from] std::io::Error),
     /// A thread of the loop ended before its time.
-    #[error("the {0} thread panicked; its message tells the cause")]
+    #[error("the {0} thread panicked; its message says why")]
     Died(&'static str),
 }

@@ -56,7 +56,7 @@ pub struct SoakTools<'a> {
     pub header: Vec<u8>,
     /// Is handed the flight recorder before the first step, to save it should something die.
     pub keep: &'a dyn Fn(&Arc<FlightRecorder>),
-    /// Is told how far the run is (s).
+    /// Is given how far the run is (s).
     pub progress: &'a dyn Fn(u64),
     /// The physics thread panics after so long (ns): to see what a crash leaves.
     pub crash_ns: Option<u64>,

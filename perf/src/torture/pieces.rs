@@ -14,7 +14,7 @@ pub const TUBE_RADIUS_M: f32 = 0.07;
 #[derive(Debug)]
 pub struct Pieces {
     /// What steps them.
-    pub means: Backends,
+    pub backends: Backends,
     /// How they are stepped.
     pub settings: Settings,
     /// A sheet of denim.
@@ -32,7 +32,7 @@ impl Pieces {
     ///
     /// # Errors
     /// Where a piece cannot be baked or has no equilibrium.
-    pub fn new(quality: Quality, means: Backends) -> Result<Self, TortureError> {
+    pub fn new(quality: Quality, backends: Backends) -> Result<Self, TortureError> {
         let settings = Settings { quality, workers: 1, ..Settings::default() };
         let fabric = piece::denim();
         Ok(Self {
@@ -41,7 +41,7 @@ impl Pieces {
             patch: Piece::new(&piece::sheet(PATCH), &fabric, &settings)?,
             tube: Piece::new(&piece::tube(TUBE, TUBE_RADIUS_M, 2.0 * TUBE_RADIUS_M), &fabric, &settings)?,
             settings,
-            means,
+            backends,
         })
     }
 }

@@ -40,11 +40,11 @@ impl Default for TortureOptions {
     }
 }
 
-/// Runs the cases that are asked for; `told` is given the summary of each as it ends.
+/// Runs the cases that are asked for; `progress` is given the summary of each as it ends.
 ///
 /// # Errors
 /// Where a piece cannot be baked or has no equilibrium, which would be an error of the bake or of the oracle.
-pub fn run(options: &TortureOptions, told: &mut dyn FnMut(&CaseSummary)) -> Result<TortureReport, TortureError> {
+pub fn run(options: &TortureOptions, progress: &mut dyn FnMut(&CaseSummary)) -> Result<TortureReport, TortureError> {
     let pieces = Pieces::new(options.quality, Backends::open(options.backend))?;
     let off = |piece: &Piece| piece.off() * 1e3;
     let undisturbed_mm = [off(&pieces.curtain), off(&pieces.lawn), off(&pieces.patch), off(&pieces.tube)];
@@ -52,11 +52,11 @@ pub fn run(options: &TortureOptions, told: &mut dyn FnMut(&CaseSummary)) -> Resu
     for case in CASES.iter().filter(|c| options.case.as_ref().is_none_or(|name| c.name == name)) {
         let outcomes = of_seeds(case, &pieces, options.seeds.clone());
         let summary = CaseSummary::of(case.name, case.about, &outcomes);
-        told(&summary);
+        progress(&summary);
         report.summary.push(summary);
         report.cases.extend(outcomes);
     }
-    report.stepped_by = SteppedBy::of(&pieces.means);
+    report.stepped_by = SteppedBy::of(&pieces.backends);
     Ok(report)
 }
 

@@ -59,7 +59,7 @@ pub struct Trial<'a> {
     stepper: ClothStepper,
     before: Box<[Vec3A]>,
     /// The events up to which jumps were explained.
-    told: Events,
+    explained: Events,
 }
 
 impl<'a> Trial<'a> {
@@ -95,8 +95,8 @@ impl<'a> Trial<'a> {
     fn with(pieces: &Pieces, garment: &'a Garment, cloth: Cloth, colliders: Colliders, settings: &Settings) -> Self {
         Self {
             before: cloth.positions.clone(),
-            told: cloth.events,
-            stepper: pieces.means.stepper(),
+            explained: cloth.events,
+            stepper: pieces.backends.stepper(),
             garment,
             cloth,
             colliders,
@@ -141,14 +141,14 @@ impl<'a> Trial<'a> {
     fn look(&mut self) {
         self.seen.nonfinite += piece::nonfinite(&self.cloth);
         let put = |e: &Events| (e.repaired, e.rolled_back, e.teleports);
-        let moved = put(&self.cloth.events) == put(&self.told);
-        self.told = self.cloth.events;
+        let moved = put(&self.cloth.events) == put(&self.explained);
+        self.explained = self.cloth.events;
         // What no step can be made with is not what the step was made with.
         let dt = self.settings.sound().step_seconds;
         for (i, w) in self.garment.inverse_mass.iter().enumerate() {
             if *w > 0.0 {
                 let way = if moved { self.cloth.positions[i].distance(self.before[i]) / dt } else { 0.0 };
-                // What is not a number is counted above.
+                // NaN is counted above.
                 self.seen.max_speed = self.seen.max_speed.max(self.cloth.velocity(i).length());
                 self.seen.max_way = self.seen.max_way.max(way);
             }

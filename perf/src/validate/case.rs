@@ -125,11 +125,11 @@ impl ValidationCase {
     /// # Errors
     /// Where the case's own mesh or colliders are refused.
     pub fn rows(&self, levels: &[Level], by: &Backends) -> Result<Vec<ValidationRow>, SpecimenError> {
-        let converged = (self.run)(CaseSetup { level: Level::Converged, means: &Backends::cpu() })?;
+        let converged = (self.run)(CaseSetup { level: Level::Converged, backends: &Backends::cpu() })?;
         let on_cpu = by.asked() == Backend::Cpu;
         let run = |level: &Level| {
             let known = on_cpu && *level == Level::Converged;
-            let found = if known { converged } else { (self.run)(CaseSetup { level: *level, means: by })? };
+            let found = if known { converged } else { (self.run)(CaseSetup { level: *level, backends: by })? };
             Ok(self.row(*level, &found, &converged))
         };
         levels.iter().map(run).collect()

@@ -20,7 +20,7 @@ pub struct CaseSetup<'a> {
     /// The settings.
     pub level: Level,
     /// The processor, or a graphics device.
-    pub means: &'a Backends,
+    pub backends: &'a Backends,
 }
 
 /// How the engine is set.

@@ -93,7 +93,7 @@ pub const NAMES: [&str; 20] = [
 pub fn run(options: &ValidationOptions, progress: &(impl Fn(usize) + Sync)) -> Result<ValidationReport, SpecimenError> {
     let begun = Instant::now();
     let chosen = chosen(options);
-    let means = Backends::open(options.backend);
+    let backends = Backends::open(options.backend);
     let rows = Mutex::new((0..chosen.len()).map(|_| None).collect::<Vec<_>>());
     let next = AtomicUsize::new(0);
     let work = || {
@@ -101,7 +101,7 @@ pub fn run(options: &ValidationOptions, progress: &(impl Fn(usize) + Sync)) -> R
             // Relaxed: the counter hands out numbers; results are published by the lock.
             let at = next.fetch_add(1, Relaxed);
             let Some(case) = chosen.get(at) else { return };
-            let found = case.rows(&options.levels, &means);
+            let found = case.rows(&options.levels, &backends);
             if let Ok(mut rows) = rows.lock() {
                 rows[at] = Some(found);
             }
@@ -126,7 +126,7 @@ pub fn run(options: &ValidationOptions, progress: &(impl Fn(usize) + Sync)) -> R
         cases,
         passed: [passed[0], passed[0] + passed[1]],
         threads: options.threads,
-        stepped_by: SteppedBy::of(&means),
+        stepped_by: SteppedBy::of(&backends),
         wall_s: begun.elapsed().as_secs_f64(),
     })
 }

@@ -44,7 +44,7 @@ pub struct Surroundings {
 pub const G: f64 = 9.81;
 
 /// Time over which the motion of resting cloth is looked at (s): velocities themselves are noise where a substep moves
-/// less than f32 can tell.
+/// less than f32 resolves.
 const REST_S: f64 = 0.25;
 
 /// Farthest that a resting particle drifts in that time (m).
@@ -102,7 +102,7 @@ impl Specimen {
         Ok(Self {
             cloth: Cloth::new(&garment, &colliders),
             settings: setup.level.settings(&garment),
-            stepper: setup.means.stepper(),
+            stepper: setup.backends.stepper(),
             colliders,
             palette: [Affine3A::IDENTITY; BONES],
             particle,

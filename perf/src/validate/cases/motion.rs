@@ -92,7 +92,7 @@ enum Swung {
     /// From the lowest place to and fro to the lowest place again, over the period of small swings: a whole period, which
     /// what is lost on the way shortens.
     Whole,
-    /// Part of its angle that it has lost after one swing to and fro (%): told only. The velocity of a substep is a chord
+    /// Part of its angle that it has lost after one swing to and fro (%): only reported. The velocity of a substep is a chord
     /// of the arc, which is shorter, so that the engine damps what turns.
     Loss,
 }
@@ -158,7 +158,7 @@ fn spring(substeps: Option<u32>) -> ValidationCase {
         Ok(CaseOutcome::of(&specimen, period(&crossings(&samples, step))))
     };
     let parameter = substeps.map_or("as baked".into(), |n| format!("{n} substeps"));
-    // At 2 substeps implicit Euler itself is 1.6 % off: told, not held against it.
+    // At 2 substeps implicit Euler itself is 1.6 % off: reported, not held against it.
     let target = (substeps.unwrap_or(4) > 2).then_some(1.0);
     ValidationCase { target, run: Box::new(run), ..case("spring", parameter, 1, "s", exact) }
 }
@@ -242,7 +242,7 @@ const SWING: (f64, usize) = (0.3, 12);
 enum Kept {
     /// Above what it started with: nothing may come from nothing.
     Gain,
-    /// What is lost in the end of what could be: told only.
+    /// What is lost in the end of what could be: only reported.
     Loss,
 }
 

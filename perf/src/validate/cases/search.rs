@@ -33,7 +33,7 @@ pub fn crossings(samples: &[f64], step: f64) -> Vec<f64> {
     pairs.map(|(k, w)| (k as f64 + w[0] / (w[0] - w[1])) * step).collect()
 }
 
-/// Mean period between the first and the last of some crossings, two a period; not a number where there are too few.
+/// Mean period between the first and the last of some crossings, two a period; NaN where there are too few.
 pub fn period(crossings: &[f64]) -> f64 {
     match crossings {
         [first, .., last] if crossings.len() > 2 => 2.0 * (last - first) / (crossings.len() - 1) as f64,

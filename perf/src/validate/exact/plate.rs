@@ -5,7 +5,7 @@
 //! (Timoshenko and Goodier, "Theory of elasticity", art. 22; per Gamma D / L^2),
 //! N_xx = 6 (1-x)^2 y / b^2, N_xy = 6 (1-x)(y^2 - b^2/4) / b^2, N_yy = y + 6 (y^3/3 - b^2 y/4) / b^2,
 //! add Gamma/2 int N_xx w_x^2 + 2 N_xy w_x w_y + N_yy w_y^2. It gives way where the sum is no longer positive definite,
-//! which Cholesky's factorisation tells.
+//! which Cholesky's factorisation shows.
 
 use toile_assets::numeric::linear::{self, Pivot};
 
