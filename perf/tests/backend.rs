@@ -65,7 +65,8 @@ struct Ran {
 
 /// Ten seconds of a skirt; `nudge` may touch it before each step.
 fn ran(backends: &Backends, options: &SkirtOptions, mut nudge: impl FnMut(&mut SkirtScene)) -> Ran {
-    let mut scene = SkirtScene::by(backends, options, &HeapProbe::none(), |_| {}).expect("the scene is as it should be");
+    let mut scene =
+        SkirtScene::by(backends, options, &HeapProbe::none(), |_| {}).expect("the scene is as it should be");
     let mut gauge = Gauge::new(&scene);
     let mut strains = Vec::new();
     for step in 1..=STEPS {
