@@ -6,7 +6,7 @@ use glam::{Quat, Vec3};
 use toile_assets::skeleton::Joint;
 use toile_perf::gestures::{Act, GestureConditions, GestureCount, count, events, held_up, sequence};
 use toile_sensors::filter::JointFilter;
-use toile_sensors::frame::{DepthFrame, Joints, TrackedJoint};
+use toile_sensors::frame::{DepthFrame, HandState, Joints, TrackedJoint};
 use toile_sensors::source::{OpenOptions, open};
 use toile_track::gesture::{Gesture, GestureEvent, Gestures, HandRegion, HandSegmenter, Side};
 
@@ -133,6 +133,22 @@ fn swipe() -> (Vec<Joints>, Vec<GestureEvent>) {
     let found = events(&frames);
     assert_eq!(found.iter().map(|e| e.gesture).collect::<Vec<_>>(), [Gesture::SwipeLeft]);
     (frames, found)
+}
+
+/// A sensor that tells hands apart itself needs no depth image: the hand that is held up closes.
+#[test]
+fn a_hand_that_the_sensor_reports_closed_is_closed() {
+    let mut frames = sequence(Act::Hold, &GestureConditions::default(), 2);
+    let [held] = events(&frames)[..] else { panic!("one event") };
+    let closes_ns = held.time_ns - 500_000_000;
+    for frame in &mut frames {
+        let state = if frame.time_ns < closes_ns { HandState::Open } else { HandState::Closed };
+        frame.hands[usize::from(held.side == Side::Right)] = state;
+    }
+    let found = events(&frames);
+    let [closed, confirmed] = found[..] else { panic!("{found:?}") };
+    assert_eq!((closed.gesture, closed.side, confirmed), (Gesture::Closed, held.side, held));
+    assert!((closes_ns..closes_ns + 300_000_000).contains(&closed.time_ns), "{closed:?}");
 }
 
 fn moved(frames: &[Joints], by: impl Fn(Vec3) -> Vec3) -> Vec<Joints> {

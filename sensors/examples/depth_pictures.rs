@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{Vec3, Vec3A};
 use toile_assets::body::{Body, Measures, Sex};
-use toile_sensors::depth::{Clean, Cloud, Smoothing, Validity};
+use toile_sensors::depth::{Clean, Cloud, DepthSmoothing, Validity};
 use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::segment::Zone;
 use toile_sensors::source::synthetic::room;
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let session = open(&input, &OpenOptions { camera: args.next() })?;
         session.depth.into_iter().next().ok_or("the recording holds no depth")?
     };
-    let clouds = [Smoothing::None, Clean::default().smoothing()].map(|smoothing| {
+    let clouds = [DepthSmoothing::None, Clean::default().smoothing()].map(|smoothing| {
         let mut clean = Clean::new(Zone::default(), smoothing);
         clean.push(frame).1.clone()
     });

@@ -60,9 +60,9 @@ pub enum SourceError {
     Malformed {
         /// The file.
         path: String,
-        /// Where.
+        /// The line, frame or byte.
         place: Place,
-        /// What.
+        /// What is wrong there.
         problem: String,
         /// What to do.
         cure: &'static str,

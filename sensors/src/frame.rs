@@ -1,4 +1,4 @@
-//! One moment as a sensor saw it: a depth frame, and the joints.
+//! One moment as a sensor saw it: joints, hand states, a depth frame.
 //!
 //! World: right-handed, y up, metres, the floor at y = 0, the shopper facing +z (their left is +x).
 
@@ -24,6 +24,18 @@ impl TrackedJoint {
     }
 }
 
+/// What a hand does, as the sensor itself reports it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum HandState {
+    /// Not reported, not seen, or neither open nor closed.
+    #[default]
+    Unknown,
+    /// The palm is open.
+    Open,
+    /// A fist.
+    Closed,
+}
+
 /// All joints at one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Joints {
@@ -31,20 +43,24 @@ pub struct Joints {
     pub time_ns: u64,
     /// The joints, by [`Joint::index`].
     pub joints: [TrackedJoint; JOINTS],
+    /// What the hands do, left and right.
+    pub hands: [HandState; 2],
 }
 
 impl Joints {
     /// A moment at which nothing was tracked.
     pub const fn absent(time_ns: u64) -> Self {
-        Self { time_ns, joints: [TrackedJoint { position: Vec3::ZERO, confidence: 0.0 }; JOINTS] }
+        let nowhere = TrackedJoint { position: Vec3::ZERO, confidence: 0.0 };
+        Self { time_ns, joints: [nowhere; JOINTS], hands: [HandState::Unknown; 2] }
     }
 
     /// A moment at which all joints were seen, at these places (m): what a sensor without noise or loss would give.
     pub fn seen(time_ns: u64, positions: [Vec3; JOINTS]) -> Self {
-        Self { time_ns, joints: positions.map(|position| TrackedJoint { position, confidence: 1.0 }) }
+        let joints = positions.map(|position| TrackedJoint { position, confidence: 1.0 });
+        Self { time_ns, joints, hands: [HandState::Unknown; 2] }
     }
 
-    /// One joint.
+    /// The tracked state of one joint.
     pub fn at(&self, joint: Joint) -> &TrackedJoint {
         &self.joints[joint.index()]
     }
@@ -128,7 +144,7 @@ impl Intrinsics {
 pub struct DepthFrame {
     /// Time since the session began (ns).
     pub time_ns: u64,
-    /// The camera.
+    /// The camera that took it.
     pub intrinsics: Intrinsics,
     /// Camera to world (m).
     pub camera_to_world: Affine3A,

@@ -3,7 +3,7 @@
 use toile_assets::file::FileKind;
 
 /// Largest recording that is read (bytes), be it one file or a folder: ten minutes of raw 640x480 depth at 30 Hz would
-/// be 11 GB; what a fitting needs is half a minute, and a file is read whole.
+/// be 11 GB; what a fitting needs is half a minute, and all of a file is held in memory.
 pub const MAX_FILE_BYTES: u64 = 1 << 30;
 
 /// A recording, or one image of a folder of them.
@@ -49,8 +49,20 @@ pub const MAX_BVH_DEPTH: usize = 64;
 /// Farthest coordinate that a recording may hold (m): a room, with room to spare.
 pub const MAX_COORDINATE: f32 = 100.0;
 
-/// Farthest time that a recording may hold after its first frame (ns): a day, beyond which a clock was reset.
-pub const MAX_DURATION_NS: u64 = 86_400 * crate::clock::SECOND_NS;
+/// Longest recording (ns): two hours, in which a sensor of 30 Hz makes [`MAX_JOINT_FRAMES`]. Every second of it is
+/// simulated, so that a clock that was set within a recording must not become a month of steps.
+pub const MAX_DURATION_NS: u64 = 7_200 * crate::clock::SECOND_NS;
+
+/// Longest time between two frames of a recording (ns): a minute, after which somebody else may stand there, and during
+/// which the cloth is simulated although nobody is seen.
+pub const MAX_GAP_NS: u64 = 60 * crate::clock::SECOND_NS;
+
+/// Largest chunk of a session, unpacked (bytes): writers make chunks of about a megabyte, and a depth image that does not
+/// pack has 8.
+pub const MAX_CHUNK_BYTES: usize = 64 << 20;
+
+/// Most channels of a session file: it has three of its own, and each message's is looked up.
+pub const MAX_CHANNELS: usize = 256;
 
 /// Most cameras of a multi-view recording: any two of them are compared, and a room has eight corners.
 pub const MAX_CAMERAS: usize = 8;

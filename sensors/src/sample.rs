@@ -10,10 +10,12 @@ use crate::frame::{Joints, TrackedJoint};
 
 /// Joints between two frames, linear in time; before `a` it is `a`, after `b` it is `b`.
 ///
-/// A joint absent at one end (confidence 0) keeps the other end's position, its confidence fading.
+/// A joint absent at one end (confidence 0) keeps the other end's position, its confidence fading. The hands are those
+/// of `a`.
 pub fn between(a: &Joints, b: &Joints, time_ns: u64) -> Joints {
     let t = fraction(a, b, time_ns);
-    let mut out = Joints::absent(time_ns.clamp(a.time_ns.min(b.time_ns), b.time_ns));
+    let time_ns = time_ns.clamp(a.time_ns.min(b.time_ns), b.time_ns);
+    let mut out = Joints { hands: a.hands, ..Joints::absent(time_ns) };
     for i in 0..JOINTS {
         let (p, q) = (&a.joints[i], &b.joints[i]);
         out.joints[i] = mix(p, q, t, p.position.lerp(q.position, t));
@@ -27,7 +29,7 @@ pub fn between(a: &Joints, b: &Joints, time_ns: u64) -> Joints {
 pub fn sample(frames: &[Joints], time_ns: u64) -> Option<Joints> {
     let after = frames.partition_point(|f| f.time_ns <= time_ns);
     if after == 0 || after == frames.len() {
-        return frames.get(after.saturating_sub(1)).map(|f| Joints { joints: f.joints, time_ns: f.time_ns });
+        return frames.get(after.saturating_sub(1)).copied();
     }
     let (a, b) = (&frames[after - 1], &frames[after]);
     let before = if after >= 2 { &frames[after - 2] } else { a };
@@ -38,7 +40,7 @@ pub fn sample(frames: &[Joints], time_ns: u64) -> Option<Joints> {
 fn hermite([before, a, b, next]: [&Joints; 4], time_ns: u64) -> Joints {
     let t = fraction(a, b, time_ns);
     let span = seconds_between(a.time_ns, b.time_ns);
-    let mut out = Joints::absent(time_ns);
+    let mut out = Joints { hands: a.hands, ..Joints::absent(time_ns) };
     for i in 0..JOINTS {
         let [o, p, q, r] = [before, a, b, next].map(|f| &f.joints[i]);
         let chord = (q.position - p.position) / span;

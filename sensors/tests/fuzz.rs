@@ -16,7 +16,7 @@ use toile_sensors::source::read_bytes;
 enum Change {
     /// A byte becomes another.
     Byte(prop::sample::Index, u8),
-    /// A run becomes all of one byte: a length that lies, a number that is none.
+    /// A run becomes all of one byte: a wrong length, a NaN.
     Run(prop::sample::Index, u8, usize),
     /// A piece is cut out.
     Cut(prop::sample::Index, usize),

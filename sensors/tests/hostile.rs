@@ -42,7 +42,7 @@ fn survives(name: &str, bytes: &[u8], camera: Option<&str>) -> bool {
 }
 
 #[test]
-fn every_sample_is_read_whole() {
+fn every_sample_is_read_completely() {
     for (name, bytes, camera) in kinds() {
         let session = read(name, &bytes, camera).unwrap_or_else(|e| panic!("{e}"));
         assert!(session.joints.len() + session.depth.len() >= 2 || name == "depth.png", "{name}");
@@ -112,7 +112,7 @@ fn runs_of_extreme_bytes_do_no_harm() {
 #[test]
 fn a_file_of_another_kind_is_refused_in_one_sentence() {
     for (name, bytes, camera) in kinds() {
-        // A camera beside a recording that is none of depth changes nothing: what a file is, its content says.
+        // A camera beside a recording that holds no depth changes nothing: what a file is, its content says.
         let [alone, beside] = [camera, Some(samples::CAMERA)].map(|c| read(name, &bytes, c).unwrap());
         assert_eq!(alone, beside, "{name}");
     }

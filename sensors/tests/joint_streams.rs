@@ -55,7 +55,7 @@ fn a_jump_before_a_webcam_is_seen() {
 }
 
 #[test]
-fn times_that_run_back_are_dropped_and_told() {
+fn times_that_run_back_are_dropped_and_noted() {
     let text = String::from_utf8(skeletons::azure(4)).unwrap();
     let mut lines: Vec<&str> = text.lines().collect();
     lines.swap(2, 3);

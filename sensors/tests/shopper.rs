@@ -9,7 +9,7 @@ use toile_sensors::clock::SECOND_NS;
 use toile_sensors::depth::{Clean, Validity};
 use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::segment::{Segmenter, Zone};
-use toile_sensors::source::synthetic::room::{self, PERSON, View};
+use toile_sensors::source::synthetic::room::{self, PERSON, RoomView};
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 use toile_sensors::source::{OpenOptions, open};
 
@@ -26,7 +26,7 @@ impl Two {
     }
 
     /// Both where they stand (m) and how they are turned about the vertical (rad).
-    fn seen(&self, at: &[(Vec3, f32)]) -> View {
+    fn seen(&self, at: &[(Vec3, f32)]) -> RoomView {
         let placed: Vec<Vec<Vec3>> = at
             .iter()
             .zip(&self.0)
@@ -40,14 +40,14 @@ impl Two {
     }
 }
 
-fn noisy(view: &View, frame: u64) -> DepthFrame {
+fn noisy(view: &RoomView, frame: u64) -> DepthFrame {
     let camera = camera();
     let depth = KinectNoise::new(17 + frame).apply(&camera.intrinsics, &view.z);
     camera.frame(frame * SECOND_NS / 30, depth)
 }
 
 /// Of a mask: pixels of anything but the first person, farther than 4 px from them (the noise shifts outlines by up to 3), and the share of them that is missed.
-fn errors(view: &View, frame: &DepthFrame, mask: &[u8]) -> (usize, f32) {
+fn errors(view: &RoomView, frame: &DepthFrame, mask: &[u8]) -> (usize, f32) {
     let k = frame.intrinsics;
     let (width, height) = (k.width as isize, k.height as isize);
     let near = |i: usize| {
@@ -66,7 +66,7 @@ fn errors(view: &View, frame: &DepthFrame, mask: &[u8]) -> (usize, f32) {
 }
 
 #[test]
-fn the_shopper_is_found_whole_and_nobody_else() {
+fn all_of_the_shopper_is_found_and_nobody_else() {
     let two = Two::new();
     let behind = |x: f32, z: f32| (Vec3::new(x, 0.0, z), 0.3);
     let shopper = (Vec3::ZERO, 0.0);
@@ -99,7 +99,7 @@ fn the_shopper_is_found_whole_and_nobody_else() {
         // Known to fall short: where hands cross, a few pixels of the other's fingertips lie beyond what is given up.
         assert!(leaked <= if name == "hands crossing" { 20 } else { 0 }, "{name}: {leaked}");
         // Turned, the far arm shows behind the chest and apart from it, as an arm of anybody who hides there would; and
-        // an arm that touches somebody else's is given up whole. Beside each other, the two have their hands a few
+        // an arm that touches somebody else's is given up altogether. Beside each other, the two have their hands a few
         // centimetres apart.
         let most = match name {
             "turned" => 0.09,

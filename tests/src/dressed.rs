@@ -13,7 +13,7 @@ use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::filter::JointFilter;
-use toile_sensors::frame::{Joints, TrackedJoint};
+use toile_sensors::frame::Joints;
 
 /// Frames a second of the sensor.
 pub const SENSOR_HZ: u64 = 30;
@@ -30,7 +30,7 @@ pub fn shopper() -> Body {
 pub fn joints(body: &Body, time_ns: u64) -> Joints {
     let seconds = (time_ns as f64 / SECOND_NS as f64) as f32;
     let at = JointFrames::new(&body.skeleton, &scene::shopper(&body.skeleton, seconds)).position;
-    Joints { time_ns, joints: at.map(|position| TrackedJoint { position, confidence: 1.0 }) }
+    Joints::seen(time_ns, at)
 }
 
 /// What a sensor that sees her perfectly gives after the filter, from `from` (s) on for `seconds`.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::{Affine3A, Mat3, Vec3};
 use toile_assets::body::{Body, Measures as BodyMeasures, Sex};
 use toile_assets::sizes::Population;
-use toile_assets::skeleton::{JOINTS, Joint};
+use toile_assets::skeleton::Joint;
 use toile_sensors::frame::{DepthFrame, Intrinsics, Joints, TrackedJoint};
 use toile_sensors::source::synthetic::SyntheticCamera;
 use toile_sensors::source::{OpenOptions, open};
@@ -16,12 +16,9 @@ use toile_track::measures::Hint;
 fn joints_of(body: &Body) -> Vec<Joints> {
     let wobble = |i: usize, k: usize| 0.01 * ((i * 7 + k * 3) as f32).sin();
     (0..FRAMES)
-        .map(|i| Joints {
-            time_ns: i as u64 * 33_333_333,
-            joints: std::array::from_fn(|k| TrackedJoint {
-                position: body.skeleton.rest[k] + Vec3::new(wobble(i, k), wobble(i + 5, k), wobble(i + 9, k)),
-                confidence: 1.0,
-            }),
+        .map(|i| {
+            let off = |k| Vec3::new(wobble(i, k), wobble(i + 5, k), wobble(i + 9, k));
+            Joints::seen(i as u64 * 33_333_333, std::array::from_fn(|k| body.skeleton.rest[k] + off(k)))
         })
         .collect()
 }
@@ -59,7 +56,7 @@ fn without_a_unit_the_stature_is_assumed_and_says_so() {
 
 #[test]
 fn joints_that_nobody_believes_are_refused_in_one_sentence() {
-    let absent = Joints { time_ns: 0, joints: [TrackedJoint::default(); JOINTS] };
+    let absent = Joints::absent(0);
     let mut nan = absent;
     nan.joints[Joint::Pelvis.index()] = TrackedJoint { position: Vec3::NAN, confidence: 1.0 };
     for frames in [vec![absent; 40], vec![nan; 40]] {

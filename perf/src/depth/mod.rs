@@ -71,7 +71,7 @@ impl DepthTable {
     /// The table for a person to read.
     pub fn markdown(&self) -> String {
         let mut text = String::from(
-            "| image | find the shopper | fill | smooth the shopper | smooth the whole image | plain twin | Gaussian | points and normals | all stages |\n\
+            "| image | find the shopper | fill | smooth the shopper | smooth the full image | plain twin | Gaussian | points and normals | all stages |\n\
              |---|---|---|---|---|---|---|---|---|\n",
         );
         for row in &self.rows {
@@ -105,7 +105,7 @@ impl DepthTable {
         let verdict = if smoothing <= self.smoothing_target_us { "met" } else { "missed" };
         let _ = writeln!(
             text,
-            "\nSmoothing a whole 640 x 480 image: {:.2} ms of {:.0} ms: {verdict}.",
+            "\nSmoothing a full 640 x 480 image: {:.2} ms of {:.0} ms: {verdict}.",
             smoothing * 1e-3,
             self.smoothing_target_us * 1e-3
         );

@@ -6,10 +6,10 @@ use toile_assets::body::{Body, BodyError, Measures, Sex};
 use toile_assets::numeric::random::SplitMix64;
 use toile_sensors::depth::gaussian::Gaussian;
 use toile_sensors::depth::smooth::{EdgePreserving, plain};
-use toile_sensors::depth::{Clean, SensorNoise, Smoothing};
+use toile_sensors::depth::{Clean, DepthSmoothing, SensorNoise};
 use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::segment::{Segmenter, Zone};
-use toile_sensors::source::synthetic::room::{self, PERSON, View};
+use toile_sensors::source::synthetic::room::{self, PERSON, RoomView};
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 
 /// Deviation of the seed's Gaussian (px).
@@ -29,7 +29,7 @@ pub(super) struct People([Body; 2]);
 
 /// What a camera sees of them, and what is really there.
 pub(super) struct DepthScene {
-    view: View,
+    view: RoomView,
     pub frame: DepthFrame,
 }
 
@@ -82,8 +82,12 @@ pub(super) fn errors(scene: &DepthScene) -> DepthErrors {
     EdgePreserving::default().run(k.width as usize, raw, &noise, &mut fast);
     let twin = plain(k.width as usize, raw, &noise);
     DepthErrors {
-        body_rms_mm: [Smoothing::None, Smoothing::EdgePreserving(noise), Smoothing::Gaussian(GAUSSIAN_PX)]
-            .map(|smoothing| body_rms_mm(scene, smoothing)),
+        body_rms_mm: [
+            DepthSmoothing::None,
+            DepthSmoothing::EdgePreserving(noise),
+            DepthSmoothing::Gaussian(GAUSSIAN_PX),
+        ]
+        .map(|smoothing| body_rms_mm(scene, smoothing)),
         wall_rms_mm: three(&k, &wall).each_ref().map(|z| flat(z)),
         edge_px: three(&k, &edge).each_ref().map(|z| blur(z)),
         twin_differs_px: fast.iter().zip(&twin).filter(|(a, b)| a.to_bits() != b.to_bits()).count(),
@@ -128,7 +132,7 @@ fn edge_px(k: &Intrinsics, z: &[f32]) -> f64 {
     between as f64 / f64::from(k.height)
 }
 
-fn body_rms_mm(scene: &DepthScene, smoothing: Smoothing) -> f64 {
+fn body_rms_mm(scene: &DepthScene, smoothing: DepthSmoothing) -> f64 {
     let mut clean = Clean::new(Zone::default(), smoothing);
     let (_, cloud) = clean.push(&scene.frame);
     let inverse = scene.frame.camera_to_world.inverse();

@@ -5,7 +5,7 @@ use toile_assets::numeric::random::SplitMix64;
 use toile_assets::skeleton::{JOINTS, Joint, Pose, Skeleton};
 use toile_engine::body::JointFrames;
 use toile_sensors::clock::SECOND_NS;
-use toile_sensors::frame::{Joints, TrackedJoint};
+use toile_sensors::frame::Joints;
 use toile_sensors::source::synthetic::JointNoise;
 
 /// Frames a second.
@@ -84,5 +84,5 @@ pub fn wave(body: &Skeleton) -> impl Fn(f32) -> Joints + '_ {
 }
 
 fn all(at: [Vec3; JOINTS]) -> Joints {
-    Joints { time_ns: 0, joints: at.map(|position| TrackedJoint { position, confidence: 1.0 }) }
+    Joints::seen(0, at)
 }

@@ -9,7 +9,7 @@ use toile_assets::wardrobe;
 use toile_engine::cloth::{Quality, Settings};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
-use toile_sensors::frame::{Joints, TrackedJoint};
+use toile_sensors::frame::Joints;
 
 use super::error::SoakError;
 use super::options::SceneWeight;
@@ -54,8 +54,7 @@ impl SceneMaker {
         let shown = if light { thinned(body) } else { body.clone() };
         let (mut frame, reader) = Frame::new(shown, rig, vec![garment], settings)?;
         let at = scenario.visits[request.visit].joints(request.at_ns);
-        let joints = at.map(|position| TrackedJoint { position, confidence: 1.0 });
-        frame.dress(&Joints { time_ns: request.at_ns, joints });
+        frame.dress(&Joints::seen(request.at_ns, at));
         Ok((frame, reader))
     }
 

@@ -17,7 +17,7 @@ pub struct Cloud {
     pub camera_to_world: Affine3A,
     /// Where each pixel lies, world (m); meaningless where nothing is known `[width * height]`.
     pub points: Vec<Vec3>,
-    /// Which way its surface faces, world, unit length, towards the camera; zero where no neighbour tells
+    /// Which way its surface faces, world, unit length, towards the camera; zero where no neighbour shows it
     /// `[width * height]`.
     pub normals: Vec<Vec3>,
     /// What is known of each pixel `[width * height]`.

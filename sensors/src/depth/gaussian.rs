@@ -20,9 +20,9 @@ impl Gaussian {
     /// where the shopper is not) `[depths]`. At the image's edge, its last pixel goes on.
     ///
     /// # Panics
-    /// If the image is not whole rows.
+    /// If the image has not a multiple of `width` pixels.
     pub fn run(&mut self, width: usize, depth_mm: &[u16], sigma: f32, out: &mut Vec<f32>) {
-        assert!(width > 0 && depth_mm.len().is_multiple_of(width), "an image of whole rows");
+        assert!(width > 0 && depth_mm.len().is_multiple_of(width), "an image of full rows");
         let height = depth_mm.len() / width;
         let reach = self.set(sigma);
         self.fill(depth_mm);

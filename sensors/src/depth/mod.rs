@@ -1,7 +1,7 @@
 //! The shopper's depth made clean: holes filled, noise smoothed without blurring edges, points and normals in our world.
 //!
 //! Reads: `DepthFrame` and the shopper's mask. Writes: a [`Cloud`] in the order of the image. Budget: smoothing 3 ms for
-//! 640x480 whole images, all of it 10 ms; no allocation once the first frame was seen.
+//! full 640x480 images, all of it 10 ms; no allocation once the first frame was seen.
 //! Thread: the sensor thread.
 
 pub mod cloud;
@@ -18,7 +18,7 @@ pub use noise::SensorNoise;
 
 /// How depth is smoothed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Smoothing {
+pub enum DepthSmoothing {
     /// Not at all.
     None,
     /// Along surfaces, not across edges ([`smooth`]).
@@ -30,7 +30,7 @@ pub enum Smoothing {
 /// Cleans the depth of one camera's frames: from [`DepthFrame`] to [`Cloud`], all stages in their order.
 #[derive(Debug, Clone)]
 pub struct Clean {
-    smoothing: Smoothing,
+    smoothing: DepthSmoothing,
     segmenter: Segmenter,
     fill: fill::Fill,
     edge_preserving: smooth::EdgePreserving,
@@ -41,7 +41,7 @@ pub struct Clean {
 
 impl Clean {
     /// A cleaner that has seen nothing.
-    pub fn new(zone: Zone, smoothing: Smoothing) -> Self {
+    pub fn new(zone: Zone, smoothing: DepthSmoothing) -> Self {
         Self {
             smoothing,
             segmenter: Segmenter::new(zone),
@@ -60,21 +60,23 @@ impl Clean {
         self.fill.run(frame, seen.mask);
         let width = frame.intrinsics.width as usize;
         match self.smoothing {
-            Smoothing::None => {
+            DepthSmoothing::None => {
                 self.depth_mm.clear();
                 self.depth_mm.extend(self.fill.depth_mm().iter().map(|d| f32::from(*d)));
             }
-            Smoothing::EdgePreserving(noise) => {
+            DepthSmoothing::EdgePreserving(noise) => {
                 self.edge_preserving.run(width, self.fill.depth_mm(), &noise, &mut self.depth_mm);
             }
-            Smoothing::Gaussian(sigma) => self.gaussian.run(width, self.fill.depth_mm(), sigma, &mut self.depth_mm),
+            DepthSmoothing::Gaussian(sigma) => {
+                self.gaussian.run(width, self.fill.depth_mm(), sigma, &mut self.depth_mm)
+            }
         }
         self.cloud.update(frame, &self.depth_mm, self.fill.validity());
         (shopper, &self.cloud)
     }
 
     /// How depth is smoothed.
-    pub fn smoothing(&self) -> Smoothing {
+    pub fn smoothing(&self) -> DepthSmoothing {
         self.smoothing
     }
 
@@ -86,6 +88,6 @@ impl Clean {
 
 impl Default for Clean {
     fn default() -> Self {
-        Self::new(Zone::default(), Smoothing::EdgePreserving(SensorNoise::KINECT_V1))
+        Self::new(Zone::default(), DepthSmoothing::EdgePreserving(SensorNoise::KINECT_V1))
     }
 }

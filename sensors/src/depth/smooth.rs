@@ -38,9 +38,9 @@ impl EdgePreserving {
     /// Smooths an image of `width` columns (mm, 0 = nothing) into `out` (mm, 0 where nothing was) `[depths]`.
     ///
     /// # Panics
-    /// If the image is not whole rows.
+    /// If the image has not a multiple of `width` pixels.
     pub fn run(&mut self, width: usize, depth_mm: &[u16], noise: &SensorNoise, out: &mut Vec<f32>) {
-        assert!(width > 0 && depth_mm.len().is_multiple_of(width), "an image of whole rows");
+        assert!(width > 0 && depth_mm.len().is_multiple_of(width), "an image of full rows");
         let height = depth_mm.len() / width;
         out.resize(depth_mm.len(), 0.0);
         self.padded.clear();

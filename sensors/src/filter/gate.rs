@@ -29,7 +29,7 @@ pub fn is_plausible_move(last: Vec3, now: Vec3, seconds: f32) -> bool {
     last.distance(now) <= FREE_JUMP + MAX_JOINT_SPEED * seconds.max(0.0)
 }
 
-/// A frame without joints that lie nowhere: positions that are no numbers or out of any room become absent.
+/// A frame whose joints are in the room: those whose position is NaN, infinite or farther away become absent.
 pub fn in_the_room(frame: &Joints) -> Joints {
     let mut out = *frame;
     for joint in &mut out.joints {

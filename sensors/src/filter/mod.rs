@@ -32,7 +32,7 @@ const SHORTEST_STEP: f32 = 1e-3;
 /// Anything that makes joints more believable, frame by frame, with a memory of a fixed size and no allocation.
 pub trait Filter {
     /// Takes a frame and gives the filtered one of the same time. Frames may come at any interval, twice, or late, and
-    /// hold positions that are no numbers: what is given is finite wherever its confidence is not 0.
+    /// hold positions that are NaN: what is given is finite wherever its confidence is not 0. Hand states pass through.
     fn push(&mut self, frame: &Joints) -> Joints;
 
     /// Forgets the shopper.
@@ -58,7 +58,7 @@ impl Default for FilterSettings {
 
 /// What is remembered of one joint.
 #[derive(Debug, Clone, Copy)]
-struct Track {
+struct JointTrack {
     smooth: Smoother,
     hold: Hold,
     bone: BoneLength,
@@ -79,7 +79,7 @@ pub struct JointFilter {
     settings: FilterSettings,
     last_ns: Option<u64>,
     /// `None` for joints never seen.
-    tracks: [Option<Track>; JOINTS],
+    tracks: [Option<JointTrack>; JOINTS],
     /// Length of each limb's bone (m), where the body has been measured.
     measured: [Option<f32>; JOINTS],
 }
@@ -148,7 +148,7 @@ impl JointFilter {
             match &mut self.tracks[i] {
                 Some(track) if seen[i] => track.follow(tracked.position, dt, trust[i], &self.settings.smoothing),
                 Some(track) => track.moved = Vec3::ZERO,
-                empty if seen[i] => *empty = Some(Track::first_seen(tracked.position)),
+                empty if seen[i] => *empty = Some(JointTrack::first_seen(tracked.position)),
                 _ => {}
             }
             if let Some(track) = &mut self.tracks[i]
@@ -208,7 +208,7 @@ impl JointFilter {
 
     /// Pulls bones to their lengths, from the pelvis outward; learns from bones of which both ends are at least inferred.
     fn pull_bones(&mut self, frame: &Joints, seen: &[bool; JOINTS], places: &[Vec3; JOINTS]) -> Joints {
-        let mut out = Joints::absent(frame.time_ns);
+        let mut out = Joints { hands: frame.hands, ..Joints::absent(frame.time_ns) };
         for joint in Joint::ALL {
             let i = joint.index();
             let parent = self.anchor(joint);
@@ -256,7 +256,7 @@ impl Default for JointFilter {
     }
 }
 
-impl Track {
+impl JointTrack {
     fn first_seen(at: Vec3) -> Self {
         Self {
             smooth: Smoother::start(at),

@@ -87,7 +87,7 @@ mod tests {
 
     fn at(ms: u64, x: f32) -> Joints {
         let joints = [TrackedJoint { position: Vec3::new(x, 1.0, 0.0), confidence: 1.0 }; JOINTS];
-        Joints { time_ns: ms * 1_000_000, joints }
+        Joints { joints, ..Joints::absent(ms * 1_000_000) }
     }
 
     #[test]

@@ -3,7 +3,6 @@
 
 use glam::{Affine3A, Mat3, Vec3};
 
-use super::grid::sigma;
 use crate::frame::DepthFrame;
 use toile_assets::numeric::random::SplitMix64;
 
@@ -39,6 +38,11 @@ const ROUNDS: usize = 6;
 
 /// A floor that shows less than this of what it was found on is sought anew.
 const WORN: f32 = 0.4;
+
+/// Standard deviation of depth at depth `z` (m), that of a Kinect v1 (Nguyen et al. 2012): other sensors are better.
+pub(super) fn sigma(z: f32) -> f32 {
+    0.0012 + 0.0019 * (z - 0.4) * (z - 0.4)
+}
 
 /// A plane in camera axes: the height of a point p above it is `up . p + height`.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::floor::Floor;
+use super::floor::{Floor, sigma};
 use crate::frame::{DepthFrame, Intrinsics};
 
 /// The image is searched in cells so that about this many stand side by side: a finger at 1 m, a wrist at 4 m.
@@ -21,11 +21,6 @@ const HYSTERESIS: f32 = 0.6;
 /// noise of a Kinect v1, which grow with the square of the distance.
 pub fn same_surface(z: f32) -> f32 {
     0.05 + 0.01 * z * z
-}
-
-/// Standard deviation of depth at depth `z` (m), that of a Kinect v1 (Nguyen et al. 2012): other sensors are better.
-pub(super) fn sigma(z: f32) -> f32 {
-    0.0012 + 0.0019 * (z - 0.4) * (z - 0.4)
 }
 
 /// The cells of one frame. A cell is named by its index, row by row.

@@ -4,7 +4,7 @@
 //! allocation once the first frame was seen.
 //! Thread: the sensor thread.
 //!
-//! No user map is needed. The floor is a plane found by chance and then fitted robustly ([`floor`]); what stands on it
+//! No user map is needed. The floor is a plane found by random sampling and then fitted robustly ([`floor`]); what stands on it
 //! falls into pieces where depth jumps (`pieces`); pieces that carry a head above a chest are people, and one piece of
 //! two people who touch is parted between their heads (`heads`). Of the people, the shopper is the nearest one in the
 //! [`Zone`], and stays the shopper until they leave it. Nothing of anybody else is in the mask.
@@ -20,9 +20,10 @@ use glam::{Vec2, Vec3};
 use crate::frame::DepthFrame;
 use floor::{Floor, FloorFinder};
 use grid::Grid;
-use people::People;
+use people::PeopleFinder;
 
 pub use grid::same_surface;
+pub use people::Person;
 
 /// Where a shopper stands to be measured, on the floor, seen from the camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,17 +57,6 @@ const LONGEST_STEP: f32 = 0.6;
 /// A shopper not seen for so long has left (ns).
 const FORGOTTEN_NS: u64 = crate::clock::SECOND_NS / 2;
 
-/// One person as seen.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Person {
-    /// Where they stand (m): to the camera's right, ahead of it.
-    pub place: Vec2,
-    /// Their highest point above the floor, or above y = 0 where no floor is seen (m).
-    pub top: f32,
-    /// The surface that is seen (m2).
-    pub area: f32,
-}
-
 /// What a frame shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segmentation<'a> {
@@ -82,7 +72,7 @@ pub struct Segmentation<'a> {
 
 /// The shopper of the frames before.
 #[derive(Debug, Clone, Copy)]
-struct Track {
+struct ShopperTrack {
     place: Vec2,
     seen_ns: u64,
 }
@@ -93,8 +83,8 @@ pub struct Segmenter {
     zone: Zone,
     finder: FloorFinder,
     grid: Grid,
-    people: People,
-    track: Option<Track>,
+    people: PeopleFinder,
+    track: Option<ShopperTrack>,
     mask: Vec<u8>,
 }
 
@@ -111,7 +101,7 @@ impl Segmenter {
             zone,
             finder: FloorFinder::default(),
             grid: Grid::default(),
-            people: People::default(),
+            people: PeopleFinder::default(),
             track: None,
             mask: Vec::new(),
         }
@@ -157,7 +147,7 @@ impl Segmenter {
             None => nearest(&|p| self.zone.holds(p.place, 0.0).then_some(p.place.length())),
         };
         if let Some(i) = chosen {
-            self.track = Some(Track { place: people[i].place, seen_ns: time_ns });
+            self.track = Some(ShopperTrack { place: people[i].place, seen_ns: time_ns });
         }
         chosen
     }

@@ -3,8 +3,8 @@
 use glam::{Vec2, Vec3};
 use toile_assets::numeric::statistics::quantile;
 
-use super::Person;
-use super::grid::{Grid, sigma};
+use super::floor::sigma;
+use super::grid::Grid;
 use super::heads::Heads;
 use super::pieces::Pieces;
 
@@ -49,7 +49,7 @@ const RELIEF: f32 = 0.008;
 /// Lower pieces are what is left of the floor (m).
 const LITTER: f32 = 0.12;
 
-/// People are looked for up to so far behind the zone, so that they can be told apart from the shopper (m).
+/// People are looked for up to so far behind the zone, so that they are not taken for the shopper (m).
 const BEHIND: f32 = 1.5;
 
 struct Band {
@@ -58,9 +58,20 @@ struct Band {
     breadth: [f32; 2],
 }
 
+/// One person as seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Person {
+    /// Where they stand (m): to the camera's right, ahead of it.
+    pub place: Vec2,
+    /// Their highest point above the floor, or above y = 0 where no floor is seen (m).
+    pub top: f32,
+    /// The surface that is seen (m2).
+    pub area: f32,
+}
+
 /// The people of a frame.
 #[derive(Debug, Clone, Default)]
-pub(super) struct People {
+pub(super) struct PeopleFinder {
     pieces: Pieces,
     heads: Heads,
     people: Vec<Person>,
@@ -72,7 +83,7 @@ pub(super) struct People {
     numbers: Vec<f32>,
 }
 
-impl People {
+impl PeopleFinder {
     /// Finds the people of a grid up to a distance behind `far` (m), the zone's end.
     pub fn find(&mut self, grid: &mut Grid, far: f32) {
         self.people.clear();

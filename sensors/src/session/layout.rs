@@ -1,12 +1,22 @@
-//! The bytes of a session's messages: fixed layouts, little endian, described by texts that travel in the file.
+//! Topics of a session's file and the bytes of its messages: fixed layouts, little endian, described by texts that travel in the file.
 
 use std::io::Cursor;
 
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use toile_assets::skeleton::JOINTS;
 
-use super::DepthRoom;
-use crate::frame::{DepthFrame, Intrinsics, Joints, TrackedJoint, pose_fault};
+use super::recording::DepthRoom;
+use crate::frame::{DepthFrame, HandState, Intrinsics, Joints, TrackedJoint, pose_fault};
+
+/// Version of the recording's format; another one is refused.
+pub(super) const VERSION: u32 = 1;
+pub(super) const JOINTS_TOPIC: &str = "/joints";
+pub(super) const DEPTH_TOPIC: &str = "/depth";
+pub(super) const HANDS_TOPIC: &str = "/hands";
+pub(super) const ENCODING: &str = "toile-le";
+pub(super) const SCHEMA_ENCODING: &str = "text/plain";
+pub(super) const METADATA: &str = "toile.session";
+pub(super) const NOTES: &str = "toile.notes";
 
 /// Description of a joints message, stored as its schema.
 pub(super) const JOINTS_LAYOUT: &str = "\
@@ -30,6 +40,13 @@ f32 camera_to_world[12]  columns x axis, y axis, z axis, translation (m)
 then a PNG             greyscale, 16 bit; depth along z in millimetres, 0 = nothing measured
 ";
 
+/// Description of a hands message, stored as its schema.
+pub(super) const HANDS_LAYOUT: &str = "\
+little endian
+u64 time_ns            of the joints message that it belongs to
+u8 left, u8 right      0 unknown, 1 open, 2 closed
+";
+
 const DEPTH_HEADER: usize = 8 + 8 + 16 + 48;
 
 /// A joints message.
@@ -48,11 +65,11 @@ pub(super) fn encode_joints(frame: &Joints) -> Vec<u8> {
 
 /// Reads a joints message.
 pub(super) fn decode_joints(bytes: &[u8]) -> Result<Joints, String> {
-    let mut words = Words(bytes);
+    let mut words = MessageBytes(bytes);
     let time_ns = words.u64()?;
     let count = words.u32()?;
     if count as usize != JOINTS || words.0.len() != 16 * JOINTS {
-        return Err(format!("{count} joints in {} bytes where {JOINTS} joints belong", bytes.len()));
+        return Err(format!("a joints message of {} bytes says that it holds {count} of {JOINTS} joints", bytes.len()));
     }
     let mut frame = Joints::absent(time_ns);
     for joint in &mut frame.joints {
@@ -63,6 +80,35 @@ pub(super) fn decode_joints(bytes: &[u8]) -> Result<Joints, String> {
     } else {
         Err("a joint is not finite, or its confidence not within 0..1".to_owned())
     }
+}
+
+/// A hands message; none where neither hand's state is known.
+pub(super) fn encode_hands(frame: &Joints) -> Option<Vec<u8>> {
+    if frame.hands == [HandState::Unknown; 2] {
+        return None;
+    }
+    let mut out = frame.time_ns.to_le_bytes().to_vec();
+    out.extend(frame.hands.map(|hand| match hand {
+        HandState::Unknown => 0,
+        HandState::Open => 1,
+        HandState::Closed => 2,
+    }));
+    Some(out)
+}
+
+/// Reads a hands message: its time, left and right.
+pub(super) fn decode_hands(bytes: &[u8]) -> Result<(u64, [HandState; 2]), String> {
+    let mut words = MessageBytes(bytes);
+    let (time_ns, states) = (words.u64()?, words.take::<2>()?);
+    if !words.0.is_empty() || states.iter().any(|state| *state > 2) {
+        return Err("a hands message holds more than two states of 0, 1 or 2".to_owned());
+    }
+    let hand = |state| match state {
+        1 => HandState::Open,
+        2 => HandState::Closed,
+        _ => HandState::Unknown,
+    };
+    Ok((time_ns, states.map(hand)))
 }
 
 /// A depth message.
@@ -91,7 +137,7 @@ pub(super) fn encode_depth(frame: &DepthFrame) -> Result<Vec<u8>, String> {
 
 /// Reads a depth message; sizes are checked, and `room` is asked, before memory is taken.
 pub(super) fn decode_depth(bytes: &[u8], room: &mut DepthRoom) -> Result<DepthFrame, String> {
-    let mut words = Words(bytes);
+    let mut words = MessageBytes(bytes);
     let time_ns = words.u64()?;
     let (width, height) = (words.u32()?, words.u32()?);
     let [fx, fy, cx, cy] = [words.f32()?, words.f32()?, words.f32()?, words.f32()?];
@@ -123,9 +169,9 @@ fn decode_png(bytes: &[u8], camera: &Intrinsics) -> Result<Box<[u16]>, String> {
 }
 
 /// What is left of a message.
-struct Words<'a>(&'a [u8]);
+struct MessageBytes<'a>(&'a [u8]);
 
-impl Words<'_> {
+impl MessageBytes<'_> {
     fn take<const N: usize>(&mut self) -> Result<[u8; N], String> {
         let (head, tail) = self.0.split_first_chunk::<N>().ok_or("the message is too short")?;
         self.0 = tail;

@@ -4,9 +4,12 @@ use mcap::McapError;
 use mcap::records::{Metadata, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
-use super::{DEPTH_TOPIC, DepthRoom, ENCODING, JOINTS_TOPIC, METADATA, NOTES, Session, VERSION, layout, too_many};
+use super::layout::{self, DEPTH_TOPIC, ENCODING, HANDS_TOPIC, JOINTS_TOPIC, METADATA, NOTES, VERSION};
+use super::recording::{DepthRoom, Session, too_many};
+use super::unpack::Zstd;
 use crate::error::{Fault, Place, SourceError};
-use crate::limits::{MAX_DEPTH_FRAMES, MAX_JOINT_FRAMES};
+use crate::frame::HandState;
+use crate::limits::{MAX_CHANNELS, MAX_CHUNK_BYTES, MAX_DEPTH_FRAMES, MAX_JOINT_FRAMES};
 
 const CURE: &str = "record it again, or restore the file from a copy";
 
@@ -25,6 +28,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Session, SourceError> {
 enum Topic {
     Joints,
     Depth,
+    Hands,
     Other,
 }
 
@@ -34,6 +38,8 @@ struct Reading {
     /// Channel ids seen, and what they carry; a handful.
     topics: Vec<(u16, Topic)>,
     room: DepthRoom,
+    /// Hand states and the times of the frames that they belong to (ns).
+    hands: Vec<(u64, [HandState; 2])>,
     is_ours: bool,
     complete: bool,
 }
@@ -51,11 +57,16 @@ fn read_bytes(bytes: &[u8]) -> Result<Session, Fault> {
         let problem = if cut { "cut off before it says who recorded it" } else { "an MCAP file of another program" };
         return Err(Fault::new(Place::Byte(end), problem, cure));
     }
-    let mut session = reading.session;
+    let Reading { mut session, hands, complete, .. } = reading;
+    for (time_ns, hands) in hands {
+        if let Some(frame) = session.joints.binary_search_by_key(&time_ns, |f| f.time_ns).ok() {
+            session.joints[frame].hands = hands;
+        }
+    }
     if session.joints.is_empty() && session.depth.is_empty() {
         return Err(Fault::new(Place::Byte(end), "cut off before the first frame, or empty", CURE));
     }
-    if cut || !reading.complete {
+    if cut || !complete {
         let (joints, depth) = (session.joints.len(), session.depth.len());
         session
             .notes
@@ -66,13 +77,14 @@ fn read_bytes(bytes: &[u8]) -> Result<Session, Fault> {
 }
 
 /// Feeds every record, those within chunks too, to `take`. Gives the place of the end and whether the file is cut off.
-/// A record that claims to be longer than the file is refused before memory is taken.
+/// A record that claims to be longer than the file, or than a chunk may be, is refused before memory is taken.
 fn records(bytes: &[u8], mut take: impl FnMut(u8, &[u8]) -> Result<bool, String>) -> Result<(u64, bool), Fault> {
     let options = LinearReaderOptions::default()
         .with_skip_end_magic(true)
         .with_prevalidate_chunk_crcs(true)
-        .with_record_length_limit(bytes.len());
+        .with_record_length_limit(bytes.len().max(MAX_CHUNK_BYTES));
     let mut reader = LinearReader::new_with_options(options);
+    reader.add_decompressor(Zstd::default()).map_err(|error| faulty(0, &error))?;
     let mut at = 0;
     while let Some(event) = reader.next_event() {
         match event {
@@ -89,10 +101,28 @@ fn records(bytes: &[u8], mut take: impl FnMut(u8, &[u8]) -> Result<bool, String>
                 }
             }
             Err(McapError::UnexpectedEof) => return Ok((at as u64, true)),
-            Err(error) => return Err(Fault::new(Place::Byte(at as u64), format!("corrupt: {error}"), CURE)),
+            Err(error) => return Err(faulty(at, &error)),
         }
     }
     Ok((at as u64, false))
+}
+
+/// What is wrong with a file, in words of the file alone: a library's own would name its source.
+fn faulty(at: usize, error: &McapError) -> Fault {
+    let (problem, cure) = match error {
+        McapError::UnsupportedCompression(name) => {
+            let name: String = name.chars().filter(|c| !c.is_control()).take(20).collect();
+            let problem = format!("its chunks are compressed by `{name}`, and only those of zstd are read");
+            (problem, "write it again without compression or with zstd")
+        }
+        McapError::DecompressionError(problem) => (problem.clone(), CURE),
+        McapError::BadChunkCrc { .. } => ("corrupt: a chunk does not have the content of its checksum".into(), CURE),
+        McapError::RecordTooLarge { len, .. } | McapError::ChunkTooLarge(len) => {
+            (format!("corrupt: a record says that it has {len} bytes"), CURE)
+        }
+        _ => ("corrupt: a record is not as the MCAP format has it".into(), CURE),
+    };
+    Fault::new(Place::Byte(at as u64), problem, cure)
 }
 
 impl Reading {
@@ -106,14 +136,18 @@ impl Reading {
             }
             _ => return Ok(true),
         }
-        match mcap::parse_record(opcode, data).map_err(|e| format!("corrupt: {e}"))? {
+        match mcap::parse_record(opcode, data).map_err(|e| faulty(0, &e).problem)? {
             Record::Channel(channel) => {
                 let topic = match (channel.topic.as_str(), channel.message_encoding.as_str()) {
                     (JOINTS_TOPIC, ENCODING) => Topic::Joints,
                     (DEPTH_TOPIC, ENCODING) => Topic::Depth,
+                    (HANDS_TOPIC, ENCODING) => Topic::Hands,
                     _ => Topic::Other,
                 };
                 if !self.topics.contains(&(channel.id, topic)) {
+                    if self.topics.len() == MAX_CHANNELS {
+                        return Err(format!("more than {MAX_CHANNELS} channels, of which a session has three"));
+                    }
                     self.topics.push((channel.id, topic));
                 }
             }
@@ -122,9 +156,10 @@ impl Reading {
                 match topic.ok_or("a message of an unknown channel")?.1 {
                     Topic::Joints => self.session.joints.push(layout::decode_joints(&data)?),
                     Topic::Depth => self.session.depth.push(layout::decode_depth(&data, &mut self.room)?),
+                    Topic::Hands => self.hands.push(layout::decode_hands(&data)?),
                     Topic::Other => {}
                 }
-                let (joints, depth) = (self.session.joints.len(), self.session.depth.len());
+                let (joints, depth) = (self.session.joints.len().max(self.hands.len()), self.session.depth.len());
                 if joints > MAX_JOINT_FRAMES || depth > MAX_DEPTH_FRAMES {
                     return Err(too_many(joints.max(depth)).problem);
                 }

@@ -9,13 +9,16 @@ use std::path::Path;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{McapResult, WriteOptions, Writer};
 
-use super::{DEPTH_TOPIC, ENCODING, JOINTS_TOPIC, LAYOUT, METADATA, NOTES, Session, VERSION, layout};
+use super::layout::{
+    self, DEPTH_TOPIC, ENCODING, HANDS_TOPIC, JOINTS_TOPIC, METADATA, NOTES, SCHEMA_ENCODING, VERSION,
+};
+use super::recording::Session;
 use crate::error::{Fault, Place, SourceError};
 
 /// Size of a chunk (bytes): what a cut-off file loses at most.
 const CHUNK_BYTES: u64 = 256 << 10;
 
-/// Writes a session to a file, whole or not at all: the bytes go to a neighbouring file that is then renamed.
+/// Writes a session to a file, all of it or nothing: the bytes go to a neighbouring file that is then renamed.
 ///
 /// # Errors
 /// Where the session breaks its own promises, or the path cannot be written.
@@ -32,8 +35,18 @@ pub fn write(path: &Path, session: &Session) -> Result<(), SourceError> {
     })
 }
 
+impl Session {
+    /// The bytes of the session's recording; the same session gives the same bytes.
+    ///
+    /// # Errors
+    /// Where the session breaks its own promises (order of time, finite numbers, sizes).
+    pub fn to_bytes(&self) -> Result<Vec<u8>, SourceError> {
+        to_bytes(self).map_err(|fault| fault.at(&self.name))
+    }
+}
+
 /// A session as the bytes of an MCAP file; the same session gives the same bytes.
-pub(super) fn to_bytes(session: &Session) -> Result<Vec<u8>, Fault> {
+fn to_bytes(session: &Session) -> Result<Vec<u8>, Fault> {
     session.check()?;
     let mut depth = Vec::with_capacity(session.depth.len());
     for (i, frame) in session.depth.iter().enumerate() {
@@ -51,14 +64,20 @@ fn encode(session: &Session, depth: Vec<(u64, Vec<u8>)>) -> McapResult<Vec<u8>> 
     let mut writer = Writer::with_options(&mut file, options)?;
     writer.write_metadata(&description(session))?;
     writer.write_metadata(&notes(session))?;
-    let topics =
-        [(JOINTS_TOPIC, "toile.joints/1", layout::JOINTS_LAYOUT), (DEPTH_TOPIC, "toile.depth/1", layout::DEPTH_LAYOUT)];
-    let mut channels = [0; 2];
-    for (channel, (topic, name, text)) in channels.iter_mut().zip(topics) {
-        let schema = writer.add_schema(name, LAYOUT, text.as_bytes())?;
+    let messages = in_time(session, depth);
+    // A session without hand states has the bytes that it had before there were any.
+    let used = if messages.iter().any(|m| m.topic == 2) { 3 } else { 2 };
+    let topics = [
+        (JOINTS_TOPIC, "toile.joints/1", layout::JOINTS_LAYOUT),
+        (DEPTH_TOPIC, "toile.depth/1", layout::DEPTH_LAYOUT),
+        (HANDS_TOPIC, "toile.hands/1", layout::HANDS_LAYOUT),
+    ];
+    let mut channels = [0; 3];
+    for (channel, (topic, name, text)) in channels.iter_mut().zip(topics).take(used) {
+        let schema = writer.add_schema(name, SCHEMA_ENCODING, text.as_bytes())?;
         *channel = writer.add_channel(schema, topic, ENCODING, &BTreeMap::new())?;
     }
-    for (sequence, message) in (0u32..).zip(in_time(session, depth)) {
+    for (sequence, message) in (0u32..).zip(messages) {
         let Message { topic, time_ns, bytes } = message;
         let header = MessageHeader { channel_id: channels[topic], sequence, log_time: time_ns, publish_time: time_ns };
         writer.write_to_known_channel(&header, &bytes)?;
@@ -69,18 +88,20 @@ fn encode(session: &Session, depth: Vec<(u64, Vec<u8>)>) -> McapResult<Vec<u8>> 
 }
 
 struct Message {
-    /// 0 joints, 1 depth.
+    /// 0 joints, 1 depth, 2 hands.
     topic: usize,
     time_ns: u64,
     bytes: Vec<u8>,
 }
 
-/// All messages in order of time, so that a cut-off file holds both kinds up to the cut.
+/// All messages in order of time, so that a cut-off file holds all kinds up to the cut.
 fn in_time(session: &Session, depth: Vec<(u64, Vec<u8>)>) -> Vec<Message> {
     let joints =
         session.joints.iter().map(|f| Message { topic: 0, time_ns: f.time_ns, bytes: layout::encode_joints(f) });
     let depth = depth.into_iter().map(|(time_ns, bytes)| Message { topic: 1, time_ns, bytes });
-    let mut all: Vec<Message> = joints.chain(depth).collect();
+    let hands = session.joints.iter();
+    let hands = hands.filter_map(|f| Some(Message { topic: 2, time_ns: f.time_ns, bytes: layout::encode_hands(f)? }));
+    let mut all: Vec<Message> = joints.chain(depth).chain(hands).collect();
     all.sort_by_key(|m| m.time_ns);
     all
 }

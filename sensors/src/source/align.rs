@@ -1,7 +1,7 @@
 //! A recording brought into our world: levelled, its floor at y = 0, the shopper near x = z = 0.
 //!
 //! Joints alone say how a camera was tilted: a standing person's neck is above the middle of their feet, and the spine
-//! is upright, in the median of a whole recording. Where a tracker has no neck, its chest or head does as well.
+//! is upright, in the median of the recording. Where a tracker has no neck, its chest or head does as well.
 
 use glam::{Quat, Vec3};
 use toile_assets::numeric::statistics::{median_of, quantile_of};

@@ -23,26 +23,26 @@ const LEVEL_CONFIDENCE: [f32; 4] = [0.0, 0.4, 1.0, 1.0];
 
 const CURE: &str = "write it again with k4abt's offline processor";
 
-/// The whole file, or a line of it.
+/// The file, or a line of it.
 #[derive(Deserialize)]
 struct Record {
     #[serde(default)]
-    frames: Option<Vec<Frame>>,
+    frames: Option<Vec<AzureFrame>>,
     #[serde(default)]
     timestamp_usec: Option<u64>,
     #[serde(default)]
-    bodies: Vec<Body>,
+    bodies: Vec<AzureBody>,
 }
 
 #[derive(Deserialize)]
-struct Frame {
+struct AzureFrame {
     timestamp_usec: u64,
     #[serde(default)]
-    bodies: Vec<Body>,
+    bodies: Vec<AzureBody>,
 }
 
 #[derive(Deserialize)]
-struct Body {
+struct AzureBody {
     #[serde(default)]
     body_id: u32,
     joint_positions: Vec<[f32; 3]>,
@@ -88,7 +88,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
 }
 
 /// All frames, of an object that holds them or of lines.
-fn parse(bytes: &[u8]) -> Result<Vec<Frame>, Fault> {
+fn parse(bytes: &[u8]) -> Result<Vec<AzureFrame>, Fault> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut frames = Vec::new();
     for record in serde_json::Deserializer::from_slice(bytes).into_iter::<Record>() {
@@ -97,7 +97,7 @@ fn parse(bytes: &[u8]) -> Result<Vec<Frame>, Fault> {
         })?;
         match (record.frames, record.timestamp_usec) {
             (Some(more), _) => frames.extend(more),
-            (None, Some(timestamp_usec)) => frames.push(Frame { timestamp_usec, bodies: record.bodies }),
+            (None, Some(timestamp_usec)) => frames.push(AzureFrame { timestamp_usec, bodies: record.bodies }),
             (None, None) => {
                 let problem = "an object that holds neither frames nor a frame's timestamp_usec";
                 return Err(Fault::new(Place::Frame(frames.len()), problem, CURE));
@@ -111,7 +111,7 @@ fn parse(bytes: &[u8]) -> Result<Vec<Frame>, Fault> {
 }
 
 /// A body's points in world axes (m): the camera's y and z turned about its x.
-fn points(body: &Body) -> Result<[TrackedJoint; POINTS], String> {
+fn points(body: &AzureBody) -> Result<[TrackedJoint; POINTS], String> {
     let count = body.joint_positions.len();
     if count != POINTS {
         return Err(format!("{count} joints where an Azure Kinect body has {POINTS}"));
@@ -128,7 +128,7 @@ fn points(body: &Body) -> Result<[TrackedJoint; POINTS], String> {
         }
         let level = levels.map_or(2, |l| l[k]);
         let confidence = LEVEL_CONFIDENCE.get(usize::from(level)).copied();
-        let confidence = confidence.ok_or_else(|| format!("the confidence level {level} is none of 0, 1, 2, 3"))?;
+        let confidence = confidence.ok_or_else(|| format!("the confidence level {level} is not 0, 1, 2 or 3"))?;
         *point = TrackedJoint { position: Vec3::new(camera.x, -camera.y, -camera.z), confidence };
     }
     Ok(points)

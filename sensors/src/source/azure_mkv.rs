@@ -51,13 +51,13 @@ const CURE: &str = "record it again with k4arecorder";
 /// What is read of a recording before its images.
 struct Head<'a> {
     scale_ns: u64,
-    track: Option<Track>,
+    track: Option<MkvTrack>,
     calibration: Option<Element<'a>>,
 }
 
 /// The depth track.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Track {
+struct MkvTrack {
     number: u64,
     size: [u32; 2],
 }
@@ -119,7 +119,7 @@ impl<'a> Head<'a> {
     }
 
     /// The depth camera that the attached calibration describes, in the track's mode.
-    fn camera(&self, track: &Track) -> Result<Camera, Fault> {
+    fn camera(&self, track: &MkvTrack) -> Result<Camera, Fault> {
         let file = self.calibration.as_ref().ok_or_else(|| {
             let cure = "give the depth camera as a camera JSON";
             Fault::new(Place::Whole, "no calibration.json is attached", cure)
@@ -135,15 +135,17 @@ impl<'a> Head<'a> {
     }
 }
 
-fn depth_track(entry: &Element<'_>) -> Option<Track> {
+fn depth_track(entry: &Element<'_>) -> Option<MkvTrack> {
     let field = |id| entry.children().find(|e| e.id == id);
     let is_depth = field(id::NAME).is_some_and(|e| e.text() == b"DEPTH");
     // The four letters stand in a BITMAPINFOHEADER.
     let is_b16g = field(id::CODEC_PRIVATE).is_some_and(|e| e.data.get(16..20) == Some(b"b16g"));
     let video = field(id::VIDEO)?;
     let side = |id| video.children().find(|e| e.id == id).and_then(|e| u32::try_from(e.unsigned()?).ok());
-    let track =
-        Track { number: field(id::TRACK_NUMBER)?.unsigned()?, size: [side(id::PIXEL_WIDTH)?, side(id::PIXEL_HEIGHT)?] };
+    let track = MkvTrack {
+        number: field(id::TRACK_NUMBER)?.unsigned()?,
+        size: [side(id::PIXEL_WIDTH)?, side(id::PIXEL_HEIGHT)?],
+    };
     (is_depth && is_b16g).then_some(track)
 }
 
@@ -153,7 +155,7 @@ fn calibration_file<'a>(file: &Element<'a>) -> Option<Element<'a>> {
 }
 
 /// Takes the depth images of a cluster; gives the number of broken ones.
-fn cluster(cluster: &Element<'_>, track: &Track, scale_ns: u64, sequence: &mut Sequence) -> Result<usize, Fault> {
+fn cluster(cluster: &Element<'_>, track: &MkvTrack, scale_ns: u64, sequence: &mut Sequence) -> Result<usize, Fault> {
     let (mut begin, mut broken) = (0u64, 0);
     for element in cluster.children() {
         let block = match element.id {

@@ -1,17 +1,17 @@
-//! Which of a BVH file's joints is which of ours: the dialects of the field, told apart by the names they use.
+//! Which of a BVH file's joints is which of ours: the dialects of the field, known by the names they use.
 //!
 //! The classic error is off by one along the arm: `LeftShoulder` is the clavicle where there is a `LeftArm`, and the
 //! shoulder joint where there is a `LeftElbow`; `LeftHip` and `LeftUpLeg` are the same joint.
 
 use toile_assets::skeleton::{JOINTS, Joint};
 
-use super::bvh::Node;
+use super::bvh_file::Node;
 use crate::error::{Fault, Place};
 
-/// A dialect: names that tell it, then the names of each joint, the first that the file has counts. `@` stands for the
+/// A dialect: names that it alone has, then the names of each joint, the first that the file has counts. `@` stands for the
 /// side. Names are compared without case, prefix (`mixamorig:`) and separators.
 struct Dialect {
-    tells: &'static [&'static str],
+    marks: &'static [&'static str],
     middle: [(Joint, &'static [&'static str]); 5],
     side: [(Joint, &'static [&'static str]); 9],
     left_right: [&'static str; 2],
@@ -19,7 +19,7 @@ struct Dialect {
 
 /// Names of Maya, MotionBuilder, Mixamo and the FAIR files: arm, fore arm, up leg, leg.
 const ARM_AND_UP_LEG: Dialect = Dialect {
-    tells: &["LeftArm", "LeftForeArm", "LeftUpLeg", "LeftLeg"],
+    marks: &["LeftArm", "LeftForeArm", "LeftUpLeg", "LeftLeg"],
     middle: [
         (Joint::Pelvis, &["Hips", "Hip", "Pelvis"]),
         (Joint::Spine, &["LowerBack", "Spine"]),
@@ -44,7 +44,7 @@ const ARM_AND_UP_LEG: Dialect = Dialect {
 /// Names of the joints themselves, as in B. Hahne's CMU files: hip, knee, shoulder, elbow. Their `lowerback` stands at
 /// the pelvis itself, so that `Chest` is the first joint of the spine.
 const HIP_AND_KNEE: Dialect = Dialect {
-    tells: &["LeftHip", "LeftKnee", "LeftShoulder", "LeftElbow"],
+    marks: &["LeftHip", "LeftKnee", "LeftShoulder", "LeftElbow"],
     middle: [
         (Joint::Pelvis, &["Hips", "Pelvis"]),
         (Joint::Spine, &["Chest", "Spine", "lowerback"]),
@@ -68,7 +68,7 @@ const HIP_AND_KNEE: Dialect = Dialect {
 
 /// VRM and VMC: upper arm, lower arm, upper leg, lower leg.
 const UPPER_AND_LOWER: Dialect = Dialect {
-    tells: &["LeftUpperArm", "LeftLowerArm", "LeftUpperLeg", "LeftLowerLeg"],
+    marks: &["LeftUpperArm", "LeftLowerArm", "LeftUpperLeg", "LeftLowerLeg"],
     middle: [
         (Joint::Pelvis, &["Hips"]),
         (Joint::Spine, &["Spine"]),
@@ -92,7 +92,7 @@ const UPPER_AND_LOWER: Dialect = Dialect {
 
 /// Game engines: upperarm_l, lowerarm_l, thigh_l, calf_l.
 const THIGH_AND_CALF: Dialect = Dialect {
-    tells: &["upperarm_l", "lowerarm_l", "thigh_l", "calf_l"],
+    marks: &["upperarm_l", "lowerarm_l", "thigh_l", "calf_l"],
     middle: [
         (Joint::Pelvis, &["pelvis"]),
         (Joint::Spine, &["spine_01"]),
@@ -137,7 +137,7 @@ pub(super) fn map(nodes: &[Node]) -> Result<Names, Fault> {
     const CURE: &str = "rename its joints as in VRM, Mixamo or the CMU files";
     let plain: Vec<String> = nodes.iter().map(|n| plain(&n.name)).collect();
     let find = |name: &str| plain.iter().position(|p| !p.is_empty() && *p == self::plain(name));
-    let Some(dialect) = DIALECTS.iter().find(|d| d.tells.iter().all(|t| find(t).is_some())) else {
+    let Some(dialect) = DIALECTS.iter().find(|d| d.marks.iter().all(|t| find(t).is_some())) else {
         return Err(Fault::new(Place::Whole, "the skeleton's joint names are of no known dialect", CURE));
     };
     let mut names: Names = [None; JOINTS];

@@ -4,7 +4,7 @@ use glam::{DMat3, DQuat, DVec3};
 use toile_assets::skeleton::{JOINTS, Joint};
 
 use super::align;
-use super::bvh::{Bvh, Channel};
+use super::bvh_file::{Bvh, Channel};
 use super::bvh_names::Names;
 use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place};
@@ -18,7 +18,7 @@ const UNITS: [(&str, f64); 4] = [("metres", 1.0), ("centimetres", 0.01), ("inche
 /// Statures by which a unit is recognised (m): ANSUR II spans 1.41 .. 1.99, and children and dancers come besides.
 const PLAUSIBLE_STATURE: std::ops::Range<f64> = 1.2..2.2;
 
-/// Stature given to a person whose unit cannot be told (m).
+/// Stature given to a person whose unit is unknown (m).
 const ASSUMED_STATURE: f64 = 1.70;
 
 /// Hip to ankle over stature: thigh 0.245 and shank 0.246 (Drillis and Contini 1966).
@@ -84,7 +84,7 @@ fn to_y_up(frames: &mut [Positions]) -> DVec3 {
         sum += f[Joint::Head.index()] - ankles;
     }
     let axes = [DVec3::Y, DVec3::Z, DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z, DVec3::NEG_X];
-    // The first of equals wins, so that y is taken where nothing can be told.
+    // The first of equals wins, so that y is taken where no axis stands out.
     let up = axes.into_iter().rev().max_by(|a, b| a.dot(sum).total_cmp(&b.dot(sum))).unwrap_or(DVec3::Y);
     let turn = if up == DVec3::NEG_Y {
         DQuat::from_rotation_x(std::f64::consts::PI)

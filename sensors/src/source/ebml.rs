@@ -37,7 +37,7 @@ pub(super) struct Elements<'a> {
 }
 
 impl<'a> Elements<'a> {
-    /// The boxes of a whole file.
+    /// The boxes of a file.
     pub const fn of(file: &'a [u8]) -> Self {
         Self { data: file, at: 0 }
     }

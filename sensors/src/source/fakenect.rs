@@ -9,8 +9,8 @@ use std::path::Path;
 use toile_assets::file;
 
 use super::camera::{self, Camera};
+use super::files::{OpenOptions, count_bytes, shown};
 use super::sequence::Sequence;
-use super::{OpenOptions, count_bytes, shown};
 use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place, SourceError};
 use crate::frame::Intrinsics;

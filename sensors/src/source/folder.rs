@@ -7,19 +7,20 @@ use std::path::{Path, PathBuf};
 use toile_assets::file;
 
 use super::camera;
+use super::files::{OpenOptions, count_bytes, shown};
 use super::raw_depth::{assumed_camera, samples};
 use super::sequence::{Sequence, assumed_time, untimed};
-use super::{OpenOptions, count_bytes, fakenect, png_depth, shown};
+use super::{fakenect, png_depth};
 use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place, SourceError};
-use crate::limits::{MAX_FOLDER_FILES, RECORDING};
+use crate::limits::{CAMERA, MAX_FOLDER_FILES, RECORDING};
 use crate::session::Session;
 
 /// Endings of raw 16-bit images.
 const RAW: [&str; 5] = ["u16le", "raw", "bin", "depth", "z16"];
 
 /// The camera of a folder, where none is given.
-const CAMERA: &str = "camera.json";
+const CAMERA_FILE: &str = "camera.json";
 
 /// From this on, a number in a name is a time in seconds (September 2001), as in the recordings of the TUM benchmark.
 const FIRST_CLOCK_S: f64 = 1e9;
@@ -35,9 +36,7 @@ pub(super) fn read(folder: &Path, options: &OpenOptions) -> Result<Session, Sour
     let (images, beside) = list(folder)?;
     let mut notes = Vec::new();
     let camera = match options.camera.clone().or(beside) {
-        Some(json) => {
-            camera::read(&file::read(&json, &crate::limits::CAMERA)?).map_err(|fault| fault.at(&shown(&json)))?
-        }
+        Some(json) => camera::read(&file::read(&json, &CAMERA)?).map_err(|fault| fault.at(&shown(&json)))?,
         None => assumed_camera(&mut notes),
     };
     let clock = clock(&images);
@@ -80,7 +79,7 @@ fn list(folder: &Path) -> Result<(Vec<PathBuf>, Option<PathBuf>), SourceError> {
             return Err(Fault::new(Place::Whole, problem, "cut the recording into shorter pieces").at(&shown(folder)));
         }
         let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-        if path.file_name().is_some_and(|n| n == CAMERA) {
+        if path.file_name().is_some_and(|n| n == CAMERA_FILE) {
             camera = Some(path);
         } else if ending == "png" {
             png.push(path);

@@ -1,7 +1,7 @@
 //! Kinect joints as text, a line a frame: the time, then x, y, z (m, camera space) and the state (0 not tracked,
 //! 1 inferred, 2 tracked) of each joint.
 //!
-//! Two kinds are told apart by the count of numbers. Kinect v2 as the LabanotationSuite records it: 25 joints, commas,
+//! The count of numbers says which of two kinds it is. Kinect v2 as the LabanotationSuite records it: 25 joints, commas,
 //! one more at the end, time in ticks of 100 ns. Kinect v1 as the MSRC-12 recordings have it: 20 joints, spaces or
 //! commas, time in ticks, microseconds or milliseconds, whichever comes nearest to the sensor's 30 frames a second.
 
@@ -108,7 +108,7 @@ fn frame(line: &str, format: Format, map: &JointMap) -> Result<Joints, String> {
             "0" => STATE_CONFIDENCE[0],
             "1" => STATE_CONFIDENCE[1],
             "2" => STATE_CONFIDENCE[2],
-            other => return Err(format!("the tracking state '{}' is none of 0, 1, 2", clip(other))),
+            other => return Err(format!("the tracking state '{}' is not 0, 1 or 2", clip(other))),
         };
         *point = TrackedJoint { position: turned(camera), confidence };
     }

@@ -12,7 +12,7 @@ use super::kinect2::{KINECT_JOINTS, turned};
 use super::{align, tidy};
 use crate::error::{Fault, Place};
 use crate::filter::gate::derive_confidence;
-use crate::frame::{Joints, TrackedJoint};
+use crate::frame::{HandState, Joints, TrackedJoint};
 use crate::limits::{MAX_COORDINATE, MAX_JOINT_FRAMES};
 use crate::session::{Session, too_many};
 
@@ -23,7 +23,7 @@ const CURE: &str = "record it again with Kinectron";
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
-struct Body {
+struct KinectronBody {
     #[serde(default = "yes")]
     tracked: bool,
     #[serde(default)]
@@ -53,7 +53,7 @@ struct CameraJoint {
 
 pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let bodies: Vec<Body> = serde_json::from_slice(bytes).map_err(|e| {
+    let bodies: Vec<KinectronBody> = serde_json::from_slice(bytes).map_err(|e| {
         let problem = format!("not a Kinectron recording: {e}");
         Fault::new(Place::Line(e.line()), problem, CURE)
     })?;
@@ -81,7 +81,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
     Ok(Session { joints, notes, raw_scale_known: true, ..Session::default() })
 }
 
-fn frame(body: &Body, map: &JointMap) -> Result<Joints, String> {
+fn frame(body: &KinectronBody, map: &JointMap) -> Result<Joints, String> {
     if body.joints.len() != KINECT_JOINTS {
         return Err(format!("{} joints where a Kinect v2 body has {KINECT_JOINTS}", body.joints.len()));
     }
@@ -98,14 +98,21 @@ fn frame(body: &Body, map: &JointMap) -> Result<Joints, String> {
         *point = TrackedJoint { position: turned(camera), confidence: 1.0 };
     }
     let mut joints = map.joints((ms * 1e6) as u64, &points);
-    mark_hand(&mut joints, Joint::LeftHand, body.left_hand_state);
-    mark_hand(&mut joints, Joint::RightHand, body.right_hand_state);
+    let hands = [(Joint::LeftHand, body.left_hand_state), (Joint::RightHand, body.right_hand_state)];
+    for (side, (joint, state)) in hands.into_iter().enumerate() {
+        if matches!(state, Some(0 | 1)) {
+            joints.at_mut(joint).confidence = UNKNOWN_HAND_CONFIDENCE;
+        }
+        joints.hands[side] = hand_state(state);
+    }
     Ok(joints)
 }
 
-/// Hand states: 0 unknown, 1 not tracked, 2 open, 3 closed, 4 lasso.
-fn mark_hand(joints: &mut Joints, joint: Joint, state: Option<u32>) {
-    if matches!(state, Some(0 | 1)) {
-        joints.at_mut(joint).confidence = UNKNOWN_HAND_CONFIDENCE;
+/// Kinect v2's hand states: 0 unknown, 1 not tracked, 2 open, 3 closed, 4 lasso (two fingers out).
+fn hand_state(state: Option<u32>) -> HandState {
+    match state {
+        Some(2) => HandState::Open,
+        Some(3) => HandState::Closed,
+        _ => HandState::Unknown,
     }
 }

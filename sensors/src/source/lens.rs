@@ -100,7 +100,7 @@ pub(super) struct Straighten {
 }
 
 impl Straighten {
-    /// The table of a lens; `None` where the model is none of a lens: folded from the middle on, or growing without end.
+    /// The table of a lens; `None` where no lens is like the model: folded from the middle on, or growing without end.
     pub fn new(bent: Intrinsics, lens: &BrownConrady) -> Option<Self> {
         let sound = lens.sound_radius();
         if sound <= 0.0 {

@@ -10,14 +10,13 @@
 use serde::Deserialize;
 
 use super::joint_map::{Format, JointMap};
-use super::mediapipe_place::{self as place, Image};
+use super::mediapipe_landmarks::{Image, Landmark, LandmarkPerson, POINTS};
+use super::mediapipe_place as place;
 use super::{align, tidy};
 use crate::error::{Fault, Place};
-use crate::frame::{Joints, TrackedJoint};
+use crate::frame::Joints;
 use crate::limits::{MAX_JOINT_FRAMES, MAX_SIDE};
 use crate::session::{Session, too_many};
-
-pub(super) const POINTS: usize = Format::MediaPipe33.points();
 
 /// Image size that is taken where none is given (px): that of most webcams.
 const ASSUMED_SIZE: [f32; 2] = [1280.0, 720.0];
@@ -27,30 +26,15 @@ const FARTHEST: f32 = 100.0;
 
 const CURE: &str = "write the results of the Pose Landmarker again, one JSON object a line with its timestampMs";
 
-/// One landmark.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-pub(super) struct Landmark {
-    pub x: f32,
-    pub y: f32,
-    #[serde(default)]
-    pub z: f32,
-    #[serde(default = "seen")]
-    pub visibility: f32,
-}
-
-fn seen() -> f32 {
-    1.0
-}
-
 /// One person, or a list of people.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
-enum People {
+enum LandmarkLists {
     Many(Vec<Vec<Landmark>>),
     One(Vec<Landmark>),
 }
 
-impl People {
+impl LandmarkLists {
     fn people(&self) -> &[Vec<Landmark>] {
         match self {
             Self::Many(people) => people,
@@ -59,31 +43,24 @@ impl People {
     }
 }
 
-impl Default for People {
+impl Default for LandmarkLists {
     fn default() -> Self {
         Self::Many(Vec::new())
     }
 }
 
 #[derive(Debug, Deserialize)]
-struct Frame {
+struct LandmarkFrame {
     #[serde(alias = "timestampMs", alias = "timestamp", alias = "timestampInMilliseconds", alias = "time_ms")]
     timestamp_ms: f64,
     #[serde(default, alias = "poseLandmarks", alias = "pose_landmarks")]
-    landmarks: People,
+    landmarks: LandmarkLists,
     #[serde(default, alias = "worldLandmarks", alias = "poseWorldLandmarks", alias = "pose_world_landmarks")]
-    world_landmarks: People,
+    world_landmarks: LandmarkLists,
     #[serde(default, alias = "image_width", alias = "imageWidth")]
     width: Option<f32>,
     #[serde(default, alias = "image_height", alias = "imageHeight")]
     height: Option<f32>,
-}
-
-/// One person in one frame.
-pub(super) struct Person {
-    pub time_ns: u64,
-    pub image: Option<Image>,
-    pub world: Option<[Landmark; POINTS]>,
 }
 
 /// Whether the begin of a JSON file shows this kind.
@@ -118,17 +95,17 @@ pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
     Ok(Session { joints, notes, raw_scale_known: false, ..Session::default() })
 }
 
-fn parse(bytes: &[u8]) -> Result<Vec<Frame>, Fault> {
+fn parse(bytes: &[u8]) -> Result<Vec<LandmarkFrame>, Fault> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii();
     let fault = |e: serde_json::Error| {
         Fault::new(Place::Line(e.line()), format!("not results of the Pose Landmarker: {e}"), CURE)
     };
     if bytes.starts_with(b"[") {
-        let frames: Vec<Frame> = serde_json::from_slice(bytes).map_err(fault)?;
+        let frames: Vec<LandmarkFrame> = serde_json::from_slice(bytes).map_err(fault)?;
         return if frames.len() > MAX_JOINT_FRAMES { Err(too_many(frames.len())) } else { Ok(frames) };
     }
     let mut frames = Vec::new();
-    for frame in serde_json::Deserializer::from_slice(bytes).into_iter::<Frame>() {
+    for frame in serde_json::Deserializer::from_slice(bytes).into_iter::<LandmarkFrame>() {
         if frames.len() == MAX_JOINT_FRAMES {
             return Err(too_many(frames.len() + 1));
         }
@@ -138,14 +115,14 @@ fn parse(bytes: &[u8]) -> Result<Vec<Frame>, Fault> {
 }
 
 /// The person of a frame whose hips are nearest to `last` in the image, or who is seen largest; `None` of nobody.
-fn person(frame: &Frame, last: Option<[f32; 2]>) -> Result<Option<Person>, String> {
+fn person(frame: &LandmarkFrame, last: Option<[f32; 2]>) -> Result<Option<LandmarkPerson>, String> {
     let ms = frame.timestamp_ms;
     if !ms.is_finite() || !(0.0..1e15).contains(&ms) {
         return Err(format!("the time stamp {ms} is not in milliseconds"));
     }
     let size = [frame.width.unwrap_or(ASSUMED_SIZE[0]), frame.height.unwrap_or(ASSUMED_SIZE[1])];
     if size.iter().any(|s| !(1.0..=MAX_SIDE as f32).contains(s)) {
-        return Err(format!("an image of {} x {} pixels is none", size[0], size[1]));
+        return Err(format!("an image cannot have {} x {} pixels", size[0], size[1]));
     }
     let mut images = Vec::new();
     for points in frame.landmarks.people() {
@@ -159,7 +136,7 @@ fn person(frame: &Frame, last: Option<[f32; 2]>) -> Result<Option<Person>, Strin
     let world = frame.world_landmarks.people().get(chosen.unwrap_or(0)).map(|points| checked(points)).transpose()?;
     let image = chosen.map(|k| images.swap_remove(k));
     let time_ns = (ms * 1e6) as u64;
-    Ok((image.is_some() || world.is_some()).then_some(Person { time_ns, image, world }))
+    Ok((image.is_some() || world.is_some()).then_some(LandmarkPerson { time_ns, image, world }))
 }
 
 /// The points, if there are 33 of them and all are numbers.
@@ -168,15 +145,13 @@ fn checked(points: &[Landmark]) -> Result<[Landmark; POINTS], String> {
     for (k, p) in points.iter().enumerate() {
         let far = [p.x, p.y, p.z].iter().any(|x| !x.is_finite() || x.abs() > FARTHEST);
         if far || !(0.0..=1.0).contains(&p.visibility) {
-            return Err(format!("landmark {k} at ({}, {}, {}), visible to {}, is none", p.x, p.y, p.z, p.visibility));
+            return Err(format!(
+                "landmark {k} at ({}, {}, {}), visible to {}, is not in the room",
+                p.x, p.y, p.z, p.visibility
+            ));
         }
     }
     Ok(all)
-}
-
-/// A landmark's visibility is its confidence: the model's own estimate that the point is in view.
-pub(super) fn tracked(landmark: &Landmark, position: glam::Vec3) -> TrackedJoint {
-    TrackedJoint { position, confidence: landmark.visibility }
 }
 
 #[cfg(test)]

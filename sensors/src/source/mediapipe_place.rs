@@ -7,11 +7,8 @@
 use glam::{Vec2, Vec3};
 use toile_assets::numeric::statistics::median_of;
 
-use super::mediapipe::{Landmark, POINTS, Person, tracked};
+use super::mediapipe_landmarks::{FOCAL, Image, Landmark, LandmarkPerson, POINTS, tracked};
 use crate::frame::TrackedJoint;
-
-/// Focal length over the image's longer side: that of a webcam that sees 60 degrees.
-const FOCAL: f32 = 0.87;
 
 /// Landmarks of shoulders and hips, the steadiest ones: the scale is taken from the whole body, seen at least so far.
 const VISIBLE: f32 = 0.5;
@@ -27,43 +24,10 @@ const SCALES: std::ops::Range<f32> = 5.0..20_000.0;
 const ASSUMED_STATURE: f32 = 1.70;
 const LEG_OF_STATURE: f32 = 0.491;
 
-const HIPS: [usize; 2] = [23, 24];
-const SHOULDERS: [usize; 2] = [11, 12];
 const LEGS: [[usize; 3]; 2] = [[23, 25, 27], [24, 26, 28]];
 
-/// A person in the image.
-pub(super) struct Image {
-    /// Landmarks as shares of the image.
-    pub points: [Landmark; POINTS],
-    /// Width and height (px).
-    pub size: [f32; 2],
-}
-
-impl Image {
-    /// A landmark's pixel.
-    fn pixel(&self, k: usize) -> Vec2 {
-        Vec2::new(self.points[k].x * self.size[0], self.points[k].y * self.size[1])
-    }
-
-    /// Middle of the hips (px).
-    pub fn hips(&self) -> [f32; 2] {
-        ((self.pixel(HIPS[0]) + self.pixel(HIPS[1])) * 0.5).to_array()
-    }
-
-    /// Length of the trunk (px).
-    pub fn height(&self) -> f32 {
-        let shoulders = (self.pixel(SHOULDERS[0]) + self.pixel(SHOULDERS[1])) * 0.5;
-        shoulders.distance(Vec2::from_array(self.hips()))
-    }
-
-    /// Focal length that is assumed (px).
-    fn focal(&self) -> f32 {
-        FOCAL * self.size[0].max(self.size[1])
-    }
-}
-
 /// The points of all people in one space, world axes (m); not yet levelled nor put on the floor.
-pub(super) fn in_space(people: &[Person], notes: &mut Vec<String>) -> Vec<[TrackedJoint; POINTS]> {
+pub(super) fn in_space(people: &[LandmarkPerson], notes: &mut Vec<String>) -> Vec<[TrackedJoint; POINTS]> {
     if people.iter().all(|p| p.world.is_none()) {
         return from_images(people, notes);
     }
@@ -119,7 +83,7 @@ fn translation(image: &Image, world: &[Landmark; POINTS]) -> Option<Vec3> {
 }
 
 /// Without world landmarks: the image's own depth is in units of its width.
-fn from_images(people: &[Person], notes: &mut Vec<String>) -> Vec<[TrackedJoint; POINTS]> {
+fn from_images(people: &[LandmarkPerson], notes: &mut Vec<String>) -> Vec<[TrackedJoint; POINTS]> {
     let point = |image: &Image, k: usize| image.pixel(k).extend(image.points[k].z * image.size[0]);
     let leg = |image: &Image, [hip, knee, ankle]: [usize; 3]| {
         let seen = [hip, knee, ankle].iter().all(|k| image.points[*k].visibility >= VISIBLE);
@@ -143,7 +107,7 @@ mod tests {
     use super::*;
 
     /// A flat person, and what a camera of the assumed focal length sees of them from `z` metres, shifted by `x` and `y`.
-    fn seen(x: f32, y: f32, z: f32) -> Person {
+    fn seen(x: f32, y: f32, z: f32) -> LandmarkPerson {
         let world: [Landmark; POINTS] = std::array::from_fn(|k| {
             let (x, y) = ((k % 5) as f32 * 0.1 - 0.2, (k / 5) as f32 * 0.25 - 0.8);
             Landmark { x, y, z: 0.0, visibility: 1.0 }
@@ -152,7 +116,7 @@ mod tests {
         let f = FOCAL * 640.0;
         let points =
             world.map(|p| Landmark { x: 0.5 + f * (p.x + x) / z / size[0], y: 0.5 + f * (p.y + y) / z / size[1], ..p });
-        Person { time_ns: 0, image: Some(Image { points, size }), world: Some(world) }
+        LandmarkPerson { time_ns: 0, image: Some(Image { points, size }), world: Some(world) }
     }
 
     #[test]
@@ -178,7 +142,8 @@ mod tests {
         let mut person = seen(0.0, 0.0, 2.0);
         person.world = None;
         let image = person.image.as_ref().unwrap();
-        let points = in_space(&[Person { time_ns: 0, image: Some(Image { ..*image }), world: None }], &mut Vec::new());
+        let points =
+            in_space(&[LandmarkPerson { time_ns: 0, image: Some(Image { ..*image }), world: None }], &mut Vec::new());
         let [hip, knee, ankle] = [23, 25, 27].map(|k: usize| points[0][k].position);
         let [right, bend, foot] = [24, 26, 28].map(|k: usize| points[0][k].position);
         let legs = [hip.distance(knee) + knee.distance(ankle), right.distance(bend) + bend.distance(foot)];

@@ -22,11 +22,13 @@ mod align;
 mod azure;
 mod azure_mkv;
 mod bvh;
+mod bvh_file;
 mod bvh_names;
 mod bvh_pose;
 mod camera;
 mod ebml;
 mod fakenect;
+mod files;
 mod folder;
 pub mod joint_map;
 mod kinect2;
@@ -34,6 +36,7 @@ mod kinect_csv;
 mod kinectron;
 mod lens;
 mod mediapipe;
+mod mediapipe_landmarks;
 mod mediapipe_place;
 #[cfg(feature = "openni2")]
 mod openni2;
@@ -45,23 +48,16 @@ pub mod synthetic;
 mod tidy;
 pub mod vmc;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use toile_assets::file;
 
-use crate::error::Fault;
-use crate::limits::{CAMERA, MAX_FILE_BYTES, RECORDING};
+use crate::limits::{CAMERA, RECORDING};
+use files::shown;
 
 pub use crate::error::{Place, SourceError};
 pub use crate::session::Session;
-
-/// How to open a recording.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct OpenOptions {
-    /// JSON that describes the camera of depth images: `width`, `height`, `fx`, `fy`, `cx`, `cy` (px) and optionally
-    /// `cam_to_world` (4 x 4, mm, y up), `distortion` (`k1` .. `k6`, `p1`, `p2`) and `mm_per_unit`.
-    pub camera: Option<PathBuf>,
-}
+pub use files::OpenOptions;
 
 /// Opens a recording of any known kind: a file, or the folder of a multi-view recording.
 ///
@@ -94,20 +90,20 @@ pub fn open(path: &Path, options: &OpenOptions) -> Result<Session, SourceError> 
 pub fn read_bytes(path: &str, name: &str, bytes: &[u8], camera: Option<(&str, &[u8])>) -> Result<Session, SourceError> {
     let unknown = |what| SourceError::UnknownKind { path: path.to_owned(), what };
     let result = match recognise(bytes, camera.is_some()).map_err(unknown)? {
-        Kind::Session => return crate::session::read(path, bytes),
-        Kind::KinectCsv => kinect_csv::read(bytes),
-        Kind::Kinectron => kinectron::read(bytes),
-        Kind::Azure => azure::read(bytes),
-        Kind::MediaPipe => mediapipe::read(bytes),
-        Kind::Bvh => bvh::read(bytes),
+        RecordingKind::Session => return crate::session::read(path, bytes),
+        RecordingKind::KinectCsv => kinect_csv::read(bytes),
+        RecordingKind::Kinectron => kinectron::read(bytes),
+        RecordingKind::Azure => azure::read(bytes),
+        RecordingKind::MediaPipe => mediapipe::read(bytes),
+        RecordingKind::Bvh => bvh::read(bytes),
         depth => {
             let camera = match camera {
                 Some((json, bytes)) => Some(camera::read(bytes).map_err(|fault| fault.at(json))?),
                 None => None,
             };
             match depth {
-                Kind::AzureMkv => azure_mkv::read(bytes, camera),
-                Kind::Png => png_depth::read(bytes, camera),
+                RecordingKind::AzureMkv => azure_mkv::read(bytes, camera),
+                RecordingKind::Png => png_depth::read(bytes, camera),
                 _ => raw_depth::read(bytes, camera),
             }
         }
@@ -126,7 +122,7 @@ const OPENNI: &str =
     "an OpenNI recording, which is read from a file and only where Toile was built with `--features openni2`";
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum RecordingKind {
     Session,
     KinectCsv,
     Kinectron,
@@ -139,18 +135,18 @@ enum Kind {
 }
 
 /// What a file is, by its first bytes; else what it looks like. `has_camera` says that a camera was given for it.
-fn recognise(bytes: &[u8], has_camera: bool) -> Result<Kind, &'static str> {
+fn recognise(bytes: &[u8], has_camera: bool) -> Result<RecordingKind, &'static str> {
     if bytes.is_empty() {
         return Err("the file is empty");
     }
     if bytes.starts_with(b"\x89MCAP") {
-        return Ok(Kind::Session);
+        return Ok(RecordingKind::Session);
     }
     if bytes.starts_with(b"\x1a\x45\xdf\xa3") {
-        return Ok(Kind::AzureMkv);
+        return Ok(RecordingKind::AzureMkv);
     }
     if bytes.starts_with(png_depth::MAGIC) {
-        return Ok(Kind::Png);
+        return Ok(RecordingKind::Png);
     }
     if bytes.starts_with(ONI_MAGIC) {
         return Err(OPENNI);
@@ -160,26 +156,26 @@ fn recognise(bytes: &[u8], has_camera: bool) -> Result<Kind, &'static str> {
         if is_text(head) { recognise_text(head) } else { Err("binary of no known kind, and no camera is given") };
     match text {
         // Whatever is none of these is depth to somebody who says which camera took it.
-        Err(_) if has_camera => Ok(Kind::RawDepth),
+        Err(_) if has_camera => Ok(RecordingKind::RawDepth),
         Err(_) if !is_text(head) && (bytes.len() as u64).is_multiple_of(raw_depth::KINECT_V1_BYTES) => {
-            Ok(Kind::RawDepth)
+            Ok(RecordingKind::RawDepth)
         }
         other => other,
     }
 }
 
-fn recognise_text(head: &[u8]) -> Result<Kind, &'static str> {
+fn recognise_text(head: &[u8]) -> Result<RecordingKind, &'static str> {
     let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
     match text.first() {
         None => Err("the file holds only white space"),
-        Some(b'[' | b'{') if mediapipe::recognises(text) => Ok(Kind::MediaPipe),
-        Some(b'[') => Ok(Kind::Kinectron),
-        Some(b'{') if azure::recognises(text) => Ok(Kind::Azure),
+        Some(b'[' | b'{') if mediapipe::recognises(text) => Ok(RecordingKind::MediaPipe),
+        Some(b'[') => Ok(RecordingKind::Kinectron),
+        Some(b'{') if azure::recognises(text) => Ok(RecordingKind::Azure),
         Some(b'{') if text.windows(9).any(|w| w == b"keypoints") => Err(ONE_VIEW),
         Some(b'{') => Err("a JSON object, perhaps a camera: give it beside its raw depth file, not instead"),
-        Some(_) if text.starts_with(b"HIERARCHY") => Ok(Kind::Bvh),
+        Some(_) if text.starts_with(b"HIERARCHY") => Ok(RecordingKind::Bvh),
         Some(c) if (c.is_ascii_digit() || b"+-.".contains(c)) && text.iter().any(|c| b", ".contains(c)) => {
-            Ok(Kind::KinectCsv)
+            Ok(RecordingKind::KinectCsv)
         }
         Some(_) => Err("text of no known kind"),
     }
@@ -192,35 +188,21 @@ fn is_text(head: &[u8]) -> bool {
     head.iter().all(|b| *b >= 0x20 || b"\t\n\r".contains(b))
 }
 
-/// Counts the bytes of a folder's files, which together are at most [`MAX_FILE_BYTES`].
-fn count_bytes(total: &mut u64, bytes: &[u8]) -> Result<(), Fault> {
-    *total += bytes.len() as u64;
-    if *total > MAX_FILE_BYTES {
-        let problem = format!("its files have more than the {MAX_FILE_BYTES} bytes that are read of a recording");
-        return Err(Fault::new(Place::Whole, problem, RECORDING.cure));
-    }
-    Ok(())
-}
-
-fn shown(path: &Path) -> String {
-    path.display().to_string()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn kinds_are_told_by_content() {
-        assert_eq!(recognise(b"\x89MCAP0\r\n", false), Ok(Kind::Session));
-        assert_eq!(recognise(b"HIERARCHY\nROOT", false), Ok(Kind::Bvh));
-        assert_eq!(recognise(b"\xef\xbb\xbf [{}]", false), Ok(Kind::Kinectron));
-        assert_eq!(recognise(b"123,0.5,", false), Ok(Kind::KinectCsv));
-        assert_eq!(recognise(b"\x1a\x45\xdf\xa3", true), Ok(Kind::AzureMkv));
-        assert_eq!(recognise(png_depth::MAGIC, true), Ok(Kind::Png));
-        assert_eq!(recognise(&[0; 614_400], false), Ok(Kind::RawDepth));
-        assert_eq!(recognise(&[0; 8], true), Ok(Kind::RawDepth));
-        assert_eq!(recognise(b"123,0.5,", true), Ok(Kind::KinectCsv));
+    fn kinds_are_recognised_by_content() {
+        assert_eq!(recognise(b"\x89MCAP0\r\n", false), Ok(RecordingKind::Session));
+        assert_eq!(recognise(b"HIERARCHY\nROOT", false), Ok(RecordingKind::Bvh));
+        assert_eq!(recognise(b"\xef\xbb\xbf [{}]", false), Ok(RecordingKind::Kinectron));
+        assert_eq!(recognise(b"123,0.5,", false), Ok(RecordingKind::KinectCsv));
+        assert_eq!(recognise(b"\x1a\x45\xdf\xa3", true), Ok(RecordingKind::AzureMkv));
+        assert_eq!(recognise(png_depth::MAGIC, true), Ok(RecordingKind::Png));
+        assert_eq!(recognise(&[0; 614_400], false), Ok(RecordingKind::RawDepth));
+        assert_eq!(recognise(&[0; 8], true), Ok(RecordingKind::RawDepth));
+        assert_eq!(recognise(b"123,0.5,", true), Ok(RecordingKind::KinectCsv));
         for other in [&b""[..], b"  \n", b"{}", b"hello", b"NI10\x01\0\0\0", &[0; 614_401]] {
             assert!(recognise(other, false).is_err(), "{other:?}");
         }

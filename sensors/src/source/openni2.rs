@@ -13,8 +13,8 @@ use std::sync::{Mutex, PoisonError};
 use toile_assets::file;
 
 use super::camera::{self, Camera};
+use super::files::{OpenOptions, shown};
 use super::sequence::Sequence;
-use super::{OpenOptions, shown};
 use crate::error::{Fault, Place, SourceError};
 use crate::frame::Intrinsics;
 use crate::limits::{CAMERA, MAX_DEPTH_FRAMES};
@@ -49,7 +49,7 @@ struct VideoMode {
 }
 
 #[repr(C)]
-struct Frame {
+struct OniFrame {
     data_size: c_int,
     data: *const c_void,
     sensor_type: c_int,
@@ -80,8 +80,8 @@ unsafe extern "C" {
     fn oniStreamStop(stream: Handle);
     fn oniStreamGetProperty(stream: Handle, id: c_int, data: *mut c_void, size: *mut c_int) -> c_int;
     fn oniWaitForAnyStream(streams: *mut Handle, count: c_int, index: *mut c_int, timeout_ms: c_int) -> c_int;
-    fn oniStreamReadFrame(stream: Handle, frame: *mut *mut Frame) -> c_int;
-    fn oniFrameRelease(frame: *mut Frame);
+    fn oniStreamReadFrame(stream: Handle, frame: *mut *mut OniFrame) -> c_int;
+    fn oniFrameRelease(frame: *mut OniFrame);
 }
 
 /// Reads a recording.
@@ -132,7 +132,7 @@ struct Device<'a>(Handle, &'a Library);
 struct Stream<'a>(Handle, &'a Device<'a>);
 
 /// A frame of it, given back when dropped.
-struct Lent<'a>(*mut Frame, &'a Stream<'a>);
+struct BorrowedFrame<'a>(*mut OniFrame, &'a Stream<'a>);
 
 impl Library {
     fn new() -> Result<Self, Fault> {
@@ -224,7 +224,7 @@ impl Stream<'_> {
     }
 
     /// The next frame; none at the end, or where none comes in time.
-    fn next(&self) -> Option<Lent<'_>> {
+    fn next(&self) -> Option<BorrowedFrame<'_>> {
         let (mut handle, mut index) = (self.0, 0);
         // SAFETY: one stream is handed over, which lives, and one place for its index.
         let status = unsafe { oniWaitForAnyStream(&mut handle, 1, &mut index, PATIENCE_MS) };
@@ -234,7 +234,7 @@ impl Stream<'_> {
         let mut frame = ptr::null_mut();
         // SAFETY: the stream lives and `frame` is a place for one pointer.
         let status = unsafe { oniStreamReadFrame(self.0, &mut frame) };
-        (status == OK && !frame.is_null()).then_some(Lent(frame, self))
+        (status == OK && !frame.is_null()).then_some(BorrowedFrame(frame, self))
     }
 }
 
@@ -249,8 +249,8 @@ impl Drop for Stream<'_> {
     }
 }
 
-impl Lent<'_> {
-    fn frame(&self) -> &Frame {
+impl BorrowedFrame<'_> {
+    fn frame(&self) -> &OniFrame {
         // SAFETY: the library gave a frame of this layout, which it keeps until the release at drop.
         unsafe { &*self.0 }
     }
@@ -292,7 +292,7 @@ impl Lent<'_> {
     }
 }
 
-impl Drop for Lent<'_> {
+impl Drop for BorrowedFrame<'_> {
     fn drop(&mut self) {
         let _ = self.1;
         // SAFETY: the frame came from the library and is given back once.

@@ -23,8 +23,8 @@ pub(super) fn read(bytes: &[u8], camera: Option<Camera>) -> Result<Session, Faul
     let image = camera.intrinsics.pixels() * 2;
     if bytes.is_empty() || !bytes.len().is_multiple_of(image) {
         let (w, h) = (camera.intrinsics.width, camera.intrinsics.height);
-        let problem = format!("{} bytes are not whole images of {w} x {h} x 2", bytes.len());
-        let cure = "give the camera JSON that fits, or the whole file";
+        let problem = format!("{} bytes are not a number of images of {w} x {h} x 2 bytes", bytes.len());
+        let cure = "give the camera JSON that fits, or the complete file";
         return Err(Fault::new(Place::Byte(bytes.len() as u64), problem, cure));
     }
     if bytes.len() / image > MAX_DEPTH_FRAMES {

@@ -96,7 +96,7 @@ impl Sequence {
             return Ok(());
         };
         if time_ns > MAX_DURATION_NS {
-            let problem = "its time lies more than a day after the first image";
+            let problem = "its time lies more than two hours after the first image";
             return Err(Fault::new(Place::Frame(index), problem, "cut the recording where the clock was set"));
         }
         let intrinsics = self.kept();

@@ -29,7 +29,7 @@ pub fn session(folder: &Path, file: &str) -> Session {
     open(&folder.join(file), &OpenOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The whole session filtered.
+/// All frames of a session, filtered.
 pub fn filtered(session: &Session) -> Vec<Joints> {
     let mut filter = JointFilter::default();
     session.joints.iter().map(|f| filter.push(f)).collect()

@@ -14,7 +14,7 @@ use toile_assets::skeleton::BONES;
 use toile_engine::body::{JointFrames, Poser, palette};
 use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
-use toile_sensors::frame::{Joints, TrackedJoint};
+use toile_sensors::frame::Joints;
 use toile_view::contact_sheet;
 use toile_view::image::Size;
 use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};
@@ -197,7 +197,7 @@ fn walking(body: &Body) -> Result<Body, AppError> {
     let (sex, measures) = scene::SHOPPER;
     let shopper = Body::build(sex, &measures).map_err(AppError::internal)?.skeleton;
     let seen = JointFrames::new(&shopper, &scene::shopper(&shopper, WALK_S)).position;
-    let joints = Joints { time_ns: 0, joints: seen.map(|position| TrackedJoint { position, confidence: 1.0 }) };
+    let joints = Joints::seen(0, seen);
     let pose = Poser::new(&body.skeleton).pose(&joints, 0.0);
     let mut bones = [Affine3A::IDENTITY; BONES];
     palette(&body.skeleton, &pose, &mut bones);

@@ -11,7 +11,7 @@ use toile_engine::body::{JointFrames, palette};
 use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
 use toile_sensors::clock::SECOND_NS;
-use toile_sensors::frame::{Intrinsics, Joints, TrackedJoint};
+use toile_sensors::frame::{Intrinsics, Joints};
 use toile_sensors::session::Session;
 use toile_sensors::source::synthetic::{JointNoise, KinectNoise, SyntheticCamera};
 
@@ -106,5 +106,5 @@ pub fn perform(seed: u64, frames: u64, mut done: impl FnMut()) -> Result<Session
 /// Where the joints really are.
 fn truth(body: &Body, pose: &Pose, time_ns: u64) -> Joints {
     let at: [Vec3; JOINTS] = JointFrames::new(&body.skeleton, pose).position;
-    Joints { time_ns, joints: at.map(|position| TrackedJoint { position, confidence: 1.0 }) }
+    Joints::seen(time_ns, at)
 }

@@ -44,7 +44,7 @@ pub fn skeleton(scale: f32, legs: f32) -> Skeleton {
 /// What a perfect sensor shows of a pose.
 pub fn seen(skeleton: &Skeleton, pose: &Pose) -> Joints {
     let frames = JointFrames::new(skeleton, pose);
-    Joints { time_ns: 0, joints: frames.position.map(|position| TrackedJoint { position, confidence: 1.0 }) }
+    Joints::seen(0, frames.position)
 }
 
 /// A pose standing with its lowest point on the floor, lifted by `rise`.
@@ -422,7 +422,7 @@ proptest! {
         let mut poser = Poser::new(&ours);
         let mut last: Option<Pose> = None;
         for frame in numbers.chunks(4 * JOINTS) {
-            let mut joints = Joints { time_ns: 0, joints: [TrackedJoint::default(); JOINTS] };
+            let mut joints = Joints::absent(0);
             for (joint, n) in joints.joints.iter_mut().zip(frame.chunks(4)) {
                 *joint = TrackedJoint { position: Vec3::new(n[0], n[1], n[2]), confidence: n[3].abs() };
             }

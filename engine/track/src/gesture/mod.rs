@@ -1,6 +1,7 @@
 //! Gestures: a hand swiped left, right or up, held out to confirm, opened or closed.
 //!
-//! Reads: filtered `Joints`, and a `DepthFrame` where open and closed hands shall be told apart. Writes: `GestureEvents`. Budget:
+//! Reads: filtered `Joints`, and a `DepthFrame` where the sensor does not report itself whether hands are open or closed.
+//! Writes: `GestureEvents`. Budget:
 //! 2 us a frame of joints, 2 ms a hand with depth; fixed state, no allocation after [`Gestures::new`].
 //! Thread: the sensor thread.
 //!
@@ -16,7 +17,7 @@ mod swipe;
 mod trunk;
 
 use toile_assets::skeleton::Joint;
-use toile_sensors::frame::{DepthFrame, Joints};
+use toile_sensors::frame::{DepthFrame, HandState as ReportedState, Joints};
 
 pub use grip::Grip;
 pub use hand::{HandRegion, HandSegmenter, HandShape};
@@ -172,7 +173,7 @@ impl Gestures {
         let calm = self.trunk.velocity().is_some_and(|v| v.length() < WALKING) && trunk.forward.z > FACING;
         let mut events = GestureEvents::default();
         self.swipes(joints, &trunk, arm, calm, &mut events);
-        if let Some(depth) = depth {
+        if depth.is_some() || joints.hands != [ReportedState::Unknown; 2] {
             self.grips(joints, depth, &trunk, arm, &mut events);
         }
         events
@@ -210,14 +211,28 @@ impl Gestures {
         }
     }
 
-    fn grips(&mut self, joints: &Joints, depth: &DepthFrame, trunk: &Trunk, arm: f32, events: &mut GestureEvents) {
+    /// What the hands that are held up do: as the sensor reports it, else as the depth image shows it.
+    fn grips(
+        &mut self,
+        joints: &Joints,
+        depth: Option<&DepthFrame>,
+        trunk: &Trunk,
+        arm: f32,
+        events: &mut GestureEvents,
+    ) {
         let now = joints.time_ns;
         for (i, side) in Side::BOTH.into_iter().enumerate() {
             let presented = |wrist| swipe::is_presented(trunk.local(wrist) / arm);
-            let region =
-                HandRegion::of(joints, side, arm).filter(|_| joints.believed(side.wrist()).is_some_and(presented));
-            let shape = region.and_then(|region| self.segmenter.shape(depth, &region));
-            let found = self.hands[i].grip.step(now, shape.map(|s| s.openness()));
+            let is_presented = joints.believed(side.wrist()).is_some_and(presented);
+            let openness = match joints.hands[i] {
+                _ if !is_presented => None,
+                ReportedState::Open => Some(1.0),
+                ReportedState::Closed => Some(0.0),
+                ReportedState::Unknown => depth
+                    .zip(HandRegion::of(joints, side, arm))
+                    .and_then(|(depth, region)| self.segmenter.shape(depth, &region).map(|shape| shape.openness())),
+            };
+            let found = self.hands[i].grip.step(now, openness);
             events[2 + i] = found.map(|gesture| GestureEvent { time_ns: now, side, gesture });
         }
     }

@@ -17,18 +17,18 @@ const UNDISTORT_ROUNDS: usize = 10;
 /// Largest distortion coefficient of a lens that is no fisheye.
 const LARGEST_DISTORTION: f64 = 10.0;
 
-/// All cameras.
+/// The cameras of one recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rig {
     /// In the order of their names.
-    pub cameras: Vec<Camera>,
+    pub cameras: Vec<CalibratedCamera>,
     /// Frames a second, where given.
     pub frame_rate: Option<f64>,
 }
 
-/// One camera.
+/// One camera: lens and pose.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Camera {
+pub struct CalibratedCamera {
     focal: DVec2,
     centre: DVec2,
     distortion: [f64; 5],
@@ -37,7 +37,7 @@ pub struct Camera {
 }
 
 #[derive(Deserialize)]
-struct Table {
+struct CameraTable {
     size: [f64; 2],
     matrix: [[f64; 3]; 3],
     #[serde(default)]
@@ -62,11 +62,11 @@ pub fn read(bytes: &[u8]) -> Result<Rig, Fault> {
     }
     let mut cameras = Vec::with_capacity(named.len());
     for (name, table) in named {
-        let table: Table = table
+        let table: CameraTable = table
             .clone()
             .try_into()
             .map_err(|e: toml::de::Error| fault(format!("the camera '{name}' is not described: {}", e.message())))?;
-        cameras.push(Camera::new(&table).map_err(|e| fault(format!("the camera '{name}': {e}")))?);
+        cameras.push(CalibratedCamera::new(&table).map_err(|e| fault(format!("the camera '{name}': {e}")))?);
     }
     if let Some(rate) = rate.filter(|r| !(1.0..=1000.0).contains(r)) {
         return Err(fault(format!("a frame rate of {rate} is not that of a camera")));
@@ -74,8 +74,8 @@ pub fn read(bytes: &[u8]) -> Result<Rig, Fault> {
     Ok(Rig { cameras, frame_rate: rate })
 }
 
-impl Camera {
-    fn new(table: &Table) -> Result<Self, String> {
+impl CalibratedCamera {
+    fn new(table: &CameraTable) -> Result<Self, String> {
         let [[fx, _, cx], [_, fy, cy], _] = table.matrix;
         let side = f64::from(MAX_SIDE);
         if table.fisheye {
@@ -165,7 +165,7 @@ translation = [0.0, 1.0, 3.0]
 ";
 
     /// The pixel at which a camera sees a point, distortion and all.
-    pub fn pixel(camera: &Camera, point: DVec3) -> DVec2 {
+    pub fn pixel(camera: &CalibratedCamera, point: DVec3) -> DVec2 {
         camera.distorted(camera.project(point).unwrap()) * camera.focal + camera.centre
     }
 

@@ -18,50 +18,50 @@ pub const FAINTEST: f32 = 0.1;
 
 const CURE: &str = "write it again with OpenPose and --write_json";
 
-/// One keypoint; a score of 0 is none.
+/// One keypoint; a score of 0 says that it is not seen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Keypoint {
-    /// Pixel.
+    /// Where it is in the image (px).
     pub pixel: DVec2,
     /// 0 to 1.
     pub score: f32,
 }
 
 /// One person in one view.
-pub type Person = [Keypoint; POINTS];
+pub type PersonKeypoints = [Keypoint; POINTS];
 
 /// All people of one frame of one view.
-pub type People = Vec<Person>;
+pub type ViewPeople = Vec<PersonKeypoints>;
 
 /// One camera's frames.
-pub type View = Vec<People>;
+pub type ViewFrames = Vec<ViewPeople>;
 
 #[derive(Deserialize)]
-struct File {
-    people: Vec<Body>,
+struct KeypointFile {
+    people: Vec<KeypointBody>,
 }
 
 #[derive(Deserialize)]
-struct Body {
+struct KeypointBody {
     pose_keypoints_2d: Vec<f32>,
 }
 
 /// The people of a file: those of the highest scores, where there are too many.
-pub fn read(bytes: &[u8]) -> Result<People, Fault> {
+pub fn read(bytes: &[u8]) -> Result<ViewPeople, Fault> {
     let fault = |place, problem| Fault::new(place, problem, CURE);
-    let file: File = serde_json::from_slice(bytes)
+    let file: KeypointFile = serde_json::from_slice(bytes)
         .map_err(|e| fault(Place::Line(e.line()), format!("not OpenPose keypoints: {e}")))?;
     let mut people = Vec::with_capacity(file.people.len());
     for body in &file.people {
         people.push(person(&body.pose_keypoints_2d).map_err(|problem| fault(Place::Whole, problem))?);
     }
-    let score = |p: &Person| p.iter().map(|k| k.score).sum::<f32>();
+    let score = |p: &PersonKeypoints| p.iter().map(|k| k.score).sum::<f32>();
     people.sort_by(|a, b| score(b).total_cmp(&score(a)));
     people.truncate(MAX_VIEW_PEOPLE);
     Ok(people)
 }
 
-fn person(numbers: &[f32]) -> Result<Person, String> {
+fn person(numbers: &[f32]) -> Result<PersonKeypoints, String> {
     if numbers.len() != 3 * POINTS {
         return Err(format!("{} numbers where a person of BODY_25 has {}", numbers.len(), 3 * POINTS));
     }
@@ -69,7 +69,10 @@ fn person(numbers: &[f32]) -> Result<Person, String> {
     for (k, (point, at)) in person.iter_mut().zip(numbers.chunks_exact(3)).enumerate() {
         let pixel = DVec2::new(f64::from(at[0]), f64::from(at[1]));
         if !pixel.is_finite() || pixel.abs().max_element() > 1e6 || !(0.0..=1.5).contains(&at[2]) {
-            return Err(format!("keypoint {k} at ({}, {}) of score {} is none", at[0], at[1], at[2]));
+            return Err(format!(
+                "keypoint {k} at ({}, {}) of score {} is not a pixel with a score",
+                at[0], at[1], at[2]
+            ));
         }
         if at[2] >= FAINTEST {
             *point = Keypoint { pixel, score: at[2].min(1.0) };
@@ -80,7 +83,7 @@ fn person(numbers: &[f32]) -> Result<Person, String> {
 
 /// Which model the people are of: the one in whose numbering the neck lies between the shoulders, and the hips where
 /// its middle of the hips is, over all that is seen.
-pub fn format(views: &[View], notes: &mut Vec<String>) -> Format {
+pub fn format(views: &[ViewFrames], notes: &mut Vec<String>) -> Format {
     let people = || views.iter().flatten().flatten();
     // Neck and shoulders: the neck's distance from their middle over their own distance.
     let off = |neck: usize, left: usize, right: usize| {
@@ -164,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn the_model_is_told_by_the_neck() {
+    fn the_neck_shows_the_model() {
         let mut old = [Keypoint::default(); POINTS];
         let mut put = |k: usize, x: f64, y: f64| old[k] = Keypoint { pixel: DVec2::new(x, y), score: 1.0 };
         put(1, 100.0, 50.0);

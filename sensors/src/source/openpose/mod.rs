@@ -19,15 +19,16 @@ use std::path::{Path, PathBuf};
 
 use toile_assets::file;
 
+use super::files::{count_bytes, shown};
 use super::joint_map::JointMap;
-use super::{count_bytes, shown, tidy};
+use super::tidy;
 use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place, SourceError};
 use crate::frame::Joints;
 use crate::limits::{CAMERA, KEYPOINTS, MAX_CAMERAS, MAX_JOINT_FRAMES};
 use crate::session::{Session, too_many};
 use calibration::Rig;
-use keypoints::{People, View};
+use keypoints::{ViewFrames, ViewPeople};
 
 /// Frames a second where the calibration's metadata has no `frame_rate`: OpenPose writes no time.
 const ASSUMED_RATE: f64 = 30.0;
@@ -61,7 +62,7 @@ pub(super) fn open(folder: &Path) -> Result<Session, SourceError> {
 }
 
 /// One camera's frames; `total` counts the bytes of all cameras.
-fn view(folder: &Path, total: &mut u64) -> Result<View, SourceError> {
+fn view(folder: &Path, total: &mut u64) -> Result<ViewFrames, SourceError> {
     let files: Vec<PathBuf> = list(folder)?.into_iter().filter(|p| has_extension(p, "json")).collect();
     if files.len() > MAX_JOINT_FRAMES {
         return Err(too_many(files.len()).at(&shown(folder)));
@@ -111,7 +112,7 @@ fn has_extension(path: &Path, extension: &str) -> bool {
 }
 
 /// A session of all cameras' frames. Frames past the end of the shortest recording are left out.
-fn session(rig: &Rig, views: &[View]) -> Result<Session, Fault> {
+fn session(rig: &Rig, views: &[ViewFrames]) -> Result<Session, Fault> {
     let frames = views.iter().map(Vec::len).min().unwrap_or(0);
     let rate = rig.frame_rate.unwrap_or(ASSUMED_RATE);
     let mut notes = Vec::new();
@@ -122,7 +123,7 @@ fn session(rig: &Rig, views: &[View]) -> Result<Session, Fault> {
     let map = JointMap::of(format);
     let (mut joints, mut last, mut most) = (Vec::with_capacity(frames), None, 0);
     for i in 0..frames {
-        let seen: Vec<&People> = views.iter().map(|view| &view[i]).collect();
+        let seen: Vec<&ViewPeople> = views.iter().map(|view| &view[i]).collect();
         most = most.max(seen.iter().map(|people| people.len()).max().unwrap_or(0));
         if let Some(person) = people::shopper(rig, &seen, last.as_ref()) {
             let time_ns = (i as f64 / rate * SECOND_NS as f64).round() as u64;
@@ -179,7 +180,8 @@ mod tests {
     fn the_points_are_those_that_others_triangulated() {
         let Some(folder) = shared() else { return };
         let rig = calibration::read(&std::fs::read(folder.join("Calib_qualisys.toml")).unwrap()).unwrap();
-        let views: Vec<View> = camera_folders(&folder).unwrap().iter().map(|f| view(f, &mut 0).unwrap()).collect();
+        let views: Vec<ViewFrames> =
+            camera_folders(&folder).unwrap().iter().map(|f| view(f, &mut 0).unwrap()).collect();
         assert_eq!(keypoints::format(&views, &mut Vec::new()), Format::OpenPose25B);
         let (names, frames) = markers(&folder);
         let known = [
@@ -202,7 +204,7 @@ mod tests {
         ];
         let (mut off, mut last, mut missing) = (Vec::new(), None, 0);
         for (i, frame) in frames.iter().enumerate() {
-            let seen: Vec<&People> = views.iter().map(|v| &v[i]).collect();
+            let seen: Vec<&ViewPeople> = views.iter().map(|v| &v[i]).collect();
             let person = people::shopper(&rig, &seen, last.as_ref()).unwrap();
             for (name, k) in known {
                 let truth = frame[names.iter().position(|n| n == name).unwrap()];

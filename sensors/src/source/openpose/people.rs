@@ -5,7 +5,7 @@
 //! the shopper; after the first frame the one who is nearest to where the shopper was, if that is a step away at most.
 
 use super::calibration::Rig;
-use super::keypoints::{POINTS, People, Person};
+use super::keypoints::{POINTS, PersonKeypoints, ViewPeople};
 use super::triangulate::{Point, Ray, triangulate};
 
 /// Mean distance of a camera's keypoints from where a guess is seen, up to which they are the same person (px at a
@@ -22,7 +22,7 @@ const LONGEST_STEP: f64 = 0.5;
 pub type InSpace = [Point; POINTS];
 
 /// The shopper in one frame, seen by the cameras in order; `last` is the shopper in the last frame.
-pub fn shopper(rig: &Rig, seen: &[&People], last: Option<&InSpace>) -> Option<InSpace> {
+pub fn shopper(rig: &Rig, seen: &[&ViewPeople], last: Option<&InSpace>) -> Option<InSpace> {
     let mut best: Option<(f64, InSpace)> = None;
     for first in 0..seen.len() {
         for second in first + 1..seen.len() {
@@ -43,14 +43,14 @@ pub fn shopper(rig: &Rig, seen: &[&People], last: Option<&InSpace>) -> Option<In
 }
 
 /// A guess of two views with the other cameras' views of the same person added.
-fn grown<'a>(rig: &Rig, seen: &[&'a People], chosen: &mut [Option<&'a Person>]) -> Option<InSpace> {
+fn grown<'a>(rig: &Rig, seen: &[&'a ViewPeople], chosen: &mut [Option<&'a PersonKeypoints>]) -> Option<InSpace> {
     let guess = in_space(rig, chosen);
     if found(&guess) < FEWEST {
         return None;
     }
     for (camera, people) in seen.iter().enumerate() {
         if chosen[camera].is_none() {
-            let off = |person: &Person| distance(rig, camera, person, &guess).unwrap_or(f64::INFINITY);
+            let off = |person: &PersonKeypoints| distance(rig, camera, person, &guess).unwrap_or(f64::INFINITY);
             let nearest = people.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
             chosen[camera] = nearest.filter(|p| off(p) < SAME_PERSON);
         }
@@ -59,7 +59,7 @@ fn grown<'a>(rig: &Rig, seen: &[&'a People], chosen: &mut [Option<&'a Person>]) 
 }
 
 /// The points of the person whom each camera's choice shows.
-fn in_space(rig: &Rig, chosen: &[Option<&Person>]) -> InSpace {
+fn in_space(rig: &Rig, chosen: &[Option<&PersonKeypoints>]) -> InSpace {
     std::array::from_fn(|k| {
         let mut rays: Vec<Ray> = Vec::with_capacity(chosen.len());
         for (camera, person) in rig.cameras.iter().zip(chosen) {
@@ -76,7 +76,7 @@ fn found(person: &InSpace) -> usize {
 }
 
 /// Mean distance of a view's keypoints from where the points of a guess are seen.
-fn distance(rig: &Rig, camera: usize, person: &Person, guess: &InSpace) -> Option<f64> {
+fn distance(rig: &Rig, camera: usize, person: &PersonKeypoints, guess: &InSpace) -> Option<f64> {
     let camera = &rig.cameras[camera];
     let (mut sum, mut count) = (0.0, 0);
     for (seen, point) in person.iter().zip(guess) {
@@ -115,7 +115,7 @@ mod tests {
         std::array::from_fn(|k| at + DVec3::new(0.1 * (k % 3) as f64, 0.05 * (k % 4) as f64, 0.06 * k as f64))
     }
 
-    fn view(rig: &Rig, camera: usize, bodies: &[[DVec3; POINTS]]) -> People {
+    fn view(rig: &Rig, camera: usize, bodies: &[[DVec3; POINTS]]) -> ViewPeople {
         let camera = &rig.cameras[camera];
         bodies.iter().map(|b| b.map(|p| Keypoint { pixel: pixel(camera, p), score: 0.7 })).collect()
     }
@@ -126,7 +126,7 @@ mod tests {
         let (shopper_at, other_at) = (DVec3::new(0.0, 0.0, 0.0), DVec3::new(0.5, 0.7, 0.05));
         let views =
             [view(&rig, 0, &[body(shopper_at), body(other_at)]), view(&rig, 1, &[body(other_at), body(shopper_at)])];
-        let seen: Vec<&People> = views.iter().collect();
+        let seen: Vec<&ViewPeople> = views.iter().collect();
         for start in [shopper_at, other_at] {
             let last = body(start).map(|position| Point { position, confidence: 1.0, error: 0.0 });
             let found = shopper(&rig, &seen, Some(&last)).unwrap();

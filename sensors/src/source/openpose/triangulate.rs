@@ -6,7 +6,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::calibration::Camera;
+use super::calibration::CalibratedCamera;
 
 /// Farthest that a point may be seen from where it should (px), for an image of a thousand pixels' focal length.
 const LARGEST_ERROR: f64 = 15.0;
@@ -21,9 +21,9 @@ const CERTAIN: f32 = 0.5;
 const LEAST_DETERMINANT: f64 = 1e-7;
 
 /// One camera's view of a point: the camera, the ray without distortion, the score.
-pub type Ray<'a> = (&'a Camera, DVec2, f32);
+pub type Ray<'a> = (&'a CalibratedCamera, DVec2, f32);
 
-/// A point in space; a confidence of 0 is none.
+/// A point in space; a confidence of 0 says that it is not seen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Point {
     /// World (m).

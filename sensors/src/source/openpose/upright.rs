@@ -7,7 +7,7 @@ use crate::error::{Fault, Place};
 use crate::frame::Joints;
 use crate::source::align;
 
-/// Which axis of the cameras' world is up is told by the shopper: the one along which the head is above the feet.
+/// The axis of the cameras' world that is up: the one along which the head is above the feet.
 pub fn to_world(frames: &mut [Joints], notes: &mut Vec<String>) -> Result<(), Fault> {
     let mut sum = Vec3::ZERO;
     for f in frames.iter() {
@@ -18,7 +18,7 @@ pub fn to_world(frames: &mut [Joints], notes: &mut Vec<String>) -> Result<(), Fa
     }
     let axes =
         [("y", Vec3::Y), ("z", Vec3::Z), ("x", Vec3::X), ("-y", Vec3::NEG_Y), ("-z", Vec3::NEG_Z), ("-x", Vec3::NEG_X)];
-    // The first of equals wins, so that y is taken where nothing can be told.
+    // The first of equals wins, so that y is taken where no axis stands out.
     let (name, up) = axes.into_iter().rev().max_by(|a, b| a.1.dot(sum).total_cmp(&b.1.dot(sum))).unwrap_or(axes[0]);
     if sum == Vec3::ZERO {
         let cure = "record again with the shopper in full view of two cameras";

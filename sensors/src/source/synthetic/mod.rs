@@ -21,7 +21,7 @@ const NEAR: f32 = 0.05;
 /// A depth camera that sees a mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SyntheticCamera {
-    /// The lens.
+    /// Size, focal lengths and centre (px).
     pub intrinsics: Intrinsics,
     /// Camera to world (m): camera x right, y down, z forward.
     pub camera_to_world: Affine3A,

@@ -46,7 +46,7 @@ pub fn lateral_sigma(theta: f32) -> f32 {
 ///
 /// Each pixel, in order: lost in the projector's shadow, at grazing angles and out of range; taken from a place shifted by
 /// the lateral sigma; disturbed by the axial sigma less what quantisation adds by itself (a twelfth of the squared step);
-/// rounded to whole disparities. The published form of that rounding, `35130 / floor(35130/z + N(0, 1/6) + .5)` after a
+/// rounded to integer disparities. The published form of that rounding, `35130 / floor(35130/z + N(0, 1/6) + .5)` after a
 /// rounding of its own, adds the half twice and pulls depth half a step nearer (6 mm at 2 m); here it is rounded once.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KinectNoise {
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn depths_are_whole_disparities() {
+    fn depths_are_integer_disparities() {
         let mut depths: Vec<u16> = KinectNoise::new(1).apply(&CAMERA, &vec![3.0; CAMERA.pixels()]).to_vec();
         depths.sort_unstable();
         depths.dedup();

@@ -23,7 +23,7 @@ pub type Surface<'a> = (&'a [Vec3], &'a [[u32; 3]]);
 
 /// What a camera sees without noise.
 #[derive(Debug, Clone, PartialEq)]
-pub struct View {
+pub struct RoomView {
     /// Depth along the camera's z (m), infinite where nothing is seen `[width * height]`.
     pub z: Vec<f32>,
     /// What is seen there `[width * height]`.
@@ -31,9 +31,9 @@ pub struct View {
 }
 
 /// Looks at people in a room with a floor at y = 0 and a back wall at `back` (z, m).
-pub fn view(camera: &SyntheticCamera, back: f32, people: &[Surface<'_>]) -> View {
+pub fn view(camera: &SyntheticCamera, back: f32, people: &[Surface<'_>]) -> RoomView {
     let pixels = camera.intrinsics.pixels();
-    let mut view = View { z: vec![f32::INFINITY; pixels], label: vec![NOTHING; pixels] };
+    let mut view = RoomView { z: vec![f32::INFINITY; pixels], label: vec![NOTHING; pixels] };
     let corner = |x: f32, y: f32, z: f32| Vec3::new(x * HALF, y, z);
     let room = [
         corner(-1.0, 0.0, HALF),

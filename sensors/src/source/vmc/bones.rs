@@ -41,9 +41,9 @@ pub const COUNT: usize = 24;
 /// A bone relative to its parent, in our axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Local {
-    /// m.
+    /// From the parent (m).
     pub position: Vec3,
-    /// Unit.
+    /// Rotation from the parent, a unit quaternion.
     pub turn: Quat,
 }
 

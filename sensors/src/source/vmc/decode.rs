@@ -1,6 +1,6 @@
 //! From datagrams to joints: messages sorted into frames, and every reason to drop one counted.
 //!
-//! No message ends a frame, and senders differ in the order of theirs. A frame is whole when every bone that the sender
+//! No message ends a frame, and senders differ in the order of theirs. A frame is complete when every bone that the sender
 //! has sent before has come, or when one comes a second time.
 
 use glam::{Quat, Vec3};
@@ -93,7 +93,7 @@ impl Decoder {
         &mut self.drops
     }
 
-    /// The newest whole frame since the last call; older ones that nobody took are gone.
+    /// The newest complete frame since the last call; older ones that were not taken are gone.
     pub fn take(&mut self) -> Option<Joints> {
         self.complete.take()
     }
@@ -205,7 +205,7 @@ fn time(packet: &OscPacket) -> Option<f64> {
     }
 }
 
-/// The pose in a message's arguments 1 to 7, in our axes; `None` where it is none.
+/// The pose in a message's arguments 1 to 7, in our axes; `None` where they are not one.
 fn local(message: &OscMessage) -> Option<Local> {
     let mut numbers = [0.0; 7];
     for (number, arg) in numbers.iter_mut().zip(message.args.get(1..8)?) {

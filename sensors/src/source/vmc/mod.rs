@@ -4,7 +4,7 @@
 //! 100 us; at most [`MAX_PACKETS_A_POLL`](crate::limits::MAX_PACKETS_A_POLL) datagrams a call. Thread: the sensor thread.
 //!
 //! `/VMC/Ext/Bone/Pos name px py pz qx qy qz qw` is a bone of Unity's humanoid relative to its parent, `/VMC/Ext/Root/Pos`
-//! the same of the whole figure, `/VMC/Ext/T t` the sender's time (s), `/VMC/Ext/OK loaded` whether there is a model.
+//! the same of the figure, `/VMC/Ext/T t` the sender's time (s), `/VMC/Ext/OK loaded` whether there is a model.
 //! Unity is left-handed, y up, z forward: a mirrored x makes it ours. The bone `LeftShoulder` is the collar bone.
 //!
 //! Whatever arrives that is no OSC, too long, of other arguments, not finite, late, or of no bone is dropped and counted.

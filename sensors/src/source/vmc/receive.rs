@@ -45,7 +45,7 @@ impl VmcReceiver {
         self.socket.local_addr()
     }
 
-    /// Reads what has arrived, never waiting, and gives the newest whole frame, if there is one since the last call.
+    /// Reads what has arrived, never waiting, and gives the newest complete frame, if there is one since the last call.
     /// `now_ns` is the session's time. Datagrams beyond the most that are read in a call are dropped and counted: what
     /// waits behind so many is old.
     ///

@@ -1,4 +1,4 @@
-//! Laws of the decoder: frames are whole, time runs forwards, and whatever is wrong is counted.
+//! Laws of the decoder: frames are complete, time runs forwards, and whatever is wrong is counted.
 
 use rosc::{OscBundle, OscTime, encoder};
 use toile_assets::skeleton::Joint;
@@ -63,7 +63,7 @@ fn a_turn_is_mirrored_as_unity_is_left_handed() {
 }
 
 #[test]
-fn from_the_second_frame_on_a_frame_is_given_as_soon_as_it_is_whole() {
+fn from_the_second_frame_on_a_frame_is_given_as_soon_as_it_is_complete() {
     let mut decoder = Decoder::new();
     decoder.push(&frame(1.0, 0.0), 0);
     assert!(decoder.take().is_none());
