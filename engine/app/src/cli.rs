@@ -45,45 +45,28 @@ struct CommandLine {
     command: Command,
 }
 
-/// What the user asked for.
+/// What the user asked for. The help of a command is the doc of its arguments, which a doc here would replace.
 #[derive(Debug, Clone, PartialEq, Subcommand)]
+#[expect(missing_docs, reason = "the doc of a variant would be its help")]
 pub enum Command {
-    /// `toile try-on`, and plain `toile`.
     TryOn(TryOnArgs),
-    /// `toile measure`.
     Measure(MeasureArgs),
-    /// `toile record`.
     Record(RecordArgs),
-    /// `toile convert`.
     Convert(ConvertArgs),
-    /// `toile bake`.
     Bake(BakeArgs),
-    /// `toile body`.
     Body(BodyArgs),
-    /// `toile run`.
     Run(RunArgs),
-    /// `toile doctor`.
     Doctor(DoctorArgs),
-    /// `toile bench`.
     #[command(subcommand)]
     Bench(BenchCommand),
-    /// `toile validate`.
     Validate(ValidateArgs),
-    /// `toile pareto`.
     Pareto(ParetoArgs),
-    /// `toile torture`.
     Torture(TortureArgs),
-    /// `toile latency`.
     Latency(LatencyArgs),
-    /// `toile plan`.
     Plan(PlanArgs),
-    /// `toile replay`.
     Replay(ReplayArgs),
-    /// `toile soak`.
     Soak(SoakArgs),
-    /// `toile kiosk`.
     Kiosk(KioskArgs),
-    /// `toile completions`.
     Completions(CompletionsArgs),
     /// Help or version: text to print.
     #[command(skip)]

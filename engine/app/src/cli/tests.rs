@@ -47,6 +47,20 @@ fn every_help_ends_with_an_example() {
 }
 
 #[test]
+fn every_command_and_option_says_what_it_does() {
+    fn check(command: &clap::Command) {
+        let about = command.get_about().map(ToString::to_string).unwrap_or_default();
+        assert!(about.split(' ').count() >= 4 && !about.starts_with('`'), "{}: {about}", command.get_name());
+        for arg in command.get_arguments() {
+            let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
+            assert!(!help.is_empty() && !help.ends_with('.'), "{} {}: {help}", command.get_name(), arg.get_id());
+        }
+        command.get_subcommands().for_each(check);
+    }
+    check(&command());
+}
+
+#[test]
 fn a_wrong_line_gives_one_sentence_with_its_cure() {
     let lines = ["toile --garmet x", "toile mesure", "toile bench", "toile measure", "toile record --out f --seed x"];
     for line in lines {

@@ -15,20 +15,14 @@ mod skirt;
 /// Time one part of the frame, with the error at that speed.
 #[derive(Debug, Clone, PartialEq, Subcommand)]
 #[command(after_help = "Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")]
+#[expect(missing_docs, reason = "the doc of a variant would be its help")]
 pub enum BenchCommand {
-    /// `toile bench skinning`.
     Skinning(skinning::SkinningArgs),
-    /// `toile bench skirt`.
     Skirt(skirt::SkirtArgs),
-    /// `toile bench body`.
     Body(body::BodyBenchArgs),
-    /// `toile bench measure`.
     Measure(measure::MeasureBenchArgs),
-    /// `toile bench filters`.
     Filters(filters::FiltersArgs),
-    /// `toile bench gestures`.
     Gestures(gestures::GesturesArgs),
-    /// `toile bench depth`.
     Depth(depth::DepthArgs),
 }
 
