@@ -125,7 +125,8 @@ impl Colliders {
     pub fn place(&mut self, palette: &[Affine3A; BONES]) {
         self.start = self.end;
         for (sphere, end) in self.rest.iter().zip(&mut self.end) {
-            let bone = palette[usize::from(sphere.bone) % BONES];
+            // Below BONES: checked by `new`.
+            let bone = palette[usize::from(sphere.bone)];
             *end = bone.transform_point3(sphere.centre).extend(sphere.radius);
         }
         let motion = palette[0] * self.root.inverse();

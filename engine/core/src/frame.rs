@@ -125,12 +125,12 @@ impl Frame {
             garments: garments.iter().map(|g| g.start.clone()).collect(),
         };
         let TripleBuffer { writer, reader } = TripleBuffer::new(&snapshot);
+        let pool = WorkerPool::new(settings.workers.clamp(1, SHARES))?;
         let frame = Self {
             poser: Poser::new(&body.skeleton).keeping_clear(&spheres, &rig.capsules),
             pose: Pose::rest(&body.skeleton),
             palette: [Affine3A::IDENTITY; BONES],
             colliders,
-            pool: WorkerPool::new(settings.workers.clamp(1, SHARES))?,
             broken: 0,
             skinning,
             skin: snapshot.skin,
@@ -141,7 +141,9 @@ impl Frame {
             writer,
             garments: garments.into(),
             cloths,
-            settings,
+            // As many as there are, whatever was asked for.
+            settings: Settings { workers: pool.workers(), ..settings },
+            pool,
             body,
         };
         Ok((frame, reader))
@@ -372,4 +374,26 @@ impl Fingerprint {
 /// A pose between two others.
 fn blend(from: &Pose, to: &Pose, t: f32) -> Pose {
     Pose { root: from.root.lerp(to.root, t), local: std::array::from_fn(|i| from.local[i].slerp(to.local[i], t)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use toile_assets::scene;
+
+    use super::*;
+
+    #[test]
+    fn settings_name_the_workers_that_there_are() {
+        let (sex, measures) = scene::SHOPPER;
+        let body = Body::build(sex, &measures).unwrap();
+        let rig = Rig::fit(&body);
+        for (asked, given) in [(0, 1), (1, 1), (2, 2), (9, SHARES)] {
+            let settings = Settings { workers: asked, ..Settings::default() };
+            let (frame, _reader) = Frame::new(body.clone(), &rig, Vec::new(), settings).unwrap();
+            assert_eq!(frame.settings().workers, given, "{asked} asked for");
+            let (other, _reader) = Frame::new(body.clone(), &rig, Vec::new(), Settings::default()).unwrap();
+            let frame = other.with_workers(WorkerPool::new(given).unwrap());
+            assert_eq!(frame.settings().workers, given);
+        }
+    }
 }

@@ -8,7 +8,7 @@ use toile_assets::garment::layout::OWNERS;
 use toile_assets::limits::STEP_SECONDS;
 use toile_assets::numeric::statistics::median;
 use toile_assets::skeleton::BONES;
-use toile_engine::cloth::program::{self, Op};
+use toile_engine::cloth::program::{self, Stage};
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, measure};
 use toile_engine::colliders::Colliders;
 use toile_engine::workers::WorkerPool;
@@ -222,10 +222,10 @@ fn wake(pool: &mut WorkerPool) {
 /// Passes a substep over the weft; over crossing fibers where the weft is all solved with
 /// them.
 pub fn iterations(garment: &Garment, quality: Quality) -> usize {
-    let ops = program::substep(&garment.layout, quality);
-    let count = |of: &[Op]| ops.iter().filter(|op| of.contains(op)).count();
-    match count(&[Op::Weft(0)]) {
-        0 => count(&[Op::Crossing(0)]).max(count(&[Op::Fibers])),
+    let ops = program::constraints(&garment.layout, quality);
+    let count = |of: &[Stage]| ops.iter().filter(|op| of.contains(op)).count();
+    match count(&[Stage::Weft(0)]) {
+        0 => count(&[Stage::Crossing(0)]).max(count(&[Stage::Fibers])),
         passes => passes,
     }
 }

@@ -8,7 +8,7 @@ use toile_assets::garment::{Garment, Shape};
 use toile_assets::numeric::hash;
 use toile_assets::scene::skirt;
 use toile_assets::skeleton::BONES;
-use toile_engine::cloth::program::STAGES;
+use toile_engine::cloth::program::METERED_STAGES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_engine::workers::WorkerPool;
@@ -184,7 +184,7 @@ impl SkirtScene {
     /// skirts, and on a device of the whole (us).
     pub fn stages_us(&mut self, steps: usize) -> (Vec<(&'static str, f64)>, Option<f64>) {
         self.settings.timed = true;
-        let (mut sums, mut whole) = ([0.0; STAGES.len()], None);
+        let (mut sums, mut whole) = ([0.0; METERED_STAGES.len()], None);
         for _ in 0..steps {
             self.prepare();
             self.step();
@@ -199,7 +199,7 @@ impl SkirtScene {
         }
         self.settings.timed = false;
         let mean = 1e-3 / steps as f64;
-        let stages = STAGES.into_iter().zip(sums).map(|(name, ns)| (name, ns * mean)).collect();
+        let stages = METERED_STAGES.into_iter().zip(sums).map(|(name, ns)| (name, ns * mean)).collect();
         (stages, whole.map(|ns| ns * mean))
     }
 

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use toile_assets::scene_file::SceneFile;
 use toile_assets::scene_file::examples;
 use toile_engine::cloth::Cloth;
-use toile_engine::cloth::program::STAGES;
+use toile_engine::cloth::program::METERED_STAGES;
 use toile_fitting::heap::HeapProbe;
 use toile_fitting::scene::Runner;
 use toile_fitting::scene::yardstick;
@@ -219,7 +219,7 @@ fn report(runner: &Runner, args: &RunArgs, dumped: u64, yardstick_us: Option<f64
         substeps: runner.cloths().iter().map(Cloth::substeps).max().unwrap_or_default(),
         lanes: settings.width.lanes(),
         step_us: report::StepMicros { p50: times.p50, p99: times.p99, p999: times.p999, max: times.max },
-        stages_us: STAGES.into_iter().zip(figures.stages_us).collect(),
+        stages_us: METERED_STAGES.into_iter().zip(figures.stages_us).collect(),
         yardstick_us,
         allocations_per_step: figures.allocations_per_step,
         memory_bytes: figures.memory_bytes.map(|bytes| bytes.iter().sum()),

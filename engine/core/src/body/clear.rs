@@ -92,7 +92,8 @@ fn is_trunk_or_leg(bone: u8) -> bool {
 
 /// Where a sphere stands (m).
 fn place(skeleton: &Skeleton, frames: &JointFrames, sphere: &RestSphere) -> Vec3 {
-    let i = usize::from(sphere.bone) % JOINTS;
+    // A joint: spheres on anything else were left out at load.
+    let i = usize::from(sphere.bone);
     frames.position[i] + frames.rotation[i] * (sphere.centre - skeleton.rest[i])
 }
 

@@ -8,7 +8,7 @@
 
 use toile_assets::garment::layout::{Bends, Run, Set};
 
-use crate::lanes::{Column, Kernel, Lanes, MOST, V3};
+use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, Readable, V3, WriteColumn};
 
 /// The bound on dt^2 omega^2 up to which bending is a plain force, a fifth of what is stable: what is stiffer rings, and
 /// the stretch solves of cloth that is pressed in its plane feed the ringing.
@@ -75,7 +75,7 @@ pub const SCRATCH: usize = 3 * STRIDE;
 /// do to all the middles, to all the first ends and to all the second ones. The order of sums is the same at every width.
 pub struct Bend<'a, const K: usize> {
     /// Inverse masses (1/kg).
-    pub w: Column<'a>,
+    pub w: WriteColumn<'a>,
     /// All stencils.
     pub bends: &'a Bends<K>,
     /// The set.
@@ -83,15 +83,15 @@ pub struct Bend<'a, const K: usize> {
     /// Whose share.
     pub owner: usize,
     /// What is bent: the positions (m).
-    pub from: [Column<'a>; 3],
+    pub from: [WriteColumn<'a>; 3],
     /// What is pushed: the velocities (m/s).
-    pub to: [Column<'a>; 3],
+    pub to: [WriteColumn<'a>; 3],
     /// How much: the length of the substep (s).
     pub by: f32,
     /// What [`weaken`] made, where anything had to be weakened.
     pub scale: Option<&'a [f32]>,
     /// This worker's scratch, at least [`SCRATCH`] numbers.
-    pub scratch: Column<'a>,
+    pub scratch: WriteColumn<'a>,
 }
 
 /// A place among the runs of a share.
@@ -146,7 +146,7 @@ impl<const K: usize> Bend<'_, K> {
                 }
                 let mut scale = L::splat(self.by);
                 if let Some(s) = self.scale {
-                    scale = scale * one_or_each::<L>(Column::read_only(s), run.alike, at, part);
+                    scale = scale * one_or_each::<L>(ReadColumn::new(s), run.alike, at, part);
                 }
                 (d * scale).store(self.kept(), filled + done, part);
                 done += part;
@@ -197,13 +197,13 @@ impl<const K: usize> Bend<'_, K> {
 
     /// Where the curvatures are kept, one coordinate after the other.
     #[inline(always)]
-    fn kept(&self) -> [Column<'_>; 3] {
+    fn kept(&self) -> [WriteColumn<'_>; 3] {
         [0, 1, 2].map(|axis| self.scratch.part(axis * STRIDE, STRIDE))
     }
 
     #[inline(always)]
     fn coefficient<L: Lanes>(&self, k: usize, run: &Run<K>, at: usize, n: usize) -> L {
-        one_or_each(Column::read_only(&self.bends.coefficients[k]), run.alike, at, n)
+        one_or_each(ReadColumn::new(&self.bends.coefficients[k]), run.alike, at, n)
     }
 }
 
@@ -218,9 +218,9 @@ impl Place {
 
 /// One number for all, or `n` numbers side by side.
 #[inline(always)]
-fn one_or_each<L: Lanes>(from: Column<'_>, one: bool, at: usize, n: usize) -> L {
+fn one_or_each<L: Lanes>(from: impl Readable, one: bool, at: usize, n: usize) -> L {
     if one {
-        L::splat(from.get(at))
+        L::splat(from.reader().get(at))
     } else if n == L::N {
         L::load(from, at)
     } else {

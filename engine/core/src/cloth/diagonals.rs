@@ -13,7 +13,7 @@ use toile_assets::garment::layout::{Diagonals, Run, Strand};
 
 use super::fibers::{FARTHEST, LEAST_PIVOT, NO_PIVOT};
 use super::state::Columns;
-use crate::lanes::{Column, Kernel, Lanes, Numbers, Store, V3, reciprocal_root};
+use crate::lanes::{Kernel, Lanes, Numbers, ReadColumn, Readable, Store, V3, WriteColumn, reciprocal_root};
 
 /// Columns of what a link leaves with the particle that it leads to: n (three), 1 / pivot, tension without what follows,
 /// the same less what its length makes of it.
@@ -31,7 +31,7 @@ impl Room {
     }
 
     /// As columns.
-    pub fn columns(&mut self) -> [Column<'_>; KEPT] {
+    pub fn columns(&mut self) -> [WriteColumn<'_>; KEPT] {
         self.0.each_mut().map(Store::column)
     }
 
@@ -50,7 +50,7 @@ pub struct Solve<'a> {
     /// The strand.
     pub strand: &'a Strand,
     /// See [`Room`].
-    pub room: [Column<'a>; KEPT],
+    pub room: [WriteColumn<'a>; KEPT],
     /// 1 / dt^2 of the time that the solve stands for (1/s2).
     pub per_dt2: f32,
     /// Damping time over the substep (1).
@@ -83,7 +83,7 @@ impl Solve<'_> {
     /// Rest length, compliance over the square of time, and the weights of both ends of `n` links of a run.
     #[inline(always)]
     fn parameters<L: Lanes>(&self, run: &Run<2>, t: usize, n: usize) -> [L; 4] {
-        let (rest, soft) = (Column::read_only(&self.diagonals.rest), Column::read_only(&self.diagonals.compliance));
+        let (rest, soft) = (ReadColumn::new(&self.diagonals.rest), ReadColumn::new(&self.diagonals.compliance));
         let ([a, b], at, w) = (run.first.map(|f| f as usize), run.at as usize, self.columns.w);
         let [rest, soft, wa, wb] = if run.alike {
             [rest.get(at), soft.get(at), w.get(a), w.get(b)].map(L::splat)
@@ -153,13 +153,13 @@ impl Solve<'_> {
 
 /// `n <= N` numbers side by side.
 #[inline(always)]
-fn some<L: Numbers>(from: Column<'_>, at: usize, n: usize) -> L {
+fn some<L: Numbers>(from: impl Readable, at: usize, n: usize) -> L {
     if n == L::N { L::load(from, at) } else { L::load_part(from, at, n) }
 }
 
 /// Writes `n <= N` numbers side by side.
 #[inline(always)]
-fn put<L: Numbers>(numbers: L, to: Column<'_>, at: usize, n: usize) {
+fn put<L: Numbers>(numbers: L, to: WriteColumn<'_>, at: usize, n: usize) {
     if n == L::N { numbers.store(to, at) } else { numbers.store_part(to, at, n) }
 }
 

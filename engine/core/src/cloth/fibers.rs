@@ -14,7 +14,7 @@ use toile_assets::garment::Solver;
 use toile_assets::garment::layout::{Bundle, ENDED, Fibers, Row};
 
 use super::state::Columns;
-use crate::lanes::{Column, Kernel, Lanes, MOST, Numbers, Two, V3, reciprocal_root};
+use crate::lanes::{Kernel, Lanes, MOST, Numbers, ReadColumn, Two, V3, WriteColumn, reciprocal_root};
 
 /// Least pivot as a share of its diagonal: the rounding of f32 over a chain of a hundred links, ten times over.
 pub(super) const LEAST_PIVOT: f32 = 1e-5;
@@ -45,7 +45,7 @@ pub struct Solve<'a> {
     /// Whose.
     pub owner: usize,
     /// This worker's scratch.
-    pub scratch: Column<'a>,
+    pub scratch: WriteColumn<'a>,
     /// 1 / dt^2 (1/s2).
     pub per_dt2: f32,
     /// Damping time over the substep (1).
@@ -53,7 +53,7 @@ pub struct Solve<'a> {
     /// Whether [`pull_across`] is above what one solve can take.
     pub taut: bool,
     /// The tension of each link so far in this substep, where they have compliance.
-    pub tension: Option<Column<'a>>,
+    pub tension: Option<WriteColumn<'a>>,
 }
 
 impl Kernel for Solve<'_> {
@@ -149,8 +149,7 @@ impl Chain<'_> {
     /// Rest length and compliance of a link.
     #[inline(always)]
     fn link<L: Numbers, const FULL: bool>(&self, link: usize) -> (L, L) {
-        let (rest, soft) =
-            (Column::read_only(&self.solve.fibers.rest), Column::read_only(&self.solve.fibers.compliance));
+        let (rest, soft) = (ReadColumn::new(&self.solve.fibers.rest), ReadColumn::new(&self.solve.fibers.compliance));
         let first = self.bundle.at as usize;
         if self.bundle.alike {
             return (L::splat(rest.get(first + link)), L::splat(soft.get(first + link)));

@@ -3,7 +3,7 @@
 use glam::Vec3A;
 
 use super::state::{self, Columns};
-use crate::lanes::{Column, Kernel, Lanes, Mask};
+use crate::lanes::{Kernel, Lanes, Mask, WriteColumn};
 
 /// What went wrong, counted since the garment was made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -49,7 +49,7 @@ const FARTHEST_M: f32 = 10_000.0;
 const LEAST: f32 = 1e-12;
 
 /// Whether every number of some columns is finite and within reach; those that are next to nothing become nothing.
-pub struct Sound<'a>(pub [Column<'a>; 3]);
+pub struct Sound<'a>(pub [WriteColumn<'a>; 3]);
 
 impl Kernel for Sound<'_> {
     type Out = bool;

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use toile_assets::garment::layout::{HubGroup, Hubs};
 
-use crate::lanes::{Column, Kernel, Lanes, V3};
+use crate::lanes::{Kernel, Lanes, V3, WriteColumn};
 
 /// Adds to each particle the bound on dt^2 omega^2 that the hubs put on it.
 pub fn add_load(hubs: &Hubs, weights: &[f32], dt: f32, load: &mut [f32]) {
@@ -38,15 +38,15 @@ pub fn weaken(hubs: &Hubs, load: &[f32], limit: f32, scale: &mut [f32]) -> f32 {
 /// Adds the bending forces of some groups to the velocities, or whatever is bent to whatever is pushed.
 pub struct Bend<'a> {
     /// Inverse masses (1/kg).
-    pub w: Column<'a>,
+    pub w: WriteColumn<'a>,
     /// All hubs.
     pub hubs: &'a Hubs,
     /// Whose groups.
     pub groups: Range<u32>,
     /// What is bent: the positions (m).
-    pub from: [Column<'a>; 3],
+    pub from: [WriteColumn<'a>; 3],
     /// What is pushed: the velocities (m/s).
-    pub to: [Column<'a>; 3],
+    pub to: [WriteColumn<'a>; 3],
     /// How much: the length of the substep (s).
     pub by: f32,
     /// What [`weaken`] made, where anything had to be weakened.

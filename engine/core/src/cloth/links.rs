@@ -8,7 +8,9 @@
 use toile_assets::garment::layout::{Links, Run, Set, Zigzag};
 
 use super::state::{self, Columns};
-use crate::lanes::{Column, Kernel, Lanes, MOST, Numbers, Two, V3, reciprocal_root, times_reciprocal_root};
+use crate::lanes::{
+    Kernel, Lanes, MOST, Numbers, ReadColumn, Readable, Two, V3, WriteColumn, reciprocal_root, times_reciprocal_root,
+};
 
 /// How often a substep solves links.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,7 +51,7 @@ pub struct Solve<'a> {
     pub gamma: f32,
     /// The tension of each link so far in this substep, and 1 / dt^2, where links with compliance are solved more than
     /// once a substep: without it, each pass would add a spring of its own.
-    pub tension: Option<(Column<'a>, f32)>,
+    pub tension: Option<(WriteColumn<'a>, f32)>,
 }
 
 impl Kernel for Solve<'_> {
@@ -85,8 +87,8 @@ impl Solve<'_> {
         for run in &tuples.runs[share.runs.start as usize..share.runs.end as usize] {
             self.row::<L, SOFT>(run, 0, run.len);
         }
-        let (rest, gain) = (Column::read_only(&self.links.rest), Column::read_only(self.gain));
-        let soft = Column::read_only(&self.links.compliance);
+        let (rest, gain) = (ReadColumn::new(&self.links.rest), ReadColumn::new(self.gain));
+        let soft = ReadColumn::new(&self.links.compliance);
         let loose = &self.links.tuples.loose;
         let mut k = 0;
         while k < share.loose.len() {
@@ -139,7 +141,7 @@ impl Solve<'_> {
     /// Rest length, gain and the weights of both ends of `n` links of a run.
     #[inline(always)]
     fn parameters<L: Numbers>(&self, run: &Run<2>, t: usize, n: usize) -> [L; 4] {
-        let (rest, gain) = (Column::read_only(&self.links.rest), Column::read_only(self.gain));
+        let (rest, gain) = (ReadColumn::new(&self.links.rest), ReadColumn::new(self.gain));
         let ([a, b], at, w) = (run.first.map(|f| f as usize), run.at as usize, self.columns.w);
         if run.alike {
             return self.alike(run);
@@ -224,8 +226,7 @@ impl Solve<'_> {
             return like;
         }
         let [a, b] = one.weights;
-        let (rest, gain, at) =
-            (Column::read_only(&self.links.rest), Column::read_only(self.gain), slants.at as usize + t);
+        let (rest, gain, at) = (ReadColumn::new(&self.links.rest), ReadColumn::new(self.gain), slants.at as usize + t);
         [L::load(rest, at), L::load(gain, at), b, a.with_first(next.weights[0]).rotate_down()]
     }
 
@@ -233,7 +234,7 @@ impl Solve<'_> {
     #[inline(always)]
     fn slack<L: Lanes, const SOFT: bool>(&self, run: &Run<2>, t: usize, n: usize) -> L {
         let Some((tension, per_dt2)) = self.tension.filter(|_| SOFT) else { return L::splat(0.0) };
-        let (soft, at) = (Column::read_only(&self.links.compliance), run.place(t as u32));
+        let (soft, at) = (ReadColumn::new(&self.links.compliance), run.place(t as u32));
         let soft = if run.alike { L::splat(soft.get(at)) } else { part(soft, at, n) };
         part::<L>(tension, run.serial as usize + t, n) * soft * L::splat(per_dt2)
     }
@@ -251,7 +252,7 @@ impl Solve<'_> {
     fn listed<L: Lanes, const SOFT: bool>(
         &self,
         links: &[[u32; 2]],
-        [rest, gain]: [Column<'_>; 2],
+        [rest, gain]: [ReadColumn<'_>; 2],
         at: usize,
         slack: L,
     ) -> L {
@@ -343,7 +344,7 @@ struct Rungs<L> {
 
 impl<L: Numbers> Rungs<L> {
     #[inline(always)]
-    fn store(self, to: [Column<'_>; 3], [a, b]: [usize; 2]) {
+    fn store(self, to: [WriteColumn<'_>; 3], [a, b]: [usize; 2]) {
         self.a.store(to, a, L::N);
         self.b.store(to, b, L::N);
     }
@@ -351,7 +352,7 @@ impl<L: Numbers> Rungs<L> {
 
 /// `n <= N` numbers side by side.
 #[inline(always)]
-fn part<L: Numbers>(from: Column<'_>, at: usize, n: usize) -> L {
+fn part<L: Numbers>(from: impl Readable, at: usize, n: usize) -> L {
     if n == L::N { L::load(from, at) } else { L::load_part(from, at, n) }
 }
 

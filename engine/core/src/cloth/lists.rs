@@ -9,7 +9,7 @@ use toile_assets::garment::layout::{ENDED, List, Lists};
 
 use super::fibers::{FARTHEST, LEAST_PIVOT, NO_PIVOT, limited};
 use super::state::Columns;
-use crate::lanes::{Column, Kernel, Lanes, MOST, V3, reciprocal_root};
+use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, Readable, V3, WriteColumn, reciprocal_root};
 
 /// Vectors kept a row: position (three), weight, normal (three), right-hand side, factor, last column.
 const KEPT: usize = 10;
@@ -38,11 +38,11 @@ pub struct Solve<'a> {
     /// Whose share.
     pub owner: usize,
     /// This worker's scratch.
-    pub scratch: Column<'a>,
+    pub scratch: WriteColumn<'a>,
     /// 1 / dt^2 (1/s2).
     pub per_dt2: f32,
     /// The tension of each link so far in this substep, by its number, where they have compliance.
-    pub tension: Option<Column<'a>>,
+    pub tension: Option<WriteColumn<'a>>,
 }
 
 impl Kernel for Solve<'_> {
@@ -100,11 +100,11 @@ impl Ring<'_> {
 
     #[inline(always)]
     fn parameter<L: Lanes>(&self, from: &[f32], link: usize) -> L {
-        self.numbers(Column::read_only(from), link)
+        self.numbers(ReadColumn::new(from), link)
     }
 
     #[inline(always)]
-    fn numbers<L: Lanes>(&self, from: Column<'_>, link: usize) -> L {
+    fn numbers<L: Lanes>(&self, from: impl Readable, link: usize) -> L {
         let at = self.place(link);
         if self.n == L::N { L::load(from, at) } else { L::load_part(from, at, self.n) }
     }

@@ -25,6 +25,8 @@ pub mod state;
 mod step;
 pub mod tethers;
 pub mod wind;
+#[expect(unsafe_code, reason = "the workers of a step share its columns")]
+mod work;
 
 use glam::{Affine3A, Vec3A};
 use toile_assets::garment::Garment;
@@ -33,7 +35,7 @@ use toile_assets::skeleton::BONES;
 
 use crate::colliders::Colliders;
 use crate::lanes::Store;
-use program::STAGES;
+use program::METERED_STAGES;
 use root::RootMotion;
 pub use root::{RootSettings, Teleport};
 pub use settings::{Quality, Settings};
@@ -86,8 +88,8 @@ pub struct Cloth {
     faces: Option<wind::Faces>,
     /// What happened that should not have.
     pub events: guard::Events,
-    /// Time spent in each of [`STAGES`] during the last step that was metered (ns).
-    pub stage_ns: [u64; STAGES.len()],
+    /// Time spent in each of [`METERED_STAGES`] during the last step that was metered (ns).
+    pub stage_ns: [u64; METERED_STAGES.len()],
     /// Steps in a row that were rolled back.
     rolled: u32,
 }
@@ -117,7 +119,7 @@ impl Cloth {
             pushed: wind::Accelerations::new(start.len()),
             faces: None,
             events: guard::Events::default(),
-            stage_ns: [0; STAGES.len()],
+            stage_ns: [0; METERED_STAGES.len()],
             rolled: 0,
             positions: start,
         }

@@ -3,7 +3,7 @@
 use glam::Vec3A;
 
 use super::state::Columns;
-use crate::lanes::{Column, Kernel, Lanes, V3};
+use crate::lanes::{Kernel, Lanes, V3, WriteColumn};
 
 /// Semi-implicit Euler over one owner's particles: v = (v + a dt) kept; x += v dt.
 pub struct Predict<'a> {
@@ -14,7 +14,7 @@ pub struct Predict<'a> {
     /// Gravity over the substep (m/s).
     pub fall: Vec3A,
     /// Accelerations of each particle besides gravity (m/s2), and the substep (s).
-    pub pushed: Option<([Column<'a>; 3], f32)>,
+    pub pushed: Option<([WriteColumn<'a>; 3], f32)>,
     /// Share of the velocity that the air leaves.
     pub kept: f32,
     /// Length of the substep (s).

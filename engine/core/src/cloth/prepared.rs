@@ -7,7 +7,7 @@ use toile_assets::garment::layout::ENDED;
 use toile_assets::limits::STEP_SECONDS;
 
 use super::links::Passes;
-use super::program::{self, Bending, Op};
+use super::program::{Bending, Program};
 use super::stages::{self, Stage};
 use super::{Quality, Settings, bending, fibers, hubs, links};
 
@@ -23,7 +23,8 @@ const NEEDLES: usize = 50;
 pub struct Prepared {
     /// Substeps, their length (s), damping time: what the figures below were made for.
     made_for: Option<(u32, f32, f32)>,
-    programs: [Box<[Op]>; 3],
+    /// The stages of a step.
+    pub program: Program,
     /// The quality last asked for.
     pub quality: Quality,
     /// Substeps of a step.
@@ -67,9 +68,10 @@ impl Prepared {
         let mut load = zeros(garment.start.len());
         let longest = STEP_SECONDS / Quality::Draft.substeps(garment.substeps) as f32;
         add_load(garment, longest, &mut load);
+        let stiff = load.iter().any(|l| *l > bending::STABLE);
         Self {
             made_for: None,
-            programs: Quality::ALL.map(|q| program::substep(layout, q)),
+            program: Program::new(layout, stiff),
             quality: Quality::default(),
             substeps: 1,
             dt: 0.0,
@@ -84,7 +86,7 @@ impl Prepared {
             bend: bending::Pace { every: 1, stages: 1, least: 1.0 },
             bending: Bending { sets: Bending::sets(layout), stages: 1 },
             stages: [Stage::default(); stages::MOST as usize],
-            stiff: load.iter().any(|l| *l > bending::STABLE),
+            stiff,
             load,
             soft: [&layout.weft.compliance, &layout.fibers.compliance, &layout.crossing.compliance].map(|c| soft(c)),
         }
@@ -94,6 +96,11 @@ impl Prepared {
     pub fn make(&mut self, garment: &Garment, settings: &Settings) {
         let asked = settings.substeps_of(garment.substeps);
         self.quality = settings.quality;
+        self.make_for(garment, settings, asked);
+        self.program.make(self.quality, self.bending, self.substeps);
+    }
+
+    fn make_for(&mut self, garment: &Garment, settings: &Settings, asked: u32) {
         let made_for = (asked, settings.step_seconds, settings.stretch_damping_s);
         if self.made_for == Some(made_for) {
             return;
@@ -135,11 +142,6 @@ impl Prepared {
     /// Whether weft links (0), fibers (1), crossing fibers (2) have any compliance.
     pub fn soft(&self, kind: usize) -> bool {
         self.soft[kind]
-    }
-
-    /// The phases of a substep after bending, at the quality last asked for.
-    pub fn program(&self) -> &[Op] {
-        &self.programs[Quality::ALL.iter().position(|q| *q == self.quality).unwrap_or(0)]
     }
 
     /// How bending goes on.

@@ -1,4 +1,4 @@
-//! The program of a substep: which kernels run in which order, as phases that two workers share.
+//! The program of a step: its stages in their order. Two workers share each stage.
 //!
 //! Order decides the error: bending and the air are forces; then shear, which undoes the most; hoops; fibers, which carry
 //! the weight; hoops and fibers in turn, because each undoes a little of the other, and hoops once more, because what
@@ -8,24 +8,25 @@
 use toile_assets::garment::Layout;
 
 use super::Quality;
+use super::stages::MOST;
 
-/// One phase: both owners' shares of it may run at once.
+/// One stage of a step: both owners' shares of it may run at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Op {
+pub enum Stage {
     /// What contact may meet in this step.
-    Find,
-    /// The wind on each owner's own triangles; then, one worker's, on those that cross.
+    BroadPhase,
+    /// The wind on each owner's own triangles.
     Wind,
-    /// See [`Op::Wind`].
-    CrossWind,
-    /// What the root's motion is not to be felt of.
-    Carry,
-    /// Bending, set by set; the set that crosses the owners is one worker's.
-    Bend(u16),
-    /// Bending that is stiffer than a substep: before the forces of a stage; behind the last of them.
-    Turn(u32),
-    /// The forces of a stage, set by set.
-    Stage(u32, u16),
+    /// The wind on the triangles that cross the owners, by one worker.
+    WindAcross,
+    /// What of the root's motion the cloth is not to feel.
+    RootMotion,
+    /// A set of bending stencils; the set that crosses the owners is one worker's.
+    Bending(u16),
+    /// Bending that is stiffer than a substep: before the forces of a stage of this number; behind the last of them.
+    StiffBendingTurn(u32),
+    /// The forces of such a stage, set by set.
+    StiffBending(u32, u16),
     /// Gravity, air, wind; skinned particles move on.
     Predict,
     /// A family of fibers along the bias.
@@ -39,29 +40,29 @@ pub enum Op {
     /// A set of warp fibers that cross others.
     Crossing(u16),
     /// Tethers.
-    Tether,
-    /// Contact with the body, new velocities.
-    Finish,
+    Tethers,
+    /// Contact, then the velocities that follow: both are one particle's own matter, so the workers need not meet between.
+    ContactAndVelocities,
 }
 
-/// Name of a stage, for the meters.
-pub const STAGES: [&str; 8] = ["predict", "bend", "shear", "weft", "fibers", "contact", "wind", "tethers"];
+/// What the stages are metered as.
+pub const METERED_STAGES: [&str; 8] = ["predict", "bend", "shear", "weft", "fibers", "contact", "wind", "tethers"];
 
 /// What comes before the first substep of a step.
-pub const BEFORE: [Op; 4] = [Op::Find, Op::Wind, Op::CrossWind, Op::Carry];
+pub const BEFORE: [Stage; 4] = [Stage::BroadPhase, Stage::Wind, Stage::WindAcross, Stage::RootMotion];
 
-impl Op {
-    /// Which of [`STAGES`] it counts towards.
-    pub fn stage(self) -> usize {
+impl Stage {
+    /// Which of [`METERED_STAGES`] it counts towards.
+    pub fn metered(self) -> usize {
         match self {
-            Self::Predict | Self::Carry => 0,
-            Self::Bend(_) | Self::Turn(_) | Self::Stage(..) => 1,
+            Self::Predict | Self::RootMotion => 0,
+            Self::Bending(_) | Self::StiffBendingTurn(_) | Self::StiffBending(..) => 1,
             Self::Diagonals(_) | Self::Shear(_) => 2,
             Self::Weft(_) => 3,
             Self::Fibers | Self::Crossing(_) => 4,
-            Self::Finish | Self::Find => 5,
-            Self::Wind | Self::CrossWind => 6,
-            Self::Tether => 7,
+            Self::ContactAndVelocities | Self::BroadPhase => 5,
+            Self::Wind | Self::WindAcross => 6,
+            Self::Tethers => 7,
         }
     }
 }
@@ -81,37 +82,99 @@ impl Bending {
         layout.bends.tuples.sets.len().max(layout.skewed.tuples.sets.len()).max(layout.hubs.sets()) as u32
     }
 
-    /// Its phases.
-    pub fn phases(self) -> usize {
-        (if self.stages < 2 || self.sets == 0 { self.sets } else { self.stages * (self.sets + 1) + 1 }) as usize
+    /// How many stages it is in the program.
+    pub fn len(self) -> usize {
+        self.program().count()
     }
 
-    /// One of them.
-    pub fn op(self, phase: usize) -> Op {
-        if self.stages < 2 {
-            return Op::Bend(phase as u16);
-        }
-        let (stage, part) = (phase as u32 / (self.sets + 1), phase as u32 % (self.sets + 1));
-        if part == 0 { Op::Turn(stage) } else { Op::Stage(stage, part as u16 - 1) }
+    /// Whether nothing bends.
+    pub fn is_empty(self) -> bool {
+        self.sets == 0
+    }
+
+    /// Its part of the program.
+    pub fn program(self) -> impl Iterator<Item = Stage> {
+        let Self { sets, stages } = self;
+        let plain = if stages < 2 { sets } else { 0 };
+        let stiff = if stages < 2 || sets == 0 { 0 } else { stages };
+        let forces = move |stage| (0..sets).map(move |set| Stage::StiffBending(stage, set as u16));
+        let staged =
+            (0..stiff).flat_map(move |stage| [Stage::StiffBendingTurn(stage)].into_iter().chain(forces(stage)));
+        let last = (stiff > 0).then_some(Stage::StiffBendingTurn(stiff));
+        (0..plain).map(|set| Stage::Bending(set as u16)).chain(staged).chain(last)
     }
 }
 
-/// The phases of one substep after bending.
-pub fn substep(layout: &Layout, quality: Quality) -> Box<[Op]> {
-    let numbered = |n: usize, op: fn(u16) -> Op| (0..n as u16).map(op);
-    let wefts = || numbered(layout.weft.tuples.sets.len(), Op::Weft);
-    let fibers = || numbered(layout.crossing.sets.len(), Op::Crossing).chain([Op::Fibers]);
-    let mut ops = vec![Op::Predict];
-    let shear = || numbered(layout.shear.tuples.sets.len(), Op::Shear);
-    ops.extend(numbered(layout.diagonals.families.len(), Op::Diagonals));
-    ops.extend(shear().chain(wefts()).chain(fibers()));
-    match quality {
-        Quality::Draft => {}
-        Quality::Shop | Quality::Fine => {
-            ops.extend(wefts().chain(wefts()).chain(fibers()).chain(wefts()).chain(wefts()));
+/// The stages of one substep after bending.
+pub fn constraints(layout: &Layout, quality: Quality) -> Box<[Stage]> {
+    let numbered = |n: usize, stage: fn(u16) -> Stage| (0..n as u16).map(stage);
+    let shear = || numbered(layout.shear.tuples.sets.len(), Stage::Shear);
+    let wefts = || numbered(layout.weft.tuples.sets.len(), Stage::Weft);
+    let fibers = || numbered(layout.crossing.sets.len(), Stage::Crossing).chain([Stage::Fibers]);
+    let mut stages = vec![Stage::Predict];
+    stages.extend(numbered(layout.diagonals.families.len(), Stage::Diagonals));
+    stages.extend(shear());
+    stages.extend(wefts().chain(fibers()));
+    if quality != Quality::Draft {
+        stages.extend(wefts().chain(wefts()).chain(fibers()).chain(wefts()).chain(wefts()));
+    }
+    stages.push(Stage::Tethers);
+    stages.push(Stage::ContactAndVelocities);
+    stages.into()
+}
+
+/// The stages of a whole step: [`BEFORE`], then the same for each substep.
+#[derive(Debug, Clone)]
+pub struct Program {
+    /// After bending, at each quality.
+    constraints: [Box<[Stage]>; Quality::ALL.len()],
+    /// Those of a substep; has room for the longest.
+    substep: Vec<Stage>,
+    substeps: u32,
+    made_for: Option<(Quality, Bending)>,
+}
+
+impl Program {
+    /// Room for the programs of a garment at any quality; `stiff` says that its bending may have to go in stages. At load.
+    pub fn new(layout: &Layout, stiff: bool) -> Self {
+        let constraints = Quality::ALL.map(|quality| constraints(layout, quality));
+        let bending = Bending { sets: Bending::sets(layout), stages: if stiff { MOST } else { 1 } };
+        let longest = bending.len() + constraints.iter().map(|c| c.len()).max().unwrap_or(0);
+        Self { constraints, substep: Vec::with_capacity(longest), substeps: 0, made_for: None }
+    }
+
+    /// Lists the stages for some settings. Allocates nothing.
+    pub fn make(&mut self, quality: Quality, bending: Bending, substeps: u32) {
+        self.substeps = substeps;
+        if self.made_for != Some((quality, bending)) {
+            self.made_for = Some((quality, bending));
+            let at = Quality::ALL.iter().position(|q| *q == quality).unwrap_or(0);
+            self.substep.clear();
+            self.substep.extend(bending.program());
+            self.substep.extend(&self.constraints[at]);
         }
     }
-    ops.push(Op::Tether);
-    ops.push(Op::Finish);
-    ops.into()
+
+    /// Stages of a step.
+    pub fn len(&self) -> usize {
+        BEFORE.len() + self.substeps as usize * self.substep.len()
+    }
+
+    /// Whether nothing was listed yet.
+    pub fn is_empty(&self) -> bool {
+        self.substep.is_empty()
+    }
+
+    /// One of them, counted over the step, with its substep.
+    pub fn stage(&self, phase: usize) -> (Stage, u32) {
+        match phase.checked_sub(BEFORE.len()) {
+            None => (BEFORE[phase], 0),
+            Some(later) => (self.substep[later % self.substep.len()], (later / self.substep.len()) as u32),
+        }
+    }
+
+    /// All of them in order.
+    pub fn stages(&self) -> impl Iterator<Item = (Stage, u32)> {
+        (0..self.len()).map(|phase| self.stage(phase))
+    }
 }

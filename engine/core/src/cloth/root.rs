@@ -17,7 +17,7 @@
 use glam::{Affine3A, Mat3A, Quat, Vec3A};
 
 use super::state::Columns;
-use crate::lanes::{Column, Kernel, Lanes, V3, Width};
+use crate::lanes::{Kernel, Lanes, V3, Width, WriteColumn};
 
 /// What becomes of the cloth when its body jumps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -179,7 +179,7 @@ pub struct Carried {
 impl Carried {
     /// Changes the velocities of a range of particles `(first, len)` and adds to their accelerations `to` (m/s2), which
     /// hold the wind's or zeros.
-    pub fn apply(&self, width: Width, columns: Columns<'_>, span: (u32, u32), to: [Column<'_>; 3]) {
+    pub fn apply(&self, width: Width, columns: Columns<'_>, span: (u32, u32), to: [WriteColumn<'_>; 3]) {
         width.run(Compensate { carried: self, columns, span, to });
     }
 }
@@ -207,7 +207,7 @@ struct Compensate<'a> {
     carried: &'a Carried,
     columns: Columns<'a>,
     span: (u32, u32),
-    to: [Column<'a>; 3],
+    to: [WriteColumn<'a>; 3],
 }
 
 impl Kernel for Compensate<'_> {

@@ -91,7 +91,7 @@ pub struct Settings {
     /// Whether contact follows particles along their ways; without it, what is thin and fast passes through them. For
     /// telling what it is worth (`toile plan`).
     pub continuous: bool,
-    /// Workers of a step, 1 or 2.
+    /// Workers of a step, 1 or 2. A frame takes the nearest of them that it can have, which its own settings then name.
     pub workers: usize,
     /// Lanes that kernels run on.
     pub width: Width,

@@ -10,7 +10,7 @@
 use glam::Vec3A;
 
 use super::state::Columns;
-use crate::lanes::{Column, Kernel, Lanes, Store, V3};
+use crate::lanes::{Kernel, Lanes, Store, V3, WriteColumn};
 
 /// Damping of the stages: inside of the stable range what is left of a motion is at most 1 / cosh(2) = .27 of it. Below
 /// a third, semi-implicit Euler stays stable with it.
@@ -82,7 +82,7 @@ impl Room {
     }
 
     /// As columns.
-    pub fn columns(&mut self) -> [[Column<'_>; 3]; 3] {
+    pub fn columns(&mut self) -> [[WriteColumn<'_>; 3]; 3] {
         self.0.each_mut().map(|three| three.each_mut().map(Store::column))
     }
 
@@ -100,7 +100,7 @@ pub enum Turn<'a> {
         /// Gravity over the substep (m/s).
         fall: Vec3A,
         /// Other accelerations (m/s2).
-        pushed: Option<[Column<'a>; 3]>,
+        pushed: Option<[WriteColumn<'a>; 3]>,
         /// Length of the substep (s).
         dt: f32,
     },
@@ -119,7 +119,7 @@ pub struct Take<'a> {
     /// Ranges of particles, `(first, len)`.
     pub spans: &'a [(u32, u32)],
     /// r, and two changes of velocity.
-    pub room: [[Column<'a>; 3]; 3],
+    pub room: [[WriteColumn<'a>; 3]; 3],
     /// The turn.
     pub turn: Turn<'a>,
 }

@@ -2,7 +2,7 @@
 
 use glam::{Vec3, Vec3A};
 
-use crate::lanes::{Column, MOST, Store};
+use crate::lanes::{MOST, Store, WriteColumn};
 
 /// Columns: position, previous, velocity (three each), inverse mass.
 const COLUMNS: usize = 10;
@@ -29,13 +29,13 @@ pub struct State {
 #[derive(Clone, Copy)]
 pub struct Columns<'a> {
     /// World position (m).
-    pub x: [Column<'a>; 3],
+    pub x: [WriteColumn<'a>; 3],
     /// Position at the start of the substep (m); contact moves it so that a push does not become speed.
-    pub previous: [Column<'a>; 3],
+    pub previous: [WriteColumn<'a>; 3],
     /// Velocity (m/s).
-    pub v: [Column<'a>; 3],
+    pub v: [WriteColumn<'a>; 3],
     /// Inverse mass (1/kg).
-    pub w: Column<'a>,
+    pub w: WriteColumn<'a>,
 }
 
 impl Columns<'_> {
@@ -121,13 +121,13 @@ impl State {
 
 /// One particle's vector.
 #[inline(always)]
-pub fn get(from: [Column<'_>; 3], i: usize) -> Vec3A {
+pub fn get(from: [WriteColumn<'_>; 3], i: usize) -> Vec3A {
     Vec3A::new(from[0].get(i), from[1].get(i), from[2].get(i))
 }
 
 /// Writes one particle's vector.
 #[inline(always)]
-pub fn set(to: [Column<'_>; 3], i: usize, value: Vec3A) {
+pub fn set(to: [WriteColumn<'_>; 3], i: usize, value: Vec3A) {
     to[0].set(i, value.x);
     to[1].set(i, value.y);
     to[2].set(i, value.z);

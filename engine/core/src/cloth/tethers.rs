@@ -6,7 +6,7 @@
 use toile_assets::garment::layout::Tethers;
 
 use super::state::Columns;
-use crate::lanes::{Column, Kernel, Lanes, Mask, V3, reciprocal_root};
+use crate::lanes::{Kernel, Lanes, Mask, ReadColumn, Readable, V3, WriteColumn, reciprocal_root};
 
 /// Slack of a tether, as a share of its length: cloth that stretches as fabrics do never meets it.
 const SLACK: f32 = 1.02;
@@ -27,26 +27,46 @@ impl Kernel for Hold<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let c = self.columns;
-        let lengths = Column::read_only(&self.tethers.length);
+        let lengths = ReadColumn::new(&self.tethers.length);
         for &(first, len) in self.spans {
             let (mut at, end) = (first as usize, (first + len) as usize);
             while at < end {
                 let n = (end - at).min(L::N);
                 let anchor = V3::<L>::gather(c.x, &self.tethers.anchor[at..at + n], n);
                 let x = V3::<L>::load(c.x, at, n);
-                let part = |c| if n == L::N { L::load(c, at) } else { L::load_part(c, at, n) };
-                let length = part(lengths) * L::splat(SLACK);
+                let length = part::<L>(lengths, at, n) * L::splat(SLACK);
+                let moves = L::splat(0.0).lt(part(c.w, at, n));
                 let d = x - anchor;
                 let size2 = d.dot(d);
-                let free = L::splat(0.0).lt(part(c.w)).and(L::splat(0.0).lt(length));
+                let free = moves.and(L::splat(0.0).lt(length));
                 let taut = (length * length).lt(size2).and(free);
                 if taut.any() {
                     let held = anchor + d * (length * reciprocal_root(size2));
-                    held.select(taut, x).store(c.x, at, n);
+                    let held = held.select(taut, x);
+                    // An anchor, which the other owner may be reading, is not written, not even its own value.
+                    if moves.bits() == u32::MAX >> (u32::BITS as usize - n) {
+                        held.store(c.x, at, n);
+                    } else {
+                        store_some(held, moves, c.x, at, n);
+                    }
                 }
                 at += n;
             }
         }
+    }
+}
+
+/// `n <= N` numbers side by side.
+#[inline(always)]
+fn part<L: Lanes>(from: impl Readable, at: usize, n: usize) -> L {
+    if n == L::N { L::load(from, at) } else { L::load_part(from, at, n) }
+}
+
+/// Writes those of `n` vectors that a mask names.
+#[inline(always)]
+fn store_some<L: Lanes>(v: V3<L>, mask: L::Mask, to: [WriteColumn<'_>; 3], at: usize, n: usize) {
+    for (to, numbers) in to.into_iter().zip([v.x, v.y, v.z].map(L::to_array)) {
+        (0..n).filter(|lane| mask.bits() >> lane & 1 != 0).for_each(|lane| to.set(at + lane, numbers[lane]));
     }
 }
 

@@ -22,7 +22,7 @@
 use glam::{Vec3, Vec3A};
 
 use super::state::{self, Columns};
-use crate::lanes::{Column, Kernel, Lanes, MOST, Store, V3, Width, reciprocal_root};
+use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, Readable, Store, V3, Width, WriteColumn, reciprocal_root};
 
 /// Density of dry air at 20 C and 1,013 hPa (kg/m3).
 pub const AIR_DENSITY: f32 = 1.204;
@@ -139,7 +139,7 @@ impl Faces {
 
     /// Writes the accelerations (m/s2) of one part of the triangles, for a step of `dt` seconds. The first two parts
     /// also clear what their owners' particles had.
-    pub fn blow(&self, width: Width, part: Part, wind: &Wind, dt: f32, at: Columns<'_>, to: [Column<'_>; 3]) {
+    pub fn blow(&self, width: Width, part: Part, wind: &Wind, dt: f32, at: Columns<'_>, to: [WriteColumn<'_>; 3]) {
         if let Some(owned) = self.owned.get(part as usize) {
             width.run(Clear { owned, to });
         }
@@ -243,7 +243,7 @@ impl Accelerations {
     }
 
     /// The three coordinates as kernels see them.
-    pub fn columns(&mut self) -> [Column<'_>; 3] {
+    pub fn columns(&mut self) -> [WriteColumn<'_>; 3] {
         let all = self.numbers.column();
         self.starts.map(|start| all.part(start, self.len))
     }
@@ -261,7 +261,7 @@ impl Accelerations {
 
 struct Clear<'a> {
     owned: &'a [[u32; 2]],
-    to: [Column<'a>; 3],
+    to: [WriteColumn<'a>; 3],
 }
 
 impl Kernel for Clear<'_> {
@@ -284,7 +284,7 @@ struct Blow<'a> {
     wind: &'a Wind,
     dt: f32,
     at: Columns<'a>,
-    to: [Column<'a>; 3],
+    to: [WriteColumn<'a>; 3],
 }
 
 /// What is the same for every triangle of a step.
@@ -335,8 +335,8 @@ impl Kernel for Blow<'_> {
         let mut room = [0.0; CHUNK * 3];
         let (a, rest) = room.split_at_mut(CHUNK);
         let (b, c) = rest.split_at_mut(CHUNK);
-        let force = [Column::new(a), Column::new(b), Column::new(c)];
-        let masses = Column::read_only(&self.group.mass);
+        let force = [WriteColumn::new(a), WriteColumn::new(b), WriteColumn::new(c)];
+        let masses = ReadColumn::new(&self.group.mass);
         let rows = Rows::new(self.at, self.to);
         let mut done = 0;
         for run in &self.group.runs {
@@ -361,17 +361,17 @@ impl Kernel for Blow<'_> {
 /// particle does not change where the columns lie.
 #[derive(Clone, Copy)]
 struct Rows<'a> {
-    x: [Column<'a>; 3],
-    v: [Column<'a>; 3],
-    w: Column<'a>,
-    to: [Column<'a>; 3],
+    x: [WriteColumn<'a>; 3],
+    v: [WriteColumn<'a>; 3],
+    w: WriteColumn<'a>,
+    to: [WriteColumn<'a>; 3],
 }
 
 impl<'a> Rows<'a> {
     #[inline(always)]
-    fn new(at: Columns<'a>, to: [Column<'a>; 3]) -> Self {
+    fn new(at: Columns<'a>, to: [WriteColumn<'a>; 3]) -> Self {
         let len = at.w.len();
-        let cut = |[x, y, z]: [Column<'a>; 3]| [x.part(0, len), y.part(0, len), z.part(0, len)];
+        let cut = |[x, y, z]: [WriteColumn<'a>; 3]| [x.part(0, len), y.part(0, len), z.part(0, len)];
         Self { x: cut(at.x), v: cut(at.v), w: at.w.part(0, len), to: cut(to) }
     }
 
@@ -382,9 +382,9 @@ impl<'a> Rows<'a> {
         air: &Air<L>,
         [a, b, c]: [usize; 3],
         len: usize,
-        masses: Column<'_>,
+        masses: ReadColumn<'_>,
         done: usize,
-        force: [Column<'_>; 3],
+        force: [WriteColumn<'_>; 3],
     ) {
         let mut k = 0;
         while k < len {
@@ -418,7 +418,7 @@ impl<'a> Rows<'a> {
 
     /// Adds the forces of a piece of a run to one corner.
     #[inline(always)]
-    fn add<L: Lanes>(self, corner: usize, len: usize, force: [Column<'_>; 3]) {
+    fn add<L: Lanes>(self, corner: usize, len: usize, force: [WriteColumn<'_>; 3]) {
         let whole = len - len % L::N;
         let mut k = 0;
         while k < whole {
@@ -442,9 +442,9 @@ impl<'a> Rows<'a> {
         self,
         air: &Air<L>,
         [a, b, c]: &[Box<[u32]>; 3],
-        masses: Column<'_>,
+        masses: ReadColumn<'_>,
         done: usize,
-        force: [Column<'_>; 3],
+        force: [WriteColumn<'_>; 3],
     ) {
         let mut at = 0;
         while at < a.len() {
@@ -473,7 +473,7 @@ impl<'a> Rows<'a> {
 
 /// `n <= N` numbers of a column.
 #[inline(always)]
-fn part<L: Lanes>(from: Column<'_>, at: usize, n: usize) -> L {
+fn part<L: Lanes>(from: impl Readable, at: usize, n: usize) -> L {
     if n == L::N { L::load(from, at) } else { L::load_part(from, at, n) }
 }
 

@@ -43,8 +43,8 @@ impl Store {
     }
 
     /// As a column for kernels.
-    pub fn column(&mut self) -> Column<'_> {
-        Column::new(self.as_mut())
+    pub fn column(&mut self) -> WriteColumn<'_> {
+        WriteColumn::new(self.as_mut())
     }
 
     /// Bytes held.
@@ -53,33 +53,197 @@ impl Store {
     }
 }
 
-/// A column as kernels see it: any place may be read and written, through a copy a worker.
+/// What kernels read numbers from: a [`ReadColumn`] or a [`WriteColumn`].
+pub trait Readable: Copy + sealed::Sealed {
+    /// The same numbers, to read.
+    fn reader(&self) -> ReadColumn<'_>;
+}
+
+mod sealed {
+    /// Only this file's columns are readable.
+    pub trait Sealed {}
+    impl Sealed for super::ReadColumn<'_> {}
+    impl Sealed for super::WriteColumn<'_> {}
+}
+
+/// A column that can only be read: constants of the bake, or what another column holds at the moment.
 ///
-/// Soundness: a column is made from a unique borrow and does not outlive it. Its copies may be used by the workers of
-/// one step at once; that they never touch the same place between two meetings is what the bake's split guarantees
-/// (`garment::layout`: no two constraints of a set share a particle, each particle and each constraint has one owner)
-/// and the bake asserts. Every access is checked against the length.
+/// It has no method that writes, so numbers that were lent for reading stay as they are:
+/// ```compile_fail,E0599
+/// #![forbid(unsafe_code)]
+/// use toile_engine::lanes::ReadColumn;
+/// let shared = vec![1.0_f32, 2.0, 3.0];
+/// let column = ReadColumn::new(&shared);
+/// column.set(1, 99.0);
+/// ```
+/// ```compile_fail,E0277
+/// #![forbid(unsafe_code)]
+/// use toile_engine::lanes::{Numbers, ReadColumn};
+/// static CONSTANT: [f32; 4] = [0.0; 4];
+/// 1.0_f32.store(ReadColumn::new(&CONSTANT), 0);
+/// ```
+/// Nor can it be made a column that writes:
+/// ```compile_fail,E0308
+/// use toile_engine::lanes::WriteColumn;
+/// let shared = vec![1.0_f32, 2.0, 3.0];
+/// WriteColumn::new(&shared).set(1, 99.0);
+/// ```
+/// It may show what a [`WriteColumn`] of the same thread writes, so it stays on its thread too:
+/// ```compile_fail,E0277
+/// use toile_engine::lanes::ReadColumn;
+/// let shared = vec![1.0_f32, 2.0, 3.0];
+/// let column = ReadColumn::new(&shared);
+/// std::thread::scope(|scope| _ = scope.spawn(|| column.get(0)));
+/// ```
 #[derive(Clone, Copy)]
-pub struct Column<'a> {
+pub struct ReadColumn<'a> {
+    data: *const f32,
+    len: usize,
+    lender: PhantomData<&'a [f32]>,
+}
+
+/// A column that can be read and written, by every copy of it, on the thread on which it was made.
+///
+/// Soundness: it is made from a unique borrow and does not outlive it, so nobody but its copies reaches the numbers. The
+/// raw pointer keeps them all on one thread (neither `Send` nor `Sync`), where one access follows the other, as with
+/// `&[Cell<f32>]`. Every access is checked against the length. Only this crate hands columns to other threads, through
+/// [`Shared`].
+/// ```compile_fail,E0277
+/// use toile_engine::lanes::WriteColumn;
+/// let mut numbers = vec![1.0_f32, 2.0, 3.0];
+/// let column = WriteColumn::new(&mut numbers);
+/// std::thread::scope(|scope| {
+///     scope.spawn(|| column.set(0, 5.0));
+///     scope.spawn(|| column.set(0, 6.0));
+/// });
+/// ```
+/// ```compile_fail,E0502
+/// use toile_engine::lanes::WriteColumn;
+/// let mut numbers = vec![1.0_f32, 2.0, 3.0];
+/// let column = WriteColumn::new(&mut numbers);
+/// let first = &numbers[0];
+/// column.set(0, 5.0);
+/// assert_eq!(*first, 1.0);
+/// ```
+#[derive(Clone, Copy)]
+pub struct WriteColumn<'a> {
     data: *mut f32,
     len: usize,
     owner: PhantomData<&'a mut [f32]>,
 }
 
-// SAFETY: see the type; f32 may be sent, and the workers' places are disjoint.
-unsafe impl Send for Column<'_> {}
-// SAFETY: as above.
-unsafe impl Sync for Column<'_> {}
+/// Columns on their way to the workers of one step: they go to any thread, but nobody reads or writes them before
+/// [`Shared::open`].
+#[derive(Clone, Copy)]
+pub(crate) struct Shared<T>(T);
 
-impl<'a> Column<'a> {
-    /// A column over numbers that nobody else can reach meanwhile.
-    pub fn new(numbers: &'a mut [f32]) -> Self {
-        Self { data: numbers.as_mut_ptr(), len: numbers.len(), owner: PhantomData }
+// SAFETY: nothing within can be reached but through `open`, whose caller answers for what the threads do with it.
+unsafe impl<T: Copy> Send for Shared<T> {}
+// SAFETY: as above.
+unsafe impl<T: Copy> Sync for Shared<T> {}
+
+impl<T: Copy> Shared<T> {
+    /// Wraps columns up.
+    pub(crate) fn new(columns: T) -> Self {
+        Self(columns)
     }
 
-    /// Numbers that are only read: constants of the bake.
-    pub fn read_only(numbers: &'a [f32]) -> Self {
-        Self { data: numbers.as_ptr().cast_mut(), len: numbers.len(), owner: PhantomData }
+    /// The columns, for the calling thread.
+    ///
+    /// # Safety
+    /// Until the threads next meet, no place of the columns that this thread writes is read or written by another, and
+    /// none that it reads is written by another. What was written before the last meeting happened before this call.
+    pub(crate) unsafe fn open(&self) -> T {
+        self.0
+    }
+
+    /// The same for tests whose jobs keep to places of their own.
+    #[cfg(test)]
+    pub(crate) fn open_in_test(&self) -> T {
+        // SAFETY: each job of such a test writes only what belongs to its share, and reads what was written a phase before.
+        unsafe { self.open() }
+    }
+}
+
+/// Stops a kernel that has left its column.
+#[cold]
+#[inline(never)]
+fn outside(at: usize, n: usize, len: usize) -> ! {
+    panic!("a kernel left its column: {n} numbers from {at} on, of {len}");
+}
+
+impl<'a> ReadColumn<'a> {
+    /// Numbers that nobody writes meanwhile.
+    #[inline(always)]
+    pub fn new(numbers: &'a [f32]) -> Self {
+        Self { data: numbers.as_ptr(), len: numbers.len(), lender: PhantomData }
+    }
+
+    /// How many.
+    #[inline(always)]
+    #[expect(clippy::len_without_is_empty, reason = "no caller asks")]
+    pub fn len(self) -> usize {
+        self.len
+    }
+
+    /// One number.
+    ///
+    /// # Panics
+    /// Past the end.
+    #[inline(always)]
+    pub fn get(self, at: usize) -> f32 {
+        if at >= self.len {
+            outside(at, 1, self.len);
+        }
+        // SAFETY: within the length; what it lies in is lent for 'a.
+        unsafe { *self.data.add(at) }
+    }
+
+    /// Where `n` numbers from `at` on lie.
+    ///
+    /// # Panics
+    /// Where they are not all there, which no index of a bake is: the check of a slice, once a vector.
+    #[inline(always)]
+    pub(super) fn place(self, at: usize, n: usize) -> *const f32 {
+        // Two comparisons of which the first does not depend on the place: it leaves the loop.
+        assert!(n <= self.len, "a kernel left its column");
+        assert!(at <= self.len - n, "a kernel left its column");
+        // SAFETY: within the length, or its end.
+        unsafe { self.data.add(at) }
+    }
+
+    /// Where four times four numbers lie.
+    ///
+    /// # Panics
+    /// Where they are not all there.
+    #[inline(always)]
+    pub(super) fn quads(self, at: &[u32; 4]) -> [*const f32; 4] {
+        let last = at[0].max(at[1]).max(at[2].max(at[3]));
+        self.place(last as usize, 4);
+        // SAFETY: none begins later than one that is within the length.
+        at.map(|q| unsafe { self.data.add(q as usize) })
+    }
+}
+
+impl Readable for ReadColumn<'_> {
+    #[inline(always)]
+    fn reader(&self) -> ReadColumn<'_> {
+        *self
+    }
+}
+
+impl Readable for WriteColumn<'_> {
+    #[inline(always)]
+    fn reader(&self) -> ReadColumn<'_> {
+        ReadColumn { data: self.data, len: self.len, lender: PhantomData }
+    }
+}
+
+impl<'a> WriteColumn<'a> {
+    /// A column over numbers that nobody else can reach meanwhile.
+    #[inline(always)]
+    pub fn new(numbers: &'a mut [f32]) -> Self {
+        Self { data: numbers.as_mut_ptr(), len: numbers.len(), owner: PhantomData }
     }
 
     /// How many.
@@ -97,20 +261,26 @@ impl<'a> Column<'a> {
         Self { data: self.place(start, len), len, owner: PhantomData }
     }
 
-    /// One number; 0 past the end.
+    /// One number.
+    ///
+    /// # Panics
+    /// Past the end.
     #[inline(always)]
     pub fn get(self, at: usize) -> f32 {
-        // SAFETY: within the length.
-        if at < self.len { unsafe { *self.data.add(at) } } else { 0.0 }
+        self.reader().get(at)
     }
 
-    /// Writes one number; nothing past the end.
+    /// Writes one number.
+    ///
+    /// # Panics
+    /// Past the end.
     #[inline(always)]
     pub fn set(self, at: usize, value: f32) {
-        if at < self.len {
-            // SAFETY: within the length.
-            unsafe { *self.data.add(at) = value }
+        if at >= self.len {
+            outside(at, 1, self.len);
         }
+        // SAFETY: within the length; only copies of this column, all on this thread, reach the numbers.
+        unsafe { *self.data.add(at) = value }
     }
 
     /// Its first `len` numbers; columns cut to one length share their checks.
@@ -126,14 +296,10 @@ impl<'a> Column<'a> {
     /// Where `n` numbers from `at` on lie.
     ///
     /// # Panics
-    /// Where they are not all there, which no index of a bake is: the check of a slice, once a vector.
+    /// Where they are not all there.
     #[inline(always)]
     pub(super) fn place(self, at: usize, n: usize) -> *mut f32 {
-        // Two comparisons of which the first does not depend on the place: it leaves the loop.
-        assert!(n <= self.len, "a kernel left its column");
-        assert!(at <= self.len - n, "a kernel left its column");
-        // SAFETY: within the length, or its end.
-        unsafe { self.data.add(at) }
+        self.reader().place(at, n).cast_mut()
     }
 
     /// Where four times four numbers lie.
@@ -142,9 +308,6 @@ impl<'a> Column<'a> {
     /// Where they are not all there.
     #[inline(always)]
     pub(super) fn quads(self, at: &[u32; 4]) -> [*mut f32; 4] {
-        let last = at[0].max(at[1]).max(at[2].max(at[3]));
-        self.place(last as usize, 4);
-        // SAFETY: none begins later than one that is within the length.
-        at.map(|q| unsafe { self.data.add(q as usize) })
+        self.reader().quads(at).map(<*const f32>::cast_mut)
     }
 }

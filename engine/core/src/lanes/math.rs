@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use super::{Column, Lanes, Numbers};
+use super::{Lanes, Numbers, Readable, WriteColumn};
 
 /// 1 / sqrt(x) to 8e-7 of its value, from exactly rounded operations only: a seed from the bits and two Newton steps,
 /// the first with the constants that make its largest error least (Walczyk, Moroz, Cieslinski 2021, "Improving the
@@ -42,7 +42,7 @@ impl<L: Numbers> V3<L> {
     }
     /// `n <= N` vectors from three columns; `n == N` is the fast way.
     #[inline(always)]
-    pub fn load(from: [Column<'_>; 3], at: usize, n: usize) -> Self {
+    pub fn load(from: [impl Readable; 3], at: usize, n: usize) -> Self {
         if n == L::N {
             Self { x: L::load(from[0], at), y: L::load(from[1], at), z: L::load(from[2], at) }
         } else {
@@ -52,7 +52,7 @@ impl<L: Numbers> V3<L> {
     }
     /// Writes the first `n` vectors.
     #[inline(always)]
-    pub fn store(self, to: [Column<'_>; 3], at: usize, n: usize) {
+    pub fn store(self, to: [WriteColumn<'_>; 3], at: usize, n: usize) {
         if n == L::N {
             self.x.store(to[0], at);
             self.y.store(to[1], at);
@@ -98,26 +98,26 @@ impl<L: Numbers> V3<L> {
 impl<L: Lanes> V3<L> {
     /// The vectors at an index list.
     #[inline(always)]
-    pub fn gather(from: [Column<'_>; 3], index: &[u32], n: usize) -> Self {
+    pub fn gather(from: [impl Readable; 3], index: &[u32], n: usize) -> Self {
         let at = |c| L::gather(c, index, n);
         Self { x: at(from[0]), y: at(from[1]), z: at(from[2]) }
     }
     /// Writes the vectors to an index list without repetition.
     #[inline(always)]
-    pub fn scatter(self, to: [Column<'_>; 3], index: &[u32], n: usize) {
+    pub fn scatter(self, to: [WriteColumn<'_>; 3], index: &[u32], n: usize) {
         self.x.scatter(to[0], index, n);
         self.y.scatter(to[1], index, n);
         self.z.scatter(to[2], index, n);
     }
     /// The vectors at four times four places: [`Lanes::load_quads`].
     #[inline(always)]
-    pub fn load_quads(from: [Column<'_>; 3], quads: &[u32; 4], lane: usize) -> Self {
+    pub fn load_quads(from: [impl Readable; 3], quads: &[u32; 4], lane: usize) -> Self {
         let [x, y, z] = from;
         Self { x: L::load_quads(x, quads, lane), y: L::load_quads(y, quads, lane), z: L::load_quads(z, quads, lane) }
     }
     /// Writes them.
     #[inline(always)]
-    pub fn store_quads(self, to: [Column<'_>; 3], quads: &[u32; 4], lane: usize) {
+    pub fn store_quads(self, to: [WriteColumn<'_>; 3], quads: &[u32; 4], lane: usize) {
         self.x.store_quads(to[0], quads, lane);
         self.y.store_quads(to[1], quads, lane);
         self.z.store_quads(to[2], quads, lane);

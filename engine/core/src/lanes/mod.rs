@@ -1,6 +1,6 @@
 //! Lanes: one kernel, run on 1, 4, 8 or 16 numbers at a time.
 //!
-//! Reads: numbers in [`Column`]s. Writes: the same. Every operation is one that IEEE 754 rounds exactly (no fused
+//! Reads: numbers in columns. Writes: numbers in [`WriteColumn`]s. Every operation is one that IEEE 754 rounds exactly (no fused
 //! multiply-add, no estimate of the processor), so a kernel gives the same bits at every width and on every machine.
 //! Budget: nothing of its own; a kernel is compiled once a width and called through one branch.
 //! Thread: any. This is one of the few rooms with unsafe code: vector instructions, and columns that workers share.
@@ -19,7 +19,8 @@ mod x86;
 use std::fmt;
 use std::ops::{Add, Mul, Neg, Sub};
 
-pub use column::{Column, Store};
+pub(crate) use column::Shared;
+pub use column::{ReadColumn, Readable, Store, WriteColumn};
 pub use math::{V3, reciprocal_root, times_reciprocal_root};
 pub use two::Two;
 
@@ -50,14 +51,14 @@ pub trait Numbers: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output =
 
     /// The same number in every lane.
     fn splat(value: f32) -> Self;
-    /// `N` numbers from `at` on. A place past the column's end gives 0.
-    fn load(from: Column<'_>, at: usize) -> Self;
+    /// `N` numbers from `at` on. Stops where they are not all there.
+    fn load(from: impl Readable, at: usize) -> Self;
     /// `n < N` numbers from `at` on, the other lanes 0.
-    fn load_part(from: Column<'_>, at: usize, n: usize) -> Self;
-    /// Writes `N` numbers from `at` on; nothing past the column's end.
-    fn store(self, to: Column<'_>, at: usize);
+    fn load_part(from: impl Readable, at: usize, n: usize) -> Self;
+    /// Writes `N` numbers from `at` on. Stops where they do not fit.
+    fn store(self, to: WriteColumn<'_>, at: usize);
     /// Writes the first `n < N` lanes.
-    fn store_part(self, to: Column<'_>, at: usize, n: usize);
+    fn store_part(self, to: WriteColumn<'_>, at: usize, n: usize);
     /// Quotient, exactly rounded.
     fn div(self, by: Self) -> Self;
     /// Root, exactly rounded.
@@ -87,30 +88,30 @@ pub trait Lanes: Numbers {
     /// Its numbers, the rest 0.
     fn to_array(self) -> [f32; MOST];
     /// The numbers at `index[..n]`, `n <= N`, the other lanes 0.
-    fn gather(from: Column<'_>, index: &[u32], n: usize) -> Self {
+    fn gather(from: impl Readable, index: &[u32], n: usize) -> Self {
         let mut values = [0.0; MOST];
         for (v, &i) in values.iter_mut().zip(&index[..n.min(Self::N)]) {
-            *v = from.get(i as usize);
+            *v = from.reader().get(i as usize);
         }
         Self::from_array(&values)
     }
     /// Writes the first `n` lanes to `index[..n]`; no index may be there twice.
-    fn scatter(self, to: Column<'_>, index: &[u32], n: usize) {
+    fn scatter(self, to: WriteColumn<'_>, index: &[u32], n: usize) {
         let values = self.to_array();
         for (v, &i) in values.iter().zip(&index[..n.min(Self::N)]) {
             to.set(i as usize, *v);
         }
     }
     /// `N` of the 16 numbers that lie four by four from `quads` on, the `lane`th first; `lane` is a multiple of `N`.
-    fn load_quads(from: Column<'_>, quads: &[u32; 4], lane: usize) -> Self {
+    fn load_quads(from: impl Readable, quads: &[u32; 4], lane: usize) -> Self {
         let mut values = [0.0; MOST];
         for (i, v) in values.iter_mut().enumerate().take(Self::N) {
-            *v = from.get(quads[(lane + i) / 4 % 4] as usize + i % 4);
+            *v = from.reader().get(quads[(lane + i) / 4 % 4] as usize + i % 4);
         }
         Self::from_array(&values)
     }
     /// Writes to the same places; no two quads may share one.
-    fn store_quads(self, to: Column<'_>, quads: &[u32; 4], lane: usize) {
+    fn store_quads(self, to: WriteColumn<'_>, quads: &[u32; 4], lane: usize) {
         for (i, v) in self.to_array().into_iter().enumerate().take(Self::N) {
             to.set(quads[(lane + i) / 4 % 4] as usize + i % 4, v);
         }

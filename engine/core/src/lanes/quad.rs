@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::{Column, Lanes, MOST, Mask, Numbers};
+use super::{Lanes, MOST, Mask, Numbers, Readable, WriteColumn};
 
 /// Four numbers.
 #[derive(Clone, Copy)]
@@ -65,19 +65,19 @@ impl Numbers for Four {
         Self([value; 4])
     }
     #[inline(always)]
-    fn load(from: Column<'_>, at: usize) -> Self {
-        Self(std::array::from_fn(|i| from.get(at + i)))
+    fn load(from: impl Readable, at: usize) -> Self {
+        Self(std::array::from_fn(|i| from.reader().get(at + i)))
     }
     #[inline(always)]
-    fn load_part(from: Column<'_>, at: usize, n: usize) -> Self {
-        Self(std::array::from_fn(|i| if i < n { from.get(at + i) } else { 0.0 }))
+    fn load_part(from: impl Readable, at: usize, n: usize) -> Self {
+        Self(std::array::from_fn(|i| if i < n { from.reader().get(at + i) } else { 0.0 }))
     }
     #[inline(always)]
-    fn store(self, to: Column<'_>, at: usize) {
+    fn store(self, to: WriteColumn<'_>, at: usize) {
         self.store_part(to, at, 4);
     }
     #[inline(always)]
-    fn store_part(self, to: Column<'_>, at: usize, n: usize) {
+    fn store_part(self, to: WriteColumn<'_>, at: usize, n: usize) {
         self.0.into_iter().take(n).enumerate().for_each(|(i, v)| to.set(at + i, v));
     }
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! One lane: f32 itself. The plain twin of every kernel.
 
-use super::{Column, Lanes, MOST, Mask, Numbers};
+use super::{Lanes, MOST, Mask, Numbers, Readable, WriteColumn};
 
 impl Mask for bool {
     const N: usize = 1;
@@ -32,19 +32,19 @@ impl Numbers for f32 {
         value
     }
     #[inline(always)]
-    fn load(from: Column<'_>, at: usize) -> Self {
-        from.get(at)
+    fn load(from: impl Readable, at: usize) -> Self {
+        from.reader().get(at)
     }
     #[inline(always)]
-    fn load_part(_: Column<'_>, _: usize, _: usize) -> Self {
+    fn load_part(_: impl Readable, _: usize, _: usize) -> Self {
         0.0
     }
     #[inline(always)]
-    fn store(self, to: Column<'_>, at: usize) {
+    fn store(self, to: WriteColumn<'_>, at: usize) {
         to.set(at, self);
     }
     #[inline(always)]
-    fn store_part(self, _: Column<'_>, _: usize, _: usize) {}
+    fn store_part(self, _: WriteColumn<'_>, _: usize, _: usize) {}
     #[inline(always)]
     fn div(self, by: Self) -> Self {
         self / by
@@ -100,11 +100,11 @@ impl Lanes for f32 {
         out
     }
     #[inline(always)]
-    fn load_quads(from: Column<'_>, quads: &[u32; 4], lane: usize) -> Self {
-        from.get(quads[lane / 4 % 4] as usize + lane % 4)
+    fn load_quads(from: impl Readable, quads: &[u32; 4], lane: usize) -> Self {
+        from.reader().get(quads[lane / 4 % 4] as usize + lane % 4)
     }
     #[inline(always)]
-    fn store_quads(self, to: Column<'_>, quads: &[u32; 4], lane: usize) {
+    fn store_quads(self, to: WriteColumn<'_>, quads: &[u32; 4], lane: usize) {
         to.set(quads[lane / 4 % 4] as usize + lane % 4, self);
     }
 }

@@ -4,14 +4,14 @@ use super::*;
 struct Everything<'a> {
     a: &'a [f32],
     b: &'a [f32],
-    out: Column<'a>,
+    out: WriteColumn<'a>,
 }
 
 impl Kernel for Everything<'_> {
     type Out = u64;
     #[inline(always)]
     fn run<L: Lanes>(self) -> u64 {
-        let (a, b) = (Column::read_only(self.a), Column::read_only(self.b));
+        let (a, b) = (ReadColumn::new(self.a), ReadColumn::new(self.b));
         let mut answers = 0u64;
         let mut at = 0;
         while at < a.len() {
@@ -58,7 +58,7 @@ fn every_width_gives_the_bits_of_plain_f32() {
         let (a, b) = (awkward(7, n), awkward(99, n));
         let run = |width: Width| {
             let mut out = vec![0.0f32; n];
-            let answers = width.run(Everything { a: &a, b: &b, out: Column::new(&mut out) });
+            let answers = width.run(Everything { a: &a, b: &b, out: WriteColumn::new(&mut out) });
             // What is not a number may differ in its payload, which nobody reads.
             (answers, out.iter().map(|v| if v.is_nan() { u32::MAX } else { v.to_bits() }).collect::<Vec<_>>())
         };
@@ -84,8 +84,8 @@ fn the_reciprocal_root_is_exact_to_eight_parts_in_ten_million() {
 #[test]
 fn nothing_past_the_end_is_read_or_written() {
     let mut numbers = [1.0f32; 20];
-    let column = Column::new(&mut numbers[..18]);
-    struct Past<'a>(Column<'a>, usize);
+    let column = WriteColumn::new(&mut numbers[..18]);
+    struct Past<'a>(WriteColumn<'a>, usize);
     impl Kernel for Past<'_> {
         type Out = f32;
         #[inline(always)]
@@ -103,10 +103,10 @@ fn nothing_past_the_end_is_read_or_written() {
         }
     }
     for (width, way) in Width::ALL.into_iter().flat_map(|w| (0..6).map(move |way| (w, way))) {
-        // One lane is given 0, the others stop.
         let run = std::panic::AssertUnwindSafe(|| width.run(Past(column, way)));
         let got = std::panic::catch_unwind(run);
-        assert!(got.is_err() || width == Width::One, "{width} lanes, {way}: {got:?}");
+        // One lane asks for no part of a vector, and of four quads for the first, which is there.
+        assert!(got.is_err() || width == Width::One && [3, 4].contains(&way), "{width} lanes, {way}: {got:?}");
     }
     assert_eq!(numbers, [1.0; 20]);
 }
@@ -115,7 +115,7 @@ fn nothing_past_the_end_is_read_or_written() {
 fn gather_and_scatter_keep_their_places() {
     let mut numbers: Vec<f32> = (0..40).map(|i| i as f32).collect();
     let index: Vec<u32> = (0..16).map(|i| (i * 7 % 40) as u32).collect();
-    struct Double<'a>(Column<'a>, &'a [u32]);
+    struct Double<'a>(WriteColumn<'a>, &'a [u32]);
     impl Kernel for Double<'_> {
         type Out = ();
         #[inline(always)]
@@ -125,14 +125,14 @@ fn gather_and_scatter_keep_their_places() {
             (v + v).scatter(self.0, self.1, n);
         }
     }
-    Width::widest().run(Double(Column::new(&mut numbers), &index));
+    Width::widest().run(Double(WriteColumn::new(&mut numbers), &index));
     let doubled = numbers.iter().enumerate().filter(|(i, v)| **v != *i as f32).map(|(i, _)| i).collect::<Vec<_>>();
     assert!(doubled.iter().all(|i| [7, 14].contains(i)) && !doubled.is_empty(), "{doubled:?}");
 }
 
 #[test]
 fn quads_keep_their_places_and_the_least_is_found_at_every_width() {
-    struct Move<'a>(Column<'a>, Column<'a>);
+    struct Move<'a>(WriteColumn<'a>, WriteColumn<'a>);
     impl Kernel for Move<'_> {
         type Out = ();
         #[inline(always)]
@@ -149,7 +149,7 @@ fn quads_keep_their_places_and_the_least_is_found_at_every_width() {
     for width in Width::ALL {
         let mut from: Vec<f32> = (0..40).map(|i| i as f32).collect();
         let mut to = vec![-1.0; 40];
-        width.run(Move(Column::new(&mut from), Column::new(&mut to)));
+        width.run(Move(WriteColumn::new(&mut from), WriteColumn::new(&mut to)));
         for (q, p) in [(20, 0), (4, 30), (11, 10), (36, 21)] {
             assert_eq!(to[p..p + 4], from[q..q + 4], "{width} lanes");
         }

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::{Column, Mask, Numbers};
+use super::{Mask, Numbers, Readable, WriteColumn};
 
 /// Twice the lanes.
 #[derive(Clone, Copy)]
@@ -61,11 +61,11 @@ impl<L: Numbers> Numbers for Two<L> {
         Self(L::splat(value), L::splat(value))
     }
     #[inline(always)]
-    fn load(from: Column<'_>, at: usize) -> Self {
+    fn load(from: impl Readable, at: usize) -> Self {
         Self(L::load(from, at), L::load(from, at + L::N))
     }
     #[inline(always)]
-    fn load_part(from: Column<'_>, at: usize, n: usize) -> Self {
+    fn load_part(from: impl Readable, at: usize, n: usize) -> Self {
         if n < L::N {
             Self(L::load_part(from, at, n), L::splat(0.0))
         } else {
@@ -73,12 +73,12 @@ impl<L: Numbers> Numbers for Two<L> {
         }
     }
     #[inline(always)]
-    fn store(self, to: Column<'_>, at: usize) {
+    fn store(self, to: WriteColumn<'_>, at: usize) {
         self.0.store(to, at);
         self.1.store(to, at + L::N);
     }
     #[inline(always)]
-    fn store_part(self, to: Column<'_>, at: usize, n: usize) {
+    fn store_part(self, to: WriteColumn<'_>, at: usize, n: usize) {
         if n < L::N {
             self.0.store_part(to, at, n);
         } else {

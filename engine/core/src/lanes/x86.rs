@@ -8,7 +8,7 @@ mod widths;
 use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::{Column, Kernel, Lanes, MOST, Mask, Numbers};
+use super::{Kernel, Lanes, MOST, Mask, Numbers, Readable, WriteColumn};
 
 /// Whether the processor and the system have 16 lanes.
 pub fn has_sixteen() -> bool {
@@ -88,25 +88,25 @@ macro_rules! vector {
                 Self(unsafe { $set(value) })
             }
             #[inline(always)]
-            fn load(from: Column<'_>, at: usize) -> Self {
-                let place = from.place(at, $n);
+            fn load(from: impl Readable, at: usize) -> Self {
+                let place = from.reader().place(at, $n);
                 // SAFETY: the column has so many numbers there.
                 Self(unsafe { $load(place) })
             }
             #[inline(always)]
-            fn load_part(from: Column<'_>, at: usize, n: usize) -> Self {
-                let place = from.place(at, n.min($n));
+            fn load_part(from: impl Readable, at: usize, n: usize) -> Self {
+                let place = from.reader().place(at, n.min($n));
                 // SAFETY: the column has `n` numbers there, and no more are read.
                 unsafe { Self::read(place, n.min($n)) }
             }
             #[inline(always)]
-            fn store(self, to: Column<'_>, at: usize) {
+            fn store(self, to: WriteColumn<'_>, at: usize) {
                 let place = to.place(at, $n);
                 // SAFETY: the column has so many numbers there.
                 unsafe { $store(place, self.0) }
             }
             #[inline(always)]
-            fn store_part(self, to: Column<'_>, at: usize, n: usize) {
+            fn store_part(self, to: WriteColumn<'_>, at: usize, n: usize) {
                 let place = to.place(at, n.min($n));
                 // SAFETY: the column has `n` numbers there, and no more are written.
                 unsafe { self.write(place, n.min($n)) }
@@ -170,20 +170,20 @@ macro_rules! vector {
                 out
             }
             #[inline(always)]
-            fn gather(from: Column<'_>, index: &[u32], n: usize) -> Self {
+            fn gather(from: impl Readable, index: &[u32], n: usize) -> Self {
                 Self::pick(from, &index[..n.min($n)])
             }
             #[inline(always)]
-            fn scatter(self, to: Column<'_>, index: &[u32], n: usize) {
+            fn scatter(self, to: WriteColumn<'_>, index: &[u32], n: usize) {
                 self.spread(to, &index[..n.min($n)]);
             }
             #[inline(always)]
-            fn load_quads(from: Column<'_>, quads: &[u32; 4], lane: usize) -> Self {
+            fn load_quads(from: impl Readable, quads: &[u32; 4], lane: usize) -> Self {
                 // SAFETY: the column has four numbers at each place.
-                unsafe { Self::read_quads(from.quads(quads), lane / 4 % 4) }
+                unsafe { Self::read_quads(from.reader().quads(quads), lane / 4 % 4) }
             }
             #[inline(always)]
-            fn store_quads(self, to: Column<'_>, quads: &[u32; 4], lane: usize) {
+            fn store_quads(self, to: WriteColumn<'_>, quads: &[u32; 4], lane: usize) {
                 // SAFETY: as above.
                 unsafe { self.write_quads(to.quads(quads), lane / 4 % 4) }
             }

@@ -13,7 +13,7 @@ use toile_assets::skeleton::BONES;
 use super::dual::DualQuat;
 use super::layout::Run;
 use super::posed::BLOCK;
-use crate::lanes::{Column, Kernel, Lanes, MOST, V3, reciprocal_root};
+use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, V3, WriteColumn, reciprocal_root};
 
 /// Square of the length below which a normal is taken for collapsed.
 const COLLAPSED: f32 = 1e-24;
@@ -24,8 +24,8 @@ pub(super) struct Surface<'a> {
     pub runs: &'a [Run],
     /// Vertices of each block.
     pub filled: &'a [u8],
-    pub rest: Column<'a>,
-    pub out: Column<'a>,
+    pub rest: ReadColumn<'a>,
+    pub out: WriteColumn<'a>,
 }
 
 /// Where a vector of vertices is: in the rest data, in the posed data.

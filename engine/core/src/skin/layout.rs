@@ -45,8 +45,8 @@ impl Run {
     /// What a palette has for its `k`th bone; the base is the first.
     #[inline(always)]
     pub fn of<'a, T, const N: usize>(&self, palette: &'a [T; N], k: usize) -> &'a T {
-        // Checked at load; the remainder only tells the compiler.
-        &palette[usize::from(self.bones[k]) % N]
+        // Below N: checked at load.
+        &palette[usize::from(self.bones[k])]
     }
 
     /// Its bones, the base first.

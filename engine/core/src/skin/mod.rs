@@ -22,7 +22,7 @@ use glam::{Affine3A, Vec3};
 use toile_assets::mesh::Influences;
 use toile_assets::skeleton::BONES;
 
-use crate::lanes::{Column, Width};
+use crate::lanes::{ReadColumn, Shared, Width, WriteColumn};
 use crate::workers::{SHARES, WorkerPool};
 
 pub use check::{SkinError, WEIGHT_TOLERANCE};
@@ -120,7 +120,7 @@ impl SkinningJob {
     /// is not finite may spoil the vertices that share blocks with its own. `posed` comes from [`Self::posed`].
     pub fn run(&self, blend: Blend, palette: &[Affine3A; BONES], posed: &mut Posed) {
         let duals = self.duals(blend, palette);
-        let work = Work { job: self, blend, palette, duals: &duals, out: posed.column() };
+        let work = Work { job: self, blend, palette, duals: &duals, out: Shared::new(posed.column()) };
         work.runs(0..self.layout.runs.len());
     }
 
@@ -138,7 +138,7 @@ impl SkinningJob {
             return true;
         }
         let duals = self.duals(blend, palette);
-        let work = Work { job: self, blend, palette, duals: &duals, out: posed.column() };
+        let work = Work { job: self, blend, palette, duals: &duals, out: Shared::new(posed.column()) };
         let (half, all) = (self.layout.half, self.layout.runs.len());
         pool.run(1, |_, share| work.runs(if share == 0 { 0..half } else { half..all })).is_ok()
     }
@@ -157,13 +157,17 @@ struct Work<'a> {
     blend: Blend,
     palette: &'a [Affine3A; BONES],
     duals: &'a [DualQuat; BONES],
-    out: Column<'a>,
+    out: Shared<WriteColumn<'a>>,
 }
 
 impl Work<'_> {
+    #[expect(unsafe_code, reason = "the workers share the posed surface")]
     fn runs(&self, runs: Range<usize>) {
         let Layout { runs: all, filled, rest, .. } = &self.job.layout;
-        let surface = Surface { runs: &all[runs], filled, rest: Column::read_only(rest.as_slice()), out: self.out };
+        // SAFETY: each run of the layout, which nobody outside of this room can make or change, has blocks of its own, and
+        // the two shares of a run have different ones: no place is written twice, and none is read.
+        let out = unsafe { self.out.open() };
+        let surface = Surface { runs: &all[runs], filled, rest: ReadColumn::new(rest.as_slice()), out };
         match self.blend {
             Blend::Linear => self.job.width.run(Linear { surface, palette: self.palette }),
             Blend::Dual => self.job.width.run(Dual { surface, palette: self.duals }),

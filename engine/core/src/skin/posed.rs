@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::lanes::{Column, MOST, Store};
+use crate::lanes::{MOST, Store, WriteColumn};
 
 /// Numbers of a posed block: three coordinates of position and three of normal, [`MOST`] of each.
 pub(super) const BLOCK: usize = 6 * MOST;
@@ -24,7 +24,7 @@ impl Posed {
         Self { columns: Store::zeros(blocks * BLOCK), places }
     }
 
-    pub(super) fn column(&mut self) -> Column<'_> {
+    pub(super) fn column(&mut self) -> WriteColumn<'_> {
         self.columns.column()
     }
 

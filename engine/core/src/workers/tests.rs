@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering::{Relaxed, SeqCst};
 use std::time::Duration;
 
-use crate::lanes::Column;
+use crate::lanes::{Shared, WriteColumn};
 use crate::sync::{AtomicBool, AtomicUsize, thread};
 
 /// A job that fails where a phase begins before the one before it is over, and that writes plain memory which the other
@@ -13,9 +13,9 @@ use crate::sync::{AtomicBool, AtomicUsize, thread};
 fn ordered(pool: &mut WorkerPool, phases: usize, weight: impl Fn(usize, usize) -> u32 + Sync) -> Vec<f32> {
     let over: Vec<[AtomicUsize; 2]> = (0..=phases).map(|_| Default::default()).collect();
     let mut sums = vec![0.0f32; phases * 2];
-    let column = Column::new(&mut sums);
+    let shared = Shared::new(WriteColumn::new(&mut sums));
     let job = |phase: usize, share: usize| {
-        let mut seen = 7.0;
+        let (mut seen, column) = (7.0, shared.open_in_test());
         if phase > 0 {
             let before = [0, 1].map(|s| over[phase - 1][s].load(Relaxed));
             assert_eq!(before, [1, 1], "phase {phase} began too early");

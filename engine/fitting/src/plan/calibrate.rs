@@ -119,7 +119,7 @@ fn sample(scene: &Scene) -> Result<Sample, PlanError> {
         if step >= WARM_UP {
             let stages = playing.cloths[0].stage_ns.map(|ns| ns as f64 * 1e-3);
             times.iter_mut().zip(stages).for_each(|(all, us)| all.push(us));
-            times[program::STAGES.len()].push((us - stages.iter().sum::<f64>()).max(0.0));
+            times[program::METERED_STAGES.len()].push((us - stages.iter().sum::<f64>()).max(0.0));
         }
     }
     let near = (before(&playing) - near) as f64 / TIMED as f64;

@@ -4,7 +4,7 @@
 use glam::Vec3;
 use toile_assets::garment::layout::{ENDED, Links, Tuples};
 use toile_assets::garment::{Garment, Part};
-use toile_engine::cloth::program::{self, BEFORE, Bending, Op};
+use toile_engine::cloth::program::{self, BEFORE, Bending, Stage};
 use toile_engine::cloth::{Cloth, Quality, Settings, bending, contact};
 use toile_engine::colliders::Colliders;
 
@@ -107,7 +107,7 @@ impl Work {
             [particles, fixed, 0.0],
         ];
         let bending = Bending { sets: Bending::sets(&garment.layout), stages: first.bend.stages };
-        let each = bending.phases() + program::substep(&garment.layout, settings.quality).len();
+        let each = bending.len() + program::constraints(&garment.layout, settings.quality).len();
         let own = garment.layout.spans[0].iter().map(|s| f64::from(s.1)).sum::<f64>() / garment.particles() as f64;
         Self {
             counts,
@@ -138,8 +138,8 @@ impl Count<'_> {
     }
 
     /// How often an operation is in a substep.
-    fn times(&self, wanted: Op) -> f64 {
-        program::substep(&self.garment.layout, self.quality).iter().filter(|op| **op == wanted).count() as f64
+    fn times(&self, wanted: Stage) -> f64 {
+        program::constraints(&self.garment.layout, self.quality).iter().filter(|op| **op == wanted).count() as f64
     }
 
     fn stencils(&self) -> [f64; KINDS] {
@@ -159,7 +159,7 @@ impl Count<'_> {
     fn weft(&self) -> [f64; KINDS] {
         let weft = &self.garment.layout.weft.tuples;
         let [runs, loose] = self.links(weft);
-        let passes = self.times(Op::Weft(0));
+        let passes = self.times(Stage::Weft(0));
         [runs * passes, loose * passes, weft.sets.len() as f64 * passes]
     }
 
@@ -170,7 +170,7 @@ impl Count<'_> {
             let lists = layout.crossing.lists.iter().filter(|l| l.closed == closed);
             lists.map(|l| l.links() as f64 * self.vectors(l.lanes as usize)).sum::<f64>()
         };
-        let (whole, crossing) = (self.times(Op::Fibers), self.times(Op::Crossing(0)));
+        let (whole, crossing) = (self.times(Stage::Fibers), self.times(Stage::Crossing(0)));
         [rows * whole, listed(false) * crossing, listed(true) * crossing]
     }
 

@@ -18,7 +18,7 @@ use toile_assets::garment::{Garment, MeshError};
 use toile_assets::limits::MAX_SPHERES;
 use toile_assets::scene_file::{SceneFile, SceneGarment};
 use toile_assets::skeleton::BONES;
-use toile_engine::cloth::program::STAGES;
+use toile_engine::cloth::program::METERED_STAGES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, Wind, measure};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere, RoundCone};
 use toile_engine::lanes::Width;
@@ -81,9 +81,9 @@ pub struct Figures {
     pub kinetic_j: f64,
     /// Most kinetic energy at the end of any step (J).
     pub kinetic_max_j: f64,
-    /// Mean time of each stage of a step, all garments (us), in the order of [`STAGES`]: taken in one step of
+    /// Mean time of each stage of a step, all garments (us), in the order of [`METERED_STAGES`]: taken in one step of
     /// [`METERED`], which do not count for `step_us`.
-    pub stages_us: [f64; STAGES.len()],
+    pub stages_us: [f64; METERED_STAGES.len()],
     /// Allocations a step; none where the program does not count them.
     pub allocations_per_step: Option<f64>,
     /// Bytes of the baked garments and of their states; none where the program does not count them.

@@ -140,7 +140,7 @@ impl Kernel {
         self as usize
     }
 
-    /// Which of `toile_engine::cloth::program::STAGES` it counts towards.
+    /// Which of `toile_engine::cloth::program::METERED_STAGES` it counts towards.
     pub fn stage(self) -> usize {
         match self {
             Self::Repair | Self::Teleport | Self::RootCompensation | Self::Predict => 0,

@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use toile_engine::cloth::program::STAGES;
+use toile_engine::cloth::program::METERED_STAGES;
 
 use crate::Adapter;
 use crate::cloth_batch::ClothBatch;
@@ -15,7 +15,7 @@ pub struct Graphics(Infallible);
 #[derive(Debug, Clone, Copy)]
 pub struct StageTimes {
     /// On each stage (ns).
-    pub stages_ns: [f64; STAGES.len()],
+    pub stages_ns: [f64; METERED_STAGES.len()],
     /// Time of all stages (ns).
     pub whole_ns: f64,
 }

@@ -14,7 +14,7 @@ use toile_engine::cloth::wind::{Accelerations, Faces, Part};
 use toile_engine::cloth::{
     RootSettings, Settings, Wind, centre, diagonals, fibers, hubs, links, lists, predict, settle, tethers,
 };
-use toile_engine::lanes::{Column, Store, Width};
+use toile_engine::lanes::{Store, Width, WriteColumn};
 use toile_gpu::cloth::Kernel;
 
 use crate::scene::{apart, around, disturbed, nobody, offload, skirt, swaying, worn};
@@ -166,10 +166,10 @@ fn bend(garment: &Garment, p: &Prepared, columns: Columns<'_>, scratch: &mut Sto
 fn push(
     garment: &Garment,
     p: &Prepared,
-    w: Column<'_>,
-    [from, to]: [[Column<'_>; 3]; 2],
+    w: WriteColumn<'_>,
+    [from, to]: [[WriteColumn<'_>; 3]; 2],
     by: f32,
-    scratch: Column<'_>,
+    scratch: WriteColumn<'_>,
     width: Width,
 ) {
     let layout = &garment.layout;

@@ -4,7 +4,7 @@ use glam::Vec4;
 use toile_assets::limits::MAX_CAPSULES;
 
 use crate::colliders::Colliders;
-use crate::lanes::{Column, Kernel, Lanes, V3};
+use crate::lanes::{Kernel, Lanes, ReadColumn, V3, WriteColumn};
 
 /// Places of a row: [`MAX_CAPSULES`] padded to the widest lanes.
 pub const PLACES: usize = 32;
@@ -17,6 +17,28 @@ const FARTHEST_M: f32 = 1e4;
 /// A capsule's end that moves farther in one step (m), 60 m/s, has been put elsewhere: nothing is swept along its way.
 const TELEPORT_M: f32 = 0.5;
 
+/// A capsule's place in the rows, which is below [`PLACES`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct CapsuleIndex(u8);
+
+const _: () = assert!(PLACES == u32::BITS as usize, "any bit of a u32 is a place");
+
+impl CapsuleIndex {
+    /// The capsule of the lowest bit that is set; none where none is.
+    #[inline(always)]
+    pub fn lowest(bits: u32) -> Option<Self> {
+        (bits != 0).then(|| Self(bits.trailing_zeros() as u8))
+    }
+
+    /// The place.
+    #[inline(always)]
+    pub fn place(self) -> usize {
+        debug_assert!(usize::from(self.0) < PLACES);
+        // The mask changes nothing: it spares the check of every row.
+        usize::from(self.0) & (PLACES - 1)
+    }
+}
+
 /// One number a capsule.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
@@ -27,14 +49,14 @@ impl Row {
 
     /// One capsule's number in every lane.
     #[inline(always)]
-    pub fn splat<L: Lanes>(&self, capsule: usize) -> L {
-        L::splat(self.0[capsule % PLACES])
+    pub fn splat<L: Lanes>(&self, capsule: CapsuleIndex) -> L {
+        L::splat(self.0[capsule.place()])
     }
 }
 
 /// One capsule's vector in every lane.
 #[inline(always)]
-pub fn splat3<L: Lanes>(rows: &[Row; 3], capsule: usize) -> V3<L> {
+pub fn splat3<L: Lanes>(rows: &[Row; 3], capsule: CapsuleIndex) -> V3<L> {
     V3 { x: rows[0].splat(capsule), y: rows[1].splat(capsule), z: rows[2].splat(capsule) }
 }
 
@@ -238,7 +260,7 @@ impl Prepare<'_> {
 
 #[inline(always)]
 fn load<L: Lanes>(row: &Row, at: usize) -> L {
-    L::load(Column::read_only(&row.0), at)
+    L::load(ReadColumn::new(&row.0), at)
 }
 
 #[inline(always)]
@@ -248,7 +270,7 @@ fn load3<L: Lanes>(rows: &[Row; 3], at: usize) -> V3<L> {
 
 #[inline(always)]
 fn store<L: Lanes>(row: &mut Row, at: usize, v: L) {
-    v.store(Column::new(&mut row.0), at);
+    v.store(WriteColumn::new(&mut row.0), at);
 }
 
 #[inline(always)]

@@ -7,10 +7,10 @@
 
 use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES};
 
-use super::cones::{Cones, Ends, PLACES, Row};
+use super::cones::{CapsuleIndex, Cones, Ends, PLACES, Row};
 use super::touch::close;
 use crate::cloth::state::Columns;
-use crate::lanes::{Column, Kernel, Lanes, MOST, Mask, V3, reciprocal_root};
+use crate::lanes::{Kernel, Lanes, MOST, Mask, ReadColumn, V3, WriteColumn, reciprocal_root};
 
 /// Planes that a block can be near: the floor and those of the scene.
 pub const PLANES: usize = MAX_PLANES + 1;
@@ -71,7 +71,7 @@ impl Block {
 
     /// Vectors of the particles from `lane` on; 0 past the last.
     #[inline(always)]
-    pub fn load<L: Lanes>(&self, from: [Column<'_>; 3], lane: usize) -> V3<L> {
+    pub fn load<L: Lanes>(&self, from: [WriteColumn<'_>; 3], lane: usize) -> V3<L> {
         if self.len() == MOST {
             return V3::load_quads(from, &self.quads, lane);
         }
@@ -81,7 +81,7 @@ impl Block {
 
     /// Numbers of the same.
     #[inline(always)]
-    pub fn load_one<L: Lanes>(&self, from: Column<'_>, lane: usize) -> L {
+    pub fn load_one<L: Lanes>(&self, from: WriteColumn<'_>, lane: usize) -> L {
         if self.len() == MOST {
             return L::load_quads(from, &self.quads, lane);
         }
@@ -91,7 +91,7 @@ impl Block {
 
     /// Writes vectors.
     #[inline(always)]
-    pub fn store<L: Lanes>(&self, v: V3<L>, to: [Column<'_>; 3], lane: usize) {
+    pub fn store<L: Lanes>(&self, v: V3<L>, to: [WriteColumn<'_>; 3], lane: usize) {
         if self.len() == MOST {
             return v.store_quads(to, &self.quads, lane);
         }
@@ -104,7 +104,7 @@ impl Block {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Pair {
     /// The capsule.
-    pub capsule: u16,
+    pub capsule: CapsuleIndex,
     /// Which particles of the block may touch it in this step, a bit each.
     pub lanes: u16,
     /// Which do at the end of this substep as it stands; from bit 16 on, which have moved so far in it that the capsule
@@ -145,7 +145,7 @@ impl Boxes {
         let mut bits = 0;
         let mut at = 0;
         while at < PLACES {
-            let row = |rows: &[Row; 3], axis: usize| L::load(Column::read_only(&rows[axis].0), at);
+            let row = |rows: &[Row; 3], axis: usize| L::load(ReadColumn::new(&rows[axis].0), at);
             let side = |axis: usize| {
                 let (l, h) = (L::splat(low[axis]), L::splat(high[axis]));
                 row(&self.low, axis).lt(h).and(l.lt(row(&self.high, axis)))
@@ -188,7 +188,7 @@ impl Kernel for Find<'_> {
         let mut count = 0;
         for (b, block) in blocks.iter_mut().enumerate() {
             let mut far = [0.0; MOST];
-            let far = Column::new(&mut far);
+            let far = WriteColumn::new(&mut far);
             let [low, high] = around::<L>(cols, block, ahead, far);
             let met = [boxes.meet::<L>(low, high), meet_planes(planes, low, high)];
             (block.from, block.pairs, block.planes) = (count as u32, 0, 0);
@@ -212,13 +212,13 @@ fn keep(
 ) -> usize {
     let mut at = block.from as usize;
     let mut bits = met;
-    while bits != 0 {
-        let c = bits.trailing_zeros() as usize % MAX_CAPSULES;
+    while let Some(capsule) = CapsuleIndex::lowest(bits) {
         bits &= bits - 1;
+        let c = capsule.place();
         let lanes = lanes[c] & reach.map_or(!0, |r| r[c]);
         // Written first and counted after: no branch.
         if let Some(pair) = pairs.get_mut(at) {
-            *pair = Pair { capsule: c as u16, lanes, found: 0 };
+            *pair = Pair { capsule, lanes, found: 0 };
             at += usize::from(lanes != 0);
         }
     }
@@ -237,7 +237,7 @@ fn travel<L: Lanes>(v: V3<L>, ahead: L) -> L {
 /// The box around all places that the free particles of a block may come to, and how far each may come; what is not free
 /// comes to no number, which is in no box and near nothing.
 #[inline(always)]
-fn around<L: Lanes>(cols: Columns<'_>, block: &Block, ahead: L, far: Column<'_>) -> [[f32; 3]; 2] {
+fn around<L: Lanes>(cols: Columns<'_>, block: &Block, ahead: L, far: WriteColumn<'_>) -> [[f32; 3]; 2] {
     let (mut low, mut high) = ([L::splat(f32::MAX); 3], [L::splat(-f32::MAX); 3]);
     let mut from = 0;
     while from < block.len() {
@@ -276,7 +276,7 @@ fn ask<L: Lanes>(
     swept: &Cones,
     planes: &[[f32; 4]],
     block: &mut Block,
-    far: Column<'_>,
+    far: WriteColumn<'_>,
     met: [u32; 2],
 ) -> [u16; PLACES] {
     let mut lanes = [0; PLACES];
@@ -286,14 +286,13 @@ fn ask<L: Lanes>(
         let x = block.load::<L>(cols.x, from);
         let far = L::load(far, from);
         let mut bits = met[0];
-        while bits != 0 {
-            let c = bits.trailing_zeros() as usize % PLACES;
+        while let Some(c) = CapsuleIndex::lowest(bits) {
             bits &= bits - 1;
-            lanes[c] |= (close(swept, c, x, far).bits() << from) as u16;
+            lanes[c.place()] |= (close(swept, c, x, far).bits() << from) as u16;
         }
         let mut bits = met[1];
         while bits != 0 {
-            let p = bits.trailing_zeros() as usize % PLANES;
+            let p = bits.trailing_zeros() as usize;
             bits &= bits - 1;
             let near = (-far).lt(depth(&planes[p], x));
             block.plane_lanes[p] |= (near.bits() << from) as u16;

@@ -1,8 +1,7 @@
 //! The kernel of a substep: every particle against what it is near.
 
 use super::ContactSettings;
-use super::cones::PLACES;
-use super::near::{Block, PLANES, Pair, depth};
+use super::near::{Block, Pair, depth};
 use super::sweep::Sweep;
 use super::touch::{Friction, ON_M, Surface, close, place, push, surface};
 use crate::cloth::state::Columns;
@@ -109,7 +108,7 @@ fn look<L: Lanes>(
             // The widest lanes hold all of a pair's particles: there is always one.
             let [mut touched, mut fast] = [0; 2];
             if L::N == MOST || lanes != 0 {
-                let c = usize::from(pair.capsule) % PLACES;
+                let c = pair.capsule;
                 touched = close(sweep.cones, c, x, L::splat(-ON_M)).bits() & lanes;
                 fast = sweep.cones.quick2.splat::<L>(c).lt(way2).bits() & lanes;
                 if fast != 0 {
@@ -131,7 +130,7 @@ fn look<L: Lanes>(
 /// A block meets a capsule; gives how many particles' ways were followed.
 #[inline(always)]
 fn meet<L: Lanes>(cols: Columns<'_>, sweep: &Sweep<'_>, block: &Block, pair: &Pair, friction: Friction<L>) -> u64 {
-    let c = usize::from(pair.capsule) % PLACES;
+    let c = pair.capsule;
     let mut swept = 0;
     let mut from = 0;
     while from < block.len() {
@@ -167,7 +166,7 @@ fn meet_planes<L: Lanes>(cols: Columns<'_>, planes: &[[f32; 4]], block: &Block, 
         let mut previous = block.load::<L>(cols.previous, from);
         for (p, plane) in planes.iter().enumerate().filter(|(p, _)| block.planes >> p & 1 != 0) {
             let depth = depth(plane, x);
-            let touched = zero.lt(depth).and(L::Mask::of(few::<L>(block.plane_lanes[p % PLANES].into(), from)));
+            let touched = zero.lt(depth).and(L::Mask::of(few::<L>(block.plane_lanes[p].into(), from)));
             if touched.any() {
                 let [nx, ny, nz, _] = *plane;
                 let normal = V3 { x: L::splat(nx), y: L::splat(ny), z: L::splat(nz) };

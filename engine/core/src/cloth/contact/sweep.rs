@@ -5,7 +5,7 @@
 //! straight lines: the distance cannot shrink faster than the faster end approaches, so that time may go on by their
 //! quotient. From the moment of impact on the particle stays before the tangent plane that the capsule carries along.
 
-use super::cones::{Cones, Ends, splat3};
+use super::cones::{CapsuleIndex, Cones, Ends, splat3};
 use super::touch::{Friction, Surface, carried, close, push};
 use crate::lanes::{Lanes, Mask, V3, reciprocal_root};
 
@@ -48,7 +48,7 @@ impl Sweep<'_> {
     /// Which particles, now at `x` after `moved`, have to be followed: they moved far relative to capsule `c`, and not
     /// from farther away than they could have come to it.
     #[inline(always)]
-    pub fn asks<L: Lanes>(&self, c: usize, x: V3<L>, moved: V3<L>) -> L::Mask {
+    pub fn asks<L: Lanes>(&self, c: CapsuleIndex, x: V3<L>, moved: V3<L>) -> L::Mask {
         let speed2 = self.speed2(c, moved);
         let speed = speed2 * reciprocal_root(speed2) * L::splat(1.0 + 1e-3);
         let far = self.quick2::<L>(c).lt(speed2).and(speed2.lt(L::splat(FARTHEST2_M2)));
@@ -57,7 +57,14 @@ impl Sweep<'_> {
 
     /// Pushes the particles of `mask` that hit capsule `c` on their way.
     #[inline(always)]
-    pub fn run<L: Lanes>(&self, c: usize, x: &mut V3<L>, previous: &mut V3<L>, friction: Friction<L>, mask: L::Mask) {
+    pub fn run<L: Lanes>(
+        &self,
+        c: CapsuleIndex,
+        x: &mut V3<L>,
+        previous: &mut V3<L>,
+        friction: Friction<L>,
+        mask: L::Mask,
+    ) {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         let moved = *x - *previous;
         let speed2 = self.speed2(c, moved);
@@ -82,7 +89,7 @@ impl Sweep<'_> {
 
     /// Square of the farthest that particles move relative to any point of the capsule (m2).
     #[inline(always)]
-    fn speed2<L: Lanes>(&self, c: usize, moved: V3<L>) -> L {
+    fn speed2<L: Lanes>(&self, c: CapsuleIndex, moved: V3<L>) -> L {
         let a = moved - splat3(&self.cones.carried, c);
         let b = a - splat3(&self.cones.turned, c);
         a.dot(a).max(b.dot(b))
@@ -90,7 +97,7 @@ impl Sweep<'_> {
 
     /// Square of what is slow enough (m2).
     #[inline(always)]
-    fn quick2<L: Lanes>(&self, c: usize) -> L {
+    fn quick2<L: Lanes>(&self, c: CapsuleIndex) -> L {
         let at = |i: usize| self.sphere::<L>(i, c, L::splat(1.0)).1;
         let slow = (at(0).min(at(1)) + L::splat(self.offset)) * L::splat(QUICK);
         slow * slow
@@ -98,7 +105,7 @@ impl Sweep<'_> {
 
     /// One end of the capsule at `t` of the substep.
     #[inline(always)]
-    fn sphere<L: Lanes>(&self, i: usize, c: usize, t: L) -> (V3<L>, L) {
+    fn sphere<L: Lanes>(&self, i: usize, c: CapsuleIndex, t: L) -> (V3<L>, L) {
         let at = L::splat(self.span[0]) + t * L::splat(self.span[1] - self.span[0]);
         let (start, travel) = (&self.ends.start[i], &self.ends.travel[i]);
         let centre = splat3::<L>(&start.centre, c) + splat3::<L>(&travel.centre, c) * at;
@@ -106,7 +113,7 @@ impl Sweep<'_> {
     }
 
     #[inline(always)]
-    fn moment<L: Lanes>(&self, c: usize, x: V3<L>, t: L) -> Moment<L> {
+    fn moment<L: Lanes>(&self, c: CapsuleIndex, x: V3<L>, t: L) -> Moment<L> {
         let zero = L::splat(0.0);
         let [(a, ra), (b, rb)] = [self.sphere(0, c, t), self.sphere(1, c, t)];
         let (gap, d) = (b - a, ra - rb);
@@ -134,7 +141,7 @@ impl Sweep<'_> {
 
     /// The tangent plane of the moment of impact as the capsule has carried and turned it by the end of the substep.
     #[inline(always)]
-    fn carry<L: Lanes>(&self, c: usize, moment: &Moment<L>, x: V3<L>) -> Surface<L> {
+    fn carry<L: Lanes>(&self, c: CapsuleIndex, moment: &Moment<L>, x: V3<L>) -> Surface<L> {
         let zero = L::splat(0.0);
         let normal = moment.out * reciprocal_root(moment.out2);
         let axis = splat3::<L>(&self.cones.axis, c);

@@ -1,5 +1,6 @@
 use super::super::state::State;
 use super::*;
+use crate::lanes::Shared;
 use crate::workers::WorkerPool;
 
 const DT: f32 = 1.0 / 120.0;
@@ -69,7 +70,11 @@ fn every_width_and_both_ways_to_share_give_the_same_bits() {
                 let mut out = Accelerations::new(rest.len());
                 let (at, to) = (state.columns(), out.columns());
                 (0..rest.len()).for_each(|i| state::set(to, i, Vec3A::NAN));
-                let blow = |part| faces.blow(width, part, &SKIRT, DT, at, to);
+                let shared = Shared::new((at, to));
+                let blow = |part| {
+                    let (at, to) = shared.open_in_test();
+                    faces.blow(width, part, &SKIRT, DT, at, to);
+                };
                 let job = |phase, share| match (phase, share) {
                     (0, 0) => blow(Part::First),
                     (0, _) => blow(Part::Second),

@@ -8,7 +8,7 @@ impl Four {
     /// The first `n < 4` numbers at a place. Never by way of an array: a vector read from what was just written number
     /// by number has to wait until all of it has reached the cache.
     #[inline(always)]
-    pub(super) unsafe fn read(place: *mut f32, n: usize) -> Self {
+    pub(super) unsafe fn read(place: *const f32, n: usize) -> Self {
         // SAFETY: the caller has `n` numbers there.
         Self(unsafe {
             match n {
@@ -60,17 +60,17 @@ macro_rules! by_hand {
     };
     (@ pick) => {
         #[inline(always)]
-        pub(super) fn pick(from: Column<'_>, index: &[u32]) -> Self {
+        pub(super) fn pick(from: impl Readable, index: &[u32]) -> Self {
             let mut values = [0.0; MOST];
             for (v, &i) in values.iter_mut().zip(index) {
-                *v = from.get(i as usize);
+                *v = from.reader().get(i as usize);
             }
             Self::from_array(&values)
         }
     };
     (@ spread) => {
         #[inline(always)]
-        pub(super) fn spread(self, to: Column<'_>, index: &[u32]) {
+        pub(super) fn spread(self, to: WriteColumn<'_>, index: &[u32]) {
             for (v, &i) in self.to_array().into_iter().zip(index) {
                 to.set(i as usize, v);
             }
@@ -82,22 +82,22 @@ by_hand!(Eight, pick, spread);
 
 impl Sixteen {
     #[inline(always)]
-    pub(super) fn pick(from: Column<'_>, index: &[u32]) -> Self {
+    pub(super) fn pick(from: impl Readable, index: &[u32]) -> Self {
         let (first, at) = Self::places(from, index);
-        Self(unsafe { _mm512_mask_i32gather_ps::<4>(_mm512_setzero_ps(), first, at, from.place(0, 0)) })
+        Self(unsafe { _mm512_mask_i32gather_ps::<4>(_mm512_setzero_ps(), first, at, from.reader().place(0, 0)) })
     }
     #[inline(always)]
-    pub(super) fn spread(self, to: Column<'_>, index: &[u32]) {
+    pub(super) fn spread(self, to: WriteColumn<'_>, index: &[u32]) {
         let (first, at) = Self::places(to, index);
         unsafe { _mm512_mask_i32scatter_ps::<4>(to.place(0, 0), first, at, self.0) }
     }
     /// Which lanes are used, and their places: all within the column.
     #[inline(always)]
-    fn places(column: Column<'_>, index: &[u32]) -> (__mmask16, __m512i) {
+    fn places(column: impl Readable, index: &[u32]) -> (__mmask16, __m512i) {
         let first = Self::first(index.len().min(MOST));
         // SAFETY: masked to the list's length.
         let at = unsafe { _mm512_maskz_loadu_epi32(first, index.as_ptr().cast()) };
-        let len = unsafe { _mm512_set1_epi32(column.len().min(i32::MAX as usize) as i32) };
+        let len = unsafe { _mm512_set1_epi32(column.reader().len().min(i32::MAX as usize) as i32) };
         let outside = unsafe { _mm512_mask_cmpge_epu32_mask(first, at, len) };
         assert!(outside == 0, "a kernel left its column");
         (first, at)
@@ -133,7 +133,7 @@ impl Sixteen {
 // SAFETY of the following: the caller has four numbers at each place.
 impl Four {
     #[inline(always)]
-    pub(super) unsafe fn read_quads(at: [*mut f32; 4], first: usize) -> Self {
+    pub(super) unsafe fn read_quads(at: [*const f32; 4], first: usize) -> Self {
         Self(unsafe { _mm_loadu_ps(at[first]) })
     }
     #[inline(always)]
@@ -144,7 +144,7 @@ impl Four {
 
 impl Eight {
     #[inline(always)]
-    pub(super) unsafe fn read_quads(at: [*mut f32; 4], first: usize) -> Self {
+    pub(super) unsafe fn read_quads(at: [*const f32; 4], first: usize) -> Self {
         let [a, b] = [at[first], at[(first + 1) % 4]];
         Self(unsafe { _mm256_insertf128_ps::<1>(_mm256_castps128_ps256(_mm_loadu_ps(a)), _mm_loadu_ps(b)) })
     }
@@ -159,7 +159,7 @@ impl Eight {
 
 impl Sixteen {
     #[inline(always)]
-    pub(super) unsafe fn read_quads(at: [*mut f32; 4], _: usize) -> Self {
+    pub(super) unsafe fn read_quads(at: [*const f32; 4], _: usize) -> Self {
         unsafe {
             let v = _mm512_castps128_ps512(_mm_loadu_ps(at[0]));
             let v = _mm512_insertf32x4::<1>(v, _mm_loadu_ps(at[1]));
@@ -205,7 +205,7 @@ impl Mask for Answers4 {
 
 impl Eight {
     #[inline(always)]
-    pub(super) unsafe fn read(place: *mut f32, n: usize) -> Self {
+    pub(super) unsafe fn read(place: *const f32, n: usize) -> Self {
         Self(unsafe { _mm256_maskload_ps(place, Self::first(n)) })
     }
     #[inline(always)]
@@ -260,7 +260,7 @@ impl Mask for Answers8 {
 
 impl Sixteen {
     #[inline(always)]
-    pub(super) unsafe fn read(place: *mut f32, n: usize) -> Self {
+    pub(super) unsafe fn read(place: *const f32, n: usize) -> Self {
         Self(unsafe { _mm512_maskz_loadu_ps(Self::first(n), place) })
     }
     #[inline(always)]

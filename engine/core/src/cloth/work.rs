@@ -1,0 +1,361 @@
+//! The stages of a step: what each does with one owner's share of a garment.
+//!
+//! [`OwnerShare::run`] is the list of all stages; their order is [`program`](super::program)'s. A stage has two shares, one for
+//! each owner of particles, which may run at once; all of a stage is over before any of the next begins.
+
+use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering::Relaxed;
+
+use glam::Vec3A;
+use toile_assets::garment::Garment;
+use toile_assets::garment::layout::{Bends, Layout, Links, Lists, OWNERS};
+
+use super::prepared::Prepared;
+use super::program::Stage;
+use super::root::Carried;
+use super::state::{self, Columns};
+use super::{
+    Quality, Step, Wind, bending, contact, diagonals, fibers, hubs, links, lists, predict, settle, stages, tethers,
+    wind,
+};
+use crate::lanes::{Shared, Width, WriteColumn};
+use crate::workers::PerShare;
+
+/// Everything that the shares of one step have in common.
+pub struct Work<'a> {
+    /// The garment.
+    pub garment: &'a Garment,
+    /// Its surroundings.
+    pub step: &'a Step<'a>,
+    /// What was prepared for the settings.
+    pub prepared: &'a Prepared,
+    /// What the shares write to.
+    pub columns: Shared<WorkColumns<'a>>,
+    /// The triangles that feel the wind, and the wind.
+    pub faces: Option<(&'a wind::Faces, Wind)>,
+    /// What of the root's motion the cloth is not to feel.
+    pub carried: Option<Carried>,
+    /// The contact of each owner's particles.
+    pub contacts: PerShare<'a, contact::Owner>,
+    /// Particle substeps that each owner held at the speed limit.
+    pub limited: [AtomicU64; OWNERS],
+    /// Skinned particles at the start and the end of the step (m).
+    pub fixed: [&'a [Vec3A]; 2],
+    /// Gravity over the substep (m/s).
+    pub fall: Vec3A,
+    /// Share of a velocity that damping leaves in a substep (1).
+    pub kept: f32,
+    /// Lanes that the kernels run on.
+    pub width: Width,
+}
+
+/// The columns of a step.
+#[derive(Clone, Copy)]
+pub struct WorkColumns<'a> {
+    /// The particles.
+    pub particles: Columns<'a>,
+    /// Accelerations besides gravity (m/s2).
+    pub pushed: [WriteColumn<'a>; 3],
+    /// Tensions of weft links, of fibers, of crossing fibers so far in the substep; empty where they have no compliance.
+    pub tension: [WriteColumn<'a>; 3],
+    /// Scratch of each owner.
+    pub scratch: [WriteColumn<'a>; OWNERS],
+    /// Scratch of stiff bending; empty where there is none.
+    pub room: [[WriteColumn<'a>; 3]; 3],
+    /// Scratch of what is solved along the bias.
+    pub leaning: [WriteColumn<'a>; diagonals::KEPT],
+}
+
+/// One owner's share of one stage.
+struct OwnerShare<'w, 'a> {
+    work: &'w Work<'a>,
+    columns: WorkColumns<'a>,
+    owner: usize,
+    substep: u32,
+}
+
+impl Work<'_> {
+    /// Does one owner's share of a stage. Between two stages the workers meet; no share of a stage is done twice.
+    pub fn run(&self, stage: Stage, substep: u32, owner: usize) {
+        // SAFETY: the threads of `WorkerPool::run` meet after each phase, which is one stage, and each share of it is done
+        // once: what was written before is seen. Within a stage no place that one owner writes is touched by the other:
+        // - the ranges of `Layout::spans` hold each particle once (wind, root motion, prediction, contact, velocities,
+        //   tethers and turns of stiff bending write nothing else; a tether reads anchors, which are fixed and not written);
+        // - constraints of one set and different owners share no particle (`garment::layout`), and each has its own tension;
+        //   sets that cross the owners are done by the first owner alone;
+        // - each owner has a scratch of its own, and half of the tensions to clear.
+        // The bake asserts the first two. A step with one worker does one share after the other on one thread.
+        let columns = unsafe { self.columns.open() };
+        OwnerShare { work: self, columns, owner, substep }.run(stage);
+    }
+
+    /// Particle substeps that were held at the speed limit.
+    pub fn limited(&self) -> u64 {
+        self.limited.iter().map(|l| l.load(Relaxed)).sum()
+    }
+
+    fn layout(&self) -> &Layout {
+        &self.garment.layout
+    }
+
+    fn contact_settings(&self) -> contact::ContactSettings {
+        contact::ContactSettings::new(&self.garment.fabric, self.step.settings)
+    }
+}
+
+impl OwnerShare<'_, '_> {
+    /// The stages.
+    fn run(&self, stage: Stage) {
+        match stage {
+            Stage::BroadPhase => self.broad_phase(),
+            Stage::Wind => self.wind([wind::Part::First, wind::Part::Second][self.owner]),
+            Stage::WindAcross => self.wind_across(),
+            Stage::RootMotion => self.root_motion(),
+            Stage::Bending(set) => self.bending(set),
+            Stage::StiffBendingTurn(stage) => self.stiff_bending_turn(stage),
+            Stage::StiffBending(stage, set) => self.stiff_bending(stage, set),
+            Stage::Predict => self.predict(),
+            Stage::Diagonals(family) => self.diagonals(family),
+            Stage::Shear(set) => self.shear(set),
+            Stage::Weft(set) => self.weft(set),
+            Stage::Fibers => self.fibers(),
+            Stage::Crossing(set) => self.crossing(set),
+            Stage::Tethers => self.tethers(),
+            Stage::ContactAndVelocities => {
+                self.contact();
+                self.velocities();
+            }
+        }
+    }
+
+    /// What contact may meet in this step.
+    fn broad_phase(&self) {
+        let (work, how) = (self.work, self.work.contact_settings());
+        let particles = self.columns.particles;
+        work.contacts.with(self.owner, |own| own.find(work.width, particles, work.step.colliders, &how));
+    }
+
+    /// The wind of the whole step, as accelerations.
+    fn wind(&self, part: wind::Part) {
+        let (work, c) = (self.work, &self.columns);
+        if let Some((faces, wind)) = work.faces {
+            faces.blow(work.width, part, &wind, work.step.settings.step_seconds, c.particles, c.pushed);
+        }
+    }
+
+    /// The triangles that cross the owners: the first owner's alone.
+    fn wind_across(&self) {
+        if self.owner == 0 {
+            self.wind(wind::Part::Crossing);
+        }
+    }
+
+    /// What of the root's motion the cloth is not to feel, beside the wind.
+    fn root_motion(&self) {
+        let (work, c) = (self.work, &self.columns);
+        let Some(carried) = work.carried else { return };
+        for &span in &work.layout().spans[self.owner] {
+            if work.faces.is_none() {
+                for i in span.0..span.0 + span.1 {
+                    state::set(c.pushed, i as usize, Vec3A::ZERO);
+                }
+            }
+            carried.apply(work.width, c.particles, span, c.pushed);
+        }
+    }
+
+    /// A set of bending stencils as a force.
+    fn bending(&self, set: u16) {
+        let (p, particles) = (self.work.prepared, self.columns.particles);
+        if self.substep.is_multiple_of(p.bend.every) {
+            self.bend(set, [particles.x, particles.v], p.dt * p.bend.every as f32);
+        }
+    }
+
+    /// A set of bending stencils within a stage of stiff bending.
+    fn stiff_bending(&self, stage: u32, set: u16) {
+        let (p, room) = (self.work.prepared, self.columns.room);
+        if stage == 0 {
+            return self.bend(set, [room[1], room[0]], p.dt);
+        }
+        let by = p.stages[stage as usize].forced * p.dt * p.dt;
+        self.bend(set, [stage, stage + 1].map(|j| room[stages::place(j)]), by);
+    }
+
+    /// What comes before the forces of a stage of stiff bending, or behind the last.
+    fn stiff_bending_turn(&self, stage: u32) {
+        let (work, p) = (self.work, self.work.prepared);
+        let turn = match stage {
+            0 => stages::Turn::Begin { fall: work.fall, pushed: self.pushed().map(|(by, _)| by), dt: p.dt },
+            last if last == p.bending.stages => stages::Turn::End(last),
+            1 => stages::Turn::First([p.stages[0], p.stages[1]]),
+            later => stages::Turn::Next(later + 1, p.stages[later as usize]),
+        };
+        let (columns, room) = (self.columns.particles, self.columns.room);
+        work.width.run(stages::Take { columns, spans: &work.layout().spans[self.owner], room, turn });
+    }
+
+    /// Gravity, air, wind; skinned particles move on.
+    fn predict(&self) {
+        let (work, p, columns) = (self.work, self.work.prepared, self.columns.particles);
+        // Half of the tensions each: they start from none in every substep.
+        for tension in self.columns.tension {
+            let half = tension.len().div_ceil(OWNERS);
+            let from = self.owner * half;
+            (from..(from + half).min(tension.len())).for_each(|i| tension.set(i, 0.0));
+        }
+        let spans = &work.layout().spans[self.owner];
+        // Stages have accelerated everything already.
+        let (fall, pushed) = if p.bending.stages > 1 { (Vec3A::ZERO, None) } else { (work.fall, self.pushed()) };
+        work.width.run(predict::Predict { columns, spans, fall, pushed, kept: work.kept, dt: p.dt });
+        let to = (self.substep + 1) as f32 / p.substeps as f32;
+        for (k, &i) in work.garment.fixed.iter().enumerate() {
+            if usize::from(work.layout().owner[i as usize]) == self.owner {
+                state::set(columns.x, i as usize, work.fixed[0][k].lerp(work.fixed[1][k], to));
+            }
+        }
+    }
+
+    /// A family of fibers along the bias, solved directly.
+    fn diagonals(&self, family: u16) {
+        let (work, p, diagonals) = (self.work, self.work.prepared, &self.work.layout().diagonals);
+        if !self.substep.is_multiple_of(p.shear_every) {
+            return;
+        }
+        let strand = &diagonals.families[usize::from(family)][self.owner];
+        let per_dt2 = (p.dt * p.dt).recip() / p.shear_every as f32;
+        let (columns, room, gamma) = (self.columns.particles, self.columns.leaning, p.gamma);
+        work.width.run(diagonals::Solve { columns, diagonals, strand, room, per_dt2, gamma });
+    }
+
+    /// A set of shear links.
+    fn shear(&self, set: u16) {
+        self.links(&self.work.layout().shear, &self.work.prepared.shear_gain, set, None);
+    }
+
+    /// A set of weft links.
+    fn weft(&self, set: u16) {
+        let p = self.work.prepared;
+        let tension = self.tension(0).map(|t| (t, (p.dt * p.dt).recip()));
+        self.links(&self.work.layout().weft, &p.weft_gain, set, tension);
+    }
+
+    /// Warp fibers, each solved directly.
+    fn fibers(&self) {
+        let (work, p) = (self.work, self.work.prepared);
+        work.width.run(fibers::Solve {
+            columns: self.columns.particles,
+            fibers: &work.layout().fibers,
+            owner: self.owner,
+            scratch: self.columns.scratch[self.owner],
+            per_dt2: (p.dt * p.dt).recip(),
+            gamma: p.gamma,
+            taut: p.taut,
+            tension: self.tension(1),
+        });
+    }
+
+    /// A set of warp fibers that cross others.
+    fn crossing(&self, set: u16) {
+        let (work, p) = (self.work, self.work.prepared);
+        let lists: &Lists = &work.layout().crossing;
+        work.width.run(lists::Solve {
+            columns: self.columns.particles,
+            lists,
+            set: usize::from(set),
+            owner: self.owner,
+            scratch: self.columns.scratch[self.owner],
+            per_dt2: (p.dt * p.dt).recip(),
+            tension: self.tension(2),
+        });
+    }
+
+    /// What strays from its anchor is drawn back.
+    fn tethers(&self) {
+        let (work, layout) = (self.work, self.work.layout());
+        if work.step.settings.tethers || work.prepared.quality == Quality::Draft {
+            let (columns, spans) = (self.columns.particles, &layout.spans[self.owner]);
+            work.width.run(tethers::Hold { columns, tethers: &layout.tethers, spans });
+        }
+    }
+
+    /// Contact with the body, the floor and other planes.
+    fn contact(&self) {
+        let (work, how) = (self.work, self.work.contact_settings());
+        let span = [self.substep, self.substep + 1].map(|s| s as f32 / work.prepared.substeps as f32);
+        let particles = self.columns.particles;
+        work.contacts.with(self.owner, |own| own.solve(work.width, particles, span, &how));
+    }
+
+    /// New velocities from the way of the substep, within the speed limit.
+    fn velocities(&self) {
+        let (work, columns) = (self.work, self.columns.particles);
+        let (spans, max_speed) = (&work.layout().spans[self.owner], work.step.settings.max_speed);
+        let held = work.width.run(settle::Settle { columns, spans, max_speed, dt: work.prepared.dt });
+        // Relaxed: a counter that one share adds to and that is read when all is done.
+        work.limited[self.owner].fetch_add(u64::from(held), Relaxed);
+    }
+
+    /// A set of links of one kind.
+    fn links(&self, links: &Links, gain: &[f32], set: u16, tension: Option<(WriteColumn<'_>, f32)>) {
+        let (columns, owner, gamma) = (self.columns.particles, self.owner, self.work.prepared.gamma);
+        let set = &links.tuples.sets[usize::from(set)];
+        self.work.width.run(links::Solve { columns, links, gain, set, owner, gamma, tension });
+    }
+
+    /// Tensions of weft links (0), fibers (1), crossing fibers (2), where these have any compliance.
+    fn tension(&self, kind: usize) -> Option<WriteColumn<'_>> {
+        self.work.prepared.soft[kind].then_some(self.columns.tension[kind])
+    }
+
+    /// What accelerates the particles besides gravity, and the substep (s).
+    fn pushed(&self) -> Option<([WriteColumn<'_>; 3], f32)> {
+        let work = self.work;
+        (work.faces.is_some() || work.carried.is_some()).then_some((self.columns.pushed, work.prepared.dt))
+    }
+
+    /// A set of all stencils bends one thing and pushes another.
+    fn bend(&self, set: u16, from_to: [[WriteColumn<'_>; 3]; 2], by: f32) {
+        let (layout, p) = (self.work.layout(), self.work.prepared);
+        self.stencils(&layout.bends, &p.bend_scale, set, from_to, by);
+        self.stencils(&layout.skewed, &p.skewed_scale, set, from_to, by);
+        self.hubs(set, from_to, by);
+    }
+
+    /// Those of whole rings; the second set crosses the owners and is the first owner's alone.
+    fn hubs(&self, set: u16, [from, to]: [[WriteColumn<'_>; 3]; 2], by: f32) {
+        let (hubs, p) = (&self.work.layout().hubs, self.work.prepared);
+        let Some(groups) = hubs.sets.get(usize::from(set)) else { return };
+        let scale = (p.bend.least < 1.0).then_some(&*p.hub_scale);
+        let w = self.columns.particles.w;
+        self.each_owner(set != 0, |owner| {
+            self.work.width.run(hubs::Bend { w, hubs, groups: groups[owner].clone(), from, to, by, scale });
+        });
+    }
+
+    /// Those of one kind.
+    fn stencils<const K: usize>(
+        &self,
+        bends: &Bends<K>,
+        scale: &[f32],
+        set: u16,
+        [from, to]: [[WriteColumn<'_>; 3]; 2],
+        by: f32,
+    ) {
+        let Some(set) = bends.tuples.sets.get(usize::from(set)) else { return };
+        let (w, scratch) = (self.columns.particles.w, self.columns.scratch[self.owner]);
+        let scale = (self.work.prepared.bend.least < 1.0).then_some(scale);
+        self.each_owner(set.crosses, |owner| {
+            self.work.width.run(bending::Bend { w, bends, set, owner, from, to, by, scale, scratch });
+        });
+    }
+
+    /// This owner's part; of what crosses the owners the first does all and the second nothing.
+    fn each_owner(&self, crosses: bool, part: impl Fn(usize)) {
+        if !crosses {
+            part(self.owner);
+        } else if self.owner == 0 {
+            (0..OWNERS).for_each(part);
+        }
+    }
+}
