@@ -35,7 +35,7 @@ impl<'a> BufferBuilder<'a> {
         self.filled(label, contents, BufferUsages::STORAGE | more)
     }
 
-    /// A storage buffer of so many zeros of `size` bytes.
+    /// A storage buffer of `count` zeroed items of `size` bytes.
     pub fn zeros(&mut self, label: &str, count: usize, size: usize) -> Buffer {
         let len = (count.max(1) * size) as u64;
         self.bytes += len;

@@ -22,7 +22,7 @@ pub struct Shader {
 }
 
 impl Shader {
-    /// The whole text.
+    /// The complete WGSL text.
     pub fn source(&self) -> String {
         self.texts.concat()
     }

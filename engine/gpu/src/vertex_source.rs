@@ -8,7 +8,7 @@ use crate::device::Device;
 pub const STRIDE: u64 = 16;
 
 /// World positions (m) and unit normals of a surface on a device. What is submitted after a step sees all of it, what is
-/// submitted before sees nothing of it: a picture never shows half a step. Clones are of the same numbers.
+/// submitted before sees nothing of it: a picture never shows half a step. Clones share the buffers.
 #[derive(Debug, Clone)]
 pub struct VertexSource {
     device: Device,

@@ -29,7 +29,7 @@ impl Estimate {
     }
 }
 
-/// What there is of two estimates of one length.
+/// Fuses two estimates of one length; one alone is returned as it is.
 pub fn fuse(a: Option<Estimate>, b: Option<Estimate>) -> Option<Estimate> {
     match (a, b) {
         (Some(a), Some(b)) => Some(a.fuse(b)),
@@ -37,7 +37,7 @@ pub fn fuse(a: Option<Estimate>, b: Option<Estimate>) -> Option<Estimate> {
     }
 }
 
-/// A sample farther from the median than this many robust standard deviations is no measurement but a mistake.
+/// A sample farther from the median than this many robust standard deviations is an outlier.
 const OUTLIER: f32 = 3.0;
 
 /// Median absolute deviation of a normal distribution times this is its standard deviation.

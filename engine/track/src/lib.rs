@@ -1,4 +1,4 @@
-//! Who stands there: the body's measures from depth frames and joints, and the size that fits them.
+//! Tracking: the shopper's measures from depth frames and joints, the fitted body, gestures, and the size that fits.
 //!
 //! Reads: `DepthFrame` and `Joints`, size tables, finished girths of garments. Writes: `Measurements`, gestures,
 //! `Recommendation`. Budget: 1 s for 30 depth frames of 640 x 480, once a shopper; nothing here runs inside the frame.

@@ -14,7 +14,7 @@ use super::scene_buffers::SceneBuffers;
 use crate::buffer_builder::BufferBuilder;
 use crate::device::DeviceNeeds;
 
-/// Numbers of a garment's report: held at the speed limit, unsound, rolled back in a row, rolled back, repaired.
+/// Words of a garment's report, as `shaders/report.wgsl` declares it.
 pub const REPORT: usize = 5;
 
 /// Places in the buffer of stages for each garment.

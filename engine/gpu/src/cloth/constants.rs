@@ -45,11 +45,11 @@ pub struct GarmentConstants {
     pub gamma: f32,
     /// Length of the time that bending acts for (s).
     pub bend_by: f32,
-    /// Bending acts every so many substeps.
+    /// Number of substeps from one action of bending to the next.
     pub bend_every: u32,
     /// 1 / dt^2 of the time that shear acts for (1/s2).
     pub shear_per_dt2: f32,
-    /// Shear acts every so many substeps.
+    /// Number of substeps from one action of shear to the next.
     pub shear_every: u32,
     /// Farthest that a particle moves in a substep (m).
     pub farthest: f32,

@@ -28,7 +28,7 @@ impl ContactData {
         Self { ends: Ends::NONE, cones: Cones::NONE }
     }
 
-    /// Makes a step's capsules ready: what the whole step sweeps, then those of each substep, `MAX_CAPSULES` of each, into
+    /// Prepares a step's capsules: what the whole step sweeps, then those of each substep, `MAX_CAPSULES` of each, into
     /// `cones`; gives the capsules that are to be believed, a bit each.
     pub fn capsules(
         &mut self,

@@ -117,7 +117,7 @@ impl StepProgram {
         self.tables.len() - 1
     }
 
-    /// A substep; `whole` solves hoops and fibers in turn.
+    /// The dispatches of a substep; `whole` solves hoops and fibers alternately.
     fn substep(&self, tables: &WorkgroupTables, whole: bool) -> Vec<Dispatch> {
         let entry = |kernel, table, fresh| Dispatch { kernel, table, fresh, op: 0 };
         let wefts = |fresh: bool| tables.weft.iter().map(move |&t| entry(Kernel::Weft, t, fresh));

@@ -54,7 +54,7 @@ impl StagingBuffer {
 }
 
 impl ReadbackRing {
-    /// For so many bytes a step.
+    /// A ring for results of this many bytes a step.
     pub fn new(device: &wgpu::Device, bytes: u64) -> Self {
         let place = || {
             let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;

@@ -201,7 +201,7 @@ impl Offload {
         }
     }
 
-    /// One dispatch over the first so many garments, in a substep, or in a stage if the kernel has stages.
+    /// One dispatch over the first garments, in a substep, or in a stage if the kernel has stages.
     pub(super) fn dispatch(&self, pass: &mut ComputePass<'_>, entry: &Dispatch, at: u32, garments: usize) {
         let moment = if entry.kernel.in_stages() { self.sets as u32 + at } else { at };
         let groups = match entry.kernel {

@@ -35,7 +35,7 @@ const SMALLEST: f32 = 0.06;
 const GROWN: usize = 2;
 const SHRUNK: usize = 1;
 
-/// Where to look for a hand.
+/// Region of interest of a hand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HandRegion {
     /// Middle of the palm, world (m).

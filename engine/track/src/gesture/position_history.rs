@@ -1,4 +1,4 @@
-//! Where something was lately, and how fast it moves.
+//! Recent positions of a point, and its velocity.
 
 use glam::Vec3;
 use toile_sensors::clock::seconds_between;
@@ -13,7 +13,7 @@ const WINDOW_NS: u64 = 140_000_000;
 /// A slope over a shorter time than this (ns) is noise.
 const SHORTEST_NS: u64 = 30_000_000;
 
-/// The last places of something, by time.
+/// The last positions of a point, by time.
 #[derive(Debug, Clone)]
 pub(super) struct PositionHistory {
     places: [(u64, Vec3); PLACES],

@@ -1,4 +1,4 @@
-//! Strokes of one hand: a small machine of states, one step a frame.
+//! Strokes of one hand: a small state machine, one step a frame.
 //!
 //! Gultepe 2013 (appendix C) listens for the hand's speed to pass a threshold. By itself that also fires on waving,
 //! scratching, dressing and on the way back. So a stroke must begin with the hand presented and still, go straight along

@@ -43,7 +43,7 @@ const ARMS: [f32; 2] = [0.34, 0.80];
 /// The arm's length is a running mean over this time (s): bones of a depth camera's skeleton wobble by a tenth.
 const SETTLE_S: f32 = 1.0;
 
-/// What is known of the arm's length.
+/// Running estimate of the arm's length.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ArmLength {
     arm: Option<(f32, u64)>,
@@ -59,7 +59,7 @@ impl ArmLength {
         self.arm.map(|(length, _)| length)
     }
 
-    /// Takes the arms of a frame, those that are believed from shoulder to wrist.
+    /// Updates it with the arms of a frame that are believed from shoulder to wrist.
     pub(super) fn see(&mut self, joints: &Joints) {
         let length = |side: Side| {
             let [shoulder, elbow, wrist, _] = side.arm().map(|j| joints.believed(j));
@@ -107,7 +107,7 @@ impl Trunk {
 /// and a hand held out swings with them.
 const TURN_S: f32 = 0.25;
 
-/// Which way the trunk has looked lately.
+/// Running mean of the trunk's direction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TrunkDirection {
     left: Option<(Vec3, u64)>,

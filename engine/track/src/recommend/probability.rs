@@ -19,7 +19,7 @@ const TIGHT_TO_LOOSE: f32 = 2.0;
 /// sizes that both fit.
 const OFF_MIDDLE: f32 = 0.1;
 
-/// What the bodies say about each size.
+/// Mean penalty and probability of each size.
 pub(super) struct SizeProbabilities {
     /// Mean penalty (m of ease outside the comfortable range) `[sizes]`.
     pub penalty: Vec<f32>,
