@@ -73,8 +73,8 @@ fn crates_import_only_the_floors_below() {
 const BENCHMARKS: &str = "toile-perf";
 
 /// The commands that measure the engine, files and folders.
-const BENCH_COMMANDS: [&str; 7] =
-    ["bench.rs", "bench/", "latency.rs", "pareto.rs", "soak.rs", "torture.rs", "validate.rs"];
+const BENCH_COMMANDS: [&str; 8] =
+    ["bench.rs", "bench/", "colliders.rs", "latency.rs", "pareto.rs", "soak.rs", "torture.rs", "validate.rs"];
 
 /// Whether a file may import the benchmarks: they themselves, the tests, and the program's bench commands.
 fn may_import_benchmarks(place: &str) -> bool {

@@ -5,12 +5,12 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use toile_assets::numeric::statistics::median;
+use toile_fitting::heap::HeapProbe;
 use toile_gpu::backend::{Backend, Backends};
 
 use crate::backend::SteppedBy;
 use crate::skirt::options::SkirtOptions;
 use crate::skirt::{Gauge, SkirtError, SkirtScene};
-use toile_fitting::heap::HeapProbe;
 
 /// Vertices of a single skirt.
 const SIZES: [usize; 5] = [1_024, 4_096, 16_384, 65_536, 262_144];

@@ -11,7 +11,7 @@ use toile_engine::frame_loop::thread_roles::ThreadRole;
 use toile_engine::frame_loop::threads::{self, Stop};
 use toile_engine::meter::{Meter, PERIOD_NS};
 
-use super::LatencyError;
+use super::error::LatencyError;
 
 /// The empty loop.
 #[derive(Debug)]

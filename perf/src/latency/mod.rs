@@ -8,40 +8,14 @@
 //! counts as late as the one in its place: the figures are corrected for coordinated omission. The first second is not metered.
 
 mod capacity;
+mod error;
 mod html;
 mod jitter;
 mod load;
 mod report;
 mod run;
 
+pub use error::LatencyError;
 pub use html::page;
 pub use report::{Goal, Latency, LatencyStage, QualityFigures};
-pub use run::{LatencyInputs, run};
-
-use thiserror::Error;
-use toile_engine::workers::WorkerPoolError;
-
-/// What is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct LatencyOptions {
-    /// Length of the run (s), after a first second.
-    pub seconds: u32,
-    /// Threads of load beside the loop.
-    pub load: usize,
-    /// A rung of the governor's ladder that the run is held on; none lets it govern.
-    pub rung: Option<u8>,
-}
-
-/// Why the figures cannot be taken.
-#[derive(Debug, Error)]
-pub enum LatencyError {
-    /// The system gave no thread.
-    #[error("a thread of the loop could not be started ({0}); raise the limit of threads")]
-    Spawn(#[from] std::io::Error),
-    /// The workers.
-    #[error(transparent)]
-    WorkerPool(#[from] WorkerPoolError),
-    /// A thread of the loop ended before its time.
-    #[error("the {0} thread panicked; its message says why")]
-    Died(&'static str),
-}
+pub use run::{LatencyInputs, LatencyOptions, run};

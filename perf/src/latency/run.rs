@@ -25,9 +25,10 @@ use toile_fitting::live::scene_changer::DressedScene;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::Joints;
 
+use super::error::LatencyError;
 use super::load::LoadThreads;
 use super::report::{Goal, Latency, LatencyStage, QualityFigures};
-use super::{LatencyError, LatencyOptions, capacity, jitter};
+use super::{capacity, jitter};
 
 /// Time before the meters begin (s): caches fill, memory is touched for the first time.
 const WARM_UP_S: u64 = 1;
@@ -51,6 +52,17 @@ const MOST_CHANGES: usize = 100;
 
 /// Time between two looks at the queues: they hold seconds.
 const LOOK: Duration = Duration::from_millis(20);
+
+/// What is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LatencyOptions {
+    /// Length of the run (s), after a first second.
+    pub seconds: u32,
+    /// Threads of load beside the loop.
+    pub load: usize,
+    /// A rung of the governor's ladder that the run is held on; none lets it govern.
+    pub rung: Option<u8>,
+}
 
 /// What is run: a shopper, dressed, and how they moved.
 pub struct LatencyInputs<'a> {

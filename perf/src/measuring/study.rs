@@ -6,6 +6,7 @@ use toile_assets::numeric::random::SplitMix64;
 use toile_assets::numeric::statistics::quantile;
 use toile_assets::sizes::Population;
 use toile_assets::skeleton::Joint;
+use toile_fitting::timing::OnCore;
 use toile_sensors::frame::DepthFrame;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{self, MEASURES};
@@ -17,7 +18,6 @@ use toile_track::point_cloud;
 use super::person::{GIVEN, JointPositions, SurveyPerson};
 use super::sensor::{Sensor, StudyCamera};
 use crate::ansur::{StudyError, Survey};
-use toile_fitting::timing::OnCore;
 
 /// What is studied.
 #[derive(Debug, Clone, Copy, PartialEq)]

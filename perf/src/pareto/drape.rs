@@ -11,7 +11,7 @@ use toile_assets::mesh::SkinWeights;
 use toile_engine::cloth::Quality;
 use toile_engine::colliders::{Colliders, RestSphere};
 
-use super::ParetoError;
+use super::error::ParetoError;
 use super::meshed_scene::{MeshedScene, ReferenceKind, SceneMotion, SolverChoice};
 use super::play::{Setting, play};
 use super::report::{Drape, Sampling};

@@ -10,7 +10,7 @@ use toile_assets::skeleton::{BONES, Pose, Skeleton};
 use toile_engine::body::palette;
 use toile_engine::colliders::Colliders;
 
-use super::ParetoError;
+use super::error::ParetoError;
 
 /// What fibers are solved by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

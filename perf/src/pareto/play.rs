@@ -13,7 +13,7 @@ use toile_engine::cloth::{Cloth, Quality, Settings, Step, measure};
 use toile_engine::colliders::Colliders;
 use toile_engine::workers::WorkerPool;
 
-use super::ParetoError;
+use super::error::ParetoError;
 use super::meshed_scene::MeshedScene;
 use crate::oracle::measure::energies;
 use crate::oracle::{Problem, State};

@@ -4,7 +4,7 @@ use glam::DVec3;
 use toile_assets::garment::Garment;
 use toile_engine::cloth::Quality;
 
-use super::ParetoError;
+use super::error::ParetoError;
 use super::meshed_scene::{MeshedScene, ReferenceKind, SolverChoice};
 use super::play::{Setting, Trace, WINDOW, WindowStart, play, play_through, play_windows};
 use crate::oracle::{Oracle, Problem, Solids};

@@ -10,9 +10,12 @@ use toile_assets::sizes::{Population, SizeTable};
 use toile_assets::wardrobe;
 use toile_engine::colliders::{Colliders, RestSphere};
 
-use super::ParetoError;
+use super::error::ParetoError;
 use super::meshed_scene::{MeshedScene, ReferenceKind, SceneMotion};
 use crate::validate::mesh::{CaseFabric, EndSupport, MeshStyle, Strip};
+
+/// Names of all scenes, in the order in which they are run.
+pub const SCENES: [&str; 6] = ["cantilever", "skirt", "sun-dress", "t-shirt", "wide-trousers", "drape"];
 
 /// Time of the walk that is compared (s): the legs swing once to and fro.
 const WALK_S: f64 = 1.0;
@@ -89,7 +92,7 @@ fn worn(name: &str, quick: bool) -> Result<MeshedScene, ParetoError> {
     let rig = Rig::fit(&body);
     let spheres = rig.spheres.each_ref().map(|s| RestSphere::on_bone(&body.skeleton, s.bone, s.offset, s.radius));
     let shape = style.draft(&size, &body)?;
-    let scene = super::SCENES.into_iter().find(|s| *s == name).ok_or_else(|| ParetoError::Unknown(name.into()))?;
+    let scene = SCENES.into_iter().find(|s| *s == name).ok_or_else(|| ParetoError::Unknown(name.into()))?;
     Ok(MeshedScene {
         scene,
         mesh: format!("size {size}"),

@@ -2,12 +2,12 @@
 
 use toile_assets::garment::Shape;
 use toile_assets::scene::skirt;
+use toile_fitting::heap::HeapProbe;
 
-use super::ParetoError;
+use super::error::ParetoError;
 use super::report::{Fate, Survival};
 use crate::skirt::options::SkirtOptions;
 use crate::skirt::{Gauge, SkirtError, SkirtScene};
-use toile_fitting::heap::HeapProbe;
 
 /// Vertices a side.
 const SIDE: usize = 24;

@@ -3,7 +3,7 @@
 use toile_assets::garment::Garment;
 use toile_engine::cloth::Quality;
 
-use super::ParetoError;
+use super::error::ParetoError;
 use super::meshed_scene::{MeshedScene, SolverChoice};
 use super::play::{Setting, Trace, iterations, play};
 use super::reference::Reference;

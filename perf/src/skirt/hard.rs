@@ -4,13 +4,13 @@ use glam::{Affine3A, Vec3, Vec3A, Vec4};
 use serde::Serialize;
 use toile_assets::garment::Shape;
 use toile_assets::scene::skirt;
+use toile_fitting::heap::HeapProbe;
+use toile_fitting::scene::events::ClothEvents;
 
 use super::error::SkirtError;
 use super::gauge::{FrameErrors, Gauge};
 use super::options::{SkirtOptions, WARM_UP};
-use super::report::Events;
 use super::scene::SkirtScene;
-use toile_fitting::heap::HeapProbe;
 
 /// Something that is wrong for one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,7 +52,7 @@ pub struct SkirtRecovery {
     /// Vertices published that were not finite, summed over the frames.
     pub nonfinite: usize,
     /// What the engine says has happened.
-    pub events: Events,
+    pub events: ClothEvents,
 }
 
 /// Runs the scene into a fault, and once more without it, and compares what follows.
@@ -84,7 +84,7 @@ fn watch(
     options: &SkirtOptions,
     fault: Option<SkirtFault>,
     heap: &HeapProbe,
-) -> Result<(Vec<FrameErrors>, Events), SkirtError> {
+) -> Result<(Vec<FrameErrors>, ClothEvents), SkirtError> {
     let mut scene = SkirtScene::new(options, heap)?;
     let mut gauge = Gauge::new(&scene);
     for _ in 0..WARM_UP {

@@ -4,6 +4,8 @@ use std::time::Instant;
 
 use toile_assets::garment::Shape;
 use toile_assets::numeric::statistics::{median, quantile};
+use toile_fitting::heap::HeapProbe;
+use toile_fitting::scene::yardstick::Yardstick;
 use toile_gpu::backend::Backends;
 
 use super::error::SkirtError;
@@ -12,8 +14,6 @@ use super::options::{SkirtOptions, WARM_UP};
 use super::report::{self, SkirtReport};
 use super::scene::SkirtScene;
 use crate::backend::SteppedBy;
-use toile_fitting::heap::HeapProbe;
-use toile_fitting::scene::yardstick::Yardstick;
 
 /// Steps at the end over which the greatest energy of motion is looked for: a second.
 const RESTING_STEPS: usize = 120;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 use toile_assets::scene::skirt::{Motion, Stretch};
+use toile_fitting::scene::events::ClothEvents;
 use toile_gpu::backend::BackendTimes;
 
 use super::options::{SkirtMesh, SkirtOptions};
@@ -52,58 +53,6 @@ pub struct Penetration {
     pub fraction: f64,
     /// Vertices inside at the end of each run, summed over the runs.
     pub left_inside: u64,
-}
-
-/// What happened that should not have, over the measured steps.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-pub struct Events {
-    /// Particles that were put back to their last good place.
-    pub repaired: u64,
-    /// Steps taken back because something was not finite.
-    pub rolled_back: u64,
-    /// Particle substeps at the speed limit.
-    pub speed_limited: u64,
-    /// Pinned particles whose target was not finite and was not followed.
-    pub held_pins: u64,
-    /// Steps in which the root jumped.
-    pub teleports: u64,
-    /// Collision spheres that jumped or were not finite and were held.
-    pub held_colliders: u64,
-}
-
-impl Events {
-    fn fields(&mut self) -> [&mut u64; 6] {
-        let Self { repaired, rolled_back, speed_limited, held_pins, teleports, held_colliders } = self;
-        [repaired, rolled_back, speed_limited, held_pins, teleports, held_colliders]
-    }
-
-    /// What happened since an earlier count.
-    pub fn since(mut self, mut earlier: Self) -> Self {
-        self.fields().into_iter().zip(earlier.fields()).for_each(|(now, then)| *now -= *then);
-        self
-    }
-}
-
-impl From<toile_engine::cloth::guard::Events> for Events {
-    fn from(e: toile_engine::cloth::guard::Events) -> Self {
-        Self {
-            repaired: e.repaired,
-            rolled_back: e.rolled_back,
-            speed_limited: e.speed_limited,
-            held_pins: e.held_pins,
-            teleports: e.teleports,
-            held_colliders: e.held_colliders,
-        }
-    }
-}
-
-impl std::iter::Sum for Events {
-    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
-        all.fold(Self::default(), |mut sum, mut e| {
-            sum.fields().into_iter().zip(e.fields()).for_each(|(sum, e)| *sum += *e);
-            sum
-        })
-    }
 }
 
 /// What both took for one step of these skirts, in step with the caller: medians of some steps at the start (us).
@@ -187,8 +136,8 @@ pub struct SkirtReport {
     pub kinetic_energy_mj: f64,
     /// The greatest of the last 120 steps (mJ).
     pub kinetic_energy_max_mj: f64,
-    /// Events.
-    pub events: Events,
+    /// What happened that should not have.
+    pub events: ClothEvents,
     /// Hash of the last state, 16 hexadecimal digits.
     pub state_hash: String,
 }

@@ -12,13 +12,13 @@ use toile_engine::cloth::program::METERED_STAGES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_engine::workers::WorkerPool;
+use toile_fitting::heap::{Heap, HeapProbe};
+use toile_fitting::scene::events::ClothEvents;
 use toile_gpu::backend::{Backend, Backends, ClothStepper};
 use toile_gpu::cloth_batch::ClothBatch;
 
 use super::error::SkirtError;
 use super::options::{MAX_GARMENTS, MESH_SEED, SkirtMesh, SkirtOptions};
-use super::report::Events;
-use toile_fitting::heap::{Heap, HeapProbe};
 
 /// The body's spheres: centre and radius, world (m).
 pub type Spheres = [Vec4; skirt::SPHERES];
@@ -176,8 +176,8 @@ impl SkirtScene {
     }
 
     /// What happened that should not have, to all skirts since the start.
-    pub fn events(&self) -> Events {
-        self.cloths.iter().map(|c| Events::from(c.events)).sum()
+    pub fn events(&self) -> ClothEvents {
+        self.cloths.iter().map(|c| ClothEvents::from(c.events)).sum()
     }
 
     /// Takes some steps more with the meters on, the engine's own or the device's clock: the mean time of each stage of a step, all

@@ -7,6 +7,7 @@ use serde::Serialize;
 use toile_assets::garment::Shape;
 use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_engine::lanes::Width;
+use toile_fitting::heap::HeapProbe;
 use toile_gpu::backend::Backends;
 
 use super::claim::{Claim, TargetRow};
@@ -15,7 +16,6 @@ use super::hard::{self, SkirtFault, SkirtRecovery};
 use super::measure::measure_with;
 use super::options::{SkirtMesh, SkirtOptions};
 use super::report::SkirtReport;
-use toile_fitting::heap::HeapProbe;
 
 /// The whole table.
 #[derive(Debug, Clone, PartialEq, Serialize)]

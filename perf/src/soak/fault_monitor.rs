@@ -8,12 +8,12 @@ use toile_engine::clock::{Clock, RealClock, SimClock};
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::queue::{Capacity, Receiver};
 use toile_engine::meter::PERIOD_NS;
+use toile_fitting::heap::HeapProbe;
 use toile_sensors::clock::SECOND_NS;
 
 use super::memory::MemorySample;
 use super::observed_loops::{Observation, ObservedStep, RenderHealth, RunContext};
 use super::scenario::{Fault, FaultKind, RecoverySign};
-use toile_fitting::heap::HeapProbe;
 
 /// A step follows the shopper whose joints are this far from theirs on average (m): twice what they are at worst while nothing is
 /// wrong, which the report says.

@@ -5,13 +5,13 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 use toile_engine::meter::PERIOD_NS;
+use toile_fitting::live::report::QueueUse;
 
 use super::fault_monitor::FaultOutcome;
 use super::memory::{MemorySample, growth};
 use super::options::{SceneWeight, SoakOptions};
 use super::run::SoakRun;
 use super::scenario::FaultKind;
-use toile_fitting::live::report::QueueUse;
 
 /// Longest that the pipeline may take to recover (ticks): 1 s.
 const PIPELINE_TICKS: f64 = 120.0;

@@ -16,6 +16,7 @@ use toile_engine::frame_loop::simulate::simulate;
 use toile_engine::frame_loop::thread_roles::Placement;
 use toile_engine::frame_loop::threads::{self, Stop};
 use toile_engine::meter::PERIOD_NS;
+use toile_fitting::heap::HeapProbe;
 use toile_fitting::live::assembly::{Assembly, LoopOptions, LoopParts, LoopQueues, SensorLoop, assemble};
 use toile_fitting::live::running::{EndedLoops, Loops, RunningLoop};
 use toile_fitting::live::scene_changer::DressedScene;
@@ -33,7 +34,6 @@ use super::recorder::RecorderLoop;
 use super::scenario::{FaultKind, Scenario};
 use super::scene_loop::SceneLoop;
 use super::scene_maker::SceneMaker;
-use toile_fitting::heap::HeapProbe;
 
 /// Time between two looks at what the process holds (ns): simulated, and in real time.
 const SAMPLE_NS: [u64; 2] = [60 * SECOND_NS, 5 * SECOND_NS];

@@ -52,7 +52,7 @@ const REST_M: f64 = 2e-6;
 
 /// One stretch link of the garment, as the engine solves it.
 #[derive(Debug, Clone, Copy)]
-pub struct Link {
+pub struct StretchLink {
     /// Its particles.
     pub ends: [usize; 2],
     /// Length as cut (m).
@@ -209,7 +209,8 @@ impl Specimen {
         let place = |i: usize| self.cloth.positions[i].as_dvec3();
         let inverse = self.garment.inverse_mass.iter().enumerate().filter(|(_, w)| **w > 0.0);
         let weight: f64 = inverse.map(|(i, w)| G * place(i).y / f64::from(*w)).sum();
-        let stretch = |l: Link| (place(l.ends[1]).distance(place(l.ends[0])) - l.rest).powi(2) / (2.0 * l.compliance);
+        let stretch =
+            |l: StretchLink| (place(l.ends[1]).distance(place(l.ends[0])) - l.rest).powi(2) / (2.0 * l.compliance);
         let stretch: f64 = links(&self.garment).into_iter().map(stretch).sum();
         let layout = &self.garment.layout;
         self.cloth.kinetic_energy(&self.garment)
@@ -256,7 +257,7 @@ impl Placement<'_> {
         let place = |i: usize| self.at[i];
         let free = |i: usize| self.garment.inverse_mass[i] > 0.0;
         let mut sum = DVec3::ZERO;
-        for Link { ends: [a, b], rest, compliance } in links(self.garment) {
+        for StretchLink { ends: [a, b], rest, compliance } in links(self.garment) {
             let (fixed, other) = if free(b) { (a, b) } else { (b, a) };
             if free(other) && !free(fixed) && chosen(place(fixed)) {
                 let d = place(other) - place(fixed);
@@ -268,13 +269,13 @@ impl Placement<'_> {
 }
 
 /// Every stretch link once.
-pub fn links(garment: &Garment) -> Vec<Link> {
+pub fn links(garment: &Garment) -> Vec<StretchLink> {
     let layout = &garment.layout;
     let mut found = Vec::new();
     let mut add = |a: u32, b: u32, rest: f32, compliance: f32| {
         if compliance < ENDED {
             let (rest, compliance) = (f64::from(rest), f64::from(compliance));
-            found.push(Link { ends: [a as usize, b as usize], rest, compliance });
+            found.push(StretchLink { ends: [a as usize, b as usize], rest, compliance });
         }
     };
     for links in [&layout.shear, &layout.weft] {

@@ -11,8 +11,8 @@ use toile_engine::cloth::Cloth;
 use toile_engine::cloth::program::METERED_STAGES;
 use toile_fitting::heap::HeapProbe;
 use toile_fitting::scene::Runner;
+use toile_fitting::scene::events::ClothEvents;
 use toile_fitting::scene::yardstick;
-use toile_perf::skirt::report::Events;
 
 use crate::arguments::{Printing, one_of};
 use crate::exit::AppError;
@@ -227,7 +227,7 @@ fn report(runner: &Runner, args: &RunArgs, dumped: u64, yardstick_us: Option<f64
         penetration_mm: report::RunPenetration { max: figures.penetration_mm, fraction: figures.penetration_fraction },
         kinetic_energy_j: report::KineticEnergy { end: figures.kinetic_j, max: figures.kinetic_max_j },
         nonfinite: figures.nonfinite,
-        events: runner.cloths().iter().map(|cloth| Events::from(cloth.events)).sum(),
+        events: runner.cloths().iter().map(|cloth| ClothEvents::from(cloth.events)).sum(),
         state_hash: report::hash_text(runner.state_hash()),
         dump: args.dump.clone(),
         dumped_frames: dumped,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use serde::Serialize;
-use toile_perf::skirt::report::Events;
+use toile_fitting::scene::events::ClothEvents;
 
 use super::{StepMicros, Strain};
 
@@ -89,7 +89,7 @@ pub struct RunReport {
     /// Published positions that were not finite.
     pub nonfinite: u64,
     /// What the guards had to do.
-    pub events: Events,
+    pub events: ClothEvents,
     /// Hash of the last state, 16 hexadecimal digits; the same scene gives the same.
     pub state_hash: String,
     /// The folder of the dump; `index.csv` in it lists its files.

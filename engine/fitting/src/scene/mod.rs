@@ -6,6 +6,7 @@
 //!
 //! Everything that is particular to the engine as it is now stands in [`Runner::new`] and [`Runner::step`].
 
+pub mod events;
 pub mod surface;
 pub mod yardstick;
 
