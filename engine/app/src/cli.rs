@@ -47,8 +47,7 @@ struct CommandLine {
 
 /// What the user asked for. The help of a command is the doc of its arguments, which a doc here would replace.
 #[derive(Debug, Clone, PartialEq, Subcommand)]
-#[expect(missing_docs, reason = "the doc of a variant would be its help")]
-pub enum Command {
+pub(crate) enum Command {
     TryOn(TryOnArgs),
     Measure(MeasureArgs),
     Record(RecordArgs),
@@ -82,7 +81,7 @@ pub fn command() -> clap::Command {
 ///
 /// # Errors
 /// [`AppError::Usage`] with one sentence.
-pub fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
+pub(crate) fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
     let args = with_default_command(args);
     match CommandLine::try_parse_from(&args) {
         Ok(line) => Ok(line.command),

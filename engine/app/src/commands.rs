@@ -5,7 +5,7 @@
 //! Thread: the main thread.
 
 pub mod bake;
-pub mod bench;
+pub(crate) mod bench;
 pub mod body;
 pub mod colliders;
 pub mod completions;

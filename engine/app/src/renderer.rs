@@ -1,4 +1,8 @@
 //! What draws the pictures of a try-on: the processor by rays, or a GPU by triangles.
+//!
+//! Reads: surfaces and lines of one frame. Writes: images.
+//! Budget: a second for a still by rays, milliseconds on a GPU.
+//! Thread: the main thread; rays use every core.
 
 use toile_assets::body::Body;
 use toile_assets::garment::Garment;

@@ -1,4 +1,8 @@
 //! The JSON that everything is judged by: its keys are a contract, to which keys may be added freely.
+//!
+//! Reads: what the commands found. Writes: documents to be printed as JSON.
+//! Budget: milliseconds.
+//! Thread: the main thread.
 
 use std::path::PathBuf;
 

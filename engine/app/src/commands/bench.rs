@@ -1,4 +1,8 @@
 //! `toile bench`: what one part of the frame costs, with the error at that speed.
+//!
+//! Reads: arguments, recordings and surveys. Writes: tables or one JSON object on stdout, charts where they are asked for.
+//! Budget: seconds to minutes, as each benchmark's help says.
+//! Thread: the main thread, and those that a benchmark measures.
 
 use clap::Subcommand;
 
@@ -15,8 +19,7 @@ mod skirt;
 /// Time one part of the frame, with the error at that speed.
 #[derive(Debug, Clone, PartialEq, Subcommand)]
 #[command(after_help = "Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")]
-#[expect(missing_docs, reason = "the doc of a variant would be its help")]
-pub enum BenchCommand {
+pub(crate) enum BenchCommand {
     Skinning(skinning::SkinningArgs),
     Skirt(skirt::SkirtArgs),
     Body(body::BodyBenchArgs),
@@ -30,7 +33,7 @@ pub enum BenchCommand {
 ///
 /// # Errors
 /// As each benchmark says.
-pub fn run(command: &BenchCommand) -> Result<(), AppError> {
+pub(crate) fn run(command: &BenchCommand) -> Result<(), AppError> {
     match command {
         BenchCommand::Skinning(args) => skinning::run(args),
         BenchCommand::Skirt(args) => skirt::run(args),

@@ -1,4 +1,8 @@
 //! `toile plan`: what a scene needs and takes, before it runs.
+//!
+//! Reads: a scene file or a session. Writes: tables or one JSON object on stdout.
+//! Budget: some seconds to learn what this machine takes, and ten seconds of the scene played with each model and without.
+//! Thread: the main thread; the scene's own workers while it plays.
 
 mod table;
 

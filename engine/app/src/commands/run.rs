@@ -1,4 +1,8 @@
 //! `toile run`: any scene of the user's own, headless.
+//!
+//! Reads: a scene file and the files that it names. Writes: a report on stdout, positions of every vertex where asked for.
+//! Budget: that of the scene's steps; a dump has at most a million files.
+//! Thread: the main thread.
 
 mod dump;
 
