@@ -3,6 +3,48 @@
 //! Reads: sessions, the wardrobe, scene files. Writes: measures, sizes, dressed frames; the loop's threads and what they report.
 //! Budget: measuring 0.5 s and dressing 1 s, outside of the frame; the loop's own budget inside of it.
 //! Thread: the caller's for `dress`, `scene` and `plan`; sensor, physics and render threads of their own for `live`.
+//!
+//! A recording becomes a dressed body in motion, with the measures, size and verdicts that every command of the program reports:
+//!
+//! ```
+//! use toile_fitting::dress::dressed::Dressed;
+//! use toile_fitting::dress::measured::{self, Told};
+//! use toile_fitting::dress::player::Player;
+//! use toile_fitting::dress::recipe::Recipe;
+//! use toile_fitting::dress::{session, wish::Wish};
+//!
+//! let session = session::open(None, None)?; // the embedded one; `Some(path)` is any recording
+//! let measured = measured::measure(&session, Told::default())?;
+//! let recipe = Recipe::choose(&session.name, &measured, &Wish::default())?;
+//! let track = session::standing(&session)?;
+//! let mut dressed = Dressed::make(recipe, &track[0], false)?;
+//! let mut player = Player::new(&track);
+//! for _ in 0..12 {
+//!     dressed.frame.step(&player.step());
+//! }
+//! let snapshot = dressed.reader.latest();
+//! assert!(snapshot.garments[0].iter().all(|particle| particle.is_finite()));
+//! # Ok::<(), toile_fitting::FittingError>(())
+//! ```
+//!
+//! A scene of one's own, whose pins, planes and settings are those of `toile run`; positions come in the order of the user's mesh:
+//!
+//! ```
+//! use toile_assets::scene_file::{SceneFile, Source};
+//! use toile_fitting::scene::Runner;
+//!
+//! let text = "duration = 0.5\n[garment]\ngrid = { rows = 8, columns = 6, width = 0.3, height = 0.4 }\npin = { vertices = [0, 5] }\n";
+//! let scene = SceneFile::parse("flag.toml", text, Source::Inside(&[]))?;
+//! let mut runner = Runner::new(scene)?;
+//! let start: Vec<_> = runner.positions(0).collect();
+//! for _ in 0..runner.scene().steps() {
+//!     runner.step();
+//! }
+//! let end: Vec<_> = runner.positions(0).collect();
+//! assert_eq!((start[0], start[5]), (end[0], end[5]), "pins stay where they are");
+//! assert!(end[40].y < start[40].y);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod dress;
 pub mod error;
