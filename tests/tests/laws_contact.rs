@@ -81,7 +81,7 @@ proptest! {
             step(&mut cloths[1], &garment, &without, &settings);
         }
         prop_assert!(cloths[0].positions == cloths[1].positions);
-        prop_assert_eq!(cloths[0].contact_tally().swept, 0);
+        prop_assert_eq!(cloths[0].contact_counts().swept, 0);
     }
 
     #[test]

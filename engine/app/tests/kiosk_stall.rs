@@ -12,7 +12,7 @@ use toile::kiosk::service::{Service, ServiceEnvironment, ServiceOptions};
 use toile::kiosk::service_manager::{ServiceManager, ServiceStatus, StopSignal};
 use toile::kiosk::session::SessionTimes;
 use toile_engine::clock::{Clock, RealClock};
-use toile_engine::frame::{Frame, Snapshot, Times};
+use toile_engine::frame::{Frame, Snapshot, SnapshotTimes};
 use toile_engine::frame_loop::governor::Rung;
 use toile_engine::frame_loop::physics_thread::{FrameScene, Scene};
 use toile_engine::frame_loop::render_thread::Renderer;
@@ -51,7 +51,7 @@ impl Gated {
 }
 
 impl Scene for Gated {
-    fn step(&mut self, joints: &Joints, times: Times, clock: &impl Clock) {
+    fn step(&mut self, joints: &Joints, times: SnapshotTimes, clock: &impl Clock) {
         pass(&self.1);
         self.0.step(joints, times, clock);
     }

@@ -14,7 +14,7 @@ use toile_assets::{scene, wardrobe};
 use toile_engine::body::JointFrames;
 use toile_engine::clock::{Clock, SimClock};
 use toile_engine::cloth::{Settings, Wind};
-use toile_engine::frame::{Frame, Times};
+use toile_engine::frame::{Frame, SnapshotTimes};
 use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, EventKind, NoCounters};
 use toile_engine::frame_loop::governor::{LADDER, Rung};
 use toile_engine::frame_loop::physics_thread::{FrameScene, PhysicsOutputs, PhysicsThread, Scene};
@@ -40,7 +40,7 @@ struct Loaded {
 }
 
 impl Scene for Loaded {
-    fn step(&mut self, joints: &Joints, times: Times, clock: &impl Clock) {
+    fn step(&mut self, joints: &Joints, times: SnapshotTimes, clock: &impl Clock) {
         let loaded = (LOAD_NS[0]..LOAD_NS[1]).contains(&times.scheduled_ns);
         self.clock.spend((COST_NS[usize::from(loaded)] as f32 * self.share) as u64);
         self.staged.step(joints, times, clock);

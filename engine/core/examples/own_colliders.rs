@@ -70,7 +70,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         deepest * 1e3,
         worst * 100.0
     );
-    println!("pairs of particle and capsule that were near, over all steps: {}", state.contact_tally().near);
+    println!("pairs of particle and capsule that were near, over all steps: {}", state.contact_counts().near);
     if deepest > 0.002 || worst > 0.03 || state.events.rolled_back > 0 {
         return Err("the cloth went through something, was torn, or a step failed".into());
     }

@@ -43,7 +43,7 @@ pub struct Snapshot {
     /// Steps since the session began.
     pub tick: u64,
     /// When what it shows came to be.
-    pub times: Times,
+    pub times: SnapshotTimes,
     /// The body: positions (m) and unit normals, which [`Posed::read`] brings into the order of the mesh.
     pub skin: Posed,
     /// Particles of each garment, world (m) `[garments][particles]`.
@@ -52,7 +52,7 @@ pub struct Snapshot {
 
 /// When what a snapshot shows came to be, on the loop's clock (ns); all 0 where no loop ran.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Times {
+pub struct SnapshotTimes {
     /// When the newest sensor frame in it was taken.
     pub seen_ns: u64,
     /// When that frame arrived here.
@@ -120,7 +120,7 @@ impl Frame {
         let cloths: Box<[Cloth]> = garments.iter().map(|g| ready(g, Cloth::new(g, &colliders))).collect();
         let snapshot = Snapshot {
             tick: 0,
-            times: Times::default(),
+            times: SnapshotTimes::default(),
             skin: skinning.posed(),
             garments: garments.iter().map(|g| g.start.clone()).collect(),
         };
@@ -195,12 +195,12 @@ impl Frame {
     /// One step of the session: the joints as they are at its end.
     pub fn step(&mut self, joints: &Joints) {
         let clock = self.clock;
-        self.step_at(joints, Times::default(), &clock);
+        self.step_at(joints, SnapshotTimes::default(), &clock);
         self.measure();
     }
 
     /// The step itself, as the loop takes it: what it shows is published with these times.
-    pub fn step_at(&mut self, joints: &Joints, times: Times, clock: &impl Clock) {
+    pub fn step_at(&mut self, joints: &Joints, times: SnapshotTimes, clock: &impl Clock) {
         let mut laps = StageTimes::from(clock.now_ns());
         // It wakes while the body is posed and skinned.
         self.pool.wake();
@@ -236,7 +236,7 @@ impl Frame {
         laps.lap(CLOTH, clock.now_ns());
     }
 
-    fn publish(&mut self, times: Times, clock: &impl Clock) {
+    fn publish(&mut self, times: SnapshotTimes, clock: &impl Clock) {
         let Self { writer, skin, cloths, tick, .. } = self;
         writer.publish_with(|snapshot| {
             snapshot.tick = *tick;
@@ -245,7 +245,7 @@ impl Frame {
             for (to, cloth) in snapshot.garments.iter_mut().zip(cloths.iter()) {
                 to.iter_mut().zip(&cloth.positions).for_each(|(t, p)| *t = (*p).into());
             }
-            snapshot.times = Times { published_ns: clock.now_ns(), ..times };
+            snapshot.times = SnapshotTimes { published_ns: clock.now_ns(), ..times };
         });
     }
 

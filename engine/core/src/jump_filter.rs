@@ -21,7 +21,7 @@ pub const FOLLOW_M_S: f32 = 10.0;
 
 /// What a sphere does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum Doing {
+enum SphereState {
     /// Not seen yet.
     #[default]
     Absent,
@@ -37,7 +37,7 @@ enum Doing {
 #[derive(Debug, Clone, PartialEq)]
 pub struct JumpFilter {
     last: [Vec4; MAX_SPHERES],
-    doing: [Doing; MAX_SPHERES],
+    doing: [SphereState; MAX_SPHERES],
     /// Sphere steps held because of a jump or of a number that is none.
     pub held: u64,
     /// Sphere steps on the way to where a sphere had jumped.
@@ -46,7 +46,7 @@ pub struct JumpFilter {
 
 impl Default for JumpFilter {
     fn default() -> Self {
-        Self { last: [PARKED; MAX_SPHERES], doing: [Doing::Absent; MAX_SPHERES], held: 0, followed: 0 }
+        Self { last: [PARKED; MAX_SPHERES], doing: [SphereState::Absent; MAX_SPHERES], held: 0, followed: 0 }
     }
 }
 
@@ -60,36 +60,36 @@ impl JumpFilter {
             let jump = JUMP_M * (dt / STEP_SECONDS).max(1.0);
             let (next, place) = decide(*doing, carried, *target, [jump, FOLLOW_M_S * dt]);
             (*doing, *target, *last) = (next, place, place);
-            self.held += u64::from(matches!(next, Doing::Held(_) | Doing::Absent));
-            self.followed += u64::from(next == Doing::Following);
-            away += u32::from(next != Doing::There);
+            self.held += u64::from(matches!(next, SphereState::Held(_) | SphereState::Absent));
+            self.followed += u64::from(next == SphereState::Following);
+            away += u32::from(next != SphereState::There);
         }
         away
     }
 
     /// Forgets where the spheres were: a body that appears, or was teleported, does not jump.
     pub fn reset(&mut self) {
-        self.doing = [Doing::Absent; MAX_SPHERES];
+        self.doing = [SphereState::Absent; MAX_SPHERES];
     }
 }
 
 /// What a sphere does now, and where it is. A sphere that moved further than `jump` has jumped; one on its way
 /// goes as far as `reach` (m).
-fn decide(doing: Doing, carried: Vec4, target: Vec4, [jump, reach]: [f32; 2]) -> (Doing, Vec4) {
+fn decide(doing: SphereState, carried: Vec4, target: Vec4, [jump, reach]: [f32; 2]) -> (SphereState, Vec4) {
     let finite = target.is_finite() && target.w >= 0.0;
     let gap = target - carried;
     // A radius jumps like a place.
     let far = gap.length();
     match doing {
-        Doing::Absent if finite => (Doing::There, target),
-        Doing::Absent => (doing, PARKED),
+        SphereState::Absent if finite => (SphereState::There, target),
+        SphereState::Absent => (doing, PARKED),
         // It is followed when it is back and known, however long that takes.
-        _ if !finite => (if doing == Doing::Following { doing } else { Doing::Held(0) }, carried),
-        Doing::There | Doing::Held(_) if far <= jump => (Doing::There, target),
-        Doing::There => (Doing::Held(1), carried),
-        Doing::Held(steps) if steps < HOLD_STEPS => (Doing::Held(steps + 1), carried),
-        _ if far <= reach => (Doing::There, target),
-        _ => (Doing::Following, carried + gap * (reach / far)),
+        _ if !finite => (if doing == SphereState::Following { doing } else { SphereState::Held(0) }, carried),
+        SphereState::There | SphereState::Held(_) if far <= jump => (SphereState::There, target),
+        SphereState::There => (SphereState::Held(1), carried),
+        SphereState::Held(steps) if steps < HOLD_STEPS => (SphereState::Held(steps + 1), carried),
+        _ if far <= reach => (SphereState::There, target),
+        _ => (SphereState::Following, carried + gap * (reach / far)),
     }
 }
 

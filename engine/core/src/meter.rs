@@ -17,7 +17,7 @@ const DIGITS: u8 = 2;
 
 /// A stage of a step and what it may take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Stage {
+pub struct StageBudget {
     /// Its name, as reports have it.
     pub name: &'static str,
     /// What it may take in a step (us).
@@ -26,19 +26,19 @@ pub struct Stage {
 
 /// The stages of a step, in their order. Together they may take half of the step of 8,333 us, so that one late wake-up or
 /// one step of twice the usual length is still in time.
-pub const STAGES: [Stage; 6] = [
+pub const STAGES: [StageBudget; 6] = [
     // The newest joints, and where they are at the step's own time.
-    Stage { name: "intake", budget_us: 10 },
+    StageBudget { name: "intake", budget_us: 10 },
     // Joint rotations within limits, and bone matrices.
-    Stage { name: "pose", budget_us: 60 },
+    StageBudget { name: "pose", budget_us: 60 },
     // 15,000 vertices.
-    Stage { name: "skin", budget_us: 150 },
+    StageBudget { name: "skin", budget_us: 150 },
     // Spheres and capsules.
-    Stage { name: "place", budget_us: 10 },
+    StageBudget { name: "place", budget_us: 10 },
     // All garments of an outfit.
-    Stage { name: "cloth", budget_us: 3_700 },
+    StageBudget { name: "cloth", budget_us: 3_700 },
     // Copies into the snapshot.
-    Stage { name: "publish", budget_us: 100 },
+    StageBudget { name: "publish", budget_us: 100 },
 ];
 
 /// Place of each stage in [`STAGES`].

@@ -2,7 +2,7 @@
 
 use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
 use toile_engine::cloth::settings::MAX_SUBSTEPS;
-use toile_engine::cloth::{Cloth, stages};
+use toile_engine::cloth::{Cloth, stiff_bending};
 use toile_engine::frame::Frame;
 use toile_engine::frame_loop::physics_thread::LoopMeters;
 use toile_engine::frame_loop::queue::Capacity;
@@ -31,9 +31,13 @@ pub fn capacities(queues: &[Capacity], gauges: &LoopMeters, frame: &Frame) -> Ve
             MAX_SUBSTEPS as usize,
             most(|c| c.substeps() as usize),
         ),
-        room("MOST (engine/core/src/cloth/stages.rs)", stages::MOST as usize, most(|c| c.bend_pace().stages as usize)),
+        room(
+            "MOST (engine/core/src/cloth/stiff_bending.rs)",
+            stiff_bending::MOST as usize,
+            most(|c| c.bend_pace().stages as usize),
+        ),
     ]);
-    let pairs = frame.cloths().iter().map(|c| c.contact_tally().most_pairs);
+    let pairs = frame.cloths().iter().map(|c| c.contact_counts().most_pairs);
     all.extend(
         pairs.map(|[most, room_for]| room("pairs (engine/core/src/cloth/contact)", room_for as usize, most as usize)),
     );
@@ -45,9 +49,9 @@ pub fn warnings(capacities: &[Capacity], frame: &Frame) -> Vec<String> {
     let mut all: Vec<String> = capacities.iter().filter_map(Capacity::warning).collect();
     for (cloth, garment) in frame.cloths().iter().zip(frame.garments()) {
         let pace = cloth.bend_pace();
-        if pace.stages == stages::MOST && pace.least < 1.0 {
+        if pace.stages == stiff_bending::MOST && pace.least < 1.0 {
             all.push(format!(
-                "{} bends with {:.0} % of its stiffness at some particles; raise MOST (engine/core/src/cloth/stages.rs)",
+                "{} bends with {:.0} % of its stiffness at some particles; raise MOST (engine/core/src/cloth/stiff_bending.rs)",
                 garment.name,
                 pace.least * 100.0
             ));

@@ -3,7 +3,7 @@
 use glam::{Affine3A, Vec3, Vec3A, Vec4};
 use toile_assets::garment::Garment;
 use toile_assets::skeleton::BONES;
-use toile_engine::cloth::guard::Events;
+use toile_engine::cloth::guard::GuardEvents;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_gpu::backend::ClothStepper;
@@ -59,7 +59,7 @@ pub struct Trial<'a> {
     stepper: ClothStepper,
     before: Box<[Vec3A]>,
     /// The events up to which jumps were explained.
-    explained: Events,
+    explained: GuardEvents,
 }
 
 impl<'a> Trial<'a> {
@@ -140,7 +140,7 @@ impl<'a> Trial<'a> {
     /// put the cloth back.
     fn look(&mut self) {
         self.seen.nonfinite += piece::nonfinite(&self.cloth);
-        let put = |e: &Events| (e.repaired, e.rolled_back, e.teleports);
+        let put = |e: &GuardEvents| (e.repaired, e.rolled_back, e.teleports);
         let moved = put(&self.cloth.events) == put(&self.explained);
         self.explained = self.cloth.events;
         // What no step can be made with is not what the step was made with.

@@ -8,8 +8,8 @@ use toile_sensors::frame::{Joints, TrackedJoint};
 use super::Poser;
 use super::ground::Ground;
 use super::kinematics::JointFrames;
+use super::reliable_joints::{BodyInput, ReliableJoints};
 use super::retarget::Retarget;
-use super::seen::{Moment, Seen};
 
 /// Joint limits alone: each degree of freedom is brought into its range, nothing is smoothed or remembered.
 #[derive(Debug, Clone)]
@@ -28,10 +28,10 @@ impl LimitFilter {
 
 impl Filter for LimitFilter {
     fn push(&mut self, frame: &Joints) -> Joints {
-        let seen = Seen::new(frame);
+        let seen = ReliableJoints::new(frame);
         let Some(hips) = seen.hips() else { return Joints::absent(frame.time_ns) };
         self.ground.observe(&seen, 0.0, true);
-        self.retarget.update(Moment { seen: &seen, ground: &self.ground, dt: 0.0, first: true });
+        self.retarget.update(BodyInput { seen: &seen, ground: &self.ground, dt: 0.0, first: true });
         let pose = Pose { local: self.retarget.local, ..Pose::rest(&self.skeleton) };
         let frames = JointFrames::new(&self.skeleton, &pose);
         let middle = (frames.at(Joint::LeftHip) + frames.at(Joint::RightHip)) * 0.5;

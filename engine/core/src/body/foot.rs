@@ -10,7 +10,7 @@ use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 use super::limb::ramp;
 use super::limits::{self, Side};
 use super::neutral::Neutral;
-use super::seen::Moment;
+use super::reliable_joints::BodyInput;
 use super::smooth::fraction;
 
 /// Lift of the ankle (m) up to which a foot stands flat, and from which its slope is its own.
@@ -45,7 +45,7 @@ impl Feet {
     }
 
     /// Where the feet point (world, unit), left first, but for the sensor's habit to show both turned in or out.
-    pub fn aim(&mut self, now: Moment, pelvis: Quat) -> [Option<Vec3>; 2] {
+    pub fn aim(&mut self, now: BodyInput, pelvis: Quat) -> [Option<Vec3>; 2] {
         if let (Some(left), Some(right)) = (self.feet[0].outwards(now, pelvis), self.feet[1].outwards(now, pelvis)) {
             self.turn.learn(Vec3::X * (0.5 * (left + right)), now.dt);
         }
@@ -57,7 +57,7 @@ impl Feet {
     }
 
     /// Turns one foot, 0 left or 1 right, against its shin's rotation (rest to world).
-    pub fn update(&mut self, now: Moment, foot: usize, shin: Quat, toe: Option<Vec3>, local: &mut [Quat; JOINTS]) {
+    pub fn update(&mut self, now: BodyInput, foot: usize, shin: Quat, toe: Option<Vec3>, local: &mut [Quat; JOINTS]) {
         self.feet[foot].update(now, shin, toe, local);
     }
 }
@@ -89,7 +89,7 @@ impl Foot {
     }
 
     /// Turns the foot, seen to point towards `toe` (world, unit), against the shin's rotation (rest to world).
-    fn update(&mut self, now: Moment, shin: Quat, toe: Option<Vec3>, local: &mut [Quat; JOINTS]) {
+    fn update(&mut self, now: BodyInput, shin: Quat, toe: Option<Vec3>, local: &mut [Quat; JOINTS]) {
         let lift = now.seen.at(self.ankle).map_or(0.0, |p| now.ground.lift(p.y));
         let standing = 1.0 - ramp(STANDING, lift);
         let share = now.share(SWING_TAU + (STAND_TAU - SWING_TAU) * standing);
@@ -110,7 +110,7 @@ impl Foot {
     }
 
     /// How far the foot is turned outwards against the pelvis, more than in the rest pose (rad), if it stands.
-    fn outwards(&self, now: Moment, pelvis: Quat) -> Option<f32> {
+    fn outwards(&self, now: BodyInput, pelvis: Quat) -> Option<f32> {
         let stands = now.ground.lift(now.seen.at(self.ankle)?.y) < STANDING[0];
         let toe = level(now.seen.direction(self.ankle, self.toe)?)?;
         let plain = level(pelvis * self.heading)?;

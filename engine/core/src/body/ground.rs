@@ -9,7 +9,7 @@ use toile_assets::skeleton::{Joint, Skeleton};
 
 use super::kinematics::JointFrames;
 use super::limb::ramp;
-use super::seen::Seen;
+use super::reliable_joints::ReliableJoints;
 use super::smooth::fraction;
 
 /// Time constant with which a lower floor is taken over (s).
@@ -93,7 +93,7 @@ impl Ground {
     }
 
     /// Takes in the heights of one moment; `first` takes them over without memory.
-    pub fn observe(&mut self, seen: &Seen, dt: f32, first: bool) {
+    pub fn observe(&mut self, seen: &ReliableJoints, dt: f32, first: bool) {
         let height = |joint| seen.at(joint).map(|p| p.y);
         let lower = |left, right| Some(f32::min(height(left)?, height(right)?));
         let landed = self.flight > LONGEST_FLIGHT;
@@ -133,7 +133,7 @@ impl Ground {
     }
 
     /// Least height of the other joints above the sensor's floor (m): knees or hands may be what is stood on.
-    fn others(&self, seen: &Seen) -> f32 {
+    fn others(&self, seen: &ReliableJoints) -> f32 {
         let floor = self.ankle - self.ankle_height;
         let heights = TOUCHING.iter().filter_map(|(joint, radius)| Some(seen.at(*joint)?.y - radius - floor));
         heights.fold(f32::INFINITY, f32::min)

@@ -8,7 +8,7 @@ use glam::{Quat, Vec3};
 use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 
 use super::limits::{self, Range, Reach, Side, clamp_angle, soft_clamp};
-use super::seen::Moment;
+use super::reliable_joints::BodyInput;
 use super::smooth::{fraction, wrap};
 
 /// Bend (degrees) from which the plane of a limb begins to be believed, and from which it is believed fully: at 25
@@ -108,7 +108,7 @@ impl Limb {
 
     /// Aims upper and lower limb from `parent` (rest to world), and returns the lower limb's rotation in the world.
     /// `toe` is where a leg's foot points (world, unit).
-    pub fn update(&mut self, now: Moment, parent: Quat, toe: Option<Vec3>, local: &mut [Quat; JOINTS]) -> Quat {
+    pub fn update(&mut self, now: BodyInput, parent: Quat, toe: Option<Vec3>, local: &mut [Quat; JOINTS]) -> Quat {
         let seen = now.seen;
         let [root, hinge, end, _] = self.joints;
         let lower = seen.direction(hinge, end);
@@ -141,7 +141,7 @@ impl Limb {
     }
 
     /// Aims the hand from the forearm's rotation; a hand that is not believed is held straight.
-    pub fn hand(&self, now: Moment, forearm: Quat, local: &mut [Quat; JOINTS]) {
+    pub fn hand(&self, now: BodyInput, forearm: Quat, local: &mut [Quat; JOINTS]) {
         let [.., wrist, hand] = self.joints;
         let target = match now.seen.direction(wrist, hand) {
             Some(shown) if now.seen.believes(&[wrist, hand]) => {
@@ -154,7 +154,7 @@ impl Limb {
 
     /// Brings the twist to where plane, foot or rest say, each as far as it is to be believed. Directions in the
     /// parent's frame: the upper limb, and where known the lower limb and the foot.
-    fn follow_twist(&mut self, now: Moment, upper: Vec3, [lower, toe]: [Option<Vec3>; 2]) {
+    fn follow_twist(&mut self, now: BodyInput, upper: Vec3, [lower, toe]: [Option<Vec3>; 2]) {
         let share = |trust: f32, tau: f32| if now.first { trust } else { fraction(now.dt * trust, tau) };
         let plain = Quat::from_rotation_arc(self.upper, upper) * self.axis;
         if now.first {

@@ -4,7 +4,7 @@
 //! Budget: 20 us a step (16 measured, 10 of them for arms kept clear of the body); nothing allocated.
 //! Thread: physics, 120 Hz.
 
-mod clear;
+mod arm_clearance;
 pub mod filters;
 mod foot;
 pub mod ground;
@@ -18,8 +18,8 @@ mod neutral;
 mod plant;
 #[cfg(test)]
 mod recordings;
+mod reliable_joints;
 mod retarget;
-mod seen;
 pub mod smooth;
 mod stance;
 #[cfg(test)]
@@ -34,10 +34,10 @@ use glam::Vec3;
 use toile_assets::skeleton::{JOINTS, Joint, Pose, Skeleton};
 use toile_sensors::frame::Joints;
 
-use clear::Clear;
+use arm_clearance::ArmClearance;
 use ground::Ground;
+use reliable_joints::{BodyInput, ReliableJoints};
 use retarget::Retarget;
-use seen::{Moment, Seen};
 use smooth::{ANGLE_TAU, LIMB_SPEED, TRUNK_SPEED, turn_towards};
 use stance::Stance;
 use tread::Tread;
@@ -68,7 +68,7 @@ pub struct Poser {
     carried: Vec3,
     /// Where planted feet are kept; `None` lets them slide.
     tread: Option<Tread>,
-    clear: Clear,
+    clear: ArmClearance,
     /// The pose before feet are kept and the arms kept clear of the body.
     pose: Pose,
     started: bool,
@@ -85,7 +85,7 @@ impl Poser {
             place: skeleton.at(Joint::Pelvis),
             carried: skeleton.at(Joint::Pelvis),
             tread: Some(Tread::default()),
-            clear: Clear::default(),
+            clear: ArmClearance::default(),
             pose: Pose::rest(skeleton),
             started: false,
         }
@@ -94,7 +94,7 @@ impl Poser {
     /// The same, with arms that stay out of the body that these spheres and capsules make up. At load.
     #[must_use]
     pub fn keeping_clear(self, spheres: &[RestSphere], capsules: &[[u8; 2]]) -> Self {
-        Self { clear: Clear::new(spheres, capsules), ..self }
+        Self { clear: ArmClearance::new(spheres, capsules), ..self }
     }
 
     /// The same without inverse kinematics of planted feet: what is compared with.
@@ -119,14 +119,14 @@ impl Poser {
     /// The pose `dt` (s) after the last call, from the latest joints; call it every step, also with old joints.
     pub fn pose(&mut self, joints: &Joints, dt: f32) -> Pose {
         let dt = if dt.is_finite() { dt.clamp(0.0, MAX_DT) } else { 0.0 };
-        let seen = Seen::new(joints);
+        let seen = ReliableJoints::new(joints);
         let first = !self.started;
         if first && ANCHORS.iter().all(|j| seen.at(*j).is_none()) {
             return self.pose;
         }
         self.started = true;
         self.ground.observe(&seen, dt, first);
-        self.retarget.update(Moment { seen: &seen, ground: &self.ground, dt, first });
+        self.retarget.update(BodyInput { seen: &seen, ground: &self.ground, dt, first });
         let mut next = if first { Pose { local: self.retarget.local, ..self.pose } } else { self.turn(dt) };
         self.carry(&seen, &mut next, dt, first);
         if next.root.is_finite() && next.local.iter().all(|q| q.is_finite()) {
@@ -156,14 +156,14 @@ impl Poser {
     }
 
     /// Puts the root where the hips are seen, at the height at which our feet stand.
-    fn carry(&mut self, seen: &Seen, next: &mut Pose, dt: f32, first: bool) {
+    fn carry(&mut self, seen: &ReliableJoints, next: &mut Pose, dt: f32, first: bool) {
         let frames = JointFrames::new(&self.skeleton, &Pose { root: Vec3::ZERO, ..*next });
         if let Some(hips) = seen.hips() {
             self.place = hips - (frames.at(Joint::LeftHip) + frames.at(Joint::RightHip)) * 0.5;
         } else if let Some(joint) = ANCHORS.into_iter().find(|j| seen.at(*j).is_some()) {
             self.place = seen.at(joint).unwrap_or(self.place) - frames.at(joint);
         }
-        let now = Moment { seen, ground: &self.ground, dt, first };
+        let now = BodyInput { seen, ground: &self.ground, dt, first };
         self.carried = self.carried.lerp(self.place, now.share(ANGLE_TAU));
         let shift = self.stance.shift(now, &self.skeleton, &frames, self.carried);
         let step = (self.carried + shift - self.pose.root).with_y(0.0);

@@ -11,7 +11,7 @@ use super::foot::Feet;
 use super::limb::Limb;
 use super::limits::Side;
 use super::neutral::Neutral;
-use super::seen::{Moment, Seen};
+use super::reliable_joints::{BodyInput, ReliableJoints};
 use super::trunk::Trunk;
 
 /// Greatest slant of a sensor's legs that is taken for its habit (rad): 15 degrees.
@@ -47,13 +47,13 @@ impl Retarget {
             legs: Side::BOTH.map(|side| Limb::leg(skeleton, side)),
             feet: Feet::new(skeleton),
             slant: Neutral::default(),
-            rest_slant: slants(&Seen::rest(skeleton), Vec3::Z).map_or(0.0, |[l, r]| 0.5 * (l + r)),
+            rest_slant: slants(&ReliableJoints::rest(skeleton), Vec3::Z).map_or(0.0, |[l, r]| 0.5 * (l + r)),
             local: [Quat::IDENTITY; JOINTS],
         }
     }
 
     /// Takes in one moment.
-    pub fn update(&mut self, now: Moment) {
+    pub fn update(&mut self, now: BodyInput) {
         let (pelvis, chest) = self.trunk.update(now, &mut self.local);
         let slant = self.legs_slant(now, pelvis);
         let toes = self.feet.aim(now, pelvis);
@@ -70,7 +70,7 @@ impl Retarget {
 
     /// World rotation by which a sensor's legs are slanted: somebody who stands on straight legs has the hips above the
     /// feet, or would fall.
-    fn legs_slant(&mut self, now: Moment, pelvis: Quat) -> Quat {
+    fn legs_slant(&mut self, now: BodyInput, pelvis: Quat) -> Quat {
         let (seen, ground, dt) = (now.seen, now.ground, now.dt);
         let left = (pelvis * Vec3::X).with_y(0.0).normalize_or(Vec3::X);
         let stands = |ankle| seen.at(ankle).is_some_and(|p| ground.lift(p.y) < STANDING);
@@ -87,7 +87,7 @@ impl Retarget {
 
 /// How far each straight leg leads from the vertical towards `forward` (rad), left first; nothing unless both are seen
 /// and straight.
-fn slants(seen: &Seen, forward: Vec3) -> Option<[f32; 2]> {
+fn slants(seen: &ReliableJoints, forward: Vec3) -> Option<[f32; 2]> {
     use Joint::*;
     let slant = |hip, knee, ankle| {
         let straight = seen.direction(hip, knee)?.dot(seen.direction(knee, ankle)?) > STRAIGHT;

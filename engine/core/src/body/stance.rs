@@ -9,7 +9,7 @@ use toile_assets::skeleton::Skeleton;
 use super::ground::soles;
 use super::kinematics::JointFrames;
 use super::plant::Plant;
-use super::seen::Moment;
+use super::reliable_joints::BodyInput;
 use super::smooth::fraction;
 use super::tread::ANKLES;
 
@@ -21,11 +21,11 @@ const MAX_SHIFT: f32 = 0.15;
 #[derive(Debug, Clone, Default)]
 pub struct Stance {
     shift: Vec3,
-    feet: [Foot; 2],
+    feet: [StanceFoot; 2],
 }
 
 #[derive(Debug, Clone, Copy, Default)]
-struct Foot {
+struct StanceFoot {
     plant: Plant,
     /// Where the middle of our sole was, world (m).
     sole: Option<Vec3>,
@@ -33,7 +33,7 @@ struct Foot {
 
 impl Stance {
     /// Level shift (m) to add to a root at `root`; `frames` are joint frames with the root at the origin.
-    pub fn shift(&mut self, now: Moment, skeleton: &Skeleton, frames: &JointFrames, root: Vec3) -> Vec3 {
+    pub fn shift(&mut self, now: BodyInput, skeleton: &Skeleton, frames: &JointFrames, root: Vec3) -> Vec3 {
         let (seen, ground, dt) = (now.seen, now.ground, now.dt);
         self.shift *= 1.0 - fraction(dt, FADE_TAU);
         let before = self.shift;

@@ -10,7 +10,7 @@ use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 use super::kinematics::swing_twist;
 use super::limits::{self, Side};
 use super::neutral::Neutral;
-use super::seen::{Moment, Seen, unit};
+use super::reliable_joints::{BodyInput, ReliableJoints, unit};
 use super::smooth::{rotation_vector, wrap};
 
 /// Time constant with which the head follows the chest's turn (s): eyes stay on the mirror a moment longer.
@@ -32,7 +32,7 @@ const WAIST: [f32; 2] = [0.2, 0.8];
 /// The trunk.
 #[derive(Debug, Clone)]
 pub struct Trunk {
-    rest: Seen,
+    rest: ReliableJoints,
     /// How much more the chest must turn than the line from waist to neck, as only its upper part turns fully.
     gain: f32,
     bow: Neutral,
@@ -55,7 +55,7 @@ impl Trunk {
         let length = |joint| skeleton.offset(joint).length();
         let (low, high) = (length(Joint::Chest), length(Joint::Neck));
         Self {
-            rest: Seen::rest(skeleton),
+            rest: ReliableJoints::rest(skeleton),
             gain: ((low + high) / (0.5 * low + high).max(1e-3)).clamp(1.0, 2.0),
             bow: Neutral::default(),
             neck: Neutral::default(),
@@ -65,7 +65,7 @@ impl Trunk {
     }
 
     /// Aims pelvis, spine, chest, neck and head; returns the rotations of pelvis and chest in the world.
-    pub fn update(&mut self, now: Moment, local: &mut [Quat; JOINTS]) -> (Quat, Quat) {
+    pub fn update(&mut self, now: BodyInput, local: &mut [Quat; JOINTS]) -> (Quat, Quat) {
         let (seen, dt) = (now.seen, now.dt);
         let [pelvis, spine, chest] = [Joint::Pelvis, Joint::Spine, Joint::Chest].map(Joint::index);
         if let Some(frames) = self.frames(seen) {
@@ -92,7 +92,7 @@ impl Trunk {
     }
 
     /// Both frames against their like in the rest pose; nothing unless hips and neck are seen.
-    fn frames(&self, seen: &Seen) -> Option<Frames> {
+    fn frames(&self, seen: &ReliableJoints) -> Option<Frames> {
         use Joint::*;
         let neck = if seen.at(Neck).is_some() { Neck } else { Head };
         let has = |a, b| seen.direction(a, b).is_some();
@@ -102,7 +102,7 @@ impl Trunk {
             [LeftShoulder, RightShoulder]
         };
         let waist = waist(seen, neck);
-        let build = |seen: &Seen| {
+        let build = |seen: &ReliableJoints| {
             let (hips, neck) = (seen.hips()?, seen.at(neck)?);
             let (lower, upper) = match waist {
                 Some(joint) => (seen.at(joint)? - hips, neck - seen.at(joint)?),
@@ -118,7 +118,7 @@ impl Trunk {
     }
 
     /// Rotation of the neck: as it leans, but for the habit to lean forwards or back.
-    fn lean(&mut self, seen: &Seen, chest: Quat, dt: f32, local: &mut [Quat; JOINTS]) {
+    fn lean(&mut self, seen: &ReliableJoints, chest: Quat, dt: f32, local: &mut [Quat; JOINTS]) {
         let (neck, head) = (Joint::Neck, Joint::Head);
         if let (Some(now), Some(rest)) = (seen.direction(neck, head), self.rest.direction(neck, head)) {
             let lean = rotation_vector(Quat::from_rotation_arc(rest, chest.inverse() * now));
@@ -139,7 +139,7 @@ impl Trunk {
     }
 
     /// Rotation of a collar bone: as its two ends show, but for the habit of both; else lifted with the arm.
-    pub fn clavicle(&mut self, now: Moment, chest: Quat, side: Side, local: &mut [Quat; JOINTS]) -> Quat {
+    pub fn clavicle(&mut self, now: BodyInput, chest: Quat, side: Side, local: &mut [Quat; JOINTS]) -> Quat {
         let (seen, dt) = (now.seen, now.dt);
         let (clavicle, shoulder, elbow) = match side {
             Side::Left => (Joint::LeftClavicle, Joint::LeftShoulder, Joint::LeftElbow),
@@ -165,7 +165,7 @@ impl Trunk {
 }
 
 /// The joint that parts lower from upper trunk, if one lies well between hips and neck.
-fn waist(seen: &Seen, neck: Joint) -> Option<Joint> {
+fn waist(seen: &ReliableJoints, neck: Joint) -> Option<Joint> {
     let (hips, neck) = (seen.hips()?, seen.at(neck)?);
     let whole = hips.distance(neck);
     [Joint::Spine, Joint::Chest]

@@ -3,7 +3,7 @@
 //! Each stencil stores (1/2) |d|^2 with d = sum c_i x_i, the curvature along its fiber times the root of its stiffness
 //! (assets, `bake::links`); it pulls with -c_i d. Evaluated at the positions of the substep's start, so statics do not
 //! depend on the time step; stable while dt^2 w_i sum_s |c_si| sum_j |c_sj| stays below 4 for every particle
-//! (Gershgorin). What is stiffer than a mesh and a substep can carry so takes several [`super::stages`]; [`weaken`] weakens
+//! (Gershgorin). What is stiffer than a mesh and a substep can carry so takes several [`super::stiff_bending`]; [`weaken`] weakens
 //! what is stiffer still, and says by how much. [`super::hubs`] does the same over whole rings.
 
 use toile_assets::garment::layout::{Bends, Run, Set};
@@ -16,11 +16,11 @@ pub const STABLE: f32 = 0.8;
 
 /// How bending goes on for one time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pace {
+pub struct BendingPace {
     /// It acts every so many substeps, with the impulse of all of them (Tuckerman, Berne, Martyna 1992: slow forces need
     /// not be asked as often as fast ones).
     pub every: u32,
-    /// Stages of each time ([`super::stages`]); 1 where it is a plain force.
+    /// Stages of each time ([`super::stiff_bending`]); 1 where it is a plain force.
     pub stages: u32,
     /// Least share of its stiffness that the time step can carry.
     pub least: f32,
@@ -73,7 +73,7 @@ pub const SCRATCH: usize = 3 * STRIDE;
 /// Stencils side by side overlap, and what one has just written another reads from the middle of it, which stalls a
 /// processor. So 512 stencils at a time are swept `K + 1` times: first for their curvatures, then for what these
 /// do to all the middles, to all the first ends and to all the second ones. The order of sums is the same at every width.
-pub struct Bend<'a, const K: usize> {
+pub struct BendStencils<'a, const K: usize> {
     /// Inverse masses (1/kg).
     pub w: WriteColumn<'a>,
     /// All stencils.
@@ -96,13 +96,13 @@ pub struct Bend<'a, const K: usize> {
 
 /// A place among the runs of a share.
 #[derive(Clone, Copy)]
-struct Place {
+struct StencilCursor {
     run: usize,
     /// Stencil of the run.
     t: usize,
 }
 
-impl<const K: usize> Kernel for Bend<'_, K> {
+impl<const K: usize> Kernel for BendStencils<'_, K> {
     type Out = ();
 
     #[inline(always)]
@@ -113,7 +113,7 @@ impl<const K: usize> Kernel for Bend<'_, K> {
         }
         let share = &self.set.shares[self.owner];
         let runs = &self.bends.tuples.runs[share.runs.start as usize..share.runs.end as usize];
-        let mut place = Place { run: 0, t: 0 };
+        let mut place = StencilCursor { run: 0, t: 0 };
         while place.run < runs.len() {
             let next = self.curvatures::<L>(runs, place);
             for k in 0..K {
@@ -127,10 +127,10 @@ impl<const K: usize> Kernel for Bend<'_, K> {
     }
 }
 
-impl<const K: usize> Bend<'_, K> {
+impl<const K: usize> BendStencils<'_, K> {
     /// The curvatures of a chunk, times the substep, into the scratch; gives the place behind it.
     #[inline(always)]
-    fn curvatures<L: Lanes>(&self, runs: &[Run<K>], mut place: Place) -> Place {
+    fn curvatures<L: Lanes>(&self, runs: &[Run<K>], mut place: StencilCursor) -> StencilCursor {
         let (x, mut filled) = (self.from, 0);
         while filled < CHUNK && place.run < runs.len() {
             let run = &runs[place.run];
@@ -159,7 +159,7 @@ impl<const K: usize> Bend<'_, K> {
 
     /// What the curvatures of a chunk do to the particles at end `k` of its stencils.
     #[inline(always)]
-    fn push<L: Lanes>(&self, runs: &[Run<K>], mut place: Place, k: usize) {
+    fn push<L: Lanes>(&self, runs: &[Run<K>], mut place: StencilCursor, k: usize) {
         let (to, mut filled) = (self.to, 0);
         while filled < CHUNK && place.run < runs.len() {
             let run = &runs[place.run];
@@ -207,7 +207,7 @@ impl<const K: usize> Bend<'_, K> {
     }
 }
 
-impl Place {
+impl StencilCursor {
     /// `n` stencils of the run later.
     #[inline(always)]
     fn after<const K: usize>(self, n: usize, run: &Run<K>) -> Self {

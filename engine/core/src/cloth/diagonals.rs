@@ -12,7 +12,7 @@
 use toile_assets::garment::layout::{Diagonals, Run, Strand};
 
 use super::fibers::{FARTHEST, LEAST_PIVOT, NO_PIVOT};
-use super::state::Columns;
+use super::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, Numbers, ReadColumn, Readable, Store, V3, WriteColumn, reciprocal_root};
 
 /// Columns of what a link leaves with the particle that it leads to: n (three), 1 / pivot, tension without what follows,
@@ -21,9 +21,9 @@ pub const KEPT: usize = 6;
 
 /// Room for a solve: what is kept with each particle.
 #[derive(Debug, Clone)]
-pub struct Room([Store; KEPT]);
+pub struct DiagonalScratch([Store; KEPT]);
 
-impl Room {
+impl DiagonalScratch {
     /// For so many particles; none where no fiber runs along the bias.
     pub fn new(diagonals: &Diagonals, particles: usize) -> Self {
         let len = if diagonals.families.is_empty() { 0 } else { particles };
@@ -42,14 +42,14 @@ impl Room {
 }
 
 /// One owner's strand of a family.
-pub struct Solve<'a> {
+pub struct SolveDiagonals<'a> {
     /// The garment's particles.
-    pub columns: Columns<'a>,
+    pub columns: ParticleColumns<'a>,
     /// All families.
     pub diagonals: &'a Diagonals,
     /// The strand.
     pub strand: &'a Strand,
-    /// See [`Room`].
+    /// See [`DiagonalScratch`].
     pub room: [WriteColumn<'a>; KEPT],
     /// 1 / dt^2 of the time that the solve stands for (1/s2).
     pub per_dt2: f32,
@@ -57,7 +57,7 @@ pub struct Solve<'a> {
     pub gamma: f32,
 }
 
-impl Kernel for Solve<'_> {
+impl Kernel for SolveDiagonals<'_> {
     type Out = ();
 
     #[inline(always)]
@@ -79,7 +79,7 @@ impl Kernel for Solve<'_> {
     }
 }
 
-impl Solve<'_> {
+impl SolveDiagonals<'_> {
     /// Rest length, compliance over the square of time, and the weights of both ends of `n` links of a run.
     #[inline(always)]
     fn parameters<L: Lanes>(&self, run: &Run<2>, t: usize, n: usize) -> [L; 4] {
@@ -204,12 +204,12 @@ mod tests {
 
     fn solved(width: Width, weights: &[f32], diagonals: &Diagonals, gamma: f32) -> Vec<Vec3> {
         let mut state = State::new(&positions(), weights);
-        let mut room = Room::new(diagonals, weights.len());
+        let mut room = DiagonalScratch::new(diagonals, weights.len());
         // What another family has left, the worst that it can be.
         room.0.iter_mut().for_each(|c| c.as_mut().fill(f32::NAN));
         let strand = &diagonals.families[0][0];
         let (columns, room) = (state.columns(), room.columns());
-        width.run(Solve { columns, diagonals, strand, room, per_dt2: 2.0, gamma });
+        width.run(SolveDiagonals { columns, diagonals, strand, room, per_dt2: 2.0, gamma });
         (0..weights.len()).map(|i| Vec3::from_array(state.positions().map(|a| a[i]))).collect()
     }
 
@@ -279,10 +279,10 @@ mod tests {
         let mut diagonals = grid(false);
         diagonals.rest.fill(0.0);
         let mut state = State::new(&[Vec3::ONE; (COLUMNS * ROWS) as usize], &[1.0; (COLUMNS * ROWS) as usize]);
-        let mut room = Room::new(&diagonals, (COLUMNS * ROWS) as usize);
+        let mut room = DiagonalScratch::new(&diagonals, (COLUMNS * ROWS) as usize);
         let strand = &diagonals.families[0][0];
         let (columns, room) = (state.columns(), room.columns());
-        Width::widest().run(Solve { columns, diagonals: &diagonals, strand, room, per_dt2: 2.0, gamma: 0.0 });
+        Width::widest().run(SolveDiagonals { columns, diagonals: &diagonals, strand, room, per_dt2: 2.0, gamma: 0.0 });
         assert!(state.positions().iter().all(|axis| axis.iter().all(|p| *p == 1.0)));
     }
 }

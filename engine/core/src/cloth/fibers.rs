@@ -13,7 +13,7 @@
 use toile_assets::garment::Solver;
 use toile_assets::garment::layout::{Bundle, ENDED, Fibers, Row};
 
-use super::state::Columns;
+use super::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, MOST, Numbers, ReadColumn, Two, V3, WriteColumn, reciprocal_root};
 
 /// Least pivot as a share of its diagonal: the rounding of f32 over a chain of a hundred links, ten times over.
@@ -37,9 +37,9 @@ pub fn scratch_len(fibers: &Fibers) -> usize {
 }
 
 /// All bundles of one owner.
-pub struct Solve<'a> {
+pub struct SolveFibers<'a> {
     /// The garment's particles.
-    pub columns: Columns<'a>,
+    pub columns: ParticleColumns<'a>,
     /// All fibers.
     pub fibers: &'a Fibers,
     /// Whose.
@@ -56,7 +56,7 @@ pub struct Solve<'a> {
     pub tension: Option<WriteColumn<'a>>,
 }
 
-impl Kernel for Solve<'_> {
+impl Kernel for SolveFibers<'_> {
     type Out = ();
 
     #[inline(always)]
@@ -94,7 +94,7 @@ impl Kernel for Solve<'_> {
 
 /// The fibers of a bundle from `lane` on, as many as there are lanes.
 struct Chain<'a> {
-    solve: &'a Solve<'a>,
+    solve: &'a SolveFibers<'a>,
     bundle: &'a Bundle,
     lane: usize,
 }

@@ -2,12 +2,12 @@
 
 use glam::Vec3A;
 
-use super::state::{self, Columns};
+use super::state::{self, ParticleColumns};
 use crate::lanes::{Kernel, Lanes, Mask, WriteColumn};
 
 /// What went wrong, counted since the garment was made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Events {
+pub struct GuardEvents {
     /// Particles that were not finite when a step began, or ran away; put back to their last good place.
     pub repaired: u64,
     /// Steps that ended with a value that is not finite and were rolled back.
@@ -25,7 +25,7 @@ pub struct Events {
     pub held_colliders: u64,
 }
 
-impl std::ops::Add for Events {
+impl std::ops::Add for GuardEvents {
     type Output = Self;
 
     fn add(self, more: Self) -> Self {
@@ -49,9 +49,9 @@ const FARTHEST_M: f32 = 10_000.0;
 const LEAST: f32 = 1e-12;
 
 /// Whether every number of some columns is finite and within reach; those that are next to nothing become nothing.
-pub struct Sound<'a>(pub [WriteColumn<'a>; 3]);
+pub struct AllFinite<'a>(pub [WriteColumn<'a>; 3]);
 
-impl Kernel for Sound<'_> {
+impl Kernel for AllFinite<'_> {
     type Out = bool;
 
     #[inline(always)]
@@ -80,7 +80,7 @@ impl Kernel for Sound<'_> {
 
 /// What a soak writes over the state to try the guard.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Spoil {
+pub enum Fault {
     /// A place (m).
     Place(Vec3A),
     /// A velocity (m/s).
@@ -89,23 +89,23 @@ pub enum Spoil {
 
 /// Of `particles` eight that `seed` picks: two each get a place that is no number, an infinite velocity, a place beyond all
 /// measure, and a violent velocity.
-pub fn spoil(seed: u64, particles: usize) -> [(usize, Spoil); 8] {
+pub fn spoil(seed: u64, particles: usize) -> [(usize, Fault); 8] {
     let mut at = seed;
     std::array::from_fn(|k| {
         // Knuth's multiplier, and the upper bits, which are the better ones.
         at = at.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let what = match k % 4 {
-            0 => Spoil::Place(Vec3A::NAN),
-            1 => Spoil::Velocity(Vec3A::INFINITY),
-            2 => Spoil::Place(Vec3A::splat(1e30)),
-            _ => Spoil::Velocity(Vec3A::new(900.0, -500.0, 700.0)),
+            0 => Fault::Place(Vec3A::NAN),
+            1 => Fault::Velocity(Vec3A::INFINITY),
+            2 => Fault::Place(Vec3A::splat(1e30)),
+            _ => Fault::Velocity(Vec3A::new(900.0, -500.0, 700.0)),
         };
         ((at >> 33) as usize % particles.max(1), what)
     })
 }
 
 /// Puts every particle that is not finite back to its last good place, at rest; gives how many.
-pub fn repair(columns: Columns<'_>, good: &[Vec3A]) -> u64 {
+pub fn repair(columns: ParticleColumns<'_>, good: &[Vec3A]) -> u64 {
     let mut repaired = 0;
     for (i, &good) in good.iter().enumerate() {
         let (x, v) = (state::get(columns.x, i), state::get(columns.v, i));
@@ -121,7 +121,7 @@ pub fn repair(columns: Columns<'_>, good: &[Vec3A]) -> u64 {
 }
 
 /// Puts the whole garment back, `towards` of the way from its last good place to where it was dressed, at rest.
-pub fn roll_back(columns: Columns<'_>, good: &[Vec3A], dressed: impl Fn(usize) -> Vec3A, towards: f32) {
+pub fn roll_back(columns: ParticleColumns<'_>, good: &[Vec3A], dressed: impl Fn(usize) -> Vec3A, towards: f32) {
     for (i, &good) in good.iter().enumerate() {
         let goal = if towards > 0.0 { good.lerp(dressed(i), towards) } else { good };
         let goal = if goal.is_finite() { goal } else { good };
@@ -145,7 +145,7 @@ mod tests {
             let value = |i: usize| if i.is_multiple_of(2) { small[i % small.len()] } else { large[i % large.len()] };
             store.as_mut().iter_mut().enumerate().for_each(|(i, v)| *v = value(i));
             let all = store.column();
-            assert!(width.run(Sound([0, 1, 2].map(|k| all.part(k * 37, 37)))), "{width} lanes");
+            assert!(width.run(AllFinite([0, 1, 2].map(|k| all.part(k * 37, 37)))), "{width} lanes");
             for (i, v) in store.as_slice().iter().take(3 * 37).enumerate() {
                 assert_eq!(*v, if i % 2 == 0 { 0.0 } else { value(i) }, "{width} lanes, number {i}");
             }
@@ -160,7 +160,7 @@ mod tests {
                     let mut store = Store::zeros(3 * 21);
                     store.as_mut()[i] = bad;
                     let all = store.column();
-                    assert!(!width.run(Sound([0, 1, 2].map(|k| all.part(k * 21, 21)))), "{width}: {bad} at {i}");
+                    assert!(!width.run(AllFinite([0, 1, 2].map(|k| all.part(k * 21, 21)))), "{width}: {bad} at {i}");
                 }
             }
         }

@@ -36,7 +36,7 @@ pub fn weaken(hubs: &Hubs, load: &[f32], limit: f32, scale: &mut [f32]) -> f32 {
 }
 
 /// Adds the bending forces of some groups to the velocities, or whatever is bent to whatever is pushed.
-pub struct Bend<'a> {
+pub struct BendHubs<'a> {
     /// Inverse masses (1/kg).
     pub w: WriteColumn<'a>,
     /// All hubs.
@@ -53,7 +53,7 @@ pub struct Bend<'a> {
     pub scale: Option<&'a [f32]>,
 }
 
-impl Kernel for Bend<'_> {
+impl Kernel for BendHubs<'_> {
     type Out = ();
 
     #[inline(always)]
@@ -72,7 +72,7 @@ impl Kernel for Bend<'_> {
     }
 }
 
-impl Bend<'_> {
+impl BendHubs<'_> {
     /// Hubs of so many sums.
     #[inline(always)]
     fn group<const SUMS: usize>(&self, group: &HubGroup) {

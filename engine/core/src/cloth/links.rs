@@ -7,7 +7,7 @@
 
 use toile_assets::garment::layout::{Links, Run, Set, Zigzag};
 
-use super::state::{self, Columns};
+use super::state::{self, ParticleColumns};
 use crate::lanes::{
     Kernel, Lanes, MOST, Numbers, ReadColumn, Readable, Two, V3, WriteColumn, reciprocal_root, times_reciprocal_root,
 };
@@ -36,9 +36,9 @@ pub fn prepare(links: &Links, weights: &[f32], [dt, gamma]: [f32; 2], passes: Pa
 }
 
 /// One owner's share of one set.
-pub struct Solve<'a> {
+pub struct SolveLinks<'a> {
     /// The garment's particles.
-    pub columns: Columns<'a>,
+    pub columns: ParticleColumns<'a>,
     /// All links.
     pub links: &'a Links,
     /// What [`prepare`] made.
@@ -54,7 +54,7 @@ pub struct Solve<'a> {
     pub tension: Option<(WriteColumn<'a>, f32)>,
 }
 
-impl Kernel for Solve<'_> {
+impl Kernel for SolveLinks<'_> {
     type Out = ();
 
     #[inline(always)]
@@ -64,7 +64,7 @@ impl Kernel for Solve<'_> {
     }
 }
 
-impl Solve<'_> {
+impl SolveLinks<'_> {
     #[inline(always)]
     fn all<L: Lanes, const SOFT: bool>(&self) {
         let share = &self.set.shares[self.owner];

@@ -8,7 +8,7 @@ use toile_assets::garment::Solver;
 use toile_assets::garment::layout::{ENDED, List, Lists};
 
 use super::fibers::{FARTHEST, LEAST_PIVOT, NO_PIVOT, limited};
-use super::state::Columns;
+use super::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, Readable, V3, WriteColumn, reciprocal_root};
 
 /// Vectors kept a row: position (three), weight, normal (three), right-hand side, factor, last column.
@@ -28,9 +28,9 @@ pub fn scratch_len(lists: &Lists) -> usize {
 }
 
 /// One owner's share of one set.
-pub struct Solve<'a> {
+pub struct SolveCrossing<'a> {
     /// The garment's particles.
-    pub columns: Columns<'a>,
+    pub columns: ParticleColumns<'a>,
     /// All lists.
     pub lists: &'a Lists,
     /// The set.
@@ -45,7 +45,7 @@ pub struct Solve<'a> {
     pub tension: Option<WriteColumn<'a>>,
 }
 
-impl Kernel for Solve<'_> {
+impl Kernel for SolveCrossing<'_> {
     type Out = ();
 
     #[inline(always)]
@@ -69,7 +69,7 @@ impl Kernel for Solve<'_> {
 
 /// `n` fibers of a list from `lane` on.
 struct Ring<'a> {
-    solve: &'a Solve<'a>,
+    solve: &'a SolveCrossing<'a>,
     list: &'a List,
     lane: usize,
     n: usize,

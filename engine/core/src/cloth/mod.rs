@@ -20,9 +20,9 @@ pub mod program;
 pub mod root;
 pub mod settings;
 pub mod settle;
-pub mod stages;
 pub mod state;
 mod step;
+pub mod stiff_bending;
 pub mod tethers;
 pub mod wind;
 #[expect(unsafe_code, reason = "the workers of a step share its columns")]
@@ -71,9 +71,9 @@ pub struct Cloth {
     /// Room of each worker for a fiber's factors.
     scratch: [Store; OWNERS],
     /// Room for bending that is stiffer than a substep; none where it cannot be.
-    room: stages::Room,
+    room: stiff_bending::StiffBendingScratch,
     /// Room for what is solved along the bias.
-    leaning: diagonals::Room,
+    leaning: diagonals::DiagonalScratch,
     /// Tensions of weft links, of fibers, of crossing fibers within a substep; empty where they have no compliance.
     tension: [Store; 3],
     /// Room for percentiles.
@@ -87,7 +87,7 @@ pub struct Cloth {
     /// The triangles as the wind has them, where there is wind.
     faces: Option<wind::Faces>,
     /// What happened that should not have.
-    pub events: guard::Events,
+    pub events: guard::GuardEvents,
     /// Time spent in each of [`METERED_STAGES`] during the last step that was metered (ns).
     pub stage_ns: [u64; METERED_STAGES.len()],
     /// Steps in a row that were rolled back.
@@ -109,8 +109,8 @@ impl Cloth {
             pins: pins::Pins::new(garment),
             contacts: contact::Contacts::new(&layout.spans, &garment.parts, &garment.start, colliders),
             scratch: [scratch(), scratch()],
-            room: stages::Room::new(if prepared.stiff() { start.len() } else { 0 }),
-            leaning: diagonals::Room::new(&garment.layout.diagonals, garment.start.len()),
+            room: stiff_bending::StiffBendingScratch::new(if prepared.stiff() { start.len() } else { 0 }),
+            leaning: diagonals::DiagonalScratch::new(&garment.layout.diagonals, garment.start.len()),
             strains: vec![0.0; garment.strain_edges.len()].into(),
             prepared,
             tension,
@@ -118,7 +118,7 @@ impl Cloth {
             origin: centre(garment),
             pushed: wind::Accelerations::new(start.len()),
             faces: None,
-            events: guard::Events::default(),
+            events: guard::GuardEvents::default(),
             stage_ns: [0; METERED_STAGES.len()],
             rolled: 0,
             positions: start,
@@ -157,8 +157,8 @@ impl Cloth {
         let columns = self.state.columns();
         for (i, what) in guard::spoil(seed, self.positions.len()) {
             match what {
-                guard::Spoil::Place(x) => state::set(columns.x, i, x),
-                guard::Spoil::Velocity(v) => state::set(columns.v, i, v),
+                guard::Fault::Place(x) => state::set(columns.x, i, x),
+                guard::Fault::Velocity(v) => state::set(columns.v, i, v),
             }
         }
     }
@@ -169,7 +169,7 @@ impl Cloth {
     }
 
     /// Takes over what somebody else has made of a step: positions and velocities `[particles]` (m, m/s), and the events so far.
-    pub fn take_over(&mut self, positions: &[Vec3A], velocities: &[Vec3A], events: guard::Events) {
+    pub fn take_over(&mut self, positions: &[Vec3A], velocities: &[Vec3A], events: guard::GuardEvents) {
         let columns = self.state.columns();
         for (i, (&x, &v)) in positions.iter().zip(velocities).enumerate().take(self.positions.len()) {
             state::set(columns.x, i, x);
@@ -224,12 +224,12 @@ impl Cloth {
     }
 
     /// What contact did since the garment was made.
-    pub fn contact_tally(&self) -> contact::Tally {
+    pub fn contact_counts(&self) -> contact::ContactCounts {
         self.contacts.tally()
     }
 
     /// How bending went on in the last step.
-    pub fn bend_pace(&self) -> bending::Pace {
+    pub fn bend_pace(&self) -> bending::BendingPace {
         self.prepared.bend_pace()
     }
 

@@ -2,13 +2,13 @@
 
 use glam::Vec3A;
 
-use super::state::Columns;
+use super::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, V3, WriteColumn};
 
 /// Semi-implicit Euler over one owner's particles: v = (v + a dt) kept; x += v dt.
 pub struct Predict<'a> {
     /// The garment's particles.
-    pub columns: Columns<'a>,
+    pub columns: ParticleColumns<'a>,
     /// Ranges of particles, `(first, len)`.
     pub spans: &'a [(u32, u32)],
     /// Gravity over the substep (m/s).

@@ -8,7 +8,7 @@ use toile_assets::limits::STEP_SECONDS;
 
 use super::links::Passes;
 use super::program::{Bending, Program};
-use super::stages::{self, Stage};
+use super::stiff_bending::{self, ChebyshevStage};
 use super::{Quality, Settings, bending, fibers, hubs, links};
 
 /// Pull across a fiber's links from which on its solves are calmed. Garments in the substeps that they ask for are below
@@ -48,11 +48,11 @@ pub struct Prepared {
     /// The same of the hubs `[hubs]`.
     pub hub_scale: Box<[f32]>,
     /// How bending goes on.
-    pub bend: bending::Pace,
+    pub bend: bending::BendingPace,
     /// Bending's phases of a substep, and its stages where it is stiff.
     pub bending: Bending,
     /// The stages of stiff bending; as many as `bending` says count.
-    pub stages: [Stage; stages::MOST as usize],
+    pub stages: [ChebyshevStage; stiff_bending::MOST as usize],
     /// Whether there is room for stages.
     stiff: bool,
     load: Box<[f32]>,
@@ -83,9 +83,9 @@ impl Prepared {
             bend_scale: zeros(layout.bends.tuples.places),
             skewed_scale: zeros(layout.skewed.tuples.places),
             hub_scale: zeros(layout.hubs.count),
-            bend: bending::Pace { every: 1, stages: 1, least: 1.0 },
+            bend: bending::BendingPace { every: 1, stages: 1, least: 1.0 },
             bending: Bending { sets: Bending::sets(layout), stages: 1 },
-            stages: [Stage::default(); stages::MOST as usize],
+            stages: [ChebyshevStage::default(); stiff_bending::MOST as usize],
             stiff,
             load,
             soft: [&layout.weft.compliance, &layout.fibers.compliance, &layout.crossing.compliance].map(|c| soft(c)),
@@ -127,16 +127,16 @@ impl Prepared {
         let few = self.load.len() / NEEDLES;
         let carries = |limit: f32| self.load.iter().filter(|l| **l > limit).count() <= few;
         let plain = !self.stiff || carries(bending::STABLE);
-        let stages = if plain { 1 } else { stages::needed(carries) };
-        let limit = if stages > 1 { stages::carried(stages) } else { bending::STABLE };
+        let stages = if plain { 1 } else { stiff_bending::needed(carries) };
+        let limit = if stages > 1 { stiff_bending::carried(stages) } else { bending::STABLE };
         if stages > 1 {
-            stages::coefficients(stages, &mut self.stages);
+            stiff_bending::coefficients(stages, &mut self.stages);
         }
         let least = bending::weaken(&layout.bends, &self.load, limit, &mut self.bend_scale);
         let least = bending::weaken(&layout.skewed, &self.load, limit, &mut self.skewed_scale).min(least);
         let least = hubs::weaken(&layout.hubs, &self.load, limit, &mut self.hub_scale).min(least);
         self.bending.stages = stages;
-        self.bend = bending::Pace { every: bending::every(&self.load, self.substeps), stages, least };
+        self.bend = bending::BendingPace { every: bending::every(&self.load, self.substeps), stages, least };
     }
 
     /// Whether weft links (0), fibers (1), crossing fibers (2) have any compliance.
@@ -145,7 +145,7 @@ impl Prepared {
     }
 
     /// How bending goes on.
-    pub fn bend_pace(&self) -> bending::Pace {
+    pub fn bend_pace(&self) -> bending::BendingPace {
         self.bend
     }
 

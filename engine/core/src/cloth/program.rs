@@ -8,7 +8,7 @@
 use toile_assets::garment::Layout;
 
 use super::Quality;
-use super::stages::MOST;
+use super::stiff_bending::MOST;
 
 /// One stage of a step: both owners' shares of it may run at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -16,7 +16,7 @@
 
 use glam::{Affine3A, Mat3A, Quat, Vec3A};
 
-use super::state::Columns;
+use super::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, V3, Width, WriteColumn};
 
 /// What becomes of the cloth when its body jumps.
@@ -179,7 +179,7 @@ pub struct Carried {
 impl Carried {
     /// Changes the velocities of a range of particles `(first, len)` and adds to their accelerations `to` (m/s2), which
     /// hold the wind's or zeros.
-    pub fn apply(&self, width: Width, columns: Columns<'_>, span: (u32, u32), to: [WriteColumn<'_>; 3]) {
+    pub fn apply(&self, width: Width, columns: ParticleColumns<'_>, span: (u32, u32), to: [WriteColumn<'_>; 3]) {
         width.run(Compensate { carried: self, columns, span, to });
     }
 }
@@ -193,7 +193,7 @@ pub struct Moved {
 
 impl Moved {
     /// Moves positions, previous positions and velocities of a range of particles `(first, len)`.
-    pub fn apply(&self, width: Width, columns: Columns<'_>, span: (u32, u32)) {
+    pub fn apply(&self, width: Width, columns: ParticleColumns<'_>, span: (u32, u32)) {
         width.run(Carry { moved: self, columns, span });
     }
 
@@ -205,7 +205,7 @@ impl Moved {
 
 struct Compensate<'a> {
     carried: &'a Carried,
-    columns: Columns<'a>,
+    columns: ParticleColumns<'a>,
     span: (u32, u32),
     to: [WriteColumn<'a>; 3],
 }
@@ -241,7 +241,7 @@ impl Kernel for Compensate<'_> {
 
 struct Carry<'a> {
     moved: &'a Moved,
-    columns: Columns<'a>,
+    columns: ParticleColumns<'a>,
     span: (u32, u32),
 }
 

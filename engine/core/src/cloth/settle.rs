@@ -1,13 +1,13 @@
 //! Settle: velocities from where the particles came to lie.
 
-use super::state::Columns;
+use super::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, Mask, V3, reciprocal_root};
 
 /// v = (x - previous) / dt over one owner's particles, in a form that keeps the bits of free flight, limited to the settings' speed. A particle over the limit is
 /// also put back to where that speed would have brought it, so that position and velocity agree. Gives how many were.
 pub struct Settle<'a> {
     /// The garment's particles.
-    pub columns: Columns<'a>,
+    pub columns: ParticleColumns<'a>,
     /// Ranges of particles, `(first, len)`.
     pub spans: &'a [(u32, u32)],
     /// Speed limit (m/s).

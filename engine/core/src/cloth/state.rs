@@ -27,7 +27,7 @@ pub struct State {
 
 /// The columns as kernels see them.
 #[derive(Clone, Copy)]
-pub struct Columns<'a> {
+pub struct ParticleColumns<'a> {
     /// World position (m).
     pub x: [WriteColumn<'a>; 3],
     /// Position at the start of the substep (m); contact moves it so that a push does not become speed.
@@ -38,7 +38,7 @@ pub struct Columns<'a> {
     pub w: WriteColumn<'a>,
 }
 
-impl Columns<'_> {
+impl ParticleColumns<'_> {
     /// The same with one length, known to be one: a check of one place is then a check of all columns. For kernels to
     /// begin with.
     #[inline(always)]
@@ -106,11 +106,11 @@ impl State {
     }
 
     /// The columns, all at once.
-    pub fn columns(&mut self) -> Columns<'_> {
+    pub fn columns(&mut self) -> ParticleColumns<'_> {
         let (starts, len) = (self.starts, self.len);
         let all = self.numbers.column();
         let three = |first: usize| [0, 1, 2].map(|axis| all.part(starts[first + axis], len));
-        Columns { x: three(0), previous: three(PREVIOUS), v: three(VELOCITY), w: all.part(starts[WEIGHT], len) }
+        ParticleColumns { x: three(0), previous: three(PREVIOUS), v: three(VELOCITY), w: all.part(starts[WEIGHT], len) }
     }
 
     /// Bytes held.

@@ -9,7 +9,7 @@ use toile_assets::garment::layout::OWNERS;
 
 use super::program::METERED_STAGES;
 use super::root::{Carried, RootStep};
-use super::work::{Work, WorkColumns};
+use super::work::{StepWork, WorkColumns};
 use super::{Cloth, Settings, Step, guard};
 use crate::lanes::{Shared, Store};
 use crate::workers::{PerShare, WorkerPool};
@@ -71,7 +71,7 @@ impl Cloth {
         let columns = self.state.columns();
         let width = settings.width;
         // Both are looked at, because both are calmed.
-        if [columns.x, columns.v].map(|c| width.run(guard::Sound(c))) != [true; 2] {
+        if [columns.x, columns.v].map(|c| width.run(guard::AllFinite(c))) != [true; 2] {
             self.events.repaired += guard::repair(columns, &self.positions);
         }
         self.root.settings = settings.root;
@@ -102,7 +102,7 @@ impl Cloth {
         self.events.held_colliders = step.colliders.held();
         let columns = self.state.columns();
         let width = step.settings.width;
-        if !failed && width.run(guard::Sound(columns.x)) && width.run(guard::Sound(columns.v)) {
+        if !failed && width.run(guard::AllFinite(columns.x)) && width.run(guard::AllFinite(columns.v)) {
             self.rolled = 0;
         } else {
             // Rolled back again and again, it is drawn to where it was dressed.
@@ -119,7 +119,7 @@ impl Cloth {
         }
     }
 
-    fn work<'a>(&'a mut self, garment: &'a Garment, step: &'a Step<'a>, carried: Option<Carried>) -> Work<'a> {
+    fn work<'a>(&'a mut self, garment: &'a Garment, step: &'a Step<'a>, carried: Option<Carried>) -> StepWork<'a> {
         let dt = self.prepared.dt;
         let [one, two] = &mut self.scratch;
         let columns = WorkColumns {
@@ -130,7 +130,7 @@ impl Cloth {
             room: self.room.columns(),
             leaning: self.leaning.columns(),
         };
-        Work {
+        StepWork {
             garment,
             step,
             prepared: &self.prepared,

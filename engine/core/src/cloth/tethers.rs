@@ -5,23 +5,23 @@
 
 use toile_assets::garment::layout::Tethers;
 
-use super::state::Columns;
+use super::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, Mask, ReadColumn, Readable, V3, WriteColumn, reciprocal_root};
 
 /// Slack of a tether, as a share of its length: cloth that stretches as fabrics do never meets it.
 const SLACK: f32 = 1.02;
 
 /// One owner's particles.
-pub struct Hold<'a> {
+pub struct HoldTethers<'a> {
     /// The garment's particles.
-    pub columns: Columns<'a>,
+    pub columns: ParticleColumns<'a>,
     /// The tethers.
     pub tethers: &'a Tethers,
     /// Ranges of particles, `(first, len)`.
     pub spans: &'a [(u32, u32)],
 }
 
-impl Kernel for Hold<'_> {
+impl Kernel for HoldTethers<'_> {
     type Out = ();
 
     #[inline(always)]
@@ -83,7 +83,7 @@ mod tests {
         for width in Width::ALL {
             let mut state = State::new(&positions, &[0.0, 1.0, 1.0, 1.0]);
             let tethers = Tethers { anchor: [0, 0, 0, 3].into(), length: [0.0, 1.0, 1.0, 0.0].into() };
-            width.run(Hold { columns: state.columns(), tethers: &tethers, spans: &[(0, 4)] });
+            width.run(HoldTethers { columns: state.columns(), tethers: &tethers, spans: &[(0, 4)] });
             let x = state.positions()[0];
             assert!((x[1] - SLACK).abs() < 1e-5 && x[2] == 0.5, "{x:?}");
             assert_eq!(state.positions()[1], [0.0, 0.0, 0.0, 9.0], "what hangs nowhere is left alone");

@@ -21,7 +21,7 @@
 
 use glam::{Vec3, Vec3A};
 
-use super::state::{self, Columns};
+use super::state::{self, ParticleColumns};
 use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, Readable, Store, V3, Width, WriteColumn, reciprocal_root};
 
 /// Density of dry air at 20 C and 1,013 hPa (kg/m3).
@@ -55,12 +55,12 @@ impl Wind {
 
 /// Triangles `first + k`, k in `0..len`: no particle twice at one corner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Run3 {
+struct TriangleRun {
     first: [u32; 3],
     len: u32,
 }
 
-impl Run3 {
+impl TriangleRun {
     fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + use<> {
         let first = self.first;
         (0..self.len).map(move |k| first.map(|i| i + k))
@@ -69,8 +69,8 @@ impl Run3 {
 
 /// Triangles that one share adds up.
 #[derive(Debug, Clone, Default)]
-struct Group {
-    runs: Box<[Run3]>,
+struct FaceGroup {
+    runs: Box<[TriangleRun]>,
     /// Corners of the loose triangles, a list a corner.
     loose: [Box<[u32]>; 3],
     /// The mass that moves with each triangle (kg) `[runs, then loose]`.
@@ -79,7 +79,7 @@ struct Group {
 
 /// Which part of the triangles: the first two may be done at once, the third after both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum WindPart {
     /// All corners owned by worker 0.
     First,
     /// All corners owned by worker 1.
@@ -88,7 +88,7 @@ pub enum Part {
     Crossing,
 }
 
-impl Part {
+impl WindPart {
     /// All of them, in their order.
     pub const ALL: [Self; 3] = [Self::First, Self::Second, Self::Crossing];
 }
@@ -96,7 +96,7 @@ impl Part {
 /// A garment's triangles as the wind needs them. Made at load.
 #[derive(Debug, Clone)]
 pub struct Faces {
-    groups: [Group; 3],
+    groups: [FaceGroup; 3],
     /// Particles of each owner, as ranges.
     owned: [Box<[[u32; 2]]>; 2],
 }
@@ -134,16 +134,24 @@ impl Faces {
             groups[group].push(t);
         }
         let owned = [0, 1].map(|worker| ranges(owner, worker));
-        Self { groups: groups.map(|triangles| Group::new(triangles, &moved)), owned }
+        Self { groups: groups.map(|triangles| FaceGroup::new(triangles, &moved)), owned }
     }
 
     /// Writes the accelerations (m/s2) of one part of the triangles, for a step of `dt` seconds. The first two parts
     /// also clear what their owners' particles had.
-    pub fn blow(&self, width: Width, part: Part, wind: &Wind, dt: f32, at: Columns<'_>, to: [WriteColumn<'_>; 3]) {
+    pub fn blow(
+        &self,
+        width: Width,
+        part: WindPart,
+        wind: &Wind,
+        dt: f32,
+        at: ParticleColumns<'_>,
+        to: [WriteColumn<'_>; 3],
+    ) {
         if let Some(owned) = self.owned.get(part as usize) {
-            width.run(Clear { owned, to });
+            width.run(ClearAccelerations { owned, to });
         }
-        width.run(Blow { group: &self.groups[part as usize], wind, dt, at, to });
+        width.run(BlowTriangles { group: &self.groups[part as usize], wind, dt, at, to });
     }
 
     /// Corners of every triangle, and the mass that moves with it (kg): part by part, in each the runs, then the loose ones.
@@ -151,7 +159,7 @@ impl Faces {
         self.groups.iter().flat_map(|group| {
             let [a, b, c] = &group.loose;
             let loose = a.iter().zip(b).zip(c).map(|((a, b), c)| [*a, *b, *c]);
-            group.runs.iter().flat_map(Run3::triangles).chain(loose).zip(group.mass.iter().copied())
+            group.runs.iter().flat_map(TriangleRun::triangles).chain(loose).zip(group.mass.iter().copied())
         })
     }
 
@@ -184,7 +192,7 @@ impl Faces {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let group = |g: &Group| {
+        let group = |g: &FaceGroup| {
             let loose: usize = g.loose.iter().map(|l| size_of_val(&**l)).sum();
             size_of_val(&*g.runs) + loose + size_of_val(&*g.mass)
         };
@@ -204,20 +212,25 @@ fn ranges(owner: &[u8], worker: u8) -> Box<[[u32; 2]]> {
     ranges.into()
 }
 
-impl Group {
+impl FaceGroup {
     fn new(mut triangles: Vec<[u32; 3]>, moved: &impl Fn(&[u32; 3]) -> f32) -> Self {
         triangles.sort_unstable_by_key(|t| [t[1] - t[0], t[2] - t[0], t[0]]);
-        let mut all: Vec<Run3> = Vec::new();
+        let mut all: Vec<TriangleRun> = Vec::new();
         for t in triangles {
             match all.last_mut() {
                 Some(run) if run.first.map(|i| i + run.len) == t => run.len += 1,
-                _ => all.push(Run3 { first: t, len: 1 }),
+                _ => all.push(TriangleRun { first: t, len: 1 }),
             }
         }
-        let (runs, short): (Vec<Run3>, Vec<Run3>) = all.into_iter().partition(|r| r.len >= SHORTEST_RUN);
-        let loose: Vec<[u32; 3]> = short.iter().flat_map(Run3::triangles).collect();
+        let (runs, short): (Vec<TriangleRun>, Vec<TriangleRun>) = all.into_iter().partition(|r| r.len >= SHORTEST_RUN);
+        let loose: Vec<[u32; 3]> = short.iter().flat_map(TriangleRun::triangles).collect();
         Self {
-            mass: runs.iter().flat_map(Run3::triangles).chain(loose.iter().copied()).map(|t| moved(&t)).collect(),
+            mass: runs
+                .iter()
+                .flat_map(TriangleRun::triangles)
+                .chain(loose.iter().copied())
+                .map(|t| moved(&t))
+                .collect(),
             loose: [0, 1, 2].map(|corner| loose.iter().map(|t| t[corner]).collect()),
             runs: runs.into(),
         }
@@ -259,12 +272,12 @@ impl Accelerations {
     }
 }
 
-struct Clear<'a> {
+struct ClearAccelerations<'a> {
     owned: &'a [[u32; 2]],
     to: [WriteColumn<'a>; 3],
 }
 
-impl Kernel for Clear<'_> {
+impl Kernel for ClearAccelerations<'_> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
@@ -279,11 +292,11 @@ impl Kernel for Clear<'_> {
     }
 }
 
-struct Blow<'a> {
-    group: &'a Group,
+struct BlowTriangles<'a> {
+    group: &'a FaceGroup,
     wind: &'a Wind,
     dt: f32,
-    at: Columns<'a>,
+    at: ParticleColumns<'a>,
     to: [WriteColumn<'a>; 3],
 }
 
@@ -327,7 +340,7 @@ impl<L: Lanes> Air<L> {
     }
 }
 
-impl Kernel for Blow<'_> {
+impl Kernel for BlowTriangles<'_> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
@@ -337,7 +350,7 @@ impl Kernel for Blow<'_> {
         let (b, c) = rest.split_at_mut(CHUNK);
         let force = [WriteColumn::new(a), WriteColumn::new(b), WriteColumn::new(c)];
         let masses = ReadColumn::new(&self.group.mass);
-        let rows = Rows::new(self.at, self.to);
+        let rows = TriangleRows::new(self.at, self.to);
         let mut done = 0;
         for run in &self.group.runs {
             let mut from = 0;
@@ -360,16 +373,16 @@ impl Kernel for Blow<'_> {
 /// What a row of triangles reads and writes, all of one length. Passed by value: the compiler then knows that writing a
 /// particle does not change where the columns lie.
 #[derive(Clone, Copy)]
-struct Rows<'a> {
+struct TriangleRows<'a> {
     x: [WriteColumn<'a>; 3],
     v: [WriteColumn<'a>; 3],
     w: WriteColumn<'a>,
     to: [WriteColumn<'a>; 3],
 }
 
-impl<'a> Rows<'a> {
+impl<'a> TriangleRows<'a> {
     #[inline(always)]
-    fn new(at: Columns<'a>, to: [WriteColumn<'a>; 3]) -> Self {
+    fn new(at: ParticleColumns<'a>, to: [WriteColumn<'a>; 3]) -> Self {
         let len = at.w.len();
         let cut = |[x, y, z]: [WriteColumn<'a>; 3]| [x.part(0, len), y.part(0, len), z.part(0, len)];
         Self { x: cut(at.x), v: cut(at.v), w: at.w.part(0, len), to: cut(to) }

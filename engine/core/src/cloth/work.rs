@@ -13,16 +13,16 @@ use toile_assets::garment::layout::{Bends, Layout, Links, Lists, OWNERS};
 use super::prepared::Prepared;
 use super::program::Stage;
 use super::root::Carried;
-use super::state::{self, Columns};
+use super::state::{self, ParticleColumns};
 use super::{
-    Quality, Step, Wind, bending, contact, diagonals, fibers, hubs, links, lists, predict, settle, stages, tethers,
-    wind,
+    Quality, Step, Wind, bending, contact, diagonals, fibers, hubs, links, lists, predict, settle, stiff_bending,
+    tethers, wind,
 };
 use crate::lanes::{Shared, Width, WriteColumn};
 use crate::workers::PerShare;
 
 /// Everything that the shares of one step have in common.
-pub struct Work<'a> {
+pub struct StepWork<'a> {
     /// The garment.
     pub garment: &'a Garment,
     /// Its surroundings.
@@ -36,7 +36,7 @@ pub struct Work<'a> {
     /// What of the root's motion the cloth is not to feel.
     pub carried: Option<Carried>,
     /// The contact of each owner's particles.
-    pub contacts: PerShare<'a, contact::Owner>,
+    pub contacts: PerShare<'a, contact::OwnerContacts>,
     /// Particle substeps that each owner held at the speed limit.
     pub limited: [AtomicU64; OWNERS],
     /// Skinned particles at the start and the end of the step (m).
@@ -53,7 +53,7 @@ pub struct Work<'a> {
 #[derive(Clone, Copy)]
 pub struct WorkColumns<'a> {
     /// The particles.
-    pub particles: Columns<'a>,
+    pub particles: ParticleColumns<'a>,
     /// Accelerations besides gravity (m/s2).
     pub pushed: [WriteColumn<'a>; 3],
     /// Tensions of weft links, of fibers, of crossing fibers so far in the substep; empty where they have no compliance.
@@ -68,13 +68,13 @@ pub struct WorkColumns<'a> {
 
 /// One owner's share of one stage.
 struct OwnerShare<'w, 'a> {
-    work: &'w Work<'a>,
+    work: &'w StepWork<'a>,
     columns: WorkColumns<'a>,
     owner: usize,
     substep: u32,
 }
 
-impl Work<'_> {
+impl StepWork<'_> {
     /// Does one owner's share of a stage. Between two stages the workers meet; no share of a stage is done twice.
     pub fn run(&self, stage: Stage, substep: u32, owner: usize) {
         // SAFETY: the threads of `WorkerPool::run` meet after each phase, which is one stage, and each share of it is done
@@ -108,7 +108,7 @@ impl OwnerShare<'_, '_> {
     fn run(&self, stage: Stage) {
         match stage {
             Stage::BroadPhase => self.broad_phase(),
-            Stage::Wind => self.wind([wind::Part::First, wind::Part::Second][self.owner]),
+            Stage::Wind => self.wind([wind::WindPart::First, wind::WindPart::Second][self.owner]),
             Stage::WindAcross => self.wind_across(),
             Stage::RootMotion => self.root_motion(),
             Stage::Bending(set) => self.bending(set),
@@ -136,7 +136,7 @@ impl OwnerShare<'_, '_> {
     }
 
     /// The wind of the whole step, as accelerations.
-    fn wind(&self, part: wind::Part) {
+    fn wind(&self, part: wind::WindPart) {
         let (work, c) = (self.work, &self.columns);
         if let Some((faces, wind)) = work.faces {
             faces.blow(work.width, part, &wind, work.step.settings.step_seconds, c.particles, c.pushed);
@@ -146,7 +146,7 @@ impl OwnerShare<'_, '_> {
     /// The triangles that cross the owners: the first owner's alone.
     fn wind_across(&self) {
         if self.owner == 0 {
-            self.wind(wind::Part::Crossing);
+            self.wind(wind::WindPart::Crossing);
         }
     }
 
@@ -179,20 +179,29 @@ impl OwnerShare<'_, '_> {
             return self.bend(set, [room[1], room[0]], p.dt);
         }
         let by = p.stages[stage as usize].forced * p.dt * p.dt;
-        self.bend(set, [stage, stage + 1].map(|j| room[stages::place(j)]), by);
+        self.bend(set, [stage, stage + 1].map(|j| room[stiff_bending::place(j)]), by);
     }
 
     /// What comes before the forces of a stage of stiff bending, or behind the last.
     fn stiff_bending_turn(&self, stage: u32) {
         let (work, p) = (self.work, self.work.prepared);
         let turn = match stage {
-            0 => stages::Turn::Begin { fall: work.fall, pushed: self.pushed().map(|(by, _)| by), dt: p.dt },
-            last if last == p.bending.stages => stages::Turn::End(last),
-            1 => stages::Turn::First([p.stages[0], p.stages[1]]),
-            later => stages::Turn::Next(later + 1, p.stages[later as usize]),
+            0 => stiff_bending::StiffBendingUpdate::Begin {
+                fall: work.fall,
+                pushed: self.pushed().map(|(by, _)| by),
+                dt: p.dt,
+            },
+            last if last == p.bending.stages => stiff_bending::StiffBendingUpdate::End(last),
+            1 => stiff_bending::StiffBendingUpdate::First([p.stages[0], p.stages[1]]),
+            later => stiff_bending::StiffBendingUpdate::Next(later + 1, p.stages[later as usize]),
         };
         let (columns, room) = (self.columns.particles, self.columns.room);
-        work.width.run(stages::Take { columns, spans: &work.layout().spans[self.owner], room, turn });
+        work.width.run(stiff_bending::ApplyStiffBending {
+            columns,
+            spans: &work.layout().spans[self.owner],
+            room,
+            turn,
+        });
     }
 
     /// Gravity, air, wind; skinned particles move on.
@@ -225,7 +234,7 @@ impl OwnerShare<'_, '_> {
         let strand = &diagonals.families[usize::from(family)][self.owner];
         let per_dt2 = (p.dt * p.dt).recip() / p.shear_every as f32;
         let (columns, room, gamma) = (self.columns.particles, self.columns.leaning, p.gamma);
-        work.width.run(diagonals::Solve { columns, diagonals, strand, room, per_dt2, gamma });
+        work.width.run(diagonals::SolveDiagonals { columns, diagonals, strand, room, per_dt2, gamma });
     }
 
     /// A set of shear links.
@@ -243,7 +252,7 @@ impl OwnerShare<'_, '_> {
     /// Warp fibers, each solved directly.
     fn fibers(&self) {
         let (work, p) = (self.work, self.work.prepared);
-        work.width.run(fibers::Solve {
+        work.width.run(fibers::SolveFibers {
             columns: self.columns.particles,
             fibers: &work.layout().fibers,
             owner: self.owner,
@@ -259,7 +268,7 @@ impl OwnerShare<'_, '_> {
     fn crossing(&self, set: u16) {
         let (work, p) = (self.work, self.work.prepared);
         let lists: &Lists = &work.layout().crossing;
-        work.width.run(lists::Solve {
+        work.width.run(lists::SolveCrossing {
             columns: self.columns.particles,
             lists,
             set: usize::from(set),
@@ -275,7 +284,7 @@ impl OwnerShare<'_, '_> {
         let (work, layout) = (self.work, self.work.layout());
         if work.step.settings.tethers || work.prepared.quality == Quality::Draft {
             let (columns, spans) = (self.columns.particles, &layout.spans[self.owner]);
-            work.width.run(tethers::Hold { columns, tethers: &layout.tethers, spans });
+            work.width.run(tethers::HoldTethers { columns, tethers: &layout.tethers, spans });
         }
     }
 
@@ -300,7 +309,7 @@ impl OwnerShare<'_, '_> {
     fn links(&self, links: &Links, gain: &[f32], set: u16, tension: Option<(WriteColumn<'_>, f32)>) {
         let (columns, owner, gamma) = (self.columns.particles, self.owner, self.work.prepared.gamma);
         let set = &links.tuples.sets[usize::from(set)];
-        self.work.width.run(links::Solve { columns, links, gain, set, owner, gamma, tension });
+        self.work.width.run(links::SolveLinks { columns, links, gain, set, owner, gamma, tension });
     }
 
     /// Tensions of weft links (0), fibers (1), crossing fibers (2), where these have any compliance.
@@ -329,7 +338,7 @@ impl OwnerShare<'_, '_> {
         let scale = (p.bend.least < 1.0).then_some(&*p.hub_scale);
         let w = self.columns.particles.w;
         self.each_owner(set != 0, |owner| {
-            self.work.width.run(hubs::Bend { w, hubs, groups: groups[owner].clone(), from, to, by, scale });
+            self.work.width.run(hubs::BendHubs { w, hubs, groups: groups[owner].clone(), from, to, by, scale });
         });
     }
 
@@ -346,7 +355,7 @@ impl OwnerShare<'_, '_> {
         let (w, scratch) = (self.columns.particles.w, self.columns.scratch[self.owner]);
         let scale = (self.work.prepared.bend.least < 1.0).then_some(scale);
         self.each_owner(set.crosses, |owner| {
-            self.work.width.run(bending::Bend { w, bends, set, owner, from, to, by, scale, scratch });
+            self.work.width.run(bending::BendStencils { w, bends, set, owner, from, to, by, scale, scratch });
         });
     }
 

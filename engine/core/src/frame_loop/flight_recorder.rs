@@ -37,7 +37,7 @@ struct Visit {
 }
 
 #[derive(Debug)]
-struct Inner {
+struct RecorderState {
     header: Vec<u8>,
     entries: Receiver<Entry>,
     /// What was said of scenes that are kept or come next, with their numbers.
@@ -50,7 +50,7 @@ struct Inner {
 
 /// The box; shared by the thread that fills it and by whoever has to save it.
 #[derive(Debug)]
-pub struct FlightRecorder(Mutex<Inner>);
+pub struct FlightRecorder(Mutex<RecorderState>);
 
 impl FlightRecorder {
     /// An empty box whose file begins with this header ([`tape::header`]); it empties this queue.
@@ -63,7 +63,7 @@ impl FlightRecorder {
         };
         let spare = vec![room(), room()];
         let (notes, visits) = (VecDeque::with_capacity(16), VecDeque::with_capacity(16));
-        Self(Mutex::new(Inner { header, entries, notes, visits, newest_ns: 0, spare }))
+        Self(Mutex::new(RecorderState { header, entries, notes, visits, newest_ns: 0, spare }))
     }
 
     /// Keeps an entry that comes from elsewhere: how the shopper was dressed before the first step.
@@ -115,13 +115,13 @@ impl FlightRecorder {
         })
     }
 
-    fn locked(&self) -> MutexGuard<'_, Inner> {
+    fn locked(&self) -> MutexGuard<'_, RecorderState> {
         // Bytes that were half written end the file early, which a reader bears.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Inner {
+impl RecorderState {
     fn keep(&mut self, entry: &Entry) {
         let begins = match entry {
             Entry::Dressed(_) => Some(0),

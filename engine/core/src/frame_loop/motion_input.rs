@@ -40,7 +40,7 @@ pub const LONGEST_SILENCE_S: f32 = 1.0;
 
 /// One joint between frames.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Path {
+struct JointPath {
     /// Where the last frame had it (m), how it goes on (m/s).
     place: Vec3,
     velocity: Vec3,
@@ -53,7 +53,7 @@ struct Path {
 /// The joints from frame to frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionInput {
-    paths: [Path; JOINTS],
+    paths: [JointPath; JOINTS],
     /// When the last frame was seen, and at which step's time it was taken (ns).
     seen_ns: Option<u64>,
     taken_ns: u64,
@@ -65,7 +65,7 @@ pub struct MotionInput {
 impl Default for MotionInput {
     fn default() -> Self {
         let period = 1.0 / 30.0;
-        Self { paths: [Path::default(); JOINTS], seen_ns: None, taken_ns: 0, period, poles: POLES / period }
+        Self { paths: [JointPath::default(); JOINTS], seen_ns: None, taken_ns: 0, period, poles: POLES / period }
     }
 }
 
@@ -90,13 +90,13 @@ impl MotionInput {
     }
 
     /// A joint's path from this frame on, so that it goes on from where it is.
-    fn follow(&self, before: &Self, i: usize, joint: &TrackedJoint, gap: f32) -> Path {
+    fn follow(&self, before: &Self, i: usize, joint: &TrackedJoint, gap: f32) -> JointPath {
         let old = &before.paths[i];
         let known = joint.confidence > 0.0 && joint.position.is_finite();
         if !known {
-            return Path::default();
+            return JointPath::default();
         }
-        let mut path = Path { place: joint.position, confidence: joint.confidence, ..Path::default() };
+        let mut path = JointPath { place: joint.position, confidence: joint.confidence, ..JointPath::default() };
         if old.confidence == 0.0 || gap > LONGEST_SILENCE_S {
             return path;
         }
@@ -113,7 +113,7 @@ impl MotionInput {
     }
 
     /// Place, velocity and acceleration of a joint at a step's time.
-    fn motion(&self, path: &Path, now_ns: u64) -> [Vec3; 3] {
+    fn motion(&self, path: &JointPath, now_ns: u64) -> [Vec3; 3] {
         // A frame from the time after the step is gone back from, a little.
         let ahead = seconds_between(self.seen_ns.unwrap_or(now_ns), now_ns).max(-FADE_S);
         // The way is FADE_S * x / root(1 + x^2), and these its derivatives.

@@ -14,7 +14,7 @@ use super::schedule::{Due, Schedule, Tick};
 use super::sensor_thread::SensorFrame;
 use crate::clock::Clock;
 use crate::cloth::Wind;
-use crate::frame::{Frame, Times};
+use crate::frame::{Frame, SnapshotTimes};
 use crate::meter::{Meter, PERIOD_NS};
 use crate::triple_buffer::Reader;
 
@@ -27,7 +27,7 @@ const MOST_TOLD: u64 = 10 * STEP_HZ as u64;
 /// What is stepped: the frame, or what stands for it in a test.
 pub trait Scene {
     /// One step to where the joints are; publishes a snapshot with these times.
-    fn step(&mut self, joints: &Joints, times: Times, clock: &impl Clock);
+    fn step(&mut self, joints: &Joints, times: SnapshotTimes, clock: &impl Clock);
 
     /// The quality from the next step on.
     fn set_rung(&mut self, rung: &Rung);
@@ -69,7 +69,7 @@ impl FrameScene {
 }
 
 impl Scene for FrameScene {
-    fn step(&mut self, joints: &Joints, times: Times, clock: &impl Clock) {
+    fn step(&mut self, joints: &Joints, times: SnapshotTimes, clock: &impl Clock) {
         self.frame.step_at(joints, times, clock);
     }
 
@@ -160,7 +160,11 @@ impl<S: Scene> SceneStepper<S> {
         let joints = self.intake.at(end_of(scheduled_ns));
         let (arrived_ns, frame) = self.newest;
         let seen_ns = self.intake.seen_ns().unwrap_or(0);
-        self.scene.step(&joints, Times { seen_ns, arrived_ns, frame, scheduled_ns, begun_ns, published_ns: 0 }, clock);
+        self.scene.step(
+            &joints,
+            SnapshotTimes { seen_ns, arrived_ns, frame, scheduled_ns, begun_ns, published_ns: 0 },
+            clock,
+        );
     }
 }
 

@@ -32,7 +32,7 @@ impl Capacity {
 }
 
 #[derive(Debug)]
-struct Shared<T> {
+struct QueueState<T> {
     entries: ArrayQueue<T>,
     constant: &'static str,
     /// Relaxed, both: counters that guard nothing; a reader wants them sooner or later.
@@ -42,16 +42,16 @@ struct Shared<T> {
 
 /// The end that pushes, on the thread that must not wait.
 #[derive(Debug)]
-pub struct Sender<T>(Arc<Shared<T>>);
+pub struct Sender<T>(Arc<QueueState<T>>);
 
 /// The end that pops.
 #[derive(Debug)]
-pub struct Receiver<T>(Arc<Shared<T>>);
+pub struct Receiver<T>(Arc<QueueState<T>>);
 
 /// A queue of so many places; `constant` is the name of the bound. At load.
 pub fn bounded<T>(constant: &'static str, bound: usize) -> (Sender<T>, Receiver<T>) {
     let entries = ArrayQueue::new(bound.max(1));
-    let shared = Arc::new(Shared { entries, constant, high_water: AtomicUsize::new(0), lost: AtomicU64::new(0) });
+    let shared = Arc::new(QueueState { entries, constant, high_water: AtomicUsize::new(0), lost: AtomicU64::new(0) });
     (Sender(shared.clone()), Receiver(shared))
 }
 

@@ -9,19 +9,19 @@ use super::MOST;
 /// One cache line, one widest vector.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]
-struct Line([f32; MOST]);
+struct CacheLine([f32; MOST]);
 
 /// Owns the numbers of a column. Made at load; its length never changes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Store {
-    lines: Box<[Line]>,
+    lines: Box<[CacheLine]>,
     len: usize,
 }
 
 impl Store {
     /// So many zeros.
     pub fn zeros(len: usize) -> Self {
-        Self { lines: vec![Line([0.0; MOST]); len.div_ceil(MOST)].into(), len }
+        Self { lines: vec![CacheLine([0.0; MOST]); len.div_ceil(MOST)].into(), len }
     }
 
     /// The numbers of an iterator.
@@ -76,7 +76,7 @@ mod sealed {
 /// let column = ReadColumn::new(&shared);
 /// column.set(1, 99.0);
 /// ```
-/// ```compile_fail,E0277
+/// ```compile_fail,E0308
 /// #![forbid(unsafe_code)]
 /// use toile_engine::lanes::{Numbers, ReadColumn};
 /// static CONSTANT: [f32; 4] = [0.0; 4];

@@ -11,7 +11,7 @@ use toile_assets::limits::MAX_INFLUENCES;
 use toile_assets::skeleton::BONES;
 
 use super::dual::DualQuat;
-use super::layout::Run;
+use super::layout::BoneRun;
 use super::posed::BLOCK;
 use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, V3, WriteColumn, reciprocal_root};
 
@@ -20,8 +20,8 @@ const COLLAPSED: f32 = 1e-24;
 
 /// What both kernels work on.
 #[derive(Clone, Copy)]
-pub(super) struct Surface<'a> {
-    pub runs: &'a [Run],
+pub(super) struct SkinSurface<'a> {
+    pub runs: &'a [BoneRun],
     /// Vertices of each block.
     pub filled: &'a [u8],
     pub rest: ReadColumn<'a>,
@@ -30,26 +30,26 @@ pub(super) struct Surface<'a> {
 
 /// Where a vector of vertices is: in the rest data, in the posed data.
 #[derive(Clone, Copy)]
-struct At {
+struct VertexPlace {
     rest: usize,
     out: usize,
 }
 
-impl Surface<'_> {
+impl SkinSurface<'_> {
     #[inline(always)]
-    fn load<L: Lanes>(&self, at: At, first: usize) -> V3<L> {
+    fn load<L: Lanes>(&self, at: VertexPlace, first: usize) -> V3<L> {
         let from = at.rest + first * MOST;
         V3 { x: L::load(self.rest, from), y: L::load(self.rest, from + MOST), z: L::load(self.rest, from + 2 * MOST) }
     }
 
     /// The weights of a bone other than the base, counted from 1.
     #[inline(always)]
-    fn weight<L: Lanes>(&self, at: At, bone: usize) -> L {
+    fn weight<L: Lanes>(&self, at: VertexPlace, bone: usize) -> L {
         L::load(self.rest, at.rest + (5 + bone) * MOST)
     }
 
     #[inline(always)]
-    fn store<L: Lanes>(&self, at: At, position: V3<L>, normal: V3<L>) {
+    fn store<L: Lanes>(&self, at: VertexPlace, position: V3<L>, normal: V3<L>) {
         for (k, v) in [position.x, position.y, position.z, normal.x, normal.y, normal.z].into_iter().enumerate() {
             v.store(self.out, at.out + k * MOST);
         }
@@ -57,7 +57,7 @@ impl Surface<'_> {
 }
 
 /// A bone's matrix, column after column: single numbers, since each is loaded into every lane from where it lies.
-type Columns = [f32; 12];
+type SkinColumns = [f32; 12];
 
 /// The columns of a matrix, each number in lanes.
 #[derive(Clone, Copy)]
@@ -70,12 +70,12 @@ struct Matrix<L> {
 
 impl<L: Lanes> Matrix<L> {
     #[inline(always)]
-    fn splat(m: &Columns) -> Self {
+    fn splat(m: &SkinColumns) -> Self {
         let column = |k: usize| V3 { x: L::splat(m[k]), y: L::splat(m[k + 1]), z: L::splat(m[k + 2]) };
         Self { x: column(0), y: column(3), z: column(6), t: column(9) }
     }
     #[inline(always)]
-    fn and(self, more: &Columns, weight: L) -> Self {
+    fn and(self, more: &SkinColumns, weight: L) -> Self {
         let more = Self::splat(more);
         Self {
             x: self.x + more.x * weight,
@@ -88,7 +88,7 @@ impl<L: Lanes> Matrix<L> {
 
 /// Linear blending.
 pub(super) struct Linear<'a> {
-    pub surface: Surface<'a>,
+    pub surface: SkinSurface<'a>,
     pub palette: &'a [Affine3A; BONES],
 }
 
@@ -109,7 +109,7 @@ impl Kernel for Linear<'_> {
                 let filled = usize::from(surface.filled[run.first + block]);
                 let mut lane = 0;
                 while lane < filled {
-                    let at = At { rest: run.rest(block) + lane, out: (run.first + block) * BLOCK + lane };
+                    let at = VertexPlace { rest: run.rest(block) + lane, out: (run.first + block) * BLOCK + lane };
                     linear::<L>(&surface, at, &base, &apart[..run.count]);
                     lane += L::N;
                 }
@@ -120,7 +120,7 @@ impl Kernel for Linear<'_> {
 
 /// One vector of vertices; `apart[1..]` are what the other bones have beyond the base.
 #[inline(always)]
-fn linear<L: Lanes>(surface: &Surface<'_>, at: At, base: &Columns, apart: &[Columns]) {
+fn linear<L: Lanes>(surface: &SkinSurface<'_>, at: VertexPlace, base: &SkinColumns, apart: &[SkinColumns]) {
     let mut m = Matrix::<L>::splat(base);
     for (k, more) in apart.iter().enumerate().skip(1) {
         m = m.and(more, surface.weight::<L>(at, k));
@@ -135,13 +135,13 @@ fn linear<L: Lanes>(surface: &Surface<'_>, at: At, base: &Columns, apart: &[Colu
 }
 
 #[inline(always)]
-fn columns(matrix: &Affine3A) -> Columns {
+fn columns(matrix: &Affine3A) -> SkinColumns {
     matrix.to_cols_array()
 }
 
 /// Dual quaternion blending.
 pub(super) struct Dual<'a> {
-    pub surface: Surface<'a>,
+    pub surface: SkinSurface<'a>,
     pub palette: &'a [DualQuat; BONES],
 }
 
@@ -162,7 +162,7 @@ impl Kernel for Dual<'_> {
                 let filled = usize::from(surface.filled[run.first + block]);
                 let mut lane = 0;
                 while lane < filled {
-                    let at = At { rest: run.rest(block) + lane, out: (run.first + block) * BLOCK + lane };
+                    let at = VertexPlace { rest: run.rest(block) + lane, out: (run.first + block) * BLOCK + lane };
                     dual::<L>(&surface, at, &base, &apart[..run.count]);
                     lane += L::N;
                 }
@@ -173,12 +173,12 @@ impl Kernel for Dual<'_> {
 
 /// Four numbers, each in lanes: a quaternion's vector and scalar.
 #[derive(Clone, Copy)]
-struct Four<L> {
+struct QuaternionLanes<L> {
     v: V3<L>,
     w: L,
 }
 
-impl<L: Lanes> Four<L> {
+impl<L: Lanes> QuaternionLanes<L> {
     #[inline(always)]
     fn splat(q: Vec4) -> Self {
         Self { v: V3 { x: L::splat(q.x), y: L::splat(q.y), z: L::splat(q.z) }, w: L::splat(q.w) }
@@ -194,8 +194,8 @@ impl<L: Lanes> Four<L> {
 /// p + 2 / |r|^2 (v x (v x p + w p + u) + w u - s v), a direction n to n + 2 / |r|^2 v x (v x n + w n): the
 /// normalisation of Kavan et al. 2008, equation 6, is in the factor.
 #[inline(always)]
-fn dual<L: Lanes>(surface: &Surface<'_>, at: At, base: &DualQuat, apart: &[DualQuat]) {
-    let (mut real, mut twin) = (Four::<L>::splat(base.real), Four::<L>::splat(base.dual));
+fn dual<L: Lanes>(surface: &SkinSurface<'_>, at: VertexPlace, base: &DualQuat, apart: &[DualQuat]) {
+    let (mut real, mut twin) = (QuaternionLanes::<L>::splat(base.real), QuaternionLanes::<L>::splat(base.dual));
     for (k, more) in apart.iter().enumerate().skip(1) {
         let weight = surface.weight::<L>(at, k);
         real = real.and(more.real, weight);

@@ -8,7 +8,7 @@ use crate::lanes::MOST;
 
 /// A vertex as the kernels have it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Laid {
+pub struct LaidVertex {
     /// Its number in the mesh.
     pub vertex: usize,
     /// Which of [`SkinningJob::runs`] it belongs to.
@@ -29,7 +29,7 @@ impl SkinningJob {
     }
 
     /// All vertices in the order of the runs. At load.
-    pub fn laid(&self) -> impl Iterator<Item = Laid> {
+    pub fn laid(&self) -> impl Iterator<Item = LaidVertex> {
         let layout = &self.layout;
         let mut order: Vec<usize> = (0..layout.slots.len()).collect();
         order.sort_unstable_by_key(|&v| layout.slots[v]);
@@ -43,7 +43,7 @@ impl SkinningJob {
             let three = |k: usize| Vec3::new(number_at(k), number_at(k + 1), number_at(k + 2));
             let weight = |k: usize| if k + 1 < run.count { number_at(6 + k) } else { 0.0 };
             let weights = std::array::from_fn(weight);
-            Laid { vertex, run: number, position: three(0), normal: three(3), weights }
+            LaidVertex { vertex, run: number, position: three(0), normal: three(3), weights }
         })
     }
 }

@@ -14,13 +14,13 @@ use super::posed::Posed;
 use crate::lanes::{MOST, Store, Width};
 
 /// Bones of a set in the order of their indices, [`NO_BONE`] behind them.
-type Set = [u8; MAX_INFLUENCES];
+type BoneSet = [u8; MAX_INFLUENCES];
 
 /// Blocks on one joint set, one after the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Run {
+pub(super) struct BoneRun {
     /// Its bones, the base first.
-    bones: Set,
+    bones: BoneSet,
     /// How many.
     pub count: usize,
     /// Where its rest data begins.
@@ -30,7 +30,7 @@ pub(super) struct Run {
     pub blocks: usize,
 }
 
-impl Run {
+impl BoneRun {
     /// Where the rest data of one of its blocks begins: `[3 position, 3 normal, count - 1 weights][MOST]`.
     #[inline(always)]
     pub fn rest(&self, block: usize) -> usize {
@@ -86,8 +86,8 @@ impl Padding {
 
 /// A skin in blocks.
 #[derive(Debug, Clone)]
-pub(super) struct Layout {
-    pub runs: Box<[Run]>,
+pub(super) struct SkinLayout {
+    pub runs: Box<[BoneRun]>,
     /// The run at which the second worker's share begins.
     pub half: usize,
     /// Vertices of each block.
@@ -102,12 +102,12 @@ pub(super) struct Layout {
 }
 
 /// Vertices on a set that share blocks.
-struct Group {
-    set: Set,
+struct VertexGroup {
+    set: BoneSet,
     vertices: Vec<usize>,
 }
 
-impl Layout {
+impl SkinLayout {
     pub fn new(vertices: &[Vertex]) -> Self {
         let groups = grouped(vertices);
         let mut runs = Vec::new();
@@ -115,7 +115,7 @@ impl Layout {
         for group in &groups {
             let blocks = group.vertices.len().div_ceil(MOST);
             let (bones, count) = (based(group, vertices), size(&group.set));
-            let run = Run { bones, count, data, first: filled.len(), blocks };
+            let run = BoneRun { bones, count, data, first: filled.len(), blocks };
             for (k, &v) in group.vertices.iter().enumerate() {
                 slots[v] = (run.first * MOST + k) as u32;
             }
@@ -150,7 +150,7 @@ impl Layout {
     pub fn padding(&self, width: Width) -> Padding {
         let lanes = |filled: u8| usize::from(filled).next_multiple_of(width.lanes());
         let of_run =
-            |r: &Run| r.count * self.filled[r.first..r.first + r.blocks].iter().map(|f| lanes(*f)).sum::<usize>();
+            |r: &BoneRun| r.count * self.filled[r.first..r.first + r.blocks].iter().map(|f| lanes(*f)).sum::<usize>();
         Padding {
             vertices: self.slots.len(),
             lanes: self.filled.iter().map(|f| lanes(*f)).sum(),
@@ -162,12 +162,12 @@ impl Layout {
     }
 }
 
-fn size(set: &Set) -> usize {
+fn size(set: &BoneSet) -> usize {
     set.iter().filter(|b| **b != NO_BONE).count()
 }
 
 /// The rest data of the `k`th vertex of a run.
-fn write(rest: &mut Store, run: &Run, k: usize, vertex: &Vertex) {
+fn write(rest: &mut Store, run: &BoneRun, k: usize, vertex: &Vertex) {
     let at = run.rest(k / MOST) + k % MOST;
     let numbers = vertex.position.to_array().into_iter().chain(vertex.normal.to_array());
     let weight = |bone: &u8| vertex.bones.iter().position(|b| b == bone).map_or(0.0, |i| vertex.weights[i]);
@@ -176,7 +176,7 @@ fn write(rest: &mut Store, run: &Run, k: usize, vertex: &Vertex) {
 }
 
 /// The bones of a group with that first which weighs most in all: the others are added to it, so it rounds least.
-fn based(group: &Group, vertices: &[Vertex]) -> Set {
+fn based(group: &VertexGroup, vertices: &[Vertex]) -> BoneSet {
     let weighs = |bone: u8| -> f64 {
         let of = |v: &usize| vertices[*v].bones.iter().zip(vertices[*v].weights).find(|(b, _)| **b == bone);
         group.vertices.iter().filter_map(of).map(|(_, w)| f64::from(w)).sum()
@@ -190,17 +190,17 @@ fn based(group: &Group, vertices: &[Vertex]) -> Set {
 }
 
 /// All vertices by their sets, most bones first, remainders put together.
-fn grouped(vertices: &[Vertex]) -> Vec<Group> {
-    let mut by_set: BTreeMap<Set, Vec<usize>> = BTreeMap::new();
+fn grouped(vertices: &[Vertex]) -> Vec<VertexGroup> {
+    let mut by_set: BTreeMap<BoneSet, Vec<usize>> = BTreeMap::new();
     for (v, vertex) in vertices.iter().enumerate() {
         by_set.entry(vertex.bones).or_default().push(v);
     }
-    let mut left: Vec<Group> = Vec::new();
+    let mut left: Vec<VertexGroup> = Vec::new();
     for (set, all) in &mut by_set {
         let whole = all.len() - all.len() % MOST;
         let vertices = all.split_off(whole);
         if !vertices.is_empty() {
-            left.push(Group { set: *set, vertices });
+            left.push(VertexGroup { set: *set, vertices });
         }
     }
     for group in together(left) {
@@ -208,22 +208,22 @@ fn grouped(vertices: &[Vertex]) -> Vec<Group> {
         by_set.entry(group.set).or_default().extend(group.vertices);
     }
     let filled = by_set.into_iter().filter(|(_, v)| !v.is_empty());
-    let mut groups: Vec<Group> = filled.map(|(set, vertices)| Group { set, vertices }).collect();
+    let mut groups: Vec<VertexGroup> = filled.map(|(set, vertices)| VertexGroup { set, vertices }).collect();
     groups.sort_by_key(|g| std::cmp::Reverse(size(&g.set)));
     groups
 }
 
 /// Puts remainders into common blocks: each, the largest sets first, to where it costs least, or into its own.
-fn together(mut left: Vec<Group>) -> Vec<Group> {
+fn together(mut left: Vec<VertexGroup>) -> Vec<VertexGroup> {
     left.sort_by_key(|g| (std::cmp::Reverse(size(&g.set)), std::cmp::Reverse(g.vertices.len()), g.set));
-    let mut bins: Vec<Group> = Vec::new();
+    let mut bins: Vec<VertexGroup> = Vec::new();
     for group in left {
-        let own = Run::cost(size(&group.set));
-        let fits = |bin: &Group| {
+        let own = BoneRun::cost(size(&group.set));
+        let fits = |bin: &VertexGroup| {
             let union = union(&bin.set, &group.set)?;
             let most = size(&bin.set).max(INFLUENCES);
             let room = bin.vertices.len() + group.vertices.len() <= MOST;
-            (room && size(&union) <= most).then(|| Run::cost(size(&union)) - Run::cost(size(&bin.set)))
+            (room && size(&union) <= most).then(|| BoneRun::cost(size(&union)) - BoneRun::cost(size(&bin.set)))
         };
         let best = (0..bins.len()).filter_map(|i| Some((fits(&bins[i])?, i))).min().filter(|(cost, _)| *cost < own);
         match best {
@@ -238,7 +238,7 @@ fn together(mut left: Vec<Group>) -> Vec<Group> {
 }
 
 /// The bones of two sets, unless they are too many.
-fn union(a: &Set, b: &Set) -> Option<Set> {
+fn union(a: &BoneSet, b: &BoneSet) -> Option<BoneSet> {
     let mut all: Vec<u8> = a.iter().chain(b).copied().filter(|x| *x != NO_BONE).collect();
     all.sort_unstable();
     all.dedup();
@@ -248,17 +248,17 @@ fn union(a: &Set, b: &Set) -> Option<Set> {
 }
 
 /// Splits the runs where half of their cost lies, and says which is the first of the second half.
-fn halve(runs: &mut Vec<Run>) -> usize {
-    let total: usize = runs.iter().map(|r| r.blocks * Run::cost(r.count)).sum();
+fn halve(runs: &mut Vec<BoneRun>) -> usize {
+    let total: usize = runs.iter().map(|r| r.blocks * BoneRun::cost(r.count)).sum();
     let mut before = 0;
     for i in 0..runs.len() {
-        let (run, cost) = (runs[i], Run::cost(runs[i].count));
+        let (run, cost) = (runs[i], BoneRun::cost(runs[i].count));
         if before + run.blocks * cost >= total.div_ceil(2) {
             let blocks = (total.div_ceil(2) - before).div_ceil(cost).min(run.blocks);
             if blocks < run.blocks {
                 runs[i].blocks = blocks;
                 let (data, first) = (run.rest(blocks), run.first + blocks);
-                runs.insert(i + 1, Run { data, first, blocks: run.blocks - blocks, ..run });
+                runs.insert(i + 1, BoneRun { data, first, blocks: run.blocks - blocks, ..run });
             }
             return i + 1;
         }

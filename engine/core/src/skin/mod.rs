@@ -27,13 +27,13 @@ use crate::workers::{SHARES, WorkerPool};
 
 pub use check::{SkinError, WEIGHT_TOLERANCE};
 pub use dual::{DualQuat, palette as dual_palette};
-pub use laid::Laid;
+pub use laid::LaidVertex;
 pub use layout::Padding;
 pub use posed::Posed;
 pub use prune::{Pruning, pruning};
 
-use kernel::{Dual, Linear, Surface};
-use layout::Layout;
+use kernel::{Dual, Linear, SkinSurface};
+use layout::SkinLayout;
 
 /// How the motions of a vertex' bones become one.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
@@ -79,7 +79,7 @@ impl FromStr for Blend {
 /// cannot fail.
 #[derive(Debug, Clone)]
 pub struct SkinningJob {
-    layout: Layout,
+    layout: SkinLayout,
     /// How its kernels run; the widest lanes of this processor, unless set otherwise.
     pub width: Width,
 }
@@ -98,7 +98,7 @@ impl SkinningJob {
         weights: &[Influences<N>],
     ) -> Result<Self, SkinError> {
         let vertices = check::vertices(positions, normals, weights)?;
-        Ok(Self { layout: Layout::new(&vertices), width: Width::widest() })
+        Ok(Self { layout: SkinLayout::new(&vertices), width: Width::widest() })
     }
 
     /// Number of vertices.
@@ -120,7 +120,7 @@ impl SkinningJob {
     /// is not finite may spoil the vertices that share blocks with its own. `posed` comes from [`Self::posed`].
     pub fn run(&self, blend: Blend, palette: &[Affine3A; BONES], posed: &mut Posed) {
         let duals = self.duals(blend, palette);
-        let work = Work { job: self, blend, palette, duals: &duals, out: Shared::new(posed.column()) };
+        let work = SkinningWork { job: self, blend, palette, duals: &duals, out: Shared::new(posed.column()) };
         work.runs(0..self.layout.runs.len());
     }
 
@@ -138,7 +138,7 @@ impl SkinningJob {
             return true;
         }
         let duals = self.duals(blend, palette);
-        let work = Work { job: self, blend, palette, duals: &duals, out: Shared::new(posed.column()) };
+        let work = SkinningWork { job: self, blend, palette, duals: &duals, out: Shared::new(posed.column()) };
         let (half, all) = (self.layout.half, self.layout.runs.len());
         pool.run(1, |_, share| work.runs(if share == 0 { 0..half } else { half..all })).is_ok()
     }
@@ -152,7 +152,7 @@ impl SkinningJob {
 }
 
 /// What the workers of a run share; no two runs of blocks write to the same place.
-struct Work<'a> {
+struct SkinningWork<'a> {
     job: &'a SkinningJob,
     blend: Blend,
     palette: &'a [Affine3A; BONES],
@@ -160,14 +160,14 @@ struct Work<'a> {
     out: Shared<WriteColumn<'a>>,
 }
 
-impl Work<'_> {
+impl SkinningWork<'_> {
     #[expect(unsafe_code, reason = "the workers share the posed surface")]
     fn runs(&self, runs: Range<usize>) {
-        let Layout { runs: all, filled, rest, .. } = &self.job.layout;
+        let SkinLayout { runs: all, filled, rest, .. } = &self.job.layout;
         // SAFETY: each run of the layout, which nobody outside of this room can make or change, has blocks of its own, and
         // the two shares of a run have different ones: no place is written twice, and none is read.
         let out = unsafe { self.out.open() };
-        let surface = Surface { runs: &all[runs], filled, rest: ReadColumn::new(rest.as_slice()), out };
+        let surface = SkinSurface { runs: &all[runs], filled, rest: ReadColumn::new(rest.as_slice()), out };
         match self.blend {
             Blend::Linear => self.job.width.run(Linear { surface, palette: self.palette }),
             Blend::Dual => self.job.width.run(Dual { surface, palette: self.duals }),

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use toile_engine::clock::Clock;
-use toile_engine::frame::Times;
+use toile_engine::frame::SnapshotTimes;
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::governor::{LADDER, Rung};
 use toile_engine::frame_loop::physics_thread::Scene;
@@ -81,7 +81,7 @@ impl<S: Scene> LiveScene<S> {
 }
 
 impl<S: Scene> Scene for LiveScene<S> {
-    fn step(&mut self, joints: &Joints, times: Times, clock: &impl Clock) {
+    fn step(&mut self, joints: &Joints, times: SnapshotTimes, clock: &impl Clock) {
         let joints = self.still.as_ref().unwrap_or(joints);
         self.scene.step(joints, times, clock);
         let Some(reporting) = &mut self.reporting else { return };
@@ -174,7 +174,7 @@ mod tests {
     }
 
     impl Scene for Said {
-        fn step(&mut self, joints: &Joints, _times: Times, _clock: &impl Clock) {
+        fn step(&mut self, joints: &Joints, _times: SnapshotTimes, _clock: &impl Clock) {
             self.seen_ns.push(joints.time_ns);
             self.rolled_back += 1;
         }

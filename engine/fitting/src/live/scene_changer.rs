@@ -163,7 +163,7 @@ impl<S: Scene, O> SceneChanger<S, O> {
 mod tests {
     use super::*;
     use toile_engine::clock::Clock;
-    use toile_engine::frame::Times;
+    use toile_engine::frame::SnapshotTimes;
     use toile_engine::frame_loop::governor::Rung;
     use toile_engine::frame_loop::handover::{HandoverReceiver, handover};
     use toile_engine::skin::SkinningJob;
@@ -174,7 +174,7 @@ mod tests {
     struct Nth(u64);
 
     impl Scene for Nth {
-        fn step(&mut self, _joints: &Joints, _times: Times, _clock: &impl Clock) {}
+        fn step(&mut self, _joints: &Joints, _times: SnapshotTimes, _clock: &impl Clock) {}
         fn set_rung(&mut self, _rung: &Rung) {}
         fn measure(&mut self) {}
         fn clear_meters(&mut self) {}
@@ -213,7 +213,7 @@ mod tests {
     /// The mannequin is 0.
     fn scene(number: u64) -> DressedScene<Nth, u64> {
         let skin = SkinningJob::new::<4>(&[], &[], &[]).unwrap().posed();
-        let snapshot = Snapshot { tick: 0, times: Times::default(), skin, garments: Box::new([]) };
+        let snapshot = Snapshot { tick: 0, times: SnapshotTimes::default(), skin, garments: Box::new([]) };
         let still = (number == 0).then(|| Joints::absent(0));
         DressedScene {
             scene: Nth(number),

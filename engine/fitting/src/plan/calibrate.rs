@@ -106,7 +106,7 @@ fn sample(scene: &Scene) -> Result<Sample, PlanError> {
     let settings: Vec<Settings> = scene.settings.iter().map(|s| Settings { timed: true, ..*s }).collect();
     let mut playing = Playing::new(scene);
     let mut times: [Vec<f64>; STAGES.len()] = Default::default();
-    let before = |p: &Playing<'_>| p.cloths[0].contact_tally().near;
+    let before = |p: &Playing<'_>| p.cloths[0].contact_counts().near;
     let mut near = 0;
     for step in 0..WARM_UP + TIMED {
         playing.place();

@@ -81,7 +81,7 @@ pub struct StagePlan {
 /// of that.
 pub fn stages(predicted: &[f64; meter::STAGES.len()], period_us: f64) -> Vec<StagePlan> {
     let longer = period_us / (meter::PERIOD_NS as f64 * 1e-3);
-    let row = |(stage, us): (&meter::Stage, &f64)| {
+    let row = |(stage, us): (&meter::StageBudget, &f64)| {
         let budget_us = stage.budget_us as f64 * longer;
         StagePlan { stage: stage.name, budget_us, predicted_us: *us, within: *us <= budget_us }
     };

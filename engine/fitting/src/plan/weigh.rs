@@ -96,7 +96,7 @@ pub fn play(scene: &Scene, workers: usize) -> Result<Played, PlanError> {
     let stages_us = as_is.stages_us();
     let models = variants[1..].iter().zip(tallies).map(|(v, tally)| tally.told(v, &as_is)).collect();
     let cloth_us = [0.5, 0.99].map(|q| at(q).unwrap_or(0.0));
-    let near = playing.cloths.iter().map(|c| c.contact_tally().near).sum::<u64>() / steps.max(1) as u64;
+    let near = playing.cloths.iter().map(|c| c.contact_counts().near).sum::<u64>() / steps.max(1) as u64;
     Ok(Played { cloth_us, near, stages_us, steps: times.len(), moments, models })
 }
 

@@ -69,7 +69,7 @@ pub struct FirstStep {
     /// Substeps.
     pub substeps: u32,
     /// How bending goes on.
-    pub bend: bending::Pace,
+    pub bend: bending::BendingPace,
     /// Pairs of particle and capsule that are near.
     pub near: f64,
 }

@@ -32,8 +32,8 @@ impl ClothEvents {
     }
 }
 
-impl From<toile_engine::cloth::guard::Events> for ClothEvents {
-    fn from(e: toile_engine::cloth::guard::Events) -> Self {
+impl From<toile_engine::cloth::guard::GuardEvents> for ClothEvents {
+    fn from(e: toile_engine::cloth::guard::GuardEvents) -> Self {
         Self {
             repaired: e.repaired,
             rolled_back: e.rolled_back,

@@ -1,7 +1,7 @@
 //! The buffers of a scene that the CPU writes, reads back or binds, made once at load.
 
 use toile_assets::limits::MAX_CAPSULES;
-use toile_engine::cloth::stages;
+use toile_engine::cloth::stiff_bending;
 use wgpu::{BindGroup, Buffer, BufferUsages};
 
 use super::cloth_device::ClothDevice;
@@ -18,7 +18,7 @@ use crate::device::DeviceNeeds;
 pub const REPORT: usize = 5;
 
 /// Places in the buffer of stages for each garment.
-pub const STAGES: usize = stages::MOST as usize;
+pub const STAGES: usize = stiff_bending::MOST as usize;
 
 /// All buffers of a scene.
 #[derive(Debug)]

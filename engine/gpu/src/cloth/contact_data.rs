@@ -2,7 +2,7 @@
 
 use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES};
 use toile_engine::cloth::contact::ContactSettings;
-use toile_engine::cloth::contact::cones::{Cones, Ends, Prepare};
+use toile_engine::cloth::contact::cones::{CapsuleCones, CapsuleEnds, PrepareCones};
 use toile_engine::colliders::Colliders;
 use toile_engine::lanes::Width;
 
@@ -18,14 +18,14 @@ pub type FlatEnds = [[f32; 4]; 4];
 /// Working storage of a garment's capsules.
 #[derive(Debug, Clone)]
 pub struct ContactData {
-    ends: Ends,
-    cones: Cones,
+    ends: CapsuleEnds,
+    cones: CapsuleCones,
 }
 
 impl ContactData {
     /// Nothing to touch yet.
     pub fn new() -> Self {
-        Self { ends: Ends::NONE, cones: Cones::NONE }
+        Self { ends: CapsuleEnds::NONE, cones: CapsuleCones::NONE }
     }
 
     /// Prepares a step's capsules: what the whole step sweeps, then those of each substep, `MAX_CAPSULES` of each, into
@@ -40,7 +40,7 @@ impl ContactData {
     ) -> u32 {
         self.ends.read(colliders);
         for (c, to) in ends.iter_mut().enumerate().take(MAX_CAPSULES) {
-            let of = |s: &toile_engine::cloth::contact::cones::Spheres| {
+            let of = |s: &toile_engine::cloth::contact::cones::EndSpheres| {
                 [s.centre[0].0[c], s.centre[1].0[c], s.centre[2].0[c], s.radius.0[c]]
             };
             *to =
@@ -52,16 +52,16 @@ impl ContactData {
             // The first set is the whole step's, from its middle.
             let [at, share, swell] = if set == 0 { [0.5, 1.0, 0.5] } else { [span[1], span[1] - span[0], 0.0] };
             let (offset, quick) = (how.offset_m, how.quick());
-            width.run(Prepare { ends: &self.ends, at, share, swell, offset, quick, to: &mut self.cones });
+            width.run(PrepareCones { ends: &self.ends, at, share, swell, offset, quick, to: &mut self.cones });
             to.iter_mut().enumerate().for_each(|(c, to)| *to = flat(&self.cones, c));
         }
         self.ends.sound
     }
 }
 
-fn flat(cones: &Cones, c: usize) -> FlatCone {
+fn flat(cones: &CapsuleCones, c: usize) -> FlatCone {
     let k = cones;
-    let with = |three: &[toile_engine::cloth::contact::cones::Row; 3], w: f32| {
+    let with = |three: &[toile_engine::cloth::contact::cones::CapsuleRow; 3], w: f32| {
         [three[0].0[c], three[1].0[c], three[2].0[c], w]
     };
     [

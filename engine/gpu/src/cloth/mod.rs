@@ -27,7 +27,7 @@ use std::sync::Arc;
 use glam::Vec3A;
 use toile_assets::garment::Garment;
 use toile_assets::limits::MAX_CAPSULES;
-use toile_engine::cloth::guard::Events;
+use toile_engine::cloth::guard::GuardEvents;
 use toile_engine::cloth::pins::Pins;
 use toile_engine::cloth::prepared::Prepared;
 use toile_engine::cloth::root::RootMotion;
@@ -64,7 +64,7 @@ struct GarmentState {
     place: usize,
     positions: Box<[Vec3A]>,
     velocities: Box<[Vec3A]>,
-    events: Events,
+    events: GuardEvents,
 }
 
 /// Garments that are stepped on a GPU. All storage is made once.
@@ -181,7 +181,7 @@ impl Offload {
             place: flat.order.iter().position(|o| *o == k).unwrap_or(k),
             positions: garment.start.iter().map(|p| Vec3A::from(*p)).collect(),
             velocities: vec![Vec3A::ZERO; garment.particles()].into(),
-            events: Events::default(),
+            events: GuardEvents::default(),
         });
         let own = own.collect();
         let targets = vec![[0.0; 4]; 2 * flat.targets as usize];
@@ -227,7 +227,7 @@ impl Offload {
     }
 
     /// What happened to a garment that should not have, counted since it was made: what the device counts as of the same step.
-    pub fn events(&self, garment: usize) -> Events {
+    pub fn events(&self, garment: usize) -> GuardEvents {
         self.own[garment].events
     }
 

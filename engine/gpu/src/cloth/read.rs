@@ -2,7 +2,7 @@
 
 use glam::Vec3A;
 use toile_assets::garment::Garment;
-use toile_engine::cloth::guard::{self, Spoil};
+use toile_engine::cloth::guard::{self, Fault};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, ComputePassDescriptor, MapMode};
 
 use super::buffers::REPORT;
@@ -109,8 +109,8 @@ impl Offload {
         for (i, what) in guard::spoil(seed, span.len as usize) {
             let at = span.first + i as u32;
             let (first, numbers) = match what {
-                Spoil::Place(x) => (at, x.extend(self.flat.start[at as usize][3])),
-                Spoil::Velocity(v) => (2 * self.flat.particles + at, v.extend(0.0)),
+                Fault::Place(x) => (at, x.extend(self.flat.start[at as usize][3])),
+                Fault::Velocity(v) => (2 * self.flat.particles + at, v.extend(0.0)),
             };
             let bytes = numbers.to_array();
             self.opened.device.queue.write_buffer(

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3A;
 use toile_assets::garment::Garment;
-use toile_engine::cloth::guard::Events;
+use toile_engine::cloth::guard::GuardEvents;
 use toile_engine::cloth::{Cloth, Settings};
 use toile_engine::colliders::Colliders;
 
@@ -26,7 +26,7 @@ pub struct Graphics(Arc<ClothDevice>);
 pub struct DeviceGarments {
     offload: Offload,
     /// Events of each garment before it was uploaded here.
-    before: Vec<Events>,
+    before: Vec<GuardEvents>,
     /// What each garment was made of, and where it lay in memory then.
     made_of: Vec<(usize, u64)>,
     room: [Vec<Vec3A>; 2],
@@ -76,7 +76,7 @@ impl DeviceGarments {
         }
         let most = batch.cloths.iter().map(|c| c.positions.len()).max().unwrap_or(0);
         // The colliders count for themselves.
-        let before = batch.cloths.iter().map(|c| Events { held_colliders: 0, ..c.events }).collect();
+        let before = batch.cloths.iter().map(|c| GuardEvents { held_colliders: 0, ..c.events }).collect();
         let made_of = batch.garments.iter().map(|g| (address(g), fingerprint(g))).collect();
         Ok(Self { offload, before, made_of, room: [(); 2].map(|()| Vec::with_capacity(most)) })
     }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 use toile_assets::skeleton::BONES;
-use toile_engine::skin::{Laid, SkinningJob};
+use toile_engine::skin::{LaidVertex, SkinningJob};
 
 use crate::cloth::flat::{WIDTH, Workgroups};
 
@@ -63,7 +63,7 @@ impl FlatSkins {
         let (first, first_run) = (self.vertices.len(), self.runs.len() as u32);
         let bones: Vec<&[u8]> = job.runs().collect();
         self.runs.extend(bones.iter().map(|bones| run(body, bones)));
-        let laid: Vec<Laid> = job.laid().collect();
+        let laid: Vec<LaidVertex> = job.laid().collect();
         self.groups.begin(body);
         for group in laid.chunks(WIDTH as usize) {
             let at = [self.vertices.len(), group.len(), self.weights.len()].map(|n| n as u32);

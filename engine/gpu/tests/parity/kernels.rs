@@ -4,13 +4,13 @@ use glam::Vec3A;
 use toile_assets::garment::Garment;
 use toile_assets::garment::layout::OWNERS;
 use toile_assets::scene::skirt::Stretch;
-use toile_engine::cloth::bending::{self, Bend};
+use toile_engine::cloth::bending::{self, BendStencils};
 use toile_engine::cloth::pins::Pins;
 use toile_engine::cloth::prepared::Prepared;
 use toile_engine::cloth::root::{RootMotion, RootStep};
-use toile_engine::cloth::stages::{self, Turn};
-use toile_engine::cloth::state::{self, Columns, State};
-use toile_engine::cloth::wind::{Accelerations, Faces, Part};
+use toile_engine::cloth::state::{self, ParticleColumns, State};
+use toile_engine::cloth::stiff_bending::{self, StiffBendingUpdate};
+use toile_engine::cloth::wind::{Accelerations, Faces, WindPart};
 use toile_engine::cloth::{
     RootSettings, Settings, Wind, centre, diagonals, fibers, hubs, links, lists, predict, settle, tethers,
 };
@@ -54,7 +54,7 @@ impl<'a> Twin<'a> {
         let mut scratch = Store::zeros(bending::SCRATCH.max(room[0]).max(room[1]));
         let tensions = layout.weft.tuples.count.max(layout.fibers.links).max(layout.crossing.rest.len());
         let mut tension = Store::zeros(tensions);
-        let mut room = diagonals::Room::new(&layout.diagonals, garment.particles());
+        let mut room = diagonals::DiagonalScratch::new(&layout.diagonals, garment.particles());
         let spans = |owner: usize| &layout.spans[owner][..];
         match kernel {
             Kernel::BendingForces => bend(garment, p, columns, &mut scratch, width),
@@ -73,7 +73,7 @@ impl<'a> Twin<'a> {
                 let (diagonals, gamma, per_dt2) = (&layout.diagonals, p.gamma, per_dt2 / p.shear_every as f32);
                 for strand in diagonals.families.iter().flatten() {
                     let room = room.columns();
-                    width.run(diagonals::Solve { columns, diagonals, strand, room, per_dt2, gamma });
+                    width.run(diagonals::SolveDiagonals { columns, diagonals, strand, room, per_dt2, gamma });
                 }
             }
             Kernel::Shear | Kernel::Weft => {
@@ -82,13 +82,13 @@ impl<'a> Twin<'a> {
                 for set in &links.tuples.sets {
                     for owner in 0..OWNERS {
                         let tension = (weft && p.soft(0)).then(|| (tension.column(), per_dt2));
-                        width.run(links::Solve { columns, links, gain, set, owner, gamma: p.gamma, tension });
+                        width.run(links::SolveLinks { columns, links, gain, set, owner, gamma: p.gamma, tension });
                     }
                 }
             }
             Kernel::Fibers | Kernel::Cyclic => {
                 for owner in 0..OWNERS {
-                    width.run(fibers::Solve {
+                    width.run(fibers::SolveFibers {
                         columns,
                         fibers: &layout.fibers,
                         owner,
@@ -104,12 +104,12 @@ impl<'a> Twin<'a> {
                 for (set, owner) in (0..layout.crossing.sets.len()).flat_map(|s| [(s, 0), (s, 1)]) {
                     let (lists, scratch) = (&layout.crossing, scratch.column());
                     let tension = p.soft(2).then(|| tension.column());
-                    width.run(lists::Solve { columns, lists, set, owner, scratch, per_dt2, tension });
+                    width.run(lists::SolveCrossing { columns, lists, set, owner, scratch, per_dt2, tension });
                 }
             }
             Kernel::Tethers => {
                 for owner in 0..OWNERS {
-                    width.run(tethers::Hold { columns, tethers: &layout.tethers, spans: spans(owner) });
+                    width.run(tethers::HoldTethers { columns, tethers: &layout.tethers, spans: spans(owner) });
                 }
             }
             Kernel::Settle => {
@@ -127,24 +127,24 @@ impl<'a> Twin<'a> {
         let (garment, p) = (self.garment, &self.prepared);
         let columns = self.state.columns();
         let (width, spans) = (self.settings.width, [(0, garment.particles() as u32)]);
-        let mut room = stages::Room::new(garment.particles());
+        let mut room = stiff_bending::StiffBendingScratch::new(garment.particles());
         let room = room.columns();
         let mut scratch = Store::zeros(bending::SCRATCH);
         let last = p.bending.stages;
         for stage in 0..=last {
             let turn = match stage {
-                0 => Turn::Begin { fall: self.settings.gravity * p.dt, pushed: None, dt: p.dt },
-                j if j == last => Turn::End(j),
-                1 => Turn::First([p.stages[0], p.stages[1]]),
-                j => Turn::Next(j + 1, p.stages[j as usize]),
+                0 => StiffBendingUpdate::Begin { fall: self.settings.gravity * p.dt, pushed: None, dt: p.dt },
+                j if j == last => StiffBendingUpdate::End(j),
+                1 => StiffBendingUpdate::First([p.stages[0], p.stages[1]]),
+                j => StiffBendingUpdate::Next(j + 1, p.stages[j as usize]),
             };
-            width.run(stages::Take { columns, spans: &spans, room, turn });
+            width.run(stiff_bending::ApplyStiffBending { columns, spans: &spans, room, turn });
             if stage == last {
                 break;
             }
             let (from_to, by) = match stage {
                 0 => ([room[1], room[0]], p.dt),
-                j => ([j, j + 1].map(|j| room[stages::place(j)]), p.stages[j as usize].forced * p.dt * p.dt),
+                j => ([j, j + 1].map(|j| room[stiff_bending::place(j)]), p.stages[j as usize].forced * p.dt * p.dt),
             };
             push(garment, p, columns.w, from_to, by, scratch.column(), width);
         }
@@ -157,7 +157,7 @@ impl<'a> Twin<'a> {
 }
 
 /// Bending as a force.
-fn bend(garment: &Garment, p: &Prepared, columns: Columns<'_>, scratch: &mut Store, width: Width) {
+fn bend(garment: &Garment, p: &Prepared, columns: ParticleColumns<'_>, scratch: &mut Store, width: Width) {
     let by = p.dt * p.bend.every as f32;
     push(garment, p, columns.w, [columns.x, columns.v], by, scratch.column(), width);
 }
@@ -178,18 +178,18 @@ fn push(
         for owner in 0..OWNERS {
             if let Some(set) = layout.bends.tuples.sets.get(set) {
                 let scale = some.then_some(&*p.bend_scale);
-                width.run(Bend { w, bends: &layout.bends, set, owner, from, to, by, scale, scratch });
+                width.run(BendStencils { w, bends: &layout.bends, set, owner, from, to, by, scale, scratch });
             }
         }
         for owner in 0..OWNERS {
             if let Some(set) = layout.skewed.tuples.sets.get(set) {
                 let scale = some.then_some(&*p.skewed_scale);
-                width.run(Bend { w, bends: &layout.skewed, set, owner, from, to, by, scale, scratch });
+                width.run(BendStencils { w, bends: &layout.skewed, set, owner, from, to, by, scale, scratch });
             }
         }
         for owner in 0..OWNERS {
             let (groups, scale) = (layout.hubs.sets[set][owner].clone(), some.then_some(&*p.hub_scale));
-            width.run(hubs::Bend { w, hubs: &layout.hubs, groups, from, to, by, scale });
+            width.run(hubs::BendHubs { w, hubs: &layout.hubs, groups, from, to, by, scale });
         }
     }
 }
@@ -283,7 +283,7 @@ fn alike(name: &str, software: bool, got: &[Vec3A], expected: &[Vec3A]) {
 /// The wind's accelerations.
 fn blow(garment: &Garment, settings: &Settings, wind: &Wind, twin: &mut Twin<'_>, to: &mut Accelerations) {
     let faces = Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, &garment.layout.owner);
-    for part in Part::ALL {
+    for part in WindPart::ALL {
         faces.blow(settings.width, part, wind, settings.step_seconds, twin.state.columns(), to.columns());
     }
 }
@@ -379,7 +379,7 @@ fn stages_give_what_their_twins_give() {
     }
     // Odd and even numbers end in another part of the room; what is past the most is weakened.
     assert!(seen.iter().any(|m| m % 2 == 0) && seen.iter().any(|m| m % 2 == 1), "{seen:?}");
-    assert_eq!(seen.iter().max(), Some(&stages::MOST));
+    assert_eq!(seen.iter().max(), Some(&stiff_bending::MOST));
 }
 
 #[test]

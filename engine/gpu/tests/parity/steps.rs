@@ -82,7 +82,7 @@ fn walked(n: usize, speed: f64, steps: usize) {
         gpu.step(&[&garment], &[step]).expect("the step is sent");
     }
     gpu.finish().expect("the last step comes back");
-    let tally = cloth.contact_tally();
+    let tally = cloth.contact_counts();
     let (alike, all, most) = apart(gpu.positions(0), &cloth.positions);
     println!("walking skirt x {speed}: {alike} of {all} the same, most {most} m, {tally:?}");
     assert!(tally.near > 0, "the body was not met");

@@ -42,9 +42,9 @@ impl CapsuleIndex {
 /// One number a capsule.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
-pub struct Row(pub [f32; PLACES]);
+pub struct CapsuleRow(pub [f32; PLACES]);
 
-impl Row {
+impl CapsuleRow {
     const ZERO: Self = Self([0.0; PLACES]);
 
     /// One capsule's number in every lane.
@@ -56,21 +56,21 @@ impl Row {
 
 /// One capsule's vector in every lane.
 #[inline(always)]
-pub fn splat3<L: Lanes>(rows: &[Row; 3], capsule: CapsuleIndex) -> V3<L> {
+pub fn splat3<L: Lanes>(rows: &[CapsuleRow; 3], capsule: CapsuleIndex) -> V3<L> {
     V3 { x: rows[0].splat(capsule), y: rows[1].splat(capsule), z: rows[2].splat(capsule) }
 }
 
 /// A sphere a capsule: centre and radius.
 #[derive(Debug, Clone)]
-pub struct Spheres {
+pub struct EndSpheres {
     /// Centre (m).
-    pub centre: [Row; 3],
+    pub centre: [CapsuleRow; 3],
     /// Radius (m).
-    pub radius: Row,
+    pub radius: CapsuleRow,
 }
 
-impl Spheres {
-    const ZERO: Self = Self { centre: [Row::ZERO; 3], radius: Row::ZERO };
+impl EndSpheres {
+    const ZERO: Self = Self { centre: [CapsuleRow::ZERO; 3], radius: CapsuleRow::ZERO };
 
     fn set(&mut self, capsule: usize, sphere: Vec4) {
         for (row, v) in self.centre.iter_mut().zip(sphere.to_array()) {
@@ -82,18 +82,18 @@ impl Spheres {
 
 /// Both ends of every capsule at the start of the step, and what they add to that until its end.
 #[derive(Debug, Clone)]
-pub struct Ends {
+pub struct CapsuleEnds {
     /// First and second sphere at the start of the step.
-    pub start: [Spheres; 2],
+    pub start: [EndSpheres; 2],
     /// How far each moves and grows in the step.
-    pub travel: [Spheres; 2],
+    pub travel: [EndSpheres; 2],
     /// A bit for each capsule that is to be believed.
     pub sound: u32,
 }
 
-impl Ends {
+impl CapsuleEnds {
     /// Nothing yet.
-    pub const NONE: Self = Self { start: [Spheres::ZERO; 2], travel: [const { Spheres::ZERO }; 2], sound: 0 };
+    pub const NONE: Self = Self { start: [EndSpheres::ZERO; 2], travel: [const { EndSpheres::ZERO }; 2], sound: 0 };
 
     /// Reads the colliders of this step. A capsule that is not finite at the end of the step is ignored; one that was
     /// not at its start, or has jumped since, stands at its end all the while.
@@ -123,40 +123,40 @@ fn sound(sphere: Vec4) -> bool {
 /// The capsules at one moment as the distance wants them (see [`RoundCone`](crate::cone::RoundCone) for the geometry).
 /// One sphere inside of the other leaves a sphere: an axis without length.
 #[derive(Debug, Clone)]
-pub struct Cones {
+pub struct CapsuleCones {
     /// First centre (m).
-    pub a: [Row; 3],
+    pub a: [CapsuleRow; 3],
     /// Unit vector along the axis.
-    pub axis: [Row; 3],
+    pub axis: [CapsuleRow; 3],
     /// Unit vector across it: the way out for a particle on the axis.
-    pub across: [Row; 3],
+    pub across: [CapsuleRow; 3],
     /// Length of the axis (m).
-    pub length: Row,
+    pub length: CapsuleRow,
     /// Its inverse (1/m), 0 for a sphere.
-    pub shortness: Row,
+    pub shortness: CapsuleRow,
     /// Radius at the first centre and contact offset (m).
-    pub reach: Row,
+    pub reach: CapsuleRow,
     /// Radius gained (m) a metre of the axis: minus the sine of the side's slope.
-    pub taper: Row,
+    pub taper: CapsuleRow,
     /// Tangent of the side's slope.
-    pub tangent: Row,
+    pub tangent: CapsuleRow,
     /// 1 / cosine^2 of it.
-    pub stretch: Row,
+    pub stretch: CapsuleRow,
     /// sine / cosine^2.
-    pub lean: Row,
+    pub lean: CapsuleRow,
     /// How far the first centre moves in the substep (m).
-    pub carried: [Row; 3],
+    pub carried: [CapsuleRow; 3],
     /// How much farther the second moves (m).
-    pub turned: [Row; 3],
+    pub turned: [CapsuleRow; 3],
     /// A particle that moves farther in a substep than the root of this (m2) may have to be swept; below 0: any.
-    pub quick2: Row,
+    pub quick2: CapsuleRow,
 }
 
-impl Cones {
+impl CapsuleCones {
     /// Nothing yet.
     pub const NONE: Self = {
-        const THREE: [Row; 3] = [Row::ZERO; 3];
-        const ZERO: Row = Row::ZERO;
+        const THREE: [CapsuleRow; 3] = [CapsuleRow::ZERO; 3];
+        const ZERO: CapsuleRow = CapsuleRow::ZERO;
         Self {
             a: THREE,
             axis: THREE,
@@ -176,9 +176,9 @@ impl Cones {
 }
 
 /// Makes the capsules ready.
-pub struct Prepare<'a> {
+pub struct PrepareCones<'a> {
     /// Their ends.
-    pub ends: &'a Ends,
+    pub ends: &'a CapsuleEnds,
     /// Part of the step at which they are wanted, 0..1.
     pub at: f32,
     /// Part of the step that the substep lasts, 0..1.
@@ -190,10 +190,10 @@ pub struct Prepare<'a> {
     /// How much of the smallest radius something may travel and still be believed where it ended.
     pub quick: f32,
     /// Where they go.
-    pub to: &'a mut Cones,
+    pub to: &'a mut CapsuleCones,
 }
 
-impl Kernel for Prepare<'_> {
+impl Kernel for PrepareCones<'_> {
     type Out = ();
 
     #[inline(always)]
@@ -206,7 +206,7 @@ impl Kernel for Prepare<'_> {
     }
 }
 
-impl Prepare<'_> {
+impl PrepareCones<'_> {
     #[inline(always)]
     fn some<L: Lanes>(&mut self, at: usize) {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
@@ -259,22 +259,22 @@ impl Prepare<'_> {
 }
 
 #[inline(always)]
-fn load<L: Lanes>(row: &Row, at: usize) -> L {
+fn load<L: Lanes>(row: &CapsuleRow, at: usize) -> L {
     L::load(ReadColumn::new(&row.0), at)
 }
 
 #[inline(always)]
-fn load3<L: Lanes>(rows: &[Row; 3], at: usize) -> V3<L> {
+fn load3<L: Lanes>(rows: &[CapsuleRow; 3], at: usize) -> V3<L> {
     V3 { x: load(&rows[0], at), y: load(&rows[1], at), z: load(&rows[2], at) }
 }
 
 #[inline(always)]
-fn store<L: Lanes>(row: &mut Row, at: usize, v: L) {
+fn store<L: Lanes>(row: &mut CapsuleRow, at: usize, v: L) {
     v.store(WriteColumn::new(&mut row.0), at);
 }
 
 #[inline(always)]
-fn store3<L: Lanes>(rows: &mut [Row; 3], at: usize, v: V3<L>) {
+fn store3<L: Lanes>(rows: &mut [CapsuleRow; 3], at: usize, v: V3<L>) {
     let [x, y, z] = rows;
     store(x, at, v.x);
     store(y, at, v.y);

@@ -2,7 +2,7 @@
 //!
 //! Reads: particles, the colliders at the start and end of the step. Writes: positions, and where the substep started.
 //! Budget: 30 us a step to find what is near, 15 us a substep to push, for 4,096 particles and 28 capsules (32 at most).
-//! Thread: physics; each worker calls its own [`Owner`].
+//! Thread: physics; each worker calls its own [`OwnerContacts`].
 
 pub mod cones;
 mod near;
@@ -18,12 +18,12 @@ use toile_assets::garment::Part;
 use toile_assets::limits::MAX_CAPSULES;
 
 use super::Settings;
-use super::state::Columns;
+use super::state::ParticleColumns;
 use crate::colliders::Colliders;
 use crate::lanes::Width;
-use cones::{Cones, Ends, Prepare};
-use near::{Block, Boxes, Find, PLANES, Pair};
-use solve::{Solve, Turn};
+use cones::{CapsuleCones, CapsuleEnds, PrepareCones};
+use near::{CapsuleBoxes, ContactPair, FindPairs, PLANES, ParticleBlock};
+use solve::{BusyBlock, SolveContacts};
 use sweep::{QUICK, Sweep};
 
 pub use reach::reach;
@@ -63,7 +63,7 @@ impl ContactSettings {
 
 /// What contact did, counted since the garment was made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Tally {
+pub struct ContactCounts {
     /// Pairs of particle and capsule that were near, summed over the steps.
     pub near: u64,
     /// Pairs whose way was followed, summed over the substeps.
@@ -77,31 +77,31 @@ pub struct Tally {
 /// The contact of one garment, split among the workers that own its particles.
 #[derive(Debug, Clone)]
 pub struct Contacts {
-    owners: [Owner; 2],
+    owners: [OwnerContacts; 2],
 }
 
 impl Contacts {
     /// All storage. `spans` are the ranges of particles (first, how many) of each worker, together each particle once;
     /// `parts` says which limb each particle hangs on, `start` where it starts (m): what is close shares a block.
     pub fn new(spans: &[Vec<(u32, u32)>; 2], parts: &[Part], start: &[Vec3], colliders: &Colliders) -> Self {
-        Self { owners: [0, 1].map(|w| Owner::new(&spans[w], parts, start, colliders)) }
+        Self { owners: [0, 1].map(|w| OwnerContacts::new(&spans[w], parts, start, colliders)) }
     }
 
     /// The workers' parts, to be used at the same time.
-    pub fn owners(&mut self) -> &mut [Owner; 2] {
+    pub fn owners(&mut self) -> &mut [OwnerContacts; 2] {
         &mut self.owners
     }
 
     /// What contact did so far, all workers together.
-    pub fn tally(&self) -> Tally {
+    pub fn tally(&self) -> ContactCounts {
         let [a, b] = [self.owners[0].tally, self.owners[1].tally];
         let most_pairs = [0, 1].map(|k| a.most_pairs[k] + b.most_pairs[k]);
-        Tally { near: a.near + b.near, swept: a.swept + b.swept, ignored: a.ignored.max(b.ignored), most_pairs }
+        ContactCounts { near: a.near + b.near, swept: a.swept + b.swept, ignored: a.ignored.max(b.ignored), most_pairs }
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let owned = |o: &Owner| {
+        let owned = |o: &OwnerContacts| {
             size_of_val(&*o.blocks) + size_of_val(&*o.pairs) + size_of_val(&*o.turns) + size_of_val(&*o.reach)
         };
         size_of::<Self>() + self.owners.iter().map(owned).sum::<usize>()
@@ -110,37 +110,37 @@ impl Contacts {
 
 /// The contact of the particles that one worker owns.
 #[derive(Debug, Clone)]
-pub struct Owner {
-    blocks: Box<[Block]>,
-    pairs: Box<[Pair]>,
-    turns: Box<[Turn]>,
+pub struct OwnerContacts {
+    blocks: Box<[ParticleBlock]>,
+    pairs: Box<[ContactPair]>,
+    turns: Box<[BusyBlock]>,
     reach: Box<[[u16; MAX_CAPSULES]]>,
-    ends: Ends,
-    cones: Cones,
-    boxes: Boxes,
+    ends: CapsuleEnds,
+    cones: CapsuleCones,
+    boxes: CapsuleBoxes,
     planes: heapless::Vec<[f32; 4], PLANES>,
-    tally: Tally,
+    tally: ContactCounts,
 }
 
-impl Owner {
+impl OwnerContacts {
     fn new(spans: &[(u32, u32)], parts: &[Part], start: &[Vec3], colliders: &Colliders) -> Self {
         let blocks = patch::blocks(spans, start);
-        let pairs = vec![Pair::default(); blocks.len() * colliders.capsules().len()].into();
+        let pairs = vec![ContactPair::default(); blocks.len() * colliders.capsules().len()].into();
         Self {
             reach: reaches(&blocks, parts, colliders),
-            turns: vec![Turn::default(); blocks.len()].into(),
+            turns: vec![BusyBlock::default(); blocks.len()].into(),
             blocks,
             pairs,
-            ends: Ends::NONE,
-            cones: Cones::NONE,
-            boxes: Boxes::NONE,
+            ends: CapsuleEnds::NONE,
+            cones: CapsuleCones::NONE,
+            boxes: CapsuleBoxes::NONE,
             planes: heapless::Vec::new(),
-            tally: Tally::default(),
+            tally: ContactCounts::default(),
         }
     }
 
     /// Finds what each particle may touch in this step. Once a step, before the first substep.
-    pub fn find(&mut self, width: Width, cols: Columns<'_>, colliders: &Colliders, how: &ContactSettings) {
+    pub fn find(&mut self, width: Width, cols: ParticleColumns<'_>, colliders: &Colliders, how: &ContactSettings) {
         self.ends.read(colliders);
         self.boxes.set(&self.ends, how.offset_m);
         self.planes.clear();
@@ -149,7 +149,7 @@ impl Owner {
             // As many as there is room for are taken.
             let _ = self.planes.push([x, y, z, w + how.offset_m]);
         }
-        let prepare = Prepare {
+        let prepare = PrepareCones {
             ends: &self.ends,
             at: 0.5,
             share: 1.0,
@@ -160,8 +160,16 @@ impl Owner {
         };
         width.run(prepare);
         let Self { blocks, pairs, reach, cones, boxes, planes, tally, .. } = self;
-        let count =
-            width.run(Find { cols, swept: cones, boxes, planes, blocks, pairs, reach, step_seconds: how.step_seconds });
+        let count = width.run(FindPairs {
+            cols,
+            swept: cones,
+            boxes,
+            planes,
+            blocks,
+            pairs,
+            reach,
+            step_seconds: how.step_seconds,
+        });
         tally.most_pairs = [tally.most_pairs[0].max(count as u64), pairs.len() as u64];
         tally.near += pairs[..count].iter().map(|p| u64::from(p.lanes.count_ones())).sum::<u64>();
         tally.ignored += colliders.capsules().len() as u64 - u64::from(self.ends.sound.count_ones());
@@ -169,9 +177,9 @@ impl Owner {
 
     /// Pushes what touches out of the capsules as they stand at the end of the substep, and holds what would have gone
     /// through them. `span` is the substep's part of the step, 0..1. Last of the constraints of a substep.
-    pub fn solve(&mut self, width: Width, cols: Columns<'_>, span: [f32; 2], how: &ContactSettings) {
+    pub fn solve(&mut self, width: Width, cols: ParticleColumns<'_>, span: [f32; 2], how: &ContactSettings) {
         let Self { blocks, pairs, turns, ends, cones, planes, tally, .. } = self;
-        let prepare = Prepare {
+        let prepare = PrepareCones {
             ends,
             at: span[1],
             share: span[1] - span[0],
@@ -182,18 +190,18 @@ impl Owner {
         };
         width.run(prepare);
         let sweep = Sweep { ends, cones, span, offset: how.offset_m };
-        tally.swept += width.run(Solve { cols, sweep, planes, blocks, pairs, turns, how });
+        tally.swept += width.run(SolveContacts { cols, sweep, planes, blocks, pairs, turns, how });
     }
 }
 
 /// Which particles of each block may touch each capsule at all; nothing where all may touch all.
-fn reaches(blocks: &[Block], parts: &[Part], colliders: &Colliders) -> Box<[[u16; MAX_CAPSULES]]> {
+fn reaches(blocks: &[ParticleBlock], parts: &[Part], colliders: &Colliders) -> Box<[[u16; MAX_CAPSULES]]> {
     let all = reach(Part::All, colliders);
     let bits: Vec<u32> = parts.iter().map(|&part| reach(part, colliders)).collect();
     if bits.iter().all(|b| *b == all) {
         return Box::default();
     }
-    let of = |block: &Block, c: usize| {
+    let of = |block: &ParticleBlock, c: usize| {
         let reaches = |lane: usize| bits.get(block.particle(lane) as usize).unwrap_or(&all) >> c & 1;
         (0..block.len()).fold(0, |lanes, lane| lanes | (reaches(lane) as u16) << lane)
     };

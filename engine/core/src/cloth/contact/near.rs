@@ -7,9 +7,9 @@
 
 use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES};
 
-use super::cones::{CapsuleIndex, Cones, Ends, PLACES, Row};
+use super::cones::{CapsuleCones, CapsuleEnds, CapsuleIndex, CapsuleRow, PLACES};
 use super::touch::close;
-use crate::cloth::state::Columns;
+use crate::cloth::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, MOST, Mask, ReadColumn, V3, WriteColumn, reciprocal_root};
 
 /// Planes that a block can be near: the floor and those of the scene.
@@ -30,7 +30,7 @@ const BOX_M: f32 = 1e-3;
 
 /// Up to 16 particles of one owner that lie close together: four times four that are neighbours in memory.
 #[derive(Debug, Clone)]
-pub struct Block {
+pub struct ParticleBlock {
     /// First particle of each four; of those past `len` nothing is read or written.
     quads: [u32; 4],
     /// Particles, at most [`MOST`].
@@ -45,7 +45,7 @@ pub struct Block {
     pub plane_lanes: [u16; PLANES],
 }
 
-impl Block {
+impl ParticleBlock {
     /// Near nothing yet. All fours but the last are whole.
     pub fn new(quads: [u32; 4], len: usize) -> Self {
         Self { quads, len: len.min(MOST) as u16, pairs: 0, from: 0, planes: 0, plane_lanes: [0; PLANES] }
@@ -102,7 +102,7 @@ impl Block {
 
 /// A block and a capsule that are near.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Pair {
+pub struct ContactPair {
     /// The capsule.
     pub capsule: CapsuleIndex,
     /// Which particles of the block may touch it in this step, a bit each.
@@ -114,17 +114,18 @@ pub struct Pair {
 
 /// Boxes around what each capsule sweeps in the step.
 #[derive(Debug, Clone)]
-pub struct Boxes {
-    low: [Row; 3],
-    high: [Row; 3],
+pub struct CapsuleBoxes {
+    low: [CapsuleRow; 3],
+    high: [CapsuleRow; 3],
 }
 
-impl Boxes {
+impl CapsuleBoxes {
     /// Boxes that hold nothing.
-    pub const NONE: Self = Self { low: [Row([f32::INFINITY; PLACES]); 3], high: [Row([f32::NEG_INFINITY; PLACES]); 3] };
+    pub const NONE: Self =
+        Self { low: [CapsuleRow([f32::INFINITY; PLACES]); 3], high: [CapsuleRow([f32::NEG_INFINITY; PLACES]); 3] };
 
     /// Around both ends at start and end of the step, and the offset.
-    pub fn set(&mut self, ends: &Ends, offset: f32) {
+    pub fn set(&mut self, ends: &CapsuleEnds, offset: f32) {
         *self = Self::NONE;
         for c in (0..PLACES).filter(|c| ends.sound >> c & 1 != 0) {
             for (start, travel) in ends.start.iter().zip(&ends.travel) {
@@ -145,7 +146,7 @@ impl Boxes {
         let mut bits = 0;
         let mut at = 0;
         while at < PLACES {
-            let row = |rows: &[Row; 3], axis: usize| L::load(ReadColumn::new(&rows[axis].0), at);
+            let row = |rows: &[CapsuleRow; 3], axis: usize| L::load(ReadColumn::new(&rows[axis].0), at);
             let side = |axis: usize| {
                 let (l, h) = (L::splat(low[axis]), L::splat(high[axis]));
                 row(&self.low, axis).lt(h).and(l.lt(row(&self.high, axis)))
@@ -158,26 +159,26 @@ impl Boxes {
 }
 
 /// The broad phase over the blocks of one owner.
-pub struct Find<'a> {
+pub struct FindPairs<'a> {
     /// The garment's columns.
-    pub cols: Columns<'a>,
+    pub cols: ParticleColumns<'a>,
     /// Where the capsules are in the middle of the step, swollen by half of their travel: they hold all that is swept.
-    pub swept: &'a Cones,
+    pub swept: &'a CapsuleCones,
     /// Boxes around the same.
-    pub boxes: &'a Boxes,
+    pub boxes: &'a CapsuleBoxes,
     /// Unit normals and offsets (m) of the planes, moved outwards by the contact offset.
     pub planes: &'a [[f32; 4]],
     /// The owner's blocks.
-    pub blocks: &'a mut [Block],
+    pub blocks: &'a mut [ParticleBlock],
     /// Room for a pair of every block with every capsule.
-    pub pairs: &'a mut [Pair],
+    pub pairs: &'a mut [ContactPair],
     /// Which particles of each block may touch each capsule at all; empty where all may touch all.
     pub reach: &'a [[u16; MAX_CAPSULES]],
     /// Length of the step (s).
     pub step_seconds: f32,
 }
 
-impl Kernel for Find<'_> {
+impl Kernel for FindPairs<'_> {
     /// Pairs.
     type Out = usize;
 
@@ -204,8 +205,8 @@ impl Kernel for Find<'_> {
 /// Keeps a block's pairs; says how many there are now in all.
 #[inline(always)]
 fn keep(
-    block: &mut Block,
-    pairs: &mut [Pair],
+    block: &mut ParticleBlock,
+    pairs: &mut [ContactPair],
     met: u32,
     lanes: [u16; PLACES],
     reach: Option<&[u16; MAX_CAPSULES]>,
@@ -218,7 +219,7 @@ fn keep(
         let lanes = lanes[c] & reach.map_or(!0, |r| r[c]);
         // Written first and counted after: no branch.
         if let Some(pair) = pairs.get_mut(at) {
-            *pair = Pair { capsule, lanes, found: 0 };
+            *pair = ContactPair { capsule, lanes, found: 0 };
             at += usize::from(lanes != 0);
         }
     }
@@ -237,7 +238,7 @@ fn travel<L: Lanes>(v: V3<L>, ahead: L) -> L {
 /// The box around all places that the free particles of a block may come to, and how far each may come; what is not free
 /// comes to no number, which is in no box and near nothing.
 #[inline(always)]
-fn around<L: Lanes>(cols: Columns<'_>, block: &Block, ahead: L, far: WriteColumn<'_>) -> [[f32; 3]; 2] {
+fn around<L: Lanes>(cols: ParticleColumns<'_>, block: &ParticleBlock, ahead: L, far: WriteColumn<'_>) -> [[f32; 3]; 2] {
     let (mut low, mut high) = ([L::splat(f32::MAX); 3], [L::splat(-f32::MAX); 3]);
     let mut from = 0;
     while from < block.len() {
@@ -272,10 +273,10 @@ fn meet_planes(planes: &[[f32; 4]], low: [f32; 3], high: [f32; 3]) -> u32 {
 /// Asks the capsules and planes that a block's box has met for each of its particles: a bit a particle for each capsule.
 #[inline(always)]
 fn ask<L: Lanes>(
-    cols: Columns<'_>,
-    swept: &Cones,
+    cols: ParticleColumns<'_>,
+    swept: &CapsuleCones,
     planes: &[[f32; 4]],
-    block: &mut Block,
+    block: &mut ParticleBlock,
     far: WriteColumn<'_>,
     met: [u32; 2],
 ) -> [u16; PLACES] {

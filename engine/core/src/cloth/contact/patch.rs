@@ -2,19 +2,19 @@
 
 use glam::Vec3;
 
-use super::near::Block;
+use super::near::ParticleBlock;
 use crate::lanes::MOST;
 
 /// Cuts spans of particles into blocks of four fours. Four particles that are neighbours in memory stay together, and
 /// with them the three fours that lie nearest: a small block is near few capsules.
-pub fn blocks(spans: &[(u32, u32)], start: &[Vec3]) -> Box<[Block]> {
+pub fn blocks(spans: &[(u32, u32)], start: &[Vec3]) -> Box<[ParticleBlock]> {
     let mut blocks = Vec::new();
     let mut fours = Vec::new();
     for &(first, len) in spans {
         let whole = len / 4;
         fours.extend((0..whole).map(|k| first + 4 * k));
         if len % 4 != 0 {
-            blocks.push(Block::new([first + 4 * whole; 4], len as usize % 4));
+            blocks.push(ParticleBlock::new([first + 4 * whole; 4], len as usize % 4));
         }
     }
     let centre = |first: u32| {
@@ -33,7 +33,7 @@ pub fn blocks(spans: &[(u32, u32)], start: &[Vec3]) -> Box<[Block]> {
             let k = nearest.map_or(0, |(k, _)| k);
             *quad = left.remove(k).0;
         }
-        blocks.push(Block::new(quads, (4 * count).min(MOST)));
+        blocks.push(ParticleBlock::new(quads, (4 * count).min(MOST)));
     }
     blocks.into()
 }

@@ -1,10 +1,10 @@
 //! The kernel of a substep: every particle against what it is near.
 
 use super::ContactSettings;
-use super::near::{Block, Pair, depth};
+use super::near::{ContactPair, ParticleBlock, depth};
 use super::sweep::Sweep;
-use super::touch::{Friction, ON_M, Surface, close, place, push, surface};
-use crate::cloth::state::Columns;
+use super::touch::{ContactSurface, Friction, ON_M, close, place, push, surface};
+use crate::cloth::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, MOST, Mask, V3};
 
 /// One substep over the blocks of one owner.
@@ -12,33 +12,33 @@ use crate::lanes::{Kernel, Lanes, MOST, Mask, V3};
 /// Each particle meets its capsules one after the other, but a push is a long chain of operations that wait for each
 /// other. So the blocks take turns: all are looked at, each that has something to do meets one capsule, those are looked
 /// at again from that capsule on, until nothing is left. Nothing then waits for what was only just begun.
-pub struct Solve<'a> {
+pub struct SolveContacts<'a> {
     /// The garment's columns.
-    pub cols: Columns<'a>,
+    pub cols: ParticleColumns<'a>,
     /// The capsules, at the end of the substep and along it.
     pub sweep: Sweep<'a>,
     /// Unit normals and offsets (m) of the planes, moved outwards by the contact offset.
     pub planes: &'a [[f32; 4]],
     /// The owner's blocks.
-    pub blocks: &'a [Block],
+    pub blocks: &'a [ParticleBlock],
     /// Their pairs.
-    pub pairs: &'a mut [Pair],
+    pub pairs: &'a mut [ContactPair],
     /// Room for a turn of every block.
-    pub turns: &'a mut [Turn],
+    pub turns: &'a mut [BusyBlock],
     /// Friction.
     pub how: &'a ContactSettings,
 }
 
 /// A block that has something to do.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Turn {
+pub struct BusyBlock {
     /// The block.
     block: u32,
     /// Which of its pairs is next.
     pair: u32,
 }
 
-impl Kernel for Solve<'_> {
+impl Kernel for SolveContacts<'_> {
     /// Pairs of particle and capsule whose way was followed.
     type Out = u64;
 
@@ -59,7 +59,7 @@ impl Kernel for Solve<'_> {
             }
             let mut left = 0;
             for t in 0..count {
-                let Turn { block: b, pair } = turns[t];
+                let BusyBlock { block: b, pair } = turns[t];
                 let block = &blocks[b as usize];
                 let next = look::<L>(cols, &sweep, block, pairs, pair as usize + 1 - block.from as usize);
                 left += take(turns, left, b, next);
@@ -75,8 +75,8 @@ impl Kernel for Solve<'_> {
 
 /// Notes a turn; 1 if there is something to do. Written first and counted after: no branch.
 #[inline(always)]
-fn take(turns: &mut [Turn], at: usize, block: u32, next: Option<u32>) -> usize {
-    turns[at] = Turn { block, pair: next.unwrap_or(0) };
+fn take(turns: &mut [BusyBlock], at: usize, block: u32, next: Option<u32>) -> usize {
+    turns[at] = BusyBlock { block, pair: next.unwrap_or(0) };
     usize::from(next.is_some())
 }
 
@@ -90,10 +90,10 @@ fn few<L: Lanes>(bits: u32, from: usize) -> u32 {
 /// pairs with any.
 #[inline(always)]
 fn look<L: Lanes>(
-    cols: Columns<'_>,
+    cols: ParticleColumns<'_>,
     sweep: &Sweep<'_>,
-    block: &Block,
-    pairs: &mut [Pair],
+    block: &ParticleBlock,
+    pairs: &mut [ContactPair],
     start: usize,
 ) -> Option<u32> {
     let range = block.from as usize + start..block.from as usize + usize::from(block.pairs);
@@ -129,7 +129,13 @@ fn look<L: Lanes>(
 
 /// A block meets a capsule; gives how many particles' ways were followed.
 #[inline(always)]
-fn meet<L: Lanes>(cols: Columns<'_>, sweep: &Sweep<'_>, block: &Block, pair: &Pair, friction: Friction<L>) -> u64 {
+fn meet<L: Lanes>(
+    cols: ParticleColumns<'_>,
+    sweep: &Sweep<'_>,
+    block: &ParticleBlock,
+    pair: &ContactPair,
+    friction: Friction<L>,
+) -> u64 {
     let c = pair.capsule;
     let mut swept = 0;
     let mut from = 0;
@@ -158,7 +164,7 @@ fn meet<L: Lanes>(cols: Columns<'_>, sweep: &Sweep<'_>, block: &Block, pair: &Pa
 
 /// Whatever is behind a plane is pushed out: there is no other side.
 #[inline(always)]
-fn meet_planes<L: Lanes>(cols: Columns<'_>, planes: &[[f32; 4]], block: &Block, friction: Friction<L>) {
+fn meet_planes<L: Lanes>(cols: ParticleColumns<'_>, planes: &[[f32; 4]], block: &ParticleBlock, friction: Friction<L>) {
     let zero = L::splat(0.0);
     let mut from = 0;
     while from < block.len() {
@@ -170,7 +176,7 @@ fn meet_planes<L: Lanes>(cols: Columns<'_>, planes: &[[f32; 4]], block: &Block, 
             if touched.any() {
                 let [nx, ny, nz, _] = *plane;
                 let normal = V3 { x: L::splat(nx), y: L::splat(ny), z: L::splat(nz) };
-                let on = Surface { normal, depth, carried: V3 { x: zero, y: zero, z: zero } };
+                let on = ContactSurface { normal, depth, carried: V3 { x: zero, y: zero, z: zero } };
                 push(&mut x, &mut previous, &on, friction, touched);
             }
         }

@@ -5,8 +5,8 @@
 //! straight lines: the distance cannot shrink faster than the faster end approaches, so that time may go on by their
 //! quotient. From the moment of impact on the particle stays before the tangent plane that the capsule carries along.
 
-use super::cones::{CapsuleIndex, Cones, Ends, splat3};
-use super::touch::{Friction, Surface, carried, close, push};
+use super::cones::{CapsuleCones, CapsuleEnds, CapsuleIndex, splat3};
+use super::touch::{ContactSurface, Friction, carried, close, push};
 use crate::lanes::{Lanes, Mask, V3, reciprocal_root};
 
 /// Of the smallest radius and offset: what travels less relative to the surface cuts at most 1/128 of the radius deep,
@@ -22,9 +22,9 @@ const FARTHEST2_M2: f32 = 1e8;
 /// What a sweep works on.
 pub struct Sweep<'a> {
     /// The capsules' ends.
-    pub ends: &'a Ends,
+    pub ends: &'a CapsuleEnds,
     /// The capsules at the end of the substep.
-    pub cones: &'a Cones,
+    pub cones: &'a CapsuleCones,
     /// The substep's part of the step, 0..1.
     pub span: [f32; 2],
     /// Contact offset (m).
@@ -32,7 +32,7 @@ pub struct Sweep<'a> {
 }
 
 /// A capsule at a moment of its own in each lane, and the particle's place from it.
-struct Moment<L> {
+struct SweepMoment<L> {
     /// From the axis to the particle (m).
     out: V3<L>,
     out2: L,
@@ -113,7 +113,7 @@ impl Sweep<'_> {
     }
 
     #[inline(always)]
-    fn moment<L: Lanes>(&self, c: CapsuleIndex, x: V3<L>, t: L) -> Moment<L> {
+    fn moment<L: Lanes>(&self, c: CapsuleIndex, x: V3<L>, t: L) -> SweepMoment<L> {
         let zero = L::splat(0.0);
         let [(a, ra), (b, rb)] = [self.sphere(0, c, t), self.sphere(1, c, t)];
         let (gap, d) = (b - a, ra - rb);
@@ -136,12 +136,12 @@ impl Sweep<'_> {
         let out2 = out.dot(out);
         let distance = out2 * reciprocal_root(out2) - (radius + (rb - ra) * along);
         let along = along.select(cone, L::splat(1.0).select(ra.lt(rb), zero));
-        Moment { out, out2, distance, axis, along }
+        SweepMoment { out, out2, distance, axis, along }
     }
 
     /// The tangent plane of the moment of impact as the capsule has carried and turned it by the end of the substep.
     #[inline(always)]
-    fn carry<L: Lanes>(&self, c: CapsuleIndex, moment: &Moment<L>, x: V3<L>) -> Surface<L> {
+    fn carry<L: Lanes>(&self, c: CapsuleIndex, moment: &SweepMoment<L>, x: V3<L>) -> ContactSurface<L> {
         let zero = L::splat(0.0);
         let normal = moment.out * reciprocal_root(moment.out2);
         let axis = splat3::<L>(&self.cones.axis, c);
@@ -154,6 +154,6 @@ impl Sweep<'_> {
         let [(a, ra), (b, rb)] = [self.sphere(0, c, L::splat(1.0)), self.sphere(1, c, L::splat(1.0))];
         let radius = (ra + (rb - ra) * moment.along).max(zero) + L::splat(self.offset);
         let depth = radius - (x - (a + (b - a) * moment.along)).dot(normal);
-        Surface { normal, depth, carried: carried(self.cones, c, moment.along, normal, radius) }
+        ContactSurface { normal, depth, carried: carried(self.cones, c, moment.along, normal, radius) }
     }
 }

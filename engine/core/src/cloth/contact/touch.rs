@@ -6,7 +6,7 @@
 //! dynamics", section 3.5, with the Coulomb bound of the push): what the static bound covers is held, what goes beyond
 //! slides against the kinetic one.
 
-use super::cones::{CapsuleIndex, Cones, splat3};
+use super::cones::{CapsuleCones, CapsuleIndex, splat3};
 use crate::lanes::{Lanes, Mask, V3, reciprocal_root};
 
 /// A particle that moves farther than this relative to a surface in one substep (m) is no case for contact; the square
@@ -27,7 +27,7 @@ pub struct Friction<L> {
 
 /// A particle's place from a capsule.
 #[derive(Clone, Copy)]
-pub struct Place<L> {
+pub struct CapsulePoint<L> {
     /// From the axis to the particle (m).
     pub out: V3<L>,
     /// Its square (m2).
@@ -48,7 +48,7 @@ fn rough_reciprocal_root<L: Lanes>(x: L) -> L {
 /// The place of particles `x` from capsule `c`. The distance is least at the right height: that the rough root puts the
 /// height off by 7e-4 of what the slope makes of it shows in no more than 1e-6 of the distance from the axis.
 #[inline(always)]
-pub fn place<L: Lanes>(cones: &Cones, c: CapsuleIndex, x: V3<L>) -> Place<L> {
+pub fn place<L: Lanes>(cones: &CapsuleCones, c: CapsuleIndex, x: V3<L>) -> CapsulePoint<L> {
     let v = x - splat3(&cones.a, c);
     let y = v.dot(splat3(&cones.axis, c));
     let away2 = (v.dot(v) - y * y).max(L::splat(0.0));
@@ -63,7 +63,7 @@ pub fn place<L: Lanes>(cones: &Cones, c: CapsuleIndex, x: V3<L>) -> Place<L> {
 /// other particle is looked at from a wrong point of the axis, from which it looks farther away, but not by so much
 /// that one inside would seem outside.
 #[inline(always)]
-pub fn close<L: Lanes>(cones: &Cones, c: CapsuleIndex, x: V3<L>, far: L) -> L::Mask {
+pub fn close<L: Lanes>(cones: &CapsuleCones, c: CapsuleIndex, x: V3<L>, far: L) -> L::Mask {
     let v = x - splat3(&cones.a, c);
     let y = v.dot(splat3(&cones.axis, c));
     let height = y * cones.stretch.splat(c) - (far + cones.reach.splat(c)) * cones.lean.splat(c);
@@ -73,16 +73,16 @@ pub fn close<L: Lanes>(cones: &Cones, c: CapsuleIndex, x: V3<L>, far: L) -> L::M
 
 /// The place of particles, `v` from the first centre, seen from a height along the axis.
 #[inline(always)]
-fn around<L: Lanes>(cones: &Cones, c: CapsuleIndex, v: V3<L>, height: L, far: L) -> Place<L> {
+fn around<L: Lanes>(cones: &CapsuleCones, c: CapsuleIndex, v: V3<L>, height: L, far: L) -> CapsulePoint<L> {
     let height = height.min(cones.length.splat(c)).max(L::splat(0.0));
     let out = v - splat3::<L>(&cones.axis, c) * height;
     let reach = far + cones.reach.splat(c) + height * cones.taper.splat(c);
-    Place { out, out2: out.dot(out), reach, height }
+    CapsulePoint { out, out2: out.dot(out), reach, height }
 }
 
 /// A point of a surface that pushes.
 #[derive(Clone, Copy)]
-pub struct Surface<L> {
+pub struct ContactSurface<L> {
     /// Unit outward normal.
     pub normal: V3<L>,
     /// How far the particle is behind it (m).
@@ -94,7 +94,7 @@ pub struct Surface<L> {
 /// How far the point of capsule `c` at `along` of its axis, `radius` out along `normal`, moves in the substep: with the
 /// axis, and around it as the axis turns, `w x (r n)` with `w = axis x turned / length`.
 #[inline(always)]
-pub fn carried<L: Lanes>(cones: &Cones, c: CapsuleIndex, along: L, normal: V3<L>, radius: L) -> V3<L> {
+pub fn carried<L: Lanes>(cones: &CapsuleCones, c: CapsuleIndex, along: L, normal: V3<L>, radius: L) -> V3<L> {
     let (axis, turned) = (splat3::<L>(&cones.axis, c), splat3::<L>(&cones.turned, c));
     let lever = radius * cones.shortness.splat(c);
     splat3::<L>(&cones.carried, c) + turned * (along + lever * axis.dot(normal)) - axis * (lever * turned.dot(normal))
@@ -102,7 +102,7 @@ pub fn carried<L: Lanes>(cones: &Cones, c: CapsuleIndex, along: L, normal: V3<L>
 
 /// The surface of capsule `c` under particles inside of it.
 #[inline(always)]
-pub fn surface<L: Lanes>(cones: &Cones, c: CapsuleIndex, at: &Place<L>) -> Surface<L> {
+pub fn surface<L: Lanes>(cones: &CapsuleCones, c: CapsuleIndex, at: &CapsulePoint<L>) -> ContactSurface<L> {
     let nothing = L::splat(1e-18);
     let inverse = reciprocal_root(at.out2.max(nothing));
     let mut normal = at.out * inverse;
@@ -113,14 +113,20 @@ pub fn surface<L: Lanes>(cones: &Cones, c: CapsuleIndex, at: &Place<L>) -> Surfa
     }
     let along = at.height * cones.shortness.splat(c);
     let depth = (at.reach - at.out2 * inverse).max(L::splat(0.0));
-    Surface { normal, depth, carried: carried(cones, c, along, normal, at.reach) }
+    ContactSurface { normal, depth, carried: carried(cones, c, along, normal, at.reach) }
 }
 
 /// Moves particles out of a surface where `mask` says so. Only the approach of this substep turns into load and speed:
 /// what a push moves beyond it moves the start of the substep along, so that nothing is shot out of a body that it was
 /// found in.
 #[inline(always)]
-pub fn push<L: Lanes>(x: &mut V3<L>, previous: &mut V3<L>, on: &Surface<L>, friction: Friction<L>, mask: L::Mask) {
+pub fn push<L: Lanes>(
+    x: &mut V3<L>,
+    previous: &mut V3<L>,
+    on: &ContactSurface<L>,
+    friction: Friction<L>,
+    mask: L::Mask,
+) {
     let relative = *x - *previous - on.carried;
     let normal_motion = relative.dot(on.normal);
     let approach = (-normal_motion).max(L::splat(0.0));

@@ -31,7 +31,7 @@ fn solved(width: Width, positions: &[Vec3], weights: &[f32], links: &Links, gamm
     let mut gain = vec![0.0; links.rest.len()];
     prepare(links, weights, [1.0, gamma], Passes::Many, &mut gain);
     let set = &links.tuples.sets[0];
-    width.run(Solve { columns: state.columns(), links, gain: &gain, set, owner: 0, gamma, tension: None });
+    width.run(SolveLinks { columns: state.columns(), links, gain: &gain, set, owner: 0, gamma, tension: None });
     (0..positions.len()).map(|i| Vec3::from_array(state.positions().map(|a| a[i]))).collect()
 }
 

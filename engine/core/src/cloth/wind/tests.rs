@@ -40,7 +40,7 @@ fn square(normal: Vec3A) -> (State, Faces) {
 fn accelerations(faces: &Faces, width: Width, wind: &Wind, state: &mut State) -> Vec<Vec3A> {
     let mut out = Accelerations::new(state.weights().len());
     let to = out.columns();
-    Part::ALL.into_iter().for_each(|part| faces.blow(width, part, wind, DT, state.columns(), to));
+    WindPart::ALL.into_iter().for_each(|part| faces.blow(width, part, wind, DT, state.columns(), to));
     (0..state.weights().len()).map(|i| out.of(i)).collect()
 }
 
@@ -76,9 +76,9 @@ fn every_width_and_both_ways_to_share_give_the_same_bits() {
                     faces.blow(width, part, &SKIRT, DT, at, to);
                 };
                 let job = |phase, share| match (phase, share) {
-                    (0, 0) => blow(Part::First),
-                    (0, _) => blow(Part::Second),
-                    (_, 0) => blow(Part::Crossing),
+                    (0, 0) => blow(WindPart::First),
+                    (0, _) => blow(WindPart::Second),
+                    (_, 0) => blow(WindPart::Crossing),
                     _ => (),
                 };
                 WorkerPool::new(workers).unwrap().run(2, job).unwrap();

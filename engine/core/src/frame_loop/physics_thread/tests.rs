@@ -39,7 +39,7 @@ impl Toy {
 }
 
 impl Scene for Toy {
-    fn step(&mut self, joints: &Joints, times: Times, _: &impl Clock) {
+    fn step(&mut self, joints: &Joints, times: SnapshotTimes, _: &impl Clock) {
         let x = joints.joints[4].position.x;
         self.path.borrow_mut().push(x);
         self.hash = (self.hash ^ u64::from((x * self.share).to_bits())).wrapping_mul(0x9e37_79b9_7f4a_7c15);

@@ -50,14 +50,14 @@ fn a_loop_over_what_is_laid_gives_the_kernels_bits() {
 #[test]
 fn the_workers_share_blocks_alike_and_no_block_twice() {
     let job = Crowd::<4>::new(5_000, 1.0).job();
-    let blocks = |runs: &[crate::skin::layout::Run]| runs.iter().map(|r| r.blocks).sum::<usize>();
+    let blocks = |runs: &[crate::skin::layout::BoneRun]| runs.iter().map(|r| r.blocks).sum::<usize>();
     let (one, two) = job.layout.runs.split_at(job.layout.half);
     let mut next: Vec<(usize, usize)> = job.layout.runs.iter().map(|r| (r.first, r.blocks)).collect();
     next.sort_unstable();
     assert!(next.windows(2).all(|w| w[0].0 + w[0].1 == w[1].0), "blocks follow each other");
     assert_eq!(blocks(one) + blocks(two), job.layout.filled.len());
     let cost =
-        |runs: &[crate::skin::layout::Run]| -> usize { runs.iter().map(|r| r.blocks * (27 + 24 * r.count)).sum() };
+        |runs: &[crate::skin::layout::BoneRun]| -> usize { runs.iter().map(|r| r.blocks * (27 + 24 * r.count)).sum() };
     let (one, two) = (cost(one), cost(two));
     assert!(one.abs_diff(two) <= 2 * (27 + 24 * 4), "{one} against {two}");
 }

@@ -99,7 +99,7 @@ fn what_nothing_is_near_costs_no_pair_and_does_not_move() {
     bed.find(&colliders);
     bed.solve([0.0, 1.0]);
     // Four blocks of 16 and five capsules: room for all, and none used.
-    assert_eq!(bed.contacts.tally(), Tally { most_pairs: [0, 20], ..Tally::default() });
+    assert_eq!(bed.contacts.tally(), ContactCounts { most_pairs: [0, 20], ..ContactCounts::default() });
     assert_eq!(bed.positions(), far);
 }
 

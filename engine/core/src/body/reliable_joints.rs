@@ -19,28 +19,28 @@ const HELD: f32 = 0.2;
 
 /// The joints of one moment that are worth following.
 #[derive(Debug, Clone, Copy)]
-pub struct Seen([Option<Shown>; JOINTS]);
+pub struct ReliableJoints([Option<ReliableJoint>; JOINTS]);
 
 /// Where a joint is, and whether it is seen there or only held.
 #[derive(Debug, Clone, Copy)]
-struct Shown {
+struct ReliableJoint {
     position: Vec3,
     believed: bool,
 }
 
-impl Seen {
+impl ReliableJoints {
     /// Drops joints that are absent and those whose position is no number or out of reach.
     pub fn new(joints: &Joints) -> Self {
         Self(joints.joints.map(|j| {
             let near = j.position.is_finite() && j.position.abs().max_element() < MAX_RANGE;
-            let shown = Shown { position: j.position, believed: j.confidence >= CONFIDENCE_GATE };
+            let shown = ReliableJoint { position: j.position, believed: j.confidence >= CONFIDENCE_GATE };
             (near && j.confidence >= HELD).then_some(shown)
         }))
     }
 
     /// The rest pose, as a perfect sensor would show it.
     pub fn rest(skeleton: &Skeleton) -> Self {
-        Self(skeleton.rest.map(|position| Some(Shown { position, believed: true })))
+        Self(skeleton.rest.map(|position| Some(ReliableJoint { position, believed: true })))
     }
 
     /// One joint's position (m), if it has any.
@@ -71,9 +71,9 @@ impl Seen {
 
 /// One moment: what is seen, of what floor, and how long after the last.
 #[derive(Debug, Clone, Copy)]
-pub struct Moment<'a> {
+pub struct BodyInput<'a> {
     /// The joints.
-    pub seen: &'a Seen,
+    pub seen: &'a ReliableJoints,
     /// The floor.
     pub ground: &'a Ground,
     /// Time since the last moment (s).
@@ -82,7 +82,7 @@ pub struct Moment<'a> {
     pub first: bool,
 }
 
-impl Moment<'_> {
+impl BodyInput<'_> {
     /// Share of the way to go with a time constant (s).
     pub fn share(&self, tau: f32) -> f32 {
         if self.first { 1.0 } else { fraction(self.dt, tau) }

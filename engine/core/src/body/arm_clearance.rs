@@ -30,13 +30,13 @@ const TAU: f32 = 0.06;
 
 /// The collision body of trunk and legs, and how far each arm is turned away from it.
 #[derive(Debug, Clone, Default)]
-pub struct Clear {
+pub struct ArmClearance {
     capsules: heapless::Vec<[RestSphere; 2], MAX_CAPSULES>,
     /// Turn of each arm about its shoulder, world (rad).
     turns: [Vec3; 2],
 }
 
-impl Clear {
+impl ArmClearance {
     /// The capsules of a rig that belong to trunk and legs; those of the arms, and what does not exist, are left out.
     pub fn new(spheres: &[RestSphere], capsules: &[[u8; 2]]) -> Self {
         let mut clear = Self::default();

@@ -9,7 +9,7 @@
 
 use glam::Vec3A;
 
-use super::state::Columns;
+use super::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, Store, V3, WriteColumn};
 
 /// Damping of the stages: inside of the stable range what is left of a motion is at most 1 / cosh(2) = .27 of it. Below
@@ -21,7 +21,7 @@ pub const MOST: u32 = 160;
 
 /// One stage: newest = ahead * newest + behind * the one before + forced * (r - Z newest).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Stage {
+pub struct ChebyshevStage {
     /// mu.
     pub ahead: f32,
     /// nu.
@@ -54,15 +54,15 @@ pub fn needed(suffice: impl Fn(f32) -> bool) -> u32 {
 }
 
 /// The stages 1..=m, into the first `m` places.
-pub fn coefficients(m: u32, to: &mut [Stage]) {
+pub fn coefficients(m: u32, to: &mut [ChebyshevStage]) {
     let (t, slope, w0) = chebyshev(m);
     let w1 = t[m as usize] / slope;
     for (j, stage) in (1..).zip(to.iter_mut().take(m as usize)) {
         *stage = if j == 1 {
-            Stage { ahead: 0.0, behind: 0.0, forced: (w1 / w0) as f32 }
+            ChebyshevStage { ahead: 0.0, behind: 0.0, forced: (w1 / w0) as f32 }
         } else {
             let ratio = t[j - 1] / t[j];
-            Stage {
+            ChebyshevStage {
                 ahead: (2.0 * w0 * ratio) as f32,
                 behind: (-t[j - 2] / t[j]) as f32,
                 forced: (2.0 * w1 * ratio) as f32,
@@ -73,9 +73,9 @@ pub fn coefficients(m: u32, to: &mut [Stage]) {
 
 /// Room for the stages: r, and two changes of velocity.
 #[derive(Debug, Clone)]
-pub struct Room([[Store; 3]; 3]);
+pub struct StiffBendingScratch([[Store; 3]; 3]);
 
-impl Room {
+impl StiffBendingScratch {
     /// For so many particles.
     pub fn new(particles: usize) -> Self {
         Self(std::array::from_fn(|_| std::array::from_fn(|_| Store::zeros(particles))))
@@ -94,7 +94,7 @@ impl Room {
 
 /// What comes before the forces of a stage.
 #[derive(Clone, Copy)]
-pub enum Turn<'a> {
+pub enum StiffBendingUpdate<'a> {
     /// r = what else accelerates; the place ahead goes where the first change of velocity will be.
     Begin {
         /// Gravity over the substep (m/s).
@@ -105,23 +105,23 @@ pub enum Turn<'a> {
         dt: f32,
     },
     /// The first two stages: nothing has changed before them.
-    First([Stage; 2]),
+    First([ChebyshevStage; 2]),
     /// A later one, from its number on; 3 and more.
-    Next(u32, Stage),
+    Next(u32, ChebyshevStage),
     /// The change of velocity after so many stages is added.
     End(u32),
 }
 
 /// One owner's particles take a turn.
-pub struct Take<'a> {
+pub struct ApplyStiffBending<'a> {
     /// The garment's particles.
-    pub columns: Columns<'a>,
+    pub columns: ParticleColumns<'a>,
     /// Ranges of particles, `(first, len)`.
     pub spans: &'a [(u32, u32)],
     /// r, and two changes of velocity.
     pub room: [[WriteColumn<'a>; 3]; 3],
     /// The turn.
-    pub turn: Turn<'a>,
+    pub turn: StiffBendingUpdate<'a>,
 }
 
 /// Which place of the room has the change of velocity after stage `j`.
@@ -129,7 +129,7 @@ pub fn place(j: u32) -> usize {
     1 + (j as usize + 1) % 2
 }
 
-impl Kernel for Take<'_> {
+impl Kernel for ApplyStiffBending<'_> {
     type Out = ();
 
     #[inline(always)]
@@ -146,12 +146,12 @@ impl Kernel for Take<'_> {
     }
 }
 
-impl Take<'_> {
+impl ApplyStiffBending<'_> {
     #[inline(always)]
     fn some<L: Lanes>(&self, at: usize, n: usize) {
         let (c, [r, one, two]) = (&self.columns, self.room);
         match self.turn {
-            Turn::Begin { fall, pushed, dt } => {
+            StiffBendingUpdate::Begin { fall, pushed, dt } => {
                 let w = if n == L::N { L::load(c.w, at) } else { L::load_part(c.w, at, n) };
                 let mut change = V3::<L>::splat(fall);
                 if let Some(acceleration) = pushed {
@@ -161,20 +161,20 @@ impl Take<'_> {
                 change.select(L::splat(0.0).lt(w), none).store(r, at, n);
                 (V3::<L>::load(c.x, at, n) + V3::load(c.v, at, n) * L::splat(dt)).store(one, at, n);
             }
-            Turn::First([first, second]) => {
+            StiffBendingUpdate::First([first, second]) => {
                 let r = V3::<L>::load(r, at, n);
                 let begun = r * L::splat(first.forced);
                 begun.store(one, at, n);
                 (begun * L::splat(second.ahead) + r * L::splat(second.forced)).store(two, at, n);
             }
-            Turn::Next(j, stage) => {
+            StiffBendingUpdate::Next(j, stage) => {
                 let [newest, to] = [self.room[place(j - 1)], self.room[place(j)]];
                 let sum = V3::<L>::load(newest, at, n) * L::splat(stage.ahead)
                     + V3::load(to, at, n) * L::splat(stage.behind)
                     + V3::load(r, at, n) * L::splat(stage.forced);
                 sum.store(to, at, n);
             }
-            Turn::End(m) => {
+            StiffBendingUpdate::End(m) => {
                 let change = V3::<L>::load(self.room[place(m)], at, n);
                 (V3::<L>::load(c.v, at, n) + change).store(c.v, at, n);
             }
@@ -188,7 +188,7 @@ mod tests {
 
     /// u after the stages, for one Z and r = 1.
     fn solved(m: u32, z: f64) -> f64 {
-        let mut stages = [Stage::default(); MOST as usize];
+        let mut stages = [ChebyshevStage::default(); MOST as usize];
         coefficients(m, &mut stages);
         let (mut before, mut newest) = (0.0, f64::from(stages[0].forced));
         for s in &stages[1..m as usize] {
