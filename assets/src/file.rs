@@ -65,6 +65,20 @@ pub enum FileError {
     },
 }
 
+impl FileError {
+    /// What is wrong, without the path and the cure: for sentences that name both themselves.
+    pub fn reason(&self) -> String {
+        match self {
+            Self::Refused { reason, .. } => reason.clone(),
+            Self::NotRegular { found, .. } => format!("it is {found}, not a regular file"),
+            Self::TooLarge { bytes, kind, .. } => {
+                format!("it has {}, more than the {} that are read", shown_size(*bytes), kind.max_bytes)
+            }
+            Self::NotText { .. } => "it is not text in UTF-8".to_owned(),
+        }
+    }
+}
+
 /// Reads a whole file.
 ///
 /// # Errors

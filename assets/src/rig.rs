@@ -26,8 +26,8 @@ use crate::limits::{MAX_CAPSULES, MAX_SPHERES};
 use crate::skeleton::Joint;
 pub use plan::SPHERES;
 use plan::{CAPSULES, PAIRS, PLAN};
-pub use report::{MEAN_GOAL_MM, P95_GOAL_MM, Report, ZoneReport};
-pub use shell::Shell;
+pub use report::{MEAN_GOAL_MM, P95_GOAL_MM, RigReport, ZoneReport};
+pub use shell::CapsuleSurface;
 pub use zones::Zone;
 
 const _: () = assert!(SPHERES <= MAX_SPHERES);
@@ -78,13 +78,13 @@ impl Rig {
     }
 
     /// How closely the union follows the skin of the body that the rig was fitted to, in its rest pose.
-    pub fn report(&self, body: &Body) -> Report {
-        Report::new(body, &self.placed(body))
+    pub fn report(&self, body: &Body) -> RigReport {
+        RigReport::new(body, &self.placed(body))
     }
 
     /// The capsules as surfaces to look at, in the rest pose of the body that the rig was fitted to.
-    pub fn shell(&self, body: &Body) -> Shell {
-        Shell::new(&self.placed(body))
+    pub fn shell(&self, body: &Body) -> CapsuleSurface {
+        CapsuleSurface::new(&self.placed(body))
     }
 }
 
@@ -98,10 +98,10 @@ fn carrier(sphere: usize) -> Joint {
 }
 
 /// Spheres in the rest pose: centre and radius (m).
-type Placed = [(Vec3, f32); SPHERES];
+type RestSpheres = [(Vec3, f32); SPHERES];
 
 /// Distance to the union, and the capsule and place on it that are nearest.
-fn nearest(placed: &Placed, p: Vec3) -> (f32, usize, f32) {
+fn nearest(placed: &RestSpheres, p: Vec3) -> (f32, usize, f32) {
     let mut best = (f32::INFINITY, 0, 0.0);
     for (i, [a, b]) in CAPSULES.iter().enumerate() {
         let (distance, t) = round_cone(p, placed[usize::from(*a)], placed[usize::from(*b)]);

@@ -6,7 +6,7 @@ use glam::{Quat, Vec2, Vec3};
 use proptest::prelude::*;
 use toile_assets::bake::bake;
 use toile_assets::fabric::Fabric;
-use toile_assets::garment::layout::{List, Share, Tuples};
+use toile_assets::garment::layout::{FiberList, OwnerShare, Tuples};
 use toile_assets::garment::{Garment, Shape, check};
 use toile_perf::oracle::{Problem, State, measure};
 use toile_tests::meshes::{Cell, Plan, area, folded};
@@ -51,7 +51,7 @@ fn edges(shape: &Shape, garment: &Garment) -> BTreeSet<[u32; 2]> {
 
 /// The particles of each set, owner after owner.
 fn sets<const K: usize>(tuples: &Tuples<K>) -> Vec<Vec<u32>> {
-    let of = |share: &Share| {
+    let of = |share: &OwnerShare| {
         let runs = &tuples.runs[share.runs.start as usize..share.runs.end as usize];
         let side_by_side = runs.iter().flat_map(|run| (0..run.len).flat_map(|t| run.first.map(|f| f + t)));
         let loose = &tuples.loose[share.loose.start as usize..share.loose.end as usize];
@@ -92,7 +92,7 @@ proptest! {
             prop_assert!(no_particle_twice(set));
         }
         let lists = &layout.crossing;
-        let of = |l: &List| (l.first..l.first + l.lanes * l.rows).map(|k| lists.index[k as usize]);
+        let of = |l: &FiberList| (l.first..l.first + l.lanes * l.rows).map(|k| lists.index[k as usize]);
         for set in &lists.sets {
             let all = set.iter().flat_map(|r| lists.lists[r.start as usize..r.end as usize].iter().flat_map(of));
             prop_assert!(no_particle_twice(all.collect()));

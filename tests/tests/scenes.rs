@@ -1,7 +1,7 @@
 //! The page about scene files says what the program takes: every key, and scenes that can be run.
 
 use toile_assets::bake::bake;
-use toile_assets::scene_file::{SceneFile, Source, schema};
+use toile_assets::scene_file::{SceneFile, SceneSource, schema};
 use toile_tests::tree;
 
 fn page() -> String {
@@ -25,7 +25,7 @@ fn every_scene_of_the_page_is_one() {
     assert!(blocks.len() >= 2, "only {} scenes were found", blocks.len());
     for text in blocks {
         let scene =
-            SceneFile::parse("docs/scene.md", text, Source::Inside(&[])).unwrap_or_else(|e| panic!("{e}\n{text}"));
+            SceneFile::parse("docs/scene.md", text, SceneSource::Inside(&[])).unwrap_or_else(|e| panic!("{e}\n{text}"));
         assert!(scene.steps() > 0);
     }
 }
@@ -41,7 +41,7 @@ fn published_outfits_are_scenes_as_they_are() {
         let text = format!(
             "[garment]\nmesh = \"{file}.obj\"\nscale = 0.1\n[[garment.pin]]\nbox = [[-5, 0.3, -5], [5, 5, 5]]\n"
         );
-        let scene = SceneFile::parse(file, &text, Source::Folder(&outfits)).unwrap_or_else(|e| panic!("{e}"));
+        let scene = SceneFile::parse(file, &text, SceneSource::Folder(&outfits)).unwrap_or_else(|e| panic!("{e}"));
         let garment = &scene.garments[0];
         assert_eq!(garment.mesh.start.len(), vertices);
         let baked = bake(file, "one size", &garment.shape, &garment.fabric).unwrap_or_else(|e| panic!("{file}: {e}"));

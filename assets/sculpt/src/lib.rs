@@ -15,7 +15,7 @@ mod wrap;
 pub use draw::{Drawn, draw};
 pub use unwrap::unwrap;
 
-use toile_assets::body::stored::Stored;
+use toile_assets::body::stored::StoredBodies;
 
 /// Draws a woman and a man from the texts of their drawings, and puts both with one atlas into what is stored.
 ///
@@ -24,13 +24,13 @@ use toile_assets::body::stored::Stored;
 ///
 /// # Panics
 /// Where the two drawings do not give the same grid.
-pub fn stored(drawings: [&str; 2]) -> Result<Stored, toml::de::Error> {
+pub fn stored(drawings: [&str; 2]) -> Result<StoredBodies, toml::de::Error> {
     let bodies = [draw(drawings[0])?, draw(drawings[1])?];
     let (uvs, corners) = unwrap(&bodies);
     let [woman, man] = bodies;
     assert_eq!(woman.quads, man.quads, "both bodies have one grid");
     let charts = woman.charts.iter().map(|c| c.number()).collect();
-    Ok(Stored {
+    Ok(StoredBodies {
         positions: [woman.positions, man.positions],
         skeletons: [woman.skeleton, man.skeleton],
         quads: woman.quads,

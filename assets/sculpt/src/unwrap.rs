@@ -26,11 +26,11 @@ const GAP: f32 = 0.006;
 pub fn unwrap(bodies: &[Drawn; 2]) -> (Vec<Vec2>, Vec<[u32; 4]>) {
     let mean: Vec<Vec3> = bodies[0].positions.iter().zip(&bodies[1].positions).map(|(a, b)| (*a + *b) * 0.5).collect();
     let drawn = &bodies[0];
-    let mut sheets: Vec<Sheet> = Vec::with_capacity(CHARTS);
+    let mut sheets: Vec<ChartLayout> = Vec::with_capacity(CHARTS);
     for chart in 0..CHARTS as u8 {
         let faces: Vec<usize> = (0..drawn.quads.len()).filter(|&f| drawn.charts[f].number() == chart).collect();
         let mirrored = chart >= 4 && chart % 2 == 1;
-        let sheet = Sheet::new(&drawn.quads, faces);
+        let sheet = ChartLayout::new(&drawn.quads, faces);
         sheets.push(if mirrored {
             sheet.like(&sheets[usize::from(chart) - 1], &drawn.twins)
         } else {
@@ -51,7 +51,7 @@ pub fn unwrap(bodies: &[Drawn; 2]) -> (Vec<Vec2>, Vec<[u32; 4]>) {
 }
 
 /// One chart: its faces, its vertices by their own numbers, and where they lie.
-struct Sheet {
+struct ChartLayout {
     faces: Vec<usize>,
     quads: Vec<[u32; 4]>,
     /// The body's vertex of each of its own.
@@ -59,7 +59,7 @@ struct Sheet {
     points: Vec<Vec2>,
 }
 
-impl Sheet {
+impl ChartLayout {
     fn new(quads: &[[u32; 4]], faces: Vec<usize>) -> Self {
         let mut vertices: Vec<u32> = faces.iter().flat_map(|&f| quads[f]).collect();
         vertices.sort_unstable();
@@ -148,14 +148,14 @@ fn upright(points: &[Vec2], rest: &[Vec3]) -> Mat2 {
 }
 
 /// One triangle at rest: corners, the inverse of its edge matrix, area.
-struct Rest {
+struct RestTriangle {
     corners: [u32; 3],
     inverse: Mat2,
     area: f32,
 }
 
 struct Flattening {
-    rest: Vec<Rest>,
+    rest: Vec<RestTriangle>,
     /// Neighbours of each vertex with the Laplacian's weight.
     near: Vec<Vec<(u32, f32)>>,
     area: f32,
@@ -175,7 +175,7 @@ impl Flattening {
             let along = e.normalize();
             let x = f.dot(along);
             let edges = Mat2::from_cols(Vec2::new(e.length(), 0.0), Vec2::new(x, (f - along * x).length()));
-            rest.push(Rest { corners, inverse: edges.inverse(), area: 0.5 * edges.determinant() });
+            rest.push(RestTriangle { corners, inverse: edges.inverse(), area: 0.5 * edges.determinant() });
             for k in 0..3 {
                 let [o, p, q] = [0, 1, 2].map(|j| positions[corners[(k + j) % 3] as usize]);
                 let (u, v) = (p - o, q - o);
@@ -316,12 +316,12 @@ impl Flattening {
 }
 
 /// Places the sheets side by side in the unit square, at one scale: rows of falling height.
-fn pack(sheets: &mut [Sheet]) {
+fn pack(sheets: &mut [ChartLayout]) {
     for sheet in sheets.iter_mut() {
         let low = sheet.points.iter().copied().fold(Vec2::INFINITY, Vec2::min);
         sheet.points.iter_mut().for_each(|p| *p -= low);
     }
-    let size = |s: &Sheet| s.points.iter().copied().fold(Vec2::ZERO, Vec2::max);
+    let size = |s: &ChartLayout| s.points.iter().copied().fold(Vec2::ZERO, Vec2::max);
     let sizes: Vec<Vec2> = sheets.iter().map(size).collect();
     let mut order: Vec<usize> = (0..sheets.len()).collect();
     order.sort_by(|&a, &b| sizes[b].y.total_cmp(&sizes[a].y));

@@ -1,6 +1,6 @@
 //! What `toile-assets` ships is what the drawings give.
 
-use toile_assets::body::stored::Stored;
+use toile_assets::body::stored::StoredBodies;
 
 const SHIPPED: &[u8] = include_bytes!("../../data/body/base.bin");
 const DRAWINGS: [&str; 2] = [include_str!("../data/female.toml"), include_str!("../data/male.toml")];
@@ -10,7 +10,7 @@ const ROUNDING: f32 = 2e-5;
 
 #[test]
 fn shipped_bodies_are_those_of_the_drawings() {
-    let shipped = Stored::decode(SHIPPED).expect("the shipped file is complete");
+    let shipped = StoredBodies::decode(SHIPPED).expect("the shipped file is complete");
     let drawn = toile_sculpt::stored(DRAWINGS).expect("the drawings can be read");
     assert_eq!(drawn.quads, shipped.quads);
     assert_eq!(drawn.charts, shipped.charts);

@@ -27,9 +27,9 @@ use crate::fabric::Fabric;
 use crate::garment::Shape;
 
 use super::fibers::{Direction, Edge};
-use fit::{Form, Patches};
-use ring::{Measure, Ring, Rings};
-use whole::Whole;
+use fit::{Patches, QuadraticForm};
+use ring::{Ring, RingMeasure, Rings};
+use whole::RingCurvature;
 
 /// One place where the cloth is bent: energy k/2 |sum c_i x_i|^2.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,14 +60,14 @@ pub fn rigidities(fabric: &Fabric) -> [f64; 3] {
 pub fn stencils(shape: &Shape, edges: &[Edge], fabric: &Fabric) -> Vec<Stencil> {
     let rings = Rings::new(shape, edges);
     let wanted = rigidities(fabric);
-    let plate = Form::plate(wanted);
+    let plate = QuadraticForm::plate(wanted);
     let flat: Vec<_> = (0..shape.cut.len()).map(|v| rings.flat(v)).collect();
     let measures: Vec<_> = flat.iter().map(|ring| measures(ring.as_ref(), wanted)).collect();
     let uneven = |(v, ring): (usize, &Option<Ring>)| {
-        let whole = Whole::new(ring.as_ref()?)?;
+        let whole = RingCurvature::new(ring.as_ref()?)?;
         differs(&whole, &measures[v], &plate, rings.area[v]).then_some(whole)
     };
-    let wholes: Vec<Option<Whole>> = flat.iter().enumerate().map(uneven).collect();
+    let wholes: Vec<Option<RingCurvature>> = flat.iter().enumerate().map(uneven).collect();
     let patches = Patches::new(&rings, &measures, |v| wholes[v].is_some());
     let mut out = Vec::new();
     for (v, around) in measures.iter().enumerate() {
@@ -76,7 +76,7 @@ pub fn stencils(shape: &Shape, edges: &[Edge], fabric: &Fabric) -> Vec<Stencil> 
             out.extend(whole.parts(plate.0).into_iter().map(|part| part.stencil(&whole.v, area)));
         } else if !around.is_empty() {
             let rigidity = patches.rigidities(v, &plate);
-            let k = |d: Direction, m: &Measure| rigidity[d as usize] * rings.area[v] / m.bends(&shape.fixed);
+            let k = |d: Direction, m: &RingMeasure| rigidity[d as usize] * rings.area[v] / m.bends(&shape.fixed);
             out.extend(around.iter().map(|(direction, m)| m.stencil(*direction, k(*direction, m))));
         }
     }
@@ -89,7 +89,7 @@ pub fn stencils(shape: &Shape, edges: &[Edge], fabric: &Fabric) -> Vec<Stencil> 
 const LIKE: f64 = 0.1;
 
 /// Whether the short stencils of a vertex push otherwise than its whole ring would, along the warp or the weft.
-fn differs(whole: &Whole, around: &[(Direction, Measure)], plate: &Form, area: f64) -> bool {
+fn differs(whole: &RingCurvature, around: &[(Direction, RingMeasure)], plate: &QuadraticForm, area: f64) -> bool {
     let rigid = |m: &glam::DMat3, k: usize| m.col(k)[k];
     let condensed = whole.plate(plate.0);
     [Direction::Warp, Direction::Weft].into_iter().enumerate().any(|(k, direction)| {
@@ -103,7 +103,7 @@ fn differs(whole: &Whole, around: &[(Direction, Measure)], plate: &Form, area: f
 }
 
 /// What the ring of a vertex can measure of the directions that are wanted.
-fn measures(ring: Option<&Ring>, wanted: [f64; 3]) -> Vec<(Direction, Measure)> {
+fn measures(ring: Option<&Ring>, wanted: [f64; 3]) -> Vec<(Direction, RingMeasure)> {
     let Some(ring) = ring else { return Vec::new() };
     let eighth = std::f64::consts::FRAC_PI_4;
     [(Direction::Warp, 0.0), (Direction::Weft, 2.0), (Direction::Bias, 1.0), (Direction::Bias, 3.0)]

@@ -6,21 +6,21 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::garment::layout::{Diagonals, OWNERS, Run, Strand};
+use crate::garment::layout::{ConstraintRun, DiagonalShare, Diagonals, OWNERS};
 
 /// Fewest links of a run: with fewer, a link by itself is no dearer.
 const LEAST: usize = 4;
 
 /// One fiber: its links in order, each with its index and the particles that it leads from and to.
 #[derive(Debug, Clone)]
-pub struct Leaning {
+pub struct BiasFiber {
     /// Whether it leans towards the weft as it runs down, or away from it.
     pub towards: bool,
     /// Index of each link, and its particles.
     pub links: Vec<(usize, [u32; 2])>,
 }
 
-impl Leaning {
+impl BiasFiber {
     /// The same fiber, from its particle of the lower number on.
     fn upright(&self) -> Vec<(usize, [u32; 2])> {
         let ends = self.links.first().map(|l| l.1[0]).zip(self.links.last().map(|l| l.1[1]));
@@ -35,7 +35,7 @@ impl Leaning {
 /// Lays fibers out. Gives the families without their parameters, and the link of each parameter place and of each
 /// number.
 pub fn lay_out(
-    fibers: &[Leaning],
+    fibers: &[BiasFiber],
     owner: &[u8],
     alike: &dyn Fn(usize, usize) -> bool,
 ) -> (Diagonals, Vec<usize>, Vec<usize>) {
@@ -59,9 +59,9 @@ pub fn lay_out(
                 places.extend((0..if run.alike { 1 } else { run.len }).map(link));
                 runs.push(run);
             }
-            Strand { runs: first_run..runs.len() as u32, starts: first_start..starts.len() as u32 }
+            DiagonalShare { runs: first_run..runs.len() as u32, starts: first_start..starts.len() as u32 }
         });
-        if strands.iter().any(|s: &Strand| !s.runs.is_empty()) {
+        if strands.iter().any(|s: &DiagonalShare| !s.runs.is_empty()) {
             families.push(strands);
         }
     }
@@ -70,7 +70,7 @@ pub fn lay_out(
 }
 
 /// Fibers of one lean that share no particle, as the links of each family.
-fn families_of(fibers: &[Leaning], particles: usize) -> Vec<Vec<(usize, [u32; 2])>> {
+fn families_of(fibers: &[BiasFiber], particles: usize) -> Vec<Vec<(usize, [u32; 2])>> {
     let mut families: Vec<(bool, Vec<bool>, Vec<_>)> = Vec::new();
     for fiber in fibers {
         let all: Vec<u32> = fiber.links.iter().map(|l| l.1[0]).chain(fiber.links.last().map(|l| l.1[1])).collect();
@@ -90,7 +90,7 @@ fn families_of(fibers: &[Leaning], particles: usize) -> Vec<Vec<(usize, [u32; 2]
 }
 
 /// Runs of links that advance by one particle at both ends; no particle is at both ends of a run.
-fn side_by_side(links: &BTreeMap<[u32; 2], usize>) -> Vec<Run<2>> {
+fn side_by_side(links: &BTreeMap<[u32; 2], usize>) -> Vec<ConstraintRun<2>> {
     let mut runs = Vec::new();
     let mut taken = BTreeSet::new();
     for &first in links.keys() {
@@ -101,7 +101,7 @@ fn side_by_side(links: &BTreeMap<[u32; 2], usize>) -> Vec<Run<2>> {
             len += 1;
         }
         if len as usize >= LEAST {
-            runs.push(Run { first, len, at: 0, serial: 0, alike: false });
+            runs.push(ConstraintRun { first, len, at: 0, serial: 0, alike: false });
         }
     }
     runs
@@ -109,7 +109,7 @@ fn side_by_side(links: &BTreeMap<[u32; 2], usize>) -> Vec<Run<2>> {
 
 /// Runs so that what leads to a run's particles comes before it; those that would have to come before themselves are
 /// left out.
-fn ordered(runs: &[Run<2>]) -> Vec<Run<2>> {
+fn ordered(runs: &[ConstraintRun<2>]) -> Vec<ConstraintRun<2>> {
     let leads: BTreeMap<u32, usize> =
         runs.iter().enumerate().flat_map(|(r, run)| (0..run.len).map(move |t| (run.first[1] + t, r))).collect();
     let before = |r: usize| {
@@ -144,7 +144,7 @@ mod tests {
     use super::*;
 
     /// The diagonals of a grid, row after row, that lean one way; the upper half of the columns is the second owner's.
-    fn grid(columns: u32, rows: u32) -> (Vec<Leaning>, Vec<u8>) {
+    fn grid(columns: u32, rows: u32) -> (Vec<BiasFiber>, Vec<u8>) {
         let starts = (0..columns).map(|c| (c, 0)).chain((1..rows).map(|r| (0, r)));
         let mut index = 0;
         let fibers = starts.map(|(c, r)| {
@@ -154,9 +154,9 @@ mod tests {
                 let at = (r + k) * columns + c + k;
                 (index - 1, [at, at + columns + 1])
             });
-            Leaning { towards: true, links: links.collect() }
+            BiasFiber { towards: true, links: links.collect() }
         });
-        let fibers: Vec<Leaning> = fibers.filter(|f| !f.links.is_empty()).collect();
+        let fibers: Vec<BiasFiber> = fibers.filter(|f| !f.links.is_empty()).collect();
         (fibers, (0..columns * rows).map(|p| u8::from(p % columns >= columns / 2)).collect())
     }
 
@@ -189,15 +189,15 @@ mod tests {
     #[test]
     fn fibers_that_cross_go_to_families_of_their_own_and_a_knot_is_left_out() {
         let rail = |from: u32, by: u32| (0..6u32).map(move |t| (from + t) as usize + by as usize * 100);
-        let ladder: Vec<Leaning> =
-            (0..6u32).map(|t| Leaning { towards: true, links: vec![(t as usize, [t, 6 + t])] }).collect();
+        let ladder: Vec<BiasFiber> =
+            (0..6u32).map(|t| BiasFiber { towards: true, links: vec![(t as usize, [t, 6 + t])] }).collect();
         let mut crossed = ladder.clone();
-        crossed.extend((0..6u32).map(|t| Leaning { towards: false, links: vec![(6 + t as usize, [t, 12 + t])] }));
+        crossed.extend((0..6u32).map(|t| BiasFiber { towards: false, links: vec![(6 + t as usize, [t, 12 + t])] }));
         let (laid, ..) = lay_out(&crossed, &[0; 18], &|_, _| false);
         assert_eq!(laid.families.len(), 2);
         // A fiber that meets itself, and a row whose links lead to each other's tails.
-        let knot = Leaning { towards: true, links: vec![(0, [0, 1]), (1, [1, 2]), (2, [2, 0])] };
-        let chain = Leaning { towards: true, links: rail(0, 0).map(|i| (i, [i as u32, i as u32 + 1])).collect() };
+        let knot = BiasFiber { towards: true, links: vec![(0, [0, 1]), (1, [1, 2]), (2, [2, 0])] };
+        let chain = BiasFiber { towards: true, links: rail(0, 0).map(|i| (i, [i as u32, i as u32 + 1])).collect() };
         for odd in [knot, chain] {
             assert!(lay_out(&[odd], &[0; 18], &|_, _| false).0.families.is_empty());
         }

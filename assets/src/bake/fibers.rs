@@ -126,7 +126,7 @@ pub fn edges(positions: &[Vec3], faces: &[Face]) -> Vec<Edge> {
 
 /// The same for a warp that is given: a unit vector within the plane of each face.
 pub fn edges_along(positions: &[Vec3], faces: &[Face], warp: &[Vec3]) -> Vec<Edge> {
-    let mut found: BTreeMap<(u32, u32), Seen> = BTreeMap::new();
+    let mut found: BTreeMap<(u32, u32), EdgeDirection> = BTreeMap::new();
     for (face, &warp) in faces.iter().zip(warp) {
         let area = area(positions, face);
         let mut add = |p: u32, q: u32, along: Vec2, share: f32, side: bool| {
@@ -160,7 +160,7 @@ pub fn edges_along(positions: &[Vec3], faces: &[Face], warp: &[Vec3]) -> Vec<Edg
 
 /// What the faces beside an edge say of it.
 #[derive(Default)]
-struct Seen {
+struct EdgeDirection {
     /// Components along warp and weft, weighted by area (m2).
     along: Vec2,
     /// Area that the edge stands for (m2).
@@ -171,7 +171,7 @@ struct Seen {
 /// Cosine of 30 degrees: what is nearer to a thread counts as its direction.
 const NEAR_COS: f32 = 0.866;
 
-impl Seen {
+impl EdgeDirection {
     fn edge(&self, a: u32, b: u32, rest: f32) -> Edge {
         let along = self.along.normalize_or_zero().abs();
         let direction = if self.side && along.x >= NEAR_COS {

@@ -1,7 +1,7 @@
 //! From stencils over whole rings to the hubs of a garment's layout.
 
 use super::bending::Stencil;
-use super::order::Order;
+use super::order::ParticleOrder;
 use crate::garment::layout::{HubGroup, Hubs, OWNERS};
 
 /// Stencils of up to so many particles are laid out on their own.
@@ -17,7 +17,7 @@ struct Hub<'a> {
 }
 
 impl<'a> Hub<'a> {
-    fn new(order: &Order, stencils: &'a [Stencil]) -> Self {
+    fn new(order: &ParticleOrder, stencils: &'a [Stencil]) -> Self {
         let particle = |v: &u32| order.particle[*v as usize];
         let mut points: Vec<(u32, usize)> = stencils[0].v.iter().map(particle).zip(0..).collect();
         points[1..].sort_unstable();
@@ -32,7 +32,7 @@ impl<'a> Hub<'a> {
 }
 
 /// All hubs: those of a kind side by side, within it in the order of memory.
-pub fn hubs(order: &Order, stencils: &[Stencil]) -> Hubs {
+pub fn hubs(order: &ParticleOrder, stencils: &[Stencil]) -> Hubs {
     let around = stencils.chunk_by(|a, b| a.v == b.v).filter(|s| s[0].v.len() > SHORT);
     let mut all: Vec<Hub<'_>> = around.map(|s| Hub::new(order, s)).collect();
     all.sort_by_key(|hub| (hub.kind(), hub.points[0].0));

@@ -3,19 +3,20 @@
 use std::ops::Range;
 
 use super::bending::{self, Stencil};
-use super::diagonals::{self, Leaning};
+use super::diagonals::{self, BiasFiber};
 use super::fibers::{Direction, Edge, Fiber};
-use super::order::Order;
-use super::solver::Chooser;
+use super::order::ParticleOrder;
+use super::solver::SolverChoice;
 use super::{hubs, runs, stiffness, tethers};
 use crate::fabric::Fabric;
 use crate::garment::layout::{
-    Bends, Bundle, Diagonals, ENDED, Fibers, Layout, Links, List, Lists, MAX_LISTED, OWNERS, Row, Tethers,
+    Bends, BundleRow, Diagonals, ENDED, FiberBundle, FiberList, FiberLists, Fibers, Layout, Links, MAX_LISTED, OWNERS,
+    Tethers,
 };
 use crate::garment::{Shape, Solver};
 
 /// What baking has found out about a shape so far.
-pub struct Baking<'a> {
+pub struct BakeInput<'a> {
     pub shape: &'a Shape,
     pub fabric: &'a Fabric,
     pub edges: &'a [Edge],
@@ -23,12 +24,12 @@ pub struct Baking<'a> {
     pub chains: &'a [Fiber],
     /// The free pieces of the warp fibers.
     pub pieces: &'a [Fiber],
-    pub order: &'a Order,
+    pub order: &'a ParticleOrder,
     /// Inverse mass of each vertex (1/kg).
     pub weights: &'a [f32],
 }
 
-impl Baking<'_> {
+impl BakeInput<'_> {
     /// Inverse mass of a particle (1/kg).
     fn weight(&self, particle: u32) -> f32 {
         self.weights[self.order.source[particle as usize] as usize]
@@ -36,9 +37,9 @@ impl Baking<'_> {
 }
 
 /// All constraints.
-pub fn lay_out(baking: &Baking<'_>) -> Layout {
+pub fn lay_out(baking: &BakeInput<'_>) -> Layout {
     let mut role: Vec<Option<Direction>> = vec![None; baking.edges.len()];
-    let chooser = Chooser::new(baking.shape, &baking.shape.solver);
+    let chooser = SolverChoice::new(baking.shape, &baking.shape.solver);
     let moves = |f: &&Fiber| f.vertices.iter().any(|&v| !baking.shape.fixed[v as usize]);
     let across = || baking.chains.iter().filter(|f| f.direction != Direction::Warp).filter(moves);
     // Whole fibers along the bias lie side by side, or they are swept.
@@ -98,7 +99,7 @@ fn same(a: f32, b: f32) -> bool {
 }
 
 /// Links of single edges, each with the direction of the fiber that it belongs to.
-fn links(baking: &Baking<'_>, edges: &[(usize, Direction)]) -> Links {
+fn links(baking: &BakeInput<'_>, edges: &[(usize, Direction)]) -> Links {
     let edge = |i: usize| &baking.edges[edges[i].0];
     let soft = |i: usize| compliance(baking.fabric, edge(i), edges[i].1);
     let particle = |v: u32| baking.order.particle[v as usize];
@@ -122,7 +123,7 @@ fn links(baking: &Baking<'_>, edges: &[(usize, Direction)]) -> Links {
 
 /// The fibers along the bias, of the edges given, that can be solved whole; and which edges those are.
 fn diagonals<'a>(
-    baking: &Baking<'_>,
+    baking: &BakeInput<'_>,
     shear: &[(usize, Direction)],
     leaning: impl Iterator<Item = &'a Fiber>,
 ) -> (Diagonals, Vec<bool>) {
@@ -136,7 +137,7 @@ fn diagonals<'a>(
         let (sin, cos) = baking.edges[links[0].0].angle.sin_cos();
         // Links between two fixed particles are nobody's.
         for part in links.split(|l| !open[l.0]).filter(|p| !p.is_empty()) {
-            fibers.push(Leaning { towards: sin * cos > 0.0, links: part.to_vec() });
+            fibers.push(BiasFiber { towards: sin * cos > 0.0, links: part.to_vec() });
         }
     }
     let edge = |i: usize| &baking.edges[i];
@@ -154,7 +155,7 @@ fn diagonals<'a>(
     (laid, taken)
 }
 
-fn fibers(baking: &Baking<'_>, chooser: &Chooser) -> Fibers {
+fn fibers(baking: &BakeInput<'_>, chooser: &SolverChoice) -> Fibers {
     let (mut bundles, mut rows, mut rest, mut soft) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut links = 0;
     for side in &baking.order.sides {
@@ -164,7 +165,7 @@ fn fibers(baking: &Baking<'_>, chooser: &Chooser) -> Fibers {
         let reach = |row: usize| pieces.iter().take_while(|p| p.vertices.len() > row).count() as u32;
         for row in 0..pieces[0].vertices.len() {
             let first = baking.order.particle[pieces[0].vertices[row] as usize];
-            rows.push(Row { first, lanes: reach(row) });
+            rows.push(BundleRow { first, lanes: reach(row) });
         }
         let alike = pieces.iter().all(|p| fibers_alike(baking, pieces[0], p));
         for link in 0..pieces[0].edges.len() {
@@ -174,7 +175,7 @@ fn fibers(baking: &Baking<'_>, chooser: &Chooser) -> Fibers {
                 soft.push(edge.map_or(ENDED, |e| compliance(baking.fabric, e, Direction::Warp)));
             }
         }
-        bundles.push(Bundle {
+        bundles.push(FiberBundle {
             solver: chooser.choose(pieces[0]),
             owner: side.owner,
             lanes: pieces.len() as u32,
@@ -188,7 +189,7 @@ fn fibers(baking: &Baking<'_>, chooser: &Chooser) -> Fibers {
 }
 
 /// Whether two fibers are the same, link by link and mass by mass.
-fn fibers_alike(baking: &Baking<'_>, a: &Fiber, b: &Fiber) -> bool {
+fn fibers_alike(baking: &BakeInput<'_>, a: &Fiber, b: &Fiber) -> bool {
     let edge = |i: u32| &baking.edges[i as usize];
     let links = a.edges.iter().zip(&b.edges).all(|(&i, &j)| {
         let (i, j) = (edge(i), edge(j));
@@ -204,8 +205,8 @@ fn fibers_alike(baking: &Baking<'_>, a: &Fiber, b: &Fiber) -> bool {
 }
 
 /// Fibers as index lists: sets without a common particle, in each of them lists of equal length and like solver.
-fn lists(baking: &Baking<'_>, mut left: Vec<(&Fiber, Solver)>) -> Lists {
-    let mut out = ListsMaker::default();
+fn lists(baking: &BakeInput<'_>, mut left: Vec<(&Fiber, Solver)>) -> FiberLists {
+    let mut out = FiberListsBuilder::default();
     left.sort_by_key(|(f, solver)| (std::cmp::Reverse(f.edges.len()), f.direction, *solver, !f.is_hoop()));
     while !left.is_empty() {
         let mut taken = vec![false; baking.order.particle.len()];
@@ -220,7 +221,7 @@ fn lists(baking: &Baking<'_>, mut left: Vec<(&Fiber, Solver)>) -> Lists {
         });
         out.set(baking, &set);
     }
-    Lists {
+    FiberLists {
         lists: out.lists.into(),
         sets: out.sets.into(),
         index: out.index.into(),
@@ -230,16 +231,16 @@ fn lists(baking: &Baking<'_>, mut left: Vec<(&Fiber, Solver)>) -> Lists {
 }
 
 #[derive(Default)]
-struct ListsMaker {
-    lists: Vec<List>,
+struct FiberListsBuilder {
+    lists: Vec<FiberList>,
     sets: Vec<[Range<u32>; OWNERS]>,
     index: Vec<u32>,
     rest: Vec<f32>,
     compliance: Vec<f32>,
 }
 
-impl ListsMaker {
-    fn set(&mut self, baking: &Baking<'_>, set: &[(&Fiber, Solver)]) {
+impl FiberListsBuilder {
+    fn set(&mut self, baking: &BakeInput<'_>, set: &[(&Fiber, Solver)]) {
         let first = self.lists.len() as u32;
         let kind = |(f, solver): &(&Fiber, Solver)| (f.edges.len(), f.direction, *solver, f.is_hoop());
         for alike in set.chunk_by(|a, b| kind(a) == kind(b)) {
@@ -251,11 +252,11 @@ impl ListsMaker {
         self.sets.push([first..middle, middle..end]);
     }
 
-    fn list(&mut self, baking: &Baking<'_>, chosen: &[(&Fiber, Solver)]) {
+    fn list(&mut self, baking: &BakeInput<'_>, chosen: &[(&Fiber, Solver)]) {
         let fibers: Vec<&Fiber> = chosen.iter().map(|(f, _)| *f).collect();
         let closed = fibers[0].is_hoop();
         let rows = fibers[0].vertices.len() - usize::from(closed);
-        self.lists.push(List {
+        self.lists.push(FiberList {
             solver: chosen[0].1,
             direction: fibers[0].direction,
             closed,
@@ -276,7 +277,7 @@ impl ListsMaker {
 }
 
 /// The stencils of `K` particles, 3 or 4, the root of the stiffness within the coefficients.
-fn bends<const K: usize>(baking: &Baking<'_>, stencils: &[Stencil]) -> Bends<K> {
+fn bends<const K: usize>(baking: &BakeInput<'_>, stencils: &[Stencil]) -> Bends<K> {
     let mine: Vec<&Stencil> = stencils.iter().filter(|s| s.v.len() == K).collect();
     let (mut tuples, mut coefficients) = (Vec::new(), Vec::new());
     for stencil in mine {
@@ -297,7 +298,7 @@ fn bends<const K: usize>(baking: &Baking<'_>, stencils: &[Stencil]) -> Bends<K> 
 }
 
 /// For each particle the fixed one nearest to it along the cloth, itself where there is none.
-fn tethers(baking: &Baking<'_>) -> Tethers {
+fn tethers(baking: &BakeInput<'_>) -> Tethers {
     let n = baking.order.particle.len();
     let mut out = Tethers { anchor: (0..n as u32).collect(), length: vec![0.0; n].into() };
     for tether in tethers::tethers(baking.shape) {

@@ -59,7 +59,7 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
     let hanging = hung as f32 / (n - fixed.len()).max(1) as f32;
     let area = shape.faces.iter().map(|face| f64::from(fibers::area(&shape.cut, face))).sum();
     let threads = stiffness::threads(&edges, &chains, area, fabric);
-    let layout = links::lay_out(&links::Baking {
+    let layout = links::lay_out(&links::BakeInput {
         shape,
         fabric: &threads,
         edges: &edges,

@@ -17,7 +17,7 @@ const LEAST_STRIP: usize = 6;
 
 /// Columns side by side; longest first. Indices into the pieces that were given.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Side {
+pub struct ColumnGroup {
     /// Whose they are.
     pub owner: u8,
     /// The warp pieces.
@@ -26,7 +26,7 @@ pub struct Side {
 
 /// The new order.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Order {
+pub struct ParticleOrder {
     /// The vertex that each particle is.
     pub source: Vec<u32>,
     /// The particle that each vertex became.
@@ -34,13 +34,13 @@ pub struct Order {
     /// Whose each particle is.
     pub owner: Vec<u8>,
     /// Pieces that lie side by side.
-    pub sides: Vec<Side>,
+    pub sides: Vec<ColumnGroup>,
     /// Pieces that cross another one and are kept as index lists.
     pub crossing: Vec<usize>,
 }
 
 /// Orders the vertices by the warp pieces, each of which starts at its support.
-pub fn order(pieces: &[Fiber], edges: &[Edge], vertices: usize) -> Order {
+pub fn order(pieces: &[Fiber], edges: &[Edge], vertices: usize) -> ParticleOrder {
     let mut claimed = vec![usize::MAX; vertices];
     let (mut columns, mut crossing) = (Vec::new(), Vec::new());
     for (i, piece) in pieces.iter().enumerate() {
@@ -55,7 +55,7 @@ pub fn order(pieces: &[Fiber], edges: &[Edge], vertices: usize) -> Order {
     let beside = neighbours(pieces, edges, &claimed);
     let (strips, single) = strips(&columns, &beside);
     let shared = vertices >= SHARE_FROM;
-    let mut out = Order {
+    let mut out = ParticleOrder {
         source: Vec::with_capacity(vertices),
         particle: vec![u32::MAX; vertices],
         owner: Vec::with_capacity(vertices),
@@ -127,7 +127,7 @@ fn strips(columns: &[usize], beside: &[Vec<usize>]) -> (Vec<Vec<usize>>, Vec<usi
     (found, single)
 }
 
-impl Order {
+impl ParticleOrder {
     fn push(&mut self, vertex: u32, owner: u8) {
         self.particle[vertex as usize] = self.source.len() as u32;
         self.source.push(vertex);
@@ -141,7 +141,7 @@ impl Order {
         let middle = if shared { strip.len() / 2 } else { strip.len() };
         for (owner, half) in [0..middle, middle..strip.len()].into_iter().enumerate() {
             let parity = |p: usize| half.clone().filter(move |c| c % 2 == p).map(|c| strip[c]).collect();
-            let mut sides = [0, 1].map(|p| Side { owner: owner as u8, pieces: parity(p) }).to_vec();
+            let mut sides = [0, 1].map(|p| ColumnGroup { owner: owner as u8, pieces: parity(p) }).to_vec();
             sides.retain(|s| !s.pieces.is_empty());
             for row in 0..pieces[strip[0]].vertices.len() {
                 for &p in sides.iter().flat_map(|s| &s.pieces) {
@@ -162,7 +162,7 @@ impl Order {
                     self.push(pieces[p].vertices[row], owner);
                 }
             }
-            self.sides.push(Side { owner, pieces: group.to_vec() });
+            self.sides.push(ColumnGroup { owner, pieces: group.to_vec() });
         }
     }
 }

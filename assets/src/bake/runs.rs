@@ -2,14 +2,14 @@
 
 use super::zigzags;
 use crate::garment::Direction;
-use crate::garment::layout::{OWNERS, Run, Set, Share, Tuples, Zigzag};
+use crate::garment::layout::{ConstraintRun, ConstraintSet, OWNERS, OwnerShare, Tuples, Zigzag};
 
 /// Runs shorter than this are not worth a vector; their constraints are loose.
 const LEAST_RUN: usize = 3;
 
 /// Which constraint is where.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Laid {
+pub struct RunPlaces {
     /// The constraint of each parameter place.
     pub places: Vec<usize>,
     /// The constraint of each number.
@@ -24,7 +24,7 @@ pub fn lay_out<const K: usize>(
     owner: &[u8],
     apart: bool,
     alike: &dyn Fn(usize, usize) -> bool,
-) -> (Tuples<K>, Laid) {
+) -> (Tuples<K>, RunPlaces) {
     let mut order: Vec<usize> = (0..constraints.len()).collect();
     order.sort_by_key(|&i| (std::cmp::Reverse(constraints[i].0), constraints[i].1));
     let crosses = |i: usize| {
@@ -37,14 +37,14 @@ pub fn lay_out<const K: usize>(
         let pairs: Vec<_> = constraints.iter().map(|(d, v)| (*d, [v[0], v[1]])).collect();
         let (zigzags, left) = zigzags::take(&pairs, &order, owner);
         order = left;
-        all.extend(zigzags.iter().map(|set| Set {
+        all.extend(zigzags.iter().map(|set| ConstraintSet {
             direction: set[0].direction,
             crosses: false,
             shares: std::array::from_fn(|share| out.zigzags(set, share, owner, alike)),
         }));
     }
     let sets = if apart { coloured(constraints, &order, owner.len()) } else { gathered(&order, &crosses) };
-    all.extend(sets.into_iter().map(|set| Set {
+    all.extend(sets.into_iter().map(|set| ConstraintSet {
         direction: set.first().map_or(Direction::Warp, |&i| constraints[i].0),
         crosses: !apart && set.first().is_some_and(|&i| crosses(i)),
         shares: std::array::from_fn(|share| {
@@ -61,7 +61,7 @@ pub fn lay_out<const K: usize>(
         count: constraints.len(),
         places: out.places.len(),
     };
-    (tuples, Laid { places: out.places, serial: out.serial })
+    (tuples, RunPlaces { places: out.places, serial: out.serial })
 }
 
 /// First fit in the order of the particles: on a grid neighbours side by side get one colour, which makes long runs.
@@ -98,7 +98,7 @@ fn gathered(order: &[usize], crosses: &dyn Fn(usize) -> bool) -> Vec<Vec<usize>>
 #[derive(Default)]
 struct Layouter<const K: usize> {
     zigzags: Vec<Zigzag>,
-    runs: Vec<Run<K>>,
+    runs: Vec<ConstraintRun<K>>,
     loose: Vec<[u32; K]>,
     places: Vec<usize>,
     /// The constraints in the order of their numbers.
@@ -109,11 +109,11 @@ impl<const K: usize> Layouter<K> {
     /// One owner's zigzags of a set.
     fn zigzags(
         &mut self,
-        set: &[zigzags::Zigzag],
+        set: &[zigzags::ZigzagLinks],
         share: usize,
         owner: &[u8],
         alike: &dyn Fn(usize, usize) -> bool,
-    ) -> Share {
+    ) -> OwnerShare {
         let first = self.zigzags.len() as u32;
         for zigzag in set.iter().filter(|z| usize::from(owner[z.rails[0] as usize]) == share) {
             let [a, b] = zigzag.rails;
@@ -121,16 +121,21 @@ impl<const K: usize> Layouter<K> {
             let slants = self.run([b, a + 1], &zigzag.slants, alike);
             self.zigzags.push(Zigzag { rungs, slants });
         }
-        Share { zigzags: first..self.zigzags.len() as u32, ..Share::default() }
+        OwnerShare { zigzags: first..self.zigzags.len() as u32, ..OwnerShare::default() }
     }
 
     /// Constraints side by side get their places and numbers.
-    fn run<const N: usize>(&mut self, first: [u32; N], run: &[usize], alike: &dyn Fn(usize, usize) -> bool) -> Run<N> {
+    fn run<const N: usize>(
+        &mut self,
+        first: [u32; N],
+        run: &[usize],
+        alike: &dyn Fn(usize, usize) -> bool,
+    ) -> ConstraintRun<N> {
         let same = run.iter().all(|&i| alike(run[0], i));
         let (at, serial) = (self.places.len() as u32, self.serial.len() as u32);
         self.serial.extend(run);
         self.places.extend(if same { &run[..1] } else { run });
-        Run { first, len: run.len() as u32, at, serial, alike: same }
+        ConstraintRun { first, len: run.len() as u32, at, serial, alike: same }
     }
 
     /// One owner's share: its runs first, then what is loose.
@@ -140,7 +145,7 @@ impl<const K: usize> Layouter<K> {
         part: &[usize],
         owner: &[u8],
         alike: &dyn Fn(usize, usize) -> bool,
-    ) -> Share {
+    ) -> OwnerShare {
         let (first_run, first_loose) = (self.runs.len() as u32, self.loose.len() as u32);
         let mut loose: Vec<usize> = Vec::new();
         let mut at = 0;
@@ -159,7 +164,7 @@ impl<const K: usize> Layouter<K> {
         let loose_serial = self.serial.len() as u32;
         self.places.extend(&loose);
         self.serial.extend(&loose);
-        Share {
+        OwnerShare {
             zigzags: 0..0,
             runs: first_run..self.runs.len() as u32,
             loose: first_loose..self.loose.len() as u32,
@@ -197,13 +202,13 @@ mod tests {
         let rails = (0..19u32).map(|i| (Direction::Weft, [i, i + 1]));
         let all: Vec<(Direction, [u32; 2])> = rungs.chain(rails).collect();
         let owner: Vec<u8> = (0..40).map(|i| u8::from(i % 20 >= 10)).collect();
-        let (tuples, Laid { places, serial }) = lay_out(&all, &owner, true, &|_, _| false);
+        let (tuples, RunPlaces { places, serial }) = lay_out(&all, &owner, true, &|_, _| false);
         assert_eq!(serial, places);
         let mut sorted = places.clone();
         sorted.sort_unstable();
         assert_eq!(sorted, (0..all.len()).collect::<Vec<_>>());
         tuples.for_each(|place, v| assert_eq!(v, all[places[place]].1));
-        let (even, Laid { places: few, serial }) = lay_out(&all, &owner, true, &|_, _| true);
+        let (even, RunPlaces { places: few, serial }) = lay_out(&all, &owner, true, &|_, _| true);
         assert_eq!(serial.len(), all.len());
         assert!(few.len() < places.len() && even.places == few.len() && even.count == all.len());
         for set in &tuples.sets {

@@ -11,11 +11,11 @@ use std::collections::BTreeMap;
 use super::fibers::{Direction, Fiber};
 use crate::garment::check::corners;
 use crate::garment::shape::Shape;
-use crate::garment::solver::{Overrides, Region, Solver};
+use crate::garment::solver::{Overrides, Solver, SolverRegion};
 
 /// Chooses solvers for the fibers of one shape.
 #[derive(Debug, Clone)]
-pub struct Chooser {
+pub struct SolverChoice {
     overrides: Overrides,
     fixed: Vec<bool>,
     /// True where a vertex is fixed or a side joins it to one that is.
@@ -24,7 +24,7 @@ pub struct Chooser {
     rim: Vec<bool>,
 }
 
-impl Chooser {
+impl SolverChoice {
     /// Looks at the shape once; `overrides` are those of its garment file.
     pub fn new(shape: &Shape, overrides: &Overrides) -> Self {
         let mut sides: BTreeMap<(u32, u32), u32> = BTreeMap::new();
@@ -62,14 +62,14 @@ impl Chooser {
     }
 
     /// The region that a fiber belongs to: hoops that can move alone.
-    pub fn region(&self, fiber: &Fiber) -> Option<Region> {
+    pub fn region(&self, fiber: &Fiber) -> Option<SolverRegion> {
         let all = |is: &[bool]| fiber.vertices.iter().all(|&v| is[v as usize]);
         if fiber.direction != Direction::Weft || !fiber.is_hoop() || all(&self.fixed) {
             None
         } else if all(&self.held) {
-            Some(Region::Waistband)
+            Some(SolverRegion::Waistband)
         } else {
-            all(&self.rim).then_some(Region::Hem)
+            all(&self.rim).then_some(SolverRegion::Hem)
         }
     }
 }
@@ -91,7 +91,7 @@ mod tests {
 
     fn chosen(overrides: Overrides) -> impl Fn(Direction, usize) -> Solver {
         let (shape, fibers) = skirt();
-        let chooser = Chooser::new(&shape, &overrides);
+        let chooser = SolverChoice::new(&shape, &overrides);
         move |direction, row| {
             let at = |f: &&Fiber| f.direction == direction && f.vertices[0] / 12 == row as u32;
             chooser.choose(fibers.iter().find(at).expect("a fiber of that row"))
@@ -109,7 +109,7 @@ mod tests {
         for (mesh, alone) in [(tube(12, 6), false), (split(tube(12, 6), true), true)] {
             let shape =
                 Shape { cut: mesh.0.clone(), worn: mesh.0, faces: mesh.1, fixed: vec![false; 72], ..Shape::default() };
-            let chooser = Chooser::new(&shape, &Overrides::default());
+            let chooser = SolverChoice::new(&shape, &Overrides::default());
             let fibers = fibers::trace(&shape.cut, &fibers::edges(&shape.cut, &shape.faces));
             let bias: Vec<&Fiber> = fibers.iter().filter(|f| f.direction == Direction::Bias).collect();
             let expected = if alone { Solver::GaussSeidel } else { Solver::SemiImplicit };
@@ -137,7 +137,7 @@ mod tests {
         let (positions, faces) = rough_skirt(0.06, 2);
         let fixed = positions.iter().map(|p| p.y > -1e-3).collect();
         let shape = Shape { cut: positions.clone(), worn: positions, faces, fixed, ..Shape::default() };
-        let chooser = Chooser::new(&shape, &Overrides::default());
+        let chooser = SolverChoice::new(&shape, &Overrides::default());
         for fiber in fibers::trace(&shape.cut, &fibers::edges(&shape.cut, &shape.faces)) {
             let whole = fiber.direction != Direction::Weft && fiber.edges.len() > 1;
             assert_eq!(chooser.choose(&fiber), if whole { Solver::SemiImplicit } else { Solver::GaussSeidel });

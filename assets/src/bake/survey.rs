@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::fibers::{self, Coverage, Direction};
-use super::solver::Chooser;
+use super::solver::SolverChoice;
 use super::{bending, tethers};
 use crate::fabric::Fabric;
 use crate::garment::shape::Shape;
@@ -24,7 +24,7 @@ const MOST_LOOSE: f64 = 0.2;
 
 /// What there is of one solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Solved {
+pub struct SolverCount {
     /// The solver.
     pub solver: Solver,
     /// Fibers that it solves; edges alone count as one each.
@@ -35,7 +35,7 @@ pub struct Solved {
 
 /// What baking makes of a shape.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Survey {
+pub struct MeshSurvey {
     /// Vertices.
     pub vertices: usize,
     /// Triangles; a quad counts as two.
@@ -45,7 +45,7 @@ pub struct Survey {
     /// What the fibers cover.
     pub coverage: Coverage,
     /// Which fibers are solved how, those between fixed vertices left out.
-    pub solvers: [Solved; 3],
+    pub solvers: [SolverCount; 3],
     /// Tethers.
     pub tethers: usize,
     /// Bending stencils along warp, weft and bias.
@@ -57,11 +57,11 @@ pub struct Survey {
 }
 
 /// Surveys a shape that baking accepts.
-pub fn survey(shape: &Shape, fabric: &Fabric) -> Survey {
+pub fn survey(shape: &Shape, fabric: &Fabric) -> MeshSurvey {
     let edges = fibers::edges_of(shape);
     let chains = fibers::trace(&shape.cut, &edges);
-    let chooser = Chooser::new(shape, &shape.solver);
-    let mut solvers = [Solver::SemiImplicit, Solver::GaussSeidel, Solver::ZeroStretch].map(|solver| Solved {
+    let chooser = SolverChoice::new(shape, &shape.solver);
+    let mut solvers = [Solver::SemiImplicit, Solver::GaussSeidel, Solver::ZeroStretch].map(|solver| SolverCount {
         solver,
         fibers: 0,
         edges: 0,
@@ -77,7 +77,7 @@ pub fn survey(shape: &Shape, fabric: &Fabric) -> Survey {
     let along = |d: Direction| bends.iter().filter(|b| b.direction == d).count();
     let coverage = Coverage::of(&chains, &shape.fixed);
     let tethers = tethers::tethers(shape).len();
-    Survey {
+    MeshSurvey {
         vertices: shape.cut.len(),
         triangles: shape.triangles().len(),
         fixed: shape.cut.len() - coverage.free,
@@ -176,7 +176,7 @@ mod tests {
         Shape { cut: positions.clone(), worn: positions, faces, fixed, ..Shape::default() }
     }
 
-    fn surveyed(shape: &Shape) -> Survey {
+    fn surveyed(shape: &Shape) -> MeshSurvey {
         survey(shape, &Fabric::built_in("cotton-lawn").unwrap())
     }
 
@@ -187,7 +187,7 @@ mod tests {
         let Coverage { edges, warp, hoops, bias, loose, .. } = found.coverage;
         assert_eq!((edges, warp, hoops, bias, loose), (60 + 72 + 120, 60, 72, 120, 0));
         // Twelve columns and the diagonals both ways; the fixed hoop is nobody's.
-        assert_eq!(found.solvers[0], Solved { solver: Solver::SemiImplicit, fibers: 12 + 24, edges: 60 + 120 });
+        assert_eq!(found.solvers[0], SolverCount { solver: Solver::SemiImplicit, fibers: 12 + 24, edges: 60 + 120 });
         assert_eq!(found.solvers[1].edges, edges - 60 - 120 - 12);
         assert_eq!(found.stencils, [48, 60, 0]);
         assert!(found.warnings.is_empty(), "{:?}", found.warnings);

@@ -34,9 +34,9 @@ pub struct Tether {
 /// One tether for each free vertex, in order; none for what no fixed vertex is sewn to.
 pub fn tethers(shape: &Shape) -> Vec<Tether> {
     let triangles = shape.triangles();
-    let mut march = March::new(&shape.cut, &triangles);
+    let mut march = FrontMarch::new(&shape.cut, &triangles);
     march.run((0..shape.cut.len() as u32).filter(|&v| shape.fixed[v as usize]));
-    let nearest = |(v, known): (usize, &Vec<Source>)| {
+    let nearest = |(v, known): (usize, &Vec<NearAnchor>)| {
         let best = known.first().filter(|_| !shape.fixed[v])?;
         Some(Tether { vertex: v as u32, anchor: best.anchor, length: best.length as f32 })
     };
@@ -45,24 +45,24 @@ pub fn tethers(shape: &Shape) -> Vec<Tether> {
 
 /// A source as a vertex knows it.
 #[derive(Debug, Clone, Copy)]
-struct Source {
+struct NearAnchor {
     anchor: u32,
     length: f64,
 }
 
 /// Distances under way.
-struct March<'a> {
+struct FrontMarch<'a> {
     positions: &'a [Vec3],
     triangles: &'a [[u32; 3]],
     /// The triangles at each vertex.
     around: Vec<Vec<u32>>,
     /// The nearest sources of each vertex, nearest first.
-    known: Vec<Vec<Source>>,
+    known: Vec<Vec<NearAnchor>>,
     /// What is still to be told to neighbours: length (its bits, which sort as it does), vertex, anchor.
     queue: BinaryHeap<Reverse<(u64, u32, u32)>>,
 }
 
-impl<'a> March<'a> {
+impl<'a> FrontMarch<'a> {
     fn new(positions: &'a [Vec3], triangles: &'a [[u32; 3]]) -> Self {
         let mut around = vec![Vec::new(); positions.len()];
         for (i, t) in triangles.iter().enumerate() {
@@ -113,7 +113,7 @@ impl<'a> March<'a> {
         }
         let place = known.partition_point(|s| (s.length, s.anchor) < (length, anchor));
         if place < SOURCES {
-            known.insert(place, Source { anchor, length });
+            known.insert(place, NearAnchor { anchor, length });
             known.truncate(SOURCES);
             self.queue.push(Reverse((length.to_bits(), v, anchor)));
         }

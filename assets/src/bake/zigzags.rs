@@ -10,7 +10,7 @@ const LEAST: usize = 8;
 
 /// Links between two rails of particles, rung and slant in turn.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Zigzag {
+pub struct ZigzagLinks {
     /// Direction of all its links.
     pub direction: Direction,
     /// First particle of each rail; the others follow it.
@@ -22,7 +22,7 @@ pub struct Zigzag {
     pub slants: Vec<usize>,
 }
 
-impl Zigzag {
+impl ZigzagLinks {
     /// All its particles.
     pub fn particles(&self) -> impl Iterator<Item = u32> {
         let n = self.rungs.len() as u32;
@@ -35,9 +35,9 @@ type Places = BTreeMap<(Direction, [u32; 2]), usize>;
 
 /// Takes the zigzags out of links, whose smaller particle comes first; `order` is the order in which to look. Gives
 /// them in sets within which no two share a particle, and what is left in its order.
-pub fn take(links: &[(Direction, [u32; 2])], order: &[usize], owner: &[u8]) -> (Vec<Vec<Zigzag>>, Vec<usize>) {
+pub fn take(links: &[(Direction, [u32; 2])], order: &[usize], owner: &[u8]) -> (Vec<Vec<ZigzagLinks>>, Vec<usize>) {
     let mut places: Places = order.iter().map(|&i| (links[i], i)).collect();
-    let mut sets: Vec<(Direction, Vec<bool>, Vec<Zigzag>)> = Vec::new();
+    let mut sets: Vec<(Direction, Vec<bool>, Vec<ZigzagLinks>)> = Vec::new();
     for &i in order {
         if places.get(&links[i]) != Some(&i) {
             continue;
@@ -64,10 +64,10 @@ pub fn take(links: &[(Direction, [u32; 2])], order: &[usize], owner: &[u8]) -> (
 }
 
 /// The zigzag that begins with the rung between two particles.
-fn follow(places: &Places, direction: Direction, [a, b]: [u32; 2], owner: &[u8]) -> Zigzag {
+fn follow(places: &Places, direction: Direction, [a, b]: [u32; 2], owner: &[u8]) -> ZigzagLinks {
     let link = |p: u32, q: u32| places.get(&(direction, [p.min(q), p.max(q)])).copied();
     let owned = |p: u32| owner.get(p as usize) == owner.get(a as usize);
-    let mut out = Zigzag { direction, rails: [a, b], rungs: Vec::new(), slants: Vec::new() };
+    let mut out = ZigzagLinks { direction, rails: [a, b], rungs: Vec::new(), slants: Vec::new() };
     if !owned(b) {
         return out;
     }

@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 use glam::{Vec2, Vec3};
 
 use super::landmarks::Landmarks;
-use super::stored::Stored;
+use super::stored::StoredBodies;
 use super::{Region, Sex, shares, skin};
 use crate::mesh::SkinWeights;
 use crate::skeleton::Skeleton;
@@ -20,7 +20,7 @@ use crate::skeleton::Skeleton;
 /// Texture: one atlas for both sexes. Each corner of a face has its own texture point, so that the surface stays one
 /// closed manifold: the vertices of a seam have one position and several texture points.
 #[derive(Debug, Clone)]
-pub struct Base {
+pub struct BaseBody {
     /// Whose body it is.
     pub sex: Sex,
     /// Surface points (m) `[vertices]`.
@@ -48,16 +48,16 @@ pub struct Base {
 }
 
 /// Read by a test, so a failure here is a build that never passed its tests.
-static STORED: LazyLock<Stored> = LazyLock::new(|| {
-    Stored::decode(include_bytes!("../../data/body/base.bin")).expect("the embedded bodies are whole")
+static STORED: LazyLock<StoredBodies> = LazyLock::new(|| {
+    StoredBodies::decode(include_bytes!("../../data/body/base.bin")).expect("the embedded bodies are whole")
 });
 
-impl Base {
+impl BaseBody {
     /// The mean body of a sex.
     pub fn new(sex: Sex) -> Self {
         let all = &*STORED;
-        let positions = all.positions[Stored::index(sex)].clone();
-        let skeleton = all.skeletons[Stored::index(sex)].clone();
+        let positions = all.positions[StoredBodies::index(sex)].clone();
+        let skeleton = all.skeletons[StoredBodies::index(sex)].clone();
         let triangles: Vec<[u32; 3]> = split(&all.quads);
         let left = shares::left(&positions, &all.quads, &all.regions, &skeleton);
         let right = shares::right(&left, &all.twins);

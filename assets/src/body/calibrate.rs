@@ -7,11 +7,13 @@
 
 use glam::Vec3;
 
-use super::base::Base;
+use super::base::BaseBody;
 use super::gauge::{Gauge, Gradient};
-use super::morph::{Morphs, PARAMETERS, SLIDERS, Setting, Slider};
+use super::morph::{Morphs, Setting};
 use super::people::{People, allowance};
 use super::reading::{READINGS, Reading};
+use super::slider::{PARAMETERS, SLIDERS, Slider};
+use crate::numeric::linear::{self, Pivot};
 
 /// Error at which a given measure pulls as hard as one standard deviation of people (m): conflicts with what is
 /// expected move a given measure by micrometres.
@@ -57,7 +59,7 @@ const FOLLOW: [(Slider, Slider, Slider); 6] = [
 ];
 
 /// A sex's base, its fields, its gauge and its people.
-pub(super) struct Model {
+pub(super) struct BodyModel {
     pub morphs: Morphs,
     pub gauge: Gauge,
     people: People,
@@ -65,29 +67,29 @@ pub(super) struct Model {
 }
 
 /// What a calibration came to.
-pub(super) struct Found {
-    pub at: Vector,
+pub(super) struct Calibrated {
+    pub at: ParameterVector,
     pub setting: Setting,
     pub readings: [f32; READINGS],
     pub steps: usize,
 }
 
-pub(super) type Vector = [f64; PARAMETERS];
+pub(super) type ParameterVector = [f64; PARAMETERS];
 
 /// The sum of squares around one setting: its value, half its gradient and half its curvature.
-pub(super) struct Squares {
+pub(super) struct SumOfSquares {
     cost: f64,
-    slope: Vector,
-    pub curve: [Vector; PARAMETERS],
+    slope: ParameterVector,
+    pub curve: [ParameterVector; PARAMETERS],
 }
 
-impl Squares {
+impl SumOfSquares {
     fn none() -> Self {
         Self { cost: 0.0, slope: [0.0; PARAMETERS], curve: [[0.0; PARAMETERS]; PARAMETERS] }
     }
 
     /// Adds a residual with its gradient.
-    fn add(&mut self, residual: f64, gradient: &Vector) {
+    fn add(&mut self, residual: f64, gradient: &ParameterVector) {
         self.cost += residual * residual;
         for i in 0..PARAMETERS {
             if gradient[i] != 0.0 {
@@ -100,8 +102,8 @@ impl Squares {
     }
 }
 
-impl Model {
-    pub(super) fn new(base: Base) -> Self {
+impl BodyModel {
+    pub(super) fn new(base: BaseBody) -> Self {
         let sex = base.sex;
         let morphs = Morphs::new(base);
         let gauge = Gauge::new(&morphs.base, allowance(sex));
@@ -111,15 +113,20 @@ impl Model {
     }
 
     /// The base as it is.
-    pub(super) fn as_drawn(&self) -> Found {
+    pub(super) fn as_drawn(&self) -> Calibrated {
         let setting = Setting { sliders: [0.0; SLIDERS], scale: 1.0 };
-        Found { at: [0.0; PARAMETERS], setting, readings: self.gauge.read(&self.morphs.base.positions, None), steps: 0 }
+        Calibrated {
+            at: [0.0; PARAMETERS],
+            setting,
+            readings: self.gauge.read(&self.morphs.base.positions, None),
+            steps: 0,
+        }
     }
 
     /// Finds the body that has the readings given and is like people in all others.
-    pub(super) fn calibrate(&self, given: &[(Reading, f32)]) -> Found {
-        let mut work = Work::new(self);
-        let mut at: Vector = [0.0; PARAMETERS];
+    pub(super) fn calibrate(&self, given: &[(Reading, f32)]) -> Calibrated {
+        let mut work = CalibrationBuffers::new(self);
+        let mut at: ParameterVector = [0.0; PARAMETERS];
         if let Some((_, stature)) = given.iter().find(|g| g.0 == Reading::Stature) {
             at[SLIDERS] = (f64::from(*stature) / self.drawn_stature).ln().clamp(-SCALE, SCALE);
         }
@@ -131,7 +138,7 @@ impl Model {
             // A full step is nearly always the best; where the hull changes under it, a shorter one is.
             let mut share = 1.0;
             let (next, then) = loop {
-                let next: Vector = std::array::from_fn(|i| at[i] + share * step[i]);
+                let next: ParameterVector = std::array::from_fn(|i| at[i] + share * step[i]);
                 let then = work.squares(&next, given);
                 if then.cost <= squares.cost || share < 0.1 {
                     break (next, then);
@@ -149,24 +156,24 @@ impl Model {
         }
         let setting = setting(&at);
         let readings = self.gauge.read(work.place(&setting), None);
-        Found { at, setting, readings, steps }
+        Calibrated { at, setting, readings, steps }
     }
 }
 
-pub(super) fn setting(at: &Vector) -> Setting {
+pub(super) fn setting(at: &ParameterVector) -> Setting {
     Setting { sliders: std::array::from_fn(|k| at[k] as f32), scale: at[SLIDERS].exp() as f32 }
 }
 
 /// Buffers of one calibration.
-pub(super) struct Work<'a> {
-    model: &'a Model,
+pub(super) struct CalibrationBuffers<'a> {
+    model: &'a BodyModel,
     positions: Vec<Vec3>,
     gradients: [Gradient; READINGS],
     pub readings: [f32; READINGS],
 }
 
-impl<'a> Work<'a> {
-    pub(super) fn new(model: &'a Model) -> Self {
+impl<'a> CalibrationBuffers<'a> {
+    pub(super) fn new(model: &'a BodyModel) -> Self {
         let gradients = std::array::from_fn(|_| Vec::new());
         Self { model, positions: model.morphs.base.positions.clone(), gradients, readings: [0.0; READINGS] }
     }
@@ -184,10 +191,10 @@ impl<'a> Work<'a> {
         given.iter().map(|(r, wanted)| f64::from((self.readings[r.index()] - wanted).abs())).fold(0.0, f64::max)
     }
 
-    pub(super) fn squares(&mut self, at: &Vector, given: &[(Reading, f32)]) -> Squares {
+    pub(super) fn squares(&mut self, at: &ParameterVector, given: &[(Reading, f32)]) -> SumOfSquares {
         let setting = setting(at);
         let jacobian = self.read(&setting);
-        let mut squares = Squares::none();
+        let mut squares = SumOfSquares::none();
         for &(reading, wanted) in given {
             let r = reading.index();
             let row = jacobian[r].map(|g| g / TIGHT);
@@ -200,14 +207,14 @@ impl<'a> Work<'a> {
     }
 
     /// Reads the body of a setting, and how each reading changes with each parameter.
-    pub(super) fn read(&mut self, setting: &Setting) -> [Vector; READINGS] {
+    pub(super) fn read(&mut self, setting: &Setting) -> [ParameterVector; READINGS] {
         self.place(setting);
         self.readings = self.model.gauge.read(&self.positions, Some(&mut self.gradients));
         std::array::from_fn(|r| self.row(r, setting))
     }
 
     /// Adds the departure of the whole's scale from what the stature lets expect.
-    fn head(&self, at: &Vector, stature: &Vector, squares: &mut Squares) {
+    fn head(&self, at: &ParameterVector, stature: &ParameterVector, squares: &mut SumOfSquares) {
         let [share, spread] = HEADS;
         let (read, drawn) = (f64::from(self.readings[Reading::Stature.index()]), self.model.drawn_stature);
         let mut row = stature.map(|change| -share * change / (read * spread));
@@ -216,8 +223,8 @@ impl<'a> Work<'a> {
     }
 
     /// One reading's change with each parameter.
-    fn row(&self, reading: usize, setting: &Setting) -> Vector {
-        let mut row: Vector = [0.0; PARAMETERS];
+    fn row(&self, reading: usize, setting: &Setting) -> ParameterVector {
+        let mut row: ParameterVector = [0.0; PARAMETERS];
         for &(v, g) in &self.gradients[reading] {
             for &(k, d) in self.model.morphs.moves(v as usize) {
                 row[k as usize] += f64::from(g.dot(d) * setting.scale);
@@ -228,7 +235,7 @@ impl<'a> Work<'a> {
     }
 
     /// Adds the readings' distance from the mean of people, in deviations: `L^-1 (readings - mean)`.
-    fn like_people(&self, jacobian: &[Vector; READINGS], squares: &mut Squares) {
+    fn like_people(&self, jacobian: &[ParameterVector; READINGS], squares: &mut SumOfSquares) {
         let people = &self.model.people;
         let mut residuals = [0.0; READINGS];
         let mut rows = [[0.0; PARAMETERS]; READINGS];
@@ -248,16 +255,16 @@ impl<'a> Work<'a> {
 }
 
 /// Adds what keeps sliders near their neighbours, and near the base where nothing else does.
-fn kept_together(at: &Vector, squares: &mut Squares) {
+fn kept_together(at: &ParameterVector, squares: &mut SumOfSquares) {
     for (slider, one, other) in FOLLOW {
-        let mut row: Vector = [0.0; PARAMETERS];
+        let mut row: ParameterVector = [0.0; PARAMETERS];
         row[slider.index()] = 1.0 / TOGETHER;
         row[one.index()] -= 0.5 / TOGETHER;
         row[other.index()] -= 0.5 / TOGETHER;
         squares.add((0..PARAMETERS).map(|i| row[i] * at[i]).sum(), &row);
     }
     for slider in Slider::ALL {
-        let mut row: Vector = [0.0; PARAMETERS];
+        let mut row: ParameterVector = [0.0; PARAMETERS];
         row[slider.index()] = 1.0 / ALONE[usize::from(slider.is_length())];
         squares.add(row[slider.index()] * at[slider.index()], &row);
     }
@@ -272,7 +279,7 @@ pub(super) fn bounds(parameter: usize) -> [f64; 2] {
 }
 
 /// The Gauss-Newton step; a slider that would leave its bounds stops there, and the others make up for it.
-fn bounded_step(squares: &Squares, at: &Vector) -> Vector {
+fn bounded_step(squares: &SumOfSquares, at: &ParameterVector) -> ParameterVector {
     let mut fixed: [Option<f64>; PARAMETERS] = [None; PARAMETERS];
     loop {
         let step = solve(squares, &fixed);
@@ -287,29 +294,21 @@ fn bounded_step(squares: &Squares, at: &Vector) -> Vector {
 }
 
 /// Least squares with some steps fixed: the others by Cholesky's factors of the normal matrix.
-fn solve(squares: &Squares, fixed: &[Option<f64>; PARAMETERS]) -> Vector {
+fn solve(squares: &SumOfSquares, fixed: &[Option<f64>; PARAMETERS]) -> ParameterVector {
     let curve = |i: usize, j: usize| squares.curve[i.max(j)][i.min(j)];
-    let mut l = [[0.0; PARAMETERS]; PARAMETERS];
-    let mut x: Vector = [0.0; PARAMETERS];
+    let mut matrix = [[0.0; PARAMETERS]; PARAMETERS];
+    let mut x: ParameterVector = [0.0; PARAMETERS];
     for i in 0..PARAMETERS {
+        // A fixed step has an equation of its own, which nothing else takes part in.
         if let Some(step) = fixed[i] {
-            (l[i][i], x[i]) = (1.0, step);
+            (matrix[i][i], x[i]) = (1.0, step);
             continue;
         }
-        let mut right = -squares.slope[i];
-        right -= (0..PARAMETERS).filter_map(|j| fixed[j].map(|step| curve(i, j) * step)).sum::<f64>();
-        for j in 0..=i {
-            if fixed[j].is_some() {
-                continue;
-            }
-            let dot: f64 = (0..j).map(|k| l[i][k] * l[j][k]).sum();
-            l[i][j] = if i == j { (curve(i, i) - dot).max(1e-12).sqrt() } else { (curve(i, j) - dot) / l[j][j] };
-        }
-        x[i] = (right - (0..i).filter(|&k| fixed[k].is_none()).map(|k| l[i][k] * x[k]).sum::<f64>()) / l[i][i];
+        let from_fixed = (0..PARAMETERS).filter_map(|j| fixed[j].map(|step| curve(i, j) * step)).sum::<f64>();
+        x[i] = -squares.slope[i] - from_fixed;
+        (0..=i).filter(|&j| fixed[j].is_none()).for_each(|j| matrix[i][j] = curve(i, j));
     }
-    for i in (0..PARAMETERS).rev().filter(|&i| fixed[i].is_none()) {
-        let above: f64 = (i + 1..PARAMETERS).filter(|&k| fixed[k].is_none()).map(|k| l[k][i] * x[k]).sum();
-        x[i] = (x[i] - above) / l[i][i];
-    }
+    linear::factor(&mut matrix, Pivot::AtLeast(1e-12));
+    linear::solve(&matrix, &mut x);
     x
 }

@@ -2,11 +2,11 @@
 
 use glam::{Vec2, Vec3};
 
-use super::base::Base;
+use super::base::BaseBody;
 use super::gauge::neck_axis;
 use super::landmarks::Landmark;
-use super::morph::{SLIDERS, Slider};
 use super::segments::Neighbourhood;
+use super::slider::{SLIDERS, Slider};
 use super::{Region, Sex};
 use crate::skeleton::Joint;
 
@@ -25,7 +25,7 @@ const LEG_SHIFT: f32 = 0.35;
 
 /// The segments of trunk and legs, numbered from the head (0) down to the feet; head and feet only hold still.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Trunk {
+enum TrunkSegment {
     Neck = 1,
     Shoulders,
     Chest,
@@ -41,15 +41,15 @@ enum Trunk {
 
 /// The segments of an arm, numbered from the trunk (0) to the hand (4); trunk and hand only hold still.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Arm {
+enum ArmSegment {
     Upper = 1,
     Fore,
     Wrist,
 }
 
 /// What the fields are made from.
-struct Making<'a> {
-    base: &'a Base,
+struct FieldBuilder<'a> {
+    base: &'a BaseBody,
     near: &'a Neighbourhood,
     trunk: Vec<Vec<f32>>,
     arm: Vec<Vec<f32>>,
@@ -60,8 +60,8 @@ struct Making<'a> {
 }
 
 /// One field a slider, of the left side; the right one is made its mirror image.
-pub(super) fn displacements(base: &Base, near: &Neighbourhood) -> Vec<Vec<Vec3>> {
-    let making = Making::new(base, near);
+pub(super) fn displacements(base: &BaseBody, near: &Neighbourhood) -> Vec<Vec<Vec3>> {
+    let making = FieldBuilder::new(base, near);
     let mut fields = vec![vec![Vec3::ZERO; base.positions.len()]; SLIDERS];
     for slider in Slider::ALL {
         let field = &mut fields[slider.index()];
@@ -76,8 +76,8 @@ pub(super) fn displacements(base: &Base, near: &Neighbourhood) -> Vec<Vec<Vec3>>
     fields
 }
 
-impl<'a> Making<'a> {
-    fn new(base: &'a Base, near: &'a Neighbourhood) -> Self {
+impl<'a> FieldBuilder<'a> {
+    fn new(base: &'a BaseBody, near: &'a Neighbourhood) -> Self {
         let arm = |v: u32| matches!(base.regions[v as usize], Region::LeftArm | Region::RightArm);
         let armhole: Vec<u32> = (0..base.positions.len() as u32)
             .filter(|&v| arm(v) && base.positions[v as usize].x > 0.0)
@@ -102,7 +102,7 @@ impl<'a> Making<'a> {
         Self { base, near, trunk, arm: chain(cores), carried, armhole }
     }
 
-    fn share(&self, segment: Trunk, v: usize) -> f32 {
+    fn share(&self, segment: TrunkSegment, v: usize) -> f32 {
         self.trunk[segment as usize][v]
     }
 
@@ -124,22 +124,27 @@ impl<'a> Making<'a> {
                 self.lengthen(field, [self.height(Landmark::NaturalWaist), self.height(Landmark::Axilla)]);
             }
             S::NeckLength => self.lengthen_neck(field),
-            S::Shoulders => self.widen(field, Trunk::Shoulders),
+            S::Shoulders => self.widen(field, TrunkSegment::Shoulders),
             S::Neck => self.swell_neck(field),
-            S::ChestBreadth => self.widen(field, Trunk::Chest),
+            S::ChestBreadth => self.widen(field, TrunkSegment::Chest),
             S::ChestDepth => {
                 let bust = if self.base.sex == Sex::Female { 0.35 } else { 0.0 };
-                self.deepen(field, &[(Trunk::Chest, 1.0), (Trunk::Shoulders, 0.4)], Landmark::BustPoint, bust);
+                self.deepen(
+                    field,
+                    &[(TrunkSegment::Chest, 1.0), (TrunkSegment::Shoulders, 0.4)],
+                    Landmark::BustPoint,
+                    bust,
+                );
             }
-            S::Underbust => self.swell(field, Trunk::Underbust, Landmark::Underbust, 0.0),
-            S::Waist => self.swell(field, Trunk::Waist, Landmark::NaturalWaist, 0.15),
-            S::AbdomenBreadth => self.widen(field, Trunk::Abdomen),
-            S::AbdomenDepth => self.deepen(field, &[(Trunk::Abdomen, 1.0)], Landmark::Omphalion, 0.4),
-            S::HipBreadth => self.widen(field, Trunk::Hip),
-            S::HipDepth => self.deepen(field, &[(Trunk::Hip, 1.0)], Landmark::Buttock, -0.15),
-            S::Thigh => self.swell_leg(field, Trunk::Thigh, Landmark::Thigh, 0.0),
-            S::Knee => self.swell_leg(field, Trunk::Knee, Landmark::Midpatella, 0.8),
-            S::Calf => self.swell_leg(field, Trunk::Calf, Landmark::Calf, 0.8),
+            S::Underbust => self.swell(field, TrunkSegment::Underbust, Landmark::Underbust, 0.0),
+            S::Waist => self.swell(field, TrunkSegment::Waist, Landmark::NaturalWaist, 0.15),
+            S::AbdomenBreadth => self.widen(field, TrunkSegment::Abdomen),
+            S::AbdomenDepth => self.deepen(field, &[(TrunkSegment::Abdomen, 1.0)], Landmark::Omphalion, 0.4),
+            S::HipBreadth => self.widen(field, TrunkSegment::Hip),
+            S::HipDepth => self.deepen(field, &[(TrunkSegment::Hip, 1.0)], Landmark::Buttock, -0.15),
+            S::Thigh => self.swell_leg(field, TrunkSegment::Thigh, Landmark::Thigh, 0.0),
+            S::Knee => self.swell_leg(field, TrunkSegment::Knee, Landmark::Midpatella, 0.8),
+            S::Calf => self.swell_leg(field, TrunkSegment::Calf, Landmark::Calf, 0.8),
             S::ArmLength | S::UpperArm | S::Forearm | S::Wrist => {}
         }
     }
@@ -172,7 +177,7 @@ impl<'a> Making<'a> {
     }
 
     /// Scales breadth about the body's middle.
-    fn widen(&self, field: &mut [Vec3], segment: Trunk) {
+    fn widen(&self, field: &mut [Vec3], segment: TrunkSegment) {
         for (v, d) in field.iter_mut().enumerate() {
             d.x += self.share(segment, v) * self.base.positions[v].x;
         }
@@ -180,7 +185,7 @@ impl<'a> Making<'a> {
 
     /// Scales depth about the middle of the section at a landmark; `front` shifts the middle backwards by that part of
     /// half the depth, so that the front grows more.
-    fn deepen(&self, field: &mut [Vec3], segments: &[(Trunk, f32)], level: Landmark, front: f32) {
+    fn deepen(&self, field: &mut [Vec3], segments: &[(TrunkSegment, f32)], level: Landmark, front: f32) {
         let (centre, half) = self.section(level);
         let pivot = centre.y - front * half.y;
         for (v, d) in field.iter_mut().enumerate() {
@@ -189,7 +194,7 @@ impl<'a> Making<'a> {
         }
     }
 
-    fn swell(&self, field: &mut [Vec3], segment: Trunk, level: Landmark, front: f32) {
+    fn swell(&self, field: &mut [Vec3], segment: TrunkSegment, level: Landmark, front: f32) {
         self.widen(field, segment);
         self.deepen(field, &[(segment, 1.0)], level, front);
     }
@@ -200,19 +205,21 @@ impl<'a> Making<'a> {
             let p = self.base.positions[v];
             let along = ((p.y - neck.y) / (head.y - neck.y)).clamp(-0.5, 1.5);
             let centre = neck.z + along * (head.z - neck.z);
-            *d = Vec3::new(p.x, 0.0, p.z - centre) * self.share(Trunk::Neck, v);
+            *d = Vec3::new(p.x, 0.0, p.z - centre) * self.share(TrunkSegment::Neck, v);
         }
     }
 
     /// Swells one level of the legs. Breadth grows away from a line at `own` of the way from the body's middle to the
     /// leg's: 0 keeps the gap between the thighs in proportion, so that it never closes.
-    fn swell_leg(&self, field: &mut [Vec3], segment: Trunk, level: Landmark, own: f32) {
+    fn swell_leg(&self, field: &mut [Vec3], segment: TrunkSegment, level: Landmark, own: f32) {
         let (centre, _) = self.section(level);
         for (v, d) in field.iter_mut().enumerate() {
             let p = self.base.positions[v];
             *d = Vec3::new(p.x - own * centre.x * p.x.signum(), 0.0, p.z - centre.y) * self.share(segment, v);
-            if segment == Trunk::Thigh {
-                let below = self.share(Trunk::Knee, v) + self.share(Trunk::Calf, v) + self.share(Trunk::Foot, v);
+            if segment == TrunkSegment::Thigh {
+                let below = self.share(TrunkSegment::Knee, v)
+                    + self.share(TrunkSegment::Calf, v)
+                    + self.share(TrunkSegment::Foot, v);
                 d.x += LEG_SHIFT * centre.x * p.x.signum() * below;
             }
         }
@@ -262,9 +269,9 @@ impl<'a> Making<'a> {
                 continue;
             }
             let segment = match slider {
-                Slider::UpperArm => Arm::Upper,
-                Slider::Forearm => Arm::Fore,
-                Slider::Wrist => Arm::Wrist,
+                Slider::UpperArm => ArmSegment::Upper,
+                Slider::Forearm => ArmSegment::Fore,
+                Slider::Wrist => ArmSegment::Wrist,
                 _ => {
                     *d = lengthened(&bones, p);
                     continue;
@@ -335,7 +342,7 @@ fn reaches(cores: &[Vec<(u32, f32)>], ways: &[Vec<f32>]) -> Vec<f32> {
 }
 
 /// The vertices along a plane's cut, with their distance from it.
-fn ring(base: &Base, at: Vec3, normal: Vec3, admits: impl Fn(u32) -> bool) -> Vec<(u32, f32)> {
+fn ring(base: &BaseBody, at: Vec3, normal: Vec3, admits: impl Fn(u32) -> bool) -> Vec<(u32, f32)> {
     let height = |v: u32| (base.positions[v as usize] - at).dot(normal);
     let mut core: Vec<(u32, f32)> = Vec::new();
     for t in &base.triangles {
@@ -350,8 +357,8 @@ fn ring(base: &Base, at: Vec3, normal: Vec3, admits: impl Fn(u32) -> bool) -> Ve
     core
 }
 
-/// The cores of the trunk's chain: the head, then in the order of [`Trunk`].
-fn trunk_cores(base: &Base) -> Vec<Vec<(u32, f32)>> {
+/// The cores of the trunk's chain: the head, then in the order of [`TrunkSegment`].
+fn trunk_cores(base: &BaseBody) -> Vec<Vec<(u32, f32)>> {
     let at = |l: Landmark| base.landmarks.mark(l).on(&base.positions);
     let region = |v: u32| base.regions[v as usize];
     let trunk = |v: u32| !matches!(region(v), Region::LeftArm | Region::RightArm);
@@ -377,8 +384,8 @@ fn trunk_cores(base: &Base) -> Vec<Vec<(u32, f32)>> {
     ]
 }
 
-/// The cores of an arm's chain in the order of [`Arm`], then the hand.
-fn arm_cores(base: &Base) -> Vec<Vec<(u32, f32)>> {
+/// The cores of an arm's chain in the order of [`ArmSegment`], then the hand.
+fn arm_cores(base: &BaseBody) -> Vec<Vec<(u32, f32)>> {
     let arm = |v: u32| base.regions[v as usize] == Region::LeftArm;
     let joint = |j: Joint| base.skeleton.at(j);
     let at = |l: Landmark| base.landmarks.mark(l).on(&base.positions);

@@ -7,8 +7,8 @@ use std::sync::LazyLock;
 
 use glam::Vec3;
 
-use super::base::Base;
-use super::calibrate::{Found, Model};
+use super::base::BaseBody;
+use super::calibrate::{BodyModel, Calibrated};
 use super::landmarks::Landmark;
 use super::proportions::Proportions;
 use super::reading::{En, Reading, Readings, Vocabulary, Wanted};
@@ -31,9 +31,9 @@ pub struct Fitted {
 }
 
 /// A sex's model, worked out on first use: some hundred milliseconds.
-pub(super) fn model(sex: Sex) -> &'static Model {
-    static WOMAN: LazyLock<Model> = LazyLock::new(|| Model::new(Base::new(Sex::Female)));
-    static MAN: LazyLock<Model> = LazyLock::new(|| Model::new(Base::new(Sex::Male)));
+pub(super) fn model(sex: Sex) -> &'static BodyModel {
+    static WOMAN: LazyLock<BodyModel> = LazyLock::new(|| BodyModel::new(BaseBody::new(Sex::Female)));
+    static MAN: LazyLock<BodyModel> = LazyLock::new(|| BodyModel::new(BaseBody::new(Sex::Male)));
     match sex {
         Sex::Female => &WOMAN,
         Sex::Male => &MAN,
@@ -114,7 +114,7 @@ impl Body {
     }
 }
 
-impl Model {
+impl BodyModel {
     /// The measure without which all others are met, one of them in particular; of several the one that was given last.
     fn against<V: Vocabulary>(&self, wanted: &Wanted<V>, measure: V) -> Option<(&'static str, f32)> {
         let given = wanted.given();
@@ -129,7 +129,7 @@ impl Model {
         Some((given[freed].0.name(), given[freed].1))
     }
 
-    pub(super) fn fitted(&self, found: &Found) -> Fitted {
+    pub(super) fn fitted(&self, found: &Calibrated) -> Fitted {
         let base = &self.morphs.base;
         let positions = self.morphs.positions(&found.setting);
         let mut normals = vec![Vec3::ZERO; positions.len()];

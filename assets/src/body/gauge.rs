@@ -7,7 +7,7 @@
 use glam::{Vec2, Vec3};
 
 use super::Region;
-use super::base::Base;
+use super::base::BaseBody;
 use super::landmarks::{Landmark, Mark};
 use super::people::Allowance;
 use super::reading::{READINGS, Reading};
@@ -21,7 +21,7 @@ const MARGIN: f32 = 0.06;
 pub(super) type Gradient = Vec<(u32, Vec3)>;
 
 /// A plane that rides on a landmark, and the edges that it may cut.
-struct Cut {
+struct SliceCut {
     normal: Vec3,
     /// Directions within the plane that count as x and y there.
     axes: [Vec3; 2],
@@ -31,7 +31,7 @@ struct Cut {
 
 /// A point of a slice: on the edge from one vertex to another.
 #[derive(Clone, Copy)]
-struct Corner {
+struct SliceCorner {
     ends: [u32; 2],
     share: f32,
     place: Vec2,
@@ -42,7 +42,7 @@ pub(super) struct Gauge {
     /// Vertices whose places the readings depend on, rising.
     pub needed: Vec<u32>,
     marks: [Mark; super::landmarks::LANDMARKS],
-    cuts: Vec<Cut>,
+    cuts: Vec<SliceCut>,
     back: Vec<u32>,
     allowance: Allowance,
 }
@@ -63,8 +63,8 @@ const CUTS: [(Landmark, Reading); 11] = [
 ];
 
 impl Gauge {
-    pub(super) fn new(base: &Base, allowance: Allowance) -> Self {
-        let cuts: Vec<Cut> = CUTS.iter().map(|(landmark, _)| Cut::new(base, *landmark)).collect();
+    pub(super) fn new(base: &BaseBody, allowance: Allowance) -> Self {
+        let cuts: Vec<SliceCut> = CUTS.iter().map(|(landmark, _)| SliceCut::new(base, *landmark)).collect();
         let height = |l: Landmark| base.landmarks.mark(l).on(&base.positions).y;
         let (low, high) = (height(Landmark::Omphalion) - MARGIN, height(Landmark::Cervicale) + MARGIN);
         let behind = |p: &Vec3| p.x == 0.0 && p.z < 0.0 && p.y > low && p.y < high;
@@ -211,7 +211,7 @@ fn spread(mark: Mark, gradient: Vec3) -> Gradient {
 }
 
 /// The plane in which a girth is taken: its normal, upwards or down the limb.
-fn normal(base: &Base, landmark: Landmark) -> Vec3 {
+fn normal(base: &BaseBody, landmark: Landmark) -> Vec3 {
     let at = |l: Landmark| base.landmarks.mark(l).on(&base.positions);
     let bone = |from: Joint, to: Joint| (base.skeleton.at(to) - base.skeleton.at(from)).normalize();
     match landmark {
@@ -225,13 +225,13 @@ fn normal(base: &Base, landmark: Landmark) -> Vec3 {
 }
 
 /// Direction of the neck: it leans forwards.
-pub(super) fn neck_axis(base: &Base) -> Vec3 {
+pub(super) fn neck_axis(base: &BaseBody) -> Vec3 {
     let (neck, head) = (base.skeleton.at(Joint::Neck), base.skeleton.at(Joint::Head));
     Vec3::new(0.0, head.y - neck.y, head.z - neck.z).normalize()
 }
 
-impl Cut {
-    fn new(base: &Base, landmark: Landmark) -> Self {
+impl SliceCut {
+    fn new(base: &BaseBody, landmark: Landmark) -> Self {
         let normal = normal(base, landmark);
         let at = base.landmarks.mark(landmark);
         let origin = at.on(&base.positions);
@@ -252,7 +252,7 @@ impl Cut {
     }
 
     /// Where the plane cuts the surface; a vertex on the plane counts as above it.
-    fn corners(&self, positions: &[Vec3]) -> Vec<Corner> {
+    fn corners(&self, positions: &[Vec3]) -> Vec<SliceCorner> {
         let level = self.at.on(positions).dot(self.normal);
         let mut corners = Vec::with_capacity(self.edges.len() / 4);
         for &ends in &self.edges {
@@ -261,13 +261,13 @@ impl Cut {
             if (low >= 0.0) != (high >= 0.0) {
                 let share = low / (low - high);
                 let p = a.lerp(b, share);
-                corners.push(Corner { ends, share, place: Vec2::new(p.dot(self.axes[0]), p.dot(self.axes[1])) });
+                corners.push(SliceCorner { ends, share, place: Vec2::new(p.dot(self.axes[0]), p.dot(self.axes[1])) });
             }
         }
         corners
     }
 
-    fn girth(&self, positions: &[Vec3], corners: &[Corner]) -> (f32, Gradient) {
+    fn girth(&self, positions: &[Vec3], corners: &[SliceCorner]) -> (f32, Gradient) {
         let flat: Vec<Vec2> = corners.iter().map(|c| c.place).collect();
         let hull = hull_corners(&flat);
         let n = hull.len();
@@ -281,8 +281,8 @@ impl Cut {
     }
 
     /// How wide the slice is along one of its axes.
-    fn extent(&self, positions: &[Vec3], corners: &[Corner], axis: usize) -> (f32, Gradient) {
-        let by = |a: &&Corner, b: &&Corner| a.place[axis].total_cmp(&b.place[axis]);
+    fn extent(&self, positions: &[Vec3], corners: &[SliceCorner], axis: usize) -> (f32, Gradient) {
+        let by = |a: &&SliceCorner, b: &&SliceCorner| a.place[axis].total_cmp(&b.place[axis]);
         let (Some(least), Some(most)) = (corners.iter().min_by(by), corners.iter().max_by(by)) else {
             return (0.0, Vec::new());
         };
@@ -293,7 +293,7 @@ impl Cut {
     }
 
     /// Adds what a pull on a slice's point does to the edge under it and to the plane's landmark.
-    fn pull(&self, positions: &[Vec3], corner: &Corner, pull: Vec2, to: &mut Gradient) {
+    fn pull(&self, positions: &[Vec3], corner: &SliceCorner, pull: Vec2, to: &mut Gradient) {
         let g = self.axes[0] * pull.x + self.axes[1] * pull.y;
         ride(positions, (corner.ends, corner.share), (self.normal, self.at), g, to);
     }
@@ -310,7 +310,7 @@ fn ride(positions: &[Vec3], (ends, share): ([u32; 2], f32), (normal, at): (Vec3,
 }
 
 /// Whether a vertex belongs to what the tape goes round.
-fn passes(base: &Base, landmark: Landmark, vertex: u32, origin: Vec3) -> bool {
+fn passes(base: &BaseBody, landmark: Landmark, vertex: u32, origin: Vec3) -> bool {
     let (p, region) = (base.positions[vertex as usize], base.regions[vertex as usize]);
     let arm = matches!(region, Region::LeftArm | Region::RightArm);
     match landmark {

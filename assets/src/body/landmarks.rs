@@ -202,7 +202,7 @@ fn nearest_vertex(positions: &[Vec3], to: Vec3, admits: impl Fn(u32) -> bool) ->
 /// Points of both sexes, by name (mm).
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Drawings {
+struct DrawnLandmarks {
     female: std::collections::BTreeMap<Landmark, [f32; 3]>,
     male: std::collections::BTreeMap<Landmark, [f32; 3]>,
 }
@@ -210,7 +210,7 @@ struct Drawings {
 static DRAWN: LazyLock<[DrawnMarks; 2]> = LazyLock::new(|| {
     // Part of the program, and read by a test: a failure here is a build that never passed its tests.
     let text = include_str!("../../data/body/landmarks.toml");
-    let drawings: Drawings = toml::from_str(text).expect("the embedded landmarks are well formed");
+    let drawings: DrawnLandmarks = toml::from_str(text).expect("the embedded landmarks are well formed");
     [drawings.female, drawings.male]
         .map(|points| Landmark::ALL.map(|l| Vec3::from(*points.get(&l).expect("every landmark is drawn")) * 1e-3))
 });

@@ -18,6 +18,7 @@ mod segments;
 pub mod shape;
 mod shares;
 mod skin;
+mod slider;
 pub mod sound;
 pub mod stored;
 pub mod tape;

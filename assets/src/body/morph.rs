@@ -6,83 +6,11 @@
 
 use glam::Vec3;
 
-use super::base::Base;
+use super::base::BaseBody;
 use super::fields;
 use super::segments::Neighbourhood;
+use super::slider::SLIDERS;
 use crate::skeleton::{JOINTS, Joint, Skeleton};
-
-/// What can be changed on a body; lengths in metres a unit, the others as a fraction of the base's size.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u8)]
-pub(super) enum Slider {
-    LowerLeg,
-    UpperLeg,
-    LowerTrunk,
-    UpperTrunk,
-    NeckLength,
-    ArmLength,
-    Shoulders,
-    Neck,
-    ChestBreadth,
-    ChestDepth,
-    Underbust,
-    Waist,
-    AbdomenBreadth,
-    AbdomenDepth,
-    HipBreadth,
-    HipDepth,
-    Thigh,
-    Knee,
-    Calf,
-    UpperArm,
-    Forearm,
-    Wrist,
-}
-
-/// Number of sliders besides the scale of the whole.
-pub(super) const SLIDERS: usize = 22;
-
-/// Number of what a calibration may choose: the sliders, then the logarithm of the scale.
-pub(super) const PARAMETERS: usize = SLIDERS + 1;
-
-impl Slider {
-    pub(super) const ALL: [Self; SLIDERS] = {
-        use Slider::*;
-        [
-            LowerLeg,
-            UpperLeg,
-            LowerTrunk,
-            UpperTrunk,
-            NeckLength,
-            ArmLength,
-            Shoulders,
-            Neck,
-            ChestBreadth,
-            ChestDepth,
-            Underbust,
-            Waist,
-            AbdomenBreadth,
-            AbdomenDepth,
-            HipBreadth,
-            HipDepth,
-            Thigh,
-            Knee,
-            Calf,
-            UpperArm,
-            Forearm,
-            Wrist,
-        ]
-    };
-
-    pub(super) const fn index(self) -> usize {
-        self as usize
-    }
-
-    /// Whether its unit is the metre.
-    pub(super) const fn is_length(self) -> bool {
-        self.index() <= Self::ArmLength.index()
-    }
-}
 
 /// A setting of all sliders, then the scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -94,7 +22,7 @@ pub(super) struct Setting {
 /// The fields of one base body.
 pub(super) struct Morphs {
     /// The base, with its sides made each other's exact mirror image.
-    pub base: Base,
+    pub base: BaseBody,
     pub near: Neighbourhood,
     /// Where each vertex's moves start, and the end `[vertices + 1]`.
     start: Vec<u32>,
@@ -109,7 +37,7 @@ const NOTHING: f32 = 1e-9;
 
 impl Morphs {
     /// Works out the fields of a base body.
-    pub(super) fn new(mut base: Base) -> Self {
+    pub(super) fn new(mut base: BaseBody) -> Self {
         let near = Neighbourhood::new(&base.positions, &base.triangles);
         mirror_exactly(&mut base, &near.twin);
         let mut all = fields::displacements(&base, &near);
@@ -171,7 +99,7 @@ fn mirrored(p: Vec3) -> Vec3 {
     Vec3::new(-p.x, p.y, p.z)
 }
 
-fn mirror_exactly(base: &mut Base, twin: &[u32]) {
+fn mirror_exactly(base: &mut BaseBody, twin: &[u32]) {
     for (v, &other) in twin.iter().enumerate() {
         if other as usize == v {
             base.positions[v].x = 0.0;
@@ -190,7 +118,7 @@ fn mirror_exactly(base: &mut Base, twin: &[u32]) {
 }
 
 /// Each joint's move: the mean of the field around it, nearer vertices counting for more.
-fn joint_moves(base: &Base, field: &[Vec3]) -> [Vec3; JOINTS] {
+fn joint_moves(base: &BaseBody, field: &[Vec3]) -> [Vec3; JOINTS] {
     let mut moves = [Vec3::ZERO; JOINTS];
     for joint in Joint::ALL {
         if joint.mirror() < joint {

@@ -25,38 +25,38 @@ pub(super) struct Allowance {
 /// The embedded table.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Tables {
-    female: Table,
-    male: Table,
+struct SurveyStatistics {
+    female: SexStatistics,
+    male: SexStatistics,
 }
 
 /// One sex's statistics; lengths in millimetres.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Table {
+struct SexStatistics {
     #[serde(rename = "people")]
     _people: u32,
     arm_bend: f64,
     sleeve_pose: f64,
-    column: Vec<Column>,
+    column: Vec<SurveyColumn>,
 }
 
 /// One measure of the survey: its correlations with the columns before it.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Column {
+struct SurveyColumn {
     name: String,
     mean: f64,
     sd: f64,
     with: Vec<f64>,
 }
 
-static TABLES: LazyLock<Tables> = LazyLock::new(|| {
+static TABLES: LazyLock<SurveyStatistics> = LazyLock::new(|| {
     // Part of the program, and read by a test: a failure here is a build that never passed its tests.
     toml::from_str(include_str!("../../data/body/people.toml")).expect("the embedded table of people is well formed")
 });
 
-fn table(sex: Sex) -> &'static Table {
+fn table(sex: Sex) -> &'static SexStatistics {
     match sex {
         Sex::Female => &TABLES.female,
         Sex::Male => &TABLES.male,
@@ -161,7 +161,7 @@ impl People {
 }
 
 /// The survey's mean of the reading that another follows (m).
-fn mean_of(table: &Table, reading: Reading, place: &BTreeMap<&str, usize>) -> f64 {
+fn mean_of(table: &SexStatistics, reading: Reading, place: &BTreeMap<&str, usize>) -> f64 {
     let name = TAKEN.iter().find(|t| t.0 == reading).expect("a reading that the survey took").1;
     table.column[place[name]].mean * 1e-3
 }

@@ -1,6 +1,6 @@
 //! Where the landmarks of our own bodies lie between their joints and extremes: how a body of others is to be read.
 
-use super::base::Base;
+use super::base::BaseBody;
 use super::landmarks::Landmark;
 use crate::skeleton::Joint;
 
@@ -25,7 +25,7 @@ pub(crate) struct Proportions {
 
 impl Proportions {
     /// Those of a base body.
-    pub(super) fn of(base: &Base) -> Self {
+    pub(super) fn of(base: &BaseBody) -> Self {
         let mark = |l: Landmark| base.landmarks.mark(l).on(&base.positions);
         let joint = |j: Joint| base.skeleton.at(j);
         let share = |at: f32, from: f32, to: f32| (at - from) / (to - from);

@@ -5,11 +5,11 @@ use std::sync::LazyLock;
 
 use glam::Vec3;
 
-use super::base::Base;
-use super::calibrate::{Found, Model, Vector, Work, bounds, setting};
+use super::base::BaseBody;
+use super::calibrate::{BodyModel, Calibrated, CalibrationBuffers, ParameterVector, bounds, setting};
 use super::fitted::{Fitted, model};
-use super::morph::{PARAMETERS, SLIDERS};
 use super::reading::{READINGS, Readings, Vocabulary};
+use super::slider::{PARAMETERS, SLIDERS};
 use super::{BodyError, Sex};
 use crate::skeleton::{JOINTS, Skeleton};
 
@@ -21,25 +21,25 @@ pub const SHAPES: usize = PARAMETERS;
 pub const SCALE: usize = SLIDERS;
 
 /// A body's shape: all parameters at 0 are the body as it is drawn.
-pub type Shape = Vector;
+pub type BodyShape = ParameterVector;
 
 /// The shapes of one sex.
 pub struct Shapes {
-    model: &'static Model,
-    mean: Shape,
-    precision: [Shape; SHAPES],
+    model: &'static BodyModel,
+    mean: BodyShape,
+    precision: [BodyShape; SHAPES],
 }
 
 /// What the tape reads on a shape, and how that changes with the parameters.
-pub struct Read {
+pub struct ShapeReadings {
     /// Every measure (m).
     pub readings: Readings,
-    rows: [Shape; READINGS],
+    rows: [BodyShape; READINGS],
 }
 
-impl Read {
+impl ShapeReadings {
     /// How one measure changes with each parameter (m a unit).
-    pub fn row<V: Vocabulary>(&self, measure: V) -> &Shape {
+    pub fn row<V: Vocabulary>(&self, measure: V) -> &BodyShape {
         &self.rows[measure.reading().index()]
     }
 }
@@ -58,25 +58,25 @@ impl Shapes {
     fn new(sex: Sex) -> Self {
         let model = model(sex);
         let mean = model.calibrate(&[]).at;
-        let squares = Work::new(model).squares(&mean, &[]);
+        let squares = CalibrationBuffers::new(model).squares(&mean, &[]);
         let curve = &squares.curve;
         let precision = std::array::from_fn(|i| std::array::from_fn(|j| curve[i.max(j)][i.min(j)]));
         Self { model, mean, precision }
     }
 
     /// The body that all shapes are made from: its triangles, skin weights, regions and landmarks are theirs, too.
-    pub fn base(&self) -> &Base {
+    pub fn base(&self) -> &BaseBody {
         &self.model.morphs.base
     }
 
     /// The shape of the mean person of ANSUR II.
-    pub fn mean(&self) -> &Shape {
+    pub fn mean(&self) -> &BodyShape {
         &self.mean
     }
 
     /// How surely people's shapes are known before any of them is seen: the inverse of the covariance of their
     /// parameters about the mean (symmetric), linearised there.
-    pub fn precision(&self) -> &[Shape; SHAPES] {
+    pub fn precision(&self) -> &[BodyShape; SHAPES] {
         &self.precision
     }
 
@@ -86,7 +86,7 @@ impl Shapes {
     }
 
     /// Where a vertex lies on a shape in the rest pose (m).
-    pub fn place(&self, vertex: usize, shape: &Shape) -> Vec3 {
+    pub fn place(&self, vertex: usize, shape: &BodyShape) -> Vec3 {
         self.model.morphs.place(vertex, &setting(shape))
     }
 
@@ -101,15 +101,15 @@ impl Shapes {
     }
 
     /// The joints of a shape in the rest pose.
-    pub fn skeleton(&self, shape: &Shape) -> Skeleton {
+    pub fn skeleton(&self, shape: &BodyShape) -> Skeleton {
         self.model.morphs.skeleton(&setting(shape))
     }
 
     /// Lays the tape on a shape.
-    pub fn read(&self, shape: &Shape) -> Read {
-        let mut work = Work::new(self.model);
+    pub fn read(&self, shape: &BodyShape) -> ShapeReadings {
+        let mut work = CalibrationBuffers::new(self.model);
         let rows = work.read(&setting(shape));
-        Read { readings: Readings(work.readings), rows }
+        ShapeReadings { readings: Readings(work.readings), rows }
     }
 
     /// Lays the tape on any surface that has the base's vertices at rest, of the family or not (m) `[vertices]`.
@@ -118,17 +118,17 @@ impl Shapes {
     }
 
     /// The whole body of a shape.
-    pub fn body(&self, shape: &Shape) -> Fitted {
+    pub fn body(&self, shape: &BodyShape) -> Fitted {
         let at = *shape;
         let readings = self.read(shape).readings.0;
-        self.model.fitted(&Found { at, setting: setting(shape), readings, steps: 0 })
+        self.model.fitted(&Calibrated { at, setting: setting(shape), readings, steps: 0 })
     }
 
     /// The shape of a body that has all measures wanted as nearly as any has.
     ///
     /// # Errors
     /// [`BodyError::OutOfRange`] for a measure that no body is built for.
-    pub fn wanted<V: Vocabulary>(&self, wanted: &super::Wanted<V>) -> Result<Shape, BodyError> {
+    pub fn wanted<V: Vocabulary>(&self, wanted: &super::Wanted<V>) -> Result<BodyShape, BodyError> {
         wanted.check()?;
         let given: Vec<_> = wanted.given().iter().map(|(m, value)| (m.reading(), *value)).collect();
         Ok(self.model.calibrate(&given).at)

@@ -62,7 +62,7 @@ pub struct Crossing {
 
 /// All edges that pierce a triangle that they share no vertex with, once a pair; none on a sound surface.
 pub fn crossings(mesh: &Mesh) -> Vec<Crossing> {
-    let grid = Grid::new(mesh);
+    let grid = TriangleGrid::new(mesh);
     let mut found = Vec::new();
     for (i, j) in mesh.triangles.iter().flat_map(sides).filter(|(i, j)| i < j) {
         grid.pierced(mesh, [i, j], &mut found);
@@ -109,7 +109,7 @@ const CELL: f32 = 0.025;
 const MOST_CELLS: f32 = 128.0;
 
 /// The triangles of a mesh by the cells of space that they touch.
-struct Grid {
+struct TriangleGrid {
     low: Vec3,
     cell: f32,
     count: [usize; 3],
@@ -118,7 +118,7 @@ struct Grid {
     triangles: Vec<u32>,
 }
 
-impl Grid {
+impl TriangleGrid {
     fn new(mesh: &Mesh) -> Self {
         let finite = mesh.positions.iter().filter(|p| p.is_finite());
         let (low, high) = finite.fold((Vec3::MAX, Vec3::MIN), |(l, h), p| (l.min(*p), h.max(*p)));

@@ -16,7 +16,7 @@ const VERSION: u32 = 1;
 
 /// Both bodies: what they share, and what each has of its own.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Stored {
+pub struct StoredBodies {
     /// Surface points (m) of the woman and the man `[vertices]`.
     pub positions: [Vec<Vec3>; 2],
     /// Joint centres of both.
@@ -53,7 +53,7 @@ pub enum StoredError {
 const REGIONS: [Region; 6] =
     [Region::Torso, Region::Head, Region::LeftArm, Region::RightArm, Region::LeftLeg, Region::RightLeg];
 
-impl Stored {
+impl StoredBodies {
     /// Which of the two a sex's is.
     pub fn index(sex: Sex) -> usize {
         usize::from(sex == Sex::Male)
@@ -92,14 +92,14 @@ impl Stored {
         if hash::of_bytes(body) != u64::from_le_bytes(*hash) {
             return Err(StoredError::Damaged);
         }
-        Reader(&body[8..]).stored().ok_or(StoredError::Format)
+        ByteReader(&body[8..]).stored().ok_or(StoredError::Format)
     }
 }
 
 /// Bytes still to be read.
-struct Reader<'a>(&'a [u8]);
+struct ByteReader<'a>(&'a [u8]);
 
-impl Reader<'_> {
+impl ByteReader<'_> {
     fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
         let (head, tail) = self.0.split_first_chunk::<N>()?;
         self.0 = tail;
@@ -136,7 +136,7 @@ impl Reader<'_> {
         Some(Skeleton { rest: joints.try_into().ok()? })
     }
 
-    fn stored(&mut self) -> Option<Stored> {
+    fn stored(&mut self) -> Option<StoredBodies> {
         if self.count()? != VERSION as usize {
             return None;
         }
@@ -150,6 +150,15 @@ impl Reader<'_> {
         let twins = self.many(vertices, |r| r.index(vertices))?;
         let share = |r: &mut Self| r.small().map(|x| x as f32 / 65_535.0);
         let uvs = self.many(points, |r| Some(Vec2::new(share(r)?, share(r)?)))?;
-        self.0.is_empty().then_some(Stored { positions, skeletons, quads: faces, uvs, corners, charts, regions, twins })
+        self.0.is_empty().then_some(StoredBodies {
+            positions,
+            skeletons,
+            quads: faces,
+            uvs,
+            corners,
+            charts,
+            regions,
+            twins,
+        })
     }
 }

@@ -7,7 +7,7 @@
 use glam::{Affine3A, Mat3, Mat4, Quat, Vec3};
 use serde_json::{Value, json};
 
-use super::parts::Parts;
+use super::parts::GlbBuffer;
 use crate::body::Body;
 use crate::mesh::vertex_normals;
 use crate::skeleton::{BONES, Joint, bone_joint, bone_name};
@@ -21,18 +21,18 @@ const CLOTH_ROUGHNESS: f32 = 0.9;
 
 /// What is exported.
 #[derive(Debug, Clone, Copy)]
-pub struct Dressed<'a> {
+pub struct DressedBody<'a> {
     /// The body in its rest pose.
     pub body: &'a Body,
     /// The pose, as skin matrices (rest to world, rigid) `[BONES]`; `None` is the rest pose.
     pub palette: Option<&'a [Affine3A; BONES]>,
     /// What it wears, inner first.
-    pub worn: &'a [Worn<'a>],
+    pub worn: &'a [WornGarment<'a>],
 }
 
 /// A garment as it lies.
 #[derive(Debug, Clone, Copy)]
-pub struct Worn<'a> {
+pub struct WornGarment<'a> {
     /// Its name.
     pub name: &'a str,
     /// Vertex positions, world (m) `[vertices]`.
@@ -44,8 +44,8 @@ pub struct Worn<'a> {
 }
 
 /// The GLB file of a dressed body. The same input gives the same bytes.
-pub fn glb(dressed: &Dressed<'_>) -> Vec<u8> {
-    let mut parts = Parts::default();
+pub fn glb(dressed: &DressedBody<'_>) -> Vec<u8> {
+    let mut parts = GlbBuffer::default();
     let body = dressed.body;
     let joints = joint_nodes(body, dressed.palette);
     let mut nodes = vec![json!({ "name": "body", "mesh": 0, "skin": 0 })];
@@ -78,7 +78,7 @@ pub fn glb(dressed: &Dressed<'_>) -> Vec<u8> {
     parts.glb(description)
 }
 
-fn body_mesh(parts: &mut Parts, body: &Body) -> Value {
+fn body_mesh(parts: &mut GlbBuffer, body: &Body) -> Value {
     let joints = body.weights.iter().map(|w| {
         // A joint without weight is named 0, as the format asks.
         std::array::from_fn(|k| if w.weights[k] > 0.0 { w.bones[k] } else { 0 })
@@ -96,7 +96,7 @@ fn body_mesh(parts: &mut Parts, body: &Body) -> Value {
     json!({ "name": "body", "primitives": [{ "attributes": attributes, "indices": indices, "material": 0 }] })
 }
 
-fn garment_mesh(parts: &mut Parts, garment: &Worn<'_>, material: usize) -> Value {
+fn garment_mesh(parts: &mut GlbBuffer, garment: &WornGarment<'_>, material: usize) -> Value {
     let mut normals = vec![Vec3::ZERO; garment.positions.len()];
     vertex_normals(garment.positions, garment.triangles, &mut normals);
     let attributes = json!({ "POSITION": parts.positions(garment.positions), "NORMAL": parts.normals(&normals) });

@@ -9,4 +9,4 @@ mod parts;
 #[cfg(test)]
 mod tests;
 
-pub use glb::{Dressed, Worn, glb};
+pub use glb::{DressedBody, WornGarment, glb};

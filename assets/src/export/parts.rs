@@ -22,13 +22,13 @@ const VERSION: u32 = 2;
 
 /// A buffer being filled.
 #[derive(Debug, Default)]
-pub(super) struct Parts {
+pub(super) struct GlbBuffer {
     bytes: Vec<u8>,
     views: Vec<Value>,
     accessors: Vec<Value>,
 }
 
-impl Parts {
+impl GlbBuffer {
     /// Positions, with the bounds that the format asks for; returns the accessor.
     pub fn positions(&mut self, points: &[Vec3]) -> usize {
         let min = points.iter().copied().fold(Vec3::INFINITY, Vec3::min);

@@ -11,7 +11,7 @@ fn body() -> Body {
     Body::build(Sex::Male, &Measures::average(Sex::Male)).expect("an average body")
 }
 
-const TRIANGLE: Worn<'static> = Worn {
+const TRIANGLE: WornGarment<'static> = WornGarment {
     name: "kerchief \"one\"",
     positions: &[Vec3::ZERO, Vec3::X, Vec3::Y],
     triangles: &[[0, 1, 2]],
@@ -29,7 +29,7 @@ fn palette(body: &Body) -> [Affine3A; BONES] {
 fn another_reader_finds_what_was_written() {
     let mut body = body();
     body.mesh.uvs = body.mesh.positions.iter().map(|p| p.truncate()).collect();
-    let bytes = glb(&Dressed { body: &body, palette: None, worn: &[TRIANGLE] });
+    let bytes = glb(&DressedBody { body: &body, palette: None, worn: &[TRIANGLE] });
     let file = gltf::Gltf::from_slice(&bytes).unwrap();
     let blob = file.blob.clone().unwrap();
     assert_eq!(bytes.len() % 4, 0);
@@ -59,7 +59,7 @@ fn another_reader_finds_what_was_written() {
 fn joints_carry_the_skin_where_the_pose_puts_it() {
     let body = body();
     for palette in [None, Some(&palette(&body))] {
-        let bytes = glb(&Dressed { body: &body, palette, worn: &[] });
+        let bytes = glb(&DressedBody { body: &body, palette, worn: &[] });
         let file = gltf::Gltf::from_slice(&bytes).unwrap();
         let blob = file.blob.clone().unwrap();
         let skin = file.skins().next().unwrap();
@@ -94,6 +94,6 @@ fn bones_have_their_standard_names() {
 fn the_same_body_gives_the_same_bytes() {
     let body = body();
     let palette = palette(&body);
-    let all = || glb(&Dressed { body: &body, palette: Some(&palette), worn: &[TRIANGLE] });
+    let all = || glb(&DressedBody { body: &body, palette: Some(&palette), worn: &[TRIANGLE] });
     assert_eq!(all(), all());
 }

@@ -2,9 +2,9 @@
 //! most. Each refusal names the face or the edge.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use glam::Vec3;
-use thiserror::Error;
 
 use super::shape::{Face, NO_VERTEX};
 
@@ -15,25 +15,21 @@ const LEAST_AREA_M2: f32 = 1e-8;
 pub const MAX_VERTICES: usize = 262_144;
 
 /// What is wrong with a mesh.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum MeshError {
     /// Nothing there.
-    #[error("the mesh has no faces; export it with its faces as polygons of three or four corners")]
     Empty,
     /// Too many vertices.
-    #[error("the mesh has {count} vertices, more than the {MAX_VERTICES} that fit; reduce it before exporting")]
     TooLarge {
         /// Vertices found.
         count: usize,
     },
-    /// A coordinate that is not a number.
-    #[error("vertex {vertex} is not finite; repair the mesh in the program that exported it")]
+    /// A coordinate that is NaN or infinite.
     NotFinite {
         /// Index of the vertex, from 0.
         vertex: usize,
     },
     /// A face that names a vertex that is not there.
-    #[error("face {face} names vertex {vertex} of only {count}; export the mesh again")]
     Index {
         /// Index of the face, from 0.
         face: usize,
@@ -43,16 +39,11 @@ pub enum MeshError {
         count: usize,
     },
     /// A face without area.
-    #[error("face {face} has no area (two of its corners coincide or all lie on a line); merge or delete it")]
     Degenerate {
         /// Index of the face, from 0.
         face: usize,
     },
     /// Three or more faces at one edge, or two that run the same way round.
-    #[error(
-        "the edge between vertices {a} and {b} is shared by {faces} faces that do not form one surface (non-manifold); \
-         separate the layers or turn the faces the same way round"
-    )]
     NonManifold {
         /// One end, from 0.
         a: u32,
@@ -62,12 +53,56 @@ pub enum MeshError {
         faces: usize,
     },
     /// A vertex that no face uses: it would have no mass.
-    #[error("vertex {vertex} belongs to no face and would have no mass; delete loose vertices")]
     Loose {
         /// Index of the vertex, from 0.
         vertex: usize,
     },
 }
+
+impl MeshError {
+    /// The flaw and its cure in one sentence, with the names that whoever made the mesh knows its vertices and faces by.
+    pub fn described(&self, vertex_name: impl Fn(u32) -> String, face_name: impl Fn(usize) -> String) -> String {
+        match *self {
+            Self::Empty => {
+                "the mesh has no faces; export it with its faces as polygons of three or four corners".into()
+            }
+            Self::TooLarge { count } => {
+                format!(
+                    "the mesh has {count} vertices, more than the {MAX_VERTICES} that fit; reduce it before exporting"
+                )
+            }
+            Self::NotFinite { vertex } => {
+                let name = vertex_name(vertex as u32);
+                format!("{name} is not finite; repair the mesh in the program that exported it")
+            }
+            Self::Index { face, vertex, count } => {
+                format!("{} names vertex {vertex} of only {count}; export the mesh again", face_name(face))
+            }
+            Self::Degenerate { face } => {
+                let name = face_name(face);
+                format!("{name} has no area (two of its corners coincide or all lie on a line); merge or delete it")
+            }
+            Self::NonManifold { a, b, faces } => format!(
+                "the edge between {} and {} is shared by {faces} faces that do not form one surface (non-manifold); \
+                 separate the layers or turn the faces the same way round",
+                vertex_name(a),
+                vertex_name(b)
+            ),
+            Self::Loose { vertex } => {
+                let name = vertex_name(vertex as u32);
+                format!("{name} belongs to no face and would have no mass; delete loose vertices")
+            }
+        }
+    }
+}
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.described(|v| format!("vertex {v}"), |i| format!("face {i}")))
+    }
+}
+
+impl std::error::Error for MeshError {}
 
 /// The corners of a face: three or four.
 pub fn corners(face: &Face) -> &[u32] {

@@ -1,7 +1,7 @@
 //! How constraints lie in memory: side by side, so that kernels take many at a time without looking up indices.
 //!
-//! Particles are numbered so that what is solved together is contiguous. A [`Run`] is a row of constraints whose
-//! particles all advance by one; a [`Bundle`] is a row of fibers of which every step lies contiguous. What fits neither
+//! Particles are numbered so that what is solved together is contiguous. A [`ConstraintRun`] is a row of constraints whose
+//! particles all advance by one; a [`FiberBundle`] is a row of fibers of which every step lies contiguous. What fits neither
 //! is kept as an index list. Each particle, and each constraint, has one of two owners: two workers may solve a set at
 //! once, because no two constraints of a set share a particle.
 
@@ -18,7 +18,7 @@ pub const MAX_LISTED: usize = 16;
 /// Constraints side by side: constraint `t < len` holds the particles `first[k] + t`. Where they are all alike, in their
 /// parameters and in the masses of their particles, they share the parameters at `at`; else its own are at `at + t`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Run<const K: usize> {
+pub struct ConstraintRun<const K: usize> {
     /// Particles of the first constraint.
     pub first: [u32; K],
     /// Constraints.
@@ -31,7 +31,7 @@ pub struct Run<const K: usize> {
     pub alike: bool,
 }
 
-impl<const K: usize> Run<K> {
+impl<const K: usize> ConstraintRun<K> {
     /// Where the parameters of constraint `t` are.
     #[inline(always)]
     pub fn place(&self, t: u32) -> usize {
@@ -44,9 +44,9 @@ impl<const K: usize> Run<K> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Zigzag {
     /// The rungs.
-    pub rungs: Run<2>,
+    pub rungs: ConstraintRun<2>,
     /// The slants, one less than rungs; as many where the last one leads back to the first particle.
-    pub slants: Run<2>,
+    pub slants: ConstraintRun<2>,
 }
 
 impl Zigzag {
@@ -66,7 +66,7 @@ impl Zigzag {
 
 /// One owner's share of a set.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Share {
+pub struct OwnerShare {
     /// Its zigzags, a range of [`Tuples::zigzags`]; a set has them or the others.
     pub zigzags: Range<u32>,
     /// Its runs, a range of [`Tuples::runs`].
@@ -81,13 +81,13 @@ pub struct Share {
 
 /// Constraints of one direction; in a set of [`Links`] no two share a particle.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Set {
+pub struct ConstraintSet {
     /// Direction of its first constraint.
     pub direction: Direction,
     /// Whether its constraints touch particles of both owners and nothing keeps them apart: one worker's then.
     pub crosses: bool,
     /// What each owner solves.
-    pub shares: [Share; OWNERS],
+    pub shares: [OwnerShare; OWNERS],
 }
 
 /// Constraints over `K` particles, in sets.
@@ -96,11 +96,11 @@ pub struct Tuples<const K: usize> {
     /// Zigzags, set after set, owner after owner; only pairs have any.
     pub zigzags: Box<[Zigzag]>,
     /// Runs, set after set, owner after owner.
-    pub runs: Box<[Run<K>]>,
+    pub runs: Box<[ConstraintRun<K>]>,
     /// The others.
     pub loose: Box<[[u32; K]]>,
     /// The sets in the order in which they are solved.
-    pub sets: Box<[Set]>,
+    pub sets: Box<[ConstraintSet]>,
     /// Constraints in all.
     pub count: usize,
     /// Places of parameters: fewer than constraints where some are alike.
@@ -158,7 +158,7 @@ impl<const K: usize> Default for Bends<K> {
 
 /// One owner's part of a family of [`Diagonals`].
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Strand {
+pub struct DiagonalShare {
     /// Its runs, a range of [`Diagonals::runs`], in the order of solving.
     pub runs: Range<u32>,
     /// The particles at which its fibers begin, a range of [`Diagonals::starts`].
@@ -170,9 +170,9 @@ pub struct Strand {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Diagonals {
     /// Families: fibers that lean the same way.
-    pub families: Box<[[Strand; OWNERS]]>,
+    pub families: Box<[[DiagonalShare; OWNERS]]>,
     /// Links, family after family, owner after owner; the first particle of each is the one that the fiber comes from.
-    pub runs: Box<[Run<2>]>,
+    pub runs: Box<[ConstraintRun<2>]>,
     /// Particles that no link leads to.
     pub starts: Box<[u32]>,
     /// Length as cut (m).
@@ -264,7 +264,7 @@ pub struct Tethers {
 
 /// One step down the fibers of a bundle: which particles lie there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Row {
+pub struct BundleRow {
     /// The particle of the first fiber.
     pub first: u32,
     /// Fibers that reach so far; their particles are `first..first + lanes`.
@@ -273,7 +273,7 @@ pub struct Row {
 
 /// Fibers side by side, longest first.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Bundle {
+pub struct FiberBundle {
     /// How it is solved.
     pub solver: Solver,
     /// Whose it is.
@@ -294,9 +294,9 @@ pub struct Bundle {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Fibers {
     /// Bundles.
-    pub bundles: Box<[Bundle]>,
+    pub bundles: Box<[FiberBundle]>,
     /// Their rows.
-    pub rows: Box<[Row]>,
+    pub rows: Box<[BundleRow]>,
     /// Links of all bundles, those that have ended among them.
     pub links: usize,
     /// Length of each link as cut (m); 0 where a fiber has ended.
@@ -311,7 +311,7 @@ pub const ENDED: f32 = 1e20;
 
 /// Fibers of equal length by index list: hoops, and whatever crosses another fiber of its direction.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct List {
+pub struct FiberList {
     /// How it is solved.
     pub solver: Solver,
     /// Direction.
@@ -328,7 +328,7 @@ pub struct List {
     pub at: u32,
 }
 
-impl List {
+impl FiberList {
     /// Links of each fiber.
     pub fn links(&self) -> u32 {
         if self.closed { self.rows } else { self.rows - 1 }
@@ -337,9 +337,9 @@ impl List {
 
 /// Fibers by index list, in sets within which none shares a particle.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Lists {
+pub struct FiberLists {
     /// The lists, set after set.
-    pub lists: Box<[List]>,
+    pub lists: Box<[FiberList]>,
     /// Sets: what each owner solves of `lists`.
     pub sets: Box<[[Range<u32>; OWNERS]]>,
     /// Particles.
@@ -362,7 +362,7 @@ pub struct Layout {
     /// Fibers along the warp.
     pub fibers: Fibers,
     /// Fibers that are solved whole by index list: warp that crosses warp, waistbands, whatever was chosen to be.
-    pub crossing: Lists,
+    pub crossing: FiberLists,
     /// Bending over three particles in a row.
     pub bends: Bends<3>,
     /// Bending where a fiber turns within the cloth: a fourth particle keeps flat cloth free of it.
@@ -384,14 +384,16 @@ impl Layout {
             let Tuples { zigzags, runs, loose, .. } = &l.tuples;
             size_of_val(&**zigzags) + size_of_val(&**runs) + size_of_val(&**loose) + l.rest.len() * 8
         };
-        let lists = |l: &Lists| l.lists.len() * size_of::<List>() + l.index.len() * 4 + l.rest.len() * 8;
+        let lists = |l: &FiberLists| l.lists.len() * size_of::<FiberList>() + l.index.len() * 4 + l.rest.len() * 8;
         fn bends<const K: usize>(b: &Bends<K>) -> usize {
-            b.tuples.runs.len() * size_of::<Run<K>>() + b.tuples.loose.len() * 4 * K + b.coefficients[0].len() * 4 * K
+            b.tuples.runs.len() * size_of::<ConstraintRun<K>>()
+                + b.tuples.loose.len() * 4 * K
+                + b.coefficients[0].len() * 4 * K
         }
         self.diagonals.bytes()
             + links(&self.shear)
             + links(&self.weft)
-            + self.fibers.rows.len() * size_of::<Row>()
+            + self.fibers.rows.len() * size_of::<BundleRow>()
             + self.fibers.rest.len() * 8
             + lists(&self.crossing)
             + bends(&self.bends)

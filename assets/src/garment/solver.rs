@@ -29,7 +29,7 @@ impl Solver {
 
 /// A part of a garment whose fibers a garment file can speak of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Region {
+pub enum SolverRegion {
     /// Closed weft fibers that are sewn to what does not move, vertex by vertex: a waistband, a neckband.
     Waistband,
     /// Closed weft fibers where the cloth ends, below or above.
@@ -55,10 +55,10 @@ pub struct Overrides {
 
 impl Overrides {
     /// What is said of a fiber of a direction that belongs to a region or to none.
-    pub fn of(&self, direction: Direction, region: Option<Region>) -> Option<Solver> {
+    pub fn of(&self, direction: Direction, region: Option<SolverRegion>) -> Option<Solver> {
         let by_region = match region {
-            Some(Region::Waistband) => self.waistband,
-            Some(Region::Hem) => self.hem,
+            Some(SolverRegion::Waistband) => self.waistband,
+            Some(SolverRegion::Hem) => self.hem,
             None => None,
         };
         by_region.or(match direction {

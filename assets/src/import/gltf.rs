@@ -10,8 +10,8 @@ use serde_json::Value;
 
 use super::plain::PlainMesh;
 use crate::garment::shape::NO_VERTEX;
-pub use file::Beside;
-use file::{File, index, list, transform};
+pub use file::ReadBeside;
+use file::{GltfFile, index, list, transform};
 
 /// Deepest nesting of nodes: deeper ones go round in a circle.
 const MAX_DEPTH: usize = 64;
@@ -21,8 +21,8 @@ const MAX_VERTICES: usize = 4_000_000;
 
 /// Reads a file's bytes; `beside` reads another file of the same folder. An error says the cure, to stand behind the
 /// file's name.
-pub fn parse_gltf(bytes: &[u8], beside: Beside<'_>) -> Result<PlainMesh, String> {
-    let file = File::open(bytes, beside)?;
+pub fn parse_gltf(bytes: &[u8], beside: ReadBeside<'_>) -> Result<PlainMesh, String> {
+    let file = GltfFile::open(bytes, beside)?;
     let mut mesh = PlainMesh::default();
     let scene = index(&file.json["scene"]).unwrap_or(0);
     match file.json["scenes"][scene]["nodes"].as_array() {
@@ -35,7 +35,7 @@ pub fn parse_gltf(bytes: &[u8], beside: Beside<'_>) -> Result<PlainMesh, String>
     Ok(mesh)
 }
 
-fn add_node(file: &File, mesh: &mut PlainMesh, node: &Value, above: Mat4, depth: usize) -> Result<(), String> {
+fn add_node(file: &GltfFile, mesh: &mut PlainMesh, node: &Value, above: Mat4, depth: usize) -> Result<(), String> {
     let node = index(node).map(|n| &file.json["nodes"][n]).filter(|n| n.is_object() && depth < MAX_DEPTH);
     let node = node.ok_or("it names a node that is not there or holds itself; export it again")?;
     let place = above * transform(node);
@@ -45,7 +45,7 @@ fn add_node(file: &File, mesh: &mut PlainMesh, node: &Value, above: Mat4, depth:
     list(&node["children"]).iter().try_for_each(|child| add_node(file, mesh, child, place, depth + 1))
 }
 
-fn add_mesh(file: &File, mesh: &mut PlainMesh, number: usize, place: Mat4) -> Result<(), String> {
+fn add_mesh(file: &GltfFile, mesh: &mut PlainMesh, number: usize, place: Mat4) -> Result<(), String> {
     for primitive in list(&file.json["meshes"][number]["primitives"]) {
         match primitive["mode"].as_u64().unwrap_or(4) {
             4 => add_triangles(file, mesh, primitive, place)?,
@@ -56,7 +56,7 @@ fn add_mesh(file: &File, mesh: &mut PlainMesh, number: usize, place: Mat4) -> Re
     Ok(())
 }
 
-fn add_triangles(file: &File, mesh: &mut PlainMesh, primitive: &Value, place: Mat4) -> Result<(), String> {
+fn add_triangles(file: &GltfFile, mesh: &mut PlainMesh, primitive: &Value, place: Mat4) -> Result<(), String> {
     let missing = "it has a part without plain positions; export without compression";
     let accessor = index(&primitive["attributes"]["POSITION"]).ok_or(missing)?;
     let first = mesh.positions.len();

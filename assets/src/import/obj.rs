@@ -2,12 +2,14 @@
 //! any such material moves except for its uppermost edge.
 
 use std::collections::BTreeMap;
-use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use glam::{Vec2, Vec3};
 use thiserror::Error;
 
+use super::plain::parse_obj;
+use crate::file::{self, FileError, FileKind};
+use crate::garment::check::{MeshError, check};
 use crate::garment::shape::{Face, NO_VERTEX, Part, Shape};
 
 /// Largest file that is read (bytes): a quarter of a million vertices and their faces take 40 MiB as text.
@@ -22,22 +24,9 @@ const FIXED_TOP_SHARE: f32 = 0.06;
 /// What can be wrong with an OBJ file.
 #[derive(Debug, Error)]
 pub enum ObjError {
-    /// The file cannot be read.
-    #[error("{path}: {reason}; give the path of a readable OBJ file")]
-    Read {
-        /// The file.
-        path: String,
-        /// What the system says.
-        reason: String,
-    },
-    /// The file is too large.
-    #[error("{path}: it has {bytes} bytes, more than the {MAX_BYTES} that are read; reduce the mesh before exporting")]
-    TooLarge {
-        /// The file.
-        path: String,
-        /// Its size.
-        bytes: u64,
-    },
+    /// The file cannot be read, or is too large.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// The text is no OBJ.
     #[error("{path}: {reason}; export the garment as Wavefront OBJ with vertices and faces")]
     Syntax {
@@ -47,14 +36,22 @@ pub enum ObjError {
         reason: String,
     },
     /// A face with more than four corners.
-    #[error("{path}: face {face} has {corners} corners; export faces of three or four corners")]
+    #[error("{path}: {face} has {corners} corners; export faces of three or four corners")]
     Polygon {
         /// The file.
         path: String,
-        /// Index of the face, from 0.
-        face: usize,
+        /// The face, by its line.
+        face: String,
         /// Its corners.
         corners: u32,
+    },
+    /// A mesh that cannot be cloth.
+    #[error("{path}: {flaw}")]
+    Mesh {
+        /// The file.
+        path: String,
+        /// What is wrong with which of its vertices or faces, and the cure.
+        flaw: String,
     },
     /// Not a garment's size.
     #[error("{path}: the mesh is {height} m high; export it in metres, y up, standing on y = 0 like the person in it")]
@@ -66,27 +63,19 @@ pub enum ObjError {
     },
 }
 
+/// What is read as a garment's mesh.
+const OBJ_FILE: FileKind =
+    FileKind { name: "an OBJ file", max_bytes: MAX_BYTES, cure: "reduce the mesh before exporting" };
+
 /// Reads a garment; the weights are left empty. Errors say what is wrong in one sentence.
 pub fn read(path: &Path) -> Result<Shape, ObjError> {
-    let shown = path.display().to_string();
-    let failed = |e: std::io::Error| ObjError::Read { path: shown.clone(), reason: e.to_string() };
-    let file = std::fs::File::open(path).map_err(failed)?;
-    let info = file.metadata().map_err(failed)?;
-    if info.is_dir() {
-        return Err(ObjError::Read { path: shown, reason: "it is a folder".into() });
-    }
-    if info.len() > MAX_BYTES {
-        return Err(ObjError::TooLarge { path: shown, bytes: info.len() });
-    }
-    parse(&shown, &mut BufReader::new(file))
+    parse(&path.display().to_string(), &file::read_text(path, &OBJ_FILE)?)
 }
 
 /// Reads a garment from text; `path` stands in error messages.
-pub fn parse(path: &str, reader: &mut impl BufRead) -> Result<Shape, ObjError> {
+pub fn parse(path: &str, text: &str) -> Result<Shape, ObjError> {
     let syntax = |reason: String| ObjError::Syntax { path: path.into(), reason };
-    let mut text = String::new();
-    reader.read_to_string(&mut text).map_err(|_| syntax("it is not text".into()))?;
-    let materials = material_names(&text);
+    let materials = material_names(text);
     let options = tobj::LoadOptions { single_index: false, ..Default::default() };
     // Only names matter here, so that a missing MTL file is no reason to refuse: each name stands for a material.
     let library = |_: &Path| {
@@ -96,12 +85,28 @@ pub fn parse(path: &str, reader: &mut impl BufRead) -> Result<Shape, ObjError> {
     let with_library = format!("mtllib names\n{text}");
     let (models, _) = tobj::load_obj_buf(&mut with_library.as_bytes(), &options, library)
         .map_err(|e| syntax(format!("{e}").to_lowercase()))?;
-    let mut mesh = Welded::default();
+    let mut mesh = WeldedObj::default();
     for model in &models {
         let free = model.mesh.material_id.and_then(|m| materials.get(m)).is_some_and(|name| name.ends_with(FREE));
-        mesh.add(path, &model.mesh, free)?;
+        mesh.add(path, text, &model.mesh, free)?;
     }
-    mesh.into_shape(path, materials.iter().any(|name| name.ends_with(FREE)))
+    let shape = mesh.into_shape(path, materials.iter().any(|name| name.ends_with(FREE)))?;
+    check(&shape.cut, &shape.faces).map_err(|e| ObjError::Mesh { path: path.into(), flaw: flaw(text, &shape, &e) })?;
+    Ok(shape)
+}
+
+/// A flaw of the welded mesh in the file's own terms: its vertices by their number and line, its faces by their line.
+fn flaw(text: &str, shape: &Shape, error: &MeshError) -> String {
+    let Ok(file) = parse_obj(text) else { return error.to_string() };
+    // The first vertex of the file at the same place.
+    let own = |v: u32| file.positions.iter().position(|p| *p == shape.cut[v as usize]).unwrap_or(usize::MAX);
+    file.flaw(error, own, |face| face)
+}
+
+/// A face by its line, where the file's faces are counted from 0.
+fn face_name(text: &str, face: usize) -> String {
+    let line = text.lines().enumerate().filter(|(_, line)| line.trim_start().starts_with("f ")).nth(face);
+    line.map_or_else(|| "a face".to_owned(), |(i, _)| format!("the face in line {}", i + 1))
 }
 
 /// The material names in order of their first use.
@@ -118,7 +123,7 @@ fn material_names(text: &str) -> Vec<String> {
 /// All models of a file as one mesh: vertices at the same place are one vertex, so that parts with different materials
 /// stay sewn together.
 #[derive(Default)]
-struct Welded {
+struct WeldedObj {
     places: BTreeMap<[u32; 3], u32>,
     positions: Vec<Vec3>,
     faces: Vec<Face>,
@@ -130,7 +135,7 @@ struct Welded {
     sticks: Vec<bool>,
 }
 
-impl Welded {
+impl WeldedObj {
     fn vertex(&mut self, p: Vec3) -> u32 {
         // Adding zero makes -0 and 0 one place.
         let key = (p + Vec3::ZERO).to_array().map(f32::to_bits);
@@ -144,7 +149,7 @@ impl Welded {
         found
     }
 
-    fn add(&mut self, path: &str, mesh: &tobj::Mesh, free: bool) -> Result<(), ObjError> {
+    fn add(&mut self, path: &str, text: &str, mesh: &tobj::Mesh, free: bool) -> Result<(), ObjError> {
         let triangles = vec![3; if mesh.face_arities.is_empty() { mesh.indices.len() / 3 } else { 0 }];
         let arities = if mesh.face_arities.is_empty() { &triangles } else { &mesh.face_arities };
         let mut at = 0;
@@ -156,13 +161,16 @@ impl Welded {
             match corners {
                 0..=2 => continue, // points and lines carry no cloth
                 3 | 4 => {}
-                _ => return Err(ObjError::Polygon { path: path.into(), face: self.faces.len(), corners }),
+                _ => {
+                    let face = face_name(text, self.faces.len());
+                    return Err(ObjError::Polygon { path: path.into(), face, corners });
+                }
             }
             let mut face = [NO_VERTEX; 4];
             for (k, &i) in ring.iter().enumerate() {
                 let i = i as usize * 3;
                 let Some(p) = mesh.positions.get(i..i + 3) else {
-                    let reason = format!("face {} names vertex {}, which is not there", self.faces.len(), i / 3 + 1);
+                    let reason = format!("{} names a vertex that is not there", face_name(text, self.faces.len()));
                     return Err(ObjError::Syntax { path: path.into(), reason });
                 };
                 face[k] = self.vertex(Vec3::new(p[0], p[1], p[2]));
@@ -219,13 +227,12 @@ pub(crate) fn warp_upright(positions: &[Vec3], face: Face, uv: [Vec2; 4]) -> (Fa
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::garment::check::check;
 
     const SKIRT: &str = "o skirt\nv 0 1 0\nv .2 1 0\nv .2 .5 0\nv 0 .5 0\nv .2 0 0\nv 0 0 0\n\
         usemtl Band\nf 4 3 2 1\nusemtl ClothFree\nf 6 5 3 4\n";
 
     fn read(text: &str) -> Result<Shape, ObjError> {
-        parse("test.obj", &mut text.as_bytes())
+        parse("test.obj", text)
     }
 
     #[test]
@@ -263,8 +270,8 @@ mod tests {
         for (at, byte) in (0..SKIRT.len()).flat_map(|i| [b'9', b'-', b'n', b'\n', b'/', b'e'].map(|b| (i, b))) {
             let mut bytes = SKIRT.as_bytes().to_vec();
             bytes[at] = byte;
-            if let Ok(shape) = parse("broken.obj", &mut bytes.as_slice()) {
-                let _ = check(&shape.cut, &shape.faces);
+            if let Ok(text) = std::str::from_utf8(&bytes) {
+                let _ = read(text);
             }
         }
     }
@@ -279,7 +286,21 @@ mod tests {
             let message = read(text).unwrap_err().to_string();
             assert!(message.contains(part) && !message.contains('\n'), "{message}");
         }
-        assert!(parse("x", &mut &[0xffu8, 0xfe, 0x00][..]).unwrap_err().to_string().contains("not text"));
-        assert!(read("").is_ok_and(|s| s.faces.is_empty()), "an empty mesh is refused when it is checked");
+        assert!(read("").unwrap_err().to_string().contains("no faces"));
+    }
+
+    #[test]
+    fn flaws_are_named_by_the_files_own_vertices_and_lines() {
+        // The seam's vertices stand twice in the file and are one vertex of the garment.
+        let fin = "# a fin\nv 9 9 9\nv 0 0 0\nv 0 1 0\nv 1 0 0\nv -1 0 0\nv 0 0 1\nv 0 0 0\nv 0 1 0\n\
+            f 2 3 4\n# between\nf 3 2 5\nf 7 8 6\n";
+        let message = read(fin).unwrap_err().to_string();
+        assert!(
+            message.contains("vertex 2 (line 3) and vertex 3 (line 4)") && message.contains("3 faces"),
+            "{message}"
+        );
+        let thin = "v 0 0 0\nv .2 0 0\nv .2 1 0\nv 0 1 0\nf 1 2 3\n\nf 1 3 3 4\n";
+        let message = read(thin).unwrap_err().to_string();
+        assert!(message.contains("the face in line 7 has no area"), "{message}");
     }
 }

@@ -4,6 +4,7 @@
 
 use glam::{Vec2, Vec3};
 
+use crate::garment::check::MeshError;
 use crate::garment::shape::{Face, NO_VERTEX};
 
 /// A mesh in its file's order.
@@ -21,6 +22,10 @@ pub struct PlainMesh {
     pub face_materials: Vec<Option<usize>>,
     /// Names of the materials in the order of their first use.
     pub materials: Vec<String>,
+    /// Line of the file, from 1, of each vertex `[vertices]`; empty where the format has no lines.
+    pub vertex_lines: Vec<u32>,
+    /// The same of each face `[faces]`.
+    pub face_lines: Vec<u32>,
 }
 
 impl PlainMesh {
@@ -30,6 +35,28 @@ impl PlainMesh {
             self.materials.push(name.to_owned());
             self.materials.len() - 1
         })
+    }
+
+    /// What is wrong with a mesh made from this one, in the user's own terms: the file's vertices and lines, or places (m)
+    /// where the format has no lines. `vertex` and `face` say which of this mesh's are meant.
+    pub(crate) fn flaw(
+        &self,
+        error: &MeshError,
+        vertex: impl Fn(u32) -> usize,
+        face: impl Fn(usize) -> usize,
+    ) -> String {
+        let place =
+            |v: usize| self.positions.get(v).map_or_else(String::new, |p| format!(" at ({}, {}, {})", p.x, p.y, p.z));
+        let vertex_name = |v: u32| match self.vertex_lines.get(vertex(v)) {
+            Some(line) => format!("vertex {} (line {line})", vertex(v) + 1),
+            None => format!("the vertex{}", place(vertex(v))),
+        };
+        let face_name = |f: usize| match (self.face_lines.get(face(f)), self.faces.get(face(f))) {
+            (Some(line), _) => format!("the face in line {line}"),
+            (None, Some(corners)) => format!("the face with a corner{}", place(corners[0] as usize)),
+            (None, None) => "a face".to_owned(),
+        };
+        error.described(vertex_name, face_name)
     }
 }
 
@@ -49,7 +76,10 @@ pub fn parse_obj(text: &str) -> Result<PlainMesh, String> {
         }
         let mut words = line.split_whitespace();
         let read = match words.next() {
-            Some("v") => vertex(&mut mesh, words),
+            Some("v") => {
+                mesh.vertex_lines.push(i as u32 + 1);
+                vertex(&mut mesh, words)
+            }
             Some("vt") => {
                 // Never a reason to refuse: what is no number is taken as 0.
                 let mut number = || words.next().and_then(|w| w.parse().ok()).unwrap_or(0.0);
@@ -58,6 +88,7 @@ pub fn parse_obj(text: &str) -> Result<PlainMesh, String> {
             }
             Some("f") => {
                 corners.push(texture_corners(words.clone(), textures.len()));
+                mesh.face_lines.push(i as u32 + 1);
                 face(&mut mesh, words, material)
             }
             Some("usemtl") => {
@@ -74,9 +105,10 @@ pub fn parse_obj(text: &str) -> Result<PlainMesh, String> {
     }
     // Faces may stand before their vertices, so that these are counted at the end.
     let count = mesh.positions.len();
-    for (i, face) in mesh.faces.iter().enumerate() {
+    for (line, face) in mesh.face_lines.iter().zip(&mesh.faces) {
         if let Some(v) = face.iter().find(|v| **v != NO_VERTEX && **v as usize >= count) {
-            return Err(format!("face {i} names vertex {} of {count}; export the mesh again", u64::from(*v) + 1));
+            let v = u64::from(*v) + 1;
+            return Err(format!("line {line}: a face names vertex {v} of {count}; export the mesh again"));
         }
     }
     Ok(mesh)

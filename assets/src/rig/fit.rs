@@ -2,11 +2,11 @@
 
 use glam::Vec3;
 
-use super::plan::{CAPSULES, MIDDLE, PAIRS, PLAN, SPHERES, Start};
-use super::skin::Skin;
-use super::system::{Row, System, UNKNOWNS, Vector};
+use super::plan::{CAPSULES, MIDDLE, PAIRS, PLAN, SPHERES, SpherePlace};
+use super::skin::SkinByHeight;
+use super::system::{NormalEquations, SphereGradient, SphereVector, UNKNOWNS};
 use super::zones::{self, Zone};
-use super::{Placed, nearest, vertex_areas};
+use super::{RestSpheres, nearest, vertex_areas};
 use crate::body::Body;
 
 /// Steps of the fit; it settles within these.
@@ -36,7 +36,7 @@ const STRIDE_M: f64 = 0.03;
 const LEAST_RADIUS: f64 = 5e-3;
 
 /// A point on the skin or above it.
-struct Sample {
+struct SurfaceSample {
     point: Vec3,
     /// Its share of the cost.
     weight: f64,
@@ -45,14 +45,14 @@ struct Sample {
 }
 
 /// What a fit starts from.
-struct Problem {
-    samples: Vec<Sample>,
-    start: Vector,
+struct FitProblem {
+    samples: Vec<SurfaceSample>,
+    start: SphereVector,
 }
 
 /// The spheres that fit the body best, in the rest pose.
-pub(super) fn spheres(body: &Body) -> Placed {
-    let problem = Problem { samples: samples(body), start: start(body) };
+pub(super) fn spheres(body: &Body) -> RestSpheres {
+    let problem = FitProblem { samples: samples(body), start: start(body) };
     let mut x = problem.start;
     let mut cost = problem.cost(&x, None);
     let (mut damping, mut settled) = (1e-2, 0);
@@ -67,14 +67,14 @@ pub(super) fn spheres(body: &Body) -> Placed {
     placed(&x)
 }
 
-impl Problem {
+impl FitProblem {
     /// One step to a lower cost, and that cost; `None` where no damping leads to one.
-    fn step(&self, x: &Vector, cost: f64, damping: &mut f64) -> Option<(Vector, f64)> {
-        let mut system = System::default();
+    fn step(&self, x: &SphereVector, cost: f64, damping: &mut f64) -> Option<(SphereVector, f64)> {
+        let mut system = NormalEquations::default();
         self.cost(x, Some(&mut system));
         for _ in 0..TRIES {
             if let Some(step) = system.solve(*damping) {
-                let tried: Vector = std::array::from_fn(|i| {
+                let tried: SphereVector = std::array::from_fn(|i| {
                     let to = x[i] + step[i].clamp(-STRIDE_M, STRIDE_M);
                     if i % 4 == 3 { to.max(LEAST_RADIUS) } else { to }
                 });
@@ -91,7 +91,7 @@ impl Problem {
 
     /// The cost at `x`, and if asked for, its normal equations. Where a point of the axis moves by dc and its radius by
     /// dr, the distance changes by -n . dc - dr (the envelope theorem: the place on the axis is already the best one).
-    fn cost(&self, x: &Vector, mut system: Option<&mut System>) -> f64 {
+    fn cost(&self, x: &SphereVector, mut system: Option<&mut NormalEquations>) -> f64 {
         let spheres = placed(x);
         let mut cost = 0.0;
         for sample in &self.samples {
@@ -120,11 +120,11 @@ impl Problem {
 }
 
 /// How the distance of a point from a capsule changes with the unknowns of its two spheres.
-fn slopes(spheres: &Placed, capsule: usize, t: f32, point: Vec3) -> Row {
+fn slopes(spheres: &RestSpheres, capsule: usize, t: f32, point: Vec3) -> SphereGradient {
     let ends = CAPSULES[capsule].map(usize::from);
     let centre = spheres[ends[0]].0.lerp(spheres[ends[1]].0, t);
     let normal = (point - centre).normalize_or_zero();
-    let mut row = Row::default();
+    let mut row = SphereGradient::default();
     for (k, (end, share)) in [(ends[0], 1.0 - t), (ends[1], t)].into_iter().enumerate() {
         // Those of the middle stay there.
         let (planned, across) = match end.checked_sub(2 * PAIRS) {
@@ -152,7 +152,7 @@ fn matter(zone: Zone) -> f64 {
 }
 
 /// The left half of the skin, each zone with its own share of the whole, and places above it; the body is symmetric.
-fn samples(body: &Body) -> Vec<Sample> {
+fn samples(body: &Body) -> Vec<SurfaceSample> {
     let areas = vertex_areas(body);
     let zones: Vec<Zone> = (0..areas.len()).map(|v| Zone::of(body, v)).collect();
     let left: Vec<usize> = (0..areas.len()).filter(|v| body.mesh.positions[*v].x >= 0.0).collect();
@@ -163,34 +163,34 @@ fn samples(body: &Body) -> Vec<Sample> {
         Zone::ALL.map(|zone| matter(zone) / area(zone).max(1e-9))
     };
     let on = share(STRIDE);
-    let skin = left.iter().step_by(STRIDE).map(|&v| Sample {
+    let skin = left.iter().step_by(STRIDE).map(|&v| SurfaceSample {
         point: body.mesh.positions[v],
         weight: f64::from(areas[v]) * on[zones::place(zones[v])],
         above: 0.0,
     });
-    let (above, look) = (share(STRIDE_ABOVE), Skin::new(body));
+    let (above, look) = (share(STRIDE_ABOVE), SkinByHeight::new(body));
     let over = left.iter().step_by(STRIDE_ABOVE).filter_map(|&v| {
         let point = body.mesh.positions[v] + body.normals[v] * ABOVE;
         let (nearest, distance) = look.nearest(point)?;
         // In a fold the place above one side is in or near the other: there it says nothing.
         let clear = (point - body.mesh.positions[nearest]).dot(body.normals[nearest]) > 0.5 * ABOVE;
         let weight = SHARE_ABOVE * f64::from(areas[v]) * above[zones::place(zones[v])];
-        clear.then_some(Sample { point, weight, above: f64::from(distance) })
+        clear.then_some(SurfaceSample { point, weight, above: f64::from(distance) })
     });
     skin.chain(over).collect()
 }
 
 /// Where the plan has the spheres on this body.
-fn start(body: &Body) -> Vector {
+fn start(body: &Body) -> SphereVector {
     let mut x = [0.0; UNKNOWNS];
     for (k, planned) in PLAN.iter().enumerate() {
         let (centre, radius) = match planned.start {
-            Start::Trunk { level, across, ahead, radius } => {
-                let section = Section::at(body, height(body, level));
+            SpherePlace::Trunk { level, across, ahead, radius } => {
+                let section = TrunkSection::at(body, height(body, level));
                 let z = section.middle + ahead * section.half_depth;
                 (Vec3::new(across * section.half_breadth, section.height, z), radius * section.half_depth)
             }
-            Start::Limb { from, to, along, beside, radius } => {
+            SpherePlace::Limb { from, to, along, beside, radius } => {
                 let way = body.skeleton.at(from).lerp(body.skeleton.at(to), along);
                 (way + Vec3::from(beside) * body.measures.stature, radius * body.measures.stature)
             }
@@ -210,14 +210,14 @@ fn height(body: &Body, level: f32) -> f32 {
 }
 
 /// How far the trunk reaches at a height (m).
-struct Section {
+struct TrunkSection {
     height: f32,
     half_breadth: f32,
     middle: f32,
     half_depth: f32,
 }
 
-impl Section {
+impl TrunkSection {
     fn at(body: &Body, height: f32) -> Self {
         let (mut breadth, mut back, mut front) = (0.0f32, f32::MAX, f32::MIN);
         for (v, p) in body.mesh.positions.iter().enumerate() {
@@ -233,7 +233,7 @@ impl Section {
     }
 }
 
-fn placed(x: &Vector) -> Placed {
+fn placed(x: &SphereVector) -> RestSpheres {
     let sphere = |k: usize, mirror: f32| {
         let [cx, cy, cz, r] = [0, 1, 2, 3].map(|i| x[4 * k + i] as f32);
         (Vec3::new(mirror * cx, cy, cz), r)

@@ -18,7 +18,7 @@ pub(super) const MIDDLE: usize = 3;
 pub const SPHERES: usize = 2 * PAIRS + MIDDLE;
 
 /// Where a sphere stands before the fit.
-pub(super) enum Start {
+pub(super) enum SpherePlace {
     /// In the trunk: its height between the levels (0 crotch, 1 hip, 2 waist, 3 underbust, 4 chest, 5 shoulder), its
     /// place across as a share of the section's half breadth, ahead of the section's middle and its radius as shares of
     /// its half depth.
@@ -29,25 +29,25 @@ pub(super) enum Start {
 }
 
 /// One sphere of the left side or of the middle.
-pub(super) struct Planned {
+pub(super) struct SpherePlan {
     /// The joint that carries it.
     pub carrier: Joint,
     /// Where it begins.
-    pub start: Start,
+    pub start: SpherePlace,
     /// How strongly it is held there, times [`super::fit::HOLD`].
     pub held: f64,
 }
 
-const fn trunk(carrier: Joint, [level, across, ahead, radius]: [f32; 4]) -> Planned {
-    Planned { carrier, start: Start::Trunk { level, across, ahead, radius }, held: 1.0 }
+const fn trunk(carrier: Joint, [level, across, ahead, radius]: [f32; 4]) -> SpherePlan {
+    SpherePlan { carrier, start: SpherePlace::Trunk { level, across, ahead, radius }, held: 1.0 }
 }
 
-const fn limb(carrier: Joint, [from, to]: [Joint; 2], along: f32, beside: [f32; 3], radius: f32) -> Planned {
-    Planned { carrier, start: Start::Limb { from, to, along, beside, radius }, held: 1.0 }
+const fn limb(carrier: Joint, [from, to]: [Joint; 2], along: f32, beside: [f32; 3], radius: f32) -> SpherePlan {
+    SpherePlan { carrier, start: SpherePlace::Limb { from, to, along, beside, radius }, held: 1.0 }
 }
 
 /// The left spheres, then those of the middle.
-pub(super) const PLAN: [Planned; PAIRS + MIDDLE] = {
+pub(super) const PLAN: [SpherePlan; PAIRS + MIDDLE] = {
     use Joint::*;
     const CLAVICLE: [Joint; 2] = [LeftClavicle, LeftShoulder];
     const UPPER_ARM: [Joint; 2] = [LeftShoulder, LeftElbow];
@@ -71,7 +71,7 @@ pub(super) const PLAN: [Planned; PAIRS + MIDDLE] = {
         trunk(Chest, [4.441, 0.491, -0.151, 0.715]),
         limb(Chest, CLAVICLE, 0.089, [-0.007, 0.0055, -0.0356], 0.0337),
         // The arm turns about this one: it stays where the joint is, so that the clavicle can carry it.
-        Planned { held: 200.0, ..limb(LeftClavicle, UPPER_ARM, 0.0, [0.0; 3], 0.0345) },
+        SpherePlan { held: 200.0, ..limb(LeftClavicle, UPPER_ARM, 0.0, [0.0; 3], 0.0345) },
         limb(LeftElbow, UPPER_ARM, 1.052, [0.0016, 0.0019, 0.0], 0.0237),
         limb(LeftElbow, FOREARM, 0.185, [0.0004, 0.0005, 0.0004], 0.0269),
         limb(LeftWrist, FOREARM, 0.854, [-0.0002, 0.0, 0.0006], 0.0162),

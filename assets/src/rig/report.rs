@@ -4,9 +4,9 @@ use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
 
-use super::skin::Skin;
+use super::skin::SkinByHeight;
 use super::zones::{self, Zone};
-use super::{CAPSULES, Placed, nearest, vertex_areas};
+use super::{CAPSULES, RestSpheres, nearest, vertex_areas};
 use crate::body::Body;
 
 /// Mean distance that the trunk and the thighs are held to (mm).
@@ -64,7 +64,7 @@ impl ZoneReport {
 
 /// How closely a rig follows its body.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Report {
+pub struct RigReport {
     /// Zones in the order of [`Zone::ALL`].
     pub zones: [ZoneReport; Zone::ALL.len()],
     /// Chest, waist, hips and shoulders together.
@@ -73,7 +73,7 @@ pub struct Report {
     pub whole: ZoneReport,
 }
 
-impl Report {
+impl RigReport {
     /// The report of one zone.
     pub fn of(&self, zone: Zone) -> &ZoneReport {
         &self.zones[zones::place(zone)]
@@ -84,7 +84,7 @@ impl Report {
         Zone::HELD.into_iter().filter(|zone| !self.of(*zone).meets()).collect()
     }
 
-    pub(super) fn new(body: &Body, placed: &Placed) -> Self {
+    pub(super) fn new(body: &Body, placed: &RestSpheres) -> Self {
         let (skin, cloth) = (from_skin(body, placed), from_union(body, placed));
         let of = |asked: &dyn Fn(Zone) -> bool| summed(&skin, &cloth, asked);
         Self { zones: Zone::ALL.map(|zone| of(&|z| z == zone)), trunk: of(&zones::is_trunk), whole: of(&|_| true) }
@@ -92,14 +92,14 @@ impl Report {
 }
 
 /// A distance (m), positive where the union is above the skin; where, and what area it stands for (m^2).
-struct Found {
+struct SurfaceDistance {
     zone: Zone,
     distance: f32,
     area: f32,
 }
 
 /// Distances in zones that are asked for.
-fn summed(skin: &[Found], cloth: &[Found], asked: &dyn Fn(Zone) -> bool) -> ZoneReport {
+fn summed(skin: &[SurfaceDistance], cloth: &[SurfaceDistance], asked: &dyn Fn(Zone) -> bool) -> ZoneReport {
     let ([mean_mm, signed_mean_mm, p95_mm], [max_outside_mm, max_inside_mm]) = figures(skin, asked);
     let ([cloth_mean_mm, _, cloth_p95_mm], [cloth_max_above_mm, cloth_max_below_mm]) = figures(cloth, asked);
     ZoneReport {
@@ -116,8 +116,8 @@ fn summed(skin: &[Found], cloth: &[Found], asked: &dyn Fn(Zone) -> bool) -> Zone
 }
 
 /// Absolute mean, signed mean, 95th percentile; the greatest above and below (mm).
-fn figures(found: &[Found], asked: &dyn Fn(Zone) -> bool) -> ([f32; 3], [f32; 2]) {
-    let mut some: Vec<&Found> = found.iter().filter(|f| asked(f.zone)).collect();
+fn figures(found: &[SurfaceDistance], asked: &dyn Fn(Zone) -> bool) -> ([f32; 3], [f32; 2]) {
+    let mut some: Vec<&SurfaceDistance> = found.iter().filter(|f| asked(f.zone)).collect();
     some.sort_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()));
     let total: f64 = some.iter().map(|f| f64::from(f.area)).sum();
     let mean = |value: &dyn Fn(f32) -> f32| {
@@ -134,9 +134,9 @@ fn figures(found: &[Found], asked: &dyn Fn(Zone) -> bool) -> ([f32; 3], [f32; 2]
 }
 
 /// Every vertex' distance from the surface of the union.
-fn from_skin(body: &Body, placed: &Placed) -> Vec<Found> {
+fn from_skin(body: &Body, placed: &RestSpheres) -> Vec<SurfaceDistance> {
     let areas = vertex_areas(body);
-    let of = |v: usize| Found {
+    let of = |v: usize| SurfaceDistance {
         zone: Zone::of(body, v),
         distance: -way_out(placed, body.mesh.positions[v], body.normals[v]),
         area: areas[v],
@@ -147,7 +147,7 @@ fn from_skin(body: &Body, placed: &Placed) -> Vec<Found> {
 /// Signed distance from a point of the skin to the surface of the union (m), negative inside. Inside it is the shorter of
 /// two ways that do lead out: along the skin's normal, and always away from the capsule that is deepest; the union's
 /// surface is no farther than that.
-pub(super) fn way_out(placed: &Placed, p: Vec3, normal: Vec3) -> f32 {
+pub(super) fn way_out(placed: &RestSpheres, p: Vec3, normal: Vec3) -> f32 {
     let (distance, ..) = nearest(placed, p);
     if distance >= 0.0 {
         return distance;
@@ -166,17 +166,17 @@ pub(super) fn way_out(placed: &Placed, p: Vec3, normal: Vec3) -> f32 {
 }
 
 /// Distances from the skin of points all over the surface of the union.
-fn from_union(body: &Body, placed: &Placed) -> Vec<Found> {
-    let skin = Skin::new(body);
+fn from_union(body: &Body, placed: &RestSpheres) -> Vec<SurfaceDistance> {
+    let skin = SkinByHeight::new(body);
     let of = |(p, area): (Vec3, f32)| {
         let (v, distance) = skin.distance(p)?;
-        Some(Found { zone: Zone::of(body, v), distance, area })
+        Some(SurfaceDistance { zone: Zone::of(body, v), distance, area })
     };
     surface(placed).into_iter().filter_map(of).collect()
 }
 
 /// Points of the union's surface and the areas they stand for (m^2).
-pub(super) fn surface(placed: &Placed) -> Vec<(Vec3, f32)> {
+pub(super) fn surface(placed: &RestSpheres) -> Vec<(Vec3, f32)> {
     let mut points = Vec::new();
     for ends in CAPSULES {
         let [a, b] = ends.map(|s| placed[usize::from(s)]);

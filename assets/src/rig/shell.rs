@@ -4,7 +4,7 @@ use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
 
-use super::{CAPSULES, Placed};
+use super::{CAPSULES, RestSpheres};
 
 /// Vertices around a capsule, and rings on it from one pole to the other (even: half of them on each end).
 const AROUND: usize = 32;
@@ -12,7 +12,7 @@ const RINGS: usize = 20;
 
 /// The surfaces of all capsules, whole even where they overlap.
 #[derive(Debug, Clone, Default)]
-pub struct Shell {
+pub struct CapsuleSurface {
     /// Points (m) `[vertices]`.
     pub positions: Vec<Vec3>,
     /// Unit normals `[vertices]`.
@@ -23,8 +23,8 @@ pub struct Shell {
     pub capsules: Vec<u8>,
 }
 
-impl Shell {
-    pub(super) fn new(placed: &Placed) -> Self {
+impl CapsuleSurface {
+    pub(super) fn new(placed: &RestSpheres) -> Self {
         let mut shell = Self::default();
         for (c, ends) in CAPSULES.iter().enumerate() {
             shell.add(c as u8, ends.map(|s| placed[usize::from(s)]));

@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::body::Body;
 
 /// A body's vertices by height, and the triangles around each.
-pub(super) struct Skin<'a> {
+pub(super) struct SkinByHeight<'a> {
     body: &'a Body,
     /// Vertices, lowest first.
     order: Vec<u32>,
@@ -14,7 +14,7 @@ pub(super) struct Skin<'a> {
     around: Vec<u32>,
 }
 
-impl<'a> Skin<'a> {
+impl<'a> SkinByHeight<'a> {
     pub(super) fn new(body: &'a Body) -> Self {
         let mesh = &body.mesh;
         let at = |v: &u32| mesh.positions[*v as usize].y;
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn nearest_vertex_is_that_of_brute_force_and_triangles_are_no_farther() {
         let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
-        let skin = Skin::new(&body);
+        let skin = SkinByHeight::new(&body);
         for i in 0..200 {
             let spread = |k: f32| (i as f32 * k).fract() - 0.5;
             let p = Vec3::new(spread(0.618_034), 0.8, 0.0) + Vec3::new(0.0, spread(0.414_2) * 2.2, spread(0.732_05));

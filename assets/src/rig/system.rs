@@ -6,28 +6,28 @@ use super::plan::{MIDDLE, PAIRS};
 
 /// Centre and radius of each sphere that is not a mirror image.
 pub(super) const UNKNOWNS: usize = 4 * (PAIRS + MIDDLE);
-pub(super) type Vector = [f64; UNKNOWNS];
+pub(super) type SphereVector = [f64; UNKNOWNS];
 
 /// One residual's gradient: the first unknown of each of the two spheres, and the slopes of its four. Both may be the
 /// same one, where a capsule joins a sphere to its own mirror image.
 #[derive(Default)]
-pub(super) struct Row(pub [(usize, [f64; 4]); 2]);
+pub(super) struct SphereGradient(pub [(usize, [f64; 4]); 2]);
 
 /// The equations: matrix times step = right.
-pub(super) struct System {
-    matrix: Box<[Vector]>,
-    right: Vector,
+pub(super) struct NormalEquations {
+    matrix: Box<[SphereVector]>,
+    right: SphereVector,
 }
 
-impl Default for System {
+impl Default for NormalEquations {
     fn default() -> Self {
         Self { matrix: vec![[0.0; UNKNOWNS]; UNKNOWNS].into(), right: [0.0; UNKNOWNS] }
     }
 }
 
-impl System {
+impl NormalEquations {
     /// Adds a residual.
-    pub(super) fn add(&mut self, row: &Row, residual: f64, weight: f64) {
+    pub(super) fn add(&mut self, row: &SphereGradient, residual: f64, weight: f64) {
         for (first, slopes) in &row.0 {
             for (i, a) in slopes.iter().enumerate() {
                 self.right[first + i] -= weight * a * residual;
@@ -47,7 +47,7 @@ impl System {
     }
 
     /// The damped step, by Cholesky; `None` where the matrix is not positive definite.
-    pub(super) fn solve(&self, damping: f64) -> Option<Vector> {
+    pub(super) fn solve(&self, damping: f64) -> Option<SphereVector> {
         let mut lower = self.matrix.clone();
         let mut x = self.right;
         lower.iter_mut().enumerate().for_each(|(i, row)| row[i] += damping * row[i] + 1e-9);

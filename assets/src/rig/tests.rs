@@ -73,7 +73,7 @@ fn way_out_leads_out() {
 /// Points of the union's surface lie on it, and their areas are those of a sphere's that the rest of it does not cover.
 #[test]
 fn surface_of_the_union_is_sampled_evenly() {
-    let alone: Placed = std::array::from_fn(|i| (Vec3::new(i as f32, 0.0, 0.0), 0.0));
+    let alone: RestSpheres = std::array::from_fn(|i| (Vec3::new(i as f32, 0.0, 0.0), 0.0));
     let mut spread = alone;
     // The last one shares its ends with no other.
     let [a, b] = CAPSULES[CAPSULES.len() - 1].map(usize::from);

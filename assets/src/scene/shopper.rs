@@ -24,7 +24,7 @@ pub const LENGTH_S: f32 = 10.0;
 /// and comes to rest.
 pub fn shopper(skeleton: &Skeleton, time: f32) -> Pose {
     let mut pose = Pose::rest(skeleton);
-    let mut act = Act { pose: &mut pose, breath: (TAU * 0.3 * time).sin() };
+    let mut act = PoseBlend { pose: &mut pose, breath: (TAU * 0.3 * time).sin() };
     act.stand();
     act.lower_arms(ramp(time, STILL_S, STILL_S + 1.0));
     act.lift_arms(window(time, STILL_S, 3.6));
@@ -49,12 +49,12 @@ fn window(time: f32, from: f32, to: f32) -> f32 {
 }
 
 /// One moment of the performance; each part adds to the pose by its strength 0..1.
-struct Act<'a> {
+struct PoseBlend<'a> {
     pose: &'a mut Pose,
     breath: f32,
 }
 
-impl Act<'_> {
+impl PoseBlend<'_> {
     fn bend(&mut self, joint: Joint, turn: Quat) {
         let i = joint.index();
         self.pose.local[i] = turn * self.pose.local[i];

@@ -3,15 +3,15 @@
 use glam::{Vec3, Vec4};
 
 use super::error::SceneError;
-use super::source::Source;
-use super::table::Table;
+use super::source::SceneSource;
+use super::table::SceneTable;
 use super::track::Track;
 use crate::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
 use crate::scene::skirt::{self, Motion};
 
 /// A plane: cloth stays on the side that the normal shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plane {
+pub struct ScenePlane {
     /// A point on it (m).
     pub point: Vec3,
     /// Unit normal.
@@ -20,7 +20,7 @@ pub struct Plane {
 
 /// What moves spheres.
 #[derive(Debug, Clone, PartialEq)]
-enum Mover {
+enum SphereMotion {
     Track(Track),
     /// The benchmark's body.
     Body(Motion),
@@ -31,15 +31,15 @@ enum Mover {
 pub struct SceneColliders {
     /// For each sphere what moves it, and its place among the spheres of that.
     spheres: Vec<(usize, usize)>,
-    movers: Vec<Mover>,
+    movers: Vec<SphereMotion>,
     /// Pairs of spheres; one that belongs to no pair is paired with itself.
     pub capsules: Vec<[u8; 2]>,
     /// Planes.
-    pub planes: Vec<Plane>,
+    pub planes: Vec<ScenePlane>,
 }
 
 impl SceneColliders {
-    pub(super) fn load(table: &Table<'_>, source: Source<'_>, pass: bool) -> Result<Self, SceneError> {
+    pub(super) fn load(table: &SceneTable<'_>, source: SceneSource<'_>, pass: bool) -> Result<Self, SceneError> {
         let mut this = Self::default();
         let spheres = table.tables("sphere")?;
         match table.text("track")? {
@@ -51,7 +51,7 @@ impl SceneColliders {
             Some(name) => {
                 let track = sphere_track(table, name, source, pass, None)?;
                 this.spheres = (0..track.width() / 4).map(|k| (0, k)).collect();
-                this.movers.push(Mover::Track(track));
+                this.movers.push(SphereMotion::Track(track));
             }
             None if table.has("motion") => {
                 if !spheres.is_empty() || table.has("capsules") {
@@ -60,7 +60,7 @@ impl SceneColliders {
                 }
                 let motion = motion(table.choice("motion")?.unwrap_or_default());
                 this.spheres = (0..skirt::JOINTS.len()).map(|k| (0, k)).collect();
-                this.movers.push(Mover::Body(motion));
+                this.movers.push(SphereMotion::Body(motion));
             }
             None => spheres.iter().try_for_each(|sphere| this.add(sphere, source, pass))?,
         }
@@ -73,7 +73,7 @@ impl SceneColliders {
         for plane in table.tables("plane")? {
             let normal = plane.vector("normal")?.try_normalize();
             let normal = normal.ok_or_else(|| plane.wrong("normal", "has no length; give [0, 1, 0] for a floor"))?;
-            this.planes.push(Plane { point: plane.vector("point")?, normal });
+            this.planes.push(ScenePlane { point: plane.vector("point")?, normal });
         }
         if this.planes.len() > MAX_PLANES {
             let says = format!("{} planes are more than MAX_PLANES = {MAX_PLANES}; leave some out", this.planes.len());
@@ -82,7 +82,7 @@ impl SceneColliders {
         Ok(this)
     }
 
-    fn add(&mut self, sphere: &Table<'_>, source: Source<'_>, pass: bool) -> Result<(), SceneError> {
+    fn add(&mut self, sphere: &SceneTable<'_>, source: SceneSource<'_>, pass: bool) -> Result<(), SceneError> {
         let track = match sphere.text("track")? {
             Some(_) if sphere.has("centre") || sphere.has("radius") => {
                 return Err(sphere.wrong("track", "gives centre and radius; delete those keys"));
@@ -94,14 +94,14 @@ impl SceneColliders {
             }
         };
         self.spheres.push((self.movers.len(), 0));
-        self.movers.push(Mover::Track(track));
+        self.movers.push(SphereMotion::Track(track));
         Ok(())
     }
 
     /// Capsules as the scene joins them, and one of its own for every sphere that is in none.
-    fn join(&mut self, table: &Table<'_>) -> Result<(), SceneError> {
+    fn join(&mut self, table: &SceneTable<'_>) -> Result<(), SceneError> {
         self.capsules = match self.movers.first() {
-            Some(Mover::Body(_)) => skirt::CAPSULES.to_vec(),
+            Some(SphereMotion::Body(_)) => skirt::CAPSULES.to_vec(),
             _ => table.pairs("capsules", self.spheres.len())?,
         };
         let joined = |s: u8| self.capsules.iter().any(|ends| ends.contains(&s));
@@ -125,8 +125,8 @@ impl SceneColliders {
     pub fn sphere(&self, k: usize, time: f64) -> Vec4 {
         let (mover, place) = self.spheres[k];
         match &self.movers[mover] {
-            Mover::Track(track) => track.sphere(time, place).as_vec4(),
-            Mover::Body(motion) => skirt::spheres(*motion, time)[place],
+            SphereMotion::Track(track) => track.sphere(time, place).as_vec4(),
+            SphereMotion::Body(motion) => skirt::spheres(*motion, time)[place],
         }
     }
 }
@@ -137,9 +137,9 @@ pub(super) fn motion(choice: usize) -> Motion {
 }
 
 fn sphere_track(
-    table: &Table<'_>,
+    table: &SceneTable<'_>,
     name: &str,
-    source: Source<'_>,
+    source: SceneSource<'_>,
     pass: bool,
     spheres: Option<usize>,
 ) -> Result<Track, SceneError> {

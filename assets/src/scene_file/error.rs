@@ -41,14 +41,14 @@ pub enum SceneError {
 
 /// The text of a scene and its name, by which errors name places in it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Document<'t> {
+pub(super) struct SceneDocument<'t> {
     /// The file as the user named it.
     pub file: &'t str,
     /// Its text.
     pub text: &'t str,
 }
 
-impl Document<'_> {
+impl SceneDocument<'_> {
     /// An error at a byte of the text.
     pub fn error(&self, at: usize, says: impl Into<String>) -> SceneError {
         let (line, column) = toml_keys::place(self.text, at);

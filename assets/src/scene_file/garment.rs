@@ -3,13 +3,14 @@
 use glam::{EulerRot, Quat, Vec3};
 
 use super::error::SceneError;
-use super::source::Source;
-use super::table::Table;
+use super::source::SceneSource;
+use super::table::SceneTable;
 use super::track::Track;
-use super::{Loading, PinSource, primitive, weld};
+use super::{PinSource, SceneLoader, primitive, weld};
 use crate::fabric::Fabric;
+use crate::garment::check::check;
 use crate::garment::shape::{Face, NO_VERTEX};
-use crate::garment::{MeshError, Overrides, Shape, Solver};
+use crate::garment::{Overrides, Shape, Solver};
 use crate::import::gltf::parse_gltf;
 use crate::import::obj::FREE;
 use crate::import::plain::{PlainMesh, parse_obj};
@@ -49,7 +50,11 @@ pub struct SceneGarment {
 }
 
 impl SceneGarment {
-    pub(super) fn load(table: &Table<'_>, number: usize, loading: &mut Loading<'_>) -> Result<Self, SceneError> {
+    pub(super) fn load(
+        table: &SceneTable<'_>,
+        number: usize,
+        loading: &mut SceneLoader<'_>,
+    ) -> Result<Self, SceneError> {
         let name = table.text("name")?.map_or_else(|| format!("cloth-{number}"), str::to_owned);
         if !name.chars().all(|c| c.is_alphanumeric() || "-_. ".contains(c)) || name.starts_with('.') {
             return Err(table.wrong("name", "names files, so give letters, digits, - and _ only"));
@@ -59,7 +64,7 @@ impl SceneGarment {
         place(table, &mut plain)?;
         let (mut shape, to_shape) = weld::shape(&plain, table.flag("weld")?);
         let mesh = UserMesh { start: plain.positions.clone(), faces: plain.faces.clone(), to_shape };
-        shape.check(table)?;
+        check_shape(table, &plain, &mesh, &shape)?;
         pin(table, loading, &plain, &mesh, &mut shape)?;
         hang(&mut shape, &mut fabric);
         let mass_kg = weigh(table, &mesh, &fabric, &mut shape)?;
@@ -77,11 +82,11 @@ impl SceneGarment {
 const MESHES: [&str; 4] = ["mesh", "grid", "tube", "skirt"];
 
 /// The key that names a garment's mesh, for messages.
-fn mesh_key(table: &Table<'_>) -> &'static str {
+fn mesh_key(table: &SceneTable<'_>) -> &'static str {
     MESHES.into_iter().find(|key| table.has(key)).unwrap_or("mesh")
 }
 
-fn mesh(table: &Table<'_>, source: Source<'_>) -> Result<PlainMesh, SceneError> {
+fn mesh(table: &SceneTable<'_>, source: SceneSource<'_>) -> Result<PlainMesh, SceneError> {
     let given = MESHES.into_iter().filter(|key| table.has(key)).count();
     if given != 1 {
         let says = format!("[garment] has {given} of {}; give exactly one of them", MESHES.join(", "));
@@ -116,7 +121,7 @@ fn mesh(table: &Table<'_>, source: Source<'_>) -> Result<PlainMesh, SceneError> 
 
 /// Scales, turns and moves the mesh, each only where the scene asks for it, so that untouched coordinates keep their
 /// bits.
-fn place(table: &Table<'_>, mesh: &mut PlainMesh) -> Result<(), SceneError> {
+fn place(table: &SceneTable<'_>, mesh: &mut PlainMesh) -> Result<(), SceneError> {
     let scale = table.number("scale")? as f32;
     let [x, y, z] = table.vector("rotation_deg")?.to_array().map(f32::to_radians);
     let position = table.vector("position")?;
@@ -144,16 +149,17 @@ fn place(table: &Table<'_>, mesh: &mut PlainMesh) -> Result<(), SceneError> {
     Ok(())
 }
 
-impl Shape {
-    /// The checks of baking, told at the scene's line before anything is built on the shape.
-    fn check(&self, table: &Table<'_>) -> Result<(), SceneError> {
-        let checked = crate::garment::check::check(&self.cut, &self.faces);
-        checked.map_err(|e: MeshError| table.wrong(mesh_key(table), format!("cannot be cloth: {e}")))
-    }
+/// The checks of baking, reported at the scene's line before anything is built on the shape.
+fn check_shape(table: &SceneTable<'_>, plain: &PlainMesh, mesh: &UserMesh, shape: &Shape) -> Result<(), SceneError> {
+    check(&shape.cut, &shape.faces).map_err(|e| {
+        // Several of the file's vertices may be one of the shape's; the first of them is named.
+        let own = |v: u32| mesh.to_shape.iter().position(|to| *to == v).unwrap_or_default();
+        table.wrong(mesh_key(table), format!("cannot be cloth: {}", plain.flaw(&e, own, |face| face)))
+    })
 }
 
-fn fabric(table: &Table<'_>, source: Source<'_>) -> Result<Fabric, SceneError> {
-    let built_in = |table: &Table<'_>, key: &str, name: &str| {
+fn fabric(table: &SceneTable<'_>, source: SceneSource<'_>) -> Result<Fabric, SceneError> {
+    let built_in = |table: &SceneTable<'_>, key: &str, name: &str| {
         let unknown = |e: &dyn std::fmt::Display| {
             let all = Fabric::all().unwrap_or_default();
             let meant = toml_keys::nearest(name, all.iter().map(|f| f.name.as_str()));
@@ -184,7 +190,7 @@ fn fabric(table: &Table<'_>, source: Source<'_>) -> Result<Fabric, SceneError> {
 }
 
 /// The user's vertices that a table names, by index or by box.
-fn chosen(table: &Table<'_>, mesh: &UserMesh) -> Result<Vec<usize>, SceneError> {
+fn chosen(table: &SceneTable<'_>, mesh: &UserMesh) -> Result<Vec<usize>, SceneError> {
     let mut found = table.vertices("vertices", mesh.start.len())?.unwrap_or_default();
     if let Some([low, high]) = table.corners("box")? {
         let inside = |p: &Vec3| p.cmpge(low).all() && p.cmple(high).all();
@@ -199,8 +205,8 @@ fn chosen(table: &Table<'_>, mesh: &UserMesh) -> Result<Vec<usize>, SceneError> 
 
 /// Fixes what the material suffix and the pin tables hold, and gives each vertex the group that moves it.
 fn pin(
-    table: &Table<'_>,
-    loading: &mut Loading<'_>,
+    table: &SceneTable<'_>,
+    loading: &mut SceneLoader<'_>,
     plain: &PlainMesh,
     mesh: &UserMesh,
     shape: &mut Shape,
@@ -280,7 +286,7 @@ fn hang(shape: &mut Shape, fabric: &mut Fabric) {
 }
 
 /// Mass of the shape (kg): by the fabric, or as the scene says; patches on top of it.
-fn weigh(table: &Table<'_>, mesh: &UserMesh, fabric: &Fabric, shape: &mut Shape) -> Result<f64, SceneError> {
+fn weigh(table: &SceneTable<'_>, mesh: &UserMesh, fabric: &Fabric, shape: &mut Shape) -> Result<f64, SceneError> {
     let mut mass = vec![0.0f64; shape.cut.len()];
     for t in shape.triangles() {
         let [a, b, c] = t.map(|v| shape.cut[v as usize].as_dvec3());
@@ -310,7 +316,12 @@ fn weigh(table: &Table<'_>, mesh: &UserMesh, fabric: &Fabric, shape: &mut Shape)
 pub(super) const MAX_PIN_TRACKS: usize = BONES - 1;
 
 /// Reads a track of rigid motion.
-pub(super) fn rigid_track(pin: &Table<'_>, name: &str, source: Source<'_>, pass: bool) -> Result<Track, SceneError> {
+pub(super) fn rigid_track(
+    pin: &SceneTable<'_>,
+    name: &str,
+    source: SceneSource<'_>,
+    pass: bool,
+) -> Result<Track, SceneError> {
     let wrong = |says: String| pin.wrong("track", format!("{name}: {says}"));
     let text = source.text(name).map_err(|e| wrong(format!("{e}; give the path of a CSV file")))?;
     let fits = |n: usize| match n {

@@ -24,16 +24,16 @@ use std::path::Path;
 use glam::{Affine3A, Vec3};
 use toml::de::DeTable;
 
-pub use colliders::{Plane, SceneColliders};
+pub use colliders::{SceneColliders, ScenePlane};
 pub use error::SceneError;
 pub use garment::{SceneGarment, UserMesh};
-pub use source::Source;
+pub use source::SceneSource;
 pub use track::Track;
 
 use crate::limits::{MAX_SCENE_GARMENTS, MAX_SCENE_VERTICES};
 use crate::scene::skirt::{self, Motion};
-use error::Document;
-use table::Table;
+use error::SceneDocument;
+use table::SceneTable;
 
 /// Air that moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -115,15 +115,15 @@ pub struct SceneFile {
 }
 
 /// What is shared while the parts of a scene are read.
-pub(crate) struct Loading<'a> {
-    source: Source<'a>,
+pub(crate) struct SceneLoader<'a> {
+    source: SceneSource<'a>,
     pass: bool,
     pins: Vec<(String, PinMotion)>,
 }
 
-impl Loading<'_> {
+impl SceneLoader<'_> {
     /// The group of the pins that follow a motion; the same one is one group.
-    fn pin_group(&mut self, pin: &Table<'_>, source: PinSource<'_>) -> Result<u8, SceneError> {
+    fn pin_group(&mut self, pin: &SceneTable<'_>, source: PinSource<'_>) -> Result<u8, SceneError> {
         let name = match source {
             PinSource::Track(name) => name.to_owned(),
             PinSource::Motion(choice) => format!("motion {}", schema::MOTIONS[choice]),
@@ -144,15 +144,16 @@ impl Loading<'_> {
     }
 }
 
+/// The scene file itself: vertices picked one by one make the longest.
+const SCENE_FILE: FileKind = FileKind { name: "a scene file", max_bytes: 16 << 20, cure: "give a scene of TOML" };
+
 impl SceneFile {
     /// Reads a scene file; the files that it names are looked for in its folder.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let text = std::fs::read(path)
-            .map_err(|e| e.to_string())
-            .and_then(|bytes| String::from_utf8(bytes).map_err(|_| "it is not text in UTF-8".to_owned()));
+        let text = file::read_text(path, &SCENE_FILE).map_err(|e| e.reason());
         let text = text.map_err(|reason| SceneError::Read { path: path.to_path_buf(), reason })?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        Self::parse(&path.display().to_string(), &text, Source::Folder(folder))
+        Self::parse(&path.display().to_string(), &text, SceneSource::Folder(folder))
     }
 
     /// One of the [`examples`].
@@ -160,19 +161,19 @@ impl SceneFile {
         let known = || examples::names().collect::<Vec<_>>().join(", ");
         let text = examples::text(name);
         let text = text.ok_or_else(|| SceneError::NoExample { name: name.into(), known: known() })?;
-        Self::parse(&format!("{name}.toml"), text, Source::Inside(examples::FILES))
+        Self::parse(&format!("{name}.toml"), text, SceneSource::Inside(examples::FILES))
     }
 
     /// Reads a scene from text; `file` is what messages call it.
-    pub fn parse(file: &str, text: &str, source: Source<'_>) -> Result<Self, SceneError> {
-        let document = Document { file, text };
+    pub fn parse(file: &str, text: &str, source: SceneSource<'_>) -> Result<Self, SceneError> {
+        let document = SceneDocument { file, text };
         let entries = DeTable::parse(text).map_err(|e| {
             let at = e.span().map_or(0, |span| span.start);
             document.error(at, format!("this is not TOML: {}; see docs/scene.md for the format", e.message()))
         })?;
-        let root = Table::open(document, entries.get_ref(), "", 0)?;
+        let root = SceneTable::open(document, entries.get_ref(), "", 0)?;
         let pass = root.choice("bad_rows")? == Some(1);
-        let mut loading = Loading { source, pass, pins: Vec::new() };
+        let mut loading = SceneLoader { source, pass, pins: Vec::new() };
         let garments = garments(&root, &mut loading)?;
         let colliders = root.table("colliders")?.map(|table| SceneColliders::load(&table, source, pass));
         let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -206,7 +207,7 @@ impl SceneFile {
     }
 }
 
-fn garments(root: &Table<'_>, loading: &mut Loading<'_>) -> Result<Vec<SceneGarment>, SceneError> {
+fn garments(root: &SceneTable<'_>, loading: &mut SceneLoader<'_>) -> Result<Vec<SceneGarment>, SceneError> {
     let tables = root.tables("garment")?;
     if tables.is_empty() {
         return Err(root.error("garment is missing; give at least one table [[garment]] with a mesh, grid or tube"));
@@ -236,7 +237,7 @@ fn garments(root: &Table<'_>, loading: &mut Loading<'_>) -> Result<Vec<SceneGarm
     Ok(garments)
 }
 
-fn wind(table: &Table<'_>) -> Result<Wind, SceneError> {
+fn wind(table: &SceneTable<'_>) -> Result<Wind, SceneError> {
     Ok(Wind {
         velocity: table.vector("velocity")?,
         drag: table.number("drag")? as f32,
@@ -244,7 +245,7 @@ fn wind(table: &Table<'_>) -> Result<Wind, SceneError> {
     })
 }
 
-fn settings(table: &Table<'_>) -> Result<SceneSettings, SceneError> {
+fn settings(table: &SceneTable<'_>) -> Result<SceneSettings, SceneError> {
     let lanes = table.maybe_count("lanes")?;
     if lanes.is_some_and(|n| ![1, 4, 8, 16].contains(&n)) {
         return Err(table.wrong("lanes", "is no width that processors have; give 1, 4, 8 or 16"));

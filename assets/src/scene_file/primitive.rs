@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DVec3, Vec3};
 
 use super::error::SceneError;
-use super::table::Table;
+use super::table::SceneTable;
 use crate::garment::Shape;
 use crate::garment::shape::Face;
 use crate::import::plain::PlainMesh;
@@ -13,7 +13,7 @@ use crate::scene::skirt;
 
 /// A rectangle, centred on x = 0. Vertex (row, column) is `row * columns + column`; row 0 is the top, or the far edge
 /// of a level one.
-pub(super) fn grid(table: &Table<'_>) -> Result<PlainMesh, SceneError> {
+pub(super) fn grid(table: &SceneTable<'_>) -> Result<PlainMesh, SceneError> {
     let (rows, columns) = (table.count("rows")?, table.count("columns")?);
     let (width, height) = (table.needed("width")?, table.needed("height")?);
     let level = table.choice("plane")? == Some(1);
@@ -26,7 +26,7 @@ pub(super) fn grid(table: &Table<'_>) -> Result<PlainMesh, SceneError> {
 }
 
 /// An open tube around the y axis, row 0 on top at y = 0.
-pub(super) fn tube(table: &Table<'_>) -> Result<PlainMesh, SceneError> {
+pub(super) fn tube(table: &SceneTable<'_>) -> Result<PlainMesh, SceneError> {
     let (rows, columns) = (table.count("rows")?, table.count("columns")?);
     let (top, bottom) = (table.needed("top_radius")?, table.needed("bottom_radius")?);
     let height = table.needed("height")?;
@@ -40,7 +40,7 @@ pub(super) fn tube(table: &Table<'_>) -> Result<PlainMesh, SceneError> {
 }
 
 /// The benchmark's skirt; its faces run down from row 0, the waistband.
-pub(super) fn skirt(table: &Table<'_>) -> Result<PlainMesh, SceneError> {
+pub(super) fn skirt(table: &SceneTable<'_>) -> Result<PlainMesh, SceneError> {
     let side = table.count("side")? as usize;
     let Shape { cut, faces, split, .. } =
         if table.choice("layout")? == Some(1) { skirt::irregular(side, SEED) } else { skirt::shape(side) };

@@ -3,7 +3,7 @@
 
 /// What a key takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
+pub enum KeyKind {
     /// A number between two bounds.
     Number(f64, f64),
     /// A whole number between two bounds.
@@ -32,13 +32,13 @@ pub enum Kind {
 
 /// One key.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Key {
+pub struct SceneKey {
     /// The table it stands in; empty for the file itself.
     pub table: &'static str,
     /// Its name.
     pub name: &'static str,
     /// What it takes.
-    pub kind: Kind,
+    pub kind: KeyKind,
     /// Its unit; empty where it has none.
     pub unit: &'static str,
     /// What holds where it is left out; `required` where it may not be.
@@ -50,12 +50,12 @@ pub struct Key {
 const fn key(
     table: &'static str,
     name: &'static str,
-    kind: Kind,
+    kind: KeyKind,
     unit: &'static str,
     default: &'static str,
     says: &'static str,
-) -> Key {
-    Key { table, name, kind, unit, default, says }
+) -> SceneKey {
+    SceneKey { table, name, kind, unit, default, says }
 }
 
 /// Farthest coordinate (m): beyond it f32 cannot tell apart a tenth of a millimetre.
@@ -70,10 +70,10 @@ pub const QUALITIES: &[&str] = &["draft", "shop", "fine"];
 /// Names of the motions of the benchmark's body.
 pub const MOTIONS: &[&str] = &["walk", "fast", "settled"];
 
-use Kind::{Box, Choice, Count, Flag, Number, Pairs, Table, Tables, Text, TextOrTable, Vector, Vertices};
+use KeyKind::{Box, Choice, Count, Flag, Number, Pairs, Table, Tables, Text, TextOrTable, Vector, Vertices};
 
 /// Every key, table by table.
-pub const KEYS: &[Key] = &[
+pub const KEYS: &[SceneKey] = &[
     key("", "name", Text, "", "the file's name", "What reports call the scene."),
     key("", "duration", Number(0.0, 36_000.0), "s", "5", "Length of the run; `--frames` overrides it."),
     key("", "step_hz", Number(10.0, 2_000.0), "1/s", "120", "Steps a second; 30 for a game's frame, for example."),
@@ -262,7 +262,7 @@ pub const KEYS: &[Key] = &[
 ];
 
 /// The keys of one table.
-pub fn of(table: &str) -> impl Iterator<Item = &'static Key> {
+pub fn of(table: &str) -> impl Iterator<Item = &'static SceneKey> {
     KEYS.iter().filter(move |k| k.table == table)
 }
 
@@ -289,7 +289,7 @@ pub fn reference() -> String {
     text
 }
 
-impl Key {
+impl SceneKey {
     /// The key with its table, as messages call it.
     pub fn path(&self) -> String {
         if self.table.is_empty() { self.name.into() } else { format!("{}.{}", self.table, self.name) }

@@ -6,14 +6,14 @@ use glam::{DVec3, Vec3};
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::error::{Document, SceneError};
-use super::schema::{self, Key, Kind};
+use super::error::{SceneDocument, SceneError};
+use super::schema::{self, SceneKey, KeyKind};
 use crate::toml_keys;
 
 /// One table, all of whose keys are known.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Table<'t> {
-    document: Document<'t>,
+pub(super) struct SceneTable<'t> {
+    document: SceneDocument<'t>,
     entries: &'t DeTable<'t>,
     /// Its name in the schema.
     name: &'static str,
@@ -21,12 +21,12 @@ pub(super) struct Table<'t> {
     at: usize,
 }
 
-type Value<'t> = &'t Spanned<DeValue<'t>>;
+type SceneValue<'t> = &'t Spanned<DeValue<'t>>;
 
-impl<'t> Table<'t> {
+impl<'t> SceneTable<'t> {
     /// A table whose keys are checked against the schema's table of this name.
     pub fn open(
-        document: Document<'t>,
+        document: SceneDocument<'t>,
         entries: &'t DeTable<'t>,
         name: &'static str,
         at: usize,
@@ -58,11 +58,11 @@ impl<'t> Table<'t> {
         self.document.error(self.at, says)
     }
 
-    fn find(&self, name: &str) -> Option<(Value<'t>, &'static Key)> {
+    fn find(&self, name: &str) -> Option<(SceneValue<'t>, &'static SceneKey)> {
         self.entries.get(name).map(|value| (value, key(self.name, name)))
     }
 
-    fn refuse(&self, at: Range<usize>, key: &Key) -> SceneError {
+    fn refuse(&self, at: Range<usize>, key: &SceneKey) -> SceneError {
         let given: String = self.document.text.get(at.clone()).unwrap_or_default().chars().take(40).collect();
         self.document.error(at.start, format!("{} is {given}; give {}", key.path(), key.takes()))
     }
@@ -88,7 +88,7 @@ impl<'t> Table<'t> {
     /// A number, if it is there.
     pub fn maybe_number(&self, name: &str) -> Result<Option<f64>, SceneError> {
         let Some((value, key)) = self.find(name) else { return Ok(None) };
-        let Kind::Number(low, high) = key.kind else { return Ok(None) };
+        let KeyKind::Number(low, high) = key.kind else { return Ok(None) };
         let number = number(value.get_ref()).filter(|n| (low..=high).contains(n));
         number.map(Some).ok_or_else(|| self.refuse(value.span(), key))
     }
@@ -96,7 +96,7 @@ impl<'t> Table<'t> {
     /// A whole number, if it is there.
     pub fn maybe_count(&self, name: &str) -> Result<Option<u32>, SceneError> {
         let Some((value, key)) = self.find(name) else { return Ok(None) };
-        let Kind::Count(low, high) = key.kind else { return Ok(None) };
+        let KeyKind::Count(low, high) = key.kind else { return Ok(None) };
         let count = whole(value.get_ref()).filter(|n| (low..=high).contains(n)).and_then(|n| u32::try_from(n).ok());
         count.map(Some).ok_or_else(|| self.refuse(value.span(), key))
     }
@@ -113,7 +113,7 @@ impl<'t> Table<'t> {
             let parts = default.split(',').filter_map(|x| x.trim().parse().ok()).collect::<Vec<f32>>();
             return <[f32; 3]>::try_from(parts).map(Vec3::from_array).map_err(|_| self.missing(name));
         };
-        let Kind::Vector(limit) = key.kind else { return Err(self.refuse(value.span(), key)) };
+        let KeyKind::Vector(limit) = key.kind else { return Err(self.refuse(value.span(), key)) };
         vector(value.get_ref(), limit).map(DVec3::as_vec3).ok_or_else(|| self.refuse(value.span(), key))
     }
 
@@ -147,7 +147,7 @@ impl<'t> Table<'t> {
     pub fn pairs(&self, name: &str, count: usize) -> Result<Vec<[u8; 2]>, SceneError> {
         let Some((value, key)) = self.find(name) else { return Ok(Vec::new()) };
         let list = value.get_ref().as_array().ok_or_else(|| self.refuse(value.span(), key))?;
-        let pair = |item: Value<'t>| {
+        let pair = |item: SceneValue<'t>| {
             let ends = item.get_ref().as_array().filter(|a| a.len() == 2);
             let end = |i: usize| whole(ends?[i].get_ref());
             let (a, b) = end(0).zip(end(1)).ok_or_else(|| self.refuse(item.span(), key))?;
@@ -170,7 +170,7 @@ impl<'t> Table<'t> {
     /// One of the schema's words, or its default; the index among them.
     pub fn choice(&self, name: &str) -> Result<Option<usize>, SceneError> {
         let Some((value, key)) = self.find(name) else { return Ok(None) };
-        let Kind::Choice(words) = key.kind else { return Ok(None) };
+        let KeyKind::Choice(words) = key.kind else { return Ok(None) };
         let word = value.get_ref().as_str().and_then(|w| words.iter().position(|known| *known == w));
         word.map(Some).ok_or_else(|| self.refuse(value.span(), key))
     }
@@ -184,7 +184,7 @@ impl<'t> Table<'t> {
     /// The table of a key, if it is there and is one.
     pub fn table(&self, name: &str) -> Result<Option<Self>, SceneError> {
         let Some((value, key)) = self.find(name) else { return Ok(None) };
-        let (Kind::Table(opens) | Kind::TextOrTable(opens)) = key.kind else { return Ok(None) };
+        let (KeyKind::Table(opens) | KeyKind::TextOrTable(opens)) = key.kind else { return Ok(None) };
         let entries = value.get_ref().as_table().ok_or_else(|| self.refuse(value.span(), key))?;
         Self::open(self.document, entries, opens, value.span().start).map(Some)
     }
@@ -192,8 +192,8 @@ impl<'t> Table<'t> {
     /// The tables of a key: none, one, or several.
     pub fn tables(&self, name: &str) -> Result<Vec<Self>, SceneError> {
         let Some((value, key)) = self.find(name) else { return Ok(Vec::new()) };
-        let Kind::Tables(opens) = key.kind else { return Ok(Vec::new()) };
-        let open = |v: Value<'t>| match v.get_ref().as_table() {
+        let KeyKind::Tables(opens) = key.kind else { return Ok(Vec::new()) };
+        let open = |v: SceneValue<'t>| match v.get_ref().as_table() {
             Some(entries) => Self::open(self.document, entries, opens, v.span().start),
             None => Err(self.refuse(v.span(), key)),
         };
@@ -205,7 +205,7 @@ impl<'t> Table<'t> {
 }
 
 /// The schema's key. The readers ask only for names that they know.
-fn key(table: &'static str, name: &str) -> &'static Key {
+fn key(table: &'static str, name: &str) -> &'static SceneKey {
     schema::of(table).find(|k| k.name == name).expect("the readers and the schema have the same keys")
 }
 

@@ -113,7 +113,7 @@ const FILES: &[(&str, &str)] = &[
 ];
 
 fn parse(text: &str) -> Result<SceneFile, SceneError> {
-    SceneFile::parse("test.toml", text, Source::Inside(FILES))
+    SceneFile::parse("test.toml", text, SceneSource::Inside(FILES))
 }
 
 /// The sentence of a refusal, and its line.
@@ -152,7 +152,7 @@ fn every_key_of_the_schema_is_read() {
         [Some(Solver::GaussSeidel), Some(Solver::ZeroStretch), None]
     );
     assert_eq!(scene.garments[2].fabric.name, "cotton-jersey");
-    assert_eq!(scene.colliders.planes, [Plane { point: Vec3::NEG_Y, normal: Vec3::Y }]);
+    assert_eq!(scene.colliders.planes, [ScenePlane { point: Vec3::NEG_Y, normal: Vec3::Y }]);
     assert_eq!(scene.colliders.sphere(1, 0.5), glam::Vec4::new(1.0, 0.0, 0.0, 0.2));
     assert_eq!(scene.colliders.sphere(0, 0.5), glam::Vec4::new(0.0, 1.0, 0.0, 0.1));
 }
@@ -369,7 +369,7 @@ fn mistakes_are_told_with_their_cure() {
 fn a_missing_file_is_told_where_it_was_looked_for() {
     let folder = std::env::temp_dir();
     let text = "[garment]\nmesh = \"not-there.obj\"\n";
-    let error = SceneFile::parse("a.toml", text, Source::Folder(&folder)).unwrap_err().to_string();
+    let error = SceneFile::parse("a.toml", text, SceneSource::Folder(&folder)).unwrap_err().to_string();
     assert!(
         error.contains("a.toml:2:8") && error.contains(&folder.join("not-there.obj").display().to_string()),
         "{error}"

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::section::{Fit, Plane, Section, resample};
+use super::section::{BodySection, RingFit, SectionPlane, resample};
 use crate::body::tape::hull;
 use crate::body::{Body, Region};
 use crate::garment::shape::{Face, Shape};
@@ -19,14 +19,14 @@ const LEAST_RISE_M: f32 = 0.004;
 /// One body to drape on, and the gap that cloth keeps from it (m): none on the body that it is cut for, where its
 /// girths are what the size says; [`START_GAP_M`] on the shopper, who may be larger than the garment.
 #[derive(Debug, Clone, Copy)]
-pub struct Form<'a> {
+pub struct DrapeBody<'a> {
     /// The body.
     pub body: &'a Body,
     /// Least gap (m).
     pub gap: f32,
 }
 
-impl<'a> Form<'a> {
+impl<'a> DrapeBody<'a> {
     /// The body that a size is cut for.
     pub const fn cut(body: &'a Body) -> Self {
         Self { body, gap: -1.0 }
@@ -42,14 +42,14 @@ impl<'a> Form<'a> {
         self.trunk(height).map_or(0.0, |s| s.girth())
     }
 
-    fn trunk(&self, height: f32) -> Option<Section> {
-        let section = Section::trunk(self.body, height.max(LOWEST_LEVEL_M))?;
-        Some(Section { plane: Plane::level(height), ..section })
+    fn trunk(&self, height: f32) -> Option<BodySection> {
+        let section = BodySection::trunk(self.body, height.max(LOWEST_LEVEL_M))?;
+        Some(BodySection { plane: SectionPlane::level(height), ..section })
     }
 
     /// A ring around the trunk, from the front centre over the left side.
     pub fn ring(&self, height: f32, girth: f32, columns: usize) -> Vec<Vec3> {
-        let fit = Fit { girth, gap: self.gap };
+        let fit = RingFit { girth, gap: self.gap };
         self.trunk(height).map_or_else(
             || vec![Vec3::new(0.0, height, 0.0); columns],
             |section| section.ring(fit, columns, Vec2::Y, 0.0),
@@ -59,10 +59,10 @@ impl<'a> Form<'a> {
     /// The way from `front` to `back`, both ends included, close to the body, over the shoulder at a distance `x` from the
     /// middle (m).
     pub fn over_shoulder(&self, front: Vec3, back: Vec3, x: f32) -> Vec<Vec3> {
-        let plane = Plane { origin: Vec3::X * x, u: Vec3::Z, v: Vec3::Y };
+        let plane = SectionPlane { origin: Vec3::X * x, u: Vec3::Z, v: Vec3::Y };
         let arm = if x > 0.0 { Region::LeftArm } else { Region::RightArm };
         let lowest = front.y.min(back.y);
-        let Some(section) = Section::of(self.body, &[Region::Torso, arm], plane, |p| p.y > lowest) else {
+        let Some(section) = BodySection::of(self.body, &[Region::Torso, arm], plane, |p| p.y > lowest) else {
             return vec![front, back];
         };
         // The ends lie lowest, so they are corners of the hull, and the way over the top is one of its two sides.

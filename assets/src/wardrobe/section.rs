@@ -7,7 +7,7 @@ use crate::body::{Body, Region};
 
 /// A plane with its own axes: points of a section are `origin + u * x + v * y`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plane {
+pub struct SectionPlane {
     /// A point of it (m).
     pub origin: Vec3,
     /// First axis, unit length: a ring runs from the second axis towards this one.
@@ -16,7 +16,7 @@ pub struct Plane {
     pub v: Vec3,
 }
 
-impl Plane {
+impl SectionPlane {
     /// The horizontal plane at a height (m); rings begin at the front and run towards the person's left.
     pub fn level(height: f32) -> Self {
         Self { origin: Vec3::new(0.0, height, 0.0), u: Vec3::X, v: Vec3::Z }
@@ -30,17 +30,17 @@ impl Plane {
 
 /// The convex outline of a body in a plane.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Section {
+pub struct BodySection {
     /// The plane.
-    pub plane: Plane,
+    pub plane: SectionPlane,
     /// Corners of the outline on the plane's axes (m), counter-clockwise.
     pub outline: Vec<Vec2>,
 }
 
-impl Section {
+impl BodySection {
     /// The outline of the given regions, of those points alone that `near` admits (what belongs to a limb is a matter
     /// of where, too: regions end in a slanted line). `None` where the plane misses them.
-    pub fn of(body: &Body, regions: &[Region], plane: Plane, near: impl Fn(Vec3) -> bool) -> Option<Self> {
+    pub fn of(body: &Body, regions: &[Region], plane: SectionPlane, near: impl Fn(Vec3) -> bool) -> Option<Self> {
         let keep = |t: usize| body.mesh.triangles[t].iter().all(|&v| regions.contains(&body.regions[v as usize]));
         let normal = plane.u.cross(plane.v);
         let flat = |p: Vec3| Vec2::new((p - plane.origin).dot(plane.u), (p - plane.origin).dot(plane.v));
@@ -52,12 +52,12 @@ impl Section {
 
     /// The torso without arms at a height; below the crotch both legs together.
     pub fn trunk(body: &Body, height: f32) -> Option<Self> {
-        Self::of(body, &[Region::Torso, Region::LeftLeg, Region::RightLeg], Plane::level(height), |_| true)
+        Self::of(body, &[Region::Torso, Region::LeftLeg, Region::RightLeg], SectionPlane::level(height), |_| true)
     }
 
     /// The left leg at a height; above the crotch, the left half of the trunk.
     pub fn left_leg(body: &Body, height: f32) -> Option<Self> {
-        Self::of(body, &[Region::Torso, Region::LeftLeg], Plane::level(height), |p| p.x >= 0.0)
+        Self::of(body, &[Region::Torso, Region::LeftLeg], SectionPlane::level(height), |p| p.x >= 0.0)
     }
 
     /// Length of the outline (m).
@@ -100,7 +100,7 @@ impl Section {
 
     /// `columns` points evenly around the widened outline. Point 0 lies where the direction `from` leaves the middle,
     /// moved back by `shift` columns; they run from the plane's second axis towards its first.
-    pub fn ring(&self, fit: Fit, columns: usize, from: Vec2, shift: f32) -> Vec<Vec3> {
+    pub fn ring(&self, fit: RingFit, columns: usize, from: Vec2, shift: f32) -> Vec<Vec3> {
         let mut line = self.widened(fit.girth, fit.gap);
         line.reverse(); // counter-clockwise runs from u to v; rings run from v to u
         let line = start_at(&line, self.middle(), from);
@@ -116,7 +116,7 @@ impl Section {
 /// How wide a ring is: its girth as cut, and the gap that it keeps from the body (m). The gap is negative where cloth
 /// may be tighter than the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fit {
+pub struct RingFit {
     /// Girth (m).
     pub girth: f32,
     /// Least distance from the outline (m).
@@ -181,16 +181,16 @@ pub fn resample(line: &[Vec3], count: usize) -> Vec<Vec3> {
 mod tests {
     use super::*;
 
-    fn circle(radius: f32) -> Section {
+    fn circle(radius: f32) -> BodySection {
         let outline = (0..200).map(|k| Vec2::from_angle(std::f32::consts::TAU * k as f32 / 200.0) * radius).collect();
-        Section { plane: Plane::level(1.0), outline }
+        BodySection { plane: SectionPlane::level(1.0), outline }
     }
 
     #[test]
     fn a_ring_has_the_girth_asked_for_and_starts_at_the_front() {
         let section = circle(0.12);
         for girth in [0.7, 0.9, 1.4] {
-            let ring = section.ring(Fit { girth, gap: -1.0 }, 240, Vec2::Y, 0.0);
+            let ring = section.ring(RingFit { girth, gap: -1.0 }, 240, Vec2::Y, 0.0);
             let length: f32 = (0..240).map(|k| ring[k].distance(ring[(k + 1) % 240])).sum();
             assert!((length / girth - 1.0).abs() < 2e-3, "{length} {girth}");
             assert!(ring[0].x.abs() < 1e-4 && ring[0].z > 0.0, "{:?}", ring[0]);
@@ -200,7 +200,7 @@ mod tests {
 
     #[test]
     fn a_gap_keeps_cloth_off_the_body() {
-        let ring = circle(0.12).ring(Fit { girth: 0.3, gap: 0.005 }, 100, Vec2::Y, 0.0);
+        let ring = circle(0.12).ring(RingFit { girth: 0.3, gap: 0.005 }, 100, Vec2::Y, 0.0);
         assert!(ring.iter().all(|p| Vec2::new(p.x, p.z).length() > 0.1245));
     }
 

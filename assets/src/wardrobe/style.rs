@@ -130,7 +130,7 @@ pub enum Cut {
 mod tests {
     use super::*;
     use crate::garment::Direction;
-    use crate::garment::solver::{Region, Solver};
+    use crate::garment::solver::{SolverRegion, Solver};
     use crate::wardrobe;
 
     #[test]
@@ -151,7 +151,7 @@ mod tests {
         let with = |table: &str| wardrobe::parse("trousers", &format!("{text}\n[solver]\n{table}\n"));
         let style = with("weft = \"semi-implicit\"\nwaistband = \"zero-stretch\"").unwrap();
         assert_eq!(style.solver.of(Direction::Weft, None), Some(Solver::SemiImplicit));
-        assert_eq!(style.solver.of(Direction::Weft, Some(Region::Waistband)), Some(Solver::ZeroStretch));
+        assert_eq!(style.solver.of(Direction::Weft, Some(SolverRegion::Waistband)), Some(Solver::ZeroStretch));
         assert_eq!(style.solver.of(Direction::Warp, None), None);
         for (table, word) in [("weft = \"magic\"", "semi-implicit"), ("sleeve = \"zero-stretch\"", "waistband")] {
             let said = with(table).unwrap_err().to_string();

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::drape::{Form, join};
+use super::drape::{DrapeBody, join};
 use super::section::resample;
 use super::style::{Cut, Style};
 use crate::body::Body;
@@ -15,7 +15,7 @@ const STRAP_SHARE: f32 = 0.105;
 /// Ease of the upper edge (m): it lies on the skin.
 const EDGE_EASE_M: f32 = 0.004;
 
-struct Plan {
+struct SunDressDraft {
     columns: usize,
     bodice_rows: usize,
     /// Girth of every ring as cut (m), from the upper edge to the hem.
@@ -29,8 +29,8 @@ struct Plan {
 /// Drafts the dress for the body of its size and lays it on the shopper.
 pub fn draft(style: &Style, cut: &Body, shopper: &Body) -> Shape {
     let plan = plan(style, cut);
-    let cut_at = lay(&plan, Form::cut(cut));
-    let worn_at = lay(&plan, Form::shopper(shopper));
+    let cut_at = lay(&plan, DrapeBody::cut(cut));
+    let worn_at = lay(&plan, DrapeBody::shopper(shopper));
     let mut shape = Shape::default();
     let n = plan.columns;
     let rings = plan.girths.len();
@@ -64,7 +64,7 @@ struct StrapEnds {
 }
 
 impl StrapEnds {
-    fn new(plan: &Plan, right: bool) -> Self {
+    fn new(plan: &SunDressDraft, right: bool) -> Self {
         let n = plan.columns as u32;
         let columns = plan.strap.clone().map(|c| c as u32);
         if right {
@@ -78,11 +78,11 @@ impl StrapEnds {
     }
 }
 
-fn plan(style: &Style, cut: &Body) -> Plan {
+fn plan(style: &Style, cut: &Body) -> SunDressDraft {
     let Cut::SunDress { neckline_mm, skirt_mm, hem_mm, strap_mm } = style.cut else {
         unreachable!("the wardrobe drafts each style by its own cut")
     };
-    let form = Form::cut(cut);
+    let form = DrapeBody::cut(cut);
     let (neckline, skirt, spacing) = (neckline_mm * 1e-3, skirt_mm * 1e-3, style.spacing_mm * 1e-3);
     let levels = &cut.levels;
     let ease = |zone| style.ease_mm.at(zone).unwrap_or(0.0);
@@ -111,10 +111,10 @@ fn plan(style: &Style, cut: &Body) -> Plan {
     let first = (columns as f32 * STRAP_SHARE) as usize;
     let width = (strap_mm * 1e-3 / (girths[0] / columns as f32)).round().max(1.0) as usize;
     let strap_rows = (2.4 * (levels.shoulder - levels.chest) / spacing).round().max(6.0) as usize;
-    Plan { columns, bodice_rows, girths, neckline, skirt, strap: first..=first + width, strap_rows }
+    SunDressDraft { columns, bodice_rows, girths, neckline, skirt, strap: first..=first + width, strap_rows }
 }
 
-fn lay(plan: &Plan, form: Form<'_>) -> Vec<Vec3> {
+fn lay(plan: &SunDressDraft, form: DrapeBody<'_>) -> Vec<Vec3> {
     let levels = &form.body.levels;
     let top = levels.chest + plan.neckline;
     let skirt_rows = plan.girths.len() - 1 - plan.bodice_rows;

@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::drape::{Form, below, flip, join, rows_after, split_at_top};
-use super::section::{Fit, Plane, Section};
+use super::drape::{DrapeBody, below, flip, join, rows_after, split_at_top};
+use super::section::{BodySection, RingFit, SectionPlane};
 use super::style::{Cut, Style};
 use crate::body::{Body, Region};
 use crate::garment::{Part, Shape};
@@ -32,7 +32,7 @@ const HOLLOW_ROWS: usize = 3;
 /// turn faster, those below the arm lie so close that the mesh has needles.
 const SLEEVE_TURN: f32 = 0.9;
 
-struct Plan {
+struct TShirtDraft {
     /// Columns around the body, a multiple of 4.
     columns: usize,
     /// Columns from the front centre to the armhole.
@@ -54,19 +54,21 @@ struct Plan {
 pub fn draft(style: &Style, cut: &Body, shopper: &Body) -> Shape {
     let plan = plan(style, cut);
     let mut shape = Shape::default();
-    let index = Index::new(&plan);
-    for (i, (c, w)) in lay(&plan, Form::cut(cut)).into_iter().zip(lay(&plan, Form::shopper(shopper))).enumerate() {
+    let index = VertexIndex::new(&plan);
+    for (i, (c, w)) in
+        lay(&plan, DrapeBody::cut(cut)).into_iter().zip(lay(&plan, DrapeBody::shopper(shopper))).enumerate()
+    {
         shape.push(c, w, index.is_yoke(&plan, i), index.part(&plan, i));
     }
     connect(&mut shape, &plan, &index);
     shape
 }
 
-fn plan(style: &Style, cut: &Body) -> Plan {
+fn plan(style: &Style, cut: &Body) -> TShirtDraft {
     let Cut::TShirt { below_waist_mm, sleeve_mm, sleeve_ease_mm, neck_mm, front_neck_mm } = style.cut else {
         unreachable!("the wardrobe drafts each style by its own cut")
     };
-    let form = Form::cut(cut);
+    let form = DrapeBody::cut(cut);
     let levels = &cut.levels;
     let spacing = style.spacing_mm * 1e-3;
     let columns = style.columns / 4 * 4;
@@ -95,7 +97,7 @@ fn plan(style: &Style, cut: &Body) -> Plan {
     let sleeve = (1..=sleeve_rows).map(|k| armhole + (hem - armhole) * narrow(k)).collect();
     let rings = rings.collect();
     let front_neck = front_neck_mm * 1e-3;
-    Plan { columns, front, neck, rings, shoulder_rows, sleeve, below_waist, sleeve_length, front_neck }
+    TShirtDraft { columns, front, neck, rings, shoulder_rows, sleeve, below_waist, sleeve_length, front_neck }
 }
 
 /// Height of the underarm seam (m).
@@ -106,7 +108,7 @@ fn underarm(body: &Body) -> f32 {
 
 /// Where each part's vertices begin. Front and back columns run from the right armhole to the left one as seen by the
 /// ring; the seam row belongs to the front.
-struct Index {
+struct VertexIndex {
     ring: usize,
     front: usize,
     back: usize,
@@ -114,8 +116,8 @@ struct Index {
     width: usize,
 }
 
-impl Index {
-    fn new(plan: &Plan) -> Self {
+impl VertexIndex {
+    fn new(plan: &TShirtDraft) -> Self {
         let width = 2 * plan.front + 1;
         let front = plan.rings.len() * plan.columns;
         let back = front + width * plan.shoulder_rows;
@@ -125,12 +127,12 @@ impl Index {
     }
 
     /// Ring vertex of a column counted from the front centre, positive towards the left.
-    fn column(plan: &Plan, c: isize) -> u32 {
+    fn column(plan: &TShirtDraft, c: isize) -> u32 {
         c.rem_euclid(plan.columns as isize) as u32
     }
 
     /// Vertex of the front panel; row 0 is the underarm ring, the last row the shoulder seam or the neckline.
-    fn front_at(&self, plan: &Plan, row: usize, c: isize) -> u32 {
+    fn front_at(&self, plan: &TShirtDraft, row: usize, c: isize) -> u32 {
         if row == 0 {
             return Self::column(plan, c);
         }
@@ -138,7 +140,7 @@ impl Index {
     }
 
     /// Vertex of the back panel in the column behind front column `c`.
-    fn back_at(&self, plan: &Plan, row: usize, c: isize) -> u32 {
+    fn back_at(&self, plan: &TShirtDraft, row: usize, c: isize) -> u32 {
         if row == 0 {
             return Self::column(plan, plan.columns as isize / 2 - c);
         }
@@ -149,7 +151,7 @@ impl Index {
     }
 
     /// The yoke sticks to the shoulders: the last rows of the panels, but not beside the armholes, where the arm pulls.
-    fn is_yoke(&self, plan: &Plan, i: usize) -> bool {
+    fn is_yoke(&self, plan: &TShirtDraft, i: usize) -> bool {
         if i >= self.sleeves[0] || i < self.front {
             return false;
         }
@@ -159,7 +161,7 @@ impl Index {
     }
 
     /// What a vertex lies on. Around the lowest point of the armhole that is nothing.
-    fn part(&self, plan: &Plan, i: usize) -> Part {
+    fn part(&self, plan: &TShirtDraft, i: usize) -> Part {
         let (n, loop_length) = (plan.columns, armhole_length(plan));
         let half_hole = n / 4 - plan.front;
         if i < self.sleeves[0] {
@@ -178,7 +180,7 @@ impl Index {
     }
 
     /// The armhole from the lowest column over the front, the shoulder point and the back: one side's sleeve begins here.
-    fn armhole(&self, plan: &Plan, left: bool) -> Vec<u32> {
+    fn armhole(&self, plan: &TShirtDraft, left: bool) -> Vec<u32> {
         let sign = if left { 1 } else { -1 };
         let edge = plan.front as isize;
         let quarter = plan.columns as isize / 4;
@@ -192,13 +194,13 @@ impl Index {
     }
 }
 
-fn armhole_length(plan: &Plan) -> usize {
+fn armhole_length(plan: &TShirtDraft) -> usize {
     plan.columns / 2 - 2 * plan.front + 2 * plan.shoulder_rows
 }
 
-/// All positions in the order of [`Index`]. Vertices of the back's seam row are in the list but no face names them;
+/// All positions in the order of [`VertexIndex`]. Vertices of the back's seam row are in the list but no face names them;
 /// [`connect`] drops them.
-fn lay(plan: &Plan, form: Form<'_>) -> Vec<Vec3> {
+fn lay(plan: &TShirtDraft, form: DrapeBody<'_>) -> Vec<Vec3> {
     let levels = &form.body.levels;
     let (top, hem) = (underarm(form.body), levels.waist - plan.below_waist);
     let last = (plan.rings.len() - 1) as f32;
@@ -221,7 +223,7 @@ fn lay(plan: &Plan, form: Form<'_>) -> Vec<Vec3> {
     }
     points.extend(front);
     points.extend(back);
-    let index = Index::new(plan);
+    let index = VertexIndex::new(plan);
     let hole: Vec<Vec3> = index.armhole(plan, true).iter().map(|&i| points[i as usize]).collect();
     let left: Vec<Vec3> = (0..plan.sleeve.len()).flat_map(|k| sleeve_ring(plan, form, &hole, k)).collect();
     let right = left.iter().map(|p| Vec3::new(-p.x, p.y, p.z)).collect::<Vec<_>>();
@@ -231,15 +233,15 @@ fn lay(plan: &Plan, form: Form<'_>) -> Vec<Vec3> {
 }
 
 /// Height of the side of the neck (m): where the column beside it crosses the shoulder.
-fn shoulder_line(plan: &Plan, form: Form<'_>, ring: &[Vec3]) -> f32 {
+fn shoulder_line(plan: &TShirtDraft, form: DrapeBody<'_>, ring: &[Vec3]) -> f32 {
     over_shoulder(plan, form, ring, plan.neck as isize).0.last().map_or(0.0, |p| p.y)
 }
 
 /// The ways of one column from the underarm ring up to the shoulder, over the front and over the back. On the shoulder the
 /// columns lie evenly between the middle and the armhole; on the ring those at the side lie behind each other.
-fn over_shoulder(plan: &Plan, form: Form<'_>, ring: &[Vec3], c: isize) -> (Vec<Vec3>, Vec<Vec3>) {
-    let front = ring[Index::column(plan, c) as usize];
-    let back = ring[Index::column(plan, plan.columns as isize / 2 - c) as usize];
+fn over_shoulder(plan: &TShirtDraft, form: DrapeBody<'_>, ring: &[Vec3], c: isize) -> (Vec<Vec3>, Vec<Vec3>) {
+    let front = ring[VertexIndex::column(plan, c) as usize];
+    let back = ring[VertexIndex::column(plan, plan.columns as isize / 2 - c) as usize];
     // The shopper's trunk may be broader or narrower there than the body of the size.
     let half = ring[plan.front].x;
     let top = half * c as f32 / plan.front as f32;
@@ -259,7 +261,13 @@ fn lean(line: &mut [Vec3], from: f32, to: f32) {
 }
 
 /// Rows 1.. of the front and of the back panel in one column: up to the shoulder, or to the neckline.
-fn panel_column(plan: &Plan, form: Form<'_>, ring: &[Vec3], neck_height: f32, c: isize) -> (Vec<Vec3>, Vec<Vec3>) {
+fn panel_column(
+    plan: &TShirtDraft,
+    form: DrapeBody<'_>,
+    ring: &[Vec3],
+    neck_height: f32,
+    c: isize,
+) -> (Vec<Vec3>, Vec<Vec3>) {
     let (mut up, mut down) = over_shoulder(plan, form, ring, c);
     if c.unsigned_abs() < plan.neck {
         // A round neckline from the sides of the neck down to the middle of the front, a flat one behind. Not an ellipse, whose
@@ -286,20 +294,20 @@ fn arm_girth(body: &Body, along: f32) -> f32 {
 const ARM_REACH_M: f32 = 0.14;
 
 /// Outline of the left arm, in a plane that turns from the armhole's (0) to the arm's own (1).
-fn arm_section(body: &Body, along: f32, turn: f32) -> Option<Section> {
+fn arm_section(body: &Body, along: f32, turn: f32) -> Option<BodySection> {
     let shoulder = body.skeleton.at(Joint::LeftShoulder);
     let axis = (body.skeleton.at(Joint::LeftElbow) - shoulder).normalize_or_zero();
     let normal = Vec3::X.lerp(axis, turn).normalize_or_zero();
     // A ring begins below the arm and runs over its front.
     let below = (Vec3::NEG_Y - normal * normal.dot(Vec3::NEG_Y)).normalize_or_zero();
-    let plane = Plane { origin: shoulder + axis * along, u: below.cross(normal), v: below };
-    Section::of(body, &[Region::LeftArm, Region::Torso], plane, |p| p.distance(plane.origin) < ARM_REACH_M)
+    let plane = SectionPlane { origin: shoulder + axis * along, u: below.cross(normal), v: below };
+    BodySection::of(body, &[Region::LeftArm, Region::Torso], plane, |p| p.distance(plane.origin) < ARM_REACH_M)
 }
 
-fn sleeve_ring(plan: &Plan, form: Form<'_>, hole: &[Vec3], k: usize) -> Vec<Vec3> {
+fn sleeve_ring(plan: &TShirtDraft, form: DrapeBody<'_>, hole: &[Vec3], k: usize) -> Vec<Vec3> {
     let share = (k + 1) as f32 / plan.sleeve.len() as f32;
     let turn = (share / SLEEVE_TURN).min(1.0);
-    let fit = Fit { girth: plan.sleeve[k], gap: form.gap };
+    let fit = RingFit { girth: plan.sleeve[k], gap: form.gap };
     let count = hole.len();
     let ring = arm_section(form.body, plan.sleeve_length * share, turn).map(|s| s.ring(fit, count, Vec2::Y, 0.0));
     // Where the arm has no outline of its own yet, the armhole is carried along.
@@ -309,7 +317,7 @@ fn sleeve_ring(plan: &Plan, form: Form<'_>, hole: &[Vec3], k: usize) -> Vec<Vec3
     ring.iter().zip(hole).map(|(r, h)| (*h + shift).lerp(*r, blend)).collect()
 }
 
-fn connect(shape: &mut Shape, plan: &Plan, index: &Index) {
+fn connect(shape: &mut Shape, plan: &TShirtDraft, index: &VertexIndex) {
     let n = plan.columns;
     let ring = |r: usize| (index.ring + r * n..index.ring + (r + 1) * n).map(|i| i as u32).collect::<Vec<_>>();
     for r in 1..plan.rings.len() {

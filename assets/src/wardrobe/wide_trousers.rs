@@ -3,8 +3,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::drape::{Form, flip, join};
-use super::section::{Fit, Section};
+use super::drape::{DrapeBody, flip, join};
+use super::section::{BodySection, RingFit};
 use super::style::{Cut, Style};
 use crate::body::Body;
 use crate::garment::{Part, Shape};
@@ -19,7 +19,7 @@ const CROTCH_SHARE: f32 = 0.13;
 /// The leg's inner side keeps this far from the middle when it starts on the shopper (m).
 const MIDDLE_GAP_M: f32 = 0.004;
 
-struct Plan {
+struct TrousersDraft {
     /// Columns around the hip, even.
     columns: usize,
     /// Vertices of the crotch line between front and back centre.
@@ -39,7 +39,9 @@ pub fn draft(style: &Style, cut: &Body, shopper: &Body) -> Shape {
     let spacing = style.spacing_mm * 1e-3;
     let fixed_rows = (WAISTBAND_M / spacing).round().max(1.0) as usize;
     let mut shape = Shape::default();
-    for (i, (c, w)) in lay(&plan, Form::cut(cut)).into_iter().zip(lay(&plan, Form::shopper(shopper))).enumerate() {
+    for (i, (c, w)) in
+        lay(&plan, DrapeBody::cut(cut)).into_iter().zip(lay(&plan, DrapeBody::shopper(shopper))).enumerate()
+    {
         shape.push(c, w, i / plan.columns <= fixed_rows, part(&plan, i));
     }
     connect(&mut shape, &plan);
@@ -47,7 +49,7 @@ pub fn draft(style: &Style, cut: &Body, shopper: &Body) -> Shape {
 }
 
 /// Vertices are in the order of [`lay`].
-fn part(plan: &Plan, i: usize) -> Part {
+fn part(plan: &TrousersDraft, i: usize) -> Part {
     let left = plan.rings.len() * plan.columns + plan.crotch;
     let leg = (plan.columns / 2 + 1 + plan.crotch) * plan.legs.len();
     if i < left {
@@ -59,11 +61,11 @@ fn part(plan: &Plan, i: usize) -> Part {
     }
 }
 
-fn plan(style: &Style, cut: &Body) -> Plan {
+fn plan(style: &Style, cut: &Body) -> TrousersDraft {
     let Cut::WideTrousers { waistband_mm, inseam_mm, hem_mm, crotch_drop_mm } = style.cut else {
         unreachable!("the wardrobe drafts each style by its own cut")
     };
-    let form = Form::cut(cut);
+    let form = DrapeBody::cut(cut);
     let levels = &cut.levels;
     let ease = |zone| style.ease_mm.at(zone).unwrap_or(0.0);
     let (waistband, drop, inseam) = (waistband_mm * 1e-3, crotch_drop_mm * 1e-3, inseam_mm * 1e-3);
@@ -84,11 +86,11 @@ fn plan(style: &Style, cut: &Body) -> Plan {
     let leg_rows = (inseam / spacing).round() as usize;
     let hem = hem_mm * 1e-3;
     let legs = (1..=leg_rows).map(|r| thigh + (hem - thigh) * r as f32 / leg_rows as f32).collect();
-    Plan { columns, crotch, rings, legs, waistband, drop, inseam }
+    TrousersDraft { columns, crotch, rings, legs, waistband, drop, inseam }
 }
 
 /// Positions: the rings, the crotch line, the left leg, the right leg.
-fn lay(plan: &Plan, form: Form<'_>) -> Vec<Vec3> {
+fn lay(plan: &TrousersDraft, form: DrapeBody<'_>) -> Vec<Vec3> {
     let levels = &form.body.levels;
     let (top, bottom) = (levels.waist + plan.waistband, levels.crotch - plan.drop);
     let last = (plan.rings.len() - 1) as f32;
@@ -109,12 +111,12 @@ fn lay(plan: &Plan, form: Form<'_>) -> Vec<Vec3> {
 }
 
 /// One row of the left leg: from the front centre over the outside to the back centre, then along the inside.
-fn leg_ring(plan: &Plan, form: Form<'_>, bottom: f32, row: usize) -> Vec<Vec3> {
+fn leg_ring(plan: &TrousersDraft, form: DrapeBody<'_>, bottom: f32, row: usize) -> Vec<Vec3> {
     let columns = plan.columns / 2 + 1 + plan.crotch;
     let down = plan.inseam * (row + 1) as f32 / plan.legs.len() as f32;
     let height = bottom - down;
-    let fit = Fit { girth: plan.legs[row], gap: form.gap };
-    let section = Section::left_leg(form.body, height.max(0.12));
+    let fit = RingFit { girth: plan.legs[row], gap: form.gap };
+    let section = BodySection::left_leg(form.body, height.max(0.12));
     let Some(section) = section else { return vec![Vec3::new(0.1, height, 0.0); columns] };
     // The outer side is the middle of the first half ring, so its first column lies a quarter of the hip before it.
     let ring = section.ring(fit, columns, Vec2::X, plan.columns as f32 / 4.0);
@@ -122,7 +124,7 @@ fn leg_ring(plan: &Plan, form: Form<'_>, bottom: f32, row: usize) -> Vec<Vec3> {
     ring.into_iter().map(|p| Vec3::new(p.x.max(inner), height, p.z)).collect()
 }
 
-fn connect(shape: &mut Shape, plan: &Plan) {
+fn connect(shape: &mut Shape, plan: &TrousersDraft) {
     let n = plan.columns;
     let rings = plan.rings.len();
     let ring = |r: usize| (r * n..(r + 1) * n).map(|i| i as u32).collect::<Vec<_>>();

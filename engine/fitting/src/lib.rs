@@ -34,7 +34,7 @@
 //! use toile_fitting::scene::Runner;
 //!
 //! let text = "duration = 0.5\n[garment]\ngrid = { rows = 8, columns = 6, width = 0.3, height = 0.4 }\npin = { vertices = [0, 5] }\n";
-//! let scene = SceneFile::parse("flag.toml", text, Source::Inside(&[]))?;
+//! let scene = SceneFile::parse("flag.toml", text, SceneSource::Inside(&[]))?;
 //! let mut runner = Runner::new(scene)?;
 //! let start: Vec<_> = runner.positions(0).collect();
 //! for _ in 0..runner.scene().steps() {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use toile_assets::garment::Garment;
-use toile_assets::garment::layout::{Bends, ENDED, Fibers, Hubs, Links, Lists};
+use toile_assets::garment::layout::{Bends, ENDED, FiberLists, Fibers, Hubs, Links};
 
 use super::error::OracleError;
 
@@ -145,7 +145,7 @@ fn fibers(from: &Fibers, to: &mut Vec<Link>) {
     }
 }
 
-fn lists(from: &Lists, to: &mut Vec<Link>) {
+fn lists(from: &FiberLists, to: &mut Vec<Link>) {
     for list in &from.lists {
         for step in 0..list.links() {
             for lane in 0..list.lanes {

@@ -3,7 +3,7 @@
 use glam::{Mat3, Vec3};
 use serde::Deserialize;
 
-use super::parts::{Ball, Bump, Chain, Tube, TubeRow, smooth_max, smooth_min};
+use super::parts::{BallChain, Bump, Ellipsoid, Tube, TubeRow, smooth_max, smooth_min};
 
 /// A group of parts in one frame; lengths in millimetres.
 #[derive(Debug, Deserialize, Default)]
@@ -12,24 +12,24 @@ pub(crate) struct GroupRow {
     #[serde(default)]
     tube: Vec<TubeRow>,
     #[serde(default)]
-    chain: Vec<Chain>,
+    chain: Vec<BallChain>,
     #[serde(default)]
-    ball: Vec<Ball>,
+    ball: Vec<Ellipsoid>,
     #[serde(default)]
     bump: Vec<Bump>,
     /// Digits: they join the group, but not one another.
     #[serde(default)]
-    pub(crate) digit: Vec<Chain>,
+    pub(crate) digit: Vec<BallChain>,
 }
 
 /// Parts that blend into one another.
 #[derive(Debug)]
 pub(crate) struct Group {
     tubes: Vec<Tube>,
-    chains: Vec<Chain>,
-    balls: Vec<Ball>,
+    chains: Vec<BallChain>,
+    balls: Vec<Ellipsoid>,
     bumps: Vec<Bump>,
-    digits: Vec<Chain>,
+    digits: Vec<BallChain>,
 }
 
 /// Each part followed by its mirror image, if it has one.
@@ -43,7 +43,10 @@ impl Group {
         Self {
             tubes: row.tube.iter().map(Tube::new).collect(),
             chains: with_twins(&row.chain, |c| c.mirrored().filter(|_| paired)),
-            balls: with_twins(&row.ball, |b| b.mirrored().filter(|_| paired)).into_iter().map(Ball::turned).collect(),
+            balls: with_twins(&row.ball, |b| b.mirrored().filter(|_| paired))
+                .into_iter()
+                .map(Ellipsoid::turned)
+                .collect(),
             bumps: with_twins(&row.bump, |b| b.mirrored().filter(|_| paired)).into_iter().map(Bump::turned).collect(),
             digits: row.digit.clone(),
         }

@@ -28,7 +28,7 @@ pub(super) struct TubeRow {
 /// A chain of balls joined by round cones.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Chain {
+pub(super) struct BallChain {
     #[serde(rename = "name")]
     pub _name: String,
     pub blend: f32,
@@ -39,7 +39,7 @@ pub(super) struct Chain {
 /// An ellipsoid, added or (with `carve`) taken away.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Ball {
+pub(super) struct Ellipsoid {
     #[serde(rename = "name")]
     pub _name: String,
     pub at: [f32; 3],
@@ -119,7 +119,7 @@ fn radial(u: f32, v: f32, away: f32, s: &[f32; 8]) -> (f32, f32) {
     (h, away / h.max(1e-6))
 }
 
-impl Chain {
+impl BallChain {
     pub(super) fn mirrored(&self) -> Option<Self> {
         let beside = self.balls.iter().any(|b| b[0].abs() > 0.1);
         beside.then(|| Self { balls: self.balls.iter().map(|b| [-b[0], b[1], b[2], b[3]]).collect(), ..self.clone() })
@@ -143,7 +143,7 @@ fn mirrored_turn([x, y, z]: [f32; 3]) -> [f32; 3] {
     [x, -y, -z]
 }
 
-impl Ball {
+impl Ellipsoid {
     pub(super) fn mirrored(&self) -> Option<Self> {
         let [x, y, z] = self.at;
         (x.abs() > 0.1).then(|| Self { at: [-x, y, z], turn: mirrored_turn(self.turn), ..self.clone() })

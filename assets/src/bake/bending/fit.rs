@@ -2,14 +2,14 @@
 
 use glam::{DMat2, DMat3, DVec3};
 
-use super::ring::{Measure, Rings};
+use super::ring::{RingMeasure, Rings};
 use crate::bake::fibers::Direction;
 
 /// A quadratic form on the curvature tensor (k11, k22, sqrt2 k12): the energy density of a plate, doubled.
 #[derive(Debug, Clone, Copy)]
-pub struct Form(pub DMat3);
+pub struct QuadraticForm(pub DMat3);
 
-impl Form {
+impl QuadraticForm {
     /// No energy whatever the curvature.
     const NONE: Self = Self(DMat3::ZERO);
 
@@ -44,7 +44,7 @@ const SPREADS: usize = 8;
 /// What the stencils around a vertex can measure, by direction, each form times the area that measures it; and the area.
 #[derive(Debug, Clone, Copy)]
 struct Patch {
-    forms: [Form; 3],
+    forms: [QuadraticForm; 3],
     area: f64,
 }
 
@@ -64,16 +64,16 @@ pub struct Patches(Vec<Patch>);
 impl Patches {
     /// Sums up what each vertex measures, all that there is where its `whole` ring does, and spreads it among neighbours so that nothing is lost. A vertex on the rim
     /// stands for itself: beyond it nothing bends.
-    pub fn new(rings: &Rings, measures: &[Vec<(Direction, Measure)>], whole: impl Fn(usize) -> bool) -> Self {
-        let one = |(v, around): (usize, &Vec<(Direction, Measure)>)| {
-            let mut patch = Patch { forms: [Form::NONE; 3], area: rings.area[v] };
+    pub fn new(rings: &Rings, measures: &[Vec<(Direction, RingMeasure)>], whole: impl Fn(usize) -> bool) -> Self {
+        let one = |(v, around): (usize, &Vec<(Direction, RingMeasure)>)| {
+            let mut patch = Patch { forms: [QuadraticForm::NONE; 3], area: rings.area[v] };
             if whole(v) {
-                patch.forms =
-                    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|b| Form(Form::plate(b).0 * patch.area));
+                patch.forms = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+                    .map(|b| QuadraticForm(QuadraticForm::plate(b).0 * patch.area));
                 return patch;
             }
             for (direction, measure) in around {
-                patch.forms[*direction as usize].0 += Form::square(measure.tensor).0 * rings.area[v];
+                patch.forms[*direction as usize].0 += QuadraticForm::square(measure.tensor).0 * rings.area[v];
             }
             patch
         };
@@ -93,7 +93,7 @@ impl Patches {
     }
 
     /// Rigidities (N m) by direction for the stencils of a vertex. What is next to nothing is left out.
-    pub fn rigidities(&self, v: usize, plate: &Form) -> [f64; 3] {
+    pub fn rigidities(&self, v: usize, plate: &QuadraticForm) -> [f64; 3] {
         let Patch { forms, area } = &self.0[v];
         let gram = forms.map(|row| forms.map(|column| row.dot(&column) / (area * area)));
         let wanted = forms.map(|row| row.dot(plate) / area);

@@ -6,7 +6,6 @@ use std::f64::consts::TAU;
 use glam::{DMat2, DVec2, Vec3};
 
 use super::Stencil;
-use super::whole::NONE;
 use crate::bake::fibers::{Direction, Edge};
 use crate::garment::check::corners;
 use crate::garment::shape::{NO_VERTEX, Shape};
@@ -109,7 +108,7 @@ impl Rings {
             points.push((sector.points[0], angle));
             angle += sector.angles[0];
             if sector.points[2] == NO_VERTEX {
-                sectors.push([place, place + 1, NONE]);
+                sectors.push([place, place + 1, NO_POINT]);
             } else {
                 sectors.push([place, place + 1, place + 2]);
                 points.push((sector.points[1], angle));
@@ -126,7 +125,7 @@ impl Rings {
         let scale = if self.rim[v] { 1.0 } else { TAU / angle };
         // Around a vertex inside the last face ends where the first begins.
         let count = points.len();
-        let close = |k: usize| if k == NONE { NONE } else { k % count };
+        let close = |k: usize| if k == NO_POINT { NO_POINT } else { k % count };
         let sectors = sectors.into_iter().map(|s| s.map(close)).collect();
         (sides == whole && angle > 0.0).then(|| Ring {
             sectors,
@@ -188,13 +187,16 @@ fn angle(positions: &[Vec3], v: u32, p: u32, q: u32) -> f64 {
     from(p).cross(from(q)).length().atan2(from(p).dot(from(q)))
 }
 
+/// Stands for no third point of a triangle's sector.
+pub const NO_POINT: usize = usize::MAX;
+
 /// A vertex and its neighbours in the plane.
 pub struct Ring {
     /// The vertex.
     pub v: u32,
     /// Its neighbours, counter-clockwise, and where they lie (m).
     pub points: Vec<(u32, DVec2)>,
-    /// The points of each face, counter-clockwise; [`NONE`] in the third place of a triangle.
+    /// The points of each face, counter-clockwise; [`NO_POINT`] in the third place of a triangle.
     pub sectors: Vec<[usize; 3]>,
     /// True where the cloth ends at the vertex.
     pub rim: bool,
@@ -202,7 +204,7 @@ pub struct Ring {
 
 /// An affine dependence of points around a vertex.
 #[derive(Debug, Clone, Copy)]
-pub struct Measure {
+pub struct RingMeasure {
     /// The vertex, then up to three of its ring.
     pub v: [u32; 4],
     /// Weights of those of the ring (1/m2).
@@ -213,7 +215,7 @@ pub struct Measure {
     pub tensor: DMat2,
 }
 
-impl Measure {
+impl RingMeasure {
     /// The stencil of a stiffness (N m3). The weights sum to zero as exactly as f32 can.
     pub fn stencil(&self, direction: Direction, k: f64) -> Stencil {
         let [p, q, r] = self.weights.map(|w| w as f32);
@@ -244,10 +246,10 @@ impl Measure {
 
 impl Ring {
     /// The three points that with the vertex measure the curvature at an angle to the warp (rad) best.
-    pub fn measure(&self, angle: f64) -> Option<Measure> {
+    pub fn measure(&self, angle: f64) -> Option<RingMeasure> {
         let direction = DVec2::from_angle(angle);
         let n = self.points.len();
-        let mut best: Option<(f64, Measure)> = None;
+        let mut best: Option<(f64, RingMeasure)> = None;
         for i in 0..n {
             for j in i + 1..n {
                 // With three points in a row a fourth has no weight, so that two neighbours need a third to stand by.
@@ -263,7 +265,7 @@ impl Ring {
     }
 
     /// The affine dependence of the vertex and three points, normalised to measure 1 along a direction; and how bad it is.
-    fn dependence(&self, triple: [usize; 3], direction: DVec2) -> Option<(f64, Measure)> {
+    fn dependence(&self, triple: [usize; 3], direction: DVec2) -> Option<(f64, RingMeasure)> {
         let [p, q, r] = triple.map(|k| self.points[k].1);
         // Barycentric, with the vertex in the origin: w_p p + w_q q + w_r r = 0.
         let raw = [q.perp_dot(r), r.perp_dot(p), p.perp_dot(q)];
@@ -287,7 +289,7 @@ impl Ring {
     }
 
     /// Leaves out a point without weight.
-    fn tidied(&self, triple: [usize; 3], weights: [f64; 3], shares: [f64; 3], tensor: DMat2) -> Measure {
+    fn tidied(&self, triple: [usize; 3], weights: [f64; 3], shares: [f64; 3], tensor: DMat2) -> RingMeasure {
         let least = LEAST_WEIGHT * weights.iter().map(|w| w.abs()).sum::<f64>();
         let mut v = [self.v, NO_VERTEX, NO_VERTEX, NO_VERTEX];
         let (mut kept, mut kept_shares) = ([0.0; 3], [0.0; 3]);
@@ -296,6 +298,6 @@ impl Ring {
             v[place + 1] = self.points[triple[k]].0;
             (kept[place], kept_shares[place]) = (weights[k], shares[k]);
         }
-        Measure { v, weights: kept, shares: kept_shares, tensor }
+        RingMeasure { v, weights: kept, shares: kept_shares, tensor }
     }
 }

@@ -17,12 +17,12 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::Stencil;
-use super::ring::Ring;
+use super::ring::{NO_POINT, Ring};
 use crate::bake::fibers::Direction;
 
 /// What the ring of a vertex measures as a whole.
 #[derive(Debug, Clone)]
-pub struct Whole {
+pub struct RingCurvature {
     /// The vertex, then its ring.
     pub v: Vec<u32>,
     /// Weights of each of them in the integrals of k11, k22 and sqrt2 k12 over the vertex' part of the cloth (1).
@@ -39,7 +39,7 @@ const LEAST_SHARE: f64 = 1e-6;
 
 /// A part of the curvature energy: rigidity (N m) times the square of a sum.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Part {
+pub struct CurvatureTerm {
     /// What it mainly measures.
     pub direction: Direction,
     /// Rigidity (N m).
@@ -48,7 +48,7 @@ pub struct Part {
     pub weights: Vec<f64>,
 }
 
-impl Part {
+impl CurvatureTerm {
     /// The stencil over the particles `v` of a vertex that stands for an area (m2). The weights sum to zero as exactly as
     /// f32 can.
     pub fn stencil(&self, v: &[u32], area: f64) -> Stencil {
@@ -68,7 +68,7 @@ fn gradients(a: DVec2, b: DVec2) -> ([DVec2; 3], f64) {
     ([(b - a).perp() / twice, -b.perp() / twice, a.perp() / twice], 0.5 * twice)
 }
 
-impl Whole {
+impl RingCurvature {
     /// Of a ring whose facets all have an area.
     pub fn new(ring: &Ring) -> Option<Self> {
         let v: Vec<u32> = std::iter::once(ring.v).chain(ring.points.iter().map(|(u, _)| *u)).collect();
@@ -119,7 +119,7 @@ impl Whole {
     }
 
     /// The energy of curvature as a sum of squares, at most three: L D L^T of the plate, largest first.
-    pub fn parts(&self, plate: DMat3) -> Vec<Part> {
+    pub fn parts(&self, plate: DMat3) -> Vec<CurvatureTerm> {
         let mut left = self.plate(plate);
         let least = LEAST_SHARE * trace(&plate);
         let mut parts = Vec::new();
@@ -133,7 +133,11 @@ impl Whole {
             let row = left.col(largest) / rigidity;
             left -= DMat3::from_cols(row * row.x, row * row.y, row * row.z) * rigidity;
             let direction = [Direction::Warp, Direction::Weft, Direction::Bias][largest];
-            parts.push(Part { direction, rigidity, weights: self.weights.iter().map(|w| w.dot(row)).collect() });
+            parts.push(CurvatureTerm {
+                direction,
+                rigidity,
+                weights: self.weights.iter().map(|w| w.dot(row)).collect(),
+            });
         }
         parts
     }
@@ -147,18 +151,15 @@ impl Whole {
     }
 }
 
-/// Stands for no third point of a triangle's sector.
-pub const NONE: usize = usize::MAX;
-
 fn last_of(sector: &[usize; 3]) -> usize {
-    if sector[2] == NONE { sector[1] } else { sector[2] }
+    if sector[2] == NO_POINT { sector[1] } else { sector[2] }
 }
 
 /// Triangles of a face at the vertex, with their share: a quad is half of each way to split it.
 fn facets(&[next, far, last]: &[usize; 3]) -> impl Iterator<Item = (f64, [usize; 2])> {
     let triangle = [(1.0, [next, far]); 1];
     let quad = [(0.5, [next, far]), (0.5, [far, last]), (0.5, [next, last])];
-    let (one, three) = if last == NONE { (1, 0) } else { (0, 3) };
+    let (one, three) = if last == NO_POINT { (1, 0) } else { (0, 3) };
     triangle.into_iter().take(one).chain(quad.into_iter().take(three))
 }
 

@@ -32,7 +32,7 @@ pub fn trace(positions: &[Vec3], edges: &[Edge]) -> Vec<Fiber> {
     let mut used = vec![false; edges.len()];
     let mut fibers = Vec::new();
     for direction in [Direction::Warp, Direction::Weft] {
-        let mut threads = Threads::new(direction, positions.len(), edges, &used);
+        let mut threads = FiberCandidates::new(direction, positions.len(), edges, &used);
         threads.greedy(ALONG_COS[0]);
         ALONG_COS.iter().for_each(|&least| threads.augment(least));
         let mut chains = threads.chains();
@@ -49,7 +49,7 @@ pub fn trace(positions: &[Vec3], edges: &[Edge]) -> Vec<Fiber> {
 }
 
 /// The candidates for the fibers of one direction and what was chosen among them.
-struct Threads<'a> {
+struct FiberCandidates<'a> {
     direction: Direction,
     edges: &'a [Edge],
     /// Indices of the candidates, best aligned first.
@@ -62,7 +62,7 @@ struct Threads<'a> {
     behind: Vec<u32>,
 }
 
-impl<'a> Threads<'a> {
+impl<'a> FiberCandidates<'a> {
     fn new(direction: Direction, vertices: usize, edges: &'a [Edge], used: &[bool]) -> Self {
         let none = vec![NONE; vertices];
         let mut threads = Self {
@@ -256,7 +256,8 @@ fn rest(positions: &[Vec3], edges: &[Edge], used: &mut [bool]) -> Vec<Fiber> {
                 if !used[start] && (!open || end_is_open) {
                     let from = if from_a { edges[start].a } else { edges[start].b };
                     visited[from as usize] = fibers.len() as u32;
-                    let mut pass = Pass { edges, next: &next, used, visited: &mut visited, stamp: fibers.len() as u32 };
+                    let mut pass =
+                        EdgeWalk { edges, next: &next, used, visited: &mut visited, stamp: fibers.len() as u32 };
                     fibers.push(pass.walk(start, from));
                 }
             }
@@ -297,7 +298,7 @@ fn continuations(positions: &[Vec3], edges: &[Edge], used: &[bool]) -> Vec<[u32;
 }
 
 /// One walk along linked edges.
-struct Pass<'a> {
+struct EdgeWalk<'a> {
     edges: &'a [Edge],
     next: &'a [[u32; 2]],
     used: &'a mut [bool],
@@ -306,7 +307,7 @@ struct Pass<'a> {
     stamp: u32,
 }
 
-impl Pass<'_> {
+impl EdgeWalk<'_> {
     /// From an edge's end as far as the links go, but through no vertex twice: a fiber that meets itself ends there,
     /// unless it closes a hoop.
     fn walk(&mut self, start: usize, from: u32) -> Fiber {

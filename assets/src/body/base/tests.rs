@@ -10,11 +10,11 @@ use super::super::tape::{hull, perimeter, slice};
 use super::*;
 use crate::mesh::Mesh;
 
-fn both() -> [Base; 2] {
-    [Base::new(Sex::Female), Base::new(Sex::Male)]
+fn both() -> [BaseBody; 2] {
+    [BaseBody::new(Sex::Female), BaseBody::new(Sex::Male)]
 }
 
-fn mesh(base: &Base) -> Mesh {
+fn mesh(base: &BaseBody) -> Mesh {
     Mesh { positions: base.positions.clone(), uvs: Vec::new(), triangles: base.triangles.clone() }
 }
 
@@ -126,7 +126,7 @@ fn atlas_has_no_overlap_and_little_stretch() {
 
 /// How far lengths in the atlas differ from those on the surface, at one scale for all: the larger of the two singular
 /// values or its inverse a triangle, weighted by area: mean, and the share that 99 % stay below.
-fn stretch(base: &Base, corners: &[[u32; 3]]) -> (f32, f32) {
+fn stretch(base: &BaseBody, corners: &[[u32; 3]]) -> (f32, f32) {
     let sides = |t: usize| {
         let [a, b, c] = base.triangles[t].map(|v| base.positions[v as usize]);
         let [p, q, r] = corners[t].map(|k| base.uvs[k as usize]);
@@ -153,7 +153,7 @@ fn stretch(base: &Base, corners: &[[u32; 3]]) -> (f32, f32) {
 }
 
 /// Breadth, depth and hull's perimeter (mm) of a slice through some parts.
-fn section(base: &Base, parts: &[Region], origin: Vec3, normal: Vec3) -> [f32; 3] {
+fn section(base: &BaseBody, parts: &[Region], origin: Vec3, normal: Vec3) -> [f32; 3] {
     let keep = |t: usize| base.triangles[t].iter().any(|&v| parts.contains(&base.regions[v as usize]));
     let (u, v) = if normal == Vec3::Y { (Vec3::X, Vec3::Z) } else { normal.any_orthonormal_pair() };
     let cuts = slice(&mesh(base), keep, origin * 1e-3, normal);
@@ -182,7 +182,7 @@ fn sections_agree_with_the_survey() {
 type Row = (&'static str, f32, f32, f32);
 
 /// What the base and ANSUR II's means read. Girths are taken at the survey's levels, around the hull.
-fn survey(base: &Base) -> Vec<Row> {
+fn survey(base: &BaseBody) -> Vec<Row> {
     let woman = base.sex == Sex::Female;
     let pick = |w: f32, m: f32| if woman { w } else { m };
     let trunk = [Region::Torso, Region::LeftLeg, Region::RightLeg];
@@ -247,25 +247,25 @@ fn survey(base: &Base) -> Vec<Row> {
 }
 
 /// Height (mm) of the most prominent point of the trunk near a height.
-fn extreme(base: &Base, near: f32, range: f32, prominence: impl Fn(&Vec3) -> f32) -> f32 {
+fn extreme(base: &BaseBody, near: f32, range: f32, prominence: impl Fn(&Vec3) -> f32) -> f32 {
     let with = base.positions.iter().zip(&base.regions);
     let trunk = with.filter(|(p, r)| **r == Region::Torso && (p.y * 1e3 - near).abs() < range).map(|(p, _)| p);
     trunk.max_by(|a, b| prominence(a).total_cmp(&prominence(b))).expect("a trunk").y * 1e3
 }
 
 /// Lowest point of the middle line between the legs (mm).
-fn crotch(base: &Base) -> f32 {
+fn crotch(base: &BaseBody) -> f32 {
     base.positions.iter().filter(|p| p.x == 0.0).map(|p| p.y).fold(f32::MAX, f32::min) * 1e3
 }
 
 /// Breadth (mm) of the head at a height in front of the ears.
-fn top_without_ears(base: &Base, y: f32) -> f32 {
+fn top_without_ears(base: &BaseBody, y: f32) -> f32 {
     let near = base.positions.iter().zip(base.charts_of_vertices());
     let breadth = near.filter(|(p, ear)| !ear && (p.y * 1e3 - y).abs() < 6.0).map(|(p, _)| p.x).fold(0.0, f32::max);
     2e3 * breadth
 }
 
-impl Base {
+impl BaseBody {
     /// Whether a vertex belongs to an ear.
     fn charts_of_vertices(&self) -> Vec<bool> {
         let mut ear = vec![false; self.positions.len()];
@@ -276,13 +276,13 @@ impl Base {
     }
 }
 
-fn foot(base: &Base, along: impl Fn(&Vec3) -> f32) -> f32 {
+fn foot(base: &BaseBody, along: impl Fn(&Vec3) -> f32) -> f32 {
     let low = base.positions.iter().filter(|p| p.x > 0.0 && p.y < 0.05);
     let (least, most) = low.map(along).fold((f32::MAX, f32::MIN), |(a, b), x| (a.min(x), b.max(x)));
     (most - least) * 1e3
 }
 
-fn hand(base: &Base) -> f32 {
+fn hand(base: &BaseBody) -> f32 {
     use crate::skeleton::Joint::{LeftElbow, LeftWrist};
     let (elbow, wrist) = (base.skeleton.at(LeftElbow), base.skeleton.at(LeftWrist));
     let way = (wrist - elbow).normalize();
@@ -317,12 +317,12 @@ fn landmarks_lie_where_they_are_drawn() {
 #[test]
 fn damaged_files_are_refused_in_one_sentence() {
     let bytes = STORED.encode();
-    assert_eq!(Stored::decode(&bytes).as_ref(), Ok(&*STORED));
+    assert_eq!(StoredBodies::decode(&bytes).as_ref(), Ok(&*STORED));
     for (broken, name) in [(&bytes[..40], "damaged"), (&bytes[..3], "version"), (&[0u8; 64][..], "version")] {
-        let message = Stored::decode(broken).unwrap_err().to_string();
+        let message = StoredBodies::decode(broken).unwrap_err().to_string();
         assert!(message.contains(name) && message.contains("toile-sculpt"), "{message}");
     }
     let mut flipped = bytes.clone();
     flipped[1000] ^= 1;
-    assert!(Stored::decode(&flipped).is_err());
+    assert!(StoredBodies::decode(&flipped).is_err());
 }

@@ -105,7 +105,7 @@ fn gradients_are_those_of_the_readings() {
         let positions = model.morphs.positions(&setting);
         let mut gradients = std::array::from_fn::<_, READINGS, _>(|_| Vec::new());
         let _ = model.gauge.read(&positions, Some(&mut gradients));
-        for slider in super::super::morph::Slider::ALL {
+        for slider in super::super::slider::Slider::ALL {
             let step = if slider.is_length() { 2e-4 } else { 1e-3 };
             let at = |by: f32| {
                 let mut moved = setting;

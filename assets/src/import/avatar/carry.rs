@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use super::raw::{Influences, Raw};
+use super::raw::{RawBody, RawInfluences};
 use super::rest::carriers;
 use crate::limits::INFLUENCES;
 use crate::mesh::SkinWeights;
@@ -16,7 +16,7 @@ use crate::skeleton::{BONES, Joint, Skeleton, TWISTS};
 
 /// What pruning to four influences cost.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Pruned {
+pub struct PruningLoss {
     /// Most influences of a vertex in the file.
     pub most_influences: usize,
     /// Vertices with more than four in the file.
@@ -30,10 +30,10 @@ pub struct Pruned {
 }
 
 /// The weights of every vertex of a standing body. `placed` are the joints that its file lacks.
-pub(super) fn weights(raw: &Raw, skeleton: &Skeleton, placed: &[Joint]) -> (Vec<SkinWeights>, Pruned) {
+pub(super) fn weights(raw: &RawBody, skeleton: &Skeleton, placed: &[Joint]) -> (Vec<SkinWeights>, PruningLoss) {
     let carriers = carriers(raw);
     let splits = splits(skeleton, placed);
-    let mut pruned = Pruned::default();
+    let mut pruned = PruningLoss::default();
     let mut sum = 0.0f64;
     let mut out = Vec::with_capacity(raw.influences.len());
     for (influences, &p) in raw.influences.iter().zip(&raw.positions) {
@@ -54,18 +54,18 @@ pub(super) fn weights(raw: &Raw, skeleton: &Skeleton, placed: &[Joint]) -> (Vec<
 
 /// A bone whose skin is divided linearly among itself and those that follow it: the chain, where the division begins,
 /// and the way to its end.
-struct Split {
+struct TwistSplit {
     chain: Vec<usize>,
     start: Vec3,
     way: Vec3,
 }
 
-fn splits(skeleton: &Skeleton, placed: &[Joint]) -> Vec<Split> {
+fn splits(skeleton: &Skeleton, placed: &[Joint]) -> Vec<TwistSplit> {
     let split = |from: Joint, to: Joint, others: Range<usize>| {
         let start = skeleton.at(from);
-        Split { chain: std::iter::once(from.index()).chain(others).collect(), start, way: skeleton.at(to) - start }
+        TwistSplit { chain: std::iter::once(from.index()).chain(others).collect(), start, way: skeleton.at(to) - start }
     };
-    let mut all: Vec<Split> = TWISTS.iter().map(|t| split(t.from, t.to, t.bones())).collect();
+    let mut all: Vec<TwistSplit> = TWISTS.iter().map(|t| split(t.from, t.to, t.bones())).collect();
     if placed.contains(&Joint::Chest) {
         let chest = Joint::Chest.index();
         all.push(split(Joint::Spine, Joint::Chest, chest..chest + 1));
@@ -73,7 +73,7 @@ fn splits(skeleton: &Skeleton, placed: &[Joint]) -> Vec<Split> {
     all
 }
 
-fn over_bones(influences: &Influences, carriers: &[Joint], splits: &[Split], p: Vec3) -> [f32; BONES] {
+fn over_bones(influences: &RawInfluences, carriers: &[Joint], splits: &[TwistSplit], p: Vec3) -> [f32; BONES] {
     let mut bones = [0.0; BONES];
     for (joint, weight) in influences.0 {
         if weight > 0.0 {

@@ -59,7 +59,9 @@ pub enum Flaw {
         index: usize,
     },
     /// A weight for a joint that the skin lacks.
-    #[error("vertex {vertex} hangs on joint {joint}, but the skin has {joints}; bind the mesh to its armature again")]
+    #[error(
+        "vertex {vertex} (from 0 over all skinned parts) hangs on joint {joint}, but its skin has {joints}; bind the mesh to its armature again"
+    )]
     JointRange {
         /// The vertex.
         vertex: usize,
@@ -69,7 +71,9 @@ pub enum Flaw {
         joints: usize,
     },
     /// Weights that do not sum to 1.
-    #[error("the weights of vertex {vertex} sum to {sum} instead of 1; normalise all weights before exporting")]
+    #[error(
+        "the weights of vertex {vertex} (from 0 over all skinned parts) sum to {sum} instead of 1; normalise all weights before exporting"
+    )]
     WeightSum {
         /// The vertex.
         vertex: usize,
@@ -77,7 +81,9 @@ pub enum Flaw {
         sum: f32,
     },
     /// A weight that is none.
-    #[error("vertex {vertex} has the weight {weight}; weights lie between 0 and 1, so normalise them")]
+    #[error(
+        "vertex {vertex} (from 0 over all skinned parts) has the weight {weight}; weights lie between 0 and 1, so normalise them"
+    )]
     Weight {
         /// The vertex.
         vertex: usize,
@@ -163,16 +169,12 @@ pub enum Flaw {
     },
     /// A surface that is not closed.
     #[error(
-        "the surface is open at {count} edges outside of the head, the first between vertices {a} and {b} near \
+        "the surface is open at {count} edges outside of the head, the first near \
          ({x:.2}, {y:.2}, {z:.2}) m; close the body, leave out its clothes, or allow holes"
     )]
     Hole {
         /// Open edges outside of the head.
         count: usize,
-        /// One vertex of the first of them.
-        a: u32,
-        /// Its other vertex.
-        b: u32,
         /// Where it is (m).
         x: f32,
         /// Where it is (m).

@@ -21,18 +21,19 @@ use std::path::{Path, PathBuf};
 use glam::Vec3;
 
 use crate::body::{Body, Region, Sex};
-use crate::import::gltf::file::File;
+use crate::file::{self, FileError, FileKind};
+use crate::import::gltf::file::GltfFile;
 use crate::limits::MAX_BODY_BYTES;
 use crate::mesh::{Mesh, vertex_normals};
 use crate::skeleton::Joint;
-pub use carry::Pruned;
+pub use carry::PruningLoss;
 pub use error::{AvatarError, Flaw};
-use raw::Raw;
-use surface::Surface;
+use raw::RawBody;
+use surface::SurfaceCheck;
 
 /// How a body is to be imported.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Options {
+pub struct ImportOptions {
     /// Whose garments the body is given: a file does not say it.
     pub sex: Sex,
     /// Names of the meshes to take; empty takes all that are skinned.
@@ -41,7 +42,7 @@ pub struct Options {
     pub allow_holes: bool,
 }
 
-impl Default for Options {
+impl Default for ImportOptions {
     fn default() -> Self {
         Self { sex: Sex::Female, meshes: Vec::new(), allow_holes: false }
     }
@@ -49,22 +50,22 @@ impl Default for Options {
 
 /// A body, and what was found in its file.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Imported {
+pub struct ImportedBody {
     /// The body in its rest pose: metres, y up, facing +z, the floor at y = 0.
     pub body: Body,
     /// What was found.
-    pub report: Report,
+    pub report: ImportReport,
 }
 
 /// What was found in a file.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Report {
+pub struct ImportReport {
     /// How its joints are named.
     pub dialect: &'static str,
     /// For each of our joints that was found: its H-Anim name, and the file's own.
     pub joints: Vec<(String, String)>,
     /// What pruning the weights cost.
-    pub pruned: Pruned,
+    pub pruned: PruningLoss,
     /// Pieces of the surface that hang together.
     pub parts: usize,
     /// Edges with a triangle on one side alone.
@@ -79,7 +80,7 @@ pub struct Report {
 ///
 /// # Errors
 /// [`AvatarError`], which names the file, what is wrong in it, and the cure.
-pub fn read(path: &Path, options: &Options) -> Result<Imported, AvatarError> {
+pub fn read(path: &Path, options: &ImportOptions) -> Result<ImportedBody, AvatarError> {
     let bytes = load(path).map_err(|flaw| flaw.of(path))?;
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
     let beside = |name: &str| {
@@ -93,31 +94,37 @@ pub fn read(path: &Path, options: &Options) -> Result<Imported, AvatarError> {
     parse(&bytes, &beside, options).map_err(|flaw| flaw.of(path))
 }
 
+/// A file of a body, or one that it names.
+const BODY_FILE: FileKind =
+    FileKind { name: "a body", max_bytes: MAX_BODY_BYTES, cure: "reduce its mesh and its pictures" };
+
 /// A file's bytes, if they are no more than a body has.
 pub(crate) fn load(path: &Path) -> Result<Vec<u8>, Flaw> {
-    let wrong = |e: std::io::Error| Flaw::Read { reason: e.to_string() };
-    let bytes = std::fs::metadata(path).map_err(wrong)?.len();
-    if bytes > MAX_BODY_BYTES {
-        return Err(Flaw::TooLarge { bytes });
-    }
-    std::fs::read(path).map_err(wrong)
+    file::read(path, &BODY_FILE).map_err(|e| match e {
+        FileError::TooLarge { bytes: Some(bytes), .. } => Flaw::TooLarge { bytes },
+        other => Flaw::Read { reason: other.reason() },
+    })
 }
 
 /// Imports a file's bytes; `beside` reads the buffers that lie beside it.
 ///
 /// # Errors
 /// [`Flaw`], to stand behind the file's name.
-pub fn parse(bytes: &[u8], beside: crate::import::gltf::Beside<'_>, options: &Options) -> Result<Imported, Flaw> {
-    let file = File::open(bytes, beside)?;
+pub fn parse(
+    bytes: &[u8],
+    beside: crate::import::gltf::ReadBeside<'_>,
+    options: &ImportOptions,
+) -> Result<ImportedBody, Flaw> {
+    let file = GltfFile::open(bytes, beside)?;
     settle(skinned::read(&file, &options.meshes)?, options)
 }
 
 /// Makes a raw body ours.
-pub(crate) fn settle(mut raw: Raw, options: &Options) -> Result<Imported, Flaw> {
+pub(crate) fn settle(mut raw: RawBody, options: &ImportOptions) -> Result<ImportedBody, Flaw> {
     raw.check()?;
     let (skeleton, placed) = rest::stand(&mut raw)?;
     let (weights, pruned) = carry::weights(&raw, &skeleton, &placed);
-    let surface = Surface::of(&raw.positions, &raw.triangles);
+    let surface = SurfaceCheck::of(&raw.positions, &raw.triangles);
     let mesh = Mesh {
         uvs: if raw.has_uvs { std::mem::take(&mut raw.uvs) } else { Vec::new() },
         positions: std::mem::take(&mut raw.positions),
@@ -128,7 +135,7 @@ pub(crate) fn settle(mut raw: Raw, options: &Options) -> Result<Imported, Flaw> 
     if !options.allow_holes {
         check_holes(&mesh, &surface, &survey.regions, skeleton.at(Joint::Neck).y)?;
     }
-    let report = Report {
+    let report = ImportReport {
         dialect: raw.reading.dialect,
         joints: found(&raw),
         pruned,
@@ -137,19 +144,19 @@ pub(crate) fn settle(mut raw: Raw, options: &Options) -> Result<Imported, Flaw> 
         crowded_edges: surface.crowded,
         notes: raw.notes,
     };
-    let survey::Survey { regions, levels, measures } = survey;
+    let survey::BodySurvey { regions, levels, measures } = survey;
     let body = Body { sex: options.sex, mesh, normals, skeleton, weights, regions, levels, measures };
-    Ok(Imported { body, report })
+    Ok(ImportedBody { body, report })
 }
 
-fn found(raw: &Raw) -> Vec<(String, String)> {
+fn found(raw: &RawBody) -> Vec<(String, String)> {
     let name =
         |j: Joint| Some((names::HANIM.names(j).remove(0), raw.joints[raw.reading.places[j.index()]?].name.clone()));
     Joint::ALL.into_iter().filter_map(name).collect()
 }
 
 /// The file's normals; where it has none, those of the surface, smooth across seams.
-fn normals(mesh: &Mesh, surface: &Surface, given: &[Vec3]) -> Vec<Vec3> {
+fn normals(mesh: &Mesh, surface: &SurfaceCheck, given: &[Vec3]) -> Vec<Vec3> {
     let welded: Vec<[u32; 3]> = mesh.triangles.iter().map(|t| t.map(|v| surface.first[v as usize])).collect();
     let mut smooth = vec![Vec3::ZERO; mesh.positions.len()];
     vertex_normals(&mesh.positions, &welded, &mut smooth);
@@ -161,14 +168,14 @@ fn normals(mesh: &Mesh, surface: &Surface, given: &[Vec3]) -> Vec<Vec3> {
 }
 
 /// Refuses holes where garments lie and tapes go. Eyes, mouths and seams of the head are often open, and do no harm.
-fn check_holes(mesh: &Mesh, surface: &Surface, regions: &[Region], neck: f32) -> Result<(), Flaw> {
+fn check_holes(mesh: &Mesh, surface: &SurfaceCheck, regions: &[Region], neck: f32) -> Result<(), Flaw> {
     let on_head = |v: u32| regions[v as usize] == Region::Head || mesh.positions[v as usize].y > neck;
     let open: Vec<&[u32; 2]> = surface.boundary.iter().filter(|e| !e.iter().all(|v| on_head(*v))).collect();
     match open.first() {
         None => Ok(()),
-        Some(&&[a, b]) => {
+        Some(&&[a, _]) => {
             let p = mesh.positions[a as usize];
-            Err(Flaw::Hole { count: open.len(), a, b, x: p.x, y: p.y, z: p.z })
+            Err(Flaw::Hole { count: open.len(), x: p.x, y: p.y, z: p.z })
         }
     }
 }

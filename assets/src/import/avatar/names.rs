@@ -7,7 +7,7 @@ use crate::skeleton::{JOINTS, Joint};
 
 /// How one family of tools names the joints.
 #[derive(Debug)]
-pub struct Dialect {
+pub struct NamingDialect {
     /// What the family is called.
     pub title: &'static str,
     /// Names of each joint, in the order of [`Joint::ALL`]; `@` stands for the side and is filled in by `sides`.
@@ -21,11 +21,11 @@ const CENTRE: usize = 5;
 const ONE_SIDE: usize = (JOINTS - CENTRE) / 2;
 
 /// The names of H-Anim version 2, which exports write.
-pub const HANIM: &Dialect = &DIALECTS[1];
+pub const HANIM: &NamingDialect = &DIALECTS[1];
 
 /// The dialects; where two fit equally well the earlier one is taken.
-pub const DIALECTS: [Dialect; 7] = [
-    Dialect {
+pub const DIALECTS: [NamingDialect; 7] = [
+    NamingDialect {
         title: "VRM",
         names: [
             &["hips"],
@@ -45,7 +45,7 @@ pub const DIALECTS: [Dialect; 7] = [
         ],
         sides: ["left", "right"],
     },
-    Dialect {
+    NamingDialect {
         title: "H-Anim 2",
         names: [
             &["sacroiliac", "humanoid_root"],
@@ -65,7 +65,7 @@ pub const DIALECTS: [Dialect; 7] = [
         ],
         sides: ["l_", "r_"],
     },
-    Dialect {
+    NamingDialect {
         title: "H-Anim 1",
         names: [
             &["sacroiliac", "HumanoidRoot"],
@@ -85,7 +85,7 @@ pub const DIALECTS: [Dialect; 7] = [
         ],
         sides: ["l_", "r_"],
     },
-    Dialect {
+    NamingDialect {
         title: "Mixamo",
         names: [
             &["Hips"],
@@ -105,7 +105,7 @@ pub const DIALECTS: [Dialect; 7] = [
         ],
         sides: ["Left", "Right"],
     },
-    Dialect {
+    NamingDialect {
         title: "Unreal",
         names: [
             &["pelvis"],
@@ -125,7 +125,7 @@ pub const DIALECTS: [Dialect; 7] = [
         ],
         sides: ["l", "r"],
     },
-    Dialect {
+    NamingDialect {
         title: "MakeHuman CMU",
         names: [
             &["Hips"],
@@ -145,7 +145,7 @@ pub const DIALECTS: [Dialect; 7] = [
         ],
         sides: ["Left", "Right"],
     },
-    Dialect {
+    NamingDialect {
         title: "CMU BVH",
         names: [
             &["Hips"],
@@ -189,7 +189,7 @@ pub const NEEDED: [Joint; 15] = {
     ]
 };
 
-impl Dialect {
+impl NamingDialect {
     /// The names of one joint, the one that gives its place first.
     pub fn names(&self, joint: Joint) -> Vec<String> {
         let i = joint.index();
@@ -213,7 +213,7 @@ fn plain(name: &str) -> String {
 
 /// The joints that names mean, in the dialect that knows the most of the needed ones.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Reading {
+pub struct NamedJoints {
     /// The dialect.
     pub dialect: &'static str,
     /// The joint that each name means `[names]`; several may mean the same one.
@@ -223,9 +223,9 @@ pub struct Reading {
 }
 
 /// Reads the names of a skeleton.
-pub fn read(names: &[&str]) -> Reading {
+pub fn read(names: &[&str]) -> NamedJoints {
     let names: Vec<String> = names.iter().map(|n| plain(n)).collect();
-    let mut best: Option<(usize, Reading)> = None;
+    let mut best: Option<(usize, NamedJoints)> = None;
     for dialect in &DIALECTS {
         let joints = dialect.read(&names);
         let place = |joint: Joint| {
@@ -237,10 +237,13 @@ pub fn read(names: &[&str]) -> Reading {
         let known = places.iter().flatten().count();
         let score = known + JOINTS * NEEDED.iter().filter(|j| places[j.index()].is_some()).count();
         if best.as_ref().is_none_or(|(most, _)| score > *most) {
-            best = Some((score, Reading { dialect: dialect.title, joints, places }));
+            best = Some((score, NamedJoints { dialect: dialect.title, joints, places }));
         }
     }
-    best.map_or_else(|| Reading { dialect: "none", joints: Vec::new(), places: [None; JOINTS] }, |(_, reading)| reading)
+    best.map_or_else(
+        || NamedJoints { dialect: "none", joints: Vec::new(), places: [None; JOINTS] },
+        |(_, reading)| reading,
+    )
 }
 
 #[cfg(test)]

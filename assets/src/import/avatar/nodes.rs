@@ -6,12 +6,11 @@ use glam::Mat4;
 use serde_json::Value;
 
 use super::error::Flaw;
-use super::skinned::humanoid;
 use crate::import::gltf::file::{index, list, transform};
 use crate::limits::MAX_BODY_NODES;
 
 /// All nodes, each with its parent and its place in the scene.
-pub(super) struct Nodes {
+pub(super) struct GltfNodes {
     names: Vec<String>,
     /// What the file itself says which joint of a humanoid it is.
     humanoid: Vec<Option<String>>,
@@ -20,7 +19,7 @@ pub(super) struct Nodes {
     global: Vec<Mat4>,
 }
 
-impl Nodes {
+impl GltfNodes {
     /// Reads the nodes, and proves that they form a forest.
     pub fn read(json: &Value) -> Result<Self, Flaw> {
         let nodes = list(&json["nodes"]);
@@ -135,4 +134,18 @@ impl Nodes {
         }
         Ok(())
     }
+}
+
+/// What a file calls its joints where it says so itself: VRM 0.x and 1.0 name the nodes of a humanoid.
+fn humanoid(json: &Value) -> Vec<(usize, String)> {
+    let mut found = Vec::new();
+    for bone in list(&json["extensions"]["VRM"]["humanoid"]["humanBones"]) {
+        if let (Some(name), Some(node)) = (bone["bone"].as_str(), index(&bone["node"])) {
+            found.push((node, name.to_owned()));
+        }
+    }
+    if let Some(bones) = json["extensions"]["VRMC_vrm"]["humanoid"]["humanBones"].as_object() {
+        found.extend(bones.iter().filter_map(|(name, bone)| Some((index(&bone["node"])?, name.clone()))));
+    }
+    found
 }

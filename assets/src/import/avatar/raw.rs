@@ -3,8 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::error::Flaw;
-use super::names::Reading;
-use super::skinned::unread;
+use super::names::{self, NamedJoints};
 use crate::limits::{IMPORT_INFLUENCES, MAX_BODY_VERTICES};
 
 /// Furthest that the weights of a vertex may sum from 1: bytes round each of four by up to 1/510.
@@ -12,7 +11,7 @@ const SUM_TOLERANCE: f32 = 0.02;
 
 /// Joints that carry a vertex, each with its weight; unused ones have the weight 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Influences(pub [(u16, f32); IMPORT_INFLUENCES]);
+pub(crate) struct RawInfluences(pub [(u16, f32); IMPORT_INFLUENCES]);
 
 /// A joint, or what is above one.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +26,7 @@ pub(crate) struct RawJoint {
 
 /// A body in its file's unit and axes.
 #[derive(Debug, Clone)]
-pub(crate) struct Raw {
+pub(crate) struct RawBody {
     /// `[vertices]`.
     pub positions: Vec<Vec3>,
     /// Unit normals `[vertices]`, zero where the file has none.
@@ -41,14 +40,14 @@ pub(crate) struct Raw {
     /// Joints and what is above them.
     pub joints: Vec<RawJoint>,
     /// What the names of the joints mean.
-    pub reading: Reading,
+    pub reading: NamedJoints,
     /// `[vertices]`.
-    pub influences: Vec<Influences>,
+    pub influences: Vec<RawInfluences>,
     /// What was found and how it was taken, one sentence each.
     pub notes: Vec<String>,
 }
 
-impl Default for Raw {
+impl Default for RawBody {
     fn default() -> Self {
         Self {
             positions: Vec::new(),
@@ -57,14 +56,14 @@ impl Default for Raw {
             has_uvs: false,
             triangles: Vec::new(),
             joints: Vec::new(),
-            reading: unread(),
+            reading: names::read(&[]),
             influences: Vec::new(),
             notes: Vec::new(),
         }
     }
 }
 
-impl Raw {
+impl RawBody {
     /// Checks every number, and makes the weights of each vertex sum to exactly 1.
     pub fn check(&mut self) -> Result<(), Flaw> {
         if !(4..=MAX_BODY_VERTICES).contains(&self.positions.len()) || self.triangles.len() < 4 {

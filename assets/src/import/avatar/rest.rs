@@ -4,7 +4,7 @@ use glam::{Mat3, Vec3};
 
 use super::error::Flaw;
 use super::names::{HANIM, NEEDED};
-use super::raw::Raw;
+use super::raw::RawBody;
 use crate::skeleton::{JOINTS, Joint, Skeleton};
 
 /// Units a file may be in: metres a unit, and what the unit is called.
@@ -20,7 +20,7 @@ const UPRIGHT: f32 = 0.8;
 const TOE_BACK: f32 = 0.01;
 
 /// Which of our joints each raw joint carries the skin of: its own, or that of the nearest joint above it.
-pub(super) fn carriers(raw: &Raw) -> Vec<Joint> {
+pub(super) fn carriers(raw: &RawBody) -> Vec<Joint> {
     let above = |mut joint: usize| loop {
         if let Some(found) = raw.reading.joints[joint] {
             return found;
@@ -35,12 +35,12 @@ pub(super) fn carriers(raw: &Raw) -> Vec<Joint> {
 
 /// Turns, scales and moves a raw body so that it stands on the floor in metres, facing +z; returns its skeleton and
 /// which joints had to be placed between others.
-pub(super) fn stand(raw: &mut Raw) -> Result<(Skeleton, Vec<Joint>), Flaw> {
+pub(super) fn stand(raw: &mut RawBody) -> Result<(Skeleton, Vec<Joint>), Flaw> {
     check_joints(raw)?;
     let turn = upright(raw)?;
     let all = raw.positions.iter_mut().chain(&mut raw.normals).chain(raw.joints.iter_mut().map(|j| &mut j.at));
     all.for_each(|p| *p = turn * *p);
-    let heights = |raw: &Raw| {
+    let heights = |raw: &RawBody| {
         let range = |[low, high]: [f32; 2], p: &Vec3| [low.min(p.y), high.max(p.y)];
         raw.positions.iter().fold([f32::INFINITY, f32::NEG_INFINITY], range)
     };
@@ -59,12 +59,12 @@ pub(super) fn stand(raw: &mut Raw) -> Result<(Skeleton, Vec<Joint>), Flaw> {
 }
 
 /// Where a joint that is known to be there stands.
-fn place(raw: &Raw, joint: Joint) -> Vec3 {
+fn place(raw: &RawBody, joint: Joint) -> Vec3 {
     raw.reading.places[joint.index()].map_or(Vec3::ZERO, |k| raw.joints[k].at)
 }
 
 /// Checks that the needed joints are there and that all hang together as in our skeleton.
-fn check_joints(raw: &Raw) -> Result<(), Flaw> {
+fn check_joints(raw: &RawBody) -> Result<(), Flaw> {
     let places = &raw.reading.places;
     let missing: Vec<String> =
         NEEDED.iter().filter(|j| places[j.index()].is_none()).map(|j| HANIM.names(*j).remove(0)).collect();
@@ -91,7 +91,7 @@ fn check_joints(raw: &Raw) -> Result<(), Flaw> {
 }
 
 /// The turn by quarter turns after which the head is up and the left hip on the left.
-fn upright(raw: &mut Raw) -> Result<Mat3, Flaw> {
+fn upright(raw: &mut RawBody) -> Result<Mat3, Flaw> {
     let hips = [Joint::LeftHip, Joint::RightHip].map(|j| place(raw, j));
     let up = (place(raw, Joint::Head) - 0.5 * (hips[0] + hips[1])).normalize_or_zero();
     let axis = |v: Vec3| {
@@ -112,7 +112,7 @@ fn upright(raw: &mut Raw) -> Result<Mat3, Flaw> {
 }
 
 /// Our joints at the raw ones' places; those that the file lacks stand between their neighbours.
-fn skeleton(raw: &mut Raw, stature: f32) -> Result<(Skeleton, Vec<Joint>), Flaw> {
+fn skeleton(raw: &mut RawBody, stature: f32) -> Result<(Skeleton, Vec<Joint>), Flaw> {
     let found = raw.reading.places.map(|place| place.map(|k| raw.joints[k].at));
     let placed: Vec<Joint> = Joint::ALL.into_iter().filter(|j| found[j.index()].is_none()).collect();
     let mut rest = [Vec3::ZERO; JOINTS];

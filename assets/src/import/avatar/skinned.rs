@@ -12,10 +12,10 @@ use glam::{Mat3, Mat4, Vec2, Vec3};
 use serde_json::Value;
 
 use super::error::Flaw;
-use super::names::{self, Reading};
-use super::nodes::Nodes;
-use super::raw::{Influences, Raw, RawJoint};
-use crate::import::gltf::file::{File, index, list};
+use super::names;
+use super::nodes::GltfNodes;
+use super::raw::{RawBody, RawInfluences, RawJoint};
+use crate::import::gltf::file::{GltfFile, index, list};
 use crate::limits::MAX_BODY_VERTICES;
 use crate::skeleton::Joint;
 
@@ -23,13 +23,13 @@ use crate::skeleton::Joint;
 const SETS: [[&str; 2]; 2] = [["JOINTS_0", "WEIGHTS_0"], ["JOINTS_1", "WEIGHTS_1"]];
 
 /// A node that shows a skinned mesh.
-struct Shown {
+struct SkinnedNode {
     mesh: usize,
     skin: usize,
 }
 
 /// One skin: its joints, and how each carries the mesh.
-struct Skin {
+struct GltfSkin {
     joints: Vec<usize>,
     /// None where the file has none: identity.
     inverse: Option<Vec<Mat4>>,
@@ -38,8 +38,8 @@ struct Skin {
 }
 
 /// Reads the skinned meshes of a file, or those of the names `wanted` where there are any.
-pub(super) fn read(file: &File, wanted: &[String]) -> Result<Raw, Flaw> {
-    let nodes = Nodes::read(&file.json)?;
+pub(super) fn read(file: &GltfFile, wanted: &[String]) -> Result<RawBody, Flaw> {
+    let nodes = GltfNodes::read(&file.json)?;
     let shown = shown(&file.json, wanted)?;
     let used: BTreeSet<usize> = shown.iter().map(|s| s.skin).collect();
     let mut bones = BTreeSet::new();
@@ -51,11 +51,11 @@ pub(super) fn read(file: &File, wanted: &[String]) -> Result<Raw, Flaw> {
     let called: Vec<&str> = bones.iter().map(|&n| nodes.called(n)).collect();
     let reading = names::read(&called);
     let hips = reading.places[Joint::Pelvis.index()].map(|k| bones[k]);
-    let mut skins: Vec<Option<Skin>> = list(&file.json["skins"]).iter().map(|_| None).collect();
+    let mut skins: Vec<Option<GltfSkin>> = list(&file.json["skins"]).iter().map(|_| None).collect();
     for &skin in &used {
         skins[skin] = Some(open_skin(file, &nodes, skin, hips)?);
     }
-    let mut raw = Raw { joints: raw_joints(&nodes, &bones, &skins), reading, ..Raw::default() };
+    let mut raw = RawBody { joints: raw_joints(&nodes, &bones, &skins), reading, ..RawBody::default() };
     if skins.iter().flatten().any(|skin| skin.inverse.is_none()) {
         raw.notes.push("it has no inverse bind matrices, so its rest pose is the one that its nodes show".into());
     }
@@ -73,7 +73,7 @@ pub(super) fn read(file: &File, wanted: &[String]) -> Result<Raw, Flaw> {
 }
 
 /// The nodes that show a skinned mesh.
-fn shown(json: &Value, wanted: &[String]) -> Result<Vec<Shown>, Flaw> {
+fn shown(json: &Value, wanted: &[String]) -> Result<Vec<SkinnedNode>, Flaw> {
     let mut shown = Vec::new();
     let mut known = Vec::new();
     for node in list(&json["nodes"]) {
@@ -83,7 +83,7 @@ fn shown(json: &Value, wanted: &[String]) -> Result<Vec<Shown>, Flaw> {
         }
         let names = [&node["name"], &json["meshes"][mesh]["name"]].map(|n| n.as_str().unwrap_or_default());
         if wanted.is_empty() || names.iter().any(|n| wanted.iter().any(|w| w == n)) {
-            shown.push(Shown { mesh, skin });
+            shown.push(SkinnedNode { mesh, skin });
         }
         known.push(names[0].to_owned());
     }
@@ -99,7 +99,7 @@ fn left_out(json: &Value) -> usize {
     list(&json["nodes"]).iter().filter(|n| index(&n["mesh"]).is_some() && index(&n["skin"]).is_none()).count()
 }
 
-fn joint_list(file: &File, nodes: &Nodes, skin: usize) -> Result<Vec<usize>, Flaw> {
+fn joint_list(file: &GltfFile, nodes: &GltfNodes, skin: usize) -> Result<Vec<usize>, Flaw> {
     let joints: Vec<usize> = list(&file.json["skins"][skin]["joints"]).iter().filter_map(index).collect();
     if joints.is_empty() {
         return Err(Flaw::syntax(format!("its skin {skin} has no joints; export the body with its armature")));
@@ -112,10 +112,10 @@ fn joint_list(file: &File, nodes: &Nodes, skin: usize) -> Result<Vec<usize>, Fla
     }
 }
 
-fn open_skin(file: &File, nodes: &Nodes, skin: usize, hips: Option<usize>) -> Result<Skin, Flaw> {
+fn open_skin(file: &GltfFile, nodes: &GltfNodes, skin: usize, hips: Option<usize>) -> Result<GltfSkin, Flaw> {
     let joints = joint_list(file, nodes, skin)?;
     let Some(accessor) = index(&file.json["skins"][skin]["inverseBindMatrices"]) else {
-        return Ok(Skin { joints, inverse: None, place: Mat4::IDENTITY });
+        return Ok(GltfSkin { joints, inverse: None, place: Mat4::IDENTITY });
     };
     let inverse: Vec<Mat4> = file.floats::<16>(accessor)?.iter().map(Mat4::from_cols_array).collect();
     if inverse.len() < joints.len() {
@@ -132,11 +132,11 @@ fn open_skin(file: &File, nodes: &Nodes, skin: usize, hips: Option<usize>) -> Re
     }
     let anchor = joints.iter().position(|j| Some(*j) == hips).unwrap_or(0);
     let place = nodes.global(joints[anchor]) * inverse[anchor];
-    Ok(Skin { joints, inverse: Some(inverse), place })
+    Ok(GltfSkin { joints, inverse: Some(inverse), place })
 }
 
 /// The joints and what is above them: each where it stood when the first skin that has it was bound.
-fn raw_joints(nodes: &Nodes, bones: &[usize], skins: &[Option<Skin>]) -> Vec<RawJoint> {
+fn raw_joints(nodes: &GltfNodes, bones: &[usize], skins: &[Option<GltfSkin>]) -> Vec<RawJoint> {
     let bound = |node: usize| {
         skins.iter().flatten().find_map(|skin| {
             let k = skin.joints.iter().position(|j| *j == node)?;
@@ -152,7 +152,14 @@ fn raw_joints(nodes: &Nodes, bones: &[usize], skins: &[Option<Skin>]) -> Vec<Raw
 }
 
 /// Adds the triangles of one primitive.
-fn add(file: &File, nodes: &Nodes, bones: &[usize], skin: &Skin, primitive: &Value, raw: &mut Raw) -> Result<(), Flaw> {
+fn add(
+    file: &GltfFile,
+    nodes: &GltfNodes,
+    bones: &[usize],
+    skin: &GltfSkin,
+    primitive: &Value,
+    raw: &mut RawBody,
+) -> Result<(), Flaw> {
     match primitive["mode"].as_u64().unwrap_or(4) {
         4 => {}
         0..=3 => return Ok(()),
@@ -200,7 +207,13 @@ fn add(file: &File, nodes: &Nodes, bones: &[usize], skin: &Skin, primitive: &Val
     add_triangles(file, primitive, first, count, raw)
 }
 
-fn add_triangles(file: &File, primitive: &Value, first: usize, count: usize, raw: &mut Raw) -> Result<(), Flaw> {
+fn add_triangles(
+    file: &GltfFile,
+    primitive: &Value,
+    first: usize,
+    count: usize,
+    raw: &mut RawBody,
+) -> Result<(), Flaw> {
     let corners: Vec<u32> = match index(&primitive["indices"]) {
         Some(accessor) => file.integers::<1>(accessor)?.into_iter().flatten().collect(),
         None => (0..count as u32).collect(),
@@ -214,14 +227,14 @@ fn add_triangles(file: &File, primitive: &Value, first: usize, count: usize, raw
 
 /// The joints and weights of each vertex, as indices of the raw joints.
 fn influences(
-    file: &File,
+    file: &GltfFile,
     bones: &[usize],
-    skin: &Skin,
+    skin: &GltfSkin,
     primitive: &Value,
     first: usize,
     count: usize,
-) -> Result<Vec<Influences>, Flaw> {
-    let mut out = vec![Influences::default(); count];
+) -> Result<Vec<RawInfluences>, Flaw> {
+    let mut out = vec![RawInfluences::default(); count];
     for (set, names) in SETS.iter().enumerate() {
         let [joints, weights] = names.map(|name| index(&primitive["attributes"][name]));
         let (Some(joints), Some(weights)) = (joints, weights) else {
@@ -255,32 +268,13 @@ fn influences(
     Ok(out)
 }
 
-impl Skin {
+impl GltfSkin {
     /// What carries a vertex from its mesh's space to the scene.
-    fn carry(&self, nodes: &Nodes, bones: &[usize], influences: &Influences) -> Mat4 {
+    fn carry(&self, nodes: &GltfNodes, bones: &[usize], influences: &RawInfluences) -> Mat4 {
         if self.inverse.is_some() {
             return self.place;
         }
         let weighted = influences.0.iter().map(|(bone, w)| nodes.global(bones[*bone as usize]) * *w);
         weighted.fold(Mat4::ZERO, |sum, m| sum + m)
     }
-}
-
-/// What a file calls its joints where it says so itself: VRM 0.x and 1.0 name the nodes of a humanoid.
-pub(super) fn humanoid(json: &Value) -> Vec<(usize, String)> {
-    let mut found = Vec::new();
-    for bone in list(&json["extensions"]["VRM"]["humanoid"]["humanBones"]) {
-        if let (Some(name), Some(node)) = (bone["bone"].as_str(), index(&bone["node"])) {
-            found.push((node, name.to_owned()));
-        }
-    }
-    if let Some(bones) = json["extensions"]["VRMC_vrm"]["humanoid"]["humanBones"].as_object() {
-        found.extend(bones.iter().filter_map(|(name, bone)| Some((index(&bone["node"])?, name.clone()))));
-    }
-    found
-}
-
-/// The reading of a file in which nothing is named.
-pub(super) fn unread() -> Reading {
-    names::read(&[])
 }

@@ -10,7 +10,7 @@ const SAME_M: f32 = 1e-5;
 
 /// What a surface is made of.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Surface {
+pub struct SurfaceCheck {
     /// Places with a vertex that a triangle uses.
     pub places: usize,
     /// Pieces that hang together.
@@ -23,12 +23,12 @@ pub struct Surface {
     pub first: Vec<u32>,
 }
 
-impl Surface {
+impl SurfaceCheck {
     /// Looks at a mesh. Boundary edges are in the order of their vertices.
     pub fn of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
         let first = first_in_place(positions);
         let mut edges = Vec::with_capacity(3 * triangles.len());
-        let mut parts = Parts::new(positions.len());
+        let mut parts = VertexSets::new(positions.len());
         let mut used = vec![false; positions.len()];
         for t in triangles {
             let [a, b, c] = t.map(|v| first[v as usize]);
@@ -63,9 +63,9 @@ fn first_in_place(positions: &[Vec3]) -> Vec<u32> {
 }
 
 /// Disjoint sets of vertices; the least vertex stands for its set.
-struct Parts(Vec<u32>);
+struct VertexSets(Vec<u32>);
 
-impl Parts {
+impl VertexSets {
     fn new(count: usize) -> Self {
         Self((0..count as u32).collect())
     }
@@ -100,10 +100,10 @@ mod tests {
     #[test]
     fn seams_are_no_holes_and_a_missing_triangle_is_one() {
         let (positions, mut triangles) = tetrahedron();
-        let whole = Surface::of(&positions, &triangles);
+        let whole = SurfaceCheck::of(&positions, &triangles);
         assert_eq!((whole.places, whole.parts, whole.boundary.len(), whole.crowded), (4, 1, 0, 0));
         triangles.pop();
-        assert_eq!(Surface::of(&positions, &triangles).boundary.len(), 3);
+        assert_eq!(SurfaceCheck::of(&positions, &triangles).boundary.len(), 3);
     }
 
     #[test]
@@ -112,6 +112,6 @@ mod tests {
         let far: Vec<Vec3> = positions.iter().map(|p| *p + Vec3::splat(9.0)).collect();
         triangles.extend(triangles.clone().iter().map(|t| t.map(|v| v + positions.len() as u32)));
         positions.extend(far);
-        assert_eq!(Surface::of(&positions, &triangles).parts, 2);
+        assert_eq!(SurfaceCheck::of(&positions, &triangles).parts, 2);
     }
 }

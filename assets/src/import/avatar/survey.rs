@@ -20,14 +20,14 @@ const ACROMION_NEAR: f32 = 0.015;
 const AROUND: f32 = 0.1;
 
 /// What is read off an imported body.
-pub(super) struct Survey {
+pub(super) struct BodySurvey {
     pub regions: Vec<Region>,
     pub levels: Levels,
     pub measures: Measures,
 }
 
 /// Reads levels, regions and measures.
-pub(super) fn survey(mesh: &Mesh, weights: &[SkinWeights], skeleton: &Skeleton, sex: Sex) -> Result<Survey, Flaw> {
+pub(super) fn survey(mesh: &Mesh, weights: &[SkinWeights], skeleton: &Skeleton, sex: Sex) -> Result<BodySurvey, Flaw> {
     let ours = Body::proportions(sex);
     let limbs = bone_regions();
     let regions: Vec<Region> = weights.iter().map(|w| region(w, &limbs)).collect();
@@ -81,7 +81,7 @@ pub(super) fn survey(mesh: &Mesh, weights: &[SkinWeights], skeleton: &Skeleton, 
             return Err(Flaw::Level { level });
         }
     }
-    Ok(Survey { regions, levels, measures })
+    Ok(BodySurvey { regions, levels, measures })
 }
 
 /// The part of the body that each bone belongs to.

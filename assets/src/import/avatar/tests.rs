@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::*;
 use crate::body::Measures;
-use crate::export::{Dressed, glb};
+use crate::export::{DressedBody, glb};
 use crate::limits::MAX_BODY_VERTICES;
 
 mod damage;
@@ -26,16 +26,16 @@ pub(crate) fn data() -> Option<PathBuf> {
 /// Our own female body, and its GLB file: every import test begins with it.
 static OURS: LazyLock<Body> =
     LazyLock::new(|| Body::build(Sex::Female, &Measures::average(Sex::Female)).expect("an average body"));
-static FILE: LazyLock<Vec<u8>> = LazyLock::new(|| glb(&Dressed { body: &OURS, palette: None, worn: &[] }));
+static FILE: LazyLock<Vec<u8>> = LazyLock::new(|| glb(&DressedBody { body: &OURS, palette: None, worn: &[] }));
 
 /// A GLB file taken apart, to be changed.
 #[derive(Clone)]
-struct Edit {
+struct GltfEdit {
     json: Value,
     bin: Vec<u8>,
 }
 
-impl Edit {
+impl GltfEdit {
     fn new() -> Self {
         let word = |at: usize| u32::from_le_bytes(FILE[at..at + 4].try_into().unwrap()) as usize;
         let (start, size) = (20, word(12));
@@ -109,8 +109,8 @@ impl Edit {
         self.json["scenes"][0]["nodes"] = json!([0, top]);
     }
 
-    fn import(&self) -> Result<Imported, Flaw> {
-        parse(&self.bytes(), &alone, &Options::default())
+    fn import(&self) -> Result<ImportedBody, Flaw> {
+        parse(&self.bytes(), &alone, &ImportOptions::default())
     }
 
     /// The sentence that is said, which ends with its cure.
@@ -138,7 +138,7 @@ fn moved() -> Vec3 {
 
 #[test]
 fn our_own_body_comes_back() {
-    let Imported { body, report } = Edit::new().import().unwrap();
+    let ImportedBody { body, report } = GltfEdit::new().import().unwrap();
     assert_eq!((report.dialect, report.parts, report.boundary_edges), ("H-Anim 2", 1, 0));
     assert_eq!(report.joints.len(), crate::skeleton::JOINTS);
     assert!(report.notes.is_empty(), "{:?}", report.notes);
@@ -167,21 +167,21 @@ fn our_own_body_comes_back() {
 
 #[test]
 fn the_same_file_gives_the_same_bits() {
-    assert_eq!(Edit::new().import(), Edit::new().import());
+    assert_eq!(GltfEdit::new().import(), GltfEdit::new().import());
 }
 
 #[test]
 fn units_are_recognised_and_said() {
-    let plain = Edit::new().import().unwrap();
+    let plain = GltfEdit::new().import().unwrap();
     for (factor, unit) in [(10.0, "decimetres"), (100.0, "centimetres"), (1000.0, "millimetres")] {
-        let mut edit = Edit::new();
+        let mut edit = GltfEdit::new();
         edit.scale(factor);
-        let Imported { body, report } = edit.import().unwrap();
+        let ImportedBody { body, report } = edit.import().unwrap();
         assert!(report.notes[0].contains(unit), "{:?}", report.notes);
         assert!(apart(&body, &plain.body) < 1e-5);
     }
     for factor in [0.1, 3.0, 1e6] {
-        let mut edit = Edit::new();
+        let mut edit = GltfEdit::new();
         edit.scale(factor);
         assert!(edit.said().contains("scale it to metres"));
     }
@@ -189,7 +189,7 @@ fn units_are_recognised_and_said() {
 
 #[test]
 fn scales_and_turns_above_the_skeleton_are_undone() {
-    let plain = Edit::new().import().unwrap();
+    let plain = GltfEdit::new().import().unwrap();
     let quarter = std::f32::consts::FRAC_1_SQRT_2;
     // Centimetres under a node that makes metres of them; z up; facing backwards, as VRM 0.x does.
     for (factor, scale, turn) in [
@@ -197,10 +197,10 @@ fn scales_and_turns_above_the_skeleton_are_undone() {
         (1.0, 1.0, [quarter, 0.0, 0.0, quarter]),
         (1.0, 1.0, [0.0, 1.0, 0.0, 0.0]),
     ] {
-        let mut edit = Edit::new();
+        let mut edit = GltfEdit::new();
         edit.scale(factor);
         edit.below(json!({ "name": "Armature", "scale": [scale, scale, scale], "rotation": turn }));
-        let Imported { body, report } = edit.import().unwrap();
+        let ImportedBody { body, report } = edit.import().unwrap();
         assert!(apart(&body, &plain.body) < 1e-5, "{scale} {turn:?}");
         assert_eq!(report.notes.len(), usize::from(turn[3] != 1.0), "{:?}", report.notes);
     }
@@ -209,7 +209,7 @@ fn scales_and_turns_above_the_skeleton_are_undone() {
 #[test]
 fn vrm_names_say_which_node_is_which_joint() {
     let vrm = names::DIALECTS[0].title;
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     let nodes: Vec<(usize, String)> =
         Joint::ALL.into_iter().map(|j| (j.index() + 1, names::DIALECTS[0].names(j).remove(0))).collect();
     for (node, _) in &nodes {
@@ -221,9 +221,9 @@ fn vrm_names_say_which_node_is_which_joint() {
     for (node, bone) in &nodes {
         edit.json["extensions"]["VRMC_vrm"]["humanoid"]["humanBones"][bone] = json!({ "node": node });
     }
-    let plain = Edit::new().import().unwrap();
+    let plain = GltfEdit::new().import().unwrap();
     for edit in [old, edit] {
-        let Imported { body, report } = edit.import().unwrap();
+        let ImportedBody { body, report } = edit.import().unwrap();
         assert_eq!((report.dialect, &body.skeleton), (vrm, &plain.body.skeleton));
         assert_eq!(report.joints[0], ("sacroiliac".to_owned(), "J_1".to_owned()));
     }
@@ -231,14 +231,14 @@ fn vrm_names_say_which_node_is_which_joint() {
 
 #[test]
 fn a_posed_file_is_taken_in_its_bind_pose() {
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     edit.node("l_shoulder")["rotation"] = json!([0.0, 0.0, 0.38268343, 0.92387953]);
-    assert!(apart(&edit.import().unwrap().body, &Edit::new().import().unwrap().body) < 1e-6);
+    assert!(apart(&edit.import().unwrap().body, &GltfEdit::new().import().unwrap().body) < 1e-6);
 }
 
 #[test]
 fn without_inverse_binds_the_nodes_pose_counts() {
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     edit.json["skins"][0].as_object_mut().unwrap().remove("inverseBindMatrices");
     // By the specification the mesh is then carried by its joints as it is: on our file that is no body.
     assert!(edit.import().is_err());
@@ -251,7 +251,7 @@ fn without_inverse_binds_the_nodes_pose_counts() {
 
 #[test]
 fn sparse_positions_are_read() {
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     let (accessor, at) = (edit.accessor("POSITION"), edit.bin.len());
     edit.bin.extend(7u32.to_le_bytes());
     edit.bin.extend([0.25f32, 1.0, 0.125].iter().flat_map(|x| x.to_le_bytes()));
@@ -271,7 +271,7 @@ fn sparse_positions_are_read() {
 
 #[test]
 fn weights_that_do_not_sum_to_one_name_the_vertex() {
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     for k in 0..4 {
         edit.set("WEIGHTS_0", 4 * 12 + k, 0.1);
     }
@@ -285,7 +285,7 @@ fn weights_that_do_not_sum_to_one_name_the_vertex() {
 
 #[test]
 fn weights_rounded_to_bytes_are_normalised() {
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     let count = OURS.weights.len();
     for v in 0..count {
         for k in 0..4 {
@@ -300,7 +300,7 @@ fn weights_rounded_to_bytes_are_normalised() {
 
 #[test]
 fn eight_influences_become_four_and_the_loss_is_told() {
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     // The same joints and weights a second time: eight influences of half the weight, over the same bones.
     let (joints, weights) = (edit.accessor("JOINTS_0"), edit.accessor("WEIGHTS_0"));
     let attributes = &mut edit.json["meshes"][0]["primitives"][0]["attributes"];
@@ -310,7 +310,7 @@ fn eight_influences_become_four_and_the_loss_is_told() {
         (0..4).for_each(|k| edit.set("WEIGHTS_0", 4 * v + k, 0.5 * w.weights[k]));
     }
     let doubled = edit.import().unwrap();
-    let plain = Edit::new().import().unwrap();
+    let plain = GltfEdit::new().import().unwrap();
     assert!(doubled.report.pruned.most_influences > 4 && doubled.report.pruned.over_four > 0);
     assert_eq!(doubled.report.pruned.vertices, plain.report.pruned.vertices);
     for (a, b) in doubled.body.weights.iter().zip(&plain.body.weights) {
@@ -322,48 +322,48 @@ fn eight_influences_become_four_and_the_loss_is_told() {
 
 #[test]
 fn joints_out_of_range_name_vertex_and_joint() {
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     let at = edit.start(edit.accessor("JOINTS_0"));
     edit.bin[at + 4 * 5] = 200;
     assert!(edit.said().contains("vertex 5 hangs on joint 200"));
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     edit.json["skins"][0]["joints"][3] = 5_000.into();
     assert!(edit.said().contains("joint 5000"));
 }
 
 #[test]
 fn armatures_that_are_no_tree_are_refused() {
-    let mut circle = Edit::new();
+    let mut circle = GltfEdit::new();
     circle.node("l_talocrural")["children"] = json!([1]);
     assert!(circle.said().contains("below itself"));
-    let mut itself = Edit::new();
+    let mut itself = GltfEdit::new();
     itself.node("l_metatarsophalangeal")["children"] = json!([1 + Joint::LeftToe.index()]);
     assert!(itself.said().contains("two parents"));
-    let mut roots = Edit::new();
+    let mut roots = GltfEdit::new();
     let hip = 1 + Joint::LeftHip.index();
     roots.node("sacroiliac")["children"].as_array_mut().unwrap().retain(|c| *c != hip);
     assert!(roots.said().contains("\"l_hip\" has no way up to the hips"));
-    let mut wrong = Edit::new();
+    let mut wrong = GltfEdit::new();
     let names = ["l_elbow", "l_shoulder"];
     wrong.node(names[0])["name"] = "x".into();
     wrong.node(names[1])["name"] = names[0].into();
     wrong.node("x")["name"] = names[1].into();
     assert!(wrong.said().contains("\"l_shoulder\" hangs from \"l_elbow\""));
-    let mut gone = Edit::new();
+    let mut gone = GltfEdit::new();
     gone.node("l_hip")["children"] = json!([999]);
     assert!(gone.said().contains("a child that is not there"));
 }
 
 #[test]
 fn missing_joints_are_named_or_placed() {
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     edit.node("l_knee")["name"] = "bone7".into();
     assert!(edit.said().contains("no joint was found for l_knee"));
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     for name in ["vl1", "vc4", "l_sternoclavicular", "r_metacarpophalangeal_3", "r_metatarsophalangeal"] {
         edit.node(name)["name"] = "something else".into();
     }
-    let Imported { body, report } = edit.import().unwrap();
+    let ImportedBody { body, report } = edit.import().unwrap();
     assert!(report.notes[0].contains("vl1, vc4"), "{:?}", report.notes);
     for joint in [Joint::Chest, Joint::Neck, Joint::LeftClavicle, Joint::RightHand, Joint::RightToe] {
         let off = body.skeleton.at(joint).distance(OURS.skeleton.at(joint) + moved());
@@ -376,12 +376,12 @@ fn missing_joints_are_named_or_placed() {
 
 #[test]
 fn negative_and_empty_scales_name_the_node() {
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     edit.node("l_elbow")["scale"] = json!([1.0, -1.0, 1.0]);
     assert!(edit.said().contains("\"l_elbow\" is mirrored"));
     edit.node("l_elbow")["scale"] = json!([1.0, 0.0, 1.0]);
     assert!(edit.said().contains("\"l_elbow\" is scaled to nothing"));
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     let matrices = edit.json["skins"][0]["inverseBindMatrices"].as_u64().unwrap() as usize;
     let at = edit.start(matrices) + 64 * 2;
     let mirrored = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0)).to_cols_array();
@@ -391,7 +391,7 @@ fn negative_and_empty_scales_name_the_node() {
 
 #[test]
 fn a_mirrored_mesh_is_told_by_its_toes() {
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     for node in edit.json["nodes"].as_array_mut().unwrap() {
         let name = node["name"].as_str().unwrap().to_owned();
         let swapped = match name.split_at_checked(2) {
@@ -406,19 +406,19 @@ fn a_mirrored_mesh_is_told_by_its_toes() {
 
 #[test]
 fn empty_and_huge_meshes_are_refused_before_they_are_memory() {
-    let accessor = Edit::new().accessor("POSITION");
+    let accessor = GltfEdit::new().accessor("POSITION");
     for count in [0u64, 10_000_000, u64::from(u32::MAX), u64::MAX] {
-        let mut edit = Edit::new();
+        let mut edit = GltfEdit::new();
         edit.json["accessors"][accessor]["count"] = count.into();
         let said = edit.said();
         let expected = if count == 0 { "empty" } else { "vertices, and a body has 4 to 250000" };
         assert!(said.contains(expected), "{said}");
     }
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     edit.json["meshes"][0]["primitives"] = json!([]);
     assert!(edit.said().contains("it has 0 vertices"));
     const { assert!(MAX_BODY_VERTICES == 250_000) };
-    let mut edit = Edit::new();
+    let mut edit = GltfEdit::new();
     edit.json["nodes"][0].as_object_mut().unwrap().remove("skin");
     assert!(edit.said().contains("no mesh that hangs on a skeleton"));
 }
@@ -427,7 +427,7 @@ fn empty_and_huge_meshes_are_refused_before_they_are_memory() {
 fn what_is_not_finite_names_its_vertex() {
     for (attribute, said) in [("POSITION", "position of vertex 3"), ("NORMAL", "normal of vertex 3")] {
         for value in [f32::NAN, f32::INFINITY] {
-            let mut edit = Edit::new();
+            let mut edit = GltfEdit::new();
             edit.set(attribute, 3 * 3, value);
             // An infinite normal has no direction, which is mended; no position is.
             match edit.import() {
@@ -441,7 +441,7 @@ fn what_is_not_finite_names_its_vertex() {
 #[test]
 fn holes_are_refused_on_the_trunk_and_accepted_on_the_head() {
     let corners = |keep: &dyn Fn(Vec3) -> bool| {
-        let mut edit = Edit::new();
+        let mut edit = GltfEdit::new();
         let indices = edit.json["meshes"][0]["primitives"][0]["indices"].as_u64().unwrap() as usize;
         let at = edit.start(indices);
         for (t, triangle) in OURS.mesh.triangles.iter().enumerate() {
@@ -453,8 +453,8 @@ fn holes_are_refused_on_the_trunk_and_accepted_on_the_head() {
     };
     let belly = corners(&|p| !(p.z > 0.0 && p.x.abs() < 0.03 && (p.y - OURS.levels.waist).abs() < 0.03));
     let said = belly.said();
-    assert!(said.contains("the surface is open at") && said.contains("between vertices"), "{said}");
-    let open = parse(&belly.bytes(), &alone, &Options { allow_holes: true, ..Options::default() }).unwrap();
+    assert!(said.contains("the surface is open at") && said.contains("the first near"), "{said}");
+    let open = parse(&belly.bytes(), &alone, &ImportOptions { allow_holes: true, ..ImportOptions::default() }).unwrap();
     assert!(open.report.boundary_edges > 3);
     let top = OURS.measures.stature - 0.05;
     let crown = corners(&|p| p.y < top).import().unwrap();
@@ -463,7 +463,7 @@ fn holes_are_refused_on_the_trunk_and_accepted_on_the_head() {
 
 #[test]
 fn meshes_are_chosen_by_name() {
-    let options = |name: &str| Options { meshes: vec![name.into()], ..Options::default() };
+    let options = |name: &str| ImportOptions { meshes: vec![name.into()], ..ImportOptions::default() };
     assert!(parse(&FILE, &alone, &options("body")).is_ok());
     let said = parse(&FILE, &alone, &options("hair")).unwrap_err().to_string();
     assert!(said.contains("no mesh named hair, only body"), "{said}");
@@ -473,15 +473,15 @@ fn meshes_are_chosen_by_name() {
 fn truncated_files_are_errors() {
     for share in 0..64 {
         let end = (FILE.len() - 1) * share / 63;
-        assert!(parse(&FILE[..end], &alone, &Options::default()).is_err(), "{end}");
+        assert!(parse(&FILE[..end], &alone, &ImportOptions::default()).is_err(), "{end}");
     }
     for end in 0..200 {
-        assert!(parse(&FILE[..end], &alone, &Options::default()).is_err(), "{end}");
+        assert!(parse(&FILE[..end], &alone, &ImportOptions::default()).is_err(), "{end}");
     }
 }
 
 #[test]
 fn files_are_named_in_their_errors() {
-    let said = read(Path::new("no/such.glb"), &Options::default()).unwrap_err().to_string();
+    let said = read(Path::new("no/such.glb"), &ImportOptions::default()).unwrap_err().to_string();
     assert!(said.starts_with("no/such.glb: it cannot be read"), "{said}");
 }

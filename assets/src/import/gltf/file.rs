@@ -16,27 +16,27 @@ pub(crate) const CHUNK_BIN: u32 = 0x004e_4942;
 const MAX_ZEROS: usize = 1 << 22;
 
 /// Reads another file of the same folder, by its name.
-pub type Beside<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, String>;
+pub type ReadBeside<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, String>;
 
 /// Compressions that need a decoder of their own.
 const COMPRESSIONS: [&str; 2] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression"];
 
 /// An opened file.
-pub(crate) struct File {
+pub(crate) struct GltfFile {
     /// The whole description.
     pub json: Value,
     buffers: Vec<Vec<u8>>,
 }
 
 /// Where the elements of an accessor lie: in a buffer, or nowhere (zeros).
-struct Run<'a> {
+struct AccessorBytes<'a> {
     bytes: &'a [u8],
     stride: usize,
 }
 
-impl File {
+impl GltfFile {
     /// Reads a file's bytes. An error says the cure, to stand behind the file's name.
-    pub fn open(bytes: &[u8], beside: Beside<'_>) -> Result<Self, String> {
+    pub fn open(bytes: &[u8], beside: ReadBeside<'_>) -> Result<Self, String> {
         let (json, bin) = if bytes.starts_with(MAGIC) { chunks(bytes)? } else { (bytes, None) };
         let json: Value = serde_json::from_slice(json).map_err(|e| format!("{e}; export it as glTF 2.0"))?;
         let required = list(&json["extensionsRequired"]).iter().filter_map(Value::as_str);
@@ -147,14 +147,14 @@ impl File {
     }
 
     /// The bytes from an accessor's first element to its last, of `size` bytes each.
-    fn run(&self, accessor: &Value, count: usize, size: usize) -> Result<Run<'_>, String> {
+    fn run(&self, accessor: &Value, count: usize, size: usize) -> Result<AccessorBytes<'_>, String> {
         let view = index(&accessor["bufferView"]).map(|v| &self.json["bufferViews"][v]).ok_or("no plain data")?;
         let buffer = index(&view["buffer"]).and_then(|b| self.buffers.get(b)).ok_or("a view of no buffer")?;
         let stride = index(&view["byteStride"]).unwrap_or(size).max(size);
         let start = index(&view["byteOffset"]).unwrap_or(0).saturating_add(index(&accessor["byteOffset"]).unwrap_or(0));
         let end = count.saturating_sub(1).saturating_mul(stride).saturating_add(start).saturating_add(size);
         let bytes = buffer.get(start..end).filter(|_| count > 0);
-        Ok(Run { bytes: bytes.ok_or("a buffer that is shorter than its data")?, stride })
+        Ok(AccessorBytes { bytes: bytes.ok_or("a buffer that is shorter than its data")?, stride })
     }
 }
 
@@ -185,7 +185,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     Ok((json.ok_or_else(cut)?, bin))
 }
 
-fn buffers(json: &Value, bin: Option<&[u8]>, beside: Beside<'_>) -> Result<Vec<Vec<u8>>, String> {
+fn buffers(json: &Value, bin: Option<&[u8]>, beside: ReadBeside<'_>) -> Result<Vec<Vec<u8>>, String> {
     let read = |buffer: &Value| match buffer["uri"].as_str() {
         None => bin.map(Vec::from).ok_or_else(|| "it has a buffer without data; export it again".into()),
         Some(uri) if uri.starts_with("data:") => {
@@ -259,14 +259,14 @@ mod tests {
     }
 
     /// Three normalised bytes, the second of which a sparse part replaces.
-    fn sparse(at: u8, view: &str) -> File {
+    fn sparse(at: u8, view: &str) -> GltfFile {
         let json = format!(
             r#"{{"accessors": [{{{view}"componentType": 5121, "normalized": true, "type": "SCALAR", "count": 3,
             "sparse": {{"count": 1, "indices": {{"bufferView": 1, "componentType": 5121}},
             "values": {{"bufferView": 2}}}}}}],
             "bufferViews": [{{"buffer": 0}}, {{"buffer": 0, "byteOffset": 3}}, {{"buffer": 0, "byteOffset": 4}}]}}"#
         );
-        File { json: serde_json::from_str(&json).unwrap(), buffers: vec![vec![51, 102, 255, at, 153]] }
+        GltfFile { json: serde_json::from_str(&json).unwrap(), buffers: vec![vec![51, 102, 255, at, 153]] }
     }
 
     #[test]
@@ -288,6 +288,6 @@ mod tests {
     #[test]
     fn compressed_files_name_their_compression() {
         let json = br#"{"extensionsRequired": ["KHR_draco_mesh_compression"]}"#;
-        assert!(File::open(json, &alone).err().unwrap().contains("KHR_draco_mesh_compression"));
+        assert!(GltfFile::open(json, &alone).err().unwrap().contains("KHR_draco_mesh_compression"));
     }
 }

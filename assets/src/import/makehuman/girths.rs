@@ -14,7 +14,7 @@ use crate::import::avatar::Flaw;
 
 /// Girths and height of a body (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Girths {
+pub struct MakehumanGirths {
     /// Sole to crown, over the body's own vertices.
     pub height: f32,
     /// Around the neck.
@@ -29,18 +29,22 @@ pub struct Girths {
 
 /// A row of `hm08`: its first edge, the vertex where it ends before it has come around, the vertices that the tape
 /// touches on its way straight back, and the pairs of vertices between which the row is bridged.
-struct Row {
+struct GirthRow {
     first: [u32; 2],
     last: Option<u32>,
     back: &'static [u32],
     bridges: &'static [[u32; 2]],
 }
 
-const NECK: Row = Row { first: [755, 756], last: None, back: &[], bridges: &[] };
-const BUST: Row =
-    Row { first: [8_462, 8_446], last: Some(1_790), back: &[1_783, 1_799, 8_471, 8_455], bridges: &[[10_606, 3_942]] };
-const WAIST: Row = Row { first: [4_108, 4_113], last: None, back: &[], bridges: &[[4_121, 10_760]] };
-const HIPS: Row = Row { first: [4_226, 4_227], last: None, back: &[], bridges: &[[10_862, 4_227]] };
+const NECK: GirthRow = GirthRow { first: [755, 756], last: None, back: &[], bridges: &[] };
+const BUST: GirthRow = GirthRow {
+    first: [8_462, 8_446],
+    last: Some(1_790),
+    back: &[1_783, 1_799, 8_471, 8_455],
+    bridges: &[[10_606, 3_942]],
+};
+const WAIST: GirthRow = GirthRow { first: [4_108, 4_113], last: None, back: &[], bridges: &[[4_121, 10_760]] };
+const HIPS: GirthRow = GirthRow { first: [4_226, 4_227], last: None, back: &[], bridges: &[[10_862, 4_227]] };
 
 /// Longest row (vertices): one that is longer does not close.
 const MAX_ROW: usize = 400;
@@ -48,11 +52,11 @@ const MAX_ROW: usize = 400;
 /// Metres in a decimetre.
 const DECIMETRE: f32 = 0.1;
 
-impl Girths {
+impl MakehumanGirths {
     /// Reads the rows of a body's faces; `positions` are of the whole base (dm).
     pub fn of(positions: &[Vec3], faces: &[[u32; 4]]) -> Result<Self, Flaw> {
-        let net = Net::of(faces);
-        let along = |row: &Row, name: &str| {
+        let net = EdgeNet::of(faces);
+        let along = |row: &GirthRow, name: &str| {
             let missing = || format!("the row of its {name} is not there; use the base mesh hm08 as it is");
             let vertices = net.row(row.first, row.last).ok_or_else(missing)?;
             let mut vertices = bridged(vertices, row.bridges).ok_or_else(missing)?;
@@ -81,12 +85,12 @@ impl Girths {
 }
 
 /// The edges of a mesh: the neighbours of each vertex, and the faces of each edge.
-struct Net {
+struct EdgeNet {
     neighbours: BTreeMap<u32, BTreeSet<u32>>,
     faces: BTreeMap<[u32; 2], Vec<usize>>,
 }
 
-impl Net {
+impl EdgeNet {
     fn of(faces: &[[u32; 4]]) -> Self {
         let mut net = Self { neighbours: BTreeMap::new(), faces: BTreeMap::new() };
         for (f, face) in faces.iter().enumerate() {

@@ -13,27 +13,27 @@ use std::path::Path;
 
 use glam::{Vec2, Vec3};
 
-use super::avatar::raw::{Influences, Raw, RawJoint};
-use super::avatar::{AvatarError, Flaw, Imported, Options, names, settle};
+use super::avatar::raw::{RawBody, RawInfluences, RawJoint};
+use super::avatar::{AvatarError, Flaw, ImportOptions, ImportedBody, names, settle};
 use super::plain::parse_obj;
 use crate::garment::shape::NO_VERTEX;
 use crate::limits::IMPORT_INFLUENCES;
 use files::{json_gz, targets, text};
-use girths::Girths;
+use girths::MakehumanGirths;
 
 /// Vertices of the body: those after them are helpers, eyes, teeth and the cubes that mark joints.
 pub const BODY_VERTICES: usize = 13_380;
 
 /// What a body is made of.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Choice {
+pub struct MakehumanOptions {
     /// Targets by their file's name, and how much of each; they add up.
     pub targets: Vec<(String, f32)>,
     /// Which rig carries the body: `game_engine` or `cmu_mb`.
     pub rig: String,
 }
 
-impl Default for Choice {
+impl Default for MakehumanOptions {
     fn default() -> Self {
         Self { targets: Vec::new(), rig: "game_engine".into() }
     }
@@ -41,15 +41,15 @@ impl Default for Choice {
 
 /// A body, what was found in its files, and MakeHuman's own measures of it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Made {
+pub struct MakehumanBody {
     /// The body and its report.
-    pub imported: Imported,
+    pub imported: ImportedBody,
     /// The girths by MakeHuman's rows of vertices.
-    pub girths: Girths,
+    pub girths: MakehumanGirths,
 }
 
 /// The base with targets added.
-struct Base {
+struct MakehumanMesh {
     /// All vertices (dm).
     positions: Vec<Vec3>,
     /// Faces of the body.
@@ -63,17 +63,17 @@ struct Base {
 ///
 /// # Errors
 /// [`AvatarError`], which names the file, what is wrong in it, and the cure.
-pub fn read(folder: &Path, choice: &Choice, options: &Options) -> Result<Made, AvatarError> {
+pub fn read(folder: &Path, choice: &MakehumanOptions, options: &ImportOptions) -> Result<MakehumanBody, AvatarError> {
     check_rig(folder, &choice.rig)?;
-    let mut base = Base::read(folder)?;
+    let mut base = MakehumanMesh::read(folder)?;
     targets(folder, &choice.targets, &mut base.positions)?;
-    let girths = Girths::of(&base.positions, &base.faces).map_err(|flaw| flaw.of(&folder.join("base.obj")))?;
+    let girths = MakehumanGirths::of(&base.positions, &base.faces).map_err(|flaw| flaw.of(&folder.join("base.obj")))?;
     let raw = raw(folder, &choice.rig, &base)?;
     let imported = settle(raw, options).map_err(|flaw| flaw.of(folder))?;
-    Ok(Made { imported, girths })
+    Ok(MakehumanBody { imported, girths })
 }
 
-impl Base {
+impl MakehumanMesh {
     fn read(folder: &Path) -> Result<Self, AvatarError> {
         let path = folder.join("base.obj");
         let text = text(&path)?;
@@ -98,7 +98,7 @@ fn check_rig(folder: &Path, rig: &str) -> Result<(), AvatarError> {
     Ok(())
 }
 
-fn raw(folder: &Path, rig: &str, base: &Base) -> Result<Raw, AvatarError> {
+fn raw(folder: &Path, rig: &str, base: &MakehumanMesh) -> Result<RawBody, AvatarError> {
     let joints = rig::joints(&folder.join(format!("rig.{rig}.json")), base)?;
     let influences = influences(&folder.join(format!("weights.{rig}.json.gz")), &joints)?;
     let called: Vec<&str> = joints.iter().map(|j| j.name.as_str()).collect();
@@ -108,7 +108,7 @@ fn raw(folder: &Path, rig: &str, base: &Base) -> Result<Raw, AvatarError> {
         let second = (d != NO_VERTEX).then_some([a, c, d]);
         std::iter::once([a, b, c]).chain(second)
     });
-    Ok(Raw {
+    Ok(RawBody {
         normals: vec![Vec3::ZERO; positions.len()],
         uvs: vec![Vec2::ZERO; positions.len()],
         triangles: triangles.collect(),
@@ -116,17 +116,17 @@ fn raw(folder: &Path, rig: &str, base: &Base) -> Result<Raw, AvatarError> {
         joints,
         reading,
         influences,
-        ..Raw::default()
+        ..RawBody::default()
     })
 }
 
 /// The weights of the body's vertices: the file lists the vertices of each bone.
-fn influences(path: &Path, joints: &[RawJoint]) -> Result<Vec<Influences>, AvatarError> {
+fn influences(path: &Path, joints: &[RawJoint]) -> Result<Vec<RawInfluences>, AvatarError> {
     let wrong = |reason: String| Flaw::Syntax { reason }.of(path);
     let json = json_gz(path)?;
     let bones =
         json["weights"].as_object().ok_or_else(|| wrong("it has no weights; use MakeHuman's own file".into()))?;
-    let mut out = vec![Influences::default(); BODY_VERTICES];
+    let mut out = vec![RawInfluences::default(); BODY_VERTICES];
     let mut used = vec![0usize; BODY_VERTICES];
     for (name, pairs) in bones {
         let Some(pairs) = pairs.as_array().filter(|p| !p.is_empty()) else { continue };

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::Vec3;
 use serde_json::Value;
 
-use super::Base;
+use super::MakehumanMesh;
 use super::files::text;
 use crate::import::avatar::raw::RawJoint;
 use crate::import::avatar::{AvatarError, Flaw};
@@ -36,7 +36,7 @@ pub(super) fn cubes(obj: &str) -> Vec<(String, Vec<u32>)> {
 }
 
 /// The bones of a rig, each where it begins on the base (dm).
-pub(super) fn joints(path: &Path, base: &Base) -> Result<Vec<RawJoint>, AvatarError> {
+pub(super) fn joints(path: &Path, base: &MakehumanMesh) -> Result<Vec<RawJoint>, AvatarError> {
     let wrong = |reason: String| Flaw::Syntax { reason }.of(path);
     let json: Value =
         serde_json::from_str(&text(path)?).map_err(|e| wrong(format!("{e}; use MakeHuman's own file")))?;
@@ -70,7 +70,7 @@ pub(super) fn joints(path: &Path, base: &Base) -> Result<Vec<RawJoint>, AvatarEr
 }
 
 /// Where a bone begins (dm).
-fn head(head: &Value, base: &Base) -> Option<Vec3> {
+fn head(head: &Value, base: &MakehumanMesh) -> Option<Vec3> {
     let number = |v: &Value| v.as_u64().and_then(|v| u32::try_from(v).ok());
     let vertices: Vec<u32> = match head["strategy"].as_str()? {
         "CUBE" => base.cubes.iter().find(|(name, _)| Some(name.as_str()) == head["cube_name"].as_str())?.1.clone(),

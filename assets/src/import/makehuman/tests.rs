@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::*;
-use crate::import::avatar::surface::Surface;
+use crate::import::avatar::surface::SurfaceCheck;
 use crate::import::avatar::tests::data;
 use crate::skeleton::Joint;
 
@@ -11,13 +11,13 @@ fn folder() -> Option<PathBuf> {
     data().map(|folder| folder.join("body/makehuman-hm08"))
 }
 
-fn with(targets: &[(&str, f32)]) -> Choice {
+fn with(targets: &[(&str, f32)]) -> MakehumanOptions {
     let targets = targets.iter().map(|(name, share)| ((*name).to_owned(), *share)).collect();
-    Choice { targets, ..Choice::default() }
+    MakehumanOptions { targets, ..MakehumanOptions::default() }
 }
 
-fn made(folder: &Path, targets: &[(&str, f32)]) -> Made {
-    read(folder, &with(targets), &Options::default()).unwrap()
+fn made(folder: &Path, targets: &[(&str, f32)]) -> MakehumanBody {
+    read(folder, &with(targets), &ImportOptions::default()).unwrap()
 }
 
 /// Height, neck, bust, waist and hips as the files' makers and the shared data's table have them (cm).
@@ -52,7 +52,7 @@ fn targets_add_up_and_are_coupled() {
 #[test]
 fn weights_are_those_of_the_game_engine_rig() {
     let Some(folder) = folder() else { return };
-    let base = Base::read(&folder).unwrap();
+    let base = MakehumanMesh::read(&folder).unwrap();
     let joints = rig::joints(&folder.join("rig.game_engine.json"), &base).unwrap();
     let influences = influences(&folder.join("weights.game_engine.json.gz"), &joints).unwrap();
     assert_eq!(joints.len(), 53);
@@ -69,13 +69,13 @@ fn weights_are_those_of_the_game_engine_rig() {
 fn every_body_stands_on_our_skeleton() {
     let Some(folder) = folder() else { return };
     for (rig, dialect) in [("game_engine", "Unreal"), ("cmu_mb", "MakeHuman CMU")] {
-        let choice = Choice { rig: rig.into(), ..with(&[("caucasian-female-young", 1.0)]) };
-        let Imported { body, report } = read(&folder, &choice, &Options::default()).unwrap().imported;
+        let choice = MakehumanOptions { rig: rig.into(), ..with(&[("caucasian-female-young", 1.0)]) };
+        let ImportedBody { body, report } = read(&folder, &choice, &ImportOptions::default()).unwrap().imported;
         println!("{rig}: {report:#?} {:?} {:?}", body.measures, body.levels);
         assert_eq!((report.dialect, report.parts, report.boundary_edges), (dialect, 1, 0));
         assert!((body.measures.stature - 1.605).abs() < 1e-3);
         assert_eq!((body.mesh.positions.len(), body.mesh.triangles.len()), (13_380, 26_756));
-        assert_eq!(Surface::of(&body.mesh.positions, &body.mesh.triangles).places, 13_380);
+        assert_eq!(SurfaceCheck::of(&body.mesh.positions, &body.mesh.triangles).places, 13_380);
         for w in &body.weights {
             assert!((w.weights.iter().sum::<f32>() - 1.0).abs() < 1e-6);
         }
@@ -99,9 +99,12 @@ fn the_same_files_give_the_same_bits() {
 #[test]
 fn what_is_missing_is_named() {
     let Some(folder) = folder() else { return };
-    let said = |choice: &Choice| read(&folder, choice, &Options::default()).unwrap_err().to_string();
+    let said = |choice: &MakehumanOptions| read(&folder, choice, &ImportOptions::default()).unwrap_err().to_string();
     assert!(said(&with(&[("no-such-target", 1.0)])).contains("no target named no-such-target"));
     assert!(said(&with(&[("../hm08", 1.0)])).contains("no target named"));
-    assert!(said(&Choice { rig: "../x".into(), ..Choice::default() }).contains("rig"));
-    assert!(said(&Choice { rig: "default".into(), ..Choice::default() }).contains("weights.default.json.gz"));
+    assert!(said(&MakehumanOptions { rig: "../x".into(), ..MakehumanOptions::default() }).contains("rig"));
+    assert!(
+        said(&MakehumanOptions { rig: "default".into(), ..MakehumanOptions::default() })
+            .contains("weights.default.json.gz")
+    );
 }

@@ -90,13 +90,13 @@ impl Motion {
 }
 
 /// One moment of a motion.
-struct Moment {
+struct MotionPhase {
     phase: f64,
     leg: f64,
     root: DAffine3,
 }
 
-impl Moment {
+impl MotionPhase {
     fn new(motion: Motion, time: f64) -> Self {
         let [frequency, leg, sway, yaw, bob] = motion.amplitudes();
         let ramp = (time / RAMP_S).clamp(0.0, 1.0);
@@ -124,13 +124,13 @@ impl Moment {
 
 /// How the root, and with it the pinned ring, is moved at a time (s).
 pub fn root(motion: Motion, time: f64) -> Affine3A {
-    let root = Moment::new(motion, time).root;
+    let root = MotionPhase::new(motion, time).root;
     Affine3A::from_mat3_translation(root.matrix3.as_mat3(), root.translation.as_vec3())
 }
 
 /// The body's spheres at a time (s): centre and radius, world (m).
 pub fn spheres(motion: Motion, time: f64) -> [Vec4; SPHERES] {
-    let at = Moment::new(motion, time).joints();
+    let at = MotionPhase::new(motion, time).joints();
     std::array::from_fn(|i| at[i].extend(JOINTS[i].1).as_vec4())
 }
 

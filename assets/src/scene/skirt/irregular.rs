@@ -64,7 +64,7 @@ fn strew(places: &mut Vec<Place>, hem: &[Place], count: usize, seed: u64) {
     let area = std::f64::consts::PI * (2.0 * RADIUS[0] + RADIUS[1]) * slant();
     // In the densest packing each point has an area of spacing^2 sqrt(3) / 2.
     let mut spacing = FIRST_SPACING * (area / (count + hem.len()) as f64 * 2.0 / 3f64.sqrt()).sqrt();
-    let mut board = Board::new(spacing);
+    let mut board = SpacingGrid::new(spacing);
     places.iter().chain(hem).for_each(|&place| board.add(place));
     let mut random = SplitMix64::new(seed);
     let mut left = count;
@@ -84,13 +84,13 @@ fn strew(places: &mut Vec<Place>, hem: &[Place], count: usize, seed: u64) {
 }
 
 /// The cone in cells at least as wide and high as the largest spacing, so that what is near lies in neighbouring cells.
-struct Board {
+struct SpacingGrid {
     rows: usize,
     columns: usize,
     cells: Vec<Vec<DVec3>>,
 }
 
-impl Board {
+impl SpacingGrid {
     fn new(spacing: f64) -> Self {
         let rows = ((slant() / spacing) as usize).max(1);
         let columns = ((TAU * RADIUS[0] / spacing) as usize).max(3);

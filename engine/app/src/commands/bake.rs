@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use serde::Serialize;
-use toile_assets::bake::survey::{Survey, survey};
+use toile_assets::bake::survey::{MeshSurvey, survey};
 use toile_assets::bake::{self, weights};
 use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::fabric::Fabric;
@@ -237,10 +237,10 @@ fn fabric(name: &str) -> Result<Fabric, AppError> {
     Fabric::parse(name, &text).map_err(AppError::input)
 }
 
-fn report(garment: &Garment, found: Survey, bake_ms: f64) -> BakeReport {
+fn report(garment: &Garment, found: MeshSurvey, bake_ms: f64) -> BakeReport {
     let covered = &found.coverage;
     let layout = &garment.layout;
-    let solver = |s: &bake::survey::Solved| SolverCounts { solver: s.solver.name(), fibers: s.fibers, edges: s.edges };
+    let solver = |s: &bake::survey::SolverCount| SolverCounts { solver: s.solver.name(), fibers: s.fibers, edges: s.edges };
     BakeReport {
         garment: garment.name.clone(),
         size: garment.size.clone(),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::ArgAction;
 use glam::Affine3A;
 use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::export::{Dressed, glb};
+use toile_assets::export::{DressedBody, glb};
 use toile_assets::import::{avatar, makehuman};
 use toile_assets::rig::Rig;
 use toile_assets::scene;
@@ -126,7 +126,7 @@ pub fn run(args: &BodyArgs) -> Result<(), AppError> {
         draw(&mut out, "walking.png", &walking, "walking", || bar.inc(1))?;
         bar.finish_and_clear();
     }
-    out.write("body.glb", &glb(&Dressed { body: &imported.body, palette: None, worn: &[] }))?;
+    out.write("body.glb", &glb(&DressedBody { body: &imported.body, palette: None, worn: &[] }))?;
     out.stage("report.json")?;
     let document = Document::new("body", report(args, &imported, rows, out.files()));
     let text = serde_json::to_string_pretty(&document).map_err(AppError::internal)?;
@@ -139,8 +139,8 @@ pub fn run(args: &BodyArgs) -> Result<(), AppError> {
 }
 
 /// The body of a glTF file, or of a MakeHuman folder, with that program's own girths.
-pub fn import(args: &BodyArgs) -> Result<(avatar::Imported, Option<Vec<Named>>), AppError> {
-    let options = avatar::Options { sex: args.sex, meshes: args.meshes.clone(), allow_holes: args.allow_holes };
+pub fn import(args: &BodyArgs) -> Result<(avatar::ImportedBody, Option<Vec<Named>>), AppError> {
+    let options = avatar::ImportOptions { sex: args.sex, meshes: args.meshes.clone(), allow_holes: args.allow_holes };
     let file = args.input()?;
     if !file.is_dir() {
         if !args.targets.is_empty() {
@@ -149,17 +149,17 @@ pub fn import(args: &BodyArgs) -> Result<(avatar::Imported, Option<Vec<Named>>),
         }
         return Ok((avatar::read(file, &options).map_err(AppError::input)?, None));
     }
-    let choice = makehuman::Choice { targets: args.targets.clone(), rig: args.rig.clone() };
+    let choice = makehuman::MakehumanOptions { targets: args.targets.clone(), rig: args.rig.clone() };
     let made = makehuman::read(file, &choice, &options).map_err(AppError::input)?;
     let rows = made.girths.named().map(|(name, m)| named(name, m)).to_vec();
     Ok((made.imported, Some(rows)))
 }
 
 /// A body of a file, as `toile try-on --body` wears it.
-pub fn wearer(file: &Path, sex: Sex) -> Result<avatar::Imported, AppError> {
-    let options = avatar::Options { sex, ..avatar::Options::default() };
+pub fn wearer(file: &Path, sex: Sex) -> Result<avatar::ImportedBody, AppError> {
+    let options = avatar::ImportOptions { sex, ..avatar::ImportOptions::default() };
     if file.is_dir() {
-        let made = makehuman::read(file, &makehuman::Choice::default(), &options).map_err(AppError::input)?;
+        let made = makehuman::read(file, &makehuman::MakehumanOptions::default(), &options).map_err(AppError::input)?;
         return Ok(made.imported);
     }
     avatar::read(file, &options).map_err(AppError::input)
@@ -227,8 +227,13 @@ fn draw(out: &mut OutputFolder, name: &str, body: &Body, title: &str, mut done: 
     write_png(out, name, &contact_sheet::triptych(&front, &side, &back, title, None))
 }
 
-fn report(args: &BodyArgs, imported: &avatar::Imported, rows: Option<Vec<Named>>, files: Vec<PathBuf>) -> BodyReport {
-    let avatar::Imported { body, report } = imported;
+fn report(
+    args: &BodyArgs,
+    imported: &avatar::ImportedBody,
+    rows: Option<Vec<Named>>,
+    files: Vec<PathBuf>,
+) -> BodyReport {
+    let avatar::ImportedBody { body, report } = imported;
     let l = &body.levels;
     let levels = [
         ("neck", l.neck),

@@ -8,7 +8,7 @@ use toile_engine::cloth::Quality;
 
 use glam::Affine3A;
 use toile_assets::body::Body;
-use toile_assets::export::{self, Dressed, glb};
+use toile_assets::export::{self, DressedBody, glb};
 use toile_assets::garment::Garment;
 use toile_assets::limits::STEP_HZ;
 use toile_assets::rig::Rig;
@@ -323,14 +323,14 @@ fn draw_lines(lines: &mut Lines, kinds: &[Kind], frame: &Frame) {
 fn dressed(frame: &Frame, snapshot: &Snapshot) -> Vec<u8> {
     let mut bones = [Affine3A::IDENTITY; BONES];
     palette(&frame.body().skeleton, frame.pose(), &mut bones);
-    let worn = frame.garments().iter().zip(&snapshot.garments).map(|(garment, positions)| export::Worn {
+    let worn = frame.garments().iter().zip(&snapshot.garments).map(|(garment, positions)| export::WornGarment {
         name: &garment.name,
         positions,
         triangles: &garment.triangles,
         srgb: garment.fabric.colour,
     });
-    let worn: Vec<export::Worn<'_>> = worn.collect();
-    glb(&Dressed { body: frame.body(), palette: Some(&bones), worn: &worn })
+    let worn: Vec<export::WornGarment<'_>> = worn.collect();
+    glb(&DressedBody { body: frame.body(), palette: Some(&bones), worn: &worn })
 }
 
 /// Words over the stills: the first garment and its size, then each zone.

@@ -1,7 +1,7 @@
 //! How closely the collision body follows the skin, as `toile body` reports it.
 
 use serde::Serialize;
-use toile_assets::rig::{Report, Zone, ZoneReport};
+use toile_assets::rig::{RigReport, Zone, ZoneReport};
 
 /// Distances in one zone, skin to union and union to skin (mm).
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -32,7 +32,7 @@ pub struct Followed {
 
 impl Followed {
     /// Zone by zone, then the trunk as a whole.
-    pub fn of(report: &Report) -> Vec<Self> {
+    pub fn of(report: &RigReport) -> Vec<Self> {
         let zones = Zone::ALL.into_iter().map(|zone| {
             let held = Zone::HELD.contains(&zone);
             Self::one(zone.name(), report.of(zone), held)

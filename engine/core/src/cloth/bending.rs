@@ -6,7 +6,7 @@
 //! (Gershgorin). What is stiffer than a mesh and a substep can carry so takes several [`super::stiff_bending`]; [`weaken`] weakens
 //! what is stiffer still, and says by how much. [`super::hubs`] does the same over whole rings.
 
-use toile_assets::garment::layout::{Bends, Run, Set};
+use toile_assets::garment::layout::{Bends, ConstraintRun, ConstraintSet};
 
 use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, Readable, V3, WriteColumn};
 
@@ -79,7 +79,7 @@ pub struct BendStencils<'a, const K: usize> {
     /// All stencils.
     pub bends: &'a Bends<K>,
     /// The set.
-    pub set: &'a Set,
+    pub set: &'a ConstraintSet,
     /// Whose share.
     pub owner: usize,
     /// What is bent: the positions (m).
@@ -130,7 +130,7 @@ impl<const K: usize> Kernel for BendStencils<'_, K> {
 impl<const K: usize> BendStencils<'_, K> {
     /// The curvatures of a chunk, times the substep, into the scratch; gives the place behind it.
     #[inline(always)]
-    fn curvatures<L: Lanes>(&self, runs: &[Run<K>], mut place: StencilCursor) -> StencilCursor {
+    fn curvatures<L: Lanes>(&self, runs: &[ConstraintRun<K>], mut place: StencilCursor) -> StencilCursor {
         let (x, mut filled) = (self.from, 0);
         while filled < CHUNK && place.run < runs.len() {
             let run = &runs[place.run];
@@ -159,7 +159,7 @@ impl<const K: usize> BendStencils<'_, K> {
 
     /// What the curvatures of a chunk do to the particles at end `k` of its stencils.
     #[inline(always)]
-    fn push<L: Lanes>(&self, runs: &[Run<K>], mut place: StencilCursor, k: usize) {
+    fn push<L: Lanes>(&self, runs: &[ConstraintRun<K>], mut place: StencilCursor, k: usize) {
         let (to, mut filled) = (self.to, 0);
         while filled < CHUNK && place.run < runs.len() {
             let run = &runs[place.run];
@@ -202,7 +202,7 @@ impl<const K: usize> BendStencils<'_, K> {
     }
 
     #[inline(always)]
-    fn coefficient<L: Lanes>(&self, k: usize, run: &Run<K>, at: usize, n: usize) -> L {
+    fn coefficient<L: Lanes>(&self, k: usize, run: &ConstraintRun<K>, at: usize, n: usize) -> L {
         one_or_each(ReadColumn::new(&self.bends.coefficients[k]), run.alike, at, n)
     }
 }
@@ -210,7 +210,7 @@ impl<const K: usize> BendStencils<'_, K> {
 impl StencilCursor {
     /// `n` stencils of the run later.
     #[inline(always)]
-    fn after<const K: usize>(self, n: usize, run: &Run<K>) -> Self {
+    fn after<const K: usize>(self, n: usize, run: &ConstraintRun<K>) -> Self {
         let t = self.t + n;
         if t == run.len as usize { Self { run: self.run + 1, t: 0 } } else { Self { t, ..self } }
     }

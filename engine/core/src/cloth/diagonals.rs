@@ -9,7 +9,7 @@
 //! On the way back a link's tension follows from where its end is by then: with n, pivot and y of the way down,
 //! lambda = y / pivot + (n.(x_b - x_a) - |d|) / pivot, because only the link that leads on has moved b since.
 
-use toile_assets::garment::layout::{Diagonals, Run, Strand};
+use toile_assets::garment::layout::{ConstraintRun, DiagonalShare, Diagonals};
 
 use super::fibers::{FARTHEST, LEAST_PIVOT, NO_PIVOT};
 use super::state::ParticleColumns;
@@ -48,7 +48,7 @@ pub struct SolveDiagonals<'a> {
     /// All families.
     pub diagonals: &'a Diagonals,
     /// The strand.
-    pub strand: &'a Strand,
+    pub strand: &'a DiagonalShare,
     /// See [`DiagonalScratch`].
     pub room: [WriteColumn<'a>; KEPT],
     /// 1 / dt^2 of the time that the solve stands for (1/s2).
@@ -82,7 +82,7 @@ impl Kernel for SolveDiagonals<'_> {
 impl SolveDiagonals<'_> {
     /// Rest length, compliance over the square of time, and the weights of both ends of `n` links of a run.
     #[inline(always)]
-    fn parameters<L: Lanes>(&self, run: &Run<2>, t: usize, n: usize) -> [L; 4] {
+    fn parameters<L: Lanes>(&self, run: &ConstraintRun<2>, t: usize, n: usize) -> [L; 4] {
         let (rest, soft) = (ReadColumn::new(&self.diagonals.rest), ReadColumn::new(&self.diagonals.compliance));
         let ([a, b], at, w) = (run.first.map(|f| f as usize), run.at as usize, self.columns.w);
         let [rest, soft, wa, wb] = if run.alike {
@@ -95,7 +95,7 @@ impl SolveDiagonals<'_> {
 
     /// The way down: directions, pivots, and tensions as if nothing followed.
     #[inline(always)]
-    fn down<L: Lanes, const DAMPED: bool>(&self, run: &Run<2>) {
+    fn down<L: Lanes, const DAMPED: bool>(&self, run: &ConstraintRun<2>) {
         let (c, [nx, ny, nz, pivots, tensions, lengths]) = (&self.columns, self.room);
         let more = L::splat(1.0 + self.gamma);
         let mut t = 0;
@@ -130,7 +130,7 @@ impl SolveDiagonals<'_> {
 
     /// The way back: tensions, and the motion that they cause.
     #[inline(always)]
-    fn back<L: Lanes>(&self, run: &Run<2>) {
+    fn back<L: Lanes>(&self, run: &ConstraintRun<2>) {
         let (c, [nx, ny, nz, pivots, _, lengths]) = (&self.columns, self.room);
         let more = L::splat(1.0 + self.gamma);
         let mut t = 0;
@@ -178,14 +178,14 @@ mod tests {
         let run = |r: u32| {
             let serial = r * (COLUMNS - 1);
             let at = if alike { 0 } else { serial };
-            Run { first: [r * COLUMNS, (r + 1) * COLUMNS + 1], len: COLUMNS - 1, at, serial, alike }
+            ConstraintRun { first: [r * COLUMNS, (r + 1) * COLUMNS + 1], len: COLUMNS - 1, at, serial, alike }
         };
         let runs: Box<[_]> = (0..ROWS - 1).map(run).collect();
         let places = if alike { 1 } else { (ROWS - 1) * (COLUMNS - 1) };
         let starts = (0..COLUMNS - 1).chain((1..ROWS - 1).map(|r| r * COLUMNS)).collect::<Box<[u32]>>();
-        let strand = Strand { runs: 0..ROWS - 1, starts: 0..starts.len() as u32 };
+        let strand = DiagonalShare { runs: 0..ROWS - 1, starts: 0..starts.len() as u32 };
         Diagonals {
-            families: [[strand, Strand::default()]].into(),
+            families: [[strand, DiagonalShare::default()]].into(),
             runs,
             starts,
             rest: (0..places).map(|i| 0.1 + 0.002 * (i % 5) as f32).collect(),

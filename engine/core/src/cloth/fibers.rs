@@ -11,7 +11,7 @@
 //! half its link in one solve, because beyond that the directions mean nothing.
 
 use toile_assets::garment::Solver;
-use toile_assets::garment::layout::{Bundle, ENDED, Fibers, Row};
+use toile_assets::garment::layout::{BundleRow, ENDED, FiberBundle, Fibers};
 
 use super::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, MOST, Numbers, ReadColumn, Two, V3, WriteColumn, reciprocal_root};
@@ -95,13 +95,13 @@ impl Kernel for SolveFibers<'_> {
 /// The fibers of a bundle from `lane` on, as many as there are lanes.
 struct Chain<'a> {
     solve: &'a SolveFibers<'a>,
-    bundle: &'a Bundle,
+    bundle: &'a FiberBundle,
     lane: usize,
 }
 
 impl Chain<'_> {
     #[inline(always)]
-    fn rows(&self) -> &[Row] {
+    fn rows(&self) -> &[BundleRow] {
         &self.solve.fibers.rows[self.bundle.rows.start as usize..self.bundle.rows.end as usize]
     }
 
@@ -113,14 +113,14 @@ impl Chain<'_> {
 
     /// First particle of a row for these lanes, and how many of them reach so far.
     #[inline(always)]
-    fn place<L: Numbers, const FULL: bool>(&self, row: Row) -> (usize, usize) {
+    fn place<L: Numbers, const FULL: bool>(&self, row: BundleRow) -> (usize, usize) {
         let at = row.first as usize + self.lane;
         (at, if FULL { L::N } else { (row.lanes as usize).saturating_sub(self.lane).min(L::N) })
     }
 
     /// Weights of a row's particles.
     #[inline(always)]
-    fn weights<L: Numbers>(&self, row: Row, at: usize, n: usize) -> L {
+    fn weights<L: Numbers>(&self, row: BundleRow, at: usize, n: usize) -> L {
         let w = self.solve.columns.w;
         if self.bundle.alike {
             L::splat(w.get(row.first as usize))
@@ -224,7 +224,7 @@ impl Chain<'_> {
 
     /// The way up: tensions, and the motion that they cause.
     #[inline(always)]
-    fn back<L: Numbers, const FULL: bool>(&self, rows: &[Row]) {
+    fn back<L: Numbers, const FULL: bool>(&self, rows: &[BundleRow]) {
         let scratch = self.solve.scratch;
         let zero = L::splat(0.0);
         let mut below = V3 { x: zero, y: zero, z: zero };

@@ -5,7 +5,7 @@
 //! lambda = (C + gamma n.(db - da)) / ((1 + gamma)(w_a + w_b) + alpha / dt^2), gamma = tau / dt, where da and db are the
 //! ends' motion in this substep. No two links of a set share a particle, so their order changes no bit.
 
-use toile_assets::garment::layout::{Links, Run, Set, Zigzag};
+use toile_assets::garment::layout::{ConstraintRun, ConstraintSet, Links, Zigzag};
 
 use super::state::{self, ParticleColumns};
 use crate::lanes::{
@@ -44,7 +44,7 @@ pub struct SolveLinks<'a> {
     /// What [`prepare`] made.
     pub gain: &'a [f32],
     /// The set.
-    pub set: &'a Set,
+    pub set: &'a ConstraintSet,
     /// Whose share of it.
     pub owner: usize,
     /// Damping time over the substep (1).
@@ -107,7 +107,7 @@ impl SolveLinks<'_> {
 
     /// The links `from..to` of a run.
     #[inline(always)]
-    fn row<L: Lanes, const SOFT: bool>(&self, run: &Run<2>, from: u32, to: u32) {
+    fn row<L: Lanes, const SOFT: bool>(&self, run: &ConstraintRun<2>, from: u32, to: u32) {
         let [a, b] = run.first.map(|f| f as usize);
         let mut t = from as usize;
         while t < to as usize {
@@ -140,7 +140,7 @@ impl SolveLinks<'_> {
 
     /// Rest length, gain and the weights of both ends of `n` links of a run.
     #[inline(always)]
-    fn parameters<L: Numbers>(&self, run: &Run<2>, t: usize, n: usize) -> [L; 4] {
+    fn parameters<L: Numbers>(&self, run: &ConstraintRun<2>, t: usize, n: usize) -> [L; 4] {
         let (rest, gain) = (ReadColumn::new(&self.links.rest), ReadColumn::new(self.gain));
         let ([a, b], at, w) = (run.first.map(|f| f as usize), run.at as usize, self.columns.w);
         if run.alike {
@@ -151,7 +151,7 @@ impl SolveLinks<'_> {
 
     /// The same of the first link of a run.
     #[inline(always)]
-    fn alike<L: Numbers>(&self, run: &Run<2>) -> [L; 4] {
+    fn alike<L: Numbers>(&self, run: &ConstraintRun<2>) -> [L; 4] {
         let ([a, b], at, w) = (run.first.map(|f| f as usize), run.at as usize, self.columns.w);
         [self.links.rest[at], self.gain[at], w.get(a), w.get(b)].map(L::splat)
     }
@@ -203,7 +203,7 @@ impl SolveLinks<'_> {
 
     /// A vector of rungs from the `t`-th on, solved; `like` are their parameters where all of the zigzag is alike.
     #[inline(always)]
-    fn rung<L: Numbers, const ALIKE: bool>(&self, rungs: &Run<2>, t: usize, like: [L; 4]) -> Rungs<L> {
+    fn rung<L: Numbers, const ALIKE: bool>(&self, rungs: &ConstraintRun<2>, t: usize, like: [L; 4]) -> Rungs<L> {
         let ([a, b], x) = (rungs.first.map(|f| f as usize + t), self.columns.x);
         let [rest, gain, wa, wb] = if ALIKE { like } else { self.parameters::<L>(rungs, t, L::N) };
         let (pa, pb) = (V3::<L>::load(x, a, L::N), V3::load(x, b, L::N));
@@ -217,7 +217,7 @@ impl SolveLinks<'_> {
     #[inline(always)]
     fn slant_parameters<L: Numbers, const ALIKE: bool>(
         &self,
-        slants: &Run<2>,
+        slants: &ConstraintRun<2>,
         t: usize,
         [one, next]: [&Rungs<L>; 2],
         like: [L; 4],
@@ -232,7 +232,7 @@ impl SolveLinks<'_> {
 
     /// What `n` links of a run give by their compliance under the tension that they have (m).
     #[inline(always)]
-    fn slack<L: Lanes, const SOFT: bool>(&self, run: &Run<2>, t: usize, n: usize) -> L {
+    fn slack<L: Lanes, const SOFT: bool>(&self, run: &ConstraintRun<2>, t: usize, n: usize) -> L {
         let Some((tension, per_dt2)) = self.tension.filter(|_| SOFT) else { return L::splat(0.0) };
         let (soft, at) = (ReadColumn::new(&self.links.compliance), run.place(t as u32));
         let soft = if run.alike { L::splat(soft.get(at)) } else { part(soft, at, n) };

@@ -5,7 +5,7 @@
 //! first on the way back. An open fiber is a hoop whose corner is 0.
 
 use toile_assets::garment::Solver;
-use toile_assets::garment::layout::{ENDED, List, Lists};
+use toile_assets::garment::layout::{ENDED, FiberList, FiberLists};
 
 use super::fibers::{FARTHEST, LEAST_PIVOT, NO_PIVOT, limited};
 use super::state::ParticleColumns;
@@ -23,7 +23,7 @@ const LAST: usize = 9;
 const ZERO_STRETCH_PASSES: usize = 3;
 
 /// Numbers of scratch that the longest list needs.
-pub fn scratch_len(lists: &Lists) -> usize {
+pub fn scratch_len(lists: &FiberLists) -> usize {
     lists.lists.iter().map(|l| l.rows as usize).max().unwrap_or(0) * KEPT * MOST
 }
 
@@ -32,7 +32,7 @@ pub struct SolveCrossing<'a> {
     /// The garment's particles.
     pub columns: ParticleColumns<'a>,
     /// All lists.
-    pub lists: &'a Lists,
+    pub lists: &'a FiberLists,
     /// The set.
     pub set: usize,
     /// Whose share.
@@ -70,7 +70,7 @@ impl Kernel for SolveCrossing<'_> {
 /// `n` fibers of a list from `lane` on.
 struct Ring<'a> {
     solve: &'a SolveCrossing<'a>,
-    list: &'a List,
+    list: &'a FiberList,
     lane: usize,
     n: usize,
 }

@@ -8,7 +8,7 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use glam::Vec3A;
 use toile_assets::garment::Garment;
-use toile_assets::garment::layout::{Bends, Layout, Links, Lists, OWNERS};
+use toile_assets::garment::layout::{Bends, Layout, Links, FiberLists, OWNERS};
 
 use super::prepared::Prepared;
 use super::program::Stage;
@@ -267,7 +267,7 @@ impl OwnerShare<'_, '_> {
     /// A set of warp fibers that cross others.
     fn crossing(&self, set: u16) {
         let (work, p) = (self.work, self.work.prepared);
-        let lists: &Lists = &work.layout().crossing;
+        let lists: &FiberLists = &work.layout().crossing;
         work.width.run(lists::SolveCrossing {
             columns: self.columns.particles,
             lists,

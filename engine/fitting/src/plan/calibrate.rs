@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use glam::Vec3;
 use toile_assets::body::Body;
 use toile_assets::rig::Rig;
-use toile_assets::scene_file::{SceneFile, Source};
+use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_engine::cloth::{Settings, program};
 use toile_engine::frame::Frame;
 use toile_engine::meter::STAGES as STEP_STAGES;
@@ -83,7 +83,7 @@ struct Sample {
 pub fn measure(body: Option<(&Body, &Rig, &[Joints])>, workers: usize) -> Result<Costs, PlanError> {
     let mut scenes = Vec::new();
     for text in texts() {
-        scenes.push(Scene::file(SceneFile::parse("calibration", &text, Source::Inside(&[]))?)?);
+        scenes.push(Scene::file(SceneFile::parse("calibration", &text, SceneSource::Inside(&[]))?)?);
     }
     let samples = scenes.iter().map(sample).collect::<Result<Vec<_>, _>>()?;
     let mut costs = Costs { copy_us: copy_us(), ..Costs::default() };

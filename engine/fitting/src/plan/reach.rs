@@ -211,7 +211,7 @@ fn nearest(garment: &Garment, poses: &[Posed]) -> Vec<Option<[f32; MAX_CAPSULES]
 
 #[cfg(test)]
 mod tests {
-    use toile_assets::scene_file::{SceneFile, Source};
+    use toile_assets::scene_file::{SceneFile, SceneSource};
 
     use super::*;
 
@@ -224,7 +224,7 @@ mod tests {
             ball("[0, 1.8, 0.3]"),
             ball("[0, 1.0, 0]")
         );
-        Scene::file(SceneFile::parse("test", &text, Source::Inside(&[])).unwrap()).unwrap()
+        Scene::file(SceneFile::parse("test", &text, SceneSource::Inside(&[])).unwrap()).unwrap()
     }
 
     #[test]

@@ -354,7 +354,7 @@ pub(crate) fn palette(scene: &SceneFile, time: f64) -> [Affine3A; BONES] {
 fn colliders(scene: &SceneFile) -> Result<Colliders, ColliderError> {
     let still = RestSphere { bone: 0, centre: Vec3::ZERO, radius: 0.0 };
     let spheres = vec![still; scene.colliders.spheres()];
-    let plane = |p: &toile_assets::scene_file::Plane| p.normal.extend(p.normal.dot(p.point));
+    let plane = |p: &toile_assets::scene_file::ScenePlane| p.normal.extend(p.normal.dot(p.point));
     let planes: Vec<Vec4> = scene.colliders.planes.iter().map(plane).collect();
     // The floor is built into the engine.
     let floor = planes.contains(&Vec4::Y);

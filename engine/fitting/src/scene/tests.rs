@@ -1,6 +1,6 @@
 //! Laws of runs: what a scene says is what happens.
 
-use toile_assets::scene_file::Source;
+use toile_assets::scene_file::SceneSource;
 
 use super::*;
 
@@ -10,7 +10,8 @@ const FILES: &[(&str, &str)] =
     &[("pins.csv", "0, 0,0,0, 0,0,0,1\n1, 0.5,0,0, 0,0.7071067811865476,0,0.7071067811865476\n")];
 
 fn runner(text: &str) -> Runner {
-    let scene = SceneFile::parse("test.toml", text, Source::Inside(FILES)).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let scene =
+        SceneFile::parse("test.toml", text, SceneSource::Inside(FILES)).unwrap_or_else(|e| panic!("{e}\n{text}"));
     Runner::new(scene).unwrap()
 }
 

@@ -101,7 +101,7 @@ pub(super) fn upright(model: &BodyModel, view: &DepthCells, ground: Option<f32>)
 }
 
 /// The mean shape of people of that stature; the mean person where it is no plausible stature.
-fn of_stature(shapes: &Shapes, height: f32) -> toile_assets::body::shape::Shape {
+fn of_stature(shapes: &Shapes, height: f32) -> toile_assets::body::shape::BodyShape {
     let wanted = Wanted::<En>::new().with(En::Stature, height);
     if STATURES.contains(&height) { shapes.wanted(&wanted).unwrap_or(*shapes.mean()) } else { *shapes.mean() }
 }

@@ -1,6 +1,6 @@
 //! Measuring by the body fit: the shape over all frames of a second, and its measures by virtual tape.
 
-use toile_assets::body::shape::{SHAPES, Shape, Shapes};
+use toile_assets::body::shape::{BodyShape, SHAPES, Shapes};
 use toile_assets::body::{En, Fitted, Readings, Sex};
 use toile_assets::sizes::Population;
 use toile_assets::skeleton::Pose;
@@ -146,7 +146,7 @@ fn read(shapes: &Shapes, fit: &BodyFit) -> [Estimate; MEASURES.len()] {
     let (shape, covariance) = fit.shape_filter.estimate();
     let read = shapes.read(&shape);
     MEASURES.map(|(_, girth, _)| {
-        let row: Shape = match girth {
+        let row: BodyShape = match girth {
             FittedMeasure::Standard(measure) => *read.row(measure),
             FittedMeasure::Torso => {
                 let [top, bottom] = [En::CervicalHeight, En::InsideLegHeight].map(|m| read.row(m));

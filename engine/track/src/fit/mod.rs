@@ -23,7 +23,7 @@ pub mod tracker;
 use std::time::Instant;
 
 use glam::{Quat, Vec3};
-use toile_assets::body::shape::{Shape, Shapes};
+use toile_assets::body::shape::{BodyShape, Shapes};
 use toile_assets::body::{Body, Sex};
 use toile_assets::skeleton::{JOINTS, Joint, Pose};
 use toile_sensors::frame::{DepthFrame, Joints, TrackedJoint};
@@ -132,7 +132,7 @@ pub struct BodyFit {
     /// The last state that was believed.
     last: Option<FitState>,
     rest_normals: Vec<Vec3>,
-    shaped: Option<Shape>,
+    shaped: Option<BodyShape>,
     failures: usize,
     cost: (f64, usize),
     times: FitTimes,
@@ -298,7 +298,7 @@ impl BodyFit {
     }
 
     /// Updates the rest normals of the samples where the shape has changed enough.
-    fn update_rest_normals(&mut self, shape: &Shape) {
+    fn update_rest_normals(&mut self, shape: &BodyShape) {
         if self.shaped.is_some_and(|s| s.iter().zip(shape).all(|(a, b)| (a - b).abs() < RESHAPED)) {
             return;
         }
@@ -344,7 +344,7 @@ impl BodyFit {
     }
 
     /// The shape estimated from all frames so far; the mean person's before the first.
-    pub fn shape(&self) -> Shape {
+    pub fn shape(&self) -> BodyShape {
         self.shape_filter.estimate().0
     }
 

@@ -6,7 +6,7 @@
 //! `sum_j w_j (R_j dX/ds + dp_j/ds - R_j dJ_j/ds)`.
 
 use glam::{Mat3, Quat, Vec3};
-use toile_assets::body::shape::{SCALE, SHAPES, Shape, Shapes};
+use toile_assets::body::shape::{BodyShape, SCALE, SHAPES, Shapes};
 use toile_assets::skeleton::{JOINTS, Joint, Skeleton, bone_joint};
 
 use super::joint_angles::{ANGLES, JointAngle, joint_angles};
@@ -135,7 +135,7 @@ pub(super) struct FitState {
     /// Rotation of each joint relative to its parent; the pelvis' relative to the world.
     pub local: [Quat; JOINTS],
     /// Parameters of the shape.
-    pub shape: Shape,
+    pub shape: BodyShape,
 }
 
 impl FitState {

@@ -1,6 +1,6 @@
 //! The shape from all frames so far: an information filter whose prior is the population (ANSUR II).
 
-use toile_assets::body::shape::{SHAPES, Shape, Shapes};
+use toile_assets::body::shape::{BodyShape, SHAPES, Shapes};
 
 use super::normal_equations::{ShapeQuadratic, invert};
 
@@ -15,7 +15,7 @@ const LONGEST: f64 = 90.0;
 pub(super) struct ShapeFilter {
     shapes: &'static Shapes,
     hessian: [[f64; SHAPES]; SHAPES],
-    rhs: Shape,
+    rhs: BodyShape,
     frames: f64,
 }
 
@@ -25,7 +25,7 @@ impl ShapeFilter {
     }
 
     /// Adds a frame's information, a quadratic about a shape.
-    pub(super) fn add(&mut self, frame: &ShapeQuadratic, about: &Shape) {
+    pub(super) fn add(&mut self, frame: &ShapeQuadratic, about: &BodyShape) {
         if self.frames >= LONGEST {
             let keep = (LONGEST - 1.0) / LONGEST;
             self.hessian.iter_mut().flatten().for_each(|c| *c *= keep);
@@ -48,7 +48,7 @@ impl ShapeFilter {
     }
 
     /// Prior and frames together, as a quadratic about a shape.
-    pub(super) fn about(&self, shape: &Shape) -> ShapeQuadratic {
+    pub(super) fn about(&self, shape: &BodyShape) -> ShapeQuadratic {
         let (precision, mean) = (self.shapes.precision(), self.shapes.mean());
         let share = WORTH.min(self.frames) / self.frames.max(1.0);
         let mut known = ShapeQuadratic { hessian: [[0.0; SHAPES]; SHAPES], gradient: [0.0; SHAPES] };
@@ -64,7 +64,7 @@ impl ShapeFilter {
     }
 
     /// The maximum a posteriori shape and the covariance of its parameters.
-    pub(super) fn estimate(&self) -> (Shape, [[f64; SHAPES]; SHAPES]) {
+    pub(super) fn estimate(&self) -> (BodyShape, [[f64; SHAPES]; SHAPES]) {
         let mean = self.shapes.mean();
         let known = self.about(mean);
         let (covariance, _) = invert(&known.hessian);
@@ -81,7 +81,7 @@ impl ShapeFilter {
     pub(super) fn deviance(&self) -> f64 {
         let (shape, _) = self.estimate();
         let (precision, mean) = (self.shapes.precision(), self.shapes.mean());
-        let off: Shape = std::array::from_fn(|i| shape[i] - mean[i]);
+        let off: BodyShape = std::array::from_fn(|i| shape[i] - mean[i]);
         let unlike: f64 =
             (0..SHAPES).map(|i| (0..SHAPES).map(|j| off[i] * precision[i][j] * off[j]).sum::<f64>()).sum();
         let (_, prior) = invert(precision);

@@ -3,12 +3,14 @@
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-use super::super::{Imported, Options, parse};
-use super::{Edit, FILE, alone};
+use super::super::{ImportOptions, ImportedBody, parse};
+use super::{FILE, GltfEdit, alone};
 
 /// A body from damaged bytes, if there is one, is one that the engine can use.
 fn survives(bytes: &[u8]) {
-    if let Ok(Imported { body, .. }) = parse(bytes, &alone, &Options { allow_holes: true, ..Options::default() }) {
+    if let Ok(ImportedBody { body, .. }) =
+        parse(bytes, &alone, &ImportOptions { allow_holes: true, ..ImportOptions::default() })
+    {
         let count = body.mesh.positions.len();
         assert!(body.mesh.triangles.iter().flatten().all(|v| (*v as usize) < count));
         assert!(body.mesh.positions.iter().chain(&body.normals).all(|p| p.is_finite()));
@@ -48,7 +50,7 @@ proptest! {
         Just(json!(0)), Just(json!(-1)), Just(json!(1)), Just(json!(u64::MAX)), Just(json!(1e300)), Just(json!(null)),
         Just(json!("x")), Just(json!([])), Just(json!({})), (0u64..70_000).prop_map(|n| json!(n)),
     ]) {
-        let mut edit = Edit::new();
+        let mut edit = GltfEdit::new();
         let places = numbers(&edit.json);
         *edit.json.pointer_mut(&places[pick.index(places.len())]).unwrap() = value;
         survives(&edit.bytes());

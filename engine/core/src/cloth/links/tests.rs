@@ -5,13 +5,13 @@ use crate::cloth::state::State;
 use crate::lanes::Width;
 use glam::Vec3;
 use toile_assets::garment::Direction;
-use toile_assets::garment::layout::{Run, Share, Tuples};
+use toile_assets::garment::layout::{ConstraintRun, OwnerShare, Tuples};
 
 /// Links between particles i and i + n.
 fn ladder(n: u32, rest: f32, compliance: f32) -> Links {
-    let share = Share { zigzags: 0..0, runs: 0..1, loose: 0..0, loose_at: n, loose_serial: n };
-    let set = Set { direction: Direction::Weft, crosses: false, shares: [share, Share::default()] };
-    let runs = [Run { first: [0, n], len: n, at: 0, serial: 0, alike: false }].into();
+    let share = OwnerShare { zigzags: 0..0, runs: 0..1, loose: 0..0, loose_at: n, loose_serial: n };
+    let set = ConstraintSet { direction: Direction::Weft, crosses: false, shares: [share, OwnerShare::default()] };
+    let runs = [ConstraintRun { first: [0, n], len: n, at: 0, serial: 0, alike: false }].into();
     Links {
         tuples: Tuples {
             zigzags: [].into(),
@@ -80,10 +80,10 @@ fn zigzag(n: u32, closed: bool, [rungs, slants]: [bool; 2]) -> Links {
     let long = if closed { n } else { n - 1 };
     let places = if rungs { 1 } else { n };
     let count = places + if slants { 1 } else { long };
-    let rungs = Run { first: [0, n], len: n, at: 0, serial: 0, alike: rungs };
-    let slants = Run { first: [n, 1], len: long, at: places, serial: n, alike: slants };
-    let share = Share { zigzags: 0..1, ..Share::default() };
-    let set = Set { direction: Direction::Weft, crosses: false, shares: [share, Share::default()] };
+    let rungs = ConstraintRun { first: [0, n], len: n, at: 0, serial: 0, alike: rungs };
+    let slants = ConstraintRun { first: [n, 1], len: long, at: places, serial: n, alike: slants };
+    let share = OwnerShare { zigzags: 0..1, ..OwnerShare::default() };
+    let set = ConstraintSet { direction: Direction::Weft, crosses: false, shares: [share, OwnerShare::default()] };
     Links {
         tuples: Tuples {
             zigzags: [Zigzag { rungs, slants }].into(),

@@ -1,6 +1,6 @@
 //! Bending: curvatures as sums of terms, and for each particle what pushes it, in the order in which the CPU adds it up.
 
-use toile_assets::garment::layout::{Bends, Hubs, OWNERS, Run, Share};
+use toile_assets::garment::layout::{Bends, ConstraintRun, Hubs, OWNERS, OwnerShare};
 
 use super::{GarmentSpan, Workgroups};
 
@@ -107,10 +107,10 @@ impl FlatBending {
     fn runs<const K: usize>(
         &mut self,
         bends: &Bends<K>,
-        share: &Share,
+        share: &OwnerShare,
         span: GarmentSpan,
         scale: fn(u32) -> BendingScale,
-    ) -> Vec<(Run<K>, u32)> {
+    ) -> Vec<(ConstraintRun<K>, u32)> {
         let mut laid = Vec::new();
         for run in &bends.tuples.runs[share.runs.start as usize..share.runs.end as usize] {
             for t in 0..run.len {

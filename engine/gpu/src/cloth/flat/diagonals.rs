@@ -1,6 +1,6 @@
 //! Diagonals: the bake's rows, followed fiber by fiber.
 
-use toile_assets::garment::layout::{Diagonals, Strand};
+use toile_assets::garment::layout::{DiagonalShare, Diagonals};
 
 use super::{GarmentSpan, WIDTH, Workgroups};
 
@@ -54,7 +54,7 @@ impl FlatDiagonals {
 }
 
 /// A family's fibers: where each begins, and its links.
-fn followed(diagonals: &Diagonals, strands: &[Strand], weights: &[f32]) -> Vec<(u32, Vec<Link>)> {
+fn followed(diagonals: &Diagonals, strands: &[DiagonalShare], weights: &[f32]) -> Vec<(u32, Vec<Link>)> {
     let mut next: Vec<Option<Link>> = vec![None; weights.len()];
     for strand in strands {
         for run in &diagonals.runs[strand.runs.start as usize..strand.runs.end as usize] {

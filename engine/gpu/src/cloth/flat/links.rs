@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use toile_assets::garment::layout::{Links, Run, Zigzag};
+use toile_assets::garment::layout::{ConstraintRun, Links, Zigzag};
 
 use super::{GarmentSpan, Workgroups};
 
@@ -61,7 +61,7 @@ impl FlatLinks {
         self.halves[half].add(garment, first as u32, (self.ends.len() - first) as u32, bit);
     }
 
-    fn row(&mut self, links: &Links, run: &Run<2>, len: u32, weights: &[f32], span: GarmentSpan) {
+    fn row(&mut self, links: &Links, run: &ConstraintRun<2>, len: u32, weights: &[f32], span: GarmentSpan) {
         for t in 0..len.min(run.len) {
             let ends = run.first.map(|f| f + t);
             // What is alike counts with the masses of the first.

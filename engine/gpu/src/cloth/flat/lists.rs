@@ -1,7 +1,7 @@
 //! Lists: fibers by index list, an entry a fiber.
 
 use toile_assets::garment::Solver;
-use toile_assets::garment::layout::Lists;
+use toile_assets::garment::layout::FiberLists;
 
 use super::{GarmentSpan, Workgroups};
 
@@ -25,7 +25,7 @@ pub struct FlatLists {
 
 impl FlatLists {
     /// Appends a garment's.
-    pub fn add(&mut self, lists: &Lists, span: GarmentSpan) {
+    pub fn add(&mut self, lists: &FiberLists, span: GarmentSpan) {
         let (index, at) = (self.index.len() as u32, self.measures.len() as u32);
         for (s, owners) in lists.sets.iter().enumerate() {
             let first = self.heads.len() as u32;
