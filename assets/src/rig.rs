@@ -8,7 +8,7 @@
 //! body's surface and the union of the capsules by Levenberg-Marquardt, left and right mirrored. Large distances cost
 //! more than their square, and skin outside the union more than union outside the skin: cloth rests on the union while
 //! the picture shows the body, and the worst place is what is seen. Points above the skin keep the union from standing
-//! out where no skin is near to tell.
+//! out where no skin is near.
 
 mod fit;
 mod plan;

@@ -34,7 +34,7 @@ impl GarmentKind {
     }
 }
 
-/// A girth of the body that sizes are told by (EN 13402-1).
+/// A girth of the body that designates sizes (EN 13402-1).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Girth {
@@ -73,7 +73,7 @@ pub enum Population {
 }
 
 impl From<Option<Sex>> for Population {
-    /// Where a shopper's sex is not told, anybody's proportions apply.
+    /// Where a shopper's sex is unknown: the proportions of both together.
     fn from(sex: Option<Sex>) -> Self {
         match sex {
             Some(Sex::Female) => Self::Women,

@@ -1,4 +1,4 @@
-//! Diagonals: fibers along the bias, laid side by side so that they can be solved whole.
+//! Diagonals: fibers along the bias, laid side by side so that they can be solved directly.
 //!
 //! Fibers that lean the same way go together in families that no particle is in twice. Within a family, links that
 //! advance together are a run; a run comes after the runs that lead to its particles. What leads from one owner's

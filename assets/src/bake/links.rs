@@ -62,7 +62,7 @@ pub fn lay_out(baking: &BakeInput<'_>) -> Layout {
         let roles = role.iter().enumerate().filter_map(|(i, r)| r.map(|r| (i, r)));
         roles.filter(|(i, r)| free(*i) && (*r == Direction::Bias) == bias).collect()
     };
-    // Fibers that are solved whole but do not lie side by side: warp that crosses warp, and what is chosen to be.
+    // Fibers that are solved directly but do not lie side by side: warp that crosses warp, and what is chosen to be.
     let crossing = baking.order.crossing.iter().map(|&i| &baking.pieces[i]);
     let chosen = across().filter(|f| chooser.choose(f) != Solver::GaussSeidel && !leans(f));
     let lists_of: Vec<(&Fiber, Solver)> = crossing.chain(chosen).map(|f| (f, chooser.choose(f))).collect();
@@ -121,7 +121,7 @@ fn links(baking: &BakeInput<'_>, edges: &[(usize, Direction)]) -> Links {
     }
 }
 
-/// The fibers along the bias, of the edges given, that can be solved whole; and which edges those are.
+/// The fibers along the bias, of the edges given, that can be solved directly; and which edges those are.
 fn diagonals<'a>(
     baking: &BakeInput<'_>,
     shear: &[(usize, Direction)],

@@ -3,7 +3,7 @@
 //! What carries weight is solved as a whole, since a sweep from link to link lets it stretch by the number of its links:
 //! fibers down the garment; and what runs along the bias, because link by link a substep leaves a fraction of its
 //! stiffness (`diagonals` says what can be). What lies across carries itself alone: Gauss-Seidel. (A waistband
-//! solved whole took a quarter of the skirt's step for nothing that its strain showed.) A garment file may say otherwise
+//! solved directly took a quarter of the skirt's step for nothing that its strain showed.) A garment file may say otherwise
 //! ([`Overrides`]).
 
 use std::collections::BTreeMap;

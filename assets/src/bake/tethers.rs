@@ -58,7 +58,7 @@ struct FrontMarch<'a> {
     around: Vec<Vec<u32>>,
     /// The nearest sources of each vertex, nearest first.
     known: Vec<Vec<NearAnchor>>,
-    /// What is still to be told to neighbours: length (its bits, which sort as it does), vertex, anchor.
+    /// What is still to be passed to neighbours: length (its bits, which sort as it does), vertex, anchor.
     queue: BinaryHeap<Reverse<(u64, u32, u32)>>,
 }
 
@@ -73,7 +73,7 @@ impl<'a> FrontMarch<'a> {
     }
 
     fn run(&mut self, sources: impl Iterator<Item = u32>) {
-        sources.for_each(|v| self.tell(v, v, 0.0));
+        sources.for_each(|v| self.receive(v, v, 0.0));
         while let Some(Reverse((bits, v, anchor))) = self.queue.pop() {
             let length = f64::from_bits(bits);
             // A shorter way may have been found since.
@@ -90,13 +90,13 @@ impl<'a> FrontMarch<'a> {
         }
     }
 
-    /// Tells `to` of a source that `from` has just learnt of: along the edge between them, and through the edge from
+    /// Passes a source that `from` has just received on to `to`: along the edge between them, and through the edge from
     /// `from` to `beside`, if that end knows the source too.
     fn cross(&mut self, from: u32, beside: u32, to: u32, anchor: u32, length: f64) {
         let side = |i: u32, j: u32| f64::from(self.positions[i as usize].distance(self.positions[j as usize]));
         let (direct, base, other) = (side(from, to), side(from, beside), side(beside, to));
         let straight = self.length(beside, anchor).and_then(|second| through([length, second], base, [direct, other]));
-        self.tell(to, anchor, straight.map_or(length + direct, |s| s.min(length + direct)));
+        self.receive(to, anchor, straight.map_or(length + direct, |s| s.min(length + direct)));
     }
 
     fn length(&self, v: u32, anchor: u32) -> Option<f64> {
@@ -104,7 +104,7 @@ impl<'a> FrontMarch<'a> {
     }
 
     /// Keeps a way if it is among the shortest, and queues it to be passed on.
-    fn tell(&mut self, v: u32, anchor: u32, length: f64) {
+    fn receive(&mut self, v: u32, anchor: u32, length: f64) {
         let known = &mut self.known[v as usize];
         match known.iter().position(|s| s.anchor == anchor) {
             Some(k) if known[k].length <= length + SHORTER_M => return,

@@ -32,7 +32,7 @@ pub(super) struct Morphs {
     joints: [[Vec3; JOINTS]; SLIDERS],
 }
 
-/// Displacements smaller than this a unit are none: a nanometre at most in any body.
+/// Displacements smaller than this a unit are left out: a nanometre at most in any body.
 const NOTHING: f32 = 1e-9;
 
 impl Morphs {

@@ -1,4 +1,4 @@
-//! The parametric body as a family of shapes, for whoever fits it to something seen: where a point of the surface lies
+//! The parametric body as a family of shapes, for fitting it to what a sensor sees: where a point of the surface lies
 //! and how it moves with each parameter, what to expect of people, and what the tape reads.
 
 use std::sync::LazyLock;

@@ -41,7 +41,7 @@ impl<'a> Skinning<'a> {
     /// Weights of a vertex at `p` with its left and right shares.
     pub(super) fn weights(&self, p: Vec3, left: Vec3, right: Vec3) -> SkinWeights {
         let mut weights = [0.0; BONES];
-        // Subdivision's negative lobes are none, but rounding may leave a trace.
+        // Subdivision has no negative lobes, but rounding may leave a trace.
         let (left, right) = (left.max(Vec3::ZERO), right.max(Vec3::ZERO));
         self.spine(&mut weights, p, (1.0 - left.element_sum() - right.element_sum()).max(0.0));
         for (shares, mirrored) in [(left, false), (right, true)] {

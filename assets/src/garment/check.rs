@@ -60,7 +60,7 @@ pub enum MeshError {
 }
 
 impl MeshError {
-    /// The flaw and its cure in one sentence, with the names that whoever made the mesh knows its vertices and faces by.
+    /// The flaw and its cure in one sentence, with the names by which the maker of the mesh knows its vertices and faces.
     pub fn described(&self, vertex_name: impl Fn(u32) -> String, face_name: impl Fn(usize) -> String) -> String {
         match *self {
             Self::Empty => {

@@ -165,7 +165,7 @@ pub struct DiagonalShare {
     pub starts: Range<u32>,
 }
 
-/// Fibers along the bias that are solved whole, side by side. In a family at most one link leads to a particle and one
+/// Fibers along the bias that are solved directly, side by side. In a family at most one link leads to a particle and one
 /// leads on from it, the one that leads to it in an earlier run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Diagonals {
@@ -256,7 +256,7 @@ impl Hubs {
 /// How far each particle can get from where the garment hangs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tethers {
-    /// The fixed particle nearest along the cloth; itself where there is none.
+    /// The fixed particle nearest along the cloth; itself where nothing is fixed.
     pub anchor: Box<[u32]>,
     /// Length of the way to it as cut (m).
     pub length: Box<[f32]>,
@@ -353,7 +353,7 @@ pub struct FiberLists {
 /// Everything that holds a garment together.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Layout {
-    /// Shear: fibers along the bias, solved whole.
+    /// Shear: fibers along the bias, solved directly.
     pub diagonals: Diagonals,
     /// Shear that lies in no such fiber: links along the bias, in coloured sets.
     pub shear: Links,
@@ -361,7 +361,7 @@ pub struct Layout {
     pub weft: Links,
     /// Fibers along the warp.
     pub fibers: Fibers,
-    /// Fibers that are solved whole by index list: warp that crosses warp, waistbands, whatever was chosen to be.
+    /// Fibers that are solved directly by index list: warp that crosses warp, waistbands, whatever was chosen to be.
     pub crossing: FiberLists,
     /// Bending over three particles in a row.
     pub bends: Bends<3>,

@@ -50,7 +50,7 @@ pub struct Garment {
     pub substeps: u32,
     /// Warp and weft edges with their rest lengths (m): what strain is measured on.
     pub strain_edges: Box<[([u32; 2], f32)]>,
-    /// The edges of weft fibers that close around the body or a limb: what tells how tight a garment sits.
+    /// The edges of weft fibers that close around the body or a limb: by them it is seen how tight a garment sits.
     pub hoop_edges: Box<[([u32; 2], f32)]>,
 }
 

@@ -1,6 +1,6 @@
 //! Meshes as their file has them: every vertex in the file's own order, so that results can be laid beside it.
 //!
-//! The garment reader of [`super::obj`] welds and reorders while it reads; here that is left to whoever needs it.
+//! The garment reader of [`super::obj`] welds and reorders while it reads; here that is left to the caller.
 
 use glam::{Vec2, Vec3};
 
@@ -81,7 +81,7 @@ pub fn parse_obj(text: &str) -> Result<PlainMesh, String> {
                 vertex(&mut mesh, words)
             }
             Some("vt") => {
-                // Never a reason to refuse: what is no number is taken as 0.
+                // Never a reason to refuse: what cannot be read as a number is taken as 0.
                 let mut number = || words.next().and_then(|w| w.parse().ok()).unwrap_or(0.0);
                 textures.push(Vec2::new(number(), number()));
                 Ok(())

@@ -8,7 +8,7 @@ use crate::body::{Measures, Sex};
 use crate::skeleton::{Joint, Pose, Skeleton};
 
 /// The woman of the embedded session: her girths lie between two sizes of the women's table, so that choosing one is a
-/// real question, and nothing but the session tells Toile of them.
+/// real question, and Toile knows them only from the session.
 pub const SHOPPER: (Sex, Measures) = (
     Sex::Female,
     Measures { stature: 1.694, shoulder_breadth: 0.372, chest_girth: 0.906, waist_girth: 0.741, hip_girth: 0.981 },

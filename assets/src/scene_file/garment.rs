@@ -258,7 +258,7 @@ fn pin(
     Ok(())
 }
 
-/// Turns the faces so that the warp, whose fibers are solved whole, runs away from the pins: a flag hangs from its pole
+/// Turns the faces so that the warp, whose fibers are solved directly, runs away from the pins: a flag hangs from its pole
 /// sideways. The fabric's figures are exchanged with them, so that each thread keeps its stiffness.
 fn hang(shape: &mut Shape, fabric: &mut Fabric) {
     let holds = |a: u32, b: u32| usize::from(shape.fixed[a as usize] != shape.fixed[b as usize]);

@@ -1,4 +1,4 @@
-//! Laws of scene files: what they mean, and what every mistake is told.
+//! Laws of scene files: what they mean, and the message of every mistake.
 
 use glam::{Quat, Vec3};
 

@@ -48,7 +48,7 @@ impl Track {
         pass: bool,
     ) -> Result<(), String> {
         if let Some(column) = row.iter().position(Option::is_none) {
-            return Err(format!("column {} is no number; write it as 0.25 or 1e-3", column + 1));
+            return Err(format!("column {} is not a number; write it as 0.25 or 1e-3", column + 1));
         }
         let row: Vec<f64> = row.iter().copied().flatten().collect();
         let (time, values) = (row[0], &row[1..]);

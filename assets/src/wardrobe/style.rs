@@ -130,7 +130,7 @@ pub enum Cut {
 mod tests {
     use super::*;
     use crate::garment::Direction;
-    use crate::garment::solver::{SolverRegion, Solver};
+    use crate::garment::solver::{Solver, SolverRegion};
     use crate::wardrobe;
 
     #[test]

@@ -10,7 +10,7 @@ use crate::bake::fibers::{Direction, Edge};
 use crate::garment::check::corners;
 use crate::garment::shape::{NO_VERTEX, Shape};
 
-/// A measure that differs from its direction by more than this (of 1, Frobenius norm) is none of it. A poor one is better
+/// A measure that differs from its direction by more than this (of 1, Frobenius norm) is discarded. A poor one is better
 /// than none: where a vertex measures nothing the cloth has a hinge, which no stiffness beside it makes up for, and along a rim
 /// nothing else resists twisting.
 const MOST_OFF: f64 = 0.8;

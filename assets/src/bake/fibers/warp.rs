@@ -77,7 +77,7 @@ pub fn is_pattern(positions: &[Vec3], faces: &[Face], uvs: &[[Vec2; 4]]) -> bool
 }
 
 /// By how much the texture stretches a face at most and at least (1/m), and the face's area (m2): the singular values of
-/// the map from its plane, of which trace and determinant of the metric tell.
+/// the map from its plane, by the trace and determinant of its metric.
 fn scales(positions: &[Vec3], face: &Face, uv: &[Vec2; 4]) -> (f32, f32, f32) {
     let at = |k: usize| positions[face[k] as usize] - positions[face[0] as usize];
     let (e, f) = (at(1), at(2));

@@ -115,7 +115,7 @@ fn gradients_are_those_of_the_readings() {
             let (less, more) = (at(-step), at(step));
             for r in 0..READINGS {
                 let found = f64::from(more[r] - less[r]) / f64::from(2.0 * step);
-                let told: f64 = gradients[r]
+                let expected: f64 = gradients[r]
                     .iter()
                     .flat_map(|&(v, g)| model.morphs.moves(v as usize).iter().map(move |m| (m, g)))
                     .filter(|((k, _), _)| *k as usize == slider.index())
@@ -123,8 +123,8 @@ fn gradients_are_those_of_the_readings() {
                     .sum();
                 // Extents and hulls change corners within the step: a few per cent at most.
                 assert!(
-                    (found - told).abs() < 0.02 + 0.06 * told.abs(),
-                    "{sex:?} {slider:?} reading {r}: {found} {told}"
+                    (found - expected).abs() < 0.02 + 0.06 * expected.abs(),
+                    "{sex:?} {slider:?} reading {r}: {found} {expected}"
                 );
             }
         }
@@ -247,9 +247,9 @@ fn measures_that_contradict_each_other_are_told_by_name() {
                 panic!("{sex:?} {wanted:?} was met");
             };
             let message = error.to_string();
-            let told = wanted.given().iter().filter(|(m, _)| message.contains(m.name())).count();
+            let named = wanted.given().iter().filter(|(m, _)| message.contains(m.name())).count();
             let BodyError::Unreachable { nearest, against, .. } = error else { continue };
-            assert_eq!(told, 1 + usize::from(against.is_some()), "{message}");
+            assert_eq!(named, 1 + usize::from(against.is_some()), "{message}");
             assert!(nearest.body.mesh.positions.iter().chain(&nearest.body.normals).all(|p| p.is_finite()));
         }
     }

@@ -50,7 +50,7 @@ pub enum Flaw {
         /// How many there are.
         count: usize,
     },
-    /// A coordinate that is no number.
+    /// A coordinate that is NaN or infinite.
     #[error("{what} {index} is not finite; mend the mesh where it was made and export it again")]
     NotFinite {
         /// What it belongs to.
@@ -80,7 +80,7 @@ pub enum Flaw {
         /// Their sum.
         sum: f32,
     },
-    /// A weight that is none.
+    /// A weight outside of 0 to 1.
     #[error(
         "vertex {vertex} (from 0 over all skinned parts) has the weight {weight}; weights lie between 0 and 1, so normalise them"
     )]

@@ -1,8 +1,8 @@
 //! The skirt meshed irregularly: the same cone and as many vertices, but no rows and no columns. A direct solver that
-//! lives on a grid's regularity cannot hide behind it.
+//! depends on the regularity of a grid cannot hide behind it.
 //!
 //! The cone is developable: unrolled into a sector of a plane, lengths stay what they are. Points of blue noise are
-//! strewn there, and the Delaunay triangulation of the sector, repeated left and right of itself, closes around.
+//! sampled there, and the Delaunay triangulation of the sector, repeated left and right of itself, closes around.
 
 use std::f64::consts::TAU;
 
@@ -14,17 +14,17 @@ use crate::garment::Shape;
 use crate::garment::shape::NO_VERTEX;
 use crate::numeric::random::SplitMix64;
 
-/// Part of the spacing of the densest packing at which strewing starts; denser than this random darts never come.
+/// Part of the spacing of the densest packing at which sampling starts; random points never pack more densely.
 const FIRST_SPACING: f64 = 0.85;
 
-/// What the spacing is multiplied by when darts find no more room.
+/// What the spacing is multiplied by when no candidate finds room.
 const RELAX: f64 = 0.97;
 
-/// How far darts stay away from the two borders, as a multiple of the spacing.
+/// How far points stay away from the two borders, as a multiple of the spacing.
 const BORDER: f64 = 0.5;
 
-/// Darts thrown at each spacing, as a multiple of the points wanted.
-const DARTS: usize = 8;
+/// Candidates tried at each spacing, as a multiple of the points wanted.
+const CANDIDATES: usize = 8;
 
 /// A vertex of the cone: `u` (0 ring, 1 hem), angle around (rad).
 type Place = [f64; 2];
@@ -36,7 +36,7 @@ pub fn irregular(n: usize, seed: u64) -> Shape {
     let around = |u: f64| (0..n).map(move |j| [u, TAU * j as f64 / n as f64]);
     let mut places: Vec<Place> = around(0.0).collect();
     let hem: Vec<Place> = around(1.0).collect();
-    strew(&mut places, &hem, n * n - 2 * n, seed);
+    sample_points(&mut places, &hem, n * n - 2 * n, seed);
     places.extend(hem);
     let mut shape = Shape::default();
     for (i, &[u, angle]) in places.iter().enumerate() {
@@ -59,22 +59,23 @@ fn slant() -> f64 {
     RADIUS[1].hypot(HEIGHT[1])
 }
 
-/// Throws `count` darts that keep a distance from each other and from the two rings, closer as room runs out.
-fn strew(places: &mut Vec<Place>, hem: &[Place], count: usize, seed: u64) {
+/// Poisson-disc sampling by dart throwing (Cook 1986): `count` points that keep a distance from each other and from the
+/// two rings, which shrinks as room runs out.
+fn sample_points(places: &mut Vec<Place>, hem: &[Place], count: usize, seed: u64) {
     let area = std::f64::consts::PI * (2.0 * RADIUS[0] + RADIUS[1]) * slant();
     // In the densest packing each point has an area of spacing^2 sqrt(3) / 2.
     let mut spacing = FIRST_SPACING * (area / (count + hem.len()) as f64 * 2.0 / 3f64.sqrt()).sqrt();
-    let mut board = SpacingGrid::new(spacing);
-    places.iter().chain(hem).for_each(|&place| board.add(place));
+    let mut grid = SpacingGrid::new(spacing);
+    places.iter().chain(hem).for_each(|&place| grid.add(place));
     let mut random = SplitMix64::new(seed);
     let mut left = count;
     while left > 0 {
-        for _ in 0..DARTS * count {
+        for _ in 0..CANDIDATES * count {
             let place = random_place(&mut random);
-            // Between two vertices of a ring nothing keeps a dart away from the border, where it would leave a sliver.
+            // Between two vertices of a ring nothing keeps a point away from the border, where it would leave a sliver.
             let inland = place[0].min(1.0 - place[0]) * slant() > BORDER * spacing;
-            if left > 0 && inland && board.is_free(place, spacing) {
-                board.add(place);
+            if left > 0 && inland && grid.is_free(place, spacing) {
+                grid.add(place);
                 places.push(place);
                 left -= 1;
             }
