@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 use super::error::{SceneDocument, SceneError};
-use super::schema::{self, SceneKey, KeyKind};
+use super::schema::{self, KeyKind, SceneKey};
 use crate::toml_keys;
 
 /// One table, all of whose keys are known.
