@@ -30,6 +30,7 @@ pub use garment::{SceneGarment, UserMesh};
 pub use source::SceneSource;
 pub use track::Track;
 
+use crate::file::{self, FileKind};
 use crate::limits::{MAX_SCENE_GARMENTS, MAX_SCENE_VERTICES};
 use crate::scene::skirt::{self, Motion};
 use error::SceneDocument;
