@@ -8,7 +8,7 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use glam::Vec3A;
 use toile_assets::garment::Garment;
-use toile_assets::garment::layout::{Bends, Layout, Links, FiberLists, OWNERS};
+use toile_assets::garment::layout::{Bends, FiberLists, Layout, Links, OWNERS};
 
 use super::prepared::Prepared;
 use super::program::Stage;
