@@ -8,7 +8,6 @@ pub mod arguments;
 pub mod backend;
 pub mod cli;
 pub mod commands;
-mod drawn_frame;
 pub mod exit;
 pub mod fit;
 pub mod heap;

@@ -7,13 +7,13 @@ use std::io::BufWriter;
 use toile_assets::limits::STEP_HZ;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::lines::Line;
+use toile_view::drawn_frame::DrawnFrame;
 use toile_view::contact_sheet;
 use toile_view::fit_map;
 use toile_view::image::{Animation, Image, Size};
 use toile_view::scene::{Bounds, Camera};
 use toile_view::trace::TraceQuality;
 
-use crate::drawn_frame::DrawnFrame;
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::renderer::PictureRenderer;
@@ -133,19 +133,6 @@ impl Pictures {
     pub fn work(steps: u64) -> u64 {
         u64::from(AnimationTiming::new(steps).frames) + STILLS
     }
-}
-
-/// A small picture of a dressed body, looked at from `yaw` (rad), its garments in these colours (linear RGB, inner first).
-#[cfg(any(test, feature = "kiosk"))]
-pub fn glance(frame: &Frame, snapshot: &Snapshot, yaw: f32, colours: &[[f32; 3]], size: Size) -> Image {
-    use toile_view::scene::Scene;
-    use toile_view::trace::TracedScene;
-    let mut drawn = DrawnFrame::new(frame).coloured(colours);
-    drawn.update(snapshot);
-    let surfaces = drawn.surfaces(None);
-    let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
-    let camera = Camera::framing(&stage.bounds(), yaw, size.width as f32 / size.height as f32);
-    stage.render(&camera, size, TraceQuality::Still)
 }
 
 /// How the session ended, as the stills show it.

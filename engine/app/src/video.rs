@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use toile_assets::limits::STEP_HZ;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::lines::Line;
+use toile_view::drawn_frame::DrawnFrame;
 use toile_view::image::Size;
 use toile_view::trace::TraceQuality;
 use toile_view::video::VideoWriter;
 
-use crate::drawn_frame::DrawnFrame;
 use crate::exit::AppError;
 use crate::renderer::PictureRenderer;
 use crate::terminal::Progress;

@@ -7,6 +7,7 @@
 
 pub mod bvh;
 pub mod contact_sheet;
+pub mod drawn_frame;
 pub mod fit_map;
 pub mod hidden_skin;
 pub mod image;

@@ -13,13 +13,13 @@ use toile_fitting::live::background::{BackgroundJob, Finished};
 use toile_fitting::live::dresser::ShopperSource;
 use toile_sensors::frame::Joints;
 use toile_track::fit::measuring::MEASURES;
+use toile_view::drawn_frame;
 use toile_view::image::{Size, linear};
 
 use super::picture::{self, PictureCode, RgbImage};
 use super::size_fit::VisitorMeasures;
 use super::wardrobe::{Outfit, Wardrobe};
 use crate::exit::AppError;
-use crate::pictures::glance;
 
 /// Size at which a picture is drawn, to be made smaller: twice the largest that a code holds.
 const DRAWN: Size = Size::new(192, 320);
@@ -173,7 +173,7 @@ impl DressingContext {
         let (frame, snapshot) = self.draped(client, worn)?;
         let colour = |w: &super::wardrobe::WornItem| self.wardrobe.items.get(w.item)?.colours.get(w.colour);
         let colours: Vec<[f32; 3]> = worn.iter().filter_map(colour).map(|c| c.srgb.map(linear)).collect();
-        let image = glance(&frame, &snapshot, yaw, &colours, DRAWN);
+        let image = drawn_frame::still(&frame, &snapshot, yaw, &colours, DRAWN);
         let still = RgbImage { size: image.size(), bytes: image.bytes().to_vec() };
         picture::encode(&still).map_err(AppError::internal)
     }

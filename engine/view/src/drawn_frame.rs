@@ -4,9 +4,11 @@ use glam::Vec3;
 use toile_assets::garment::Garment;
 use toile_assets::mesh::vertex_normals;
 use toile_engine::frame::{Frame, Snapshot};
-use toile_view::hidden_skin::CoveringCloth;
-use toile_view::image::Size;
-use toile_view::scene::{Bounds, Camera, Colours, MANNEQUIN, Material, Surface};
+
+use crate::hidden_skin::CoveringCloth;
+use crate::image::{Image, Size};
+use crate::scene::{Bounds, Camera, Colours, MANNEQUIN, Material, Scene, Surface};
+use crate::trace::{TraceQuality, TracedScene};
 
 /// Half the width of what an animation shows around the shopper: arms stretched out (m).
 const HALF_REACH_M: f32 = 0.62;
@@ -65,7 +67,7 @@ impl DrawnFrame {
                 drawn: g.triangles.to_vec(),
                 triangles: g.triangles.to_vec(),
                 normals,
-                colour: Vec3::from_array(g.fabric.colour.map(toile_view::image::linear)),
+                colour: Vec3::from_array(g.fabric.colour.map(crate::image::linear)),
             }
         };
         Self {
@@ -82,7 +84,6 @@ impl DrawnFrame {
     }
 
     /// The same with garments of other colours (linear RGB, inner first).
-    #[cfg(any(test, feature = "kiosk"))]
     #[must_use]
     pub fn coloured(mut self, colours: &[[f32; 3]]) -> Self {
         for (cloth, colour) in self.cloths.iter_mut().zip(colours) {
@@ -137,4 +138,14 @@ impl DrawnFrame {
         let shown = Bounds { min: at - reach, max: at + reach + Vec3::Y * self.stature * HEADROOM };
         Camera::front(&shown, size.width as f32 / size.height as f32)
     }
+}
+
+/// A small picture of a dressed body, seen from `yaw` (rad), its garments in these colours (linear RGB, inner first).
+pub fn still(frame: &Frame, snapshot: &Snapshot, yaw: f32, colours: &[[f32; 3]], size: Size) -> Image {
+    let mut drawn = DrawnFrame::new(frame).coloured(colours);
+    drawn.update(snapshot);
+    let surfaces = drawn.surfaces(None);
+    let scene = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
+    let camera = Camera::framing(&scene.bounds(), yaw, size.width as f32 / size.height as f32);
+    scene.render(&camera, size, TraceQuality::Still)
 }
