@@ -14,6 +14,7 @@ pub const FLOORS: &[(&str, &str)] = &[
     ("engine/gpu", "toile-gpu"),
     ("engine/view", "toile-view"),
     ("engine/fitting", "toile-fitting"),
+    ("engine/kiosk", "toile-kiosk"),
     ("perf", "toile-perf"),
     ("engine/app", "toile"),
     ("tests/models", "toile-models"),

@@ -11,7 +11,6 @@ pub mod commands;
 pub mod exit;
 pub mod fit;
 pub mod heap;
-pub mod kiosk;
 pub mod machine;
 pub mod output;
 mod overlay;
@@ -21,10 +20,6 @@ pub mod report;
 pub mod summary;
 pub mod terminal;
 pub mod video;
-#[cfg(any(test, feature = "kiosk"))]
-pub mod visitor;
-#[cfg(feature = "kiosk")]
-pub mod window;
 
 use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -32,10 +27,6 @@ use std::process::ExitCode;
 
 use cli::Command;
 use exit::{AppError, Code};
-#[cfg(not(feature = "kiosk"))]
-use kiosk::without_window as windowed;
-#[cfg(feature = "kiosk")]
-use window::run as windowed;
 
 /// Runs one command line, the program's name first, and returns what the process shall exit with.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
@@ -80,7 +71,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Plan(args) => commands::plan::run(args),
         Command::Replay(args) => commands::replay::run(args),
         Command::Soak(args) => commands::soak::run(args),
-        Command::Kiosk(args) => kiosk::run(args, windowed),
+        Command::Kiosk(args) => commands::kiosk::run(args),
         Command::Completions(args) => commands::completions::run(args, cli::command()),
         Command::Print(text) => terminal::print(text),
     }

@@ -284,7 +284,7 @@ fn value<'a>(unit: &'a str, key: &str) -> &'a str {
 
 #[test]
 fn the_unit_starts_what_there_is_with_the_rights_that_it_needs() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("systemd");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../kiosk/systemd");
     let unit = fs::read_to_string(folder.join("toile.service")).unwrap();
     let line = value(&unit, "ExecStart");
     let words = toile::cli::command().try_get_matches_from(line.split_whitespace()).expect("the grammar knows it");

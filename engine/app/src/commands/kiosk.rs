@@ -1,13 +1,18 @@
-//! The arguments of `toile kiosk`.
+//! `toile kiosk`: a shop's fitting room, unattended.
 
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
+use std::time::Instant;
 
 use clap::value_parser;
+use toile_kiosk::KioskOptions;
+use toile_kiosk::service::instance;
 
+use super::doctor;
 use crate::arguments::Printing;
-
-use crate::kiosk::instance;
+use crate::exit::AppError;
+use crate::report::Document;
+use crate::terminal::{self, Words};
 
 /// Longest run that is asked for by its length (s): a year.
 const MOST_SECONDS: i64 = 366 * 86_400;
@@ -62,4 +67,31 @@ fn windowed(said: &str) -> Result<[u32; 2], String> {
     size.ok_or_else(|| {
         format!("give two numbers of pixels from {} to {}, for example 540x960", WINDOW.start(), WINDOW.end())
     })
+}
+
+/// Runs `toile kiosk`.
+///
+/// # Errors
+/// Those of the kiosk; a report that cannot be printed.
+pub fn run(args: &KioskArgs) -> Result<(), AppError> {
+    let begun = Instant::now();
+    if args.print_config {
+        return terminal::print(toile_kiosk::EXAMPLE_CONFIG);
+    }
+    let words = Words::new(args.printing.quiet);
+    let report = toile_kiosk::run(&options(args), begun, &|line| words.say(line))?;
+    if args.printing.json { terminal::print_json(&Document::new("kiosk", report)) } else { terminal::print(&report.summary()) }
+}
+
+fn options(args: &KioskArgs) -> KioskOptions {
+    KioskOptions {
+        config: args.config.clone(),
+        session: args.session.clone(),
+        instance: args.instance.clone(),
+        headless: args.headless,
+        windowed: args.windowed,
+        seconds: args.seconds,
+        crash_after: args.crash_after,
+        may_lock_memory: doctor::may_lock_all(),
+    }
 }

@@ -1,0 +1,37 @@
+//! The kiosk: a fitting room that runs unattended, with a window or without, from visitor to visitor.
+//!
+//! Reads: a configuration, frames of a sensor; touch and keys at a window. Writes: pictures on a display, a health line, a report;
+//! nothing about a person.
+//! Budget: ready within 5 s of its start; a round of the service each 20 ms, under 100 us of the first core.
+//! Thread: the loop's own; one for the service, one for jobs of the visitor, one for metrics; main waits for the window system.
+
+// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+pub mod error;
+
+pub mod service;
+
+#[cfg(any(test, feature = "window"))]
+pub mod visitor;
+
+#[cfg(feature = "window")]
+pub mod window;
+
+use std::time::Instant;
+
+pub use error::KioskError;
+pub use service::KioskOptions;
+pub use service::config::EXAMPLE as EXAMPLE_CONFIG;
+pub use service::report::KioskReport;
+
+/// Runs a kiosk of a program that was started at `begun` until it is asked to end; `say` prints a line for whoever looks after it.
+///
+/// # Errors
+/// A kiosk that already runs, a configuration, a session or a garment that cannot be used, no window where one is wanted, a
+/// thread that ended while it ran.
+pub fn run(options: &KioskOptions, begun: Instant, say: &(dyn Fn(&str) + Sync)) -> Result<KioskReport, KioskError> {
+    #[cfg(feature = "window")]
+    let windowed = window::run;
+    #[cfg(not(feature = "window"))]
+    let windowed = service::without_window;
+    service::run(options, begun, say, windowed)
+}

@@ -1,0 +1,348 @@
+//! The configuration: TOML whose every key is known, the only state that a kiosk has.
+
+use std::net::SocketAddr;
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use toile_assets::file::{self, FileKind};
+use toile_engine::cloth::Quality;
+use toile_engine::workers::SHARES;
+
+use super::config_keys;
+use super::session::SessionTimes;
+use crate::error::KioskError;
+use toile_fitting::dress::wish::Wish;
+
+/// The default configuration with all keys explained.
+pub const EXAMPLE: &str = include_str!("../../systemd/kiosk.toml");
+
+/// A configuration: a page or two of text.
+const CONFIGURATION: FileKind = FileKind {
+    name: "a configuration like `toile kiosk --print-config` prints",
+    max_bytes: 1 << 20,
+    cure: "shorten it",
+};
+
+/// Everything that can be set.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// What is worn.
+    pub wear: WearConfig,
+    /// Where frames come from.
+    pub sensor: SensorConfig,
+    /// Times of a session.
+    pub session: SessionConfig,
+    /// The health line.
+    pub health: HealthConfig,
+    /// What is asked of the machine.
+    pub machine: MachineConfig,
+    /// The display, where there is one.
+    pub display: DisplayConfig,
+    /// Figures for Prometheus.
+    pub metrics: MetricsConfig,
+    /// What is kept of a crash.
+    pub crash: CrashConfig,
+}
+
+/// What is worn.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WearConfig {
+    /// Garments of the wardrobe, inner first.
+    pub garments: Vec<String>,
+    /// A size for everybody.
+    pub size: Option<String>,
+    /// Tested settings of the cloth.
+    pub quality: String,
+}
+
+/// Where frames come from.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SensorConfig {
+    /// The kind of sensor.
+    pub source: SensorSource,
+    /// The recording; none is the embedded one.
+    pub session: Option<PathBuf>,
+    /// Time between two rounds of a recording (s).
+    pub pause_s: f64,
+    /// Where VMC messages arrive.
+    pub vmc: SocketAddr,
+}
+
+/// A kind of sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SensorSource {
+    /// A recording, played.
+    Session,
+    /// Virtual Motion Capture over UDP.
+    Vmc,
+}
+
+/// Times of a session (s).
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SessionConfig {
+    /// Being seen until one has stepped in.
+    pub step_in_s: f64,
+    /// Measuring.
+    pub measure_s: f64,
+    /// Being unseen until one has left.
+    pub step_out_s: f64,
+    /// From then until everything is wiped.
+    pub wipe_s: f64,
+}
+
+/// The health line.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct HealthConfig {
+    /// Time between two (s); 0 is never.
+    pub every_s: f64,
+}
+
+/// What is asked of the machine.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MachineConfig {
+    /// Workers of a step; none is as many as there are cores.
+    pub workers: Option<usize>,
+    /// Whether all memory is kept resident.
+    pub lock_memory: bool,
+}
+
+/// Languages of the pages, by their tags (BCP 47).
+pub const LANGUAGES: [&str; 6] = ["en", "de", "fr", "es", "tr", "ja"];
+
+/// The display, and how every visit begins on it.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct DisplayConfig {
+    /// From the floor to the picture's lower edge (mm).
+    pub lower_edge_mm: f32,
+    /// Height of the picture (mm).
+    pub height_mm: f32,
+    /// The language before somebody chooses one.
+    pub language: String,
+    /// Whether type is large before somebody chooses.
+    pub large_type: bool,
+    /// Whether anything moves by itself: a mannequin that turns.
+    pub motion: bool,
+    /// How long a picture that was asked for is kept.
+    pub picture_minutes: f64,
+    /// Where the mark is on the floor, in the sensor's world (x and z, m).
+    pub mark_m: Option<[f32; 2]>,
+}
+
+/// Figures for Prometheus.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MetricsConfig {
+    /// Port on 127.0.0.1.
+    pub port: Option<u16>,
+}
+
+/// What is kept of a crash.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CrashConfig {
+    /// Where the last ten seconds are written; none writes nothing.
+    pub recording: Option<PathBuf>,
+}
+
+impl Default for WearConfig {
+    fn default() -> Self {
+        Self { garments: vec!["sun-dress".into()], size: None, quality: Quality::default().name().into() }
+    }
+}
+
+impl Default for SensorConfig {
+    fn default() -> Self {
+        let vmc = SocketAddr::from(([127, 0, 0, 1], toile_sensors::source::vmc::PORT));
+        Self { source: SensorSource::Session, session: None, pause_s: 12.0, vmc }
+    }
+}
+
+impl Default for SessionConfig {
+    fn default() -> Self {
+        Self { step_in_s: 0.5, measure_s: 1.0, step_out_s: 2.0, wipe_s: 5.0 }
+    }
+}
+
+impl Default for HealthConfig {
+    fn default() -> Self {
+        Self { every_s: 60.0 }
+    }
+}
+
+impl Default for DisplayConfig {
+    fn default() -> Self {
+        Self {
+            lower_edge_mm: 400.0,
+            height_mm: 1210.0,
+            language: LANGUAGES[0].into(),
+            large_type: false,
+            motion: true,
+            picture_minutes: 3.0,
+            mark_m: None,
+        }
+    }
+}
+
+impl Default for MachineConfig {
+    fn default() -> Self {
+        Self { workers: None, lock_memory: true }
+    }
+}
+
+impl DisplayConfig {
+    /// The first value that cannot be, with the cure. Whether the controls are within reach is looked at where there are any.
+    fn fault(&self) -> Option<String> {
+        let (minutes, language) = (self.picture_minutes, &self.language);
+        let known = LANGUAGES.contains(&language.as_str());
+        let lengths = [self.lower_edge_mm, self.height_mm].into_iter().chain(self.mark_m.into_iter().flatten());
+        if !(0.1..=30.0).contains(&minutes) {
+            Some(format!("display.picture_minutes = {minutes} is not within 0.1 .. 30 minutes; correct it"))
+        } else if !known {
+            Some(format!("display.language = {language:?} is not spoken; choose one of {}", LANGUAGES.join(", ")))
+        } else if !lengths.into_iter().all(f32::is_finite) {
+            Some("a length in [display] is not a finite number; correct it".into())
+        } else {
+            None
+        }
+    }
+}
+
+impl Config {
+    /// Reads a file, or takes the defaults.
+    ///
+    /// # Errors
+    /// A file that cannot be read, an unknown key, a value that cannot be; each names the line.
+    pub fn open(path: Option<&Path>) -> Result<Self, KioskError> {
+        let Some(path) = path else { return Ok(Self::default()) };
+        let text = file::read_text(path, &CONFIGURATION).map_err(KioskError::input)?;
+        Self::parse(&path.display().to_string(), &text)
+    }
+
+    /// Reads a text; `file` is its name in errors.
+    ///
+    /// # Errors
+    /// As [`Config::open`].
+    pub fn parse(file: &str, text: &str) -> Result<Self, KioskError> {
+        config_keys::check(file, text)?;
+        let config: Self = toml::from_str(text).map_err(|e| config_keys::told(file, text, &e))?;
+        match config.fault() {
+            Some(fault) => Err(KioskError::Input(format!("{file}: {fault}"))),
+            None => Ok(config),
+        }
+    }
+
+    /// The first value that cannot be, with the cure.
+    fn fault(&self) -> Option<String> {
+        let times = [
+            ("sensor.pause_s", self.sensor.pause_s, 0.0..=86_400.0),
+            ("session.step_in_s", self.session.step_in_s, 0.0..=60.0),
+            ("session.measure_s", self.session.measure_s, 0.5..=60.0),
+            ("session.step_out_s", self.session.step_out_s, 0.1..=600.0),
+            ("session.wipe_s", self.session.wipe_s, 0.0..=600.0),
+            ("health.every_s", self.health.every_s, 0.0..=86_400.0),
+        ];
+        let outside = |(key, value, range): &(&str, f64, RangeInclusive<f64>)| {
+            let (least, most) = (range.start(), range.end());
+            (!range.contains(value))
+                .then(|| format!("{key} = {value} is not within {least} .. {most} seconds; correct it"))
+        };
+        let workers = self.machine.workers.filter(|w| !(1..=SHARES).contains(w));
+        times
+            .iter()
+            .find_map(outside)
+            .or_else(|| workers.map(|w| format!("machine.workers = {w} is not 1 or {SHARES}; correct it")))
+            .or_else(|| self.wear.garments.is_empty().then(|| "wear.garments is empty; name a garment".into()))
+            .or_else(|| self.display.fault())
+            .or_else(|| self.wear.quality.parse::<Quality>().err().map(|e| format!("wear.quality: {e}")))
+    }
+
+    /// What is worn.
+    pub fn wish(&self) -> Wish {
+        Wish {
+            garments: self.wear.garments.clone(),
+            size: self.wear.size.clone(),
+            quality: self.wear.quality.parse().unwrap_or_default(),
+            sex: None,
+        }
+    }
+
+    /// The rules of a session.
+    pub fn times(&self) -> SessionTimes {
+        let times = &self.session;
+        SessionTimes { step_in_ns: ns(times.step_in_s), step_out_ns: ns(times.step_out_s), wipe_ns: ns(times.wipe_s) }
+    }
+}
+
+/// Seconds of the configuration, none of which is negative, as the loop counts them.
+pub fn ns(seconds: f64) -> u64 {
+    (seconds * 1e9) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_example_is_the_default_and_explains_every_key() {
+        assert_eq!(Config::parse("kiosk.toml", EXAMPLE).unwrap(), Config::default());
+        for (table, names) in config_keys::KEYS {
+            assert!(EXAMPLE.contains(&format!("\n[{table}]\n")), "{table}");
+            for name in names {
+                assert!(
+                    EXAMPLE.lines().any(|l| l.trim_start_matches("# ").starts_with(&format!("{name} = "))),
+                    "{name}"
+                );
+            }
+        }
+        // Every key that is commented out works once it is not.
+        let is_key = |line: &str| line.starts_with("# ") && line.contains(" = ");
+        let all = EXAMPLE.lines().map(|l| if is_key(l) { &l[2..] } else { l }).collect::<Vec<_>>().join("\n");
+        let all = Config::parse("all.toml", &all).unwrap();
+        assert_eq!(
+            (all.wear.size.as_deref(), all.machine.workers, all.metrics.port),
+            (Some("40"), Some(2), Some(9520))
+        );
+        assert!(all.sensor.session.is_some() && all.crash.recording.is_some());
+    }
+
+    #[test]
+    fn an_empty_file_is_the_default() {
+        assert_eq!(Config::parse("empty.toml", "").unwrap(), Config::default());
+    }
+
+    #[test]
+    fn values_that_cannot_be_are_named_with_their_key() {
+        for (text, key) in [
+            ("[session]\nwipe_s = -1.0", "session.wipe_s"),
+            ("[session]\nmeasure_s = nan", "session.measure_s"),
+            ("[machine]\nworkers = 3", "machine.workers"),
+            ("[wear]\ngarments = []", "wear.garments"),
+            ("[wear]\nquality = \"best\"", "wear.quality"),
+            ("[display]\nlanguage = \"tlh\"", "display.language"),
+            ("[display]\npicture_minutes = 0.0", "display.picture_minutes"),
+            ("[display]\nmark_m = [0.0, nan]", "[display]"),
+        ] {
+            let said = Config::parse("k.toml", text).unwrap_err().to_string();
+            assert!(said.starts_with("k.toml: ") && said.contains(key), "{said}");
+        }
+    }
+
+    #[test]
+    fn a_value_of_another_kind_is_named_with_its_line() {
+        let said = Config::parse("k.toml", "[wear]\nquality = 3").unwrap_err().to_string();
+        assert!(said.starts_with("k.toml:2: ") && !said.contains('\n'), "{said}");
+        let said = Config::parse("k.toml", "\n[sensor]\nvmc = \"here\"").unwrap_err().to_string();
+        assert!(said.starts_with("k.toml:3: "), "{said}");
+        let said = Config::parse("k.toml", "[wear\n").unwrap_err().to_string();
+        assert!(said.starts_with("k.toml:1: "), "{said}");
+    }
+}

@@ -1,0 +1,258 @@
+//! The service: the whole loop, unattended, from shopper to shopper, until it is asked to end.
+//!
+//! Reads: a configuration, frames of a sensor. Writes: a health line, figures of the machine; nothing about a person.
+//! Budget: ready within 5 s of its start; a round of the service each 20 ms, under 100 us of the first core.
+//! Thread: the loop's own; a service thread, a dressing thread while somebody is measured, one for metrics.
+//!
+//! [`session`] is the state machine that a window drives too, [`controller`] decides by it, and [`runner`] polls the loop. How the
+//! loop's threads are joined, and how one dressed body takes another's place in them, is `toile_fitting::live`.
+
+pub mod config;
+mod config_keys;
+pub mod controller;
+pub mod health;
+pub mod instance;
+mod memory;
+#[cfg(feature = "metrics")]
+pub mod metrics;
+pub mod report;
+pub mod runner;
+pub mod service_manager;
+pub mod session;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use toile_engine::clock::{Clock, RealClock};
+use toile_engine::frame::Frame;
+use toile_engine::frame_loop::physics_thread::FrameScene;
+use toile_engine::frame_loop::render_thread::Renderer;
+use toile_engine::frame_loop::threads;
+use toile_engine::triple_buffer::Writer;
+use toile_fitting::dress::dressed;
+use toile_fitting::dress::session as sessions;
+use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
+use toile_fitting::live::dresser::{Dresser, ShopperSource};
+use toile_fitting::live::lateness::ThreadAccount;
+use toile_fitting::live::live_loop::LiveLoop;
+use toile_fitting::live::report::ThreadPlacement;
+use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
+use toile_fitting::live::source::{Feed, Visits};
+use toile_fitting::live::{crash, recording};
+use toile_sensors::source::Session;
+
+use crate::error::KioskError;
+use config::{Config, SensorSource};
+use controller::SessionController;
+use health::HealthFigures;
+use instance::InstanceLock;
+use report::KioskReport;
+use runner::{Service, ServiceEnvironment, ServiceOptions};
+use service_manager::{StopSignal, Systemd};
+
+/// What is asked of a run, beside its configuration.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct KioskOptions {
+    /// The configuration; `None` is the default one.
+    pub config: Option<PathBuf>,
+    /// A recording to play in place of what the configuration names.
+    pub session: Option<PathBuf>,
+    /// Name of this kiosk, where several run on one machine.
+    pub instance: Option<String>,
+    /// Whether it runs without a window.
+    pub headless: bool,
+    /// Size of a window (pixels), where it is not to cover the display.
+    pub windowed: Option<[u32; 2]>,
+    /// Length of the run (s); `None` runs until it is asked to end.
+    pub seconds: Option<u32>,
+    /// When it panics (s), to see what a crash leaves.
+    pub crash_after: Option<u64>,
+    /// Whether the system lets a program lock all of its memory, without limit.
+    pub may_lock_memory: bool,
+}
+
+/// Prints a line for whoever looks after the kiosk.
+pub type Say<'a> = &'a (dyn Fn(&str) + Sync);
+
+/// Runs a kiosk; with a window, by `windowed`.
+///
+/// # Errors
+/// A kiosk that already runs, a configuration, a session or a garment that cannot be used, a thread that ended while it ran; those
+/// of `windowed`.
+pub fn run(
+    options: &KioskOptions,
+    begun: Instant,
+    say: Say<'_>,
+    windowed: fn(KioskRun<'_>) -> Result<KioskReport, KioskError>,
+) -> Result<KioskReport, KioskError> {
+    let stop = StopSignal::listen().map_err(KioskError::internal)?;
+    let mut config = Config::open(options.config.as_deref())?;
+    if options.session.is_some() {
+        (config.sensor.source, config.sensor.session) = (SensorSource::Session, options.session.clone());
+    }
+    let _lock = InstanceLock::take(options.instance.as_deref())?;
+    let figures = figures(&config)?;
+    let clock = RealClock::default();
+    let run = KioskRun { options, config: &config, begun, clock, stop: &stop, say, figures };
+    if options.headless {
+        let renderer = |_: &Frame| Ok(HeadlessRenderer::default());
+        let frontend = Frontend { renderer, to_scene: |frame| (FrameScene::new(frame), ()), controller: |_| None };
+        Ok(serve(run, frontend)?.0)
+    } else {
+        windowed(run)
+    }
+}
+
+/// Where no window was built in.
+///
+/// # Errors
+/// That there is none, and the cure.
+pub fn without_window(_: KioskRun<'_>) -> Result<KioskReport, KioskError> {
+    let cure = "add `--headless`, or build with `--features kiosk`";
+    Err(KioskError::Usage(format!("`toile kiosk` has no window in this build; {cure}")))
+}
+
+/// A run of the kiosk: its options, its configuration, and what it was started with.
+pub struct KioskRun<'a> {
+    /// What is asked of it.
+    pub options: &'a KioskOptions,
+    /// The configuration.
+    pub config: &'a Config,
+    /// When the program was started.
+    pub begun: Instant,
+    /// The loop's clock.
+    pub clock: RealClock,
+    /// Whether it is to end.
+    pub stop: &'a StopSignal,
+    /// Prints a line.
+    pub say: Say<'a>,
+    figures: Option<Writer<HealthFigures>>,
+}
+
+/// How a run shows itself: without a display, or at a window.
+pub struct Frontend<F, H, O> {
+    /// Makes the renderer, once the mannequin is dressed.
+    pub renderer: F,
+    /// A dressed frame as a scene of the loop, and what the renderer has to know of it.
+    pub to_scene: fn(Frame) -> (FrameScene, O),
+    /// Makes the controller, given the recording that shoppers are measured from, if one is played.
+    pub controller: H,
+}
+
+/// A controller; `None` is that of the session alone.
+pub type BoxedController<'a, O> = Option<Box<dyn SessionController<FrameScene, O> + 'a>>;
+
+/// Sets everything up and runs until the end; returns the report, and the renderer.
+///
+/// # Errors
+/// As [`run`].
+pub fn serve<'a, E, F, H>(
+    run: KioskRun<'a>,
+    frontend: Frontend<F, H, E::Outfit>,
+) -> Result<(KioskReport, Option<E>), KioskError>
+where
+    E: Renderer<Outfit: Default> + 'static,
+    F: FnOnce(&Frame) -> Result<E, KioskError>,
+    H: FnOnce(Option<ShopperSource>) -> BoxedController<'a, E::Outfit>,
+{
+    let KioskRun { options, config, begun, clock, stop, say, figures } = run;
+    let wish = config.wish();
+    let session = played_session(config)?;
+    // The mannequin stands as somebody does in the recording: a pose, and no body.
+    let pose = sessions::standing(&session)?[0];
+    let dressed = dressed::mannequin(&wish, &pose)?;
+    let (feed, played) = feed(config, session, clock)?;
+    let workers = config.machine.workers.unwrap_or_else(workers);
+    let (crew, worker) = threads::worker_pool(workers).map_err(KioskError::input)?;
+    let locked = if config.machine.lock_memory { memory::lock(options.may_lock_memory) } else { Ok(()) };
+    let service_options = ServiceOptions {
+        begun,
+        length: options.seconds.map(|s| Duration::from_secs(s.into())),
+        crash_after: options.crash_after.map(Duration::from_secs),
+        times: config.times(),
+        measure_ns: config::ns(config.session.measure_s),
+        health_ns: config::ns(config.health.every_s),
+        played,
+        memory_locked: config.machine.lock_memory && locked.is_ok(),
+        warnings: locked.err().map(|e| e.to_string()).into_iter().collect(),
+    };
+    let (black_box, tape) = match config.crash.recording.clone() {
+        Some(path) => {
+            recording::keep(&dressed.dressing, path).map(|(black_box, tape)| (Some(black_box), Some(tape)))?
+        }
+        None => (None, None),
+    };
+    let renderer = (frontend.renderer)(&dressed.frame)?;
+    let first = DressedScene::new(dressed, |frame| (FrameScene::new(frame.with_workers(crew)), E::Outfit::default()));
+    let parts = LoopParts { first, renderer, source: feed, account: ThreadAccount::new(), recording: tape };
+    let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).map_err(KioskError::internal)?;
+    stop.graceful();
+    let changer = SceneChanger::new(handover, true, black_box.clone());
+    let environment = ServiceEnvironment {
+        manager: &Systemd,
+        stop,
+        say,
+        figures,
+        dresser: Dresser::new(wish),
+        to_scene: frontend.to_scene,
+        pose,
+        black_box,
+    };
+    let controller = (frontend.controller)(service_options.played.clone());
+    let service = Service::new(live, changer, service_options, environment);
+    let ran = match controller {
+        Some(controller) => service.controlled_by(controller).run(),
+        None => service.run(),
+    };
+    crash::forget();
+    let (ended, capacities, mut record) = ran?;
+    record.threads.extend(worker.map(ThreadPlacement::from));
+    let report = KioskReport::of(&ended, capacities, record);
+    Ok((report, ended.render.map(|watched| watched.render.renderer)))
+}
+
+/// The recording that is played, or for a live sensor the embedded one, whose shopper shows the mannequin how to stand.
+fn played_session(config: &Config) -> Result<Session, KioskError> {
+    let path = config.sensor.session.as_deref().filter(|_| config.sensor.source == SensorSource::Session);
+    Ok(sessions::open(path, None)?)
+}
+
+/// What the sensor reads, and what shoppers are then measured from.
+fn feed(config: &Config, session: Session, clock: RealClock) -> Result<(Feed, Option<ShopperSource>), KioskError> {
+    let address = config.sensor.vmc;
+    if config.sensor.source == SensorSource::Vmc {
+        let refused = |e| {
+            KioskError::Device(format!("nothing can be received at {address} ({e}); name a free one in sensor.vmc"))
+        };
+        return Ok((Feed::listen(address, clock).map_err(refused)?, None));
+    }
+    let session = Arc::new(session);
+    let visits = Visits::of(&session, clock.now_ns(), config::ns(config.sensor.pause_s));
+    Ok((Feed::Played(visits), Some(ShopperSource::Recording(session))))
+}
+
+fn workers() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from).min(toile_engine::workers::SHARES)
+}
+
+#[cfg(feature = "metrics")]
+fn figures(config: &Config) -> Result<Option<Writer<HealthFigures>>, KioskError> {
+    use toile_engine::triple_buffer::TripleBuffer;
+    let Some(port) = config.metrics.port else { return Ok(None) };
+    let TripleBuffer { writer, reader } = TripleBuffer::new(&HealthFigures::default());
+    let refused = |e| KioskError::Device(format!("port {port} of 127.0.0.1 cannot be opened ({e}); name a free one"));
+    metrics::serve(port, reader).map_err(refused)?;
+    Ok(Some(writer))
+}
+
+#[cfg(not(feature = "metrics"))]
+fn figures(config: &Config) -> Result<Option<Writer<HealthFigures>>, KioskError> {
+    match config.metrics.port {
+        None => Ok(None),
+        Some(_) => Err(KioskError::Input(
+            "metrics.port is set, but this build has no metrics; build with `--features metrics` or delete the key"
+                .into(),
+        )),
+    }
+}

@@ -1,0 +1,265 @@
+//! The service: polls everything fifty times a second and has a controller decide; it steps nothing and draws nothing itself.
+
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use toile_engine::frame::Frame;
+use toile_engine::frame_loop::flight_recorder::FlightRecorder;
+use toile_engine::frame_loop::physics_thread::Scene;
+use toile_engine::frame_loop::queue::Capacity;
+use toile_engine::frame_loop::render_thread::Renderer;
+use toile_engine::triple_buffer::Writer;
+use toile_fitting::live::dresser::{DressOutcome, Dresser, ShopperSource};
+use toile_fitting::live::live_loop::{EndedLive, LiveLoop};
+use toile_fitting::live::report::{Attributed, ThreadPlacement};
+use toile_fitting::live::scene_changer::SceneChanger;
+use toile_fitting::live::source::Feed;
+use toile_fitting::live::watchdog::Watchdog;
+use toile_sensors::frame::Joints;
+
+use super::controller::{ControllerContext, HeadlessController, SessionController};
+use super::health::{HealthCounter, HealthFigures};
+use super::report::RunRecord;
+use super::service_manager::{ServiceManager, ServiceStatus, StopSignal};
+use super::session::{SessionState, SessionTimes};
+use crate::error::KioskError;
+
+/// Time between two rounds: the queues hold seconds, and a signal to end waits for no longer.
+const POLL: Duration = Duration::from_millis(20);
+
+/// Most states that are listed one by one.
+const MOST_STATES: usize = 1000;
+
+/// Settings of the service.
+pub struct ServiceOptions {
+    /// When the program was started.
+    pub begun: Instant,
+    /// When it ends by itself.
+    pub length: Option<Duration>,
+    /// When it panics, to see what a crash leaves.
+    pub crash_after: Option<Duration>,
+    /// The session's times.
+    pub times: SessionTimes,
+    /// Time over which a shopper is measured (ns).
+    pub measure_ns: u64,
+    /// Time between two health lines (ns); 0 is never.
+    pub health_ns: u64,
+    /// The recording that shoppers are measured from, where one is played.
+    pub played: Option<ShopperSource>,
+    /// Whether all memory is kept resident.
+    pub memory_locked: bool,
+    /// What did not go as it should before the loop began.
+    pub warnings: Vec<String>,
+}
+
+/// What the service talks to beside the loop.
+pub struct ServiceEnvironment<'a, S, O> {
+    /// The service manager.
+    pub manager: &'a dyn ServiceManager,
+    /// Whether it is to end.
+    pub stop: &'a StopSignal,
+    /// Prints a health line.
+    pub say: &'a dyn Fn(&str),
+    /// Receives the figures, where metrics are served.
+    pub figures: Option<Writer<HealthFigures>>,
+    /// Who dresses shoppers.
+    pub dresser: Dresser,
+    /// What a dressed frame becomes in the loop, and what the renderer has to know of it.
+    pub to_scene: fn(Frame) -> (S, O),
+    /// How the mannequin stands.
+    pub pose: Joints,
+    /// What is kept for a crash, where somebody asked for it.
+    pub black_box: Option<Arc<FlightRecorder>>,
+}
+
+/// What is left of a run: the loops, how full their queues were, and the record.
+pub type ServiceEnd<S, E> = (EndedLive<S, E, Feed>, [Capacity; 3], RunRecord);
+
+/// The service while it runs.
+pub struct Service<'a, S: Scene, E: Renderer> {
+    live: LiveLoop<S, E, Feed>,
+    context: ControllerContext<S, E::Outfit>,
+    controller: Box<dyn SessionController<S, E::Outfit> + 'a>,
+    length: Option<Duration>,
+    crash_after: Option<Duration>,
+    begun: Instant,
+    every_ns: u64,
+    manager: &'a dyn ServiceManager,
+    stop: &'a StopSignal,
+    say: &'a dyn Fn(&str),
+    figures: Option<Writer<HealthFigures>>,
+    black_box: Option<Arc<FlightRecorder>>,
+    counter: HealthCounter,
+    dog: Option<Watchdog>,
+    /// The loop's time when it began, and when the next health line is due (ns).
+    began_ns: u64,
+    health_ns: u64,
+    record: RunRecord,
+}
+
+impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
+    /// Over threads that have been started.
+    pub fn new(
+        live: LiveLoop<S, E, Feed>,
+        changer: SceneChanger<S, E::Outfit>,
+        options: ServiceOptions,
+        environment: ServiceEnvironment<'a, S, E::Outfit>,
+    ) -> Self {
+        let now = live.now_ns();
+        let threads = live.threads.placements().iter().cloned().map(ThreadPlacement::from).collect();
+        let record = RunRecord {
+            figures: HealthFigures::default(),
+            ready_ms: None,
+            states: vec![SessionState::Attract],
+            attributed: Attributed::default(),
+            revived: 0,
+            threads,
+            memory_locked: options.memory_locked,
+            warnings: options.warnings.clone(),
+        };
+        let ServiceEnvironment { manager, stop, say, figures, dresser, to_scene, pose, black_box } = environment;
+        let controller = Box::new(HeadlessController::new(options.times, options.measure_ns, options.played, now));
+        Self {
+            live,
+            context: ControllerContext { changer, dresser, to_scene, pose },
+            controller,
+            length: options.length,
+            crash_after: options.crash_after,
+            begun: options.begun,
+            every_ns: options.health_ns,
+            dog: Watchdog::new(manager.watchdog_timeout(), now),
+            manager,
+            stop,
+            say,
+            figures,
+            black_box,
+            counter: HealthCounter::default(),
+            began_ns: now,
+            health_ns: now + options.health_ns,
+            record,
+        }
+    }
+
+    /// The same with another controller: one with pages, for a window.
+    #[must_use]
+    pub fn controlled_by(self, controller: Box<dyn SessionController<S, E::Outfit> + 'a>) -> Self {
+        Self { controller, ..self }
+    }
+
+    /// Runs until it is asked to end or its time is over. Returns a record of the run, and of the loop's threads.
+    ///
+    /// # Errors
+    /// Where a thread has ended that must not: whoever started the service starts it again.
+    pub fn run(mut self) -> Result<ServiceEnd<S, E>, KioskError> {
+        while !self.stop.is_requested() && !self.is_time_over() {
+            self.poll()?;
+            thread::sleep(POLL);
+        }
+        self.notify(ServiceStatus::Stopping);
+        self.count();
+        let (ended, capacities) = self.live.end();
+        Ok((ended, capacities, self.record))
+    }
+
+    fn is_time_over(&self) -> bool {
+        let uptime = Duration::from_nanos(self.live.now_ns() - self.began_ns);
+        let crashes = self.crash_after.is_some_and(|after| uptime >= after);
+        assert!(!crashes, "the crash that --crash-after asked for");
+        self.length.is_some_and(|length| uptime >= length)
+    }
+
+    /// One round.
+    fn poll(&mut self) -> Result<(), KioskError> {
+        if let Some(role) = self.live.threads.look().map_err(KioskError::internal)? {
+            return Err(KioskError::Internal(format!(
+                "the {} thread has ended while the kiosk ran; start the kiosk again",
+                role.name()
+            )));
+        }
+        self.watch();
+        let now = self.live.now_ns();
+        self.poll_controller(now)?;
+        self.count();
+        self.health(now);
+        Ok(())
+    }
+
+    /// Feeds the watchdog, if physics and render got on; the first time that both have, the service is ready.
+    fn watch(&mut self) {
+        let count = self.live.queues.progress.count();
+        if self.record.ready_ms.is_none() && count.iter().all(|n| *n > 0) {
+            self.record.ready_ms = Some((self.begun.elapsed().as_secs_f64() * 1e4).round() / 10.0);
+            self.notify(ServiceStatus::Ready);
+        }
+        let now = self.live.now_ns();
+        if self.dog.as_mut().is_some_and(|dog| dog.look(now, count)) {
+            self.notify(ServiceStatus::Alive);
+        }
+    }
+
+    fn notify(&mut self, status: ServiceStatus) {
+        if let Err(e) = self.manager.notify(status)
+            && !self.record.warnings.iter().any(|w| w.starts_with("the service manager"))
+        {
+            self.record.warnings.push(format!("the service manager cannot be reached ({e}); check NOTIFY_SOCKET"));
+        }
+    }
+
+    /// Has the controller decide, and does what is the service's to do.
+    fn poll_controller(&mut self, now: u64) -> Result<(), KioskError> {
+        while let Some(frame) = self.live.queues.frames.pop() {
+            self.controller.frame(frame);
+        }
+        match self.context.dresser.poll() {
+            Some(DressOutcome::Done(mannequin)) if mannequin.dressing.still => {
+                let scene = self.context.scene(*mannequin);
+                self.context.changer.stand_by(scene);
+            }
+            Some(DressOutcome::Panicked) => {
+                return Err(KioskError::Internal("the dresser's thread panicked; start the kiosk again".into()));
+            }
+            Some(work) => self.controller.work(work),
+            None => {}
+        }
+        if let Some(change) = self.controller.poll(now, &mut self.context)? {
+            if self.record.states.len() < MOST_STATES {
+                self.record.states.push(change.to);
+            }
+            if change.to == SessionState::Measuring {
+                self.counter.stepped_in(change.from == SessionState::Attract);
+            }
+        }
+        self.context.dress_mannequin()?;
+        self.context.changer.update();
+        Ok(())
+    }
+
+    fn count(&mut self) {
+        if let Some(black_box) = &self.black_box {
+            black_box.drain(|_| {});
+        }
+        while let Some(step) = self.live.queues.step_reports.pop() {
+            self.counter.step(&step);
+        }
+        while let Some(event) = self.live.queues.events.pop() {
+            self.counter.event(&event);
+        }
+        let [_, pictures] = self.live.queues.progress.count();
+        let uptime = self.live.now_ns() - self.began_ns;
+        self.record.revived = self.live.threads.revived();
+        self.record.attributed = self.counter.attributed();
+        self.record.figures = self.counter.figures(uptime, self.controller.state(), pictures);
+        if let Some(figures) = &mut self.figures {
+            figures.publish(self.record.figures);
+        }
+    }
+
+    fn health(&mut self, now: u64) {
+        if self.every_ns > 0 && now >= self.health_ns {
+            self.health_ns += self.every_ns;
+            (self.say)(&self.record.figures.to_string());
+            self.counter.reported();
+        }
+    }
+}

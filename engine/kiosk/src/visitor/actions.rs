@@ -1,0 +1,148 @@
+//! Actions: what can be pressed on a page, in the order of the Tab key; first what most will want next.
+
+use super::model::VisitModel;
+use super::screen::{Action, Page};
+use super::texts;
+use super::visit::MeasureProgress;
+use crate::service::session::SessionState;
+
+/// Actions of a page, at most.
+const MOST: usize = 24;
+
+/// What can be pressed.
+pub(super) type Actions = heapless::Vec<Action, MOST>;
+
+/// Why measuring cannot begin yet: what the shopper is to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum PositionHint {
+    Unseen,
+    Alone,
+    Nearer,
+    Farther,
+    Left,
+    Right,
+}
+
+/// Farther than this from the mark, measures get worse (m).
+const OFF_MARK_M: f32 = 0.35;
+
+impl VisitModel {
+    /// What the shopper is to do before they can be measured.
+    pub(super) fn hint(&self) -> Option<PositionHint> {
+        let [left, ahead] = self.seen.off_mark_m.unwrap_or_default();
+        match self.seen.people {
+            0 => Some(PositionHint::Unseen),
+            1 if self.seen.nearer => Some(PositionHint::Alone),
+            1 if ahead < -OFF_MARK_M => Some(PositionHint::Nearer),
+            1 if ahead > OFF_MARK_M => Some(PositionHint::Farther),
+            1 if left > OFF_MARK_M => Some(PositionHint::Right),
+            1 if left < -OFF_MARK_M => Some(PositionHint::Left),
+            1 => None,
+            _ => Some(PositionHint::Alone),
+        }
+    }
+
+    /// What can be pressed now.
+    pub(super) fn actions(&self) -> Actions {
+        use Action::*;
+        let mut list = Actions::new();
+        // Pages have fewer controls than there are places, and a control more would be left out rather than anything else.
+        let mut add = |actions: &[Action]| {
+            for action in actions {
+                let _ = list.push(*action);
+            }
+        };
+        match self.page() {
+            Page::Attract => {
+                add(&[Begin]);
+                (0..texts::Language::ALL.len()).for_each(|i| add(&[Language(i)]));
+                add(&[LargeType]);
+            }
+            Page::Guide if self.session.state() == SessionState::Attract => add(&[Seated, Open(Page::Settings), Leave]),
+            Page::Guide => {
+                add(&[Measure, Seated]);
+                self.go_on(&mut add);
+                add(&[Open(Page::Settings), Leave]);
+            }
+            Page::Measuring => add(&[Leave]),
+            Page::Unmeasured if self.visit.progress == MeasureProgress::Failed => {
+                add(&[Measure, Seated]);
+                self.go_on(&mut add);
+                add(&[Open(Page::Settings), Leave]);
+            }
+            Page::Unmeasured => add(&[Back, Measure, Seated, Leave]),
+            Page::Fitting => self.fitting(&mut add),
+            Page::Garments => {
+                (0..self.wardrobe.items.len()).for_each(|i| add(&[Garment(i)]));
+                let colours = self.wardrobe.items.get(self.visit.in_hand).map_or(0, |item| item.colours.len());
+                (0..colours).for_each(|i| add(&[Colour(i)]));
+                add(&[Back]);
+            }
+            Page::Zones => {
+                let zones = self.visit.fit.as_ref().map_or(0, |fit| fit.zones.len());
+                (0..zones).for_each(|i| add(&[Zone(i)]));
+                add(&[FitMap, Open(Page::Compare), Turn(-1), Turn(1), Back]);
+            }
+            Page::Zone => add(&[Back, Measure]),
+            Page::Compare => self.compare(&mut add),
+            Page::Picture if self.visit.picture.code().is_some() => add(&[DeletePicture, Back]),
+            Page::Picture if self.visit.snap_failed => add(&[TakePicture, Back]),
+            Page::Picture => add(&[Back]),
+            Page::Settings => {
+                add(&[Back]);
+                (0..texts::Language::ALL.len()).for_each(|i| add(&[Language(i)]));
+                add(&[LargeType]);
+                if self.session.state() == SessionState::TryOn {
+                    add(&[Measure, Leave]);
+                }
+            }
+            Page::Second => add(&[Stay, Begin]),
+            Page::Leaving => add(&[Stay, Leave]),
+        }
+        list
+    }
+
+    /// Who stands dressed need not be measured again.
+    fn go_on(&self, add: &mut impl FnMut(&[Action])) {
+        if self.visit.dressed {
+            add(&[Action::Back]);
+        }
+    }
+
+    fn fitting(&self, add: &mut impl FnMut(&[Action])) {
+        use Action::*;
+        add(&[Open(Page::Garments)]);
+        self.sizes(add, self.worn().map(|w| w.size), None);
+        add(&[Open(Page::Zones), Open(Page::Compare), Turn(-1), Turn(1)]);
+        let held = self.visit.picture.code().is_some();
+        add(&[if held { Open(Page::Picture) } else { TakePicture }, Open(Page::Settings), Leave]);
+    }
+
+    fn compare(&self, add: &mut impl FnMut(&[Action])) {
+        use Action::*;
+        let other = self.visit.pair.as_ref().map(|pair| pair.other.size);
+        if other.is_some() {
+            add(&[Wear]);
+        }
+        self.sizes(add, other, self.worn().map(|w| w.size));
+        add(&[Turn(-1), Turn(1), Back]);
+    }
+
+    /// The sizes before and after one, as far as they are made.
+    fn sizes(&self, add: &mut impl FnMut(&[Action]), size: Option<usize>, but: Option<usize>) {
+        let Some(size) = size else { return };
+        for step in [-1, 1] {
+            if self.beside(size, step, but).is_some() {
+                add(&[Action::Size(step)]);
+            }
+        }
+    }
+
+    /// The next size of the garment in hand in a direction that is made and is not the one to be passed over.
+    pub(super) fn beside(&self, size: usize, step: i8, but: Option<usize>) -> Option<usize> {
+        let made = self.wardrobe.items.get(self.visit.in_hand).map_or(0, |item| item.sizes.len());
+        let next = |from: usize| from.checked_add_signed(isize::from(step)).filter(|s| *s < made);
+        let first = next(size)?;
+        if Some(first) == but { next(first) } else { Some(first) }
+    }
+}

@@ -1,0 +1,263 @@
+//! The controller of a visit: feeds the visitor's model with what the sensor and the window report, and carries out its effects.
+
+use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::frame_loop::physics_thread::Scene;
+use toile_engine::frame_loop::queue::Sender;
+use toile_engine::frame_loop::sensor_thread::ObservedFrame;
+use toile_engine::triple_buffer::Writer;
+use toile_fitting::dress::session;
+use toile_fitting::live::dresser::{DressOutcome, ShopperSource};
+use toile_sensors::frame::Joints;
+use toile_track::gesture::Gestures;
+
+use super::dressing_worker::{DressingContext, DressingJob, DressingWorker, JobResult, MeasuredVisitor};
+use super::model::{Effect, Input, VisitModel};
+use super::presence::{Presence, PresenceTracker};
+use super::reach::DisplayMount;
+use super::screen::Screen;
+use super::texts::Texts;
+use super::wardrobe::Outfit;
+use crate::error::KioskError;
+use crate::service::controller::{ControllerContext, FEWEST_FRAMES, MOST_FRAMES, STALE_NS, SessionController};
+use crate::service::session::{SessionState, StateChange};
+
+/// Two outfits, draped, as the renderer draws them: left and right.
+pub type OutfitPair<O> = Box<[O; 2]>;
+
+/// The next input from the display since the last poll, if any.
+pub type NextInput<'a> = Box<dyn FnMut() -> Option<Input> + 'a>;
+
+/// The ends of the window's channels.
+pub struct WindowChannels<'a, O> {
+    /// Where screens go: the latest is shown.
+    pub screens: Writer<Screen>,
+    /// What is asked for at the display: the end of a bounded queue.
+    pub next_input: NextInput<'a>,
+    /// Where two outfits go, and none when they are to be seen no more.
+    pub pairs: Sender<Option<OutfitPair<O>>>,
+    /// What the renderer has to know of a frame as it lies in a snapshot.
+    pub draped: fn(&Frame, &Snapshot) -> O,
+}
+
+/// Measuring that takes longer than this many times its own time has found nobody.
+const PATIENCE: u64 = 4;
+
+/// Jobs that wait for the worker: the last of each kind.
+#[derive(Default)]
+struct PendingJobs {
+    measure: Option<(u32, ShopperSource, bool)>,
+    dress: Option<(u32, Outfit)>,
+    two: Option<(u32, Box<[Outfit; 2]>)>,
+    snap: Option<(u32, Outfit, f32)>,
+}
+
+/// A measurement under way.
+struct OngoingMeasurement {
+    number: u32,
+    seated: bool,
+    since_ns: u64,
+    frames: Vec<Joints>,
+}
+
+/// The controller of a visit.
+pub struct VisitController<'a, O> {
+    model: VisitModel,
+    texts: Texts,
+    mount: DisplayMount,
+    window: WindowChannels<'a, O>,
+    worker: DressingWorker,
+    /// The recording that shoppers are measured from, where one is played.
+    played: Option<ShopperSource>,
+    presence: PresenceTracker,
+    gestures: Gestures,
+    /// When a frame last came (ns), what was seen in it, and the last in which somebody stood.
+    seen: (u64, Presence),
+    pose: Option<Joints>,
+    /// Gestures that the model has yet to take.
+    made: Vec<toile_track::gesture::Gesture>,
+    measuring: Option<OngoingMeasurement>,
+    jobs: PendingJobs,
+    /// Whether the next who is dressed is another one than is shown.
+    afresh: bool,
+    shown: Option<Screen>,
+}
+
+impl<'a, O> VisitController<'a, O> {
+    /// Nobody is there. `mark` is the mark's place on the floor (x, z in the sensor's world, m), if that is known.
+    pub fn new(
+        (model, texts, mount): (VisitModel, Texts, DisplayMount),
+        window: WindowChannels<'a, O>,
+        context: DressingContext,
+        played: Option<ShopperSource>,
+        mark: Option<[f32; 2]>,
+    ) -> Self {
+        Self {
+            model,
+            texts,
+            mount,
+            window,
+            worker: DressingWorker::new(context),
+            played,
+            presence: PresenceTracker::new(mark),
+            gestures: Gestures::new(),
+            seen: (0, Presence::default()),
+            pose: None,
+            made: Vec::new(),
+            measuring: None,
+            jobs: PendingJobs::default(),
+            afresh: true,
+            shown: None,
+        }
+    }
+
+    /// Updates the model with an input and carries out its effects.
+    fn update<S: Scene>(&mut self, now: u64, input: Input, context: &mut ControllerContext<S, O>) {
+        for effect in self.model.update(now, input) {
+            self.run(now, effect, context);
+        }
+    }
+
+    fn run<S: Scene>(&mut self, now: u64, effect: Effect, context: &mut ControllerContext<S, O>) {
+        match effect {
+            Effect::Measure { number, seated } => {
+                self.measuring = Some(OngoingMeasurement { number, seated, since_ns: now, frames: Vec::new() });
+            }
+            Effect::Dress { number, outfit } => self.jobs.dress = Some((number, outfit)),
+            Effect::DrapeTwo { number, outfits } => self.jobs.two = Some((number, outfits)),
+            Effect::Snap { number, outfit, yaw } => self.jobs.snap = Some((number, outfit, yaw)),
+            Effect::Hide => self.clear(context),
+            Effect::Forget => {
+                self.clear(context);
+                self.pose = None;
+                self.presence.forget();
+                self.gestures.reset();
+                self.made.clear();
+            }
+        }
+    }
+
+    /// Nothing of the shopper is to be seen any more, and no work for them goes on.
+    fn clear<S: Scene>(&mut self, context: &mut ControllerContext<S, O>) {
+        self.worker.forget();
+        (self.jobs, self.measuring, self.afresh) = (PendingJobs::default(), None, true);
+        context.changer.wipe();
+        self.window.pairs.push(None);
+    }
+
+    /// Takes what the worker has done.
+    fn done<S: Scene>(&mut self, now: u64, number: u32, done: JobResult, context: &mut ControllerContext<S, O>) {
+        let input = match done {
+            JobResult::Measured(known) => Input::Measured(number, known),
+            JobResult::Dressed(dressed) => {
+                // What was asked for before something else was is not shown.
+                if !self.model.awaits_dress(number) {
+                    return;
+                }
+                let act = context.scene(*dressed);
+                context.changer.show(act, std::mem::take(&mut self.afresh));
+                Input::Dressed(number)
+            }
+            JobResult::Two(two) => {
+                let [left, right] = two.each_ref().map(|(frame, snapshot)| (self.window.draped)(frame, snapshot));
+                self.window.pairs.push(Some(Box::new([left, right])));
+                Input::Draped(number)
+            }
+            JobResult::Picture(code) => Input::PictureTaken(number, code),
+            JobResult::Failed => Input::Failed(number),
+        };
+        self.update(now, input, context);
+    }
+
+    /// Ends measuring when enough was seen, or when too little came for too long.
+    fn measure<S: Scene>(&mut self, now: u64, context: &mut ControllerContext<S, O>) {
+        let Some(measuring) = &self.measuring else { return };
+        let (lasted, whole) = (now.saturating_sub(measuring.since_ns), self.model.times().measure_ns);
+        let enough = measuring.frames.len() >= FEWEST_FRAMES;
+        if lasted < whole || (!enough && lasted < PATIENCE * whole) {
+            return;
+        }
+        let Some(OngoingMeasurement { number, seated, frames, .. }) = self.measuring.take() else { return };
+        if enough {
+            let model = self.played.clone().unwrap_or(ShopperSource::Joints(frames));
+            self.jobs.measure = Some((number, model, seated));
+        } else {
+            self.update(now, Input::Failed(number), context);
+        }
+    }
+
+    /// Gives the worker the next job.
+    fn start_next_job(&mut self) -> Result<(), KioskError> {
+        if self.worker.is_busy() {
+            return Ok(());
+        }
+        let client = || Some(Box::new(MeasuredVisitor { known: self.model.known()?.clone(), pose: self.pose? }));
+        let jobs = &mut self.jobs;
+        let job = if let Some((number, model, seated)) = jobs.measure.take() {
+            Some((number, DressingJob::Measure(model, seated)))
+        } else if let Some((number, outfit)) = jobs.dress.take() {
+            client().map(|client| (number, DressingJob::Dress(client, outfit)))
+        } else if let Some((number, outfits)) = jobs.two.take() {
+            client().map(|client| (number, DressingJob::Two(client, outfits)))
+        } else if let Some((number, outfit, yaw)) = jobs.snap.take() {
+            client().map(|client| (number, DressingJob::Snap(client, outfit, yaw)))
+        } else {
+            None
+        };
+        let Some((number, job)) = job else { return Ok(()) };
+        self.worker.begin(number, job).map_err(KioskError::internal)
+    }
+
+    /// Shows what has changed.
+    fn show(&mut self) {
+        let screen = Screen::of(&self.model, &self.texts, &self.mount);
+        if self.shown.as_ref() != Some(&screen) {
+            self.window.screens.publish(screen.clone());
+            self.shown = Some(screen);
+        }
+    }
+}
+
+impl<S: Scene, O> SessionController<S, O> for VisitController<'_, O> {
+    fn state(&self) -> SessionState {
+        self.model.state()
+    }
+
+    fn frame(&mut self, frame: ObservedFrame) {
+        let ObservedFrame { raw, filtered, depth } = frame;
+        self.seen = (raw.time_ns, self.presence.push(&raw));
+        if session::is_present(&filtered) {
+            self.pose = Some(filtered);
+        }
+        let depth = depth.as_ref().map(|image| image.frame());
+        self.made.extend(self.gestures.push(&filtered, depth).into_iter().flatten().map(|event| event.gesture));
+        if let Some(measuring) = &mut self.measuring
+            && session::is_present(&raw)
+            && measuring.frames.len() < MOST_FRAMES
+        {
+            measuring.frames.push(raw);
+        }
+    }
+
+    fn work(&mut self, _work: DressOutcome) {}
+
+    fn poll(&mut self, now: u64, context: &mut ControllerContext<S, O>) -> Result<Option<StateChange>, KioskError> {
+        let from = self.model.state();
+        let stale = now.saturating_sub(self.seen.0) >= STALE_NS;
+        let seen = if stale { Presence::default() } else { self.seen.1 };
+        self.update(now, Input::Presence(seen), context);
+        while let Some(input) = (self.window.next_input)() {
+            self.update(now, input, context);
+        }
+        for gesture in std::mem::take(&mut self.made) {
+            self.update(now, Input::Gesture(gesture), context);
+        }
+        if let Some((number, done)) = self.worker.poll()? {
+            self.done(now, number, done, context);
+        }
+        self.measure(now, context);
+        self.start_next_job()?;
+        self.show();
+        let to = self.model.state();
+        Ok((from != to).then_some(StateChange { from, to }))
+    }
+}

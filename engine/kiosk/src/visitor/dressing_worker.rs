@@ -1,0 +1,260 @@
+//! The dressing worker: measures a shopper, dresses them, drapes two sizes and takes a picture, one after the other, on a thread of its own that
+//! nothing waits for.
+
+use std::sync::Arc;
+
+use toile_engine::cloth::Quality;
+use toile_engine::frame::{Frame, Snapshot};
+use toile_fitting::dress::dressed::Dressed;
+use toile_fitting::dress::measured::{self, Told};
+use toile_fitting::dress::recipe::Recipe;
+use toile_fitting::dress::wish;
+use toile_fitting::live::background::{BackgroundJob, Finished};
+use toile_fitting::live::dresser::ShopperSource;
+use toile_sensors::frame::Joints;
+use toile_track::fit::measuring::MEASURES;
+use toile_view::drawn_frame;
+use toile_view::image::{Size, linear};
+
+use super::picture::{self, PictureCode, RgbImage};
+use super::size_fit::VisitorMeasures;
+use super::wardrobe::{Outfit, Wardrobe};
+use crate::error::KioskError;
+
+/// Size at which a picture is drawn, to be made smaller: twice the largest that a code holds.
+const DRAWN: Size = Size::new(192, 320);
+
+/// A frame that was dressed, and the snapshot of it.
+pub type DrapedFrame = (Frame, Snapshot);
+
+/// Somebody who was measured, in the pose in which they are dressed.
+#[derive(Debug, Clone)]
+pub struct MeasuredVisitor {
+    /// What was measured of them.
+    pub known: VisitorMeasures,
+    /// The joints in which they are dressed.
+    pub pose: Joints,
+}
+
+/// What is to be done.
+#[derive(Debug, Clone)]
+pub enum DressingJob {
+    /// Measure somebody, seated or standing.
+    Measure(ShopperSource, bool),
+    /// Dress somebody.
+    Dress(Box<MeasuredVisitor>, Outfit),
+    /// Drape two outfits on them.
+    Two(Box<MeasuredVisitor>, Box<[Outfit; 2]>),
+    /// Take a picture of them from an angle (rad).
+    Snap(Box<MeasuredVisitor>, Outfit, f32),
+}
+
+/// What became of a job.
+pub enum JobResult {
+    /// Somebody was measured.
+    Measured(Box<VisitorMeasures>),
+    /// They are dressed.
+    Dressed(Box<Dressed>),
+    /// Both outfits are draped.
+    Two(Box<[DrapedFrame; 2]>),
+    /// The picture as a code.
+    Picture(PictureCode),
+    /// It could not be done; why is not reported, for it may say something about them.
+    Failed,
+}
+
+/// What every job needs.
+#[derive(Debug)]
+pub struct DressingContext {
+    /// The garments.
+    pub wardrobe: Arc<Wardrobe>,
+    /// How their cloth is stepped.
+    pub quality: Quality,
+}
+
+/// The worker.
+pub struct DressingWorker {
+    context: Arc<DressingContext>,
+    job: BackgroundJob<(u32, Result<JobResult, KioskError>)>,
+}
+
+impl DressingWorker {
+    /// Without a job.
+    pub fn new(context: DressingContext) -> Self {
+        Self { context: Arc::new(context), job: BackgroundJob::default() }
+    }
+
+    /// Whether a job is under way, wanted or not.
+    pub fn is_busy(&self) -> bool {
+        self.job.is_running()
+    }
+
+    /// Begins a job, by its number.
+    ///
+    /// # Errors
+    /// Where the system gives no thread.
+    pub fn begin(&mut self, number: u32, job: DressingJob) -> std::io::Result<()> {
+        let context = self.context.clone();
+        self.job.start("toile-visitor", move || (number, context.work(job)))
+    }
+
+    /// The shopper has left: what comes of the job is thrown away.
+    pub fn forget(&mut self) {
+        self.job.abandon();
+    }
+
+    /// What has come of a job, once, when it has ended.
+    ///
+    /// # Errors
+    /// Where its thread panicked.
+    pub fn poll(&mut self) -> Result<Option<(u32, JobResult)>, KioskError> {
+        match self.job.poll() {
+            Some(Finished::Panicked) => {
+                Err(KioskError::Internal("the dressing thread panicked; start the kiosk again".into()))
+            }
+            Some(Finished::Done { value: (number, done), wanted: true }) => {
+                Ok(Some((number, done.unwrap_or(JobResult::Failed))))
+            }
+            Some(Finished::Done { .. }) | None => Ok(None),
+        }
+    }
+}
+
+impl DressingContext {
+    fn work(&self, job: DressingJob) -> Result<JobResult, KioskError> {
+        Ok(match job {
+            DressingJob::Measure(model, seated) => JobResult::Measured(Box::new(self.measure(model, seated)?)),
+            DressingJob::Dress(client, outfit) => {
+                JobResult::Dressed(Box::new(Dressed::make(self.recipe(&client, &outfit)?, &client.pose, false)?))
+            }
+            DressingJob::Two(client, outfits) => {
+                let [left, right] = &*outfits;
+                JobResult::Two(Box::new([self.draped(&client, left)?, self.draped(&client, right)?]))
+            }
+            DressingJob::Snap(client, outfit, yaw) => JobResult::Picture(self.picture(&client, &outfit, yaw)?),
+        })
+    }
+
+    /// Measures whoever stands or sits there.
+    fn measure(&self, source: ShopperSource, seated: bool) -> Result<VisitorMeasures, KioskError> {
+        let measured = measured::measure(&source.session(), Told { seated, ..Told::default() })?;
+        let known = VisitorMeasures { population: measured.population, ..VisitorMeasures::new(measured.best, seated) };
+        Ok(match measured.fitted {
+            Some(_) => VisitorMeasures { count: MEASURES.len() as u32, ..known },
+            None => known,
+        })
+    }
+
+    fn recipe(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<Recipe, KioskError> {
+        let mut styles = Vec::with_capacity(worn.len());
+        let mut garments = Vec::with_capacity(worn.len());
+        for w in worn {
+            let item = self
+                .wardrobe
+                .items
+                .get(w.item)
+                .ok_or_else(|| KioskError::internal("a garment is not in the wardrobe"))?;
+            let size = item.sizes.get(w.size).ok_or_else(|| KioskError::internal("a size is not made"))?;
+            styles.push(item.style.clone());
+            garments.push((item.style.name.clone(), size.clone()));
+        }
+        let sex = measured::sex(client.known.population, wish::population(&styles)?);
+        Ok(Recipe::of("shopper", &client.known.measured, sex, garments, self.quality)?)
+    }
+
+    fn draped(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<DrapedFrame, KioskError> {
+        let Dressed { mut frame, mut reader, .. } = Dressed::make(self.recipe(client, worn)?, &client.pose, false)?;
+        frame.step(&client.pose);
+        let snapshot = reader.latest().clone();
+        Ok((frame, snapshot))
+    }
+
+    fn picture(&self, client: &MeasuredVisitor, worn: &Outfit, yaw: f32) -> Result<PictureCode, KioskError> {
+        let (frame, snapshot) = self.draped(client, worn)?;
+        let colour = |w: &super::wardrobe::WornItem| self.wardrobe.items.get(w.item)?.colours.get(w.colour);
+        let colours: Vec<[f32; 3]> = worn.iter().filter_map(colour).map(|c| c.srgb.map(linear)).collect();
+        let image = drawn_frame::still(&frame, &snapshot, yaw, &colours, DRAWN);
+        let still = RgbImage { size: image.size(), bytes: image.bytes().to_vec() };
+        picture::encode(&still).map_err(KioskError::internal)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::visitor::size_fit::{BodyPart, MeasureBasis};
+    use crate::visitor::wardrobe::WornItem;
+    use toile_assets::sizes::Girth;
+    use toile_fitting::dress::session;
+    use toile_sensors::source::Session;
+
+    fn context() -> DressingContext {
+        DressingContext { wardrobe: Arc::new(Wardrobe::stock().unwrap()), quality: Quality::Draft }
+    }
+
+    fn session() -> Session {
+        session::open(None, None).unwrap()
+    }
+
+    #[test]
+    fn depth_gives_eleven_measures_joints_fewer_and_a_chair_fewest() {
+        let (context, session) = (context(), session());
+        let depth = context.measure(ShopperSource::Recording(Arc::new(session.clone())), false).unwrap();
+        assert!(depth.missing.is_empty() && depth.count == 11 && !depth.seated);
+        assert_eq!(depth.basis(Girth::Waist), MeasureBasis::Seen);
+        let stature = depth.measured.measures.stature.unwrap();
+        assert!((stature.value - 1.694).abs() < 0.02, "{stature:?}");
+        let joints = context.measure(ShopperSource::Joints(session.joints.clone()), false).unwrap();
+        assert!(joints.count < depth.count && joints.basis(Girth::Waist) == MeasureBasis::Bones);
+        let seated = context.measure(ShopperSource::Recording(Arc::new(session)), true).unwrap();
+        assert!(seated.count < joints.count && seated.seated);
+        assert_eq!(seated.missing, [BodyPart::Hip, BodyPart::Legs]);
+        assert_eq!(seated.basis(Girth::Hip), MeasureBasis::Guessed);
+        assert!(matches!(
+            context.work(DressingJob::Measure(ShopperSource::Joints(Vec::new()), false)),
+            Err(KioskError::Input(_))
+        ));
+    }
+
+    #[test]
+    fn two_sizes_of_one_garment_are_draped_apart_and_a_picture_is_a_code() {
+        let (context, session) = (context(), session());
+        let track = session::filtered(&session);
+        let pose = track[session::first_standing(&track)];
+        let known = context.measure(ShopperSource::Joints(session.joints), false).unwrap();
+        let item = context.wardrobe.find("t-shirt").unwrap();
+        let outfit = |size, colour| -> Outfit { [WornItem { item, size, colour }].into_iter().collect() };
+        let client = Box::new(MeasuredVisitor { known, pose });
+        let mut worker = DressingWorker::new(context);
+        let mut done = |number, job| {
+            worker.begin(number, job).unwrap();
+            assert!(worker.is_busy());
+            loop {
+                match worker.poll().unwrap() {
+                    Some((n, done)) => {
+                        assert_eq!(n, number);
+                        return done;
+                    }
+                    None => std::thread::sleep(std::time::Duration::from_millis(5)),
+                }
+            }
+        };
+        let JobResult::Two(two) = done(7, DressingJob::Two(client.clone(), Box::new([outfit(1, 0), outfit(4, 0)])))
+        else {
+            panic!()
+        };
+        let wide = |d: &DrapedFrame| d.1.garments[0].iter().map(|p| p.x.abs()).fold(0.0, f32::max);
+        assert_ne!(wide(&two[0]), wide(&two[1]));
+        let JobResult::Picture(code) = done(8, DressingJob::Snap(client.clone(), outfit(2, 3), 0.0)) else { panic!() };
+        assert!(code.side >= 101 && code.dark.len() == code.side * code.side, "{code:?}");
+        let JobResult::Dressed(dressed) = done(9, DressingJob::Dress(client.clone(), outfit(2, 3))) else { panic!() };
+        assert_eq!(dressed.dressing.recipe.garments, [("t-shirt".to_owned(), "S".to_owned())]);
+        let JobResult::Failed = done(10, DressingJob::Dress(client.clone(), outfit(99, 0))) else { panic!() };
+        // Who has left gets nothing.
+        worker.begin(11, DressingJob::Dress(client, outfit(2, 3))).unwrap();
+        worker.forget();
+        while worker.is_busy() {
+            assert!(worker.poll().unwrap().is_none());
+        }
+    }
+}

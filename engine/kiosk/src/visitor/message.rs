@@ -1,0 +1,159 @@
+//! Messages: the inputs of the visitor's model and its effects, with the times that it keeps.
+
+use toile_track::gesture::Gesture;
+
+use super::picture::PictureCode;
+use super::presence::Presence;
+use super::screen::Action;
+use super::size_fit::VisitorMeasures;
+use super::texts::Language;
+use super::wardrobe::Outfit;
+use crate::service::session;
+
+/// Effects of one input, at most.
+const EFFECTS: usize = 8;
+
+/// The effects of one input.
+pub type Effects = heapless::Vec<Effect, EFFECTS>;
+
+/// Times of a visit (ns).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct VisitTimes {
+    /// Stepping in, stepping out, wiping.
+    pub session: session::SessionTimes,
+    /// They stand as they should for so long before measuring begins.
+    pub ready_ns: u64,
+    /// Who has pressed something at the display is given so long to walk back.
+    pub walk_ns: u64,
+    /// Measuring takes so long, without what comes of it.
+    pub measure_ns: u64,
+    /// Somebody else is there for so long before they are asked who they are.
+    pub stranger_ns: u64,
+    /// Who is asked answers within that, or everything is forgotten.
+    pub answer_ns: u64,
+    /// Who touched something is there for so long, seen or not.
+    pub touch_ns: u64,
+    /// Who has touched something while nobody is seen is waited for so long.
+    pub begin_ns: u64,
+    /// A picture is kept for so long.
+    pub picture_ns: u64,
+}
+
+const SECOND: u64 = 1_000_000_000;
+
+impl VisitTimes {
+    /// The usual times, around those that are configured.
+    pub const fn usual(session: session::SessionTimes, measure_ns: u64, picture_ns: u64) -> Self {
+        Self {
+            session,
+            ready_ns: 3 * SECOND / 2,
+            walk_ns: 4 * SECOND,
+            measure_ns,
+            stranger_ns: SECOND,
+            answer_ns: 20 * SECOND,
+            touch_ns: 10 * SECOND,
+            begin_ns: 30 * SECOND,
+            picture_ns,
+        }
+    }
+}
+
+/// How every visit begins.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VisitDefaults {
+    /// Times of a visit.
+    pub times: VisitTimes,
+    /// The language before somebody chooses one.
+    pub language: Language,
+    /// Whether type is large before somebody chooses.
+    pub large: bool,
+    /// What everybody wears first, by name, inner first; those that the wardrobe does not have are left out.
+    pub wear: Vec<String>,
+    /// The size that everybody wears first, where a garment is made in it; else each gets the one that fits.
+    pub size: Option<String>,
+}
+
+/// A key of a keyboard, or of a row of buttons.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum NavigationKey {
+    /// To the next control.
+    Tab,
+    /// To the control before: Tab with Shift.
+    BackTab,
+    /// To the control on the left, or before.
+    Left,
+    /// To the control on the right, or after.
+    Right,
+    /// To the control above, or before.
+    Up,
+    /// To the control below, or after.
+    Down,
+    /// Presses what has the focus.
+    Enter,
+    /// Back.
+    Escape,
+}
+
+/// An input of the model. Replies carry the number of the effect; a reply that nobody waits for any more is ignored.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Input {
+    /// Time passes.
+    Tick,
+    /// What is seen; it holds until the next.
+    Presence(Presence),
+    /// A control was pressed by finger or mouse. One that is not on the page is ignored.
+    Pressed(Action),
+    /// A key.
+    Key(NavigationKey),
+    /// A gesture.
+    Gesture(Gesture),
+    /// Somebody was measured.
+    Measured(u32, Box<VisitorMeasures>),
+    /// A body of theirs stands dressed.
+    Dressed(u32),
+    /// Both sizes are draped.
+    Draped(u32),
+    /// The picture is taken.
+    PictureTaken(u32, PictureCode),
+    /// What was asked for cannot be done.
+    Failed(u32),
+}
+
+/// An effect, which others carry out. Each that is replied to has a number.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Effect {
+    /// Measure whoever stands there; [`Input::Measured`].
+    Measure {
+        /// Its number.
+        number: u32,
+        /// Whether they sit: nothing is to be taken from their legs and hips.
+        seated: bool,
+    },
+    /// Dress a body of the measures that were taken and show it; [`Input::Dressed`].
+    Dress {
+        /// Its number.
+        number: u32,
+        /// Garments and sizes, inner first.
+        outfit: Outfit,
+    },
+    /// Drape the outfit in two sizes of one garment, for both to be shown; [`Input::DrapedFrame`].
+    DrapeTwo {
+        /// Its number.
+        number: u32,
+        /// Left, and right.
+        outfits: Box<[Outfit; 2]>,
+    },
+    /// Take a picture of the dressed body; [`Input::PictureTaken`].
+    Snap {
+        /// Its number.
+        number: u32,
+        /// What it wears.
+        outfit: Outfit,
+        /// From where it is looked at (rad).
+        yaw: f32,
+    },
+    /// Show the mannequin at once: somebody else looks.
+    Hide,
+    /// The shopper has left: nothing of them is to stay anywhere.
+    Forget,
+}

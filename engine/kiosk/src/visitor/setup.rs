@@ -1,0 +1,105 @@
+//! Setup: the visitor's parts as the configuration of the kiosk has them.
+
+use std::sync::Arc;
+
+use super::controller::{VisitController, WindowChannels};
+use super::dressing_worker::DressingContext;
+use super::model::{VisitDefaults, VisitModel, VisitTimes};
+use super::reach::DisplayMount;
+use super::screen::Screen;
+use super::texts::{Language, Texts};
+use super::wardrobe::Wardrobe;
+use crate::error::KioskError;
+use crate::service::config::{self, Config};
+use toile_fitting::live::dresser::ShopperSource;
+
+/// A minute (s).
+const MINUTE_S: f64 = 60.0;
+
+/// Everything that is made before there is a window.
+pub struct VisitorSetup {
+    model: VisitModel,
+    texts: Texts,
+    mount: DisplayMount,
+    context: DressingContext,
+    mark: Option<[f32; 2]>,
+}
+
+impl VisitorSetup {
+    /// As configured, with nobody there, at this time of the loop's clock (ns).
+    ///
+    /// # Errors
+    /// A display whose controls nobody reaches, a garment that is not in the wardrobe or cannot be used.
+    pub fn new(config: &Config, now_ns: u64) -> Result<Self, KioskError> {
+        let display = &config.display;
+        let mount = DisplayMount { lower_edge_mm: display.lower_edge_mm, height_mm: display.height_mm };
+        if let Some(fault) = mount.fault() {
+            return Err(KioskError::Input(fault));
+        }
+        let wardrobe = Arc::new(Wardrobe::stock()?);
+        let unknown = config.wear.garments.iter().find(|name| wardrobe.find(name).is_none());
+        if let Some(name) = unknown {
+            let known: Vec<&str> = wardrobe.items.iter().map(|item| item.style.name.as_str()).collect();
+            return Err(KioskError::Input(format!(
+                "wear.garments: {name} is not in the wardrobe; choose of {}",
+                known.join(", ")
+            )));
+        }
+        let measure_ns = config::ns(config.session.measure_s);
+        let defaults = VisitDefaults {
+            times: VisitTimes::usual(config.times(), measure_ns, config::ns(display.picture_minutes * MINUTE_S)),
+            language: Language::of(&display.language).unwrap_or_default(),
+            large: display.large_type,
+            wear: config.wear.garments.clone(),
+            size: config.wear.size.clone(),
+        };
+        let context = DressingContext { wardrobe: wardrobe.clone(), quality: config.wish().quality };
+        let model = VisitModel::new(defaults, wardrobe, now_ns);
+        Ok(Self { model, texts: Texts::load()?, mount, context, mark: display.mark_m })
+    }
+
+    /// What is shown first.
+    pub fn first(&self) -> Screen {
+        Screen::of(&self.model, &self.texts, &self.mount)
+    }
+
+    /// At work behind a window. `played` is the recording that shoppers are measured from, where one is played.
+    pub fn controller<O>(self, window: WindowChannels<'_, O>, played: Option<ShopperSource>) -> VisitController<'_, O> {
+        VisitController::new((self.model, self.texts, self.mount), window, self.context, played, self.mark)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::visitor::screen::Page;
+
+    #[test]
+    fn what_is_configured_is_what_is_shown_first() {
+        let text = "[display]\nlanguage = \"tr\"\nlarge_type = true\nlower_edge_mm = 300.0\nheight_mm = 1500.0\n";
+        let setup = VisitorSetup::new(&Config::parse("k.toml", text).unwrap(), 0).unwrap();
+        let first = setup.first();
+        assert_eq!((first.page, first.language), (Page::Attract, "tr"));
+        assert!(first.type_scale > 1.0);
+        let high = 300.0 + first.reach * 1500.0;
+        assert!((high - 1220.0).abs() < 0.5, "{high}");
+    }
+
+    #[test]
+    fn all_configured_languages_are_spoken() {
+        assert_eq!(config::LANGUAGES, Language::ALL.map(Language::tag));
+        let display = config::DisplayConfig::default();
+        let mount = DisplayMount { lower_edge_mm: display.lower_edge_mm, height_mm: display.height_mm };
+        assert_eq!(mount, DisplayMount::default());
+    }
+
+    #[test]
+    fn what_nobody_could_use_is_refused() {
+        for (text, word) in
+            [("[display]\nlower_edge_mm = 1000.0", "within reach"), ("[wear]\ngarments = [\"tent\"]", "tent")]
+        {
+            let refused = VisitorSetup::new(&Config::parse("k.toml", text).unwrap(), 0).err().unwrap();
+            assert!(matches!(&refused, KioskError::Input(said) if said.contains(word)), "{refused}");
+        }
+    }
+}

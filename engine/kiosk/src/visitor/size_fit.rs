@@ -1,0 +1,361 @@
+//! Fit of a size: how a size sits at each zone, as a shopper reads it, and why.
+
+use toile_assets::sizes::{Girth, Population};
+use toile_fitting::dress::size;
+use toile_track::estimate::Estimate;
+use toile_track::measure::{Measurements, Source};
+use toile_track::recommend::Recommendation;
+
+use super::texts::TextKey;
+use super::wardrobe::WardrobeItem;
+use crate::error::KioskError;
+
+/// A part of the body that is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum BodyPart {
+    /// From the floor to the top of the head.
+    Stature,
+    /// The breadth of the shoulders.
+    Shoulders,
+    /// The girth of the chest.
+    Chest,
+    /// The girth of the waist.
+    Waist,
+    /// The girth of the hip.
+    Hip,
+    /// The length of the legs.
+    Legs,
+}
+
+impl BodyPart {
+    /// All of them, from the top down.
+    pub const ALL: [Self; 6] = [Self::Stature, Self::Shoulders, Self::Chest, Self::Waist, Self::Hip, Self::Legs];
+
+    /// Its word.
+    pub const fn word(self) -> TextKey {
+        match self {
+            Self::Stature => TextKey::PartStature,
+            Self::Shoulders => TextKey::PartShoulders,
+            Self::Chest => TextKey::PartChest,
+            Self::Waist => TextKey::PartWaist,
+            Self::Hip => TextKey::PartHip,
+            Self::Legs => TextKey::PartLegs,
+        }
+    }
+}
+
+impl From<Girth> for BodyPart {
+    fn from(girth: Girth) -> Self {
+        match girth {
+            Girth::Chest => Self::Chest,
+            Girth::Waist => Self::Waist,
+            Girth::Hip => Self::Hip,
+        }
+    }
+}
+
+/// How far a measure is to be believed, and why.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeasureBasis {
+    /// It was taken from the body's surface.
+    Seen,
+    /// It follows from the length of bones, which is all that joints tell.
+    Bones,
+    /// It could not be seen: what such a body has on average.
+    Guessed,
+}
+
+/// What was measured of somebody.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VisitorMeasures {
+    /// The measures.
+    pub measured: Measurements,
+    /// What could not be seen, from the top down.
+    pub missing: Vec<BodyPart>,
+    /// Whether they sat.
+    pub seated: bool,
+    /// How many measures are known.
+    pub count: u32,
+    /// Whose proportions apply where something was not seen.
+    pub population: Population,
+}
+
+impl VisitorMeasures {
+    /// Of somebody measured seated or standing; what is missing is found out.
+    pub fn new(measured: Measurements, seated: bool) -> Self {
+        let m = &measured.measures;
+        let taken = [m.stature, m.shoulder_breadth, m.chest_girth, m.waist_girth, m.hip_girth, m.inseam];
+        let lacks = |(part, taken): (BodyPart, Option<Estimate>)| taken.is_none().then_some(part);
+        let missing = BodyPart::ALL.into_iter().zip(taken).filter_map(lacks).collect();
+        let count = m.named().iter().filter(|(_, taken)| taken.is_some()).count() as u32;
+        Self { measured, missing, seated, count, population: Population::Mixed }
+    }
+
+    /// What a girth rests on.
+    pub fn basis(&self, zone: Girth) -> MeasureBasis {
+        if self.missing.contains(&zone.into()) {
+            MeasureBasis::Guessed
+        } else if self.measured.source == Source::Joints {
+            MeasureBasis::Bones
+        } else {
+            MeasureBasis::Seen
+        }
+    }
+}
+
+/// How a zone feels, from tight to loose. A garment is comfortable within the range that its file gives; its lower third is
+/// snug, its upper third roomy, and farther outside than a half of it is far too tight or loose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Feel {
+    /// Far below the comfortable range.
+    TooTight,
+    /// Below it.
+    Tight,
+    /// In its lower third.
+    Snug,
+    /// In its middle third.
+    Right,
+    /// In its upper third.
+    Roomy,
+    /// Above it.
+    Loose,
+    /// Far above it.
+    TooLoose,
+}
+
+impl Feel {
+    /// Where an ease lies in its comfortable range: 0 at its lower end, 1 at its upper.
+    fn at(place: f32) -> Self {
+        match place {
+            p if p < -0.5 => Self::TooTight,
+            p if p < 0.0 => Self::Tight,
+            p if p < 1.0 / 3.0 => Self::Snug,
+            p if p <= 2.0 / 3.0 => Self::Right,
+            p if p <= 1.0 => Self::Roomy,
+            p if p <= 1.5 => Self::Loose,
+            _ => Self::TooLoose,
+        }
+    }
+
+    /// Its word.
+    pub const fn word(self) -> TextKey {
+        match self {
+            Self::TooTight => TextKey::FeelTooTight,
+            Self::Tight => TextKey::FeelTight,
+            Self::Snug => TextKey::FeelSnug,
+            Self::Right => TextKey::FeelRight,
+            Self::Roomy => TextKey::FeelRoomy,
+            Self::Loose => TextKey::FeelLoose,
+            Self::TooLoose => TextKey::FeelTooLoose,
+        }
+    }
+
+    /// Whether it is within the comfortable range.
+    pub const fn is_comfortable(self) -> bool {
+        matches!(self, Self::Snug | Self::Right | Self::Roomy)
+    }
+}
+
+/// The fit at one zone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ZoneFit {
+    /// Where.
+    pub zone: Girth,
+    /// Whether the size is chosen by this zone.
+    pub primary: bool,
+    /// How it feels.
+    pub feel: Feel,
+    /// How it may feel too: what the ease less or more its error comes to, where that is comfortable when this is not or the
+    /// other way round.
+    pub perhaps: Option<Feel>,
+    /// Garment less body and the standard deviation of that (m).
+    pub ease: Estimate,
+    /// Girth of the body (m).
+    pub body: Estimate,
+    /// Girth of the garment (m).
+    pub garment_m: f32,
+    /// Least and most ease that is comfortable (m).
+    pub comfort_m: [f32; 2],
+    /// -1 (loose) .. 1 (tight); within half of it where the zone is comfortable.
+    pub tightness: f32,
+}
+
+/// How a size sits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SizeFit {
+    /// Place of the size among those that are made.
+    pub size: usize,
+    /// Place of the size that fits best.
+    pub best: usize,
+    /// Place of the size that may fit as well, or else lies beside this one.
+    pub other: Option<usize>,
+    /// Probability that the size is the best for this person, given the errors of the measures.
+    pub probability: f32,
+    /// The zone to take by tape, where no size is sure and a tape would help.
+    pub tape: Option<Girth>,
+    /// The zones, those that the size is chosen by first.
+    pub zones: Vec<ZoneFit>,
+    /// Set where the primary girth lies outside of what is made.
+    pub outside: Option<OutOfRange>,
+}
+
+/// A body for which no size is made: the nearest is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OutOfRange {
+    /// The body is smaller than the smallest size is meant for.
+    Smaller,
+    /// The body is larger than the largest size is meant for.
+    Larger,
+}
+
+/// Judges a size of a garment, or without one the size that fits best.
+///
+/// # Errors
+/// A garment that no size can be named of.
+pub fn judge(item: &WardrobeItem, known: &VisitorMeasures, size: Option<usize>) -> Result<SizeFit, KioskError> {
+    let code = size.and_then(|s| item.sizes.get(s)).map(String::as_str);
+    let judged = size::judge(&item.style, code, &known.measured)?;
+    let place = |code: &str| item.sizes.iter().position(|s| s == code);
+    let chosen = place(&judged.size).unwrap_or_default();
+    let best = judged.sizes.iter().max_by(|a, b| a.probability.total_cmp(&b.probability));
+    let best = if code.is_none() { chosen } else { best.and_then(|s| place(&s.size)).unwrap_or(chosen) };
+    let beside = if chosen + 1 < item.sizes.len() { Some(chosen + 1) } else { chosen.checked_sub(1) };
+    let other = judged.runner_up.as_ref().and_then(|r| place(&r.size)).filter(|o| *o != chosen).or(beside);
+    let zones: Vec<ZoneFit> = zones(item, known, &judged);
+    Ok(SizeFit {
+        size: chosen,
+        best,
+        other,
+        probability: judged.probability,
+        tape: judged.tape.as_ref().map(|t| t.zone),
+        outside: zones.iter().find(|z| z.primary).and_then(|z| outside(item, z)),
+        zones,
+    })
+}
+
+fn zones(item: &WardrobeItem, known: &VisitorMeasures, judged: &Recommendation) -> Vec<ZoneFit> {
+    let [_, _, chest, waist, hip] = known.measured.completed(item.table.population);
+    let zone = |z: &toile_track::recommend::ZoneFit| {
+        let body = match z.zone {
+            Girth::Chest => chest,
+            Girth::Waist => waist,
+            Girth::Hip => hip,
+        };
+        let comfort_m = item.style.comfort_mm.at(z.zone)?;
+        let place = |ease: f32| (ease - comfort_m[0]) / (comfort_m[1] - comfort_m[0]).max(1e-3);
+        let feel = Feel::at(place(z.ease));
+        let perhaps = [z.ease - z.sigma, z.ease + z.sigma].map(|ease| Feel::at(place(ease)));
+        Some(ZoneFit {
+            zone: z.zone,
+            primary: z.primary,
+            feel,
+            perhaps: perhaps.into_iter().find(|p| p.is_comfortable() != feel.is_comfortable()),
+            ease: Estimate::new(z.ease, z.sigma),
+            body,
+            garment_m: body.value + z.ease,
+            comfort_m,
+            tightness: (0.5 - place(z.ease)).clamp(-1.0, 1.0),
+        })
+    };
+    judged.zones.iter().filter_map(zone).collect()
+}
+
+fn outside(item: &WardrobeItem, zone: &ZoneFit) -> Option<OutOfRange> {
+    let (first, last) = (item.table.sizes.first()?, item.table.sizes.last()?);
+    match zone.body.value {
+        v if v < first.range(zone.zone)[0] => Some(OutOfRange::Smaller),
+        v if v > last.range(zone.zone)[1] => Some(OutOfRange::Larger),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::super::wardrobe::Wardrobe;
+    use super::*;
+    use toile_track::measures::Measures;
+
+    /// A woman of 1.70 m with these girths (m), seen in depth.
+    pub(crate) fn woman(chest: f32, waist: f32, hip: f32) -> VisitorMeasures {
+        let some = |value, sigma| Some(Estimate::new(value, sigma));
+        let measures = Measures {
+            stature: some(1.70, 0.006),
+            shoulder_breadth: some(0.365, 0.008),
+            chest_girth: some(chest, 0.01),
+            waist_girth: some(waist, 0.01),
+            hip_girth: some(hip, 0.01),
+            inseam: some(0.78, 0.01),
+            arm_length: some(0.58, 0.01),
+        };
+        let measured = Measurements {
+            measures,
+            valid_pixels: 20_000,
+            people: 1,
+            frames: 30,
+            source: Source::Depth,
+            notes: Vec::new(),
+        };
+        VisitorMeasures::new(measured, false)
+    }
+
+    fn item(name: &str) -> WardrobeItem {
+        let wardrobe = Wardrobe::stock().unwrap();
+        wardrobe.items[wardrobe.find(name).unwrap()].clone()
+    }
+
+    #[test]
+    fn feels_divide_the_comfortable_range_in_three() {
+        for (place, feel) in [
+            (-0.6, Feel::TooTight),
+            (-0.01, Feel::Tight),
+            (0.0, Feel::Snug),
+            (0.5, Feel::Right),
+            (1.0, Feel::Roomy),
+            (1.2, Feel::Loose),
+            (1.6, Feel::TooLoose),
+        ] {
+            assert_eq!(Feel::at(place), feel, "{place}");
+        }
+    }
+
+    #[test]
+    fn a_larger_size_is_nowhere_tighter_and_its_ease_is_that_of_garment_less_body() {
+        let (item, known) = (item("wide-trousers"), woman(0.90, 0.74, 0.98));
+        let fits: Vec<SizeFit> = (0..item.sizes.len()).map(|s| judge(&item, &known, Some(s)).unwrap()).collect();
+        for pair in fits.windows(2) {
+            for (small, large) in pair[0].zones.iter().zip(&pair[1].zones) {
+                assert!(large.ease.value > small.ease.value && large.tightness <= small.tightness);
+                assert!(large.feel >= small.feel);
+            }
+        }
+        for zone in &fits[3].zones {
+            assert!((zone.garment_m - zone.body.value - zone.ease.value).abs() < 1e-5);
+            assert_eq!(zone.ease.sigma, zone.body.sigma, "the garment is as its file says");
+            assert_eq!(zone.tightness.abs() <= 0.5, zone.feel.is_comfortable(), "{zone:?}");
+        }
+        let best = judge(&item, &known, None).unwrap();
+        assert!(fits.iter().all(|f| f.best == best.size), "every size knows which would be better");
+        assert_ne!(best.other, Some(best.size));
+    }
+
+    #[test]
+    fn a_body_beyond_the_table_is_told_so() {
+        let item = item("sun-dress");
+        assert_eq!(judge(&item, &woman(0.60, 0.50, 0.70), None).unwrap().outside, Some(OutOfRange::Smaller));
+        assert_eq!(judge(&item, &woman(1.70, 1.60, 1.70), None).unwrap().outside, Some(OutOfRange::Larger));
+        assert_eq!(judge(&item, &woman(0.90, 0.74, 0.98), None).unwrap().outside, None);
+    }
+
+    #[test]
+    fn what_was_not_seen_is_missing_and_only_a_guess() {
+        let mut known = woman(0.90, 0.74, 0.98);
+        assert!(known.missing.is_empty() && known.basis(Girth::Hip) == MeasureBasis::Seen);
+        known.measured.measures.hip_girth = None;
+        let known = VisitorMeasures::new(known.measured, true);
+        assert_eq!(known.missing, [BodyPart::Hip]);
+        assert_eq!((known.basis(Girth::Hip), known.basis(Girth::Waist)), (MeasureBasis::Guessed, MeasureBasis::Seen));
+        let fit = judge(&item("wide-trousers"), &known, None).unwrap();
+        let hip = fit.zones.iter().find(|z| z.zone == Girth::Hip).unwrap();
+        assert!(hip.ease.sigma > 0.02, "a guess is not sure: {hip:?}");
+    }
+}

@@ -1,0 +1,70 @@
+//! The kiosk with a window: the visit's controller decides, the window's renderer draws.
+
+use toile_engine::clock::Clock;
+use toile_engine::frame::Frame;
+use toile_engine::frame_loop::physics_thread::FrameScene;
+
+use super::body_model::BodyModel;
+use super::open::{self, ServiceChannels};
+use super::options::WindowOptions;
+use super::{UserEvent, WindowRenderer};
+use crate::error::KioskError;
+use crate::service::report::KioskReport;
+use crate::service::{BoxedController, Frontend, KioskRun, serve};
+use crate::visitor::controller;
+use crate::visitor::model::Input;
+use crate::visitor::setup::VisitorSetup;
+
+/// Runs `toile kiosk` at a window.
+///
+/// # Errors
+/// As without a window; where there is no display, or nothing that can draw on it.
+pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
+    let display = &kiosk.config.display;
+    let setup = VisitorSetup::new(kiosk.config, kiosk.clock.now_ns())?;
+    let options = WindowOptions {
+        windowed: kiosk.options.windowed,
+        height_mm: display.height_mm,
+        begun: kiosk.begun,
+        clock: kiosk.clock,
+        motion: display.motion,
+        first: setup.first(),
+        stop: kiosk.stop.clone(),
+    };
+    open::run(options, |channels| {
+        let ServiceChannels { screens, mut user_events, pairs, opening } = channels;
+        let next_input = Box::new(move || user_events.pop().map(input));
+        let channels = controller::WindowChannels { screens, next_input, pairs, draped: BodyModel::draped };
+        let controller =
+            move |played| -> BoxedController<'_, BodyModel> { Some(Box::new(setup.controller(channels, played))) };
+        let say = kiosk.say;
+        let renderer = |mannequin: &Frame| {
+            let renderer = opening.finish()?;
+            if let Some(slow) = renderer.slowness() {
+                say(&slow);
+            }
+            Ok(renderer.showing(BodyModel::of(mannequin)))
+        };
+        let (mut report, drawn) = serve(kiosk, Frontend { renderer, to_scene, controller })?;
+        if let Some(mut renderer) = drawn {
+            let (window, warnings) = WindowRenderer::report(&mut renderer);
+            report.window = Some(window);
+            report.warnings.extend(warnings);
+        }
+        Ok(report)
+    })
+}
+
+/// A frame as a scene of the loop, and what is drawn of it.
+fn to_scene(frame: Frame) -> (FrameScene, BodyModel) {
+    let model = BodyModel::of(&frame);
+    (FrameScene::new(frame), model)
+}
+
+/// An event from the display as the visitor's model takes it.
+fn input(event: UserEvent) -> Input {
+    match event {
+        UserEvent::Pressed(action) => Input::Pressed(action),
+        UserEvent::Key(key) => Input::Key(key),
+    }
+}

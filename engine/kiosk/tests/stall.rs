@@ -1,0 +1,193 @@
+//! The watchdog starves where physics or render stands still, whatever else runs on: the service over real threads, with a
+//! scene and a display that can be made to hang.
+
+use std::io;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::{Arc, Mutex, OnceLock};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use toile_engine::clock::{Clock, RealClock};
+use toile_engine::frame::{Frame, Snapshot, SnapshotTimes};
+use toile_engine::frame_loop::governor::Rung;
+use toile_engine::frame_loop::physics_thread::{FrameScene, Scene};
+use toile_engine::frame_loop::render_thread::Renderer;
+use toile_fitting::dress::wish::Wish;
+use toile_fitting::dress::{dressed, session};
+use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
+use toile_fitting::live::dresser::Dresser;
+use toile_fitting::live::lateness::ThreadAccount;
+use toile_fitting::live::live_loop::LiveLoop;
+use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
+use toile_fitting::live::source::{Feed, Visits};
+use toile_kiosk::service::runner::{Service, ServiceEnvironment, ServiceOptions};
+use toile_kiosk::service::service_manager::{ServiceManager, ServiceStatus, StopSignal};
+use toile_kiosk::service::session::SessionTimes;
+use toile_sensors::frame::Joints;
+
+/// Hangs whoever passes it while it is shut.
+type Gate = Arc<AtomicBool>;
+
+fn pass(gate: &Gate) {
+    // Relaxed: a flag that a test sets.
+    while gate.load(Relaxed) {
+        thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// The gate of whichever scene comes onto the stage.
+fn physics_gate() -> &'static Gate {
+    static GATE: OnceLock<Gate> = OnceLock::new();
+    GATE.get_or_init(Gate::default)
+}
+
+struct Gated(FrameScene, Gate);
+
+impl Gated {
+    fn new(frame: Frame) -> Self {
+        Self(FrameScene::new(frame), physics_gate().clone())
+    }
+}
+
+impl Scene for Gated {
+    fn step(&mut self, joints: &Joints, times: SnapshotTimes, clock: &impl Clock) {
+        pass(&self.1);
+        self.0.step(joints, times, clock);
+    }
+    fn set_rung(&mut self, rung: &Rung) {
+        self.0.set_rung(rung);
+    }
+    fn measure(&mut self) {
+        self.0.measure();
+    }
+    fn clear_meters(&mut self) {
+        self.0.clear_meters();
+    }
+    fn fingerprint(&self) -> u64 {
+        self.0.fingerprint()
+    }
+    fn succeed(&mut self, before: &mut Self) {
+        self.0.succeed(&mut before.0);
+    }
+    fn troubles(&self) -> [u64; 2] {
+        self.0.troubles()
+    }
+}
+
+struct Display(HeadlessRenderer, Gate);
+
+impl Renderer for Display {
+    type Outfit = ();
+
+    fn set_outfit(&mut self, _outfit: &mut ()) {}
+
+    fn draw(&mut self, snapshot: &Snapshot) {
+        pass(&self.1);
+        self.0.draw(snapshot);
+    }
+}
+
+/// A manager that writes down what it is told and when.
+struct Diary(Mutex<Vec<(Instant, ServiceStatus)>>);
+
+impl Diary {
+    /// Feedings between two times.
+    fn fed(&self, from: Instant, to: Instant) -> usize {
+        let told = self.0.lock().unwrap();
+        told.iter().filter(|(at, status)| *status == ServiceStatus::Alive && (from..to).contains(at)).count()
+    }
+
+    fn is_ready(&self) -> bool {
+        self.0.lock().unwrap().iter().any(|(_, status)| *status == ServiceStatus::Ready)
+    }
+}
+
+impl ServiceManager for Diary {
+    fn watchdog_timeout(&self) -> Option<Duration> {
+        Some(Duration::from_millis(300))
+    }
+
+    fn notify(&self, status: ServiceStatus) -> io::Result<()> {
+        self.0.lock().unwrap().push((Instant::now(), status));
+        Ok(())
+    }
+}
+
+/// Runs the service, and meanwhile on another thread what is given.
+fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
+    let (session, clock) = (Arc::new(session::open(None, None).unwrap()), RealClock::default());
+    let pose = session::filtered(&session)[0];
+    let wish = Wish::default();
+    let dressed = dressed::mannequin(&wish, &pose).unwrap();
+    // Nobody ever comes: the stall is the only thing that happens.
+    let source = Feed::Played(Visits::of(&session, clock.now_ns(), 3_600_000_000_000));
+    let first = DressedScene::new(dressed, |frame| (Gated::new(frame), ()));
+    let renderer = Display(HeadlessRenderer::default(), display);
+    let parts = LoopParts { first, renderer, source, account: ThreadAccount::new(), recording: None };
+    let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).unwrap();
+    let second = 1_000_000_000;
+    let options = ServiceOptions {
+        begun: Instant::now(),
+        length: Some(Duration::from_secs(120)),
+        crash_after: None,
+        times: SessionTimes { step_in_ns: second, step_out_ns: second, wipe_ns: second },
+        measure_ns: second,
+        health_ns: 0,
+        played: None,
+        memory_locked: false,
+        warnings: Vec::new(),
+    };
+    let stop = StopSignal::default();
+    thread::scope(|scope| {
+        scope.spawn(|| {
+            meanwhile();
+            stop.request();
+        });
+        let say = |_: &str| {};
+        let environment = ServiceEnvironment {
+            manager: diary,
+            stop: &stop,
+            say: &say,
+            figures: None,
+            dresser: Dresser::new(wish),
+            to_scene: |frame| (Gated::new(frame), ()),
+            pose,
+            black_box: None,
+        };
+        Service::new(live, SceneChanger::new(handover, true, None), options, environment).run().unwrap();
+    });
+}
+
+/// Whatever was fed in a second, which has ten feedings where the machine is quiet.
+fn fed_in_a_second(diary: &Diary) -> usize {
+    let from = Instant::now();
+    thread::sleep(Duration::from_secs(1));
+    diary.fed(from, Instant::now())
+}
+
+fn starves_while(gate: &Gate, display: Gate) {
+    let diary = Diary(Mutex::default());
+    serve(&diary, display, || {
+        while !diary.is_ready() {
+            thread::sleep(Duration::from_millis(5));
+        }
+        assert!(fed_in_a_second(&diary) >= 2, "it is fed while all is well");
+        gate.store(true, Relaxed);
+        // What was counted before the gate was shut is fed once more.
+        thread::sleep(Duration::from_millis(300));
+        assert_eq!(fed_in_a_second(&diary), 0, "it is fed while a thread hangs");
+        gate.store(false, Relaxed);
+        thread::sleep(Duration::from_millis(300));
+        assert!(fed_in_a_second(&diary) >= 2, "it is fed again");
+    });
+    assert_eq!(diary.0.lock().unwrap().last().unwrap().1, ServiceStatus::Stopping);
+}
+
+#[test]
+fn the_watchdog_starves_where_a_turn_of_physics_or_of_render_hangs() {
+    // One after the other: the physics' gate is one for all scenes.
+    starves_while(physics_gate(), Gate::default());
+    let display = Gate::default();
+    starves_while(&display, display.clone());
+}
