@@ -80,7 +80,11 @@ pub fn run(args: &KioskArgs) -> Result<(), AppError> {
     }
     let words = Words::new(args.printing.quiet);
     let report = toile_kiosk::run(&options(args), begun, &|line| words.say(line))?;
-    if args.printing.json { terminal::print_json(&Document::new("kiosk", report)) } else { terminal::print(&report.summary()) }
+    if args.printing.json {
+        terminal::print_json(&Document::new("kiosk", report))
+    } else {
+        terminal::print(&report.summary())
+    }
 }
 
 fn options(args: &KioskArgs) -> KioskOptions {
