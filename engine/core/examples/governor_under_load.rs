@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release -p toile-engine --example governor_under_load`
 //!
-//! The loop runs against a simulated clock, which only its lives move: what a step costs is said here, so that the same
+//! The loop runs against a simulated clock, which only its parts move: what a step costs is said here, so that the same
 //! load gives the same decisions on every machine.
 
 use std::error::Error;

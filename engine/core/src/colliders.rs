@@ -33,7 +33,7 @@ pub enum ColliderError {
         /// What it names.
         bone: u8,
     },
-    /// A centre or radius that is no number, or a radius below 0.
+    /// A centre or radius that is not finite, or a radius below 0.
     #[error("collision sphere {0} has a centre that is not finite or a radius that is not 0 m or more; correct it")]
     BadSphere(usize),
     /// A capsule between spheres that do not exist.

@@ -10,6 +10,7 @@ use glam::{Affine3A, Vec3};
 use toile_assets::body::Body;
 use toile_assets::garment::Garment;
 use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
+use toile_assets::numeric::hash::Fnv1a;
 use toile_assets::rig::Rig;
 use toile_assets::skeleton::{BONES, Pose};
 use toile_sensors::frame::Joints;
@@ -163,13 +164,13 @@ impl Frame {
         }
     }
 
-    /// The same with another crew, one whose helper has a core of its own for example. At load.
+    /// The same with another pool, one whose helper has a core of its own for example. At load.
     #[must_use]
     pub fn with_workers(self, pool: WorkerPool) -> Self {
         Self { settings: Settings { workers: pool.workers(), ..self.settings }, pool, ..self }
     }
 
-    /// Takes over the crew of a frame that leaves the stage, which gets this one's: no thread begins or ends.
+    /// Swaps worker pools with a frame that is no longer stepped, which gets this one's: no thread begins or ends.
     pub fn swap_workers(&mut self, from: &mut Self) {
         std::mem::swap(&mut self.pool, &mut from.pool);
         self.settings.workers = self.pool.workers();
@@ -317,19 +318,15 @@ impl Frame {
 
     /// FNV-1a over the bits of pose and particles: equal states give equal hashes.
     pub fn state_hash(&self) -> u64 {
-        let mut hash = 0xcbf2_9ce4_8422_2325u64;
-        let mut add = |value: f32| {
-            for byte in value.to_bits().to_le_bytes() {
-                hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-            }
-        };
+        let mut hash = Fnv1a::default();
+        let mut add = |value: f32| hash.number(value);
         self.pose.root.to_array().into_iter().for_each(&mut add);
         self.pose.local.iter().flat_map(|q| q.to_array()).for_each(&mut add);
         for cloth in &self.cloths {
             cloth.positions.iter().flat_map(|p| p.to_array()).for_each(&mut add);
             (0..cloth.positions.len()).flat_map(|i| cloth.velocity(i).to_array()).for_each(&mut add);
         }
-        hash
+        hash.finish()
     }
 
     /// The same for every step of a recording: other numbers, a tenth of the time.

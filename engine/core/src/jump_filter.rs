@@ -1,4 +1,4 @@
-//! Hold: colliders that jump are not followed at once.
+//! Jump filter: colliders that jump are not followed at once.
 //!
 //! A joint that a camera loses for some frames comes back somewhere else, and a sphere that crosses the cloth in one
 //! step takes it along or leaves it inside out. No limb moves [`JUMP_M`] in a step; what does is held where it was, on
@@ -38,7 +38,7 @@ enum SphereState {
 pub struct JumpFilter {
     last: [Vec4; MAX_SPHERES],
     doing: [SphereState; MAX_SPHERES],
-    /// Sphere steps held because of a jump or of a number that is none.
+    /// Sphere steps held because of a jump, or because it was not finite.
     pub held: u64,
     /// Sphere steps on the way to where a sphere had jumped.
     pub followed: u64,

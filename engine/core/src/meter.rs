@@ -43,15 +43,15 @@ pub const STAGES: [StageBudget; 6] = [
 
 /// Place of each stage in [`STAGES`].
 pub const INTAKE: usize = 0;
-/// See [`INTAKE`].
+/// Place of this stage in [`STAGES`].
 pub const POSE: usize = 1;
-/// See [`INTAKE`].
+/// Place of this stage in [`STAGES`].
 pub const SKIN: usize = 2;
-/// See [`INTAKE`].
+/// Place of this stage in [`STAGES`].
 pub const PLACE: usize = 3;
-/// See [`INTAKE`].
+/// Place of this stage in [`STAGES`].
 pub const CLOTH: usize = 4;
-/// See [`INTAKE`].
+/// Place of this stage in [`STAGES`].
 pub const PUBLISH: usize = 5;
 
 /// What a whole step may take (us): the sum of its stages.

@@ -53,7 +53,7 @@ const MAX_DT: f32 = 1.0;
 
 /// Turns joints into poses of one skeleton, moment by moment.
 ///
-/// Joints that are absent, or no numbers, keep their last rotation; those below the confidence gate are followed
+/// Joints that are absent or not finite keep their last rotation; those below the confidence gate are followed
 /// slowly, as a filter holds them for the sensor. The first moment in which the trunk is seen is taken over as it is;
 /// from then on every angle moves smoothly and at a bounded speed, so whatever the sensor does, the pose never jumps
 /// and is always finite.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 use toile_assets::limits::{CONFIDENCE_GATE, STEP_SECONDS};
+use toile_assets::numeric::statistics;
 use toile_assets::skeleton::{JOINTS, Joint, Pose};
 use toile_sensors::clock::{ns_to_ticks, ticks_to_ns};
 use toile_sensors::filter::JointFilter;
@@ -57,9 +58,8 @@ struct Figures {
     root_step: f32,
 }
 
-fn quantile(values: &mut [f32], share: f32) -> f32 {
-    values.sort_by(f32::total_cmp);
-    values.get((values.len().saturating_sub(1) as f32 * share) as usize).copied().unwrap_or(0.0)
+fn quantile(values: &mut [f32], share: f64) -> f32 {
+    statistics::quantile(values, share).unwrap_or(0.0)
 }
 
 fn mean(values: &[f32]) -> f32 {

@@ -29,7 +29,7 @@ struct ReliableJoint {
 }
 
 impl ReliableJoints {
-    /// Drops joints that are absent and those whose position is no number or out of reach.
+    /// Drops joints that are absent and those whose position is not finite or out of reach.
     pub fn new(joints: &Joints) -> Self {
         Self(joints.joints.map(|j| {
             let near = j.position.is_finite() && j.position.abs().max_element() < MAX_RANGE;

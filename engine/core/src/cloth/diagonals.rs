@@ -1,9 +1,9 @@
-//! Diagonals: fibers along the bias, a family solved whole by way of its runs.
+//! Diagonals: fibers along the bias, a family solved directly by way of its runs.
 //!
 //! The system is that of [`fibers`](super::fibers): (J W J^T + alpha / dt^2) lambda = C, tridiagonal along each fiber. Here
 //! neighbours side by side are on different fibers from row to row, so what a link leaves for the next one lies with the
 //! particle between them. Shear needs it: links solved one by one from no tension keep 1 / (1 + w k dt^2) of their
-//! stiffness, an eighth of a shirt's in four substeps; solved whole, an even shear keeps all of it, since tension that
+//! stiffness, an eighth of a shirt's in four substeps; solved directly, an even shear keeps all of it, since tension that
 //! is the same along a fiber moves none of its particles.
 //!
 //! On the way back a link's tension follows from where its end is by then: with n, pivot and y of the way down,
@@ -65,7 +65,7 @@ impl Kernel for SolveDiagonals<'_> {
         self.columns = self.columns.level();
         let len = self.columns.w.len();
         self.room = self.room.map(|c| c.cut(len));
-        // What a family before has left must not pull at what begins here; not even a direction that is no number.
+        // What a family before has left must not pull at what begins here; not even a NaN direction.
         for &p in &self.diagonals.starts[self.strand.starts.start as usize..self.strand.starts.end as usize] {
             self.room.iter().for_each(|c| c.set(p as usize, 0.0));
         }

@@ -1,4 +1,4 @@
-//! Fibers side by side, each solved whole: the tridiagonal system of its tensions, a fiber a lane.
+//! Fibers side by side, each solved directly: the tridiagonal system of its tensions, a fiber a lane.
 //!
 //! For the links C_e = |x_(e+1) - x_e| - rest_e of one fiber, with unit vectors n_e, one linearised solve is
 //! (J W J^T + alpha / dt^2) lambda = C. A link shares a particle with the next only, so the matrix is tridiagonal:

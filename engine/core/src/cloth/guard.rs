@@ -87,7 +87,7 @@ pub enum Fault {
     Velocity(Vec3A),
 }
 
-/// Of `particles` eight that `seed` picks: two each get a place that is no number, an infinite velocity, a place beyond all
+/// Of `particles` eight that `seed` picks: two each get a place that is NaN, an infinite velocity, a place beyond all
 /// measure, and a violent velocity.
 pub fn spoil(seed: u64, particles: usize) -> [(usize, Fault); 8] {
     let mut at = seed;

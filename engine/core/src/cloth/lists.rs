@@ -1,4 +1,4 @@
-//! Fibers by index list, each solved whole: hoops, which close, and fibers that cross others.
+//! Fibers by index list, each solved directly: hoops, which close, and fibers that cross others.
 //!
 //! The same system as in `fibers`. In a hoop the first link shares a particle with the last, so the matrix is cyclic
 //! tridiagonal: the last tension is bordered (its column `g` is carried along while the others are eliminated) and found

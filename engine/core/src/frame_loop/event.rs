@@ -39,7 +39,7 @@ pub enum EventKind {
     Changed(u64),
     /// A worker panicked; the garments kept their last places.
     Broken,
-    /// A garment ended a step with what is no number and was put back.
+    /// A garment ended a step with NaN or infinity and was put back.
     RolledBack,
 }
 

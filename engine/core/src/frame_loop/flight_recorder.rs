@@ -1,4 +1,4 @@
-//! Black box: what a replay needs of the last seconds, kept in memory by whoever empties the tape's queue, for the moment at
+//! Flight recorder: what a replay needs of the last seconds, kept in memory by whoever empties the recording's queue, for the moment at
 //! which something dies.
 //!
 //! A replay has to begin where the state is known, which is where a shopper was dressed. So the box keeps the run from the
@@ -53,7 +53,7 @@ struct RecorderState {
 pub struct FlightRecorder(Mutex<RecorderState>);
 
 impl FlightRecorder {
-    /// An empty box whose file begins with this header ([`tape::header`]); it empties this queue.
+    /// An empty recorder whose file begins with this header ([`recording::header`]); it empties this queue.
     pub fn new(header: Vec<u8>, entries: Receiver<Entry>) -> Self {
         // Written to once, so that the system has given it.
         let room = || {

@@ -1,4 +1,4 @@
-//! Change: a scene that was made elsewhere takes the place of the one that is stepped, and the old one goes back to be
+//! Handover: a scene that was made elsewhere takes the place of the one that is stepped, and the old one goes back to be
 //! dropped elsewhere. The physics swaps two values and allocates nothing.
 
 use super::queue::{Receiver, Sender, bounded};

@@ -1,4 +1,4 @@
-//! Pace: the loop of sensor, physics and render threads, and what keeps it in time.
+//! Frame loop: the loop of sensor, physics and render threads, and what keeps it in time.
 //!
 //! Reads: frames of joints as they arrive. Writes: 120 snapshots a second, events, a recording.
 //! Budget: 20 us a step beside the frame's own stages; nothing is allocated after the start.
@@ -21,7 +21,7 @@ pub mod simulate;
 pub mod thread_roles;
 pub mod threads;
 
-/// One of the loop's three lives: it does what is due and says when it wants to be called again.
+/// One of the loop's three threads: it does what is due and says when it wants to be called again.
 pub trait ThreadLoop {
     /// Does what is due; gives the time of the next turn (ns), which may have passed already, or none where it has ended.
     fn run_due(&mut self) -> Option<u64>;

@@ -1,4 +1,4 @@
-//! Intake: where the joints are at a step's own time, from frames that come four times as seldom, late, or not at all.
+//! Motion input: where the joints are at a step's own time, from frames that come four times as seldom, late, or not at all.
 //!
 //! Each joint goes on at the velocity of its last two frames, which fades while no frame comes. When one comes, the joint
 //! does not jump to it: what it is off by, in place, velocity and acceleration, fades in the impulse response of three

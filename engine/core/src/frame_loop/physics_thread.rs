@@ -1,4 +1,4 @@
-//! Physics: the life that steps the scene, 120 times a second.
+//! The physics thread: it steps the scene 120 times a second.
 
 use toile_assets::limits::STEP_HZ;
 use toile_sensors::frame::Joints;
@@ -230,7 +230,7 @@ pub struct PhysicsOutputs {
     pub recording: Option<Sender<Entry>>,
 }
 
-/// The physics' life.
+/// What the physics thread runs.
 #[derive(Debug)]
 pub struct PhysicsThread<S, C, A> {
     /// What is stepped.

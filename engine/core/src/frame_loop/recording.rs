@@ -1,4 +1,4 @@
-//! Tape: what a replay needs of a run, without images: the filtered frames, and of each step when it was due, the
+//! Recording: what a replay needs of a run, without images: the filtered frames, and of each step when it was due, the
 //! quality it was taken at and a hash of what came out.
 //!
 //! The file: the magic `toile-tape/1\n`, u32 length of a text that says how the scene is made, the text, then records: u8
@@ -78,7 +78,7 @@ pub struct Recording {
     pub entries: Vec<Entry>,
 }
 
-/// Why a tape cannot be read.
+/// Why a recording cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum RecordingError {
     /// Another file.

@@ -1,4 +1,4 @@
-//! Render: the life that takes pictures of the newest snapshot, at the display's rate. Physics never waits for it.
+//! The render thread: it draws the newest snapshot at the display's rate. Physics never waits for it.
 
 use super::ThreadLoop;
 use super::handover::HandoverReceiver;
@@ -34,11 +34,11 @@ pub trait Renderer: Send {
 pub struct SceneView<O> {
     /// The snapshots.
     pub reader: Reader<Snapshot>,
-    /// What the eye has to know.
+    /// What the renderer has to know.
     pub outfit: O,
 }
 
-/// The render thread's life.
+/// What the render thread runs.
 #[derive(Debug)]
 pub struct RenderThread<E: Renderer, C> {
     /// Who draws.

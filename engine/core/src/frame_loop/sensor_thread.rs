@@ -1,4 +1,4 @@
-//! Sense: the sensor's life. A frame comes, is filtered, and is published as the latest.
+//! The sensor thread. A frame comes, is filtered, and is published as the latest.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -140,7 +140,7 @@ impl Default for SensorFrame {
     }
 }
 
-/// The sensor's life.
+/// What the sensor thread runs.
 #[derive(Debug)]
 pub struct SensorThread<S, C> {
     source: S,

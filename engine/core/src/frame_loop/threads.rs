@@ -1,4 +1,4 @@
-//! Threads: each life on a thread of its own, pinned and raised as far as the machine allows, ended by a flag.
+//! Threads: each part of the loop on a thread of its own, pinned and raised as far as the machine allows, ended by a flag.
 
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -14,20 +14,20 @@ use super::thread_roles::{self, Placement, ThreadRole};
 use crate::clock::Clock;
 use crate::workers::{WorkerPool, WorkerPoolError};
 
-/// Longest sleep of a life (ns): after at most that it sees that it is to end.
+/// Longest sleep of a thread (ns): after at most that it sees that it is to end.
 const LONGEST_SLEEP_NS: u64 = 50_000_000;
 
 /// Longest that a new thread is waited for until it says which place it got.
 const LONGEST_START: Duration = Duration::from_secs(5);
 
-/// Tells all lives to end.
+/// Tells all threads to end.
 ///
-/// Relaxed: the flag carries nothing else; what a life wrote is seen by who joins it.
+/// Relaxed: the flag carries nothing else; what a thread wrote is seen by whoever joins it.
 #[derive(Debug, Clone, Default)]
 pub struct Stop(Arc<AtomicBool>);
 
 impl Stop {
-    /// Ends all lives within 50 ms.
+    /// Ends all threads within 50 ms.
     pub fn now(&self) {
         self.0.store(true, Relaxed);
     }
@@ -38,7 +38,7 @@ impl Stop {
     }
 }
 
-/// A life on its thread.
+/// A part of the loop on its thread.
 #[derive(Debug)]
 pub struct LoopThread<T> {
     thread: JoinHandle<(T, bool)>,
@@ -75,7 +75,7 @@ impl<T> LoopThread<T> {
     }
 }
 
-/// Starts a life. Everything is allocated before its first turn.
+/// Starts a thread of the loop. Everything is allocated before its first turn.
 ///
 /// # Errors
 /// Where the system gives no thread.

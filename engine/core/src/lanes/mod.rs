@@ -116,7 +116,7 @@ pub trait Lanes: Numbers {
             to.set(quads[(lane + i) / 4 % 4] as usize + i % 4, v);
         }
     }
-    /// The least of its lanes, none of which is no number.
+    /// The least of its lanes, none of which is NaN.
     fn least(self) -> f32 {
         let values = self.to_array();
         values[1..Self::N].iter().fold(values[0], |least, v| if *v < least { *v } else { least })

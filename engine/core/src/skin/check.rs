@@ -1,4 +1,4 @@
-//! The door of skinning: what a skin must be, told in words where it is not.
+//! What a skin must be, and the errors where it is not.
 
 use glam::Vec3;
 use thiserror::Error;
@@ -24,7 +24,7 @@ pub enum SkinError {
         /// Number of weights.
         weights: usize,
     },
-    /// A position or normal that is no number.
+    /// A position or normal that is not finite.
     #[error("skin vertex {0} has a position or a normal that is not finite; repair the mesh")]
     NotFinite(usize),
     /// A weighted bone that the skeleton lacks.
@@ -35,7 +35,7 @@ pub enum SkinError {
         /// What it names.
         bone: u8,
     },
-    /// A weight that is no number, or below 0.
+    /// A weight that is not finite, or below 0.
     #[error("skin vertex {vertex} hangs on bone {bone} with weight {weight}; give a number of 0 or more")]
     BadWeight {
         /// The vertex.

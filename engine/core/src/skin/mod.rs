@@ -124,7 +124,7 @@ impl SkinningJob {
         work.runs(0..self.layout.runs.len());
     }
 
-    /// The same with the crew's workers, a share each: the same bits. Says whether all was done: not where a worker
+    /// The same with the pool's workers, a share each: the same bits. Says whether all was done: not where a worker
     /// panicked, which leaves a part of the surface as it was.
     pub fn run_with(
         &self,

@@ -44,7 +44,7 @@ pub fn pruning<const ALL: usize, const KEPT: usize>(
         for &v in &lost {
             let error = truth.position(v).distance(shown.position(v));
             sum += f64::from(error);
-            // An error that is no number is the largest.
+            // An error that is NaN is the largest.
             if error > found.error_max_m || error.is_nan() {
                 (found.error_max_m, found.worst) = (error, Some(v));
             }

@@ -1,4 +1,4 @@
-//! Crew: the workers of a step, the caller's thread and at most one helper.
+//! Worker pool: the workers of a step, the caller's thread and at most one helper.
 //!
 //! Reads: a job that borrows the caller's data. Writes: what the job writes; which shares were late.
 //! Budget: a phase costs one meeting of two cores, under 1 us; no lock, no allocation, no channel in a run.
@@ -33,14 +33,14 @@ use crate::sync::{AtomicBool, AtomicU64, AtomicUsize, Idle, JoinHandle, LOOKS_BE
 
 pub use per_share::PerShare;
 
-/// Shares of a phase, and most workers of a crew.
+/// Shares of a phase, and most workers of a pool.
 pub const SHARES: usize = 2;
 
 /// How long the helper stays awake after its last work: longer than the gap between two garments of a step, short
 /// beside the step of 8.3 ms.
 pub const AWAKE: Duration = Duration::from_micros(100);
 
-/// Why there is no crew.
+/// Why there is no worker pool.
 #[derive(Debug, Error)]
 pub enum WorkerPoolError {
     /// Not 1 or 2.
@@ -159,7 +159,7 @@ impl Board {
     }
 }
 
-/// The helper's life: claim share 1 of one ticket after the other.
+/// What the helper runs: claim share 1 of one ticket after the other.
 fn help(board: &Board) {
     let (mut ticket, mut looks) = (1, 0);
     let mut rest = Idle::until(AWAKE);
@@ -208,7 +208,7 @@ fn sleep(board: &Board, ticket: u64) {
     board.asleep.0.store(false, SeqCst);
 }
 
-/// The workers. A run borrows the crew, so two runs cannot overlap and a job cannot start another.
+/// The workers. A run borrows the pool, so two runs cannot overlap and a job cannot start another.
 pub struct WorkerPool {
     pub(crate) board: Arc<Board>,
     helper: Option<JoinHandle<()>>,
@@ -217,7 +217,7 @@ pub struct WorkerPool {
 }
 
 impl WorkerPool {
-    /// A crew of 1 or 2 workers; the second is a thread that lives as long as the crew. At load.
+    /// A pool of 1 or 2 workers; the second is a thread that lives as long as the pool. At load.
     pub fn new(workers: usize) -> Result<Self, WorkerPoolError> {
         Self::beginning(workers, || ())
     }
@@ -243,7 +243,7 @@ impl WorkerPool {
         1 + usize::from(self.helper.is_some())
     }
 
-    /// Shares that the helper should have done and came too late for, since the crew was made.
+    /// Shares that the helper should have done and came too late for, since the pool was made.
     pub fn taken(&self) -> u64 {
         self.taken
     }

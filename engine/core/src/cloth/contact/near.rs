@@ -236,7 +236,7 @@ fn travel<L: Lanes>(v: V3<L>, ahead: L) -> L {
 }
 
 /// The box around all places that the free particles of a block may come to, and how far each may come; what is not free
-/// comes to no number, which is in no box and near nothing.
+/// comes to NaN, which is in no box and near nothing.
 #[inline(always)]
 fn around<L: Lanes>(cols: ParticleColumns<'_>, block: &ParticleBlock, ahead: L, far: WriteColumn<'_>) -> [[f32; 3]; 2] {
     let (mut low, mut high) = ([L::splat(f32::MAX); 3], [L::splat(-f32::MAX); 3]);
@@ -246,7 +246,7 @@ fn around<L: Lanes>(cols: ParticleColumns<'_>, block: &ParticleBlock, ahead: L, 
         let free = L::splat(0.0).lt(block.load_one(cols.w, from));
         let reach = travel(block.load(cols.v, from), ahead).select(free, L::splat(f32::NAN));
         reach.store(far, from);
-        // What is no number leaves the box as it was.
+        // NaN leaves the box as it was.
         low[0] = (x.x - reach).min(low[0]);
         low[1] = (x.y - reach).min(low[1]);
         low[2] = (x.z - reach).min(low[2]);
