@@ -114,7 +114,7 @@ keys! {
     CompareDraping = "compare-draping",
     CompareRefused = "compare-refused",
     PictureHeading = "picture-heading",
-    PictureTaking = "picture-progress",
+    PictureTaking = "picture-taking",
     PictureScan = "picture-scan",
     PictureUntil = "picture-until",
     PictureFailed = "picture-failed",
