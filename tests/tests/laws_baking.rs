@@ -87,7 +87,7 @@ proptest! {
         let shape = plan.shape();
         prop_assume!(!shape.faces.is_empty());
         let garment = bake("any", "one", &shape, &fabric()).unwrap();
-        let layout = &garment.layout;
+        let layout = garment.layout();
         for set in sets(&layout.shear.tuples).into_iter().chain(sets(&layout.weft.tuples)) {
             prop_assert!(no_particle_twice(set));
         }

@@ -44,8 +44,9 @@ pub struct Garment {
     pub fixed: Box<[u32]>,
     /// Their weights, in the order of `fixed`.
     pub fixed_weights: Box<[SkinWeights]>,
-    /// What holds the particles together.
-    pub layout: Layout,
+    /// What holds the particles together. Private: kernels share it between workers without a check in each step, so
+    /// only baking may write which particles a set holds and whose they are.
+    pub(crate) layout: Layout,
     /// Substeps of a step of 1/120 s that the longest load-bearing fiber asks for, at the quality `shop`.
     pub substeps: u32,
     /// Warp and weft edges with their rest lengths (m): what strain is measured on.
@@ -55,6 +56,34 @@ pub struct Garment {
 }
 
 impl Garment {
+    /// What holds the particles together.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Takes away the resistance to bending: to see what bending is worth.
+    pub fn leave_out_bending(&mut self) {
+        let layout = &mut self.layout;
+        (layout.bends, layout.skewed, layout.hubs) = (Default::default(), Default::default(), Default::default());
+    }
+
+    /// Takes away the resistance to shear.
+    pub fn leave_out_shear(&mut self) {
+        (self.layout.diagonals, self.layout.shear) = (Default::default(), Default::default());
+    }
+
+    /// Makes threads that do not stretch.
+    pub fn make_inextensible(&mut self) {
+        let layout = &mut self.layout;
+        let all = [&mut layout.weft.compliance, &mut layout.fibers.compliance, &mut layout.crossing.compliance];
+        all.into_iter().flat_map(|c| c.iter_mut()).filter(|c| **c < layout::ENDED).for_each(|c| *c = 0.0);
+    }
+
+    /// Compliance of each link of the load-bearing fibers (m/N, in the layout's order), for a hard case that softens some.
+    pub fn fiber_compliance_mut(&mut self) -> &mut [f32] {
+        &mut self.layout.fibers.compliance
+    }
+
     /// Number of particles.
     pub fn particles(&self) -> usize {
         self.start.len()

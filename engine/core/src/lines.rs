@@ -141,7 +141,7 @@ impl Lines {
     /// Adds what a garment shows of a kind; of the colliders, which are the body's, nothing.
     pub fn add_garment(&mut self, kind: Kind, cloth: &Cloth, garment: &Garment, colliders: &Colliders) {
         match kind {
-            Kind::Fibers => self.fibers(cloth, &garment.layout),
+            Kind::Fibers => self.fibers(cloth, garment.layout()),
             Kind::Contacts => self.contacts(cloth, garment, colliders),
             Kind::Tethers => self.tethers(cloth, garment),
             Kind::Velocity => self.velocity(cloth, garment),
@@ -221,7 +221,7 @@ impl Lines {
     }
 
     fn tethers(&mut self, cloth: &Cloth, garment: &Garment) {
-        let tethers = &garment.layout.tethers;
+        let tethers = &garment.layout().tethers;
         for (i, (anchor, length)) in (0..).zip(tethers.anchor.iter().zip(&tethers.length)) {
             let (from, to) = (Vec3::from(cloth.positions[*anchor as usize]), Vec3::from(cloth.positions[i]));
             if *length > 0.0 {

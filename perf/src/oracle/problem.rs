@@ -52,7 +52,7 @@ impl Problem {
     ///
     /// Which limb's colliders a particle can meet is left open: set [`Self::reach`] where the garment has parts.
     pub fn of(garment: &Garment) -> Self {
-        let layout = &garment.layout;
+        let layout = garment.layout();
         let mut links = Vec::new();
         tuples(&layout.shear, &mut links);
         tuples(&layout.weft, &mut links);

@@ -222,7 +222,7 @@ fn wake(pool: &mut WorkerPool) {
 /// Passes a substep over the weft; over crossing fibers where the weft is all solved with
 /// them.
 pub fn iterations(garment: &Garment, quality: Quality) -> usize {
-    let ops = program::constraints(&garment.layout, quality);
+    let ops = program::constraints(garment.layout(), quality);
     let count = |of: &[Stage]| ops.iter().filter(|op| of.contains(op)).count();
     match count(&[Stage::Weft(0)]) {
         0 => count(&[Stage::Crossing(0)]).max(count(&[Stage::Fibers])),

@@ -192,7 +192,7 @@ pub(super) fn strand(pieces: &Pieces, random: &mut CaseRandom, _: u64) -> TrialF
     let mut garment = chain.garment();
     // A spring of twice the length is to be as stiff as the others, not half as stiff.
     let [short, long] = [0.05, 0.1].map(|l| l / (0.5 * chain.force_n));
-    let soft = garment.layout.fibers.compliance.iter_mut().filter(|c| (**c / long - 1.0).abs() < 0.1);
+    let soft = garment.fiber_compliance_mut().iter_mut().filter(|c| (**c / long - 1.0).abs() < 0.1);
     soft.for_each(|c| *c = short);
     garment.fabric.damping_per_s = 0.0;
     let settings = settings(pieces, None);

@@ -212,7 +212,7 @@ impl Specimen {
         let stretch =
             |l: StretchLink| (place(l.ends[1]).distance(place(l.ends[0])) - l.rest).powi(2) / (2.0 * l.compliance);
         let stretch: f64 = links(&self.garment).into_iter().map(stretch).sum();
-        let layout = &self.garment.layout;
+        let layout = self.garment.layout();
         self.cloth.kinetic_energy(&self.garment)
             + weight
             + stretch
@@ -270,7 +270,7 @@ impl Placement<'_> {
 
 /// Every stretch link once.
 pub fn links(garment: &Garment) -> Vec<StretchLink> {
-    let layout = &garment.layout;
+    let layout = garment.layout();
     let mut found = Vec::new();
     let mut add = |a: u32, b: u32, rest: f32, compliance: f32| {
         if compliance < ENDED {

@@ -239,7 +239,7 @@ fn fabric(name: &str) -> Result<Fabric, AppError> {
 
 fn report(garment: &Garment, found: MeshSurvey, bake_ms: f64) -> BakeReport {
     let covered = &found.coverage;
-    let layout = &garment.layout;
+    let layout = garment.layout();
     let solver =
         |s: &bake::survey::SolverCount| SolverCounts { solver: s.solver.name(), fibers: s.fibers, edges: s.edges };
     BakeReport {

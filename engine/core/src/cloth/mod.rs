@@ -98,7 +98,7 @@ impl Cloth {
     /// All storage of a garment, at rest where the garment starts; `colliders` says which capsules are which limb's.
     pub fn new(garment: &Garment, colliders: &Colliders) -> Self {
         let start: Box<[Vec3A]> = garment.start.iter().map(|&p| p.into()).collect();
-        let layout = &garment.layout;
+        let layout = garment.layout();
         let needs = [bending::SCRATCH, fibers::scratch_len(&layout.fibers), lists::scratch_len(&layout.crossing)];
         let prepared = prepared::Prepared::new(garment);
         let counts = [layout.weft.tuples.count, layout.fibers.links, layout.crossing.rest.len()];
@@ -110,7 +110,7 @@ impl Cloth {
             contacts: contact::Contacts::new(&layout.spans, &garment.parts, &garment.start, colliders),
             scratch: [scratch(), scratch()],
             room: stiff_bending::StiffBendingScratch::new(if prepared.stiff() { start.len() } else { 0 }),
-            leaning: diagonals::DiagonalScratch::new(&garment.layout.diagonals, garment.start.len()),
+            leaning: diagonals::DiagonalScratch::new(&garment.layout().diagonals, garment.start.len()),
             strains: vec![0.0; garment.strain_edges.len()].into(),
             prepared,
             tension,
@@ -127,7 +127,7 @@ impl Cloth {
 
     /// Makes the garment ready for wind. At load.
     pub fn in_wind(mut self, garment: &Garment) -> Self {
-        let owner = &garment.layout.owner;
+        let owner = &garment.layout().owner;
         self.faces = Some(wind::Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, owner));
         self
     }

@@ -63,7 +63,7 @@ pub struct Prepared {
 impl Prepared {
     /// Storage for a garment; nothing is prepared yet. At load.
     pub fn new(garment: &Garment) -> Self {
-        let layout = &garment.layout;
+        let layout = garment.layout();
         let zeros = |n: usize| vec![0.0; n].into_boxed_slice();
         let mut load = zeros(garment.start.len());
         let longest = STEP_SECONDS / Quality::Draft.substeps(garment.substeps) as f32;
@@ -111,8 +111,8 @@ impl Prepared {
         self.gamma = settings.stretch_damping_s / self.dt;
         let half = asked.is_multiple_of(2) && self.quality != Quality::Fine && self.gamma == 0.0;
         self.shear_every = if half { 2 } else { 1 };
-        self.taut = fibers::pull_across(&garment.layout.fibers, &garment.inverse_mass, self.dt) > TAUT;
-        let (layout, w) = (&garment.layout, &garment.inverse_mass);
+        self.taut = fibers::pull_across(&garment.layout().fibers, &garment.inverse_mass, self.dt) > TAUT;
+        let (layout, w) = (garment.layout(), &garment.inverse_mass);
         links::prepare(&layout.shear, w, [self.dt, self.gamma], Passes::Once, &mut self.shear_gain);
         links::prepare(&layout.weft, w, [self.dt, self.gamma], Passes::Many, &mut self.weft_gain);
         self.bend(garment);
@@ -120,7 +120,7 @@ impl Prepared {
 
     /// How bending goes on with this substep: as a force, in stages, or weakened.
     fn bend(&mut self, garment: &Garment) {
-        let layout = &garment.layout;
+        let layout = garment.layout();
         self.load.fill(0.0);
         add_load(garment, self.dt, &mut self.load);
         // A few needles of a mesh do not decide for all of it: they are weakened.
@@ -167,9 +167,9 @@ impl Prepared {
 
 /// The bound on dt^2 omega^2 that bending puts on each particle.
 fn add_load(garment: &Garment, dt: f32, load: &mut [f32]) {
-    bending::add_load(&garment.layout.bends, &garment.inverse_mass, dt, load);
-    bending::add_load(&garment.layout.skewed, &garment.inverse_mass, dt, load);
-    hubs::add_load(&garment.layout.hubs, &garment.inverse_mass, dt, load);
+    bending::add_load(&garment.layout().bends, &garment.inverse_mass, dt, load);
+    bending::add_load(&garment.layout().skewed, &garment.inverse_mass, dt, load);
+    hubs::add_load(&garment.layout().hubs, &garment.inverse_mass, dt, load);
 }
 
 /// Whether any of some links gives: a millimetre under a thousand newtons and more.

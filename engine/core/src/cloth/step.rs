@@ -39,7 +39,7 @@ impl Cloth {
 
     /// The same with the pool's workers, an owner's share each: the same bits.
     pub fn step_with(&mut self, pool: &mut WorkerPool, garment: &Garment, step: &Step<'_>) {
-        if pool.workers() < OWNERS || garment.layout.spans[1].is_empty() {
+        if pool.workers() < OWNERS || garment.layout().spans[1].is_empty() {
             return self.step(garment, step);
         }
         let settings = self.sound(step.settings);

@@ -95,7 +95,7 @@ impl StepWork<'_> {
     }
 
     fn layout(&self) -> &Layout {
-        &self.garment.layout
+        self.garment.layout()
     }
 
     fn contact_settings(&self) -> contact::ContactSettings {

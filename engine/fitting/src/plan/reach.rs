@@ -114,7 +114,7 @@ fn of_garment(scene: &Scene, garment: &Garment, poses: &[Posed]) -> Vec<Reach> {
     let nearest = nearest(garment, poses);
     let capsules = scene.colliders.capsules().len();
     let offset = garment.fabric.contact_offset_mm * 1e-3;
-    let tethers = &garment.layout.tethers;
+    let tethers = &garment.layout().tethers;
     let mut rows: Vec<(Part, Row)> = Vec::new();
     for (i, &part) in garment.parts.iter().enumerate().filter(|(i, _)| garment.inverse_mass[*i] > 0.0) {
         let allowed = contact::reach(part, &scene.colliders);
@@ -189,8 +189,8 @@ fn touches(bits: u32, scene: &Scene) -> Vec<String> {
 /// How near each capsule comes to each particle that others are tethered to (m) `[particles]`; none for the others.
 fn nearest(garment: &Garment, poses: &[Posed]) -> Vec<Option<[f32; MAX_CAPSULES]>> {
     let mut nearest = vec![None; garment.particles()];
-    for (i, &anchor) in garment.layout.tethers.anchor.iter().enumerate() {
-        if garment.layout.tethers.length[i] > 0.0 {
+    for (i, &anchor) in garment.layout().tethers.anchor.iter().enumerate() {
+        if garment.layout().tethers.length[i] > 0.0 {
             nearest[anchor as usize] = Some([f32::INFINITY; MAX_CAPSULES]);
         }
     }

@@ -8,7 +8,6 @@ use std::time::Instant;
 use glam::Vec3A;
 use serde::Serialize;
 use toile_assets::garment::Garment;
-use toile_assets::garment::layout::{Bends, Diagonals, ENDED, Hubs, Links};
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, Wind};
 use toile_engine::workers::WorkerPool;
 
@@ -113,8 +112,8 @@ fn variants(scene: &Scene) -> Vec<Variant> {
     add("as it is", true, &same, &alike);
     let (wind, tethers) = (scene.settings[0].wind, scene.settings[0].tethers);
     let quality = scene.settings[0].quality;
-    add("bending", true, &without_bending, &alike);
-    add("shear", true, &without_shear, &alike);
+    add("bending", true, &Garment::leave_out_bending, &alike);
+    add("shear", true, &Garment::leave_out_shear, &alike);
     add("friction", true, &|g| g.fabric.friction = 0.0, &alike);
     add("continuous contact", true, &same, &|s| s.continuous = false);
     add("damping by air", true, &|g| g.fabric.damping_per_s = 0.0, &alike);
@@ -130,28 +129,13 @@ fn variants(scene: &Scene) -> Vec<Variant> {
     if quality != Quality::Fine {
         add("three times the substeps, shear in each (fine)", false, &same, &|s| s.quality = Quality::Fine);
     }
-    add("threads that do not give (zero stretch)", false, &inextensible, &alike);
+    add("threads that do not give (zero stretch)", false, &Garment::make_inextensible, &alike);
     all
 }
 
 /// Air that does not move.
 fn still() -> Wind {
     Wind { velocity: Vec3A::ZERO, drag: DRAG_LIFT[0], lift: DRAG_LIFT[1] }
-}
-
-fn without_bending(garment: &mut Garment) {
-    let layout = &mut garment.layout;
-    (layout.bends, layout.skewed, layout.hubs) = (Bends::default(), Bends::default(), Hubs::default());
-}
-
-fn without_shear(garment: &mut Garment) {
-    (garment.layout.diagonals, garment.layout.shear) = (Diagonals::default(), Links::default());
-}
-
-fn inextensible(garment: &mut Garment) {
-    let layout = &mut garment.layout;
-    let all = [&mut layout.weft.compliance, &mut layout.fibers.compliance, &mut layout.crossing.compliance];
-    all.into_iter().flat_map(|c| c.iter_mut()).filter(|c| **c < ENDED).for_each(|c| *c = 0.0);
 }
 
 /// What the windows of one variant came to.

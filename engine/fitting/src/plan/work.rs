@@ -94,7 +94,7 @@ impl Work {
         // Shear along whole fibers acts in every second of an even number of substeps.
         let half = first.substeps.is_multiple_of(2) && settings.quality != Quality::Fine;
         let leaning = if half { 0.5 } else { 1.0 };
-        let [shear, scattered] = count.links(&garment.layout.shear.tuples);
+        let [shear, scattered] = count.links(&garment.layout().shear.tuples);
         let counts = [
             per([particles, fixed, count.tensions()]),
             count.stencils().map(|c| c * bent),
@@ -106,9 +106,9 @@ impl Work {
             only(held, particles * n),
             [particles, fixed, 0.0],
         ];
-        let bending = Bending { sets: Bending::sets(&garment.layout), stages: first.bend.stages };
-        let each = bending.len() + program::constraints(&garment.layout, settings.quality).len();
-        let own = garment.layout.spans[0].iter().map(|s| f64::from(s.1)).sum::<f64>() / garment.particles() as f64;
+        let bending = Bending { sets: Bending::sets(garment.layout()), stages: first.bend.stages };
+        let each = bending.len() + program::constraints(garment.layout(), settings.quality).len();
+        let own = garment.layout().spans[0].iter().map(|s| f64::from(s.1)).sum::<f64>() / garment.particles() as f64;
         Self {
             counts,
             phases: BEFORE.len() as f64 + n * each as f64,
@@ -139,11 +139,11 @@ impl Count<'_> {
 
     /// How often an operation is in a substep.
     fn times(&self, wanted: Stage) -> f64 {
-        program::constraints(&self.garment.layout, self.quality).iter().filter(|op| **op == wanted).count() as f64
+        program::constraints(self.garment.layout(), self.quality).iter().filter(|op| **op == wanted).count() as f64
     }
 
     fn stencils(&self) -> [f64; KINDS] {
-        let layout = &self.garment.layout;
+        let layout = self.garment.layout();
         let ([three, three_loose], [four, four_loose]) =
             (self.links(&layout.bends.tuples), self.links(&layout.skewed.tuples));
         let more = 4.0 / 3.0;
@@ -153,18 +153,18 @@ impl Count<'_> {
     }
 
     fn leaning(&self) -> f64 {
-        self.garment.layout.diagonals.runs.iter().map(|r| self.vectors(r.len as usize)).sum()
+        self.garment.layout().diagonals.runs.iter().map(|r| self.vectors(r.len as usize)).sum()
     }
 
     fn weft(&self) -> [f64; KINDS] {
-        let weft = &self.garment.layout.weft.tuples;
+        let weft = &self.garment.layout().weft.tuples;
         let [runs, loose] = self.links(weft);
         let passes = self.times(Stage::Weft(0));
         [runs * passes, loose * passes, weft.sets.len() as f64 * passes]
     }
 
     fn fibers(&self) -> [f64; KINDS] {
-        let layout = &self.garment.layout;
+        let layout = self.garment.layout();
         let rows: f64 = layout.fibers.rows.iter().map(|r| self.vectors(r.lanes as usize)).sum();
         let listed = |closed: bool| {
             let lists = layout.crossing.lists.iter().filter(|l| l.closed == closed);
@@ -176,7 +176,7 @@ impl Count<'_> {
 
     /// Tensions that a substep begins with none of.
     fn tensions(&self) -> f64 {
-        let layout = &self.garment.layout;
+        let layout = self.garment.layout();
         let Links { tuples, compliance, .. } = &layout.weft;
         let all = [
             (compliance, tuples.count),

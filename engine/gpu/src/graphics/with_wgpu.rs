@@ -147,7 +147,7 @@ fn address(garment: &Garment) -> usize {
 
 /// FNV-1a over what a garment is laid out from: it distinguishes two with as many particles.
 fn fingerprint(garment: &Garment) -> u64 {
-    let layout = &garment.layout;
+    let layout = garment.layout();
     let numbers = [&garment.inverse_mass[..], &layout.weft.rest, &layout.weft.compliance, &layout.shear.compliance];
     let fibers = [&layout.fibers.rest[..], &layout.fibers.compliance, &layout.crossing.rest];
     let start = garment.start.iter().flat_map(|p| p.to_array());

@@ -46,7 +46,7 @@ impl<'a> Twin<'a> {
     }
 
     fn run(&mut self, kernel: Kernel) {
-        let (garment, layout, p) = (self.garment, &self.garment.layout, &self.prepared);
+        let (garment, layout, p) = (self.garment, self.garment.layout(), &self.prepared);
         let columns = self.state.columns();
         let width = self.settings.width;
         let per_dt2 = (p.dt * p.dt).recip();
@@ -172,7 +172,7 @@ fn push(
     scratch: WriteColumn<'_>,
     width: Width,
 ) {
-    let layout = &garment.layout;
+    let layout = garment.layout();
     let some = p.bend.least < 1.0;
     for set in 0..2usize {
         for owner in 0..OWNERS {
@@ -222,9 +222,9 @@ fn held(name: &str, garment: &Garment, settings: &Settings, kernel: Kernel) {
         assert_eq!((same_x, same_v), (all, all), "{name} {kernel:?}: {most_x} m, {most_v} m/s");
     }
     let empty = match kernel {
-        Kernel::Shear => garment.layout.shear.rest.is_empty(),
-        Kernel::Lists => garment.layout.crossing.lists.is_empty(),
-        Kernel::Diagonals => garment.layout.diagonals.families.is_empty(),
+        Kernel::Shear => garment.layout().shear.rest.is_empty(),
+        Kernel::Lists => garment.layout().crossing.lists.is_empty(),
+        Kernel::Diagonals => garment.layout().diagonals.families.is_empty(),
         _ => false,
     };
     assert!(empty || moved > 0.0 || kernel == Kernel::Settle, "{name} {kernel:?}: nothing was asked of the kernel");
@@ -282,7 +282,7 @@ fn alike(name: &str, software: bool, got: &[Vec3A], expected: &[Vec3A]) {
 
 /// The wind's accelerations.
 fn blow(garment: &Garment, settings: &Settings, wind: &Wind, twin: &mut Twin<'_>, to: &mut Accelerations) {
-    let faces = Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, &garment.layout.owner);
+    let faces = Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, &garment.layout().owner);
     for part in WindPart::ALL {
         faces.blow(settings.width, part, wind, settings.step_seconds, twin.state.columns(), to.columns());
     }

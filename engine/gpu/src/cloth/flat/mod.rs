@@ -145,7 +145,7 @@ impl Flat {
 
     fn add(&mut self, number: u32, garment: &Garment) {
         let span = GarmentSpan { garment: number, first: self.particles, len: garment.particles() as u32 };
-        let (layout, weights) = (&garment.layout, &garment.inverse_mass);
+        let (layout, weights) = (garment.layout(), &garment.inverse_mass);
         self.start.extend(garment.start.iter().zip(weights).map(|(p, w)| [p.x, p.y, p.z, *w]));
         self.pins_from.push(self.targets);
         let mut pins = vec![FREE; garment.particles()];
@@ -237,7 +237,7 @@ mod tests {
     #[test]
     fn nothing_of_a_bake_is_lost() {
         let (garment, flat) = skirts();
-        let layout = &garment.layout;
+        let layout = garment.layout();
         let count = |halves: &[Workgroups]| halves.iter().flat_map(items).count();
         assert_eq!(count(&flat.weft.halves), 2 * layout.weft.tuples.count);
         assert_eq!(count(&flat.shear.halves), 2 * layout.shear.tuples.count);

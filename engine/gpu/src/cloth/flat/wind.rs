@@ -21,7 +21,7 @@ pub struct FlatWind {
 impl FlatWind {
     /// Appends a garment's.
     pub fn add(&mut self, garment: &Garment, span: GarmentSpan) {
-        let faces = Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, &garment.layout.owner);
+        let faces = Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, &garment.layout().owner);
         let begun = self.faces.len() as u32;
         let flat = faces.triangles().map(|([a, b, c], mass)| {
             let [a, b, c] = [a, b, c].map(|i| span.first + i);
