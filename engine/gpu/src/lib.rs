@@ -7,18 +7,7 @@
 /// Whether GPU support is built in (feature `wgpu`).
 pub const BUILT_IN: bool = cfg!(feature = "wgpu");
 
-/// One way to compute on the graphics hardware of this machine.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Adapter {
-    /// The device's own name.
-    pub name: String,
-    /// The interface it is reached by: `vulkan`, `metal`, `dx12`.
-    pub backend: String,
-    /// `discrete`, `integrated`, `virtual`, `software` or `other`.
-    pub kind: &'static str,
-    /// The driver's name and version, where it reports them.
-    pub driver: String,
-}
+pub use adapter::Adapter;
 
 /// All adapters, real devices before software ones; none where GPU support is not built in.
 pub fn adapters() -> Vec<Adapter> {
@@ -28,6 +17,7 @@ pub fn adapters() -> Vec<Adapter> {
     Vec::new()
 }
 
+mod adapter;
 #[cfg(feature = "wgpu")]
 mod adapters;
 pub mod backend;

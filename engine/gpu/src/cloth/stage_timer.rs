@@ -9,9 +9,7 @@ use wgpu::{
     ComputePassTimestampWrites, Features, QuerySet, QuerySetDescriptor, QueryType,
 };
 
-use super::Offload;
 use super::readback::ReadbackRing;
-use super::step::StepConditions;
 use crate::device::Device;
 
 /// Most passes of a step that are metered, what one set of queries holds; later ones go unmetered with the last.
@@ -36,7 +34,7 @@ pub struct StageTimer {
     /// Nanoseconds a tick.
     period: f32,
     /// Stage of each pass of the step under way.
-    stages: Vec<u8>,
+    pub(super) stages: Vec<u8>,
     spent: Option<StageTimes>,
 }
 
@@ -71,7 +69,7 @@ impl StageTimer {
     }
 
     /// A pass of a stage.
-    fn pass<'e>(&mut self, encoder: &'e mut CommandEncoder, stage: u8) -> ComputePass<'e> {
+    pub(super) fn pass<'e>(&mut self, encoder: &'e mut CommandEncoder, stage: u8) -> ComputePass<'e> {
         let at = 2 * self.stages.len() as u32;
         let metered = at < 2 * PASSES;
         if metered {
@@ -88,7 +86,7 @@ impl StageTimer {
     }
 
     /// After the last pass: lets the readings come back.
-    fn send(&mut self, encoder: &mut CommandEncoder) {
+    pub(super) fn send(&mut self, encoder: &mut CommandEncoder) {
         encoder.resolve_query_set(&self.queries, 0..2 * self.stages.len() as u32, &self.resolved, 0);
         self.place = self.back.send(encoder, &[self.resolved.slice(..)]);
     }
@@ -116,19 +114,5 @@ impl StageTimer {
             spent = Some(sum);
         });
         self.spent = spent.or(self.spent);
-    }
-}
-
-impl Offload {
-    /// A whole step, a pass for each run of dispatches of one stage.
-    pub(super) fn metered(&self, encoder: &mut CommandEncoder, asked: StepConditions, meter: &mut StageTimer) {
-        meter.stages.clear();
-        let mut entries = Vec::new();
-        self.entries(asked, |entry, substep, garments| entries.push((entry, substep, garments)));
-        for run in entries.chunk_by(|a, b| a.0.kernel.stage() == b.0.kernel.stage()) {
-            let mut pass = meter.pass(encoder, run[0].0.kernel.stage() as u8);
-            run.iter().for_each(|(entry, substep, garments)| self.dispatch(&mut pass, entry, *substep, *garments));
-        }
-        meter.send(encoder);
     }
 }

@@ -15,6 +15,7 @@ use super::contact_data::{self, PLANES};
 use super::flat::{BendingScale, WIDTH};
 use super::kernels::Kernel;
 use super::program::Dispatch;
+use super::stage_timer::StageTimer;
 use super::{Offload, Step, takes};
 use crate::buffer_builder::ALIGNED;
 use crate::device::GpuError;
@@ -216,6 +217,18 @@ impl Offload {
         pass.set_bind_group(0, &self.buffers.scene, &[entry.op, moment].map(|k| k * ALIGNED as u32));
         pass.set_bind_group(1, &self.buffers.own[entry.kernel.number()], &[]);
         pass.dispatch_workgroups(groups, 1, 1);
+    }
+
+    /// A whole step, a pass for each run of dispatches of one stage.
+    fn metered(&self, encoder: &mut CommandEncoder, asked: StepConditions, meter: &mut StageTimer) {
+        meter.stages.clear();
+        let mut entries = Vec::new();
+        self.entries(asked, |entry, substep, garments| entries.push((entry, substep, garments)));
+        for run in entries.chunk_by(|a, b| a.0.kernel.stage() == b.0.kernel.stage()) {
+            let mut pass = meter.pass(encoder, run[0].0.kernel.stage() as u8);
+            run.iter().for_each(|(entry, substep, garments)| self.dispatch(&mut pass, entry, *substep, *garments));
+        }
+        meter.send(encoder);
     }
 }
 

@@ -8,6 +8,7 @@
 //! Left and right are the shopper's own. Everything is measured in arm lengths from the middle of the shoulders along
 //! the trunk's own axes, so that the shopper's size, place and distance do not matter, nor a slow turn.
 
+mod event;
 mod grip;
 mod hand;
 mod hold;
@@ -19,10 +20,12 @@ mod trunk;
 use toile_assets::skeleton::Joint;
 use toile_sensors::frame::{DepthFrame, HandState as ReportedState, Joints};
 
+pub use event::{Gesture, GestureEvent, GestureEvents};
 pub use grip::Grip;
 pub use hand::{HandRegion, HandSegmenter, HandShape};
 pub use trunk::{Side, Trunk};
 
+use event::LONGEST_GAP_NS;
 use hold::{Hold, HoldInput};
 use position_history::PositionHistory;
 use swipe::{Swipe, SwipeInput};
@@ -31,9 +34,6 @@ use trunk::{ArmLength, TrunkDirection};
 /// Shortest time between two frames that are looked at (ns): a motion-capture system's 120 Hz carries nothing that 40 Hz
 /// does not, and would need longer trails.
 const SHORTEST_STEP_NS: u64 = 20_000_000;
-
-/// A silence or a loss longer than this ends every gesture (ns): at 15 Hz four frames may be dropped.
-pub(crate) const LONGEST_GAP_NS: u64 = 350_000_000;
 
 /// After an event no other is given for this long (ns): arms need as long to come to rest.
 const COOL_DOWN_NS: u64 = 500_000_000;
@@ -44,51 +44,6 @@ const WALKING: f32 = 0.6;
 
 /// A trunk turned farther than this from the camera does not look into the mirror: cosine of 55 degrees.
 const FACING: f32 = 0.57;
-
-/// What a hand did.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Gesture {
-    /// A stroke to the shopper's own left.
-    SwipeLeft,
-    /// A stroke to the shopper's own right.
-    SwipeRight,
-    /// A stroke upwards.
-    SwipeUp,
-    /// A hand held out towards the mirror for a second.
-    Confirm,
-    /// A closed hand opened.
-    Opened,
-    /// An open hand closed.
-    Closed,
-}
-
-impl Gesture {
-    /// The word for reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::SwipeLeft => "swipe left",
-            Self::SwipeRight => "swipe right",
-            Self::SwipeUp => "swipe up",
-            Self::Confirm => "confirm",
-            Self::Opened => "opened",
-            Self::Closed => "closed",
-        }
-    }
-}
-
-/// A gesture that has been recognised.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct GestureEvent {
-    /// When it was recognised (ns), the time of the frame.
-    pub time_ns: u64,
-    /// Whose hand: the shopper's own side.
-    pub side: Side,
-    /// The gesture.
-    pub gesture: Gesture,
-}
-
-/// The events of one frame: at most one stroke and one grip a hand.
-pub type GestureEvents = [Option<GestureEvent>; 4];
 
 /// State of one hand's recognisers.
 #[derive(Debug, Clone)]

@@ -8,154 +8,20 @@
 //! mean penalty is least is recommended, and every size has the share of bodies that it suits best as its probability.
 //! Where no size is sure, the measure is named whose exact knowledge would make the choice surest.
 
+mod offer;
 mod probability;
+mod recommendation;
+mod scored_zone;
 mod sentences;
 
-use toile_assets::sizes::{GarmentKind, Girth, SizeError, SizeTable};
+use toile_assets::sizes::SizeError;
 
-use crate::estimate::Estimate;
 use crate::measure::Measurements;
 use probability::{SizeProbabilities, least};
+use scored_zone::{ScoredZone, WEIGHTS, WORTH_NAMING};
 
-/// A zone of fit is where a girth is taken.
-pub type Zone = Girth;
-
-/// Finished girth of a garment at one zone.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ZoneGirth {
-    /// The zone.
-    pub zone: Zone,
-    /// Girth of the garment (m).
-    pub girth_m: f32,
-}
-
-/// Ease (garment less body) that feels right at one zone; negative where the cloth is meant to stretch.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EaseRange {
-    /// The zone.
-    pub zone: Zone,
-    /// Less than this is tight (m).
-    pub least: f32,
-    /// More than this is loose (m).
-    pub most: f32,
-}
-
-/// One size of a garment as it is made.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MadeSize {
-    /// Code, as in the size table.
-    pub code: String,
-    /// Finished girths, those zones that the garment covers.
-    pub zones: Vec<ZoneGirth>,
-}
-
-/// A garment to choose a size of.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Offer<'a> {
-    /// Name of the garment.
-    pub garment: &'a str,
-    /// Kind of the garment, which decides its primary measures.
-    pub kind: GarmentKind,
-    /// The table that its sizes are designated by.
-    pub table: &'a SizeTable,
-    /// The sizes that are made, smallest first.
-    pub sizes: &'a [MadeSize],
-    /// Comfortable ease at the zones that matter.
-    pub ease: &'a [EaseRange],
-}
-
-/// How a zone fits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
-    /// Less ease than is comfortable.
-    Tight,
-    /// Comfortable ease.
-    Good,
-    /// More ease than is comfortable.
-    Loose,
-}
-
-impl Verdict {
-    /// The word for reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Tight => "tight",
-            Self::Good => "good",
-            Self::Loose => "loose",
-        }
-    }
-}
-
-/// The fit at one zone.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ZoneFit {
-    /// The zone.
-    pub zone: Zone,
-    /// Whether the size is chosen by this zone.
-    pub primary: bool,
-    /// Garment less body (m).
-    pub ease: f32,
-    /// Standard deviation of the ease (m): that of the body's measure.
-    pub sigma: f32,
-    /// How it will feel.
-    pub verdict: Verdict,
-    /// The same for a person to read.
-    pub sentence: String,
-}
-
-/// Another size that may suit as well.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RunnerUp {
-    /// Code of the size.
-    pub size: String,
-    /// Probability that it suits this person best.
-    pub probability: f32,
-}
-
-/// A size with its probability.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SizeProbability {
-    /// Code of the size.
-    pub size: String,
-    /// Probability that it suits this person best, given the errors of the measures.
-    pub probability: f32,
-}
-
-/// Advice to take a girth by tape, where no size is sure.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TapeAdvice {
-    /// The girth to take.
-    pub zone: Zone,
-    /// Probability of the most probable size that is to be expected once this girth is known exactly.
-    pub probability: f32,
-    /// The same for a person to read.
-    pub sentence: String,
-}
-
-/// A size, judged.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Recommendation {
-    /// Name of the garment.
-    pub garment: String,
-    /// Code of the size.
-    pub size: String,
-    /// Probability that this size suits this person best, given the errors of the measures.
-    pub probability: f32,
-    /// All sizes that are made, smallest first; the probabilities sum to 1.
-    pub sizes: Vec<SizeProbability>,
-    /// Whether no size is as probable as [`SURE`].
-    pub uncertain: bool,
-    /// The measure to take by tape, where that is so and a tape would help.
-    pub tape: Option<TapeAdvice>,
-    /// The recommendation in sentences: how sure the size is, what else may fit, what to do about it.
-    pub verdict: String,
-    /// Fit by zone, the primary ones first.
-    pub zones: Vec<ZoneFit>,
-    /// The next best size, if it may be the better one at all.
-    pub runner_up: Option<RunnerUp>,
-    /// Set where no size is made for this person, or guesses stand for measures: a sentence.
-    pub note: Option<String>,
-}
+pub use offer::{EaseRange, MadeSize, Offer, Zone, ZoneGirth};
+pub use recommendation::{Recommendation, RunnerUp, SURE, SizeProbability, TapeAdvice, Verdict, ZoneFit};
 
 /// Why no size can be named; each message says what, where, and the cure.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -193,15 +59,6 @@ pub enum RecommendError {
     Size(#[from] SizeError),
 }
 
-/// Weight of a zone that the size is chosen by, of one that it also promises to fit, and of any other.
-const WEIGHTS: [f32; 3] = [1.0, 0.2, 0.1];
-
-/// A runner-up less probable than this is not named.
-const WORTH_NAMING: f32 = 0.05;
-
-/// A size less probable than this is not sure: one shopper in five would be sent to the rail again.
-pub const SURE: f32 = 0.8;
-
 /// A tape measurement is advised only if it raises the largest probability by at least this.
 const LEAST_TAPE_GAIN: f32 = 0.02;
 
@@ -213,13 +70,6 @@ pub fn recommend(measured: &Measurements, offer: &Offer) -> Result<Recommendatio
 /// Judges a size that the person insists on.
 pub fn evaluate(measured: &Measurements, offer: &Offer, size: &str) -> Result<Recommendation, RecommendError> {
     judge(measured, offer, Some(size))
-}
-
-/// A zone to judge by: its weight, comfortable range, and the body there.
-struct ScoredZone {
-    ease: EaseRange,
-    weight: f32,
-    body: Estimate,
 }
 
 fn judge(measured: &Measurements, offer: &Offer, wanted: Option<&str>) -> Result<Recommendation, RecommendError> {

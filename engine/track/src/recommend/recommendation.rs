@@ -1,0 +1,99 @@
+//! A size, judged: how each zone fits, how probable each size is, and what to do where none is sure.
+
+use super::offer::Zone;
+
+/// How a zone fits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Less ease than is comfortable.
+    Tight,
+    /// Comfortable ease.
+    Good,
+    /// More ease than is comfortable.
+    Loose,
+}
+
+impl Verdict {
+    /// The word for reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Tight => "tight",
+            Self::Good => "good",
+            Self::Loose => "loose",
+        }
+    }
+}
+
+/// The fit at one zone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ZoneFit {
+    /// The zone.
+    pub zone: Zone,
+    /// Whether the size is chosen by this zone.
+    pub primary: bool,
+    /// Garment less body (m).
+    pub ease: f32,
+    /// Standard deviation of the ease (m): that of the body's measure.
+    pub sigma: f32,
+    /// How it will feel.
+    pub verdict: Verdict,
+    /// The same for a person to read.
+    pub sentence: String,
+}
+
+/// Another size that may suit as well.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunnerUp {
+    /// Code of the size.
+    pub size: String,
+    /// Probability that it suits this person best.
+    pub probability: f32,
+}
+
+/// A size with its probability.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SizeProbability {
+    /// Code of the size.
+    pub size: String,
+    /// Probability that it suits this person best, given the errors of the measures.
+    pub probability: f32,
+}
+
+/// Advice to take a girth by tape, where no size is sure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TapeAdvice {
+    /// The girth to take.
+    pub zone: Zone,
+    /// Probability of the most probable size that is to be expected once this girth is known exactly.
+    pub probability: f32,
+    /// The same for a person to read.
+    pub sentence: String,
+}
+
+/// A size, judged.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recommendation {
+    /// Name of the garment.
+    pub garment: String,
+    /// Code of the size.
+    pub size: String,
+    /// Probability that this size suits this person best, given the errors of the measures.
+    pub probability: f32,
+    /// All sizes that are made, smallest first; the probabilities sum to 1.
+    pub sizes: Vec<SizeProbability>,
+    /// Whether no size is as probable as [`SURE`].
+    pub uncertain: bool,
+    /// The measure to take by tape, where that is so and a tape would help.
+    pub tape: Option<TapeAdvice>,
+    /// The recommendation in sentences: how sure the size is, what else may fit, what to do about it.
+    pub verdict: String,
+    /// Fit by zone, the primary ones first.
+    pub zones: Vec<ZoneFit>,
+    /// The next best size, if it may be the better one at all.
+    pub runner_up: Option<RunnerUp>,
+    /// Set where no size is made for this person, or guesses stand for measures: a sentence.
+    pub note: Option<String>,
+}
+
+/// A size less probable than this is not sure: one shopper in five would be sent to the rail again.
+pub const SURE: f32 = 0.8;
