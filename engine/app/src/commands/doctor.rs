@@ -4,6 +4,7 @@
 //! Budget: well below a second, but for a graphics driver that takes its time.
 //! Thread: the main thread.
 
+mod check;
 mod processor;
 mod rights;
 mod surroundings;
@@ -29,53 +30,8 @@ pub struct DoctorArgs {
     pub json: bool,
 }
 
+pub use check::{Check, Status};
 pub(crate) use rights::may_lock_all;
-
-/// How one thing stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Status {
-    /// As it should be.
-    Ok,
-    /// Not there, or not as it should be; the cure says how to mend it.
-    Missing,
-    /// This machine does not say.
-    Unknown,
-}
-
-/// One thing that was looked at.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Check {
-    /// What was looked at.
-    pub name: &'static str,
-    /// How it stands.
-    pub status: Status,
-    /// What was found.
-    pub found: String,
-    /// What it is needed for.
-    pub needed_for: &'static str,
-    /// The exact cure, where something is missing.
-    pub cure: Option<String>,
-}
-
-impl Check {
-    fn ok(name: &'static str, needed_for: &'static str, found: impl Into<String>) -> Self {
-        Self { name, status: Status::Ok, found: found.into(), needed_for, cure: None }
-    }
-
-    fn missing(
-        name: &'static str,
-        needed_for: &'static str,
-        found: impl Into<String>,
-        cure: impl Into<String>,
-    ) -> Self {
-        Self { name, status: Status::Missing, found: found.into(), needed_for, cure: Some(cure.into()) }
-    }
-
-    fn unknown(name: &'static str, needed_for: &'static str) -> Self {
-        Self { name, status: Status::Unknown, found: "this machine does not say".into(), needed_for, cure: None }
-    }
-}
 
 /// The body of `toile doctor --json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -164,19 +120,9 @@ fn table(report: &DoctorReport, paint: Paint) -> String {
     text
 }
 
-/// The text of one of the kernel's files, without its ends.
-fn kernel_file(path: impl AsRef<Path>) -> Option<String> {
-    let text = std::fs::read_to_string(path).ok()?;
-    Some(text.trim().to_owned()).filter(|t| !t.is_empty())
-}
-
-/// The value of a `Key: value` line.
-fn field<'a>(text: &'a str, key: &str) -> Option<&'a str> {
-    text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(':')).map(str::trim)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::check::field;
     use super::*;
 
     #[test]

@@ -6,9 +6,10 @@ use toile_sensors::filter::Filter;
 use toile_sensors::frame::{Joints, TrackedJoint};
 
 use super::Poser;
+use super::body_input::BodyInput;
 use super::ground::Ground;
 use super::kinematics::JointFrames;
-use super::reliable_joints::{BodyInput, ReliableJoints};
+use super::reliable_joints::ReliableJoints;
 use super::retarget::Retarget;
 
 /// Joint limits alone: each degree of freedom is brought into its range, nothing is smoothed or remembered.

@@ -7,10 +7,9 @@
 use glam::{Quat, Vec3};
 use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 
-use super::limb::ramp;
+use super::body_input::BodyInput;
 use super::limits::{self, Side};
 use super::neutral::Neutral;
-use super::reliable_joints::BodyInput;
 use super::smooth::fraction;
 
 /// Lift of the ankle (m) up to which a foot stands flat, and from which its slope is its own.

@@ -8,9 +8,8 @@ use glam::Vec3;
 use toile_assets::skeleton::{Joint, Skeleton};
 
 use super::kinematics::JointFrames;
-use super::limb::ramp;
 use super::reliable_joints::ReliableJoints;
-use super::smooth::fraction;
+use super::smooth::{fraction, ramp};
 
 /// Time constant with which a lower floor is taken over (s).
 const DOWN_TAU: f32 = 0.15;

@@ -7,8 +7,8 @@
 use glam::{Quat, Vec3};
 use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 
+use super::body_input::BodyInput;
 use super::limits::{self, Range, Reach, Side, clamp_angle, soft_clamp};
-use super::reliable_joints::BodyInput;
 use super::smooth::{fraction, wrap};
 
 /// Bend (degrees) from which the plane of a limb begins to be believed, and from which it is believed fully: at 25
@@ -203,10 +203,4 @@ fn follow(rotation: &mut Quat, target: Quat, share: f32) {
 fn angle_between(from: Vec3, to: Vec3, axis: Vec3) -> f32 {
     let from = from - axis * from.dot(axis);
     axis.dot(from.cross(to)).atan2(from.dot(to))
-}
-
-/// 0 below the first value, 1 above the second, smooth between.
-pub fn ramp([low, high]: [f32; 2], value: f32) -> f32 {
-    let t = ((value - low) / (high - low)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
 }

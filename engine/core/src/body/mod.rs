@@ -5,6 +5,7 @@
 //! Thread: physics, 120 Hz.
 
 mod arm_clearance;
+mod body_input;
 pub mod filters;
 mod foot;
 pub mod ground;
@@ -35,8 +36,9 @@ use toile_assets::skeleton::{JOINTS, Joint, Pose, Skeleton};
 use toile_sensors::frame::Joints;
 
 use arm_clearance::ArmClearance;
+use body_input::BodyInput;
 use ground::Ground;
-use reliable_joints::{BodyInput, ReliableJoints};
+use reliable_joints::ReliableJoints;
 use retarget::Retarget;
 use smooth::{ANGLE_TAU, LIMB_SPEED, TRUNK_SPEED, turn_towards};
 use stance::Stance;

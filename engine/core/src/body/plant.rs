@@ -8,7 +8,6 @@
 use glam::Vec3;
 
 use super::ground::Ground;
-use super::limb::ramp;
 use super::smooth::fraction;
 
 /// Speed of a seen ankle (m/s) up to which it is planted, and from which it is let go, for a sensor without noise.

@@ -5,9 +5,6 @@ use toile_assets::limits::CONFIDENCE_GATE;
 use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 use toile_sensors::frame::Joints;
 
-use super::ground::Ground;
-use super::smooth::fraction;
-
 /// Joints nearer together than this (m) give no direction.
 pub const MIN_BONE: f32 = 0.02;
 
@@ -66,26 +63,6 @@ impl ReliableJoints {
     /// Unit vector from one joint to another.
     pub fn direction(&self, from: Joint, to: Joint) -> Option<Vec3> {
         unit(self.at(to)? - self.at(from)?)
-    }
-}
-
-/// One moment: what is seen, of what floor, and how long after the last.
-#[derive(Debug, Clone, Copy)]
-pub struct BodyInput<'a> {
-    /// The joints.
-    pub seen: &'a ReliableJoints,
-    /// The floor.
-    pub ground: &'a Ground,
-    /// Time since the last moment (s).
-    pub dt: f32,
-    /// Whether there was no last moment: everything is then taken over at once.
-    pub first: bool,
-}
-
-impl BodyInput<'_> {
-    /// Share of the way to go with a time constant (s).
-    pub fn share(&self, tau: f32) -> f32 {
-        if self.first { 1.0 } else { fraction(self.dt, tau) }
     }
 }
 

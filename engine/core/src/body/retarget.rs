@@ -7,11 +7,12 @@
 use glam::{Quat, Vec3};
 use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 
+use super::body_input::BodyInput;
 use super::foot::Feet;
 use super::limb::Limb;
 use super::limits::Side;
 use super::neutral::Neutral;
-use super::reliable_joints::{BodyInput, ReliableJoints};
+use super::reliable_joints::ReliableJoints;
 use super::trunk::Trunk;
 
 /// Greatest slant of a sensor's legs that is taken for its habit (rad): 15 degrees.

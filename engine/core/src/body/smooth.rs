@@ -44,3 +44,9 @@ pub fn wrap(angle: f32) -> f32 {
     let turns = (angle / std::f32::consts::TAU).round();
     angle - turns * std::f32::consts::TAU
 }
+
+/// 0 below the first value, 1 above the second, smooth between.
+pub fn ramp([low, high]: [f32; 2], value: f32) -> f32 {
+    let t = ((value - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}

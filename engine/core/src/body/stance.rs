@@ -6,10 +6,10 @@
 use glam::Vec3;
 use toile_assets::skeleton::Skeleton;
 
+use super::body_input::BodyInput;
 use super::ground::soles;
 use super::kinematics::JointFrames;
 use super::plant::Plant;
-use super::reliable_joints::BodyInput;
 use super::smooth::fraction;
 use super::tread::ANKLES;
 

@@ -4,7 +4,8 @@ use std::marker::PhantomData;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::MOST;
+/// Most lanes of any width: storage is padded to it.
+pub const MOST: usize = 16;
 
 /// One cache line, one widest vector.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]

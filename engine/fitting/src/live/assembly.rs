@@ -8,17 +8,17 @@ use glam::Vec3;
 use toile_engine::clock::Clock;
 use toile_engine::frame::Snapshot;
 use toile_engine::frame_loop::event::{CounterSource, EVENTS, EVENTS_NAME, Event};
-use toile_engine::frame_loop::handover::{HandoverSender, handover};
+use toile_engine::frame_loop::handover::handover;
 use toile_engine::frame_loop::physics_thread::{PhysicsOutputs, PhysicsThread, Scene};
 use toile_engine::frame_loop::queue::{Capacity, Receiver, Sender, bounded};
 use toile_engine::frame_loop::recording::Entry;
-use toile_engine::frame_loop::render_thread::{RenderThread, Renderer, SceneView};
+use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
 use toile_engine::frame_loop::sensor_thread::{
     FrameSource, OBSERVED, OBSERVED_NAME, ObservedFrame, SensorFrame, SensorThread,
 };
 use toile_engine::triple_buffer::TripleBuffer;
 
-use super::live_scene::{LiveScene, STEP_REPORTS, STEP_REPORTS_NAME, StepReport, WatchedRenderer};
+use super::live_scene::{LiveScene, STEP_REPORTS, STEP_REPORTS_NAME, SceneHandover, StepReport, WatchedRenderer};
 use super::running::Loops;
 use super::scene_changer::DressedScene;
 use super::watchdog::Progress;
@@ -58,14 +58,6 @@ pub type PhysicsLoop<S, C, A> = PhysicsThread<LiveScene<S>, C, A>;
 
 /// The render thread's loop.
 pub type RenderLoop<E, C> = WatchedRenderer<E, C>;
-
-/// The ends by which scenes are handed over.
-pub struct SceneHandover<S, O> {
-    /// To physics.
-    pub scenes: HandoverSender<LiveScene<S>>,
-    /// To the renderer.
-    pub views: HandoverSender<SceneView<O>>,
-}
 
 /// The ends of the queues that whoever looks after the loop empties.
 #[derive(Debug)]

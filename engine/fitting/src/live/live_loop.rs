@@ -9,8 +9,9 @@ use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::frame_loop::sensor_thread::FrameSource;
 use toile_engine::meter::PERIOD_NS;
 
-use super::assembly::{self, LoopOptions, LoopParts, LoopQueues, PhysicsLoop, RenderLoop, SceneHandover, SensorLoop};
+use super::assembly::{self, LoopOptions, LoopParts, LoopQueues, PhysicsLoop, RenderLoop, SensorLoop};
 use super::lateness::ThreadAccount;
+use super::live_scene::SceneHandover;
 use super::running::{EndedLoops, RunningLoop};
 
 /// Periods between the start of the threads and the first step, so that none of them is late for it.

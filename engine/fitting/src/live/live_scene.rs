@@ -7,9 +7,10 @@ use toile_engine::clock::Clock;
 use toile_engine::frame::SnapshotTimes;
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::governor::{LADDER, Rung};
+use toile_engine::frame_loop::handover::HandoverSender;
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::queue::Sender;
-use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
+use toile_engine::frame_loop::render_thread::{RenderThread, Renderer, SceneView};
 use toile_engine::meter::PERIOD_NS;
 use toile_sensors::frame::Joints;
 
@@ -154,6 +155,14 @@ impl<E: Renderer, C: Clock> ThreadLoop for WatchedRenderer<E, C> {
         self.progress.pictures(self.render.pictures);
         next
     }
+}
+
+/// The ends by which scenes are handed over.
+pub struct SceneHandover<S, O> {
+    /// To physics.
+    pub scenes: HandoverSender<LiveScene<S>>,
+    /// To the renderer.
+    pub views: HandoverSender<SceneView<O>>,
 }
 
 #[cfg(test)]

@@ -12,8 +12,7 @@ use toile_engine::frame_loop::render_thread::SceneView;
 use toile_engine::triple_buffer::Reader;
 use toile_sensors::frame::Joints;
 
-use super::assembly::SceneHandover;
-use super::live_scene::LiveScene;
+use super::live_scene::{LiveScene, SceneHandover};
 use crate::dress::dressed::Dressed;
 
 /// A dressed scene, with what is drawn of it.

@@ -58,12 +58,6 @@ pub struct GarmentPlan {
     pub stages_us: BTreeMap<&'static str, f64>,
 }
 
-/// Mean distance of neighbours of a garment (mm).
-pub fn spacing_mm(garment: &Garment) -> f64 {
-    let sum: f64 = garment.strain_edges.iter().map(|(_, rest)| f64::from(*rest)).sum();
-    1e3 * sum / garment.strain_edges.len().max(1) as f64
-}
-
 /// A stage of a step against its budget.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StagePlan {

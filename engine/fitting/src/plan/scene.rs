@@ -210,3 +210,9 @@ fn poses(skeleton: &Skeleton, mut poser: Poser, track: &[Joints]) -> Vec<[Affine
     }
     all
 }
+
+/// Mean distance of neighbours of a garment (mm).
+pub fn spacing_mm(garment: &Garment) -> f64 {
+    let sum: f64 = garment.strain_edges.iter().map(|(_, rest)| f64::from(*rest)).sum();
+    1e3 * sum / garment.strain_edges.len().max(1) as f64
+}

@@ -140,7 +140,7 @@ fn coarser(scene: &Scene, priced: &Priced, budget_us: f64, add: &mut impl FnMut(
     if share <= 0.0 {
         return;
     }
-    let spacing = super::report::spacing_mm(garment);
+    let spacing = super::scene::spacing_mm(garment);
     let what = format!(
         "{} in a spacing of {:.0} mm in place of {spacing:.0} mm, which is {:.0} particles in place of {}",
         garment.name,

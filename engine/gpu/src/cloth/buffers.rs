@@ -1,7 +1,6 @@
 //! The buffers of a scene that the CPU writes, reads back or binds, made once at load.
 
 use toile_assets::limits::MAX_CAPSULES;
-use toile_engine::cloth::stiff_bending;
 use wgpu::{BindGroup, Buffer, BufferUsages};
 
 use super::cloth_device::ClothDevice;
@@ -10,15 +9,10 @@ use super::contact_data::FlatCone;
 use super::flat::Flat;
 use super::kernels::Kernel;
 use super::program::StepProgram;
-use super::scene_buffers::SceneBuffers;
+pub use super::scene_buffers::{REPORT, STAGES};
+use super::scene_buffers::{SceneBuffers, state_parts};
 use crate::buffer_builder::BufferBuilder;
 use crate::device::DeviceNeeds;
-
-/// Words of a garment's report, as `shaders/report.wgsl` declares it.
-pub const REPORT: usize = 5;
-
-/// Places in the buffer of stages for each garment.
-pub const STAGES: usize = stiff_bending::MOST as usize;
 
 /// All buffers of a scene.
 #[derive(Debug)]
@@ -80,11 +74,6 @@ pub fn needs(flat: &Flat, program: &StepProgram, sets: usize) -> DeviceNeeds {
     ];
     let workgroups = program.tables.iter().map(|(groups, _)| groups.groups.len() as u32).max().unwrap_or(0);
     DeviceNeeds { largest: sizes.into_iter().max().unwrap_or(0) as u64, workgroups }
-}
-
-/// Parts of the state: positions, previous positions, velocities, and three more where bending goes in stages.
-pub(super) fn state_parts(program: &StepProgram) -> usize {
-    if program.stages.is_empty() { 3 } else { 6 }
 }
 
 impl ClothBuffers {

@@ -3,13 +3,18 @@
 use toile_assets::limits::MAX_CAPSULES;
 use wgpu::{Buffer, BufferUsages};
 
-use super::buffers::{REPORT, STAGES, state_parts};
 use super::constants::GarmentConstants;
 use super::contact_data::{FlatCone, FlatEnds, PLANES};
 use super::flat::{Flat, FlatBending, FlatDiagonals, FlatFaces, FlatFibers, FlatLinks, FlatLists, FlatWind};
 use super::kernels::Kernel;
 use super::program::StepProgram;
 use crate::buffer_builder::BufferBuilder;
+
+/// Words of a garment's report, as `shaders/report.wgsl` declares it.
+pub const REPORT: usize = 5;
+
+/// Places in the buffer of stages for each garment.
+pub const STAGES: usize = toile_engine::cloth::stiff_bending::MOST as usize;
 
 /// Bytes of a vector of four.
 const VEC4: usize = 16;
@@ -284,4 +289,9 @@ impl FaceBuffers {
             normals: make.with("normals", &flat.normals, DRAWN),
         }
     }
+}
+
+/// Parts of the state: positions, previous positions, velocities, and three more where bending goes in stages.
+pub(super) fn state_parts(program: &StepProgram) -> usize {
+    if program.stages.is_empty() { 3 } else { 6 }
 }

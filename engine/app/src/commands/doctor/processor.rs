@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::time::Instant;
 
-use super::{Check, field, kernel_file};
+use super::check::{Check, field, kernel_file};
 use crate::machine;
 
 /// Physics and sensor threads want one core each.

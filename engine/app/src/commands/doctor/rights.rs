@@ -2,7 +2,7 @@
 
 use toile_engine::frame_loop::thread_roles::{self, Placement, ThreadRole};
 
-use super::{Check, field, kernel_file};
+use super::check::{Check, field, kernel_file};
 
 /// `CAP_SYS_NICE`, real-time priority, in the capability masks of the kernel.
 const CAP_SYS_NICE: u32 = 23;

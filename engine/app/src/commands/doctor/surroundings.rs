@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use toile_gpu::Adapter;
 
-use super::Check;
+use super::check::Check;
 use crate::output::OutputFolder;
 
 pub fn gpu(adapters: &[Adapter]) -> Check {

@@ -5,6 +5,7 @@
 //! Thread: physics; each worker calls its own [`OwnerContacts`].
 
 pub mod cones;
+mod contact_settings;
 mod near;
 mod patch;
 mod reach;
@@ -13,11 +14,9 @@ mod sweep;
 mod touch;
 
 use glam::Vec3;
-use toile_assets::fabric::Fabric;
 use toile_assets::garment::Part;
 use toile_assets::limits::MAX_CAPSULES;
 
-use super::Settings;
 use super::state::ParticleColumns;
 use crate::colliders::Colliders;
 use crate::lanes::Width;
@@ -26,40 +25,8 @@ use near::{CapsuleBoxes, ContactPair, FindPairs, PLANES, ParticleBlock};
 use solve::{BusyBlock, SolveContacts};
 use sweep::{QUICK, Sweep};
 
+pub use contact_settings::ContactSettings;
 pub use reach::reach;
-
-/// How contact acts.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContactSettings {
-    /// Distance kept from every surface (m).
-    pub offset_m: f32,
-    /// Coulomb coefficient of what sticks.
-    pub friction_static: f32,
-    /// Coulomb coefficient of what slides, at most the static one.
-    pub friction_kinetic: f32,
-    /// Length of a step (s): how far what moves may come until the next search.
-    pub step_seconds: f32,
-    /// Whether ways are followed between the ends of a substep, or only these looked at.
-    pub continuous: bool,
-}
-
-impl ContactSettings {
-    /// Of a fabric, in steps with these settings.
-    pub fn new(fabric: &Fabric, settings: &Settings) -> Self {
-        Self {
-            offset_m: fabric.contact_offset_mm * 1e-3,
-            friction_static: fabric.friction * settings.static_friction,
-            friction_kinetic: fabric.friction,
-            step_seconds: settings.step_seconds,
-            continuous: settings.continuous,
-        }
-    }
-
-    /// What moves less than this part of the smallest radius relative to a capsule is not followed.
-    pub fn quick(&self) -> f32 {
-        if self.continuous { QUICK } else { f32::MAX }
-    }
-}
 
 /// What contact did, counted since the garment was made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
