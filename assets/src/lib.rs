@@ -4,21 +4,26 @@
 //! Budget: at load only; nothing here runs inside the frame.
 //! Thread: the loading thread.
 
-pub mod bake;
-pub mod body;
+// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 pub mod cone;
-pub mod export;
 pub mod fabric;
 pub mod file;
-pub mod garment;
-pub mod import;
 pub mod limits;
-pub mod mesh;
 pub mod numeric;
-pub mod rig;
-pub mod scene;
-pub mod scene_file;
-pub mod sizes;
 pub mod skeleton;
 pub mod toml_keys;
+
+pub mod mesh;
+
+pub mod body;
+pub mod garment;
+
+pub mod bake;
+pub mod export;
+pub mod import;
+pub mod rig;
+pub mod scene;
+pub mod sizes;
+
+pub mod scene_file;
 pub mod wardrobe;

@@ -4,13 +4,18 @@
 //! Budget: 33 ms a frame at 30 Hz; joints are filtered in under 50 us.
 //! Thread: the sensor thread.
 
+// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 pub mod clock;
-pub mod depth;
 pub mod error;
-pub mod filter;
-pub mod frame;
+
 pub mod limits;
+
+pub mod frame;
+
+pub mod filter;
 pub mod sample;
 pub mod segment;
 pub mod session;
+
+pub mod depth;
 pub mod source;

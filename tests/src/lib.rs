@@ -5,18 +5,15 @@
 //! Thread: any test's.
 
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
-pub mod tree;
-
+pub mod cloth;
+pub mod dressed;
+pub mod meshes;
+pub mod recordings;
 pub mod scan;
+pub mod tolerance;
+pub mod tree;
 
 pub mod exceptions;
 pub mod items;
 
 pub mod imports;
-
-pub mod meshes;
-pub mod tolerance;
-
-pub mod cloth;
-pub mod dressed;
-pub mod recordings;

@@ -5,12 +5,16 @@
 //! Budget: some seconds a body; nothing that runs in a shop depends on this crate.
 //! Thread: one.
 
-pub mod draw;
+// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 mod form;
-mod lattice;
 mod subdivide;
-pub mod unwrap;
+
+mod lattice;
 mod wrap;
+
+pub mod draw;
+
+pub mod unwrap;
 
 pub use draw::{Drawn, draw};
 pub use unwrap::unwrap;

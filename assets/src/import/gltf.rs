@@ -2,6 +2,9 @@
 //!
 //! Read are positions, indices, node transforms and material names; buffers inside the file, in a data address, or
 //! beside it. Compressed data are refused with the cure. (Khronos glTF 2.0 specification, sections 3.5 to 3.8 and 4.4.)
+//!
+//! Reads: a file of bounded size and the buffers beside it. Writes: a triangle mesh. Budget: at load.
+//! Thread: the loading thread.
 
 pub(crate) mod file;
 

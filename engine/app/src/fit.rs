@@ -2,7 +2,7 @@
 
 use toile_track::recommend;
 
-use crate::report::{Recommendation, SizeChance, Tape, Zone};
+use crate::report::{Recommendation, SizeChance, TapeMeasure, Zone};
 
 impl From<recommend::Recommendation> for Recommendation {
     fn from(judged: recommend::Recommendation) -> Self {
@@ -16,7 +16,7 @@ impl From<recommend::Recommendation> for Recommendation {
         });
         let share = |p: f32| (f64::from(p) * 1e3).round() / 1e3;
         let sizes = judged.sizes.into_iter().map(|s| SizeChance { size: s.size, probability: share(s.probability) });
-        let tape = judged.tape.map(|t| Tape {
+        let tape = judged.tape.map(|t| TapeMeasure {
             zone: t.zone.name().into(),
             probability: share(t.probability),
             sentence: t.sentence,

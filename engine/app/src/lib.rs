@@ -4,22 +4,28 @@
 //! Budget: the words and the parsing take under 10 ms; the work itself is budgeted by the rooms it calls.
 //! Thread: the main thread, which loads, starts the frame's threads and waits for them.
 
-pub mod arguments;
-pub mod backend;
-pub mod cli;
-pub mod commands;
-pub mod exit;
-pub mod fit;
+// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 pub mod heap;
 pub mod machine;
 pub mod output;
 mod overlay;
-pub mod pictures;
-pub mod renderer;
+
+pub mod exit;
 pub mod report;
-pub mod summary;
+
+pub mod fit;
+pub mod renderer;
 pub mod terminal;
+
+pub mod arguments;
+pub mod backend;
+pub mod pictures;
+pub mod summary;
 pub mod video;
+
+pub mod commands;
+
+pub mod cli;
 
 use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -112,7 +112,7 @@ pub struct SizeChance {
 
 /// The measure to take by tape.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Tape {
+pub struct TapeMeasure {
     /// Which girth.
     pub zone: String,
     /// How likely the likeliest size is to be the best once it is known, on average (0..1).
@@ -137,7 +137,7 @@ pub struct Recommendation {
     /// Whether no size is sure.
     pub uncertain: bool,
     /// The measure to take by tape, where no size is sure and a tape would help.
-    pub tape: Option<Tape>,
+    pub tape: Option<TapeMeasure>,
     /// The whole in words.
     pub verdict: String,
     /// The next best size, where it may be the better one.

@@ -2,7 +2,7 @@
 
 use toile::commands::record;
 use toile_assets::scene;
-use toile_fitting::dress::measured::{self, Told};
+use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::session;
 
 /// Frames that are made again: the second in which the shopper is measured.
@@ -33,7 +33,7 @@ fn the_embedded_session_can_be_made_again() {
 #[test]
 fn the_shopper_is_measured_as_she_is() {
     let session = session::open(None, None).unwrap();
-    let measured = measured::measure(&session, Told::default()).unwrap();
+    let measured = measured::measure(&session, ShopperFacts::default()).unwrap();
     let truth = scene::SHOPPER.1;
     let [stature, shoulder, chest, waist, hip] = measured.best.completed(measured.population);
     let told = [

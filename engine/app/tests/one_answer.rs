@@ -8,7 +8,7 @@ use std::sync::Arc;
 use common::Scratch;
 use serde_json::Value;
 use toile_assets::wardrobe;
-use toile_fitting::dress::measured::{self, Told};
+use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::wish::Wish;
 use toile_fitting::dress::{session, size};
 use toile_fitting::live::dresser::{DressJob, DressOutcome, Dresser, ShopperSource};
@@ -72,7 +72,7 @@ fn one_answer(path: &Path, garment: &str) {
     }
     // What the window judges by: the same function on the same measures.
     let session = session::open(Some(path), None).unwrap();
-    let known = measured::measure(&session, Told::default()).unwrap();
+    let known = measured::measure(&session, ShopperFacts::default()).unwrap();
     let judged = size::judge(&wardrobe::style(garment).unwrap(), None, &known.best).unwrap();
     let by_window: Vec<(String, f64, String)> = judged
         .zones

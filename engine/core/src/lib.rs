@@ -4,24 +4,30 @@
 //! Budget: one step of 1/120 s within 8.3 ms, nothing allocated in it.
 //! Thread: the physics thread; a triple buffer stands between it and the others.
 
-pub mod body;
+// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 pub mod clock;
-pub mod cloth;
-pub mod colliders;
 pub mod cone;
-#[expect(unsafe_code, reason = "a job that borrows the caller's stack is handed to another thread")]
-pub mod workers;
-// Not within the room's own file, which the models of the hand-offs include (tests/models).
-pub mod frame;
-pub mod frame_loop;
-pub mod jump_filter;
 pub mod lanes;
-pub mod lines;
 pub mod meter;
-pub mod skin;
 #[expect(unsafe_code, reason = "a value that threads keep apart by other means")]
 pub mod sync;
 pub mod triple_buffer;
+
+pub mod body;
+pub mod jump_filter;
+#[expect(unsafe_code, reason = "a job that borrows the caller's stack is handed to another thread")]
+pub mod workers;
+
+pub mod colliders;
+pub mod skin;
+
+pub mod cloth;
+
+pub mod frame;
+pub mod lines;
+
+pub mod frame_loop;
+// Not within the room's own file, which the models of the hand-offs include (tests/models).
 #[cfg(test)]
 #[path = "workers/tests.rs"]
 mod workers_tests;

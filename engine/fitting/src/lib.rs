@@ -8,13 +8,13 @@
 //!
 //! ```
 //! use toile_fitting::dress::dressed::Dressed;
-//! use toile_fitting::dress::measured::{self, Told};
+//! use toile_fitting::dress::measured::{self, ShopperFacts};
 //! use toile_fitting::dress::player::Player;
 //! use toile_fitting::dress::recipe::Recipe;
 //! use toile_fitting::dress::{session, wish::Wish};
 //!
 //! let session = session::open(None, None)?; // the embedded one; `Some(path)` is any recording
-//! let measured = measured::measure(&session, Told::default())?;
+//! let measured = measured::measure(&session, ShopperFacts::default())?;
 //! let recipe = Recipe::choose(&session.name, &measured, &Wish::default())?;
 //! let track = session::standing(&session)?;
 //! let mut dressed = Dressed::make(recipe, &track[0], false)?;
@@ -46,12 +46,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod dress;
+// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 pub mod error;
 pub mod heap;
+pub mod timing;
+
+pub mod dress;
+pub mod scene;
+
 pub mod live;
 pub mod plan;
-pub mod scene;
-pub mod timing;
 
 pub use error::FittingError;

@@ -17,26 +17,34 @@ pub fn adapters() -> Vec<Adapter> {
     Vec::new()
 }
 
+// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 mod adapter;
+pub mod cloth_batch;
+#[cfg(feature = "wgpu")]
+pub mod wait;
+
 #[cfg(feature = "wgpu")]
 mod adapters;
-pub mod backend;
+
+#[cfg(feature = "wgpu")]
+pub mod device;
+
 #[cfg(feature = "wgpu")]
 mod buffer_builder;
 #[cfg(feature = "wgpu")]
-pub mod cloth;
-pub mod cloth_batch;
-#[cfg(feature = "wgpu")]
-pub mod device;
-pub mod graphics;
+pub mod vertex_source;
+
 #[cfg(feature = "wgpu")]
 mod shader;
+
+#[cfg(feature = "wgpu")]
+pub mod cloth;
+
+pub mod graphics;
 #[cfg(feature = "wgpu")]
 pub mod skin;
-#[cfg(feature = "wgpu")]
-pub mod vertex_source;
-#[cfg(feature = "wgpu")]
-pub mod wait;
+
+pub mod backend;
 
 #[cfg(feature = "wgpu")]
 pub use adapters::describe;

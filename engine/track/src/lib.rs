@@ -4,14 +4,19 @@
 //! `Recommendation`. Budget: 1 s for 30 depth frames of 640 x 480, once a shopper; nothing here runs inside the frame.
 //! Thread: the sensor thread.
 
-pub mod anthropometry;
+// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 pub mod estimate;
-pub mod fit;
 pub mod gesture;
-mod joints;
-pub mod measure;
-pub mod measures;
 pub mod point_cloud;
-pub mod recommend;
 pub mod section;
+
+pub mod anthropometry;
+pub mod fit;
+pub mod measures;
+
+mod joints;
 pub mod silhouette;
+
+pub mod measure;
+
+pub mod recommend;

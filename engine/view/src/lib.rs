@@ -5,23 +5,33 @@
 //! Budget: not in the frame; three stills of 480 x 800 within 6 s and a 220 x 360 frame within 120 ms on two cores.
 //! Thread: the caller's, which lends every core for the length of one picture.
 
-pub mod bvh;
-pub mod contact_sheet;
-pub mod drawn_frame;
-pub mod fit_map;
-pub mod hidden_skin;
+// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+mod sampling;
+mod tone_mapping;
+
 pub mod image;
-#[cfg(feature = "view")]
-pub mod raster;
-pub mod scene;
+
 pub mod text;
-pub mod trace;
 pub mod video;
 
-mod lighting;
-mod ray_tracer;
-mod sampling;
+pub mod contact_sheet;
+pub mod fit_map;
+
+pub mod scene;
+
+pub mod bvh;
 mod shading;
-mod shadow_filter;
-mod tone_mapping;
+
+pub mod hidden_skin;
+mod lighting;
 mod traced_scene;
+
+mod ray_tracer;
+
+#[cfg(feature = "view")]
+pub mod raster;
+mod shadow_filter;
+
+pub mod trace;
+
+pub mod drawn_frame;

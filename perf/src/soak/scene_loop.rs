@@ -4,7 +4,7 @@ use toile_assets::wardrobe;
 use toile_engine::clock::Clock;
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::physics_thread::FrameScene;
-use toile_fitting::live::assembly::SceneHandover;
+use toile_fitting::live::live_scene::SceneHandover;
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 
 use super::observed_loops::{Observation, ObservedLoop, RunContext};

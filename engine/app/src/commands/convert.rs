@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use toile_fitting::dress::measured::{self, Told};
+use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_sensors::segment::Segmenter;
 use toile_sensors::session::Session;
 use toile_sensors::source::{self, OpenOptions};
@@ -82,7 +82,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), AppError> {
         source::open(&args.input, &OpenOptions { camera: args.camera.clone() }).map_err(AppError::input)?;
     let dropped = session.depth.len();
     if args.fit && session.joints.is_empty() && !session.depth.is_empty() {
-        let measured = measured::measure(&session, Told::default())?;
+        let measured = measured::measure(&session, ShopperFacts::default())?;
         measured::add_joints(&mut session, &measured)?;
     }
     keep(&mut session, args.depth);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use toile_fitting::dress::measured::{self, Measured, Told};
+use toile_fitting::dress::measured::{self, Measured, ShopperFacts};
 use toile_fitting::dress::session;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasures, MEASURES};
@@ -46,7 +46,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), AppError> {
     let session = session::open(Some(&args.file), args.camera.as_deref())?;
     let out = args.out.as_deref().map(OutputFolder::prepare).transpose().map_err(AppError::input)?;
     let mut out = out.map(|out| out.sparing(Inputs::new(args.camera.iter().chain([&args.file]))));
-    let told = Told { clothed: !args.tight, ..Told::default() };
+    let told = ShopperFacts { clothed: !args.tight, ..ShopperFacts::default() };
     let measured = measured::measure(&session, told)?;
     let mut files: Vec<PathBuf> = Vec::new();
     if let (Some(out), Some(fitted)) = (&mut out, &measured.fitted) {

@@ -13,7 +13,7 @@ use toile_engine::cloth::Cloth;
 use toile_engine::colliders::Colliders;
 use toile_engine::frame::Frame;
 use toile_engine::meter::CLOTH;
-use toile_fitting::dress::measured::{self, Told};
+use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::recipe::{Parts, Recipe};
 use toile_fitting::dress::session;
 use toile_fitting::dress::wish::Wish;
@@ -168,7 +168,7 @@ fn worn(
     workers: usize,
 ) -> Result<(Scene, Costs, Vec<Memory>), AppError> {
     let mut session = session::open(session, None)?;
-    let measured = measured::measure(&session, Told { sex: wish.sex, ..Told::default() })?;
+    let measured = measured::measure(&session, ShopperFacts { sex: wish.sex, ..ShopperFacts::default() })?;
     measured::add_joints(&mut session, &measured)?;
     let track = session::standing(&session)?;
     let recipe = Recipe::choose(&session.name, &measured, wish)?;
@@ -224,7 +224,7 @@ fn garments(scene: &Scene, priced: &Priced) -> Vec<GarmentPlan> {
         fabric: garment.fabric.name.clone(),
         particles: garment.particles(),
         free: garment.inverse_mass.iter().filter(|w| **w > 0.0).count(),
-        spacing_mm: report::spacing_mm(garment),
+        spacing_mm: toile_fitting::plan::scene::spacing_mm(garment),
         substeps: first.substeps,
         near: first.near as u64,
         us: [time.one_us, time.two_us],

@@ -18,7 +18,7 @@ use toile_engine::cloth::{Settings, measure};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::lines::{CAPACITY, Kind, Lines};
 use toile_engine::triple_buffer::Reader;
-use toile_fitting::dress::measured::{self, Measured, Told};
+use toile_fitting::dress::measured::{self, Measured, ShopperFacts};
 use toile_fitting::dress::player::Player;
 use toile_fitting::dress::wish::{self, Choice, Wish};
 use toile_fitting::dress::{body, session};
@@ -149,7 +149,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let wish = wish(args);
     let choices = wish.choices()?;
     let mut session = session::open(args.session.as_deref(), None)?;
-    let mut measured = measured::measure(&session, Told { sex: wish.sex, ..Told::default() })?;
+    let mut measured = measured::measure(&session, ShopperFacts { sex: wish.sex, ..ShopperFacts::default() })?;
     let has_joints = !session.joints.is_empty();
     if !has_joints {
         words.say("there are no joints: the fitted body is followed through the depth");

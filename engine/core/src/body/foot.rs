@@ -10,7 +10,7 @@ use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 use super::body_input::BodyInput;
 use super::limits::{self, Side};
 use super::neutral::Neutral;
-use super::smooth::fraction;
+use super::smooth::{fraction, ramp};
 
 /// Lift of the ankle (m) up to which a foot stands flat, and from which its slope is its own.
 const STANDING: [f32; 2] = [0.04, 0.10];

@@ -9,7 +9,7 @@ use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 
 use super::body_input::BodyInput;
 use super::limits::{self, Range, Reach, Side, clamp_angle, soft_clamp};
-use super::smooth::{fraction, wrap};
+use super::smooth::{fraction, ramp, wrap};
 
 /// Bend (degrees) from which the plane of a limb begins to be believed, and from which it is believed fully: at 25
 /// degrees a centimetre of noise turns the plane by 7.

@@ -8,7 +8,7 @@
 use glam::Vec3;
 
 use super::ground::Ground;
-use super::smooth::fraction;
+use super::smooth::{fraction, ramp};
 
 /// Speed of a seen ankle (m/s) up to which it is planted, and from which it is let go, for a sensor without noise.
 const SPEED: [f32; 2] = [0.15, 0.4];

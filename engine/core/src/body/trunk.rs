@@ -7,10 +7,11 @@
 use glam::{Mat3, Quat, Vec3};
 use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 
+use super::body_input::BodyInput;
 use super::kinematics::swing_twist;
 use super::limits::{self, Side};
 use super::neutral::Neutral;
-use super::reliable_joints::{BodyInput, ReliableJoints, unit};
+use super::reliable_joints::{ReliableJoints, unit};
 use super::smooth::{rotation_vector, wrap};
 
 /// Time constant with which the head follows the chest's turn (s): eyes stay on the mirror a moment longer.

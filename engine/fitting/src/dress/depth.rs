@@ -15,14 +15,14 @@ use toile_track::point_cloud;
 
 /// The shopper's surface, and the floor below it.
 #[derive(Debug, Clone)]
-pub struct Surface {
+pub struct DepthSurface {
     /// The frames of the first second, and the same with nothing in them but the shopper.
     pub frames: Vec<(DepthFrame, DepthFrame)>,
     /// Height of the floor (m); `None` where the picture cuts the shopper off above it.
     pub ground: Option<f32>,
 }
 
-impl Surface {
+impl DepthSurface {
     /// The nearest person of each frame of the first second.
     pub fn of(session: &Session) -> Self {
         let mut cut = 0;

@@ -12,7 +12,7 @@ use toile_track::fit::measuring::FittedMeasures;
 use toile_track::measure::{self, Measurements};
 use toile_track::measures::{Hint, Measures};
 
-use super::depth::Surface;
+use super::depth::DepthSurface;
 use super::session;
 use crate::FittingError;
 
@@ -24,8 +24,8 @@ pub const FROM_DEPTH: &str = "there are no joints: the body was fitted to the de
 
 /// What is known of a shopper before they are measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Told {
-    /// Whose proportions apply, if that was told.
+pub struct ShopperFacts {
+    /// Whose proportions apply, if it is known.
     pub sex: Option<Sex>,
     /// Whether they wear everyday clothes, which the body lies beneath; otherwise tight ones.
     pub clothed: bool,
@@ -33,7 +33,7 @@ pub struct Told {
     pub seated: bool,
 }
 
-impl Default for Told {
+impl Default for ShopperFacts {
     fn default() -> Self {
         Self { sex: None, clothed: true, seated: false }
     }
@@ -49,7 +49,7 @@ pub struct Measured {
     /// The same by the body fit, where there is depth and a body fits it.
     pub fitted: Option<FittedMeasures>,
     /// The shopper's surface; empty without depth.
-    pub surface: Surface,
+    pub surface: DepthSurface,
     /// Whose proportions apply where something was not seen.
     pub population: Population,
 }
@@ -71,11 +71,11 @@ pub fn sex(shopper: Population, garments: Population) -> Sex {
 ///
 /// # Errors
 /// A session that shows nobody who can be measured.
-pub fn measure(session: &Session, told: Told) -> Result<Measured, FittingError> {
+pub fn measure(session: &Session, told: ShopperFacts) -> Result<Measured, FittingError> {
     if told.seated {
         return seated(session, told);
     }
-    let surface = Surface::of(session);
+    let surface = DepthSurface::of(session);
     let fitted = surface.measure(Population::from(told.sex), told.clothed);
     let population = population(told.sex, fitted.as_ref());
     let sections = by_sections(session, population)?;
@@ -104,12 +104,12 @@ pub fn add_joints(session: &mut Session, measured: &Measured) -> Result<(), Fitt
     Ok(())
 }
 
-fn seated(session: &Session, told: Told) -> Result<Measured, FittingError> {
+fn seated(session: &Session, told: ShopperFacts) -> Result<Measured, FittingError> {
     let population = Population::from(told.sex);
     let above = session::of_joints(session.joints.iter().map(above_the_chair).collect());
     let mut sections = by_sections(&above, population)?;
     (sections.measures.hip_girth, sections.measures.inseam) = (None, None);
-    let surface = Surface { frames: Vec::new(), ground: None };
+    let surface = DepthSurface { frames: Vec::new(), ground: None };
     Ok(Measured { best: sections.clone(), sections, fitted: None, surface, population })
 }
 

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use toile_assets::garment::Garment;
 use toile_engine::meter;
 
 use super::cost::Costs;

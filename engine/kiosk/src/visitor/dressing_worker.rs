@@ -6,7 +6,7 @@ use std::sync::Arc;
 use toile_engine::cloth::Quality;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_fitting::dress::dressed::Dressed;
-use toile_fitting::dress::measured::{self, Told};
+use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::recipe::Recipe;
 use toile_fitting::dress::wish;
 use toile_fitting::live::background::{BackgroundJob, Finished};
@@ -137,7 +137,7 @@ impl DressingContext {
 
     /// Measures whoever stands or sits there.
     fn measure(&self, source: ShopperSource, seated: bool) -> Result<VisitorMeasures, KioskError> {
-        let measured = measured::measure(&source.session(), Told { seated, ..Told::default() })?;
+        let measured = measured::measure(&source.session(), ShopperFacts { seated, ..ShopperFacts::default() })?;
         let known = VisitorMeasures { population: measured.population, ..VisitorMeasures::new(measured.best, seated) };
         Ok(match measured.fitted {
             Some(_) => VisitorMeasures { count: MEASURES.len() as u32, ..known },
