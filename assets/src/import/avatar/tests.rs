@@ -276,11 +276,15 @@ fn weights_that_do_not_sum_to_one_name_the_vertex() {
         edit.set("WEIGHTS_0", 4 * 12 + k, 0.1);
     }
     // Four tenths, or fewer where fewer joints carry it.
-    assert!(edit.said().contains("the weights of vertex 12 sum to 0.4"), "{}", edit.said());
+    assert!(
+        edit.said().contains("the weights of vertex 12 (from 0 over all skinned parts) sum to 0.4"),
+        "{}",
+        edit.said()
+    );
     edit.set("WEIGHTS_0", 4 * 12, -0.5);
-    assert!(edit.said().contains("vertex 12 has the weight -0.5"));
+    assert!(edit.said().contains("vertex 12 (from 0 over all skinned parts) has the weight -0.5"));
     edit.set("WEIGHTS_0", 4 * 12, f32::NAN);
-    assert!(edit.said().contains("vertex 12 has the weight NaN"));
+    assert!(edit.said().contains("vertex 12 (from 0 over all skinned parts) has the weight NaN"));
 }
 
 #[test]
@@ -325,7 +329,7 @@ fn joints_out_of_range_name_vertex_and_joint() {
     let mut edit = GltfEdit::new();
     let at = edit.start(edit.accessor("JOINTS_0"));
     edit.bin[at + 4 * 5] = 200;
-    assert!(edit.said().contains("vertex 5 hangs on joint 200"));
+    assert!(edit.said().contains("vertex 5 (from 0 over all skinned parts) hangs on joint 200"));
     let mut edit = GltfEdit::new();
     edit.json["skins"][0]["joints"][3] = 5_000.into();
     assert!(edit.said().contains("joint 5000"));
