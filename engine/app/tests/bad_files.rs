@@ -78,8 +78,8 @@ const LINES: [&[&str]; 20] = [
     &["bake", "t-shirt", "--fabric", "@.toml"],
     &["body", "@.glb"],
     &["replay", "@.csv"],
-    &["bench", "body", "@.csv"],
-    &["bench", "measure", "@.csv"],
+    &["bench", "body", "--ansur", "@.csv"],
+    &["bench", "measure", "--ansur", "@.csv"],
     &["kiosk", "--headless", "--seconds", "1", "--config", "@.toml"],
     &["kiosk", "--headless", "--seconds", "1", "--session", "@.mcap"],
 ];
@@ -104,7 +104,7 @@ fn a_scene_that_names_a_device_is_refused() {
     let scenes = [
         "[garment]\nmesh = \"@.obj\"\n",
         "[garment]\nmesh = \"@.glb\"\n",
-        "[garment]\ngrid = { rows = 2, columns = 2, width = 1, height = 1 }\nfabric = \"@.toml\"\n",
+        "[garment]\ngrid = { rows = 2, columns = 2, width = 1, height = 1 }\n[[garment.pin]]\nvertices = [0]\ntrack = \"@.csv\"\n",
     ];
     for scene in scenes {
         for (trap, word) in TRAPS {

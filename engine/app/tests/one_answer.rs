@@ -51,7 +51,7 @@ fn dressed_by_the_kiosk(path: &Path, garment: &str) -> (String, [f32; 5]) {
 
 fn one_answer(path: &Path, garment: &str) {
     let file = path.to_str().unwrap();
-    let scratch = Scratch::new(&format!("one-answer-{garment}"));
+    let scratch = Scratch::new(&format!("one-answer-{}-{garment}", path.file_stem().unwrap().display()));
     let measured = json(&scratch, &["measure", file]);
     let worn = ["--session", file, "--garment", garment, "--quality", "draft"];
     let tried = json(&scratch, &[&["try-on", "--no-pictures"], &worn[..]].concat());
