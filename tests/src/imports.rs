@@ -67,11 +67,11 @@ impl CrateFiles {
         // A program's own file is no module of the library.
         let inside = files.iter().filter(|f| !f.ends_with("src/main.rs"));
         let sources = inside.map(|f| (tree::module_path(&src, f), tree::name(f), tree::read(f)));
-        Self::new(sources.collect())
+        Self::new(&sources.collect::<Vec<_>>())
     }
 
     /// From modules, places and texts.
-    pub fn new(sources: Vec<(Module, String, String)>) -> Self {
+    pub fn new(sources: &[(Module, String, String)]) -> Self {
         let scanned: Vec<_> = sources.iter().map(|(m, place, text)| (m, place, scan::tokens(text))).collect();
         let tests: BTreeSet<Module> = scanned.iter().flat_map(|(m, _, t)| declared_for_tests(m, t)).collect();
         let real = scanned.into_iter().filter(|(module, ..)| !is_file_of_tests(module, &tests));
@@ -136,7 +136,7 @@ impl CrateFiles {
         }
         let handed_on = source.paths.iter().filter(|p| p.role != Role::Code);
         let (globs, named): (Vec<_>, Vec<_>) = handed_on.partition(|p| p.alias == "*");
-        for import in named.iter().filter(|p| p.alias == *item) {
+        if let Some(import) = named.iter().find(|p| p.alias == *item) {
             let full = [&self.absolute(module, &import.segments, false)?, &rest[1..]].concat();
             return self.definition(&full, hops + 1);
         }

@@ -195,7 +195,7 @@ mod the_law_itself {
     fn made_up(sources: &[(&str, &str)]) -> BTreeSet<Arrow> {
         let module = |name: &str| name.split("::").filter(|part| !part.is_empty()).map(str::to_owned).collect();
         let files = sources.iter().map(|(name, text)| (module(name), format!("{name}.rs"), (*text).to_owned()));
-        CrateFiles::new(files.collect()).arrows()
+        CrateFiles::new(&files.collect::<Vec<_>>()).arrows()
     }
 
     fn wrong(module: &str, source: &str) -> usize {

@@ -30,7 +30,7 @@
 //! A scene of one's own, whose pins, planes and settings are those of `toile run`; positions come in the order of the user's mesh:
 //!
 //! ```
-//! use toile_assets::scene_file::{SceneFile, Source};
+//! use toile_assets::scene_file::{SceneFile, SceneSource};
 //! use toile_fitting::scene::Runner;
 //!
 //! let text = "duration = 0.5\n[garment]\ngrid = { rows = 8, columns = 6, width = 0.3, height = 0.4 }\npin = { vertices = [0, 5] }\n";

@@ -31,7 +31,7 @@ pub enum Entry {
 
 impl Entry {
     /// A figure.
-    pub fn figure(value: impl ToString) -> Self {
+    pub fn figure(value: impl ToString + Copy) -> Self {
         Self::Figure(value.to_string())
     }
 

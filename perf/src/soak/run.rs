@@ -127,16 +127,21 @@ pub fn run(options: &SoakOptions, tools: &SoakTools<'_>) -> Result<SoakRun, Soak
     let (origin, begun) = (options.uptime_hours * 3_600 * SECOND_NS, Instant::now());
     let ran = if options.real_time {
         let clock = JumpClock::starting_at(origin);
-        real(SoakLoops::new(options, scenario, clock, tools)?, options, tools)
+        real(SoakLoops::new(options, scenario, &clock, tools)?, options, tools)
     } else {
         let clock = SimClock::starting_at(origin);
-        Ok(simulated(SoakLoops::new(options, scenario, clock.clone(), tools)?, &clock, options, tools))
+        Ok(simulated(SoakLoops::new(options, scenario, &clock, tools)?, &clock, options, tools))
     };
     ran.map(|ran| SoakRun { wall_s: begun.elapsed().as_secs_f64(), ..ran })
 }
 
 impl<C: JumpableClock + Clone + Send> SoakLoops<C> {
-    fn new(options: &SoakOptions, scenario: Arc<Scenario>, clock: C, tools: &SoakTools<'_>) -> Result<Self, SoakError> {
+    fn new(
+        options: &SoakOptions,
+        scenario: Arc<Scenario>,
+        clock: &C,
+        tools: &SoakTools<'_>,
+    ) -> Result<Self, SoakError> {
         let mut scene_maker = SceneMaker::new(scenario.clone());
         let (frame, reader) = scene_maker.make(0)?;
         let (frame, worker) = if options.workers > 1 {
@@ -155,7 +160,7 @@ impl<C: JumpableClock + Clone + Send> SoakLoops<C> {
         let source = Camera::new(scenario.clone(), clock.clone(), origin_ns);
         let renderer = CheckingRenderer::default();
         let parts = LoopParts { first, renderer, source, account: NoCounters, recording: Some(recording) };
-        let assembly = assemble(parts, &clock, LoopOptions { begin_ns: origin_ns, ..LoopOptions::default() });
+        let assembly = assemble(parts, clock, LoopOptions { begin_ns: origin_ns, ..LoopOptions::default() });
         let Assembly { loops, queues, handover } = assembly;
         let mut stepping = ObservedPhysics::new(loops.physics, scenario, origin_ns);
         stepping.crash_at(tools.crash_ns.map(|ns| origin_ns + ns));

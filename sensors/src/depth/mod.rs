@@ -68,7 +68,7 @@ impl Clean {
                 self.edge_preserving.run(width, self.fill.depth_mm(), &noise, &mut self.depth_mm);
             }
             DepthSmoothing::Gaussian(sigma) => {
-                self.gaussian.run(width, self.fill.depth_mm(), sigma, &mut self.depth_mm)
+                self.gaussian.run(width, self.fill.depth_mm(), sigma, &mut self.depth_mm);
             }
         }
         self.cloud.update(frame, &self.depth_mm, self.fill.validity());

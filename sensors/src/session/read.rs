@@ -59,7 +59,7 @@ fn read_bytes(bytes: &[u8]) -> Result<Session, Fault> {
     }
     let Reading { mut session, hands, complete, .. } = reading;
     for (time_ns, hands) in hands {
-        if let Some(frame) = session.joints.binary_search_by_key(&time_ns, |f| f.time_ns).ok() {
+        if let Ok(frame) = session.joints.binary_search_by_key(&time_ns, |f| f.time_ns) {
             session.joints[frame].hands = hands;
         }
     }

@@ -79,10 +79,13 @@ impl LoopQueues {
     }
 }
 
+/// The three loops of an assembly.
+pub type AssembledLoops<S, E, F, A, C> = Loops<SensorLoop<F, C>, PhysicsLoop<S, C, A>, RenderLoop<E, C>>;
+
 /// The loop, joined and not started.
 pub struct Assembly<S, E: Renderer, F, A, C> {
     /// The three loops, to be run by threads or one after the other.
-    pub loops: Loops<SensorLoop<F, C>, PhysicsLoop<S, C, A>, RenderLoop<E, C>>,
+    pub loops: AssembledLoops<S, E, F, A, C>,
     /// What they report.
     pub queues: LoopQueues,
     /// How scenes are changed.

@@ -26,6 +26,12 @@ pub struct Grip {
     quiet_until_ns: u64,
 }
 
+impl Default for Grip {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Grip {
     /// A hand that was not seen yet.
     pub const fn new() -> Self {
