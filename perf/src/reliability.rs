@@ -118,7 +118,7 @@ const MADE_EASE: [f32; 3] = [0.06, 0.08, 0.10];
 /// Ease that feels right, least and most (m).
 const RIGHT_EASE: [[f32; 2]; 3] = [[0.03, 0.09], [0.03, 0.15], [0.05, 0.20]];
 
-/// [`reliability`] of the recommendations of a dress in women's sizes.
+/// The reliability of the recommendations of a dress in women's sizes.
 ///
 /// # Errors
 /// Those of [`recommend`], and a table of sizes that cannot be read.

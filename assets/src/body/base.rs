@@ -1,6 +1,6 @@
 //! What a sex's mean body hands to the morphs: a surface at rest, and what is tied to it.
 //!
-//! The surface is drawn once (see [`super::draw`]) and stored; here it is read, skinned and given its landmarks.
+//! The surface is drawn once by the crate `toile-sculpt` and stored; here it is read, skinned and given its landmarks.
 
 #[cfg(test)]
 mod tests;

@@ -108,7 +108,7 @@ pub struct ReadColumn<'a> {
 /// Soundness: it is made from a unique borrow and does not outlive it, so nobody but its copies reaches the numbers. The
 /// raw pointer keeps them all on one thread (neither `Send` nor `Sync`), where one access follows the other, as with
 /// `&[Cell<f32>]`. Every access is checked against the length. Only this crate hands columns to other threads, through
-/// [`Shared`].
+/// `Shared`.
 /// ```compile_fail,E0277
 /// use toile_engine::lanes::WriteColumn;
 /// let mut numbers = vec![1.0_f32, 2.0, 3.0];

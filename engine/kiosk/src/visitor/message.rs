@@ -136,7 +136,7 @@ pub enum Effect {
         /// Garments and sizes, inner first.
         outfit: Outfit,
     },
-    /// Drape the outfit in two sizes of one garment, for both to be shown; [`Input::DrapedFrame`].
+    /// Drape the outfit in two sizes of one garment, for both to be shown; [`Input::Draped`].
     DrapeTwo {
         /// Its number.
         number: u32,
