@@ -208,7 +208,7 @@ fn a_garment_whose_mesh_is_no_cloth() {
         refused(&scratch, &["--garment", &file], &all);
     }
     fs::write(scratch.path().join("bytes.obj"), [0xff, 0xfe, 0x00, 0x80]).unwrap();
-    refused(&scratch, &["--garment", "bytes.obj"], &["bytes.obj", "not text", "export"]);
+    refused(&scratch, &["--garment", "bytes.obj"], &["bytes.obj", "text in UTF-8", "save"]);
     fs::create_dir(scratch.path().join("folder.obj")).unwrap();
     refused(&scratch, &["--garment", "folder.obj"], &["folder.obj", "give"]);
     refused(&scratch, &["--garment", "absent.obj"], &["absent.obj", "give"]);
