@@ -202,27 +202,27 @@ impl Frame {
 
     /// The step itself, as the loop takes it: what it shows is published with these times.
     pub fn step_at(&mut self, joints: &Joints, times: SnapshotTimes, clock: &impl Clock) {
-        let mut laps = StageTimes::from(clock.now_ns());
+        let mut stage_times = StageTimes::from(clock.now_ns());
         // It wakes while the body is posed and skinned.
         self.pool.wake();
         self.pose = self.poser.pose(joints, STEP_SECONDS);
-        self.advance(&mut laps, clock);
+        self.advance(&mut stage_times, clock);
         self.publish(times, clock);
-        laps.lap(PUBLISH, clock.now_ns());
-        self.meters.timed(laps.ns);
+        stage_times.lap(PUBLISH, clock.now_ns());
+        self.meters.timed(stage_times.ns);
         self.tick += 1;
     }
 
     /// The stages after the pose, in order.
-    fn advance(&mut self, laps: &mut StageTimes, clock: &impl Clock) {
+    fn advance(&mut self, stage_times: &mut StageTimes, clock: &impl Clock) {
         palette(&self.body.skeleton, &self.pose, &mut self.palette);
-        laps.lap(POSE, clock.now_ns());
+        stage_times.lap(POSE, clock.now_ns());
         // What a worker that panicked left out shows the body as it was.
         let skinned = self.skinning.run_with(&mut self.pool, BLEND, &self.palette, &mut self.skin);
         self.broken += u64::from(!skinned);
-        laps.lap(SKIN, clock.now_ns());
+        stage_times.lap(SKIN, clock.now_ns());
         self.colliders.place(&self.palette);
-        laps.lap(PLACE, clock.now_ns());
+        stage_times.lap(PLACE, clock.now_ns());
         let Self { cloths, garments, pool, palette, colliders, settings, .. } = self;
         let step = Step { palette, colliders, settings };
         match (&mut cloths[..], &garments[..]) {
@@ -234,7 +234,7 @@ impl Frame {
                 self.broken += u64::from(work.is_err());
             }
         }
-        laps.lap(CLOTH, clock.now_ns());
+        stage_times.lap(CLOTH, clock.now_ns());
     }
 
     fn publish(&mut self, times: SnapshotTimes, clock: &impl Clock) {

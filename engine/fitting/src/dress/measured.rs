@@ -1,6 +1,6 @@
 //! The one way to measure a shopper: by the body fitted to their depth where one fits, by sections and proportions otherwise.
 //!
-//! Whose proportions apply is told, or found by the fit; what is worn does not decide it, so that the same session gives the
+//! Whose proportions apply is given by the caller, or found by the fit; what is worn does not decide it, so that the same session gives the
 //! same measures whatever is tried on.
 
 use toile_assets::body::Sex;
