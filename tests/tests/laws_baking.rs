@@ -156,7 +156,8 @@ proptest! {
         let across = plan.turn * Vec3::X;
         let half: Vec<_> = garment.start.iter().map(|p| folded(*p, middle, across).as_dvec3()).collect();
         let (flat, folded) = (bent(&rest), bent(&half));
-        // What is held or a single face wide cannot be bent at all.
-        prop_assert!(flat <= tolerance::REST_BENDING * folded.max(1e-9), "{} J flat, {} J folded", flat, folded);
+        // What is held or a single face wide cannot be bent at all: what is left then is the rounding of positions.
+        let most = tolerance::ROUNDING_BENDING_J.max(tolerance::REST_BENDING * folded);
+        prop_assert!(flat <= most, "{} J flat, {} J folded", flat, folded);
     }
 }
