@@ -125,6 +125,15 @@ impl RoundCone {
         }
     }
 
+    /// Whether a point can lie inside: no point of the capsule is farther from its axis than its larger radius. The margin
+    /// is beyond all rounding, so that a point for which this is false has no negative [`distance`](Self::distance).
+    pub fn may_contain(&self, p: Vec3) -> bool {
+        let v = p - self.a;
+        let out = v - self.axis * (v.dot(self.axis));
+        let r = self.ra.max(self.rb) + 1e-3;
+        self.length == 0.0 || out.length_squared() <= r * r
+    }
+
     /// Signed distance of a point (m), and the unit outward normal, which is its gradient.
     pub fn distance(&self, p: Vec3) -> (f32, Vec3) {
         let contact = self.contact(p);
@@ -197,6 +206,7 @@ mod tests {
             let (distance, normal) = cone.distance(p);
             let truth = swept(a, ra, b, rb, p);
             prop_assert!((distance - truth).abs() < 2e-5, "{distance} against {truth}");
+            prop_assert!(distance >= 0.0 || cone.may_contain(p));
             prop_assert!((normal.length() - 1.0).abs() < 1e-4);
             // One step of the length of the distance lands on the surface.
             let surface = p - normal * distance;

@@ -52,8 +52,12 @@ pub fn penetration(cloth: &Cloth, garment: &Garment, colliders: &Colliders) -> f
             (part, reach) = (of, contact::reach(of, colliders));
         }
         let mut bits = if *w > 0.0 { reach } else { 0 };
+        let p: Vec3 = (*p).into();
         while bits != 0 {
-            deepest = deepest.max(-cones[bits.trailing_zeros() as usize].distance((*p).into()).0);
+            let cone = &cones[bits.trailing_zeros() as usize];
+            if cone.may_contain(p) {
+                deepest = deepest.max(-cone.distance(p).0);
+            }
             bits &= bits - 1;
         }
     }
