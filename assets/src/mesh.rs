@@ -20,7 +20,7 @@ pub struct Mesh {
 pub struct Influences<const N: usize> {
     /// Bone indices, below [`crate::skeleton::BONES`].
     pub bones: [u8; N],
-    /// Weights, same order.
+    /// Weight of each of these bones (0..1).
     pub weights: [f32; N],
 }
 

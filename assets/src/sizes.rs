@@ -64,9 +64,9 @@ impl Girth {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Population {
-    /// Women.
+    /// Women's bodies.
     Women,
-    /// Men.
+    /// Men's bodies.
     Men,
     /// Anybody: garments in unisex sizes, shoppers who did not say.
     Mixed,
@@ -191,7 +191,7 @@ pub enum SizeError {
         table: String,
         /// Code of the size.
         code: String,
-        /// Which measure.
+        /// Name of the measure.
         measure: &'static str,
     },
     /// Sizes out of order, or the same code twice.
@@ -212,7 +212,7 @@ pub enum SizeError {
         table: String,
         /// What was asked for.
         code: String,
-        /// What there is.
+        /// Codes of the sizes that there are.
         codes: String,
     },
     /// A table that was not embedded.
@@ -220,7 +220,7 @@ pub enum SizeError {
     UnknownTable {
         /// What was asked for.
         name: String,
-        /// What there is.
+        /// Names of the tables that there are.
         names: String,
     },
 }

@@ -19,7 +19,7 @@ pub const BINS: [f32; 6] = [0.0, 0.4, 0.5, 0.6, 0.7, 0.85];
 /// What was stated and what was right, of the people in one bin.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ReliabilityBin {
-    /// People.
+    /// Number of people in the bin.
     pub people: u32,
     /// Sum of the stated probabilities.
     pub stated: f32,
@@ -47,9 +47,9 @@ impl ReliabilityBin {
 pub struct Reliability {
     /// Standard deviation of the error of every girth (m).
     pub sigma: f32,
-    /// By stated probability.
+    /// Figures by stated probability `[BINS]`.
     pub bins: [ReliabilityBin; BINS.len()],
-    /// All people.
+    /// All people, whatever was stated.
     pub all: ReliabilityBin,
     /// Those who were told to take a girth by tape: what was promised of it and what came of it.
     pub taped: ReliabilityBin,

@@ -25,7 +25,7 @@ pub struct NamedPath {
 /// How a source names a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// In code.
+    /// In code, outside of any `use`.
     Code,
     /// By a private `use`.
     Import,

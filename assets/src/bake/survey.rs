@@ -25,18 +25,18 @@ const MOST_LOOSE: f64 = 0.2;
 /// What there is of one solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SolverCount {
-    /// The solver.
+    /// The solver that is counted.
     pub solver: Solver,
     /// Fibers that it solves; edges alone count as one each.
     pub fibers: usize,
-    /// Their edges.
+    /// Edges of these fibers.
     pub edges: usize,
 }
 
 /// What baking makes of a shape.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshSurvey {
-    /// Vertices.
+    /// Vertices of the shape.
     pub vertices: usize,
     /// Triangles; a quad counts as two.
     pub triangles: usize,
@@ -46,7 +46,7 @@ pub struct MeshSurvey {
     pub coverage: Coverage,
     /// Which fibers are solved how, those between fixed vertices left out.
     pub solvers: [SolverCount; 3],
-    /// Tethers.
+    /// Tethers of the garment.
     pub tethers: usize,
     /// Bending stencils along warp, weft and bias.
     pub stencils: [usize; 3],

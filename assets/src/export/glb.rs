@@ -33,11 +33,11 @@ pub struct DressedBody<'a> {
 /// A garment as it lies.
 #[derive(Debug, Clone, Copy)]
 pub struct WornGarment<'a> {
-    /// Its name.
+    /// Name of the garment.
     pub name: &'a str,
     /// Vertex positions, world (m) `[vertices]`.
     pub positions: &'a [Vec3],
-    /// Vertex indices.
+    /// Indices into `positions` `[triangles]`.
     pub triangles: &'a [[u32; 3]],
     /// Its colour, sRGB 0..1.
     pub srgb: [f32; 3],

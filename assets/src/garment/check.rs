@@ -17,11 +17,11 @@ pub const MAX_VERTICES: usize = 262_144;
 /// What is wrong with a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MeshError {
-    /// Nothing there.
+    /// No vertex or no face.
     Empty,
     /// Too many vertices.
     TooLarge {
-        /// Vertices found.
+        /// Number of vertices found.
         count: usize,
     },
     /// A coordinate that is NaN or infinite.

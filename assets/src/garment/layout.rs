@@ -21,7 +21,7 @@ pub const MAX_LISTED: usize = 16;
 pub struct ConstraintRun<const K: usize> {
     /// Particles of the first constraint.
     pub first: [u32; K],
-    /// Constraints.
+    /// Number of constraints.
     pub len: u32,
     /// Where its parameters begin.
     pub at: u32,
@@ -43,7 +43,7 @@ impl<const K: usize> ConstraintRun<K> {
 /// second beside it, slant `t` from there to the next one of the first. Solved in this order, rungs before slants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Zigzag {
-    /// The rungs.
+    /// Constraints straight across, from rail to rail.
     pub rungs: ConstraintRun<2>,
     /// The slants, one less than rungs; as many where the last one leads back to the first particle.
     pub slants: ConstraintRun<2>,
@@ -97,11 +97,11 @@ pub struct Tuples<const K: usize> {
     pub zigzags: Box<[Zigzag]>,
     /// Runs, set after set, owner after owner.
     pub runs: Box<[ConstraintRun<K>]>,
-    /// The others.
+    /// Particles of the constraints that are in no zigzag and no run, set after set, owner after owner.
     pub loose: Box<[[u32; K]]>,
     /// The sets in the order in which they are solved.
     pub sets: Box<[ConstraintSet]>,
-    /// Constraints in all.
+    /// Number of constraints, of all kinds above.
     pub count: usize,
     /// Places of parameters: fewer than constraints where some are alike.
     pub places: usize,
@@ -132,7 +132,7 @@ impl<const K: usize> Tuples<K> {
 /// Stretch constraints between two particles.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Links {
-    /// Who is linked.
+    /// Pairs of particles that are linked.
     pub tuples: Tuples<2>,
     /// Length as cut (m).
     pub rest: Box<[f32]>,
@@ -182,7 +182,7 @@ pub struct Diagonals {
 }
 
 impl Diagonals {
-    /// Links in all.
+    /// Number of links.
     pub fn count(&self) -> usize {
         self.runs.iter().map(|r| r.len as usize).sum()
     }
@@ -194,7 +194,7 @@ impl Diagonals {
         }
     }
 
-    /// Bytes held.
+    /// Heap memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.families) + size_of_val(&*self.runs) + 4 * self.starts.len() + 8 * self.rest.len()
     }
@@ -207,7 +207,7 @@ pub struct HubGroup {
     pub points: u32,
     /// Sums of each over these particles, 1 to 3.
     pub sums: u32,
-    /// Hubs.
+    /// Number of hubs in the group.
     pub count: u32,
     /// Number of the first among all hubs.
     pub number: u32,
@@ -229,7 +229,7 @@ pub struct Hubs {
     pub groups: Box<[HubGroup]>,
     /// Each owner's groups, of two sets as [`Bends`] has them: what keeps within the owners, then what crosses them.
     pub sets: [[Range<u32>; OWNERS]; 2],
-    /// Hubs in all.
+    /// Number of hubs.
     pub count: usize,
 }
 
@@ -276,9 +276,9 @@ pub struct BundleRow {
 pub struct FiberBundle {
     /// How it is solved.
     pub solver: Solver,
-    /// Whose it is.
+    /// Owner (worker) that solves it.
     pub owner: u8,
-    /// Fibers.
+    /// Number of fibers side by side.
     pub lanes: u32,
     /// Particles of its longest fiber, from the support on: a range of [`Fibers::rows`].
     pub rows: Range<u32>,
@@ -293,9 +293,9 @@ pub struct FiberBundle {
 /// Fibers whose particles lie contiguous, row after row.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Fibers {
-    /// Bundles.
+    /// Bundles of all owners.
     pub bundles: Box<[FiberBundle]>,
-    /// Their rows.
+    /// Rows of particles, bundle after bundle.
     pub rows: Box<[BundleRow]>,
     /// Links of all bundles, those that have ended among them.
     pub links: usize,
@@ -314,7 +314,7 @@ pub const ENDED: f32 = 1e20;
 pub struct FiberList {
     /// How it is solved.
     pub solver: Solver,
-    /// Direction.
+    /// Direction of the threads that it follows.
     pub direction: Direction,
     /// Whether the last particle is linked to the first.
     pub closed: bool,
@@ -342,7 +342,7 @@ pub struct FiberLists {
     pub lists: Box<[FiberList]>,
     /// Sets: what each owner solves of `lists`.
     pub sets: Box<[[Range<u32>; OWNERS]]>,
-    /// Particles.
+    /// Indices of the particles, list after list, row after row: one for each lane.
     pub index: Box<[u32]>,
     /// Length of each link as cut (m).
     pub rest: Box<[f32]>,

@@ -45,7 +45,7 @@ pub struct Overrides {
     pub warp: Option<Solver>,
     /// Of all fibers around it.
     pub weft: Option<Solver>,
-    /// Of all diagonals.
+    /// Solver of all fibers along the bias.
     pub bias: Option<Solver>,
     /// Of the hoops that the garment hangs by.
     pub waistband: Option<Solver>,

@@ -14,7 +14,7 @@ use crate::scene::skirt::{self, Motion};
 pub struct ScenePlane {
     /// A point on it (m).
     pub point: Vec3,
-    /// Unit normal.
+    /// Unit normal, towards the side on which cloth stays.
     pub normal: Vec3,
 }
 
@@ -34,7 +34,7 @@ pub struct SceneColliders {
     movers: Vec<SphereMotion>,
     /// Pairs of spheres; one that belongs to no pair is paired with itself.
     pub capsules: Vec<[u8; 2]>,
-    /// Planes.
+    /// Planes that nothing moves.
     pub planes: Vec<ScenePlane>,
 }
 

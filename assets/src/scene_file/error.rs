@@ -12,7 +12,7 @@ pub enum SceneError {
     /// The scene file itself cannot be read.
     #[error("scene {}: {reason}; give the path of a readable TOML file, or `--example NAME`", path.display())]
     Read {
-        /// The file.
+        /// The file's path as the user gave it.
         path: PathBuf,
         /// What the system says.
         reason: String,
@@ -22,7 +22,7 @@ pub enum SceneError {
     At {
         /// The scene file.
         file: String,
-        /// Line, from 1.
+        /// Line in the file, from 1.
         line: usize,
         /// Column in characters, from 1.
         column: usize,
@@ -44,7 +44,7 @@ pub enum SceneError {
 pub(super) struct SceneDocument<'t> {
     /// The file as the user named it.
     pub file: &'t str,
-    /// Its text.
+    /// The whole text, in TOML.
     pub text: &'t str,
 }
 

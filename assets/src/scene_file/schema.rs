@@ -10,7 +10,7 @@ pub enum KeyKind {
     Count(u64, u64),
     /// Three numbers, each at most this far from 0.
     Vector(f64),
-    /// A text.
+    /// A text of any content.
     Text,
     /// One of these words.
     Choice(&'static [&'static str]),
@@ -30,20 +30,20 @@ pub enum KeyKind {
     Pairs,
 }
 
-/// One key.
+/// A key of a scene file: where it stands, and what it takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneKey {
     /// The table it stands in; empty for the file itself.
     pub table: &'static str,
-    /// Its name.
+    /// Name of the key, as it stands in the file.
     pub name: &'static str,
-    /// What it takes.
+    /// Kind of value that it takes.
     pub kind: KeyKind,
     /// Its unit; empty where it has none.
     pub unit: &'static str,
     /// What holds where it is left out; `required` where it may not be.
     pub default: &'static str,
-    /// What it does.
+    /// What the key sets, in a sentence for users.
     pub says: &'static str,
 }
 

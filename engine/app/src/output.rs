@@ -19,7 +19,7 @@ pub enum OutputError {
     /// The folder cannot be made or written in.
     #[error("output folder `{path}` cannot be written ({reason}); name another one with `--out DIR`")]
     Folder {
-        /// The folder.
+        /// Path of the output folder.
         path: PathBuf,
         /// What the system said.
         reason: io::Error,
@@ -37,7 +37,7 @@ pub enum OutputError {
     /// A path that ends in no file name.
     #[error("`--out {path}` names no file; give one such as shopper.mcap")]
     NoFile {
-        /// The path.
+        /// Path that was given.
         path: PathBuf,
     },
     /// What is there is not a regular file.
@@ -57,7 +57,7 @@ pub enum OutputError {
     /// A name that would leave the folder.
     #[error("output file name `{name}` is not a plain file name; use one without a path")]
     Name {
-        /// The name.
+        /// The file name that was refused.
         name: String,
     },
 }
@@ -181,7 +181,7 @@ impl OutputFolder {
         self
     }
 
-    /// The folder.
+    /// Path of the output folder.
     pub fn path(&self) -> &Path {
         &self.folder
     }

@@ -41,9 +41,9 @@ impl RendererChoice {
 
 /// Draws pictures of one shopper and what they wear.
 pub enum PictureRenderer {
-    /// By rays.
+    /// Ray tracing, on the processor.
     RayTracer,
-    /// By triangles.
+    /// Rasterised triangles, on a graphics device.
     #[cfg(feature = "view")]
     Gpu(Box<gpu::GpuRenderer>),
 }

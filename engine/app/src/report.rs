@@ -26,7 +26,7 @@ pub use skinning::SkinningReport;
 /// What every object carries, around what one command has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Document<T> {
-    /// `toile.<command>/1`.
+    /// Name and version of the object's format: `toile.<command>/1`.
     pub schema: String,
     /// Version of the program.
     pub version: &'static str,
@@ -61,13 +61,13 @@ pub struct Measure {
 /// The measures of one shopper.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Measurements {
-    /// Crown to floor.
+    /// Stature: crown to floor.
     pub stature_mm: Measure,
     /// Between the shoulder points.
     pub shoulder_breadth_mm: Measure,
     /// Around the fullest part of the chest.
     pub chest_girth_mm: Measure,
-    /// Around the waist.
+    /// Girth of the waist.
     pub waist_girth_mm: Measure,
     /// Around the fullest part of the hips.
     pub hip_girth_mm: Measure,
@@ -113,7 +113,7 @@ pub struct SizeChance {
 /// The measure to take by tape.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TapeMeasure {
-    /// Which girth.
+    /// Name of the girth to take.
     pub zone: String,
     /// How likely the likeliest size is to be the best once it is known, on average (0..1).
     pub probability: f64,
@@ -149,13 +149,13 @@ pub struct Recommendation {
 /// The distribution of a step's time (us).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct StepMicros {
-    /// Median.
+    /// Median (us).
     pub p50: f64,
-    /// 99 %.
+    /// 99th percentile (us).
     pub p99: f64,
-    /// 99.9 %.
+    /// 99.9th percentile (us).
     pub p999: f64,
-    /// The longest.
+    /// Longest step (us).
     pub max: f64,
 }
 
@@ -164,7 +164,7 @@ pub struct StepMicros {
 pub struct Strain {
     /// Mean over edges and steps.
     pub mean: f64,
-    /// 99 %.
+    /// 99th percentile over edges (1).
     pub p99: f64,
     /// The worst edge at the worst step.
     pub max: f64,
@@ -192,7 +192,7 @@ pub struct Physics {
     pub substeps: u32,
     /// Particles of all garments, the skinned ones included.
     pub particles: usize,
-    /// Steps taken.
+    /// Steps that were taken.
     pub steps: u64,
     /// Time a step took.
     pub step_us: StepMicros,
@@ -240,7 +240,7 @@ pub struct MeasureReport {
     pub body: Option<FittedBody>,
     /// Pixels that carried a depth, mean over the frames.
     pub valid_pixels: u64,
-    /// People seen.
+    /// Most people seen in one frame.
     pub people: u32,
     /// The files written.
     pub files: Vec<PathBuf>,
@@ -249,16 +249,16 @@ pub struct MeasureReport {
 /// What one way of measuring found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Method {
-    /// Its name.
+    /// Name of the method.
     pub method: &'static str,
-    /// What it takes.
+    /// Measures that it takes.
     pub measures: Vec<DefinedMeasure>,
 }
 
 /// A measure with its definition.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DefinedMeasure {
-    /// Its name.
+    /// Name of the measure.
     pub name: &'static str,
     /// Where the tape lies (EN 13402-1, ISO 8559-1).
     pub definition: &'static str,

@@ -28,9 +28,9 @@ pub enum ColliderError {
     /// A bone that the skeleton lacks.
     #[error("collision sphere {sphere} follows bone {bone}, but there are {BONES} bones; use an index below that")]
     NoSuchBone {
-        /// The sphere.
+        /// Index of the sphere.
         sphere: usize,
-        /// What it names.
+        /// Index of the bone that it names.
         bone: u8,
     },
     /// A centre or radius that is not finite, or a radius below 0.
@@ -39,9 +39,9 @@ pub enum ColliderError {
     /// A capsule between spheres that do not exist.
     #[error("capsule {capsule} joins spheres {ends:?}, but there are {spheres}; use indices below that")]
     NoSuchSphere {
-        /// The capsule.
+        /// Index of the capsule.
         capsule: usize,
-        /// What it names.
+        /// Indices of the spheres that it names.
         ends: [u8; 2],
         /// How many spheres there are.
         spheres: usize,

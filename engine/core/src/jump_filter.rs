@@ -22,7 +22,7 @@ pub const FOLLOW_M_S: f32 = 10.0;
 /// What a sphere does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum SphereState {
-    /// Not seen yet.
+    /// The joint has not been seen yet.
     #[default]
     Absent,
     /// It is where it is said to be.

@@ -63,7 +63,7 @@ const BLUE: Vec3 = Vec3::new(0.0, 0.168, 0.445);
 const RED: Vec3 = Vec3::new(0.665, 0.112, 0.0);
 
 impl Kind {
-    /// All of them.
+    /// Every kind, in the order of help.
     pub const ALL: [Self; 5] = [Self::Fibers, Self::Colliders, Self::Contacts, Self::Tethers, Self::Velocity];
 
     /// Its name on the command line.
@@ -109,7 +109,7 @@ impl Lines {
         Self { lines: vec![none; capacity].into(), len: 0, left_out: 0 }
     }
 
-    /// The lines.
+    /// The lines that were added since they were last cleared.
     pub fn as_slice(&self) -> &[Line] {
         &self.lines[..self.len]
     }

@@ -7,7 +7,7 @@ use std::hint::black_box;
 pub struct Heap {
     /// Allocations and growths since the program started, of all threads.
     pub allocations: u64,
-    /// Bytes in use.
+    /// Bytes that are allocated and not freed.
     pub live_bytes: i64,
 }
 

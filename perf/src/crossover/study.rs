@@ -45,13 +45,13 @@ pub struct SideFigures {
 pub struct CrossoverRow {
     /// Vertices of a skirt.
     pub verts: usize,
-    /// Skirts.
+    /// Number of skirts.
     pub garments: usize,
     /// Steps that were taken, a third of them to warm up.
     pub steps: usize,
-    /// One thread.
+    /// Times of a step by one thread.
     pub one: SideFigures,
-    /// Two threads.
+    /// Times of a step by two threads.
     pub two: SideFigures,
     /// The device; none where it cannot step them, which `missing` then says.
     pub device: Option<SideFigures>,
@@ -66,7 +66,7 @@ pub struct CrossoverRow {
     pub missing: Option<String>,
 }
 
-/// The study.
+/// Times of processor and graphics device by size and by number of skirts.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Crossover {
     /// What the device is.

@@ -42,7 +42,7 @@ pub struct DepthRow {
     pub errors: DepthErrors,
 }
 
-/// The table.
+/// Errors and times of depth processing, with their targets.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DepthTable {
     /// Longest that smoothing may take for a whole image of 640 x 480 (us).

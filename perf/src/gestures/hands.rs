@@ -15,12 +15,12 @@ pub enum HandPose {
     Spread,
     /// Open, fingers together.
     Stretched,
-    /// Closed.
+    /// Closed to a fist.
     Fist,
 }
 
 impl HandPose {
-    /// All poses.
+    /// All poses of the hand.
     pub const ALL: [Self; 3] = [Self::Spread, Self::Stretched, Self::Fist];
 
     /// The words for tables.
@@ -38,9 +38,9 @@ impl HandPose {
 pub struct GripRow {
     /// The pose; its changes are those into it.
     pub pose: HandPose,
-    /// Distance (m).
+    /// Distance of the shopper (m).
     pub distance: f32,
-    /// Frames.
+    /// Frames that were classified.
     pub frames: u32,
     /// Frames classified wrongly.
     pub wrong: u32,

@@ -13,12 +13,12 @@ const RATES: [[f32; 2]; 4] = [[30.0, 0.03], [20.0, 0.03], [15.0, 0.03], [15.0, 0
 /// Sizes next to a grown-up.
 const SCALES: [f32; 3] = [0.7, 1.0, 1.2];
 
-/// The whole study.
+/// The study of gestures: all tables.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GestureStudy {
     /// Sequences a cell.
     pub sequences: u32,
-    /// First seed.
+    /// Seed that all sequences are drawn from.
     pub seed: u64,
     /// Gestures under the conditions of each column of each table.
     pub gestures: Vec<(Act, GestureConditions, GestureCount)>,

@@ -53,7 +53,7 @@ const MOST_CHANGES: usize = 100;
 /// Time between two looks at the queues: they hold seconds.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// What is measured.
+/// Options of a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LatencyOptions {
     /// Length of the run (s), after a first second.

@@ -17,7 +17,7 @@ use super::measure::measure_with;
 use super::options::{SkirtMesh, SkirtOptions};
 use super::report::SkirtReport;
 
-/// The whole table.
+/// All cases with their targets.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TargetTable {
     /// Targets that were met, and how many there are.
@@ -33,9 +33,9 @@ pub struct TargetTable {
 /// Figures and what they are of.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CaseFigures<T> {
-    /// The case.
+    /// Name of the case.
     pub case: String,
-    /// Its figures.
+    /// The figures of the case.
     #[serde(flatten)]
     pub figures: T,
 }

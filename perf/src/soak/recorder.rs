@@ -27,7 +27,7 @@ pub struct RecorderLoop<C> {
     file: Option<File>,
     waiting: Vec<u8>,
     ended: bool,
-    /// Steps.
+    /// Steps that were recorded.
     pub steps: u64,
     /// A hash over the hashes of their states.
     pub hash: u64,

@@ -46,7 +46,7 @@ const WATCH: Duration = Duration::from_millis(5);
 
 /// What the program lends to a run.
 pub struct SoakTools<'a> {
-    /// Reads the heap.
+    /// Reads how much of the heap is in use.
     pub heap: HeapProbe,
     /// Counts the allocations of the calling thread.
     pub count: Option<Allocations>,
@@ -66,7 +66,7 @@ pub struct SoakTools<'a> {
 pub struct SoakRun {
     /// What was to happen.
     pub scenario: Arc<Scenario>,
-    /// Steps.
+    /// Steps that were taken.
     pub steps: u64,
     /// Steps that were not published in their period, or dropped.
     pub missed: u64,

@@ -26,7 +26,7 @@ pub struct BoneLength {
     from: Option<Joint>,
     /// The estimate (m).
     length: f32,
-    /// Lengths seen.
+    /// Number of lengths that were taken in.
     count: u32,
 }
 

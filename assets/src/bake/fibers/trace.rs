@@ -11,7 +11,7 @@ use glam::Vec3;
 
 use super::{Direction, Edge, Fiber};
 
-/// No edge.
+/// Stands for no edge, where the index of an edge is expected.
 const NONE: u32 = u32::MAX;
 
 /// An edge joins a fiber of warp or weft while it leans by less than 45 degrees; a vertex that finds no such edge takes

@@ -53,7 +53,7 @@ impl Default for ImportOptions {
 pub struct ImportedBody {
     /// The body in its rest pose: metres, y up, facing +z, the floor at y = 0.
     pub body: Body,
-    /// What was found.
+    /// What was found in the file and how it was taken.
     pub report: ImportReport,
 }
 

@@ -214,7 +214,7 @@ fn plain(name: &str) -> String {
 /// The joints that names mean, in the dialect that knows the most of the needed ones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedJoints {
-    /// The dialect.
+    /// Name of the dialect: whose names the joints bear, such as Mixamo's.
     pub dialect: &'static str,
     /// The joint that each name means `[names]`; several may mean the same one.
     pub joints: Vec<Option<Joint>>,

@@ -23,7 +23,7 @@ const COMPRESSIONS: [&str; 2] = ["KHR_draco_mesh_compression", "EXT_meshopt_comp
 
 /// An opened file.
 pub(crate) struct GltfFile {
-    /// The whole description.
+    /// The JSON of the file.
     pub json: Value,
     buffers: Vec<Vec<u8>>,
 }

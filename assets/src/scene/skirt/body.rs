@@ -74,7 +74,7 @@ pub enum Motion {
     Walk,
     /// The same in a hurry: 2 Hz, 50 degrees, 0.10 m, 45 degrees.
     Fast,
-    /// Stands still.
+    /// Stands still: all amplitudes are 0.
     Settled,
 }
 

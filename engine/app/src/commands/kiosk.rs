@@ -60,7 +60,7 @@ pub struct KioskArgs {
     pub printing: Printing,
 }
 
-/// Reads `540x960`.
+/// Reads the size of a window (pixels) such as `540x960`.
 fn windowed(said: &str) -> Result<[u32; 2], String> {
     let side = |text: &str| text.parse::<u32>().ok().filter(|n| WINDOW.contains(n));
     let size = said.split_once('x').and_then(|(w, h)| Some([side(w)?, side(h)?]));

@@ -90,9 +90,9 @@ impl LatencyArgs {
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LatencyReport {
-    /// What was run.
+    /// The scene that was run.
     pub scene: Recipe,
-    /// What was found.
+    /// The figures that were measured.
     #[serde(flatten)]
     pub found: Latency,
     /// The files written.

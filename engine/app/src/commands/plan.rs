@@ -86,7 +86,7 @@ pub struct PlanArgs {
 }
 
 impl PlanArgs {
-    /// The scene.
+    /// The scene that the arguments name.
     pub fn scene(&self) -> PlanScene {
         match RunScene::of(self.scene.as_ref(), self.example.as_ref()) {
             Some(scene) => PlanScene::Run(scene),
@@ -152,7 +152,7 @@ fn refusal(scene: &str, verdict: &Verdict) -> String {
     )
 }
 
-/// A scene file.
+/// Plans a scene file.
 fn file(scene: &RunScene, workers: usize) -> Result<(Scene, Costs, Vec<Memory>), AppError> {
     let scene = Scene::file(scene.read()?).map_err(AppError::input)?;
     let costs = calibrate::measure(None, workers).map_err(AppError::internal)?;
@@ -161,7 +161,7 @@ fn file(scene: &RunScene, workers: usize) -> Result<(Scene, Costs, Vec<Memory>),
     Ok((scene, costs, memory))
 }
 
-/// A shopper, dressed.
+/// Plans a dressed shopper.
 fn worn(
     session: Option<&std::path::Path>,
     wish: &Wish,

@@ -34,7 +34,7 @@ const MAX_RUN_STEPS: u64 = 100_000_000;
 /// Where the scene of `toile run` comes from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RunScene {
-    /// A file.
+    /// A scene file, by its path.
     File(PathBuf),
     /// A scene inside the program.
     Example(String),

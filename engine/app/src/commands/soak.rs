@@ -126,14 +126,14 @@ const MOST_REPLAYED: u64 = 128 << 20;
 pub struct SoakRecipe {
     /// Version of the program that wrote it.
     pub version: String,
-    /// What was soaked.
+    /// Options of the run.
     pub soak: SoakPlan,
 }
 
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct SoakDocument {
-    /// What was found.
+    /// The figures that were measured.
     #[serde(flatten)]
     found: Soak,
     /// The files written.

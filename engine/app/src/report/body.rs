@@ -42,16 +42,16 @@ pub struct BodyReport {
 /// A number with its name.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Named {
-    /// What it is.
+    /// What the value is of.
     pub name: &'static str,
-    /// The value.
+    /// The value, in the unit that its place says.
     pub value: f64,
 }
 
 /// One of our joints, and what the file calls it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JointFound {
-    /// H-Anim name.
+    /// Name of the joint after H-Anim.
     pub joint: String,
     /// The file's own name.
     pub named: String,

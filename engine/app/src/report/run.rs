@@ -48,17 +48,17 @@ pub struct KineticEnergy {
 pub struct RunReport {
     /// The scene's name.
     pub scene: String,
-    /// Its garments.
+    /// Garments of the scene.
     pub garments: Vec<RunGarment>,
-    /// Spheres.
+    /// Spheres among the colliders.
     pub spheres: usize,
     /// Capsules, single spheres included.
     pub capsules: usize,
-    /// Planes.
+    /// Planes among the colliders.
     pub planes: usize,
     /// Steps a second.
     pub hz: f64,
-    /// Steps run.
+    /// Steps that were run.
     pub steps: u64,
     /// Time reached (s).
     pub seconds: f64,
@@ -84,7 +84,7 @@ pub struct RunReport {
     pub strain: Strain,
     /// How deep cloth was inside colliders.
     pub penetration_mm: RunPenetration,
-    /// Kinetic energy.
+    /// Kinetic energy (J).
     pub kinetic_energy_j: KineticEnergy,
     /// Published positions that were not finite.
     pub nonfinite: u64,
@@ -94,6 +94,6 @@ pub struct RunReport {
     pub state_hash: String,
     /// The folder of the dump; `index.csv` in it lists its files.
     pub dump: Option<PathBuf>,
-    /// Frames dumped.
+    /// Frames that were written to the dump.
     pub dumped_frames: u64,
 }

@@ -39,11 +39,11 @@ pub fn prepare(links: &Links, weights: &[f32], [dt, gamma]: [f32; 2], passes: Pa
 pub struct SolveLinks<'a> {
     /// The garment's particles.
     pub columns: ParticleColumns<'a>,
-    /// All links.
+    /// All links of the garment.
     pub links: &'a Links,
     /// What [`prepare`] made.
     pub gain: &'a [f32],
-    /// The set.
+    /// The set that is solved now.
     pub set: &'a ConstraintSet,
     /// Whose share of it.
     pub owner: usize,

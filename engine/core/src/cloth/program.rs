@@ -35,11 +35,11 @@ pub enum Stage {
     Shear(u16),
     /// A set of weft links.
     Weft(u16),
-    /// Warp fibers.
+    /// All warp fibers that cross no others.
     Fibers,
     /// A set of warp fibers that cross others.
     Crossing(u16),
-    /// Tethers.
+    /// All tethers.
     Tethers,
     /// Contact, then the velocities that follow: both are one particle's own matter, so the workers need not meet between.
     ContactAndVelocities,
@@ -70,7 +70,7 @@ impl Stage {
 /// Bending, which comes first in a substep: its sets, once as a force, or in stages with a turn before each and at the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bending {
-    /// Sets of stencils.
+    /// Number of sets of bending stencils.
     pub sets: u32,
     /// Stages; 1 for a force.
     pub stages: u32,

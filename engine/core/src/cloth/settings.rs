@@ -165,7 +165,7 @@ impl Settings {
 /// Acceleration of gravity (m/s2).
 const GRAVITY: Vec3A = Vec3A::new(0.0, -9.81, 0.0);
 
-/// See [`Settings::max_speed`].
+/// Default of [`Settings::max_speed`] (m/s).
 const MAX_SPEED: f32 = 15.0;
 
 impl Default for Settings {

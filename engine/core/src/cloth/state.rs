@@ -113,7 +113,7 @@ impl State {
         ParticleColumns { x: three(0), previous: three(PREVIOUS), v: three(VELOCITY), w: all.part(starts[WEIGHT], len) }
     }
 
-    /// Bytes held.
+    /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         self.numbers.bytes()
     }

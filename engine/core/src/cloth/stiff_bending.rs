@@ -22,9 +22,9 @@ pub const MOST: u32 = 160;
 /// One stage: newest = ahead * newest + behind * the one before + forced * (r - Z newest).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ChebyshevStage {
-    /// mu.
+    /// Coefficient mu of the recursion (1).
     pub ahead: f32,
-    /// nu.
+    /// Coefficient nu of the recursion (1).
     pub behind: f32,
     /// mu with a tilde.
     pub forced: f32,
@@ -81,12 +81,12 @@ impl StiffBendingScratch {
         Self(std::array::from_fn(|_| std::array::from_fn(|_| Store::zeros(particles))))
     }
 
-    /// As columns.
+    /// The scratch as columns that kernels write to.
     pub fn columns(&mut self) -> [[WriteColumn<'_>; 3]; 3] {
         self.0.each_mut().map(|three| three.each_mut().map(Store::column))
     }
 
-    /// Bytes held.
+    /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         self.0.iter().flatten().map(Store::bytes).sum()
     }
@@ -99,7 +99,7 @@ pub enum StiffBendingUpdate<'a> {
     Begin {
         /// Gravity over the substep (m/s).
         fall: Vec3A,
-        /// Other accelerations (m/s2).
+        /// Accelerations besides gravity (m/s2).
         pushed: Option<[WriteColumn<'a>; 3]>,
         /// Length of the substep (s).
         dt: f32,
@@ -120,7 +120,7 @@ pub struct ApplyStiffBending<'a> {
     pub spans: &'a [(u32, u32)],
     /// r, and two changes of velocity.
     pub room: [[WriteColumn<'a>; 3]; 3],
-    /// The turn.
+    /// The stage of the recursion that is applied now.
     pub turn: StiffBendingUpdate<'a>,
 }
 

@@ -11,11 +11,11 @@ use crate::lanes::{Kernel, Lanes, Mask, ReadColumn, Readable, V3, WriteColumn, r
 /// Slack of a tether, as a share of its length: cloth that stretches as fabrics do never meets it.
 const SLACK: f32 = 1.02;
 
-/// One owner's particles.
+/// Limits the distance of one owner's particles from where the garment is held.
 pub struct HoldTethers<'a> {
     /// The garment's particles.
     pub columns: ParticleColumns<'a>,
-    /// The tethers.
+    /// All tethers of the garment.
     pub tethers: &'a Tethers,
     /// Ranges of particles, `(first, len)`.
     pub spans: &'a [(u32, u32)],

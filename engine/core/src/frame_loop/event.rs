@@ -14,15 +14,15 @@ pub const SENSOR_LOST_NS: u64 = 500_000_000;
 /// What happened, in the step of this number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event {
-    /// The step.
+    /// Number of the step.
     pub tick: u64,
     /// When the step was due (ns).
     pub scheduled_ns: u64,
-    /// What happened.
+    /// What happened in it.
     pub what: EventKind,
 }
 
-/// What can happen.
+/// Kinds of event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EventKind {
     /// The governor gave up quality, or gave it back.
@@ -65,7 +65,7 @@ pub struct Counters {
     pub waited_ns: u64,
     /// Times that its core was taken away.
     pub preempted: u64,
-    /// Page faults.
+    /// Page faults: memory that had to be brought in first.
     pub faults: u64,
 }
 
@@ -89,7 +89,7 @@ pub trait CounterSource: Send {
     fn counters(&mut self, closely: bool) -> Counters;
 }
 
-/// No counters.
+/// Counts nothing: for systems without such counters, and for tests.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoCounters;
 

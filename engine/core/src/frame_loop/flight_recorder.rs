@@ -26,7 +26,7 @@ pub const MOST_BYTES: usize = 56 << 20;
 /// Time between two tries to get at the box (us).
 const RETRY: Duration = Duration::from_micros(500);
 
-/// One visit.
+/// What is known of the visit under way.
 #[derive(Debug, Default)]
 struct Visit {
     /// When its first step was due (ns).

@@ -13,7 +13,7 @@ use crossbeam_queue::ArrayQueue;
 pub struct Capacity {
     /// The constant that bounds it, with its room.
     pub constant: &'static str,
-    /// Its bound.
+    /// The most that it can hold.
     pub bound: usize,
     /// The most that was in it at once.
     pub high_water: usize,
@@ -75,7 +75,7 @@ impl<T> Sender<T> {
 }
 
 impl<T> Receiver<T> {
-    /// The oldest entry.
+    /// Takes the oldest entry, if there is one.
     pub fn pop(&mut self) -> Option<T> {
         self.0.entries.pop()
     }

@@ -45,7 +45,7 @@ pub enum Entry {
     Fault(u64),
     /// A step was taken.
     Step {
-        /// Its number.
+        /// Number of the step.
         tick: u64,
         /// When it was due (ns).
         scheduled_ns: u64,
@@ -81,7 +81,7 @@ pub struct Recording {
 /// Why a recording cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum RecordingError {
-    /// Another file.
+    /// The first line is not that of a recording.
     #[error(
         "this is not a recording of a run (it does not begin with `toile-tape/1`); make one with `toile latency --record F` or `toile soak --record F`"
     )]

@@ -21,7 +21,7 @@ pub struct Schedule {
 pub enum Due {
     /// Nothing is due before this time (ns).
     At(u64),
-    /// This is.
+    /// This tick is due now.
     Now(Tick),
 }
 

@@ -20,7 +20,7 @@ pub const OBSERVED_NAME: &str = "OBSERVED (engine/core/src/frame_loop/sensor_thr
 
 /// A depth image that is shared and not copied on its way: a camera's own, or one of a recording that is held as a whole.
 pub trait DepthImage: Debug + Send + Sync {
-    /// The image.
+    /// The depth image itself (mm).
     fn frame(&self) -> &DepthFrame;
 }
 
@@ -160,7 +160,7 @@ pub struct SensorThread<S, C> {
 }
 
 impl<S: FrameSource, C: Clock> SensorThread<S, C> {
-    /// At load.
+    /// Reads `source`, writes filtered frames to `writer`. Called at load: it allocates.
     pub fn new(source: S, clock: C, writer: Writer<SensorFrame>) -> Self {
         Self {
             source,

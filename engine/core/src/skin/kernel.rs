@@ -86,7 +86,7 @@ impl<L: Lanes> Matrix<L> {
     }
 }
 
-/// Linear blending.
+/// Blends bone matrices linearly.
 pub(super) struct Linear<'a> {
     pub surface: SkinSurface<'a>,
     pub palette: &'a [Affine3A; BONES],

@@ -49,7 +49,7 @@ pub enum Blend {
 }
 
 impl Blend {
-    /// Both.
+    /// Both ways of blending.
     pub const ALL: [Self; 2] = [Self::Linear, Self::Dual];
 
     /// Its name in reports and options.

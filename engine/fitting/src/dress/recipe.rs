@@ -40,7 +40,7 @@ pub struct Recipe {
 pub struct Parts {
     /// The shopper's body.
     pub body: Body,
-    /// Its colliders.
+    /// Spheres and capsules that stand for the body in contact.
     pub rig: Rig,
     /// The garments, inner first.
     pub garments: Vec<Garment>,

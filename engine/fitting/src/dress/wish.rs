@@ -45,7 +45,7 @@ pub enum Choice {
 pub struct Worn {
     /// The garment, baked.
     pub garment: Garment,
-    /// How it fits.
+    /// How it fits; none where it was not recommended.
     pub fit: Option<Recommendation>,
 }
 

@@ -62,7 +62,7 @@ pub type RenderLoop<E, C> = WatchedRenderer<E, C>;
 /// The ends of the queues that whoever looks after the loop empties.
 #[derive(Debug)]
 pub struct LoopQueues {
-    /// What happened.
+    /// Events of the loop.
     pub events: Receiver<Event>,
     /// What each step came to.
     pub step_reports: Receiver<StepReport>,
@@ -86,7 +86,7 @@ pub type AssembledLoops<S, E, F, A, C> = Loops<SensorLoop<F, C>, PhysicsLoop<S, 
 pub struct Assembly<S, E: Renderer, F, A, C> {
     /// The three loops, to be run by threads or one after the other.
     pub loops: AssembledLoops<S, E, F, A, C>,
-    /// What they report.
+    /// Queues of what the threads report.
     pub queues: LoopQueues,
     /// How scenes are changed.
     pub handover: SceneHandover<S, E::Outfit>,

@@ -45,7 +45,7 @@ pub enum DressOutcome {
     Done(Box<Dressed>),
     /// They could not be measured; why is not reported to anybody, for it may tell of them.
     Failed,
-    /// The thread panicked.
+    /// The thread that dresses panicked.
     Panicked,
 }
 

@@ -104,7 +104,7 @@ fn cause(miss: &Miss, before: Option<Cause>) -> Cause {
 /// Adds up why steps were late, from what the loop tells.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct LatenessAttribution {
-    /// The sums.
+    /// Late steps so far, by cause.
     pub attributed: Attributed,
     /// The last late step and its cause.
     before: Option<(u64, Cause)>,

@@ -70,7 +70,7 @@ impl<S: Scene> LiveScene<S> {
         Self { reporting: Some(Box::new(StepReporting { reports, progress, past: 0 })), ..self }
     }
 
-    /// The scene.
+    /// The scene that is stepped.
     pub fn scene(&self) -> &S {
         &self.scene
     }
@@ -137,7 +137,7 @@ pub struct WatchedRenderer<E: Renderer, C> {
 }
 
 impl<E: Renderer, C: Clock> WatchedRenderer<E, C> {
-    /// The same, watched.
+    /// The loop, with its progress watched.
     pub fn new(render: RenderThread<E, C>, progress: Arc<Progress>) -> Self {
         Self { render, progress }
     }
@@ -159,9 +159,9 @@ impl<E: Renderer, C: Clock> ThreadLoop for WatchedRenderer<E, C> {
 
 /// The ends by which scenes are handed over.
 pub struct SceneHandover<S, O> {
-    /// To physics.
+    /// Hands scenes to the physics thread.
     pub scenes: HandoverSender<LiveScene<S>>,
-    /// To the renderer.
+    /// Hands what is drawn to the render thread.
     pub views: HandoverSender<SceneView<O>>,
 }
 

@@ -17,7 +17,7 @@ use crate::dress::dressed::Dressed;
 
 /// A dressed scene, with what is drawn of it.
 pub struct DressedScene<S, O> {
-    /// The scene.
+    /// The scene that is stepped.
     pub scene: S,
     /// Where its snapshots come out.
     pub reader: Reader<Snapshot>,

@@ -111,12 +111,12 @@ pub struct LiveSender {
     next_ns: u64,
 }
 
-/// Either of them.
+/// A recording or a live sender.
 #[derive(Debug)]
 pub enum Feed {
-    /// A recording.
+    /// A recording, played again and again.
     Played(Visits),
-    /// A sender.
+    /// A sender of joints over the network (VMC).
     Live(Box<LiveSender>),
 }
 

@@ -26,14 +26,14 @@ pub struct Costs {
 pub struct GarmentTime {
     /// By stage, both shares on one core.
     pub stages_us: [f64; STAGES.len()],
-    /// All of them.
+    /// Sum of the stages, on one worker.
     pub one_us: f64,
     /// Shared by two workers.
     pub two_us: f64,
 }
 
 impl Costs {
-    /// One garment.
+    /// What one garment with this work costs.
     pub fn garment(&self, work: &Work) -> GarmentTime {
         let time = |(counts, unit): (&[f64; KINDS], &[f64; KINDS])| counts.iter().zip(unit).map(|(n, us)| n * us).sum();
         let mut stages_us = [0.0; STAGES.len()];

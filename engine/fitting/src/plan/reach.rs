@@ -32,7 +32,7 @@ const GIVES: f32 = 1.02;
 /// A part of a garment and what it can touch.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Reach {
-    /// The garment.
+    /// Name of the garment.
     pub garment: String,
     /// The part of the body that it hangs on.
     pub part: &'static str,

@@ -33,9 +33,9 @@ pub struct Verdict {
 pub struct Priced {
     /// What their first step told.
     pub first: Vec<FirstStep>,
-    /// Their work.
+    /// Work of a step of each garment `[garments]`.
     pub work: Vec<Work>,
-    /// Their times.
+    /// Time of a step of each garment `[garments]`.
     pub times: Vec<GarmentTime>,
     /// The stages of a step (us), as [`Costs::step`] has them.
     pub stages_us: [f64; toile_engine::meter::STAGES.len()],

@@ -28,7 +28,7 @@ const DRAG_LIFT: [f32; 2] = [0.1, 0.05];
 /// A model and what it is worth.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Weighed {
-    /// The model.
+    /// Name of the model.
     pub model: &'static str,
     /// Whether the scene has it.
     pub on: bool,
@@ -51,7 +51,7 @@ pub struct Played {
     pub steps: usize,
     /// Moments that were gone on from.
     pub moments: usize,
-    /// The models.
+    /// The models that were weighed.
     pub models: Vec<Weighed>,
 }
 

@@ -20,9 +20,9 @@ pub struct Surface {
     pub positions: Vec<Vec3>,
     /// Rest normal, unit `[vertices]`.
     pub normals: Vec<Vec3>,
-    /// Weights `[vertices]`.
+    /// Bones that carry each vertex `[vertices]`.
     pub weights: Vec<SkinWeights>,
-    /// Skin matrices.
+    /// Matrix of each bone, from the rest pose to the world.
     pub palette: [Affine3A; BONES],
 }
 

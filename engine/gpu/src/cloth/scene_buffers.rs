@@ -228,7 +228,7 @@ impl ListBuffers {
     }
 }
 
-/// Warp fibers.
+/// Fibers along the warp, in memory of the device.
 pub struct FiberBuffers {
     bundles: Buffer,
     rows: Buffer,

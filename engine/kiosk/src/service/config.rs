@@ -28,7 +28,7 @@ const CONFIGURATION: FileKind = FileKind {
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
-    /// What is worn.
+    /// Garments and sizes that are worn.
     pub wear: WearConfig,
     /// Where frames come from.
     pub sensor: SensorConfig,
@@ -46,7 +46,7 @@ pub struct Config {
     pub crash: CrashConfig,
 }
 
-/// What is worn.
+/// Garments and sizes that are worn.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct WearConfig {
@@ -76,7 +76,7 @@ pub struct SensorConfig {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SensorSource {
-    /// A recording, played.
+    /// A recorded session, played again and again.
     Session,
     /// Virtual Motion Capture over UDP.
     Vmc,
@@ -88,7 +88,7 @@ pub enum SensorSource {
 pub struct SessionConfig {
     /// Being seen until one has stepped in.
     pub step_in_s: f64,
-    /// Measuring.
+    /// Being measured (s).
     pub measure_s: f64,
     /// Being unseen until one has left.
     pub step_out_s: f64,
@@ -141,7 +141,7 @@ pub struct DisplayConfig {
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MetricsConfig {
-    /// Port on 127.0.0.1.
+    /// Port on 127.0.0.1 that figures are served at.
     pub port: Option<u16>,
 }
 
@@ -265,7 +265,7 @@ impl Config {
             .or_else(|| self.wear.quality.parse::<Quality>().err().map(|e| format!("wear.quality: {e}")))
     }
 
-    /// What is worn.
+    /// The garments and sizes asked for.
     pub fn wish(&self) -> Wish {
         Wish {
             garments: self.wear.garments.clone(),

@@ -18,7 +18,7 @@ pub struct HealthFigures {
     pub uptime_ns: u64,
     /// Where the session is.
     pub state: SessionState,
-    /// Steps taken.
+    /// Steps that were taken.
     pub steps: u64,
     /// 99.9 % of the steps since the last health line took no longer (us).
     pub step_p999_us: f64,
@@ -30,7 +30,7 @@ pub struct HealthFigures {
     pub nonfinite: u64,
     /// Shoppers who stepped in.
     pub sessions: u64,
-    /// Pictures taken.
+    /// Pictures that were drawn.
     pub pictures: u64,
     /// Times that the sensor was lost.
     pub sensor_lost: u64,
@@ -84,7 +84,7 @@ pub struct HealthCounter {
 }
 
 impl HealthCounter {
-    /// A step.
+    /// Adds a step.
     pub fn step(&mut self, step: &StepReport) {
         self.step.add(step.step_ns);
         self.figures.steps += 1;

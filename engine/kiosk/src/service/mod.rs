@@ -117,7 +117,7 @@ pub fn without_window(_: KioskRun<'_>) -> Result<KioskReport, KioskError> {
 pub struct KioskRun<'a> {
     /// What is asked of it.
     pub options: &'a KioskOptions,
-    /// The configuration.
+    /// The configuration that was read.
     pub config: &'a Config,
     /// When the program was started.
     pub begun: Instant,

@@ -63,7 +63,7 @@ pub struct ServiceEnvironment<'a, S, O> {
     pub say: &'a dyn Fn(&str),
     /// Receives the figures, where metrics are served.
     pub figures: Option<Writer<HealthFigures>>,
-    /// Who dresses shoppers.
+    /// Dresses shoppers on a thread of its own.
     pub dresser: Dresser,
     /// What a dressed frame becomes in the loop, and what the renderer has to know of it.
     pub to_scene: fn(Frame) -> (S, O),
@@ -169,7 +169,7 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
         self.length.is_some_and(|length| uptime >= length)
     }
 
-    /// One round.
+    /// One round: looks after the threads, reads what they report, moves the session on.
     fn poll(&mut self) -> Result<(), KioskError> {
         if let Some(role) = self.live.threads.look().map_err(KioskError::internal)? {
             return Err(KioskError::Internal(format!(

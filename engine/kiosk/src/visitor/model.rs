@@ -28,7 +28,7 @@ pub struct VisitModel {
     pub(super) visit: Visit,
     /// The place of the control that has the focus.
     pub(super) focus: usize,
-    /// Effects so far.
+    /// Number of the last effect.
     number: u32,
 }
 

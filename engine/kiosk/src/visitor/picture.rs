@@ -55,7 +55,7 @@ pub enum PictureError {
         "the picture has {bytes} bytes at its smallest, more than the {MOST_LINK} of a code; take it before a plainer wall"
     )]
     TooLarge {
-        /// Its link's bytes.
+        /// Length of its link (bytes).
         bytes: usize,
     },
     /// The encoder refused.

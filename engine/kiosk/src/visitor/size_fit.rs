@@ -31,7 +31,7 @@ impl BodyPart {
     /// All of them, from the top down.
     pub const ALL: [Self; 6] = [Self::Stature, Self::Shoulders, Self::Chest, Self::Waist, Self::Hip, Self::Legs];
 
-    /// Its word.
+    /// Key of its name in the pages' texts.
     pub const fn word(self) -> TextKey {
         match self {
             Self::Stature => TextKey::PartStature,
@@ -68,11 +68,11 @@ pub enum MeasureBasis {
 /// What was measured of somebody.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VisitorMeasures {
-    /// The measures.
+    /// The measures that were taken.
     pub measured: Measurements,
     /// What could not be seen, from the top down.
     pub missing: Vec<BodyPart>,
-    /// Whether they sat.
+    /// Whether they sat when they were measured.
     pub seated: bool,
     /// How many measures are known.
     pub count: u32,
@@ -109,7 +109,7 @@ impl VisitorMeasures {
 pub enum Feel {
     /// Far below the comfortable range.
     TooTight,
-    /// Below it.
+    /// Below the comfortable range.
     Tight,
     /// In its lower third.
     Snug,
@@ -117,9 +117,9 @@ pub enum Feel {
     Right,
     /// In its upper third.
     Roomy,
-    /// Above it.
+    /// Above the comfortable range.
     Loose,
-    /// Far above it.
+    /// Far above the comfortable range.
     TooLoose,
 }
 
@@ -137,7 +137,7 @@ impl Feel {
         }
     }
 
-    /// Its word.
+    /// Key of its name in the pages' texts.
     pub const fn word(self) -> TextKey {
         match self {
             Self::TooTight => TextKey::FeelTooTight,
@@ -159,7 +159,7 @@ impl Feel {
 /// The fit at one zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ZoneFit {
-    /// Where.
+    /// The girth at which it was judged.
     pub zone: Girth,
     /// Whether the size is chosen by this zone.
     pub primary: bool,

@@ -43,7 +43,7 @@ pub struct GestureEvent {
     pub time_ns: u64,
     /// Whose hand: the shopper's own side.
     pub side: Side,
-    /// The gesture.
+    /// The gesture that was recognised.
     pub gesture: Gesture,
 }
 

@@ -7,7 +7,7 @@ use super::offer::Zone;
 pub enum Verdict {
     /// Less ease than is comfortable.
     Tight,
-    /// Comfortable ease.
+    /// As much ease as is comfortable.
     Good,
     /// More ease than is comfortable.
     Loose,
@@ -27,7 +27,7 @@ impl Verdict {
 /// The fit at one zone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZoneFit {
-    /// The zone.
+    /// Where the girth is taken.
     pub zone: Zone,
     /// Whether the size is chosen by this zone.
     pub primary: bool,

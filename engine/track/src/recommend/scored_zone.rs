@@ -11,7 +11,7 @@ pub const WORTH_NAMING: f32 = 0.05;
 
 /// A zone to judge by: its weight, comfortable range, and the body there.
 pub struct ScoredZone {
-    /// Comfortable ease.
+    /// Comfortable ease there (m).
     pub ease: EaseRange,
     /// Its weight among the zones.
     pub weight: f32,

@@ -6,7 +6,7 @@ use toile_fitting::plan::work::STAGES;
 
 use crate::terminal::{Paint, Tone};
 
-/// The tables.
+/// The plan as tables for a terminal; `costs` adds the time of each kind of work.
 pub fn table(plan: &Plan, costs: bool, paint: Paint) -> String {
     let mut lines = vec![paint.tone(&format!("Plan: {}", plan.scene), Tone::Strong).into_owned()];
     lines.push(format!("  {} workers, {} lanes, a step every {:.0} us", plan.workers, plan.lanes, plan.period_us));

@@ -66,7 +66,7 @@ impl Contacts {
         ContactCounts { near: a.near + b.near, swept: a.swept + b.swept, ignored: a.ignored.max(b.ignored), most_pairs }
     }
 
-    /// Bytes held.
+    /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         let owned = |o: &OwnerContacts| {
             size_of_val(&*o.blocks) + size_of_val(&*o.pairs) + size_of_val(&*o.turns) + size_of_val(&*o.reach)

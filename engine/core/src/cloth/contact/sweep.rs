@@ -21,7 +21,7 @@ const FARTHEST2_M2: f32 = 1e8;
 
 /// What a sweep works on.
 pub struct Sweep<'a> {
-    /// The capsules' ends.
+    /// End spheres of the capsules over the step.
     pub ends: &'a CapsuleEnds,
     /// The capsules at the end of the substep.
     pub cones: &'a CapsuleCones,

@@ -6,7 +6,7 @@ use crate::visitor::model::NavigationKey;
 use crate::visitor::screen::{Block, BodyView, ControlStyle};
 use toile_track::gesture::Gesture;
 
-/// All pages.
+/// Every page that a visitor can come to.
 const ALL: [Page; 13] = [
     Page::Attract,
     Page::Guide,

@@ -16,7 +16,7 @@ const MOST_COLUMNS: usize = 6;
 pub struct ButtonBox {
     /// Its number on the screen.
     pub index: usize,
-    /// Its place.
+    /// Rectangle on the display (pixels).
     pub rect: Rect,
     /// Its words, and its second line.
     pub label: SetText,
@@ -25,7 +25,7 @@ pub struct ButtonBox {
 }
 
 impl ButtonBox {
-    /// Moves it.
+    /// Moves it by a vector (pixels).
     pub fn shift(&mut self, by: Vec2) {
         self.rect = self.rect.translate(by);
     }

@@ -31,7 +31,7 @@ const SIDE: f32 = 0.42;
 pub struct PlacedBlock {
     /// Its number on the screen.
     pub index: usize,
-    /// Its place.
+    /// Rectangle on the display (pixels).
     pub rect: Rect,
     /// Its words, where it has some.
     pub words: Vec<SetText>,
@@ -42,7 +42,7 @@ pub struct PlacedBlock {
 pub struct ScreenLayout {
     /// The sizes that it came to.
     pub sizes: Sizes,
-    /// The panel.
+    /// Rectangle of the panel (pixels).
     pub panel: Rect,
     /// What the panel leaves of the display.
     pub free: Rect,

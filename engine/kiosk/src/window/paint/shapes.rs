@@ -42,7 +42,7 @@ pub fn paint(laid: &ScreenLayout, screen: &Screen, feedback: TouchFeedback, pain
     scroll_bar(laid, feedback.scrolled, painter);
 }
 
-/// The panel.
+/// Draws the panel that the controls lie on.
 fn panel(laid: &ScreenLayout, painter: &Painter) {
     let round = laid.sizes.body * 1.1;
     painter.rect_filled(laid.panel, round, theme::PANEL);

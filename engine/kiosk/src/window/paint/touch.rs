@@ -15,9 +15,9 @@ const EIGHTHS: f32 = 8.0;
 /// What a finger or the mouse did, in pixels from the display's upper left corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TouchEvent {
-    /// Down.
+    /// The finger went down here.
     Down(Pos2),
-    /// Moved.
+    /// The finger moved to here.
     Move(Pos2),
     /// Up: what is under it is pressed, where it went down.
     Up(Pos2),
@@ -41,7 +41,7 @@ struct ActiveTouch {
     turned: i32,
 }
 
-/// The finger.
+/// Follows one finger, or the mouse, from down to up.
 #[derive(Debug, Clone, Default)]
 pub struct TouchTracker {
     down: Option<ActiveTouch>,
