@@ -1,4 +1,4 @@
-//! Synthetic agreement: bodies of known size, seen through a depth camera's eyes, measured and compared.
+//! Synthetic agreement: bodies of known size, seen by a simulated depth camera, measured and compared.
 //!
 //! The mannequin of [`toile_assets::body`] has one shape for each set of girths; people have many. So each subject's
 //! torso is reshaped as much as bodies of ANSUR II differ: flatter or rounder (log depth/breadth given the girths +-

@@ -95,10 +95,10 @@ fn reliability(people: &[Girths], offer: &Offer, sigma: f32, seed: u64) -> Resul
         let bin = BINS.iter().rposition(|low| given.probability >= *low).unwrap_or(0);
         found.bins[bin].add(given.probability, right);
         found.all.add(given.probability, right);
-        if let Some(tape) = &given.tape {
-            let after = taped(*truth, seen, sigma, tape.zone, offer)?;
+        if let Some(advice) = &given.girth_to_take {
+            let after = taped(*truth, seen, sigma, advice.zone, offer)?;
             found.untaped.add(given.probability, right);
-            found.taped.add(tape.probability, after.size == best);
+            found.taped.add(advice.probability, after.size == best);
         }
     }
     Ok(found)

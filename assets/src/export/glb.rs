@@ -1,6 +1,6 @@
 //! A dressed body as GLB, the binary form of glTF 2.0: it opens in Blender and in every viewer of the format.
 //!
-//! The body hangs on its skeleton (H-Anim names, inverse bind matrices of the rest pose, four weights a vertex), whose
+//! The body is skinned to its skeleton (H-Anim names, inverse bind matrices of the rest pose, four weights a vertex), whose
 //! nodes stand in the pose asked for; garments lie around it as plain meshes, in the world. Metres, y up, facing +z, as
 //! the format has it. Colours are linear, as the format wants them, from the sRGB that fabrics state.
 
@@ -121,7 +121,7 @@ fn linear(srgb: f32) -> f32 {
     if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 
-/// What each bone hangs from: the pelvis from nothing.
+/// Parent of each bone; the pelvis has none.
 fn parent(bone: usize) -> Option<usize> {
     match Joint::ALL.get(bone) {
         Some(joint) => joint.parent().map(Joint::index),

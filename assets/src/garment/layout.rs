@@ -39,13 +39,14 @@ impl<const K: usize> ConstraintRun<K> {
     }
 }
 
-/// Constraints to and fro between two rails of particles: rung `t` from particle `t` of the first rail to the one of the
-/// second beside it, slant `t` from there to the next one of the first. Solved in this order, rungs before slants.
+/// Constraints in a zigzag between two rows (rails) of particles: straight constraint `t` from particle `t` of the first rail
+/// to the one of the second beside it, slanted constraint `t` from there to the next one of the first. Solved in this order,
+/// straights before slants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Zigzag {
     /// Constraints straight across, from rail to rail.
-    pub rungs: ConstraintRun<2>,
-    /// The slants, one less than rungs; as many where the last one leads back to the first particle.
+    pub straights: ConstraintRun<2>,
+    /// The slants, one less than straights; as many where the last one leads back to the first particle.
     pub slants: ConstraintRun<2>,
 }
 
@@ -53,14 +54,14 @@ impl Zigzag {
     /// Whether the last slant leads back to the first particle.
     #[inline(always)]
     pub fn closed(&self) -> bool {
-        self.slants.len == self.rungs.len
+        self.slants.len == self.straights.len
     }
 
     /// The particles of slant `t`.
     #[inline(always)]
     pub fn slant(&self, t: u32) -> [u32; 2] {
         let [from, to] = self.slants.first;
-        [from + t, if t + 1 == self.rungs.len { self.rungs.first[0] } else { to + t }]
+        [from + t, if t + 1 == self.straights.len { self.straights.first[0] } else { to + t }]
     }
 }
 
@@ -112,8 +113,8 @@ impl<const K: usize> Tuples<K> {
     pub fn for_each(&self, mut each: impl FnMut(usize, [u32; K])) {
         let pair = |pair: [u32; 2]| std::array::from_fn(|k| pair[k % 2]);
         for zigzag in &self.zigzags {
-            let Zigzag { rungs, slants } = zigzag;
-            (0..rungs.len).for_each(|t| each(rungs.place(t), pair(rungs.first.map(|f| f + t))));
+            let Zigzag { straights, slants } = zigzag;
+            (0..straights.len).for_each(|t| each(straights.place(t), pair(straights.first.map(|f| f + t))));
             (0..slants.len).for_each(|t| each(slants.place(t), pair(zigzag.slant(t))));
         }
         for run in &self.runs {

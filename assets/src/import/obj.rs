@@ -186,7 +186,7 @@ impl WeldedObj {
         Ok(())
     }
 
-    /// Where moving and fixed parts meet, the vertex is fixed: it is where the cloth hangs.
+    /// Where moving and fixed parts meet, the vertex is fixed: the cloth is attached there.
     fn into_shape(self, path: &str, has_free: bool) -> Result<Shape, ObjError> {
         let finite = || self.positions.iter().filter(|p| p.is_finite());
         let low = finite().map(|p| p.y).fold(f32::INFINITY, f32::min);

@@ -319,8 +319,8 @@ fn every_line_left_out_and_every_truncation_is_a_scene_or_a_sentence_with_a_line
     }
     for end in 0..EVERY_KEY.len() {
         if let Err(error) = parse(&EVERY_KEY[..end]) {
-            let said = error.to_string();
-            assert!(said.starts_with("test.toml:") && !said.contains('\n'), "{said}");
+            let message = error.to_string();
+            assert!(message.starts_with("test.toml:") && !message.contains('\n'), "{message}");
         }
     }
 }

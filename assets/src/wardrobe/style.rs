@@ -139,8 +139,8 @@ mod tests {
         assert_eq!(wardrobe::parse("dress", text).unwrap().substeps, None);
         assert_eq!(wardrobe::parse("dress", &format!("substeps = 6\n{text}")).unwrap().substeps, Some(6));
         for wrong in ["0", "65"] {
-            let said = wardrobe::parse("dress", &format!("substeps = {wrong}\n{text}")).unwrap_err().to_string();
-            assert!(said.contains("substeps is") && said.contains("1 to 64"), "{said}");
+            let message = wardrobe::parse("dress", &format!("substeps = {wrong}\n{text}")).unwrap_err().to_string();
+            assert!(message.contains("substeps is") && message.contains("1 to 64"), "{message}");
         }
     }
 
@@ -154,8 +154,8 @@ mod tests {
         assert_eq!(style.solver.of(Direction::Weft, Some(SolverRegion::Waistband)), Some(Solver::ZeroStretch));
         assert_eq!(style.solver.of(Direction::Warp, None), None);
         for (table, word) in [("weft = \"magic\"", "semi-implicit"), ("sleeve = \"zero-stretch\"", "waistband")] {
-            let said = with(table).unwrap_err().to_string();
-            assert!(said.contains(word) && said.contains("trousers") && !said.contains('\n'), "{said}");
+            let message = with(table).unwrap_err().to_string();
+            assert!(message.contains(word) && message.contains("trousers") && !message.contains('\n'), "{message}");
         }
     }
 }

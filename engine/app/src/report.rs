@@ -51,7 +51,7 @@ impl<T> Document<T> {
 
 /// One measure of the body.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Measure {
+pub struct MeasuredLength {
     /// The value (mm).
     pub value: f64,
     /// Its standard uncertainty (mm).
@@ -60,22 +60,22 @@ pub struct Measure {
 
 /// The measures of one shopper.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Measurements {
+pub struct ShopperMeasures {
     /// Stature: crown to floor.
-    pub stature_mm: Measure,
+    pub stature_mm: MeasuredLength,
     /// Between the shoulder points.
-    pub shoulder_breadth_mm: Measure,
+    pub shoulder_breadth_mm: MeasuredLength,
     /// Around the fullest part of the chest.
-    pub chest_girth_mm: Measure,
+    pub chest_girth_mm: MeasuredLength,
     /// Girth of the waist.
-    pub waist_girth_mm: Measure,
+    pub waist_girth_mm: MeasuredLength,
     /// Around the fullest part of the hips.
-    pub hip_girth_mm: Measure,
+    pub hip_girth_mm: MeasuredLength,
 }
 
 /// The session that was watched.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Session {
+pub struct SessionReport {
     /// File name, or the name of the embedded one.
     pub name: String,
     /// Joint or depth frames read.
@@ -88,7 +88,7 @@ pub struct Session {
 
 /// How one zone of a garment fits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Zone {
+pub struct ZoneFitReport {
     /// Which part of the body.
     pub zone: String,
     /// Garment's girth less the body's (mm).
@@ -131,7 +131,7 @@ pub struct Recommendation {
     /// How likely this size is the best one, given how well the shopper could be measured (0..1).
     pub probability: f64,
     /// How each zone of it fits.
-    pub zones: Vec<Zone>,
+    pub zones: Vec<ZoneFitReport>,
     /// Every size that is made with its probability, smallest first; they sum to 1.
     pub sizes: Vec<SizeChance>,
     /// Whether no size is sure.
@@ -161,7 +161,7 @@ pub struct StepMicros {
 
 /// How far edges are stretched, as a part of their rest length (0.01 is 1 %).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Strain {
+pub struct StrainReport {
     /// Mean over edges and steps.
     pub mean: f64,
     /// 99th percentile over edges (1).
@@ -179,7 +179,7 @@ pub struct Penetration {
 
 /// What the physics did.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Physics {
+pub struct PhysicsReport {
     /// Steps a second of simulated time.
     pub hz: u32,
     /// The tested settings that were used.
@@ -197,7 +197,7 @@ pub struct Physics {
     /// Time a step took.
     pub step_us: StepMicros,
     /// How far edges were stretched.
-    pub strain: Strain,
+    pub strain: StrainReport,
     /// How deep cloth was inside the body.
     pub penetration_mm: Penetration,
     /// Steps at which a particle was not finite.
@@ -210,15 +210,15 @@ pub struct Physics {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TryOn {
     /// The session that was watched.
-    pub session: Session,
+    pub session: SessionReport,
     /// The shopper's measures.
-    pub measurements: Measurements,
+    pub measurements: ShopperMeasures,
     /// The size of the first garment, zone by zone.
     pub recommendation: Recommendation,
     /// The sizes of the others, in the order in which they were asked for.
     pub others: Vec<Recommendation>,
     /// What the physics did.
-    pub physics: Physics,
+    pub physics: PhysicsReport,
     /// Hash of the last state, 16 hexadecimal digits; the same input gives the same.
     pub state_hash: String,
     /// What drew the pictures; nothing where there are none.
@@ -231,11 +231,11 @@ pub struct TryOn {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeasureReport {
     /// The session that was watched.
-    pub session: Session,
+    pub session: SessionReport,
     /// The shopper's measures.
-    pub measurements: Measurements,
+    pub measurements: ShopperMeasures,
     /// Both ways of measuring, side by side; the body fit only where there is depth.
-    pub methods: Vec<Method>,
+    pub methods: Vec<MethodMeasures>,
     /// The fitted body; nothing without depth, or where none fits.
     pub body: Option<FittedBody>,
     /// Pixels that carried a depth, mean over the frames.
@@ -248,7 +248,7 @@ pub struct MeasureReport {
 
 /// What one way of measuring found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Method {
+pub struct MethodMeasures {
     /// Name of the method.
     pub method: &'static str,
     /// Measures that it takes.
@@ -287,7 +287,7 @@ pub struct FittedBody {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RecordReport {
     /// The session that was made.
-    pub session: Session,
+    pub session: SessionReport,
     /// Seed of the noise.
     pub seed: u64,
     /// The files written.
@@ -298,7 +298,7 @@ pub struct RecordReport {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ConvertReport {
     /// The session that was written.
-    pub session: Session,
+    pub session: SessionReport,
     /// Joint frames in it.
     pub joint_frames: u64,
     /// Depth frames in it.
@@ -319,7 +319,7 @@ mod tests {
     use super::*;
 
     fn try_on() -> TryOn {
-        let zone = Zone {
+        let zone = ZoneFitReport {
             zone: "waist".into(),
             ease_mm: 40.0,
             sigma_mm: 8.0,
@@ -330,11 +330,11 @@ mod tests {
             Recommendation { garment: "trousers".into(), size: "40".into(), zones: vec![zone], ..Default::default() };
         TryOn {
             renderer: None,
-            session: Session::default(),
-            measurements: Measurements::default(),
+            session: SessionReport::default(),
+            measurements: ShopperMeasures::default(),
             recommendation,
             others: Vec::new(),
-            physics: Physics::default(),
+            physics: PhysicsReport::default(),
             state_hash: hash_text(10),
             files: vec!["out/front.png".into()],
         }

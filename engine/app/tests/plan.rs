@@ -102,8 +102,8 @@ fn what_does_not_exist_is_named() {
         (vec!["plan", "a.toml", "--garment", "t-shirt"], 2, "--garment"),
     ] {
         let output = scratch.toile(&args);
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
-        assert!(said.contains(says) && said.lines().count() == 1, "{said}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {message}");
+        assert!(message.contains(says) && message.lines().count() == 1, "{message}");
     }
 }

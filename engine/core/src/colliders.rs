@@ -282,8 +282,8 @@ mod tests {
     fn bad_rigs_are_refused_with_the_place() {
         let good = RestSphere { bone: 0, centre: Vec3::ZERO, radius: 0.1 };
         let refuse = |s: RestSphere| Colliders::new(&[good, s], &[], false).unwrap_err().to_string();
-        let said = refuse(RestSphere { bone: BONES as u8, ..good });
-        assert!(said.contains(&format!("sphere 1 follows bone {BONES}")), "{said}");
+        let message = refuse(RestSphere { bone: BONES as u8, ..good });
+        assert!(message.contains(&format!("sphere 1 follows bone {BONES}")), "{message}");
         assert!(refuse(RestSphere { radius: f32::NAN, ..good }).contains("sphere 1"));
         assert!(refuse(RestSphere { radius: -0.1, ..good }).contains("sphere 1"));
         let error = Colliders::new(&[good], &[[0, 1]], false).unwrap_err();

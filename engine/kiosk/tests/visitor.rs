@@ -223,7 +223,7 @@ fn serve() -> Vec<SessionState> {
             dresser: Dresser::new(wish),
             to_scene: |frame| (FrameScene::new(frame), ()),
             pose,
-            black_box: None,
+            flight_recorder: None,
         };
         let service = Service::new(live, SceneChanger::new(handover, true, None), options, environment);
         let (_, _, record) = service.controlled_by(Box::new(setup.controller(window, played))).run().unwrap();

@@ -218,13 +218,14 @@ impl Crossover {
                 row.steps
             );
         }
-        let said = |of: Option<f64>, what: &str| match of {
+        let sentence = |of: Option<f64>, what: &str| match of {
             None => "at no size tried".to_owned(),
             Some(0.0) => "at every size tried".to_owned(),
             Some(x) => format!("from {x:.0} {what} on"),
         };
         for (k, threads) in ["one thread", "two threads"].into_iter().enumerate() {
-            let (size, count) = (said(self.from_vertices[k], "vertices"), said(self.from_garments[k], "skirts"));
+            let (size, count) =
+                (sentence(self.from_vertices[k], "vertices"), sentence(self.from_garments[k], "skirts"));
             let _ = writeln!(text, "\nThe device is faster than {threads} {size}; with {EACH} vertices each {count}.");
         }
         let by = &self.stepped_by;

@@ -129,8 +129,9 @@ mod tests {
         assert!(errors.edge_px[1] < errors.edge_px[2], "{errors:?}");
         let row = DepthRow { image: "640 x 480", shopper_pixels: 1, stages_us: StageTimes::default(), errors };
         let late = StageTimes { smooth_whole: 3_001.0, ..StageTimes::default() };
-        let told = |row: DepthRow| DepthTable { smoothing_target_us: SMOOTHING_TARGET_US, rows: vec![row] }.markdown();
-        assert!(told(row.clone()).ends_with(": met.\n"));
-        assert!(told(DepthRow { stages_us: late, ..row }).ends_with(": missed.\n"));
+        let table_of =
+            |row: DepthRow| DepthTable { smoothing_target_us: SMOOTHING_TARGET_US, rows: vec![row] }.markdown();
+        assert!(table_of(row.clone()).ends_with(": met.\n"));
+        assert!(table_of(DepthRow { stages_us: late, ..row }).ends_with(": missed.\n"));
     }
 }

@@ -7,7 +7,7 @@ use toile_engine::skin::{Blend, Posed};
 
 use toile_fitting::scene::surface::Surface;
 
-/// The largest errors of a posed surface; no number where one of its numbers is none.
+/// The largest errors of a posed surface; NaN where one of its numbers is NaN.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SurfaceErrors {
     /// Of a position (m).

@@ -305,11 +305,11 @@ mod tests {
     fn every_row_is_there_whatever_fails() {
         // Nine vertices are no scene: every run is refused, and every row says so.
         let base = SkirtOptions { verts: 9, runs: 1, steps: 1, ..SkirtOptions::default() };
-        let mut said = 0;
+        let mut reported = 0;
         let mut maker = TableRun {
             base,
             heap: &HeapProbe::none(),
-            progress: &mut |_| said += 1,
+            progress: &mut |_| reported += 1,
             rows: Vec::new(),
             runs: Vec::new(),
             faults: Vec::new(),
@@ -319,6 +319,6 @@ mod tests {
         maker.faults();
         assert_eq!(maker.rows.len(), 6 + 2 + 7);
         assert!(maker.rows.iter().all(|r| !r.met && r.got.contains("9 vertices")), "{:#?}", maker.rows);
-        assert!(said > 0);
+        assert!(reported > 0);
     }
 }

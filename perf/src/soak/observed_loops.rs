@@ -26,8 +26,8 @@ pub type Allocations = fn() -> u64;
 /// Observations that wait to be looked at: three seconds of all loops.
 pub const OBSERVATIONS: usize = 1_024;
 
-/// The name of the bound, as warnings give it.
-pub const OBSERVATIONS_NAME: &str = "OBSERVATIONS (perf/src/soak/observed_loops.rs)";
+/// Name of this capacity in reports and warnings.
+pub const OBSERVATIONS_NAME: &str = "OBSERVATIONS (queue of what the loops did)";
 
 /// Time between two looks of a dead renderer at whether it is to begin again (ns).
 const DEAD_NS: u64 = 5_000_000;

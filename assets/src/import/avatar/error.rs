@@ -34,7 +34,7 @@ pub enum Flaw {
         reason: String,
     },
     /// No mesh has a skin.
-    #[error("it has no mesh that hangs on a skeleton; export the body with its armature, skinning included")]
+    #[error("it has no mesh that is bound to a skeleton; export the body with its armature, skinning included")]
     NoSkin,
     /// No mesh has the name that was asked for.
     #[error("it has no mesh named {name}, only {known}; name one of these, or none to take them all")]
@@ -60,7 +60,7 @@ pub enum Flaw {
     },
     /// A weight for a joint that the skin lacks.
     #[error(
-        "vertex {vertex} (from 0 over all skinned parts) hangs on joint {joint}, but its skin has {joints}; bind the mesh to its armature again"
+        "vertex {vertex} (from 0 over all skinned parts) is bound to joint {joint}, but its skin has {joints}; bind the mesh to its armature again"
     )]
     JointRange {
         /// Index of the vertex, from 0.
@@ -97,7 +97,7 @@ pub enum Flaw {
         node: String,
     },
     /// A node with two parents.
-    #[error("node \"{node}\" hangs from two parents; make the armature a tree and export it again")]
+    #[error("node \"{node}\" has two parents; make the armature a tree and export it again")]
     TwoParents {
         /// Name of the node.
         node: String,
@@ -131,18 +131,20 @@ pub enum Flaw {
         /// The naming that the file's names are most like.
         dialect: &'static str,
     },
-    /// A joint that does not hang below the hips.
-    #[error("joint \"{joint}\" has no way up to the hips, so there are several roots; hang every bone below the hips")]
+    /// A joint that is no descendant of the hips.
+    #[error(
+        "joint \"{joint}\" has no way up to the hips, so there are several roots; make every bone a descendant of the hips"
+    )]
     Roots {
         /// Name of the joint.
         joint: String,
     },
-    /// A joint that hangs from another than in a body.
-    #[error("joint \"{joint}\" hangs from \"{parent}\", where no body has it; check the names of both")]
+    /// A joint whose parent is another than in a body.
+    #[error("the parent of joint \"{joint}\" is \"{parent}\", as in no body; check the names of both")]
     Chain {
         /// Name of the joint.
         joint: String,
-        /// The name of what it hangs from.
+        /// Name of its parent.
         parent: String,
     },
     /// A body that does not stand along an axis.
@@ -183,7 +185,7 @@ pub enum Flaw {
         z: f32,
     },
     /// A level of the body that is not on the mesh.
-    #[error("no {level} can be found on the trunk; check that the mesh is a body and hangs on the joints named for it")]
+    #[error("no {level} can be found on the trunk; check that the mesh is a body and bound to the joints named for it")]
     Level {
         /// Name of the level, such as the waist.
         level: &'static str,

@@ -66,7 +66,7 @@ pub struct ImportReport {
     pub joints: Vec<(String, String)>,
     /// What pruning the weights cost.
     pub pruned: PruningLoss,
-    /// Pieces of the surface that hang together.
+    /// Connected pieces of the surface.
     pub parts: usize,
     /// Edges with a triangle on one side alone.
     pub boundary_edges: usize,

@@ -18,7 +18,7 @@ pub(crate) struct RawInfluences(pub [(u16, f32); IMPORT_INFLUENCES]);
 pub(crate) struct RawJoint {
     /// Name of the joint in the file.
     pub name: String,
-    /// What it hangs from.
+    /// Index of its parent, where it has one.
     pub parent: Option<usize>,
     /// Where it stands in the rest pose, in the file's unit and axes.
     pub at: Vec3,

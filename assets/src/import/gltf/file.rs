@@ -278,10 +278,10 @@ mod tests {
 
     #[test]
     fn huge_counts_are_errors_before_they_are_memory() {
-        for (view, said) in [("", "no data"), (r#""bufferView": 0, "#, "shorter")] {
+        for (view, expected) in [("", "no data"), (r#""bufferView": 0, "#, "shorter")] {
             let mut file = sparse(0, view);
             file.json["accessors"][0]["count"] = 4_000_000_000_000_u64.into();
-            assert!(file.floats::<1>(0).unwrap_err().contains(said));
+            assert!(file.floats::<1>(0).unwrap_err().contains(expected));
         }
     }
 

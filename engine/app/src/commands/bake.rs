@@ -361,8 +361,8 @@ mod tests {
             let wrong = report.warnings.iter().find(|w| !(w.contains("needles") || w.contains("mm long")));
             assert_eq!(wrong, None, "{name}");
             let text = summary(&report, Paint::none());
-            for said in [name, "vertices", "down the warp", "semi-implicit", "tethers", "substeps"] {
-                assert!(text.contains(said), "{said} is not in: {text}");
+            for expected in [name, "vertices", "down the warp", "semi-implicit", "tethers", "substeps"] {
+                assert!(text.contains(expected), "{expected} is not in: {text}");
             }
         }
     }

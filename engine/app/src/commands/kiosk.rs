@@ -61,9 +61,9 @@ pub struct KioskArgs {
 }
 
 /// Reads the size of a window (pixels) such as `540x960`.
-fn windowed(said: &str) -> Result<[u32; 2], String> {
+fn windowed(given: &str) -> Result<[u32; 2], String> {
     let side = |text: &str| text.parse::<u32>().ok().filter(|n| WINDOW.contains(n));
-    let size = said.split_once('x').and_then(|(w, h)| Some([side(w)?, side(h)?]));
+    let size = given.split_once('x').and_then(|(w, h)| Some([side(w)?, side(h)?]));
     size.ok_or_else(|| {
         format!("give two numbers of pixels from {} to {}, for example 540x960", WINDOW.start(), WINDOW.end())
     })

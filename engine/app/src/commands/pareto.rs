@@ -85,11 +85,11 @@ fn fronts(text: &mut String, report: &ParetoReport, scene: &SceneReport, paint: 
     for own in report.points.iter().filter(mine).filter(|p| p.default && p.quality == "shop") {
         let (verdict, tone) =
             if own.on_front { ("on the front", Tone::Good) } else { ("not on the front", Tone::Warn) };
-        let said = format!(
+        let sentence = format!(
             "  the default, shop with {} substeps, is {verdict}: {:.0} us, {:.3} mm",
             own.substeps, own.step_us, own.error_mm
         );
-        line(text, &paint.tone(&said, tone));
+        line(text, &paint.tone(&sentence, tone));
     }
     line(text, "");
 }

@@ -164,7 +164,7 @@ pub fn run(args: &SoakArgs) -> Result<(), AppError> {
         count: heap::probe(),
         file,
         header,
-        keep: &|black_box| crash::keep(black_box, crash_file.clone()),
+        keep: &|flight_recorder| crash::keep(flight_recorder, crash_file.clone()),
         progress: &|seconds| words.say(&format!("{} of {} minutes", seconds / 60, options.plan.seconds / 60)),
         crash_ns: args.crash.after_s.map(|s| s * 1_000_000_000),
     };

@@ -75,7 +75,7 @@ pub struct Influences {
 /// Whether a surface is closed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct SurfaceReport {
-    /// Pieces that hang together.
+    /// Connected pieces of the surface.
     pub parts: usize,
     /// Edges with a triangle on one side alone.
     pub boundary_edges: usize,

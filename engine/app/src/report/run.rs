@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 use toile_fitting::scene::events::ClothEvents;
 
-use super::{StepMicros, Strain};
+use super::{StepMicros, StrainReport};
 
 /// One garment of `toile run`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -81,7 +81,7 @@ pub struct RunReport {
     /// Bytes of the baked garments and their states together.
     pub memory_bytes: Option<u64>,
     /// How far edges were stretched.
-    pub strain: Strain,
+    pub strain: StrainReport,
     /// How deep cloth was inside colliders.
     pub penetration_mm: RunPenetration,
     /// Kinetic energy (J).

@@ -54,7 +54,7 @@ pub fn reach(pose: &mut Pose, frames: &JointFrames, side: Side, target: Vec3) {
     let (Some(from), Some(to)) = ((reached - hip).try_normalize(), (target - hip).try_normalize()) else { return };
     let swing = Quat::from_rotation_arc(from, to);
     let (thigh_to, shin_to) = (swing * thigh, swing * bend * shin);
-    // The hip's own rotation is against the pelvis, from which both hang.
+    // The hip's own rotation is against the pelvis, the parent of both.
     let pelvis = frames.turn(Joint::Pelvis);
     let local = [pelvis.inverse() * thigh_to, thigh_to.inverse() * shin_to, shin_to.inverse() * foot];
     for (joint, turn) in joints.into_iter().zip(local) {

@@ -86,7 +86,7 @@ mod tests {
             width.run(HoldTethers { columns: state.columns(), tethers: &tethers, spans: &[(0, 4)] });
             let x = state.positions()[0];
             assert!((x[1] - SLACK).abs() < 1e-5 && x[2] == 0.5, "{x:?}");
-            assert_eq!(state.positions()[1], [0.0, 0.0, 0.0, 9.0], "what hangs nowhere is left alone");
+            assert_eq!(state.positions()[1], [0.0, 0.0, 0.0, 9.0], "what is attached nowhere is left alone");
         }
     }
 }

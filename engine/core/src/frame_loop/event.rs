@@ -2,11 +2,11 @@
 
 use super::governor::QualityChange;
 
-/// Events that wait to be told: half a second in which every step has four.
+/// Events that wait to be read: half a second in which every step has four.
 pub const EVENTS: usize = 256;
 
-/// The name of the bound, as warnings give it.
-pub const EVENTS_NAME: &str = "EVENTS (engine/core/src/frame_loop/event.rs)";
+/// Name of this capacity in reports and warnings.
+pub const EVENTS_NAME: &str = "EVENTS (queue of the loop's events)";
 
 /// A gap between two sensor frames from which on the sensor counts as lost (ns): 15 frames of 30 Hz.
 pub const SENSOR_LOST_NS: u64 = 500_000_000;

@@ -18,8 +18,8 @@ pub const MAGIC: &[u8] = b"toile-tape/1\n";
 /// Entries that wait to be written: six seconds at 150 a second.
 pub const ENTRIES: usize = 1024;
 
-/// The name of the bound, as warnings give it.
-pub const ENTRIES_NAME: &str = "ENTRIES (engine/core/src/frame_loop/recording.rs)";
+/// Name of this capacity in reports and warnings.
+pub const ENTRIES_NAME: &str = "ENTRIES (queue of what is recorded)";
 
 /// Longest text about the scene (bytes).
 const MOST_TEXT: usize = 1 << 20;

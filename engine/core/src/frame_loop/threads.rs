@@ -109,9 +109,9 @@ where
 /// # Errors
 /// As [`WorkerPool::new`].
 pub fn worker_pool(workers: usize) -> Result<(WorkerPool, Option<Placement>), WorkerPoolError> {
-    let (tell, told) = mpsc::sync_channel(1);
+    let (tell, placed) = mpsc::sync_channel(1);
     let pool = WorkerPool::beginning(workers, move || _ = tell.send(thread_roles::apply(ThreadRole::Worker)))?;
-    Ok((pool, told.recv_timeout(LONGEST_START).ok()))
+    Ok((pool, placed.recv_timeout(LONGEST_START).ok()))
 }
 
 #[cfg(test)]
@@ -135,9 +135,9 @@ mod tests {
         assert_eq!(own.placement().unwrap().role, ThreadRole::Render);
         assert_eq!(own.join().unwrap().0, 40);
         let stop = Stop::default();
-        let told = start(ThreadRole::Render, Counting(u64::MAX / 2, clock), clock, &stop).unwrap();
+        let placed = start(ThreadRole::Render, Counting(u64::MAX / 2, clock), clock, &stop).unwrap();
         stop.now();
-        assert!(told.join().is_some());
+        assert!(placed.join().is_some());
     }
 
     struct Dying(u64);

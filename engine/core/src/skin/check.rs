@@ -28,7 +28,7 @@ pub enum SkinError {
     #[error("skin vertex {0} has a position or a normal that is not finite; repair the mesh")]
     NotFinite(usize),
     /// A weighted bone that the skeleton lacks.
-    #[error("skin vertex {vertex} hangs on bone {bone}, but there are {BONES} bones; use an index below that")]
+    #[error("skin vertex {vertex} names bone {bone}, but there are {BONES} bones; use an index below that")]
     NoSuchBone {
         /// Index of the vertex, from 0.
         vertex: usize,
@@ -36,7 +36,7 @@ pub enum SkinError {
         bone: u8,
     },
     /// A weight that is not finite, or below 0.
-    #[error("skin vertex {vertex} hangs on bone {bone} with weight {weight}; give a number of 0 or more")]
+    #[error("skin vertex {vertex} has the weight {weight} for bone {bone}; give a number of 0 or more")]
     BadWeight {
         /// Index of the vertex, from 0.
         vertex: usize,

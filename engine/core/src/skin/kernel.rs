@@ -1,4 +1,4 @@
-//! The kernels: a block's vertices hang on the same bones, so each number of a bone is loaded once, into every lane.
+//! The kernels: a block's vertices follow the same bones, so each number of a bone is loaded once, into every lane.
 //!
 //! The bones of a run are blended as base + w1 (bone1 - base) + ...: weights sum to 1, so the base needs none, the
 //! differences are made once a run, and a vertex of k influences costs (k - 1) products and sums a number. Operations a

@@ -1,7 +1,7 @@
 //! The layout of a skin: vertices of the same joint set side by side, in blocks of the widest lanes.
 //!
 //! A set whose vertices do not fill its last block would leave lanes empty. Such remainders are put together where their
-//! sets have few enough bones in common, the bones that a vertex does not hang on weighing nothing: fewer blocks, each
+//! sets have few enough bones in common, with weight 0 for the bones that a vertex does not follow: fewer blocks, each
 //! of which costs a little more.
 
 use std::collections::BTreeMap;

@@ -75,7 +75,7 @@ impl FromStr for Blend {
     }
 }
 
-/// A skin made ready at load: checked, and laid out in blocks of vertices that hang on the same bones. Running it
+/// A skin made ready at load: checked, and laid out in blocks of vertices that follow the same bones. Running it
 /// cannot fail.
 #[derive(Debug, Clone)]
 pub struct SkinningJob {

@@ -59,7 +59,7 @@ impl Wish {
         self.names().into_iter().map(choice).collect()
     }
 
-    /// The same for who takes garments of the wardrobe alone.
+    /// The same, of garments of the wardrobe alone.
     ///
     /// # Errors
     /// A name that is not in the wardrobe.

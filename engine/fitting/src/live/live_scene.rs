@@ -17,11 +17,11 @@ use toile_sensors::frame::Joints;
 use super::running::Restart;
 use super::watchdog::Progress;
 
-/// Beats that wait to be counted: eight seconds.
+/// Step reports that wait to be counted: eight seconds.
 pub const STEP_REPORTS: usize = 1024;
 
-/// The name of the bound, as warnings give it.
-pub const STEP_REPORTS_NAME: &str = "STEP_REPORTS (engine/fitting/src/live/live_scene.rs)";
+/// Name of this capacity in reports and warnings.
+pub const STEP_REPORTS_NAME: &str = "STEP_REPORTS (queue of step reports)";
 
 /// What one step came to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -205,7 +205,7 @@ mod tests {
 
     #[test]
     fn another_scene_takes_over_crew_quality_and_counts() {
-        let (reports, mut told) = bounded(STEP_REPORTS_NAME, STEP_REPORTS);
+        let (reports, mut reported) = bounded(STEP_REPORTS_NAME, STEP_REPORTS);
         let progress = Arc::new(Progress::default());
         let first = Said { name: 1, crew: 9, ..Said::default() };
         let stage = LiveScene::new(first, Some(Joints::absent(7))).reporting(reports, progress.clone());
@@ -223,7 +223,7 @@ mod tests {
         // Back on, with the counts that it left with.
         stepper.change(&mut other, true);
         stepper.step(0, 0, &clock);
-        let reports: Vec<(u8, u64)> = std::iter::from_fn(|| told.pop()).map(|b| (b.rung, b.nonfinite)).collect();
+        let reports: Vec<(u8, u64)> = std::iter::from_fn(|| reported.pop()).map(|b| (b.rung, b.nonfinite)).collect();
         assert_eq!(reports, [(1, 1), (1, 2), (1, 3)], "no count begins anew");
         assert_eq!(progress.count(), [3, 0]);
     }

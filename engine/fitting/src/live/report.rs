@@ -91,7 +91,7 @@ impl From<Placement> for ThreadPlacement {
 /// How full something bounded was.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct QueueUse {
-    /// The constant that bounds it.
+    /// Name of the constant that bounds it, and what it bounds in brackets.
     pub constant: &'static str,
     /// The most that it can hold.
     pub bound: usize,

@@ -93,7 +93,7 @@ pub fn play(scene: &Scene, workers: usize) -> Result<Played, PlanError> {
     let at = |q: f64| times.get(((times.len() as f64 * q) as usize).min(times.len().saturating_sub(1))).copied();
     let as_is = tallies.remove(0);
     let stages_us = as_is.stages_us();
-    let models = variants[1..].iter().zip(tallies).map(|(v, tally)| tally.told(v, &as_is)).collect();
+    let models = variants[1..].iter().zip(tallies).map(|(v, tally)| tally.weighed(v, &as_is)).collect();
     let cloth_us = [0.5, 0.99].map(|q| at(q).unwrap_or(0.0));
     let near = playing.cloths.iter().map(|c| c.contact_counts().near).sum::<u64>() / steps.max(1) as u64;
     Ok(Played { cloth_us, near, stages_us, steps: times.len(), moments, models })
@@ -152,7 +152,7 @@ impl Tally {
         std::array::from_fn(|k| quartile(&mut self.stages[k].clone()))
     }
 
-    fn told(mut self, variant: &Variant, as_is: &Self) -> Weighed {
+    fn weighed(mut self, variant: &Variant, as_is: &Self) -> Weighed {
         self.apart_mm.sort_unstable_by(f32::total_cmp);
         let n = self.apart_mm.len();
         let mean = self.apart_mm.iter().map(|mm| f64::from(*mm)).sum::<f64>() / n.max(1) as f64;

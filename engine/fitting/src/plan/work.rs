@@ -132,7 +132,7 @@ impl Count<'_> {
 
     /// Lanes of runs, and of what is in none.
     fn links<const K: usize>(&self, tuples: &Tuples<K>) -> [f64; 2] {
-        let zigzags = tuples.zigzags.iter().flat_map(|z| [z.rungs.len, z.slants.len]);
+        let zigzags = tuples.zigzags.iter().flat_map(|z| [z.straights.len, z.slants.len]);
         let runs = zigzags.chain(tuples.runs.iter().map(|r| r.len));
         [runs.map(|len| self.vectors(len as usize)).sum(), tuples.loose.len() as f64 / self.lanes as f64]
     }

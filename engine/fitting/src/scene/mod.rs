@@ -180,8 +180,9 @@ impl Runner {
         self.allocations += before.zip(after).map_or(0, |(a, b)| b.allocations - a.allocations);
         if metered {
             self.metered += 1;
-            let told = self.cloths.iter().map(|cloth| cloth.stage_ns);
-            told.for_each(|ns| self.sums.stages_us.iter_mut().zip(ns).for_each(|(sum, ns)| *sum += ns as f64 * 1e-3));
+            let stage_times = self.cloths.iter().map(|cloth| cloth.stage_ns);
+            stage_times
+                .for_each(|ns| self.sums.stages_us.iter_mut().zip(ns).for_each(|(sum, ns)| *sum += ns as f64 * 1e-3));
         } else {
             self.times_ns.push(ns);
         }

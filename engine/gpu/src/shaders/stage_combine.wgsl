@@ -1,4 +1,4 @@
-// Stage combine: what comes before the forces of a stage of stiff bending, and behind the last. Twin of `Take` in `cloth/stages.rs`.
+// Stage combine: what comes before the forces of a stage of stiff bending, and behind the last. Twin of `ApplyStiffBending` in `cloth/stiff_bending.rs`.
 //
 // Three more parts of the state are its room: r, which is what else changes the velocity, and two changes of velocity.
 

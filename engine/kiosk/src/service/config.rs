@@ -233,7 +233,7 @@ impl Config {
     /// As [`Config::open`].
     pub fn parse(file: &str, text: &str) -> Result<Self, KioskError> {
         config_keys::check(file, text)?;
-        let config: Self = toml::from_str(text).map_err(|e| config_keys::told(file, text, &e))?;
+        let config: Self = toml::from_str(text).map_err(|e| config_keys::parse_error(file, text, &e))?;
         match config.fault() {
             Some(fault) => Err(KioskError::Input(format!("{file}: {fault}"))),
             None => Ok(config),
@@ -331,18 +331,18 @@ mod tests {
             ("[display]\npicture_minutes = 0.0", "display.picture_minutes"),
             ("[display]\nmark_m = [0.0, nan]", "[display]"),
         ] {
-            let said = Config::parse("k.toml", text).unwrap_err().to_string();
-            assert!(said.starts_with("k.toml: ") && said.contains(key), "{said}");
+            let message = Config::parse("k.toml", text).unwrap_err().to_string();
+            assert!(message.starts_with("k.toml: ") && message.contains(key), "{message}");
         }
     }
 
     #[test]
     fn a_value_of_another_kind_is_named_with_its_line() {
-        let said = Config::parse("k.toml", "[wear]\nquality = 3").unwrap_err().to_string();
-        assert!(said.starts_with("k.toml:2: ") && !said.contains('\n'), "{said}");
-        let said = Config::parse("k.toml", "\n[sensor]\nvmc = \"here\"").unwrap_err().to_string();
-        assert!(said.starts_with("k.toml:3: "), "{said}");
-        let said = Config::parse("k.toml", "[wear\n").unwrap_err().to_string();
-        assert!(said.starts_with("k.toml:1: "), "{said}");
+        let message = Config::parse("k.toml", "[wear]\nquality = 3").unwrap_err().to_string();
+        assert!(message.starts_with("k.toml:2: ") && !message.contains('\n'), "{message}");
+        let message = Config::parse("k.toml", "\n[sensor]\nvmc = \"here\"").unwrap_err().to_string();
+        assert!(message.starts_with("k.toml:3: "), "{message}");
+        let message = Config::parse("k.toml", "[wear\n").unwrap_err().to_string();
+        assert!(message.starts_with("k.toml:1: "), "{message}");
     }
 }

@@ -143,11 +143,11 @@ mod tests {
         counter.stepped_in(true);
         counter.stepped_in(false);
         let figures = counter.figures(61_000_000_000, SessionState::TryOn, 99);
-        let said = figures.to_string();
+        let printed = figures.to_string();
         // A meter keeps 1 % of a time.
         let expected = "health: up 61 s, try-on, 2000 steps, p99.9 of a step 2.01 ms, 7 misses, rung 1, 1 nonfinite, 1 \
                         sessions, 99 pictures, sensor lost 1 times";
-        assert_eq!(said, expected);
+        assert_eq!(printed, expected);
         counter.reported();
         let next = counter.figures(0, SessionState::Attract, 0);
         assert_eq!((next.steps, next.step_p999_us), (2_000, 0.0), "only the distribution begins anew");

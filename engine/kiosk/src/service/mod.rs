@@ -177,18 +177,17 @@ where
         memory_locked: config.machine.lock_memory && locked.is_ok(),
         warnings: locked.err().map(|e| e.to_string()).into_iter().collect(),
     };
-    let (black_box, tape) = match config.crash.recording.clone() {
-        Some(path) => {
-            recording::keep(&dressed.dressing, path).map(|(black_box, tape)| (Some(black_box), Some(tape)))?
-        }
+    let (flight_recorder, recording) = match config.crash.recording.clone() {
+        Some(path) => recording::keep(&dressed.dressing, path)
+            .map(|(flight_recorder, recording)| (Some(flight_recorder), Some(recording)))?,
         None => (None, None),
     };
     let renderer = (frontend.renderer)(&dressed.frame)?;
     let first = DressedScene::new(dressed, |frame| (FrameScene::new(frame.with_workers(crew)), E::Outfit::default()));
-    let parts = LoopParts { first, renderer, source: feed, account: ThreadAccount::new(), recording: tape };
+    let parts = LoopParts { first, renderer, source: feed, account: ThreadAccount::new(), recording: recording };
     let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).map_err(KioskError::internal)?;
     stop.graceful();
-    let changer = SceneChanger::new(handover, true, black_box.clone());
+    let changer = SceneChanger::new(handover, true, flight_recorder.clone());
     let environment = ServiceEnvironment {
         manager: &Systemd,
         stop,
@@ -197,7 +196,7 @@ where
         dresser: Dresser::new(wish),
         to_scene: frontend.to_scene,
         pose,
-        black_box,
+        flight_recorder,
     };
     let controller = (frontend.controller)(service_options.played.clone());
     let service = Service::new(live, changer, service_options, environment);

@@ -70,7 +70,7 @@ pub struct ServiceEnvironment<'a, S, O> {
     /// How the mannequin stands.
     pub pose: Joints,
     /// What is kept for a crash, where somebody asked for it.
-    pub black_box: Option<Arc<FlightRecorder>>,
+    pub flight_recorder: Option<Arc<FlightRecorder>>,
 }
 
 /// What is left of a run: the loops, how full their queues were, and the record.
@@ -89,7 +89,7 @@ pub struct Service<'a, S: Scene, E: Renderer> {
     stop: &'a StopSignal,
     say: &'a dyn Fn(&str),
     figures: Option<Writer<HealthFigures>>,
-    black_box: Option<Arc<FlightRecorder>>,
+    flight_recorder: Option<Arc<FlightRecorder>>,
     counter: HealthCounter,
     dog: Option<Watchdog>,
     /// The loop's time when it began, and when the next health line is due (ns).
@@ -118,7 +118,7 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
             memory_locked: options.memory_locked,
             warnings: options.warnings.clone(),
         };
-        let ServiceEnvironment { manager, stop, say, figures, dresser, to_scene, pose, black_box } = environment;
+        let ServiceEnvironment { manager, stop, say, figures, dresser, to_scene, pose, flight_recorder } = environment;
         let controller = Box::new(HeadlessController::new(options.times, options.measure_ns, options.played, now));
         Self {
             live,
@@ -133,7 +133,7 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
             stop,
             say,
             figures,
-            black_box,
+            flight_recorder,
             counter: HealthCounter::default(),
             began_ns: now,
             health_ns: now + options.health_ns,
@@ -236,8 +236,8 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
     }
 
     fn count(&mut self) {
-        if let Some(black_box) = &self.black_box {
-            black_box.drain(|_| {});
+        if let Some(flight_recorder) = &self.flight_recorder {
+            flight_recorder.drain(|_| {});
         }
         while let Some(step) = self.live.queues.step_reports.pop() {
             self.counter.step(&step);

@@ -289,8 +289,8 @@ pub(super) mod tests {
         };
         let size = SIZES[4];
         let bytes = (0..3 * size.width * size.height).map(|_| noise()).collect();
-        let said = encode(&RgbImage { size, bytes }).unwrap_err().to_string();
-        assert!(said.contains("bytes") && said.contains("plainer"), "{said}");
+        let message = encode(&RgbImage { size, bytes }).unwrap_err().to_string();
+        assert!(message.contains("bytes") && message.contains("plainer"), "{message}");
     }
 
     #[test]

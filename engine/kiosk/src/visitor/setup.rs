@@ -99,7 +99,7 @@ mod tests {
             [("[display]\nlower_edge_mm = 1000.0", "within reach"), ("[wear]\ngarments = [\"tent\"]", "tent")]
         {
             let refused = VisitorSetup::new(&Config::parse("k.toml", text).unwrap(), 0).err().unwrap();
-            assert!(matches!(&refused, KioskError::Input(said) if said.contains(word)), "{refused}");
+            assert!(matches!(&refused, KioskError::Input(message) if message.contains(word)), "{refused}");
         }
     }
 }

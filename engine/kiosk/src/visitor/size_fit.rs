@@ -192,7 +192,7 @@ pub struct SizeFit {
     /// Probability that the size is the best for this person, given the errors of the measures.
     pub probability: f32,
     /// The zone to take by tape, where no size is sure and a tape would help.
-    pub tape: Option<Girth>,
+    pub girth_to_take: Option<Girth>,
     /// The zones, those that the size is chosen by first.
     pub zones: Vec<ZoneFit>,
     /// Set where the primary girth lies outside of what is made.
@@ -227,7 +227,7 @@ pub fn judge(item: &WardrobeItem, known: &VisitorMeasures, size: Option<usize>) 
         best,
         other,
         probability: judged.probability,
-        tape: judged.tape.as_ref().map(|t| t.zone),
+        girth_to_take: judged.girth_to_take.as_ref().map(|t| t.zone),
         outside: zones.iter().find(|z| z.primary).and_then(|z| outside(item, z)),
         zones,
     })

@@ -84,7 +84,7 @@ pub struct Recommendation {
     /// Whether no size is as probable as [`SURE`].
     pub uncertain: bool,
     /// The measure to take by tape, where that is so and a tape would help.
-    pub tape: Option<TapeAdvice>,
+    pub girth_to_take: Option<TapeAdvice>,
     /// The recommendation in sentences: how sure the size is, what else may fit, what to do about it.
     pub verdict: String,
     /// Fit by zone, the primary ones first.

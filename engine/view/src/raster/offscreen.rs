@@ -111,10 +111,10 @@ impl Offscreen {
             self.target.size(),
         );
         gpu.queue.submit([encoder.finish()]);
-        let (told, heard) = mpsc::channel();
+        let (sender, heard) = mpsc::channel();
         self.buffer.map_async(wgpu::MapMode::Read, .., move |result| {
             // Nobody listens any more where the wait below has failed.
-            let _ = told.send(result);
+            let _ = sender.send(result);
         });
         let lost = |e: &dyn std::fmt::Display| OffscreenError::Lost(e.to_string().replace('\n', " "));
         gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| lost(&e))?;

@@ -49,7 +49,7 @@ pub struct Contacts {
 
 impl Contacts {
     /// All storage. `spans` are the ranges of particles (first, how many) of each worker, together each particle once;
-    /// `parts` says which limb each particle hangs on, `start` where it starts (m): what is close shares a block.
+    /// `parts` says which limb each particle belongs to, `start` where it starts (m): what is close shares a block.
     pub fn new(spans: &[Vec<(u32, u32)>; 2], parts: &[Part], start: &[Vec3], colliders: &Colliders) -> Self {
         Self { owners: [0, 1].map(|w| OwnerContacts::new(&spans[w], parts, start, colliders)) }
     }

@@ -141,9 +141,9 @@ fn head(painter: &Painter, text: &str, sizes: Sizes, width: f32) -> SetText {
 fn block(index: usize, block: &Block, width: f32, sizes: Sizes, painter: &Painter) -> PlacedBlock {
     let text = |text: &str, room: f32| left_aligned(painter, text, sizes.text(), theme::INK, room);
     let (height, set) = match block {
-        Block::Text(said) => {
-            let said = text(said, width);
-            (said.size().y, vec![said])
+        Block::Text(paragraph) => {
+            let paragraph = text(paragraph, width);
+            (paragraph.size().y, vec![paragraph])
         }
         Block::PoseGuide { .. } => ((sizes.body * 13.0 * sizes.squeeze * sizes.squeeze).round(), vec![]),
         Block::Progress { share, label } => {
@@ -151,9 +151,9 @@ fn block(index: usize, block: &Block, width: f32, sizes: Sizes, painter: &Painte
             let label = text(label, width - percent.size().x - sizes.gap());
             (label.size().y + sizes.body * 1.1, vec![label, percent])
         }
-        Block::Fit { text: said, .. } => {
-            let said = text(said, width - gauge_width(sizes) - sizes.gap());
-            (said.size().y.max(sizes.body * 1.1), vec![said])
+        Block::Fit { text: paragraph, .. } => {
+            let paragraph = text(paragraph, width - gauge_width(sizes) - sizes.gap());
+            (paragraph.size().y.max(sizes.body * 1.1), vec![paragraph])
         }
         Block::Legend { ends } => {
             let ends: Vec<SetText> =
