@@ -29,7 +29,7 @@ pub fn capacities(queues: &[Capacity], gauges: &LoopMeters, frame: &Frame) -> Ve
         room("MAX_SUBSTEPS (substeps of a step)", MAX_SUBSTEPS as usize, most(|c| c.substeps() as usize)),
         room(
             "MAX_BENDING_STAGES (stages of bending a substep)",
-            stiff_bending::MOST as usize,
+            stiff_bending::MAX_BENDING_STAGES as usize,
             most(|c| c.bend_pace().stages as usize),
         ),
     ]);
@@ -47,13 +47,13 @@ pub fn warnings(capacities: &[Capacity], frame: &Frame) -> Vec<String> {
     let mut all: Vec<String> = capacities.iter().filter_map(Capacity::warning).collect();
     for (cloth, garment) in frame.cloths().iter().zip(frame.garments()) {
         let pace = cloth.bend_pace();
-        if pace.stages == stiff_bending::MOST && pace.least < 1.0 {
+        if pace.stages == stiff_bending::MAX_BENDING_STAGES && pace.least < 1.0 {
             all.push(format!(
                 "{} bends with {:.0} % of its stiffness at some particles, for a substep has at most {} stages of bending; ask for \
                  more substeps, a coarser mesh or a softer fabric",
                 garment.name,
                 pace.least * 100.0,
-                stiff_bending::MOST
+                stiff_bending::MAX_BENDING_STAGES
             ));
         }
     }

@@ -8,7 +8,7 @@
 use toile_assets::garment::Layout;
 
 use super::Quality;
-use super::stiff_bending::MOST;
+use super::stiff_bending::MAX_BENDING_STAGES;
 
 /// One stage of a step: both owners' shares of it may run at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -138,7 +138,7 @@ impl Program {
     /// Room for the programs of a garment at any quality; `stiff` says that its bending may have to go in stages. At load.
     pub fn new(layout: &Layout, stiff: bool) -> Self {
         let constraints = Quality::ALL.map(|quality| constraints(layout, quality));
-        let bending = Bending { sets: Bending::sets(layout), stages: if stiff { MOST } else { 1 } };
+        let bending = Bending { sets: Bending::sets(layout), stages: if stiff { MAX_BENDING_STAGES } else { 1 } };
         let longest = bending.len() + constraints.iter().map(|c| c.len()).max().unwrap_or(0);
         Self { constraints, substep: Vec::with_capacity(longest), substeps: 0, made_for: None }
     }

@@ -17,7 +17,7 @@ use crate::lanes::{Kernel, Lanes, Store, V3, WriteColumn};
 const DAMPING: f64 = 2.0;
 
 /// Most stages: a stiffness 12,000 times what a force can be. What is stiffer is weakened.
-pub const MOST: u32 = 160;
+pub const MAX_BENDING_STAGES: u32 = 160;
 
 /// One stage: newest = ahead * newest + behind * the one before + forced * (r - Z newest).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -31,9 +31,9 @@ pub struct ChebyshevStage {
 }
 
 /// T_0..T_m at w0, and T_m' there.
-fn chebyshev(m: u32) -> ([f64; MOST as usize + 1], f64, f64) {
+fn chebyshev(m: u32) -> ([f64; MAX_BENDING_STAGES as usize + 1], f64, f64) {
     let w0 = 1.0 + DAMPING / f64::from(m * m);
-    let (mut t, mut slope) = ([1.0; MOST as usize + 1], [0.0, 1.0]);
+    let (mut t, mut slope) = ([1.0; MAX_BENDING_STAGES as usize + 1], [0.0, 1.0]);
     t[1] = w0;
     for j in 2..=m as usize {
         t[j] = 2.0 * w0 * t[j - 1] - t[j - 2];
@@ -48,9 +48,9 @@ pub fn carried(m: u32) -> f32 {
     ((w0 + 1.0) * slope / t[m as usize]) as f32
 }
 
-/// The fewest stages, 2 to [`MOST`], that `suffice` for a garment, told the largest Z that they carry.
+/// The fewest stages, 2 to [`MAX_BENDING_STAGES`], that `suffice` for a garment, told the largest Z that they carry.
 pub fn needed(suffice: impl Fn(f32) -> bool) -> u32 {
-    (2..MOST).find(|&m| suffice(carried(m))).unwrap_or(MOST)
+    (2..MAX_BENDING_STAGES).find(|&m| suffice(carried(m))).unwrap_or(MAX_BENDING_STAGES)
 }
 
 /// The stages 1..=m, into the first `m` places.
@@ -188,7 +188,7 @@ mod tests {
 
     /// u after the stages, for one Z and r = 1.
     fn solved(m: u32, z: f64) -> f64 {
-        let mut stages = [ChebyshevStage::default(); MOST as usize];
+        let mut stages = [ChebyshevStage::default(); MAX_BENDING_STAGES as usize];
         coefficients(m, &mut stages);
         let (mut before, mut newest) = (0.0, f64::from(stages[0].forced));
         for s in &stages[1..m as usize] {
@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn what_does_not_bend_falls_freely_and_stiff_motion_is_damped_like_implicit_euler() {
-        for m in 2..=MOST {
+        for m in 2..=MAX_BENDING_STAGES {
             assert!((solved(m, 0.0) - 1.0).abs() < 2e-5, "{m} stages: {}", solved(m, 0.0));
             let most = f64::from(carried(m));
             for i in 1..=200 {
@@ -216,7 +216,7 @@ mod tests {
     fn twice_the_stages_carry_four_times_the_stiffness() {
         assert!((carried(2) - 4.28).abs() < 0.02 && (carried(64) / carried(32) - 4.0).abs() < 0.05);
         let needed = |z: f32| needed(|most| most >= z);
-        assert_eq!((needed(0.1), needed(4.2), needed(1e9)), (2, 2, MOST));
-        assert!((2..MOST).all(|m| needed(carried(m)) <= m && needed(carried(m) * 1.001) == m + 1));
+        assert_eq!((needed(0.1), needed(4.2), needed(1e9)), (2, 2, MAX_BENDING_STAGES));
+        assert!((2..MAX_BENDING_STAGES).all(|m| needed(carried(m)) <= m && needed(carried(m) * 1.001) == m + 1));
     }
 }

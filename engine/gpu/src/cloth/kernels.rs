@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn shaders_have_the_engines_limits() {
-        let most = format!("const MOST_STAGES = {}u;", toile_engine::cloth::stiff_bending::MOST);
+        let most = format!("const MOST_STAGES = {}u;", toile_engine::cloth::stiff_bending::MAX_BENDING_STAGES);
         let air = 0.25 * toile_engine::cloth::wind::AIR_DENSITY;
         assert!(COMMON.contains(&most));
         assert!(SHADERS.iter().any(|s| s.source().contains(&format!("const AIR = {air};"))));

@@ -4,7 +4,7 @@
 
 // Accelerations besides gravity (m/s2) [particles].
 @group(1) @binding(0) var<storage, read> pushed: array<vec4<f32>>;
-// See `Stage` in `cloth/stages.rs`: ahead, behind, forced, and what the forces are multiplied by [garments * MOST_STAGES].
+// See `ChebyshevStage` in `cloth/stiff_bending.rs`: ahead, behind, forced, and what the forces are multiplied by [garments * MOST_STAGES].
 @group(1) @binding(1) var<storage, read> stages: array<vec4<f32>>;
 
 @compute @workgroup_size(64)
