@@ -24,7 +24,7 @@ pub struct Influences<const N: usize> {
     pub weights: [f32; N],
 }
 
-/// The weights of the house: four bones a vertex.
+/// Weights as the engine uses them: four bones a vertex.
 pub type SkinWeights = Influences<INFLUENCES>;
 
 /// The weights of imports that lose too much with four bones a vertex.

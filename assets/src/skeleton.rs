@@ -1,4 +1,4 @@
-//! The one skeleton of the house: joint names, parents, and the pose that bends them.
+//! The one skeleton that all crates share: joint names, parents, and the pose that bends them.
 //!
 //! Right-handed, y up, metres. The person faces +z, so their left side is +x. In the rest pose every bone's frame is
 //! aligned with the world's axes: a bone's rest transform is a translation.

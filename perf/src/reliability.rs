@@ -51,7 +51,7 @@ pub struct Reliability {
     pub bins: [ReliabilityBin; BINS.len()],
     /// All people, whatever was stated.
     pub all: ReliabilityBin,
-    /// Those who were told to take a girth by tape: what was promised of it and what came of it.
+    /// People advised to take a girth by tape: the promised probability, and how often the size was right with it.
     pub taped: ReliabilityBin,
     /// The same people before.
     pub untaped: ReliabilityBin,

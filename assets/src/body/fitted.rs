@@ -1,4 +1,4 @@
-//! Building a body to measure: the door to calibration.
+//! Building a body to given measures: the public interface of the calibration.
 
 #[cfg(test)]
 mod tests;

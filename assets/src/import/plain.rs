@@ -97,7 +97,7 @@ pub fn parse_obj(text: &str) -> Result<PlainMesh, String> {
             }
             _ => Ok(()),
         };
-        read.map_err(|says| format!("line {}: {says}", i + 1))?;
+        read.map_err(|message| format!("line {}: {message}", i + 1))?;
     }
     if !textures.is_empty() {
         let at = |i: Option<usize>| i.and_then(|i| textures.get(i)).copied().unwrap_or_default();

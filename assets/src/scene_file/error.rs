@@ -18,7 +18,7 @@ pub enum SceneError {
         reason: String,
     },
     /// Something in it is wrong.
-    #[error("{file}:{line}:{column}: {says}")]
+    #[error("{file}:{line}:{column}: {message}")]
     At {
         /// The scene file.
         file: String,
@@ -27,7 +27,7 @@ pub enum SceneError {
         /// Column in characters, from 1.
         column: usize,
         /// One sentence that names the key and the cure.
-        says: String,
+        message: String,
     },
     /// No example of that name.
     #[error("there is no example named {name}; choose one of {known}")]
@@ -50,9 +50,9 @@ pub(super) struct SceneDocument<'t> {
 
 impl SceneDocument<'_> {
     /// An error at a byte of the text.
-    pub fn error(&self, at: usize, says: impl Into<String>) -> SceneError {
+    pub fn error(&self, at: usize, message: impl Into<String>) -> SceneError {
         let (line, column) = toml_keys::place(self.text, at);
-        let says = says.into().split_whitespace().collect::<Vec<_>>().join(" ");
-        SceneError::At { file: self.file.into(), line, column, says }
+        let message = message.into().split_whitespace().collect::<Vec<_>>().join(" ");
+        SceneError::At { file: self.file.into(), line, column, message }
     }
 }

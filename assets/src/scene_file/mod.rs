@@ -133,8 +133,8 @@ impl SceneLoader<'_> {
             return Ok(known as u8 + 1);
         }
         if self.pins.len() == garment::MAX_PIN_TRACKS {
-            let says = format!("is the {}th; give pins that move alike the same file", self.pins.len() + 1);
-            return Err(pin.wrong("track", says));
+            let problem = format!("is the {}th; give pins that move alike the same file", self.pins.len() + 1);
+            return Err(pin.wrong("track", problem));
         }
         let motion = match source {
             PinSource::Track(name) => PinMotion::Track(garment::rigid_track(pin, name, self.source, self.pass)?),

@@ -33,7 +33,7 @@ impl Track {
             if std::mem::take(&mut names_may_come) && numbers.iter().all(Option::is_none) {
                 continue;
             }
-            track.push(&numbers, &fits, pass).map_err(|says| format!("line {}: {says}", i + 1))?;
+            track.push(&numbers, &fits, pass).map_err(|message| format!("line {}: {message}", i + 1))?;
         }
         if track.times.is_empty() {
             return Err("it has no rows; give at least one of time and values".into());

@@ -228,7 +228,7 @@ fn what_cannot_be_used_is_refused_in_one_sentence() {
     let scratch = Scratch::new("kiosk-bad");
     fs::write(scratch.path().join("bad.toml"), "[wear]\ngarmets = [\"t-shirt\"]\n").unwrap();
     fs::write(scratch.path().join("other.toml"), "[wear]\ngarments = [\"tent\"]\n").unwrap();
-    for (args, code, says) in [
+    for (args, code, expected) in [
         (&["--headless", "--config", "bad.toml"][..], 4, "bad.toml:2: [wear] has no key \"garmets\""),
         (&["--headless", "--config", "other.toml"], 4, "tent"),
         (&["--headless", "--config", "none.toml"], 4, "none.toml"),
@@ -242,7 +242,7 @@ fn what_cannot_be_used_is_refused_in_one_sentence() {
         let output = scratch.toile(&[&["kiosk"], args].concat());
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(code), "{args:?}: {message}");
-        assert!(message.contains(says) && message.lines().count() == 1, "{args:?}: {message}");
+        assert!(message.contains(expected) && message.lines().count() == 1, "{args:?}: {message}");
     }
     let printed = scratch.toile(&["kiosk", "--print-config"]);
     assert_eq!(printed.status.code(), Some(0));

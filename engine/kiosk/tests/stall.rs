@@ -144,11 +144,11 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
             meanwhile();
             stop.request();
         });
-        let say = |_: &str| {};
+        let print_line = |_: &str| {};
         let environment = ServiceEnvironment {
             manager: diary,
             stop: &stop,
-            say: &say,
+            print_line: &print_line,
             figures: None,
             dresser: Dresser::new(wish),
             to_scene: |frame| (Gated::new(frame), ()),

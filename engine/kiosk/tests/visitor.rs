@@ -214,11 +214,11 @@ fn serve() -> Vec<SessionState> {
             let _end = AtTheEnd(&stop);
             finger.visit();
         });
-        let say = |_: &str| {};
+        let print_line = |_: &str| {};
         let environment = ServiceEnvironment {
             manager: &Nobody,
             stop: &stop,
-            say: &say,
+            print_line: &print_line,
             figures: None,
             dresser: Dresser::new(wish),
             to_scene: |frame| (FrameScene::new(frame), ()),

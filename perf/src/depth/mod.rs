@@ -55,11 +55,11 @@ pub struct DepthTable {
 ///
 /// # Errors
 /// Where the people cannot be made.
-pub fn run(say: &mut dyn FnMut(&str)) -> Result<DepthTable, BodyError> {
+pub fn run(progress: &mut dyn FnMut(&str)) -> Result<DepthTable, BodyError> {
     let people = truth::People::new()?;
     let mut rows = Vec::new();
     for (image, intrinsics) in CAMERAS {
-        say(image);
+        progress(image);
         let scene = people.before(intrinsics);
         let (stages_us, shopper_pixels) = stages::time(&scene);
         rows.push(DepthRow { image, shopper_pixels, stages_us, errors: truth::errors(&scene) });

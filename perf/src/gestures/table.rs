@@ -39,21 +39,21 @@ fn columns() -> Vec<GestureConditions> {
 
 impl GestureStudy {
     /// Runs everything; `say` is given what is being done.
-    pub fn run(sequences: u32, seed: u64, say: &mut dyn FnMut(&str)) -> Self {
+    pub fn run(sequences: u32, seed: u64, progress: &mut dyn FnMut(&str)) -> Self {
         let mut gestures = Vec::new();
         for act in Act::GESTURES {
-            say(act.name());
+            progress(act.name());
             let row = columns().into_iter().map(|c| (act, c, count(act, &c, sequences, seed)));
             gestures.extend(row);
         }
         let mut others = Vec::new();
         for act in Act::OTHERS {
-            say(act.name());
+            progress(act.name());
             let at =
                 |distance| count(act, &GestureConditions { distance, ..GestureConditions::default() }, sequences, seed);
             others.push((act, DISTANCES.map(at).into_iter().fold(GestureCount::default(), GestureCount::and)));
         }
-        say("hands");
+        progress("hands");
         let grips = grips(&DISTANCES, sequences.div_ceil(4), seed);
         Self { sequences, seed, gestures, others, grips }
     }

@@ -79,7 +79,7 @@ pub fn run(args: &KioskArgs) -> Result<(), AppError> {
         return terminal::print(toile_kiosk::EXAMPLE_CONFIG);
     }
     let words = Words::new(args.printing.quiet);
-    let report = toile_kiosk::run(&options(args), begun, &|line| words.say(line))?;
+    let report = toile_kiosk::run(&options(args), begun, &|line| words.print_line(line))?;
     if args.printing.json {
         terminal::print_json(&Document::new("kiosk", report))
     } else {

@@ -122,7 +122,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     // Only now: a helper with a real-time priority shares its core with nobody who waits for it.
     let (crew, worker) = threads::worker_pool(args.workers.count()).map_err(AppError::input)?;
     let options = args.options();
-    words.say(&format!("running for {} s, with {} threads of load", options.seconds, options.load));
+    words.print_line(&format!("running for {} s, with {} threads of load", options.seconds, options.load));
     let mut bytes = recording::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
     let (flight_recorder, recording) = crash::record(bytes.clone(), crash_file);
     let dressed = Entry::Dressed(*first);

@@ -57,7 +57,7 @@ pub fn run(args: &ParetoArgs) -> Result<(), AppError> {
     if args.printing.json {
         return terminal::print_json(&Document::new("pareto", report));
     }
-    words.say(&format!("{} files in {}", files.len(), args.out.display()));
+    words.print_line(&format!("{} files in {}", files.len(), args.out.display()));
     terminal::print(&table(&report, Paint::for_stdout()))
 }
 

@@ -124,7 +124,7 @@ pub fn run(args: &PlanArgs) -> Result<(), AppError> {
         played: None,
     };
     if plan.verdict.fits && !args.quick {
-        words.say("playing it, with each model and without");
+        words.print_line("playing it, with each model and without");
         let played = weigh::play(&scene, workers).map_err(AppError::internal)?;
         let one_core = priced.times.iter().map(|t| t.one_us).sum();
         plan.held = Some(Held::of(priced.stages_us[CLOTH], one_core, &played));

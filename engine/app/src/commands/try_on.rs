@@ -152,7 +152,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let mut measured = measured::measure(&session, ShopperFacts { sex: wish.sex, ..ShopperFacts::default() })?;
     let has_joints = !session.joints.is_empty();
     if !has_joints {
-        words.say("there are no joints: the fitted body is followed through the depth");
+        words.print_line("there are no joints: the fitted body is followed through the depth");
     }
     measured::add_joints(&mut session, &measured)?;
     let track = session::standing(&session)?;

@@ -13,7 +13,7 @@ use super::limits::Side;
 /// Reach over the leg's length: a knee that locks would turn at any speed.
 const STRAIGHTEST: f32 = 0.9995;
 
-/// Sine of the knee's bend below which its plane is not told by the leg.
+/// Sine of the knee's bend below which the leg does not determine its plane.
 const FLAT: f32 = 0.02;
 
 /// Pelvis to foot of a side.

@@ -48,7 +48,7 @@ pub fn carried(m: u32) -> f32 {
     ((w0 + 1.0) * slope / t[m as usize]) as f32
 }
 
-/// The fewest stages, 2 to [`MAX_BENDING_STAGES`], that `suffice` for a garment, told the largest Z that they carry.
+/// The fewest stages, 2 to [`MAX_BENDING_STAGES`], that are enough for a garment; `suffice` is given the largest Z that they carry.
 pub fn needed(suffice: impl Fn(f32) -> bool) -> u32 {
     (2..MAX_BENDING_STAGES).find(|&m| suffice(carried(m))).unwrap_or(MAX_BENDING_STAGES)
 }

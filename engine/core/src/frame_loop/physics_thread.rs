@@ -359,7 +359,7 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         };
         if miss.total_ns > PERIOD_NS {
             self.gauges.missed += 1;
-            self.tell(due.scheduled_ns, EventKind::Missed(miss));
+            self.send_event(due.scheduled_ns, EventKind::Missed(miss));
         }
         self.record(due.scheduled_ns);
         self.govern(due.scheduled_ns, miss.step_ns);
@@ -387,7 +387,7 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
             self.gauges.late.add(late);
             self.gauges.response.add(late);
         }
-        self.tell(due.scheduled_ns, EventKind::Dropped(due.dropped));
+        self.send_event(due.scheduled_ns, EventKind::Dropped(due.dropped));
     }
 
     /// Changes the scene, if another was handed over.
@@ -400,7 +400,7 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         if let Some(recording) = &mut self.outlets.recording {
             recording.push(Entry::Changed { number, afresh });
         }
-        self.tell(scheduled_ns, EventKind::Changed(number));
+        self.send_event(scheduled_ns, EventKind::Changed(number));
     }
 
     /// Takes the newest sensor frame, if there is a new one; gives when it arrived (ns).
@@ -418,7 +418,7 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         let lost = begun.saturating_sub(self.last_ns) > SENSOR_LOST_NS;
         if lost != self.lost {
             self.lost = lost;
-            self.tell(scheduled_ns, if lost { EventKind::SensorLost } else { EventKind::SensorBack });
+            self.send_event(scheduled_ns, if lost { EventKind::SensorLost } else { EventKind::SensorBack });
         }
         news.map(|seen| seen.arrived_ns)
     }
@@ -451,7 +451,7 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
     fn govern(&mut self, scheduled_ns: u64, step_ns: u64) {
         if let Some(change) = self.governor.after(step_ns) {
             self.stepper.set_rung(change.to);
-            self.tell(scheduled_ns, EventKind::Quality(change));
+            self.send_event(scheduled_ns, EventKind::Quality(change));
         }
     }
 
@@ -460,12 +460,12 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         let before = std::mem::replace(&mut self.troubles, now);
         for (k, what) in [EventKind::Broken, EventKind::RolledBack].into_iter().enumerate() {
             if now[k] > before[k] {
-                self.tell(scheduled_ns, what);
+                self.send_event(scheduled_ns, what);
             }
         }
     }
 
-    fn tell(&mut self, scheduled_ns: u64, what: EventKind) {
+    fn send_event(&mut self, scheduled_ns: u64, what: EventKind) {
         // One that does not fit is counted by the queue.
         self.outlets.events.push(Event { tick: self.tick, scheduled_ns, what });
     }

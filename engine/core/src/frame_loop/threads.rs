@@ -86,10 +86,10 @@ where
 {
     let turns = Arc::new(AtomicU64::new(0));
     let (stop, mine) = (stop.clone(), turns.clone());
-    let (tell, placement) = mpsc::sync_channel(1);
+    let (send_placement, placement) = mpsc::sync_channel(1);
     let work = move || {
         // Nobody may listen.
-        let _ = tell.send(thread_roles::apply(role));
+        let _ = send_placement.send(thread_roles::apply(role));
         let live = || {
             while !stop.is_set() {
                 let Some(next) = life.run_due() else { break };
@@ -109,8 +109,9 @@ where
 /// # Errors
 /// As [`WorkerPool::new`].
 pub fn worker_pool(workers: usize) -> Result<(WorkerPool, Option<Placement>), WorkerPoolError> {
-    let (tell, placed) = mpsc::sync_channel(1);
-    let pool = WorkerPool::beginning(workers, move || _ = tell.send(thread_roles::apply(ThreadRole::Worker)))?;
+    let (send_placement, placed) = mpsc::sync_channel(1);
+    let pool =
+        WorkerPool::beginning(workers, move || _ = send_placement.send(thread_roles::apply(ThreadRole::Worker)))?;
     Ok((pool, placed.recv_timeout(LONGEST_START).ok()))
 }
 

@@ -55,7 +55,7 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// The sex of the body to show: as told or found, otherwise whom the garments are made for, women for all others.
+    /// The sex of the body to show: as given or measured, otherwise whom the garments are made for, women for all others.
     pub fn sex(&self, garments: Population) -> Sex {
         sex(self.population, garments)
     }

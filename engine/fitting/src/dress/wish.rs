@@ -27,7 +27,7 @@ pub struct Wish {
     pub size: Option<String>,
     /// How the cloth is stepped.
     pub quality: Quality,
-    /// The shopper's sex, if it was told.
+    /// The shopper's sex, if it was given.
     pub sex: Option<Sex>,
 }
 

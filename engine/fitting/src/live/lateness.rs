@@ -108,7 +108,7 @@ pub struct LatenessAttribution {
     pub attributed: Attributed,
     /// The last late step and its cause.
     before: Option<(u64, Cause)>,
-    /// Steps that were dropped before one whose cause is not told yet.
+    /// Steps that were dropped before one whose cause is not known yet.
     dropped: u64,
 }
 

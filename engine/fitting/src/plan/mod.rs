@@ -1,4 +1,4 @@
-//! Plan: what a scene needs and takes, told before it runs.
+//! Plan: what a scene needs and takes, predicted before it runs.
 //!
 //! Reads: a scene's baked garments, colliders and motion. Writes: who can touch what, memory, the time of each stage as
 //! it is predicted, what each model is worth, whether the scene fits.

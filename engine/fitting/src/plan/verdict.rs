@@ -31,7 +31,7 @@ pub struct Verdict {
 /// A scene's garments, counted and timed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Priced {
-    /// What their first step told.
+    /// What their first step showed `[garments]`.
     pub first: Vec<FirstStep>,
     /// Work of a step of each garment `[garments]`.
     pub work: Vec<Work>,

@@ -1,7 +1,7 @@
 //! What each model of the cloth is worth: the scene without it, or with one that it leaves out, against the scene as it is.
 //!
 //! Cloth is chaotic: a second after the least difference the folds of two runs are others. So moments of one run are gone on
-//! from, for 50 ms, with the model and without, and what is told is how far the particles are apart then.
+//! from, for 50 ms, with the model and without, and the figure is how far the particles are apart then.
 
 use std::time::Instant;
 
@@ -123,8 +123,8 @@ fn variants(scene: &Scene) -> Vec<Variant> {
     }
     if quality != Quality::Draft {
         add("repeated passes over hoops and fibers", true, &same, &|s| s.quality = Quality::Draft);
-        let says = if tethers { "tethers" } else { "tethers in every substep" };
-        add(says, tethers, &same, &|s| s.tethers = !tethers);
+        let model_name = if tethers { "tethers" } else { "tethers in every substep" };
+        add(model_name, tethers, &same, &|s| s.tethers = !tethers);
     }
     if quality != Quality::Fine {
         add("three times the substeps, shear in each (fine)", false, &same, &|s| s.quality = Quality::Fine);
@@ -183,7 +183,7 @@ fn weigh(from: &Playing<'_>, variants: &[Variant], tallies: &mut [Tally]) {
     }
 }
 
-/// Plays a window and gives where the particles end. All variants enter through the same door: a cloth of their own,
+/// Plays a window and gives where the particles end. All variants start in the same way: a cloth of their own,
 /// placed by a step, then put into the state of the run.
 fn window(from: &Playing<'_>, variant: &Variant, tally: &mut Tally) -> Vec<Box<[Vec3A]>> {
     let colliders = from.colliders.clone();

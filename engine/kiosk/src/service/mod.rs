@@ -73,7 +73,7 @@ pub struct KioskOptions {
 }
 
 /// Prints a line for whoever looks after the kiosk.
-pub type Say<'a> = &'a (dyn Fn(&str) + Sync);
+pub type PrintLine<'a> = &'a (dyn Fn(&str) + Sync);
 
 /// Runs a kiosk; with a window, by `windowed`.
 ///
@@ -83,7 +83,7 @@ pub type Say<'a> = &'a (dyn Fn(&str) + Sync);
 pub fn run(
     options: &KioskOptions,
     begun: Instant,
-    say: Say<'_>,
+    print_line: PrintLine<'_>,
     windowed: fn(KioskRun<'_>) -> Result<KioskReport, KioskError>,
 ) -> Result<KioskReport, KioskError> {
     let stop = StopSignal::listen().map_err(KioskError::internal)?;
@@ -94,7 +94,7 @@ pub fn run(
     let _lock = InstanceLock::take(options.instance.as_deref())?;
     let figures = figures(&config)?;
     let clock = RealClock::default();
-    let run = KioskRun { options, config: &config, begun, clock, stop: &stop, say, figures };
+    let run = KioskRun { options, config: &config, begun, clock, stop: &stop, print_line, figures };
     if options.headless {
         let renderer = |_: &Frame| Ok(HeadlessRenderer::default());
         let frontend = Frontend { renderer, to_scene: |frame| (FrameScene::new(frame), ()), controller: |_| None };
@@ -126,7 +126,7 @@ pub struct KioskRun<'a> {
     /// Whether it is to end.
     pub stop: &'a StopSignal,
     /// Prints a line.
-    pub say: Say<'a>,
+    pub print_line: PrintLine<'a>,
     figures: Option<Writer<HealthFigures>>,
 }
 
@@ -156,7 +156,7 @@ where
     F: FnOnce(&Frame) -> Result<E, KioskError>,
     H: FnOnce(Option<ShopperSource>) -> BoxedController<'a, E::Outfit>,
 {
-    let KioskRun { options, config, begun, clock, stop, say, figures } = run;
+    let KioskRun { options, config, begun, clock, stop, print_line, figures } = run;
     let wish = config.wish();
     let session = played_session(config)?;
     // The mannequin stands as somebody does in the recording: a pose, and no body.
@@ -191,7 +191,7 @@ where
     let environment = ServiceEnvironment {
         manager: &Systemd,
         stop,
-        say,
+        print_line,
         figures,
         dresser: Dresser::new(wish),
         to_scene: frontend.to_scene,

@@ -60,7 +60,7 @@ pub struct ServiceEnvironment<'a, S, O> {
     /// Whether it is to end.
     pub stop: &'a StopSignal,
     /// Prints a health line.
-    pub say: &'a dyn Fn(&str),
+    pub print_line: &'a dyn Fn(&str),
     /// Receives the figures, where metrics are served.
     pub figures: Option<Writer<HealthFigures>>,
     /// Dresses shoppers on a thread of its own.
@@ -87,7 +87,7 @@ pub struct Service<'a, S: Scene, E: Renderer> {
     every_ns: u64,
     manager: &'a dyn ServiceManager,
     stop: &'a StopSignal,
-    say: &'a dyn Fn(&str),
+    print_line: &'a dyn Fn(&str),
     figures: Option<Writer<HealthFigures>>,
     flight_recorder: Option<Arc<FlightRecorder>>,
     counter: HealthCounter,
@@ -118,7 +118,8 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
             memory_locked: options.memory_locked,
             warnings: options.warnings.clone(),
         };
-        let ServiceEnvironment { manager, stop, say, figures, dresser, to_scene, pose, flight_recorder } = environment;
+        let ServiceEnvironment { manager, stop, print_line, figures, dresser, to_scene, pose, flight_recorder } =
+            environment;
         let controller = Box::new(HeadlessController::new(options.times, options.measure_ns, options.played, now));
         Self {
             live,
@@ -131,7 +132,7 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
             dog: Watchdog::new(manager.watchdog_timeout(), now),
             manager,
             stop,
-            say,
+            print_line,
             figures,
             flight_recorder,
             counter: HealthCounter::default(),
@@ -258,7 +259,7 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
     fn health(&mut self, now: u64) {
         if self.every_ns > 0 && now >= self.health_ns {
             self.health_ns += self.every_ns;
-            (self.say)(&self.record.figures.to_string());
+            (self.print_line)(&self.record.figures.to_string());
             self.counter.reported();
         }
     }

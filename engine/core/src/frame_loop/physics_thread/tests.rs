@@ -1,4 +1,4 @@
-//! The loop against a simulated clock: a scene whose steps take as long as they are told to.
+//! The loop against a simulated clock: a scene whose steps take as long as the test sets.
 
 use std::cell::RefCell;
 use std::rc::Rc;

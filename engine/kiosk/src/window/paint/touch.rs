@@ -46,7 +46,7 @@ struct ActiveTouch {
 pub struct TouchTracker {
     down: Option<ActiveTouch>,
     scrolled: f32,
-    /// The control that the view has followed last, by which a new focus is told.
+    /// The control that the view has followed last, by which a new focus is noticed.
     focus: Option<(usize, usize)>,
 }
 
