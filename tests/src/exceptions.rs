@@ -1,4 +1,4 @@
-//! What the laws let pass, by name: `tests/exceptions.toml`, which only may shrink.
+//! Exceptions from the laws, by name: `tests/exceptions.toml`, which only may shrink.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! A survey of a shape: what baking makes of it, and what its mesh lets one fear.
+//! A survey of a shape: what baking makes of it, and warnings about its mesh.
 
 use glam::Vec3;
 

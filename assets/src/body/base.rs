@@ -1,4 +1,4 @@
-//! What a sex's mean body hands to the morphs: a surface at rest, and what is tied to it.
+//! The mean body of a sex, from which morphs start: its surface at rest, and what is tied to the surface.
 //!
 //! The surface is drawn once by the crate `toile-sculpt` and stored; here it is read, skinned and given its landmarks.
 

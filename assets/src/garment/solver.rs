@@ -1,4 +1,4 @@
-//! How a set of fibers is solved, and what a garment file has to say about it.
+//! How a set of fibers is solved, and how a garment file chooses it.
 
 use serde::Deserialize;
 

@@ -1,4 +1,4 @@
-//! Sections: the tight outline that a tape would take around a body, and rings of cloth laid around it.
+//! Sections: the convex outline of a body, as a tape measure lies, and rings of cloth laid around it.
 
 use glam::{Vec2, Vec3};
 

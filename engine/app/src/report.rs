@@ -1,4 +1,4 @@
-//! The JSON that everything is judged by: its keys are a contract, to which keys may be added freely.
+//! The JSON of the commands. Its keys are a contract: keys may be added, none renamed.
 //!
 //! Reads: what the commands found. Writes: documents to be printed as JSON.
 //! Budget: milliseconds.

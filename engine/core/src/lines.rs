@@ -1,4 +1,4 @@
-//! Lines: the one thing that debugging draws. Filled outside of the frame, from what it shows, into room made at load.
+//! Debug lines, such as fibers and contacts. Filled outside of the frame, from its snapshot, into memory allocated at load.
 
 use std::fmt;
 use std::str::FromStr;

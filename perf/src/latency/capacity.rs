@@ -1,4 +1,4 @@
-//! How full everything was that has a bound: the queues, the schedule, the frame's rooms.
+//! How full everything was that has a bound: the queues, the schedule, the frame's capacities.
 
 use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
 use toile_engine::cloth::settings::MAX_SUBSTEPS;

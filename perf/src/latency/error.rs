@@ -1,4 +1,4 @@
-//! Why the figures cannot be taken.
+//! Why latency cannot be measured.
 
 use thiserror::Error;
 use toile_engine::workers::WorkerPoolError;

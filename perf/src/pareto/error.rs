@@ -1,4 +1,4 @@
-//! Why the figures cannot be taken.
+//! Why a scene cannot be run or plotted.
 
 use thiserror::Error;
 use toile_assets::body::BodyError;

@@ -1,4 +1,4 @@
-//! The f64 oracle of both blends, vertex after vertex, without a thought of speed.
+//! The f64 oracle of both blends, vertex after vertex, regardless of speed.
 
 use glam::{Affine3A, DMat3, DQuat, DVec3, DVec4, Vec3};
 use toile_assets::mesh::SkinWeights;

@@ -1,4 +1,4 @@
-//! What the blends do to limbs: volume kept under twist, on a cylinder and on the shopper's forearm, and the joints that
+//! The effect of both blends on limbs: volume kept under twist, on a cylinder and on the shopper's forearm, and the joints that
 //! are bent.
 
 use glam::{Affine3A, Quat, Vec3};

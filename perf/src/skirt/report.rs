@@ -1,4 +1,4 @@
-//! What a run of the skirt has to say: time and error of the same steps.
+//! The report of a run of the skirt: time and error of the same steps.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Why nothing can be soaked.
+//! Why a soak run cannot start.
 
 use thiserror::Error;
 use toile_engine::frame::FrameError;

@@ -1,4 +1,4 @@
-//! Every case.
+//! The list of torture cases.
 
 use super::outcome::TrialFindings;
 use super::pieces::Pieces;

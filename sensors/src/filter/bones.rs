@@ -1,4 +1,4 @@
-//! Bone lengths kept: a tracked bone wobbles by a tenth, a real one does not.
+//! Bone lengths kept constant: tracked ones vary by a tenth.
 //!
 //! Each bone's length is estimated while the session runs and the tracked bone is pulled to it along its own direction,
 //! from the pelvis outward, so that directions stay exactly as they were seen.

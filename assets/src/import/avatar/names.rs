@@ -1,4 +1,4 @@
-//! What others call our joints: one table a dialect, the first name of each joint its place, all of them its skin.
+//! Names of joints in other tools: one table a dialect. The first name of each joint gives its place, all of them its skin weights.
 //!
 //! Standards: ISO/IEC 19774 (H-Anim) versions 1 and 2, VRM 0.x and 1.0 humanoid; habits: Mixamo and the FBX rigs named
 //! alike, Unreal (also MakeHuman's game engine rig), MakeHuman's CMU rig, and the BVH files of the CMU database.

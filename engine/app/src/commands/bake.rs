@@ -1,4 +1,4 @@
-//! `toile bake`: what a garment's mesh becomes, and what gives reason to worry.
+//! `toile bake`: what a garment's mesh becomes, and warnings about it.
 
 use std::fmt::Write;
 use std::path::Path;

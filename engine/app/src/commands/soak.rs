@@ -1,4 +1,4 @@
-//! `toile soak`: the loop for hours, and what it bore.
+//! `toile soak`: the loop for hours, with faults, and whether it recovered.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! `toile torture`: the hard cases, and whether the cloth bears them.
+//! `toile torture`: the hard cases, and whether the cloth recovers.
 
 use std::fmt::Write;
 use std::time::Instant;

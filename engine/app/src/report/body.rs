@@ -1,4 +1,4 @@
-//! What `toile body` says.
+//! The JSON of `toile body`.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! What `toile run` reports.
+//! The JSON of `toile run`.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

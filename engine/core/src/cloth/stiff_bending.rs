@@ -1,4 +1,4 @@
-//! Stages: bending that is stiffer than a substep can carry as a force.
+//! Stiff bending, in stages: bending that is stiffer than a substep can carry as a force.
 //!
 //! Implicit Euler asks for the change of velocity u with (I + Z) u = r, where Z = dt^2 W K, r = dt (g - W K (x + dt v)).
 //! One step of the stabilised Runge-Kutta-Chebyshev method for u' = r - Z u (van der Houwen, Sommeijer 1980; Verwer

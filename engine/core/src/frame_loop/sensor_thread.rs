@@ -250,8 +250,8 @@ mod tests {
             (5_166, 12),
             (5_200, 5_180),
         ];
-        struct ShopperFacts(Vec<(u64, u64)>);
-        impl FrameSource for ShopperFacts {
+        struct StampedFrames(Vec<(u64, u64)>);
+        impl FrameSource for StampedFrames {
             fn next_ns(&self) -> Option<u64> {
                 self.0.first().map(|t| t.0 * MS)
             }
@@ -262,7 +262,7 @@ mod tests {
         let clock = crate::clock::SimClock::default();
         let crate::triple_buffer::TripleBuffer { writer, mut reader } =
             crate::triple_buffer::TripleBuffer::new(&SensorFrame::default());
-        let mut sense = SensorThread::new(ShopperFacts(frames.to_vec()), clock.clone(), writer);
+        let mut sense = SensorThread::new(StampedFrames(frames.to_vec()), clock.clone(), writer);
         let mut stamps = Vec::new();
         while let Some(due) = sense.source.next_ns() {
             clock.sleep_until(due);

@@ -1,4 +1,4 @@
-//! A skin vertex by vertex, for whoever poses it elsewhere: the numbers of the kernels in their order, so their bits.
+//! A skin vertex by vertex, for posing it elsewhere, such as on a GPU: the numbers of the kernels in their order, so their bits.
 
 use glam::Vec3;
 use toile_assets::limits::MAX_INFLUENCES;

@@ -1,4 +1,4 @@
-//! The recipe of a dressed shopper, which a recording carries along so that a replay makes the very same.
+//! The recipe of a dressed shopper, which a recording holds so that a replay makes the same one.
 
 use serde::{Deserialize, Serialize};
 use toile_assets::body::{Body, Measures, Sex};

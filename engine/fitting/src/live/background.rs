@@ -1,4 +1,4 @@
-//! One job at a time on a thread of its own, which nothing waits for.
+//! One job at a time on a thread of its own, for which nothing waits.
 
 use std::io;
 use std::thread::{self, JoinHandle};

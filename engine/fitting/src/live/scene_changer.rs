@@ -185,7 +185,7 @@ mod tests {
         }
     }
 
-    /// PhysicsThread and render as threads have them.
+    /// Physics and render as they run on threads.
     struct Threads {
         scene: LiveScene<Nth>,
         outfit: u64,

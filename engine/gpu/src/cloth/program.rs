@@ -35,7 +35,7 @@ pub struct StepProgram {
     pub after: Vec<Dispatch>,
 }
 
-/// WorkgroupTables of one kind, by number.
+/// Tables of workgroups of one kind, by number.
 struct WorkgroupTables {
     everyone: usize,
     bending: usize,

@@ -1,4 +1,4 @@
-//! The configuration: TOML whose every key is known, the only state that a kiosk has.
+//! The configuration, in TOML: the only state that a kiosk has. Unknown keys are refused.
 
 use std::net::SocketAddr;
 use std::ops::RangeInclusive;

@@ -1,4 +1,4 @@
-//! The service manager: notified when the service is ready and alive, and obeyed when it asks it to end.
+//! The service manager: notified when the service is ready and alive, and obeyed when it asks the service to end.
 
 use std::io;
 use std::sync::Arc;

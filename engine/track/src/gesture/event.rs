@@ -1,4 +1,4 @@
-//! What is recognised, and the longest silence that a gesture survives.
+//! What is recognised, and the longest gap between frames that a gesture survives.
 
 use super::trunk::Side;
 

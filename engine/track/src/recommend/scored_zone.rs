@@ -1,4 +1,4 @@
-//! A zone as a size is judged by it.
+//! A zone with its weight in judging a size.
 
 use super::offer::EaseRange;
 use crate::estimate::Estimate;

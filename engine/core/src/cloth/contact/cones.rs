@@ -1,4 +1,4 @@
-//! The capsules as kernels want them: a row a quantity, a place a capsule, made ready once a substep.
+//! The capsules in the layout of the kernels: one row a quantity, one place a capsule, prepared once a substep.
 
 use glam::Vec4;
 use toile_assets::limits::MAX_CAPSULES;

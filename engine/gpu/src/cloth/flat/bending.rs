@@ -1,4 +1,4 @@
-//! Bending: curvatures as sums of terms, and for each particle what pushes it, in the order in which the CPU adds it up.
+//! Bending: curvatures as sums of terms, and for each particle the forces on it, in the order in which the CPU adds it up.
 
 use toile_assets::garment::layout::{Bends, ConstraintRun, Hubs, OWNERS, OwnerShare};
 
