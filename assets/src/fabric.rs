@@ -9,7 +9,7 @@ use thiserror::Error;
 pub struct Fabric {
     /// The name by which garment files call it.
     pub name: String,
-    /// What a shopper reads.
+    /// Name for shoppers.
     pub title: String,
     /// Mass per area (kg/m2).
     pub density_kg_m2: f32,

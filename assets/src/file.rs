@@ -29,9 +29,9 @@ pub enum FileError {
     Refused {
         /// The file's path as the user gave it.
         path: String,
-        /// What it should be.
+        /// Kind of file that was expected.
         kind: FileKind,
-        /// What the system said.
+        /// Error of the operating system.
         reason: String,
     },
     /// A folder, a FIFO, a socket or a device.
@@ -39,7 +39,7 @@ pub enum FileError {
     NotRegular {
         /// The file's path as the user gave it.
         path: String,
-        /// What it should be.
+        /// Kind of file that was expected.
         kind: FileKind,
         /// What it is, with its article.
         found: &'static str,
@@ -50,7 +50,7 @@ pub enum FileError {
     TooLarge {
         /// The file's path as the user gave it.
         path: String,
-        /// What it should be.
+        /// Kind of file that was expected.
         kind: FileKind,
         /// Its size, where the system knows it.
         bytes: Option<u64>,
@@ -60,7 +60,7 @@ pub enum FileError {
     NotText {
         /// The file's path as the user gave it.
         path: String,
-        /// What it should be.
+        /// Kind of file that was expected.
         kind: FileKind,
     },
 }

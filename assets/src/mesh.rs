@@ -61,7 +61,7 @@ impl<const N: usize> Influences<N> {
         (out, pruned)
     }
 
-    /// Its influences of some weight.
+    /// Bones with a weight above 0, and their weights.
     pub fn iter(&self) -> impl Iterator<Item = (u8, f32)> + '_ {
         self.bones.iter().copied().zip(self.weights).filter(|(_, w)| *w != 0.0)
     }

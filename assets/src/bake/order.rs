@@ -31,7 +31,7 @@ pub struct ParticleOrder {
     pub source: Vec<u32>,
     /// The particle that each vertex became.
     pub particle: Vec<u32>,
-    /// Whose each particle is.
+    /// Owner (worker) of each particle `[particles]`.
     pub owner: Vec<u8>,
     /// Pieces that lie side by side.
     pub sides: Vec<ColumnGroup>,

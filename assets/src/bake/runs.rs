@@ -7,7 +7,7 @@ use crate::garment::layout::{ConstraintRun, ConstraintSet, OWNERS, OwnerShare, T
 /// Runs shorter than this are not worth a vector; their constraints are loose.
 const LEAST_RUN: usize = 3;
 
-/// Which constraint is where.
+/// Place of each constraint in the layout.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunPlaces {
     /// The constraint of each parameter place.

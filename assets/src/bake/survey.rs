@@ -42,7 +42,7 @@ pub struct MeshSurvey {
     pub triangles: usize,
     /// Vertices that do not move.
     pub fixed: usize,
-    /// What the fibers cover.
+    /// Edges that the fibers cover.
     pub coverage: Coverage,
     /// Which fibers are solved how, those between fixed vertices left out.
     pub solvers: [SolverCount; 3],
@@ -52,7 +52,7 @@ pub struct MeshSurvey {
     pub stencils: [usize; 3],
     /// What is likely to look or to run worse than it could; one sentence each, with its cure.
     pub warnings: Vec<String>,
-    /// What else is worth knowing.
+    /// Remarks that are no warnings, one sentence each.
     pub notes: Vec<String>,
 }
 

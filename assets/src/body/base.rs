@@ -21,7 +21,7 @@ use crate::skeleton::Skeleton;
 /// closed manifold: the vertices of a seam have one position and several texture points.
 #[derive(Debug, Clone)]
 pub struct BaseBody {
-    /// Whose body it is.
+    /// Sex of the body.
     pub sex: Sex,
     /// Surface points (m) `[vertices]`.
     pub positions: Vec<Vec3>,

@@ -66,7 +66,7 @@ pub(super) struct BodyModel {
     drawn_stature: f64,
 }
 
-/// What a calibration came to.
+/// Result of a calibration.
 pub(super) struct Calibrated {
     pub at: ParameterVector,
     pub setting: Setting,

@@ -288,7 +288,7 @@ impl<V: Vocabulary> Wanted<V> {
 pub struct Readings(pub(super) [f32; READINGS]);
 
 impl Readings {
-    /// One measure (m).
+    /// Value of one measure (m).
     pub fn of<V: Vocabulary>(&self, measure: V) -> f32 {
         self.0[measure.reading().index()]
     }

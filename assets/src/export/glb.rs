@@ -19,14 +19,14 @@ const SKIN_SRGB: [f32; 3] = [0.797, 0.754, 0.711];
 const SKIN_ROUGHNESS: f32 = 0.6;
 const CLOTH_ROUGHNESS: f32 = 0.9;
 
-/// What is exported.
+/// A body with its garments, to be exported.
 #[derive(Debug, Clone, Copy)]
 pub struct DressedBody<'a> {
     /// The body in its rest pose.
     pub body: &'a Body,
     /// The pose, as skin matrices (rest to world, rigid) `[BONES]`; `None` is the rest pose.
     pub palette: Option<&'a [Affine3A; BONES]>,
-    /// What it wears, inner first.
+    /// Garments on it, inner first.
     pub worn: &'a [WornGarment<'a>],
 }
 
@@ -39,7 +39,7 @@ pub struct WornGarment<'a> {
     pub positions: &'a [Vec3],
     /// Indices into `positions` `[triangles]`.
     pub triangles: &'a [[u32; 3]],
-    /// Its colour, sRGB 0..1.
+    /// Colour of the garment, sRGB 0..1.
     pub srgb: [f32; 3],
 }
 

@@ -45,7 +45,7 @@ pub enum MeshError {
     },
     /// Three or more faces at one edge, or two that run the same way round.
     NonManifold {
-        /// One end, from 0.
+        /// Vertex at one end, from 0.
         a: u32,
         /// Other end, from 0.
         b: u32,

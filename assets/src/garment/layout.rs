@@ -23,7 +23,7 @@ pub struct ConstraintRun<const K: usize> {
     pub first: [u32; K],
     /// Number of constraints.
     pub len: u32,
-    /// Where its parameters begin.
+    /// Index of its first parameters.
     pub at: u32,
     /// Number of its first constraint among all.
     pub serial: u32,
@@ -87,7 +87,7 @@ pub struct ConstraintSet {
     pub direction: Direction,
     /// Whether its constraints touch particles of both owners and nothing keeps them apart: one worker's then.
     pub crosses: bool,
-    /// What each owner solves.
+    /// Share of each owner (worker).
     pub shares: [OwnerShare; OWNERS],
 }
 
@@ -275,7 +275,7 @@ pub struct BundleRow {
 /// Fibers side by side, longest first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FiberBundle {
-    /// How it is solved.
+    /// Solver of its fibers.
     pub solver: Solver,
     /// Owner (worker) that solves it.
     pub owner: u8,
@@ -313,7 +313,7 @@ pub const ENDED: f32 = 1e20;
 /// Fibers of equal length by index list: hoops, and whatever crosses another fiber of its direction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FiberList {
-    /// How it is solved.
+    /// Solver of its fibers.
     pub solver: Solver,
     /// Direction of the threads that it follows.
     pub direction: Direction,
@@ -374,7 +374,7 @@ pub struct Layout {
     pub tethers: Tethers,
     /// The particles that each owner has, as ranges `(first, len)`.
     pub spans: [Vec<(u32, u32)>; OWNERS],
-    /// Whose each particle is.
+    /// Owner (worker) of each particle `[particles]`.
     pub owner: Box<[u8]>,
 }
 

@@ -56,7 +56,7 @@ pub struct Garment {
 }
 
 impl Garment {
-    /// What holds the particles together.
+    /// The constraints between its particles, as they lie in memory.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }

@@ -18,7 +18,7 @@ pub struct ScenePlane {
     pub normal: Vec3,
 }
 
-/// What moves spheres.
+/// Source of the spheres' motion.
 #[derive(Debug, Clone, PartialEq)]
 enum SphereMotion {
     Track(Track),

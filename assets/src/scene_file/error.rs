@@ -14,7 +14,7 @@ pub enum SceneError {
     Read {
         /// The file's path as the user gave it.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the operating system.
         reason: String,
     },
     /// Something in it is wrong.

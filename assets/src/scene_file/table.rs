@@ -15,9 +15,9 @@ use crate::toml_keys;
 pub(super) struct SceneTable<'t> {
     document: SceneDocument<'t>,
     entries: &'t DeTable<'t>,
-    /// Its name in the schema.
+    /// Name of the table in the schema.
     name: &'static str,
-    /// Where it stands (byte).
+    /// Where the table begins in the text (byte).
     at: usize,
 }
 

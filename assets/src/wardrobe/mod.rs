@@ -49,7 +49,7 @@ pub enum WardrobeError {
     Style {
         /// Name of the garment.
         name: String,
-        /// What is wrong.
+        /// What is wrong with the file.
         reason: String,
     },
     /// A size given for a mesh that has none.
@@ -65,7 +65,7 @@ pub enum WardrobeError {
     Mesh {
         /// The garment or file.
         name: String,
-        /// What is wrong with it.
+        /// What is wrong with the mesh.
         source: MeshError,
     },
     /// An OBJ file that cannot be read.

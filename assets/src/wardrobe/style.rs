@@ -11,7 +11,7 @@ use crate::sizes::{GarmentKind, Girth};
 pub struct Style {
     /// Name by which it is asked for.
     pub name: String,
-    /// What a shopper reads.
+    /// Name for shoppers.
     pub title: String,
     /// What it is; decides its primary measures.
     pub kind: GarmentKind,

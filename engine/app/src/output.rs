@@ -21,7 +21,7 @@ pub enum OutputError {
     Folder {
         /// Path of the output folder.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         reason: io::Error,
     },
     /// A file in the folder cannot be written.
@@ -31,7 +31,7 @@ pub enum OutputError {
     File {
         /// The file under its final name.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         reason: io::Error,
     },
     /// A path that ends in no file name.
@@ -152,7 +152,7 @@ pub struct OutputFolder {
     files: Vec<(PathBuf, PathBuf)>,
     /// Their names; a name may be staged again.
     names: BTreeSet<String>,
-    /// What must not be overwritten.
+    /// Input files, which must not be overwritten.
     inputs: Inputs,
 }
 

@@ -54,7 +54,7 @@ impl<T> Document<T> {
 pub struct MeasuredLength {
     /// The value (mm).
     pub value: f64,
-    /// Its standard uncertainty (mm).
+    /// Standard uncertainty (mm).
     pub sigma: f64,
 }
 
@@ -89,11 +89,11 @@ pub struct SessionReport {
 /// How one zone of a garment fits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ZoneFitReport {
-    /// Which part of the body.
+    /// Name of the zone, such as `waist`.
     pub zone: String,
     /// Garment's girth less the body's (mm).
     pub ease_mm: f64,
-    /// Its standard uncertainty (mm).
+    /// Standard uncertainty of the ease (mm).
     pub sigma_mm: f64,
     /// `tight`, `good` or `loose`.
     pub verdict: String,
@@ -104,7 +104,7 @@ pub struct ZoneFitReport {
 /// A size with its probability.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SizeChance {
-    /// What its label says.
+    /// Code of the size.
     pub size: String,
     /// How likely it is the best one (0..1).
     pub probability: f64,
@@ -126,7 +126,7 @@ pub struct TapeMeasure {
 pub struct Recommendation {
     /// The garment's name.
     pub garment: String,
-    /// Its size, by EN 13402.
+    /// Code of its size.
     pub size: String,
     /// How likely this size is the best one, given how well the shopper could be measured (0..1).
     pub probability: f64,
@@ -177,7 +177,7 @@ pub struct Penetration {
     pub max: f64,
 }
 
-/// What the physics did.
+/// Settings, times and errors of the physics.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct PhysicsReport {
     /// Steps a second of simulated time.
@@ -217,7 +217,7 @@ pub struct TryOn {
     pub recommendation: Recommendation,
     /// The sizes of the others, in the order in which they were asked for.
     pub others: Vec<Recommendation>,
-    /// What the physics did.
+    /// Settings, times and errors of the physics.
     pub physics: PhysicsReport,
     /// Hash of the last state, 16 hexadecimal digits; the same input gives the same.
     pub state_hash: String,
@@ -264,7 +264,7 @@ pub struct DefinedMeasure {
     pub definition: &'static str,
     /// The value (mm).
     pub value: f64,
-    /// Its standard deviation (mm).
+    /// Standard deviation (mm).
     pub sigma: f64,
 }
 

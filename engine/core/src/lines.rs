@@ -39,7 +39,7 @@ pub struct Line {
     pub colour: Vec3,
 }
 
-/// What lines can show.
+/// Kinds of lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// What holds the cloth together, coloured by what solves it.

@@ -121,7 +121,7 @@ impl Backends {
         ["nothing", "cpu", "gpu", "both"][usize::from(self.known.used.load(Ordering::Relaxed) & 3)]
     }
 
-    /// What was asked for.
+    /// Backend that was asked for.
     pub fn asked(&self) -> Backend {
         self.backend
     }
@@ -184,7 +184,7 @@ impl ClothStepper {
         self.fallback.as_deref()
     }
 
-    /// What [`Backend::Auto`] was decided by.
+    /// Times by which [`Backend::Auto`] was decided.
     pub fn measured(&self) -> Option<BackendTimes> {
         self.measured
     }

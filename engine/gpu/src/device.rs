@@ -48,7 +48,7 @@ pub enum GpuError {
     Refused {
         /// Name of the adapter.
         adapter: String,
-        /// What the driver says.
+        /// Error of the driver.
         reason: String,
     },
     /// Something that only the CPU computes.
@@ -64,7 +64,7 @@ pub enum GpuError {
     Lost(String),
 }
 
-/// Which adapter is wanted.
+/// Choice of the adapter.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum AdapterChoice {
     /// The fastest kind: a card of its own, a processor's graphics, a virtual one, a driver on the processor.
@@ -119,7 +119,7 @@ impl DeviceNeeds {
 pub struct Device {
     /// Where surfaces are made.
     pub instance: Instance,
-    /// What it was opened on.
+    /// Adapter that it was opened on.
     pub opened_on: wgpu::Adapter,
     /// What makes buffers, textures and pipelines.
     pub device: wgpu::Device,

@@ -13,7 +13,7 @@ pub(crate) const LANES: &str = include_str!("shaders/lanes.wgsl");
 /// A shader's text and bindings.
 #[derive(Debug, Clone, Copy)]
 pub struct Shader {
-    /// Its file's name.
+    /// Name of its file.
     pub name: &'static str,
     /// Shared snippets, then its own text.
     pub(crate) texts: &'static [&'static str],

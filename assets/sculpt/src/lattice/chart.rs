@@ -29,7 +29,7 @@ pub enum Chart {
 pub const CHARTS: usize = 16;
 
 impl Chart {
-    /// Its number, below [`CHARTS`].
+    /// Number of the chart, below [`CHARTS`].
     pub fn number(self) -> u8 {
         match self {
             Self::Front => 0,

@@ -110,7 +110,7 @@ impl<'a> FiberCandidates<'a> {
         if self.along(e) > 0.0 { edge.a } else { edge.b }
     }
 
-    /// Where it leads.
+    /// Vertex at which an edge ends, along the threads.
     fn head(&self, e: u32) -> u32 {
         let edge = &self.edges[e as usize];
         if self.along(e) > 0.0 { edge.b } else { edge.a }

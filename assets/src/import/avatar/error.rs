@@ -18,7 +18,7 @@ pub enum Flaw {
     /// The file cannot be read.
     #[error("it cannot be read ({reason}); give the path of a readable file")]
     Read {
-        /// What the system says.
+        /// Error of the operating system.
         reason: String,
     },
     /// The file is larger than [`MAX_BODY_BYTES`].
@@ -177,11 +177,11 @@ pub enum Flaw {
     Hole {
         /// Open edges outside of the head.
         count: usize,
-        /// Where it is (m).
+        /// Coordinate x of the place (m).
         x: f32,
-        /// Where it is (m).
+        /// Coordinate y of the place (m).
         y: f32,
-        /// Where it is (m).
+        /// Coordinate z of the place (m).
         z: f32,
     },
     /// A level of the body that is not on the mesh.

@@ -60,11 +60,11 @@ pub struct ImportedBody {
 /// What was found in a file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ImportReport {
-    /// How its joints are named.
+    /// Dialect of its joints' names.
     pub dialect: &'static str,
     /// For each of our joints that was found: its H-Anim name, and the file's own.
     pub joints: Vec<(String, String)>,
-    /// What pruning the weights cost.
+    /// Weight lost by pruning influences.
     pub pruned: PruningLoss,
     /// Connected pieces of the surface.
     pub parts: usize,

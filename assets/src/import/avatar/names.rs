@@ -8,7 +8,7 @@ use crate::skeleton::{JOINTS, Joint};
 /// How one family of tools names the joints.
 #[derive(Debug)]
 pub struct NamingDialect {
-    /// What the family is called.
+    /// Name of the dialect.
     pub title: &'static str,
     /// Names of each joint, in the order of [`Joint::ALL`]; `@` stands for the side and is filled in by `sides`.
     names: [&'static [&'static str]; CENTRE + ONE_SIDE],

@@ -13,7 +13,7 @@ pub struct Page {
     pub text: Vec<u8>,
 }
 
-/// What an exit code says.
+/// Meaning of each exit code.
 const CODES: [(Code, &str); 7] = [
     (Code::Ok, "The work was done."),
     (Code::Usage, "The command line was not understood."),

@@ -85,7 +85,7 @@ pub struct BakeReport {
     pub substeps: u32,
     /// What is likely to look or to run worse than it could.
     pub warnings: Vec<String>,
-    /// What else is worth knowing.
+    /// Remarks that are no warnings, one sentence each.
     pub notes: Vec<String>,
 }
 
@@ -154,11 +154,11 @@ pub struct SetCounts {
     pub shear: usize,
     /// Edges of these links.
     pub shear_edges: usize,
-    /// Of links along the weft.
+    /// Sets of links along the weft.
     pub weft: usize,
     /// Bundles of fibers side by side.
     pub bundles: usize,
-    /// Of fibers by index list.
+    /// Sets of fibers by index list.
     pub crossing: usize,
 }
 

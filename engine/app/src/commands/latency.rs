@@ -76,7 +76,7 @@ pub struct LatencyArgs {
 }
 
 impl LatencyArgs {
-    /// What the loop runs under.
+    /// Options of the run.
     fn options(&self) -> LatencyOptions {
         let load = match self.load {
             None => 0,

@@ -34,7 +34,7 @@ use crate::heap::counted;
 use crate::report::Document;
 use crate::terminal::{self, Paint};
 
-/// What is planned.
+/// The scene that is planned.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PlanScene {
     /// A scene of `toile run`.

@@ -67,7 +67,7 @@ impl Recorded {
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReplayReport {
-    /// What was on stage.
+    /// The scene that was recorded.
     pub scene: Recorded,
     /// Workers of a step, now.
     pub workers: usize,

@@ -64,7 +64,7 @@ impl TortureArgs {
 /// The report as JSON has it.
 #[derive(Debug, Serialize)]
 struct TortureDocument {
-    /// What the cases came to.
+    /// Results of the cases.
     #[serde(flatten)]
     report: TortureReport,
     /// Time that it took (s).

@@ -108,12 +108,12 @@ impl TryOnArgs {
     }
 }
 
-/// Whose body is shown.
+/// The body that wears the garments.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Wearer {
     /// One of ours, of the measured size.
     Ours(Sex),
-    /// One that others made.
+    /// An imported body, by the path of its file.
     File(PathBuf),
 }
 

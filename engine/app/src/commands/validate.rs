@@ -53,7 +53,7 @@ fn levels() -> Vec<&'static str> {
 }
 
 impl ValidateArgs {
-    /// What is run.
+    /// Options of the run.
     fn options(&self) -> ValidationOptions {
         let wanted = |level: &Level| self.quality == ALL_LEVELS || level.name() == self.quality;
         ValidationOptions {

@@ -11,7 +11,7 @@ use super::Followed;
 pub struct BodyReport {
     /// The file or folder.
     pub file: PathBuf,
-    /// How its joints are named.
+    /// Dialect of its joints' names.
     pub dialect: &'static str,
     /// Vertices of the mesh.
     pub vertices: usize,
@@ -57,7 +57,7 @@ pub struct JointFound {
     pub named: String,
 }
 
-/// What pruning the weights cost.
+/// Weight lost by pruning influences.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Influences {
     /// Most influences of a vertex in the file.

@@ -16,7 +16,7 @@ pub struct GesturesReport {
     pub hand_us: f64,
     /// Gestures, by condition.
     pub gestures: Vec<GestureRow>,
-    /// What is no gesture.
+    /// Acts that are no gesture.
     pub others: Vec<OtherRow>,
     /// Hands open and closed, by distance.
     pub hands: Vec<HandRow>,
@@ -50,7 +50,7 @@ pub struct OtherRow {
     pub minutes: f32,
     /// Gestures that were reported though none was made.
     pub false_events: u32,
-    /// The same a minute.
+    /// False events a minute.
     pub false_per_minute: f32,
 }
 

@@ -11,7 +11,7 @@ use super::{StepMicros, StrainReport};
 /// One garment of `toile run`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunGarment {
-    /// Its name in the scene.
+    /// Name in the scene.
     pub name: String,
     /// Vertices of the user's mesh.
     pub vertices: usize,

@@ -28,7 +28,7 @@ const SPEED_TAU: f32 = 0.07;
 const QUIET: f32 = 0.3;
 const LEARNING: f32 = 0.1;
 
-/// One foot's state.
+/// State of one foot.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Plant {
     /// Where the ankle was last seen (m), and how fast it moves (m/s).

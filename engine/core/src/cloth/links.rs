@@ -41,11 +41,11 @@ pub struct SolveLinks<'a> {
     pub columns: ParticleColumns<'a>,
     /// All links of the garment.
     pub links: &'a Links,
-    /// What [`prepare`] made.
+    /// Gain of each link, made by [`prepare`].
     pub gain: &'a [f32],
     /// The set that is solved now.
     pub set: &'a ConstraintSet,
-    /// Whose share of it.
+    /// Owner whose share is solved.
     pub owner: usize,
     /// Damping time over the substep (1).
     pub gamma: f32,

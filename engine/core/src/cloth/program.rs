@@ -92,7 +92,7 @@ impl Bending {
         self.sets == 0
     }
 
-    /// Its part of the program.
+    /// Stages of bending in the program.
     pub fn program(self) -> impl Iterator<Item = Stage> {
         let Self { sets, stages } = self;
         let plain = if stages < 2 { sets } else { 0 };
@@ -173,7 +173,7 @@ impl Program {
         }
     }
 
-    /// All of them in order.
+    /// All stages in order, each with the number of its substep.
     pub fn stages(&self) -> impl Iterator<Item = (Stage, u32)> {
         (0..self.len()).map(|phase| self.stage(phase))
     }

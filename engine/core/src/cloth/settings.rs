@@ -25,7 +25,7 @@ pub enum Quality {
 }
 
 impl Quality {
-    /// All of them, cheapest first.
+    /// Every quality, cheapest first.
     pub const ALL: [Self; 3] = [Self::Draft, Self::Shop, Self::Fine];
 
     /// Its name on the command line.

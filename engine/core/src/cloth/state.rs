@@ -119,7 +119,7 @@ impl State {
     }
 }
 
-/// One particle's vector.
+/// Reads the vector of one particle.
 #[inline(always)]
 pub fn get(from: [WriteColumn<'_>; 3], i: usize) -> Vec3A {
     Vec3A::new(from[0].get(i), from[1].get(i), from[2].get(i))

@@ -29,7 +29,7 @@ pub struct StepWork<'a> {
     pub step: &'a Step<'a>,
     /// What was prepared for the settings.
     pub prepared: &'a Prepared,
-    /// What the shares write to.
+    /// Columns that the shares write to.
     pub columns: Shared<WorkColumns<'a>>,
     /// The triangles that feel the wind, and the wind.
     pub faces: Option<(&'a wind::Faces, Wind)>,

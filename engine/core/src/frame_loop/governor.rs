@@ -90,7 +90,7 @@ impl Governor {
         &LADDER[usize::from(self.rung)]
     }
 
-    /// Its place in [`LADDER`].
+    /// Index of the rung in [`LADDER`].
     pub fn place(&self) -> u8 {
         self.rung
     }

@@ -17,7 +17,7 @@ pub struct Capacity {
     pub bound: usize,
     /// The most that was in it at once.
     pub high_water: usize,
-    /// What did not fit.
+    /// Number of entries that did not fit.
     pub lost: u64,
 }
 

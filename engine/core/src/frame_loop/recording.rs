@@ -27,7 +27,7 @@ const MOST_TEXT: usize = 1 << 20;
 /// Longest text of a note (bytes): what a record holds beside the joints.
 pub const MOST_NOTE: usize = 8 * (u8::MAX as usize - 2 - 2 * JOINTS);
 
-/// What happened, in order.
+/// An entry of a recording.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Entry {
     /// The joints in which the shopper was dressed, before the first step.
@@ -74,7 +74,7 @@ pub struct Recording {
     pub text: String,
     /// What was noted of scenes, in order.
     pub notes: Vec<SceneNote>,
-    /// What happened, in order.
+    /// Entries, in order.
     pub entries: Vec<Entry>,
 }
 

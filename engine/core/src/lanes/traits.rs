@@ -102,7 +102,7 @@ pub trait Lanes: Numbers {
 
 /// A kernel for any lanes. `run` has to be `#[inline(always)]`, or it is not compiled for the width it is called at.
 pub trait Kernel {
-    /// What it gives back.
+    /// Result of the kernel.
     type Out;
     /// The kernel at one width.
     fn run<L: Lanes>(self) -> Self::Out;

@@ -18,7 +18,7 @@ use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, V3, WriteColumn, reciprocal_
 /// Square of the length below which a normal is taken for collapsed.
 const COLLAPSED: f32 = 1e-24;
 
-/// What both kernels work on.
+/// Input of both kernels.
 #[derive(Clone, Copy)]
 pub(super) struct SkinSurface<'a> {
     pub runs: &'a [BoneRun],

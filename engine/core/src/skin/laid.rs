@@ -9,11 +9,11 @@ use crate::lanes::MOST;
 /// A vertex as the kernels have it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaidVertex {
-    /// Its number in the mesh.
+    /// Index in the mesh.
     pub vertex: usize,
     /// Which of [`SkinningJob::runs`] it belongs to.
     pub run: usize,
-    /// Its place at rest (m).
+    /// Position in the rest pose (m).
     pub position: Vec3,
     /// Its unit normal at rest, or zero.
     pub normal: Vec3,

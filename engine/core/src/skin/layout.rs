@@ -23,7 +23,7 @@ pub(super) struct BoneRun {
     bones: BoneSet,
     /// How many bones there are.
     pub count: usize,
-    /// Where its rest data begins.
+    /// Index of its first rest data in [`SkinLayout::rest`].
     data: usize,
     /// Its first block and how many there are.
     pub first: usize,

@@ -44,7 +44,7 @@ pub struct Parts {
     pub rig: Rig,
     /// The garments, inner first.
     pub garments: Vec<Garment>,
-    /// How they are stepped.
+    /// Settings of the cloth.
     pub settings: Settings,
 }
 

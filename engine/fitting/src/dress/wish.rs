@@ -18,7 +18,7 @@ use crate::FittingError;
 /// Fabric of a mesh that a user brings without saying what it is made of.
 const MESH_FABRIC: &str = "cotton-lawn";
 
-/// What is asked for.
+/// Garments, size, quality and sex that are asked for.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Wish {
     /// Garments of the wardrobe or mesh files, inner first; empty is the first of the wardrobe.
@@ -34,7 +34,7 @@ pub struct Wish {
 /// A garment to wear.
 #[derive(Debug, Clone)]
 pub enum Choice {
-    /// One of the wardrobe.
+    /// A garment of the wardrobe.
     Style(Box<Style>),
     /// A mesh of the user's own.
     Mesh(PathBuf),

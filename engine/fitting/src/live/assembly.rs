@@ -23,13 +23,13 @@ use super::running::Loops;
 use super::scene_changer::DressedScene;
 use super::watchdog::Progress;
 
-/// What the loop begins with.
+/// Parts that the loop is started with.
 pub struct LoopParts<S, E: Renderer, F, A> {
     /// Whoever is shown first.
     pub first: DressedScene<S, E::Outfit>,
     /// The renderer, which knows the outfit of the first already: that of `first` is what it leaves in its place.
     pub renderer: E,
-    /// What the sensor reads.
+    /// Source of sensor frames.
     pub source: F,
     /// What the system counts of the physics thread.
     pub account: A,
@@ -64,11 +64,11 @@ pub type RenderLoop<E, C> = WatchedRenderer<E, C>;
 pub struct LoopQueues {
     /// Events of the loop.
     pub events: Receiver<Event>,
-    /// What each step came to.
+    /// A report of each step.
     pub step_reports: Receiver<StepReport>,
     /// What the sensor saw, as it came and filtered.
     pub frames: Receiver<ObservedFrame>,
-    /// What the watchdog looks at.
+    /// Counts of steps and pictures, for the watchdog.
     pub progress: Arc<Progress>,
 }
 

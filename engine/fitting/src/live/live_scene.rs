@@ -23,7 +23,7 @@ pub const STEP_REPORTS: usize = 1024;
 /// Name of this capacity in reports and warnings.
 pub const STEP_REPORTS_NAME: &str = "STEP_REPORTS (queue of step reports)";
 
-/// What one step came to.
+/// Report of one step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StepReport {
     /// From its begin to its publication (ns).
@@ -39,9 +39,9 @@ pub struct StepReport {
 /// What stays where scenes come and go.
 #[derive(Debug)]
 struct StepReporting {
-    /// What each step came to.
+    /// Queue of the step reports.
     reports: Sender<StepReport>,
-    /// What the watchdog looks at.
+    /// Counts of steps and pictures, for the watchdog.
     progress: Arc<Progress>,
     /// Steps that were rolled back by those who have left: their own counts begin at 0.
     past: u64,

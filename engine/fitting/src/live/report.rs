@@ -76,7 +76,7 @@ pub struct ThreadPlacement {
     pub thread: &'static str,
     /// The core that it was pinned to.
     pub core: Option<usize>,
-    /// Its real-time priority.
+    /// Real-time priority of the thread.
     pub priority: Option<u8>,
     /// What it did not get, and the cure.
     pub refused: Vec<String>,
@@ -97,7 +97,7 @@ pub struct QueueUse {
     pub bound: usize,
     /// The most that was in it.
     pub high_water: usize,
-    /// What did not fit.
+    /// Number of entries that did not fit.
     pub lost: u64,
 }
 

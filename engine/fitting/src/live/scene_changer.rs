@@ -19,7 +19,7 @@ use crate::dress::dressed::Dressed;
 pub struct DressedScene<S, O> {
     /// The scene that is stepped.
     pub scene: S,
-    /// Where its snapshots come out.
+    /// Reads the snapshots of the scene.
     pub reader: Reader<Snapshot>,
     /// What the renderer has to know of it.
     pub outfit: O,

@@ -69,7 +69,7 @@ fn texts() -> [String; 7] {
     ]
 }
 
-/// What one cloth took.
+/// Measured times of one cloth.
 struct Sample {
     work: Work,
     /// Time of each stage (us).

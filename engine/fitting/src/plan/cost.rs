@@ -8,7 +8,7 @@ use super::work::{KINDS, STAGES, Work};
 /// Stages of a step, as the engine's budgets name them.
 const STEP_STAGES: usize = toile_engine::meter::STAGES.len();
 
-/// What this machine takes.
+/// Times of units of work on this machine.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Costs {
     /// Time of a unit (us), in the order of [`super::work::UNITS`].
@@ -21,7 +21,7 @@ pub struct Costs {
     pub body_us: [f64; STEP_STAGES],
 }
 
-/// What one garment takes (us).
+/// Time of a step of one garment (us).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct GarmentTime {
     /// By stage, both shares on one core.

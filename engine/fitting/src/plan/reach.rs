@@ -36,7 +36,7 @@ pub struct Reach {
     pub garment: String,
     /// The part of the body that carries it.
     pub part: &'static str,
-    /// Its particles that move.
+    /// Number of its particles that move.
     pub particles: usize,
     /// Capsules that the part table leaves it.
     pub by_part: u32,

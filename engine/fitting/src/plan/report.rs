@@ -62,7 +62,7 @@ pub struct GarmentPlan {
 pub struct StagePlan {
     /// Name of the stage.
     pub stage: &'static str,
-    /// What it may take (us).
+    /// Budget of the stage (us).
     pub budget_us: f64,
     /// What it is predicted to take, half of the time more (us).
     pub predicted_us: f64,
@@ -132,7 +132,7 @@ pub struct Plan {
     pub period_us: f64,
     /// Garments of the scene, inner first.
     pub garments: Vec<GarmentPlan>,
-    /// What can touch what.
+    /// Colliders that each part of a garment can touch.
     pub reach: Vec<Reach>,
     /// Memory of each part.
     pub memory: Vec<Memory>,

@@ -34,7 +34,7 @@ pub enum Motion {
 /// A scene to plan: garments, colliders, and how they move.
 #[derive(Debug, Clone)]
 pub struct Scene {
-    /// What reports call it.
+    /// Name in reports.
     pub name: String,
     /// The garments, inner first.
     pub garments: Vec<Garment>,

@@ -16,7 +16,7 @@ pub struct Verdict {
     pub step_us: f64,
     /// What it may take, so that a step of twice the usual length is still in time (us).
     pub budget_us: f64,
-    /// What there is (us).
+    /// Time between two steps (us).
     pub period_us: f64,
     /// Whether it is within the budget.
     pub within_budget: bool,

@@ -38,7 +38,7 @@ pub struct Weighed {
     pub us: f64,
 }
 
-/// What playing the scene showed.
+/// Figures from playing the scene.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Played {
     /// Time of the cloth's part of a step, median and 99 % (us), with the workers of the plan.

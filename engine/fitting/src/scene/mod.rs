@@ -40,7 +40,7 @@ pub enum RunError {
     Mesh {
         /// Name of the garment.
         name: String,
-        /// What is wrong with it.
+        /// What is wrong with the mesh.
         source: MeshError,
     },
     /// Colliders that the engine does not take.

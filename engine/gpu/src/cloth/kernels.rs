@@ -135,7 +135,7 @@ impl Kernel {
         matches!(self, Self::StageCombine | Self::StageCurvatures | Self::StageForces)
     }
 
-    /// Its number among [`Kernel::ALL`].
+    /// Index of the kernel in [`Kernel::ALL`].
     pub fn number(self) -> usize {
         self as usize
     }

@@ -115,7 +115,7 @@ pub fn without_window(_: KioskRun<'_>) -> Result<KioskReport, KioskError> {
 
 /// A run of the kiosk: its options, its configuration, and what it was started with.
 pub struct KioskRun<'a> {
-    /// What is asked of it.
+    /// Options of the command line.
     pub options: &'a KioskOptions,
     /// The configuration that was read.
     pub config: &'a Config,

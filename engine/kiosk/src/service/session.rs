@@ -21,7 +21,7 @@ impl SessionState {
     /// All of them, in the order of a session.
     pub const ALL: [Self; 4] = [Self::Attract, Self::Measuring, Self::TryOn, Self::Left];
 
-    /// Its name in reports.
+    /// Name of the state in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Attract => "attract",

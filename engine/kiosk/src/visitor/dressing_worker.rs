@@ -30,13 +30,13 @@ pub type DrapedFrame = (Frame, Snapshot);
 /// Somebody who was measured, in the pose in which they are dressed.
 #[derive(Debug, Clone)]
 pub struct MeasuredVisitor {
-    /// What was measured of them.
+    /// Their measures.
     pub known: VisitorMeasures,
     /// The joints in which they are dressed.
     pub pose: Joints,
 }
 
-/// What is to be done.
+/// A job for the dressing worker.
 #[derive(Debug, Clone)]
 pub enum DressingJob {
     /// Measure somebody, seated or standing.
@@ -49,7 +49,7 @@ pub enum DressingJob {
     Snap(Box<MeasuredVisitor>, Outfit, f32),
 }
 
-/// What became of a job.
+/// Result of a job.
 pub enum JobResult {
     /// The measures of somebody.
     Measured(Box<VisitorMeasures>),

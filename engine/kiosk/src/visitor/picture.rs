@@ -19,7 +19,7 @@ pub const SHADES: usize = 16;
 /// are held still and near.
 pub const MOST_LINK: usize = 2_071;
 
-/// What the link begins with.
+/// Beginning of the link.
 const PREFIX: &str = "data:image/png;base64,";
 
 /// A picture before it is one: three bytes a pixel, rows from the top.

@@ -1,7 +1,7 @@
 //! Screen: everything that the display shows at a moment, as data. The window paints it, a test reads it; the painter decides neither
 //! the words nor their order.
 
-/// Which page is shown.
+/// Pages of the kiosk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Page {
     /// Nobody is there: what the mirror can do, in turn.
@@ -108,7 +108,7 @@ pub enum ControlStyle {
 /// Something that can be pressed, by finger, mouse, key or gesture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Control {
-    /// What it asks for.
+    /// Action of the control.
     pub action: Action,
     /// The words on it.
     pub label: String,

@@ -58,7 +58,7 @@ impl VisitorSetup {
         Ok(Self { model, texts: Texts::load()?, mount, context, mark: display.mark_m })
     }
 
-    /// What is shown first.
+    /// The screen that is shown first.
     pub fn first(&self) -> Screen {
         Screen::of(&self.model, &self.texts, &self.mount)
     }

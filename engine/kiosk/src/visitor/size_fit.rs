@@ -91,7 +91,7 @@ impl VisitorMeasures {
         Self { measured, missing, seated, count, population: Population::Mixed }
     }
 
-    /// What a girth rests on.
+    /// How a girth was obtained: seen, from bones, or guessed.
     pub fn basis(&self, zone: Girth) -> MeasureBasis {
         if self.missing.contains(&zone.into()) {
             MeasureBasis::Guessed
@@ -163,7 +163,7 @@ pub struct ZoneFit {
     pub zone: Girth,
     /// Whether the size is chosen by this zone.
     pub primary: bool,
-    /// How it feels.
+    /// How the zone feels, in one of seven words.
     pub feel: Feel,
     /// How it may feel too: what the ease less or more its error comes to, where that is comfortable when this is not or the
     /// other way round.

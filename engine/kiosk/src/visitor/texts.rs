@@ -30,7 +30,7 @@ impl Language {
     pub const ALL: [Self; 6] =
         [Self::English, Self::German, Self::French, Self::Spanish, Self::Turkish, Self::Japanese];
 
-    /// Its tag (BCP 47).
+    /// Language tag (BCP 47).
     pub const fn tag(self) -> &'static str {
         match self {
             Self::English => "en",
@@ -47,7 +47,7 @@ impl Language {
         Self::ALL.into_iter().find(|language| language.tag() == tag)
     }
 
-    /// What is said in it.
+    /// Text of its Fluent file.
     pub const fn text(self) -> &'static str {
         match self {
             Self::English => include_str!("../../texts/en.ftl"),
@@ -134,7 +134,7 @@ pub struct Translation<'a> {
 }
 
 impl Translation<'_> {
-    /// Which language it is.
+    /// Language of the texts.
     pub fn language(&self) -> Language {
         self.language
     }

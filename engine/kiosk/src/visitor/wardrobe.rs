@@ -58,7 +58,7 @@ impl FittingLevel {
     pub const ALL: [Self; 7] =
         [Self::Neck, Self::Shoulders, Self::Bust, Self::Underbust, Self::Waist, Self::Crotch, Self::Feet];
 
-    /// What texts select it by.
+    /// Name by which texts select it.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Neck => "neck",
@@ -134,7 +134,7 @@ pub struct WardrobeItem {
     pub layer: Layer,
     /// Its place in the layer: what is tucked in comes first.
     place: u8,
-    /// Where it is held.
+    /// Level of the body at which it is held.
     pub held: FittingLevel,
     covers: &'static [BodyHalf],
 }
@@ -185,7 +185,7 @@ fn palette(kind: GarmentKind, own: [f32; 3]) -> Vec<Colour> {
 /// A garment that is worn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct WornItem {
-    /// Its place in the wardrobe.
+    /// Index in the wardrobe.
     pub item: usize,
     /// The place of its size among those that are made.
     pub size: usize,

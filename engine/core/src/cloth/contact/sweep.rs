@@ -19,7 +19,7 @@ const STEPS: u32 = 32;
 /// Square of the farthest move relative to a capsule (m2) that is followed: what moves farther is an error.
 const FARTHEST2_M2: f32 = 1e8;
 
-/// What a sweep works on.
+/// Input of a sweep.
 pub struct Sweep<'a> {
     /// End spheres of the capsules over the step.
     pub ends: &'a CapsuleEnds,

@@ -14,13 +14,13 @@ const MOST_COLUMNS: usize = 6;
 /// A button with its place.
 #[derive(Debug, Clone)]
 pub struct ButtonBox {
-    /// Its number on the screen.
+    /// Index on the screen.
     pub index: usize,
     /// Rectangle on the display (pixels).
     pub rect: Rect,
     /// Its words, and its second line.
     pub label: SetText,
-    /// Its second line.
+    /// Second line of the button.
     pub detail: Option<SetText>,
 }
 

@@ -29,7 +29,7 @@ const SIDE: f32 = 0.42;
 /// A block with its place.
 #[derive(Debug, Clone)]
 pub struct PlacedBlock {
-    /// Its number on the screen.
+    /// Index on the screen.
     pub index: usize,
     /// Rectangle on the display (pixels).
     pub rect: Rect,
@@ -48,7 +48,7 @@ pub struct ScreenLayout {
     pub free: Rect,
     /// The heading and its upper left corner.
     pub heading: (Pos2, SetText),
-    /// What stands below it.
+    /// Blocks below the heading.
     pub blocks: Vec<PlacedBlock>,
     /// What can be pressed; its rectangles are those at a scroll of 0.
     pub buttons: Vec<ButtonBox>,

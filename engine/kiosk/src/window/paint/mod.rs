@@ -34,7 +34,7 @@ pub struct DisplayMetrics {
     pub pixel_mm: f32,
 }
 
-/// What is to be drawn.
+/// A painted screen, to be drawn.
 pub struct PaintedScreen {
     /// Triangles, in the order of painting.
     pub shapes: Vec<ClippedPrimitive>,

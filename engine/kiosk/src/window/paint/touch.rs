@@ -51,7 +51,7 @@ pub struct TouchTracker {
 }
 
 impl TouchTracker {
-    /// What is seen of it.
+    /// State of the touch as it is painted.
     pub fn feedback(&self) -> TouchFeedback {
         let pressed = self.down.filter(|d| !d.drags).and_then(|d| d.on);
         TouchFeedback { pressed, scrolled: self.scrolled }
