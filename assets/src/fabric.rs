@@ -9,7 +9,7 @@ use thiserror::Error;
 pub struct Fabric {
     /// The name by which garment files call it.
     pub name: String,
-    /// What a shopper reads.
+    /// Name for shoppers.
     pub title: String,
     /// Mass per area (kg/m2).
     pub density_kg_m2: f32,
@@ -88,11 +88,11 @@ pub enum FabricError {
     /// A figure outside of what cloth can have.
     #[error("fabric {name}: {key} is {value}, which no cloth has; give a value between {low} and {high}")]
     Range {
-        /// The fabric.
+        /// Name of the fabric.
         name: String,
-        /// The offending key.
+        /// Name of the key that is wrong.
         key: &'static str,
-        /// Its value.
+        /// Value of the key, in its unit.
         value: f32,
         /// Lowest accepted value.
         low: f32,

@@ -24,22 +24,22 @@ pub struct FileKind {
 /// Why a file was not read: what, where, and the cure.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum FileError {
-    /// The system refused.
+    /// The operating system refused to read it.
     #[error("{path}: cannot be read ({reason}); give the path of {name}, and check that you may read it", name = kind.name)]
     Refused {
-        /// The file.
+        /// The file's path as the user gave it.
         path: String,
-        /// What it should be.
+        /// Kind of file that was expected.
         kind: FileKind,
-        /// What the system said.
+        /// Error of the operating system.
         reason: String,
     },
     /// A folder, a FIFO, a socket or a device.
     #[error("{path}: it is {found}, not {name}; give the path of a regular file", name = kind.name)]
     NotRegular {
-        /// The file.
+        /// The file's path as the user gave it.
         path: String,
-        /// What it should be.
+        /// Kind of file that was expected.
         kind: FileKind,
         /// What it is, with its article.
         found: &'static str,
@@ -48,19 +48,19 @@ pub enum FileError {
     #[error("{path}: it has {size}, and of {name} at most {most} bytes are read; {cure}", size = shown_size(*bytes),
         name = kind.name, most = kind.max_bytes, cure = kind.cure)]
     TooLarge {
-        /// The file.
+        /// The file's path as the user gave it.
         path: String,
-        /// What it should be.
+        /// Kind of file that was expected.
         kind: FileKind,
         /// Its size, where the system knows it.
         bytes: Option<u64>,
     },
-    /// Not UTF-8.
+    /// The content is not UTF-8.
     #[error("{path}: {name} is text in UTF-8, and this is not; save it as UTF-8", name = kind.name)]
     NotText {
-        /// The file.
+        /// The file's path as the user gave it.
         path: String,
-        /// What it should be.
+        /// Kind of file that was expected.
         kind: FileKind,
     },
 }

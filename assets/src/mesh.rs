@@ -20,11 +20,11 @@ pub struct Mesh {
 pub struct Influences<const N: usize> {
     /// Bone indices, below [`crate::skeleton::BONES`].
     pub bones: [u8; N],
-    /// Weights, same order.
+    /// Weight of each of these bones (0..1).
     pub weights: [f32; N],
 }
 
-/// The weights of the house: four bones a vertex.
+/// Weights as the engine uses them: four bones a vertex.
 pub type SkinWeights = Influences<INFLUENCES>;
 
 /// The weights of imports that lose too much with four bones a vertex.
@@ -61,7 +61,7 @@ impl<const N: usize> Influences<N> {
         (out, pruned)
     }
 
-    /// Its influences of some weight.
+    /// Bones with a weight above 0, and their weights.
     pub fn iter(&self) -> impl Iterator<Item = (u8, f32)> + '_ {
         self.bones.iter().copied().zip(self.weights).filter(|(_, w)| *w != 0.0)
     }

@@ -64,9 +64,9 @@ impl Girth {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Population {
-    /// Women.
+    /// Women's bodies.
     Women,
-    /// Men.
+    /// Men's bodies.
     Men,
     /// Anybody: garments in unisex sizes, shoppers who did not say.
     Mixed,
@@ -98,7 +98,7 @@ pub struct Designation {
 /// One size: the bodies that it is made for, as ranges (m), the upper end belonging to the next size.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Size {
-    /// What the label says.
+    /// Code of the size, as on the label.
     pub code: String,
     /// Chest or bust girth (m).
     pub chest: [f32; 2],
@@ -173,7 +173,7 @@ pub enum SizeError {
         table: String,
         /// Line of the text, from 1.
         line: usize,
-        /// What the parser missed.
+        /// Error of the parser.
         reason: String,
     },
     /// A table without sizes or without garments.
@@ -191,7 +191,7 @@ pub enum SizeError {
         table: String,
         /// Code of the size.
         code: String,
-        /// Which measure.
+        /// Name of the measure.
         measure: &'static str,
     },
     /// Sizes out of order, or the same code twice.
@@ -210,17 +210,17 @@ pub enum SizeError {
     UnknownSize {
         /// Name of the table.
         table: String,
-        /// What was asked for.
+        /// Code that was asked for.
         code: String,
-        /// What there is.
+        /// Codes of the sizes that there are.
         codes: String,
     },
     /// A table that was not embedded.
     #[error("there is no size table {name}; choose one of {names}.")]
     UnknownTable {
-        /// What was asked for.
+        /// Name that was asked for.
         name: String,
-        /// What there is.
+        /// Names of the tables that there are.
         names: String,
     },
 }
@@ -284,7 +284,7 @@ impl SizeTable {
         self.designations.iter().find(|d| d.garment == garment)
     }
 
-    /// One size by its code.
+    /// Finds a size by its code.
     pub fn size(&self, code: &str) -> Result<&Size, SizeError> {
         self.sizes.iter().find(|s| s.code == code).ok_or_else(|| SizeError::UnknownSize {
             table: self.name.clone(),

@@ -1,4 +1,4 @@
-//! The one skeleton of the house: joint names, parents, and the pose that bends them.
+//! The one skeleton that all crates share: joint names, parents, and the pose that bends them.
 //!
 //! Right-handed, y up, metres. The person faces +z, so their left side is +x. In the rest pose every bone's frame is
 //! aligned with the world's axes: a bone's rest transform is a translation.
@@ -17,7 +17,7 @@ pub use bones::{BONE_CHAIN, BONES, TWISTS, Twist, bone_joint, bone_mirror, bone_
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Joint {
-    /// Where the trunk hangs: the middle of the sacroiliac joints.
+    /// Root of the trunk: the middle of the sacroiliac joints.
     Pelvis,
     /// Of the lowest lumbar vertebra: trunk on pelvis.
     Spine,
@@ -104,7 +104,7 @@ impl Joint {
         self as usize
     }
 
-    /// The joint this one hangs from; `None` for the pelvis.
+    /// The parent joint; `None` for the pelvis.
     pub const fn parent(self) -> Option<Self> {
         use Joint::*;
         Some(match self {

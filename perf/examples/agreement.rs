@@ -11,9 +11,9 @@ fn main() -> ExitCode {
         eprintln!("give three numbers: subjects of each sex, frames, seed");
         return ExitCode::from(2);
     };
-    for told in [false, true] {
-        let results = study(subjects as usize, frames as usize, seed, told);
-        println!("sex {}, {} subjects, mm", if told { "told" } else { "not told" }, results.len());
+    for sex_known in [false, true] {
+        let results = study(subjects as usize, frames as usize, seed, sex_known);
+        println!("sex {}, {} subjects, mm", if sex_known { "told" } else { "not told" }, results.len());
         println!("  measure            bias     SD    MAE    P95  sigma  within 1 and 2 sigma");
         for a in compare(&results) {
             let [bias, sd, mae, p95, sigma] =

@@ -1,4 +1,4 @@
-//! Synthetic agreement: bodies of known size, seen through a depth camera's eyes, measured and compared.
+//! Synthetic agreement: bodies of known size, seen by a simulated depth camera, measured and compared.
 //!
 //! The mannequin of [`toile_assets::body`] has one shape for each set of girths; people have many. So each subject's
 //! torso is reshaped as much as bodies of ANSUR II differ: flatter or rounder (log depth/breadth given the girths +-
@@ -6,7 +6,7 @@
 //! the depth before or behind the sides (+- 5 %, our assumption), and with levels higher or lower than the average
 //! (+- 1 % of stature). The truth is then read off the reshaped mesh by the tape.
 //!
-//! 48 subjects other than those the charts were fitted to (seed 500, 30 frames, sex not told), in mm:
+//! 48 subjects other than those the charts were fitted to (seed 500, 30 frames, sex not given), in mm:
 //!
 //! | measure | bias | SD | mean absolute | 95 % | stated sigma | within 1, 2 sigma |
 //! |---|---|---|---|---|---|---|
@@ -242,7 +242,7 @@ pub fn compare(results: &[(Measurements, [f32; 5])]) -> [MeasureAgreement; 5] {
     })
 }
 
-/// Measures random subjects of both sexes: `hint` says whether their sex is told. Subjects whose measures no body has
+/// Measures random subjects of both sexes: `hint` says whether their sex is given. Subjects whose measures no body has
 /// together are left out, as are those whom the measuring refuses; the caller sees by the counts.
 pub fn study(subjects: usize, frames: usize, seed: u64, sex_told: bool) -> Vec<(Measurements, [f32; 5])> {
     let mut results = Vec::new();

@@ -1,4 +1,4 @@
-//! Bodies that fits are judged on: sizes of EN 13402-3, and strangers drawn at random.
+//! Bodies on which fits are judged: sizes of EN 13402-3, and strangers drawn at random.
 
 use toile_assets::body::{Body, BodyError, En, Sex, Wanted};
 use toile_assets::numeric::random::SplitMix64;

@@ -19,7 +19,7 @@ pub const BINS: [f32; 6] = [0.0, 0.4, 0.5, 0.6, 0.7, 0.85];
 /// What was stated and what was right, of the people in one bin.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ReliabilityBin {
-    /// People.
+    /// Number of people in the bin.
     pub people: u32,
     /// Sum of the stated probabilities.
     pub stated: f32,
@@ -47,11 +47,11 @@ impl ReliabilityBin {
 pub struct Reliability {
     /// Standard deviation of the error of every girth (m).
     pub sigma: f32,
-    /// By stated probability.
+    /// Figures by stated probability `[BINS]`.
     pub bins: [ReliabilityBin; BINS.len()],
-    /// All people.
+    /// All people, whatever was stated.
     pub all: ReliabilityBin,
-    /// Those who were told to take a girth by tape: what was promised of it and what came of it.
+    /// People advised to take a girth by tape: the promised probability, and how often the size was right with it.
     pub taped: ReliabilityBin,
     /// The same people before.
     pub untaped: ReliabilityBin,
@@ -95,10 +95,10 @@ fn reliability(people: &[Girths], offer: &Offer, sigma: f32, seed: u64) -> Resul
         let bin = BINS.iter().rposition(|low| given.probability >= *low).unwrap_or(0);
         found.bins[bin].add(given.probability, right);
         found.all.add(given.probability, right);
-        if let Some(tape) = &given.tape {
-            let after = taped(*truth, seen, sigma, tape.zone, offer)?;
+        if let Some(advice) = &given.girth_to_take {
+            let after = taped(*truth, seen, sigma, advice.zone, offer)?;
             found.untaped.add(given.probability, right);
-            found.taped.add(tape.probability, after.size == best);
+            found.taped.add(advice.probability, after.size == best);
         }
     }
     Ok(found)

@@ -93,7 +93,7 @@ fn marked(frame: &DepthFrame, [u, v]: [f32; 2]) -> Vec3 {
 #[test]
 fn hands_in_real_depth_frames_are_told_open_from_closed() {
     let Some(root) = data() else { return };
-    let mut eye = HandSegmenter::new();
+    let mut segmenter = HandSegmenter::new();
     for (number, palm, elbow, is_open) in MARKED {
         let file = root.join(format!("depth/skeltrack/depth-data-{number}.u16le"));
         let session = open(&file, &OpenOptions::default()).unwrap_or_else(|e| panic!("{e}"));
@@ -103,7 +103,7 @@ fn hands_in_real_depth_frames_are_told_open_from_closed() {
         let length = 0.193;
         let along = (palm - elbow).normalize();
         let sight = HandRegion { palm, wrist: Some(palm - along * 0.3 * length), along, length };
-        let shape = eye.shape(frame, &sight).unwrap();
+        let shape = segmenter.shape(frame, &sight).unwrap();
         assert_eq!(shape.openness() > 0.5, is_open, "{number} at {palm}: {shape:?}");
     }
 }
@@ -216,17 +216,17 @@ fn bad_frames_are_passed_over() {
 #[test]
 fn a_hand_outside_of_the_picture_or_without_depth_is_not_seen() {
     let (frame, sight) = held_up(2.0, 1);
-    let mut eye = HandSegmenter::new();
-    let shape = eye.shape(&frame, &sight).unwrap();
+    let mut segmenter = HandSegmenter::new();
+    let shape = segmenter.shape(&frame, &sight).unwrap();
     assert!(shape.openness() > 0.5, "{shape:?}");
     let away = HandRegion { palm: sight.palm + Vec3::X * 3.0, wrist: None, ..sight };
-    assert_eq!(eye.shape(&frame, &away), None);
+    assert_eq!(segmenter.shape(&frame, &away), None);
     let behind = HandRegion { palm: sight.palm + Vec3::Z * 9.0, wrist: None, ..sight };
-    assert_eq!(eye.shape(&frame, &behind), None);
+    assert_eq!(segmenter.shape(&frame, &behind), None);
     let nowhere = HandRegion { palm: Vec3::splat(f32::NAN), ..sight };
-    assert_eq!(eye.shape(&frame, &nowhere), None);
+    assert_eq!(segmenter.shape(&frame, &nowhere), None);
     let empty = DepthFrame { depth_mm: vec![0; frame.depth_mm.len()].into(), ..frame.clone() };
-    assert_eq!(eye.shape(&empty, &sight), None);
+    assert_eq!(segmenter.shape(&empty, &sight), None);
     // What was seen before leaves no trace.
-    assert_eq!(eye.shape(&frame, &sight), Some(shape));
+    assert_eq!(segmenter.shape(&frame, &sight), Some(shape));
 }

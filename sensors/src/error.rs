@@ -50,7 +50,7 @@ pub enum SourceError {
          a folder of OpenPose keypoints, an Azure Kinect .mkv, 16-bit PNG or raw depth"
     )]
     UnknownKind {
-        /// The file.
+        /// The file's path as the user gave it.
         path: String,
         /// What it looks like.
         what: &'static str,
@@ -58,13 +58,13 @@ pub enum SourceError {
     /// The kind is known and its content is wrong.
     #[error("{path}{place}: {problem}; {cure}")]
     Malformed {
-        /// The file.
+        /// The file's path as the user gave it.
         path: String,
         /// The line, frame or byte.
         place: Place,
         /// What is wrong there.
         problem: String,
-        /// What to do.
+        /// What the user can do about it.
         cure: &'static str,
     },
 }

@@ -32,7 +32,7 @@ pub enum HandState {
     Unknown,
     /// The palm is open.
     Open,
-    /// A fist.
+    /// The hand is closed to a fist.
     Closed,
 }
 

@@ -1,4 +1,4 @@
-//! Every capacity of the sensor room: a named constant, its unit and its reason.
+//! Every capacity of the sensors: a named constant, its unit and its reason.
 
 use toile_assets::file::FileKind;
 

@@ -11,7 +11,7 @@ use toile_assets::skeleton::Joint;
 use toile_sensors::filter::{FilterSettings, HELD_CONFIDENCE, JointFilter};
 use toile_sensors::frame::{Joints, TrackedJoint};
 
-/// 30 Hz.
+/// Time between two frames at 30 Hz (ns).
 const PERIOD_NS: u64 = 33_333_333;
 
 /// The left arm turned by an angle about the shoulder's z axis.

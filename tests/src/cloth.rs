@@ -48,9 +48,9 @@ pub fn plain_fabric(density_kg_m2: f32, stretch_n_m: f32, damping_per_s: f32) ->
 
 /// A garment in an empty world, its bones at rest.
 pub struct Alone<'a> {
-    /// The garment.
+    /// The garment that is stepped.
     pub garment: &'a Garment,
-    /// Its state.
+    /// State of the garment.
     pub cloth: Cloth,
     colliders: Colliders,
 }
@@ -65,7 +65,7 @@ impl<'a> Alone<'a> {
         Self { garment, cloth: Cloth::new(garment, &colliders), colliders }
     }
 
-    /// One step.
+    /// Steps the garment once.
     pub fn step(&mut self, settings: &Settings) {
         let palette = &[Affine3A::IDENTITY; BONES];
         self.cloth.step(self.garment, &Step { palette, colliders: &self.colliders, settings });

@@ -1,4 +1,4 @@
-//! What the laws let pass, by name: `tests/exceptions.toml`, which only may shrink.
+//! Exceptions from the laws, by name: `tests/exceptions.toml`, which only may shrink.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,18 +26,19 @@ fn read(text: &str, law: &str) -> Exceptions {
 /// What a law has to say: violations that are not excepted, and exceptions that nothing needs any more or that give no
 /// reason; empty where all is well.
 pub fn judge(law: &str, found: &BTreeSet<String>, excepted: &Exceptions) -> String {
-    let mut said = String::new();
+    let mut violations = String::new();
     for name in found.iter().filter(|name| !excepted.contains_key(*name)) {
-        said.push_str(&format!("{law}: {name:?} breaks the law\n"));
+        violations.push_str(&format!("{law}: {name:?} breaks the law\n"));
     }
     for (name, reason) in excepted {
         if !found.contains(name) {
-            said.push_str(&format!("{law}: {name:?} is not needed any more: take it out of tests/exceptions.toml\n"));
+            violations
+                .push_str(&format!("{law}: {name:?} is not needed any more: take it out of tests/exceptions.toml\n"));
         } else if reason.is_empty() {
-            said.push_str(&format!("{law}: {name:?} is excepted without a reason\n"));
+            violations.push_str(&format!("{law}: {name:?} is excepted without a reason\n"));
         }
     }
-    said
+    violations
 }
 
 /// Holds a law over what was found.
@@ -45,8 +46,8 @@ pub fn judge(law: &str, found: &BTreeSet<String>, excepted: &Exceptions) -> Stri
 /// # Panics
 /// Where a violation is not excepted, or an exception is not needed.
 pub fn hold(law: &str, found: &BTreeSet<String>) {
-    let said = judge(law, found, &of(law));
-    assert!(said.is_empty(), "\n{said}");
+    let violations = judge(law, found, &of(law));
+    assert!(violations.is_empty(), "\n{violations}");
 }
 
 #[cfg(test)]
@@ -57,9 +58,9 @@ mod tests {
     fn an_exception_is_named_needed_and_justified() {
         let text = "[circles]\n\"a, b\" = \"why\"\n\"c, d\" = \"\"\n\"e, f\" = \"once\"\n[others]\n\"g\" = \"why\"";
         let found = ["a, b", "c, d", "h"].map(str::to_owned).into();
-        let said = judge("circles", &found, &read(text, "circles"));
-        let lines: Vec<&str> = said.lines().collect();
-        assert_eq!(lines.len(), 3, "{said}");
+        let violations = judge("circles", &found, &read(text, "circles"));
+        let lines: Vec<&str> = violations.lines().collect();
+        assert_eq!(lines.len(), 3, "{violations}");
         assert!(lines[0].contains("\"h\" breaks"));
         assert!(lines[1].contains("\"c, d\" is excepted without"));
         assert!(lines[2].contains("\"e, f\" is not needed"));

@@ -36,7 +36,7 @@ pub struct Arrow {
     pub from: Module,
     /// The module that defines.
     pub to: Module,
-    /// What is named.
+    /// Path of the item that is named.
     pub item: String,
     /// The file and line.
     pub place: String,

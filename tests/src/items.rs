@@ -18,13 +18,13 @@ pub enum ItemKind {
 /// An item of a source.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Item {
-    /// What it is.
+    /// Kind of the item.
     pub kind: ItemKind,
-    /// Its name.
+    /// Name of the item.
     pub name: String,
     /// Its first line, from 1, attributes and comments not counted.
     pub line: usize,
-    /// Its last line.
+    /// Last line of the item.
     pub last_line: usize,
 }
 

@@ -12,9 +12,9 @@ pub const CELL_M: f32 = 0.03;
 /// How a cell of the grid is filled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cell {
-    /// Not at all.
+    /// The cell is left empty.
     Hole,
-    /// By a quad.
+    /// The cell is meshed by a quad.
     Quad,
     /// By two triangles along the rising diagonal.
     Rising,

@@ -25,7 +25,7 @@ pub struct NamedPath {
 /// How a source names a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// In code.
+    /// In code, outside of any `use`.
     Code,
     /// By a private `use`.
     Import,
@@ -295,9 +295,9 @@ mod tests {
     #[test]
     fn a_path_has_the_name_that_the_file_gives_it() {
         let found = all_paths(&tokens("pub use a::{B as C, d::{self, E}}; use f::G; fn h() { G::new::<u8>() }"));
-        let said: Vec<(&str, Role)> = found.iter().map(|p| (p.alias.as_str(), p.role)).collect();
+        let found_roles: Vec<(&str, Role)> = found.iter().map(|p| (p.alias.as_str(), p.role)).collect();
         let again = Role::ReExport;
-        assert_eq!(said, [("C", again), ("d", again), ("E", again), ("G", Role::Import), ("new", Role::Code)]);
+        assert_eq!(found_roles, [("C", again), ("d", again), ("E", again), ("G", Role::Import), ("new", Role::Code)]);
     }
 
     #[test]

@@ -161,8 +161,8 @@ fn no_turn_of_the_loop_costs_an_allocation_whatever_happens() {
     });
     assert_eq!(found, 0, "{found} allocations in {} steps", physics.ticks());
     assert!(physics.gauges.dropped > 0 && physics.ticks() > 300 && render.pictures > 100);
-    let told: Vec<EventKind> = std::iter::from_fn(|| events.pop()).map(|e| e.what).collect();
-    assert!(told.iter().any(|w| matches!(w, EventKind::Missed(_))), "{told:?}");
+    let events_seen: Vec<EventKind> = std::iter::from_fn(|| events.pop()).map(|e| e.what).collect();
+    assert!(events_seen.iter().any(|w| matches!(w, EventKind::Missed(_))), "{events_seen:?}");
     let full = entries.capacity();
     assert!(full.lost > 0 && full.high_water == full.bound, "{full:?}");
 }

@@ -69,7 +69,7 @@ fn crates_import_only_the_floors_below() {
     assert!(wrong.is_empty(), "imports that point up:\n{}", wrong.join("\n"));
 }
 
-/// The benchmarks' crate: evidence for whoever builds the house, nothing for who runs it.
+/// The benchmarks' crate: evidence for developers, nothing that the running program needs.
 const BENCHMARKS: &str = "toile-perf";
 
 /// The commands that measure the engine, files and folders.

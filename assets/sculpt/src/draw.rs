@@ -15,7 +15,7 @@ use toile_assets::skeleton::Skeleton;
 pub struct Drawn {
     /// Closed surface (m) `[vertices]`.
     pub positions: Vec<Vec3>,
-    /// Its faces `[quads]`.
+    /// Vertex indices of each face `[quads]`.
     pub quads: Vec<[u32; 4]>,
     /// Piece of the atlas of each face `[quads]`.
     pub charts: Vec<Chart>,
@@ -23,7 +23,7 @@ pub struct Drawn {
     pub regions: Vec<Region>,
     /// Mirror image of each vertex `[vertices]`.
     pub twins: Vec<u32>,
-    /// Joint centres.
+    /// Joint centres in the rest pose (m).
     pub skeleton: Skeleton,
 }
 

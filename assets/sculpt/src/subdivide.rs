@@ -78,7 +78,7 @@ impl Quads {
             .collect()
     }
 
-    /// The faces.
+    /// Vertex indices of each face `[faces]`.
     pub(super) fn faces(&self) -> &[[u32; 4]] {
         &self.faces
     }

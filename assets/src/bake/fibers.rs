@@ -24,9 +24,9 @@ pub use trace::trace;
 /// An edge that carries a constraint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edge {
-    /// Smaller vertex index.
+    /// Index of the smaller of its two vertices.
     pub a: u32,
-    /// Larger vertex index.
+    /// Index of the larger of its two vertices.
     pub b: u32,
     /// Length as cut (m).
     pub rest: f32,

@@ -20,7 +20,7 @@ pub struct BakeInput<'a> {
     pub shape: &'a Shape,
     pub fabric: &'a Fabric,
     pub edges: &'a [Edge],
-    /// All fibers.
+    /// All fibers, of every direction.
     pub chains: &'a [Fiber],
     /// The free pieces of the warp fibers.
     pub pieces: &'a [Fiber],
@@ -36,7 +36,7 @@ impl BakeInput<'_> {
     }
 }
 
-/// All constraints.
+/// Lays out all constraints of a shape: fibers, links, bending stencils and tethers, in sets.
 pub fn lay_out(baking: &BakeInput<'_>) -> Layout {
     let mut role: Vec<Option<Direction>> = vec![None; baking.edges.len()];
     let chooser = SolverChoice::new(baking.shape, &baking.shape.solver);

@@ -18,20 +18,20 @@ const LEAST_STRIP: usize = 6;
 /// Columns side by side; longest first. Indices into the pieces that were given.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnGroup {
-    /// Whose they are.
+    /// Owner (worker) of these particles.
     pub owner: u8,
-    /// The warp pieces.
+    /// Indices of the warp pieces among them.
     pub pieces: Vec<usize>,
 }
 
-/// The new order.
+/// The order of particles in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParticleOrder {
     /// The vertex that each particle is.
     pub source: Vec<u32>,
     /// The particle that each vertex became.
     pub particle: Vec<u32>,
-    /// Whose each particle is.
+    /// Owner (worker) of each particle `[particles]`.
     pub owner: Vec<u8>,
     /// Pieces that lie side by side.
     pub sides: Vec<ColumnGroup>,

@@ -7,7 +7,7 @@ use crate::garment::layout::{ConstraintRun, ConstraintSet, OWNERS, OwnerShare, T
 /// Runs shorter than this are not worth a vector; their constraints are loose.
 const LEAST_RUN: usize = 3;
 
-/// Which constraint is where.
+/// Place of each constraint in the layout.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunPlaces {
     /// The constraint of each parameter place.
@@ -117,9 +117,9 @@ impl<const K: usize> Layouter<K> {
         let first = self.zigzags.len() as u32;
         for zigzag in set.iter().filter(|z| usize::from(owner[z.rails[0] as usize]) == share) {
             let [a, b] = zigzag.rails;
-            let rungs = self.run([a, b], &zigzag.rungs, alike);
+            let straights = self.run([a, b], &zigzag.straights, alike);
             let slants = self.run([b, a + 1], &zigzag.slants, alike);
-            self.zigzags.push(Zigzag { rungs, slants });
+            self.zigzags.push(Zigzag { straights, slants });
         }
         OwnerShare { zigzags: first..self.zigzags.len() as u32, ..OwnerShare::default() }
     }
@@ -198,9 +198,9 @@ mod tests {
     #[test]
     fn sets_are_apart_nothing_is_lost_and_a_ladder_becomes_runs() {
         // Two rails of 20 particles, the second rail's numbers after the first's.
-        let rungs = (0..20u32).map(|i| (Direction::Warp, [i, 20 + i]));
+        let straights = (0..20u32).map(|i| (Direction::Warp, [i, 20 + i]));
         let rails = (0..19u32).map(|i| (Direction::Weft, [i, i + 1]));
-        let all: Vec<(Direction, [u32; 2])> = rungs.chain(rails).collect();
+        let all: Vec<(Direction, [u32; 2])> = straights.chain(rails).collect();
         let owner: Vec<u8> = (0..40).map(|i| u8::from(i % 20 >= 10)).collect();
         let (tuples, RunPlaces { places, serial }) = lay_out(&all, &owner, true, &|_, _| false);
         assert_eq!(serial, places);
@@ -225,6 +225,6 @@ mod tests {
                 }
             }
         }
-        assert!(tuples.runs.iter().any(|r| r.len == 10), "the rungs of each owner are one run");
+        assert!(tuples.runs.iter().any(|r| r.len == 10), "the straights of each owner are one run");
     }
 }

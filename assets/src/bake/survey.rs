@@ -1,4 +1,4 @@
-//! A survey of a shape: what baking makes of it, and what its mesh lets one fear.
+//! A survey of a shape: what baking makes of it, and warnings about its mesh.
 
 use glam::Vec3;
 
@@ -25,34 +25,34 @@ const MOST_LOOSE: f64 = 0.2;
 /// What there is of one solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SolverCount {
-    /// The solver.
+    /// The solver that is counted.
     pub solver: Solver,
     /// Fibers that it solves; edges alone count as one each.
     pub fibers: usize,
-    /// Their edges.
+    /// Edges of these fibers.
     pub edges: usize,
 }
 
 /// What baking makes of a shape.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshSurvey {
-    /// Vertices.
+    /// Vertices of the shape.
     pub vertices: usize,
     /// Triangles; a quad counts as two.
     pub triangles: usize,
     /// Vertices that do not move.
     pub fixed: usize,
-    /// What the fibers cover.
+    /// Edges that the fibers cover.
     pub coverage: Coverage,
     /// Which fibers are solved how, those between fixed vertices left out.
     pub solvers: [SolverCount; 3],
-    /// Tethers.
+    /// Tethers of the garment.
     pub tethers: usize,
     /// Bending stencils along warp, weft and bias.
     pub stencils: [usize; 3],
     /// What is likely to look or to run worse than it could; one sentence each, with its cure.
     pub warnings: Vec<String>,
-    /// What else is worth knowing.
+    /// Remarks that are no warnings, one sentence each.
     pub notes: Vec<String>,
 }
 
@@ -92,19 +92,19 @@ pub fn survey(shape: &Shape, fabric: &Fabric) -> MeshSurvey {
 
 /// What does not hang from anything.
 fn support(coverage: &Coverage, tethers: usize) -> Vec<String> {
-    let mut said = Vec::new();
+    let mut warnings = Vec::new();
     let falling = coverage.free - tethers;
     if falling == coverage.free && falling > 0 {
-        said.push("nothing is fixed, so the garment will fall; end the material of faces that stay on the body other than in Free".into());
+        warnings.push("nothing is fixed, so the garment will fall; end the material of faces that stay on the body other than in Free".into());
     } else if falling > 0 {
-        said.push(format!(
+        warnings.push(format!(
             "{falling} vertices are sewn to nothing that is fixed and will fall; sew them on or fix them"
         ));
     } else if coverage.hanging_share() < LEAST_HANGING {
         let held = 100.0 * coverage.hanging_share();
-        said.push(format!("only {held:.0} % of the free vertices hang by fibers down the warp; mesh the cloth finer, or turn its warp upright"));
+        warnings.push(format!("only {held:.0} % of the free vertices hang by fibers down the warp; mesh the cloth finer, or turn its warp upright"));
     }
-    said
+    warnings
 }
 
 fn loose(coverage: &Coverage) -> Option<String> {
@@ -131,18 +131,18 @@ fn flaws(shape: &Shape) -> Vec<String> {
             worst = (height, i);
         }
     }
-    let mut said = Vec::new();
+    let mut warnings = Vec::new();
     if needles > 0 {
         let (times, at) = (1.0 / worst.0, worst.1);
-        said.push(format!(
+        warnings.push(format!(
             "{needles} triangles are needles, triangle {at} is {times:.0} times longer than wide; remesh them evenly"
         ));
     }
     if longest > MOST_UNEVEN * shortest {
         let (short, long) = (shortest * 1e3, longest * 1e3);
-        said.push(format!("edges are between {short:.1} and {long:.0} mm long; remesh the garment more evenly"));
+        warnings.push(format!("edges are between {short:.1} and {long:.0} mm long; remesh the garment more evenly"));
     }
-    said
+    warnings
 }
 
 fn double_area(a: Vec3, b: Vec3, c: Vec3) -> f32 {
@@ -150,20 +150,20 @@ fn double_area(a: Vec3, b: Vec3, c: Vec3) -> f32 {
 }
 
 fn notes(fabric: &Fabric) -> Vec<String> {
-    let mut said = Vec::new();
+    let mut warnings = Vec::new();
     let threads = 0.25 * (fabric.bend_warp_un_m + fabric.bend_weft_un_m);
     match fabric.bend_bias_un_m {
-        None => said.push(format!(
+        None => warnings.push(format!(
             "{} gives no bend_bias_un_m, so that it bends along the bias as its threads alone do: {threads:.1} uN m",
             fabric.name
         )),
-        Some(bias) if bias < threads => said.push(format!(
+        Some(bias) if bias < threads => warnings.push(format!(
             "{} has bend_bias_un_m = {bias}, less than its threads alone have; {threads:.1} uN m is what is used",
             fabric.name
         )),
         Some(_) => {}
     }
-    said
+    warnings
 }
 
 #[cfg(test)]

@@ -15,12 +15,12 @@ pub fn transfer(body: &Body, points: &[Vec3], carries: impl Fn(Vec3, usize) -> b
     points.iter().map(|&p| at(body, p, &|bone| carries(p, bone))).collect()
 }
 
-/// The trunk's bones: what a bodice or a waistband hangs on.
+/// The trunk's bones: which carry a bodice or a waistband.
 pub fn trunk(bone: usize) -> bool {
     [Joint::Pelvis, Joint::Spine, Joint::Chest].iter().any(|j| j.index() == bone)
 }
 
-/// The trunk's bones and the shoulder girdle's: what straps and yokes hang on.
+/// The trunk's bones and the shoulder girdle's: which carry straps and yokes.
 pub fn shoulders(bone: usize) -> bool {
     trunk(bone) || [Joint::Neck, Joint::LeftClavicle, Joint::RightClavicle].iter().any(|j| j.index() == bone)
 }
@@ -42,7 +42,7 @@ fn at(body: &Body, point: Vec3, carries: &impl Fn(usize) -> bool) -> SkinWeights
         carried.for_each(|(&b, &x)| sum[usize::from(b)] += share * x);
     }
     if sum.iter().all(|x| *x <= 0.0) {
-        // Nothing near is admitted: such a point hangs on the chest, which every garment is hung from.
+        // Nothing near is admitted: such a point follows the chest, which carries every garment.
         sum[Joint::Chest.index()] = 1.0;
     }
     SkinWeights::strongest((0u8..).zip(sum)).0

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 
 use crate::garment::Direction;
 
-/// Fewest rungs of a zigzag: with fewer, what is gained along the row is lost at its ends.
+/// Fewest straights of a zigzag: with fewer, what is gained along the row is lost at its ends.
 const LEAST: usize = 8;
 
-/// Links between two rails of particles, rung and slant in turn.
+/// Links in a zigzag between two rails (rows) of particles: a straight one and a slanted one in turn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZigzagLinks {
     /// Direction of all its links.
@@ -16,8 +16,8 @@ pub struct ZigzagLinks {
     /// First particle of each rail; the others follow it.
     pub rails: [u32; 2],
     /// The links from a particle of the first rail to the one of the second beside it.
-    pub rungs: Vec<usize>,
-    /// The links from a particle of the second rail to the next one of the first; where there are as many as rungs, the
+    pub straights: Vec<usize>,
+    /// The links from a particle of the second rail to the next one of the first; where there are as many as straights, the
     /// last one leads back to the beginning.
     pub slants: Vec<usize>,
 }
@@ -25,7 +25,7 @@ pub struct ZigzagLinks {
 impl ZigzagLinks {
     /// All its particles.
     pub fn particles(&self) -> impl Iterator<Item = u32> {
-        let n = self.rungs.len() as u32;
+        let n = self.straights.len() as u32;
         self.rails.into_iter().flat_map(move |first| first..first + n)
     }
 }
@@ -45,10 +45,10 @@ pub fn take(links: &[(Direction, [u32; 2])], order: &[usize], owner: &[u8]) -> (
         let (direction, [p, q]) = links[i];
         let [one, two] = [[p, q], [q, p]].map(|rails| follow(&places, direction, rails, owner));
         let found = if one.slants.len() >= two.slants.len() { one } else { two };
-        if found.rungs.len() < LEAST {
+        if found.straights.len() < LEAST {
             continue;
         }
-        for &l in found.rungs.iter().chain(&found.slants) {
+        for &l in found.straights.iter().chain(&found.slants) {
             places.remove(&links[l]);
         }
         let apart = |s: &(Direction, Vec<bool>, _)| s.0 == direction && found.particles().all(|p| !s.1[p as usize]);
@@ -63,25 +63,25 @@ pub fn take(links: &[(Direction, [u32; 2])], order: &[usize], owner: &[u8]) -> (
     (sets.into_iter().map(|s| s.2).collect(), left)
 }
 
-/// The zigzag that begins with the rung between two particles.
+/// The zigzag that begins with the straight between two particles.
 fn follow(places: &Places, direction: Direction, [a, b]: [u32; 2], owner: &[u8]) -> ZigzagLinks {
     let link = |p: u32, q: u32| places.get(&(direction, [p.min(q), p.max(q)])).copied();
     let owned = |p: u32| owner.get(p as usize) == owner.get(a as usize);
-    let mut out = ZigzagLinks { direction, rails: [a, b], rungs: Vec::new(), slants: Vec::new() };
+    let mut out = ZigzagLinks { direction, rails: [a, b], straights: Vec::new(), slants: Vec::new() };
     if !owned(b) {
         return out;
     }
-    out.rungs.extend(link(a, b));
+    out.straights.extend(link(a, b));
     for t in 1..a.abs_diff(b) {
-        let (Some(slant), Some(rung)) = (link(b + t - 1, a + t), link(a + t, b + t)) else { break };
+        let (Some(slant), Some(straight)) = (link(b + t - 1, a + t), link(a + t, b + t)) else { break };
         if !owned(a + t) || !owned(b + t) {
             break;
         }
         out.slants.push(slant);
-        out.rungs.push(rung);
+        out.straights.push(straight);
     }
-    let n = out.rungs.len() as u32;
-    // A closed one of two rungs would go one way twice.
+    let n = out.straights.len() as u32;
+    // A closed one of two straights would go one way twice.
     if n > 2 {
         out.slants.extend(link(b + n - 1, a));
     }
@@ -108,12 +108,12 @@ mod tests {
             let (sets, left) = take(&links, &order, &[0; 24]);
             assert!(left.is_empty() && sets.len() == 1 && sets[0].len() == 1);
             let zigzag = &sets[0][0];
-            assert_eq!((zigzag.rungs.len(), zigzag.slants.len()), (12, if closed { 12 } else { 11 }));
-            let mut all: Vec<usize> = zigzag.rungs.iter().chain(&zigzag.slants).copied().collect();
+            assert_eq!((zigzag.straights.len(), zigzag.slants.len()), (12, if closed { 12 } else { 11 }));
+            let mut all: Vec<usize> = zigzag.straights.iter().chain(&zigzag.slants).copied().collect();
             all.sort_unstable();
             assert_eq!(all, order);
             let [a, b] = zigzag.rails;
-            for (t, &i) in zigzag.rungs.iter().enumerate() {
+            for (t, &i) in zigzag.straights.iter().enumerate() {
                 let (p, q) = (a + t as u32, b + t as u32);
                 assert_eq!(links[i].1, [p.min(q), p.max(q)]);
             }

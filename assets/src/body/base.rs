@@ -1,4 +1,4 @@
-//! What a sex's mean body hands to the morphs: a surface at rest, and what is tied to it.
+//! The mean body of a sex, from which morphs start: its surface at rest, and what is tied to the surface.
 //!
 //! The surface is drawn once by the crate `toile-sculpt` and stored; here it is read, skinned and given its landmarks.
 
@@ -21,7 +21,7 @@ use crate::skeleton::Skeleton;
 /// closed manifold: the vertices of a seam have one position and several texture points.
 #[derive(Debug, Clone)]
 pub struct BaseBody {
-    /// Whose body it is.
+    /// Sex of the body.
     pub sex: Sex,
     /// Surface points (m) `[vertices]`.
     pub positions: Vec<Vec3>,

@@ -1,4 +1,4 @@
-//! Calibration: the sliders at which the tape reads what is wanted, all measures at once.
+//! Calibration: the sliders at which a body has the given measures, all at once.
 //!
 //! What is given is met; what is not is expected as people have it: the readings of a body are held against a normal
 //! distribution of people ([`People`]), so that what is unmeasured follows from what is measured by regression, and a
@@ -66,7 +66,7 @@ pub(super) struct BodyModel {
     drawn_stature: f64,
 }
 
-/// What a calibration came to.
+/// Result of a calibration.
 pub(super) struct Calibrated {
     pub at: ParameterVector,
     pub setting: Setting,

@@ -1,4 +1,4 @@
-//! Building a body to measure: the door to calibration.
+//! Building a body to given measures: the public interface of the calibration.
 
 #[cfg(test)]
 mod tests;
@@ -22,7 +22,7 @@ pub const TOLERANCE: f32 = 2e-3;
 /// A body built to measure, and what the tape reads on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fitted {
-    /// The body.
+    /// The body, in its rest pose.
     pub body: Body,
     /// Every measure of it, those that were not asked for included.
     pub readings: Readings,

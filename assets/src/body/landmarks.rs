@@ -30,7 +30,7 @@ pub enum Landmark {
     Acromion,
     /// Front fold of the armpit.
     Axilla,
-    /// Bust point.
+    /// Most forward point of the breast.
     BustPoint,
     /// Just below the breasts, in front.
     Underbust,
@@ -123,7 +123,7 @@ pub struct Mark {
 }
 
 impl Mark {
-    /// A vertex itself.
+    /// A landmark that is a vertex itself.
     pub const fn vertex(v: u32) -> Self {
         Self { ends: [v, v], share: 0.0 }
     }

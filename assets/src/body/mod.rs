@@ -35,9 +35,9 @@ pub use reading::{Ansur, En, Readings, Vocabulary, Wanted};
 /// Which drawing a body is stretched from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Sex {
-    /// The woman's drawing.
+    /// The body drawn of a woman.
     Female,
-    /// The man's drawing.
+    /// The body drawn of a man.
     Male,
 }
 
@@ -94,7 +94,7 @@ pub enum BodyError {
     /// A measure is not a number, or beyond the sizes that the mannequin is drawn for.
     #[error("the {measure} is {value} m, but a body is built for {least} to {most} m: {}", cure(*value, [*least, *most]))]
     OutOfRange {
-        /// Its name.
+        /// Name of the measure.
         measure: &'static str,
         /// The value asked for (m).
         value: f32,
@@ -118,7 +118,7 @@ pub enum BodyError {
         reached: f32,
         /// The one other measure without which the first can be met, if there is one, and the value asked for (m).
         against: Option<(&'static str, f32)>,
-        /// The nearest body.
+        /// The nearest body that can be built.
         nearest: Box<Fitted>,
     },
 }
@@ -159,13 +159,13 @@ pub enum Region {
 pub struct Levels {
     /// Base of the neck at the 7th cervical vertebra.
     pub neck: f32,
-    /// Acromions.
+    /// Tips of the shoulder blades (acromions).
     pub shoulder: f32,
-    /// Bust points.
+    /// Most forward points of the breasts.
     pub chest: f32,
     /// Just below the breasts.
     pub underbust: f32,
-    /// Natural waistline.
+    /// Natural waistline, midway between the lowest rib and the hip bone.
     pub waist: f32,
     /// Greatest protrusion of the buttocks.
     pub hip: f32,
@@ -173,7 +173,7 @@ pub struct Levels {
     pub crotch: f32,
     /// Middle of the kneecap.
     pub knee: f32,
-    /// Ankle joint.
+    /// Centre of the ankle joint.
     pub ankle: f32,
 }
 
@@ -186,7 +186,7 @@ pub struct Body {
     pub mesh: Mesh,
     /// Unit normals `[vertices]`.
     pub normals: Vec<Vec3>,
-    /// Joint centres.
+    /// Joint centres in the rest pose (m).
     pub skeleton: Skeleton,
     /// Bones that carry each vertex `[vertices]`.
     pub weights: Vec<SkinWeights>,

@@ -1,4 +1,4 @@
-//! How the measures of people go together: what to expect of those that were not taken.
+//! How the measures of people are correlated: what to expect of measures that were not taken.
 //!
 //! Means, deviations and correlations of 1,986 women and 4,082 men of ANSUR II (US Army Natick TR-15/007, 2014, public
 //! domain), worked out from its files by `cargo run --release -p toile-perf --example people`. What the survey did not

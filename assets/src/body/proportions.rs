@@ -1,4 +1,4 @@
-//! Where the landmarks of our own bodies lie between their joints and extremes: how a body of others is to be read.
+//! Where the landmarks of our own bodies lie between their joints and extremes: how an imported body is measured.
 
 use super::base::BaseBody;
 use super::landmarks::Landmark;

@@ -113,15 +113,15 @@ pub enum En {
 /// Measures of ANSUR II (US Army Natick TR-15/007, 2014), at its own levels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Ansur {
-    /// `stature`
+    /// `stature`: height of the top of the head.
     Stature,
-    /// `cervicaleheight`
+    /// `cervicaleheight`: of the 7th cervical vertebra.
     CervicaleHeight,
     /// `waistheightomphalion`: of the navel.
     WaistHeightOmphalion,
-    /// `crotchheight`
+    /// `crotchheight`: of the lowest point between the legs.
     CrotchHeight,
-    /// `kneeheightmidpatella`
+    /// `kneeheightmidpatella`: of the middle of the kneecap.
     KneeHeightMidpatella,
     /// `neckcircumference`: at the Adam's apple, square to the neck.
     NeckCircumference,
@@ -133,23 +133,23 @@ pub enum Ansur {
     ButtockCircumference,
     /// `thighcircumference`: where the thigh meets the buttock.
     ThighCircumference,
-    /// `calfcircumference`
+    /// `calfcircumference`: where the calf is widest.
     CalfCircumference,
-    /// `wristcircumference`
+    /// `wristcircumference`: around the wrist.
     WristCircumference,
-    /// `biacromialbreadth`
+    /// `biacromialbreadth`: between the tips of the shoulder blades.
     BiacromialBreadth,
-    /// `chestbreadth`
+    /// `chestbreadth`: of the trunk, side to side, at the bust points.
     ChestBreadth,
-    /// `chestdepth`
+    /// `chestdepth`: of the trunk, back to front, at the bust points.
     ChestDepth,
     /// `waistbreadth`: at the navel.
     WaistBreadthOmphalion,
     /// `waistdepth`: at the navel.
     WaistDepthOmphalion,
-    /// `hipbreadth`
+    /// `hipbreadth`: of the hips, side to side.
     HipBreadth,
-    /// `buttockdepth`
+    /// `buttockdepth`: back to front, where the buttocks protrude most.
     ButtockDepth,
     /// `sleevelengthspinewrist`: from the spine over the shoulder and the bent elbow to the wrist, the arm raised. The
     /// body's arm is straight: what the survey's pose adds to it is the survey's mean.
@@ -288,7 +288,7 @@ impl<V: Vocabulary> Wanted<V> {
 pub struct Readings(pub(super) [f32; READINGS]);
 
 impl Readings {
-    /// One measure (m).
+    /// Value of one measure (m).
     pub fn of<V: Vocabulary>(&self, measure: V) -> f32 {
         self.0[measure.reading().index()]
     }

@@ -32,7 +32,7 @@ pub struct Shapes {
 
 /// What the tape reads on a shape, and how that changes with the parameters.
 pub struct ShapeReadings {
-    /// Every measure (m).
+    /// Every measure of the body (m).
     pub readings: Readings,
     rows: [BodyShape; READINGS],
 }

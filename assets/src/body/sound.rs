@@ -1,4 +1,4 @@
-//! Whether a body looks right: how rough its surface is, and whether it crosses itself.
+//! Checks of a body's surface: how rough its surface is, and whether it crosses itself.
 //!
 //! A surface that meets itself after a short way along it is folded, which no body is; one that meets itself after a
 //! long way touches, as the thighs of stout people do.

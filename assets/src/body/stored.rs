@@ -59,7 +59,7 @@ impl StoredBodies {
         usize::from(sex == Sex::Male)
     }
 
-    /// The file's bytes.
+    /// The body as the bytes of its file.
     pub fn encode(&self) -> Vec<u8> {
         let mut out = Vec::new();
         out.extend(MAGIC);

@@ -257,7 +257,7 @@ fn weights_are_shares_and_change_gently() {
         let dense = |v: u32| {
             let mut all = [0.0f32; BONES];
             for (bone, w) in body.weights[v as usize].iter() {
-                // What hangs on a twist bone hangs, so far as it twists, on the two ends of its limb.
+                // A vertex that follows a twist bone follows, as far as it twists, the two ends of its limb.
                 let twist = TWISTS.iter().find(|t| t.bones().contains(&usize::from(bone)));
                 let share = twist.map_or(0.0, |t| t.share(usize::from(bone) - t.first + 1));
                 all[bone_joint(bone.into()).unwrap().index()] += w * (1.0 - share);

@@ -1,6 +1,6 @@
 //! A dressed body as GLB, the binary form of glTF 2.0: it opens in Blender and in every viewer of the format.
 //!
-//! The body hangs on its skeleton (H-Anim names, inverse bind matrices of the rest pose, four weights a vertex), whose
+//! The body is skinned to its skeleton (H-Anim names, inverse bind matrices of the rest pose, four weights a vertex), whose
 //! nodes stand in the pose asked for; garments lie around it as plain meshes, in the world. Metres, y up, facing +z, as
 //! the format has it. Colours are linear, as the format wants them, from the sRGB that fabrics state.
 
@@ -19,27 +19,27 @@ const SKIN_SRGB: [f32; 3] = [0.797, 0.754, 0.711];
 const SKIN_ROUGHNESS: f32 = 0.6;
 const CLOTH_ROUGHNESS: f32 = 0.9;
 
-/// What is exported.
+/// A body with its garments, to be exported.
 #[derive(Debug, Clone, Copy)]
 pub struct DressedBody<'a> {
     /// The body in its rest pose.
     pub body: &'a Body,
     /// The pose, as skin matrices (rest to world, rigid) `[BONES]`; `None` is the rest pose.
     pub palette: Option<&'a [Affine3A; BONES]>,
-    /// What it wears, inner first.
+    /// Garments on it, inner first.
     pub worn: &'a [WornGarment<'a>],
 }
 
 /// A garment as it lies.
 #[derive(Debug, Clone, Copy)]
 pub struct WornGarment<'a> {
-    /// Its name.
+    /// Name of the garment.
     pub name: &'a str,
     /// Vertex positions, world (m) `[vertices]`.
     pub positions: &'a [Vec3],
-    /// Vertex indices.
+    /// Indices into `positions` `[triangles]`.
     pub triangles: &'a [[u32; 3]],
-    /// Its colour, sRGB 0..1.
+    /// Colour of the garment, sRGB 0..1.
     pub srgb: [f32; 3],
 }
 
@@ -121,7 +121,7 @@ fn linear(srgb: f32) -> f32 {
     if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 
-/// What each bone hangs from: the pelvis from nothing.
+/// Parent of each bone; the pelvis has none.
 fn parent(bone: usize) -> Option<usize> {
     match Joint::ALL.get(bone) {
         Some(joint) => joint.parent().map(Joint::index),

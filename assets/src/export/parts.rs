@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 const ARRAY_BUFFER: u32 = 34_962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 
-/// Component types.
+/// Numbers by which glTF 2.0 names the types of an accessor's components.
 const UNSIGNED_BYTE: u32 = 5_121;
 const UNSIGNED_INT: u32 = 5_125;
 const FLOAT: u32 = 5_126;

@@ -17,11 +17,11 @@ pub const MAX_VERTICES: usize = 262_144;
 /// What is wrong with a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MeshError {
-    /// Nothing there.
+    /// No vertex or no face.
     Empty,
     /// Too many vertices.
     TooLarge {
-        /// Vertices found.
+        /// Number of vertices found.
         count: usize,
     },
     /// A coordinate that is NaN or infinite.
@@ -45,7 +45,7 @@ pub enum MeshError {
     },
     /// Three or more faces at one edge, or two that run the same way round.
     NonManifold {
-        /// One end, from 0.
+        /// Vertex at one end, from 0.
         a: u32,
         /// Other end, from 0.
         b: u32,

@@ -21,9 +21,9 @@ pub const MAX_LISTED: usize = 16;
 pub struct ConstraintRun<const K: usize> {
     /// Particles of the first constraint.
     pub first: [u32; K],
-    /// Constraints.
+    /// Number of constraints.
     pub len: u32,
-    /// Where its parameters begin.
+    /// Index of its first parameters.
     pub at: u32,
     /// Number of its first constraint among all.
     pub serial: u32,
@@ -39,13 +39,14 @@ impl<const K: usize> ConstraintRun<K> {
     }
 }
 
-/// Constraints to and fro between two rails of particles: rung `t` from particle `t` of the first rail to the one of the
-/// second beside it, slant `t` from there to the next one of the first. Solved in this order, rungs before slants.
+/// Constraints in a zigzag between two rows (rails) of particles: straight constraint `t` from particle `t` of the first rail
+/// to the one of the second beside it, slanted constraint `t` from there to the next one of the first. Solved in this order,
+/// straights before slants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Zigzag {
-    /// The rungs.
-    pub rungs: ConstraintRun<2>,
-    /// The slants, one less than rungs; as many where the last one leads back to the first particle.
+    /// Constraints straight across, from rail to rail.
+    pub straights: ConstraintRun<2>,
+    /// The slants, one less than straights; as many where the last one leads back to the first particle.
     pub slants: ConstraintRun<2>,
 }
 
@@ -53,14 +54,14 @@ impl Zigzag {
     /// Whether the last slant leads back to the first particle.
     #[inline(always)]
     pub fn closed(&self) -> bool {
-        self.slants.len == self.rungs.len
+        self.slants.len == self.straights.len
     }
 
     /// The particles of slant `t`.
     #[inline(always)]
     pub fn slant(&self, t: u32) -> [u32; 2] {
         let [from, to] = self.slants.first;
-        [from + t, if t + 1 == self.rungs.len { self.rungs.first[0] } else { to + t }]
+        [from + t, if t + 1 == self.straights.len { self.straights.first[0] } else { to + t }]
     }
 }
 
@@ -86,7 +87,7 @@ pub struct ConstraintSet {
     pub direction: Direction,
     /// Whether its constraints touch particles of both owners and nothing keeps them apart: one worker's then.
     pub crosses: bool,
-    /// What each owner solves.
+    /// Share of each owner (worker).
     pub shares: [OwnerShare; OWNERS],
 }
 
@@ -97,11 +98,11 @@ pub struct Tuples<const K: usize> {
     pub zigzags: Box<[Zigzag]>,
     /// Runs, set after set, owner after owner.
     pub runs: Box<[ConstraintRun<K>]>,
-    /// The others.
+    /// Particles of the constraints that are in no zigzag and no run, set after set, owner after owner.
     pub loose: Box<[[u32; K]]>,
     /// The sets in the order in which they are solved.
     pub sets: Box<[ConstraintSet]>,
-    /// Constraints in all.
+    /// Number of constraints, of all kinds above.
     pub count: usize,
     /// Places of parameters: fewer than constraints where some are alike.
     pub places: usize,
@@ -112,8 +113,8 @@ impl<const K: usize> Tuples<K> {
     pub fn for_each(&self, mut each: impl FnMut(usize, [u32; K])) {
         let pair = |pair: [u32; 2]| std::array::from_fn(|k| pair[k % 2]);
         for zigzag in &self.zigzags {
-            let Zigzag { rungs, slants } = zigzag;
-            (0..rungs.len).for_each(|t| each(rungs.place(t), pair(rungs.first.map(|f| f + t))));
+            let Zigzag { straights, slants } = zigzag;
+            (0..straights.len).for_each(|t| each(straights.place(t), pair(straights.first.map(|f| f + t))));
             (0..slants.len).for_each(|t| each(slants.place(t), pair(zigzag.slant(t))));
         }
         for run in &self.runs {
@@ -132,7 +133,7 @@ impl<const K: usize> Tuples<K> {
 /// Stretch constraints between two particles.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Links {
-    /// Who is linked.
+    /// Pairs of particles that are linked.
     pub tuples: Tuples<2>,
     /// Length as cut (m).
     pub rest: Box<[f32]>,
@@ -182,7 +183,7 @@ pub struct Diagonals {
 }
 
 impl Diagonals {
-    /// Links in all.
+    /// Number of links.
     pub fn count(&self) -> usize {
         self.runs.iter().map(|r| r.len as usize).sum()
     }
@@ -194,7 +195,7 @@ impl Diagonals {
         }
     }
 
-    /// Bytes held.
+    /// Heap memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.families) + size_of_val(&*self.runs) + 4 * self.starts.len() + 8 * self.rest.len()
     }
@@ -207,7 +208,7 @@ pub struct HubGroup {
     pub points: u32,
     /// Sums of each over these particles, 1 to 3.
     pub sums: u32,
-    /// Hubs.
+    /// Number of hubs in the group.
     pub count: u32,
     /// Number of the first among all hubs.
     pub number: u32,
@@ -229,7 +230,7 @@ pub struct Hubs {
     pub groups: Box<[HubGroup]>,
     /// Each owner's groups, of two sets as [`Bends`] has them: what keeps within the owners, then what crosses them.
     pub sets: [[Range<u32>; OWNERS]; 2],
-    /// Hubs in all.
+    /// Number of hubs.
     pub count: usize,
 }
 
@@ -274,11 +275,11 @@ pub struct BundleRow {
 /// Fibers side by side, longest first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FiberBundle {
-    /// How it is solved.
+    /// Solver of its fibers.
     pub solver: Solver,
-    /// Whose it is.
+    /// Owner (worker) that solves it.
     pub owner: u8,
-    /// Fibers.
+    /// Number of fibers side by side.
     pub lanes: u32,
     /// Particles of its longest fiber, from the support on: a range of [`Fibers::rows`].
     pub rows: Range<u32>,
@@ -293,9 +294,9 @@ pub struct FiberBundle {
 /// Fibers whose particles lie contiguous, row after row.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Fibers {
-    /// Bundles.
+    /// Bundles of all owners.
     pub bundles: Box<[FiberBundle]>,
-    /// Their rows.
+    /// Rows of particles, bundle after bundle.
     pub rows: Box<[BundleRow]>,
     /// Links of all bundles, those that have ended among them.
     pub links: usize,
@@ -312,9 +313,9 @@ pub const ENDED: f32 = 1e20;
 /// Fibers of equal length by index list: hoops, and whatever crosses another fiber of its direction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FiberList {
-    /// How it is solved.
+    /// Solver of its fibers.
     pub solver: Solver,
-    /// Direction.
+    /// Direction of the threads that it follows.
     pub direction: Direction,
     /// Whether the last particle is linked to the first.
     pub closed: bool,
@@ -342,7 +343,7 @@ pub struct FiberLists {
     pub lists: Box<[FiberList]>,
     /// Sets: what each owner solves of `lists`.
     pub sets: Box<[[Range<u32>; OWNERS]]>,
-    /// Particles.
+    /// Indices of the particles, list after list, row after row: one for each lane.
     pub index: Box<[u32]>,
     /// Length of each link as cut (m).
     pub rest: Box<[f32]>,
@@ -373,7 +374,7 @@ pub struct Layout {
     pub tethers: Tethers,
     /// The particles that each owner has, as ranges `(first, len)`.
     pub spans: [Vec<(u32, u32)>; OWNERS],
-    /// Whose each particle is.
+    /// Owner (worker) of each particle `[particles]`.
     pub owner: Box<[u8]>,
 }
 

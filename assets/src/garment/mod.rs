@@ -26,9 +26,9 @@ use crate::mesh::SkinWeights;
 pub struct Garment {
     /// The garment's name.
     pub name: String,
-    /// The size's code.
+    /// Code of the size.
     pub size: String,
-    /// The fabric.
+    /// The fabric that it is made of.
     pub fabric: Fabric,
     /// The vertex of the shape that each particle was `[particles]`.
     pub source: Box<[u32]>,
@@ -56,7 +56,7 @@ pub struct Garment {
 }
 
 impl Garment {
-    /// What holds the particles together.
+    /// The constraints between its particles, as they lie in memory.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }

@@ -40,7 +40,7 @@ pub struct Shape {
     pub cut: Vec<Vec3>,
     /// Where each vertex starts on the shopper, in the rest pose (m).
     pub worn: Vec<Vec3>,
-    /// Faces.
+    /// Triangles and quads, by the indices of their vertices.
     pub faces: Vec<Face>,
     /// True where the vertex sticks to the body and is skinned, false where it is simulated.
     pub fixed: Vec<bool>,

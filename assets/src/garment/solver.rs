@@ -1,4 +1,4 @@
-//! How a set of fibers is solved, and what a garment file has to say about it.
+//! How a set of fibers is solved, and how a garment file chooses it.
 
 use serde::Deserialize;
 
@@ -45,7 +45,7 @@ pub struct Overrides {
     pub warp: Option<Solver>,
     /// Of all fibers around it.
     pub weft: Option<Solver>,
-    /// Of all diagonals.
+    /// Solver of all fibers along the bias.
     pub bias: Option<Solver>,
     /// Of the hoops that the garment hangs by.
     pub waistband: Option<Solver>,

@@ -30,25 +30,25 @@ pub enum ObjError {
     /// The text is no OBJ.
     #[error("{path}: {reason}; export the garment as Wavefront OBJ with vertices and faces")]
     Syntax {
-        /// The file.
+        /// The file's path as the user gave it.
         path: String,
-        /// What is wrong.
+        /// What is wrong with the text, and where.
         reason: String,
     },
     /// A face with more than four corners.
     #[error("{path}: {face} has {corners} corners; export faces of three or four corners")]
     Polygon {
-        /// The file.
+        /// The file's path as the user gave it.
         path: String,
         /// The face, by its line.
         face: String,
-        /// Its corners.
+        /// Number of its corners.
         corners: u32,
     },
     /// A mesh that cannot be cloth.
     #[error("{path}: {flaw}")]
     Mesh {
-        /// The file.
+        /// The file's path as the user gave it.
         path: String,
         /// What is wrong with which of its vertices or faces, and the cure.
         flaw: String,
@@ -56,7 +56,7 @@ pub enum ObjError {
     /// Not a garment's size.
     #[error("{path}: the mesh is {height} m high; export it in metres, y up, standing on y = 0 like the person in it")]
     Units {
-        /// The file.
+        /// The file's path as the user gave it.
         path: String,
         /// Height of its bounding box (m).
         height: f32,
@@ -186,7 +186,7 @@ impl WeldedObj {
         Ok(())
     }
 
-    /// Where moving and fixed parts meet, the vertex is fixed: it is where the cloth hangs.
+    /// Where moving and fixed parts meet, the vertex is fixed: the cloth is attached there.
     fn into_shape(self, path: &str, has_free: bool) -> Result<Shape, ObjError> {
         let finite = || self.positions.iter().filter(|p| p.is_finite());
         let low = finite().map(|p| p.y).fold(f32::INFINITY, f32::min);

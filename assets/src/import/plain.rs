@@ -97,7 +97,7 @@ pub fn parse_obj(text: &str) -> Result<PlainMesh, String> {
             }
             _ => Ok(()),
         };
-        read.map_err(|says| format!("line {}: {says}", i + 1))?;
+        read.map_err(|message| format!("line {}: {message}", i + 1))?;
     }
     if !textures.is_empty() {
         let at = |i: Option<usize>| i.and_then(|i| textures.get(i)).copied().unwrap_or_default();
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn flaws_are_told_with_their_line() {
-        for (text, said) in [
+        for (text, expected) in [
             ("v 1 2\n", "line 1: a vertex has 2"),
             ("v 1 2 x\n", "line 1: \"x\""),
             ("v 0 0 0\nf 1 1\n", "line 2: a face has 2"),
@@ -200,7 +200,7 @@ mod tests {
             ("v 0 0 0\nf 1 1 2\n", "names vertex 2 of 1"),
         ] {
             let error = parse_obj(text).unwrap_err();
-            assert!(error.contains(said), "{text}: {error}");
+            assert!(error.contains(expected), "{text}: {error}");
         }
         assert_eq!(parse_obj("").unwrap(), PlainMesh::default());
     }

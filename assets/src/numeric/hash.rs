@@ -26,7 +26,7 @@ impl Fnv1a {
         number.to_bits().to_le_bytes().into_iter().for_each(|byte| self.byte(byte));
     }
 
-    /// The hash.
+    /// The hash of all bytes that were added.
     pub const fn finish(self) -> u64 {
         self.0
     }

@@ -38,13 +38,13 @@ const LEAST_RADIUS: f64 = 5e-3;
 /// A point on the skin or above it.
 struct SurfaceSample {
     point: Vec3,
-    /// Its share of the cost.
+    /// Weight in the cost.
     weight: f64,
     /// How far above the skin it is (m); 0 on the skin.
     above: f64,
 }
 
-/// What a fit starts from.
+/// Input of a fit.
 struct FitProblem {
     samples: Vec<SurfaceSample>,
     start: SphereVector,

@@ -32,7 +32,7 @@ pub(super) enum SpherePlace {
 pub(super) struct SpherePlan {
     /// The joint that carries it.
     pub carrier: Joint,
-    /// Where it begins.
+    /// Place from which the fit starts.
     pub start: SpherePlace,
     /// How strongly it is held there, times [`super::fit::HOLD`].
     pub held: f64,

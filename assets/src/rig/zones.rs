@@ -45,7 +45,7 @@ impl Zone {
     /// most [`P95_GOAL_MM`](super::P95_GOAL_MM).
     pub const HELD: [Self; 4] = [Self::Chest, Self::Waist, Self::Hips, Self::Thigh];
 
-    /// What it is called.
+    /// Name of the zone in reports.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Chest => "chest",

@@ -14,11 +14,11 @@ use crate::scene::skirt::{self, Motion};
 pub struct ScenePlane {
     /// A point on it (m).
     pub point: Vec3,
-    /// Unit normal.
+    /// Unit normal, towards the side on which cloth stays.
     pub normal: Vec3,
 }
 
-/// What moves spheres.
+/// Source of the spheres' motion.
 #[derive(Debug, Clone, PartialEq)]
 enum SphereMotion {
     Track(Track),
@@ -34,7 +34,7 @@ pub struct SceneColliders {
     movers: Vec<SphereMotion>,
     /// Pairs of spheres; one that belongs to no pair is paired with itself.
     pub capsules: Vec<[u8; 2]>,
-    /// Planes.
+    /// Planes that nothing moves.
     pub planes: Vec<ScenePlane>,
 }
 
@@ -55,8 +55,8 @@ impl SceneColliders {
             }
             None if table.has("motion") => {
                 if !spheres.is_empty() || table.has("capsules") {
-                    let says = "brings spheres and capsules of its own; delete the others";
-                    return Err(table.wrong("motion", says));
+                    let message = "brings spheres and capsules of its own; delete the others";
+                    return Err(table.wrong("motion", message));
                 }
                 let motion = motion(table.choice("motion")?.unwrap_or_default());
                 this.spheres = (0..skirt::JOINTS.len()).map(|k| (0, k)).collect();
@@ -65,9 +65,9 @@ impl SceneColliders {
             None => spheres.iter().try_for_each(|sphere| this.add(sphere, source, pass))?,
         }
         if this.spheres.len() > MAX_SPHERES {
-            let says =
+            let message =
                 format!("{} spheres are more than MAX_SPHERES = {MAX_SPHERES}; leave some out", this.spheres.len());
-            return Err(table.error(says));
+            return Err(table.error(message));
         }
         this.join(table)?;
         for plane in table.tables("plane")? {
@@ -76,8 +76,9 @@ impl SceneColliders {
             this.planes.push(ScenePlane { point: plane.vector("point")?, normal });
         }
         if this.planes.len() > MAX_PLANES {
-            let says = format!("{} planes are more than MAX_PLANES = {MAX_PLANES}; leave some out", this.planes.len());
-            return Err(table.wrong("plane", says));
+            let message =
+                format!("{} planes are more than MAX_PLANES = {MAX_PLANES}; leave some out", this.planes.len());
+            return Err(table.wrong("plane", message));
         }
         Ok(this)
     }
@@ -109,9 +110,9 @@ impl SceneColliders {
         self.capsules.extend(alone);
         if self.capsules.len() > MAX_CAPSULES {
             let count = self.capsules.len();
-            let says =
+            let message =
                 format!("and single spheres are {count}, more than MAX_CAPSULES = {MAX_CAPSULES}; leave some out");
-            return Err(table.wrong("capsules", says));
+            return Err(table.wrong("capsules", message));
         }
         Ok(())
     }
@@ -143,7 +144,7 @@ fn sphere_track(
     pass: bool,
     spheres: Option<usize>,
 ) -> Result<Track, SceneError> {
-    let wrong = |says: String| table.wrong("track", format!("{name}: {says}"));
+    let wrong = |message: String| table.wrong("track", format!("{name}: {message}"));
     let text = source.text(name).map_err(|e| wrong(format!("{e}; give the path of a CSV file")))?;
     let fits = |n: usize| match spheres {
         None if n > 0 && n.is_multiple_of(4) => Ok(()),

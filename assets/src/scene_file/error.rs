@@ -12,22 +12,22 @@ pub enum SceneError {
     /// The scene file itself cannot be read.
     #[error("scene {}: {reason}; give the path of a readable TOML file, or `--example NAME`", path.display())]
     Read {
-        /// The file.
+        /// The file's path as the user gave it.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the operating system.
         reason: String,
     },
     /// Something in it is wrong.
-    #[error("{file}:{line}:{column}: {says}")]
+    #[error("{file}:{line}:{column}: {message}")]
     At {
         /// The scene file.
         file: String,
-        /// Line, from 1.
+        /// Line in the file, from 1.
         line: usize,
         /// Column in characters, from 1.
         column: usize,
         /// One sentence that names the key and the cure.
-        says: String,
+        message: String,
     },
     /// No example of that name.
     #[error("there is no example named {name}; choose one of {known}")]
@@ -44,15 +44,15 @@ pub enum SceneError {
 pub(super) struct SceneDocument<'t> {
     /// The file as the user named it.
     pub file: &'t str,
-    /// Its text.
+    /// The whole text, in TOML.
     pub text: &'t str,
 }
 
 impl SceneDocument<'_> {
     /// An error at a byte of the text.
-    pub fn error(&self, at: usize, says: impl Into<String>) -> SceneError {
+    pub fn error(&self, at: usize, message: impl Into<String>) -> SceneError {
         let (line, column) = toml_keys::place(self.text, at);
-        let says = says.into().split_whitespace().collect::<Vec<_>>().join(" ");
-        SceneError::At { file: self.file.into(), line, column, says }
+        let message = message.into().split_whitespace().collect::<Vec<_>>().join(" ");
+        SceneError::At { file: self.file.into(), line, column, message }
     }
 }

@@ -89,8 +89,8 @@ fn mesh_key(table: &SceneTable<'_>) -> &'static str {
 fn mesh(table: &SceneTable<'_>, source: SceneSource<'_>) -> Result<PlainMesh, SceneError> {
     let given = MESHES.into_iter().filter(|key| table.has(key)).count();
     if given != 1 {
-        let says = format!("[garment] has {given} of {}; give exactly one of them", MESHES.join(", "));
-        return Err(table.error(says));
+        let message = format!("[garment] has {given} of {}; give exactly one of them", MESHES.join(", "));
+        return Err(table.error(message));
     }
     if let Some(grid) = table.table("grid")? {
         return primitive::grid(&grid);
@@ -102,7 +102,7 @@ fn mesh(table: &SceneTable<'_>, source: SceneSource<'_>) -> Result<PlainMesh, Sc
         return primitive::skirt(&skirt);
     }
     let name = table.text("mesh")?.unwrap_or_default();
-    let wrong = |says: String| table.wrong("mesh", format!("{name}: {says}"));
+    let wrong = |message: String| table.wrong("mesh", format!("{name}: {message}"));
     let bytes = source.read(name).map_err(|e| wrong(format!("{e}; give the path of an OBJ, glTF or GLB file")))?;
     let ending = name.rsplit('.').next().unwrap_or_default().to_lowercase();
     match ending.as_str() {
@@ -143,8 +143,8 @@ fn place(table: &SceneTable<'_>, mesh: &mut PlainMesh) -> Result<(), SceneError>
     let high = finite().fold(Vec3::NEG_INFINITY, |a, p| a.max(*p));
     let extent = (high - low).max_element();
     if !mesh.faces.is_empty() && !(EXTENT_M[0]..=EXTENT_M[1]).contains(&extent) {
-        let says = format!("is {extent} m large; set garment.scale to bring it to metres, 0.001 for millimetres");
-        return Err(table.wrong(mesh_key(table), says));
+        let message = format!("is {extent} m large; set garment.scale to bring it to metres, 0.001 for millimetres");
+        return Err(table.wrong(mesh_key(table), message));
     }
     Ok(())
 }
@@ -322,7 +322,7 @@ pub(super) fn rigid_track(
     source: SceneSource<'_>,
     pass: bool,
 ) -> Result<Track, SceneError> {
-    let wrong = |says: String| pin.wrong("track", format!("{name}: {says}"));
+    let wrong = |message: String| pin.wrong("track", format!("{name}: {message}"));
     let text = source.text(name).map_err(|e| wrong(format!("{e}; give the path of a CSV file")))?;
     let fits = |n: usize| match n {
         7 => Ok(()),

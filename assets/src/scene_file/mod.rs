@@ -93,7 +93,7 @@ pub(crate) enum PinSource<'a> {
 /// A whole scene, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneFile {
-    /// What reports call it.
+    /// Name in reports.
     pub name: String,
     /// Length of the run (s).
     pub duration: f64,
@@ -109,7 +109,7 @@ pub struct SceneFile {
     pub settings: SceneSettings,
     /// The pieces of cloth, at least one.
     pub garments: Vec<SceneGarment>,
-    /// What the cloth meets.
+    /// Colliders that the cloth meets.
     pub colliders: SceneColliders,
     /// Rigid motions of pin groups: group g of a pinned vertex follows `pins[g - 1]`, group 0 stands.
     pub pins: Vec<PinMotion>,
@@ -133,8 +133,8 @@ impl SceneLoader<'_> {
             return Ok(known as u8 + 1);
         }
         if self.pins.len() == garment::MAX_PIN_TRACKS {
-            let says = format!("is the {}th; give pins that move alike the same file", self.pins.len() + 1);
-            return Err(pin.wrong("track", says));
+            let problem = format!("is the {}th; give pins that move alike the same file", self.pins.len() + 1);
+            return Err(pin.wrong("track", problem));
         }
         let motion = match source {
             PinSource::Track(name) => PinMotion::Track(garment::rigid_track(pin, name, self.source, self.pass)?),
@@ -157,7 +157,7 @@ impl SceneFile {
         Self::parse(&path.display().to_string(), &text, SceneSource::Folder(folder))
     }
 
-    /// One of the [`examples`].
+    /// Reads one of the [`examples`].
     pub fn example(name: &str) -> Result<Self, SceneError> {
         let known = || examples::names().collect::<Vec<_>>().join(", ");
         let text = examples::text(name);

@@ -10,7 +10,7 @@ pub enum KeyKind {
     Count(u64, u64),
     /// Three numbers, each at most this far from 0.
     Vector(f64),
-    /// A text.
+    /// A text of any content.
     Text,
     /// One of these words.
     Choice(&'static [&'static str]),
@@ -30,21 +30,21 @@ pub enum KeyKind {
     Pairs,
 }
 
-/// One key.
+/// A key of a scene file: where it stands, and what it takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneKey {
     /// The table it stands in; empty for the file itself.
     pub table: &'static str,
-    /// Its name.
+    /// Name of the key, as it stands in the file.
     pub name: &'static str,
-    /// What it takes.
+    /// Kind of value that it takes.
     pub kind: KeyKind,
     /// Its unit; empty where it has none.
     pub unit: &'static str,
     /// What holds where it is left out; `required` where it may not be.
     pub default: &'static str,
-    /// What it does.
-    pub says: &'static str,
+    /// What the key sets, in a sentence for users.
+    pub help: &'static str,
 }
 
 const fn key(
@@ -53,9 +53,9 @@ const fn key(
     kind: KeyKind,
     unit: &'static str,
     default: &'static str,
-    says: &'static str,
+    help: &'static str,
 ) -> SceneKey {
-    SceneKey { table, name, kind, unit, default, says }
+    SceneKey { table, name, kind, unit, default, help }
 }
 
 /// Farthest coordinate (m): beyond it f32 cannot tell apart a tenth of a millimetre.
@@ -316,7 +316,7 @@ impl SceneKey {
 
     /// The row of this key in the reference: name, what it takes, default, what it does.
     pub fn row(&self) -> String {
-        format!("| `{}` | {} | {} | {} |", self.name, self.takes(), self.default, self.says)
+        format!("| `{}` | {} | {} | {} |", self.name, self.takes(), self.default, self.help)
     }
 }
 
@@ -332,7 +332,7 @@ mod tests {
                 assert!(of(t).count() > 0, "{t}");
             }
             assert_eq!(of(key.table).filter(|k| k.name == key.name).count(), 1, "{}", key.path());
-            assert!(!key.says.is_empty() && !key.default.is_empty(), "{}", key.path());
+            assert!(!key.help.is_empty() && !key.default.is_empty(), "{}", key.path());
         }
     }
 

@@ -15,9 +15,9 @@ use crate::toml_keys;
 pub(super) struct SceneTable<'t> {
     document: SceneDocument<'t>,
     entries: &'t DeTable<'t>,
-    /// Its name in the schema.
+    /// Name of the table in the schema.
     name: &'static str,
-    /// Where it stands (byte).
+    /// Where the table begins in the text (byte).
     at: usize,
 }
 
@@ -48,14 +48,14 @@ impl<'t> SceneTable<'t> {
     }
 
     /// An error at the value of a key, or at the table where it is not there. `says` follows the key's name.
-    pub fn wrong(&self, name: &str, says: impl AsRef<str>) -> SceneError {
+    pub fn wrong(&self, name: &str, problem: impl AsRef<str>) -> SceneError {
         let at = self.entries.get(name).map_or(self.at, |v| v.span().start);
-        self.document.error(at, format!("{} {}", key(self.name, name).path(), says.as_ref()))
+        self.document.error(at, format!("{} {}", key(self.name, name).path(), problem.as_ref()))
     }
 
     /// An error about the table as a whole.
-    pub fn error(&self, says: impl Into<String>) -> SceneError {
-        self.document.error(self.at, says)
+    pub fn error(&self, problem: impl Into<String>) -> SceneError {
+        self.document.error(self.at, problem)
     }
 
     fn find(&self, name: &str) -> Option<(SceneValue<'t>, &'static SceneKey)> {
@@ -135,8 +135,8 @@ impl<'t> SceneTable<'t> {
         for item in list {
             let (low, high) = range(item.get_ref()).ok_or_else(|| self.refuse(item.span(), key))?;
             if high >= count || low > high {
-                let says = format!("{} names vertex {high} of {count}; count from 0 to {}", key.path(), count - 1);
-                return Err(self.document.error(item.span().start, says));
+                let problem = format!("{} names vertex {high} of {count}; count from 0 to {}", key.path(), count - 1);
+                return Err(self.document.error(item.span().start, problem));
             }
             found.extend(low..=high);
         }
@@ -152,8 +152,8 @@ impl<'t> SceneTable<'t> {
             let end = |i: usize| whole(ends?[i].get_ref());
             let (a, b) = end(0).zip(end(1)).ok_or_else(|| self.refuse(item.span(), key))?;
             if a.max(b) >= count as u64 {
-                let says = format!("{} names sphere {}, but there are {count}; count from 0", key.path(), a.max(b));
-                return Err(self.document.error(item.span().start, says));
+                let problem = format!("{} names sphere {}, but there are {count}; count from 0", key.path(), a.max(b));
+                return Err(self.document.error(item.span().start, problem));
             }
             Ok([a as u8, b as u8])
         };

@@ -119,7 +119,7 @@ fn parse(text: &str) -> Result<SceneFile, SceneError> {
 /// The sentence of a refusal, and its line.
 fn refusal(text: &str) -> (usize, String) {
     match parse(text) {
-        Err(SceneError::At { line, says, .. }) => (line, says),
+        Err(SceneError::At { line, message: problem, .. }) => (line, problem),
         other => panic!("not refused: {other:?}\n{text}"),
     }
 }
@@ -282,9 +282,9 @@ fn every_key_mistyped_is_told_with_its_line_and_the_key_that_was_meant() {
         letters.swap(last, last - 1);
         letters.push('x');
         let wrong: String = letters.into_iter().collect();
-        let (line, says) = refusal(&with_line(number, &format!("{wrong} = {value}")));
-        assert_eq!(line, number, "{says}");
-        assert!(says.contains(&format!("\"{wrong}\"")) && says.contains(&format!("\"{key}\"")), "{says}");
+        let (line, problem) = refusal(&with_line(number, &format!("{wrong} = {value}")));
+        assert_eq!(line, number, "{problem}");
+        assert!(problem.contains(&format!("\"{wrong}\"")) && problem.contains(&format!("\"{key}\"")), "{problem}");
     }
 }
 
@@ -298,10 +298,10 @@ fn every_value_of_another_kind_is_told_with_its_line_and_what_is_taken() {
             match parse(&text) {
                 Ok(_) if taken => {}
                 Ok(_) => panic!("{key} = {value} is let through"),
-                Err(SceneError::At { line, says, .. }) => {
-                    assert!(line == number || value == "[]", "{key} = {value}: line {line}: {says}");
-                    assert!(says.contains(key) || says.contains("zz"), "{key} = {value}: {says}");
-                    assert!(!says.contains('\n') && says.len() < 400, "{says}");
+                Err(SceneError::At { line, message: problem, .. }) => {
+                    assert!(line == number || value == "[]", "{key} = {value}: line {line}: {problem}");
+                    assert!(problem.contains(key) || problem.contains("zz"), "{key} = {value}: {problem}");
+                    assert!(!problem.contains('\n') && problem.len() < 400, "{problem}");
                 }
                 Err(other) => panic!("{other}"),
             }
@@ -319,8 +319,8 @@ fn every_line_left_out_and_every_truncation_is_a_scene_or_a_sentence_with_a_line
     }
     for end in 0..EVERY_KEY.len() {
         if let Err(error) = parse(&EVERY_KEY[..end]) {
-            let said = error.to_string();
-            assert!(said.starts_with("test.toml:") && !said.contains('\n'), "{said}");
+            let message = error.to_string();
+            assert!(message.starts_with("test.toml:") && !message.contains('\n'), "{message}");
         }
     }
 }
@@ -356,9 +356,9 @@ fn mistakes_are_told_with_their_cure() {
         (format!("{grid}name = \"../x\"\n"), 3, &["names files", "letters"]),
     ];
     for (text, line, parts) in cases {
-        let (found, says) = refusal(&text);
-        assert_eq!(found, line, "{says}\n{text}");
-        parts.iter().for_each(|part| assert!(says.contains(part), "{part:?} is not in: {says}"));
+        let (found, problem) = refusal(&text);
+        assert_eq!(found, line, "{problem}\n{text}");
+        parts.iter().for_each(|part| assert!(problem.contains(part), "{part:?} is not in: {problem}"));
     }
     let spheres = "[[colliders.sphere]]\ncentre = [0, 0, 0]\nradius = 1\n".repeat(MAX_SPHERES + 1);
     assert!(refusal(&format!("{grid}{spheres}")).1.contains(&format!("MAX_SPHERES = {MAX_SPHERES}")));
@@ -395,9 +395,9 @@ fn a_scene_beyond_all_measure_is_refused_before_it_is_baked() {
         format!("[[garment]]\nname = \"g{i}\"\ngrid = {{ rows = {rows}, columns = {rows}, width = 1, height = 1 }}\n")
     };
     let large: String = (0..40).map(|i| grid(512, i)).collect();
-    let (line, says) = refusal(&format!("duration = 1\n{large}"));
-    assert!(line == 14 && says.contains("1310720 vertices, more than the 1048576"), "line {line}: {says}");
+    let (line, problem) = refusal(&format!("duration = 1\n{large}"));
+    assert!(line == 14 && problem.contains("1310720 vertices, more than the 1048576"), "line {line}: {problem}");
     let many: String = (0..65).map(|i| grid(2, i)).collect();
-    let (_, says) = refusal(&format!("duration = 1\n{many}"));
-    assert!(says.contains("65 garments, more than 64"), "{says}");
+    let (_, problem) = refusal(&format!("duration = 1\n{many}"));
+    assert!(problem.contains("65 garments, more than 64"), "{problem}");
 }

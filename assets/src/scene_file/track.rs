@@ -33,7 +33,7 @@ impl Track {
             if std::mem::take(&mut names_may_come) && numbers.iter().all(Option::is_none) {
                 continue;
             }
-            track.push(&numbers, &fits, pass).map_err(|says| format!("line {}: {says}", i + 1))?;
+            track.push(&numbers, &fits, pass).map_err(|message| format!("line {}: {message}", i + 1))?;
         }
         if track.times.is_empty() {
             return Err("it has no rows; give at least one of time and values".into());
@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn bad_rows_are_told_with_line_and_cure() {
-        for (text, said) in [
+        for (text, expected) in [
             ("", "no rows"),
             ("t,x\n", "no rows"),
             ("0,1\n1,x\n", "line 2: column 2"),
@@ -199,7 +199,7 @@ mod tests {
             ("0,inf\n", "bad_rows"),
         ] {
             let error = read(text).unwrap_err();
-            assert!(error.contains(said), "{text:?}: {error}");
+            assert!(error.contains(expected), "{text:?}: {error}");
         }
         assert!(Track::parse("0,nan\n", |_| Ok(()), true).unwrap().at(0.0, 0).is_nan());
         assert_eq!(Track::parse("0,1,2\n", |n| Err(format!("{n} values")), false).unwrap_err(), "line 1: 2 values");

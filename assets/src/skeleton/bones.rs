@@ -74,7 +74,7 @@ impl Twist {
     }
 }
 
-/// Every bone with the one that it hangs from, parents first: a split limb is a chain from its root over its twist
+/// Every bone with its parent, parents first: a split limb is a chain from its root over its twist
 /// bones to its far joint.
 pub const BONE_CHAIN: [(usize, Option<usize>); BONES] = {
     let mut chain = [(0, None); BONES];

@@ -1,4 +1,4 @@
-//! What other skeletons call our joints: H-Anim (ISO/IEC 19774), version 2 and version 1, and VRM's humanoid bones.
+//! Names of the joints in other skeletons: H-Anim (ISO/IEC 19774), version 2 and version 1, and VRM's humanoid bones.
 
 use super::{JOINTS, Joint};
 

@@ -20,9 +20,9 @@ const LEAST_RISE_M: f32 = 0.004;
 /// girths are what the size says; [`START_GAP_M`] on the shopper, who may be larger than the garment.
 #[derive(Debug, Clone, Copy)]
 pub struct DrapeBody<'a> {
-    /// The body.
+    /// The body that cloth is draped on.
     pub body: &'a Body,
-    /// Least gap (m).
+    /// Least gap that cloth keeps from it (m).
     pub gap: f32,
 }
 
@@ -32,7 +32,7 @@ impl<'a> DrapeBody<'a> {
         Self { body, gap: -1.0 }
     }
 
-    /// The shopper.
+    /// The shopper's body, with the gap [`START_GAP_M`].
     pub const fn shopper(body: &'a Body) -> Self {
         Self { body, gap: START_GAP_M }
     }

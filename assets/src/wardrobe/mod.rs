@@ -47,42 +47,42 @@ pub enum WardrobeError {
     /// A garment file that cannot be used.
     #[error("garment {name}: {reason}; compare it with a garment that is built in")]
     Style {
-        /// The garment.
+        /// Name of the garment.
         name: String,
-        /// What is wrong.
+        /// What is wrong with the file.
         reason: String,
     },
     /// A size given for a mesh that has none.
     #[error("{name} is a mesh in one size, so it has no size {size}; leave out --size")]
     NoSizes {
-        /// The garment.
+        /// Name of the garment or file.
         name: String,
         /// The size asked for.
         size: String,
     },
-    /// Its mesh.
+    /// A mesh that cannot be cloth.
     #[error("garment {name}: {source}")]
     Mesh {
         /// The garment or file.
         name: String,
-        /// What is wrong with it.
+        /// What is wrong with the mesh.
         source: MeshError,
     },
-    /// Its file.
+    /// An OBJ file that cannot be read.
     #[error(transparent)]
     Obj(#[from] ObjError),
-    /// Its fabric.
+    /// A fabric that cannot be used.
     #[error(transparent)]
     Fabric(#[from] FabricError),
-    /// Its size.
+    /// A size or size table that cannot be used.
     #[error(transparent)]
     Size(#[from] SizeError),
     /// The body of its size.
     #[error("the body of size {size} cannot be made: {source}")]
     Body {
-        /// The size.
+        /// Code of the size.
         size: String,
-        /// Why.
+        /// Why the body cannot be built.
         source: BodyError,
     },
 }

@@ -1,4 +1,4 @@
-//! Sections: the tight outline that a tape would take around a body, and rings of cloth laid around it.
+//! Sections: the convex outline of a body, as a tape measure lies, and rings of cloth laid around it.
 
 use glam::{Vec2, Vec3};
 
@@ -31,7 +31,7 @@ impl SectionPlane {
 /// The convex outline of a body in a plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodySection {
-    /// The plane.
+    /// The plane of the section.
     pub plane: SectionPlane,
     /// Corners of the outline on the plane's axes (m), counter-clockwise.
     pub outline: Vec<Vec2>,
@@ -117,7 +117,7 @@ impl BodySection {
 /// may be tighter than the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RingFit {
-    /// Girth (m).
+    /// Girth as cut (m).
     pub girth: f32,
     /// Least distance from the outline (m).
     pub gap: f32,

@@ -11,13 +11,13 @@ use crate::sizes::{GarmentKind, Girth};
 pub struct Style {
     /// Name by which it is asked for.
     pub name: String,
-    /// What a shopper reads.
+    /// Name for shoppers.
     pub title: String,
     /// What it is; decides its primary measures.
     pub kind: GarmentKind,
-    /// The size table.
+    /// Name of the size table.
     pub table: String,
-    /// The fabric.
+    /// Name of the fabric.
     pub fabric: String,
     /// Distance between neighbouring particles along the warp (mm).
     pub spacing_mm: f32,
@@ -30,7 +30,7 @@ pub struct Style {
     /// Substeps of a step at the quality `shop`, where it was tried that as many do; left out, the bake counts them by the mesh.
     #[serde(default)]
     pub substeps: Option<u32>,
-    /// The cut.
+    /// Pattern of the garment with its measures.
     pub cut: Cut,
     /// Solvers that are not left to the bake.
     #[serde(default)]
@@ -102,7 +102,7 @@ pub enum Cut {
     },
     /// A straight body with set-in short sleeves and a round neck.
     TShirt {
-        /// Waist to hem.
+        /// Length from waist to hem (mm).
         below_waist_mm: f32,
         /// Length of the sleeve from the shoulder point.
         sleeve_mm: f32,
@@ -117,7 +117,7 @@ pub enum Cut {
     WideTrousers {
         /// Height of the upper edge above the waist level.
         waistband_mm: f32,
-        /// Crotch to hem.
+        /// Length from crotch to hem (mm).
         inseam_mm: f32,
         /// Girth of a leg at the hem.
         hem_mm: f32,
@@ -139,8 +139,8 @@ mod tests {
         assert_eq!(wardrobe::parse("dress", text).unwrap().substeps, None);
         assert_eq!(wardrobe::parse("dress", &format!("substeps = 6\n{text}")).unwrap().substeps, Some(6));
         for wrong in ["0", "65"] {
-            let said = wardrobe::parse("dress", &format!("substeps = {wrong}\n{text}")).unwrap_err().to_string();
-            assert!(said.contains("substeps is") && said.contains("1 to 64"), "{said}");
+            let message = wardrobe::parse("dress", &format!("substeps = {wrong}\n{text}")).unwrap_err().to_string();
+            assert!(message.contains("substeps is") && message.contains("1 to 64"), "{message}");
         }
     }
 
@@ -154,8 +154,8 @@ mod tests {
         assert_eq!(style.solver.of(Direction::Weft, Some(SolverRegion::Waistband)), Some(Solver::ZeroStretch));
         assert_eq!(style.solver.of(Direction::Warp, None), None);
         for (table, word) in [("weft = \"magic\"", "semi-implicit"), ("sleeve = \"zero-stretch\"", "waistband")] {
-            let said = with(table).unwrap_err().to_string();
-            assert!(said.contains(word) && said.contains("trousers") && !said.contains('\n'), "{said}");
+            let message = with(table).unwrap_err().to_string();
+            assert!(message.contains(word) && message.contains("trousers") && !message.contains('\n'), "{message}");
         }
     }
 }

@@ -103,7 +103,7 @@ pub fn one_of<T, const N: usize>(all: [T; N], name: fn(T) -> &'static str) -> im
 where
     T: Copy + Send + Sync + 'static,
 {
-    let value = move |said: String| all.into_iter().find(|value| name(*value) == said).ok_or("it has no such name");
+    let value = move |text: String| all.into_iter().find(|value| name(*value) == text).ok_or("it has no such name");
     PossibleValuesParser::new(all.map(name)).try_map(value)
 }
 
@@ -114,6 +114,6 @@ pub fn count(range: impl RangeBounds<u64>) -> impl TypedValueParser<Value = usiz
 
 /// A parser of numbers of lanes.
 pub fn lanes() -> impl TypedValueParser<Value = Width> {
-    let width = |said: String| said.parse().ok().and_then(Width::of).ok_or("there is no such width");
+    let width = |text: String| text.parse().ok().and_then(Width::of).ok_or("there is no such width");
     PossibleValuesParser::new(["1", "4", "8", "16"]).try_map(width)
 }

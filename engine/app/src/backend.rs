@@ -4,9 +4,9 @@ use toile_perf::backend::SteppedBy;
 
 use crate::terminal::Words;
 
-/// Says why the processor stepped although a device was asked for, if it did.
-pub fn say(by: &SteppedBy) {
+/// Prints why the processor stepped although a device was asked for, if it did.
+pub fn print_fallback(by: &SteppedBy) {
     if let Some(reason) = &by.fallen {
-        Words::new(false).say(&format!("the processor steps: {reason}"));
+        Words::new(false).print_line(&format!("the processor steps: {reason}"));
     }
 }

@@ -10,7 +10,7 @@ use toile_kiosk::KioskError;
 
 use crate::output::OutputError;
 
-/// What the process exits with.
+/// Exit codes of the process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Code {

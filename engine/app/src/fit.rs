@@ -2,12 +2,12 @@
 
 use toile_track::recommend;
 
-use crate::report::{Recommendation, SizeChance, TapeMeasure, Zone};
+use crate::report::{Recommendation, SizeChance, TapeMeasure, ZoneFitReport};
 
 impl From<recommend::Recommendation> for Recommendation {
     fn from(judged: recommend::Recommendation) -> Self {
         let mm = |m: f32| (f64::from(m) * 1e4).round() / 10.0;
-        let zones = judged.zones.iter().map(|fit| Zone {
+        let zones = judged.zones.iter().map(|fit| ZoneFitReport {
             zone: fit.zone.name().into(),
             ease_mm: mm(fit.ease),
             sigma_mm: mm(fit.sigma),
@@ -16,7 +16,7 @@ impl From<recommend::Recommendation> for Recommendation {
         });
         let share = |p: f32| (f64::from(p) * 1e3).round() / 1e3;
         let sizes = judged.sizes.into_iter().map(|s| SizeChance { size: s.size, probability: share(s.probability) });
-        let tape = judged.tape.map(|t| TapeMeasure {
+        let tape = judged.girth_to_take.map(|t| TapeMeasure {
             zone: t.zone.name().into(),
             probability: share(t.probability),
             sentence: t.sentence,

@@ -1,4 +1,4 @@
-//! The command line of Toile: the only place that knows every room.
+//! The command line of Toile: the only crate that uses all others.
 //!
 //! Reads: arguments, sessions, garments. Writes: one report on stdout, words on stderr, files in the output folder.
 //! Budget: the words and the parsing take under 10 ms; the work itself is budgeted by the rooms it calls.

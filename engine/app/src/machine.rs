@@ -4,7 +4,7 @@ use std::process::Command;
 
 use serde::Serialize;
 
-/// What a figure depends on.
+/// The machine that figures were measured on.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Machine {
     /// The processor's own name, or `unknown`.
@@ -75,8 +75,8 @@ fn mac_cpu_name() -> Option<String> {
     if !cfg!(target_os = "macos") {
         return None;
     }
-    let said = Command::new("sysctl").args(["-n", "machdep.cpu.brand_string"]).output().ok()?;
-    let name = String::from_utf8(said.stdout).ok()?.trim().to_owned();
+    let found = Command::new("sysctl").args(["-n", "machdep.cpu.brand_string"]).output().ok()?;
+    let name = String::from_utf8(found.stdout).ok()?.trim().to_owned();
     (!name.is_empty()).then_some(name)
 }
 

@@ -19,9 +19,9 @@ pub enum OutputError {
     /// The folder cannot be made or written in.
     #[error("output folder `{path}` cannot be written ({reason}); name another one with `--out DIR`")]
     Folder {
-        /// The folder.
+        /// Path of the output folder.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         reason: io::Error,
     },
     /// A file in the folder cannot be written.
@@ -31,13 +31,13 @@ pub enum OutputError {
     File {
         /// The file under its final name.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         reason: io::Error,
     },
     /// A path that ends in no file name.
     #[error("`--out {path}` names no file; give one such as shopper.mcap")]
     NoFile {
-        /// The path.
+        /// Path that was given.
         path: PathBuf,
     },
     /// What is there is not a regular file.
@@ -57,7 +57,7 @@ pub enum OutputError {
     /// A name that would leave the folder.
     #[error("output file name `{name}` is not a plain file name; use one without a path")]
     Name {
-        /// The name.
+        /// The file name that was refused.
         name: String,
     },
 }
@@ -152,7 +152,7 @@ pub struct OutputFolder {
     files: Vec<(PathBuf, PathBuf)>,
     /// Their names; a name may be staged again.
     names: BTreeSet<String>,
-    /// What must not be overwritten.
+    /// Input files, which must not be overwritten.
     inputs: Inputs,
 }
 
@@ -181,7 +181,7 @@ impl OutputFolder {
         self
     }
 
-    /// The folder.
+    /// Path of the output folder.
     pub fn path(&self) -> &Path {
         &self.folder
     }

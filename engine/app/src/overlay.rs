@@ -12,13 +12,13 @@ use toile_view::image::{Image, Size};
 /// A fitted body and the frame that it was fitted to.
 #[derive(Debug, Clone, Copy)]
 pub struct Fit<'a> {
-    /// The frame.
+    /// The depth frame that the body was fitted to.
     pub frame: &'a DepthFrame,
     /// The same with nothing in it but the shopper.
     pub alone: &'a DepthFrame,
     /// The body at rest.
     pub body: &'a Body,
-    /// Its pose.
+    /// The body's pose in that frame.
     pub pose: &'a Pose,
 }
 

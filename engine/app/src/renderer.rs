@@ -16,7 +16,7 @@ use crate::exit::AppError;
 #[cfg(feature = "view")]
 mod gpu;
 
-/// Which renderer draws.
+/// Choice of the renderer on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum RendererChoice {
     /// The ray tracer, on every core.
@@ -27,7 +27,7 @@ pub enum RendererChoice {
 }
 
 impl RendererChoice {
-    /// All of them.
+    /// Every choice, the default first.
     pub const ALL: [Self; 2] = [Self::Cpu, Self::Gpu];
 
     /// Its name on the command line.
@@ -41,9 +41,9 @@ impl RendererChoice {
 
 /// Draws pictures of one shopper and what they wear.
 pub enum PictureRenderer {
-    /// By rays.
+    /// Ray tracing, on the processor.
     RayTracer,
-    /// By triangles.
+    /// Rasterised triangles, on a graphics device.
     #[cfg(feature = "view")]
     Gpu(Box<gpu::GpuRenderer>),
 }

@@ -1,4 +1,4 @@
-//! The JSON that everything is judged by: its keys are a contract, to which keys may be added freely.
+//! The JSON of the commands. Its keys are a contract: keys may be added, none renamed.
 //!
 //! Reads: what the commands found. Writes: documents to be printed as JSON.
 //! Budget: milliseconds.
@@ -26,7 +26,7 @@ pub use skinning::SkinningReport;
 /// What every object carries, around what one command has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Document<T> {
-    /// `toile.<command>/1`.
+    /// Name and version of the object's format: `toile.<command>/1`.
     pub schema: String,
     /// Version of the program.
     pub version: &'static str,
@@ -51,31 +51,31 @@ impl<T> Document<T> {
 
 /// One measure of the body.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Measure {
+pub struct MeasuredLength {
     /// The value (mm).
     pub value: f64,
-    /// Its standard uncertainty (mm).
+    /// Standard uncertainty (mm).
     pub sigma: f64,
 }
 
 /// The measures of one shopper.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Measurements {
-    /// Crown to floor.
-    pub stature_mm: Measure,
+pub struct ShopperMeasures {
+    /// Stature: crown to floor.
+    pub stature_mm: MeasuredLength,
     /// Between the shoulder points.
-    pub shoulder_breadth_mm: Measure,
+    pub shoulder_breadth_mm: MeasuredLength,
     /// Around the fullest part of the chest.
-    pub chest_girth_mm: Measure,
-    /// Around the waist.
-    pub waist_girth_mm: Measure,
+    pub chest_girth_mm: MeasuredLength,
+    /// Girth of the waist.
+    pub waist_girth_mm: MeasuredLength,
     /// Around the fullest part of the hips.
-    pub hip_girth_mm: Measure,
+    pub hip_girth_mm: MeasuredLength,
 }
 
 /// The session that was watched.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Session {
+pub struct SessionReport {
     /// File name, or the name of the embedded one.
     pub name: String,
     /// Joint or depth frames read.
@@ -88,12 +88,12 @@ pub struct Session {
 
 /// How one zone of a garment fits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Zone {
-    /// Which part of the body.
+pub struct ZoneFitReport {
+    /// Name of the zone, such as `waist`.
     pub zone: String,
     /// Garment's girth less the body's (mm).
     pub ease_mm: f64,
-    /// Its standard uncertainty (mm).
+    /// Standard uncertainty of the ease (mm).
     pub sigma_mm: f64,
     /// `tight`, `good` or `loose`.
     pub verdict: String,
@@ -104,7 +104,7 @@ pub struct Zone {
 /// A size with its probability.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SizeChance {
-    /// What its label says.
+    /// Code of the size.
     pub size: String,
     /// How likely it is the best one (0..1).
     pub probability: f64,
@@ -113,7 +113,7 @@ pub struct SizeChance {
 /// The measure to take by tape.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TapeMeasure {
-    /// Which girth.
+    /// Name of the girth to take.
     pub zone: String,
     /// How likely the likeliest size is to be the best once it is known, on average (0..1).
     pub probability: f64,
@@ -126,12 +126,12 @@ pub struct TapeMeasure {
 pub struct Recommendation {
     /// The garment's name.
     pub garment: String,
-    /// Its size, by EN 13402.
+    /// Code of its size.
     pub size: String,
     /// How likely this size is the best one, given how well the shopper could be measured (0..1).
     pub probability: f64,
     /// How each zone of it fits.
-    pub zones: Vec<Zone>,
+    pub zones: Vec<ZoneFitReport>,
     /// Every size that is made with its probability, smallest first; they sum to 1.
     pub sizes: Vec<SizeChance>,
     /// Whether no size is sure.
@@ -149,22 +149,22 @@ pub struct Recommendation {
 /// The distribution of a step's time (us).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct StepMicros {
-    /// Median.
+    /// Median (us).
     pub p50: f64,
-    /// 99 %.
+    /// 99th percentile (us).
     pub p99: f64,
-    /// 99.9 %.
+    /// 99.9th percentile (us).
     pub p999: f64,
-    /// The longest.
+    /// Longest step (us).
     pub max: f64,
 }
 
 /// How far edges are stretched, as a part of their rest length (0.01 is 1 %).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Strain {
+pub struct StrainReport {
     /// Mean over edges and steps.
     pub mean: f64,
-    /// 99 %.
+    /// 99th percentile over edges (1).
     pub p99: f64,
     /// The worst edge at the worst step.
     pub max: f64,
@@ -177,9 +177,9 @@ pub struct Penetration {
     pub max: f64,
 }
 
-/// What the physics did.
+/// Settings, times and errors of the physics.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Physics {
+pub struct PhysicsReport {
     /// Steps a second of simulated time.
     pub hz: u32,
     /// The tested settings that were used.
@@ -192,12 +192,12 @@ pub struct Physics {
     pub substeps: u32,
     /// Particles of all garments, the skinned ones included.
     pub particles: usize,
-    /// Steps taken.
+    /// Steps that were taken.
     pub steps: u64,
     /// Time a step took.
     pub step_us: StepMicros,
     /// How far edges were stretched.
-    pub strain: Strain,
+    pub strain: StrainReport,
     /// How deep cloth was inside the body.
     pub penetration_mm: Penetration,
     /// Steps at which a particle was not finite.
@@ -210,15 +210,15 @@ pub struct Physics {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TryOn {
     /// The session that was watched.
-    pub session: Session,
+    pub session: SessionReport,
     /// The shopper's measures.
-    pub measurements: Measurements,
+    pub measurements: ShopperMeasures,
     /// The size of the first garment, zone by zone.
     pub recommendation: Recommendation,
     /// The sizes of the others, in the order in which they were asked for.
     pub others: Vec<Recommendation>,
-    /// What the physics did.
-    pub physics: Physics,
+    /// Settings, times and errors of the physics.
+    pub physics: PhysicsReport,
     /// Hash of the last state, 16 hexadecimal digits; the same input gives the same.
     pub state_hash: String,
     /// What drew the pictures; nothing where there are none.
@@ -231,16 +231,16 @@ pub struct TryOn {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeasureReport {
     /// The session that was watched.
-    pub session: Session,
+    pub session: SessionReport,
     /// The shopper's measures.
-    pub measurements: Measurements,
+    pub measurements: ShopperMeasures,
     /// Both ways of measuring, side by side; the body fit only where there is depth.
-    pub methods: Vec<Method>,
+    pub methods: Vec<MethodMeasures>,
     /// The fitted body; nothing without depth, or where none fits.
     pub body: Option<FittedBody>,
     /// Pixels that carried a depth, mean over the frames.
     pub valid_pixels: u64,
-    /// People seen.
+    /// Most people seen in one frame.
     pub people: u32,
     /// The files written.
     pub files: Vec<PathBuf>,
@@ -248,23 +248,23 @@ pub struct MeasureReport {
 
 /// What one way of measuring found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Method {
-    /// Its name.
+pub struct MethodMeasures {
+    /// Name of the method.
     pub method: &'static str,
-    /// What it takes.
+    /// Measures that it takes.
     pub measures: Vec<DefinedMeasure>,
 }
 
 /// A measure with its definition.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DefinedMeasure {
-    /// Its name.
+    /// Name of the measure.
     pub name: &'static str,
     /// Where the tape lies (EN 13402-1, ISO 8559-1).
     pub definition: &'static str,
     /// The value (mm).
     pub value: f64,
-    /// Its standard deviation (mm).
+    /// Standard deviation (mm).
     pub sigma: f64,
 }
 
@@ -287,7 +287,7 @@ pub struct FittedBody {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RecordReport {
     /// The session that was made.
-    pub session: Session,
+    pub session: SessionReport,
     /// Seed of the noise.
     pub seed: u64,
     /// The files written.
@@ -298,7 +298,7 @@ pub struct RecordReport {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ConvertReport {
     /// The session that was written.
-    pub session: Session,
+    pub session: SessionReport,
     /// Joint frames in it.
     pub joint_frames: u64,
     /// Depth frames in it.
@@ -319,7 +319,7 @@ mod tests {
     use super::*;
 
     fn try_on() -> TryOn {
-        let zone = Zone {
+        let zone = ZoneFitReport {
             zone: "waist".into(),
             ease_mm: 40.0,
             sigma_mm: 8.0,
@@ -330,11 +330,11 @@ mod tests {
             Recommendation { garment: "trousers".into(), size: "40".into(), zones: vec![zone], ..Default::default() };
         TryOn {
             renderer: None,
-            session: Session::default(),
-            measurements: Measurements::default(),
+            session: SessionReport::default(),
+            measurements: ShopperMeasures::default(),
             recommendation,
             others: Vec::new(),
-            physics: Physics::default(),
+            physics: PhysicsReport::default(),
             state_hash: hash_text(10),
             files: vec!["out/front.png".into()],
         }

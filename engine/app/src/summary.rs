@@ -5,8 +5,8 @@ use std::fmt::Write;
 use toile_perf::skirt::report::SkirtReport;
 
 use crate::report::{
-    BodyReport, Measure, MeasureReport, Measurements, Physics, Recommendation, RunReport, Session, SkinningReport,
-    TryOn,
+    BodyReport, MeasureReport, MeasuredLength, PhysicsReport, Recommendation, RunReport, SessionReport,
+    ShopperMeasures, SkinningReport, TryOn,
 };
 use crate::terminal::{Paint, Tone};
 
@@ -83,8 +83,8 @@ pub fn run(report: &RunReport, paint: Paint) -> String {
     ];
     let met: Vec<String> = counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
     if !met.is_empty() {
-        let said = met.join(", ");
-        line(&mut text, &format!("  {}", paint.tone(&said, Tone::Warn)));
+        let message = met.join(", ");
+        line(&mut text, &format!("  {}", paint.tone(&message, Tone::Warn)));
     }
     if let Some(folder) = &report.dump {
         line(&mut text, &format!("  {} frames in {}, listed in index.csv", report.dumped_frames, folder.display()));
@@ -215,17 +215,17 @@ pub fn body(report: &BodyReport, paint: Paint) -> String {
     text
 }
 
-fn session(text: &mut String, session: &Session) {
-    let Session { name, frames, seconds, notes } = session;
+fn session(text: &mut String, session: &SessionReport) {
+    let SessionReport { name, frames, seconds, notes } = session;
     line(text, &format!("Session {name}: {frames} frames, {seconds:.1} s"));
     for note in notes {
         line(text, &format!("  {note}"));
     }
 }
 
-fn measurements(text: &mut String, measurements: &Measurements, paint: Paint) {
+fn measurements(text: &mut String, measurements: &ShopperMeasures, paint: Paint) {
     heading(text, "Measures", paint);
-    let rows: [(&str, &Measure); 5] = [
+    let rows: [(&str, &MeasuredLength); 5] = [
         ("stature", &measurements.stature_mm),
         ("shoulder breadth", &measurements.shoulder_breadth_mm),
         ("chest girth", &measurements.chest_girth_mm),
@@ -251,8 +251,8 @@ fn recommendation(text: &mut String, worn: &Recommendation, paint: Paint) {
     }
 }
 
-fn physics(text: &mut String, physics: &Physics, paint: Paint) {
-    let Physics { hz, steps, particles, substeps, .. } = physics;
+fn physics(text: &mut String, physics: &PhysicsReport, paint: Paint) {
+    let PhysicsReport { hz, steps, particles, substeps, .. } = physics;
     let words =
         format!("Cloth of {particles} particles at {hz} steps a second ({substeps} substeps each), {steps} steps");
     heading(text, &words, paint);
@@ -265,8 +265,8 @@ fn physics(text: &mut String, physics: &Physics, paint: Paint) {
         line(text, &format!("  {}", paint.tone(warning, Tone::Warn)));
     }
     if physics.nonfinite > 0 {
-        let said = format!("{} steps met a particle that was not finite, and were taken back", physics.nonfinite);
-        line(text, &format!("  {}", paint.tone(&said, Tone::Warn)));
+        let message = format!("{} steps met a particle that was not finite, and were taken back", physics.nonfinite);
+        line(text, &format!("  {}", paint.tone(&message, Tone::Warn)));
     }
 }
 
@@ -285,7 +285,7 @@ mod tests {
     use toile_perf::skinning::{Skinning, SkinningSubject, Timing};
 
     use super::*;
-    use crate::report::Zone;
+    use crate::report::ZoneFitReport;
 
     #[test]
     fn a_skinning_summary_compares_vertex_with_vertex() {
@@ -303,8 +303,8 @@ mod tests {
         };
         let report = SkinningReport::new(found, Blend::Linear);
         let text = skinning(&report, Paint::none());
-        for said in ["1000 vertices", "linear", "5.00 ns", "8.00 ns", "0.250 um", "1.0 % of the lanes"] {
-            assert!(text.contains(said), "{said} is not in: {text}");
+        for message in ["1000 vertices", "linear", "5.00 ns", "8.00 ns", "0.250 um", "1.0 % of the lanes"] {
+            assert!(text.contains(message), "{message} is not in: {text}");
         }
     }
 
@@ -314,8 +314,8 @@ mod tests {
         report.strain.mean = 0.0014;
         report.memory_bytes = Some(420_000);
         let text = skirt(&report, Paint::none());
-        for said in ["4096 vertices", "0.58 of it", "0.140 %", "0.420 MB", "allocations a step: not counted"] {
-            assert!(text.contains(said), "{said} is not in: {text}");
+        for message in ["4096 vertices", "0.58 of it", "0.140 %", "0.420 MB", "allocations a step: not counted"] {
+            assert!(text.contains(message), "{message} is not in: {text}");
         }
         assert!(!text.contains("the hem does not"));
         report.hem_winding_wrong = 3;
@@ -324,7 +324,7 @@ mod tests {
 
     #[test]
     fn a_summary_says_each_zone_and_each_file() {
-        let zone = Zone {
+        let zone = ZoneFitReport {
             zone: "waist".into(),
             ease_mm: -12.0,
             sigma_mm: 8.0,
@@ -333,8 +333,8 @@ mod tests {
         };
         let mut report = TryOn {
             renderer: None,
-            session: Session { name: "a.csv".into(), frames: 3, seconds: 0.1, notes: vec!["one drop".into()] },
-            measurements: Measurements::default(),
+            session: SessionReport { name: "a.csv".into(), frames: 3, seconds: 0.1, notes: vec!["one drop".into()] },
+            measurements: ShopperMeasures::default(),
             recommendation: Recommendation {
                 garment: "trousers".into(),
                 size: "40".into(),
@@ -342,13 +342,13 @@ mod tests {
                 ..Default::default()
             },
             others: Vec::new(),
-            physics: Physics::default(),
+            physics: PhysicsReport::default(),
             state_hash: String::new(),
             files: vec!["out/front.png".into()],
         };
         let text = try_on(&report, Paint::none());
-        for said in ["a.csv", "one drop", "trousers, size 40", "waist", "tight", "-12 mm", "out/front.png"] {
-            assert!(text.contains(said), "{said} is not in: {text}");
+        for message in ["a.csv", "one drop", "trousers, size 40", "waist", "tight", "-12 mm", "out/front.png"] {
+            assert!(text.contains(message), "{message} is not in: {text}");
         }
         assert!(!text.contains("not finite"));
         report.physics.nonfinite = 2;

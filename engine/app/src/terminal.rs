@@ -39,13 +39,13 @@ pub struct Words {
 }
 
 impl Words {
-    /// Words that are said unless `quiet`.
+    /// Words that are printed unless `quiet`.
     pub fn new(quiet: bool) -> Self {
         Self { quiet }
     }
 
-    /// Says one line on stderr.
-    pub fn say(&self, line: &str) {
+    /// Prints one line on stderr.
+    pub fn print_line(&self, line: &str) {
         if !self.quiet {
             // A closed stderr is no reason to stop working.
             let _ = writeln!(io::stderr(), "{line}");

@@ -1,4 +1,4 @@
-//! The video of a try-on: the session at the speed of life.
+//! The video of a try-on: the session in real time.
 
 use std::path::{Path, PathBuf};
 

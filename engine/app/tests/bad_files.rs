@@ -48,12 +48,12 @@ fn refused(scratch: &Scratch, args: &[&str], words: &[&str]) {
         std::thread::sleep(Duration::from_millis(5));
     }
     let output = child.wait_with_output().expect("the process has ended");
-    let said = String::from_utf8(output.stderr).expect("stderr is UTF-8");
-    assert_eq!(output.status.code(), Some(4), "{args:?}: {said}");
-    assert_eq!(said.lines().count(), 1, "{args:?} says not one line: {said}");
-    assert!(said.starts_with("toile: ") && said.contains("; "), "{args:?}: {said}");
+    let message = String::from_utf8(output.stderr).expect("stderr is UTF-8");
+    assert_eq!(output.status.code(), Some(4), "{args:?}: {message}");
+    assert_eq!(message.lines().count(), 1, "{args:?} says not one line: {message}");
+    assert!(message.starts_with("toile: ") && message.contains("; "), "{args:?}: {message}");
     for word in words {
-        assert!(said.contains(word), "{args:?}: `{word}` is not in: {said}");
+        assert!(message.contains(word), "{args:?}: `{word}` is not in: {message}");
     }
 }
 

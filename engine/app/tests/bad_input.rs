@@ -19,19 +19,19 @@ fn refused_with(code: i32, scratch: &Scratch, args: &[&str], words: &[&str]) -> 
     };
     let before = listing(scratch);
     let output = scratch.toile(args);
-    let said = String::from_utf8(output.stderr).expect("stderr is UTF-8");
-    assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
+    let message = String::from_utf8(output.stderr).expect("stderr is UTF-8");
+    assert_eq!(output.status.code(), Some(code), "{args:?}: {message}");
     assert!(output.stdout.is_empty(), "{args:?} prints data");
-    assert_eq!(said.lines().count(), 1, "{args:?} says not one line: {said}");
-    assert!(said.starts_with("toile: ") && said.ends_with('\n'), "{args:?}: {said}");
+    assert_eq!(message.lines().count(), 1, "{args:?} says not one line: {message}");
+    assert!(message.starts_with("toile: ") && message.ends_with('\n'), "{args:?}: {message}");
     for word in words {
-        assert!(said.contains(word), "{args:?}: `{word}` is not in: {said}");
+        assert!(message.contains(word), "{args:?}: `{word}` is not in: {message}");
     }
-    eprint!("{said}");
+    eprint!("{message}");
     // What is wrong is parted from the cure.
-    assert!(said.contains("; ") || said.contains("--help"), "{args:?}: no cure in: {said}");
+    assert!(message.contains("; ") || message.contains("--help"), "{args:?}: no cure in: {message}");
     assert_eq!(listing(scratch), before, "{args:?} leaves something behind");
-    said
+    message
 }
 
 /// A try-on that must be refused as bad input; `args` say what is wrong.
@@ -48,7 +48,7 @@ fn session_refused(name: &str, content: &[u8], words: &[&str]) {
     let mut all = vec![name];
     all.extend(words);
     refused(&scratch, &["--session", name], &all);
-    // The same file is as bad for who only measures.
+    // The same file is as bad for `toile measure`.
     refused_with(4, &scratch, &["measure", name], &all);
 }
 

@@ -83,7 +83,7 @@ fn bake_tells_what_is_wrong_with_a_mesh_of_the_users() {
         let output = scratch.toile(line);
         assert_eq!(output.status.code(), Some(4), "{line:?}");
         assert!(output.stdout.is_empty(), "{line:?}");
-        let said = sentence(&output);
-        assert!(said.contains(word) && said.contains("; "), "{line:?}: {said}");
+        let message = sentence(&output);
+        assert!(message.contains(word) && message.contains("; "), "{line:?}: {message}");
     }
 }

@@ -49,11 +49,11 @@ fn what_is_no_body_is_refused_with_its_cure() {
         (&["try-on", "--body", "absent.glb"], 4, "absent.glb: it cannot be read"),
         (&["body", "cut.glb", "--target", "a"], 2, "has no targets"),
     ];
-    for (line, code, said) in lines {
+    for (line, code, expected) in lines {
         let output = scratch.toile(line);
         let text = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(code), "{line:?}: {text}");
-        assert!(text.contains(said) && text.lines().count() == 1, "{line:?}: {text}");
+        assert!(text.contains(expected) && text.lines().count() == 1, "{line:?}: {text}");
         assert!(!scratch.path().join("out").exists(), "{line:?} leaves a folder behind");
     }
 }
@@ -63,10 +63,10 @@ fn colliders_follow_the_skin_of_our_sizes() {
     let scratch = Scratch::new("colliders");
     let output = scratch.toile(&["body", "--colliders", "--strangers", "1", "--no-pictures", "--json"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let told: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
-    assert_eq!(told["schema"], "toile.body-colliders/1");
-    assert_eq!(told["bodies"].as_array().map(Vec::len), Some(7));
-    let chest = &told["bodies"][1]["zones"][0];
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    assert_eq!(report["schema"], "toile.body-colliders/1");
+    assert_eq!(report["bodies"].as_array().map(Vec::len), Some(7));
+    let chest = &report["bodies"][1]["zones"][0];
     assert_eq!((&chest["zone"], &chest["meets"]), (&"chest".into(), &true.into()));
     assert!(chest["mean_mm"].as_f64().expect("a number") > 0.5);
     assert!(!scratch.path().join("out").exists(), "no pictures, no folder");

@@ -216,8 +216,8 @@ fn an_output_folder_that_cannot_be_written_exits_4_and_leaves_nothing() {
         let output = program().current_dir(&folder).args(line).output().unwrap();
         assert_eq!(output.status.code(), Some(4), "{line:?}");
         assert!(output.stdout.is_empty());
-        let said = sentence(&output);
-        assert!(said.contains("file") && said.contains("--out"), "{said}");
+        let message = sentence(&output);
+        assert!(message.contains("file") && message.contains("--out"), "{message}");
     }
     assert_eq!(fs::read(folder.join("file")).unwrap(), b"kept");
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);

@@ -36,14 +36,14 @@ fn the_shopper_is_measured_as_she_is() {
     let measured = measured::measure(&session, ShopperFacts::default()).unwrap();
     let truth = scene::SHOPPER.1;
     let [stature, shoulder, chest, waist, hip] = measured.best.completed(measured.population);
-    let told = [
+    let estimates = [
         ("stature", stature, truth.stature),
         ("shoulder breadth", shoulder, truth.shoulder_breadth),
         ("chest girth", chest, truth.chest_girth),
         ("waist girth", waist, truth.waist_girth),
         ("hip girth", hip, truth.hip_girth),
     ];
-    for (name, estimate, truth) in told {
+    for (name, estimate, truth) in estimates {
         let off = (estimate.value - truth).abs();
         assert!(off < 2.0 * estimate.sigma, "{name}: {} +- {}, is {truth}", estimate.value, estimate.sigma);
     }

@@ -123,18 +123,18 @@ impl Manager {
         let over = Arc::new(AtomicBool::new(false));
         let ended = over.clone();
         let read = move || {
-            let (mut told, mut bytes) = (Vec::new(), [0; 512]);
+            let (mut messages, mut bytes) = (Vec::new(), [0; 512]);
             // Whatever was sent before the end is read: it waits in the socket.
             while let Some(n) = socket.recv(&mut bytes).map_or_else(|_| (!ended.load(Relaxed)).then_some(0), Some) {
-                told.extend(String::from_utf8_lossy(&bytes[..n]).lines().map(str::to_owned));
+                messages.extend(String::from_utf8_lossy(&bytes[..n]).lines().map(str::to_owned));
             }
-            told
+            messages
         };
         Self { reading: std::thread::spawn(read), over }
     }
 
     /// All lines that it was told.
-    fn told(self) -> Vec<String> {
+    fn messages(self) -> Vec<String> {
         self.over.store(true, Relaxed);
         self.reading.join().unwrap()
     }
@@ -173,11 +173,11 @@ fn a_visit_is_told_to_the_manager_leaves_nothing_behind_and_ends_when_told_to() 
     assert!(found["present_us"]["p50"].as_f64().unwrap() > 0.0);
     println!("ready after {} ms", found["ready_ms"]);
 
-    let told = reading.told();
-    assert_eq!(told[0], "READY=1");
-    assert_eq!(told.last().unwrap(), "STOPPING=1");
-    let alive = told.iter().filter(|t| *t == "WATCHDOG=1").count();
-    assert_eq!(alive, told.len() - 2);
+    let messages = reading.messages();
+    assert_eq!(messages[0], "READY=1");
+    assert_eq!(messages.last().unwrap(), "STOPPING=1");
+    let alive = messages.iter().filter(|t| *t == "WATCHDOG=1").count();
+    assert_eq!(alive, messages.len() - 2);
     assert!(alive as f64 > due / 120.0, "{alive} in {} s: less than once a second", due / 120.0);
     let mut left: Vec<_> = fs::read_dir(scratch.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
     left.sort();
@@ -228,7 +228,7 @@ fn what_cannot_be_used_is_refused_in_one_sentence() {
     let scratch = Scratch::new("kiosk-bad");
     fs::write(scratch.path().join("bad.toml"), "[wear]\ngarmets = [\"t-shirt\"]\n").unwrap();
     fs::write(scratch.path().join("other.toml"), "[wear]\ngarments = [\"tent\"]\n").unwrap();
-    for (args, code, says) in [
+    for (args, code, expected) in [
         (&["--headless", "--config", "bad.toml"][..], 4, "bad.toml:2: [wear] has no key \"garmets\""),
         (&["--headless", "--config", "other.toml"], 4, "tent"),
         (&["--headless", "--config", "none.toml"], 4, "none.toml"),
@@ -240,9 +240,9 @@ fn what_cannot_be_used_is_refused_in_one_sentence() {
             continue;
         }
         let output = scratch.toile(&[&["kiosk"], args].concat());
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
-        assert!(said.contains(says) && said.lines().count() == 1, "{args:?}: {said}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {message}");
+        assert!(message.contains(expected) && message.lines().count() == 1, "{args:?}: {message}");
     }
     let printed = scratch.toile(&["kiosk", "--print-config"]);
     assert_eq!(printed.status.code(), Some(0));
@@ -263,9 +263,12 @@ fn a_second_kiosk_says_that_one_runs_and_a_named_one_runs_beside_it() {
     // The file is there a moment before it is locked.
     std::thread::sleep(Duration::from_millis(200));
     let second = scratch.toile(&["kiosk", "--headless", "--seconds", "1"]);
-    let said = String::from_utf8(second.stderr).unwrap();
-    assert_eq!(second.status.code(), Some(5), "{said}");
-    assert!(said.contains("already runs") && said.contains("--instance") && said.lines().count() == 1, "{said}");
+    let message = String::from_utf8(second.stderr).unwrap();
+    assert_eq!(second.status.code(), Some(5), "{message}");
+    assert!(
+        message.contains("already runs") && message.contains("--instance") && message.lines().count() == 1,
+        "{message}"
+    );
     let named = scratch.toile(&["kiosk", "--headless", "--quiet", "--seconds", "1", "--instance", "left"]);
     assert_eq!(named.status.code(), Some(0), "{}", String::from_utf8_lossy(&named.stderr));
     assert!(scratch.path().join("toile-kiosk-left.lock").exists());
@@ -318,8 +321,8 @@ fn the_unit_starts_what_there_is_with_the_rights_that_it_needs() {
     fs::write(scratch.path().join("toile.service"), unit.replace("/usr/bin/toile", program)).unwrap();
     let verify = Command::new("systemd-analyze").args(["verify", "toile.service"]).current_dir(scratch.path()).output();
     if let Ok(output) = verify {
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success() && !said.contains("toile.service"), "{said}");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && !message.contains("toile.service"), "{message}");
     }
 }
 
@@ -333,8 +336,8 @@ fn a_crash_leaves_its_last_seconds_where_a_shop_asked_for_them_and_they_replay()
         assert_eq!(output.status.code(), Some(70));
         String::from_utf8(output.stderr).unwrap()
     };
-    let said = run(&format!("{QUICK}[crash]\nrecording = \"crash.tape\"\n"));
-    assert!(said.contains("toile replay crash.tape"), "{said}");
+    let message = run(&format!("{QUICK}[crash]\nrecording = \"crash.tape\"\n"));
+    assert!(message.contains("toile replay crash.tape"), "{message}");
     for workers in ["2", "1"] {
         let output = scratch.toile(&["replay", "crash.tape", "--workers", workers, "--json"]);
         let again: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -345,8 +348,8 @@ fn a_crash_leaves_its_last_seconds_where_a_shop_asked_for_them_and_they_replay()
     let notes = toile_engine::frame_loop::recording::read(&bytes).unwrap().notes;
     assert!(notes.iter().any(|n| n.text.contains("\"still\":false")), "a shopper was there: {notes:?}");
     fs::remove_file(scratch.path().join("crash.tape")).unwrap();
-    let said = run(QUICK);
-    assert!(!said.contains("recorded"), "{said}");
+    let message = run(QUICK);
+    assert!(!message.contains("recorded"), "{message}");
     let mut left: Vec<_> = fs::read_dir(scratch.path()).unwrap().flatten().map(|e| e.file_name()).collect();
     left.sort();
     assert_eq!(left, ["kiosk.toml", LOCK]);

@@ -85,9 +85,9 @@ fn damaged(scratch: &Scratch) {
     for (name, bytes) in [("bad.tape", bad), ("short.tape", bytes[..40].to_vec()), ("no.tape", b"no".to_vec())] {
         fs::write(scratch.path().join(name), bytes).unwrap();
         let output = scratch.toile(&["replay", name]);
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(4), "{name}: {said}");
-        assert!(said.contains(name) && said.lines().count() == 1, "{said}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(4), "{name}: {message}");
+        assert!(message.contains(name) && message.lines().count() == 1, "{message}");
     }
 }
 
@@ -95,9 +95,9 @@ fn damaged(scratch: &Scratch) {
 fn a_crash_leaves_a_recording_that_replays() {
     let scratch = Scratch::new("latency-crash");
     let output = scratch.toile(&["latency", "--seconds", "5", "--crash-after", "3"]);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(70), "{said}");
-    assert!(said.contains("toile replay out/latency/crash.tape"), "{said}");
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(70), "{message}");
+    assert!(message.contains("toile replay out/latency/crash.tape"), "{message}");
     let (code, again) = object(&scratch, &["replay", "out/latency/crash.tape", "--workers", "1", "--json"]);
     assert_eq!((code, &again["diverged_at"]), (Some(0), &Value::Null));
     assert!(again["ticks"].as_u64().unwrap() >= 2 * 120, "{again}");

@@ -6,7 +6,7 @@ use std::process::Output;
 
 use common::Scratch;
 
-fn said(output: &Output) -> String {
+fn stderr_of(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
@@ -14,13 +14,13 @@ fn said(output: &Output) -> String {
 fn lines_without_a_gpu_and_films_of_no_kind_are_refused() {
     let scratch = Scratch::new("look-refused");
     let lines = scratch.toile(&["try-on", "--lines", "tethers", "--out", "out"]);
-    assert_eq!(lines.status.code(), Some(2), "{}", said(&lines));
-    assert!(said(&lines).contains("--renderer gpu"), "{}", said(&lines));
+    assert_eq!(lines.status.code(), Some(2), "{}", stderr_of(&lines));
+    assert!(stderr_of(&lines).contains("--renderer gpu"), "{}", stderr_of(&lines));
     let bones = scratch.toile(&["try-on", "--lines", "bones"]);
-    assert_eq!(bones.status.code(), Some(2), "{}", said(&bones));
+    assert_eq!(bones.status.code(), Some(2), "{}", stderr_of(&bones));
     let film = scratch.toile(&["try-on", "--video", "film.gif", "--no-pictures", "--quiet"]);
-    assert_eq!(film.status.code(), Some(4), "{}", said(&film));
-    assert!(said(&film).contains(".webm") && !scratch.path().join("film.gif").exists(), "{}", said(&film));
+    assert_eq!(film.status.code(), Some(4), "{}", stderr_of(&film));
+    assert!(stderr_of(&film).contains(".webm") && !scratch.path().join("film.gif").exists(), "{}", stderr_of(&film));
 }
 
 #[cfg(not(feature = "view"))]
@@ -28,8 +28,8 @@ fn lines_without_a_gpu_and_films_of_no_kind_are_refused() {
 fn a_gpu_that_was_not_built_in_is_told_with_the_cure() {
     let scratch = Scratch::new("look-without");
     let output = scratch.toile(&["try-on", "--renderer", "gpu", "--quiet"]);
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    assert!(said(&output).contains("--features view"), "{}", said(&output));
+    assert_eq!(output.status.code(), Some(2), "{}", stderr_of(&output));
+    assert!(stderr_of(&output).contains("--features view"), "{}", stderr_of(&output));
     assert!(!scratch.path().join("out").exists(), "nothing is left behind");
 }
 
@@ -68,10 +68,10 @@ mod built_in {
         }
         let scratch = Scratch::new("look-gpu");
         let recorded = scratch.toile(&["record", "--out", "short.mcap", "--seconds", "2", "--quiet"]);
-        assert_eq!(recorded.status.code(), Some(0), "{}", said(&recorded));
+        assert_eq!(recorded.status.code(), Some(0), "{}", stderr_of(&recorded));
         let asked = ["try-on", "--session", "short.mcap", "--renderer", "gpu", "--lines", "colliders"];
         let output = scratch.toile(&[&asked[..], &["--video", "film.png", "--json"]].concat());
-        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        assert_eq!(output.status.code(), Some(0), "{}", stderr_of(&output));
         let report: Value = serde_json::from_slice(&output.stdout).unwrap();
         assert!(report["renderer"].as_str().unwrap().starts_with("gpu: "), "{}", report["renderer"]);
         let files = report["files"].as_array().unwrap();
@@ -92,8 +92,8 @@ mod built_in {
         command.args(["try-on", "--renderer", "gpu", "--quiet"]).current_dir(scratch.path()).stdin(Stdio::null());
         let none = scratch.path().join("none.json");
         let output = command.env("VK_DRIVER_FILES", &none).env("VK_ICD_FILENAMES", &none).output().unwrap();
-        assert_eq!(output.status.code(), Some(5), "{}", said(&output));
-        assert!(said(&output).contains("mesa-vulkan-drivers"), "{}", said(&output));
+        assert_eq!(output.status.code(), Some(5), "{}", stderr_of(&output));
+        assert!(stderr_of(&output).contains("mesa-vulkan-drivers"), "{}", stderr_of(&output));
         assert!(!scratch.path().join("out").exists(), "nothing is left behind");
     }
 }

@@ -86,10 +86,10 @@ fn mandoc_has_nothing_to_say() {
     for (name, _) in pages(&folder) {
         let lint =
             Command::new("mandoc").args(["-T", "lint", "-W", "warning"]).arg(folder.join(&name)).output().unwrap();
-        let said = String::from_utf8_lossy(&lint.stdout).into_owned();
+        let findings = String::from_utf8_lossy(&lint.stdout).into_owned();
         // The same sources give the same page on any day.
-        let said: Vec<&str> = said.lines().filter(|line| !line.contains("missing date")).collect();
-        assert!(said.is_empty(), "{name}: {said:#?}");
+        let findings: Vec<&str> = findings.lines().filter(|line| !line.contains("missing date")).collect();
+        assert!(findings.is_empty(), "{name}: {findings:#?}");
     }
 }
 

@@ -67,8 +67,11 @@ fn one_answer(path: &Path, garment: &str) {
     assert_eq!(kiosk_size, size_code, "{file}: kiosk");
     // The body that the kiosk shows has the measures that are reported, where no two of them contradict each other.
     for (name, body) in MEASURES.iter().zip(kiosk_body) {
-        let told = tried["measurements"][name]["value"].as_f64().unwrap();
-        assert!((f64::from(body) * 1e3 - told).abs() < 0.1, "{file}: {name} {told} is {body} m on the kiosk's body");
+        let printed = tried["measurements"][name]["value"].as_f64().unwrap();
+        assert!(
+            (f64::from(body) * 1e3 - printed).abs() < 0.1,
+            "{file}: {name} {printed} is {body} m on the kiosk's body"
+        );
     }
     // What the window judges by: the same function on the same measures.
     let session = session::open(Some(path), None).unwrap();

@@ -95,15 +95,15 @@ fn a_scene_that_cannot_fit_is_refused_with_the_cure_and_not_played() {
 #[test]
 fn what_does_not_exist_is_named() {
     let scratch = Scratch::new("plan-none");
-    for (args, code, says) in [
+    for (args, code, expected) in [
         (vec!["plan", "--garment", "toga"], 4, "toga"),
         (vec!["plan", "no.toml"], 4, "no.toml"),
         (vec!["plan", "--example", "none"], 2, "none"),
         (vec!["plan", "a.toml", "--garment", "t-shirt"], 2, "--garment"),
     ] {
         let output = scratch.toile(&args);
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
-        assert!(said.contains(says) && said.lines().count() == 1, "{said}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {message}");
+        assert!(message.contains(expected) && message.lines().count() == 1, "{message}");
     }
 }

@@ -22,11 +22,11 @@ fn json(scratch: &Scratch, args: &[&str]) -> Value {
 /// The sentence of a refusal.
 fn refused(scratch: &Scratch, code: i32, args: &[&str]) -> String {
     let output = scratch.toile(args);
-    let said = String::from_utf8(output.stderr).expect("stderr is UTF-8");
-    assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
+    let message = String::from_utf8(output.stderr).expect("stderr is UTF-8");
+    assert_eq!(output.status.code(), Some(code), "{args:?}: {message}");
     assert!(output.stdout.is_empty(), "{args:?}");
-    assert_eq!(said.lines().count(), 1, "{said}");
-    said
+    assert_eq!(message.lines().count(), 1, "{message}");
+    message
 }
 
 /// The bits of a dumped CSV file.
@@ -126,22 +126,25 @@ fn a_run_that_is_refused_leaves_no_folder() {
     let scratch = Scratch::new("run-refused");
     let missing = "[garment]\nmesh = \"absent.obj\"\n";
     fs::write(scratch.path().join("missing.toml"), missing).unwrap();
-    let said = refused(&scratch, 4, &["run", "missing.toml", "--dump", "out", "--json"]);
-    assert!(said.contains("missing.toml:2:8: garment.mesh absent.obj") && said.contains("looked for at"), "{said}");
+    let message = refused(&scratch, 4, &["run", "missing.toml", "--dump", "out", "--json"]);
+    assert!(
+        message.contains("missing.toml:2:8: garment.mesh absent.obj") && message.contains("looked for at"),
+        "{message}"
+    );
     assert!(!scratch.path().join("out").exists());
     fs::write(scratch.path().join("file"), "kept").unwrap();
-    let said = refused(&scratch, 4, &["run", "--example", "hanging-strip", "--frames", "1", "--dump", "file"]);
-    assert!(said.contains("file") && said.contains("--dump"), "{said}");
+    let message = refused(&scratch, 4, &["run", "--example", "hanging-strip", "--frames", "1", "--dump", "file"]);
+    assert!(message.contains("file") && message.contains("--dump"), "{message}");
 }
 
 #[test]
 fn scenes_and_lines_that_are_wrong_have_their_codes() {
     let scratch = Scratch::new("run-codes");
-    let said = refused(&scratch, 4, &["run", "absent.toml"]);
-    assert!(said.contains("absent.toml") && said.contains("--example"), "{said}");
+    let message = refused(&scratch, 4, &["run", "absent.toml"]);
+    assert!(message.contains("absent.toml") && message.contains("--example"), "{message}");
     fs::write(scratch.path().join("typo.toml"), "garmnet = 1\n").unwrap();
-    let said = refused(&scratch, 4, &["run", "typo.toml"]);
-    assert!(said.contains("typo.toml:1:1") && said.contains("did you mean \"garment\""), "{said}");
+    let message = refused(&scratch, 4, &["run", "typo.toml"]);
+    assert!(message.contains("typo.toml:1:1") && message.contains("did you mean \"garment\""), "{message}");
     fs::write(scratch.path().join("bytes.toml"), [0xff, 0xfe]).unwrap();
     assert!(refused(&scratch, 4, &["run", "bytes.toml"]).contains("UTF-8"));
     assert!(refused(&scratch, 4, &["run", "."]).contains("give the path"));
@@ -179,8 +182,8 @@ fn a_summary_says_time_and_strain_together() {
     let output = scratch.toile(&["run", "--example", "hanging-strip", "--frames", "10", "--dump", "out"]);
     assert_eq!(output.status.code(), Some(0));
     let text = String::from_utf8(output.stdout).unwrap();
-    for said in ["Scene hanging-strip: 10 steps", "a step takes", "it is stretched", "11 frames in out"] {
-        assert!(text.contains(said), "{said} is not in: {text}");
+    for message in ["Scene hanging-strip: 10 steps", "a step takes", "it is stretched", "11 frames in out"] {
+        assert!(text.contains(message), "{message} is not in: {text}");
     }
     assert!(!text.contains('\x1b') && output.stderr.is_empty());
 }

@@ -10,8 +10,8 @@ use serde_json::Value;
 
 fn object(scratch: &Scratch, args: &[&str]) -> (Option<i32>, Value) {
     let output = scratch.toile(args);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    let value = serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{args:?}: {e}; {said}"));
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    let value = serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{args:?}: {e}; {message}"));
     (output.status.code(), value)
 }
 
@@ -81,9 +81,9 @@ fn a_recorded_run_is_replayed_with_one_worker_as_with_two() {
 fn a_crash_leaves_its_last_ten_seconds_and_they_replay() {
     let scratch = Scratch::new("soak-crash");
     let output = scratch.toile(&["soak", "--minutes", "2", "--crash-after", "70", "--once"]);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(70), "{said}");
-    assert!(said.contains("toile replay out/soak/crash.tape"), "{said}");
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(70), "{message}");
+    assert!(message.contains("toile replay out/soak/crash.tape"), "{message}");
     let (code, again) = object(&scratch, &["replay", "out/soak/crash.tape", "--json"]);
     assert_eq!((code, &again["diverged_at"]), (Some(0), &Value::Null));
     assert!(again["ticks"].as_u64().unwrap() >= 10 * 120, "{again}");

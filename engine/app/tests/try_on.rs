@@ -12,9 +12,9 @@ use common::Scratch;
 use serde_json::Value;
 
 fn json(output: &Output) -> Value {
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{said}");
-    assert!(said.is_empty(), "with --json nothing is said: {said}");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{message}");
+    assert!(message.is_empty(), "with --json nothing is said: {message}");
     serde_json::from_slice(&output.stdout).expect("stdout is exactly one JSON object")
 }
 

@@ -113,8 +113,8 @@ impl Kiosk {
 
     /// Ends it as a service manager does; gives its report.
     fn end(mut self) -> Value {
-        let told = Command::new("kill").args(["-TERM", &self.program.id().to_string()]).status().unwrap();
-        assert!(told.success());
+        let sent = Command::new("kill").args(["-TERM", &self.program.id().to_string()]).status().unwrap();
+        assert!(sent.success());
         let end = Instant::now() + Duration::from_secs(20);
         while self.program.try_wait().unwrap().is_none() {
             assert!(Instant::now() < end, "it runs on after it was told to end");
@@ -185,7 +185,7 @@ fn without_a_display_it_says_what_to_do() {
     let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
     command.arg("kiosk").current_dir(scratch.path()).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
     let output = command.env_remove("WAYLAND_SOCKET").output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(5), "{said}");
-    assert!(said.contains("--headless") && said.lines().count() == 1, "{said}");
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(5), "{message}");
+    assert!(message.contains("--headless") && message.lines().count() == 1, "{message}");
 }

@@ -32,7 +32,7 @@ const LOAD_NS: [u64; 2] = [SECOND_NS, 2 * SECOND_NS];
 /// Length of the run (ns).
 const LENGTH_NS: u64 = 8 * SECOND_NS;
 
-/// The dressed shopper on a machine whose speed is told.
+/// The dressed shopper on a machine whose speed is simulated.
 struct Loaded {
     staged: FrameScene,
     clock: SimClock,

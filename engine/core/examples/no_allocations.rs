@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p toile-engine --example no_allocations`
 //!
-//! Times are told, not judged: they belong to the machine.
+//! Times are printed, not checked: they depend on the machine.
 
 use std::alloc::System;
 use std::error::Error;

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 /// A monotonic clock in `u64` nanoseconds, which last 584 years.
 pub trait Clock {
-    /// Now (ns).
+    /// Time now, since an origin of the clock's own (ns).
     fn now_ns(&self) -> u64;
 
     /// Waits until then, or longer: a system wakes no thread before its time, and often late.

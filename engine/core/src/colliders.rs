@@ -28,9 +28,9 @@ pub enum ColliderError {
     /// A bone that the skeleton lacks.
     #[error("collision sphere {sphere} follows bone {bone}, but there are {BONES} bones; use an index below that")]
     NoSuchBone {
-        /// The sphere.
+        /// Index of the sphere.
         sphere: usize,
-        /// What it names.
+        /// Index of the bone that it names.
         bone: u8,
     },
     /// A centre or radius that is not finite, or a radius below 0.
@@ -39,9 +39,9 @@ pub enum ColliderError {
     /// A capsule between spheres that do not exist.
     #[error("capsule {capsule} joins spheres {ends:?}, but there are {spheres}; use indices below that")]
     NoSuchSphere {
-        /// The capsule.
+        /// Index of the capsule.
         capsule: usize,
-        /// What it names.
+        /// Indices of the spheres that it names.
         ends: [u8; 2],
         /// How many spheres there are.
         spheres: usize,
@@ -282,8 +282,8 @@ mod tests {
     fn bad_rigs_are_refused_with_the_place() {
         let good = RestSphere { bone: 0, centre: Vec3::ZERO, radius: 0.1 };
         let refuse = |s: RestSphere| Colliders::new(&[good, s], &[], false).unwrap_err().to_string();
-        let said = refuse(RestSphere { bone: BONES as u8, ..good });
-        assert!(said.contains(&format!("sphere 1 follows bone {BONES}")), "{said}");
+        let message = refuse(RestSphere { bone: BONES as u8, ..good });
+        assert!(message.contains(&format!("sphere 1 follows bone {BONES}")), "{message}");
         assert!(refuse(RestSphere { radius: f32::NAN, ..good }).contains("sphere 1"));
         assert!(refuse(RestSphere { radius: -0.1, ..good }).contains("sphere 1"));
         let error = Colliders::new(&[good], &[[0, 1]], false).unwrap_err();

@@ -71,13 +71,13 @@ pub struct SnapshotTimes {
 /// Why a scene cannot be set up.
 #[derive(Debug, thiserror::Error)]
 pub enum FrameError {
-    /// The body's colliders.
+    /// Colliders that cannot be used.
     #[error(transparent)]
     Colliders(#[from] ColliderError),
-    /// The body's skin.
+    /// A skin that cannot be used.
     #[error(transparent)]
     Skin(#[from] SkinError),
-    /// The workers.
+    /// The worker pool cannot be started.
     #[error(transparent)]
     WorkerPool(#[from] WorkerPoolError),
 }
@@ -296,7 +296,7 @@ impl Frame {
         &self.pose
     }
 
-    /// The body.
+    /// The shopper's body as it moves.
     pub fn body(&self) -> &Body {
         &self.body
     }

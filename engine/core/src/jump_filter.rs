@@ -19,10 +19,10 @@ pub const HOLD_STEPS: u8 = 6;
 /// How fast a held sphere goes to where it is said to be (m/s): a fast ankle, which cloth was tried at.
 pub const FOLLOW_M_S: f32 = 10.0;
 
-/// What a sphere does.
+/// State of a sphere.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum SphereState {
-    /// Not seen yet.
+    /// The joint has not been seen yet.
     #[default]
     Absent,
     /// It is where it is said to be.

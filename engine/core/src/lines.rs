@@ -1,4 +1,4 @@
-//! Lines: the one thing that debugging draws. Filled outside of the frame, from what it shows, into room made at load.
+//! Debug lines, such as fibers and contacts. Filled outside of the frame, from its snapshot, into memory allocated at load.
 
 use std::fmt;
 use std::str::FromStr;
@@ -39,7 +39,7 @@ pub struct Line {
     pub colour: Vec3,
 }
 
-/// What lines can show.
+/// Kinds of lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// What holds the cloth together, coloured by what solves it.
@@ -63,7 +63,7 @@ const BLUE: Vec3 = Vec3::new(0.0, 0.168, 0.445);
 const RED: Vec3 = Vec3::new(0.665, 0.112, 0.0);
 
 impl Kind {
-    /// All of them.
+    /// Every kind, in the order of help.
     pub const ALL: [Self; 5] = [Self::Fibers, Self::Colliders, Self::Contacts, Self::Tethers, Self::Velocity];
 
     /// Its name on the command line.
@@ -109,7 +109,7 @@ impl Lines {
         Self { lines: vec![none; capacity].into(), len: 0, left_out: 0 }
     }
 
-    /// The lines.
+    /// The lines that were added since they were last cleared.
     pub fn as_slice(&self) -> &[Line] {
         &self.lines[..self.len]
     }

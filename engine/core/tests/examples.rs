@@ -59,8 +59,8 @@ fn every_example_holds_and_the_guide_shows_what_it_prints() {
     assert!(!shown.is_empty(), "the guide shows no output");
     for name in in_the_folder() {
         let output = run(&name);
-        let (said, printed) = (String::from_utf8_lossy(&output.stderr), String::from_utf8_lossy(&output.stdout));
-        assert!(output.status.success(), "{name} ended with {:?}: {said}\n{printed}", output.status.code());
+        let (message, printed) = (String::from_utf8_lossy(&output.stderr), String::from_utf8_lossy(&output.stdout));
+        assert!(output.status.success(), "{name} ended with {:?}: {message}\n{printed}", output.status.code());
         assert!((2..=20).contains(&printed.lines().count()), "{name} prints some plain lines: {printed}");
         for (_, text) in shown.iter().filter(|(of, _)| *of == name) {
             assert_eq!(*text, printed, "docs/integrator.md shows something else for {name}");

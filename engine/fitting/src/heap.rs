@@ -1,4 +1,4 @@
-//! How much the heap is used: told by the program's allocator, which this library cannot see by itself.
+//! How much of the heap is used, as reported by the program's allocator, which this library cannot see by itself.
 
 use std::hint::black_box;
 
@@ -7,7 +7,7 @@ use std::hint::black_box;
 pub struct Heap {
     /// Allocations and growths since the program started, of all threads.
     pub allocations: u64,
-    /// Bytes in use.
+    /// Bytes that are allocated and not freed.
     pub live_bytes: i64,
 }
 
@@ -24,7 +24,7 @@ impl HeapProbe {
         Self((reading().allocations > before).then_some(reading))
     }
 
-    /// No probe: allocations and memory are not told.
+    /// No probe: allocations and memory are not reported.
     pub const fn none() -> Self {
         Self(None)
     }

@@ -41,7 +41,7 @@ impl OnCore {
         Self { begun: Instant::now(), had: had_ns() }
     }
 
-    /// What this thread needed since.
+    /// Processor time of this thread since [`Self::begin`].
     pub fn elapsed(&self) -> Duration {
         match (self.had, had_ns()) {
             (Some(before), Some(after)) => Duration::from_nanos(after.saturating_sub(before)),

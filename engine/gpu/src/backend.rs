@@ -22,7 +22,7 @@ use crate::graphics::{DeviceGarments, Graphics, StageTimes, StepWork};
 /// Where garments are stepped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Backend {
-    /// The processor.
+    /// The processor (the default).
     #[default]
     Cpu,
     /// A graphics device, as long as there is one.
@@ -32,7 +32,7 @@ pub enum Backend {
 }
 
 impl Backend {
-    /// All backends.
+    /// Every backend, the default first.
     pub const ALL: [Self; 3] = [Self::Cpu, Self::Gpu, Self::Auto];
 
     /// Its name on the command line.
@@ -83,7 +83,7 @@ struct SharedFindings {
 }
 
 impl Backends {
-    /// The processor.
+    /// Steps everything on the processor.
     pub fn cpu() -> Self {
         Self { backend: Backend::Cpu, graphics: Err(String::new()), known: Arc::default() }
     }
@@ -121,7 +121,7 @@ impl Backends {
         ["nothing", "cpu", "gpu", "both"][usize::from(self.known.used.load(Ordering::Relaxed) & 3)]
     }
 
-    /// What was asked for.
+    /// Backend that was asked for.
     pub fn asked(&self) -> Backend {
         self.backend
     }
@@ -149,7 +149,7 @@ pub struct BackendTimes {
     pub gpu_us: f64,
 }
 
-/// Steps garments.
+/// Steps garments on the processor or on a graphics device.
 #[derive(Debug, Default)]
 pub struct ClothStepper {
     graphics: Option<Graphics>,
@@ -164,7 +164,7 @@ pub struct ClothStepper {
 const MEASURING: (Duration, usize) = (Duration::from_millis(300), 25);
 
 impl ClothStepper {
-    /// The processor.
+    /// Steps on the processor, with no device.
     pub fn cpu() -> Self {
         Self::default()
     }
@@ -184,7 +184,7 @@ impl ClothStepper {
         self.fallback.as_deref()
     }
 
-    /// What [`Backend::Auto`] was decided by.
+    /// Times by which [`Backend::Auto`] was decided.
     pub fn measured(&self) -> Option<BackendTimes> {
         self.measured
     }

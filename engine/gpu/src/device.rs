@@ -32,7 +32,7 @@ pub enum GpuError {
         "{adapter} allows {limit} of {has}, and this scene needs {needs}; use fewer or coarser garments, or the CPU"
     )]
     TooSmall {
-        /// The adapter.
+        /// Name of the adapter.
         adapter: String,
         /// The limit, as WebGPU names it.
         limit: &'static str,
@@ -46,15 +46,15 @@ pub enum GpuError {
         "the graphics adapter {adapter} cannot be opened ({reason}); update its driver, choose another, or do without a GPU"
     )]
     Refused {
-        /// The adapter.
+        /// Name of the adapter.
         adapter: String,
-        /// What the driver says.
+        /// Error of the driver.
         reason: String,
     },
     /// Something that only the CPU computes.
     #[error("garment {garment} cannot be stepped on the GPU: {what}; use the CPU for it")]
     Unsupported {
-        /// The garment.
+        /// Name of the garment.
         garment: String,
         /// What it has that no kernel does.
         what: &'static str,
@@ -64,7 +64,7 @@ pub enum GpuError {
     Lost(String),
 }
 
-/// Which adapter is wanted.
+/// Choice of the adapter.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum AdapterChoice {
     /// The fastest kind: a card of its own, a processor's graphics, a virtual one, a driver on the processor.
@@ -119,11 +119,11 @@ impl DeviceNeeds {
 pub struct Device {
     /// Where surfaces are made.
     pub instance: Instance,
-    /// What it was opened on.
+    /// Adapter that it was opened on.
     pub opened_on: wgpu::Adapter,
     /// What makes buffers, textures and pipelines.
     pub device: wgpu::Device,
-    /// What takes commands.
+    /// The queue that takes commands.
     pub queue: wgpu::Queue,
     adapter: crate::Adapter,
     lost: Arc<AtomicBool>,

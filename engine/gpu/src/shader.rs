@@ -13,7 +13,7 @@ pub(crate) const LANES: &str = include_str!("shaders/lanes.wgsl");
 /// A shader's text and bindings.
 #[derive(Debug, Clone, Copy)]
 pub struct Shader {
-    /// Its file's name.
+    /// Name of its file.
     pub name: &'static str,
     /// Shared snippets, then its own text.
     pub(crate) texts: &'static [&'static str],
@@ -78,6 +78,6 @@ pub(crate) fn valid(shader: &Shader, group: u32) {
         let AddressSpace::Storage { access } = variable.space else { panic!("{}: not storage", shader.name) };
         reads[binding.binding as usize] = Some(!access.contains(StorageAccess::STORE));
     }
-    let said: Vec<_> = shader.reads.iter().map(|r| Some(*r)).collect();
-    assert_eq!(reads, said, "{}", shader.name);
+    let declared: Vec<_> = shader.reads.iter().map(|r| Some(*r)).collect();
+    assert_eq!(reads, declared, "{}", shader.name);
 }

@@ -28,10 +28,14 @@ pub use service::report::KioskReport;
 /// # Errors
 /// A kiosk that already runs, a configuration, a session or a garment that cannot be used, no window where one is wanted, a
 /// thread that ended while it ran.
-pub fn run(options: &KioskOptions, begun: Instant, say: &(dyn Fn(&str) + Sync)) -> Result<KioskReport, KioskError> {
+pub fn run(
+    options: &KioskOptions,
+    begun: Instant,
+    print_line: &(dyn Fn(&str) + Sync),
+) -> Result<KioskReport, KioskError> {
     #[cfg(feature = "window")]
     let windowed = window::run;
     #[cfg(not(feature = "window"))]
     let windowed = service::without_window;
-    service::run(options, begun, say, windowed)
+    service::run(options, begun, print_line, windowed)
 }

@@ -94,8 +94,8 @@ struct Diary(Mutex<Vec<(Instant, ServiceStatus)>>);
 impl Diary {
     /// Feedings between two times.
     fn fed(&self, from: Instant, to: Instant) -> usize {
-        let told = self.0.lock().unwrap();
-        told.iter().filter(|(at, status)| *status == ServiceStatus::Alive && (from..to).contains(at)).count()
+        let statuses = self.0.lock().unwrap();
+        statuses.iter().filter(|(at, status)| *status == ServiceStatus::Alive && (from..to).contains(at)).count()
     }
 
     fn is_ready(&self) -> bool {
@@ -144,16 +144,16 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
             meanwhile();
             stop.request();
         });
-        let say = |_: &str| {};
+        let print_line = |_: &str| {};
         let environment = ServiceEnvironment {
             manager: diary,
             stop: &stop,
-            say: &say,
+            print_line: &print_line,
             figures: None,
             dresser: Dresser::new(wish),
             to_scene: |frame| (Gated::new(frame), ()),
             pose,
-            black_box: None,
+            flight_recorder: None,
         };
         Service::new(live, SceneChanger::new(handover, true, None), options, environment).run().unwrap();
     });

@@ -214,16 +214,16 @@ fn serve() -> Vec<SessionState> {
             let _end = AtTheEnd(&stop);
             finger.visit();
         });
-        let say = |_: &str| {};
+        let print_line = |_: &str| {};
         let environment = ServiceEnvironment {
             manager: &Nobody,
             stop: &stop,
-            say: &say,
+            print_line: &print_line,
             figures: None,
             dresser: Dresser::new(wish),
             to_scene: |frame| (FrameScene::new(frame), ()),
             pose,
-            black_box: None,
+            flight_recorder: None,
         };
         let service = Service::new(live, SceneChanger::new(handover, true, None), options, environment);
         let (_, _, record) = service.controlled_by(Box::new(setup.controller(window, played))).run().unwrap();

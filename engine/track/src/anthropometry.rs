@@ -13,9 +13,9 @@ use crate::estimate::Estimate;
 pub struct LevelFractions {
     /// Greatest protrusion of the buttocks.
     pub hip: f32,
-    /// Natural waistline.
+    /// Natural waistline, midway between the lowest rib and the hip bone.
     pub waist: f32,
-    /// Bust points.
+    /// Most forward points of the breasts.
     pub chest: f32,
     /// Acromion (tip of the shoulder blade).
     pub acromion: f32,

@@ -30,7 +30,7 @@ const HIDDEN_CHEST: f32 = 0.04;
 pub enum Source {
     /// From depth frames alone.
     Depth,
-    /// From joints alone.
+    /// Measured from joints, without depth.
     Joints,
     /// From both, each measure weighted by how sure it is.
     Both,
@@ -79,7 +79,7 @@ pub enum MeasureError {
          head and shoulders in the picture."
     )]
     Nobody {
-        /// Frames looked at.
+        /// Frames that were looked at.
         frames: usize,
     },
     /// Somebody, but beyond what can be measured.
@@ -99,11 +99,11 @@ pub enum MeasureError {
          facing the sensor for a second with head, shoulders and hips in view."
     )]
     TooFewFrames {
-        /// Believed frames.
+        /// Frames with measures that are believed.
         got: usize,
-        /// Frames looked at.
+        /// Frames that were looked at.
         frames: usize,
-        /// Frames needed.
+        /// Frames that are needed.
         need: usize,
     },
 }

@@ -1,33 +1,33 @@
-//! One horizontal slice of a measure_torso as a depth camera sees it: its front half, between two edges.
+//! One horizontal slice of a torso as a depth camera sees it: its front half, between two edges.
 
 use glam::{Mat3, Vec2, Vec3};
 use toile_assets::numeric::statistics::quantile_of;
 
-/// SliceColumns in which a slice is sorted, to either side of the axis.
+/// Columns in which a slice is sorted, to either side of the axis.
 const COLUMNS: usize = 60;
 
 /// Width of a column (m): two pixels at 2.4 m.
 const COLUMN: f32 = 0.01;
 
-/// This many empty columns part an arm from the measure_torso.
+/// This many empty columns part an arm from the torso.
 const GAP: usize = 2;
 
-/// An arm lying against the measure_torso shows as a valley this deep between the two (m); the noise of a column is 2 mm.
+/// An arm lying against the torso shows as a valley this deep between the two (m); the noise of a column is 2 mm.
 const VALLEY: f32 = 0.012;
 
 /// A valley nearer to the axis than this is a fold or the breastbone, not an arm (m).
 const VALLEY_FROM: f32 = 0.09;
 
-/// Surface this far before the measure_torso's own is a hand or a bag held in front of it (m).
+/// Surface this far before the torso's own is a hand or a bag held in front of it (m).
 const HELD_BEFORE: f32 = 0.14;
 
-/// The narrowest and the widest measure_torso (m).
+/// The narrowest and the widest torso (m).
 const BREADTH: [f32; 2] = [0.16, 0.60];
 
 /// Of each half breadth, the part that the profile is fitted on: farther out the surface turns away from the camera.
 const FITTED: f32 = 0.9;
 
-/// What a slice of the measure_torso measures.
+/// What a slice of the torso measures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TorsoSection {
     /// Distance between its left and right edge (m).
@@ -38,8 +38,8 @@ pub struct TorsoSection {
     pub arc: f32,
 }
 
-/// Measures the measure_torso in a band of points, x counted from the body's axis and the person facing +z.
-/// `None` where there is no measure_torso, or an arm hides where it ends.
+/// Measures the torso in a band of points, x counted from the body's axis and the person facing +z.
+/// `None` where there is no torso, or an arm hides where it ends.
 pub(crate) fn measure_torso(points: &[Vec3], pitch: f32) -> Option<TorsoSection> {
     let columns = SliceColumns::new(points);
     let (left, right) = (columns.reach(-1)?, columns.reach(1)?);
@@ -77,8 +77,8 @@ impl SliceColumns {
         columns
     }
 
-    /// The outermost column of the measure_torso on one side (-1 left, 1 right): up to a gap, or to a valley between the
-    /// measure_torso and an arm. `None` if the axis itself is empty.
+    /// The outermost column of the torso on one side (-1 left, 1 right): up to a gap, or to a valley between the
+    /// torso and an arm. `None` if the axis itself is empty.
     fn reach(&self, side: isize) -> Option<usize> {
         let start = if side > 0 { COLUMNS } else { COLUMNS - 1 };
         let at = |i: usize| start.wrapping_add_signed(side * i as isize);

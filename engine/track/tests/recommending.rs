@@ -194,7 +194,7 @@ fn a_body_known_exactly_gets_a_certain_size_and_no_tape() {
             let ([chest, waist, hip], _) = anybody(&mut rng);
             let r = recommend(&person(chest, waist, hip, 0.0), offer).unwrap();
             assert_eq!(r.probability, 1.0, "{r:?}");
-            assert!(!r.uncertain && r.tape.is_none() && r.verdict.contains("100 % sure"), "{r:?}");
+            assert!(!r.uncertain && r.girth_to_take.is_none() && r.verdict.contains("100 % sure"), "{r:?}");
         }
     });
 }
@@ -204,14 +204,14 @@ fn who_is_uncertain_is_told_so_and_which_measure_to_take() {
     with(|offer| {
         let r = recommend(&person(0.90, 0.74, 0.98, 0.03), offer).unwrap();
         assert!(r.uncertain && r.probability < SURE, "{r:?}");
-        let tape = r.tape.as_ref().unwrap();
-        assert_eq!(tape.zone, Zone::Chest);
-        assert!(tape.probability > r.probability + 0.1, "{tape:?}");
+        let girth_to_take = r.girth_to_take.as_ref().unwrap();
+        assert_eq!(girth_to_take.zone, Zone::Chest);
+        assert!(girth_to_take.probability > r.probability + 0.1, "{girth_to_take:?}");
         assert!(r.verdict.starts_with("Not sure") && r.verdict.contains("38 (") && r.verdict.ends_with("%."), "{r:?}");
         assert!(r.verdict.contains("Take the chest by tape"), "{}", r.verdict);
         // The same body measured to a millimetre less than a step away is sure, and says so.
         let r = recommend(&person(0.88, 0.72, 0.96, 0.005), offer).unwrap();
-        assert!(!r.uncertain && r.tape.is_none() && r.verdict.contains("sure"), "{r:?}");
+        assert!(!r.uncertain && r.girth_to_take.is_none() && r.verdict.contains("sure"), "{r:?}");
     });
 }
 
@@ -227,7 +227,7 @@ fn the_tape_goes_where_the_doubt_is() {
         let offer = Offer { ease: &ease, ..*offer };
         let r = recommend(&who, &offer).unwrap();
         assert!(r.uncertain, "{r:?}");
-        assert_eq!(r.tape.unwrap().zone, Zone::Hip);
+        assert_eq!(r.girth_to_take.unwrap().zone, Zone::Hip);
     });
 }
 

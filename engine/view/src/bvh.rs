@@ -37,7 +37,7 @@ const FAR: f32 = 1e30;
 /// between neighbours.
 const EDGE_SLACK: f32 = 1e-6;
 
-/// A half line.
+/// A ray: half of a line.
 #[derive(Debug, Clone, Copy)]
 pub struct Ray {
     /// Where it starts (m).

@@ -18,7 +18,7 @@ pub enum Error {
         index: u32,
         /// Its width and height (pixels).
         got: Size,
-        /// The animation's size.
+        /// Size of the animation (pixels).
         want: Size,
     },
     /// An animation cannot have so many or so few frames, or so many a second.

@@ -164,7 +164,7 @@ impl CurvedBackdrop {
     }
 
     /// Where a ray meets the backdrop: distance and the normal that faces into the room. The wall has no top, so rays that
-    /// lead away from it meet it far behind the eye's back: they are given a place far ahead.
+    /// lead away from it meet it far behind the camera: they are given a place far ahead.
     pub fn meet(&self, ray: &Ray) -> (f32, Vec3) {
         let (depth, radius) = (DEPTH * self.size, CURVE * self.size);
         let (w, y) = ((ray.origin - self.centre).dot(self.away), ray.origin.y);

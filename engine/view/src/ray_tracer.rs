@@ -46,7 +46,7 @@ pub struct SampleCounts {
 pub struct PrimaryHit {
     /// Index of the surface; [`BACKDROP`] for the backdrop.
     pub owner: u32,
-    /// Position (m).
+    /// Position in the world (m).
     pub position: Vec3,
     /// Unit shading normal.
     pub normal: Vec3,
@@ -68,7 +68,7 @@ pub struct PixelLight {
     pub edge: bool,
     /// True where no shadow can fall, so that no shadow rays are traced.
     pub clear: bool,
-    /// Rays traced.
+    /// Rays that were traced for its light.
     pub rays: u32,
 }
 

@@ -45,7 +45,7 @@ pub struct Surface<'a> {
 /// Base colours of a surface, linear RGB, each 0..1.
 #[derive(Debug, Clone, Copy)]
 pub enum Colours<'a> {
-    /// The same everywhere.
+    /// One colour for all vertices.
     One(Vec3),
     /// One a vertex `[vertices]`, blended across triangles.
     PerVertex(&'a [Vec3]),

@@ -25,12 +25,14 @@ pub enum VideoError {
         source: io::Error,
     },
     /// ffmpeg ended badly.
-    #[error("ffmpeg could not make {path} ({said}); install one with libx264 and libvpx-vp9, or end the name in .png")]
+    #[error(
+        "ffmpeg could not make {path} ({message}); install one with libx264 and libvpx-vp9, or end the name in .png"
+    )]
     Ffmpeg {
         /// Path of the video.
         path: PathBuf,
         /// The last that it said.
-        said: String,
+        message: String,
     },
     /// A frame of another size, or an animated PNG that cannot be written.
     #[error(transparent)]
@@ -159,18 +161,18 @@ impl VideoWriter {
     fn end(&mut self) -> Result<(), VideoError> {
         let VideoEncoder::Ffmpeg { child, input } = &mut self.encoder else { return Ok(()) };
         drop(input.take());
-        let mut said = String::new();
+        let mut message = String::new();
         if let Some(mut words) = child.stderr.take() {
             // What cannot be read is not said.
-            let _ = words.read_to_string(&mut said);
+            let _ = words.read_to_string(&mut message);
         }
         if child.wait().is_ok_and(|s| s.success()) {
             return Ok(());
         }
         // An incomplete video is removed; where that fails too, the error below is reported all the same.
         let _ = fs::remove_file(&self.path);
-        let last = said.trim().lines().last().unwrap_or("it said nothing").to_owned();
-        Err(VideoError::Ffmpeg { path: self.path.clone(), said: last })
+        let last = message.trim().lines().last().unwrap_or("it said nothing").to_owned();
+        Err(VideoError::Ffmpeg { path: self.path.clone(), message: last })
     }
 }
 

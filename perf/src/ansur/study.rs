@@ -45,7 +45,7 @@ pub const QUICK_MS: f64 = 20.0;
 /// Why there is no study.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum StudyError {
-    /// The file.
+    /// The survey's file cannot be read.
     #[error(transparent)]
     Survey(#[from] SurveyError),
     /// A person whose measures are outside of what bodies are built for.
@@ -53,7 +53,7 @@ pub enum StudyError {
     Person {
         /// The line, from 1.
         line: usize,
-        /// What is outside.
+        /// Which measure is outside of which range.
         source: BodyError,
     },
     /// Nobody in the file.
@@ -64,13 +64,13 @@ pub enum StudyError {
 /// Median, 95th percentile and greatest of some figures.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spread {
-    /// Half are below.
+    /// Median: half of the people are below.
     pub median: f64,
     /// 95 % are at or below.
     pub p95: f64,
     /// 99 % are at or below.
     pub p99: f64,
-    /// None is above.
+    /// Maximum: no person is above.
     pub max: f64,
 }
 
@@ -102,7 +102,7 @@ pub struct BodyStudy {
     pub people: &'static str,
     /// How many were drawn from the survey.
     pub drawn: usize,
-    /// Of how many.
+    /// Number of people that it is out of.
     pub of: usize,
     /// Errors, measure by measure.
     pub measures: Vec<MeasureErrors>,

@@ -21,7 +21,7 @@ pub enum SurveyError {
     /// A measure that the file does not have.
     #[error("{file}: there is no column {column}; give a file of ANSUR II with `;` between its columns")]
     NoColumn {
-        /// The path.
+        /// The file's path as the user gave it.
         file: String,
         /// The column's name.
         column: String,
@@ -29,7 +29,7 @@ pub enum SurveyError {
     /// A cell that does not hold a number.
     #[error("{file}: line {line}: {column} is no number of millimetres; repair the line or leave it out")]
     NoNumber {
-        /// The path.
+        /// The file's path as the user gave it.
         file: String,
         /// The line, from 1.
         line: usize,

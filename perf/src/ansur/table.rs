@@ -1,4 +1,4 @@
-//! The table of how the survey's measures go together, as the body room embeds it.
+//! The table of correlations of the survey's measures, as `toile_assets::body` embeds it.
 
 use super::survey::{Survey, SurveyError};
 

@@ -45,13 +45,13 @@ pub struct SideFigures {
 pub struct CrossoverRow {
     /// Vertices of a skirt.
     pub verts: usize,
-    /// Skirts.
+    /// Number of skirts.
     pub garments: usize,
     /// Steps that were taken, a third of them to warm up.
     pub steps: usize,
-    /// One thread.
+    /// Times of a step by one thread.
     pub one: SideFigures,
-    /// Two threads.
+    /// Times of a step by two threads.
     pub two: SideFigures,
     /// The device; none where it cannot step them, which `missing` then says.
     pub device: Option<SideFigures>,
@@ -66,7 +66,7 @@ pub struct CrossoverRow {
     pub missing: Option<String>,
 }
 
-/// The study.
+/// Times of processor and graphics device by size and by number of skirts.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Crossover {
     /// What the device is.
@@ -218,13 +218,14 @@ impl Crossover {
                 row.steps
             );
         }
-        let said = |of: Option<f64>, what: &str| match of {
+        let sentence = |of: Option<f64>, what: &str| match of {
             None => "at no size tried".to_owned(),
             Some(0.0) => "at every size tried".to_owned(),
             Some(x) => format!("from {x:.0} {what} on"),
         };
         for (k, threads) in ["one thread", "two threads"].into_iter().enumerate() {
-            let (size, count) = (said(self.from_vertices[k], "vertices"), said(self.from_garments[k], "skirts"));
+            let (size, count) =
+                (sentence(self.from_vertices[k], "vertices"), sentence(self.from_garments[k], "skirts"));
             let _ = writeln!(text, "\nThe device is faster than {threads} {size}; with {EACH} vertices each {count}.");
         }
         let by = &self.stepped_by;

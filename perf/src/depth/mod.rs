@@ -42,7 +42,7 @@ pub struct DepthRow {
     pub errors: DepthErrors,
 }
 
-/// The table.
+/// Errors and times of depth processing, with their targets.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DepthTable {
     /// Longest that smoothing may take for a whole image of 640 x 480 (us).
@@ -55,11 +55,11 @@ pub struct DepthTable {
 ///
 /// # Errors
 /// Where the people cannot be made.
-pub fn run(say: &mut dyn FnMut(&str)) -> Result<DepthTable, BodyError> {
+pub fn run(progress: &mut dyn FnMut(&str)) -> Result<DepthTable, BodyError> {
     let people = truth::People::new()?;
     let mut rows = Vec::new();
     for (image, intrinsics) in CAMERAS {
-        say(image);
+        progress(image);
         let scene = people.before(intrinsics);
         let (stages_us, shopper_pixels) = stages::time(&scene);
         rows.push(DepthRow { image, shopper_pixels, stages_us, errors: truth::errors(&scene) });
@@ -129,8 +129,9 @@ mod tests {
         assert!(errors.edge_px[1] < errors.edge_px[2], "{errors:?}");
         let row = DepthRow { image: "640 x 480", shopper_pixels: 1, stages_us: StageTimes::default(), errors };
         let late = StageTimes { smooth_whole: 3_001.0, ..StageTimes::default() };
-        let told = |row: DepthRow| DepthTable { smoothing_target_us: SMOOTHING_TARGET_US, rows: vec![row] }.markdown();
-        assert!(told(row.clone()).ends_with(": met.\n"));
-        assert!(told(DepthRow { stages_us: late, ..row }).ends_with(": missed.\n"));
+        let table_of =
+            |row: DepthRow| DepthTable { smoothing_target_us: SMOOTHING_TARGET_US, rows: vec![row] }.markdown();
+        assert!(table_of(row.clone()).ends_with(": met.\n"));
+        assert!(table_of(DepthRow { stages_us: late, ..row }).ends_with(": missed.\n"));
     }
 }

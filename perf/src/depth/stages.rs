@@ -17,7 +17,7 @@ use super::truth::{DepthScene, GAUSSIAN_PX};
 pub struct StageTimes {
     /// The shopper found: cells, floor, pieces, people, mask.
     pub segment: f64,
-    /// Holes filled.
+    /// Filling holes in the shopper's depth.
     pub fill: f64,
     /// The shopper's depth smoothed along surfaces.
     pub smooth: f64,

@@ -24,7 +24,7 @@ const OUTLIER: f32 = 0.05;
 /// How far the noise shifts outlines (px): there the truth is not known.
 const OUTLINE: isize = 4;
 
-/// Two people.
+/// Two people in front of the camera.
 pub(super) struct People([Body; 2]);
 
 /// What a camera sees of them, and what is really there.

@@ -32,7 +32,7 @@ const TOES: [Joint; 2] = [Joint::LeftToe, Joint::RightToe];
 /// What becomes of the feet of one recording.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FootSlide {
-    /// The recording.
+    /// Name of the recording.
     pub name: String,
     /// How long feet stand, both feet's time added (s).
     pub planted_s: f64,

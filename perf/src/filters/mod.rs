@@ -18,7 +18,7 @@ pub use rows::{NAMES, filter};
 /// What one filter does to the motions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FilterRow {
-    /// Its name.
+    /// Name of the filter.
     pub name: String,
     /// Deviation of a resting joint along an axis, about the truth (mm).
     pub still_jitter_mm: f64,
@@ -41,7 +41,7 @@ pub struct FilterRow {
 /// What one filter does to a recording, whose truth nobody knows: compared with its own smooth course.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RecordedFigures {
-    /// The recording.
+    /// Name of the recording.
     pub name: String,
     /// Deviation of the hand from its own smooth course while it is slow (mm).
     pub jitter_mm: f64,
@@ -55,7 +55,7 @@ pub enum FiltersError {
     /// The scene's shopper.
     #[error(transparent)]
     Body(#[from] toile_assets::body::BodyError),
-    /// A recording.
+    /// A recording that cannot be read.
     #[error(transparent)]
     Source(#[from] toile_sensors::source::SourceError),
 }

@@ -16,7 +16,7 @@ pub type JointMotion<'a> = dyn Fn(f32) -> Joints + 'a;
 
 /// The truth and what is seen of it, frame by frame.
 pub struct NoisyMotion {
-    /// As it is.
+    /// The joints as they really are.
     pub truth: Vec<Joints>,
     /// As the sensor shows it.
     pub seen: Vec<Joints>,

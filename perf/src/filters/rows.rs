@@ -48,7 +48,7 @@ impl Filter for FilterChain {
     }
 }
 
-/// No filter.
+/// Passes joints through as they are seen.
 struct Unfiltered;
 
 impl Filter for Unfiltered {

@@ -31,10 +31,10 @@ const REFERENCE: [(&str, [f64; 3]); 5] = [
     ("One Euro .5, 10", [1.69, 14.0, 5.0]),
 ];
 
-/// All figures.
+/// The figures of all filters, and of feet.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FilterTable {
-    /// Filters.
+    /// Figures of each filter.
     pub rows: Vec<FilterRow>,
     /// Feet; none without a folder of recordings.
     pub feet: Vec<FootSlide>,

@@ -15,12 +15,12 @@ pub enum HandPose {
     Spread,
     /// Open, fingers together.
     Stretched,
-    /// Closed.
+    /// Closed to a fist.
     Fist,
 }
 
 impl HandPose {
-    /// All poses.
+    /// All poses of the hand.
     pub const ALL: [Self; 3] = [Self::Spread, Self::Stretched, Self::Fist];
 
     /// The words for tables.
@@ -38,9 +38,9 @@ impl HandPose {
 pub struct GripRow {
     /// The pose; its changes are those into it.
     pub pose: HandPose,
-    /// Distance (m).
+    /// Distance of the shopper (m).
     pub distance: f32,
-    /// Frames.
+    /// Frames that were classified.
     pub frames: u32,
     /// Frames classified wrongly.
     pub wrong: u32,
@@ -278,7 +278,7 @@ impl GripSum {
 /// Tells so many hands of each pose at each distance: each hand changes from an open pose to a fist and back.
 pub fn grips(distances: &[f32], hands: u32, seed: u64) -> Vec<GripRow> {
     let mut rows = Vec::new();
-    let mut eye = HandSegmenter::new();
+    let mut segmenter = HandSegmenter::new();
     for (k, &distance) in distances.iter().enumerate() {
         let mut sums = HandPose::ALL.map(|pose| GripSum::new(pose, distance));
         for hand in 0..hands {
@@ -293,7 +293,7 @@ pub fn grips(distances: &[f32], hands: u32, seed: u64) -> Vec<GripRow> {
                 let mut found = 0;
                 for _ in 0..FRAMES {
                     let (frame, sight) = scene.frame(&held, &mut rng);
-                    let shape = eye.shape(&frame, &sight);
+                    let shape = segmenter.shape(&frame, &sight);
                     sums[i].add(shape);
                     found += u32::from(grip.step(time_ns, shape.map(|s| s.openness())).is_some());
                     time_ns += 33_333_333;

@@ -47,7 +47,7 @@ impl Default for GestureConditions {
 /// How often an act was recognised.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct GestureCount {
-    /// Sequences.
+    /// Sequences that were tried.
     pub sequences: u32,
     /// Sequences that gave the right event.
     pub hits: u32,
@@ -68,7 +68,7 @@ impl GestureCount {
         60.0 * self.wrong as f32 / self.seconds.max(1.0)
     }
 
-    /// Both together.
+    /// The sum of both counts.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {

@@ -38,7 +38,7 @@ pub enum Act {
     PullOverHead,
     /// Raising both arms.
     RaiseArms,
-    /// Waving.
+    /// Waving a hand to and fro.
     Wave,
     /// Holding and tapping a phone.
     HoldPhone,
@@ -57,7 +57,7 @@ pub enum Act {
 }
 
 impl Act {
-    /// The gestures.
+    /// The acts that are to be recognised as gestures.
     pub const GESTURES: [Self; 4] =
         [Self::Swipe(Gesture::SwipeLeft), Self::Swipe(Gesture::SwipeRight), Self::Swipe(Gesture::SwipeUp), Self::Hold];
 

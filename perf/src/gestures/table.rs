@@ -13,12 +13,12 @@ const RATES: [[f32; 2]; 4] = [[30.0, 0.03], [20.0, 0.03], [15.0, 0.03], [15.0, 0
 /// Sizes next to a grown-up.
 const SCALES: [f32; 3] = [0.7, 1.0, 1.2];
 
-/// The whole study.
+/// The study of gestures: all tables.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GestureStudy {
     /// Sequences a cell.
     pub sequences: u32,
-    /// First seed.
+    /// Seed that all sequences are drawn from.
     pub seed: u64,
     /// Gestures under the conditions of each column of each table.
     pub gestures: Vec<(Act, GestureConditions, GestureCount)>,
@@ -39,21 +39,21 @@ fn columns() -> Vec<GestureConditions> {
 
 impl GestureStudy {
     /// Runs everything; `say` is given what is being done.
-    pub fn run(sequences: u32, seed: u64, say: &mut dyn FnMut(&str)) -> Self {
+    pub fn run(sequences: u32, seed: u64, progress: &mut dyn FnMut(&str)) -> Self {
         let mut gestures = Vec::new();
         for act in Act::GESTURES {
-            say(act.name());
+            progress(act.name());
             let row = columns().into_iter().map(|c| (act, c, count(act, &c, sequences, seed)));
             gestures.extend(row);
         }
         let mut others = Vec::new();
         for act in Act::OTHERS {
-            say(act.name());
+            progress(act.name());
             let at =
                 |distance| count(act, &GestureConditions { distance, ..GestureConditions::default() }, sequences, seed);
             others.push((act, DISTANCES.map(at).into_iter().fold(GestureCount::default(), GestureCount::and)));
         }
-        say("hands");
+        progress("hands");
         let grips = grips(&DISTANCES, sequences.div_ceil(4), seed);
         Self { sequences, seed, gestures, others, grips }
     }

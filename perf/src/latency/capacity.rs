@@ -1,4 +1,4 @@
-//! How full everything was that has a bound: the queues, the schedule, the frame's rooms.
+//! How full everything was that has a bound: the queues, the schedule, the frame's capacities.
 
 use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
 use toile_engine::cloth::settings::MAX_SUBSTEPS;
@@ -17,43 +17,43 @@ pub fn capacities(queues: &[Capacity], gauges: &LoopMeters, frame: &Frame) -> Ve
     let colliders = frame.colliders();
     let mut all = queues.to_vec();
     all.push(Capacity {
-        constant: "MOST_CATCH_UP (engine/core/src/frame_loop/schedule.rs)",
+        constant: "MOST_CATCH_UP (steps made up for after a late wake-up)",
         bound: MOST_CATCH_UP as usize,
         high_water: late.min(MOST_CATCH_UP) as usize,
         lost: gauges.dropped,
     });
     all.extend([
-        room("MAX_SPHERES (assets/src/limits.rs)", MAX_SPHERES, colliders.start().len()),
-        room("MAX_CAPSULES (assets/src/limits.rs)", MAX_CAPSULES, colliders.capsules().len()),
-        room("MAX_PLANES (assets/src/limits.rs)", MAX_PLANES, colliders.planes().len()),
+        room("MAX_SPHERES (spheres of the body)", MAX_SPHERES, colliders.start().len()),
+        room("MAX_CAPSULES (capsules of the body)", MAX_CAPSULES, colliders.capsules().len()),
+        room("MAX_PLANES (planes among the colliders)", MAX_PLANES, colliders.planes().len()),
+        room("MAX_SUBSTEPS (substeps of a step)", MAX_SUBSTEPS as usize, most(|c| c.substeps() as usize)),
         room(
-            "MAX_SUBSTEPS (engine/core/src/cloth/settings.rs)",
-            MAX_SUBSTEPS as usize,
-            most(|c| c.substeps() as usize),
-        ),
-        room(
-            "MOST (engine/core/src/cloth/stiff_bending.rs)",
-            stiff_bending::MOST as usize,
+            "MAX_BENDING_STAGES (stages of bending a substep)",
+            stiff_bending::MAX_BENDING_STAGES as usize,
             most(|c| c.bend_pace().stages as usize),
         ),
     ]);
     let pairs = frame.cloths().iter().map(|c| c.contact_counts().most_pairs);
     all.extend(
-        pairs.map(|[most, room_for]| room("pairs (engine/core/src/cloth/contact)", room_for as usize, most as usize)),
+        pairs.map(|[most, room_for]| {
+            room("pairs (blocks of particles near a capsule)", room_for as usize, most as usize)
+        }),
     );
     all
 }
 
-/// What was full, and the constant to raise. Spheres, capsules and planes that are too many are refused at load.
+/// What was full, with the cure. Spheres, capsules and planes that are too many are refused at load.
 pub fn warnings(capacities: &[Capacity], frame: &Frame) -> Vec<String> {
     let mut all: Vec<String> = capacities.iter().filter_map(Capacity::warning).collect();
     for (cloth, garment) in frame.cloths().iter().zip(frame.garments()) {
         let pace = cloth.bend_pace();
-        if pace.stages == stiff_bending::MOST && pace.least < 1.0 {
+        if pace.stages == stiff_bending::MAX_BENDING_STAGES && pace.least < 1.0 {
             all.push(format!(
-                "{} bends with {:.0} % of its stiffness at some particles; raise MOST (engine/core/src/cloth/stiff_bending.rs)",
+                "{} bends with {:.0} % of its stiffness at some particles, for a substep has at most {} stages of bending; ask for \
+                 more substeps, a coarser mesh or a softer fabric",
                 garment.name,
-                pace.least * 100.0
+                pace.least * 100.0,
+                stiff_bending::MAX_BENDING_STAGES
             ));
         }
     }

@@ -1,4 +1,4 @@
-//! Why the figures cannot be taken.
+//! Why latency cannot be measured.
 
 use thiserror::Error;
 use toile_engine::workers::WorkerPoolError;
@@ -9,7 +9,7 @@ pub enum LatencyError {
     /// The system gave no thread.
     #[error("a thread of the loop could not be started ({0}); raise the limit of threads")]
     Spawn(#[from] std::io::Error),
-    /// The workers.
+    /// The worker pool cannot be started.
     #[error(transparent)]
     WorkerPool(#[from] WorkerPoolError),
     /// A thread of the loop ended before its time.

@@ -13,7 +13,7 @@ use toile_engine::meter::{Meter, PERIOD_NS};
 
 use super::error::LatencyError;
 
-/// The empty loop.
+/// A loop that does nothing but wake up in time.
 #[derive(Debug)]
 struct EmptyLoop {
     clock: RealClock,

@@ -9,7 +9,7 @@ use toile_fitting::live::report::{Attributed, Quantiles, QueueUse, ThreadPlaceme
 /// One stage between the sensor and the picture.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LatencyStage {
-    /// Its name.
+    /// Name of the stage.
     pub name: &'static str,
     /// What it may take (us), where it has a budget.
     pub budget_us: Option<u64>,
@@ -24,7 +24,7 @@ pub struct LatencyStage {
 pub const BARS: f64 = 12.0;
 
 impl LatencyStage {
-    /// Of a meter.
+    /// The stage whose times a meter holds.
     pub fn of(name: &'static str, budget_us: Option<u64>, meter: &Meter) -> Self {
         let mut bars = BTreeMap::new();
         for value in meter.histogram().iter_recorded() {
@@ -40,7 +40,7 @@ impl LatencyStage {
 /// The quality that the run was at, and the error that comes of it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct QualityFigures {
-    /// The tested settings.
+    /// Name of the quality.
     pub name: &'static str,
     /// Substeps at whole quality.
     pub substeps: u32,
@@ -67,7 +67,7 @@ pub struct QualityFigures {
 pub struct Goal {
     /// What is held against the limit.
     pub name: &'static str,
-    /// The limit.
+    /// The most that passes (us).
     pub limit_us: f64,
     /// What was measured.
     pub us: f64,
@@ -107,19 +107,19 @@ pub struct Latency {
     pub response_us: Quantiles,
     /// An empty loop in the same place: due until awake (us).
     pub jitter_us: Quantiles,
-    /// Steps taken.
+    /// Steps that were taken.
     pub steps: u64,
     /// Steps that were published after their period, and those that were dropped.
     pub deadline_misses: u64,
     /// Of these, the dropped ones.
     pub dropped: u64,
-    /// Their causes.
+    /// Late steps by their causes.
     pub attributed: Attributed,
-    /// Sensor frames.
+    /// Frames that the sensor gave.
     pub frames: u64,
     /// Sensor frames whose snapshot came later than the goal, or never.
     pub late_frames: u64,
-    /// Pictures taken.
+    /// Pictures that were drawn.
     pub pictures: u64,
     /// The quality, and its error.
     pub quality: QualityFigures,

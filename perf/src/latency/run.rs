@@ -53,7 +53,7 @@ const MOST_CHANGES: usize = 100;
 /// Time between two looks at the queues: they hold seconds.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// What is measured.
+/// Options of a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LatencyOptions {
     /// Length of the run (s), after a first second.
@@ -94,15 +94,15 @@ impl LoopEvents {
                 self.changes.push([event.tick, u64::from(change.from), u64::from(change.to)]);
             }
             EventKind::Quality(_) => {}
-            EventKind::SensorLost => self.say(event, "no sensor frame had come for half a second"),
-            EventKind::SensorBack => self.say(event, "the sensor came back"),
-            EventKind::Broken => self.say(event, "a worker panicked and the garments kept their places"),
+            EventKind::SensorLost => self.note(event, "no sensor frame had come for half a second"),
+            EventKind::SensorBack => self.note(event, "the sensor came back"),
+            EventKind::Broken => self.note(event, "a worker panicked and the garments kept their places"),
             EventKind::Changed(_) | EventKind::Missed(_) | EventKind::Dropped(_) => {}
-            EventKind::RolledBack => self.say(event, "a garment ended with NaN or infinity and was rolled back"),
+            EventKind::RolledBack => self.note(event, "a garment ended with NaN or infinity and was rolled back"),
         }
     }
 
-    fn say(&mut self, event: &Event, what: &str) {
+    fn note(&mut self, event: &Event, what: &str) {
         if self.sentences.len() < MOST_CHANGES {
             self.sentences.push(format!("step {}: {what}", event.tick));
         }

@@ -1,4 +1,4 @@
-//! Measuring held against known bodies: people of ANSUR II, each with a shape of their own, seen by a depth camera.
+//! Measuring compared with known bodies: people of ANSUR II, each with a shape of their own, seen by a depth camera.
 //!
 //! Reads: the survey's files (a path is given). Writes: the errors of both ways of measuring, measure by measure.
 //! Budget: none; a study, some seconds a person.

@@ -42,7 +42,7 @@ pub type JointPositions = [Vec3; JOINTS];
 
 /// A person who can stand before a camera.
 pub struct SurveyPerson {
-    /// Sex.
+    /// Sex that the survey states.
     pub sex: Sex,
     body: Body,
     /// What the tape reads on them.

@@ -1,4 +1,4 @@
-//! The two depth cameras of the study, each a little other than it says.
+//! The two depth cameras of the study, each with small errors of its calibration.
 
 use glam::{Affine3A, Quat, Vec3};
 use toile_assets::numeric::random::SplitMix64;

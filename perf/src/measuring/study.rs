@@ -19,16 +19,16 @@ use super::person::{GIVEN, JointPositions, SurveyPerson};
 use super::sensor::{Sensor, StudyCamera};
 use crate::ansur::{StudyError, Survey};
 
-/// What is studied.
+/// Options of a study.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuringOptions {
     /// People drawn from each file.
     pub people: usize,
     /// Frames that each is measured from.
     pub frames: usize,
-    /// Which people.
+    /// Seed of the people drawn, and of how they stand.
     pub seed: u64,
-    /// The camera.
+    /// The camera that they are measured with.
     pub sensor: Sensor,
 }
 
@@ -38,7 +38,7 @@ pub type Estimates = [Option<Estimate>; MEASURES.len()];
 /// One person: what is true, and what was measured.
 #[derive(Debug, Clone)]
 pub struct MeasuredPerson {
-    /// Sex.
+    /// Sex that the survey states.
     pub sex: Sex,
     /// Distance from the camera (m).
     pub distance: f32,
@@ -104,11 +104,11 @@ pub struct Following {
 /// What a study found.
 #[derive(Debug, Clone, Serialize)]
 pub struct MeasuringStudy {
-    /// The camera.
+    /// Name of the camera.
     pub sensor: &'static str,
-    /// People rendered.
+    /// People who were rendered.
     pub people: usize,
-    /// Frames of each.
+    /// Frames that each is measured from.
     pub frames: usize,
     /// People in whom no body was found.
     pub lost: usize,

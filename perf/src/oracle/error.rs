@@ -10,11 +10,11 @@ pub enum OracleError {
     /// Arrays that do not fit together.
     #[error("{what} has {got} entries, but {expected} are needed; give one for each particle that it is about")]
     Length {
-        /// The array.
+        /// Name of the array.
         what: &'static str,
-        /// Its length.
+        /// Number of its entries.
         got: usize,
-        /// What is needed.
+        /// Number of entries that are needed.
         expected: usize,
     },
     /// A figure that cannot be used.
@@ -22,7 +22,7 @@ pub enum OracleError {
     Unusable {
         /// What it is a figure of.
         what: &'static str,
-        /// Which of them.
+        /// Index of the first that cannot be used.
         at: usize,
     },
     /// Iterations ran out, or nothing more could be gained.

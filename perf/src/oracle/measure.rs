@@ -13,7 +13,7 @@ pub struct Energies {
     pub kinetic_j: f64,
     /// Of stretch and shear: (1/2) C^2 / compliance. Inextensible links hold none; see [`strain`] for what they are off.
     pub stretch_j: f64,
-    /// Of bending.
+    /// Of bending (J).
     pub bending_j: f64,
     /// In the field of gravity, 0 at the origin, of the free particles.
     pub gravity_j: f64,
@@ -70,7 +70,7 @@ fn strain_of(ends: [u32; 2], rest: f64, x: &[DVec3]) -> f64 {
 pub struct Distances {
     /// Mean over the particles.
     pub mean_m: f64,
-    /// Largest.
+    /// Largest over the particles (m).
     pub max_m: f64,
 }
 

@@ -59,7 +59,7 @@ pub struct NewtonState {
 }
 
 impl NewtonState {
-    /// Nothing known yet.
+    /// A solver that has factorised nothing yet.
     pub fn new(shift: f64) -> Self {
         Self { shift, iterations: 0, wait: 1, waiting: 0 }
     }
@@ -70,7 +70,7 @@ impl NewtonState {
     }
 }
 
-/// When to stop.
+/// When Newton's method stops.
 #[derive(Debug, Clone, Copy)]
 pub struct StopRule {
     /// Largest force that may be left on a particle (N).

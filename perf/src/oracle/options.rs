@@ -7,7 +7,7 @@ use super::solids::Solids;
 /// One implicit Euler step and what the surroundings do in it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Step {
-    /// Length (s).
+    /// Length of the step (s).
     pub dt: f64,
     /// Share of the velocity that the air leaves, as the engine takes it in each substep: v = (v + g dt) kept, with
     /// kept = exp(-damping_per_s dt). 1 is no damping.

@@ -9,7 +9,7 @@ use super::error::OracleError;
 /// Stretch between two particles: energy (1/2) C^2 / compliance of C = |b - a| - rest, in tension and in compression.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Link {
-    /// The particles.
+    /// Indices of the two particles.
     pub ends: [u32; 2],
     /// Length as cut (m).
     pub rest: f64,
@@ -20,7 +20,7 @@ pub struct Link {
 /// Bending: energy (1/2) |sum c_i x_i|^2.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bend {
-    /// The particles.
+    /// Indices of the particles.
     pub particles: Vec<u32>,
     /// Their coefficients (sqrt(N/m)).
     pub coefficients: Vec<f64>,
@@ -33,9 +33,9 @@ pub struct Problem {
     pub mass: Vec<f64>,
     /// Where the garment starts (m) `[particles]`.
     pub start: Vec<DVec3>,
-    /// Stretch links.
+    /// Stretch links of the garment.
     pub links: Vec<Link>,
-    /// Bending stencils.
+    /// Bending stencils of the garment.
     pub bends: Vec<Bend>,
     /// Acceleration of gravity (m/s2).
     pub gravity: DVec3,

@@ -19,7 +19,7 @@ use super::system::System;
 /// Residual of the first round (N); later rounds ask for [`SHARPER`] of the one before.
 const FIRST_RESIDUAL_N: f64 = 1e-5;
 
-/// See [`FIRST_RESIDUAL_N`].
+/// Residual of each round after the first, as a share of the one before (1); see [`FIRST_RESIDUAL_N`].
 const SHARPER: f64 = 0.01;
 
 /// How much stiffer the multipliers of links and contact are than what they hold: of the order of how many links lie in
@@ -70,7 +70,7 @@ impl Oracle {
         Ok(Self { problem, system, options: OracleOptions::default(), tension, pressure: Vec::new() })
     }
 
-    /// What is solved.
+    /// The problem that is solved.
     pub fn problem(&self) -> &Problem {
         &self.problem
     }

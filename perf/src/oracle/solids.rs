@@ -7,7 +7,7 @@
 
 use glam::{DMat3, DVec3};
 
-/// A ball.
+/// A ball that cloth can lie on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
     /// Centre (m).
@@ -19,7 +19,7 @@ pub struct Ball {
 /// What is behind it is pushed out: outside is where `normal . p >= offset_m`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plane {
-    /// Unit normal.
+    /// Unit normal, towards the outside.
     pub normal: DVec3,
     /// Offset along it (m).
     pub offset_m: f64,
@@ -77,7 +77,7 @@ pub struct SolidDistance {
 pub enum SolidSurface {
     /// A round cone.
     Cone(Cone),
-    /// A plane.
+    /// A plane; the side of its normal is outside.
     Plane(Plane),
 }
 
@@ -199,7 +199,7 @@ impl Cone {
     }
 }
 
-/// a b^T.
+/// Outer product a b^T.
 pub(super) fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }

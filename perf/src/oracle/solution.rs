@@ -23,7 +23,7 @@ impl State {
 /// A particle that is pressed against a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Touch {
-    /// The particle.
+    /// Index of the particle.
     pub particle: usize,
     /// The solid, cones first.
     pub solid: usize,
@@ -47,11 +47,11 @@ pub struct Violation {
 /// How a solution was reached, and how exact it is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SolveReport {
-    /// Newton iterations.
+    /// Iterations of Newton's method, over all rounds.
     pub iterations: usize,
     /// Rounds of the method of multipliers.
     pub rounds: usize,
-    /// Sparse factorisations.
+    /// Factorisations of a sparse matrix.
     pub factorisations: usize,
     /// Largest force left on any particle (N).
     pub residual_n: f64,
@@ -61,7 +61,7 @@ pub struct SolveReport {
     pub stable: bool,
 }
 
-/// A solution.
+/// The solution of a problem, with its forces and how exact it is.
 #[derive(Clone, PartialEq, Default)]
 pub struct Solved {
     /// Positions, and velocities: 0 in statics.

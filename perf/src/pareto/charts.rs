@@ -11,7 +11,7 @@ use crate::plot::{BLACK, Drawing, SERIES_COLOURS};
 pub struct NamedDrawing {
     /// The file's name without its ending.
     pub name: String,
-    /// The chart.
+    /// The chart, laid out as marks.
     pub drawing: Drawing,
 }
 

@@ -1,4 +1,4 @@
-//! Why the figures cannot be taken.
+//! Why a scene cannot be run or plotted.
 
 use thiserror::Error;
 use toile_assets::body::BodyError;
@@ -15,34 +15,34 @@ use crate::skirt::SkirtError;
 /// Why the figures cannot be taken.
 #[derive(Debug, Error)]
 pub enum ParetoError {
-    /// A scene's mesh.
+    /// A scene's mesh that cannot be cloth.
     #[error("a scene's mesh cannot be baked: {0}")]
     Mesh(#[from] MeshError),
-    /// A scene's fabric.
+    /// A scene's fabric that cannot be used.
     #[error(transparent)]
     Fabric(#[from] FabricError),
-    /// The mannequin.
+    /// A mannequin that cannot be built.
     #[error(transparent)]
     Body(#[from] BodyError),
     /// A garment of the wardrobe.
     #[error(transparent)]
     Wardrobe(#[from] WardrobeError),
-    /// Its sizes.
+    /// A size table that cannot be used.
     #[error(transparent)]
     Sizes(#[from] SizeError),
-    /// A scene's solids.
+    /// A scene's solids that the engine does not take.
     #[error("a scene's colliders are refused: {0}")]
     Colliders(#[from] ColliderError),
-    /// The engine's workers.
+    /// The worker pool cannot be started.
     #[error(transparent)]
     WorkerPool(#[from] WorkerPoolError),
-    /// x*.
+    /// The reference solution x* was not found.
     #[error("x* was not found: {0}")]
     Oracle(#[from] OracleError),
     /// The survival map's skirt.
     #[error(transparent)]
     Skirt(#[from] SkirtError),
-    /// A plot.
+    /// A plot that cannot be written as a picture.
     #[error(transparent)]
     Picture(#[from] toile_view::image::Error),
     /// A scene that is not one.

@@ -9,7 +9,7 @@ const FRONT: [&str; 7] = ["front, one thread", "substeps", "iterations", "step u
 
 const SAMPLINGS: [&str; 6] = ["sampling", "particles", "mean cm", "max cm", "published cm", "step us"];
 
-/// The page.
+/// The report as one page of HTML with its charts.
 pub fn page(report: &ParetoReport, figures: &[NamedDrawing]) -> String {
     let mut page = Page::new("Toile: speed against error");
     page.title("Speed against error").paragraph(

@@ -26,7 +26,7 @@ pub enum SolverChoice {
 }
 
 impl SolverChoice {
-    /// All of them.
+    /// Every choice, in the order of the charts.
     pub const ALL: [Self; 4] = [Self::Mixed, Self::GaussSeidel, Self::SemiImplicit, Self::ZeroStretch];
 
     /// Its name in reports.
@@ -54,7 +54,7 @@ impl SolverChoice {
 /// What moves the pins and the colliders.
 #[derive(Debug, Clone)]
 pub enum SceneMotion {
-    /// Nothing.
+    /// Nothing moves.
     Still,
     /// The benchmark's body.
     Skirt(Motion),
@@ -77,17 +77,17 @@ pub enum ReferenceKind {
 /// A scene in one mesh.
 #[derive(Debug, Clone)]
 pub struct MeshedScene {
-    /// Its name.
+    /// Name of the scene.
     pub scene: &'static str,
-    /// Its mesh's name.
+    /// Name of the mesh.
     pub mesh: String,
     /// Whether every setting is run on it, or only the qualities' own.
     pub main: bool,
     /// The shape, its file's solvers in it.
     pub shape: Shape,
-    /// The fabric.
+    /// The fabric that it is made of.
     pub fabric: Fabric,
-    /// What moves.
+    /// What moves pins and colliders.
     pub drive: SceneMotion,
     /// The colliders before their first placement.
     pub colliders: Colliders,

@@ -183,7 +183,7 @@ pub fn play_windows(
 }
 
 impl Trace {
-    /// A frame.
+    /// Adds the state of the cloth after step `tick`.
     fn add(&mut self, tick: u64, scene: &mut SteppedCloth<'_>) {
         let SteppedCloth { garment, cloth, problem, .. } = scene;
         let place = |p: Vec3A| p.as_dvec3();

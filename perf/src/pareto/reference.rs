@@ -21,7 +21,7 @@ pub struct Reference {
     frames: Vec<Vec<DVec3>>,
     /// Vertices that can move.
     free: Vec<usize>,
-    /// What it is.
+    /// What the reference solution is, in words for the page.
     pub words: String,
     /// How far it may be off (mm).
     pub gap_mm: f64,
@@ -32,7 +32,7 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Finds x*.
+    /// Finds the reference solution x*; `quick` takes fewer substeps.
     pub fn of(subject: &MeshedScene, quick: bool) -> Result<Self, ParetoError> {
         match subject.truth {
             ReferenceKind::Equilibrium => equilibrium(subject),

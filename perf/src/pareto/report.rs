@@ -7,11 +7,11 @@ use serde::Serialize;
 /// One setting of one scene: what a step costs and what it ends at.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Point {
-    /// The scene.
+    /// Name of the scene.
     pub scene: String,
-    /// Its mesh.
+    /// Name of the mesh.
     pub mesh: String,
-    /// Particles.
+    /// Particles of the mesh.
     pub particles: usize,
     /// What fibers are solved by: gauss-seidel, semi-implicit, mixed (as the bake chooses), zero-stretch.
     pub solver: &'static str,
@@ -23,7 +23,7 @@ pub struct Point {
     pub iterations: usize,
     /// Whether garment and quality ask for these substeps themselves.
     pub default: bool,
-    /// What computes.
+    /// Backend that steps it: `cpu`.
     pub backend: &'static str,
     /// Workers of a step.
     pub threads: usize,
@@ -48,7 +48,7 @@ pub struct Point {
 /// Energy by frame under one setting.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct EnergyRun {
-    /// The setting.
+    /// Name of the setting.
     pub setting: String,
     /// Time (s) and energy (J) of each frame that is compared.
     pub frames: Vec<[f64; 2]>,
@@ -57,11 +57,11 @@ pub struct EnergyRun {
 /// One scene in one mesh.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct SceneReport {
-    /// The scene.
+    /// Name of the scene.
     pub scene: String,
-    /// The mesh.
+    /// Name of the mesh.
     pub mesh: String,
-    /// Particles.
+    /// Particles of the mesh.
     pub particles: usize,
     /// Length of its threads' links, mean of the warp (mm).
     pub spacing_mm: f64,
@@ -87,7 +87,7 @@ pub enum Fate {
     RolledBack,
 }
 
-/// The survival map.
+/// Which settings the skirt survives.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Survival {
     /// Mass of a hem particle over that of its neighbours above (1).
@@ -109,7 +109,7 @@ pub struct Survival {
 pub struct Sampling {
     /// Distance of its particles (cm).
     pub spacing_cm: f64,
-    /// Particles.
+    /// Particles of the tablecloth.
     pub particles: usize,
     /// Mean distance to the finest, over the particles that both have and that hang (cm).
     pub mean_cm: f64,
@@ -123,7 +123,7 @@ pub struct Sampling {
     pub fastest_mm_s: f64,
 }
 
-/// The drape study.
+/// A tablecloth at several samplings.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Drape {
     /// What cloth on what table.
@@ -139,20 +139,20 @@ pub struct ParetoReport {
     pub quick: bool,
     /// Every setting of every scene.
     pub points: Vec<Point>,
-    /// The scenes.
+    /// Every scene in every mesh.
     pub scenes: Vec<SceneReport>,
-    /// The skirt's survival.
+    /// The map of what the skirt survives; none where it was not run.
     pub survival: Option<Survival>,
-    /// The tablecloth.
+    /// The tablecloth by its sampling; none where it was not run.
     pub drape: Option<Drape>,
 }
 
 /// A file of the report.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReportFile {
-    /// Its name.
+    /// Name of the file.
     pub name: String,
-    /// What it holds.
+    /// Content of the file.
     pub bytes: Vec<u8>,
 }
 

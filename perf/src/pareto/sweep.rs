@@ -18,7 +18,7 @@ const QUICK_SUBSTEPS: [u32; 3] = [1, 4, 8];
 /// Time of a step from which more substeps are not tried (us): three times what 120 Hz leaves.
 const FAR_BEYOND_US: f64 = 25_000.0;
 
-/// What computes.
+/// Name of the backend that steps the scenes.
 const BACKEND: &str = "cpu";
 
 /// Runs every setting of a scene and holds each against x*.

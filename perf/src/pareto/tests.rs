@@ -70,6 +70,6 @@ fn the_survival_map_knows_a_light_hem_at_a_short_step_as_stable() {
 #[test]
 fn an_unknown_scene_is_said_so() {
     let options = ParetoOptions { scene: Some("hat".into()), quick: true };
-    let said = run(&options, &|_| {}).unwrap_err().to_string();
-    assert!(said.contains("hat") && said.contains("--help"));
+    let message = run(&options, &|_| {}).unwrap_err().to_string();
+    assert!(message.contains("hat") && message.contains("--help"));
 }

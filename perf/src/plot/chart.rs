@@ -6,7 +6,7 @@ use super::{Anchor, BLACK, Colour, Drawing, Mark, PALE, RULE};
 /// How a series is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeriesStyle {
-    /// Its colour.
+    /// Colour of line and dots.
     pub colour: Colour,
     /// Width of the line that joins its points (pixels), 0 for none.
     pub line: f64,
@@ -24,12 +24,12 @@ impl SeriesStyle {
         Self { colour, line: 1.5, dashed: false, dot: 3.5, ring: false }
     }
 
-    /// A line alone.
+    /// A line without dots.
     pub fn line(colour: Colour, width: f64) -> Self {
         Self { colour, line: width, dashed: false, dot: 0.0, ring: false }
     }
 
-    /// Points alone.
+    /// Dots without a line.
     pub fn dots(colour: Colour) -> Self {
         Self { colour, line: 0.0, dashed: false, dot: 3.5, ring: false }
     }
@@ -45,7 +45,7 @@ impl SeriesStyle {
 pub struct Series {
     /// What the legend says.
     pub name: String,
-    /// Its points.
+    /// Points in the units of the two axes.
     pub points: Vec<[f64; 2]>,
     /// How they are drawn.
     pub style: SeriesStyle,
@@ -54,11 +54,11 @@ pub struct Series {
 /// Series over two axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
-    /// Its title.
+    /// Title above the chart.
     pub title: String,
-    /// To the right.
+    /// The axis that goes to the right.
     pub x: Axis,
-    /// Upwards.
+    /// The axis that goes upwards.
     pub y: Axis,
     /// What is shown, the last on top.
     pub series: Vec<Series>,

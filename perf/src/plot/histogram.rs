@@ -7,7 +7,7 @@ use super::{Anchor, BLACK, Drawing, Mark, PALE, RULE, SERIES_COLOURS};
 /// Times and how many were near them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Histogram<'a> {
-    /// Its title.
+    /// Title above the chart.
     pub title: &'a str,
     /// Upper bound (us) and count of each bar.
     pub bars: &'a [(f64, u64)],

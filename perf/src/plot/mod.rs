@@ -15,7 +15,7 @@ pub mod tiles;
 /// An sRGB colour.
 pub type Colour = [u8; 3];
 
-/// Text, axes.
+/// Colour of text and axes.
 pub const BLACK: Colour = [34, 34, 34];
 
 /// Lines of the grid.
@@ -31,11 +31,11 @@ pub const SERIES_COLOURS: [Colour; 6] =
 /// Which end of a text lies where it is put.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
-    /// Its left end.
+    /// Left end of the text.
     Left,
-    /// Its middle.
+    /// Middle of the text.
     Middle,
-    /// Its right end.
+    /// Right end of the text.
     Right,
 }
 
@@ -44,22 +44,22 @@ pub enum Anchor {
 pub enum Mark {
     /// A line from point to point.
     Line {
-        /// Its corners.
+        /// Its corners, in order (pixels).
         points: Vec<[f64; 2]>,
-        /// Its colour.
+        /// Colour of the line.
         colour: Colour,
-        /// Its width.
+        /// Width of the line (pixels).
         width: f64,
         /// Whether it is dashed.
         dashed: bool,
     },
     /// A disc, or a ring.
     Dot {
-        /// Its middle.
+        /// Its middle (pixels).
         at: [f64; 2],
-        /// Its radius.
+        /// Its radius (pixels).
         radius: f64,
-        /// Its colour.
+        /// Colour of the dot.
         colour: Colour,
         /// Whether it is a ring.
         ring: bool,
@@ -68,9 +68,9 @@ pub enum Mark {
     Box {
         /// Its upper left corner.
         at: [f64; 2],
-        /// Width and height.
+        /// Width and height (pixels).
         size: [f64; 2],
-        /// Its colour.
+        /// Colour of the rectangle.
         colour: Colour,
         /// What a page shows where somebody points at it.
         hint: Option<String>,
@@ -79,9 +79,9 @@ pub enum Mark {
     Text {
         /// The end that the anchor names.
         at: [f64; 2],
-        /// Which end.
+        /// End of the text that lies at `at`.
         anchor: Anchor,
-        /// The words.
+        /// The line of text.
         words: String,
         /// Whether they are a title.
         large: bool,

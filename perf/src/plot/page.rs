@@ -23,19 +23,19 @@ pub enum Entry {
     Words(String),
     /// What is as it should be.
     Good(String),
-    /// What is not.
+    /// What is not as it should be.
     Bad(String),
     /// A bar, by its share of the longest (0..1).
     Bar(f64),
 }
 
 impl Entry {
-    /// A figure.
+    /// A number, set to the right.
     pub fn figure(value: impl ToString + Copy) -> Self {
         Self::Figure(value.to_string())
     }
 
-    /// Words.
+    /// Words, set to the left.
     pub fn words(text: impl Into<String>) -> Self {
         Self::Words(text.into())
     }
@@ -121,7 +121,7 @@ impl Page {
         self
     }
 
-    /// A drawing.
+    /// Adds a drawing to the page.
     pub fn drawing(&mut self, drawing: &Drawing) -> &mut Self {
         self.html.push_str(&svg::text(drawing));
         self

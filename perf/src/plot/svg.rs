@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::{Anchor, Colour, Drawing, Mark};
 
-/// The SVG element.
+/// The drawing as an SVG element.
 pub fn text(drawing: &Drawing) -> String {
     let [width, height] = drawing.size;
     let mut svg = format!(

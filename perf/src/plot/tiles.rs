@@ -2,10 +2,10 @@
 
 use super::{Anchor, Colour, Drawing, Mark};
 
-/// One cell.
+/// A coloured cell with words in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
-    /// Its colour.
+    /// Colour of the cell.
     pub colour: Colour,
     /// What stands in it.
     pub words: String,
@@ -14,13 +14,13 @@ pub struct Cell {
 /// A grid of cells.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tiles {
-    /// Its title.
+    /// Title above the grid.
     pub title: String,
     /// What columns and rows are.
     pub labels: [String; 2],
-    /// The columns' values.
+    /// Value of each column `[columns]`.
     pub columns: Vec<String>,
-    /// The rows' values.
+    /// Value of each row `[rows]`.
     pub rows: Vec<String>,
     /// The cells `[rows][columns]`.
     pub cells: Vec<Vec<Cell>>,

@@ -15,7 +15,7 @@ pub enum SkinningError {
     /// The shopper's skin.
     #[error(transparent)]
     Skin(#[from] SkinError),
-    /// The workers.
+    /// The worker pool cannot be started.
     #[error(transparent)]
     WorkerPool(#[from] WorkerPoolError),
     /// Lanes that this processor lacks.

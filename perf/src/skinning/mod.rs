@@ -44,10 +44,10 @@ pub enum SkinningSubject {
     Body,
 }
 
-/// A measurement.
+/// What is measured, and how.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SkinningOptions {
-    /// What is skinned.
+    /// The skin that is measured.
     pub subject: SkinningSubject,
     /// Vertices; nothing for as many as the body has.
     pub verts: Option<usize>,
@@ -83,21 +83,21 @@ pub struct Timing {
 /// What skinning costs on this machine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Skinning {
-    /// What was skinned.
+    /// The skin that was measured.
     pub subject: SkinningSubject,
-    /// Vertices skinned.
+    /// Vertices that were skinned.
     pub verts: usize,
-    /// Workers.
+    /// Number of workers.
     pub threads: usize,
-    /// Lanes.
+    /// Number of lanes.
     pub lanes: usize,
     /// Time of the yardstick, [`yardstick::VERTICES`] vertices whatever `verts` is (us, median).
     pub yardstick_us: f64,
     /// Blocks, lanes and influences of the job.
     pub padding: Padding,
-    /// Linear blending.
+    /// Time of linear blending.
     pub linear: Timing,
-    /// Dual quaternions.
+    /// Time of dual quaternions.
     pub dual: Timing,
 }
 
@@ -168,7 +168,7 @@ fn skinned(job: &SkinningJob, surface: &Surface, blend: Blend) -> Posed {
     posed
 }
 
-/// What is timed.
+/// The skin that is timed, with its palettes and results.
 struct TimedSkinning<'a> {
     job: &'a SkinningJob,
     surface: &'a Surface,

@@ -1,4 +1,4 @@
-//! The f64 oracle of both blends, vertex after vertex, without a thought of speed.
+//! The f64 oracle of both blends, vertex after vertex, regardless of speed.
 
 use glam::{Affine3A, DMat3, DQuat, DVec3, DVec4, Vec3};
 use toile_assets::mesh::SkinWeights;
@@ -7,7 +7,7 @@ use toile_engine::skin::{Blend, Posed};
 
 use toile_fitting::scene::surface::Surface;
 
-/// The largest errors of a posed surface; no number where one of its numbers is none.
+/// The largest errors of a posed surface; NaN where one of its numbers is NaN.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SurfaceErrors {
     /// Of a position (m).

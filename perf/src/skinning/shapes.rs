@@ -1,4 +1,4 @@
-//! What the blends do to limbs: volume kept under twist, on a cylinder and on the shopper's forearm, and the joints that
+//! The effect of both blends on limbs: volume kept under twist, on a cylinder and on the shopper's forearm, and the joints that
 //! are bent.
 
 use glam::{Affine3A, Quat, Vec3};
@@ -19,7 +19,7 @@ pub struct TwistVolume {
     /// The cylinder, the shopper's forearm with every triangle cut into 16 before it is skinned, so that what is lost
     /// is lost by skinning, or the forearm as it is meshed, whose triangles lose some more.
     pub of: &'static str,
-    /// Twist (degrees).
+    /// Angle of the twist (degrees).
     pub degrees: f64,
     /// What theory has for linear blending between two bones: 1 - (1 - cos)/3.
     pub theory: f64,
@@ -36,9 +36,9 @@ pub struct TwistVolume {
 /// What a bent joint of the shopper looks like, linear and dual.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BentJoint {
-    /// The joint.
+    /// Name of the joint.
     pub of: &'static str,
-    /// Bend (degrees).
+    /// Angle of the bend (degrees).
     pub degrees: f64,
     /// Volume within 12 cm of the joint over that at rest.
     pub volume: [f64; 2],
@@ -57,20 +57,20 @@ pub struct BlendDistance {
     pub of: &'static str,
     /// Mean distance over vertices and moments (mm).
     pub mean_mm: f64,
-    /// Largest (mm).
+    /// Largest distance (mm).
     pub max_mm: f64,
     /// Volume of the whole body over that at rest in the moment in which it is least, linear and dual.
     pub body_volume: [f64; 2],
 }
 
-/// All of them.
+/// Distances, volumes and bulges of both blends.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Shapes {
     /// The blends against each other.
     pub apart: Vec<BlendDistance>,
-    /// Twisted limbs.
+    /// Volumes of twisted limbs.
     pub twists: Vec<TwistVolume>,
-    /// Bent joints.
+    /// Volumes and bulges of bent joints.
     pub hinges: Vec<BentJoint>,
 }
 
@@ -129,7 +129,7 @@ fn chain(split: bool) -> Vec<usize> {
     std::iter::once(t.from.index()).chain(between).chain([t.to.index()]).collect()
 }
 
-/// Skins points.
+/// Positions of points by skinning them (m).
 pub(super) fn posed<const N: usize>(
     points: &[Vec3],
     weights: &[Influences<N>],

@@ -54,7 +54,7 @@ impl ClosedSurface {
     }
 }
 
-/// Edges that hang together by their ends.
+/// Edges that are connected by their ends.
 fn joined(edges: &[[u32; 2]]) -> Vec<Vec<[u32; 2]>> {
     let next: BTreeMap<u32, u32> = edges.iter().map(|e| (e[0], e[1])).collect();
     let mut left: BTreeSet<u32> = next.keys().copied().collect();

@@ -15,13 +15,13 @@ pub const TARGETS: [f64; 2] = [0.12, 0.2];
 /// One measurement as the table has it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SkinningRow {
-    /// What was skinned.
+    /// The skin that was measured.
     pub subject: SkinningSubject,
-    /// Vertices.
+    /// Vertices that were skinned.
     pub verts: usize,
-    /// Workers.
+    /// Number of workers.
     pub threads: usize,
-    /// Lanes.
+    /// Number of lanes.
     pub lanes: usize,
     /// Blocks of 16 lanes.
     pub blocks: usize,
@@ -35,9 +35,9 @@ pub struct SkinningRow {
     pub blended: f64,
     /// Time of the yardstick (us).
     pub yardstick_us: f64,
-    /// Linear blending.
+    /// Time of linear blending.
     pub linear: Timing,
-    /// Dual quaternions.
+    /// Time of dual quaternions.
     pub dual: Timing,
 }
 
@@ -62,10 +62,10 @@ impl From<Skinning> for SkinningRow {
     }
 }
 
-/// The whole table.
+/// All measurements with the shapes that came out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SkinningTable {
-    /// The measurements.
+    /// One row a measurement.
     pub rows: Vec<SkinningRow>,
     /// Volumes and bulges.
     #[serde(flatten)]

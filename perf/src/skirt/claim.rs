@@ -32,12 +32,12 @@ impl Claim {
     }
 }
 
-/// One row.
+/// A target of one case and what was got.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct TargetRow {
-    /// The case.
+    /// Name of the case.
     pub case: String,
-    /// What is asked.
+    /// The target, in words.
     pub target: String,
     /// What was got, or why nothing was.
     pub got: String,

@@ -9,7 +9,7 @@ use toile_engine::workers::WorkerPoolError;
 /// Why the benchmark cannot run as asked.
 #[derive(Debug, Error)]
 pub enum SkirtError {
-    /// Not a grid.
+    /// A number of vertices that is no square.
     #[error("{verts} vertices do not make a square grid of at least 8 x 8; give 1024, 4096 or 16384, for example")]
     NotSquare {
         /// What was asked for.
@@ -18,7 +18,7 @@ pub enum SkirtError {
     /// Something that the engine cannot do.
     #[error("the cloth cannot do {option} yet; leave it out")]
     Unsupported {
-        /// The option.
+        /// Name of the option.
         option: &'static str,
     },
     /// A width that the processor lacks.
@@ -29,16 +29,16 @@ pub enum SkirtError {
         /// The most it has.
         widest: usize,
     },
-    /// The scene's mesh.
+    /// A mesh that cannot be cloth.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// The scene's body.
+    /// A body that the engine does not take.
     #[error(transparent)]
     Colliders(#[from] ColliderError),
-    /// The engine's workers.
+    /// The worker pool cannot be started.
     #[error(transparent)]
     WorkerPool(#[from] WorkerPoolError),
-    /// The yardstick's body.
+    /// The yardstick's body cannot be built.
     #[error(transparent)]
     Body(#[from] BodyError),
 }

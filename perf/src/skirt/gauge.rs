@@ -23,7 +23,7 @@ const LEGS: [[usize; 3]; 2] = [[5, 7, 9], [6, 8, 10]];
 pub struct FrameErrors {
     /// Mean of |l/l0 - 1| over warp and weft edges.
     pub strain_mean: f64,
-    /// Its 99th percentile.
+    /// 99th percentile of the strain (1).
     pub strain_p99: f64,
     /// The longest edge's l/l0 - 1.
     pub stretch_max: f64,
@@ -31,7 +31,7 @@ pub struct FrameErrors {
     pub compression_max: f64,
     /// Worst |l/l0 - 1| beyond what the weight that hangs on the edge stretches its thread by.
     pub beyond_max: f64,
-    /// Its mean.
+    /// Mean of the same over the edges.
     pub beyond_mean: f64,
     /// Deepest vertex inside the body (m).
     pub deepest: f32,

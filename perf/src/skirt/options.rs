@@ -10,7 +10,7 @@ use super::error::SkirtError;
 /// How the skirt is meshed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SkirtMesh {
-    /// Rows and columns.
+    /// A regular grid of rows and columns.
     #[default]
     Grid,
     /// As many vertices strewn at random, Delaunay triangles.

@@ -1,4 +1,4 @@
-//! What a run of the skirt has to say: time and error of the same steps.
+//! The report of a run of the skirt: time and error of the same steps.
 
 use std::collections::BTreeMap;
 
@@ -17,9 +17,9 @@ pub struct StepMicros {
     pub p50: f64,
     /// 99 % of all steps.
     pub p99: f64,
-    /// 99.9 %.
+    /// 99.9 % of all steps.
     pub p999: f64,
-    /// The longest.
+    /// The longest step.
     pub max: f64,
 }
 
@@ -70,7 +70,7 @@ impl From<BackendTimes> for Decision {
     }
 }
 
-/// One run, complete.
+/// Everything that one run measured.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct SkirtReport {
     /// Vertices of one skirt.
@@ -95,7 +95,7 @@ pub struct SkirtReport {
     pub substeps: u32,
     /// Steps before the first that counts.
     pub warm_up: usize,
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
     /// Steps of a run.
     pub steps: usize,

@@ -39,7 +39,7 @@ pub struct SkirtScene {
     pub spheres: Spheres,
     /// The bones at the end of the coming step; a hard case may change them.
     pub palette: [Affine3A; BONES],
-    /// Steps taken.
+    /// Steps taken so far.
     pub tick: u64,
     /// Bytes on the heap of the baked garment, and of the states of all skirts, where the program counts them.
     pub memory_bytes: Option<[u64; 2]>,
@@ -155,7 +155,7 @@ impl SkirtScene {
         done.expect("a share of the step panicked");
     }
 
-    /// What steps.
+    /// What steps the skirts: the device, or the processor.
     pub fn stepper(&self) -> &ClothStepper {
         &self.stepper
     }

@@ -17,7 +17,7 @@ use super::measure::measure_with;
 use super::options::{SkirtMesh, SkirtOptions};
 use super::report::SkirtReport;
 
-/// The whole table.
+/// All cases with their targets.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TargetTable {
     /// Targets that were met, and how many there are.
@@ -33,9 +33,9 @@ pub struct TargetTable {
 /// Figures and what they are of.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CaseFigures<T> {
-    /// The case.
+    /// Name of the case.
     pub case: String,
-    /// Its figures.
+    /// The figures of the case.
     #[serde(flatten)]
     pub figures: T,
 }
@@ -305,11 +305,11 @@ mod tests {
     fn every_row_is_there_whatever_fails() {
         // Nine vertices are no scene: every run is refused, and every row says so.
         let base = SkirtOptions { verts: 9, runs: 1, steps: 1, ..SkirtOptions::default() };
-        let mut said = 0;
+        let mut reported = 0;
         let mut maker = TableRun {
             base,
             heap: &HeapProbe::none(),
-            progress: &mut |_| said += 1,
+            progress: &mut |_| reported += 1,
             rows: Vec::new(),
             runs: Vec::new(),
             faults: Vec::new(),
@@ -319,6 +319,6 @@ mod tests {
         maker.faults();
         assert_eq!(maker.rows.len(), 6 + 2 + 7);
         assert!(maker.rows.iter().all(|r| !r.met && r.got.contains("9 vertices")), "{:#?}", maker.rows);
-        assert!(said > 0);
+        assert!(reported > 0);
     }
 }

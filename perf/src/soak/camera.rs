@@ -26,7 +26,7 @@ const DAY_NS: u64 = 86_400 * SECOND_NS;
 /// Where somebody else stands (m).
 const BESIDE_M: Vec3 = Vec3::new(0.7, 0.0, -0.4);
 
-/// The camera.
+/// A simulated camera that plays the scenario's visits, with its faults.
 #[derive(Debug)]
 pub struct Camera<C> {
     scenario: Arc<Scenario>,

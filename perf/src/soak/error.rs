@@ -1,4 +1,4 @@
-//! Why nothing can be soaked.
+//! Why a soak run cannot start.
 
 use thiserror::Error;
 use toile_engine::frame::FrameError;
@@ -19,12 +19,12 @@ pub enum SoakError {
     /// A shopper or a garment.
     #[error("scene {number} cannot be made: {reason}")]
     Scene {
-        /// Its number.
+        /// Number of the scene.
         number: u64,
-        /// Why.
+        /// Why it cannot be made.
         reason: String,
     },
-    /// A frame.
+    /// A frame that cannot be set up.
     #[error(transparent)]
     Frame(#[from] FrameError),
     /// The system gave no thread, or no file.

@@ -33,7 +33,7 @@ const PRESSURE_BYTES: usize = 64 << 20;
 
 /// A clock that can be made to jump ahead.
 pub trait JumpableClock: Clock {
-    /// Jumps (ns).
+    /// Jumps ahead by this much (ns).
     fn jump(&self, ns: u64);
 }
 
@@ -76,7 +76,7 @@ impl JumpableClock for JumpClock {
 /// A fault that is over, or was given up.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FaultOutcome {
-    /// What.
+    /// What kind of fault it was.
     pub kind: FaultKind,
     /// From its end to what shows that it is over (ns); none where nothing did.
     pub recovered_ns: Option<u64>,

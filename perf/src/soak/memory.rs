@@ -13,14 +13,14 @@ pub struct MemorySample {
     pub rss_kib: Option<u64>,
     /// Memory in use, by the program's allocator (KiB).
     pub heap_kib: Option<u64>,
-    /// Open files.
+    /// Number of open files.
     pub files: Option<u64>,
-    /// Threads.
+    /// Number of threads.
     pub threads: Option<u64>,
 }
 
 impl MemorySample {
-    /// Now.
+    /// What the process holds now, `hours` after the run began.
     pub fn take(hours: f64, heap: &HeapProbe) -> Self {
         let heap_kib = heap.read().map(|h| h.live_bytes.max(0) as u64 / 1024);
         let [rss_kib, threads] = status();

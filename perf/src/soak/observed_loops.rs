@@ -26,8 +26,8 @@ pub type Allocations = fn() -> u64;
 /// Observations that wait to be looked at: three seconds of all loops.
 pub const OBSERVATIONS: usize = 1_024;
 
-/// The name of the bound, as warnings give it.
-pub const OBSERVATIONS_NAME: &str = "OBSERVATIONS (perf/src/soak/observed_loops.rs)";
+/// Name of this capacity in reports and warnings.
+pub const OBSERVATIONS_NAME: &str = "OBSERVATIONS (queue of what the loops did)";
 
 /// Time between two looks of a dead renderer at whether it is to begin again (ns).
 const DEAD_NS: u64 = 5_000_000;
@@ -38,7 +38,7 @@ const SKIN_STEP: usize = 4;
 /// What a loop did.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Observation {
-    /// A step.
+    /// A step was taken.
     Step(ObservedStep),
     /// A picture was taken at a time, of a snapshot of another (ns).
     Picture([u64; 2]),
@@ -90,7 +90,7 @@ pub trait ObservedLoop: ThreadLoop {
 /// A loop under the scenario.
 #[derive(Debug)]
 pub struct ScriptedLoop<T, C> {
-    /// The loop.
+    /// The loop that is scripted.
     pub inner: T,
     /// Allocations in its turns.
     pub allocations: u64,
@@ -104,13 +104,13 @@ pub struct ScriptedLoop<T, C> {
 /// What every loop needs besides itself.
 #[derive(Debug, Clone)]
 pub struct RunContext<C> {
-    /// The scenario.
+    /// What happens in the run, and when.
     pub scenario: Arc<Scenario>,
     /// The loop's clock.
     pub clock: C,
     /// When the run begins (ns).
     pub origin_ns: u64,
-    /// Counts allocations.
+    /// Counter of allocations; none where they are not counted.
     pub count: Option<Allocations>,
 }
 
@@ -151,7 +151,7 @@ impl<S: FrameSource, C: Clock> ObservedLoop for SensorThread<S, C> {
 /// The physics, looked at behind each step.
 #[derive(Debug)]
 pub struct ObservedPhysics<C> {
-    /// The loop's own.
+    /// The physics loop that is observed.
     pub physics: PhysicsLoop<FrameScene, C, NoCounters>,
     scenario: Arc<Scenario>,
     origin_ns: u64,
@@ -164,7 +164,7 @@ pub struct ObservedPhysics<C> {
 }
 
 impl<C: Clock> ObservedPhysics<C> {
-    /// At load.
+    /// Observes this loop. Called at load: it allocates.
     pub fn new(physics: PhysicsLoop<FrameScene, C, NoCounters>, scenario: Arc<Scenario>, origin_ns: u64) -> Self {
         let troubles = physics.stepper.scene.troubles();
         let spoils = scenario.faults_of(FaultKind::ClothSpoilt).map(|f| origin_ns + f.from_ns).collect();
@@ -259,7 +259,7 @@ impl Renderer for CheckingRenderer {
 
 /// The render thread, which panics when the scenario says so.
 pub struct ObservedRender<C> {
-    /// The loop's own.
+    /// The render loop that is observed.
     pub render: RenderLoop<CheckingRenderer, C>,
     clock: C,
     panics: Box<[u64]>,
@@ -268,7 +268,7 @@ pub struct ObservedRender<C> {
 }
 
 impl<C: Clock + Clone> ObservedRender<C> {
-    /// At load.
+    /// Observes this loop. Called at load: it allocates.
     pub fn new(render: RenderLoop<CheckingRenderer, C>, context: &RunContext<C>) -> Self {
         let panics =
             context.scenario.faults_of(FaultKind::RenderPanic).map(|f| context.origin_ns + f.from_ns).collect();
@@ -312,7 +312,7 @@ impl<C: Clock + Clone> Restart for ScriptedLoop<ObservedRender<C>, C> {
 /// Whether the renderer runs, where there is no thread to ask.
 #[derive(Debug, Default)]
 pub struct RenderHealth {
-    /// It has died.
+    /// Whether the loop has panicked.
     pub dead: AtomicBool,
     /// It is to begin again.
     pub revive: AtomicBool,
@@ -328,7 +328,7 @@ pub struct RestartableRender<C> {
 }
 
 impl<C: Clock + Clone> RestartableRender<C> {
-    /// At load.
+    /// Makes this loop restartable. Called at load: it allocates.
     pub fn new(render: ScriptedLoop<ObservedRender<C>, C>, clock: C) -> Self {
         Self { render: Some(render), health: Arc::default(), clock }
     }

@@ -18,7 +18,7 @@ pub struct SoakPlan {
 /// How it is run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SoakOptions {
-    /// What is soaked.
+    /// Options of the run that a replay needs too.
     pub plan: SoakPlan,
     /// What the clock shows at the begin (h).
     pub uptime_hours: u64,
@@ -39,7 +39,7 @@ pub enum SceneWeight {
 }
 
 impl SceneWeight {
-    /// Both.
+    /// Both weights.
     pub const ALL: [Self; 2] = [Self::Light, Self::Full];
 
     /// Its name in options and reports.

@@ -22,12 +22,12 @@ const MOST_WAITING: usize = 1 << 20;
 #[derive(Debug)]
 pub struct RecorderLoop<C> {
     context: RunContext<C>,
-    black_box: Arc<FlightRecorder>,
+    flight_recorder: Arc<FlightRecorder>,
     /// Where the recording goes; none lets it go nowhere.
     file: Option<File>,
     waiting: Vec<u8>,
     ended: bool,
-    /// Steps.
+    /// Steps that were recorded.
     pub steps: u64,
     /// A hash over the hashes of their states.
     pub hash: u64,
@@ -42,12 +42,17 @@ pub struct RecorderLoop<C> {
 
 impl<C: Clock> RecorderLoop<C> {
     /// At load; the header is written at once.
-    pub fn new(context: RunContext<C>, black_box: Arc<FlightRecorder>, file: Option<File>, header: &[u8]) -> Self {
+    pub fn new(
+        context: RunContext<C>,
+        flight_recorder: Arc<FlightRecorder>,
+        file: Option<File>,
+        header: &[u8],
+    ) -> Self {
         let mut waiting = Vec::with_capacity(MOST_WAITING);
         waiting.extend(header);
         Self {
             context,
-            black_box,
+            flight_recorder,
             file,
             waiting,
             ended: false,
@@ -62,8 +67,8 @@ impl<C: Clock> RecorderLoop<C> {
 
     /// Takes what is there. For the end of a run too.
     pub fn look(&mut self) {
-        let black_box = self.black_box.clone();
-        black_box.drain(|entry| self.take(entry));
+        let flight_recorder = self.flight_recorder.clone();
+        flight_recorder.drain(|entry| self.take(entry));
         self.write();
     }
 

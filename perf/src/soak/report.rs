@@ -32,7 +32,7 @@ const WARM_UP: f64 = 0.25;
 /// What was checked.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SoakCheck {
-    /// What.
+    /// What is checked.
     pub name: &'static str,
     /// The most that passes.
     pub limit: f64,
@@ -51,7 +51,7 @@ impl SoakCheck {
 /// The faults of one kind.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FaultKindFigures {
-    /// Its name.
+    /// Name of the kind.
     pub name: &'static str,
     /// What shows that one is over.
     pub recovered_when: &'static str,
@@ -65,14 +65,14 @@ pub struct FaultKindFigures {
     pub max_ms: f64,
 }
 
-/// All faults.
+/// The faults of the run, in all and by kind.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FaultFigures {
     /// How many there were.
     pub injected: u64,
     /// How many of them were recovered.
     pub recovered: u64,
-    /// By kind.
+    /// Figures of each kind of fault.
     pub kinds: Vec<FaultKindFigures>,
 }
 
@@ -100,14 +100,14 @@ pub struct MemoryFigures {
     pub rss_growth_kib_h: Option<f64>,
     /// Most that was resident (KiB).
     pub rss_max_kib: Option<u64>,
-    /// All samples.
+    /// All samples, in time.
     pub samples: Vec<MemorySample>,
 }
 
 /// Everything that was found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Soak {
-    /// The seed.
+    /// Seed of the scenario.
     pub seed: u64,
     /// `light` or `full`.
     pub scene: SceneWeight,
@@ -123,9 +123,9 @@ pub struct Soak {
     pub wall_s: f64,
     /// Time of each step, everything included (us).
     pub us_per_step: f64,
-    /// Steps.
+    /// Steps that were taken.
     pub ticks: u64,
-    /// Shoppers.
+    /// Shoppers who came.
     pub visits: usize,
     /// Scenes that were handed over while the loop ran.
     pub changes: u64,
@@ -137,7 +137,7 @@ pub struct Soak {
     pub allocations: Option<u64>,
     /// Growth of resident memory behind the warm-up (KiB).
     pub rss_growth_kib: Option<f64>,
-    /// The faults.
+    /// Faults that were injected and how they ended.
     pub faults: FaultFigures,
     /// How long they took.
     pub recovery_ticks: RecoveryTicks,
@@ -153,9 +153,9 @@ pub struct Soak {
     pub frames: [u64; 3],
     /// Pictures, and times that the renderer was restarted.
     pub pictures: [u64; 2],
-    /// Memory.
+    /// Memory of the process.
     pub memory: MemoryFigures,
-    /// What was checked.
+    /// What was checked, and whether it held.
     pub checks: Vec<SoakCheck>,
     /// How full every queue was.
     pub capacities: Vec<QueueUse>,

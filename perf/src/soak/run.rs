@@ -46,7 +46,7 @@ const WATCH: Duration = Duration::from_millis(5);
 
 /// What the program lends to a run.
 pub struct SoakTools<'a> {
-    /// Reads the heap.
+    /// Reads how much of the heap is in use.
     pub heap: HeapProbe,
     /// Counts the allocations of the calling thread.
     pub count: Option<Allocations>,
@@ -66,7 +66,7 @@ pub struct SoakTools<'a> {
 pub struct SoakRun {
     /// What was to happen.
     pub scenario: Arc<Scenario>,
-    /// Steps.
+    /// Steps that were taken.
     pub steps: u64,
     /// Steps that were not published in their period, or dropped.
     pub missed: u64,
@@ -114,7 +114,7 @@ struct SoakLoops<C: Clock> {
     scenes: ScriptedLoop<SceneLoop<C>, C>,
     monitor: FaultMonitor<C>,
     queues: LoopQueues,
-    black_box: Arc<FlightRecorder>,
+    flight_recorder: Arc<FlightRecorder>,
     worker: Option<Placement>,
 }
 
@@ -164,13 +164,13 @@ impl<C: JumpableClock + Clone + Send> SoakLoops<C> {
         let Assembly { loops, queues, handover } = assembly;
         let mut stepping = ObservedPhysics::new(loops.physics, scenario, origin_ns);
         stepping.crash_at(tools.crash_ns.map(|ns| origin_ns + ns));
-        let black_box = Arc::new(FlightRecorder::new(tools.header.clone(), entries));
+        let flight_recorder = Arc::new(FlightRecorder::new(tools.header.clone(), entries));
         let file = tools.file.as_ref().map(File::try_clone).transpose()?;
-        let mut recorder = RecorderLoop::new(context.clone(), black_box.clone(), file, &tools.header);
+        let mut recorder = RecorderLoop::new(context.clone(), flight_recorder.clone(), file, &tools.header);
         let first = Entry::Changed { number: 0, afresh: true };
-        black_box.keep(&first);
+        flight_recorder.keep(&first);
         recorder.take(&first);
-        (tools.keep)(&black_box);
+        (tools.keep)(&flight_recorder);
         let mut observations = Vec::new();
         let mut queue = || {
             let (to, from) = bounded::<Observation>(OBSERVATIONS_NAME, OBSERVATIONS);
@@ -186,7 +186,7 @@ impl<C: JumpableClock + Clone + Send> SoakLoops<C> {
         let scenes = ScriptedLoop::new(scenes, FaultKind::SceneStall, &context, queue());
         let every = SAMPLE_NS[usize::from(options.real_time)];
         let monitor = FaultMonitor::new(context, observations, tools.heap, every);
-        Ok(Self { sensor, physics, render, recorder, scenes, monitor, queues, black_box, worker })
+        Ok(Self { sensor, physics, render, recorder, scenes, monitor, queues, flight_recorder, worker })
     }
 
     /// What they came to, once they have ended.
@@ -202,7 +202,7 @@ impl<C: JumpableClock + Clone + Send> SoakLoops<C> {
             lost: a.lost + b.lost,
             ..a
         });
-        let mut capacities = vec![self.queues.events.capacity(), self.black_box.capacity()];
+        let mut capacities = vec![self.queues.events.capacity(), self.flight_recorder.capacity()];
         capacities.extend(observations);
         let mut warnings: Vec<String> = capacities.iter().filter_map(Capacity::warning).collect();
         warnings.extend(self.recorder.inner.trouble.clone());
@@ -240,7 +240,7 @@ fn simulated(loops: SoakLoops<SimClock>, clock: &SimClock, options: &SoakOptions
         mut scenes,
         mut monitor,
         mut queues,
-        black_box,
+        flight_recorder,
         worker,
     } = loops;
     let mut restartable = RestartableRender::new(render, clock.clone());
@@ -256,7 +256,7 @@ fn simulated(loops: SoakLoops<SimClock>, clock: &SimClock, options: &SoakOptions
         (tools.progress)((until - monitor.context().origin_ns) / SECOND_NS);
     }
     let Some(render) = restartable.render else { unreachable!("it is taken only within a turn") };
-    SoakLoops { sensor, physics, render, recorder, scenes, monitor, queues, black_box, worker }.ended(Vec::new())
+    SoakLoops { sensor, physics, render, recorder, scenes, monitor, queues, flight_recorder, worker }.ended(Vec::new())
 }
 
 /// Empties the queues, whose readers in a kiosk do not run here.
@@ -294,7 +294,8 @@ fn beside<T: ThreadLoop + Send + 'static>(
 
 /// Each on its thread; the fault monitor on this one.
 fn real(loops: SoakLoops<JumpClock>, options: &SoakOptions, tools: &SoakTools<'_>) -> Result<SoakRun, SoakError> {
-    let SoakLoops { sensor, physics, render, recorder, scenes, mut monitor, mut queues, black_box, worker } = loops;
+    let SoakLoops { sensor, physics, render, recorder, scenes, mut monitor, mut queues, flight_recorder, worker } =
+        loops;
     let (clock, stop) = (monitor.context().clock.clone(), Stop::default());
     let mut threads = RunningLoop::start(Loops { sensor, physics, render }, clock.clone())?;
     let recorder = beside("record", recorder, clock.clone(), stop.clone())?;
@@ -324,6 +325,6 @@ fn real(loops: SoakLoops<JumpClock>, options: &SoakOptions, tools: &SoakTools<'_
     let render = render.ok_or(died("render"))?;
     let recorder = recorder.join().map_err(|_| died("recorder"))?;
     let scenes = scenes.join().map_err(|_| died("scene"))?;
-    let loops = SoakLoops { sensor, physics, render, recorder, scenes, monitor, queues, black_box, worker: None };
+    let loops = SoakLoops { sensor, physics, render, recorder, scenes, monitor, queues, flight_recorder, worker: None };
     Ok(loops.ended(placed))
 }

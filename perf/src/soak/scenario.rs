@@ -79,7 +79,7 @@ pub enum FaultKind {
 }
 
 impl FaultKind {
-    /// All of them.
+    /// Every kind, in the order of the report.
     pub const ALL: [Self; 20] = [
         Self::CameraLost,
         Self::Frozen,
@@ -191,11 +191,11 @@ impl RecoverySign {
 /// One fault, in time since the run's begin (ns).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fault {
-    /// What.
+    /// What kind of fault it is.
     pub kind: FaultKind,
-    /// When it begins.
+    /// When it begins (ns).
     pub from_ns: u64,
-    /// When it ends.
+    /// When it ends (ns).
     pub until_ns: u64,
 }
 
@@ -204,16 +204,16 @@ pub struct Fault {
 pub struct WornSize {
     /// Its name in the wardrobe.
     pub style: &'static str,
-    /// Its size.
+    /// Code of its size.
     pub size: String,
 }
 
 /// A shopper before the mirror, in time since the run's begin (ns).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Visit {
-    /// When they come.
+    /// When the shopper comes (ns).
     pub from_ns: u64,
-    /// When they go.
+    /// When the shopper goes (ns).
     pub until_ns: u64,
     /// Of which sex their body is.
     pub sex: Sex,
@@ -255,7 +255,7 @@ pub struct SceneRequest {
     pub afresh: bool,
 }
 
-/// All that happens.
+/// All visits and faults of a run, drawn from a seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
     /// What was asked for.

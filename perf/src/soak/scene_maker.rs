@@ -33,7 +33,7 @@ pub struct SceneMaker {
 }
 
 impl SceneMaker {
-    /// Of a scenario.
+    /// Makes the scenes of a scenario.
     pub fn new(scenario: Arc<Scenario>) -> Self {
         Self { scenario, last: None }
     }

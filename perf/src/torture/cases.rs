@@ -1,11 +1,11 @@
-//! Every case.
+//! The list of torture cases.
 
 use super::outcome::TrialFindings;
 use super::pieces::Pieces;
 use super::{elements, long_rest, poison, ratios, start, surround};
 use crate::random::CaseRandom;
 
-/// One case.
+/// A case: something that cloth must survive.
 #[derive(Debug, Clone, Copy)]
 pub struct TortureCase {
     /// Its name on the command line.

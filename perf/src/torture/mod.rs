@@ -1,4 +1,4 @@
-//! Torture: what no cloth ever meets, and how the engine takes it.
+//! Torture: states and inputs that no real cloth meets, and whether the engine recovers from them.
 //!
 //! Reads: the cases and a range of seeds. Writes: a [`TortureReport`]: one [`SeedOutcome`] a case and seed, one
 //! [`CaseSummary`] a case. Budget: three minutes for all cases at 100 seeds on two cores; never inside the frame.

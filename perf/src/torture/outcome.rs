@@ -81,9 +81,9 @@ impl TrialFindings {
 /// One seed of one case.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SeedOutcome {
-    /// The case.
+    /// Name of the case.
     pub name: &'static str,
-    /// The seed.
+    /// Seed of the trial.
     pub seed: u64,
     /// Positions and velocities published that were not finite, summed over the steps.
     pub nonfinite: u64,
@@ -99,7 +99,7 @@ pub struct SeedOutcome {
     pub hausdorff_mm: Option<f64>,
     /// Whether all was as it has to be.
     pub pass: bool,
-    /// What was not.
+    /// What was not as it has to be; none where all was.
     pub cause: Option<String>,
     /// Figures of the case's own.
     pub note: String,
@@ -139,11 +139,11 @@ impl SeedOutcome {
 /// All seeds of one case.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CaseSummary {
-    /// The case.
+    /// Name of the case.
     pub name: &'static str,
-    /// What is done.
+    /// What is done to the cloth.
     pub about: &'static str,
-    /// Seeds run.
+    /// Number of seeds that were run.
     pub seeds: usize,
     /// Seeds in which all was as it has to be.
     pub passed: usize,
@@ -187,7 +187,7 @@ impl CaseSummary {
 /// The body of `toile torture`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct TortureReport {
-    /// The quality's name.
+    /// Name of the quality.
     pub quality: &'static str,
     /// What stepped the cloth.
     pub stepped_by: SteppedBy,

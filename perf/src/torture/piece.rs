@@ -40,7 +40,7 @@ const SETTLE_STEPS: usize = 1_800;
 /// A garment, and where it rests.
 #[derive(Debug, Clone)]
 pub struct Piece {
-    /// The garment.
+    /// The garment that is tried.
     pub garment: Garment,
     /// The cloth at rest.
     pub settled: Cloth,

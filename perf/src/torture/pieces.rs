@@ -13,7 +13,7 @@ pub const TUBE_RADIUS_M: f32 = 0.07;
 /// The pieces that cases share.
 #[derive(Debug)]
 pub struct Pieces {
-    /// What steps them.
+    /// What steps them: the processor, or a graphics device.
     pub backends: Backends,
     /// How they are stepped.
     pub settings: Settings,

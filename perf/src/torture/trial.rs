@@ -42,11 +42,11 @@ pub struct TrialRecovery {
 /// A cloth among colliders.
 #[derive(Debug)]
 pub struct Trial<'a> {
-    /// The garment.
+    /// The garment that is tried.
     pub garment: &'a Garment,
-    /// Its state.
+    /// State of the garment.
     pub cloth: Cloth,
-    /// The colliders.
+    /// The colliders that it meets.
     pub colliders: Colliders,
     /// Where the spheres are said to be in the next step (m); where there are none of them, they follow the bones.
     pub spheres: Option<Vec<Vec4>>,
@@ -131,7 +131,7 @@ impl<'a> Trial<'a> {
         self.look();
     }
 
-    /// So many steps.
+    /// Takes so many steps.
     pub fn run(&mut self, steps: usize) {
         (0..steps).for_each(|_| self.step());
     }

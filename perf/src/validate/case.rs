@@ -67,7 +67,7 @@ pub struct ValidationCase {
     pub parameter: String,
     /// How it is meshed.
     pub mesh: &'static str,
-    /// Links along it.
+    /// Links along the mesh.
     pub resolution: usize,
     /// Unit of the figures.
     pub unit: &'static str,
@@ -77,14 +77,14 @@ pub struct ValidationCase {
     pub scale: Option<f64>,
     /// Largest error (%) at the quality `fine`; none where the row is only reported.
     pub target: Option<f64>,
-    /// Runs it.
+    /// Runs the case at a level of quality.
     pub run: RunCase,
 }
 
 /// One line of the table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ValidationRow {
-    /// The case.
+    /// Name of the case.
     pub name: &'static str,
     /// Which one of it.
     pub parameter: String,
@@ -92,7 +92,7 @@ pub struct ValidationRow {
     pub quality: &'static str,
     /// How it was meshed.
     pub mesh: &'static str,
-    /// Links along it.
+    /// Links along the mesh.
     pub resolution: usize,
     /// Substeps of a step.
     pub substeps: u32,

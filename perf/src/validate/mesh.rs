@@ -49,7 +49,7 @@ impl MeshStyle {
 /// How an end of a strip is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EndSupport {
-    /// Not at all.
+    /// The end is free.
     Free,
     /// In its place, at any angle: one fixed row.
     Pinned,
@@ -62,11 +62,11 @@ pub enum EndSupport {
 pub struct Strip {
     /// From the first row that counts to the last.
     pub length: f64,
-    /// Across.
+    /// Width across the strip.
     pub width: f64,
     /// Links along the length.
     pub rows: usize,
-    /// Links across.
+    /// Links across the strip.
     pub columns: usize,
     /// How it is meshed.
     pub style: MeshStyle,
@@ -242,7 +242,7 @@ pub struct CaseFabric {
     pub bias: Option<f64>,
     /// Rate at which motion is damped (1/s).
     pub damping: f64,
-    /// Friction (1).
+    /// Friction coefficient (1).
     pub friction: f64,
 }
 

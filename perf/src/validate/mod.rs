@@ -17,7 +17,7 @@ use toile_gpu::backend::Backends;
 /// How a case is run: the engine's settings, and what steps it.
 #[derive(Debug, Clone, Copy)]
 pub struct CaseSetup<'a> {
-    /// The settings.
+    /// Level of quality, which gives the engine's settings.
     pub level: Level,
     /// The processor, or a graphics device.
     pub backends: &'a Backends,
@@ -36,7 +36,7 @@ impl Level {
     /// The one that targets are for.
     pub const GATED: Self = Self::Production(Quality::Fine);
 
-    /// All of them.
+    /// Every level, from coarse to converged.
     pub const ALL: [Self; 4] = [
         Self::Production(Quality::Draft),
         Self::Production(Quality::Shop),

@@ -37,7 +37,7 @@ impl Default for ValidationOptions {
     }
 }
 
-/// The table.
+/// The table of validation: a row for each case.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ValidationReport {
     /// Rows in the order of the cases.

@@ -53,7 +53,7 @@ const REST_M: f64 = 2e-6;
 /// One stretch link of the garment, as the engine solves it.
 #[derive(Debug, Clone, Copy)]
 pub struct StretchLink {
-    /// Its particles.
+    /// Indices of its two particles.
     pub ends: [usize; 2],
     /// Length as cut (m).
     pub rest: f64,
@@ -63,9 +63,9 @@ pub struct StretchLink {
 
 /// One piece of cloth in the engine.
 pub struct Specimen {
-    /// What is stepped.
+    /// The baked cloth.
     pub garment: Garment,
-    /// Its state.
+    /// State of the garment.
     pub cloth: Cloth,
     /// How it is stepped.
     pub settings: Settings,
@@ -111,7 +111,7 @@ impl Specimen {
         })
     }
 
-    /// One step, timed.
+    /// Steps once and adds the time that it took.
     pub fn step(&mut self) {
         let Self { garment, cloth, settings, colliders, palette, times_ns, stepper, .. } = self;
         let steps = [Step { palette, colliders, settings }];
@@ -152,7 +152,7 @@ impl Specimen {
         (0..self.particle.len()).map(speed2).fold(0.0, f64::max).sqrt()
     }
 
-    /// Where everything is.
+    /// Positions of particles and solids now.
     pub fn seen(&self) -> Placement<'_> {
         let at = self.cloth.positions.iter().map(|p| p.as_dvec3()).collect();
         Placement { garment: &self.garment, particle: &self.particle, at }

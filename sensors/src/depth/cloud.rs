@@ -24,7 +24,7 @@ pub struct Cloud {
     pub validity: Vec<Validity>,
     /// Columns and rows within which all known pixels lie: first, and one beyond the last.
     pub columns: [u32; 2],
-    /// Rows, likewise.
+    /// Rows within which all known pixels lie: first, and one beyond the last.
     pub rows: [u32; 2],
 }
 

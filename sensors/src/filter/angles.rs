@@ -15,7 +15,7 @@ use crate::frame::Joints;
 /// Shortest bone that has a direction (m).
 const SHORTEST: f32 = 1e-3;
 
-/// The directions of all bones. The pelvis, and what hangs from nothing, stays where it is seen.
+/// The directions of all bones. The pelvis, and what has no parent, stays where it is seen.
 #[derive(Debug, Clone)]
 pub struct AngleFilter {
     /// Time constant (s).

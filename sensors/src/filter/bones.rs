@@ -1,4 +1,4 @@
-//! Bone lengths kept: a tracked bone wobbles by a tenth, a real one does not.
+//! Bone lengths kept constant: tracked ones vary by a tenth.
 //!
 //! Each bone's length is estimated while the session runs and the tracked bone is pulled to it along its own direction,
 //! from the pelvis outward, so that directions stay exactly as they were seen.
@@ -26,7 +26,7 @@ pub struct BoneLength {
     from: Option<Joint>,
     /// The estimate (m).
     length: f32,
-    /// Lengths seen.
+    /// Number of lengths that were taken in.
     count: u32,
 }
 

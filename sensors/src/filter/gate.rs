@@ -1,4 +1,4 @@
-//! What is believed: the confidence gate of the live filter, and confidence derived where a format has none.
+//! Which joints are believed: the confidence gate of the live filter, and confidence derived where a format has none.
 
 use glam::Vec3;
 use toile_assets::numeric::statistics::quantile_of;

@@ -55,7 +55,7 @@ impl Default for HoltSettings {
 pub struct Holt {
     /// Smoothed position (m).
     pub level: Vec3,
-    /// Velocity (m/s).
+    /// Velocity of the joint (m/s).
     pub trend: Vec3,
 }
 

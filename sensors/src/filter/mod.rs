@@ -39,7 +39,7 @@ pub trait Filter {
     fn reset(&mut self);
 }
 
-/// How to filter.
+/// Settings of the joint filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilterSettings {
     /// Smoothing of positions.

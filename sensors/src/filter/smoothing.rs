@@ -10,9 +10,9 @@ use super::one_euro::{OneEuro, OneEuroSettings};
 pub enum Smoothing {
     /// Positions as they are seen.
     None,
-    /// Double exponential.
+    /// Double exponential smoothing after Holt.
     Holt(HoltSettings),
-    /// One Euro.
+    /// One Euro filter: cuts off lower, the slower the joint moves.
     OneEuro(OneEuroSettings),
 }
 
@@ -28,7 +28,7 @@ impl Default for Smoothing {
 pub struct Smoother {
     /// Smoothed position (m).
     pub level: Vec3,
-    /// Velocity (m/s).
+    /// Velocity of the joint (m/s).
     pub trend: Vec3,
 }
 

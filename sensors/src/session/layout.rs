@@ -49,7 +49,7 @@ u8 left, u8 right      0 unknown, 1 open, 2 closed
 
 const DEPTH_HEADER: usize = 8 + 8 + 16 + 48;
 
-/// A joints message.
+/// The bytes of a message of joints.
 pub(super) fn encode_joints(frame: &Joints) -> Vec<u8> {
     let mut out = Vec::with_capacity(12 + 16 * JOINTS);
     out.extend(frame.time_ns.to_le_bytes());
@@ -111,7 +111,7 @@ pub(super) fn decode_hands(bytes: &[u8]) -> Result<(u64, [HandState; 2]), String
     Ok((time_ns, states.map(hand)))
 }
 
-/// A depth message.
+/// The bytes of a message of a depth image.
 pub(super) fn encode_depth(frame: &DepthFrame) -> Result<Vec<u8>, String> {
     let k = &frame.intrinsics;
     let mut out = Vec::with_capacity(DEPTH_HEADER + frame.depth_mm.len() / 4);

@@ -1,4 +1,4 @@
-//! A session read from MCAP bytes. What was cut off is lost and said; what is corrupt is refused.
+//! A session read from MCAP bytes. What was cut off is lost, with a note; what is corrupt is refused.
 
 use mcap::McapError;
 use mcap::records::{Metadata, Record, op};

@@ -1,4 +1,4 @@
-//! EBML (RFC 8794): the boxes within boxes that Matroska is written in, read in place. Every length is held against what
+//! EBML (RFC 8794): the nested elements of Matroska, read in place. Every length is checked against what
 //! there is; what a box claims beyond that is cut off.
 
 /// One box: its name, what it holds, and where that begins in the file.

@@ -14,15 +14,15 @@ const TABLE: &str = include_str!("../../data/joint_map.csv");
 /// A tracker's set of points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// Kinect v1.
+    /// Kinect v1: 20 joints.
     Kinect20,
-    /// Kinect v2.
+    /// Kinect v2: 25 joints.
     Kinect25,
     /// Azure Kinect body tracking (k4abt).
     Azure32,
-    /// Nuitrack.
+    /// Nuitrack's skeleton.
     Nuitrack,
-    /// MediaPipe (BlazePose).
+    /// MediaPipe's pose landmarks (BlazePose): 33 points.
     MediaPipe33,
     /// OpenPose, model BODY_25.
     OpenPose25,
@@ -31,7 +31,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// All of them.
+    /// Every format.
     pub const ALL: [Self; 7] = [
         Self::Kinect20,
         Self::Kinect25,
@@ -72,7 +72,7 @@ const VMC_COLUMN: usize = 8;
 /// Where a joint is among a tracker's points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
-    /// At a point.
+    /// The joint lies at a point of the tracker.
     Point(usize),
     /// In the middle of two.
     Middle(usize, usize),

@@ -1,4 +1,4 @@
-//! The way from a Kinect's camera space, v1 and v2, to our world.
+//! From the camera space of a Kinect, v1 or v2, to world coordinates.
 //!
 //! Camera space: x to the sensor's left, y up, z away from the sensor. A half turn about y makes the shopper, who
 //! faces the sensor, face +z; right-handed both.

@@ -306,10 +306,14 @@ fn checked(status: c_int, what: &str) -> Result<(), Fault> {
         return Ok(());
     }
     // SAFETY: the library gives a text that ends with a zero and lives as long as itself, or nothing.
-    let said = unsafe {
+    let message = unsafe {
         let text = oniGetExtendedError();
         if text.is_null() { String::new() } else { CStr::from_ptr(text).to_string_lossy().into_owned() }
     };
-    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
-    Err(Fault::new(Place::Whole, format!("{what} (OpenNI says {status}: {})", &said[..said.len().min(200)]), CURE))
+    let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
+    Err(Fault::new(
+        Place::Whole,
+        format!("{what} (OpenNI says {status}: {})", &message[..message.len().min(200)]),
+        CURE,
+    ))
 }

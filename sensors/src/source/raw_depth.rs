@@ -12,8 +12,8 @@ pub(super) const KINECT_V1_BYTES: u64 = 640 * 480 * 2;
 
 /// The camera that is assumed where none is given, and what is said of that.
 pub(super) fn assumed_camera(notes: &mut Vec<String>) -> Camera {
-    let said = "no camera was given: a Kinect v1 is assumed (640 x 480, f = 575.8 px, centred); sizes depend on it";
-    notes.push(said.to_owned());
+    let note = "no camera was given: a Kinect v1 is assumed (640 x 480, f = 575.8 px, centred); sizes depend on it";
+    notes.push(note.to_owned());
     Camera::pinhole(Intrinsics::KINECT_V1)
 }
 

@@ -146,7 +146,7 @@ fn place(depth: &mut [DepthFrame], posed: bool, notes: &mut Vec<String>) -> Resu
         depth.iter_mut().for_each(|f| f.camera_to_world = floor.pose());
         return centre(depth, |_| 0.0);
     }
-    let mut said = |low: f32| {
+    let mut floor_height = |low: f32| {
         if posed {
             notes.push(format!(
                 "the floor is put under the lowest points of the first image, at y = {low:.3} m of the camera's world"
@@ -158,7 +158,7 @@ fn place(depth: &mut [DepthFrame], posed: bool, notes: &mut Vec<String>) -> Resu
         ));
         0.0
     };
-    centre(depth, &mut said)
+    centre(depth, &mut floor_height)
 }
 
 /// Images in which the floor is sought.

@@ -1,4 +1,4 @@
-//! Times put right: from 0, strictly increasing, bursts merged.
+//! Times corrected: from 0, strictly increasing, bursts merged.
 
 use toile_assets::numeric::statistics::quantile_of;
 

@@ -176,7 +176,7 @@ pub fn png(width: u32, height: u32) -> Vec<u8> {
     out
 }
 
-/// A Matroska box.
+/// A Matroska element: id, size and content.
 fn element(id: &[u8], data: &[u8]) -> Vec<u8> {
     let length = (data.len() as u64 | 1 << 56).to_be_bytes();
     [id, &length, data].concat()

@@ -18,12 +18,12 @@ pub fn pause(_looks: u32) {
 pub struct Idle;
 
 impl Idle {
-    /// However long.
+    /// Ignores the time: a model has none.
     pub fn until(_awake: Duration) -> Self {
         Self
     }
 
-    /// Always.
+    /// True at once: a model has no time.
     pub fn is_over(&self, _looks: u32) -> bool {
         true
     }

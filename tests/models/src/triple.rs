@@ -19,14 +19,14 @@ struct Shared<T> {
 // SAFETY: the protocol gives each place to one side at a time; the model ends where it does not.
 unsafe impl<T: Send> Sync for Shared<T> {}
 
-/// The publishing end.
+/// The end that publishes values.
 pub struct Writer<T> {
     shared: Arc<Shared<T>>,
     mine: u8,
     order: Ordering,
 }
 
-/// The looking end.
+/// The end that reads the newest value.
 pub struct Reader<T> {
     shared: Arc<Shared<T>>,
     mine: u8,

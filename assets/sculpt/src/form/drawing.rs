@@ -158,7 +158,7 @@ impl Form {
         q - self.bow(q.x)
     }
 
-    /// Undoes [`Form::straightened`].
+    /// The inverse of [`Form::straightened`]: a point of the straight arm back on the bowed one (m).
     pub(crate) fn bent(&self, q: Vec3) -> Vec3 {
         self.arm_frame.out(q + self.bow(q.x))
     }
@@ -225,7 +225,7 @@ impl Form {
         self.foot.digit(k)
     }
 
-    /// The joints (m).
+    /// The skeleton whose joints the drawing has (m).
     pub(crate) fn skeleton(&self) -> Skeleton {
         use Joint::*;
         let j = &self.drawing.joints;

@@ -5,13 +5,13 @@
 pub enum Chart {
     /// Trunk and neck, from side to side.
     Front,
-    /// The same behind.
+    /// Back of the trunk and neck, from side to side.
     Back,
     /// Face and forehead.
     Face,
     /// Back and crown of the head.
     Nape,
-    /// An ear.
+    /// An ear; true is the right one.
     Ear(bool),
     /// Upper side of an arm, with the hand's back.
     ArmUpper(bool),
@@ -29,7 +29,7 @@ pub enum Chart {
 pub const CHARTS: usize = 16;
 
 impl Chart {
-    /// Its number, below [`CHARTS`].
+    /// Number of the chart, below [`CHARTS`].
     pub fn number(self) -> u8 {
         match self {
             Self::Front => 0,

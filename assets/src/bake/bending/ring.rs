@@ -192,7 +192,7 @@ pub const NO_POINT: usize = usize::MAX;
 
 /// A vertex and its neighbours in the plane.
 pub struct Ring {
-    /// The vertex.
+    /// Index of the vertex in the middle, in the shape.
     pub v: u32,
     /// Its neighbours, counter-clockwise, and where they lie (m).
     pub points: Vec<(u32, DVec2)>,

@@ -40,7 +40,7 @@ const LEAST_SHARE: f64 = 1e-6;
 /// A part of the curvature energy: rigidity (N m) times the square of a sum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurvatureTerm {
-    /// What it mainly measures.
+    /// Direction whose curvature it mainly measures.
     pub direction: Direction,
     /// Rigidity (N m).
     pub rigidity: f64,

@@ -5,7 +5,7 @@ use super::{Direction, Fiber};
 /// How many edges each kind of fiber covers, and how well the cloth hangs.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Coverage {
-    /// Edges in all.
+    /// Number of edges of the mesh.
     pub edges: usize,
     /// Edges in warp fibers of two edges or more.
     pub warp: usize,
@@ -15,7 +15,7 @@ pub struct Coverage {
     pub hoops: usize,
     /// Edges in bias fibers of two edges or more.
     pub bias: usize,
-    /// Edges alone.
+    /// Edges that lie in no fiber of two edges or more.
     pub loose: usize,
     /// Fibers of two edges or more: along warp, weft (hoops with them) and bias.
     pub fibers: [usize; 3],

@@ -11,7 +11,7 @@ use glam::Vec3;
 
 use super::{Direction, Edge, Fiber};
 
-/// No edge.
+/// Stands for no edge, where the index of an edge is expected.
 const NONE: u32 = u32::MAX;
 
 /// An edge joins a fiber of warp or weft while it leans by less than 45 degrees; a vertex that finds no such edge takes
@@ -110,7 +110,7 @@ impl<'a> FiberCandidates<'a> {
         if self.along(e) > 0.0 { edge.a } else { edge.b }
     }
 
-    /// Where it leads.
+    /// Vertex at which an edge ends, along the threads.
     fn head(&self, e: u32) -> u32 {
         let edge = &self.edges[e as usize];
         if self.along(e) > 0.0 { edge.b } else { edge.a }

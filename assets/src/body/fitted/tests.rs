@@ -224,11 +224,11 @@ fn out_of_range_is_refused_by_the_name_of_the_measure() {
 
 #[test]
 fn other_units_are_recognised_and_told() {
-    for (value, said) in
+    for (value, expected) in
         [(66.0, "as inches it would be 1.676 m"), (168.0, "as centimetres"), (1680.0, "as millimetres")]
     {
         let message = Body::fitted(Sex::Female, &Wanted::new().with(En::Stature, value)).unwrap_err().to_string();
-        assert!(message.contains(said) && message.ends_with("so give metres"), "{message}");
+        assert!(message.contains(expected) && message.ends_with("so give metres"), "{message}");
     }
     let message = Body::fitted(Sex::Male, &Wanted::new().with(En::Stature, -1.7)).unwrap_err().to_string();
     assert!(message.ends_with("check the measure and its unit"), "{message}");

@@ -1,4 +1,4 @@
-//! Weights over a file's joints become weights over our bones.
+//! Skin weights over a file's joints become weights over the engine's bones.
 //!
 //! Joints that are not ours hand their skin to the nearest one above them that is; fingers go with the knuckles. Where
 //! a limb is split for twist (Gultepe 2013, section 4.4.3) the skin between its ends is divided linearly between the

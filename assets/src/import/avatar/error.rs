@@ -18,13 +18,13 @@ pub enum Flaw {
     /// The file cannot be read.
     #[error("it cannot be read ({reason}); give the path of a readable file")]
     Read {
-        /// What the system says.
+        /// Error of the operating system.
         reason: String,
     },
     /// The file is larger than [`MAX_BODY_BYTES`].
     #[error("it has {bytes} bytes, more than the {MAX_BODY_BYTES} that are read; reduce its mesh and its pictures")]
     TooLarge {
-        /// Its size (bytes).
+        /// Size of the file (bytes).
         bytes: u64,
     },
     /// The text or the structure of the file; the reason holds the cure.
@@ -34,12 +34,12 @@ pub enum Flaw {
         reason: String,
     },
     /// No mesh has a skin.
-    #[error("it has no mesh that hangs on a skeleton; export the body with its armature, skinning included")]
+    #[error("it has no mesh that is bound to a skeleton; export the body with its armature, skinning included")]
     NoSkin,
     /// No mesh has the name that was asked for.
     #[error("it has no mesh named {name}, only {known}; name one of these, or none to take them all")]
     NoMesh {
-        /// The name.
+        /// Name that was asked for.
         name: String,
         /// The names that there are.
         known: String,
@@ -60,10 +60,10 @@ pub enum Flaw {
     },
     /// A weight for a joint that the skin lacks.
     #[error(
-        "vertex {vertex} (from 0 over all skinned parts) hangs on joint {joint}, but its skin has {joints}; bind the mesh to its armature again"
+        "vertex {vertex} (from 0 over all skinned parts) is bound to joint {joint}, but its skin has {joints}; bind the mesh to its armature again"
     )]
     JointRange {
-        /// The vertex.
+        /// Index of the vertex, from 0.
         vertex: usize,
         /// The joint that it names.
         joint: u32,
@@ -75,9 +75,9 @@ pub enum Flaw {
         "the weights of vertex {vertex} (from 0 over all skinned parts) sum to {sum} instead of 1; normalise all weights before exporting"
     )]
     WeightSum {
-        /// The vertex.
+        /// Index of the vertex, from 0.
         vertex: usize,
-        /// Their sum.
+        /// Sum of its weights; 1 is right.
         sum: f32,
     },
     /// A weight outside of 0 to 1.
@@ -85,33 +85,33 @@ pub enum Flaw {
         "vertex {vertex} (from 0 over all skinned parts) has the weight {weight}; weights lie between 0 and 1, so normalise them"
     )]
     Weight {
-        /// The vertex.
+        /// Index of the vertex, from 0.
         vertex: usize,
-        /// The weight.
+        /// The weight found; 0 to 1 is right.
         weight: f32,
     },
     /// A node that is its own ancestor.
     #[error("node \"{node}\" is below itself; make the armature a tree and export it again")]
     Cycle {
-        /// Its name.
+        /// Name of the node.
         node: String,
     },
     /// A node with two parents.
-    #[error("node \"{node}\" hangs from two parents; make the armature a tree and export it again")]
+    #[error("node \"{node}\" has two parents; make the armature a tree and export it again")]
     TwoParents {
-        /// Its name.
+        /// Name of the node.
         node: String,
     },
     /// A node whose scale is negative.
     #[error("node \"{node}\" is mirrored by a negative scale; apply scales to the armature before exporting")]
     Mirrored {
-        /// Its name.
+        /// Name of the node.
         node: String,
     },
     /// A node whose scale is 0.
     #[error("node \"{node}\" is scaled to nothing; apply scales to the armature before exporting")]
     Flat {
-        /// Its name.
+        /// Name of the node.
         node: String,
     },
     /// A bind matrix that cannot be inverted.
@@ -131,18 +131,20 @@ pub enum Flaw {
         /// The naming that the file's names are most like.
         dialect: &'static str,
     },
-    /// A joint that does not hang below the hips.
-    #[error("joint \"{joint}\" has no way up to the hips, so there are several roots; hang every bone below the hips")]
+    /// A joint that is no descendant of the hips.
+    #[error(
+        "joint \"{joint}\" has no way up to the hips, so there are several roots; make every bone a descendant of the hips"
+    )]
     Roots {
-        /// Its name.
+        /// Name of the joint.
         joint: String,
     },
-    /// A joint that hangs from another than in a body.
-    #[error("joint \"{joint}\" hangs from \"{parent}\", where no body has it; check the names of both")]
+    /// A joint whose parent is another than in a body.
+    #[error("the parent of joint \"{joint}\" is \"{parent}\", as in no body; check the names of both")]
     Chain {
-        /// Its name.
+        /// Name of the joint.
         joint: String,
-        /// The name of what it hangs from.
+        /// Name of its parent.
         parent: String,
     },
     /// A body that does not stand along an axis.
@@ -150,9 +152,9 @@ pub enum Flaw {
     Leaning {
         /// From the hips to the head, along x (1).
         x: f32,
-        /// Along y (1).
+        /// The same direction, along y (1).
         y: f32,
-        /// Along z (1).
+        /// The same direction, along z (1).
         z: f32,
     },
     /// Left and right are swapped.
@@ -175,23 +177,23 @@ pub enum Flaw {
     Hole {
         /// Open edges outside of the head.
         count: usize,
-        /// Where it is (m).
+        /// Coordinate x of the place (m).
         x: f32,
-        /// Where it is (m).
+        /// Coordinate y of the place (m).
         y: f32,
-        /// Where it is (m).
+        /// Coordinate z of the place (m).
         z: f32,
     },
     /// A level of the body that is not on the mesh.
-    #[error("no {level} can be found on the trunk; check that the mesh is a body and hangs on the joints named for it")]
+    #[error("no {level} can be found on the trunk; check that the mesh is a body and bound to the joints named for it")]
     Level {
-        /// Its name.
+        /// Name of the level, such as the waist.
         level: &'static str,
     },
     /// A target that the folder lacks.
     #[error("there is no target named {name}; name one of the folder's *.target.gz files")]
     NoTarget {
-        /// Its name.
+        /// Name of the target that was asked for.
         name: String,
     },
 }

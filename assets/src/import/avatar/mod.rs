@@ -53,20 +53,20 @@ impl Default for ImportOptions {
 pub struct ImportedBody {
     /// The body in its rest pose: metres, y up, facing +z, the floor at y = 0.
     pub body: Body,
-    /// What was found.
+    /// What was found in the file and how it was taken.
     pub report: ImportReport,
 }
 
 /// What was found in a file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ImportReport {
-    /// How its joints are named.
+    /// Dialect of its joints' names.
     pub dialect: &'static str,
     /// For each of our joints that was found: its H-Anim name, and the file's own.
     pub joints: Vec<(String, String)>,
-    /// What pruning the weights cost.
+    /// Weight lost by pruning influences.
     pub pruned: PruningLoss,
-    /// Pieces of the surface that hang together.
+    /// Connected pieces of the surface.
     pub parts: usize,
     /// Edges with a triangle on one side alone.
     pub boundary_edges: usize,

@@ -1,4 +1,4 @@
-//! What others call our joints: one table a dialect, the first name of each joint its place, all of them its skin.
+//! Names of joints in other tools: one table a dialect. The first name of each joint gives its place, all of them its skin weights.
 //!
 //! Standards: ISO/IEC 19774 (H-Anim) versions 1 and 2, VRM 0.x and 1.0 humanoid; habits: Mixamo and the FBX rigs named
 //! alike, Unreal (also MakeHuman's game engine rig), MakeHuman's CMU rig, and the BVH files of the CMU database.
@@ -8,7 +8,7 @@ use crate::skeleton::{JOINTS, Joint};
 /// How one family of tools names the joints.
 #[derive(Debug)]
 pub struct NamingDialect {
-    /// What the family is called.
+    /// Name of the dialect.
     pub title: &'static str,
     /// Names of each joint, in the order of [`Joint::ALL`]; `@` stands for the side and is filled in by `sides`.
     names: [&'static [&'static str]; CENTRE + ONE_SIDE],
@@ -214,7 +214,7 @@ fn plain(name: &str) -> String {
 /// The joints that names mean, in the dialect that knows the most of the needed ones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedJoints {
-    /// The dialect.
+    /// Name of the dialect: whose names the joints bear, such as Mixamo's.
     pub dialect: &'static str,
     /// The joint that each name means `[names]`; several may mean the same one.
     pub joints: Vec<Option<Joint>>,

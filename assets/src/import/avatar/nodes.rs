@@ -45,9 +45,9 @@ impl GltfNodes {
                 }
             }
         }
-        let mut said = vec![None; nodes.len()];
+        let mut humanoid_names = vec![None; nodes.len()];
         for (node, bone) in humanoid(json) {
-            if let Some(to) = said.get_mut(node) {
+            if let Some(to) = humanoid_names.get_mut(node) {
                 *to = Some(bone);
             }
         }
@@ -55,7 +55,7 @@ impl GltfNodes {
         if let Some(i) = local.iter().position(|m| !m.is_finite()) {
             return Err(Flaw::NotFinite { what: "the transform of node", index: i });
         }
-        let mut nodes = Self { names, humanoid: said, parents, global: local.clone(), local };
+        let mut nodes = Self { names, humanoid: humanoid_names, parents, global: local.clone(), local };
         nodes.settle()?;
         Ok(nodes)
     }

@@ -16,9 +16,9 @@ pub(crate) struct RawInfluences(pub [(u16, f32); IMPORT_INFLUENCES]);
 /// A joint, or what is above one.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RawJoint {
-    /// Its own name.
+    /// Name of the joint in the file.
     pub name: String,
-    /// What it hangs from.
+    /// Index of its parent, where it has one.
     pub parent: Option<usize>,
     /// Where it stands in the rest pose, in the file's unit and axes.
     pub at: Vec3,
@@ -27,11 +27,11 @@ pub(crate) struct RawJoint {
 /// A body in its file's unit and axes.
 #[derive(Debug, Clone)]
 pub(crate) struct RawBody {
-    /// `[vertices]`.
+    /// Vertex positions, in the file's unit `[vertices]`.
     pub positions: Vec<Vec3>,
     /// Unit normals `[vertices]`, zero where the file has none.
     pub normals: Vec<Vec3>,
-    /// `[vertices]`.
+    /// Texture coordinates `[vertices]`.
     pub uvs: Vec<Vec2>,
     /// Whether any part of it has texture coordinates.
     pub has_uvs: bool,
@@ -41,7 +41,7 @@ pub(crate) struct RawBody {
     pub joints: Vec<RawJoint>,
     /// What the names of the joints mean.
     pub reading: NamedJoints,
-    /// `[vertices]`.
+    /// Joints and weights of each vertex `[vertices]`.
     pub influences: Vec<RawInfluences>,
     /// What was found and how it was taken, one sentence each.
     pub notes: Vec<String>,

@@ -63,7 +63,7 @@ fn place(raw: &RawBody, joint: Joint) -> Vec3 {
     raw.reading.places[joint.index()].map_or(Vec3::ZERO, |k| raw.joints[k].at)
 }
 
-/// Checks that the needed joints are there and that all hang together as in our skeleton.
+/// Checks that the needed joints are there and connected as in our skeleton.
 fn check_joints(raw: &RawBody) -> Result<(), Flaw> {
     let places = &raw.reading.places;
     let missing: Vec<String> =

@@ -1,4 +1,4 @@
-//! The skinned meshes of a glTF file in their bind pose, and the joints that they hang on.
+//! The skinned meshes of a glTF file in their bind pose, and the joints that they are bound to.
 //!
 //! A skin's inverse bind matrices say where each joint stood when the mesh was bound: `inverse(B)` is that place in the
 //! mesh's own space, and `J B`, with `J` the joint's place in the scene, carries the mesh from its space to the scene
@@ -94,7 +94,7 @@ fn shown(json: &Value, wanted: &[String]) -> Result<Vec<SkinnedNode>, Flaw> {
     }
 }
 
-/// Meshes that hang on no skeleton.
+/// Meshes that are bound to no skeleton.
 fn left_out(json: &Value) -> usize {
     list(&json["nodes"]).iter().filter(|n| index(&n["mesh"]).is_some() && index(&n["skin"]).is_none()).count()
 }

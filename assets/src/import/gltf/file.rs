@@ -23,7 +23,7 @@ const COMPRESSIONS: [&str; 2] = ["KHR_draco_mesh_compression", "EXT_meshopt_comp
 
 /// An opened file.
 pub(crate) struct GltfFile {
-    /// The whole description.
+    /// The JSON of the file.
     pub json: Value,
     buffers: Vec<Vec<u8>>,
 }
@@ -278,10 +278,10 @@ mod tests {
 
     #[test]
     fn huge_counts_are_errors_before_they_are_memory() {
-        for (view, said) in [("", "no data"), (r#""bufferView": 0, "#, "shorter")] {
+        for (view, expected) in [("", "no data"), (r#""bufferView": 0, "#, "shorter")] {
             let mut file = sparse(0, view);
             file.json["accessors"][0]["count"] = 4_000_000_000_000_u64.into();
-            assert!(file.floats::<1>(0).unwrap_err().contains(said));
+            assert!(file.floats::<1>(0).unwrap_err().contains(expected));
         }
     }
 

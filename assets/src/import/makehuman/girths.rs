@@ -17,7 +17,7 @@ use crate::import::avatar::Flaw;
 pub struct MakehumanGirths {
     /// Sole to crown, over the body's own vertices.
     pub height: f32,
-    /// Around the neck.
+    /// Neck girth.
     pub neck: f32,
     /// Around the bust.
     pub bust: f32,

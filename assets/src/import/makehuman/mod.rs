@@ -141,7 +141,7 @@ fn influences(path: &Path, joints: &[RawJoint]) -> Result<Vec<RawInfluences>, Av
             }
             if used[vertex] == IMPORT_INFLUENCES {
                 return Err(wrong(format!(
-                    "vertex {vertex} hangs on more than {IMPORT_INFLUENCES} bones; limit them to that"
+                    "vertex {vertex} has weights for more than {IMPORT_INFLUENCES} bones; limit them to that"
                 )));
             }
             out[vertex].0[used[vertex]] = (joint as u16, weight);

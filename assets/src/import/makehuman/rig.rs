@@ -48,7 +48,7 @@ pub(super) fn joints(path: &Path, base: &MakehumanMesh) -> Result<Vec<RawJoint>,
     let joint = |(name, bone): (&String, &Value)| {
         let parent = match bone["parent"].as_str().filter(|p| !p.is_empty()) {
             Some(parent) => Some(names.iter().position(|n| *n == parent).ok_or(format!(
-                "bone \"{name}\" hangs from \"{parent}\", which is not there; use MakeHuman's own file"
+                "the parent of bone \"{name}\", \"{parent}\", is not there; use MakeHuman's own file"
             ))?),
             None => None,
         };

@@ -99,12 +99,12 @@ fn the_same_files_give_the_same_bits() {
 #[test]
 fn what_is_missing_is_named() {
     let Some(folder) = folder() else { return };
-    let said = |choice: &MakehumanOptions| read(&folder, choice, &ImportOptions::default()).unwrap_err().to_string();
-    assert!(said(&with(&[("no-such-target", 1.0)])).contains("no target named no-such-target"));
-    assert!(said(&with(&[("../hm08", 1.0)])).contains("no target named"));
-    assert!(said(&MakehumanOptions { rig: "../x".into(), ..MakehumanOptions::default() }).contains("rig"));
+    let message = |choice: &MakehumanOptions| read(&folder, choice, &ImportOptions::default()).unwrap_err().to_string();
+    assert!(message(&with(&[("no-such-target", 1.0)])).contains("no target named no-such-target"));
+    assert!(message(&with(&[("../hm08", 1.0)])).contains("no target named"));
+    assert!(message(&MakehumanOptions { rig: "../x".into(), ..MakehumanOptions::default() }).contains("rig"));
     assert!(
-        said(&MakehumanOptions { rig: "default".into(), ..MakehumanOptions::default() })
+        message(&MakehumanOptions { rig: "default".into(), ..MakehumanOptions::default() })
             .contains("weights.default.json.gz")
     );
 }

@@ -13,7 +13,7 @@ pub struct Page {
     pub text: Vec<u8>,
 }
 
-/// What an exit code says.
+/// Meaning of each exit code.
 const CODES: [(Code, &str); 7] = [
     (Code::Ok, "The work was done."),
     (Code::Usage, "The command line was not understood."),
@@ -146,8 +146,8 @@ fn with_values_in_words(arg: Arg) -> Arg {
 
 fn exit_status(roff: &mut Roff, more: &[Code]) {
     roff.control("SH", ["EXIT STATUS"]);
-    for (code, says) in CODES.iter().filter(|(code, _)| COMMON.contains(code) || more.contains(code)) {
-        roff.control("TP", []).text([bold((*code as u8).to_string())]).text([roman(*says)]);
+    for (code, meaning) in CODES.iter().filter(|(code, _)| COMMON.contains(code) || more.contains(code)) {
+        roff.control("TP", []).text([bold((*code as u8).to_string())]).text([roman(*meaning)]);
     }
 }
 
@@ -155,8 +155,8 @@ fn files(roff: &mut Roff, files: &[(&str, &str)]) {
     if !files.is_empty() {
         roff.control("SH", ["FILES"]);
     }
-    for (file, says) in files {
-        roff.control("TP", []).text([bold(*file)]).text([roman(*says)]);
+    for (file, meaning) in files {
+        roff.control("TP", []).text([bold(*file)]).text([roman(*meaning)]);
     }
 }
 

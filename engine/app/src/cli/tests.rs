@@ -66,9 +66,9 @@ fn a_wrong_line_gives_one_sentence_with_its_cure() {
     for line in lines {
         let error = parsed(line).unwrap_err();
         assert!(matches!(error, AppError::Usage(_)), "{line}");
-        let said = error.to_string();
-        assert!(said.contains("--help`") && !said.contains('\n'), "{said}");
+        let message = error.to_string();
+        assert!(message.contains("--help`") && !message.contains('\n'), "{message}");
     }
-    let said = parsed("toile --garmet x").unwrap_err().to_string();
-    assert!(said.contains("--garmet") && said.contains("'--garment'"), "{said}");
+    let message = parsed("toile --garmet x").unwrap_err().to_string();
+    assert!(message.contains("--garmet") && message.contains("'--garment'"), "{message}");
 }

@@ -1,4 +1,4 @@
-//! `toile bake`: what a garment's mesh becomes, and what gives reason to worry.
+//! `toile bake`: what a garment's mesh becomes, and warnings about it.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -53,11 +53,11 @@ const FABRIC_FILE: FileKind = FileKind { name: "a fabric file", max_bytes: 1 << 
 pub struct BakeReport {
     /// The garment, or the file of the mesh.
     pub garment: String,
-    /// Its size.
+    /// Code of the size.
     pub size: String,
-    /// Its fabric.
+    /// Name of the fabric.
     pub fabric: String,
-    /// Vertices.
+    /// Vertices of the mesh.
     pub vertices: usize,
     /// Triangles; a quad counts as two.
     pub triangles: usize,
@@ -73,7 +73,7 @@ pub struct BakeReport {
     pub solvers: Vec<SolverCounts>,
     /// Sets in which the constraints are solved.
     pub sets: SetCounts,
-    /// Tethers.
+    /// Tethers of the garment.
     pub tethers: usize,
     /// Bending stencils by direction.
     pub stencils: StencilCounts,
@@ -85,35 +85,35 @@ pub struct BakeReport {
     pub substeps: u32,
     /// What is likely to look or to run worse than it could.
     pub warnings: Vec<String>,
-    /// What else is worth knowing.
+    /// Remarks that are no warnings, one sentence each.
     pub notes: Vec<String>,
 }
 
 /// Edges by what covers them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct EdgeCounts {
-    /// All of them.
+    /// All edges of the mesh.
     pub all: usize,
     /// In fibers down the warp.
     pub warp: usize,
     /// In open fibers along the weft.
     pub weft: usize,
-    /// In closed hoops.
+    /// In closed hoops of weft.
     pub hoops: usize,
     /// In fibers along the bias.
     pub bias: usize,
-    /// Alone.
+    /// In no fiber of two edges or more.
     pub loose: usize,
 }
 
 /// Fibers by direction.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct FiberCounts {
-    /// Down the warp.
+    /// Fibers along the warp.
     pub warp: usize,
     /// Along the weft, open or closed.
     pub weft: usize,
-    /// Along the bias.
+    /// Fibers along the bias.
     pub bias: usize,
     /// Edges of the longest.
     pub longest: usize,
@@ -139,7 +139,7 @@ pub struct SolverCounts {
     pub solver: &'static str,
     /// Fibers; edges alone count as one each.
     pub fibers: usize,
-    /// Their edges.
+    /// Edges of these fibers.
     pub edges: usize,
 }
 
@@ -148,28 +148,28 @@ pub struct SolverCounts {
 pub struct SetCounts {
     /// Families of fibers along the bias that are solved directly.
     pub diagonals: usize,
-    /// Their edges.
+    /// Edges of these families.
     pub diagonal_edges: usize,
     /// Of links along the bias that lie in none.
     pub shear: usize,
-    /// Their edges.
+    /// Edges of these links.
     pub shear_edges: usize,
-    /// Of links along the weft.
+    /// Sets of links along the weft.
     pub weft: usize,
     /// Bundles of fibers side by side.
     pub bundles: usize,
-    /// Of fibers by index list.
+    /// Sets of fibers by index list.
     pub crossing: usize,
 }
 
 /// Bending stencils by direction.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct StencilCounts {
-    /// Along the warp.
+    /// Stencils along the warp.
     pub warp: usize,
-    /// Along the weft.
+    /// Stencils along the weft.
     pub weft: usize,
-    /// Along the bias.
+    /// Stencils along the bias.
     pub bias: usize,
 }
 
@@ -361,8 +361,8 @@ mod tests {
             let wrong = report.warnings.iter().find(|w| !(w.contains("needles") || w.contains("mm long")));
             assert_eq!(wrong, None, "{name}");
             let text = summary(&report, Paint::none());
-            for said in [name, "vertices", "down the warp", "semi-implicit", "tethers", "substeps"] {
-                assert!(text.contains(said), "{said} is not in: {text}");
+            for expected in [name, "vertices", "down the warp", "semi-implicit", "tethers", "substeps"] {
+                assert!(text.contains(expected), "{expected} is not in: {text}");
             }
         }
     }

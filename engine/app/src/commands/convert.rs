@@ -56,7 +56,7 @@ pub enum KeptDepth {
     None,
     /// The shopper's pixels alone; frames without one are empty.
     Shopper,
-    /// Whole images.
+    /// The whole image of every frame.
     All,
 }
 

@@ -60,10 +60,10 @@ pub struct KioskArgs {
     pub printing: Printing,
 }
 
-/// Reads `540x960`.
-fn windowed(said: &str) -> Result<[u32; 2], String> {
+/// Reads the size of a window (pixels) such as `540x960`.
+fn windowed(given: &str) -> Result<[u32; 2], String> {
     let side = |text: &str| text.parse::<u32>().ok().filter(|n| WINDOW.contains(n));
-    let size = said.split_once('x').and_then(|(w, h)| Some([side(w)?, side(h)?]));
+    let size = given.split_once('x').and_then(|(w, h)| Some([side(w)?, side(h)?]));
     size.ok_or_else(|| {
         format!("give two numbers of pixels from {} to {}, for example 540x960", WINDOW.start(), WINDOW.end())
     })
@@ -79,7 +79,7 @@ pub fn run(args: &KioskArgs) -> Result<(), AppError> {
         return terminal::print(toile_kiosk::EXAMPLE_CONFIG);
     }
     let words = Words::new(args.printing.quiet);
-    let report = toile_kiosk::run(&options(args), begun, &|line| words.say(line))?;
+    let report = toile_kiosk::run(&options(args), begun, &|line| words.print_line(line))?;
     if args.printing.json {
         terminal::print_json(&Document::new("kiosk", report))
     } else {

@@ -76,7 +76,7 @@ pub struct LatencyArgs {
 }
 
 impl LatencyArgs {
-    /// What the loop runs under.
+    /// Options of the run.
     fn options(&self) -> LatencyOptions {
         let load = match self.load {
             None => 0,
@@ -90,9 +90,9 @@ impl LatencyArgs {
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LatencyReport {
-    /// What was run.
+    /// The scene that was run.
     pub scene: Recipe,
-    /// What was found.
+    /// The figures that were measured.
     #[serde(flatten)]
     pub found: Latency,
     /// The files written.
@@ -122,15 +122,15 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     // Only now: a helper with a real-time priority shares its core with nobody who waits for it.
     let (crew, worker) = threads::worker_pool(args.workers.count()).map_err(AppError::input)?;
     let options = args.options();
-    words.say(&format!("running for {} s, with {} threads of load", options.seconds, options.load));
+    words.print_line(&format!("running for {} s, with {} threads of load", options.seconds, options.load));
     let mut bytes = recording::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
-    let (black_box, recording) = crash::record(bytes.clone(), crash_file);
+    let (flight_recorder, recording) = crash::record(bytes.clone(), crash_file);
     let dressed = Entry::Dressed(*first);
-    black_box.keep(&dressed);
+    flight_recorder.keep(&dressed);
     recording::write(&dressed, &mut bytes);
     let (mut begun, recorded) = (None, args.record.is_some());
     let empty = || {
-        black_box.drain(|entry| {
+        flight_recorder.drain(|entry| {
             if recorded {
                 recording::write(entry, &mut bytes);
             }
@@ -138,7 +138,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
         let begun: Instant = *begun.get_or_insert_with(Instant::now);
         let crashes = args.crash.after_s.is_some_and(|s| begun.elapsed() >= Duration::from_secs(s));
         assert!(!crashes, "the crash that --crash-after asked for");
-        black_box.capacity()
+        flight_recorder.capacity()
     };
     let loop_inputs =
         LatencyInputs { frame: frame.with_workers(crew), reader, joints: &session.joints[from..], worker, recording };
@@ -200,8 +200,8 @@ fn table(report: &LatencyReport, paint: Paint) -> String {
     lines.push(format!("  steps on each rung of quality: {:?}", q.rungs));
     for goal in &found.goals {
         let (word, tone) = if goal.pass { ("kept", Tone::Good) } else { ("missed", Tone::Warn) };
-        let said = format!("  {word:<7} {} <= {:.0} us: {:.0} us", goal.name, goal.limit_us, goal.us);
-        lines.push(paint.tone(&said, tone).into_owned());
+        let sentence = format!("  {word:<7} {} <= {:.0} us: {:.0} us", goal.name, goal.limit_us, goal.us);
+        lines.push(paint.tone(&sentence, tone).into_owned());
     }
     lines.extend(found.warnings.iter().map(|w| paint.tone(&format!("  {w}"), Tone::Warn).into_owned()));
     lines.extend(report.files.iter().map(|f| format!("  {}", f.display())));

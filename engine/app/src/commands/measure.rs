@@ -14,7 +14,7 @@ use crate::output::{Inputs, OutputFolder};
 use crate::overlay::{Fit, overlay};
 use crate::pictures::write_png;
 use crate::report::measures::in_mm;
-use crate::report::{self, DefinedMeasure, Document, FittedBody, MeasureReport, Method};
+use crate::report::{self, DefinedMeasure, Document, FittedBody, MeasureReport, MethodMeasures};
 use crate::summary;
 use crate::terminal::{self, Paint};
 
@@ -46,8 +46,8 @@ pub fn run(args: &MeasureArgs) -> Result<(), AppError> {
     let session = session::open(Some(&args.file), args.camera.as_deref())?;
     let out = args.out.as_deref().map(OutputFolder::prepare).transpose().map_err(AppError::input)?;
     let mut out = out.map(|out| out.sparing(Inputs::new(args.camera.iter().chain([&args.file]))));
-    let told = ShopperFacts { clothed: !args.tight, ..ShopperFacts::default() };
-    let measured = measured::measure(&session, told)?;
+    let facts = ShopperFacts { clothed: !args.tight, ..ShopperFacts::default() };
+    let measured = measured::measure(&session, facts)?;
     let mut files: Vec<PathBuf> = Vec::new();
     if let (Some(out), Some(fitted)) = (&mut out, &measured.fitted) {
         draw(out, &measured, fitted)?;
@@ -63,7 +63,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), AppError> {
         session: report::measures::session(&session, &notes),
         measurements: report::measures::measurements(&measured.best, measured.population),
         methods: methods(&measured),
-        body: measured.fitted.as_ref().map(|f| body(f, told.clothed)),
+        body: measured.fitted.as_ref().map(|f| body(f, facts.clothed)),
         valid_pixels: measured.best.valid_pixels as u64,
         people: measured.best.people as u32,
         files,
@@ -80,19 +80,19 @@ fn draw(out: &mut OutputFolder, measured: &Measured, fitted: &FittedMeasures) ->
     write_png(out, "fitted.png", &image)
 }
 
-fn methods(measured: &Measured) -> Vec<Method> {
+fn methods(measured: &Measured) -> Vec<MethodMeasures> {
     let sections = measured.sections.measures.named();
     let sections = sections.into_iter().filter_map(|(name, e)| Some(defined(name, e?))).collect();
-    let mut all = vec![Method { method: "sections and proportions", measures: sections }];
+    let mut all = vec![MethodMeasures { method: "sections and proportions", measures: sections }];
     if let Some(fitted) = &measured.fitted {
         let measures = MEASURES.iter().zip(&fitted.measures).map(|(t, e)| defined(t.0, *e)).collect();
-        all.push(Method { method: "the body fit", measures });
+        all.push(MethodMeasures { method: "the body fit", measures });
     }
     all
 }
 
 fn defined(name: &'static str, estimate: Estimate) -> DefinedMeasure {
-    let report::Measure { value, sigma } = in_mm(estimate);
+    let report::MeasuredLength { value, sigma } = in_mm(estimate);
     DefinedMeasure { name, definition: measures::definition(name), value, sigma }
 }
 

@@ -57,7 +57,7 @@ pub fn run(args: &ParetoArgs) -> Result<(), AppError> {
     if args.printing.json {
         return terminal::print_json(&Document::new("pareto", report));
     }
-    words.say(&format!("{} files in {}", files.len(), args.out.display()));
+    words.print_line(&format!("{} files in {}", files.len(), args.out.display()));
     terminal::print(&table(&report, Paint::for_stdout()))
 }
 
@@ -85,11 +85,11 @@ fn fronts(text: &mut String, report: &ParetoReport, scene: &SceneReport, paint: 
     for own in report.points.iter().filter(mine).filter(|p| p.default && p.quality == "shop") {
         let (verdict, tone) =
             if own.on_front { ("on the front", Tone::Good) } else { ("not on the front", Tone::Warn) };
-        let said = format!(
+        let sentence = format!(
             "  the default, shop with {} substeps, is {verdict}: {:.0} us, {:.3} mm",
             own.substeps, own.step_us, own.error_mm
         );
-        line(text, &paint.tone(&said, tone));
+        line(text, &paint.tone(&sentence, tone));
     }
     line(text, "");
 }

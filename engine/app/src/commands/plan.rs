@@ -34,7 +34,7 @@ use crate::heap::counted;
 use crate::report::Document;
 use crate::terminal::{self, Paint};
 
-/// What is planned.
+/// The scene that is planned.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PlanScene {
     /// A scene of `toile run`.
@@ -86,7 +86,7 @@ pub struct PlanArgs {
 }
 
 impl PlanArgs {
-    /// The scene.
+    /// The scene that the arguments name.
     pub fn scene(&self) -> PlanScene {
         match RunScene::of(self.scene.as_ref(), self.example.as_ref()) {
             Some(scene) => PlanScene::Run(scene),
@@ -124,7 +124,7 @@ pub fn run(args: &PlanArgs) -> Result<(), AppError> {
         played: None,
     };
     if plan.verdict.fits && !args.quick {
-        words.say("playing it, with each model and without");
+        words.print_line("playing it, with each model and without");
         let played = weigh::play(&scene, workers).map_err(AppError::internal)?;
         let one_core = priced.times.iter().map(|t| t.one_us).sum();
         plan.held = Some(Held::of(priced.stages_us[CLOTH], one_core, &played));
@@ -152,7 +152,7 @@ fn refusal(scene: &str, verdict: &Verdict) -> String {
     )
 }
 
-/// A scene file.
+/// Plans a scene file.
 fn file(scene: &RunScene, workers: usize) -> Result<(Scene, Costs, Vec<Memory>), AppError> {
     let scene = Scene::file(scene.read()?).map_err(AppError::input)?;
     let costs = calibrate::measure(None, workers).map_err(AppError::internal)?;
@@ -161,7 +161,7 @@ fn file(scene: &RunScene, workers: usize) -> Result<(Scene, Costs, Vec<Memory>),
     Ok((scene, costs, memory))
 }
 
-/// A shopper, dressed.
+/// Plans a dressed shopper.
 fn worn(
     session: Option<&std::path::Path>,
     wish: &Wish,

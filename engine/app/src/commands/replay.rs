@@ -45,11 +45,11 @@ const RUN: FileKind =
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Recorded {
-    /// By `toile soak`.
+    /// Recorded by `toile soak`.
     Soak(SoakRecipe),
     /// By `toile kiosk`, which crashed.
     Kiosk(KioskRecipe),
-    /// By `toile latency`.
+    /// Recorded by `toile latency`.
     Session(Recipe),
 }
 
@@ -67,11 +67,11 @@ impl Recorded {
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReplayReport {
-    /// What was on stage.
+    /// The scene that was recorded.
     pub scene: Recorded,
     /// Workers of a step, now.
     pub workers: usize,
-    /// Steps taken.
+    /// Steps that were replayed.
     pub ticks: u64,
     /// Hash of the last state.
     pub state_hash: String,

@@ -34,7 +34,7 @@ const MAX_RUN_STEPS: u64 = 100_000_000;
 /// Where the scene of `toile run` comes from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RunScene {
-    /// A file.
+    /// A scene file, by its path.
     File(PathBuf),
     /// A scene inside the program.
     Example(String),
@@ -227,7 +227,7 @@ fn report(runner: &Runner, args: &RunArgs, dumped: u64, yardstick_us: Option<f64
         yardstick_us,
         allocations_per_step: figures.allocations_per_step,
         memory_bytes: figures.memory_bytes.map(|bytes| bytes.iter().sum()),
-        strain: report::Strain { mean: figures.strain_mean, p99: figures.strain_p99, max: figures.strain_max },
+        strain: report::StrainReport { mean: figures.strain_mean, p99: figures.strain_p99, max: figures.strain_max },
         penetration_mm: report::RunPenetration { max: figures.penetration_mm, fraction: figures.penetration_fraction },
         kinetic_energy_j: report::KineticEnergy { end: figures.kinetic_j, max: figures.kinetic_max_j },
         nonfinite: figures.nonfinite,

@@ -1,4 +1,4 @@
-//! `toile soak`: the loop for hours, and what it bore.
+//! `toile soak`: the loop for hours, with faults, and whether it recovered.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -126,14 +126,14 @@ const MOST_REPLAYED: u64 = 128 << 20;
 pub struct SoakRecipe {
     /// Version of the program that wrote it.
     pub version: String,
-    /// What was soaked.
+    /// Options of the run.
     pub soak: SoakPlan,
 }
 
 /// The body of the JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct SoakDocument {
-    /// What was found.
+    /// The figures that were measured.
     #[serde(flatten)]
     found: Soak,
     /// The files written.
@@ -164,8 +164,8 @@ pub fn run(args: &SoakArgs) -> Result<(), AppError> {
         count: heap::probe(),
         file,
         header,
-        keep: &|black_box| crash::keep(black_box, crash_file.clone()),
-        progress: &|seconds| words.say(&format!("{} of {} minutes", seconds / 60, options.plan.seconds / 60)),
+        keep: &|flight_recorder| crash::keep(flight_recorder, crash_file.clone()),
+        progress: &|seconds| words.print_line(&format!("{} of {} minutes", seconds / 60, options.plan.seconds / 60)),
         crash_ns: args.crash.after_s.map(|s| s * 1_000_000_000),
     };
     let ran = soak::run(&options, &tools).map_err(refused)?;
@@ -214,7 +214,7 @@ fn create(path: &Path) -> Result<File, AppError> {
 /// where the recording is too long.
 fn second(options: &SoakOptions, hash: u64, kept: Option<&Path>, words: &Words) -> Result<Option<u64>, AppError> {
     if !options.real_time {
-        words.say("once more, to compare");
+        words.print_line("once more, to compare");
         let tools = SoakTools {
             heap: HeapProbe::none(),
             count: None,
@@ -229,10 +229,10 @@ fn second(options: &SoakOptions, hash: u64, kept: Option<&Path>, words: &Words) 
     let Some(path) = kept else { return Ok(None) };
     let unread = |e: std::io::Error| AppError::Input(format!("{} cannot be read again ({e})", path.display()));
     if fs::metadata(path).map_err(unread)?.len() > MOST_REPLAYED {
-        words.say("the recording is too long to be replayed at once; take it again with `toile replay`");
+        words.print_line("the recording is too long to be replayed at once; take it again with `toile replay`");
         return Ok(None);
     }
-    words.say("the recording is taken again, with one worker");
+    words.print_line("the recording is taken again, with one worker");
     let Recording { entries, .. } = recording::read(&fs::read(path).map_err(unread)?).map_err(AppError::internal)?;
     let (_, out) = again(options.plan, &entries, 1)?;
     let same = out.diverged_at.is_none() && out.gap_at.is_none();

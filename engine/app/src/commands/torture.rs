@@ -1,4 +1,4 @@
-//! `toile torture`: the hard cases, and whether the cloth bears them.
+//! `toile torture`: the hard cases, and whether the cloth recovers.
 
 use std::fmt::Write;
 use std::time::Instant;
@@ -64,7 +64,7 @@ impl TortureArgs {
 /// The report as JSON has it.
 #[derive(Debug, Serialize)]
 struct TortureDocument {
-    /// What the cases came to.
+    /// Results of the cases.
     #[serde(flatten)]
     report: TortureReport,
     /// Time that it took (s).
@@ -78,9 +78,9 @@ struct TortureDocument {
 pub fn run(args: &TortureArgs) -> Result<(), AppError> {
     let words = args.printing.words();
     let begun = Instant::now();
-    let mut progress = |s: &CaseSummary| words.say(&format!("{}: {} of {} seeds", s.name, s.passed, s.seeds));
+    let mut progress = |s: &CaseSummary| words.print_line(&format!("{}: {} of {} seeds", s.name, s.passed, s.seeds));
     let report = torture::run(&args.options(), &mut progress).map_err(AppError::internal)?;
-    backend::say(&report.stepped_by);
+    backend::print_fallback(&report.stepped_by);
     let wall_s = begun.elapsed().as_secs_f64();
     let failed: Vec<&str> = report.failed().map(|s| s.name).collect();
     let verdict = match failed[..] {

@@ -108,12 +108,12 @@ impl TryOnArgs {
     }
 }
 
-/// Whose body is shown.
+/// The body that wears the garments.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Wearer {
     /// One of ours, of the measured size.
     Ours(Sex),
-    /// One that others made.
+    /// An imported body, by the path of its file.
     File(PathBuf),
 }
 
@@ -152,7 +152,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let mut measured = measured::measure(&session, ShopperFacts { sex: wish.sex, ..ShopperFacts::default() })?;
     let has_joints = !session.joints.is_empty();
     if !has_joints {
-        words.say("there are no joints: the fitted body is followed through the depth");
+        words.print_line("there are no joints: the fitted body is followed through the depth");
     }
     measured::add_joints(&mut session, &measured)?;
     let track = session::standing(&session)?;
@@ -342,7 +342,7 @@ fn title(recommendations: &[Recommendation]) -> String {
     recommendations.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
-fn physics(frame: &Frame) -> report::Physics {
+fn physics(frame: &Frame) -> report::PhysicsReport {
     let meters = frame.meters();
     let us = |quantile: f64| meters.step_ns.value_at_quantile(quantile) as f64 * 1e-3;
     let strain = meters.strain();
@@ -367,7 +367,7 @@ fn physics(frame: &Frame) -> report::Physics {
     if frame.broken() > 0 {
         warnings.push(format!("{} steps broke off in a worker; the garments kept their last places", frame.broken()));
     }
-    report::Physics {
+    report::PhysicsReport {
         hz: STEP_HZ,
         quality: frame.settings().quality.name(),
         lanes: frame.settings().width.lanes(),
@@ -381,7 +381,11 @@ fn physics(frame: &Frame) -> report::Physics {
             p999: us(0.999),
             max: meters.step_ns.max() as f64 * 1e-3,
         },
-        strain: report::Strain { mean: f64::from(strain.mean), p99: f64::from(strain.p99), max: f64::from(strain.max) },
+        strain: report::StrainReport {
+            mean: f64::from(strain.mean),
+            p99: f64::from(strain.p99),
+            max: f64::from(strain.max),
+        },
         penetration_mm: report::Penetration { max: f64::from(meters.penetration_max) * 1e3 },
         nonfinite: frame.cloths().iter().map(|c| c.events.rolled_back).sum(),
         warnings,

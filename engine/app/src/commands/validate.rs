@@ -53,7 +53,7 @@ fn levels() -> Vec<&'static str> {
 }
 
 impl ValidateArgs {
-    /// What is run.
+    /// Options of the run.
     fn options(&self) -> ValidationOptions {
         let wanted = |level: &Level| self.quality == ALL_LEVELS || level.name() == self.quality;
         ValidationOptions {
@@ -80,7 +80,7 @@ pub fn run(args: &ValidateArgs) -> Result<(), AppError> {
     };
     let report = run::run(&args.options(), &progress).map_err(AppError::internal)?;
     bar.finish_and_clear();
-    backend::say(&report.stepped_by);
+    backend::print_fallback(&report.stepped_by);
     let [passed, gated] = report.passed;
     if args.printing.json {
         terminal::print_json(&Document::new("validate", report))?;

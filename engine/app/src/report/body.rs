@@ -1,4 +1,4 @@
-//! What `toile body` says.
+//! The JSON of `toile body`.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use super::Followed;
 pub struct BodyReport {
     /// The file or folder.
     pub file: PathBuf,
-    /// How its joints are named.
+    /// Dialect of its joints' names.
     pub dialect: &'static str,
     /// Vertices of the mesh.
     pub vertices: usize,
@@ -42,22 +42,22 @@ pub struct BodyReport {
 /// A number with its name.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Named {
-    /// What it is.
+    /// What the value is of.
     pub name: &'static str,
-    /// The value.
+    /// The value, in the unit that its place says.
     pub value: f64,
 }
 
 /// One of our joints, and what the file calls it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JointFound {
-    /// H-Anim name.
+    /// Name of the joint after H-Anim.
     pub joint: String,
     /// The file's own name.
     pub named: String,
 }
 
-/// What pruning the weights cost.
+/// Weight lost by pruning influences.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Influences {
     /// Most influences of a vertex in the file.
@@ -75,7 +75,7 @@ pub struct Influences {
 /// Whether a surface is closed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct SurfaceReport {
-    /// Pieces that hang together.
+    /// Connected pieces of the surface.
     pub parts: usize,
     /// Edges with a triangle on one side alone.
     pub boundary_edges: usize,

@@ -8,7 +8,7 @@ use toile_assets::rig::{RigReport, Zone, ZoneReport};
 pub struct Followed {
     /// The part of the body.
     pub zone: &'static str,
-    /// Mean distance.
+    /// Mean distance (mm).
     pub mean_mm: f64,
     /// Mean with its sign, positive where the union stands out of the skin.
     pub signed_mean_mm: f64,

@@ -16,7 +16,7 @@ pub struct GesturesReport {
     pub hand_us: f64,
     /// Gestures, by condition.
     pub gestures: Vec<GestureRow>,
-    /// What is no gesture.
+    /// Acts that are no gesture.
     pub others: Vec<OtherRow>,
     /// Hands open and closed, by distance.
     pub hands: Vec<HandRow>,
@@ -25,7 +25,7 @@ pub struct GesturesReport {
 /// One gesture under one condition.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GestureRow {
-    /// Its name.
+    /// Name of the gesture.
     pub gesture: &'static str,
     /// Distance of the shopper (m).
     pub distance_m: f32,
@@ -44,24 +44,24 @@ pub struct GestureRow {
 /// One thing that is no gesture.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OtherRow {
-    /// What is done.
+    /// What the shopper does.
     pub act: &'static str,
     /// How long it was watched (minutes).
     pub minutes: f32,
-    /// Events.
+    /// Gestures that were reported though none was made.
     pub false_events: u32,
-    /// The same a minute.
+    /// False events a minute.
     pub false_per_minute: f32,
 }
 
 /// One pose of the hand at one distance.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct HandRow {
-    /// The pose.
+    /// Name of the hand's pose.
     pub pose: &'static str,
-    /// Distance (m).
+    /// Distance of the shopper (m).
     pub distance_m: f32,
-    /// Frames.
+    /// Frames that were classified.
     pub frames: u32,
     /// Frames classified wrongly.
     pub wrong: u32,

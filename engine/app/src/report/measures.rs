@@ -4,11 +4,11 @@ use toile_assets::sizes::Population;
 use toile_sensors::source;
 use toile_track::estimate::Estimate;
 
-use super::{Measure, Measurements, Session};
+use super::{MeasuredLength, SessionReport, ShopperMeasures};
 
 /// The session, with more sentences beside its own.
-pub fn session(session: &source::Session, more: &[String]) -> Session {
-    Session {
+pub fn session(session: &source::Session, more: &[String]) -> SessionReport {
+    SessionReport {
         name: session.name.clone(),
         frames: session.joints.len().max(session.depth.len()) as u64,
         seconds: session.duration_ns() as f64 * 1e-9,
@@ -17,14 +17,14 @@ pub fn session(session: &source::Session, more: &[String]) -> Session {
 }
 
 /// An estimate (m) in millimetres; tenths of a millimetre are all that a measure deserves.
-pub fn in_mm(estimate: Estimate) -> Measure {
+pub fn in_mm(estimate: Estimate) -> MeasuredLength {
     let mm = |x: f32| (f64::from(x) * 1e4).round() / 10.0;
-    Measure { value: mm(estimate.value), sigma: mm(estimate.sigma) }
+    MeasuredLength { value: mm(estimate.value), sigma: mm(estimate.sigma) }
 }
 
 /// The measures of the contract; what could not be seen is what such a body has on average, with that sigma.
-pub fn measurements(measured: &toile_track::measure::Measurements, population: Population) -> Measurements {
+pub fn measurements(measured: &toile_track::measure::Measurements, population: Population) -> ShopperMeasures {
     let [stature_mm, shoulder_breadth_mm, chest_girth_mm, waist_girth_mm, hip_girth_mm] =
         measured.completed(population).map(in_mm);
-    Measurements { stature_mm, shoulder_breadth_mm, chest_girth_mm, waist_girth_mm, hip_girth_mm }
+    ShopperMeasures { stature_mm, shoulder_breadth_mm, chest_girth_mm, waist_girth_mm, hip_girth_mm }
 }

@@ -1,4 +1,4 @@
-//! What `toile run` reports.
+//! The JSON of `toile run`.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -6,12 +6,12 @@ use std::path::PathBuf;
 use serde::Serialize;
 use toile_fitting::scene::events::ClothEvents;
 
-use super::{StepMicros, Strain};
+use super::{StepMicros, StrainReport};
 
 /// One garment of `toile run`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunGarment {
-    /// Its name in the scene.
+    /// Name in the scene.
     pub name: String,
     /// Vertices of the user's mesh.
     pub vertices: usize,
@@ -48,17 +48,17 @@ pub struct KineticEnergy {
 pub struct RunReport {
     /// The scene's name.
     pub scene: String,
-    /// Its garments.
+    /// Garments of the scene.
     pub garments: Vec<RunGarment>,
-    /// Spheres.
+    /// Spheres among the colliders.
     pub spheres: usize,
     /// Capsules, single spheres included.
     pub capsules: usize,
-    /// Planes.
+    /// Planes among the colliders.
     pub planes: usize,
     /// Steps a second.
     pub hz: f64,
-    /// Steps run.
+    /// Steps that were run.
     pub steps: u64,
     /// Time reached (s).
     pub seconds: f64,
@@ -81,10 +81,10 @@ pub struct RunReport {
     /// Bytes of the baked garments and their states together.
     pub memory_bytes: Option<u64>,
     /// How far edges were stretched.
-    pub strain: Strain,
+    pub strain: StrainReport,
     /// How deep cloth was inside colliders.
     pub penetration_mm: RunPenetration,
-    /// Kinetic energy.
+    /// Kinetic energy (J).
     pub kinetic_energy_j: KineticEnergy,
     /// Published positions that were not finite.
     pub nonfinite: u64,
@@ -94,6 +94,6 @@ pub struct RunReport {
     pub state_hash: String,
     /// The folder of the dump; `index.csv` in it lists its files.
     pub dump: Option<PathBuf>,
-    /// Frames dumped.
+    /// Frames that were written to the dump.
     pub dumped_frames: u64,
 }

@@ -7,9 +7,9 @@ use super::smooth::fraction;
 /// One moment: what is seen, of what floor, and how long after the last.
 #[derive(Debug, Clone, Copy)]
 pub struct BodyInput<'a> {
-    /// The joints.
+    /// Joints that are seen reliably (m).
     pub seen: &'a ReliableJoints,
-    /// The floor.
+    /// The floor that the feet stand on.
     pub ground: &'a Ground,
     /// Time since the last moment (s).
     pub dt: f32,

@@ -29,7 +29,7 @@ const STAND_TAU: f32 = 0.3;
 /// Greatest turn of a sensor's feet, both inwards or both outwards, that is taken for its habit (rad).
 const MAX_TURN: f32 = 0.6;
 
-/// Both feet.
+/// Tracks both feet and keeps them where they are planted.
 #[derive(Debug, Clone)]
 pub struct Feet {
     feet: [Foot; 2],
@@ -61,7 +61,7 @@ impl Feet {
     }
 }
 
-/// One foot.
+/// Tracks one foot: where it is planted, and how it is turned.
 #[derive(Debug, Clone)]
 struct Foot {
     ankle: Joint,

@@ -1,4 +1,4 @@
-//! Laws of what a sensor does wrong always the same way: its habits are learned, and the person's doing is kept.
+//! Tests of systematic errors of a sensor: they are learned, and the person's own motion is kept.
 
 use glam::{Quat, Vec3};
 use toile_assets::skeleton::{Joint, Pose};

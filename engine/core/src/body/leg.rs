@@ -13,7 +13,7 @@ use super::limits::Side;
 /// Reach over the leg's length: a knee that locks would turn at any speed.
 const STRAIGHTEST: f32 = 0.9995;
 
-/// Sine of the knee's bend below which its plane is not told by the leg.
+/// Sine of the knee's bend below which the leg does not determine its plane.
 const FLAT: f32 = 0.02;
 
 /// Pelvis to foot of a side.
@@ -54,7 +54,7 @@ pub fn reach(pose: &mut Pose, frames: &JointFrames, side: Side, target: Vec3) {
     let (Some(from), Some(to)) = ((reached - hip).try_normalize(), (target - hip).try_normalize()) else { return };
     let swing = Quat::from_rotation_arc(from, to);
     let (thigh_to, shin_to) = (swing * thigh, swing * bend * shin);
-    // The hip's own rotation is against the pelvis, from which both hang.
+    // The hip's own rotation is against the pelvis, the parent of both.
     let pelvis = frames.turn(Joint::Pelvis);
     let local = [pelvis.inverse() * thigh_to, thigh_to.inverse() * shin_to, shin_to.inverse() * foot];
     for (joint, turn) in joints.into_iter().zip(local) {

@@ -129,7 +129,7 @@ impl Limb {
     }
 
     /// Brings the limb a share of the way back to rest, and returns the lower limb's rotation in the world for a limb
-    /// that hangs on `parent`.
+    /// whose parent is `parent`.
     pub fn stretch(&self, share: f32, parent: Quat, local: &mut [Quat; JOINTS]) -> Quat {
         let [root, hinge, ..] = self.joints.map(Joint::index);
         for joint in [root, hinge] {

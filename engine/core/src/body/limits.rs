@@ -14,9 +14,9 @@ pub const SOFT_DEG: f32 = 8.0;
 /// A range of one angle (degrees).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
-    /// Least angle.
+    /// Least angle (degrees).
     pub min: f32,
-    /// Greatest angle.
+    /// Greatest angle (degrees).
     pub max: f32,
 }
 

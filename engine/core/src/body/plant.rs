@@ -1,4 +1,4 @@
-//! Planted feet: which foot stands, from how fast its ankle moves and how high it is.
+//! Planted feet: which foot stands, by the speed and height of its ankle.
 //!
 //! Both thresholds adapt, as they must to sensors and their places (Gultepe 2013, algorithm 3): the height is counted from
 //! where ankles [usually are](super::ground), and the speed from how fast an ankle seems to move that stands, which is the
@@ -28,7 +28,7 @@ const SPEED_TAU: f32 = 0.07;
 const QUIET: f32 = 0.3;
 const LEARNING: f32 = 0.1;
 
-/// One foot's state.
+/// State of one foot.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Plant {
     /// Where the ankle was last seen (m), and how fast it moves (m/s).

@@ -1,4 +1,4 @@
-//! What is worth following of one moment's joints: positions, and directions between them.
+//! The reliable part of one moment's joints: positions, and directions between them.
 
 use glam::Vec3;
 use toile_assets::limits::CONFIDENCE_GATE;

@@ -30,7 +30,7 @@ const CLAVICLE_LIFT: f32 = 0.4;
 /// Where a joint must lie between hips and neck, as a share of their distance, to tell lower from upper trunk.
 const WAIST: [f32; 2] = [0.2, 0.8];
 
-/// The trunk.
+/// Splits the turn of the trunk between its lower and its upper part.
 #[derive(Debug, Clone)]
 pub struct Trunk {
     rest: ReliableJoints,

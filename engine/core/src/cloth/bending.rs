@@ -76,11 +76,11 @@ pub const SCRATCH: usize = 3 * STRIDE;
 pub struct BendStencils<'a, const K: usize> {
     /// Inverse masses (1/kg).
     pub w: WriteColumn<'a>,
-    /// All stencils.
+    /// All bending stencils of the garment.
     pub bends: &'a Bends<K>,
-    /// The set.
+    /// The set that is solved now.
     pub set: &'a ConstraintSet,
-    /// Whose share.
+    /// Owner whose share is solved: index into the set's shares.
     pub owner: usize,
     /// What is bent: the positions (m).
     pub from: [WriteColumn<'a>; 3],

@@ -30,12 +30,12 @@ impl DiagonalScratch {
         Self(std::array::from_fn(|_| Store::zeros(len)))
     }
 
-    /// As columns.
+    /// The scratch as columns that kernels write to.
     pub fn columns(&mut self) -> [WriteColumn<'_>; KEPT] {
         self.0.each_mut().map(Store::column)
     }
 
-    /// Bytes held.
+    /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         self.0.iter().map(Store::bytes).sum()
     }
@@ -45,11 +45,11 @@ impl DiagonalScratch {
 pub struct SolveDiagonals<'a> {
     /// The garment's particles.
     pub columns: ParticleColumns<'a>,
-    /// All families.
+    /// All families of fibers along the bias.
     pub diagonals: &'a Diagonals,
-    /// The strand.
+    /// The owner's share of the family.
     pub strand: &'a DiagonalShare,
-    /// See [`DiagonalScratch`].
+    /// Intermediate results of the solve; see [`DiagonalScratch`].
     pub room: [WriteColumn<'a>; KEPT],
     /// 1 / dt^2 of the time that the solve stands for (1/s2).
     pub per_dt2: f32,

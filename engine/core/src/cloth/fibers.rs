@@ -40,9 +40,9 @@ pub fn scratch_len(fibers: &Fibers) -> usize {
 pub struct SolveFibers<'a> {
     /// The garment's particles.
     pub columns: ParticleColumns<'a>,
-    /// All fibers.
+    /// All warp fibers of the garment.
     pub fibers: &'a Fibers,
-    /// Whose.
+    /// Owner whose bundles are solved.
     pub owner: usize,
     /// This worker's scratch.
     pub scratch: WriteColumn<'a>,

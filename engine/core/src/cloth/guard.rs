@@ -1,4 +1,4 @@
-//! Guard: the doors of the cloth. Nothing that is not finite comes in, leaves, or stays.
+//! Guard: no NaN or infinity enters the cloth, stays in it, or is published.
 
 use glam::Vec3A;
 

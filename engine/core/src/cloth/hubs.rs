@@ -39,9 +39,9 @@ pub fn weaken(hubs: &Hubs, load: &[f32], limit: f32, scale: &mut [f32]) -> f32 {
 pub struct BendHubs<'a> {
     /// Inverse masses (1/kg).
     pub w: WriteColumn<'a>,
-    /// All hubs.
+    /// All hubs of the garment.
     pub hubs: &'a Hubs,
-    /// Whose groups.
+    /// Groups of the owner, a range of [`Hubs::groups`].
     pub groups: Range<u32>,
     /// What is bent: the positions (m).
     pub from: [WriteColumn<'a>; 3],

@@ -39,13 +39,13 @@ pub fn prepare(links: &Links, weights: &[f32], [dt, gamma]: [f32; 2], passes: Pa
 pub struct SolveLinks<'a> {
     /// The garment's particles.
     pub columns: ParticleColumns<'a>,
-    /// All links.
+    /// All links of the garment.
     pub links: &'a Links,
-    /// What [`prepare`] made.
+    /// Gain of each link, made by [`prepare`].
     pub gain: &'a [f32],
-    /// The set.
+    /// The set that is solved now.
     pub set: &'a ConstraintSet,
-    /// Whose share of it.
+    /// Owner whose share is solved.
     pub owner: usize,
     /// Damping time over the substep (1).
     pub gamma: f32,
@@ -70,9 +70,9 @@ impl SolveLinks<'_> {
         let share = &self.set.shares[self.owner];
         let tuples = &self.links.tuples;
         for zigzag in &tuples.zigzags[share.zigzags.start as usize..share.zigzags.end as usize] {
-            let (n, alike) = (zigzag.rungs.len as usize, zigzag.rungs.alike && zigzag.slants.alike);
+            let (n, alike) = (zigzag.straights.len as usize, zigzag.straights.alike && zigzag.slants.alike);
             if SOFT || n < L::N {
-                self.row::<L, SOFT>(&zigzag.rungs, 0, zigzag.rungs.len);
+                self.row::<L, SOFT>(&zigzag.straights, 0, zigzag.straights.len);
                 self.slants::<L, SOFT>(zigzag, 0);
             } else if alike && L::N == 4 && n >= 4 * L::N {
                 self.zigzag::<L, Two<Two<L>>, true>(zigzag);
@@ -122,11 +122,11 @@ impl SolveLinks<'_> {
     /// The slants of a zigzag from `from` on.
     #[inline(always)]
     fn slants<L: Lanes, const SOFT: bool>(&self, zigzag: &Zigzag, from: u32) {
-        let Zigzag { rungs, slants } = zigzag;
-        self.row::<L, SOFT>(slants, from, rungs.len - 1);
+        let Zigzag { straights, slants } = zigzag;
+        self.row::<L, SOFT>(slants, from, straights.len - 1);
         if zigzag.closed() {
             // The one that leads back, alone.
-            let t = rungs.len - 1;
+            let t = straights.len - 1;
             let (place, [b, a]) = (slants.place(t), zigzag.slant(t).map(|p| p as usize));
             let w = self.columns.w;
             // What is alike counts with the masses of the first, here as within a vector: alike is not the same to the bit.
@@ -156,22 +156,22 @@ impl SolveLinks<'_> {
         [self.links.rest[at], self.gain[at], w.get(a), w.get(b)].map(L::splat)
     }
 
-    /// A zigzag of at least a vector of rungs: each particle is read and written once. What is left of the rails at the
+    /// A zigzag of at least a vector of straights: each particle is read and written once. What is left of the rails at the
     /// end, less than a vector, and what leads back to the beginning where that does not fall on a vector's end, go by
     /// way of memory.
     #[inline(always)]
     fn zigzag<L: Lanes, W: Numbers, const ALIKE: bool>(&self, zigzag: &Zigzag) {
-        let Zigzag { rungs, slants } = zigzag;
-        let (x, n) = (self.columns.x, rungs.len as usize);
-        let [a, b] = rungs.first.map(|f| f as usize);
-        let like = [self.alike::<W>(rungs), self.alike::<W>(slants)];
-        let mut one = self.rung::<W, ALIKE>(rungs, 0, like[0]);
+        let Zigzag { straights, slants } = zigzag;
+        let (x, n) = (self.columns.x, straights.len as usize);
+        let [a, b] = straights.first.map(|f| f as usize);
+        let like = [self.alike::<W>(straights), self.alike::<W>(slants)];
+        let mut one = self.straight::<W, ALIKE>(straights, 0, like[0]);
         // What the slants before have made of the first lane, the only one that they reach: kept apart, so that the
         // next slants need not wait for them.
         let mut behind = one.a;
         let mut t = W::N;
         while t + W::N <= n {
-            let next = self.rung::<W, ALIKE>(rungs, t, like[0]);
+            let next = self.straight::<W, ALIKE>(straights, t, like[0]);
             let p = self.slant_parameters::<W, ALIKE>(slants, t - W::N, [&one, &next], like[1]);
             let turned = slant(&mut one, &next, p);
             one.a = turned.with_first(behind);
@@ -183,7 +183,7 @@ impl SolveLinks<'_> {
         if t < n || !zigzag.closed() {
             one.a = one.a.with_first(behind);
             one.store(x, [a + last, b + last]);
-            self.row::<L, false>(rungs, t as u32, rungs.len);
+            self.row::<L, false>(straights, t as u32, straights.len);
             return self.slants::<L, false>(zigzag, last as u32);
         }
         let mut first = one;
@@ -201,16 +201,21 @@ impl SolveLinks<'_> {
         one.store(x, [a + last, b + last]);
     }
 
-    /// A vector of rungs from the `t`-th on, solved; `like` are their parameters where all of the zigzag is alike.
+    /// A vector of straights from the `t`-th on, solved; `like` are their parameters where all of the zigzag is alike.
     #[inline(always)]
-    fn rung<L: Numbers, const ALIKE: bool>(&self, rungs: &ConstraintRun<2>, t: usize, like: [L; 4]) -> Rungs<L> {
-        let ([a, b], x) = (rungs.first.map(|f| f as usize + t), self.columns.x);
-        let [rest, gain, wa, wb] = if ALIKE { like } else { self.parameters::<L>(rungs, t, L::N) };
+    fn straight<L: Numbers, const ALIKE: bool>(
+        &self,
+        straights: &ConstraintRun<2>,
+        t: usize,
+        like: [L; 4],
+    ) -> Straights<L> {
+        let ([a, b], x) = (straights.first.map(|f| f as usize + t), self.columns.x);
+        let [rest, gain, wa, wb] = if ALIKE { like } else { self.parameters::<L>(straights, t, L::N) };
         let (pa, pb) = (V3::<L>::load(x, a, L::N), V3::load(x, b, L::N));
         let [by_a, by_b] = stiff(pb - pa, rest, gain, [wa, wb]);
-        // Rungs that are alike count with the masses of the first; slants that are not count with their own.
+        // Straights that are alike count with the masses of the first; slants that are not count with their own.
         let weights = if ALIKE { [wa, wb] } else { [a, b].map(|p| L::load(self.columns.w, p)) };
-        Rungs { a: pa + by_a, b: pb - by_b, weights }
+        Straights { a: pa + by_a, b: pb - by_b, weights }
     }
 
     /// The slants' parameters: those of the first where all are alike, else the ends' weights are at hand.
@@ -219,7 +224,7 @@ impl SolveLinks<'_> {
         &self,
         slants: &ConstraintRun<2>,
         t: usize,
-        [one, next]: [&Rungs<L>; 2],
+        [one, next]: [&Straights<L>; 2],
         like: [L; 4],
     ) -> [L; 4] {
         if ALIKE || slants.alike {
@@ -324,25 +329,25 @@ fn stiff<L: Numbers>(d: V3<L>, rest: L, gain: L, weights: [L; 2]) -> [V3<L>; 2] 
     [d * (excess * (gain * weights[0])), d * (excess * (gain * weights[1]))]
 }
 
-/// The slants between a vector of rungs and the next, solved; gives the first rail a lane on, in its lowest lane the
+/// The slants between a vector of straights and the next, solved; gives the first rail a lane on, in its lowest lane the
 /// next vector's.
 #[inline(always)]
-fn slant<L: Numbers>(one: &mut Rungs<L>, next: &Rungs<L>, [rest, gain, wb, wa]: [L; 4]) -> V3<L> {
+fn slant<L: Numbers>(one: &mut Straights<L>, next: &Straights<L>, [rest, gain, wb, wa]: [L; 4]) -> V3<L> {
     let a = one.a.with_first(next.a).rotate_down();
     let [by_b, by_a] = stiff(a - one.b, rest, gain, [wb, wa]);
     one.b = one.b + by_b;
     (a - by_a).rotate_up()
 }
 
-/// Both ends of a vector of rungs, and their weights.
+/// Both ends of a vector of straights, and their weights.
 #[derive(Clone, Copy)]
-struct Rungs<L> {
+struct Straights<L> {
     a: V3<L>,
     b: V3<L>,
     weights: [L; 2],
 }
 
-impl<L: Numbers> Rungs<L> {
+impl<L: Numbers> Straights<L> {
     #[inline(always)]
     fn store(self, to: [WriteColumn<'_>; 3], [a, b]: [usize; 2]) {
         self.a.store(to, a, L::N);

@@ -31,11 +31,11 @@ pub fn scratch_len(lists: &FiberLists) -> usize {
 pub struct SolveCrossing<'a> {
     /// The garment's particles.
     pub columns: ParticleColumns<'a>,
-    /// All lists.
+    /// All fibers by index list.
     pub lists: &'a FiberLists,
-    /// The set.
+    /// Index of the set that is solved now.
     pub set: usize,
-    /// Whose share.
+    /// Owner whose share of it is solved.
     pub owner: usize,
     /// This worker's scratch.
     pub scratch: WriteColumn<'a>,

@@ -9,11 +9,11 @@ use crate::colliders::Colliders;
 /// Strain over warp and weft edges: |length / rest - 1|.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Strain {
-    /// Mean (1).
+    /// Mean over the edges (1).
     pub mean: f32,
     /// 99th percentile (1).
     pub p99: f32,
-    /// Worst (1).
+    /// Largest over the edges (1).
     pub max: f32,
 }
 

@@ -53,7 +53,7 @@ pub struct Step<'a> {
     pub palette: &'a [Affine3A; BONES],
     /// The body's spheres and capsules at the start and the end of the step.
     pub colliders: &'a Colliders,
-    /// Settings.
+    /// How the cloth is stepped.
     pub settings: &'a Settings,
 }
 
@@ -76,7 +76,7 @@ pub struct Cloth {
     leaning: diagonals::DiagonalScratch,
     /// Tensions of weft links, of fibers, of crossing fibers within a substep; empty where they have no compliance.
     tension: [Store; 3],
-    /// Room for percentiles.
+    /// Room to sort strains in (1).
     pub(crate) strains: Box<[f32]>,
     prepared: prepared::Prepared,
     /// The root's motion, and the point of the garment at rest that it is taken at (m).

@@ -59,7 +59,7 @@ impl Pins {
         }
     }
 
-    /// Bytes held.
+    /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.start) + size_of_val(&*self.end)
     }

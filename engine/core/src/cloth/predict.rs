@@ -35,7 +35,7 @@ impl Kernel for Predict<'_> {
                 t += L::N;
             }
             if t < len && L::N > 1 {
-                // Less than a vector, and the compiler is told so.
+                // Less than a vector; this lets the compiler know.
                 self.some::<L>(first + t, (len - t).min(L::N - 1));
             }
         }

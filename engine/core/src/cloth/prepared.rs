@@ -52,7 +52,7 @@ pub struct Prepared {
     /// Bending's phases of a substep, and its stages where it is stiff.
     pub bending: Bending,
     /// The stages of stiff bending; as many as `bending` says count.
-    pub stages: [ChebyshevStage; stiff_bending::MOST as usize],
+    pub stages: [ChebyshevStage; stiff_bending::MAX_BENDING_STAGES as usize],
     /// Whether there is room for stages.
     stiff: bool,
     load: Box<[f32]>,
@@ -85,7 +85,7 @@ impl Prepared {
             hub_scale: zeros(layout.hubs.count),
             bend: bending::BendingPace { every: 1, stages: 1, least: 1.0 },
             bending: Bending { sets: Bending::sets(layout), stages: 1 },
-            stages: [ChebyshevStage::default(); stiff_bending::MOST as usize],
+            stages: [ChebyshevStage::default(); stiff_bending::MAX_BENDING_STAGES as usize],
             stiff,
             load,
             soft: [&layout.weft.compliance, &layout.fibers.compliance, &layout.crossing.compliance].map(|c| soft(c)),

@@ -8,7 +8,7 @@
 use toile_assets::garment::Layout;
 
 use super::Quality;
-use super::stiff_bending::MOST;
+use super::stiff_bending::MAX_BENDING_STAGES;
 
 /// One stage of a step: both owners' shares of it may run at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,11 +35,11 @@ pub enum Stage {
     Shear(u16),
     /// A set of weft links.
     Weft(u16),
-    /// Warp fibers.
+    /// All warp fibers that cross no others.
     Fibers,
     /// A set of warp fibers that cross others.
     Crossing(u16),
-    /// Tethers.
+    /// All tethers.
     Tethers,
     /// Contact, then the velocities that follow: both are one particle's own matter, so the workers need not meet between.
     ContactAndVelocities,
@@ -70,7 +70,7 @@ impl Stage {
 /// Bending, which comes first in a substep: its sets, once as a force, or in stages with a turn before each and at the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bending {
-    /// Sets of stencils.
+    /// Number of sets of bending stencils.
     pub sets: u32,
     /// Stages; 1 for a force.
     pub stages: u32,
@@ -92,7 +92,7 @@ impl Bending {
         self.sets == 0
     }
 
-    /// Its part of the program.
+    /// Stages of bending in the program.
     pub fn program(self) -> impl Iterator<Item = Stage> {
         let Self { sets, stages } = self;
         let plain = if stages < 2 { sets } else { 0 };
@@ -138,7 +138,7 @@ impl Program {
     /// Room for the programs of a garment at any quality; `stiff` says that its bending may have to go in stages. At load.
     pub fn new(layout: &Layout, stiff: bool) -> Self {
         let constraints = Quality::ALL.map(|quality| constraints(layout, quality));
-        let bending = Bending { sets: Bending::sets(layout), stages: if stiff { MOST } else { 1 } };
+        let bending = Bending { sets: Bending::sets(layout), stages: if stiff { MAX_BENDING_STAGES } else { 1 } };
         let longest = bending.len() + constraints.iter().map(|c| c.len()).max().unwrap_or(0);
         Self { constraints, substep: Vec::with_capacity(longest), substeps: 0, made_for: None }
     }
@@ -173,7 +173,7 @@ impl Program {
         }
     }
 
-    /// All of them in order.
+    /// All stages in order, each with the number of its substep.
     pub fn stages(&self) -> impl Iterator<Item = (Stage, u32)> {
         (0..self.len()).map(|phase| self.stage(phase))
     }

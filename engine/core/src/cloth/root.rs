@@ -42,7 +42,7 @@ pub struct RootSettings {
     pub teleport_m: f32,
     /// A root that turns further than this in one step has been teleported (degrees).
     pub teleport_degrees: f32,
-    /// What happens then.
+    /// What is done with the garment after a teleport.
     pub teleport: Teleport,
 }
 

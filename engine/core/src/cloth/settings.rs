@@ -25,7 +25,7 @@ pub enum Quality {
 }
 
 impl Quality {
-    /// All of them, cheapest first.
+    /// Every quality, cheapest first.
     pub const ALL: [Self; 3] = [Self::Draft, Self::Shop, Self::Fine];
 
     /// Its name on the command line.
@@ -121,16 +121,16 @@ const MOST: f32 = 100.0;
 impl Settings {
     /// Substeps of a step of a garment for which its bake asks so many in 1/120 s at the quality `shop`.
     pub fn substeps_of(&self, garment: u32) -> u32 {
-        // The bake speaks of steps of 1/120 s.
+        // The bake counts substeps of steps of 1/120 s.
         let longer = (self.step_seconds / STEP_SECONDS).max(1.0);
         let chosen = (self.quality.substeps(garment) as f32 * longer).ceil() as u32;
         let whole = self.substeps.unwrap_or(chosen) as f32;
         ((whole * self.substep_share).ceil() as u32).clamp(1, MAX_SUBSTEPS)
     }
 
-    /// The same with every figure that no step can be made with as it is by default, and no wind where its figures are
-    /// none: for the door of a step, so that a slip in one of them costs a step its settings and not the garment. Gives
-    /// the very same settings where nothing is wrong with them.
+    /// The settings with every figure that no step can be made with replaced by its default, and without a wind whose
+    /// figures cannot be used. Checked at the start of a step, so that a wrong figure costs a step its setting and not the
+    /// garment. Settings with nothing wrong are returned unchanged.
     #[must_use]
     pub fn sound(&self) -> Self {
         let within = |value: f32, low: f32, high: f32, or: f32| if (low..=high).contains(&value) { value } else { or };
@@ -165,7 +165,7 @@ impl Settings {
 /// Acceleration of gravity (m/s2).
 const GRAVITY: Vec3A = Vec3A::new(0.0, -9.81, 0.0);
 
-/// See [`Settings::max_speed`].
+/// Default of [`Settings::max_speed`] (m/s).
 const MAX_SPEED: f32 = 15.0;
 
 impl Default for Settings {

@@ -113,13 +113,13 @@ impl State {
         ParticleColumns { x: three(0), previous: three(PREVIOUS), v: three(VELOCITY), w: all.part(starts[WEIGHT], len) }
     }
 
-    /// Bytes held.
+    /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         self.numbers.bytes()
     }
 }
 
-/// One particle's vector.
+/// Reads the vector of one particle.
 #[inline(always)]
 pub fn get(from: [WriteColumn<'_>; 3], i: usize) -> Vec3A {
     Vec3A::new(from[0].get(i), from[1].get(i), from[2].get(i))

@@ -1,4 +1,4 @@
-//! Stages: bending that is stiffer than a substep can carry as a force.
+//! Stiff bending, in stages: bending that is stiffer than a substep can carry as a force.
 //!
 //! Implicit Euler asks for the change of velocity u with (I + Z) u = r, where Z = dt^2 W K, r = dt (g - W K (x + dt v)).
 //! One step of the stabilised Runge-Kutta-Chebyshev method for u' = r - Z u (van der Houwen, Sommeijer 1980; Verwer
@@ -17,23 +17,23 @@ use crate::lanes::{Kernel, Lanes, Store, V3, WriteColumn};
 const DAMPING: f64 = 2.0;
 
 /// Most stages: a stiffness 12,000 times what a force can be. What is stiffer is weakened.
-pub const MOST: u32 = 160;
+pub const MAX_BENDING_STAGES: u32 = 160;
 
 /// One stage: newest = ahead * newest + behind * the one before + forced * (r - Z newest).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ChebyshevStage {
-    /// mu.
+    /// Coefficient mu of the recursion (1).
     pub ahead: f32,
-    /// nu.
+    /// Coefficient nu of the recursion (1).
     pub behind: f32,
     /// mu with a tilde.
     pub forced: f32,
 }
 
 /// T_0..T_m at w0, and T_m' there.
-fn chebyshev(m: u32) -> ([f64; MOST as usize + 1], f64, f64) {
+fn chebyshev(m: u32) -> ([f64; MAX_BENDING_STAGES as usize + 1], f64, f64) {
     let w0 = 1.0 + DAMPING / f64::from(m * m);
-    let (mut t, mut slope) = ([1.0; MOST as usize + 1], [0.0, 1.0]);
+    let (mut t, mut slope) = ([1.0; MAX_BENDING_STAGES as usize + 1], [0.0, 1.0]);
     t[1] = w0;
     for j in 2..=m as usize {
         t[j] = 2.0 * w0 * t[j - 1] - t[j - 2];
@@ -48,9 +48,9 @@ pub fn carried(m: u32) -> f32 {
     ((w0 + 1.0) * slope / t[m as usize]) as f32
 }
 
-/// The fewest stages, 2 to [`MOST`], that `suffice` for a garment, told the largest Z that they carry.
+/// The fewest stages, 2 to [`MAX_BENDING_STAGES`], that are enough for a garment; `suffice` is given the largest Z that they carry.
 pub fn needed(suffice: impl Fn(f32) -> bool) -> u32 {
-    (2..MOST).find(|&m| suffice(carried(m))).unwrap_or(MOST)
+    (2..MAX_BENDING_STAGES).find(|&m| suffice(carried(m))).unwrap_or(MAX_BENDING_STAGES)
 }
 
 /// The stages 1..=m, into the first `m` places.
@@ -81,12 +81,12 @@ impl StiffBendingScratch {
         Self(std::array::from_fn(|_| std::array::from_fn(|_| Store::zeros(particles))))
     }
 
-    /// As columns.
+    /// The scratch as columns that kernels write to.
     pub fn columns(&mut self) -> [[WriteColumn<'_>; 3]; 3] {
         self.0.each_mut().map(|three| three.each_mut().map(Store::column))
     }
 
-    /// Bytes held.
+    /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         self.0.iter().flatten().map(Store::bytes).sum()
     }
@@ -99,7 +99,7 @@ pub enum StiffBendingUpdate<'a> {
     Begin {
         /// Gravity over the substep (m/s).
         fall: Vec3A,
-        /// Other accelerations (m/s2).
+        /// Accelerations besides gravity (m/s2).
         pushed: Option<[WriteColumn<'a>; 3]>,
         /// Length of the substep (s).
         dt: f32,
@@ -120,7 +120,7 @@ pub struct ApplyStiffBending<'a> {
     pub spans: &'a [(u32, u32)],
     /// r, and two changes of velocity.
     pub room: [[WriteColumn<'a>; 3]; 3],
-    /// The turn.
+    /// The stage of the recursion that is applied now.
     pub turn: StiffBendingUpdate<'a>,
 }
 
@@ -188,7 +188,7 @@ mod tests {
 
     /// u after the stages, for one Z and r = 1.
     fn solved(m: u32, z: f64) -> f64 {
-        let mut stages = [ChebyshevStage::default(); MOST as usize];
+        let mut stages = [ChebyshevStage::default(); MAX_BENDING_STAGES as usize];
         coefficients(m, &mut stages);
         let (mut before, mut newest) = (0.0, f64::from(stages[0].forced));
         for s in &stages[1..m as usize] {
@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn what_does_not_bend_falls_freely_and_stiff_motion_is_damped_like_implicit_euler() {
-        for m in 2..=MOST {
+        for m in 2..=MAX_BENDING_STAGES {
             assert!((solved(m, 0.0) - 1.0).abs() < 2e-5, "{m} stages: {}", solved(m, 0.0));
             let most = f64::from(carried(m));
             for i in 1..=200 {
@@ -216,7 +216,7 @@ mod tests {
     fn twice_the_stages_carry_four_times_the_stiffness() {
         assert!((carried(2) - 4.28).abs() < 0.02 && (carried(64) / carried(32) - 4.0).abs() < 0.05);
         let needed = |z: f32| needed(|most| most >= z);
-        assert_eq!((needed(0.1), needed(4.2), needed(1e9)), (2, 2, MOST));
-        assert!((2..MOST).all(|m| needed(carried(m)) <= m && needed(carried(m) * 1.001) == m + 1));
+        assert_eq!((needed(0.1), needed(4.2), needed(1e9)), (2, 2, MAX_BENDING_STAGES));
+        assert!((2..MAX_BENDING_STAGES).all(|m| needed(carried(m)) <= m && needed(carried(m) * 1.001) == m + 1));
     }
 }

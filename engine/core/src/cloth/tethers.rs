@@ -11,11 +11,11 @@ use crate::lanes::{Kernel, Lanes, Mask, ReadColumn, Readable, V3, WriteColumn, r
 /// Slack of a tether, as a share of its length: cloth that stretches as fabrics do never meets it.
 const SLACK: f32 = 1.02;
 
-/// One owner's particles.
+/// Limits the distance of one owner's particles from where the garment is held.
 pub struct HoldTethers<'a> {
     /// The garment's particles.
     pub columns: ParticleColumns<'a>,
-    /// The tethers.
+    /// All tethers of the garment.
     pub tethers: &'a Tethers,
     /// Ranges of particles, `(first, len)`.
     pub spans: &'a [(u32, u32)],
@@ -86,7 +86,7 @@ mod tests {
             width.run(HoldTethers { columns: state.columns(), tethers: &tethers, spans: &[(0, 4)] });
             let x = state.positions()[0];
             assert!((x[1] - SLACK).abs() < 1e-5 && x[2] == 0.5, "{x:?}");
-            assert_eq!(state.positions()[1], [0.0, 0.0, 0.0, 9.0], "what hangs nowhere is left alone");
+            assert_eq!(state.positions()[1], [0.0, 0.0, 0.0, 9.0], "what is attached nowhere is left alone");
         }
     }
 }

@@ -190,7 +190,7 @@ impl Faces {
         [runs, self.groups.iter().map(|g| g.loose[0].len()).sum()]
     }
 
-    /// Bytes held.
+    /// Heap memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         let group = |g: &FaceGroup| {
             let loose: usize = g.loose.iter().map(|l| size_of_val(&**l)).sum();
@@ -246,7 +246,7 @@ pub struct Accelerations {
 }
 
 impl Accelerations {
-    /// All 0.
+    /// Accelerations of so many particles, all 0.
     pub fn new(particles: usize) -> Self {
         // As in `State`: no two columns lie alike within 4 KiB, or a processor takes what is stored in one for what is
         // loaded from the other.
@@ -261,12 +261,12 @@ impl Accelerations {
         self.starts.map(|start| all.part(start, self.len))
     }
 
-    /// One particle's.
+    /// Acceleration of one particle (m/s2).
     pub fn of(&self, particle: usize) -> Vec3A {
         Vec3A::from_array(self.starts.map(|start| self.numbers.as_slice()[start + particle]))
     }
 
-    /// Bytes held.
+    /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         self.numbers.bytes()
     }

@@ -23,13 +23,13 @@ use crate::workers::PerShare;
 
 /// Everything that the shares of one step have in common.
 pub struct StepWork<'a> {
-    /// The garment.
+    /// The garment that is stepped.
     pub garment: &'a Garment,
-    /// Its surroundings.
+    /// What surrounds the garment in this step.
     pub step: &'a Step<'a>,
     /// What was prepared for the settings.
     pub prepared: &'a Prepared,
-    /// What the shares write to.
+    /// Columns that the shares write to.
     pub columns: Shared<WorkColumns<'a>>,
     /// The triangles that feel the wind, and the wind.
     pub faces: Option<(&'a wind::Faces, Wind)>,
@@ -52,7 +52,7 @@ pub struct StepWork<'a> {
 /// The columns of a step.
 #[derive(Clone, Copy)]
 pub struct WorkColumns<'a> {
-    /// The particles.
+    /// State of the particles.
     pub particles: ParticleColumns<'a>,
     /// Accelerations besides gravity (m/s2).
     pub pushed: [WriteColumn<'a>; 3],
@@ -104,7 +104,7 @@ impl StepWork<'_> {
 }
 
 impl OwnerShare<'_, '_> {
-    /// The stages.
+    /// Runs this owner's share of a stage.
     fn run(&self, stage: Stage) {
         match stage {
             Stage::BroadPhase => self.broad_phase(),

@@ -2,11 +2,11 @@
 
 use super::governor::QualityChange;
 
-/// Events that wait to be told: half a second in which every step has four.
+/// Events that wait to be read: half a second in which every step has four.
 pub const EVENTS: usize = 256;
 
-/// The name of the bound, as warnings give it.
-pub const EVENTS_NAME: &str = "EVENTS (engine/core/src/frame_loop/event.rs)";
+/// Name of this capacity in reports and warnings.
+pub const EVENTS_NAME: &str = "EVENTS (queue of the loop's events)";
 
 /// A gap between two sensor frames from which on the sensor counts as lost (ns): 15 frames of 30 Hz.
 pub const SENSOR_LOST_NS: u64 = 500_000_000;
@@ -14,15 +14,15 @@ pub const SENSOR_LOST_NS: u64 = 500_000_000;
 /// What happened, in the step of this number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event {
-    /// The step.
+    /// Number of the step.
     pub tick: u64,
     /// When the step was due (ns).
     pub scheduled_ns: u64,
-    /// What happened.
+    /// What happened in it.
     pub what: EventKind,
 }
 
-/// What can happen.
+/// Kinds of event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EventKind {
     /// The governor gave up quality, or gave it back.
@@ -65,7 +65,7 @@ pub struct Counters {
     pub waited_ns: u64,
     /// Times that its core was taken away.
     pub preempted: u64,
-    /// Page faults.
+    /// Page faults: memory that had to be brought in first.
     pub faults: u64,
 }
 
@@ -89,7 +89,7 @@ pub trait CounterSource: Send {
     fn counters(&mut self, closely: bool) -> Counters;
 }
 
-/// No counters.
+/// Counts nothing: for systems without such counters, and for tests.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoCounters;
 

@@ -1,9 +1,9 @@
-//! Flight recorder: what a replay needs of the last seconds, kept in memory by whoever empties the recording's queue, for the moment at
-//! which something dies.
+//! Flight recorder: keeps the inputs of the last seconds in memory, so that a crash can be replayed.
 //!
-//! A replay has to begin where the state is known, which is where a shopper was dressed. So the box keeps the run from the
-//! last such moment that lies [`KEPT_NS`] or more back: ten seconds at least, and the whole of the shopper's visit before
-//! them. The physics has no part in it.
+//! A replay must begin in a known state, which is the moment at which a shopper was dressed. The recorder therefore keeps
+//! everything since the last such moment that lies at least [`KEPT_NS`] back: ten seconds or more, with the whole of the
+//! visit in which they began. The thread that empties the recording's queue fills it; the physics thread only writes to
+//! the queue. If a thread panics, the panic hook saves what is kept as a file for `toile replay`.
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
@@ -13,20 +13,20 @@ use std::time::{Duration, Instant};
 use super::queue::{Capacity, Receiver};
 use super::recording::{self, Entry, SceneNote};
 
-/// What is kept at least (ns).
+/// Shortest time that is kept (ns).
 pub const KEPT_NS: u64 = 10_000_000_000;
 
-/// Room for each of two visits that is there, and touched, from the begin (bytes): nine minutes. Only a longer one takes memory
-/// while it goes on.
+/// Memory that is allocated, and written to once, for each of two visits at load (bytes): enough for nine minutes. Only a
+/// longer visit allocates while it goes on.
 pub const ROOM_BYTES: usize = 8 << 20;
 
-/// Longest visit that is kept whole (bytes): an hour at 15 kB a second. Of a longer one nothing is kept beyond it.
+/// Most that is kept of one visit (bytes): an hour at 15 kB a second. What a longer visit adds is not kept.
 pub const MOST_BYTES: usize = 56 << 20;
 
-/// Time between two tries to get at the box (us).
+/// Time between two tries to lock the recorder.
 const RETRY: Duration = Duration::from_micros(500);
 
-/// One visit.
+/// What is known of the visit under way.
 #[derive(Debug, Default)]
 struct Visit {
     /// When its first step was due (ns).
@@ -40,7 +40,7 @@ struct Visit {
 struct RecorderState {
     header: Vec<u8>,
     entries: Receiver<Entry>,
-    /// What was said of scenes that are kept or come next, with their numbers.
+    /// How scenes that are kept or come next are made, as encoded notes, with their numbers.
     notes: VecDeque<(u64, Vec<u8>)>,
     visits: VecDeque<Visit>,
     newest_ns: u64,
@@ -48,7 +48,7 @@ struct RecorderState {
     spare: Vec<Vec<u8>>,
 }
 
-/// The box; shared by the thread that fills it and by whoever has to save it.
+/// The recorder, shared by the thread that fills it and the panic hook that saves it.
 #[derive(Debug)]
 pub struct FlightRecorder(Mutex<RecorderState>);
 
@@ -92,8 +92,8 @@ impl FlightRecorder {
         self.locked().entries.capacity()
     }
 
-    /// The file, with all that is still in the queue; none where nothing was stepped, or where the box is not to be had
-    /// within this time because who fills it died in the middle.
+    /// The bytes of the file, with all that is still in the queue; none where nothing was stepped, or where the recorder
+    /// cannot be locked within this time because the thread that fills it panicked while it held the lock.
     pub fn save(&self, within: Duration) -> Option<Vec<u8>> {
         let until = Instant::now() + within;
         let mut inner = loop {
@@ -116,7 +116,7 @@ impl FlightRecorder {
     }
 
     fn locked(&self) -> MutexGuard<'_, RecorderState> {
-        // Bytes that were half written end the file early, which a reader bears.
+        // A record that was half written ends the file early, which the reader accepts.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -188,22 +188,22 @@ mod tests {
     #[test]
     fn the_last_ten_seconds_are_kept_from_where_somebody_was_dressed() {
         let (mut sender, receiver) = bounded("", 4_096);
-        let black_box = FlightRecorder::new(recording::header("a scene"), receiver);
-        assert!(black_box.save(Duration::ZERO).is_none(), "nothing was stepped yet");
+        let recorder = FlightRecorder::new(recording::header("a scene"), receiver);
+        assert!(recorder.save(Duration::ZERO).is_none(), "nothing was stepped yet");
         // A visit every 8 s for a minute, a garment changed in the middle of each.
         for tick in 0..120 * 60 {
             if tick % 480 == 0 {
                 let number = tick / 480;
-                black_box.describe(&SceneNote { number, first: Joints::absent(0), text: "another".into() });
+                recorder.describe(&SceneNote { number, first: Joints::absent(0), text: "another".into() });
                 sender.push(Entry::Changed { number, afresh: tick % 960 == 0 });
             }
             sender.push(step(tick));
             if tick % 100 == 0 {
-                black_box.drain(|_| {});
+                recorder.drain(|_| {});
             }
         }
         // The rest is still in the queue.
-        let (first, from, to) = kept(&black_box.save(Duration::ZERO).unwrap());
+        let (first, from, to) = kept(&recorder.save(Duration::ZERO).unwrap());
         assert_eq!((first, to), (Entry::Changed { number: 12, afresh: true }, 120 * 60 - 1));
         assert_eq!(from, 120 * 48, "the visit that was there ten seconds ago");
         assert!(ticks_to_ns(to) - ticks_to_ns(from) >= KEPT_NS && KEPT_NS == 10 * SECOND_NS);
@@ -212,9 +212,9 @@ mod tests {
     #[test]
     fn a_box_that_is_held_is_not_waited_for_without_end() {
         let (_sender, receiver) = bounded("", 4);
-        let black_box = FlightRecorder::new(Vec::new(), receiver);
-        let held = black_box.locked();
-        assert!(black_box.save(Duration::from_millis(5)).is_none());
+        let recorder = FlightRecorder::new(Vec::new(), receiver);
+        let held = recorder.locked();
+        assert!(recorder.save(Duration::from_millis(5)).is_none());
         drop(held);
     }
 }

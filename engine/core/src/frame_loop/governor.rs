@@ -18,9 +18,9 @@ pub struct Rung {
     pub wind: bool,
 }
 
-/// The ladder, whole quality first. The order: substeps, then how often self-collision is looked for, then garments that
-/// are far away, then the wind; models that come later take their place in it. `toile latency --rung R` tells
-/// the error of each.
+/// The levels of quality (rungs), whole quality first. The intended order is: substeps, then how often self-collision is
+/// searched, then distant garments, then the wind; models that are added later take their place in it.
+/// `toile latency --rung R` measures the error of each.
 pub const LADDER: [Rung; 4] = [
     Rung { gives_up: "nothing", substep_share: 1.0, wind: true },
     Rung { gives_up: "a quarter of the substeps", substep_share: 0.75, wind: true },
@@ -90,7 +90,7 @@ impl Governor {
         &LADDER[usize::from(self.rung)]
     }
 
-    /// Its place in [`LADDER`].
+    /// Index of the rung in [`LADDER`].
     pub fn place(&self) -> u8 {
         self.rung
     }

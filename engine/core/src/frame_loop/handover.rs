@@ -6,8 +6,8 @@ use super::queue::{Receiver, Sender, bounded};
 /// Changes that wait: one, for a second that comes before the first was taken has nothing to hurry for.
 pub const CHANGES: usize = 1;
 
-/// The name of the bound, as warnings give it.
-pub const CHANGES_NAME: &str = "CHANGES (engine/core/src/frame_loop/handover.rs)";
+/// Name of this capacity in reports and warnings.
+pub const CHANGES_NAME: &str = "CHANGES (queue of scenes to hand over)";
 
 /// Something whole that takes another's place.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,14 +20,14 @@ pub struct SceneChange<S> {
     pub afresh: bool,
 }
 
-/// The end of who makes scenes.
+/// The end held by whoever makes scenes.
 #[derive(Debug)]
 pub struct HandoverSender<S> {
     to: Sender<Box<SceneChange<S>>>,
     back: Receiver<Box<SceneChange<S>>>,
 }
 
-/// The end of who steps or shows them.
+/// The end held by the loop that steps or shows them.
 #[derive(Debug)]
 pub struct HandoverReceiver<S> {
     from: Receiver<Box<SceneChange<S>>>,
@@ -69,9 +69,9 @@ impl<S> HandoverReceiver<S> {
         }
         let mut change = self.from.pop()?;
         put(&mut change);
-        let told = (change.number, change.afresh);
+        let taken = (change.number, change.afresh);
         self.back.push(change);
-        Some(told)
+        Some(taken)
     }
 }
 

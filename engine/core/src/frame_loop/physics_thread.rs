@@ -54,7 +54,7 @@ pub trait Scene {
 /// The frame as the loop steps it.
 #[derive(Debug)]
 pub struct FrameScene {
-    /// The frame.
+    /// The frame that is stepped.
     pub frame: Frame,
     /// The wind at whole quality.
     wind: Option<Wind>,
@@ -105,7 +105,7 @@ impl Scene for FrameScene {
 /// A scene and its intake: what the loop and a replay both step, by the same function.
 #[derive(Debug)]
 pub struct SceneStepper<S> {
-    /// The scene.
+    /// The scene that is stepped.
     pub scene: S,
     intake: MotionInput,
     /// The newest sensor frame.
@@ -178,7 +178,7 @@ fn end_of(scheduled_ns: u64) -> u64 {
 pub struct LoopMeters {
     /// From when a step was due until it began; of steps that were dropped, until the next began.
     pub late: Meter,
-    /// The intake.
+    /// Time to take in sensor frames and other inputs.
     pub intake: Meter,
     /// From begin to publication.
     pub step: Meter,
@@ -188,9 +188,9 @@ pub struct LoopMeters {
     pub wait: Meter,
     /// From a sensor frame's arrival to the publication of the first snapshot that knew it.
     pub reaction: Meter,
-    /// Steps taken.
+    /// Steps that were taken.
     pub steps: u64,
-    /// Steps dropped.
+    /// Steps that were dropped.
     pub dropped: u64,
     /// Steps that were published after their period.
     pub missed: u64,
@@ -215,7 +215,7 @@ impl LoopMeters {
 pub struct StepTimes {
     /// When it was due.
     pub scheduled_ns: u64,
-    /// When it began.
+    /// When the step began (ns).
     pub begun_ns: u64,
     /// When it was published.
     pub ended_ns: u64,
@@ -224,7 +224,7 @@ pub struct StepTimes {
 /// The ends of what the physics writes to, beside the snapshots.
 #[derive(Debug)]
 pub struct PhysicsOutputs {
-    /// What happened.
+    /// Events of the loop, bounded.
     pub events: Sender<Event>,
     /// What a replay needs, where somebody records.
     pub recording: Option<Sender<Entry>>,
@@ -233,9 +233,9 @@ pub struct PhysicsOutputs {
 /// What the physics thread runs.
 #[derive(Debug)]
 pub struct PhysicsThread<S, C, A> {
-    /// What is stepped.
+    /// The scene and its joints, which a replay steps too.
     pub stepper: SceneStepper<S>,
-    /// What was metered.
+    /// Times and counts so far.
     pub gauges: LoopMeters,
     clock: C,
     schedule: Schedule,
@@ -315,7 +315,7 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         }
     }
 
-    /// The last step.
+    /// Times of the last step.
     pub fn taken(&self) -> StepTimes {
         self.taken
     }
@@ -359,7 +359,7 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         };
         if miss.total_ns > PERIOD_NS {
             self.gauges.missed += 1;
-            self.tell(due.scheduled_ns, EventKind::Missed(miss));
+            self.send_event(due.scheduled_ns, EventKind::Missed(miss));
         }
         self.record(due.scheduled_ns);
         self.govern(due.scheduled_ns, miss.step_ns);
@@ -387,7 +387,7 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
             self.gauges.late.add(late);
             self.gauges.response.add(late);
         }
-        self.tell(due.scheduled_ns, EventKind::Dropped(due.dropped));
+        self.send_event(due.scheduled_ns, EventKind::Dropped(due.dropped));
     }
 
     /// Changes the scene, if another was handed over.
@@ -400,7 +400,7 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         if let Some(recording) = &mut self.outlets.recording {
             recording.push(Entry::Changed { number, afresh });
         }
-        self.tell(scheduled_ns, EventKind::Changed(number));
+        self.send_event(scheduled_ns, EventKind::Changed(number));
     }
 
     /// Takes the newest sensor frame, if there is a new one; gives when it arrived (ns).
@@ -418,7 +418,7 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         let lost = begun.saturating_sub(self.last_ns) > SENSOR_LOST_NS;
         if lost != self.lost {
             self.lost = lost;
-            self.tell(scheduled_ns, if lost { EventKind::SensorLost } else { EventKind::SensorBack });
+            self.send_event(scheduled_ns, if lost { EventKind::SensorLost } else { EventKind::SensorBack });
         }
         news.map(|seen| seen.arrived_ns)
     }
@@ -451,7 +451,7 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
     fn govern(&mut self, scheduled_ns: u64, step_ns: u64) {
         if let Some(change) = self.governor.after(step_ns) {
             self.stepper.set_rung(change.to);
-            self.tell(scheduled_ns, EventKind::Quality(change));
+            self.send_event(scheduled_ns, EventKind::Quality(change));
         }
     }
 
@@ -460,12 +460,12 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         let before = std::mem::replace(&mut self.troubles, now);
         for (k, what) in [EventKind::Broken, EventKind::RolledBack].into_iter().enumerate() {
             if now[k] > before[k] {
-                self.tell(scheduled_ns, what);
+                self.send_event(scheduled_ns, what);
             }
         }
     }
 
-    fn tell(&mut self, scheduled_ns: u64, what: EventKind) {
+    fn send_event(&mut self, scheduled_ns: u64, what: EventKind) {
         // One that does not fit is counted by the queue.
         self.outlets.events.push(Event { tick: self.tick, scheduled_ns, what });
     }

@@ -11,22 +11,25 @@ use crossbeam_queue::ArrayQueue;
 /// How full something bounded was.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Capacity {
-    /// The constant that bounds it, with its room.
+    /// Name of the constant that bounds it, and what it bounds in brackets.
     pub constant: &'static str,
-    /// Its bound.
+    /// The most that it can hold.
     pub bound: usize,
     /// The most that was in it at once.
     pub high_water: usize,
-    /// What did not fit.
+    /// Number of entries that did not fit.
     pub lost: u64,
 }
 
 impl Capacity {
-    /// The constant to raise, where something did not fit.
+    /// What was lost and the cure, where something did not fit.
     pub fn warning(&self) -> Option<String> {
         (self.lost > 0).then(|| {
             let Self { constant, bound, lost, .. } = self;
-            format!("{lost} entries did not fit into {bound} places and were lost; raise {constant}")
+            format!(
+                "{lost} entries were lost, for {constant} holds {bound}; give the program more processor time, or build it with a \
+                 larger value"
+            )
         })
     }
 }
@@ -75,7 +78,7 @@ impl<T> Sender<T> {
 }
 
 impl<T> Receiver<T> {
-    /// The oldest entry.
+    /// Takes the oldest entry, if there is one.
     pub fn pop(&mut self) -> Option<T> {
         self.0.entries.pop()
     }
@@ -97,13 +100,15 @@ mod tests {
 
     #[test]
     fn a_full_queue_loses_the_newest_and_names_its_bound() {
-        let (mut sender, mut receiver) = bounded("PLACES (frame_loop/queue.rs)", 3);
+        let (mut sender, mut receiver) = bounded("PLACES (queue of this test)", 3);
         assert_eq!(receiver.capacity().warning(), None);
         let fitted: Vec<bool> = (0..5).map(|i| sender.push(i)).collect();
         assert_eq!(fitted, [true, true, true, false, false]);
         let capacity = receiver.capacity();
         assert_eq!((capacity.high_water, capacity.lost, capacity.bound), (3, 2, 3));
-        assert!(capacity.warning().unwrap().ends_with("raise PLACES (frame_loop/queue.rs)"));
+        assert!(
+            capacity.warning().unwrap().starts_with("2 entries were lost, for PLACES (queue of this test) holds 3; ")
+        );
         assert_eq!(std::iter::from_fn(|| receiver.pop()).collect::<Vec<_>>(), [0, 1, 2]);
         assert!(sender.push(9) && receiver.pop() == Some(9));
     }

@@ -18,8 +18,8 @@ pub const MAGIC: &[u8] = b"toile-tape/1\n";
 /// Entries that wait to be written: six seconds at 150 a second.
 pub const ENTRIES: usize = 1024;
 
-/// The name of the bound, as warnings give it.
-pub const ENTRIES_NAME: &str = "ENTRIES (engine/core/src/frame_loop/recording.rs)";
+/// Name of this capacity in reports and warnings.
+pub const ENTRIES_NAME: &str = "ENTRIES (queue of what is recorded)";
 
 /// Longest text about the scene (bytes).
 const MOST_TEXT: usize = 1 << 20;
@@ -27,7 +27,7 @@ const MOST_TEXT: usize = 1 << 20;
 /// Longest text of a note (bytes): what a record holds beside the joints.
 pub const MOST_NOTE: usize = 8 * (u8::MAX as usize - 2 - 2 * JOINTS);
 
-/// What happened, in order.
+/// An entry of a recording.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Entry {
     /// The joints in which the shopper was dressed, before the first step.
@@ -45,7 +45,7 @@ pub enum Entry {
     Fault(u64),
     /// A step was taken.
     Step {
-        /// Its number.
+        /// Number of the step.
         tick: u64,
         /// When it was due (ns).
         scheduled_ns: u64,
@@ -74,14 +74,14 @@ pub struct Recording {
     pub text: String,
     /// What was noted of scenes, in order.
     pub notes: Vec<SceneNote>,
-    /// What happened, in order.
+    /// Entries, in order.
     pub entries: Vec<Entry>,
 }
 
 /// Why a recording cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum RecordingError {
-    /// Another file.
+    /// The first line is not that of a recording.
     #[error(
         "this is not a recording of a run (it does not begin with `toile-tape/1`); make one with `toile latency --record F` or `toile soak --record F`"
     )]

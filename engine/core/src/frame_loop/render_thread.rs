@@ -32,7 +32,7 @@ pub trait Renderer: Send {
 /// Where another scene's snapshots come out, and what is drawn of them.
 #[derive(Debug)]
 pub struct SceneView<O> {
-    /// The snapshots.
+    /// Reads the newest snapshot.
     pub reader: Reader<Snapshot>,
     /// What the renderer has to know.
     pub outfit: O,
@@ -41,7 +41,7 @@ pub struct SceneView<O> {
 /// What the render thread runs.
 #[derive(Debug)]
 pub struct RenderThread<E: Renderer, C> {
-    /// Who draws.
+    /// Draws the pictures.
     pub renderer: E,
     clock: C,
     schedule: Schedule,
@@ -54,7 +54,7 @@ pub struct RenderThread<E: Renderer, C> {
     /// From when a sensor frame was seen until the first picture that shows it was taken. Frames that no picture was
     /// taken of count as shown with the next, at their own age.
     pub total: Meter,
-    /// Pictures taken.
+    /// Pictures that were drawn.
     pub pictures: u64,
     /// Pictures that fell out because the one before took too long.
     pub dropped: u64,

@@ -7,7 +7,7 @@ use crate::clock::Clock;
 /// What came out of a replay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Replayed {
-    /// Steps taken.
+    /// Steps that were replayed.
     pub ticks: u64,
     /// Hash of the state at the end.
     pub fingerprint: u64,

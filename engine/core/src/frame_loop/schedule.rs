@@ -16,12 +16,12 @@ pub struct Schedule {
     dropped: u64,
 }
 
-/// What a schedule says.
+/// Answer of a schedule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Due {
     /// Nothing is due before this time (ns).
     At(u64),
-    /// This is.
+    /// This tick is due now.
     Now(Tick),
 }
 

@@ -15,12 +15,12 @@ use crate::triple_buffer::Writer;
 /// Frames that wait to be looked at by whoever observes the sensor: two seconds of 30 Hz.
 pub const OBSERVED: usize = 64;
 
-/// The name of the bound, as warnings give it.
-pub const OBSERVED_NAME: &str = "OBSERVED (engine/core/src/frame_loop/sensor_thread.rs)";
+/// Name of this capacity in reports and warnings.
+pub const OBSERVED_NAME: &str = "OBSERVED (queue of sensor frames to observe)";
 
 /// A depth image that is shared and not copied on its way: a camera's own, or one of a recording that is held as a whole.
 pub trait DepthImage: Debug + Send + Sync {
-    /// The image.
+    /// The depth image itself (mm).
     fn frame(&self) -> &DepthFrame;
 }
 
@@ -160,7 +160,7 @@ pub struct SensorThread<S, C> {
 }
 
 impl<S: FrameSource, C: Clock> SensorThread<S, C> {
-    /// At load.
+    /// Reads `source`, writes filtered frames to `writer`. Called at load: it allocates.
     pub fn new(source: S, clock: C, writer: Writer<SensorFrame>) -> Self {
         Self {
             source,
@@ -241,7 +241,7 @@ mod tests {
     fn stamps_of_a_clock_that_jumped_and_frames_that_are_no_news_do_not_get_through() {
         const MS: u64 = 1_000_000;
         // When each frame arrives, and its stamp (ms): late, repeated, out of order, from tomorrow, from yesterday.
-        let told = [
+        let frames = [
             (5_000, 4_980),
             (5_033, 5_013),
             (5_066, 5_013),
@@ -250,8 +250,8 @@ mod tests {
             (5_166, 12),
             (5_200, 5_180),
         ];
-        struct ShopperFacts(Vec<(u64, u64)>);
-        impl FrameSource for ShopperFacts {
+        struct StampedFrames(Vec<(u64, u64)>);
+        impl FrameSource for StampedFrames {
             fn next_ns(&self) -> Option<u64> {
                 self.0.first().map(|t| t.0 * MS)
             }
@@ -262,7 +262,7 @@ mod tests {
         let clock = crate::clock::SimClock::default();
         let crate::triple_buffer::TripleBuffer { writer, mut reader } =
             crate::triple_buffer::TripleBuffer::new(&SensorFrame::default());
-        let mut sense = SensorThread::new(ShopperFacts(told.to_vec()), clock.clone(), writer);
+        let mut sense = SensorThread::new(StampedFrames(frames.to_vec()), clock.clone(), writer);
         let mut stamps = Vec::new();
         while let Some(due) = sense.source.next_ns() {
             clock.sleep_until(due);

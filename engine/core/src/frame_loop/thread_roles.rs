@@ -17,7 +17,7 @@ pub enum ThreadRole {
     Physics,
     /// Shares the physics' cloth.
     Worker,
-    /// Draws.
+    /// Draws pictures of the newest snapshot.
     Render,
 }
 
@@ -56,7 +56,7 @@ impl ThreadRole {
 /// What a thread asked for and got.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Placement {
-    /// The thread.
+    /// What the thread does.
     pub role: ThreadRole,
     /// The core that it is pinned to.
     pub core: Option<usize>,

@@ -86,10 +86,10 @@ where
 {
     let turns = Arc::new(AtomicU64::new(0));
     let (stop, mine) = (stop.clone(), turns.clone());
-    let (tell, placement) = mpsc::sync_channel(1);
+    let (send_placement, placement) = mpsc::sync_channel(1);
     let work = move || {
         // Nobody may listen.
-        let _ = tell.send(thread_roles::apply(role));
+        let _ = send_placement.send(thread_roles::apply(role));
         let live = || {
             while !stop.is_set() {
                 let Some(next) = life.run_due() else { break };
@@ -109,9 +109,10 @@ where
 /// # Errors
 /// As [`WorkerPool::new`].
 pub fn worker_pool(workers: usize) -> Result<(WorkerPool, Option<Placement>), WorkerPoolError> {
-    let (tell, told) = mpsc::sync_channel(1);
-    let pool = WorkerPool::beginning(workers, move || _ = tell.send(thread_roles::apply(ThreadRole::Worker)))?;
-    Ok((pool, told.recv_timeout(LONGEST_START).ok()))
+    let (send_placement, placed) = mpsc::sync_channel(1);
+    let pool =
+        WorkerPool::beginning(workers, move || _ = send_placement.send(thread_roles::apply(ThreadRole::Worker)))?;
+    Ok((pool, placed.recv_timeout(LONGEST_START).ok()))
 }
 
 #[cfg(test)]
@@ -135,9 +136,9 @@ mod tests {
         assert_eq!(own.placement().unwrap().role, ThreadRole::Render);
         assert_eq!(own.join().unwrap().0, 40);
         let stop = Stop::default();
-        let told = start(ThreadRole::Render, Counting(u64::MAX / 2, clock), clock, &stop).unwrap();
+        let placed = start(ThreadRole::Render, Counting(u64::MAX / 2, clock), clock, &stop).unwrap();
         stop.now();
-        assert!(told.join().is_some());
+        assert!(placed.join().is_some());
     }
 
     struct Dying(u64);

@@ -20,7 +20,7 @@ pub struct Store {
 }
 
 impl Store {
-    /// So many zeros.
+    /// A column of `len` zeros.
     pub fn zeros(len: usize) -> Self {
         Self { lines: vec![CacheLine([0.0; MOST]); len.div_ceil(MOST)].into(), len }
     }
@@ -32,7 +32,7 @@ impl Store {
         this
     }
 
-    /// Its numbers.
+    /// Its numbers, without the padding behind them.
     pub fn as_slice(&self) -> &[f32] {
         &bytemuck::cast_slice(&self.lines)[..self.len]
     }
@@ -48,7 +48,7 @@ impl Store {
         WriteColumn::new(self.as_mut())
     }
 
-    /// Bytes held.
+    /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.lines)
     }
@@ -180,7 +180,7 @@ impl<'a> ReadColumn<'a> {
         Self { data: numbers.as_ptr(), len: numbers.len(), lender: PhantomData }
     }
 
-    /// How many.
+    /// How many numbers it has.
     #[inline(always)]
     #[expect(clippy::len_without_is_empty, reason = "no caller asks")]
     pub fn len(self) -> usize {
@@ -247,7 +247,7 @@ impl<'a> WriteColumn<'a> {
         Self { data: numbers.as_mut_ptr(), len: numbers.len(), owner: PhantomData }
     }
 
-    /// How many.
+    /// How many numbers it has.
     #[inline(always)]
     #[expect(clippy::len_without_is_empty, reason = "no caller asks")]
     pub fn len(self) -> usize {

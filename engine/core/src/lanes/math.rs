@@ -26,11 +26,11 @@ pub fn times_reciprocal_root<L: Numbers>(a: L, x: L) -> L {
 /// Three coordinates, each in lanes.
 #[derive(Clone, Copy)]
 pub struct V3<L> {
-    /// x.
+    /// The x coordinates.
     pub x: L,
-    /// y.
+    /// The y coordinates.
     pub y: L,
-    /// z.
+    /// The z coordinates.
     pub z: L,
 }
 
@@ -78,17 +78,17 @@ impl<L: Numbers> V3<L> {
     pub fn select(self, mask: L::Mask, other: Self) -> Self {
         Self { x: self.x.select(mask, other.x), y: self.y.select(mask, other.y), z: self.z.select(mask, other.z) }
     }
-    /// [`Numbers::rotate_down`].
+    /// [`Numbers::rotate_down`] of each coordinate.
     #[inline(always)]
     pub fn rotate_down(self) -> Self {
         Self { x: self.x.rotate_down(), y: self.y.rotate_down(), z: self.z.rotate_down() }
     }
-    /// [`Numbers::rotate_up`].
+    /// [`Numbers::rotate_up`] of each coordinate.
     #[inline(always)]
     pub fn rotate_up(self) -> Self {
         Self { x: self.x.rotate_up(), y: self.y.rotate_up(), z: self.z.rotate_up() }
     }
-    /// [`Numbers::with_first`].
+    /// [`Numbers::with_first`] of each coordinate.
     #[inline(always)]
     pub fn with_first(self, o: Self) -> Self {
         Self { x: self.x.with_first(o.x), y: self.y.with_first(o.y), z: self.z.with_first(o.z) }
@@ -115,7 +115,7 @@ impl<L: Lanes> V3<L> {
         let [x, y, z] = from;
         Self { x: L::load_quads(x, quads, lane), y: L::load_quads(y, quads, lane), z: L::load_quads(z, quads, lane) }
     }
-    /// Writes them.
+    /// Writes the vectors of particles in quads to three columns.
     #[inline(always)]
     pub fn store_quads(self, to: [WriteColumn<'_>; 3], quads: &[u32; 4], lane: usize) {
         self.x.store_quads(to[0], quads, lane);

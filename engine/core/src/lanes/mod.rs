@@ -32,9 +32,9 @@ pub enum Width {
     One,
     /// What every x86-64 and aarch64 has.
     Four,
-    /// AVX2.
+    /// 256 bits at once: AVX2.
     Eight,
-    /// AVX-512.
+    /// 512 bits at once: AVX-512.
     Sixteen,
 }
 
@@ -42,7 +42,7 @@ impl Width {
     /// All widths, narrowest first.
     pub const ALL: [Self; 4] = [Self::One, Self::Four, Self::Eight, Self::Sixteen];
 
-    /// Lanes.
+    /// Number of lanes.
     pub fn lanes(self) -> usize {
         match self {
             Self::One => 1,

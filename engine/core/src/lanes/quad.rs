@@ -4,11 +4,11 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use super::{Lanes, MOST, Mask, Numbers, Readable, WriteColumn};
 
-/// Four numbers.
+/// Four numbers side by side, which the compiler puts into one register.
 #[derive(Clone, Copy)]
 pub struct Four([f32; 4]);
 
-/// Four answers.
+/// Four truth values, the mask of [`Four`].
 #[derive(Clone, Copy)]
 pub struct Answers([bool; 4]);
 

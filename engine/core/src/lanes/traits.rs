@@ -21,9 +21,9 @@ pub trait Mask: Copy {
 
 /// Numbers side by side: what arithmetic takes them to be.
 pub trait Numbers: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {
-    /// How many.
+    /// How many numbers lie side by side.
     const N: usize;
-    /// Its mask.
+    /// The truth values that comparing them gives.
     type Mask: Mask;
 
     /// The same number in every lane.
@@ -102,7 +102,7 @@ pub trait Lanes: Numbers {
 
 /// A kernel for any lanes. `run` has to be `#[inline(always)]`, or it is not compiled for the width it is called at.
 pub trait Kernel {
-    /// What it gives back.
+    /// Result of the kernel.
     type Out;
     /// The kernel at one width.
     fn run<L: Lanes>(self) -> Self::Out;

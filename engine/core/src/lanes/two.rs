@@ -4,7 +4,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use super::{Mask, Numbers, Readable, WriteColumn};
 
-/// Twice the lanes.
+/// Two values of a type side by side: twice the lanes.
 #[derive(Clone, Copy)]
 pub struct Two<L>(L, L);
 

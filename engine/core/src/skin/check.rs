@@ -28,29 +28,29 @@ pub enum SkinError {
     #[error("skin vertex {0} has a position or a normal that is not finite; repair the mesh")]
     NotFinite(usize),
     /// A weighted bone that the skeleton lacks.
-    #[error("skin vertex {vertex} hangs on bone {bone}, but there are {BONES} bones; use an index below that")]
+    #[error("skin vertex {vertex} names bone {bone}, but there are {BONES} bones; use an index below that")]
     NoSuchBone {
-        /// The vertex.
+        /// Index of the vertex, from 0.
         vertex: usize,
-        /// What it names.
+        /// Index of the bone that it names.
         bone: u8,
     },
     /// A weight that is not finite, or below 0.
-    #[error("skin vertex {vertex} hangs on bone {bone} with weight {weight}; give a number of 0 or more")]
+    #[error("skin vertex {vertex} has the weight {weight} for bone {bone}; give a number of 0 or more")]
     BadWeight {
-        /// The vertex.
+        /// Index of the vertex, from 0.
         vertex: usize,
-        /// The bone.
+        /// Index of the bone.
         bone: u8,
-        /// Its weight.
+        /// Weight of the bone; 0 to 1 is right.
         weight: f32,
     },
     /// Weights that do not sum to 1.
     #[error("skin vertex {vertex} has weights that sum to {sum}; divide them by their sum, which must be 1")]
     BadSum {
-        /// The vertex.
+        /// Index of the vertex, from 0.
         vertex: usize,
-        /// The sum found.
+        /// Sum of its weights; 1 is right.
         sum: f32,
     },
     /// More influences than a vertex may have.

@@ -13,7 +13,7 @@ pub struct DualQuat {
 }
 
 impl DualQuat {
-    /// No motion.
+    /// The motion that leaves everything where it is.
     pub const IDENTITY: Self = Self { real: Vec4::W, dual: Vec4::ZERO };
 
     /// The motion of a matrix of rotation and translation.

@@ -1,4 +1,4 @@
-//! The kernels: a block's vertices hang on the same bones, so each number of a bone is loaded once, into every lane.
+//! The kernels: a block's vertices follow the same bones, so each number of a bone is loaded once, into every lane.
 //!
 //! The bones of a run are blended as base + w1 (bone1 - base) + ...: weights sum to 1, so the base needs none, the
 //! differences are made once a run, and a vertex of k influences costs (k - 1) products and sums a number. Operations a
@@ -18,7 +18,7 @@ use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, V3, WriteColumn, reciprocal_
 /// Square of the length below which a normal is taken for collapsed.
 const COLLAPSED: f32 = 1e-24;
 
-/// What both kernels work on.
+/// Input of both kernels.
 #[derive(Clone, Copy)]
 pub(super) struct SkinSurface<'a> {
     pub runs: &'a [BoneRun],
@@ -86,7 +86,7 @@ impl<L: Lanes> Matrix<L> {
     }
 }
 
-/// Linear blending.
+/// Blends bone matrices linearly.
 pub(super) struct Linear<'a> {
     pub surface: SkinSurface<'a>,
     pub palette: &'a [Affine3A; BONES],

@@ -1,4 +1,4 @@
-//! A skin vertex by vertex, for whoever poses it elsewhere: the numbers of the kernels in their order, so their bits.
+//! A skin vertex by vertex, for posing it elsewhere, such as on a GPU: the numbers of the kernels in their order, so their bits.
 
 use glam::Vec3;
 use toile_assets::limits::MAX_INFLUENCES;
@@ -9,11 +9,11 @@ use crate::lanes::MOST;
 /// A vertex as the kernels have it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaidVertex {
-    /// Its number in the mesh.
+    /// Index in the mesh.
     pub vertex: usize,
     /// Which of [`SkinningJob::runs`] it belongs to.
     pub run: usize,
-    /// Its place at rest (m).
+    /// Position in the rest pose (m).
     pub position: Vec3,
     /// Its unit normal at rest, or zero.
     pub normal: Vec3,

@@ -1,7 +1,7 @@
 //! The layout of a skin: vertices of the same joint set side by side, in blocks of the widest lanes.
 //!
 //! A set whose vertices do not fill its last block would leave lanes empty. Such remainders are put together where their
-//! sets have few enough bones in common, the bones that a vertex does not hang on weighing nothing: fewer blocks, each
+//! sets have few enough bones in common, with weight 0 for the bones that a vertex does not follow: fewer blocks, each
 //! of which costs a little more.
 
 use std::collections::BTreeMap;
@@ -21,9 +21,9 @@ type BoneSet = [u8; MAX_INFLUENCES];
 pub(super) struct BoneRun {
     /// Its bones, the base first.
     bones: BoneSet,
-    /// How many.
+    /// How many bones there are.
     pub count: usize,
-    /// Where its rest data begins.
+    /// Index of its first rest data in [`SkinLayout::rest`].
     data: usize,
     /// Its first block and how many there are.
     pub first: usize,
@@ -63,7 +63,7 @@ impl BoneRun {
 /// Lanes that a run works on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Padding {
-    /// Vertices.
+    /// Vertices of the skin.
     pub vertices: usize,
     /// Lanes, those that carry no vertex included.
     pub lanes: usize,
@@ -73,7 +73,7 @@ pub struct Padding {
     pub runs: usize,
     /// Influences that the vertices have, and those that their blocks spend on them.
     pub influences: usize,
-    /// The latter.
+    /// Influences that their blocks compute for them.
     pub blended: usize,
 }
 
@@ -96,7 +96,7 @@ pub(super) struct SkinLayout {
     pub rest: Store,
     /// Lane of each vertex, counted over all blocks `[vertices]`.
     pub slots: Arc<[u32]>,
-    /// The rest pose.
+    /// Positions (m) and normals in the rest pose.
     at_rest: Posed,
     influences: usize,
 }

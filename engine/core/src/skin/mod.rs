@@ -49,7 +49,7 @@ pub enum Blend {
 }
 
 impl Blend {
-    /// Both.
+    /// Both ways of blending.
     pub const ALL: [Self; 2] = [Self::Linear, Self::Dual];
 
     /// Its name in reports and options.
@@ -75,7 +75,7 @@ impl FromStr for Blend {
     }
 }
 
-/// A skin made ready at load: checked, and laid out in blocks of vertices that hang on the same bones. Running it
+/// A skin made ready at load: checked, and laid out in blocks of vertices that follow the same bones. Running it
 /// cannot fail.
 #[derive(Debug, Clone)]
 pub struct SkinningJob {

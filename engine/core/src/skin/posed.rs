@@ -13,7 +13,7 @@ pub(super) const BLOCK: usize = 6 * MOST;
 /// and then filled again and again.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posed {
-    /// `[blocks][6][MOST]`.
+    /// Positions (m) and normals by column `[blocks][6][MOST]`.
     columns: Store,
     /// Lane of each vertex, counted over all blocks `[vertices]`.
     places: Arc<[u32]>,

@@ -135,8 +135,8 @@ fn bad_skins_are_refused_with_the_vertex() {
     assert_eq!(SkinningJob::new(&torn, &normals, &weights).err(), Some(SkinError::NotFinite(3)));
     let nine = [Influences::<9>::default(); 8];
     assert_eq!(SkinningJob::new(&positions, &normals, &nine).err(), Some(SkinError::TooManyInfluences(9)));
-    let said = SkinError::BadSum { vertex: 5, sum: 0.5 }.to_string();
-    assert_eq!(said, "skin vertex 5 has weights that sum to 0.5; divide them by their sum, which must be 1");
+    let message = SkinError::BadSum { vertex: 5, sum: 0.5 }.to_string();
+    assert_eq!(message, "skin vertex 5 has weights that sum to 0.5; divide them by their sum, which must be 1");
 }
 
 #[test]

@@ -238,7 +238,7 @@ impl WorkerPool {
         Ok(Self { board, helper, last: 0, taken: 0 })
     }
 
-    /// How many.
+    /// Number of workers, the calling thread among them.
     pub fn workers(&self) -> usize {
         1 + usize::from(self.helper.is_some())
     }

@@ -36,9 +36,9 @@ impl Dressing {
 pub struct Dressed {
     /// The frame, with one worker.
     pub frame: Frame,
-    /// Where its snapshots come out.
+    /// Reads the snapshots of the frame.
     pub reader: Reader<Snapshot>,
-    /// How it was made.
+    /// The recipe of the frame, for a recording.
     pub dressing: Dressing,
 }
 

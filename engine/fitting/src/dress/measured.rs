@@ -55,7 +55,7 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// The sex of the body to show: as told or found, otherwise whom the garments are made for, women for all others.
+    /// The sex of the body to show: as given or measured, otherwise whom the garments are made for, women for all others.
     pub fn sex(&self, garments: Population) -> Sex {
         sex(self.population, garments)
     }
@@ -71,13 +71,13 @@ pub fn sex(shopper: Population, garments: Population) -> Sex {
 ///
 /// # Errors
 /// A session that shows nobody who can be measured.
-pub fn measure(session: &Session, told: ShopperFacts) -> Result<Measured, FittingError> {
-    if told.seated {
-        return seated(session, told);
+pub fn measure(session: &Session, facts: ShopperFacts) -> Result<Measured, FittingError> {
+    if facts.seated {
+        return seated(session, facts);
     }
     let surface = DepthSurface::of(session);
-    let fitted = surface.measure(Population::from(told.sex), told.clothed);
-    let population = population(told.sex, fitted.as_ref());
+    let fitted = surface.measure(Population::from(facts.sex), facts.clothed);
+    let population = population(facts.sex, fitted.as_ref());
     let sections = by_sections(session, population)?;
     let best = fitted.as_ref().map_or_else(|| sections.clone(), |fitted| preferred(&sections, fitted));
     Ok(Measured { best, sections, fitted, surface, population })
@@ -104,8 +104,8 @@ pub fn add_joints(session: &mut Session, measured: &Measured) -> Result<(), Fitt
     Ok(())
 }
 
-fn seated(session: &Session, told: ShopperFacts) -> Result<Measured, FittingError> {
-    let population = Population::from(told.sex);
+fn seated(session: &Session, facts: ShopperFacts) -> Result<Measured, FittingError> {
+    let population = Population::from(facts.sex);
     let above = session::of_joints(session.joints.iter().map(above_the_chair).collect());
     let mut sections = by_sections(&above, population)?;
     (sections.measures.hip_girth, sections.measures.inseam) = (None, None);
@@ -118,8 +118,8 @@ fn by_sections(session: &Session, population: Population) -> Result<Measurements
     measure::measure(&session.joints, &session.depth, &hint).map_err(FittingError::input)
 }
 
-fn population(told: Option<Sex>, fitted: Option<&FittedMeasures>) -> Population {
-    match (told, fitted) {
+fn population(facts: Option<Sex>, fitted: Option<&FittedMeasures>) -> Population {
+    match (facts, fitted) {
         (Some(sex), _) => Population::from(Some(sex)),
         (None, Some(fitted)) if fitted.woman >= SURE_OF_SEX => Population::Women,
         (None, Some(fitted)) if fitted.woman <= 1.0 - SURE_OF_SEX => Population::Men,

@@ -1,4 +1,4 @@
-//! The recipe of a dressed shopper, which a recording carries along so that a replay makes the very same.
+//! The recipe of a dressed shopper, which a recording holds so that a replay makes the same one.
 
 use serde::{Deserialize, Serialize};
 use toile_assets::body::{Body, Measures, Sex};
@@ -40,11 +40,11 @@ pub struct Recipe {
 pub struct Parts {
     /// The shopper's body.
     pub body: Body,
-    /// Its colliders.
+    /// Spheres and capsules that stand for the body in contact.
     pub rig: Rig,
     /// The garments, inner first.
     pub garments: Vec<Garment>,
-    /// How they are stepped.
+    /// Settings of the cloth.
     pub settings: Settings,
 }
 

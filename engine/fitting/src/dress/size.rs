@@ -1,4 +1,4 @@
-//! The size of each garment and how each zone of it sits, from the room that recommends.
+//! The size of each garment and the fit of each of its zones, as recommended by `toile_track::recommend`.
 
 use toile_assets::sizes::{Girth, SizeError, SizeTable};
 use toile_assets::wardrobe::style::Style;

@@ -18,7 +18,7 @@ use crate::FittingError;
 /// Fabric of a mesh that a user brings without saying what it is made of.
 const MESH_FABRIC: &str = "cotton-lawn";
 
-/// What is asked for.
+/// Garments, size, quality and sex that are asked for.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Wish {
     /// Garments of the wardrobe or mesh files, inner first; empty is the first of the wardrobe.
@@ -27,14 +27,14 @@ pub struct Wish {
     pub size: Option<String>,
     /// How the cloth is stepped.
     pub quality: Quality,
-    /// The shopper's sex, if it was told.
+    /// The shopper's sex, if it was given.
     pub sex: Option<Sex>,
 }
 
 /// A garment to wear.
 #[derive(Debug, Clone)]
 pub enum Choice {
-    /// One of the wardrobe.
+    /// A garment of the wardrobe.
     Style(Box<Style>),
     /// A mesh of the user's own.
     Mesh(PathBuf),
@@ -45,7 +45,7 @@ pub enum Choice {
 pub struct Worn {
     /// The garment, baked.
     pub garment: Garment,
-    /// How it fits.
+    /// How it fits; none where it was not recommended.
     pub fit: Option<Recommendation>,
 }
 
@@ -59,7 +59,7 @@ impl Wish {
         self.names().into_iter().map(choice).collect()
     }
 
-    /// The same for who takes garments of the wardrobe alone.
+    /// The same, of garments of the wardrobe alone.
     ///
     /// # Errors
     /// A name that is not in the wardrobe.

@@ -23,13 +23,13 @@ use super::running::Loops;
 use super::scene_changer::DressedScene;
 use super::watchdog::Progress;
 
-/// What the loop begins with.
+/// Parts that the loop is started with.
 pub struct LoopParts<S, E: Renderer, F, A> {
     /// Whoever is shown first.
     pub first: DressedScene<S, E::Outfit>,
     /// The renderer, which knows the outfit of the first already: that of `first` is what it leaves in its place.
     pub renderer: E,
-    /// What the sensor reads.
+    /// Source of sensor frames.
     pub source: F,
     /// What the system counts of the physics thread.
     pub account: A,
@@ -62,13 +62,13 @@ pub type RenderLoop<E, C> = WatchedRenderer<E, C>;
 /// The ends of the queues that whoever looks after the loop empties.
 #[derive(Debug)]
 pub struct LoopQueues {
-    /// What happened.
+    /// Events of the loop.
     pub events: Receiver<Event>,
-    /// What each step came to.
+    /// A report of each step.
     pub step_reports: Receiver<StepReport>,
     /// What the sensor saw, as it came and filtered.
     pub frames: Receiver<ObservedFrame>,
-    /// What the watchdog looks at.
+    /// Counts of steps and pictures, for the watchdog.
     pub progress: Arc<Progress>,
 }
 
@@ -86,7 +86,7 @@ pub type AssembledLoops<S, E, F, A, C> = Loops<SensorLoop<F, C>, PhysicsLoop<S, 
 pub struct Assembly<S, E: Renderer, F, A, C> {
     /// The three loops, to be run by threads or one after the other.
     pub loops: AssembledLoops<S, E, F, A, C>,
-    /// What they report.
+    /// Queues of what the threads report.
     pub queues: LoopQueues,
     /// How scenes are changed.
     pub handover: SceneHandover<S, E::Outfit>,

@@ -1,4 +1,4 @@
-//! One job at a time on a thread of its own, which nothing waits for.
+//! One job at a time on a thread of its own, for which nothing waits.
 
 use std::io;
 use std::thread::{self, JoinHandle};
@@ -8,12 +8,12 @@ use std::thread::{self, JoinHandle};
 pub enum Finished<T> {
     /// It gave this; whether somebody still wants it.
     Done {
-        /// What it gave.
+        /// What the job returned.
         value: T,
         /// Whether nobody abandoned it.
         wanted: bool,
     },
-    /// Its thread panicked.
+    /// The thread of the job panicked.
     Panicked,
 }
 

@@ -9,36 +9,37 @@ use toile_engine::frame_loop::flight_recorder::FlightRecorder;
 use toile_engine::frame_loop::queue::{Sender, bounded};
 use toile_engine::frame_loop::recording::{ENTRIES, ENTRIES_NAME, Entry};
 
-/// Longest that a dying thread waits for the black box.
+/// Longest that a panicking thread waits for the flight recorder.
 const LONGEST_WAIT: Duration = Duration::from_millis(500);
 
-/// What is saved, and where; one run at a time.
+/// The recorder that is saved, and the file; one run at a time.
 static KEPT: Mutex<Option<(Arc<FlightRecorder>, PathBuf)>> = Mutex::new(None);
 
-/// From now on a panic of any thread writes this box there.
-pub fn keep(black_box: &Arc<FlightRecorder>, path: PathBuf) {
-    *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some((black_box.clone(), path));
+/// From now on a panic of any thread writes what this recorder holds to this file.
+pub fn keep(recorder: &Arc<FlightRecorder>, path: PathBuf) {
+    *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some((recorder.clone(), path));
 }
 
-/// A box whose file begins with this header (`frame_loop::recording::header`), kept from now on for a crash; and the end of the tape that fills it.
+/// A recorder whose file begins with this header (`frame_loop::recording::header`), saved if a thread panics from now on; and
+/// the queue that fills it.
 pub fn record(header: Vec<u8>, path: PathBuf) -> (Arc<FlightRecorder>, Sender<Entry>) {
     let (sender, entries) = bounded(ENTRIES_NAME, ENTRIES);
-    let black_box = Arc::new(FlightRecorder::new(header, entries));
-    keep(&black_box, path);
-    (black_box, sender)
+    let recorder = Arc::new(FlightRecorder::new(header, entries));
+    keep(&recorder, path);
+    (recorder, sender)
 }
 
-/// The run is over.
+/// Forgets the recorder: the run is over.
 pub fn forget() {
     *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = None;
 }
 
-/// Writes the box, if one is kept; the sentence says where, or why not. For the panic hook, which must not panic itself.
+/// Saves the recorder, if there is one; the sentence says where, or why not. For the panic hook, which must not panic itself.
 pub fn save() -> Option<String> {
-    // Nobody holds this lock for long, but who panics may be the one that does.
-    let (black_box, path) = KEPT.try_lock().ok()?.take()?;
+    // Nobody holds this lock for long, but the panicking thread may hold it itself.
+    let (recorder, path) = KEPT.try_lock().ok()?.take()?;
     let name = path.display();
-    let Some(bytes) = black_box.save(LONGEST_WAIT) else {
+    let Some(bytes) = recorder.save(LONGEST_WAIT) else {
         return Some("no recording of the last seconds could be had".to_owned());
     };
     Some(match fs::write(&path, bytes) {

@@ -11,7 +11,7 @@ use crate::dress::dressed::{self, Dressed};
 use crate::dress::session;
 use crate::dress::wish::Wish;
 
-/// What is to be done.
+/// A job for the dresser.
 #[derive(Debug, Clone)]
 pub enum DressJob {
     /// Measure a shopper and dress them.
@@ -39,13 +39,13 @@ impl ShopperSource {
     }
 }
 
-/// What became of a job.
+/// Result of a job.
 pub enum DressOutcome {
     /// Somebody is dressed: a shopper, or the mannequin, which stands still.
     Done(Box<Dressed>),
     /// They could not be measured; why is not reported to anybody, for it may tell of them.
     Failed,
-    /// The thread panicked.
+    /// The thread that dresses panicked.
     Panicked,
 }
 

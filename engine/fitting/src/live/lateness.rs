@@ -1,4 +1,4 @@
-//! What the system counts of the physics thread, and what that says of a step that was late.
+//! Counters of the system for the physics thread, and the cause of a late step by them.
 //!
 //! Each step costs two system calls that touch no file: `getrusage(RUSAGE_THREAD)` for faults and lost cores, and the
 //! thread's CPU clock; together under a microsecond. How long the thread waited for a core while it was ready stands only in
@@ -104,11 +104,11 @@ fn cause(miss: &Miss, before: Option<Cause>) -> Cause {
 /// Adds up why steps were late, from what the loop tells.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct LatenessAttribution {
-    /// The sums.
+    /// Late steps so far, by cause.
     pub attributed: Attributed,
     /// The last late step and its cause.
     before: Option<(u64, Cause)>,
-    /// Steps that were dropped before one whose cause is not told yet.
+    /// Steps that were dropped before one whose cause is not known yet.
     dropped: u64,
 }
 

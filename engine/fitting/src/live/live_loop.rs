@@ -31,9 +31,9 @@ pub type EndedLive<S, E, F> =
 
 /// The loop while it runs.
 pub struct LiveLoop<S: Scene, E: Renderer, F: FrameSource> {
-    /// The threads.
+    /// The threads of sensor, physics and renderer.
     pub threads: LiveThreads<S, E, F>,
-    /// What they report.
+    /// Queues of what the threads report.
     pub queues: LoopQueues,
 }
 

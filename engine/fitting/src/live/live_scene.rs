@@ -17,13 +17,13 @@ use toile_sensors::frame::Joints;
 use super::running::Restart;
 use super::watchdog::Progress;
 
-/// Beats that wait to be counted: eight seconds.
+/// Step reports that wait to be counted: eight seconds.
 pub const STEP_REPORTS: usize = 1024;
 
-/// The name of the bound, as warnings give it.
-pub const STEP_REPORTS_NAME: &str = "STEP_REPORTS (engine/fitting/src/live/live_scene.rs)";
+/// Name of this capacity in reports and warnings.
+pub const STEP_REPORTS_NAME: &str = "STEP_REPORTS (queue of step reports)";
 
-/// What one step came to.
+/// Report of one step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StepReport {
     /// From its begin to its publication (ns).
@@ -39,9 +39,9 @@ pub struct StepReport {
 /// What stays where scenes come and go.
 #[derive(Debug)]
 struct StepReporting {
-    /// What each step came to.
+    /// Queue of the step reports.
     reports: Sender<StepReport>,
-    /// What the watchdog looks at.
+    /// Counts of steps and pictures, for the watchdog.
     progress: Arc<Progress>,
     /// Steps that were rolled back by those who have left: their own counts begin at 0.
     past: u64,
@@ -70,7 +70,7 @@ impl<S: Scene> LiveScene<S> {
         Self { reporting: Some(Box::new(StepReporting { reports, progress, past: 0 })), ..self }
     }
 
-    /// The scene.
+    /// The scene that is stepped.
     pub fn scene(&self) -> &S {
         &self.scene
     }
@@ -137,7 +137,7 @@ pub struct WatchedRenderer<E: Renderer, C> {
 }
 
 impl<E: Renderer, C: Clock> WatchedRenderer<E, C> {
-    /// The same, watched.
+    /// The loop, with its progress watched.
     pub fn new(render: RenderThread<E, C>, progress: Arc<Progress>) -> Self {
         Self { render, progress }
     }
@@ -159,9 +159,9 @@ impl<E: Renderer, C: Clock> ThreadLoop for WatchedRenderer<E, C> {
 
 /// The ends by which scenes are handed over.
 pub struct SceneHandover<S, O> {
-    /// To physics.
+    /// Hands scenes to the physics thread.
     pub scenes: HandoverSender<LiveScene<S>>,
-    /// To the renderer.
+    /// Hands what is drawn to the render thread.
     pub views: HandoverSender<SceneView<O>>,
 }
 
@@ -205,7 +205,7 @@ mod tests {
 
     #[test]
     fn another_scene_takes_over_crew_quality_and_counts() {
-        let (reports, mut told) = bounded(STEP_REPORTS_NAME, STEP_REPORTS);
+        let (reports, mut reported) = bounded(STEP_REPORTS_NAME, STEP_REPORTS);
         let progress = Arc::new(Progress::default());
         let first = Said { name: 1, crew: 9, ..Said::default() };
         let stage = LiveScene::new(first, Some(Joints::absent(7))).reporting(reports, progress.clone());
@@ -223,7 +223,7 @@ mod tests {
         // Back on, with the counts that it left with.
         stepper.change(&mut other, true);
         stepper.step(0, 0, &clock);
-        let reports: Vec<(u8, u64)> = std::iter::from_fn(|| told.pop()).map(|b| (b.rung, b.nonfinite)).collect();
+        let reports: Vec<(u8, u64)> = std::iter::from_fn(|| reported.pop()).map(|b| (b.rung, b.nonfinite)).collect();
         assert_eq!(reports, [(1, 1), (1, 2), (1, 3)], "no count begins anew");
         assert_eq!(progress.count(), [3, 0]);
     }

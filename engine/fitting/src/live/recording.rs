@@ -47,9 +47,9 @@ struct DressingNote {
 impl Dressing {
     /// The same for a recording, under this number.
     pub fn note(&self, number: u64) -> SceneNote {
-        let said = DressingNote { still: self.still, recipe: self.recipe.clone() };
+        let note = DressingNote { still: self.still, recipe: self.recipe.clone() };
         // Plain strings and numbers: it cannot fail, and a note without text is refused by the replay.
-        let text = serde_json::to_string(&said).unwrap_or_default();
+        let text = serde_json::to_string(&note).unwrap_or_default();
         SceneNote { number, first: self.first, text }
     }
 
@@ -74,17 +74,18 @@ impl Dressing {
     }
 }
 
-/// A black box for a run that begins with this scene, which a crash writes there; and where the loop's tape goes.
+/// A flight recorder for a run that begins with this scene, written to `path` if a thread panics; and the queue by which the
+/// physics thread fills it.
 ///
 /// # Errors
 /// A header that cannot be written, which does not happen.
 pub fn keep(first: &Dressing, path: PathBuf) -> Result<(Arc<FlightRecorder>, Sender<Entry>), FittingError> {
     let recipe = KioskRecipe { version: env!("CARGO_PKG_VERSION").to_owned(), kiosk: SceneNaming::Notes };
     let header = recording::header(&serde_json::to_string(&recipe).map_err(FittingError::internal)?);
-    let (black_box, tape) = crash::record(header, path);
-    black_box.describe(&first.note(0));
-    black_box.keep(&Entry::Changed { number: 0, afresh: true });
-    Ok((black_box, tape))
+    let (recorder, entries) = crash::record(header, path);
+    recorder.describe(&first.note(0));
+    recorder.keep(&Entry::Changed { number: 0, afresh: true });
+    Ok((recorder, entries))
 }
 
 /// Takes a kiosk's recording again: the last frame, and what came out.

@@ -8,20 +8,20 @@ use toile_engine::meter::Meter;
 /// A distribution of times (us).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Quantiles {
-    /// Median.
+    /// Median (us).
     pub p50: f64,
-    /// 99 %.
+    /// 99th percentile (us).
     pub p99: f64,
-    /// 99.9 %.
+    /// 99.9th percentile (us).
     pub p999: f64,
-    /// The longest.
+    /// Longest time (us).
     pub max: f64,
-    /// How many.
+    /// Number of times that were measured.
     pub count: u64,
 }
 
 impl Quantiles {
-    /// Of a meter.
+    /// The distribution that a meter holds.
     pub fn of(meter: &Meter) -> Self {
         let h = meter.histogram();
         let us = |ns: u64| (ns as f64 * 1e-2).round() * 0.1;
@@ -47,13 +47,13 @@ pub enum Cause {
 /// Late steps by their causes, the dropped ones included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Attributed {
-    /// [`Cause::Preempted`].
+    /// Steps whose thread was preempted: [`Cause::Preempted`].
     pub preempted: u64,
-    /// [`Cause::PageFault`].
+    /// Steps with page faults: [`Cause::PageFault`].
     pub page_fault: u64,
-    /// [`Cause::Solver`].
+    /// Steps whose solve took long: [`Cause::Solver`].
     pub solver: u64,
-    /// [`Cause::Other`].
+    /// Steps that are late for no known cause: [`Cause::Other`].
     pub other: u64,
 }
 
@@ -72,11 +72,11 @@ impl Attributed {
 /// Where a thread ran.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ThreadPlacement {
-    /// The thread.
+    /// Name of the thread.
     pub thread: &'static str,
     /// The core that it was pinned to.
     pub core: Option<usize>,
-    /// Its real-time priority.
+    /// Real-time priority of the thread.
     pub priority: Option<u8>,
     /// What it did not get, and the cure.
     pub refused: Vec<String>,
@@ -91,13 +91,13 @@ impl From<Placement> for ThreadPlacement {
 /// How full something bounded was.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct QueueUse {
-    /// The constant that bounds it.
+    /// Name of the constant that bounds it, and what it bounds in brackets.
     pub constant: &'static str,
-    /// Its bound.
+    /// The most that it can hold.
     pub bound: usize,
     /// The most that was in it.
     pub high_water: usize,
-    /// What did not fit.
+    /// Number of entries that did not fit.
     pub lost: u64,
 }
 

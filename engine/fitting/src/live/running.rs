@@ -30,22 +30,22 @@ pub trait Restart {
 /// The loops that the three threads run.
 #[derive(Debug)]
 pub struct Loops<A, P, R> {
-    /// The sensor's.
+    /// Loop of the sensor thread.
     pub sensor: A,
-    /// The physics'.
+    /// Loop of the physics thread.
     pub physics: P,
-    /// The renderer's.
+    /// Loop of the render thread.
     pub render: R,
 }
 
 /// What the threads left when they ended; `None` where one did not end in time, or panicked.
 #[derive(Debug)]
 pub struct EndedLoops<A, P, R> {
-    /// The sensor's.
+    /// Loop of the sensor thread.
     pub sensor: Option<A>,
-    /// The physics'.
+    /// Loop of the physics thread.
     pub physics: Option<P>,
-    /// The renderer's.
+    /// Loop of the render thread.
     pub render: Option<R>,
 }
 

@@ -17,9 +17,9 @@ use crate::dress::dressed::Dressed;
 
 /// A dressed scene, with what is drawn of it.
 pub struct DressedScene<S, O> {
-    /// The scene.
+    /// The scene that is stepped.
     pub scene: S,
-    /// Where its snapshots come out.
+    /// Reads the snapshots of the scene.
     pub reader: Reader<Snapshot>,
     /// What the renderer has to know of it.
     pub outfit: O,
@@ -57,13 +57,13 @@ pub struct SceneChanger<S, O> {
     number: u64,
     /// Scenes that were handed over.
     changes: u64,
-    black_box: Option<Arc<FlightRecorder>>,
+    recorder: Option<Arc<FlightRecorder>>,
 }
 
 impl<S: Scene, O> SceneChanger<S, O> {
     /// The loop began with the mannequin (`is_still`) or with a shopper; where a flight recorder is kept, it is given the note of each
     /// scene.
-    pub fn new(handover: SceneHandover<S, O>, is_still: bool, black_box: Option<Arc<FlightRecorder>>) -> Self {
+    pub fn new(handover: SceneHandover<S, O>, is_still: bool, recorder: Option<Arc<FlightRecorder>>) -> Self {
         let SceneHandover { scenes, views } = handover;
         Self {
             scenes,
@@ -75,7 +75,7 @@ impl<S: Scene, O> SceneChanger<S, O> {
             under_way: [false; 2],
             number: 0,
             changes: 0,
-            black_box,
+            recorder,
         }
     }
 
@@ -133,8 +133,8 @@ impl<S: Scene, O> SceneChanger<S, O> {
         self.changes += 1;
         self.number = number.unwrap_or(self.number + 1);
         let number = self.number;
-        if let (Some(black_box), Some(note)) = (&self.black_box, note) {
-            black_box.describe(&SceneNote { number, ..note });
+        if let (Some(recorder), Some(note)) = (&self.recorder, note) {
+            recorder.describe(&SceneNote { number, ..note });
         }
         let scene = Box::new(SceneChange { scene: LiveScene::new(scene, still), number, afresh });
         let view = Box::new(SceneChange { scene: SceneView { reader, outfit }, number, afresh });
@@ -185,7 +185,7 @@ mod tests {
         }
     }
 
-    /// PhysicsThread and render as threads have them.
+    /// Physics and render as they run on threads.
     struct Threads {
         scene: LiveScene<Nth>,
         outfit: u64,

@@ -111,12 +111,12 @@ pub struct LiveSender {
     next_ns: u64,
 }
 
-/// Either of them.
+/// A recording or a live sender.
 #[derive(Debug)]
 pub enum Feed {
-    /// A recording.
+    /// A recording, played again and again.
     Played(Visits),
-    /// A sender.
+    /// A sender of joints over the network (VMC).
     Live(Box<LiveSender>),
 }
 
@@ -168,15 +168,19 @@ mod tests {
         let mut frames = [500, 500 + EMPTY_NS].map(Joints::absent);
         frames.iter_mut().for_each(|frame| frame.at_mut(Joint::Pelvis).confidence = 1.0);
         let mut feed = Feed::Played(Visits::new(frames.map(SourceFrame::from).into(), 1_000, 2 * EMPTY_NS + 7));
-        let mut told = Vec::new();
+        let mut frames_read = Vec::new();
         for _ in 0..9 {
             let due = feed.next_ns().unwrap();
             let frame = feed.read().unwrap().joints;
             assert_eq!(frame.time_ns, due);
-            told.push(((due - 1_000) / EMPTY_NS, frame.at(Joint::Pelvis).is_believed()));
+            frames_read.push(((due - 1_000) / EMPTY_NS, frame.at(Joint::Pelvis).is_believed()));
         }
         let there = |i: u64| i % 4 >= 2;
-        assert_eq!(told, (0..9).map(|i| (i, there(i))).collect::<Vec<_>>(), "every 33 ms, two of four with somebody");
+        assert_eq!(
+            frames_read,
+            (0..9).map(|i| (i, there(i))).collect::<Vec<_>>(),
+            "every 33 ms, two of four with somebody"
+        );
     }
 
     #[test]

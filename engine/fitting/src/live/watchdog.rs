@@ -1,4 +1,4 @@
-//! The watchdog: fed only by who has seen both physics and render get on.
+//! The watchdog: fed only while both physics and render make progress.
 
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;

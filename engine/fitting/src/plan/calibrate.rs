@@ -35,7 +35,7 @@ const EMPTY_STEPS: usize = 60;
 /// What a frame does between waking the helper and the cloth takes at least so long.
 const BEFORE_CLOTH: Duration = Duration::from_micros(80);
 
-/// The colliders that all of them hang on: the benchmark's body, walking.
+/// The colliders that all of them lie on: the benchmark's body, walking.
 const WALKING: &str = "duration = 7\n[colliders]\nmotion = \"walk\"\n";
 
 /// Waist, pinned to the body that walks.
@@ -69,7 +69,7 @@ fn texts() -> [String; 7] {
     ]
 }
 
-/// What one cloth took.
+/// Measured times of one cloth.
 struct Sample {
     work: Work,
     /// Time of each stage (us).

@@ -8,7 +8,7 @@ use super::work::{KINDS, STAGES, Work};
 /// Stages of a step, as the engine's budgets name them.
 const STEP_STAGES: usize = toile_engine::meter::STAGES.len();
 
-/// What this machine takes.
+/// Times of units of work on this machine.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Costs {
     /// Time of a unit (us), in the order of [`super::work::UNITS`].
@@ -21,19 +21,19 @@ pub struct Costs {
     pub body_us: [f64; STEP_STAGES],
 }
 
-/// What one garment takes (us).
+/// Time of a step of one garment (us).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct GarmentTime {
     /// By stage, both shares on one core.
     pub stages_us: [f64; STAGES.len()],
-    /// All of them.
+    /// Sum of the stages, on one worker.
     pub one_us: f64,
     /// Shared by two workers.
     pub two_us: f64,
 }
 
 impl Costs {
-    /// One garment.
+    /// What one garment with this work costs.
     pub fn garment(&self, work: &Work) -> GarmentTime {
         let time = |(counts, unit): (&[f64; KINDS], &[f64; KINDS])| counts.iter().zip(unit).map(|(n, us)| n * us).sum();
         let mut stages_us = [0.0; STAGES.len()];

@@ -1,4 +1,4 @@
-//! Plan: what a scene needs and takes, told before it runs.
+//! Plan: what a scene needs and takes, predicted before it runs.
 //!
 //! Reads: a scene's baked garments, colliders and motion. Writes: who can touch what, memory, the time of each stage as
 //! it is predicted, what each model is worth, whether the scene fits.
@@ -26,19 +26,19 @@ use crate::scene::RunError;
 /// Why a scene cannot be planned.
 #[derive(Debug, Error)]
 pub enum PlanError {
-    /// Its colliders.
+    /// Colliders that the engine does not take.
     #[error(transparent)]
     Colliders(#[from] ColliderError),
-    /// Its frame.
+    /// A frame that cannot be set up.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// Its file.
+    /// A scene file that cannot be run.
     #[error(transparent)]
     Run(#[from] RunError),
     /// A cloth by which the machine is known.
     #[error(transparent)]
     Calibration(#[from] SceneError),
-    /// The workers.
+    /// The worker pool cannot be started.
     #[error(transparent)]
     WorkerPool(#[from] WorkerPoolError),
 }

@@ -32,11 +32,11 @@ const GIVES: f32 = 1.02;
 /// A part of a garment and what it can touch.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Reach {
-    /// The garment.
+    /// Name of the garment.
     pub garment: String,
-    /// The part of the body that it hangs on.
+    /// The part of the body that carries it.
     pub part: &'static str,
-    /// Its particles that move.
+    /// Number of its particles that move.
     pub particles: usize,
     /// Capsules that the part table leaves it.
     pub by_part: u32,
@@ -120,7 +120,7 @@ fn of_garment(scene: &Scene, garment: &Garment, poses: &[Posed]) -> Vec<Reach> {
         let allowed = contact::reach(part, &scene.colliders);
         let length = tethers.length[i] * GIVES + offset + BETWEEN_M;
         let within = |c: &usize| match &nearest[tethers.anchor[i] as usize] {
-            // What hangs nowhere can be anywhere.
+            // Cloth that is attached nowhere can be anywhere.
             Some(near) if tethers.length[i] > 0.0 => near[*c] <= length,
             _ => true,
         };
@@ -134,7 +134,7 @@ fn of_garment(scene: &Scene, garment: &Garment, poses: &[Posed]) -> Vec<Reach> {
         row.sum += u64::from(bits.count_ones());
         row.any |= bits;
     }
-    rows.into_iter().map(|(part, row)| row.told(garment, part, scene)).collect()
+    rows.into_iter().map(|(part, row)| row.report(garment, part, scene)).collect()
 }
 
 #[derive(Default)]
@@ -146,7 +146,7 @@ struct Row {
 }
 
 impl Row {
-    fn told(&self, garment: &Garment, part: Part, scene: &Scene) -> Reach {
+    fn report(&self, garment: &Garment, part: Part, scene: &Scene) -> Reach {
         let part = match part {
             Part::All => "all",
             Part::Trunk => "trunk",

@@ -14,9 +14,9 @@ use super::work::{STAGES, UNITS};
 /// What a unit of work takes on this machine.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UnitCost {
-    /// The cloth's stage.
+    /// Name of the stage of the cloth.
     pub stage: &'static str,
-    /// What is counted.
+    /// Unit of the work that is counted.
     pub unit: &'static str,
     /// Time of one (ns).
     pub ns: f64,
@@ -35,13 +35,13 @@ pub fn units(costs: &Costs) -> Vec<UnitCost> {
 /// One garment of the scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GarmentPlan {
-    /// Its name.
+    /// Name of the garment.
     pub name: String,
-    /// Its size.
+    /// Code of the size.
     pub size: String,
-    /// Its fabric.
+    /// Name of the fabric.
     pub fabric: String,
-    /// Particles.
+    /// Particles of the garment.
     pub particles: usize,
     /// Of these, the ones that move on their own.
     pub free: usize,
@@ -60,9 +60,9 @@ pub struct GarmentPlan {
 /// A stage of a step against its budget.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StagePlan {
-    /// Its name.
+    /// Name of the stage.
     pub stage: &'static str,
-    /// What it may take (us).
+    /// Budget of the stage (us).
     pub budget_us: f64,
     /// What it is predicted to take, half of the time more (us).
     pub predicted_us: f64,
@@ -84,9 +84,9 @@ pub fn stages(predicted: &[f64; meter::STAGES.len()], period_us: f64) -> Vec<Sta
 /// Memory of a part.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Memory {
-    /// The part.
+    /// Name of the part.
     pub part: String,
-    /// Bytes.
+    /// Memory of the part (bytes).
     pub bytes: u64,
 }
 
@@ -117,7 +117,7 @@ impl Held {
     }
 }
 
-/// Everything.
+/// What a scene needs: garments, contact, memory, time of each stage.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {
     /// The scene's name.
@@ -126,17 +126,17 @@ pub struct Plan {
     pub quality: &'static str,
     /// Workers of a step.
     pub workers: usize,
-    /// Lanes.
+    /// Lanes that the kernels run on.
     pub lanes: usize,
     /// Time between two steps (us).
     pub period_us: f64,
-    /// The garments.
+    /// Garments of the scene, inner first.
     pub garments: Vec<GarmentPlan>,
-    /// What can touch what.
+    /// Colliders that each part of a garment can touch.
     pub reach: Vec<Reach>,
-    /// Memory by part.
+    /// Memory of each part.
     pub memory: Vec<Memory>,
-    /// Time by stage.
+    /// Predicted time of each stage.
     pub stages: Vec<StagePlan>,
     /// Whether it fits, and what would help.
     pub verdict: Verdict,

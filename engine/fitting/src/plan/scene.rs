@@ -31,10 +31,10 @@ pub enum Motion {
     File(Box<SceneFile>),
 }
 
-/// A scene.
+/// A scene to plan: garments, colliders, and how they move.
 #[derive(Debug, Clone)]
 pub struct Scene {
-    /// What reports call it.
+    /// Name in reports.
     pub name: String,
     /// The garments, inner first.
     pub garments: Vec<Garment>,
@@ -42,7 +42,7 @@ pub struct Scene {
     pub settings: Vec<Settings>,
     /// What they meet, where it stands at the start.
     pub colliders: Colliders,
-    /// What moves.
+    /// How bones and colliders move.
     pub motion: Motion,
     /// The shopper's skeleton, where there is a shopper.
     pub skeleton: Option<Skeleton>,
@@ -139,20 +139,20 @@ impl Scene {
 
 /// A scene under way.
 pub struct Playing<'a> {
-    /// The scene.
+    /// The scene that is played.
     pub scene: &'a Scene,
-    /// The garments' states.
+    /// State of each garment `[garments]`.
     pub cloths: Vec<Cloth>,
     /// The colliders as last placed.
     pub colliders: Colliders,
     /// The bones at the end of the last step.
     pub bones: [Affine3A; BONES],
-    /// Steps taken.
+    /// Steps taken so far.
     pub step: usize,
 }
 
 impl<'a> Playing<'a> {
-    /// At its start.
+    /// The scene at its start, before the first step.
     pub fn new(scene: &'a Scene) -> Self {
         let bones = scene.skeleton.as_ref().map_or([Affine3A::IDENTITY; BONES], rest_bones);
         Self { scene, cloths: scene.cloths(), colliders: scene.colliders.clone(), bones, step: 0 }

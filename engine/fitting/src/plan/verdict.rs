@@ -1,4 +1,4 @@
-//! Whether a scene fits into its period, and what would make it fit.
+//! Whether a scene fits into its period, and which changes would make it fit.
 
 use serde::Serialize;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
@@ -16,7 +16,7 @@ pub struct Verdict {
     pub step_us: f64,
     /// What it may take, so that a step of twice the usual length is still in time (us).
     pub budget_us: f64,
-    /// What there is (us).
+    /// Time between two steps (us).
     pub period_us: f64,
     /// Whether it is within the budget.
     pub within_budget: bool,
@@ -31,11 +31,11 @@ pub struct Verdict {
 /// A scene's garments, counted and timed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Priced {
-    /// What their first step told.
+    /// What their first step showed `[garments]`.
     pub first: Vec<FirstStep>,
-    /// Their work.
+    /// Work of a step of each garment `[garments]`.
     pub work: Vec<Work>,
-    /// Their times.
+    /// Time of a step of each garment `[garments]`.
     pub times: Vec<GarmentTime>,
     /// The stages of a step (us), as [`Costs::step`] has them.
     pub stages_us: [f64; toile_engine::meter::STAGES.len()],

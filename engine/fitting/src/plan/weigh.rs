@@ -1,7 +1,7 @@
 //! What each model of the cloth is worth: the scene without it, or with one that it leaves out, against the scene as it is.
 //!
 //! Cloth is chaotic: a second after the least difference the folds of two runs are others. So moments of one run are gone on
-//! from, for 50 ms, with the model and without, and what is told is how far the particles are apart then.
+//! from, for 50 ms, with the model and without, and the figure is how far the particles are apart then.
 
 use std::time::Instant;
 
@@ -28,7 +28,7 @@ const DRAG_LIFT: [f32; 2] = [0.1, 0.05];
 /// A model and what it is worth.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Weighed {
-    /// The model.
+    /// Name of the model.
     pub model: &'static str,
     /// Whether the scene has it.
     pub on: bool,
@@ -38,7 +38,7 @@ pub struct Weighed {
     pub us: f64,
 }
 
-/// What playing the scene showed.
+/// Figures from playing the scene.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Played {
     /// Time of the cloth's part of a step, median and 99 % (us), with the workers of the plan.
@@ -51,7 +51,7 @@ pub struct Played {
     pub steps: usize,
     /// Moments that were gone on from.
     pub moments: usize,
-    /// The models.
+    /// The models that were weighed.
     pub models: Vec<Weighed>,
 }
 
@@ -93,7 +93,7 @@ pub fn play(scene: &Scene, workers: usize) -> Result<Played, PlanError> {
     let at = |q: f64| times.get(((times.len() as f64 * q) as usize).min(times.len().saturating_sub(1))).copied();
     let as_is = tallies.remove(0);
     let stages_us = as_is.stages_us();
-    let models = variants[1..].iter().zip(tallies).map(|(v, tally)| tally.told(v, &as_is)).collect();
+    let models = variants[1..].iter().zip(tallies).map(|(v, tally)| tally.weighed(v, &as_is)).collect();
     let cloth_us = [0.5, 0.99].map(|q| at(q).unwrap_or(0.0));
     let near = playing.cloths.iter().map(|c| c.contact_counts().near).sum::<u64>() / steps.max(1) as u64;
     Ok(Played { cloth_us, near, stages_us, steps: times.len(), moments, models })
@@ -123,8 +123,8 @@ fn variants(scene: &Scene) -> Vec<Variant> {
     }
     if quality != Quality::Draft {
         add("repeated passes over hoops and fibers", true, &same, &|s| s.quality = Quality::Draft);
-        let says = if tethers { "tethers" } else { "tethers in every substep" };
-        add(says, tethers, &same, &|s| s.tethers = !tethers);
+        let model_name = if tethers { "tethers" } else { "tethers in every substep" };
+        add(model_name, tethers, &same, &|s| s.tethers = !tethers);
     }
     if quality != Quality::Fine {
         add("three times the substeps, shear in each (fine)", false, &same, &|s| s.quality = Quality::Fine);
@@ -152,7 +152,7 @@ impl Tally {
         std::array::from_fn(|k| quartile(&mut self.stages[k].clone()))
     }
 
-    fn told(mut self, variant: &Variant, as_is: &Self) -> Weighed {
+    fn weighed(mut self, variant: &Variant, as_is: &Self) -> Weighed {
         self.apart_mm.sort_unstable_by(f32::total_cmp);
         let n = self.apart_mm.len();
         let mean = self.apart_mm.iter().map(|mm| f64::from(*mm)).sum::<f64>() / n.max(1) as f64;
@@ -183,7 +183,7 @@ fn weigh(from: &Playing<'_>, variants: &[Variant], tallies: &mut [Tally]) {
     }
 }
 
-/// Plays a window and gives where the particles end. All variants enter through the same door: a cloth of their own,
+/// Plays a window and gives where the particles end. All variants start in the same way: a cloth of their own,
 /// placed by a step, then put into the state of the run.
 fn window(from: &Playing<'_>, variant: &Variant, tally: &mut Tally) -> Vec<Box<[Vec3A]>> {
     let colliders = from.colliders.clone();

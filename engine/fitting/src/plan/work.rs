@@ -43,7 +43,7 @@ pub struct Work {
     pub phases: f64,
     /// Share of the particles that the busier of two workers has.
     pub share: f64,
-    /// Substeps.
+    /// Substeps of a step.
     pub substeps: u32,
 }
 
@@ -66,7 +66,7 @@ pub fn near(garment: &Garment, colliders: &Colliders) -> f64 {
 /// What only a step tells: how it was prepared, and how much of the garment is near the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirstStep {
-    /// Substeps.
+    /// Substeps of a step.
     pub substeps: u32,
     /// How bending goes on.
     pub bend: bending::BendingPace,
@@ -82,7 +82,7 @@ impl FirstStep {
 }
 
 impl Work {
-    /// Counts it.
+    /// Counts the work of a garment under some settings.
     pub fn of(garment: &Garment, settings: &Settings, first: &FirstStep) -> Self {
         let count = Count { garment, quality: settings.quality, lanes: settings.width.lanes() };
         let n = f64::from(first.substeps);
@@ -132,7 +132,7 @@ impl Count<'_> {
 
     /// Lanes of runs, and of what is in none.
     fn links<const K: usize>(&self, tuples: &Tuples<K>) -> [f64; 2] {
-        let zigzags = tuples.zigzags.iter().flat_map(|z| [z.rungs.len, z.slants.len]);
+        let zigzags = tuples.zigzags.iter().flat_map(|z| [z.straights.len, z.slants.len]);
         let runs = zigzags.chain(tuples.runs.iter().map(|r| r.len));
         [runs.map(|len| self.vectors(len as usize)).sum(), tuples.loose.len() as f64 / self.lanes as f64]
     }

@@ -1,4 +1,4 @@
-//! What the cloth reports of what should not happen, in sums and differences.
+//! Counts of what the guards of the cloth had to do, in sums and differences.
 
 use serde::Serialize;
 

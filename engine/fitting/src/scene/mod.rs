@@ -38,9 +38,9 @@ pub enum RunError {
     /// A mesh that cannot be baked.
     #[error("garment {name}: {source}")]
     Mesh {
-        /// The garment.
+        /// Name of the garment.
         name: String,
-        /// What is wrong with it.
+        /// What is wrong with the mesh.
         source: MeshError,
     },
     /// Colliders that the engine does not take.
@@ -51,20 +51,20 @@ pub enum RunError {
 /// The distribution of a step's time (us).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct StepTimes {
-    /// Median.
+    /// Median (us).
     pub p50: f64,
-    /// 99 %.
+    /// 99th percentile (us).
     pub p99: f64,
-    /// 99.9 %.
+    /// 99.9th percentile (us).
     pub p999: f64,
-    /// The longest.
+    /// Longest step (us).
     pub max: f64,
 }
 
 /// What the measured steps came to. Where a scene has several garments, the worst of them counts in each step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Figures {
-    /// Steps measured.
+    /// Steps that were measured.
     pub steps: u64,
     /// Time of a step, all garments.
     pub step_us: StepTimes,
@@ -180,8 +180,9 @@ impl Runner {
         self.allocations += before.zip(after).map_or(0, |(a, b)| b.allocations - a.allocations);
         if metered {
             self.metered += 1;
-            let told = self.cloths.iter().map(|cloth| cloth.stage_ns);
-            told.for_each(|ns| self.sums.stages_us.iter_mut().zip(ns).for_each(|(sum, ns)| *sum += ns as f64 * 1e-3));
+            let stage_times = self.cloths.iter().map(|cloth| cloth.stage_ns);
+            stage_times
+                .for_each(|ns| self.sums.stages_us.iter_mut().zip(ns).for_each(|(sum, ns)| *sum += ns as f64 * 1e-3));
         } else {
             self.times_ns.push(ns);
         }
@@ -245,7 +246,7 @@ impl Runner {
         particles.map(move |(p, stands)| if *p == STANDS { *stands } else { at[*p as usize].into() })
     }
 
-    /// Steps taken.
+    /// Steps taken so far.
     pub fn steps(&self) -> u64 {
         self.steps
     }
@@ -255,7 +256,7 @@ impl Runner {
         self.steps as f64 / self.scene.step_hz
     }
 
-    /// The scene.
+    /// The scene file that is run.
     pub fn scene(&self) -> &SceneFile {
         &self.scene
     }
@@ -265,7 +266,7 @@ impl Runner {
         &self.garments
     }
 
-    /// Their states.
+    /// State of each garment, in the scene's order.
     pub fn cloths(&self) -> &[Cloth] {
         &self.cloths
     }

@@ -20,9 +20,9 @@ pub struct Surface {
     pub positions: Vec<Vec3>,
     /// Rest normal, unit `[vertices]`.
     pub normals: Vec<Vec3>,
-    /// Weights `[vertices]`.
+    /// Bones that carry each vertex `[vertices]`.
     pub weights: Vec<SkinWeights>,
-    /// Skin matrices.
+    /// Matrix of each bone, from the rest pose to the world.
     pub palette: [Affine3A; BONES],
 }
 
@@ -57,7 +57,7 @@ impl Surface {
         }
     }
 
-    /// The same vertices with exactly four influences each: those of fewer hang a little on the bones around their own.
+    /// The same vertices with exactly four influences each: those of fewer follow a little the bones around their own.
     pub fn with_four_influences(mut self) -> Self {
         self.weights.iter_mut().for_each(|w| *w = four(w));
         self

@@ -14,7 +14,7 @@ use crate::shader::pipeline;
 /// An open device and its pipelines.
 #[derive(Debug)]
 pub struct ClothDevice {
-    /// The device.
+    /// The graphics device that is open.
     pub device: Device,
     pub(super) pipelines: Pipelines,
 }
@@ -47,7 +47,7 @@ impl ClothDevice {
 #[derive(Debug)]
 pub struct Pipelines {
     scene: BindGroupLayout,
-    /// By [`Kernel::number`].
+    /// Pipeline and bind group layout of each kernel, by [`Kernel::number`].
     kernels: Vec<(ComputePipeline, BindGroupLayout)>,
 }
 

@@ -14,7 +14,7 @@ pub const SOFT_WEFT: u32 = 1;
 pub const SOFT_FIBERS: u32 = 2;
 /// Flag: fibers are damped across themselves.
 pub const TAUT: u32 = 4;
-/// Flag: tethers act.
+/// Flag: tethers are solved.
 pub const TETHERS: u32 = 8;
 /// Flag: in this step the garment is put back to its rest pose at the root.
 pub const DRESS: u32 = 16;
@@ -37,7 +37,7 @@ pub struct GarmentConstants {
     pub kept: f32,
     /// Length of a substep (s).
     pub dt: f32,
-    /// Its inverse (1/s).
+    /// 1 / dt of the substep (1/s).
     pub per_dt: f32,
     /// The inverse of its square (1/s2).
     pub per_dt2: f32,

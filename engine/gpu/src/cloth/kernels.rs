@@ -25,7 +25,7 @@ pub enum Kernel {
     StageCurvatures,
     /// Bending forces of a stage, by particle.
     StageForces,
-    /// Curvatures.
+    /// Curvature of each bending stencil.
     BendingCurvatures,
     /// Bending forces, by particle.
     BendingForces,
@@ -33,21 +33,21 @@ pub enum Kernel {
     Predict,
     /// Fibers along the bias.
     Diagonals,
-    /// Shear links.
+    /// Links along the bias that lie in no fiber.
     Shear,
-    /// Weft links.
+    /// Links along the weft.
     Weft,
     /// Fibers by index list: hoops and crossing fibers.
     Lists,
-    /// Warp fibers.
+    /// Fibers along the warp.
     Fibers,
     /// Long warp fibers, by cyclic reduction.
     Cyclic,
-    /// Tethers.
+    /// Tethers, which limit distances from where the garment is held.
     Tethers,
     /// Contact with capsules and planes, with friction.
     Contact,
-    /// Velocity update.
+    /// New velocities from what the substep moved, and damping.
     Settle,
     /// Checks that all values are finite and within reach.
     Guard,
@@ -76,7 +76,7 @@ macro_rules! shader {
     };
 }
 
-/// All shaders.
+/// All shaders, by name and variants.
 pub const SHADERS: [Shader; 19] = [
     shader!("repair", [false, true], REPORT),
     shader!("teleport", [false, true]),
@@ -100,7 +100,7 @@ pub const SHADERS: [Shader; 19] = [
 ];
 
 impl Kernel {
-    /// All kernels.
+    /// All kernels, in the order of their numbers.
     pub const ALL: [Self; 26] = [
         Self::Repair,
         Self::Teleport,
@@ -135,7 +135,7 @@ impl Kernel {
         matches!(self, Self::StageCombine | Self::StageCurvatures | Self::StageForces)
     }
 
-    /// Its number among [`Kernel::ALL`].
+    /// Index of the kernel in [`Kernel::ALL`].
     pub fn number(self) -> usize {
         self as usize
     }
@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn shaders_have_the_engines_limits() {
-        let most = format!("const MOST_STAGES = {}u;", toile_engine::cloth::stiff_bending::MOST);
+        let most = format!("const MOST_STAGES = {}u;", toile_engine::cloth::stiff_bending::MAX_BENDING_STAGES);
         let air = 0.25 * toile_engine::cloth::wind::AIR_DENSITY;
         assert!(COMMON.contains(&most));
         assert!(SHADERS.iter().any(|s| s.source().contains(&format!("const AIR = {air};"))));

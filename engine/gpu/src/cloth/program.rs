@@ -8,7 +8,7 @@ use super::kernels::Kernel;
 /// One dispatch of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dispatch {
-    /// The kernel.
+    /// The kernel to run.
     pub kernel: Kernel,
     /// Its workgroups, among [`StepProgram::tables`].
     pub table: usize,
@@ -31,11 +31,11 @@ pub struct StepProgram {
     pub draft: Vec<Dispatch>,
     /// Each substep at the others.
     pub whole: Vec<Dispatch>,
-    /// After the last.
+    /// Dispatches after the last substep.
     pub after: Vec<Dispatch>,
 }
 
-/// WorkgroupTables of one kind, by number.
+/// Tables of workgroups of one kind, by number.
 struct WorkgroupTables {
     everyone: usize,
     bending: usize,

@@ -14,7 +14,7 @@ use crate::buffer_builder::BufferBuilder;
 pub const REPORT: usize = 5;
 
 /// Places in the buffer of stages for each garment.
-pub const STAGES: usize = toile_engine::cloth::stiff_bending::MOST as usize;
+pub const STAGES: usize = toile_engine::cloth::stiff_bending::MAX_BENDING_STAGES as usize;
 
 /// Bytes of a vector of four.
 const VEC4: usize = 16;
@@ -228,7 +228,7 @@ impl ListBuffers {
     }
 }
 
-/// Warp fibers.
+/// Fibers along the warp, in memory of the device.
 pub struct FiberBuffers {
     bundles: Buffer,
     rows: Buffer,

@@ -31,7 +31,7 @@ pub struct StageTimer {
     resolved: Buffer,
     back: ReadbackRing,
     place: Option<usize>,
-    /// Nanoseconds a tick.
+    /// Nanoseconds of a tick of the device's clock.
     period: f32,
     /// Stage of each pass of the step under way.
     pub(super) stages: Vec<u8>,

@@ -1,7 +1,7 @@
 // Skin: rest vertices, weights and a palette become a posed surface, a vertex an invocation, by linear blending or dual
 // quaternions. Twin of `skin/kernel.rs`.
 //
-// Bones are blended as base + w1 (bone1 - base) + ...; a run of vertices hangs on the same bones, so neighbours among the
+// Bones are blended as base + w1 (bone1 - base) + ...; a run of vertices follows the same bones, so neighbours among the
 // invocations read the same numbers of the palette.
 
 // A vertex at rest.

@@ -87,18 +87,18 @@ fn poisoned(place: Option<Vec3A>, velocity: Option<Vec3A>) -> Option<(u64, u64)>
     let (report, events) = (gpu.events(0), cloth.events);
     let (alike, all, most) = apart(gpu.positions(0), &cloth.positions);
     println!("{place:?} {velocity:?}: {alike} of {all} the same, {report:?}");
-    let told = (report.repaired, report.rolled_back);
-    assert_eq!(told, (events.repaired, events.rolled_back), "{place:?} {velocity:?}");
+    let counts = (report.repaired, report.rolled_back);
+    assert_eq!(counts, (events.repaired, events.rolled_back), "{place:?} {velocity:?}");
     let software = gpu.device().adapter().kind == "software";
     assert!(!software || alike == all, "{place:?} {velocity:?}: {most} m apart");
-    Some(told)
+    Some(counts)
 }
 
 #[test]
 fn the_same_poison_has_the_same_end_on_both() {
     let far = Vec3A::splat(1e30);
-    let Some(told) = poisoned(Some(Vec3A::NAN), None) else { return };
-    assert_eq!(told, (1, 0));
+    let Some(counts) = poisoned(Some(Vec3A::NAN), None) else { return };
+    assert_eq!(counts, (1, 0));
     assert_eq!(poisoned(Some(Vec3A::new(0.0, f32::INFINITY, 0.0)), None), Some((1, 0)));
     assert_eq!(poisoned(None, Some(Vec3A::new(0.0, 0.0, f32::NEG_INFINITY))), Some((1, 0)));
     assert_eq!(poisoned(Some(Vec3A::NAN), Some(Vec3A::NAN)), Some((1, 0)));

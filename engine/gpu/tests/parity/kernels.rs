@@ -379,7 +379,7 @@ fn stages_give_what_their_twins_give() {
     }
     // Odd and even numbers end in another part of the room; what is past the most is weakened.
     assert!(seen.iter().any(|m| m % 2 == 0) && seen.iter().any(|m| m % 2 == 1), "{seen:?}");
-    assert_eq!(seen.iter().max(), Some(&stiff_bending::MOST));
+    assert_eq!(seen.iter().max(), Some(&stiff_bending::MAX_BENDING_STAGES));
 }
 
 #[test]

@@ -27,7 +27,7 @@ fn body(sex: Sex) -> (Skeleton, SkinningJob) {
     (body.skeleton, job)
 }
 
-/// A surface of which some vertices hang on eight bones.
+/// A surface of which some vertices follow eight bones.
 fn wide() -> SkinningJob {
     let wave = |v: usize, k: f32| (v as f32 * k + k).sin();
     let points: Vec<Vec3> = (0..700).map(|v| Vec3::new(wave(v, 1.3), 1.0 + wave(v, 2.1), wave(v, 0.7))).collect();
@@ -149,7 +149,7 @@ fn a_bone_that_is_no_number_spoils_what_it_spoils_on_the_cpu() {
         broken[20].matrix3.x_axis.y = number;
         on.1.step(&on.0, blend, &[&broken, &sound]).expect("the step is sent");
         on.1.finish(&on.0).expect("it comes back");
-        assert!(on.1.positions(0).iter().any(|p| !p.is_finite()), "nothing hangs on the bone");
+        assert!(on.1.positions(0).iter().any(|p| !p.is_finite()), "no vertex follows the bone");
         held("broken", &on, 0, &job, blend, &broken);
         held("beside it", &on, 1, &job, blend, &sound);
         on.1.step(&on.0, blend, &[&sound, &sound]).expect("the step is sent");

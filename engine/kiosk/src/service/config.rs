@@ -1,4 +1,4 @@
-//! The configuration: TOML whose every key is known, the only state that a kiosk has.
+//! The configuration, in TOML: the only state that a kiosk has. Unknown keys are refused.
 
 use std::net::SocketAddr;
 use std::ops::RangeInclusive;
@@ -28,7 +28,7 @@ const CONFIGURATION: FileKind = FileKind {
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
-    /// What is worn.
+    /// Garments and sizes that are worn.
     pub wear: WearConfig,
     /// Where frames come from.
     pub sensor: SensorConfig,
@@ -46,7 +46,7 @@ pub struct Config {
     pub crash: CrashConfig,
 }
 
-/// What is worn.
+/// Garments and sizes that are worn.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct WearConfig {
@@ -76,7 +76,7 @@ pub struct SensorConfig {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SensorSource {
-    /// A recording, played.
+    /// A recorded session, played again and again.
     Session,
     /// Virtual Motion Capture over UDP.
     Vmc,
@@ -88,7 +88,7 @@ pub enum SensorSource {
 pub struct SessionConfig {
     /// Being seen until one has stepped in.
     pub step_in_s: f64,
-    /// Measuring.
+    /// Being measured (s).
     pub measure_s: f64,
     /// Being unseen until one has left.
     pub step_out_s: f64,
@@ -141,7 +141,7 @@ pub struct DisplayConfig {
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MetricsConfig {
-    /// Port on 127.0.0.1.
+    /// Port on 127.0.0.1 that figures are served at.
     pub port: Option<u16>,
 }
 
@@ -233,7 +233,7 @@ impl Config {
     /// As [`Config::open`].
     pub fn parse(file: &str, text: &str) -> Result<Self, KioskError> {
         config_keys::check(file, text)?;
-        let config: Self = toml::from_str(text).map_err(|e| config_keys::told(file, text, &e))?;
+        let config: Self = toml::from_str(text).map_err(|e| config_keys::parse_error(file, text, &e))?;
         match config.fault() {
             Some(fault) => Err(KioskError::Input(format!("{file}: {fault}"))),
             None => Ok(config),
@@ -265,7 +265,7 @@ impl Config {
             .or_else(|| self.wear.quality.parse::<Quality>().err().map(|e| format!("wear.quality: {e}")))
     }
 
-    /// What is worn.
+    /// The garments and sizes asked for.
     pub fn wish(&self) -> Wish {
         Wish {
             garments: self.wear.garments.clone(),
@@ -331,18 +331,18 @@ mod tests {
             ("[display]\npicture_minutes = 0.0", "display.picture_minutes"),
             ("[display]\nmark_m = [0.0, nan]", "[display]"),
         ] {
-            let said = Config::parse("k.toml", text).unwrap_err().to_string();
-            assert!(said.starts_with("k.toml: ") && said.contains(key), "{said}");
+            let message = Config::parse("k.toml", text).unwrap_err().to_string();
+            assert!(message.starts_with("k.toml: ") && message.contains(key), "{message}");
         }
     }
 
     #[test]
     fn a_value_of_another_kind_is_named_with_its_line() {
-        let said = Config::parse("k.toml", "[wear]\nquality = 3").unwrap_err().to_string();
-        assert!(said.starts_with("k.toml:2: ") && !said.contains('\n'), "{said}");
-        let said = Config::parse("k.toml", "\n[sensor]\nvmc = \"here\"").unwrap_err().to_string();
-        assert!(said.starts_with("k.toml:3: "), "{said}");
-        let said = Config::parse("k.toml", "[wear\n").unwrap_err().to_string();
-        assert!(said.starts_with("k.toml:1: "), "{said}");
+        let message = Config::parse("k.toml", "[wear]\nquality = 3").unwrap_err().to_string();
+        assert!(message.starts_with("k.toml:2: ") && !message.contains('\n'), "{message}");
+        let message = Config::parse("k.toml", "\n[sensor]\nvmc = \"here\"").unwrap_err().to_string();
+        assert!(message.starts_with("k.toml:3: "), "{message}");
+        let message = Config::parse("k.toml", "[wear\n").unwrap_err().to_string();
+        assert!(message.starts_with("k.toml:1: "), "{message}");
     }
 }

@@ -22,7 +22,7 @@ pub const KEYS: [(&str, &[&str]); 8] = [
 /// # Errors
 /// The first such key, or what makes the text no TOML.
 pub fn check(file: &str, text: &str) -> Result<(), KioskError> {
-    let document = DeTable::parse(text).map_err(|e| told(file, text, &e))?;
+    let document = DeTable::parse(text).map_err(|e| parse_error(file, text, &e))?;
     let document = document.get_ref();
     let unknown = |key: UnknownKey| KioskError::Input(format!("{file}:{}: {}", place(text, key.at).0, key.message));
     toml_keys::check(document, "a configuration", &KEYS.map(|(table, _)| table)).map_err(unknown)?;
@@ -35,7 +35,7 @@ pub fn check(file: &str, text: &str) -> Result<(), KioskError> {
 }
 
 /// An error of the parser as one sentence with its line.
-pub fn told(file: &str, text: &str, error: &toml::de::Error) -> KioskError {
+pub fn parse_error(file: &str, text: &str, error: &toml::de::Error) -> KioskError {
     let at = error.span().map_or(text.len(), |span| span.start);
     KioskError::Input(format!(
         "{file}:{}: {}; compare it with what `toile kiosk --print-config` prints",
@@ -48,17 +48,17 @@ pub fn told(file: &str, text: &str, error: &toml::de::Error) -> KioskError {
 mod tests {
     use super::*;
 
-    fn said(text: &str) -> String {
+    fn sentence(text: &str) -> String {
         check("k.toml", text).unwrap_err().to_string()
     }
 
     #[test]
     fn an_unknown_key_is_named_with_its_line_and_its_nearest() {
-        let key = said("# a kiosk\n[wear]\nquality = \"shop\"\ngarmets = []\n");
+        let key = sentence("# a kiosk\n[wear]\nquality = \"shop\"\ngarmets = []\n");
         assert_eq!(key, "k.toml:4: [wear] has no key \"garmets\"; did you mean \"garments\"?");
-        let table = said("[wear]\n\n[sesion]\nwipe_s = 1\n");
+        let table = sentence("[wear]\n\n[sesion]\nwipe_s = 1\n");
         assert_eq!(table, "k.toml:3: a configuration has no key \"sesion\"; did you mean \"session\"?");
-        let dotted = said("metrics.prot = 1");
+        let dotted = sentence("metrics.prot = 1");
         assert_eq!(dotted, "k.toml:1: [metrics] has no key \"prot\"; did you mean \"port\"?");
     }
 

@@ -22,7 +22,7 @@ pub const MOST_FRAMES: usize = 3600;
 /// Fewest frames that somebody can be measured from.
 pub const FEWEST_FRAMES: usize = 10;
 
-/// What a controller works with.
+/// Parts of the kiosk that a controller uses.
 pub struct ControllerContext<S, O> {
     /// How scenes are changed.
     pub changer: SceneChanger<S, O>,

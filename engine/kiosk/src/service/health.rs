@@ -18,7 +18,7 @@ pub struct HealthFigures {
     pub uptime_ns: u64,
     /// Where the session is.
     pub state: SessionState,
-    /// Steps taken.
+    /// Steps that were taken.
     pub steps: u64,
     /// 99.9 % of the steps since the last health line took no longer (us).
     pub step_p999_us: f64,
@@ -30,7 +30,7 @@ pub struct HealthFigures {
     pub nonfinite: u64,
     /// Shoppers who stepped in.
     pub sessions: u64,
-    /// Pictures taken.
+    /// Pictures that were drawn.
     pub pictures: u64,
     /// Times that the sensor was lost.
     pub sensor_lost: u64,
@@ -84,7 +84,7 @@ pub struct HealthCounter {
 }
 
 impl HealthCounter {
-    /// A step.
+    /// Adds a step.
     pub fn step(&mut self, step: &StepReport) {
         self.step.add(step.step_ns);
         self.figures.steps += 1;
@@ -143,11 +143,11 @@ mod tests {
         counter.stepped_in(true);
         counter.stepped_in(false);
         let figures = counter.figures(61_000_000_000, SessionState::TryOn, 99);
-        let said = figures.to_string();
+        let printed = figures.to_string();
         // A meter keeps 1 % of a time.
         let expected = "health: up 61 s, try-on, 2000 steps, p99.9 of a step 2.01 ms, 7 misses, rung 1, 1 nonfinite, 1 \
                         sessions, 99 pictures, sensor lost 1 times";
-        assert_eq!(said, expected);
+        assert_eq!(printed, expected);
         counter.reported();
         let next = counter.figures(0, SessionState::Attract, 0);
         assert_eq!((next.steps, next.step_p999_us), (2_000, 0.0), "only the distribution begins anew");

@@ -146,7 +146,7 @@ mod tests {
         let first = InstanceLock::at(&path).unwrap();
         assert!(is_held(&path));
         let refused = InstanceLock::at(&path).unwrap_err();
-        assert!(matches!(&refused, KioskError::Device(said) if said.contains("--instance")), "{refused}");
+        assert!(matches!(&refused, KioskError::Device(message) if message.contains("--instance")), "{refused}");
         assert!(InstanceLock::at(&folder.join("b.lock")).is_ok(), "another name is another kiosk");
         drop(first);
         assert!(!is_held(&path));
@@ -158,8 +158,8 @@ mod tests {
     #[test]
     fn what_is_no_regular_file_is_refused() {
         let folder = scratch("folder");
-        let said = InstanceLock::at(&folder).unwrap_err().to_string();
-        assert!(said.contains("not a regular file") && said.contains("XDG_RUNTIME_DIR"), "{said}");
+        let message = InstanceLock::at(&folder).unwrap_err().to_string();
+        assert!(message.contains("not a regular file") && message.contains("XDG_RUNTIME_DIR"), "{message}");
         let nowhere = InstanceLock::at(&folder.join("none/a.lock")).unwrap_err();
         assert!(matches!(nowhere, KioskError::Device(_)));
         fs::remove_dir_all(folder).unwrap();

@@ -111,10 +111,10 @@ mod tests {
     fn ask(address: SocketAddr, question: &[u8]) -> String {
         let mut stream = TcpStream::connect(address).unwrap();
         stream.write_all(question).unwrap();
-        let mut said = Vec::new();
-        // One who is not answered is hung up on.
-        let _ = stream.read_to_end(&mut said);
-        String::from_utf8(said).unwrap()
+        let mut response = Vec::new();
+        // A request that is not answered has its connection closed.
+        let _ = stream.read_to_end(&mut response);
+        String::from_utf8(response).unwrap()
     }
 
     #[test]
@@ -128,8 +128,8 @@ mod tests {
             state: SessionState::TryOn,
             ..HealthFigures::default()
         });
-        let said = ask(address, b"GET /metrics HTTP/1.1\r\nHost: x\r\n\r\n");
-        let (head, body) = said.split_once("\r\n\r\n").unwrap();
+        let response = ask(address, b"GET /metrics HTTP/1.1\r\nHost: x\r\n\r\n");
+        let (head, body) = response.split_once("\r\n\r\n").unwrap();
         assert!(head.starts_with("HTTP/1.1 200 OK") && head.contains(&format!("Content-Length: {}", body.len())));
         for line in ["toile_steps_total 432000", "toile_step_p999_seconds 0.0025", "toile_state{state=\"try-on\"} 1"] {
             assert!(body.lines().any(|l| l == line), "{line}: {body}");

@@ -73,7 +73,7 @@ pub struct KioskOptions {
 }
 
 /// Prints a line for whoever looks after the kiosk.
-pub type Say<'a> = &'a (dyn Fn(&str) + Sync);
+pub type PrintLine<'a> = &'a (dyn Fn(&str) + Sync);
 
 /// Runs a kiosk; with a window, by `windowed`.
 ///
@@ -83,7 +83,7 @@ pub type Say<'a> = &'a (dyn Fn(&str) + Sync);
 pub fn run(
     options: &KioskOptions,
     begun: Instant,
-    say: Say<'_>,
+    print_line: PrintLine<'_>,
     windowed: fn(KioskRun<'_>) -> Result<KioskReport, KioskError>,
 ) -> Result<KioskReport, KioskError> {
     let stop = StopSignal::listen().map_err(KioskError::internal)?;
@@ -94,7 +94,7 @@ pub fn run(
     let _lock = InstanceLock::take(options.instance.as_deref())?;
     let figures = figures(&config)?;
     let clock = RealClock::default();
-    let run = KioskRun { options, config: &config, begun, clock, stop: &stop, say, figures };
+    let run = KioskRun { options, config: &config, begun, clock, stop: &stop, print_line, figures };
     if options.headless {
         let renderer = |_: &Frame| Ok(HeadlessRenderer::default());
         let frontend = Frontend { renderer, to_scene: |frame| (FrameScene::new(frame), ()), controller: |_| None };
@@ -115,9 +115,9 @@ pub fn without_window(_: KioskRun<'_>) -> Result<KioskReport, KioskError> {
 
 /// A run of the kiosk: its options, its configuration, and what it was started with.
 pub struct KioskRun<'a> {
-    /// What is asked of it.
+    /// Options of the command line.
     pub options: &'a KioskOptions,
-    /// The configuration.
+    /// The configuration that was read.
     pub config: &'a Config,
     /// When the program was started.
     pub begun: Instant,
@@ -126,7 +126,7 @@ pub struct KioskRun<'a> {
     /// Whether it is to end.
     pub stop: &'a StopSignal,
     /// Prints a line.
-    pub say: Say<'a>,
+    pub print_line: PrintLine<'a>,
     figures: Option<Writer<HealthFigures>>,
 }
 
@@ -156,7 +156,7 @@ where
     F: FnOnce(&Frame) -> Result<E, KioskError>,
     H: FnOnce(Option<ShopperSource>) -> BoxedController<'a, E::Outfit>,
 {
-    let KioskRun { options, config, begun, clock, stop, say, figures } = run;
+    let KioskRun { options, config, begun, clock, stop, print_line, figures } = run;
     let wish = config.wish();
     let session = played_session(config)?;
     // The mannequin stands as somebody does in the recording: a pose, and no body.
@@ -177,27 +177,26 @@ where
         memory_locked: config.machine.lock_memory && locked.is_ok(),
         warnings: locked.err().map(|e| e.to_string()).into_iter().collect(),
     };
-    let (black_box, tape) = match config.crash.recording.clone() {
-        Some(path) => {
-            recording::keep(&dressed.dressing, path).map(|(black_box, tape)| (Some(black_box), Some(tape)))?
-        }
+    let (flight_recorder, recording) = match config.crash.recording.clone() {
+        Some(path) => recording::keep(&dressed.dressing, path)
+            .map(|(flight_recorder, recording)| (Some(flight_recorder), Some(recording)))?,
         None => (None, None),
     };
     let renderer = (frontend.renderer)(&dressed.frame)?;
     let first = DressedScene::new(dressed, |frame| (FrameScene::new(frame.with_workers(crew)), E::Outfit::default()));
-    let parts = LoopParts { first, renderer, source: feed, account: ThreadAccount::new(), recording: tape };
+    let parts = LoopParts { first, renderer, source: feed, account: ThreadAccount::new(), recording: recording };
     let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).map_err(KioskError::internal)?;
     stop.graceful();
-    let changer = SceneChanger::new(handover, true, black_box.clone());
+    let changer = SceneChanger::new(handover, true, flight_recorder.clone());
     let environment = ServiceEnvironment {
         manager: &Systemd,
         stop,
-        say,
+        print_line,
         figures,
         dresser: Dresser::new(wish),
         to_scene: frontend.to_scene,
         pose,
-        black_box,
+        flight_recorder,
     };
     let controller = (frontend.controller)(service_options.played.clone());
     let service = Service::new(live, changer, service_options, environment);

@@ -22,15 +22,15 @@ pub struct KioskReport {
     pub states: Vec<SessionState>,
     /// Shoppers who stepped in.
     pub sessions: u64,
-    /// Pictures taken.
+    /// Pictures that were drawn.
     pub frames: u64,
     /// Pictures that fell out because the one before took too long.
     pub dropped: u64,
     /// Times that the render thread panicked and was started again.
     pub revived: u64,
-    /// Sensor frames.
+    /// Frames that the sensor gave.
     pub sensor_frames: u64,
-    /// Steps taken.
+    /// Steps that were taken.
     pub steps: u64,
     /// Steps given up after a late wake-up.
     pub steps_dropped: u64,
@@ -72,7 +72,7 @@ pub struct WindowReport {
     pub size: [u32; 2],
     /// From the start of the program until the first picture was presented (ms).
     pub first_picture_ms: Option<f64>,
-    /// Pictures presented.
+    /// Pictures that were presented.
     pub presented: u64,
     /// Pictures that were due and not drawn, because the adapter is to rest or the window is hidden.
     pub rested: u64,
@@ -91,11 +91,11 @@ pub struct WindowReport {
 /// What the service recorded of its run, beside the loop's threads.
 #[derive(Debug, Clone)]
 pub struct RunRecord {
-    /// The last figures.
+    /// The figures at the end.
     pub figures: HealthFigures,
     /// From the start of the program until it was ready (ms).
     pub ready_ms: Option<f64>,
-    /// The states entered.
+    /// States of the session, in the order in which they were entered.
     pub states: Vec<SessionState>,
     /// Why steps were late.
     pub attributed: Attributed,

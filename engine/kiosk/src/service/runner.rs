@@ -60,17 +60,17 @@ pub struct ServiceEnvironment<'a, S, O> {
     /// Whether it is to end.
     pub stop: &'a StopSignal,
     /// Prints a health line.
-    pub say: &'a dyn Fn(&str),
+    pub print_line: &'a dyn Fn(&str),
     /// Receives the figures, where metrics are served.
     pub figures: Option<Writer<HealthFigures>>,
-    /// Who dresses shoppers.
+    /// Dresses shoppers on a thread of its own.
     pub dresser: Dresser,
     /// What a dressed frame becomes in the loop, and what the renderer has to know of it.
     pub to_scene: fn(Frame) -> (S, O),
     /// How the mannequin stands.
     pub pose: Joints,
     /// What is kept for a crash, where somebody asked for it.
-    pub black_box: Option<Arc<FlightRecorder>>,
+    pub flight_recorder: Option<Arc<FlightRecorder>>,
 }
 
 /// What is left of a run: the loops, how full their queues were, and the record.
@@ -87,9 +87,9 @@ pub struct Service<'a, S: Scene, E: Renderer> {
     every_ns: u64,
     manager: &'a dyn ServiceManager,
     stop: &'a StopSignal,
-    say: &'a dyn Fn(&str),
+    print_line: &'a dyn Fn(&str),
     figures: Option<Writer<HealthFigures>>,
-    black_box: Option<Arc<FlightRecorder>>,
+    flight_recorder: Option<Arc<FlightRecorder>>,
     counter: HealthCounter,
     dog: Option<Watchdog>,
     /// The loop's time when it began, and when the next health line is due (ns).
@@ -118,7 +118,8 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
             memory_locked: options.memory_locked,
             warnings: options.warnings.clone(),
         };
-        let ServiceEnvironment { manager, stop, say, figures, dresser, to_scene, pose, black_box } = environment;
+        let ServiceEnvironment { manager, stop, print_line, figures, dresser, to_scene, pose, flight_recorder } =
+            environment;
         let controller = Box::new(HeadlessController::new(options.times, options.measure_ns, options.played, now));
         Self {
             live,
@@ -131,9 +132,9 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
             dog: Watchdog::new(manager.watchdog_timeout(), now),
             manager,
             stop,
-            say,
+            print_line,
             figures,
-            black_box,
+            flight_recorder,
             counter: HealthCounter::default(),
             began_ns: now,
             health_ns: now + options.health_ns,
@@ -169,7 +170,7 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
         self.length.is_some_and(|length| uptime >= length)
     }
 
-    /// One round.
+    /// One round: looks after the threads, reads what they report, moves the session on.
     fn poll(&mut self) -> Result<(), KioskError> {
         if let Some(role) = self.live.threads.look().map_err(KioskError::internal)? {
             return Err(KioskError::Internal(format!(
@@ -236,8 +237,8 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
     }
 
     fn count(&mut self) {
-        if let Some(black_box) = &self.black_box {
-            black_box.drain(|_| {});
+        if let Some(flight_recorder) = &self.flight_recorder {
+            flight_recorder.drain(|_| {});
         }
         while let Some(step) = self.live.queues.step_reports.pop() {
             self.counter.step(&step);
@@ -258,7 +259,7 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
     fn health(&mut self, now: u64) {
         if self.every_ns > 0 && now >= self.health_ns {
             self.health_ns += self.every_ns;
-            (self.say)(&self.record.figures.to_string());
+            (self.print_line)(&self.record.figures.to_string());
             self.counter.reported();
         }
     }

@@ -1,4 +1,4 @@
-//! The service manager: notified when the service is ready and alive, and obeyed when it asks it to end.
+//! The service manager: notified when the service is ready and alive, and obeyed when it asks the service to end.
 
 use std::io;
 use std::sync::Arc;
@@ -74,13 +74,13 @@ impl StopSignal {
     #[cfg(unix)]
     pub fn listen() -> io::Result<Self> {
         use signal_hook::consts::{SIGINT, SIGTERM};
-        let told = Arc::new(AtomicBool::new(true));
+        let requested = Arc::new(AtomicBool::new(true));
         for signal in [SIGTERM, SIGINT] {
             // In this order: the first one sees what was set before.
-            signal_hook::flag::register_conditional_shutdown(signal, 0, told.clone())?;
-            signal_hook::flag::register(signal, told.clone())?;
+            signal_hook::flag::register_conditional_shutdown(signal, 0, requested.clone())?;
+            signal_hook::flag::register(signal, requested.clone())?;
         }
-        Ok(Self(told))
+        Ok(Self(requested))
     }
 
     /// Where there are no such signals, the system's own way of ending a program is left as it is.

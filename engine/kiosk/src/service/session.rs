@@ -21,7 +21,7 @@ impl SessionState {
     /// All of them, in the order of a session.
     pub const ALL: [Self; 4] = [Self::Attract, Self::Measuring, Self::TryOn, Self::Left];
 
-    /// Its name in reports.
+    /// Name of the state in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Attract => "attract",
@@ -55,13 +55,13 @@ pub struct SessionInput {
 /// A change of state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StateChange {
-    /// The state before.
+    /// The state that was left.
     pub from: SessionState,
     /// The state from now on.
     pub to: SessionState,
 }
 
-/// The state machine.
+/// The state machine of a session, from the first visitor seen to all wiped.
 #[derive(Debug, Clone)]
 pub struct SessionMachine {
     times: SessionTimes,
@@ -79,7 +79,7 @@ impl SessionMachine {
         Self { times, state: SessionState::Attract, entered_ns: now_ns, seen: false, since_ns: now_ns }
     }
 
-    /// The state.
+    /// State of the session now.
     pub fn state(&self) -> SessionState {
         self.state
     }

@@ -9,7 +9,7 @@ use crate::service::session::SessionState;
 /// Actions of a page, at most.
 const MOST: usize = 24;
 
-/// What can be pressed.
+/// Actions that can be pressed, in the order of the Tab key.
 pub(super) type Actions = heapless::Vec<Action, MOST>;
 
 /// Why measuring cannot begin yet: what the shopper is to do.
@@ -42,7 +42,7 @@ impl VisitModel {
         }
     }
 
-    /// What can be pressed now.
+    /// Actions that can be pressed now.
     pub(super) fn actions(&self) -> Actions {
         use Action::*;
         let mut list = Actions::new();

@@ -30,18 +30,18 @@ pub type DrapedFrame = (Frame, Snapshot);
 /// Somebody who was measured, in the pose in which they are dressed.
 #[derive(Debug, Clone)]
 pub struct MeasuredVisitor {
-    /// What was measured of them.
+    /// Their measures.
     pub known: VisitorMeasures,
     /// The joints in which they are dressed.
     pub pose: Joints,
 }
 
-/// What is to be done.
+/// A job for the dressing worker.
 #[derive(Debug, Clone)]
 pub enum DressingJob {
     /// Measure somebody, seated or standing.
     Measure(ShopperSource, bool),
-    /// Dress somebody.
+    /// Dress somebody in an outfit.
     Dress(Box<MeasuredVisitor>, Outfit),
     /// Drape two outfits on them.
     Two(Box<MeasuredVisitor>, Box<[Outfit; 2]>),
@@ -49,11 +49,11 @@ pub enum DressingJob {
     Snap(Box<MeasuredVisitor>, Outfit, f32),
 }
 
-/// What became of a job.
+/// Result of a job.
 pub enum JobResult {
-    /// Somebody was measured.
+    /// The measures of somebody.
     Measured(Box<VisitorMeasures>),
-    /// They are dressed.
+    /// The dressed body of somebody.
     Dressed(Box<Dressed>),
     /// Both outfits are draped.
     Two(Box<[DrapedFrame; 2]>),
@@ -66,20 +66,20 @@ pub enum JobResult {
 /// What every job needs.
 #[derive(Debug)]
 pub struct DressingContext {
-    /// The garments.
+    /// The garments that can be chosen.
     pub wardrobe: Arc<Wardrobe>,
     /// How their cloth is stepped.
     pub quality: Quality,
 }
 
-/// The worker.
+/// Runs one job at a time on a thread of its own, beside the live loop.
 pub struct DressingWorker {
     context: Arc<DressingContext>,
     job: BackgroundJob<(u32, Result<JobResult, KioskError>)>,
 }
 
 impl DressingWorker {
-    /// Without a job.
+    /// A worker without a job. Starts its thread with the first.
     pub fn new(context: DressingContext) -> Self {
         Self { context: Arc::new(context), job: BackgroundJob::default() }
     }

@@ -90,22 +90,22 @@ pub enum NavigationKey {
     Down,
     /// Presses what has the focus.
     Enter,
-    /// Back.
+    /// Goes back a page.
     Escape,
 }
 
 /// An input of the model. Replies carry the number of the effect; a reply that nobody waits for any more is ignored.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Input {
-    /// Time passes.
+    /// Time has passed: timers are looked at.
     Tick,
     /// What is seen; it holds until the next.
     Presence(Presence),
     /// A control was pressed by finger or mouse. One that is not on the page is ignored.
     Pressed(Action),
-    /// A key.
+    /// A navigation key was pressed.
     Key(NavigationKey),
-    /// A gesture.
+    /// A gesture was recognised.
     Gesture(Gesture),
     /// Somebody was measured.
     Measured(u32, Box<VisitorMeasures>),
@@ -124,30 +124,30 @@ pub enum Input {
 pub enum Effect {
     /// Measure whoever stands there; [`Input::Measured`].
     Measure {
-        /// Its number.
+        /// Number of the effect, which its reply carries.
         number: u32,
         /// Whether they sit: nothing is to be taken from their legs and hips.
         seated: bool,
     },
     /// Dress a body of the measures that were taken and show it; [`Input::Dressed`].
     Dress {
-        /// Its number.
+        /// Number of the effect, which its reply carries.
         number: u32,
         /// Garments and sizes, inner first.
         outfit: Outfit,
     },
     /// Drape the outfit in two sizes of one garment, for both to be shown; [`Input::Draped`].
     DrapeTwo {
-        /// Its number.
+        /// Number of the effect, which its reply carries.
         number: u32,
-        /// Left, and right.
+        /// The outfit on the left and the one on the right.
         outfits: Box<[Outfit; 2]>,
     },
     /// Take a picture of the dressed body; [`Input::PictureTaken`].
     Snap {
-        /// Its number.
+        /// Number of the effect, which its reply carries.
         number: u32,
-        /// What it wears.
+        /// Garments and sizes that the body wears.
         outfit: Outfit,
         /// From where it is looked at (rad).
         yaw: f32,

@@ -1,4 +1,4 @@
-//! The visitor: everything between a shopper and the mirror but drawing: pages, texts, controls, what is known of them.
+//! The visitor's part of the kiosk, without drawing: pages, texts, controls, what is known of them.
 //!
 //! Reads: what is seen, pressed and gestured; what was measured and dressed. Writes: one `Screen` for the renderer,
 //! jobs for the dressing worker; nothing to a disk or a network, and nothing of a shopper once they have left.

@@ -28,7 +28,7 @@ pub struct VisitModel {
     pub(super) visit: Visit,
     /// The place of the control that has the focus.
     pub(super) focus: usize,
-    /// Effects so far.
+    /// Number of the last effect.
     number: u32,
 }
 
@@ -200,7 +200,7 @@ impl VisitModel {
         let visit = &mut self.visit;
         (visit.asked_ns, visit.hidden) = (Some(self.now_ns), true);
         visit.picture.wipe();
-        // Work under way is for who stood there before.
+        // Work under way is for the visitor before.
         (visit.dressing, visit.snapping, visit.pair) = (None, None, None);
         if matches!(visit.progress, MeasureProgress::Measuring(_)) {
             visit.progress = MeasureProgress::Guide { ready_ns: None, not_before_ns: 0 };

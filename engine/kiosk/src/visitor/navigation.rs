@@ -50,7 +50,7 @@ impl VisitModel {
         }
     }
 
-    /// What has the focus.
+    /// The action that has the focus.
     pub(super) fn focused(&self) -> Option<Action> {
         self.actions().get(self.focus).copied()
     }

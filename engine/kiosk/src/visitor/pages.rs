@@ -43,7 +43,7 @@ impl Screen {
 }
 
 impl VisitModel {
-    /// What stands behind a page.
+    /// The body that is shown behind a page.
     fn body_view(&self, page: Page) -> BodyView {
         let visit = &self.visit;
         let yaw = self.yaw();

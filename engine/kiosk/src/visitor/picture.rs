@@ -19,7 +19,7 @@ pub const SHADES: usize = 16;
 /// are held still and near.
 pub const MOST_LINK: usize = 2_071;
 
-/// What the link begins with.
+/// Beginning of the link.
 const PREFIX: &str = "data:image/png;base64,";
 
 /// A picture before it is one: three bytes a pixel, rows from the top.
@@ -55,7 +55,7 @@ pub enum PictureError {
         "the picture has {bytes} bytes at its smallest, more than the {MOST_LINK} of a code; take it before a plainer wall"
     )]
     TooLarge {
-        /// Its link's bytes.
+        /// Length of its link (bytes).
         bytes: usize,
     },
     /// The encoder refused.
@@ -289,8 +289,8 @@ pub(super) mod tests {
         };
         let size = SIZES[4];
         let bytes = (0..3 * size.width * size.height).map(|_| noise()).collect();
-        let said = encode(&RgbImage { size, bytes }).unwrap_err().to_string();
-        assert!(said.contains("bytes") && said.contains("plainer"), "{said}");
+        let message = encode(&RgbImage { size, bytes }).unwrap_err().to_string();
+        assert!(message.contains("bytes") && message.contains("plainer"), "{message}");
     }
 
     #[test]

@@ -130,8 +130,11 @@ mod tests {
             (f32::NAN, 900.0, "correct"),
             (400.0, -3.0, "correct"),
         ] {
-            let said = DisplayMount { lower_edge_mm, height_mm }.fault().unwrap();
-            assert!(said.contains(word) && said.contains("lower_edge_mm") | said.contains("over the floor"), "{said}");
+            let message = DisplayMount { lower_edge_mm, height_mm }.fault().unwrap();
+            assert!(
+                message.contains(word) && message.contains("lower_edge_mm") | message.contains("over the floor"),
+                "{message}"
+            );
         }
         assert_eq!(DisplayMount::default().fault(), None);
     }

@@ -1,7 +1,7 @@
 //! Screen: everything that the display shows at a moment, as data. The window paints it, a test reads it; the painter decides neither
 //! the words nor their order.
 
-/// Which page is shown.
+/// Pages of the kiosk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Page {
     /// Nobody is there: what the mirror can do, in turn.
@@ -74,7 +74,7 @@ pub enum Action {
     Turn(i8),
     /// Show or hide the fit map.
     FitMap,
-    /// A picture, please.
+    /// Take a picture of the dressed body.
     TakePicture,
     /// Delete the picture now.
     DeletePicture,
@@ -97,7 +97,7 @@ pub enum Action {
 pub enum ControlStyle {
     /// What most will want next; one a page at most.
     Primary,
-    /// Anything else.
+    /// Any control that is neither.
     Plain,
     /// A way out or a setting.
     Quiet,
@@ -108,9 +108,9 @@ pub enum ControlStyle {
 /// Something that can be pressed, by finger, mouse, key or gesture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Control {
-    /// What it asks for.
+    /// Action of the control.
     pub action: Action,
-    /// Its words.
+    /// The words on it.
     pub label: String,
     /// A second, smaller line.
     pub detail: Option<String>,
@@ -123,18 +123,18 @@ pub struct Control {
 /// What stands between the heading and the controls.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Block {
-    /// A paragraph.
+    /// A paragraph of text.
     Text(String),
     /// A figure that shows how to stand; its phase goes round from 0 to 1.
     PoseGuide {
         /// Where in its movement the figure is, 0 .. 1.
         phase: f32,
-        /// A seated figure.
+        /// Whether the figure sits.
         seated: bool,
     },
     /// How far something has got.
     Progress {
-        /// 0 .. 1.
+        /// Share that is done, 0 .. 1.
         share: f32,
         /// What is being done.
         label: String,
@@ -153,14 +153,14 @@ pub enum Block {
     },
     /// A code to scan: `side` modules a side, row by row, dark is true.
     Code {
-        /// Modules a side.
+        /// Modules (squares) along a side.
         side: usize,
-        /// `[side * side]`.
+        /// Whether each module is dark, row by row `[side * side]`.
         dark: Vec<bool>,
     },
     /// Seconds that are left.
     Countdown {
-        /// Whole seconds.
+        /// Whole seconds that are left.
         seconds: u32,
     },
 }
@@ -168,7 +168,7 @@ pub enum Block {
 /// Everything that the display shows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Screen {
-    /// Which page.
+    /// The page that is shown.
     pub page: Page,
     /// The line that is read first.
     pub heading: String,

@@ -58,7 +58,7 @@ impl VisitorSetup {
         Ok(Self { model, texts: Texts::load()?, mount, context, mark: display.mark_m })
     }
 
-    /// What is shown first.
+    /// The screen that is shown first.
     pub fn first(&self) -> Screen {
         Screen::of(&self.model, &self.texts, &self.mount)
     }
@@ -99,7 +99,7 @@ mod tests {
             [("[display]\nlower_edge_mm = 1000.0", "within reach"), ("[wear]\ngarments = [\"tent\"]", "tent")]
         {
             let refused = VisitorSetup::new(&Config::parse("k.toml", text).unwrap(), 0).err().unwrap();
-            assert!(matches!(&refused, KioskError::Input(said) if said.contains(word)), "{refused}");
+            assert!(matches!(&refused, KioskError::Input(message) if message.contains(word)), "{refused}");
         }
     }
 }

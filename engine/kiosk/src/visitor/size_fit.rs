@@ -31,7 +31,7 @@ impl BodyPart {
     /// All of them, from the top down.
     pub const ALL: [Self; 6] = [Self::Stature, Self::Shoulders, Self::Chest, Self::Waist, Self::Hip, Self::Legs];
 
-    /// Its word.
+    /// Key of its name in the pages' texts.
     pub const fn word(self) -> TextKey {
         match self {
             Self::Stature => TextKey::PartStature,
@@ -68,11 +68,11 @@ pub enum MeasureBasis {
 /// What was measured of somebody.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VisitorMeasures {
-    /// The measures.
+    /// The measures that were taken.
     pub measured: Measurements,
     /// What could not be seen, from the top down.
     pub missing: Vec<BodyPart>,
-    /// Whether they sat.
+    /// Whether they sat when they were measured.
     pub seated: bool,
     /// How many measures are known.
     pub count: u32,
@@ -91,7 +91,7 @@ impl VisitorMeasures {
         Self { measured, missing, seated, count, population: Population::Mixed }
     }
 
-    /// What a girth rests on.
+    /// How a girth was obtained: seen, from bones, or guessed.
     pub fn basis(&self, zone: Girth) -> MeasureBasis {
         if self.missing.contains(&zone.into()) {
             MeasureBasis::Guessed
@@ -109,7 +109,7 @@ impl VisitorMeasures {
 pub enum Feel {
     /// Far below the comfortable range.
     TooTight,
-    /// Below it.
+    /// Below the comfortable range.
     Tight,
     /// In its lower third.
     Snug,
@@ -117,9 +117,9 @@ pub enum Feel {
     Right,
     /// In its upper third.
     Roomy,
-    /// Above it.
+    /// Above the comfortable range.
     Loose,
-    /// Far above it.
+    /// Far above the comfortable range.
     TooLoose,
 }
 
@@ -137,7 +137,7 @@ impl Feel {
         }
     }
 
-    /// Its word.
+    /// Key of its name in the pages' texts.
     pub const fn word(self) -> TextKey {
         match self {
             Self::TooTight => TextKey::FeelTooTight,
@@ -159,11 +159,11 @@ impl Feel {
 /// The fit at one zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ZoneFit {
-    /// Where.
+    /// The girth at which it was judged.
     pub zone: Girth,
     /// Whether the size is chosen by this zone.
     pub primary: bool,
-    /// How it feels.
+    /// How the zone feels, in one of seven words.
     pub feel: Feel,
     /// How it may feel too: what the ease less or more its error comes to, where that is comfortable when this is not or the
     /// other way round.
@@ -192,7 +192,7 @@ pub struct SizeFit {
     /// Probability that the size is the best for this person, given the errors of the measures.
     pub probability: f32,
     /// The zone to take by tape, where no size is sure and a tape would help.
-    pub tape: Option<Girth>,
+    pub girth_to_take: Option<Girth>,
     /// The zones, those that the size is chosen by first.
     pub zones: Vec<ZoneFit>,
     /// Set where the primary girth lies outside of what is made.
@@ -227,7 +227,7 @@ pub fn judge(item: &WardrobeItem, known: &VisitorMeasures, size: Option<usize>) 
         best,
         other,
         probability: judged.probability,
-        tape: judged.tape.as_ref().map(|t| t.zone),
+        girth_to_take: judged.girth_to_take.as_ref().map(|t| t.zone),
         outside: zones.iter().find(|z| z.primary).and_then(|z| outside(item, z)),
         zones,
     })

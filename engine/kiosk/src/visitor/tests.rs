@@ -138,7 +138,7 @@ impl Dice {
 }
 
 /// All of a screen's words.
-fn said(screen: &Screen) -> Vec<String> {
+fn texts_of(screen: &Screen) -> Vec<String> {
     use super::screen::Block;
     let mut all = vec![screen.heading.clone()];
     for block in &screen.blocks {

@@ -12,7 +12,7 @@ macro_rules! keys {
             /// All of them, in the order of the texts.
             pub const ALL: &'static [Self] = &[$(Self::$name,)*];
 
-            /// Its name in the texts.
+            /// Name of the key in the texts.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$name => $text,)*

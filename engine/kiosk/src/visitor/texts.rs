@@ -13,15 +13,15 @@ pub enum Language {
     /// `en`, in which all texts are whole.
     #[default]
     English,
-    /// `de`.
+    /// German (`de`).
     German,
-    /// `fr`.
+    /// French (`fr`).
     French,
-    /// `es`.
+    /// Spanish (`es`).
     Spanish,
-    /// `tr`.
+    /// Turkish (`tr`).
     Turkish,
-    /// `ja`.
+    /// Japanese (`ja`).
     Japanese,
 }
 
@@ -30,7 +30,7 @@ impl Language {
     pub const ALL: [Self; 6] =
         [Self::English, Self::German, Self::French, Self::Spanish, Self::Turkish, Self::Japanese];
 
-    /// Its tag (BCP 47).
+    /// Language tag (BCP 47).
     pub const fn tag(self) -> &'static str {
         match self {
             Self::English => "en",
@@ -47,7 +47,7 @@ impl Language {
         Self::ALL.into_iter().find(|language| language.tag() == tag)
     }
 
-    /// What is said in it.
+    /// Text of its Fluent file.
     pub const fn text(self) -> &'static str {
         match self {
             Self::English => include_str!("../../texts/en.ftl"),
@@ -76,7 +76,7 @@ pub enum TextValue<'a> {
     Number(f32, u8),
 }
 
-/// All languages.
+/// The texts of all languages.
 pub struct Texts {
     bundles: [FluentBundle<FluentResource>; Language::ALL.len()],
 }
@@ -96,7 +96,7 @@ impl Texts {
         Ok(Self { bundles })
     }
 
-    /// One of them.
+    /// The texts of one language.
     pub fn of(&self, language: Language) -> Translation<'_> {
         let at = Language::ALL.iter().position(|l| *l == language).unwrap_or_default();
         Translation { bundle: &self.bundles[at], language }
@@ -127,14 +127,14 @@ fn number(value: &FluentValue, mark: char) -> Option<String> {
     Some(format!("{:.digits$}", number.value).replace('.', &mark.to_string()).replace('-', "\u{2212}"))
 }
 
-/// One language.
+/// The texts of one language.
 pub struct Translation<'a> {
     bundle: &'a FluentBundle<FluentResource>,
     language: Language,
 }
 
 impl Translation<'_> {
-    /// Which language it is.
+    /// Language of the texts.
     pub fn language(&self) -> Language {
         self.language
     }

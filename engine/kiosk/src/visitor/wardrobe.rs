@@ -16,7 +16,7 @@ pub const MOST_WORN: usize = 16;
 /// A layer of clothes, in the order of dressing (Ugur 2008, section 6.1).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Layer {
-    /// Underwear.
+    /// Underwear, next to the skin.
     Underwear,
     /// Tank tops and slips.
     Slip,
@@ -26,7 +26,7 @@ pub enum Layer {
     Jacket,
     /// Belts and jewellery.
     Belt,
-    /// Coats.
+    /// Coats, over jackets.
     Coat,
     /// Scarves and shawls.
     Scarf,
@@ -58,7 +58,7 @@ impl FittingLevel {
     pub const ALL: [Self; 7] =
         [Self::Neck, Self::Shoulders, Self::Bust, Self::Underbust, Self::Waist, Self::Crotch, Self::Feet];
 
-    /// What texts select it by.
+    /// Name by which texts select it.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Neck => "neck",
@@ -82,7 +82,7 @@ enum BodyHalf {
 /// A colour that a garment comes in, with its name, for not everybody tells colours apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Colour {
-    /// Its name.
+    /// Key of the colour's name in the pages' texts.
     pub word: TextKey,
     /// sRGB, 0 .. 1.
     pub srgb: [f32; 3],
@@ -101,7 +101,7 @@ const LAWN: [Colour; 5] = [
     colour(TextKey::ColourNavy, [0.13, 0.17, 0.32]),
 ];
 
-/// Shirts.
+/// Colours of T-shirts; the first is that of the fabric.
 const JERSEY: [Colour; 5] = [
     colour(TextKey::ColourDenim, [0.22, 0.42, 0.58]),
     colour(TextKey::ColourWhite, [0.95, 0.95, 0.94]),
@@ -110,7 +110,7 @@ const JERSEY: [Colour; 5] = [
     colour(TextKey::ColourCharcoal, [0.19, 0.20, 0.22]),
 ];
 
-/// Trousers.
+/// Colours of trousers; the first is that of the fabric.
 const LINEN: [Colour; 5] = [
     colour(TextKey::ColourSand, [0.66, 0.60, 0.48]),
     colour(TextKey::ColourIvory, [0.93, 0.90, 0.82]),
@@ -124,17 +124,17 @@ const LINEN: [Colour; 5] = [
 pub struct WardrobeItem {
     /// How it is cut and what it is made of.
     pub style: Style,
-    /// Its sizes.
+    /// Size table that it is cut by.
     pub table: SizeTable,
     /// The codes of its sizes, smallest first.
     pub sizes: Vec<String>,
     /// The colours that it comes in, first that of its fabric.
     pub colours: Vec<Colour>,
-    /// Its layer.
+    /// Layer in which it is worn.
     pub layer: Layer,
     /// Its place in the layer: what is tucked in comes first.
     place: u8,
-    /// Where it is held.
+    /// Level of the body at which it is held.
     pub held: FittingLevel,
     covers: &'static [BodyHalf],
 }
@@ -185,7 +185,7 @@ fn palette(kind: GarmentKind, own: [f32; 3]) -> Vec<Colour> {
 /// A garment that is worn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct WornItem {
-    /// Its place in the wardrobe.
+    /// Index in the wardrobe.
     pub item: usize,
     /// The place of its size among those that are made.
     pub size: usize,
@@ -199,7 +199,7 @@ pub type Outfit = heapless::Vec<WornItem, MOST_WORN>;
 /// The garments to choose from, inner first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wardrobe {
-    /// The garments.
+    /// Garments in the order of dressing.
     pub items: Vec<WardrobeItem>,
 }
 

@@ -24,7 +24,7 @@ const FOLLOW: f32 = 0.2;
 /// What is drawn of a moment.
 #[derive(Debug, Clone, Copy)]
 pub struct BodyScene<'a> {
-    /// What stands behind the panel.
+    /// The body behind the panel.
     pub body_view: &'a BodyView,
     /// Colours of the garments, linear RGB, inner first.
     pub colours: &'a [[f32; 3]],

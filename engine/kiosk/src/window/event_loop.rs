@@ -52,7 +52,7 @@ pub fn event_loop() -> Result<EventLoop<ServiceEvent>, KioskError> {
 }
 
 impl WindowApp {
-    /// At load.
+    /// A window that is not open yet. Called at load: it allocates.
     pub fn new(
         windowed: Option<[u32; 2]>,
         input_events: Sender<InputEvent>,

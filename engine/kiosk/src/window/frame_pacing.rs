@@ -1,4 +1,4 @@
-//! Frame pacing: when the next picture may be drawn. A card draws each time that one is due; a driver that draws on the processor is
+//! Frame pacing: when the next picture may be drawn. A graphics card draws each time that one is due; a driver that draws on the processor is
 //! held to a share of its core, so that the physics' worker and the sensor, which live there too, find it free.
 
 use std::time::{Duration, Instant};
@@ -24,7 +24,7 @@ impl FramePacer {
         self.due.is_none_or(|due| now >= due)
     }
 
-    /// A picture took from `begun` to `now`; who draws on the processor rests in proportion.
+    /// A picture took from `begun` to `now`; a renderer on the processor rests in proportion.
     pub fn drawn(&mut self, begun: Instant, now: Instant, software: bool) {
         let took = now.duration_since(begun);
         self.due = software.then(|| now + took.mul_f64(1.0 / SOFTWARE_SHARE - 1.0).min(LONGEST));

@@ -16,13 +16,13 @@ pub struct FrameStats {
     draw: Meter,
     between: Meter,
     jitter: Meter,
-    /// Pictures presented.
+    /// Pictures that were presented.
     pub presented: u64,
     /// Pictures due and not drawn.
     pub rested: u64,
     /// Pictures for which the display gave no surface.
     pub refused: u64,
-    /// Devices lost.
+    /// Times that the graphics device was lost.
     pub lost: u64,
 }
 
@@ -63,7 +63,7 @@ impl FrameStats {
         self.last = None;
     }
 
-    /// The report.
+    /// The figures so far, with the adapter and the size of the display (pixels).
     pub fn report(&self, adapter: String, software: bool, size: [u32; 2]) -> WindowReport {
         WindowReport {
             adapter,

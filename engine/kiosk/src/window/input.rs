@@ -10,8 +10,8 @@ use crate::visitor::model::NavigationKey;
 /// Events that wait for the render thread: a second of a fast mouse.
 pub const INPUT_EVENTS: usize = 1024;
 
-/// The name of the bound, as warnings give it.
-pub const INPUT_EVENTS_NAME: &str = "INPUT_EVENTS (engine/kiosk/src/window/input.rs)";
+/// Name of this capacity in reports and warnings.
+pub const INPUT_EVENTS_NAME: &str = "INPUT_EVENTS (queue of mouse, touch and keys)";
 
 /// Pixels of a notch of a mouse's wheel.
 const NOTCH: f32 = 60.0;

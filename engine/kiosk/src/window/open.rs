@@ -25,8 +25,8 @@ const LONGEST_OPEN: Duration = Duration::from_secs(10);
 /// Pairs of sizes that wait to be shown.
 const PAIRS: usize = 4;
 
-/// The name of the bound, as warnings give it.
-const PAIRS_NAME: &str = "PAIRS (engine/kiosk/src/window/open.rs)";
+/// Name of this capacity in reports and warnings.
+const PAIRS_NAME: &str = "PAIRS (queue of pairs of sizes to show)";
 
 /// The ends of the window's channels that the service holds.
 pub struct ServiceChannels {

@@ -12,7 +12,7 @@ use super::overlay::Overlay;
 /// Most pixels of a picture that the processor draws while physics runs beside it.
 const MOST_PIXELS: f32 = 360_000.0;
 
-/// A smaller picture.
+/// A texture smaller than the display that pictures are rendered to.
 pub struct RenderTarget {
     size: Size,
     view: TextureView,

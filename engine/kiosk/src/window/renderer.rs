@@ -27,8 +27,8 @@ use crate::visitor::screen::{Action, Screen};
 /// User events that wait for the service.
 pub const USER_EVENTS: usize = 64;
 
-/// The name of the bound, as warnings give it.
-pub const USER_EVENTS_NAME: &str = "USER_EVENTS (engine/kiosk/src/window/renderer.rs)";
+/// Name of this capacity in reports and warnings.
+pub const USER_EVENTS_NAME: &str = "USER_EVENTS (queue of what the visitor asks for)";
 
 /// Most devices that are lost one after the other, with no picture between them.
 const MOST_LOST: u32 = 3;

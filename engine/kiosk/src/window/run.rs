@@ -37,11 +37,11 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
         let channels = controller::WindowChannels { screens, next_input, pairs, draped: BodyModel::draped };
         let controller =
             move |played| -> BoxedController<'_, BodyModel> { Some(Box::new(setup.controller(channels, played))) };
-        let say = kiosk.say;
+        let print_line = kiosk.print_line;
         let renderer = |mannequin: &Frame| {
             let renderer = opening.finish()?;
             if let Some(slow) = renderer.slowness() {
-                say(&slow);
+                print_line(&slow);
             }
             Ok(renderer.showing(BodyModel::of(mannequin)))
         };

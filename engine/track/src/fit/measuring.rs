@@ -64,7 +64,7 @@ pub struct FittedMeasures {
     pub body: Fitted,
     /// Its pose in the last frame.
     pub pose: Pose,
-    /// Frames fitted.
+    /// Frames that were fitted.
     pub frames: usize,
     /// Root mean square distance of the surface from the body's, in the last frame (m).
     pub off: f32,

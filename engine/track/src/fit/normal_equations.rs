@@ -14,7 +14,7 @@ pub(super) struct NormalEquations {
 
 /// Half the cost around a state as a quadratic of the shape alone, the pose following it.
 pub(super) struct ShapeQuadratic {
-    /// Second derivatives.
+    /// Second derivatives by the shape parameters.
     pub hessian: [[f64; SHAPES]; SHAPES],
     /// First derivatives at the state.
     pub gradient: [f64; SHAPES],

@@ -1,4 +1,4 @@
-//! What is recognised, and the longest silence that a gesture survives.
+//! What is recognised, and the longest gap between frames that a gesture survives.
 
 use super::trunk::Side;
 
@@ -43,7 +43,7 @@ pub struct GestureEvent {
     pub time_ns: u64,
     /// Whose hand: the shopper's own side.
     pub side: Side,
-    /// The gesture.
+    /// The gesture that was recognised.
     pub gesture: Gesture,
 }
 

@@ -78,7 +78,7 @@ const WAY_BACK: f32 = 0.4;
 pub(super) struct SwipeInput {
     pub now: u64,
     pub at: Vec3,
-    /// Arm lengths/s.
+    /// Velocity of the hand (arm lengths/s).
     pub velocity: Vec3,
     pub other: Option<Vec3>,
     pub head: Option<Vec3>,

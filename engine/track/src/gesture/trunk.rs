@@ -36,7 +36,7 @@ impl Side {
     }
 }
 
-/// HoldInput shorter or longer than this (m, shoulder over elbow to wrist) are a tracker's mistake: from a child of 1.1 m to a
+/// Arms shorter or longer than this (m, shoulder over elbow to wrist) are a tracker's mistake: from a child of 1.1 m to a
 /// man of 2.1 m.
 const ARMS: [f32; 2] = [0.34, 0.80];
 

@@ -96,15 +96,15 @@ fn judge(measured: &Measurements, offer: &Offer, wanted: Option<&str>) -> Result
     let sizes = offer.sizes.iter().zip(&share);
     let sizes: Vec<_> = sizes.map(|(s, &p)| SizeProbability { size: s.code.clone(), probability: p }).collect();
     let uncertain = share.iter().all(|&p| p < SURE);
-    let tape = if uncertain { tape(&zones, offer.sizes, &share) } else { None };
+    let girth_to_take = if uncertain { girth_to_take(&zones, offer.sizes, &share) } else { None };
     Ok(Recommendation {
         garment: offer.garment.to_owned(),
         size: offer.sizes[chosen].code.clone(),
         probability: share[chosen],
-        verdict: sentences::verdict(&sizes, [chosen, best], tape.as_ref()),
+        verdict: sentences::verdict(&sizes, [chosen, best], girth_to_take.as_ref()),
         sizes,
         uncertain,
-        tape,
+        girth_to_take,
         zones: zones.iter().filter_map(|z| sentences::fit(z, &offer.sizes[chosen])).collect(),
         runner_up,
         note: sentences::note(measured, offer, &zones),
@@ -112,7 +112,7 @@ fn judge(measured: &Measurements, offer: &Offer, wanted: Option<&str>) -> Result
 }
 
 /// The girth whose exact knowledge makes the choice surest, the first of equals; `None` where none is worth a tape.
-fn tape(zones: &[ScoredZone], sizes: &[MadeSize], share: &[f32]) -> Option<TapeAdvice> {
+fn girth_to_take(zones: &[ScoredZone], sizes: &[MadeSize], share: &[f32]) -> Option<TapeAdvice> {
     let now = share.iter().copied().fold(0.0, f32::max);
     let mut best: Option<(Zone, f32)> = None;
     for (i, zone) in zones.iter().enumerate() {
@@ -121,7 +121,11 @@ fn tape(zones: &[ScoredZone], sizes: &[MadeSize], share: &[f32]) -> Option<TapeA
             best = Some((zone.ease.zone, then));
         }
     }
-    best.map(|(zone, probability)| TapeAdvice { zone, probability, sentence: sentences::tape(zone, now, probability) })
+    best.map(|(zone, probability)| TapeAdvice {
+        zone,
+        probability,
+        sentence: sentences::girth_to_take(zone, now, probability),
+    })
 }
 
 fn runner_up(share: &[f32], best: usize) -> Option<usize> {

@@ -8,7 +8,7 @@ pub type Zone = Girth;
 /// Finished girth of a garment at one zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ZoneGirth {
-    /// The zone.
+    /// Where the girth is taken.
     pub zone: Zone,
     /// Girth of the garment (m).
     pub girth_m: f32,
@@ -17,7 +17,7 @@ pub struct ZoneGirth {
 /// Ease (garment less body) that feels right at one zone; negative where the cloth is meant to stretch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EaseRange {
-    /// The zone.
+    /// Where the girth is taken.
     pub zone: Zone,
     /// Less than this is tight (m).
     pub least: f32,

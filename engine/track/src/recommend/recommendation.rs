@@ -7,7 +7,7 @@ use super::offer::Zone;
 pub enum Verdict {
     /// Less ease than is comfortable.
     Tight,
-    /// Comfortable ease.
+    /// As much ease as is comfortable.
     Good,
     /// More ease than is comfortable.
     Loose,
@@ -27,7 +27,7 @@ impl Verdict {
 /// The fit at one zone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZoneFit {
-    /// The zone.
+    /// Where the girth is taken.
     pub zone: Zone,
     /// Whether the size is chosen by this zone.
     pub primary: bool,
@@ -84,7 +84,7 @@ pub struct Recommendation {
     /// Whether no size is as probable as [`SURE`].
     pub uncertain: bool,
     /// The measure to take by tape, where that is so and a tape would help.
-    pub tape: Option<TapeAdvice>,
+    pub girth_to_take: Option<TapeAdvice>,
     /// The recommendation in sentences: how sure the size is, what else may fit, what to do about it.
     pub verdict: String,
     /// Fit by zone, the primary ones first.

@@ -1,4 +1,4 @@
-//! A zone as a size is judged by it.
+//! A zone with its weight in judging a size.
 
 use super::offer::EaseRange;
 use crate::estimate::Estimate;
@@ -11,7 +11,7 @@ pub const WORTH_NAMING: f32 = 0.05;
 
 /// A zone to judge by: its weight, comfortable range, and the body there.
 pub struct ScoredZone {
-    /// Comfortable ease.
+    /// Comfortable ease there (m).
     pub ease: EaseRange,
     /// Its weight among the zones.
     pub weight: f32,

@@ -8,7 +8,11 @@ use super::{
 use crate::measure::Measurements;
 
 /// The verdict on the size chosen, beside the one that is best.
-pub(super) fn verdict(sizes: &[SizeProbability], [chosen, best]: [usize; 2], tape: Option<&TapeAdvice>) -> String {
+pub(super) fn verdict(
+    sizes: &[SizeProbability],
+    [chosen, best]: [usize; 2],
+    girth_to_take: Option<&TapeAdvice>,
+) -> String {
     let SizeProbability { size, probability } = &sizes[chosen];
     let percent = 100.0 * probability;
     if chosen != best {
@@ -30,15 +34,15 @@ pub(super) fn verdict(sizes: &[SizeProbability], [chosen, best]: [usize; 2], tap
         text.push_str(&format!(", but it may be {}", others.join(" or ")));
     }
     text.push('.');
-    if let Some(tape) = tape {
+    if let Some(girth_to_take) = girth_to_take {
         text.push(' ');
-        text.push_str(&tape.sentence);
+        text.push_str(&girth_to_take.sentence);
     }
     text
 }
 
 /// What taking a girth by tape is good for.
-pub(super) fn tape(zone: Zone, now: f32, then: f32) -> String {
+pub(super) fn girth_to_take(zone: Zone, now: f32, then: f32) -> String {
     let (now, then) = (100.0 * now, 100.0 * then);
     format!("Take the {} by tape: the size is then {then:.0} % sure on average, not {now:.0} %.", zone.name())
 }

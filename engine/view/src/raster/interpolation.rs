@@ -33,7 +33,7 @@ pub struct SurfaceInterpolation {
 }
 
 impl SurfaceInterpolation {
-    /// Without any snapshot.
+    /// Interpolation before the first snapshot.
     pub fn new() -> Self {
         Self::default()
     }

@@ -79,7 +79,7 @@ pub enum ModelError {
     Surface {
         /// The number asked for.
         surface: usize,
-        /// Entries needed.
+        /// Number of surfaces.
         count: usize,
     },
     /// A list has not as many entries as the surface has vertices.
@@ -89,9 +89,9 @@ pub enum ModelError {
         surface: usize,
         /// Name of the list.
         what: &'static str,
-        /// Entries given.
+        /// Number of entries given.
         got: usize,
-        /// Entries needed.
+        /// Number of entries needed.
         want: usize,
     },
     /// A triangle names a vertex that is not there.

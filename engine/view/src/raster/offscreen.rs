@@ -111,14 +111,14 @@ impl Offscreen {
             self.target.size(),
         );
         gpu.queue.submit([encoder.finish()]);
-        let (told, heard) = mpsc::channel();
+        let (sender, result_receiver) = mpsc::channel();
         self.buffer.map_async(wgpu::MapMode::Read, .., move |result| {
             // Nobody listens any more where the wait below has failed.
-            let _ = told.send(result);
+            let _ = sender.send(result);
         });
         let lost = |e: &dyn std::fmt::Display| OffscreenError::Lost(e.to_string().replace('\n', " "));
         gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| lost(&e))?;
-        heard.recv().map_err(|e| lost(&e))?.map_err(|e| lost(&e))?;
+        result_receiver.recv().map_err(|e| lost(&e))?.map_err(|e| lost(&e))?;
         if let Some(fault) = gpu.fault() {
             return Err(OffscreenError::Refused(fault.to_owned()));
         }

@@ -9,7 +9,7 @@ fn curvature(bend: &Bend, x: &[DVec3]) -> DVec3 {
     bend.particles.iter().zip(&bend.coefficients).map(|(&i, c)| x[i as usize] * c).sum()
 }
 
-/// Energy (J).
+/// Energy of all stencils (J).
 pub fn value(bends: &[Bend], x: &[DVec3]) -> f64 {
     bends.iter().map(|b| 0.5 * curvature(b, x).length_squared()).sum()
 }

@@ -18,7 +18,7 @@ use super::super::system::System;
 #[derive(Debug)]
 pub struct Contact<'a> {
     problem: &'a Problem,
-    /// The solids.
+    /// Distance functions of the solids, cones first.
     pub surfaces: Vec<SolidSurface>,
     rho: f64,
     /// Force of the round before (N) `[particles][solids]`.

@@ -26,7 +26,7 @@ struct StickyContact {
 /// Friction of all contacts.
 #[derive(Debug)]
 pub struct Friction<'a> {
-    /// Coulomb coefficient.
+    /// Coulomb coefficient (1).
     pub coefficient: f64,
     /// Motion below which friction is not yet whole (m).
     pub slack_m: f64,
@@ -58,7 +58,7 @@ impl<'a> Friction<'a> {
         }
     }
 
-    /// Energy (J).
+    /// Energy that friction stands for (J).
     pub fn value(&self, x: &[DVec3]) -> f64 {
         self.grips.iter().map(|g| g.most * self.profile(Self::slip(g, x).length())[0]).sum()
     }

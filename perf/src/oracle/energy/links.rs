@@ -15,7 +15,7 @@ use super::super::problem::Link;
 use super::super::solids::outer;
 use super::super::system::System;
 
-/// All links.
+/// Stretch energy of all links, the stiffest by multipliers.
 #[derive(Debug)]
 pub struct Springs<'a> {
     links: &'a [Link],

@@ -25,7 +25,7 @@ pub enum Load {
 }
 
 impl Load {
-    /// Energy (J).
+    /// Energy of weight or inertia (J).
     pub fn value(&self, mass: &[f64], x: &[DVec3]) -> f64 {
         match self {
             Self::Weight { gravity, from } => {

@@ -23,13 +23,13 @@ use load::Load;
 /// The sum of all.
 #[derive(Debug)]
 pub struct TotalEnergy<'a> {
-    /// What is solved.
+    /// The problem that is solved.
     pub problem: &'a Problem,
     /// Weight or inertia.
     pub load: Load,
-    /// Stretch.
+    /// Stretch of all links.
     pub springs: Springs<'a>,
-    /// Contact.
+    /// Contact of particles with solids.
     pub contact: Contact<'a>,
     /// Friction, where there is any.
     pub friction: Option<Friction<'a>>,

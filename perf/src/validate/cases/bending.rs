@@ -38,7 +38,7 @@ const GATED: [f64; 2] = [0.3, 300.0];
 /// A clamped strip, level.
 #[derive(Debug, Clone, Copy)]
 pub struct Cantilever {
-    /// The strip.
+    /// The strip's measures and mesh.
     pub strip: Strip,
     /// Its w L^3 / B.
     pub gamma: f64,
@@ -66,7 +66,7 @@ impl Cantilever {
         shape
     }
 
-    /// Its cloth.
+    /// A fabric whose strip bends by this Gamma.
     pub fn cloth(&self) -> CaseFabric {
         let weight = CaseFabric::PLAIN.density * G;
         CaseFabric { bend: weight * LENGTH.powi(3) / self.gamma, damping: DAMPING, ..CaseFabric::PLAIN }

@@ -17,7 +17,7 @@ use super::bending::{Cantilever, REST_S};
 /// shows.
 const GAMMA: f64 = 300.0;
 
-/// Links along it.
+/// Links along the strip.
 const ROWS: usize = 24;
 
 /// How it is changed.

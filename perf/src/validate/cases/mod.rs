@@ -14,7 +14,7 @@ mod strings;
 
 use super::case::ValidationCase;
 
-/// All cases.
+/// All cases, in the order of the table.
 pub fn all() -> Vec<ValidationCase> {
     let rooms = [bending::cases, buckling::cases, strings::cases, motion::cases, contact::cases, invariance::cases];
     rooms.into_iter().flat_map(|cases| cases()).collect()

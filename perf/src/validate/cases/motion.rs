@@ -60,7 +60,7 @@ const CHAIN_ROWS: usize = 40;
 /// Amplitude of a mode at the free end (m).
 const AMPLITUDE: f64 = 0.004;
 
-/// Periods watched.
+/// Periods for which the motion is watched.
 const PERIODS: f64 = 5.0;
 
 /// A mode of a hanging chain: a strip two particles wide starts in the mode's form; what is watched is its projection onto

@@ -8,7 +8,7 @@ use crate::validate::exact::string;
 use crate::validate::mesh::{CaseFabric, EndSupport, MeshStyle, Strip};
 use crate::validate::specimen::{G, Placement, Specimen, Surroundings};
 
-/// Links along them.
+/// Links along the strings.
 const ROWS: usize = 32;
 
 /// Rate of damping (1/s).

@@ -20,7 +20,7 @@ const LEAST_LOG: f64 = -80.0;
 /// Where the tip comes to lie, in lengths of the strip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tip {
-    /// Below the clamp.
+    /// Depth of the tip below the clamp, in lengths of the strip (1).
     pub drop: f64,
     /// Away from the clamp.
     pub reach: f64,

@@ -23,7 +23,7 @@ const CURE: &str = "write it again with OpenPose and --write_json";
 pub struct Keypoint {
     /// Where it is in the image (px).
     pub pixel: DVec2,
-    /// 0 to 1.
+    /// Confidence of the keypoint, 0 to 1.
     pub score: f32,
 }
 

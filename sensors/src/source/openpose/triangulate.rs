@@ -26,9 +26,9 @@ pub type Ray<'a> = (&'a CalibratedCamera, DVec2, f32);
 /// A point in space; a confidence of 0 says that it is not seen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Point {
-    /// World (m).
+    /// Position in the world (m).
     pub position: DVec3,
-    /// 0 to 1.
+    /// Confidence of the point, 0 to 1.
     pub confidence: f32,
     /// Mean distance of the pixels used from where the point is seen (px at a focal length of 1000).
     pub error: f64,

@@ -6,7 +6,7 @@ use toile_assets::skeleton::{JOINTS, Joint};
 use crate::frame::{Joints, TrackedJoint};
 use crate::source::joint_map;
 
-/// The bones that a body is made of, each with the one that it hangs from, parents first. Fingers, eyes and jaw move
+/// The bones that a body is made of, each with its parent, parents first. Fingers, eyes and jaw move
 /// nothing of ours, but for the knuckle of the middle finger, which is the end of the hand.
 const BONES: [(&str, Option<usize>); COUNT] = [
     ("Hips", None),
@@ -69,7 +69,7 @@ impl BoneMap {
         Self(map)
     }
 
-    /// Joints of the bones that are there (m, world); those that are not hang nothing and are skipped.
+    /// Joints of the bones that are there (m, world); those that are not carry nothing and are skipped.
     pub fn joints(&self, time_ns: u64, root: Local, bones: &[Option<Local>; COUNT]) -> Joints {
         let mut world = [Affine3A::IDENTITY; COUNT];
         let root = Affine3A::from_rotation_translation(root.turn, root.position);

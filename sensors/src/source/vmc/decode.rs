@@ -38,7 +38,7 @@ pub struct Drops {
 }
 
 impl Drops {
-    /// All of them.
+    /// Number dropped, for all reasons.
     pub fn total(&self) -> u64 {
         self.oversize + self.malformed + self.invalid + self.late + self.overrun + self.stranger
     }

@@ -64,8 +64,8 @@ impl VmcReceiver {
                 continue;
             }
             // Two senders' bones would make one figure of two.
-            let silence = |heard: u64| now_ns.saturating_sub(heard);
-            if self.sender.is_some_and(|(sender, heard)| sender != from && silence(heard) < LONGEST_SILENCE_NS) {
+            let silence = |heard_ns: u64| now_ns.saturating_sub(heard_ns);
+            if self.sender.is_some_and(|(sender, heard_ns)| sender != from && silence(heard_ns) < LONGEST_SILENCE_NS) {
                 self.decoder.drops_mut().stranger += 1;
                 continue;
             }

@@ -49,7 +49,7 @@ struct BodyBenchReport {
 
 /// Runs `toile bench body`.
 ///
-/// # MeasureErrors
+/// # Errors
 /// [`AppError::Input`] for a file that is no survey; [`AppError::Threshold`] where a limit was missed, after the table.
 pub fn run(args: &BodyBenchArgs) -> Result<(), AppError> {
     let words = args.printing.words();

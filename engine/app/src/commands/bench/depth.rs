@@ -28,7 +28,7 @@ pub struct DepthArgs {
 /// Where the scene's people cannot be made, and where stdout cannot be written.
 pub fn run(args: &DepthArgs) -> Result<(), AppError> {
     let words = Words::new(args.json);
-    let table = depth::run(&mut |case| words.say(case)).map_err(AppError::internal)?;
+    let table = depth::run(&mut |case| words.print_line(case)).map_err(AppError::internal)?;
     if args.json {
         return terminal::print_json(&Document::new("bench-depth", table));
     }

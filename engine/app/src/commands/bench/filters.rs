@@ -34,7 +34,7 @@ pub struct FiltersArgs {
 pub fn run(args: &FiltersArgs) -> Result<(), AppError> {
     let words = Words::new(args.json);
     let data = args.data.clone().or_else(|| std::env::var_os("TOILE_DATA").map(PathBuf::from));
-    let table = filters::table::run(data.as_deref(), args.table, &mut |case| words.say(case));
+    let table = filters::table::run(data.as_deref(), args.table, &mut |case| words.print_line(case));
     let table = table.map_err(|error| match error {
         FiltersError::Source(error) => AppError::input(error),
         FiltersError::Body(error) => AppError::internal(error),

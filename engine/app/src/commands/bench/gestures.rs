@@ -48,7 +48,7 @@ const TIMED_AT: f32 = 2.0;
 /// Where stdout cannot be written.
 pub fn run(args: &GesturesArgs) -> Result<(), AppError> {
     let words = Words::new(args.json);
-    let study = GestureStudy::run(args.sequences, args.seed, &mut |case| words.say(case));
+    let study = GestureStudy::run(args.sequences, args.seed, &mut |case| words.print_line(case));
     let times = [joints_us(), hand_us()];
     if args.json {
         return terminal::print_json(&Document::new("bench-gestures", GesturesReport::new(&study, times)));

@@ -1,4 +1,4 @@
-//! `toile bench measure`: synthetic people measured, and held against what the tape reads on them.
+//! `toile bench measure`: synthetic people are measured, and compared with their true measures.
 
 use std::fmt::Write;
 use std::path::PathBuf;

@@ -77,7 +77,7 @@ pub fn run(args: &SkinningArgs) -> Result<(), AppError> {
     }
     if args.table {
         let words = Words::new(args.json);
-        let table = skinning::table::run(&mut |case| words.say(case)).map_err(refused)?;
+        let table = skinning::table::run(&mut |case| words.print_line(case)).map_err(refused)?;
         if args.json {
             return terminal::print_json(&Document::new("bench-skinning-table", table));
         }

@@ -159,14 +159,14 @@ pub fn run(args: &SkirtArgs) -> Result<(), AppError> {
     }
     if args.table {
         let words = Words::new(args.json);
-        let table = table::run(&options, &heap, &mut |case| words.say(case));
+        let table = table::run(&options, &heap, &mut |case| words.print_line(case));
         if args.json {
             return terminal::print_json(&Document::new("bench-skirt-table", table));
         }
         return terminal::print(&table.markdown());
     }
     let report = skirt::measure(&options, &heap).map_err(refused)?;
-    backend::say(&report.stepped_by);
+    backend::print_fallback(&report.stepped_by);
     if args.json {
         return terminal::print_json(&Document::new("bench-skirt", report));
     }
@@ -177,8 +177,8 @@ pub fn run(args: &SkirtArgs) -> Result<(), AppError> {
 fn crossover(args: &SkirtArgs, options: &SkirtOptions) -> Result<(), AppError> {
     let words = Words::new(args.json);
     let mut out = args.picture.as_deref().map(OutputFolder::prepare).transpose()?;
-    let study = crossover::run(options, usize::MAX, &mut |case| words.say(case)).map_err(refused)?;
-    backend::say(&study.stepped_by);
+    let study = crossover::run(options, usize::MAX, &mut |case| words.print_line(case)).map_err(refused)?;
+    backend::print_fallback(&study.stepped_by);
     if let Some(out) = &mut out {
         let mut png = Vec::new();
         raster::image(&crossover::chart(&study)).write_png(&mut png).map_err(AppError::internal)?;
@@ -188,7 +188,7 @@ fn crossover(args: &SkirtArgs, options: &SkirtOptions) -> Result<(), AppError> {
     if args.json {
         return terminal::print_json(&Document::new("bench-skirt-crossover", study));
     }
-    files.iter().flatten().for_each(|file| words.say(&file.display().to_string()));
+    files.iter().flatten().for_each(|file| words.print_line(&file.display().to_string()));
     terminal::print(&study.markdown())
 }
 

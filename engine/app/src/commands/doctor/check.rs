@@ -19,13 +19,13 @@ pub enum Status {
 /// One thing that was looked at.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Check {
-    /// What was looked at.
+    /// Name of the check.
     pub name: &'static str,
-    /// How it stands.
+    /// Result of the check.
     pub status: Status,
-    /// What was found.
+    /// What was found, in words.
     pub found: String,
-    /// What it is needed for.
+    /// Feature that needs it.
     pub needed_for: &'static str,
     /// The exact cure, where something is missing.
     pub cure: Option<String>,

@@ -1,4 +1,4 @@
-//! What stands around the process: GPU, display, output folder, other programs.
+//! The surroundings of the process: GPU, display, output folder, other programs.
 
 use std::env;
 use std::path::{Path, PathBuf};

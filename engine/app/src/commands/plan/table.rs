@@ -6,7 +6,7 @@ use toile_fitting::plan::work::STAGES;
 
 use crate::terminal::{Paint, Tone};
 
-/// The tables.
+/// The plan as tables for a terminal; `costs` adds the time of each kind of work.
 pub fn table(plan: &Plan, costs: bool, paint: Paint) -> String {
     let mut lines = vec![paint.tone(&format!("Plan: {}", plan.scene), Tone::Strong).into_owned()];
     lines.push(format!("  {} workers, {} lanes, a step every {:.0} us", plan.workers, plan.lanes, plan.period_us));
@@ -79,16 +79,16 @@ fn stages(plan: &Plan, lines: &mut Vec<String>, paint: Paint) {
         lines.push(format!("  {:<10} {:>12.0} {:>10.0}{over}", s.stage, s.predicted_us, s.budget_us));
     }
     let v = &plan.verdict;
-    let said = format!("  {:<10} {:>12.0} {:>10.0}", "step", v.step_us, v.budget_us);
+    let total = format!("  {:<10} {:>12.0} {:>10.0}", "step", v.step_us, v.budget_us);
     let tone = if v.within_budget { Tone::Good } else { Tone::Warn };
-    lines.push(paint.tone(&said, tone).into_owned());
+    lines.push(paint.tone(&total, tone).into_owned());
     if let (Some(held), Some(played)) = (&plan.held, &plan.played) {
-        let ([p50, p99], [said, one, off]) = (held.measured_us, held.one_core);
+        let ([p50, p99], [total, one, off]) = (held.measured_us, held.one_core);
         lines.push(format!(
             "  played: cloth {p50:.0} us in the median, {p99:.0} us at 99 %, {} pairs near; the prediction is {:+.0} % off the median",
             played.near, held.error_percent
         ));
-        lines.push(format!("  on one core: {said:.0} us predicted, {one:.0} us played, {off:+.0} % off"));
+        lines.push(format!("  on one core: {total:.0} us predicted, {one:.0} us played, {off:+.0} % off"));
     }
     if !v.within_budget {
         let gives_up = v.gives_up.map_or_else(

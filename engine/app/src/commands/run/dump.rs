@@ -78,7 +78,7 @@ impl Dump {
         Ok(())
     }
 
-    /// Frames written.
+    /// Frames written so far.
     pub fn frames(&self) -> u64 {
         self.frame
     }

@@ -1,4 +1,4 @@
-//! The capsules as kernels want them: a row a quantity, a place a capsule, made ready once a substep.
+//! The capsules in the layout of the kernels: one row a quantity, one place a capsule, prepared once a substep.
 
 use glam::Vec4;
 use toile_assets::limits::MAX_CAPSULES;
@@ -30,7 +30,7 @@ impl CapsuleIndex {
         (bits != 0).then(|| Self(bits.trailing_zeros() as u8))
     }
 
-    /// The place.
+    /// Index of the capsule's row, below [`PLACES`].
     #[inline(always)]
     pub fn place(self) -> usize {
         debug_assert!(usize::from(self.0) < PLACES);
@@ -92,7 +92,7 @@ pub struct CapsuleEnds {
 }
 
 impl CapsuleEnds {
-    /// Nothing yet.
+    /// No capsule: the state before the first [`Self::read`].
     pub const NONE: Self = Self { start: [EndSpheres::ZERO; 2], travel: [const { EndSpheres::ZERO }; 2], sound: 0 };
 
     /// Reads the colliders of this step. A capsule that is not finite at the end of the step is ignored; one that was
@@ -153,7 +153,7 @@ pub struct CapsuleCones {
 }
 
 impl CapsuleCones {
-    /// Nothing yet.
+    /// No capsule: the state before the first step.
     pub const NONE: Self = {
         const THREE: [CapsuleRow; 3] = [CapsuleRow::ZERO; 3];
         const ZERO: CapsuleRow = CapsuleRow::ZERO;
@@ -177,7 +177,7 @@ impl CapsuleCones {
 
 /// Makes the capsules ready.
 pub struct PrepareCones<'a> {
-    /// Their ends.
+    /// End spheres of the capsules over the step.
     pub ends: &'a CapsuleEnds,
     /// Part of the step at which they are wanted, 0..1.
     pub at: f32,

@@ -49,7 +49,7 @@ pub struct Contacts {
 
 impl Contacts {
     /// All storage. `spans` are the ranges of particles (first, how many) of each worker, together each particle once;
-    /// `parts` says which limb each particle hangs on, `start` where it starts (m): what is close shares a block.
+    /// `parts` says which limb each particle belongs to, `start` where it starts (m): what is close shares a block.
     pub fn new(spans: &[Vec<(u32, u32)>; 2], parts: &[Part], start: &[Vec3], colliders: &Colliders) -> Self {
         Self { owners: [0, 1].map(|w| OwnerContacts::new(&spans[w], parts, start, colliders)) }
     }
@@ -66,7 +66,7 @@ impl Contacts {
         ContactCounts { near: a.near + b.near, swept: a.swept + b.swept, ignored: a.ignored.max(b.ignored), most_pairs }
     }
 
-    /// Bytes held.
+    /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         let owned = |o: &OwnerContacts| {
             size_of_val(&*o.blocks) + size_of_val(&*o.pairs) + size_of_val(&*o.turns) + size_of_val(&*o.reach)

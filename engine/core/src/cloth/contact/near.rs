@@ -51,7 +51,7 @@ impl ParticleBlock {
         Self { quads, len: len.min(MOST) as u16, pairs: 0, from: 0, planes: 0, plane_lanes: [0; PLANES] }
     }
 
-    /// Particles.
+    /// Number of particles in the block.
     #[inline(always)]
     pub fn len(&self) -> usize {
         usize::from(self.len)
@@ -89,7 +89,7 @@ impl ParticleBlock {
         L::gather(from, &index, n)
     }
 
-    /// Writes vectors.
+    /// Writes the vectors of the block's particles, from `lane` on, to three columns.
     #[inline(always)]
     pub fn store<L: Lanes>(&self, v: V3<L>, to: [WriteColumn<'_>; 3], lane: usize) {
         if self.len() == MOST {
@@ -103,7 +103,7 @@ impl ParticleBlock {
 /// A block and a capsule that are near.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ContactPair {
-    /// The capsule.
+    /// Row of the capsule.
     pub capsule: CapsuleIndex,
     /// Which particles of the block may touch it in this step, a bit each.
     pub lanes: u16,
@@ -179,7 +179,7 @@ pub struct FindPairs<'a> {
 }
 
 impl Kernel for FindPairs<'_> {
-    /// Pairs.
+    /// How many pairs were found.
     type Out = usize;
 
     #[inline(always)]

@@ -1,4 +1,4 @@
-//! Which capsules cloth on a part of the body can touch at all: a sleeve has nothing to do with a leg.
+//! Which capsules cloth on a part of the body can touch at all: a sleeve never touches a leg.
 
 use toile_assets::garment::Part;
 use toile_assets::skeleton::{Joint, bone_joint};

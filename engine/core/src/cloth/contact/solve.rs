@@ -21,18 +21,18 @@ pub struct SolveContacts<'a> {
     pub planes: &'a [[f32; 4]],
     /// The owner's blocks.
     pub blocks: &'a [ParticleBlock],
-    /// Their pairs.
+    /// Pairs of the owner's blocks, block after block.
     pub pairs: &'a mut [ContactPair],
     /// Room for a turn of every block.
     pub turns: &'a mut [BusyBlock],
-    /// Friction.
+    /// How contact acts: friction, and the distance that is kept from surfaces.
     pub how: &'a ContactSettings,
 }
 
 /// A block that has something to do.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct BusyBlock {
-    /// The block.
+    /// Index of the block among the owner's blocks.
     block: u32,
     /// Which of its pairs is next.
     pair: u32,

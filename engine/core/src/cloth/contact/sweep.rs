@@ -19,9 +19,9 @@ const STEPS: u32 = 32;
 /// Square of the farthest move relative to a capsule (m2) that is followed: what moves farther is an error.
 const FARTHEST2_M2: f32 = 1e8;
 
-/// What a sweep works on.
+/// Input of a sweep.
 pub struct Sweep<'a> {
-    /// The capsules' ends.
+    /// End spheres of the capsules over the step.
     pub ends: &'a CapsuleEnds,
     /// The capsules at the end of the substep.
     pub cones: &'a CapsuleCones,

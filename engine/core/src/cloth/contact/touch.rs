@@ -19,9 +19,9 @@ pub const ON_M: f32 = 1e-6;
 /// Friction of a substep.
 #[derive(Clone, Copy)]
 pub struct Friction<L> {
-    /// Static coefficient.
+    /// Coefficient of static friction (1).
     pub hold: L,
-    /// Kinetic coefficient.
+    /// Coefficient of kinetic friction (1).
     pub slide: L,
 }
 

@@ -75,18 +75,18 @@ fn every_width_gives_the_same_bits_and_f64_agrees() {
     }
 }
 
-/// A zigzag of `n` rungs, closed or not, rungs and slants alike or not, between rails that lie one behind the other.
-fn zigzag(n: u32, closed: bool, [rungs, slants]: [bool; 2]) -> Links {
+/// A zigzag of `n` straights, closed or not, straights and slants alike or not, between rails that lie one behind the other.
+fn zigzag(n: u32, closed: bool, [straights, slants]: [bool; 2]) -> Links {
     let long = if closed { n } else { n - 1 };
-    let places = if rungs { 1 } else { n };
+    let places = if straights { 1 } else { n };
     let count = places + if slants { 1 } else { long };
-    let rungs = ConstraintRun { first: [0, n], len: n, at: 0, serial: 0, alike: rungs };
+    let straights = ConstraintRun { first: [0, n], len: n, at: 0, serial: 0, alike: straights };
     let slants = ConstraintRun { first: [n, 1], len: long, at: places, serial: n, alike: slants };
     let share = OwnerShare { zigzags: 0..1, ..OwnerShare::default() };
     let set = ConstraintSet { direction: Direction::Weft, crosses: false, shares: [share, OwnerShare::default()] };
     Links {
         tuples: Tuples {
-            zigzags: [Zigzag { rungs, slants }].into(),
+            zigzags: [Zigzag { straights, slants }].into(),
             sets: [set].into(),
             count: (n + slants.len) as usize,
             places: count as usize,
@@ -104,7 +104,7 @@ fn rails(n: u32, same: bool) -> (Vec<Vec3>, Vec<f32>) {
     ((0..2 * n).map(place).collect(), (0..2 * n).map(weight).collect())
 }
 
-/// All lengths up to some vectors of the widest lanes, closed and open, with rungs and slants alike and not.
+/// All lengths up to some vectors of the widest lanes, closed and open, with straights and slants alike and not.
 fn zigzags() -> impl Iterator<Item = (u32, bool, [bool; 2])> {
     let alike = [[true, true], [true, false], [false, true], [false, false]];
     let forms = move |n| [true, false].into_iter().flat_map(move |closed| alike.map(|alike| (n, closed, alike)));
@@ -112,7 +112,7 @@ fn zigzags() -> impl Iterator<Item = (u32, bool, [bool; 2])> {
 }
 
 #[test]
-fn a_zigzag_is_its_rungs_and_then_its_slants_at_every_width() {
+fn a_zigzag_is_its_straights_and_then_its_slants_at_every_width() {
     for (n, closed, alike) in zigzags() {
         let links = zigzag(n, closed, alike);
         let (positions, weights) = rails(n, alike.contains(&true));
@@ -122,7 +122,7 @@ fn a_zigzag_is_its_rungs_and_then_its_slants_at_every_width() {
             (false, [_, true]) => [n, 1],
             _ => ends,
         };
-        // One after the other, each as a ladder of one rung.
+        // One after the other, each as a zigzag of one straight link.
         let mut expected = State::new(&positions, &weights);
         let mut gain = vec![0.0; links.rest.len()];
         prepare(&links, &weights, [1.0, 0.0], Passes::Many, &mut gain);
@@ -142,12 +142,12 @@ fn a_zigzag_is_its_rungs_and_then_its_slants_at_every_width() {
             (0..2 * n as usize).map(|i| Vec3::from_array(expected.positions().map(|a| a[i]))).collect();
         for width in Width::ALL.into_iter().filter(|w| w.available()) {
             let got = solved(width, &positions, &weights, &links, 0.0);
-            assert_eq!(got, expected, "{width} lanes, {n} rungs, closed {closed}, alike {alike:?}");
+            assert_eq!(got, expected, "{width} lanes, {n} straights, closed {closed}, alike {alike:?}");
         }
     }
 }
 
-/// Where links are alike the masses differ in their last bits; which ones count must not hang on the lanes.
+/// Where links are alike the masses differ in their last bits; which ones count must not depend on the lanes.
 #[test]
 fn damped_zigzags_have_the_same_bits_at_every_width() {
     for (n, closed, alike) in zigzags() {
@@ -156,7 +156,7 @@ fn damped_zigzags_have_the_same_bits_at_every_width() {
         let plain = solved(Width::One, &positions, &weights, &links, 0.25);
         for width in Width::ALL.into_iter().filter(|w| w.available()) {
             let got = solved(width, &positions, &weights, &links, 0.25);
-            assert_eq!(got, plain, "{width} lanes, {n} rungs, closed {closed}, alike {alike:?}");
+            assert_eq!(got, plain, "{width} lanes, {n} straights, closed {closed}, alike {alike:?}");
         }
     }
 }

@@ -136,7 +136,7 @@ fn frames_out_of_order_repeated_absent_or_not_finite_do_no_harm() {
     assert!(!intake.take(&frame(100 * MS, 9.0), 102 * MS), "repeated");
     assert!(!intake.take(&frame(50 * MS, 9.0), 103 * MS), "older");
     assert!(intake.take(&frame(133 * MS, f64::NAN), 134 * MS));
-    assert_eq!(intake.at(140 * MS).joints[7], TrackedJoint::default(), "absent while it is no number");
+    assert_eq!(intake.at(140 * MS).joints[7], TrackedJoint::default(), "absent while it is NaN");
     assert!(intake.take(&Joints::absent(166 * MS), 167 * MS));
     assert!(intake.take(&frame(200 * MS, 0.4), 201 * MS));
     assert_eq!(intake.at(201 * MS).joints[7].position.x, 0.4, "back where it is seen");

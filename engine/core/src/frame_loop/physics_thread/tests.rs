@@ -1,4 +1,4 @@
-//! The loop against a simulated clock: a scene whose steps take as long as they are told to.
+//! The loop against a simulated clock: a scene whose steps take as long as the test sets.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -99,7 +99,7 @@ impl Rig {
         simulate(&self.clock, &mut [&mut self.sense, &mut self.physics], until_ns);
     }
 
-    fn told(&mut self) -> Vec<Event> {
+    fn drained(&mut self) -> Vec<Event> {
         std::iter::from_fn(|| self.events.pop()).collect()
     }
 }
@@ -112,7 +112,7 @@ fn every_step_is_taken_once_and_in_time_however_long_the_clock_has_run() {
         let uptime = days * 86_400 * SECOND_NS;
         let mut rig = rig(uptime, &frames, |_| 3 * MS);
         rig.run(uptime + 10 * SECOND_NS);
-        assert_eq!(rig.told(), []);
+        assert_eq!(rig.drained(), []);
         let gauges = &rig.physics.gauges;
         assert_eq!((gauges.steps, gauges.missed, gauges.dropped, gauges.skipped), (1_200, 0, 0, 0));
         assert_eq!(rig.physics.stepper.scene.path.borrow().len(), 1_200);
@@ -131,18 +131,18 @@ fn a_late_wake_up_is_made_up_for_or_dropped_and_told() {
     rig.run(2 * SECOND_NS);
     assert_eq!((rig.physics.gauges.steps, rig.physics.gauges.dropped), (240, 0), "made up for");
     let missed = rig.physics.gauges.missed;
-    let told = rig.told();
+    let drained = rig.drained();
     assert!(
-        (1..=3).contains(&missed) && told.iter().all(|e| matches!(e.what, EventKind::Missed(_))),
-        "{missed} {told:?}"
+        (1..=3).contains(&missed) && drained.iter().all(|e| matches!(e.what, EventKind::Missed(_))),
+        "{missed} {drained:?}"
     );
     rig.clock.oversleep_once(500 * MS);
     rig.run(4 * SECOND_NS);
-    let told = rig.told();
+    let drained = rig.drained();
     let gauges = &rig.physics.gauges;
     assert_eq!(gauges.steps + gauges.dropped, 480, "no step is lost without being counted");
     assert!((50..60).contains(&gauges.dropped));
-    assert!(told.iter().any(|e| e.what == EventKind::Dropped(gauges.dropped)), "{told:?}");
+    assert!(drained.iter().any(|e| e.what == EventKind::Dropped(gauges.dropped)), "{drained:?}");
     // Corrected for coordinated omission: the steps that could not be taken count with their lateness.
     assert_eq!(gauges.response.histogram().len(), 480);
     assert!(gauges.response.histogram().value_at_quantile(0.9) > 20 * MS);
@@ -155,11 +155,11 @@ fn quality_is_given_up_before_deadlines_and_comes_back_when_the_load_is_gone() {
     let cost = |due: u64| if (2 * SECOND_NS..5 * SECOND_NS).contains(&due) { 10 * MS } else { 3 * MS };
     let mut rig = rig(0, &recording(30), cost);
     rig.run(10 * SECOND_NS);
-    let told = rig.told();
+    let drained = rig.drained();
     let gauges = &rig.physics.gauges;
     assert_eq!((gauges.steps, gauges.dropped), (1_200, 0));
     let changes: Vec<u8> =
-        told.iter().filter_map(|e| if let EventKind::Quality(c) = e.what { Some(c.to) } else { None }).collect();
+        drained.iter().filter_map(|e| if let EventKind::Quality(c) = e.what { Some(c.to) } else { None }).collect();
     assert_eq!(changes, [1, 2, 1, 0], "each change is told");
     assert!(gauges.missed <= 8, "{} steps were late until quality was given up", gauges.missed);
     assert_eq!(gauges.rungs.iter().sum::<u64>(), 1_200);
@@ -172,8 +172,8 @@ fn a_sensor_that_is_lost_and_found_is_told_and_the_body_stays() {
     frames.retain(|f| !(2 * SECOND_NS..4 * SECOND_NS).contains(&f.time_ns));
     let mut rig = rig(0, &frames, |_| MS);
     rig.run(6 * SECOND_NS);
-    let told: Vec<EventKind> = rig.told().into_iter().map(|e| e.what).collect();
-    assert_eq!(told, [EventKind::SensorLost, EventKind::SensorBack]);
+    let drained: Vec<EventKind> = rig.drained().into_iter().map(|e| e.what).collect();
+    assert_eq!(drained, [EventKind::SensorLost, EventKind::SensorBack]);
     let path = rig.physics.stepper.scene.path.borrow();
     assert!(path.iter().all(|x| x.is_finite() && x.abs() < 0.6));
 }
@@ -230,8 +230,8 @@ fn another_scene_takes_the_place_between_two_steps_and_in_the_replay_too() {
         assert!(before.scene.path.borrow().len() >= 200 && before.number == number);
         assert_eq!(rig.physics.stepper.scene.share, 0.5, "the rung goes on");
     }
-    let told: Vec<EventKind> = rig.told().into_iter().map(|e| e.what).collect();
-    assert_eq!(told, (1..=4).map(EventKind::Changed).collect::<Vec<_>>());
+    let drained: Vec<EventKind> = rig.drained().into_iter().map(|e| e.what).collect();
+    assert_eq!(drained, (1..=4).map(EventKind::Changed).collect::<Vec<_>>());
     let entries: Vec<Entry> = std::iter::from_fn(|| rig.recording.pop()).collect();
     let clock = SimClock::default();
     let again = |entries: &[Entry]| {
@@ -241,7 +241,7 @@ fn another_scene_takes_the_place_between_two_steps_and_in_the_replay_too() {
     let out = again(&entries);
     assert_eq!((out.ticks, out.diverged_at, out.gap_at), (rig.physics.ticks(), None, None));
     assert_eq!(out.fingerprint, rig.physics.stepper.scene.hash);
-    // From where somebody came, which is where a black box begins; with a garment alone the shopper's motion is not known.
+    // From where somebody came, which is where a flight recorder begins; with a garment alone the shopper's motion is not known.
     let from = |number: u64| entries.iter().position(|e| matches!(e, Entry::Changed { number: n, .. } if *n == number));
     let late = again(&entries[from(2).unwrap()..]);
     assert_eq!((late.diverged_at, late.gap_at, late.fingerprint), (None, None, out.fingerprint));

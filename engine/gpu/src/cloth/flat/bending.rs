@@ -1,4 +1,4 @@
-//! Bending: curvatures as sums of terms, and for each particle what pushes it, in the order in which the CPU adds it up.
+//! Bending: curvatures as sums of terms, and for each particle the forces on it, in the order in which the CPU adds it up.
 
 use toile_assets::garment::layout::{Bends, ConstraintRun, Hubs, OWNERS, OwnerShare};
 
@@ -27,7 +27,7 @@ pub struct FlatBending {
     pub terms: Vec<[u32; 2]>,
     /// Share of the stiffness that the substep carries `[curvatures]`.
     pub scales: Vec<f32>,
-    /// Which scale that is `[curvatures]`.
+    /// Source of the scale of each curvature `[curvatures]`.
     sources: Vec<BendingScale>,
     /// Each garment's curvatures `[garments]`.
     ranges: Vec<std::ops::Range<usize>>,

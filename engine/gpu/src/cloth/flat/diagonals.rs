@@ -21,7 +21,7 @@ pub struct FlatDiagonals {
 type Link = (u32, [f32; 4]);
 
 impl FlatDiagonals {
-    /// Appends a garment's.
+    /// Appends the fibers along the bias of one garment.
     pub fn add(&mut self, diagonals: &Diagonals, weights: &[f32], span: GarmentSpan) {
         for (f, strands) in diagonals.families.iter().enumerate() {
             let mut fibers = followed(diagonals, strands, weights);

@@ -21,7 +21,7 @@ pub struct FlatFaces {
 }
 
 impl FlatFaces {
-    /// Appends a garment's.
+    /// Appends the triangles of one garment.
     pub fn add(&mut self, garment: &Garment, span: GarmentSpan) {
         if self.starts.is_empty() {
             self.starts.push(0);

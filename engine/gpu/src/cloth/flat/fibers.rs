@@ -38,7 +38,7 @@ fn few_and_long(solver: Solver, fibers: u32, links: u32) -> bool {
 }
 
 impl FlatFibers {
-    /// Appends a garment's.
+    /// Appends the warp fibers of one garment.
     pub fn add(&mut self, fibers: &Fibers, span: GarmentSpan) {
         let (row, at) = (self.rows.len() as u32, self.measures.len() as u32);
         self.groups.begin(span.garment);

@@ -17,7 +17,7 @@ pub struct FlatLinks {
     places: Vec<u32>,
     /// Each garment's links `[garments]`.
     ranges: Vec<Range<usize>>,
-    /// Halves of sets, in the order of solving: rungs, runs and loose links; then slants.
+    /// Halves of sets, in the order of solving: straights, runs and loose links; then slants.
     pub halves: Vec<Workgroups>,
 }
 
@@ -32,7 +32,7 @@ impl FlatLinks {
                     let zigzags = &links.tuples.zigzags[share.zigzags.start as usize..share.zigzags.end as usize];
                     for zigzag in zigzags {
                         if half == 0 {
-                            self.row(links, &zigzag.rungs, zigzag.rungs.len, weights, span);
+                            self.row(links, &zigzag.straights, zigzag.straights.len, weights, span);
                         } else {
                             self.slants(links, zigzag, weights, span);
                         }

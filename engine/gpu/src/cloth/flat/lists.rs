@@ -5,7 +5,7 @@ use toile_assets::garment::layout::FiberLists;
 
 use super::{GarmentSpan, Workgroups};
 
-/// A fiber closes.
+/// Flag: the fiber is closed, its last particle linked to the first.
 const CLOSED: u32 = 1;
 /// A fiber must not lengthen.
 const ZERO_STRETCH: u32 = 2;
@@ -24,7 +24,7 @@ pub struct FlatLists {
 }
 
 impl FlatLists {
-    /// Appends a garment's.
+    /// Appends the fiber lists of one garment.
     pub fn add(&mut self, lists: &FiberLists, span: GarmentSpan) {
         let (index, at) = (self.index.len() as u32, self.measures.len() as u32);
         for (s, owners) in lists.sets.iter().enumerate() {

@@ -40,7 +40,7 @@ pub struct Flat {
     pub spans: Vec<GarmentSpan>,
     /// Where each garment's targets begin, in that order, and how many there are in all.
     pub pins_from: Vec<u32>,
-    /// Particles of all.
+    /// Particles of all garments.
     pub particles: u32,
     /// Place at rest (m) and inverse mass (1/kg) `[particles]`.
     pub start: Vec<[f32; 4]>,
@@ -56,7 +56,7 @@ pub struct Flat {
     pub everyone: Workgroups,
     /// Shear links that lie in no fiber.
     pub shear: FlatLinks,
-    /// Weft links.
+    /// Links along the weft.
     pub weft: FlatLinks,
     /// Fibers along the bias.
     pub diagonals: FlatDiagonals,
@@ -64,7 +64,7 @@ pub struct Flat {
     pub fibers: FlatFibers,
     /// Fibers by index list.
     pub lists: FlatLists,
-    /// Bending.
+    /// Bending stencils and hubs.
     pub bending: FlatBending,
     /// Triangles and normals, for garments that are drawn.
     pub faces: FlatFaces,

@@ -19,7 +19,7 @@ pub struct FlatWind {
 }
 
 impl FlatWind {
-    /// Appends a garment's.
+    /// Appends the triangles of one garment.
     pub fn add(&mut self, garment: &Garment, span: GarmentSpan) {
         let faces = Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, &garment.layout().owner);
         let begun = self.faces.len() as u32;

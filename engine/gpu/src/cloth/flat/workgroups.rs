@@ -8,7 +8,7 @@ pub const WIDTH: u32 = 64;
 pub struct GarmentSpan {
     /// Its number among the garments as they lie.
     pub garment: u32,
-    /// Its first particle.
+    /// Index of its first particle.
     pub first: u32,
     /// Number of its particles.
     pub len: u32,

@@ -38,7 +38,7 @@ impl PageWriter<'_> {
             let size = TextValue::Text(self.size(fit.best));
             blocks.push(Block::Text(self.format(TextKey::FittingBetter, &[("size", size)])));
         }
-        if let Some(zone) = fit.tape {
+        if let Some(zone) = fit.girth_to_take {
             let zone = self.part(zone);
             blocks.push(Block::Text(self.format(TextKey::FittingTape, &[("zone", TextValue::Text(&zone))])));
         }

@@ -13,7 +13,7 @@ fn cm(m: f32) -> f32 {
 }
 
 /// An error as it is said (cm): a whole one at least, for nobody's tape is better.
-fn said(sigma_m: f32) -> TextValue<'static> {
+fn rounded_sigma(sigma_m: f32) -> TextValue<'static> {
     TextValue::Number(cm(sigma_m).max(1.0), 0)
 }
 
@@ -52,7 +52,7 @@ impl PageWriter<'_> {
             ("zone", TextValue::Text(&name)),
             ("feel", TextValue::Text(&feel)),
             ("ease", whole(ease)),
-            ("sigma", said(zone.ease.sigma)),
+            ("sigma", rounded_sigma(zone.ease.sigma)),
         ];
         let fit = self.format(key, &values);
         let text = match zone.perhaps {
@@ -94,7 +94,11 @@ impl PageWriter<'_> {
             self.fit_block(zone),
             Block::Text(self.format(
                 TextKey::ZoneBody,
-                &[("zone", TextValue::Text(&part)), ("body", whole(zone.body.value)), ("sigma", said(zone.body.sigma))],
+                &[
+                    ("zone", TextValue::Text(&part)),
+                    ("body", whole(zone.body.value)),
+                    ("sigma", rounded_sigma(zone.body.sigma)),
+                ],
             )),
             Block::Text(self.format(TextKey::ZoneGarment, &[("garment", whole(zone.garment_m))])),
             Block::Text(self.format(range, &[("least", whole(least)), ("most", whole(most))])),

@@ -33,8 +33,8 @@ fn of_who_has_left_no_measure_is_left_in_the_machine() {
         play.press(Action::TakePicture);
         play.wait(800);
         let before = format!("{:?}", play.model);
-        let told = numbers(&play.known);
-        assert!(told.iter().all(|n| before.contains(n)), "else the search finds nothing: {told:?}");
+        let numbers_known = numbers(&play.known);
+        assert!(numbers_known.iter().all(|n| before.contains(n)), "else the search finds nothing: {numbers_known:?}");
         if by_hand {
             play.press(Action::Back);
             play.press(Action::Leave);
@@ -43,7 +43,7 @@ fn of_who_has_left_no_measure_is_left_in_the_machine() {
             play.wait(20_000);
         }
         let after = format!("{:?}", play.model);
-        for number in &told {
+        for number in &numbers_known {
             assert!(!after.contains(number), "{number} is left: {after}");
         }
         assert_eq!(format!("{:?}", play.model.visit), fresh, "nor is anything else: language, type, clothes");
@@ -55,13 +55,13 @@ fn of_who_has_left_no_measure_is_left_in_the_machine() {
 fn of_a_page_only_its_words_are_left_when_another_is_shown() {
     let mut play = Play::dressed();
     play.press(Action::Leave);
-    let words = said(&play.screen()).join(" ");
+    let words = texts_of(&play.screen()).join(" ");
     assert!(!words.contains("cm") && !words.contains("Size"), "{words}");
 }
 
 #[test]
 fn a_picture_is_in_no_debug_text() {
     let code = encode(&still()).unwrap();
-    let said = format!("{code:?}");
-    assert!(said.contains("side") && !said.contains("true") && said.len() < 60, "{said}");
+    let message = format!("{code:?}");
+    assert!(message.contains("side") && !message.contains("true") && message.len() < 60, "{message}");
 }

@@ -113,7 +113,7 @@ fn every_page_speaks_every_language_whole() {
         seen.insert(play.page());
         for language in Language::ALL {
             play.model.visit.language = language;
-            for text in said(&play.screen()) {
+            for text in texts_of(&play.screen()) {
                 assert!(whole(&text), "{} on {:?}: {text:?}", language.tag(), play.page());
             }
         }
@@ -198,7 +198,7 @@ fn numbers_and_plurals_are_those_of_the_language() {
 #[test]
 fn what_is_said_of_a_zone_is_said_with_its_error() {
     let play = Play::dressed();
-    let fits: Vec<String> = said(&play.screen()).into_iter().filter(|t| t.contains('±')).collect();
+    let fits: Vec<String> = texts_of(&play.screen()).into_iter().filter(|t| t.contains('±')).collect();
     assert_eq!(fits.len(), 3, "{fits:?}");
     assert!(fits.iter().all(|t| t.contains("about ") && t.contains(" cm ")), "{fits:?}");
     println!("{}", fits.join("\n"));

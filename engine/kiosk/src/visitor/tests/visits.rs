@@ -6,7 +6,7 @@ use crate::visitor::model::NavigationKey;
 use crate::visitor::screen::{Block, BodyView, ControlStyle};
 use toile_track::gesture::Gesture;
 
-/// All pages.
+/// Every page that a visitor can come to.
 const ALL: [Page; 13] = [
     Page::Attract,
     Page::Guide,
@@ -240,14 +240,18 @@ fn who_sits_is_measured_as_far_as_possible_and_told_what_is_missing() {
     play.wait(5_000);
     assert!(play.effects.iter().any(|e| matches!(e, Effect::Measure { seated: true, .. })));
     assert_eq!(play.page(), Page::Unmeasured);
-    assert!(said(&play.screen()).contains(&"Not seen: hip and leg length.".to_owned()), "{:?}", said(&play.screen()));
+    assert!(
+        texts_of(&play.screen()).contains(&"Not seen: hip and leg length.".to_owned()),
+        "{:?}",
+        texts_of(&play.screen())
+    );
     play.press(Action::Back);
     assert_eq!(play.page(), Page::Fitting);
     assert!(seated < Play::dressed().screen().reach, "within reach of a seated arm");
     let why = |play: &mut Play, place| {
         play.press(Action::Open(Page::Zones));
         play.press(Action::Zone(place));
-        said(&play.screen()).join(" ")
+        texts_of(&play.screen()).join(" ")
     };
     let hip = play.model.visit.fit.as_ref().unwrap().zones.iter().position(|z| z.zone.name() == "hip").unwrap();
     assert!(why(&mut play, hip).contains("could not be seen"));
@@ -343,7 +347,11 @@ fn a_picture_goes_after_its_minutes_or_at_once() {
     let mut play = Play::dressed();
     play.press(Action::TakePicture);
     play.wait(1_000);
-    assert!(said(&play.screen()).contains(&"It is deleted in 2 minutes.".to_owned()), "{:?}", said(&play.screen()));
+    assert!(
+        texts_of(&play.screen()).contains(&"It is deleted in 2 minutes.".to_owned()),
+        "{:?}",
+        texts_of(&play.screen())
+    );
     play.wait(180_000);
     assert_eq!(play.page(), Page::Fitting);
     assert!(play.model.visit.picture.code().is_none());

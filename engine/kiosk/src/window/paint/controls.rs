@@ -14,18 +14,18 @@ const MOST_COLUMNS: usize = 6;
 /// A button with its place.
 #[derive(Debug, Clone)]
 pub struct ButtonBox {
-    /// Its number on the screen.
+    /// Index on the screen.
     pub index: usize,
-    /// Its place.
+    /// Rectangle on the display (pixels).
     pub rect: Rect,
     /// Its words, and its second line.
     pub label: SetText,
-    /// Its second line.
+    /// Second line of the button.
     pub detail: Option<SetText>,
 }
 
 impl ButtonBox {
-    /// Moves it.
+    /// Moves it by a vector (pixels).
     pub fn shift(&mut self, by: Vec2) {
         self.rect = self.rect.translate(by);
     }

@@ -29,9 +29,9 @@ const SIDE: f32 = 0.42;
 /// A block with its place.
 #[derive(Debug, Clone)]
 pub struct PlacedBlock {
-    /// Its number on the screen.
+    /// Index on the screen.
     pub index: usize,
-    /// Its place.
+    /// Rectangle on the display (pixels).
     pub rect: Rect,
     /// Its words, where it has some.
     pub words: Vec<SetText>,
@@ -42,13 +42,13 @@ pub struct PlacedBlock {
 pub struct ScreenLayout {
     /// The sizes that it came to.
     pub sizes: Sizes,
-    /// The panel.
+    /// Rectangle of the panel (pixels).
     pub panel: Rect,
     /// What the panel leaves of the display.
     pub free: Rect,
     /// The heading and its upper left corner.
     pub heading: (Pos2, SetText),
-    /// What stands below it.
+    /// Blocks below the heading.
     pub blocks: Vec<PlacedBlock>,
     /// What can be pressed; its rectangles are those at a scroll of 0.
     pub buttons: Vec<ButtonBox>,
@@ -141,9 +141,9 @@ fn head(painter: &Painter, text: &str, sizes: Sizes, width: f32) -> SetText {
 fn block(index: usize, block: &Block, width: f32, sizes: Sizes, painter: &Painter) -> PlacedBlock {
     let text = |text: &str, room: f32| left_aligned(painter, text, sizes.text(), theme::INK, room);
     let (height, set) = match block {
-        Block::Text(said) => {
-            let said = text(said, width);
-            (said.size().y, vec![said])
+        Block::Text(paragraph) => {
+            let paragraph = text(paragraph, width);
+            (paragraph.size().y, vec![paragraph])
         }
         Block::PoseGuide { .. } => ((sizes.body * 13.0 * sizes.squeeze * sizes.squeeze).round(), vec![]),
         Block::Progress { share, label } => {
@@ -151,9 +151,9 @@ fn block(index: usize, block: &Block, width: f32, sizes: Sizes, painter: &Painte
             let label = text(label, width - percent.size().x - sizes.gap());
             (label.size().y + sizes.body * 1.1, vec![label, percent])
         }
-        Block::Fit { text: said, .. } => {
-            let said = text(said, width - gauge_width(sizes) - sizes.gap());
-            (said.size().y.max(sizes.body * 1.1), vec![said])
+        Block::Fit { text: paragraph, .. } => {
+            let paragraph = text(paragraph, width - gauge_width(sizes) - sizes.gap());
+            (paragraph.size().y.max(sizes.body * 1.1), vec![paragraph])
         }
         Block::Legend { ends } => {
             let ends: Vec<SetText> =

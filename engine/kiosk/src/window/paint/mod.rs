@@ -1,4 +1,4 @@
-//! Paint: a screen as shapes, for a shop and not for whoever debugs it.
+//! Paint: a screen as shapes.
 //!
 //! Reads: a [`Screen`], the display's size, what a finger does. Writes: triangles and changes of textures; what was pressed.
 //! Budget: 2 ms a picture of the render thread's core; no picture waits for it, nor does physics.
@@ -34,7 +34,7 @@ pub struct DisplayMetrics {
     pub pixel_mm: f32,
 }
 
-/// What is to be drawn.
+/// A painted screen, to be drawn.
 pub struct PaintedScreen {
     /// Triangles, in the order of painting.
     pub shapes: Vec<ClippedPrimitive>,

@@ -42,7 +42,7 @@ pub fn paint(laid: &ScreenLayout, screen: &Screen, feedback: TouchFeedback, pain
     scroll_bar(laid, feedback.scrolled, painter);
 }
 
-/// The panel.
+/// Draws the panel that the controls lie on.
 fn panel(laid: &ScreenLayout, painter: &Painter) {
     let round = laid.sizes.body * 1.1;
     painter.rect_filled(laid.panel, round, theme::PANEL);
@@ -125,11 +125,11 @@ fn fit(tightness: f32, rect: Rect, words: &[SetText], sizes: Sizes, painter: &Pa
         painter.rect_filled(mark, 4.0, step(i));
         painter.rect_stroke(mark, 4.0, Stroke::new(sizes.line() * 2.0, theme::INK), StrokeKind::Outside);
     }
-    if let Some(said) = words.first() {
+    if let Some(first_text) = words.first() {
         put(
             painter,
-            pos2(rect.right() - said.rect.width().max(rect.width() - scale.width() - sizes.gap()), rect.top()),
-            said,
+            pos2(rect.right() - first_text.rect.width().max(rect.width() - scale.width() - sizes.gap()), rect.top()),
+            first_text,
         );
     }
 }
@@ -189,12 +189,12 @@ fn paint_button(
 
 /// What stands on a button: disc or mark, words, second line.
 fn face(control: &Control, button: &ButtonBox, rect: Rect, sizes: Sizes, painter: &Painter) {
-    let said = button.label.size().y + button.detail.as_ref().map_or(0.0, |d| d.size().y);
-    let mut top = rect.center().y - said * 0.5;
+    let first_text = button.label.size().y + button.detail.as_ref().map_or(0.0, |d| d.size().y);
+    let mut top = rect.center().y - first_text * 0.5;
     let mut middle = rect.center().x;
     if let ControlStyle::Swatch(colour) = control.style {
         let disc = disc(sizes);
-        let whole = said + disc + sizes.gap() * 0.4;
+        let whole = first_text + disc + sizes.gap() * 0.4;
         let centre = pos2(middle, rect.center().y - whole * 0.5 + disc * 0.5);
         swatch(painter, centre, disc * 0.5, colour, control.chosen, sizes);
         top = centre.y + disc * 0.5 + sizes.gap() * 0.4;

@@ -6,10 +6,10 @@ use egui::{Color32, FontFamily, FontId};
 /// where the picture behind is white (WCAG 2.2, success criterion 1.4.6).
 pub const PANEL: Color32 = Color32::from_rgba_premultiplied(14, 16, 19, 210);
 
-/// Words.
+/// Colour of text.
 pub const INK: Color32 = Color32::from_rgb(250, 248, 244);
 
-/// Second lines.
+/// Colour of second lines.
 pub const SOFT: Color32 = Color32::from_rgb(208, 205, 199);
 
 /// What most will want next, and the words on it.
@@ -99,7 +99,7 @@ impl Sizes {
         FontId::new((self.body * 0.84).max(self.display[1] * LEAST_LINE).round(), BODY)
     }
 
-    /// Air around things.
+    /// Empty space between things (pixels).
     pub fn gap(&self) -> f32 {
         (self.body * 0.62 * self.squeeze).round()
     }

@@ -15,9 +15,9 @@ const EIGHTHS: f32 = 8.0;
 /// What a finger or the mouse did, in pixels from the display's upper left corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TouchEvent {
-    /// Down.
+    /// The finger went down here.
     Down(Pos2),
-    /// Moved.
+    /// The finger moved to here.
     Move(Pos2),
     /// Up: what is under it is pressed, where it went down.
     Up(Pos2),
@@ -41,17 +41,17 @@ struct ActiveTouch {
     turned: i32,
 }
 
-/// The finger.
+/// Follows one finger, or the mouse, from down to up.
 #[derive(Debug, Clone, Default)]
 pub struct TouchTracker {
     down: Option<ActiveTouch>,
     scrolled: f32,
-    /// The control that the view has followed last, by which a new focus is told.
+    /// The control that the view has followed last, by which a new focus is noticed.
     focus: Option<(usize, usize)>,
 }
 
 impl TouchTracker {
-    /// What is seen of it.
+    /// State of the touch as it is painted.
     pub fn feedback(&self) -> TouchFeedback {
         let pressed = self.down.filter(|d| !d.drags).and_then(|d| d.on);
         TouchFeedback { pressed, scrolled: self.scrolled }
