@@ -3,8 +3,6 @@
 //! The standards and the survey lay the tape at other places (neck, waist) or on another pose (sleeve), which moves a
 //! girth by more than its limit. So a set of wanted measures speaks one language or the other, and cannot mix them.
 
-use super::BodyError;
-
 /// Something that is read off the mesh; the two vocabularies below map onto these.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
@@ -266,20 +264,6 @@ impl<V: Vocabulary> Wanted<V> {
     /// What has been asked for (m), in the order of asking.
     pub fn given(&self) -> &[(V, f32)] {
         &self.given
-    }
-
-    /// Checks that each measure lies in the range that a body can be built to.
-    ///
-    /// # Errors
-    /// [`BodyError::OutOfRange`] for the first one that does not.
-    pub fn check(&self) -> Result<(), BodyError> {
-        for &(measure, value) in &self.given {
-            let [least, most] = measure.reading().range();
-            if !(least..=most).contains(&value) {
-                return Err(BodyError::OutOfRange { measure: measure.name(), value, least, most });
-            }
-        }
-        Ok(())
     }
 }
 

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::f32::consts::TAU;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::*;
+use crate::mesh::Mesh;
 use crate::numeric::random::SplitMix64;
 use crate::skeleton::{BONES, Joint, TWISTS, bone_joint, bone_mirror};
 

@@ -1,6 +1,6 @@
 //! What other skeletons call our joints: H-Anim (ISO/IEC 19774), version 2 and version 1, and VRM's humanoid bones.
 
-use super::{JOINTS, Joint};
+use super::joint::{JOINTS, Joint};
 
 /// A joint's own name in each convention.
 struct Names {
