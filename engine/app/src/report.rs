@@ -12,16 +12,12 @@ use crate::machine::Machine;
 
 mod body;
 mod colliders;
-mod gestures;
 pub mod measures;
 mod run;
-mod skinning;
 
 pub use body::{BodyReport, Influences, JointFound, Named, SurfaceReport};
 pub use colliders::Followed;
-pub use gestures::{GestureRow, GesturesReport, HandRow, OtherRow};
 pub use run::{KineticEnergy, RunGarment, RunPenetration, RunReport};
-pub use skinning::SkinningReport;
 
 /// What every object carries, around what one command has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]

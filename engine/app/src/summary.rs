@@ -2,11 +2,8 @@
 
 use std::fmt::Write;
 
-use toile_perf::skirt::report::SkirtReport;
-
 use crate::report::{
-    BodyReport, Measure, MeasureReport, Measurements, Physics, Recommendation, RunReport, Session, SkinningReport,
-    TryOn,
+    BodyReport, Measure, MeasureReport, Measurements, Physics, Recommendation, RunReport, Session, TryOn,
 };
 use crate::terminal::{Paint, Tone};
 
@@ -88,100 +85,6 @@ pub fn run(report: &RunReport, paint: Paint) -> String {
     }
     if let Some(folder) = &report.dump {
         line(&mut text, &format!("  {} frames in {}, listed in index.csv", report.dumped_frames, folder.display()));
-    }
-    text
-}
-
-/// The summary of a skinning benchmark.
-pub fn skinning(report: &SkinningReport, paint: Paint) -> String {
-    let SkinningReport { blend, ns_per_vertex, y_ratio, yardstick_verts, max_error_m, found, .. } = report;
-    let plain = found.yardstick_us * 1e3 / *yardstick_verts as f64;
-    let mut text = String::new();
-    let title = format!("Skinning {} vertices, positions and normals: {blend}", found.verts);
-    line(&mut text, &paint.tone(&title, Tone::Strong));
-    let error = max_error_m * 1e6;
-    line(
-        &mut text,
-        &format!("  the engine    {ns_per_vertex:.2} ns a vertex, {y_ratio:.3} of a plain loop, error {error:.3} um"),
-    );
-    line(
-        &mut text,
-        &format!("  a plain loop  {plain:.2} ns a vertex ({:.1} us for {yardstick_verts})", found.yardstick_us),
-    );
-    for (name, t) in [("linear", &found.linear), ("dual", &found.dual)] {
-        let error = t.max_error_m * 1e6;
-        line(
-            &mut text,
-            &format!("  {name:<13} {:.1} us, {:.1} in mesh order, error {error:.3} um", t.us, t.mesh_order_us),
-        );
-    }
-    let empty = found.padding * 100.0;
-    line(
-        &mut text,
-        &format!(
-            "  {} thread(s), {} lanes, {} joint sets, {empty:.1} % of the lanes empty",
-            found.threads, found.lanes, found.sets
-        ),
-    );
-    text
-}
-
-/// The summary of a run of the skirt: no time without the error reached at it.
-pub fn skirt(report: &SkirtReport, paint: Paint) -> String {
-    let SkirtReport { verts, motion, mesh, stretch, substeps, lanes, threads, garments, strain, step_us, .. } = report;
-    let mut text = String::new();
-    line(&mut text, &paint.tone(&format!("A skirt of {verts} vertices ({mesh}, {stretch}), {motion}"), Tone::Strong));
-    let quality = format!("quality {}, ", report.quality);
-    let wind = if report.wind { ", wind" } else { "" };
-    line(
-        &mut text,
-        &format!("  {quality}{substeps} substeps, {lanes} lanes, {threads} thread(s), {garments} skirt(s){wind}"),
-    );
-    if let Some(adapter) = report.stepped_by.adapter.as_ref().filter(|_| report.stepped_by.backend == "gpu") {
-        let clock = report.device_us.map_or(String::new(), |us| format!("; by its own clock a step takes {us:.1} us"));
-        line(&mut text, &format!("  stepped by    {} ({}, {}){clock}", adapter.name, adapter.kind, adapter.driver));
-    }
-    if let Some(d) = report.decided_by {
-        let words = format!("a step took the processor {:.0} us, the device {:.0} us", d.cpu_us, d.gpu_us);
-        line(&mut text, &format!("  decided by    {words}: {} steps", report.stepped_by.backend));
-    }
-    line(&mut text, &format!("  a step takes  {:.1} us, 99 % of them under {:.1} us", step_us.p50, step_us.p99));
-    let (ratio, yardstick) = (report.y_ratio, report.yardstick_us);
-    line(&mut text, &format!("  the yardstick {yardstick:.1} us: the step takes {ratio:.2} of it"));
-    let [mean, p99, max] = [strain.mean, strain.p99, strain.max].map(|s| s * 100.0);
-    line(
-        &mut text,
-        &format!("  strain        {mean:.3} % mean, {p99:.2} % at the 99th percentile, {max:.1} % at worst"),
-    );
-    let (deepest, inside) = (report.penetration_mm.max, report.penetration_mm.fraction * 100.0);
-    line(&mut text, &format!("  penetration   {deepest:.2} mm at worst, {inside:.3} % of the vertices inside"));
-    for (stage, us) in &report.stages_us {
-        line(&mut text, &format!("  {stage:13} {us:.1} us"));
-    }
-    let counted = |x: Option<String>| x.unwrap_or_else(|| "not counted".into());
-    let memory = counted(report.memory_bytes.map(|b| format!("{:.3} MB", b as f64 * 1e-6)));
-    line(
-        &mut text,
-        &format!(
-            "  memory        {memory}; allocations a step: {}",
-            counted(report.allocations_per_step.map(|a| a.to_string()))
-        ),
-    );
-    line(
-        &mut text,
-        &format!(
-            "  energy        {:.3} mJ of motion at the end; state {}",
-            report.kinetic_energy_mj, report.state_hash
-        ),
-    );
-    let events = [
-        (report.hem_winding_wrong, "frames in which the hem does not go around each leg"),
-        (report.nonfinite, "vertices that are not finite"),
-        (report.events.rolled_back, "steps taken back"),
-        (report.events.speed_limited, "particles at the speed limit"),
-    ];
-    for (count, what) in events.into_iter().filter(|(count, _)| *count > 0) {
-        line(&mut text, &format!("  {}", paint.tone(&format!("{count} {what}"), Tone::Warn)));
     }
     text
 }
@@ -274,53 +177,16 @@ fn heading(text: &mut String, words: &str, paint: Paint) {
     line(text, &format!("\n{}", paint.tone(words, Tone::Strong)));
 }
 
-fn line(text: &mut String, words: &str) {
+/// One more line of a summary.
+pub(crate) fn line(text: &mut String, words: &str) {
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{words}");
 }
 
 #[cfg(test)]
 mod tests {
-    use toile_engine::skin::{Blend, Padding};
-    use toile_perf::skinning::{Skinning, SkinningSubject, Timing};
-
     use super::*;
     use crate::report::Zone;
-
-    #[test]
-    fn a_skinning_summary_compares_vertex_with_vertex() {
-        let timing = Timing { us: 5.0, ns_per_vertex: 5.0, max_error_m: 2.5e-7, ..Timing::default() };
-        let padding = Padding { vertices: 1000, lanes: 1010, blocks: 64, runs: 9, influences: 2000, blended: 2100 };
-        let found = Skinning {
-            subject: SkinningSubject::Body,
-            verts: 1000,
-            threads: 1,
-            lanes: 16,
-            yardstick_us: 120.0,
-            padding,
-            linear: timing,
-            dual: timing,
-        };
-        let report = SkinningReport::new(found, Blend::Linear);
-        let text = skinning(&report, Paint::none());
-        for said in ["1000 vertices", "linear", "5.00 ns", "8.00 ns", "0.250 um", "1.0 % of the lanes"] {
-            assert!(text.contains(said), "{said} is not in: {text}");
-        }
-    }
-
-    #[test]
-    fn a_skirt_summary_says_time_and_error_and_warns_of_what_should_not_be() {
-        let mut report = SkirtReport { verts: 4_096, y_ratio: 0.58, motion: "walk", ..SkirtReport::default() };
-        report.strain.mean = 0.0014;
-        report.memory_bytes = Some(420_000);
-        let text = skirt(&report, Paint::none());
-        for said in ["4096 vertices", "0.58 of it", "0.140 %", "0.420 MB", "allocations a step: not counted"] {
-            assert!(text.contains(said), "{said} is not in: {text}");
-        }
-        assert!(!text.contains("the hem does not"));
-        report.hem_winding_wrong = 3;
-        assert!(skirt(&report, Paint::none()).contains("3 frames in which the hem does not"));
-    }
 
     #[test]
     fn a_summary_says_each_zone_and_each_file() {

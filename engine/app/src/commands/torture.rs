@@ -9,8 +9,8 @@ use serde::Serialize;
 use toile_engine::cloth::Quality;
 use toile_perf::torture::{self, CASES, CaseSummary, SEEDS, TortureOptions, TortureReport};
 
+use super::bench::backend;
 use crate::arguments::{BackendArg, Printing, one_of};
-use crate::backend;
 use crate::exit::AppError;
 use crate::report::Document;
 use crate::terminal::{self, Paint, Tone};

@@ -7,8 +7,8 @@ use toile_perf::validate::Level;
 use toile_perf::validate::case::ValidationRow;
 use toile_perf::validate::run::{self, NAMES, ValidationOptions, ValidationReport};
 
+use super::bench::backend;
 use crate::arguments::{BackendArg, Printing, count};
-use crate::backend;
 use crate::exit::AppError;
 use crate::report::Document;
 use crate::terminal::{self, Paint, Tone};

@@ -7,8 +7,9 @@ use clap::value_parser;
 use toile_perf::gestures::{Act, GestureConditions, GestureCount, GestureStudy, held_up, sequence};
 use toile_track::gesture::{Gestures, HandSegmenter};
 
+use super::gestures_report::GesturesReport;
 use crate::exit::AppError;
-use crate::report::{Document, GesturesReport};
+use crate::report::Document;
 use crate::terminal::{self, Words};
 
 /// Most sequences of a cell: 70 cells of a millisecond each make it a quarter of an hour.

@@ -13,13 +13,12 @@ use toile_perf::plot::raster;
 use toile_perf::skirt::options::{MAX_GARMENTS, SkirtMesh, SkirtOptions};
 use toile_perf::skirt::{self, SkirtError, table};
 
+use super::{backend, skirt_summary};
 use crate::arguments::{BackendArg, count, lanes, one_of};
-use crate::backend;
 use crate::exit::AppError;
 use crate::heap;
 use crate::output::OutputFolder;
 use crate::report::Document;
-use crate::summary;
 use crate::terminal::{self, Paint, Words};
 
 /// Most vertices: 512 a side.
@@ -170,7 +169,7 @@ pub fn run(args: &SkirtArgs) -> Result<(), AppError> {
     if args.json {
         return terminal::print_json(&Document::new("bench-skirt", report));
     }
-    terminal::print(&summary::skirt(&report, Paint::for_stdout()))
+    terminal::print(&skirt_summary::summary(&report, Paint::for_stdout()))
 }
 
 /// Sizes and numbers of skirts on the processor and on a device.
