@@ -77,12 +77,7 @@ pub struct WornArgs {
     #[arg(long, value_name = "S")]
     pub size: Option<String>,
     /// Tested settings of the cloth: draft, shop or fine
-    #[arg(
-        long,
-        value_name = "Q",
-        value_parser = one_of(Quality::ALL, Quality::name),
-        default_value = Quality::default().name()
-    )]
+    #[arg(long, value_name = "Q", value_parser = quality(), default_value = Quality::default().name())]
     pub quality: Quality,
 }
 
@@ -105,6 +100,11 @@ where
 {
     let value = move |said: String| all.into_iter().find(|value| name(*value) == said).ok_or("it has no such name");
     PossibleValuesParser::new(all.map(name)).try_map(value)
+}
+
+/// A parser of the cloth's tested settings.
+pub fn quality() -> impl TypedValueParser<Value = Quality> {
+    one_of(Quality::ALL, Quality::name)
 }
 
 /// A parser of numbers of things.

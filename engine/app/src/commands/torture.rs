@@ -10,7 +10,7 @@ use toile_engine::cloth::Quality;
 use toile_perf::torture::{self, CASES, CaseSummary, SEEDS, TortureOptions, TortureReport};
 
 use super::bench::backend;
-use crate::arguments::{BackendArg, Printing, one_of};
+use crate::arguments::{BackendArg, Printing, quality};
 use crate::exit::AppError;
 use crate::report::Document;
 use crate::terminal::{self, Paint, Tone};
@@ -37,12 +37,7 @@ pub struct TortureArgs {
     #[arg(long, value_name = "S", value_parser = value_parser!(u64).range(..u64::MAX))]
     pub seed: Option<u64>,
     /// Settings of the cloth where a case does not choose its own: draft, shop or fine
-    #[arg(
-        long,
-        value_name = "Q",
-        value_parser = one_of(Quality::ALL, Quality::name),
-        default_value = Quality::default().name()
-    )]
+    #[arg(long, value_name = "Q", value_parser = quality(), default_value = Quality::default().name())]
     pub quality: Quality,
     #[command(flatten)]
     backend: BackendArg,

@@ -24,7 +24,7 @@ use toile_fitting::dress::wish::{self, Choice, Wish};
 use toile_fitting::dress::{body, session};
 use toile_sensors::frame::Joints;
 
-use crate::arguments::{Printing, one_of};
+use crate::arguments::{Printing, one_of, quality};
 use crate::exit::AppError;
 use crate::output::Inputs;
 use crate::output::OutputFolder;
@@ -58,12 +58,7 @@ pub struct TryOnArgs {
     #[arg(long, value_name = "B", value_parser = Wearer::parse)]
     pub body: Option<Wearer>,
     /// Tested settings of the cloth: draft, shop or fine
-    #[arg(
-        long,
-        value_name = "Q",
-        value_parser = one_of(Quality::ALL, Quality::name),
-        default_value = Quality::default().name()
-    )]
+    #[arg(long, value_name = "Q", value_parser = quality(), default_value = Quality::default().name())]
     pub quality: Quality,
     /// Folder for the files; it is made if missing
     #[arg(long, value_name = "DIR", default_value = "out")]

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use glam::Vec3;
 use toile_assets::body::Body;
+use toile_assets::numeric::statistics::quantile;
 use toile_assets::rig::Rig;
 use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_engine::cloth::{Settings, program};
@@ -192,9 +193,5 @@ fn copy_us() -> f64 {
 
 /// The lower quartile: what a machine takes where nothing else wants it, in most of the times.
 pub(super) fn quartile(values: &mut [f64]) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let quarter = values.len() / 4;
-    *values.select_nth_unstable_by(quarter, f64::total_cmp).1
+    quantile(values, 0.25).unwrap_or(0.0)
 }

@@ -14,7 +14,7 @@ use toile_perf::skirt::options::{MAX_GARMENTS, SkirtMesh, SkirtOptions};
 use toile_perf::skirt::{self, SkirtError, table};
 
 use super::{backend, skirt_summary};
-use crate::arguments::{BackendArg, count, lanes, one_of};
+use crate::arguments::{BackendArg, count, lanes, one_of, quality};
 use crate::exit::AppError;
 use crate::heap;
 use crate::output::OutputFolder;
@@ -70,7 +70,7 @@ pub struct SkirtArgs {
     #[arg(long, value_name = "L", value_parser = lanes())]
     lanes: Option<Width>,
     /// Tested settings: draft, shop or fine (default: the engine's own)
-    #[arg(long, value_name = "Q", value_parser = one_of(Quality::ALL, Quality::name))]
+    #[arg(long, value_name = "Q", value_parser = quality())]
     quality: Option<Quality>,
     /// Substeps of a step (default: the engine's own)
     #[arg(long, value_name = "S", value_parser = value_parser!(u32).range(1..=1_000))]
