@@ -5,6 +5,9 @@
 //! Thread: the loading thread.
 
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+#[macro_use]
+mod named;
+
 pub mod cone;
 pub mod fabric;
 pub mod file;

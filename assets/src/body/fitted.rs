@@ -96,11 +96,6 @@ impl Body {
     pub(crate) fn proportions(sex: Sex) -> Proportions {
         Proportions::of(&model(sex).morphs.base)
     }
-
-    /// What the tape reads on the body of a sex as it is drawn.
-    pub fn drawn_readings(sex: Sex) -> Readings {
-        Readings(model(sex).as_drawn().readings)
-    }
 }
 
 impl BodyModel {

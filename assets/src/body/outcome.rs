@@ -1,6 +1,6 @@
 //! What building a body comes to: one that has the measures wanted, or why there is none.
 
-use super::anatomy::{Body, Measures};
+use super::anatomy::Body;
 use super::reading::{Readings, Vocabulary, Wanted};
 
 /// A body built to measure, and what the tape reads on it.
@@ -62,16 +62,6 @@ impl<V: Vocabulary> Wanted<V> {
             }
         }
         Ok(())
-    }
-}
-
-impl Measures {
-    /// Checks that every measure lies in the range that a body can be built to.
-    ///
-    /// # Errors
-    /// [`BodyError::OutOfRange`].
-    pub fn check(&self) -> Result<(), BodyError> {
-        self.wanted().check()
     }
 }
 

@@ -1,91 +1,64 @@
 //! The joints: their order, their parents, their mirror images.
 
-/// Joints that a sensor may report and a pose may bend; each is the centre of the rotation that it names.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[repr(u8)]
-pub enum Joint {
-    /// Where the trunk hangs: the middle of the sacroiliac joints.
-    Pelvis,
-    /// Of the lowest lumbar vertebra: trunk on pelvis.
-    Spine,
-    /// Of the highest lumbar vertebra: rib cage on loins.
-    Chest,
-    /// Of the middle of the neck.
-    Neck,
-    /// Of skull on neck.
-    Head,
-    /// Of the left collar bone on the breastbone.
-    LeftClavicle,
-    /// Of the left upper arm.
-    LeftShoulder,
-    /// Of the left forearm.
-    LeftElbow,
-    /// Of the left hand.
-    LeftWrist,
-    /// The knuckle of the left middle finger, where the fingers begin.
-    LeftHand,
-    /// Of the left thigh.
-    LeftHip,
-    /// Of the left shin.
-    LeftKnee,
-    /// Of the left foot.
-    LeftAnkle,
-    /// The ball of the left foot, where the toes begin.
-    LeftToe,
-    /// Of the right collar bone on the breastbone.
-    RightClavicle,
-    /// Of the right upper arm.
-    RightShoulder,
-    /// Of the right forearm.
-    RightElbow,
-    /// Of the right hand.
-    RightWrist,
-    /// The knuckle of the right middle finger, where the fingers begin.
-    RightHand,
-    /// Of the right thigh.
-    RightHip,
-    /// Of the right shin.
-    RightKnee,
-    /// Of the right foot.
-    RightAnkle,
-    /// The ball of the right foot, where the toes begin.
-    RightToe,
+named! {
+    /// Joints that a sensor may report and a pose may bend; each is the centre of the rotation that it names.
+    /// Parents stand before their children.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    #[repr(u8)]
+    pub enum Joint {
+        /// Where the trunk hangs: the middle of the sacroiliac joints.
+        Pelvis,
+        /// Of the lowest lumbar vertebra: trunk on pelvis.
+        Spine,
+        /// Of the highest lumbar vertebra: rib cage on loins.
+        Chest,
+        /// Of the middle of the neck.
+        Neck,
+        /// Of skull on neck.
+        Head,
+        /// Of the left collar bone on the breastbone.
+        LeftClavicle,
+        /// Of the left upper arm.
+        LeftShoulder,
+        /// Of the left forearm.
+        LeftElbow,
+        /// Of the left hand.
+        LeftWrist,
+        /// The knuckle of the left middle finger, where the fingers begin.
+        LeftHand,
+        /// Of the left thigh.
+        LeftHip,
+        /// Of the left shin.
+        LeftKnee,
+        /// Of the left foot.
+        LeftAnkle,
+        /// The ball of the left foot, where the toes begin.
+        LeftToe,
+        /// Of the right collar bone on the breastbone.
+        RightClavicle,
+        /// Of the right upper arm.
+        RightShoulder,
+        /// Of the right forearm.
+        RightElbow,
+        /// Of the right hand.
+        RightWrist,
+        /// The knuckle of the right middle finger, where the fingers begin.
+        RightHand,
+        /// Of the right thigh.
+        RightHip,
+        /// Of the right shin.
+        RightKnee,
+        /// Of the right foot.
+        RightAnkle,
+        /// The ball of the right foot, where the toes begin.
+        RightToe,
+    }
 }
 
 /// Number of joints.
 pub const JOINTS: usize = 23;
 
 impl Joint {
-    /// All joints, parents before children.
-    pub const ALL: [Self; JOINTS] = {
-        use Joint::*;
-        [
-            Pelvis,
-            Spine,
-            Chest,
-            Neck,
-            Head,
-            LeftClavicle,
-            LeftShoulder,
-            LeftElbow,
-            LeftWrist,
-            LeftHand,
-            LeftHip,
-            LeftKnee,
-            LeftAnkle,
-            LeftToe,
-            RightClavicle,
-            RightShoulder,
-            RightElbow,
-            RightWrist,
-            RightHand,
-            RightHip,
-            RightKnee,
-            RightAnkle,
-            RightToe,
-        ]
-    };
-
     /// The joint's place in every `[_; JOINTS]` array.
     pub const fn index(self) -> usize {
         self as usize

@@ -39,19 +39,21 @@ pub struct Line {
     pub colour: Vec3,
 }
 
-/// What lines can show.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Kind {
-    /// What holds the cloth together, coloured by what solves it.
-    Fibers,
-    /// Spheres and capsules of the body.
-    Colliders,
-    /// Where cloth touches the body, along the way out of it.
-    Contacts,
-    /// What holds each particle to where the garment hangs, red where it is taut.
-    Tethers,
-    /// How fast each particle moves.
-    Velocity,
+toile_assets::named! {
+    /// What lines can show.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Kind {
+        /// What holds the cloth together, coloured by what solves it.
+        Fibers = "fibers",
+        /// Spheres and capsules of the body.
+        Colliders = "colliders",
+        /// Where cloth touches the body, along the way out of it.
+        Contacts = "contacts",
+        /// What holds each particle to where the garment hangs, red where it is taut.
+        Tethers = "tethers",
+        /// How fast each particle moves.
+        Velocity = "velocity",
+    }
 }
 
 /// Colours, linear RGB, told apart by colour-blind eyes too (Okabe and Ito 2008, "Color universal design").
@@ -61,22 +63,6 @@ const GREEN: Vec3 = Vec3::new(0.0, 0.342, 0.171);
 const YELLOW: Vec3 = Vec3::new(0.871, 0.776, 0.054);
 const BLUE: Vec3 = Vec3::new(0.0, 0.168, 0.445);
 const RED: Vec3 = Vec3::new(0.665, 0.112, 0.0);
-
-impl Kind {
-    /// All of them.
-    pub const ALL: [Self; 5] = [Self::Fibers, Self::Colliders, Self::Contacts, Self::Tethers, Self::Velocity];
-
-    /// Its name on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Fibers => "fibers",
-            Self::Colliders => "colliders",
-            Self::Contacts => "contacts",
-            Self::Tethers => "tethers",
-            Self::Velocity => "velocity",
-        }
-    }
-}
 
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

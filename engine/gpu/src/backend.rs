@@ -19,29 +19,17 @@ use crate::Adapter;
 use crate::cloth_batch::ClothBatch;
 use crate::graphics::{DeviceGarments, Graphics, StageTimes, StepWork};
 
-/// Where garments are stepped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Backend {
-    /// The processor.
-    #[default]
-    Cpu,
-    /// A graphics device, as long as there is one.
-    Gpu,
-    /// Whichever is faster with these garments, measured when they are first stepped.
-    Auto,
-}
-
-impl Backend {
-    /// All backends.
-    pub const ALL: [Self; 3] = [Self::Cpu, Self::Gpu, Self::Auto];
-
-    /// Its name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Cpu => "cpu",
-            Self::Gpu => "gpu",
-            Self::Auto => "auto",
-        }
+toile_assets::named! {
+    /// Where garments are stepped.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum Backend {
+        /// The processor.
+        #[default]
+        Cpu = "cpu",
+        /// A graphics device, as long as there is one.
+        Gpu = "gpu",
+        /// Whichever is faster with these garments, measured when they are first stepped.
+        Auto = "auto",
     }
 }
 

@@ -11,37 +11,28 @@ use crate::frame::{Joints, TrackedJoint};
 
 const TABLE: &str = include_str!("../../data/joint_map.csv");
 
-/// A tracker's set of points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// Kinect v1.
-    Kinect20,
-    /// Kinect v2.
-    Kinect25,
-    /// Azure Kinect body tracking (k4abt).
-    Azure32,
-    /// Nuitrack.
-    Nuitrack,
-    /// MediaPipe (BlazePose).
-    MediaPipe33,
-    /// OpenPose, model BODY_25.
-    OpenPose25,
-    /// OpenPose, model BODY_25B.
-    OpenPose25B,
+toile_assets::named! {
+    /// A tracker's set of points.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Format {
+        /// Kinect v1.
+        Kinect20,
+        /// Kinect v2.
+        Kinect25,
+        /// Azure Kinect body tracking (k4abt).
+        Azure32,
+        /// Nuitrack.
+        Nuitrack,
+        /// MediaPipe (BlazePose).
+        MediaPipe33,
+        /// OpenPose, model BODY_25.
+        OpenPose25,
+        /// OpenPose, model BODY_25B.
+        OpenPose25B,
+    }
 }
 
 impl Format {
-    /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::Kinect20,
-        Self::Kinect25,
-        Self::Azure32,
-        Self::Nuitrack,
-        Self::MediaPipe33,
-        Self::OpenPose25,
-        Self::OpenPose25B,
-    ];
-
     /// Points of a skeleton.
     pub const fn points(self) -> usize {
         match self {

@@ -35,29 +35,18 @@ pub use prune::{Pruning, pruning};
 use kernel::{Dual, Linear, SkinSurface};
 use layout::SkinLayout;
 
-/// How the motions of a vertex' bones become one.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
-pub enum Blend {
-    /// The weighted sum of their matrices: for palettes of any kind. Thins bent joints and twisted limbs; the skeleton's
-    /// twist bones keep it from the latter.
-    #[default]
-    Linear,
-    /// The weighted sum of their dual quaternions (Kavan, Collins, Zara, O'Sullivan 2008, "Geometric skinning with
-    /// approximate dual quaternion blending"): for palettes of rotations and translations. Keeps twisted limbs whole;
-    /// bent joints bulge.
-    Dual,
-}
-
-impl Blend {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Linear, Self::Dual];
-
-    /// Its name in reports and options.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Linear => "linear",
-            Self::Dual => "dual",
-        }
+toile_assets::named! {
+    /// How the motions of a vertex' bones become one.
+    #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+    pub enum Blend {
+        /// The weighted sum of their matrices: for palettes of any kind. Thins bent joints and twisted limbs; the skeleton's
+        /// twist bones keep it from the latter.
+        #[default]
+        Linear = "linear",
+        /// The weighted sum of their dual quaternions (Kavan, Collins, Zara, O'Sullivan 2008, "Geometric skinning with
+        /// approximate dual quaternion blending"): for palettes of rotations and translations. Keeps twisted limbs whole;
+        /// bent joints bulge.
+        Dual = "dual",
     }
 }
 

@@ -3,7 +3,6 @@
 //! A step that is metered goes in a pass for each run of dispatches of one stage, because the clock is read at the ends of
 //! passes only.
 
-use toile_engine::cloth::program::METERED_STAGES;
 use wgpu::{
     Buffer, BufferDescriptor, BufferUsages, CommandEncoder, ComputePass, ComputePassDescriptor,
     ComputePassTimestampWrites, Features, QuerySet, QuerySetDescriptor, QueryType,
