@@ -30,3 +30,7 @@ pub mod sizes;
 
 pub mod scene_file;
 pub mod wardrobe;
+
+#[cfg(test)]
+#[path = "../../tests/src/recordings.rs"]
+mod recordings;

@@ -117,3 +117,14 @@ pub fn lanes() -> impl TypedValueParser<Value = Width> {
     let width = |said: String| said.parse().ok().and_then(Width::of).ok_or("there is no such width");
     PossibleValuesParser::new(["1", "4", "8", "16"]).try_map(width)
 }
+
+/// What a line of words says to a command that takes these arguments.
+#[cfg(test)]
+pub(crate) fn parsed<A: clap::Args>(line: &str) -> Result<A, clap::Error> {
+    #[derive(clap::Parser)]
+    struct Line<A: clap::Args> {
+        #[command(flatten)]
+        args: A,
+    }
+    Ok(<Line<A> as clap::Parser>::try_parse_from(line.split_whitespace())?.args)
+}

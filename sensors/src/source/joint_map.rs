@@ -203,11 +203,7 @@ mod tests {
 
     /// The shared table, or nothing where it is not set up; with CI=true that is a failure.
     fn shared() -> Option<Vec<Vec<String>>> {
-        let Some(folder) = std::env::var_os("TOILE_DATA").map(std::path::PathBuf::from) else {
-            assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA must name the folder of shared data");
-            eprintln!("skipped: TOILE_DATA does not name the folder of shared data");
-            return None;
-        };
+        let folder = crate::recordings::folder()?;
         let text = std::fs::read_to_string(folder.join("protocols/joint_map.csv")).expect("the joint map is there");
         Some(text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect())
     }

@@ -128,19 +128,13 @@ fn figure(value: Option<f64>, digits: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use clap::Parser;
     use toile_gpu::backend::Backend;
 
     use super::*;
-
-    #[derive(Parser)]
-    struct Line {
-        #[command(flatten)]
-        args: TortureArgs,
-    }
+    use crate::arguments::parsed;
 
     fn options(line: &str) -> Result<TortureOptions, clap::Error> {
-        Ok(Line::try_parse_from(line.split_whitespace())?.args.options())
+        Ok(parsed::<TortureArgs>(line)?.options())
     }
 
     #[test]

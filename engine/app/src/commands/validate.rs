@@ -172,20 +172,13 @@ fn line(text: &mut String, words: &str) {
 
 #[cfg(test)]
 mod tests {
-    use clap::Parser;
-
     use super::*;
-
-    #[derive(Parser)]
-    struct Line {
-        #[command(flatten)]
-        args: ValidateArgs,
-    }
+    use crate::arguments::parsed;
 
     #[test]
     fn a_case_and_a_quality_are_picked_and_unknown_ones_refused() {
-        let parsed = |line: &str| Line::try_parse_from(line.split_whitespace());
-        let options = parsed("validate cantilever --quality fine --every 6 --threads 1").unwrap().args.options();
+        let parsed = |line: &str| parsed::<ValidateArgs>(line);
+        let options = parsed("validate cantilever --quality fine --every 6 --threads 1").unwrap().options();
         assert_eq!(options.case.as_deref(), Some("cantilever"));
         assert_eq!((options.levels, options.every, options.threads), (vec![Level::GATED], 6, 1));
         assert!(parsed("validate cantilevr").is_err() && parsed("validate --quality best").is_err());

@@ -111,18 +111,11 @@ fn refused(error: SkinningError) -> AppError {
 
 #[cfg(test)]
 mod tests {
-    use clap::Parser;
-
     use super::*;
-
-    #[derive(Parser)]
-    struct Line {
-        #[command(flatten)]
-        args: SkinningArgs,
-    }
+    use crate::arguments::parsed;
 
     fn options(line: &str) -> SkinningOptions {
-        Line::try_parse_from(line.split_whitespace()).unwrap().args.options()
+        parsed::<SkinningArgs>(line).unwrap().options()
     }
 
     #[test]

@@ -203,18 +203,11 @@ fn refused(error: SkirtError) -> AppError {
 
 #[cfg(test)]
 mod tests {
-    use clap::Parser;
-
     use super::*;
-
-    #[derive(Parser)]
-    struct Line {
-        #[command(flatten)]
-        args: SkirtArgs,
-    }
+    use crate::arguments::parsed;
 
     fn options(line: &str) -> Result<SkirtOptions, AppError> {
-        Line::try_parse_from(line.split_whitespace()).unwrap().args.options()
+        parsed::<SkirtArgs>(line).unwrap().options()
     }
 
     #[test]
