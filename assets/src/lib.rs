@@ -7,6 +7,7 @@
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 #[macro_use]
 mod named;
+mod put_line;
 
 pub mod cone;
 pub mod fabric;

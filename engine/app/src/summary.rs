@@ -1,11 +1,10 @@
 //! The reports as people read them: what `--json` says, in words and tables.
 
-use std::fmt::Write;
-
 use crate::report::{
     BodyReport, Measure, MeasureReport, Measurements, Physics, Recommendation, RunReport, Session, TryOn,
 };
 use crate::terminal::{Paint, Tone};
+use toile_assets::put_line;
 
 /// The summary of a try-on.
 pub fn try_on(report: &TryOn, paint: Paint) -> String {
@@ -18,7 +17,7 @@ pub fn try_on(report: &TryOn, paint: Paint) -> String {
     physics(&mut text, &report.physics, paint);
     heading(&mut text, "Files", paint);
     for file in &report.files {
-        line(&mut text, &format!("  {}", file.display()));
+        put_line!(text, "  {}", file.display());
     }
     text
 }
@@ -31,43 +30,41 @@ pub fn measure(report: &MeasureReport, paint: Paint) -> String {
     for method in &report.methods {
         heading(&mut text, &format!("By {}", method.method), paint);
         for m in &method.measures {
-            line(&mut text, &format!("  {:17} {:6.0} mm +- {:.0}", m.name.replace('_', " "), m.value, m.sigma));
+            put_line!(text, "  {:17} {:6.0} mm +- {:.0}", m.name.replace('_', " "), m.value, m.sigma);
         }
     }
     if let Some(b) = &report.body {
         let cloth = if b.clothed { "one-sided, for cloth lies outside the skin" } else { "on the skin" };
         let share = b.explained * 100.0;
-        line(&mut text, &format!("\nThe body explains {share:.0} % of the surface, {:.0} mm off; {cloth}", b.off_mm));
+        put_line!(text, "\nThe body explains {share:.0} % of the surface, {:.0} mm off; {cloth}", b.off_mm);
     }
-    line(&mut text, &format!("\nPeople: {}; pixels with a depth: {} a frame", report.people, report.valid_pixels));
+    put_line!(text, "\nPeople: {}; pixels with a depth: {} a frame", report.people, report.valid_pixels);
     text
 }
 
 /// The summary of a run.
 pub fn run(report: &RunReport, paint: Paint) -> String {
     let mut text = String::new();
-    line(
-        &mut text,
-        &paint.tone(&format!("Scene {}: {} steps, {:.2} s", report.scene, report.steps, report.seconds), Tone::Strong),
+    put_line!(
+        text,
+        "{}",
+        paint.tone(&format!("Scene {}: {} steps, {:.2} s", report.scene, report.steps, report.seconds), Tone::Strong)
     );
     for garment in &report.garments {
         let (name, fabric, pinned) = (&garment.name, &garment.fabric, garment.pinned);
         let count = garment.particles;
-        line(&mut text, &format!("  {name}: {count} particles, {pinned} pinned, {fabric}, {:.3} kg", garment.mass_kg));
+        put_line!(text, "  {name}: {count} particles, {pinned} pinned, {fabric}, {:.3} kg", garment.mass_kg);
     }
     let (step, strain, deep) = (&report.step_us, &report.strain, &report.penetration_mm);
-    line(
-        &mut text,
-        &format!("  quality           {}, {} substeps at {} Hz", report.quality, report.substeps, report.hz),
-    );
-    line(&mut text, &format!("  a step takes      {:.0} us, 99 % of them under {:.0} us", step.p50, step.p99));
+    put_line!(text, "  quality           {}, {} substeps at {} Hz", report.quality, report.substeps, report.hz);
+    put_line!(text, "  a step takes      {:.0} us, 99 % of them under {:.0} us", step.p50, step.p99);
     let percent = [strain.mean, strain.p99, strain.max].map(|s| s * 100.0);
     let [mean, p99, max] = percent;
-    line(&mut text, &format!("  it is stretched   {mean:.2} % on average, 99 % under {p99:.2} %, at worst {max:.1} %"));
+    put_line!(text, "  it is stretched   {mean:.2} % on average, 99 % under {p99:.2} %, at worst {max:.1} %");
     let share = deep.fraction * 100.0;
-    line(&mut text, &format!("  deepest contact   {:.2} mm, {share:.2} % of the particles inside", deep.max));
+    put_line!(text, "  deepest contact   {:.2} mm, {share:.2} % of the particles inside", deep.max);
     let energy = report.kinetic_energy_j.end * 1e3;
-    line(&mut text, &format!("  it ends with      {energy:.3} mJ of motion, state {}", report.state_hash));
+    put_line!(text, "  it ends with      {energy:.3} mJ of motion, state {}", report.state_hash);
     let events = report.events;
     let counts = [
         (events.repaired, "particles put back"),
@@ -81,10 +78,10 @@ pub fn run(report: &RunReport, paint: Paint) -> String {
     let met: Vec<String> = counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
     if !met.is_empty() {
         let said = met.join(", ");
-        line(&mut text, &format!("  {}", paint.tone(&said, Tone::Warn)));
+        put_line!(text, "  {}", paint.tone(&said, Tone::Warn));
     }
     if let Some(folder) = &report.dump {
-        line(&mut text, &format!("  {} frames in {}, listed in index.csv", report.dumped_frames, folder.display()));
+        put_line!(text, "  {} frames in {}, listed in index.csv", report.dumped_frames, folder.display());
     }
     text
 }
@@ -93,36 +90,36 @@ pub fn run(report: &RunReport, paint: Paint) -> String {
 pub fn body(report: &BodyReport, paint: Paint) -> String {
     let mut text = String::new();
     let BodyReport { file, vertices, triangles, dialect, surface, influences: i, .. } = report;
-    line(&mut text, &format!("Body {}: {vertices} vertices, {triangles} triangles", file.display()));
-    report.notes.iter().for_each(|note| line(&mut text, &format!("  {note}")));
-    line(&mut text, &format!("  {} joints found, named as {dialect} names them", report.joints.len()));
+    put_line!(text, "Body {}: {vertices} vertices, {triangles} triangles", file.display());
+    report.notes.iter().for_each(|note| put_line!(text, "  {note}"));
+    put_line!(text, "  {} joints found, named as {dialect} names them", report.joints.len());
     let (parts, open) = (surface.parts, surface.boundary_edges);
-    line(&mut text, &format!("  {parts} closed or open pieces, {open} open edges"));
+    put_line!(text, "  {parts} closed or open pieces, {open} open edges");
     let lost = [i.mean_lost, i.max_lost].map(|w| w * 100.0);
     let words = format!("  up to {} influences; {} vertices pruned to 4 lost {:.2} %", i.most, i.pruned, lost[0]);
-    line(&mut text, &format!("{words} of their weight on average, {:.1} % at worst", lost[1]));
+    put_line!(text, "{words} of their weight on average, {:.1} % at worst", lost[1]);
     for (words, all) in
         [("Measures", Some(&report.measures_mm)), ("MakeHuman's own rows", report.makehuman_mm.as_ref())]
     {
         if let Some(all) = all {
             heading(&mut text, words, paint);
-            all.iter().for_each(|n| line(&mut text, &format!("  {:17} {:6.0} mm", n.name, n.value)));
+            all.iter().for_each(|n| put_line!(text, "  {:17} {:6.0} mm", n.name, n.value));
         }
     }
     heading(&mut text, "Collision body, distance from the skin", paint);
     for f in &report.colliders {
-        line(&mut text, &format!("  {:17} {:6.1} mm on average, 95 % {:.1} mm", f.zone, f.mean_mm, f.p95_mm));
+        put_line!(text, "  {:17} {:6.1} mm on average, 95 % {:.1} mm", f.zone, f.mean_mm, f.p95_mm);
     }
     heading(&mut text, "Files", paint);
-    report.files.iter().for_each(|file| line(&mut text, &format!("  {}", file.display())));
+    report.files.iter().for_each(|file| put_line!(text, "  {}", file.display()));
     text
 }
 
 fn session(text: &mut String, session: &Session) {
     let Session { name, frames, seconds, notes } = session;
-    line(text, &format!("Session {name}: {frames} frames, {seconds:.1} s"));
+    put_line!(text, "Session {name}: {frames} frames, {seconds:.1} s");
     for note in notes {
-        line(text, &format!("  {note}"));
+        put_line!(text, "  {note}");
     }
 }
 
@@ -136,7 +133,7 @@ fn measurements(text: &mut String, measurements: &Measurements, paint: Paint) {
         ("hip girth", &measurements.hip_girth_mm),
     ];
     for (name, measure) in rows {
-        line(text, &format!("  {name:17} {:6.0} mm +- {:.0}", measure.value, measure.sigma));
+        put_line!(text, "  {name:17} {:6.0} mm +- {:.0}", measure.value, measure.sigma);
     }
 }
 
@@ -146,11 +143,11 @@ fn recommendation(text: &mut String, worn: &Recommendation, paint: Paint) {
         let tone = if zone.verdict == "good" { Tone::Good } else { Tone::Warn };
         let verdict = format!("{:6}", zone.verdict);
         let verdict = paint.tone(&verdict, tone);
-        line(text, &format!("  {:17} {verdict} {:+5.0} mm of ease +- {:.0}", zone.zone, zone.ease_mm, zone.sigma_mm));
+        put_line!(text, "  {:17} {verdict} {:+5.0} mm of ease +- {:.0}", zone.zone, zone.ease_mm, zone.sigma_mm);
     }
-    line(text, &format!("  {}", worn.verdict));
+    put_line!(text, "  {}", worn.verdict);
     if let Some(note) = &worn.note {
-        line(text, &format!("  {note}"));
+        put_line!(text, "  {note}");
     }
 }
 
@@ -160,27 +157,21 @@ fn physics(text: &mut String, physics: &Physics, paint: Paint) {
         format!("Cloth of {particles} particles at {hz} steps a second ({substeps} substeps each), {steps} steps");
     heading(text, &words, paint);
     let (step, strain) = (&physics.step_us, &physics.strain);
-    line(text, &format!("  a step takes      {:.0} us, 99 % of them under {:.0} us", step.p50, step.p99));
+    put_line!(text, "  a step takes      {:.0} us, 99 % of them under {:.0} us", step.p50, step.p99);
     let (mean, p99) = (strain.mean * 100.0, strain.p99 * 100.0);
-    line(text, &format!("  it is stretched   {mean:.2} % on average, 99 % of it under {p99:.2} %"));
-    line(text, &format!("  deepest contact   {:.1} mm", physics.penetration_mm.max));
+    put_line!(text, "  it is stretched   {mean:.2} % on average, 99 % of it under {p99:.2} %");
+    put_line!(text, "  deepest contact   {:.1} mm", physics.penetration_mm.max);
     for warning in &physics.warnings {
-        line(text, &format!("  {}", paint.tone(warning, Tone::Warn)));
+        put_line!(text, "  {}", paint.tone(warning, Tone::Warn));
     }
     if physics.nonfinite > 0 {
         let said = format!("{} steps met a particle that was not finite, and were taken back", physics.nonfinite);
-        line(text, &format!("  {}", paint.tone(&said, Tone::Warn)));
+        put_line!(text, "  {}", paint.tone(&said, Tone::Warn));
     }
 }
 
 fn heading(text: &mut String, words: &str, paint: Paint) {
-    line(text, &format!("\n{}", paint.tone(words, Tone::Strong)));
-}
-
-/// One more line of a summary.
-pub(crate) fn line(text: &mut String, words: &str) {
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "{words}");
+    put_line!(text, "\n{}", paint.tone(words, Tone::Strong));
 }
 
 #[cfg(test)]

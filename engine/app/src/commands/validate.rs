@@ -1,8 +1,7 @@
 //! `toile validate`: the cloth against exact solutions.
 
-use std::fmt::Write;
-
 use clap::builder::PossibleValuesParser;
+use toile_assets::put_line;
 use toile_perf::validate::Level;
 use toile_perf::validate::case::ValidationRow;
 use toile_perf::validate::run::{self, NAMES, ValidationOptions, ValidationReport};
@@ -115,12 +114,12 @@ fn table(report: &ValidationReport, paint: Paint) -> String {
         "step us",
         ""
     );
-    line(&mut text, &paint.tone(head.trim_end(), Tone::Strong));
+    put_line!(text, "{}", paint.tone(head.trim_end(), Tone::Strong));
     for row in &report.cases {
-        line(&mut text, &row_text(row, paint));
+        put_line!(text, "{}", row_text(row, paint));
     }
     let ([passed, gated], threads, wall) = (report.passed, report.threads, report.wall_s);
-    line(&mut text, &format!("\n{passed} of {gated} targets met, {wall:.0} s on {threads} thread(s)"));
+    put_line!(text, "\n{passed} of {gated} targets met, {wall:.0} s on {threads} thread(s)");
     text
 }
 
@@ -163,11 +162,6 @@ fn percent(x: f64) -> String {
         0
     };
     format!("{x:+.digits$}")
-}
-
-fn line(text: &mut String, words: &str) {
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "{words}");
 }
 
 #[cfg(test)]

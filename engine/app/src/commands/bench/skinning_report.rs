@@ -1,12 +1,12 @@
 //! The JSON of `toile bench skinning`, and the same in words.
 
 use serde::Serialize;
+use toile_assets::put_line;
 use toile_engine::skin::Blend;
 use toile_fitting::scene::yardstick;
 use toile_perf::skinning::table::SkinningRow;
 use toile_perf::skinning::{Skinning, Timing};
 
-use crate::summary::line;
 use crate::terminal::{Paint, Tone};
 
 /// The body of `toile bench skinning`.
@@ -47,30 +47,24 @@ pub fn summary(report: &SkinningReport, paint: Paint) -> String {
     let plain = found.yardstick_us * 1e3 / *yardstick_verts as f64;
     let mut text = String::new();
     let title = format!("Skinning {} vertices, positions and normals: {blend}", found.verts);
-    line(&mut text, &paint.tone(&title, Tone::Strong));
+    put_line!(text, "{}", paint.tone(&title, Tone::Strong));
     let error = max_error_m * 1e6;
-    line(
-        &mut text,
-        &format!("  the engine    {ns_per_vertex:.2} ns a vertex, {y_ratio:.3} of a plain loop, error {error:.3} um"),
+    put_line!(
+        text,
+        "  the engine    {ns_per_vertex:.2} ns a vertex, {y_ratio:.3} of a plain loop, error {error:.3} um"
     );
-    line(
-        &mut text,
-        &format!("  a plain loop  {plain:.2} ns a vertex ({:.1} us for {yardstick_verts})", found.yardstick_us),
-    );
+    put_line!(text, "  a plain loop  {plain:.2} ns a vertex ({:.1} us for {yardstick_verts})", found.yardstick_us);
     for (name, t) in [("linear", &found.linear), ("dual", &found.dual)] {
         let error = t.max_error_m * 1e6;
-        line(
-            &mut text,
-            &format!("  {name:<13} {:.1} us, {:.1} in mesh order, error {error:.3} um", t.us, t.mesh_order_us),
-        );
+        put_line!(text, "  {name:<13} {:.1} us, {:.1} in mesh order, error {error:.3} um", t.us, t.mesh_order_us);
     }
     let empty = found.padding * 100.0;
-    line(
-        &mut text,
-        &format!(
-            "  {} thread(s), {} lanes, {} joint sets, {empty:.1} % of the lanes empty",
-            found.threads, found.lanes, found.sets
-        ),
+    put_line!(
+        text,
+        "  {} thread(s), {} lanes, {} joint sets, {empty:.1} % of the lanes empty",
+        found.threads,
+        found.lanes,
+        found.sets
     );
     text
 }
