@@ -7,6 +7,7 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
+use toile_fitting::scene::StepTimes;
 
 use crate::machine::Machine;
 
@@ -142,19 +143,6 @@ pub struct Recommendation {
     pub note: Option<String>,
 }
 
-/// The distribution of a step's time (us).
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct StepMicros {
-    /// Median.
-    pub p50: f64,
-    /// 99 %.
-    pub p99: f64,
-    /// 99.9 %.
-    pub p999: f64,
-    /// The longest.
-    pub max: f64,
-}
-
 /// How far edges are stretched, as a part of their rest length (0.01 is 1 %).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Strain {
@@ -191,7 +179,7 @@ pub struct Physics {
     /// Steps taken.
     pub steps: u64,
     /// Time a step took.
-    pub step_us: StepMicros,
+    pub step_us: StepTimes,
     /// How far edges were stretched.
     pub strain: Strain,
     /// How deep cloth was inside the body.

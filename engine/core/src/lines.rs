@@ -1,7 +1,6 @@
 //! Lines: the one thing that debugging draws. Filled outside of the frame, from what it shows, into room made at load.
 
 use std::fmt;
-use std::str::FromStr;
 
 use glam::{Vec3, Vec4Swizzles};
 use toile_assets::garment::layout::Layout;
@@ -67,16 +66,6 @@ const RED: Vec3 = Vec3::new(0.665, 0.112, 0.0);
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
-    }
-}
-
-impl FromStr for Kind {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let names = Self::ALL.map(Self::name).join(", ");
-        let of = Self::ALL.into_iter().find(|k| k.name() == text);
-        of.ok_or_else(|| format!("`{text}` cannot be drawn as lines; choose one of {names}"))
     }
 }
 
@@ -244,14 +233,6 @@ mod tests {
         assert_eq!((lines.as_slice().len(), lines.left_out()), (2, 3));
         lines.clear();
         assert_eq!((lines.as_slice().len(), lines.left_out()), (0, 0));
-    }
-
-    #[test]
-    fn every_kind_is_found_by_its_name() {
-        for kind in Kind::ALL {
-            assert_eq!(kind.name().parse(), Ok(kind));
-        }
-        assert!("bones".parse::<Kind>().unwrap_err().contains("colliders"));
     }
 
     #[test]

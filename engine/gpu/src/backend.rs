@@ -6,7 +6,6 @@
 //! [`ClothStepper::fallback`] says why.
 
 use std::fmt;
-use std::str::FromStr;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
@@ -36,15 +35,6 @@ toile_assets::named! {
 impl fmt::Display for Backend {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
-    }
-}
-
-impl FromStr for Backend {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let of = Self::ALL.into_iter().find(|b| b.name() == text);
-        of.ok_or_else(|| format!("`{text}` steps nothing; choose cpu, gpu or auto"))
     }
 }
 
@@ -307,14 +297,6 @@ fn on_device(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_backend_is_what_its_name_says() {
-        for backend in Backend::ALL {
-            assert_eq!(backend.name().parse(), Ok(backend));
-        }
-        assert!("tpu".parse::<Backend>().unwrap_err().contains("cpu, gpu or auto"));
-    }
 
     #[test]
     fn without_a_device_the_processor_steps_and_says_why() {

@@ -22,6 +22,7 @@ use toile_fitting::dress::measured::{self, Measured, ShopperFacts};
 use toile_fitting::dress::player::Player;
 use toile_fitting::dress::wish::{self, Choice, Wish};
 use toile_fitting::dress::{body, session};
+use toile_fitting::scene::StepTimes;
 use toile_sensors::frame::Joints;
 
 use crate::arguments::{Printing, one_of, quality};
@@ -370,12 +371,7 @@ fn physics(frame: &Frame) -> report::Physics {
         substeps: frame.cloths().iter().map(|c| c.substeps()).max().unwrap_or(0),
         particles: frame.garments().iter().map(Garment::particles).sum(),
         steps: frame.tick(),
-        step_us: report::StepMicros {
-            p50: us(0.5),
-            p99: us(0.99),
-            p999: us(0.999),
-            max: meters.step_ns.max() as f64 * 1e-3,
-        },
+        step_us: StepTimes { p50: us(0.5), p99: us(0.99), p999: us(0.999), max: meters.step_ns.max() as f64 * 1e-3 },
         strain: report::Strain { mean: f64::from(strain.mean), p99: f64::from(strain.p99), max: f64::from(strain.max) },
         penetration_mm: report::Penetration { max: f64::from(meters.penetration_max) * 1e3 },
         nonfinite: frame.cloths().iter().map(|c| c.events.rolled_back).sum(),

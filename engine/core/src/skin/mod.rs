@@ -16,7 +16,6 @@ mod tests;
 
 use std::fmt;
 use std::ops::Range;
-use std::str::FromStr;
 
 use glam::{Affine3A, Vec3};
 use toile_assets::mesh::Influences;
@@ -53,14 +52,6 @@ toile_assets::named! {
 impl fmt::Display for Blend {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
-    }
-}
-
-impl FromStr for Blend {
-    type Err = ();
-
-    fn from_str(name: &str) -> Result<Self, ()> {
-        Self::ALL.into_iter().find(|b| b.name() == name).ok_or(())
     }
 }
 

@@ -13,6 +13,7 @@ pub mod yardstick;
 use std::time::Instant;
 
 use glam::{Affine3A, Vec3, Vec4};
+use serde::Serialize;
 use thiserror::Error;
 use toile_assets::bake::bake;
 use toile_assets::garment::{Garment, MeshError};
@@ -50,7 +51,7 @@ pub enum RunError {
 }
 
 /// The distribution of a step's time (us).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct StepTimes {
     /// Median.
     pub p50: f64,
