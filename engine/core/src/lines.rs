@@ -1,7 +1,5 @@
 //! Lines: the one thing that debugging draws. Filled outside of the frame, from what it shows, into room made at load.
 
-use std::fmt;
-
 use glam::{Vec3, Vec4Swizzles};
 use toile_assets::garment::layout::Layout;
 use toile_assets::garment::{Garment, Solver};
@@ -62,12 +60,6 @@ const GREEN: Vec3 = Vec3::new(0.0, 0.342, 0.171);
 const YELLOW: Vec3 = Vec3::new(0.871, 0.776, 0.054);
 const BLUE: Vec3 = Vec3::new(0.0, 0.168, 0.445);
 const RED: Vec3 = Vec3::new(0.665, 0.112, 0.0);
-
-impl fmt::Display for Kind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
 
 /// Lines, within a fixed capacity.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,7 +5,6 @@
 //! frame late drives `cloth::Offload` itself. Whatever goes wrong with the device, the processor goes on from the last places, and
 //! [`ClothStepper::fallback`] says why.
 
-use std::fmt;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
@@ -29,12 +28,6 @@ toile_assets::named! {
         Gpu = "gpu",
         /// Whichever is faster with these garments, measured when they are first stepped.
         Auto = "auto",
-    }
-}
-
-impl fmt::Display for Backend {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
     }
 }
 

@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::events::ClothEvents;
 use toile_gpu::backend::BackendTimes;
 
-use super::options::{SkirtMesh, SkirtOptions};
+use super::options::SkirtOptions;
 use crate::backend::SteppedBy;
 
 /// How far warp and weft edges are from their length, as a part of it (0.01 is 1 %).
@@ -135,15 +134,9 @@ impl SkirtReport {
     pub fn of(options: &SkirtOptions) -> Self {
         Self {
             verts: options.verts,
-            motion: motion(options.motion),
-            mesh: match options.mesh {
-                SkirtMesh::Grid => "grid",
-                SkirtMesh::Irregular => "irregular",
-            },
-            stretch: match options.stretch {
-                Stretch::Inextensible => "inextensible",
-                Stretch::Physical => "physical",
-            },
+            motion: options.motion.name(),
+            mesh: options.mesh.name(),
+            stretch: options.stretch.name(),
             wind: options.wind,
             garments: options.garments,
             threads: options.threads,
@@ -151,14 +144,5 @@ impl SkirtReport {
             steps: options.steps,
             ..Self::default()
         }
-    }
-}
-
-/// A motion's name.
-pub fn motion(motion: Motion) -> &'static str {
-    match motion {
-        Motion::Walk => "walk",
-        Motion::Fast => "fast",
-        Motion::Settled => "settled",
     }
 }

@@ -32,14 +32,16 @@ pub const WIND: (Vec3, f32, f32) = (Vec3::new(1.0, 0.0, 0.5), 0.1, 0.05);
 /// Part of its speed that the cloth keeps after a second in the air.
 const KEPT_AFTER_1_S: f32 = 0.35;
 
-/// How the skirt's threads stretch.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Stretch {
-    /// Not at all: what is measured is the solver's error alone.
-    #[default]
-    Inextensible,
-    /// As woven cloth: 2,000 N/m along warp and weft.
-    Physical,
+named! {
+    /// How the skirt's threads stretch.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum Stretch {
+        /// Not at all: what is measured is the solver's error alone.
+        #[default]
+        Inextensible = "inextensible",
+        /// As woven cloth: 2,000 N/m along warp and weft.
+        Physical = "physical",
+    }
 }
 
 impl Stretch {

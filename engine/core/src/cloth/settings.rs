@@ -1,6 +1,5 @@
 //! How the cloth is stepped.
 
-use std::fmt;
 use std::str::FromStr;
 
 use glam::Vec3A;
@@ -33,12 +32,6 @@ impl Quality {
             Self::Draft | Self::Shop => shop,
             Self::Fine => 3 * shop,
         }
-    }
-}
-
-impl fmt::Display for Quality {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
     }
 }
 

@@ -14,7 +14,6 @@ mod prune;
 #[cfg(test)]
 mod tests;
 
-use std::fmt;
 use std::ops::Range;
 
 use glam::{Affine3A, Vec3};
@@ -46,12 +45,6 @@ toile_assets::named! {
         /// approximate dual quaternion blending"): for palettes of rotations and translations. Keeps twisted limbs whole;
         /// bent joints bulge.
         Dual = "dual",
-    }
-}
-
-impl fmt::Display for Blend {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
     }
 }
 

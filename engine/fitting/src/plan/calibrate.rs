@@ -6,7 +6,7 @@
 //! far from it, wind, tethers.
 
 use std::hint::black_box;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use glam::Vec3;
 use toile_assets::body::Body;
@@ -32,9 +32,6 @@ const TIMED: usize = 40;
 
 /// Steps of the frame without garments.
 const EMPTY_STEPS: usize = 60;
-
-/// What a frame does between waking the helper and the cloth takes at least so long.
-const BEFORE_CLOTH: Duration = Duration::from_micros(80);
 
 /// The colliders that all of them hang on: the benchmark's body, walking.
 const WALKING: &str = "duration = 7\n[colliders]\nmotion = \"walk\"\n";
@@ -137,7 +134,7 @@ fn meeting_us(scene: &Scene, costs: &Costs) -> Result<f64, PlanError> {
     let mut nobody = WorkerPool::new(1)?;
     for step in 0..WARM_UP + TIMED {
         playing.place();
-        wake(&mut pool);
+        timing::wake(&mut pool);
         let begun = Instant::now();
         playing.take(&scene.settings, &mut pool);
         let two = begun.elapsed();
@@ -154,15 +151,6 @@ fn meeting_us(scene: &Scene, costs: &Costs) -> Result<f64, PlanError> {
     let rest = costs.garment(&work).stages_us[STAGES.len() - 1];
     let (two, one) = (quartile(&mut times), quartile(&mut one));
     Ok(((two - rest - (one - rest) * work.share) / work.phases).max(0.0))
-}
-
-fn wake(pool: &mut WorkerPool) {
-    if pool.wake() {
-        let woken = Instant::now();
-        while woken.elapsed() < BEFORE_CLOTH {
-            std::hint::spin_loop();
-        }
-    }
 }
 
 /// The stages of a frame in which nothing is worn (us).

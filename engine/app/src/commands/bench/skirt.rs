@@ -42,18 +42,18 @@ pub struct SkirtArgs {
     #[arg(
         long,
         value_name = "M",
-        value_parser = one_of([Motion::Walk, Motion::Fast, Motion::Settled], motion),
+        value_parser = one_of(Motion::ALL, Motion::name),
         default_value = "walk"
     )]
     motion: Motion,
     /// How the skirt is meshed
-    #[arg(long, value_name = "M", value_parser = one_of([SkirtMesh::Grid, SkirtMesh::Irregular], mesh), default_value = "grid")]
+    #[arg(long, value_name = "M", value_parser = one_of(SkirtMesh::ALL, SkirtMesh::name), default_value = "grid")]
     mesh: SkirtMesh,
     /// How its threads stretch: not at all, or 2000 N/m
     #[arg(
         long,
         value_name = "S",
-        value_parser = one_of([Stretch::Inextensible, Stretch::Physical], stretch),
+        value_parser = one_of(Stretch::ALL, Stretch::name),
         default_value = "inextensible"
     )]
     stretch: Stretch,
@@ -93,28 +93,6 @@ pub struct SkirtArgs {
     /// Print one JSON object, and nothing else, on stdout
     #[arg(long)]
     json: bool,
-}
-
-fn motion(motion: Motion) -> &'static str {
-    match motion {
-        Motion::Walk => "walk",
-        Motion::Fast => "fast",
-        Motion::Settled => "settled",
-    }
-}
-
-fn mesh(mesh: SkirtMesh) -> &'static str {
-    match mesh {
-        SkirtMesh::Grid => "grid",
-        SkirtMesh::Irregular => "irregular",
-    }
-}
-
-fn stretch(stretch: Stretch) -> &'static str {
-    match stretch {
-        Stretch::Inextensible => "inextensible",
-        Stretch::Physical => "physical",
-    }
 }
 
 impl SkirtArgs {
