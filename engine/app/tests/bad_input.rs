@@ -5,7 +5,7 @@ mod samples;
 
 use std::fs::{self, File};
 
-use common::Scratch;
+use common::{Scratch, refusal};
 use samples::embedded_session;
 
 /// Runs a command that must be refused with exit code `code`: one line on stderr with all `words` in it, nothing on
@@ -18,12 +18,7 @@ fn refused_with(code: i32, scratch: &Scratch, args: &[&str], words: &[&str]) -> 
         names
     };
     let before = listing(scratch);
-    let output = scratch.toile(args);
-    let said = String::from_utf8(output.stderr).expect("stderr is UTF-8");
-    assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
-    assert!(output.stdout.is_empty(), "{args:?} prints data");
-    assert_eq!(said.lines().count(), 1, "{args:?} says not one line: {said}");
-    assert!(said.starts_with("toile: ") && said.ends_with('\n'), "{args:?}: {said}");
+    let said = refusal(&scratch.toile(args), code);
     for word in words {
         assert!(said.contains(word), "{args:?}: `{word}` is not in: {said}");
     }
