@@ -117,6 +117,11 @@ impl VideoWriter {
         Ok(Self { path: path.to_owned(), size, pushed: 0, encoder: VideoEncoder::Ffmpeg { child, input } })
     }
 
+    /// The file that is made.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Adds the next frame.
     ///
     /// # Errors
