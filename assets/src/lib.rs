@@ -5,6 +5,10 @@
 //! Thread: the loading thread.
 
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+#[macro_use]
+mod named;
+mod put_line;
+
 pub mod cone;
 pub mod fabric;
 pub mod file;
@@ -27,3 +31,7 @@ pub mod sizes;
 
 pub mod scene_file;
 pub mod wardrobe;
+
+#[cfg(test)]
+#[path = "../../tests/src/recordings.rs"]
+mod recordings;

@@ -16,18 +16,19 @@ mod report;
 mod shell;
 mod skin;
 mod system;
+mod union;
 mod zones;
 
 use glam::Vec3;
 
 use crate::body::Body;
-use crate::cone::round_cone;
 use crate::limits::{MAX_CAPSULES, MAX_SPHERES};
 use crate::skeleton::Joint;
 pub use plan::SPHERES;
 use plan::{CAPSULES, PAIRS, PLAN};
 pub use report::{MEAN_GOAL_MM, P95_GOAL_MM, RigReport, ZoneReport};
 pub use shell::CapsuleSurface;
+use union::nearest;
 pub use zones::Zone;
 
 const _: () = assert!(SPHERES <= MAX_SPHERES);
@@ -95,32 +96,6 @@ fn carrier(sphere: usize) -> Joint {
         None if sphere.is_multiple_of(2) => PLAN[sphere / 2].carrier,
         None => PLAN[sphere / 2].carrier.mirror(),
     }
-}
-
-/// Spheres in the rest pose: centre and radius (m).
-type RestSpheres = [(Vec3, f32); SPHERES];
-
-/// Distance to the union, and the capsule and place on it that are nearest.
-fn nearest(placed: &RestSpheres, p: Vec3) -> (f32, usize, f32) {
-    let mut best = (f32::INFINITY, 0, 0.0);
-    for (i, [a, b]) in CAPSULES.iter().enumerate() {
-        let (distance, t) = round_cone(p, placed[usize::from(*a)], placed[usize::from(*b)]);
-        if distance < best.0 {
-            best = (distance, i, t);
-        }
-    }
-    best
-}
-
-/// A third of the area of the triangles around each vertex (m^2).
-fn vertex_areas(body: &Body) -> Vec<f32> {
-    let mut areas = vec![0.0; body.mesh.positions.len()];
-    for t in &body.mesh.triangles {
-        let [a, b, c] = t.map(|v| body.mesh.positions[v as usize]);
-        let share = (b - a).cross(c - a).length() / 6.0;
-        t.iter().for_each(|&v| areas[v as usize] += share);
-    }
-    areas
 }
 
 #[cfg(test)]

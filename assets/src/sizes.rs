@@ -9,54 +9,33 @@ use serde::Deserialize;
 
 use crate::body::{Measures, Sex};
 
-/// What a garment is, as far as sizing is concerned (EN 13402-2).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
-pub enum GarmentKind {
-    /// A dress.
-    #[serde(rename = "dress")]
-    Dress,
-    /// A T-shirt.
-    #[serde(rename = "t-shirt")]
-    Tshirt,
-    /// Trousers.
-    #[serde(rename = "trousers")]
-    Trousers,
-}
-
-impl GarmentKind {
-    /// The word that files and people use.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Dress => "dress",
-            Self::Tshirt => "t-shirt",
-            Self::Trousers => "trousers",
-        }
+named! {
+    /// What a garment is, as far as sizing is concerned (EN 13402-2).
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
+    pub enum GarmentKind {
+        /// A dress.
+        #[serde(rename = "dress")]
+        Dress = "dress",
+        /// A T-shirt.
+        #[serde(rename = "t-shirt")]
+        Tshirt = "t-shirt",
+        /// Trousers.
+        #[serde(rename = "trousers")]
+        Trousers = "trousers",
     }
 }
 
-/// A girth of the body that designates sizes (EN 13402-1).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Girth {
-    /// Bust girth of a woman, chest girth of a man: horizontal, under the armpits, over the bust points.
-    Chest,
-    /// At the natural waistline, midway between the lowest rib and the top of the hip bone.
-    Waist,
-    /// At the greatest protrusion of the buttocks.
-    Hip,
-}
-
-impl Girth {
-    /// All girths, from the top down.
-    pub const ALL: [Self; 3] = [Self::Chest, Self::Waist, Self::Hip];
-
-    /// The word that files and people use.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Chest => "chest",
-            Self::Waist => "waist",
-            Self::Hip => "hip",
-        }
+named! {
+    /// A girth of the body that designates sizes (EN 13402-1), from the top down.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Girth {
+        /// Bust girth of a woman, chest girth of a man: horizontal, under the armpits, over the bust points.
+        Chest = "chest",
+        /// At the natural waistline, midway between the lowest rib and the top of the hip bone.
+        Waist = "waist",
+        /// At the greatest protrusion of the buttocks.
+        Hip = "hip",
     }
 }
 

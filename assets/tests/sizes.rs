@@ -1,22 +1,13 @@
 //! The tables of FreeSewing's bodies against the measurements that they were made from.
 
-use std::path::PathBuf;
+#[path = "../../tests/src/recordings.rs"]
+mod recordings;
 
 use toile_assets::sizes::SizeTable;
 
-/// The folder of shared data, or `None` where it is not set up; with CI=true that is a failure.
-fn data() -> Option<PathBuf> {
-    let Some(folder) = std::env::var_os("TOILE_DATA") else {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA must name the shared data where CI=true");
-        eprintln!("skipped: TOILE_DATA does not name the folder of shared data");
-        return None;
-    };
-    Some(PathBuf::from(folder).canonicalize().expect("TOILE_DATA names no folder"))
-}
-
 #[test]
 fn every_freesewing_body_lies_in_the_middle_of_its_size() {
-    let Some(root) = data() else { return };
+    let Some(root) = recordings::folder() else { return };
     let text = std::fs::read_to_string(root.join("patterns/freesewing/models-measurements.json")).unwrap();
     let bodies: serde_json::Value = serde_json::from_str(&text).unwrap();
     let mut seen = 0;

@@ -1,18 +1,15 @@
 //! Bodies built to the measures of people of the survey: a small version of `toile bench body`.
 
-use std::path::Path;
+#[path = "../../tests/src/recordings.rs"]
+mod recordings;
 
 use toile_perf::ansur::{Survey, study};
 
 #[test]
 fn people_of_the_survey_are_met_and_look_right() {
-    let Some(folder) = std::env::var_os("TOILE_DATA") else {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA is not set: point it at the shared data");
-        eprintln!("skipped: TOILE_DATA is not set");
-        return;
-    };
+    let Some(folder) = recordings::folder() else { return };
     for file in ["ANSUR_II_FEMALE.csv", "ANSUR_II_MALE.csv"] {
-        let survey = Survey::read(&Path::new(&folder).join("anthropometry/ansur2").join(file)).unwrap();
+        let survey = Survey::read(&folder.join("anthropometry/ansur2").join(file)).unwrap();
         let study = study(&survey, 40, 7, &|| ()).unwrap();
         assert_eq!((study.drawn, study.unreachable), (40, 0), "{file}");
         for m in study.measures.iter().filter(|m| m.given) {

@@ -1,6 +1,7 @@
 //! Gestures held against simulated shoppers, laws that they must obey, and what real sensors recorded.
 
-use std::path::PathBuf;
+#[path = "../../tests/src/recordings.rs"]
+mod recordings;
 
 use glam::{Quat, Vec3};
 use toile_assets::skeleton::Joint;
@@ -9,16 +10,6 @@ use toile_sensors::filter::JointFilter;
 use toile_sensors::frame::{DepthFrame, HandState, Joints, TrackedJoint};
 use toile_sensors::source::{OpenOptions, open};
 use toile_track::gesture::{Gesture, GestureEvent, Gestures, HandRegion, HandSegmenter, Side};
-
-/// The folder of recordings, or `None` where it is not set up; with CI=true that is a failure.
-fn data() -> Option<PathBuf> {
-    let Some(folder) = std::env::var_os("TOILE_DATA") else {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA must name the recordings where CI=true");
-        eprintln!("skipped: TOILE_DATA does not name the folder of recordings");
-        return None;
-    };
-    Some(PathBuf::from(folder).canonicalize().expect("TOILE_DATA names no folder"))
-}
 
 /// The events of a recording, filtered as in the mirror.
 fn recorded(folder: &std::path::Path, file: &str) -> (usize, Vec<GestureEvent>) {
@@ -44,7 +35,7 @@ const NO_GESTURE: [(&str, usize); 9] = [
 
 #[test]
 fn recordings_in_which_nobody_gestures_give_no_event() {
-    let Some(root) = data() else { return };
+    let Some(root) = recordings::folder() else { return };
     for (file, frames) in NO_GESTURE {
         let (seen, found) = recorded(&root, file);
         assert!(seen * 10 > frames * 9, "{file}: {seen} frames");
@@ -55,7 +46,7 @@ fn recordings_in_which_nobody_gestures_give_no_event() {
 /// Somebody draws lines into the air with the right hand: long straight strokes are what a swipe is.
 #[test]
 fn lines_drawn_into_the_air_are_swipes() {
-    let Some(root) = data() else { return };
+    let Some(root) = recordings::folder() else { return };
     let (_, found) = recorded(&root, "skeleton/labanotation-kinect2/Ges03_drawlines.csv");
     assert!((1..=4).contains(&found.len()), "{found:?}");
     assert!(found.iter().all(|e| e.gesture == Gesture::SwipeRight && e.side == Side::Right), "{found:?}");
@@ -92,7 +83,7 @@ fn marked(frame: &DepthFrame, [u, v]: [f32; 2]) -> Vec3 {
 
 #[test]
 fn hands_in_real_depth_frames_are_told_open_from_closed() {
-    let Some(root) = data() else { return };
+    let Some(root) = recordings::folder() else { return };
     let mut segmenter = HandSegmenter::new();
     for (number, palm, elbow, is_open) in MARKED {
         let file = root.join(format!("depth/skeltrack/depth-data-{number}.u16le"));

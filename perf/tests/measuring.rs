@@ -1,5 +1,8 @@
 //! A small study of measuring: the whole way from the survey to the table.
 
+#[path = "../../tests/src/recordings.rs"]
+mod recordings;
+
 use std::path::{Path, PathBuf};
 
 use toile_perf::ansur::Survey;
@@ -7,12 +10,7 @@ use toile_perf::measuring::{MeasuringOptions, MeasuringStudy, Sensor, study};
 
 /// The folder of shared data; absent data is a failure in continuous integration.
 fn folder() -> Option<PathBuf> {
-    let Some(folder) = std::env::var_os("TOILE_DATA") else {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA must name the folder of recordings");
-        eprintln!("skipped: TOILE_DATA does not name the folder of recordings");
-        return None;
-    };
-    Some(Path::new(&folder).join("anthropometry/ansur2"))
+    Some(recordings::folder()?.join("anthropometry/ansur2"))
 }
 
 /// Both files of the survey.

@@ -1,16 +1,15 @@
 //! Whether the probabilities that are stated of sizes are true, of real women.
 
+#[path = "../../tests/src/recordings.rs"]
+mod recordings;
+
 use toile_perf::reliability::{ansur, of_dress};
 
 /// Of the sizes said to be right with some probability that share is right, on real women measured with errors.
 #[test]
 fn stated_probabilities_are_true_of_real_people() {
-    let Some(folder) = std::env::var_os("TOILE_DATA") else {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA must name the shared data where CI=true");
-        eprintln!("skipped: TOILE_DATA does not name the folder of shared data");
-        return;
-    };
-    let file = std::path::Path::new(&folder).join("anthropometry/ansur2/ANSUR_II_FEMALE.csv");
+    let Some(folder) = recordings::folder() else { return };
+    let file = folder.join("anthropometry/ansur2/ANSUR_II_FEMALE.csv");
     let people = ansur(&String::from_utf8_lossy(&std::fs::read(file).unwrap())).unwrap();
     assert_eq!(people.len(), 1986);
     let some: Vec<_> = people.into_iter().step_by(5).collect();

@@ -19,3 +19,7 @@ pub mod session;
 
 pub mod depth;
 pub mod source;
+
+#[cfg(test)]
+#[path = "../../tests/src/recordings.rs"]
+mod recordings;

@@ -1,4 +1,4 @@
-//! Recordings of real sensors, found through the environment variable `TOILE_DATA`.
+//! Recordings of real sensors, found through the environment variable `TOILE_DATA`. Tests of other crates include this file.
 
 use std::path::PathBuf;
 
@@ -6,12 +6,12 @@ use std::path::PathBuf;
 /// integration (`CI=true`), where missing data is a failure.
 ///
 /// # Panics
-/// In continuous integration without data.
+/// In continuous integration without data, and where there is no such folder.
 pub fn folder() -> Option<PathBuf> {
-    let folder = std::env::var_os("TOILE_DATA").map(PathBuf::from);
-    if folder.is_none() {
+    let Some(folder) = std::env::var_os("TOILE_DATA") else {
         assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA must name the folder of recordings");
         eprintln!("skipped: TOILE_DATA does not name the folder of recordings");
-    }
-    folder
+        return None;
+    };
+    Some(PathBuf::from(folder).canonicalize().expect("TOILE_DATA names no folder"))
 }

@@ -24,6 +24,7 @@
 
 mod fit;
 mod ring;
+mod stencil;
 mod whole;
 
 use crate::fabric::Fabric;
@@ -32,21 +33,8 @@ use crate::garment::Shape;
 use super::fibers::{Direction, Edge};
 use fit::{Patches, QuadraticForm};
 use ring::{Ring, RingMeasure, Rings};
+pub use stencil::Stencil;
 use whole::RingCurvature;
-
-/// One place where the cloth is bent: energy k/2 |sum c_i x_i|^2.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Stencil {
-    /// The particles, three or more; the vertex that it belongs to comes first. Stencils of a whole ring follow each other
-    /// and name the same particles.
-    pub v: Vec<u32>,
-    /// Their weights (1/m2). They sum to zero.
-    pub c: Vec<f32>,
-    /// Rigidity times the area that it stands for (N m3): the sum is a curvature (1/m).
-    pub k: f32,
-    /// The direction whose curvature it measures.
-    pub direction: Direction,
-}
 
 /// Rigidities (N m) of stencils along warp, weft and each diagonal that give a plate the fabric's rigidities. Without a
 /// rigidity along the bias the diagonals have none; one that no plate of such stencils can have (below a quarter of

@@ -23,7 +23,6 @@ mod zigzags;
 pub(crate) mod meshes;
 
 use crate::fabric::Fabric;
-use crate::garment::shape::NO_VERTEX;
 use crate::garment::{Garment, Layout, MeshError, Shape, check};
 use fibers::{Direction, Fiber};
 
@@ -129,10 +128,4 @@ fn inverse_masses(shape: &Shape, density: f32) -> Vec<f32> {
     }
     mass.iter_mut().zip(&shape.heavier).for_each(|(m, times)| *m *= times);
     mass.iter().zip(&shape.fixed).map(|(m, fixed)| if *fixed { 0.0 } else { m.recip() }).collect()
-}
-
-/// Area that a face gives to each of its edges is counted by [`fibers::edges`]; a face without a fourth corner is a
-/// triangle.
-pub(crate) fn is_quad(face: &[u32; 4]) -> bool {
-    face[3] != NO_VERTEX
 }

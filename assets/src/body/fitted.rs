@@ -12,23 +12,12 @@ use super::calibrate::{BodyModel, Calibrated};
 use super::landmarks::Landmark;
 use super::proportions::Proportions;
 use super::reading::{En, Reading, Readings, Vocabulary, Wanted};
-use super::{Body, BodyError, Levels, Measures, Sex};
+use super::{Body, BodyError, Fitted, Levels, Measures, Sex};
 use crate::mesh::{Mesh, vertex_normals};
 use crate::skeleton::Joint;
 
 /// Largest error of a given measure that a caller has to accept (m).
 pub const TOLERANCE: f32 = 2e-3;
-
-/// A body built to measure, and what the tape reads on it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Fitted {
-    /// The body, in its rest pose.
-    pub body: Body,
-    /// Every measure of it, those that were not asked for included.
-    pub readings: Readings,
-    /// Steps that the calibration took.
-    pub steps: usize,
-}
 
 /// A sex's model, worked out on first use: some hundred milliseconds.
 pub(super) fn model(sex: Sex) -> &'static BodyModel {
@@ -106,11 +95,6 @@ impl Body {
     /// Where the landmarks of a sex's drawn body lie.
     pub(crate) fn proportions(sex: Sex) -> Proportions {
         Proportions::of(&model(sex).morphs.base)
-    }
-
-    /// What the tape reads on the body of a sex as it is drawn.
-    pub fn drawn_readings(sex: Sex) -> Readings {
-        Readings(model(sex).as_drawn().readings)
     }
 }
 

@@ -11,90 +11,63 @@ use serde::Deserialize;
 
 use super::{Region, Sex};
 
-/// A named place on the surface of the body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[repr(u8)]
-pub enum Landmark {
-    /// Top of the head.
-    Crown,
-    /// Adam's apple, where ANSUR II lays the tape round the neck, square to the neck.
-    Infrathyroid,
-    /// Front of the neck 2 cm below the Adam's apple, where EN 13402 lays it.
-    NeckFront,
-    /// 7th cervical vertebra.
-    Cervicale,
-    /// Notch above the breastbone.
-    Suprasternale,
-    /// Tip of the shoulder blade.
-    Acromion,
-    /// Front fold of the armpit.
-    Axilla,
-    /// Most forward point of the breast.
-    BustPoint,
-    /// Just below the breasts, in front.
-    Underbust,
-    /// Natural waistline, midway between the lowest rib and the hip bone, in front.
-    NaturalWaist,
-    /// Navel: ANSUR II's waist.
-    Omphalion,
-    /// Outside of the hip joint.
-    Trochanterion,
-    /// Greatest protrusion of the buttock.
-    Buttock,
-    /// Lowest point between the legs.
-    Crotch,
-    /// Greatest girth of the thigh, below the crotch, on the outside.
-    Thigh,
-    /// Middle of the kneecap.
-    Midpatella,
-    /// Greatest girth of the calf, behind.
-    Calf,
-    /// Outer ankle bone.
-    Malleolus,
-    /// Greatest girth of the upper arm, on its upper side.
-    Biceps,
-    /// Tip of the elbow.
-    Olecranon,
-    /// Wrist, on its back.
-    Stylion,
-    /// Tip of the middle finger.
-    Dactylion,
+named! {
+    /// A named place on the surface of the body.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    #[repr(u8)]
+    pub enum Landmark {
+        /// Top of the head.
+        Crown,
+        /// Adam's apple, where ANSUR II lays the tape round the neck, square to the neck.
+        Infrathyroid,
+        /// Front of the neck 2 cm below the Adam's apple, where EN 13402 lays it.
+        NeckFront,
+        /// 7th cervical vertebra.
+        Cervicale,
+        /// Notch above the breastbone.
+        Suprasternale,
+        /// Tip of the shoulder blade.
+        Acromion,
+        /// Front fold of the armpit.
+        Axilla,
+        /// Most forward point of the breast.
+        BustPoint,
+        /// Just below the breasts, in front.
+        Underbust,
+        /// Natural waistline, midway between the lowest rib and the hip bone, in front.
+        NaturalWaist,
+        /// Navel: ANSUR II's waist.
+        Omphalion,
+        /// Outside of the hip joint.
+        Trochanterion,
+        /// Greatest protrusion of the buttock.
+        Buttock,
+        /// Lowest point between the legs.
+        Crotch,
+        /// Greatest girth of the thigh, below the crotch, on the outside.
+        Thigh,
+        /// Middle of the kneecap.
+        Midpatella,
+        /// Greatest girth of the calf, behind.
+        Calf,
+        /// Outer ankle bone.
+        Malleolus,
+        /// Greatest girth of the upper arm, on its upper side.
+        Biceps,
+        /// Tip of the elbow.
+        Olecranon,
+        /// Wrist, on its back.
+        Stylion,
+        /// Tip of the middle finger.
+        Dactylion,
+    }
 }
 
 /// Number of landmarks.
 pub const LANDMARKS: usize = 22;
 
 impl Landmark {
-    /// All landmarks, in the order of every `[_; LANDMARKS]` array.
-    pub const ALL: [Self; LANDMARKS] = {
-        use Landmark::*;
-        [
-            Crown,
-            Infrathyroid,
-            NeckFront,
-            Cervicale,
-            Suprasternale,
-            Acromion,
-            Axilla,
-            BustPoint,
-            Underbust,
-            NaturalWaist,
-            Omphalion,
-            Trochanterion,
-            Buttock,
-            Crotch,
-            Thigh,
-            Midpatella,
-            Calf,
-            Malleolus,
-            Biceps,
-            Olecranon,
-            Stylion,
-            Dactylion,
-        ]
-    };
-
     /// The landmark's place in every `[_; LANDMARKS]` array.
     pub const fn index(self) -> usize {
         self as usize

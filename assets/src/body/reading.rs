@@ -3,8 +3,6 @@
 //! The standards and the survey lay the tape at other places (neck, waist) or on another pose (sleeve), which moves a
 //! girth by more than its limit. So a set of wanted measures speaks one language or the other, and cannot mix them.
 
-use super::BodyError;
-
 /// Something that is read off the mesh; the two vocabularies below map onto these.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
@@ -72,90 +70,119 @@ impl Reading {
     }
 }
 
-/// Measures of EN 13402-1 and ISO 8559-1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum En {
-    /// Height without hair and shoes.
-    Stature,
-    /// Height of the 7th cervical vertebra.
-    CervicalHeight,
-    /// Inside leg: from the crotch to the floor.
-    InsideLegHeight,
-    /// Middle of the kneecap to the floor.
-    KneeHeight,
-    /// Round the neck 2 cm below the Adam's apple and over the 7th cervical vertebra.
-    NeckGirth,
-    /// Bust or chest: horizontal, over the bust points, under the armpits.
-    BustGirth,
-    /// Horizontal, just below the breasts.
-    UnderbustGirth,
-    /// At the natural waistline, midway between the lowest rib and the top of the hip bone.
-    WaistGirth,
-    /// At the greatest protrusion of the buttocks.
-    HipGirth,
-    /// Horizontal, greatest girth of one thigh below the crotch.
-    ThighGirth,
-    /// Horizontal, greatest girth of one calf.
-    CalfGirth,
-    /// Square to the relaxed upper arm at its greatest.
-    UpperArmGirth,
-    /// Square to the forearm at the wrist bone.
-    WristGirth,
-    /// Between the tips of the shoulder blades (biacromial).
-    ShoulderBreadth,
-    /// From the acromion over the bent elbow to the wrist bone. The body's arm is straight: what bending adds to it is
-    /// the mean of ANSUR II.
-    ArmLength,
-    /// From the 7th cervical vertebra down the spine to the natural waistline.
-    BackLength,
+/// A vocabulary, its reading and its name of each measure.
+macro_rules! vocabulary {
+    ($(#[$about:meta])* pub enum $kind:ident {
+        $($(#[$of:meta])* $measure:ident: $reading:ident = $name:literal,)*
+    }) => {
+        $(#[$about])*
+        pub enum $kind { $($(#[$of])* $measure,)* }
+
+        impl Read for $kind {
+            #[expect(private_interfaces, reason = "the trait is sealed: nobody outside calls it")]
+            fn reading(self) -> Reading {
+                match self { $(Self::$measure => Reading::$reading),* }
+            }
+        }
+
+        impl Vocabulary for $kind {
+            const ALL: &'static [Self] = &[$(Self::$measure),*];
+
+            fn name(self) -> &'static str {
+                match self { $(Self::$measure => $name),* }
+            }
+        }
+    };
 }
 
-/// Measures of ANSUR II (US Army Natick TR-15/007, 2014), at its own levels.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Ansur {
-    /// `stature`: height of the top of the head.
-    Stature,
-    /// `cervicaleheight`: of the 7th cervical vertebra.
-    CervicaleHeight,
-    /// `waistheightomphalion`: of the navel.
-    WaistHeightOmphalion,
-    /// `crotchheight`: of the lowest point between the legs.
-    CrotchHeight,
-    /// `kneeheightmidpatella`: of the middle of the kneecap.
-    KneeHeightMidpatella,
-    /// `neckcircumference`: at the Adam's apple, square to the neck.
-    NeckCircumference,
-    /// `chestcircumference`: over the bust points.
-    ChestCircumference,
-    /// `waistcircumference`: at the navel.
-    WaistCircumferenceOmphalion,
-    /// `buttockcircumference`: at the greatest protrusion of the buttocks.
-    ButtockCircumference,
-    /// `thighcircumference`: where the thigh meets the buttock.
-    ThighCircumference,
-    /// `calfcircumference`: where the calf is widest.
-    CalfCircumference,
-    /// `wristcircumference`: around the wrist.
-    WristCircumference,
-    /// `biacromialbreadth`: between the tips of the shoulder blades.
-    BiacromialBreadth,
-    /// `chestbreadth`: of the trunk, side to side, at the bust points.
-    ChestBreadth,
-    /// `chestdepth`: of the trunk, back to front, at the bust points.
-    ChestDepth,
-    /// `waistbreadth`: at the navel.
-    WaistBreadthOmphalion,
-    /// `waistdepth`: at the navel.
-    WaistDepthOmphalion,
-    /// `hipbreadth`: of the hips, side to side.
-    HipBreadth,
-    /// `buttockdepth`: back to front, where the buttocks protrude most.
-    ButtockDepth,
-    /// `sleevelengthspinewrist`: from the spine over the shoulder and the bent elbow to the wrist, the arm raised. The
-    /// body's arm is straight: what the survey's pose adds to it is the survey's mean.
-    SleeveLengthSpineWrist,
-    /// `waistbacklength`: from the 7th cervical vertebra down the spine to the navel's level.
-    WaistBackLengthOmphalion,
+vocabulary! {
+    /// Measures of EN 13402-1 and ISO 8559-1.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    pub enum En {
+        /// Height without hair and shoes.
+        Stature: Stature = "stature",
+        /// Height of the 7th cervical vertebra.
+        CervicalHeight: CervicaleHeight = "height of the 7th cervical vertebra",
+        /// Inside leg: from the crotch to the floor.
+        InsideLegHeight: CrotchHeight = "inside leg height",
+        /// Middle of the kneecap to the floor.
+        KneeHeight: KneeHeight = "knee height",
+        /// Round the neck 2 cm below the Adam's apple and over the 7th cervical vertebra.
+        NeckGirth: NeckBaseGirth = "neck girth",
+        /// Bust or chest: horizontal, over the bust points, under the armpits.
+        BustGirth: ChestGirth = "chest girth",
+        /// Horizontal, just below the breasts.
+        UnderbustGirth: UnderbustGirth = "underbust girth",
+        /// At the natural waistline, midway between the lowest rib and the top of the hip bone.
+        WaistGirth: WaistGirth = "waist girth",
+        /// At the greatest protrusion of the buttocks.
+        HipGirth: HipGirth = "hip girth",
+        /// Horizontal, greatest girth of one thigh below the crotch.
+        ThighGirth: ThighGirth = "thigh girth",
+        /// Horizontal, greatest girth of one calf.
+        CalfGirth: CalfGirth = "calf girth",
+        /// Square to the relaxed upper arm at its greatest.
+        UpperArmGirth: UpperArmGirth = "upper arm girth",
+        /// Square to the forearm at the wrist bone.
+        WristGirth: WristGirth = "wrist girth",
+        /// Between the tips of the shoulder blades (biacromial).
+        ShoulderBreadth: ShoulderBreadth = "shoulder breadth",
+        /// From the acromion over the bent elbow to the wrist bone. The body's arm is straight: what bending adds to it is
+        /// the mean of ANSUR II.
+        ArmLength: ArmLength = "arm length",
+        /// From the 7th cervical vertebra down the spine to the natural waistline.
+        BackLength: BackLength = "back length",
+    }
+}
+
+vocabulary! {
+    /// Measures of ANSUR II (US Army Natick TR-15/007, 2014), at its own levels.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    pub enum Ansur {
+        /// `stature`: height of the top of the head.
+        Stature: Stature = "stature",
+        /// `cervicaleheight`: of the 7th cervical vertebra.
+        CervicaleHeight: CervicaleHeight = "cervicale height",
+        /// `waistheightomphalion`: of the navel.
+        WaistHeightOmphalion: OmphalionHeight = "waist height (omphalion)",
+        /// `crotchheight`: of the lowest point between the legs.
+        CrotchHeight: CrotchHeight = "crotch height",
+        /// `kneeheightmidpatella`: of the middle of the kneecap.
+        KneeHeightMidpatella: KneeHeight = "knee height (midpatella)",
+        /// `neckcircumference`: at the Adam's apple, square to the neck.
+        NeckCircumference: NeckGirth = "neck circumference",
+        /// `chestcircumference`: over the bust points.
+        ChestCircumference: ChestGirth = "chest circumference",
+        /// `waistcircumference`: at the navel.
+        WaistCircumferenceOmphalion: OmphalionGirth = "waist circumference (omphalion)",
+        /// `buttockcircumference`: at the greatest protrusion of the buttocks.
+        ButtockCircumference: HipGirth = "buttock circumference",
+        /// `thighcircumference`: where the thigh meets the buttock.
+        ThighCircumference: ThighGirth = "thigh circumference",
+        /// `calfcircumference`: where the calf is widest.
+        CalfCircumference: CalfGirth = "calf circumference",
+        /// `wristcircumference`: around the wrist.
+        WristCircumference: WristGirth = "wrist circumference",
+        /// `biacromialbreadth`: between the tips of the shoulder blades.
+        BiacromialBreadth: ShoulderBreadth = "biacromial breadth",
+        /// `chestbreadth`: of the trunk, side to side, at the bust points.
+        ChestBreadth: ChestBreadth = "chest breadth",
+        /// `chestdepth`: of the trunk, back to front, at the bust points.
+        ChestDepth: ChestDepth = "chest depth",
+        /// `waistbreadth`: at the navel.
+        WaistBreadthOmphalion: OmphalionBreadth = "waist breadth (omphalion)",
+        /// `waistdepth`: at the navel.
+        WaistDepthOmphalion: OmphalionDepth = "waist depth (omphalion)",
+        /// `hipbreadth`: of the hips, side to side.
+        HipBreadth: HipBreadth = "hip breadth",
+        /// `buttockdepth`: back to front, where the buttocks protrude most.
+        ButtockDepth: HipDepth = "buttock depth",
+        /// `sleevelengthspinewrist`: from the spine over the shoulder and the bent elbow to the wrist, the arm raised. The
+        /// body's arm is straight: what the survey's pose adds to it is the survey's mean.
+        SleeveLengthSpineWrist: SleeveLength = "sleeve length (spine to wrist)",
+        /// `waistbacklength`: from the 7th cervical vertebra down the spine to the navel's level.
+        WaistBackLengthOmphalion: WaistBackLength = "waist back length (omphalion)",
+    }
 }
 
 /// A vocabulary of measures. Sealed: [`En`] and [`Ansur`].
@@ -175,67 +202,6 @@ mod sealed {
         fn reading(self) -> super::Reading;
     }
 }
-
-/// Writes a vocabulary's table: measure, reading, name.
-macro_rules! vocabulary {
-    ($kind:ident: $($measure:ident $reading:ident $name:literal),* $(,)?) => {
-        impl Read for $kind {
-            #[expect(private_interfaces, reason = "the trait is sealed: nobody outside calls it")]
-            fn reading(self) -> Reading {
-                match self { $(Self::$measure => Reading::$reading),* }
-            }
-        }
-        impl Vocabulary for $kind {
-            const ALL: &'static [Self] = &[$(Self::$measure),*];
-            fn name(self) -> &'static str {
-                match self { $(Self::$measure => $name),* }
-            }
-        }
-    };
-}
-
-vocabulary!(En:
-    Stature Stature "stature",
-    CervicalHeight CervicaleHeight "height of the 7th cervical vertebra",
-    InsideLegHeight CrotchHeight "inside leg height",
-    KneeHeight KneeHeight "knee height",
-    NeckGirth NeckBaseGirth "neck girth",
-    BustGirth ChestGirth "chest girth",
-    UnderbustGirth UnderbustGirth "underbust girth",
-    WaistGirth WaistGirth "waist girth",
-    HipGirth HipGirth "hip girth",
-    ThighGirth ThighGirth "thigh girth",
-    CalfGirth CalfGirth "calf girth",
-    UpperArmGirth UpperArmGirth "upper arm girth",
-    WristGirth WristGirth "wrist girth",
-    ShoulderBreadth ShoulderBreadth "shoulder breadth",
-    ArmLength ArmLength "arm length",
-    BackLength BackLength "back length",
-);
-
-vocabulary!(Ansur:
-    Stature Stature "stature",
-    CervicaleHeight CervicaleHeight "cervicale height",
-    WaistHeightOmphalion OmphalionHeight "waist height (omphalion)",
-    CrotchHeight CrotchHeight "crotch height",
-    KneeHeightMidpatella KneeHeight "knee height (midpatella)",
-    NeckCircumference NeckGirth "neck circumference",
-    ChestCircumference ChestGirth "chest circumference",
-    WaistCircumferenceOmphalion OmphalionGirth "waist circumference (omphalion)",
-    ButtockCircumference HipGirth "buttock circumference",
-    ThighCircumference ThighGirth "thigh circumference",
-    CalfCircumference CalfGirth "calf circumference",
-    WristCircumference WristGirth "wrist circumference",
-    BiacromialBreadth ShoulderBreadth "biacromial breadth",
-    ChestBreadth ChestBreadth "chest breadth",
-    ChestDepth ChestDepth "chest depth",
-    WaistBreadthOmphalion OmphalionBreadth "waist breadth (omphalion)",
-    WaistDepthOmphalion OmphalionDepth "waist depth (omphalion)",
-    HipBreadth HipBreadth "hip breadth",
-    ButtockDepth HipDepth "buttock depth",
-    SleeveLengthSpineWrist SleeveLength "sleeve length (spine to wrist)",
-    WaistBackLengthOmphalion WaistBackLength "waist back length (omphalion)",
-);
 
 /// Measures that a body shall have, all of one vocabulary; what is not given follows from what is, as it does in people.
 #[derive(Debug, Clone, PartialEq)]
@@ -266,20 +232,6 @@ impl<V: Vocabulary> Wanted<V> {
     /// What has been asked for (m), in the order of asking.
     pub fn given(&self) -> &[(V, f32)] {
         &self.given
-    }
-
-    /// Checks that each measure lies in the range that a body can be built to.
-    ///
-    /// # Errors
-    /// [`BodyError::OutOfRange`] for the first one that does not.
-    pub fn check(&self) -> Result<(), BodyError> {
-        for &(measure, value) in &self.given {
-            let [least, most] = measure.reading().range();
-            if !(least..=most).contains(&value) {
-                return Err(BodyError::OutOfRange { measure: measure.name(), value, least, most });
-            }
-        }
-        Ok(())
     }
 }
 

@@ -7,10 +7,10 @@ use glam::Vec3;
 
 use super::base::BaseBody;
 use super::calibrate::{BodyModel, Calibrated, CalibrationBuffers, ParameterVector, bounds, setting};
-use super::fitted::{Fitted, model};
+use super::fitted::model;
 use super::reading::{READINGS, Readings, Vocabulary};
 use super::slider::{PARAMETERS, SLIDERS};
-use super::{BodyError, Sex};
+use super::{BodyError, Fitted, Sex};
 use crate::skeleton::{JOINTS, Skeleton};
 
 /// Number of a shape's parameters.

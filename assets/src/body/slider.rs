@@ -1,31 +1,33 @@
 //! The sliders by which a body is changed.
 
-/// What can be changed on a body; lengths in metres a unit, the others as a fraction of the base's size.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u8)]
-pub(super) enum Slider {
-    LowerLeg,
-    UpperLeg,
-    LowerTrunk,
-    UpperTrunk,
-    NeckLength,
-    ArmLength,
-    Shoulders,
-    Neck,
-    ChestBreadth,
-    ChestDepth,
-    Underbust,
-    Waist,
-    AbdomenBreadth,
-    AbdomenDepth,
-    HipBreadth,
-    HipDepth,
-    Thigh,
-    Knee,
-    Calf,
-    UpperArm,
-    Forearm,
-    Wrist,
+named! {
+    /// What can be changed on a body; lengths in metres a unit, the others as a fraction of the base's size.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    #[repr(u8)]
+    pub(super) enum Slider {
+        LowerLeg,
+        UpperLeg,
+        LowerTrunk,
+        UpperTrunk,
+        NeckLength,
+        ArmLength,
+        Shoulders,
+        Neck,
+        ChestBreadth,
+        ChestDepth,
+        Underbust,
+        Waist,
+        AbdomenBreadth,
+        AbdomenDepth,
+        HipBreadth,
+        HipDepth,
+        Thigh,
+        Knee,
+        Calf,
+        UpperArm,
+        Forearm,
+        Wrist,
+    }
 }
 
 /// Number of sliders besides the scale of the whole.
@@ -35,34 +37,6 @@ pub(super) const SLIDERS: usize = 22;
 pub(super) const PARAMETERS: usize = SLIDERS + 1;
 
 impl Slider {
-    pub(super) const ALL: [Self; SLIDERS] = {
-        use Slider::*;
-        [
-            LowerLeg,
-            UpperLeg,
-            LowerTrunk,
-            UpperTrunk,
-            NeckLength,
-            ArmLength,
-            Shoulders,
-            Neck,
-            ChestBreadth,
-            ChestDepth,
-            Underbust,
-            Waist,
-            AbdomenBreadth,
-            AbdomenDepth,
-            HipBreadth,
-            HipDepth,
-            Thigh,
-            Knee,
-            Calf,
-            UpperArm,
-            Forearm,
-            Wrist,
-        ]
-    };
-
     pub(super) const fn index(self) -> usize {
         self as usize
     }

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::f32::consts::TAU;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::*;
+use crate::mesh::Mesh;
 use crate::numeric::random::SplitMix64;
 use crate::skeleton::{BONES, Joint, TWISTS, bone_joint, bone_mirror};
 
@@ -166,13 +167,9 @@ fn anybody_like_ansurs_people_is_met() {
 
 #[test]
 fn people_of_the_survey_are_met() {
-    let Some(folder) = std::env::var_os("TOILE_DATA") else {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA is not set: point it at the shared data");
-        eprintln!("skipped: TOILE_DATA is not set");
-        return;
-    };
+    let Some(folder) = crate::recordings::folder() else { return };
     for (sex, file) in [(Sex::Female, "ANSUR_II_FEMALE.csv"), (Sex::Male, "ANSUR_II_MALE.csv")] {
-        let path = std::path::Path::new(&folder).join("anthropometry/ansur2").join(file);
+        let path = folder.join("anthropometry/ansur2").join(file);
         let bytes = std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         // One name has a letter that is not UTF-8; the measures are plain digits.
         let text = String::from_utf8_lossy(&bytes);

@@ -104,9 +104,14 @@ impl fmt::Display for MeshError {
 
 impl std::error::Error for MeshError {}
 
+/// Whether a face has a fourth corner.
+pub(crate) fn is_quad(face: &Face) -> bool {
+    face[3] != NO_VERTEX
+}
+
 /// The corners of a face: three or four.
 pub fn corners(face: &Face) -> &[u32] {
-    if face[3] == NO_VERTEX { &face[..3] } else { face }
+    if is_quad(face) { face } else { &face[..3] }
 }
 
 /// Checks a mesh as a garment.

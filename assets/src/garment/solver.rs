@@ -4,26 +4,17 @@ use serde::Deserialize;
 
 use super::Direction;
 
-/// What keeps the links of a fiber to their length.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Solver {
-    /// Link after link: cheap, for what carries little.
-    GaussSeidel,
-    /// All links of a fiber at once, by the tridiagonal system of their tensions: for what carries weight.
-    SemiImplicit,
-    /// As semi-implicit, without compliance, until no link is longer than it was cut: for waistbands.
-    ZeroStretch,
-}
-
-impl Solver {
-    /// Its name in garment files and reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::GaussSeidel => "gauss-seidel",
-            Self::SemiImplicit => "semi-implicit",
-            Self::ZeroStretch => "zero-stretch",
-        }
+named! {
+    /// What keeps the links of a fiber to their length.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Solver {
+        /// Link after link: cheap, for what carries little.
+        GaussSeidel = "gauss-seidel",
+        /// All links of a fiber at once, by the tridiagonal system of their tensions: for what carries weight.
+        SemiImplicit = "semi-implicit",
+        /// As semi-implicit, without compliance, until no link is longer than it was cut: for waistbands.
+        ZeroStretch = "zero-stretch",
     }
 }
 

@@ -16,25 +16,20 @@ pub trait Sample: Copy {
     fn halfway(self, other: Self) -> Self;
 }
 
-impl Sample for f32 {
-    fn order(&self, other: &Self) -> Ordering {
-        self.total_cmp(other)
-    }
+macro_rules! float_sample {
+    ($($float:ty),+) => {$(
+        impl Sample for $float {
+            fn order(&self, other: &Self) -> Ordering {
+                self.total_cmp(other)
+            }
 
-    fn halfway(self, other: Self) -> Self {
-        0.5 * (self + other)
-    }
+            fn halfway(self, other: Self) -> Self {
+                0.5 * (self + other)
+            }
+        }
+    )+};
 }
-
-impl Sample for f64 {
-    fn order(&self, other: &Self) -> Ordering {
-        self.total_cmp(other)
-    }
-
-    fn halfway(self, other: Self) -> Self {
-        0.5 * (self + other)
-    }
-}
+float_sample!(f32, f64);
 
 impl Sample for u64 {
     fn order(&self, other: &Self) -> Ordering {

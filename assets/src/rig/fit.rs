@@ -3,10 +3,10 @@
 use glam::Vec3;
 
 use super::plan::{CAPSULES, MIDDLE, PAIRS, PLAN, SPHERES, SpherePlace};
-use super::skin::SkinByHeight;
+use super::skin::{SkinByHeight, vertex_areas};
 use super::system::{NormalEquations, SphereGradient, SphereVector, UNKNOWNS};
+use super::union::{RestSpheres, nearest};
 use super::zones::{self, Zone};
-use super::{RestSpheres, nearest, vertex_areas};
 use crate::body::Body;
 
 /// Steps of the fit; it settles within these.

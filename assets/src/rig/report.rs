@@ -4,9 +4,10 @@ use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
 
-use super::skin::SkinByHeight;
+use super::plan::CAPSULES;
+use super::skin::{SkinByHeight, vertex_areas};
+use super::union::{RestSpheres, nearest};
 use super::zones::{self, Zone};
-use super::{CAPSULES, RestSpheres, nearest, vertex_areas};
 use crate::body::Body;
 
 /// Mean distance that the trunk and the thighs are held to (mm).

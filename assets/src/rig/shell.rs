@@ -4,7 +4,8 @@ use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
 
-use super::{CAPSULES, RestSpheres};
+use super::plan::CAPSULES;
+use super::union::RestSpheres;
 
 /// Vertices around a capsule, and rings on it from one pole to the other (even: half of them on each end).
 const AROUND: usize = 32;

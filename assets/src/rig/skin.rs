@@ -85,6 +85,17 @@ fn closest(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     if p.distance_squared(xy) <= p.distance_squared(z) { xy } else { z }
 }
 
+/// A third of the area of the triangles around each vertex (m^2).
+pub(super) fn vertex_areas(body: &Body) -> Vec<f32> {
+    let mut areas = vec![0.0; body.mesh.positions.len()];
+    for t in &body.mesh.triangles {
+        let [a, b, c] = t.map(|v| body.mesh.positions[v as usize]);
+        let share = (b - a).cross(c - a).length() / 6.0;
+        t.iter().for_each(|&v| areas[v as usize] += share);
+    }
+    areas
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,5 +1,6 @@
 //! The collision body against brute force and against its own promises.
 
+use super::union::RestSpheres;
 use super::*;
 use crate::body::{Measures, Sex};
 

@@ -5,63 +5,41 @@ use glam::Vec3;
 use crate::body::{Body, Region};
 use crate::skeleton::Joint;
 
-/// A part of the skin that the fit is judged on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Zone {
-    /// Trunk from midway between waist and underbust to midway between bust points and acromions.
-    Chest,
-    /// Trunk between chest and hips.
-    Waist,
-    /// Trunk from midway between buttocks and waist down.
-    Hips,
-    /// Trunk above the chest, up to the base of the neck; and the arm where it begins.
-    Shoulder,
-    /// Arm from a fifth of its upper length down to the elbow.
-    UpperArm,
-    /// Elbow to wrist.
-    Forearm,
-    /// Leg down to the middle of the kneecap.
-    Thigh,
-    /// From there to the ankle.
-    Shin,
-    /// Base of the neck to the skull.
-    Neck,
-    /// The head above.
-    Head,
-    /// Wrist and beyond.
-    Hand,
-    /// Ankle and below.
-    Foot,
+named! {
+    /// A part of the skin that the fit is judged on, trunk first.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Zone {
+        /// Trunk from midway between waist and underbust to midway between bust points and acromions.
+        Chest = "chest",
+        /// Trunk between chest and hips.
+        Waist = "waist",
+        /// Trunk from midway between buttocks and waist down.
+        Hips = "hips",
+        /// Trunk above the chest, up to the base of the neck; and the arm where it begins.
+        Shoulder = "shoulder",
+        /// Leg down to the middle of the kneecap.
+        Thigh = "thigh",
+        /// From there to the ankle.
+        Shin = "shin",
+        /// Arm from a fifth of its upper length down to the elbow.
+        UpperArm = "upper arm",
+        /// Elbow to wrist.
+        Forearm = "forearm",
+        /// Base of the neck to the skull.
+        Neck = "neck",
+        /// The head above.
+        Head = "head",
+        /// Wrist and beyond.
+        Hand = "hand",
+        /// Ankle and below.
+        Foot = "foot",
+    }
 }
 
 impl Zone {
-    /// All zones, trunk first.
-    pub const ALL: [Self; 12] = {
-        use Zone::*;
-        [Chest, Waist, Hips, Shoulder, Thigh, Shin, UpperArm, Forearm, Neck, Head, Hand, Foot]
-    };
-
     /// Zones that the fit is held to: mean at most [`MEAN_GOAL_MM`](super::MEAN_GOAL_MM), 95th percentile at
     /// most [`P95_GOAL_MM`](super::P95_GOAL_MM).
     pub const HELD: [Self; 4] = [Self::Chest, Self::Waist, Self::Hips, Self::Thigh];
-
-    /// Name of the zone in reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Chest => "chest",
-            Self::Waist => "waist",
-            Self::Hips => "hips",
-            Self::Shoulder => "shoulder",
-            Self::UpperArm => "upper arm",
-            Self::Forearm => "forearm",
-            Self::Thigh => "thigh",
-            Self::Shin => "shin",
-            Self::Neck => "neck",
-            Self::Head => "head",
-            Self::Hand => "hand",
-            Self::Foot => "foot",
-        }
-    }
 
     /// Where a vertex lies.
     pub fn of(body: &Body, vertex: usize) -> Self {

@@ -134,7 +134,7 @@ impl SceneColliders {
 
 /// The motion of the schema's name.
 pub(super) fn motion(choice: usize) -> Motion {
-    [Motion::Walk, Motion::Fast, Motion::Settled][choice.min(2)]
+    Motion::ALL[choice.min(2)]
 }
 
 fn sphere_track(

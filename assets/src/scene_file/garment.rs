@@ -3,10 +3,10 @@
 use glam::{EulerRot, Quat, Vec3};
 
 use super::error::SceneError;
+use super::pins::{PinSource, SceneLoader};
 use super::source::SceneSource;
 use super::table::SceneTable;
-use super::track::Track;
-use super::{PinSource, SceneLoader, primitive, weld};
+use super::{primitive, weld};
 use crate::fabric::Fabric;
 use crate::garment::check::check;
 use crate::garment::shape::{Face, NO_VERTEX};
@@ -15,7 +15,6 @@ use crate::import::gltf::parse_gltf;
 use crate::import::obj::FREE;
 use crate::import::plain::{PlainMesh, parse_obj};
 use crate::mesh::SkinWeights;
-use crate::skeleton::BONES;
 use crate::toml_keys;
 
 /// A garment's extent may lie between these (m): what is smaller or larger was given in another unit.
@@ -310,28 +309,4 @@ fn weigh(table: &SceneTable<'_>, mesh: &UserMesh, fabric: &Fabric, shape: &mut S
         shape.heavier = times.iter().map(|t| *t as f32).collect();
     }
     Ok(mass.iter().zip(&times).map(|(m, t)| m * t).sum())
-}
-
-/// Most different pin tracks of a scene: one bone each, and one for what stands.
-pub(super) const MAX_PIN_TRACKS: usize = BONES - 1;
-
-/// Reads a track of rigid motion.
-pub(super) fn rigid_track(
-    pin: &SceneTable<'_>,
-    name: &str,
-    source: SceneSource<'_>,
-    pass: bool,
-) -> Result<Track, SceneError> {
-    let wrong = |message: String| pin.wrong("track", format!("{name}: {message}"));
-    let text = source.text(name).map_err(|e| wrong(format!("{e}; give the path of a CSV file")))?;
-    let fits = |n: usize| match n {
-        7 => Ok(()),
-        _ => Err(format!("it has {} columns; give time, x, y, z, qx, qy, qz, qw", n + 1)),
-    };
-    let track = Track::parse(&text, fits, pass).map_err(wrong)?;
-    let no_turn = |row: &[f64]| !pass && row[3..].iter().map(|q| q * q).sum::<f64>() < 1e-6;
-    match track.find(no_turn) {
-        Some(row) => Err(wrong(format!("row {row} has a quaternion of zeros; no turn is 0, 0, 0, 1"))),
-        None => Ok(track),
-    }
 }

@@ -10,6 +10,7 @@ mod colliders;
 mod error;
 pub mod examples;
 mod garment;
+mod pins;
 mod primitive;
 pub mod schema;
 mod source;
@@ -21,18 +22,19 @@ mod weld;
 
 use std::path::Path;
 
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 use toml::de::DeTable;
 
 pub use colliders::{SceneColliders, ScenePlane};
 pub use error::SceneError;
 pub use garment::{SceneGarment, UserMesh};
+pub use pins::PinMotion;
+use pins::SceneLoader;
 pub use source::SceneSource;
 pub use track::Track;
 
 use crate::file::{self, FileKind};
 use crate::limits::{MAX_SCENE_GARMENTS, MAX_SCENE_VERTICES};
-use crate::scene::skirt::{self, Motion};
 use error::SceneDocument;
 use table::SceneTable;
 
@@ -62,34 +64,6 @@ pub struct SceneSettings {
     pub lanes: Option<u32>,
 }
 
-/// How a group of pinned vertices moves.
-#[derive(Debug, Clone, PartialEq)]
-pub enum PinMotion {
-    /// By a track of positions and quaternions.
-    Track(Track),
-    /// As the root of the benchmark's body.
-    Body(Motion),
-}
-
-impl PinMotion {
-    /// The rigid motion at a time (s): what starts at p is held at its image of p.
-    pub fn at(&self, time: f64) -> Affine3A {
-        match self {
-            Self::Track(track) => track.rigid(time).as_affine3a(),
-            Self::Body(motion) => skirt::root(*motion, time),
-        }
-    }
-}
-
-/// What a pin table says about its motion.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum PinSource<'a> {
-    /// The name of a track.
-    Track(&'a str),
-    /// A choice among the schema's motions.
-    Motion(usize),
-}
-
 /// A whole scene, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneFile {
@@ -113,36 +87,6 @@ pub struct SceneFile {
     pub colliders: SceneColliders,
     /// Rigid motions of pin groups: group g of a pinned vertex follows `pins[g - 1]`, group 0 stands.
     pub pins: Vec<PinMotion>,
-}
-
-/// What is shared while the parts of a scene are read.
-pub(crate) struct SceneLoader<'a> {
-    source: SceneSource<'a>,
-    pass: bool,
-    pins: Vec<(String, PinMotion)>,
-}
-
-impl SceneLoader<'_> {
-    /// The group of the pins that follow a motion; the same one is one group.
-    fn pin_group(&mut self, pin: &SceneTable<'_>, source: PinSource<'_>) -> Result<u8, SceneError> {
-        let name = match source {
-            PinSource::Track(name) => name.to_owned(),
-            PinSource::Motion(choice) => format!("motion {}", schema::MOTIONS[choice]),
-        };
-        if let Some(known) = self.pins.iter().position(|(n, _)| *n == name) {
-            return Ok(known as u8 + 1);
-        }
-        if self.pins.len() == garment::MAX_PIN_TRACKS {
-            let problem = format!("is the {}th; give pins that move alike the same file", self.pins.len() + 1);
-            return Err(pin.wrong("track", problem));
-        }
-        let motion = match source {
-            PinSource::Track(name) => PinMotion::Track(garment::rigid_track(pin, name, self.source, self.pass)?),
-            PinSource::Motion(choice) => PinMotion::Body(colliders::motion(choice)),
-        };
-        self.pins.push((name, motion));
-        Ok(self.pins.len() as u8)
-    }
 }
 
 /// The scene file itself: vertices picked one by one make the longest.

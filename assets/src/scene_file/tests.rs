@@ -5,6 +5,7 @@ use glam::{Quat, Vec3};
 use super::*;
 use crate::garment::Solver;
 use crate::limits::MAX_SPHERES;
+use crate::scene::skirt::{self, Motion};
 
 /// A scene in which every key of the schema stands once.
 const EVERY_KEY: &str = r#"name = "all"

@@ -5,7 +5,7 @@
 //! keep the volume. Linear blending over a stretch that twists by t loses (1 - cos t)/3 of the volume, so a stretch may
 //! twist by 18 degrees where 98 % are to be kept.
 
-use super::{JOINTS, Joint};
+use super::joint::{JOINTS, Joint};
 
 /// A limb segment that is split for twist.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

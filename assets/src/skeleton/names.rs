@@ -1,6 +1,6 @@
 //! Names of the joints in other skeletons: H-Anim (ISO/IEC 19774), version 2 and version 1, and VRM's humanoid bones.
 
-use super::{JOINTS, Joint};
+use super::joint::{JOINTS, Joint};
 
 /// A joint's own name in each convention.
 struct Names {
@@ -80,8 +80,6 @@ impl Joint {
 
 #[cfg(test)]
 mod tests {
-    use std::path::PathBuf;
-
     use super::*;
 
     #[test]
@@ -102,11 +100,7 @@ mod tests {
 
     /// The rows of the joint map: H-Anim 2, H-Anim 1, VRM. Not there: nothing, but a failure in continuous integration.
     fn joint_map() -> Option<Vec<[String; 3]>> {
-        let Some(folder) = std::env::var_os("TOILE_DATA").map(PathBuf::from) else {
-            assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA must name the folder of shared data");
-            eprintln!("skipped: TOILE_DATA does not name the folder of shared data");
-            return None;
-        };
+        let folder = crate::recordings::folder()?;
         let text = std::fs::read_to_string(folder.join("protocols/joint_map.csv")).expect("the joint map is there");
         let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
         let head = lines.next().expect("a head line");

@@ -77,12 +77,7 @@ pub struct WornArgs {
     #[arg(long, value_name = "S")]
     pub size: Option<String>,
     /// Tested settings of the cloth: draft, shop or fine
-    #[arg(
-        long,
-        value_name = "Q",
-        value_parser = one_of(Quality::ALL, Quality::name),
-        default_value = Quality::default().name()
-    )]
+    #[arg(long, value_name = "Q", value_parser = quality(), default_value = Quality::default().name())]
     pub quality: Quality,
 }
 
@@ -107,6 +102,11 @@ where
     PossibleValuesParser::new(all.map(name)).try_map(value)
 }
 
+/// A parser of the cloth's tested settings.
+pub fn quality() -> impl TypedValueParser<Value = Quality> {
+    one_of(Quality::ALL, Quality::name)
+}
+
 /// A parser of numbers of things.
 pub fn count(range: impl RangeBounds<u64>) -> impl TypedValueParser<Value = usize> {
     RangedU64ValueParser::<u64>::new().range(range).try_map(usize::try_from)
@@ -116,4 +116,15 @@ pub fn count(range: impl RangeBounds<u64>) -> impl TypedValueParser<Value = usiz
 pub fn lanes() -> impl TypedValueParser<Value = Width> {
     let width = |text: String| text.parse().ok().and_then(Width::of).ok_or("there is no such width");
     PossibleValuesParser::new(["1", "4", "8", "16"]).try_map(width)
+}
+
+/// What a line of words says to a command that takes these arguments.
+#[cfg(test)]
+pub(crate) fn parsed<A: clap::Args>(line: &str) -> Result<A, clap::Error> {
+    #[derive(clap::Parser)]
+    struct Line<A: clap::Args> {
+        #[command(flatten)]
+        args: A,
+    }
+    Ok(<Line<A> as clap::Parser>::try_parse_from(line.split_whitespace())?.args)
 }

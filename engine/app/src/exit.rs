@@ -6,7 +6,6 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use toile_fitting::FittingError;
-use toile_kiosk::KioskError;
 
 use crate::output::OutputError;
 
@@ -117,20 +116,10 @@ impl From<OutputError> for AppError {
 impl From<FittingError> for AppError {
     fn from(error: FittingError) -> Self {
         match error {
+            FittingError::Usage(text) => Self::Usage(text),
             FittingError::Input(text) => Self::Input(text),
             FittingError::Device(text) => Self::Device(text),
             FittingError::Internal(text) => Self::Internal(text),
-        }
-    }
-}
-
-impl From<KioskError> for AppError {
-    fn from(error: KioskError) -> Self {
-        match error {
-            KioskError::Usage(text) => Self::Usage(text),
-            KioskError::Input(text) => Self::Input(text),
-            KioskError::Device(text) => Self::Device(text),
-            KioskError::Internal(text) => Self::Internal(text),
         }
     }
 }

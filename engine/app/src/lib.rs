@@ -18,7 +18,6 @@ pub mod renderer;
 pub mod terminal;
 
 pub mod arguments;
-pub mod backend;
 pub mod pictures;
 pub mod summary;
 pub mod video;

@@ -181,11 +181,6 @@ impl OutputFolder {
         self
     }
 
-    /// Path of the output folder.
-    pub fn path(&self) -> &Path {
-        &self.folder
-    }
-
     /// Refuses these names, before any work is begun, where they could not be written.
     ///
     /// # Errors

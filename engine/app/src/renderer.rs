@@ -16,26 +16,15 @@ use crate::exit::AppError;
 #[cfg(feature = "view")]
 mod gpu;
 
-/// Choice of the renderer on the command line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum RendererChoice {
-    /// The ray tracer, on every core.
-    #[default]
-    Cpu,
-    /// Rasterised on a GPU, or by a driver that draws on the processor.
-    Gpu,
-}
-
-impl RendererChoice {
-    /// Every choice, the default first.
-    pub const ALL: [Self; 2] = [Self::Cpu, Self::Gpu];
-
-    /// Its name on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Cpu => "cpu",
-            Self::Gpu => "gpu",
-        }
+toile_assets::named! {
+    /// Choice of the renderer on the command line.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum RendererChoice {
+        /// The ray tracer, on every core.
+        #[default]
+        Cpu = "cpu",
+        /// Rasterised on a GPU, or by a driver that draws on the processor.
+        Gpu = "gpu",
     }
 }
 

@@ -7,21 +7,18 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
+use toile_fitting::scene::StepTimes;
 
 use crate::machine::Machine;
 
 mod body;
 mod colliders;
-mod gestures;
 pub mod measures;
 mod run;
-mod skinning;
 
 pub use body::{BodyReport, Influences, JointFound, Named, SurfaceReport};
 pub use colliders::Followed;
-pub use gestures::{GestureRow, GesturesReport, HandRow, OtherRow};
 pub use run::{KineticEnergy, RunGarment, RunPenetration, RunReport};
-pub use skinning::SkinningReport;
 
 /// What every object carries, around what one command has to say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -146,19 +143,6 @@ pub struct Recommendation {
     pub note: Option<String>,
 }
 
-/// The distribution of a step's time (us).
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct StepMicros {
-    /// Median (us).
-    pub p50: f64,
-    /// 99th percentile (us).
-    pub p99: f64,
-    /// 99.9th percentile (us).
-    pub p999: f64,
-    /// Longest step (us).
-    pub max: f64,
-}
-
 /// How far edges are stretched, as a part of their rest length (0.01 is 1 %).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct StrainReport {
@@ -195,7 +179,7 @@ pub struct PhysicsReport {
     /// Steps that were taken.
     pub steps: u64,
     /// Time a step took.
-    pub step_us: StepMicros,
+    pub step_us: StepTimes,
     /// How far edges were stretched.
     pub strain: StrainReport,
     /// How deep cloth was inside the body.

@@ -5,7 +5,7 @@ mod samples;
 
 use std::fs::{self, File};
 
-use common::Scratch;
+use common::{Scratch, refusal};
 use samples::embedded_session;
 
 /// Runs a command that must be refused with exit code `code`: one line on stderr with all `words` in it, nothing on
@@ -18,12 +18,7 @@ fn refused_with(code: i32, scratch: &Scratch, args: &[&str], words: &[&str]) -> 
         names
     };
     let before = listing(scratch);
-    let output = scratch.toile(args);
-    let message = String::from_utf8(output.stderr).expect("stderr is UTF-8");
-    assert_eq!(output.status.code(), Some(code), "{args:?}: {message}");
-    assert!(output.stdout.is_empty(), "{args:?} prints data");
-    assert_eq!(message.lines().count(), 1, "{args:?} says not one line: {message}");
-    assert!(message.starts_with("toile: ") && message.ends_with('\n'), "{args:?}: {message}");
+    let message = refusal(&scratch.toile(args), code);
     for word in words {
         assert!(message.contains(word), "{args:?}: `{word}` is not in: {message}");
     }

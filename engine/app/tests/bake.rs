@@ -3,21 +3,9 @@
 mod common;
 
 use std::fs;
-use std::process::Output;
 
-use common::Scratch;
+use common::{Scratch, sentence, stdout};
 use serde_json::Value;
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).expect("stdout is UTF-8")
-}
-
-/// The one sentence on stderr.
-fn sentence(output: &Output) -> String {
-    let text = String::from_utf8(output.stderr.clone()).expect("stderr is UTF-8");
-    assert!(text.lines().count() == 1 && text.starts_with("toile: "), "not one line: {text}");
-    text
-}
 
 #[test]
 fn bake_reports_what_a_garment_becomes() {

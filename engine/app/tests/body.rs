@@ -1,6 +1,8 @@
 //! `toile body`, and `toile try-on --body`, as a script meets them.
 
 mod common;
+#[path = "../../../tests/src/recordings.rs"]
+mod recordings;
 
 use std::fs;
 use std::path::PathBuf;
@@ -9,12 +11,7 @@ use common::Scratch;
 
 /// The MakeHuman folder of the shared data; nothing, with a word, where it is not there and need not be.
 fn makehuman() -> Option<PathBuf> {
-    let Some(folder) = std::env::var_os("TOILE_DATA") else {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA is not set: point it at the shared data");
-        eprintln!("skipped: TOILE_DATA is not set");
-        return None;
-    };
-    Some(PathBuf::from(folder).join("body/makehuman-hm08"))
+    Some(recordings::folder()?.join("body/makehuman-hm08"))
 }
 
 #[test]

@@ -1,9 +1,11 @@
 //! The command line as a user or a script meets it: the built program, its streams and its exit codes.
 
+mod common;
+
 use std::fs;
-use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 
+use common::{Scratch, sentence, stdout};
 use serde_json::Value;
 
 fn toile(args: &[&str]) -> Output {
@@ -14,25 +16,6 @@ fn program() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
     command.stdin(Stdio::null()).env_remove("RUST_BACKTRACE").current_dir(std::env::temp_dir());
     command
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).expect("stdout is UTF-8")
-}
-
-/// The one sentence on stderr; fails if there is more, or less.
-fn sentence(output: &Output) -> String {
-    let text = String::from_utf8(output.stderr.clone()).expect("stderr is UTF-8");
-    assert_eq!(text.lines().count(), 1, "not one line: {text}");
-    assert!(text.starts_with("toile: ") && text.ends_with('\n'), "{text}");
-    text.trim_end().to_owned()
-}
-
-fn scratch(name: &str) -> PathBuf {
-    let path = std::env::temp_dir().join(format!("toile-cli-{}-{name}", std::process::id()));
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).expect("the temporary folder can be written");
-    path
 }
 
 #[test]
@@ -79,8 +62,9 @@ fn a_line_not_understood_exits_2_with_one_sentence() {
 
 #[test]
 fn doctor_json_is_one_object_with_its_keys() {
-    let folder = scratch("doctor");
-    let output = program().current_dir(&folder).args(["doctor", "--json"]).output().unwrap();
+    let scratch = Scratch::new("cli-doctor");
+    let folder = scratch.path();
+    let output = program().current_dir(folder).args(["doctor", "--json"]).output().unwrap();
     assert_eq!(output.status.code(), Some(0));
     assert!(output.stderr.is_empty());
     let json: Value = serde_json::from_str(&stdout(&output)).expect("stdout is exactly one JSON object");
@@ -95,19 +79,18 @@ fn doctor_json_is_one_object_with_its_keys() {
         let check = checks.iter().find(|c| c["name"] == name).unwrap_or_else(|| panic!("{name} was not looked at"));
         assert_eq!(check["status"] == "missing", check["cure"].is_string(), "{check}");
     }
-    assert_eq!(fs::read_dir(&folder).unwrap().count(), 0, "doctor leaves no trace");
-    fs::remove_dir_all(folder).unwrap();
+    assert_eq!(fs::read_dir(folder).unwrap().count(), 0, "doctor leaves no trace");
 }
 
 #[test]
 fn doctor_finds_a_folder_that_cannot_be_written() {
-    let folder = scratch("doctor-file");
+    let scratch = Scratch::new("cli-doctor-file");
+    let folder = scratch.path();
     fs::write(folder.join("file"), b"x").unwrap();
-    let output = program().current_dir(&folder).args(["doctor", "--out", "file/out", "--json"]).output().unwrap();
+    let output = program().current_dir(folder).args(["doctor", "--out", "file/out", "--json"]).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "what is missing is a finding, not an error");
     let json: Value = serde_json::from_str(&stdout(&output)).unwrap();
     assert_eq!(json["ready"], false);
-    fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
@@ -209,31 +192,31 @@ fn a_reader_that_leaves_is_no_error() {
 
 #[test]
 fn an_output_folder_that_cannot_be_written_exits_4_and_leaves_nothing() {
-    let folder = scratch("unwritable");
+    let scratch = Scratch::new("cli-unwritable");
+    let folder = scratch.path();
     // Below a regular file nobody can write, root included.
     fs::write(folder.join("file"), b"kept").unwrap();
     for line in [&["try-on", "--out", "file/out"][..], &["--json", "--out", "file"][..]] {
-        let output = program().current_dir(&folder).args(line).output().unwrap();
+        let output = program().current_dir(folder).args(line).output().unwrap();
         assert_eq!(output.status.code(), Some(4), "{line:?}");
         assert!(output.stdout.is_empty());
         let message = sentence(&output);
         assert!(message.contains("file") && message.contains("--out"), "{message}");
     }
     assert_eq!(fs::read(folder.join("file")).unwrap(), b"kept");
-    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
-    fs::remove_dir_all(folder).unwrap();
+    assert_eq!(fs::read_dir(folder).unwrap().count(), 1);
 }
 
 #[test]
 fn a_session_that_cannot_be_used_leaves_no_folder() {
-    let folder = scratch("no-session");
+    let scratch = Scratch::new("cli-no-session");
+    let folder = scratch.path();
     fs::write(folder.join("empty.json"), b"").unwrap();
     for session in ["absent.mcap", "empty.json"] {
-        let output = program().current_dir(&folder).args(["--session", session, "--out", "made/out"]).output().unwrap();
+        let output = program().current_dir(folder).args(["--session", session, "--out", "made/out"]).output().unwrap();
         assert_eq!(output.status.code(), Some(4), "{session}");
         assert!(output.stdout.is_empty(), "{session}");
         sentence(&output);
         assert!(!folder.join("made").exists(), "{session}");
     }
-    fs::remove_dir_all(folder).unwrap();
 }

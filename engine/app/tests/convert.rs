@@ -1,8 +1,8 @@
 //! `toile convert`: what is kept of a recording, and that nothing that shows a person is kept unasked.
 
 mod common;
-
-use std::path::Path;
+#[path = "../../../tests/src/recordings.rs"]
+mod recordings;
 
 use common::Scratch;
 use serde_json::Value;
@@ -89,12 +89,7 @@ fn joints_are_fitted_to_depth_alone_where_that_is_asked_for_and_dress_a_shopper(
 
 #[test]
 fn recordings_of_every_kind_become_sessions() {
-    let Some(data) = std::env::var_os("TOILE_DATA") else {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA must name the recordings where CI=true");
-        eprintln!("skipped: TOILE_DATA does not name the folder of recordings");
-        return;
-    };
-    let data = Path::new(&data).canonicalize().expect("TOILE_DATA names no folder");
+    let Some(data) = recordings::folder() else { return };
     let scratch = Scratch::new("convert-shared");
     for (file, more) in [
         ("skeleton/kinectron-kinect2/recorded_skeleton.json", &[][..]),

@@ -1,6 +1,8 @@
 //! One answer: the same recording gives the same measures, the same size and the same verdicts by whichever door it comes in.
 
 mod common;
+#[path = "../../../tests/src/recordings.rs"]
+mod recordings;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -96,11 +98,8 @@ fn the_embedded_session_has_one_answer() {
 
 #[test]
 fn a_recording_of_joints_alone_has_one_answer() {
-    let Some(data) = std::env::var_os("TOILE_DATA") else {
-        assert!(std::env::var_os("CI").is_none(), "CI needs TOILE_DATA");
-        return;
-    };
-    let folder = PathBuf::from(data).join("skeleton/labanotation-kinect2");
+    let Some(data) = recordings::folder() else { return };
+    let folder = data.join("skeleton/labanotation-kinect2");
     let mut recordings: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     recordings.sort();
     let csv = recordings.iter().find(|path| path.extension().is_some_and(|e| e == "csv")).unwrap();

@@ -5,15 +5,11 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use common::Scratch;
+use common::{Scratch, refusal};
 
 /// A command that must end with exit code 4 and one sentence with these words.
 fn refused(scratch: &Scratch, args: &[&str], words: &[&str]) {
-    let output = scratch.toile(args);
-    let text = String::from_utf8(output.stderr).expect("stderr is UTF-8");
-    assert_eq!(output.status.code(), Some(4), "{args:?}: {text}");
-    assert!(output.stdout.is_empty(), "{args:?}");
-    assert_eq!(text.lines().count(), 1, "{args:?}: {text}");
+    let text = refusal(&scratch.toile(args), 4);
     for word in words.iter().chain(&["not overwritten", "; name another"]) {
         assert!(text.contains(word), "{args:?}: `{word}` is not in: {text}");
     }

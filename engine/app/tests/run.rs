@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use common::Scratch;
+use common::{Scratch, object, refusal};
 use serde_json::Value;
 use toile_assets::scene_file::{SceneFile, examples};
 
@@ -13,20 +13,12 @@ use toile_assets::scene_file::{SceneFile, examples};
 const STEPS: &str = "60";
 
 fn json(scratch: &Scratch, args: &[&str]) -> Value {
-    let output = scratch.toile(args);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).expect("stdout is exactly one JSON object")
+    object(&scratch.toile(args))
 }
 
 /// The sentence of a refusal.
 fn refused(scratch: &Scratch, code: i32, args: &[&str]) -> String {
-    let output = scratch.toile(args);
-    let message = String::from_utf8(output.stderr).expect("stderr is UTF-8");
-    assert_eq!(output.status.code(), Some(code), "{args:?}: {message}");
-    assert!(output.stdout.is_empty(), "{args:?}");
-    assert_eq!(message.lines().count(), 1, "{message}");
-    message
+    refusal(&scratch.toile(args), code)
 }
 
 /// The bits of a dumped CSV file.

@@ -5,18 +5,10 @@ mod common;
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::Path;
-use std::process::Output;
 use std::thread;
 
-use common::Scratch;
+use common::{Scratch, object};
 use serde_json::Value;
-
-fn json(output: &Output) -> Value {
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{message}");
-    assert!(message.is_empty(), "with --json nothing is said: {message}");
-    serde_json::from_slice(&output.stdout).expect("stdout is exactly one JSON object")
-}
 
 /// Every key that the contract names for `try-on`.
 const KEYS: [&str; 24] = [
@@ -69,7 +61,7 @@ fn two_runs_give_one_report_and_the_same_bits() {
     let runs = thread::scope(|scope| {
         let run = |out| {
             let scratch = &scratch;
-            scope.spawn(move || json(&scratch.toile(&["try-on", "--no-pictures", "--json", "--out", out])))
+            scope.spawn(move || object(&scratch.toile(&["try-on", "--no-pictures", "--json", "--out", out])))
         };
         [run("first"), run("second")].map(|r| r.join().expect("a run that ends"))
     });
@@ -108,7 +100,7 @@ fn decode(path: &Path) -> ([u32; 2], u32, usize) {
 fn a_run_with_pictures_leaves_them_and_the_report() {
     let scratch = Scratch::new("pictures");
     let output = scratch.toile(&["try-on", "--json", "--out", "out"]);
-    let report = json(&output);
+    let report = object(&output);
     is_whole(&report);
     let out = scratch.path().join("out");
     assert_eq!(fs::read(out.join("report.json")).unwrap(), output.stdout, "the report is what was printed");

@@ -6,7 +6,6 @@
 
 #![cfg(all(feature = "kiosk", target_os = "linux"))]
 
-#[expect(dead_code, reason = "the program is started on a display here")]
 mod common;
 mod xvfb;
 

@@ -31,3 +31,7 @@ pub mod frame_loop;
 #[cfg(test)]
 #[path = "workers/tests.rs"]
 mod workers_tests;
+
+#[cfg(test)]
+#[path = "../../../tests/src/recordings.rs"]
+mod recordings;

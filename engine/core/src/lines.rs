@@ -1,8 +1,5 @@
 //! Debug lines, such as fibers and contacts. Filled outside of the frame, from its snapshot, into memory allocated at load.
 
-use std::fmt;
-use std::str::FromStr;
-
 use glam::{Vec3, Vec4Swizzles};
 use toile_assets::garment::layout::Layout;
 use toile_assets::garment::{Garment, Solver};
@@ -39,19 +36,21 @@ pub struct Line {
     pub colour: Vec3,
 }
 
-/// Kinds of lines.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Kind {
-    /// What holds the cloth together, coloured by what solves it.
-    Fibers,
-    /// Spheres and capsules of the body.
-    Colliders,
-    /// Where cloth touches the body, along the way out of it.
-    Contacts,
-    /// What holds each particle to where the garment hangs, red where it is taut.
-    Tethers,
-    /// How fast each particle moves.
-    Velocity,
+toile_assets::named! {
+    /// Kinds of lines.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Kind {
+        /// What holds the cloth together, coloured by what solves it.
+        Fibers = "fibers",
+        /// Spheres and capsules of the body.
+        Colliders = "colliders",
+        /// Where cloth touches the body, along the way out of it.
+        Contacts = "contacts",
+        /// What holds each particle to where the garment hangs, red where it is taut.
+        Tethers = "tethers",
+        /// How fast each particle moves.
+        Velocity = "velocity",
+    }
 }
 
 /// Colours, linear RGB, told apart by colour-blind eyes too (Okabe and Ito 2008, "Color universal design").
@@ -61,38 +60,6 @@ const GREEN: Vec3 = Vec3::new(0.0, 0.342, 0.171);
 const YELLOW: Vec3 = Vec3::new(0.871, 0.776, 0.054);
 const BLUE: Vec3 = Vec3::new(0.0, 0.168, 0.445);
 const RED: Vec3 = Vec3::new(0.665, 0.112, 0.0);
-
-impl Kind {
-    /// Every kind, in the order of help.
-    pub const ALL: [Self; 5] = [Self::Fibers, Self::Colliders, Self::Contacts, Self::Tethers, Self::Velocity];
-
-    /// Its name on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Fibers => "fibers",
-            Self::Colliders => "colliders",
-            Self::Contacts => "contacts",
-            Self::Tethers => "tethers",
-            Self::Velocity => "velocity",
-        }
-    }
-}
-
-impl fmt::Display for Kind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Kind {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let names = Self::ALL.map(Self::name).join(", ");
-        let of = Self::ALL.into_iter().find(|k| k.name() == text);
-        of.ok_or_else(|| format!("`{text}` cannot be drawn as lines; choose one of {names}"))
-    }
-}
 
 /// Lines, within a fixed capacity.
 #[derive(Debug, Clone, PartialEq)]
@@ -258,14 +225,6 @@ mod tests {
         assert_eq!((lines.as_slice().len(), lines.left_out()), (2, 3));
         lines.clear();
         assert_eq!((lines.as_slice().len(), lines.left_out()), (0, 0));
-    }
-
-    #[test]
-    fn every_kind_is_found_by_its_name() {
-        for kind in Kind::ALL {
-            assert_eq!(kind.name().parse(), Ok(kind));
-        }
-        assert!("bones".parse::<Kind>().unwrap_err().contains("colliders"));
     }
 
     #[test]

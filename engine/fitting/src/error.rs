@@ -1,14 +1,17 @@
-//! Why a fitting cannot go on.
+//! Why a fitting, or a kiosk, cannot go on.
 
 use std::fmt::Display;
 
-/// What stops a fitting. Each text is one sentence: what, where, and the cure.
+/// What stops a fitting or a kiosk. Each text is one sentence: what, where, and the cure.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FittingError {
-    /// A session, a garment, a size or a file that cannot be used.
+    /// Something that this build does not have was asked for.
+    #[error("{0}")]
+    Usage(String),
+    /// A session, a garment, a size, a configuration or a file that cannot be used.
     #[error("{0}")]
     Input(String),
-    /// A device, an address or a thread that the system does not give.
+    /// A device, a display, an address, a lock or a thread that the system does not give.
     #[error("{0}")]
     Device(String),
     /// A fault of Toile's own.

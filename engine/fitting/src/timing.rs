@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use toile_assets::numeric::statistics::median_of;
+use toile_engine::workers::WorkerPool;
 
 /// Runs before the first that counts: caches, branch predictors and the clock of the core settle in them.
 const WARM_UP: usize = 3;
@@ -26,6 +27,20 @@ pub fn median_us(mut job: impl FnMut()) -> f64 {
         runs.push(start.elapsed());
     }
     median_of(runs.iter().map(Duration::as_secs_f64)).unwrap_or(0.0) * 1e6
+}
+
+/// What a frame does between waking the cloth's helper and the cloth's step, posing and skinning the body, takes at
+/// least so long; the helper is awake by then.
+const BEFORE_CLOTH: Duration = Duration::from_micros(80);
+
+/// Wakes the helper of two workers, and waits as long as the frame's other work would.
+pub fn wake(pool: &mut WorkerPool) {
+    if pool.wake() {
+        let woken = Instant::now();
+        while woken.elapsed() < BEFORE_CLOTH {
+            std::hint::spin_loop();
+        }
+    }
 }
 
 /// A stopwatch for work that is too rare to be repeated: on Linux it counts the time that its thread has a core, so that

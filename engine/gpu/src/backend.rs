@@ -5,8 +5,6 @@
 //! frame late drives `cloth::Offload` itself. Whatever goes wrong with the device, the processor goes on from the last places, and
 //! [`ClothStepper::fallback`] says why.
 
-use std::fmt;
-use std::str::FromStr;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
@@ -19,44 +17,17 @@ use crate::Adapter;
 use crate::cloth_batch::ClothBatch;
 use crate::graphics::{DeviceGarments, Graphics, StageTimes, StepWork};
 
-/// Where garments are stepped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Backend {
-    /// The processor (the default).
-    #[default]
-    Cpu,
-    /// A graphics device, as long as there is one.
-    Gpu,
-    /// Whichever is faster with these garments, measured when they are first stepped.
-    Auto,
-}
-
-impl Backend {
-    /// Every backend, the default first.
-    pub const ALL: [Self; 3] = [Self::Cpu, Self::Gpu, Self::Auto];
-
-    /// Its name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Cpu => "cpu",
-            Self::Gpu => "gpu",
-            Self::Auto => "auto",
-        }
-    }
-}
-
-impl fmt::Display for Backend {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Backend {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let of = Self::ALL.into_iter().find(|b| b.name() == text);
-        of.ok_or_else(|| format!("`{text}` steps nothing; choose cpu, gpu or auto"))
+toile_assets::named! {
+    /// Where garments are stepped.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum Backend {
+        /// The processor (the default).
+        #[default]
+        Cpu = "cpu",
+        /// A graphics device, as long as there is one.
+        Gpu = "gpu",
+        /// Whichever is faster with these garments, measured when they are first stepped.
+        Auto = "auto",
     }
 }
 
@@ -319,14 +290,6 @@ fn on_device(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_backend_is_what_its_name_says() {
-        for backend in Backend::ALL {
-            assert_eq!(backend.name().parse(), Ok(backend));
-        }
-        assert!("tpu".parse::<Backend>().unwrap_err().contains("cpu, gpu or auto"));
-    }
 
     #[test]
     fn without_a_device_the_processor_steps_and_says_why() {

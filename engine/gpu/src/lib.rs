@@ -20,6 +20,7 @@ pub fn adapters() -> Vec<Adapter> {
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 mod adapter;
 pub mod cloth_batch;
+mod device_work;
 #[cfg(feature = "wgpu")]
 pub mod wait;
 

@@ -36,17 +36,6 @@ pub enum Source {
     Both,
 }
 
-impl Source {
-    /// The word for reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Depth => "depth",
-            Self::Joints => "joints",
-            Self::Both => "depth and joints",
-        }
-    }
-}
-
 /// What [`measure`] found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measurements {

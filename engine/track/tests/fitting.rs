@@ -1,6 +1,7 @@
 //! The body fit held against truth: known bodies before a synthetic camera, and what a real one saw.
 
-use std::path::PathBuf;
+#[path = "../../../tests/src/recordings.rs"]
+mod recordings;
 
 use glam::{Affine3A, Quat, Vec3};
 use toile_assets::body::shape::Shapes;
@@ -190,21 +191,9 @@ fn hostile_pictures_are_nobody_and_no_panic() {
     assert!(fit.shape().iter().all(|s| s.is_finite()));
 }
 
-/// The folder of real data; `None` skips, but a missing folder is a failure in CI.
-fn data() -> Option<PathBuf> {
-    match std::env::var_os("TOILE_DATA") {
-        Some(folder) => Some(folder.into()),
-        None if std::env::var("CI").is_ok_and(|ci| ci == "true") => panic!("set TOILE_DATA to the folder of real data"),
-        None => {
-            eprintln!("skipped: set TOILE_DATA to the folder of real data to run this test");
-            None
-        }
-    }
-}
-
 #[test]
 fn a_whole_clothed_woman_is_fitted() {
-    let Some(root) = data() else { return };
+    let Some(root) = recordings::folder() else { return };
     let folder = root.join("depth/depthkit-chae/derived");
     let options = OpenOptions { camera: Some(folder.join("chae_depth_camera.json")) };
     let session = open(&folder.join("chae_depth_mm_1024x512.u16le"), &options).unwrap();

@@ -1,6 +1,7 @@
 //! Measuring by joints and depth: what is refused, and what real sensors recorded.
 
-use std::path::PathBuf;
+#[path = "../../../tests/src/recordings.rs"]
+mod recordings;
 
 use glam::{Affine3A, Mat3, Vec3};
 use toile_assets::body::{Body, Measures as BodyMeasures, Sex};
@@ -107,20 +108,8 @@ fn who_stands_too_far_is_told_to_come_closer() {
     assert!(why.to_string().contains("come closer"), "{why}");
 }
 
-/// The folder of real data; `None` skips, but a missing folder is a failure in CI.
-fn data() -> Option<PathBuf> {
-    match std::env::var_os("TOILE_DATA") {
-        Some(folder) => Some(folder.into()),
-        None if std::env::var("CI").is_ok_and(|ci| ci == "true") => panic!("set TOILE_DATA to the folder of real data"),
-        None => {
-            eprintln!("skipped: set TOILE_DATA to the folder of real data to run this test");
-            None
-        }
-    }
-}
-
 fn measured(file: &str, camera: Option<&str>) -> Option<Result<Measurements, MeasureError>> {
-    let root = data()?;
+    let root = recordings::folder()?;
     let options = OpenOptions { camera: camera.map(|c| root.join(c)) };
     let session = open(&root.join(file), &options).unwrap();
     Some(measure(&session.joints, &session.depth, &Hint { scale_known: session.raw_scale_known, ..Hint::default() }))
@@ -170,7 +159,7 @@ fn people_seen_from_the_waist_up_have_a_chest_but_no_stature() {
 
 #[test]
 fn a_mug_is_nobody() {
-    let Some(root) = data() else { return };
+    let Some(root) = recordings::folder() else { return };
     let bytes = std::fs::read(root.join("depth/pyk4a-azure-mkv/recording.mkv")).unwrap();
     // The one frame of the depth track: a Matroska block of track 2 with 640 x 576 big-endian pixels.
     let size = 640 * 576 * 2;

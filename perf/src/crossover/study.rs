@@ -1,7 +1,7 @@
 //! The rows of a crossover, and where the curves cross.
 
-use std::fmt::Write;
 use std::time::{Duration, Instant};
+use toile_assets::put_line;
 
 use serde::Serialize;
 use toile_assets::numeric::statistics::median;
@@ -211,8 +211,7 @@ impl Crossover {
             let strain = [Some(row.one), row.device].map(|s| of(s.map(|s| s.strain_mean * 100.0), 3)).join(", ");
             let (apart, [one, two]) = (of(row.device.map(|d| d.apart_mm), 4), [row.one, row.two].map(|s| s.step_us));
             let head = format!("{} x {}", row.garments, row.verts);
-            // Writing to a string cannot fail.
-            let _ = writeln!(
+            put_line!(
                 text,
                 "| {head} | {} | {one:.0} | {two:.0} | {device} | {dispatches} | {asked} | {strain} | {apart} |",
                 row.steps
@@ -226,22 +225,21 @@ impl Crossover {
         for (k, threads) in ["one thread", "two threads"].into_iter().enumerate() {
             let (size, count) =
                 (sentence(self.from_vertices[k], "vertices"), sentence(self.from_garments[k], "skirts"));
-            let _ = writeln!(text, "\nThe device is faster than {threads} {size}; with {EACH} vertices each {count}.");
+            put_line!(text, "\nThe device is faster than {threads} {size}; with {EACH} vertices each {count}.");
         }
         let by = &self.stepped_by;
         match (&by.adapter, &by.fallen) {
             (Some(a), fallen) => {
-                let _ = writeln!(text, "\nDevice: {} ({}, {}), quality {}.", a.name, a.kind, a.driver, self.quality);
+                put_line!(text, "\nDevice: {} ({}, {}), quality {}.", a.name, a.kind, a.driver, self.quality);
                 if a.kind == "software" {
-                    let _ =
-                        writeln!(text, "It computes on the processor: its times say nothing about a graphics card.");
+                    put_line!(text, "It computes on the processor: its times say nothing about a graphics card.");
                 }
                 if let Some(reason) = fallen {
-                    let _ = writeln!(text, "Some rows have no device: {reason}.");
+                    put_line!(text, "Some rows have no device: {reason}.");
                 }
             }
             (None, reason) => {
-                let _ = writeln!(text, "\nNo device: {}.", reason.as_deref().unwrap_or("none was asked for"));
+                put_line!(text, "\nNo device: {}.", reason.as_deref().unwrap_or("none was asked for"));
             }
         }
         text

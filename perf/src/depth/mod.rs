@@ -8,10 +8,9 @@
 mod stages;
 mod truth;
 
-use std::fmt::Write;
-
 use serde::Serialize;
 use toile_assets::body::BodyError;
+use toile_assets::put_line;
 use toile_sensors::frame::Intrinsics;
 
 pub use stages::StageTimes;
@@ -78,8 +77,7 @@ impl DepthTable {
             let t = &row.stages_us;
             let ms = |us: f64| format!("{:.2}", us * 1e-3);
             let all = [t.segment, t.fill, t.smooth, t.smooth_whole, t.smooth_plain, t.gaussian, t.cloud, t.all].map(ms);
-            // Writing into a string cannot fail.
-            let _ = writeln!(text, "| {} | {} |", row.image, all.join(" | "));
+            put_line!(text, "| {} | {} |", row.image, all.join(" | "));
         }
         text.push_str(
             "\nTimes in ms, median of many runs, one thread. The errors of the same run:\n\n\
@@ -89,7 +87,7 @@ impl DepthTable {
         for row in &self.rows {
             let e = &row.errors;
             let three = |x: &[f64; 3]| x.map(|v| format!("{v:.2}")).join(", ");
-            let _ = writeln!(
+            put_line!(
                 text,
                 "| {} | {} | {} | {} | {} px | {} px | {:.1} % |",
                 row.image,
@@ -103,7 +101,7 @@ impl DepthTable {
         }
         let smoothing = self.rows.iter().find(|r| r.image == "640 x 480").map_or(0.0, |r| r.stages_us.smooth_whole);
         let verdict = if smoothing <= self.smoothing_target_us { "met" } else { "missed" };
-        let _ = writeln!(
+        put_line!(
             text,
             "\nSmoothing a full 640 x 480 image: {:.2} ms of {:.0} ms: {verdict}.",
             smoothing * 1e-3,

@@ -1,7 +1,7 @@
 //! The tables: filters on the same motions, and feet.
 
-use std::fmt::Write;
 use std::path::Path;
+use toile_assets::put_line;
 
 use serde::Serialize;
 use toile_assets::body::Body;
@@ -80,66 +80,55 @@ impl FilterTable {
         let recordings: Vec<&str> =
             self.rows.first().map_or(Vec::new(), |r| r.recorded.iter().map(|r| &*r.name).collect());
         let columns: String = recordings.iter().map(|name| format!(" {name}: jitter, lag |")).collect();
-        put(
+        put_line!(
             text,
-            &format!(
-                "| filter | still: jitter | reach: lag, overshoot | reference: jitter, lag, overshoot | wave: lag, p99 error | \
+            "| filter | still: jitter | reach: lag, overshoot | reference: jitter, lag, overshoot | wave: lag, p99 error | \
                  forearm's length |{columns} us |"
-            ),
         );
-        put(text, &format!("|---|---|---|---|---|---|{}---|", "---|".repeat(recordings.len())));
+        put_line!(text, "|---|---|---|---|---|---|{}---|", "---|".repeat(recordings.len()));
         for row in &self.rows {
             let reference = REFERENCE.iter().find(|(name, _)| *name == row.name);
             let reference =
                 reference.map_or("-".to_owned(), |(_, [j, l, o])| format!("{j:.2} mm, {l:.0} ms, {o:.0} mm"));
             let recorded: String =
                 row.recorded.iter().map(|r| format!(" {:.2} mm, {:.0} ms |", r.jitter_mm, r.lag_ms)).collect();
-            put(
+            put_line!(
                 text,
-                &format!(
-                    "| {} | {:.2} mm | {:.0} ms, {:.0} mm | {reference} | {:.0} ms, {:.0} mm | {:.1} mm |{recorded} {:.1} |",
-                    row.name,
-                    row.still_jitter_mm,
-                    row.step_lag_ms,
-                    row.step_overshoot_mm,
-                    row.wave_lag_ms,
-                    row.wave_error_mm,
-                    row.bone_mm,
-                    row.us,
-                ),
+                "| {} | {:.2} mm | {:.0} ms, {:.0} mm | {reference} | {:.0} ms, {:.0} mm | {:.1} mm |{recorded} {:.1} |",
+                row.name,
+                row.still_jitter_mm,
+                row.step_lag_ms,
+                row.step_overshoot_mm,
+                row.wave_lag_ms,
+                row.wave_error_mm,
+                row.bone_mm,
+                row.us,
             );
         }
     }
 
     fn slides(&self, text: &mut String) {
-        put(
+        put_line!(
             text,
             "\n| recording | planted | slide a planted second: truth | filtered joints | posed | posed, feet kept | in the air \
-             | glued | rise: true, ours |",
+             | glued | rise: true, ours |"
         );
-        put(text, "|---|---|---|---|---|---|---|---|---|");
+        put_line!(text, "|---|---|---|---|---|---|---|---|---|");
         for s in &self.feet {
-            put(
+            put_line!(
                 text,
-                &format!(
-                    "| {} | {:.1} s | {:.0} mm | {:.0} mm | {:.0} mm | **{:.0} mm** | {:.2} s | {:.0} % | {:.0}, {:.0} mm |",
-                    s.name,
-                    s.planted_s,
-                    s.truth_mm_s,
-                    s.filtered_mm_s,
-                    s.posed_mm_s,
-                    s.kept_mm_s,
-                    s.air_s,
-                    s.glued_share * 100.0,
-                    s.true_rise_mm,
-                    s.rise_mm,
-                ),
+                "| {} | {:.1} s | {:.0} mm | {:.0} mm | {:.0} mm | **{:.0} mm** | {:.2} s | {:.0} % | {:.0}, {:.0} mm |",
+                s.name,
+                s.planted_s,
+                s.truth_mm_s,
+                s.filtered_mm_s,
+                s.posed_mm_s,
+                s.kept_mm_s,
+                s.air_s,
+                s.glued_share * 100.0,
+                s.true_rise_mm,
+                s.rise_mm,
             );
         }
     }
-}
-
-fn put(text: &mut String, line: &str) {
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "{line}");
 }

@@ -8,28 +8,16 @@ use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 use toile_track::gesture::{Grip, HandRegion, HandSegmenter, HandShape};
 
-/// What a hand is like.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum HandPose {
-    /// Open, fingers spread.
-    Spread,
-    /// Open, fingers together.
-    Stretched,
-    /// Closed to a fist.
-    Fist,
-}
-
-impl HandPose {
-    /// All poses of the hand.
-    pub const ALL: [Self; 3] = [Self::Spread, Self::Stretched, Self::Fist];
-
-    /// The words for tables.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Spread => "open, fingers spread",
-            Self::Stretched => "open, fingers together",
-            Self::Fist => "closed",
-        }
+toile_assets::named! {
+    /// What a hand is like.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum HandPose {
+        /// Open, fingers spread.
+        Spread = "open, fingers spread",
+        /// Open, fingers together.
+        Stretched = "open, fingers together",
+        /// Closed to a fist.
+        Fist = "closed",
     }
 }
 

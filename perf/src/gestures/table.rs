@@ -1,8 +1,7 @@
 //! The tables of the study.
 
-use std::fmt::Write;
-
 use super::{Act, GestureConditions, GestureCount, GripRow, count, grips};
+use toile_assets::put_line;
 
 /// Distances of the tables (m).
 const DISTANCES: [f32; 4] = [1.2, 2.0, 2.8, 3.5];
@@ -119,6 +118,5 @@ impl GestureStudy {
 
 fn row<'a>(text: &mut String, first: &str, cells: impl Iterator<Item = &'a str>) {
     let cells: Vec<&str> = cells.collect();
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "| {first} | {} |", cells.join(" | "));
+    put_line!(text, "| {first} | {} |", cells.join(" | "));
 }

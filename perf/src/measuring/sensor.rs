@@ -7,24 +7,18 @@ use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 
 use super::person::{JointPositions, SurveyPerson};
 
-/// A kind of depth camera.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sensor {
-    /// Kinect v1, upright: noise, quantisation, edge shadow and dropout after Nguyen, Izadi and Lovell (2012).
-    Kinect,
-    /// A time-of-flight camera like the Azure Kinect, narrow field of view, unbinned.
-    Azure,
+toile_assets::named! {
+    /// A kind of depth camera.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Sensor {
+        /// Kinect v1, upright: noise, quantisation, edge shadow and dropout after Nguyen, Izadi and Lovell (2012).
+        Kinect = "kinect",
+        /// A time-of-flight camera like the Azure Kinect, narrow field of view, unbinned.
+        Azure = "azure",
+    }
 }
 
 impl Sensor {
-    /// The word for reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Kinect => "kinect",
-            Self::Azure => "azure",
-        }
-    }
-
     /// What the camera says of itself.
     const fn stated(self) -> Intrinsics {
         match self {

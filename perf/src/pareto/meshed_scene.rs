@@ -12,33 +12,22 @@ use toile_engine::colliders::Colliders;
 
 use super::error::ParetoError;
 
-/// What fibers are solved by.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SolverChoice {
-    /// All of them by Gauss-Seidel.
-    GaussSeidel,
-    /// Warp and weft whole, by the tridiagonal system.
-    SemiImplicit,
-    /// As the bake and the garment's file choose.
-    Mixed,
-    /// Warp and weft whole and without compliance.
-    ZeroStretch,
+toile_assets::named! {
+    /// What fibers are solved by.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum SolverChoice {
+        /// As the bake and the garment's file choose.
+        Mixed = "mixed",
+        /// All of them by Gauss-Seidel.
+        GaussSeidel = "gauss-seidel",
+        /// Warp and weft whole, by the tridiagonal system.
+        SemiImplicit = "semi-implicit",
+        /// Warp and weft whole and without compliance.
+        ZeroStretch = "zero-stretch",
+    }
 }
 
 impl SolverChoice {
-    /// Every choice, in the order of the charts.
-    pub const ALL: [Self; 4] = [Self::Mixed, Self::GaussSeidel, Self::SemiImplicit, Self::ZeroStretch];
-
-    /// Its name in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::GaussSeidel => "gauss-seidel",
-            Self::SemiImplicit => "semi-implicit",
-            Self::Mixed => "mixed",
-            Self::ZeroStretch => "zero-stretch",
-        }
-    }
-
     /// The fibers' solver, in place of what the garment's file says. Shear is soft and always swept.
     fn overrides(self, of_file: Overrides) -> Overrides {
         let all = |solver| Overrides { warp: Some(solver), weft: Some(solver), ..Overrides::default() };

@@ -1,6 +1,6 @@
 //! One run of a scene under one setting.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use glam::{Affine3A, DVec3, Vec3A};
 use toile_assets::garment::Garment;
@@ -12,6 +12,7 @@ use toile_engine::cloth::program::{self, Stage};
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, measure};
 use toile_engine::colliders::Colliders;
 use toile_engine::workers::WorkerPool;
+use toile_fitting::timing;
 
 use super::error::ParetoError;
 use super::meshed_scene::MeshedScene;
@@ -28,9 +29,6 @@ pub struct Setting {
     /// Workers of a step.
     pub threads: usize,
 }
-
-/// What the helper gets to wake in, as in a frame that poses and skins before the cloth.
-const BEFORE_CLOTH: Duration = Duration::from_micros(80);
 
 /// What a run showed.
 #[derive(Debug, Clone, Default)]
@@ -96,7 +94,7 @@ impl<'a> SteppedCloth<'a> {
     /// The step that ends at a tick; its time (ns).
     fn step(&mut self, tick: u64, pool: &mut WorkerPool) -> u64 {
         self.subject.place(seconds(tick), &mut self.bones, &mut self.colliders);
-        wake(pool);
+        timing::wake(pool);
         let begun = Instant::now();
         let step = Step { palette: &self.bones, colliders: &self.colliders, settings: &self.settings };
         self.cloth.step_with(pool, self.garment, &step);
@@ -206,16 +204,6 @@ impl Trace {
         self.substeps = cloth.substeps();
         let speed = |i: usize| cloth.velocity(i).length();
         self.fastest_m_s = f64::from((0..garment.particles()).map(speed).fold(0.0, f32::max));
-    }
-}
-
-/// Wakes the helper of two workers, and waits as long as the frame's other work would.
-fn wake(pool: &mut WorkerPool) {
-    if pool.wake() {
-        let woken = Instant::now();
-        while woken.elapsed() < BEFORE_CLOTH {
-            std::hint::spin_loop();
-        }
     }
 }
 

@@ -1,8 +1,7 @@
 //! What is reported: points, scenes, the survival map, the drape study; as JSON and CSV.
 
-use std::fmt::Write;
-
 use serde::Serialize;
+use toile_assets::put_line;
 
 /// One setting of one scene: what a step costs and what it ends at.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -163,8 +162,7 @@ pub fn csv(points: &[Point]) -> String {
          strain_mean,strain_p99,energy_j,rolled_back,on_front\n",
     );
     for p in points {
-        // Writing to a string cannot fail.
-        let _ = writeln!(
+        put_line!(
             text,
             "{},{},{},{},{},{},{},{},{},{},{:.2},{:.6},{:.6},{:.6e},{:.6e},{:.9},{},{}",
             p.scene,

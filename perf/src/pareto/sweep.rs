@@ -2,6 +2,7 @@
 
 use toile_assets::garment::Garment;
 use toile_engine::cloth::Quality;
+use toile_fitting::plan::scene::spacing_mm;
 
 use super::error::ParetoError;
 use super::meshed_scene::{MeshedScene, SolverChoice};
@@ -124,10 +125,4 @@ fn point(
         rolled_back: run.rolled_back,
         on_front: false,
     }
-}
-
-/// Mean length of the edges that strain is measured on (mm).
-fn spacing_mm(garment: &Garment) -> f64 {
-    let sum: f64 = garment.strain_edges.iter().map(|(_, rest)| f64::from(*rest)).sum();
-    1e3 * sum / garment.strain_edges.len().max(1) as f64
 }

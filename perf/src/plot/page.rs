@@ -1,9 +1,8 @@
 //! A page of HTML that needs no other file and no script: headings, paragraphs, lists, tables, drawings.
 
-use std::fmt::Write;
-
 use super::Drawing;
 use super::svg::{self, escaped};
+use toile_assets::put_line;
 
 const STYLE: &str = "body { font-family: system-ui, sans-serif; background: #fff; color: #222; max-width: 1080px; \
 margin: 2em auto; padding: 0 1em; }\nsvg { max-width: 100%; height: auto; }\ntable { border-collapse: collapse; }\n\
@@ -95,8 +94,7 @@ impl Page {
 
     fn element(&mut self, name: &str, class: &str, text: &str) -> &mut Self {
         let text = escaped(text).replace('\n', "<br>\n");
-        // Writing to a string cannot fail.
-        let _ = writeln!(self.html, "<{name}{class}>{text}</{name}>");
+        put_line!(self.html, "<{name}{class}>{text}</{name}>");
         self
     }
 
@@ -104,7 +102,7 @@ impl Page {
     pub fn list(&mut self, items: &[String]) -> &mut Self {
         if !items.is_empty() {
             let items: String = items.iter().map(|item| format!("<li>{}</li>\n", escaped(item))).collect();
-            let _ = writeln!(self.html, "<ul>\n{items}</ul>");
+            put_line!(self.html, "<ul>\n{items}</ul>");
         }
         self
     }
@@ -112,10 +110,10 @@ impl Page {
     /// A table; its first column is words whatever it holds.
     pub fn table(&mut self, heads: &[&str], rows: impl IntoIterator<Item = Vec<Entry>>) -> &mut Self {
         let heads: String = heads.iter().map(|head| format!("<th>{}</th>", escaped(head))).collect();
-        let _ = writeln!(self.html, "<table>\n<tr>{heads}</tr>");
+        put_line!(self.html, "<table>\n<tr>{heads}</tr>");
         for row in rows {
             let cells: String = row.iter().map(Entry::html).collect();
-            let _ = writeln!(self.html, "<tr>{cells}</tr>");
+            put_line!(self.html, "<tr>{cells}</tr>");
         }
         self.html.push_str("</table>\n");
         self

@@ -1,8 +1,7 @@
 //! A drawing as SVG text, to be put into a page as it is.
 
-use std::fmt::Write;
-
 use super::{Anchor, Colour, Drawing, Mark};
+use toile_assets::put_line;
 
 /// The drawing as an SVG element.
 pub fn text(drawing: &Drawing) -> String {
@@ -13,8 +12,7 @@ pub fn text(drawing: &Drawing) -> String {
          fill=\"#fff\"/>\n"
     );
     for mark in &drawing.marks {
-        // Writing to a string cannot fail.
-        let _ = writeln!(svg, "{}", element(mark));
+        put_line!(svg, "{}", element(mark));
     }
     svg.push_str("</svg>\n");
     svg

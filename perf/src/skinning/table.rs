@@ -1,8 +1,7 @@
 //! The table of skinning: both surfaces, one thread and two, each lane width, and what becomes of limbs.
 
-use std::fmt::Write;
-
 use serde::Serialize;
+use toile_assets::put_line;
 use toile_engine::lanes::Width;
 use toile_engine::skin::Padding;
 use toile_fitting::scene::yardstick;
@@ -108,94 +107,87 @@ impl SkinningTable {
     }
 
     fn times(&self, text: &mut String) {
-        put(
+        put_line!(
             text,
             "| surface | vertices | threads | lanes | sets | empty lanes | influences, blended | linear: us, Y, error \
-             | in mesh order | dual: us, Y, error | in mesh order | Y (us) |",
+             | in mesh order | dual: us, Y, error | in mesh order | Y (us) |"
         );
-        put(text, "|---|---|---|---|---|---|---|---|---|---|---|---|");
+        put_line!(text, "|---|---|---|---|---|---|---|---|---|---|---|---|");
         for r in &self.rows {
             let timing = |t: &Timing| {
                 format!("{:.1}, **{:.3}**, {:.2} um | {:.1}", t.us, t.y_ratio, t.max_error_m * 1e6, t.mesh_order_us)
             };
             let surface =
                 if r.subject == SkinningSubject::Four { "four influences each" } else { "the body's own weights" };
-            put(
+            put_line!(
                 text,
-                &format!(
-                    "| {surface} | {} | {} | {} | {} | {:.1} % | {:.2}, {:.2} | {} | {} | {:.0} |",
-                    r.verts,
-                    r.threads,
-                    r.lanes,
-                    r.sets,
-                    r.padding * 100.0,
-                    r.influences,
-                    r.blended,
-                    timing(&r.linear),
-                    timing(&r.dual),
-                    r.yardstick_us,
-                ),
+                "| {surface} | {} | {} | {} | {} | {:.1} % | {:.2}, {:.2} | {} | {} | {:.0} |",
+                r.verts,
+                r.threads,
+                r.lanes,
+                r.sets,
+                r.padding * 100.0,
+                r.influences,
+                r.blended,
+                timing(&r.linear),
+                timing(&r.dual),
+                r.yardstick_us,
             );
         }
         let [linear, dual] = TARGETS;
-        put(
+        put_line!(
             text,
-            &format!(
-                "\nTargets, one thread: linear {linear} Y, dual quaternions {dual} Y. Peers on four influences, linear: \
+            "\nTargets, one thread: linear {linear} Y, dual quaternions {dual} Y. Peers on four influences, linear: \
              ozz-animation .45 Y, OGRE .47 Y; memory floor .05 Y.\n"
-            ),
         );
     }
 
     fn limbs(&self, text: &mut String) {
-        put(
+        put_line!(
             text,
             "| volume kept under twist | theory, two bones, linear | linear, two bones | linear, split | dual, two bones \
-             | dual, split |",
+             | dual, split |"
         );
-        put(text, "|---|---|---|---|---|---|");
+        put_line!(text, "|---|---|---|---|---|---|");
         for t in &self.shapes.twists {
-            put(
+            put_line!(
                 text,
-                &format!(
-                    "| {} {:.0} degrees | {:.3} | {:.3} | {:.3} | {:.3} | {:.3} |",
-                    t.of, t.degrees, t.theory, t.linear_one_bone, t.linear_split, t.dual_one_bone, t.dual_split,
-                ),
+                "| {} {:.0} degrees | {:.3} | {:.3} | {:.3} | {:.3} | {:.3} |",
+                t.of,
+                t.degrees,
+                t.theory,
+                t.linear_one_bone,
+                t.linear_split,
+                t.dual_one_bone,
+                t.dual_split,
             );
         }
-        put(text, "\n| bent joint | volume: linear, dual | bulge: linear, dual | thinnest place: linear, dual |");
-        put(text, "|---|---|---|---|");
+        put_line!(text, "\n| bent joint | volume: linear, dual | bulge: linear, dual | thinnest place: linear, dual |");
+        put_line!(text, "|---|---|---|---|");
         for h in &self.shapes.hinges {
-            put(
+            put_line!(
                 text,
-                &format!(
-                    "| {} {:.0} degrees | {:.3}, {:.3} | {:+.1} % ({:.1} mm), {:+.1} % ({:.1} mm) | {:+.1} %, {:+.1} % |",
-                    h.of,
-                    h.degrees,
-                    h.volume[0],
-                    h.volume[1],
-                    h.bulge[0] * 100.0,
-                    h.bulge_mm[0],
-                    h.bulge[1] * 100.0,
-                    h.bulge_mm[1],
-                    h.thinnest[0] * 100.0,
-                    h.thinnest[1] * 100.0,
-                ),
+                "| {} {:.0} degrees | {:.3}, {:.3} | {:+.1} % ({:.1} mm), {:+.1} % ({:.1} mm) | {:+.1} %, {:+.1} % |",
+                h.of,
+                h.degrees,
+                h.volume[0],
+                h.volume[1],
+                h.bulge[0] * 100.0,
+                h.bulge_mm[0],
+                h.bulge[1] * 100.0,
+                h.bulge_mm[1],
+                h.thinnest[0] * 100.0,
+                h.thinnest[1] * 100.0,
             );
         }
-        put(
+        put_line!(
             text,
-            "\n| linear and dual apart, the scene's ten seconds | mean | largest | least volume of the body: linear, dual |",
+            "\n| linear and dual apart, the scene's ten seconds | mean | largest | least volume of the body: linear, dual |"
         );
-        put(text, "|---|---|---|---|");
+        put_line!(text, "|---|---|---|---|");
         for a in &self.shapes.apart {
             let [linear, dual] = a.body_volume;
-            put(text, &format!("| {} | {:.2} mm | {:.1} mm | {linear:.4}, {dual:.4} |", a.of, a.mean_mm, a.max_mm));
+            put_line!(text, "| {} | {:.2} mm | {:.1} mm | {linear:.4}, {dual:.4} |", a.of, a.mean_mm, a.max_mm);
         }
     }
-}
-
-fn put(text: &mut String, line: &str) {
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "{line}");
 }

@@ -5,6 +5,7 @@ use std::time::Instant;
 use toile_assets::garment::Shape;
 use toile_assets::numeric::statistics::{median, quantile};
 use toile_fitting::heap::HeapProbe;
+use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::yardstick::Yardstick;
 use toile_gpu::backend::Backends;
 
@@ -158,7 +159,7 @@ impl SkirtRun {
             lanes: scene.settings().width.lanes(),
             substeps: scene.substeps(),
             warm_up: WARM_UP,
-            step_us: report::StepMicros { p50, p99: time(0.99), p999: time(0.999), max: time(1.0) },
+            step_us: StepTimes { p50, p99: time(0.99), p999: time(0.999), max: time(1.0) },
             run_p50_us: self.medians,
             yardstick_us,
             y_ratio: p50 / yardstick_us,

@@ -7,14 +7,16 @@ use toile_gpu::backend::Backend;
 
 use super::error::SkirtError;
 
-/// How the skirt is meshed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum SkirtMesh {
-    /// A regular grid of rows and columns.
-    #[default]
-    Grid,
-    /// As many vertices strewn at random, Delaunay triangles.
-    Irregular,
+toile_assets::named! {
+    /// How the skirt is meshed.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum SkirtMesh {
+        /// A regular grid of rows and columns.
+        #[default]
+        Grid = "grid",
+        /// As many vertices strewn at random, Delaunay triangles.
+        Irregular = "irregular",
+    }
 }
 
 /// One run of the benchmark.

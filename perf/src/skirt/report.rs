@@ -3,25 +3,12 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use toile_assets::scene::skirt::{Motion, Stretch};
+use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::events::ClothEvents;
 use toile_gpu::backend::BackendTimes;
 
-use super::options::{SkirtMesh, SkirtOptions};
+use super::options::SkirtOptions;
 use crate::backend::SteppedBy;
-
-/// The distribution of a step's time (us).
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct StepMicros {
-    /// Median of the runs' medians.
-    pub p50: f64,
-    /// 99 % of all steps.
-    pub p99: f64,
-    /// 99.9 % of all steps.
-    pub p999: f64,
-    /// The longest step.
-    pub max: f64,
-}
 
 /// How far warp and weft edges are from their length, as a part of it (0.01 is 1 %).
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -100,7 +87,7 @@ pub struct SkirtReport {
     /// Steps of a run.
     pub steps: usize,
     /// Time of a step of all skirts, colliders' placing included.
-    pub step_us: StepMicros,
+    pub step_us: StepTimes,
     /// Median step of each run (us).
     pub run_p50_us: Vec<f64>,
     /// Time of the yardstick in the same run (us): the median of one reading before each run and one after the last.
@@ -147,15 +134,9 @@ impl SkirtReport {
     pub fn of(options: &SkirtOptions) -> Self {
         Self {
             verts: options.verts,
-            motion: motion(options.motion),
-            mesh: match options.mesh {
-                SkirtMesh::Grid => "grid",
-                SkirtMesh::Irregular => "irregular",
-            },
-            stretch: match options.stretch {
-                Stretch::Inextensible => "inextensible",
-                Stretch::Physical => "physical",
-            },
+            motion: options.motion.name(),
+            mesh: options.mesh.name(),
+            stretch: options.stretch.name(),
             wind: options.wind,
             garments: options.garments,
             threads: options.threads,
@@ -163,14 +144,5 @@ impl SkirtReport {
             steps: options.steps,
             ..Self::default()
         }
-    }
-}
-
-/// A motion's name.
-pub fn motion(motion: Motion) -> &'static str {
-    match motion {
-        Motion::Walk => "walk",
-        Motion::Fast => "fast",
-        Motion::Settled => "settled",
     }
 }

@@ -1,7 +1,5 @@
 //! The skirt on its body, ready to be stepped: baked, placed and moved by the scene's clock.
 
-use std::time::{Duration, Instant};
-
 use glam::{Affine3A, Vec3, Vec3A, Vec4};
 use toile_assets::bake::bake;
 use toile_assets::garment::{Garment, Shape};
@@ -14,6 +12,7 @@ use toile_engine::colliders::{Colliders, RestSphere};
 use toile_engine::workers::WorkerPool;
 use toile_fitting::heap::{Heap, HeapProbe};
 use toile_fitting::scene::events::ClothEvents;
+use toile_fitting::timing;
 use toile_gpu::backend::{Backend, Backends, ClothStepper};
 use toile_gpu::cloth_batch::ClothBatch;
 
@@ -48,10 +47,6 @@ pub struct SkirtScene {
     pool: WorkerPool,
     stepper: ClothStepper,
 }
-
-/// What a frame does between waking the cloth's helper and the cloth's step, posing and skinning the body, takes at
-/// least so long; the helper is awake by then.
-const BEFORE_CLOTH: Duration = Duration::from_micros(80);
 
 impl SkirtScene {
     /// The scene at its start.
@@ -127,12 +122,7 @@ impl SkirtScene {
     pub fn prepare(&mut self) {
         self.tick += 1;
         self.ask();
-        if self.pool.wake() {
-            let woken = Instant::now();
-            while woken.elapsed() < BEFORE_CLOTH {
-                std::hint::spin_loop();
-            }
-        }
+        timing::wake(&mut self.pool);
     }
 
     fn ask(&mut self) {

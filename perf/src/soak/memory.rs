@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use toile_assets::numeric::statistics::quantile;
 use toile_fitting::heap::HeapProbe;
 
 /// What the process held at one moment; none where the system does not say.
@@ -51,8 +52,7 @@ pub fn growth(samples: &[(f64, u64)]) -> Option<f64> {
         let later = samples[i + 1..].iter().filter(|(to, _)| to > from);
         slopes.extend(later.map(|(to, b)| (*b as f64 - *a as f64) / (to - from)));
     }
-    let middle = slopes.len() / 2;
-    (!slopes.is_empty()).then(|| *slopes.select_nth_unstable_by(middle, f64::total_cmp).1)
+    quantile(&mut slopes, 0.5)
 }
 
 #[cfg(test)]

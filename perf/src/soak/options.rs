@@ -28,26 +28,15 @@ pub struct SoakOptions {
     pub workers: usize,
 }
 
-/// How heavy the scenes are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum SceneWeight {
-    /// Threads so far apart that a step costs some 50 us, and one in sixteen of the body's vertices: for hours in minutes.
-    Light,
-    /// The wardrobe as shoppers wear it.
-    Full,
-}
-
-impl SceneWeight {
-    /// Both weights.
-    pub const ALL: [Self; 2] = [Self::Light, Self::Full];
-
-    /// Its name in options and reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Light => "light",
-            Self::Full => "full",
-        }
+toile_assets::named! {
+    /// How heavy the scenes are.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum SceneWeight {
+        /// Threads so far apart that a step costs some 50 us, and one in sixteen of the body's vertices: for hours in minutes.
+        Light = "light",
+        /// The wardrobe as shoppers wear it.
+        Full = "full",
     }
 }
 

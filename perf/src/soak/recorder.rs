@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::sync::Arc;
 
+use toile_assets::numeric::hash::Fnv1a;
 use toile_engine::clock::Clock;
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
@@ -57,7 +58,7 @@ impl<C: Clock> RecorderLoop<C> {
             waiting,
             ended: false,
             steps: 0,
-            hash: 0xcbf2_9ce4_8422_2325,
+            hash: Fnv1a::OFFSET_BASIS,
             refused: 0,
             written: 0,
             trouble: None,

@@ -33,102 +33,54 @@ const STALL_S: f32 = 2.0;
 /// Frames of the camera each second.
 pub const CAMERA_HZ: u64 = 30;
 
-/// What goes wrong. `until` is the end of the fault: from then on the time to its recovery counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum FaultKind {
-    /// No frames come.
-    CameraLost,
-    /// The joints of the first frame again and again, with new stamps.
-    Frozen,
-    /// Each frame four times, stamp and all.
-    Repeated,
-    /// Every two frames change places.
-    OutOfOrder,
-    /// Half of the joints are NaN, and sure of it.
-    NanJoints,
-    /// Half of the joints are infinite or beyond all measure.
-    Infinite,
-    /// The skeleton of somebody else, who stands beside.
-    Swapped,
-    /// Stamps from the next day.
-    StampsAhead,
-    /// Stamps from the day before.
-    StampsBehind,
-    /// Particles of every garment that are NaN, infinite, beyond all measure or violent, from one step to the next.
-    ClothSpoilt,
-    /// The loop's clock jumps ahead, as after a suspended machine.
-    ClockJump,
-    /// The sensor's thread does nothing for two seconds.
-    SensorStall,
-    /// The physics thread does nothing for two seconds.
-    PhysicsStall,
-    /// The render thread does nothing for two seconds.
-    RenderStall,
-    /// The thread that records does nothing for two seconds.
-    RecorderStall,
-    /// The thread that makes scenes does nothing for two seconds.
-    SceneStall,
-    /// The recording's disk is full.
-    DiskFull,
-    /// Garment files that are broken in several ways are to be worn.
-    BrokenGarment,
-    /// The render thread panics.
-    RenderPanic,
-    /// 64 MiB are taken and written to.
-    MemoryPressure,
+toile_assets::named! {
+    /// What goes wrong. `until` is the end of the fault: from then on the time to its recovery counts.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum FaultKind {
+        /// No frames come.
+        CameraLost = "camera lost",
+        /// The joints of the first frame again and again, with new stamps.
+        Frozen = "frames frozen",
+        /// Each frame four times, stamp and all.
+        Repeated = "frames repeated",
+        /// Every two frames change places.
+        OutOfOrder = "frames out of order",
+        /// Half of the joints are NaN, and sure of it.
+        NanJoints = "NaN joints",
+        /// Half of the joints are infinite or beyond all measure.
+        Infinite = "infinite joints",
+        /// The skeleton of somebody else, who stands beside.
+        Swapped = "another's skeleton",
+        /// Stamps from the next day.
+        StampsAhead = "stamps a day ahead",
+        /// Stamps from the day before.
+        StampsBehind = "stamps a day behind",
+        /// Particles of every garment that are NaN, infinite, beyond all measure or violent, from one step to the next.
+        ClothSpoilt = "cloth spoilt",
+        /// The loop's clock jumps ahead, as after a suspended machine.
+        ClockJump = "clock jump",
+        /// The sensor's thread does nothing for two seconds.
+        SensorStall = "sensor stall",
+        /// The physics thread does nothing for two seconds.
+        PhysicsStall = "physics stall",
+        /// The render thread does nothing for two seconds.
+        RenderStall = "render stall",
+        /// The thread that records does nothing for two seconds.
+        RecorderStall = "recorder stall",
+        /// The thread that makes scenes does nothing for two seconds.
+        SceneStall = "scene thread stall",
+        /// The recording's disk is full.
+        DiskFull = "disk full",
+        /// Garment files that are broken in several ways are to be worn.
+        BrokenGarment = "broken garment file",
+        /// The render thread panics.
+        RenderPanic = "render thread dies",
+        /// 64 MiB are taken and written to.
+        MemoryPressure = "memory pressure",
+    }
 }
 
 impl FaultKind {
-    /// Every kind, in the order of the report.
-    pub const ALL: [Self; 20] = [
-        Self::CameraLost,
-        Self::Frozen,
-        Self::Repeated,
-        Self::OutOfOrder,
-        Self::NanJoints,
-        Self::Infinite,
-        Self::Swapped,
-        Self::StampsAhead,
-        Self::StampsBehind,
-        Self::ClothSpoilt,
-        Self::ClockJump,
-        Self::SensorStall,
-        Self::PhysicsStall,
-        Self::RenderStall,
-        Self::RecorderStall,
-        Self::SceneStall,
-        Self::DiskFull,
-        Self::BrokenGarment,
-        Self::RenderPanic,
-        Self::MemoryPressure,
-    ];
-
-    /// Its name in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::CameraLost => "camera lost",
-            Self::Frozen => "frames frozen",
-            Self::Repeated => "frames repeated",
-            Self::OutOfOrder => "frames out of order",
-            Self::NanJoints => "NaN joints",
-            Self::Infinite => "infinite joints",
-            Self::Swapped => "another's skeleton",
-            Self::StampsAhead => "stamps a day ahead",
-            Self::StampsBehind => "stamps a day behind",
-            Self::ClothSpoilt => "cloth spoilt",
-            Self::ClockJump => "clock jump",
-            Self::SensorStall => "sensor stall",
-            Self::PhysicsStall => "physics stall",
-            Self::RenderStall => "render stall",
-            Self::RecorderStall => "recorder stall",
-            Self::SceneStall => "scene thread stall",
-            Self::DiskFull => "disk full",
-            Self::BrokenGarment => "broken garment file",
-            Self::RenderPanic => "render thread dies",
-            Self::MemoryPressure => "memory pressure",
-        }
-    }
-
     /// By what it is seen to be over.
     pub fn recovered_by(self) -> RecoverySign {
         match self {

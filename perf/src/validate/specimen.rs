@@ -146,12 +146,6 @@ impl Specimen {
         self.garment.fabric.damping_per_s = per_s as f32;
     }
 
-    /// Speed of the fastest particle (m/s).
-    pub fn fastest(&self) -> f64 {
-        let speed2 = |i: usize| f64::from(self.cloth.velocity(i).length_squared());
-        (0..self.particle.len()).map(speed2).fold(0.0, f64::max).sqrt()
-    }
-
     /// Positions of particles and solids now.
     pub fn seen(&self) -> Placement<'_> {
         let at = self.cloth.positions.iter().map(|p| p.as_dvec3()).collect();
@@ -171,11 +165,6 @@ impl Specimen {
     /// Where a vertex of the shape is (m).
     pub fn at(&self, vertex: usize) -> DVec3 {
         self.cloth.positions[self.particle[vertex]].as_dvec3()
-    }
-
-    /// How fast it is (m/s).
-    pub fn velocity(&self, vertex: usize) -> DVec3 {
-        self.cloth.velocity(self.particle[vertex]).as_dvec3()
     }
 
     /// Puts a vertex somewhere, with a velocity.

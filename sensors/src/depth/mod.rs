@@ -79,11 +79,6 @@ impl Clean {
     pub fn smoothing(&self) -> DepthSmoothing {
         self.smoothing
     }
-
-    /// What the segmenter knows.
-    pub fn segmenter(&self) -> &Segmenter {
-        &self.segmenter
-    }
 }
 
 impl Default for Clean {

@@ -15,9 +15,6 @@ impl SensorNoise {
     /// The Kinect v1 (Nguyen, Izadi and Lovell 2012).
     pub const KINECT_V1: Self = Self { least: 0.0012, growth: 0.0019, from: 0.4 };
 
-    /// The Azure Kinect, under the 17 mm that its makers allow at 3.5 m.
-    pub const AZURE_KINECT: Self = Self { least: 0.0015, growth: 0.0010, from: 0.5 };
-
     /// The deviation at a depth, both in mm.
     pub fn sigma_mm(&self, z_mm: f32) -> f32 {
         let beyond = z_mm - self.from * 1e3;

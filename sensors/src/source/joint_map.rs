@@ -11,37 +11,28 @@ use crate::frame::{Joints, TrackedJoint};
 
 const TABLE: &str = include_str!("../../data/joint_map.csv");
 
-/// A tracker's set of points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// Kinect v1: 20 joints.
-    Kinect20,
-    /// Kinect v2: 25 joints.
-    Kinect25,
-    /// Azure Kinect body tracking (k4abt).
-    Azure32,
-    /// Nuitrack's skeleton.
-    Nuitrack,
-    /// MediaPipe's pose landmarks (BlazePose): 33 points.
-    MediaPipe33,
-    /// OpenPose, model BODY_25.
-    OpenPose25,
-    /// OpenPose, model BODY_25B.
-    OpenPose25B,
+toile_assets::named! {
+    /// A tracker's set of points.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Format {
+        /// Kinect v1: 20 joints.
+        Kinect20,
+        /// Kinect v2: 25 joints.
+        Kinect25,
+        /// Azure Kinect body tracking (k4abt).
+        Azure32,
+        /// Nuitrack's skeleton.
+        Nuitrack,
+        /// MediaPipe's pose landmarks (BlazePose): 33 points.
+        MediaPipe33,
+        /// OpenPose, model BODY_25.
+        OpenPose25,
+        /// OpenPose, model BODY_25B.
+        OpenPose25B,
+    }
 }
 
 impl Format {
-    /// Every format.
-    pub const ALL: [Self; 7] = [
-        Self::Kinect20,
-        Self::Kinect25,
-        Self::Azure32,
-        Self::Nuitrack,
-        Self::MediaPipe33,
-        Self::OpenPose25,
-        Self::OpenPose25B,
-    ];
-
     /// Points of a skeleton.
     pub const fn points(self) -> usize {
         match self {
@@ -212,11 +203,7 @@ mod tests {
 
     /// The shared table, or nothing where it is not set up; with CI=true that is a failure.
     fn shared() -> Option<Vec<Vec<String>>> {
-        let Some(folder) = std::env::var_os("TOILE_DATA").map(std::path::PathBuf::from) else {
-            assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA must name the folder of shared data");
-            eprintln!("skipped: TOILE_DATA does not name the folder of shared data");
-            return None;
-        };
+        let folder = crate::recordings::folder()?;
         let text = std::fs::read_to_string(folder.join("protocols/joint_map.csv")).expect("the joint map is there");
         Some(text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect())
     }

@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test file uses its part")]
 
+#[path = "../../../tests/src/recordings.rs"]
+mod recordings;
 pub mod samples;
 pub mod skeletons;
 
@@ -14,14 +16,9 @@ use toile_sensors::frame::Joints;
 use toile_sensors::session::Session;
 use toile_sensors::source::{OpenOptions, open};
 
-/// The folder of recordings, or `None` where it is not set up; with CI=true that is a failure.
+/// The folder of recordings, where there is one.
 pub fn data() -> Option<PathBuf> {
-    let Some(folder) = std::env::var_os("TOILE_DATA") else {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA must name the recordings where CI=true");
-        eprintln!("skipped: TOILE_DATA does not name the folder of recordings");
-        return None;
-    };
-    Some(Path::new(&folder).canonicalize().expect("TOILE_DATA names no folder"))
+    recordings::folder()
 }
 
 /// Opens one recording.

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use glam::{DMat2, DVec2, Vec3};
 
-use super::Stencil;
+use super::stencil::Stencil;
 use crate::bake::fibers::{Direction, Edge};
 use crate::garment::check::corners;
 use crate::garment::shape::{NO_VERTEX, Shape};

@@ -16,8 +16,8 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::Stencil;
 use super::ring::{NO_POINT, Ring};
+use super::stencil::Stencil;
 use crate::bake::fibers::Direction;
 
 /// What the ring of a vertex measures as a whole.

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{Vec2, Vec3};
 
-use super::{is_quad, normal};
-use crate::garment::check::corners;
+use crate::garment::check::{corners, is_quad};
 use crate::garment::shape::Face;
 
 /// A face whose steepest direction rises less than this (sine of 10 degrees) lies flat: noise would choose its warp.
@@ -123,6 +122,13 @@ fn within(positions: &[Vec3], face: &Face, direction: Vec3) -> Vec3 {
 /// The same as a unit vector, if there is any.
 fn along(positions: &[Vec3], face: &Face, direction: Vec3) -> Option<Vec3> {
     within(positions, face, direction.normalize_or_zero()).try_normalize()
+}
+
+/// Unit normal of a face, zero if it has no area.
+pub(super) fn normal(positions: &[Vec3], face: &Face) -> Vec3 {
+    let p = |k: usize| positions[face[k] as usize];
+    let across = if is_quad(face) { (p(2) - p(0)).cross(p(3) - p(1)) } else { (p(1) - p(0)).cross(p(2) - p(0)) };
+    across.normalize_or_zero()
 }
 
 /// The faces that share a side with each face.

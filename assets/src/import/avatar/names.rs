@@ -289,7 +289,7 @@ mod tests {
     /// The joint map of the shared data: what its columns say about each of our joints is in our tables.
     #[test]
     fn the_tables_agree_with_the_joint_map() {
-        let Some(folder) = crate::import::avatar::tests::data() else { return };
+        let Some(folder) = crate::recordings::folder() else { return };
         let text = std::fs::read_to_string(folder.join("protocols/joint_map.csv")).unwrap();
         let mut rows = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
         let head = rows.next().unwrap();

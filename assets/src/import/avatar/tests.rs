@@ -1,6 +1,5 @@
 //! Laws of imports.
 
-use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use glam::{Mat4, Vec3};
@@ -12,16 +11,6 @@ use crate::export::{DressedBody, glb};
 use crate::limits::MAX_BODY_VERTICES;
 
 mod damage;
-
-/// The folder of shared data; nothing, with a word, where it is not there and need not be.
-pub(crate) fn data() -> Option<PathBuf> {
-    let Some(folder) = std::env::var_os("TOILE_DATA") else {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA is not set: point it at the shared data");
-        eprintln!("skipped: TOILE_DATA is not set");
-        return None;
-    };
-    Some(folder.into())
-}
 
 /// Our own female body, and its GLB file: every import test begins with it.
 static OURS: LazyLock<Body> =

@@ -7,6 +7,7 @@
 
 mod files;
 pub mod girths;
+mod mesh;
 mod rig;
 
 use std::path::Path;
@@ -15,14 +16,12 @@ use glam::{Vec2, Vec3};
 
 use super::avatar::raw::{RawBody, RawInfluences, RawJoint};
 use super::avatar::{AvatarError, Flaw, ImportOptions, ImportedBody, names, settle};
-use super::plain::parse_obj;
 use crate::garment::shape::NO_VERTEX;
 use crate::limits::IMPORT_INFLUENCES;
-use files::{json_gz, targets, text};
+use files::{json_gz, targets};
 use girths::MakehumanGirths;
-
-/// Vertices of the body: those after them are helpers, eyes, teeth and the cubes that mark joints.
-pub const BODY_VERTICES: usize = 13_380;
+pub use mesh::BODY_VERTICES;
+use mesh::MakehumanMesh;
 
 /// What a body is made of.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,16 +47,6 @@ pub struct MakehumanBody {
     pub girths: MakehumanGirths,
 }
 
-/// The base with targets added.
-struct MakehumanMesh {
-    /// All vertices (dm).
-    positions: Vec<Vec3>,
-    /// Faces of the body.
-    faces: Vec<[u32; 4]>,
-    /// The vertices of each group that marks a joint.
-    cubes: Vec<(String, Vec<u32>)>,
-}
-
 /// Makes a body of a folder's files. Texture coordinates are left out: they belong to corners, not to vertices, and
 /// cutting the mesh along their seams would open its closed surface.
 ///
@@ -71,22 +60,6 @@ pub fn read(folder: &Path, choice: &MakehumanOptions, options: &ImportOptions) -
     let raw = raw(folder, &choice.rig, &base)?;
     let imported = settle(raw, options).map_err(|flaw| flaw.of(folder))?;
     Ok(MakehumanBody { imported, girths })
-}
-
-impl MakehumanMesh {
-    fn read(folder: &Path) -> Result<Self, AvatarError> {
-        let path = folder.join("base.obj");
-        let text = text(&path)?;
-        let wrong = |reason: String| Flaw::Syntax { reason }.of(&path);
-        let mesh = parse_obj(&text).map_err(wrong)?;
-        if mesh.positions.len() <= BODY_VERTICES {
-            let count = mesh.positions.len();
-            return Err(wrong(format!("it has {count} vertices, too few for hm08; give the folder of that base mesh")));
-        }
-        let body = |face: &&[u32; 4]| face.iter().all(|v| (*v as usize) < BODY_VERTICES || *v == NO_VERTEX);
-        let faces = mesh.faces.iter().filter(body).copied().collect();
-        Ok(Self { positions: mesh.positions, faces, cubes: rig::cubes(&text) })
-    }
 }
 
 /// A rig's name is part of a file's name, and leads to no other folder.

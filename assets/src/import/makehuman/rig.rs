@@ -1,39 +1,15 @@
 //! MakeHuman's rigs: each bone begins at the middle of a marking cube, of some vertices, or at one vertex.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use glam::Vec3;
 use serde_json::Value;
 
-use super::MakehumanMesh;
 use super::files::text;
+use super::mesh::MakehumanMesh;
 use crate::import::avatar::raw::RawJoint;
 use crate::import::avatar::{AvatarError, Flaw};
 use crate::limits::MAX_BODY_NODES;
-
-/// The vertices of each group of faces that marks a joint.
-pub(super) fn cubes(obj: &str) -> Vec<(String, Vec<u32>)> {
-    let mut groups: BTreeMap<&str, Vec<u32>> = BTreeMap::new();
-    let mut group = "";
-    for line in obj.lines() {
-        let mut words = line.split_whitespace();
-        match words.next() {
-            Some("g") => group = words.next().unwrap_or_default(),
-            Some("f") if group.starts_with("joint-") => {
-                let corners = words.filter_map(|w| w.split('/').next()?.parse::<u32>().ok()?.checked_sub(1));
-                groups.entry(group).or_default().extend(corners);
-            }
-            _ => {}
-        }
-    }
-    let sorted = |(name, mut vertices): (&str, Vec<u32>)| {
-        vertices.sort_unstable();
-        vertices.dedup();
-        (name.to_owned(), vertices)
-    };
-    groups.into_iter().map(sorted).collect()
-}
 
 /// The bones of a rig, each where it begins on the base (dm).
 pub(super) fn joints(path: &Path, base: &MakehumanMesh) -> Result<Vec<RawJoint>, AvatarError> {

@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::*;
 use crate::import::avatar::surface::SurfaceCheck;
-use crate::import::avatar::tests::data;
 use crate::skeleton::Joint;
 
 fn folder() -> Option<PathBuf> {
-    data().map(|folder| folder.join("body/makehuman-hm08"))
+    Some(crate::recordings::folder()?.join("body/makehuman-hm08"))
 }
 
 fn with(targets: &[(&str, f32)]) -> MakehumanOptions {

@@ -67,15 +67,17 @@ const RAMP_S: f64 = 1.0;
 /// How far the root rises and falls, twice a cycle (m).
 const BOB_M: f64 = 0.02;
 
-/// Motion of the body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Motion {
-    /// Walks on the spot: 1 Hz, legs 30 degrees to and fro, 0.05 m of sway, 10 degrees of yaw.
-    Walk,
-    /// The same in a hurry: 2 Hz, 50 degrees, 0.10 m, 45 degrees.
-    Fast,
-    /// Stands still: all amplitudes are 0.
-    Settled,
+named! {
+    /// Motion of the body.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Motion {
+        /// Walks on the spot: 1 Hz, legs 30 degrees to and fro, 0.05 m of sway, 10 degrees of yaw.
+        Walk = "walk",
+        /// The same in a hurry: 2 Hz, 50 degrees, 0.10 m, 45 degrees.
+        Fast = "fast",
+        /// Stands still: all amplitudes are 0.
+        Settled = "settled",
+    }
 }
 
 impl Motion {

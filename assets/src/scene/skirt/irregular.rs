@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use delaunator::{Point, triangulate};
 use glam::DVec3;
 
-use super::{HEIGHT, RADIUS, hem, point, push};
+use super::surface::{HEIGHT, RADIUS, hem, point, push};
 use crate::garment::Shape;
 use crate::garment::shape::NO_VERTEX;
 use crate::numeric::random::SplitMix64;

@@ -9,18 +9,19 @@
 
 mod body;
 mod irregular;
+mod surface;
 
 use std::f64::consts::TAU;
-use std::ops::Range;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use crate::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
-use crate::garment::{Part, Shape};
-use crate::mesh::SkinWeights;
+use crate::garment::Shape;
 
 pub use body::{CAPSULES, JOINTS, Motion, SPHERES, root, spheres};
 pub use irregular::irregular;
+pub use surface::hem;
+use surface::{point, push};
 
 /// Mass of the whole skirt, the pinned ring included (kg).
 pub const MASS_KG: f32 = 0.31;
@@ -28,23 +29,19 @@ pub const MASS_KG: f32 = 0.31;
 /// The scene's wind: velocity (m/s), drag and lift coefficient.
 pub const WIND: (Vec3, f32, f32) = (Vec3::new(1.0, 0.0, 0.5), 0.1, 0.05);
 
-/// Radius at the pinned ring (m), and how much wider the hem is.
-const RADIUS: [f64; 2] = [0.18, 0.24];
-
-/// Height of the pinned ring (m), and how far below it the hem starts.
-const HEIGHT: [f64; 2] = [1.08, 0.78];
-
 /// Part of its speed that the cloth keeps after a second in the air.
 const KEPT_AFTER_1_S: f32 = 0.35;
 
-/// How the skirt's threads stretch.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Stretch {
-    /// Not at all: what is measured is the solver's error alone.
-    #[default]
-    Inextensible,
-    /// As woven cloth: 2,000 N/m along warp and weft.
-    Physical,
+named! {
+    /// How the skirt's threads stretch.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum Stretch {
+        /// Not at all: what is measured is the solver's error alone.
+        #[default]
+        Inextensible = "inextensible",
+        /// As woven cloth: 2,000 N/m along warp and weft.
+        Physical = "physical",
+    }
 }
 
 impl Stretch {
@@ -77,11 +74,6 @@ pub fn shape(n: usize) -> Shape {
     shape
 }
 
-/// The vertices of the hem in their order around it, of the grid and of the irregular mesh alike.
-pub fn hem(n: usize) -> Range<usize> {
-    n * n - n..n * n
-}
-
 /// The fabric of a skirt: of a density that gives it [`MASS_KG`], shear 100 N/m, and the bending of the median of 618
 /// measured fabrics. Cloth is kept 1 mm off the body, which is less than half the thickness of the lightest of them and
 /// more than what f32 and a substep's motion leave open.
@@ -108,18 +100,6 @@ pub fn fabric(shape: &Shape, stretch: Stretch) -> Fabric {
         threads_per_cm: USUAL_THREADS,
         sheen: USUAL_SHEEN,
     }
-}
-
-/// The point of the cone at `u` (0 ring, 1 hem) and an angle (rad).
-fn point(u: f64, angle: f64) -> DVec3 {
-    let r = RADIUS[0] + RADIUS[1] * u;
-    DVec3::new(r * angle.cos(), HEIGHT[0] - HEIGHT[1] * u, r * angle.sin())
-}
-
-fn push(shape: &mut Shape, p: DVec3, fixed: bool) {
-    let p: Vec3 = p.as_vec3();
-    shape.push(p, p, fixed, Part::All);
-    shape.weights.push(SkinWeights { bones: [0; 4], weights: [1.0, 0.0, 0.0, 0.0] });
 }
 
 #[cfg(test)]

@@ -8,13 +8,17 @@ use clap::Subcommand;
 
 use crate::exit::AppError;
 
+pub(super) mod backend;
 mod body;
 mod depth;
 mod filters;
 mod gestures;
+mod gestures_report;
 mod measure;
 mod skinning;
+mod skinning_report;
 mod skirt;
+mod skirt_summary;
 
 /// Time one part of the frame, with the error at that speed.
 #[derive(Debug, Clone, PartialEq, Subcommand)]

@@ -8,6 +8,7 @@ use std::time::Instant;
 use glam::Vec3;
 use serde::Serialize;
 use toile_assets::body::Body;
+use toile_assets::numeric::statistics::quantile;
 use toile_assets::rig::{MEAN_GOAL_MM, P95_GOAL_MM, Rig};
 use toile_perf::people;
 use toile_view::contact_sheet;
@@ -222,8 +223,7 @@ fn worst(text: &mut String, report: &CollidersReport, paint: Paint) {
         let _ = writeln!(text, "{:10}{figures}", zone.zone);
     }
     let mut times: Vec<f64> = report.bodies.iter().map(|b| b.fit_ms).collect();
-    times.sort_by(f64::total_cmp);
-    let (median, longest) = (times.get(count / 2).copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
+    let [median, longest] = [0.5, 1.0].map(|share| quantile(&mut times, share).unwrap_or(0.0));
     let _ = writeln!(text, "a fit takes {median:.0} ms (median), {longest:.0} ms (max), once a body");
     for [name, zone] in &report.missed {
         let _ = writeln!(text, "{}", paint.tone(&format!("{name} misses the goal at the {zone}"), Tone::Warn));

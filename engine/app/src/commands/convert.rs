@@ -48,26 +48,17 @@ pub struct ConvertArgs {
     printing: Printing,
 }
 
-/// Which depth a converted session keeps.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum KeptDepth {
-    /// None: nothing that shows a person is written.
-    #[default]
-    None,
-    /// The shopper's pixels alone; frames without one are empty.
-    Shopper,
-    /// The whole image of every frame.
-    All,
-}
-
-impl KeptDepth {
-    /// Its name on the command line.
-    fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Shopper => "shopper",
-            Self::All => "all",
-        }
+toile_assets::named! {
+    /// Which depth a converted session keeps.
+    #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+    pub enum KeptDepth {
+        /// None: nothing that shows a person is written.
+        #[default]
+        None = "none",
+        /// The shopper's pixels alone; frames without one are empty.
+        Shopper = "shopper",
+        /// The whole image of every frame.
+        All = "all",
     }
 }
 

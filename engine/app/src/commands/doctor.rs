@@ -9,8 +9,8 @@ mod processor;
 mod rights;
 mod surroundings;
 
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use toile_assets::put_line;
 
 use serde::Serialize;
 
@@ -108,15 +108,14 @@ fn table(report: &DoctorReport, paint: Paint) -> String {
             Status::Missing => ("missing", Tone::Warn),
             Status::Unknown => ("unknown", Tone::Strong),
         };
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{}  {:width$}  {}", paint.tone(word, tone), check.name, check.found);
+        put_line!(text, "{}  {:width$}  {}", paint.tone(word, tone), check.name, check.found);
         if let Some(cure) = &check.cure {
-            let _ = writeln!(text, "         {:width$}  for {}: {cure}", "", check.needed_for);
+            put_line!(text, "         {:width$}  for {}: {cure}", "", check.needed_for);
         }
     }
     let missing = report.checks.iter().filter(|c| c.status == Status::Missing).count();
     let ready = if report.ready { "`toile try-on` can run here" } else { "`toile try-on` cannot run here yet" };
-    let _ = writeln!(text, "\n{ready}; missing: {missing}.");
+    put_line!(text, "\n{ready}; missing: {missing}.");
     text
 }
 

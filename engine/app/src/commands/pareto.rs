@@ -1,7 +1,7 @@
 //! `toile pareto`: speed against error.
 
-use std::fmt::Write;
 use std::path::PathBuf;
+use toile_assets::put_line;
 
 use clap::builder::PossibleValuesParser;
 use toile_perf::pareto::{self, Drape, ParetoOptions, ParetoReport, Point, SCENES, SceneReport};
@@ -75,13 +75,13 @@ fn table(report: &ParetoReport, paint: Paint) -> String {
 
 fn fronts(text: &mut String, report: &ParetoReport, scene: &SceneReport, paint: Paint) {
     let title = format!("{}, {}, {} particles, one thread", scene.scene, scene.mesh, scene.particles);
-    line(text, &paint.tone(&title, Tone::Strong));
-    line(text, &format!("  x*: {}; itself uncertain by about {:.3} mm", scene.reference, scene.reference_gap_mm));
-    line(text, &format!("  {:>9} {:>9} {:>9} {:>9}  setting", "step us", "mean mm", "max mm", "strain %"));
+    put_line!(text, "{}", paint.tone(&title, Tone::Strong));
+    put_line!(text, "  x*: {}; itself uncertain by about {:.3} mm", scene.reference, scene.reference_gap_mm);
+    put_line!(text, "  {:>9} {:>9} {:>9} {:>9}  setting", "step us", "mean mm", "max mm", "strain %");
     let mine = |p: &&Point| p.scene == scene.scene && p.mesh == scene.mesh && p.threads == 1;
     let mut front: Vec<&Point> = report.points.iter().filter(mine).filter(|p| p.on_front).collect();
     front.sort_by(|a, b| a.step_us.total_cmp(&b.step_us));
-    front.iter().for_each(|p| line(text, &row(p)));
+    front.iter().for_each(|p| put_line!(text, "{}", row(p)));
     for own in report.points.iter().filter(mine).filter(|p| p.default && p.quality == "shop") {
         let (verdict, tone) =
             if own.on_front { ("on the front", Tone::Good) } else { ("not on the front", Tone::Warn) };
@@ -89,9 +89,9 @@ fn fronts(text: &mut String, report: &ParetoReport, scene: &SceneReport, paint: 
             "  the default, shop with {} substeps, is {verdict}: {:.0} us, {:.3} mm",
             own.substeps, own.step_us, own.error_mm
         );
-        line(text, &paint.tone(&sentence, tone));
+        put_line!(text, "{}", paint.tone(&sentence, tone));
     }
-    line(text, "");
+    put_line!(text);
 }
 
 fn row(p: &Point) -> String {
@@ -110,14 +110,17 @@ fn row(p: &Point) -> String {
 }
 
 fn samplings(text: &mut String, drape: &Drape, paint: Paint) {
-    line(text, &paint.tone("drape", Tone::Strong));
-    line(text, &format!("  {}", drape.setup));
-    line(
+    put_line!(text, "{}", paint.tone("drape", Tone::Strong));
+    put_line!(text, "  {}", drape.setup);
+    put_line!(
         text,
-        &format!(
-            "  {:>9} {:>9} {:>9} {:>9} {:>12} {:>9}",
-            "cm", "particles", "mean cm", "max cm", "published cm", "step us"
-        ),
+        "  {:>9} {:>9} {:>9} {:>9} {:>12} {:>9}",
+        "cm",
+        "particles",
+        "mean cm",
+        "max cm",
+        "published cm",
+        "step us"
     );
     for s in &drape.samplings {
         let published = s.published_cm.map_or_else(|| "-".into(), |cm| format!("{cm:.2}"));
@@ -125,13 +128,8 @@ fn samplings(text: &mut String, drape: &Drape, paint: Paint) {
             "  {:>9} {:>9} {:>9.3} {:>9.2} {published:>12} {:>9.0}",
             s.spacing_cm, s.particles, s.mean_cm, s.max_cm, s.step_us
         );
-        line(text, &row);
+        put_line!(text, "{row}");
     }
-}
-
-fn line(text: &mut String, words: &str) {
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "{words}");
 }
 
 #[cfg(test)]

@@ -208,7 +208,6 @@ fn report(runner: &Runner, args: &RunArgs, dumped: u64, yardstick_us: Option<f64
         fabric: given.fabric.name.clone(),
         mass_kg: given.mass_kg,
     });
-    let times = figures.step_us;
     RunReport {
         scene: scene.name.clone(),
         garments: garments.collect(),
@@ -222,7 +221,7 @@ fn report(runner: &Runner, args: &RunArgs, dumped: u64, yardstick_us: Option<f64
         quality: settings.quality.name(),
         substeps: runner.cloths().iter().map(Cloth::substeps).max().unwrap_or_default(),
         lanes: settings.width.lanes(),
-        step_us: report::StepMicros { p50: times.p50, p99: times.p99, p999: times.p999, max: times.max },
+        step_us: figures.step_us,
         stages_us: METERED_STAGES.into_iter().zip(figures.stages_us).collect(),
         yardstick_us,
         allocations_per_step: figures.allocations_per_step,

@@ -320,18 +320,11 @@ fn table(report: &SoakDocument, paint: Paint) -> String {
 
 #[cfg(test)]
 mod tests {
-    use clap::Parser;
-
     use super::*;
-
-    #[derive(Parser)]
-    struct Line {
-        #[command(flatten)]
-        args: SoakArgs,
-    }
+    use crate::arguments::parsed;
 
     fn options(line: &str) -> Result<SoakOptions, AppError> {
-        Line::try_parse_from(line.split_whitespace()).map_err(AppError::input)?.args.options()
+        parsed::<SoakArgs>(line).map_err(AppError::input)?.options()
     }
 
     #[test]

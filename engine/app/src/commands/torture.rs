@@ -9,8 +9,8 @@ use serde::Serialize;
 use toile_engine::cloth::Quality;
 use toile_perf::torture::{self, CASES, CaseSummary, SEEDS, TortureOptions, TortureReport};
 
-use crate::arguments::{BackendArg, Printing, one_of};
-use crate::backend;
+use super::bench::backend;
+use crate::arguments::{BackendArg, Printing, quality};
 use crate::exit::AppError;
 use crate::report::Document;
 use crate::terminal::{self, Paint, Tone};
@@ -37,12 +37,7 @@ pub struct TortureArgs {
     #[arg(long, value_name = "S", value_parser = value_parser!(u64).range(..u64::MAX))]
     pub seed: Option<u64>,
     /// Settings of the cloth where a case does not choose its own: draft, shop or fine
-    #[arg(
-        long,
-        value_name = "Q",
-        value_parser = one_of(Quality::ALL, Quality::name),
-        default_value = Quality::default().name()
-    )]
+    #[arg(long, value_name = "Q", value_parser = quality(), default_value = Quality::default().name())]
     pub quality: Quality,
     #[command(flatten)]
     backend: BackendArg,
@@ -133,19 +128,13 @@ fn figure(value: Option<f64>, digits: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use clap::Parser;
     use toile_gpu::backend::Backend;
 
     use super::*;
-
-    #[derive(Parser)]
-    struct Line {
-        #[command(flatten)]
-        args: TortureArgs,
-    }
+    use crate::arguments::parsed;
 
     fn options(line: &str) -> Result<TortureOptions, clap::Error> {
-        Ok(Line::try_parse_from(line.split_whitespace())?.args.options())
+        Ok(parsed::<TortureArgs>(line)?.options())
     }
 
     #[test]

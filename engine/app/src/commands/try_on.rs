@@ -22,9 +22,10 @@ use toile_fitting::dress::measured::{self, Measured, ShopperFacts};
 use toile_fitting::dress::player::Player;
 use toile_fitting::dress::wish::{self, Choice, Wish};
 use toile_fitting::dress::{body, session};
+use toile_fitting::scene::StepTimes;
 use toile_sensors::frame::Joints;
 
-use crate::arguments::{Printing, one_of};
+use crate::arguments::{Printing, one_of, quality};
 use crate::exit::AppError;
 use crate::output::Inputs;
 use crate::output::OutputFolder;
@@ -58,12 +59,7 @@ pub struct TryOnArgs {
     #[arg(long, value_name = "B", value_parser = Wearer::parse)]
     pub body: Option<Wearer>,
     /// Tested settings of the cloth: draft, shop or fine
-    #[arg(
-        long,
-        value_name = "Q",
-        value_parser = one_of(Quality::ALL, Quality::name),
-        default_value = Quality::default().name()
-    )]
+    #[arg(long, value_name = "Q", value_parser = quality(), default_value = Quality::default().name())]
     pub quality: Quality,
     /// Folder for the files; it is made if missing
     #[arg(long, value_name = "DIR", default_value = "out")]
@@ -375,12 +371,7 @@ fn physics(frame: &Frame) -> report::PhysicsReport {
         substeps: frame.cloths().iter().map(|c| c.substeps()).max().unwrap_or(0),
         particles: frame.garments().iter().map(Garment::particles).sum(),
         steps: frame.tick(),
-        step_us: report::StepMicros {
-            p50: us(0.5),
-            p99: us(0.99),
-            p999: us(0.999),
-            max: meters.step_ns.max() as f64 * 1e-3,
-        },
+        step_us: StepTimes { p50: us(0.5), p99: us(0.99), p999: us(0.999), max: meters.step_ns.max() as f64 * 1e-3 },
         strain: report::StrainReport {
             mean: f64::from(strain.mean),
             p99: f64::from(strain.p99),

@@ -1,14 +1,13 @@
 //! `toile validate`: the cloth against exact solutions.
 
-use std::fmt::Write;
-
 use clap::builder::PossibleValuesParser;
+use toile_assets::put_line;
 use toile_perf::validate::Level;
 use toile_perf::validate::case::ValidationRow;
 use toile_perf::validate::run::{self, NAMES, ValidationOptions, ValidationReport};
 
+use super::bench::backend;
 use crate::arguments::{BackendArg, Printing, count};
-use crate::backend;
 use crate::exit::AppError;
 use crate::report::Document;
 use crate::terminal::{self, Paint, Tone};
@@ -115,12 +114,12 @@ fn table(report: &ValidationReport, paint: Paint) -> String {
         "step us",
         ""
     );
-    line(&mut text, &paint.tone(head.trim_end(), Tone::Strong));
+    put_line!(text, "{}", paint.tone(head.trim_end(), Tone::Strong));
     for row in &report.cases {
-        line(&mut text, &row_text(row, paint));
+        put_line!(text, "{}", row_text(row, paint));
     }
     let ([passed, gated], threads, wall) = (report.passed, report.threads, report.wall_s);
-    line(&mut text, &format!("\n{passed} of {gated} targets met, {wall:.0} s on {threads} thread(s)"));
+    put_line!(text, "\n{passed} of {gated} targets met, {wall:.0} s on {threads} thread(s)");
     text
 }
 
@@ -165,27 +164,15 @@ fn percent(x: f64) -> String {
     format!("{x:+.digits$}")
 }
 
-fn line(text: &mut String, words: &str) {
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "{words}");
-}
-
 #[cfg(test)]
 mod tests {
-    use clap::Parser;
-
     use super::*;
-
-    #[derive(Parser)]
-    struct Line {
-        #[command(flatten)]
-        args: ValidateArgs,
-    }
+    use crate::arguments::parsed;
 
     #[test]
     fn a_case_and_a_quality_are_picked_and_unknown_ones_refused() {
-        let parsed = |line: &str| Line::try_parse_from(line.split_whitespace());
-        let options = parsed("validate cantilever --quality fine --every 6 --threads 1").unwrap().args.options();
+        let parsed = |line: &str| parsed::<ValidateArgs>(line);
+        let options = parsed("validate cantilever --quality fine --every 6 --threads 1").unwrap().options();
         assert_eq!(options.case.as_deref(), Some("cantilever"));
         assert_eq!((options.levels, options.every, options.threads), (vec![Level::GATED], 6, 1));
         assert!(parsed("validate cantilevr").is_err() && parsed("validate --quality best").is_err());

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use serde::Serialize;
+use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::events::ClothEvents;
 
-use super::{StepMicros, StrainReport};
+use super::StrainReport;
 
 /// One garment of `toile run`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -71,7 +72,7 @@ pub struct RunReport {
     /// Lanes that kernels ran on.
     pub lanes: usize,
     /// Time a step took, all garments.
-    pub step_us: StepMicros,
+    pub step_us: StepTimes,
     /// Mean time of each stage of a step, from one step in sixteen, which does not count above (us).
     pub stages_us: BTreeMap<&'static str, f64>,
     /// The benchmark's plain skinning loop on this machine (us): how fast it is; left out of the summary.

@@ -1,8 +1,12 @@
 //! The built program, as a script meets it.
 
+#![allow(dead_code, reason = "each test file uses its part")]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
 
 /// A folder of a test's own, empty; it goes with the test.
 pub struct Scratch(PathBuf);
@@ -33,4 +37,33 @@ impl Drop for Scratch {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.0);
     }
+}
+
+/// What a run printed.
+pub fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("stdout is UTF-8")
+}
+
+/// The one object that a run printed, which said nothing beside it.
+pub fn object(output: &Output) -> Value {
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.is_empty(), "with --json nothing is said: {said}");
+    serde_json::from_slice(&output.stdout).expect("stdout is exactly one JSON object")
+}
+
+/// The one line on stderr of a run.
+pub fn sentence(output: &Output) -> String {
+    let said = String::from_utf8(output.stderr.clone()).expect("stderr is UTF-8");
+    assert_eq!(said.lines().count(), 1, "not one line: {said}");
+    assert!(said.starts_with("toile: ") && said.ends_with('\n'), "{said}");
+    said
+}
+
+/// The sentence of a run that was refused with a code, and printed no data.
+pub fn refusal(output: &Output, code: i32) -> String {
+    let said = sentence(output);
+    assert_eq!(output.status.code(), Some(code), "{said}");
+    assert!(output.stdout.is_empty(), "data beside: {said}");
+    said
 }

@@ -1,8 +1,6 @@
 //! Laws of the pose on recordings of real sensors, found through `TOILE_DATA`: drops, bursts, inferred joints, wobbling
 //! bones and wrong feet are all in them, and none of it may show as a jump.
 
-use std::path::PathBuf;
-
 use glam::Vec3;
 use toile_assets::limits::{CONFIDENCE_GATE, STEP_SECONDS};
 use toile_assets::numeric::statistics;
@@ -64,16 +62,6 @@ fn quantile(values: &mut [f32], share: f64) -> f32 {
 
 fn mean(values: &[f32]) -> f32 {
     values.iter().sum::<f32>() / values.len().max(1) as f32
-}
-
-/// The folder of recordings; where it is not given, tests that need it are skipped, but not in continuous integration.
-fn data() -> Option<PathBuf> {
-    let folder = std::env::var_os("TOILE_DATA").map(PathBuf::from);
-    if folder.is_none() {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA must name the folder of recordings");
-        eprintln!("skipped: TOILE_DATA does not name the folder of recordings");
-    }
-    folder
 }
 
 fn filtered(file: &str, data: &std::path::Path) -> Vec<Joints> {
@@ -161,7 +149,7 @@ impl Figures {
 
 #[test]
 fn recordings_are_followed_without_jumps_slides_or_feet_in_the_floor() {
-    let Some(data) = data() else { return };
+    let Some(data) = crate::recordings::folder() else { return };
     for file in KINECT.into_iter().chain(MOCAP) {
         let track = filtered(file, &data);
         for feed in [Feed::Latest, Feed::Sampled] {
@@ -180,7 +168,7 @@ fn recordings_are_followed_without_jumps_slides_or_feet_in_the_floor() {
 
 #[test]
 fn who_stands_in_a_recording_stands_and_who_jumps_leaves_the_floor() {
-    let Some(data) = data() else { return };
+    let Some(data) = crate::recordings::folder() else { return };
     let air = |file| watch(&filtered(file, &data), Feed::Latest).air();
     for file in &KINECT[1..4] {
         assert_eq!(air(*file), 0.0, "{file}");

@@ -1,6 +1,5 @@
 //! How the cloth is stepped.
 
-use std::fmt;
 use std::str::FromStr;
 
 use glam::Vec3A;
@@ -11,44 +10,28 @@ use super::wind::Wind;
 use crate::lanes::Width;
 use crate::workers::SHARES;
 
-/// Tested combinations of substeps and of what is solved in each.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Quality {
-    /// Every set once a substep, and tethers.
-    Draft,
-    /// Hoops and fibers twice a substep: what a shop shows.
-    #[default]
-    Shop,
-    /// The same in three times as many substeps, shear in each of them: on the garments that Toile has, nearer to the truth
-    /// for its time than whole hoops in fewer (`toile pareto`).
-    Fine,
+toile_assets::named! {
+    /// Tested combinations of substeps and of what is solved in each, cheapest first.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Quality {
+        /// Every set once a substep, and tethers.
+        Draft = "draft",
+        /// Hoops and fibers twice a substep: what a shop shows.
+        #[default]
+        Shop = "shop",
+        /// The same in three times as many substeps, shear in each of them: on the garments that Toile has, nearer to the truth
+        /// for its time than whole hoops in fewer (`toile pareto`).
+        Fine = "fine",
+    }
 }
 
 impl Quality {
-    /// Every quality, cheapest first.
-    pub const ALL: [Self; 3] = [Self::Draft, Self::Shop, Self::Fine];
-
-    /// Its name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Draft => "draft",
-            Self::Shop => "shop",
-            Self::Fine => "fine",
-        }
-    }
-
     /// Substeps for a garment that asks for so many at `Shop`.
     pub fn substeps(self, shop: u32) -> u32 {
         match self {
             Self::Draft | Self::Shop => shop,
             Self::Fine => 3 * shop,
         }
-    }
-}
-
-impl fmt::Display for Quality {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
     }
 }
 

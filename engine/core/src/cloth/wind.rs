@@ -77,20 +77,17 @@ struct FaceGroup {
     mass: Box<[f32]>,
 }
 
-/// Which part of the triangles: the first two may be done at once, the third after both.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum WindPart {
-    /// All corners owned by worker 0.
-    First,
-    /// All corners owned by worker 1.
-    Second,
-    /// Corners of both.
-    Crossing,
-}
-
-impl WindPart {
-    /// All of them, in their order.
-    pub const ALL: [Self; 3] = [Self::First, Self::Second, Self::Crossing];
+toile_assets::named! {
+    /// Which part of the triangles: the first two may be done at once, the third after both.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum WindPart {
+        /// All corners owned by worker 0.
+        First,
+        /// All corners owned by worker 1.
+        Second,
+        /// Corners of both.
+        Crossing,
+    }
 }
 
 /// A garment's triangles as the wind needs them. Made at load.

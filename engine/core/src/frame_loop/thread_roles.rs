@@ -8,30 +8,22 @@
 
 use thread_priority::{ThreadPriority, ThreadPriorityValue};
 
-/// What a thread does in the loop.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ThreadRole {
-    /// Reads and filters the sensor.
-    Sensor,
-    /// Steps the scene.
-    Physics,
-    /// Shares the physics' cloth.
-    Worker,
-    /// Draws pictures of the newest snapshot.
-    Render,
+toile_assets::named! {
+    /// What a thread does in the loop. Its thread has its name, with `toile-` before it.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum ThreadRole {
+        /// Reads and filters the sensor.
+        Sensor = "sensor",
+        /// Steps the scene.
+        Physics = "physics",
+        /// Shares the physics' cloth.
+        Worker = "worker",
+        /// Draws pictures of the newest snapshot.
+        Render = "render",
+    }
 }
 
 impl ThreadRole {
-    /// Its name in reports, and of its thread with `toile-` before it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Sensor => "sensor",
-            Self::Physics => "physics",
-            Self::Worker => "worker",
-            Self::Render => "render",
-        }
-    }
-
     /// Real-time priority, 1 to 99 on Linux; none where a thread may be late. Below 50, where Linux has its interrupt threads.
     /// A sensor frame is worth less than the step that it would hold up.
     pub fn priority(self) -> Option<u8> {

@@ -25,13 +25,6 @@ impl Store {
         Self { lines: vec![CacheLine([0.0; MOST]); len.div_ceil(MOST)].into(), len }
     }
 
-    /// The numbers of an iterator.
-    pub fn collect(values: impl ExactSizeIterator<Item = f32>) -> Self {
-        let mut this = Self::zeros(values.len());
-        this.as_mut().iter_mut().zip(values).for_each(|(to, v)| *to = v);
-        this
-    }
-
     /// Its numbers, without the padding behind them.
     pub fn as_slice(&self) -> &[f32] {
         &bytemuck::cast_slice(&self.lines)[..self.len]

@@ -25,23 +25,22 @@ pub use math::{V3, reciprocal_root, times_reciprocal_root};
 pub use traits::{Kernel, Lanes, Mask, Numbers};
 pub use two::Two;
 
-/// How many lanes kernels run on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Width {
-    /// Plain f32: the twin that the others are held against.
-    One,
-    /// What every x86-64 and aarch64 has.
-    Four,
-    /// 256 bits at once: AVX2.
-    Eight,
-    /// 512 bits at once: AVX-512.
-    Sixteen,
+toile_assets::named! {
+    /// How many lanes kernels run on, narrowest first.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+    pub enum Width {
+        /// Plain f32: the twin that the others are held against.
+        One,
+        /// What every x86-64 and aarch64 has.
+        Four,
+        /// 256 bits at once: AVX2.
+        Eight,
+        /// 512 bits at once: AVX-512.
+        Sixteen,
+    }
 }
 
 impl Width {
-    /// All widths, narrowest first.
-    pub const ALL: [Self; 4] = [Self::One, Self::Four, Self::Eight, Self::Sixteen];
-
     /// Number of lanes.
     pub fn lanes(self) -> usize {
         match self {

@@ -14,9 +14,7 @@ mod prune;
 #[cfg(test)]
 mod tests;
 
-use std::fmt;
 use std::ops::Range;
-use std::str::FromStr;
 
 use glam::{Affine3A, Vec3};
 use toile_assets::mesh::Influences;
@@ -35,43 +33,18 @@ pub use prune::{Pruning, pruning};
 use kernel::{Dual, Linear, SkinSurface};
 use layout::SkinLayout;
 
-/// How the motions of a vertex' bones become one.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
-pub enum Blend {
-    /// The weighted sum of their matrices: for palettes of any kind. Thins bent joints and twisted limbs; the skeleton's
-    /// twist bones keep it from the latter.
-    #[default]
-    Linear,
-    /// The weighted sum of their dual quaternions (Kavan, Collins, Zara, O'Sullivan 2008, "Geometric skinning with
-    /// approximate dual quaternion blending"): for palettes of rotations and translations. Keeps twisted limbs whole;
-    /// bent joints bulge.
-    Dual,
-}
-
-impl Blend {
-    /// Both ways of blending.
-    pub const ALL: [Self; 2] = [Self::Linear, Self::Dual];
-
-    /// Its name in reports and options.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Linear => "linear",
-            Self::Dual => "dual",
-        }
-    }
-}
-
-impl fmt::Display for Blend {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Blend {
-    type Err = ();
-
-    fn from_str(name: &str) -> Result<Self, ()> {
-        Self::ALL.into_iter().find(|b| b.name() == name).ok_or(())
+toile_assets::named! {
+    /// How the motions of a vertex' bones become one.
+    #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+    pub enum Blend {
+        /// The weighted sum of their matrices: for palettes of any kind. Thins bent joints and twisted limbs; the skeleton's
+        /// twist bones keep it from the latter.
+        #[default]
+        Linear = "linear",
+        /// The weighted sum of their dual quaternions (Kavan, Collins, Zara, O'Sullivan 2008, "Geometric skinning with
+        /// approximate dual quaternion blending"): for palettes of rotations and translations. Keeps twisted limbs whole;
+        /// bent joints bulge.
+        Dual = "dual",
     }
 }
 

@@ -6,10 +6,11 @@
 //! far from it, wind, tethers.
 
 use std::hint::black_box;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use glam::Vec3;
 use toile_assets::body::Body;
+use toile_assets::numeric::statistics::quantile;
 use toile_assets::rig::Rig;
 use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_engine::cloth::{Settings, program};
@@ -31,9 +32,6 @@ const TIMED: usize = 40;
 
 /// Steps of the frame without garments.
 const EMPTY_STEPS: usize = 60;
-
-/// What a frame does between waking the helper and the cloth takes at least so long.
-const BEFORE_CLOTH: Duration = Duration::from_micros(80);
 
 /// The colliders that all of them lie on: the benchmark's body, walking.
 const WALKING: &str = "duration = 7\n[colliders]\nmotion = \"walk\"\n";
@@ -136,7 +134,7 @@ fn meeting_us(scene: &Scene, costs: &Costs) -> Result<f64, PlanError> {
     let mut nobody = WorkerPool::new(1)?;
     for step in 0..WARM_UP + TIMED {
         playing.place();
-        wake(&mut pool);
+        timing::wake(&mut pool);
         let begun = Instant::now();
         playing.take(&scene.settings, &mut pool);
         let two = begun.elapsed();
@@ -153,15 +151,6 @@ fn meeting_us(scene: &Scene, costs: &Costs) -> Result<f64, PlanError> {
     let rest = costs.garment(&work).stages_us[STAGES.len() - 1];
     let (two, one) = (quartile(&mut times), quartile(&mut one));
     Ok(((two - rest - (one - rest) * work.share) / work.phases).max(0.0))
-}
-
-fn wake(pool: &mut WorkerPool) {
-    if pool.wake() {
-        let woken = Instant::now();
-        while woken.elapsed() < BEFORE_CLOTH {
-            std::hint::spin_loop();
-        }
-    }
 }
 
 /// The stages of a frame in which nothing is worn (us).
@@ -192,9 +181,5 @@ fn copy_us() -> f64 {
 
 /// The lower quartile: what a machine takes where nothing else wants it, in most of the times.
 pub(super) fn quartile(values: &mut [f64]) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let quarter = values.len() / 4;
-    *values.select_nth_unstable_by(quarter, f64::total_cmp).1
+    quantile(values, 0.25).unwrap_or(0.0)
 }

@@ -8,6 +8,7 @@ use std::time::Instant;
 use glam::Vec3A;
 use serde::Serialize;
 use toile_assets::garment::Garment;
+use toile_assets::numeric::statistics::{quantile, quantile_of};
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, Wind};
 use toile_engine::workers::WorkerPool;
 
@@ -89,12 +90,10 @@ pub fn play(scene: &Scene, workers: usize) -> Result<Played, PlanError> {
             times.push(begun.elapsed().as_secs_f64() * 1e6);
         }
     }
-    times.sort_unstable_by(f64::total_cmp);
-    let at = |q: f64| times.get(((times.len() as f64 * q) as usize).min(times.len().saturating_sub(1))).copied();
     let as_is = tallies.remove(0);
     let stages_us = as_is.stages_us();
     let models = variants[1..].iter().zip(tallies).map(|(v, tally)| tally.weighed(v, &as_is)).collect();
-    let cloth_us = [0.5, 0.99].map(|q| at(q).unwrap_or(0.0));
+    let cloth_us = [0.5, 0.99].map(|share| quantile(&mut times, share).unwrap_or(0.0));
     let near = playing.cloths.iter().map(|c| c.contact_counts().near).sum::<u64>() / steps.max(1) as u64;
     Ok(Played { cloth_us, near, stages_us, steps: times.len(), moments, models })
 }
@@ -153,17 +152,14 @@ impl Tally {
     }
 
     fn weighed(mut self, variant: &Variant, as_is: &Self) -> Weighed {
-        self.apart_mm.sort_unstable_by(f32::total_cmp);
         let n = self.apart_mm.len();
         let mean = self.apart_mm.iter().map(|mm| f64::from(*mm)).sum::<f64>() / n.max(1) as f64;
-        let at = |rank: usize| self.apart_mm.get(rank).map_or(0.0, |mm| f64::from(*mm));
+        let [p99, max] = [0.99, 1.0].map(|share| quantile(&mut self.apart_mm, share).map_or(0.0, f64::from));
         // Window by window, so that a machine that changes its pace does not count.
-        let mut more: Vec<f64> = as_is.times_us.iter().zip(&self.times_us).map(|(a, b)| a - b).collect();
-        more.sort_unstable_by(f64::total_cmp);
-        let us = more.get(more.len() / 2).copied().unwrap_or(0.0);
+        let more = as_is.times_us.iter().zip(&self.times_us).map(|(a, b)| a - b);
+        let us = quantile_of(more, 0.5).unwrap_or(0.0);
         let us = if variant.on { us } else { -us };
-        let error_mm = [mean, at(n * 99 / 100), at(n.saturating_sub(1))];
-        Weighed { model: variant.model, on: variant.on, error_mm, us }
+        Weighed { model: variant.model, on: variant.on, error_mm: [mean, p99, max], us }
     }
 }
 

@@ -13,10 +13,12 @@ pub mod yardstick;
 use std::time::Instant;
 
 use glam::{Affine3A, Vec3, Vec4};
+use serde::Serialize;
 use thiserror::Error;
 use toile_assets::bake::bake;
 use toile_assets::garment::{Garment, MeshError};
 use toile_assets::limits::MAX_SPHERES;
+use toile_assets::numeric::hash;
 use toile_assets::scene_file::{SceneFile, SceneGarment};
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::program::METERED_STAGES;
@@ -49,7 +51,7 @@ pub enum RunError {
 }
 
 /// The distribution of a step's time (us).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct StepTimes {
     /// Median (us).
     pub p50: f64,
@@ -288,9 +290,7 @@ impl Runner {
         let garments = self.cloths.iter().zip(&self.garments);
         let particles = garments.flat_map(|(c, g)| particle_of(g).into_iter().map(move |i| state(c, i)));
         let numbers = particles.flatten().flat_map(|v| v.to_array());
-        numbers
-            .flat_map(|x| x.to_bits().to_le_bytes())
-            .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+        hash::of_numbers(numbers)
     }
 }
 

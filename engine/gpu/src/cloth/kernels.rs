@@ -4,61 +4,63 @@ use crate::shader::LANES;
 
 pub use crate::shader::Shader;
 
-/// A kernel, in the order in which a step first runs it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Kernel {
-    /// Non-finite or unreachable particles go back to their last good positions.
-    Repair,
-    /// Moves garments whose root has jumped.
-    Teleport,
-    /// Finds the capsules and planes that each particle may touch in the step (broad phase).
-    ContactCandidates,
-    /// Wind force on each triangle.
-    Wind,
-    /// Acceleration that compensates part of the root's motion.
-    RootCompensation,
-    /// Sums the wind forces of the triangles around each particle.
-    WindForces,
-    /// Combines the velocity changes of the stages of stiff bending, before each stage and after the last.
-    StageCombine,
-    /// Curvatures of a stage.
-    StageCurvatures,
-    /// Bending forces of a stage, by particle.
-    StageForces,
-    /// Curvature of each bending stencil.
-    BendingCurvatures,
-    /// Bending forces, by particle.
-    BendingForces,
-    /// Gravity, air and wind; skinned particles move on.
-    Predict,
-    /// Fibers along the bias.
-    Diagonals,
-    /// Links along the bias that lie in no fiber.
-    Shear,
-    /// Links along the weft.
-    Weft,
-    /// Fibers by index list: hoops and crossing fibers.
-    Lists,
-    /// Fibers along the warp.
-    Fibers,
-    /// Long warp fibers, by cyclic reduction.
-    Cyclic,
-    /// Tethers, which limit distances from where the garment is held.
-    Tethers,
-    /// Contact with capsules and planes, with friction.
-    Contact,
-    /// New velocities from what the substep moved, and damping.
-    Settle,
-    /// Checks that all values are finite and within reach.
-    Guard,
-    /// Updates the last good positions, or rolls back to them.
-    Publish,
-    /// Counts the roll-backs of each garment.
-    UpdateReports,
-    /// Area normals of the triangles, for garments that are drawn.
-    Faces,
-    /// Unit normals of the particles, likewise.
-    Normals,
+toile_assets::named! {
+    /// A kernel, in the order in which a step first runs it.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Kernel {
+        /// Non-finite or unreachable particles go back to their last good positions.
+        Repair,
+        /// Moves garments whose root has jumped.
+        Teleport,
+        /// Finds the capsules and planes that each particle may touch in the step (broad phase).
+        ContactCandidates,
+        /// Wind force on each triangle.
+        Wind,
+        /// Acceleration that compensates part of the root's motion.
+        RootCompensation,
+        /// Sums the wind forces of the triangles around each particle.
+        WindForces,
+        /// Combines the velocity changes of the stages of stiff bending, before each stage and after the last.
+        StageCombine,
+        /// Curvatures of a stage.
+        StageCurvatures,
+        /// Bending forces of a stage, by particle.
+        StageForces,
+        /// Curvature of each bending stencil.
+        BendingCurvatures,
+        /// Bending forces, by particle.
+        BendingForces,
+        /// Gravity, air and wind; skinned particles move on.
+        Predict,
+        /// Fibers along the bias.
+        Diagonals,
+        /// Links along the bias that lie in no fiber.
+        Shear,
+        /// Links along the weft.
+        Weft,
+        /// Fibers by index list: hoops and crossing fibers.
+        Lists,
+        /// Fibers along the warp.
+        Fibers,
+        /// Long warp fibers, by cyclic reduction.
+        Cyclic,
+        /// Tethers, which limit distances from where the garment is held.
+        Tethers,
+        /// Contact with capsules and planes, with friction.
+        Contact,
+        /// New velocities from what the substep moved, and damping.
+        Settle,
+        /// Checks that all values are finite and within reach.
+        Guard,
+        /// Updates the last good positions, or rolls back to them.
+        Publish,
+        /// Counts the roll-backs of each garment.
+        UpdateReports,
+        /// Area normals of the triangles, for garments that are drawn.
+        Faces,
+        /// Unit normals of the particles, likewise.
+        Normals,
+    }
 }
 
 const COMMON: &str = include_str!("../shaders/common.wgsl");
@@ -100,36 +102,6 @@ pub const SHADERS: [Shader; 19] = [
 ];
 
 impl Kernel {
-    /// All kernels, in the order of their numbers.
-    pub const ALL: [Self; 26] = [
-        Self::Repair,
-        Self::Teleport,
-        Self::ContactCandidates,
-        Self::Wind,
-        Self::RootCompensation,
-        Self::WindForces,
-        Self::StageCombine,
-        Self::StageCurvatures,
-        Self::StageForces,
-        Self::BendingCurvatures,
-        Self::BendingForces,
-        Self::Predict,
-        Self::Diagonals,
-        Self::Shear,
-        Self::Weft,
-        Self::Lists,
-        Self::Fibers,
-        Self::Cyclic,
-        Self::Tethers,
-        Self::Contact,
-        Self::Settle,
-        Self::Guard,
-        Self::Publish,
-        Self::UpdateReports,
-        Self::Faces,
-        Self::Normals,
-    ];
-
     /// Whether it runs stage by stage in a substep.
     pub fn in_stages(self) -> bool {
         matches!(self, Self::StageCombine | Self::StageCurvatures | Self::StageForces)

@@ -45,8 +45,8 @@ use program::StepProgram;
 use readback::{ReadbackCounts, ReadbackRing};
 use stage_timer::StageTimer;
 
+pub use crate::device_work::StageTimes;
 pub use kernels::Kernel;
-pub use stage_timer::StageTimes;
 
 /// The surroundings of one garment during one step.
 pub use toile_engine::cloth::Step;

@@ -3,7 +3,6 @@
 //! A step that is metered goes in a pass for each run of dispatches of one stage, because the clock is read at the ends of
 //! passes only.
 
-use toile_engine::cloth::program::METERED_STAGES;
 use wgpu::{
     Buffer, BufferDescriptor, BufferUsages, CommandEncoder, ComputePass, ComputePassDescriptor,
     ComputePassTimestampWrites, Features, QuerySet, QuerySetDescriptor, QueryType,
@@ -11,18 +10,10 @@ use wgpu::{
 
 use super::readback::ReadbackRing;
 use crate::device::Device;
+use crate::device_work::StageTimes;
 
 /// Most passes of a step that are metered, what one set of queries holds; later ones go unmetered with the last.
 const PASSES: u32 = wgpu::QUERY_SET_MAX_QUERIES / 2;
-
-/// Time on the device.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct StageTimes {
-    /// On each of [`METERED_STAGES`] (ns).
-    pub stages_ns: [f64; METERED_STAGES.len()],
-    /// From the beginning of the first pass to the end of the last (ns).
-    pub whole_ns: f64,
-}
 
 /// The clock, and the way back of its readings.
 #[derive(Debug)]

@@ -6,21 +6,7 @@ use super::flat::Flat;
 use super::kernels::Kernel;
 use super::program::Dispatch;
 use super::step::StepConditions;
-
-/// Work of a step on a device.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct StepWork {
-    /// Dispatches, one after the other.
-    pub dispatches: u64,
-    /// Bytes that invocations read and write, as if there were no cache; what few of them ask for, capsules and constants, left out.
-    pub bytes: u64,
-}
-
-impl std::ops::AddAssign for StepWork {
-    fn add_assign(&mut self, more: Self) {
-        (self.dispatches, self.bytes) = (self.dispatches + more.dispatches, self.bytes + more.bytes);
-    }
-}
+use crate::device_work::StepWork;
 
 impl Offload {
     /// Of a plain step with the settings of the last one: no wind, no jump.

@@ -12,6 +12,8 @@ mod with_wgpu;
 mod without_wgpu;
 
 #[cfg(feature = "wgpu")]
-pub use with_wgpu::{DeviceGarments, Graphics, StageTimes, StepWork};
+pub use with_wgpu::{DeviceGarments, Graphics};
 #[cfg(not(feature = "wgpu"))]
-pub use without_wgpu::{DeviceGarments, Graphics, StageTimes, StepWork};
+pub use without_wgpu::{DeviceGarments, Graphics};
+
+pub use crate::device_work::{StageTimes, StepWork};

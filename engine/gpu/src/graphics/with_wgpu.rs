@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3A;
 use toile_assets::garment::Garment;
+use toile_assets::numeric::hash;
 use toile_engine::cloth::guard::GuardEvents;
 use toile_engine::cloth::{Cloth, Settings};
 use toile_engine::colliders::Colliders;
@@ -13,9 +14,7 @@ use crate::cloth::Offload;
 use crate::cloth::cloth_device::ClothDevice;
 use crate::cloth_batch::ClothBatch;
 use crate::device::{AdapterChoice, DeviceNeeds, GpuError};
-
-pub use crate::cloth::StageTimes;
-pub use crate::cloth::step_work::StepWork;
+use crate::device_work::{StageTimes, StepWork};
 
 /// An open device with the cloth's kernels; clones are the same device.
 #[derive(Debug, Clone)]
@@ -151,8 +150,7 @@ fn fingerprint(garment: &Garment) -> u64 {
     let numbers = [&garment.inverse_mass[..], &layout.weft.rest, &layout.weft.compliance, &layout.shear.compliance];
     let fibers = [&layout.fibers.rest[..], &layout.fibers.compliance, &layout.crossing.rest];
     let start = garment.start.iter().flat_map(|p| p.to_array());
-    let all = numbers.into_iter().chain(fibers).flatten().copied().chain(start);
-    all.fold(0xcbf2_9ce4_8422_2325, |hash, x| (hash ^ u64::from(x.to_bits())).wrapping_mul(0x0100_0000_01b3))
+    hash::of_numbers(numbers.into_iter().chain(fibers).flatten().copied().chain(start))
 }
 
 /// The device, or the same adapter opened once more for a scene that asks for more than the least limits.

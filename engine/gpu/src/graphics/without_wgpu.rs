@@ -2,32 +2,13 @@
 
 use std::convert::Infallible;
 
-use toile_engine::cloth::program::METERED_STAGES;
-
 use crate::Adapter;
 use crate::cloth_batch::ClothBatch;
+use crate::device_work::{StageTimes, StepWork};
 
 /// An open device.
 #[derive(Debug, Clone)]
 pub struct Graphics(Infallible);
-
-/// What a device spent.
-#[derive(Debug, Clone, Copy)]
-pub struct StageTimes {
-    /// On each stage (ns).
-    pub stages_ns: [f64; METERED_STAGES.len()],
-    /// Time of all stages (ns).
-    pub whole_ns: f64,
-}
-
-/// What a step asks of a device.
-#[derive(Debug, Clone, Copy)]
-pub struct StepWork {
-    /// Dispatches of a step.
-    pub dispatches: u64,
-    /// Bytes that the kernels ask for.
-    pub bytes: u64,
-}
 
 /// Garments on a device.
 #[derive(Debug)]

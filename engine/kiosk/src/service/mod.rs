@@ -214,7 +214,7 @@ where
 /// The recording that is played, or for a live sensor the embedded one, whose shopper shows the mannequin how to stand.
 fn played_session(config: &Config) -> Result<Session, KioskError> {
     let path = config.sensor.session.as_deref().filter(|_| config.sensor.source == SensorSource::Session);
-    Ok(sessions::open(path, None)?)
+    sessions::open(path, None)
 }
 
 /// What the sensor reads, and what shoppers are then measured from.

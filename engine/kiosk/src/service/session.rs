@@ -3,32 +3,19 @@
 
 use serde::Serialize;
 
-/// The state of a session.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SessionState {
-    /// Nobody is there: the mirror shows what it can do.
-    Attract,
-    /// Somebody stands there and is measured.
-    Measuring,
-    /// They see themselves dressed.
-    TryOn,
-    /// They have left, or nobody is seen: what is known of them is about to be wiped.
-    Left,
-}
-
-impl SessionState {
-    /// All of them, in the order of a session.
-    pub const ALL: [Self; 4] = [Self::Attract, Self::Measuring, Self::TryOn, Self::Left];
-
-    /// Name of the state in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Attract => "attract",
-            Self::Measuring => "measuring",
-            Self::TryOn => "try-on",
-            Self::Left => "left",
-        }
+toile_assets::named! {
+    /// The states of a session, in their order.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum SessionState {
+        /// Nobody is there: the mirror shows what it can do.
+        Attract = "attract",
+        /// Somebody stands there and is measured.
+        Measuring = "measuring",
+        /// They see themselves dressed.
+        TryOn = "try-on",
+        /// They have left, or nobody is seen: what is known of them is about to be wiped.
+        Left = "left",
     }
 }
 

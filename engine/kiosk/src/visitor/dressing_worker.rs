@@ -159,7 +159,7 @@ impl DressingContext {
             garments.push((item.style.name.clone(), size.clone()));
         }
         let sex = measured::sex(client.known.population, wish::population(&styles)?);
-        Ok(Recipe::of("shopper", &client.known.measured, sex, garments, self.quality)?)
+        Recipe::of("shopper", &client.known.measured, sex, garments, self.quality)
     }
 
     fn draped(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<DrapedFrame, KioskError> {

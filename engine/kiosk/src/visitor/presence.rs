@@ -6,6 +6,7 @@
 //! are seen, or the countdown when they have left, is all that there is between them.
 
 use glam::Vec3;
+use toile_assets::numeric::statistics::quantile;
 use toile_assets::skeleton::Joint;
 use toile_fitting::dress::session;
 use toile_sensors::frame::Joints;
@@ -122,7 +123,7 @@ impl PresenceTracker {
         if self.frames.len() < FRAMES {
             return;
         }
-        let bones: BoneLengths = std::array::from_fn(|b| median(self.frames.iter().filter_map(|f| f[b])));
+        let bones: BoneLengths = std::array::from_fn(|b| self.middle_length(b));
         let same = self.known.as_ref().filter(|known| differ(&known.1, &bones) <= DIFFERENT);
         if same.is_none() {
             self.count += 1;
@@ -130,6 +131,14 @@ impl PresenceTracker {
         }
         self.who = self.known.as_ref().map(|known| known.0);
         self.frames.clear();
+    }
+
+    /// The middle one of the lengths that the frames so far have of a bone.
+    fn middle_length(&self, bone: usize) -> Option<f32> {
+        let mut lengths = [0.0; FRAMES];
+        let known = self.frames.iter().filter_map(|f| f[bone]);
+        let count = lengths.iter_mut().zip(known).map(|(to, length)| *to = length).count();
+        quantile(&mut lengths[..count], 0.5)
     }
 
     fn sit(&mut self, frame: &Joints) {
@@ -154,12 +163,6 @@ fn lengths(frame: &Joints) -> BoneLengths {
         let length = |pair: &[Joint]| Some(frame.believed(pair[0])?.distance(frame.believed(pair[1])?));
         path.windows(2).map(length).sum()
     })
-}
-
-fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
-    let mut sorted: Vec<f32> = values.collect();
-    sorted.sort_by(f32::total_cmp);
-    sorted.get(sorted.len() / 2).copied()
 }
 
 /// The root mean square of the shares by which bones differ; nothing where none is known of both.

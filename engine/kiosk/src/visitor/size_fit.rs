@@ -10,27 +10,26 @@ use super::texts::TextKey;
 use super::wardrobe::WardrobeItem;
 use crate::error::KioskError;
 
-/// A part of the body that is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum BodyPart {
-    /// From the floor to the top of the head.
-    Stature,
-    /// The breadth of the shoulders.
-    Shoulders,
-    /// The girth of the chest.
-    Chest,
-    /// The girth of the waist.
-    Waist,
-    /// The girth of the hip.
-    Hip,
-    /// The length of the legs.
-    Legs,
+toile_assets::named! {
+    /// A part of the body that is measured, from the top down.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    pub enum BodyPart {
+        /// From the floor to the top of the head.
+        Stature,
+        /// The breadth of the shoulders.
+        Shoulders,
+        /// The girth of the chest.
+        Chest,
+        /// The girth of the waist.
+        Waist,
+        /// The girth of the hip.
+        Hip,
+        /// The length of the legs.
+        Legs,
+    }
 }
 
 impl BodyPart {
-    /// All of them, from the top down.
-    pub const ALL: [Self; 6] = [Self::Stature, Self::Shoulders, Self::Chest, Self::Waist, Self::Hip, Self::Legs];
-
     /// Key of its name in the pages' texts.
     pub const fn word(self) -> TextKey {
         match self {

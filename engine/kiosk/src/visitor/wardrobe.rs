@@ -34,41 +34,24 @@ pub enum Layer {
     Shoe,
 }
 
-/// Where a garment is held, and does not slip on the body: the seven fitting levels of Ugur 2008, section 6.2.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum FittingLevel {
-    /// At the neck.
-    Neck,
-    /// On the shoulders.
-    Shoulders,
-    /// At the bust.
-    Bust,
-    /// Below the bust.
-    Underbust,
-    /// At the waist.
-    Waist,
-    /// At the crotch.
-    Crotch,
-    /// At the feet.
-    Feet,
-}
-
-impl FittingLevel {
-    /// All of them, from the top down.
-    pub const ALL: [Self; 7] =
-        [Self::Neck, Self::Shoulders, Self::Bust, Self::Underbust, Self::Waist, Self::Crotch, Self::Feet];
-
-    /// Name by which texts select it.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Neck => "neck",
-            Self::Shoulders => "shoulders",
-            Self::Bust => "bust",
-            Self::Underbust => "underbust",
-            Self::Waist => "waist",
-            Self::Crotch => "crotch",
-            Self::Feet => "feet",
-        }
+toile_assets::named! {
+    /// Where a garment is held, and does not slip on the body: the seven fitting levels of Ugur 2008, section 6.2.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    pub enum FittingLevel {
+        /// At the neck.
+        Neck = "neck",
+        /// On the shoulders.
+        Shoulders = "shoulders",
+        /// At the bust.
+        Bust = "bust",
+        /// Below the bust.
+        Underbust = "underbust",
+        /// At the waist.
+        Waist = "waist",
+        /// At the crotch.
+        Crotch = "crotch",
+        /// At the feet.
+        Feet = "feet",
     }
 }
 

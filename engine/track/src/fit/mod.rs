@@ -23,8 +23,8 @@ pub mod tracker;
 use std::time::Instant;
 
 use glam::{Quat, Vec3};
+use toile_assets::body::Sex;
 use toile_assets::body::shape::{BodyShape, Shapes};
-use toile_assets::body::{Body, Sex};
 use toile_assets::skeleton::{JOINTS, Joint, Pose};
 use toile_sensors::frame::{DepthFrame, Joints, TrackedJoint};
 
@@ -356,12 +356,5 @@ impl BodyFit {
     /// The pose of the last frame that was fitted.
     pub fn last_pose(&self) -> Option<Pose> {
         self.last.map(|s| Pose { root: s.root, local: s.local.map(Quat::normalize) })
-    }
-
-    /// The fitted body at rest, and its pose in the last frame; `None` while nobody is tracked.
-    pub fn body(&self) -> Option<(Body, Pose)> {
-        let state = self.state?;
-        let body = self.model.shapes.body(&state.shape).body;
-        Some((body, Pose { root: state.root, local: state.local.map(Quat::normalize) }))
     }
 }

@@ -34,16 +34,6 @@ impl BodyTracker {
         }
         self.fit.push(alone)
     }
-
-    /// The last frame with nothing in it but the shopper.
-    pub fn alone(&self) -> Option<&DepthFrame> {
-        self.alone.as_ref()
-    }
-
-    /// The body that is fitted.
-    pub fn fit(&self) -> &BodyFit {
-        &self.fit
-    }
 }
 
 /// The joints of a whole recording, one a frame; absent in frames in which nobody is tracked.

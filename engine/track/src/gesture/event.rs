@@ -5,34 +5,22 @@ use super::trunk::Side;
 /// A silence or a loss longer than this ends every gesture (ns): at 15 Hz four frames may be dropped.
 pub(crate) const LONGEST_GAP_NS: u64 = 350_000_000;
 
-/// What a hand did.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Gesture {
-    /// A stroke to the shopper's own left.
-    SwipeLeft,
-    /// A stroke to the shopper's own right.
-    SwipeRight,
-    /// A stroke upwards.
-    SwipeUp,
-    /// A hand held out towards the mirror for a second.
-    Confirm,
-    /// A closed hand opened.
-    Opened,
-    /// An open hand closed.
-    Closed,
-}
-
-impl Gesture {
-    /// The word for reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::SwipeLeft => "swipe left",
-            Self::SwipeRight => "swipe right",
-            Self::SwipeUp => "swipe up",
-            Self::Confirm => "confirm",
-            Self::Opened => "opened",
-            Self::Closed => "closed",
-        }
+toile_assets::named! {
+    /// What a hand did.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    pub enum Gesture {
+        /// A stroke to the shopper's own left.
+        SwipeLeft = "swipe left",
+        /// A stroke to the shopper's own right.
+        SwipeRight = "swipe right",
+        /// A stroke upwards.
+        SwipeUp = "swipe up",
+        /// A hand held out towards the mirror for a second.
+        Confirm = "confirm",
+        /// A closed hand opened.
+        Opened = "opened",
+        /// An open hand closed.
+        Closed = "closed",
     }
 }
 

@@ -100,11 +100,6 @@ impl Gestures {
         self.rest();
     }
 
-    /// The shopper's arm from shoulder over elbow to wrist (m), once it has been seen.
-    pub fn arm_length(&self) -> Option<f32> {
-        self.scale.arm()
-    }
-
     /// Takes a frame of filtered joints, and the depth of about the same time where there is any. Frames that come less
     /// than 20 ms after the one before, or shortly before it, are passed over; after a clock set back by more it starts over.
     pub fn push(&mut self, joints: &Joints, depth: Option<&DepthFrame>) -> GestureEvents {

@@ -2,25 +2,16 @@
 
 use super::offer::Zone;
 
-/// How a zone fits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
-    /// Less ease than is comfortable.
-    Tight,
-    /// As much ease as is comfortable.
-    Good,
-    /// More ease than is comfortable.
-    Loose,
-}
-
-impl Verdict {
-    /// The word for reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Tight => "tight",
-            Self::Good => "good",
-            Self::Loose => "loose",
-        }
+toile_assets::named! {
+    /// How a zone fits.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Verdict {
+        /// Less ease than is comfortable.
+        Tight = "tight",
+        /// As much ease as is comfortable.
+        Good = "good",
+        /// More ease than is comfortable.
+        Loose = "loose",
     }
 }
 

@@ -83,11 +83,6 @@ impl SurfaceInterpolation {
         shown.normals.extend(previous.normals.iter().zip(&newest.normals).map(turned));
         (&self.shown.positions, &self.shown.normals)
     }
-
-    /// Forgets both, as after a wipe.
-    pub fn clear(&mut self) {
-        *self = Self::default();
-    }
 }
 
 #[cfg(test)]

@@ -78,11 +78,6 @@ impl<'window> Presenter<'window> {
         self.config.format
     }
 
-    /// The mode that pictures are presented in.
-    pub fn mode(&self) -> PresentMode {
-        self.config.present_mode
-    }
-
     /// Width and height (pixels).
     pub fn size(&self) -> Size {
         self.state.size()

@@ -20,27 +20,15 @@ const GAMMA: f64 = 300.0;
 /// Links along the strip.
 const ROWS: usize = 24;
 
-/// How it is changed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Change {
-    Scaled,
-    Renumbered,
-    Turned,
-    Mirrored,
-    HalfStep,
-}
-
-impl Change {
-    const ALL: [Self; 5] = [Self::Scaled, Self::Renumbered, Self::Turned, Self::Mirrored, Self::HalfStep];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Scaled => "mass and stiffness x 3",
-            Self::Renumbered => "renumbered",
-            Self::Turned => "turned 37 deg",
-            Self::Mirrored => "mirrored",
-            Self::HalfStep => "step halved",
-        }
+toile_assets::named! {
+    /// How it is changed.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    enum Change {
+        Scaled = "mass and stiffness x 3",
+        Renumbered = "renumbered",
+        Turned = "turned 37 deg",
+        Mirrored = "mirrored",
+        HalfStep = "step halved",
     }
 }
 

@@ -34,33 +34,22 @@ pub fn loaded(own: f64) -> f64 {
     bisect(0.1, 10.0, |p| gives_way(own * p, p))
 }
 
-/// How the ends of a column are held.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ends {
-    /// Clamped below, free above.
-    Free,
-    /// Pinned at both ends.
-    Pinned,
-    /// Clamped at one end, pinned at the other.
-    ClampedPinned,
-    /// Clamped at both ends.
-    Clamped,
+toile_assets::named! {
+    /// How the ends of a column are held, softest first.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Ends {
+        /// Clamped below, free above.
+        Free = "free",
+        /// Pinned at both ends.
+        Pinned = "pinned",
+        /// Clamped at one end, pinned at the other.
+        ClampedPinned = "clamped-pinned",
+        /// Clamped at both ends.
+        Clamped = "clamped",
+    }
 }
 
 impl Ends {
-    /// All of them, softest first.
-    pub const ALL: [Self; 4] = [Self::Free, Self::Pinned, Self::ClampedPinned, Self::Clamped];
-
-    /// Its name in the table.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Free => "free",
-            Self::Pinned => "pinned",
-            Self::ClampedPinned => "clamped-pinned",
-            Self::Clamped => "clamped",
-        }
-    }
-
     /// Euler's critical P L^2 / B.
     pub fn critical(self) -> f64 {
         match self {

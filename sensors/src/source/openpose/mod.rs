@@ -153,12 +153,7 @@ mod tests {
 
     /// The shared recording, or nothing where it is not set up; with CI=true that is a failure.
     fn shared() -> Option<PathBuf> {
-        let Some(folder) = std::env::var_os("TOILE_DATA").map(PathBuf::from) else {
-            assert!(std::env::var("CI").as_deref() != Ok("true"), "TOILE_DATA must name the folder of shared data");
-            eprintln!("skipped: TOILE_DATA does not name the folder of shared data");
-            return None;
-        };
-        Some(folder.join("multiview/pose2sim"))
+        Some(crate::recordings::folder()?.join("multiview/pose2sim"))
     }
 
     /// Markers of a .trc file: names, and a position of each in each frame (m, the cameras' world).

@@ -78,14 +78,6 @@ impl VmcReceiver {
         Ok(self.decoder.take())
     }
 
-    /// Forgets the sender and its figure, and listens for the next; the counts stay.
-    pub fn reset(&mut self) {
-        let drops = self.drops();
-        self.decoder = Decoder::new();
-        *self.decoder.drops_mut() = drops;
-        self.sender = None;
-    }
-
     /// What was dropped so far.
     pub fn drops(&self) -> Drops {
         self.decoder.drops()

@@ -4,11 +4,13 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use clap::value_parser;
+use toile_assets::numeric::statistics::median_of;
 use toile_perf::gestures::{Act, GestureConditions, GestureCount, GestureStudy, held_up, sequence};
 use toile_track::gesture::{Gestures, HandSegmenter};
 
+use super::gestures_report::GesturesReport;
 use crate::exit::AppError;
-use crate::report::{Document, GesturesReport};
+use crate::report::Document;
 use crate::terminal::{self, Words};
 
 /// Most sequences of a cell: 70 cells of a millisecond each make it a quarter of an hour.
@@ -105,7 +107,5 @@ fn hand_us() -> f64 {
 
 fn median(mut once: impl FnMut() -> f64) -> f64 {
     once();
-    let mut times: Vec<f64> = (0..RUNS).map(|_| once()).collect();
-    times.sort_by(f64::total_cmp);
-    times[RUNS / 2]
+    median_of((0..RUNS).map(|_| once())).unwrap_or(0.0)
 }

@@ -8,12 +8,12 @@ use toile_engine::skin::Blend;
 use toile_fitting::scene::yardstick;
 use toile_perf::skinning::{self, SkinningError, SkinningOptions, SkinningSubject};
 
+use super::skinning_report::{self, SkinningReport};
 use crate::arguments::{count, lanes};
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::pictures::write_png;
-use crate::report::{Document, SkinningReport};
-use crate::summary;
+use crate::report::Document;
 use crate::terminal::{self, Paint, Words};
 
 /// Most vertices: 4 million, about 1 GB of arrays.
@@ -88,7 +88,7 @@ pub fn run(args: &SkinningArgs) -> Result<(), AppError> {
     if args.json {
         return terminal::print_json(&Document::new("bench-skinning", report));
     }
-    terminal::print(&summary::skinning(&report, Paint::for_stdout()))
+    terminal::print(&skinning_report::summary(&report, Paint::for_stdout()))
 }
 
 /// Draws the twist test.
@@ -111,18 +111,11 @@ fn refused(error: SkinningError) -> AppError {
 
 #[cfg(test)]
 mod tests {
-    use clap::Parser;
-
     use super::*;
-
-    #[derive(Parser)]
-    struct Line {
-        #[command(flatten)]
-        args: SkinningArgs,
-    }
+    use crate::arguments::parsed;
 
     fn options(line: &str) -> SkinningOptions {
-        Line::try_parse_from(line.split_whitespace()).unwrap().args.options()
+        parsed::<SkinningArgs>(line).unwrap().options()
     }
 
     #[test]

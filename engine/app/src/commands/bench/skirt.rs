@@ -13,13 +13,12 @@ use toile_perf::plot::raster;
 use toile_perf::skirt::options::{MAX_GARMENTS, SkirtMesh, SkirtOptions};
 use toile_perf::skirt::{self, SkirtError, table};
 
-use crate::arguments::{BackendArg, count, lanes, one_of};
-use crate::backend;
+use super::{backend, skirt_summary};
+use crate::arguments::{BackendArg, count, lanes, one_of, quality};
 use crate::exit::AppError;
 use crate::heap;
 use crate::output::OutputFolder;
 use crate::report::Document;
-use crate::summary;
 use crate::terminal::{self, Paint, Words};
 
 /// Most vertices: 512 a side.
@@ -43,18 +42,18 @@ pub struct SkirtArgs {
     #[arg(
         long,
         value_name = "M",
-        value_parser = one_of([Motion::Walk, Motion::Fast, Motion::Settled], motion),
+        value_parser = one_of(Motion::ALL, Motion::name),
         default_value = "walk"
     )]
     motion: Motion,
     /// How the skirt is meshed
-    #[arg(long, value_name = "M", value_parser = one_of([SkirtMesh::Grid, SkirtMesh::Irregular], mesh), default_value = "grid")]
+    #[arg(long, value_name = "M", value_parser = one_of(SkirtMesh::ALL, SkirtMesh::name), default_value = "grid")]
     mesh: SkirtMesh,
     /// How its threads stretch: not at all, or 2000 N/m
     #[arg(
         long,
         value_name = "S",
-        value_parser = one_of([Stretch::Inextensible, Stretch::Physical], stretch),
+        value_parser = one_of(Stretch::ALL, Stretch::name),
         default_value = "inextensible"
     )]
     stretch: Stretch,
@@ -71,7 +70,7 @@ pub struct SkirtArgs {
     #[arg(long, value_name = "L", value_parser = lanes())]
     lanes: Option<Width>,
     /// Tested settings: draft, shop or fine (default: the engine's own)
-    #[arg(long, value_name = "Q", value_parser = one_of(Quality::ALL, Quality::name))]
+    #[arg(long, value_name = "Q", value_parser = quality())]
     quality: Option<Quality>,
     /// Substeps of a step (default: the engine's own)
     #[arg(long, value_name = "S", value_parser = value_parser!(u32).range(1..=1_000))]
@@ -94,28 +93,6 @@ pub struct SkirtArgs {
     /// Print one JSON object, and nothing else, on stdout
     #[arg(long)]
     json: bool,
-}
-
-fn motion(motion: Motion) -> &'static str {
-    match motion {
-        Motion::Walk => "walk",
-        Motion::Fast => "fast",
-        Motion::Settled => "settled",
-    }
-}
-
-fn mesh(mesh: SkirtMesh) -> &'static str {
-    match mesh {
-        SkirtMesh::Grid => "grid",
-        SkirtMesh::Irregular => "irregular",
-    }
-}
-
-fn stretch(stretch: Stretch) -> &'static str {
-    match stretch {
-        Stretch::Inextensible => "inextensible",
-        Stretch::Physical => "physical",
-    }
 }
 
 impl SkirtArgs {
@@ -170,7 +147,7 @@ pub fn run(args: &SkirtArgs) -> Result<(), AppError> {
     if args.json {
         return terminal::print_json(&Document::new("bench-skirt", report));
     }
-    terminal::print(&summary::skirt(&report, Paint::for_stdout()))
+    terminal::print(&skirt_summary::summary(&report, Paint::for_stdout()))
 }
 
 /// Sizes and numbers of skirts on the processor and on a device.
@@ -204,18 +181,11 @@ fn refused(error: SkirtError) -> AppError {
 
 #[cfg(test)]
 mod tests {
-    use clap::Parser;
-
     use super::*;
-
-    #[derive(Parser)]
-    struct Line {
-        #[command(flatten)]
-        args: SkirtArgs,
-    }
+    use crate::arguments::parsed;
 
     fn options(line: &str) -> Result<SkirtOptions, AppError> {
-        Line::try_parse_from(line.split_whitespace()).unwrap().args.options()
+        parsed::<SkirtArgs>(line).unwrap().options()
     }
 
     #[test]

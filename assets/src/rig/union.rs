@@ -1,0 +1,21 @@
+//! The union of the capsules in the rest pose.
+
+use glam::Vec3;
+
+use super::plan::{CAPSULES, SPHERES};
+use crate::cone::round_cone;
+
+/// Spheres in the rest pose: centre and radius (m).
+pub(super) type RestSpheres = [(Vec3, f32); SPHERES];
+
+/// Distance to the union, and the capsule and place on it that are nearest.
+pub(super) fn nearest(placed: &RestSpheres, p: Vec3) -> (f32, usize, f32) {
+    let mut best = (f32::INFINITY, 0, 0.0);
+    for (i, [a, b]) in CAPSULES.iter().enumerate() {
+        let (distance, t) = round_cone(p, placed[usize::from(*a)], placed[usize::from(*b)]);
+        if distance < best.0 {
+            best = (distance, i, t);
+        }
+    }
+    best
+}
