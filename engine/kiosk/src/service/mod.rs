@@ -184,7 +184,7 @@ where
     };
     let renderer = (frontend.renderer)(&dressed.frame)?;
     let first = DressedScene::new(dressed, |frame| (FrameScene::new(frame.with_workers(crew)), E::Outfit::default()));
-    let parts = LoopParts { first, renderer, source: feed, account: ThreadAccount::new(), recording: recording };
+    let parts = LoopParts { first, renderer, source: feed, account: ThreadAccount::new(), recording };
     let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).map_err(KioskError::internal)?;
     stop.graceful();
     let changer = SceneChanger::new(handover, true, flight_recorder.clone());
