@@ -6,7 +6,7 @@ mod recordings;
 use std::path::{Path, PathBuf};
 
 use toile_perf::ansur::Survey;
-use toile_perf::measuring::{MeasuringOptions, MeasuringStudy, Sensor, study};
+use toile_perf::measuring::{Family, MeasuringOptions, MeasuringStudy, Sensor, study};
 
 /// The folder of shared data; absent data is a failure in continuous integration.
 fn folder() -> Option<PathBuf> {
@@ -32,7 +32,7 @@ fn people_before_both_cameras_are_found_and_measured() {
     let surveys = surveys(&folder);
     assert_eq!(surveys.len(), 2);
     for sensor in [Sensor::Kinect, Sensor::Azure] {
-        let options = MeasuringOptions { people: 2, frames: 3, seed: 5, sensor };
+        let options = MeasuringOptions { family: Family::Survey, people: 2, frames: 3, seed: 5, sensor };
         let found: MeasuringStudy = study(&surveys, &options, &|_| ()).expect("a study");
         assert_eq!((found.people, found.lost), (4, 0));
         assert_eq!(found.sex_right, 1.0, "{}", found.sensor);

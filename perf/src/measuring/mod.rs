@@ -7,10 +7,21 @@
 //! What the study renders is not what the fit assumes: the bodies have sections that the parametric body cannot have,
 //! stand in poses of their own, are skinned with twist, and are seen by a camera that is not quite as it says.
 
+mod standing;
+
+mod makehuman;
 mod person;
+mod second_noise;
+
 mod sensor;
+
 mod study;
 
-pub use person::{GIVEN, JointPositions, SurveyPerson};
-pub use sensor::{Sensor, StudyCamera};
-pub use study::{Estimates, Following, MeasuredPerson, MeasuringAgreement, MeasuringOptions, MeasuringStudy, study};
+pub use makehuman::{debug, FamilyError, SurveyRanges, makehuman_person};
+pub use person::{GIVEN, survey_person};
+pub use sensor::{NoiseModel, Sensor, StudyCamera};
+pub use standing::{JointPositions, Moment, StudyPerson, TapeMeasures};
+pub use study::{
+    Estimates, Family, Following, MeasuredPerson, MeasuringAgreement, MeasuringError, MeasuringOptions, MeasuringStudy,
+    study,
+};

@@ -4,11 +4,13 @@ use std::f32::consts::TAU;
 
 use glam::{Quat, Vec3};
 use toile_assets::body::shape::Shapes;
-use toile_assets::body::{Ansur, Body, BodyError, Readings, Region, Sex, Wanted};
+use toile_assets::body::{Ansur, Body, BodyError, Region, Sex, Wanted};
 use toile_assets::mesh::vertex_normals;
 use toile_assets::numeric::random::SplitMix64;
-use toile_assets::skeleton::{BONES, JOINTS, Joint, Pose};
-use toile_engine::body::{JointFrames, palette};
+use toile_assets::skeleton::{Joint, Pose};
+use toile_track::fit::measuring::MEASURES;
+
+use super::standing::{Motion, StudyPerson};
 
 /// What of the survey a person's body is built to, with the survey's names.
 pub const GIVEN: [(Ansur, &str); 12] = [
@@ -37,88 +39,20 @@ const KNOTS: [f32; 6] = [0.44, 0.52, 0.58, 0.64, 0.72, 0.82];
 /// Roughness of flesh that nobody's family has: harmonics of the whole surface (m), about a hand wide.
 const BUMPS: f32 = 0.0008;
 
-/// Where the joints are at one moment, world (m).
-pub type JointPositions = [Vec3; JOINTS];
-
-/// A person who can stand before a camera.
-pub struct SurveyPerson {
-    /// Sex that the survey states.
-    pub sex: Sex,
-    body: Body,
-    /// What the tape reads on them.
-    pub readings: Readings,
-    pose: Pose,
-}
-
-impl SurveyPerson {
-    /// Builds a person of the survey, by their measures in the order of [`GIVEN`] (m). Where no body has all of them
-    /// together, the nearest; what is true of them is read off in any case.
-    ///
-    /// # Errors
-    /// A measure outside of all ranges.
-    pub fn new(sex: Sex, measures: &[f32; GIVEN.len()], rng: &mut SplitMix64) -> Result<Self, BodyError> {
-        let wanted = GIVEN.iter().zip(measures).fold(Wanted::new(), |w, (g, m)| w.with(g.0, *m));
-        let shapes = Shapes::of(sex);
-        let mut body = shapes.body(&shapes.wanted(&wanted)?).body;
-        sculpt(&mut body, rng);
-        let readings = shapes.read_surface(&body.mesh.positions);
-        let pose = standing(&body, rng);
-        Ok(Self { sex, body, readings, pose })
-    }
-
-    /// Triangles of the surface.
-    pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.body.mesh.triangles
-    }
-
-    /// The surface of the swaying person at one moment, feet on the floor (m) `[vertices]`.
-    /// Gives where their joints are.
-    pub fn stand(&self, rng: &mut SplitMix64, positions: &mut Vec<Vec3>) -> JointPositions {
-        let mut pose = self.pose;
-        let mut sway = |joint: Joint, by: f32| {
-            let turn = Vec3::new(rng.gaussian(), rng.gaussian(), rng.gaussian()) * by;
-            pose.local[joint.index()] = Quat::from_scaled_axis(turn) * pose.local[joint.index()];
-        };
-        // A standing person's middle wanders by some millimetres in a second, their hands by some more.
-        for (joint, by) in [
-            (Joint::Pelvis, 0.006),
-            (Joint::Spine, 0.004),
-            (Joint::Neck, 0.015),
-            (Joint::LeftShoulder, 0.015),
-            (Joint::RightShoulder, 0.015),
-            (Joint::LeftElbow, 0.010),
-            (Joint::RightElbow, 0.010),
-        ] {
-            sway(joint, by);
-        }
-        pose.root += Vec3::new(rng.gaussian(), 0.0, rng.gaussian()) * 0.006;
-        on_both_feet(&self.body, &mut pose);
-        let mut bones = [glam::Affine3A::IDENTITY; BONES];
-        palette(&self.body.skeleton, &pose, &mut bones);
-        positions.clear();
-        positions.extend(self.body.mesh.positions.iter().zip(&self.body.weights).map(|(p, weights)| {
-            weights.iter().map(|(bone, w)| w * bones[bone as usize].transform_point3(*p)).sum::<Vec3>()
-        }));
-        let lowest = positions.iter().map(|p| p.y).fold(f32::MAX, f32::min);
-        positions.iter_mut().for_each(|p| p.y -= lowest);
-        JointFrames::new(&self.body.skeleton, &pose).position.map(|p| p - Vec3::Y * lowest)
-    }
-}
-
-/// Lays both soles flat and level, as standing people have them: ankles turn, and the hips tilt where one leg reaches
-/// lower than the other.
-fn on_both_feet(body: &Body, pose: &mut Pose) {
-    for _ in 0..3 {
-        let frames = JointFrames::new(&body.skeleton, pose);
-        for (ankle, knee) in [(Joint::LeftAnkle, Joint::LeftKnee), (Joint::RightAnkle, Joint::RightKnee)] {
-            let foot = frames.rotation[ankle.index()];
-            let level = Quat::from_rotation_arc(foot * Vec3::Y, Vec3::Y) * foot;
-            pose.local[ankle.index()] = frames.rotation[knee.index()].inverse() * level;
-        }
-        let [left, right] = [Joint::LeftAnkle, Joint::RightAnkle].map(|j| frames.position[j.index()]);
-        let tilt = Quat::from_rotation_z(-(left.y - right.y) / (left.x - right.x).max(0.05));
-        pose.local[Joint::Pelvis.index()] = tilt * pose.local[Joint::Pelvis.index()];
-    }
+/// Builds a person of the survey, by their measures in the order of [`GIVEN`] (m). Where no body has all of them
+/// together, the nearest; what is true of them is read off in any case.
+///
+/// # Errors
+/// A measure outside of all ranges.
+pub fn survey_person(sex: Sex, measures: &[f32; GIVEN.len()], rng: &mut SplitMix64) -> Result<StudyPerson, BodyError> {
+    let wanted = GIVEN.iter().zip(measures).fold(Wanted::new(), |w, (g, m)| w.with(g.0, *m));
+    let shapes = Shapes::of(sex);
+    let mut body = shapes.body(&shapes.wanted(&wanted)?).body;
+    sculpt(&mut body, rng);
+    let readings = shapes.read_surface(&body.mesh.positions);
+    let pose = standing(&body, rng);
+    let truth = MEASURES.map(|(_, measure, _)| Some(measure.of(&readings)));
+    Ok(StudyPerson { sex, truth, body, pose, motion: Motion::Independent })
 }
 
 /// Gives the trunk sections that the parametric body does not have, and all of the surface some roughness.
@@ -196,18 +130,19 @@ fn standing(body: &Body, rng: &mut SplitMix64) -> Pose {
 
 #[cfg(test)]
 mod tests {
+    use super::super::standing::Moment;
     use super::*;
 
     #[test]
     fn people_stand_on_both_feet() {
         let mut rng = SplitMix64::new(11);
         let measures = [1.65, 1.41, 0.98, 0.77, 0.46, 0.33, 0.93, 0.84, 1.01, 0.60, 0.80, 0.36];
-        let person = SurveyPerson::new(Sex::Female, &measures, &mut rng).expect("a body");
+        let person = survey_person(Sex::Female, &measures, &mut rng).expect("a body");
         let soles: Vec<usize> =
             (0..person.body.mesh.positions.len()).filter(|&v| person.body.mesh.positions[v].y < 0.002).collect();
         let mut surface = Vec::new();
         for _ in 0..3 {
-            person.stand(&mut rng, &mut surface);
+            person.stand(Moment::default(), &mut rng, &mut surface);
             let highest = soles.iter().map(|&v| surface[v].y).fold(0.0, f32::max);
             assert!(soles.len() > 20 && highest < 0.006, "{} {highest}", soles.len());
             assert!(surface.iter().all(|p| p.y >= 0.0));

@@ -5,7 +5,8 @@ use toile_assets::numeric::random::SplitMix64;
 use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 
-use super::person::{JointPositions, SurveyPerson};
+use super::second_noise;
+use super::standing::{JointPositions, Moment, StudyPerson};
 
 toile_assets::named! {
     /// A kind of depth camera.
@@ -62,11 +63,22 @@ const EDGE: f32 = 0.05;
 /// Cosine of the angle to the surface's normal below which so little light comes back that a pixel is lost.
 const GRAZING: f32 = 0.12;
 
+/// Whose model of the noise a camera has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoiseModel {
+    /// Nguyen, Izadi and Lovell (2012) for the Kinect v1, independent pixels for the time of flight.
+    First,
+    /// Khoshelham and Elberink (2012) with pixels that go together, a shadow and ragged outlines; mixed pixels and a ripple
+    /// for the time of flight.
+    Second,
+}
+
 /// A person before a camera.
 pub struct StudyCamera {
     stated: SyntheticCamera,
     seen: SyntheticCamera,
     sensor: Sensor,
+    noise: NoiseModel,
     offset: f32,
     /// Distance of the person (m).
     pub distance: f32,
@@ -74,7 +86,7 @@ pub struct StudyCamera {
 
 impl StudyCamera {
     /// A camera of a kind, before somebody at the origin.
-    pub fn new(sensor: Sensor, rng: &mut SplitMix64) -> Self {
+    pub fn new(sensor: Sensor, noise: NoiseModel, rng: &mut SplitMix64) -> Self {
         let [near, far] = sensor.distances();
         let distance = near + (far - near) * rng.uniform();
         let stated = sensor.stated();
@@ -98,23 +110,23 @@ impl StudyCamera {
         let turned = Affine3A::from_quat(tilt).matrix3 * camera.camera_to_world.matrix3;
         let camera_to_world = Affine3A { matrix3: turned, translation: place };
         let offset = if sensor == Sensor::Azure { OFFSET * rng.gaussian() } else { 0.0 };
-        Self { stated: camera, seen: SyntheticCamera { intrinsics, camera_to_world }, sensor, offset, distance }
+        Self { stated: camera, seen: SyntheticCamera { intrinsics, camera_to_world }, sensor, noise, offset, distance }
     }
 
-    /// The swaying person at 30 Hz, and where their joints are in each frame.
+    /// The swaying person at some moments, and where their joints are in each.
     pub fn frames(
         &self,
-        person: &SurveyPerson,
-        count: usize,
+        person: &StudyPerson,
+        moments: &[Moment],
         rng: &mut SplitMix64,
     ) -> Vec<(DepthFrame, JointPositions)> {
         let mut kinect = KinectNoise::new(rng.next_u64());
         let mut positions = Vec::new();
         let mut image = vec![0.0; self.seen.intrinsics.pixels()];
         let mut triangles = person.triangles().to_vec();
-        let mut frames = Vec::with_capacity(count);
-        for i in 0..count as u64 {
-            let moment = person.stand(rng, &mut positions);
+        let mut frames = Vec::with_capacity(moments.len());
+        for (i, moment) in moments.iter().enumerate() {
+            let joints = person.stand(*moment, rng, &mut positions);
             let n = positions.len() as u32;
             if i == 0 {
                 triangles.extend([[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 5, 4]].map(|t: [u32; 3]| t.map(|k| n + k)));
@@ -124,11 +136,17 @@ impl StudyCamera {
                 positions.extend([Vec3::new(-side, y, z), Vec3::new(side, y, z)]);
             }
             self.seen.render(&positions, &triangles, &mut image);
-            let depth = match self.sensor {
-                Sensor::Kinect => kinect.apply(&self.seen.intrinsics, &image),
-                Sensor::Azure => self.flight(&image, rng),
+            let depth = match (self.sensor, self.noise) {
+                (Sensor::Kinect, NoiseModel::First) => kinect.apply(&self.seen.intrinsics, &image),
+                (Sensor::Azure, NoiseModel::First) => self.flight(&image, rng),
+                (Sensor::Kinect, NoiseModel::Second) => {
+                    second_noise::structured_light(&self.seen.intrinsics, &image, rng)
+                }
+                (Sensor::Azure, NoiseModel::Second) => {
+                    second_noise::time_of_flight(&self.seen.intrinsics, &image, self.offset, rng)
+                }
             };
-            frames.push((self.stated.frame(i * 33_333_333, depth), moment));
+            frames.push((self.stated.frame((moment.time * 1e9).round() as u64, depth), joints));
         }
         frames
     }

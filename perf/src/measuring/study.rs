@@ -1,5 +1,7 @@
 //! The study: people drawn from the survey, seen, measured in both ways, compared with what the tape reads on them.
 
+use std::path::PathBuf;
+
 use serde::Serialize;
 use toile_assets::body::Sex;
 use toile_assets::numeric::random::SplitMix64;
@@ -15,14 +17,56 @@ use toile_track::measure;
 use toile_track::measures::Hint;
 use toile_track::point_cloud;
 
-use super::person::{GIVEN, JointPositions, SurveyPerson};
-use super::sensor::{Sensor, StudyCamera};
+use super::makehuman::{FamilyError, SurveyRanges, makehuman_person};
+use super::person::{GIVEN, survey_person};
+use super::sensor::{NoiseModel, Sensor, StudyCamera};
+use super::standing::{JointPositions, Moment, StudyPerson, TapeMeasures};
 use crate::ansur::{StudyError, Survey};
 
+/// Whose bodies are studied.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Family {
+    /// People of the survey in the parametric body's own mesh, each with sections that it does not have.
+    Survey,
+    /// MakeHuman's base mesh with its targets mixed at random, out of a folder of its files.
+    Makehuman(PathBuf),
+}
+
+impl Family {
+    /// The word for reports.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Survey => "survey",
+            Self::Makehuman(_) => "makehuman",
+        }
+    }
+
+    /// What its cameras' noise is like.
+    const fn noise(&self) -> NoiseModel {
+        match self {
+            Self::Survey => NoiseModel::First,
+            Self::Makehuman(_) => NoiseModel::Second,
+        }
+    }
+}
+
+/// Why a study cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum MeasuringError {
+    /// The survey's people.
+    #[error(transparent)]
+    Survey(#[from] StudyError),
+    /// The second family.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
+}
+
 /// Options of a study.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MeasuringOptions {
-    /// People drawn from each file.
+    /// Whose bodies they are.
+    pub family: Family,
+    /// People of each sex: drawn from each file of the survey.
     pub people: usize,
     /// Frames that each is measured from.
     pub frames: usize,
@@ -43,7 +87,7 @@ pub struct MeasuredPerson {
     /// Distance from the camera (m).
     pub distance: f32,
     /// What the tape reads, in the order of [`MEASURES`] (m).
-    pub truth: [f32; MEASURES.len()],
+    pub truth: TapeMeasures,
     /// By the body fit; nothing where no body was found.
     pub fit: Estimates,
     /// By section and outline, proportions and the mean over the frames.
@@ -77,6 +121,8 @@ pub struct MeasuringAgreement {
     pub p95_mm: f64,
     /// Mean stated standard deviation (mm).
     pub sigma_mm: f64,
+    /// Share of errors within one stated standard deviation.
+    pub within_one_sigma: f64,
     /// Share of errors within two stated standard deviations.
     pub within_two_sigma: f64,
     /// Whether the interval lies inside the limit.
@@ -104,6 +150,8 @@ pub struct Following {
 /// What a study found.
 #[derive(Debug, Clone, Serialize)]
 pub struct MeasuringStudy {
+    /// Whose bodies they are: `survey` or `makehuman`.
+    pub family: &'static str,
     /// Name of the camera.
     pub sensor: &'static str,
     /// People who were rendered.
@@ -130,27 +178,51 @@ pub fn study(
     surveys: &[Survey],
     options: &MeasuringOptions,
     progress: &dyn Fn(&MeasuredPerson),
-) -> Result<MeasuringStudy, StudyError> {
+) -> Result<MeasuringStudy, MeasuringError> {
     let mut cases = Vec::new();
+    let mut add = |person: &StudyPerson, rng: &mut SplitMix64| {
+        let case = measured(person, options, rng);
+        progress(&case);
+        cases.push(case);
+    };
     for survey in surveys {
-        let sex = survey.sex()?;
-        let columns: Vec<Vec<f64>> = GIVEN.iter().map(|g| survey.column(g.1)).collect::<Result<_, _>>()?;
-        for row in crate::ansur::chosen(survey.people(), options.people, options.seed) {
-            let metres = std::array::from_fn(|k| (columns[k][row] * 1e-3) as f32);
-            let mut rng = SplitMix64::new(options.seed ^ ((row as u64) << 20) ^ u64::from(sex == Sex::Male));
-            let person = SurveyPerson::new(sex, &metres, &mut rng)
-                .map_err(|source| StudyError::Person { line: row + 2, source })?;
-            let case = measured(&person, options, &mut rng);
-            progress(&case);
-            cases.push(case);
+        let sex = survey.sex().map_err(StudyError::from)?;
+        let seed = |k: usize| options.seed ^ ((k as u64) << 20) ^ u64::from(sex == Sex::Male);
+        match &options.family {
+            Family::Survey => {
+                let columns: Result<Vec<Vec<f64>>, _> = GIVEN.iter().map(|g| survey.column(g.1)).collect();
+                let columns = columns.map_err(StudyError::from)?;
+                for row in crate::ansur::chosen(survey.people(), options.people, options.seed) {
+                    let metres = std::array::from_fn(|k| (columns[k][row] * 1e-3) as f32);
+                    let mut rng = SplitMix64::new(seed(row));
+                    let person = survey_person(sex, &metres, &mut rng)
+                        .map_err(|source| StudyError::Person { line: row + 2, source })?;
+                    add(&person, &mut rng);
+                }
+            }
+            Family::Makehuman(folder) => {
+                let ranges = SurveyRanges::of(survey).map_err(StudyError::from)?;
+                for k in 0..options.people {
+                    let mut rng = SplitMix64::new(seed(k) ^ SECOND);
+                    let person = makehuman_person(folder, &ranges, &mut rng)?;
+                    add(&person, &mut rng);
+                }
+            }
         }
     }
     Ok(summed(&cases, options))
 }
 
-fn measured(person: &SurveyPerson, options: &MeasuringOptions, rng: &mut SplitMix64) -> MeasuredPerson {
-    let sight = StudyCamera::new(options.sensor, rng);
-    let frames = sight.frames(person, options.frames, rng);
+/// Parts the second family's random numbers from the first's.
+const SECOND: u64 = 0x5ec0_4dfa_3117_0000;
+
+/// Time from frame to frame (s).
+const FRAME_S: f32 = 1.0 / 30.0;
+
+fn measured(person: &StudyPerson, options: &MeasuringOptions, rng: &mut SplitMix64) -> MeasuredPerson {
+    let sight = StudyCamera::new(options.sensor, options.family.noise(), rng);
+    let moments: Vec<Moment> = (0..options.frames).map(|i| Moment { time: i as f32 * FRAME_S, turned: 0.0 }).collect();
+    let frames = sight.frames(person, &moments, rng);
     let alone = |(f, truth): &(DepthFrame, JointPositions)| {
         Some((point_cloud::find_people(f).people.first()?.alone(f), *truth))
     };
@@ -174,7 +246,7 @@ fn measured(person: &SurveyPerson, options: &MeasuringOptions, rng: &mut SplitMi
         followed,
         sex: person.sex,
         distance: sight.distance,
-        truth: MEASURES.map(|(_, girth, _)| girth.of(&person.readings)),
+        truth: person.truth,
         fit: fitted.as_ref().map_or([None; MEASURES.len()], |f| f.measures.map(Some)),
         sections,
         woman: fitted.map(|f| f.woman),
@@ -185,7 +257,7 @@ fn measured(person: &SurveyPerson, options: &MeasuringOptions, rng: &mut SplitMi
 const FOLLOWED: usize = 10;
 
 /// Follows a person through their first frames, as at 30 Hz.
-fn follow(person: &SurveyPerson, frames: &[(DepthFrame, JointPositions)]) -> (Option<f32>, Vec<[f32; 7]>) {
+fn follow(person: &StudyPerson, frames: &[(DepthFrame, JointPositions)]) -> (Option<f32>, Vec<[f32; 7]>) {
     let mut fit = BodyFit::new(person.sex, fit::FitOptions { clothed: false, ..fit::FitOptions::LIVE });
     let (mut start, mut followed) = (None, Vec::new());
     for (frame, truth) in frames.iter().take(FOLLOWED) {
@@ -242,6 +314,7 @@ fn summed(cases: &[MeasuredPerson], options: &MeasuringOptions) -> MeasuringStud
     let right = |c: &&MeasuredPerson| c.woman.is_some_and(|w| (w > 0.5) == (c.sex == Sex::Female));
     let found = cases.iter().filter(|c| c.woman.is_some()).count();
     MeasuringStudy {
+        family: options.family.name(),
         sensor: options.sensor.name(),
         people: cases.len(),
         frames: options.frames,
@@ -255,7 +328,7 @@ fn summed(cases: &[MeasuredPerson], options: &MeasuringOptions) -> MeasuringStud
 
 fn agreements(cases: &[MeasuredPerson], way: impl Fn(&MeasuredPerson) -> &Estimates) -> Vec<MeasuringAgreement> {
     let all = MEASURES.iter().enumerate().map(|(i, &(measure, _, limit))| {
-        let pairs: Vec<(Estimate, f32)> = cases.iter().filter_map(|c| Some((way(c)[i]?, c.truth[i]))).collect();
+        let pairs: Vec<(Estimate, f32)> = cases.iter().filter_map(|c| Some((way(c)[i]?, c.truth[i]?))).collect();
         agreement(measure, f64::from(limit) * 1e3, &pairs)
     });
     all.filter(|a| a.taken > 0).collect()
@@ -269,7 +342,10 @@ fn agreement(measure: &'static str, limit_mm: f64, pairs: &[(Estimate, f32)]) ->
     let half = 1.96 * (variance / n).sqrt();
     let mut absolute: Vec<f64> = errors.iter().map(|e| e.abs()).collect();
     let relative: f64 = pairs.iter().zip(&errors).map(|((_, t), e)| e.abs() / f64::from(*t) * 0.1).sum();
-    let within = pairs.iter().filter(|(e, t)| (e.value - t).abs() <= 2.0 * e.sigma).count();
+    let within = |sigmas: f32| {
+        let count = pairs.iter().filter(|(e, t)| (e.value - t).abs() <= sigmas * e.sigma).count();
+        count as f64 / n
+    };
     let mean = absolute.iter().sum::<f64>() / n;
     MeasuringAgreement {
         measure,
@@ -281,7 +357,8 @@ fn agreement(measure: &'static str, limit_mm: f64, pairs: &[(Estimate, f32)]) ->
         mean_absolute_percent: relative / n,
         p95_mm: quantile(&mut absolute, 0.95).unwrap_or(0.0),
         sigma_mm: pairs.iter().map(|(e, _)| f64::from(e.sigma) * 1e3).sum::<f64>() / n,
-        within_two_sigma: within as f64 / n,
+        within_one_sigma: within(1.0),
+        within_two_sigma: within(2.0),
         pass: pairs.len() > 1 && bias.abs() + half <= limit_mm,
     }
 }

@@ -3,7 +3,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::depth_cells::{DepthCell, DepthCells};
+use super::depth_cells::{DepthCell, DepthCells, RimCell};
 use super::posed_body::PosedBody;
 
 /// Least cosine between the normals of a cell and of its sample.
@@ -16,6 +16,22 @@ const FACING: f32 = -0.1;
 /// Least cosine between a cell's normal and the direction to the camera: seen more slantingly, a cell is a mean over too
 /// long a stretch of surface.
 const SLANTING: f32 = 0.25;
+
+/// Greatest cosine between the normal of a sample of the rim and the direction to the camera.
+const RIM_FACING: f32 = 0.3;
+
+/// Least cosine between a rim sample's normal and that of the outline, both in the image.
+const RIM_ALIKE: f32 = 0.7;
+
+/// Greatest difference of depth between an outline and the sample that makes it (m).
+const RIM_DEPTH: f32 = 0.20;
+
+/// What a sample that faces the camera costs beside its distance (cells for a cosine of 1): a trunk's surface that turns by
+/// a tenth of a radian has come half a cell nearer to the outline.
+const RIM_TURN: f32 = 10.0;
+
+/// How far from an outline its samples are looked for (buckets).
+const RIM_RINGS: usize = 4;
 
 /// Side of the buckets into which samples are sorted, in cells.
 const BUCKET: usize = 2;
@@ -33,6 +49,8 @@ pub(super) struct Correspondence {
     pub z: f32,
     /// Whether it faces the camera and projects into the image.
     pub faces: bool,
+    /// Cosine between its normal and the direction to the camera; undefined if it does not face the camera.
+    facing: f32,
 }
 
 impl Correspondence {
@@ -60,6 +78,8 @@ pub(super) struct Correspondences {
     /// Samples by bucket: where each bucket starts, and the list.
     start: Vec<u32>,
     list: Vec<u32>,
+    /// Columns and rows of buckets.
+    buckets: [usize; 2],
 }
 
 impl Correspondences {
@@ -71,6 +91,7 @@ impl Correspondences {
             every: 1,
             start: Vec::new(),
             list: Vec::new(),
+            buckets: [0; 2],
         }
     }
 
@@ -79,6 +100,7 @@ impl Correspondences {
         self.project(view, posed);
         let (across, down) = (view.columns.div_ceil(BUCKET), view.rows.div_ceil(BUCKET));
         self.sort(across, down);
+        self.buckets = [across, down];
         let camera = view.camera_position();
         let (mut explained, mut squares) = (0usize, 0.0);
         for cell in view.cells.iter().step_by(self.every) {
@@ -147,19 +169,46 @@ impl Correspondences {
         best.1
     }
 
+    /// The sample of the body's own rim that belongs to a stretch of outline: beside it, with its normal, and where the
+    /// surface turns away from the camera.
+    pub(super) fn rim_sample(&self, view: &DepthCells, posed: &PosedBody, rim: &RimCell) -> Option<usize> {
+        let [across, down] = self.buckets;
+        let cell = |x: f32, most: usize| ((x / BUCKET as f32).round().max(0.0) as usize).min(most.saturating_sub(1));
+        let (bc, br) = (cell(rim.at.x, across), cell(rim.at.y, down));
+        let mut best = (f32::MAX, None);
+        for r in br.saturating_sub(RIM_RINGS)..=(br + RIM_RINGS).min(down.saturating_sub(1)) {
+            let row = r * across;
+            let (left, right) = (bc.saturating_sub(RIM_RINGS), (bc + RIM_RINGS).min(across - 1));
+            for &i in &self.list[self.start[row + left] as usize..self.start[row + right + 1] as usize] {
+                let m = &self.of[i as usize];
+                if m.facing > RIM_FACING || (m.z - rim.z).abs() > RIM_DEPTH {
+                    continue;
+                }
+                let off = m.seen - rim.at;
+                let (out, beside) = (off.dot(rim.out), off.perp_dot(rim.out));
+                let cost = (2.0 * beside).powi(2) + (0.25 * out).powi(2) + (RIM_TURN * m.facing).powi(2);
+                if cost < best.0 && view.in_image(posed.normals[i as usize]).dot(rim.out) > RIM_ALIKE {
+                    best = (cost, Some(i as usize));
+                }
+            }
+        }
+        best.1
+    }
+
     /// Finds the samples that face the camera, and projects them.
     fn project(&mut self, view: &DepthCells, posed: &PosedBody) {
         let camera = view.camera_position();
         for ((m, point), normal) in self.of.iter_mut().zip(&posed.points).zip(&posed.normals) {
             *m = Correspondence::default();
             let to_camera = camera - *point;
-            if normal.dot(to_camera) < FACING * to_camera.length() {
+            let facing = normal.dot(to_camera) / to_camera.length();
+            if facing < FACING {
                 continue;
             }
             if let Some((seen, z)) = view.project(*point)
                 && view.place(seen).is_some()
             {
-                (m.seen, m.z, m.faces) = (seen, z, true);
+                (m.seen, m.z, m.faces, m.facing) = (seen, z, true, facing);
             }
         }
     }

@@ -5,6 +5,19 @@ use std::ops::Range;
 use glam::{Affine3A, Vec2, Vec3};
 use toile_sensors::frame::{DepthFrame, Intrinsics};
 
+use super::rim::SurfaceMask;
+
+/// A stretch of the shopper's outline, a cell long.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct RimCell {
+    /// Its middle (cells).
+    pub at: Vec2,
+    /// Unit normal in the image, away from the shopper.
+    pub out: Vec2,
+    /// Depth of the surface that ends there (m).
+    pub z: f32,
+}
+
 /// Side of a cell on the shopper (m): a good tenth of a limb's breadth, and nine pixels of a Kinect at 2.5 m, which
 /// bring its noise down to a third.
 const CELL: f32 = 0.013;
@@ -56,6 +69,9 @@ pub(super) struct DepthCells {
     /// The part of the grid that holds the shopper, and the same with [`BORDER`] around it.
     extent: CellRange,
     reach: CellRange,
+    /// The outline, where nothing but background lies beyond it.
+    pub rim: Vec<RimCell>,
+    mask: SurfaceMask,
 }
 
 /// A part of the grid: first and end of its columns and rows.
@@ -88,6 +104,8 @@ impl DepthCells {
             depth: Vec::new(),
             extent: CellRange::default(),
             reach: CellRange::default(),
+            rim: Vec::new(),
+            mask: SurfaceMask::default(),
         }
     }
 
@@ -110,6 +128,7 @@ impl DepthCells {
             return false;
         }
         self.distance_transform();
+        self.read_rim(frame);
         true
     }
 
@@ -228,6 +247,40 @@ impl DepthCells {
         }
     }
 
+    /// Finds the outline: stretches of it beyond which a gap of some cells lies, so that lost pixels make none.
+    fn read_rim(&mut self, frame: &DepthFrame) {
+        let step = self.step;
+        let CellRange { columns, rows } = self.extent.clone();
+        let pixels = |cells: &Range<usize>| cells.start * step..cells.end * step;
+        self.mask.read(&frame.depth_mm, frame.intrinsics.width as usize, [pixels(&columns), pixels(&rows)]);
+        self.rim.clear();
+        let half = 0.5 * (step as f32 - 1.0);
+        for r in rows {
+            for c in columns.clone() {
+                let Some(point) = self.mask.stretch(pixels(&(c..c + 1)), pixels(&(r..r + 1))) else { continue };
+                let at = (point.at - Vec2::splat(half)) / step as f32;
+                let open = |by: f32| {
+                    self.place(at + by * point.out).is_some_and(|(c, r)| self.at[r * self.columns + c] == NONE)
+                };
+                let near = self.nearest[r * self.columns + c];
+                if GAP.into_iter().all(open) && near[0] != u16::MAX {
+                    let z = self.depth[near[1] as usize * self.columns + near[0] as usize];
+                    self.rim.push(RimCell { at, out: point.out, z });
+                }
+            }
+        }
+    }
+
+    /// A world direction as it lies in the image, not normalised: what of it points along the line of sight is left out.
+    pub(super) fn in_image(&self, direction: Vec3) -> Vec2 {
+        self.world_to_camera.transform_vector3(direction).truncate()
+    }
+
+    /// The direction in the world that an image direction has (unit for a unit).
+    pub(super) fn in_world(&self, direction: Vec2) -> Vec3 {
+        self.camera_to_world.transform_vector3(direction.extend(0.0))
+    }
+
     /// Position of the camera, world (m).
     pub(super) fn camera_position(&self) -> Vec3 {
         self.camera_to_world.translation.into()
@@ -273,6 +326,9 @@ impl DepthCells {
         z * self.step as f32 / self.intrinsics.fx
     }
 }
+
+/// Distances beyond the outline at which there must be no surface (cells): two to four hands' breadths of a cell.
+const GAP: [f32; 3] = [1.5, 2.5, 3.5];
 
 /// Fewest cells of a person: a tenth of one at 4 m.
 const FEWEST_CELLS: usize = 200;

@@ -16,6 +16,7 @@ pub mod measuring;
 mod normal_equations;
 mod posed_body;
 mod residuals;
+mod rim;
 #[expect(clippy::needless_range_loop, reason = "matrices are read by row and column")]
 mod shape_filter;
 pub mod tracker;

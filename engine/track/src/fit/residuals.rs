@@ -3,7 +3,7 @@
 use toile_assets::body::shape::SHAPES;
 
 use super::correspondence::Correspondences;
-use super::depth_cells::DepthCells;
+use super::depth_cells::{DepthCells, RimCell};
 use super::joint_angles::angle;
 use super::normal_equations::NormalEquations;
 use super::posed_body::{BodyModel, FitState, PosedBody, UNKNOWNS};
@@ -28,6 +28,15 @@ const OUTLINE_SIGMA: f32 = 0.030;
 
 /// Residuals outside the outline are clamped to this (m).
 const OUTLINE_REACH: f32 = 0.15;
+
+/// Breadth of the shopper's rim that a camera loses, because it sees it at a grazing angle (m).
+const RIM_LOST: f32 = 0.003;
+
+/// Standard deviation of the outline's place in a cell (m), correlated as for [`CELL_SIGMA`].
+const RIM_SIGMA: f32 = 0.0095;
+
+/// Distance from the outline at which it has a quarter of its weight (m).
+const RIM_ROBUST: f32 = 0.05;
 
 /// Feet within this of the ground stand on it (m).
 const STANDING: f32 = 0.05;
@@ -82,6 +91,9 @@ pub(super) fn add_observations(equations: &mut NormalEquations, scene: Observati
             outline(equations, scene, i, options);
         }
     }
+    for cell in &scene.view.rim {
+        rim(equations, scene, cell, options);
+    }
     if let Some(ground) = options.ground {
         soles(equations, scene, ground, options);
     }
@@ -112,6 +124,27 @@ fn outline(
         let residual = (off - play).min(OUTLINE_REACH);
         equations.add(&posed.row(model, i, along), residual, 1.0 / (OUTLINE_SIGMA * OUTLINE_SIGMA));
     }
+}
+
+/// Draws the rim of the body to a stretch of the outline, from inside as from outside.
+fn rim(
+    equations: &mut NormalEquations,
+    Observation { model, posed, view, matches }: Observation,
+    cell: &RimCell,
+    options: &ResidualOptions,
+) {
+    let Some(i) = matches.rim_sample(view, posed, cell) else { return };
+    if options.ground.is_some_and(|g| posed.points[i].y < g + FLOOR_ZONE) {
+        return;
+    }
+    let found = &matches.of[i];
+    let residual = (found.seen - cell.at).dot(cell.out) * view.cell_size(found.z) - RIM_LOST;
+    let pull = if model.samples[i].hairy { HAIR_PULL } else { CLOTH_PULL };
+    let off = residual / RIM_ROBUST;
+    let robust = (1.0 + off * off).powi(-2);
+    let share = if options.clothed && residual < 0.0 { pull * robust } else { robust };
+    let weight = share / (RIM_SIGMA * RIM_SIGMA);
+    equations.add(&posed.row(model, i, view.in_world(cell.out)), residual, weight);
 }
 
 fn soles(

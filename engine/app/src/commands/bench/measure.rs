@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 use toile_perf::ansur::Survey;
-use toile_perf::measuring::{self, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Sensor};
+use toile_perf::measuring::{self, Family, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Sensor};
 
 use crate::arguments::{Printing, count};
 use crate::exit::AppError;
@@ -37,7 +37,10 @@ pub struct MeasureBenchArgs {
     /// A file of ANSUR II, such as ANSUR_II_FEMALE.csv; repeat it for the other sex
     #[arg(long = "ansur", value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// People drawn from each file
+    /// A folder of MakeHuman's base mesh hm08: people of that family are measured too
+    #[arg(long, value_name = "FOLDER")]
+    makehuman: Option<PathBuf>,
+    /// People drawn from each file, and of each family
     #[arg(long, value_name = "N", value_parser = count(2..=MAX_PEOPLE), default_value = "100")]
     people: usize,
     /// Frames that each is measured from, at 30 Hz
@@ -86,10 +89,11 @@ pub fn run(args: &MeasureBenchArgs) -> Result<(), AppError> {
     let surveys: Vec<Survey> =
         args.files.iter().map(|f| Survey::read(f)).collect::<Result<_, _>>().map_err(AppError::input)?;
     let mut studies = Vec::new();
-    for sensor in args.sensors() {
+    let families = [Family::Survey].into_iter().chain(args.makehuman.clone().map(Family::Makehuman));
+    for (family, sensor) in families.flat_map(|family| args.sensors().map(move |sensor| (family.clone(), sensor))) {
         let people: usize = surveys.iter().map(|s| args.people.min(s.people())).sum();
         let bar = words.bar(people as u64, "measuring people");
-        let options = MeasuringOptions { people: args.people, frames: args.frames, seed: args.seed, sensor };
+        let options = MeasuringOptions { family, people: args.people, frames: args.frames, seed: args.seed, sensor };
         studies.push(measuring::study(&surveys, &options, &|_| bar.inc(1)).map_err(AppError::input)?);
         bar.finish_and_clear();
     }
@@ -108,18 +112,23 @@ pub fn run(args: &MeasureBenchArgs) -> Result<(), AppError> {
 
 /// Measures whose interval is not inside the limit.
 fn missed(study: &MeasuringStudy) -> Vec<String> {
-    study.fit.iter().filter(|a| !a.pass).map(|a| format!("{} ({})", a.measure, study.sensor)).collect()
+    study
+        .fit
+        .iter()
+        .filter(|a| !a.pass)
+        .map(|a| format!("{} ({}, {})", a.measure, study.family, study.sensor))
+        .collect()
 }
 
 /// One study as people read it.
 fn table(study: &MeasuringStudy, paint: Paint) -> String {
     let mut text = String::new();
-    let title = format!("{}: {} people, {} frames each", study.sensor, study.people, study.frames);
+    let title = format!("{}, {}: {} people, {} frames each", study.family, study.sensor, study.people, study.frames);
     let _ = writeln!(text, "{}", paint.tone(&title, Tone::Strong));
     for (way, rows) in [("body fit", &study.fit), ("sections and proportions", &study.sections)] {
         let _ = writeln!(
             text,
-            "{:<26} {:>6} {:>6} {:>7} {:>17} {:>7} {:>7} {:>7} {:>7} {:>6}",
+            "{:<26} {:>6} {:>6} {:>7} {:>17} {:>7} {:>7} {:>7} {:>7} {:>6} {:>6}",
             format!("{way} (mm)"),
             "taken",
             "limit",
@@ -129,6 +138,7 @@ fn table(study: &MeasuringStudy, paint: Paint) -> String {
             "%",
             "95 %",
             "sigma",
+            "in 1s",
             "in 2s"
         );
         for row in rows {
@@ -163,7 +173,7 @@ fn table(study: &MeasuringStudy, paint: Paint) -> String {
 fn row_text(a: &MeasuringAgreement, paint: Paint) -> String {
     let interval = format!("{:+.1} .. {:+.1}", a.interval_mm[0], a.interval_mm[1]);
     let line = format!(
-        "  {:<24} {:>6} {:>6.0} {:>+7.1} {:>17} {:>7.1} {:>7.2} {:>7.1} {:>7.1} {:>5.0}%",
+        "  {:<24} {:>6} {:>6.0} {:>+7.1} {:>17} {:>7.1} {:>7.2} {:>7.1} {:>7.1} {:>5.0}% {:>5.0}%",
         a.measure,
         a.taken,
         a.limit_mm,
@@ -173,6 +183,7 @@ fn row_text(a: &MeasuringAgreement, paint: Paint) -> String {
         a.mean_absolute_percent,
         a.p95_mm,
         a.sigma_mm,
+        a.within_one_sigma * 100.0,
         a.within_two_sigma * 100.0
     );
     paint.tone(&line, if a.pass { Tone::Good } else { Tone::Warn }).into_owned()
