@@ -5,8 +5,12 @@ mod recordings;
 
 use std::path::{Path, PathBuf};
 
+use toile_assets::numeric::random::SplitMix64;
 use toile_perf::ansur::Survey;
-use toile_perf::measuring::{Family, MeasuringOptions, MeasuringStudy, Sensor, study};
+use toile_perf::measuring::{
+    Family, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Moment, Sensor, SurveyRanges, makehuman_person, study,
+};
+use toile_track::fit::measuring::MEASURES;
 
 /// The folder of shared data; absent data is a failure in continuous integration.
 fn folder() -> Option<PathBuf> {
@@ -42,5 +46,39 @@ fn people_before_both_cameras_are_found_and_measured() {
             assert!(row.mean_absolute_mm < limit, "{} {name}: {row:?}", found.sensor);
             assert!(row.sigma_mm > 0.0 && row.within_two_sigma > 0.4, "{} {name}: {row:?}", found.sensor);
         }
+    }
+}
+
+/// People of a family that shares nothing with the parametric body: what the tape reads on them is like the survey, and the
+/// outline drawn from both sides brings the fit nearer to it than the outline that only shrinks.
+#[test]
+fn people_of_another_family_are_nearer_by_an_outline_from_both_sides() {
+    let Some(folder) = folder() else { return };
+    let surveys = surveys(&folder);
+    let makehuman = folder.parent().and_then(Path::parent).expect("the folder of data").join("body/makehuman-hm08");
+    let mut rng = SplitMix64::new(3);
+    let ranges = SurveyRanges::of(&surveys[0]).expect("a survey's ranges");
+    let person = makehuman_person(&makehuman, &ranges, &mut rng).expect("a person");
+    let read = |name: &str| person.truth[MEASURES.iter().position(|m| m.0 == name).expect("a measure")];
+    let [stature, chest, waist, hip] =
+        ["stature", "chest_girth", "waist_girth", "hip_girth"].map(|name| read(name).expect("a landmark"));
+    assert!((1.45..1.95).contains(&stature) && chest > waist && hip > waist, "{stature} {chest} {waist} {hip}");
+    let (mut early, mut late) = (Vec::new(), Vec::new());
+    person.stand(Moment { time: 0.0, turned: 0.0 }, &mut rng, &mut early);
+    person.stand(Moment { time: 1.5, turned: std::f32::consts::PI }, &mut rng, &mut late);
+    let top = |p: &[glam::Vec3]| p.iter().map(|p| p.y).fold(0.0, f32::max);
+    assert!((top(&early) - top(&late)).abs() < 0.01, "nobody grows by turning");
+    assert!(early.iter().zip(&late).any(|(a, b)| a.distance(*b) > 0.2), "a turn moves the hands");
+
+    let family = Family::Makehuman(makehuman);
+    let options = MeasuringOptions { family, people: 4, frames: 2, seed: 5, sensor: Sensor::Azure };
+    let found = study(&surveys, &options, &|_| ()).expect("a study");
+    assert_eq!((found.people, found.lost, found.family), (8, 0, "makehuman"));
+    let error = |rows: &[MeasuringAgreement], name: &str| {
+        rows.iter().find(|a| a.measure == name).expect("a measure that is taken").mean_absolute_mm
+    };
+    for name in ["chest_girth", "underbust_girth"] {
+        let [inward, both] = [&found.fit, &found.both_ways].map(|rows| error(rows, name));
+        assert!(both < 0.8 * inward, "{name}: {both} mm in place of {inward}");
     }
 }

@@ -17,7 +17,7 @@ mod sensor;
 
 mod study;
 
-pub use makehuman::{debug, FamilyError, SurveyRanges, makehuman_person};
+pub use makehuman::{FamilyError, SurveyRanges, makehuman_person};
 pub use person::{GIVEN, survey_person};
 pub use sensor::{NoiseModel, Sensor, StudyCamera};
 pub use standing::{JointPositions, Moment, StudyPerson, TapeMeasures};

@@ -12,7 +12,7 @@ use toile_fitting::timing::OnCore;
 use toile_sensors::frame::DepthFrame;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{self, MEASURES};
-use toile_track::fit::{self, BodyFit};
+use toile_track::fit::{self, BodyFit, Outline};
 use toile_track::measure;
 use toile_track::measures::Hint;
 use toile_track::point_cloud;
@@ -90,6 +90,8 @@ pub struct MeasuredPerson {
     pub truth: TapeMeasures,
     /// By the body fit; nothing where no body was found.
     pub fit: Estimates,
+    /// By the body fit with its outline drawn from both sides.
+    pub both_ways: Estimates,
     /// By section and outline, proportions and the mean over the frames.
     pub sections: Estimates,
     /// How likely the fit took them for a woman.
@@ -166,6 +168,8 @@ pub struct MeasuringStudy {
     pub following: Following,
     /// By the body fit.
     pub fit: Vec<MeasuringAgreement>,
+    /// By the body fit with its outline drawn from both sides, which does not ship yet.
+    pub both_ways: Vec<MeasuringAgreement>,
     /// By sections, proportions and the mean over time.
     pub sections: Vec<MeasuringAgreement>,
 }
@@ -231,6 +235,8 @@ fn measured(person: &StudyPerson, options: &MeasuringOptions, rng: &mut SplitMix
     let frames: Vec<DepthFrame> = frames.into_iter().map(|f| f.0).collect();
     let bare = fit::FitOptions { clothed: false, ..fit::FitOptions::MEASURING };
     let fitted = measuring::measure(&only, Population::Mixed, bare);
+    let both_ways = fit::FitOptions { outline: Outline::BothWays, ..bare };
+    let both_ways = measuring::measure(&only, Population::Mixed, both_ways);
     let sections = measure::measure(&[], &frames, &Hint::default()).ok();
     let sections = sections.map_or([None; MEASURES.len()], |m| {
         let s = &m.measures;
@@ -248,6 +254,7 @@ fn measured(person: &StudyPerson, options: &MeasuringOptions, rng: &mut SplitMix
         distance: sight.distance,
         truth: person.truth,
         fit: fitted.as_ref().map_or([None; MEASURES.len()], |f| f.measures.map(Some)),
+        both_ways: both_ways.map_or([None; MEASURES.len()], |f| f.measures.map(Some)),
         sections,
         woman: fitted.map(|f| f.woman),
     }
@@ -322,6 +329,7 @@ fn summed(cases: &[MeasuredPerson], options: &MeasuringOptions) -> MeasuringStud
         sex_right: cases.iter().filter(right).count() as f64 / found.max(1) as f64,
         following: following(cases),
         fit: agreements(cases, |c| &c.fit),
+        both_ways: agreements(cases, |c| &c.both_ways),
         sections: agreements(cases, |c| &c.sections),
     }
 }

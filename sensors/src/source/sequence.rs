@@ -134,8 +134,9 @@ fn level_camera() -> Affine3A {
     Affine3A::from_mat3_translation(rotation, Vec3::Y * ASSUMED_CAMERA_HEIGHT)
 }
 
-/// Sets the images into our world: the floor at y = 0, centred at what is seen. Where the pose is known, up is, and the
-/// floor lies under the lowest points; else both come from the floor that is seen.
+/// Sets the images into our world: the floor at y = 0, centred at what is seen. Where the pose is known, so is the floor, if
+/// something stands near y = 0 of the camera's world; otherwise it lies under the lowest points. Of a camera of unknown pose
+/// all comes from the floor that is seen.
 fn place(depth: &mut [DepthFrame], posed: bool, notes: &mut Vec<String>) -> Result<(), Fault> {
     if !posed && let Some(floor) = depth.iter().take(TRIED).find_map(floor_of) {
         notes.push(format!(
@@ -147,6 +148,9 @@ fn place(depth: &mut [DepthFrame], posed: bool, notes: &mut Vec<String>) -> Resu
         return centre(depth, |_| 0.0);
     }
     let mut floor_height = |low: f32| {
+        if posed && low.abs() < AT_THE_FLOOR {
+            return 0.0;
+        }
         if posed {
             notes.push(format!(
                 "the floor is put under the lowest points of the first image, at y = {low:.3} m of the camera's world"
@@ -160,6 +164,10 @@ fn place(depth: &mut [DepthFrame], posed: bool, notes: &mut Vec<String>) -> Resu
     };
     centre(depth, &mut floor_height)
 }
+
+/// Lowest points this near to y = 0 of a known camera's world stand on its floor (m): what lies lower is the noise of pixels
+/// at the floor, what lies higher a foot that the picture cuts or that is lost in the floor.
+const AT_THE_FLOOR: f32 = 0.15;
 
 /// Images in which the floor is sought.
 const TRIED: usize = 5;
@@ -186,4 +194,42 @@ fn centre(depth: &mut [DepthFrame], floor: impl FnOnce(f32) -> f32) -> Result<()
         frame.camera_to_world = shift * frame.camera_to_world;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A board of a person's size at the origin, as a level camera sees it, with its lowest edge at a height (m).
+    fn board(camera: &Camera, pose: Affine3A, low: f32) -> Vec<u16> {
+        let k = camera.intrinsics;
+        let eye = pose.translation;
+        let pixel = |i: usize| {
+            let (u, v) = ((i % k.width as usize) as f32, (i / k.width as usize) as f32);
+            let p = pose.transform_point3(k.unproject(u, v, eye.z));
+            if p.x.abs() < 0.25 && (low..low + 1.7).contains(&p.y) { (eye.z * 1e3) as u16 } else { 0 }
+        };
+        (0..k.pixels()).map(pixel).collect()
+    }
+
+    fn height_over_the_floor(low: f32) -> f32 {
+        let mut pose = level_camera();
+        pose.translation = glam::Vec3A::new(0.3, 0.9, 3.2);
+        let camera = Camera { pose: Some(pose), ..Camera::pinhole(Intrinsics::KINECT_V1) };
+        let image = board(&camera, pose, low);
+        let mut sequence = Sequence::new(camera, Vec::new()).expect("a camera");
+        sequence.push(0, image.into_iter()).expect("an image");
+        let session = sequence.finish().expect("a session");
+        session.depth[0].camera_to_world.translation.y
+    }
+
+    #[test]
+    fn a_known_camera_keeps_its_floor_where_somebody_stands_on_it() {
+        // Noise below the floor, or feet lost in it, move nobody.
+        for low in [-0.03, 0.0, 0.04, 0.12] {
+            assert!((height_over_the_floor(low) - 0.9).abs() < 1e-5, "{low}");
+        }
+        // A world whose y = 0 is somewhere else: the lowest points stand on the floor.
+        assert!((height_over_the_floor(-0.3) - 1.2).abs() < 0.02);
+    }
 }

@@ -69,7 +69,7 @@ pub(super) struct DepthCells {
     /// The part of the grid that holds the shopper, and the same with [`BORDER`] around it.
     extent: CellRange,
     reach: CellRange,
-    /// The outline, where nothing but background lies beyond it.
+    /// The outline, where nothing but background lies beyond it; empty until it is asked for.
     pub rim: Vec<RimCell>,
     mask: SurfaceMask,
 }
@@ -115,6 +115,7 @@ impl DepthCells {
         self.camera_to_world = frame.camera_to_world;
         self.world_to_camera = frame.camera_to_world.inverse();
         self.cells.clear();
+        self.rim.clear();
         let Some(distance) = mean_depth(frame) else { return false };
         let pixel = distance / frame.intrinsics.fx.max(frame.intrinsics.fy);
         self.step = ((CELL / pixel).round() as usize).clamp(1, 16);
@@ -128,7 +129,6 @@ impl DepthCells {
             return false;
         }
         self.distance_transform();
-        self.read_rim(frame);
         true
     }
 
@@ -247,8 +247,8 @@ impl DepthCells {
         }
     }
 
-    /// Finds the outline: stretches of it beyond which a gap of some cells lies, so that lost pixels make none.
-    fn read_rim(&mut self, frame: &DepthFrame) {
+    /// Finds the outline of the frame that was read: stretches of it beyond which a gap of some cells lies, so that lost pixels make none.
+    pub(super) fn read_rim(&mut self, frame: &DepthFrame) {
         let step = self.step;
         let CellRange { columns, rows } = self.extent.clone();
         let pixels = |cells: &Range<usize>| cells.start * step..cells.end * step;

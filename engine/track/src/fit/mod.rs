@@ -47,14 +47,29 @@ pub struct FitOptions {
     pub spacing: f32,
     /// Gauss-Newton steps a frame.
     pub steps: usize,
+    /// How the outline is used.
+    pub outline: Outline,
+}
+
+/// How the shopper's outline pulls on the body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outline {
+    /// What lies outside of it is pulled in: it can only make the body smaller. What ships.
+    Inward,
+    /// The body's rim is drawn to it from outside and inside, below the size of a pixel, and the surface counts as correlated
+    /// over more than a hand's breadth: nearer to the truth on bodies of another family, but not yet calibrated
+    /// (`toile bench measure --makehuman`).
+    BothWays,
 }
 
 impl FitOptions {
     /// For every frame at 30 Hz.
-    pub const LIVE: Self = Self { ground: Some(0.0), clothed: true, spacing: 0.030, steps: 3 };
+    pub const LIVE: Self =
+        Self { ground: Some(0.0), clothed: true, spacing: 0.030, steps: 3, outline: Outline::Inward };
 
     /// For the second in which a shopper is measured.
-    pub const MEASURING: Self = Self { ground: Some(0.0), clothed: true, spacing: 0.0, steps: 2 };
+    pub const MEASURING: Self =
+        Self { ground: Some(0.0), clothed: true, spacing: 0.0, steps: 2, outline: Outline::Inward };
 }
 
 /// Largest distance of a correspondence while tracking (m).
@@ -175,6 +190,9 @@ impl BodyFit {
         self.times = FitTimes::default();
         let begun = Instant::now();
         let enough = self.view.read(frame);
+        if enough && self.options.outline == Outline::BothWays {
+            self.view.read_rim(frame);
+        }
         self.times.cells = begun.elapsed().as_secs_f32();
         if !enough {
             self.fail();
@@ -280,11 +298,11 @@ impl BodyFit {
             let matched = Instant::now();
             self.times.correspond += (matched - begun).as_secs_f32();
             let shape = self.shape_filter.about(&state.shape);
-            let FitOptions { ground, clothed, .. } = self.options;
-            let options = ResidualOptions { ground, clothed, robust };
+            let FitOptions { ground, clothed, outline, .. } = self.options;
+            let options = ResidualOptions { ground, clothed, outline, robust };
             let Self { model, posed, view, matches, equations, .. } = self;
             residuals::add_observations(equations, residuals::Observation { model, posed, view, matches }, &options);
-            residuals::add_priors(&mut self.equations, &self.model, &state, before);
+            residuals::add_priors(&mut self.equations, &self.model, &state, before, outline);
             let gathered = Instant::now();
             self.times.equations += (gathered - matched).as_secs_f32();
             let by = residuals::limit_step(self.equations.step(&shape, DAMPING));

@@ -2,6 +2,7 @@
 
 use toile_assets::body::shape::SHAPES;
 
+use super::Outline;
 use super::correspondence::Correspondences;
 use super::depth_cells::{DepthCells, RimCell};
 use super::joint_angles::angle;
@@ -11,6 +12,32 @@ use super::posed_body::{BodyModel, FitState, PosedBody, UNKNOWNS};
 /// Standard deviation of a cell's distance from the model's surface (m). Errors are correlated over a hand's breadth, so
 /// that the thirty cells there count as one: 4 mm times the root of 30.
 const CELL_SIGMA: f32 = 0.022;
+
+/// The same where the outline counts from both sides: errors of a body that the model cannot have are correlated over more
+/// than a hand's breadth, and then a front that fits a little better does not outweigh the breadth that is seen.
+const CORRELATED_CELL_SIGMA: f32 = 0.040;
+
+/// Share of the usual spreads of joint angles that somebody has who is told to stand upright, where the outline counts from
+/// both sides.
+const UPRIGHT: f32 = 0.5;
+
+impl Outline {
+    /// Standard deviation of a cell's distance from the model's surface (m).
+    const fn cell_sigma(self) -> f32 {
+        match self {
+            Self::Inward => CELL_SIGMA,
+            Self::BothWays => CORRELATED_CELL_SIGMA,
+        }
+    }
+
+    /// What spreads of joint angles are multiplied with.
+    const fn pose_spread(self) -> f32 {
+        match self {
+            Self::Inward => 1.0,
+            Self::BothWays => UPRIGHT,
+        }
+    }
+}
 
 /// Cloth lies outside the skin: a point outside the surface pulls with this fraction of the weight, and not at all
 /// beyond a loose fit; a point inside pushes with the full weight.
@@ -30,10 +57,10 @@ const OUTLINE_SIGMA: f32 = 0.030;
 const OUTLINE_REACH: f32 = 0.15;
 
 /// Breadth of the shopper's rim that a camera loses, because it sees it at a grazing angle (m).
-const RIM_LOST: f32 = 0.003;
+const RIM_LOST: f32 = 0.002;
 
 /// Standard deviation of the outline's place in a cell (m), correlated as for [`CELL_SIGMA`].
-const RIM_SIGMA: f32 = 0.0095;
+const RIM_SIGMA: f32 = 0.012;
 
 /// Distance from the outline at which it has a quarter of its weight (m).
 const RIM_ROBUST: f32 = 0.05;
@@ -63,6 +90,8 @@ pub(super) struct ResidualOptions {
     pub ground: Option<f32>,
     /// Whether the visible surface is cloth over skin: residuals are then one-sided.
     pub clothed: bool,
+    /// How the outline is used.
+    pub outline: Outline,
     /// Residual at which a match loses three quarters of its weight (m).
     pub robust: f32,
 }
@@ -85,14 +114,16 @@ pub(super) fn add_observations(equations: &mut NormalEquations, scene: Observati
             let normal = posed.normals[i];
             let residual = found.outside(posed.points[i], normal);
             let pull = if model.samples[i].hairy { HAIR_PULL } else { CLOTH_PULL };
-            let weight = found.count * trust(residual, options, pull) / (CELL_SIGMA * CELL_SIGMA);
+            let weight = found.count * trust(residual, options, pull) / options.outline.cell_sigma().powi(2);
             equations.add(&posed.row(model, i, normal), residual, weight);
         } else if found.faces {
             outline(equations, scene, i, options);
         }
     }
-    for cell in &scene.view.rim {
-        rim(equations, scene, cell, options);
+    if options.outline == Outline::BothWays {
+        for cell in &scene.view.rim {
+            rim(equations, scene, cell, options);
+        }
     }
     if let Some(ground) = options.ground {
         soles(equations, scene, ground, options);
@@ -168,10 +199,12 @@ pub(super) fn add_priors(
     model: &BodyModel,
     state: &FitState,
     before: Option<&FitState>,
+    outline: Outline,
 ) {
     for (t, turn) in model.joint_angles.iter().enumerate() {
         let now = angle(&state.local, turn);
-        equations.add_one(3 + t, now - turn.usual, turn.spread.powi(-2));
+        let spread = outline.pose_spread();
+        equations.add_one(3 + t, now - turn.usual, (turn.spread * spread).powi(-2));
         let beyond = (now - turn.range[1]).max(0.0) + (now - turn.range[0]).min(0.0);
         if beyond != 0.0 {
             equations.add_one(3 + t, beyond, BEYOND.powi(-2));

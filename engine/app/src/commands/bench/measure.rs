@@ -125,7 +125,11 @@ fn table(study: &MeasuringStudy, paint: Paint) -> String {
     let mut text = String::new();
     let title = format!("{}, {}: {} people, {} frames each", study.family, study.sensor, study.people, study.frames);
     let _ = writeln!(text, "{}", paint.tone(&title, Tone::Strong));
-    for (way, rows) in [("body fit", &study.fit), ("sections and proportions", &study.sections)] {
+    for (way, rows) in [
+        ("body fit", &study.fit),
+        ("outline both ways", &study.both_ways),
+        ("sections and proportions", &study.sections),
+    ] {
         let _ = writeln!(
             text,
             "{:<26} {:>6} {:>6} {:>7} {:>17} {:>7} {:>7} {:>7} {:>7} {:>6} {:>6}",
