@@ -12,7 +12,7 @@ use toile_fitting::timing::OnCore;
 use toile_sensors::frame::DepthFrame;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{self, MEASURES};
-use toile_track::fit::{self, BodyFit, Outline};
+use toile_track::fit::{self, BodyFit, OutlinePull};
 use toile_track::measure;
 use toile_track::measures::Hint;
 use toile_track::point_cloud;
@@ -235,7 +235,7 @@ fn measured(person: &StudyPerson, options: &MeasuringOptions, rng: &mut SplitMix
     let frames: Vec<DepthFrame> = frames.into_iter().map(|f| f.0).collect();
     let bare = fit::FitOptions { clothed: false, ..fit::FitOptions::MEASURING };
     let fitted = measuring::measure(&only, Population::Mixed, bare);
-    let both_ways = fit::FitOptions { outline: Outline::BothWays, ..bare };
+    let both_ways = fit::FitOptions { outline: OutlinePull::BothWays, ..bare };
     let both_ways = measuring::measure(&only, Population::Mixed, both_ways);
     let sections = measure::measure(&[], &frames, &Hint::default()).ok();
     let sections = sections.map_or([None; MEASURES.len()], |m| {

@@ -14,6 +14,7 @@ mod joint_angles;
 pub mod measuring;
 #[expect(clippy::needless_range_loop, reason = "matrices are read by row and column")]
 mod normal_equations;
+mod options;
 mod posed_body;
 mod residuals;
 mod rim;
@@ -32,45 +33,10 @@ use toile_sensors::frame::{DepthFrame, Joints, TrackedJoint};
 use correspondence::Correspondences;
 use depth_cells::DepthCells;
 use normal_equations::NormalEquations;
+pub use options::{FitOptions, OutlinePull};
 use posed_body::{BodyModel, FitState, PosedBody};
 use residuals::ResidualOptions;
 use shape_filter::ShapeFilter;
-
-/// How a shopper is fitted.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FitOptions {
-    /// Height of the floor (m), where the camera's pose is known.
-    pub ground: Option<f32>,
-    /// Whether cloth covers the skin: the fit is then one-sided, because cloth lies outside.
-    pub clothed: bool,
-    /// Least distance between the surface samples (m): finer is more accurate and slower; 0 takes every face.
-    pub spacing: f32,
-    /// Gauss-Newton steps a frame.
-    pub steps: usize,
-    /// How the outline is used.
-    pub outline: Outline,
-}
-
-/// How the shopper's outline pulls on the body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outline {
-    /// What lies outside of it is pulled in: it can only make the body smaller. What ships.
-    Inward,
-    /// The body's rim is drawn to it from outside and inside, below the size of a pixel, and the surface counts as correlated
-    /// over more than a hand's breadth: nearer to the truth on bodies of another family, but not yet calibrated
-    /// (`toile bench measure --makehuman`).
-    BothWays,
-}
-
-impl FitOptions {
-    /// For every frame at 30 Hz.
-    pub const LIVE: Self =
-        Self { ground: Some(0.0), clothed: true, spacing: 0.030, steps: 3, outline: Outline::Inward };
-
-    /// For the second in which a shopper is measured.
-    pub const MEASURING: Self =
-        Self { ground: Some(0.0), clothed: true, spacing: 0.0, steps: 2, outline: Outline::Inward };
-}
 
 /// Largest distance of a correspondence while tracking (m).
 const GATE: f32 = 0.09;
@@ -190,7 +156,7 @@ impl BodyFit {
         self.times = FitTimes::default();
         let begun = Instant::now();
         let enough = self.view.read(frame);
-        if enough && self.options.outline == Outline::BothWays {
+        if enough && self.options.outline == OutlinePull::BothWays {
             self.view.read_rim(frame);
         }
         self.times.cells = begun.elapsed().as_secs_f32();

@@ -2,7 +2,7 @@
 
 use toile_assets::body::shape::SHAPES;
 
-use super::Outline;
+use super::OutlinePull;
 use super::correspondence::Correspondences;
 use super::depth_cells::{DepthCells, RimCell};
 use super::joint_angles::angle;
@@ -21,7 +21,7 @@ const CORRELATED_CELL_SIGMA: f32 = 0.040;
 /// both sides.
 const UPRIGHT: f32 = 0.5;
 
-impl Outline {
+impl OutlinePull {
     /// Standard deviation of a cell's distance from the model's surface (m).
     const fn cell_sigma(self) -> f32 {
         match self {
@@ -91,7 +91,7 @@ pub(super) struct ResidualOptions {
     /// Whether the visible surface is cloth over skin: residuals are then one-sided.
     pub clothed: bool,
     /// How the outline is used.
-    pub outline: Outline,
+    pub outline: OutlinePull,
     /// Residual at which a match loses three quarters of its weight (m).
     pub robust: f32,
 }
@@ -120,7 +120,7 @@ pub(super) fn add_observations(equations: &mut NormalEquations, scene: Observati
             outline(equations, scene, i, options);
         }
     }
-    if options.outline == Outline::BothWays {
+    if options.outline == OutlinePull::BothWays {
         for cell in &scene.view.rim {
             rim(equations, scene, cell, options);
         }
@@ -199,7 +199,7 @@ pub(super) fn add_priors(
     model: &BodyModel,
     state: &FitState,
     before: Option<&FitState>,
-    outline: Outline,
+    outline: OutlinePull,
 ) {
     for (t, turn) in model.joint_angles.iter().enumerate() {
         let now = angle(&state.local, turn);
