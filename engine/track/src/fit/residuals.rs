@@ -2,11 +2,11 @@
 
 use toile_assets::body::shape::SHAPES;
 
-use super::OutlinePull;
 use super::correspondence::Correspondences;
 use super::depth_cells::{DepthCells, RimCell};
 use super::joint_angles::angle;
 use super::normal_equations::NormalEquations;
+use super::options::OutlinePull;
 use super::posed_body::{BodyModel, FitState, PosedBody, UNKNOWNS};
 
 /// Standard deviation of a cell's distance from the model's surface (m). Errors are correlated over a hand's breadth, so

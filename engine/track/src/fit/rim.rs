@@ -4,6 +4,8 @@
 //! edges between them are averaged over a cell, which makes of their stairs a line: its place is known to a fraction
 //! of a pixel, and its outward normal is the mean of the edges' own.
 
+use std::ops::Range;
+
 use glam::Vec2;
 
 /// A stretch of outline, one cell long.
@@ -31,7 +33,7 @@ pub(super) struct SurfaceMask {
 
 impl SurfaceMask {
     /// Reads the pixels with surface; all others are none.
-    pub(super) fn read(&mut self, depth_mm: &[u16], width: usize, [columns, rows]: [std::ops::Range<usize>; 2]) {
+    pub(super) fn read(&mut self, depth_mm: &[u16], width: usize, [columns, rows]: [Range<usize>; 2]) {
         self.width = width;
         self.mask.clear();
         self.mask.resize(depth_mm.len(), false);
@@ -47,35 +49,39 @@ impl SurfaceMask {
         }
     }
 
-    /// The outline within a block of pixels, if a straight stretch of it passes there.
-    pub(super) fn stretch(&self, columns: std::ops::Range<usize>, rows: std::ops::Range<usize>) -> Option<RimPoint> {
+    /// The outline within a block of pixels, if a straight stretch of it passes there. Its normal is taken over twice the block,
+    /// because the stairs of few pixels have any.
+    pub(super) fn stretch(&self, columns: Range<usize>, rows: Range<usize>) -> Option<RimPoint> {
         let height = self.mask.len() / self.width.max(1);
-        let (mut middle, mut out, mut count) = (Vec2::ZERO, Vec2::ZERO, 0);
-        for v in rows.start.max(2)..rows.end.min(height.saturating_sub(2)) {
-            for u in columns.start.max(2)..columns.end.min(self.width.saturating_sub(2)) {
+        let around = columns.len().div_ceil(2);
+        let wider = |r: &Range<usize>, end: usize| {
+            r.start.saturating_sub(around).max(2)..(r.end + around).min(end.saturating_sub(2))
+        };
+        let (mut middle, mut own, mut out, mut all) = (Vec2::ZERO, 0, Vec2::ZERO, 0);
+        for v in wider(&rows, height) {
+            for u in wider(&columns, self.width) {
                 let here = v * self.width + u;
                 if !self.mask[here] {
                     continue;
                 }
+                let inside = rows.contains(&v) && columns.contains(&u);
                 let beside = [
                     (here - 1, -Vec2::X),
                     (here + 1, Vec2::X),
                     (here - self.width, -Vec2::Y),
                     (here + self.width, Vec2::Y),
                 ];
-                for (other, way) in beside {
-                    if !self.mask[other] {
-                        middle += Vec2::new(u as f32, v as f32) + 0.5 * way;
-                        out += way;
-                        count += 1;
+                for (_, way) in beside.into_iter().filter(|(other, _)| !self.mask[*other]) {
+                    (out, all) = (out + way, all + 1);
+                    if inside {
+                        (middle, own) = (middle + Vec2::new(u as f32, v as f32) + 0.5 * way, own + 1);
                     }
                 }
             }
         }
-        let fewest = columns.len().div_ceil(2);
-        let mean = out / (count as f32).max(1.0);
-        (count >= fewest && mean.length() >= STRAIGHT)
-            .then(|| RimPoint { at: middle / count as f32, out: mean.normalize() })
+        let mean = out / (all as f32).max(1.0);
+        (own >= around && mean.length() >= STRAIGHT)
+            .then(|| RimPoint { at: middle / own as f32, out: mean.normalize() })
     }
 }
 
@@ -109,7 +115,8 @@ mod tests {
                 worst = worst.max(off.abs());
                 sum += off;
                 count += 1;
-                assert!(p.out.dot((p.at - centre).normalize()) > 0.93, "{p:?}");
+                let along = p.out.dot((p.at - centre).normalize());
+                assert!(along > 0.93, "{p:?}: {along}");
             }
         }
         assert!(count > 50, "{count}");
