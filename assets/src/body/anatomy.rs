@@ -75,13 +75,13 @@ pub enum Region {
 pub struct Levels {
     /// Base of the neck at the 7th cervical vertebra.
     pub neck: f32,
-    /// Acromions.
+    /// Height of the acromions over the floor (m).
     pub shoulder: f32,
-    /// Bust points.
+    /// Height of the bust points over the floor (m).
     pub chest: f32,
     /// Just below the breasts.
     pub underbust: f32,
-    /// Natural waistline.
+    /// Height of the natural waistline over the floor (m).
     pub waist: f32,
     /// Greatest protrusion of the buttocks.
     pub hip: f32,
@@ -89,7 +89,7 @@ pub struct Levels {
     pub crotch: f32,
     /// Middle of the kneecap.
     pub knee: f32,
-    /// Ankle joint.
+    /// Height of the ankle joint over the floor (m).
     pub ankle: f32,
 }
 
@@ -102,7 +102,7 @@ pub struct Body {
     pub mesh: Mesh,
     /// Unit normals `[vertices]`.
     pub normals: Vec<Vec3>,
-    /// Joint centres.
+    /// Joint centres in the rest pose (m).
     pub skeleton: Skeleton,
     /// Bones that carry each vertex `[vertices]`.
     pub weights: Vec<SkinWeights>,

@@ -6,7 +6,7 @@ use super::reading::{Readings, Vocabulary, Wanted};
 /// A body built to measure, and what the tape reads on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fitted {
-    /// The body.
+    /// The body that was built, in its rest pose (m).
     pub body: Body,
     /// Every measure of it, those that were not asked for included.
     pub readings: Readings,
@@ -20,7 +20,7 @@ pub enum BodyError {
     /// A measure is not a number, or beyond the sizes that the mannequin is drawn for.
     #[error("the {measure} is {value} m, but a body is built for {least} to {most} m: {}", cure(*value, [*least, *most]))]
     OutOfRange {
-        /// Its name.
+        /// Name of the measure that a body cannot have.
         measure: &'static str,
         /// The value asked for (m).
         value: f32,

@@ -28,13 +28,13 @@ mod landmark {
     pub const NECK_FRONT: usize = 809;
     /// Tip of the shoulder blade.
     pub const ACROMION: usize = 8_274;
-    /// Bust point.
+    /// Bust point, left; the chest is taped at its height.
     pub const BUST_POINT: usize = 8_455;
     /// Just below the breast.
     pub const UNDERBUST: usize = 8_540;
     /// Front of the natural waistline, at .622 of the base's stature.
     pub const WAIST: usize = 4_106;
-    /// Navel.
+    /// Navel, where the survey tapes the waist.
     pub const OMPHALION: usize = 4_115;
     /// Between the legs: the lowest of these.
     pub const CROTCH: [usize; 5] = [4_372, 4_374, 4_375, 4_376, 6_431];
@@ -76,7 +76,7 @@ const WITHIN: [f64; 2] = [0.01, 0.99];
 /// Why the second family cannot be had.
 #[derive(Debug, thiserror::Error)]
 pub enum FamilyError {
-    /// Its folder.
+    /// A folder that cannot be read, or holds no base mesh hm08.
     #[error(transparent)]
     Folder(#[from] AvatarError),
     /// The survey that says how people are.

@@ -38,7 +38,7 @@ const RIPPLE: [f32; 2] = [0.0015, 0.47];
 /// Share of a pixel's light that comes from its neighbours.
 const SPREAD: f32 = 0.20;
 
-/// A mixed pixel farther from every surface than this is told from a good one and left out (m).
+/// A mixed pixel farther from every surface than this is recognised as mixed and left out (m).
 const MIXED: f32 = 0.10;
 
 /// A field of numbers that neighbouring pixels share: independent at the corners of windows, blended between them.

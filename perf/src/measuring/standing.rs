@@ -46,7 +46,7 @@ pub struct Moment {
 
 /// A person who can stand before a camera.
 pub struct StudyPerson {
-    /// Sex.
+    /// Sex of the person, by which the survey's ranges were chosen.
     pub sex: Sex,
     /// What the tape reads on their surface at rest.
     pub truth: TapeMeasures,
@@ -74,11 +74,6 @@ impl StudyPerson {
     /// Triangles of the surface.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.body.mesh.triangles
-    }
-
-    /// The surface at rest (m) `[vertices]`.
-    pub fn rest(&self) -> &[Vec3] {
-        &self.body.mesh.positions
     }
 
     /// The surface of the swaying person at one moment, feet on the floor (m) `[vertices]`.

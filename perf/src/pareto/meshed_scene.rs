@@ -43,7 +43,7 @@ impl SolverChoice {
 /// What moves the pins and the colliders.
 #[derive(Debug, Clone)]
 pub enum SceneMotion {
-    /// Nothing moves.
+    /// A body that does not move: the cloth settles.
     Still,
     /// The benchmark's body.
     Skirt(Motion),

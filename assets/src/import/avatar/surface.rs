@@ -13,7 +13,7 @@ const SAME_M: f32 = 1e-5;
 pub struct SurfaceCheck {
     /// Places with a vertex that a triangle uses.
     pub places: usize,
-    /// Connected pieces.
+    /// Number of connected pieces of the surface.
     pub parts: usize,
     /// Edges with a triangle on one side alone.
     pub boundary: Vec<[u32; 2]>,

@@ -17,7 +17,7 @@ use crate::import::avatar::Flaw;
 pub struct MakehumanGirths {
     /// Sole to crown, over the body's own vertices.
     pub height: f32,
-    /// Neck girth.
+    /// Girth of the neck along its row of vertices (m).
     pub neck: f32,
     /// Around the bust.
     pub bust: f32,

@@ -39,7 +39,7 @@ pub enum Stage {
     Fibers,
     /// A set of warp fibers that cross others.
     Crossing(u16),
-    /// All tethers.
+    /// Tethers of all particles, whatever their set.
     Tethers,
     /// Contact, then the velocities that follow: both are one particle's own matter, so the workers need not meet between.
     ContactAndVelocities,

@@ -8,7 +8,7 @@ use toile_engine::meter::Meter;
 /// A distribution of times (us).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Quantiles {
-    /// Median (us).
+    /// Median time of a step or stage (us).
     pub p50: f64,
     /// 99th percentile (us).
     pub p99: f64,

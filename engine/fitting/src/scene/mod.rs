@@ -53,7 +53,7 @@ pub enum RunError {
 /// The distribution of a step's time (us).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct StepTimes {
-    /// Median (us).
+    /// Median time of a step or stage (us).
     pub p50: f64,
     /// 99th percentile (us).
     pub p99: f64,

@@ -30,7 +30,7 @@ pub type DrapedFrame = (Frame, Snapshot);
 /// Somebody who was measured, in the pose in which they are dressed.
 #[derive(Debug, Clone)]
 pub struct MeasuredVisitor {
-    /// Their measures.
+    /// Measures of the visitor, as far as they are known.
     pub known: VisitorMeasures,
     /// The joints in which they are dressed.
     pub pose: Joints,

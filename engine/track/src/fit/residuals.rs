@@ -17,7 +17,7 @@ const CELL_SIGMA: f32 = 0.022;
 /// than a hand's breadth, and then a front that fits a little better does not outweigh the breadth that is seen.
 const CORRELATED_CELL_SIGMA: f32 = 0.040;
 
-/// Share of the usual spreads of joint angles that somebody has who is told to stand upright, where the outline counts from
+/// Share of the usual spreads of joint angles that somebody has who stands upright to be measured, where the outline counts from
 /// both sides.
 const UPRIGHT: f32 = 0.5;
 
