@@ -10,8 +10,9 @@ use toile_assets::sizes::Population;
 use toile_perf::agreement::Mannequin;
 use toile_track::anthropometry::LEVELS;
 use toile_track::estimate::temporal_mean;
+use toile_track::point_cloud::{PersonCloud, PersonFinder};
+use toile_track::section::TorsoSection;
 use toile_track::silhouette::{SilhouetteReading, read};
-use toile_track::{point_cloud, section::TorsoSection};
 
 /// What one subject shows: stature, outline of the shoulders, and three sections; and what is true.
 struct SubjectRow {
@@ -23,10 +24,11 @@ struct SubjectRow {
 
 fn row(sex: Sex, frames: usize, rng: &mut SplitMix64) -> Option<SubjectRow> {
     let subject = Mannequin::new(sex, rng).ok()?;
+    let mut finder = PersonFinder::default();
     let readings: Vec<SilhouetteReading> = subject
         .seen(frames, rng)
         .iter()
-        .filter_map(|f| read(point_cloud::find_people(f).people.first()?, &LEVELS, Population::Mixed))
+        .filter_map(|f| read(&PersonCloud::of(&finder.push(f).alone?)?, &LEVELS, Population::Mixed))
         .collect();
     let mean = |parameter: &dyn Fn(&SilhouetteReading) -> Option<f32>| {
         temporal_mean(&readings.iter().filter_map(parameter).collect::<Vec<_>>()).map(|e| e.value)

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use toile_assets::numeric::random::SplitMix64;
 use toile_perf::ansur::Survey;
 use toile_perf::measuring::{
-    Family, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Moment, Sensor, SurveyRanges, makehuman_person, study,
+    Family, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Moment, Sensor, SurveyRanges, crossed,
+    makehuman_person, reliability, study,
 };
 use toile_track::fit::measuring::MEASURES;
 
@@ -36,7 +37,7 @@ fn people_before_both_cameras_are_found_and_measured() {
     let surveys = surveys(&folder);
     assert_eq!(surveys.len(), 2);
     for sensor in [Sensor::Kinect, Sensor::Azure] {
-        let options = MeasuringOptions { family: Family::Survey, people: 2, frames: 3, seed: 5, sensor };
+        let options = MeasuringOptions { family: Family::Survey, people: 2, frames: 3, seed: 5, sensor, turn: false };
         let found: MeasuringStudy = study(&surveys, &options, &|_| ()).expect("a study");
         assert_eq!((found.people, found.lost), (4, 0));
         assert_eq!(found.sex_right, 1.0, "{}", found.sensor);
@@ -49,10 +50,10 @@ fn people_before_both_cameras_are_found_and_measured() {
     }
 }
 
-/// People of a family that shares nothing with the parametric body: what the tape reads on them is like the survey, and the
-/// outline drawn from both sides brings the fit nearer to it than the outline that only shrinks.
+/// People of a family that shares nothing with the parametric body: what the tape reads on them is like the survey, the fit comes
+/// near it from the front, and nearer once they have turned.
 #[test]
-fn people_of_another_family_are_nearer_by_an_outline_from_both_sides() {
+fn people_of_another_family_are_measured_from_the_front_and_from_all_sides() {
     let Some(folder) = folder() else { return };
     let surveys = surveys(&folder);
     let makehuman = folder.parent().and_then(Path::parent).expect("the folder of data").join("body/makehuman-hm08");
@@ -71,14 +72,25 @@ fn people_of_another_family_are_nearer_by_an_outline_from_both_sides() {
     assert!(early.iter().zip(&late).any(|(a, b)| a.distance(*b) > 0.2), "a turn moves the hands");
 
     let family = Family::Makehuman(makehuman);
-    let options = MeasuringOptions { family, people: 4, frames: 2, seed: 5, sensor: Sensor::Azure };
+    let options = MeasuringOptions { family, people: 4, frames: 2, seed: 5, sensor: Sensor::Azure, turn: true };
     let found = study(&surveys, &options, &|_| ()).expect("a study");
     assert_eq!((found.people, found.lost, found.family), (8, 0, "makehuman"));
     let error = |rows: &[MeasuringAgreement], name: &str| {
         rows.iter().find(|a| a.measure == name).expect("a measure that is taken").mean_absolute_mm
     };
-    for name in ["chest_girth", "underbust_girth"] {
-        let [inward, both] = [&found.fit, &found.both_ways].map(|rows| error(rows, name));
-        assert!(both < 0.8 * inward, "{name}: {both} mm in place of {inward}");
+    // Eight people: twice what docs/measuring.md has for many. An outline that only shrinks leaves 66 and 83 mm.
+    for (name, front) in [("chest_girth", 50.0), ("underbust_girth", 70.0)] {
+        assert!(error(&found.fit, name) < front, "{name}: {}", error(&found.fit, name));
     }
+    let turned = |name: &str| found.turned.iter().find(|a| a.measure == name).expect("a measure that is taken");
+    assert!(turned("hip_girth").taken >= 7, "a turn is followed all round: {:?}", turned("hip_girth"));
+    for (name, limit) in [("underbust_girth", 35.0), ("hip_girth", 30.0), ("stature", 10.0)] {
+        assert!(turned(name).mean_absolute_mm < limit, "{:?}", turned(name));
+    }
+    assert!(found.alone > 0.99, "one person is one: {}", found.alone);
+    let crossed = crossed(&[&found], &[&found]);
+    assert_eq!(crossed.iter().filter(|c| c.turned).count(), found.turned.len());
+    assert!(crossed.iter().all(|c| c.other_within[0] >= 0.68 && c.other_within[1] >= c.other_within[0]), "{crossed:?}");
+    let bins = reliability(&[&found], false);
+    assert!(bins.iter().map(|b| b.cases).sum::<usize>() >= 8 * 5 && bins.iter().all(|b| b.held <= 1.0), "{bins:?}");
 }

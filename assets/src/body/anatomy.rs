@@ -14,6 +14,19 @@ pub enum Sex {
     Male,
 }
 
+impl Sex {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Female, Self::Male];
+
+    /// The word for it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Female => "female",
+            Self::Male => "male",
+        }
+    }
+}
+
 /// The measures that a body is built to, by the definitions of EN 13402-1 (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measures {

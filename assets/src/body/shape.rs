@@ -11,6 +11,7 @@ use super::fitted::model;
 use super::reading::{READINGS, Readings, Vocabulary};
 use super::slider::{PARAMETERS, SLIDERS};
 use super::{BodyError, Fitted, Sex};
+use crate::numeric::linear::{Pivot, factor as factor_in_place, inverse};
 use crate::skeleton::{JOINTS, Skeleton};
 
 /// Number of a shape's parameters.
@@ -19,6 +20,9 @@ pub const SHAPES: usize = PARAMETERS;
 /// The parameter that scales the whole body: the logarithm of its size over the base's. All others are sliders, in
 /// metres or as a fraction of the base.
 pub const SCALE: usize = SLIDERS;
+
+/// Pivots below this are raised to it: directions in which nobody strays.
+const LEAST_PIVOT: f64 = 1e-12;
 
 /// A body's shape: all parameters at 0 are the body as it is drawn.
 pub type BodyShape = ParameterVector;
@@ -78,6 +82,14 @@ impl Shapes {
     /// parameters about the mean (symmetric), linearised there.
     pub fn precision(&self) -> &[BodyShape; SHAPES] {
         &self.precision
+    }
+
+    /// The covariance of people's parameters about the mean: the inverse of [`Shapes::precision`].
+    pub fn covariance(&self) -> [BodyShape; SHAPES] {
+        let mut factor = self.precision;
+        let done = factor_in_place(&mut factor, Pivot::AtLeast(LEAST_PIVOT));
+        debug_assert!(done.is_some(), "raised pivots are never refused");
+        inverse(&factor)
     }
 
     /// The least and the most of a parameter.

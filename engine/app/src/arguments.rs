@@ -8,8 +8,10 @@ use toile_engine::lanes::Width;
 use toile_engine::workers::SHARES;
 use toile_gpu::backend::Backend;
 
+use crate::exit::AppError;
 use crate::terminal::Words;
 use toile_fitting::dress::wish::Wish;
+use toile_track::told::Told;
 
 /// What a command prints, and where.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::Args)]
@@ -67,6 +69,24 @@ pub struct CrashArg {
     pub after_s: Option<u64>,
 }
 
+/// What the shopper or a tape tells.
+#[derive(Debug, Clone, Default, PartialEq, clap::Args)]
+pub struct ToldArgs {
+    /// A measure taken by tape, such as chest=912 (mm), waist=71cm or hips=38in; repeat it for more
+    #[arg(long = "measure", value_name = "NAME=VALUE")]
+    pub measures: Vec<String>,
+}
+
+impl ToldArgs {
+    /// The same as measures.
+    ///
+    /// # Errors
+    /// Words that are no measure, a length that nobody has, or measures that nobody has together.
+    pub fn told(&self) -> Result<Told, AppError> {
+        Told::of(&self.measures).map_err(|why| AppError::Usage(format!("--measure: {why}")))
+    }
+}
+
 /// What the shopper wears.
 #[derive(Debug, Clone, Default, PartialEq, clap::Args)]
 pub struct WornArgs {
@@ -79,12 +99,19 @@ pub struct WornArgs {
     /// Tested settings of the cloth: draft, shop or fine
     #[arg(long, value_name = "Q", value_parser = quality(), default_value = Quality::default().name())]
     pub quality: Quality,
+    /// What a tape has told
+    #[command(flatten)]
+    pub told: ToldArgs,
 }
 
 impl WornArgs {
     /// The same as the scene's maker takes it.
-    pub fn wish(&self) -> Wish {
-        Wish { garments: self.garments.clone(), size: self.size.clone(), quality: self.quality, sex: None }
+    ///
+    /// # Errors
+    /// As [`ToldArgs::told`].
+    pub fn wish(&self) -> Result<Wish, AppError> {
+        let told = self.told.told()?;
+        Ok(Wish { garments: self.garments.clone(), size: self.size.clone(), quality: self.quality, sex: None, told })
     }
 }
 

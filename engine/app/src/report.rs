@@ -261,6 +261,8 @@ pub struct FittedBody {
     pub clothed: bool,
     /// Frames that took part.
     pub frames: u64,
+    /// Whether the shopper turned, and was seen from all sides.
+    pub turned: bool,
     /// Share of the shopper's surface that it explains, 0 to 1.
     pub explained: f64,
     /// Root mean square distance of the surface from the body's (mm).

@@ -5,6 +5,7 @@
 //! Thread: the sensor thread.
 
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+pub mod correlated;
 pub mod estimate;
 pub mod gesture;
 pub mod point_cloud;
@@ -13,6 +14,7 @@ pub mod section;
 pub mod anthropometry;
 pub mod fit;
 pub mod measures;
+pub mod told;
 
 mod joints;
 pub mod silhouette;

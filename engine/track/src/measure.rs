@@ -6,14 +6,12 @@ use toile_sensors::frame::{DepthFrame, Joints};
 
 use crate::anthropometry::{self, GirthModel, SilhouetteModel, regressions};
 use crate::estimate::{Estimate, temporal_mean};
+use crate::fit::measuring::FRAMES;
 use crate::joints;
 use crate::measures::{Hint, Measures};
-use crate::point_cloud::{self, PersonCloud};
+use crate::point_cloud::{self, PersonCloud, PersonFinder};
 use crate::section::TorsoSection;
 use crate::silhouette::{self, SilhouetteReading};
-
-/// Depth frames that are averaged: one second at 30 Hz (Gultepe 2013, section 6.4).
-pub const FRAMES: usize = 30;
 
 /// Joints that are averaged: those within one second of the first believed frame (ns).
 const ONE_SECOND_NS: u64 = 1_000_000_000;
@@ -145,11 +143,12 @@ fn from_depth(depth: &[DepthFrame], hint: &Hint) -> Result<Measurements, Measure
     let mut all =
         SilhouetteReadings { readings: Vec::new(), pixels: Vec::new(), people: Vec::new(), distances: Vec::new() };
     let mut too_far = None;
+    let mut finder = PersonFinder::default();
     for frame in depth.iter().take(FRAMES) {
-        let view = point_cloud::find_people(frame);
+        let view = finder.push(frame);
         too_far = too_far.or(view.too_far);
-        let Some(nearest) = view.people.first() else { continue };
-        all.add(nearest, view.people.len(), silhouette::read(nearest, &anthropometry::LEVELS, hint.population));
+        let Some(cloud) = view.alone.as_ref().and_then(PersonCloud::of) else { continue };
+        all.add(&cloud, view.people, silhouette::read(&cloud, &anthropometry::LEVELS, hint.population));
     }
     if all.pixels.is_empty() {
         let frames = depth.len().min(FRAMES);

@@ -14,7 +14,7 @@ use toile_sensors::source::{OpenOptions, open};
 use toile_track::fit::measuring::{self, MEASURES};
 use toile_track::fit::tracker::track;
 use toile_track::fit::{BodyFit, FitOptions};
-use toile_track::point_cloud;
+use toile_track::point_cloud::PersonFinder;
 
 /// A camera with half the pixels of an Azure Kinect each way, 2.3 m off and 1 m high.
 fn camera() -> SyntheticCamera {
@@ -198,7 +198,7 @@ fn a_whole_clothed_woman_is_fitted() {
     let options = OpenOptions { camera: Some(folder.join("chae_depth_camera.json")) };
     let session = open(&folder.join("chae_depth_mm_1024x512.u16le"), &options).unwrap();
     let frame = &session.depth[0];
-    let alone = point_cloud::find_people(frame).people[0].alone(frame);
+    let alone = PersonFinder::default().push(frame).alone.expect("somebody");
     let fitted = measuring::measure(&[alone], Population::Mixed, FitOptions::MEASURING).expect("a fit");
     assert!(fitted.explained > 0.9, "{}", fitted.explained);
     let stature = fitted.measures[0];

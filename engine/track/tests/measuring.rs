@@ -10,7 +10,8 @@ use toile_assets::skeleton::Joint;
 use toile_sensors::frame::{DepthFrame, Intrinsics, Joints, TrackedJoint};
 use toile_sensors::source::synthetic::SyntheticCamera;
 use toile_sensors::source::{OpenOptions, open};
-use toile_track::measure::{FRAMES, MeasureError, Measurements, Source, measure};
+use toile_track::fit::measuring::FRAMES;
+use toile_track::measure::{MeasureError, Measurements, Source, measure};
 use toile_track::measures::Hint;
 
 /// A rest pose as frames of joints, all believed, with a wobble of a centimetre that averages out.

@@ -17,6 +17,9 @@ mod sensor;
 
 mod study;
 
+mod crossing;
+
+pub use crossing::{CrossedMeasure, ReliabilityBin, crossed, reliability};
 pub use makehuman::{FamilyError, SurveyRanges, makehuman_person};
 pub use person::{GIVEN, survey_person};
 pub use sensor::{NoiseModel, Sensor, StudyCamera};

@@ -1,5 +1,6 @@
 //! The study: people drawn from the survey, seen, measured in both ways, compared with what the tape reads on them.
 
+use std::f32::consts::TAU;
 use std::path::PathBuf;
 
 use serde::Serialize;
@@ -11,11 +12,11 @@ use toile_assets::skeleton::Joint;
 use toile_fitting::timing::OnCore;
 use toile_sensors::frame::DepthFrame;
 use toile_track::estimate::Estimate;
-use toile_track::fit::measuring::{self, MEASURES};
-use toile_track::fit::{self, BodyFit, OutlinePull};
+use toile_track::fit::measuring::{self, FittedMeasures, MEASURES, model_error};
+use toile_track::fit::{self, BodyFit};
 use toile_track::measure;
 use toile_track::measures::Hint;
-use toile_track::point_cloud;
+use toile_track::point_cloud::PersonFinder;
 
 use super::makehuman::{FamilyError, SurveyRanges, makehuman_person};
 use super::person::{GIVEN, survey_person};
@@ -74,6 +75,8 @@ pub struct MeasuringOptions {
     pub seed: u64,
     /// The camera that they are measured with.
     pub sensor: Sensor,
+    /// Whether they turn all round after that, and are measured once more.
+    pub turn: bool,
 }
 
 /// What one way of measuring gave of one person, in the order of [`MEASURES`]; `None` where it takes no such measure.
@@ -90,8 +93,10 @@ pub struct MeasuredPerson {
     pub truth: TapeMeasures,
     /// By the body fit; nothing where no body was found.
     pub fit: Estimates,
-    /// By the body fit with its outline drawn from both sides.
-    pub both_ways: Estimates,
+    /// By the body fit once they have turned all round; nothing where they did not.
+    pub turned: Estimates,
+    /// Frames that were looked at, and those in which one person was seen and nobody else.
+    pub frames: [usize; 2],
     /// By section and outline, proportions and the mean over the frames.
     pub sections: Estimates,
     /// How likely the fit took them for a woman.
@@ -168,10 +173,31 @@ pub struct MeasuringStudy {
     pub following: Following,
     /// By the body fit.
     pub fit: Vec<MeasuringAgreement>,
-    /// By the body fit with its outline drawn from both sides, which does not ship yet.
-    pub both_ways: Vec<MeasuringAgreement>,
+    /// By the body fit once they have turned all round; empty where they did not.
+    pub turned: Vec<MeasuringAgreement>,
     /// By sections, proportions and the mean over time.
     pub sections: Vec<MeasuringAgreement>,
+    /// Share of the frames in which one person was seen and nobody else.
+    pub alone: f64,
+    /// Errors with what the fit itself states, from the front and turned, by measure.
+    #[serde(skip)]
+    stated: [Vec<Vec<StatedError>>; 2],
+}
+
+/// One error, and what the fit states by itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StatedError {
+    /// Measured less true (mm).
+    pub error_mm: f64,
+    /// Standard deviation that the fit states, without what is added for bodies that it cannot represent (mm).
+    pub own_mm: f64,
+}
+
+impl MeasuringStudy {
+    /// All errors of the fit, from the front or turned, in the order of [`MEASURES`].
+    pub fn stated(&self, turned: bool) -> &[Vec<StatedError>] {
+        &self.stated[usize::from(turned)]
+    }
 }
 
 /// Measures `options.people` random people of each survey, without repeats; `progress` is called after each.
@@ -223,20 +249,41 @@ const SECOND: u64 = 0x5ec0_4dfa_3117_0000;
 /// Time from frame to frame (s).
 const FRAME_S: f32 = 1.0 / 30.0;
 
+/// Time of a slow turn (s), and its frames: fifteen a second.
+const TURN_S: f32 = 6.0;
+const TURN_FRAMES: usize = 90;
+
+/// When the turn begins (s): after the first second.
+const TURN_AFTER_S: f32 = 1.0;
+
+/// The moments of the first second, and those of a turn after it.
+fn moments(options: &MeasuringOptions) -> Vec<Moment> {
+    let front = (0..options.frames).map(|i| Moment { time: i as f32 * FRAME_S, turned: 0.0 });
+    let turn = (0..TURN_FRAMES * usize::from(options.turn)).map(|i| {
+        let share = i as f32 / TURN_FRAMES as f32;
+        Moment { time: TURN_AFTER_S.max(options.frames as f32 * FRAME_S) + TURN_S * share, turned: TAU * share }
+    });
+    front.chain(turn).collect()
+}
+
 fn measured(person: &StudyPerson, options: &MeasuringOptions, rng: &mut SplitMix64) -> MeasuredPerson {
     let sight = StudyCamera::new(options.sensor, options.family.noise(), rng);
-    let moments: Vec<Moment> = (0..options.frames).map(|i| Moment { time: i as f32 * FRAME_S, turned: 0.0 }).collect();
-    let frames = sight.frames(person, &moments, rng);
-    let alone = |(f, truth): &(DepthFrame, JointPositions)| {
-        Some((point_cloud::find_people(f).people.first()?.alone(f), *truth))
-    };
-    let alone: Vec<(DepthFrame, JointPositions)> = frames.iter().filter_map(alone).collect();
+    let frames = sight.frames(person, &moments(options), rng);
+    let mut finder = PersonFinder::default();
+    let (mut alone, mut single) = (Vec::with_capacity(frames.len()), 0);
+    for (frame, truth) in &frames {
+        let seen = finder.push(frame);
+        single += usize::from(seen.people == 1);
+        alone.extend(seen.alone.map(|a| (a, *truth)));
+    }
     let only: Vec<DepthFrame> = alone.iter().map(|a| a.0.clone()).collect();
-    let frames: Vec<DepthFrame> = frames.into_iter().map(|f| f.0).collect();
+    let count = [frames.len(), single];
+    let mut frames: Vec<DepthFrame> = frames.into_iter().map(|f| f.0).collect();
+    frames.truncate(options.frames);
     let bare = fit::FitOptions { clothed: false, ..fit::FitOptions::MEASURING };
-    let fitted = measuring::measure(&only, Population::Mixed, bare);
-    let both_ways = fit::FitOptions { outline: OutlinePull::BothWays, ..bare };
-    let both_ways = measuring::measure(&only, Population::Mixed, both_ways);
+    let fitted = measuring::measure(&only[..only.len().min(options.frames)], Population::Mixed, bare);
+    let turned = options.turn.then(|| measuring::measure(&only, Population::Mixed, bare)).flatten();
+    let estimates = |f: &FittedMeasures| f.measures.map(Some);
     let sections = measure::measure(&[], &frames, &Hint::default()).ok();
     let sections = sections.map_or([None; MEASURES.len()], |m| {
         let s = &m.measures;
@@ -253,8 +300,9 @@ fn measured(person: &StudyPerson, options: &MeasuringOptions, rng: &mut SplitMix
         sex: person.sex,
         distance: sight.distance,
         truth: person.truth,
-        fit: fitted.as_ref().map_or([None; MEASURES.len()], |f| f.measures.map(Some)),
-        both_ways: both_ways.map_or([None; MEASURES.len()], |f| f.measures.map(Some)),
+        fit: fitted.as_ref().map_or([None; MEASURES.len()], estimates),
+        turned: turned.as_ref().filter(|f| f.turned).map_or([None; MEASURES.len()], estimates),
+        frames: count,
         sections,
         woman: fitted.map(|f| f.woman),
     }
@@ -320,6 +368,8 @@ fn following(cases: &[MeasuredPerson]) -> Following {
 fn summed(cases: &[MeasuredPerson], options: &MeasuringOptions) -> MeasuringStudy {
     let right = |c: &&MeasuredPerson| c.woman.is_some_and(|w| (w > 0.5) == (c.sex == Sex::Female));
     let found = cases.iter().filter(|c| c.woman.is_some()).count();
+    let sum = |count: fn(&MeasuredPerson) -> usize| cases.iter().map(count).sum::<usize>() as f64;
+    let share = |part, whole| sum(part) / sum(whole).max(1.0);
     MeasuringStudy {
         family: options.family.name(),
         sensor: options.sensor.name(),
@@ -329,9 +379,30 @@ fn summed(cases: &[MeasuredPerson], options: &MeasuringOptions) -> MeasuringStud
         sex_right: cases.iter().filter(right).count() as f64 / found.max(1) as f64,
         following: following(cases),
         fit: agreements(cases, |c| &c.fit),
-        both_ways: agreements(cases, |c| &c.both_ways),
+        turned: agreements(cases, |c| &c.turned),
         sections: agreements(cases, |c| &c.sections),
+        alone: share(|c| c.frames[1], |c| c.frames[0]),
+        stated: [stated(cases, false, |c| &c.fit), stated(cases, true, |c| &c.turned)],
     }
+}
+
+/// All errors of one way with what the fit itself states, by measure.
+fn stated(
+    cases: &[MeasuredPerson],
+    turned: bool,
+    way: impl Fn(&MeasuredPerson) -> &Estimates,
+) -> Vec<Vec<StatedError>> {
+    let of = |i: usize| {
+        let added = model_error(turned)[i];
+        let pairs = cases.iter().filter_map(|c| Some((way(c)[i]?, c.truth[i]?)));
+        let own = |sigma: f32| (sigma * sigma - added * added).max(0.0).sqrt();
+        let stated = |(e, truth): (Estimate, f32)| StatedError {
+            error_mm: f64::from(e.value - truth) * 1e3,
+            own_mm: f64::from(own(e.sigma)) * 1e3,
+        };
+        pairs.map(stated).collect()
+    };
+    (0..MEASURES.len()).map(of).collect()
 }
 
 fn agreements(cases: &[MeasuredPerson], way: impl Fn(&MeasuredPerson) -> &Estimates) -> Vec<MeasuringAgreement> {

@@ -66,6 +66,8 @@ pub struct Segmentation<'a> {
     pub shopper: Option<Person>,
     /// How many other people are seen.
     pub others: usize,
+    /// Distance of the nearest of these on the floor (m).
+    pub nearest_other: Option<f32>,
     /// The floor, once it was seen.
     pub floor: Option<Floor>,
 }
@@ -128,7 +130,9 @@ impl Segmenter {
         self.grid.remember(self.people.shopper_cells());
         let shopper = chosen.map(|i| self.people.all()[i]);
         let others = self.people.all().len() - usize::from(chosen.is_some());
-        Segmentation { mask: &self.mask, shopper, others, floor: self.finder.floor().copied() }
+        let beside = self.people.all().iter().enumerate().filter(|(i, _)| Some(*i) != chosen);
+        let nearest_other = beside.map(|(_, p)| p.place.length()).min_by(f32::total_cmp);
+        Segmentation { mask: &self.mask, shopper, others, nearest_other, floor: self.finder.floor().copied() }
     }
 
     /// Which of the people is the shopper: whoever it was, and else, once they have left, the nearest in the zone.

@@ -52,6 +52,11 @@ const LITTER: f32 = 0.12;
 /// People are looked for up to so far behind the zone, so that they are not taken for the shopper (m).
 const BEHIND: f32 = 1.5;
 
+/// Nobody stands on somebody: of two that stand as near to one another as this (m), one that lies below all but this share of the
+/// other is their lower half, which a hand before the hips parts from the upper one.
+const ON_TOP: f32 = 0.35;
+const OVERLAP: f32 = 0.30;
+
 struct Band {
     below: [f32; 2],
     reach: f32,
@@ -102,6 +107,30 @@ impl PeopleFinder {
             if self.people.len() == found {
                 self.rest.push(piece);
             }
+        }
+        self.join_halves(grid);
+    }
+
+    /// Joins what a hand parts into an upper and a lower half.
+    fn join_halves(&mut self, grid: &Grid) {
+        let mut upper = 0;
+        while upper < self.people.len() {
+            let (of, above) = (self.people[upper], &self.cells[upper]);
+            let beside = |top: f32| above.iter().filter(|c| grid.height[**c as usize] < top).count();
+            let is_lower = |p: &Person| {
+                let near = p.top < of.top && p.place.distance(of.place) < ON_TOP;
+                near && (beside(p.top) as f32) < OVERLAP * above.len() as f32
+            };
+            let Some(lower) = self.people.iter().position(is_lower) else {
+                upper += 1;
+                continue;
+            };
+            let cells = self.cells.remove(lower);
+            let half = self.people.remove(lower);
+            upper -= usize::from(lower < upper);
+            self.cells[upper].extend_from_slice(&cells);
+            self.people[upper].area += half.area;
+            self.people[upper].place = place(grid, &self.cells[upper], &mut self.numbers);
         }
     }
 

@@ -9,7 +9,7 @@ use serde::Serialize;
 use toile_engine::frame_loop::governor::LADDER;
 use toile_engine::frame_loop::recording::{self, Entry};
 use toile_engine::frame_loop::threads;
-use toile_fitting::dress::measured::{self, ShopperFacts};
+use toile_fitting::dress::measured;
 use toile_fitting::dress::recipe::Recipe;
 use toile_fitting::dress::session;
 use toile_fitting::live::report::Quantiles;
@@ -115,8 +115,8 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     let first = &track[0];
     // The loop's sensor thread filters the raw frames itself.
     let from = session.joints.len() - track.len();
-    let wish = args.worn.wish();
-    let measured = measured::measure(&session, ShopperFacts { sex: wish.sex, ..ShopperFacts::default() })?;
+    let wish = args.worn.wish()?;
+    let measured = measured::measure(&session, wish.facts())?;
     let recipe = Recipe::choose(&session.name, &measured, &wish)?;
     let (frame, reader) = recipe.make(first)?;
     // Only now: a helper with a real-time priority shares its core with nobody who waits for it.

@@ -8,7 +8,9 @@ use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasures, MEASURES};
 use toile_track::measures;
 
-use crate::arguments::Printing;
+use toile_assets::body::Sex;
+
+use crate::arguments::{Printing, ToldArgs, one_of};
 use crate::exit::AppError;
 use crate::output::{Inputs, OutputFolder};
 use crate::overlay::{Fit, overlay};
@@ -31,6 +33,12 @@ pub struct MeasureArgs {
     /// The shopper wears nothing that stands off the skin: the body fit is not one-sided
     #[arg(long)]
     pub tight: bool,
+    /// What a tape has told
+    #[command(flatten)]
+    pub told: ToldArgs,
+    /// The shopper's sex, if it is known: female or male
+    #[arg(long, value_name = "S", value_parser = one_of(Sex::ALL, Sex::name))]
+    pub sex: Option<Sex>,
     /// Folder for a picture of the fitted body over the depth
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -43,10 +51,11 @@ pub struct MeasureArgs {
 /// # Errors
 /// A file that cannot be read or shows nobody, a folder that cannot be written, or a closed stdout.
 pub fn run(args: &MeasureArgs) -> Result<(), AppError> {
-    let session = session::open(Some(&args.file), args.camera.as_deref())?;
     let out = args.out.as_deref().map(OutputFolder::prepare).transpose().map_err(AppError::input)?;
     let mut out = out.map(|out| out.sparing(Inputs::new(args.camera.iter().chain([&args.file]))));
-    let facts = ShopperFacts { clothed: !args.tight, ..ShopperFacts::default() };
+    let facts =
+        ShopperFacts { clothed: !args.tight, sex: args.sex, told: args.told.told()?, ..ShopperFacts::default() };
+    let session = session::open(Some(&args.file), args.camera.as_deref())?;
     let measured = measured::measure(&session, facts)?;
     let mut files: Vec<PathBuf> = Vec::new();
     if let (Some(out), Some(fitted)) = (&mut out, &measured.fitted) {
@@ -102,6 +111,7 @@ fn body(fitted: &FittedMeasures, clothed: bool) -> FittedBody {
         woman: thousandths(fitted.woman),
         clothed,
         frames: fitted.frames as u64,
+        turned: fitted.turned,
         explained: thousandths(fitted.explained),
         off_mm: in_mm(Estimate::new(fitted.off, 0.0)).value,
     }

@@ -13,7 +13,7 @@ use toile_engine::cloth::Cloth;
 use toile_engine::colliders::Colliders;
 use toile_engine::frame::Frame;
 use toile_engine::meter::CLOTH;
-use toile_fitting::dress::measured::{self, ShopperFacts};
+use toile_fitting::dress::measured;
 use toile_fitting::dress::recipe::{Parts, Recipe};
 use toile_fitting::dress::session;
 use toile_fitting::dress::wish::Wish;
@@ -44,7 +44,7 @@ pub enum PlanScene {
 }
 
 /// What a shopper's scene is made of; a scene file has none of it.
-const WORN: [&str; 4] = ["session", "garments", "size", "quality"];
+const WORN: [&str; 5] = ["session", "garments", "size", "quality", "measures"];
 
 /// Say what a scene needs, whether it fits into its time, and what each model is worth, before it runs.
 ///
@@ -87,11 +87,14 @@ pub struct PlanArgs {
 
 impl PlanArgs {
     /// The scene that the arguments name.
-    pub fn scene(&self) -> PlanScene {
-        match RunScene::of(self.scene.as_ref(), self.example.as_ref()) {
+    ///
+    /// # Errors
+    /// Told measures that are none.
+    pub fn scene(&self) -> Result<PlanScene, AppError> {
+        Ok(match RunScene::of(self.scene.as_ref(), self.example.as_ref()) {
             Some(scene) => PlanScene::Run(scene),
-            None => PlanScene::Worn(self.session.clone(), self.worn.wish()),
-        }
+            None => PlanScene::Worn(self.session.clone(), self.worn.wish()?),
+        })
     }
 }
 
@@ -102,7 +105,7 @@ impl PlanArgs {
 pub fn run(args: &PlanArgs) -> Result<(), AppError> {
     let words = args.printing.words();
     let workers = args.workers.count();
-    let (scene, costs, memory) = match &args.scene() {
+    let (scene, costs, memory) = match &args.scene()? {
         PlanScene::Run(scene) => file(scene, workers)?,
         PlanScene::Worn(session, wish) => worn(session.as_deref(), wish, workers)?,
     };
@@ -168,7 +171,7 @@ fn worn(
     workers: usize,
 ) -> Result<(Scene, Costs, Vec<Memory>), AppError> {
     let mut session = session::open(session, None)?;
-    let measured = measured::measure(&session, ShopperFacts { sex: wish.sex, ..ShopperFacts::default() })?;
+    let measured = measured::measure(&session, wish.facts())?;
     measured::add_joints(&mut session, &measured)?;
     let track = session::standing(&session)?;
     let recipe = Recipe::choose(&session.name, &measured, wish)?;

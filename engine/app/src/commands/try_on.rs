@@ -18,14 +18,14 @@ use toile_engine::cloth::{Settings, measure};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::lines::{CAPACITY, Kind, Lines};
 use toile_engine::triple_buffer::Reader;
-use toile_fitting::dress::measured::{self, Measured, ShopperFacts};
+use toile_fitting::dress::measured::{self, Measured};
 use toile_fitting::dress::player::Player;
 use toile_fitting::dress::wish::{self, Choice, Wish};
 use toile_fitting::dress::{body, session};
 use toile_fitting::scene::StepTimes;
 use toile_sensors::frame::Joints;
 
-use crate::arguments::{Printing, one_of, quality};
+use crate::arguments::{Printing, ToldArgs, one_of, quality};
 use crate::exit::AppError;
 use crate::output::Inputs;
 use crate::output::OutputFolder;
@@ -58,6 +58,9 @@ pub struct TryOnArgs {
     /// Body to show: female, male, or a file (.glb, .gltf, .vrm) (default: by the garment)
     #[arg(long, value_name = "B", value_parser = Wearer::parse)]
     pub body: Option<Wearer>,
+    /// What a tape has told
+    #[command(flatten)]
+    pub told: ToldArgs,
     /// Tested settings of the cloth: draft, shop or fine
     #[arg(long, value_name = "Q", value_parser = quality(), default_value = Quality::default().name())]
     pub quality: Quality,
@@ -142,10 +145,10 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     films.into_iter().try_for_each(|film| inputs.check(&film))?;
     let mut out = OutputFolder::prepare(&args.out)?.sparing(inputs);
     out.check(&args.names())?;
-    let wish = wish(args);
+    let wish = wish(args)?;
     let choices = wish.choices()?;
     let mut session = session::open(args.session.as_deref(), None)?;
-    let mut measured = measured::measure(&session, ShopperFacts { sex: wish.sex, ..ShopperFacts::default() })?;
+    let mut measured = measured::measure(&session, wish.facts())?;
     let has_joints = !session.joints.is_empty();
     if !has_joints {
         words.print_line("there are no joints: the fitted body is followed through the depth");
@@ -192,9 +195,10 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     }
 }
 
-fn wish(args: &TryOnArgs) -> Wish {
+fn wish(args: &TryOnArgs) -> Result<Wish, AppError> {
     let sex = if let Some(Wearer::Ours(sex)) = args.body { Some(sex) } else { None };
-    Wish { garments: args.garments.clone(), size: args.size.clone(), quality: args.quality, sex }
+    let told = args.told.told()?;
+    Ok(Wish { garments: args.garments.clone(), size: args.size.clone(), quality: args.quality, sex, told })
 }
 
 /// The body to dress: a file's, whose measures then count; the one fitted to the depth, where there was nothing else; otherwise
@@ -213,7 +217,7 @@ fn worn_body(
         return Ok((imported.body, Some(note)));
     }
     match &measured.fitted {
-        Some(fitted) if !has_joints => Ok((fitted.body.body.clone(), None)),
+        Some(fitted) if !has_joints && args.told.measures.is_empty() => Ok((fitted.body.body.clone(), None)),
         _ => Ok(body::build(sex, &measured.best, Some(sex).into())?),
     }
 }

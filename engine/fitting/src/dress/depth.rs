@@ -8,33 +8,48 @@ use toile_assets::skeleton::{BONES, Pose};
 use toile_engine::body::palette;
 use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::source::Session;
+use toile_track::fit::measuring::FRAMES;
 use toile_track::fit::measuring::{self, FittedMeasures};
 use toile_track::fit::{FitOptions, tracker};
-use toile_track::measure::FRAMES;
-use toile_track::point_cloud;
+use toile_track::point_cloud::{PersonCloud, PersonFinder};
+
+/// Longest that is looked at for a turn after the first second, and how far apart its frames are taken (ns): a slow turn takes six
+/// seconds, and in a fifteenth of one it goes on by four degrees.
+const TURN_NS: u64 = 12_000_000_000;
+const APART_NS: u64 = 60_000_000;
 
 /// The shopper's surface, and the floor below it.
 #[derive(Debug, Clone)]
 pub struct DepthSurface {
     /// The frames of the first second, and the same with nothing in them but the shopper.
     pub frames: Vec<(DepthFrame, DepthFrame)>,
+    /// Frames of the next seconds, in which the shopper may turn, with nothing in them but the shopper.
+    pub after: Vec<DepthFrame>,
     /// Height of the floor (m); `None` where the picture cuts the shopper off above it.
     pub ground: Option<f32>,
 }
 
 impl DepthSurface {
-    /// The nearest person of each frame of the first second.
+    /// The shopper in the frames of the first second, and in those of a turn.
     pub fn of(session: &Session) -> Self {
-        let mut cut = 0;
-        let mut frames = Vec::new();
-        for frame in session.depth.iter().take(FRAMES) {
-            if let Some(person) = point_cloud::find_people(frame).people.first() {
-                cut += usize::from(person.cut_below);
-                frames.push((frame.clone(), person.alone(frame)));
+        let (mut cut, mut frames, mut after) = (0, Vec::new(), Vec::new());
+        let mut finder = PersonFinder::default();
+        let mut next = 0;
+        for (i, frame) in session.depth.iter().enumerate() {
+            if i < FRAMES {
+                let Some(alone) = finder.push(frame).alone else { continue };
+                cut += usize::from(PersonCloud::of(&alone).is_some_and(|c| c.cut_below));
+                next = frame.time_ns + APART_NS;
+                frames.push((frame.clone(), alone));
+            } else if frame.time_ns.saturating_sub(session.depth[0].time_ns) > TURN_NS {
+                break;
+            } else if frame.time_ns >= next {
+                next = frame.time_ns + APART_NS;
+                after.extend(finder.push(frame).alone);
             }
         }
         let ground = (2 * cut < frames.len()).then_some(0.0);
-        Self { frames, ground }
+        Self { frames, after, ground }
     }
 
     /// How a body is fitted to it.
@@ -47,7 +62,7 @@ impl DepthSurface {
         if self.frames.is_empty() {
             return None;
         }
-        let alone: Vec<DepthFrame> = self.frames.iter().map(|(_, alone)| alone.clone()).collect();
+        let alone: Vec<DepthFrame> = self.frames.iter().map(|(_, alone)| alone).chain(&self.after).cloned().collect();
         measuring::measure(&alone, population, self.options(clothed))
     }
 

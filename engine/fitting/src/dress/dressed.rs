@@ -7,7 +7,7 @@ use toile_engine::triple_buffer::Reader;
 use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
 
-use super::measured::{self, ShopperFacts};
+use super::measured;
 use super::recipe::Recipe;
 use super::session;
 use super::wish::Wish;
@@ -59,7 +59,7 @@ impl Dressed {
 /// A session that nobody can be measured or dressed in, a garment or a size that there is not.
 pub fn shopper(session: &Session, wish: &Wish) -> Result<Dressed, FittingError> {
     let track = session::standing(session)?;
-    let measured = measured::measure(session, ShopperFacts { sex: wish.sex, ..ShopperFacts::default() })?;
+    let measured = measured::measure(session, wish.facts())?;
     Dressed::make(Recipe::choose(&session.name, &measured, wish)?, &track[0], false)
 }
 

@@ -8,9 +8,11 @@ use toile_assets::sizes::Population;
 use toile_assets::skeleton::Joint;
 use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
-use toile_track::fit::measuring::FittedMeasures;
-use toile_track::measure::{self, Measurements};
+use toile_track::estimate::Estimate;
+use toile_track::fit::measuring::{FittedMeasures, MEASURES};
+use toile_track::measure::{self, Measurements, Source};
 use toile_track::measures::{Hint, Measures};
+use toile_track::told::{self, BodyEstimate, Told};
 
 use super::depth::DepthSurface;
 use super::session;
@@ -23,7 +25,7 @@ const SURE_OF_SEX: f32 = 0.95;
 pub const FROM_DEPTH: &str = "there are no joints: the body was fitted to the depth, and its joints are shown";
 
 /// What is known of a shopper before they are measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShopperFacts {
     /// Whose proportions apply, if it is known.
     pub sex: Option<Sex>,
@@ -31,11 +33,13 @@ pub struct ShopperFacts {
     pub clothed: bool,
     /// Whether they sit: nothing is taken from legs and hips, which a chair hides.
     pub seated: bool,
+    /// Measures that they or a tape have told.
+    pub told: Told,
 }
 
 impl Default for ShopperFacts {
     fn default() -> Self {
-        Self { sex: None, clothed: true, seated: false }
+        Self { sex: None, clothed: true, seated: false, told: Told::default() }
     }
 }
 
@@ -80,6 +84,7 @@ pub fn measure(session: &Session, facts: ShopperFacts) -> Result<Measured, Fitti
     let population = population(facts.sex, fitted.as_ref());
     let sections = by_sections(session, population)?;
     let best = fitted.as_ref().map_or_else(|| sections.clone(), |fitted| preferred(&sections, fitted));
+    let best = with_told(best, fitted.as_ref(), population, &facts.told);
     Ok(Measured { best, sections, fitted, surface, population })
 }
 
@@ -109,8 +114,9 @@ fn seated(session: &Session, facts: ShopperFacts) -> Result<Measured, FittingErr
     let above = session::of_joints(session.joints.iter().map(above_the_chair).collect());
     let mut sections = by_sections(&above, population)?;
     (sections.measures.hip_girth, sections.measures.inseam) = (None, None);
-    let surface = DepthSurface { frames: Vec::new(), ground: None };
-    Ok(Measured { best: sections.clone(), sections, fitted: None, surface, population })
+    let surface = DepthSurface { frames: Vec::new(), after: Vec::new(), ground: None };
+    let best = with_told(sections.clone(), None, population, &facts.told);
+    Ok(Measured { best, sections, fitted: None, surface, population })
 }
 
 fn by_sections(session: &Session, population: Population) -> Result<Measurements, FittingError> {
@@ -127,10 +133,36 @@ fn population(facts: Option<Sex>, fitted: Option<&FittedMeasures>) -> Population
     }
 }
 
-/// What the body fit says in place of what sections and proportions say.
-fn preferred(sections: &Measurements, fitted: &FittedMeasures) -> Measurements {
-    let of = |name| fitted.named(name);
-    let measures = Measures {
+/// What is best known once measures were told: all others follow as far as their errors go with these.
+fn with_told(best: Measurements, fitted: Option<&FittedMeasures>, population: Population, told: &Told) -> Measurements {
+    if told.is_empty() {
+        return best;
+    }
+    let known = fitted.map_or_else(|| seen(&best, population), |f| f.all);
+    let (known, sentences) = told.over(&known);
+    let of = |name: &str| MEASURES.iter().position(|m| m.0 == name).map(|i| known.at(i));
+    let mut notes = best.notes.clone();
+    notes.extend(sentences);
+    Measurements { measures: in_words(of), notes, ..best }
+}
+
+/// What people of that population have who have what was seen of this one. Girths that were only guessed from the stature say
+/// nothing that the stature does not.
+fn seen(best: &Measurements, population: Population) -> BodyEstimate {
+    let all = told::population(population);
+    let measured = best.measures.named();
+    let taken = measured.into_iter().filter(|(name, _)| match best.source {
+        Source::Joints => matches!(*name, "stature" | "shoulder_breadth"),
+        _ => !matches!(*name, "inseam" | "arm_length"),
+    });
+    taken
+        .filter_map(|(name, e)| Some((MEASURES.iter().position(|m| m.0 == name)?, e?)))
+        .fold(all, |all, (index, estimate)| all.told(index, estimate))
+}
+
+/// The measures of the contract by their names.
+fn in_words(of: impl Fn(&str) -> Option<Estimate>) -> Measures {
+    Measures {
         stature: of("stature"),
         shoulder_breadth: of("shoulder_breadth"),
         chest_girth: of("chest_girth"),
@@ -138,7 +170,12 @@ fn preferred(sections: &Measurements, fitted: &FittedMeasures) -> Measurements {
         hip_girth: of("hip_girth"),
         inseam: of("leg_length"),
         arm_length: of("arm_length"),
-    };
+    }
+}
+
+/// What the body fit says in place of what sections and proportions say.
+fn preferred(sections: &Measurements, fitted: &FittedMeasures) -> Measurements {
+    let measures = in_words(|name| fitted.named(name));
     Measurements { measures, ..sections.clone() }
 }
 

@@ -11,15 +11,17 @@ use toile_assets::wardrobe::style::Style;
 use toile_engine::cloth::Quality;
 use toile_track::measure::Measurements;
 use toile_track::recommend::Recommendation;
+use toile_track::told::Told;
 
+use super::measured::ShopperFacts;
 use super::size;
 use crate::FittingError;
 
 /// Fabric of a mesh that a user brings without saying what it is made of.
 const MESH_FABRIC: &str = "cotton-lawn";
 
-/// Garments, size, quality and sex that are asked for.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+/// Garments, size and quality that are asked for, and what the shopper has told.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Wish {
     /// Garments of the wardrobe or mesh files, inner first; empty is the first of the wardrobe.
     pub garments: Vec<String>,
@@ -29,6 +31,15 @@ pub struct Wish {
     pub quality: Quality,
     /// The shopper's sex, if it was given.
     pub sex: Option<Sex>,
+    /// Measures that they or a tape have told.
+    pub told: Told,
+}
+
+impl Wish {
+    /// What it says of the shopper.
+    pub fn facts(&self) -> ShopperFacts {
+        ShopperFacts { sex: self.sex, told: self.told, ..ShopperFacts::default() }
+    }
 }
 
 /// A garment to wear.

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
+use toile_assets::body::Sex;
 use toile_assets::file::{self, FileKind};
 use toile_engine::cloth::Quality;
 use toile_engine::workers::SHARES;
@@ -12,7 +13,9 @@ use toile_engine::workers::SHARES;
 use super::config_keys;
 use super::session::SessionTimes;
 use crate::error::KioskError;
+use toile_fitting::dress::measured::ShopperFacts;
 use toile_fitting::dress::wish::Wish;
+use toile_track::told::Told;
 
 /// The default configuration with all keys explained.
 pub const EXAMPLE: &str = include_str!("../../systemd/kiosk.toml");
@@ -30,6 +33,8 @@ const CONFIGURATION: FileKind = FileKind {
 pub struct Config {
     /// Garments and sizes that are worn.
     pub wear: WearConfig,
+    /// What is known of every shopper.
+    pub shopper: ShopperConfig,
     /// Where frames come from.
     pub sensor: SensorConfig,
     /// Times of a session.
@@ -56,6 +61,33 @@ pub struct WearConfig {
     pub size: Option<String>,
     /// Tested settings of the cloth.
     pub quality: String,
+}
+
+/// What is known of every shopper before they are measured.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ShopperConfig {
+    /// Whose proportions apply: female or male; none is found from what is seen.
+    pub sex: Option<String>,
+    /// Measures taken by tape, such as `chest=912`: for a fitting by appointment, or a demonstration.
+    pub measures: Vec<String>,
+}
+
+impl ShopperConfig {
+    /// The same as the measuring takes it.
+    ///
+    /// # Errors
+    /// The first word that means nothing, with the cure.
+    pub fn facts(&self) -> Result<ShopperFacts, String> {
+        let sex = match self.sex.as_deref() {
+            None => None,
+            Some("female") => Some(Sex::Female),
+            Some("male") => Some(Sex::Male),
+            Some(other) => return Err(format!("shopper.sex = {other} is not female or male; correct it")),
+        };
+        let told = Told::of(&self.measures).map_err(|why| format!("shopper.measures: {why}"))?;
+        Ok(ShopperFacts { sex, told, ..ShopperFacts::default() })
+    }
 }
 
 /// Where frames come from.
@@ -261,17 +293,20 @@ impl Config {
             .find_map(outside)
             .or_else(|| workers.map(|w| format!("machine.workers = {w} is not 1 or {SHARES}; correct it")))
             .or_else(|| self.wear.garments.is_empty().then(|| "wear.garments is empty; name a garment".into()))
+            .or_else(|| self.shopper.facts().err())
             .or_else(|| self.display.fault())
             .or_else(|| self.wear.quality.parse::<Quality>().err().map(|e| format!("wear.quality: {e}")))
     }
 
     /// The garments and sizes asked for.
     pub fn wish(&self) -> Wish {
+        let ShopperFacts { sex, told, .. } = self.shopper.facts().unwrap_or_default();
         Wish {
             garments: self.wear.garments.clone(),
             size: self.wear.size.clone(),
             quality: self.wear.quality.parse().unwrap_or_default(),
-            sex: None,
+            sex,
+            told,
         }
     }
 

@@ -6,8 +6,9 @@ use toml::de::{DeTable, DeValue};
 use crate::error::KioskError;
 
 /// Every table and its keys.
-pub const KEYS: [(&str, &[&str]); 8] = [
+pub const KEYS: [(&str, &[&str]); 9] = [
     ("wear", &["garments", "size", "quality"]),
+    ("shopper", &["sex", "measures"]),
     ("sensor", &["source", "session", "pause_s", "vmc"]),
     ("session", &["step_in_s", "measure_s", "step_out_s", "wipe_s"]),
     ("health", &["every_s"]),

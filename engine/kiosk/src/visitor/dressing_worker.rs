@@ -70,6 +70,8 @@ pub struct DressingContext {
     pub wardrobe: Arc<Wardrobe>,
     /// How their cloth is stepped.
     pub quality: Quality,
+    /// What is known of every shopper.
+    pub facts: ShopperFacts,
 }
 
 /// Runs one job at a time on a thread of its own, beside the live loop.
@@ -137,7 +139,7 @@ impl DressingContext {
 
     /// Measures whoever stands or sits there.
     fn measure(&self, source: ShopperSource, seated: bool) -> Result<VisitorMeasures, KioskError> {
-        let measured = measured::measure(&source.session(), ShopperFacts { seated, ..ShopperFacts::default() })?;
+        let measured = measured::measure(&source.session(), ShopperFacts { seated, ..self.facts })?;
         let known = VisitorMeasures { population: measured.population, ..VisitorMeasures::new(measured.best, seated) };
         Ok(match measured.fitted {
             Some(_) => VisitorMeasures { count: MEASURES.len() as u32, ..known },
@@ -189,7 +191,11 @@ mod tests {
     use toile_sensors::source::Session;
 
     fn context() -> DressingContext {
-        DressingContext { wardrobe: Arc::new(Wardrobe::stock().unwrap()), quality: Quality::Draft }
+        DressingContext {
+            wardrobe: Arc::new(Wardrobe::stock().unwrap()),
+            quality: Quality::Draft,
+            facts: ShopperFacts::default(),
+        }
     }
 
     fn session() -> Session {

@@ -53,7 +53,8 @@ impl VisitorSetup {
             wear: config.wear.garments.clone(),
             size: config.wear.size.clone(),
         };
-        let context = DressingContext { wardrobe: wardrobe.clone(), quality: config.wish().quality };
+        let facts = config.shopper.facts().map_err(KioskError::Input)?;
+        let context = DressingContext { wardrobe: wardrobe.clone(), quality: config.wish().quality, facts };
         let model = VisitModel::new(defaults, wardrobe, now_ns);
         Ok(Self { model, texts: Texts::load()?, mount, context, mark: display.mark_m })
     }

@@ -4,7 +4,7 @@
 use glam::{Vec2, Vec3};
 
 use super::depth_cells::{DepthCell, DepthCells, RimCell};
-use super::posed_body::PosedBody;
+use super::posed_body::{BodyModel, PosedBody};
 
 /// Least cosine between the normals of a cell and of its sample.
 const ALIKE: f32 = 0.35;
@@ -23,8 +23,8 @@ const RIM_FACING: f32 = 0.3;
 /// Least cosine between a rim sample's normal and that of the outline, both in the image.
 const RIM_ALIKE: f32 = 0.7;
 
-/// Greatest difference of depth between an outline and the sample that makes it (m).
-const RIM_DEPTH: f32 = 0.20;
+/// Greatest distance between the surface that ends at an outline and the sample that makes it (m).
+const RIM_NEAR: f32 = 0.10;
 
 /// What a sample that faces the camera costs beside its distance (cells for a cosine of 1): a trunk's surface that turns by
 /// a tenth of a radian has come half a cell nearer to the outline.
@@ -35,6 +35,9 @@ const RIM_RINGS: usize = 4;
 
 /// Side of the buckets into which samples are sorted, in cells.
 const BUCKET: usize = 2;
+
+/// No sample.
+const NONE: u32 = u32::MAX;
 
 /// The cells that correspond to one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -75,6 +78,8 @@ pub(super) struct Correspondences {
     pub off: f32,
     /// One cell in this many is used, and counts for all of them.
     pub every: usize,
+    /// The sample of each cell, [`NONE`] without one `[cells]`.
+    of_cell: Vec<u32>,
     /// Samples by bucket: where each bucket starts, and the list.
     start: Vec<u32>,
     list: Vec<u32>,
@@ -89,6 +94,7 @@ impl Correspondences {
             explained: 0.0,
             off: 0.0,
             every: 1,
+            of_cell: Vec::new(),
             start: Vec::new(),
             list: Vec::new(),
             buckets: [0; 2],
@@ -103,12 +109,15 @@ impl Correspondences {
         self.buckets = [across, down];
         let camera = view.camera_position();
         let (mut explained, mut squares) = (0usize, 0.0);
-        for cell in view.cells.iter().step_by(self.every) {
+        self.of_cell.clear();
+        self.of_cell.resize(view.cells.len(), NONE);
+        for (number, cell) in view.cells.iter().enumerate().step_by(self.every) {
             let Some(i) = self.nearest(view, posed, cell, gate, [across, down]) else {
                 squares += gate * gate;
                 continue;
             };
             explained += 1;
+            self.of_cell[number] = i as u32;
             squares += (posed.points[i] - cell.point).dot(posed.normals[i]).powi(2);
             let slanting = cell.normal.dot((camera - cell.point).normalize_or_zero()) < SLANTING;
             if !slanting || cell.normal == Vec3::ZERO {
@@ -170,8 +179,16 @@ impl Correspondences {
     }
 
     /// The sample of the body's own rim that belongs to a stretch of outline: beside it, with its normal, and where the
-    /// surface turns away from the camera.
-    pub(super) fn rim_sample(&self, view: &DepthCells, posed: &PosedBody, rim: &RimCell) -> Option<usize> {
+    /// surface turns away from the camera. An arm's outline is never the trunk's, before which it may lie.
+    pub(super) fn rim_sample(
+        &self,
+        view: &DepthCells,
+        (model, posed): (&BodyModel, &PosedBody),
+        rim: &RimCell,
+    ) -> Option<usize> {
+        let beside = *self.of_cell.get(rim.beside as usize).filter(|s| **s != NONE)?;
+        let arm = model.samples[beside as usize].arm;
+        let ends = view.cells[rim.beside as usize].point;
         let [across, down] = self.buckets;
         let cell = |x: f32, most: usize| ((x / BUCKET as f32).round().max(0.0) as usize).min(most.saturating_sub(1));
         let (bc, br) = (cell(rim.at.x, across), cell(rim.at.y, down));
@@ -181,7 +198,8 @@ impl Correspondences {
             let (left, right) = (bc.saturating_sub(RIM_RINGS), (bc + RIM_RINGS).min(across - 1));
             for &i in &self.list[self.start[row + left] as usize..self.start[row + right + 1] as usize] {
                 let m = &self.of[i as usize];
-                if m.facing > RIM_FACING || (m.z - rim.z).abs() > RIM_DEPTH {
+                let near = posed.points[i as usize].distance_squared(ends) < RIM_NEAR * RIM_NEAR;
+                if m.facing > RIM_FACING || !near || model.samples[i as usize].arm != arm {
                     continue;
                 }
                 let off = m.seen - rim.at;

@@ -14,8 +14,8 @@ pub(super) struct RimCell {
     pub at: Vec2,
     /// Unit normal in the image, away from the shopper.
     pub out: Vec2,
-    /// Depth of the surface that ends there (m).
-    pub z: f32,
+    /// The cell of the surface that ends there.
+    pub beside: u32,
 }
 
 /// Side of a cell on the shopper (m): a good tenth of a limb's breadth, and nine pixels of a Kinect at 2.5 m, which
@@ -264,8 +264,8 @@ impl DepthCells {
                 };
                 let near = self.nearest[r * self.columns + c];
                 if GAP.into_iter().all(open) && near[0] != u16::MAX {
-                    let z = self.depth[near[1] as usize * self.columns + near[0] as usize];
-                    self.rim.push(RimCell { at, out: point.out, z });
+                    let beside = near[1] as usize * self.columns + near[0] as usize;
+                    self.rim.push(RimCell { at, out: point.out, beside: self.at[beside] });
                 }
             }
         }

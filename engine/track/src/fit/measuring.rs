@@ -1,13 +1,18 @@
 //! Measuring by the body fit: the shape over all frames of a second, and its measures by virtual tape.
 
 use toile_assets::body::shape::{BodyShape, SHAPES, Shapes};
-use toile_assets::body::{En, Fitted, Readings, Sex};
+use toile_assets::body::{En, Fitted, Measures, Readings, Sex};
+use toile_assets::mesh::vertex_normals;
 use toile_assets::sizes::Population;
 use toile_assets::skeleton::Pose;
 use toile_sensors::frame::DepthFrame;
 
 use super::{BodyFit, FitOptions};
+use crate::correlated::Correlated;
 use crate::estimate::Estimate;
+
+/// Most frames of the first second: at 30 Hz (Gultepe 2013, section 6.4).
+pub const FRAMES: usize = 30;
 
 /// A measure that the body fit takes. Levels and definitions are those of EN 13402-1 and ISO 8559-1 ([`En`]), and one
 /// of our own.
@@ -38,6 +43,11 @@ pub const MEASURES: [MeasureRow; 11] = [
 ];
 
 impl FittedMeasure {
+    /// Whether it counts from the floor up, and is taken as the shopper stands.
+    const fn is_height(self) -> bool {
+        matches!(self, Self::Standard(En::Stature | En::InsideLegHeight) | Self::Torso)
+    }
+
     /// Reads it off a body (m).
     pub fn of(self, readings: &Readings) -> f32 {
         match self {
@@ -47,25 +57,38 @@ impl FittedMeasure {
     }
 }
 
-/// Error from body shapes that the model cannot represent (m), in the order of [`MEASURES`]: the standard
-/// deviation that errors have beside what the fit itself states, over 80 people of another draw than that of docs/measuring.md
-/// (`toile bench measure --people 40 --frames 4 --seed 78 --sensor azure`).
-const MODEL_ERROR: [f32; MEASURES.len()] =
-    [0.0035, 0.002, 0.004, 0.004, 0.004, 0.003, 0.016, 0.015, 0.020, 0.015, 0.007];
+/// Error from body shapes that the model cannot represent, and from what two people call by one name (m), in the order of
+/// [`MEASURES`]: what errors have beside what the fit itself states, so that 68 of 100 lie within one standard deviation, over people
+/// of two families before two cameras (docs/measuring.md, "Stated errors").
+const FRONT_ERROR: [f32; MEASURES.len()] =
+    [0.0055, 0.0095, 0.013, 0.028, 0.0185, 0.016, 0.021, 0.0265, 0.027, 0.0215, 0.017];
+
+/// The same where the shopper was seen from all sides.
+const TURNED_ERROR: [f32; MEASURES.len()] =
+    [0.0045, 0.003, 0.006, 0.0335, 0.0265, 0.024, 0.022, 0.014, 0.0175, 0.0125, 0.016];
+
+/// Error that is added to what the fit itself states (m), in the order of [`MEASURES`]: from the front, or from all sides.
+pub const fn model_error(turned: bool) -> &'static [f32; MEASURES.len()] {
+    if turned { &TURNED_ERROR } else { &FRONT_ERROR }
+}
 
 /// The measures from the fit of one second.
 #[derive(Debug, Clone)]
 pub struct FittedMeasures {
     /// The estimates, in the order of [`MEASURES`].
     pub measures: [Estimate; MEASURES.len()],
+    /// The same with what their errors have in common.
+    pub all: Correlated<{ MEASURES.len() }>,
     /// Probability that the body is a woman's, 0 to 1.
     pub woman: f32,
-    /// The fitted body of the likelier sex.
+    /// The body of the likelier sex, with the surface that was seen.
     pub body: Fitted,
     /// Its pose in the last frame.
     pub pose: Pose,
     /// Frames that were fitted.
     pub frames: usize,
+    /// Whether the shopper turned, and was seen from all sides.
+    pub turned: bool,
     /// Root mean square distance of the surface from the body's, in the last frame (m).
     pub off: f32,
     /// Fraction of the visible surface that the body explains, in the last frame.
@@ -90,11 +113,22 @@ struct SexFit {
     fit: BodyFit,
     off: f32,
     explained: f32,
+    turned: bool,
 }
 
 impl SexFit {
     fn new(sex: Sex, options: FitOptions) -> Self {
-        Self { fit: BodyFit::new(sex, options), off: 0.0, explained: 0.0 }
+        Self { fit: BodyFit::new(sex, options), off: 0.0, explained: 0.0, turned: false }
+    }
+
+    /// Follows a shopper who may turn after the first second, and goes back to that second where they did not turn all round.
+    fn follow_turn(&mut self, frames: &[DepthFrame]) {
+        let front = self.fit.mark();
+        self.push(frames);
+        self.turned = self.fit.seen_from_all_sides();
+        if !self.turned {
+            self.fit.go_back_to(front);
+        }
     }
 
     fn push(&mut self, frames: &[DepthFrame]) {
@@ -113,14 +147,21 @@ impl SexFit {
     }
 }
 
-/// Measures the shopper in frames that hold nothing but them. `None` if no body fits.
+/// Longest time that counts as the first second (ns), in which a shopper stands before they may turn.
+const FIRST_SECOND_NS: u64 = 1_000_000_000;
+
+/// Measures the shopper in frames that hold nothing but them: from the first second, and where they turn all round afterwards, from
+/// all sides. `None` if no body fits.
 pub fn measure(frames: &[DepthFrame], population: Population, options: FitOptions) -> Option<FittedMeasures> {
     let sexes: &[Sex] = match population {
         Population::Women => &[Sex::Female],
         Population::Men => &[Sex::Male],
         Population::Mixed => &[Sex::Female, Sex::Male],
     };
-    let (first, rest) = frames.split_at(frames.len().min(DECIDING));
+    let begun = frames.first()?.time_ns;
+    let second = frames.iter().take_while(|f| f.time_ns.saturating_sub(begun) < FIRST_SECOND_NS).count();
+    let (front, after) = frames.split_at(second.min(FRAMES));
+    let (first, rest) = front.split_at(front.len().min(DECIDING));
     let mut tries: Vec<(Sex, SexFit)> = sexes.iter().map(|&s| (s, SexFit::new(s, options))).collect();
     tries.iter_mut().for_each(|(_, t)| t.push(first));
     let ahead = tries.iter().map(|(_, t)| t.deviance()).fold(f64::MAX, f64::min);
@@ -128,40 +169,117 @@ pub fn measure(frames: &[DepthFrame], population: Population, options: FitOption
     tries.iter_mut().for_each(|(_, t)| t.push(rest));
     tries.retain(|(_, t)| t.deviance() < f64::MAX);
     let least = tries.iter().map(|t| t.1.deviance()).fold(f64::MAX, f64::min);
-    let weight = |t: &SexFit| (-0.5 * (t.deviance() - least)).exp();
-    let whole: f64 = tries.iter().map(|t| weight(&t.1)).sum();
-    let best = tries.iter().min_by(|a, b| a.1.deviance().total_cmp(&b.1.deviance()))?;
-    let read: Vec<(f64, [Estimate; MEASURES.len()])> =
-        tries.iter().map(|(s, t)| (weight(t) / whole, read(Shapes::of(*s), &t.fit))).collect();
-    let measures = std::array::from_fn(|i| mixed(read.iter().map(|(w, m)| (*w as f32, m[i])), MODEL_ERROR[i]));
-    let woman = tries.iter().find(|t| t.0 == Sex::Female).map_or(0.0, |t| (weight(&t.1) / whole) as f32);
-    let body = Shapes::of(best.0).body(&best.1.fit.shape());
-    let SexFit { fit, off, explained } = &best.1;
-    let pose = fit.last_pose()?;
-    Some(FittedMeasures { measures, woman, body, pose, frames: fit.frames(), off: *off, explained: *explained })
+    let weights: Vec<f64> = tries.iter().map(|t| (-0.5 * (t.1.deviance() - least)).exp()).collect();
+    let whole: f64 = weights.iter().sum();
+    let mut seen: Vec<SexMeasures> = Vec::new();
+    for ((sex, mut fit), weight) in tries.into_iter().zip(weights) {
+        fit.follow_turn(after);
+        seen.push(fit.closely(sex, (weight / whole) as f32, frames)?);
+    }
+    let turned = seen.iter().all(|s| s.turned);
+    let parts: Vec<_> = seen.iter().map(|s| (s.share, s.measures)).collect();
+    let all = with_model_error(Correlated::mixed(&parts), turned);
+    let woman = seen.iter().find(|s| s.sex == Sex::Female).map_or(0.0, |s| s.share);
+    let best = seen.into_iter().max_by(|a, b| a.share.total_cmp(&b.share))?;
+    let SexMeasures { body, pose, frames, off, explained, .. } = best;
+    Some(FittedMeasures { measures: all.estimates(), all, woman, body, pose, frames, turned, off, explained })
 }
 
-/// All measures of one fit.
-fn read(shapes: &Shapes, fit: &BodyFit) -> [Estimate; MEASURES.len()] {
-    let (shape, covariance) = fit.shape_filter.estimate();
-    let read = shapes.read(&shape);
-    MEASURES.map(|(_, girth, _)| {
-        let row: BodyShape = match girth {
-            FittedMeasure::Standard(measure) => *read.row(measure),
-            FittedMeasure::Torso => {
-                let [top, bottom] = [En::CervicalHeight, En::InsideLegHeight].map(|m| read.row(m));
-                std::array::from_fn(|k| top[k] - bottom[k])
-            }
+/// What the fit of one sex's body says.
+struct SexMeasures {
+    sex: Sex,
+    /// How likely it is, 0 to 1.
+    share: f32,
+    measures: Correlated<{ MEASURES.len() }>,
+    body: Fitted,
+    pose: Pose,
+    frames: usize,
+    turned: bool,
+    off: f32,
+    explained: f32,
+}
+
+impl SexFit {
+    /// Looks at all frames once more, and lays the tape on the surface that was seen.
+    fn closely(mut self, sex: Sex, share: f32, frames: &[DepthFrame]) -> Option<SexMeasures> {
+        let shapes = Shapes::of(sex);
+        let count = self.fit.frames();
+        let seen = self.fit.look_closer(frames)?;
+        let [rest, standing] = [&seen.rest, &seen.standing].map(|surface| shapes.read_surface(surface));
+        let (shape, covariance) = self.fit.shape_filter.estimate();
+        let mut measures = covariance_of(shapes, &shape, &covariance);
+        for (measure, (_, kind, _)) in measures.mean.iter_mut().zip(MEASURES) {
+            *measure = kind.of(if kind.is_height() { &standing } else { &rest });
+        }
+        let mut body = shapes.body(&seen.shape);
+        body.body.mesh.positions = seen.rest;
+        vertex_normals(&body.body.mesh.positions, &body.body.mesh.triangles, &mut body.body.normals);
+        body.body.measures = Measures {
+            stature: rest.of(En::Stature),
+            shoulder_breadth: rest.of(En::ShoulderBreadth),
+            chest_girth: rest.of(En::BustGirth),
+            waist_girth: rest.of(En::WaistGirth),
+            hip_girth: rest.of(En::HipGirth),
         };
-        let pair = |i: usize| (0..SHAPES).map(|j| row[i] * covariance[i][j] * row[j]).sum::<f64>();
-        let variance: f64 = (0..SHAPES).map(pair).sum();
-        Estimate::new(girth.of(&read.readings), variance.max(0.0).sqrt() as f32)
-    })
+        body.readings = rest;
+        Some(SexMeasures {
+            sex,
+            share,
+            measures,
+            body,
+            pose: self.fit.last_pose()?,
+            frames: count,
+            turned: self.turned,
+            off: self.off,
+            explained: self.explained,
+        })
+    }
 }
 
-/// Mean and standard deviation of a mixture, with an independent error added.
-fn mixed(parts: impl Iterator<Item = (f32, Estimate)> + Clone, more: f32) -> Estimate {
-    let mean: f32 = parts.clone().map(|(w, e)| w * e.value).sum();
-    let variance: f32 = parts.map(|(w, e)| w * (e.sigma * e.sigma + (e.value - mean).powi(2))).sum();
-    Estimate::new(mean, (variance + more * more).sqrt())
+/// All measures of a shape, and what their errors have in common where its parameters have this covariance, in the order of
+/// [`MEASURES`].
+pub fn covariance_of(
+    shapes: &Shapes,
+    shape: &BodyShape,
+    covariance: &[BodyShape; SHAPES],
+) -> Correlated<{ MEASURES.len() }> {
+    let read = shapes.read(shape);
+    let rows: [BodyShape; MEASURES.len()] = MEASURES.map(|(_, kind, _)| match kind {
+        FittedMeasure::Standard(measure) => *read.row(measure),
+        FittedMeasure::Torso => {
+            let [top, bottom] = [En::CervicalHeight, En::InsideLegHeight].map(|m| read.row(m));
+            std::array::from_fn(|k| top[k] - bottom[k])
+        }
+    });
+    let pair = |a: &BodyShape, b: &BodyShape| {
+        let terms = (0..SHAPES).map(|i| a[i] * (0..SHAPES).map(|j| covariance[i][j] * b[j]).sum::<f64>());
+        terms.sum::<f64>() as f32
+    };
+    Correlated {
+        mean: MEASURES.map(|(_, kind, _)| kind.of(&read.readings)),
+        covariance: std::array::from_fn(|i| std::array::from_fn(|j| pair(&rows[i], &rows[j]))),
+    }
+}
+
+/// How much of the added error the girths of the trunk have in common: who is too broad at the chest for the model is so at the hip.
+const TOGETHER: f32 = 0.4;
+
+/// Adds the error that [`model_error`] states.
+fn with_model_error(mut measured: Correlated<{ MEASURES.len() }>, turned: bool) -> Correlated<{ MEASURES.len() }> {
+    let more = model_error(turned);
+    let is_trunk = |i: usize| {
+        use En::{BustGirth, HipGirth, UnderbustGirth, WaistGirth};
+        matches!(MEASURES[i].1, FittedMeasure::Standard(BustGirth | UnderbustGirth | WaistGirth | HipGirth))
+    };
+    for i in 0..MEASURES.len() {
+        for j in 0..MEASURES.len() {
+            let share = match i == j {
+                true => 1.0,
+                false if is_trunk(i) && is_trunk(j) => TOGETHER,
+                false => 0.0,
+            };
+            measured.covariance[i][j] += share * more[i] * more[j];
+        }
+    }
+    measured
 }

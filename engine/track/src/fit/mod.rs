@@ -7,6 +7,7 @@
 //! Analysis by synthesis with point-to-surface residuals and a Gauss-Newton step over pose and shape together; the
 //! shape is accumulated over the frames, with the population (ANSUR II) as its prior.
 
+mod closer_look;
 mod correspondence;
 mod depth_cells;
 mod initial_pose;
@@ -18,6 +19,7 @@ mod options;
 mod posed_body;
 mod residuals;
 mod rim;
+mod seen_surface;
 #[expect(clippy::needless_range_loop, reason = "matrices are read by row and column")]
 mod shape_filter;
 pub mod tracker;
@@ -30,12 +32,13 @@ use toile_assets::body::shape::{BodyShape, Shapes};
 use toile_assets::skeleton::{JOINTS, Joint, Pose};
 use toile_sensors::frame::{DepthFrame, Joints, TrackedJoint};
 
+use closer_look::PathState;
 use correspondence::Correspondences;
 use depth_cells::DepthCells;
-use normal_equations::NormalEquations;
-pub use options::{FitOptions, OutlinePull};
+use normal_equations::{NormalEquations, ShapeQuadratic};
+pub use options::{FitOptions, Stance};
 use posed_body::{BodyModel, FitState, PosedBody};
-use residuals::ResidualOptions;
+use residuals::{PosePrior, ResidualOptions};
 use shape_filter::ShapeFilter;
 
 /// Largest distance of a correspondence while tracking (m).
@@ -64,6 +67,10 @@ const BETTER: f32 = 0.93;
 
 /// Levenberg-Marquardt damping, a fraction of each diagonal: keeps steps in poorly observed directions short.
 const DAMPING: f64 = 1e-3;
+
+/// Frames after which the pose of somebody who is measured is kept, and the standard deviation of every angle about it (rad).
+const SETTLED: usize = 3;
+const HOLDING: f32 = 0.3;
 
 /// Change of any shape parameter at which the rest normals are computed again.
 const RESHAPED: f64 = 0.01;
@@ -99,6 +106,13 @@ pub struct FitTimes {
     pub solve: f32,
 }
 
+/// What a fit knew at some frame.
+struct FitMark {
+    path: usize,
+    last: Option<FitState>,
+    shape_filter: ShapeFilter,
+}
+
 /// The body fit of one shopper, frame after frame.
 pub struct BodyFit {
     options: FitOptions,
@@ -111,6 +125,10 @@ pub struct BodyFit {
     /// The same with fewer samples, for the first fit; `None` if this one's are few already.
     coarse: Option<Box<BodyFit>>,
     state: Option<FitState>,
+    /// Every state of somebody who is measured; empty while they only move.
+    path: Vec<PathState>,
+    /// Frames pushed.
+    pushed: usize,
     /// The last state that was believed.
     last: Option<FitState>,
     rest_normals: Vec<Vec3>,
@@ -134,6 +152,8 @@ impl BodyFit {
             coarse: (options.spacing < FitOptions::LIVE.spacing)
                 .then(|| Box::new(Self::new(sex, FitOptions { spacing: FitOptions::LIVE.spacing, ..options }))),
             state: None,
+            path: Vec::new(),
+            pushed: 0,
             last: None,
             rest_normals: vec![Vec3::ZERO; model.samples.len()],
             shaped: None,
@@ -149,14 +169,16 @@ impl BodyFit {
     pub fn reset(&mut self) {
         self.shape_filter = ShapeFilter::new(self.model.shapes);
         (self.state, self.last, self.failures, self.cost) = (None, None, 0, (0.0, 0));
+        (self.path, self.pushed) = (Vec::new(), 0);
     }
 
     /// Fits the body to the next frame, which holds nothing but the shopper (all other pixels 0).
     pub fn push(&mut self, frame: &DepthFrame) -> FittedFrame {
         self.times = FitTimes::default();
+        self.pushed += 1;
         let begun = Instant::now();
         let enough = self.view.read(frame);
-        if enough && self.options.outline == OutlinePull::BothWays {
+        if enough && self.options.stance == Stance::Held {
             self.view.read_rim(frame);
         }
         self.times.cells = begun.elapsed().as_secs_f32();
@@ -172,7 +194,8 @@ impl BodyFit {
             },
             Some(state) => {
                 self.update_rest_normals(&state.shape);
-                self.steps(&state, Some(&state), (GATE, ROBUST, self.options.steps))
+                let ahead = self.ahead(&state);
+                self.steps(&ahead, Some(&ahead), (GATE, ROBUST, self.options.steps))
             }
         };
         let enough = EXPLAINED[usize::from(started)];
@@ -180,6 +203,10 @@ impl BodyFit {
             self.failures = 0;
             self.state = Some(next);
             self.last = Some(next);
+            if self.options.stance == Stance::Held {
+                let facing = closer_look::facing(&next, self.view.camera_position());
+                self.path.push(PathState { frame: self.pushed - 1, state: next, facing });
+            }
             let begun = Instant::now();
             self.shape_filter.add(&self.equations.shape(), &next.shape);
             self.times.solve += begun.elapsed().as_secs_f32();
@@ -250,36 +277,61 @@ impl BodyFit {
         self.matches.off
     }
 
+    /// Where somebody who is measured will be in the next frame: they turn on as they turned.
+    fn ahead(&self, state: &FitState) -> FitState {
+        let [.., before, now] = self.path[..] else { return *state };
+        if before.frame + 1 != now.frame || now.frame + 2 != self.pushed {
+            return *state;
+        }
+        let mut ahead = *state;
+        let turned = now.state.local[0] * before.state.local[0].inverse();
+        ahead.local[0] = (turned * state.local[0]).normalize();
+        ahead.root += now.state.root - before.state.root;
+        ahead
+    }
+
     fn steps(
         &mut self,
         from: &FitState,
         before: Option<&FitState>,
         (gate, robust, steps): (f32, f32, usize),
     ) -> FitState {
+        let settled = self.path.get(SETTLED).map(|p| p.state);
+        let held = settled.as_ref().map(|s| (s, [HOLDING; 2]));
         let mut state = *from;
         for _ in 0..steps {
-            let begun = Instant::now();
-            self.posed.pose(&self.model, &state, &self.rest_normals);
-            self.matches.find(&self.view, &self.posed, gate);
-            let matched = Instant::now();
-            self.times.correspond += (matched - begun).as_secs_f32();
             let shape = self.shape_filter.about(&state.shape);
-            let FitOptions { ground, clothed, outline, .. } = self.options;
-            let options = ResidualOptions { ground, clothed, outline, robust };
-            let Self { model, posed, view, matches, equations, .. } = self;
-            residuals::add_observations(equations, residuals::Observation { model, posed, view, matches }, &options);
-            residuals::add_priors(&mut self.equations, &self.model, &state, before, outline);
-            let gathered = Instant::now();
-            self.times.equations += (gathered - matched).as_secs_f32();
-            let by = residuals::limit_step(self.equations.step(&shape, DAMPING));
-            let next = state.stepped(&self.model, &by);
-            self.times.solve += gathered.elapsed().as_secs_f32();
-            if !next.root.is_finite() {
-                break;
-            }
+            let Some(next) = self.step(&state, &shape, before, held, (gate, robust)) else { break };
             state = next;
         }
         state
+    }
+
+    /// One Gauss-Newton step; `None` where it leads nowhere.
+    fn step(
+        &mut self,
+        state: &FitState,
+        shape: &ShapeQuadratic,
+        before: Option<&FitState>,
+        held: Option<(&FitState, [f32; 2])>,
+        (gate, robust): (f32, f32),
+    ) -> Option<FitState> {
+        let begun = Instant::now();
+        self.posed.pose(&self.model, state, &self.rest_normals);
+        self.matches.find(&self.view, &self.posed, gate);
+        let matched = Instant::now();
+        self.times.correspond += (matched - begun).as_secs_f32();
+        let FitOptions { ground, clothed, stance, .. } = self.options;
+        let options = ResidualOptions { ground, clothed, stance, robust };
+        let Self { model, posed, view, matches, equations, .. } = self;
+        residuals::add_observations(equations, residuals::Observation { model, posed, view, matches }, &options);
+        residuals::add_priors(equations, model, state, &PosePrior { stance, before, held });
+        let gathered = Instant::now();
+        self.times.equations += (gathered - matched).as_secs_f32();
+        let by = residuals::limit_step(self.equations.step(shape, DAMPING));
+        let next = state.stepped(&self.model, &by);
+        self.times.solve += gathered.elapsed().as_secs_f32();
+        next.root.is_finite().then_some(next)
     }
 
     /// Updates the rest normals of the samples where the shape has changed enough.
@@ -321,6 +373,17 @@ impl BodyFit {
             }
         }
         cells
+    }
+
+    /// What is known so far.
+    fn mark(&self) -> FitMark {
+        FitMark { path: self.path.len(), last: self.last, shape_filter: self.shape_filter.clone() }
+    }
+
+    /// Forgets what was seen since.
+    fn go_back_to(&mut self, mark: FitMark) {
+        self.path.truncate(mark.path);
+        (self.last, self.shape_filter) = (mark.last, mark.shape_filter);
     }
 
     /// Time of the last frame by stage.

@@ -20,6 +20,19 @@ pub(super) struct ShapeQuadratic {
     pub gradient: [f64; SHAPES],
 }
 
+impl ShapeQuadratic {
+    /// A shape that does not change.
+    pub const KEPT: Self = {
+        let mut hessian = [[0.0; SHAPES]; SHAPES];
+        let mut i = 0;
+        while i < SHAPES {
+            hessian[i][i] = 1e12;
+            i += 1;
+        }
+        Self { hessian, gradient: [0.0; SHAPES] }
+    };
+}
+
 impl NormalEquations {
     pub(super) fn new() -> Self {
         Self { hessian: Box::new([[0.0; WIDTH]; UNKNOWNS]), gradient: [0.0; WIDTH], cost: 0.0 }

@@ -1,5 +1,7 @@
 //! What a caller chooses about the body fit.
 
+use toile_assets::skeleton::Joint;
+
 /// How a shopper is fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitOptions {
@@ -11,27 +13,77 @@ pub struct FitOptions {
     pub spacing: f32,
     /// Gauss-Newton steps a frame.
     pub steps: usize,
-    /// How the outline is used.
-    pub outline: OutlinePull,
+    /// What the shopper does meanwhile.
+    pub stance: Stance,
 }
 
-/// How the shopper's outline pulls on the body.
+/// What a shopper does while a body is fitted to them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum OutlinePull {
-    /// What lies outside of it is pulled in: it can only make the body smaller. What ships.
-    Inward,
-    /// The body's rim is drawn to it from outside and inside, below the size of a pixel, and the surface counts as correlated
-    /// over more than a hand's breadth: nearer to the truth on bodies of another family, but not yet calibrated
-    /// (`toile bench measure --makehuman`).
-    BothWays,
+pub enum Stance {
+    /// Moves as they like: every joint may turn, and the outline only keeps the body inside.
+    Moving,
+    /// Stands still to be measured, or turns as a whole: joints keep their angles, and the rim of the body is drawn to the outline
+    /// from both sides, below the size of a pixel.
+    Held,
 }
 
 impl FitOptions {
     /// For every frame at 30 Hz.
-    pub const LIVE: Self =
-        Self { ground: Some(0.0), clothed: true, spacing: 0.030, steps: 3, outline: OutlinePull::Inward };
+    pub const LIVE: Self = Self { ground: Some(0.0), clothed: true, spacing: 0.030, steps: 3, stance: Stance::Moving };
 
-    /// For the second in which a shopper is measured.
-    pub const MEASURING: Self =
-        Self { ground: Some(0.0), clothed: true, spacing: 0.0, steps: 2, outline: OutlinePull::Inward };
+    /// For the seconds in which a shopper is measured.
+    pub const MEASURING: Self = Self { ground: Some(0.0), clothed: true, spacing: 0.0, steps: 2, stance: Stance::Held };
+}
+
+/// Standard deviation of a cell's distance from the model's surface (m). Errors are correlated over a hand's breadth, so
+/// that the thirty cells there count as one: 4 mm times the root of 30.
+const CELL_SIGMA: f32 = 0.022;
+
+/// The same where somebody is measured: errors of a body that the model cannot have are correlated over more than a hand's
+/// breadth, and then a front that fits a little better does not outweigh the breadth that is seen.
+const CORRELATED_CELL_SIGMA: f32 = 0.040;
+
+/// Share of the usual spreads of joint angles that somebody has who stands upright to be measured.
+const UPRIGHT: f32 = 0.5;
+
+/// Standard deviation of a joint angle's change from one frame to the next (rad): of somebody who moves; of somebody who stands, and
+/// their arms, which a turn hides for some frames.
+const MOTION: f32 = 0.25;
+const STILL: f32 = 0.03;
+const STILL_ARM: f32 = 0.10;
+
+impl Stance {
+    /// Standard deviation of a cell's distance from the model's surface (m).
+    pub(super) const fn cell_sigma(self) -> f32 {
+        match self {
+            Self::Moving => CELL_SIGMA,
+            Self::Held => CORRELATED_CELL_SIGMA,
+        }
+    }
+
+    /// What the usual spreads of joint angles are multiplied with.
+    pub(super) const fn pose_spread(self) -> f32 {
+        match self {
+            Self::Moving => 1.0,
+            Self::Held => UPRIGHT,
+        }
+    }
+
+    /// Standard deviation of a joint angle's change from one frame to the next (rad).
+    pub(super) fn motion(self, joint: Joint) -> f32 {
+        match self {
+            Self::Held if is_arm(joint) => STILL_ARM,
+            Self::Held if joint != Joint::Pelvis => STILL,
+            _ => MOTION,
+        }
+    }
+}
+
+/// Whether a joint carries an arm.
+pub(super) fn is_arm(joint: Joint) -> bool {
+    use Joint::*;
+    matches!(
+        joint,
+        LeftClavicle | LeftShoulder | LeftElbow | LeftWrist | RightClavicle | RightShoulder | RightElbow | RightWrist
+    )
 }

@@ -6,7 +6,9 @@
 //! `sum_j w_j (R_j dX/ds + dp_j/ds - R_j dJ_j/ds)`.
 
 use glam::{Mat3, Quat, Vec3};
+use toile_assets::body::Region;
 use toile_assets::body::shape::{BodyShape, SCALE, SHAPES, Shapes};
+use toile_assets::mesh::SkinWeights;
 use toile_assets::skeleton::{JOINTS, Joint, Skeleton, bone_joint};
 
 use super::joint_angles::{ANGLES, JointAngle, joint_angles};
@@ -42,6 +44,8 @@ pub(super) struct SurfaceSample {
     pub sole: bool,
     /// Whether hair may cover it.
     pub hairy: bool,
+    /// The arm that it is on, if it is on one.
+    pub arm: Option<Region>,
 }
 
 impl SurfaceSample {
@@ -123,8 +127,9 @@ fn sample(shapes: &Shapes, corners: [u32; 4], moves: &mut Vec<(u32, Vec3)>) -> S
     let bones: [(u8, f32); BONES_EACH] =
         std::array::from_fn(|k| joints.get(k).map_or((0, 0.0), |j| (j.0, j.1 / whole)));
     let drawn = corners.map(|v| base.positions[v as usize]).iter().sum::<Vec3>() / 4.0;
+    let arm = Some(base.regions[corners[0] as usize]).filter(|r| matches!(r, Region::LeftArm | Region::RightArm));
     let hairy = [Joint::Head, Joint::Neck].iter().any(|j| j.index() == bones[0].0 as usize);
-    SurfaceSample { corners, drawn, moves: (first as u32, moves.len() as u32), bones, sole: drawn.y < SOLE, hairy }
+    SurfaceSample { corners, drawn, moves: (first as u32, moves.len() as u32), bones, sole: drawn.y < SOLE, hairy, arm }
 }
 
 /// The unknowns of the fit: pose and shape.
@@ -177,6 +182,8 @@ pub(super) struct PosedBody {
     axes: [Vec3; ANGLES],
     /// `dp_j/ds - R_j dJ_j/ds` of each joint and parameter.
     drift: Vec<[Vec3; SHAPES]>,
+    /// How far each sample lies from where its shape puts it, at rest (m).
+    pub displaced: Vec<Vec3>,
     /// Rest position, world position and world normal of each sample.
     rest_points: Vec<Vec3>,
     pub points: Vec<Vec3>,
@@ -193,6 +200,7 @@ impl PosedBody {
             place: [Vec3::ZERO; JOINTS],
             axes: [Vec3::ZERO; ANGLES],
             drift: vec![[Vec3::ZERO; SHAPES]; JOINTS],
+            displaced: vec![Vec3::ZERO; n],
             rest_points: vec![Vec3::ZERO; n],
             points: vec![Vec3::ZERO; n],
             normals: vec![Vec3::ZERO; n],
@@ -211,7 +219,7 @@ impl PosedBody {
         self.drifts(model);
         let shape = state.shape.map(|s| s as f32);
         for (i, sample) in model.samples.iter().enumerate() {
-            let rest_points = model.place(sample, &shape, self.scale);
+            let rest_points = model.place(sample, &shape, self.scale) + self.displaced[i];
             let (mut point, mut normal) = (Vec3::ZERO, Vec3::ZERO);
             for &(j, w) in sample.bones.iter().filter(|b| b.1 > 0.0) {
                 let j = j as usize;
@@ -221,6 +229,20 @@ impl PosedBody {
             (self.rest_points[i], self.points[i]) = (rest_points, point);
             self.normals[i] = normal.normalize_or_zero();
         }
+    }
+
+    /// A surface with the base's vertices at rest, posed by linear skinning with one bone a joint (m) `[vertices]`.
+    pub(super) fn skinned(&mut self, model: &BodyModel, state: &FitState, rest: &[Vec3]) -> Vec<Vec3> {
+        self.rest = model.shapes.skeleton(&state.shape);
+        self.joints(state);
+        let skinned = |(p, weights): (&Vec3, &SkinWeights)| {
+            let by_bone = weights.iter().map(|(bone, w)| {
+                let j = bone_joint(bone as usize).map_or(0, Joint::index);
+                w * (self.place[j] + self.turned[j] * (*p - self.rest.rest[j]))
+            });
+            by_bone.sum::<Vec3>()
+        };
+        rest.iter().zip(&model.shapes.base().weights).map(skinned).collect()
     }
 
     fn joints(&mut self, state: &FitState) {

@@ -1,43 +1,14 @@
 //! The residuals of one step: depth cells, outline, ground contact, prior of the pose and joint limits.
 
 use toile_assets::body::shape::SHAPES;
+use toile_assets::skeleton::Joint;
 
 use super::correspondence::Correspondences;
 use super::depth_cells::{DepthCells, RimCell};
 use super::joint_angles::angle;
 use super::normal_equations::NormalEquations;
-use super::options::OutlinePull;
+use super::options::{Stance, is_arm};
 use super::posed_body::{BodyModel, FitState, PosedBody, UNKNOWNS};
-
-/// Standard deviation of a cell's distance from the model's surface (m). Errors are correlated over a hand's breadth, so
-/// that the thirty cells there count as one: 4 mm times the root of 30.
-const CELL_SIGMA: f32 = 0.022;
-
-/// The same where the outline counts from both sides: errors of a body that the model cannot have are correlated over more
-/// than a hand's breadth, and then a front that fits a little better does not outweigh the breadth that is seen.
-const CORRELATED_CELL_SIGMA: f32 = 0.040;
-
-/// Share of the usual spreads of joint angles that somebody has who stands upright to be measured, where the outline counts from
-/// both sides.
-const UPRIGHT: f32 = 0.5;
-
-impl OutlinePull {
-    /// Standard deviation of a cell's distance from the model's surface (m).
-    const fn cell_sigma(self) -> f32 {
-        match self {
-            Self::Inward => CELL_SIGMA,
-            Self::BothWays => CORRELATED_CELL_SIGMA,
-        }
-    }
-
-    /// What spreads of joint angles are multiplied with.
-    const fn pose_spread(self) -> f32 {
-        match self {
-            Self::Inward => 1.0,
-            Self::BothWays => UPRIGHT,
-        }
-    }
-}
 
 /// Cloth lies outside the skin: a point outside the surface pulls with this fraction of the weight, and not at all
 /// beyond a loose fit; a point inside pushes with the full weight.
@@ -57,9 +28,9 @@ const OUTLINE_SIGMA: f32 = 0.030;
 const OUTLINE_REACH: f32 = 0.15;
 
 /// Breadth of the shopper's rim that a camera loses, because it sees it at a grazing angle (m).
-const RIM_LOST: f32 = 0.002;
+const RIM_LOST: f32 = 0.0015;
 
-/// Standard deviation of the outline's place in a cell (m), correlated as for [`CELL_SIGMA`].
+/// Standard deviation of the outline's place in a cell (m), correlated as cells are.
 const RIM_SIGMA: f32 = 0.012;
 
 /// Distance from the outline at which it has a quarter of its weight (m).
@@ -68,7 +39,7 @@ const RIM_ROBUST: f32 = 0.05;
 /// Feet within this of the ground stand on it (m).
 const STANDING: f32 = 0.05;
 
-/// Standard deviation of a sole sample's height above the ground (m), correlated as for [`CELL_SIGMA`].
+/// Standard deviation of a sole sample's height above the ground (m), correlated as cells are.
 const SOLE_SIGMA: f32 = 0.015;
 
 /// Shoes lie between a clothed shopper's sole and the ground: a sole above the ground is pulled down with this fraction
@@ -77,9 +48,6 @@ const SHOE_PULL: f32 = 0.05;
 
 /// Height above the ground below which the depth image shows no feet, because they are removed with the floor (m).
 const FLOOR_ZONE: f32 = 0.05;
-
-/// Standard deviation of a joint angle's change from one frame to the next (rad).
-const MOTION: f32 = 0.25;
 
 /// Standard deviation of an angle beyond its range (rad).
 const BEYOND: f32 = 0.03;
@@ -90,8 +58,8 @@ pub(super) struct ResidualOptions {
     pub ground: Option<f32>,
     /// Whether the visible surface is cloth over skin: residuals are then one-sided.
     pub clothed: bool,
-    /// How the outline is used.
-    pub outline: OutlinePull,
+    /// What the shopper does.
+    pub stance: Stance,
     /// Residual at which a match loses three quarters of its weight (m).
     pub robust: f32,
 }
@@ -114,13 +82,13 @@ pub(super) fn add_observations(equations: &mut NormalEquations, scene: Observati
             let normal = posed.normals[i];
             let residual = found.outside(posed.points[i], normal);
             let pull = if model.samples[i].hairy { HAIR_PULL } else { CLOTH_PULL };
-            let weight = found.count * trust(residual, options, pull) / options.outline.cell_sigma().powi(2);
+            let weight = found.count * trust(residual, options, pull) / options.stance.cell_sigma().powi(2);
             equations.add(&posed.row(model, i, normal), residual, weight);
         } else if found.faces {
             outline(equations, scene, i, options);
         }
     }
-    if options.outline == OutlinePull::BothWays {
+    if options.stance == Stance::Held {
         for cell in &scene.view.rim {
             rim(equations, scene, cell, options);
         }
@@ -157,19 +125,23 @@ fn outline(
     }
 }
 
-/// Draws the rim of the body to a stretch of the outline, from inside as from outside.
-fn rim(
-    equations: &mut NormalEquations,
+/// The sample of the body's rim that belongs to a stretch of the outline, and how far it lies outside of it (m).
+pub(super) fn beyond_outline(
     Observation { model, posed, view, matches }: Observation,
     cell: &RimCell,
-    options: &ResidualOptions,
-) {
-    let Some(i) = matches.rim_sample(view, posed, cell) else { return };
+) -> Option<(usize, f32)> {
+    let i = matches.rim_sample(view, (model, posed), cell)?;
+    let found = &matches.of[i];
+    Some((i, (found.seen - cell.at).dot(cell.out) * view.cell_size(found.z) - RIM_LOST))
+}
+
+/// Draws the rim of the body to a stretch of the outline, from inside as from outside.
+fn rim(equations: &mut NormalEquations, scene: Observation, cell: &RimCell, options: &ResidualOptions) {
+    let Observation { model, posed, view, .. } = scene;
+    let Some((i, residual)) = beyond_outline(scene, cell) else { return };
     if options.ground.is_some_and(|g| posed.points[i].y < g + FLOOR_ZONE) {
         return;
     }
-    let found = &matches.of[i];
-    let residual = (found.seen - cell.at).dot(cell.out) * view.cell_size(found.z) - RIM_LOST;
     let pull = if model.samples[i].hairy { HAIR_PULL } else { CLOTH_PULL };
     let off = residual / RIM_ROBUST;
     let robust = (1.0 + off * off).powi(-2);
@@ -193,26 +165,35 @@ fn soles(
     }
 }
 
-/// Adds the prior of the pose: usual angles, joint limits, and small changes since the frame before.
-pub(super) fn add_priors(
-    equations: &mut NormalEquations,
-    model: &BodyModel,
-    state: &FitState,
-    before: Option<&FitState>,
-    outline: OutlinePull,
-) {
+/// What is known of the pose beforehand.
+#[derive(Clone, Copy)]
+pub(super) struct PosePrior<'a> {
+    /// What the shopper does.
+    pub stance: Stance,
+    /// The state of the frame before.
+    pub before: Option<&'a FitState>,
+    /// The pose that is kept, and the standard deviations of the angles of trunk and legs, and of the arms, about it (rad).
+    pub held: Option<(&'a FitState, [f32; 2])>,
+}
+
+/// Adds the prior of the pose: usual angles, joint limits, small changes since the frame before, and a pose that is kept.
+pub(super) fn add_priors(equations: &mut NormalEquations, model: &BodyModel, state: &FitState, prior: &PosePrior) {
     for (t, turn) in model.joint_angles.iter().enumerate() {
         let now = angle(&state.local, turn);
-        let spread = outline.pose_spread();
-        equations.add_one(3 + t, now - turn.usual, (turn.spread * spread).powi(-2));
+        let spread = turn.spread * prior.stance.pose_spread();
+        equations.add_one(3 + t, now - turn.usual, spread.powi(-2));
         let beyond = (now - turn.range[1]).max(0.0) + (now - turn.range[0]).min(0.0);
         if beyond != 0.0 {
             equations.add_one(3 + t, beyond, BEYOND.powi(-2));
         }
-        if let Some(before) = before {
-            let joint = turn.joint.index();
-            let moved = (state.local[joint] * before.local[joint].inverse()).to_scaled_axis();
-            equations.add_one(3 + t, moved.dot(turn.axis), MOTION.powi(-2));
+        let joint = turn.joint.index();
+        let turned =
+            |from: &FitState| (state.local[joint] * from.local[joint].inverse()).to_scaled_axis().dot(turn.axis);
+        if let Some(before) = prior.before {
+            equations.add_one(3 + t, turned(before), prior.stance.motion(turn.joint).powi(-2));
+        }
+        if let Some((held, sigmas)) = prior.held.filter(|_| turn.joint != Joint::Pelvis) {
+            equations.add_one(3 + t, turned(held), sigmas[usize::from(is_arm(turn.joint))].powi(-2));
         }
     }
 }

@@ -12,6 +12,7 @@ const WORTH: f64 = 4.0;
 const LONGEST: f64 = 90.0;
 
 /// Accumulated information about the shape.
+#[derive(Clone)]
 pub(super) struct ShapeFilter {
     shapes: &'static Shapes,
     hessian: [[f64; SHAPES]; SHAPES],

@@ -6,10 +6,18 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 use toile_perf::ansur::Survey;
-use toile_perf::measuring::{self, Family, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Sensor};
+use toile_perf::measuring::{
+    self, CrossedMeasure, Family, MeasuringAgreement, MeasuringOptions, MeasuringStudy, ReliabilityBin, Sensor,
+    crossed, reliability,
+};
+use toile_perf::plot::axis::Axis;
+use toile_perf::plot::chart::{Chart, Series, SeriesStyle};
+use toile_perf::plot::svg;
+use toile_perf::plot::{BLACK, SERIES_COLOURS};
 
 use crate::arguments::{Printing, count};
 use crate::exit::AppError;
+use crate::output::OutputFolder;
 use crate::report::Document;
 use crate::terminal::{self, Paint, Tone};
 
@@ -49,6 +57,12 @@ pub struct MeasureBenchArgs {
     /// Camera
     #[arg(long, value_name = "S", value_parser = PossibleValuesParser::new(cameras()), default_value = BOTH)]
     sensor: String,
+    /// They turn all round after that, and are measured once more: three seconds a person
+    #[arg(long)]
+    turn: bool,
+    /// Folder for reliability.svg: how often a girth lay within half a size, against how probable that was stated
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// Which people are drawn, and how they stand
     #[arg(long, value_name = "S", default_value = "1")]
     seed: u64,
@@ -75,8 +89,32 @@ impl MeasureBenchArgs {
 struct MeasureBenchReport {
     /// The seed by which people were drawn.
     seed: u64,
-    /// One study a camera.
+    /// One study a family and camera.
     studies: Vec<MeasuringStudy>,
+    /// How the stated errors of each family hold, calibrated by the other; empty with one family.
+    crossed: Vec<CrossedFamily>,
+    /// How often a girth lay within half a size of the truth, against how probable that was stated.
+    reliability: Vec<ReliabilityBin>,
+}
+
+/// How one family's stated errors hold.
+#[derive(Debug, Serialize)]
+struct CrossedFamily {
+    /// The family that is judged.
+    family: &'static str,
+    /// Measure by measure.
+    measures: Vec<CrossedMeasure>,
+}
+
+/// Each family judged by the other.
+fn cross(studies: &[MeasuringStudy]) -> Vec<CrossedFamily> {
+    let of = |family: &str| -> Vec<&MeasuringStudy> { studies.iter().filter(|s| s.family == family).collect() };
+    let names: Vec<&'static str> = studies.iter().map(|s| s.family).collect();
+    let (Some(&first), Some(&second)) = (names.first(), names.iter().find(|n| **n != names[0])) else {
+        return Vec::new();
+    };
+    let pairs = [(first, second), (second, first)];
+    pairs.map(|(by, family)| CrossedFamily { family, measures: crossed(&of(by), &of(family)) }).into()
 }
 
 /// Runs `toile bench measure`.
@@ -91,16 +129,28 @@ pub fn run(args: &MeasureBenchArgs) -> Result<(), AppError> {
     let mut studies = Vec::new();
     let families = [Family::Survey].into_iter().chain(args.makehuman.clone().map(Family::Makehuman));
     for (family, sensor) in families.flat_map(|family| args.sensors().map(move |sensor| (family.clone(), sensor))) {
-        let people: usize = surveys.iter().map(|s| args.people.min(s.people())).sum();
-        let bar = words.bar(people as u64, "measuring people");
-        let options = MeasuringOptions { family, people: args.people, frames: args.frames, seed: args.seed, sensor };
+        let all: usize = surveys.iter().map(|s| args.people.min(s.people())).sum();
+        let bar = words.bar(all as u64, "measuring people");
+        let MeasureBenchArgs { people, frames, seed, turn, .. } = *args;
+        let options = MeasuringOptions { family, people, frames, seed, sensor, turn };
         studies.push(measuring::study(&surveys, &options, &|_| bar.inc(1)).map_err(AppError::input)?);
         bar.finish_and_clear();
     }
     let missed: Vec<String> = studies.iter().flat_map(missed).collect();
-    let text: Vec<String> = studies.iter().map(|s| table(s, Paint::for_stdout())).collect();
+    let paint = Paint::for_stdout();
+    let mut text: Vec<String> = studies.iter().map(|s| table(s, paint)).collect();
+    let crossed = cross(&studies);
+    text.extend(crossed.iter().map(|c| crossed_table(c, paint)));
+    let all: Vec<&MeasuringStudy> = studies.iter().collect();
+    let reliability = reliability(&all, args.turn);
+    if let Some(dir) = &args.out {
+        let mut out = OutputFolder::prepare(dir).map_err(AppError::input)?;
+        out.write("reliability.svg", diagram(&reliability).as_bytes()).map_err(AppError::input)?;
+        out.commit().map_err(AppError::input)?;
+    }
     if args.printing.json {
-        terminal::print_json(&Document::new("bench-measure", MeasureBenchReport { seed: args.seed, studies }))?;
+        let report = MeasureBenchReport { seed: args.seed, studies, crossed, reliability };
+        terminal::print_json(&Document::new("bench-measure", report))?;
     } else {
         terminal::print(&text.join("\n"))?;
     }
@@ -125,11 +175,12 @@ fn table(study: &MeasuringStudy, paint: Paint) -> String {
     let mut text = String::new();
     let title = format!("{}, {}: {} people, {} frames each", study.family, study.sensor, study.people, study.frames);
     let _ = writeln!(text, "{}", paint.tone(&title, Tone::Strong));
-    for (way, rows) in [
-        ("body fit", &study.fit),
-        ("outline both ways", &study.both_ways),
-        ("sections and proportions", &study.sections),
-    ] {
+    for (way, rows) in
+        [("body fit", &study.fit), ("body fit, turned", &study.turned), ("sections and proportions", &study.sections)]
+    {
+        if rows.is_empty() {
+            continue;
+        }
         let _ = writeln!(
             text,
             "{:<26} {:>6} {:>6} {:>7} {:>17} {:>7} {:>7} {:>7} {:>7} {:>6} {:>6}",
@@ -151,10 +202,11 @@ fn table(study: &MeasuringStudy, paint: Paint) -> String {
     }
     let _ = writeln!(
         text,
-        "no body was found in {} of {}; the sex taken for likelier was right in {:.1} %",
+        "no body was found in {} of {}; the sex taken for likelier was right in {:.1} %; one person was seen in {:.1} % of the frames",
         study.lost,
         study.people,
-        study.sex_right * 100.0
+        study.sex_right * 100.0,
+        study.alone * 100.0
     );
     let f = &study.following;
     let _ = writeln!(
@@ -191,4 +243,54 @@ fn row_text(a: &MeasuringAgreement, paint: Paint) -> String {
         a.within_two_sigma * 100.0
     );
     paint.tone(&line, if a.pass { Tone::Good } else { Tone::Warn }).into_owned()
+}
+
+/// One family's stated errors, calibrated by the other, as people read them.
+fn crossed_table(crossed: &CrossedFamily, paint: Paint) -> String {
+    let title = format!("stated errors of {}: calibrated by the other family, and as they ship", crossed.family);
+    let mut text = format!("{}\n", paint.tone(&title, Tone::Strong));
+    let _ = writeln!(
+        text,
+        "  {:<18} {:<7} {:>9} {:>7} {:>7} {:>9} {:>7} {:>7}",
+        "measure", "view", "other mm", "in 1s", "in 2s", "ships mm", "in 1s", "in 2s"
+    );
+    for m in &crossed.measures {
+        let percent = |share: f64| format!("{:.0}%", share * 100.0);
+        let _ = writeln!(
+            text,
+            "  {:<18} {:<7} {:>9.1} {:>7} {:>7} {:>9.1} {:>7} {:>7}",
+            m.measure,
+            if m.turned { "turned" } else { "front" },
+            m.other_mm,
+            percent(m.other_within[0]),
+            percent(m.other_within[1]),
+            m.ships_mm,
+            percent(m.ships_within[0]),
+            percent(m.ships_within[1])
+        );
+    }
+    text
+}
+
+/// The reliability diagram: how often it held against how probable it was stated; the diagonal is honesty.
+fn diagram(bins: &[ReliabilityBin]) -> String {
+    let share = |label: &'static str| Axis { label, log: false, range: [0.0, 1.0] };
+    let honest = Series {
+        name: "honest".to_owned(),
+        points: vec![[0.0, 0.0], [1.0, 1.0]],
+        style: SeriesStyle { dashed: true, ..SeriesStyle::line(BLACK, 1.0) },
+    };
+    let found = Series {
+        name: "found, by deciles".to_owned(),
+        points: bins.iter().map(|b| [b.stated, b.held]).collect(),
+        style: SeriesStyle::joined(SERIES_COLOURS[0]),
+    };
+    let chart = Chart {
+        title: "girths within half a size (20 mm) of the truth".to_owned(),
+        x: share("stated probability"),
+        y: share("how often it held"),
+        series: vec![honest, found],
+        rules: Vec::new(),
+    };
+    svg::text(&chart.draw())
 }
