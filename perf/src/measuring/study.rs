@@ -95,7 +95,7 @@ pub struct MeasuredPerson {
     pub fit: Estimates,
     /// By the body fit once they have turned all round; nothing where they did not.
     pub turned: Estimates,
-    /// Frames that were looked at, and those in which one person was seen and nobody else.
+    /// Frames that were looked at, and those in which nobody else was seen.
     pub frames: [usize; 2],
     /// By section and outline, proportions and the mean over the frames.
     pub sections: Estimates,
@@ -177,7 +177,7 @@ pub struct MeasuringStudy {
     pub turned: Vec<MeasuringAgreement>,
     /// By sections, proportions and the mean over time.
     pub sections: Vec<MeasuringAgreement>,
-    /// Share of the frames in which one person was seen and nobody else.
+    /// Share of the frames in which nobody else was seen.
     pub alone: f64,
     /// Errors with what the fit itself states, from the front and turned, by measure.
     #[serde(skip)]
@@ -273,7 +273,7 @@ fn measured(person: &StudyPerson, options: &MeasuringOptions, rng: &mut SplitMix
     let (mut alone, mut single) = (Vec::with_capacity(frames.len()), 0);
     for (frame, truth) in &frames {
         let seen = finder.push(frame);
-        single += usize::from(seen.people == 1);
+        single += usize::from(seen.people <= 1);
         alone.extend(seen.alone.map(|a| (a, *truth)));
     }
     let only: Vec<DepthFrame> = alone.iter().map(|a| a.0.clone()).collect();

@@ -24,6 +24,11 @@ const DEEPEST: f32 = 1.3;
 const HEAD: Band = Band { below: [0.02, 0.16], reach: 0.25, breadth: [0.06, 0.32] };
 const CHEST: Band = Band { below: [0.30, 0.45], reach: 0.35, breadth: [0.15, 0.65] };
 
+/// A slim person's chest from the side, which may be narrower than the head: only whose feet are seen as well as the head (m).
+const SIDE: Band = Band { below: [0.30, 0.45], reach: 0.35, breadth: [0.07, 0.65] };
+const FEET: f32 = 0.35;
+const WHOLE: std::ops::Range<f32> = 1.2..2.15;
+
 /// A part without a head is somebody's arm up to this surface (m2); a larger one is somebody or something else.
 const ARM: f32 = 0.12;
 
@@ -45,6 +50,11 @@ const BESIDE: isize = 8;
 /// A body is not flat: its surface leaves the plane nearest to it by more than this and the noise (m, root mean square).
 /// Walls, doors and mirrors do not.
 const RELIEF: f32 = 0.008;
+
+/// Deviations of the sensor's noise that count as flat: where neighbours share it, and with its steps, a wall at 4.4 m has one. Beyond
+/// the second distance (m) a body's own relief sinks in the noise, too.
+const NOISY: [f32; 2] = [1.0, 0.5];
+const SEEN: f32 = 4.6;
 
 /// Lower pieces are what is left of the floor (m).
 const LITTER: f32 = 0.12;
@@ -248,7 +258,8 @@ fn is_flat(grid: &Grid, cells: &[u32]) -> bool {
     }
     let (a, b) = ((xz * yy - yz * xy) / determinant, (yz * xx - xz * xy) / determinant);
     let variance = (zz - a * xz - b * yz) / count / (1.0 + a * a + b * b);
-    variance.max(0.0).sqrt() < RELIEF + 0.75 * sigma(middle.z)
+    let noisy = if middle.z < SEEN { NOISY[0] } else { NOISY[1] };
+    variance.max(0.0).sqrt() < RELIEF + noisy * sigma(middle.z)
 }
 
 /// The middle of some cells along the floor (m).
@@ -287,8 +298,9 @@ fn person(grid: &Grid, cells: &[u32], numbers: &mut Vec<f32>) -> Option<Person> 
     let near = cells.iter().filter(|c| (grid.place(**c as usize).x - axis).abs() < 0.13);
     let crown = near.map(|c| grid.height[*c as usize]).fold(f32::MIN, f32::max);
     let is_person = [crown, top].into_iter().any(|crown| {
-        let [head, chest] = [&HEAD, &CHEST].map(|band| band.breadth(grid, cells, axis, crown, numbers));
-        head.zip(chest).is_some_and(|(head, chest)| chest > head)
+        let [head, chest, side] = [&HEAD, &CHEST, &SIDE].map(|b| b.breadth(grid, cells, axis, crown, numbers));
+        let is_whole = bottom < FEET && WHOLE.contains(&top);
+        head.is_some_and(|head| chest.is_some_and(|chest| chest > head) || is_whole && side.is_some())
     });
     is_person.then(|| Person { place: place(grid, cells, numbers), top, area })
 }

@@ -14,6 +14,9 @@ use super::posed_body::{BodyModel, FitState, PosedBody, UNKNOWNS};
 /// beyond a loose fit; a point inside pushes with the full weight.
 const CLOTH_PULL: f32 = 0.2;
 
+/// The same fraction of the outline, where a loose garment hangs farthest from the skin.
+const CLOTH_RIM_PULL: f32 = 0.03;
+
 /// The same fraction on head and neck, where hair lies farther out and has any shape.
 const HAIR_PULL: f32 = 0.05;
 
@@ -142,7 +145,7 @@ fn rim(equations: &mut NormalEquations, scene: Observation, cell: &RimCell, opti
     if options.ground.is_some_and(|g| posed.points[i].y < g + FLOOR_ZONE) {
         return;
     }
-    let pull = if model.samples[i].hairy { HAIR_PULL } else { CLOTH_PULL };
+    let pull = if model.samples[i].hairy { 0.0 } else { CLOTH_RIM_PULL };
     let off = residual / RIM_ROBUST;
     let robust = (1.0 + off * off).powi(-2);
     let share = if options.clothed && residual < 0.0 { pull * robust } else { robust };

@@ -202,7 +202,7 @@ fn table(study: &MeasuringStudy, paint: Paint) -> String {
     }
     let _ = writeln!(
         text,
-        "no body was found in {} of {}; the sex taken for likelier was right in {:.1} %; one person was seen in {:.1} % of the frames",
+        "no body was found in {} of {}; the sex taken for likelier was right in {:.1} %; nobody else was seen in {:.1} % of the frames",
         study.lost,
         study.people,
         study.sex_right * 100.0,
