@@ -172,6 +172,38 @@ fn a_body_of_the_family_is_measured_and_twice_alike() {
     assert_eq!(bits(&first), bits(&second));
 }
 
+/// Frames of somebody who stands for a moment and then turns so far (rad), fifteen frames a second.
+fn turning(by: f32) -> (Vec<DepthFrame>, Truth) {
+    let wanted = Wanted::new().with(En::Stature, 1.70).with(En::WaistGirth, 0.86);
+    let (front, truth) = seen(Sex::Female, &wanted, turned(0.0, Vec3::ZERO));
+    let at = |frame: DepthFrame, i: u64| DepthFrame { time_ns: i * 66_000_000, ..frame };
+    let still = (0..4).map(|i| at(front.clone(), i));
+    let steps = 60;
+    let turn = (0..steps).map(|i| {
+        let way = by * (i + 1) as f32 / steps as f32;
+        at(seen(Sex::Female, &wanted, turned(way, Vec3::ZERO)).0, 16 + i)
+    });
+    (still.chain(turn).collect(), truth)
+}
+
+#[test]
+fn who_turns_all_round_is_measured_from_all_sides_and_who_does_not_from_the_front() {
+    let bare = FitOptions { clothed: false, ..FitOptions::MEASURING };
+    let (frames, truth) = turning(std::f32::consts::TAU);
+    let whole = measuring::measure(&frames, Population::Women, bare).expect("a fit");
+    assert!(whole.turned && whole.frames > 50, "{}", whole.frames);
+    for name in ["chest_girth", "underbust_girth", "waist_girth", "hip_girth", "stature"] {
+        let i = MEASURES.iter().position(|m| m.0 == name).expect("a measure");
+        let off = whole.measures[i].value - truth.measures[i];
+        assert!(off.abs() < 0.015, "{name} is {off} m off after a turn");
+    }
+    let (frames, _) = turning(1.2);
+    let half = measuring::measure(&frames, Population::Women, bare).expect("a fit");
+    let front = measuring::measure(&frames[..4], Population::Women, bare).expect("a fit");
+    assert!(!half.turned);
+    assert_eq!(half.measures, front.measures, "what is no turn changes nothing");
+}
+
 #[test]
 fn hostile_pictures_are_nobody_and_no_panic() {
     let (frame, _) = seen(Sex::Male, &Wanted::new(), turned(0.0, Vec3::ZERO));

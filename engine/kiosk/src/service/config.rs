@@ -361,6 +361,8 @@ mod tests {
             ("[session]\nmeasure_s = nan", "session.measure_s"),
             ("[machine]\nworkers = 3", "machine.workers"),
             ("[wear]\ngarments = []", "wear.garments"),
+            ("[shopper]\nsex = \"girl\"", "shopper.sex"),
+            ("[shopper]\nmeasures = [\"chest=91\"]", "centimetres"),
             ("[wear]\nquality = \"best\"", "wear.quality"),
             ("[display]\nlanguage = \"tlh\"", "display.language"),
             ("[display]\npicture_minutes = 0.0", "display.picture_minutes"),

@@ -37,8 +37,8 @@ const fn arm(out: f32, bend: f32, inwards: f32, twist: f32) -> ArmPose {
 }
 
 /// Hanging a little out, well out, a hand on the hip, a hand before the chest, stretched aside, a forearm ahead, a
-/// forearm hanging from a raised elbow, one upright above it, a hand beside the shoulder, an arm raised.
-pub(super) const ARMS: [ArmPose; 10] = [
+/// forearm hanging from a raised elbow, one upright above it, a hand beside the shoulder, an arm raised, one that points ahead.
+pub(super) const ARMS: [ArmPose; 11] = [
     arm(0.25, 0.1, 0.0, 0.0),
     arm(0.7, 0.1, 0.0, 0.0),
     arm(0.6, 1.6, 1.2, 0.0),
@@ -49,6 +49,7 @@ pub(super) const ARMS: [ArmPose; 10] = [
     arm(1.4, 1.5, 0.0, 1.4),
     arm(0.5, 2.0, -0.7, 0.0),
     arm(2.3, 0.3, 0.0, 0.0),
+    arm(1.5, 0.1, 1.4, 0.0),
 ];
 
 /// Sets an arm of a state to a candidate pose.
@@ -146,5 +147,6 @@ mod tests {
         assert!(hands(6)[0].y < -0.15 && hands(6)[0].x > 0.2, "a forearm hanging: {}", hands(6)[0]);
         assert!(hands(7)[0].y > 0.15 && hands(7)[0].x > 0.2, "a forearm upright: {}", hands(7)[0]);
         assert!(hands(9)[0].y > 0.25, "raised");
+        assert!(hands(10)[0].z > 0.4 && hands(10)[0].y > -0.2, "pointing ahead: {}", hands(10)[0]);
     }
 }
