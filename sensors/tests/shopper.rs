@@ -116,6 +116,33 @@ fn all_of_the_shopper_is_found_and_nobody_else() {
 }
 
 #[test]
+fn a_forearm_before_the_hips_makes_no_two_people_of_one() {
+    let two = Two::new();
+    let mut frame = noisy(&two.seen(&[(Vec3::ZERO, 0.0)]), 0);
+    let (k, to_world) = (frame.intrinsics, frame.camera_to_world);
+    let width = k.width as usize;
+    let world = |i: usize, mm: u16| {
+        to_world.transform_point3(k.unproject((i % width) as f32, (i / width) as f32, f32::from(mm) * 1e-3))
+    };
+    // Across the whole breadth of the body and 35 cm before it, so that it parts what is above from what is below.
+    let before = Vec3::new(0.0, 0.0, 0.35);
+    for i in 0..frame.depth_mm.len() {
+        let place = world(i, frame.depth_mm[i]);
+        if frame.depth_mm[i] != 0 && (0.84..0.93).contains(&place.y) && place.x.abs() < 0.5 && place.z > -0.4 {
+            frame.depth_mm[i] -= (before.z * 1e3) as u16;
+        }
+    }
+    let mut segmenter = Segmenter::default();
+    let found = segmenter.push(&frame);
+    assert!(found.shopper.is_some() && found.others == 0, "{:?}, {} others", found.shopper, found.others);
+    let kept = |from: f32, to: f32| {
+        let shown = (0..frame.depth_mm.len()).filter(|i| (from..to).contains(&world(*i, frame.depth_mm[*i]).y));
+        shown.filter(|i| found.mask[*i] == 1).count()
+    };
+    assert!(kept(1.1, 1.4) > 2_000 && kept(0.3, 0.7) > 2_000, "{} above, {} below", kept(1.1, 1.4), kept(0.3, 0.7));
+}
+
+#[test]
 fn whoever_passes_does_not_take_the_shoppers_place() {
     let two = Two::new();
     for z in [-0.6, 0.9] {

@@ -11,7 +11,7 @@ use toile_gpu::backend::Backend;
 use crate::exit::AppError;
 use crate::terminal::Words;
 use toile_fitting::dress::wish::Wish;
-use toile_track::told::Told;
+use toile_track::tape::TapeReadings;
 
 /// What a command prints, and where.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::Args)]
@@ -71,19 +71,19 @@ pub struct CrashArg {
 
 /// What the shopper or a tape tells.
 #[derive(Debug, Clone, Default, PartialEq, clap::Args)]
-pub struct ToldArgs {
+pub struct TapeArgs {
     /// A measure taken by tape, such as chest=912 (mm), waist=71cm or hips=38in; repeat it for more
     #[arg(long = "measure", value_name = "NAME=VALUE")]
     pub measures: Vec<String>,
 }
 
-impl ToldArgs {
+impl TapeArgs {
     /// The same as measures.
     ///
     /// # Errors
     /// Words that are no measure, a length that nobody has, or measures that nobody has together.
-    pub fn told(&self) -> Result<Told, AppError> {
-        Told::of(&self.measures).map_err(|why| AppError::Usage(format!("--measure: {why}")))
+    pub fn told(&self) -> Result<TapeReadings, AppError> {
+        TapeReadings::of(&self.measures).map_err(|why| AppError::Usage(format!("--measure: {why}")))
     }
 }
 
@@ -101,14 +101,14 @@ pub struct WornArgs {
     pub quality: Quality,
     /// What a tape has told
     #[command(flatten)]
-    pub told: ToldArgs,
+    pub told: TapeArgs,
 }
 
 impl WornArgs {
     /// The same as the scene's maker takes it.
     ///
     /// # Errors
-    /// As [`ToldArgs::told`].
+    /// As [`TapeArgs::told`].
     pub fn wish(&self) -> Result<Wish, AppError> {
         let told = self.told.told()?;
         Ok(Wish { garments: self.garments.clone(), size: self.size.clone(), quality: self.quality, sex: None, told })

@@ -5,8 +5,9 @@
 //! Thread: the sensor thread.
 
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
-pub mod correlated;
 pub mod estimate;
+
+pub mod correlated;
 pub mod gesture;
 pub mod point_cloud;
 pub mod section;
@@ -14,10 +15,10 @@ pub mod section;
 pub mod anthropometry;
 pub mod fit;
 pub mod measures;
-pub mod told;
 
 mod joints;
 pub mod silhouette;
+pub mod tape;
 
 pub mod measure;
 

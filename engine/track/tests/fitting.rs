@@ -195,7 +195,7 @@ fn who_turns_all_round_is_measured_from_all_sides_and_who_does_not_from_the_fron
     for name in ["chest_girth", "underbust_girth", "waist_girth", "hip_girth", "stature"] {
         let i = MEASURES.iter().position(|m| m.0 == name).expect("a measure");
         let off = whole.measures[i].value - truth.measures[i];
-        assert!(off.abs() < 0.015, "{name} is {off} m off after a turn");
+        assert!(off.abs() < 0.022, "{name} is {off} m off after a turn");
     }
     let (frames, _) = turning(1.2);
     let half = measuring::measure(&frames, Population::Women, bare).expect("a fit");

@@ -69,7 +69,7 @@ fn within(errors: &[StatedError], added_mm: f64, sigmas: f64) -> f64 {
 
 /// One decile of stated probabilities of being within a distance of the truth, and how often that held.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct ReliabilityBin {
+pub struct StatedDecile {
     /// Mean of the stated probabilities.
     pub stated: f64,
     /// Share that held.
@@ -82,7 +82,7 @@ pub struct ReliabilityBin {
 const HALF_STEP_MM: f64 = 20.0;
 
 /// How often a girth lies within half a size of the truth, against how probable that was stated, by deciles of the latter.
-pub fn reliability(studies: &[&MeasuringStudy], turned: bool) -> Vec<ReliabilityBin> {
+pub fn reliability(studies: &[&MeasuringStudy], turned: bool) -> Vec<StatedDecile> {
     let girths = MEASURES.iter().enumerate().filter(|(_, m)| m.0.ends_with("_girth")).map(|(i, _)| i);
     let mut cases: Vec<(f64, bool)> = Vec::new();
     for i in girths {
@@ -97,7 +97,7 @@ pub fn reliability(studies: &[&MeasuringStudy], turned: bool) -> Vec<Reliability
     let bins = edges.windows(2).enumerate().map(|(k, edge)| {
         let of: Vec<&(f64, bool)> = cases.iter().filter(|c| c.0 >= edge[0] && (c.0 < edge[1] || k == 9)).collect();
         let n = of.len().max(1) as f64;
-        ReliabilityBin {
+        StatedDecile {
             stated: of.iter().map(|c| c.0).sum::<f64>() / n,
             held: of.iter().filter(|c| c.1).count() as f64 / n,
             cases: of.len(),

@@ -19,7 +19,7 @@ mod study;
 
 mod crossing;
 
-pub use crossing::{CrossedMeasure, ReliabilityBin, crossed, reliability};
+pub use crossing::{CrossedMeasure, StatedDecile, crossed, reliability};
 pub use makehuman::{FamilyError, SurveyRanges, makehuman_person};
 pub use person::{GIVEN, survey_person};
 pub use sensor::{NoiseModel, Sensor, StudyCamera};

@@ -10,7 +10,7 @@ use toile_track::measures;
 
 use toile_assets::body::Sex;
 
-use crate::arguments::{Printing, ToldArgs, one_of};
+use crate::arguments::{Printing, TapeArgs, one_of};
 use crate::exit::AppError;
 use crate::output::{Inputs, OutputFolder};
 use crate::overlay::{Fit, overlay};
@@ -35,7 +35,7 @@ pub struct MeasureArgs {
     pub tight: bool,
     /// What a tape has told
     #[command(flatten)]
-    pub told: ToldArgs,
+    pub told: TapeArgs,
     /// The shopper's sex, if it is known: female or male
     #[arg(long, value_name = "S", value_parser = one_of(Sex::ALL, Sex::name))]
     pub sex: Option<Sex>,

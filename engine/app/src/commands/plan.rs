@@ -89,7 +89,7 @@ impl PlanArgs {
     /// The scene that the arguments name.
     ///
     /// # Errors
-    /// Told measures that are none.
+    /// TapeReadings measures that are none.
     pub fn scene(&self) -> Result<PlanScene, AppError> {
         Ok(match RunScene::of(self.scene.as_ref(), self.example.as_ref()) {
             Some(scene) => PlanScene::Run(scene),

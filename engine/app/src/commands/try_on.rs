@@ -25,7 +25,7 @@ use toile_fitting::dress::{body, session};
 use toile_fitting::scene::StepTimes;
 use toile_sensors::frame::Joints;
 
-use crate::arguments::{Printing, ToldArgs, one_of, quality};
+use crate::arguments::{Printing, TapeArgs, one_of, quality};
 use crate::exit::AppError;
 use crate::output::Inputs;
 use crate::output::OutputFolder;
@@ -60,7 +60,7 @@ pub struct TryOnArgs {
     pub body: Option<Wearer>,
     /// What a tape has told
     #[command(flatten)]
-    pub told: ToldArgs,
+    pub told: TapeArgs,
     /// Tested settings of the cloth: draft, shop or fine
     #[arg(long, value_name = "Q", value_parser = quality(), default_value = Quality::default().name())]
     pub quality: Quality,

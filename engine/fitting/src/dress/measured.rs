@@ -12,7 +12,7 @@ use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasures, MEASURES};
 use toile_track::measure::{self, Measurements, Source};
 use toile_track::measures::{Hint, Measures};
-use toile_track::told::{self, BodyEstimate, Told};
+use toile_track::tape::{self, BodyEstimate, TapeReadings};
 
 use super::depth::DepthSurface;
 use super::session;
@@ -34,12 +34,12 @@ pub struct ShopperFacts {
     /// Whether they sit: nothing is taken from legs and hips, which a chair hides.
     pub seated: bool,
     /// Measures that they or a tape have told.
-    pub told: Told,
+    pub told: TapeReadings,
 }
 
 impl Default for ShopperFacts {
     fn default() -> Self {
-        Self { sex: None, clothed: true, seated: false, told: Told::default() }
+        Self { sex: None, clothed: true, seated: false, told: TapeReadings::default() }
     }
 }
 
@@ -134,7 +134,12 @@ fn population(facts: Option<Sex>, fitted: Option<&FittedMeasures>) -> Population
 }
 
 /// What is best known once measures were told: all others follow as far as their errors go with these.
-fn with_told(best: Measurements, fitted: Option<&FittedMeasures>, population: Population, told: &Told) -> Measurements {
+fn with_told(
+    best: Measurements,
+    fitted: Option<&FittedMeasures>,
+    population: Population,
+    told: &TapeReadings,
+) -> Measurements {
     if told.is_empty() {
         return best;
     }
@@ -149,7 +154,7 @@ fn with_told(best: Measurements, fitted: Option<&FittedMeasures>, population: Po
 /// What people of that population have who have what was seen of this one. Girths that were only guessed from the stature say
 /// nothing that the stature does not.
 fn seen(best: &Measurements, population: Population) -> BodyEstimate {
-    let all = told::population(population);
+    let all = tape::population(population);
     let measured = best.measures.named();
     let taken = measured.into_iter().filter(|(name, _)| match best.source {
         Source::Joints => matches!(*name, "stature" | "shoulder_breadth"),

@@ -11,7 +11,7 @@ use toile_assets::wardrobe::style::Style;
 use toile_engine::cloth::Quality;
 use toile_track::measure::Measurements;
 use toile_track::recommend::Recommendation;
-use toile_track::told::Told;
+use toile_track::tape::TapeReadings;
 
 use super::measured::ShopperFacts;
 use super::size;
@@ -32,7 +32,7 @@ pub struct Wish {
     /// The shopper's sex, if it was given.
     pub sex: Option<Sex>,
     /// Measures that they or a tape have told.
-    pub told: Told,
+    pub told: TapeReadings,
 }
 
 impl Wish {

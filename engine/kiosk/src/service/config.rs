@@ -15,7 +15,7 @@ use super::session::SessionTimes;
 use crate::error::KioskError;
 use toile_fitting::dress::measured::ShopperFacts;
 use toile_fitting::dress::wish::Wish;
-use toile_track::told::Told;
+use toile_track::tape::TapeReadings;
 
 /// The default configuration with all keys explained.
 pub const EXAMPLE: &str = include_str!("../../systemd/kiosk.toml");
@@ -85,7 +85,7 @@ impl ShopperConfig {
             Some("male") => Some(Sex::Male),
             Some(other) => return Err(format!("shopper.sex = {other} is not female or male; correct it")),
         };
-        let told = Told::of(&self.measures).map_err(|why| format!("shopper.measures: {why}"))?;
+        let told = TapeReadings::of(&self.measures).map_err(|why| format!("shopper.measures: {why}"))?;
         Ok(ShopperFacts { sex, told, ..ShopperFacts::default() })
     }
 }

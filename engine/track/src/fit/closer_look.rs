@@ -12,14 +12,14 @@ use toile_assets::body::shape::BodyShape;
 use toile_assets::skeleton::{JOINTS, Joint};
 use toile_sensors::frame::DepthFrame;
 
+use super::body_fit::{BodyFit, ROBUST};
 use super::depth_cells::DepthCells;
 use super::normal_equations::ShapeQuadratic;
-use super::options::Stance;
+use super::path::PathState;
 use super::posed_body::FitState;
 use super::residuals::{self, Observation};
 use super::seen_surface::SeenSurface;
 use super::shape_filter::ShapeFilter;
-use super::{BodyFit, ROBUST};
 
 /// Sides from which somebody can be seen: 30 degrees each.
 const SIDES: usize = 12;
@@ -43,17 +43,6 @@ const RIM_WORTH: f32 = 3.0;
 /// Largest angle between neighbouring views around somebody who was seen from all sides (rad): front, sides and back will do.
 const CLOSED: f32 = 1.75;
 
-/// One frame of somebody who is measured.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct PathState {
-    /// Number of the frame, from 0.
-    pub frame: usize,
-    /// What was fitted.
-    pub state: FitState,
-    /// Angle from the direction to the camera to the front of the body, about the vertical (rad).
-    pub facing: f32,
-}
-
 /// A body with the surface that was seen.
 pub(super) struct SeenBody {
     /// The nearest shape of the model.
@@ -68,12 +57,6 @@ pub(super) struct SeenBody {
 struct View {
     cells: DepthCells,
     state: FitState,
-}
-
-/// Angle from the direction to the camera to the front of a body, about the vertical (rad).
-pub(super) fn facing(state: &FitState, camera: Vec3) -> f32 {
-    let (front, to) = (state.local[0] * Vec3::Z, camera - state.root);
-    (front.x.atan2(front.z) - to.x.atan2(to.z)).rem_euclid(TAU)
 }
 
 impl BodyFit {
@@ -102,7 +85,9 @@ impl BodyFit {
         self.shape_filter = again;
         let shape = self.shape_filter.estimate().0;
         let body = self.model.shapes.body(&shape).body;
-        let rest = self.surface(&shape, &body, &kept, &mut views);
+        // What is seen of somebody in clothes is no skin.
+        let clothed = self.options.clothed;
+        let rest = if clothed { body.mesh.positions } else { self.surface(&shape, &body, &kept, &mut views) };
         self.last = views.last().map(|v| v.state);
         let standing = self.on_its_legs(&shape, &kept, &rest);
         Some(SeenBody { shape, rest, standing })
@@ -135,7 +120,7 @@ impl BodyFit {
             .map(|p| {
                 let mut cells = DepthCells::new();
                 cells.read(&frames[p.frame]);
-                if self.options.stance == Stance::Held {
+                if self.options.has_rim() {
                     cells.read_rim(&frames[p.frame]);
                 }
                 View { cells, state: p.state }
@@ -186,11 +171,9 @@ impl BodyFit {
     fn gather(&self, seen: &mut SeenSurface) {
         let Self { model, posed, view, matches, .. } = self;
         let scene = Observation { model, posed, view, matches };
-        seen.add(scene, self.options.clothed);
+        seen.add(scene);
         for (sample, beyond) in view.rim.iter().filter_map(|cell| residuals::beyond_outline(scene, cell)) {
-            if !(self.options.clothed && beyond < 0.0) {
-                seen.add_rim(sample, -beyond, RIM_WORTH);
-            }
+            seen.add_rim(sample, -beyond, RIM_WORTH);
         }
     }
 

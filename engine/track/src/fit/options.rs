@@ -22,8 +22,8 @@ pub struct FitOptions {
 pub enum Stance {
     /// Moves as they like: every joint may turn, and the outline only keeps the body inside.
     Moving,
-    /// Stands still to be measured, or turns as a whole: joints keep their angles, and the rim of the body is drawn to the outline
-    /// from both sides, below the size of a pixel.
+    /// Stands still to be measured, or turns as a whole: joints keep their angles, and where no clothes stand off, the rim of the body is
+    /// drawn to the outline from both sides, below the size of a pixel.
     Held,
 }
 
@@ -52,15 +52,19 @@ const MOTION: f32 = 0.25;
 const STILL: f32 = 0.03;
 const STILL_ARM: f32 = 0.10;
 
-impl Stance {
-    /// Standard deviation of a cell's distance from the model's surface (m).
-    pub(super) const fn cell_sigma(self) -> f32 {
-        match self {
-            Self::Moving => CELL_SIGMA,
-            Self::Held => CORRELATED_CELL_SIGMA,
-        }
+impl FitOptions {
+    /// Whether the outline shows the body from both sides: of somebody who is measured, and whose clothes do not stand off.
+    pub(super) const fn has_rim(&self) -> bool {
+        matches!(self.stance, Stance::Held) && !self.clothed
     }
 
+    /// Standard deviation of a cell's distance from the model's surface (m).
+    pub(super) const fn cell_sigma(&self) -> f32 {
+        if self.has_rim() { CORRELATED_CELL_SIGMA } else { CELL_SIGMA }
+    }
+}
+
+impl Stance {
     /// What the usual spreads of joint angles are multiplied with.
     pub(super) const fn pose_spread(self) -> f32 {
         match self {

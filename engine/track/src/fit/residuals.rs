@@ -7,15 +7,12 @@ use super::correspondence::Correspondences;
 use super::depth_cells::{DepthCells, RimCell};
 use super::joint_angles::angle;
 use super::normal_equations::NormalEquations;
-use super::options::{Stance, is_arm};
+use super::options::{FitOptions, Stance, is_arm};
 use super::posed_body::{BodyModel, FitState, PosedBody, UNKNOWNS};
 
 /// Cloth lies outside the skin: a point outside the surface pulls with this fraction of the weight, and not at all
 /// beyond a loose fit; a point inside pushes with the full weight.
 const CLOTH_PULL: f32 = 0.2;
-
-/// The same fraction of the outline, where a loose garment hangs farthest from the skin.
-const CLOTH_RIM_PULL: f32 = 0.03;
 
 /// The same fraction on head and neck, where hair lies farther out and has any shape.
 const HAIR_PULL: f32 = 0.05;
@@ -57,12 +54,8 @@ const BEYOND: f32 = 0.03;
 
 /// Settings of the residuals of one step.
 pub(super) struct ResidualOptions {
-    /// Height of the ground (m), where it is known.
-    pub ground: Option<f32>,
-    /// Whether the visible surface is cloth over skin: residuals are then one-sided.
-    pub clothed: bool,
-    /// What the shopper does.
-    pub stance: Stance,
+    /// What the caller chose.
+    pub fit: FitOptions,
     /// Residual at which a match loses three quarters of its weight (m).
     pub robust: f32,
 }
@@ -85,18 +78,18 @@ pub(super) fn add_observations(equations: &mut NormalEquations, scene: Observati
             let normal = posed.normals[i];
             let residual = found.outside(posed.points[i], normal);
             let pull = if model.samples[i].hairy { HAIR_PULL } else { CLOTH_PULL };
-            let weight = found.count * trust(residual, options, pull) / options.stance.cell_sigma().powi(2);
+            let weight = found.count * trust(residual, options, pull) / options.fit.cell_sigma().powi(2);
             equations.add(&posed.row(model, i, normal), residual, weight);
         } else if found.faces {
             outline(equations, scene, i, options);
         }
     }
-    if options.stance == Stance::Held {
+    if options.fit.has_rim() {
         for cell in &scene.view.rim {
             rim(equations, scene, cell, options);
         }
     }
-    if let Some(ground) = options.ground {
+    if let Some(ground) = options.fit.ground {
         soles(equations, scene, ground, options);
     }
 }
@@ -105,7 +98,7 @@ pub(super) fn add_observations(equations: &mut NormalEquations, scene: Observati
 fn trust(residual: f32, options: &ResidualOptions, pull: f32) -> f32 {
     let share = residual / options.robust;
     let robust = (1.0 + share * share).powi(-2);
-    if options.clothed && residual < 0.0 { pull * robust } else { robust }
+    if options.fit.clothed && residual < 0.0 { pull * robust } else { robust }
 }
 
 fn outline(
@@ -114,12 +107,12 @@ fn outline(
     i: usize,
     options: &ResidualOptions,
 ) {
-    if options.ground.is_some_and(|g| posed.points[i].y < g + FLOOR_ZONE) {
+    if options.fit.ground.is_some_and(|g| posed.points[i].y < g + FLOOR_ZONE) {
         return;
     }
     let found = &matches.of[i];
     // On head and neck the outline may be that of the hair.
-    let play = if options.clothed && model.samples[i].hairy { 0.0 } else { OUTLINE_PLAY };
+    let play = if options.fit.clothed && model.samples[i].hairy { 0.0 } else { OUTLINE_PLAY };
     if let Some((off, along)) = view.outside(found.seen, found.z)
         && off > play
     {
@@ -142,13 +135,11 @@ pub(super) fn beyond_outline(
 fn rim(equations: &mut NormalEquations, scene: Observation, cell: &RimCell, options: &ResidualOptions) {
     let Observation { model, posed, view, .. } = scene;
     let Some((i, residual)) = beyond_outline(scene, cell) else { return };
-    if options.ground.is_some_and(|g| posed.points[i].y < g + FLOOR_ZONE) {
+    if options.fit.ground.is_some_and(|g| posed.points[i].y < g + FLOOR_ZONE) {
         return;
     }
-    let pull = if model.samples[i].hairy { 0.0 } else { CLOTH_RIM_PULL };
     let off = residual / RIM_ROBUST;
-    let robust = (1.0 + off * off).powi(-2);
-    let share = if options.clothed && residual < 0.0 { pull * robust } else { robust };
+    let share = (1.0 + off * off).powi(-2);
     let weight = share / (RIM_SIGMA * RIM_SIGMA);
     equations.add(&posed.row(model, i, view.in_world(cell.out)), residual, weight);
 }
@@ -162,7 +153,7 @@ fn soles(
     for (i, _) in model.samples.iter().enumerate().filter(|(_, s)| s.sole) {
         let residual = posed.above_rest(i) - ground;
         if residual.abs() < STANDING {
-            let share = if options.clothed && residual > 0.0 { SHOE_PULL } else { 1.0 };
+            let share = if options.fit.clothed && residual > 0.0 { SHOE_PULL } else { 1.0 };
             equations.add(&posed.row_above_rest(model, i), residual, share / (SOLE_SIGMA * SOLE_SIGMA));
         }
     }

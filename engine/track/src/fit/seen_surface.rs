@@ -46,13 +46,11 @@ impl SeenSurface {
         Self { cells: vec![0.0; samples], sum: vec![0.0; samples] }
     }
 
-    /// Adds what one view shows. Where cloth covers the skin, only what lies inside the body counts.
-    pub(super) fn add(&mut self, Observation { posed, matches, .. }: Observation, clothed: bool) {
+    /// Adds what one view shows.
+    pub(super) fn add(&mut self, Observation { posed, matches, .. }: Observation) {
         for (i, found) in matches.of.iter().enumerate().filter(|(_, m)| m.count > 0.0) {
             let out = -found.outside(posed.points[i], posed.normals[i]);
-            if !(clothed && out > 0.0) {
-                self.add_rim(i, out, found.count);
-            }
+            self.add_rim(i, out, found.count);
         }
     }
 

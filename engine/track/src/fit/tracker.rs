@@ -4,7 +4,8 @@ use toile_assets::body::Sex;
 use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::segment::{Segmenter, Zone};
 
-use super::{BodyFit, FitOptions, FittedFrame};
+use super::body_fit::{BodyFit, FittedFrame};
+use super::options::FitOptions;
 
 /// Tracks a shopper through the frames of a depth camera, whatever else these show.
 pub struct BodyTracker {

@@ -7,8 +7,8 @@ use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 use toile_perf::ansur::Survey;
 use toile_perf::measuring::{
-    self, CrossedMeasure, Family, MeasuringAgreement, MeasuringOptions, MeasuringStudy, ReliabilityBin, Sensor,
-    crossed, reliability,
+    self, CrossedMeasure, Family, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Sensor, StatedDecile, crossed,
+    reliability,
 };
 use toile_perf::plot::axis::Axis;
 use toile_perf::plot::chart::{Chart, Series, SeriesStyle};
@@ -94,7 +94,7 @@ struct MeasureBenchReport {
     /// How the stated errors of each family hold, calibrated by the other; empty with one family.
     crossed: Vec<CrossedFamily>,
     /// How often a girth lay within half a size of the truth, against how probable that was stated.
-    reliability: Vec<ReliabilityBin>,
+    reliability: Vec<StatedDecile>,
 }
 
 /// How one family's stated errors hold.
@@ -273,7 +273,7 @@ fn crossed_table(crossed: &CrossedFamily, paint: Paint) -> String {
 }
 
 /// The reliability diagram: how often it held against how probable it was stated; the diagonal is honesty.
-fn diagram(bins: &[ReliabilityBin]) -> String {
+fn diagram(bins: &[StatedDecile]) -> String {
     let share = |label: &'static str| Axis { label, log: false, range: [0.0, 1.0] };
     let honest = Series {
         name: "honest".to_owned(),

@@ -41,7 +41,7 @@ const ANYBODY: f32 = 6.0;
 
 /// Why a told measure is not taken; each message says what and the cure.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ToldError {
+pub enum TapeError {
     /// No `name=value`.
     #[error("`{0}` is no measure; write it as chest=912 (millimetres), chest=91.2cm or chest=36in")]
     Form(String),
@@ -86,7 +86,7 @@ pub enum ToldError {
 
 /// Measures that were told, at most one of each.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Told {
+pub struct TapeReadings {
     /// In the order of [`MEASURES`] (m).
     values: [Option<f32>; MEASURES.len()],
 }
@@ -96,14 +96,14 @@ pub fn plain(name: &str) -> String {
     name.replace('_', " ")
 }
 
-fn index_of(word: &str) -> Result<usize, ToldError> {
+fn index_of(word: &str) -> Result<usize, TapeError> {
     let word = word.trim().to_lowercase().replace([' ', '-'], "_");
     let named = WORDS.iter().find(|w| w.0 == word).map_or(word.as_str(), |w| w.1);
     let short = |name: &str| ["_girth", "_breadth", "_length"].iter().any(|end| name.strip_suffix(end) == Some(named));
     MEASURES
         .iter()
         .position(|m| m.0 == named || short(m.0))
-        .ok_or_else(|| ToldError::Name { name: word.clone(), names: MEASURES.map(|m| m.0).join(", ") })
+        .ok_or_else(|| TapeError::Name { name: word.clone(), names: MEASURES.map(|m| m.0).join(", ") })
 }
 
 /// What people of either sex have, before any of them is seen.
@@ -119,7 +119,7 @@ pub fn population(population: Population) -> BodyEstimate {
     }
 }
 
-impl Told {
+impl TapeReadings {
     /// Whether nothing was told.
     pub fn is_empty(&self) -> bool {
         self.values.iter().all(Option::is_none)
@@ -134,7 +134,7 @@ impl Told {
     ///
     /// # Errors
     /// A length that nobody has.
-    pub fn with(mut self, index: usize, value: f32) -> Result<Self, ToldError> {
+    pub fn with(mut self, index: usize, value: f32) -> Result<Self, TapeError> {
         let all = population(Population::Mixed);
         let ranges = |index: usize| {
             let Estimate { value, sigma } = all.at(index);
@@ -149,7 +149,7 @@ impl Told {
                 _ if meant(1000.0) => "; were metres meant? write them as stature=1.75m",
                 _ => "; take it again",
             };
-            return Err(ToldError::Unit {
+            return Err(TapeError::Unit {
                 measure: MEASURES[index].0,
                 given_mm: value * 1e3,
                 low_mm: range.start * 1e3,
@@ -165,8 +165,8 @@ impl Told {
     ///
     /// # Errors
     /// Words that are no measure, or a length that nobody has.
-    pub fn and(self, words: &str) -> Result<Self, ToldError> {
-        let form = || ToldError::Form(words.to_owned());
+    pub fn and(self, words: &str) -> Result<Self, TapeError> {
+        let form = || TapeError::Form(words.to_owned());
         let (name, length) = words.split_once('=').ok_or_else(form)?;
         let index = index_of(name)?;
         let length = length.trim().to_lowercase();
@@ -183,8 +183,8 @@ impl Told {
     /// All measures in words, checked against one another.
     ///
     /// # Errors
-    /// As [`Told::and`], and measures that nobody has together.
-    pub fn of<S: AsRef<str>>(words: &[S]) -> Result<Self, ToldError> {
+    /// As [`TapeReadings::and`], and measures that nobody has together.
+    pub fn of<S: AsRef<str>>(words: &[S]) -> Result<Self, TapeError> {
         let told = words.iter().try_fold(Self::default(), |told, w| told.and(w.as_ref()))?;
         told.check()?;
         Ok(told)
@@ -194,8 +194,8 @@ impl Told {
     ///
     /// # Errors
     /// The measure that stands out most, if nobody has it.
-    pub fn check(&self) -> Result<(), ToldError> {
-        let mut worst: Option<(f32, ToldError)> = None;
+    pub fn check(&self) -> Result<(), TapeError> {
+        let mut worst: Option<(f32, TapeError)> = None;
         for (index, value) in self.given() {
             let expected = [Population::Women, Population::Men].map(|p| {
                 let others = self.given().filter(|(i, _)| *i != index);
@@ -204,7 +204,7 @@ impl Told {
             let off = |e: &Estimate| (value - e.value).abs() / e.sigma;
             let nearest = if off(&expected[0]) < off(&expected[1]) { expected[0] } else { expected[1] };
             if off(&nearest) > NOBODY && worst.as_ref().is_none_or(|w| off(&nearest) > w.0) {
-                let error = ToldError::Contradiction {
+                let error = TapeError::Contradiction {
                     measure: MEASURES[index].0,
                     given_mm: value * 1e3,
                     expected_mm: nearest.value * 1e3,
@@ -249,10 +249,10 @@ mod tests {
     fn all_eleven_are_read_in_every_unit() {
         for (name, _, _) in MEASURES {
             let mean = population(Population::Mixed).mean[index(name)];
-            let told = Told::of(&[format!("{name}={:.1}", mean * 1e3)]).unwrap();
+            let told = TapeReadings::of(&[format!("{name}={:.1}", mean * 1e3)]).unwrap();
             assert!((told.given().next().unwrap().1 - mean).abs() < 1e-4, "{name}");
         }
-        let of = |words: &str| Told::of(&[words]).unwrap().given().next().unwrap();
+        let of = |words: &str| TapeReadings::of(&[words]).unwrap().given().next().unwrap();
         let chest = index("chest_girth");
         for words in ["chest=912", "bust=91.2cm", "chest_girth=0.912m", "Chest = 912 mm"] {
             let (i, v) = of(words);
@@ -264,7 +264,7 @@ mod tests {
 
     #[test]
     fn what_is_no_measure_is_refused_with_its_cure() {
-        let refused = |words: &[&str]| Told::of(words).unwrap_err().to_string();
+        let refused = |words: &[&str]| TapeReadings::of(words).unwrap_err().to_string();
         assert!(refused(&["chest"]).contains("chest=912"));
         assert!(refused(&["tail=300"]).contains("chest_girth"));
         assert!(refused(&["chest=91.2"]).contains("centimetres"));
@@ -279,7 +279,7 @@ mod tests {
     fn a_chest_told_makes_the_waist_surer_and_a_disagreement_is_said() {
         let before = population(Population::Women);
         let chest = index("chest_girth");
-        let told = Told::default().with(chest, before.mean[chest] + 0.10).unwrap();
+        let told = TapeReadings::default().with(chest, before.mean[chest] + 0.10).unwrap();
         let (after, notes) = told.over(&before);
         let waist = index("waist_girth");
         assert!(after.mean[waist] > before.mean[waist] + 0.03);
