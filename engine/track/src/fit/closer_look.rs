@@ -73,6 +73,8 @@ impl BodyFit {
     pub(super) fn look_closer(&mut self, frames: &[DepthFrame]) -> Option<SeenBody> {
         let kept = self.mean_pose()?;
         let mut views = self.views(frames);
+        // Nothing of what was followed since stays: the same views give the same bits.
+        self.shaped = None;
         let mut again = ShapeFilter::new(self.model.shapes);
         for view in &mut views {
             let from = FitState { shape: self.shape_filter.estimate().0, ..view.state };
