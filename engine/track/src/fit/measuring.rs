@@ -109,8 +109,8 @@ const DECIDING: usize = 6;
 /// Difference of the deviances that rules one sex out: a likelihood ratio of 20,000.
 const RULED_OUT: f64 = 20.0;
 
-/// What the evidence for a sex counts: a body of either sex that the model cannot have errs as much as the sexes differ, and clothes
-/// hide most of that. Of seven frames of one man in a T-shirt, three took him for a woman, surely, before it was tempered.
+/// What the evidence for a sex counts, bare and clothed: a body of either sex that the model cannot have errs as much as the sexes differ,
+/// and clothes hide most of that.
 const EVIDENCE: [f64; 2] = [0.5, 0.1];
 
 /// A sex that is less likely than this after the first second takes no part in what follows: a hundredth moves no measure by a millimetre.
