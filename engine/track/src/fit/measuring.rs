@@ -178,11 +178,14 @@ pub fn measure(frames: &[DepthFrame], population: Population, options: FitOption
     tries.iter_mut().for_each(|(_, t)| t.push(rest));
     tries.retain(|(_, t)| t.deviance() < f64::MAX);
     let least = tries.iter().map(|t| t.1.deviance()).fold(f64::MAX, f64::min);
-    let weights: Vec<f64> = tries.iter().map(|t| (-0.5 * counts * (t.1.deviance() - least)).exp()).collect();
+    let weight = |t: &SexFit| (-0.5 * counts * (t.deviance() - least)).exp();
+    let all: f64 = tries.iter().map(|t| weight(&t.1)).sum();
+    tries.retain(|(_, t)| weight(t) / all > UNLIKELY);
+    // The shares of those who stay are one again.
+    let weights: Vec<f64> = tries.iter().map(|t| weight(&t.1)).collect();
     let whole: f64 = weights.iter().sum();
     let mut seen: Vec<SexMeasures> = Vec::new();
-    let likely = tries.into_iter().zip(weights).filter(|(_, weight)| weight / whole > UNLIKELY);
-    for ((sex, mut fit), weight) in likely {
+    for ((sex, mut fit), weight) in tries.into_iter().zip(weights) {
         fit.follow_turn(after);
         seen.push(fit.closely(sex, (weight / whole) as f32, frames)?);
     }
