@@ -11,7 +11,7 @@ use toile_gpu::backend::Backend;
 use crate::exit::AppError;
 use crate::terminal::Words;
 use toile_fitting::dress::wish::Wish;
-use toile_track::tape::TapeReadings;
+use toile_track::tape_readings::TapeReadings;
 
 /// What a command prints, and where.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::Args)]
@@ -82,7 +82,7 @@ impl TapeArgs {
     ///
     /// # Errors
     /// Words that are no measure, a length that nobody has, or measures that nobody has together.
-    pub fn told(&self) -> Result<TapeReadings, AppError> {
+    pub fn readings(&self) -> Result<TapeReadings, AppError> {
         TapeReadings::of(&self.measures).map_err(|why| AppError::Usage(format!("--measure: {why}")))
     }
 }
@@ -99,19 +99,19 @@ pub struct WornArgs {
     /// Tested settings of the cloth: draft, shop or fine
     #[arg(long, value_name = "Q", value_parser = quality(), default_value = Quality::default().name())]
     pub quality: Quality,
-    /// What a tape has told
+    /// Measures taken by tape
     #[command(flatten)]
-    pub told: TapeArgs,
+    pub tape: TapeArgs,
 }
 
 impl WornArgs {
     /// The same as the scene's maker takes it.
     ///
     /// # Errors
-    /// As [`TapeArgs::told`].
+    /// As [`TapeArgs::readings`].
     pub fn wish(&self) -> Result<Wish, AppError> {
-        let told = self.told.told()?;
-        Ok(Wish { garments: self.garments.clone(), size: self.size.clone(), quality: self.quality, sex: None, told })
+        let tape = self.tape.readings()?;
+        Ok(Wish { garments: self.garments.clone(), size: self.size.clone(), quality: self.quality, sex: None, tape })
     }
 }
 

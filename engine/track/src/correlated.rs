@@ -1,4 +1,4 @@
-//! Several lengths of one body with the covariance of their errors, and what one of them told tells of the others.
+//! Several lengths of one body with the covariance of their errors, and what one of them, once known, tells of the others.
 
 use crate::estimate::Estimate;
 
@@ -24,10 +24,10 @@ impl<const N: usize> Correlated<N> {
 
     /// The same once one of them is measured otherwise: all others follow as far as their errors go with its own (the update of a
     /// Kalman filter with one scalar measurement).
-    pub fn told(&self, index: usize, told: Estimate) -> Self {
+    pub fn observed(&self, index: usize, seen: Estimate) -> Self {
         let column: [f32; N] = std::array::from_fn(|i| self.covariance[i][index]);
-        let variance = column[index] + told.sigma * told.sigma;
-        let off = told.value - self.mean[index];
+        let variance = column[index] + seen.sigma * seen.sigma;
+        let off = seen.value - self.mean[index];
         Self {
             mean: std::array::from_fn(|i| self.mean[i] + column[i] / variance * off),
             covariance: std::array::from_fn(|i| {
@@ -61,12 +61,12 @@ mod tests {
             mean: [1.0, 0.8, 0.4],
             covariance: [[4e-4, 2e-4, 0.0], [2e-4, 4e-4, 0.0], [0.0, 0.0, 1e-4]],
         };
-        let then = known.told(0, Estimate::new(1.04, 0.0));
+        let then = known.observed(0, Estimate::new(1.04, 0.0));
         assert!((then.mean[0] - 1.04).abs() < 1e-6 && then.at(0).sigma < 1e-4);
         assert!((then.mean[1] - 0.82).abs() < 1e-6, "half of the way with a correlation of a half");
         assert!(then.at(1).sigma < known.at(1).sigma && then.at(2) == known.at(2));
-        // What is told without being sure of it moves less.
-        assert!(known.told(0, Estimate::new(1.04, 0.02)).mean[0] < 1.021);
+        // An observation of large error moves less.
+        assert!(known.observed(0, Estimate::new(1.04, 0.02)).mean[0] < 1.021);
     }
 
     #[test]

@@ -18,7 +18,7 @@ pub mod measures;
 
 mod joints;
 pub mod silhouette;
-pub mod tape;
+pub mod tape_readings;
 
 pub mod measure;
 

@@ -71,11 +71,6 @@ const SWAYS: [(Joint, f32); 7] = [
 const WANDER: f32 = 0.006;
 
 impl StudyPerson {
-    /// The body at rest.
-    pub const fn body(&self) -> &Body {
-        &self.body
-    }
-
     /// Triangles of the surface.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.body.mesh.triangles

@@ -33,9 +33,9 @@ pub struct MeasureArgs {
     /// The shopper wears nothing that stands off the skin: the body fit is not one-sided
     #[arg(long)]
     pub tight: bool,
-    /// What a tape has told
+    /// Measures taken by tape
     #[command(flatten)]
-    pub told: TapeArgs,
+    pub tape: TapeArgs,
     /// The shopper's sex, if it is known: female or male
     #[arg(long, value_name = "S", value_parser = one_of(Sex::ALL, Sex::name))]
     pub sex: Option<Sex>,
@@ -54,7 +54,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), AppError> {
     let out = args.out.as_deref().map(OutputFolder::prepare).transpose().map_err(AppError::input)?;
     let mut out = out.map(|out| out.sparing(Inputs::new(args.camera.iter().chain([&args.file]))));
     let facts =
-        ShopperFacts { clothed: !args.tight, sex: args.sex, told: args.told.told()?, ..ShopperFacts::default() };
+        ShopperFacts { clothed: !args.tight, sex: args.sex, tape: args.tape.readings()?, ..ShopperFacts::default() };
     let session = session::open(Some(&args.file), args.camera.as_deref())?;
     let measured = measured::measure(&session, facts)?;
     let mut files: Vec<PathBuf> = Vec::new();

@@ -58,9 +58,9 @@ pub struct TryOnArgs {
     /// Body to show: female, male, or a file (.glb, .gltf, .vrm) (default: by the garment)
     #[arg(long, value_name = "B", value_parser = Wearer::parse)]
     pub body: Option<Wearer>,
-    /// What a tape has told
+    /// Measures taken by tape
     #[command(flatten)]
-    pub told: TapeArgs,
+    pub tape: TapeArgs,
     /// Tested settings of the cloth: draft, shop or fine
     #[arg(long, value_name = "Q", value_parser = quality(), default_value = Quality::default().name())]
     pub quality: Quality,
@@ -197,8 +197,8 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
 
 fn wish(args: &TryOnArgs) -> Result<Wish, AppError> {
     let sex = if let Some(Wearer::Ours(sex)) = args.body { Some(sex) } else { None };
-    let told = args.told.told()?;
-    Ok(Wish { garments: args.garments.clone(), size: args.size.clone(), quality: args.quality, sex, told })
+    let tape = args.tape.readings()?;
+    Ok(Wish { garments: args.garments.clone(), size: args.size.clone(), quality: args.quality, sex, tape })
 }
 
 /// The body to dress: a file's, whose measures then count; the one fitted to the depth, where there was nothing else; otherwise
@@ -217,7 +217,7 @@ fn worn_body(
         return Ok((imported.body, Some(note)));
     }
     match &measured.fitted {
-        Some(fitted) if !has_joints && args.told.measures.is_empty() => Ok((fitted.body.body.clone(), None)),
+        Some(fitted) if !has_joints && args.tape.measures.is_empty() => Ok((fitted.body.body.clone(), None)),
         _ => Ok(body::build(sex, &measured.best, Some(sex).into())?),
     }
 }

@@ -12,7 +12,7 @@ use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasures, MEASURES};
 use toile_track::measure::{self, Measurements, Source};
 use toile_track::measures::{Hint, Measures};
-use toile_track::tape::{self, BodyEstimate, TapeReadings};
+use toile_track::tape_readings::{self, BodyEstimate, TapeReadings};
 
 use super::depth::DepthSurface;
 use super::session;
@@ -33,13 +33,13 @@ pub struct ShopperFacts {
     pub clothed: bool,
     /// Whether they sit: nothing is taken from legs and hips, which a chair hides.
     pub seated: bool,
-    /// Measures that they or a tape have told.
-    pub told: TapeReadings,
+    /// Measures that they took by tape.
+    pub tape: TapeReadings,
 }
 
 impl Default for ShopperFacts {
     fn default() -> Self {
-        Self { sex: None, clothed: true, seated: false, told: TapeReadings::default() }
+        Self { sex: None, clothed: true, seated: false, tape: TapeReadings::default() }
     }
 }
 
@@ -84,7 +84,7 @@ pub fn measure(session: &Session, facts: ShopperFacts) -> Result<Measured, Fitti
     let population = population(facts.sex, fitted.as_ref());
     let sections = by_sections(session, population)?;
     let best = fitted.as_ref().map_or_else(|| sections.clone(), |fitted| preferred(&sections, fitted));
-    let best = with_told(best, fitted.as_ref(), population, &facts.told);
+    let best = with_tape(best, fitted.as_ref(), population, &facts.tape);
     Ok(Measured { best, sections, fitted, surface, population })
 }
 
@@ -115,7 +115,7 @@ fn seated(session: &Session, facts: ShopperFacts) -> Result<Measured, FittingErr
     let mut sections = by_sections(&above, population)?;
     (sections.measures.hip_girth, sections.measures.inseam) = (None, None);
     let surface = DepthSurface { frames: Vec::new(), after: Vec::new(), ground: None };
-    let best = with_told(sections.clone(), None, population, &facts.told);
+    let best = with_tape(sections.clone(), None, population, &facts.tape);
     Ok(Measured { best, sections, fitted: None, surface, population })
 }
 
@@ -133,18 +133,18 @@ fn population(facts: Option<Sex>, fitted: Option<&FittedMeasures>) -> Population
     }
 }
 
-/// What is best known once measures were told: all others follow as far as their errors go with these.
-fn with_told(
+/// What is best known once measures were taken by tape: all others follow as far as their errors go with these.
+fn with_tape(
     best: Measurements,
     fitted: Option<&FittedMeasures>,
     population: Population,
-    told: &TapeReadings,
+    tape: &TapeReadings,
 ) -> Measurements {
-    if told.is_empty() {
+    if tape.is_empty() {
         return best;
     }
     let known = fitted.map_or_else(|| seen(&best, population), |f| f.all);
-    let (known, sentences) = told.over(&known);
+    let (known, sentences) = tape.over(&known);
     let of = |name: &str| MEASURES.iter().position(|m| m.0 == name).map(|i| known.at(i));
     let mut notes = best.notes.clone();
     notes.extend(sentences);
@@ -154,7 +154,7 @@ fn with_told(
 /// What people of that population have who have what was seen of this one. Girths that were only guessed from the stature say
 /// nothing that the stature does not.
 fn seen(best: &Measurements, population: Population) -> BodyEstimate {
-    let all = tape::population(population);
+    let all = tape_readings::population(population);
     let measured = best.measures.named();
     let taken = measured.into_iter().filter(|(name, _)| match best.source {
         Source::Joints => matches!(*name, "stature" | "shoulder_breadth"),
@@ -162,7 +162,7 @@ fn seen(best: &Measurements, population: Population) -> BodyEstimate {
     });
     taken
         .filter_map(|(name, e)| Some((MEASURES.iter().position(|m| m.0 == name)?, e?)))
-        .fold(all, |all, (index, estimate)| all.told(index, estimate))
+        .fold(all, |all, (index, estimate)| all.observed(index, estimate))
 }
 
 /// The measures of the contract by their names.

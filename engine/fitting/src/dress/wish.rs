@@ -11,7 +11,7 @@ use toile_assets::wardrobe::style::Style;
 use toile_engine::cloth::Quality;
 use toile_track::measure::Measurements;
 use toile_track::recommend::Recommendation;
-use toile_track::tape::TapeReadings;
+use toile_track::tape_readings::TapeReadings;
 
 use super::measured::ShopperFacts;
 use super::size;
@@ -20,7 +20,7 @@ use crate::FittingError;
 /// Fabric of a mesh that a user brings without saying what it is made of.
 const MESH_FABRIC: &str = "cotton-lawn";
 
-/// Garments, size and quality that are asked for, and what the shopper has told.
+/// Garments, size and quality that are asked for, and what the shopper says of themselves.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Wish {
     /// Garments of the wardrobe or mesh files, inner first; empty is the first of the wardrobe.
@@ -31,14 +31,14 @@ pub struct Wish {
     pub quality: Quality,
     /// The shopper's sex, if it was given.
     pub sex: Option<Sex>,
-    /// Measures that they or a tape have told.
-    pub told: TapeReadings,
+    /// Measures that they took by tape.
+    pub tape: TapeReadings,
 }
 
 impl Wish {
     /// What it says of the shopper.
     pub fn facts(&self) -> ShopperFacts {
-        ShopperFacts { sex: self.sex, told: self.told, ..ShopperFacts::default() }
+        ShopperFacts { sex: self.sex, tape: self.tape, ..ShopperFacts::default() }
     }
 }
 

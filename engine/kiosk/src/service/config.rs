@@ -15,7 +15,7 @@ use super::session::SessionTimes;
 use crate::error::KioskError;
 use toile_fitting::dress::measured::ShopperFacts;
 use toile_fitting::dress::wish::Wish;
-use toile_track::tape::TapeReadings;
+use toile_track::tape_readings::TapeReadings;
 
 /// The default configuration with all keys explained.
 pub const EXAMPLE: &str = include_str!("../../systemd/kiosk.toml");
@@ -85,8 +85,8 @@ impl ShopperConfig {
             Some("male") => Some(Sex::Male),
             Some(other) => return Err(format!("shopper.sex = {other} is not female or male; correct it")),
         };
-        let told = TapeReadings::of(&self.measures).map_err(|why| format!("shopper.measures: {why}"))?;
-        Ok(ShopperFacts { sex, told, ..ShopperFacts::default() })
+        let tape = TapeReadings::of(&self.measures).map_err(|why| format!("shopper.measures: {why}"))?;
+        Ok(ShopperFacts { sex, tape, ..ShopperFacts::default() })
     }
 }
 
@@ -300,13 +300,13 @@ impl Config {
 
     /// The garments and sizes asked for.
     pub fn wish(&self) -> Wish {
-        let ShopperFacts { sex, told, .. } = self.shopper.facts().unwrap_or_default();
+        let ShopperFacts { sex, tape, .. } = self.shopper.facts().unwrap_or_default();
         Wish {
             garments: self.wear.garments.clone(),
             size: self.wear.size.clone(),
             quality: self.wear.quality.parse().unwrap_or_default(),
             sex,
-            told,
+            tape,
         }
     }
 

@@ -1,4 +1,4 @@
-//! Measures that a tape has told: they count in every command, and what cannot be is named.
+//! Measures taken by tape: they count in every command, and what cannot be is named.
 
 mod common;
 
@@ -18,24 +18,24 @@ fn figure(report: &Value, measure: &str, part: &str) -> f64 {
 
 #[test]
 fn a_chest_by_tape_is_believed_and_the_other_girths_follow() {
-    let scratch = recorded("told-measure");
+    let scratch = recorded("tape-measure");
     let plain = object(&scratch.toile(&["measure", "in.mcap", "--json"]));
     let chest = figure(&plain, "chest_girth_mm", "value") + 30.0;
     let words = format!("chest={chest:.0}");
-    let told = object(&scratch.toile(&["measure", "in.mcap", "--json", "--measure", &words]));
-    assert!((figure(&told, "chest_girth_mm", "value") - chest).abs() < 3.0, "{told}");
-    assert!(figure(&told, "chest_girth_mm", "sigma") <= 5.0);
-    assert!(figure(&told, "waist_girth_mm", "value") > figure(&plain, "waist_girth_mm", "value") + 3.0);
-    assert!(figure(&told, "waist_girth_mm", "sigma") < figure(&plain, "waist_girth_mm", "sigma"));
+    let tape = object(&scratch.toile(&["measure", "in.mcap", "--json", "--measure", &words]));
+    assert!((figure(&tape, "chest_girth_mm", "value") - chest).abs() < 3.0, "{tape}");
+    assert!(figure(&tape, "chest_girth_mm", "sigma") <= 5.0);
+    assert!(figure(&tape, "waist_girth_mm", "value") > figure(&plain, "waist_girth_mm", "value") + 3.0);
+    assert!(figure(&tape, "waist_girth_mm", "sigma") < figure(&plain, "waist_girth_mm", "sigma"));
     // Inches are the same chest, and a plan takes it too.
     let inches = format!("bust={:.3}in", chest / 25.4);
     let same = object(&scratch.toile(&["measure", "in.mcap", "--json", "--measure", &inches]));
-    assert!((figure(&same, "chest_girth_mm", "value") - figure(&told, "chest_girth_mm", "value")).abs() < 1.0);
+    assert!((figure(&same, "chest_girth_mm", "value") - figure(&tape, "chest_girth_mm", "value")).abs() < 1.0);
 }
 
 #[test]
 fn wrong_units_and_contradictions_are_named() {
-    let scratch = recorded("told-wrong");
+    let scratch = recorded("tape-wrong");
     let refused = |words: &[&str]| {
         let measures: Vec<&str> = words.iter().flat_map(|w| ["--measure", w]).collect();
         refusal(&scratch.toile(&[&["measure", "in.mcap"], &measures[..]].concat()), 2)

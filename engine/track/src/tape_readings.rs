@@ -1,4 +1,4 @@
-//! Measures that a shopper or a tape has told: read from words, checked, and laid over what was measured.
+//! Measures that were taken by tape: read from words, checked, and laid over what was measured.
 
 use toile_assets::body::Sex;
 use toile_assets::body::shape::Shapes;
@@ -14,10 +14,10 @@ pub type BodyEstimate = Correlated<{ MEASURES.len() }>;
 /// Standard deviation of a tape in the hands of whoever is at hand (m): ISO 20685 allows trained ones 4 to 9 mm.
 const TAPE: f32 = 0.005;
 
-/// A told measure farther from what the others let expect than this many standard deviations is nobody's.
+/// A measure by tape farther from what the others let expect than this many standard deviations is nobody's.
 const NOBODY: f32 = 5.0;
 
-/// A told measure farther from the camera's than this many standard deviations of both is said to be.
+/// A measure by tape farther from the camera's than this many standard deviations of both is said to be.
 const APART: f32 = 3.0;
 
 /// Words for measures beside their names without `_girth`, `_breadth` and `_length`.
@@ -36,10 +36,10 @@ const WORDS: [(&str, &str); 8] = [
 const UNITS: [(&str, f32); 6] =
     [("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("inch", 0.0254), ("\"", 0.0254), ("m", 1.0)];
 
-/// Standard deviations that people of the survey stray by within which a told measure is taken for its unit's.
+/// Standard deviations that people of the survey stray by within which a measure by tape is taken for its unit's.
 const ANYBODY: f32 = 6.0;
 
-/// Why a told measure is not taken; each message says what and the cure.
+/// Why a measure by tape is refused; each message says what and the cure.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TapeError {
     /// No `name=value`.
@@ -69,7 +69,7 @@ pub enum TapeError {
     },
     /// Two of them that nobody has together.
     #[error(
-        "a {measure} of {given_mm:.0} mm does not go with the other measures told: with these it is {expected_mm:.0} mm, give \
+        "a {measure} of {given_mm:.0} mm does not go with the other measures by tape: with these it is {expected_mm:.0} mm, give \
          or take {sigma_mm:.0}; take it again, or leave one out"
     )]
     Contradiction {
@@ -84,7 +84,7 @@ pub enum TapeError {
     },
 }
 
-/// Measures that were told, at most one of each.
+/// Measures taken by tape, at most one of each.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TapeReadings {
     /// In the order of [`MEASURES`] (m).
@@ -120,12 +120,12 @@ pub fn population(population: Population) -> BodyEstimate {
 }
 
 impl TapeReadings {
-    /// Whether nothing was told.
+    /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.values.iter().all(Option::is_none)
     }
 
-    /// What was told: the place of each in [`MEASURES`], and its length (m).
+    /// What was taken: the place of each in [`MEASURES`], and its length (m).
     pub fn given(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
         self.values.iter().enumerate().filter_map(|(i, v)| Some((i, (*v)?)))
     }
@@ -185,9 +185,9 @@ impl TapeReadings {
     /// # Errors
     /// As [`TapeReadings::and`], and measures that nobody has together.
     pub fn of<S: AsRef<str>>(words: &[S]) -> Result<Self, TapeError> {
-        let told = words.iter().try_fold(Self::default(), |told, w| told.and(w.as_ref()))?;
-        told.check()?;
-        Ok(told)
+        let tape = words.iter().try_fold(Self::default(), |tape, w| tape.and(w.as_ref()))?;
+        tape.check()?;
+        Ok(tape)
     }
 
     /// Checks each measure against what all others let expect of either sex.
@@ -199,7 +199,7 @@ impl TapeReadings {
         for (index, value) in self.given() {
             let expected = [Population::Women, Population::Men].map(|p| {
                 let others = self.given().filter(|(i, _)| *i != index);
-                others.fold(population(p), |all, (i, v)| all.told(i, Estimate::new(v, TAPE))).at(index)
+                others.fold(population(p), |all, (i, v)| all.observed(i, Estimate::new(v, TAPE))).at(index)
             });
             let off = |e: &Estimate| (value - e.value).abs() / e.sigma;
             let nearest = if off(&expected[0]) < off(&expected[1]) { expected[0] } else { expected[1] };
@@ -216,7 +216,7 @@ impl TapeReadings {
         worst.map_or(Ok(()), |w| Err(w.1))
     }
 
-    /// What is known of a body once all that was told is laid over what was measured, and a sentence for each measure in which the
+    /// What is known of a body once all that was taken by tape is laid over what was measured, and a sentence for each measure in which the
     /// two disagree.
     pub fn over(&self, measured: &BodyEstimate) -> (BodyEstimate, Vec<String>) {
         let mut notes = Vec::new();
@@ -224,7 +224,7 @@ impl TapeReadings {
             let seen = measured.at(index);
             if (value - seen.value).abs() > APART * seen.sigma.hypot(TAPE) {
                 notes.push(format!(
-                    "The {} told is {:.0} mm, where the camera sees {:.0} mm, give or take {:.0}: the told one is believed; take it again \
+                    "The {} by tape is {:.0} mm, where the camera sees {:.0} mm, give or take {:.0}: the tape is believed; take it again \
                      if in doubt.",
                     plain(MEASURES[index].0),
                     value * 1e3,
@@ -233,7 +233,7 @@ impl TapeReadings {
                 ));
             }
         }
-        (self.given().fold(*measured, |all, (i, v)| all.told(i, Estimate::new(v, TAPE))), notes)
+        (self.given().fold(*measured, |all, (i, v)| all.observed(i, Estimate::new(v, TAPE))), notes)
     }
 }
 
@@ -249,8 +249,8 @@ mod tests {
     fn all_eleven_are_read_in_every_unit() {
         for (name, _, _) in MEASURES {
             let mean = population(Population::Mixed).mean[index(name)];
-            let told = TapeReadings::of(&[format!("{name}={:.1}", mean * 1e3)]).unwrap();
-            assert!((told.given().next().unwrap().1 - mean).abs() < 1e-4, "{name}");
+            let tape = TapeReadings::of(&[format!("{name}={:.1}", mean * 1e3)]).unwrap();
+            assert!((tape.given().next().unwrap().1 - mean).abs() < 1e-4, "{name}");
         }
         let of = |words: &str| TapeReadings::of(&[words]).unwrap().given().next().unwrap();
         let chest = index("chest_girth");
@@ -279,13 +279,13 @@ mod tests {
     fn a_chest_told_makes_the_waist_surer_and_a_disagreement_is_said() {
         let before = population(Population::Women);
         let chest = index("chest_girth");
-        let told = TapeReadings::default().with(chest, before.mean[chest] + 0.10).unwrap();
-        let (after, notes) = told.over(&before);
+        let tape = TapeReadings::default().with(chest, before.mean[chest] + 0.10).unwrap();
+        let (after, notes) = tape.over(&before);
         let waist = index("waist_girth");
         assert!(after.mean[waist] > before.mean[waist] + 0.03);
         assert!(after.at(waist).sigma < 0.8 * before.at(waist).sigma);
         assert!(after.at(chest).sigma <= TAPE && notes.is_empty());
-        let sure = before.told(chest, Estimate::new(before.mean[chest], 0.01));
-        assert_eq!(told.over(&sure).1.len(), 1);
+        let sure = before.observed(chest, Estimate::new(before.mean[chest], 0.01));
+        assert_eq!(tape.over(&sure).1.len(), 1);
     }
 }
