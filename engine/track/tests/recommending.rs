@@ -130,6 +130,25 @@ fn a_measure_that_was_not_seen_is_guessed_and_said_to_be() {
 }
 
 #[test]
+fn from_joints_alone_no_zone_gets_a_verdict_but_one_that_was_taken_by_tape() {
+    with(|offer| {
+        let from_joints = Measurements { source: Source::Joints, ..person(0.92, 0.76, 0.98, 0.08) };
+        let judged = recommend(&from_joints, offer).unwrap();
+        assert!(judged.zones.iter().all(|z| z.verdict == Verdict::Unknown), "{judged:?}");
+        assert!(judged.zones.iter().all(|z| z.sentence.contains("take the") && z.sentence.contains("by tape")));
+        let mut taped = from_joints;
+        taped.measures.chest_girth = Some(Estimate::new(0.92, 0.005));
+        let verdicts: Vec<Verdict> = recommend(&taped, offer).unwrap().zones.iter().map(|z| z.verdict).collect();
+        assert_eq!(verdicts, [Verdict::Good, Verdict::Unknown, Verdict::Unknown]);
+        // Nothing is known of a waist that no depth showed either.
+        let mut hidden = person(0.92, 0.76, 0.98, 0.02);
+        hidden.measures.waist_girth = None;
+        let of = |m: &Measurements| recommend(m, offer).unwrap().zones.iter().map(|z| z.verdict).collect::<Vec<_>>();
+        assert_eq!(of(&hidden)[1], Verdict::Unknown);
+    });
+}
+
+#[test]
 fn bad_offers_are_refused_in_one_sentence() {
     let who = person(0.88, 0.72, 0.96, 0.01);
     let men = SizeTable::embedded("men").unwrap();

@@ -16,7 +16,8 @@ mod sentences;
 
 use toile_assets::sizes::SizeError;
 
-use crate::measure::Measurements;
+use crate::estimate::Estimate;
+use crate::measure::{Measurements, Source};
 use probability::{SizeProbabilities, least};
 use scored_zone::{ScoredZone, WEIGHTS, WORTH_NAMING};
 
@@ -61,6 +62,9 @@ pub enum RecommendError {
 
 /// A tape measurement is advised only if it raises the largest probability by at least this.
 const LEAST_TAPE_GAIN: f32 = 0.02;
+
+/// Beside joints, which show no surface, only a tape states a girth as surely as this (m).
+const TAKEN: f32 = 0.010;
 
 /// Recommends the size of a garment for a measured person.
 pub fn recommend(measured: &Measurements, offer: &Offer) -> Result<Recommendation, RecommendError> {
@@ -142,6 +146,11 @@ fn zones(measured: &Measurements, offer: &Offer) -> Result<Vec<ScoredZone>, Reco
     })?;
     let first = offer.sizes.first().ok_or_else(|| nothing("sizes"))?;
     let [_, _, chest, waist, hip] = measured.completed(offer.table.population);
+    let guessed = |taken: Option<Estimate>| match measured.source {
+        Source::Joints => taken.is_none_or(|t| t.sigma > TAKEN),
+        Source::Depth | Source::Both => taken.is_none(),
+    };
+    let taken = &measured.measures;
     let rank = |zone: Zone| match zone {
         z if designation.primary.contains(&z) => 0,
         z if designation.secondary.contains(&z) => 1,
@@ -159,6 +168,11 @@ fn zones(measured: &Measurements, offer: &Offer) -> Result<Vec<ScoredZone>, Reco
                 Zone::Waist => waist,
                 Zone::Hip => hip,
             },
+            guessed: guessed(match ease.zone {
+                Zone::Chest => taken.chest_girth,
+                Zone::Waist => taken.waist_girth,
+                Zone::Hip => taken.hip_girth,
+            }),
         })
         .collect();
     zones.sort_by_key(|z| rank(z.ease.zone));

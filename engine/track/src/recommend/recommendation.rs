@@ -12,6 +12,8 @@ toile_assets::named! {
         Good = "good",
         /// More ease than is comfortable.
         Loose = "loose",
+        /// Nobody saw the body there: its girth is guessed from the stature and the shoulders.
+        Unknown = "unknown",
     }
 }
 

@@ -17,4 +17,6 @@ pub struct ScoredZone {
     pub weight: f32,
     /// The body there (m).
     pub body: Estimate,
+    /// Whether the body there is only guessed, because no surface was seen and no tape taken.
+    pub guessed: bool,
 }

@@ -52,6 +52,7 @@ pub(super) fn fit(zone: &ScoredZone, size: &MadeSize) -> Option<ZoneFit> {
     let ease = ease_of(zone, size)?;
     let EaseRange { least, most, zone: at } = zone.ease;
     let verdict = match ease {
+        _ if zone.guessed => Verdict::Unknown,
         e if e < least => Verdict::Tight,
         e if e > most => Verdict::Loose,
         _ => Verdict::Good,
@@ -62,6 +63,16 @@ pub(super) fn fit(zone: &ScoredZone, size: &MadeSize) -> Option<ZoneFit> {
         Verdict::Tight => format!("tight by {:.1} cm", cm(least - ease)),
         Verdict::Loose => format!("loose by {:.1} cm", cm(ease - most)),
         Verdict::Good => "good".to_owned(),
+        Verdict::Unknown => {
+            let sentence = format!(
+                "How the {0} fits is not known: its ease of {1:.1} cm, give or take {2:.1} cm, is a guess from the stature and the \
+                 shoulders; take the {0} by tape.",
+                at.name(),
+                cm(ease),
+                cm(sigma)
+            );
+            return Some(ZoneFit { zone: at, primary: zone.weight == WEIGHTS[0], ease, sigma, verdict, sentence });
+        }
     };
     let doubt = match verdict {
         Verdict::Good if ease - least < sigma && ease - least < most - ease => ", perhaps tight",
