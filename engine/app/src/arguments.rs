@@ -111,7 +111,14 @@ impl WornArgs {
     /// As [`TapeArgs::readings`].
     pub fn wish(&self) -> Result<Wish, AppError> {
         let tape = self.tape.readings()?;
-        Ok(Wish { garments: self.garments.clone(), size: self.size.clone(), quality: self.quality, sex: None, tape })
+        Ok(Wish {
+            garments: self.garments.clone(),
+            size: self.size.clone(),
+            quality: self.quality,
+            sex: None,
+            child: None,
+            tape,
+        })
     }
 }
 

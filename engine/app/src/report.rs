@@ -257,6 +257,8 @@ pub struct DefinedMeasure {
 pub struct FittedBody {
     /// How likely it is a woman's, 0 to 1.
     pub woman: f64,
+    /// How likely it is a child's, 0 to 1.
+    pub child: f64,
     /// Whether the fit was one-sided, cloth lying outside the skin.
     pub clothed: bool,
     /// Frames that took part.

@@ -20,6 +20,7 @@ mod joints;
 pub mod silhouette;
 pub mod tape_readings;
 
+pub mod child;
 pub mod measure;
 
 pub mod recommend;

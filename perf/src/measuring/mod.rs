@@ -15,6 +15,8 @@ mod second_noise;
 
 mod sensor;
 
+mod surfaces;
+
 mod study;
 
 mod crossing;
@@ -28,3 +30,4 @@ pub use study::{
     Estimates, Family, Following, MeasuredPerson, MeasuringAgreement, MeasuringError, MeasuringOptions, MeasuringStudy,
     study,
 };
+pub use surfaces::PersonSurfaces;

@@ -22,6 +22,7 @@ use super::makehuman::{FamilyError, SurveyRanges, makehuman_person};
 use super::person::{GIVEN, survey_person};
 use super::sensor::{NoiseModel, Sensor, StudyCamera};
 use super::standing::{JointPositions, Moment, StudyPerson, TapeMeasures};
+use super::surfaces::PersonSurfaces;
 use crate::ansur::{StudyError, Survey};
 
 /// Whose bodies are studied.
@@ -77,6 +78,8 @@ pub struct MeasuringOptions {
     pub sensor: Sensor,
     /// Whether they turn all round after that, and are measured once more.
     pub turn: bool,
+    /// Whether each person's surfaces are kept, to be drawn.
+    pub surfaces: bool,
 }
 
 /// What one way of measuring gave of one person, in the order of [`MEASURES`]; `None` where it takes no such measure.
@@ -101,6 +104,10 @@ pub struct MeasuredPerson {
     pub sections: Estimates,
     /// How likely the fit took them for a woman.
     pub woman: Option<f32>,
+    /// The surfaces, if they are asked for and can be had.
+    pub surfaces: Option<PersonSurfaces>,
+    /// Time of measuring from the front, and from front and turn together, all of it after the last frame (s).
+    times: [f32; 2],
     /// Each frame followed: its time and that of its stages (s), how far off the surface and the joints are (m).
     followed: Vec<[f32; 7]>,
     /// Time of the first frame (s).
@@ -152,6 +159,9 @@ pub struct Following {
     pub off_mm: f64,
     /// Root mean square distance of the joints from the true ones, the hands' and the toes' left out (mm).
     pub joints_mm: f64,
+    /// Median time of measuring from the front, and from the front and a turn together, both sexes tried, if all of it is done after
+    /// the last frame (ms).
+    pub measure_ms: [f64; 2],
 }
 
 /// What a study found.
@@ -207,7 +217,7 @@ impl MeasuringStudy {
 pub fn study(
     surveys: &[Survey],
     options: &MeasuringOptions,
-    progress: &dyn Fn(&MeasuredPerson),
+    progress: &mut dyn FnMut(&MeasuredPerson),
 ) -> Result<MeasuringStudy, MeasuringError> {
     let mut cases = Vec::new();
     let mut add = |person: &StudyPerson, rng: &mut SplitMix64| {
@@ -268,7 +278,8 @@ fn moments(options: &MeasuringOptions) -> Vec<Moment> {
 
 fn measured(person: &StudyPerson, options: &MeasuringOptions, rng: &mut SplitMix64) -> MeasuredPerson {
     let sight = StudyCamera::new(options.sensor, options.family.noise(), rng);
-    let frames = sight.frames(person, &moments(options), rng);
+    let moments = moments(options);
+    let frames = sight.frames(person, &moments, rng);
     let mut finder = PersonFinder::default();
     let (mut alone, mut single) = (Vec::with_capacity(frames.len()), 0);
     for (frame, truth) in &frames {
@@ -281,8 +292,18 @@ fn measured(person: &StudyPerson, options: &MeasuringOptions, rng: &mut SplitMix
     let mut frames: Vec<DepthFrame> = frames.into_iter().map(|f| f.0).collect();
     frames.truncate(options.frames);
     let bare = fit::FitOptions { clothed: false, ..fit::FitOptions::MEASURING };
-    let fitted = measuring::measure(&only[..only.len().min(options.frames)], Population::Mixed, bare);
-    let turned = options.turn.then(|| measuring::measure(&only, Population::Mixed, bare)).flatten();
+    let taken = |frames: &[DepthFrame]| {
+        let watch = OnCore::begin();
+        let fitted = measuring::measure(frames, Population::Mixed, bare);
+        (fitted, watch.elapsed().as_secs_f32())
+    };
+    let (fitted, front_s) = taken(&only[..only.len().min(options.frames)]);
+    let (turned, turned_s) = if options.turn { taken(&only) } else { (None, 0.0) };
+    let turned = turned.filter(|f| f.turned);
+    let ends = [options.frames.saturating_sub(1), moments.len().saturating_sub(1)].map(|i| moments[i]);
+    let surfaces = fitted.as_ref().filter(|_| options.surfaces);
+    let surfaces =
+        surfaces.and_then(|f| PersonSurfaces::new(person, (f, ends[0]), turned.as_ref().map(|t| (t, ends[1]))));
     let estimates = |f: &FittedMeasures| f.measures.map(Some);
     let sections = measure::measure(&[], &frames, &Hint::default()).ok();
     let sections = sections.map_or([None; MEASURES.len()], |m| {
@@ -301,10 +322,12 @@ fn measured(person: &StudyPerson, options: &MeasuringOptions, rng: &mut SplitMix
         distance: sight.distance,
         truth: person.truth,
         fit: fitted.as_ref().map_or([None; MEASURES.len()], estimates),
-        turned: turned.as_ref().filter(|f| f.turned).map_or([None; MEASURES.len()], estimates),
+        turned: turned.as_ref().map_or([None; MEASURES.len()], estimates),
         frames: count,
         sections,
         woman: fitted.map(|f| f.woman),
+        surfaces,
+        times: [front_s, turned_s],
     }
 }
 
@@ -362,6 +385,7 @@ fn following(cases: &[MeasuredPerson]) -> Following {
         start_ms: rank(cases.iter().filter_map(|c| c.start).collect(), 0.5),
         off_mm: all.iter().map(|f| f64::from(f[5])).sum::<f64>() / n * 1e3,
         joints_mm: (squares / n).sqrt() * 1e3,
+        measure_ms: [0, 1].map(|k| rank(cases.iter().map(|c| c.times[k]).collect(), 0.5)),
     }
 }
 

@@ -39,6 +39,9 @@ pub struct MeasureArgs {
     /// The shopper's sex, if it is known: female or male
     #[arg(long, value_name = "S", value_parser = one_of(Sex::ALL, Sex::name))]
     pub sex: Option<Sex>,
+    /// Whether the shopper is an adult or a child, if it is known
+    #[arg(long, value_name = "A", value_parser = ["adult", "child"])]
+    pub age: Option<String>,
     /// Folder for a picture of the fitted body over the depth
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -53,8 +56,14 @@ pub struct MeasureArgs {
 pub fn run(args: &MeasureArgs) -> Result<(), AppError> {
     let out = args.out.as_deref().map(OutputFolder::prepare).transpose().map_err(AppError::input)?;
     let mut out = out.map(|out| out.sparing(Inputs::new(args.camera.iter().chain([&args.file]))));
-    let facts =
-        ShopperFacts { clothed: !args.tight, sex: args.sex, tape: args.tape.readings()?, ..ShopperFacts::default() };
+    let child = args.age.as_ref().map(|age| age == "child");
+    let facts = ShopperFacts {
+        clothed: !args.tight,
+        sex: args.sex,
+        child,
+        tape: args.tape.readings()?,
+        ..ShopperFacts::default()
+    };
     let session = session::open(Some(&args.file), args.camera.as_deref())?;
     let measured = measured::measure(&session, facts)?;
     let mut files: Vec<PathBuf> = Vec::new();
@@ -72,7 +81,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), AppError> {
         session: report::measures::session(&session, &notes),
         measurements: report::measures::measurements(&measured.best, measured.population),
         methods: methods(&measured),
-        body: measured.fitted.as_ref().map(|f| body(f, facts.clothed)),
+        body: measured.fitted.as_ref().map(|f| body(f, measured.child, facts.clothed)),
         valid_pixels: measured.best.valid_pixels as u64,
         people: measured.best.people as u32,
         files,
@@ -105,10 +114,11 @@ fn defined(name: &'static str, estimate: Estimate) -> DefinedMeasure {
     DefinedMeasure { name, definition: measures::definition(name), value, sigma }
 }
 
-fn body(fitted: &FittedMeasures, clothed: bool) -> FittedBody {
+fn body(fitted: &FittedMeasures, child: Option<f32>, clothed: bool) -> FittedBody {
     let thousandths = |x: f32| (f64::from(x) * 1e3).round() / 1e3;
     FittedBody {
         woman: thousandths(fitted.woman),
+        child: thousandths(child.unwrap_or(0.0)),
         clothed,
         frames: fitted.frames as u64,
         turned: fitted.turned,

@@ -198,7 +198,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
 fn wish(args: &TryOnArgs) -> Result<Wish, AppError> {
     let sex = if let Some(Wearer::Ours(sex)) = args.body { Some(sex) } else { None };
     let tape = args.tape.readings()?;
-    Ok(Wish { garments: args.garments.clone(), size: args.size.clone(), quality: args.quality, sex, tape })
+    Ok(Wish { garments: args.garments.clone(), size: args.size.clone(), quality: args.quality, sex, child: None, tape })
 }
 
 /// The body to dress: a file's, whose measures then count; the one fitted to the depth, where there was nothing else; otherwise

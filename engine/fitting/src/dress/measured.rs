@@ -8,6 +8,7 @@ use toile_assets::sizes::Population;
 use toile_assets::skeleton::Joint;
 use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
+use toile_track::child::child_odds;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasures, MEASURES};
 use toile_track::measure::{self, Measurements, Source};
@@ -29,6 +30,8 @@ pub const FROM_DEPTH: &str = "there are no joints: the body was fitted to the de
 pub struct ShopperFacts {
     /// Whose proportions apply, if it is known.
     pub sex: Option<Sex>,
+    /// Whether they are a child, where that is known; it is estimated otherwise, and changes no measure.
+    pub child: Option<bool>,
     /// Whether they wear everyday clothes, which the body lies beneath; otherwise tight ones.
     pub clothed: bool,
     /// Whether they sit: nothing is taken from legs and hips, which a chair hides.
@@ -39,7 +42,7 @@ pub struct ShopperFacts {
 
 impl Default for ShopperFacts {
     fn default() -> Self {
-        Self { sex: None, clothed: true, seated: false, tape: TapeReadings::default() }
+        Self { sex: None, child: None, clothed: true, seated: false, tape: TapeReadings::default() }
     }
 }
 
@@ -56,6 +59,8 @@ pub struct Measured {
     pub surface: DepthSurface,
     /// Whose proportions apply where something was not seen.
     pub population: Population,
+    /// How likely they are a child, 0 to 1; `None` without a stature.
+    pub child: Option<f32>,
 }
 
 impl Measured {
@@ -84,8 +89,10 @@ pub fn measure(session: &Session, facts: ShopperFacts) -> Result<Measured, Fitti
     let population = population(facts.sex, fitted.as_ref());
     let sections = by_sections(session, population)?;
     let best = fitted.as_ref().map_or_else(|| sections.clone(), |fitted| preferred(&sections, fitted));
-    let best = with_tape(best, fitted.as_ref(), population, &facts.tape);
-    Ok(Measured { best, sections, fitted, surface, population })
+    let mut best = with_tape(best, fitted.as_ref(), population, &facts.tape);
+    let child = child(&best, facts);
+    best.notes.extend(child.filter(|odds| *odds >= 0.5).map(child_note));
+    Ok(Measured { best, sections, fitted, surface, population, child })
 }
 
 /// The joints of a session that has none: the fitted body is followed through its depth, and a note says so. Does nothing
@@ -116,12 +123,25 @@ fn seated(session: &Session, facts: ShopperFacts) -> Result<Measured, FittingErr
     (sections.measures.hip_girth, sections.measures.inseam) = (None, None);
     let surface = DepthSurface { frames: Vec::new(), after: Vec::new(), ground: None };
     let best = with_tape(sections.clone(), None, population, &facts.tape);
-    Ok(Measured { best, sections, fitted: None, surface, population })
+    Ok(Measured { best, sections, fitted: None, surface, population, child: facts.child.map(f32::from) })
 }
 
 fn by_sections(session: &Session, population: Population) -> Result<Measurements, FittingError> {
     let hint = Hint { population, scale_known: session.raw_scale_known };
     measure::measure(&session.joints, &session.depth, &hint).map_err(FittingError::input)
+}
+
+/// As it is known, or as the stature lets expect.
+fn child(best: &Measurements, facts: ShopperFacts) -> Option<f32> {
+    let known = facts.child.map(f32::from);
+    known.or_else(|| best.measures.stature.map(child_odds))
+}
+
+fn child_note(odds: f32) -> String {
+    format!(
+        "This is probably a child (odds {odds:.2}): bodies and sizes here are adults', so take the measures by tape; if it is an \
+         adult, say so."
+    )
 }
 
 fn population(facts: Option<Sex>, fitted: Option<&FittedMeasures>) -> Population {

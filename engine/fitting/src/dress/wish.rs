@@ -31,6 +31,8 @@ pub struct Wish {
     pub quality: Quality,
     /// The shopper's sex, if it was given.
     pub sex: Option<Sex>,
+    /// Whether the shopper is a child, if it is known.
+    pub child: Option<bool>,
     /// Measures that they took by tape.
     pub tape: TapeReadings,
 }
@@ -38,7 +40,7 @@ pub struct Wish {
 impl Wish {
     /// What it says of the shopper.
     pub fn facts(&self) -> ShopperFacts {
-        ShopperFacts { sex: self.sex, tape: self.tape, ..ShopperFacts::default() }
+        ShopperFacts { sex: self.sex, child: self.child, tape: self.tape, ..ShopperFacts::default() }
     }
 }
 

@@ -69,6 +69,8 @@ pub struct WearConfig {
 pub struct ShopperConfig {
     /// Whose proportions apply: female or male; none is found from what is seen.
     pub sex: Option<String>,
+    /// Whether everybody is an adult, or a child: `adult` or `child`; none is estimated.
+    pub age: Option<String>,
     /// Measures taken by tape, such as `chest=912`: for a fitting by appointment, or a demonstration.
     pub measures: Vec<String>,
 }
@@ -85,8 +87,14 @@ impl ShopperConfig {
             Some("male") => Some(Sex::Male),
             Some(other) => return Err(format!("shopper.sex = {other} is not female or male; correct it")),
         };
+        let child = match self.age.as_deref() {
+            None => None,
+            Some("child") => Some(true),
+            Some("adult") => Some(false),
+            Some(other) => return Err(format!("shopper.age = {other} is not adult or child; correct it")),
+        };
         let tape = TapeReadings::of(&self.measures).map_err(|why| format!("shopper.measures: {why}"))?;
-        Ok(ShopperFacts { sex, tape, ..ShopperFacts::default() })
+        Ok(ShopperFacts { sex, child, tape, ..ShopperFacts::default() })
     }
 }
 
@@ -300,12 +308,13 @@ impl Config {
 
     /// The garments and sizes asked for.
     pub fn wish(&self) -> Wish {
-        let ShopperFacts { sex, tape, .. } = self.shopper.facts().unwrap_or_default();
+        let ShopperFacts { sex, child, tape, .. } = self.shopper.facts().unwrap_or_default();
         Wish {
             garments: self.wear.garments.clone(),
             size: self.wear.size.clone(),
             quality: self.wear.quality.parse().unwrap_or_default(),
             sex,
+            child,
             tape,
         }
     }
@@ -362,6 +371,7 @@ mod tests {
             ("[machine]\nworkers = 3", "machine.workers"),
             ("[wear]\ngarments = []", "wear.garments"),
             ("[shopper]\nsex = \"girl\"", "shopper.sex"),
+            ("[shopper]\nage = \"12\"", "shopper.age"),
             ("[shopper]\nmeasures = [\"chest=91\"]", "centimetres"),
             ("[wear]\nquality = \"best\"", "wear.quality"),
             ("[display]\nlanguage = \"tlh\"", "display.language"),

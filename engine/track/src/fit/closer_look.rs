@@ -24,8 +24,8 @@ use super::shape_filter::ShapeFilter;
 /// Sides from which somebody can be seen: 30 degrees each.
 const SIDES: usize = 12;
 
-/// Most views of one side, and fewest of all: a single side is looked at ten times, a whole turn 36 times.
-const VIEWS_EACH: usize = 3;
+/// Most views of one side, and fewest of all: a single side is looked at ten times, a whole turn 24 times.
+const VIEWS_EACH: usize = 2;
 const FEWEST_VIEWS: usize = 10;
 
 /// Largest distance of a correspondence (m): all views have been found.
@@ -90,7 +90,7 @@ impl BodyFit {
         // What is seen of somebody in clothes is no skin.
         let clothed = self.options.clothed;
         let rest = if clothed { body.mesh.positions } else { self.surface(&shape, &body, &kept, &mut views) };
-        self.last = views.last().map(|v| v.state);
+        self.last = self.last_pose_again(frames, &kept, &shape);
         let standing = self.on_its_legs(&shape, &kept, &rest);
         Some(SeenBody { shape, rest, standing })
     }
@@ -118,16 +118,27 @@ impl BodyFit {
             let count = s.len().min(each);
             (0..count).map(move |i| s[(2 * i + 1) * s.len() / (2 * count)])
         });
-        chosen
-            .map(|p| {
-                let mut cells = DepthCells::new();
-                cells.read(&frames[p.frame]);
-                if self.options.has_rim() {
-                    cells.read_rim(&frames[p.frame]);
-                }
-                View { cells, state: p.state }
-            })
-            .collect()
+        chosen.map(|p| View { cells: self.cells(&frames[p.frame]), state: p.state }).collect()
+    }
+
+    fn cells(&self, frame: &DepthFrame) -> DepthCells {
+        let mut cells = DepthCells::new();
+        cells.read(frame);
+        if self.options.has_rim() {
+            cells.read_rim(frame);
+        }
+        cells
+    }
+
+    /// The pose of the last frame with the shape that was found, from the pose that was kept: an arm that was lost while the trunk
+    /// hid it may be anywhere.
+    fn last_pose_again(&mut self, frames: &[DepthFrame], kept: &FitState, shape: &BodyShape) -> Option<FitState> {
+        let last = self.path.last()?;
+        let mut from = FitState { root: last.state.root, shape: *shape, ..*kept };
+        from.local[Joint::Pelvis.index()] = last.state.local[Joint::Pelvis.index()];
+        self.view = self.cells(&frames[last.frame]);
+        self.update_rest_normals(shape);
+        Some(self.kept_steps(&from, kept, self.options.steps, true))
     }
 
     /// Steps from a state with the pose that was kept; the shape may be kept, too.

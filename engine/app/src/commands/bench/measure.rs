@@ -5,19 +5,23 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
+use toile_assets::body::Sex;
 use toile_perf::ansur::Survey;
 use toile_perf::measuring::{
-    self, CrossedMeasure, Family, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Sensor, StatedDecile, crossed,
-    reliability,
+    self, CrossedMeasure, Family, MeasuredPerson, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Sensor,
+    StatedDecile, crossed, reliability,
 };
 use toile_perf::plot::axis::Axis;
 use toile_perf::plot::chart::{Chart, Series, SeriesStyle};
 use toile_perf::plot::svg;
 use toile_perf::plot::{BLACK, SERIES_COLOURS};
+use toile_view::contact_sheet::contact_sheet;
+use toile_view::image::Image;
 
 use crate::arguments::{Printing, count};
 use crate::exit::AppError;
 use crate::output::OutputFolder;
+use crate::pictures::write_png;
 use crate::report::Document;
 use crate::terminal::{self, Paint, Tone};
 
@@ -60,7 +64,8 @@ pub struct MeasureBenchArgs {
     /// They turn all round after that, and are measured once more: three seconds a person
     #[arg(long)]
     turn: bool,
-    /// Folder for reliability.svg: how often a girth lay within half a size, against how probable that was stated
+    /// Folder for reliability.svg (how often a girth lay within half a size, against how probable that was stated) and
+    /// surfaces.png: two women and two men of the other family, true and as they were measured
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Which people are drawn, and how they stand
@@ -106,6 +111,32 @@ struct CrossedFamily {
     measures: Vec<CrossedMeasure>,
 }
 
+/// People of each sex whose surfaces are drawn.
+const DRAWN: usize = 2;
+
+/// Pictures of the first people's surfaces.
+#[derive(Default)]
+struct SurfacePictures {
+    drawn: Vec<Image>,
+    /// How many of them are of each sex, women first.
+    count: [usize; 2],
+}
+
+impl SurfacePictures {
+    fn add(&mut self, person: &MeasuredPerson) {
+        let count = &mut self.count[usize::from(person.sex == Sex::Male)];
+        if let Some(surfaces) = person.surfaces.as_ref().filter(|_| *count < DRAWN) {
+            *count += 1;
+            self.drawn.push(surfaces.picture());
+        }
+    }
+
+    /// All of them under each other.
+    fn sheet(&self) -> Image {
+        contact_sheet(&self.drawn.iter().collect::<Vec<_>>(), 1, &[])
+    }
+}
+
 /// Each family judged by the other.
 fn cross(studies: &[MeasuringStudy]) -> Vec<CrossedFamily> {
     let of = |family: &str| -> Vec<&MeasuringStudy> { studies.iter().filter(|s| s.family == family).collect() };
@@ -127,13 +158,19 @@ pub fn run(args: &MeasureBenchArgs) -> Result<(), AppError> {
     let surveys: Vec<Survey> =
         args.files.iter().map(|f| Survey::read(f)).collect::<Result<_, _>>().map_err(AppError::input)?;
     let mut studies = Vec::new();
+    let mut pictures = SurfacePictures::default();
     let families = [Family::Survey].into_iter().chain(args.makehuman.clone().map(Family::Makehuman));
     for (family, sensor) in families.flat_map(|family| args.sensors().map(move |sensor| (family.clone(), sensor))) {
         let all: usize = surveys.iter().map(|s| args.people.min(s.people())).sum();
         let bar = words.bar(all as u64, "measuring people");
         let MeasureBenchArgs { people, frames, seed, turn, .. } = *args;
-        let options = MeasuringOptions { family, people, frames, seed, sensor, turn };
-        studies.push(measuring::study(&surveys, &options, &|_| bar.inc(1)).map_err(AppError::input)?);
+        let surfaces = args.out.is_some();
+        let options = MeasuringOptions { family, people, frames, seed, sensor, turn, surfaces };
+        let study = measuring::study(&surveys, &options, &mut |person| {
+            bar.inc(1);
+            pictures.add(person);
+        });
+        studies.push(study.map_err(AppError::input)?);
         bar.finish_and_clear();
     }
     let missed: Vec<String> = studies.iter().flat_map(missed).collect();
@@ -146,6 +183,9 @@ pub fn run(args: &MeasureBenchArgs) -> Result<(), AppError> {
     if let Some(dir) = &args.out {
         let mut out = OutputFolder::prepare(dir).map_err(AppError::input)?;
         out.write("reliability.svg", diagram(&reliability).as_bytes()).map_err(AppError::input)?;
+        if !pictures.drawn.is_empty() {
+            write_png(&mut out, "surfaces.png", &pictures.sheet())?;
+        }
         out.commit().map_err(AppError::input)?;
     }
     if args.printing.json {
@@ -212,7 +252,8 @@ fn table(study: &MeasuringStudy, paint: Paint) -> String {
     let _ = writeln!(
         text,
         "following: {:.1} ms a frame (median), {:.1} ms (95 %): picture {:.1}, matches {:.1}, equations {:.1}, solution {:.1} \
-         ms; {:.0} ms to find somebody; surface {:.1} mm and joints {:.0} mm off",
+         ms; {:.0} ms to find somebody; surface {:.1} mm and joints {:.0} mm off; measures from the front in {:.0} ms, and after a \
+         turn in {:.0} ms",
         f.frame_ms[0],
         f.frame_ms[1],
         f.stages_ms[0],
@@ -221,7 +262,9 @@ fn table(study: &MeasuringStudy, paint: Paint) -> String {
         f.stages_ms[3],
         f.start_ms,
         f.off_mm,
-        f.joints_mm
+        f.joints_mm,
+        f.measure_ms[0],
+        f.measure_ms[1]
     );
     text
 }
