@@ -1,4 +1,4 @@
-//! Measures taken by tape: they count in every command, and what cannot be is named.
+//! What a shopper says of themselves: measures by tape count in every command, a child moves nothing, and what cannot be is named.
 
 mod common;
 
@@ -46,4 +46,17 @@ fn wrong_units_and_contradictions_are_named() {
     assert!(refused(&["chest=800", "underbust=1150"]).contains("does not go with"));
     let sex = refusal(&scratch.toile(&["measure", "in.mcap", "--sex", "child"]), 2);
     assert!(sex.contains("female"), "{sex}");
+}
+
+#[test]
+fn whether_somebody_is_a_child_is_estimated_and_moves_no_measure() {
+    let scratch = recorded("age");
+    let of = |words: &[&str]| object(&scratch.toile(&[&["measure", "in.mcap", "--json"], words].concat()));
+    let (guessed, child) = (of(&[]), of(&["--age", "child"]));
+    assert!(guessed["body"]["child"].as_f64().expect("odds") < 0.05, "{guessed}");
+    assert_eq!(child["body"]["child"], 1.0);
+    assert_eq!(of(&["--age", "adult"])["body"]["child"], 0.0);
+    assert_eq!(guessed["measurements"], child["measurements"]);
+    let notes = |report: &Value| report["session"]["notes"].to_string();
+    assert!(notes(&child).contains("probably a child") && !notes(&guessed).contains("child"), "{child}");
 }
