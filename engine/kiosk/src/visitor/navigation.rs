@@ -2,6 +2,7 @@
 
 use toile_track::gesture::Gesture;
 
+use super::measure_entry::MeasureEntry;
 use super::model::{Effect, Effects, NavigationKey, VisitModel};
 use super::screen::{Action, Page};
 use super::texts::Language;
@@ -130,6 +131,13 @@ impl VisitModel {
             Action::LargeType => self.visit.large = !self.visit.large,
             Action::Seated => (self.visit.seated, self.visit.seated_said) = (!self.visit.seated, true),
             Action::Wear => self.wear_other(effects),
+            Action::OwnMeasure(place) => self.open_entry(place),
+            Action::Digit(digit) => self.typed(|entry| entry.digit(digit)),
+            Action::Point => self.typed(MeasureEntry::point),
+            Action::DeleteDigit => self.typed(MeasureEntry::delete),
+            Action::Unit => self.change_unit(),
+            Action::Accept => self.accept_measure(effects),
+            Action::RemoveMeasure => self.remove_measure(effects),
         }
     }
 

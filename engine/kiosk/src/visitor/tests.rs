@@ -17,6 +17,7 @@ use super::size_fit::tests::woman;
 use super::texts::{Language, Texts};
 use super::wardrobe::Wardrobe;
 use crate::service::session;
+use toile_track::tape_readings::TapeReadings;
 use toile_view::image::Size;
 
 const MS: u64 = 1_000_000;
@@ -32,6 +33,8 @@ fn defaults() -> VisitDefaults {
         large: false,
         wear: vec!["sun-dress".into()],
         size: None,
+        tape: TapeReadings::default(),
+        motion: true,
     }
 }
 
@@ -79,8 +82,8 @@ impl Play {
             let in_a_second = self.now + 700 * MS;
             let code = || picture::PictureCode { side: 3, dark: vec![true; 9] };
             let reply = match &effect {
-                Effect::Measure { number, .. } if self.fails => Input::Failed(*number),
-                Effect::Measure { number, .. } => Input::Measured(*number, Box::new(self.known.clone())),
+                Effect::Measure { number, .. } | Effect::MeasureTurn { number } if self.fails => Input::Failed(*number),
+                Effect::Measure { number, .. } | Effect::MeasureTurn { number } => Input::Measured(*number, Box::new(self.known.clone())),
                 Effect::Dress { number, .. } if self.fails => Input::Failed(*number),
                 Effect::Dress { number, .. } => Input::Dressed(*number),
                 Effect::DrapeTwo { number, .. } if self.fails => Input::Failed(*number),
@@ -143,9 +146,12 @@ fn texts_of(screen: &Screen) -> Vec<String> {
     let mut all = vec![screen.heading.clone()];
     for block in &screen.blocks {
         match block {
-            Block::Text(text) | Block::Progress { label: text, .. } | Block::Fit { text, .. } => all.push(text.clone()),
+            Block::Text(text)
+            | Block::Progress { label: text, .. }
+            | Block::Fit { text, .. }
+            | Block::Entry { text } => all.push(text.clone()),
             Block::Legend { ends } => all.extend(ends.clone()),
-            Block::PoseGuide { .. } | Block::Code { .. } | Block::Countdown { .. } => {}
+            Block::PoseGuide { .. } | Block::TurnGuide { .. } | Block::Code { .. } | Block::Countdown { .. } => {}
         }
     }
     for control in &screen.controls {

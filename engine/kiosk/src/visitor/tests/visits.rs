@@ -7,7 +7,7 @@ use crate::visitor::screen::{Block, BodyView, ControlStyle};
 use toile_track::gesture::Gesture;
 
 /// Every page that a visitor can come to.
-const ALL: [Page; 13] = [
+const ALL: [Page; 15] = [
     Page::Attract,
     Page::Guide,
     Page::Measuring,
@@ -18,6 +18,8 @@ const ALL: [Page; 13] = [
     Page::Zone,
     Page::Compare,
     Page::Picture,
+    Page::OwnMeasures,
+    Page::MeasureEntry,
     Page::Settings,
     Page::Second,
     Page::Leaving,
