@@ -135,12 +135,13 @@ impl VisitModel {
         use Action::*;
         add(&[Open(Page::Garments)]);
         self.sizes(add, self.worn().map(|w| w.size), None);
+        add(&[Open(Page::Zones), Open(Page::Compare), Turn(-1), Turn(1)]);
+        let held = self.visit.picture.code().is_some();
+        add(&[if held { Open(Page::Picture) } else { TakePicture }]);
         if self.wants_tape() {
             add(&[Open(Page::OwnMeasures)]);
         }
-        add(&[Open(Page::Zones), Open(Page::Compare), Turn(-1), Turn(1)]);
-        let held = self.visit.picture.code().is_some();
-        add(&[if held { Open(Page::Picture) } else { TakePicture }, Open(Page::Settings), Leave]);
+        add(&[Open(Page::Settings), Leave]);
     }
 
     fn compare(&self, add: &mut impl FnMut(&[Action])) {

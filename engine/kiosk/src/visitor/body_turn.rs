@@ -59,7 +59,15 @@ impl BodyTurn {
     /// Offered at a time (ns).
     pub fn new(now_ns: u64) -> Self {
         let seen = [false; SIDES];
-        Self { state: TurnState::Offered, offered_ns: now_ns, begun_ns: 0, new_ns: now_ns, first: None, last: None, seen }
+        Self {
+            state: TurnState::Offered,
+            offered_ns: now_ns,
+            begun_ns: 0,
+            new_ns: now_ns,
+            first: None,
+            last: None,
+            seen,
+        }
     }
 
     /// How far it has got.
@@ -104,9 +112,8 @@ impl BodyTurn {
     fn face(&mut self, now_ns: u64, facing: f32) {
         // Sensors that take everybody for facing them name left and right the wrong way round from behind: nobody turns by half a circle
         // between two frames.
-        let jumped = |&(then, last): &(u64, f32)| {
-            now_ns.saturating_sub(then) <= CONTINUOUS_NS && apart(facing, last) > 0.5 * PI
-        };
+        let jumped =
+            |&(then, last): &(u64, f32)| now_ns.saturating_sub(then) <= CONTINUOUS_NS && apart(facing, last) > 0.5 * PI;
         let facing = if self.last.as_ref().is_some_and(jumped) { facing + PI } else { facing };
         let first = *self.first.get_or_insert(facing);
         self.last = Some((now_ns, facing));

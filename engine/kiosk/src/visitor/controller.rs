@@ -10,9 +10,7 @@ use toile_fitting::live::dresser::{DressOutcome, ShopperSource};
 use toile_sensors::frame::Joints;
 use toile_track::gesture::Gestures;
 
-use super::dressing_worker::{
-    DressingContext, DressingJob, DressingWorker, JobResult, MeasuredVisitor, MeasuringJob,
-};
+use super::dressing_worker::{DressingContext, DressingJob, DressingWorker, JobResult, MeasuredVisitor, MeasuringJob};
 use super::model::{Effect, Input, VisitModel};
 use super::presence::{Presence, PresenceTracker};
 use super::reach::DisplayMount;

@@ -110,6 +110,8 @@ pub enum Input {
     Pressed(Action),
     /// A navigation key was pressed.
     Key(NavigationKey),
+    /// A key of a keypad was pressed at a keyboard. One that is not on the page is ignored.
+    Typed(Action),
     /// A gesture was recognised.
     Gesture(Gesture),
     /// Somebody was measured.

@@ -106,6 +106,7 @@ impl VisitModel {
             Input::Tick => {}
             Input::Presence(seen) => self.see(seen),
             Input::Pressed(action) => self.pressed(action, &mut effects),
+            Input::Typed(action) => self.typed_key(action, &mut effects),
             Input::Key(button) => self.key(button, &mut effects),
             Input::Gesture(gesture) => self.gesture(gesture, &mut effects),
             reply => self.reply(reply, &mut effects),

@@ -32,6 +32,14 @@ impl VisitModel {
         }
     }
 
+    /// A digit at a keyboard: Enter then accepts, and does not press the digit again.
+    pub(super) fn typed_key(&mut self, action: Action, effects: &mut Effects) {
+        self.pressed(action, effects);
+        if let Some(accept) = self.actions().iter().position(|a| *a == Action::Accept) {
+            self.focus = accept;
+        }
+    }
+
     pub(super) fn gesture(&mut self, gesture: Gesture, effects: &mut Effects) {
         // Somebody else's hands press nothing that is the shopper's.
         let strange = self.visit.shopper.is_some() && self.seen.who != self.visit.shopper;

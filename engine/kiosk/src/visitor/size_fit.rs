@@ -473,8 +473,11 @@ pub(super) mod tests {
         assert_eq!(known.basis(Girth::Waist), MeasureBasis::Seen);
         let fit = judge(&item("wide-trousers"), &known, None).unwrap();
         assert!(!fit.has_unknown());
-        let narrow = before.with_tape(&TapeReadings::default().with(OwnMeasure::Hip.index(), 0.90).unwrap());
-        assert!(judge(&item("wide-trousers"), &narrow, None).unwrap().size < fit.size, "sizes follow");
+        let sized = |chest: f32| {
+            let tape = TapeReadings::default().with(OwnMeasure::Chest.index(), chest).unwrap();
+            judge(&item("sun-dress"), &before.with_tape(&tape), None).unwrap().size
+        };
+        assert!(sized(0.84) < sized(1.0), "sizes follow");
         assert_eq!(known.with_tape(&TapeReadings::default()), before);
         // A measure that only follows from one by tape is a guess as before.
         let chest = before.with_tape(&TapeReadings::default().with(OwnMeasure::Chest.index(), 0.95).unwrap());

@@ -394,5 +394,5 @@ fn whatever_is_pressed_something_has_the_focus_and_one_control_at_most_stands_ou
         let known = play.model.visit.known.is_some();
         assert!(known || !matches!(screen.body_view, BodyView::Shopper { .. } | BodyView::Two { .. }));
     }
-    assert!(play.pages.len() >= 12, "{:?}", play.pages);
+    assert!(play.pages.len() >= 13, "{:?}", play.pages);
 }

@@ -76,7 +76,8 @@ impl Column<'_> {
     fn grid(&self, run: Range<usize>, y: f32, buttons: &mut Vec<ButtonBox>) -> f32 {
         let keys = matches!(self.controls[run.start].style, ControlStyle::Key);
         let most = self.most_columns(&run);
-        let tries = (if keys { KEY_COLUMNS..=KEY_COLUMNS } else { 1..=most }).map(|columns| self.rows(&run, columns, y));
+        let tries =
+            (if keys { KEY_COLUMNS..=KEY_COLUMNS } else { 1..=most }).map(|columns| self.rows(&run, columns, y));
         let lowest = tries.min_by(|(_, a), (_, b)| a.total_cmp(b));
         let Some((rows, end)) = lowest else { return y };
         buttons.extend(rows);
