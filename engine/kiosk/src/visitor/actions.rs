@@ -104,11 +104,11 @@ impl VisitModel {
             }
             Page::MeasureEntry => {
                 (1..=9).for_each(|digit| add(&[Digit(digit)]));
-                add(&[Point, Digit(0), DeleteDigit, Accept, Unit]);
+                add(&[Point, Digit(0), DeleteDigit, Accept]);
                 if self.is_given() {
                     add(&[RemoveMeasure]);
                 }
-                add(&[Back]);
+                add(&[Unit, Back]);
             }
             Page::Settings => {
                 add(&[Back]);

@@ -238,7 +238,9 @@ impl PageWriter<'_> {
             }
             (_, Action::Digit(_) | Action::Point | Action::DeleteDigit) => ControlStyle::Key,
             (Page::Unmeasured, Action::Back) if self.is_partly() => ControlStyle::Primary,
-            (_, Action::Back | Action::Leave | Action::Open(Page::Settings) | Action::LargeType) => ControlStyle::Quiet,
+            (_, Action::Back | Action::Leave | Action::Open(Page::Settings) | Action::LargeType | Action::Unit) => {
+                ControlStyle::Quiet
+            }
             (Page::Attract, Action::Language(_)) => ControlStyle::Quiet,
             _ => ControlStyle::Plain,
         }
