@@ -13,8 +13,9 @@ pub const SIDES: usize = 36;
 /// (`toile_track::fit`). Front, sides and back will do.
 const CLOSED: usize = 10;
 
-/// The offer stands for so long (ns): the front is measured and dressed meanwhile, and nobody waits for its end.
-const OFFER_NS: u64 = 6_000_000_000;
+/// The offer stands for so long (ns): the sentence is read twice in that time. The front is measured and dressed meanwhile, and nobody
+/// waits for its end.
+const OFFER_NS: u64 = 4_000_000_000;
 
 /// Who is turned by more than this from how they first stood has begun to turn (rad): 25 degrees; people sway and look round by half of it.
 const BEGUN: f32 = 0.44;

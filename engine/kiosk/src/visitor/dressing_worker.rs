@@ -201,6 +201,7 @@ mod tests {
     use toile_assets::sizes::Girth;
     use toile_fitting::dress::session;
     use toile_sensors::source::Session;
+    use toile_track::measures::Measures;
 
     fn context() -> DressingContext {
         DressingContext {
@@ -226,6 +227,16 @@ mod tests {
         assert_eq!(depth.basis(Girth::Waist), MeasureBasis::Seen);
         let stature = depth.measured.measures.stature.unwrap();
         assert!((stature.value - 1.694).abs() < 0.02, "{stature:?}");
+        let recording = ShopperSource::Recording(Arc::new(session.clone()));
+        let until = |until_ns| {
+            let job = MeasuringJob { until_ns, ..job(recording.clone(), false) };
+            context.measure(job).unwrap().measured.measures
+        };
+        // The embedded shopper stands for seven seconds and then turns: that counts once it was played, and not before.
+        let front = until(0);
+        assert_eq!(until(6_500_000_000), front);
+        let shoulders = |measures: Measures| measures.shoulder_breadth.unwrap().sigma;
+        assert!(shoulders(depth.measured.measures) < 0.9 * shoulders(front));
         let joints = context.measure(job(ShopperSource::Joints(session.joints.clone()), false)).unwrap();
         assert!(joints.count < depth.count && joints.basis(Girth::Waist) == MeasureBasis::Bones);
         let seated = context.measure(job(ShopperSource::Recording(Arc::new(session)), true)).unwrap();
