@@ -47,7 +47,7 @@ impl VisitModel {
     fn keep_front(&mut self, effects: &mut Effects) {
         self.visit.turn = None;
         match self.visit.front.take() {
-            Some(front) => self.settle(front, effects),
+            Some(front) => self.settle(&front, effects),
             // It stands dressed.
             None => self.show_dressed(),
         }
@@ -69,7 +69,7 @@ impl VisitModel {
         if self.is_turning() {
             (self.visit.front, self.visit.progress) = (Some(known), MeasureProgress::Turning);
         } else {
-            self.settle(known, effects);
+            self.settle(&known, effects);
         }
     }
 
@@ -85,7 +85,7 @@ impl VisitModel {
     }
 
     /// Takes measures as the shopper's own, with what they took by tape laid over them, and has them dressed.
-    fn settle(&mut self, known: VisitorMeasures, effects: &mut Effects) {
+    fn settle(&mut self, known: &VisitorMeasures, effects: &mut Effects) {
         self.visit.progress = MeasureProgress::Dressing(self.now_ns);
         self.visit.front = None;
         let first = if self.visit.outfit.is_empty() { self.first_outfit() } else { self.visit.outfit.clone() };
