@@ -165,7 +165,7 @@ fn a_visit_by_mouse_and_keys_from_arriving_to_leaving() {
     kiosk.enter(0);
     kiosk.display.key("Escape");
     kiosk.expect("2-fitting");
-    kiosk.click(9);
+    kiosk.click(10);
     kiosk.expect("1-attract");
     let report = kiosk.end();
     let states: Vec<&str> = report["states"].as_array().unwrap().iter().filter_map(Value::as_str).collect();

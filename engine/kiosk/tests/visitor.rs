@@ -84,7 +84,11 @@ impl Finger {
     }
 
     fn visit(&mut self) {
-        self.page(Page::Measuring);
+        let measuring = self.page(Page::Measuring);
+        assert!(
+            measuring.blocks.iter().any(|b| matches!(b, Block::TurnGuide { .. })),
+            "depth comes: a turn is offered"
+        );
         let fitting = self.page(Page::Fitting);
         assert!(fitting.blocks.iter().any(|b| matches!(b, Block::Fit { text, .. } if text.contains('±'))));
         self.press(Action::Open(Page::Garments));

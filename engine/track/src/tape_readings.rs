@@ -1,5 +1,7 @@
 //! Measures that were taken by tape: read from words, checked, and laid over what was measured.
 
+use std::sync::LazyLock;
+
 use toile_assets::body::Sex;
 use toile_assets::body::shape::Shapes;
 use toile_assets::sizes::Population;
@@ -106,16 +108,18 @@ fn index_of(word: &str) -> Result<usize, TapeError> {
         .ok_or_else(|| TapeError::Name { name: word.clone(), names: MEASURES.map(|m| m.0).join(", ") })
 }
 
-/// What people of either sex have, before any of them is seen.
+/// What people of either sex have, before any of them is seen. Reading it off the bodies takes a moment, once.
 pub fn population(population: Population) -> BodyEstimate {
-    let of = |sex: Sex| {
+    fn of(sex: Sex) -> BodyEstimate {
         let shapes = Shapes::of(sex);
         covariance_of(shapes, shapes.mean(), &shapes.covariance())
-    };
+    }
+    static WOMEN: LazyLock<BodyEstimate> = LazyLock::new(|| of(Sex::Female));
+    static MEN: LazyLock<BodyEstimate> = LazyLock::new(|| of(Sex::Male));
     match population {
-        Population::Women => of(Sex::Female),
-        Population::Men => of(Sex::Male),
-        Population::Mixed => Correlated::mixed(&[(0.5, of(Sex::Female)), (0.5, of(Sex::Male))]),
+        Population::Women => *WOMEN,
+        Population::Men => *MEN,
+        Population::Mixed => Correlated::mixed(&[(0.5, *WOMEN), (0.5, *MEN)]),
     }
 }
 
@@ -128,6 +132,18 @@ impl TapeReadings {
     /// What was taken: the place of each in [`MEASURES`], and its length (m).
     pub fn given(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
         self.values.iter().enumerate().filter_map(|(i, v)| Some((i, (*v)?)))
+    }
+
+    /// What was taken of one measure, by its place in [`MEASURES`] (m).
+    pub fn at(&self, index: usize) -> Option<f32> {
+        self.values.get(index).copied().flatten()
+    }
+
+    /// The same without one of them, by its place in [`MEASURES`].
+    #[must_use]
+    pub fn without(mut self, index: usize) -> Self {
+        self.values[index] = None;
+        self
     }
 
     /// Adds a measure by its place in [`MEASURES`] (m).

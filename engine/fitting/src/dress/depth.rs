@@ -32,6 +32,11 @@ pub struct DepthSurface {
 impl DepthSurface {
     /// The shopper in the frames of the first second, and in those of a turn.
     pub fn of(session: &Session) -> Self {
+        Self::until(session, u64::MAX)
+    }
+
+    /// The same with the turn up to a time of the session (ns).
+    pub fn until(session: &Session, until_ns: u64) -> Self {
         let (mut cut, mut frames, mut after) = (0, Vec::new(), Vec::new());
         let mut finder = PersonFinder::default();
         let mut next = 0;
@@ -41,7 +46,7 @@ impl DepthSurface {
                 cut += usize::from(PersonCloud::of(&alone).is_some_and(|c| c.cut_below));
                 next = frame.time_ns + APART_NS;
                 frames.push((frame.clone(), alone));
-            } else if frame.time_ns.saturating_sub(session.depth[0].time_ns) > TURN_NS {
+            } else if frame.time_ns.saturating_sub(session.depth[0].time_ns) > TURN_NS || frame.time_ns > until_ns {
                 break;
             } else if frame.time_ns >= next {
                 next = frame.time_ns + APART_NS;

@@ -38,11 +38,13 @@ pub struct ShopperFacts {
     pub seated: bool,
     /// Measures that they took by tape.
     pub tape: TapeReadings,
+    /// Depth of a turn counts up to this time of the session (ns): what was played of a recording. The first second always counts.
+    pub until_ns: u64,
 }
 
 impl Default for ShopperFacts {
     fn default() -> Self {
-        Self { sex: None, child: None, clothed: true, seated: false, tape: TapeReadings::default() }
+        Self { sex: None, child: None, clothed: true, seated: false, tape: TapeReadings::default(), until_ns: u64::MAX }
     }
 }
 
@@ -84,12 +86,12 @@ pub fn measure(session: &Session, facts: ShopperFacts) -> Result<Measured, Fitti
     if facts.seated {
         return seated(session, facts);
     }
-    let surface = DepthSurface::of(session);
+    let surface = DepthSurface::until(session, facts.until_ns);
     let fitted = surface.measure(Population::from(facts.sex), facts.clothed);
     let population = population(facts.sex, fitted.as_ref());
     let sections = by_sections(session, population)?;
     let best = fitted.as_ref().map_or_else(|| sections.clone(), |fitted| preferred(&sections, fitted));
-    let mut best = with_tape(best, fitted.as_ref(), population, &facts.tape);
+    let mut best = with_tape(best, fitted.as_ref().map(|f| &f.all), population, &facts.tape);
     let child = child(&best, facts);
     best.notes.extend(child.filter(|odds| *odds >= 0.5).map(child_note));
     Ok(Measured { best, sections, fitted, surface, population, child })
@@ -153,17 +155,18 @@ fn population(facts: Option<Sex>, fitted: Option<&FittedMeasures>) -> Population
     }
 }
 
-/// What is best known once measures were taken by tape: all others follow as far as their errors go with these.
-fn with_tape(
+/// What is best known once measures were taken by tape: all others follow as far as their errors go with these. `all` is what the body fit
+/// says, where there is one.
+pub fn with_tape(
     best: Measurements,
-    fitted: Option<&FittedMeasures>,
+    all: Option<&BodyEstimate>,
     population: Population,
     tape: &TapeReadings,
 ) -> Measurements {
     if tape.is_empty() {
         return best;
     }
-    let known = fitted.map_or_else(|| seen(&best, population), |f| f.all);
+    let known = all.copied().unwrap_or_else(|| seen(&best, population));
     let (known, sentences) = tape.over(&known);
     let of = |name: &str| MEASURES.iter().position(|m| m.0 == name).map(|i| known.at(i));
     let mut notes = best.notes.clone();

@@ -1,7 +1,9 @@
 //! Actions: what can be pressed on a page, in the order of the Tab key; first what most will want next.
 
+use super::measure_entry;
 use super::model::VisitModel;
 use super::screen::{Action, Page};
+use super::size_fit::SizeFit;
 use super::texts;
 use super::visit::MeasureProgress;
 use crate::service::session::SessionState;
@@ -70,7 +72,7 @@ impl VisitModel {
                 self.go_on(&mut add);
                 add(&[Open(Page::Settings), Leave]);
             }
-            Page::Unmeasured => add(&[Back, Measure, Seated, Leave]),
+            Page::Unmeasured => add(&[Back, Open(Page::OwnMeasures), Measure, Seated, Leave]),
             Page::Fitting => self.fitting(&mut add),
             Page::Garments => {
                 (0..self.wardrobe.items.len()).for_each(|i| add(&[Garment(i)]));
@@ -81,19 +83,39 @@ impl VisitModel {
             Page::Zones => {
                 let zones = self.visit.fit.as_ref().map_or(0, |fit| fit.zones.len());
                 (0..zones).for_each(|i| add(&[Zone(i)]));
+                if self.visit.fit.as_ref().is_some_and(SizeFit::has_unknown) {
+                    add(&[Open(Page::OwnMeasures)]);
+                }
                 add(&[FitMap, Open(Page::Compare), Turn(-1), Turn(1), Back]);
             }
-            Page::Zone => add(&[Back, Measure]),
+            Page::Zone => {
+                add(&[Back, Measure]);
+                if self.zone_wants_tape() {
+                    add(&[Open(Page::OwnMeasures)]);
+                }
+            }
             Page::Compare => self.compare(&mut add),
             Page::Picture if self.visit.picture.code().is_some() => add(&[DeletePicture, Back]),
             Page::Picture if self.visit.snap_failed => add(&[TakePicture, Back]),
             Page::Picture => add(&[Back]),
+            Page::OwnMeasures => {
+                (0..measure_entry::OwnMeasure::ALL.len()).for_each(|i| add(&[OwnMeasure(i)]));
+                add(&[Unit, Back]);
+            }
+            Page::MeasureEntry => {
+                (1..=9).for_each(|digit| add(&[Digit(digit)]));
+                add(&[Point, Digit(0), DeleteDigit, Accept]);
+                if self.is_given() {
+                    add(&[RemoveMeasure]);
+                }
+                add(&[Unit, Back]);
+            }
             Page::Settings => {
                 add(&[Back]);
                 (0..texts::Language::ALL.len()).for_each(|i| add(&[Language(i)]));
                 add(&[LargeType]);
                 if self.session.state() == SessionState::TryOn {
-                    add(&[Measure, Leave]);
+                    add(&[Measure, Open(Page::OwnMeasures), Leave]);
                 }
             }
             Page::Second => add(&[Stay, Begin]),
@@ -115,7 +137,11 @@ impl VisitModel {
         self.sizes(add, self.worn().map(|w| w.size), None);
         add(&[Open(Page::Zones), Open(Page::Compare), Turn(-1), Turn(1)]);
         let held = self.visit.picture.code().is_some();
-        add(&[if held { Open(Page::Picture) } else { TakePicture }, Open(Page::Settings), Leave]);
+        add(&[if held { Open(Page::Picture) } else { TakePicture }]);
+        if self.wants_tape() {
+            add(&[Open(Page::OwnMeasures)]);
+        }
+        add(&[Open(Page::Settings), Leave]);
     }
 
     fn compare(&self, add: &mut impl FnMut(&[Action])) {

@@ -10,7 +10,7 @@ use toile_fitting::live::dresser::{DressOutcome, ShopperSource};
 use toile_sensors::frame::Joints;
 use toile_track::gesture::Gestures;
 
-use super::dressing_worker::{DressingContext, DressingJob, DressingWorker, JobResult, MeasuredVisitor};
+use super::dressing_worker::{DressingContext, DressingJob, DressingWorker, JobResult, MeasuredVisitor, MeasuringJob};
 use super::model::{Effect, Input, VisitModel};
 use super::presence::{Presence, PresenceTracker};
 use super::reach::DisplayMount;
@@ -45,7 +45,7 @@ const PATIENCE: u64 = 4;
 /// Jobs that wait for the worker: the last of each kind.
 #[derive(Default)]
 struct PendingJobs {
-    measure: Option<(u32, ShopperSource, bool)>,
+    measure: Option<(u32, MeasuringJob)>,
     dress: Option<(u32, Outfit)>,
     two: Option<(u32, Box<[Outfit; 2]>)>,
     snap: Option<(u32, Outfit, f32)>,
@@ -73,6 +73,9 @@ pub struct VisitController<'a, O> {
     /// When a frame last came (ns), what was seen in it, and the last in which somebody stood.
     seen: (u64, Presence),
     pose: Option<Joints>,
+    /// When depth last came (ns), and up to which time of a recording it was seen since measuring began (ns).
+    depth_ns: Option<u64>,
+    until_ns: u64,
     /// Gestures that the model has yet to take.
     made: Vec<toile_track::gesture::Gesture>,
     measuring: Option<OngoingMeasurement>,
@@ -102,6 +105,8 @@ impl<'a, O> VisitController<'a, O> {
             gestures: Gestures::new(),
             seen: (0, Presence::default()),
             pose: None,
+            depth_ns: None,
+            until_ns: 0,
             made: Vec::new(),
             measuring: None,
             jobs: PendingJobs::default(),
@@ -121,7 +126,16 @@ impl<'a, O> VisitController<'a, O> {
         match effect {
             Effect::Measure { number, seated } => {
                 self.measuring = Some(OngoingMeasurement { number, seated, since_ns: now, frames: Vec::new() });
+                self.until_ns = 0;
             }
+            Effect::MeasureTurn { number } => match self.played.clone() {
+                Some(source) => {
+                    let job = MeasuringJob { source, seated: false, until_ns: self.until_ns };
+                    self.jobs.measure = Some((number, job));
+                }
+                // Of joints alone no turn is offered.
+                None => self.update(now, Input::Failed(number), context),
+            },
             Effect::Dress { number, outfit } => self.jobs.dress = Some((number, outfit)),
             Effect::DrapeTwo { number, outfits } => self.jobs.two = Some((number, outfits)),
             Effect::Snap { number, outfit, yaw } => self.jobs.snap = Some((number, outfit, yaw)),
@@ -129,6 +143,7 @@ impl<'a, O> VisitController<'a, O> {
             Effect::Forget => {
                 self.clear(context);
                 self.pose = None;
+                (self.depth_ns, self.until_ns) = (None, 0);
                 self.presence.forget();
                 self.gestures.reset();
                 self.made.clear();
@@ -178,8 +193,9 @@ impl<'a, O> VisitController<'a, O> {
         }
         let Some(OngoingMeasurement { number, seated, frames, .. }) = self.measuring.take() else { return };
         if enough {
-            let model = self.played.clone().unwrap_or(ShopperSource::Joints(frames));
-            self.jobs.measure = Some((number, model, seated));
+            let source = self.played.clone().unwrap_or(ShopperSource::Joints(frames));
+            // The front first: nobody waits for a turn that may not come.
+            self.jobs.measure = Some((number, MeasuringJob { source, seated, until_ns: 0 }));
         } else {
             self.update(now, Input::Failed(number), context);
         }
@@ -192,8 +208,8 @@ impl<'a, O> VisitController<'a, O> {
         }
         let client = || Some(Box::new(MeasuredVisitor { known: self.model.known()?.clone(), pose: self.pose? }));
         let jobs = &mut self.jobs;
-        let job = if let Some((number, model, seated)) = jobs.measure.take() {
-            Some((number, DressingJob::Measure(model, seated)))
+        let job = if let Some((number, job)) = jobs.measure.take() {
+            Some((number, DressingJob::Measure(job)))
         } else if let Some((number, outfit)) = jobs.dress.take() {
             client().map(|client| (number, DressingJob::Dress(client, outfit)))
         } else if let Some((number, outfits)) = jobs.two.take() {
@@ -224,7 +240,13 @@ impl<S: Scene, O> SessionController<S, O> for VisitController<'_, O> {
 
     fn frame(&mut self, frame: ObservedFrame) {
         let ObservedFrame { raw, filtered, depth } = frame;
-        self.seen = (raw.time_ns, self.presence.push(&raw));
+        if let Some(image) = &depth {
+            self.depth_ns = Some(raw.time_ns);
+            self.until_ns = self.until_ns.max(image.frame().time_ns);
+        }
+        // Depth comes more seldom than joints do.
+        let has_depth = self.depth_ns.is_some_and(|then| raw.time_ns.saturating_sub(then) < STALE_NS);
+        self.seen = (raw.time_ns, Presence { depth: has_depth, ..self.presence.push(&raw) });
         if session::is_present(&filtered) {
             self.pose = Some(filtered);
         }

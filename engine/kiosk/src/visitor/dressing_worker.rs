@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use toile_assets::sizes::Population;
 use toile_engine::cloth::Quality;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_fitting::dress::dressed::Dressed;
@@ -12,7 +13,7 @@ use toile_fitting::dress::wish;
 use toile_fitting::live::background::{BackgroundJob, Finished};
 use toile_fitting::live::dresser::ShopperSource;
 use toile_sensors::frame::Joints;
-use toile_track::fit::measuring::MEASURES;
+use toile_track::tape_readings;
 use toile_view::drawn_frame;
 use toile_view::image::{Size, linear};
 
@@ -36,11 +37,22 @@ pub struct MeasuredVisitor {
     pub pose: Joints,
 }
 
+/// Somebody to be measured.
+#[derive(Debug, Clone)]
+pub struct MeasuringJob {
+    /// What was seen of them.
+    pub source: ShopperSource,
+    /// Whether they sit: nothing is taken from their legs and hips.
+    pub seated: bool,
+    /// Depth of a turn counts up to this time of a recording (ns); 0 is the front alone.
+    pub until_ns: u64,
+}
+
 /// A job for the dressing worker.
 #[derive(Debug, Clone)]
 pub enum DressingJob {
-    /// Measure somebody, seated or standing.
-    Measure(ShopperSource, bool),
+    /// Measure somebody.
+    Measure(MeasuringJob),
     /// Dress somebody in an outfit.
     Dress(Box<MeasuredVisitor>, Outfit),
     /// Drape two outfits on them.
@@ -125,7 +137,7 @@ impl DressingWorker {
 impl DressingContext {
     fn work(&self, job: DressingJob) -> Result<JobResult, KioskError> {
         Ok(match job {
-            DressingJob::Measure(model, seated) => JobResult::Measured(Box::new(self.measure(model, seated)?)),
+            DressingJob::Measure(job) => JobResult::Measured(Box::new(self.measure(job)?)),
             DressingJob::Dress(client, outfit) => {
                 JobResult::Dressed(Box::new(Dressed::make(self.recipe(&client, &outfit)?, &client.pose, false)?))
             }
@@ -138,13 +150,13 @@ impl DressingContext {
     }
 
     /// Measures whoever stands or sits there.
-    fn measure(&self, source: ShopperSource, seated: bool) -> Result<VisitorMeasures, KioskError> {
-        let measured = measured::measure(&source.session(), ShopperFacts { seated, ..self.facts })?;
-        let known = VisitorMeasures { population: measured.population, ..VisitorMeasures::new(measured.best, seated) };
-        Ok(match measured.fitted {
-            Some(_) => VisitorMeasures { count: MEASURES.len() as u32, ..known },
-            None => known,
-        })
+    fn measure(&self, job: MeasuringJob) -> Result<VisitorMeasures, KioskError> {
+        let MeasuringJob { source, seated, until_ns } = job;
+        let measured = measured::measure(&source.session(), ShopperFacts { seated, until_ns, ..self.facts })?;
+        // Measures by tape are checked against it on the service's thread, which is not to wait for it.
+        _ = tape_readings::population(Population::Mixed);
+        let known = VisitorMeasures::new(measured.best, seated);
+        Ok(known.with_fit(measured.population, measured.fitted.map(|fit| fit.all)))
     }
 
     fn recipe(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<Recipe, KioskError> {
@@ -189,6 +201,7 @@ mod tests {
     use toile_assets::sizes::Girth;
     use toile_fitting::dress::session;
     use toile_sensors::source::Session;
+    use toile_track::measures::Measures;
 
     fn context() -> DressingContext {
         DressingContext {
@@ -198,6 +211,10 @@ mod tests {
         }
     }
 
+    fn job(source: ShopperSource, seated: bool) -> MeasuringJob {
+        MeasuringJob { source, seated, until_ns: u64::MAX }
+    }
+
     fn session() -> Session {
         session::open(None, None).unwrap()
     }
@@ -205,19 +222,29 @@ mod tests {
     #[test]
     fn depth_gives_eleven_measures_joints_fewer_and_a_chair_fewest() {
         let (context, session) = (context(), session());
-        let depth = context.measure(ShopperSource::Recording(Arc::new(session.clone())), false).unwrap();
+        let depth = context.measure(job(ShopperSource::Recording(Arc::new(session.clone())), false)).unwrap();
         assert!(depth.missing.is_empty() && depth.count == 11 && !depth.seated);
         assert_eq!(depth.basis(Girth::Waist), MeasureBasis::Seen);
         let stature = depth.measured.measures.stature.unwrap();
         assert!((stature.value - 1.694).abs() < 0.02, "{stature:?}");
-        let joints = context.measure(ShopperSource::Joints(session.joints.clone()), false).unwrap();
+        let recording = ShopperSource::Recording(Arc::new(session.clone()));
+        let until = |until_ns| {
+            let job = MeasuringJob { until_ns, ..job(recording.clone(), false) };
+            context.measure(job).unwrap().measured.measures
+        };
+        // The embedded shopper stands for seven seconds and then turns: that counts once it was played, and not before.
+        let front = until(0);
+        assert_eq!(until(6_500_000_000), front);
+        let shoulders = |measures: Measures| measures.shoulder_breadth.unwrap().sigma;
+        assert!(shoulders(depth.measured.measures) < 0.9 * shoulders(front));
+        let joints = context.measure(job(ShopperSource::Joints(session.joints.clone()), false)).unwrap();
         assert!(joints.count < depth.count && joints.basis(Girth::Waist) == MeasureBasis::Bones);
-        let seated = context.measure(ShopperSource::Recording(Arc::new(session)), true).unwrap();
+        let seated = context.measure(job(ShopperSource::Recording(Arc::new(session)), true)).unwrap();
         assert!(seated.count < joints.count && seated.seated);
         assert_eq!(seated.missing, [BodyPart::Hip, BodyPart::Legs]);
         assert_eq!(seated.basis(Girth::Hip), MeasureBasis::Guessed);
         assert!(matches!(
-            context.work(DressingJob::Measure(ShopperSource::Joints(Vec::new()), false)),
+            context.work(DressingJob::Measure(job(ShopperSource::Joints(Vec::new()), false))),
             Err(KioskError::Input(_))
         ));
     }
@@ -227,7 +254,7 @@ mod tests {
         let (context, session) = (context(), session());
         let track = session::filtered(&session);
         let pose = track[session::first_standing(&track)];
-        let known = context.measure(ShopperSource::Joints(session.joints), false).unwrap();
+        let known = context.measure(job(ShopperSource::Joints(session.joints), false)).unwrap();
         let item = context.wardrobe.find("t-shirt").unwrap();
         let outfit = |size, colour| -> Outfit { [WornItem { item, size, colour }].into_iter().collect() };
         let client = Box::new(MeasuredVisitor { known, pose });

@@ -1,6 +1,7 @@
 //! Messages: the inputs of the visitor's model and its effects, with the times that it keeps.
 
 use toile_track::gesture::Gesture;
+use toile_track::tape_readings::TapeReadings;
 
 use super::picture::PictureCode;
 use super::presence::Presence;
@@ -71,6 +72,10 @@ pub struct VisitDefaults {
     pub wear: Vec<String>,
     /// The size that everybody wears first, where a garment is made in it; else each gets the one that fits.
     pub size: Option<String>,
+    /// Measures by tape that are known beforehand, for a fitting by appointment.
+    pub tape: TapeReadings,
+    /// Whether anything moves by itself.
+    pub motion: bool,
 }
 
 /// A key of a keyboard, or of a row of buttons.
@@ -105,6 +110,8 @@ pub enum Input {
     Pressed(Action),
     /// A navigation key was pressed.
     Key(NavigationKey),
+    /// A key of a keypad was pressed at a keyboard. One that is not on the page is ignored.
+    Typed(Action),
     /// A gesture was recognised.
     Gesture(Gesture),
     /// Somebody was measured.
@@ -128,6 +135,11 @@ pub enum Effect {
         number: u32,
         /// Whether they sit: nothing is to be taken from their legs and hips.
         seated: bool,
+    },
+    /// Measure them again with all that was seen since, of a turn; [`Input::Measured`].
+    MeasureTurn {
+        /// Number of the effect, which its reply carries.
+        number: u32,
     },
     /// Dress a body of the measures that were taken and show it; [`Input::Dressed`].
     Dress {

@@ -8,11 +8,15 @@
 //! shows what leads where.
 
 mod actions;
+pub mod body_turn;
 pub mod controller;
 pub mod dressing_worker;
+pub mod measure_entry;
+mod measuring;
 mod message;
 pub mod model;
 mod navigation;
+mod own_measures;
 pub mod pages;
 pub mod picture;
 pub mod presence;

@@ -29,7 +29,7 @@ pub struct VisitModel {
     /// The place of the control that has the focus.
     pub(super) focus: usize,
     /// Number of the last effect.
-    number: u32,
+    pub(super) number: u32,
 }
 
 impl VisitModel {
@@ -37,7 +37,7 @@ impl VisitModel {
     pub fn new(defaults: VisitDefaults, wardrobe: Arc<Wardrobe>, now_ns: u64) -> Self {
         Self {
             session: SessionMachine::new(defaults.times.session, now_ns),
-            visit: Visit::new(defaults.language, defaults.large),
+            visit: Visit::new(&defaults),
             defaults,
             wardrobe,
             now_ns,
@@ -86,7 +86,9 @@ impl VisitModel {
             (SessionState::Attract, _) => {
                 top.unwrap_or(if visit.begun_ns.is_some() { Page::Guide } else { Page::Attract })
             }
-            (_, MeasureProgress::Measuring(_) | MeasureProgress::Dressing(_)) => Page::Measuring,
+            (_, MeasureProgress::Measuring(_) | MeasureProgress::Turning | MeasureProgress::Dressing(_)) => {
+                Page::Measuring
+            }
             (_, MeasureProgress::Failed) => top.unwrap_or(Page::Unmeasured),
             (_, MeasureProgress::Guide { .. }) | (SessionState::Measuring, MeasureProgress::No) => {
                 top.unwrap_or(Page::Guide)
@@ -104,6 +106,7 @@ impl VisitModel {
             Input::Tick => {}
             Input::Presence(seen) => self.see(seen),
             Input::Pressed(action) => self.pressed(action, &mut effects),
+            Input::Typed(action) => self.typed_key(action, &mut effects),
             Input::Key(button) => self.key(button, &mut effects),
             Input::Gesture(gesture) => self.gesture(gesture, &mut effects),
             reply => self.reply(reply, &mut effects),
@@ -167,9 +170,10 @@ impl VisitModel {
         let touched = self.visit.begun_ns.max(self.visit.touched_ns);
         let expired = touched.is_some_and(|t| self.now_ns - t >= times.begin_ns);
         if expired && self.session.state() == SessionState::Attract {
-            self.visit = Visit::new(self.defaults.language, self.defaults.large);
+            self.visit = Visit::new(&self.defaults);
         }
         self.guide(effects);
+        self.follow_turn(effects);
     }
 
     /// Looks whether somebody else has stepped in, and gives up waiting for an answer.
@@ -202,9 +206,10 @@ impl VisitModel {
         visit.picture.wipe();
         // Work under way is for the visitor before.
         (visit.dressing, visit.snapping, visit.pair) = (None, None, None);
-        if matches!(visit.progress, MeasureProgress::Measuring(_)) {
+        if matches!(visit.progress, MeasureProgress::Measuring(_) | MeasureProgress::Turning) {
             visit.progress = MeasureProgress::Guide { ready_ns: None, not_before_ns: 0 };
         }
+        (visit.turn, visit.front, visit.entry) = (None, None, None);
         (visit.open, visit.history) = (Page::Fitting, heapless::Vec::new());
         let _ = effects.push(Effect::Hide);
     }
@@ -235,16 +240,10 @@ impl VisitModel {
         }
     }
 
-    pub(super) fn measure(&mut self, effects: &mut Effects) {
-        self.visit.progress = MeasureProgress::Measuring(self.now_ns);
-        let number = self.next();
-        let _ = effects.push(Effect::Measure { number, seated: self.visit.seated });
-    }
-
     /// Everything of the shopper goes.
     pub(super) fn forget(&mut self, effects: &mut Effects) {
-        self.visit = Visit::new(self.defaults.language, self.defaults.large);
-        self.seen.head_mm = None;
+        self.visit = Visit::new(&self.defaults);
+        (self.seen.head_mm, self.seen.facing) = (None, None);
         self.session = SessionMachine::new(self.defaults.times.session, self.now_ns);
         // A reply that is still under way is to one who has left.
         self.number = self.number.wrapping_add(1);
@@ -302,18 +301,21 @@ impl VisitModel {
             Input::PictureTaken(number, code) if is_asked(&mut visit.snapping, number) => {
                 visit.picture.put(code, self.now_ns + self.defaults.times.picture_ns);
             }
-            Input::Failed(number) => self.failed(number),
+            Input::Failed(number) => self.failed(number, effects),
             _ => {}
         }
     }
 
     /// What was asked for cannot be done: what was there before stays.
-    fn failed(&mut self, number: u32) {
+    fn failed(&mut self, number: u32, effects: &mut Effects) {
+        if self.awaits_measures(number) {
+            return self.fail_measuring(effects);
+        }
         let visit = &mut self.visit;
         let is_asked = |asked: &mut Option<u32>| asked.take_if(|a| *a == number).is_some();
         if is_asked(&mut visit.dressing) {
             if visit.worn.is_empty() {
-                visit.progress = MeasureProgress::Failed;
+                (visit.progress, visit.turn) = (MeasureProgress::Failed, None);
                 visit.known = None;
             } else {
                 visit.outfit = visit.worn.clone();
@@ -325,52 +327,6 @@ impl VisitModel {
             visit.snap_failed = true;
         } else if let Some(pair) = visit.pair.as_mut().filter(|pair| pair.asked == Some(number)) {
             (pair.asked, pair.refused) = (None, true);
-        } else if self.number == number && matches!(visit.progress, MeasureProgress::Measuring(_)) {
-            visit.progress = MeasureProgress::Failed;
-        }
-    }
-
-    fn measured(&mut self, number: u32, known: VisitorMeasures, effects: &mut Effects) {
-        if self.number != number || !matches!(self.visit.progress, MeasureProgress::Measuring(_)) {
-            return;
-        }
-        self.visit.progress = MeasureProgress::Dressing(self.now_ns);
-        let first = if self.visit.outfit.is_empty() { self.first_outfit() } else { self.visit.outfit.clone() };
-        self.visit.known = Some(known);
-        self.visit.outfit = first;
-        // Sizes are chosen anew: measures may have changed.
-        for i in 0..self.visit.outfit.len() {
-            let item = self.visit.outfit[i].item;
-            let defaults = self.defaults.size.as_ref();
-            let wanted = defaults.and_then(|code| self.wardrobe.items.get(item)?.sizes.iter().position(|s| s == code));
-            if let Some(fit) = self.judge(item, wanted) {
-                self.visit.outfit[i].size = fit.size;
-            }
-        }
-        self.take_in_hand(self.visit.outfit.last().map(|w| w.item));
-        self.dress(effects);
-    }
-
-    fn first_outfit(&self) -> Outfit {
-        let worn = |name: &String| self.wardrobe.find(name).map(|item| WornItem { item, size: 0, colour: 0 });
-        let outfit = self.defaults.wear.iter().filter_map(worn);
-        let outfit = outfit.fold(Outfit::new(), |outfit, worn| self.wardrobe.put_on(&outfit, worn));
-        if outfit.is_empty() && !self.wardrobe.items.is_empty() {
-            return self.wardrobe.put_on(&outfit, WornItem { item: 0, size: 0, colour: 0 });
-        }
-        outfit
-    }
-
-    /// Measured and dressed: who was measured in part sees that first.
-    fn finish_dressing(&mut self) {
-        if !matches!(self.visit.progress, MeasureProgress::Dressing(_)) {
-            return;
-        }
-        self.visit.progress = MeasureProgress::No;
-        self.visit.history.clear();
-        self.visit.open = Page::Fitting;
-        if self.visit.known.as_ref().is_some_and(|k| !k.missing.is_empty()) {
-            self.open(Page::Unmeasured);
         }
     }
 

@@ -2,6 +2,7 @@
 
 use toile_track::gesture::Gesture;
 
+use super::measure_entry::MeasureEntry;
 use super::model::{Effect, Effects, NavigationKey, VisitModel};
 use super::screen::{Action, Page};
 use super::texts::Language;
@@ -28,6 +29,14 @@ impl VisitModel {
             NavigationKey::BackTab | NavigationKey::Left | NavigationKey::Up => self.move_focus(-1),
             NavigationKey::Enter => self.press_focus(self.defaults.times.walk_ns, effects),
             NavigationKey::Escape => self.escape(effects),
+        }
+    }
+
+    /// A digit at a keyboard: Enter then accepts, and does not press the digit again.
+    pub(super) fn typed_key(&mut self, action: Action, effects: &mut Effects) {
+        self.pressed(action, effects);
+        if let Some(accept) = self.actions().iter().position(|a| *a == Action::Accept) {
+            self.focus = accept;
         }
     }
 
@@ -130,6 +139,13 @@ impl VisitModel {
             Action::LargeType => self.visit.large = !self.visit.large,
             Action::Seated => (self.visit.seated, self.visit.seated_said) = (!self.visit.seated, true),
             Action::Wear => self.wear_other(effects),
+            Action::OwnMeasure(place) => self.open_entry(place),
+            Action::Digit(digit) => self.typed(|entry| entry.digit(digit)),
+            Action::Point => self.typed(MeasureEntry::point),
+            Action::DeleteDigit => self.typed(MeasureEntry::delete),
+            Action::Unit => self.change_unit(),
+            Action::Accept => self.accept_measure(effects),
+            Action::RemoveMeasure => self.remove_measure(effects),
         }
     }
 

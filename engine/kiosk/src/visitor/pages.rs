@@ -6,12 +6,14 @@
 
 mod clothes;
 mod fit;
+mod own_measures;
 mod visit;
 
+use super::measure_entry::{LengthUnit, OwnMeasure};
 use super::model::VisitModel;
 use super::reach::DisplayMount;
 use super::screen::{Action, Block, BodyView, Control, ControlStyle, Page, Screen};
-use super::size_fit::BodyPart;
+use super::size_fit::{BodyPart, VisitorMeasures};
 use super::texts::{Language, TextKey, TextValue, Texts, Translation};
 use super::visit::MeasureProgress;
 use super::wardrobe::WardrobeItem;
@@ -52,12 +54,22 @@ impl VisitModel {
             Page::Compare if shown && visit.pair.as_ref().is_some_and(|p| p.asked.is_none() && !p.refused) => {
                 BodyView::Two { yaw }
             }
-            Page::Fitting | Page::Garments | Page::Compare | Page::Picture | Page::Settings | Page::Unmeasured
+            Page::Fitting
+            | Page::Garments
+            | Page::Compare
+            | Page::Picture
+            | Page::Settings
+            | Page::Unmeasured
+            | Page::OwnMeasures
+            | Page::MeasureEntry
                 if shown =>
             {
-                BodyView::Shopper { yaw, fit: false }
+                BodyView::Shopper { yaw, fit: false, unknown: [false; 3] }
             }
-            Page::Zones | Page::Zone if shown => BodyView::Shopper { yaw, fit: visit.fit_map },
+            Page::Zones | Page::Zone if shown => {
+                let unknown = visit.known.as_ref().map_or([false; 3], VisitorMeasures::unknown);
+                BodyView::Shopper { yaw, fit: visit.fit_map, unknown }
+            }
             _ => BodyView::Mannequin,
         }
     }
@@ -130,6 +142,8 @@ impl PageWriter<'_> {
             Page::Zone => self.zone_heading(),
             Page::Compare => self.compare_heading(),
             Page::Picture => self.words(TextKey::PictureHeading),
+            Page::OwnMeasures => self.words(TextKey::OwnHeading),
+            Page::MeasureEntry => self.entry_heading(),
             Page::Settings => self.words(TextKey::SettingsHeading),
             Page::Second => self.words(TextKey::SecondHeading),
             Page::Leaving => self.words(TextKey::LeavingHeading),
@@ -148,6 +162,8 @@ impl PageWriter<'_> {
             Page::Zone => self.zone(),
             Page::Compare => self.compare(),
             Page::Picture => self.picture(),
+            Page::OwnMeasures => self.own_measures(),
+            Page::MeasureEntry => self.entry(),
             Page::Settings => self.settings(),
             Page::Second => self.second(),
             Page::Leaving => self.leaving(),
@@ -167,6 +183,9 @@ impl PageWriter<'_> {
             Action::Size(step) => return self.size_label(page, step),
             Action::Wear => return self.wear_label(),
             Action::Language(place) => return self.language_label(place),
+            Action::OwnMeasure(place) => return self.own_measure_label(place),
+            Action::Digit(digit) => return (digit.to_string(), None),
+            Action::Point => return (self.translation.language().decimal_mark().to_string(), None),
             Action::Begin if page == Page::Second => TextKey::DoBeginAnew,
             Action::Begin => TextKey::DoBegin,
             Action::Measure if page == Page::Guide => TextKey::DoMeasure,
@@ -175,6 +194,7 @@ impl PageWriter<'_> {
             Action::Open(Page::Zones) => TextKey::DoZones,
             Action::Open(Page::Compare) => TextKey::DoCompare,
             Action::Open(Page::Picture) => TextKey::DoShowPicture,
+            Action::Open(Page::OwnMeasures) => TextKey::DoOwnMeasures,
             Action::Open(_) => TextKey::DoSettings,
             Action::Back if page == Page::Unmeasured => TextKey::DoGoOn,
             Action::Back => TextKey::DoBack,
@@ -188,6 +208,11 @@ impl PageWriter<'_> {
             Action::Leave => TextKey::DoLeave,
             Action::LargeType => TextKey::DoLarge,
             Action::Seated => TextKey::DoSeated,
+            Action::DeleteDigit => TextKey::DoDelete,
+            Action::Unit if self.model.visit.unit == LengthUnit::Inch => TextKey::DoCentimetres,
+            Action::Unit => TextKey::DoInches,
+            Action::Accept => TextKey::DoAccept,
+            Action::RemoveMeasure => TextKey::DoRemove,
         };
         (self.words(key), None)
     }
@@ -203,6 +228,7 @@ impl PageWriter<'_> {
             | (Page::Fitting, Action::Open(Page::Garments))
             | (Page::Compare, Action::Wear)
             | (Page::Picture, Action::DeletePicture | Action::TakePicture)
+            | (Page::MeasureEntry, Action::Accept)
             | (Page::Second | Page::Leaving, Action::Stay) => {
                 if page == Page::Unmeasured && self.is_partly() {
                     ControlStyle::Plain
@@ -210,8 +236,11 @@ impl PageWriter<'_> {
                     ControlStyle::Primary
                 }
             }
+            (_, Action::Digit(_) | Action::Point | Action::DeleteDigit) => ControlStyle::Key,
             (Page::Unmeasured, Action::Back) if self.is_partly() => ControlStyle::Primary,
-            (_, Action::Back | Action::Leave | Action::Open(Page::Settings) | Action::LargeType) => ControlStyle::Quiet,
+            (_, Action::Back | Action::Leave | Action::Open(Page::Settings) | Action::LargeType | Action::Unit) => {
+                ControlStyle::Quiet
+            }
             (Page::Attract, Action::Language(_)) => ControlStyle::Quiet,
             _ => ControlStyle::Plain,
         }
@@ -226,6 +255,9 @@ impl PageWriter<'_> {
             Action::Language(place) => Language::ALL.get(place) == Some(&visit.language),
             Action::LargeType => visit.large,
             Action::Seated => visit.seated,
+            Action::OwnMeasure(place) => {
+                OwnMeasure::ALL.get(place).is_some_and(|own| visit.tape.at(own.index()).is_some())
+            }
             _ => false,
         }
     }

@@ -11,6 +11,8 @@ use toile_assets::skeleton::Joint;
 use toile_fitting::dress::session;
 use toile_sensors::frame::Joints;
 
+use super::body_turn;
+
 /// What is seen at a moment.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Presence {
@@ -26,6 +28,10 @@ pub struct Presence {
     pub head_mm: Option<f32>,
     /// Where they stand, from the mark (m): to the shopper's own left, and towards the mirror.
     pub off_mark_m: Option<[f32; 2]>,
+    /// Where they face, about the vertical (rad): 0 towards the mirror, positive to their own left.
+    pub facing: Option<f32>,
+    /// Whether depth of them is seen beside their joints.
+    pub depth: bool,
 }
 
 /// Nobody seen for so long (ns), or a leap: who comes is looked at anew.
@@ -111,6 +117,8 @@ impl PresenceTracker {
             seated: self.seated,
             head_mm: frame.believed(Joint::Head).map(|p| p.y * 1e3),
             off_mark_m: self.mark.map(|[x, z]| [hips.x - x, hips.z - z]),
+            facing: body_turn::facing(frame),
+            depth: false,
         }
     }
 

@@ -1,6 +1,8 @@
 //! Screen: everything that the display shows at a moment, as data. The window paints it, a test reads it; the painter decides neither
 //! the words nor their order.
 
+use super::body_turn::SIDES;
+
 /// Pages of the kiosk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Page {
@@ -24,6 +26,10 @@ pub enum Page {
     Compare,
     /// A picture that was asked for, as a code to scan.
     Picture,
+    /// Measures that the shopper took by tape.
+    OwnMeasures,
+    /// One of them, being typed.
+    MeasureEntry,
     /// Language, type size, seated mode, what is stored.
     Settings,
     /// Somebody else has stepped in.
@@ -43,6 +49,8 @@ pub enum BodyView {
         yaw: f32,
         /// Whether garments are painted as a fit map, with its legend.
         fit: bool,
+        /// Zones whose fit is not known, in the order of `Girth::ALL`: the fit map has no colour there.
+        unknown: [bool; 3],
     },
     /// The same body in two sizes, left and right, under one yaw (rad).
     Two {
@@ -90,6 +98,20 @@ pub enum Action {
     Seated,
     /// Wear the other one of the two sizes that are compared.
     Wear,
+    /// Type a measure that was taken by tape.
+    OwnMeasure(usize),
+    /// A digit of it.
+    Digit(u8),
+    /// Its decimal mark.
+    Point,
+    /// Take the last character back.
+    DeleteDigit,
+    /// Centimetres or inches.
+    Unit,
+    /// Accept what was typed.
+    Accept,
+    /// Remove what was accepted before.
+    RemoveMeasure,
 }
 
 /// How much a control stands out.
@@ -101,6 +123,8 @@ pub enum ControlStyle {
     Plain,
     /// A way out or a setting.
     Quiet,
+    /// A key of a keypad: three stand beside each other.
+    Key,
     /// A colour, linear RGB.
     Swatch([f32; 3]),
 }
@@ -132,6 +156,20 @@ pub enum Block {
         /// Whether the figure sits.
         seated: bool,
     },
+    /// The shopper from above in a ring of the sides that were seen of them.
+    TurnGuide {
+        /// Whether each side was seen, from where they faced first, to their left.
+        seen: [bool; SIDES],
+        /// How far they are turned to their left (rad).
+        turned: f32,
+        /// Where the arrow that shows the way is on its way round, 0 .. 1; none once they turn.
+        arrow: Option<f32>,
+    },
+    /// What is being typed, in large type.
+    Entry {
+        /// The length with its unit.
+        text: String,
+    },
     /// How far something has got.
     Progress {
         /// Share that is done, 0 .. 1.
@@ -143,8 +181,8 @@ pub enum Block {
     Fit {
         /// The zone and its verdict in words, with the ease and its uncertainty.
         text: String,
-        /// -1 (loose) .. 1 (tight), for the mark's colour.
-        tightness: f32,
+        /// -1 (loose) .. 1 (tight), for the mark's colour; none where the fit is not known.
+        tightness: Option<f32>,
     },
     /// The legend of the fit map, loose and tight.
     Legend {

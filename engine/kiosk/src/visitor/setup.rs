@@ -45,6 +45,9 @@ impl VisitorSetup {
                 known.join(", ")
             )));
         }
+        // Measures by tape are the visit's: they are listed, and can be removed.
+        let mut facts = config.shopper.facts().map_err(KioskError::Input)?;
+        let tape = std::mem::take(&mut facts.tape);
         let measure_ns = config::ns(config.session.measure_s);
         let defaults = VisitDefaults {
             times: VisitTimes::usual(config.times(), measure_ns, config::ns(display.picture_minutes * MINUTE_S)),
@@ -52,8 +55,9 @@ impl VisitorSetup {
             large: display.large_type,
             wear: config.wear.garments.clone(),
             size: config.wear.size.clone(),
+            tape,
+            motion: display.motion,
         };
-        let facts = config.shopper.facts().map_err(KioskError::Input)?;
         let context = DressingContext { wardrobe: wardrobe.clone(), quality: config.wish().quality, facts };
         let model = VisitModel::new(defaults, wardrobe, now_ns);
         Ok(Self { model, texts: Texts::load()?, mount, context, mark: display.mark_m })

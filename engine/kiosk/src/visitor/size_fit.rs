@@ -1,11 +1,14 @@
 //! Fit of a size: how a size sits at each zone, as a shopper reads it, and why.
 
 use toile_assets::sizes::{Girth, Population};
-use toile_fitting::dress::size;
+use toile_fitting::dress::{measured, size};
 use toile_track::estimate::Estimate;
+use toile_track::fit::measuring::MEASURES;
 use toile_track::measure::{Measurements, Source};
-use toile_track::recommend::Recommendation;
+use toile_track::recommend::{Recommendation, Verdict};
+use toile_track::tape_readings::{BodyEstimate, TapeReadings};
 
+use super::measure_entry::OwnMeasure;
 use super::texts::TextKey;
 use super::wardrobe::WardrobeItem;
 use crate::error::KioskError;
@@ -43,6 +46,19 @@ impl BodyPart {
     }
 }
 
+impl From<BodyPart> for OwnMeasure {
+    fn from(part: BodyPart) -> Self {
+        match part {
+            BodyPart::Stature => Self::Stature,
+            BodyPart::Shoulders => Self::Shoulders,
+            BodyPart::Chest => Self::Chest,
+            BodyPart::Waist => Self::Waist,
+            BodyPart::Hip => Self::Hip,
+            BodyPart::Legs => Self::Leg,
+        }
+    }
+}
+
 impl From<Girth> for BodyPart {
     fn from(girth: Girth) -> Self {
         match girth {
@@ -56,6 +72,8 @@ impl From<Girth> for BodyPart {
 /// How far a measure is to be believed, and why.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeasureBasis {
+    /// They took it by tape.
+    Taped,
     /// It was taken from the body's surface.
     Seen,
     /// It follows from the length of bones, which is all that joints tell.
@@ -67,8 +85,13 @@ pub enum MeasureBasis {
 /// What was measured of somebody.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VisitorMeasures {
-    /// The measures that were taken.
+    /// The measures that were taken, with those by tape laid over them.
     pub measured: Measurements,
+    /// The same as the camera saw them, and what the body fit says where there is one.
+    seen: Measurements,
+    fit: Option<BodyEstimate>,
+    /// Measures by tape.
+    tape: TapeReadings,
     /// What could not be seen, from the top down.
     pub missing: Vec<BodyPart>,
     /// Whether they sat when they were measured.
@@ -82,17 +105,45 @@ pub struct VisitorMeasures {
 impl VisitorMeasures {
     /// Of somebody measured seated or standing; what is missing is found out.
     pub fn new(measured: Measurements, seated: bool) -> Self {
-        let m = &measured.measures;
-        let taken = [m.stature, m.shoulder_breadth, m.chest_girth, m.waist_girth, m.hip_girth, m.inseam];
-        let lacks = |(part, taken): (BodyPart, Option<Estimate>)| taken.is_none().then_some(part);
-        let missing = BodyPart::ALL.into_iter().zip(taken).filter_map(lacks).collect();
-        let count = m.named().iter().filter(|(_, taken)| taken.is_some()).count() as u32;
-        Self { measured, missing, seated, count, population: Population::Mixed }
+        Self {
+            missing: missing(&measured),
+            count: count(&measured),
+            seen: measured.clone(),
+            measured,
+            fit: None,
+            tape: TapeReadings::default(),
+            seated,
+            population: Population::Mixed,
+        }
+    }
+
+    /// The same with whose proportions apply, and with all that the body fit says where a body fits.
+    #[must_use]
+    pub fn with_fit(self, population: Population, fit: Option<BodyEstimate>) -> Self {
+        let count = if fit.is_some() { MEASURES.len() as u32 } else { self.count };
+        Self { population, fit, count, ..self }
+    }
+
+    /// What is known once these measures by tape, and no others, are laid over what the camera saw.
+    #[must_use]
+    pub fn with_tape(&self, tape: &TapeReadings) -> Self {
+        if *tape == self.tape {
+            return self.clone();
+        }
+        let measured = measured::with_tape(self.seen.clone(), self.fit.as_ref(), self.population, tape);
+        // What follows from a measure by tape is a guess as before.
+        let untaken = |part: &BodyPart| tape.at(OwnMeasure::from(*part).index()).is_none();
+        let missing = missing(&self.seen).into_iter().filter(untaken).collect();
+        let seen = if self.fit.is_some() { MEASURES.len() as u32 } else { count(&self.seen) };
+        let count = seen.max(count(&measured));
+        Self { measured, missing, count, tape: *tape, ..self.clone() }
     }
 
     /// How a girth was obtained: seen, from bones, or guessed.
     pub fn basis(&self, zone: Girth) -> MeasureBasis {
-        if self.missing.contains(&zone.into()) {
+        if self.tape.at(OwnMeasure::from(zone).index()).is_some() {
+            MeasureBasis::Taped
+        } else if self.missing.contains(&zone.into()) {
             MeasureBasis::Guessed
         } else if self.measured.source == Source::Joints {
             MeasureBasis::Bones
@@ -100,6 +151,28 @@ impl VisitorMeasures {
             MeasureBasis::Seen
         }
     }
+
+    /// Whether nobody knows the girth of each zone, in the order of `Girth::ALL`: it is a guess, and so would be how anything fits there.
+    pub fn unknown(&self) -> [bool; 3] {
+        Girth::ALL.map(|zone| self.is_unknown(zone))
+    }
+
+    fn is_unknown(&self, zone: Girth) -> bool {
+        matches!(self.basis(zone), MeasureBasis::Bones | MeasureBasis::Guessed)
+    }
+}
+
+/// What was not measured, from the top down.
+fn missing(measured: &Measurements) -> Vec<BodyPart> {
+    let m = &measured.measures;
+    let taken = [m.stature, m.shoulder_breadth, m.chest_girth, m.waist_girth, m.hip_girth, m.inseam];
+    let lacks = |(part, taken): (BodyPart, Option<Estimate>)| taken.is_none().then_some(part);
+    BodyPart::ALL.into_iter().zip(taken).filter_map(lacks).collect()
+}
+
+/// How many measures were taken.
+fn count(measured: &Measurements) -> u32 {
+    measured.measures.named().iter().filter(|(_, taken)| taken.is_some()).count() as u32
 }
 
 /// How a zone feels, from tight to loose. A garment is comfortable within the range that its file gives; its lower third is
@@ -162,8 +235,8 @@ pub struct ZoneFit {
     pub zone: Girth,
     /// Whether the size is chosen by this zone.
     pub primary: bool,
-    /// How the zone feels, in one of seven words.
-    pub feel: Feel,
+    /// How the zone feels, in one of seven words; none where nobody saw the body there.
+    pub feel: Option<Feel>,
     /// How it may feel too: what the ease less or more its error comes to, where that is comfortable when this is not or the
     /// other way round.
     pub perhaps: Option<Feel>,
@@ -175,8 +248,8 @@ pub struct ZoneFit {
     pub garment_m: f32,
     /// Least and most ease that is comfortable (m).
     pub comfort_m: [f32; 2],
-    /// -1 (loose) .. 1 (tight); within half of it where the zone is comfortable.
-    pub tightness: f32,
+    /// -1 (loose) .. 1 (tight), within half of it where the zone is comfortable; none where nobody saw the body there.
+    pub tightness: Option<f32>,
 }
 
 /// How a size sits.
@@ -196,6 +269,13 @@ pub struct SizeFit {
     pub zones: Vec<ZoneFit>,
     /// Set where the primary girth lies outside of what is made.
     pub outside: Option<OutOfRange>,
+}
+
+impl SizeFit {
+    /// Whether how some zone fits is not known.
+    pub fn has_unknown(&self) -> bool {
+        self.zones.iter().any(|zone| zone.feel.is_none())
+    }
 }
 
 /// A body for which no size is made: the nearest is shown.
@@ -227,7 +307,7 @@ pub fn judge(item: &WardrobeItem, known: &VisitorMeasures, size: Option<usize>) 
         other,
         probability: judged.probability,
         girth_to_take: judged.girth_to_take.as_ref().map(|t| t.zone),
-        outside: zones.iter().find(|z| z.primary).and_then(|z| outside(item, z)),
+        outside: zones.iter().find(|z| z.primary && z.feel.is_some()).and_then(|z| outside(item, z)),
         zones,
     })
 }
@@ -242,18 +322,20 @@ fn zones(item: &WardrobeItem, known: &VisitorMeasures, judged: &Recommendation) 
         };
         let comfort_m = item.style.comfort_mm.at(z.zone)?;
         let place = |ease: f32| (ease - comfort_m[0]) / (comfort_m[1] - comfort_m[0]).max(1e-3);
-        let feel = Feel::at(place(z.ease));
+        let guessed = z.verdict == Verdict::Unknown || known.is_unknown(z.zone);
+        let feel = (!guessed).then(|| Feel::at(place(z.ease)));
         let perhaps = [z.ease - z.sigma, z.ease + z.sigma].map(|ease| Feel::at(place(ease)));
+        let differs = |p: &Feel| feel.is_some_and(|feel| feel.is_comfortable() != p.is_comfortable());
         Some(ZoneFit {
             zone: z.zone,
             primary: z.primary,
             feel,
-            perhaps: perhaps.into_iter().find(|p| p.is_comfortable() != feel.is_comfortable()),
+            perhaps: perhaps.into_iter().find(differs),
             ease: Estimate::new(z.ease, z.sigma),
             body,
             garment_m: body.value + z.ease,
             comfort_m,
-            tightness: (0.5 - place(z.ease)).clamp(-1.0, 1.0),
+            tightness: (!guessed).then(|| (0.5 - place(z.ease)).clamp(-1.0, 1.0)),
         })
     };
     judged.zones.iter().filter_map(zone).collect()
@@ -330,7 +412,7 @@ pub(super) mod tests {
         for zone in &fits[3].zones {
             assert!((zone.garment_m - zone.body.value - zone.ease.value).abs() < 1e-5);
             assert_eq!(zone.ease.sigma, zone.body.sigma, "the garment is as its file says");
-            assert_eq!(zone.tightness.abs() <= 0.5, zone.feel.is_comfortable(), "{zone:?}");
+            assert_eq!(zone.tightness.unwrap().abs() <= 0.5, zone.feel.unwrap().is_comfortable(), "{zone:?}");
         }
         let best = judge(&item, &known, None).unwrap();
         assert!(fits.iter().all(|f| f.best == best.size), "every size knows which would be better");
@@ -356,5 +438,49 @@ pub(super) mod tests {
         let fit = judge(&item("wide-trousers"), &known, None).unwrap();
         let hip = fit.zones.iter().find(|z| z.zone == Girth::Hip).unwrap();
         assert!(hip.ease.sigma > 0.02, "a guess is not sure: {hip:?}");
+        assert!((hip.feel, hip.perhaps, hip.tightness) == (None, None, None) && fit.has_unknown(), "{hip:?}");
+        assert_eq!(known.unknown(), [false, false, true]);
+    }
+
+    #[test]
+    fn of_joints_alone_no_girth_is_known_and_a_size_is_a_guess_with_its_odds() {
+        let mut known = woman(0.90, 0.74, 0.98);
+        known.measured.source = Source::Joints;
+        for girth in [
+            &mut known.measured.measures.chest_girth,
+            &mut known.measured.measures.waist_girth,
+            &mut known.measured.measures.hip_girth,
+        ] {
+            girth.as_mut().unwrap().sigma = 0.06;
+        }
+        let known = VisitorMeasures::new(known.measured, false);
+        let fit = judge(&item("sun-dress"), &known, None).unwrap();
+        assert!(fit.zones.iter().all(|z| z.feel.is_none() && z.perhaps.is_none() && z.tightness.is_none()), "{fit:?}");
+        assert!(fit.probability > 0.0 && fit.probability < toile_track::recommend::SURE, "{fit:?}");
+        assert_eq!((known.unknown(), fit.outside), ([true; 3], None));
+    }
+
+    #[test]
+    fn a_measure_by_tape_makes_its_zone_known_moves_the_others_and_is_gone_when_it_is_removed() {
+        let mut known = woman(0.90, 0.74, 0.98);
+        known.measured.measures.hip_girth = None;
+        let before = VisitorMeasures::new(known.measured, true);
+        let tape = TapeReadings::default().with(OwnMeasure::Hip.index(), 1.06).unwrap();
+        let known = before.with_tape(&tape);
+        let hip = known.measured.measures.hip_girth.unwrap();
+        assert!((hip.value - 1.06).abs() < 0.005 && hip.sigma < 0.01, "{hip:?}");
+        assert_eq!((known.basis(Girth::Hip), known.missing.len()), (MeasureBasis::Taped, 0));
+        assert_eq!(known.basis(Girth::Waist), MeasureBasis::Seen);
+        let fit = judge(&item("wide-trousers"), &known, None).unwrap();
+        assert!(!fit.has_unknown());
+        let sized = |chest: f32| {
+            let tape = TapeReadings::default().with(OwnMeasure::Chest.index(), chest).unwrap();
+            judge(&item("sun-dress"), &before.with_tape(&tape), None).unwrap().size
+        };
+        assert!(sized(0.84) < sized(1.0), "sizes follow");
+        assert_eq!(known.with_tape(&TapeReadings::default()), before);
+        // A measure that only follows from one by tape is a guess as before.
+        let chest = before.with_tape(&TapeReadings::default().with(OwnMeasure::Chest.index(), 0.95).unwrap());
+        assert_eq!((chest.basis(Girth::Hip), chest.missing.as_slice()), (MeasureBasis::Guessed, &[BodyPart::Hip][..]));
     }
 }

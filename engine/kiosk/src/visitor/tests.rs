@@ -1,7 +1,9 @@
 //! Whole visits: the model, its pages and its texts, driven as sensor, finger, keyboard and dressing worker drive them.
 
+mod own_measures;
 mod privacy;
 mod texts;
+mod turns;
 mod visits;
 
 use std::collections::BTreeSet;
@@ -17,6 +19,7 @@ use super::size_fit::tests::woman;
 use super::texts::{Language, Texts};
 use super::wardrobe::Wardrobe;
 use crate::service::session;
+use toile_track::tape_readings::TapeReadings;
 use toile_view::image::Size;
 
 const MS: u64 = 1_000_000;
@@ -32,6 +35,8 @@ fn defaults() -> VisitDefaults {
         large: false,
         wear: vec!["sun-dress".into()],
         size: None,
+        tape: TapeReadings::default(),
+        motion: true,
     }
 }
 
@@ -79,8 +84,10 @@ impl Play {
             let in_a_second = self.now + 700 * MS;
             let code = || picture::PictureCode { side: 3, dark: vec![true; 9] };
             let reply = match &effect {
-                Effect::Measure { number, .. } if self.fails => Input::Failed(*number),
-                Effect::Measure { number, .. } => Input::Measured(*number, Box::new(self.known.clone())),
+                Effect::Measure { number, .. } | Effect::MeasureTurn { number } if self.fails => Input::Failed(*number),
+                Effect::Measure { number, .. } | Effect::MeasureTurn { number } => {
+                    Input::Measured(*number, Box::new(self.known.clone()))
+                }
                 Effect::Dress { number, .. } if self.fails => Input::Failed(*number),
                 Effect::Dress { number, .. } => Input::Dressed(*number),
                 Effect::DrapeTwo { number, .. } if self.fails => Input::Failed(*number),
@@ -98,6 +105,25 @@ impl Play {
     pub(crate) fn see(&mut self, who: Option<u32>) {
         let seen = who.map(|who| Presence { people: 1, who: Some(who), head_mm: Some(1_560.0), ..Presence::default() });
         self.update(Input::Presence(seen.unwrap_or_default()));
+    }
+
+    /// The first shopper is seen in depth, facing so far to their left (rad).
+    pub(crate) fn face(&mut self, facing: f32) {
+        let seen = Presence {
+            people: 1,
+            who: Some(1),
+            head_mm: Some(1_560.0),
+            facing: Some(facing),
+            depth: true,
+            ..Presence::default()
+        };
+        self.update(Input::Presence(seen));
+    }
+
+    /// The hip of whoever is measured is not seen.
+    pub(crate) fn hide_hip(&mut self) {
+        self.known.measured.measures.hip_girth = None;
+        self.known = VisitorMeasures::new(self.known.measured.clone(), false);
     }
 
     /// Lets time pass (ms).
@@ -143,9 +169,12 @@ fn texts_of(screen: &Screen) -> Vec<String> {
     let mut all = vec![screen.heading.clone()];
     for block in &screen.blocks {
         match block {
-            Block::Text(text) | Block::Progress { label: text, .. } | Block::Fit { text, .. } => all.push(text.clone()),
+            Block::Text(text)
+            | Block::Progress { label: text, .. }
+            | Block::Fit { text, .. }
+            | Block::Entry { text } => all.push(text.clone()),
             Block::Legend { ends } => all.extend(ends.clone()),
-            Block::PoseGuide { .. } | Block::Code { .. } | Block::Countdown { .. } => {}
+            Block::PoseGuide { .. } | Block::TurnGuide { .. } | Block::Code { .. } | Block::Countdown { .. } => {}
         }
     }
     for control in &screen.controls {

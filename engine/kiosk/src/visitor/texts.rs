@@ -59,9 +59,9 @@ impl Language {
         }
     }
 
-    /// Whether its decimals begin with a point; the others have a comma.
-    const fn has_point(self) -> bool {
-        matches!(self, Self::English | Self::Japanese)
+    /// Decimal mark: a point or a comma.
+    pub const fn decimal_mark(self) -> char {
+        if matches!(self, Self::English | Self::Japanese) { '.' } else { ',' }
     }
 }
 
@@ -111,7 +111,7 @@ fn bundle(language: Language) -> Result<FluentBundle<FluentResource>, KioskError
     let mut bundle = FluentBundle::new_concurrent(vec![tag]);
     // The marks that isolate text of the other direction are painted as boxes by fonts that lack them; no language here needs them.
     bundle.set_use_isolating(false);
-    if language.has_point() {
+    if language.decimal_mark() == '.' {
         bundle.set_formatter(Some(|value, _| number(value, '.')));
     } else {
         bundle.set_formatter(Some(|value, _| number(value, ',')));

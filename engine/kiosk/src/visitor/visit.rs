@@ -1,5 +1,10 @@
 //! Visit: all that is known of one shopper. Forgetting them is dropping it.
 
+use toile_track::tape_readings::TapeReadings;
+
+use super::body_turn::BodyTurn;
+use super::measure_entry::{LengthUnit, MeasureEntry};
+use super::message::VisitDefaults;
 use super::picture::PictureStore;
 use super::screen::Page;
 use super::size_fit::{SizeFit, VisitorMeasures};
@@ -24,6 +29,8 @@ pub(super) enum MeasureProgress {
     },
     /// Under way since (ns).
     Measuring(u64),
+    /// The front was measured, and they turn.
+    Turning,
     /// Measured; the clothes are put on since (ns).
     Dressing(u64),
     /// Nothing could be measured.
@@ -69,6 +76,13 @@ pub(super) struct Visit {
     pub seated_said: bool,
     pub progress: MeasureProgress,
     pub known: Option<VisitorMeasures>,
+    /// Their turn, as long as it is offered or goes on, and what was measured of the front meanwhile.
+    pub turn: Option<BodyTurn>,
+    pub front: Option<VisitorMeasures>,
+    /// Measures that they took by tape and that were accepted, the one that is being typed, and the unit of all of them.
+    pub tape: TapeReadings,
+    pub entry: Option<MeasureEntry>,
+    pub unit: LengthUnit,
     /// What they wear, what they wore when it was last put on, and which of it is in hand (its place in the wardrobe).
     pub outfit: Outfit,
     pub worn: Outfit,
@@ -101,8 +115,8 @@ pub(super) struct Visit {
 }
 
 impl Visit {
-    /// Nobody, in a language and a size of type.
-    pub fn new(language: Language, large: bool) -> Self {
+    /// Nobody, as every visit begins.
+    pub fn new(defaults: &VisitDefaults) -> Self {
         Self {
             shopper: None,
             begun_ns: None,
@@ -112,6 +126,11 @@ impl Visit {
             seated_said: false,
             progress: MeasureProgress::No,
             known: None,
+            turn: None,
+            front: None,
+            tape: defaults.tape,
+            entry: None,
+            unit: LengthUnit::default(),
             outfit: Outfit::new(),
             worn: Outfit::new(),
             in_hand: 0,
@@ -132,8 +151,8 @@ impl Visit {
             snap_failed: false,
             stranger_ns: None,
             asked_ns: None,
-            language,
-            large,
+            language: defaults.language,
+            large: defaults.large,
         }
     }
 }

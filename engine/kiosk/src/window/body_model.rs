@@ -1,7 +1,9 @@
 //! The meshes of a dressed body, for the renderer; made where it is dressed, handed to the render thread in one piece.
 
 use glam::Vec3;
+use toile_assets::body::Levels;
 use toile_assets::mesh::vertex_normals;
+use toile_assets::sizes::Girth;
 use toile_engine::cloth::measure;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_view::hidden_skin::CoveringCloth;
@@ -22,11 +24,29 @@ pub struct BodyModel {
     pub recess: Vec<Vec<f32>>,
     /// How tight each garment sits, -1 .. 1 `[garments][particles]`.
     pub fit: Vec<Vec<f32>>,
+    /// The zone that each particle of a garment counts to, by its height `[garments][particles]`.
+    pub zones: Vec<Vec<Girth>>,
     /// Height of the body (m).
     pub stature: f32,
 }
 
+/// The zone whose level is nearest to a height (m). What hangs lower counts to the hip, what lies higher to the chest.
+fn zone(levels: &Levels, height: f32) -> Girth {
+    let middle = |a: f32, b: f32| 0.5 * (a + b);
+    match height {
+        y if y > middle(levels.chest, levels.waist) => Girth::Chest,
+        y if y > middle(levels.waist, levels.hip) => Girth::Waist,
+        _ => Girth::Hip,
+    }
+}
+
 impl BodyModel {
+    /// How tight a garment sits, -1 .. 1 `[particles]`: NaN, which has no colour, in zones whose fit is not known.
+    pub fn known_fit(fit: &[f32], zones: &[Girth], unknown: [bool; 3]) -> Vec<f32> {
+        let is_unknown = |zone: &Girth| Girth::ALL.iter().zip(unknown).any(|(of, unknown)| of == zone && unknown);
+        fit.iter().zip(zones).map(|(fit, zone)| if is_unknown(zone) { f32::NAN } else { *fit }).collect()
+    }
+
     /// Of a frame that was dressed, in rest as it lies in a snapshot of its own.
     pub fn draped(frame: &Frame, snapshot: &Snapshot) -> Self {
         let mut model = Self::of(frame);
@@ -65,7 +85,21 @@ impl BodyModel {
             meshes: Model::of_outfit(body, garments),
             recess: recesses,
             fit: frame.cloths().iter().zip(garments).map(tight).collect(),
+            zones: garments.iter().map(|g| g.start.iter().map(|p| zone(&body.levels, p.y)).collect()).collect(),
             stature: body.measures.stature,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_zone_that_is_not_known_has_no_colour_and_the_others_keep_theirs() {
+        let zones = [Girth::Chest, Girth::Waist, Girth::Hip, Girth::Hip];
+        let fit = BodyModel::known_fit(&[0.1, 0.2, 0.3, -0.4], &zones, [false, false, true]);
+        assert!(fit[..2] == [0.1, 0.2] && fit[2].is_nan() && fit[3].is_nan(), "{fit:?}");
+        assert_eq!(BodyModel::known_fit(&[0.1; 4], &zones, [false; 3]), [0.1; 4]);
     }
 }

@@ -5,6 +5,7 @@ use std::f32::consts::TAU;
 
 use glam::Vec3;
 use toile_assets::mesh::vertex_normals;
+use toile_assets::sizes::Girth;
 use toile_engine::frame::Snapshot;
 use toile_view::image::Size;
 use toile_view::raster::{Backdrop, Gpu, Model, RenderQuality, Renderer, SurfaceInterpolation, Viewport};
@@ -45,14 +46,15 @@ pub struct BodyRenderer {
     /// Surfaces of the left and of the right one.
     pair: [usize; 2],
     fit: Vec<Vec<f32>>,
+    zones: Vec<Vec<Girth>>,
     statures: [f32; 3],
     blends: Vec<SurfaceInterpolation>,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
     /// Where the body stands (m), once it was seen.
     at: Option<Vec3>,
-    /// What was painted last: colours, and whether as a fit map.
-    painted: (Vec<[f32; 3]>, bool),
+    /// What was painted last: colours, and whether as a fit map, with the zones that it does not know.
+    painted: (Vec<[f32; 3]>, Option<[bool; 3]>),
 }
 
 impl BodyRenderer {
@@ -66,12 +68,13 @@ impl BodyRenderer {
             worn: 0,
             pair: [0; 2],
             fit: Vec::new(),
+            zones: Vec::new(),
             statures: [1.7; 3],
             blends: Vec::new(),
             positions: Vec::new(),
             normals: Vec::new(),
             at: None,
-            painted: (Vec::new(), false),
+            painted: (Vec::new(), None),
         }
     }
 
@@ -88,10 +91,10 @@ impl BodyRenderer {
         self.worn = model.meshes.surfaces.len();
         self.pair = pair.map_or([0; 2], |pair| pair.each_ref().map(|m| m.meshes.surfaces.len()));
         self.triangles = surfaces().map(|s| s.triangles.clone()).collect();
-        self.fit = model.fit.clone();
+        (self.fit, self.zones) = (model.fit.clone(), model.zones.clone());
         self.statures = [model.stature, pair.map_or(1.7, |p| p[0].stature), pair.map_or(1.7, |p| p[1].stature)];
         self.blends = vec![SurfaceInterpolation::new(); self.worn];
-        self.painted = (Vec::new(), false);
+        self.painted = (Vec::new(), None);
         self.at = None;
         for (i, recess) in models().flat_map(|m| &m.recess).enumerate() {
             // Of the same model, so that it has the same length.
@@ -194,7 +197,10 @@ impl BodyRenderer {
 
     /// Colours and fit map, where they have changed.
     fn paint(&mut self, scene: &BodyScene<'_>) {
-        let fit = matches!(scene.body_view, BodyView::Shopper { fit: true, .. });
+        let fit = match scene.body_view {
+            BodyView::Shopper { fit: true, unknown, .. } => Some(*unknown),
+            _ => None,
+        };
         if (&*self.painted.0, self.painted.1) == (scene.colours, fit) {
             return;
         }
@@ -206,8 +212,9 @@ impl BodyRenderer {
                 _ = self.renderer.set_colour(surface, Vec3::from_array(*colour));
             }
         }
-        for (surface, tight) in (1..self.worn).zip(&self.fit) {
-            _ = self.renderer.set_fit(surface, fit.then_some(tight.as_slice()));
+        for (surface, (tight, zones)) in (1..self.worn).zip(self.fit.iter().zip(&self.zones)) {
+            let tight = fit.map(|unknown| BodyModel::known_fit(tight, zones, unknown));
+            _ = self.renderer.set_fit(surface, tight.as_deref());
         }
     }
 }

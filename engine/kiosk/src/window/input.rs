@@ -6,6 +6,7 @@ use winit::keyboard::{Key as Pressed, ModifiersState, NamedKey};
 
 use super::paint::touch::TouchEvent;
 use crate::visitor::model::NavigationKey;
+use crate::visitor::screen::Action;
 
 /// Events that wait for the render thread: a second of a fast mouse.
 pub const INPUT_EVENTS: usize = 1024;
@@ -23,6 +24,8 @@ pub enum InputEvent {
     Touch(TouchEvent),
     /// A key went down.
     Key(NavigationKey),
+    /// A key of a keypad went down.
+    Typed(Action),
 }
 
 /// The window as it is: the latest value counts.
@@ -103,7 +106,12 @@ impl InputMapper {
         if event.state != ElementState::Pressed {
             return None;
         }
-        let Pressed::Named(named) = &event.logical_key else { return None };
+        let named = match &event.logical_key {
+            Pressed::Named(NamedKey::Backspace) => return Some(InputEvent::Typed(Action::DeleteDigit)),
+            Pressed::Named(named) => named,
+            Pressed::Character(text) => return typed(text).map(InputEvent::Typed),
+            _ => return None,
+        };
         let key = match named {
             NamedKey::Tab if self.modifiers.shift_key() => NavigationKey::BackTab,
             NamedKey::Tab => NavigationKey::Tab,
@@ -117,6 +125,15 @@ impl InputMapper {
             _ => return None,
         };
         Some(InputEvent::Key(key))
+    }
+}
+
+/// What a character is on a keypad; either decimal mark is one.
+fn typed(text: &str) -> Option<Action> {
+    match text.as_bytes() {
+        [digit @ b'0'..=b'9'] => Some(Action::Digit(digit - b'0')),
+        [b'.' | b','] => Some(Action::Point),
+        _ => None,
     }
 }
 
@@ -152,6 +169,13 @@ mod tests {
         );
         assert_eq!(mapper.map(&finger(8, TouchPhase::Cancelled, 5.0)), Some(InputEvent::Touch(TouchEvent::Cancel)));
         assert_eq!(mapper.map(&WindowEvent::Focused(false)), None, "nothing is held");
+    }
+
+    #[test]
+    fn digits_and_either_decimal_mark_are_keys_of_the_keypad() {
+        assert_eq!(typed("7"), Some(Action::Digit(7)));
+        assert_eq!([typed("."), typed(",")], [Some(Action::Point); 2]);
+        assert_eq!([typed("a"), typed("12"), typed("")], [None; 3]);
     }
 
     #[test]

@@ -40,6 +40,8 @@ pub enum UserEvent {
     Pressed(Action),
     /// A key went down.
     Key(NavigationKey),
+    /// A key of a keypad went down.
+    Typed(Action),
 }
 
 /// The ends of the channels that the renderer holds.
@@ -144,6 +146,7 @@ impl WindowRenderer {
             self.pacer.hurry();
             let asked_for = match event {
                 InputEvent::Key(key) => Some(UserEvent::Key(key)),
+                InputEvent::Typed(action) => Some(UserEvent::Typed(action)),
                 InputEvent::Touch(touch) => {
                     self.painter.touch(touch, self.channels.screens.latest()).map(UserEvent::Pressed)
                 }

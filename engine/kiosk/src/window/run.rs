@@ -66,5 +66,6 @@ fn input(event: UserEvent) -> Input {
     match event {
         UserEvent::Pressed(action) => Input::Pressed(action),
         UserEvent::Key(key) => Input::Key(key),
+        UserEvent::Typed(action) => Input::Typed(action),
     }
 }

@@ -3,7 +3,7 @@
 use toile_assets::sizes::Girth;
 
 use super::super::screen::Block;
-use super::super::size_fit::{BodyPart, MeasureBasis, ZoneFit};
+use super::super::size_fit::{BodyPart, Feel, MeasureBasis, ZoneFit};
 use super::super::texts::{TextKey, TextValue};
 use super::PageWriter;
 
@@ -42,7 +42,12 @@ impl PageWriter<'_> {
 
     /// The fit at a zone as one line.
     pub(super) fn fit_block(&self, zone: &ZoneFit) -> Block {
-        let (name, feel) = (self.zone_name(zone.zone), self.words(zone.feel.word()));
+        let name = self.zone_name(zone.zone);
+        let Some(feel) = zone.feel else {
+            let text = self.format(TextKey::FitUnknown, &[("zone", TextValue::Text(&name))]);
+            return Block::Fit { text, tightness: None };
+        };
+        let feel = self.words(feel.word());
         // What is rounded to nothing is no lack.
         let (key, ease) = match cm(zone.ease.value).round() {
             e if e < 0.0 => (TextKey::FitLack, -zone.ease.value),
@@ -68,7 +73,7 @@ impl PageWriter<'_> {
     pub(super) fn zone_label(&self, place: usize) -> (String, Option<String>) {
         let zone = self.model.visit.fit.as_ref().and_then(|fit| fit.zones.get(place));
         let Some(zone) = zone else { return Default::default() };
-        (self.zone_name(zone.zone), Some(self.words(zone.feel.word())))
+        (self.zone_name(zone.zone), Some(self.words(zone.feel.map_or(TextKey::FeelUnknown, Feel::word))))
     }
 
     /// The zone that is asked about.
@@ -107,11 +112,12 @@ impl PageWriter<'_> {
             blocks.push(self.paragraph(TextKey::ZonePrimary));
         }
         let (why, cure) = match basis {
-            MeasureBasis::Seen => (TextKey::ZoneSeen, TextKey::ZoneSurerAgain),
-            MeasureBasis::Bones => (TextKey::ZoneBones, TextKey::ZoneSurerTape),
-            MeasureBasis::Guessed => (TextKey::ZoneGuessed, TextKey::ZoneSurerTape),
+            MeasureBasis::Taped => (TextKey::ZoneTaped, None),
+            MeasureBasis::Seen => (TextKey::ZoneSeen, Some(TextKey::ZoneSurerAgain)),
+            MeasureBasis::Bones => (TextKey::ZoneBones, Some(TextKey::ZoneSurerTape)),
+            MeasureBasis::Guessed => (TextKey::ZoneGuessed, Some(TextKey::ZoneSurerTape)),
         };
-        blocks.extend([self.paragraph(why), self.paragraph(cure)]);
+        blocks.extend([Some(why), cure].into_iter().flatten().map(|key| self.paragraph(key)));
         blocks
     }
 
@@ -134,7 +140,12 @@ impl PageWriter<'_> {
         let [left, right] = [fit.size, pair.other.size].map(|size| self.size(size));
         for (a, b) in fit.zones.iter().zip(&pair.other.zones) {
             let zone = self.zone_name(a.zone);
-            let [a, b] = [a, b].map(|z| self.words(z.feel.word()));
+            let (Some(a), Some(b)) = (a.feel, b.feel) else {
+                let values = [("zone", TextValue::Text(&zone))];
+                blocks.push(Block::Text(self.format(TextKey::CompareUnknown, &values)));
+                continue;
+            };
+            let [a, b] = [a, b].map(|feel| self.words(feel.word()));
             blocks.push(Block::Text(if a == b {
                 self.format(TextKey::CompareSame, &[("zone", TextValue::Text(&zone)), ("feel", TextValue::Text(&a))])
             } else {

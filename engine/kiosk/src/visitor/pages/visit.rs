@@ -1,6 +1,7 @@
 //! The pages of coming, being measured and leaving, the picture and the settings.
 
 use super::super::actions::PositionHint;
+use super::super::body_turn::{BodyTurn, TurnState};
 use super::super::screen::Block;
 use super::super::texts::{TextKey, TextValue};
 use super::super::visit::MeasureProgress;
@@ -13,6 +14,12 @@ const TURN_NS: u64 = 5 * SECOND_NS;
 
 /// How long the figure that shows how to stand takes to go round (ns).
 const POSE_NS: u64 = 4 * SECOND_NS;
+
+/// How long the arrow that shows how to turn takes to go round (ns): as slowly as is best.
+const TURNED_NS: u64 = 6 * SECOND_NS;
+
+/// Where that arrow rests where nothing moves by itself (share of its way).
+const RESTING: f32 = 0.25;
 
 /// Share of the way to a dressed body that taking the measures is.
 const MEASURED: f32 = 0.5;
@@ -68,11 +75,28 @@ impl PageWriter<'_> {
                 (onwards(MEASURED, since(began) - whole).min(0.75), TextKey::MeasuringBody)
             }
             MeasureProgress::Dressing(began) => (onwards(0.75, since(began)), TextKey::MeasuringDress),
+            MeasureProgress::Turning => (0.75, TextKey::MeasuringBody),
             MeasureProgress::No | MeasureProgress::Guide { .. } | MeasureProgress::Failed => {
                 (1.0, TextKey::MeasuringDress)
             }
         };
-        vec![Block::Progress { share, label: self.words(label) }]
+        let mut blocks = vec![Block::Progress { share, label: self.words(label) }];
+        blocks.extend(self.model.visit.turn.iter().flat_map(|turn| self.turn(turn)));
+        blocks
+    }
+
+    /// The offer of a turn, and how far it has got; nothing once it has ended.
+    fn turn(&self, turn: &BodyTurn) -> Vec<Block> {
+        let round = (self.model.now_ns % TURNED_NS) as f32 / TURNED_NS as f32;
+        let (arrow, key) = match turn.state() {
+            TurnState::Offered if self.model.defaults.motion => (Some(round), TextKey::TurnOffer),
+            TurnState::Offered => (Some(RESTING), TextKey::TurnOffer),
+            TurnState::Turning => (None, TextKey::TurnOn),
+            TurnState::Enough => (None, TextKey::TurnEnough),
+            TurnState::Ended => return Vec::new(),
+        };
+        let guide = Block::TurnGuide { seen: *turn.seen(), turned: turn.turned().unwrap_or_default(), arrow };
+        vec![guide, self.paragraph(key)]
     }
 
     pub(super) fn unmeasured(&self) -> Vec<Block> {

@@ -20,6 +20,7 @@ fn of_who_has_left_no_measure_is_left_in_the_machine() {
         for (i, e) in taken.into_iter().chain([&mut m.inseam, &mut m.arm_length]).flatten().enumerate() {
             (e.value, e.sigma) = (e.value + 0.000_071, 0.010_123 + 0.001 * i as f32);
         }
+        play.known = VisitorMeasures::new(play.known.measured.clone(), false);
         let fresh = format!("{:?}", play.model.visit);
         play.see(Some(1));
         play.wait(6_000);
@@ -30,10 +31,25 @@ fn of_who_has_left_no_measure_is_left_in_the_machine() {
         play.press(Action::Language(1));
         play.press(Action::LargeType);
         play.press(Action::Back);
+        // A measure that they took by tape.
+        play.press(Action::Open(Page::Settings));
+        play.press(Action::Open(Page::OwnMeasures));
+        play.press(Action::OwnMeasure(8));
+        [3, 7].into_iter().for_each(|digit| play.press(Action::Digit(digit)));
+        play.press(Action::Point);
+        play.press(Action::Digit(4));
+        play.press(Action::Accept);
+        assert_eq!(play.model.visit.tape.given().count(), 1);
+        play.wait(1_000);
+        play.press(Action::Back);
+        play.press(Action::Back);
         play.press(Action::TakePicture);
         play.wait(800);
         let before = format!("{:?}", play.model);
-        let numbers_known = numbers(&play.known);
+        // As the camera saw them, as they follow from the tape, and the tape's own.
+        let mut numbers_known = numbers(&play.known);
+        numbers_known.extend(numbers(play.model.known().unwrap()));
+        numbers_known.extend(play.model.visit.tape.given().map(|(_, metres)| format!("{metres:?}")));
         assert!(numbers_known.iter().all(|n| before.contains(n)), "else the search finds nothing: {numbers_known:?}");
         if by_hand {
             play.press(Action::Back);

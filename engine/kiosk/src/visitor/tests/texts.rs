@@ -163,7 +163,22 @@ fn every_page_speaks_every_language_whole() {
     play.press(Action::Measure);
     play.wait(9_000);
     look(&mut play);
-    assert_eq!(seen.len(), 13, "{seen:?}");
+    // Measures by tape, typed, refused, accepted and listed.
+    play.press(Action::Open(Page::OwnMeasures));
+    look(&mut play);
+    for keys in [&[][..], &[7], &[0, 9, 0]] {
+        play.press(Action::OwnMeasure(1));
+        look(&mut play);
+        keys.iter().for_each(|digit| play.press(Action::Digit(*digit)));
+        play.press(Action::Accept);
+        look(&mut play);
+        if play.page() == Page::MeasureEntry {
+            play.press(Action::Back);
+        }
+    }
+    play.press(Action::OwnMeasure(1));
+    look(&mut play);
+    assert_eq!(seen.len(), 15, "{seen:?}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::visitor::screen::{Block, BodyView, ControlStyle};
 use toile_track::gesture::Gesture;
 
 /// Every page that a visitor can come to.
-const ALL: [Page; 13] = [
+const ALL: [Page; 15] = [
     Page::Attract,
     Page::Guide,
     Page::Measuring,
@@ -18,6 +18,8 @@ const ALL: [Page; 13] = [
     Page::Zone,
     Page::Compare,
     Page::Picture,
+    Page::OwnMeasures,
+    Page::MeasureEntry,
     Page::Settings,
     Page::Second,
     Page::Leaving,
@@ -392,5 +394,5 @@ fn whatever_is_pressed_something_has_the_focus_and_one_control_at_most_stands_ou
         let known = play.model.visit.known.is_some();
         assert!(known || !matches!(screen.body_view, BodyView::Shopper { .. } | BodyView::Two { .. }));
     }
-    assert!(play.pages.len() >= 12, "{:?}", play.pages);
+    assert!(play.pages.len() >= 13, "{:?}", play.pages);
 }

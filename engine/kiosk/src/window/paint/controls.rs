@@ -11,6 +11,9 @@ use crate::visitor::screen::{Control, ControlStyle};
 /// Most columns of a grid.
 const MOST_COLUMNS: usize = 6;
 
+/// Columns of a keypad, as those of a telephone.
+const KEY_COLUMNS: usize = 3;
+
 /// A button with its place.
 #[derive(Debug, Clone)]
 pub struct ButtonBox {
@@ -71,8 +74,10 @@ fn alike(a: &ControlStyle, b: &ControlStyle) -> bool {
 impl Column<'_> {
     /// Places a run of neighbours below `y`, in as many columns as make it lowest; gives where it ends.
     fn grid(&self, run: Range<usize>, y: f32, buttons: &mut Vec<ButtonBox>) -> f32 {
+        let keys = matches!(self.controls[run.start].style, ControlStyle::Key);
         let most = self.most_columns(&run);
-        let tries = (1..=most).map(|columns| self.rows(&run, columns, y));
+        let tries =
+            (if keys { KEY_COLUMNS..=KEY_COLUMNS } else { 1..=most }).map(|columns| self.rows(&run, columns, y));
         let lowest = tries.min_by(|(_, a), (_, b)| a.total_cmp(b));
         let Some((rows, end)) = lowest else { return y };
         buttons.extend(rows);
@@ -127,6 +132,7 @@ fn font(control: &Control, sizes: Sizes) -> FontId {
     match control.style {
         ControlStyle::Swatch(_) => sizes.small(),
         ControlStyle::Quiet => sizes.text(),
+        ControlStyle::Key => FontId { size: (sizes.body * 1.3).round(), ..sizes.label() },
         _ => sizes.label(),
     }
 }
@@ -157,6 +163,7 @@ fn button(control: &Control, index: usize, width: f32, sizes: Sizes, painter: &P
     let air = match control.style {
         ControlStyle::Primary => 1.9,
         ControlStyle::Plain => 1.35,
+        ControlStyle::Key => 1.1,
         ControlStyle::Quiet | ControlStyle::Swatch(_) => 0.9,
     };
     let tall = (words + disc + sizes.body * air * sizes.squeeze).max(sizes.target).round();

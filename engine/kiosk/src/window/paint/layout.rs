@@ -146,6 +146,11 @@ fn block(index: usize, block: &Block, width: f32, sizes: Sizes, painter: &Painte
             (paragraph.size().y, vec![paragraph])
         }
         Block::PoseGuide { .. } => ((sizes.body * 13.0 * sizes.squeeze * sizes.squeeze).round(), vec![]),
+        Block::TurnGuide { .. } => ((sizes.body * 9.0 * sizes.squeeze * sizes.squeeze).round(), vec![]),
+        Block::Entry { text } => {
+            let length = left_aligned(painter, text, big(sizes), theme::INK, width);
+            ((length.size().y * 1.3).round(), vec![length])
+        }
         Block::Progress { share, label } => {
             let percent = text(&format!("{:.0} %", share.clamp(0.0, 1.0) * 100.0), width);
             let label = text(label, width - percent.size().x - sizes.gap());

@@ -16,6 +16,7 @@ mod shapes;
 mod text;
 pub mod theme;
 pub mod touch;
+mod turn_guide;
 
 use egui::epaint::{ClippedPrimitive, Primitive};
 use egui::{Color32, Context, LayerId, Mesh, RawInput, Rect, TextureId, TexturesDelta, pos2, vec2};

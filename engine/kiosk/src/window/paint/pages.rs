@@ -15,6 +15,76 @@ use crate::window::overlay::Overlay;
 
 /// The pages of a visit in a language, and in large type.
 pub fn all(language: usize, large: bool) -> BTreeMap<String, Screen> {
+    let mut seen = usual(language, large);
+    seen.extend(by_tape(language, large));
+    seen
+}
+
+/// The pages of somebody who is offered a turn, whose hip is not seen, and who gives measures by tape.
+fn by_tape(language: usize, large: bool) -> BTreeMap<String, Screen> {
+    let mut seen = BTreeMap::new();
+    let mut play = Play::new();
+    play.press(Action::Language(language));
+    if large {
+        play.press(Action::LargeType);
+    }
+    let mut keep = |name: &str, play: &Play| {
+        seen.insert(format!("2{}-{name}", seen.len()), play.screen());
+    };
+    play.hide_hip();
+    play.face(0.0);
+    while play.page() != Page::Measuring {
+        play.wait(100);
+    }
+    play.face(0.0);
+    keep("offered", &play);
+    for side in 0..10 {
+        play.face(0.17 * side as f32);
+        play.wait(160);
+    }
+    keep("turning", &play);
+    while play.page() == Page::Measuring {
+        play.wait(100);
+    }
+    keep("partly", &play);
+    play.press(Action::Open(Page::OwnMeasures));
+    keep("own", &play);
+    let give = |play: &mut Play, own: usize, digits: &[u8]| {
+        play.press(Action::OwnMeasure(own));
+        digits.iter().for_each(|digit| play.press(Action::Digit(*digit)));
+        play.press(Action::Accept);
+    };
+    for (own, digits) in [(0, [0, 9, 4]), (2, [1, 0, 2]), (3, [1, 7, 0]), (5, [0, 7, 8])] {
+        give(&mut play, own, &digits);
+    }
+    keep("given", &play);
+    give(&mut play, 1, &[7]);
+    keep("impossible", &play);
+    play.press(Action::Back);
+    give(&mut play, 4, &[1, 2, 5]);
+    keep("contradiction", &play);
+    play.press(Action::Back);
+    play.press(Action::OwnMeasure(2));
+    keep("entry", &play);
+    play.press(Action::RemoveMeasure);
+    play.wait(1_500);
+    play.press(Action::Back);
+    while play.page() != Page::Fitting {
+        play.press(Action::Back);
+    }
+    keep("unknown", &play);
+    play.press(Action::Open(Page::Zones));
+    keep("unknown-zones", &play);
+    play.press(Action::Zone(2));
+    keep("unknown-zone", &play);
+    play.press(Action::Back);
+    play.press(Action::Open(Page::Compare));
+    play.wait(1_500);
+    keep("unknown-compare", &play);
+    seen
+}
+
+fn usual(language: usize, large: bool) -> BTreeMap<String, Screen> {
     let mut seen = BTreeMap::new();
     let mut play = Play::new();
     play.press(Action::Language(language));

@@ -7,7 +7,7 @@ use super::controls::{ButtonBox, aside, disc, pad};
 use super::layout::{PlacedBlock, ScreenLayout, gauge_width};
 use super::text::SetText;
 use super::theme::{self, Sizes};
-use super::{figure, qr_code};
+use super::{figure, qr_code, turn_guide};
 use crate::visitor::screen::{Block, Control, ControlStyle, Screen};
 use toile_view::fit_map;
 
@@ -70,6 +70,8 @@ fn paint_block(block: &Block, placed: &PlacedBlock, sizes: Sizes, painter: &Pain
     match block {
         Block::Text(_) => words.iter().for_each(|w| put(painter, rect.min, w)),
         Block::PoseGuide { phase, seated } => figure::paint(painter, rect, *phase, *seated),
+        Block::TurnGuide { seen, turned, arrow } => turn_guide::paint(painter, rect, seen, *turned, *arrow),
+        Block::Entry { .. } => entry(rect, words, sizes, painter),
         Block::Progress { share, .. } => progress(*share, rect, words, sizes, painter),
         Block::Fit { tightness, .. } => fit(*tightness, rect, words, sizes, painter),
         Block::Legend { .. } => legend(rect, words, sizes, painter),
@@ -100,27 +102,27 @@ fn step(i: usize) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// Eight cells from loose to tight.
-fn cells(rect: Rect, painter: &Painter) -> impl Fn(usize) -> Rect + use<> {
+/// Eight cells from loose to tight; all of one grey where the fit is not known.
+fn cells(rect: Rect, known: bool, painter: &Painter) -> impl Fn(usize) -> Rect + use<> {
     let count = fit_map::STEPS.len();
     let cell = move |i: usize| {
         let x = |i: usize| rect.left() + rect.width() * i as f32 / count as f32;
         Rect::from_min_max(pos2(x(i), rect.top()), pos2(x(i + 1) - 2.0, rect.bottom()))
     };
-    (0..count).for_each(|i| _ = painter.rect_filled(cell(i), 2.0, step(i)));
+    (0..count).for_each(|i| _ = painter.rect_filled(cell(i), 2.0, if known { step(i) } else { theme::PLAIN }));
     cell
 }
 
 /// A scale with a mark at the step, so that place and form say what the colour says; then the words.
-fn fit(tightness: f32, rect: Rect, words: &[SetText], sizes: Sizes, painter: &Painter) {
+fn fit(tightness: Option<f32>, rect: Rect, words: &[SetText], sizes: Sizes, painter: &Painter) {
     let line = words.first().map_or(sizes.body, |w| w.rows.first().map_or(sizes.body, |r| r.height()));
     let tall = (sizes.body * 0.42).round();
     let scale = Rect::from_min_size(
         pos2(rect.left(), rect.top() + ((line - tall) * 0.5).round()),
         vec2(gauge_width(sizes), tall),
     );
-    let cell = cells(scale, painter);
-    if let Some(i) = fit_map::step(tightness) {
+    let cell = cells(scale, tightness.is_some(), painter);
+    if let Some(i) = tightness.and_then(fit_map::step) {
         let mark = cell(i).expand2(vec2(2.0, sizes.body * 0.26));
         painter.rect_filled(mark, 4.0, step(i));
         painter.rect_stroke(mark, 4.0, Stroke::new(sizes.line() * 2.0, theme::INK), StrokeKind::Outside);
@@ -136,12 +138,20 @@ fn fit(tightness: f32, rect: Rect, words: &[SetText], sizes: Sizes, painter: &Pa
 
 fn legend(rect: Rect, words: &[SetText], sizes: Sizes, painter: &Painter) {
     let tall = (sizes.body * 0.7).round();
-    _ = cells(Rect::from_min_size(rect.min, vec2(rect.width(), tall)), painter);
+    _ = cells(Rect::from_min_size(rect.min, vec2(rect.width(), tall)), true, painter);
     if let [loose, tight] = words {
         let y = rect.top() + tall + sizes.body * 0.2;
         put(painter, pos2(rect.left(), y), loose);
         put(painter, pos2(rect.right() - tight.size().x, y), tight);
     }
+}
+
+/// What is typed, as a display of its own.
+fn entry(rect: Rect, words: &[SetText], sizes: Sizes, painter: &Painter) {
+    let Some(length) = words.first() else { return };
+    painter.rect_filled(rect, sizes.round(), theme::PLAIN);
+    painter.rect_stroke(rect, sizes.round(), Stroke::new(sizes.line() * 2.0, theme::INK), StrokeKind::Inside);
+    put(painter, rect.center() - length.size() * 0.5, length);
 }
 
 fn countdown(rect: Rect, words: &[SetText], sizes: Sizes, painter: &Painter) {
@@ -174,7 +184,7 @@ fn paint_button(
         ControlStyle::Primary => (theme::PRIMARY, theme::PRIMARY),
         _ if state.pressed => (theme::PRESSED, theme::INK),
         _ if control.chosen => (theme::CHOSEN, theme::INK),
-        ControlStyle::Plain => (theme::PLAIN, theme::EDGE),
+        ControlStyle::Plain | ControlStyle::Key => (theme::PLAIN, theme::EDGE),
         ControlStyle::Quiet | ControlStyle::Swatch(_) => (Color32::TRANSPARENT, theme::PLAIN),
     };
     let thick = if control.chosen { 2.0 * sizes.line() } else { sizes.line() };
