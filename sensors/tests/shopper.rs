@@ -118,7 +118,13 @@ fn all_of_the_shopper_is_found_and_nobody_else() {
 #[test]
 fn a_forearm_before_the_hips_makes_no_two_people_of_one() {
     let two = Two::new();
-    let mut frame = noisy(&two.seen(&[(Vec3::ZERO, 0.0)]), 0);
+    // From the side, legs alone are too slim to be anybody's.
+    for turn in [0.0, 0.5 * std::f32::consts::PI] {
+        both_halves_are_kept(noisy(&two.seen(&[(Vec3::ZERO, turn)]), 0));
+    }
+}
+
+fn both_halves_are_kept(mut frame: DepthFrame) {
     let (k, to_world) = (frame.intrinsics, frame.camera_to_world);
     let width = k.width as usize;
     let world = |i: usize, mm: u16| {
@@ -139,7 +145,7 @@ fn a_forearm_before_the_hips_makes_no_two_people_of_one() {
         let shown = (0..frame.depth_mm.len()).filter(|i| (from..to).contains(&world(*i, frame.depth_mm[*i]).y));
         shown.filter(|i| found.mask[*i] == 1).count()
     };
-    assert!(kept(1.1, 1.4) > 2_000 && kept(0.3, 0.7) > 2_000, "{} above, {} below", kept(1.1, 1.4), kept(0.3, 0.7));
+    assert!(kept(1.1, 1.4) > 1_500 && kept(0.3, 0.7) > 1_500, "{} above, {} below", kept(1.1, 1.4), kept(0.3, 0.7));
 }
 
 #[test]

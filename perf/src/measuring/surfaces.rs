@@ -111,7 +111,7 @@ impl PersonSurfaces {
                 panels.push(measured.draw(Colours::PerVertex(&colours), yaw, &bounds));
             }
         }
-        let captions = ["true", "", "measured from the front", "", "after a turn", ""];
+        let captions = ["true", "", "from the front", "", "after a turn", ""];
         let panels: Vec<&Image> = panels.iter().collect();
         contact_sheet(&panels, panels.len(), &captions[..panels.len()])
     }

@@ -67,6 +67,11 @@ const BEHIND: f32 = 1.5;
 const ON_TOP: f32 = 0.35;
 const OVERLAP: f32 = 0.30;
 
+/// Legs that a hand before the hips parts from somebody seen down to there: they stand in the same column, are no broader than a
+/// stance, and hide no more between them and the shopper than a hand and a forearm (m).
+const STANCE: f32 = 0.7;
+const HIDDEN: f32 = 0.35;
+
 struct Band {
     below: [f32; 2],
     reach: f32,
@@ -198,10 +203,13 @@ impl PeopleFinder {
         for cell in inhabited.flat_map(|p| self.pieces.cells(p)) {
             is_other[*cell as usize] = !is_shopper[*cell as usize];
         }
+        let heights = self.shopper.iter().map(|c| grid.height[*c as usize]);
+        let bottom = heights.fold(f32::MAX, f32::min);
         for &piece in &self.rest {
             let cells = self.pieces.cells(piece);
             let contested = || cells.iter().any(|c| touches(grid, *c as usize, &is_other, false));
-            if belongs(grid, cells, &is_shopper, axis, &mut self.numbers) && !contested() {
+            let below = bottom > FEET && are_legs(grid, cells, bottom, axis, &mut self.numbers);
+            if (below || belongs(grid, cells, &is_shopper, axis, &mut self.numbers)) && !contested() {
                 self.shopper.extend_from_slice(cells);
             }
         }
@@ -220,6 +228,18 @@ fn belongs(grid: &Grid, cells: &[u32], is_shopper: &[bool], axis: Vec2, numbers:
         return false;
     }
     cells.iter().any(|c| touches(grid, *c as usize, is_shopper, area < ARM))
+}
+
+/// Whether a piece is the legs of somebody who is seen down to a height (m) over a place.
+fn are_legs(grid: &Grid, cells: &[u32], bottom: f32, axis: Vec2, numbers: &mut Vec<f32>) -> bool {
+    let span = |value: &dyn Fn(usize) -> f32| {
+        let all = cells.iter().map(|c| value(*c as usize));
+        all.fold([f32::MAX, f32::MIN], |[least, most], v| [least.min(v), most.max(v)])
+    };
+    let [foot, hip] = span(&|c| grid.height[c]);
+    let [left, right] = span(&|c| grid.place(c).x);
+    let meets = foot < FEET && hip > bottom - HIDDEN && hip < bottom + HIDDEN && right - left < STANCE;
+    meets && place(grid, cells, numbers).distance(axis) < ON_TOP
 }
 
 /// Whether the shopper is found near a cell, along its row and column; for what may be a hand, behind it too.

@@ -49,6 +49,9 @@ const DAMPING: f64 = 1e-3;
 const SETTLED: usize = 3;
 const HOLDING: f32 = 0.3;
 
+/// Frames over which the rate of a turn is taken: a fifth of a second, because one frame from the side may be some degrees off.
+const RATE_OVER: usize = 3;
+
 /// Change of any shape parameter at which the rest normals are computed again.
 const RESHAPED: f64 = 0.01;
 
@@ -196,7 +199,9 @@ impl BodyFit {
 
     fn fail(&mut self) {
         self.failures += 1;
-        if self.failures >= PATIENCE {
+        // Somebody who turns is lost from the side for a moment; who begins anew there is taken to face the camera.
+        let turns = self.path.len() > SETTLED;
+        if self.failures >= PATIENCE && !turns {
             self.state = None;
         }
     }
@@ -254,16 +259,17 @@ impl BodyFit {
         self.matches.off
     }
 
-    /// Where somebody who is measured will be in the next frame: they turn on as they turned.
+    /// Where somebody who is measured will be in this frame: they turn on as they turned, through frames in which they were lost, too.
     fn ahead(&self, state: &FitState) -> FitState {
-        let [.., before, now] = self.path[..] else { return *state };
-        if before.frame + 1 != now.frame || now.frame + 2 != self.pushed {
-            return *state;
-        }
+        let Some(now) = self.path.last() else { return *state };
+        let since = self.path.len().saturating_sub(1 + RATE_OVER);
+        let Some(before) = self.path[since..].iter().find(|p| p.frame < now.frame) else { return *state };
+        let share = (self.pushed - 1 - now.frame) as f32 / (now.frame - before.frame) as f32;
+        let turned = (now.state.local[0] * before.state.local[0].inverse()).normalize();
+        let turned = if turned.w < 0.0 { -turned } else { turned };
         let mut ahead = *state;
-        let turned = now.state.local[0] * before.state.local[0].inverse();
-        ahead.local[0] = (turned * state.local[0]).normalize();
-        ahead.root += now.state.root - before.state.root;
+        ahead.local[0] = (Quat::from_scaled_axis(turned.to_scaled_axis() * share) * state.local[0]).normalize();
+        ahead.root += (now.state.root - before.state.root) * share.min(1.0);
         ahead
     }
 
