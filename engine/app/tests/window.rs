@@ -66,7 +66,12 @@ impl Kiosk {
         let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/screens").join(format!("{name}.png"));
         let shot = self.shots.join(format!("{name}.png"));
         if std::env::var_os("TOILE_KEEP_SCREENS").is_some() {
-            std::thread::sleep(Duration::from_secs(if name == "2-fitting" { 16 } else { 7 }));
+            // Somebody steps in soon after the start, and is measured and dressed.
+            std::thread::sleep(Duration::from_secs(match name {
+                "1-attract" => 4,
+                "2-fitting" => 16,
+                _ => 7,
+            }));
             self.display.look().write(&kept);
         }
         let wanted = Picture::read(&kept).unwrap_or_else(|| panic!("{} is missing", kept.display()));
