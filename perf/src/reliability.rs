@@ -3,6 +3,7 @@
 //! Real people's girths are measured again with errors of a known sigma, and the size recommended is compared with the one
 //! that their true girths get.
 
+use toile_assets::body::Sex;
 use toile_assets::numeric::random::SplitMix64;
 use toile_assets::sizes::{GarmentKind, SizeError, SizeTable};
 use toile_track::estimate::Estimate;
@@ -124,6 +125,13 @@ const RIGHT_EASE: [[f32; 2]; 3] = [[0.03, 0.09], [0.03, 0.15], [0.05, 0.20]];
 /// Those of [`recommend`], and a table of sizes that cannot be read.
 pub fn of_dress(people: &[Girths], sigma: f32, seed: u64) -> Result<Reliability, RecommendError> {
     let table = SizeTable::embedded("women")?;
+    let (sizes, ease) = made(&table)?;
+    let offer = Offer { garment: "dress", kind: GarmentKind::Dress, table: &table, sizes: &sizes, ease: &ease };
+    reliability(people, &offer, sigma, seed)
+}
+
+/// The sizes of a table as they are made, and the ease that feels right.
+fn made(table: &SizeTable) -> Result<(Vec<MadeSize>, [EaseRange; 3]), SizeError> {
     let made = |code: &str| {
         let body = table.size_body(code)?;
         let girths = [body.chest_girth, body.waist_girth, body.hip_girth];
@@ -132,8 +140,38 @@ pub fn of_dress(people: &[Girths], sigma: f32, seed: u64) -> Result<Reliability,
     };
     let sizes = table.codes().into_iter().map(made).collect::<Result<Vec<_>, SizeError>>()?;
     let ease = [0, 1, 2].map(|i| EaseRange { zone: Zone::ALL[i], least: RIGHT_EASE[i][0], most: RIGHT_EASE[i][1] });
-    let offer = Offer { garment: "dress", kind: GarmentKind::Dress, table: &table, sizes: &sizes, ease: &ease };
-    reliability(people, &offer, sigma, seed)
+    Ok((sizes, ease))
+}
+
+/// A size that somebody gets, held against the one that their true girths get.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SizeCheck {
+    /// How probable it was stated to be the best one.
+    pub stated: f32,
+    /// Whether it is.
+    pub right: bool,
+    /// How far the true chest girth lies from the nearest border between two sizes (m).
+    pub from_border: f32,
+}
+
+/// Recommends a dress to a woman and a T-shirt to a man, by true girths and by measured ones (chest, waist, hip).
+///
+/// # Errors
+/// Those of [`recommend`], and a table of sizes that cannot be read.
+pub fn check_size(sex: Sex, truth: Girths, seen: [Estimate; 3]) -> Result<SizeCheck, RecommendError> {
+    let (name, kind) = if sex == Sex::Female { ("women", GarmentKind::Dress) } else { ("men", GarmentKind::Tshirt) };
+    let table = SizeTable::embedded(name)?;
+    let (sizes, ease) = made(&table)?;
+    let offer = Offer { garment: kind.name(), kind, table: &table, sizes: &sizes, ease: &ease };
+    let best = recommend(&measured(truth, [0.0; 3]), &offer)?.size;
+    let given = recommend(&measured(seen.map(|e| e.value), seen.map(|e| e.sigma)), &offer)?;
+    let mut from_border = f32::MAX;
+    for code in table.codes() {
+        for border in table.size(code)?.chest {
+            from_border = from_border.min((truth[0] - border).abs());
+        }
+    }
+    Ok(SizeCheck { stated: given.probability, right: given.size == best, from_border })
 }
 
 #[cfg(test)]

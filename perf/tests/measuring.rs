@@ -106,6 +106,12 @@ fn people_of_another_family_are_measured_from_the_front_and_from_all_sides() {
     for (name, limit) in [("underbust_girth", 35.0), ("hip_girth", 30.0), ("stature", 14.0)] {
         assert!(turned(name).mean_absolute_mm < limit, "{:?}", turned(name));
     }
+    let [front, after] = found.sizes;
+    assert!(front.people == 8 && after.people >= 7 && front.inside <= 8, "{front:?} {after:?}");
+    assert!(
+        (0.1..0.9).contains(&front.stated) && front.right <= 1.0,
+        "nobody is sure of a size from the front: {front:?}"
+    );
     assert!(found.alone > 0.99, "one person is one: {}", found.alone);
     let crossed = crossed(&[&found], &[&found]);
     assert_eq!(crossed.iter().filter(|c| c.turned).count(), found.turned.len());

@@ -21,6 +21,7 @@ use toile_track::point_cloud::PersonFinder;
 use super::makehuman::{FamilyError, SurveyRanges, makehuman_person};
 use super::person::{GIVEN, survey_person};
 use super::sensor::{NoiseModel, Sensor, StudyCamera};
+use super::sizing::{SizeAgreement, sizes};
 use super::standing::{JointPositions, Moment, StudyPerson, TapeMeasures};
 use super::surfaces::PersonSurfaces;
 use crate::ansur::{StudyError, Survey};
@@ -189,6 +190,8 @@ pub struct MeasuringStudy {
     pub sections: Vec<MeasuringAgreement>,
     /// Share of the frames in which nobody else was seen.
     pub alone: f64,
+    /// Sizes recommended from the front, and once they have turned.
+    pub sizes: [SizeAgreement; 2],
     /// Errors with what the fit itself states, from the front and turned, by measure.
     #[serde(skip)]
     stated: [Vec<Vec<StatedError>>; 2],
@@ -406,6 +409,10 @@ fn summed(cases: &[MeasuredPerson], options: &MeasuringOptions) -> MeasuringStud
         turned: agreements(cases, |c| &c.turned),
         sections: agreements(cases, |c| &c.sections),
         alone: share(|c| c.frames[1], |c| c.frames[0]),
+        sizes: [
+            sizes(cases.iter().map(|c| (c.sex, &c.truth, &c.fit))),
+            sizes(cases.iter().map(|c| (c.sex, &c.truth, &c.turned))),
+        ],
         stated: [stated(cases, false, |c| &c.fit), stated(cases, true, |c| &c.turned)],
     }
 }

@@ -248,6 +248,16 @@ fn table(study: &MeasuringStudy, paint: Paint) -> String {
         study.sex_right * 100.0,
         study.alone * 100.0
     );
+    for (view, sizes) in ["from the front", "turned"].into_iter().zip(&study.sizes).filter(|(_, s)| s.people > 0) {
+        let _ = writeln!(
+            text,
+            "sizes {view}: {:.0} % right where {:.0} % were stated; {:.0} % of the {} at least 10 mm from a border",
+            sizes.right * 100.0,
+            sizes.stated * 100.0,
+            sizes.inside_right * 100.0,
+            sizes.inside
+        );
+    }
     let f = &study.following;
     let _ = writeln!(
         text,
