@@ -6,12 +6,13 @@ use toile_sensors::frame::{DepthFrame, Joints};
 
 use crate::anthropometry::{self, GirthModel, SilhouetteModel, regressions};
 use crate::estimate::{Estimate, temporal_mean};
-use crate::fit::measuring::FRAMES;
+use crate::fit::measuring::{FRAMES, MEASURES};
 use crate::joints;
 use crate::measures::{Hint, Measures};
 use crate::point_cloud::{self, PersonCloud, PersonFinder};
 use crate::section::TorsoSection;
 use crate::silhouette::{self, SilhouetteReading};
+use crate::tape_readings;
 
 /// Joints that are averaged: those within one second of the first believed frame (ns).
 const ONE_SECOND_NS: u64 = 1_000_000_000;
@@ -100,7 +101,7 @@ pub fn measure(joints: &[Joints], depth: &[DepthFrame], hint: &Hint) -> Result<M
     if joints.is_empty() && depth.is_empty() {
         return Err(MeasureError::Empty);
     }
-    let from_depth = if depth.is_empty() { None } else { Some(from_depth(depth, hint)) };
+    let from_depth = if depth.is_empty() { None } else { Some(from_depth(depth, hint).map(possible)) };
     let from_joints = if joints.is_empty() { None } else { Some(from_joints(joints, hint)) };
     match (from_depth, from_joints) {
         (Some(Ok(depth)), Some(Ok(joints))) => Ok(Measurements {
@@ -113,6 +114,30 @@ pub fn measure(joints: &[Joints], depth: &[DepthFrame], hint: &Hint) -> Result<M
         (Some(Err(why)), _) | (None, Some(Err(why))) => Err(why),
         (None, None) => Err(MeasureError::Empty),
     }
+}
+
+/// Girths that nobody has are none: arms, a bag or somebody else were taken with them.
+fn possible(mut measured: Measurements) -> Measurements {
+    let people = tape_readings::population(Population::Mixed);
+    let taken = &mut measured.measures;
+    let girths = [
+        ("chest_girth", &mut taken.chest_girth),
+        ("waist_girth", &mut taken.waist_girth),
+        ("hip_girth", &mut taken.hip_girth),
+    ];
+    for (name, girth) in girths {
+        let of = MEASURES.iter().position(|m| m.0 == name).map(|i| people.at(i));
+        let beyond = |(e, of): &(Estimate, Estimate)| (e.value - of.value).abs() > tape_readings::ANYBODY * of.sigma;
+        if let Some((e, _)) = girth.zip(of).filter(beyond) {
+            measured.notes.push(format!(
+                "A {} of {:.0} mm is nobody's, so it is left out: hold the arms away from the body, and put bags down.",
+                tape_readings::plain(name),
+                e.value * 1e3
+            ));
+            *girth = None;
+        }
+    }
+    measured
 }
 
 fn from_joints(joints: &[Joints], hint: &Hint) -> Result<Measurements, MeasureError> {
@@ -248,5 +273,36 @@ impl Measurements {
         let [stature, shoulder_breadth, chest_girth, waist_girth, hip_girth] =
             self.completed(population).map(|e| e.value);
         SizeBody { stature, shoulder_breadth, chest_girth, waist_girth, hip_girth }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_girth_that_nobody_has_is_left_out_and_named() {
+        let of = |chest: f32| {
+            let girth = |m: f32| Some(Estimate::new(m, 0.08));
+            let measures = Measures {
+                chest_girth: girth(chest),
+                waist_girth: girth(0.80),
+                hip_girth: girth(1.00),
+                ..Measures::default()
+            };
+            let all = Measurements {
+                measures,
+                valid_pixels: 1,
+                people: 1,
+                frames: 1,
+                source: Source::Depth,
+                notes: Vec::new(),
+            };
+            possible(all)
+        };
+        let (two, one) = (of(1.901), of(1.30));
+        assert!(two.measures.chest_girth.is_none() && two.measures.waist_girth.is_some());
+        assert!(two.notes.len() == 1 && two.notes[0].contains("chest girth of 1901 mm"), "{:?}", two.notes);
+        assert!(one.measures.chest_girth.is_some() && one.notes.is_empty());
     }
 }

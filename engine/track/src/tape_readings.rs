@@ -38,8 +38,9 @@ const WORDS: [(&str, &str); 8] = [
 const UNITS: [(&str, f32); 6] =
     [("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("inch", 0.0254), ("\"", 0.0254), ("m", 1.0)];
 
-/// Standard deviations that people of the survey stray by within which a measure by tape is taken for its unit's.
-const ANYBODY: f32 = 6.0;
+/// Standard deviations that people of the survey stray by: within them a measure by tape is taken for its unit's, and beyond them
+/// none is anybody's.
+pub(crate) const ANYBODY: f32 = 6.0;
 
 /// Why a measure by tape is refused; each message says what and the cure.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
