@@ -102,14 +102,14 @@ fn people_of_another_family_are_measured_from_the_front_and_from_all_sides() {
         assert!(error(&found.fit, name) < front, "{name}: {}", error(&found.fit, name));
     }
     let turned = |name: &str| found.turned.iter().find(|a| a.measure == name).expect("a measure that is taken");
-    assert!(turned("hip_girth").taken >= 7, "a turn is followed all round: {:?}", turned("hip_girth"));
-    for (name, limit) in [("underbust_girth", 35.0), ("hip_girth", 30.0), ("stature", 14.0)] {
+    assert!(turned("hip_girth").taken == 8, "a turn is followed all round: {:?}", turned("hip_girth"));
+    for (name, limit) in [("underbust_girth", 35.0), ("hip_girth", 30.0), ("stature", 10.0)] {
         assert!(turned(name).mean_absolute_mm < limit, "{:?}", turned(name));
     }
     let [front, after] = found.sizes;
-    assert!(front.people == 8 && after.people >= 7 && front.inside <= 8, "{front:?} {after:?}");
+    assert!(front.people == 8 && after.people == 8, "{front:?} {after:?}");
     assert!(
-        (0.1..0.9).contains(&front.stated) && front.right <= 1.0,
+        (0.1..0.9).contains(&front.stated) && front.right > 0.2,
         "nobody is sure of a size from the front: {front:?}"
     );
     assert!(found.alone > 0.99, "one person is one: {}", found.alone);

@@ -101,23 +101,26 @@ pub fn measure(joints: &[Joints], depth: &[DepthFrame], hint: &Hint) -> Result<M
     if joints.is_empty() && depth.is_empty() {
         return Err(MeasureError::Empty);
     }
-    let from_depth = if depth.is_empty() { None } else { Some(from_depth(depth, hint).map(possible)) };
+    let mut left_out = Vec::new();
+    let from_depth =
+        if depth.is_empty() { None } else { Some(from_depth(depth, hint).map(|m| possible(m, &mut left_out))) };
     let from_joints = if joints.is_empty() { None } else { Some(from_joints(joints, hint)) };
     match (from_depth, from_joints) {
         (Some(Ok(depth)), Some(Ok(joints))) => Ok(Measurements {
             measures: depth.measures.fused(joints.measures),
             source: Source::Both,
-            notes: Vec::new(),
+            notes: left_out,
             ..depth
         }),
-        (Some(Ok(one)), _) | (Some(Err(_)) | None, Some(Ok(one))) => Ok(one),
+        (Some(Ok(one)), _) => Ok(Measurements { notes: [one.notes, left_out].concat(), ..one }),
+        (Some(Err(_)) | None, Some(Ok(one))) => Ok(one),
         (Some(Err(why)), _) | (None, Some(Err(why))) => Err(why),
         (None, None) => Err(MeasureError::Empty),
     }
 }
 
-/// Girths that nobody has are none: arms, a bag or somebody else were taken with them.
-fn possible(mut measured: Measurements) -> Measurements {
+/// Girths that nobody has are none, and a sentence names each: arms, a bag or somebody else were taken with them.
+fn possible(mut measured: Measurements, left_out: &mut Vec<String>) -> Measurements {
     let people = tape_readings::population(Population::Mixed);
     let taken = &mut measured.measures;
     let girths = [
@@ -129,7 +132,7 @@ fn possible(mut measured: Measurements) -> Measurements {
         let of = MEASURES.iter().position(|m| m.0 == name).map(|i| people.at(i));
         let beyond = |(e, of): &(Estimate, Estimate)| (e.value - of.value).abs() > tape_readings::ANYBODY * of.sigma;
         if let Some((e, _)) = girth.zip(of).filter(beyond) {
-            measured.notes.push(format!(
+            left_out.push(format!(
                 "A {} of {:.0} mm is nobody's, so it is left out: hold the arms away from the body, and put bags down.",
                 tape_readings::plain(name),
                 e.value * 1e3
@@ -298,11 +301,12 @@ mod tests {
                 source: Source::Depth,
                 notes: Vec::new(),
             };
-            possible(all)
+            let mut left_out = Vec::new();
+            (possible(all, &mut left_out), left_out)
         };
-        let (two, one) = (of(1.901), of(1.30));
+        let ((two, named), (one, nothing)) = (of(1.901), of(1.30));
         assert!(two.measures.chest_girth.is_none() && two.measures.waist_girth.is_some());
-        assert!(two.notes.len() == 1 && two.notes[0].contains("chest girth of 1901 mm"), "{:?}", two.notes);
-        assert!(one.measures.chest_girth.is_some() && one.notes.is_empty());
+        assert!(named.len() == 1 && named[0].contains("chest girth of 1901 mm"), "{named:?}");
+        assert!(one.measures.chest_girth.is_some() && nothing.is_empty());
     }
 }

@@ -4,14 +4,15 @@
 use std::f32::consts::{PI, TAU};
 
 use toile_assets::skeleton::Joint;
+use toile_fitting::dress::depth::TURN_NS;
 use toile_sensors::frame::Joints;
+use toile_track::fit;
 
-/// Sides that are told apart: of ten degrees each, so that the count of them says the gap to within a side.
+/// Sides that are distinguished: of ten degrees each, so that the count of them says the gap to within a side.
 pub const SIDES: usize = 36;
 
-/// Largest gap between neighbouring sides around somebody who was seen from all sides, in sides: 100 degrees, as the body fit takes it
-/// (`toile_track::fit`). Front, sides and back will do.
-const CLOSED: usize = 10;
+/// Largest gap between neighbouring sides around somebody who was seen from all sides, in sides: as the body fit takes it.
+const CLOSED: usize = (fit::CLOSED / TAU * SIDES as f32) as usize;
 
 /// The offer stands for so long (ns): the sentence is read twice in that time. The front is measured and dressed meanwhile, and nobody
 /// waits for its end.
@@ -23,8 +24,8 @@ const BEGUN: f32 = 0.44;
 /// Without a new side for so long, they turn no more (ns): a slow turn shows a side each sixth of a second.
 const STILL_NS: u64 = 2_000_000_000;
 
-/// A turn is at an end after this (ns): depth of twelve seconds is looked at.
-const LONGEST_NS: u64 = 12_000_000_000;
+/// A turn is at an end after this (ns): no later depth is looked at.
+const LONGEST_NS: u64 = TURN_NS;
 
 /// Between frames that are no farther apart than this (ns), nobody turns by a quarter of a circle.
 const CONTINUOUS_NS: u64 = 300_000_000;

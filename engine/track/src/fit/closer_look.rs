@@ -41,7 +41,7 @@ const ROUNDS: usize = 3;
 const RIM_WORTH: f32 = 3.0;
 
 /// Largest angle between neighbouring views around somebody who was seen from all sides (rad): front, sides and back will do.
-const CLOSED: f32 = 1.75;
+pub const CLOSED: f32 = 1.75;
 
 /// A body with the surface that was seen.
 pub(super) struct SeenBody {

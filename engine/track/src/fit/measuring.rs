@@ -131,11 +131,12 @@ impl SexFit {
 
     /// Follows a shopper who may turn after the first second, and goes back to that second where they did not turn all round.
     fn follow_turn(&mut self, frames: &[DepthFrame]) {
-        let front = self.fit.mark();
+        let (front, seen) = (self.fit.mark(), (self.off, self.explained));
         self.push(frames);
         self.turned = self.fit.seen_from_all_sides();
         if !self.turned {
             self.fit.go_back_to(front);
+            (self.off, self.explained) = seen;
         }
     }
 

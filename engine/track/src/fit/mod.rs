@@ -27,4 +27,5 @@ mod shape_filter;
 pub mod tracker;
 
 pub use body_fit::{BodyFit, FitTimes, FittedFrame};
+pub use closer_look::CLOSED;
 pub use options::{FitOptions, Stance};

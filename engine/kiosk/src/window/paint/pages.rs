@@ -20,14 +20,20 @@ pub fn all(language: usize, large: bool) -> BTreeMap<String, Screen> {
     seen
 }
 
-/// The pages of somebody who is offered a turn, whose hip is not seen, and who gives measures by tape.
-fn by_tape(language: usize, large: bool) -> BTreeMap<String, Screen> {
-    let mut seen = BTreeMap::new();
+/// A visit in a language, and in large type.
+fn begun(language: usize, large: bool) -> Play {
     let mut play = Play::new();
     play.press(Action::Language(language));
     if large {
         play.press(Action::LargeType);
     }
+    play
+}
+
+/// The pages of somebody who is offered a turn, whose hip is not seen, and who gives measures by tape.
+fn by_tape(language: usize, large: bool) -> BTreeMap<String, Screen> {
+    let mut seen = BTreeMap::new();
+    let mut play = begun(language, large);
     let mut keep = |name: &str, play: &Play| {
         seen.insert(format!("2{}-{name}", seen.len()), play.screen());
     };
@@ -86,11 +92,7 @@ fn by_tape(language: usize, large: bool) -> BTreeMap<String, Screen> {
 
 fn usual(language: usize, large: bool) -> BTreeMap<String, Screen> {
     let mut seen = BTreeMap::new();
-    let mut play = Play::new();
-    play.press(Action::Language(language));
-    if large {
-        play.press(Action::LargeType);
-    }
+    let mut play = begun(language, large);
     let mut keep = |name: &str, play: &Play| {
         seen.insert(format!("{:02}-{name}", seen.len()), play.screen());
     };
