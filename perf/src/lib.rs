@@ -23,6 +23,7 @@ pub mod skirt;
 pub mod soak;
 pub mod torture;
 pub mod validate;
+pub mod worn;
 
 pub mod crossover;
 pub mod measuring;

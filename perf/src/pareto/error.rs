@@ -1,16 +1,14 @@
 //! Why a scene cannot be run or plotted.
 
 use thiserror::Error;
-use toile_assets::body::BodyError;
 use toile_assets::fabric::FabricError;
 use toile_assets::garment::MeshError;
-use toile_assets::sizes::SizeError;
-use toile_assets::wardrobe::WardrobeError;
 use toile_engine::colliders::ColliderError;
 use toile_engine::workers::WorkerPoolError;
 
 use crate::oracle::OracleError;
 use crate::skirt::SkirtError;
+use crate::worn::WornError;
 
 /// Why the figures cannot be taken.
 #[derive(Debug, Error)]
@@ -21,15 +19,6 @@ pub enum ParetoError {
     /// A scene's fabric that cannot be used.
     #[error(transparent)]
     Fabric(#[from] FabricError),
-    /// A mannequin that cannot be built.
-    #[error(transparent)]
-    Body(#[from] BodyError),
-    /// A garment of the wardrobe.
-    #[error(transparent)]
-    Wardrobe(#[from] WardrobeError),
-    /// A size table that cannot be used.
-    #[error(transparent)]
-    Sizes(#[from] SizeError),
     /// A scene's solids that the engine does not take.
     #[error("a scene's colliders are refused: {0}")]
     Colliders(#[from] ColliderError),
@@ -39,6 +28,9 @@ pub enum ParetoError {
     /// The reference solution x* was not found.
     #[error("x* was not found: {0}")]
     Oracle(#[from] OracleError),
+    /// A garment that cannot be worn.
+    #[error(transparent)]
+    Worn(#[from] WornError),
     /// The survival map's skirt.
     #[error(transparent)]
     Skirt(#[from] SkirtError),

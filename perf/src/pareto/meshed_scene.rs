@@ -11,6 +11,7 @@ use toile_engine::body::palette;
 use toile_engine::colliders::Colliders;
 
 use super::error::ParetoError;
+use crate::worn::on_the_way;
 
 toile_assets::named! {
     /// What fibers are solved by.
@@ -123,11 +124,4 @@ impl MeshedScene {
         garment.source.iter().enumerate().for_each(|(p, &v)| at[v as usize] = positions(p));
         at
     }
-}
-
-/// The pose a part of the way (0..1) from the rest pose to another.
-fn on_the_way(skeleton: &Skeleton, goal: &Pose, part: f32) -> Pose {
-    let t = part * part * (3.0 - 2.0 * part);
-    let rest = Pose::rest(skeleton);
-    Pose { root: rest.root.lerp(goal.root, t), local: std::array::from_fn(|i| rest.local[i].slerp(goal.local[i], t)) }
 }

@@ -1,18 +1,14 @@
 //! The scenes: the cantilever in four meshes, the skirt in three, the garments of the wardrobe on an average mannequin.
 
 use glam::DVec3;
-use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::fabric::Fabric;
-use toile_assets::rig::Rig;
 use toile_assets::scene::shopper;
 use toile_assets::scene::skirt::{self, Motion, Stretch};
-use toile_assets::sizes::{Population, SizeTable};
-use toile_assets::wardrobe;
 use toile_engine::colliders::{Colliders, RestSphere};
 
 use super::error::ParetoError;
 use super::meshed_scene::{MeshedScene, ReferenceKind, SceneMotion};
 use crate::validate::mesh::{CaseFabric, EndSupport, MeshStyle, Strip};
+use crate::worn::Mannequin;
 
 /// Names of all scenes, in the order in which they are run.
 pub const SCENES: [&str; 6] = ["cantilever", "skirt", "sun-dress", "t-shirt", "wide-trousers", "drape"];
@@ -83,40 +79,20 @@ fn walk(side: usize, main: bool, quick: bool) -> Result<MeshedScene, ParetoError
 }
 
 fn worn(name: &str, quick: bool) -> Result<MeshedScene, ParetoError> {
-    let style = wardrobe::style(name)?;
-    let table = style.sizes()?;
-    let sex = if table.population == Population::Men { Sex::Male } else { Sex::Female };
-    let average = Measures::average(sex);
-    let size = nearest(&table, &average)?;
-    let body = Body::build(sex, &average)?;
-    let rig = Rig::fit(&body);
-    let spheres = rig.spheres.each_ref().map(|s| RestSphere::on_bone(&body.skeleton, s.bone, s.offset, s.radius));
-    let shape = style.draft(&size, &body)?;
     let scene = SCENES.into_iter().find(|s| *s == name).ok_or_else(|| ParetoError::Unknown(name.into()))?;
+    let mannequin = Mannequin::of(name)?;
+    let (size, shape, fabric) = mannequin.wear(name)?;
+    let skeleton = mannequin.body.skeleton.clone();
+    let goal = shopper(&skeleton, 0.0);
     Ok(MeshedScene {
         scene,
         mesh: format!("size {size}"),
         main: true,
         shape,
-        fabric: Fabric::built_in(&style.fabric)?,
-        drive: SceneMotion::Mannequin(Box::new(body.skeleton.clone()), Box::new(shopper(&body.skeleton, 0.0))),
-        colliders: Colliders::new(&spheres, &rig.capsules, true)?,
+        fabric,
+        drive: SceneMotion::Mannequin(Box::new(skeleton), Box::new(goal)),
+        colliders: mannequin.colliders()?,
         seconds: if quick { 0.5 } else { STAND_S },
         truth: ReferenceKind::Trajectory,
     })
-}
-
-/// The size whose body's girths are nearest to some measures.
-fn nearest(table: &SizeTable, to: &Measures) -> Result<String, ParetoError> {
-    let mut best = (f32::INFINITY, String::new());
-    for code in table.codes() {
-        let body = table.size_body(code)?;
-        let girths =
-            [(body.chest_girth, to.chest_girth), (body.waist_girth, to.waist_girth), (body.hip_girth, to.hip_girth)];
-        let off = girths.iter().map(|(a, b)| (a - b).abs()).sum::<f32>() + 0.1 * (body.stature - to.stature).abs();
-        if off < best.0 {
-            best = (off, code.to_owned());
-        }
-    }
-    Ok(best.1)
 }

@@ -19,6 +19,7 @@ mod skinning;
 mod skinning_report;
 mod skirt;
 mod skirt_summary;
+mod worn_summary;
 
 /// Time one part of the frame, with the error at that speed.
 #[derive(Debug, Clone, PartialEq, Subcommand)]

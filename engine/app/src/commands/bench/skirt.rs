@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use clap::value_parser;
 use toile_assets::scene::skirt::{Motion, Stretch};
+use toile_assets::wardrobe;
 use toile_engine::cloth::Quality;
 use toile_engine::lanes::Width;
 use toile_fitting::heap::HeapProbe;
@@ -12,8 +14,9 @@ use toile_perf::crossover;
 use toile_perf::plot::raster;
 use toile_perf::skirt::options::{MAX_GARMENTS, SkirtMesh, SkirtOptions};
 use toile_perf::skirt::{self, SkirtError, table};
+use toile_perf::worn::{self, WornError, WornOptions};
 
-use super::{backend, skirt_summary};
+use super::{backend, skirt_summary, worn_summary};
 use crate::arguments::{BackendArg, count, lanes, one_of, quality};
 use crate::exit::AppError;
 use crate::heap;
@@ -63,6 +66,10 @@ pub struct SkirtArgs {
     /// Threads that step, 1 or 2
     #[arg(long, value_name = "T", value_parser = count(1..=2), default_value = "1")]
     threads: usize,
+    /// Step this garment of the wardrobe on a performing mannequin in place of the skirt; again for an outfit
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(wardrobe::names()),
+          conflicts_with_all = ["verts", "motion", "mesh", "stretch", "wind", "garments", "table", "backend"])]
+    garment: Vec<String>,
     /// Skirts to step, equal ones
     #[arg(long, value_name = "K", value_parser = count(1..=MAX_GARMENTS as u64), default_value = "1")]
     garments: usize,
@@ -122,6 +129,19 @@ impl SkirtArgs {
             ..SkirtOptions::default()
         })
     }
+
+    /// The run of garments on a mannequin.
+    fn worn(&self) -> WornOptions {
+        WornOptions {
+            garments: self.garment.clone(),
+            threads: self.threads,
+            lanes: self.lanes,
+            quality: self.quality,
+            substeps: self.substeps,
+            runs: self.runs,
+            steps: self.steps,
+        }
+    }
 }
 
 /// Runs `toile bench skirt`.
@@ -131,6 +151,13 @@ impl SkirtArgs {
 pub fn run(args: &SkirtArgs) -> Result<(), AppError> {
     let options = args.options()?;
     let heap = HeapProbe::new(heap::counted);
+    if !args.garment.is_empty() {
+        let report = worn::measure(&args.worn(), &heap).map_err(not_worn)?;
+        if args.json {
+            return terminal::print_json(&Document::new("bench-worn", report));
+        }
+        return terminal::print(&worn_summary::summary(&report, Paint::for_stdout()));
+    }
     if args.table && options.backend != Backend::Cpu {
         return crossover(args, &options);
     }
@@ -176,6 +203,14 @@ fn refused(error: SkirtError) -> AppError {
             AppError::Device(error.to_string())
         }
         SkirtError::Mesh(_) | SkirtError::Colliders(_) | SkirtError::Body(_) => AppError::internal(error),
+    }
+}
+
+fn not_worn(error: WornError) -> AppError {
+    match error {
+        WornError::TooMany { .. } => AppError::Usage(format!("{error}; see `toile bench skirt --help`")),
+        WornError::NoSuchLanes { .. } | WornError::WorkerPool(_) => AppError::Device(error.to_string()),
+        _ => AppError::internal(error),
     }
 }
 

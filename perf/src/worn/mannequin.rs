@@ -1,0 +1,72 @@
+//! A mannequin of average measures, and garments of the wardrobe in the size nearest to it.
+
+use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::fabric::Fabric;
+use toile_assets::garment::Shape;
+use toile_assets::rig::Rig;
+use toile_assets::sizes::{Population, SizeTable};
+use toile_assets::wardrobe;
+use toile_engine::colliders::{Colliders, RestSphere};
+
+use super::error::WornError;
+
+/// A body of average measures.
+#[derive(Debug)]
+pub struct Mannequin {
+    /// Measures that it was built to.
+    pub measures: Measures,
+    /// The body.
+    pub body: Body,
+}
+
+impl Mannequin {
+    /// The mannequin that a garment is made for: a man where its sizes are men's.
+    ///
+    /// # Errors
+    /// Where the wardrobe has no such garment.
+    pub fn of(garment: &str) -> Result<Self, WornError> {
+        let table = wardrobe::style(garment)?.sizes()?;
+        let sex = if table.population == Population::Men { Sex::Male } else { Sex::Female };
+        let measures = Measures::average(sex);
+        Ok(Self { body: Body::build(sex, &measures)?, measures })
+    }
+
+    /// Its spheres and capsules, and the floor, before their first placement.
+    ///
+    /// # Errors
+    /// Where the engine does not take them.
+    pub fn colliders(&self) -> Result<Colliders, WornError> {
+        let rig = Rig::fit(&self.body);
+        let sphere =
+            |s: &toile_assets::rig::Sphere| RestSphere::on_bone(&self.body.skeleton, s.bone, s.offset, s.radius);
+        let spheres = rig.spheres.each_ref().map(sphere);
+        Ok(Colliders::new(&spheres, &rig.capsules, true)?)
+    }
+
+    /// A garment in the size nearest to it: the size, the shape on this body, the fabric that it is made of.
+    ///
+    /// # Errors
+    /// Where the wardrobe has no such garment, or cannot cut it.
+    pub fn wear(&self, garment: &str) -> Result<(String, Shape, Fabric), WornError> {
+        let style = wardrobe::style(garment)?;
+        let size = nearest(&style.sizes()?, &self.measures)?;
+        let shape = style.draft(&size, &self.body)?;
+        let fabric = Fabric::built_in(&style.fabric)?;
+        Ok((size, shape, fabric))
+    }
+}
+
+/// The size whose body's girths are nearest to some measures.
+fn nearest(table: &SizeTable, to: &Measures) -> Result<String, WornError> {
+    let mut best = (f32::INFINITY, String::new());
+    for code in table.codes() {
+        let body = table.size_body(code)?;
+        let girths =
+            [(body.chest_girth, to.chest_girth), (body.waist_girth, to.waist_girth), (body.hip_girth, to.hip_girth)];
+        let off = girths.iter().map(|(a, b)| (a - b).abs()).sum::<f32>() + 0.1 * (body.stature - to.stature).abs();
+        if off < best.0 {
+            best = (off, code.to_owned());
+        }
+    }
+    Ok(best.1)
+}

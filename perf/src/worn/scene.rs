@@ -1,0 +1,214 @@
+//! Garments on a performing mannequin, ready to be stepped.
+
+use glam::Affine3A;
+use toile_assets::bake::bake;
+use toile_assets::garment::Garment;
+use toile_assets::limits::STEP_SECONDS;
+use toile_assets::numeric::hash;
+use toile_assets::scene::{self, shopper};
+use toile_assets::skeleton::{BONES, Pose, Skeleton};
+use toile_engine::body::palette;
+use toile_engine::cloth::program::METERED_STAGES;
+use toile_engine::cloth::{Cloth, Quality, Settings, Step};
+use toile_engine::colliders::Colliders;
+use toile_engine::lanes::Width;
+use toile_engine::workers::WorkerPool;
+use toile_fitting::heap::{Heap, HeapProbe};
+use toile_fitting::timing;
+use toile_gpu::backend::ClothStepper;
+use toile_gpu::cloth_batch::ClothBatch;
+
+use super::error::WornError;
+use super::mannequin::Mannequin;
+
+/// Most garments on one mannequin: as many as an outfit of the shop has layers.
+pub const MAX_OUTFIT: usize = 4;
+
+/// Time in which the mannequin goes from the pose that garments are cut in to that of the performance (s).
+const POSE_S: f64 = 0.75;
+
+/// What is performed, to and fro without end, because both ends stand still: from where the arms are lifted to where the
+/// body has turned and come to rest (s).
+const PERFORMED_S: [f64; 2] = [scene::STILL_S as f64, 9.4];
+
+/// One run of garments on a mannequin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WornOptions {
+    /// Garments of the wardrobe, by name, in wearing order; the first decides whose body it is.
+    pub garments: Vec<String>,
+    /// Threads that step.
+    pub threads: usize,
+    /// Lane width; the widest if not given.
+    pub lanes: Option<Width>,
+    /// Tested settings; the engine's own choice if not given.
+    pub quality: Option<Quality>,
+    /// Substeps of a step; the garments' own choice if not given.
+    pub substeps: Option<u32>,
+    /// Runs of which the median is reported.
+    pub runs: usize,
+    /// Steps of a run.
+    pub steps: usize,
+}
+
+impl WornOptions {
+    /// The engine's settings.
+    fn settings(&self) -> Result<Settings, WornError> {
+        if let Some(width) = self.lanes.filter(|w| !w.available()) {
+            return Err(WornError::NoSuchLanes { lanes: width.lanes(), widest: Width::widest().lanes() });
+        }
+        let default = Settings::default();
+        Ok(Settings {
+            quality: self.quality.unwrap_or(default.quality),
+            substeps: self.substeps,
+            workers: self.threads,
+            width: self.lanes.unwrap_or(default.width),
+            ..default
+        })
+    }
+}
+
+/// Garments on one mannequin.
+#[derive(Debug)]
+pub struct WornScene {
+    /// The garments, in wearing order.
+    pub garments: Vec<Garment>,
+    /// Their sizes.
+    pub sizes: Vec<String>,
+    /// Their states.
+    pub cloths: Vec<Cloth>,
+    /// Steps taken so far.
+    pub tick: u64,
+    /// Bytes on the heap of the baked garments and of their states, where the program counts them.
+    pub memory_bytes: Option<u64>,
+    skeleton: Skeleton,
+    bones: [Affine3A; BONES],
+    settings: Settings,
+    colliders: Colliders,
+    pool: WorkerPool,
+    stepper: ClothStepper,
+}
+
+impl WornScene {
+    /// The scene at its start: every garment as it is cut, on a mannequin in the pose that it is cut in.
+    ///
+    /// # Errors
+    /// Where the options cannot be met.
+    pub fn new(options: &WornOptions, heap: &HeapProbe) -> Result<Self, WornError> {
+        let names = &options.garments[..];
+        if names.len() > MAX_OUTFIT {
+            return Err(WornError::TooMany { given: names.len() });
+        }
+        let settings = options.settings()?;
+        let mannequin = Mannequin::of(names.first().map_or("", |n| n))?;
+        let colliders = mannequin.colliders()?;
+        let (mut garments, mut sizes, mut cloths, mut bytes) = (Vec::new(), Vec::new(), Vec::new(), Some(0));
+        for name in names {
+            let (size, shape, fabric) = mannequin.wear(name)?;
+            let before = heap.read();
+            let garment = bake(name, &size, &shape, &fabric)?;
+            cloths.push(Cloth::new(&garment, &colliders));
+            bytes = bytes.zip(between(before, heap.read())).map(|(sum, b): (u64, u64)| sum + b);
+            garments.push(garment);
+            sizes.push(size);
+        }
+        let mut scene = Self {
+            garments,
+            sizes,
+            cloths,
+            tick: 0,
+            memory_bytes: bytes,
+            skeleton: mannequin.body.skeleton,
+            bones: [Affine3A::IDENTITY; BONES],
+            settings,
+            colliders,
+            pool: WorkerPool::new(options.threads)?,
+            stepper: ClothStepper::cpu(),
+        };
+        scene.place();
+        Ok(scene)
+    }
+
+    /// Places the body where it is at the end of the coming step. Not timed.
+    pub fn prepare(&mut self) {
+        self.tick += 1;
+        self.place();
+        timing::wake(&mut self.pool);
+    }
+
+    fn place(&mut self) {
+        palette(&self.skeleton, &performed(&self.skeleton, self.tick), &mut self.bones);
+        self.colliders.place(&self.bones);
+    }
+
+    /// One step of every garment: what is timed.
+    ///
+    /// # Panics
+    /// Where the engine does.
+    pub fn step(&mut self) {
+        let step = Step { palette: &self.bones, colliders: &self.colliders, settings: &self.settings };
+        let steps = [step; MAX_OUTFIT];
+        let mut garments = [&self.garments[0]; MAX_OUTFIT];
+        let count = self.cloths.len();
+        garments.iter_mut().zip(&self.garments).for_each(|(to, garment)| *to = garment);
+        let mut batch = ClothBatch { cloths: &mut self.cloths, garments: &garments[..count], steps: &steps[..count] };
+        let done = self.stepper.step(&mut batch, Some(&mut self.pool));
+        done.expect("a share of the step panicked");
+    }
+
+    /// How the steps are done.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The body as it stood at the start and the end of the last step.
+    pub fn colliders(&self) -> &Colliders {
+        &self.colliders
+    }
+
+    /// Takes some steps more with the meters on: the mean time of each stage of a step, all garments (us).
+    pub fn stages_us(&mut self, steps: usize) -> Vec<(&'static str, f64)> {
+        self.settings.timed = true;
+        let mut sums = [0.0; METERED_STAGES.len()];
+        for _ in 0..steps {
+            self.prepare();
+            self.step();
+            let stages = self.cloths.iter().map(|c| c.stage_ns);
+            stages.for_each(|ns| sums.iter_mut().zip(ns).for_each(|(sum, ns)| *sum += ns as f64));
+        }
+        self.settings.timed = false;
+        METERED_STAGES.into_iter().zip(sums).map(|(name, ns)| (name, ns * 1e-3 / steps as f64)).collect()
+    }
+
+    /// FNV-1a over the bits of all positions, garment by garment in the order of the meshes' vertices.
+    pub fn state_hash(&self) -> u64 {
+        let of = |(cloth, garment): (&Cloth, &Garment)| {
+            let mut at = vec![[0.0; 3]; garment.source.len()];
+            garment.source.iter().zip(&cloth.positions).for_each(|(&v, p)| at[v as usize] = p.to_array());
+            at.into_iter().flatten()
+        };
+        hash::of_numbers(self.cloths.iter().zip(&self.garments).flat_map(of))
+    }
+}
+
+fn between(a: Option<Heap>, b: Option<Heap>) -> Option<u64> {
+    u64::try_from(b?.live_bytes - a?.live_bytes).ok()
+}
+
+/// The pose at the end of a step: on the way into the performance first.
+fn performed(skeleton: &Skeleton, tick: u64) -> Pose {
+    let time = tick as f64 * f64::from(STEP_SECONDS);
+    let [from, to] = PERFORMED_S;
+    // There and back: the distance from the nearest whole round.
+    let round = 2.0 * (to - from);
+    let within = (time - POSE_S).max(0.0) % round;
+    let goal = shopper(skeleton, (from + within.min(round - within)) as f32);
+    let part = (time / POSE_S).min(1.0) as f32;
+    if part < 1.0 { on_the_way(skeleton, &goal, part) } else { goal }
+}
+
+/// The pose a part of the way (0..1) from the rest pose to another.
+pub fn on_the_way(skeleton: &Skeleton, goal: &Pose, part: f32) -> Pose {
+    let t = part * part * (3.0 - 2.0 * part);
+    let rest = Pose::rest(skeleton);
+    Pose { root: rest.root.lerp(goal.root, t), local: std::array::from_fn(|i| rest.local[i].slerp(goal.local[i], t)) }
+}
