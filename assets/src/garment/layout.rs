@@ -379,6 +379,17 @@ pub struct Layout {
 }
 
 impl Layout {
+    /// Calls `each(particles, coefficient)` for every sum that bends: the stencils of three, those of four, the sums of each
+    /// hub; `coefficient(k)` is that of the `k`th particle (sqrt(N/m)).
+    pub fn for_each_bend(&self, mut each: impl FnMut(&[u32], &dyn Fn(usize) -> f32)) {
+        self.bends.tuples.for_each(|at, v| each(&v, &|k| self.bends.coefficients[k][at]));
+        self.skewed.tuples.for_each(|at, v| each(&v, &|k| self.skewed.coefficients[k][at]));
+        self.hubs.for_each(|_, particles, coefficients| {
+            let sums = coefficients.len() / particles.len();
+            (0..sums).for_each(|sum| each(particles, &|k| coefficients[k * sums + sum]));
+        });
+    }
+
     /// Bytes that a garment's constraints hold.
     pub fn bytes(&self) -> usize {
         let links = |l: &Links| {

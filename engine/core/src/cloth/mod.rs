@@ -5,11 +5,11 @@
 //! Thread: physics; two workers may share a step.
 
 pub mod bending;
+pub mod bending_matrix;
 pub mod contact;
 pub mod diagonals;
 pub mod fibers;
 pub mod guard;
-pub mod hubs;
 pub mod links;
 pub mod lists;
 pub mod measure;
@@ -17,6 +17,7 @@ pub mod pins;
 pub mod predict;
 pub mod prepared;
 pub mod program;
+pub mod records;
 pub mod root;
 pub mod settings;
 pub mod settle;
@@ -34,7 +35,7 @@ use toile_assets::garment::layout::OWNERS;
 use toile_assets::skeleton::BONES;
 
 use crate::colliders::Colliders;
-use crate::lanes::Store;
+use crate::lanes::{RECORD, Store};
 use program::METERED_STAGES;
 use root::RootMotion;
 pub use root::{RootSettings, Teleport};
@@ -70,6 +71,8 @@ pub struct Cloth {
     contacts: contact::Contacts,
     /// Room of each worker for a fiber's factors.
     scratch: [Store; OWNERS],
+    /// Records of the particles; none where nothing reads any.
+    records: Store,
     /// Room for bending that is stiffer than a substep; none where it cannot be.
     room: stiff_bending::StiffBendingScratch,
     /// Room for what is solved along the bias.
@@ -99,7 +102,7 @@ impl Cloth {
     pub fn new(garment: &Garment, colliders: &Colliders) -> Self {
         let start: Box<[Vec3A]> = garment.start.iter().map(|&p| p.into()).collect();
         let layout = garment.layout();
-        let needs = [bending::SCRATCH, fibers::scratch_len(&layout.fibers), lists::scratch_len(&layout.crossing)];
+        let needs = [fibers::scratch_len(&layout.fibers), lists::scratch_len(&layout.crossing)];
         let prepared = prepared::Prepared::new(garment);
         let counts = [layout.weft.tuples.count, layout.fibers.links, layout.crossing.rest.len()];
         let tension = std::array::from_fn(|k| Store::zeros(if prepared.soft(k) { counts[k] } else { 0 }));
@@ -109,6 +112,7 @@ impl Cloth {
             pins: pins::Pins::new(garment),
             contacts: contact::Contacts::new(&layout.spans, &garment.parts, &garment.start, colliders),
             scratch: [scratch(), scratch()],
+            records: Store::zeros(if prepared.matrix.reads_records() { RECORD * start.len() } else { 0 }),
             room: stiff_bending::StiffBendingScratch::new(if prepared.stiff() { start.len() } else { 0 }),
             leaning: diagonals::DiagonalScratch::new(&garment.layout().diagonals, garment.start.len()),
             strains: vec![0.0; garment.strain_edges.len()].into(),
@@ -216,6 +220,7 @@ impl Cloth {
             + self.contacts.bytes()
             + self.pushed.bytes()
             + self.faces.as_ref().map_or(0, wind::Faces::bytes)
+            + self.records.bytes()
             + self.room.bytes()
             + self.leaning.bytes()
             + self.scratch.iter().map(Store::bytes).sum::<usize>()

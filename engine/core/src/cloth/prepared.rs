@@ -9,7 +9,8 @@ use toile_assets::limits::STEP_SECONDS;
 use super::links::Passes;
 use super::program::{Bending, Program};
 use super::stiff_bending::{self, ChebyshevStage};
-use super::{Quality, Settings, bending, fibers, hubs, links};
+use super::bending_matrix::BendingMatrix;
+use super::{Quality, Settings, bending, fibers, links};
 
 /// Pull across a fiber's links from which on its solves are calmed. Garments in the substeps that they ask for are below
 /// 1: a linearised solve is stable there, and calming would slow their swing.
@@ -41,12 +42,8 @@ pub struct Prepared {
     pub shear_gain: Box<[f32]>,
     /// Gains of the weft links `[places]`.
     pub weft_gain: Box<[f32]>,
-    /// Share of each stencil's stiffness that the substep carries ([`bending::weaken`]) `[places]`.
-    pub bend_scale: Box<[f32]>,
-    /// The same of the skewed stencils `[places]`.
-    pub skewed_scale: Box<[f32]>,
-    /// The same of the hubs `[hubs]`.
-    pub hub_scale: Box<[f32]>,
+    /// Bending of the garment, as much of it as the substep carries.
+    pub matrix: BendingMatrix,
     /// How bending goes on.
     pub bend: bending::BendingPace,
     /// Bending's phases of a substep, and its stages where it is stiff.
@@ -67,11 +64,13 @@ impl Prepared {
         let zeros = |n: usize| vec![0.0; n].into_boxed_slice();
         let mut load = zeros(garment.start.len());
         let longest = STEP_SECONDS / Quality::Draft.substeps(garment.substeps) as f32;
-        add_load(garment, longest, &mut load);
+        bending::add_load(layout, &garment.inverse_mass, longest, &mut load);
         let stiff = load.iter().any(|l| *l > bending::STABLE);
+        let matrix = BendingMatrix::new(garment);
+        let bending = Bending::plain(&matrix);
         Self {
             made_for: None,
-            program: Program::new(layout, stiff),
+            program: Program::new(layout, bending, stiff),
             quality: Quality::default(),
             substeps: 1,
             dt: 0.0,
@@ -80,11 +79,9 @@ impl Prepared {
             shear_every: 1,
             shear_gain: zeros(layout.shear.rest.len()),
             weft_gain: zeros(layout.weft.rest.len()),
-            bend_scale: zeros(layout.bends.tuples.places),
-            skewed_scale: zeros(layout.skewed.tuples.places),
-            hub_scale: zeros(layout.hubs.count),
+            matrix,
             bend: bending::BendingPace { every: 1, stages: 1, least: 1.0 },
-            bending: Bending { sets: Bending::sets(layout), stages: 1 },
+            bending,
             stages: [ChebyshevStage::default(); stiff_bending::MAX_BENDING_STAGES as usize],
             stiff,
             load,
@@ -120,9 +117,8 @@ impl Prepared {
 
     /// How bending goes on with this substep: as a force, in stages, or weakened.
     fn bend(&mut self, garment: &Garment) {
-        let layout = garment.layout();
         self.load.fill(0.0);
-        add_load(garment, self.dt, &mut self.load);
+        bending::add_load(garment.layout(), &garment.inverse_mass, self.dt, &mut self.load);
         // A few needles of a mesh do not decide for all of it: they are weakened.
         let few = self.load.len() / NEEDLES;
         let carries = |limit: f32| self.load.iter().filter(|l| **l > limit).count() <= few;
@@ -132,9 +128,7 @@ impl Prepared {
         if stages > 1 {
             stiff_bending::coefficients(stages, &mut self.stages);
         }
-        let least = bending::weaken(&layout.bends, &self.load, limit, &mut self.bend_scale);
-        let least = bending::weaken(&layout.skewed, &self.load, limit, &mut self.skewed_scale).min(least);
-        let least = hubs::weaken(&layout.hubs, &self.load, limit, &mut self.hub_scale).min(least);
+        let least = self.matrix.fill(garment, &self.load, limit);
         self.bending.stages = stages;
         self.bend = bending::BendingPace { every: bending::every(&self.load, self.substeps), stages, least };
     }
@@ -161,15 +155,8 @@ impl Prepared {
 
     /// Bytes held, but for those of the programs.
     pub fn bytes(&self) -> usize {
-        4 * (self.shear_gain.len() + self.weft_gain.len() + self.bend_scale.len() + self.load.len())
+        4 * (self.shear_gain.len() + self.weft_gain.len() + self.load.len()) + self.matrix.bytes()
     }
-}
-
-/// The bound on dt^2 omega^2 that bending puts on each particle.
-fn add_load(garment: &Garment, dt: f32, load: &mut [f32]) {
-    bending::add_load(&garment.layout().bends, &garment.inverse_mass, dt, load);
-    bending::add_load(&garment.layout().skewed, &garment.inverse_mass, dt, load);
-    hubs::add_load(&garment.layout().hubs, &garment.inverse_mass, dt, load);
 }
 
 /// Whether any of some links gives: a millimetre under a thousand newtons and more.

@@ -8,6 +8,7 @@
 use toile_assets::garment::Layout;
 
 use super::Quality;
+use super::bending_matrix::BendingMatrix;
 use super::stiff_bending::MAX_BENDING_STAGES;
 
 /// One stage of a step: both owners' shares of it may run at once.
@@ -21,12 +22,16 @@ pub enum Stage {
     WindAcross,
     /// What of the root's motion the cloth is not to feel.
     RootMotion,
-    /// A set of bending stencils; the set that crosses the owners is one worker's.
-    Bending(u16),
+    /// The records of what bends.
+    BendingRecords,
+    /// The bending forces.
+    Bending,
     /// Bending that is stiffer than a substep: before the forces of a stage of this number; behind the last of them.
     StiffBendingTurn(u32),
-    /// The forces of such a stage, set by set.
-    StiffBending(u32, u16),
+    /// The records of what bends in such a stage.
+    StiffBendingRecords(u32),
+    /// The forces of such a stage.
+    StiffBending(u32),
     /// Gravity, air, wind; skinned particles move on.
     Predict,
     /// A family of fibers along the bias.
@@ -56,7 +61,11 @@ impl Stage {
     pub fn metered(self) -> usize {
         match self {
             Self::Predict | Self::RootMotion => 0,
-            Self::Bending(_) | Self::StiffBendingTurn(_) | Self::StiffBending(..) => 1,
+            Self::BendingRecords
+            | Self::Bending
+            | Self::StiffBendingTurn(_)
+            | Self::StiffBendingRecords(_)
+            | Self::StiffBending(_) => 1,
             Self::Diagonals(_) | Self::Shear(_) => 2,
             Self::Weft(_) => 3,
             Self::Fibers | Self::Crossing(_) => 4,
@@ -67,19 +76,21 @@ impl Stage {
     }
 }
 
-/// Bending, which comes first in a substep: its sets, once as a force, or in stages with a turn before each and at the end.
+/// Bending, which comes first in a substep: once as a force, or in stages with a turn before each and at the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bending {
-    /// Number of sets of bending stencils.
-    pub sets: u32,
+    /// Whether anything bends.
+    pub acts: bool,
+    /// Whether it reads records.
+    pub records: bool,
     /// Stages; 1 for a force.
     pub stages: u32,
 }
 
 impl Bending {
-    /// The sets of a layout.
-    pub fn sets(layout: &Layout) -> u32 {
-        layout.bends.tuples.sets.len().max(layout.skewed.tuples.sets.len()).max(layout.hubs.sets()) as u32
+    /// As a force.
+    pub fn plain(matrix: &BendingMatrix) -> Self {
+        Self { acts: !matrix.values.is_empty(), records: matrix.reads_records(), stages: 1 }
     }
 
     /// How many stages it is in the program.
@@ -89,19 +100,25 @@ impl Bending {
 
     /// Whether nothing bends.
     pub fn is_empty(self) -> bool {
-        self.sets == 0
+        !self.acts
     }
 
     /// Stages of bending in the program.
     pub fn program(self) -> impl Iterator<Item = Stage> {
-        let Self { sets, stages } = self;
-        let plain = if stages < 2 { sets } else { 0 };
-        let stiff = if stages < 2 || sets == 0 { 0 } else { stages };
-        let forces = move |stage| (0..sets).map(move |set| Stage::StiffBending(stage, set as u16));
-        let staged =
-            (0..stiff).flat_map(move |stage| [Stage::StiffBendingTurn(stage)].into_iter().chain(forces(stage)));
+        let Self { acts, records, stages } = self;
+        let plain = [(Stage::BendingRecords, records), (Stage::Bending, true)];
+        let plain = plain.into_iter().filter(move |(_, there)| *there && acts && stages < 2);
+        let stiff = if acts && stages > 1 { stages } else { 0 };
+        let staged = move |j: u32| {
+            let each = [
+                (Stage::StiffBendingTurn(j), true),
+                (Stage::StiffBendingRecords(j), records),
+                (Stage::StiffBending(j), true),
+            ];
+            each.into_iter().filter(|(_, there)| *there)
+        };
         let last = (stiff > 0).then_some(Stage::StiffBendingTurn(stiff));
-        (0..plain).map(|set| Stage::Bending(set as u16)).chain(staged).chain(last)
+        plain.chain((0..stiff).flat_map(staged)).map(|(stage, _)| stage).chain(last)
     }
 }
 
@@ -136,9 +153,9 @@ pub struct Program {
 
 impl Program {
     /// Room for the programs of a garment at any quality; `stiff` says that its bending may have to go in stages. At load.
-    pub fn new(layout: &Layout, stiff: bool) -> Self {
+    pub fn new(layout: &Layout, bending: Bending, stiff: bool) -> Self {
         let constraints = Quality::ALL.map(|quality| constraints(layout, quality));
-        let bending = Bending { sets: Bending::sets(layout), stages: if stiff { MAX_BENDING_STAGES } else { 1 } };
+        let bending = Bending { stages: if stiff { MAX_BENDING_STAGES } else { 1 }, ..bending };
         let longest = bending.len() + constraints.iter().map(|c| c.len()).max().unwrap_or(0);
         Self { constraints, substep: Vec::with_capacity(longest), substeps: 0, made_for: None }
     }

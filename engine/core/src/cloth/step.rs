@@ -127,6 +127,7 @@ impl Cloth {
             pushed: self.pushed.columns(),
             tension: self.tension.each_mut().map(Store::column),
             scratch: [one.column(), two.column()],
+            records: self.records.column(),
             room: self.room.columns(),
             leaning: self.leaning.columns(),
         };

@@ -8,14 +8,14 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use glam::Vec3A;
 use toile_assets::garment::Garment;
-use toile_assets::garment::layout::{Bends, FiberLists, Layout, Links, OWNERS};
+use toile_assets::garment::layout::{FiberLists, Layout, Links, OWNERS};
 
 use super::prepared::Prepared;
 use super::program::Stage;
 use super::root::Carried;
 use super::state::{self, ParticleColumns};
 use super::{
-    Quality, Step, Wind, bending, contact, diagonals, fibers, hubs, links, lists, predict, settle, stiff_bending,
+    Quality, Step, Wind, bending, contact, diagonals, fibers, links, lists, predict, records, settle, stiff_bending,
     tethers, wind,
 };
 use crate::lanes::{Shared, Width, WriteColumn};
@@ -60,6 +60,8 @@ pub struct WorkColumns<'a> {
     pub tension: [WriteColumn<'a>; 3],
     /// Scratch of each owner.
     pub scratch: [WriteColumn<'a>; OWNERS],
+    /// Records of the particles; empty where nothing reads any.
+    pub records: WriteColumn<'a>,
     /// Scratch of stiff bending; empty where there is none.
     pub room: [[WriteColumn<'a>; 3]; 3],
     /// Scratch of what is solved along the bias.
@@ -111,9 +113,11 @@ impl OwnerShare<'_, '_> {
             Stage::Wind => self.wind([wind::WindPart::First, wind::WindPart::Second][self.owner]),
             Stage::WindAcross => self.wind_across(),
             Stage::RootMotion => self.root_motion(),
-            Stage::Bending(set) => self.bending(set),
+            Stage::BendingRecords => self.bending_records(),
+            Stage::Bending => self.bending(),
             Stage::StiffBendingTurn(stage) => self.stiff_bending_turn(stage),
-            Stage::StiffBending(stage, set) => self.stiff_bending(stage, set),
+            Stage::StiffBendingRecords(stage) => self.fill_records(self.stiffly_bent(stage)[0]),
+            Stage::StiffBending(stage) => self.stiff_bending(stage),
             Stage::Predict => self.predict(),
             Stage::Diagonals(family) => self.diagonals(family),
             Stage::Shear(set) => self.shear(set),
@@ -164,22 +168,39 @@ impl OwnerShare<'_, '_> {
         }
     }
 
-    /// A set of bending stencils as a force.
-    fn bending(&self, set: u16) {
-        let (p, particles) = (self.work.prepared, self.columns.particles);
-        if self.substep.is_multiple_of(p.bend.every) {
-            self.bend(set, [particles.x, particles.v], p.dt * p.bend.every as f32);
+    /// Records of the places, where bending acts in this substep.
+    fn bending_records(&self) {
+        if self.substep.is_multiple_of(self.work.prepared.bend.every) {
+            self.fill_records(self.columns.particles.x);
         }
     }
 
-    /// A set of bending stencils within a stage of stiff bending.
-    fn stiff_bending(&self, stage: u32, set: u16) {
-        let (p, room) = (self.work.prepared, self.columns.room);
-        if stage == 0 {
-            return self.bend(set, [room[1], room[0]], p.dt);
+    /// Records of what bends.
+    fn fill_records(&self, from: [WriteColumn<'_>; 3]) {
+        let (w, records) = (self.columns.particles.w, self.columns.records);
+        let spans = &self.work.layout().spans[self.owner];
+        self.work.width.run(records::FillRecords { from, w, spans, records });
+    }
+
+    /// Bending as a force.
+    fn bending(&self) {
+        let (p, particles) = (self.work.prepared, self.columns.particles);
+        if self.substep.is_multiple_of(p.bend.every) {
+            self.bend([particles.x, particles.v], p.dt * p.bend.every as f32);
         }
-        let by = p.stages[stage as usize].forced * p.dt * p.dt;
-        self.bend(set, [stage, stage + 1].map(|j| room[stiff_bending::place(j)]), by);
+    }
+
+    /// What bends in a stage of stiff bending, and what is pushed.
+    fn stiffly_bent(&self, stage: u32) -> [[WriteColumn<'_>; 3]; 2] {
+        let room = self.columns.room;
+        if stage == 0 { [room[1], room[0]] } else { [stage, stage + 1].map(|j| room[stiff_bending::place(j)]) }
+    }
+
+    /// The forces of a stage of stiff bending.
+    fn stiff_bending(&self, stage: u32) {
+        let p = self.work.prepared;
+        let by = if stage == 0 { p.dt } else { p.stages[stage as usize].forced * p.dt * p.dt };
+        self.bend(self.stiffly_bent(stage), by);
     }
 
     /// What comes before the forces of a stage of stiff bending, or behind the last.
@@ -323,48 +344,9 @@ impl OwnerShare<'_, '_> {
         (work.faces.is_some() || work.carried.is_some()).then_some((self.columns.pushed, work.prepared.dt))
     }
 
-    /// A set of all stencils bends one thing and pushes another.
-    fn bend(&self, set: u16, from_to: [[WriteColumn<'_>; 3]; 2], by: f32) {
-        let (layout, p) = (self.work.layout(), self.work.prepared);
-        self.stencils(&layout.bends, &p.bend_scale, set, from_to, by);
-        self.stencils(&layout.skewed, &p.skewed_scale, set, from_to, by);
-        self.hubs(set, from_to, by);
-    }
-
-    /// Those of whole rings; the second set crosses the owners and is the first owner's alone.
-    fn hubs(&self, set: u16, [from, to]: [[WriteColumn<'_>; 3]; 2], by: f32) {
-        let (hubs, p) = (&self.work.layout().hubs, self.work.prepared);
-        let Some(groups) = hubs.sets.get(usize::from(set)) else { return };
-        let scale = (p.bend.least < 1.0).then_some(&*p.hub_scale);
-        let w = self.columns.particles.w;
-        self.each_owner(set != 0, |owner| {
-            self.work.width.run(hubs::BendHubs { w, hubs, groups: groups[owner].clone(), from, to, by, scale });
-        });
-    }
-
-    /// Those of one kind.
-    fn stencils<const K: usize>(
-        &self,
-        bends: &Bends<K>,
-        scale: &[f32],
-        set: u16,
-        [from, to]: [[WriteColumn<'_>; 3]; 2],
-        by: f32,
-    ) {
-        let Some(set) = bends.tuples.sets.get(usize::from(set)) else { return };
-        let (w, scratch) = (self.columns.particles.w, self.columns.scratch[self.owner]);
-        let scale = (self.work.prepared.bend.least < 1.0).then_some(scale);
-        self.each_owner(set.crosses, |owner| {
-            self.work.width.run(bending::BendStencils { w, bends, set, owner, from, to, by, scale, scratch });
-        });
-    }
-
-    /// This owner's part; of what crosses the owners the first does all and the second nothing.
-    fn each_owner(&self, crosses: bool, part: impl Fn(usize)) {
-        if !crosses {
-            part(self.owner);
-        } else if self.owner == 0 {
-            (0..OWNERS).for_each(part);
-        }
+    /// One thing bends and pushes another.
+    fn bend(&self, [from, to]: [[WriteColumn<'_>; 3]; 2], by: f32) {
+        let (matrix, records) = (&self.work.prepared.matrix, self.columns.records);
+        self.work.width.run(bending::Bend { matrix, owner: self.owner, from, records, to, by });
     }
 }

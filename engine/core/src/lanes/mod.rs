@@ -10,6 +10,8 @@ mod column;
 mod math;
 #[cfg(not(target_arch = "x86_64"))]
 mod quad;
+#[expect(unsafe_code, reason = "places that were checked when they were listed")]
+mod records;
 mod scalar;
 mod traits;
 mod two;
@@ -22,6 +24,7 @@ use std::fmt;
 pub(crate) use column::Shared;
 pub use column::{MOST, ReadColumn, Readable, Store, WriteColumn};
 pub use math::{V3, reciprocal_root, times_reciprocal_root};
+pub use records::{RECORD, RecordList, RecordRun, Records, RecordsAt};
 pub use traits::{Kernel, Lanes, Mask, Numbers};
 pub use two::Two;
 

@@ -3,6 +3,7 @@
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::column::{MOST, Readable, WriteColumn};
+use super::records::{RECORD, Records};
 
 /// Which of a vector's lanes something holds for.
 pub trait Mask: Copy {
@@ -91,6 +92,20 @@ pub trait Lanes: Numbers {
     fn store_quads(self, to: WriteColumn<'_>, quads: &[u32; 4], lane: usize) {
         for (i, v) in self.to_array().into_iter().enumerate().take(Self::N) {
             to.set(quads[(lane + i) / 4 % 4] as usize + i % 4, v);
+        }
+    }
+    /// The numbers of `N` records from the `k`th on: all first numbers, all second ones, all third, all fourth.
+    fn load_records(from: impl Records, k: usize) -> [Self; RECORD] {
+        let mut values = [[0.0; MOST]; RECORD];
+        for (number, values) in values.iter_mut().enumerate() {
+            values.iter_mut().enumerate().take(Self::N).for_each(|(i, v)| *v = from.get(k + i, number));
+        }
+        values.each_ref().map(Self::from_array)
+    }
+    /// Writes them back; where one record is there twice, all that is written to it is alike.
+    fn store_records(values: [Self; RECORD], to: impl Records, k: usize) {
+        for (number, values) in values.into_iter().enumerate() {
+            values.to_array().into_iter().enumerate().take(Self::N).for_each(|(i, v)| to.set(k + i, number, v));
         }
     }
     /// The least of its lanes, none of which is NaN.

@@ -6,12 +6,13 @@
 //! Reads: numbers in columns. Writes: numbers in columns. Budget: one instruction an operation, one branch a kernel.
 //! Thread: any.
 
+mod records;
 mod widths;
 
 use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::{Kernel, Lanes, MOST, Mask, Numbers, Readable, WriteColumn};
+use super::{Kernel, Lanes, MOST, Mask, Numbers, RECORD, Readable, Records, WriteColumn};
 
 /// Whether the processor and the system have 16 lanes.
 pub fn has_sixteen() -> bool {
@@ -189,6 +190,18 @@ macro_rules! vector {
             fn store_quads(self, to: WriteColumn<'_>, quads: &[u32; 4], lane: usize) {
                 // SAFETY: as above.
                 unsafe { self.write_quads(to.quads(quads), lane / 4 % 4) }
+            }
+            #[inline(always)]
+            fn load_records(from: impl Records, k: usize) -> [Self; RECORD] {
+                from.check(k, $n);
+                // SAFETY: all of them are there.
+                unsafe { Self::read_records(from, k) }
+            }
+            #[inline(always)]
+            fn store_records(values: [Self; RECORD], to: impl Records, k: usize) {
+                to.check(k, $n);
+                // SAFETY: as above.
+                unsafe { Self::write_records(values, to, k) }
             }
             #[inline(always)]
             fn least(self) -> f32 {

@@ -4,6 +4,7 @@
 use glam::Vec3;
 use toile_assets::garment::layout::{ENDED, Links, Tuples};
 use toile_assets::garment::{Garment, Part};
+use toile_engine::cloth::bending_matrix::{BendingMatrix, RowBlock, RowStrip};
 use toile_engine::cloth::program::{self, BEFORE, Bending, Stage};
 use toile_engine::cloth::{Cloth, Quality, Settings, bending, contact};
 use toile_engine::colliders::Colliders;
@@ -18,7 +19,7 @@ pub const STAGES: [&str; 9] = ["predict", "bend", "shear", "weft", "fibers", "co
 /// What is counted in each stage, in one step.
 pub const UNITS: [[&str; KINDS]; STAGES.len()] = [
     ["lanes of particles", "skinned particles", "tensions"],
-    ["lanes of stencils", "lanes of scattered stencils", "lanes of ring sums"],
+    ["lanes of entries of rows", "lanes of scattered entries", "lanes of records"],
     ["lanes of links along fibers", "lanes of links", "lanes of scattered links"],
     ["lanes of links", "lanes of scattered links", "phases"],
     ["lanes of rows", "lanes of rows by index", "lanes of closed hoops"],
@@ -94,10 +95,11 @@ impl Work {
         // Shear along whole fibers acts in every second of an even number of substeps.
         let half = first.substeps.is_multiple_of(2) && settings.quality != Quality::Fine;
         let leaning = if half { 0.5 } else { 1.0 };
+        let matrix = BendingMatrix::new(garment);
         let [shear, scattered] = count.links(&garment.layout().shear.tuples);
         let counts = [
             per([particles, fixed, count.tensions()]),
-            count.stencils().map(|c| c * bent),
+            count.bending(&matrix).map(|c| c * bent),
             per([count.leaning() * leaning, shear, scattered]),
             per(count.weft()),
             per(count.fibers()),
@@ -106,7 +108,7 @@ impl Work {
             only(held, particles * n),
             [particles, fixed, 0.0],
         ];
-        let bending = Bending { sets: Bending::sets(garment.layout()), stages: first.bend.stages };
+        let bending = Bending { stages: first.bend.stages, ..Bending::plain(&matrix) };
         let each = bending.len() + program::constraints(garment.layout(), settings.quality).len();
         let own = garment.layout().spans[0].iter().map(|s| f64::from(s.1)).sum::<f64>() / garment.particles() as f64;
         Self {
@@ -142,14 +144,11 @@ impl Count<'_> {
         program::constraints(self.garment.layout(), self.quality).iter().filter(|op| **op == wanted).count() as f64
     }
 
-    fn stencils(&self) -> [f64; KINDS] {
-        let layout = self.garment.layout();
-        let ([three, three_loose], [four, four_loose]) =
-            (self.links(&layout.bends.tuples), self.links(&layout.skewed.tuples));
-        let more = 4.0 / 3.0;
-        let products = |g: &toile_assets::garment::layout::HubGroup| (g.count * g.points * g.sums) as usize;
-        let hubs = layout.hubs.groups.iter().map(|g| self.vectors(products(g))).sum();
-        [three + more * four, three_loose + more * four_loose, hubs]
+    fn bending(&self, matrix: &BendingMatrix) -> [f64; KINDS] {
+        let strip = |s: &RowStrip| f64::from(1 + s.entries) * self.vectors(s.len as usize);
+        let block = |b: &RowBlock| f64::from(1 + b.entries) * self.vectors(b.len as usize);
+        let records = if matrix.reads_records() { self.vectors(self.garment.particles()) } else { 0.0 };
+        [matrix.strips.iter().map(strip).sum(), matrix.blocks.iter().map(block).sum(), records]
     }
 
     fn leaning(&self) -> f64 {

@@ -1,0 +1,153 @@
+//! Records of four numbers, turned: `N` records become four vectors, and back. 128 bits at a time, each holds one record; four
+//! such vectors are turned within their quarters.
+//!
+//! Soundness: as in `widths`; the callers have checked that the records are there.
+
+use super::*;
+
+impl Four {
+    #[inline(always)]
+    pub(super) unsafe fn read_records(from: impl Records, k: usize) -> [Self; RECORD] {
+        unsafe {
+            let rows = [
+                _mm_loadu_ps(from.place(k)),
+                _mm_loadu_ps(from.place(k + 1)),
+                _mm_loadu_ps(from.place(k + 2)),
+                _mm_loadu_ps(from.place(k + 3)),
+            ];
+            let [x, y, z, w] = Self::turned(rows);
+            [Self(x), Self(y), Self(z), Self(w)]
+        }
+    }
+    #[inline(always)]
+    pub(super) unsafe fn write_records([x, y, z, w]: [Self; RECORD], to: impl Records, k: usize) {
+        let rows = Self::turned([x.0, y.0, z.0, w.0]);
+        for j in 0..4 {
+            unsafe { _mm_storeu_ps(to.place(k + j), rows[j]) };
+        }
+    }
+    #[inline(always)]
+    fn turned([a, b, c, d]: [__m128; 4]) -> [__m128; 4] {
+        unsafe {
+            let (low, high) = (_mm_unpacklo_ps(a, b), _mm_unpackhi_ps(a, b));
+            let (low2, high2) = (_mm_unpacklo_ps(c, d), _mm_unpackhi_ps(c, d));
+            [
+                _mm_movelh_ps(low, low2),
+                _mm_movehl_ps(low2, low),
+                _mm_movelh_ps(high, high2),
+                _mm_movehl_ps(high2, high),
+            ]
+        }
+    }
+}
+
+/// Four vectors turned within their quarters. A macro, because a closure is not compiled for the width.
+macro_rules! turned {
+    ($v:expr, $low:ident, $high:ident, $low2:ident, $high2:ident, $wide:ident, $narrow:ident) => {{
+        let [a, b, c, d] = $v;
+        let (low, high) = ($wide($low(a, b)), $wide($high(a, b)));
+        let (low2, high2) = ($wide($low(c, d)), $wide($high(c, d)));
+        [
+            $narrow($low2(low, low2)),
+            $narrow($high2(low, low2)),
+            $narrow($low2(high, high2)),
+            $narrow($high2(high, high2)),
+        ]
+    }};
+}
+
+impl Eight {
+    #[inline(always)]
+    pub(super) unsafe fn read_records(from: impl Records, k: usize) -> [Self; RECORD] {
+        unsafe {
+            let [x, y, z, w] = Self::turned([
+                Self::pair(from, k),
+                Self::pair(from, k + 1),
+                Self::pair(from, k + 2),
+                Self::pair(from, k + 3),
+            ]);
+            [Self(x), Self(y), Self(z), Self(w)]
+        }
+    }
+    #[inline(always)]
+    pub(super) unsafe fn write_records([x, y, z, w]: [Self; RECORD], to: impl Records, k: usize) {
+        unsafe {
+            let rows = Self::turned([x.0, y.0, z.0, w.0]);
+            for j in 0..4 {
+                _mm_storeu_ps(to.place(k + j), _mm256_castps256_ps128(rows[j]));
+                _mm_storeu_ps(to.place(k + 4 + j), _mm256_extractf128_ps::<1>(rows[j]));
+            }
+        }
+    }
+    #[inline(always)]
+    unsafe fn pair(from: impl Records, k: usize) -> __m256 {
+        unsafe {
+            let low = _mm256_castps128_ps256(_mm_loadu_ps(from.place(k)));
+            _mm256_insertf128_ps::<1>(low, _mm_loadu_ps(from.place(k + 4)))
+        }
+    }
+    #[inline(always)]
+    unsafe fn turned(v: [__m256; 4]) -> [__m256; 4] {
+        unsafe {
+            turned!(
+                v,
+                _mm256_unpacklo_ps,
+                _mm256_unpackhi_ps,
+                _mm256_unpacklo_pd,
+                _mm256_unpackhi_pd,
+                _mm256_castps_pd,
+                _mm256_castpd_ps
+            )
+        }
+    }
+}
+
+impl Sixteen {
+    #[inline(always)]
+    pub(super) unsafe fn read_records(from: impl Records, k: usize) -> [Self; RECORD] {
+        unsafe {
+            let [x, y, z, w] = Self::turned([
+                Self::four(from, k),
+                Self::four(from, k + 1),
+                Self::four(from, k + 2),
+                Self::four(from, k + 3),
+            ]);
+            [Self(x), Self(y), Self(z), Self(w)]
+        }
+    }
+    #[inline(always)]
+    pub(super) unsafe fn write_records([x, y, z, w]: [Self; RECORD], to: impl Records, k: usize) {
+        unsafe {
+            let rows = Self::turned([x.0, y.0, z.0, w.0]);
+            for j in 0..4 {
+                _mm_storeu_ps(to.place(k + j), _mm512_castps512_ps128(rows[j]));
+                _mm_storeu_ps(to.place(k + 4 + j), _mm512_extractf32x4_ps::<1>(rows[j]));
+                _mm_storeu_ps(to.place(k + 8 + j), _mm512_extractf32x4_ps::<2>(rows[j]));
+                _mm_storeu_ps(to.place(k + 12 + j), _mm512_extractf32x4_ps::<3>(rows[j]));
+            }
+        }
+    }
+    #[inline(always)]
+    unsafe fn four(from: impl Records, k: usize) -> __m512 {
+        unsafe {
+            let v = _mm512_castps128_ps512(_mm_loadu_ps(from.place(k)));
+            let v = _mm512_insertf32x4::<1>(v, _mm_loadu_ps(from.place(k + 4)));
+            let v = _mm512_insertf32x4::<2>(v, _mm_loadu_ps(from.place(k + 8)));
+            _mm512_insertf32x4::<3>(v, _mm_loadu_ps(from.place(k + 12)))
+        }
+    }
+    #[inline(always)]
+    unsafe fn turned(v: [__m512; 4]) -> [__m512; 4] {
+        unsafe {
+            turned!(
+                v,
+                _mm512_unpacklo_ps,
+                _mm512_unpackhi_ps,
+                _mm512_unpacklo_pd,
+                _mm512_unpackhi_pd,
+                _mm512_castps_pd,
+                _mm512_castpd_ps
+            )
+        }
+    }
+}
