@@ -8,9 +8,7 @@
 use toile_assets::garment::layout::{ConstraintRun, ConstraintSet, Links, Zigzag};
 
 use super::state::{self, ParticleColumns};
-use crate::lanes::{
-    Kernel, Lanes, MOST, Numbers, ReadColumn, Readable, Two, V3, WriteColumn, reciprocal_root, times_reciprocal_root,
-};
+use crate::lanes::{Kernel, Lanes, MOST, Numbers, ReadColumn, Readable, Two, V3, WriteColumn, reciprocal_root};
 
 /// How often a substep solves links.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,16 +21,41 @@ pub enum Passes {
     Many,
 }
 
-/// 1 / ((1 + gamma)(w_a + w_b) + alpha / dt^2) of each link, in the order of the parameters, but see [`Passes::Once`]; 0
-/// where nothing can move.
-pub fn prepare(links: &Links, weights: &[f32], [dt, gamma]: [f32; 2], passes: Passes, gain: &mut [f32]) {
-    let per_dt2 = (dt * dt).recip();
-    links.tuples.for_each(|place, [a, b]| {
-        let w = weights[a as usize] + weights[b as usize];
-        let (ends, own) = ((1.0 + gamma) * w, links.compliance[place] * per_dt2);
-        let weight = if passes == Passes::Once { ends.max(own) } else { ends + own };
-        gain[place] = if w > 0.0 && weight > 0.0 { weight.recip() } else { 0.0 };
-    });
+/// What the settings make of links.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct LinkGains {
+    /// 1 / ((1 + gamma)(w_a + w_b) + alpha / dt^2), but see [`Passes::Once`]; 0 where nothing can move `[places]`.
+    pub gain: Box<[f32]>,
+    /// 1 / rest^2 (1/m2) `[places]`.
+    pub per_rest2: Box<[f32]>,
+}
+
+/// Shortest rest length that the stretch is measured by (m): a tenth of a micrometre, whose square is still a number whose
+/// reciprocal f32 has.
+const SHORTEST: f32 = 1e-7;
+
+impl LinkGains {
+    /// Room for a garment's; the lengths are there already. At load.
+    pub fn new(links: &Links) -> Self {
+        let per_rest2 = links.rest.iter().map(|l| l.max(SHORTEST).powi(2).recip()).collect();
+        Self { gain: vec![0.0; links.rest.len()].into(), per_rest2 }
+    }
+
+    /// Makes the gains, in the order of the parameters.
+    pub fn prepare(&mut self, links: &Links, weights: &[f32], [dt, gamma]: [f32; 2], passes: Passes) {
+        let per_dt2 = (dt * dt).recip();
+        links.tuples.for_each(|place, [a, b]| {
+            let w = weights[a as usize] + weights[b as usize];
+            let (ends, own) = ((1.0 + gamma) * w, links.compliance[place] * per_dt2);
+            let weight = if passes == Passes::Once { ends.max(own) } else { ends + own };
+            self.gain[place] = if w > 0.0 && weight > 0.0 { weight.recip() } else { 0.0 };
+        });
+    }
+
+    /// Memory that it holds (bytes).
+    pub fn bytes(&self) -> usize {
+        4 * (self.gain.len() + self.per_rest2.len())
+    }
 }
 
 /// One owner's share of one set.
@@ -41,8 +64,8 @@ pub struct SolveLinks<'a> {
     pub columns: ParticleColumns<'a>,
     /// All links of the garment.
     pub links: &'a Links,
-    /// Gain of each link, made by [`prepare`].
-    pub gain: &'a [f32],
+    /// What the settings made of them.
+    pub gains: &'a LinkGains,
     /// The set that is solved now.
     pub set: &'a ConstraintSet,
     /// Owner whose share is solved.
@@ -87,7 +110,7 @@ impl SolveLinks<'_> {
         for run in &tuples.runs[share.runs.start as usize..share.runs.end as usize] {
             self.row::<L, SOFT>(run, 0, run.len);
         }
-        let (rest, gain) = (ReadColumn::new(&self.links.rest), ReadColumn::new(self.gain));
+        let (rest, gain) = (self.rest::<SOFT>(), ReadColumn::new(&self.gains.gain));
         let soft = ReadColumn::new(&self.links.compliance);
         let loose = &self.links.tuples.loose;
         let mut k = 0;
@@ -105,6 +128,12 @@ impl SolveLinks<'_> {
         }
     }
 
+    /// What lengths are measured by: the rest length where there is compliance or damping, else 1 over its square.
+    #[inline(always)]
+    fn rest<const SOFT: bool>(&self) -> ReadColumn<'_> {
+        ReadColumn::new(if SOFT { &self.links.rest } else { &self.gains.per_rest2 })
+    }
+
     /// The links `from..to` of a run.
     #[inline(always)]
     fn row<L: Lanes, const SOFT: bool>(&self, run: &ConstraintRun<2>, from: u32, to: u32) {
@@ -113,7 +142,7 @@ impl SolveLinks<'_> {
         while t < to as usize {
             let n = (to as usize - t).min(L::N);
             let slack = self.slack::<L, SOFT>(run, t, n);
-            let by = self.side_by_side::<L, SOFT>([a + t, b + t], self.parameters(run, t, n), slack, n);
+            let by = self.side_by_side::<L, SOFT>([a + t, b + t], self.parameters::<L, SOFT>(run, t, n), slack, n);
             self.count::<L, SOFT>(by, run.serial as usize + t, n);
             t += n;
         }
@@ -130,8 +159,8 @@ impl SolveLinks<'_> {
             let (place, [b, a]) = (slants.place(t), zigzag.slant(t).map(|p| p as usize));
             let w = self.columns.w;
             // What is alike counts with the masses of the first, here as within a vector: alike is not the same to the bit.
-            let own = [self.links.rest[place], self.gain[place], w.get(b), w.get(a)];
-            let p = if slants.alike { self.alike(slants) } else { own };
+            let own = [self.rest::<SOFT>().get(place), self.gains.gain[place], w.get(b), w.get(a)];
+            let p = if slants.alike { self.alike::<f32, SOFT>(slants) } else { own };
             let slack = self.slack::<f32, SOFT>(slants, t as usize, 1);
             let by = self.side_by_side::<f32, SOFT>([b, a], p, slack, 1);
             self.count::<f32, SOFT>(by, slants.serial as usize + t as usize, 1);
@@ -140,20 +169,20 @@ impl SolveLinks<'_> {
 
     /// Rest length, gain and the weights of both ends of `n` links of a run.
     #[inline(always)]
-    fn parameters<L: Numbers>(&self, run: &ConstraintRun<2>, t: usize, n: usize) -> [L; 4] {
-        let (rest, gain) = (ReadColumn::new(&self.links.rest), ReadColumn::new(self.gain));
+    fn parameters<L: Numbers, const SOFT: bool>(&self, run: &ConstraintRun<2>, t: usize, n: usize) -> [L; 4] {
+        let (rest, gain) = (self.rest::<SOFT>(), ReadColumn::new(&self.gains.gain));
         let ([a, b], at, w) = (run.first.map(|f| f as usize), run.at as usize, self.columns.w);
         if run.alike {
-            return self.alike(run);
+            return self.alike::<L, SOFT>(run);
         }
         [part(rest, at + t, n), part(gain, at + t, n), part(w, a + t, n), part(w, b + t, n)]
     }
 
     /// The same of the first link of a run.
     #[inline(always)]
-    fn alike<L: Numbers>(&self, run: &ConstraintRun<2>) -> [L; 4] {
+    fn alike<L: Numbers, const SOFT: bool>(&self, run: &ConstraintRun<2>) -> [L; 4] {
         let ([a, b], at, w) = (run.first.map(|f| f as usize), run.at as usize, self.columns.w);
-        [self.links.rest[at], self.gain[at], w.get(a), w.get(b)].map(L::splat)
+        [self.rest::<SOFT>().get(at), self.gains.gain[at], w.get(a), w.get(b)].map(L::splat)
     }
 
     /// A zigzag of at least a vector of straights: each particle is read and written once. What is left of the rails at the
@@ -164,7 +193,7 @@ impl SolveLinks<'_> {
         let Zigzag { straights, slants } = zigzag;
         let (x, n) = (self.columns.x, straights.len as usize);
         let [a, b] = straights.first.map(|f| f as usize);
-        let like = [self.alike::<W>(straights), self.alike::<W>(slants)];
+        let like = [self.alike::<W, false>(straights), self.alike::<W, false>(slants)];
         let mut one = self.straight::<W, ALIKE>(straights, 0, like[0]);
         // What the slants before have made of the first lane, the only one that they reach: kept apart, so that the
         // next slants need not wait for them.
@@ -210,7 +239,7 @@ impl SolveLinks<'_> {
         like: [L; 4],
     ) -> Straights<L> {
         let ([a, b], x) = (straights.first.map(|f| f as usize + t), self.columns.x);
-        let [rest, gain, wa, wb] = if ALIKE { like } else { self.parameters::<L>(straights, t, L::N) };
+        let [rest, gain, wa, wb] = if ALIKE { like } else { self.parameters::<L, false>(straights, t, L::N) };
         let (pa, pb) = (V3::<L>::load(x, a, L::N), V3::load(x, b, L::N));
         let [by_a, by_b] = stiff(pb - pa, rest, gain, [wa, wb]);
         // Straights that are alike count with the masses of the first; slants that are not count with their own.
@@ -231,7 +260,7 @@ impl SolveLinks<'_> {
             return like;
         }
         let [a, b] = one.weights;
-        let (rest, gain, at) = (ReadColumn::new(&self.links.rest), ReadColumn::new(self.gain), slants.at as usize + t);
+        let (rest, gain, at) = (self.rest::<false>(), ReadColumn::new(&self.gains.gain), slants.at as usize + t);
         [L::load(rest, at), L::load(gain, at), b, a.with_first(next.weights[0]).rotate_down()]
     }
 
@@ -272,7 +301,9 @@ impl SolveLinks<'_> {
         let (pa, pb) = (V3::<L>::gather(c.x, a, n), V3::gather(c.x, b, n));
         let moved = || (pb - V3::gather(c.previous, b, n)) - (pa - V3::gather(c.previous, a, n));
         let weights = [L::gather(c.w, a, n), L::gather(c.w, b, n)];
-        let ([by_a, by_b], by) = self.push::<L, SOFT>(pb - pa, [part(rest), part(gain), slack], weights, moved);
+        let parameters = LinkParameters { rest: part(rest), gain: part(gain), slack, weights };
+        let damped = (SOFT && self.gamma > 0.0).then(|| (moved(), self.gamma));
+        let ([by_a, by_b], by) = push::<L, SOFT>(pb - pa, parameters, damped);
         (pa + by_a).scatter(c.x, a, n);
         (pb - by_b).scatter(c.x, b, n);
         by
@@ -291,41 +322,63 @@ impl SolveLinks<'_> {
         let c = &self.columns;
         let (pa, pb) = (V3::<L>::load(c.x, a, n), V3::load(c.x, b, n));
         let moved = || (pb - V3::load(c.previous, b, n)) - (pa - V3::load(c.previous, a, n));
-        let ([by_a, by_b], by) = self.push::<L, SOFT>(pb - pa, [rest, gain, slack], [wa, wb], moved);
+        let damped = (SOFT && self.gamma > 0.0).then(|| (moved(), self.gamma));
+        let parameters = LinkParameters { rest, gain, slack, weights: [wa, wb] };
+        let ([by_a, by_b], by) = push::<L, SOFT>(pb - pa, parameters, damped);
         (pa + by_a).store(c.x, a, n);
         (pb - by_b).store(c.x, b, n);
         by
     }
-
-    /// How far a link of vector `d` draws its ends, of the weights given, and by how much its tension grows.
-    #[inline(always)]
-    fn push<L: Lanes, const SOFT: bool>(
-        &self,
-        d: V3<L>,
-        [rest, gain, slack]: [L; 3],
-        weights: [L; 2],
-        moved: impl Fn() -> V3<L>,
-    ) -> ([V3<L>; 2], L) {
-        if !SOFT {
-            return (stiff(d, rest, gain, weights), L::splat(0.0));
-        }
-        let length2 = d.dot(d);
-        let inverse = reciprocal_root(length2);
-        let mut stretch = length2 * inverse - rest - slack;
-        if self.gamma > 0.0 {
-            stretch = stretch + d.dot(moved()) * inverse * L::splat(self.gamma);
-        }
-        let by = stretch * gain;
-        let pull = by * inverse;
-        ([d * (pull * weights[0]), d * (pull * weights[1])], by)
-    }
 }
 
-/// How far a link without compliance draws its ends, of the weights given: along d by w lambda / |d|, which is
-/// (|d| - rest) / |d| times the gain and the weight. Gain and weight are multiplied first: one wait less.
+/// What is known of links side by side.
+#[derive(Clone, Copy)]
+pub struct LinkParameters<L> {
+    /// Rest length (m) where there is compliance or damping, else 1 over its square (1/m2).
+    pub rest: L,
+    /// Gain ([`LinkGains::gain`]).
+    pub gain: L,
+    /// What they give by their compliance under the tension that they have (m).
+    pub slack: L,
+    /// Inverse masses of both ends (1/kg).
+    pub weights: [L; 2],
+}
+
+/// How far links of vector `d` draw their ends, and by how much their tension grows; `moved` is by how much the ends moved
+/// apart in the substep, and the damping time over it, where stretch is damped.
 #[inline(always)]
-fn stiff<L: Numbers>(d: V3<L>, rest: L, gain: L, weights: [L; 2]) -> [V3<L>; 2] {
-    let excess = L::splat(1.0) - times_reciprocal_root(rest, d.dot(d));
+pub fn push<L: Numbers, const SOFT: bool>(
+    d: V3<L>,
+    LinkParameters { rest, gain, slack, weights }: LinkParameters<L>,
+    moved: Option<(V3<L>, f32)>,
+) -> ([V3<L>; 2], L) {
+    if !SOFT {
+        return (stiff(d, rest, gain, weights), L::splat(0.0));
+    }
+    let length2 = d.dot(d);
+    let inverse = reciprocal_root(length2);
+    let mut stretch = length2 * inverse - rest - slack;
+    if let Some((moved, gamma)) = moved {
+        stretch = stretch + d.dot(moved) * inverse * L::splat(gamma);
+    }
+    let by = stretch * gain;
+    let pull = by * inverse;
+    ([d * (pull * weights[0]), d * (pull * weights[1])], by)
+}
+
+/// Most e = |d|^2 / rest^2 - 1 that a pass is given: up to it the series below grows; a link longer than that is drawn in over
+/// several passes.
+const MOST_EXCESS: f32 = 0.5;
+
+/// How far a link without compliance draws its ends, of the weights given: along d by w lambda / |d|, which is
+/// 1 - rest / |d| times the gain and the weight. With e = |d|^2 / rest^2 - 1 that is 1 - (1 + e)^(-1/2), by its series
+/// e (1/2 - e (3/8 - 5/16 e)) to 3e-5 where a link is a tenth too long: no root, and what is left the next pass finds.
+/// Gain and weight are multiplied first: one wait less.
+#[inline(always)]
+fn stiff<L: Numbers>(d: V3<L>, per_rest2: L, gain: L, weights: [L; 2]) -> [V3<L>; 2] {
+    // Where d is not a number, the other operand counts: the push is none either way.
+    let e = (d.dot(d) * per_rest2 - L::splat(1.0)).min(L::splat(MOST_EXCESS));
+    let excess = e * (L::splat(0.5) - e * (L::splat(0.375) - e * L::splat(0.3125)));
     [d * (excess * (gain * weights[0])), d * (excess * (gain * weights[1]))]
 }
 

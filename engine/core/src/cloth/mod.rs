@@ -17,6 +17,7 @@ pub mod pins;
 pub mod predict;
 pub mod prepared;
 pub mod program;
+pub mod record_links;
 pub mod records;
 pub mod root;
 pub mod settings;
@@ -104,15 +105,14 @@ impl Cloth {
         let layout = garment.layout();
         let needs = [fibers::scratch_len(&layout.fibers), lists::scratch_len(&layout.crossing)];
         let prepared = prepared::Prepared::new(garment);
-        let counts = [layout.weft.tuples.count, layout.fibers.links, layout.crossing.rest.len()];
-        let tension = std::array::from_fn(|k| Store::zeros(if prepared.soft(k) { counts[k] } else { 0 }));
+        let tension = prepared.tensions(layout).map(Store::zeros);
         let scratch = || Store::zeros(needs.into_iter().max().unwrap_or(0));
         Self {
             state: State::new(&garment.start, &garment.inverse_mass),
             pins: pins::Pins::new(garment),
             contacts: contact::Contacts::new(&layout.spans, &garment.parts, &garment.start, colliders),
             scratch: [scratch(), scratch()],
-            records: Store::zeros(if prepared.matrix.reads_records() { RECORD * start.len() } else { 0 }),
+            records: Store::zeros(if prepared.reads_records() { RECORD * (start.len() + OWNERS) } else { 0 }),
             room: stiff_bending::StiffBendingScratch::new(if prepared.stiff() { start.len() } else { 0 }),
             leaning: diagonals::DiagonalScratch::new(&garment.layout().diagonals, garment.start.len()),
             strains: vec![0.0; garment.strain_edges.len()].into(),

@@ -3,14 +3,15 @@
 //! Made again in steps in which the settings have changed; the storage stays.
 
 use toile_assets::garment::Garment;
-use toile_assets::garment::layout::ENDED;
+use toile_assets::garment::layout::{ENDED, Layout};
 use toile_assets::limits::STEP_SECONDS;
 
-use super::links::Passes;
+use super::links::{LinkGains, Passes};
+use super::record_links::RecordLinks;
 use super::program::{Bending, Program};
 use super::stiff_bending::{self, ChebyshevStage};
 use super::bending_matrix::BendingMatrix;
-use super::{Quality, Settings, bending, fibers, links};
+use super::{Quality, Settings, bending, fibers};
 
 /// Pull across a fiber's links from which on its solves are calmed. Garments in the substeps that they ask for are below
 /// 1: a linearised solve is stable there, and calming would slow their swing.
@@ -38,10 +39,12 @@ pub struct Prepared {
     pub taut: bool,
     /// Shear along whole fibers acts every so many substeps, for all of them.
     pub shear_every: u32,
-    /// Gains of the shear links ([`links::prepare`]) `[places]`.
-    pub shear_gain: Box<[f32]>,
-    /// Gains of the weft links `[places]`.
-    pub weft_gain: Box<[f32]>,
+    /// Of the shear links.
+    pub shear: LinkGains,
+    /// Of the weft links.
+    pub weft: LinkGains,
+    /// Shear and weft links as records, where that is the faster form.
+    records: [Option<RecordLinks>; 2],
     /// Bending of the garment, as much of it as the substep carries.
     pub matrix: BendingMatrix,
     /// How bending goes on.
@@ -77,8 +80,9 @@ impl Prepared {
             gamma: 0.0,
             taut: false,
             shear_every: 1,
-            shear_gain: zeros(layout.shear.rest.len()),
-            weft_gain: zeros(layout.weft.rest.len()),
+            shear: LinkGains::new(&layout.shear),
+            weft: LinkGains::new(&layout.weft),
+            records: [&layout.shear, &layout.weft].map(|l| RecordLinks::of(l, &garment.inverse_mass)),
             matrix,
             bend: bending::BendingPace { every: 1, stages: 1, least: 1.0 },
             bending,
@@ -94,7 +98,8 @@ impl Prepared {
         let asked = settings.substeps_of(garment.substeps);
         self.quality = settings.quality;
         self.make_for(garment, settings, asked);
-        self.program.make(self.quality, self.bending, self.substeps);
+        let records = [0, 1].map(|kind| self.records(kind).is_some());
+        self.program.make(self.quality, self.bending, records, self.substeps);
     }
 
     fn make_for(&mut self, garment: &Garment, settings: &Settings, asked: u32) {
@@ -110,8 +115,11 @@ impl Prepared {
         self.shear_every = if half { 2 } else { 1 };
         self.taut = fibers::pull_across(&garment.layout().fibers, &garment.inverse_mass, self.dt) > TAUT;
         let (layout, w) = (garment.layout(), &garment.inverse_mass);
-        links::prepare(&layout.shear, w, [self.dt, self.gamma], Passes::Once, &mut self.shear_gain);
-        links::prepare(&layout.weft, w, [self.dt, self.gamma], Passes::Many, &mut self.weft_gain);
+        self.shear.prepare(&layout.shear, w, [self.dt, self.gamma], Passes::Once);
+        self.weft.prepare(&layout.weft, w, [self.dt, self.gamma], Passes::Many);
+        let [shear, weft] = &mut self.records;
+        shear.iter_mut().for_each(|r| r.prepare(&layout.shear, &self.shear, false));
+        weft.iter_mut().for_each(|r| r.prepare(&layout.weft, &self.weft, self.soft[0]));
         self.bend(garment);
     }
 
@@ -133,9 +141,22 @@ impl Prepared {
         self.bend = bending::BendingPace { every: bending::every(&self.load, self.substeps), stages, least };
     }
 
-    /// Whether weft links (0), fibers (1), crossing fibers (2) have any compliance.
-    pub fn soft(&self, kind: usize) -> bool {
-        self.soft[kind]
+    /// Shear (0) and weft links (1) as records, where that is the faster form and nothing damps them: damping asks where the
+    /// particles were, which records do not hold.
+    pub fn records(&self, kind: usize) -> Option<&RecordLinks> {
+        self.records[kind].as_ref().filter(|_| self.gamma == 0.0)
+    }
+
+    /// Whether anything may read records.
+    pub fn reads_records(&self) -> bool {
+        self.matrix.reads_records() || self.records.iter().any(Option::is_some)
+    }
+
+    /// Tensions that are kept of weft links (0), fibers (1), crossing fibers (2).
+    pub fn tensions(&self, layout: &Layout) -> [usize; 3] {
+        let records = self.records[1].as_ref().map_or(0, RecordLinks::len);
+        let counts = [layout.weft.tuples.count.max(records), layout.fibers.links, layout.crossing.rest.len()];
+        std::array::from_fn(|kind| if self.soft[kind] { counts[kind] } else { 0 })
     }
 
     /// How bending goes on.
@@ -155,7 +176,8 @@ impl Prepared {
 
     /// Bytes held, but for those of the programs.
     pub fn bytes(&self) -> usize {
-        4 * (self.shear_gain.len() + self.weft_gain.len() + self.load.len()) + self.matrix.bytes()
+        4 * self.load.len() + self.shear.bytes() + self.weft.bytes() + self.matrix.bytes()
+            + self.records.iter().flatten().map(RecordLinks::bytes).sum::<usize>()
     }
 }
 

@@ -36,6 +36,10 @@ pub enum Stage {
     Predict,
     /// A family of fibers along the bias.
     Diagonals(u16),
+    /// The particles' records, for the links that follow.
+    EnterRecords,
+    /// The particles' places from their records.
+    LeaveRecords,
     /// A set of shear links.
     Shear(u16),
     /// A set of weft links.
@@ -67,7 +71,7 @@ impl Stage {
             | Self::StiffBendingRecords(_)
             | Self::StiffBending(_) => 1,
             Self::Diagonals(_) | Self::Shear(_) => 2,
-            Self::Weft(_) => 3,
+            Self::Weft(_) | Self::EnterRecords | Self::LeaveRecords => 3,
             Self::Fibers | Self::Crossing(_) => 4,
             Self::ContactAndVelocities | Self::BroadPhase => 5,
             Self::Wind | Self::WindAcross => 6,
@@ -143,12 +147,12 @@ pub fn constraints(layout: &Layout, quality: Quality) -> Box<[Stage]> {
 /// The stages of a whole step: [`BEFORE`], then the same for each substep.
 #[derive(Debug, Clone)]
 pub struct Program {
-    /// After bending, at each quality.
+    /// After bending, at each quality, in columns alone.
     constraints: [Box<[Stage]>; Quality::ALL.len()],
     /// Those of a substep; has room for the longest.
     substep: Vec<Stage>,
     substeps: u32,
-    made_for: Option<(Quality, Bending)>,
+    made_for: Option<(Quality, Bending, [bool; 2])>,
 }
 
 impl Program {
@@ -156,19 +160,34 @@ impl Program {
     pub fn new(layout: &Layout, bending: Bending, stiff: bool) -> Self {
         let constraints = Quality::ALL.map(|quality| constraints(layout, quality));
         let bending = Bending { stages: if stiff { MAX_BENDING_STAGES } else { 1 }, ..bending };
-        let longest = bending.len() + constraints.iter().map(|c| c.len()).max().unwrap_or(0);
+        // No more changes between columns and records than links.
+        let longest = bending.len() + constraints.iter().map(|c| 2 * c.len()).max().unwrap_or(0);
         Self { constraints, substep: Vec::with_capacity(longest), substeps: 0, made_for: None }
     }
 
-    /// Lists the stages for some settings. Allocates nothing.
-    pub fn make(&mut self, quality: Quality, bending: Bending, substeps: u32) {
+    /// Lists the stages for some settings; `records` says whether shear and weft links are solved by records. Allocates
+    /// nothing.
+    pub fn make(&mut self, quality: Quality, bending: Bending, records: [bool; 2], substeps: u32) {
         self.substeps = substeps;
-        if self.made_for != Some((quality, bending)) {
-            self.made_for = Some((quality, bending));
-            let at = Quality::ALL.iter().position(|q| *q == quality).unwrap_or(0);
-            self.substep.clear();
-            self.substep.extend(bending.program());
-            self.substep.extend(&self.constraints[at]);
+        if self.made_for == Some((quality, bending, records)) {
+            return;
+        }
+        self.made_for = Some((quality, bending, records));
+        let at = Quality::ALL.iter().position(|q| *q == quality).unwrap_or(0);
+        self.substep.clear();
+        self.substep.extend(bending.program());
+        let mut entered = false;
+        for &stage in &self.constraints[at] {
+            let wanted = match stage {
+                Stage::Shear(_) => records[0],
+                Stage::Weft(_) => records[1],
+                _ => false,
+            };
+            if wanted != entered {
+                self.substep.push(if wanted { Stage::EnterRecords } else { Stage::LeaveRecords });
+                entered = wanted;
+            }
+            self.substep.push(stage);
         }
     }
 

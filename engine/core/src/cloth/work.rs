@@ -10,12 +10,14 @@ use glam::Vec3A;
 use toile_assets::garment::Garment;
 use toile_assets::garment::layout::{FiberLists, Layout, Links, OWNERS};
 
+use super::links::LinkGains;
 use super::prepared::Prepared;
 use super::program::Stage;
+use super::record_links::RecordLinks;
 use super::root::Carried;
 use super::state::{self, ParticleColumns};
 use super::{
-    Quality, Step, Wind, bending, contact, diagonals, fibers, links, lists, predict, records, settle, stiff_bending,
+    Quality, Step, Wind, bending, contact, diagonals, fibers, links, lists, predict, record_links, records, settle, stiff_bending,
     tethers, wind,
 };
 use crate::lanes::{Shared, Width, WriteColumn};
@@ -120,6 +122,8 @@ impl OwnerShare<'_, '_> {
             Stage::StiffBending(stage) => self.stiff_bending(stage),
             Stage::Predict => self.predict(),
             Stage::Diagonals(family) => self.diagonals(family),
+            Stage::EnterRecords => self.fill_records(self.columns.particles.x),
+            Stage::LeaveRecords => self.read_records(),
             Stage::Shear(set) => self.shear(set),
             Stage::Weft(set) => self.weft(set),
             Stage::Fibers => self.fibers(),
@@ -180,6 +184,13 @@ impl OwnerShare<'_, '_> {
         let (w, records) = (self.columns.particles.w, self.columns.records);
         let spans = &self.work.layout().spans[self.owner];
         self.work.width.run(records::FillRecords { from, w, spans, records });
+    }
+
+    /// Places from their records.
+    fn read_records(&self) {
+        let (columns, records) = (self.columns.particles, self.columns.records);
+        let spans = &self.work.layout().spans[self.owner];
+        self.work.width.run(records::ReadRecords { columns, spans, records });
     }
 
     /// Bending as a force.
@@ -260,14 +271,21 @@ impl OwnerShare<'_, '_> {
 
     /// A set of shear links.
     fn shear(&self, set: u16) {
-        self.links(&self.work.layout().shear, &self.work.prepared.shear_gain, set, None);
+        let p = self.work.prepared;
+        match p.records(0) {
+            Some(links) => self.record_links(links, set, None),
+            None => self.links(&self.work.layout().shear, &p.shear, set, None),
+        }
     }
 
     /// A set of weft links.
     fn weft(&self, set: u16) {
         let p = self.work.prepared;
         let tension = self.tension(0).map(|t| (t, (p.dt * p.dt).recip()));
-        self.links(&self.work.layout().weft, &p.weft_gain, set, tension);
+        match p.records(1) {
+            Some(links) => self.record_links(links, set, tension),
+            None => self.links(&self.work.layout().weft, &p.weft, set, tension),
+        }
     }
 
     /// Warp fibers, each solved directly.
@@ -327,10 +345,16 @@ impl OwnerShare<'_, '_> {
     }
 
     /// A set of links of one kind.
-    fn links(&self, links: &Links, gain: &[f32], set: u16, tension: Option<(WriteColumn<'_>, f32)>) {
+    fn links(&self, links: &Links, gains: &LinkGains, set: u16, tension: Option<(WriteColumn<'_>, f32)>) {
         let (columns, owner, gamma) = (self.columns.particles, self.owner, self.work.prepared.gamma);
         let set = &links.tuples.sets[usize::from(set)];
-        self.work.width.run(links::SolveLinks { columns, links, gain, set, owner, gamma, tension });
+        self.work.width.run(links::SolveLinks { columns, links, gains, set, owner, gamma, tension });
+    }
+
+    /// A set of links by records.
+    fn record_links(&self, links: &RecordLinks, set: u16, tension: Option<(WriteColumn<'_>, f32)>) {
+        let (owner, records) = (self.owner, self.columns.records);
+        self.work.width.run(record_links::SolveRecordLinks { links, set: set.into(), owner, records, tension });
     }
 
     /// Tensions of weft links (0), fibers (1), crossing fibers (2), where these have any compliance.
