@@ -153,3 +153,6 @@ impl Bend<'_> {
 fn some<L: Lanes>(from: impl Readable, at: usize, n: usize) -> L {
     if n == L::N { L::load(from, at) } else { L::load_part(from, at, n) }
 }
+
+#[cfg(test)]
+mod tests;

@@ -280,7 +280,7 @@ impl BendingMatrix {
             let offsets = &self.offsets[strip.offsets as usize..][..strip.entries as usize];
             for t in 0..strip.len {
                 let i = strip.first + t;
-                let entry = |(k, offset): (u32, &i32)| (i.strict_add_signed(*offset), self.values[strip.value(k, t)]);
+                let entry = |(k, offset): (u32, &i32)| (i.wrapping_add_signed(*offset), self.values[strip.value(k, t)]);
                 each(i, &mut (0..).zip(offsets).map(entry));
             }
         }
@@ -288,7 +288,8 @@ impl BendingMatrix {
             for lane in 0..block.len as usize {
                 let at = |from: u32, k: usize| from as usize + k * MOST + lane;
                 let entry = |k| (self.neighbours.record(at(block.neighbours, k)), self.values[at(block.values, k)]);
-                each(self.rows.record(number * MOST + lane), &mut (0..block.entries as usize).map(entry));
+                let i = self.rows.record(number * MOST + lane);
+                each(i, &mut (0..block.entries as usize).map(entry).filter(|(j, _)| *j != i));
             }
         }
     }

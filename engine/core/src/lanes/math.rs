@@ -15,14 +15,6 @@ pub fn reciprocal_root<L: Numbers>(x: L) -> L {
     y * (L::splat(1.5) - L::splat(0.5) * x * y * y)
 }
 
-/// a / sqrt(x) to the same precision, a product earlier than `a * reciprocal_root(x)`.
-#[inline(always)]
-pub fn times_reciprocal_root<L: Numbers>(a: L, x: L) -> L {
-    let y = x.root_seed(0x5F1F_FFF9);
-    let y = y * L::splat(0.703_952_25) * (L::splat(2.389_244_6) - x * y * y);
-    (a * y) * (L::splat(1.5) - L::splat(0.5) * x * y * y)
-}
-
 /// Three coordinates, each in lanes.
 #[derive(Clone, Copy)]
 pub struct V3<L> {

@@ -23,7 +23,7 @@ use std::fmt;
 
 pub(crate) use column::Shared;
 pub use column::{MOST, ReadColumn, Readable, Store, WriteColumn};
-pub use math::{V3, reciprocal_root, times_reciprocal_root};
+pub use math::{V3, reciprocal_root};
 pub use records::{RECORD, RecordList, RecordRun, Records, RecordsAt};
 pub use traits::{Kernel, Lanes, Mask, Numbers};
 pub use two::Two;

@@ -156,3 +156,53 @@ fn quads_keep_their_places_and_the_least_is_found_at_every_width() {
         assert_eq!(to.iter().filter(|v| **v < 0.0).count(), 24, "{width} lanes");
     }
 }
+
+/// Records of a list, read and written back doubled, and those of a run.
+struct DoubleRecords<'a> {
+    list: &'a RecordList,
+    column: WriteColumn<'a>,
+}
+
+impl Kernel for DoubleRecords<'_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let at = self.list.within(self.column);
+        for k in (0..self.list.len()).step_by(L::N) {
+            let [x, y, z, w] = L::load_records(at, k);
+            L::store_records([x + x, y * L::splat(3.0), z - w, w], at, k);
+        }
+        for k in (0..MOST).step_by(L::N) {
+            let [x, y, z, w] = L::load_records(RecordRun(self.column), k);
+            L::store_records([w, z, y, x], RecordRun(self.column), k);
+        }
+    }
+}
+
+#[test]
+fn records_are_read_and_written_whole_at_every_width() {
+    let list = RecordList::new((0..32u32).map(|k| (k * 37) % 61));
+    let before: Vec<f32> = (0..4 * 61).map(|i| i as f32).collect();
+    let mut expected = before.clone();
+    for k in 0..list.len() {
+        let at = 4 * list.record(k) as usize;
+        let [x, y, z, w] = [0, 1, 2, 3].map(|i| before[at + i]);
+        expected[at..at + 4].copy_from_slice(&[x + x, y * 3.0, z - w, w]);
+    }
+    expected[..4 * MOST].chunks_exact_mut(4).for_each(<[f32]>::reverse);
+    for width in Width::ALL.into_iter().filter(|w| w.available()) {
+        let mut column = before.clone();
+        width.run(DoubleRecords { list: &list, column: WriteColumn::new(&mut column) });
+        assert_eq!(column, expected, "{width} lanes");
+    }
+}
+
+#[test]
+#[should_panic(expected = "outside of its column")]
+fn a_record_behind_the_end_of_a_column_stops_the_kernel() {
+    let mut column = vec![0.0; 4 * 60];
+    Width::widest().run(DoubleRecords {
+        list: &RecordList::new((0..16).map(|k| k * 4)),
+        column: WriteColumn::new(&mut column),
+    });
+}

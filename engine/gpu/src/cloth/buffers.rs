@@ -28,8 +28,8 @@ pub struct ClothBuffers {
     pub shear_measures: Buffer,
     /// The same of the weft links.
     pub weft_measures: Buffer,
-    /// Shares of bending stiffness.
-    pub scales: Buffer,
+    /// Neighbours and values of the bending matrices' rows.
+    pub bending: Buffer,
     /// Stages of bending: ahead, behind, forced, what the forces are multiplied by `[garments * STAGES]`; next to nothing
     /// where there are none.
     pub stages: Buffer,
@@ -63,9 +63,7 @@ pub fn needs(flat: &Flat, program: &StepProgram, sets: usize) -> DeviceNeeds {
         size_of_val(&*flat.diagonals.measures),
         16 * flat.fibers.links,
         48 * flat.lists.index.len(),
-        size_of_val(&*flat.bending.terms),
         size_of_val(&*flat.bending.entries),
-        16 * flat.bending.items.len(),
         size_of_val(&*flat.wind.faces),
         16 * program.groups().len(),
         size_of_val(&*flat.faces.meeting),
@@ -101,7 +99,7 @@ impl ClothBuffers {
             targets: all.targets,
             shear_measures: all.shear.measures,
             weft_measures: all.weft.measures,
-            scales: all.bending.scales,
+            bending: all.bending.entries,
             stages: all.bending.stages,
             pushed: all.pushed,
             reports: all.reports,

@@ -100,9 +100,9 @@ impl GarmentConstants {
             shear_every: prepared.shear_every,
             farthest: settings.max_speed * dt,
             substeps: prepared.substeps,
-            bits: bit(prepared.soft(0), SOFT_WEFT)
-                | bit(prepared.soft(1), SOFT_FIBERS)
-                | bit(prepared.soft(2), SOFT_CROSSING)
+            bits: bit(prepared.soft[0], SOFT_WEFT)
+                | bit(prepared.soft[1], SOFT_FIBERS)
+                | bit(prepared.soft[2], SOFT_CROSSING)
                 | bit(prepared.taut, TAUT)
                 | bit(tethered, TETHERS)
                 | bit(wind.is_some(), WIND),

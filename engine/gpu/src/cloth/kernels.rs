@@ -22,14 +22,10 @@ toile_assets::named! {
         WindForces,
         /// Combines the velocity changes of the stages of stiff bending, before each stage and after the last.
         StageCombine,
-        /// Curvatures of a stage.
-        StageCurvatures,
-        /// Bending forces of a stage, by particle.
-        StageForces,
-        /// Curvature of each bending stencil.
-        BendingCurvatures,
-        /// Bending forces, by particle.
-        BendingForces,
+        /// Bending forces of a stage.
+        StageBending,
+        /// Bending forces.
+        Bending,
         /// Gravity, air and wind; skinned particles move on.
         Predict,
         /// Fibers along the bias.
@@ -79,14 +75,13 @@ macro_rules! shader {
 }
 
 /// All shaders, by name and variants.
-pub const SHADERS: [Shader; 19] = [
+pub const SHADERS: [Shader; 18] = [
     shader!("repair", [false, true], REPORT),
     shader!("teleport", [false, true]),
     shader!("wind", [true, false, true, true, false]),
     shader!("root_compensation", [false]),
     shader!("stage_combine", [true, true]),
-    shader!("bending_curvatures", [true, true, true, false, true]),
-    shader!("bending_forces", [true, true, true, true, true]),
+    shader!("bending", [true, true, true]),
     shader!("predict", [true, true, true]),
     shader!("diagonals", [true, true, true, false, false]),
     shader!("links", [true, true, false]),
@@ -104,7 +99,7 @@ pub const SHADERS: [Shader; 19] = [
 impl Kernel {
     /// Whether it runs stage by stage in a substep.
     pub fn in_stages(self) -> bool {
-        matches!(self, Self::StageCombine | Self::StageCurvatures | Self::StageForces)
+        matches!(self, Self::StageCombine | Self::StageBending)
     }
 
     /// Index of the kernel in [`Kernel::ALL`].
@@ -117,11 +112,7 @@ impl Kernel {
         match self {
             Self::Repair | Self::Teleport | Self::RootCompensation | Self::Predict => 0,
             Self::Guard | Self::Publish | Self::UpdateReports => 0,
-            Self::StageCombine
-            | Self::StageCurvatures
-            | Self::StageForces
-            | Self::BendingCurvatures
-            | Self::BendingForces => 1,
+            Self::StageCombine | Self::StageBending | Self::Bending => 1,
             // What is drawn goes with what is published.
             Self::Faces | Self::Normals => 0,
             Self::Diagonals | Self::Shear => 2,
@@ -141,8 +132,7 @@ impl Kernel {
             Self::Wind | Self::WindForces => "wind",
             Self::RootCompensation => "root_compensation",
             Self::StageCombine => "stage_combine",
-            Self::BendingCurvatures | Self::StageCurvatures => "bending_curvatures",
-            Self::BendingForces | Self::StageForces => "bending_forces",
+            Self::Bending | Self::StageBending => "bending",
             Self::Predict => "predict",
             Self::Diagonals => "diagonals",
             Self::Shear | Self::Weft => "links",
@@ -160,8 +150,7 @@ impl Kernel {
         let entry = match self {
             Self::ContactCandidates => "contact_candidates",
             Self::WindForces => "wind_forces",
-            Self::StageCurvatures => "stage_curvatures",
-            Self::StageForces => "stage_forces",
+            Self::StageBending => "stage_bending",
             Self::Cyclic => "cyclic",
             Self::UpdateReports => "update_reports",
             _ => name,

@@ -38,7 +38,6 @@ pub struct StepProgram {
 /// Tables of workgroups of one kind, by number.
 struct WorkgroupTables {
     everyone: usize,
-    bending: usize,
     wind: usize,
     diagonals: Vec<usize>,
     shear: Vec<usize>,
@@ -54,7 +53,6 @@ impl StepProgram {
         let mut this = Self::default();
         let tables = WorkgroupTables {
             everyone: this.table(&flat.everyone),
-            bending: this.table(&flat.bending.groups),
             wind: this.table(&flat.wind.groups),
             diagonals: flat.diagonals.families.iter().map(|g| this.table(g)).collect(),
             shear: flat.shear.halves.iter().map(|g| this.table(g)).collect(),
@@ -72,8 +70,7 @@ impl StepProgram {
         ];
         this.before = first.map(all).into_iter().chain(forces).collect();
         if stiff {
-            let stage = Dispatch { table: tables.bending, ..all(Kernel::StageCurvatures) };
-            this.stages = vec![all(Kernel::StageCombine), stage, all(Kernel::StageForces)];
+            this.stages = vec![all(Kernel::StageCombine), all(Kernel::StageBending)];
         }
         this.draft = this.substep(&tables, false);
         this.whole = this.substep(&tables, true);
@@ -125,8 +122,7 @@ impl StepProgram {
         let warps = [(Kernel::Fibers, tables.fibers), (Kernel::Cyclic, tables.cyclic)];
         let fibers = |fresh: bool| lists(fresh).chain(warps.map(|(kernel, table)| entry(kernel, table, fresh)));
         let mut entries = vec![
-            entry(Kernel::BendingCurvatures, tables.bending, false),
-            entry(Kernel::BendingForces, tables.everyone, false),
+            entry(Kernel::Bending, tables.everyone, false),
             entry(Kernel::Predict, tables.everyone, false),
         ];
         entries.extend(tables.diagonals.iter().map(|&t| entry(Kernel::Diagonals, t, false)));

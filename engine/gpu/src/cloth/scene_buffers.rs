@@ -98,12 +98,7 @@ impl SceneBuffers {
             Kernel::Wind | Kernel::WindForces => vec![&wind.faces, &wind.forces, &wind.starts, &wind.around, pushed],
             Kernel::RootCompensation => vec![pushed],
             Kernel::StageCombine => vec![pushed, &bending.stages],
-            Kernel::StageCurvatures | Kernel::BendingCurvatures => {
-                vec![&bending.items, &bending.terms, &bending.scales, &bending.curvatures, &bending.stages]
-            }
-            Kernel::StageForces | Kernel::BendingForces => {
-                vec![&bending.starts, &bending.entries, &bending.items, &bending.terms, &bending.curvatures]
-            }
+            Kernel::StageBending | Kernel::Bending => vec![&bending.starts, &bending.entries, &bending.stages],
             Kernel::Predict => vec![&self.pins, &self.targets, pushed],
             Kernel::Diagonals => {
                 vec![&diagonals.heads, &diagonals.leads, &diagonals.measures, &diagonals.kept, &diagonals.lengths]
@@ -142,27 +137,19 @@ impl WindBuffers {
     }
 }
 
-/// Bending: curvatures as sums of terms, and the entries that each particle's force is summed from.
+/// Bending: the entries that each particle's force is summed from.
 pub struct BendingBuffers {
-    items: Buffer,
-    terms: Buffer,
-    pub scales: Buffer,
-    curvatures: Buffer,
-    pub stages: Buffer,
     starts: Buffer,
-    entries: Buffer,
+    pub entries: Buffer,
+    pub stages: Buffer,
 }
 
 impl BendingBuffers {
     fn new(make: &mut BufferBuilder<'_>, flat: &FlatBending, stages: usize) -> Self {
         Self {
-            items: make.with("bending items", &flat.items, KERNELS_ONLY),
-            terms: make.with("bending terms", &flat.terms, KERNELS_ONLY),
-            scales: make.with("bending scales", &flat.scales, BufferUsages::COPY_DST),
-            curvatures: make.zeros("curvatures", flat.items.len(), VEC4),
-            stages: make.zeros("bending stages", stages, VEC4),
             starts: make.with("bending entries, starts", &flat.starts, KERNELS_ONLY),
-            entries: make.with("bending entries", &flat.entries, KERNELS_ONLY),
+            entries: make.with("bending entries", &flat.entries, BufferUsages::COPY_DST),
+            stages: make.zeros("bending stages", stages, VEC4),
         }
     }
 }

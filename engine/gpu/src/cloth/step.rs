@@ -12,7 +12,7 @@ use wgpu::{CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDes
 use super::buffers::{ClothBuffers, STAGES};
 use super::constants::{CARRY, COMPENSATE, DRESS, GarmentConstants, WIND, carried, columns};
 use super::contact_data::{self, PLANES};
-use super::flat::{BendingScale, WIDTH};
+use super::flat::WIDTH;
 use super::kernels::Kernel;
 use super::program::Dispatch;
 use super::stage_timer::StageTimer;
@@ -82,20 +82,16 @@ impl Offload {
         }
         for (place, &k) in self.flat.order.iter().enumerate() {
             let (prepared, queue, buffers) = (&self.own[k].prepared, &self.opened.device.queue, &self.buffers);
-            for (links, gain, buffer) in [
-                (&mut self.flat.shear, &prepared.shear_gain, &buffers.shear_measures),
-                (&mut self.flat.weft, &prepared.weft_gain, &buffers.weft_measures),
+            for (links, gains, buffer) in [
+                (&mut self.flat.shear, &prepared.shear, &buffers.shear_measures),
+                (&mut self.flat.weft, &prepared.weft, &buffers.weft_measures),
             ] {
-                let range = links.prepare(place, gain);
+                let range = links.prepare(place, gains);
                 queue.write_buffer(buffer, 16 * range.start as u64, bytemuck::cast_slice(&links.measures[range]));
             }
-            let range = self.flat.bending.prepare(place, |scale| match scale {
-                BendingScale::Bend(at) => prepared.bend_scale[at as usize],
-                BendingScale::Skewed(at) => prepared.skewed_scale[at as usize],
-                BendingScale::Hub(number) => prepared.hub_scale[number as usize],
-            });
-            let scales = bytemuck::cast_slice(&self.flat.bending.scales[range.clone()]);
-            queue.write_buffer(&buffers.scales, 4 * range.start as u64, scales);
+            let range = self.flat.bending.prepare(place, &prepared.matrix);
+            let entries = bytemuck::cast_slice(&self.flat.bending.entries[range.clone()]);
+            queue.write_buffer(&buffers.bending, 8 * range.start as u64, entries);
             if prepared.bending.stages > 1 {
                 let (stages, first) = (stages(prepared), 16 * (place * STAGES) as u64);
                 queue.write_buffer(&buffers.stages, first, bytemuck::cast_slice(&stages));

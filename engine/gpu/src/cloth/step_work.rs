@@ -25,7 +25,7 @@ impl Offload {
     /// Whether a kernel does anything in a substep: bending and the bias pass some over, and bending that goes in stages all.
     fn acts(&self, kernel: Kernel, substep: u32) -> bool {
         self.own.iter().map(|own| &own.prepared).any(|p| match kernel {
-            Kernel::BendingCurvatures | Kernel::BendingForces => {
+            Kernel::Bending => {
                 p.bending.stages < 2 && substep.is_multiple_of(p.bend.every)
             }
             Kernel::Diagonals => substep.is_multiple_of(p.shear_every),
@@ -52,12 +52,8 @@ fn each(flat: &Flat, kernel: Kernel) -> f64 {
         Kernel::ContactCandidates => 44.0,
         Kernel::Wind | Kernel::WindForces => 120.0,
         Kernel::StageCombine => 96.0,
-        // A term and its particle's place each; head, share, curvature.
-        Kernel::BendingCurvatures | Kernel::StageCurvatures => {
-            28.0 + 24.0 * mean(flat.bending.terms.len(), flat.bending.items.len())
-        }
-        // An entry and its curvature each; ends of the list, place, velocity.
-        Kernel::BendingForces | Kernel::StageForces => 56.0 + 24.0 * mean(flat.bending.entries.len(), flat.start.len()),
+        // An entry and its particle's place each; ends of the list, place, velocity.
+        Kernel::Bending | Kernel::StageBending => 56.0 + 24.0 * mean(flat.bending.entries.len(), flat.start.len()),
         // Place, previous, velocity, pin.
         Kernel::Predict => 84.0,
         // A slot down: lead, measure, place, what is kept; up: the same and two places written.

@@ -30,13 +30,6 @@ fn reciprocal_root(x: f32) -> f32 {
     return y * (1.5 - 0.5 * x * y * y);
 }
 
-// a / sqrt(x), a product earlier.
-fn times_reciprocal_root(a: f32, x: f32) -> f32 {
-    var y = bitcast<f32>(0x5F1FFFF9u - (bitcast<u32>(x) >> 1u));
-    y = y * 0.70395225 * (2.3892446 - x * y * y);
-    return (a * y) * (1.5 - 0.5 * x * y * y);
-}
-
 // A vector no longer than `reach`.
 fn limited(by: vec3<f32>, reach: f32) -> vec3<f32> {
     let size2 = inner(by, by);

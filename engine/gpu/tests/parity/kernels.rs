@@ -4,17 +4,17 @@ use glam::Vec3A;
 use toile_assets::garment::Garment;
 use toile_assets::garment::layout::OWNERS;
 use toile_assets::scene::skirt::Stretch;
-use toile_engine::cloth::bending::{self, BendStencils};
+use toile_engine::cloth::bending;
 use toile_engine::cloth::pins::Pins;
 use toile_engine::cloth::prepared::Prepared;
 use toile_engine::cloth::root::{RootMotion, RootStep};
-use toile_engine::cloth::state::{self, ParticleColumns, State};
+use toile_engine::cloth::state::{self, State};
 use toile_engine::cloth::stiff_bending::{self, StiffBendingUpdate};
 use toile_engine::cloth::wind::{Accelerations, Faces, WindPart};
 use toile_engine::cloth::{
-    RootSettings, Settings, Wind, centre, diagonals, fibers, hubs, links, lists, predict, settle, tethers,
+    RootSettings, Settings, Wind, centre, diagonals, fibers, links, lists, predict, records, settle, tethers,
 };
-use toile_engine::lanes::{Store, Width, WriteColumn};
+use toile_engine::lanes::{RECORD, Store, Width, WriteColumn};
 use toile_gpu::cloth::Kernel;
 
 use crate::scene::{apart, around, disturbed, nobody, offload, skirt, swaying, worn};
@@ -51,13 +51,16 @@ impl<'a> Twin<'a> {
         let width = self.settings.width;
         let per_dt2 = (p.dt * p.dt).recip();
         let room = [fibers::scratch_len(&layout.fibers), lists::scratch_len(&layout.crossing)];
-        let mut scratch = Store::zeros(bending::SCRATCH.max(room[0]).max(room[1]));
+        let mut scratch = Store::zeros(room[0].max(room[1]));
         let tensions = layout.weft.tuples.count.max(layout.fibers.links).max(layout.crossing.rest.len());
         let mut tension = Store::zeros(tensions);
         let mut room = diagonals::DiagonalScratch::new(&layout.diagonals, garment.particles());
         let spans = |owner: usize| &layout.spans[owner][..];
         match kernel {
-            Kernel::BendingForces => bend(garment, p, columns, &mut scratch, width),
+            Kernel::Bending => {
+                let by = p.dt * p.bend.every as f32;
+                bend(garment, p, columns.w, [columns.x, columns.v], by, width);
+            }
             Kernel::Predict => {
                 for owner in 0..OWNERS {
                     let kept = (-garment.fabric.damping_per_s * p.dt).exp();
@@ -78,11 +81,11 @@ impl<'a> Twin<'a> {
             }
             Kernel::Shear | Kernel::Weft => {
                 let weft = kernel == Kernel::Weft;
-                let (links, gain) = if weft { (&layout.weft, &p.weft_gain) } else { (&layout.shear, &p.shear_gain) };
+                let (links, gains) = if weft { (&layout.weft, &p.weft) } else { (&layout.shear, &p.shear) };
                 for set in &links.tuples.sets {
                     for owner in 0..OWNERS {
-                        let tension = (weft && p.soft(0)).then(|| (tension.column(), per_dt2));
-                        width.run(links::SolveLinks { columns, links, gain, set, owner, gamma: p.gamma, tension });
+                        let tension = (weft && p.soft[0]).then(|| (tension.column(), per_dt2));
+                        width.run(links::SolveLinks { columns, links, gains, set, owner, gamma: p.gamma, tension });
                     }
                 }
             }
@@ -96,14 +99,14 @@ impl<'a> Twin<'a> {
                         per_dt2,
                         gamma: p.gamma,
                         taut: p.taut,
-                        tension: p.soft(1).then(|| tension.column()),
+                        tension: p.soft[1].then(|| tension.column()),
                     });
                 }
             }
             Kernel::Lists => {
                 for (set, owner) in (0..layout.crossing.sets.len()).flat_map(|s| [(s, 0), (s, 1)]) {
                     let (lists, scratch) = (&layout.crossing, scratch.column());
-                    let tension = p.soft(2).then(|| tension.column());
+                    let tension = p.soft[2].then(|| tension.column());
                     width.run(lists::SolveCrossing { columns, lists, set, owner, scratch, per_dt2, tension });
                 }
             }
@@ -129,7 +132,6 @@ impl<'a> Twin<'a> {
         let (width, spans) = (self.settings.width, [(0, garment.particles() as u32)]);
         let mut room = stiff_bending::StiffBendingScratch::new(garment.particles());
         let room = room.columns();
-        let mut scratch = Store::zeros(bending::SCRATCH);
         let last = p.bending.stages;
         for stage in 0..=last {
             let turn = match stage {
@@ -146,7 +148,7 @@ impl<'a> Twin<'a> {
                 0 => ([room[1], room[0]], p.dt),
                 j => ([j, j + 1].map(|j| room[stiff_bending::place(j)]), p.stages[j as usize].forced * p.dt * p.dt),
             };
-            push(garment, p, columns.w, from_to, by, scratch.column(), width);
+            bend(garment, p, columns.w, from_to, by, width);
         }
     }
 
@@ -156,41 +158,23 @@ impl<'a> Twin<'a> {
     }
 }
 
-/// Bending as a force.
-fn bend(garment: &Garment, p: &Prepared, columns: ParticleColumns<'_>, scratch: &mut Store, width: Width) {
-    let by = p.dt * p.bend.every as f32;
-    push(garment, p, columns.w, [columns.x, columns.v], by, scratch.column(), width);
-}
-
-/// What bends one thing and pushes another, set by set.
-fn push(
+/// What bends one thing and pushes another.
+fn bend(
     garment: &Garment,
     p: &Prepared,
     w: WriteColumn<'_>,
     [from, to]: [[WriteColumn<'_>; 3]; 2],
     by: f32,
-    scratch: WriteColumn<'_>,
     width: Width,
 ) {
-    let layout = garment.layout();
-    let some = p.bend.least < 1.0;
-    for set in 0..2usize {
-        for owner in 0..OWNERS {
-            if let Some(set) = layout.bends.tuples.sets.get(set) {
-                let scale = some.then_some(&*p.bend_scale);
-                width.run(BendStencils { w, bends: &layout.bends, set, owner, from, to, by, scale, scratch });
-            }
-        }
-        for owner in 0..OWNERS {
-            if let Some(set) = layout.skewed.tuples.sets.get(set) {
-                let scale = some.then_some(&*p.skewed_scale);
-                width.run(BendStencils { w, bends: &layout.skewed, set, owner, from, to, by, scale, scratch });
-            }
-        }
-        for owner in 0..OWNERS {
-            let (groups, scale) = (layout.hubs.sets[set][owner].clone(), some.then_some(&*p.hub_scale));
-            width.run(hubs::BendHubs { w, hubs: &layout.hubs, groups, from, to, by, scale });
-        }
+    let mut records = Store::zeros(RECORD * garment.particles());
+    let records = records.column();
+    for owner in 0..OWNERS {
+        let spans = &garment.layout().spans[owner];
+        width.run(records::FillRecords { from, w, spans, records });
+    }
+    for owner in 0..OWNERS {
+        width.run(bending::Bend { matrix: &p.matrix, owner, from, records, to, by });
     }
 }
 
@@ -207,9 +191,6 @@ fn held(name: &str, garment: &Garment, settings: &Settings, kernel: Kernel) {
     let (palette, colliders) = (swaying(3), nobody());
     let steps = [around(&palette, &colliders, settings)];
     gpu.disturb(0, &x, &v);
-    if kernel == Kernel::BendingForces {
-        gpu.only(Kernel::BendingCurvatures, 0, &[garment], &steps).expect("curvatures are found");
-    }
     gpu.only(kernel, 0, &[garment], &steps).expect("the kernel runs");
     let got = gpu.particles(0).expect("the state is read");
     let expected = twin.particles();
@@ -231,7 +212,7 @@ fn held(name: &str, garment: &Garment, settings: &Settings, kernel: Kernel) {
 }
 
 const KERNELS: [Kernel; 9] = [
-    Kernel::BendingForces,
+    Kernel::Bending,
     Kernel::Predict,
     Kernel::Diagonals,
     Kernel::Shear,
@@ -367,7 +348,7 @@ fn stages_give_what_their_twins_give() {
         gpu.disturb(0, &x, &v);
         let (palette, colliders) = (swaying(3), nobody());
         for stage in 0..=last {
-            let kernels = [Kernel::StageCombine, Kernel::StageCurvatures, Kernel::StageForces];
+            let kernels = [Kernel::StageCombine, Kernel::StageBending];
             for kernel in kernels.into_iter().filter(|k| stage < last || *k == Kernel::StageCombine) {
                 let step = around(&palette, &colliders, &settings);
                 gpu.only(kernel, stage, &[garment], &[step]).expect("the kernel runs");

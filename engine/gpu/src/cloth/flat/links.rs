@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use toile_assets::garment::layout::{ConstraintRun, Links, Zigzag};
+use toile_engine::cloth::links::LinkGains;
 
 use super::{GarmentSpan, Workgroups};
 
@@ -11,7 +12,8 @@ use super::{GarmentSpan, Workgroups};
 pub struct FlatLinks {
     /// Both ends, and the bits of the weights (1/kg) that they count with `[links]`.
     pub ends: Vec<[u32; 4]>,
-    /// Rest length (m), compliance (m/N), gain (see [`FlatLinks::prepare`]), nothing `[links]`.
+    /// Rest length (m), compliance (m/N), gain (see [`FlatLinks::prepare`]), 1 over the square of the rest length (1/m2)
+    /// `[links]`.
     pub measures: Vec<[f32; 4]>,
     /// Where each link's gain is among those of its garment `[links]`.
     places: Vec<u32>,
@@ -89,10 +91,10 @@ impl FlatLinks {
     }
 
     /// Writes a garment's gains, which its settings have made; gives the range of links.
-    pub fn prepare(&mut self, garment: usize, gain: &[f32]) -> Range<usize> {
+    pub fn prepare(&mut self, garment: usize, gains: &LinkGains) -> Range<usize> {
         let range = self.ranges[garment].clone();
         for (measure, place) in self.measures[range.clone()].iter_mut().zip(&self.places[range.clone()]) {
-            measure[2] = gain[*place as usize];
+            (measure[2], measure[3]) = (gains.gain[*place as usize], gains.per_rest2[*place as usize]);
         }
         range
     }

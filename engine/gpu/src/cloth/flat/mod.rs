@@ -14,10 +14,11 @@ mod wind;
 mod workgroups;
 
 use toile_assets::garment::Garment;
+use toile_engine::cloth::bending_matrix::BendingMatrix;
 use toile_engine::cloth::contact::reach;
 use toile_engine::colliders::Colliders;
 
-pub use bending::{BendingScale, FlatBending};
+pub use bending::FlatBending;
 pub use diagonals::FlatDiagonals;
 pub use faces::FlatFaces;
 pub use fibers::FlatFibers;
@@ -64,7 +65,7 @@ pub struct Flat {
     pub fibers: FlatFibers,
     /// Fibers by index list.
     pub lists: FlatLists,
-    /// Bending stencils and hubs.
+    /// Bending.
     pub bending: FlatBending,
     /// Triangles and normals, for garments that are drawn.
     pub faces: FlatFaces,
@@ -112,7 +113,7 @@ impl Flat {
         self.diagonals.add(&layout.diagonals, weights, span);
         self.fibers.add(&layout.fibers, span);
         self.lists.add(&layout.crossing, span);
-        self.bending.add(layout, weights, span);
+        self.bending.add(&BendingMatrix::new(garment), span);
         self.wind.add(garment, span);
         self.particles += span.len;
         self.spans.push(span);
@@ -193,9 +194,9 @@ mod tests {
         assert_eq!(count(&flat.shear.halves), 2 * layout.shear.tuples.count);
         let links: u32 = flat.diagonals.heads.iter().map(|h| h[2]).sum();
         assert_eq!(links as usize, 2 * layout.diagonals.count());
-        let bends = layout.bends.tuples.count + layout.skewed.tuples.count;
-        assert!(bends > 0 && flat.bending.items.len() >= 2 * bends);
-        assert_eq!(items(&flat.bending.groups).count(), flat.bending.items.len());
+        let mut entries = 0;
+        BendingMatrix::new(&garment).for_each_row(|_, row| entries += row.count());
+        assert!(entries > 0 && flat.bending.entries.len() == 2 * entries);
         assert_eq!(flat.bending.starts.len(), flat.particles as usize + 1);
         assert_eq!(flat.targets as usize, 2 * garment.fixed.len());
         assert_eq!(items(&flat.wind.groups).count(), 2 * garment.triangles.len());
