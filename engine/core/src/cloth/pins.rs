@@ -11,14 +11,43 @@ pub struct Pins {
     pub start: Box<[Vec3A]>,
     /// At the end of the step, world (m) `[fixed]`.
     pub end: Box<[Vec3A]>,
+    /// Which of them follow each other in memory and have one owner.
+    runs: Box<[PinRun]>,
     placed: bool,
+}
+
+/// Skinned particles that follow each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PinRun {
+    /// Owner of all of them.
+    pub owner: u8,
+    /// The first particle.
+    pub first: u32,
+    /// Its number among the skinned ones.
+    pub number: u32,
+    /// How many there are.
+    pub len: u32,
 }
 
 impl Pins {
     /// Where the garment starts.
     pub fn new(garment: &Garment) -> Self {
         let rest: Box<[Vec3A]> = garment.fixed.iter().map(|&i| garment.start[i as usize].into()).collect();
-        Self { start: rest.clone(), end: rest, placed: false }
+        let owner = |i: u32| garment.layout().owner[i as usize];
+        let follows = |a: &u32, b: &u32| a + 1 == *b && owner(*a) == owner(*b);
+        let mut number = 0;
+        let runs = garment.fixed.chunk_by(follows).map(|run| {
+            let len = run.len() as u32;
+            number += len;
+            PinRun { owner: owner(run[0]), first: run[0], number: number - len, len }
+        });
+        let runs = runs.collect();
+        Self { start: rest.clone(), end: rest, runs, placed: false }
+    }
+
+    /// Those that follow each other.
+    pub fn runs(&self) -> &[PinRun] {
+        &self.runs
     }
 
     /// Moves the targets on: the end of the last step is the start of this one, the first step starts where it ends. Gives
@@ -61,6 +90,6 @@ impl Pins {
 
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.start) + size_of_val(&*self.end)
+        size_of_val(&*self.start) + size_of_val(&*self.end) + size_of_val(&*self.runs)
     }
 }

@@ -140,7 +140,7 @@ impl Cloth {
             carried,
             contacts: PerShare::new(self.contacts.owners()),
             limited: [AtomicU64::new(0), AtomicU64::new(0)],
-            fixed: [&self.pins.start, &self.pins.end],
+            pins: &self.pins,
             fall: step.settings.gravity * dt,
             kept: (-garment.fabric.damping_per_s * dt).exp(),
             width: step.settings.width,

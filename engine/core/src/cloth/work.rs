@@ -11,6 +11,7 @@ use toile_assets::garment::Garment;
 use toile_assets::garment::layout::{FiberLists, Layout, Links, OWNERS};
 
 use super::links::LinkGains;
+use super::pins::Pins;
 use super::prepared::Prepared;
 use super::program::Stage;
 use super::record_links::RecordLinks;
@@ -41,8 +42,8 @@ pub struct StepWork<'a> {
     pub contacts: PerShare<'a, contact::OwnerContacts>,
     /// Particle substeps that each owner held at the speed limit.
     pub limited: [AtomicU64; OWNERS],
-    /// Skinned particles at the start and the end of the step (m).
-    pub fixed: [&'a [Vec3A]; 2],
+    /// Skinned particles at the start and the end of the step.
+    pub pins: &'a Pins,
     /// Gravity over the substep (m/s).
     pub fall: Vec3A,
     /// Share of a velocity that damping leaves in a substep (1).
@@ -250,9 +251,11 @@ impl OwnerShare<'_, '_> {
         let (fall, pushed) = if p.bending.stages > 1 { (Vec3A::ZERO, None) } else { (work.fall, self.pushed()) };
         work.width.run(predict::Predict { columns, spans, fall, pushed, kept: work.kept, dt: p.dt });
         let to = (self.substep + 1) as f32 / p.substeps as f32;
-        for (k, &i) in work.garment.fixed.iter().enumerate() {
-            if usize::from(work.layout().owner[i as usize]) == self.owner {
-                state::set(columns.x, i as usize, work.fixed[0][k].lerp(work.fixed[1][k], to));
+        for run in work.pins.runs().iter().filter(|run| usize::from(run.owner) == self.owner) {
+            let range = run.number as usize..(run.number + run.len) as usize;
+            let places = work.pins.start[range.clone()].iter().zip(&work.pins.end[range]);
+            for (i, (start, end)) in (run.first as usize..).zip(places) {
+                state::set(columns.x, i, start.lerp(*end, to));
             }
         }
     }
