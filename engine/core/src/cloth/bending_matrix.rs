@@ -22,7 +22,8 @@ const LEAST_STRIP: usize = 6;
 /// Rows that follow each other which make a block of their own: fewer share theirs with others.
 const LEAST_SEQUENCE: usize = 8;
 
-/// Relative difference below which two entries count as the same, as the bake has it for lengths and masses.
+/// Difference between two entries, as a part of the row's greatest, below which they count as the same: as the bake has it for
+/// lengths and masses.
 const SAME: f32 = 1e-5;
 
 /// Where a row is that nobody has: a particle that is fixed, or that nothing bends.
@@ -191,12 +192,13 @@ impl BendingMatrix {
         let blocks_from = self.blocks.first().map_or(old.len(), |b| b.values as usize);
         for strip in &mut self.strips {
             let entry = |k: u32| &old[strip.value(k, 0)..][..strip.len as usize];
-            let same = |a: f32, b: f32| (a - b).abs() <= SAME * a.abs().max(b.abs());
-            strip.alike = (0..strip.entries).all(|k| entry(k).iter().all(|v| same(*v, entry(k)[0])));
+            let most = (0..strip.entries).map(|k| entry(k)[0].abs()).fold(0.0, f32::max);
+            strip.alike = (0..strip.entries).all(|k| entry(k).iter().all(|v| (v - entry(k)[0]).abs() <= SAME * most));
         }
         self.lay_values();
         for (strip, before) in self.strips.iter().zip(&before) {
-            for (k, t) in (0..strip.entries).flat_map(|k| (0..strip.len).map(move |t| (k, t))).filter(|_| !strip.alike) {
+            for (k, t) in (0..strip.entries).flat_map(|k| (0..strip.len).map(move |t| (k, t))).filter(|_| !strip.alike)
+            {
                 self.values[strip.value(k, t)] = old[before.value(k, t)];
             }
             (0..strip.entries).filter(|_| strip.alike).for_each(|k| {
@@ -231,7 +233,8 @@ impl BendingMatrix {
                 }
             }
         });
-        for (strip, share) in self.strips.iter().zip(&self.shares).filter(|(strip, share)| strip.alike && **share < 1.0) {
+        for (strip, share) in self.strips.iter().zip(&self.shares).filter(|(strip, share)| strip.alike && **share < 1.0)
+        {
             self.values[strip.values as usize..][..strip.entries as usize].iter_mut().for_each(|v| *v *= share);
         }
         least

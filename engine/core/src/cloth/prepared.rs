@@ -6,11 +6,11 @@ use toile_assets::garment::Garment;
 use toile_assets::garment::layout::{ENDED, Layout};
 use toile_assets::limits::STEP_SECONDS;
 
-use super::links::{LinkGains, Passes};
-use super::record_links::RecordLinks;
-use super::program::{Bending, Program};
-use super::stiff_bending::{self, ChebyshevStage};
 use super::bending_matrix::BendingMatrix;
+use super::links::{LinkGains, Passes};
+use super::program::{Bending, Program};
+use super::record_links::RecordLinks;
+use super::stiff_bending::{self, ChebyshevStage};
 use super::{Quality, Settings, bending, fibers};
 
 /// Pull across a fiber's links from which on its solves are calmed. Garments in the substeps that they ask for are below
@@ -176,7 +176,10 @@ impl Prepared {
 
     /// Bytes held, but for those of the programs.
     pub fn bytes(&self) -> usize {
-        4 * self.load.len() + self.shear.bytes() + self.weft.bytes() + self.matrix.bytes()
+        4 * self.load.len()
+            + self.shear.bytes()
+            + self.weft.bytes()
+            + self.matrix.bytes()
             + self.records.iter().flatten().map(RecordLinks::bytes).sum::<usize>()
     }
 }

@@ -54,13 +54,8 @@ impl RecordLinks {
 
     /// The links as records; the gains are yet to be made.
     pub fn new(links: &Links, weights: &[f32]) -> Self {
-        let mut out = Builder {
-            links,
-            weights,
-            ends: Default::default(),
-            places: Vec::new(),
-            numbers: Default::default(),
-        };
+        let mut out =
+            Builder { links, weights, ends: Default::default(), places: Vec::new(), numbers: Default::default() };
         let shares = links.tuples.sets.iter().map(|set| {
             std::array::from_fn(|owner| {
                 let share = &set.shares[owner];

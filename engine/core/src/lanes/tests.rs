@@ -201,8 +201,6 @@ fn records_are_read_and_written_whole_at_every_width() {
 #[should_panic(expected = "outside of its column")]
 fn a_record_behind_the_end_of_a_column_stops_the_kernel() {
     let mut column = vec![0.0; 4 * 60];
-    Width::widest().run(DoubleRecords {
-        list: &RecordList::new((0..16).map(|k| k * 4)),
-        column: WriteColumn::new(&mut column),
-    });
+    Width::widest()
+        .run(DoubleRecords { list: &RecordList::new((0..16).map(|k| k * 4)), column: WriteColumn::new(&mut column) });
 }

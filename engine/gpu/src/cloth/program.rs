@@ -121,10 +121,8 @@ impl StepProgram {
         let lists = |fresh: bool| tables.lists.iter().map(move |&t| entry(Kernel::Lists, t, fresh));
         let warps = [(Kernel::Fibers, tables.fibers), (Kernel::Cyclic, tables.cyclic)];
         let fibers = |fresh: bool| lists(fresh).chain(warps.map(|(kernel, table)| entry(kernel, table, fresh)));
-        let mut entries = vec![
-            entry(Kernel::Bending, tables.everyone, false),
-            entry(Kernel::Predict, tables.everyone, false),
-        ];
+        let mut entries =
+            vec![entry(Kernel::Bending, tables.everyone, false), entry(Kernel::Predict, tables.everyone, false)];
         entries.extend(tables.diagonals.iter().map(|&t| entry(Kernel::Diagonals, t, false)));
         entries.extend(tables.shear.iter().map(|&t| entry(Kernel::Shear, t, false)));
         entries.extend(wefts(true).chain(fibers(true)));

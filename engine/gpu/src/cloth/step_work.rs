@@ -25,9 +25,7 @@ impl Offload {
     /// Whether a kernel does anything in a substep: bending and the bias pass some over, and bending that goes in stages all.
     fn acts(&self, kernel: Kernel, substep: u32) -> bool {
         self.own.iter().map(|own| &own.prepared).any(|p| match kernel {
-            Kernel::Bending => {
-                p.bending.stages < 2 && substep.is_multiple_of(p.bend.every)
-            }
+            Kernel::Bending => p.bending.stages < 2 && substep.is_multiple_of(p.bend.every),
             Kernel::Diagonals => substep.is_multiple_of(p.shear_every),
             _ => true,
         })

@@ -10,7 +10,7 @@
 @group(1) @binding(2) var<storage, read_write> tensions: array<f32>;
 
 // Most that a pass is given of |d|^2 / rest^2 - 1.
-const MOST_EXCESS = 0.5;
+const MOST_EXCESS = 0.6666667;
 
 @compute @workgroup_size(64)
 fn links(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
@@ -58,7 +58,7 @@ fn links(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) 
         }
     } else {
         let e = less_of(length2 * measures[k].w - 1.0, MOST_EXCESS);
-        let excess = e * (0.5 - e * (0.375 - e * 0.3125));
+        let excess = e * (0.5 - e * 0.375);
         by_a = d * (excess * (gain * wa));
         by_b = d * (excess * (gain * wb));
     }

@@ -26,7 +26,10 @@ pub fn summary(report: &WornReport, paint: Paint) -> String {
     let allocations = counted(report.allocations_per_step.map(|a| a.to_string()));
     put_line!(text, "  memory        {memory}; allocations a step: {allocations}");
     put_line!(text, "  state         {}", report.state_hash);
-    let events = [(report.events.rolled_back, "steps taken back"), (report.events.speed_limited, "particles at the speed limit")];
+    let events = [
+        (report.events.rolled_back, "steps taken back"),
+        (report.events.speed_limited, "particles at the speed limit"),
+    ];
     for (count, what) in events.into_iter().filter(|(count, _)| *count > 0) {
         put_line!(text, "  {}", paint.tone(&format!("{count} {what}"), Tone::Warn));
     }

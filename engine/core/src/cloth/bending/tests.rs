@@ -91,7 +91,9 @@ fn grids_have_strips_and_other_meshes_blocks_and_no_row_is_written_twice() {
             let own = |i: u32| usize::from(garment.layout().owner[i as usize]) == owner;
             let [strips, blocks] = [&matrix.owned_strips[owner], &matrix.owned_blocks[owner]].map(|r| r.clone());
             assert!(matrix.strips[strips.start as usize..strips.end as usize].iter().all(|s| own(s.first)));
-            assert!(blocks.flat_map(|b| b as usize * MOST..(b as usize + 1) * MOST).all(|k| own(matrix.rows.record(k))));
+            assert!(
+                blocks.flat_map(|b| b as usize * MOST..(b as usize + 1) * MOST).all(|k| own(matrix.rows.record(k)))
+            );
         }
     }
     assert!(strips > 10 && blocks > 10, "{strips} strips, {blocks} blocks");
@@ -114,7 +116,8 @@ fn moved_or_turned_as_a_whole_it_bends_no_more_and_momentum_stays() {
         let mut sum = DVec3::ZERO;
         let mut all = 0.0;
         garment.layout().for_each_bend(|particles, c| {
-            let d: DVec3 = (0..particles.len()).map(|k| shaken[particles[k] as usize].as_dvec3() * f64::from(c(k))).sum();
+            let d: DVec3 =
+                (0..particles.len()).map(|k| shaken[particles[k] as usize].as_dvec3() * f64::from(c(k))).sum();
             let fixed = (0..particles.len()).filter(|k| garment.inverse_mass[particles[*k] as usize] <= 0.0);
             sum -= fixed.map(|k| d * (0.002 * f64::from(c(k)))).sum::<DVec3>();
         });

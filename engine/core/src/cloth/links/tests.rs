@@ -43,8 +43,8 @@ fn solved(width: Width, positions: &[Vec3], weights: &[f32], links: &Links, gamm
 #[test]
 fn a_stiff_link_reaches_its_length_and_keeps_the_centre_of_mass() {
     let (weights, link) = ([1.0, 3.0], ladder(1, 1.0, 0.0));
-    // What is drawn out by a fiftieth is there in a pass; what is twice or a hundred times as long, or half, in a few.
-    for (length, passes) in [(1.02, 1), (0.98, 1), (2.0, 7), (100.0, 30), (0.5, 3)] {
+    // What is drawn out by a five-hundredth is there in a pass; what is twice or a hundred times as long, or half, in a few.
+    for (length, passes) in [(1.002, 1), (0.998, 1), (1.02, 2), (2.0, 9), (100.0, 40), (0.5, 6)] {
         let mut p = vec![Vec3::ZERO, Vec3::X * length];
         for _ in 0..passes {
             let before = (p[1] - p[0]).length();
@@ -71,7 +71,7 @@ fn a_length_that_is_no_number_is_held_the_same_way_at_every_width() {
             assert!(got.iter().flatten().zip(plain.iter().flatten()).all(|(a, b)| same(*a, *b)), "{x} at {width}");
         }
         // y is a number, and stays one where the length is none, drawn in by the most there is.
-        let pull = |e: f32| e * (0.5 - e * (0.375 - e * 0.3125)) / 3.0;
+        let pull = |e: f32| e * (0.5 - e * 0.375) / 3.0;
         if x.is_nan() || x == 1e30 {
             assert!((plain[0][1] - 0.25 * pull(MOST_EXCESS)).abs() < 1e-8, "{x}: {}", plain[0][1]);
         }
@@ -227,12 +227,24 @@ fn by_records_links_have_the_bits_that_they_have_in_columns() {
                 let (c, room, spans) = (other.columns(), room.column(), [(0, positions.len() as u32)]);
                 let [in_columns, in_records] = tensions.each_mut().map(|t| soft.then(|| (t.column(), per_dt2)));
                 width.run(FillRecords { from: c.x, w: c.w, spans: &spans, records: room });
-                for ((number, set), owner) in links.tuples.sets.iter().enumerate().flat_map(|s| [(s, 0), (s, 1)]).cycle()
+                for ((number, set), owner) in links
+                    .tuples
+                    .sets
+                    .iter()
+                    .enumerate()
+                    .flat_map(|s| [(s, 0), (s, 1)])
+                    .cycle()
                     .take(6 * links.tuples.sets.len())
                 {
                     let (columns, gamma) = (one.columns(), 0.0);
                     width.run(SolveLinks { columns, links, gains: &gains, set, owner, gamma, tension: in_columns });
-                    width.run(SolveRecordLinks { links: &records, set: number, owner, records: room, tension: in_records });
+                    width.run(SolveRecordLinks {
+                        links: &records,
+                        set: number,
+                        owner,
+                        records: room,
+                        tension: in_records,
+                    });
                 }
                 width.run(ReadRecords { columns: c, spans: &spans, records: room });
                 assert_eq!(one.positions(), other.positions(), "{width} lanes, soft {soft}");

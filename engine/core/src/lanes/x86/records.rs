@@ -31,12 +31,7 @@ impl Four {
         unsafe {
             let (low, high) = (_mm_unpacklo_ps(a, b), _mm_unpackhi_ps(a, b));
             let (low2, high2) = (_mm_unpacklo_ps(c, d), _mm_unpackhi_ps(c, d));
-            [
-                _mm_movelh_ps(low, low2),
-                _mm_movehl_ps(low2, low),
-                _mm_movelh_ps(high, high2),
-                _mm_movehl_ps(high2, high),
-            ]
+            [_mm_movelh_ps(low, low2), _mm_movehl_ps(low2, low), _mm_movelh_ps(high, high2), _mm_movehl_ps(high2, high)]
         }
     }
 }
