@@ -22,6 +22,7 @@ pub mod latency;
 pub mod skirt;
 pub mod soak;
 pub mod torture;
+pub mod turns;
 pub mod validate;
 pub mod worn;
 

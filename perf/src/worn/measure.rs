@@ -61,7 +61,7 @@ pub fn measure(options: &WornOptions, heap: &HeapProbe) -> Result<WornReport, Wo
         memory_bytes: scene.memory_bytes,
         events: events(&scene).since(before),
         state_hash: format!("{:016x}", scene.state_hash()),
-        stages_us: scene.stages_us(METERED_STEPS),
+        stages_us: scene.stages_us(METERED_STEPS).into_iter().collect(),
     })
 }
 

@@ -1,5 +1,7 @@
 //! The report of garments on a mannequin: time and error of the same steps.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::events::ClothEvents;
@@ -45,7 +47,7 @@ pub struct WornReport {
     /// Deepest free particle inside the body at the end of any step (mm).
     pub deepest_mm: f64,
     /// Mean time of each stage of a step, in steps of their own with the meters on (us).
-    pub stages_us: Vec<(&'static str, f64)>,
+    pub stages_us: BTreeMap<&'static str, f64>,
     /// Heap allocations a step, where the program counts them.
     pub allocations_per_step: Option<f64>,
     /// Heap memory of the baked garments and their states (bytes), where the program counts it.

@@ -14,6 +14,7 @@ use toile_perf::crossover;
 use toile_perf::plot::raster;
 use toile_perf::skirt::options::{MAX_GARMENTS, SkirtMesh, SkirtOptions};
 use toile_perf::skirt::{self, SkirtError, table};
+use toile_perf::turns::{self, TurnCase, TurnsError};
 use toile_perf::worn::{self, WornError, WornOptions};
 
 use super::{backend, skirt_summary, worn_summary};
@@ -97,6 +98,15 @@ pub struct SkirtArgs {
     /// With --table of a device: write the chart crossover.png there
     #[arg(long, value_name = "FOLDER", requires = "table")]
     picture: Option<PathBuf>,
+    /// The time of each stage of every case, or of the garments given, as a table; some minutes
+    #[arg(long, conflicts_with_all = ["verts", "motion", "mesh", "stretch", "wind", "garments", "table", "backend"])]
+    stages: bool,
+    /// With --stages: another build of this program, to be run in turn with this one
+    #[arg(long, value_name = "BINARY", requires = "stages")]
+    against: Option<PathBuf>,
+    /// With --stages: how often each case is run, of which the median is reported
+    #[arg(long, value_name = "N", value_parser = count(1..=100), default_value = "1", requires = "stages")]
+    turns: usize,
     /// Print one JSON object, and nothing else, on stdout
     #[arg(long)]
     json: bool,
@@ -151,6 +161,9 @@ impl SkirtArgs {
 pub fn run(args: &SkirtArgs) -> Result<(), AppError> {
     let options = args.options()?;
     let heap = HeapProbe::new(heap::counted);
+    if args.stages {
+        return stages(args);
+    }
     if !args.garment.is_empty() {
         let report = worn::measure(&args.worn(), &heap).map_err(not_worn)?;
         if args.json {
@@ -175,6 +188,23 @@ pub fn run(args: &SkirtArgs) -> Result<(), AppError> {
         return terminal::print_json(&Document::new("bench-skirt", report));
     }
     terminal::print(&skirt_summary::summary(&report, Paint::for_stdout()))
+}
+
+/// Times of the stages, in turn with another build where one is given.
+fn stages(args: &SkirtArgs) -> Result<(), AppError> {
+    let words = Words::new(args.json);
+    let worn = || vec![TurnCase::worn(&args.garment, args.threads)];
+    let cases = if args.garment.is_empty() { TurnCase::all() } else { worn() };
+    let table =
+        turns::run(&cases, args.against.as_deref(), [args.turns, args.steps], &mut |case| words.print_line(case));
+    let table = table.map_err(|error| match error {
+        TurnsError::Own(_) => AppError::internal(error),
+        TurnsError::Start { .. } => AppError::Usage(error.to_string()),
+    })?;
+    if args.json {
+        return terminal::print_json(&Document::new("bench-skirt-stages", table));
+    }
+    terminal::print(&table.markdown())
 }
 
 /// Sizes and numbers of skirts on the processor and on a device.

@@ -1,0 +1,45 @@
+//! The cases, each by the options of `toile bench skirt` that ask for it.
+
+/// One case.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TurnCase {
+    /// What it is called.
+    pub name: String,
+    /// Options of `toile bench skirt`.
+    pub options: Vec<String>,
+}
+
+/// Names and options of the cases that are run where none is asked for.
+pub const CASES: [(&str, &[&str]); 16] = [
+    ("grid", &[]),
+    ("grid, 8 lanes", &["--lanes", "8"]),
+    ("grid, 4 lanes", &["--lanes", "4"]),
+    ("grid, wind", &["--wind"]),
+    ("grid, fast", &["--motion", "fast"]),
+    ("grid, 2,000 N/m", &["--stretch", "physical"]),
+    ("grid, settled", &["--motion", "settled"]),
+    ("grid of 1,024", &["--verts", "1024"]),
+    ("grid of 16,384", &["--verts", "16384"]),
+    ("the same, two threads", &["--verts", "16384", "--threads", "2"]),
+    ("irregular", &["--mesh", "irregular"]),
+    ("sun dress", &["--garment", "sun-dress"]),
+    ("wide trousers", &["--garment", "wide-trousers"]),
+    ("T-shirt", &["--garment", "t-shirt"]),
+    ("T-shirt, trousers", &["--garment", "t-shirt", "--garment", "wide-trousers"]),
+    ("the same, two threads", &["--garment", "t-shirt", "--garment", "wide-trousers", "--threads", "2"]),
+];
+
+impl TurnCase {
+    /// All of [`CASES`].
+    pub fn all() -> Vec<Self> {
+        let owned = |options: &[&str]| options.iter().map(|&o| o.to_owned()).collect();
+        CASES.iter().map(|(name, options)| Self { name: (*name).to_owned(), options: owned(options) }).collect()
+    }
+
+    /// An outfit of the wardrobe.
+    pub fn worn(garments: &[String], threads: usize) -> Self {
+        let mut options: Vec<String> = garments.iter().flat_map(|g| ["--garment".to_owned(), g.clone()]).collect();
+        options.extend(["--threads".to_owned(), threads.to_string()]);
+        Self { name: garments.join(" over "), options }
+    }
+}
