@@ -35,11 +35,4 @@ impl TurnCase {
         let owned = |options: &[&str]| options.iter().map(|&o| o.to_owned()).collect();
         CASES.iter().map(|(name, options)| Self { name: (*name).to_owned(), options: owned(options) }).collect()
     }
-
-    /// An outfit of the wardrobe.
-    pub fn worn(garments: &[String], threads: usize) -> Self {
-        let mut options: Vec<String> = garments.iter().flat_map(|g| ["--garment".to_owned(), g.clone()]).collect();
-        options.extend(["--threads".to_owned(), threads.to_string()]);
-        Self { name: garments.join(" over "), options }
-    }
 }

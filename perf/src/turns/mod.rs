@@ -13,4 +13,4 @@ mod table;
 pub use case::{CASES, TurnCase};
 pub use error::TurnsError;
 pub use reading::Reading;
-pub use table::{TurnRow, TurnTable, run};
+pub use table::{TurnRatio, TurnReport, TurnRow, TurnTable, run};

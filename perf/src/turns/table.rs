@@ -20,10 +20,29 @@ pub struct TurnRow {
     pub own: Option<Reading>,
     /// By the other one.
     pub other: Option<Reading>,
-    /// Median over the turns of own time over the other's.
-    pub ratio: Option<f64>,
+    /// Own time over the other's, over the turns.
+    pub ratio: Option<TurnRatio>,
     /// Why one of them has no figures.
     pub refused: Option<String>,
+}
+
+/// Own time over the other's.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct TurnRatio {
+    /// Median of the turns.
+    pub p50: f64,
+    /// The least.
+    pub min: f64,
+    /// The greatest.
+    pub max: f64,
+}
+
+impl TurnRatio {
+    fn of(own: &[Reading], other: &[Reading]) -> Option<Self> {
+        let mut ratios: Vec<f64> = own.iter().zip(other).map(|(a, b)| a.step_us.p50 / b.step_us.p50).collect();
+        let (min, max) = (ratios.iter().copied().fold(f64::MAX, f64::min), ratios.iter().copied().fold(0.0, f64::max));
+        Some(Self { p50: median(&mut ratios)?, min, max })
+    }
 }
 
 /// The cases in turn.
@@ -64,11 +83,41 @@ pub fn run(
                 }
             }
         }
-        let ratios = mine.iter().zip(&theirs).map(|(a, b)| a.step_us.p50 / b.step_us.p50);
-        let ratio = median(&mut ratios.collect::<Vec<_>>());
+        let ratio = TurnRatio::of(&mine, &theirs);
         rows.push(TurnRow { case: case.name.clone(), own: whole(mine), other: whole(theirs), ratio, refused });
     }
     Ok(TurnTable { against: against.map(Path::to_owned), turns, steps, rows })
+}
+
+/// One case as a report of its own: its stages, and how they stand to the other's.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TurnReport {
+    /// What this program showed.
+    #[serde(flatten)]
+    pub own: Reading,
+    /// What the other one did, where one was given.
+    pub other: Option<Reading>,
+    /// Own time over the other's.
+    pub ratio: Option<TurnRatio>,
+    /// Turns of each.
+    pub turns: usize,
+    /// Steps of each run.
+    pub steps: usize,
+}
+
+impl TurnTable {
+    /// The only case of the table, or why it has no figures.
+    ///
+    /// # Errors
+    /// What the program that refused it said.
+    pub fn only(self) -> Result<TurnReport, String> {
+        let Self { turns, steps, rows, .. } = self;
+        let row = rows.into_iter().next().ok_or("no case was asked for")?;
+        match (row.own, row.refused) {
+            (Some(own), None) => Ok(TurnReport { own, other: row.other, ratio: row.ratio, turns, steps }),
+            (_, refused) => Err(refused.unwrap_or_else(|| "nothing was measured".to_owned())),
+        }
+    }
 }
 
 /// The last reading with the median of all times.
@@ -107,8 +156,8 @@ impl TurnTable {
     }
 }
 
-fn line(text: &mut String, case: &str, reading: &Reading, ratio: Option<f64>) {
-    let ratio = ratio.map_or(String::new(), |r| format!("{r:.3}"));
+fn line(text: &mut String, case: &str, reading: &Reading, ratio: Option<TurnRatio>) {
+    let ratio = ratio.map_or(String::new(), |r| format!("{:.3} ({:.3} to {:.3})", r.p50, r.min, r.max));
     let _ = write!(text, "| {case} | {:.1} | {ratio} |", reading.step_us.p50);
     for stage in METERED_STAGES {
         let us = reading.stages_us.get(stage).copied().unwrap_or(0.0);
@@ -130,11 +179,16 @@ mod tests {
         own.stages_us.insert("bend".into(), 20.0);
         let mut other = own.clone();
         other.step_us.p50 = 300.0;
-        let row = TurnRow { case: "grid".into(), own: Some(own), other: Some(other), ratio: Some(0.5), refused: None };
+        let ratio = TurnRatio::of(std::slice::from_ref(&own), std::slice::from_ref(&other));
+        let row = TurnRow { case: "grid".into(), own: Some(own), other: Some(other), ratio, refused: None };
         let worn = TurnRow { case: "dress".into(), own: None, other: None, ratio: None, refused: Some("no".into()) };
         let table = TurnTable { against: Some("old".into()), turns: 7, steps: 600, rows: vec![row, worn] };
         let text = table.markdown();
-        assert!(text.contains("| grid | 150.0 | 0.500 |") && text.contains("| grid, the other | 300.0 |  |"), "{text}");
+        assert!(
+            text.contains("| grid | 150.0 | 0.500 (0.500 to 0.500) |")
+                && text.contains("| grid, the other | 300.0 |  |"),
+            "{text}"
+        );
         assert!(text.contains("Medians of 7 turns of 600 steps in turn with old."), "{text}");
         let columns: Vec<usize> = text.lines().filter(|l| l.starts_with('|')).map(|l| l.matches('|').count()).collect();
         assert!(columns.iter().all(|c| *c == columns[0]), "{columns:?} in {text}");

@@ -49,7 +49,7 @@ pub struct RecordLinks {
 impl RecordLinks {
     /// Those of a garment, where that is the faster form.
     pub fn of(links: &Links, weights: &[f32]) -> Option<Self> {
-        (by_records(links, weights.len()) < by_columns(links)).then(|| Self::new(links, weights))
+        preferred(links, weights.len()).then(|| Self::new(links, weights))
     }
 
     /// The links as records; the gains are yet to be made.
@@ -112,6 +112,11 @@ impl RecordLinks {
             + size_of_val(&*self.places)
             + self.numbers.iter().map(|n| size_of_val(&**n)).sum::<usize>()
     }
+}
+
+/// Whether records are the faster form for the links of a garment of so many particles.
+pub fn preferred(links: &Links, particles: usize) -> bool {
+    by_records(links, particles) < by_columns(links)
 }
 
 /// Time of a sweep in columns (ns).

@@ -2,11 +2,11 @@
 //! pass of the lanes does, and what is gathered one by one.
 
 use glam::Vec3;
-use toile_assets::garment::layout::{ENDED, Links, Tuples};
+use toile_assets::garment::layout::{ENDED, Links};
 use toile_assets::garment::{Garment, Part};
 use toile_engine::cloth::bending_matrix::{BendingMatrix, RowBlock, RowStrip};
 use toile_engine::cloth::program::{self, BEFORE, Bending, Stage};
-use toile_engine::cloth::{Cloth, Quality, Settings, bending, contact};
+use toile_engine::cloth::{Cloth, Quality, Settings, bending, contact, record_links};
 use toile_engine::colliders::Colliders;
 
 /// Kinds of unit in each stage.
@@ -96,7 +96,7 @@ impl Work {
         let half = first.substeps.is_multiple_of(2) && settings.quality != Quality::Fine;
         let leaning = if half { 0.5 } else { 1.0 };
         let matrix = BendingMatrix::new(garment);
-        let [shear, scattered] = count.links(&garment.layout().shear.tuples);
+        let [shear, scattered] = count.links(&garment.layout().shear);
         let counts = [
             per([particles, fixed, count.tensions()]),
             count.bending(&matrix).map(|c| c * bent),
@@ -132,8 +132,12 @@ impl Count<'_> {
         things.div_ceil(self.lanes) as f64
     }
 
-    /// Lanes of runs, and of what is in none.
-    fn links<const K: usize>(&self, tuples: &Tuples<K>) -> [f64; 2] {
+    /// Lanes of runs, and of what is in none; all of them where they are solved by records.
+    fn links(&self, links: &Links) -> [f64; 2] {
+        let tuples = &links.tuples;
+        if record_links::preferred(links, self.garment.particles()) {
+            return [0.0, tuples.count as f64 / self.lanes as f64];
+        }
         let zigzags = tuples.zigzags.iter().flat_map(|z| [z.straights.len, z.slants.len]);
         let runs = zigzags.chain(tuples.runs.iter().map(|r| r.len));
         [runs.map(|len| self.vectors(len as usize)).sum(), tuples.loose.len() as f64 / self.lanes as f64]
@@ -156,10 +160,10 @@ impl Count<'_> {
     }
 
     fn weft(&self) -> [f64; KINDS] {
-        let weft = &self.garment.layout().weft.tuples;
+        let weft = &self.garment.layout().weft;
         let [runs, loose] = self.links(weft);
         let passes = self.times(Stage::Weft(0));
-        [runs * passes, loose * passes, weft.sets.len() as f64 * passes]
+        [runs * passes, loose * passes, weft.tuples.sets.len() as f64 * passes]
     }
 
     fn fibers(&self) -> [f64; KINDS] {

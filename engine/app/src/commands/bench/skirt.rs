@@ -28,6 +28,9 @@ use crate::terminal::{self, Paint, Words};
 /// Most vertices: 512 a side.
 const MAX_VERTS: u64 = 1 << 18;
 
+/// Turns of a comparison with another build, of which the median is reported.
+const TURNS: usize = 7;
+
 /// Most steps a run, an hour of the scene.
 const MAX_STEPS: u64 = 432_000;
 
@@ -98,15 +101,15 @@ pub struct SkirtArgs {
     /// With --table of a device: write the chart crossover.png there
     #[arg(long, value_name = "FOLDER", requires = "table")]
     picture: Option<PathBuf>,
-    /// The time of each stage of every case, or of the garments given, as a table; some minutes
-    #[arg(long, conflicts_with_all = ["verts", "motion", "mesh", "stretch", "wind", "garments", "table", "backend"])]
+    /// The time of each stage of what is asked for; with --table, of sixteen cases of the skirt and the wardrobe: some minutes
+    #[arg(long, conflicts_with = "backend")]
     stages: bool,
     /// With --stages: another build of this program, to be run in turn with this one
     #[arg(long, value_name = "BINARY", requires = "stages")]
     against: Option<PathBuf>,
-    /// With --stages: how often each case is run, of which the median is reported
-    #[arg(long, value_name = "N", value_parser = count(1..=100), default_value = "1", requires = "stages")]
-    turns: usize,
+    /// With --stages: how often each program runs, of which the median is reported (default: 1, with --against 7)
+    #[arg(long, value_name = "N", value_parser = count(1..=100), requires = "stages")]
+    turns: Option<usize>,
     /// Print one JSON object, and nothing else, on stdout
     #[arg(long)]
     json: bool,
@@ -138,6 +141,27 @@ impl SkirtArgs {
             backend: self.backend.choice,
             ..SkirtOptions::default()
         })
+    }
+
+    /// The one case that is asked for, by its options.
+    fn case(&self) -> TurnCase {
+        let (mut name, mut options) = (self.garment.join(" over "), Vec::new());
+        let mut give = |option: &str, value: String| options.extend([format!("--{option}"), value]);
+        self.garment.iter().for_each(|g| give("garment", g.clone()));
+        if self.garment.is_empty() {
+            name = format!("{} vertices ({}), {}", self.verts, self.mesh.name(), self.motion.name());
+            give("verts", self.verts.to_string());
+            give("motion", self.motion.name().to_owned());
+            give("mesh", self.mesh.name().to_owned());
+            give("stretch", self.stretch.name().to_owned());
+            give("garments", self.garments.to_string());
+        }
+        give("threads", self.threads.to_string());
+        self.lanes.into_iter().for_each(|l| give("lanes", l.to_string()));
+        self.quality.into_iter().for_each(|q| give("quality", q.name().to_owned()));
+        self.substeps.into_iter().for_each(|s| give("substeps", s.to_string()));
+        options.extend(self.wind.then(|| "--wind".to_owned()));
+        TurnCase { name, options }
     }
 
     /// The run of garments on a mannequin.
@@ -193,16 +217,19 @@ pub fn run(args: &SkirtArgs) -> Result<(), AppError> {
 /// Times of the stages, in turn with another build where one is given.
 fn stages(args: &SkirtArgs) -> Result<(), AppError> {
     let words = Words::new(args.json);
-    let worn = || vec![TurnCase::worn(&args.garment, args.threads)];
-    let cases = if args.garment.is_empty() { TurnCase::all() } else { worn() };
-    let table =
-        turns::run(&cases, args.against.as_deref(), [args.turns, args.steps], &mut |case| words.print_line(case));
+    let cases = if args.table { TurnCase::all() } else { vec![args.case()] };
+    let turns = args.turns.unwrap_or(if args.against.is_some() { TURNS } else { 1 });
+    let against = args.against.as_deref();
+    let table = turns::run(&cases, against, [turns, args.steps], &mut |case| words.print_line(case));
     let table = table.map_err(|error| match error {
         TurnsError::Own(_) => AppError::internal(error),
         TurnsError::Start { .. } => AppError::Usage(error.to_string()),
     })?;
-    if args.json {
+    if args.json && args.table {
         return terminal::print_json(&Document::new("bench-skirt-stages", table));
+    }
+    if args.json {
+        return terminal::print_json(&Document::new("bench-skirt-stages", table.only().map_err(AppError::Usage)?));
     }
     terminal::print(&table.markdown())
 }
@@ -282,5 +309,21 @@ mod tests {
         };
         assert_eq!(found.unwrap(), expected);
         assert!(options("skirt --table --picture out").is_err(), "there is no chart of the targets");
+    }
+
+    #[test]
+    fn a_case_asks_another_build_for_the_same() {
+        let line = "skirt --verts 1024 --motion fast --mesh irregular --stretch physical --wind --threads 2 --lanes 8 \
+                    --quality fine --substeps 6";
+        let case = parsed::<SkirtArgs>(line).unwrap().case();
+        let again = format!("skirt {}", case.options.join(" "));
+        assert_eq!(options(&again).unwrap(), options(line).unwrap());
+        let worn = parsed::<SkirtArgs>("skirt --garment t-shirt --garment wide-trousers --threads 2").unwrap();
+        let again = parsed::<SkirtArgs>(&format!("skirt {}", worn.case().options.join(" "))).unwrap();
+        assert_eq!((again.worn(), again.case().name), (worn.worn(), "t-shirt over wide-trousers".to_owned()));
+        for (_, options) in turns::CASES {
+            assert!(parsed::<SkirtArgs>(&format!("skirt {}", options.join(" "))).is_ok(), "{options:?}");
+        }
+        assert!(parsed::<SkirtArgs>("skirt --against old").is_err(), "there is nothing to lay side by side");
     }
 }
