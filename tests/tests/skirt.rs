@@ -201,7 +201,7 @@ fn an_irregular_skirt_has_the_same_bits_with_two_workers_and_at_every_width() {
 /// Hash of the skirt of 9,216 vertices after [`GOLDEN_STEPS`] of walking. A change of it is a change of what every user
 /// sees: it has to be meant, and said in the changelog. (Sines of the scene come from the platform's library; the hash is
 /// that of Linux on x86-64.)
-const GOLDEN: u64 = 0x8a9e_a28b_223e_c9ba;
+const GOLDEN: u64 = 0x0968_5acc_582b_f880;
 
 /// Steps to the golden hash.
 const GOLDEN_STEPS: usize = 40;

@@ -8,7 +8,7 @@ use toile_engine::colliders::{Colliders, RestSphere};
 use super::error::ParetoError;
 use super::meshed_scene::{MeshedScene, ReferenceKind, SceneMotion};
 use crate::validate::mesh::{CaseFabric, EndSupport, MeshStyle, Strip};
-use crate::worn::Mannequin;
+use crate::worn::AverageBody;
 
 /// Names of all scenes, in the order in which they are run.
 pub const SCENES: [&str; 6] = ["cantilever", "skirt", "sun-dress", "t-shirt", "wide-trousers", "drape"];
@@ -80,7 +80,7 @@ fn walk(side: usize, main: bool, quick: bool) -> Result<MeshedScene, ParetoError
 
 fn worn(name: &str, quick: bool) -> Result<MeshedScene, ParetoError> {
     let scene = SCENES.into_iter().find(|s| *s == name).ok_or_else(|| ParetoError::Unknown(name.into()))?;
-    let mannequin = Mannequin::of(name)?;
+    let mannequin = AverageBody::of(name)?;
     let (size, shape, fabric) = mannequin.wear(name)?;
     let skeleton = mannequin.body.skeleton.clone();
     let goal = shopper(&skeleton, 0.0);

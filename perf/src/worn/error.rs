@@ -13,10 +13,12 @@ use toile_engine::workers::WorkerPoolError;
 #[derive(Debug, Error)]
 pub enum WornError {
     /// More garments than one mannequin wears.
-    #[error("{given} garments are too many for one mannequin; give {} at most", super::MAX_OUTFIT)]
+    #[error("{given} garments are too many for one mannequin; give {most} at most")]
     TooMany {
         /// What was asked for.
         given: usize,
+        /// As many as one wears.
+        most: usize,
     },
     /// A width that the processor lacks.
     #[error("this processor has no {lanes} lanes of f32; give --lanes {widest} or less")]

@@ -12,14 +12,14 @@ use super::error::WornError;
 
 /// A body of average measures.
 #[derive(Debug)]
-pub struct Mannequin {
+pub struct AverageBody {
     /// Measures that it was built to.
     pub measures: Measures,
     /// The body.
     pub body: Body,
 }
 
-impl Mannequin {
+impl AverageBody {
     /// The mannequin that a garment is made for: a man where its sizes are men's.
     ///
     /// # Errors

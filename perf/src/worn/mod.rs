@@ -11,7 +11,7 @@ mod report;
 mod scene;
 
 pub use error::WornError;
-pub use mannequin::Mannequin;
+pub use mannequin::AverageBody;
 pub use measure::measure;
 pub use report::{WornReport, WornStrain};
 pub use scene::{MAX_OUTFIT, WornOptions, WornScene, on_the_way};

@@ -19,7 +19,7 @@ use toile_gpu::backend::ClothStepper;
 use toile_gpu::cloth_batch::ClothBatch;
 
 use super::error::WornError;
-use super::mannequin::Mannequin;
+use super::mannequin::AverageBody;
 
 /// Most garments on one mannequin: as many as an outfit of the shop has layers.
 pub const MAX_OUTFIT: usize = 4;
@@ -96,10 +96,10 @@ impl WornScene {
     pub fn new(options: &WornOptions, heap: &HeapProbe) -> Result<Self, WornError> {
         let names = &options.garments[..];
         if names.len() > MAX_OUTFIT {
-            return Err(WornError::TooMany { given: names.len() });
+            return Err(WornError::TooMany { given: names.len(), most: MAX_OUTFIT });
         }
         let settings = options.settings()?;
-        let mannequin = Mannequin::of(names.first().map_or("", |n| n))?;
+        let mannequin = AverageBody::of(names.first().map_or("", |n| n))?;
         let colliders = mannequin.colliders()?;
         let (mut garments, mut sizes, mut cloths, mut bytes) = (Vec::new(), Vec::new(), Vec::new(), Some(0));
         for name in names {

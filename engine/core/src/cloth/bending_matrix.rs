@@ -17,7 +17,7 @@ use toile_assets::garment::layout::OWNERS;
 use crate::lanes::{MOST, RecordList};
 
 /// Rows that are a strip: fewer are as well off in a block.
-const LEAST_STRIP: usize = 6;
+const LEAST_STRIP: u32 = 6;
 
 /// Rows that follow each other which make a block of their own: fewer share theirs with others.
 const LEAST_SEQUENCE: usize = 8;
@@ -101,29 +101,31 @@ impl BendingMatrix {
     pub fn new(garment: &Garment) -> Self {
         let neighbours = neighbours(garment);
         let mut this = Self { place: vec![NO_ROW; neighbours.len()].into(), ..Self::default() };
-        let (mut strips, mut offsets, mut loose) = (Vec::new(), Vec::new(), [Vec::new(), Vec::new()]);
-        for owner in 0..OWNERS {
+        let mut loose: [Vec<u32>; OWNERS] = Default::default();
+        let (mut strips, mut offsets) = (Vec::new(), Vec::new());
+        for (owner, loose) in loose.iter_mut().enumerate() {
             let begun = strips.len() as u32;
             for &(first, len) in &garment.layout().spans[owner] {
-                let (mut at, end) = (first as usize, (first + len) as usize);
+                let (mut at, end) = (first, first + len);
                 while at < end {
-                    let len = (at + 1..end).take_while(|&i| leads_alike(&neighbours, at, i)).count() + 1;
-                    if neighbours[at].is_empty() {
-                    } else if len < LEAST_STRIP {
-                        loose[owner].extend(at as u32..(at + len) as u32);
-                    } else {
-                        this.place[at..at + len].fill(strips.len() as u32);
-                        let (offset, entries) = (offsets.len() as u32, neighbours[at].len() as u32);
-                        offsets.extend(neighbours[at].iter().map(|&j| j.cast_signed() - (at as u32).cast_signed()));
-                        let strip = RowStrip {
-                            first: at as u32,
-                            len: len as u32,
-                            offsets: offset,
-                            entries,
-                            values: 0,
-                            alike: false,
-                        };
-                        strips.push(strip);
+                    let row = &neighbours[at as usize];
+                    let len = 1 + (at + 1..end).take_while(|&i| leads_alike(&neighbours, at, i)).count() as u32;
+                    let strip = RowStrip {
+                        first: at,
+                        len,
+                        offsets: offsets.len() as u32,
+                        entries: row.len() as u32,
+                        values: 0,
+                        alike: false,
+                    };
+                    match row.is_empty() {
+                        true => {}
+                        false if len < LEAST_STRIP => loose.extend(at..at + len),
+                        false => {
+                            this.place[at as usize..(at + len) as usize].fill(strips.len() as u32);
+                            offsets.extend(row.iter().map(|&j| j.cast_signed() - at.cast_signed()));
+                            strips.push(strip);
+                        }
                     }
                     at += len;
                 }
@@ -328,7 +330,7 @@ fn neighbours(garment: &Garment) -> Vec<Vec<u32>> {
 }
 
 /// Whether two rows' neighbours lie the same way from them.
-fn leads_alike(neighbours: &[Vec<u32>], a: usize, b: usize) -> bool {
-    let (one, other) = (&neighbours[a], &neighbours[b]);
-    one.len() == other.len() && one.iter().zip(other).all(|(p, q)| *p as usize + b == *q as usize + a)
+fn leads_alike(neighbours: &[Vec<u32>], a: u32, b: u32) -> bool {
+    let (one, other) = (&neighbours[a as usize], &neighbours[b as usize]);
+    one.len() == other.len() && one.iter().zip(other).all(|(p, q)| p + b == q + a)
 }

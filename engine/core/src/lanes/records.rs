@@ -58,7 +58,7 @@ impl RecordList {
 }
 
 /// Records of a column, in some order: those of a list ([`RecordsAt`]) or one after the other ([`RecordRun`]).
-pub trait Records: Copy + sealed::Sealed {
+pub trait Records: Copy + sealed::SealedRecords {
     /// Checks that there are `n` records from the `k`th on.
     ///
     /// # Panics
@@ -81,9 +81,9 @@ pub trait Records: Copy + sealed::Sealed {
 
 mod sealed {
     /// Vectors are read where this file's types say.
-    pub trait Sealed {}
-    impl Sealed for super::RecordsAt<'_> {}
-    impl Sealed for super::RecordRun<'_> {}
+    pub trait SealedRecords {}
+    impl SealedRecords for super::RecordsAt<'_> {}
+    impl SealedRecords for super::RecordRun<'_> {}
 }
 
 /// The records of a list in a column that has all of them.

@@ -21,9 +21,12 @@ impl Four {
     }
     #[inline(always)]
     pub(super) unsafe fn write_records([x, y, z, w]: [Self; RECORD], to: impl Records, k: usize) {
-        let rows = Self::turned([x.0, y.0, z.0, w.0]);
-        for j in 0..4 {
-            unsafe { _mm_storeu_ps(to.place(k + j), rows[j]) };
+        let [a, b, c, d] = Self::turned([x.0, y.0, z.0, w.0]);
+        unsafe {
+            _mm_storeu_ps(to.place(k), a);
+            _mm_storeu_ps(to.place(k + 1), b);
+            _mm_storeu_ps(to.place(k + 2), c);
+            _mm_storeu_ps(to.place(k + 3), d);
         }
     }
     #[inline(always)]
@@ -67,11 +70,11 @@ impl Eight {
     #[inline(always)]
     pub(super) unsafe fn write_records([x, y, z, w]: [Self; RECORD], to: impl Records, k: usize) {
         unsafe {
-            let rows = Self::turned([x.0, y.0, z.0, w.0]);
-            for j in 0..4 {
-                _mm_storeu_ps(to.place(k + j), _mm256_castps256_ps128(rows[j]));
-                _mm_storeu_ps(to.place(k + 4 + j), _mm256_extractf128_ps::<1>(rows[j]));
-            }
+            let [a, b, c, d] = Self::turned([x.0, y.0, z.0, w.0]);
+            Self::part(a, to, k);
+            Self::part(b, to, k + 1);
+            Self::part(c, to, k + 2);
+            Self::part(d, to, k + 3);
         }
     }
     #[inline(always)]
@@ -79,6 +82,13 @@ impl Eight {
         unsafe {
             let low = _mm256_castps128_ps256(_mm_loadu_ps(from.place(k)));
             _mm256_insertf128_ps::<1>(low, _mm_loadu_ps(from.place(k + 4)))
+        }
+    }
+    #[inline(always)]
+    unsafe fn part(pair: __m256, to: impl Records, k: usize) {
+        unsafe {
+            _mm_storeu_ps(to.place(k), _mm256_castps256_ps128(pair));
+            _mm_storeu_ps(to.place(k + 4), _mm256_extractf128_ps::<1>(pair));
         }
     }
     #[inline(always)]
@@ -113,13 +123,11 @@ impl Sixteen {
     #[inline(always)]
     pub(super) unsafe fn write_records([x, y, z, w]: [Self; RECORD], to: impl Records, k: usize) {
         unsafe {
-            let rows = Self::turned([x.0, y.0, z.0, w.0]);
-            for j in 0..4 {
-                _mm_storeu_ps(to.place(k + j), _mm512_castps512_ps128(rows[j]));
-                _mm_storeu_ps(to.place(k + 4 + j), _mm512_extractf32x4_ps::<1>(rows[j]));
-                _mm_storeu_ps(to.place(k + 8 + j), _mm512_extractf32x4_ps::<2>(rows[j]));
-                _mm_storeu_ps(to.place(k + 12 + j), _mm512_extractf32x4_ps::<3>(rows[j]));
-            }
+            let [a, b, c, d] = Self::turned([x.0, y.0, z.0, w.0]);
+            Self::part(a, to, k);
+            Self::part(b, to, k + 1);
+            Self::part(c, to, k + 2);
+            Self::part(d, to, k + 3);
         }
     }
     #[inline(always)]
@@ -129,6 +137,15 @@ impl Sixteen {
             let v = _mm512_insertf32x4::<1>(v, _mm_loadu_ps(from.place(k + 4)));
             let v = _mm512_insertf32x4::<2>(v, _mm_loadu_ps(from.place(k + 8)));
             _mm512_insertf32x4::<3>(v, _mm_loadu_ps(from.place(k + 12)))
+        }
+    }
+    #[inline(always)]
+    unsafe fn part(four: __m512, to: impl Records, k: usize) {
+        unsafe {
+            _mm_storeu_ps(to.place(k), _mm512_castps512_ps128(four));
+            _mm_storeu_ps(to.place(k + 4), _mm512_extractf32x4_ps::<1>(four));
+            _mm_storeu_ps(to.place(k + 8), _mm512_extractf32x4_ps::<2>(four));
+            _mm_storeu_ps(to.place(k + 12), _mm512_extractf32x4_ps::<3>(four));
         }
     }
     #[inline(always)]
