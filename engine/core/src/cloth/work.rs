@@ -85,9 +85,11 @@ impl StepWork<'_> {
         // SAFETY: the threads of `WorkerPool::run` meet after each phase, which is one stage, and each share of it is done
         // once: what was written before is seen. Within a stage no place that one owner writes is touched by the other:
         // - the ranges of `Layout::spans` hold each particle once (wind, root motion, prediction, contact, velocities,
-        //   tethers and turns of stiff bending write nothing else; a tether reads anchors, which are fixed and not written);
+        //   tethers, records filled and read back, and turns of stiff bending write nothing else; a tether reads anchors,
+        //   which are fixed and not written);
+        // - a row of the bending matrix is its particle's owner's, and what bends is not what is pushed;
         // - constraints of one set and different owners share no particle (`garment::layout`), and each has its own tension;
-        //   sets that cross the owners are done by the first owner alone;
+        //   links by records fill up with one spare record an owner;
         // - each owner has a scratch of its own, and half of the tensions to clear.
         // The bake asserts the first two. A step with one worker does one share after the other on one thread.
         let columns = unsafe { self.columns.open() };
