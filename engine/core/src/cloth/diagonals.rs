@@ -70,12 +70,16 @@ impl Kernel for SolveDiagonals<'_> {
             self.room.iter().for_each(|c| c.set(p as usize, 0.0));
         }
         let runs = &self.diagonals.runs[self.strand.runs.start as usize..self.strand.runs.end as usize];
-        if self.gamma > 0.0 {
-            runs.iter().for_each(|run| self.down::<L, true>(run));
-        } else {
-            runs.iter().for_each(|run| self.down::<L, false>(run));
+        for run in runs {
+            if self.gamma > 0.0 {
+                self.down::<L, true>(run);
+            } else {
+                self.down::<L, false>(run);
+            }
         }
-        runs.iter().rev().for_each(|run| self.back::<L>(run));
+        for run in runs.iter().rev() {
+            self.back::<L>(run);
+        }
     }
 }
 
@@ -86,7 +90,7 @@ impl SolveDiagonals<'_> {
         let (rest, soft) = (ReadColumn::new(&self.diagonals.rest), ReadColumn::new(&self.diagonals.compliance));
         let ([a, b], at, w) = (run.first.map(|f| f as usize), run.at as usize, self.columns.w);
         let [rest, soft, wa, wb] = if run.alike {
-            [rest.get(at), soft.get(at), w.get(a), w.get(b)].map(L::splat)
+            [L::splat(rest.get(at)), L::splat(soft.get(at)), L::splat(w.get(a)), L::splat(w.get(b))]
         } else {
             [some(rest, at + t, n), some(soft, at + t, n), some(w, a + t, n), some(w, b + t, n)]
         };
@@ -143,9 +147,10 @@ impl SolveDiagonals<'_> {
             let tension = some::<L>(lengths, b, n) + some::<L>(pivots, b, n) * more * normal.dot(pb - pa);
             // No end moves farther than half the link, beyond which the directions mean nothing.
             let reach = rest * L::splat(FARTHEST);
-            let by = [wa, wb].map(|w| (tension * w).min(reach).max(-reach));
-            (pa + normal * by[0]).store(c.x, a, n);
-            (pb - normal * by[1]).store(c.x, b, n);
+            let by_a = (tension * wa).min(reach).max(-reach);
+            let by_b = (tension * wb).min(reach).max(-reach);
+            (pa + normal * by_a).store(c.x, a, n);
+            (pb - normal * by_b).store(c.x, b, n);
             t += n;
         }
     }

@@ -182,7 +182,8 @@ impl SolveLinks<'_> {
     #[inline(always)]
     fn alike<L: Numbers, const SOFT: bool>(&self, run: &ConstraintRun<2>) -> [L; 4] {
         let ([a, b], at, w) = (run.first.map(|f| f as usize), run.at as usize, self.columns.w);
-        [self.rest::<SOFT>().get(at), self.gains.gain[at], w.get(a), w.get(b)].map(L::splat)
+        let [rest, gain] = [self.rest::<SOFT>().get(at), self.gains.gain[at]];
+        [L::splat(rest), L::splat(gain), L::splat(w.get(a)), L::splat(w.get(b))]
     }
 
     /// A zigzag of at least a vector of straights: each particle is read and written once. What is left of the rails at the
@@ -243,7 +244,7 @@ impl SolveLinks<'_> {
         let (pa, pb) = (V3::<L>::load(x, a, L::N), V3::load(x, b, L::N));
         let [by_a, by_b] = stiff(pb - pa, rest, gain, [wa, wb]);
         // Straights that are alike count with the masses of the first; slants that are not count with their own.
-        let weights = if ALIKE { [wa, wb] } else { [a, b].map(|p| L::load(self.columns.w, p)) };
+        let weights = if ALIKE { [wa, wb] } else { [L::load(self.columns.w, a), L::load(self.columns.w, b)] };
         Straights { a: pa + by_a, b: pb - by_b, weights }
     }
 
@@ -297,12 +298,14 @@ impl SolveLinks<'_> {
             (ends[0][t], ends[1][t]) = (link[0], link[1]);
         }
         let [a, b] = &ends;
-        let part = |c| part::<L>(c, at, n);
         let (pa, pb) = (V3::<L>::gather(c.x, a, n), V3::gather(c.x, b, n));
-        let moved = || (pb - V3::gather(c.previous, b, n)) - (pa - V3::gather(c.previous, a, n));
         let weights = [L::gather(c.w, a, n), L::gather(c.w, b, n)];
-        let parameters = LinkParameters { rest: part(rest), gain: part(gain), slack, weights };
-        let damped = (SOFT && self.gamma > 0.0).then(|| (moved(), self.gamma));
+        let parameters = LinkParameters { rest: part(rest, at, n), gain: part(gain, at, n), slack, weights };
+        let damped = if SOFT && self.gamma > 0.0 {
+            Some(((pb - V3::gather(c.previous, b, n)) - (pa - V3::gather(c.previous, a, n)), self.gamma))
+        } else {
+            None
+        };
         let ([by_a, by_b], by) = push::<L, SOFT>(pb - pa, parameters, damped);
         (pa + by_a).scatter(c.x, a, n);
         (pb - by_b).scatter(c.x, b, n);
@@ -321,8 +324,11 @@ impl SolveLinks<'_> {
         let [rest, gain, wa, wb] = parameters;
         let c = &self.columns;
         let (pa, pb) = (V3::<L>::load(c.x, a, n), V3::load(c.x, b, n));
-        let moved = || (pb - V3::load(c.previous, b, n)) - (pa - V3::load(c.previous, a, n));
-        let damped = (SOFT && self.gamma > 0.0).then(|| (moved(), self.gamma));
+        let damped = if SOFT && self.gamma > 0.0 {
+            Some(((pb - V3::load(c.previous, b, n)) - (pa - V3::load(c.previous, a, n)), self.gamma))
+        } else {
+            None
+        };
         let parameters = LinkParameters { rest, gain, slack, weights: [wa, wb] };
         let ([by_a, by_b], by) = push::<L, SOFT>(pb - pa, parameters, damped);
         (pa + by_a).store(c.x, a, n);

@@ -57,7 +57,9 @@ impl Kernel for SolveCrossing<'_> {
                 let n = (list.lanes as usize - lane).min(L::N);
                 let ring = Ring { solve: &self, list, lane, n };
                 if list.solver == Solver::ZeroStretch {
-                    (0..ZERO_STRETCH_PASSES).for_each(|_| ring.direct::<L, true>());
+                    for _ in 0..ZERO_STRETCH_PASSES {
+                        ring.direct::<L, true>();
+                    }
                 } else {
                     ring.direct::<L, false>();
                 }
@@ -177,28 +179,37 @@ impl Ring<'_> {
         }
     }
 
+    /// The entry of a link on the matrix's diagonal.
+    #[inline(always)]
+    fn diagonal<L: Lanes, const ZERO: bool>(&self, link: usize) -> L {
+        let soft = self.parameter::<L>(&self.solve.lists.compliance, link);
+        let soft = if ZERO {
+            soft.select(L::splat(0.1 * ENDED).lt(soft), L::splat(0.0))
+        } else {
+            soft * L::splat(self.solve.per_dt2)
+        };
+        self.kept::<L>(link, WEIGHT) + self.kept::<L>(self.after(link), WEIGHT) + soft
+    }
+
+    /// Minus the entry beside it, for a link and the one before.
+    #[inline(always)]
+    fn beside<L: Lanes>(&self, link: usize, before: usize) -> L {
+        self.kept::<L>(link, WEIGHT) * self.kept3::<L>(link, NORMAL).dot(self.kept3(before, NORMAL))
+    }
+
     /// L D L^T with the last tension bordered; gives that tension.
     #[inline(always)]
     fn eliminate<L: Lanes, const ZERO: bool>(&self, links: usize) -> L {
         let zero = L::splat(0.0);
         let end = links - 1;
-        let soft = |link: usize| -> L {
-            let soft = self.parameter::<L>(&self.solve.lists.compliance, link);
-            if ZERO { soft.select(L::splat(0.1 * ENDED).lt(soft), zero) } else { soft * L::splat(self.solve.per_dt2) }
-        };
-        let diagonal =
-            |link: usize| -> L { self.kept::<L>(link, WEIGHT) + self.kept::<L>(self.after(link), WEIGHT) + soft(link) };
-        let beside = |link: usize, before: usize| -> L {
-            self.kept::<L>(link, WEIGHT) * self.kept3::<L>(link, NORMAL).dot(self.kept3(before, NORMAL))
-        };
-        let mut last = if self.list.closed && end > 0 { beside(0, end) } else { zero };
-        let full = diagonal(end);
+        let mut last = if self.list.closed && end > 0 { self.beside(0, end) } else { zero };
+        let full = self.diagonal::<L, ZERO>(end);
         let (mut corner, mut side) = (full, self.kept::<L>(end, SIDE));
         let (mut pivot, mut y) = (zero, zero);
         for link in 0..end {
-            let b = if link > 0 { beside(link, link - 1) } else { zero };
+            let b = if link > 0 { self.beside(link, link - 1) } else { zero };
             let factor = b * pivot;
-            let whole = diagonal(link);
+            let whole = self.diagonal::<L, ZERO>(link);
             let left = (whole - factor * b).max(whole * L::splat(LEAST_PIVOT)).max(L::splat(NO_PIVOT));
             pivot = L::splat(1.0).div(left);
             y = self.kept::<L>(link, SIDE) + factor * y;
@@ -206,7 +217,7 @@ impl Ring<'_> {
                 last = factor * last;
             }
             if link + 1 == end {
-                last = last + beside(end, link);
+                last = last + self.beside(end, link);
             }
             let share = last * pivot;
             corner = corner - share * last;

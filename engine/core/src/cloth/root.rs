@@ -226,16 +226,35 @@ impl Kernel for Compensate<'_> {
             let (at, n) = (first + t, L::N.min(len - t));
             let r = V3::load(self.columns.x, at, n) - origin;
             let v = V3::load(self.columns.v, at, n) + jolt + twist.cross(r);
-            let felt = |r: V3<L>, v: V3<L>| {
-                let carried = turning.cross(r);
-                turning.cross(v - velocity - carried) * coriolis + turning.cross(carried) * pull
-            };
+            let felt = FeltMotion { velocity, turning, coriolis, pull };
             // The midpoint rule: with the values of the start, what turns would drift outwards.
-            let a = felt(r + (v - velocity) * half, v + felt(r, v) * half);
+            let a = felt.at(r + (v - velocity) * half, v + felt.at(r, v) * half);
             v.store(self.columns.v, at, n);
             (V3::load(self.to, at, n) + a).store(self.to, at, n);
             t += n;
         }
+    }
+}
+
+/// What is felt of a turning frame.
+#[derive(Clone, Copy)]
+struct FeltMotion<L> {
+    /// Of the frame's origin (m/s).
+    velocity: V3<L>,
+    /// Of the frame (rad/s).
+    turning: V3<L>,
+    /// Factors of the Coriolis and the centrifugal acceleration (1).
+    coriolis: L,
+    pull: L,
+}
+
+impl<L: Lanes> FeltMotion<L> {
+    /// At a place and a velocity (m/s2).
+    #[inline(always)]
+    fn at(&self, r: V3<L>, v: V3<L>) -> V3<L> {
+        let Self { velocity, turning, coriolis, pull } = *self;
+        let carried = turning.cross(r);
+        turning.cross(v - velocity - carried) * coriolis + turning.cross(carried) * pull
     }
 }
 

@@ -38,8 +38,7 @@ impl<L: Numbers> V3<L> {
         if n == L::N {
             Self { x: L::load(from[0], at), y: L::load(from[1], at), z: L::load(from[2], at) }
         } else {
-            let part = |c| L::load_part(c, at, n);
-            Self { x: part(from[0]), y: part(from[1]), z: part(from[2]) }
+            Self { x: L::load_part(from[0], at, n), y: L::load_part(from[1], at, n), z: L::load_part(from[2], at, n) }
         }
     }
     /// Writes the first `n` vectors.
@@ -91,8 +90,7 @@ impl<L: Lanes> V3<L> {
     /// The vectors at an index list.
     #[inline(always)]
     pub fn gather(from: [impl Readable; 3], index: &[u32], n: usize) -> Self {
-        let at = |c| L::gather(c, index, n);
-        Self { x: at(from[0]), y: at(from[1]), z: at(from[2]) }
+        Self { x: L::gather(from[0], index, n), y: L::gather(from[1], index, n), z: L::gather(from[2], index, n) }
     }
     /// Writes the vectors to an index list without repetition.
     #[inline(always)]

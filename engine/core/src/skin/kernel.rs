@@ -71,8 +71,11 @@ struct Matrix<L> {
 impl<L: Lanes> Matrix<L> {
     #[inline(always)]
     fn splat(m: &SkinColumns) -> Self {
-        let column = |k: usize| V3 { x: L::splat(m[k]), y: L::splat(m[k + 1]), z: L::splat(m[k + 2]) };
-        Self { x: column(0), y: column(3), z: column(6), t: column(9) }
+        Self { x: Self::column(m, 0), y: Self::column(m, 3), z: Self::column(m, 6), t: Self::column(m, 9) }
+    }
+    #[inline(always)]
+    fn column(m: &SkinColumns, k: usize) -> V3<L> {
+        V3 { x: L::splat(m[k]), y: L::splat(m[k + 1]), z: L::splat(m[k + 2]) }
     }
     #[inline(always)]
     fn and(self, more: &SkinColumns, weight: L) -> Self {

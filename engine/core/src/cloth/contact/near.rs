@@ -146,15 +146,19 @@ impl CapsuleBoxes {
         let mut bits = 0;
         let mut at = 0;
         while at < PLACES {
-            let row = |rows: &[CapsuleRow; 3], axis: usize| L::load(ReadColumn::new(&rows[axis].0), at);
-            let side = |axis: usize| {
-                let (l, h) = (L::splat(low[axis]), L::splat(high[axis]));
-                row(&self.low, axis).lt(h).and(l.lt(row(&self.high, axis)))
-            };
-            bits |= side(0).and(side(1)).and(side(2)).bits() << at;
+            let met = self.meet_along::<L>(0, [low[0], high[0]], at).and(self.meet_along::<L>(1, [low[1], high[1]], at));
+            bits |= met.and(self.meet_along::<L>(2, [low[2], high[2]], at)).bits() << at;
             at += L::N;
         }
         bits
+    }
+
+    /// The capsules from `at` on whose boxes meet a range along an axis.
+    #[inline(always)]
+    fn meet_along<L: Lanes>(&self, axis: usize, [low, high]: [f32; 2], at: usize) -> L::Mask {
+        let lows = L::load(ReadColumn::new(&self.low[axis].0), at);
+        let highs = L::load(ReadColumn::new(&self.high[axis].0), at);
+        lows.lt(L::splat(high)).and(L::splat(low).lt(highs))
     }
 }
 
@@ -307,6 +311,6 @@ fn ask<L: Lanes>(
 /// How deep particles are behind a plane (m).
 #[inline(always)]
 pub fn depth<L: Lanes>(plane: &[f32; 4], x: V3<L>) -> L {
-    let [nx, ny, nz, offset] = plane.map(L::splat);
-    offset - (x.x * nx + x.y * ny + x.z * nz)
+    let [nx, ny, nz, offset] = *plane;
+    L::splat(offset) - (x.x * L::splat(nx) + x.y * L::splat(ny) + x.z * L::splat(nz))
 }

@@ -98,8 +98,8 @@ impl Sweep<'_> {
     /// Square of what is slow enough (m2).
     #[inline(always)]
     fn quick2<L: Lanes>(&self, c: CapsuleIndex) -> L {
-        let at = |i: usize| self.sphere::<L>(i, c, L::splat(1.0)).1;
-        let slow = (at(0).min(at(1)) + L::splat(self.offset)) * L::splat(QUICK);
+        let least = self.sphere::<L>(0, c, L::splat(1.0)).1.min(self.sphere::<L>(1, c, L::splat(1.0)).1);
+        let slow = (least + L::splat(self.offset)) * L::splat(QUICK);
         slow * slow
     }
 
