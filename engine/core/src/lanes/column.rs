@@ -7,6 +7,9 @@ use bytemuck::{Pod, Zeroable};
 /// Most lanes of any width: storage is padded to it.
 pub const MOST: usize = 16;
 
+/// Numbers of a table ([`Lanes::among`](super::Lanes::among)): two of the widest vectors.
+pub const TABLE: usize = 2 * MOST;
+
 /// One cache line, one widest vector.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]

@@ -22,7 +22,7 @@ mod x86;
 use std::fmt;
 
 pub(crate) use column::Shared;
-pub use column::{MOST, ReadColumn, Readable, Store, WriteColumn};
+pub use column::{MOST, ReadColumn, Readable, Store, TABLE, WriteColumn};
 pub use math::{V3, reciprocal_root};
 pub use records::{RECORD, RecordList, RecordRun, Records, RecordsAt};
 pub use traits::{Kernel, Lanes, Mask, Numbers};

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::column::{MOST, Readable, WriteColumn};
+use super::column::{MOST, ReadColumn, Readable, TABLE, WriteColumn};
 use super::records::{RECORD, Records};
 
 /// Which of a vector's lanes something holds for.
@@ -79,6 +79,10 @@ pub trait Lanes: Numbers {
         for (v, &i) in values.iter().zip(&index[..n.min(Self::N)]) {
             to.set(i as usize, *v);
         }
+    }
+    /// The numbers of a table at `at[..N]`, all of them below [`TABLE`].
+    fn among(table: &[f32; TABLE], at: &[u32; MOST]) -> Self {
+        Self::gather(ReadColumn::new(table), at, Self::N)
     }
     /// `N` of the 16 numbers that lie four by four from `quads` on, the `lane`th first; `lane` is a multiple of `N`.
     fn load_quads(from: impl Readable, quads: &[u32; 4], lane: usize) -> Self {

@@ -12,7 +12,7 @@ mod widths;
 use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::{Kernel, Lanes, MOST, Mask, Numbers, RECORD, Readable, Records, WriteColumn};
+use super::{Kernel, Lanes, MOST, Mask, Numbers, RECORD, ReadColumn, Readable, Records, TABLE, WriteColumn};
 
 /// Whether the processor and the system have 16 lanes.
 pub fn has_sixteen() -> bool {
@@ -180,6 +180,10 @@ macro_rules! vector {
             #[inline(always)]
             fn scatter(self, to: WriteColumn<'_>, index: &[u32], n: usize) {
                 self.spread(to, &index[..n.min($n)]);
+            }
+            #[inline(always)]
+            fn among(table: &[f32; TABLE], at: &[u32; MOST]) -> Self {
+                Self::pick_among(table, at)
             }
             #[inline(always)]
             fn load_quads(from: impl Readable, quads: &[u32; 4], lane: usize) -> Self {

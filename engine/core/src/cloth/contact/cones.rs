@@ -4,10 +4,10 @@ use glam::Vec4;
 use toile_assets::limits::MAX_CAPSULES;
 
 use crate::colliders::Colliders;
-use crate::lanes::{Kernel, Lanes, ReadColumn, V3, WriteColumn};
+use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, TABLE, V3, WriteColumn};
 
 /// Places of a row: [`MAX_CAPSULES`] padded to the widest lanes.
-pub const PLACES: usize = 32;
+pub const PLACES: usize = TABLE;
 
 const _: () = assert!(MAX_CAPSULES <= PLACES, "a bit of a u32 names a capsule");
 
@@ -51,6 +51,34 @@ impl CapsuleRow {
     #[inline(always)]
     pub fn splat<L: Lanes>(&self, capsule: CapsuleIndex) -> L {
         L::splat(self.0[capsule.place()])
+    }
+}
+
+/// The capsule of each lane.
+pub trait PickCapsule<L>: Copy {
+    /// Its number of a row.
+    fn number(self, row: &CapsuleRow) -> L;
+
+    /// Its vector.
+    #[inline(always)]
+    fn vector(self, rows: &[CapsuleRow; 3]) -> V3<L> {
+        V3 { x: self.number(&rows[0]), y: self.number(&rows[1]), z: self.number(&rows[2]) }
+    }
+}
+
+/// The same in all lanes.
+impl<L: Lanes> PickCapsule<L> for CapsuleIndex {
+    #[inline(always)]
+    fn number(self, row: &CapsuleRow) -> L {
+        row.splat(self)
+    }
+}
+
+/// One a lane, by their places.
+impl<L: Lanes> PickCapsule<L> for &[u32; MOST] {
+    #[inline(always)]
+    fn number(self, row: &CapsuleRow) -> L {
+        L::among(&row.0, self)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The kernel of a substep: every particle against what it is near.
 
 use super::ContactSettings;
+use super::cones::CapsuleCones;
 use super::near::{ContactPair, ParticleBlock, depth};
 use super::sweep::Sweep;
 use super::touch::{ContactSurface, Friction, ON_M, close, place, push, surface};
@@ -53,9 +54,16 @@ impl Kernel for SolveContacts<'_> {
             count += take(turns, count, b as u32, next);
         }
         while count > 0 {
+            let mut touching = TouchingParticles::new(cols, sweep.cones);
             for turn in &turns[..count] {
-                let block = &blocks[turn.block as usize];
-                swept += meet(cols, &sweep, block, &pairs[turn.pair as usize], friction);
+                let (block, pair) = (&blocks[turn.block as usize], &mut pairs[turn.pair as usize]);
+                if pair.found >> MOST != 0 {
+                    swept += follow(cols, &sweep, block, pair, friction);
+                }
+                touching.take(block, pair, friction);
+            }
+            if touching.len > 0 {
+                touching.push(friction);
             }
             let mut left = 0;
             for t in 0..count {
@@ -127,39 +135,77 @@ fn look<L: Lanes>(
     next
 }
 
-/// A block meets a capsule; gives how many particles' ways were followed.
+/// Follows the ways of a block's particles that have moved far, and looks again at which touch; gives how many were followed.
 #[inline(always)]
-fn meet<L: Lanes>(
+fn follow<L: Lanes>(
     cols: ParticleColumns<'_>,
     sweep: &Sweep<'_>,
     block: &ParticleBlock,
-    pair: &ContactPair,
+    pair: &mut ContactPair,
     friction: Friction<L>,
 ) -> u64 {
     let c = pair.capsule;
     let mut swept = 0;
     let mut from = 0;
     while from < block.len() {
-        let mut touched = few::<L>(pair.found, from);
         let fast = few::<L>(pair.found >> MOST, from);
-        if touched | fast != 0 {
+        if fast != 0 {
             let mut x = block.load::<L>(cols.x, from);
             let mut previous = block.load::<L>(cols.previous, from);
-            if fast != 0 {
-                sweep.run(c, &mut x, &mut previous, friction, L::Mask::of(fast));
-                swept += fast.count_ones();
-                touched = close(sweep.cones, c, x, L::splat(-ON_M)).bits() & few::<L>(pair.lanes.into(), from);
-            }
-            if touched != 0 {
-                let on = surface(sweep.cones, c, &place(sweep.cones, c, x));
-                push(&mut x, &mut previous, &on, friction, L::Mask::of(touched));
-            }
+            sweep.run(c, &mut x, &mut previous, friction, L::Mask::of(fast));
+            swept += fast.count_ones();
+            let touched = close(sweep.cones, c, x, L::splat(-ON_M)).bits() & few::<L>(pair.lanes.into(), from);
+            pair.found = pair.found & !(few::<L>(!0, 0) << from) | touched << from;
             block.store(x, cols.x, from);
             block.store(previous, cols.previous, from);
         }
         from += L::N;
     }
     u64::from(swept)
+}
+
+/// Particles that touch a capsule each: few of a block do, so they are pushed by the vector, from wherever they are.
+struct TouchingParticles<'a> {
+    cols: ParticleColumns<'a>,
+    cones: &'a CapsuleCones,
+    particles: [u32; MOST],
+    capsules: [u32; MOST],
+    len: usize,
+}
+
+impl<'a> TouchingParticles<'a> {
+    fn new(cols: ParticleColumns<'a>, cones: &'a CapsuleCones) -> Self {
+        Self { cols, cones, particles: [0; MOST], capsules: [0; MOST], len: 0 }
+    }
+
+    /// Takes on those of a block that touch the pair's capsule; pushes where there is a vector of them.
+    #[inline(always)]
+    fn take<L: Lanes>(&mut self, block: &ParticleBlock, pair: &ContactPair, friction: Friction<L>) {
+        let mut touched = pair.found & ((1 << MOST) - 1);
+        while touched != 0 {
+            let lane = touched.trailing_zeros() as usize;
+            touched &= touched - 1;
+            let at = self.len % MOST;
+            (self.particles[at], self.capsules[at]) = (block.particle(lane), pair.capsule.place() as u32);
+            self.len += 1;
+            if self.len >= L::N {
+                self.push(friction);
+            }
+        }
+    }
+
+    /// Pushes all that were taken on.
+    #[inline(always)]
+    fn push<L: Lanes>(&mut self, friction: Friction<L>) {
+        let n = std::mem::take(&mut self.len).min(L::N);
+        let c = &self.capsules;
+        let mut x = V3::<L>::gather(self.cols.x, &self.particles, n);
+        let mut previous = V3::<L>::gather(self.cols.previous, &self.particles, n);
+        let on = surface(self.cones, c, &place(self.cones, c, x));
+        push(&mut x, &mut previous, &on, friction, L::Mask::of(few::<L>((1u32 << n) - 1, 0)));
+        x.scatter(self.cols.x, &self.particles, n);
+        previous.scatter(self.cols.previous, &self.particles, n);
+    }
 }
 
 /// Whatever is behind a plane is pushed out: there is no other side.

@@ -6,7 +6,7 @@
 //! dynamics", section 3.5, with the Coulomb bound of the push): what the static bound covers is held, what goes beyond
 //! slides against the kinetic one.
 
-use super::cones::{CapsuleCones, CapsuleIndex, splat3};
+use super::cones::{CapsuleCones, PickCapsule};
 use crate::lanes::{Lanes, Mask, V3, reciprocal_root};
 
 /// A particle that moves farther than this relative to a surface in one substep (m) is no case for contact; the square
@@ -48,11 +48,11 @@ fn rough_reciprocal_root<L: Lanes>(x: L) -> L {
 /// The place of particles `x` from capsule `c`. The distance is least at the right height: that the rough root puts the
 /// height off by 7e-4 of what the slope makes of it shows in no more than 1e-6 of the distance from the axis.
 #[inline(always)]
-pub fn place<L: Lanes>(cones: &CapsuleCones, c: CapsuleIndex, x: V3<L>) -> CapsulePoint<L> {
-    let v = x - splat3(&cones.a, c);
-    let y = v.dot(splat3(&cones.axis, c));
+pub fn place<L: Lanes>(cones: &CapsuleCones, c: impl PickCapsule<L>, x: V3<L>) -> CapsulePoint<L> {
+    let v = x - c.vector(&cones.a);
+    let y = v.dot(c.vector(&cones.axis));
     let away2 = (v.dot(v) - y * y).max(L::splat(0.0));
-    let height = y - away2 * rough_reciprocal_root(away2) * cones.tangent.splat(c);
+    let height = y - away2 * rough_reciprocal_root(away2) * c.number(&cones.tangent);
     around(cones, c, v, height, L::splat(0.0))
 }
 
@@ -63,20 +63,20 @@ pub fn place<L: Lanes>(cones: &CapsuleCones, c: CapsuleIndex, x: V3<L>) -> Capsu
 /// other particle is looked at from a wrong point of the axis, from which it looks farther away, but not by so much
 /// that one inside would seem outside.
 #[inline(always)]
-pub fn close<L: Lanes>(cones: &CapsuleCones, c: CapsuleIndex, x: V3<L>, far: L) -> L::Mask {
-    let v = x - splat3(&cones.a, c);
-    let y = v.dot(splat3(&cones.axis, c));
-    let height = y * cones.stretch.splat(c) - (far + cones.reach.splat(c)) * cones.lean.splat(c);
+pub fn close<L: Lanes>(cones: &CapsuleCones, c: impl PickCapsule<L>, x: V3<L>, far: L) -> L::Mask {
+    let v = x - c.vector(&cones.a);
+    let y = v.dot(c.vector(&cones.axis));
+    let height = y * c.number(&cones.stretch) - (far + c.number(&cones.reach)) * c.number(&cones.lean);
     let place = around(cones, c, v, height, far);
     place.out2.lt(place.reach * place.reach)
 }
 
 /// The place of particles, `v` from the first centre, seen from a height along the axis.
 #[inline(always)]
-fn around<L: Lanes>(cones: &CapsuleCones, c: CapsuleIndex, v: V3<L>, height: L, far: L) -> CapsulePoint<L> {
-    let height = height.min(cones.length.splat(c)).max(L::splat(0.0));
-    let out = v - splat3::<L>(&cones.axis, c) * height;
-    let reach = far + cones.reach.splat(c) + height * cones.taper.splat(c);
+fn around<L: Lanes>(cones: &CapsuleCones, c: impl PickCapsule<L>, v: V3<L>, height: L, far: L) -> CapsulePoint<L> {
+    let height = height.min(c.number(&cones.length)).max(L::splat(0.0));
+    let out = v - c.vector(&cones.axis) * height;
+    let reach = far + c.number(&cones.reach) + height * c.number(&cones.taper);
     CapsulePoint { out, out2: out.dot(out), reach, height }
 }
 
@@ -94,24 +94,24 @@ pub struct ContactSurface<L> {
 /// How far the point of capsule `c` at `along` of its axis, `radius` out along `normal`, moves in the substep: with the
 /// axis, and around it as the axis turns, `w x (r n)` with `w = axis x turned / length`.
 #[inline(always)]
-pub fn carried<L: Lanes>(cones: &CapsuleCones, c: CapsuleIndex, along: L, normal: V3<L>, radius: L) -> V3<L> {
-    let (axis, turned) = (splat3::<L>(&cones.axis, c), splat3::<L>(&cones.turned, c));
-    let lever = radius * cones.shortness.splat(c);
-    splat3::<L>(&cones.carried, c) + turned * (along + lever * axis.dot(normal)) - axis * (lever * turned.dot(normal))
+pub fn carried<L: Lanes>(cones: &CapsuleCones, c: impl PickCapsule<L>, along: L, normal: V3<L>, radius: L) -> V3<L> {
+    let (axis, turned) = (c.vector(&cones.axis), c.vector(&cones.turned));
+    let lever = radius * c.number(&cones.shortness);
+    c.vector(&cones.carried) + turned * (along + lever * axis.dot(normal)) - axis * (lever * turned.dot(normal))
 }
 
 /// The surface of capsule `c` under particles inside of it.
 #[inline(always)]
-pub fn surface<L: Lanes>(cones: &CapsuleCones, c: CapsuleIndex, at: &CapsulePoint<L>) -> ContactSurface<L> {
+pub fn surface<L: Lanes>(cones: &CapsuleCones, c: impl PickCapsule<L>, at: &CapsulePoint<L>) -> ContactSurface<L> {
     let nothing = L::splat(1e-18);
     let inverse = reciprocal_root(at.out2.max(nothing));
     let mut normal = at.out * inverse;
     let lost = at.out2.lt(nothing);
     if lost.any() {
         // A particle on the axis leaves it sideways.
-        normal = splat3::<L>(&cones.across, c).select(lost, normal);
+        normal = c.vector(&cones.across).select(lost, normal);
     }
-    let along = at.height * cones.shortness.splat(c);
+    let along = at.height * c.number(&cones.shortness);
     let depth = (at.reach - at.out2 * inverse).max(L::splat(0.0));
     ContactSurface { normal, depth, carried: carried(cones, c, along, normal, at.reach) }
 }

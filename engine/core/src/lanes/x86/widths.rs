@@ -60,7 +60,15 @@ macro_rules! by_hand {
     };
     (@ pick) => {
         #[inline(always)]
+        pub(super) fn pick_among(table: &[f32; TABLE], at: &[u32; MOST]) -> Self {
+            Self::pick(ReadColumn::new(table), &at[..Self::N])
+        }
+        #[inline(always)]
         pub(super) fn pick(from: impl Readable, index: &[u32]) -> Self {
+            if index.len() == Self::N {
+                // Never by way of an array, as in `Four::read`.
+                return Self::pick_all(from, index);
+            }
             let mut values = [0.0; MOST];
             for (v, &i) in values.iter_mut().zip(index) {
                 *v = from.reader().get(i as usize);
@@ -80,7 +88,36 @@ macro_rules! by_hand {
 by_hand!(Four, pick, spread);
 by_hand!(Eight, pick, spread);
 
+impl Four {
+    /// The numbers at four places.
+    #[inline(always)]
+    fn pick_all(from: impl Readable, index: &[u32]) -> Self {
+        let from = from.reader();
+        let [a, b, c, d] = [index[0], index[1], index[2], index[3]];
+        let [a, b, c, d] = [from.get(a as usize), from.get(b as usize), from.get(c as usize), from.get(d as usize)];
+        Self(unsafe { _mm_setr_ps(a, b, c, d) })
+    }
+}
+
+impl Eight {
+    /// The numbers at eight places.
+    #[inline(always)]
+    fn pick_all(from: impl Readable, index: &[u32]) -> Self {
+        let [a, b] = [Four::pick_all(from, index), Four::pick_all(from, &index[4..])];
+        Self(unsafe { _mm256_insertf128_ps::<1>(_mm256_castps128_ps256(a.0), b.0) })
+    }
+}
+
 impl Sixteen {
+    #[inline(always)]
+    pub(super) fn pick_among(table: &[f32; TABLE], at: &[u32; MOST]) -> Self {
+        let [low, high] = [table.as_ptr(), table[MOST..].as_ptr()];
+        // SAFETY: both halves of the table and all places are there; of a place its lowest five bits count.
+        Self(unsafe {
+            let at = _mm512_loadu_epi32(at.as_ptr().cast());
+            _mm512_permutex2var_ps(_mm512_loadu_ps(low), at, _mm512_loadu_ps(high))
+        })
+    }
     #[inline(always)]
     pub(super) fn pick(from: impl Readable, index: &[u32]) -> Self {
         let (first, at) = Self::places(from, index);
