@@ -94,17 +94,17 @@ impl SolveLinks<'_> {
         let tuples = &self.links.tuples;
         for zigzag in &tuples.zigzags[share.zigzags.start as usize..share.zigzags.end as usize] {
             let (n, alike) = (zigzag.straights.len as usize, zigzag.straights.alike && zigzag.slants.alike);
-            if SOFT || n < L::N {
+            if n < L::N || SOFT && self.gamma > 0.0 {
                 self.row::<L, SOFT>(&zigzag.straights, 0, zigzag.straights.len);
                 self.slants::<L, SOFT>(zigzag, 0);
             } else if alike && L::N == 4 && n >= 4 * L::N {
-                self.zigzag::<L, Two<Two<L>>, true>(zigzag);
+                self.zigzag::<L, Two<Two<L>>, true, SOFT>(zigzag);
             } else if alike && n >= 2 * L::N {
-                self.zigzag::<L, Two<L>, true>(zigzag);
+                self.zigzag::<L, Two<L>, true, SOFT>(zigzag);
             } else if alike {
-                self.zigzag::<L, L, true>(zigzag);
+                self.zigzag::<L, L, true, SOFT>(zigzag);
             } else {
-                self.zigzag::<L, L, false>(zigzag);
+                self.zigzag::<L, L, false, SOFT>(zigzag);
             }
         }
         for run in &tuples.runs[share.runs.start as usize..share.runs.end as usize] {
@@ -190,20 +190,19 @@ impl SolveLinks<'_> {
     /// end, less than a vector, and what leads back to the beginning where that does not fall on a vector's end, go by
     /// way of memory.
     #[inline(always)]
-    fn zigzag<L: Lanes, W: Numbers, const ALIKE: bool>(&self, zigzag: &Zigzag) {
+    fn zigzag<L: Lanes, W: Numbers, const ALIKE: bool, const SOFT: bool>(&self, zigzag: &Zigzag) {
         let Zigzag { straights, slants } = zigzag;
         let (x, n) = (self.columns.x, straights.len as usize);
         let [a, b] = straights.first.map(|f| f as usize);
-        let like = [self.alike::<W, false>(straights), self.alike::<W, false>(slants)];
-        let mut one = self.straight::<W, ALIKE>(straights, 0, like[0]);
+        let like = [self.alike::<W, SOFT>(straights), self.alike::<W, SOFT>(slants)];
+        let mut one = self.straight::<W, ALIKE, SOFT>(straights, 0, like[0]);
         // What the slants before have made of the first lane, the only one that they reach: kept apart, so that the
         // next slants need not wait for them.
         let mut behind = one.a;
         let mut t = W::N;
         while t + W::N <= n {
-            let next = self.straight::<W, ALIKE>(straights, t, like[0]);
-            let p = self.slant_parameters::<W, ALIKE>(slants, t - W::N, [&one, &next], like[1]);
-            let turned = slant(&mut one, &next, p);
+            let next = self.straight::<W, ALIKE, SOFT>(straights, t, like[0]);
+            let turned = self.slant::<W, ALIKE, SOFT>(slants, t - W::N, &mut one, &next, like[1]);
             one.a = turned.with_first(behind);
             one.store(x, [a + t - W::N, b + t - W::N]);
             (one, behind) = (next, turned);
@@ -213,16 +212,15 @@ impl SolveLinks<'_> {
         if t < n || !zigzag.closed() {
             one.a = one.a.with_first(behind);
             one.store(x, [a + last, b + last]);
-            self.row::<L, false>(straights, t as u32, straights.len);
-            return self.slants::<L, false>(zigzag, last as u32);
+            self.row::<L, SOFT>(straights, t as u32, straights.len);
+            return self.slants::<L, SOFT>(zigzag, last as u32);
         }
         let mut first = one;
         if last > 0 {
             first.a = V3::splat(state::get(x, a));
             first.weights[0] = W::splat(self.columns.w.get(a));
         }
-        let p = self.slant_parameters::<W, ALIKE>(slants, last, [&one, &first], like[1]);
-        let turned = slant(&mut one, &first, p);
+        let turned = self.slant::<W, ALIKE, SOFT>(slants, last, &mut one, &first, like[1]);
         one.a = turned;
         if last > 0 {
             turned.store(x, a, 1);
@@ -233,24 +231,48 @@ impl SolveLinks<'_> {
 
     /// A vector of straights from the `t`-th on, solved; `like` are their parameters where all of the zigzag is alike.
     #[inline(always)]
-    fn straight<L: Numbers, const ALIKE: bool>(
+    fn straight<L: Numbers, const ALIKE: bool, const SOFT: bool>(
         &self,
         straights: &ConstraintRun<2>,
         t: usize,
         like: [L; 4],
     ) -> Straights<L> {
         let ([a, b], x) = (straights.first.map(|f| f as usize + t), self.columns.x);
-        let [rest, gain, wa, wb] = if ALIKE { like } else { self.parameters::<L, false>(straights, t, L::N) };
+        let [rest, gain, wa, wb] = if ALIKE { like } else { self.parameters::<L, SOFT>(straights, t, L::N) };
+        let slack = self.slack::<L, SOFT>(straights, t, L::N);
         let (pa, pb) = (V3::<L>::load(x, a, L::N), V3::load(x, b, L::N));
-        let [by_a, by_b] = stiff(pb - pa, rest, gain, [wa, wb]);
+        let parameters = LinkParameters { rest, gain, slack, weights: [wa, wb] };
+        let ([by_a, by_b], by) = push::<L, SOFT>(pb - pa, parameters, None);
+        self.count::<L, SOFT>(by, straights.serial as usize + t, L::N);
         // Straights that are alike count with the masses of the first; slants that are not count with their own.
         let weights = if ALIKE { [wa, wb] } else { [L::load(self.columns.w, a), L::load(self.columns.w, b)] };
         Straights { a: pa + by_a, b: pb - by_b, weights }
     }
 
+    /// The slants from the `t`-th on, between a vector of straights and the next, solved; gives the first rail a lane on, in
+    /// its lowest lane the next vector's.
+    #[inline(always)]
+    fn slant<L: Numbers, const ALIKE: bool, const SOFT: bool>(
+        &self,
+        slants: &ConstraintRun<2>,
+        t: usize,
+        one: &mut Straights<L>,
+        next: &Straights<L>,
+        like: [L; 4],
+    ) -> V3<L> {
+        let [rest, gain, wb, wa] = self.slant_parameters::<L, ALIKE, SOFT>(slants, t, [one, next], like);
+        let slack = self.slack::<L, SOFT>(slants, t, L::N);
+        let parameters = LinkParameters { rest, gain, slack, weights: [wb, wa] };
+        let a = one.a.with_first(next.a).rotate_down();
+        let ([by_b, by_a], by) = push::<L, SOFT>(a - one.b, parameters, None);
+        self.count::<L, SOFT>(by, slants.serial as usize + t, L::N);
+        one.b = one.b + by_b;
+        (a - by_a).rotate_up()
+    }
+
     /// The slants' parameters: those of the first where all are alike, else the ends' weights are at hand.
     #[inline(always)]
-    fn slant_parameters<L: Numbers, const ALIKE: bool>(
+    fn slant_parameters<L: Numbers, const ALIKE: bool, const SOFT: bool>(
         &self,
         slants: &ConstraintRun<2>,
         t: usize,
@@ -261,13 +283,13 @@ impl SolveLinks<'_> {
             return like;
         }
         let [a, b] = one.weights;
-        let (rest, gain, at) = (self.rest::<false>(), ReadColumn::new(&self.gains.gain), slants.at as usize + t);
+        let (rest, gain, at) = (self.rest::<SOFT>(), ReadColumn::new(&self.gains.gain), slants.at as usize + t);
         [L::load(rest, at), L::load(gain, at), b, a.with_first(next.weights[0]).rotate_down()]
     }
 
     /// What `n` links of a run give by their compliance under the tension that they have (m).
     #[inline(always)]
-    fn slack<L: Lanes, const SOFT: bool>(&self, run: &ConstraintRun<2>, t: usize, n: usize) -> L {
+    fn slack<L: Numbers, const SOFT: bool>(&self, run: &ConstraintRun<2>, t: usize, n: usize) -> L {
         let Some((tension, per_dt2)) = self.tension.filter(|_| SOFT) else { return L::splat(0.0) };
         let (soft, at) = (ReadColumn::new(&self.links.compliance), run.place(t as u32));
         let soft = if run.alike { L::splat(soft.get(at)) } else { part(soft, at, n) };
@@ -276,7 +298,7 @@ impl SolveLinks<'_> {
 
     /// Adds to the tension of links.
     #[inline(always)]
-    fn count<L: Lanes, const SOFT: bool>(&self, by: L, number: usize, n: usize) {
+    fn count<L: Numbers, const SOFT: bool>(&self, by: L, number: usize, n: usize) {
         let Some((tension, _)) = self.tension.filter(|_| SOFT) else { return };
         let sum = part::<L>(tension, number, n) + by;
         if n == L::N { sum.store(tension, number) } else { sum.store_part(tension, number, n) }
@@ -388,16 +410,6 @@ fn stiff<L: Numbers>(d: V3<L>, per_rest2: L, gain: L, weights: [L; 2]) -> [V3<L>
     let e = (d.dot(d) * per_rest2 - L::splat(1.0)).min(L::splat(MOST_EXCESS));
     let excess = e * (L::splat(0.5) - e * L::splat(0.375));
     [d * (excess * (gain * weights[0])), d * (excess * (gain * weights[1]))]
-}
-
-/// The slants between a vector of straights and the next, solved; gives the first rail a lane on, in its lowest lane the
-/// next vector's.
-#[inline(always)]
-fn slant<L: Numbers>(one: &mut Straights<L>, next: &Straights<L>, [rest, gain, wb, wa]: [L; 4]) -> V3<L> {
-    let a = one.a.with_first(next.a).rotate_down();
-    let [by_b, by_a] = stiff(a - one.b, rest, gain, [wb, wa]);
-    one.b = one.b + by_b;
-    (a - by_a).rotate_up()
 }
 
 /// Both ends of a vector of straights, and their weights.

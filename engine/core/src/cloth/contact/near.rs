@@ -146,7 +146,8 @@ impl CapsuleBoxes {
         let mut bits = 0;
         let mut at = 0;
         while at < PLACES {
-            let met = self.meet_along::<L>(0, [low[0], high[0]], at).and(self.meet_along::<L>(1, [low[1], high[1]], at));
+            let met =
+                self.meet_along::<L>(0, [low[0], high[0]], at).and(self.meet_along::<L>(1, [low[1], high[1]], at));
             bits |= met.and(self.meet_along::<L>(2, [low[2], high[2]], at)).bits() << at;
             at += L::N;
         }

@@ -209,6 +209,7 @@ fn by_records_links_have_the_bits_that_they_have_in_columns() {
         (skirt::shape(24), Stretch::Inextensible),
         (skirt::irregular(17, 3), Stretch::Inextensible),
         (skirt::irregular(17, 3), Stretch::Physical),
+        (skirt::shape(24), Stretch::Physical),
     ] {
         let garment = bake("skirt", "one", &shape, &skirt::fabric(&shape, stretch)).unwrap();
         let (layout, weights) = (garment.layout(), &garment.inverse_mass);
