@@ -24,7 +24,7 @@ use std::fmt;
 pub(crate) use column::Shared;
 pub use column::{MOST, ReadColumn, Readable, Store, TABLE, WriteColumn};
 pub use math::{V3, reciprocal_root};
-pub use records::{RECORD, RecordList, RecordRun, Records, RecordsAt};
+pub use records::{DOUBLE, RECORD, RecordList, RecordRun, Records, RecordsAt};
 pub use traits::{Kernel, Lanes, Mask, Numbers};
 pub use two::Two;
 

@@ -5,6 +5,9 @@ use super::column::WriteColumn;
 /// Numbers of a record.
 pub const RECORD: usize = 4;
 
+/// Numbers of two records side by side, which are written at once.
+pub const DOUBLE: usize = 2 * RECORD;
+
 /// Which records of a column are taken, one after the other. Made at load.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RecordList {
@@ -12,6 +15,8 @@ pub struct RecordList {
     at: Box<[u32]>,
     /// Behind the last number of all of them.
     end: usize,
+    /// Whether each has another behind it, that is its own.
+    double: bool,
 }
 
 impl RecordList {
@@ -20,10 +25,22 @@ impl RecordList {
     /// # Panics
     /// Where a number is beyond what 32 bits can place: 2^30 records.
     pub fn new(records: impl IntoIterator<Item = u32>) -> Self {
-        let place = |r: u32| r.checked_mul(RECORD as u32).expect("a garment has far fewer particles");
+        Self::wide(records, RECORD)
+    }
+
+    /// The double records of these numbers ([`Lanes::store_doubles`](super::Lanes::store_doubles)).
+    ///
+    /// # Panics
+    /// As [`Self::new`].
+    pub fn doubles(records: impl IntoIterator<Item = u32>) -> Self {
+        Self::wide(records, DOUBLE)
+    }
+
+    fn wide(records: impl IntoIterator<Item = u32>, numbers: usize) -> Self {
+        let place = |r: u32| r.checked_mul(numbers as u32).expect("a garment has far fewer particles");
         let at: Box<[u32]> = records.into_iter().map(place).collect();
-        let end = at.iter().max().map_or(0, |last| *last as usize + RECORD);
-        Self { at, end }
+        let end = at.iter().max().map_or(0, |last| *last as usize + numbers);
+        Self { at, end, double: numbers == DOUBLE }
     }
 
     /// Number of records in the list.
@@ -48,7 +65,7 @@ impl RecordList {
     #[inline(always)]
     pub fn within<'a>(&'a self, column: WriteColumn<'a>) -> RecordsAt<'a> {
         assert!(self.end <= column.len(), "a record lies outside of its column");
-        RecordsAt { first: column.place(0, self.end), at: &self.at, column }
+        RecordsAt { first: column.place(0, self.end), at: &self.at, double: self.double, column }
     }
 
     /// Memory that it holds (bytes).
@@ -93,7 +110,20 @@ pub struct RecordsAt<'a> {
     first: *mut f32,
     /// Within the column, with all numbers of each record: [`RecordList::within`] has checked it.
     at: &'a [u32],
+    double: bool,
     column: WriteColumn<'a>,
+}
+
+impl RecordsAt<'_> {
+    /// Checks that there are `n` double records from the `k`th on.
+    ///
+    /// # Panics
+    /// Where there are not so many.
+    #[inline(always)]
+    pub fn check_doubles(self, k: usize, n: usize) {
+        assert!(self.double, "a list of single records");
+        self.check(k, n);
+    }
 }
 
 impl Records for RecordsAt<'_> {

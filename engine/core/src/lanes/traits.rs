@@ -3,7 +3,7 @@
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::column::{MOST, ReadColumn, Readable, TABLE, WriteColumn};
-use super::records::{RECORD, Records};
+use super::records::{DOUBLE, RECORD, Records, RecordsAt};
 
 /// Which of a vector's lanes something holds for.
 pub trait Mask: Copy {
@@ -108,6 +108,13 @@ pub trait Lanes: Numbers {
     }
     /// Writes them back; where one record is there twice, all that is written to it is alike.
     fn store_records(values: [Self; RECORD], to: impl Records, k: usize) {
+        for (number, values) in values.into_iter().enumerate() {
+            values.to_array().into_iter().enumerate().take(Self::N).for_each(|(i, v)| to.set(k + i, number, v));
+        }
+    }
+    /// Writes `N` double records from the `k`th on: all first numbers, all second ones and so on.
+    fn store_doubles(values: [Self; DOUBLE], to: RecordsAt<'_>, k: usize) {
+        to.check_doubles(k, Self::N);
         for (number, values) in values.into_iter().enumerate() {
             values.to_array().into_iter().enumerate().take(Self::N).for_each(|(i, v)| to.set(k + i, number, v));
         }

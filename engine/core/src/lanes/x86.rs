@@ -12,7 +12,9 @@ mod widths;
 use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::{Kernel, Lanes, MOST, Mask, Numbers, RECORD, ReadColumn, Readable, Records, TABLE, WriteColumn};
+use super::{
+    DOUBLE, Kernel, Lanes, MOST, Mask, Numbers, RECORD, ReadColumn, Readable, Records, RecordsAt, TABLE, WriteColumn,
+};
 
 /// Whether the processor and the system have 16 lanes.
 pub fn has_sixteen() -> bool {
@@ -206,6 +208,12 @@ macro_rules! vector {
                 to.check(k, $n);
                 // SAFETY: as above.
                 unsafe { Self::write_records(values, to, k) }
+            }
+            #[inline(always)]
+            fn store_doubles(values: [Self; DOUBLE], to: RecordsAt<'_>, k: usize) {
+                to.check_doubles(k, $n);
+                // SAFETY: as above, with the numbers of two each.
+                unsafe { Self::write_doubles(values, to, k) }
             }
             #[inline(always)]
             fn least(self) -> f32 {

@@ -13,29 +13,64 @@ use toile_assets::skeleton::BONES;
 use super::dual::DualQuat;
 use super::layout::BoneRun;
 use super::posed::BLOCK;
-use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, V3, WriteColumn, reciprocal_root};
+use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, RecordsAt, V3, WriteColumn, reciprocal_root};
 
 /// Square of the length below which a normal is taken for collapsed.
 const COLLAPSED: f32 = 1e-24;
 
-/// Input of both kernels.
+/// Input of both kernels, and where the posed vertices go.
 #[derive(Clone, Copy)]
-pub(super) struct SkinSurface<'a> {
+pub(super) struct SkinSurface<'a, O> {
     pub runs: &'a [BoneRun],
     /// Vertices of each block.
     pub filled: &'a [u8],
     pub rest: ReadColumn<'a>,
-    pub out: WriteColumn<'a>,
+    pub out: O,
 }
 
-/// Where a vector of vertices is: in the rest data, in the posed data.
+/// What posed vertices are written to.
+pub(super) trait SkinOutput: Copy {
+    /// Writes a vector of vertices, the first of them on this lane, counted over all blocks.
+    fn store<L: Lanes>(self, lane: usize, position: V3<L>, normal: V3<L>);
+}
+
+/// By column, block after block: [`Posed`](super::Posed).
+#[derive(Clone, Copy)]
+pub(super) struct BlockOutput<'a>(pub WriteColumn<'a>);
+
+impl SkinOutput for BlockOutput<'_> {
+    #[inline(always)]
+    fn store<L: Lanes>(self, lane: usize, position: V3<L>, normal: V3<L>) {
+        let at = lane / MOST * BLOCK + lane % MOST;
+        for (k, v) in [position.x, position.y, position.z, normal.x, normal.y, normal.z].into_iter().enumerate() {
+            v.store(self.0, at + k * MOST);
+        }
+    }
+}
+
+/// In the order of the mesh: [`PosedMesh`](super::PosedMesh).
+#[derive(Clone, Copy)]
+pub(super) struct MeshOutput<'a>(
+    /// The vertex of each lane.
+    pub RecordsAt<'a>,
+);
+
+impl SkinOutput for MeshOutput<'_> {
+    #[inline(always)]
+    fn store<L: Lanes>(self, lane: usize, position: V3<L>, normal: V3<L>) {
+        let (p, n, zero) = (position, normal, L::splat(0.0));
+        L::store_doubles([p.x, p.y, p.z, zero, n.x, n.y, n.z, zero], self.0, lane);
+    }
+}
+
+/// Where a vector of vertices is: in the rest data, and its first lane, counted over all blocks.
 #[derive(Clone, Copy)]
 struct VertexPlace {
     rest: usize,
-    out: usize,
+    lane: usize,
 }
 
-impl SkinSurface<'_> {
+impl<O: SkinOutput> SkinSurface<'_, O> {
     #[inline(always)]
     fn load<L: Lanes>(&self, at: VertexPlace, first: usize) -> V3<L> {
         let from = at.rest + first * MOST;
@@ -46,13 +81,6 @@ impl SkinSurface<'_> {
     #[inline(always)]
     fn weight<L: Lanes>(&self, at: VertexPlace, bone: usize) -> L {
         L::load(self.rest, at.rest + (5 + bone) * MOST)
-    }
-
-    #[inline(always)]
-    fn store<L: Lanes>(&self, at: VertexPlace, position: V3<L>, normal: V3<L>) {
-        for (k, v) in [position.x, position.y, position.z, normal.x, normal.y, normal.z].into_iter().enumerate() {
-            v.store(self.out, at.out + k * MOST);
-        }
     }
 }
 
@@ -90,12 +118,12 @@ impl<L: Lanes> Matrix<L> {
 }
 
 /// Blends bone matrices linearly.
-pub(super) struct Linear<'a> {
-    pub surface: SkinSurface<'a>,
+pub(super) struct Linear<'a, O> {
+    pub surface: SkinSurface<'a, O>,
     pub palette: &'a [Affine3A; BONES],
 }
 
-impl Kernel for Linear<'_> {
+impl<O: SkinOutput> Kernel for Linear<'_, O> {
     type Out = ();
 
     #[inline(always)]
@@ -112,7 +140,7 @@ impl Kernel for Linear<'_> {
                 let filled = usize::from(surface.filled[run.first + block]);
                 let mut lane = 0;
                 while lane < filled {
-                    let at = VertexPlace { rest: run.rest(block) + lane, out: (run.first + block) * BLOCK + lane };
+                    let at = VertexPlace { rest: run.rest(block) + lane, lane: (run.first + block) * MOST + lane };
                     linear::<L>(&surface, at, &base, &apart[..run.count]);
                     lane += L::N;
                 }
@@ -123,7 +151,12 @@ impl Kernel for Linear<'_> {
 
 /// One vector of vertices; `apart[1..]` are what the other bones have beyond the base.
 #[inline(always)]
-fn linear<L: Lanes>(surface: &SkinSurface<'_>, at: VertexPlace, base: &SkinColumns, apart: &[SkinColumns]) {
+fn linear<L: Lanes>(
+    surface: &SkinSurface<'_, impl SkinOutput>,
+    at: VertexPlace,
+    base: &SkinColumns,
+    apart: &[SkinColumns],
+) {
     let mut m = Matrix::<L>::splat(base);
     for (k, more) in apart.iter().enumerate().skip(1) {
         m = m.and(more, surface.weight::<L>(at, k));
@@ -134,7 +167,7 @@ fn linear<L: Lanes>(surface: &SkinSurface<'_>, at: VertexPlace, base: &SkinColum
     let normal = m.x * n.x + m.y * n.y + m.z * n.z;
     let squared = normal.dot(normal);
     let scale = reciprocal_root(squared).select(L::splat(COLLAPSED).lt(squared), L::splat(0.0));
-    surface.store(at, position, normal * scale);
+    surface.out.store(at.lane, position, normal * scale);
 }
 
 #[inline(always)]
@@ -143,12 +176,12 @@ fn columns(matrix: &Affine3A) -> SkinColumns {
 }
 
 /// Dual quaternion blending.
-pub(super) struct Dual<'a> {
-    pub surface: SkinSurface<'a>,
+pub(super) struct Dual<'a, O> {
+    pub surface: SkinSurface<'a, O>,
     pub palette: &'a [DualQuat; BONES],
 }
 
-impl Kernel for Dual<'_> {
+impl<O: SkinOutput> Kernel for Dual<'_, O> {
     type Out = ();
 
     #[inline(always)]
@@ -165,7 +198,7 @@ impl Kernel for Dual<'_> {
                 let filled = usize::from(surface.filled[run.first + block]);
                 let mut lane = 0;
                 while lane < filled {
-                    let at = VertexPlace { rest: run.rest(block) + lane, out: (run.first + block) * BLOCK + lane };
+                    let at = VertexPlace { rest: run.rest(block) + lane, lane: (run.first + block) * MOST + lane };
                     dual::<L>(&surface, at, &base, &apart[..run.count]);
                     lane += L::N;
                 }
@@ -197,7 +230,7 @@ impl<L: Lanes> QuaternionLanes<L> {
 /// p + 2 / |r|^2 (v x (v x p + w p + u) + w u - s v), a direction n to n + 2 / |r|^2 v x (v x n + w n): the
 /// normalisation of Kavan et al. 2008, equation 6, is in the factor.
 #[inline(always)]
-fn dual<L: Lanes>(surface: &SkinSurface<'_>, at: VertexPlace, base: &DualQuat, apart: &[DualQuat]) {
+fn dual<L: Lanes>(surface: &SkinSurface<'_, impl SkinOutput>, at: VertexPlace, base: &DualQuat, apart: &[DualQuat]) {
     let (mut real, mut twin) = (QuaternionLanes::<L>::splat(base.real), QuaternionLanes::<L>::splat(base.dual));
     for (k, more) in apart.iter().enumerate().skip(1) {
         let weight = surface.weight::<L>(at, k);
@@ -212,5 +245,5 @@ fn dual<L: Lanes>(surface: &SkinSurface<'_>, at: VertexPlace, base: &DualQuat, a
     let n = surface.load::<L>(at, 3);
     let moved = v.cross(v.cross(p) + p * w + twin.v) + (twin.v * w - v * twin.w);
     let turned = v.cross(v.cross(n) + n * w);
-    surface.store(at, p + moved * factor, n + turned * factor);
+    surface.out.store(at.lane, p + moved * factor, n + turned * factor);
 }

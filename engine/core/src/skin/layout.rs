@@ -11,7 +11,7 @@ use toile_assets::limits::{INFLUENCES, MAX_INFLUENCES};
 
 use super::check::{NO_BONE, Vertex};
 use super::posed::Posed;
-use crate::lanes::{MOST, Store, Width};
+use crate::lanes::{MOST, RecordList, Store, Width};
 
 /// Bones of a set in the order of their indices, [`NO_BONE`] behind them.
 type BoneSet = [u8; MAX_INFLUENCES];
@@ -96,6 +96,8 @@ pub(super) struct SkinLayout {
     pub rest: Store,
     /// Lane of each vertex, counted over all blocks `[vertices]`.
     pub slots: Arc<[u32]>,
+    /// The double record of each lane in a [`PosedMesh`](super::PosedMesh); of lanes that carry no vertex a spare one a share.
+    pub records: RecordList,
     /// Positions (m) and normals in the rest pose.
     at_rest: Posed,
     influences: usize,
@@ -132,7 +134,8 @@ impl SkinLayout {
         let mut at_rest = Posed::new(filled.len(), slots.clone());
         vertices.iter().enumerate().for_each(|(v, x)| at_rest.set(v, x.position, x.normal));
         let influences = vertices.iter().map(|v| size(&v.bones)).sum();
-        Self { runs: runs.into(), half, filled: filled.into(), rest, slots, at_rest, influences }
+        let records = records(&runs[..half], filled.len(), &slots);
+        Self { runs: runs.into(), half, filled: filled.into(), rest, slots, records, at_rest, influences }
     }
 
     pub fn posed(&self) -> Posed {
@@ -160,6 +163,15 @@ impl SkinLayout {
             blended: self.runs.iter().map(of_run).sum(),
         }
     }
+}
+
+/// The double record of each lane, that of its vertex; of lanes without one the spare of the share that they are in, of which
+/// `first` are the runs of the first.
+fn records(first: &[BoneRun], blocks: usize, slots: &[u32]) -> RecordList {
+    let spare = |lane: usize| slots.len() + usize::from(lane >= MOST * first.iter().map(|r| r.blocks).sum::<usize>());
+    let mut vertices: Vec<u32> = (0..blocks * MOST).map(|lane| spare(lane) as u32).collect();
+    (0..).zip(slots).for_each(|(vertex, lane)| vertices[*lane as usize] = vertex);
+    RecordList::doubles(vertices)
 }
 
 fn size(set: &BoneSet) -> usize {

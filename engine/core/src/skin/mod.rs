@@ -10,6 +10,7 @@ mod kernel;
 mod laid;
 mod layout;
 mod posed;
+mod posed_mesh;
 mod prune;
 #[cfg(test)]
 mod tests;
@@ -20,7 +21,7 @@ use glam::{Affine3A, Vec3};
 use toile_assets::mesh::Influences;
 use toile_assets::skeleton::BONES;
 
-use crate::lanes::{ReadColumn, Shared, Width, WriteColumn};
+use crate::lanes::{ReadColumn, Shared, Width};
 use crate::workers::{SHARES, WorkerPool};
 
 pub use check::{SkinError, WEIGHT_TOLERANCE};
@@ -28,9 +29,10 @@ pub use dual::{DualQuat, palette as dual_palette};
 pub use laid::LaidVertex;
 pub use layout::Padding;
 pub use posed::Posed;
+pub use posed_mesh::{PosedMesh, PosedVertex};
 pub use prune::{Pruning, pruning};
 
-use kernel::{Dual, Linear, SkinSurface};
+use kernel::{BlockOutput, Dual, Linear, MeshOutput, SkinOutput, SkinSurface};
 use layout::SkinLayout;
 
 toile_assets::named! {
@@ -84,6 +86,11 @@ impl SkinningJob {
         self.layout.posed()
     }
 
+    /// Room for what a run gives in the order of the mesh; all zero.
+    pub fn posed_mesh(&self) -> PosedMesh {
+        PosedMesh::new(self.vertices())
+    }
+
     /// How many lanes a run at the job's width works on, beside those that carry a vertex.
     pub fn padding(&self) -> Padding {
         self.layout.padding(self.width)
@@ -92,9 +99,12 @@ impl SkinningJob {
     /// Poses the skin: world positions (m) and unit normals. A normal that the blend collapses becomes zero. A bone that
     /// is not finite may spoil the vertices that share blocks with its own. `posed` comes from [`Self::posed`].
     pub fn run(&self, blend: Blend, palette: &[Affine3A; BONES], posed: &mut Posed) {
-        let duals = self.duals(blend, palette);
-        let work = SkinningWork { job: self, blend, palette, duals: &duals, out: Shared::new(posed.column()) };
-        work.runs(0..self.layout.runs.len());
+        self.all(blend, palette, Shared::new(BlockOutput(posed.column())));
+    }
+
+    /// The same in the order of the mesh, ready to be uploaded. `posed` comes from [`Self::posed_mesh`].
+    pub fn run_mesh(&self, blend: Blend, palette: &[Affine3A; BONES], posed: &mut PosedMesh) {
+        self.all(blend, palette, Shared::new(self.mesh_output(posed)));
     }
 
     /// The same with the pool's workers, a share each: the same bits. Says whether all was done: not where a worker
@@ -106,12 +116,42 @@ impl SkinningJob {
         palette: &[Affine3A; BONES],
         posed: &mut Posed,
     ) -> bool {
+        self.shared(pool, blend, palette, Shared::new(BlockOutput(posed.column())))
+    }
+
+    /// [`Self::run_mesh`] with the pool's workers, as [`Self::run_with`].
+    pub fn run_mesh_with(
+        &self,
+        pool: &mut WorkerPool,
+        blend: Blend,
+        palette: &[Affine3A; BONES],
+        posed: &mut PosedMesh,
+    ) -> bool {
+        self.shared(pool, blend, palette, Shared::new(self.mesh_output(posed)))
+    }
+
+    fn mesh_output<'a>(&'a self, posed: &'a mut PosedMesh) -> MeshOutput<'a> {
+        MeshOutput(self.layout.records.within(posed.column()))
+    }
+
+    fn all<O: SkinOutput>(&self, blend: Blend, palette: &[Affine3A; BONES], out: Shared<O>) {
+        let duals = self.duals(blend, palette);
+        SkinningWork { job: self, blend, palette, duals: &duals, out }.runs(0..self.layout.runs.len());
+    }
+
+    fn shared<O: SkinOutput>(
+        &self,
+        pool: &mut WorkerPool,
+        blend: Blend,
+        palette: &[Affine3A; BONES],
+        out: Shared<O>,
+    ) -> bool {
         if pool.workers() < SHARES {
-            self.run(blend, palette, posed);
+            self.all(blend, palette, out);
             return true;
         }
         let duals = self.duals(blend, palette);
-        let work = SkinningWork { job: self, blend, palette, duals: &duals, out: Shared::new(posed.column()) };
+        let work = SkinningWork { job: self, blend, palette, duals: &duals, out };
         let (half, all) = (self.layout.half, self.layout.runs.len());
         pool.run(1, |_, share| work.runs(if share == 0 { 0..half } else { half..all })).is_ok()
     }
@@ -125,20 +165,21 @@ impl SkinningJob {
 }
 
 /// What the workers of a run share; no two runs of blocks write to the same place.
-struct SkinningWork<'a> {
+struct SkinningWork<'a, O> {
     job: &'a SkinningJob,
     blend: Blend,
     palette: &'a [Affine3A; BONES],
     duals: &'a [DualQuat; BONES],
-    out: Shared<WriteColumn<'a>>,
+    out: Shared<O>,
 }
 
-impl SkinningWork<'_> {
+impl<O: SkinOutput> SkinningWork<'_, O> {
     #[expect(unsafe_code, reason = "the workers share the posed surface")]
     fn runs(&self, runs: Range<usize>) {
         let SkinLayout { runs: all, filled, rest, .. } = &self.job.layout;
         // SAFETY: each run of the layout, which nobody outside of this room can make or change, has blocks of its own, and
-        // the two shares of a run have different ones: no place is written twice, and none is read.
+        // the two shares of a run have different ones, and a spare vertex each in a mesh: no place is written by both, and
+        // none is read.
         let out = unsafe { self.out.open() };
         let surface = SkinSurface { runs: &all[runs], filled, rest: ReadColumn::new(rest.as_slice()), out };
         match self.blend {

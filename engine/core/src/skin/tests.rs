@@ -8,7 +8,7 @@ use glam::{Affine3A, Quat, Vec3};
 use toile_assets::mesh::{Influences, SkinWeights, WideWeights};
 use toile_assets::skeleton::BONES;
 
-use super::{Blend, Posed, SkinError, SkinningJob, dual_palette, pruning};
+use super::{Blend, Posed, PosedMesh, SkinError, SkinningJob, dual_palette, pruning};
 use crate::lanes::Width;
 use crate::workers::WorkerPool;
 
@@ -67,6 +67,11 @@ fn posed(job: &SkinningJob, blend: Blend, palette: &[Affine3A; BONES]) -> Posed 
     posed
 }
 
+/// The same of a surface in the order of the mesh.
+fn mesh_bits(mesh: &PosedMesh) -> Vec<u32> {
+    mesh.vertices().iter().flat_map(|v| v.position.into_iter().chain(v.normal)).map(f32::to_bits).collect()
+}
+
 /// All numbers of a surface, by their bits.
 fn bits(posed: &Posed) -> Vec<u32> {
     let numbers = |v: usize| [posed.position(v), posed.normal(v)].map(|v| v.to_array());
@@ -88,6 +93,9 @@ fn every_width_and_both_workers_give_the_same_bits() {
                     let mut shared = job.posed();
                     assert!(job.run_with(&mut pool, blend, &crowd.palette, &mut shared));
                     assert_eq!(bits(&shared), truth, "{N} influences, {blend}, {width} lanes, {workers} workers");
+                    let mut mesh = job.posed_mesh();
+                    assert!(job.run_mesh_with(&mut pool, blend, &crowd.palette, &mut mesh));
+                    assert_eq!(mesh_bits(&mesh), truth, "{N} influences, {blend}, {width} lanes, {workers} workers");
                 }
             }
         }

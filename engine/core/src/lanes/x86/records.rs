@@ -163,3 +163,57 @@ impl Sixteen {
         }
     }
 }
+
+// Double records: eight vectors become `N` runs of eight numbers. Two turns, and their quarters side by side.
+impl Four {
+    #[inline(always)]
+    pub(super) unsafe fn write_doubles([a, b, c, d, e, f, g, h]: [Self; DOUBLE], to: RecordsAt<'_>, k: usize) {
+        let first = Self::turned([a.0, b.0, c.0, d.0]);
+        let second = Self::turned([e.0, f.0, g.0, h.0]);
+        for i in 0..4 {
+            unsafe {
+                _mm_storeu_ps(to.place(k + i), first[i]);
+                _mm_storeu_ps(to.place(k + i).add(RECORD), second[i]);
+            }
+        }
+    }
+}
+
+impl Eight {
+    #[inline(always)]
+    pub(super) unsafe fn write_doubles([a, b, c, d, e, f, g, h]: [Self; DOUBLE], to: RecordsAt<'_>, k: usize) {
+        unsafe {
+            let first = Self::turned([a.0, b.0, c.0, d.0]);
+            let second = Self::turned([e.0, f.0, g.0, h.0]);
+            for i in 0..4 {
+                _mm256_storeu_ps(to.place(k + i), _mm256_permute2f128_ps::<0x20>(first[i], second[i]));
+                _mm256_storeu_ps(to.place(k + i + 4), _mm256_permute2f128_ps::<0x31>(first[i], second[i]));
+            }
+        }
+    }
+}
+
+impl Sixteen {
+    #[inline(always)]
+    pub(super) unsafe fn write_doubles([a, b, c, d, e, f, g, h]: [Self; DOUBLE], to: RecordsAt<'_>, k: usize) {
+        unsafe {
+            let first = Self::turned([a.0, b.0, c.0, d.0]);
+            let second = Self::turned([e.0, f.0, g.0, h.0]);
+            let low = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
+            let high = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+            for i in 0..4 {
+                let (first, second) = (_mm512_castps_pd(first[i]), _mm512_castps_pd(second[i]));
+                Self::halves(_mm512_permutex2var_pd(first, low, second), to, k + i);
+                Self::halves(_mm512_permutex2var_pd(first, high, second), to, k + i + 8);
+            }
+        }
+    }
+    #[inline(always)]
+    unsafe fn halves(two: __m512d, to: RecordsAt<'_>, k: usize) {
+        unsafe {
+            let two = _mm512_castpd_ps(two);
+            _mm256_storeu_ps(to.place(k), _mm512_castps512_ps256(two));
+            _mm256_storeu_ps(to.place(k + 4), _mm512_extractf32x8_ps::<1>(two));
+        }
+    }
+}
