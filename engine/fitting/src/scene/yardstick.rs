@@ -5,6 +5,7 @@ use std::hint::black_box;
 
 use glam::Affine3A;
 use toile_assets::body::BodyError;
+use toile_engine::lanes::{Kernel, Lanes, Width};
 
 use super::surface::Surface;
 use crate::timing;
@@ -43,9 +44,10 @@ impl Yardstick {
 
     /// Its time on this machine now (us, median of many passes).
     pub fn read_us(&self) -> f64 {
-        let mut posed = vec![[[0.0; 3]; 2]; VERTICES];
+        let (mut posed, width) = (vec![[[0.0; 3]; 2]; VERTICES], Width::widest());
         timing::median_us(|| {
-            blend(black_box(&self.palette), black_box(&self.vertices), &mut posed);
+            let (palette, vertices) = black_box((&self.palette, &self.vertices));
+            width.run(PlainBlend { palette, vertices, posed: &mut posed });
             black_box(&posed);
         })
     }
@@ -76,8 +78,25 @@ fn rows(matrix: &Affine3A) -> Matrix {
     std::array::from_fn(|row| [m[0][row], m[1][row], m[2][row], t[row]])
 }
 
+/// The loop, compiled for the instructions that this processor has: nothing in it asks for lanes, but the compiler may.
+struct PlainBlend<'a> {
+    palette: &'a [Matrix],
+    vertices: &'a [Vertex],
+    posed: &'a mut [[[f32; 3]; 2]],
+}
+
+impl Kernel for PlainBlend<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        blend(self.palette, self.vertices, self.posed);
+    }
+}
+
 /// The loop itself: every influence moves the vertex, and the weighted sum is where it ends. The normals keep the
 /// length that the sum gives them.
+#[inline(always)]
 fn blend(palette: &[Matrix], vertices: &[Vertex], posed: &mut [[[f32; 3]; 2]]) {
     for (vertex, posed) in vertices.iter().zip(posed) {
         let ([x, y, z], [nx, ny, nz]) = (vertex.position, vertex.normal);
