@@ -51,14 +51,15 @@ static void count_allocations() {
 struct Options {
     int verts = 4096, iterations = 5, threads = 1, hz = 120, runs = 5, steps = 600;
     std::string motion = "walk", bend = "distance", lra = "geodesic";
-    double bend_compliance = -1;  // Below 0: by the mass of a vertex.
+    double compliance = 0;
+    double shear_compliance = -1, bend_compliance = -1;  // Below 0: by the mass of a vertex.
 };
 
 [[noreturn]] static void refuse(const std::string &why) {
     std::fprintf(stderr,
                  "%s\noptions: --verts N (a square) --motion walk|fast|settled --iterations N --threads N "
-                 "--hz 120|240|... --runs N --steps N --bend none|distance|dihedral --bend-compliance X "
-                 "--lra none|geodesic|euclidean\n",
+                 "--hz 120|240|... --runs N --steps N --compliance X --shear-compliance X --bend-compliance X "
+                 "--bend none|distance|dihedral --lra none|geodesic|euclidean\n",
                  why.c_str());
     std::exit(2);
 }
@@ -77,6 +78,8 @@ static Options read_options(int count, char **words) {
         else if (name == "--steps") o.steps = std::atoi(words[i + 1]);
         else if (name == "--motion") o.motion = value;
         else if (name == "--bend") o.bend = value;
+        else if (name == "--compliance") o.compliance = std::atof(words[i + 1]);
+        else if (name == "--shear-compliance") o.shear_compliance = std::atof(words[i + 1]);
         else if (name == "--bend-compliance") o.bend_compliance = std::atof(words[i + 1]);
         else if (name == "--lra") o.lra = value;
         else refuse("unknown option " + name);
@@ -85,8 +88,10 @@ static Options read_options(int count, char **words) {
     if (side < 4 || side * side != o.verts) refuse("--verts is not a square of 4 or more");
     if (o.hz < 120 || o.hz % 120 != 0) refuse("--hz is not a multiple of 120");
     if (o.iterations < 1 || o.threads < 1 || o.runs < 1 || o.steps < 1) refuse("a count is below 1");
-    // Jolt's bend compliance is made for vertices of 1 kg; the same stiffness against a lighter vertex's inertia:
-    if (o.bend_compliance < 0) o.bend_compliance = 1e-5 * o.verts / scene::kMass;
+    // Jolt's sample cloth has a compliance of 1e-5 at 1 kg a vertex; this is as stiff against a lighter vertex.
+    const double like_sample = 1e-5 * o.verts / scene::kMass;
+    if (o.shear_compliance < 0) o.shear_compliance = like_sample;
+    if (o.bend_compliance < 0) o.bend_compliance = like_sample;
     return o;
 }
 
@@ -116,7 +121,8 @@ static JPH::Ref<Shared> cloth_settings(const scene::Skirt &skirt, const Options 
         shared->mVertices.push_back(vertex);
     }
     for (const auto &t : skirt.triangles) shared->AddFace(Shared::Face(t[0], t[1], t[2]));
-    const Shared::VertexAttributes attributes(0.0f, 0.0f, float(o.bend_compliance), lra_type(o.lra));
+    const Shared::VertexAttributes attributes(float(o.compliance), float(o.shear_compliance), float(o.bend_compliance),
+                                              lra_type(o.lra));
     shared->CreateConstraints(&attributes, 1, bend_type(o.bend));
     shared->Optimize();
     return shared;
@@ -292,9 +298,10 @@ static void print(Stage &stage, const Options &o, const Times &t, const scene::M
     std::printf("{\"engine\": \"Jolt Physics\", \"version\": \"%d.%d.%d\", \"build\": \"%s\", ", JPH_VERSION_MAJOR,
                 JPH_VERSION_MINOR, JPH_VERSION_PATCH, JPH::GetConfigurationString());
     std::printf("\"options\": {\"verts\": %d, \"motion\": \"%s\", \"iterations\": %d, \"threads\": %d, \"hz\": %d, "
-                "\"runs\": %d, \"steps\": %d, \"bend\": \"%s\", \"bend_compliance\": %g, \"lra\": \"%s\"}, ",
-                o.verts, o.motion.c_str(), o.iterations, o.threads, o.hz, o.runs, o.steps, o.bend.c_str(),
-                o.bend_compliance, o.lra.c_str());
+                "\"runs\": %d, \"steps\": %d, \"compliance\": %g, \"shear_compliance\": %g, \"bend\": \"%s\", "
+                "\"bend_compliance\": %g, \"lra\": \"%s\"}, ",
+                o.verts, o.motion.c_str(), o.iterations, o.threads, o.hz, o.runs, o.steps, o.compliance,
+                o.shear_compliance, o.bend.c_str(), o.bend_compliance, o.lra.c_str());
     std::printf("\"edges\": %zu, \"dihedrals\": %zu, \"attachments\": %zu, ", stage.edges(), stage.dihedrals(),
                 stage.attachments());
     std::printf("\"step_us\": {\"p50\": %.1f, \"p99\": %.1f}, \"run_p50_us\": [", scene::quantile(t.run_medians, .5),

@@ -1,4 +1,4 @@
-// Times ozz-animation's skinning job beside a plain scalar loop that does the same work. Prints one JSON object.
+// Times ozz-animation's skinning job beside plain scalar loops that do the same work. Prints one JSON object.
 #include "skirt_scene.h"
 
 #include "ozz/base/maths/simd_math.h"
@@ -127,6 +127,25 @@ static ozz::geometry::SkinningJob make_job(const Mesh &mesh, const std::vector<o
     }
 }
 
+// The same sum with the matrices blended first, and the vertex moved once.
+[[gnu::noinline]] static void blend_matrices(const Matrix *palette, const Mesh &mesh, Skinned &out) {
+    for (int v = 0; v < kVertices; ++v) {
+        Matrix sum = {};
+        for (int i = 0; i < kInfluences; ++i) {
+            const Matrix &m = palette[mesh.bones[kInfluences * v + i]];
+            const float weight = mesh.weights[kInfluences * v + i];
+            for (int axis = 0; axis < 3; ++axis)
+                for (int column = 0; column < 4; ++column) sum.row[axis][column] += weight * m.row[axis][column];
+        }
+        const float *p = &mesh.positions[3 * v], *n = &mesh.normals[3 * v];
+        for (int axis = 0; axis < 3; ++axis) {
+            const float *row = sum.row[axis];
+            out.positions[3 * v + axis] = row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3];
+            out.normals[3 * v + axis] = row[0] * n[0] + row[1] * n[1] + row[2] * n[2];
+        }
+    }
+}
+
 template <typename Work>
 static double median_us(int repetitions, Work work) {
     std::vector<double> times;
@@ -157,7 +176,7 @@ int main(int count, char **words) {
     const Mesh mesh = make_mesh(random);
     const std::vector<Matrix> palette = make_palette(random);
     const std::vector<ozz::math::Float4x4> columns = ozz_palette(palette);
-    Skinned by_ozz, by_loop;
+    Skinned by_ozz, by_loop, by_matrix;
     const ozz::geometry::SkinningJob job = make_job(mesh, columns, by_ozz);
     if (!job.Run()) {
         std::fprintf(stderr, "ozz refuses the job\n");
@@ -165,9 +184,12 @@ int main(int count, char **words) {
     }
     const double ozz_us = median_us(repetitions, [&] { job.Run(); });
     const double scalar_us = median_us(repetitions, [&] { blend(palette.data(), mesh, by_loop); });
+    const double matrices_us = median_us(repetitions, [&] { blend_matrices(palette.data(), mesh, by_matrix); });
     std::printf("{\"engine\": \"ozz-animation\", \"version\": \"" OZZ_VERSION_TEXT "\", \"simd\": \"%s\", "
                 "\"vertices\": %d, \"influences\": %d, \"bones\": %d, \"repetitions\": %d, \"us\": {\"p50\": %.2f}, "
-                "\"scalar_us\": %.2f, \"max_error_m\": %.3g, \"max_error_normal\": %.3g}\n",
+                "\"scalar_us\": %.2f, \"scalar_matrices_us\": %.2f, \"max_error_m\": %.3g, \"max_error_normal\": %.3g}\n",
                 ozz::math::SimdImplementationName(), kVertices, kInfluences, kBones, repetitions, ozz_us, scalar_us,
-                worst(by_ozz.positions, by_loop.positions), worst(by_ozz.normals, by_loop.normals));
+                matrices_us,
+                std::max(worst(by_ozz.positions, by_loop.positions), worst(by_matrix.positions, by_loop.positions)),
+                std::max(worst(by_ozz.normals, by_loop.normals), worst(by_matrix.normals, by_loop.normals)));
 }

@@ -1,6 +1,7 @@
-//! The scenes: the cantilever in four meshes, the skirt in three, the garments of the wardrobe on an average mannequin.
+//! The scenes: the cantilever in four meshes, the skirt in three and meshed irregularly, the garments of the wardrobe on an average mannequin.
 
 use glam::DVec3;
+use toile_assets::garment::Shape;
 use toile_assets::scene::shopper;
 use toile_assets::scene::skirt::{self, Motion, Stretch};
 use toile_engine::colliders::{Colliders, RestSphere};
@@ -11,7 +12,10 @@ use crate::validate::mesh::{CaseFabric, EndSupport, MeshStyle, Strip};
 use crate::worn::AverageBody;
 
 /// Names of all scenes, in the order in which they are run.
-pub const SCENES: [&str; 6] = ["cantilever", "skirt", "sun-dress", "t-shirt", "wide-trousers", "drape"];
+pub const SCENES: [&str; 7] = ["cantilever", "skirt", IRREGULAR, "sun-dress", "t-shirt", "wide-trousers", "drape"];
+
+/// The skirt as meshes are that nobody laid out in rows.
+const IRREGULAR: &str = "skirt-irregular";
 
 /// Time of the walk that is compared (s): the legs swing once to and fro.
 const WALK_S: f64 = 1.0;
@@ -37,7 +41,13 @@ pub fn subjects(name: &str, quick: bool) -> Result<Vec<MeshedScene>, ParetoError
         }
         "skirt" => {
             let sides: &[usize] = if quick { &[32, 16] } else { &[64, 32, 96] };
-            sides.iter().enumerate().map(|(k, side)| walk(*side, k == 0, quick)).collect()
+            let grid = |side: usize| ("skirt", format!("grid {side} x {side}"), skirt::shape(side));
+            sides.iter().enumerate().map(|(k, side)| walk(grid(*side), k == 0, quick)).collect()
+        }
+        IRREGULAR => {
+            let side = if quick { 32 } else { 64 };
+            let mesh = (IRREGULAR, format!("irregular {}", side * side), skirt::irregular(side, 1));
+            Ok(vec![walk(mesh, true, quick)?])
         }
         garment => Ok(vec![worn(garment, quick)?]),
     }
@@ -61,13 +71,16 @@ fn cantilever(rows: usize, main: bool) -> Result<MeshedScene, ParetoError> {
     })
 }
 
-fn walk(side: usize, main: bool, quick: bool) -> Result<MeshedScene, ParetoError> {
-    let shape = skirt::shape(side);
+fn walk(
+    (scene, mesh, shape): (&'static str, String, Shape),
+    main: bool,
+    quick: bool,
+) -> Result<MeshedScene, ParetoError> {
     let rest =
         skirt::JOINTS.map(|(p, r)| RestSphere { bone: 0, centre: DVec3::from_array(p).as_vec3(), radius: r as f32 });
     Ok(MeshedScene {
-        scene: "skirt",
-        mesh: format!("grid {side} x {side}"),
+        scene,
+        mesh,
         main,
         fabric: skirt::fabric(&shape, Stretch::Inextensible),
         shape,
