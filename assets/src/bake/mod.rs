@@ -34,6 +34,11 @@ const LINKS_A_SUBSTEP: f32 = 16.0;
 /// Fewest substeps: what the legs do to the hem within a step does not get less with the mesh.
 const LEAST_SUBSTEPS: f32 = 4.0;
 
+/// Substeps of a mesh whose links lie in no rows, over those of one whose links do: each of its substeps solves everything
+/// once ([`Layout::is_scattered`]). On the benchmark's irregular skirt 16 such substeps take .85 of the time of 10 that solve
+/// hoops and fibers in turn, and leave as much strain in the mean and three quarters in the 99th percentile.
+const SCATTERED: f32 = 1.6;
+
 /// Bakes one shape in one fabric. Errors name the face or vertex at fault.
 pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Garment, MeshError> {
     check::check(&shape.cut, &shape.faces)?;
@@ -92,10 +97,9 @@ fn substeps(edges: &[fibers::Edge], layout: &Layout, hanging: f32) -> u32 {
     let lengths = edges.iter().filter(|e| e.direction == Direction::Warp).map(|e| e.rest);
     let mean = lengths.clone().sum::<f32>() / lengths.count().max(1) as f32;
     let links = layout.tethers.length.iter().copied().fold(0.0, f32::max) / mean.max(f32::MIN_POSITIVE);
-    let tuples = [&layout.shear.tuples, &layout.weft.tuples];
-    let [loose, all] = tuples.iter().fold([0, layout.diagonals.count()], |[l, a], t| [l + t.loose.len(), a + t.count]);
+    let [loose, all] = layout.loose_links();
     let irregular = loose as f32 / (all.max(1)) as f32;
-    let more = 1.0 + irregular + (1.0 - hanging).max(0.0);
+    let more = (1.0 + irregular + (1.0 - hanging).max(0.0)) * if layout.is_scattered() { SCATTERED } else { 1.0 };
     ((links / LINKS_A_SUBSTEP).max(LEAST_SUBSTEPS) * more).round() as u32
 }
 

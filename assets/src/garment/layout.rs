@@ -379,6 +379,19 @@ pub struct Layout {
 }
 
 impl Layout {
+    /// Links of shear and weft that lie in no row, and all of them.
+    pub fn loose_links(&self) -> [usize; 2] {
+        let all = [&self.shear.tuples, &self.weft.tuples];
+        all.iter().fold([0, self.diagonals.count()], |[loose, all], t| [loose + t.loose.len(), all + t.count])
+    }
+
+    /// Whether most of them lie in no row: then more substeps that solve everything once are worth more than fewer that solve
+    /// hoops and fibers in turn.
+    pub fn is_scattered(&self) -> bool {
+        let [loose, all] = self.loose_links();
+        2 * loose > all
+    }
+
     /// Calls `each(particles, coefficient)` for every sum that bends: the stencils of three, those of four, the sums of each
     /// hub; `coefficient(k)` is that of the `k`th particle (sqrt(N/m)).
     pub fn for_each_bend(&self, mut each: impl FnMut(&[u32], &dyn Fn(usize) -> f32)) {

@@ -41,6 +41,13 @@ struct WorkgroupTables {
     wind: usize,
     diagonals: Vec<usize>,
     shear: Vec<usize>,
+    stretch: StretchTables,
+    /// The same without the garments that are solved once a substep.
+    again: StretchTables,
+}
+
+/// Tables of what is solved more than once a substep.
+struct StretchTables {
     weft: Vec<usize>,
     lists: Vec<usize>,
     fibers: usize,
@@ -56,10 +63,8 @@ impl StepProgram {
             wind: this.table(&flat.wind.groups),
             diagonals: flat.diagonals.families.iter().map(|g| this.table(g)).collect(),
             shear: flat.shear.halves.iter().map(|g| this.table(g)).collect(),
-            weft: flat.weft.halves.iter().map(|g| this.table(g)).collect(),
-            lists: flat.lists.sets.iter().map(|g| this.table(g)).collect(),
-            fibers: this.table(&flat.fibers.groups),
-            cyclic: this.table(&flat.fibers.cyclic),
+            stretch: this.stretch(flat, &vec![false; flat.scattered.len()]),
+            again: this.stretch(flat, &flat.scattered),
         };
         let all = |kernel| Dispatch { kernel, table: tables.everyone, fresh: false, op: 0 };
         let first = [Kernel::Repair, Kernel::Teleport, Kernel::ContactCandidates];
@@ -108,7 +113,21 @@ impl StepProgram {
         self.tables.iter().flat_map(|(groups, _)| groups.groups.iter().copied()).collect()
     }
 
+    fn stretch(&mut self, flat: &Flat, skipped: &[bool]) -> StretchTables {
+        let mut table = |groups: &Workgroups| self.table(&groups.without(skipped));
+        StretchTables {
+            weft: flat.weft.halves.iter().map(&mut table).collect(),
+            lists: flat.lists.sets.iter().map(&mut table).collect(),
+            fibers: table(&flat.fibers.groups),
+            cyclic: table(&flat.fibers.cyclic),
+        }
+    }
+
+    /// The number of a table, which is a new one unless it is there already.
     fn table(&mut self, groups: &Workgroups) -> usize {
+        if let Some(same) = self.tables.iter().position(|(known, _)| known == groups) {
+            return same;
+        }
         let first = self.tables.last().map_or(0, |(last, first)| first + last.groups.len() as u32);
         self.tables.push((groups.clone(), first));
         self.tables.len() - 1
@@ -117,18 +136,20 @@ impl StepProgram {
     /// The dispatches of a substep; `whole` solves hoops and fibers alternately.
     fn substep(&self, tables: &WorkgroupTables, whole: bool) -> Vec<Dispatch> {
         let entry = |kernel, table, fresh| Dispatch { kernel, table, fresh, op: 0 };
-        let wefts = |fresh: bool| tables.weft.iter().map(move |&t| entry(Kernel::Weft, t, fresh));
-        let lists = |fresh: bool| tables.lists.iter().map(move |&t| entry(Kernel::Lists, t, fresh));
-        let warps = [(Kernel::Fibers, tables.fibers), (Kernel::Cyclic, tables.cyclic)];
-        let fibers = |fresh: bool| lists(fresh).chain(warps.map(|(kernel, table)| entry(kernel, table, fresh)));
+        let wefts =
+            |of: &StretchTables, fresh| of.weft.iter().map(|&t| entry(Kernel::Weft, t, fresh)).collect::<Vec<_>>();
+        let fibers = |of: &StretchTables, fresh| {
+            let warps = [entry(Kernel::Fibers, of.fibers, fresh), entry(Kernel::Cyclic, of.cyclic, fresh)];
+            of.lists.iter().map(|&t| entry(Kernel::Lists, t, fresh)).chain(warps).collect::<Vec<_>>()
+        };
         let mut entries =
             vec![entry(Kernel::Bending, tables.everyone, false), entry(Kernel::Predict, tables.everyone, false)];
         entries.extend(tables.diagonals.iter().map(|&t| entry(Kernel::Diagonals, t, false)));
         entries.extend(tables.shear.iter().map(|&t| entry(Kernel::Shear, t, false)));
-        entries.extend(wefts(true).chain(fibers(true)));
+        entries.extend([wefts(&tables.stretch, true), fibers(&tables.stretch, true)].concat());
         if whole {
-            entries
-                .extend(wefts(false).chain(wefts(false)).chain(fibers(false)).chain(wefts(false)).chain(wefts(false)));
+            let [hoops, warps] = [wefts(&tables.again, false), fibers(&tables.again, false)];
+            entries.extend([&*hoops, &*hoops, &*warps, &*hoops, &*hoops].concat());
         }
         entries.push(entry(Kernel::Tethers, tables.everyone, false));
         entries.push(entry(Kernel::Contact, tables.everyone, false));

@@ -21,6 +21,12 @@ pub fn skirt(n: usize, stretch: Stretch) -> Garment {
     bake("skirt", "one size", &shape, &skirt::fabric(&shape, stretch)).expect("the skirt bakes")
 }
 
+/// The same meshed irregularly.
+pub fn irregular(n: usize, stretch: Stretch) -> Garment {
+    let shape = skirt::irregular(n, 1);
+    bake("irregular", "one size", &shape, &skirt::fabric(&shape, stretch)).expect("the skirt bakes")
+}
+
 /// A garment of the wardrobe on the average woman.
 pub fn worn(name: &str) -> Garment {
     let style = wardrobe::style(name).expect("the garment is built in");

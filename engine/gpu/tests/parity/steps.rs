@@ -5,7 +5,7 @@ use toile_assets::garment::Garment;
 use toile_assets::scene::skirt::{self as scene, Motion, Stretch};
 use toile_engine::cloth::{Cloth, Quality, RootSettings, Settings, Wind, measure};
 
-use crate::scene::{REST, apart, around, nobody, offload, offload_worn, skirt, swaying, walker, worn};
+use crate::scene::{REST, apart, around, irregular, nobody, offload, offload_worn, skirt, swaying, walker, worn};
 
 /// How the body walks.
 const MOTION: Motion = Motion::Walk;
@@ -119,6 +119,17 @@ fn garments_of_one_scene_do_not_see_each_other() {
     // With as many substeps for each, and with fewer than they ask for.
     held(&garments, &Settings { substeps: Some(3), ..Settings::default() }, 4);
     held(&garments, &Settings { substep_share: 0.5, ..Settings::default() }, 4);
+}
+
+#[test]
+fn a_garment_solved_once_a_substep_stands_beside_others() {
+    let scattered = irregular(20, Stretch::Physical);
+    assert!(scattered.layout().is_scattered());
+    let garments = [skirt(18, Stretch::Inextensible), scattered, worn("t-shirt")];
+    let garments: Vec<&Garment> = garments.iter().collect();
+    held(&garments[1..2], &Settings::default(), 20);
+    held(&garments, &Settings::default(), 12);
+    held(&garments, &Settings { substeps: Some(5), ..Settings::default() }, 4);
 }
 
 /// A gust, and a root of which little is felt.

@@ -53,6 +53,8 @@ pub struct Flat {
     pub tethers: Vec<[u32; 2]>,
     /// The capsules that each particle can touch at all, a bit each `[particles]`.
     pub reach: Vec<u32>,
+    /// Which garments are solved once a substep `[garments]`.
+    pub scattered: Vec<bool>,
     /// Workgroups over the particles.
     pub everyone: Workgroups,
     /// Shear links that lie in no fiber.
@@ -107,6 +109,7 @@ impl Flat {
         self.targets += garment.fixed.len() as u32;
         let tethers = layout.tethers.anchor.iter().zip(&layout.tethers.length);
         self.tethers.extend(tethers.map(|(a, l)| [span.first + a, l.to_bits()]));
+        self.scattered.push(layout.is_scattered());
         self.everyone.add(number, span.first, span.len, 0);
         self.shear.add(&layout.shear, weights, span, 0);
         self.weft.add(&layout.weft, weights, span, SOFT_WEFT);
@@ -217,5 +220,9 @@ mod tests {
         assert_eq!(groups.groups, [[0, 0, 64, 7], [0, 64, 64, 7], [0, 128, 2, 7], [2, 200, 64, 7]]);
         assert_eq!([0, 1, 2, 3, 9].map(|n| groups.of(n)), [0, 3, 3, 4, 4]);
         assert_eq!(Workgroups::default().of(3), 0);
+        let others = groups.without(&[true, false, false]);
+        assert_eq!(others.groups, [[2, 200, 64, 7]]);
+        assert_eq!([0, 1, 2, 3, 9].map(|n| others.of(n)), [0, 0, 0, 1, 1]);
+        assert_eq!(groups.without(&[false; 3]), groups);
     }
 }

@@ -45,6 +45,18 @@ impl Workgroups {
         }
     }
 
+    /// The same without those of some garments `[garments]`.
+    pub fn without(&self, some: &[bool]) -> Self {
+        let (mut kept, mut from) = (Self::default(), 0);
+        for (garment, end) in self.ends.iter().enumerate() {
+            kept.begin(garment as u32);
+            let groups = &self.groups[from..*end as usize];
+            groups.iter().filter(|_| !some[garment]).for_each(|group| kept.push(*group));
+            from = *end as usize;
+        }
+        kept
+    }
+
     /// Workgroups of the first so many garments.
     pub fn of(&self, garments: usize) -> u32 {
         let last = garments.min(self.ends.len());
