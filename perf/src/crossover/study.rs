@@ -146,7 +146,7 @@ fn row(options: &SkirtOptions, backends: &Backends) -> Result<CrossoverRow, Skir
     }
     let [first, second, third] = sides;
     let fallen = device.stepper().fallback().map(str::to_owned);
-    let device_us = fallen.is_none().then(|| device.stages_us(3).1).flatten();
+    let device_us = fallen.is_none().then(|| device.metered_stages(3).device_us).flatten();
     let work = device.stepper().work();
     Ok(CrossoverRow {
         verts: options.verts,

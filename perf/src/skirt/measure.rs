@@ -13,7 +13,7 @@ use super::error::SkirtError;
 use super::gauge::{FrameErrors, Gauge};
 use super::options::{SkirtOptions, WARM_UP};
 use super::report::{self, SkirtReport};
-use super::scene::SkirtScene;
+use super::scene::{MeteredStages, SkirtScene};
 use crate::backend::SteppedBy;
 
 /// Steps at the end over which the greatest energy of motion is looked for: a second.
@@ -55,8 +55,8 @@ pub(super) fn measure_with(
     let mut report = run.report(&scene, median(&mut readings).unwrap_or(0.0));
     report.events = scene.events().since(before);
     let metered = METERED_STEPS.min(options.steps.max(1));
-    let (stages_us, device_us) = scene.stages_us(metered);
-    (report.stages_us, report.device_us) = (stages_us.into_iter().collect(), device_us);
+    let MeteredStages { stages_us, greater_share_us, device_us } = scene.metered_stages(metered);
+    (report.stages_us, report.greater_share_us, report.device_us) = (stages_us, greater_share_us, device_us);
     report.stepped_by = SteppedBy::of(backends);
     report.decided_by = scene.stepper().measured().map(Into::into);
     Ok(report)

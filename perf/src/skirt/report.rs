@@ -113,6 +113,9 @@ pub struct SkirtReport {
     pub device_us: Option<f64>,
     /// Mean time of each stage of a step (us), as far as the engine or the device reports them.
     pub stages_us: BTreeMap<&'static str, f64>,
+    /// Of these the greater of the two workers' shares, phase by phase (us): what two threads cannot go below; empty where the garment
+    /// is not shared.
+    pub greater_share_us: BTreeMap<&'static str, f64>,
     /// Heap allocations a step, of all threads, where they are counted.
     pub allocations_per_step: Option<f64>,
     /// Heap bytes of the baked garment and of all skirts' states, where they are counted.

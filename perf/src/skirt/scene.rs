@@ -1,5 +1,7 @@
 //! The skirt on its body, ready to be stepped: baked, placed and moved by the scene's clock.
 
+use std::collections::BTreeMap;
+
 use glam::{Affine3A, Vec3, Vec3A, Vec4};
 use toile_assets::bake::bake;
 use toile_assets::garment::{Garment, Shape};
@@ -21,6 +23,16 @@ use super::options::{MAX_GARMENTS, MESH_SEED, SkirtMesh, SkirtOptions};
 
 /// The body's spheres: centre and radius, world (m).
 pub type Spheres = [Vec4; skirt::SPHERES];
+
+/// Mean times of a step's stages (us).
+pub struct MeteredStages {
+    /// Each stage, as far as the engine or the device reports them.
+    pub stages_us: BTreeMap<&'static str, f64>,
+    /// Of these the greater of the two owners' shares, phase by phase; empty where all is one owner's.
+    pub greater_share_us: BTreeMap<&'static str, f64>,
+    /// A whole step by the device's own clock, where it has one.
+    pub device_us: Option<f64>,
+}
 
 /// One or several skirts on one body.
 pub struct SkirtScene {
@@ -170,11 +182,10 @@ impl SkirtScene {
         self.cloths.iter().map(|c| ClothEvents::from(c.events)).sum()
     }
 
-    /// Takes some steps more with the meters on, the engine's own or the device's clock: the mean time of each stage of a step, all
-    /// skirts, and on a device of the whole (us).
-    pub fn stages_us(&mut self, steps: usize) -> (Vec<(&'static str, f64)>, Option<f64>) {
+    /// Takes some steps more with the meters on, the engine's own or the device's clock; all skirts together.
+    pub fn metered_stages(&mut self, steps: usize) -> MeteredStages {
         self.settings.timed = true;
-        let (mut sums, mut whole) = ([0.0; METERED_STAGES.len()], None);
+        let (mut sums, mut greater, mut whole) = ([0.0; METERED_STAGES.len()], [0.0; METERED_STAGES.len()], None);
         for _ in 0..steps {
             self.prepare();
             self.step();
@@ -183,14 +194,20 @@ impl SkirtScene {
                 sums.iter_mut().zip(spent.stages_ns).for_each(|(sum, ns)| *sum += ns);
                 whole = Some(whole.unwrap_or(0.0) + spent.whole_ns);
             } else {
-                let stages = self.cloths.iter().map(|c| c.stage_ns);
-                stages.for_each(|ns| sums.iter_mut().zip(ns).for_each(|(sum, ns)| *sum += ns as f64));
+                for cloth in &self.cloths {
+                    sums.iter_mut().zip(cloth.stage_ns).for_each(|(sum, ns)| *sum += ns as f64);
+                    greater.iter_mut().zip(cloth.greater_share_ns).for_each(|(sum, ns)| *sum += ns as f64);
+                }
             }
         }
         self.settings.timed = false;
         let mean = 1e-3 / steps as f64;
-        let stages = METERED_STAGES.into_iter().zip(sums).map(|(name, ns)| (name, ns * mean)).collect();
-        (stages, whole.map(|ns| ns * mean))
+        let named =
+            |sums: [f64; METERED_STAGES.len()]| METERED_STAGES.into_iter().zip(sums.map(|ns| ns * mean)).collect();
+        let device_us = whole.map(|ns: f64| ns * mean);
+        let shared = !self.garment.layout().spans[1].is_empty();
+        let greater_share_us = if shared { named(greater) } else { BTreeMap::new() };
+        MeteredStages { stages_us: named(sums), greater_share_us, device_us }
     }
 
     /// Mass of each particle that moves, 0 of one that is pinned (kg).

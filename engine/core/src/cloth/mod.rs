@@ -94,8 +94,12 @@ pub struct Cloth {
     pub events: guard::GuardEvents,
     /// Time spent in each of [`METERED_STAGES`] during the last step that was metered (ns).
     pub stage_ns: [u64; METERED_STAGES.len()],
+    /// Of these the greater share of each phase (ns): what two workers cannot go below.
+    pub greater_share_ns: [u64; METERED_STAGES.len()],
     /// Steps in a row that were rolled back.
     rolled: u32,
+    /// Whether the state is as the last step has found it to be sound: nobody has written to it since.
+    checked: bool,
 }
 
 impl Cloth {
@@ -124,7 +128,9 @@ impl Cloth {
             faces: None,
             events: guard::GuardEvents::default(),
             stage_ns: [0; METERED_STAGES.len()],
+            greater_share_ns: [0; METERED_STAGES.len()],
             rolled: 0,
+            checked: false,
             positions: start,
         }
     }
@@ -143,6 +149,7 @@ impl Cloth {
 
     /// Puts a particle somewhere, with a velocity (m, m/s): how tests and scenes disturb a garment.
     pub fn disturb(&mut self, particle: usize, position: Vec3A, velocity: Vec3A) {
+        self.checked = false;
         let columns = self.state.columns();
         state::set(columns.x, particle, position);
         state::set(columns.previous, particle, position);
@@ -158,6 +165,7 @@ impl Cloth {
         if self.positions.is_empty() {
             return;
         }
+        self.checked = false;
         let columns = self.state.columns();
         for (i, what) in guard::spoil(seed, self.positions.len()) {
             match what {
@@ -174,6 +182,7 @@ impl Cloth {
 
     /// Takes over what somebody else has made of a step: positions and velocities `[particles]` (m, m/s), and the events so far.
     pub fn take_over(&mut self, positions: &[Vec3A], velocities: &[Vec3A], events: guard::GuardEvents) {
+        self.checked = false;
         let columns = self.state.columns();
         for (i, (&x, &v)) in positions.iter().zip(velocities).enumerate().take(self.positions.len()) {
             state::set(columns.x, i, x);

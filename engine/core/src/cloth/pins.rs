@@ -58,7 +58,8 @@ impl Pins {
         for (k, (&i, w)) in garment.fixed.iter().zip(&garment.fixed_weights).enumerate() {
             let rest = garment.start[i as usize].into();
             let mut p = Vec3A::ZERO;
-            for (&bone, &weight) in w.bones.iter().zip(&w.weights) {
+            // Most follow one bone or two.
+            for (&bone, &weight) in w.bones.iter().zip(&w.weights).filter(|(_, weight)| **weight != 0.0) {
                 p += palette[bone as usize].transform_point3a(rest) * weight;
             }
             if p.is_finite() {

@@ -21,25 +21,32 @@ impl Cloth {
         let step = &Step { settings: &settings, ..*step };
         let carried = self.begin(garment, step);
         let timed = step.settings.timed;
-        let mut stage_ns = [0; METERED_STAGES.len()];
+        let (mut stage_ns, mut greater_share_ns) = ([0; METERED_STAGES.len()], [0; METERED_STAGES.len()]);
         let work = self.work(garment, step, carried);
         let mut begun = timed.then(Instant::now);
         for (stage, substep) in work.prepared.program.stages() {
-            (0..OWNERS).for_each(|owner| work.run(stage, substep, owner));
-            if let Some(start) = begun {
-                let now = Instant::now();
-                stage_ns[stage.metered()] += (now - start).as_nanos() as u64;
-                begun = Some(now);
+            let mut greater = 0;
+            for owner in 0..OWNERS {
+                work.run(stage, substep, owner);
+                if let Some(start) = begun {
+                    let now = Instant::now();
+                    let share = (now - start).as_nanos() as u64;
+                    stage_ns[stage.metered()] += share;
+                    greater = greater.max(share);
+                    begun = Some(now);
+                }
             }
+            greater_share_ns[stage.metered()] += greater;
         }
         let limited = work.limited();
-        self.stage_ns = stage_ns;
+        (self.stage_ns, self.greater_share_ns) = (stage_ns, greater_share_ns);
         self.end(garment, step, limited, false);
     }
 
-    /// The same with the pool's workers, an owner's share each: the same bits.
+    /// The same with the pool's workers, an owner's share each: the same bits. A step that is timed is the caller's alone, so
+    /// that each share's time is its own.
     pub fn step_with(&mut self, pool: &mut WorkerPool, garment: &Garment, step: &Step<'_>) {
-        if pool.workers() < OWNERS || garment.layout().spans[1].is_empty() {
+        if pool.workers() < OWNERS || garment.layout().spans[1].is_empty() || step.settings.timed {
             return self.step(garment, step);
         }
         let settings = self.sound(step.settings);
@@ -71,7 +78,7 @@ impl Cloth {
         let columns = self.state.columns();
         let width = settings.width;
         // Both are looked at, because both are calmed.
-        if [columns.x, columns.v].map(|c| width.run(guard::AllFinite(c))) != [true; 2] {
+        if !self.checked && [columns.x, columns.v].map(|c| width.run(guard::AllFinite(c))) != [true; 2] {
             self.events.repaired += guard::repair(columns, &self.positions);
         }
         self.root.settings = settings.root;
@@ -102,7 +109,8 @@ impl Cloth {
         self.events.held_colliders = step.colliders.held();
         let columns = self.state.columns();
         let width = step.settings.width;
-        if !failed && width.run(guard::AllFinite(columns.x)) && width.run(guard::AllFinite(columns.v)) {
+        self.checked = !failed && [columns.x, columns.v].map(|c| width.run(guard::AllFinite(c))) == [true; 2];
+        if self.checked {
             self.rolled = 0;
         } else {
             // Rolled back again and again, it is drawn to where it was dressed.
