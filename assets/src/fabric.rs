@@ -32,6 +32,9 @@ pub struct Fabric {
     pub damping_per_s: f32,
     /// Gap kept between the cloth's middle surface and a collider (mm): half the thickness and the pile.
     pub contact_offset_mm: f32,
+    /// Thickness of the cloth as it lies on other cloth, with its pile (mm): layers keep half of both apart.
+    #[serde(default = "usual_thickness")]
+    pub thickness_mm: f32,
     /// Stretch that a wearer still finds comfortable (1): the fit map's full scale.
     pub comfortable_stretch: f32,
     /// Base colour of the cloth, sRGB 0..1.
@@ -65,6 +68,13 @@ pub const USUAL_THREADS: [f32; 2] = [24.0; 2];
 
 /// Sheen of matt cotton, where a file does not say.
 pub const USUAL_SHEEN: f32 = 0.35;
+
+/// Thickness of a shirting with its pile, where a file does not say (mm).
+pub const USUAL_THICKNESS_MM: f32 = 3.0;
+
+fn usual_thickness() -> f32 {
+    USUAL_THICKNESS_MM
+}
 
 fn usual_threads() -> [f32; 2] {
     USUAL_THREADS
@@ -140,7 +150,7 @@ impl Fabric {
     /// Accepted figures, lowest and highest: from the thinnest silk to canvas, an order of magnitude wider than the 618
     /// fabrics that were measured for the published bands (REFERENCES: density .031 to .487 kg/m2, bending rigidity .9
     /// to 109 uN m).
-    pub const RANGES: [(&'static str, f32, f32); 10] = [
+    pub const RANGES: [(&'static str, f32, f32); 11] = [
         ("density_kg_m2", 0.01, 2.0),
         ("stretch_warp_n_m", 10.0, f32::INFINITY),
         ("stretch_weft_n_m", 10.0, f32::INFINITY),
@@ -151,6 +161,7 @@ impl Fabric {
         ("friction", 0.0, 2.0),
         ("damping_per_s", 0.0, 100.0),
         ("contact_offset_mm", 0.1, 20.0),
+        ("thickness_mm", 0.1, 40.0),
     ];
 
     /// One of the figures of [`Self::RANGES`], if it is given.
@@ -166,6 +177,7 @@ impl Fabric {
             "friction" => self.friction,
             "damping_per_s" => self.damping_per_s,
             "contact_offset_mm" => self.contact_offset_mm,
+            "thickness_mm" => self.thickness_mm,
             _ => return None,
         })
     }
@@ -183,6 +195,7 @@ impl Fabric {
             "friction" => self.friction = value,
             "damping_per_s" => self.damping_per_s = value,
             "contact_offset_mm" => self.contact_offset_mm = value,
+            "thickness_mm" => self.thickness_mm = value,
             _ => {}
         }
     }

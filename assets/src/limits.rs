@@ -15,7 +15,7 @@ pub const MAX_SPHERES: usize = 2 * MAX_CAPSULES;
 pub const MAX_CAPSULES: usize = 32;
 
 /// Garments that one body wears at once: the eight layers of Ugur 2008, from underwear to an overcoat.
-pub const MAX_GARMENTS: usize = 8;
+pub const MAX_GARMENTS: usize = 10;
 
 /// Garments of one scene file: as many skirts side by side as the largest benchmark has.
 pub const MAX_SCENE_GARMENTS: usize = 64;

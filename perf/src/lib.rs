@@ -27,6 +27,7 @@ pub mod turns;
 pub mod validate;
 pub mod worn;
 
+pub mod contact;
 pub mod crossover;
 pub mod measuring;
 pub mod pareto;

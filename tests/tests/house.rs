@@ -8,11 +8,12 @@ use toile_tests::scan;
 use toile_tests::tree::{self, FLOORS};
 
 /// Files that may hold unsafe code, each with its reason.
-const UNSAFE_FILES: [(&str, &str); 16] = [
+const UNSAFE_FILES: [(&str, &str); 17] = [
     ("engine/app/src/heap.rs", "the program's allocator counts, for which it has to implement an unsafe trait"),
     ("engine/core/src/workers/per_share.rs", "what belongs to a share is lent to whoever works on it"),
     ("engine/core/src/workers/mod.rs", "a job that borrows the caller's stack is handed to another thread"),
     ("engine/core/src/cloth/work.rs", "the workers of a step share its columns"),
+    ("engine/core/src/cloth/layers/work.rs", "the workers of a step share the contacts"),
     ("engine/core/src/lanes/column.rs", "columns are raw pointers, so that copies may write through them"),
     ("engine/core/src/lanes/x86.rs", "vector instructions that are picked at run time"),
     ("engine/core/src/lanes/x86/widths.rs", "the same"),

@@ -72,9 +72,18 @@ fn crates_import_only_the_floors_below() {
 /// The benchmarks' crate: evidence for developers, nothing that the running program needs.
 const BENCHMARKS: &str = "toile-perf";
 
-/// The commands that measure the engine, files and folders.
-const BENCH_COMMANDS: [&str; 8] =
-    ["bench.rs", "bench/", "colliders.rs", "latency.rs", "pareto.rs", "soak.rs", "torture.rs", "validate.rs"];
+/// The commands that measure the engine, files and folders, and the count of crossings that reports of what is played have.
+const BENCH_COMMANDS: [&str; 9] = [
+    "bench.rs",
+    "bench/",
+    "colliders.rs",
+    "crossings.rs",
+    "latency.rs",
+    "pareto.rs",
+    "soak.rs",
+    "torture.rs",
+    "validate.rs",
+];
 
 /// Whether a file may import the benchmarks: they themselves, the tests, and the program's bench commands.
 fn may_import_benchmarks(place: &str) -> bool {

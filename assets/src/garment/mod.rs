@@ -28,6 +28,8 @@ pub struct Garment {
     pub name: String,
     /// Code of the size.
     pub size: String,
+    /// Which layer it is worn in, the innermost lowest: it stays outside of what is worn in lower ones.
+    pub layer: u8,
     /// The fabric that it is made of.
     pub fabric: Fabric,
     /// The vertex of the shape that each particle was `[particles]`.

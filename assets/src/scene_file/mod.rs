@@ -62,6 +62,10 @@ pub struct SceneSettings {
     pub stretch_damping: Option<f32>,
     /// Lanes that kernels run on: 1, 4, 8 or 16.
     pub lanes: Option<u32>,
+    /// Whether garments keep the order in which they are listed.
+    pub layers: Option<bool>,
+    /// Whether each garment keeps from passing through itself.
+    pub folds: Option<bool>,
 }
 
 /// A whole scene, checked.
@@ -201,5 +205,7 @@ fn settings(table: &SceneTable<'_>) -> Result<SceneSettings, SceneError> {
         max_speed: table.maybe_number("max_speed")?.map(|v| v as f32),
         stretch_damping: table.maybe_number("stretch_damping")?.map(|v| v as f32),
         lanes,
+        layers: Some(table.flag("layers")?),
+        folds: Some(table.flag("folds")?),
     })
 }

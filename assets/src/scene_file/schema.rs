@@ -100,6 +100,15 @@ pub const KEYS: &[SceneKey] = &[
     key("settings", "max_speed", Number(0.1, 1_000.0), "m/s", "15", "A particle's speed limit."),
     key(
         "settings",
+        "layers",
+        Flag,
+        "",
+        "true",
+        "Whether garments that start within 15 cm of each other keep the order in which they are listed, inner first.",
+    ),
+    key("settings", "folds", Flag, "", "false", "Whether each garment keeps from passing through itself."),
+    key(
+        "settings",
         "stretch_damping",
         Number(0.0, 1.0),
         "s",
@@ -227,6 +236,7 @@ pub const KEYS: &[SceneKey] = &[
     key("garment.fabric", "friction", Number(0.0, 2.0), "1", "of the base", "Coulomb's coefficient against colliders."),
     key("garment.fabric", "damping_per_s", Number(0.0, 100.0), "1/s", "of the base", "Damping of motion through air."),
     key("garment.fabric", "contact_offset_mm", Number(0.1, 20.0), "mm", "of the base", "Gap kept to colliders."),
+    key("garment.fabric", "thickness_mm", Number(0.1, 40.0), "mm", "of the base", "Gap that two layers of it keep."),
     key("garment.pin", "vertices", Vertices, "", "-", "The vertices to hold."),
     key("garment.pin", "box", Box, "m", "-", "Holds the vertices that start inside."),
     key("garment.pin", "material", Text, "", "-", "Holds the vertices of faces whose material ends in this."),

@@ -26,6 +26,8 @@ substeps = 6
 max_speed = 20
 stretch_damping = 0.01
 lanes = 8
+layers = false
+folds = true
 
 [[garment]]
 name = "cloth"
@@ -50,6 +52,7 @@ bend_bias_un_m = 7
 friction = 0.4
 damping_per_s = 1
 contact_offset_mm = 2
+thickness_mm = 3
 
 [[garment.pin]]
 vertices = [0, "1-2"]
@@ -141,6 +144,8 @@ fn every_key_of_the_schema_is_read() {
         max_speed: Some(20.0),
         stretch_damping: Some(0.01),
         lanes: Some(8),
+        layers: Some(false),
+        folds: Some(true),
     };
     assert_eq!(scene.settings, settings);
     let cloth = &scene.garments[0];

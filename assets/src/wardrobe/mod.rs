@@ -176,6 +176,7 @@ impl Style {
         let mut garment = bake(&self.name, size, &shape, &fabric)
             .map_err(|source| WardrobeError::Mesh { name: self.name.clone(), source })?;
         garment.substeps = self.substeps.unwrap_or(garment.substeps);
+        garment.layer = self.layer;
         Ok(garment)
     }
 }

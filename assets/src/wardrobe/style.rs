@@ -19,6 +19,10 @@ pub struct Style {
     pub table: String,
     /// Name of the fabric.
     pub fabric: String,
+    /// Which layer it is worn in: 1 underwear, 2 skirts and trousers, 3 what is worn over them, 4 jackets, 5 coats (the
+    /// wearing order of Ugur 2008). A garment stays outside of those in lower layers, and of those in its own that are put
+    /// on before it.
+    pub layer: u8,
     /// Distance between neighbouring particles along the warp (mm).
     pub spacing_mm: f32,
     /// Particles around the body.

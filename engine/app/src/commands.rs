@@ -10,6 +10,7 @@ pub mod body;
 pub mod colliders;
 pub mod completions;
 pub mod convert;
+mod crossings;
 pub mod doctor;
 pub mod kiosk;
 pub mod latency;

@@ -102,14 +102,14 @@ impl Pictures {
 
     /// Finishes the animation; writes the contact sheet, and the stills of the last snapshot in the fabric's colours
     /// and in those of the fit map. `tightness` has a value in -1..1 for each particle of each garment, `facing` is the
-    /// direction that the shopper looks in (rad from +z towards +x).
+    /// direction that the shopper looks in (rad from +z towards +x). Gives how much all of them hid at most (m).
     pub fn finish(
         mut self,
         out: &mut OutputFolder,
         renderer: &mut PictureRenderer,
         snapshot: &Snapshot,
         end: &FinalState<'_>,
-    ) -> Result<(), AppError> {
+    ) -> Result<f32, AppError> {
         self.animation.finish().map_err(AppError::input)?;
         debug_assert_eq!(self.kept.len(), self.timing.frames as usize);
         contact_sheet(out, &self.kept)?;
@@ -126,7 +126,7 @@ impl Pictures {
             write_png(out, name, &contact_sheet::triptych(front, side, back, end.title, legend))?;
         }
         self.bar.finish_and_clear();
-        Ok(())
+        Ok(self.frame.hidden_m())
     }
 
     /// Pictures that a session of `steps` steps takes: the animation's frames, and the stills.

@@ -161,6 +161,21 @@ pub struct Penetration {
     pub max: f64,
 }
 
+/// Edges of garments that pass through faces, of another garment or their own.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct CrossingReport {
+    /// Moments that were looked at, one every tenth step.
+    pub frames: u64,
+    /// Moments with any crossing.
+    pub frames_with: u64,
+    /// Most edges at one moment.
+    pub max: u64,
+    /// Most of them between garments.
+    pub max_between: u64,
+    /// The longest time without a moment free of them (s).
+    pub longest_s: f64,
+}
+
 /// Settings, times and errors of the physics.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct PhysicsReport {
@@ -203,6 +218,11 @@ pub struct TryOn {
     pub others: Vec<Recommendation>,
     /// Settings, times and errors of the physics.
     pub physics: PhysicsReport,
+    /// Edges of the garments that passed through faces, by a test of its own.
+    pub crossings: CrossingReport,
+    /// How far skin or inner cloth stood out of what covers it, which the pictures hide; none where there are no pictures.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hidden_mm: Option<Penetration>,
     /// Hash of the last state, 16 hexadecimal digits; the same input gives the same.
     pub state_hash: String,
     /// What drew the pictures; nothing where there are none.
@@ -323,6 +343,8 @@ mod tests {
             recommendation,
             others: Vec::new(),
             physics: PhysicsReport::default(),
+            crossings: CrossingReport::default(),
+            hidden_mm: Some(Penetration::default()),
             state_hash: hash_text(10),
             files: vec!["out/front.png".into()],
         }
@@ -362,6 +384,10 @@ mod tests {
             "/physics/nonfinite",
             "/physics/warnings",
             "/files/0",
+            "/crossings/frames_with",
+            "/crossings/max",
+            "/crossings/longest_s",
+            "/hidden_mm/max",
             "/state_hash",
             "/session/name",
             "/session/frames",

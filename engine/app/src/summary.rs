@@ -16,6 +16,7 @@ pub fn try_on(report: &TryOn, paint: Paint) -> String {
         recommendation(&mut text, worn, paint);
     }
     physics(&mut text, &report.physics, paint);
+    crossings(&mut text, report);
     heading(&mut text, "Files", paint);
     for file in &report.files {
         put_line!(text, "  {}", file.display());
@@ -171,6 +172,25 @@ fn physics(text: &mut String, physics: &PhysicsReport, paint: Paint) {
     }
 }
 
+/// What passed through what, and what the pictures hide of it.
+fn crossings(text: &mut String, report: &TryOn) {
+    let c = &report.crossings;
+    let share = 100.0 * c.frames_with as f64 / (c.frames.max(1)) as f64;
+    match c.frames_with {
+        0 => put_line!(text, "  no cloth passes through cloth, in {} moments looked at", c.frames),
+        _ => put_line!(
+            text,
+            "  cloth passes through cloth in {share:.0} % of {} moments: {} edges at most, for {:.1} s at a time",
+            c.frames,
+            c.max,
+            c.longest_s
+        ),
+    }
+    if let Some(hidden) = &report.hidden_mm {
+        put_line!(text, "  pictures hide     {:.0} mm of what lies beneath cloth and stands out of it", hidden.max);
+    }
+}
+
 fn heading(text: &mut String, words: &str, paint: Paint) {
     put_line!(text, "\n{}", paint.tone(words, Tone::Strong));
 }
@@ -178,7 +198,7 @@ fn heading(text: &mut String, words: &str, paint: Paint) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::ZoneFitReport;
+    use crate::report::{CrossingReport, Penetration, ZoneFitReport};
 
     #[test]
     fn a_summary_says_each_zone_and_each_file() {
@@ -190,6 +210,8 @@ mod tests {
             sentence: "Waist: tight.".into(),
         };
         let mut report = TryOn {
+            crossings: CrossingReport { frames: 50, frames_with: 5, max: 7, max_between: 0, longest_s: 0.25 },
+            hidden_mm: Some(Penetration { max: 3.0 }),
             renderer: None,
             session: SessionReport { name: "a.csv".into(), frames: 3, seconds: 0.1, notes: vec!["one drop".into()] },
             measurements: ShopperMeasures::default(),

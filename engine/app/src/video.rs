@@ -63,12 +63,12 @@ impl Video {
         images.iter().try_for_each(|image| self.video.push(image)).map_err(AppError::input)
     }
 
-    /// Ends the video; says which file it is.
+    /// Ends the video; says which file it is, and how much it hid at most (m).
     ///
     /// # Errors
     /// A video that cannot be written.
-    pub fn finish(self) -> Result<PathBuf, AppError> {
+    pub fn finish(self) -> Result<(PathBuf, f32), AppError> {
         self.bar.finish_and_clear();
-        self.video.finish().map_err(AppError::input)
+        Ok((self.video.finish().map_err(AppError::input)?, self.frame.hidden_m()))
     }
 }

@@ -47,7 +47,7 @@ impl Scene for Loaded {
     }
 
     fn set_rung(&mut self, rung: &Rung) {
-        self.share = rung.substep_share;
+        self.share = rung.time_share;
         self.staged.set_rung(rung);
     }
 

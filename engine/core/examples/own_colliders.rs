@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         // Spheres move from where they were to here within the step, and contact follows them on their way.
         colliders.place_spheres(&spheres(step as f32 / STEP_HZ as f32));
         state.step(&cloth, &Step { palette: &palette, colliders: &colliders, settings: &settings });
-        deepest = deepest.max(measure::penetration(&state, &cloth, &colliders));
+        deepest = deepest.max(measure::penetration(&mut state, &cloth, &colliders));
         worst = worst.max(measure::strain(&mut state, &cloth).mean);
         if step % STEP_HZ == 0 {
             let low = state.positions.iter().map(|p| p.y).fold(f32::MAX, f32::min);

@@ -9,7 +9,9 @@ use thiserror::Error;
 use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES, STEP_SECONDS};
 use toile_assets::skeleton::BONES;
 
+use crate::body_surface::BodySurface;
 use crate::jump_filter::JumpFilter;
+use crate::skin::Posed;
 
 pub use crate::cone::{Contact, PARKED, RestSphere, RoundCone};
 
@@ -71,6 +73,7 @@ pub struct Colliders {
     placed: bool,
     root: Affine3A,
     hold: JumpFilter,
+    skin: Option<Box<BodySurface>>,
 }
 
 impl Colliders {
@@ -101,7 +104,26 @@ impl Colliders {
             placed: false,
             root: Affine3A::IDENTITY,
             hold: JumpFilter::default(),
+            skin: None,
         })
+    }
+
+    /// The same with the skin of the body, which cloth then lies on where it is near. At load.
+    #[must_use]
+    pub fn with_skin(self, skin: BodySurface) -> Self {
+        Self { skin: Some(Box::new(skin)), ..self }
+    }
+
+    /// The skin of the body, where there is one.
+    pub fn skin(&self) -> Option<&BodySurface> {
+        self.skin.as_deref()
+    }
+
+    /// Moves the skin to where it was posed for the end of this step.
+    pub fn place_skin(&mut self, posed: &Posed) {
+        if let Some(skin) = &mut self.skin {
+            skin.place(posed);
+        }
     }
 
     /// Walls, tables and slopes that stop the cloth besides the floor; they do not move. Each is a unit normal and the
@@ -169,6 +191,7 @@ impl Colliders {
     /// Forgets where the body was: the next placement sets start and end alike.
     pub fn reset(&mut self) {
         self.placed = false;
+        self.skin.iter_mut().for_each(|skin| skin.reset());
     }
 
     /// Puts the spheres where no motion would bring them: for tests of what has to bear it.

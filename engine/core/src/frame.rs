@@ -8,7 +8,7 @@ mod meters;
 
 use glam::{Affine3A, Vec3};
 use toile_assets::body::Body;
-use toile_assets::garment::Garment;
+use toile_assets::garment::{Garment, Part};
 use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
 use toile_assets::numeric::hash::Fnv1a;
 use toile_assets::rig::Rig;
@@ -16,7 +16,9 @@ use toile_assets::skeleton::{BONES, Pose};
 use toile_sensors::frame::Joints;
 
 use crate::body::{Poser, palette};
+use crate::body_surface::BodySurface;
 use crate::clock::{Clock, RealClock};
+use crate::cloth::layers::{Layers, lay_outside};
 use crate::cloth::measure::{self, Strain};
 use crate::cloth::{Cloth, Settings, Step, Wind};
 use crate::colliders::{ColliderError, Colliders, RestSphere};
@@ -88,6 +90,8 @@ pub struct Frame {
     body: Body,
     garments: Box<[Garment]>,
     cloths: Box<[Cloth]>,
+    /// What keeps them in their order; none where no two can meet.
+    layers: Option<Layers>,
     settings: Settings,
     poser: Poser,
     pose: Pose,
@@ -111,12 +115,15 @@ impl Frame {
     pub fn new(
         body: Body,
         rig: &Rig,
-        garments: Vec<Garment>,
+        mut garments: Vec<Garment>,
         settings: Settings,
     ) -> Result<(Self, Reader<Snapshot>), FrameError> {
+        lay_outside(&mut garments);
         let spheres = rig.spheres.each_ref().map(|s| RestSphere::on_bone(&body.skeleton, s.bone, s.offset, s.radius));
-        let colliders = Colliders::new(&spheres, &rig.capsules, true)?;
         let skinning = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights)?;
+        let parts: Vec<Part> = garments.iter().flat_map(|g| g.parts.iter().copied()).collect();
+        let surface = BodySurface::new(&body, &skinning.posed(), &parts);
+        let colliders = Colliders::new(&spheres, &rig.capsules, true)?.with_skin(surface);
         let ready = |g: &Garment, cloth: Cloth| if settings.wind.is_some() { cloth.in_wind(g) } else { cloth };
         let cloths: Box<[Cloth]> = garments.iter().map(|g| ready(g, Cloth::new(g, &colliders))).collect();
         let snapshot = Snapshot {
@@ -140,6 +147,7 @@ impl Frame {
             meters: Meters::new(),
             measure_every: 1,
             writer,
+            layers: Layers::new(&garments),
             garments: garments.into(),
             cloths,
             // As many as there are, whatever was asked for.
@@ -193,6 +201,11 @@ impl Frame {
         (self.settings.substep_share, self.settings.wind) = (substep_share, wind);
     }
 
+    /// Which contact is left: of garments with themselves, between garments, with the skin.
+    pub fn set_contact(&mut self, folds: bool, layers: bool, skin: bool) {
+        (self.settings.folds, self.settings.layers, self.settings.skin) = (folds, layers, skin);
+    }
+
     /// One step of the session: the joints as they are at its end.
     pub fn step(&mut self, joints: &Joints) {
         let clock = self.clock;
@@ -222,13 +235,19 @@ impl Frame {
         self.broken += u64::from(!skinned);
         stage_times.lap(SKIN, clock.now_ns());
         self.colliders.place(&self.palette);
+        self.colliders.place_skin(&self.skin);
         stage_times.lap(PLACE, clock.now_ns());
-        let Self { cloths, garments, pool, palette, colliders, settings, .. } = self;
+        let Self { cloths, garments, layers, pool, palette, colliders, settings, .. } = self;
         let step = Step { palette, colliders, settings };
-        match (&mut cloths[..], &garments[..]) {
+        let layers = layers.as_mut().filter(|layers| layers.asked(settings));
+        match (&mut cloths[..], &garments[..], layers) {
+            (cloths, garments, Some(layers)) => {
+                let work = layers.step(pool, cloths, garments, &step);
+                self.broken += u64::from(work.is_err());
+            }
             // One garment is shared by the workers; several are one worker's each.
-            ([cloth], [garment]) => cloth.step_with(pool, garment, &step),
-            (cloths, garments) => {
+            ([cloth], [garment], None) => cloth.step_with(pool, garment, &step),
+            (cloths, garments, None) => {
                 let work = pool.each(cloths, |i, cloth| cloth.step(&garments[i], &step));
                 // The garment whose step broke off keeps what it had published.
                 self.broken += u64::from(work.is_err());
@@ -309,6 +328,11 @@ impl Frame {
     /// Their states, in the same order.
     pub fn cloths(&self) -> &[Cloth] {
         &self.cloths
+    }
+
+    /// What keeps the garments in their order, where several are worn that can meet.
+    pub fn layers(&self) -> Option<&Layers> {
+        self.layers.as_ref()
     }
 
     /// The colliders as last placed.

@@ -18,8 +18,12 @@ pub mod jump_filter;
 #[expect(unsafe_code, reason = "a job that borrows the caller's stack is handed to another thread")]
 pub mod workers;
 
-pub mod colliders;
 pub mod skin;
+pub mod surface;
+
+pub mod body_surface;
+
+pub mod colliders;
 
 pub mod cloth;
 

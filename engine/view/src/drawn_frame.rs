@@ -35,6 +35,8 @@ pub struct DrawnFrame {
     middle: Option<Vec3>,
     /// The shopper's height (m).
     stature: f32,
+    /// What was hidden so far at most (m).
+    hidden_m: f32,
 }
 
 struct DrawnGarment {
@@ -80,6 +82,7 @@ impl DrawnFrame {
             cloths: garments.iter().enumerate().map(cloth).collect(),
             middle: None,
             stature: body.measures.stature,
+            hidden_m: 0.0,
         }
     }
 
@@ -99,13 +102,23 @@ impl DrawnFrame {
             let DrawnGarment { points: at, dressed, triangles, drawn, normals, .. } = cloth;
             at.copy_from_slice(points);
             vertex_normals(at, triangles, normals);
-            *drawn = CoveringCloth::new(over.iter().copied()).hide_skin(at, normals, dressed, triangles);
+            let under = CoveringCloth::new(over.iter().copied()).hide_skin(at, normals, dressed, triangles);
+            self.hidden_m = self.hidden_m.max(under.hidden_m);
+            *drawn = under.triangles;
             over.extend(triangles.iter().map(|t| t.map(|i| at[i as usize])));
         }
         snapshot.skin.read(&mut self.body, &mut self.normals);
         self.bounds = Bounds::of(&self.body);
         let cover = CoveringCloth::new(over.into_iter());
-        self.drawn = cover.hide_skin(&mut self.body, &self.normals, &self.dressed, &self.body_triangles);
+        let skin = cover.hide_skin(&mut self.body, &self.normals, &self.dressed, &self.body_triangles);
+        self.hidden_m = self.hidden_m.max(skin.hidden_m);
+        self.drawn = skin.triangles;
+    }
+
+    /// How far skin, or cloth worn beneath other cloth, stood out of what covers it at most, in all pictures so far (m):
+    /// what these pictures hide.
+    pub fn hidden_m(&self) -> f32 {
+        self.hidden_m
     }
 
     /// The surfaces of a picture; `map` gives each garment its colours by vertex instead of the fabric's.

@@ -7,8 +7,9 @@ use glam::Vec3;
 
 use crate::bvh::{Bvh, Ray};
 
-/// Cloth this deep under the skin is still meant to lie on it (m): how far a bent body stands out of its capsules.
-const DEPTH_M: f32 = 0.09;
+/// Cloth this deep under the skin is still meant to lie on it (m): what contact leaves, which believes the cones where skin and
+/// cones are 20 mm apart.
+const DEPTH_M: f32 = 0.03;
 
 /// A fold may lie this much deeper than the outermost cloth (m).
 const FOLD_M: f32 = 0.012;
@@ -60,15 +61,15 @@ impl CoveringCloth {
     }
 
     /// Pushes dressed vertices beneath the cloth that lies on or in them. `normals` are the unit normals of what is
-    /// pushed, `triangles` its topology. Returns the triangles to draw: all but those in a crease, where cloth lies over
-    /// the skin but no direction leads out from under it.
+    /// pushed, `triangles` its topology. The triangles to draw are all but those in a crease, where cloth lies over the skin
+    /// but no direction leads out from under it.
     pub fn hide_skin(
         &self,
         positions: &mut [Vec3],
         normals: &[Vec3],
         dressed: &[bool],
         triangles: &[[u32; 3]],
-    ) -> Vec<[u32; 3]> {
+    ) -> DrawnSkin {
         let found: Vec<ClothOver> = positions
             .iter()
             .zip(normals)
@@ -92,7 +93,11 @@ impl CoveringCloth {
             is(t, |f| matches!(f, ClothOver::Creased)).contains(&true)
                 && !is(t, |f| matches!(f, ClothOver::Bare)).contains(&true)
         };
-        triangles.iter().filter(|t| !hidden(t)).copied().collect()
+        let stands_out = |f: &ClothOver| if let ClothOver::Under(push) = f { push - BENEATH_M } else { 0.0 };
+        DrawnSkin {
+            triangles: triangles.iter().filter(|t| !hidden(t)).copied().collect(),
+            hidden_m: found.iter().map(stands_out).fold(0.0, f32::max),
+        }
     }
 
     /// What lies over a vertex. The ray comes from outside, so that on a thin limb it meets the near side.
@@ -110,6 +115,15 @@ impl CoveringCloth {
         let fold = self.bvh.closest(&Ray::new(under, -n), FOLD_M).map_or(0.0, |hit| hit.distance + 1e-4);
         ClothOver::Under(outer.distance + fold)
     }
+}
+
+/// Skin as it is drawn beneath cloth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawnSkin {
+    /// The triangles to draw.
+    pub triangles: Vec<[u32; 3]>,
+    /// How far skin stood out of the cloth over it, where it did most (m): what the picture hides.
+    pub hidden_m: f32,
 }
 
 /// What lies over a vertex of skin.
@@ -138,7 +152,9 @@ mod tests {
     fn skin_goes_beneath_cloth_that_lies_in_it_and_stays_where_cloth_is_away() {
         for (cloth, skin) in [(-0.01, -0.01 - BENEATH_M), (0.003, 0.003 - BENEATH_M), (0.02, 0.0), (-0.12, 0.0)] {
             let mut p = [Vec3::ZERO];
-            let _ = sheet(cloth).hide_skin(&mut p, &[Vec3::Y], &[true], &[]);
+            let drawn = sheet(cloth).hide_skin(&mut p, &[Vec3::Y], &[true], &[]);
+            let out = if cloth > -DEPTH_M { (-cloth).max(0.0) } else { 0.0 };
+            assert!((drawn.hidden_m - out).abs() < 1e-6, "cloth {cloth}: {} hidden", drawn.hidden_m);
             assert!((p[0].y - skin).abs() < 1e-6, "cloth {cloth}: {}", p[0].y);
         }
     }
@@ -158,8 +174,11 @@ mod tests {
         // Skin whose normals point down, beneath a sheet that faces up: no way out from under it.
         let mut p = [Vec3::ZERO, Vec3::X * 0.01, Vec3::Z * 0.01];
         let before = p;
-        assert!(sheet(0.02).hide_skin(&mut p, &[Vec3::NEG_Y; 3], &[true; 3], &[[0, 1, 2]]).is_empty());
+        assert!(sheet(0.02).hide_skin(&mut p, &[Vec3::NEG_Y; 3], &[true; 3], &[[0, 1, 2]]).triangles.is_empty());
         assert_eq!(p, before);
-        assert_eq!(sheet(0.02).hide_skin(&mut p, &[Vec3::NEG_Y; 3], &[true, false, true], &[[0, 1, 2]]).len(), 1);
+        assert_eq!(
+            sheet(0.02).hide_skin(&mut p, &[Vec3::NEG_Y; 3], &[true, false, true], &[[0, 1, 2]]).triangles.len(),
+            1
+        );
     }
 }

@@ -28,6 +28,8 @@ mod predicate;
 mod search;
 #[cfg(test)]
 mod tests;
+mod watch;
 
 pub use mesh::CrossingMesh;
 pub use search::{Crossing, CrossingTest};
+pub use watch::{CrossingFigures, CrossingWatch, LOOKED_STEPS};

@@ -267,6 +267,7 @@ impl CaseFabric {
             friction: self.friction as f32,
             damping_per_s: self.damping as f32,
             contact_offset_mm: 1.0,
+            thickness_mm: toile_assets::fabric::USUAL_THICKNESS_MM,
             comfortable_stretch: 0.1,
             colour: [0.5; 3],
             weave: Weave::Plain,

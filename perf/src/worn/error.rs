@@ -7,6 +7,7 @@ use toile_assets::garment::MeshError;
 use toile_assets::sizes::SizeError;
 use toile_assets::wardrobe::WardrobeError;
 use toile_engine::colliders::ColliderError;
+use toile_engine::skin::SkinError;
 use toile_engine::workers::WorkerPoolError;
 
 /// Why a garment cannot be worn and measured.
@@ -37,6 +38,9 @@ pub enum WornError {
     /// A mannequin that cannot be built.
     #[error(transparent)]
     Body(#[from] BodyError),
+    /// A body whose skin cannot be posed.
+    #[error(transparent)]
+    Skin(#[from] SkinError),
     /// A mesh that cannot be cloth.
     #[error(transparent)]
     Mesh(#[from] MeshError),

@@ -98,9 +98,7 @@ impl WornSums {
             self.worst = self.worst.max(f64::from(strain.max));
             self.frames += 1;
         }
-        for (cloth, garment) in scene.cloths.iter().zip(&scene.garments) {
-            self.deepest = self.deepest.max(f64::from(engine::penetration(cloth, garment, scene.colliders())));
-        }
+        self.deepest = self.deepest.max(scene.penetration());
         elapsed.as_secs_f64() * 1e6
     }
 }

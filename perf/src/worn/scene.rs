@@ -2,16 +2,21 @@
 
 use glam::Affine3A;
 use toile_assets::bake::bake;
-use toile_assets::garment::Garment;
+use toile_assets::garment::{Garment, Part};
 use toile_assets::limits::STEP_SECONDS;
 use toile_assets::numeric::hash;
 use toile_assets::scene::{self, shopper};
 use toile_assets::skeleton::{BONES, Pose, Skeleton};
+use toile_assets::wardrobe;
 use toile_engine::body::palette;
+use toile_engine::body_surface::BodySurface;
+use toile_engine::cloth::layers::{Layers, lay_outside};
+use toile_engine::cloth::measure;
 use toile_engine::cloth::program::METERED_STAGES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
 use toile_engine::colliders::Colliders;
 use toile_engine::lanes::Width;
+use toile_engine::skin::{Blend, Posed, SkinningJob};
 use toile_engine::workers::WorkerPool;
 use toile_fitting::heap::{Heap, HeapProbe};
 use toile_fitting::timing;
@@ -44,6 +49,12 @@ pub struct WornOptions {
     pub quality: Option<Quality>,
     /// Substeps of a step; the garments' own choice if not given.
     pub substeps: Option<u32>,
+    /// Whether garments keep their order; without it they pass through each other.
+    pub layers: bool,
+    /// Whether each keeps from passing through itself.
+    pub folds: bool,
+    /// Whether they lie on the skin; without it, on the cones.
+    pub skin: bool,
     /// Runs of which the median is reported.
     pub runs: usize,
     /// Steps of a run.
@@ -61,6 +72,9 @@ impl WornOptions {
             quality: self.quality.unwrap_or(default.quality),
             substeps: self.substeps,
             workers: self.threads,
+            layers: self.layers,
+            skin: self.skin,
+            folds: self.folds,
             width: self.lanes.unwrap_or(default.width),
             ..default
         })
@@ -86,6 +100,9 @@ pub struct WornScene {
     colliders: Colliders,
     pool: WorkerPool,
     stepper: ClothStepper,
+    layers: Option<Layers>,
+    skinning: SkinningJob,
+    skin: Posed,
 }
 
 impl WornScene {
@@ -101,16 +118,28 @@ impl WornScene {
         let settings = options.settings()?;
         let mannequin = AverageBody::of(names.first().map_or("", |n| n))?;
         let colliders = mannequin.colliders()?;
-        let (mut garments, mut sizes, mut cloths, mut bytes) = (Vec::new(), Vec::new(), Vec::new(), Some(0));
+        let body = &mannequin.body;
+        let skinning = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights)?;
+        let (mut garments, mut sizes) = (Vec::new(), Vec::new());
+        let before = heap.read();
         for name in names {
             let (size, shape, fabric) = mannequin.wear(name)?;
-            let before = heap.read();
-            let garment = bake(name, &size, &shape, &fabric)?;
-            cloths.push(Cloth::new(&garment, &colliders));
-            bytes = bytes.zip(between(before, heap.read())).map(|(sum, b): (u64, u64)| sum + b);
+            let mut garment = bake(name, &size, &shape, &fabric)?;
+            garment.layer = wardrobe::style(name).map_or(0, |style| style.layer);
             garments.push(garment);
             sizes.push(size);
         }
+        if settings.layers {
+            lay_outside(&mut garments);
+        }
+        let layers = Layers::new(&garments).filter(|layers| layers.asked(&settings));
+        let parts: Vec<Part> = garments.iter().flat_map(|g| g.parts.iter().copied()).collect();
+        let colliders = match settings.skin {
+            true => colliders.with_skin(BodySurface::new(body, &skinning.posed(), &parts)),
+            false => colliders,
+        };
+        let cloths = garments.iter().map(|garment| Cloth::new(garment, &colliders)).collect();
+        let bytes = between(before, heap.read());
         let mut scene = Self {
             garments,
             sizes,
@@ -123,6 +152,9 @@ impl WornScene {
             colliders,
             pool: WorkerPool::new(options.threads)?,
             stepper: ClothStepper::cpu(),
+            layers,
+            skin: skinning.posed(),
+            skinning,
         };
         scene.place();
         Ok(scene)
@@ -138,6 +170,15 @@ impl WornScene {
     fn place(&mut self) {
         palette(&self.skeleton, &performed(&self.skeleton, self.tick), &mut self.bones);
         self.colliders.place(&self.bones);
+        self.skinning.run(Blend::Linear, &self.bones, &mut self.skin);
+        self.colliders.place_skin(&self.skin);
+    }
+
+    /// Deepest point of a garment in the body so far into the step (m).
+    pub fn penetration(&mut self) -> f64 {
+        let Self { cloths, garments, colliders, .. } = self;
+        let each = cloths.iter_mut().zip(garments).map(|(c, g)| f64::from(measure::penetration(c, g, colliders)));
+        each.fold(0.0, f64::max)
     }
 
     /// One step of every garment: what is timed.
@@ -146,6 +187,10 @@ impl WornScene {
     /// Where the engine does.
     pub fn step(&mut self) {
         let step = Step { palette: &self.bones, colliders: &self.colliders, settings: &self.settings };
+        if let Some(layers) = &mut self.layers {
+            let done = layers.step(&mut self.pool, &mut self.cloths, &self.garments, &step);
+            return done.expect("a share of the step panicked");
+        }
         let steps = [step; MAX_OUTFIT];
         let mut garments = [&self.garments[0]; MAX_OUTFIT];
         let count = self.cloths.len();
@@ -153,6 +198,11 @@ impl WornScene {
         let mut batch = ClothBatch { cloths: &mut self.cloths, garments: &garments[..count], steps: &steps[..count] };
         let done = self.stepper.step(&mut batch, Some(&mut self.pool));
         done.expect("a share of the step panicked");
+    }
+
+    /// What keeps the garments in their order, where they do.
+    pub fn layers(&self) -> Option<&Layers> {
+        self.layers.as_ref()
     }
 
     /// How the steps are done.

@@ -94,6 +94,7 @@ pub fn fabric(shape: &Shape, stretch: Stretch) -> Fabric {
         friction: 0.3,
         damping_per_s: -KEPT_AFTER_1_S.ln(),
         contact_offset_mm: 1.0,
+        thickness_mm: crate::fabric::USUAL_THICKNESS_MM,
         comfortable_stretch: 0.05,
         colour: [0.24, 0.42, 0.55],
         weave: Weave::Plain,

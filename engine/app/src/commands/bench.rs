@@ -10,6 +10,7 @@ use crate::exit::AppError;
 
 pub(super) mod backend;
 mod body;
+mod contact;
 mod depth;
 mod filters;
 mod gestures;
@@ -32,6 +33,7 @@ pub(crate) enum BenchCommand {
     Filters(filters::FiltersArgs),
     Gestures(gestures::GesturesArgs),
     Depth(depth::DepthArgs),
+    Contact(contact::ContactArgs),
 }
 
 /// Runs `toile bench`.
@@ -47,5 +49,6 @@ pub(crate) fn run(command: &BenchCommand) -> Result<(), AppError> {
         BenchCommand::Filters(args) => filters::run(args),
         BenchCommand::Gestures(args) => gestures::run(args),
         BenchCommand::Depth(args) => depth::run(args),
+        BenchCommand::Contact(args) => contact::run(args),
     }
 }

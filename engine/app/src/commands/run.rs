@@ -19,11 +19,12 @@ use toile_fitting::scene::events::ClothEvents;
 use toile_fitting::scene::yardstick;
 
 use crate::arguments::{Printing, one_of};
+use crate::commands::crossings::CrossingCount;
 use crate::exit::AppError;
 use crate::heap::counted;
 use crate::output::Inputs;
 use crate::output::OutputFolder;
-use crate::report::{self, Document, RunGarment, RunReport};
+use crate::report::{self, CrossingReport, Document, RunGarment, RunReport};
 use crate::summary;
 use crate::terminal::{self, Paint, Words};
 use dump::{Dump, Format};
@@ -156,11 +157,11 @@ pub fn run(args: &RunArgs) -> Result<(), AppError> {
         dump = Some(Dump::new(folder, args.format, args.every));
     }
     let mut runner = Runner::counting(scene, HeapProbe::new(counted)).map_err(AppError::input)?;
-    play(&mut runner, &words, dump.as_mut())?;
+    let crossings = play(&mut runner, &words, dump.as_mut())?;
     let dumped = dump.as_ref().map_or(0, Dump::frames);
     dump.map_or(Ok(()), Dump::finish)?;
     let yardstick_us = if args.printing.json { Some(yardstick::measure().map_err(AppError::internal)?) } else { None };
-    let report = report(&runner, args, dumped, yardstick_us);
+    let report = RunReport { crossings, ..report(&runner, args, dumped, yardstick_us) };
     if args.printing.json {
         return terminal::print_json(&Document::new("run", report));
     }
@@ -180,20 +181,23 @@ fn shorten(scene: &mut SceneFile, frames: u64) -> Result<(), AppError> {
     Ok(())
 }
 
-fn play(runner: &mut Runner, words: &Words, mut dump: Option<&mut Dump>) -> Result<(), AppError> {
+fn play(runner: &mut Runner, words: &Words, mut dump: Option<&mut Dump>) -> Result<Option<CrossingReport>, AppError> {
     let steps = runner.scene().steps();
     let bar = words.bar(steps, "running");
+    let seconds = runner.scene().step_hz.recip();
+    let mut crossings = runner.keeps_apart().then(|| CrossingCount::new(runner.garments(), seconds));
     for step in 0..=steps {
         if step > 0 {
             runner.step();
             bar.inc(1);
         }
+        crossings.iter_mut().for_each(|c| c.after(step, runner.cloths()));
         if let Some(dump) = dump.as_deref_mut() {
             dump.add(runner)?;
         }
     }
     bar.finish_and_clear();
-    Ok(())
+    Ok(crossings.map(|c| c.report()))
 }
 
 fn report(runner: &Runner, args: &RunArgs, dumped: u64, yardstick_us: Option<f64>) -> RunReport {
@@ -231,6 +235,7 @@ fn report(runner: &Runner, args: &RunArgs, dumped: u64, yardstick_us: Option<f64
         kinetic_energy_j: report::KineticEnergy { end: figures.kinetic_j, max: figures.kinetic_max_j },
         nonfinite: figures.nonfinite,
         events: runner.cloths().iter().map(|cloth| ClothEvents::from(cloth.events)).sum(),
+        crossings: None,
         state_hash: report::hash_text(runner.state_hash()),
         dump: args.dump.clone(),
         dumped_frames: dumped,

@@ -10,7 +10,7 @@ use glam::Affine3A;
 use toile_assets::body::Body;
 use toile_assets::export::{self, DressedBody, glb};
 use toile_assets::garment::Garment;
-use toile_assets::limits::STEP_HZ;
+use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
 use toile_assets::rig::Rig;
 use toile_assets::skeleton::{BONES, Joint};
 use toile_engine::body::palette;
@@ -26,6 +26,7 @@ use toile_fitting::scene::StepTimes;
 use toile_sensors::frame::Joints;
 
 use crate::arguments::{Printing, TapeArgs, one_of, quality};
+use crate::commands::crossings::CrossingCount;
 use crate::exit::AppError;
 use crate::output::Inputs;
 use crate::output::OutputFolder;
@@ -180,6 +181,8 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
             recommendation: recommendations.next().unwrap_or_default(),
             others: recommendations.collect(),
             physics: physics(&frame),
+            crossings: played.crossings,
+            hidden_mm: played.hidden_mm.map(|max| report::Penetration { max }),
             state_hash: report::hash_text(frame.state_hash()),
             renderer: played.renderer,
             files,
@@ -251,6 +254,9 @@ struct Played {
     /// Who drew; nobody where no picture was asked for.
     renderer: Option<String>,
     film: Option<PathBuf>,
+    crossings: report::CrossingReport,
+    /// What the pictures hid at most (mm); none where there are none.
+    hidden_mm: Option<f64>,
 }
 
 /// Plays the session through the frame, 120 steps a second, and draws it.
@@ -274,10 +280,12 @@ fn play(
     let mut video = args.video.as_ref().map(film).transpose()?;
     let playing = (pictures.is_none() && video.is_none()).then(|| words.bar(steps, "playing"));
     let mut lines = Lines::new(if args.lines.is_empty() { 0 } else { CAPACITY });
+    let mut crossings = CrossingCount::new(frame.garments(), f64::from(STEP_SECONDS));
     frame.dress(&track[0]);
     for tick in 0..steps {
         frame.step(&player.step());
         playing.iter().for_each(|bar| bar.inc(1));
+        crossings.after(tick, frame.cloths());
         if let Some(pictures) = pictures.as_mut().filter(|p| p.wants(tick)) {
             draw_lines(&mut lines, &args.lines, frame);
             pictures.add(renderer, reader.latest(), lines.as_slice())?;
@@ -289,6 +297,7 @@ fn play(
     }
     playing.iter().for_each(Progress::finish_and_clear);
     let drew = pictures.is_some() || video.is_some();
+    let mut hidden_m = 0.0f32;
     if let Some(pictures) = pictures {
         let tightness: Vec<Vec<f32>> = frame
             .cloths()
@@ -300,10 +309,16 @@ fn play(
         let facing = ahead.x.atan2(ahead.z);
         draw_lines(&mut lines, &args.lines, frame);
         let ending = FinalState { tightness: &tightness, facing, title, lines: lines.as_slice() };
-        pictures.finish(out, renderer, reader.latest(), &ending)?;
+        hidden_m = pictures.finish(out, renderer, reader.latest(), &ending)?;
     }
     let film = video.map(Video::finish).transpose()?;
-    Ok(Played { renderer: drew.then(|| renderer.describe()), film })
+    hidden_m = film.iter().map(|(_, hidden)| *hidden).fold(hidden_m, f32::max);
+    Ok(Played {
+        renderer: drew.then(|| renderer.describe()),
+        film: film.map(|(path, _)| path),
+        crossings: crossings.report(),
+        hidden_mm: drew.then_some(f64::from(hidden_m) * 1e3),
+    })
 }
 
 /// Fills in the lines that were asked for, of the frame as it is.

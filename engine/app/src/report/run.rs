@@ -7,7 +7,7 @@ use serde::Serialize;
 use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::events::ClothEvents;
 
-use super::StrainReport;
+use super::{CrossingReport, StrainReport};
 
 /// One garment of `toile run`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -91,6 +91,9 @@ pub struct RunReport {
     pub nonfinite: u64,
     /// What the guards had to do.
     pub events: ClothEvents,
+    /// Edges that passed through faces, by a test of its own; none where the scene asks for no contact of cloth with cloth.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crossings: Option<CrossingReport>,
     /// Hash of the last state, 16 hexadecimal digits; the same scene gives the same.
     pub state_hash: String,
     /// The folder of the dump; `index.csv` in it lists its files.

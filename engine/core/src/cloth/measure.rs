@@ -5,6 +5,7 @@ use toile_assets::garment::{Garment, Part};
 
 use super::{Cloth, contact};
 use crate::colliders::Colliders;
+use crate::lanes::Width;
 
 /// Strain over warp and weft edges: |length / rest - 1|.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -42,16 +43,22 @@ pub fn strain(cloth: &mut Cloth, garment: &Garment) -> Strain {
     Strain { mean: (sum / count as f64) as f32, p99, max }
 }
 
-/// Deepest point of a free particle inside the colliders that it can touch (m), 0 if none is inside.
-pub fn penetration(cloth: &Cloth, garment: &Garment, colliders: &Colliders) -> f32 {
+/// Deepest point of a free particle inside the body (m), 0 if none is inside: behind the skin where it lies by that, else
+/// inside the colliders that it can touch. Allocates nothing.
+pub fn penetration(cloth: &mut Cloth, garment: &Garment, colliders: &Colliders) -> f32 {
     let cones = colliders.cones_at(1.0);
-    let (mut part, mut reach) = (Part::Hollow, 0);
     let mut deepest = 0.0f32;
-    for ((p, &of), w) in cloth.positions.iter().zip(&garment.parts).zip(&garment.inverse_mass) {
+    let Cloth { state, contacts, positions, .. } = cloth;
+    if let Some(skin) = colliders.skin() {
+        let columns = state.columns();
+        contacts.skin_depths(Width::widest(), columns, skin, |_, depth| deepest = deepest.max(depth));
+    }
+    let (mut part, mut reach) = (Part::Hollow, 0);
+    for (i, ((p, &of), w)) in positions.iter().zip(&garment.parts).zip(&garment.inverse_mass).enumerate() {
         if of != part {
             (part, reach) = (of, contact::reach(of, colliders));
         }
-        let mut bits = if *w > 0.0 { reach } else { 0 };
+        let mut bits = if *w > 0.0 && contacts.by_skin(i as u32).is_none() { reach } else { 0 };
         let p: Vec3 = (*p).into();
         while bits != 0 {
             let cone = &cones[bits.trailing_zeros() as usize];

@@ -10,6 +10,7 @@ pub mod contact;
 pub mod diagonals;
 pub mod fibers;
 pub mod guard;
+pub mod layers;
 pub mod links;
 pub mod lists;
 pub mod measure;
@@ -235,6 +236,11 @@ impl Cloth {
             + self.scratch.iter().map(Store::bytes).sum::<usize>()
             + self.tension.iter().map(Store::bytes).sum::<usize>()
             + self.prepared.bytes()
+    }
+
+    /// Particles that lay by the skin in the last step.
+    pub fn on_skin(&self) -> usize {
+        (0..self.positions.len() as u32).filter(|i| self.contacts.by_skin(*i).is_some()).count()
     }
 
     /// What contact did since the garment was made.

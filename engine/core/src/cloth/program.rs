@@ -56,7 +56,11 @@ pub enum Stage {
 }
 
 /// What the stages are metered as.
-pub const METERED_STAGES: [&str; 8] = ["predict", "bend", "shear", "weft", "fibers", "contact", "wind", "tethers"];
+pub const METERED_STAGES: [&str; 9] =
+    ["predict", "bend", "shear", "weft", "fibers", "contact", "wind", "tethers", "layers"];
+
+/// Which of them is contact between garments, which is no stage of one garment.
+pub const LAYERS_METERED: usize = 8;
 
 /// What comes before the first substep of a step.
 pub const BEFORE: [Stage; 4] = [Stage::BroadPhase, Stage::Wind, Stage::WindAcross, Stage::RootMotion];
@@ -208,6 +212,11 @@ impl Program {
             None => (BEFORE[phase], 0),
             Some(later) => (self.substep[later % self.substep.len()], (later / self.substep.len()) as u32),
         }
+    }
+
+    /// The stages of one substep.
+    pub fn of_substep(&self) -> &[Stage] {
+        &self.substep
     }
 
     /// All stages in order, each with the number of its substep.

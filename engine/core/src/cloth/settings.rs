@@ -74,6 +74,15 @@ pub struct Settings {
     /// Whether contact follows particles along their ways; without it, what is thin and fast passes through them. For
     /// telling what it is worth (`toile plan`).
     pub continuous: bool,
+    /// Whether cloth lies on the skin that is seen, where the colliders have one; without it, on their cones. For telling what
+    /// it is worth (`toile plan`), and given up by the governor.
+    pub skin: bool,
+    /// Whether garments that are worn together keep their order; without it, they pass through each other. For telling what
+    /// it is worth (`toile plan`), and given up by the governor.
+    pub layers: bool,
+    /// Whether a garment keeps from passing through itself. For telling what it is worth (`toile plan`), and given up by the
+    /// governor.
+    pub folds: bool,
     /// Workers of a step, 1 or 2. A frame takes the nearest of them that it can have, which its own settings then name.
     pub workers: usize,
     /// Lanes that kernels run on.
@@ -166,6 +175,9 @@ impl Default for Settings {
             tethers: false,
             static_friction: 1.0,
             continuous: true,
+            skin: true,
+            layers: true,
+            folds: true,
             workers: std::thread::available_parallelism().map_or(1, |n| n.get().min(SHARES)),
             width: Width::widest(),
             timed: false,

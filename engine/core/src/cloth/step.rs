@@ -64,14 +64,14 @@ impl Cloth {
     }
 
     /// Settings that a step can be made with.
-    fn sound(&mut self, settings: &Settings) -> Settings {
+    pub(super) fn sound(&mut self, settings: &Settings) -> Settings {
         let sound = settings.sound();
         self.events.held_settings += u64::from(sound != *settings);
         sound
     }
 
     /// What comes before the phases: targets of the skinned particles, the root's motion, repairs.
-    fn begin(&mut self, garment: &Garment, step: &Step<'_>) -> Option<Carried> {
+    pub(super) fn begin(&mut self, garment: &Garment, step: &Step<'_>) -> Option<Carried> {
         let settings = step.settings;
         self.prepared.make(garment, settings);
         self.events.held_pins += self.pins.attach(garment, step.palette);
@@ -104,7 +104,7 @@ impl Cloth {
     }
 
     /// What comes after them: nothing that is not finite is published. `failed` says that a worker panicked.
-    fn end(&mut self, garment: &Garment, step: &Step<'_>, limited: u64, failed: bool) {
+    pub(super) fn end(&mut self, garment: &Garment, step: &Step<'_>, limited: u64, failed: bool) {
         self.events.speed_limited += limited;
         self.events.held_colliders = step.colliders.held();
         let columns = self.state.columns();
@@ -127,7 +127,12 @@ impl Cloth {
         }
     }
 
-    fn work<'a>(&'a mut self, garment: &'a Garment, step: &'a Step<'a>, carried: Option<Carried>) -> StepWork<'a> {
+    pub(super) fn work<'a>(
+        &'a mut self,
+        garment: &'a Garment,
+        step: &'a Step<'a>,
+        carried: Option<Carried>,
+    ) -> StepWork<'a> {
         let dt = self.prepared.dt;
         let [one, two] = &mut self.scratch;
         let columns = WorkColumns {

@@ -14,19 +14,38 @@ pub struct Rung {
     pub gives_up: &'static str,
     /// Share of the substeps that is made.
     pub substep_share: f32,
+    /// Share of the whole quality's time that a step is reckoned with, before any has been made on it.
+    pub time_share: f32,
+    /// Whether a garment keeps from passing through itself.
+    pub folds: bool,
+    /// Whether garments keep from passing through each other.
+    pub layers: bool,
+    /// Whether cloth lies on the skin; otherwise on cones.
+    pub skin: bool,
     /// Whether there is wind.
     pub wind: bool,
 }
 
-/// The levels of quality (rungs), whole quality first. The intended order is: substeps, then how often self-collision is
-/// searched, then distant garments, then the wind; models that are added later take their place in it.
-/// `toile latency --rung R` measures the error of each.
-pub const LADDER: [Rung; 4] = [
-    Rung { gives_up: "nothing", substep_share: 1.0, wind: true },
-    Rung { gives_up: "a quarter of the substeps", substep_share: 0.75, wind: true },
-    Rung { gives_up: "half of the substeps", substep_share: 0.5, wind: true },
-    Rung { gives_up: "the wind", substep_share: 0.5, wind: false },
-];
+/// Whole quality.
+const WHOLE: Rung = Rung {
+    gives_up: "nothing",
+    substep_share: 1.0,
+    time_share: 1.0,
+    folds: true,
+    layers: true,
+    skin: true,
+    wind: true,
+};
+const QUARTER: Rung = Rung { gives_up: "a quarter of the substeps", substep_share: 0.75, time_share: 0.75, ..WHOLE };
+const HALF: Rung = Rung { gives_up: "half of the substeps", substep_share: 0.5, time_share: 0.5, ..QUARTER };
+const NO_FOLDS: Rung = Rung { gives_up: "contact of a garment with itself", time_share: 0.38, folds: false, ..HALF };
+const NO_LAYERS: Rung = Rung { gives_up: "contact between garments", time_share: 0.33, layers: false, ..NO_FOLDS };
+const NO_SKIN: Rung = Rung { gives_up: "the skin, for cones", time_share: 0.25, skin: false, ..NO_LAYERS };
+const NO_WIND: Rung = Rung { gives_up: "the wind", time_share: 0.22, wind: false, ..NO_SKIN };
+
+/// The levels of quality (rungs), whole quality first: substeps go first, then contact of a garment with itself, between
+/// garments, with the skin, then the wind. `toile latency --rung R` measures the error of each.
+pub const LADDER: [Rung; 7] = [WHOLE, QUARTER, HALF, NO_FOLDS, NO_LAYERS, NO_SKIN, NO_WIND];
 
 /// Share of the period from which on a step is long.
 pub const LONG: f32 = 0.7;
@@ -123,7 +142,7 @@ impl Governor {
     /// Whether the longest step of the while would be short on the next better rung.
     fn has_room(&self) -> bool {
         let Some(better) = self.rung.checked_sub(1) else { return false };
-        let ratio = LADDER[usize::from(better)].substep_share / self.rung().substep_share;
+        let ratio = LADDER[usize::from(better)].time_share / self.rung().time_share;
         self.longest_ns as f32 * ratio < SHORT * PERIOD_NS as f32
     }
 
@@ -160,12 +179,12 @@ mod tests {
 
     const MS: u64 = 1_000_000;
 
-    /// Plays steps whose whole quality takes `full` ms, which half of the substeps halve; gives the changes with their
+    /// Plays steps whose whole quality takes `full` ms, and every rung its share of it; gives the changes with their
     /// steps, and how many were beyond the period.
     fn play(governor: &mut Governor, steps: u64, full: impl Fn(u64) -> f64) -> (Vec<(u64, u8)>, u64) {
         let (mut changes, mut missed) = (Vec::new(), 0);
         for step in 0..steps {
-            let ns = (full(step) * f64::from(governor.rung().substep_share) * MS as f64) as u64;
+            let ns = (full(step) * f64::from(governor.rung().time_share) * MS as f64) as u64;
             missed += u64::from(ns > PERIOD_NS);
             changes.extend(governor.after(ns).map(|c| (step, c.to)));
         }
@@ -189,7 +208,8 @@ mod tests {
     #[test]
     fn a_step_beyond_its_period_gives_up_a_rung_at_once_down_to_the_last() {
         let (changes, missed) = play(&mut Governor::default(), 500, |_| 40.0);
-        assert_eq!(changes, [(0, 1), (1, 2), (2, 3)]);
+        let last = LADDER.len() as u8 - 1;
+        assert_eq!(changes, (0..last).map(|k| (u64::from(k), k + 1)).collect::<Vec<_>>());
         assert_eq!(missed, 500, "nothing helps against that");
         let (changes, missed) = play(&mut Governor::default(), 500, |_| 10.0);
         assert_eq!((changes[0], missed), ((0, 1), 1));
@@ -227,13 +247,15 @@ mod tests {
     fn one_that_is_held_stays_where_it_is() {
         let mut governor = Governor::held_on(2);
         let (changes, _) = play(&mut governor, 500, |step| if step < 250 { 1.0 } else { 40.0 });
-        assert_eq!((changes, governor.place(), Governor::held_on(99).place()), (vec![], 2, 3));
+        assert_eq!((changes, governor.place(), Governor::held_on(99).place()), (vec![], 2, LADDER.len() as u8 - 1));
     }
 
     #[test]
     fn the_ladder_only_gives_up() {
         for pair in LADDER.windows(2) {
-            assert!(pair[1].substep_share <= pair[0].substep_share && (pair[0].wind || !pair[1].wind));
+            let models = |r: &Rung| [r.folds, r.layers, r.skin, r.wind];
+            let back = models(&pair[0]).into_iter().zip(models(&pair[1])).any(|(before, after)| after && !before);
+            assert!(pair[1].substep_share <= pair[0].substep_share && pair[1].time_share < pair[0].time_share && !back);
             assert!(pair[1] != pair[0]);
         }
         assert_eq!((LADDER[0].substep_share, LADDER[0].wind), (1.0, true));

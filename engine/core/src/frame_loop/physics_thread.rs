@@ -13,7 +13,7 @@ use super::recording::Entry;
 use super::schedule::{Due, Schedule, Tick};
 use super::sensor_thread::SensorFrame;
 use crate::clock::Clock;
-use crate::cloth::Wind;
+use crate::cloth::Settings;
 use crate::frame::{Frame, SnapshotTimes};
 use crate::meter::{Meter, PERIOD_NS};
 use crate::triple_buffer::Reader;
@@ -56,15 +56,15 @@ pub trait Scene {
 pub struct FrameScene {
     /// The frame that is stepped.
     pub frame: Frame,
-    /// The wind at whole quality.
-    wind: Option<Wind>,
+    /// The settings of whole quality.
+    whole: Settings,
 }
 
 impl FrameScene {
     /// At load, when the shopper is dressed.
     pub fn new(mut frame: Frame) -> Self {
         frame.measure_every(MEASURE_EVERY);
-        Self { wind: frame.settings().wind, frame }
+        Self { whole: *frame.settings(), frame }
     }
 }
 
@@ -74,7 +74,9 @@ impl Scene for FrameScene {
     }
 
     fn set_rung(&mut self, rung: &Rung) {
-        self.frame.set_quality(rung.substep_share, self.wind.filter(|_| rung.wind));
+        let Self { frame, whole } = self;
+        frame.set_quality(rung.substep_share, whole.wind.filter(|_| rung.wind));
+        frame.set_contact(whole.folds && rung.folds, whole.layers && rung.layers, whole.skin && rung.skin);
     }
 
     fn measure(&mut self) {

@@ -64,6 +64,30 @@ impl Posed {
         }
     }
 
+    /// Where a vertex of the mesh is in what [`Self::columns_to`] fills.
+    ///
+    /// # Panics
+    /// Where there is no such vertex.
+    pub fn place(&self, vertex: usize) -> u32 {
+        self.places[vertex]
+    }
+
+    /// How many places there are; of some no vertex is.
+    pub fn places(&self) -> usize {
+        self.columns.as_slice().len() / BLOCK * MOST
+    }
+
+    /// Copies positions (m) and unit normals to columns in the order of the places `[places]`: no vertex is looked up. Shorter
+    /// columns are filled as far as they go.
+    pub fn columns_to(&self, columns: [&mut [f32]; 6]) {
+        let (blocks, _) = self.columns.as_slice().as_chunks::<BLOCK>();
+        for (k, column) in columns.into_iter().enumerate() {
+            let (to, _) = column.as_chunks_mut::<MOST>();
+            let from = blocks.iter().map(|block| &block[k * MOST..(k + 1) * MOST]);
+            to.iter_mut().zip(from).for_each(|(to, from)| to.copy_from_slice(from));
+        }
+    }
+
     #[inline]
     fn three(&self, place: u32, first: usize) -> Vec3 {
         let (blocks, _) = self.columns.as_slice().as_chunks::<BLOCK>();

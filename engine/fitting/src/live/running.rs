@@ -153,6 +153,9 @@ mod tests {
     use super::*;
     use toile_engine::clock::RealClock;
 
+    /// From turn to turn: .1 ms (ns).
+    const TURN_NS: u64 = 100_000;
+
     /// Takes turns until it dies of so many.
     #[derive(Debug)]
     struct Mortal {
@@ -174,7 +177,8 @@ mod tests {
                 // Past the hook: no words on the test's output.
                 std::panic::resume_unwind(Box::new(()));
             }
-            Some(0)
+            // With rests between the turns: at a real-time priority a thread without any would keep all others off its core.
+            Some(self.turns * TURN_NS)
         }
     }
 

@@ -10,9 +10,11 @@ use std::time::Instant;
 
 use glam::Vec3;
 use toile_assets::body::Body;
+use toile_assets::mesh::SkinWeights;
 use toile_assets::numeric::statistics::quantile;
 use toile_assets::rig::Rig;
 use toile_assets::scene_file::{SceneFile, SceneSource};
+use toile_assets::skeleton::Joint;
 use toile_engine::cloth::{Settings, program};
 use toile_engine::frame::Frame;
 use toile_engine::meter::STAGES as STEP_STAGES;
@@ -23,7 +25,7 @@ use super::PlanError;
 use super::cost::Costs;
 use super::fit::fit;
 use super::scene::{Playing, Scene};
-use super::work::{FirstStep, STAGES, Work};
+use super::work::{FirstStep, STAGES, Work, beside};
 use crate::timing;
 
 /// Steps of each cloth that are not timed, and those that are.
@@ -40,12 +42,13 @@ const WALKING: &str = "duration = 7\n[colliders]\nmotion = \"walk\"\n";
 const WAIST: &str = "motion = \"walk\"\n";
 
 /// Each cloth's own part of its scene file.
-fn texts() -> [String; 7] {
+fn texts() -> [String; 9] {
     let scene = |more: &str, garment: &str, pinned: &str| {
         format!("{WALKING}{more}\n[[garment]]\n{garment}\n[[garment.pin]]\nvertices = [\"{pinned}\"]\n{WAIST}")
     };
     let wind = "[wind]\nvelocity = [0.5, 0.0, 0.3]\n";
     let draft = "[settings]\nquality = \"draft\"\n";
+    let folds = "[settings]\nfolds = true\n";
     let tube = |rows: u32, columns: u32| {
         format!(
             "tube = {{ rows = {rows}, columns = {columns}, top_radius = 0.19, bottom_radius = 0.3, height = 0.6 }}\nposition \
@@ -59,6 +62,12 @@ fn texts() -> [String; 7] {
         scene(draft, "skirt = { side = 48 }\nfabric = \"cotton-jersey\"", "0-47"),
         scene("", &format!("{}\nfabric = \"cotton-jersey\"", tube(40, 96)), "0-95"),
         scene(draft, "skirt = { side = 24, layout = \"irregular\" }\nfabric = \"cotton-lawn\"", "0-23"),
+        scene(folds, "skirt = { side = 56 }\nfabric = \"linen-twill\"", "0-55"),
+        format!(
+            "{}\n[[garment]]\n{}\nscale = 1.05\n[[garment.pin]]\nvertices = [\"0-95\"]\n{WAIST}",
+            scene("", &tube(40, 96), "0-95"),
+            tube(30, 96)
+        ),
         // Nothing holds it, so that all of its fibers are solved by index.
         format!(
             "{WALKING}[[garment]]\ngrid = {{ rows = 32, columns = 40, width = 1.0, height = 0.8, plane = \"level\" }}\n\
@@ -83,6 +92,9 @@ pub fn measure(body: Option<(&Body, &Rig, &[Joints])>, workers: usize) -> Result
     for text in texts() {
         scenes.push(Scene::file(SceneFile::parse("calibration", &text, SceneSource::Inside(&[]))?)?);
     }
+    if let Some((body, rig, track)) = body {
+        scenes.push(skirt_on(&scenes[0], body, rig, track)?);
+    }
     let samples = scenes.iter().map(sample).collect::<Result<Vec<_>, _>>()?;
     let mut costs = Costs { copy_us: copy_us(), ..Costs::default() };
     for (stage, unit) in costs.unit_us.iter_mut().enumerate() {
@@ -99,13 +111,22 @@ pub fn measure(body: Option<(&Body, &Rig, &[Joints])>, workers: usize) -> Result
     Ok(costs)
 }
 
+/// The skirt of another scene on a shopper, whose skin it then meets.
+fn skirt_on(other: &Scene, body: &Body, rig: &Rig, track: &[Joints]) -> Result<Scene, PlanError> {
+    let mut skirt = other.garments[0].clone();
+    let (pelvis, _) = SkinWeights::strongest([(Joint::Pelvis.index() as u8, 1.0)]);
+    skirt.fixed_weights.iter_mut().for_each(|w| *w = pelvis);
+    let settings = Settings { folds: false, ..other.settings[0] };
+    Scene::worn(body, rig, vec![skirt], settings, track)
+}
+
 fn sample(scene: &Scene) -> Result<Sample, PlanError> {
     let mut pool = WorkerPool::new(1)?;
     let settings: Vec<Settings> = scene.settings.iter().map(|s| Settings { timed: true, ..*s }).collect();
     let mut playing = Playing::new(scene);
     let mut times: [Vec<f64>; STAGES.len()] = Default::default();
-    let before = |p: &Playing<'_>| p.cloths[0].contact_counts().near;
-    let mut near = 0;
+    let before = |p: &Playing<'_>| -> Vec<u64> { p.cloths.iter().map(|c| c.contact_counts().near).collect() };
+    let mut near = Vec::new();
     for step in 0..WARM_UP + TIMED {
         playing.place();
         if step == WARM_UP {
@@ -115,13 +136,20 @@ fn sample(scene: &Scene) -> Result<Sample, PlanError> {
         playing.take(&settings, &mut pool);
         let us = begun.elapsed().as_secs_f64() * 1e6;
         if step >= WARM_UP {
-            let stages = playing.cloths[0].stage_ns.map(|ns| ns as f64 * 1e-3);
+            let sum = |k: usize| playing.cloths.iter().map(|c| c.stage_ns[k] as f64 * 1e-3).sum();
+            let stages: [f64; program::METERED_STAGES.len()] = std::array::from_fn(sum);
             times.iter_mut().zip(stages).for_each(|(all, us)| all.push(us));
             times[program::METERED_STAGES.len()].push((us - stages.iter().sum::<f64>()).max(0.0));
         }
     }
-    let near = (before(&playing) - near) as f64 / TIMED as f64;
-    let work = Work::of(&scene.garments[0], &settings[0], &FirstStep::of(&playing.cloths[0], near));
+    let now = before(&playing);
+    let work = |k: usize| {
+        let near = (now[k] - near[k]) as f64 / TIMED as f64;
+        let first = FirstStep::of(&playing.cloths[k], near);
+        let first = FirstStep { beside: beside(k, &scene.garments), ..first };
+        Work::of(&scene.garments[k], &settings[k], &first)
+    };
+    let work = (1..scene.garments.len()).fold(work(0), |all, k| all.and(&work(k)));
     Ok(Sample { work, stages_us: times.map(|mut all| quartile(&mut all)) })
 }
 

@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn exact_times_are_found_again() {
-        let rows = [[100.0, 3.0, 7.0], [20.0, 30.0, 1.0], [5.0, 2.0, 50.0], [60.0, 60.0, 6.0]];
+        let rows = [[100.0, 3.0, 7.0, 0.0], [20.0, 30.0, 1.0, 0.0], [5.0, 2.0, 50.0, 0.0], [60.0, 60.0, 6.0, 0.0]];
         let unit = [0.02, 0.5, 0.0];
         let measured = rows.map(|r| r.iter().zip(unit).map(|(a, b)| a * b).sum());
         let found = fit(&rows, &measured);
@@ -66,7 +66,7 @@ mod tests {
     #[test]
     fn nothing_takes_less_than_no_time() {
         // By itself the second unit would be found below 0.
-        let found = fit(&[[10.0, 1.0, 0.0], [10.0, 2.0, 0.0], [20.0, 1.0, 0.0]], &[2.0, 1.5, 4.0]);
+        let found = fit(&[[10.0, 1.0, 0.0, 0.0], [10.0, 2.0, 0.0, 0.0], [20.0, 1.0, 0.0, 0.0]], &[2.0, 1.5, 4.0]);
         assert!(found.iter().all(|c| *c >= 0.0) && found[1] == 0.0, "{found:?}");
         assert_eq!(fit(&[], &[]), [0.0; KINDS]);
     }

@@ -19,6 +19,7 @@ use thiserror::Error;
 use toile_assets::scene_file::SceneError;
 use toile_engine::colliders::ColliderError;
 use toile_engine::frame::FrameError;
+use toile_engine::skin::SkinError;
 use toile_engine::workers::WorkerPoolError;
 
 use crate::scene::RunError;
@@ -35,6 +36,9 @@ pub enum PlanError {
     /// A scene file that cannot be run.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// A skin that the engine does not take.
+    #[error(transparent)]
+    Skin(#[from] SkinError),
     /// A cloth by which the machine is known.
     #[error(transparent)]
     Calibration(#[from] SceneError),

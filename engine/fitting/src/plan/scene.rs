@@ -2,15 +2,18 @@
 
 use glam::Affine3A;
 use toile_assets::body::Body;
-use toile_assets::garment::Garment;
+use toile_assets::garment::{Garment, Part};
 use toile_assets::limits::STEP_SECONDS;
 use toile_assets::rig::Rig;
 use toile_assets::scene_file::SceneFile;
 use toile_assets::skeleton::{BONES, Pose, Skeleton};
 use toile_engine::body::{Poser, palette};
+use toile_engine::body_surface::BodySurface;
+use toile_engine::cloth::layers::{Layers, lay_outside};
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_engine::frame::{DRESS_STEPS, SETTLE_STEPS};
+use toile_engine::skin::{Blend, Posed, SkinningJob};
 use toile_engine::workers::WorkerPool;
 use toile_sensors::clock::ticks_to_ns;
 use toile_sensors::frame::Joints;
@@ -46,6 +49,8 @@ pub struct Scene {
     pub motion: Motion,
     /// The shopper's skeleton, where there is a shopper.
     pub skeleton: Option<Skeleton>,
+    /// What moves the shopper's skin.
+    pub skinning: Option<SkinningJob>,
     /// Steps that only dress the shopper.
     pub dressing: usize,
     /// Time between two steps (us).
@@ -60,15 +65,23 @@ impl Scene {
     pub fn worn(
         body: &Body,
         rig: &Rig,
-        garments: Vec<Garment>,
+        mut garments: Vec<Garment>,
         settings: Settings,
         track: &[Joints],
     ) -> Result<Self, PlanError> {
         let spheres = rig.spheres.each_ref().map(|s| RestSphere::on_bone(&body.skeleton, s.bone, s.offset, s.radius));
-        let mut colliders = Colliders::new(&spheres, &rig.capsules, true)?;
+        lay_outside(&mut garments);
+        let skinning = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights)?;
+        let parts: Vec<Part> = garments.iter().flat_map(|g| g.parts.iter().copied()).collect();
+        let surface = BodySurface::new(body, &skinning.posed(), &parts);
+        let mut colliders = Colliders::new(&spheres, &rig.capsules, true)?.with_skin(surface);
         let poser = Poser::new(&body.skeleton).keeping_clear(&spheres, &rig.capsules);
         let bones = poses(&body.skeleton, poser, track);
-        colliders.place(&rest_bones(&body.skeleton));
+        let rest = rest_bones(&body.skeleton);
+        colliders.place(&rest);
+        let mut skin = skinning.posed();
+        skinning.run(Blend::Linear, &rest, &mut skin);
+        colliders.place_skin(&skin);
         Ok(Self {
             name: String::new(),
             settings: vec![settings; garments.len()],
@@ -76,6 +89,7 @@ impl Scene {
             colliders,
             motion: Motion::Shopper(bones.into()),
             skeleton: Some(body.skeleton.clone()),
+            skinning: Some(skinning),
             dressing: (DRESS_STEPS + SETTLE_STEPS) as usize,
             period_us: f64::from(STEP_SECONDS) * 1e6,
         })
@@ -95,6 +109,7 @@ impl Scene {
             period_us: 1e6 / file.step_hz,
             motion: Motion::File(Box::new(file)),
             skeleton: None,
+            skinning: None,
             dressing: 0,
         })
     }
@@ -149,30 +164,53 @@ pub struct Playing<'a> {
     pub bones: [Affine3A; BONES],
     /// Steps taken so far.
     pub step: usize,
+    /// What keeps the garments from passing through each other and themselves.
+    pub layers: Option<Layers>,
+    /// The skin as last placed, where there is one.
+    pub skin: Option<Posed>,
 }
 
 impl<'a> Playing<'a> {
     /// The scene at its start, before the first step.
     pub fn new(scene: &'a Scene) -> Self {
         let bones = scene.skeleton.as_ref().map_or([Affine3A::IDENTITY; BONES], rest_bones);
-        Self { scene, cloths: scene.cloths(), colliders: scene.colliders.clone(), bones, step: 0 }
+        let skin = scene.skinning.as_ref().map(SkinningJob::posed);
+        let (colliders, layers) = (scene.colliders.clone(), Layers::new(&scene.garments));
+        Self { scene, cloths: scene.cloths(), colliders, bones, step: 0, layers, skin }
+    }
+
+    /// The same moment, without any cloth yet.
+    pub fn moment(&self) -> Self {
+        let Self { scene, bones, step, .. } = *self;
+        let (colliders, skin) = (self.colliders.clone(), self.skin.clone());
+        Self { scene, cloths: Vec::new(), colliders, bones, step, layers: Layers::new(&scene.garments), skin }
     }
 
     /// Places what the next step meets.
     pub fn place(&mut self) {
         self.scene.place(self.step, &mut self.bones, &mut self.colliders);
+        if let (Some(job), Some(skin)) = (&self.scene.skinning, &mut self.skin) {
+            job.run(Blend::Linear, &self.bones, skin);
+            self.colliders.place_skin(skin);
+        }
         self.step += 1;
     }
 
     /// The step of all garments with these settings, one of them shared by the workers, several one worker's each.
     pub fn take(&mut self, settings: &[Settings], pool: &mut WorkerPool) {
-        let Self { scene, cloths, colliders, bones, .. } = self;
+        let garments = &self.scene.garments;
+        self.take_as(garments, settings, pool);
+    }
+
+    /// The same with garments that are changed.
+    pub fn take_as(&mut self, garments: &[Garment], settings: &[Settings], pool: &mut WorkerPool) {
+        let Self { cloths, colliders, bones, layers, .. } = self;
         let step = |i: usize| Step { palette: bones, colliders, settings: &settings[i] };
-        if let ([cloth], [garment]) = (&mut cloths[..], &scene.garments[..]) {
-            cloth.step_with(pool, garment, &step(0));
-        } else {
-            // A worker that panics has said so, and the guard of the next step repairs what it left.
-            let _ = pool.each(cloths, |i, cloth| cloth.step(&scene.garments[i], &step(i)));
+        // A worker that panics has said so, and the guard of the next step repairs what it left.
+        match (&mut cloths[..], garments, layers.as_mut().filter(|l| l.asked(&settings[0]))) {
+            (cloths, garments, Some(layers)) => _ = layers.step(pool, cloths, garments, &step(0)),
+            ([cloth], [garment], None) => cloth.step_with(pool, garment, &step(0)),
+            (cloths, garments, None) => _ = pool.each(cloths, |i, cloth| cloth.step(&garments[i], &step(i))),
         }
     }
 }

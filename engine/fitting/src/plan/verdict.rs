@@ -7,7 +7,7 @@ use toile_engine::meter::{PERIOD_NS, STEP_BUDGET_US};
 
 use super::cost::{Costs, GarmentTime};
 use super::scene::Scene;
-use super::work::{FirstStep, Work, near};
+use super::work::{FirstStep, Work, beside, near};
 
 /// Whether a scene fits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -49,13 +49,16 @@ impl Priced {
 
     fn with(scene: &Scene, settings: &[Settings], costs: &Costs, workers: usize) -> Self {
         let bones = scene.skeleton.as_ref().map_or([glam::Affine3A::IDENTITY; _], super::scene::rest_bones);
-        let one = |(garment, settings): (_, &Settings)| {
+        let one = |(k, (garment, settings)): (usize, (_, &Settings))| {
             let mut cloth = Cloth::new(garment, &scene.colliders);
             cloth.step(garment, &Step { palette: &bones, colliders: &scene.colliders, settings });
             let first = FirstStep::of(&cloth, near(garment, &scene.colliders));
+            // What lies by the skin is taken from the pairs of the cones.
+            let left = 1.0 - first.on_skin / garment.particles().max(1) as f64;
+            let first = FirstStep { beside: beside(k, &scene.garments), near: first.near * left, ..first };
             (first, Work::of(garment, settings, &first))
         };
-        let (first, work): (Vec<_>, Vec<_>) = scene.garments.iter().zip(settings).map(one).unzip();
+        let (first, work): (Vec<_>, Vec<_>) = scene.garments.iter().zip(settings).enumerate().map(one).unzip();
         let times: Vec<GarmentTime> = work.iter().map(|w| costs.garment(w)).collect();
         let stages_us = costs.step(&times, scene.particles(), workers);
         Self { first, work, times, stages_us }

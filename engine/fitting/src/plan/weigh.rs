@@ -116,6 +116,14 @@ fn variants(scene: &Scene) -> Vec<Variant> {
     add("friction", true, &|g| g.fabric.friction = 0.0, &alike);
     add("continuous contact", true, &same, &|s| s.continuous = false);
     add("damping by air", true, &|g| g.fabric.damping_per_s = 0.0, &alike);
+    let [skin, layers, folds] = models(scene);
+    if scene.skinning.is_some() {
+        add("the skin that is seen, in place of cones", skin, &same, &|s| s.skin = !skin);
+    }
+    if scene.garments.len() > 1 {
+        add("garments over one another", layers, &same, &|s| s.layers = !layers);
+    }
+    add("a garment against itself", folds, &same, &|s| s.folds = !folds);
     match wind {
         Some(_) => add("wind", true, &same, &|s| s.wind = None),
         None => add("still air on each triangle", false, &same, &|s| s.wind = Some(still())),
@@ -130,6 +138,12 @@ fn variants(scene: &Scene) -> Vec<Variant> {
     }
     add("threads that do not give (zero stretch)", false, &Garment::make_inextensible, &alike);
     all
+}
+
+/// Whether a scene has skin, layers and folds.
+fn models(scene: &Scene) -> [bool; 3] {
+    let s = &scene.settings[0];
+    [s.skin && scene.skinning.is_some(), s.layers, s.folds]
 }
 
 /// Air that does not move.
@@ -182,8 +196,7 @@ fn weigh(from: &Playing<'_>, variants: &[Variant], tallies: &mut [Tally]) {
 /// Plays a window and gives where the particles end. All variants start in the same way: a cloth of their own,
 /// placed by a step, then put into the state of the run.
 fn window(from: &Playing<'_>, variant: &Variant, tally: &mut Tally) -> Vec<Box<[Vec3A]>> {
-    let colliders = from.colliders.clone();
-    let mut playing = Playing { scene: from.scene, cloths: Vec::new(), colliders, bones: from.bones, step: from.step };
+    let mut playing = from.moment();
     let settings: Vec<Settings> = variant.settings.iter().map(|s| Settings { timed: true, ..*s }).collect();
     for ((garment, settings), run) in variant.garments.iter().zip(&settings).zip(&from.cloths) {
         let mut cloth = Cloth::new(garment, &playing.colliders);
@@ -194,11 +207,13 @@ fn window(from: &Playing<'_>, variant: &Variant, tally: &mut Tally) -> Vec<Box<[
         (0..garment.particles()).for_each(|i| cloth.disturb(i, run.positions[i], run.velocity(i)));
         playing.cloths.push(cloth);
     }
+    // One worker is the caller.
+    let Ok(mut pool) = WorkerPool::new(1) else { return Vec::new() };
     let mut shortest = f64::INFINITY;
     for _ in 0..WINDOW {
         playing.place();
         let begun = Instant::now();
-        step(&mut playing, variant, &settings);
+        playing.take_as(&variant.garments, &settings, &mut pool);
         let us = begun.elapsed().as_secs_f64() * 1e6;
         let sum = |k: usize| playing.cloths.iter().map(|c| c.stage_ns[k]).sum::<u64>() as f64 * 1e-3;
         let rest = STAGES.len() - 1;
@@ -208,12 +223,4 @@ fn window(from: &Playing<'_>, variant: &Variant, tally: &mut Tally) -> Vec<Box<[
     }
     tally.times_us.push(shortest);
     playing.cloths.into_iter().map(|c| c.positions).collect()
-}
-
-/// A step of the variant's own garments, on one core.
-fn step(playing: &mut Playing<'_>, variant: &Variant, settings: &[Settings]) {
-    let Playing { cloths, colliders, bones, .. } = playing;
-    for ((cloth, garment), settings) in cloths.iter_mut().zip(&variant.garments).zip(settings) {
-        cloth.step(garment, &Step { palette: bones, colliders, settings });
-    }
 }

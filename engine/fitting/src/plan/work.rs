@@ -10,23 +10,25 @@ use toile_engine::cloth::{Cloth, Quality, Settings, bending, contact, record_lin
 use toile_engine::colliders::Colliders;
 
 /// Kinds of unit in each stage.
-pub const KINDS: usize = 3;
+pub const KINDS: usize = 4;
 
 /// The stages of the cloth as the engine meters them, and what none of them counts: the guard, the skinned particles'
 /// targets, the copy of the positions.
-pub const STAGES: [&str; 9] = ["predict", "bend", "shear", "weft", "fibers", "contact", "wind", "tethers", "rest"];
+pub const STAGES: [&str; 10] =
+    ["predict", "bend", "shear", "weft", "fibers", "contact", "wind", "tethers", "layers", "rest"];
 
 /// What is counted in each stage, in one step.
 pub const UNITS: [[&str; KINDS]; STAGES.len()] = [
-    ["lanes of particles", "skinned particles", "tensions"],
-    ["lanes of entries of rows", "lanes of scattered entries", "lanes of records"],
-    ["lanes of links along fibers", "lanes of links", "lanes of scattered links"],
-    ["lanes of links", "lanes of scattered links", "phases"],
-    ["lanes of rows", "lanes of rows by index", "lanes of closed hoops"],
-    ["blocks of particles", "near pairs", "phases"],
-    ["lanes of triangles", "", ""],
-    ["lanes of particles", "", ""],
-    ["lanes of particles", "skinned particles", ""],
+    ["lanes of particles", "skinned particles", "tensions", ""],
+    ["lanes of entries of rows", "lanes of scattered entries", "lanes of records", ""],
+    ["lanes of links along fibers", "lanes of links", "lanes of scattered links", ""],
+    ["lanes of links", "lanes of scattered links", "phases", ""],
+    ["lanes of rows", "lanes of rows by index", "lanes of closed hoops", ""],
+    ["blocks of particles", "near pairs", "phases", "blocks of particles by the skin"],
+    ["lanes of triangles", "", "", ""],
+    ["lanes of particles", "", "", ""],
+    ["lanes of particles that may fold", "lanes of particles by other garments", "phases", ""],
+    ["lanes of particles", "skinned particles", "", ""],
 ];
 
 /// How much of each unit.
@@ -64,6 +66,23 @@ pub fn near(garment: &Garment, colliders: &Colliders) -> f64 {
     free.map(of).sum()
 }
 
+/// Particles of a garment that are within this of where another one is laid on (m): what cloth comes nearer in a step.
+const BESIDE_M: f32 = 0.03;
+
+/// Particles of a garment that are within reach of another, summed over the others.
+pub fn beside(garment: usize, all: &[Garment]) -> f64 {
+    let around = |other: &Garment| {
+        let none = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+        other.start.iter().fold(none, |[low, high], p| [low.min(*p), high.max(*p)])
+    };
+    let others = all.iter().enumerate().filter(|(k, _)| *k != garment).map(|(_, other)| around(other));
+    let within = |[low, high]: [Vec3; 2]| {
+        let inside = |p: &&Vec3| p.cmpge(low - BESIDE_M).all() && p.cmple(high + BESIDE_M).all();
+        all[garment].start.iter().filter(inside).count() as f64
+    };
+    others.map(within).sum()
+}
+
 /// What only a step tells: how it was prepared, and how much of the garment is near the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirstStep {
@@ -73,23 +92,37 @@ pub struct FirstStep {
     pub bend: bending::BendingPace,
     /// Pairs of particle and capsule that are near.
     pub near: f64,
+    /// Particles within reach of another garment, summed over these.
+    pub beside: f64,
+    /// Particles that lie by the skin.
+    pub on_skin: f64,
 }
 
 impl FirstStep {
     /// Of a cloth that was made, and stepped once.
     pub fn of(cloth: &Cloth, near: f64) -> Self {
-        Self { substeps: cloth.substeps(), bend: cloth.bend_pace(), near }
+        Self { substeps: cloth.substeps(), bend: cloth.bend_pace(), near, beside: 0.0, on_skin: cloth.on_skin() as f64 }
     }
 }
 
 impl Work {
+    /// The same work and that of another garment, one after the other.
+    #[must_use]
+    pub fn and(mut self, other: &Self) -> Self {
+        for (to, from) in self.counts.iter_mut().zip(&other.counts) {
+            to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
+        }
+        Self { phases: self.phases + other.phases, ..self }
+    }
+
     /// Counts the work of a garment under some settings.
     pub fn of(garment: &Garment, settings: &Settings, first: &FirstStep) -> Self {
         let count = Count { garment, quality: settings.quality, lanes: settings.width.lanes() };
         let n = f64::from(first.substeps);
         let (particles, fixed) = (count.vectors(garment.particles()), garment.fixed.len() as f64);
         let held = settings.tethers || settings.quality == Quality::Draft;
-        let only = |on: bool, amount: f64| [if on { amount } else { 0.0 }, 0.0, 0.0];
+        let when = |on: bool, amount: f64| if on { amount } else { 0.0 };
+        let only = |on: bool, amount: f64| [when(on, amount), 0.0, 0.0, 0.0];
         let per = |counts: [f64; KINDS]| counts.map(|c| c * n);
         let bent = n / f64::from(first.bend.every.max(1)) * f64::from(first.bend.stages);
         // Shear along whole fibers acts in every second of an even number of substeps.
@@ -97,16 +130,20 @@ impl Work {
         let leaning = if half { 0.5 } else { 1.0 };
         let matrix = BendingMatrix::new(garment);
         let [shear, scattered] = count.links(&garment.layout().shear);
+        let touching = first.near / BLOCK * n;
+        let beside = first.beside / count.lanes as f64;
+        let meetings = when(settings.folds || (settings.layers && beside > 0.0), n);
         let counts = [
-            per([particles, fixed, count.tensions()]),
+            per([particles, fixed, count.tensions(), 0.0]),
             count.bending(&matrix).map(|c| c * bent),
-            per([count.leaning() * leaning, shear, scattered]),
+            per([count.leaning() * leaning, shear, scattered, 0.0]),
             per(count.weft()),
             per(count.fibers()),
-            [garment.particles() as f64 / BLOCK, first.near / BLOCK * n, n],
+            [garment.particles() as f64 / BLOCK, touching, n, first.on_skin / BLOCK * n],
             only(settings.wind.is_some(), count.vectors(garment.triangles.len())),
             only(held, particles * n),
-            [particles, fixed, 0.0],
+            [when(settings.folds, particles), when(settings.layers, beside), meetings, 0.0],
+            [particles, fixed, 0.0, 0.0],
         ];
         let bending = Bending { stages: first.bend.stages, ..Bending::plain(&matrix) };
         let each = bending.len() + program::constraints(garment.layout(), settings.quality).len();
@@ -152,7 +189,7 @@ impl Count<'_> {
         let strip = |s: &RowStrip| f64::from(1 + s.entries) * self.vectors(s.len as usize);
         let block = |b: &RowBlock| f64::from(1 + b.entries) * self.vectors(b.len as usize);
         let records = if matrix.reads_records() { self.vectors(self.garment.particles()) } else { 0.0 };
-        [matrix.strips.iter().map(strip).sum(), matrix.blocks.iter().map(block).sum(), records]
+        [matrix.strips.iter().map(strip).sum(), matrix.blocks.iter().map(block).sum(), records, 0.0]
     }
 
     fn leaning(&self) -> f64 {
@@ -163,7 +200,7 @@ impl Count<'_> {
         let weft = &self.garment.layout().weft;
         let [runs, loose] = self.links(weft);
         let passes = self.times(Stage::Weft(0));
-        [runs * passes, loose * passes, weft.tuples.sets.len() as f64 * passes]
+        [runs * passes, loose * passes, weft.tuples.sets.len() as f64 * passes, 0.0]
     }
 
     fn fibers(&self) -> [f64; KINDS] {
@@ -174,7 +211,7 @@ impl Count<'_> {
             lists.map(|l| l.links() as f64 * self.vectors(l.lanes as usize)).sum::<f64>()
         };
         let (whole, crossing) = (self.times(Stage::Fibers), self.times(Stage::Crossing(0)));
-        [rows * whole, listed(false) * crossing, listed(true) * crossing]
+        [rows * whole, listed(false) * crossing, listed(true) * crossing, 0.0]
     }
 
     /// Tensions that a substep begins with none of.

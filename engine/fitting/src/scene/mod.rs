@@ -21,10 +21,12 @@ use toile_assets::limits::MAX_SPHERES;
 use toile_assets::numeric::hash;
 use toile_assets::scene_file::{SceneFile, SceneGarment};
 use toile_assets::skeleton::BONES;
+use toile_engine::cloth::layers::Layers;
 use toile_engine::cloth::program::METERED_STAGES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, Wind, measure};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere, RoundCone};
 use toile_engine::lanes::Width;
+use toile_engine::workers::{WorkerPool, WorkerPoolError};
 
 use crate::heap::{Heap, HeapProbe};
 
@@ -48,6 +50,9 @@ pub enum RunError {
     /// Colliders that the engine does not take.
     #[error(transparent)]
     Colliders(#[from] ColliderError),
+    /// The worker pool cannot be started.
+    #[error(transparent)]
+    WorkerPool(#[from] WorkerPoolError),
 }
 
 /// The distribution of a step's time (us).
@@ -107,6 +112,10 @@ pub struct Runner {
     /// Of each garment: where the scene says nothing, substeps differ.
     settings: Vec<Settings>,
     palette: [Affine3A; BONES],
+    /// What keeps garments from passing through each other and themselves, where the scene asks for it.
+    layers: Option<Layers>,
+    /// One worker: the caller.
+    pool: WorkerPool,
     steps: u64,
     times_ns: Vec<u64>,
     metered: u64,
@@ -144,6 +153,8 @@ impl Runner {
         let particles = scene.garments.iter().zip(&garments).map(|(given, baked)| user_order(given, baked)).collect();
         let measured = scene.steps() - (scene.measure_from * scene.step_hz) as u64;
         Ok(Self {
+            layers: Layers::new(&garments).filter(|layers| layers.asked(&settings(&scene))),
+            pool: WorkerPool::new(1)?,
             settings: garments.iter().map(|_| settings(&scene)).collect(),
             palette: palette(&scene, 0.0),
             times_ns: Vec::with_capacity(measured as usize),
@@ -170,8 +181,14 @@ impl Runner {
         let before = self.heap.read();
         let begun = Instant::now();
         let (palette, colliders) = (&self.palette, &self.colliders);
-        for ((cloth, garment), settings) in self.cloths.iter_mut().zip(&self.garments).zip(&self.settings) {
-            cloth.step(garment, &Step { palette, colliders, settings });
+        if let (Some(layers), Some(settings)) = (&mut self.layers, self.settings.first()) {
+            let step = Step { palette, colliders, settings };
+            // What panicked has said so, and the guard of the next step repairs what it left.
+            _ = layers.step(&mut self.pool, &mut self.cloths, &self.garments, &step);
+        } else {
+            for ((cloth, garment), settings) in self.cloths.iter_mut().zip(&self.garments).zip(&self.settings) {
+                cloth.step(garment, &Step { palette, colliders, settings });
+            }
         }
         let ns = begun.elapsed().as_nanos() as u64;
         let after = self.heap.read();
@@ -273,6 +290,11 @@ impl Runner {
         &self.cloths
     }
 
+    /// Whether cloth is kept from passing through cloth.
+    pub fn keeps_apart(&self) -> bool {
+        self.layers.is_some()
+    }
+
     /// The colliders as last placed.
     pub fn colliders(&self) -> &Colliders {
         &self.colliders
@@ -341,6 +363,8 @@ pub(crate) fn settings(scene: &SceneFile) -> Settings {
         stretch_damping_s: given.stretch_damping.unwrap_or(default.stretch_damping_s),
         wind: scene.wind.map(|w| Wind { velocity: w.velocity.into(), drag: w.drag, lift: w.lift }),
         width: width.unwrap_or(default.width),
+        layers: given.layers.unwrap_or(true),
+        folds: given.folds.unwrap_or(false),
         ..default
     }
 }

@@ -40,7 +40,7 @@ impl Dressed {
         let cover = CoveringCloth::new(garment.triangles.iter().map(|t| t.map(|i| garment.start[i as usize])));
         let mut positions = body.mesh.positions.clone();
         let dressed = cover.dressed(&positions, &body.normals);
-        let body_triangles = cover.hide_skin(&mut positions, &body.normals, &dressed, &body.mesh.triangles);
+        let body_triangles = cover.hide_skin(&mut positions, &body.normals, &dressed, &body.mesh.triangles).triangles;
         let Bounds { min, max } = Bounds::of(&garment.start);
         let fit =
             garment.start.iter().map(|p| (1.5 - 3.0 * (p.y - min.y) / (max.y - min.y)).clamp(-1.0, 1.0)).collect();

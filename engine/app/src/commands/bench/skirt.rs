@@ -74,6 +74,15 @@ pub struct SkirtArgs {
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(wardrobe::names()),
           conflicts_with_all = ["verts", "motion", "mesh", "stretch", "wind", "garments", "table", "backend"])]
     garment: Vec<String>,
+    /// With several garments: let them pass through each other
+    #[arg(long, requires = "garment")]
+    no_layers: bool,
+    /// With a garment: let it pass through itself
+    #[arg(long, requires = "garment")]
+    no_folds: bool,
+    /// With a garment: let it lie on the body's cones, not on the skin that is seen
+    #[arg(long, requires = "garment")]
+    no_skin: bool,
     /// Skirts to step, equal ones
     #[arg(long, value_name = "K", value_parser = count(1..=MAX_GARMENTS as u64), default_value = "1")]
     garments: usize,
@@ -173,6 +182,9 @@ impl SkirtArgs {
             quality: self.quality,
             substeps: self.substeps,
             runs: self.runs,
+            layers: !self.no_layers,
+            skin: !self.no_skin,
+            folds: !self.no_folds,
             steps: self.steps,
         }
     }

@@ -118,8 +118,4 @@ fn models(plan: &Plan, played: &Played, lines: &mut Vec<String>) {
         }
     }
     lines.push("    (50 ms from the same state; times on one core, all garments)".to_owned());
-    lines.push(
-        "    self-collision, and contact between garments, are not in the engine: what they would cost is not known"
-            .to_owned(),
-    );
 }

@@ -18,6 +18,8 @@ pub struct ContactSettings {
     pub step_seconds: f32,
     /// Whether ways are followed between the ends of a substep, or only these looked at.
     pub continuous: bool,
+    /// Whether the skin is met, where there is one.
+    pub skin: bool,
 }
 
 impl ContactSettings {
@@ -29,6 +31,7 @@ impl ContactSettings {
             friction_kinetic: fabric.friction,
             step_seconds: settings.step_seconds,
             continuous: settings.continuous,
+            skin: settings.skin,
         }
     }
 

@@ -1,4 +1,4 @@
-//! Contact: the cloth against the body's capsules, the floor and other planes, along the whole of each substep.
+//! Contact: the cloth against the body's capsules and its skin, the floor and other planes, along the whole of each substep.
 //!
 //! Reads: particles, the colliders at the start and end of the step. Writes: positions, and where the substep started.
 //! Budget: 30 us a step to find what is near, 15 us a substep to push, for 4,096 particles and 28 capsules (32 at most).
@@ -9,6 +9,8 @@ mod contact_settings;
 mod near;
 mod patch;
 mod reach;
+mod skin_contact;
+mod skin_first;
 mod solve;
 mod sweep;
 mod touch;
@@ -18,10 +20,13 @@ use toile_assets::garment::Part;
 use toile_assets::limits::MAX_CAPSULES;
 
 use super::state::ParticleColumns;
+use crate::body_surface::{BodyPart, BodySurface};
 use crate::colliders::Colliders;
 use crate::lanes::Width;
 use cones::{CapsuleCones, CapsuleEnds, PrepareCones};
 use near::{CapsuleBoxes, ContactPair, FindPairs, PLANES, ParticleBlock};
+use skin_contact::SkinContacts;
+use skin_first::{SkinFirst, capsule_limbs};
 use solve::{BusyBlock, SolveContacts};
 use sweep::{QUICK, Sweep};
 
@@ -69,7 +74,11 @@ impl Contacts {
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         let owned = |o: &OwnerContacts| {
-            size_of_val(&*o.blocks) + size_of_val(&*o.pairs) + size_of_val(&*o.turns) + size_of_val(&*o.reach)
+            size_of_val(&*o.blocks)
+                + size_of_val(&*o.pairs)
+                + size_of_val(&*o.turns)
+                + size_of_val(&*o.reach)
+                + o.skin.bytes()
         };
         size_of::<Self>() + self.owners.iter().map(owned).sum::<usize>()
     }
@@ -86,6 +95,9 @@ pub struct OwnerContacts {
     cones: CapsuleCones,
     boxes: CapsuleBoxes,
     planes: heapless::Vec<[f32; 4], PLANES>,
+    skin: SkinContacts,
+    /// The limb of each capsule.
+    limbs: [BodyPart; MAX_CAPSULES],
     tally: ContactCounts,
 }
 
@@ -96,12 +108,14 @@ impl OwnerContacts {
         Self {
             reach: reaches(&blocks, parts, colliders),
             turns: vec![BusyBlock::default(); blocks.len()].into(),
+            skin: SkinContacts::new(&blocks, parts),
             blocks,
             pairs,
             ends: CapsuleEnds::NONE,
             cones: CapsuleCones::NONE,
             boxes: CapsuleBoxes::NONE,
             planes: heapless::Vec::new(),
+            limbs: capsule_limbs(colliders),
             tally: ContactCounts::default(),
         }
     }
@@ -126,7 +140,7 @@ impl OwnerContacts {
             to: &mut self.cones,
         };
         width.run(prepare);
-        let Self { blocks, pairs, reach, cones, boxes, planes, tally, .. } = self;
+        let Self { blocks, pairs, reach, ends, cones, boxes, planes, tally, .. } = self;
         let count = width.run(FindPairs {
             cols,
             swept: cones,
@@ -137,6 +151,22 @@ impl OwnerContacts {
             reach,
             step_seconds: how.step_seconds,
         });
+        let body = colliders.skin().filter(|_| how.skin);
+        self.skin.find(width, cols, body, how);
+        if self.skin.any() {
+            let still =
+                PrepareCones { ends, at: 0.0, share: 0.0, swell: 0.0, offset: how.offset_m, quick: QUICK, to: cones };
+            width.run(still);
+            width.run(SkinFirst {
+                cols,
+                ends,
+                cones,
+                blocks,
+                pairs: &mut pairs[..count],
+                limbs: &self.limbs,
+                skin: &self.skin,
+            });
+        }
         tally.most_pairs = [tally.most_pairs[0].max(count as u64), pairs.len() as u64];
         tally.near += pairs[..count].iter().map(|p| u64::from(p.lanes.count_ones())).sum::<u64>();
         tally.ignored += colliders.capsules().len() as u64 - u64::from(self.ends.sound.count_ones());
@@ -158,6 +188,25 @@ impl OwnerContacts {
         width.run(prepare);
         let sweep = Sweep { ends, cones, span, offset: how.offset_m };
         tally.swept += width.run(SolveContacts { cols, sweep, planes, blocks, pairs, turns, how });
+        self.skin.solve(width, cols, span, how);
+    }
+}
+
+impl Contacts {
+    /// By which limb's skin a particle lies, where it does.
+    pub fn by_skin(&self, particle: u32) -> Option<BodyPart> {
+        self.owners[0].skin.by(particle).or(self.owners[1].skin.by(particle))
+    }
+
+    /// How deep each particle that lies by the skin is behind it at the end of the step (m). For measuring.
+    pub(crate) fn skin_depths(
+        &mut self,
+        width: Width,
+        cols: ParticleColumns<'_>,
+        body: &BodySurface,
+        mut depth: impl FnMut(u32, f32),
+    ) {
+        self.owners.iter_mut().for_each(|own| own.skin.depths(width, cols, body, &mut depth));
     }
 }
 

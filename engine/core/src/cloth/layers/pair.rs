@@ -1,0 +1,105 @@
+//! A pair of garments, or one and itself: what one is to the other, and what is known of both at the start of a step.
+
+use toile_assets::garment::{Garment, Part};
+
+use super::contact::ContactLaw;
+use super::garment_surface::{GarmentMotion, GarmentSurface};
+use super::thickness::thickness;
+use crate::cloth::state::ParticleColumns;
+use crate::lanes::Width;
+
+/// Fastest that cloth is pushed apart that is found in other cloth (m/s): garments, 10 mm in a hundredth of a second, and a
+/// garment and itself, where a side that is remembered wrongly would tear single edges.
+const PUSH_M_S: [f32; 2] = [1.0, 0.2];
+
+/// What a particle of a pair is to the face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wearing {
+    /// Worn over it.
+    Outer,
+    /// Worn under it.
+    Inner,
+    /// A part of the same garment.
+    Folded,
+}
+
+/// Particles of one garment against faces of another.
+#[derive(Debug, Clone)]
+pub struct LayerPair {
+    /// The garment whose particles they are.
+    pub particles: usize,
+    /// The garment whose faces they are.
+    pub faces: usize,
+    /// Which is worn over which.
+    pub wearing: Wearing,
+    /// Distance that is kept (m): half of both thicknesses.
+    pub thickness: f32,
+    /// Coulomb coefficient of the two fabrics on each other: their mean (1).
+    pub friction: f32,
+    /// How many particles there are.
+    pub count: usize,
+}
+
+impl LayerPair {
+    /// Of two of some garments. At load.
+    pub fn new(garments: &[Garment], particles: usize, faces: usize, wearing: Wearing) -> Self {
+        let fabrics = [&garments[particles].fabric, &garments[faces].fabric];
+        Self {
+            particles,
+            faces,
+            wearing,
+            thickness: thickness(fabrics[0], fabrics[1]),
+            friction: 0.5 * fabrics.iter().map(|f| f.friction).sum::<f32>(),
+            count: garments[particles].particles(),
+        }
+    }
+
+    /// Whether it is a garment and itself.
+    pub fn is_fold(&self) -> bool {
+        self.wearing == Wearing::Folded
+    }
+
+    /// What its contacts have in common in a substep of `dt` (s); `static_friction` is that of what sticks over that of what
+    /// slides.
+    pub fn law(&self, dt: f32, static_friction: f32) -> ContactLaw {
+        let friction = [self.friction * static_friction, self.friction];
+        let push = PUSH_M_S[usize::from(self.is_fold())];
+        ContactLaw { thickness: self.thickness, friction, push, dt }
+    }
+
+    /// The particles of a share: the first half and the second.
+    pub fn range(&self, share: usize) -> std::ops::Range<usize> {
+        let half = self.count.div_ceil(2);
+        if share == 0 { 0..half } else { half..self.count }
+    }
+}
+
+/// What a pair is found from: its two garments at the start of a step.
+#[derive(Clone, Copy)]
+pub struct PairScene<'a> {
+    /// Particles of the particles' garment, then of the faces'.
+    pub columns: [ParticleColumns<'a>; 2],
+    /// Their surfaces.
+    pub surfaces: [&'a GarmentSurface; 2],
+    /// How they move.
+    pub motions: [&'a GarmentMotion; 2],
+    /// Length of the step (s).
+    pub step_seconds: f32,
+    /// Number of the step.
+    pub tick: u64,
+    /// Lanes of the kernels.
+    pub width: Width,
+}
+
+/// Whether cloth on two parts of the body meets front to front, a sleeve and a trouser leg for example, and not as
+/// layers; none where the parts do not tell.
+pub fn opposite(one: Part, other: Part) -> Option<bool> {
+    use Part::{All, Hollow, LeftArm, LeftLeg, RightArm, RightLeg};
+    Some(match (one, other) {
+        (All, _) | (_, All) => return None,
+        (Hollow, _) | (_, Hollow) => false,
+        (LeftLeg, RightLeg) | (RightLeg, LeftLeg) => true,
+        (LeftArm | RightArm, _) | (_, LeftArm | RightArm) => one != other,
+        _ => false,
+    })
+}

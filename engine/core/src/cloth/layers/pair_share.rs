@@ -1,0 +1,276 @@
+//! One worker's share of a pair of garments: which particles of one are near which faces of the other.
+
+use glam::Vec3A;
+
+use super::contact::LayerContact;
+use super::fold_share::{FoldScene, FoldShare};
+use super::garment_surface::GarmentSurface;
+use super::pair::{LayerPair, PairScene, Wearing, opposite};
+use crate::cloth::state::get;
+use crate::lanes::{Kernel, Lanes, MOST, Mask, Readable, Store, V3, WriteColumn};
+use crate::surface::{FindNearest, NearestPoint, NearestVertex, SurfaceMesh};
+
+/// Particles farther from a face than this (m) have lost nothing there: about half of the least distance between opposite
+/// walls of a garment, a sleeve at the wrist.
+const REACH_M: f32 = 0.03;
+
+/// How much nearer than the gap of two garments a contact is made (m).
+const MARGIN_M: f32 = 0.001;
+
+/// How much faster than at its start a particle may be within a step (1).
+const FASTER: f32 = 1.5;
+
+/// How far beyond a border (m) a particle is still over the face: not at all, but for rounding and the bend of the cloth.
+const BEYOND_M: f32 = 0.001;
+
+/// How deep behind a face that looks towards it (m) a particle may be and still belong in front: two garments' fronts,
+/// a sleeve and a trouser leg for example, are no layers.
+const FACING_M: f32 = 0.006;
+
+/// Cosine of normals from which on two fronts look at each other.
+const FACING: f32 = -0.7;
+
+/// Every so many steps the nearest face of each particle is looked for from anew: of one that is near, of one that is not.
+const ANEW_STEPS: [u64; 2] = [32, 128];
+
+/// Farther from a surface than this (m) is nothing that is worn.
+const FARTHEST_M: f32 = 10.0;
+
+/// How much farther than the nearest point so far a vertex is looked for (m): a spacing of the mesh, because the nearest
+/// point is nearer than the nearest vertex.
+const LOOKED_M: f32 = 0.02;
+
+/// What is remembered of one particle from step to step.
+#[derive(Debug, Clone, Copy, Default)]
+struct Remembered {
+    triangle: u32,
+    /// How far it was from the face when it was last looked at (m).
+    distance: f32,
+}
+
+/// One worker's share of a pair: half of the particles.
+#[derive(Debug, Clone)]
+pub struct PairShare {
+    first: usize,
+    remembered: Box<[Remembered]>,
+    /// How far each particle and its face can still move before it needs to be looked at (m).
+    slack: Store,
+    /// Particles that are looked at in this step, and what is found.
+    list: Vec<u32>,
+    found: Vec<NearestPoint>,
+    /// The contacts of this step.
+    pub contacts: Vec<LayerContact>,
+    /// Particles looked at in this step.
+    pub asked: u64,
+    /// What is remembered of folds, where the garment meets itself.
+    folds: Option<FoldShare>,
+}
+
+impl PairShare {
+    /// Room for a share of a pair. At load.
+    pub fn new(pair: &LayerPair, share: usize) -> Self {
+        let range = pair.range(share);
+        let (first, len) = (range.start, range.len());
+        let folds = (pair.wearing == Wearing::Folded).then(|| FoldShare::new(pair.count, share));
+        let (len, most) = if folds.is_some() { (0, FoldShare::most_contacts(pair.count)) } else { (len, len) };
+        Self {
+            folds,
+            first,
+            remembered: vec![Remembered::default(); len].into(),
+            slack: Store::zeros(len),
+            list: Vec::with_capacity(len),
+            found: Vec::with_capacity(len),
+            contacts: Vec::with_capacity(most),
+            asked: 0,
+        }
+    }
+
+    /// Finds the contacts of a step. Once a step, before the first substep.
+    pub fn find(&mut self, pair: &LayerPair, scene: &PairScene<'_>) {
+        let first = self.first;
+        self.contacts.clear();
+        if let Some(folds) = &mut self.folds {
+            if let Some(surface) = &scene.surfaces[0].folds {
+                let of = FoldScene { surface, motion: &scene.motions[0].folds };
+                self.asked = folds.find(pair, scene, of, &mut self.contacts);
+            }
+            return;
+        }
+        self.list_near(scene);
+        let [of, faces] = scene.columns;
+        scene.width.run(FindNearest {
+            mesh: &scene.surfaces[1].mesh,
+            surface: faces.x.each_ref().map(Readable::reader),
+            points: of.x.each_ref().map(Readable::reader),
+            list: &self.list,
+            found: &mut self.found,
+        });
+        self.asked = self.list.len() as u64;
+        for (&i, found) in self.list.iter().zip(&self.found) {
+            let k = i as usize - first;
+            let remembered = &mut self.remembered[k];
+            remembered.triangle = found.triangle;
+            remembered.distance = found.distance2.sqrt().min(FARTHEST_M);
+            match touch(pair, scene, i, found) {
+                Ok(contact) => {
+                    self.slack.as_mut()[k] = 0.0;
+                    self.contacts.push(contact);
+                }
+                Err(Distant(slack)) => self.slack.as_mut()[k] = slack,
+            }
+        }
+    }
+
+    /// Lists the particles that may have come near since they were last looked at.
+    fn list_near(&mut self, scene: &PairScene<'_>) {
+        self.list.clear();
+        self.found.clear();
+        for group in 0..self.remembered.len().div_ceil(MOST) {
+            let members = group * MOST..((group + 1) * MOST).min(self.remembered.len());
+            let far = self.remembered[members.start].distance > 2.0 * REACH_M;
+            if scene.tick == 0 || (group as u64 + scene.tick).is_multiple_of(ANEW_STEPS[usize::from(far)]) {
+                members.for_each(|k| self.look_anew(scene, k));
+            }
+        }
+        let (moved, fastest) = (FASTER * scene.step_seconds, scene.motions[1].fastest);
+        let slack = self.slack.column();
+        scene.width.run(Approach {
+            v: scene.columns[0].v,
+            first: self.first,
+            slack,
+            fastest,
+            moved,
+            list: &mut self.list,
+        });
+        let Self { list, found, remembered, first, .. } = self;
+        let known = |i: &u32| remembered[*i as usize - *first].triangle;
+        found.extend(list.iter().map(|i| NearestPoint { triangle: known(i), ..NearestPoint::default() }));
+    }
+
+    /// Looks for the nearest face of a particle from anew.
+    fn look_anew(&mut self, scene: &PairScene<'_>, k: usize) {
+        let remembered = &mut self.remembered[k];
+        let GarmentSurface { mesh, clusters, .. } = scene.surfaces[1];
+        // At first from however far.
+        let within = if scene.tick == 0 { FARTHEST_M } else { remembered.distance + LOOKED_M };
+        let found = scene.width.run(NearestVertex {
+            clusters,
+            boxes: &scene.motions[1].boxes,
+            surface: scene.columns[1].x.each_ref().map(Readable::reader),
+            point: get(scene.columns[0].x, self.first + k).to_array(),
+            within2: within * within,
+        });
+        if let Some(vertex) = found
+            && !mesh.corners(remembered.triangle).contains(&vertex)
+            && let Some(&triangle) = mesh.fan(vertex).first()
+        {
+            remembered.triangle = triangle;
+        }
+        self.slack.as_mut()[k] = 0.0;
+    }
+
+    /// Memory that it holds (bytes).
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.remembered)
+            + self.slack.bytes()
+            + size_of::<u32>() * self.list.capacity()
+            + size_of::<NearestPoint>() * self.found.capacity()
+            + size_of::<LayerContact>() * self.contacts.capacity()
+            + self.folds.as_ref().map_or(0, FoldShare::bytes)
+    }
+}
+
+/// How far a particle is from what could become a contact (m).
+struct Distant(f32);
+
+/// The contact of a particle with the face that is nearest to it, if it may come to one in this step.
+fn touch(pair: &LayerPair, scene: &PairScene<'_>, i: u32, found: &NearestPoint) -> Result<LayerContact, Distant> {
+    let [of, faces] = scene.columns;
+    let mesh = &scene.surfaces[1].mesh;
+    let distance = found.distance2.sqrt();
+    if distance.is_nan() || distance > REACH_M {
+        return Err(Distant(distance - REACH_M));
+    }
+    let corners = mesh.corners(found.triangle);
+    let at = |columns, k: usize| get(columns, corners[k] as usize) * found.shares[k];
+    let away = get(of.x, i as usize) - (at(faces.x, 0) + at(faces.x, 1) + at(faces.x, 2));
+    let seen = |k: usize| scene.motions[1].normals[corners[k] as usize] * found.shares[k];
+    let front = (seen(0) + seen(1) + seen(2)).normalize_or_zero();
+    let height = away.dot(front);
+    let beyond2 = away.length_squared() - height * height;
+    if mesh.on_border(found.triangle, SurfaceMesh::feature(found.shares)) && beyond2 > BEYOND_M * BEYOND_M {
+        return Err(Distant(0.0));
+    }
+    let normal = normal(pair.wearing, scene, i, corners[0], front, height).ok_or(Distant(0.0))?;
+    let gap = away.dot(normal) - pair.thickness;
+    let relative = get(of.v, i as usize) - (at(faces.v, 0) + at(faces.v, 1) + at(faces.v, 2));
+    let near = MARGIN_M + FASTER * scene.step_seconds * (-relative.dot(normal)).max(0.0);
+    if gap.is_nan() || gap >= near {
+        return Err(Distant(gap - near));
+    }
+    Ok(LayerContact { particle: i, corners, shares: found.shares, normal, ..LayerContact::default() })
+}
+
+/// What particles and a surface can have come nearer in a step is taken from their slack; those without any left are listed.
+struct Approach<'a> {
+    /// Velocities of the particles (m/s).
+    v: [WriteColumn<'a>; 3],
+    /// The first particle.
+    first: usize,
+    /// Slack of each from there on (m).
+    slack: WriteColumn<'a>,
+    /// Fastest of the surface (m/s).
+    fastest: f32,
+    /// How long, and how much longer than it is (s).
+    moved: f32,
+    /// Those that are to be looked at.
+    list: &'a mut Vec<u32>,
+}
+
+impl Kernel for Approach<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let mut from = 0;
+        while from < self.slack.len() {
+            let n = (self.slack.len() - from).min(L::N);
+            let v = V3::<L>::load(self.v, self.first + from, n);
+            let speed = v.dot(v).sqrt();
+            let slack = if n == L::N { L::load(self.slack, from) } else { L::load_part(self.slack, from, n) };
+            let left = slack - (speed + L::splat(self.fastest)) * L::splat(self.moved);
+            if n == L::N {
+                left.store(self.slack, from);
+            } else {
+                left.store_part(self.slack, from, n);
+            }
+            // Not a number is no slack.
+            let mut near = !L::splat(0.0).lt(left).bits() & ((1u64 << n) - 1) as u32;
+            while near != 0 {
+                self.list.push((self.first + from) as u32 + near.trailing_zeros());
+                near &= near - 1;
+            }
+            from += n;
+        }
+    }
+}
+
+/// The normal of a contact, towards the side on which the particle belongs; none where that cannot be told. `front` is the
+/// normal of the face, `height` how far in front of it the particle is (m).
+///
+/// Layers look the same way, and their contact is square to the mean of both: where one of them is crumpled, its faces look
+/// anywhere, and the smooth one shows the way out.
+fn normal(wearing: Wearing, scene: &PairScene<'_>, i: u32, corner: u32, front: Vec3A, height: f32) -> Option<Vec3A> {
+    let [of, faces] = scene.surfaces;
+    let own = scene.motions[0].normals[i as usize];
+    let opposite = opposite(of.parts[i as usize], faces.parts[corner as usize]);
+    let turned = own.dot(front) < FACING;
+    match (wearing, opposite) {
+        (_, Some(true)) => Some(front),
+        (Wearing::Outer | Wearing::Folded, _) => Some(if turned { front } else { (front + own).normalize_or_zero() }),
+        (Wearing::Inner, _) if !turned => Some(-(front + own).normalize_or_zero()),
+        // Rolled up cloth does not tell, nor does cloth of parts that nobody knows.
+        (Wearing::Inner, Some(false)) => None,
+        (Wearing::Inner, None) => (height > -FACING_M).then_some(front),
+    }
+}

@@ -1,0 +1,72 @@
+//! One step of all garments of an outfit, substep by substep together.
+
+use toile_assets::garment::Garment;
+use toile_assets::limits::MAX_GARMENTS;
+
+use super::Layers;
+use super::work::{LayerParts, LayerPhase, LayerWork};
+use crate::cloth::{Cloth, Settings, Step};
+use crate::workers::{SharePanicked, WorkerPool};
+
+impl Layers {
+    /// Whether these settings ask for any of it.
+    pub fn asked(&self, settings: &Settings) -> bool {
+        settings.folds || (settings.layers && self.pairs.iter().any(|p| !p.is_fold()))
+    }
+
+    /// One step of the garments that these layers were made of, each worker its garments: the same bits with one worker.
+    /// All take as many substeps as the garment that asks for most.
+    ///
+    /// # Errors
+    /// Where a worker panicked: the garments then keep what they had published.
+    pub fn step(
+        &mut self,
+        pool: &mut WorkerPool,
+        cloths: &mut [Cloth],
+        garments: &[Garment],
+        step: &Step<'_>,
+    ) -> Result<(), SharePanicked> {
+        let asked = garments.iter().map(|g| step.settings.substeps_of(g.substeps)).max().unwrap_or(1);
+        let mut settings = Settings { substeps: Some(asked), substep_share: 1.0, ..*step.settings };
+        cloths.iter_mut().for_each(|cloth| settings = cloth.sound(&settings));
+        let step = &Step { settings: &settings, ..*step };
+        let mut works = heapless::Vec::<_, MAX_GARMENTS>::new();
+        for (cloth, garment) in cloths.iter_mut().zip(garments) {
+            let carried = cloth.begin(garment, step);
+            // As many as there is room for were taken at load.
+            let _ = works.push(cloth.work(garment, step, carried));
+        }
+        let substeps = asked as usize;
+        let Self { surfaces, motions, pairs, shares, touching, worker, tick, .. } = self;
+        let parts = LayerParts { surfaces, pairs, worker, motions, shares, touching, tick: *tick };
+        let work = LayerWork::new(&works, parts, substeps);
+        let done = match &works[..] {
+            // One garment is shared by the workers; several are one worker's each.
+            [one] => {
+                let stages = one.prepared.program.of_substep();
+                let phases = LayerPhase::count_of_one(stages, substeps);
+                pool.run(phases, |phase, share| work.run(LayerPhase::of_one(phase, stages), share))
+            }
+            _ => pool.run(LayerPhase::count(substeps), |phase, share| {
+                work.run(LayerPhase::of(phase, substeps), share);
+            }),
+        };
+        let limited: heapless::Vec<u64, MAX_GARMENTS> = works.iter().map(|w| w.limited()).collect();
+        let times = work.times();
+        drop(works);
+        if step.settings.timed {
+            // Those of all garments are the first one's.
+            cloths.iter_mut().for_each(|cloth| cloth.stage_ns = Default::default());
+            cloths.iter_mut().take(1).for_each(|cloth| cloth.stage_ns = times);
+        }
+        for ((cloth, garment), limited) in cloths.iter_mut().zip(garments).zip(limited) {
+            cloth.end(garment, step, limited, done.is_err());
+        }
+        self.tick += 1;
+        let contacts = self.shares.iter().map(|s| s.contacts.len() as u64).sum();
+        self.counts.asked += self.shares.iter().map(|s| s.asked).sum::<u64>();
+        self.counts.contacts += contacts;
+        self.counts.most = self.counts.most.max(contacts);
+        done
+    }
+}

@@ -1,0 +1,143 @@
+//! Laws of layers: order, weight, equal bits, and that a fault stays where it is.
+
+use glam::{Affine3A, Vec3, Vec3A};
+use toile_assets::bake::bake;
+use toile_assets::fabric::Fabric;
+use toile_assets::garment::{Garment, Shape};
+use toile_assets::skeleton::BONES;
+
+use super::*;
+use crate::cloth::{Cloth, Settings, Step};
+use crate::colliders::Colliders;
+use crate::lanes::Width;
+use crate::workers::WorkerPool;
+
+/// A square sheet of jersey, lying, its front up; `side` vertices a side 20 mm apart, the first of them at `corner` (m).
+fn sheet(side: u32, corner: Vec3, layer: u8) -> Garment {
+    let mut fabric = Fabric::built_in("cotton-jersey").unwrap();
+    fabric.thickness_mm = 4.0;
+    let place = |r: u32, c: u32| (corner + Vec3::new(c as f32 * 0.02, 0.0, r as f32 * 0.02), false);
+    let mut garment = bake("sheet", "one", &Shape::sheet(side, side, place), &fabric).unwrap();
+    garment.layer = layer;
+    garment
+}
+
+/// Sheets over one another on the floor, `apart` (m) at first, the upper ones shifted by a part of a spacing each.
+fn pile(count: u8, apart: f32) -> Vec<Garment> {
+    let corner = |k: u8| Vec3::new(0.007, 0.0, 0.004) * f32::from(k) + Vec3::Y * (0.01 + f32::from(k) * apart);
+    (0..count).map(|k| sheet(12, corner(k), k + 1)).collect()
+}
+
+struct Scene {
+    garments: Vec<Garment>,
+    cloths: Vec<Cloth>,
+    layers: Layers,
+    colliders: Colliders,
+    pool: WorkerPool,
+    settings: Settings,
+}
+
+impl Scene {
+    fn new(garments: Vec<Garment>, workers: usize, width: Width) -> Self {
+        let colliders = Colliders::new(&[], &[], true).unwrap();
+        Self {
+            cloths: garments.iter().map(|g| Cloth::new(g, &colliders)).collect(),
+            layers: Layers::new(&garments).unwrap(),
+            garments,
+            colliders,
+            pool: WorkerPool::new(workers).unwrap(),
+            settings: Settings { width, workers, ..Settings::default() },
+        }
+    }
+
+    fn steps(&mut self, count: usize) {
+        for _ in 0..count {
+            let step =
+                Step { palette: &[Affine3A::IDENTITY; BONES], colliders: &self.colliders, settings: &self.settings };
+            self.layers.step(&mut self.pool, &mut self.cloths, &self.garments, &step).unwrap();
+        }
+    }
+
+    /// Mean height of a garment (m).
+    fn height(&self, garment: usize) -> f32 {
+        let at = &self.cloths[garment].positions;
+        at.iter().map(|p| p.y).sum::<f32>() / at.len() as f32
+    }
+}
+
+#[test]
+fn garments_that_cannot_meet_have_only_their_folds() {
+    let pairs = |garments: &[Garment]| Layers::new(garments).unwrap().pairs.len();
+    assert_eq!(pairs(&[sheet(4, Vec3::ZERO, 1)]), 1);
+    assert_eq!(pairs(&[sheet(4, Vec3::ZERO, 1), sheet(4, Vec3::X * 3.0, 2)]), 2);
+    // Particles of each against faces of the other.
+    assert_eq!(pairs(&[sheet(4, Vec3::ZERO, 1), sheet(4, Vec3::Y * 0.01, 1)]), 4);
+}
+
+#[test]
+fn sheets_come_to_rest_a_thickness_apart_and_stay() {
+    let mut scene = Scene::new(pile(3, 0.006), 1, Width::widest());
+    scene.steps(240);
+    let before: Vec<f32> = (0..3).map(|k| scene.height(k)).collect();
+    for k in 1..3 {
+        let gap = before[k] - before[k - 1];
+        assert!((gap - 0.004).abs() < 0.000_2, "sheet {k} lies {gap} m above the one below");
+    }
+    scene.steps(60);
+    for (k, before) in before.into_iter().enumerate() {
+        assert!((scene.height(k) - before).abs() < 0.000_2, "sheet {k} went from {before} to {}", scene.height(k));
+    }
+}
+
+#[test]
+fn an_order_that_was_lost_comes_back() {
+    // The outer sheet starts 8 mm below the inner one.
+    let mut scene = Scene::new(
+        vec![sheet(12, Vec3::Y * 0.02, 1), sheet(12, Vec3::new(0.006, 0.012, 0.003), 2)],
+        1,
+        Width::widest(),
+    );
+    scene.steps(120);
+    let gap = scene.height(1) - scene.height(0);
+    assert!((gap - 0.004).abs() < 0.000_4, "the outer sheet lies {gap} m above the inner one");
+}
+
+#[test]
+fn workers_and_lanes_change_no_bit() {
+    let state = |workers, width| {
+        let mut scene = Scene::new(pile(3, 0.006), workers, width);
+        scene.steps(60);
+        scene.cloths.iter().flat_map(|c| c.positions.iter().map(|p| p.to_array().map(f32::to_bits))).collect::<Vec<_>>()
+    };
+    let first = state(1, Width::One);
+    for width in Width::ALL.into_iter().filter(|w| w.available()) {
+        for workers in [1, 2] {
+            assert!(state(workers, width) == first, "{width} lanes and {workers} workers give other bits");
+        }
+    }
+}
+
+#[test]
+fn what_is_not_finite_stays_in_its_garment() {
+    let mut scene = Scene::new(pile(2, 0.006), 1, Width::widest());
+    scene.steps(60);
+    for seed in 0..20 {
+        scene.cloths[1].inject_fault(seed);
+        scene.cloths[1].disturb(5, Vec3A::NAN, Vec3A::ZERO);
+        scene.steps(2);
+        assert!(scene.cloths.iter().all(|c| c.positions.iter().all(|p| p.is_finite())), "seed {seed}");
+        let rolled = scene.cloths[0].events;
+        assert_eq!((rolled.rolled_back, rolled.repaired), (0, 0), "seed {seed} reached the other garment: {rolled:?}");
+    }
+}
+
+#[test]
+fn outer_garments_are_laid_outside_and_nothing_else_is_moved() {
+    let mut garments = vec![sheet(12, Vec3::ZERO, 2), sheet(12, Vec3::new(0.005, 0.01, 0.004), 1)];
+    let inner = garments[1].start.clone();
+    lay_outside(&mut garments);
+    assert_eq!(garments[1].start, inner, "the inner one was moved");
+    let over = garments[0].start.iter().filter(|p| p.x > 0.01 && p.z > 0.01);
+    let least = over.map(|p| p.y).fold(f32::MAX, f32::min);
+    assert!(least > 0.01 + 0.003_9, "the outer one starts at {least}");
+}

@@ -1,0 +1,209 @@
+//! Untangling: edges of a garment that pass through its own faces are drawn out again.
+//!
+//! Where cloth passes through itself its faces meet in a curve. Each edge and face that it runs through are moved so that the
+//! curve becomes shorter, until there is none (Volino and Magnenat-Thalmann 2006, "Resolving surface collisions through
+//! intersection contour minimization", section 3). Nothing is remembered for it and no inside is asked for, so it also ends
+//! what nobody saw begin; and it is slow, so that it never throws anything.
+
+use glam::Vec3A;
+
+use super::contact::LayerContact;
+use crate::cloth::state::get;
+use crate::lanes::WriteColumn;
+use crate::surface::{NO_TRIANGLE, NearestPoint, SurfaceMesh};
+
+/// Crossings that one worker keeps at once: a tenth of what a garment of 10,000 particles has when all of it is crushed.
+/// What is found beyond is left for a later step, and counted.
+pub const MOST_CROSSINGS: usize = 1024;
+
+/// Every so many steps a particle's edges are tried: 66 ms.
+const TRIED_STEPS: u64 = 8;
+
+/// So many steps after one of its edges has last crossed anything a particle believes no side that it sees.
+const UNSURE_STEPS: u8 = 32;
+
+/// Fastest that a crossing is drawn apart (m/s).
+const APART_M_S: f32 = 0.1;
+
+/// Length of a gradient under which the way out is not clear, and slower (1).
+const CLEAR: f32 = 0.5;
+
+/// Smallest cosine between an edge and the normal of the face that it crosses.
+const LEAST_COSINE: f32 = 0.05;
+
+/// An edge and a face that it passes through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Crossing {
+    edge: [u32; 2],
+    triangle: u32,
+}
+
+/// Where an edge passes through a face.
+struct Hit {
+    /// How far along the edge (1).
+    along: f32,
+    /// Shares of the corners.
+    shares: [f32; 3],
+}
+
+/// The crossings of one worker's half of a garment.
+#[derive(Debug, Clone)]
+pub struct Uncross {
+    active: Vec<Crossing>,
+    /// For how many steps each particle believes no side `[particles]`.
+    unsure: Box<[u8]>,
+    /// Crossings that there was no room for, summed over the steps.
+    pub left_out: u64,
+}
+
+/// A garment as crossings are looked for.
+#[derive(Clone, Copy)]
+pub struct Tangle<'a> {
+    /// Where the particles are (m).
+    pub x: [WriteColumn<'a>; 3],
+    /// Their triangles.
+    pub mesh: &'a SurfaceMesh,
+    /// Number of the step.
+    pub tick: u64,
+}
+
+impl Uncross {
+    /// Room for a garment of so many particles. At load.
+    pub fn new(particles: usize) -> Self {
+        Self { active: Vec::with_capacity(MOST_CROSSINGS), unsure: vec![0; particles].into(), left_out: 0 }
+    }
+
+    /// Whether the side on which a particle seems to be of anything may be believed.
+    pub fn sure(&self, particle: u32) -> bool {
+        self.unsure[particle as usize] == 0
+    }
+
+    /// Most contacts that it makes in a step: two for each crossing.
+    pub const fn most_contacts() -> usize {
+        2 * MOST_CROSSINGS
+    }
+
+    /// Looks again at the crossings that there were, and for new ones around some particles and the points nearest to them;
+    /// adds contacts that draw them apart.
+    ///
+    /// `minds` says of a particle and a triangle whether the particle remembers on which side of it it belongs: then its contact
+    /// knows better.
+    pub fn find(
+        &mut self,
+        tangle: Tangle<'_>,
+        (list, found): (&[u32], &[NearestPoint]),
+        minds: impl Fn(u32, u32) -> bool,
+        contacts: &mut Vec<LayerContact>,
+    ) {
+        self.unsure.iter_mut().for_each(|u| *u = u.saturating_sub(1));
+        for (&i, near) in list.iter().zip(found) {
+            if (u64::from(i) + tangle.tick).is_multiple_of(TRIED_STEPS) && (near.triangle as usize) < tangle.mesh.len()
+            {
+                self.try_edges(tangle, i, near.triangle);
+            }
+        }
+        let Self { active, unsure, .. } = self;
+        active.retain(|crossing| {
+            let Some(hit) = tangle.hit(crossing) else { return false };
+            if crossing.edge.iter().any(|&i| minds(i, crossing.triangle)) {
+                return true;
+            }
+            crossing.edge.iter().for_each(|&i| unsure[i as usize] = UNSURE_STEPS);
+            if let Some(way) = tangle.way_out(crossing) {
+                let corners = tangle.mesh.corners(crossing.triangle);
+                let ends = crossing.edge.into_iter().zip([1.0 - hit.along, hit.along]);
+                for (particle, share) in ends.filter(|(_, share)| *share > 0.01) {
+                    let (shares, apart) = (hit.shares, way * (APART_M_S * share));
+                    let normal = way.normalize_or_zero();
+                    let (drawn, none) = (apart.length(), LayerContact::default());
+                    contacts.push(LayerContact { particle, corners, shares, normal, drawn, ..none });
+                }
+            }
+            true
+        });
+    }
+
+    /// Tries the edges of a particle against a triangle and those around it.
+    fn try_edges(&mut self, tangle: Tangle<'_>, i: u32, triangle: u32) {
+        let across = tangle.mesh.across(triangle);
+        for &own in tangle.mesh.fan(i) {
+            let corners = tangle.mesh.corners(own);
+            let turn = corners.iter().position(|c| *c == i).unwrap_or(0);
+            // Each edge of the fan once, but for those of borders.
+            let j = corners[(turn + 1) % 3];
+            for face in [triangle, across[0], across[1], across[2]].into_iter().filter(|t| *t != NO_TRIANGLE) {
+                let crossing = Crossing { edge: [i.min(j), i.max(j)], triangle: face };
+                if tangle.hit(&crossing).is_some() && !self.active.contains(&crossing) {
+                    if self.active.len() < MOST_CROSSINGS {
+                        self.active.push(crossing);
+                    } else {
+                        self.left_out += 1;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Memory that it holds (bytes).
+    pub fn bytes(&self) -> usize {
+        size_of::<Crossing>() * self.active.capacity() + self.unsure.len()
+    }
+}
+
+impl Tangle<'_> {
+    fn at(&self, i: u32) -> Vec3A {
+        get(self.x, i as usize)
+    }
+
+    /// Where an edge passes through a face, if it does (Moeller, Trumbore 1997, "Fast, minimum storage ray/triangle
+    /// intersection"). What has a corner in common does not.
+    fn hit(&self, crossing: &Crossing) -> Option<Hit> {
+        let corners = self.mesh.corners(crossing.triangle);
+        if crossing.edge.iter().any(|e| corners.contains(e)) {
+            return None;
+        }
+        let [p, q] = crossing.edge.map(|e| self.at(e));
+        let [a, b, c] = corners.map(|v| self.at(v));
+        let (way, ab, ac) = (q - p, b - a, c - a);
+        let across = way.cross(ac);
+        let volume = ab.dot(across);
+        let inverse = volume.recip();
+        let from = p - a;
+        let v = from.dot(across) * inverse;
+        let up = from.cross(ab);
+        let w = way.dot(up) * inverse;
+        let along = ac.dot(up) * inverse;
+        // Not so where anything is not a number.
+        let inside = v >= 0.0 && w >= 0.0 && v + w <= 1.0 && (0.0..=1.0).contains(&along);
+        (inside && volume != 0.0).then_some(Hit { along, shares: [1.0 - v - w, v, w] })
+    }
+
+    /// Which way an edge is to go against a face for the curve that they meet in to become shorter, up to 1 long.
+    fn way_out(&self, crossing: &Crossing) -> Option<Vec3A> {
+        let [p, q] = crossing.edge.map(|e| self.at(e));
+        let edge = (q - p).normalize_or_zero();
+        let normal = self.face(crossing.triangle)?;
+        let cosine = edge.dot(normal);
+        if cosine.abs() < LEAST_COSINE {
+            return None;
+        }
+        let mut sum = Vec3A::ZERO;
+        let [i, j] = crossing.edge;
+        for &t in self.mesh.fan(i).iter().filter(|t| self.mesh.corners(**t).contains(&j)) {
+            let Some(face) = self.face(t) else { continue };
+            let curve = normal.cross(face).normalize_or_zero();
+            let corners = self.mesh.corners(t);
+            // Into the face: towards the corner that is not the edge's.
+            let third = corners.into_iter().find(|c| *c != i && *c != j).unwrap_or(i);
+            let curve = if curve.dot(self.at(third) - p) < 0.0 { -curve } else { curve };
+            sum += curve - normal * (2.0 * edge.dot(curve) / cosine);
+        }
+        let way = sum / (sum.length_squared() + CLEAR * CLEAR).sqrt();
+        way.is_finite().then_some(way)
+    }
+
+    fn face(&self, triangle: u32) -> Option<Vec3A> {
+        let [a, b, c] = self.mesh.corners(triangle).map(|v| self.at(v));
+        (b - a).cross(c - a).try_normalize()
+    }
+}

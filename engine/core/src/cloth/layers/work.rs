@@ -1,0 +1,331 @@
+//! What each worker does in each phase of a step of several garments.
+//!
+//! Between two phases the workers meet. Within one, what a worker writes belongs to it alone: garments to the worker that
+//! steps them, contacts to the worker whose half of the particles they are of.
+
+use std::marker::PhantomData;
+use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering::Relaxed;
+use std::time::Instant;
+
+use super::garment_surface::{GarmentMotion, GarmentSurface};
+use super::pair::{LayerPair, PairScene};
+use super::pair_share::PairShare;
+use super::touch::TouchLists;
+use crate::cloth::program::{BEFORE, LAYERS_METERED, METERED_STAGES, Stage};
+use crate::cloth::state::ParticleColumns;
+use crate::cloth::work::StepWork;
+use crate::lanes::Width;
+
+/// One phase of a step: both workers' shares of it may run at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LayerPhase {
+    /// Where each garment is and how fast.
+    Motions,
+    /// What is near what.
+    Find,
+    /// Which contacts act on each particle.
+    Lists,
+    /// A substep of each garment up to where garments meet, after the end of the one before.
+    Substep(usize),
+    /// What the contacts make of it; whether it is the substep's first solve.
+    Solve(usize, bool),
+    /// What they do to the garments, between two solves.
+    Apply,
+    /// The end of the last substep.
+    End,
+    /// A stage of a substep of the only garment, shared by the owners of its particles.
+    Stage(Stage, usize),
+    /// What the contacts do to the only garment, before contact with the body.
+    Gather,
+    /// Where the body has held it.
+    Note,
+}
+
+/// Times that contacts are solved in a substep. Twice costs as much again and left as many crossings of a T-shirt over wide
+/// trousers that walk (522 edges for 581, seen at 37 times).
+const SOLVES: usize = 1;
+
+/// Phases of a substep: the substep, then a solve and what follows from it in turn, the last of which is the next substep's.
+const PHASES: usize = 2 * SOLVES;
+
+impl LayerPhase {
+    /// Phases of a step of so many substeps.
+    pub fn count(substeps: usize) -> usize {
+        4 + PHASES * substeps
+    }
+
+    /// Phases of a step of so many substeps where there is one garment only, with these stages of a substep.
+    pub fn count_of_one(stages: &[Stage], substeps: usize) -> usize {
+        3 + BEFORE.len() + (stages.len() + 3) * substeps
+    }
+
+    /// One of them: its stages are phases, so that two workers share it.
+    pub fn of_one(phase: usize, stages: &[Stage]) -> Self {
+        match phase {
+            0 => Self::Motions,
+            1 => Self::Find,
+            2 => Self::Lists,
+            before if before < 3 + BEFORE.len() => Self::Stage(BEFORE[before - 3], 0),
+            later => {
+                let later = later - 3 - BEFORE.len();
+                let (substep, at) = (later / (stages.len() + 3), later % (stages.len() + 3));
+                let last = stages.len() - 1;
+                match at {
+                    at if at < last => Self::Stage(stages[at], substep),
+                    at if at == last => Self::Solve(substep, true),
+                    at if at == last + 1 => Self::Gather,
+                    at if at == last + 2 => Self::Stage(stages[last], substep),
+                    _ => Self::Note,
+                }
+            }
+        }
+    }
+
+    /// One of them.
+    pub fn of(phase: usize, substeps: usize) -> Self {
+        match phase {
+            0 => Self::Motions,
+            1 => Self::Find,
+            2 => Self::Lists,
+            last if last + 1 == Self::count(substeps) => Self::End,
+            later => match ((later - 3) / PHASES, (later - 3) % PHASES) {
+                (substep, 0) => Self::Substep(substep),
+                (_, even) if even % 2 == 0 => Self::Apply,
+                (substep, odd) => Self::Solve(substep, odd == 1),
+            },
+        }
+    }
+}
+
+/// Things of which each belongs to one worker at a time.
+struct Cells<'a, T> {
+    data: *mut T,
+    len: usize,
+    owner: PhantomData<&'a mut [T]>,
+}
+
+// SAFETY: it hands out `&mut T` and `&T` to whoever keeps to the rules of `own` and `read`, and T may go to other threads.
+unsafe impl<T: Send + Sync> Sync for Cells<'_, T> {}
+
+impl<'a, T> Cells<'a, T> {
+    fn new(items: &'a mut [T]) -> Self {
+        Self { data: items.as_mut_ptr(), len: items.len(), owner: PhantomData }
+    }
+
+    /// # Safety
+    /// Until the workers next meet, nobody else reads or writes the item.
+    #[expect(clippy::mut_from_ref, reason = "each item is one worker's")]
+    unsafe fn own(&self, i: usize) -> &mut T {
+        assert!(i < self.len, "there is no such item");
+        // SAFETY: within the slice; see above.
+        unsafe { &mut *self.data.add(i) }
+    }
+
+    /// # Safety
+    /// Until the workers next meet, nobody writes the item.
+    unsafe fn read(&self, i: usize) -> &T {
+        assert!(i < self.len, "there is no such item");
+        // SAFETY: within the slice; see above.
+        unsafe { &*self.data.add(i) }
+    }
+}
+
+/// Everything that the phases of a step share.
+pub struct LayerWork<'a> {
+    works: &'a [StepWork<'a>],
+    surfaces: &'a [GarmentSurface],
+    pairs: &'a [LayerPair],
+    worker: &'a [usize],
+    motions: Cells<'a, GarmentMotion>,
+    shares: Cells<'a, PairShare>,
+    touching: Cells<'a, TouchLists>,
+    tick: u64,
+    substeps: usize,
+    /// Time of the stages of all garments (ns), where they are timed.
+    times: [AtomicU64; METERED_STAGES.len()],
+}
+
+/// What of the layers a step works on.
+pub struct LayerParts<'a> {
+    /// Surfaces of the garments.
+    pub surfaces: &'a [GarmentSurface],
+    /// The pairs.
+    pub pairs: &'a [LayerPair],
+    /// Who steps which garment.
+    pub worker: &'a [usize],
+    /// Motions of the garments.
+    pub motions: &'a mut [GarmentMotion],
+    /// Shares of the pairs.
+    pub shares: &'a mut [PairShare],
+    /// Touches of the garments.
+    pub touching: &'a mut [TouchLists],
+    /// Number of the step.
+    pub tick: u64,
+}
+
+impl<'a> LayerWork<'a> {
+    /// The work of a step.
+    pub fn new(works: &'a [StepWork<'a>], parts: LayerParts<'a>, substeps: usize) -> Self {
+        let LayerParts { surfaces, pairs, worker, motions, shares, touching, tick } = parts;
+        let (motions, shares, touching) = (Cells::new(motions), Cells::new(shares), Cells::new(touching));
+        Self { works, surfaces, pairs, worker, motions, shares, touching, tick, substeps, times: Default::default() }
+    }
+
+    /// Time of the stages of all garments (ns), where they are timed.
+    pub fn times(&self) -> [u64; METERED_STAGES.len()] {
+        self.times.each_ref().map(|t| t.load(Relaxed))
+    }
+
+    /// Does something that counts towards a metered stage.
+    fn meter(&self, stage: usize, act: impl FnOnce()) {
+        let begun = self.works[0].step.settings.timed.then(Instant::now);
+        act();
+        if let Some(begun) = begun {
+            // Relaxed: a sum that is read when all is done.
+            self.times[stage].fetch_add(begun.elapsed().as_nanos() as u64, Relaxed);
+        }
+    }
+
+    /// Does one worker's share of a phase; no share of a phase is done twice.
+    pub fn run(&self, phase: LayerPhase, share: usize) {
+        match phase {
+            LayerPhase::Substep(_) | LayerPhase::End | LayerPhase::Stage(..) => self.part(phase, share),
+            _ => self.meter(LAYERS_METERED, || self.part(phase, share)),
+        }
+    }
+
+    fn part(&self, phase: LayerPhase, share: usize) {
+        match phase {
+            LayerPhase::Motions => self.each_garment(share, |g| self.motion(g)),
+            LayerPhase::Find => self.each_pair(share, |p, own| match self.meets(p) {
+                true => own.find(&self.pairs[p], &self.scene(p)),
+                false => own.contacts.clear(),
+            }),
+            LayerPhase::Lists => self.each_garment(share, |g| self.fill_lists(g)),
+            LayerPhase::Substep(k) => self.each_garment(share, |g| {
+                if k > 0 {
+                    self.finish(g, k - 1);
+                }
+                self.begin(g, k);
+            }),
+            LayerPhase::Solve(k, first) => self.each_pair(share, |p, own| self.solve(p, own, k == 0 && first)),
+            LayerPhase::Apply => self.each_garment(share, |g| {
+                self.touching(g).gather(self.particles(g), [true, false], |list| self.contacts(list));
+            }),
+            LayerPhase::End => self.each_garment(share, |g| self.finish(g, self.substeps - 1)),
+            LayerPhase::Stage(stage, substep) => {
+                let work = &self.works[0];
+                self.meter(stage.metered(), || work.run(stage, substep as u32, share));
+            }
+            LayerPhase::Gather => self.each_garment(share, |g| {
+                self.touching(g).gather(self.particles(g), [SOLVES == 1, true], |list| self.contacts(list));
+            }),
+            LayerPhase::Note => self.each_garment(share, |g| self.touching(g).note_support(self.particles(g))),
+        }
+    }
+
+    /// Whether the settings ask for a pair.
+    fn meets(&self, pair: usize) -> bool {
+        let settings = self.works[0].step.settings;
+        if self.pairs[pair].is_fold() { settings.folds } else { settings.layers }
+    }
+
+    fn each_garment(&self, share: usize, act: impl Fn(usize)) {
+        (0..self.works.len()).filter(|&g| self.worker[g] == share).for_each(act);
+    }
+
+    fn each_pair(&self, share: usize, act: impl Fn(usize, &mut PairShare)) {
+        for p in 0..self.pairs.len() {
+            // SAFETY: the shares of pairs are written in the phases that call this, by the worker of the share alone, and
+            // read in the others.
+            act(p, unsafe { self.shares.own(share * self.pairs.len() + p) });
+        }
+    }
+
+    /// Particles of a garment. In a phase that writes some, by the garment's worker alone; in one that only reads them, by
+    /// all.
+    fn particles(&self, garment: usize) -> ParticleColumns<'_> {
+        // SAFETY: positions and velocities are written in `Substep` and `End`, where each worker opens the garments that it
+        // steps and no other; they are read by both in `Find` and `Solve`, in which nobody writes them.
+        unsafe { self.works[garment].columns.open() }.particles
+    }
+
+    fn width(&self) -> Width {
+        self.works[0].width
+    }
+
+    fn motion(&self, garment: usize) {
+        // SAFETY: written in this phase by the garment's worker, read in the next.
+        let motion = unsafe { self.motions.own(garment) };
+        motion.take(&self.surfaces[garment], self.particles(garment), self.width());
+    }
+
+    fn scene(&self, pair: usize) -> PairScene<'_> {
+        let LayerPair { particles, faces, .. } = self.pairs[pair];
+        PairScene {
+            columns: [particles, faces].map(|g| self.particles(g)),
+            surfaces: [particles, faces].map(|g| &self.surfaces[g]),
+            // SAFETY: written in the phase before.
+            motions: [particles, faces].map(|g| unsafe { self.motions.read(g) }),
+            step_seconds: self.works[0].step.settings.step_seconds,
+            tick: self.tick,
+            width: self.width(),
+        }
+    }
+
+    /// The contacts of a list, in phases that do not write them.
+    fn contacts(&self, list: usize) -> &[super::contact::LayerContact] {
+        // SAFETY: contacts are written in `Find` and `Solve`, which do not call this.
+        unsafe { &self.shares.read(list).contacts }
+    }
+
+    fn fill_lists(&self, garment: usize) {
+        self.touching(garment).fill(self.pairs, |list| self.contacts(list));
+    }
+
+    /// The touches of a garment, in phases in which its worker alone has them.
+    #[expect(clippy::mut_from_ref, reason = "each garment is one worker's")]
+    fn touching(&self, garment: usize) -> &mut TouchLists {
+        // SAFETY: written in `Lists`, `Substep` and `End` by the garment's worker, read in `Solve`.
+        unsafe { self.touching.own(garment) }
+    }
+
+    fn stage(&self, garment: usize, stage: Stage, substep: usize) {
+        let work = &self.works[garment];
+        self.meter(stage.metered(), || (0..2).for_each(|owner| work.run(stage, substep as u32, owner)));
+    }
+
+    /// A substep up to where garments meet.
+    fn begin(&self, garment: usize, substep: usize) {
+        let before: &[_] = if substep == 0 { &BEFORE } else { &[] };
+        let stages = self.works[garment].prepared.program.of_substep();
+        let own = &stages[..stages.len() - 1];
+        before.iter().chain(own).for_each(|&stage| self.stage(garment, stage, substep));
+    }
+
+    /// What the contacts between the garments do, then contact with the body, last as ever, and the velocities.
+    fn finish(&self, garment: usize, substep: usize) {
+        let touching = self.touching(garment);
+        self.meter(LAYERS_METERED, || {
+            touching.gather(self.particles(garment), [SOLVES == 1, true], |list| self.contacts(list));
+        });
+        self.stage(garment, Stage::ContactAndVelocities, substep);
+        self.meter(LAYERS_METERED, || touching.note_support(self.particles(garment)));
+    }
+
+    fn solve(&self, pair: usize, own: &mut PairShare, first: bool) {
+        let LayerPair { particles, faces, .. } = self.pairs[pair];
+        let columns = [particles, faces].map(|g| self.particles(g));
+        // SAFETY: nobody writes them in `Solve`.
+        let touching = [particles, faces].map(|g| unsafe { self.touching.read(g) });
+        if first {
+            let load = touching.map(|t| &*t.load);
+            own.contacts.iter_mut().for_each(|c| c.weigh(columns, load));
+        }
+        let rest = touching.map(TouchLists::resting);
+        let settings = self.works[0].step.settings;
+        let law = self.pairs[pair].law(settings.step_seconds / self.substeps as f32, settings.static_friction);
+        own.contacts.iter_mut().for_each(|c| c.solve(columns, rest, law));
+    }
+}

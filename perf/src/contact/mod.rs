@@ -1,0 +1,18 @@
+//! The benchmark of contact: cloth against itself, against other cloth and against the skin, with its targets.
+//!
+//! Reads: scenes of its own, the engine's cloth. Writes: one row a target: what was asked for, what was got.
+//! Budget: some two minutes for the whole table; nothing but the steps is timed.
+//! Thread: one, and the engine's where two are named; with nothing else running.
+//!
+//! Crossings are counted by [`crate::crossings`], which shares no code with the engine.
+
+mod order;
+mod row;
+mod scenes;
+mod sheets;
+mod table;
+mod twist;
+mod worn;
+
+pub use row::{ContactError, ContactRow};
+pub use table::{ContactTable, run};

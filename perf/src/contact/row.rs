@@ -1,0 +1,52 @@
+//! A row of the table, and what can go wrong on the way to it.
+
+use serde::Serialize;
+use thiserror::Error;
+use toile_assets::scene_file::SceneError;
+use toile_fitting::scene::RunError;
+
+use crate::worn::WornError;
+
+/// Why a case cannot be measured.
+#[derive(Debug, Error)]
+pub enum ContactError {
+    /// A scene of the benchmark's own that cannot be read.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// One that cannot be run.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// Garments that cannot be worn.
+    #[error(transparent)]
+    Worn(#[from] WornError),
+}
+
+/// A target and what was got.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ContactRow {
+    /// What was measured, and of what.
+    pub name: String,
+    /// At most so much.
+    pub target: f64,
+    /// What was got.
+    pub got: f64,
+    /// The unit of both.
+    pub unit: &'static str,
+    /// Whether it is within the target.
+    pub pass: bool,
+}
+
+impl ContactRow {
+    /// A figure that is to be at most so much.
+    pub fn at_most(name: impl Into<String>, target: f64, got: f64, unit: &'static str) -> Self {
+        Self { name: name.into(), target, got, unit, pass: got <= target }
+    }
+
+    /// The row of a table in Markdown.
+    pub fn markdown(&self) -> String {
+        let Self { name, target, got, unit, pass } = self;
+        let figure = |x: f64| if x != 0.0 && x.abs() < 10.0 { format!("{x:.3}") } else { format!("{x:.0}") };
+        let verdict = if *pass { "met" } else { "missed" };
+        format!("| {name} | {} | {} | {unit} | {verdict} |", figure(*target), figure(*got))
+    }
+}
