@@ -38,3 +38,33 @@ fn two_runs_end_in_the_same_bits_and_another_input_in_others() {
     assert!(first.cloths()[0].positions == second.cloths()[0].positions, "equal hashes of unequal states");
     assert_ne!(first.state_hash(), third.state_hash(), "a joint that moved by a millimetre leaves no trace");
 }
+
+/// Two seconds in which contact is given up and taken back, as the governor does, measured every so many steps.
+fn measured_every(steps: u64, track: &[Joints]) -> Frame {
+    let mut frame = dressed::dressed(&["sun-dress"], track);
+    frame.measure_every(steps);
+    let start = track[0].time_ns;
+    for tick in 0..STEPS {
+        let [given_up, skin] = [tick / 20 % 2 == 1, tick / 20 % 4 != 3];
+        frame.set_contact(!given_up, !given_up, skin);
+        frame.step(&sample(track, start + ticks_to_ns(tick)).expect("a track with frames"));
+    }
+    frame
+}
+
+/// A loop that is late measures at other steps than its replay.
+#[test]
+fn measuring_leaves_no_trace_in_the_state() {
+    let track = dressed::track(&dressed::shopper(), 1.8, 2.1);
+    let [never, often] = thread::scope(|scope| {
+        let runs = [0, 3].map(|steps| {
+            scope.spawn({
+                let track = &track;
+                move || measured_every(steps, track)
+            })
+        });
+        runs.map(|run| run.join().expect("a run that ends"))
+    });
+    assert!(dressed::is_finite(&never));
+    assert_eq!(never.state_hash(), often.state_hash());
+}

@@ -60,6 +60,8 @@ pub struct SkinContacts {
     /// Particles that may touch the skin in this step, and the planes there.
     particles: Vec<u32>,
     planes: [Store; NUMBERS],
+    /// Walks of the particles of a part while they are measured: the next step goes on from where it was itself.
+    measured: Box<[NearestPoint]>,
     tick: u64,
     /// Whether the skin was asked in this step.
     asked: bool,
@@ -81,8 +83,11 @@ impl SkinContacts {
             let mine: Box<[u32]> = particles.iter().copied().filter(|&i| part(i) == kind).collect();
             PartList { part: kind, found: vec![NearestPoint::default(); mine.len()].into(), particles: mine }
         });
+        let lists: Box<[PartList]> = lists.collect();
+        let longest = lists.iter().map(|l| l.particles.len()).max().unwrap_or(0);
         Self {
-            lists: lists.collect(),
+            lists,
+            measured: vec![NearestPoint::default(); longest].into(),
             by: vec![None; parts.len()].into(),
             planes: [(); NUMBERS].map(|()| Store::zeros(particles.len().next_multiple_of(MOST))),
             particles: Vec::with_capacity(particles.len()),
@@ -141,7 +146,7 @@ impl SkinContacts {
     }
 
     /// Walks to the nearest points of the skin at the end of the step; gives each particle that lies by it, and how deep it is
-    /// behind (m). For measuring.
+    /// behind (m). For measuring, which changes nothing that a step reads.
     pub fn depths(
         &mut self,
         width: Width,
@@ -149,17 +154,19 @@ impl SkinContacts {
         body: &BodySurface,
         mut depth: impl FnMut(u32, f32),
     ) {
-        for PartList { part, particles, found } in &mut self.lists {
-            let Some(surface) = body.of(*part) else { continue };
+        let Self { lists, measured, by, .. } = self;
+        for PartList { part, particles, found } in lists.iter() {
+            let (Some(surface), Some(now)) = (body.of(*part), measured.get_mut(..found.len())) else { continue };
+            now.copy_from_slice(found);
             width.run(FindNearest {
                 mesh: &surface.mesh,
                 surface: body.end(),
                 points: cols.x.each_ref().map(Readable::reader),
                 list: particles,
-                found,
+                found: &mut *now,
             });
-            for (&i, found) in particles.iter().zip(found.iter()) {
-                if self.by[i as usize].is_some() {
+            for (&i, found) in particles.iter().zip(now.iter()) {
+                if by[i as usize].is_some() {
                     let feature = SurfaceMesh::feature(found.shares);
                     let normal = surface.mesh.normal(found.triangle, feature, |v| body.vertex(v));
                     let corners = surface.mesh.corners(found.triangle);
@@ -175,6 +182,7 @@ impl SkinContacts {
         let list = |l: &PartList| size_of_val(&*l.particles) + size_of_val(&*l.found);
         self.lists.iter().map(list).sum::<usize>()
             + size_of_val(&*self.by)
+            + size_of_val(&*self.measured)
             + size_of::<u32>() * self.particles.capacity()
             + self.planes.iter().map(Store::bytes).sum::<usize>()
     }
