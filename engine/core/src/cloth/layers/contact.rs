@@ -21,6 +21,10 @@ const FARTHEST_MOVE_M: f32 = 1.0;
 /// Cosine between where something holds a particle and where it is pushed against from which on it does not give way.
 const SUPPORTED: f32 = 0.5;
 
+/// How many times its own load presses at most on a contact from above (1): a coat over a shirt, ten sheets of a pile. Crushed
+/// cloth presses more, and would be held where it is.
+const MOST_ABOVE: f32 = 10.0;
+
 /// Least share of what gives where nothing is held (1) that is reckoned with: a corner that alone can move, and carries next to
 /// nothing of the contact, would be thrown far away. Less than what three corners give by themselves.
 const LEAST_GIVE: f32 = 0.2;
@@ -46,6 +50,8 @@ pub struct LayerContact {
     pub push: Vec3A,
     /// The same to where the substep started, so that no speed comes of it (kg m).
     pub carry: Vec3A,
+    /// What the upper side bears of what lies on it, passed on to the lower one (kg m).
+    pub passed: Vec3A,
 }
 
 /// What holds the particles of a garment from below.
@@ -144,9 +150,26 @@ impl LayerContact {
         let carried = (depth - load).min(law.push * law.dt);
         let sliding = moved - n * along;
         let slid = sliding.length();
-        let [holds, slows] = law.friction.map(|mu| mu * load);
+        // What lies on the upper side presses as well, as much as it did in the substep before.
+        let pressed = if give > 0.0 { self.passed.dot(n).abs() / give } else { 0.0 };
+        let [holds, slows] = law.friction.map(|mu| mu * (load + pressed.min(MOST_ABOVE * load)));
         let slowed = if slid <= holds { sliding } else { sliding * (slows / slid).min(1.0) };
         self.push = (n * (load + carried) - slowed) * give;
         self.carry = n * (carried * give);
+    }
+
+    /// Passes on what the upper side bears, by this contact's part of what holds it; `held_by` is the sum of the parts. The
+    /// upper side is the particle or the face.
+    pub fn pass(&mut self, particle_above: bool, bears: &[Vec3A], held_by: &[f32]) {
+        let push = self.push.length();
+        let part = |i: u32, share: f32, held: f32| {
+            let all = held_by[i as usize];
+            if all > 0.0 { bears[i as usize] * (push * share * held / all) } else { Vec3A::ZERO }
+        };
+        self.passed = if particle_above {
+            part(self.particle, 1.0, self.held[1])
+        } else {
+            (0..3).map(|k| part(self.corners[k], self.shares[k], self.held[0])).sum()
+        };
     }
 }

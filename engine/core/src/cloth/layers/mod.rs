@@ -23,6 +23,7 @@ mod step;
 mod tests;
 mod thickness;
 mod touch;
+mod turns;
 mod uncross;
 #[expect(unsafe_code, reason = "the workers of a step share the contacts")]
 mod work;
@@ -35,9 +36,10 @@ use garment_surface::{GarmentMotion, GarmentSurface};
 use pair::{LayerPair, Wearing};
 use pair_share::PairShare;
 use touch::TouchLists;
+use turns::Turns;
 
 pub use lay::lay_outside;
-pub use order::wearing_order;
+pub use order::{heights, wearing_order};
 
 /// Garments that lie farther apart than this where they start (m) never meet.
 const MEETING_M: f32 = 0.15;
@@ -64,6 +66,7 @@ pub struct Layers {
     touching: Box<[TouchLists]>,
     /// Which worker steps each garment.
     worker: Box<[usize]>,
+    turns: Turns,
     tick: u64,
     counts: LayerCounts,
 }
@@ -80,12 +83,14 @@ impl Layers {
         };
         let surfaces: Box<[GarmentSurface]> = garments.iter().map(|g| GarmentSurface::new(g).with_folds(g)).collect();
         let folded = (0..garments.len()).filter(|&g| surfaces[g].folds.is_some());
-        let mut pairs: Vec<_> = folded.map(|g| LayerPair::new(garments, g, g, Wearing::Folded)).collect();
+        let heights = heights(&order, meet);
+        let level = |garment: usize| heights[garment].max(1);
+        let mut pairs: Vec<_> = folded.map(|g| LayerPair::new(garments, g, g, Wearing::Folded, level(g))).collect();
         for (k, &outer) in order.iter().enumerate() {
             for &inner in order[..k].iter().filter(|&&inner| meet(inner, outer)) {
                 for (particles, faces, wearing) in [(outer, inner, Wearing::Outer), (inner, outer, Wearing::Inner)] {
                     if !surfaces[faces].mesh.is_empty() {
-                        pairs.push(LayerPair::new(garments, particles, faces, wearing));
+                        pairs.push(LayerPair::new(garments, particles, faces, wearing, level(outer)));
                     }
                 }
             }
@@ -97,8 +102,9 @@ impl Layers {
         Some(Self {
             motions: surfaces.iter().map(GarmentMotion::new).collect(),
             shares: halves(0).chain(halves(1)).collect(),
-            touching: (0..garments.len()).map(|g| TouchLists::new(g, garments, &pairs)).collect(),
+            touching: (0..garments.len()).map(|g| TouchLists::new(g, heights[g], garments, &pairs)).collect(),
             worker: workers(garments),
+            turns: Turns { top: heights.iter().copied().max().unwrap_or(0).max(1) },
             surfaces,
             pairs: pairs.into(),
             tick: 0,

@@ -38,11 +38,13 @@ pub struct LayerPair {
     pub friction: f32,
     /// How many particles there are.
     pub count: usize,
+    /// How high it lies, from 1: what is lower is solved first.
+    pub level: usize,
 }
 
 impl LayerPair {
     /// Of two of some garments. At load.
-    pub fn new(garments: &[Garment], particles: usize, faces: usize, wearing: Wearing) -> Self {
+    pub fn new(garments: &[Garment], particles: usize, faces: usize, wearing: Wearing, level: usize) -> Self {
         let fabrics = [&garments[particles].fabric, &garments[faces].fabric];
         Self {
             particles,
@@ -51,6 +53,16 @@ impl LayerPair {
             thickness: thickness(fabrics[0], fabrics[1]),
             friction: 0.5 * fabrics.iter().map(|f| f.friction).sum::<f32>(),
             count: garments[particles].particles(),
+            level,
+        }
+    }
+
+    /// Whether a garment lies on the other one of the two.
+    pub fn has_above(&self, garment: usize) -> bool {
+        match self.wearing {
+            Wearing::Outer => self.particles == garment,
+            Wearing::Inner => self.faces == garment,
+            Wearing::Folded => false,
         }
     }
 

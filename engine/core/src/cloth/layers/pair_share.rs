@@ -46,6 +46,8 @@ struct Remembered {
     triangle: u32,
     /// How far it was from the face when it was last looked at (m).
     distance: f32,
+    /// What was passed on between the two in the last substep (kg m).
+    passed: f32,
 }
 
 /// One worker's share of a pair: half of the particles.
@@ -88,6 +90,12 @@ impl PairShare {
     /// Finds the contacts of a step. Once a step, before the first substep.
     pub fn find(&mut self, pair: &LayerPair, scene: &PairScene<'_>) {
         let first = self.first;
+        if self.folds.is_none() {
+            self.remembered.iter_mut().for_each(|r| r.passed = 0.0);
+            self.contacts
+                .iter()
+                .for_each(|c| self.remembered[c.particle as usize - first].passed = c.passed.dot(c.normal).abs());
+        }
         self.contacts.clear();
         if let Some(folds) = &mut self.folds {
             if let Some(surface) = &scene.surfaces[0].folds {
@@ -112,7 +120,8 @@ impl PairShare {
             remembered.triangle = found.triangle;
             remembered.distance = found.distance2.sqrt().min(FARTHEST_M);
             match touch(pair, scene, i, found) {
-                Ok(contact) => {
+                Ok(mut contact) => {
+                    contact.passed = contact.normal * remembered.passed;
                     self.slack.as_mut()[k] = 0.0;
                     self.contacts.push(contact);
                 }

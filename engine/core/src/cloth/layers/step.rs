@@ -37,8 +37,8 @@ impl Layers {
             let _ = works.push(cloth.work(garment, step, carried));
         }
         let substeps = asked as usize;
-        let Self { surfaces, motions, pairs, shares, touching, worker, tick, .. } = self;
-        let parts = LayerParts { surfaces, pairs, worker, motions, shares, touching, tick: *tick };
+        let Self { surfaces, motions, pairs, shares, touching, worker, turns, tick, .. } = self;
+        let parts = LayerParts { surfaces, pairs, worker, turns: *turns, motions, shares, touching, tick: *tick };
         let work = LayerWork::new(&works, parts, substeps);
         let done = match &works[..] {
             // One garment is shared by the workers; several are one worker's each.
@@ -47,8 +47,8 @@ impl Layers {
                 let phases = LayerPhase::count_of_one(stages, substeps);
                 pool.run(phases, |phase, share| work.run(LayerPhase::of_one(phase, stages), share))
             }
-            _ => pool.run(LayerPhase::count(substeps), |phase, share| {
-                work.run(LayerPhase::of(phase, substeps), share);
+            _ => pool.run(LayerPhase::count(substeps, turns.count()), |phase, share| {
+                work.run(LayerPhase::of(phase, substeps, turns.count()), share);
             }),
         };
         let limited: heapless::Vec<u64, MAX_GARMENTS> = works.iter().map(|w| w.limited()).collect();

@@ -24,6 +24,9 @@ struct Touch {
 /// What is moved less than this (m) only by rounding is not held.
 const MOVED_M: f32 = 1e-6;
 
+/// What slides less than this in a substep (m) sticks: 50 mm/s at a thousand substeps a second.
+const STICKS_M: f32 = 5e-5;
+
 /// The lists of one garment.
 #[derive(Debug, Clone)]
 pub struct TouchLists {
@@ -33,24 +36,38 @@ pub struct TouchLists {
     touches: Vec<Touch>,
     /// Particles that anything touches, in their order.
     touched: Vec<u32>,
-    /// Sum of the shares of the contacts on each particle `[particles]`.
-    pub load: Box<[f32]>,
-    /// Where to the body, or cloth that lies on it, has moved each particle in the last substep: a unit vector, or 0
-    /// `[particles]`.
+    /// Sum of the shares of the contacts on each particle that are solved at once: at its own level, and above
+    /// `[particles]` each.
+    load: [Box<[f32]>; 2],
+    /// Where to the body, or cloth that lies on it, moves each particle: a unit vector, or 0 `[particles]`.
     support: Box<[Vec3A]>,
-    /// How far that has moved it, from where the constraints had left it (m) `[particles]`.
+    /// Where to the body has moved each in the last substep: a unit vector, or 0 `[particles]`.
+    body: Box<[Vec3A]>,
+    /// How far that has moved it, from where it was without what it then bore (m) `[particles]`.
     lift: Box<[Vec3A]>,
     /// What particles that do not give way are still to get (kg m) `[particles]`.
     owed: Box<[Vec3A]>,
-    /// Where the constraints of the substep have left each particle that anything touches (m) `[particles]`.
+    /// Where each particle that anything touches was put without what it bears (m) `[particles]`.
     left: Box<[Vec3A]>,
     /// Where the contacts have put each particle that anything touches (m) `[particles]`.
     placed: Box<[Vec3A]>,
+    /// The levels of the contacts that the garment has in this step, one bit each.
+    levels: u32,
+    /// How high it lies; 0 is on nothing but the body.
+    height: usize,
+    /// How strongly what it lies on holds each particle (kg m) `[particles]`.
+    held_by: Box<[f32]>,
+}
+
+/// The level at which a garment at some height is put on what it lies on: what lies on the body only is put back by it last,
+/// and shares the first with what lies on it.
+fn own_level(height: usize) -> usize {
+    height.max(1)
 }
 
 impl TouchLists {
     /// Room for the touches of a garment. At load.
-    pub fn new(garment: usize, garments: &[Garment], pairs: &[LayerPair]) -> Self {
+    pub fn new(garment: usize, height: usize, garments: &[Garment], pairs: &[LayerPair]) -> Self {
         let particles = garments[garment].particles();
         let most = |p: &LayerPair| {
             let own = if p.particles == garment { particles } else { 0 };
@@ -66,20 +83,24 @@ impl TouchLists {
             start: vec![0; particles + 1].into(),
             touches: Vec::with_capacity(pairs.iter().map(most).sum()),
             touched: Vec::with_capacity(particles),
-            load: vec![0.0; particles].into(),
+            load: [(); 2].map(|()| vec![0.0; particles].into()),
             support: vec![Vec3A::ZERO; particles].into(),
+            body: vec![Vec3A::ZERO; particles].into(),
             lift: vec![Vec3A::ZERO; particles].into(),
             left: vec![Vec3A::ZERO; particles].into(),
             owed: vec![Vec3A::ZERO; particles].into(),
             placed: vec![Vec3A::ZERO; particles].into(),
+            levels: 0,
+            height,
+            held_by: vec![0.0; particles].into(),
         }
     }
 
     /// Lists the contacts of a step; `lists` are those of the first share of every pair, then of the second.
     pub fn fill<'c>(&mut self, pairs: &[LayerPair], lists: impl Fn(usize) -> &'c [LayerContact]) {
-        let Self { garment, start, touches, touched, load, support, .. } = self;
+        let Self { garment, start, touches, touched, load, support, body, height, levels, .. } = self;
         start.fill(0);
-        load.fill(0.0);
+        load.iter_mut().for_each(|load| load.fill(0.0));
         let each = |act: &mut dyn FnMut(u32, Touch)| {
             for list in 0..2 * pairs.len() {
                 let pair = &pairs[list % pairs.len()];
@@ -95,17 +116,21 @@ impl TouchLists {
             }
         };
         let mut count = 0;
+        *levels = 0;
         each(&mut |i, touch| {
             start[i as usize + 1] += 1;
-            load[i as usize] += touch.share.abs();
+            let level = pairs[touch.list as usize % pairs.len()].level;
+            *levels |= 1 << level;
+            let above = level != own_level(*height);
+            load[usize::from(above)][i as usize] += touch.share.abs();
             count += 1;
         });
         touched.clear();
-        for i in 0..load.len() {
+        for i in 0..support.len() {
             if start[i + 1] > 0 {
                 touched.push(i as u32);
             } else {
-                support[i] = Vec3A::ZERO;
+                (support[i], body[i]) = (Vec3A::ZERO, Vec3A::ZERO);
             }
             start[i + 1] += start[i];
         }
@@ -122,44 +147,89 @@ impl TouchLists {
         start[0] = 0;
     }
 
-    /// Gives the particles what their contacts do to them. Those that do not give way get it after the last solve of a
-    /// substep only: what holds them then puts them back and bears it, and no solve sees a gap that is none.
+    /// Gives the particles what the contacts of one level do to them. What does not give way bears it until the end of
+    /// the substep's turns, or passes it on: what holds it puts it back, and no solve sees a gap that is none.
     pub fn gather<'c>(
         &mut self,
         columns: ParticleColumns<'_>,
-        [first, last]: [bool; 2],
+        level: usize,
+        pairs: &[LayerPair],
         lists: impl Fn(usize) -> &'c [LayerContact],
     ) {
+        // At its own level it learns what holds it, which may be nothing any more.
+        let is_own = level == own_level(self.height);
+        if self.levels >> level & 1 == 0 && !(is_own && self.levels != 0) {
+            return;
+        }
         for &i in &self.touched {
             let i = i as usize;
             let (mut push, mut carry, mut support) = (Vec3A::ZERO, Vec3A::ZERO, Vec3A::ZERO);
-            let mut owed = self.owed[i];
+            let (mut owed, mut held_by) = (self.owed[i], 0.0);
             for touch in &self.touches[self.start[i] as usize..self.start[i + 1] as usize] {
+                let pair = &pairs[touch.list as usize % pairs.len()];
+                if pair.level != level {
+                    continue;
+                }
                 let contact = &lists(touch.list as usize)[touch.contact as usize];
                 let part = contact.push * touch.share;
                 if contact.holds(self.support[i], touch.share) {
-                    owed += part;
+                    // Being moved apart is no load.
+                    owed += part - contact.carry * touch.share;
                 } else {
                     push += part;
                     carry += contact.carry * touch.share;
                 }
                 // What lies on the other side and is held holds this one.
-                support += part * contact.held[usize::from(touch.share > 0.0)];
+                let held = contact.held[usize::from(touch.share > 0.0)];
+                support += part * held;
+                held_by += if pair.has_above(self.garment) { part.length() * held } else { 0.0 };
+            }
+            if is_own {
+                let by_cloth = support.normalize_or_zero();
+                self.support[i] = if by_cloth == Vec3A::ZERO { self.body[i] } else { by_cloth };
+                self.held_by[i] = held_by;
             }
             let w = columns.w.get(i);
-            if first {
-                self.left[i] = get(columns.x, i);
-            }
-            if last {
-                push += owed;
-                owed = Vec3A::ZERO;
-                self.support[i] = support.normalize_or_zero();
-            }
             self.owed[i] = owed;
-            self.placed[i] = get(columns.x, i) + push * w;
-            set(columns.x, i, self.placed[i]);
+            set(columns.x, i, get(columns.x, i) + push * w);
             set(columns.previous, i, get(columns.previous, i) + carry * w);
         }
+    }
+
+    /// Takes over what those that lie on it pass on, and lets go of what it has passed on itself.
+    pub fn take_over<'c>(&mut self, level: usize, pairs: &[LayerPair], lists: impl Fn(usize) -> &'c [LayerContact]) {
+        if self.levels >> level & 1 == 0 || self.height > level {
+            return;
+        }
+        for &i in &self.touched {
+            let i = i as usize;
+            if self.height == level {
+                self.owed[i] = if self.held_by[i] > 0.0 { Vec3A::ZERO } else { self.owed[i] };
+                continue;
+            }
+            for touch in &self.touches[self.start[i] as usize..self.start[i + 1] as usize] {
+                let pair = &pairs[touch.list as usize % pairs.len()];
+                if pair.level == level && !pair.is_fold() {
+                    self.owed[i] += lists(touch.list as usize)[touch.contact as usize].passed * touch.share.abs();
+                }
+            }
+        }
+    }
+
+    /// Gives the particles what they bear, for the body to put them back.
+    pub fn bear(&mut self, columns: ParticleColumns<'_>) {
+        for &i in &self.touched {
+            let i = i as usize;
+            self.left[i] = get(columns.x, i);
+            self.placed[i] = self.left[i] + self.owed[i] * columns.w.get(i);
+            set(columns.x, i, self.placed[i]);
+            self.owed[i] = Vec3A::ZERO;
+        }
+    }
+
+    /// What its particles bear (kg m), and how strongly what they lie on holds them (kg m).
+    pub fn borne(&self) -> (&[Vec3A], &[f32]) {
+        (&self.owed, &self.held_by)
     }
 
     /// Notes which of the particles the body has moved since: it holds them.
@@ -168,12 +238,23 @@ impl TouchLists {
             let i = i as usize;
             let x = get(columns.x, i);
             let moved = x - self.placed[i];
-            if moved.length_squared() > MOVED_M * MOVED_M {
-                self.support[i] = moved.normalize_or_zero();
+            let by_body = moved.length_squared() > MOVED_M * MOVED_M;
+            let body = if by_body { moved.normalize_or_zero() } else { Vec3A::ZERO };
+            if by_body {
+                self.support[i] = body;
             }
-            // Not what slides along.
-            self.lift[i] = self.support[i] * (x - self.left[i]).dot(self.support[i]);
+            let back = x - self.left[i];
+            // What sticks is put back altogether, what slides along only away from the body.
+            let slid = (x - get(columns.previous, i)).reject_from_normalized(body);
+            let sticks = by_body && slid.length_squared() < STICKS_M * STICKS_M;
+            self.lift[i] = if sticks { back } else { body * back.dot(body) };
+            self.body[i] = body;
         }
+    }
+
+    /// Sum of the shares of the contacts of a level on each particle `[particles]`.
+    pub fn load(&self, level: usize) -> &[f32] {
+        &self.load[usize::from(level != own_level(self.height))]
     }
 
     /// What holds the particles from below.
@@ -184,11 +265,13 @@ impl TouchLists {
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.start)
-            + size_of_val(&*self.load)
+            + self.load.iter().map(|load| size_of_val(&**load)).sum::<usize>()
             + size_of_val(&*self.support)
             + size_of_val(&*self.lift)
+            + size_of_val(&*self.body)
             + size_of_val(&*self.left)
             + size_of_val(&*self.owed)
+            + size_of_val(&*self.held_by)
             + size_of_val(&*self.placed)
             + size_of::<Touch>() * self.touches.capacity()
             + size_of::<u32>() * self.touched.capacity()

@@ -9,9 +9,10 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::time::Instant;
 
 use super::garment_surface::{GarmentMotion, GarmentSurface};
-use super::pair::{LayerPair, PairScene};
+use super::pair::{LayerPair, PairScene, Wearing};
 use super::pair_share::PairShare;
 use super::touch::TouchLists;
+use super::turns::{Turn, Turns};
 use crate::cloth::program::{BEFORE, LAYERS_METERED, METERED_STAGES, Stage};
 use crate::cloth::state::ParticleColumns;
 use crate::cloth::work::StepWork;
@@ -28,10 +29,10 @@ pub enum LayerPhase {
     Lists,
     /// A substep of each garment up to where garments meet, after the end of the one before.
     Substep(usize),
-    /// What the contacts make of it; whether it is the substep's first solve.
-    Solve(usize, bool),
-    /// What they do to the garments, between two solves.
-    Apply,
+    /// What the contacts make of it, in a substep and in one of its turns.
+    Solve(usize, usize),
+    /// What they do to the garments, between two turns.
+    Apply(usize),
     /// The end of the last substep.
     End,
     /// A stage of a substep of the only garment, shared by the owners of its particles.
@@ -42,17 +43,10 @@ pub enum LayerPhase {
     Note,
 }
 
-/// Times that contacts are solved in a substep. Twice costs as much again and left as many crossings of a T-shirt over wide
-/// trousers that walk (522 edges for 581, seen at 37 times).
-const SOLVES: usize = 1;
-
-/// Phases of a substep: the substep, then a solve and what follows from it in turn, the last of which is the next substep's.
-const PHASES: usize = 2 * SOLVES;
-
 impl LayerPhase {
-    /// Phases of a step of so many substeps.
-    pub fn count(substeps: usize) -> usize {
-        4 + PHASES * substeps
+    /// Phases of a step of so many substeps with so many solves each.
+    pub fn count(substeps: usize, solves: usize) -> usize {
+        4 + 2 * solves * substeps
     }
 
     /// Phases of a step of so many substeps where there is one garment only, with these stages of a substep.
@@ -73,7 +67,7 @@ impl LayerPhase {
                 let last = stages.len() - 1;
                 match at {
                     at if at < last => Self::Stage(stages[at], substep),
-                    at if at == last => Self::Solve(substep, true),
+                    at if at == last => Self::Solve(substep, 0),
                     at if at == last + 1 => Self::Gather,
                     at if at == last + 2 => Self::Stage(stages[last], substep),
                     _ => Self::Note,
@@ -82,18 +76,22 @@ impl LayerPhase {
         }
     }
 
-    /// One of them.
-    pub fn of(phase: usize, substeps: usize) -> Self {
+    /// One of them. A substep is the garments' own stages, then solves and what they do in turn; what the last one does is part
+    /// of what comes after.
+    pub fn of(phase: usize, substeps: usize, solves: usize) -> Self {
         match phase {
             0 => Self::Motions,
             1 => Self::Find,
             2 => Self::Lists,
-            last if last + 1 == Self::count(substeps) => Self::End,
-            later => match ((later - 3) / PHASES, (later - 3) % PHASES) {
-                (substep, 0) => Self::Substep(substep),
-                (_, even) if even % 2 == 0 => Self::Apply,
-                (substep, odd) => Self::Solve(substep, odd == 1),
-            },
+            last if last + 1 == Self::count(substeps, solves) => Self::End,
+            later => {
+                let (substep, at) = ((later - 3) / (2 * solves), (later - 3) % (2 * solves));
+                match at {
+                    0 => Self::Substep(substep),
+                    odd if odd % 2 == 1 => Self::Solve(substep, odd / 2),
+                    even => Self::Apply(even / 2 - 1),
+                }
+            }
         }
     }
 }
@@ -137,6 +135,7 @@ pub struct LayerWork<'a> {
     surfaces: &'a [GarmentSurface],
     pairs: &'a [LayerPair],
     worker: &'a [usize],
+    turns: Turns,
     motions: Cells<'a, GarmentMotion>,
     shares: Cells<'a, PairShare>,
     touching: Cells<'a, TouchLists>,
@@ -154,6 +153,8 @@ pub struct LayerParts<'a> {
     pub pairs: &'a [LayerPair],
     /// Who steps which garment.
     pub worker: &'a [usize],
+    /// The turns of a substep.
+    pub turns: Turns,
     /// Motions of the garments.
     pub motions: &'a mut [GarmentMotion],
     /// Shares of the pairs.
@@ -167,9 +168,21 @@ pub struct LayerParts<'a> {
 impl<'a> LayerWork<'a> {
     /// The work of a step.
     pub fn new(works: &'a [StepWork<'a>], parts: LayerParts<'a>, substeps: usize) -> Self {
-        let LayerParts { surfaces, pairs, worker, motions, shares, touching, tick } = parts;
+        let LayerParts { surfaces, pairs, worker, turns, motions, shares, touching, tick } = parts;
         let (motions, shares, touching) = (Cells::new(motions), Cells::new(shares), Cells::new(touching));
-        Self { works, surfaces, pairs, worker, motions, shares, touching, tick, substeps, times: Default::default() }
+        Self {
+            works,
+            surfaces,
+            pairs,
+            worker,
+            turns,
+            motions,
+            shares,
+            touching,
+            tick,
+            substeps,
+            times: Default::default(),
+        }
     }
 
     /// Time of the stages of all garments (ns), where they are timed.
@@ -209,18 +222,21 @@ impl<'a> LayerWork<'a> {
                 }
                 self.begin(g, k);
             }),
-            LayerPhase::Solve(k, first) => self.each_pair(share, |p, own| self.solve(p, own, k == 0 && first)),
-            LayerPhase::Apply => self.each_garment(share, |g| {
-                self.touching(g).gather(self.particles(g), [true, false], |list| self.contacts(list));
-            }),
+            LayerPhase::Solve(k, at) => {
+                let turn = self.turns.at(at);
+                self.each_pair(share, |p, own| match (self.pairs[p].level == turn.level, turn.up) {
+                    (false, _) => {}
+                    (true, true) => self.solve(p, own, k == 0),
+                    (true, false) => self.pass(p, own),
+                });
+            }
+            LayerPhase::Apply(at) => self.each_garment(share, |g| self.gather(g, self.turns.at(at))),
             LayerPhase::End => self.each_garment(share, |g| self.finish(g, self.substeps - 1)),
             LayerPhase::Stage(stage, substep) => {
                 let work = &self.works[0];
                 self.meter(stage.metered(), || work.run(stage, substep as u32, share));
             }
-            LayerPhase::Gather => self.each_garment(share, |g| {
-                self.touching(g).gather(self.particles(g), [SOLVES == 1, true], |list| self.contacts(list));
-            }),
+            LayerPhase::Gather => self.each_garment(share, |g| self.gather(g, self.turns.last())),
             LayerPhase::Note => self.each_garment(share, |g| self.touching(g).note_support(self.particles(g))),
         }
     }
@@ -306,12 +322,30 @@ impl<'a> LayerWork<'a> {
 
     /// What the contacts between the garments do, then contact with the body, last as ever, and the velocities.
     fn finish(&self, garment: usize, substep: usize) {
-        let touching = self.touching(garment);
-        self.meter(LAYERS_METERED, || {
-            touching.gather(self.particles(garment), [SOLVES == 1, true], |list| self.contacts(list));
-        });
+        self.meter(LAYERS_METERED, || self.gather(garment, self.turns.last()));
         self.stage(garment, Stage::ContactAndVelocities, substep);
-        self.meter(LAYERS_METERED, || touching.note_support(self.particles(garment)));
+        self.meter(LAYERS_METERED, || self.touching(garment).note_support(self.particles(garment)));
+    }
+
+    fn gather(&self, garment: usize, turn: Turn) {
+        let (touching, columns) = (self.touching(garment), self.particles(garment));
+        match turn.up {
+            true => touching.gather(columns, turn.level, self.pairs, |list| self.contacts(list)),
+            false => touching.take_over(turn.level, self.pairs, |list| self.contacts(list)),
+        }
+        if turn == self.turns.last() {
+            touching.bear(columns);
+        }
+    }
+
+    fn pass(&self, pair: usize, own: &mut PairShare) {
+        let pair = &self.pairs[pair];
+        let above = if pair.wearing == Wearing::Outer { pair.particles } else { pair.faces };
+        if !pair.is_fold() {
+            // SAFETY: nobody writes them in `Solve`.
+            let (bears, held_by) = unsafe { self.touching.read(above) }.borne();
+            own.contacts.iter_mut().for_each(|c| c.pass(above == pair.particles, bears, held_by));
+        }
     }
 
     fn solve(&self, pair: usize, own: &mut PairShare, first: bool) {
@@ -320,7 +354,7 @@ impl<'a> LayerWork<'a> {
         // SAFETY: nobody writes them in `Solve`.
         let touching = [particles, faces].map(|g| unsafe { self.touching.read(g) });
         if first {
-            let load = touching.map(|t| &*t.load);
+            let load = touching.map(|t| t.load(self.pairs[pair].level));
             own.contacts.iter_mut().for_each(|c| c.weigh(columns, load));
         }
         let rest = touching.map(TouchLists::resting);
