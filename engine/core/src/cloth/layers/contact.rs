@@ -2,7 +2,7 @@
 //!
 //! A contact acts on positions, as contact with the body does ([`push`](crate::cloth::contact)): what came too near in this
 //! substep is moved back and loses that speed, what was too near before is moved apart without gaining any, and friction holds
-//! what slides up to mu times what pressed (Mueller et al. 2007, "Position based dynamics", section 3.5). All contacts are solved at
+//! what slides up to mu times what pressed (Mueller et al. 2007, "Position based dynamics", section 3.5). All contacts of a level are solved at
 //! once from the same state. So that they do not push too far together, each divides by what all of them do to its four
 //! particles: the sum of a row of the contacts' matrix in place of its diagonal, which leaves no wave that grows and is exact
 //! where all contacts are alike.

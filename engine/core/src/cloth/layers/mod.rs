@@ -5,8 +5,8 @@
 //! Thread: physics; two workers share a step.
 //!
 //! The side of a contact comes from the wearing order alone: a particle of an outer garment belongs in front of an inner
-//! garment's face, one of an inner garment behind an outer garment's. So an order that was lost comes back. What one gains the
-//! other loses, so all of a garment's weight arrives below.
+//! garment's face, one of an inner garment behind an outer garment's. So an order that was lost comes back. Within a substep each
+//! garment is put on what lies under it, from below; what it bears is then passed on downwards, so all weight arrives at the body.
 
 mod contact;
 mod find_folds;
@@ -33,13 +33,14 @@ use toile_assets::garment::Garment;
 use toile_assets::limits::MAX_GARMENTS;
 
 use garment_surface::{GarmentMotion, GarmentSurface};
+use order::heights;
 use pair::{LayerPair, Wearing};
 use pair_share::PairShare;
 use touch::TouchLists;
 use turns::Turns;
 
 pub use lay::lay_outside;
-pub use order::{heights, wearing_order};
+pub use order::wearing_order;
 
 /// Garments that lie farther apart than this where they start (m) never meet.
 const MEETING_M: f32 = 0.15;

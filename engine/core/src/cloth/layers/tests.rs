@@ -89,6 +89,42 @@ fn sheets_come_to_rest_a_thickness_apart_and_stay() {
     }
 }
 
+/// A garment's mass (kg).
+fn mass(garment: &Garment) -> f32 {
+    garment.inverse_mass.iter().map(|w| w.recip()).sum()
+}
+
+#[test]
+fn a_floor_bears_the_weight_of_all_that_lies_on_the_lowest_sheet() {
+    let mut garments = pile(5, 0.006);
+    // A coat of five times the weight.
+    garments[3].inverse_mass.iter_mut().for_each(|w| *w *= 0.2);
+    let mut scene = Scene::new(garments, 1, Width::widest());
+    scene.steps(480);
+    let dt = scene.settings.step_seconds / scene.settings.substeps_of(scene.garments[0].substeps) as f32;
+    // One substep differs from the next by some noise.
+    let mut bore = 0.0;
+    for _ in 0..120 {
+        scene.steps(1);
+        bore -= scene.layers.touching[0].bore(&scene.garments[0].inverse_mass).y / 120.0;
+    }
+    let above: f32 = scene.garments[1..].iter().map(mass).sum();
+    let exact = above * 9.81 * dt * dt;
+    assert!((bore / exact - 1.0).abs() < 0.01, "the floor bears {} of the weight", bore / exact);
+}
+
+#[test]
+fn a_pile_is_still() {
+    let mut scene = Scene::new(pile(4, 0.006), 1, Width::widest());
+    scene.steps(480);
+    for (k, cloth) in scene.cloths.iter().enumerate() {
+        let mut speeds: Vec<f32> = (0..cloth.positions.len()).map(|i| cloth.velocity(i).length()).collect();
+        speeds.sort_by(f32::total_cmp);
+        let median = speeds[speeds.len() / 2];
+        assert!(median < 0.001, "half of sheet {k} moves by more than {median} m/s");
+    }
+}
+
 #[test]
 fn an_order_that_was_lost_comes_back() {
     // The outer sheet starts 8 mm below the inner one.

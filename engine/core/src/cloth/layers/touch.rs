@@ -232,6 +232,13 @@ impl TouchLists {
         (&self.owed, &self.held_by)
     }
 
+    /// What the body had to bear for what lies on a garment in the last substep (kg m); `w` are its inverse masses (1/kg).
+    #[cfg(test)]
+    pub fn bore(&self, w: &[f32]) -> Vec3A {
+        let moved = |i: usize| if w[i] > 0.0 { (self.placed[i] - self.left[i]) / w[i] } else { Vec3A::ZERO };
+        self.touched.iter().map(|&i| moved(i as usize)).sum()
+    }
+
     /// Notes which of the particles the body has moved since: it holds them.
     pub fn note_support(&mut self, columns: ParticleColumns<'_>) {
         for &i in &self.touched {

@@ -262,8 +262,8 @@ impl<'a> LayerWork<'a> {
     /// Particles of a garment. In a phase that writes some, by the garment's worker alone; in one that only reads them, by
     /// all.
     fn particles(&self, garment: usize) -> ParticleColumns<'_> {
-        // SAFETY: positions and velocities are written in `Substep` and `End`, where each worker opens the garments that it
-        // steps and no other; they are read by both in `Find` and `Solve`, in which nobody writes them.
+        // SAFETY: positions and velocities are written in `Substep`, `Apply` and `End`, where each worker opens the garments
+        // that it steps and no other; they are read by both in `Find` and `Solve`, in which nobody writes them.
         unsafe { self.works[garment].columns.open() }.particles
     }
 
@@ -303,7 +303,7 @@ impl<'a> LayerWork<'a> {
     /// The touches of a garment, in phases in which its worker alone has them.
     #[expect(clippy::mut_from_ref, reason = "each garment is one worker's")]
     fn touching(&self, garment: usize) -> &mut TouchLists {
-        // SAFETY: written in `Lists`, `Substep` and `End` by the garment's worker, read in `Solve`.
+        // SAFETY: written in `Lists`, `Substep`, `Apply` and `End` by the garment's worker, read in `Solve`.
         unsafe { self.touching.own(garment) }
     }
 
