@@ -13,7 +13,7 @@ use toile_assets::garment::Part;
 use toile_assets::mesh::SkinWeights;
 use toile_assets::skeleton::{Joint, bone_joint};
 
-use crate::lanes::{ReadColumn, Store, Width};
+use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, Store, V3, Width};
 use crate::skin::Posed;
 use crate::surface::{ClusterBoxes, Clusters, FillBoxes, SurfaceMesh};
 
@@ -44,6 +44,15 @@ pub enum BodyPart {
 }
 
 impl BodyPart {
+    /// All of them.
+    pub const ALL: [Self; 7] =
+        [Self::Trunk, Self::LeftArm, Self::RightArm, Self::LeftHand, Self::RightHand, Self::LeftLeg, Self::RightLeg];
+
+    /// Its place in [`BodyPart::ALL`].
+    fn index(self) -> usize {
+        Self::ALL.iter().position(|limb| *limb == self).unwrap_or(0)
+    }
+
     /// The limb that a bone belongs to; the shoulder girdle and the pelvis are the trunk's.
     pub fn of_bone(bone: u8) -> Self {
         use Joint::*;
@@ -98,6 +107,8 @@ pub struct PartSurface {
     pub clusters: Clusters,
     /// Where these are.
     pub boxes: ClusterBoxes,
+    /// How far the fastest of its vertices moved in the step before (m); infinite where the body was put somewhere else.
+    pub moved: f32,
 }
 
 /// The skinned triangles of one body. Vertices are counted by their places in what skinning writes.
@@ -106,6 +117,10 @@ pub struct BodySurface {
     parts: Box<[PartSurface]>,
     /// The limb of each vertex `[places]`.
     limbs: Box<[BodyPart]>,
+    /// Which limbs the vertices of each [`MOST`] places belong to, one bit each in the order of [`BodyPart::ALL`].
+    limbs_at: Box<[u8]>,
+    /// Square of how far the fastest vertex of each limb moved in the step before (m2).
+    moved2: [f32; BodyPart::ALL.len()],
     start: [Store; 3],
     /// Positions (m) and normals at the end of the step.
     end: [Store; 6],
@@ -134,7 +149,7 @@ impl BodySurface {
             let triangles: Vec<[u32; 3]> = kept.map(|t| t.map(|v| posed.place(v as usize))).collect();
             let mesh = SurfaceMesh::new(&triangles, places);
             let clusters = Clusters::new(&mesh, &start);
-            PartSurface { part, boxes: ClusterBoxes::new(&clusters), clusters, mesh }
+            PartSurface { part, boxes: ClusterBoxes::new(&clusters), clusters, mesh, moved: f32::INFINITY }
         };
         let mut different: Vec<Part> = Vec::new();
         for &part in parts {
@@ -144,7 +159,9 @@ impl BodySurface {
         }
         Self {
             parts: different.into_iter().map(surface).collect(),
+            limbs_at: limbs.chunks(MOST).map(|l| l.iter().fold(0, |bits, l| bits | 1 << l.index())).collect(),
             limbs: limbs.into(),
+            moved2: [f32::INFINITY; BodyPart::ALL.len()],
             start: [(); 3].map(|()| Store::zeros(places)),
             end: [(); 6].map(|()| Store::zeros(places)),
             width: Width::widest(),
@@ -158,14 +175,21 @@ impl BodySurface {
         let [x, y, z, ..] = &mut self.end;
         let ends = [x, y, z];
         self.start.iter_mut().zip(ends).for_each(|(start, end)| std::mem::swap(start, end));
+        // The end is still where the last step started.
+        let [x, y, z, ..] = &self.end;
+        let before = [x, y, z].map(|c| ReadColumn::new(c.as_slice()));
+        self.moved2 = self.width.run(FastestOfLimbs { from: before, to: columns(&self.start), limbs: &self.limbs_at });
         posed.columns_to(self.end.each_mut().map(Store::as_mut));
         if !self.placed || self.jumped() {
             let Self { start, end, .. } = self;
             start.iter_mut().zip(end).for_each(|(start, end)| start.as_mut().copy_from_slice(end.as_slice()));
             self.placed = true;
+            self.moved2 = [f32::INFINITY; BodyPart::ALL.len()];
         }
-        let Self { parts, start, width, .. } = self;
-        for PartSurface { clusters, boxes, .. } in parts {
+        let Self { parts, start, width, moved2, .. } = self;
+        for PartSurface { part, clusters, boxes, moved, .. } in parts {
+            let mine = BodyPart::ALL.iter().zip(&*moved2).filter(|(limb, _)| limb.touches(*part));
+            *moved = mine.map(|(_, moved2)| *moved2).fold(0.0, f32::max).sqrt();
             width.run(FillBoxes { clusters, surface: columns(start), boxes });
         }
     }
@@ -225,6 +249,39 @@ impl BodySurface {
         self.parts.iter().map(part).sum::<usize>()
             + self.start.iter().chain(&self.end).map(Store::bytes).sum::<usize>()
             + size_of_val(&*self.limbs)
+            + size_of_val(&*self.limbs_at)
+    }
+}
+
+/// The square of how far the fastest vertex of each limb moves (m2); a vertex near a limb may count as its own.
+struct FastestOfLimbs<'a> {
+    from: [ReadColumn<'a>; 3],
+    to: [ReadColumn<'a>; 3],
+    limbs: &'a [u8],
+}
+
+impl Kernel for FastestOfLimbs<'_> {
+    type Out = [f32; BodyPart::ALL.len()];
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Out {
+        let mut most = [0.0f32; BodyPart::ALL.len()];
+        let mut at = 0;
+        for &limbs in self.limbs {
+            let end = (at + MOST).min(self.to[0].len());
+            let mut fastest = L::splat(0.0);
+            while at < end {
+                let n = (end - at).min(L::N);
+                let moved = V3::<L>::load(self.to, at, n) - V3::<L>::load(self.from, at, n);
+                fastest = fastest.max(moved.dot(moved));
+                at += n;
+            }
+            let fastest = -(-fastest).least();
+            for (limb, most) in most.iter_mut().enumerate() {
+                *most = if limbs >> limb & 1 == 1 { most.max(fastest) } else { *most };
+            }
+        }
+        most
     }
 }
 

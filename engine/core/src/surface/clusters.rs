@@ -16,6 +16,8 @@ const CURVE_BITS: u32 = 10;
 pub struct Clusters {
     /// The vertices of each; the last is filled up with its own last vertex `[clusters]`.
     vertices: Box<[[u32; MOST]]>,
+    /// How many of the last one's are its own.
+    last: usize,
 }
 
 /// Boxes of the clusters of one surface in one step: lower and upper ends, one column an axis.
@@ -64,7 +66,8 @@ impl Clusters {
         let mut sorted: Vec<u32> = (0..start.len() as u32).filter(|v| !mesh.fan(*v).is_empty()).collect();
         sorted.sort_by_key(|v| (place(*v), *v));
         let full = |group: &[u32]| std::array::from_fn(|i| group[i.min(group.len() - 1)]);
-        Self { vertices: sorted.chunks(MOST).map(full).collect() }
+        let last = (sorted.len() + MOST - 1) % MOST + 1;
+        Self { vertices: sorted.chunks(MOST).map(full).collect(), last }
     }
 
     /// How many there are.
@@ -80,6 +83,12 @@ impl Clusters {
     /// The vertices of one.
     pub fn vertices(&self, cluster: usize) -> &[u32; MOST] {
         &self.vertices[cluster]
+    }
+
+    /// Which places of a cluster hold a vertex of its own, one bit each: in the last one they may be filled up.
+    #[inline(always)]
+    pub fn members(&self, cluster: usize) -> u32 {
+        if cluster + 1 == self.len() { (1 << self.last) - 1 } else { (1 << MOST) - 1 }
     }
 
     /// Memory that they hold (bytes).

@@ -162,6 +162,15 @@ impl SurfaceMesh {
         }
     }
 
+    /// The normal at a vertex, of unit length, its faces weighted by their areas; zero where they have none.
+    pub fn vertex_normal(&self, vertex: u32, at: impl Fn(u32) -> Vec3A) -> Vec3A {
+        let face = |&t: &u32| {
+            let [a, b, c] = self.corners(t).map(&at);
+            (b - a).cross(c - a)
+        };
+        self.fan(vertex).iter().map(face).sum::<Vec3A>().normalize_or_zero()
+    }
+
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.triangles)

@@ -9,6 +9,7 @@ mod contact_settings;
 mod near;
 mod patch;
 mod reach;
+mod skin_asking;
 mod skin_contact;
 mod skin_first;
 mod solve;

@@ -10,11 +10,12 @@ use toile_assets::garment::Part;
 
 use super::ContactSettings;
 use super::near::ParticleBlock;
+use super::skin_asking::{AskingList, PartList};
 use super::touch::{ContactSurface, Friction, push};
 use crate::body_surface::{BodyPart, BodySurface, PartSurface};
 use crate::cloth::state::{ParticleColumns, get};
 use crate::lanes::{Kernel, Lanes, MOST, Mask, ReadColumn, Readable, Store, V3, Width, WriteColumn, reciprocal_root};
-use crate::surface::{FindNearest, NearestPoint, NearestVertex, SurfaceMesh};
+use crate::surface::{FindNearest, NearestPoint, SurfaceMesh};
 
 /// Farther from the skin than this (m), or deeper inside it, a particle lies by the cones.
 pub const DISAGREE_M: f32 = 0.02;
@@ -31,30 +32,14 @@ const BEYOND_M: f32 = 0.002;
 /// Fastest that cloth is pushed out of skin that it is found in (m/s): 10 mm in a hundredth of a second.
 const PUSH_M_S: f32 = 1.0;
 
-/// Every so many steps the nearest point is looked for from anew: of a particle that is near, of one that is not.
-const ANEW_STEPS: [u64; 2] = [64, 128];
-
-/// How much farther than the nearest point so far a vertex is looked for (m): a long edge of a body's mesh.
-const LOOKED_M: f32 = 0.04;
-
-/// Farther from a body than this (m) is nothing that is worn.
-const FARTHEST_M: f32 = 10.0;
-
 /// Numbers of a plane: normal, offset along it at the start of the step and how far that moves, the skin's motion (m).
 const NUMBERS: usize = 8;
-
-/// Particles of one part of the body.
-#[derive(Debug, Clone)]
-struct PartList {
-    part: Part,
-    particles: Box<[u32]>,
-    found: Box<[NearestPoint]>,
-}
 
 /// What one worker's particles have to do with the skin.
 #[derive(Debug, Clone)]
 pub struct SkinContacts {
     lists: Box<[PartList]>,
+    asking: AskingList,
     /// The limb by whose skin each particle lies, where it does `[particles of the garment]`.
     by: Box<[Option<BodyPart>]>,
     /// Particles that may touch the skin in this step, and the planes there.
@@ -81,11 +66,12 @@ impl SkinContacts {
         }
         let lists = kinds.into_iter().map(|kind| {
             let mine: Box<[u32]> = particles.iter().copied().filter(|&i| part(i) == kind).collect();
-            PartList { part: kind, found: vec![NearestPoint::default(); mine.len()].into(), particles: mine }
+            PartList::new(kind, mine)
         });
         let lists: Box<[PartList]> = lists.collect();
         let longest = lists.iter().map(|l| l.particles.len()).max().unwrap_or(0);
         Self {
+            asking: AskingList::new(longest),
             lists,
             measured: vec![NearestPoint::default(); longest].into(),
             by: vec![None; parts.len()].into(),
@@ -117,14 +103,14 @@ impl SkinContacts {
             }
             return;
         };
-        let Self { lists, by, particles, planes, tick, .. } = self;
+        let Self { lists, asking, by, particles, planes, tick, .. } = self;
         let mut to = PlaneList { particles, planes: planes.each_mut().map(Store::column) };
-        for PartList { part, particles, found } in lists {
-            let Some(surface) = body.of(*part) else {
-                particles.iter().for_each(|&i| by[i as usize] = None);
-                continue;
-            };
-            look_anew(width, cols, body, surface, *tick, particles, found);
+        for list in lists {
+            list.particles.iter().for_each(|&i| by[i as usize] = None);
+            let Some(surface) = body.of(list.part) else { continue };
+            list.look_anew(width, cols, body, surface, *tick);
+            asking.list(width, cols, list, surface.moved, how);
+            let AskingList { particles, found, .. } = &mut *asking;
             width.run(FindNearest {
                 mesh: &surface.mesh,
                 surface: body.start(),
@@ -132,6 +118,8 @@ impl SkinContacts {
                 list: particles,
                 found,
             });
+            asking.note(cols, list);
+            let AskingList { particles, found, .. } = &*asking;
             width.run(LieBySkin { cols, body, surface, particles, found, how, by, to: &mut to });
         }
         *tick += 1;
@@ -155,7 +143,7 @@ impl SkinContacts {
         mut depth: impl FnMut(u32, f32),
     ) {
         let Self { lists, measured, by, .. } = self;
-        for PartList { part, particles, found } in lists.iter() {
+        for PartList { part, particles, found, .. } in lists.iter() {
             let (Some(surface), Some(now)) = (body.of(*part), measured.get_mut(..found.len())) else { continue };
             now.copy_from_slice(found);
             width.run(FindNearest {
@@ -179,53 +167,12 @@ impl SkinContacts {
 
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
-        let list = |l: &PartList| size_of_val(&*l.particles) + size_of_val(&*l.found);
-        self.lists.iter().map(list).sum::<usize>()
+        self.lists.iter().map(PartList::bytes).sum::<usize>()
+            + self.asking.bytes()
             + size_of_val(&*self.by)
             + size_of_val(&*self.measured)
             + size_of::<u32>() * self.particles.capacity()
             + self.planes.iter().map(Store::bytes).sum::<usize>()
-    }
-}
-
-/// Looks for the nearest points of some particles from anew: a sixteenth of them in each step.
-fn look_anew(
-    width: Width,
-    cols: ParticleColumns<'_>,
-    body: &BodySurface,
-    surface: &PartSurface,
-    tick: u64,
-    particles: &[u32],
-    found: &mut [NearestPoint],
-) {
-    for (group, (ids, found)) in particles.chunks(MOST).zip(found.chunks_mut(MOST)).enumerate() {
-        let distance = |f: &NearestPoint| f.distance2.sqrt();
-        let far = found.iter().all(|f| distance(f) > 4.0 * DISAGREE_M);
-        if tick != 0 && !(group as u64 + tick).is_multiple_of(ANEW_STEPS[usize::from(far)]) {
-            continue;
-        }
-        for (&i, found) in ids.iter().zip(found) {
-            // At first from however far.
-            let within = if tick == 0 { FARTHEST_M } else { distance(found) + LOOKED_M };
-            let vertex = width.run(NearestVertex {
-                clusters: &surface.clusters,
-                boxes: &surface.boxes,
-                surface: body.start(),
-                point: get(cols.x, i as usize).to_array(),
-                within2: within * within,
-            });
-            // A triangle of another mesh than the one that was walked on before is none.
-            let known = (found.triangle as usize) < surface.mesh.len();
-            if !known {
-                found.triangle = 0;
-            }
-            if let Some(v) = vertex
-                && !surface.mesh.corners(found.triangle).contains(&v)
-                && let Some(&triangle) = surface.mesh.fan(v).first()
-            {
-                found.triangle = triangle;
-            }
-        }
     }
 }
 

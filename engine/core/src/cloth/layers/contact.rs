@@ -42,6 +42,8 @@ pub struct LayerContact {
     pub gives: [f32; 4],
     /// How much of the particle's side, and of the face's, does not give way (0..1).
     pub held: [f32; 2],
+    /// Distance that is kept (m).
+    pub gap: f32,
     /// Not a contact but a crossing that is drawn apart, so fast (m/s); 0 otherwise.
     pub drawn: f32,
     /// From the face to the side on which the particle belongs, unit length.
@@ -66,8 +68,6 @@ pub struct RestingOn<'a> {
 /// What all contacts of a pair have in common in a substep.
 #[derive(Debug, Clone, Copy)]
 pub struct ContactLaw {
-    /// Distance that is kept (m).
-    pub thickness: f32,
     /// Coulomb coefficient of what sticks and of what slides (1).
     pub friction: [f32; 2],
     /// Fastest that what is found on the wrong side is pushed out (m/s).
@@ -138,7 +138,7 @@ impl LayerContact {
         }
         let [x, before] = self.relative(of, rest, held);
         let n = self.normal;
-        let depth = law.thickness - x.dot(n);
+        let depth = self.gap - x.dot(n);
         let moved = x - before;
         (self.push, self.carry) = (Vec3A::ZERO, Vec3A::ZERO);
         // Not so where anything is not finite: what is wrong with one garment stays in it.

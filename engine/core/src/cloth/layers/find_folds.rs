@@ -1,195 +1,241 @@
-//! Finding folds: which particles of a garment are near which others that are not their neighbours.
+//! Finding folds: which particles of a garment may come too near to each other within a step.
 //!
-//! Clusters of sixteen particles meet by their boxes. Those that go on into each other and look the same way cannot touch
-//! (Volino and Magnenat-Thalmann 1994, "Efficient self-collision detection on smoothly discretized surface animations using
-//! geometrical shape regularity": a region whose normals have one half-space in common does not meet itself). What is
-//! left is looked at particle by particle.
+//! Clusters of sixteen particles meet by their boxes, then their particles by the other's box, then one by one. How far is
+//! looked follows from how fast the two move against each other, and how long it is until they are looked at again.
 
 use glam::Vec3A;
 
 use super::fold_motion::FoldMotion;
-use super::fold_surface::FoldSurface;
-use super::garment_surface::GarmentSurface;
-use crate::cloth::state::get;
-use crate::lanes::{Kernel, Lanes, MOST, Mask, V3, WriteColumn};
-use crate::surface::ClusterBoxes;
+use super::fold_surface::{FoldSurface, Joined};
+use crate::lanes::{Kernel, Lanes, MOST, Mask, ReadColumn, V3};
+use crate::surface::{ClusterBoxes, Clusters};
 
-/// Cosine of a cluster's normals to their mean from which on it is as good as flat: 37 degrees.
-const FLAT: f32 = 0.8;
+/// How much faster than it is a particle may be until it is looked at again (1).
+pub const FASTER: f32 = 1.25;
 
-/// Cosine between two mean normals from which on clusters look the same way: 53 degrees.
-const ALIKE: f32 = 0.6;
+/// How much nearer than what they keep apart two particles are looked at (m).
+pub const MARGIN_M: f32 = 0.001;
 
-/// How much faster than at its start a particle may be within a step (1).
-const FASTER: f32 = 1.5;
+/// Farther than this beyond what they keep apart (m) nothing is looked for: 1.5 m/s towards each other.
+const FARTHEST_M: f32 = 0.03;
 
-/// A particle and the nearest of those in front of it, or behind it, that are not its neighbours.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct FoldSeed {
-    /// The particle.
-    pub particle: u32,
-    /// The other.
-    pub vertex: u32,
+/// Two particles of a garment that may come too near to each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FoldPair {
+    /// The two.
+    pub particles: [u32; 2],
+    /// How far they keep apart (m).
+    pub gap: f32,
 }
 
-/// Finds the seeds of some clusters of a garment.
+/// Finds the pairs of one share of a garment's clusters with all that come later.
 pub struct FindFolds<'a> {
-    /// Velocities of the particles (m/s).
-    pub v: [WriteColumn<'a>; 3],
-    /// Their surface.
-    pub surface: &'a GarmentSurface,
-    /// Who is whose neighbour.
+    /// The clusters.
+    pub clusters: &'a Clusters,
+    /// How far who keeps from whom.
     pub folds: &'a FoldSurface,
     /// Boxes of the clusters.
     pub boxes: &'a ClusterBoxes,
-    /// How they lie and move.
+    /// Where they are and how they move.
     pub motion: &'a FoldMotion,
-    /// Normals of the particles.
-    pub normals: &'a [Vec3A],
-    /// Which clusters.
-    pub clusters: std::ops::Range<usize>,
-    /// Distance at which cloth touches, and how far from a face it has to be looked at (m).
-    pub near: f32,
-    /// Farther from a face than this nothing is asked for (m).
-    pub farthest: f32,
-    /// Length of the step (s).
-    pub step_seconds: f32,
+    /// Which share, 0 or 1, and which part of it, below [`PARTS`].
+    pub share: [usize; 2],
+    /// Time until the same clusters are looked at again (s).
+    pub seconds: f32,
+    /// Pairs farther apart than this part of what they keep apart are left out (1); more than any where all are wanted.
+    pub nearest: f32,
     /// What is found; as many as there is room for.
-    pub seeds: &'a mut Vec<FoldSeed>,
+    pub pairs: &'a mut Vec<FoldPair>,
 }
 
-/// Clusters of which no two particles are of one piece.
-const NOBODY: [u16; MOST] = [0; MOST];
+/// Parts of a share, each of which can be looked at in a step of its own.
+pub const PARTS: usize = 4;
 
-/// The nearest of each particle of a cluster, behind and in front: square of the distance (m2) and which.
-type Nearest = [[(f32, u32); 2]; MOST];
+/// Clusters that one share takes in a row, so that both have as many that come early.
+const IN_A_ROW: usize = 4;
 
 impl Kernel for FindFolds<'_> {
-    type Out = ();
+    /// How many there was no room for.
+    type Out = u64;
 
     #[inline(always)]
-    fn run<L: Lanes>(mut self) {
-        for a in self.clusters.clone() {
-            let mut nearest: Nearest = [[(f32::MAX, u32::MAX); 2]; MOST];
-            self.cluster::<L>(a, &mut nearest);
-            let vertices = self.surface.clusters.vertices(a);
-            for (k, found) in nearest.iter().enumerate() {
-                // The last cluster is filled up with its last vertex.
-                let again = k > 0 && vertices[k] == vertices[k - 1];
-                for (_, vertex) in found.iter().filter(|(_, v)| !again && *v != u32::MAX) {
-                    if self.seeds.len() < self.seeds.capacity() {
-                        self.seeds.push(FoldSeed { particle: vertices[k], vertex: *vertex });
-                    }
-                }
+    fn run<L: Lanes>(mut self) -> u64 {
+        let mut left_out = 0;
+        for a in 0..self.clusters.len() {
+            let row = a / IN_A_ROW;
+            if [row % 2, row / 2 % PARTS] == self.share {
+                left_out += self.cluster::<L>(a);
             }
+        }
+        left_out
+    }
+}
+
+/// A box in every lane.
+#[derive(Clone, Copy)]
+struct Box3<L> {
+    low: V3<L>,
+    high: V3<L>,
+}
+
+impl<L: Lanes> Box3<L> {
+    #[inline(always)]
+    fn load(from: [ReadColumn<'_>; 6], at: usize) -> Self {
+        let [lx, ly, lz, hx, hy, hz] = from;
+        Self { low: V3::load([lx, ly, lz], at, L::N), high: V3::load([hx, hy, hz], at, L::N) }
+    }
+
+    #[inline(always)]
+    fn splat(from: [ReadColumn<'_>; 6], at: usize) -> Self {
+        let [lx, ly, lz, hx, hy, hz] = from;
+        let one = |c: [ReadColumn<'_>; 3]| Vec3A::new(c[0].get(at), c[1].get(at), c[2].get(at));
+        Self { low: V3::splat(one([lx, ly, lz])), high: V3::splat(one([hx, hy, hz])) }
+    }
+
+    /// How far each axis is from a range, below 0 within it.
+    #[inline(always)]
+    fn away(self, low: V3<L>, high: V3<L>) -> V3<L> {
+        V3 {
+            x: (low.x - self.high.x).max(self.low.x - high.x),
+            y: (low.y - self.high.y).max(self.low.y - high.y),
+            z: (low.z - self.high.z).max(self.low.z - high.z),
         }
     }
 }
 
+/// Square of a distance from how far its axes are away.
+#[inline(always)]
+fn outside2<L: Lanes>(away: V3<L>) -> L {
+    let zero = L::splat(0.0);
+    let away = V3 { x: away.x.max(zero), y: away.y.max(zero), z: away.z.max(zero) };
+    away.dot(away)
+}
+
 impl FindFolds<'_> {
-    /// Meets a cluster with all others and itself.
+    /// Meets a cluster with itself and all later ones.
     #[inline(always)]
-    fn cluster<L: Lanes>(&mut self, a: usize, nearest: &mut Nearest) {
-        let ends = self.boxes.columns();
-        let motion = self.motion.columns();
-        let zero = L::splat(0.0);
-        let far = self.vertex_reach(self.near);
-        let farthest = L::splat(self.vertex_reach(self.farthest));
-        let [nx, ny, nz] = [0, 1, 2].map(|k| L::splat(motion[k].get(a)));
-        let (front, flat) = (V3 { x: nx, y: ny, z: nz }, motion[3].get(a) > FLAT);
-        let [vx, vy, vz] = [4, 5, 6].map(|k| L::splat(motion[k].get(a)));
-        let (velocity, spread) = (V3 { x: vx, y: vy, z: vz }, L::splat(motion[7].get(a)));
+    fn cluster<L: Lanes>(&mut self, a: usize) -> u64 {
+        let (ends, velocity, radii) = (self.boxes.columns(), self.motion.velocity(), self.folds.largest());
+        let (own, moves) = (Box3::<L>::splat(ends, a), Box3::<L>::splat(velocity, a));
+        let radius = L::splat(radii.get(a) + MARGIN_M);
         let mut near = self.folds.near(a).iter().peekable();
-        let mut from = 0;
-        while from < self.surface.clusters.len() {
-            let away = V3 {
-                x: (L::load(ends[0], from) - L::splat(ends[3].get(a)))
-                    .max(L::splat(ends[0].get(a)) - L::load(ends[3], from)),
-                y: (L::load(ends[1], from) - L::splat(ends[4].get(a)))
-                    .max(L::splat(ends[1].get(a)) - L::load(ends[4], from)),
-                z: (L::load(ends[2], from) - L::splat(ends[5].get(a)))
-                    .max(L::splat(ends[2].get(a)) - L::load(ends[5], from)),
-            };
-            let away = V3 { x: away.x.max(zero), y: away.y.max(zero), z: away.z.max(zero) };
-            let other = V3 { x: L::load(motion[4], from), y: L::load(motion[5], from), z: L::load(motion[6], from) };
-            let relative = other - velocity;
-            let speed = relative.dot(relative).sqrt() + spread + L::load(motion[7], from);
-            let reach = (L::splat(far) + speed * L::splat(FASTER * self.step_seconds)).min(farthest);
-            let mut met = away.dot(away).lt(reach * reach).bits();
-            if met == 0 {
-                from += L::N;
-                continue;
-            }
-            if flat {
-                let toward =
-                    V3 { x: L::load(motion[0], from), y: L::load(motion[1], from), z: L::load(motion[2], from) };
-                let alike = L::splat(ALIKE).lt(toward.dot(front)).bits();
-                let even = L::splat(FLAT).lt(L::load(motion[3], from)).bits();
-                let word = from / MOST * MOST;
-                let next = u32::from(self.folds.next(a, word)) >> (from - word);
-                met &= !(alike & even & next);
+        let mut left_out = 0;
+        let mut from = a / L::N * L::N;
+        while from < self.clusters.len() {
+            let other = Box3::<L>::load(ends, from);
+            let toward = Box3::<L>::load(velocity, from);
+            let speed = widest(moves, toward);
+            let moved = (speed.dot(speed).sqrt() * L::splat(FASTER * self.seconds)).min(L::splat(FARTHEST_M));
+            let reach = radius + L::load(radii, from) + moved;
+            let mut met = outside2(own.away(other.low, other.high)).lt(reach * reach).bits();
+            if from < a {
+                met &= !((1 << (a - from)) - 1);
             }
             let reach = reach.to_array();
             while met != 0 {
                 let lane = met.trailing_zeros() as usize;
                 met &= met - 1;
-                let other = (from + lane) as u32;
-                while near.next_if(|n| n.other < other).is_some() {}
-                let apart = near.peek().filter(|n| n.other == other).map_or(&NOBODY, |n| &n.bits);
-                self.pair::<L>(a, from + lane, (reach[lane], apart), nearest);
+                let b = from + lane;
+                while near.next_if(|n| (n.other as usize) < b).is_some() {}
+                let near = near.peek().filter(|n| n.other as usize == b);
+                if near.is_some() && self.motion.flatness.are_flat(a, b) {
+                    continue;
+                }
+                let joined = self.folds.joined(near.copied());
+                left_out += self.pair::<L>([a, b], reach[lane], joined);
             }
             from += L::N;
         }
+        left_out
     }
 
-    /// How far from the nearest vertex of a face what is so near to the face can be (m).
+    /// Which particles of a cluster are within `reach` (m) of another's box.
     #[inline(always)]
-    fn vertex_reach(&self, near: f32) -> f32 {
-        (self.folds.cover * self.folds.cover + near * near).sqrt()
-    }
-
-    /// Whether a particle may come to touch a face around another that is so far away (m2) within the step, by how both move.
-    #[inline(always)]
-    fn may_touch(&self, i: u32, j: u32, distance2: f32) -> bool {
-        let relative = get(self.v, i as usize) - get(self.v, j as usize);
-        let reach = self.vertex_reach(self.near) + relative.length() * (FASTER * self.step_seconds);
-        distance2 < reach * reach
-    }
-
-    /// Meets the particles of two clusters nearer than `reach` (m); `one_piece` says who is of one piece with whom.
-    #[inline(always)]
-    fn pair<L: Lanes>(&self, a: usize, b: usize, (reach, one_piece): (f32, &[u16; MOST]), nearest: &mut Nearest) {
-        let at = self.motion.at();
-        let mut from = 0;
+    fn near_box<L: Lanes>(&self, of: usize, to: usize, reach: f32) -> u32 {
+        let there = Box3::<L>::splat(self.boxes.columns(), to);
+        let (mut bits, mut from) = (0, 0);
         while from < MOST {
-            let there = V3::<L>::load(at, b * MOST + from, L::N);
-            for (k, kept) in nearest.iter_mut().enumerate() {
-                let [x, y, z] = at.map(|c| c.get(a * MOST + k));
-                let away = there - V3 { x: L::splat(x), y: L::splat(y), z: L::splat(z) };
+            let p = V3::<L>::load(self.motion.vertices()[0], of * MOST + from, L::N);
+            bits |= outside2(there.away(p, p)).lt(L::splat(reach * reach)).bits() << from;
+            from += L::N;
+        }
+        bits
+    }
+
+    /// Meets the particles of two clusters nearer than `reach` (m); `joined` says who is joined with whom. Gives how many
+    /// pairs there was no room for.
+    #[inline(always)]
+    fn pair<L: Lanes>(&mut self, [a, b]: [usize; 2], reach: f32, joined: &Joined) -> u64 {
+        let mut rows = self.near_box::<L>(a, b, reach) & self.clusters.members(a);
+        if rows == 0 {
+            return 0;
+        }
+        let columns = self.near_box::<L>(b, a, reach) & self.clusters.members(b);
+        let mut left_out = 0;
+        while rows != 0 {
+            let k = rows.trailing_zeros() as usize;
+            rows &= rows - 1;
+            let later = if a == b { u32::MAX << k } else { u32::MAX };
+            left_out += self.row::<L>([a, k], b, columns & later & !u32::from(joined[k]));
+        }
+        left_out
+    }
+
+    /// Meets a particle, the `k`th of a cluster, with some of another cluster's.
+    #[inline(always)]
+    fn row<L: Lanes>(&mut self, [a, k]: [usize; 2], b: usize, wanted: u32) -> u64 {
+        let ([at, v], radii) = (self.motion.vertices(), self.folds.radii());
+        let own = a * MOST + k;
+        let p = V3::<L>::splat(Vec3A::new(at[0].get(own), at[1].get(own), at[2].get(own)));
+        let moves = V3::<L>::splat(Vec3A::new(v[0].get(own), v[1].get(own), v[2].get(own)));
+        let radius = L::splat(radii.get(own) + MARGIN_M);
+        let (mut left_out, mut from) = (0, 0);
+        while from < MOST {
+            let there = b * MOST + from;
+            if wanted >> from & ((1u64 << L::N) - 1) as u32 != 0 {
+                let away = V3::<L>::load(at, there, L::N) - p;
+                let relative = V3::<L>::load(v, there, L::N) - moves;
+                let moved = relative.dot(relative).sqrt() * L::splat(FASTER * self.seconds);
+                let reach = radius + L::load(radii, there) + moved;
                 let d2 = away.dot(away);
-                let apart = !u32::from(one_piece[k] >> from);
-                let mut hits = d2.lt(L::splat(reach * reach)).bits() & apart;
-                if hits == 0 {
-                    continue;
-                }
-                let i = self.surface.clusters.vertices(a)[k];
-                let normal = self.normals[i as usize];
-                let d2 = d2.to_array();
-                while hits != 0 {
-                    let lane = hits.trailing_zeros() as usize;
-                    hits &= hits - 1;
-                    let j = self.surface.clusters.vertices(b)[from + lane];
-                    if d2[lane] < kept[0].0.max(kept[1].0) && self.may_touch(i, j, d2[lane]) {
-                        let other = Vec3A::from(at.map(|c| c.get(b * MOST + from + lane)));
-                        let before = (other - Vec3A::new(x, y, z)).dot(normal) > 0.0;
-                        let kept = &mut kept[usize::from(before)];
-                        if d2[lane] < kept.0 {
-                            *kept = (d2[lane], j);
-                        }
+                let mut hits = d2.lt(reach * reach).bits() & wanted >> from;
+                if hits != 0 {
+                    let (d2, moved) = (d2.to_array(), moved.to_array());
+                    while hits != 0 {
+                        let lane = hits.trailing_zeros() as usize;
+                        hits &= hits - 1;
+                        let [i, j] = [self.clusters.vertices(a)[k], self.clusters.vertices(b)[from + lane]];
+                        left_out += self.meet([i, j], d2[lane], moved[lane]);
                     }
                 }
             }
             from += L::N;
         }
+        left_out
+    }
+
+    /// Lists two particles if they may come too near until they are looked at again, in which they move by so much against each other (m).
+    #[inline(always)]
+    fn meet(&mut self, particles: [u32; 2], distance2: f32, moved: f32) -> u64 {
+        let gap = self.folds.gap(particles[0], particles[1]);
+        let (reach, nearest) = (gap + MARGIN_M + moved, self.nearest * gap);
+        if !(distance2 < reach * reach && distance2 < nearest * nearest) {
+            return 0;
+        }
+        if self.pairs.len() == self.pairs.capacity() {
+            return 1;
+        }
+        self.pairs.push(FoldPair { particles, gap });
+        0
+    }
+}
+
+/// The greatest difference of two ranges of velocities along each axis (m/s).
+#[inline(always)]
+fn widest<L: Lanes>(one: Box3<L>, other: Box3<L>) -> V3<L> {
+    V3 {
+        x: (one.high.x - other.low.x).max(other.high.x - one.low.x),
+        y: (one.high.y - other.low.y).max(other.high.y - one.low.y),
+        z: (one.high.z - other.low.z).max(other.high.z - one.low.z),
     }
 }

@@ -1,61 +1,88 @@
-//! How the clusters of a garment lie and move at the start of a step.
+//! Where the clusters of a garment are and how they move at the start of a step.
 
-use glam::Vec3A;
+use super::flatness::Flatness;
+use crate::cloth::state::ParticleColumns;
+use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, Store, V3, Width};
+use crate::surface::{Clusters, SurfaceMesh};
 
-use crate::cloth::state::{ParticleColumns, get};
-use crate::lanes::{MOST, ReadColumn, Store};
-use crate::surface::Clusters;
-
-/// The columns of [`FoldMotion`]: mean normal, least cosine to it, mean velocity (m/s), how far others are from that (m/s).
-const COLUMNS: usize = 8;
-
-/// Directions and velocities of the clusters of one garment.
+/// Positions and velocities of the clusters of one garment.
 #[derive(Debug, Clone)]
 pub struct FoldMotion {
-    columns: [Store; COLUMNS],
-    /// Where the vertices are (m), cluster by cluster `[clusters][MOST]`.
-    at: [Store; 3],
-    clusters: usize,
+    /// Least velocity along each axis, then the greatest (m/s) `[clusters]`.
+    velocity: [Store; 6],
+    /// Where the vertices are (m), then their velocities (m/s), cluster by cluster `[clusters][MOST]`.
+    vertices: [Store; 6],
+    /// Which of them lie flat.
+    pub flatness: Flatness,
 }
 
 impl FoldMotion {
     /// Room for those of a garment. At load.
-    pub fn new(clusters: &Clusters) -> Self {
-        let clusters = clusters.len();
-        let columns = [(); COLUMNS].map(|()| Store::zeros(clusters.next_multiple_of(MOST)));
-        Self { columns, at: [(); 3].map(|()| Store::zeros(clusters * MOST)), clusters }
-    }
-
-    /// Takes them; `normals` are those of the particles.
-    pub fn take(&mut self, all: &Clusters, columns: ParticleColumns<'_>, normals: &[Vec3A]) {
-        for c in 0..self.clusters {
-            let vertices = all.vertices(c).map(|v| v as usize);
-            let (fronts, velocities) = (vertices.map(|v| normals[v]), vertices.map(|v| get(columns.v, v)));
-            let front = fronts.iter().sum::<Vec3A>().normalize_or_zero();
-            let least = fronts.iter().map(|n| n.dot(front)).fold(1.0, f32::min);
-            let mean = velocities.iter().sum::<Vec3A>() * (1.0 / MOST as f32);
-            let other2 = velocities.iter().map(|v| (*v - mean).length_squared()).fold(0.0, f32::max);
-            for (to, from) in self.at.iter_mut().zip(columns.x) {
-                let to = &mut to.as_mut()[c * MOST..(c + 1) * MOST];
-                to.iter_mut().zip(vertices).for_each(|(to, v)| *to = from.get(v));
-            }
-            let numbers = [front.x, front.y, front.z, least, mean.x, mean.y, mean.z, other2.sqrt()];
-            self.columns.iter_mut().zip(numbers).for_each(|(column, x)| column.as_mut()[c] = x);
+    pub fn new(clusters: &Clusters, mesh: &SurfaceMesh) -> Self {
+        let velocity = [(); 6].map(|()| Store::zeros(clusters.len().next_multiple_of(MOST)));
+        Self {
+            velocity,
+            vertices: [(); 6].map(|()| Store::zeros(clusters.len() * MOST)),
+            flatness: Flatness::new(clusters, mesh),
         }
     }
 
-    /// The columns: mean normal, least cosine to it, mean velocity (m/s), how far others are from that (m/s).
-    pub fn columns(&self) -> [ReadColumn<'_>; COLUMNS] {
-        self.columns.each_ref().map(|c| ReadColumn::new(c.as_slice()))
+    /// Takes them, at the start of the `tick`th step.
+    pub fn take(&mut self, clusters: &Clusters, columns: ParticleColumns<'_>, tick: u64, width: Width) {
+        width.run(TakeClusters { clusters, columns, to: self });
+        self.flatness.look(columns, tick, width);
     }
 
-    /// Where the vertices are (m), cluster by cluster `[clusters][MOST]`.
-    pub fn at(&self) -> [ReadColumn<'_>; 3] {
-        self.at.each_ref().map(|c| ReadColumn::new(c.as_slice()))
+    /// Least velocity along each axis, then the greatest (m/s) `[clusters]`.
+    pub fn velocity(&self) -> [ReadColumn<'_>; 6] {
+        self.velocity.each_ref().map(|c| ReadColumn::new(c.as_slice()))
+    }
+
+    /// Where the vertices are (m), then their velocities (m/s), cluster by cluster `[clusters][MOST]`.
+    pub fn vertices(&self) -> [[ReadColumn<'_>; 3]; 2] {
+        let [x, y, z, vx, vy, vz] = self.vertices.each_ref().map(|c| ReadColumn::new(c.as_slice()));
+        [[x, y, z], [vx, vy, vz]]
     }
 
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
-        self.columns.iter().chain(&self.at).map(Store::bytes).sum()
+        self.velocity.iter().chain(&self.vertices).map(Store::bytes).sum::<usize>() + self.flatness.bytes()
+    }
+}
+
+/// Takes the positions of all clusters, and the range of their velocities.
+struct TakeClusters<'a> {
+    clusters: &'a Clusters,
+    columns: ParticleColumns<'a>,
+    to: &'a mut FoldMotion,
+}
+
+impl Kernel for TakeClusters<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let [x, y, z, vx, vy, vz] = self.to.vertices.each_mut().map(Store::column);
+        let [lx, ly, lz, hx, hy, hz] = self.to.velocity.each_mut().map(Store::as_mut);
+        for c in 0..self.clusters.len() {
+            let vertices = self.clusters.vertices(c);
+            let mut low = [f32::INFINITY; 3];
+            let mut high = [f32::INFINITY; 3];
+            let mut from = 0;
+            while from < MOST {
+                V3::<L>::gather(self.columns.x, &vertices[from..from + L::N], L::N).store(
+                    [x, y, z],
+                    c * MOST + from,
+                    L::N,
+                );
+                let v = V3::<L>::gather(self.columns.v, &vertices[from..from + L::N], L::N);
+                v.store([vx, vy, vz], c * MOST + from, L::N);
+                low = [low[0].min(v.x.least()), low[1].min(v.y.least()), low[2].min(v.z.least())];
+                high = [high[0].min((-v.x).least()), high[1].min((-v.y).least()), high[2].min((-v.z).least())];
+                from += L::N;
+            }
+            (lx[c], ly[c], lz[c]) = (low[0], low[1], low[2]);
+            (hx[c], hy[c], hz[c]) = (-high[0], -high[1], -high[2]);
+        }
     }
 }

@@ -1,70 +1,49 @@
-//! Folds of a garment: what is remembered of them, and the contacts that they make.
+//! Folds of a garment: what keeps its particles apart.
 //!
-//! A particle keeps up to two pieces of its own garment in mind, one on either side, each with the side of it on which the
-//! particle was when they met. As long as both stay near the particle belongs on that side, also where it has been
-//! squeezed through: so folds that were crushed open again.
+//! Particles of one garment that are not joined keep as far apart as the edges of their triangles ask for: then no two of its
+//! triangles can cross (Wu et al. 2020, "A safe and fast repulsion method for GPU-based cloth self collisions", theorem 1), and no
+//! side has to be remembered. The direction of a contact is that at the start of the step, so that within the step neither passes
+//! the plane between the two. Only where the parts of the body tell that two pieces meet front to front, one leg and the other
+//! for example, the side is known: there the two are brought apart from wherever they are.
+//!
+//! What crosses all the same, because the body or the pins have left no room, is drawn out by [`Uncross`]; who is in that keeps
+//! apart from nobody meanwhile, since it would be held where it is.
 
 use glam::Vec3A;
 
 use super::contact::LayerContact;
-use super::find_folds::{FindFolds, FoldSeed};
+use super::find_folds::{FASTER, FindFolds, FoldPair, MARGIN_M, PARTS};
 use super::fold_motion::FoldMotion;
 use super::fold_surface::FoldSurface;
-use super::pair::{LayerPair, PairScene, opposite};
+use super::pair::{PairScene, opposite};
 use super::uncross::{Tangle, Uncross};
 use crate::cloth::state::get;
-use crate::lanes::Readable;
-use crate::surface::{FindNearest, NearestPoint, SurfaceMesh};
 
-/// Farther from a piece than this (m) a particle forgets it.
-const FORGET_M: f32 = 0.015;
+/// Pairs that one share of a garment has room for, a particle: a particle has at most twelve others around it that keep apart, each
+/// pair is one share's, and few are folded everywhere.
+const PAIRS_A_PARTICLE: usize = 2;
 
-/// How much nearer than the gap a contact is made (m).
-const MARGIN_M: f32 = 0.001;
+/// Where there is no room the pairs nearer than such a part of what they keep apart are taken (1), then again of that.
+const NEARER: f32 = 0.8;
 
-/// Farther on the wrong side of a piece than this (m) a particle forgets it too: it would be dragged along by it.
-const WRONG_M: f32 = 0.006;
+/// Farther apart than any that are found, as a part of what they keep apart (1).
+const ALL: f32 = 1e9;
 
-/// So much before it touches a piece a particle keeps it in mind (m): the side on which it is then is still the right one.
-const EARLY_M: f32 = 0.012;
+/// Times that nearer ones are looked for.
+const NEARER_TIMES: i32 = 6;
 
-/// How much faster than at its start a particle may be within a step (1).
-const FASTER: f32 = 1.5;
+/// Farther apart than such a part of what they keep apart (1) no edges of two particles cross.
+const MAY_CROSS: f32 = 0.9;
 
-/// How far beyond a border (m) a particle is still over the face.
-const BEYOND_M: f32 = 0.001;
-
-/// So many times farther to the side than up, a particle is beside a piece and not over it.
-const BESIDE: f32 = 0.7;
-
-/// Pieces that a particle keeps in mind: one on either side.
-pub const PIECES: usize = 2;
-
-/// Instead of a triangle: no piece.
-const NONE: u32 = u32::MAX;
-
-/// A piece of its own garment that a particle keeps in mind.
-#[derive(Debug, Clone, Copy)]
-struct Piece {
-    /// Where it is nearest.
-    triangle: u32,
-    /// On which side of it the particle belongs: 1 in front, -1 behind.
-    side: f32,
-}
-
-impl Piece {
-    /// Whether it is one, and around that vertex.
-    fn is_at(&self, mesh: &SurfaceMesh, surface: &FoldSurface, vertex: u32) -> bool {
-        self.triangle != NONE && mesh.corners(self.triangle).iter().any(|&c| surface.one_piece(c, vertex))
-    }
-}
+/// Cosine of normals from which on two pieces look at each other.
+const FACING: f32 = -0.3;
 
 /// What folds of one garment are found from.
 #[derive(Clone, Copy)]
 pub struct FoldScene<'a> {
-    /// Who is whose neighbour.
+    /// How far who keeps from whom.
     pub surface: &'a FoldSurface,
-    /// How the clusters lie and move.
+    /// Where the clusters are and how they move.
     pub motion: &'a FoldMotion,
 }
 
@@ -72,258 +51,126 @@ pub struct FoldScene<'a> {
 #[derive(Debug, Clone)]
 pub struct FoldShare {
     share: usize,
-    pieces: Box<[[Piece; PIECES]]>,
-    /// Particles of this share that keep anything in mind, in order of their clusters.
-    minding: Vec<u32>,
-    seeds: Vec<FoldSeed>,
-    list: Vec<u32>,
-    /// Which piece of its particle each in the list is; [`PIECES`] for a new one.
-    which: Vec<u8>,
-    found: Vec<NearestPoint>,
-    /// Pieces that were not kept in mind because a particle had two already, summed over the steps.
-    pub crowded: u64,
+    /// Of each part of its clusters the pairs that were found when that was last looked at.
+    pairs: [Vec<FoldPair>; PARTS],
+    /// Pairs that there was no room for, summed over the steps.
+    pub left_out: u64,
     uncross: Uncross,
 }
 
 impl FoldShare {
     /// Room for a garment of so many particles. At load.
     pub fn new(particles: usize, share: usize) -> Self {
-        let most = PIECES * particles;
         Self {
             share,
-            pieces: vec![[Piece { triangle: NONE, side: 0.0 }; PIECES]; particles].into(),
-            minding: Vec::with_capacity(particles),
-            seeds: Vec::with_capacity(most),
-            list: Vec::with_capacity(2 * most),
-            which: Vec::with_capacity(2 * most),
-            found: Vec::with_capacity(2 * most),
-            crowded: 0,
+            pairs: [(); PARTS].map(|()| Vec::with_capacity(PAIRS_A_PARTICLE * particles / PARTS)),
+            left_out: 0,
             uncross: Uncross::new(particles),
         }
     }
 
     /// Most contacts that it makes in a step of a garment of so many particles.
     pub fn most_contacts(particles: usize) -> usize {
-        PIECES * particles + Uncross::most_contacts()
+        PAIRS_A_PARTICLE * particles + Uncross::most_contacts()
     }
 
-    /// Finds the contacts of a step; gives how many particles were looked at.
+    /// Finds the contacts of a step; gives how many pairs were looked at.
     pub fn find(
         &mut self,
-        pair: &LayerPair,
         scene: &PairScene<'_>,
         folds: FoldScene<'_>,
+        thickness: f32,
         contacts: &mut Vec<LayerContact>,
     ) -> u64 {
-        let surface = scene.surfaces[0];
-        let half = surface.clusters.len().div_ceil(2);
-        let clusters = if self.share == 0 { 0..half } else { half..surface.clusters.len() };
-        self.seeds.clear();
-        scene.width.run(FindFolds {
-            v: scene.columns[0].v,
-            surface,
-            folds: folds.surface,
-            boxes: &scene.motions[0].boxes,
-            motion: folds.motion,
-            normals: &scene.motions[0].normals,
-            clusters,
-            near: pair.thickness + EARLY_M,
-            farthest: FORGET_M,
-            step_seconds: scene.step_seconds,
-            seeds: &mut self.seeds,
-        });
-        self.ask(&surface.mesh, folds.surface);
-        scene.width.run(FindNearest {
-            mesh: &surface.mesh,
-            surface: scene.columns[0].x.each_ref().map(Readable::reader),
-            points: scene.columns[0].x.each_ref().map(Readable::reader),
-            list: &self.list,
-            found: &mut self.found,
-        });
-        for k in 0..self.list.len() {
-            let (i, which, found) = (self.list[k], usize::from(self.which[k]), self.found[k]);
-            let at = scene.at(i, &found, folds.surface);
-            let side = match &at {
-                None => {
-                    self.lose(i, which);
-                    None
-                }
-                Some(at) if which < PIECES && self.lost(i, which, at) => {
-                    self.lose(i, which);
-                    None
-                }
-                Some(_) if which < PIECES => self.keep(&surface.mesh, folds.surface, i, which, found.triangle),
-                Some(at) => self.meet(scene, folds.surface, i, &found, at),
-            };
-            if let Some((at, side)) = at.zip(side)
-                && let Some(contact) = touch(pair, scene, i, &found, &at, side)
-            {
-                contacts.push(contact);
-            }
-        }
-        self.forget();
-        let tangle = Tangle { x: scene.columns[0].x, mesh: &surface.mesh, tick: scene.tick };
-        let Self { pieces, uncross, list, found, .. } = self;
-        let minds = |i: u32, triangle: u32| {
-            let corner = surface.mesh.corners(triangle)[0];
-            pieces[i as usize].iter().any(|p| p.is_at(&surface.mesh, folds.surface, corner))
-        };
-        uncross.find(tangle, (list, found), minds, contacts);
-        self.list.len() as u64
-    }
-
-    /// Whether a particle is so far on the wrong side of a piece that it only holds on to it.
-    fn lost(&self, i: u32, which: usize, at: &OnPiece) -> bool {
-        at.height * self.pieces[i as usize][which].side < -WRONG_M
-    }
-
-    /// A piece is none any more.
-    fn lose(&mut self, i: u32, which: usize) {
-        if let Some(piece) = self.pieces[i as usize].get_mut(which) {
-            piece.triangle = NONE;
-        }
-    }
-
-    /// A piece that was in mind has moved along; gives its side, unless the other one has become the same.
-    fn keep(&mut self, mesh: &SurfaceMesh, surface: &FoldSurface, i: u32, which: usize, triangle: u32) -> Option<f32> {
-        let pieces = &mut self.pieces[i as usize];
-        let corner = mesh.corners(triangle)[0];
-        let doubled = pieces[..which].iter().any(|p| p.is_at(mesh, surface, corner));
-        pieces[which].triangle = if doubled { NONE } else { triangle };
-        (!doubled).then_some(pieces[which].side)
-    }
-
-    /// Lists who asks for what: pieces in mind, then new ones.
-    fn ask(&mut self, mesh: &SurfaceMesh, surface: &FoldSurface) {
-        let Self { list, which, found, minding, pieces, seeds, .. } = self;
-        list.clear();
-        which.clear();
-        found.clear();
-        let mut add = |i: u32, piece: usize, triangle: u32| {
-            list.push(i);
-            which.push(piece as u8);
-            found.push(NearestPoint { triangle, ..NearestPoint::default() });
-        };
-        for &i in minding.iter() {
-            for (k, piece) in pieces[i as usize].iter().enumerate().filter(|(_, p)| p.triangle != NONE) {
-                add(i, k, piece.triangle);
-            }
-        }
-        for seed in seeds.iter() {
-            let known = pieces[seed.particle as usize].iter().any(|p| p.is_at(mesh, surface, seed.vertex));
-            if let Some(&triangle) = mesh.fan(seed.vertex).first().filter(|_| !known) {
-                add(seed.particle, PIECES, triangle);
-            }
-        }
-    }
-
-    /// Keeps a piece in mind that was not; gives the side of it on which the particle belongs.
-    fn meet(
-        &mut self,
-        scene: &PairScene<'_>,
-        surface: &FoldSurface,
-        i: u32,
-        found: &NearestPoint,
-        at: &OnPiece,
-    ) -> Option<f32> {
+        self.find_pairs(scene, folds);
         let mesh = &scene.surfaces[0].mesh;
-        let pieces = &mut self.pieces[i as usize];
-        let corner = mesh.corners(found.triangle)[0];
-        let known = pieces.iter().any(|p| p.is_at(mesh, surface, corner));
-        if known || at.beside || !self.uncross.sure(i) || at.distance > FORGET_M {
-            return None;
+        let tangle = Tangle { x: scene.columns[0].x, mesh, tick: scene.tick };
+        self.uncross.begin_step();
+        for pair in self.pairs.iter().flatten() {
+            let [x, y] = pair.particles.map(|v| get(scene.columns[0].x, v as usize));
+            if x.distance_squared(y) < (MAY_CROSS * pair.gap).powi(2) {
+                self.uncross.try_pair(tangle, pair.particles);
+            }
         }
-        let Some(free) = pieces.iter().position(|p| p.triangle == NONE) else {
-            self.crowded += 1;
-            return None;
-        };
+        for pair in self.pairs.iter().flatten() {
+            let [i, j] = pair.particles;
+            let Some(away) = touching(scene, pair) else { continue };
+            let free = self.uncross.is_sure(i) && self.uncross.is_sure(j) || folds.surface.is_local(i, j);
+            let along = || if free { away.try_normalize() } else { None };
+            contacts.extend(match side(scene, i, j) {
+                Some(normal) => Some(apart(&FoldPair { gap: pair.gap.min(thickness), ..*pair }, normal)),
+                None => along().map(|normal| apart(pair, normal)),
+            });
+        }
         let parts = &scene.surfaces[0].parts;
-        // Where the parts of the body tell, history is not asked.
-        let front_to_front = opposite(parts[i as usize], parts[corner as usize]) == Some(true);
-        let side = if front_to_front || at.height >= 0.0 { 1.0 } else { -1.0 };
-        if pieces.iter().all(|p| p.triangle == NONE) {
-            self.minding.push(i);
-        }
-        self.pieces[i as usize][free] = Piece { triangle: found.triangle, side };
-        Some(side)
+        let told = |i: u32, triangle: u32| {
+            let corner = mesh.corners(triangle)[0];
+            opposite(parts[i as usize], parts[corner as usize]) == Some(true)
+        };
+        self.uncross.draw_out(tangle, told, contacts);
+        self.pairs.iter().map(|p| p.len() as u64).sum()
     }
 
-    /// Strikes out who keeps nothing in mind any more.
-    fn forget(&mut self) {
-        let pieces = &self.pieces;
-        self.minding.retain(|&i| pieces[i as usize].iter().any(|p| p.triangle != NONE));
-        self.minding.dedup();
+    /// Finds the pairs of the part whose turn it is; of all in the first step.
+    fn find_pairs(&mut self, scene: &PairScene<'_>, folds: FoldScene<'_>) {
+        for part in 0..PARTS {
+            if scene.tick == 0 || scene.tick % PARTS as u64 == part as u64 {
+                self.find_part(scene, folds, part);
+            }
+        }
+    }
+
+    /// Finds the pairs of a part: all, or where there is no room the nearest.
+    fn find_part(&mut self, scene: &PairScene<'_>, folds: FoldScene<'_>, part: usize) {
+        for time in 0..=NEARER_TIMES {
+            self.pairs[part].clear();
+            let left_out = scene.width.run(FindFolds {
+                clusters: &scene.surfaces[0].clusters,
+                folds: folds.surface,
+                boxes: &scene.motions[0].boxes,
+                motion: folds.motion,
+                share: [self.share, part],
+                seconds: scene.step_seconds * PARTS as f32,
+                nearest: if time == 0 { ALL } else { NEARER.powi(time - 1) },
+                pairs: &mut self.pairs[part],
+            });
+            self.left_out += if time == 0 { left_out } else { 0 };
+            if left_out == 0 {
+                break;
+            }
+        }
     }
 
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.pieces)
-            + size_of::<u32>() * (self.minding.capacity() + self.list.capacity())
-            + size_of::<FoldSeed>() * self.seeds.capacity()
-            + self.which.capacity()
-            + size_of::<NearestPoint>() * self.found.capacity()
-            + self.uncross.bytes()
+        size_of::<FoldPair>() * self.pairs.iter().map(Vec::capacity).sum::<usize>() + self.uncross.bytes()
     }
 }
 
-/// Where a particle is from a piece of its own garment.
-pub struct OnPiece {
-    /// From the piece's nearest point to the particle (m).
-    away: Vec3A,
-    /// Its length (m).
-    distance: f32,
-    /// Normal of the piece there.
-    front: Vec3A,
-    /// How far in front of it the particle is (m).
-    height: f32,
-    /// Whether it is beside the piece rather than over it, where that is folded itself.
-    beside: bool,
+/// From the second particle of a pair to the first (m), if they may come too near within the step.
+fn touching(scene: &PairScene<'_>, pair: &FoldPair) -> Option<Vec3A> {
+    let (x, v) = (scene.columns[0].x, scene.columns[0].v);
+    let [i, j] = pair.particles.map(|p| p as usize);
+    let (away, relative) = (get(x, i) - get(x, j), get(v, i) - get(v, j));
+    let reach = pair.gap + MARGIN_M + relative.length() * (FASTER * scene.step_seconds);
+    (away.length_squared() < reach * reach).then_some(away)
 }
 
-impl PairScene<'_> {
-    /// Where a particle is from a piece; none where that is no fold: the particle's own neighbourhood, or beside a border, or
-    /// far away.
-    fn at(&self, i: u32, found: &NearestPoint, folds: &FoldSurface) -> Option<OnPiece> {
-        let mesh = &self.surfaces[0].mesh;
-        let corners = mesh.corners(found.triangle);
-        let distance = found.distance2.sqrt();
-        if distance.is_nan() || distance >= 2.0 * FORGET_M || corners.iter().any(|&c| folds.one_piece(i, c)) {
-            return None;
-        }
-        let x = self.columns[0].x;
-        let point: Vec3A = (0..3).map(|k| get(x, corners[k] as usize) * found.shares[k]).sum();
-        let normal = |k: usize| self.motions[0].normals[corners[k] as usize] * found.shares[k];
-        let front = (normal(0) + normal(1) + normal(2)).normalize_or_zero();
-        let away = get(x, i as usize) - point;
-        let height = away.dot(front);
-        let beside2 = away.length_squared() - height * height;
-        let off = beside2 > BEYOND_M * BEYOND_M && mesh.on_border(found.triangle, SurfaceMesh::feature(found.shares));
-        let beside = beside2 > BEYOND_M * BEYOND_M && beside2 > BESIDE * BESIDE * height * height;
-        (!off).then_some(OnPiece { away, distance, front, height, beside })
-    }
-}
-
-/// The contact with a piece, if it may come to one in this step.
-fn touch(
-    pair: &LayerPair,
-    scene: &PairScene<'_>,
-    i: u32,
-    found: &NearestPoint,
-    at: &OnPiece,
-    side: f32,
-) -> Option<LayerContact> {
-    let v = scene.columns[0].v;
-    let corners = scene.surfaces[0].mesh.corners(found.triangle);
-    if at.beside {
+/// Where the parts of the body tell on which side of `j` the particle `i` belongs, and it is not there: towards that side.
+fn side(scene: &PairScene<'_>, i: u32, j: u32) -> Option<Vec3A> {
+    let parts = &scene.surfaces[0].parts;
+    if opposite(parts[i as usize], parts[j as usize]) != Some(true) {
         return None;
     }
-    // Square to the mean of both: where one is crumpled, the smooth one shows the way out.
-    let own = scene.motions[0].normals[i as usize];
-    let along = if own.dot(at.front) < 0.0 { -own } else { own };
-    let normal = (at.front + along).normalize_or_zero() * side;
-    let gap = at.away.dot(normal) - pair.thickness;
-    let moved: Vec3A = (0..3).map(|k| get(v, corners[k] as usize) * found.shares[k]).sum();
-    let approach = (moved - get(v, i as usize)).dot(normal).max(0.0);
-    let near = gap < MARGIN_M + FASTER * scene.step_seconds * approach;
-    near.then(|| LayerContact { particle: i, corners, shares: found.shares, normal, ..LayerContact::default() })
+    let x = scene.columns[0].x;
+    let [own, other] = [i, j].map(|v| scene.surfaces[0].mesh.vertex_normal(v, |k| get(x, k as usize)));
+    let front = (other - own).normalize_or_zero();
+    (own.dot(other) < FACING).then_some(front)
+}
+
+/// What keeps two particles apart along a direction from the second to the first.
+fn apart(pair: &FoldPair, normal: Vec3A) -> LayerContact {
+    let [particle, other] = pair.particles;
+    let shares = [1.0, 0.0, 0.0];
+    LayerContact { particle, corners: [other; 3], shares, normal, gap: pair.gap, ..LayerContact::default() }
 }

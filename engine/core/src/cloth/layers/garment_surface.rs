@@ -19,7 +19,7 @@ pub struct GarmentSurface {
     pub clusters: Clusters,
     /// The part of the body that each vertex lies on.
     pub parts: Box<[Part]>,
-    /// Who is whose neighbour.
+    /// How far its particles keep from each other.
     pub folds: Option<FoldSurface>,
 }
 
@@ -32,7 +32,7 @@ pub struct GarmentMotion {
     pub fastest: f32,
     /// Unit normals of its vertices, towards the front; 0 where the faces around have no area `[particles]`.
     pub normals: Box<[Vec3A]>,
-    /// How its clusters lie and move.
+    /// Where its clusters are and how they move.
     pub folds: FoldMotion,
 }
 
@@ -72,16 +72,28 @@ impl GarmentMotion {
             boxes: ClusterBoxes::new(&surface.clusters),
             fastest: 0.0,
             normals,
-            folds: FoldMotion::new(&surface.clusters),
+            folds: FoldMotion::new(&surface.clusters, &surface.mesh),
         }
     }
 
-    /// Takes the motion of a garment at the start of a step.
-    pub fn take(&mut self, surface: &GarmentSurface, columns: ParticleColumns<'_>, width: Width) {
+    /// Takes the motion of a garment at the start of the `tick`th step; the normals only where another garment asks for them.
+    pub fn take(
+        &mut self,
+        surface: &GarmentSurface,
+        columns: ParticleColumns<'_>,
+        (tick, width): (u64, Width),
+        normals: bool,
+    ) {
         let x = columns.x.each_ref().map(Readable::reader);
         width.run(FillBoxes { clusters: &surface.clusters, surface: x, boxes: &mut self.boxes });
         let speed2 = (0..columns.w.len()).map(|i| get(columns.v, i).length_squared());
         self.fastest = speed2.fold(0.0f32, f32::max).sqrt();
+        if surface.folds.is_some() {
+            self.folds.take(&surface.clusters, columns, tick, width);
+        }
+        if !normals {
+            return;
+        }
         self.normals.fill(Vec3A::ZERO);
         for t in 0..surface.mesh.len() as u32 {
             let corners = surface.mesh.corners(t).map(|v| v as usize);
@@ -91,9 +103,6 @@ impl GarmentMotion {
             corners.into_iter().for_each(|v| self.normals[v] += normal);
         }
         self.normals.iter_mut().for_each(|n| *n = n.normalize_or_zero());
-        if surface.folds.is_some() {
-            self.folds.take(&surface.clusters, columns, &self.normals);
-        }
     }
 
     /// Memory that it holds (bytes).

@@ -10,6 +10,7 @@
 
 mod contact;
 mod find_folds;
+mod flatness;
 mod fold_motion;
 mod fold_share;
 mod fold_surface;

@@ -9,8 +9,8 @@ use crate::cloth::state::ParticleColumns;
 use crate::lanes::Width;
 
 /// Fastest that cloth is pushed apart that is found in other cloth (m/s): garments, 10 mm in a hundredth of a second, and a
-/// garment and itself, where a side that is remembered wrongly would tear single edges.
-const PUSH_M_S: [f32; 2] = [1.0, 0.2];
+/// garment and itself, whose particles keep farther apart.
+const PUSH_M_S: [f32; 2] = [1.0, 2.0];
 
 /// What a particle of a pair is to the face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,7 +76,7 @@ impl LayerPair {
     pub fn law(&self, dt: f32, static_friction: f32) -> ContactLaw {
         let friction = [self.friction * static_friction, self.friction];
         let push = PUSH_M_S[usize::from(self.is_fold())];
-        ContactLaw { thickness: self.thickness, friction, push, dt }
+        ContactLaw { friction, push, dt }
     }
 
     /// The particles of a share: the first half and the second.

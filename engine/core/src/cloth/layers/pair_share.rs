@@ -100,7 +100,7 @@ impl PairShare {
         if let Some(folds) = &mut self.folds {
             if let Some(surface) = &scene.surfaces[0].folds {
                 let of = FoldScene { surface, motion: &scene.motions[0].folds };
-                self.asked = folds.find(pair, scene, of, &mut self.contacts);
+                self.asked = folds.find(scene, of, pair.thickness, &mut self.contacts);
             }
             return;
         }
@@ -217,7 +217,8 @@ fn touch(pair: &LayerPair, scene: &PairScene<'_>, i: u32, found: &NearestPoint) 
     if gap.is_nan() || gap >= near {
         return Err(Distant(gap - near));
     }
-    Ok(LayerContact { particle: i, corners, shares: found.shares, normal, ..LayerContact::default() })
+    let none = LayerContact::default();
+    Ok(LayerContact { particle: i, corners, shares: found.shares, normal, gap: pair.thickness, ..none })
 }
 
 /// What particles and a surface can have come nearer in a step is taken from their slack; those without any left are listed.

@@ -177,3 +177,44 @@ fn outer_garments_are_laid_outside_and_nothing_else_is_moved() {
     let least = over.map(|p| p.y).fold(f32::MAX, f32::min);
     assert!(least > 0.01 + 0.003_9, "the outer one starts at {least}");
 }
+
+/// Where a flat sheet is once its half beyond x = 110 mm is folded back over the other one, 30 mm above it.
+fn folded(p: Vec3) -> Vec3A {
+    const FOLD_X: f32 = 0.11;
+    const RADIUS: f32 = 0.015;
+    let beyond = p.x - FOLD_X;
+    let angle = (beyond / RADIUS).clamp(0.0, std::f32::consts::PI);
+    let over = (beyond - std::f32::consts::PI * RADIUS).max(0.0);
+    let x = p.x.min(FOLD_X) + RADIUS * angle.sin() - over;
+    Vec3A::new(x, 0.05 + RADIUS * (1.0 - angle.cos()), p.z)
+}
+
+#[test]
+fn a_fold_keeps_as_far_from_itself_as_the_edges_ask_for() {
+    let least = |folds: bool| {
+        let mut scene = Scene::new(vec![sheet(14, Vec3::ZERO, 1)], 1, Width::widest());
+        scene.settings.folds = folds;
+        let start = scene.garments[0].start.clone();
+        start.iter().enumerate().for_each(|(i, &p)| scene.cloths[0].disturb(i, folded(p), Vec3A::ZERO));
+        scene.layers.tick = 0;
+        (0..120).for_each(|_| match folds {
+            true => scene.steps(1),
+            false => {
+                let Scene { cloths, garments, colliders, settings, .. } = &mut scene;
+                cloths[0].step(&garments[0], &Step { palette: &[Affine3A::IDENTITY; BONES], colliders, settings });
+            }
+        });
+        let at = &scene.cloths[0].positions;
+        let over = |i: usize| {
+            let far = (0..at.len()).filter(|&j| start[i].distance(start[j]) > 0.1);
+            far.map(|j| at[i].distance(at[j])).fold(f32::MAX, f32::min)
+        };
+        let mut nearest: Vec<f32> = (0..at.len()).filter(|&i| start[i].x > 0.15).map(over).collect();
+        nearest.sort_by(f32::total_cmp);
+        nearest[nearest.len() / 20]
+    };
+    // The longest edges are diagonals of 28 mm.
+    let (with, without) = (least(true), least(false));
+    assert!(with > 0.018, "one particle of twenty is {with} m from the other half");
+    assert!(without < 0.01, "without contact they would be {without} m apart: the test shows nothing");
+}

@@ -14,12 +14,22 @@ use crate::cloth::state::{ParticleColumns, get, set};
 #[derive(Debug, Clone, Copy, Default)]
 struct Touch {
     /// Which list of contacts.
-    list: u32,
+    list: u16,
+    /// Level at which it is solved.
+    level: u8,
+    /// Whether what is touched lies above in it, and whether it is no fold.
+    flags: u8,
     /// Which of its contacts.
     contact: u32,
     /// 1 for the contact's particle, minus the share for a corner of its face.
     share: f32,
 }
+
+/// The touched particle's garment lies on the other one.
+const ABOVE: u8 = 1;
+
+/// The contact is between two garments.
+const BETWEEN: u8 = 2;
 
 /// What is moved less than this (m) only by rounding is not held.
 const MOVED_M: f32 = 1e-6;
@@ -104,13 +114,17 @@ impl TouchLists {
         let each = |act: &mut dyn FnMut(u32, Touch)| {
             for list in 0..2 * pairs.len() {
                 let pair = &pairs[list % pairs.len()];
+                let level = pair.level as u8;
+                let above = if pair.has_above(*garment) { ABOVE } else { 0 };
+                let flags = above | if pair.is_fold() { 0 } else { BETWEEN };
                 for (c, contact) in lists(list).iter().enumerate() {
-                    let touch = |share| Touch { list: list as u32, contact: c as u32, share };
+                    let touch = |share| Touch { list: list as u16, level, flags, contact: c as u32, share };
                     if pair.particles == *garment {
                         act(contact.particle, touch(1.0));
                     }
                     if pair.faces == *garment {
-                        (0..3).for_each(|k| act(contact.corners[k], touch(-contact.shares[k])));
+                        let corners = (0..3).filter(|&k| contact.shares[k] != 0.0);
+                        corners.for_each(|k| act(contact.corners[k], touch(-contact.shares[k])));
                     }
                 }
             }
@@ -119,9 +133,8 @@ impl TouchLists {
         *levels = 0;
         each(&mut |i, touch| {
             start[i as usize + 1] += 1;
-            let level = pairs[touch.list as usize % pairs.len()].level;
-            *levels |= 1 << level;
-            let above = level != own_level(*height);
+            *levels |= 1 << touch.level;
+            let above = usize::from(touch.level) != own_level(*height);
             load[usize::from(above)][i as usize] += touch.share.abs();
             count += 1;
         });
@@ -153,7 +166,6 @@ impl TouchLists {
         &mut self,
         columns: ParticleColumns<'_>,
         level: usize,
-        pairs: &[LayerPair],
         lists: impl Fn(usize) -> &'c [LayerContact],
     ) {
         // At its own level it learns what holds it, which may be nothing any more.
@@ -166,8 +178,7 @@ impl TouchLists {
             let (mut push, mut carry, mut support) = (Vec3A::ZERO, Vec3A::ZERO, Vec3A::ZERO);
             let (mut owed, mut held_by) = (self.owed[i], 0.0);
             for touch in &self.touches[self.start[i] as usize..self.start[i + 1] as usize] {
-                let pair = &pairs[touch.list as usize % pairs.len()];
-                if pair.level != level {
+                if usize::from(touch.level) != level {
                     continue;
                 }
                 let contact = &lists(touch.list as usize)[touch.contact as usize];
@@ -182,7 +193,7 @@ impl TouchLists {
                 // What lies on the other side and is held holds this one.
                 let held = contact.held[usize::from(touch.share > 0.0)];
                 support += part * held;
-                held_by += if pair.has_above(self.garment) { part.length() * held } else { 0.0 };
+                held_by += if touch.flags & ABOVE != 0 && held > 0.0 { part.length() * held } else { 0.0 };
             }
             if is_own {
                 let by_cloth = support.normalize_or_zero();
@@ -197,7 +208,7 @@ impl TouchLists {
     }
 
     /// Takes over what those that lie on it pass on, and lets go of what it has passed on itself.
-    pub fn take_over<'c>(&mut self, level: usize, pairs: &[LayerPair], lists: impl Fn(usize) -> &'c [LayerContact]) {
+    pub fn take_over<'c>(&mut self, level: usize, lists: impl Fn(usize) -> &'c [LayerContact]) {
         if self.levels >> level & 1 == 0 || self.height > level {
             return;
         }
@@ -208,8 +219,7 @@ impl TouchLists {
                 continue;
             }
             for touch in &self.touches[self.start[i] as usize..self.start[i + 1] as usize] {
-                let pair = &pairs[touch.list as usize % pairs.len()];
-                if pair.level == level && !pair.is_fold() {
+                if usize::from(touch.level) == level && touch.flags & BETWEEN != 0 {
                     self.owed[i] += lists(touch.list as usize)[touch.contact as usize].passed * touch.share.abs();
                 }
             }

@@ -10,16 +10,16 @@ use glam::Vec3A;
 use super::contact::LayerContact;
 use crate::cloth::state::get;
 use crate::lanes::WriteColumn;
-use crate::surface::{NO_TRIANGLE, NearestPoint, SurfaceMesh};
+use crate::surface::SurfaceMesh;
 
 /// Crossings that one worker keeps at once: a tenth of what a garment of 10,000 particles has when all of it is crushed.
 /// What is found beyond is left for a later step, and counted.
 pub const MOST_CROSSINGS: usize = 1024;
 
-/// Every so many steps a particle's edges are tried: 66 ms.
+/// Every so many steps the edges of two particles are tried: 66 ms.
 const TRIED_STEPS: u64 = 8;
 
-/// So many steps after one of its edges has last crossed anything a particle believes no side that it sees.
+/// So many steps after one of its edges has last crossed anything a particle keeps apart from nobody.
 const UNSURE_STEPS: u8 = 32;
 
 /// Fastest that a crossing is drawn apart (m/s).
@@ -50,7 +50,7 @@ struct Hit {
 #[derive(Debug, Clone)]
 pub struct Uncross {
     active: Vec<Crossing>,
-    /// For how many steps each particle believes no side `[particles]`.
+    /// For how many steps each particle keeps apart from nobody `[particles]`.
     unsure: Box<[u8]>,
     /// Crossings that there was no room for, summed over the steps.
     pub left_out: u64,
@@ -73,8 +73,8 @@ impl Uncross {
         Self { active: Vec::with_capacity(MOST_CROSSINGS), unsure: vec![0; particles].into(), left_out: 0 }
     }
 
-    /// Whether the side on which a particle seems to be of anything may be believed.
-    pub fn sure(&self, particle: u32) -> bool {
+    /// Whether none of a particle's edges has crossed anything lately.
+    pub fn is_sure(&self, particle: u32) -> bool {
         self.unsure[particle as usize] == 0
     }
 
@@ -83,29 +83,18 @@ impl Uncross {
         2 * MOST_CROSSINGS
     }
 
-    /// Looks again at the crossings that there were, and for new ones around some particles and the points nearest to them;
-    /// adds contacts that draw them apart.
-    ///
-    /// `minds` says of a particle and a triangle whether the particle remembers on which side of it it belongs: then its contact
-    /// knows better.
-    pub fn find(
-        &mut self,
-        tangle: Tangle<'_>,
-        (list, found): (&[u32], &[NearestPoint]),
-        minds: impl Fn(u32, u32) -> bool,
-        contacts: &mut Vec<LayerContact>,
-    ) {
+    /// Begins a step.
+    pub fn begin_step(&mut self) {
         self.unsure.iter_mut().for_each(|u| *u = u.saturating_sub(1));
-        for (&i, near) in list.iter().zip(found) {
-            if (u64::from(i) + tangle.tick).is_multiple_of(TRIED_STEPS) && (near.triangle as usize) < tangle.mesh.len()
-            {
-                self.try_edges(tangle, i, near.triangle);
-            }
-        }
+    }
+
+    /// Adds contacts that draw apart what crosses; forgets what crosses no more. `told` says of a particle and a triangle whether
+    /// the parts of the body tell where the particle belongs: then their contact knows better.
+    pub fn draw_out(&mut self, tangle: Tangle<'_>, told: impl Fn(u32, u32) -> bool, contacts: &mut Vec<LayerContact>) {
         let Self { active, unsure, .. } = self;
         active.retain(|crossing| {
             let Some(hit) = tangle.hit(crossing) else { return false };
-            if crossing.edge.iter().any(|&i| minds(i, crossing.triangle)) {
+            if crossing.edge.iter().any(|&i| told(i, crossing.triangle)) {
                 return true;
             }
             crossing.edge.iter().for_each(|&i| unsure[i as usize] = UNSURE_STEPS);
@@ -123,16 +112,23 @@ impl Uncross {
         });
     }
 
-    /// Tries the edges of a particle against a triangle and those around it.
-    fn try_edges(&mut self, tangle: Tangle<'_>, i: u32, triangle: u32) {
-        let across = tangle.mesh.across(triangle);
+    /// Tries the edges of each of two particles against the triangles of the other, every so many steps.
+    pub fn try_pair(&mut self, tangle: Tangle<'_>, [i, j]: [u32; 2]) {
+        if (u64::from(i) + tangle.tick).is_multiple_of(TRIED_STEPS) {
+            self.try_edges(tangle, i, j);
+            self.try_edges(tangle, j, i);
+        }
+    }
+
+    /// Tries the edges of a particle against the triangles of another.
+    fn try_edges(&mut self, tangle: Tangle<'_>, i: u32, other: u32) {
         for &own in tangle.mesh.fan(i) {
             let corners = tangle.mesh.corners(own);
             let turn = corners.iter().position(|c| *c == i).unwrap_or(0);
             // Each edge of the fan once, but for those of borders.
             let j = corners[(turn + 1) % 3];
-            for face in [triangle, across[0], across[1], across[2]].into_iter().filter(|t| *t != NO_TRIANGLE) {
-                let crossing = Crossing { edge: [i.min(j), i.max(j)], triangle: face };
+            for &triangle in tangle.mesh.fan(other) {
+                let crossing = Crossing { edge: [i.min(j), i.max(j)], triangle };
                 if tangle.hit(&crossing).is_some() && !self.active.contains(&crossing) {
                     if self.active.len() < MOST_CROSSINGS {
                         self.active.push(crossing);

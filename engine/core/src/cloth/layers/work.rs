@@ -274,7 +274,8 @@ impl<'a> LayerWork<'a> {
     fn motion(&self, garment: usize) {
         // SAFETY: written in this phase by the garment's worker, read in the next.
         let motion = unsafe { self.motions.own(garment) };
-        motion.take(&self.surfaces[garment], self.particles(garment), self.width());
+        let meets = self.works.len() > 1 && self.works[0].step.settings.layers;
+        motion.take(&self.surfaces[garment], self.particles(garment), (self.tick, self.width()), meets);
     }
 
     fn scene(&self, pair: usize) -> PairScene<'_> {
@@ -330,8 +331,8 @@ impl<'a> LayerWork<'a> {
     fn gather(&self, garment: usize, turn: Turn) {
         let (touching, columns) = (self.touching(garment), self.particles(garment));
         match turn.up {
-            true => touching.gather(columns, turn.level, self.pairs, |list| self.contacts(list)),
-            false => touching.take_over(turn.level, self.pairs, |list| self.contacts(list)),
+            true => touching.gather(columns, turn.level, |list| self.contacts(list)),
+            false => touching.take_over(turn.level, |list| self.contacts(list)),
         }
         if turn == self.turns.last() {
             touching.bear(columns);

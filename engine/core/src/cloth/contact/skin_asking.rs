@@ -1,0 +1,195 @@
+//! Which particles may lie by the skin: each is looked at again when it and the skin may have come near since.
+
+use toile_assets::garment::Part;
+
+use super::ContactSettings;
+use super::skin_contact::DISAGREE_M;
+use crate::body_surface::{BodySurface, PartSurface};
+use crate::cloth::state::{ParticleColumns, get};
+use crate::lanes::{Kernel, Lanes, MOST, Mask, ReadColumn, Store, V3, Width, WriteColumn};
+use crate::surface::{NearestPoint, NearestVertex};
+
+/// How much faster than at its start a particle may be within a step (1).
+const FASTER: f32 = 1.5;
+
+/// Every so many steps the nearest point is looked for from anew: of a particle that is near, of one that is not.
+const ANEW_STEPS: [u64; 2] = [64, 128];
+
+/// How much farther than the nearest point so far a vertex is looked for (m): a long edge of a body's mesh.
+const LOOKED_M: f32 = 0.04;
+
+/// Farther from a body than this (m) is nothing that is worn.
+const FARTHEST_M: f32 = 10.0;
+
+/// Particles of one part of the body.
+#[derive(Debug, Clone)]
+pub struct PartList {
+    /// Which part.
+    pub part: Part,
+    /// Its particles.
+    pub particles: Box<[u32]>,
+    /// The nearest point of each.
+    pub found: Box<[NearestPoint]>,
+    /// How far each was from the skin when it was last looked at, less what the skin has moved since (m).
+    left: Store,
+    /// Where each was then (m).
+    looked: [Store; 3],
+}
+
+/// Particles of a part that may have come near to the skin since they were last looked at.
+#[derive(Debug, Clone)]
+pub struct AskingList {
+    /// Their places in the part's list.
+    places: Vec<u32>,
+    /// The particles.
+    pub particles: Vec<u32>,
+    /// For each the triangle to start from, then what was found.
+    pub found: Vec<NearestPoint>,
+}
+
+impl PartList {
+    /// Of some particles, none of which was looked at yet. At load.
+    pub fn new(part: Part, particles: Box<[u32]>) -> Self {
+        let len = particles.len();
+        let found = vec![NearestPoint::default(); len].into();
+        Self { part, found, particles, left: Store::zeros(len), looked: [(); 3].map(|()| Store::zeros(len)) }
+    }
+
+    /// Looks for the nearest points of some particles from anew: a sixteenth of them in each step.
+    pub fn look_anew(
+        &mut self,
+        width: Width,
+        cols: ParticleColumns<'_>,
+        body: &BodySurface,
+        surface: &PartSurface,
+        tick: u64,
+    ) {
+        let groups = self.particles.chunks(MOST).zip(self.found.chunks_mut(MOST));
+        for (group, ((ids, found), left)) in groups.zip(self.left.as_mut().chunks_mut(MOST)).enumerate() {
+            let distance = |f: &NearestPoint| f.distance2.sqrt();
+            let far = found.iter().all(|f| distance(f) > 4.0 * DISAGREE_M);
+            if tick != 0 && !(group as u64 + tick).is_multiple_of(ANEW_STEPS[usize::from(far)]) {
+                continue;
+            }
+            left.fill(0.0);
+            for (&i, found) in ids.iter().zip(found) {
+                // At first from however far.
+                let within = if tick == 0 { FARTHEST_M } else { distance(found) + LOOKED_M };
+                let vertex = width.run(NearestVertex {
+                    clusters: &surface.clusters,
+                    boxes: &surface.boxes,
+                    surface: body.start(),
+                    point: get(cols.x, i as usize).to_array(),
+                    within2: within * within,
+                });
+                // A triangle of another mesh than the one that was walked on before is none.
+                let known = (found.triangle as usize) < surface.mesh.len();
+                if !known {
+                    found.triangle = 0;
+                }
+                if let Some(v) = vertex
+                    && !surface.mesh.corners(found.triangle).contains(&v)
+                    && let Some(&triangle) = surface.mesh.fan(v).first()
+                {
+                    found.triangle = triangle;
+                }
+            }
+        }
+    }
+}
+
+impl PartList {
+    /// Memory that it holds (bytes).
+    pub fn bytes(&self) -> usize {
+        let looked = self.looked.iter().map(Store::bytes).sum::<usize>();
+        size_of_val(&*self.particles) + size_of_val(&*self.found) + self.left.bytes() + looked
+    }
+}
+
+impl AskingList {
+    /// Room for so many. At load.
+    pub fn new(most: usize) -> Self {
+        let room = || Vec::with_capacity(most);
+        Self { places: room(), particles: room(), found: Vec::with_capacity(most) }
+    }
+
+    /// Lists the particles of a part that may lie by the skin in this step, by how far they and the skin, which moved so far in the
+    /// step before (m), have come since they were last looked at.
+    pub fn list(
+        &mut self,
+        width: Width,
+        cols: ParticleColumns<'_>,
+        list: &mut PartList,
+        moved: f32,
+        how: &ContactSettings,
+    ) {
+        self.places.clear();
+        let PartList { particles, found, left, looked, .. } = list;
+        let looked = looked.each_ref().map(|c| ReadColumn::new(c.as_slice()));
+        let places = &mut self.places;
+        width.run(Approach { cols, particles, left: left.column(), looked, moved, how, places });
+        self.particles.clear();
+        self.found.clear();
+        self.particles.extend(self.places.iter().map(|&k| particles[k as usize]));
+        self.found.extend(self.places.iter().map(|&k| found[k as usize]));
+    }
+
+    /// Notes what was found.
+    pub fn note(&self, cols: ParticleColumns<'_>, list: &mut PartList) {
+        for ((&k, &i), found) in self.places.iter().zip(&self.particles).zip(&self.found) {
+            let k = k as usize;
+            list.found[k] = *found;
+            list.left.as_mut()[k] = found.distance2.sqrt();
+            let x = get(cols.x, i as usize).to_array();
+            list.looked.iter_mut().zip(x).for_each(|(to, x)| to.as_mut()[k] = x);
+        }
+    }
+
+    /// Memory that it holds (bytes).
+    pub fn bytes(&self) -> usize {
+        size_of::<u32>() * (self.places.capacity() + self.particles.capacity())
+            + size_of::<NearestPoint>() * self.found.capacity()
+    }
+}
+
+/// Takes from what is left between particles and skin what the skin has moved; lists those that may be near.
+struct Approach<'a> {
+    cols: ParticleColumns<'a>,
+    particles: &'a [u32],
+    left: WriteColumn<'a>,
+    looked: [ReadColumn<'a>; 3],
+    moved: f32,
+    how: &'a ContactSettings,
+    places: &'a mut Vec<u32>,
+}
+
+impl Kernel for Approach<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let fast = L::splat(FASTER * self.how.step_seconds);
+        let mut from = 0;
+        while from < self.particles.len() {
+            let n = (self.particles.len() - from).min(L::N);
+            let index = &self.particles[from..from + n];
+            let left = if n == L::N { L::load(self.left, from) } else { L::load_part(self.left, from, n) };
+            let left = left - L::splat(self.moved);
+            if n == L::N {
+                left.store(self.left, from);
+            } else {
+                left.store_part(self.left, from, n);
+            }
+            let came = V3::<L>::gather(self.cols.x, index, n) - V3::<L>::load(self.looked, from, n);
+            let v = V3::<L>::gather(self.cols.v, index, n);
+            let reach = L::splat(DISAGREE_M) + fast * v.dot(v).sqrt() + came.dot(came).sqrt();
+            // Not a number is no way that is left.
+            let mut near = !reach.lt(left).bits() & ((1u64 << n) - 1) as u32;
+            while near != 0 {
+                self.places.push(from as u32 + near.trailing_zeros());
+                near &= near - 1;
+            }
+            from += n;
+        }
+    }
+}
