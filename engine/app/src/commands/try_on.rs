@@ -23,6 +23,7 @@ use toile_fitting::dress::player::Player;
 use toile_fitting::dress::wish::{self, Choice, Wish};
 use toile_fitting::dress::{body, session};
 use toile_fitting::scene::StepTimes;
+use toile_fitting::scene::contact::ContactReport;
 use toile_sensors::frame::Joints;
 
 use crate::arguments::{Printing, TapeArgs, one_of, quality};
@@ -182,6 +183,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
             others: recommendations.collect(),
             physics: physics(&frame),
             crossings: played.crossings,
+            contact: contact(&frame),
             hidden_mm: played.hidden_mm.map(|max| report::Penetration { max }),
             state_hash: report::hash_text(frame.state_hash()),
             renderer: played.renderer,
@@ -357,6 +359,11 @@ fn title(recommendations: &[Recommendation]) -> String {
     recommendations.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
+/// What contact of cloth with cloth did, dressing included.
+fn contact(frame: &Frame) -> Option<ContactReport> {
+    frame.layers().map(|layers| ContactReport::from(layers.counts()))
+}
+
 fn physics(frame: &Frame) -> report::PhysicsReport {
     let meters = frame.meters();
     let us = |quantile: f64| meters.step_ns.value_at_quantile(quantile) as f64 * 1e-3;
@@ -375,6 +382,7 @@ fn physics(frame: &Frame) -> report::PhysicsReport {
             ));
         }
     }
+    warnings.extend(contact(frame).iter().flat_map(ContactReport::warnings));
     let held = frame.colliders().held();
     if held > 0 {
         warnings.push(format!("collision spheres jumped or were not finite and were held {held} times"));

@@ -54,14 +54,15 @@ pub struct FindFolds<'a> {
     pub farthest: f32,
     /// Length of the step (s).
     pub step_seconds: f32,
-    /// What is found; as many as there is room for.
+    /// What is found: two for each particle at most, and there is room for as many.
     pub seeds: &'a mut Vec<FoldSeed>,
 }
 
 /// Clusters of which no two particles are of one piece.
 const NOBODY: [u16; MOST] = [0; MOST];
 
-/// The nearest of each particle of a cluster, behind and in front: square of the distance (m2) and which.
+/// The nearest of each particle of a cluster, behind and in front: square of the distance (m2) and which. Of several that are
+/// equally near it is the one of the lowest index.
 type Nearest = [[(f32, u32); 2]; MOST];
 
 impl Kernel for FindFolds<'_> {
@@ -77,9 +78,8 @@ impl Kernel for FindFolds<'_> {
                 // The last cluster is filled up with its last vertex.
                 let again = k > 0 && vertices[k] == vertices[k - 1];
                 for (_, vertex) in found.iter().filter(|(_, v)| !again && *v != u32::MAX) {
-                    if self.seeds.len() < self.seeds.capacity() {
-                        self.seeds.push(FoldSeed { particle: vertices[k], vertex: *vertex });
-                    }
+                    debug_assert!(self.seeds.len() < self.seeds.capacity(), "there is room for two of each particle");
+                    self.seeds.push(FoldSeed { particle: vertices[k], vertex: *vertex });
                 }
             }
         }
@@ -179,11 +179,11 @@ impl FindFolds<'_> {
                     let lane = hits.trailing_zeros() as usize;
                     hits &= hits - 1;
                     let j = self.surface.clusters.vertices(b)[from + lane];
-                    if d2[lane] < kept[0].0.max(kept[1].0) && self.may_touch(i, j, d2[lane]) {
+                    if d2[lane] <= kept[0].0.max(kept[1].0) && self.may_touch(i, j, d2[lane]) {
                         let other = Vec3A::from(at.map(|c| c.get(b * MOST + from + lane)));
                         let before = (other - Vec3A::new(x, y, z)).dot(normal) > 0.0;
                         let kept = &mut kept[usize::from(before)];
-                        if d2[lane] < kept.0 {
+                        if (d2[lane], j) < *kept {
                             *kept = (d2[lane], j);
                         }
                     }

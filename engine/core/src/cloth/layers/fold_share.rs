@@ -37,11 +37,15 @@ const BEYOND_M: f32 = 0.001;
 /// So many times farther to the side than up, a particle is beside a piece and not over it.
 const BESIDE: f32 = 0.7;
 
-/// Pieces that a particle keeps in mind: one on either side.
+/// Pieces of its own garment that a particle keeps in mind: one on either side. Of more it keeps the nearest, and of those that
+/// are equally near the ones of the lowest index; the others are counted.
 pub const PIECES: usize = 2;
 
 /// Instead of a triangle: no piece.
 const NONE: u32 = u32::MAX;
+
+/// No piece.
+const NO_PIECE: Piece = Piece { triangle: NONE, side: 0.0, distance: 0.0, contact: NONE };
 
 /// A piece of its own garment that a particle keeps in mind.
 #[derive(Debug, Clone, Copy)]
@@ -50,9 +54,18 @@ struct Piece {
     triangle: u32,
     /// On which side of it the particle belongs: 1 in front, -1 behind.
     side: f32,
+    /// How far it was when it was last looked at (m).
+    distance: f32,
+    /// Which contact of the step it has made; [`NONE`] for none yet.
+    contact: u32,
 }
 
 impl Piece {
+    /// What is lower is kept rather: no distance is below 0, so that its bits are in its order.
+    fn order(&self) -> (u32, u32) {
+        (self.distance.to_bits(), self.triangle)
+    }
+
     /// Whether it is one, and around that vertex.
     fn is_at(&self, mesh: &SurfaceMesh, surface: &FoldSurface, vertex: u32) -> bool {
         self.triangle != NONE && mesh.corners(self.triangle).iter().any(|&c| surface.one_piece(c, vertex))
@@ -73,16 +86,33 @@ pub struct FoldScene<'a> {
 pub struct FoldShare {
     share: usize,
     pieces: Box<[[Piece; PIECES]]>,
-    /// Particles of this share that keep anything in mind, in order of their clusters.
+    /// Particles of this share that keep anything in mind, each once.
     minding: Vec<u32>,
+    /// Whether each particle is among them.
+    minds: Box<[bool]>,
     seeds: Vec<FoldSeed>,
     list: Vec<u32>,
     /// Which piece of its particle each in the list is; [`PIECES`] for a new one.
     which: Vec<u8>,
     found: Vec<NearestPoint>,
-    /// Pieces that were not kept in mind because a particle had two already, summed over the steps.
-    pub crowded: u64,
+    /// Pieces that were not kept in mind because a particle had [`PIECES`] nearer ones, summed over the steps.
+    crowded: u64,
+    /// Most pieces that a particle kept in mind at once.
+    pieces_most: usize,
     uncross: Uncross,
+}
+
+/// What there was no room for, counted since the garment was made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct FoldCounts {
+    /// Most pieces that a particle kept in mind at once.
+    pub pieces_most: u64,
+    /// Pieces that were not kept in mind because a particle had [`PIECES`] nearer ones, summed over the steps.
+    pub crowded: u64,
+    /// Most crossings that were kept at once.
+    pub crossings_most: u64,
+    /// Crossings that there was no room for, summed over the steps.
+    pub left_out: u64,
 }
 
 impl FoldShare {
@@ -91,13 +121,15 @@ impl FoldShare {
         let most = PIECES * particles;
         Self {
             share,
-            pieces: vec![[Piece { triangle: NONE, side: 0.0 }; PIECES]; particles].into(),
+            pieces: vec![[NO_PIECE; PIECES]; particles].into(),
             minding: Vec::with_capacity(particles),
+            minds: vec![false; particles].into(),
             seeds: Vec::with_capacity(most),
             list: Vec::with_capacity(2 * most),
             which: Vec::with_capacity(2 * most),
             found: Vec::with_capacity(2 * most),
             crowded: 0,
+            pieces_most: 0,
             uncross: Uncross::new(particles),
         }
     }
@@ -140,10 +172,11 @@ impl FoldShare {
             list: &self.list,
             found: &mut self.found,
         });
+        let crowded = self.crowded;
         for k in 0..self.list.len() {
             let (i, which, found) = (self.list[k], usize::from(self.which[k]), self.found[k]);
             let at = scene.at(i, &found, folds.surface);
-            let side = match &at {
+            let kept = match &at {
                 None => {
                     self.lose(i, which);
                     None
@@ -152,14 +185,18 @@ impl FoldShare {
                     self.lose(i, which);
                     None
                 }
-                Some(_) if which < PIECES => self.keep(&surface.mesh, folds.surface, i, which, found.triangle),
-                Some(at) => self.meet(scene, folds.surface, i, &found, at),
+                Some(at) if which < PIECES => self.keep((&surface.mesh, folds.surface), i, which, found.triangle, at),
+                Some(at) => self.meet(scene, folds.surface, i, (&found, at), contacts),
             };
-            if let Some((at, side)) = at.zip(side)
-                && let Some(contact) = touch(pair, scene, i, &found, &at, side)
+            if let Some((at, kept)) = at.zip(kept)
+                && let Some(contact) = touch(pair, scene, i, &found, &at, self.pieces[i as usize][kept].side)
             {
+                self.pieces[i as usize][kept].contact = contacts.len() as u32;
                 contacts.push(contact);
             }
+        }
+        if self.crowded > crowded {
+            contacts.retain(|c| c.normal != Vec3A::ZERO);
         }
         self.forget();
         let tangle = Tangle { x: scene.columns[0].x, mesh: &surface.mesh, tick: scene.tick };
@@ -184,13 +221,21 @@ impl FoldShare {
         }
     }
 
-    /// A piece that was in mind has moved along; gives its side, unless the other one has become the same.
-    fn keep(&mut self, mesh: &SurfaceMesh, surface: &FoldSurface, i: u32, which: usize, triangle: u32) -> Option<f32> {
+    /// A piece that was in mind has moved along; gives which it is, unless the other one has become the same.
+    fn keep(
+        &mut self,
+        (mesh, surface): (&SurfaceMesh, &FoldSurface),
+        i: u32,
+        which: usize,
+        triangle: u32,
+        at: &OnPiece,
+    ) -> Option<usize> {
         let pieces = &mut self.pieces[i as usize];
         let corner = mesh.corners(triangle)[0];
         let doubled = pieces[..which].iter().any(|p| p.is_at(mesh, surface, corner));
-        pieces[which].triangle = if doubled { NONE } else { triangle };
-        (!doubled).then_some(pieces[which].side)
+        let triangle = if doubled { NONE } else { triangle };
+        pieces[which] = Piece { triangle, side: pieces[which].side, distance: at.distance, contact: NONE };
+        (!doubled).then_some(which)
     }
 
     /// Lists who asks for what: pieces in mind, then new ones.
@@ -217,15 +262,16 @@ impl FoldShare {
         }
     }
 
-    /// Keeps a piece in mind that was not; gives the side of it on which the particle belongs.
+    /// Keeps a piece in mind that was not, if need be in place of the farthest, whose contact is then none any more; gives
+    /// which it is.
     fn meet(
         &mut self,
         scene: &PairScene<'_>,
         surface: &FoldSurface,
         i: u32,
-        found: &NearestPoint,
-        at: &OnPiece,
-    ) -> Option<f32> {
+        (found, at): (&NearestPoint, &OnPiece),
+        contacts: &mut [LayerContact],
+    ) -> Option<usize> {
         let mesh = &scene.surfaces[0].mesh;
         let pieces = &mut self.pieces[i as usize];
         let corner = mesh.corners(found.triangle)[0];
@@ -233,31 +279,53 @@ impl FoldShare {
         if known || at.beside || !self.uncross.sure(i) || at.distance > FORGET_M {
             return None;
         }
-        let Some(free) = pieces.iter().position(|p| p.triangle == NONE) else {
-            self.crowded += 1;
-            return None;
-        };
         let parts = &scene.surfaces[0].parts;
         // Where the parts of the body tell, history is not asked.
         let front_to_front = opposite(parts[i as usize], parts[corner as usize]) == Some(true);
         let side = if front_to_front || at.height >= 0.0 { 1.0 } else { -1.0 };
-        if pieces.iter().all(|p| p.triangle == NONE) {
+        let new = Piece { triangle: found.triangle, side, distance: at.distance, contact: NONE };
+        let place = match pieces.iter().position(|p| p.triangle == NONE) {
+            Some(free) => free,
+            None => {
+                self.crowded += 1;
+                let farthest = (0..PIECES).max_by_key(|&k| pieces[k].order())?;
+                if new.order() >= pieces[farthest].order() {
+                    return None;
+                }
+                if let Some(contact) = contacts.get_mut(pieces[farthest].contact as usize) {
+                    contact.normal = Vec3A::ZERO;
+                }
+                farthest
+            }
+        };
+        pieces[place] = new;
+        self.pieces_most = self.pieces_most.max(pieces.iter().filter(|p| p.triangle != NONE).count());
+        if !std::mem::replace(&mut self.minds[i as usize], true) {
             self.minding.push(i);
         }
-        self.pieces[i as usize][free] = Piece { triangle: found.triangle, side };
-        Some(side)
+        Some(place)
     }
 
     /// Strikes out who keeps nothing in mind any more.
     fn forget(&mut self) {
-        let pieces = &self.pieces;
-        self.minding.retain(|&i| pieces[i as usize].iter().any(|p| p.triangle != NONE));
-        self.minding.dedup();
+        let Self { minding, minds, pieces, .. } = self;
+        minding.retain(|&i| {
+            minds[i as usize] = pieces[i as usize].iter().any(|p| p.triangle != NONE);
+            minds[i as usize]
+        });
+    }
+
+    /// What there was no room for.
+    pub fn counts(&self) -> FoldCounts {
+        let Uncross { most, left_out, .. } = self.uncross;
+        let pieces_most = self.pieces_most as u64;
+        FoldCounts { pieces_most, crowded: self.crowded, crossings_most: most as u64, left_out }
     }
 
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.pieces)
+            + size_of_val(&*self.minds)
             + size_of::<u32>() * (self.minding.capacity() + self.list.capacity())
             + size_of::<FoldSeed>() * self.seeds.capacity()
             + self.which.capacity()
@@ -327,3 +395,6 @@ fn touch(
     let near = gap < MARGIN_M + FASTER * scene.step_seconds * approach;
     near.then(|| LayerContact { particle: i, corners, shares: found.shares, normal, ..LayerContact::default() })
 }
+
+#[cfg(test)]
+mod tests;

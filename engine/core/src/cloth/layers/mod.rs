@@ -39,8 +39,10 @@ use pair_share::PairShare;
 use touch::TouchLists;
 use turns::Turns;
 
+pub use fold_share::PIECES;
 pub use lay::lay_outside;
 pub use order::wearing_order;
+pub use uncross::MOST_CROSSINGS;
 
 /// Garments that lie farther apart than this where they start (m) never meet.
 const MEETING_M: f32 = 0.15;
@@ -53,7 +55,32 @@ pub struct LayerCounts {
     /// Contacts that were solved, summed over the steps.
     pub contacts: u64,
     /// Most contacts of one step.
-    pub most: u64,
+    pub contacts_most: u64,
+    /// Most pieces of its own garment that a particle kept in mind at once, of [`PIECES`].
+    pub pieces_most: u64,
+    /// Pieces of its own garment that a particle did not keep in mind because it had [`PIECES`] nearer ones, summed over the
+    /// steps.
+    pub crowded: u64,
+    /// Most crossings that one worker kept of one garment at once, of [`MOST_CROSSINGS`].
+    pub crossings_most: u64,
+    /// Crossings that there was no room for, summed over the steps.
+    pub left_out: u64,
+}
+
+impl LayerCounts {
+    /// Adds what a step did, whose shares are these.
+    fn add(&mut self, shares: &[PairShare]) {
+        let contacts = shares.iter().map(|s| s.contacts.len() as u64).sum();
+        self.asked += shares.iter().map(|s| s.asked).sum::<u64>();
+        self.contacts += contacts;
+        self.contacts_most = self.contacts_most.max(contacts);
+        // These are counted since the start.
+        let folds = || shares.iter().map(PairShare::fold_counts);
+        self.pieces_most = folds().map(|f| f.pieces_most).max().unwrap_or(0);
+        self.crowded = folds().map(|f| f.crowded).sum();
+        self.crossings_most = folds().map(|f| f.crossings_most).max().unwrap_or(0);
+        self.left_out = folds().map(|f| f.left_out).sum();
+    }
 }
 
 /// The contact between the garments of an outfit. All storage is made once.

@@ -63,10 +63,7 @@ impl Layers {
             cloth.end(garment, step, limited, done.is_err());
         }
         self.tick += 1;
-        let contacts = self.shares.iter().map(|s| s.contacts.len() as u64).sum();
-        self.counts.asked += self.shares.iter().map(|s| s.asked).sum::<u64>();
-        self.counts.contacts += contacts;
-        self.counts.most = self.counts.most.max(contacts);
+        self.counts.add(&self.shares);
         done
     }
 }
