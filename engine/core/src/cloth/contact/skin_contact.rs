@@ -1,9 +1,12 @@
 //! Contact with the skin: particles against the triangles of the body that is seen.
 //!
 //! Once a step each particle walks to the nearest point of the skin as it stood at the start; what may come to touch it in
-//! this step meets the plane there, which moves as that point of the skin does. Smooth normals make the planes of
+//! this step meets the plane there, which moves as that point of the skin does. At a lower rate a part of the particles walk in
+//! each step, and the others meet the plane at the point of the skin that was the nearest one when they last did. Smooth normals make the planes of
 //! neighbours one surface. Where a particle lies by the skin, the cones of the same limb do not push it, unless the two are
 //! more than [`DISAGREE_M`] apart: then the skin is in the wrong place, or the nearest point of it is, and the cones win.
+
+use std::ops::Range;
 
 use glam::Vec3A;
 use toile_assets::garment::Part;
@@ -117,6 +120,7 @@ impl SkinContacts {
             }
             return;
         };
+        let every = how.skin_every.max(1);
         let Self { lists, by, particles, planes, tick, .. } = self;
         let mut to = PlaneList { particles, planes: planes.each_mut().map(Store::column) };
         for PartList { part, particles, found } in lists {
@@ -124,13 +128,16 @@ impl SkinContacts {
                 particles.iter().for_each(|&i| by[i as usize] = None);
                 continue;
             };
-            look_anew(width, cols, body, surface, *tick, particles, found);
+            // All where nobody has walked in the step before.
+            let walking = if asked { turn(particles.len(), *tick, every) } else { 0..particles.len() };
+            let anew = LookAnew { first: walking.start / MOST, walk: *tick / u64::from(every), all: *tick == 0 };
+            anew.look(width, cols, (body, surface), &particles[walking.clone()], &mut found[walking.clone()]);
             width.run(FindNearest {
                 mesh: &surface.mesh,
                 surface: body.start(),
                 points: cols.x.each_ref().map(Readable::reader),
-                list: particles,
-                found,
+                list: &particles[walking.clone()],
+                found: &mut found[walking],
             });
             width.run(LieBySkin { cols, body, surface, particles, found, how, by, to: &mut to });
         }
@@ -188,42 +195,59 @@ impl SkinContacts {
     }
 }
 
+/// Which of so many particles walk in a step, where each does every so many.
+fn turn(count: usize, tick: u64, every: u8) -> Range<usize> {
+    let share = count.div_ceil(MOST).div_ceil(usize::from(every)) * MOST;
+    let from = ((tick % u64::from(every)) as usize * share).min(count);
+    from..(from + share).min(count)
+}
+
 /// Looks for the nearest points of some particles from anew: a sixteenth of them in each step.
-fn look_anew(
-    width: Width,
-    cols: ParticleColumns<'_>,
-    body: &BodySurface,
-    surface: &PartSurface,
-    tick: u64,
-    particles: &[u32],
-    found: &mut [NearestPoint],
-) {
-    for (group, (ids, found)) in particles.chunks(MOST).zip(found.chunks_mut(MOST)).enumerate() {
-        let distance = |f: &NearestPoint| f.distance2.sqrt();
-        let far = found.iter().all(|f| distance(f) > 4.0 * DISAGREE_M);
-        if tick != 0 && !(group as u64 + tick).is_multiple_of(ANEW_STEPS[usize::from(far)]) {
-            continue;
-        }
-        for (&i, found) in ids.iter().zip(found) {
-            // At first from however far.
-            let within = if tick == 0 { FARTHEST_M } else { distance(found) + LOOKED_M };
-            let vertex = width.run(NearestVertex {
-                clusters: &surface.clusters,
-                boxes: &surface.boxes,
-                surface: body.start(),
-                point: get(cols.x, i as usize).to_array(),
-                within2: within * within,
-            });
-            // A triangle of another mesh than the one that was walked on before is none.
-            let known = (found.triangle as usize) < surface.mesh.len();
-            if !known {
-                found.triangle = 0;
+struct LookAnew {
+    /// The first group of particles.
+    first: usize,
+    /// How often each has walked.
+    walk: u64,
+    /// Whether all of them look, from however far.
+    all: bool,
+}
+
+impl LookAnew {
+    fn look(
+        self,
+        width: Width,
+        cols: ParticleColumns<'_>,
+        (body, surface): (&BodySurface, &PartSurface),
+        particles: &[u32],
+        found: &mut [NearestPoint],
+    ) {
+        for (group, (ids, found)) in particles.chunks(MOST).zip(found.chunks_mut(MOST)).enumerate() {
+            let distance = |f: &NearestPoint| f.distance2.sqrt();
+            let far = found.iter().all(|f| distance(f) > 4.0 * DISAGREE_M);
+            let number = (self.first + group) as u64 + self.walk;
+            if !self.all && !number.is_multiple_of(ANEW_STEPS[usize::from(far)]) {
+                continue;
             }
-            if let Some(v) = vertex
-                && !surface.mesh.corners(found.triangle).contains(&v)
-                && let Some(&triangle) = surface.mesh.fan(v).first()
-            {
-                found.triangle = triangle;
+            for (&i, found) in ids.iter().zip(found) {
+                let within = if self.all { FARTHEST_M } else { distance(found) + LOOKED_M };
+                let vertex = width.run(NearestVertex {
+                    clusters: &surface.clusters,
+                    boxes: &surface.boxes,
+                    surface: body.start(),
+                    point: get(cols.x, i as usize).to_array(),
+                    within2: within * within,
+                });
+                // A triangle of another mesh than the one that was walked on before is none.
+                let known = (found.triangle as usize) < surface.mesh.len();
+                if !known {
+                    found.triangle = 0;
+                }
+                if let Some(v) = vertex
+                    && !surface.mesh.corners(found.triangle).contains(&v)
+                    && let Some(&triangle) = surface.mesh.fan(v).first()
+                {
+                    found.triangle = triangle;
+                }
             }
         }
     }
@@ -277,7 +301,9 @@ impl LieBySkin<'_, '_> {
         let w = L::gather(self.cols.w, index, n);
         let mut distance2 = [0.0; MOST];
         distance2.iter_mut().zip(found).for_each(|(d, f)| *d = f.distance2);
-        let reach = L::splat(DISAGREE_M) + L::splat(FASTER) * dt * v.dot(v).sqrt();
+        // So long ago it was that far at most.
+        let since = dt * L::splat(f32::from(self.how.skin_every));
+        let reach = L::splat(DISAGREE_M) + L::splat(FASTER) * since * v.dot(v).sqrt();
         // Not so where it is not a number.
         let near = L::from_array(&distance2).lt(reach * reach).and(L::splat(0.0).lt(w));
         let near = near.bits() & ((1u64 << n) - 1) as u32;
@@ -393,6 +419,23 @@ impl Kernel for MeetSkin<'_> {
                 previous.scatter(cols.previous, index, n);
             }
             from += n;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_particle_walks_once_in_every_so_many_steps() {
+        for (count, every) in [(0, 2), (1, 2), (17, 2), (100, 1), (100, 2), (100, 4), (5_000, 4), (33, 8)] {
+            for from in [0, 3] {
+                let mut walks = vec![0; count];
+                let turns = (from..from + u64::from(every)).map(|tick| turn(count, tick, every));
+                turns.for_each(|range| walks[range].iter_mut().for_each(|w| *w += 1));
+                assert!(walks.iter().all(|w| *w == 1), "{count} particles, every {every} steps: {walks:?}");
+            }
         }
     }
 }

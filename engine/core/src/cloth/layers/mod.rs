@@ -16,6 +16,7 @@ mod fold_surface;
 mod garment_surface;
 mod lay;
 mod order;
+mod pace;
 mod pair;
 mod pair_share;
 mod step;
@@ -34,6 +35,7 @@ use toile_assets::limits::MAX_GARMENTS;
 
 use garment_surface::{GarmentMotion, GarmentSurface};
 use order::heights;
+use pace::PairPace;
 use pair::{LayerPair, Wearing};
 use pair_share::PairShare;
 use touch::TouchLists;
@@ -89,6 +91,8 @@ pub struct Layers {
     surfaces: Box<[GarmentSurface]>,
     motions: Box<[GarmentMotion]>,
     pairs: Box<[LayerPair]>,
+    /// In which steps each is searched.
+    paces: Box<[PairPace]>,
     /// First share of every pair, then the second.
     shares: Box<[PairShare]>,
     touching: Box<[TouchLists]>,
@@ -134,6 +138,7 @@ impl Layers {
             worker: workers(garments),
             turns: Turns { top: heights.iter().copied().max().unwrap_or(0).max(1) },
             surfaces,
+            paces: pairs.iter().map(|_| PairPace::default()).collect(),
             pairs: pairs.into(),
             tick: 0,
             counts: LayerCounts::default(),

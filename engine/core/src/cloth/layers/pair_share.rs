@@ -130,6 +130,12 @@ impl PairShare {
         }
     }
 
+    /// Has no contacts in this step.
+    pub fn rest(&mut self) {
+        self.contacts.clear();
+        self.asked = 0;
+    }
+
     /// Lists the particles that may have come near since they were last looked at.
     fn list_near(&mut self, scene: &PairScene<'_>) {
         self.list.clear();
