@@ -2,6 +2,7 @@
 
 use std::thread;
 
+use toile_engine::cloth::ContactRates;
 use toile_engine::frame::Frame;
 use toile_sensors::clock::ticks_to_ns;
 use toile_sensors::frame::Joints;
@@ -45,8 +46,13 @@ fn measured_every(steps: u64, track: &[Joints]) -> Frame {
     frame.measure_every(steps);
     let start = track[0].time_ns;
     for tick in 0..STEPS {
-        let [given_up, skin] = [tick / 20 % 2 == 1, tick / 20 % 4 != 3];
-        frame.set_contact(!given_up, !given_up, skin);
+        let part = (tick / 20 % 6) as usize;
+        let rates = |kind: [u8; 6]| kind[part];
+        frame.set_contact(ContactRates {
+            folds: rates([1, 2, 4, 0, 2, 0]),
+            layers: rates([1, 1, 2, 0, 2, 0]),
+            skin: rates([1, 2, 1, 0, 4, 1]),
+        });
         frame.step(&sample(track, start + ticks_to_ns(tick)).expect("a track with frames"));
     }
     frame

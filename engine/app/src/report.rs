@@ -8,6 +8,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 use toile_fitting::scene::StepTimes;
+use toile_fitting::scene::contact::ContactReport;
 
 use crate::machine::Machine;
 
@@ -220,6 +221,9 @@ pub struct TryOn {
     pub physics: PhysicsReport,
     /// Edges of the garments that passed through faces, by a test of its own.
     pub crossings: CrossingReport,
+    /// What contact of cloth with cloth did; none where no garment can meet anything.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactReport>,
     /// How far skin or inner cloth stood out of what covers it, which the pictures hide; none where there are no pictures.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hidden_mm: Option<Penetration>,
@@ -344,6 +348,7 @@ mod tests {
             others: Vec::new(),
             physics: PhysicsReport::default(),
             crossings: CrossingReport::default(),
+            contact: Some(ContactReport::default()),
             hidden_mm: Some(Penetration::default()),
             state_hash: hash_text(10),
             files: vec!["out/front.png".into()],
@@ -387,6 +392,10 @@ mod tests {
             "/crossings/frames_with",
             "/crossings/max",
             "/crossings/longest_s",
+            "/contact/asked",
+            "/contact/contacts_most",
+            "/contact/crowded",
+            "/contact/left_out",
             "/hidden_mm/max",
             "/state_hash",
             "/session/name",

@@ -6,6 +6,8 @@ use crate::report::{
 };
 use crate::terminal::{Paint, Tone};
 use toile_assets::put_line;
+use toile_engine::frame::{DRESS_STEPS, SETTLE_STEPS};
+use toile_fitting::scene::contact::ContactReport;
 
 /// The summary of a try-on.
 pub fn try_on(report: &TryOn, paint: Paint) -> String {
@@ -16,6 +18,7 @@ pub fn try_on(report: &TryOn, paint: Paint) -> String {
         recommendation(&mut text, worn, paint);
     }
     physics(&mut text, &report.physics, paint);
+    contact(&mut text, report.contact.as_ref(), DRESS_STEPS + SETTLE_STEPS + report.physics.steps);
     crossings(&mut text, report);
     heading(&mut text, "Files", paint);
     for file in &report.files {
@@ -67,6 +70,10 @@ pub fn run(report: &RunReport, paint: Paint) -> String {
     put_line!(text, "  deepest contact   {:.2} mm, {share:.2} % of the particles inside", deep.max);
     let energy = report.kinetic_energy_j.end * 1e3;
     put_line!(text, "  it ends with      {energy:.3} mJ of motion, state {}", report.state_hash);
+    contact(&mut text, report.contact.as_ref(), report.steps);
+    for warning in &report.warnings {
+        put_line!(text, "  {}", paint.tone(warning, Tone::Warn));
+    }
     let events = report.events;
     let counts = [
         (events.repaired, "particles put back"),
@@ -172,6 +179,14 @@ fn physics(text: &mut String, physics: &PhysicsReport, paint: Paint) {
     }
 }
 
+/// What contact of cloth with cloth did.
+fn contact(text: &mut String, contact: Option<&ContactReport>, steps: u64) {
+    let Some(c) = contact else { return };
+    let [asked, contacts] = [c.asked, c.contacts].map(|n| n / steps.max(1));
+    let most = c.contacts_most;
+    put_line!(text, "  cloth on cloth    {contacts} contacts a step, {most} at most, of {asked} particles looked at");
+}
+
 /// What passed through what, and what the pictures hide of it.
 fn crossings(text: &mut String, report: &TryOn) {
     let c = &report.crossings;
@@ -211,6 +226,7 @@ mod tests {
         };
         let mut report = TryOn {
             crossings: CrossingReport { frames: 50, frames_with: 5, max: 7, max_between: 0, longest_s: 0.25 },
+            contact: Some(ContactReport { contacts_most: 321, ..ContactReport::default() }),
             hidden_mm: Some(Penetration { max: 3.0 }),
             renderer: None,
             session: SessionReport { name: "a.csv".into(), frames: 3, seconds: 0.1, notes: vec!["one drop".into()] },
@@ -227,7 +243,9 @@ mod tests {
             files: vec!["out/front.png".into()],
         };
         let text = try_on(&report, Paint::none());
-        for message in ["a.csv", "one drop", "trousers, size 40", "waist", "tight", "-12 mm", "out/front.png"] {
+        for message in
+            ["a.csv", "one drop", "321 at most", "trousers, size 40", "waist", "tight", "-12 mm", "out/front.png"]
+        {
             assert!(text.contains(message), "{message} is not in: {text}");
         }
         assert!(!text.contains("not finite"));

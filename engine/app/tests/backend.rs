@@ -38,6 +38,28 @@ fn without_a_device_the_benchmark_goes_on_by_the_processor_and_says_why() {
 }
 
 #[test]
+fn garments_that_keep_out_of_each_other_are_the_processors_whatever_was_asked_for() {
+    let run = |more: &str| toile(&format!("bench skirt --garment t-shirt --runs 1 --steps 2 --json {more}"));
+    let (plain, silent) = run("--backend cpu");
+    assert_eq!((plain["stepped_by"]["fallen"].is_null(), silent.as_str()), (true, ""));
+    for backend in ["gpu", "auto"] {
+        let (found, words) = run(&format!("--backend {backend}"));
+        let by = &found["stepped_by"];
+        assert_eq!((by["asked"].as_str(), by["backend"].as_str()), (Some(backend), Some("cpu")));
+        let reason = by["fallen"].as_str().expect("it says why");
+        assert!(reason.contains("cloth out of cloth") && reason.contains("--no-folds"), "{reason}");
+        assert_eq!(words, format!("the processor steps: {reason}\n"), "one sentence");
+        assert_eq!(found["state_hash"], plain["state_hash"], "no bit of it is another");
+    }
+    let (found, _) = run("--no-layers --no-folds --backend auto");
+    let reason = found["stepped_by"]["fallen"].as_str().expect("it says why");
+    assert!(reason.contains("skin") && reason.contains("--no-skin"), "{reason}");
+    let (found, _) = run("--no-layers --no-folds --no-skin --backend gpu");
+    let reason = found["stepped_by"]["fallen"].as_str().expect("it says why");
+    assert!(reason.contains("--features gpu") || reason.contains("install"), "then only a device is missing: {reason}");
+}
+
+#[test]
 fn validation_and_torture_say_what_stepped() {
     for line in ["validate spring --every 9 --json --backend gpu", "torture bad-state --seed 0 --json --backend gpu"] {
         let (found, words) = toile(line);

@@ -20,7 +20,7 @@ use crate::body_surface::BodySurface;
 use crate::clock::{Clock, RealClock};
 use crate::cloth::layers::{Layers, lay_outside};
 use crate::cloth::measure::{self, Strain};
-use crate::cloth::{Cloth, Settings, Step, Wind};
+use crate::cloth::{Cloth, ContactRates, Settings, Step, Wind};
 use crate::colliders::{ColliderError, Colliders, RestSphere};
 use crate::meter::{CLOTH, PLACE, POSE, PUBLISH, SKIN};
 use crate::skin::{Blend, Posed, SkinError, SkinningJob};
@@ -201,9 +201,14 @@ impl Frame {
         (self.settings.substep_share, self.settings.wind) = (substep_share, wind);
     }
 
-    /// Which contact is left: of garments with themselves, between garments, with the skin.
-    pub fn set_contact(&mut self, folds: bool, layers: bool, skin: bool) {
-        (self.settings.folds, self.settings.layers, self.settings.skin) = (folds, layers, skin);
+    /// How often what is left of contact is looked for.
+    pub fn set_contact(&mut self, every: ContactRates) {
+        self.settings.contact_every = every;
+        if let Some(layers) = &mut self.layers
+            && !layers.asked(&self.settings)
+        {
+            layers.forget();
+        }
     }
 
     /// One step of the session: the joints as they are at its end.

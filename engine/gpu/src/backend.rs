@@ -4,13 +4,19 @@
 //! A step is over when the call returns, on both: how benchmarks and validation need it. A frame loop that can take results a
 //! frame late drives `cloth::Offload` itself. Whatever goes wrong with the device, the processor goes on from the last places, and
 //! [`ClothStepper::fallback`] says why.
+//!
+//! A device meets capsules and planes. Contact of cloth with cloth, and with the skin, is the processor's: a scene that has
+//! either is stepped by it, whatever was asked for, and no device is opened ([`Backends::for_scene`]).
 
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
+use toile_assets::garment::Garment;
 use toile_assets::numeric::statistics::quantile;
-use toile_engine::cloth::Step;
+use toile_engine::cloth::layers::Layers;
+use toile_engine::cloth::{Cloth, Settings, Step};
+use toile_engine::colliders::Colliders;
 use toile_engine::workers::{SharePanicked, WorkerPool};
 
 use crate::Adapter;
@@ -39,6 +45,19 @@ pub struct Backends {
     known: Arc<SharedFindings>,
 }
 
+/// Why the processor steps garments that keep out of each other or out of themselves.
+const CLOTH_ON_CLOTH: &str = "no device keeps cloth out of cloth; switch layers and folds off (`--no-layers --no-folds`) to step \
+                              without that on one";
+
+/// Why the processor steps garments that lie on the skin.
+const CLOTH_ON_SKIN: &str =
+    "a device has the body as capsules and not as skin; switch skin off (`--no-skin`) to step on those";
+
+/// The same where the surroundings have a skin that the settings ask for.
+fn on_skin(colliders: &Colliders, settings: &Settings) -> Option<&'static str> {
+    (colliders.skin().is_some() && settings.contact().skin > 0).then_some(CLOTH_ON_SKIN)
+}
+
 /// Classes of scenes that are measured apart: by the bits of their particles' number.
 const CLASSES: usize = 32;
 
@@ -64,6 +83,16 @@ impl Backends {
         match backend {
             Backend::Cpu => Self::cpu(),
             _ => Self { graphics: Graphics::open(), backend, known: Arc::default() },
+        }
+    }
+
+    /// What was asked for, for the garments of a scene: the processor, and no device is opened, where these settings ask for
+    /// contact that a device does not have. At load.
+    pub fn for_scene(backend: Backend, layers: Option<&Layers>, colliders: &Colliders, settings: &Settings) -> Self {
+        let apart = layers.is_some_and(|layers| layers.asked(settings)).then_some(CLOTH_ON_CLOTH);
+        match apart.or(on_skin(colliders, settings)) {
+            Some(reason) => Self { backend, graphics: Err(reason.to_owned()), known: Arc::default() },
+            None => Self::open(backend),
         }
     }
 
@@ -176,6 +205,11 @@ impl ClothStepper {
     /// [`SharePanicked`]: a worker of the pool has; only where garments are shared among them.
     pub fn step(&mut self, batch: &mut ClothBatch<'_, '_>, pool: Option<&mut WorkerPool>) -> Result<(), SharePanicked> {
         let mut pool = pool;
+        if self.graphics.is_some()
+            && let Some(reason) = batch.steps.first().and_then(|step| on_skin(step.colliders, step.settings))
+        {
+            self.fall_back(reason.to_owned());
+        }
         if std::mem::take(&mut self.undecided) {
             self.decide(batch, pool.as_deref_mut())?;
         }
@@ -190,6 +224,24 @@ impl ClothStepper {
         }
         self.uses(1);
         on_processor(batch, pool)
+    }
+
+    /// One step of garments that keep out of each other or out of themselves, by the processor.
+    ///
+    /// # Errors
+    /// [`SharePanicked`]: a worker of the pool has.
+    pub fn step_apart(
+        &mut self,
+        layers: &mut Layers,
+        pool: &mut WorkerPool,
+        (cloths, garments): (&mut [Cloth], &[Garment]),
+        step: &Step<'_>,
+    ) -> Result<(), SharePanicked> {
+        if self.graphics.is_some() {
+            self.fall_back(CLOTH_ON_CLOTH.to_owned());
+        }
+        self.uses(1);
+        layers.step(pool, cloths, garments, step)
     }
 
     fn uses(&self, what: u8) {
@@ -289,6 +341,12 @@ fn on_device(
 
 #[cfg(test)]
 mod tests {
+    use glam::{Affine3A, Vec3};
+    use toile_assets::bake::bake;
+    use toile_assets::fabric::Fabric;
+    use toile_assets::garment::Shape;
+    use toile_assets::skeleton::BONES;
+
     use super::*;
 
     #[test]
@@ -300,5 +358,35 @@ mod tests {
         assert_eq!(means.fallback(), Some("no adapter"));
         let asked = none(Backend::Cpu);
         assert_eq!((asked.stepper().fallback(), asked.fallback()), (None, None), "nobody asked for a device");
+    }
+    /// A sheet that can meet itself, what keeps it out of itself, and what surrounds it.
+    fn sheet() -> (Garment, Layers, Colliders) {
+        let place = |row: u32, column: u32| (Vec3::new(column as f32, 1.0, row as f32) * 0.02, row == 0);
+        let fabric = Fabric::built_in("cotton-lawn").expect("it is built in");
+        let garment = bake("sheet", "one", &Shape::sheet(6, 6, place), &fabric).expect("a sheet is cloth");
+        let layers = Layers::new(std::slice::from_ref(&garment)).expect("it has faces");
+        (garment, layers, Colliders::new(&[], &[], true).expect("a floor"))
+    }
+
+    #[test]
+    fn cloth_on_cloth_is_the_processors_whatever_was_asked_for_and_says_so() {
+        let (garment, mut layers, colliders) = sheet();
+        let settings = Settings { workers: 1, ..Settings::default() };
+        for backend in [Backend::Auto, Backend::Gpu] {
+            let means = Backends::for_scene(backend, Some(&layers), &colliders, &settings);
+            assert_eq!((means.fallback(), means.adapter()), (Some(CLOTH_ON_CLOTH), None));
+            let mut cloths = [Cloth::new(&garment, &colliders)];
+            let step = Step { palette: &[Affine3A::IDENTITY; BONES], colliders: &colliders, settings: &settings };
+            let mut pool = WorkerPool::new(1).expect("the caller");
+            let mut stepper = means.stepper();
+            let garments = std::slice::from_ref(&garment);
+            stepper.step_apart(&mut layers, &mut pool, (&mut cloths, garments), &step).expect("no worker panics");
+            assert_eq!((means.used(), stepper.backend()), ("cpu", Backend::Cpu));
+        }
+        let cpu = Backends::for_scene(Backend::Cpu, Some(&layers), &colliders, &settings);
+        assert_eq!(cpu.fallback(), None, "nobody asked for a device");
+        let off = Settings { folds: false, layers: false, ..settings };
+        let means = Backends::for_scene(Backend::Gpu, Some(&layers), &colliders, &off);
+        assert_ne!(means.fallback(), Some(CLOTH_ON_CLOTH), "nothing asks for it");
     }
 }

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use toile_fitting::heap::HeapProbe;
+use toile_gpu::backend::Backend;
 
 use super::row::{ContactError, ContactRow};
 use crate::crossings::{CrossingFigures, CrossingWatch};
@@ -26,6 +27,7 @@ fn options(garments: &[&str], threads: usize) -> WornOptions {
         skin: true,
         runs: 1,
         steps: OUTFIT_STEPS,
+        backend: Backend::Cpu,
     }
 }
 

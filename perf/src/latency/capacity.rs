@@ -1,6 +1,7 @@
 //! How full everything was that has a bound: the queues, the schedule, the frame's capacities.
 
 use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
+use toile_engine::cloth::layers::MOST_CROSSINGS;
 use toile_engine::cloth::settings::MAX_SUBSTEPS;
 use toile_engine::cloth::{Cloth, stiff_bending};
 use toile_engine::frame::Frame;
@@ -8,6 +9,7 @@ use toile_engine::frame_loop::physics_thread::LoopMeters;
 use toile_engine::frame_loop::queue::Capacity;
 use toile_engine::frame_loop::schedule::MOST_CATCH_UP;
 use toile_engine::meter::PERIOD_NS;
+use toile_fitting::scene::contact::{CROSSINGS_NAME, ContactReport, PAIRS_NAME};
 
 /// The bounds of the loop and of the frame.
 pub fn capacities(queues: &[Capacity], gauges: &LoopMeters, frame: &Frame) -> Vec<Capacity> {
@@ -39,12 +41,24 @@ pub fn capacities(queues: &[Capacity], gauges: &LoopMeters, frame: &Frame) -> Ve
             room("pairs (blocks of particles near a capsule)", room_for as usize, most as usize)
         }),
     );
+    if let Some(ContactReport { pairs_most, pairs_room, crowded, crossings_most, left_out, .. }) = contact(frame) {
+        let full = |constant, bound, most: u64, lost| Capacity { constant, bound, high_water: most as usize, lost };
+        all.push(full(PAIRS_NAME, pairs_room as usize, pairs_most, crowded));
+        all.push(full(CROSSINGS_NAME, MOST_CROSSINGS, crossings_most, left_out));
+    }
     all
+}
+
+fn contact(frame: &Frame) -> Option<ContactReport> {
+    frame.layers().map(|layers| ContactReport::from(layers.counts()))
 }
 
 /// What was full, with the cure. Spheres, capsules and planes that are too many are refused at load.
 pub fn warnings(capacities: &[Capacity], frame: &Frame) -> Vec<String> {
-    let mut all: Vec<String> = capacities.iter().filter_map(Capacity::warning).collect();
+    // Contact has words of its own.
+    let queues = capacities.iter().filter(|c| ![PAIRS_NAME, CROSSINGS_NAME].contains(&c.constant));
+    let mut all: Vec<String> = queues.filter_map(Capacity::warning).collect();
+    all.extend(contact(frame).iter().flat_map(ContactReport::warnings));
     for (cloth, garment) in frame.cloths().iter().zip(frame.garments()) {
         let pace = cloth.bend_pace();
         if pace.stages == stiff_bending::MAX_BENDING_STAGES && pace.least < 1.0 {

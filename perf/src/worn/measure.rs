@@ -11,6 +11,7 @@ use toile_fitting::scene::events::ClothEvents;
 use super::error::WornError;
 use super::report::{WornReport, WornStrain};
 use super::scene::{WornOptions, WornScene};
+use crate::backend::SteppedBy;
 
 /// Steps before the first that counts: the garment is let down, the mannequin takes its pose.
 const WARM_UP: usize = 240;
@@ -60,6 +61,7 @@ pub fn measure(options: &WornOptions, heap: &HeapProbe) -> Result<WornReport, Wo
         allocations_per_step: heap.read().map(|_| sums.allocations as f64 / times.len() as f64),
         memory_bytes: scene.memory_bytes,
         events: events(&scene).since(before),
+        stepped_by: SteppedBy::of(scene.backends()),
         state_hash: format!("{:016x}", scene.state_hash()),
         stages_us: scene.stages_us(METERED_STEPS).into_iter().collect(),
     })

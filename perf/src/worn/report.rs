@@ -6,6 +6,8 @@ use serde::Serialize;
 use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::events::ClothEvents;
 
+use crate::backend::SteppedBy;
+
 /// How far edges that can move are from their length, as a part of it (0.01 is 1 %).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct WornStrain {
@@ -54,6 +56,8 @@ pub struct WornReport {
     pub memory_bytes: Option<u64>,
     /// What happened that should not have.
     pub events: ClothEvents,
+    /// What stepped the garments.
+    pub stepped_by: SteppedBy,
     /// Hash of the positions at the end of the last run.
     pub state_hash: String,
 }

@@ -20,7 +20,7 @@ use toile_engine::skin::{Blend, Posed, SkinningJob};
 use toile_engine::workers::WorkerPool;
 use toile_fitting::heap::{Heap, HeapProbe};
 use toile_fitting::timing;
-use toile_gpu::backend::ClothStepper;
+use toile_gpu::backend::{Backend, Backends, ClothStepper};
 use toile_gpu::cloth_batch::ClothBatch;
 
 use super::error::WornError;
@@ -59,6 +59,8 @@ pub struct WornOptions {
     pub runs: usize,
     /// Steps of a run.
     pub steps: usize,
+    /// Where the garments are stepped, if contact allows it.
+    pub backend: Backend,
 }
 
 impl WornOptions {
@@ -99,6 +101,7 @@ pub struct WornScene {
     settings: Settings,
     colliders: Colliders,
     pool: WorkerPool,
+    backends: Backends,
     stepper: ClothStepper,
     layers: Option<Layers>,
     skinning: SkinningJob,
@@ -140,6 +143,7 @@ impl WornScene {
         };
         let cloths = garments.iter().map(|garment| Cloth::new(garment, &colliders)).collect();
         let bytes = between(before, heap.read());
+        let backends = Backends::for_scene(options.backend, layers.as_ref(), &colliders, &settings);
         let mut scene = Self {
             garments,
             sizes,
@@ -151,7 +155,8 @@ impl WornScene {
             settings,
             colliders,
             pool: WorkerPool::new(options.threads)?,
-            stepper: ClothStepper::cpu(),
+            stepper: backends.stepper(),
+            backends,
             layers,
             skin: skinning.posed(),
             skinning,
@@ -188,7 +193,8 @@ impl WornScene {
     pub fn step(&mut self) {
         let step = Step { palette: &self.bones, colliders: &self.colliders, settings: &self.settings };
         if let Some(layers) = &mut self.layers {
-            let done = layers.step(&mut self.pool, &mut self.cloths, &self.garments, &step);
+            let garments = (&mut self.cloths[..], &self.garments[..]);
+            let done = self.stepper.step_apart(layers, &mut self.pool, garments, &step);
             return done.expect("a share of the step panicked");
         }
         let steps = [step; MAX_OUTFIT];
@@ -203,6 +209,11 @@ impl WornScene {
     /// What keeps the garments in their order, where they do.
     pub fn layers(&self) -> Option<&Layers> {
         self.layers.as_ref()
+    }
+
+    /// What was asked to step the garments, and what has.
+    pub fn backends(&self) -> &Backends {
+        &self.backends
     }
 
     /// How the steps are done.
@@ -222,6 +233,11 @@ impl WornScene {
         for _ in 0..steps {
             self.prepare();
             self.step();
+            if self.stepper.backend() == Backend::Gpu {
+                let spent = self.stepper.spent().map(|s| s.stages_ns);
+                sums.iter_mut().zip(spent.into_iter().flatten()).for_each(|(sum, ns)| *sum += ns);
+                continue;
+            }
             let stages = self.cloths.iter().map(|c| c.stage_ns);
             stages.for_each(|ns| sums.iter_mut().zip(ns).for_each(|(sum, ns)| *sum += ns as f64));
         }

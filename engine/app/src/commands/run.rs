@@ -15,6 +15,7 @@ use toile_engine::cloth::Cloth;
 use toile_engine::cloth::program::METERED_STAGES;
 use toile_fitting::heap::HeapProbe;
 use toile_fitting::scene::Runner;
+use toile_fitting::scene::contact::ContactReport;
 use toile_fitting::scene::events::ClothEvents;
 use toile_fitting::scene::yardstick;
 
@@ -185,7 +186,7 @@ fn play(runner: &mut Runner, words: &Words, mut dump: Option<&mut Dump>) -> Resu
     let steps = runner.scene().steps();
     let bar = words.bar(steps, "running");
     let seconds = runner.scene().step_hz.recip();
-    let mut crossings = runner.keeps_apart().then(|| CrossingCount::new(runner.garments(), seconds));
+    let mut crossings = runner.layers().is_some().then(|| CrossingCount::new(runner.garments(), seconds));
     for step in 0..=steps {
         if step > 0 {
             runner.step();
@@ -236,6 +237,8 @@ fn report(runner: &Runner, args: &RunArgs, dumped: u64, yardstick_us: Option<f64
         nonfinite: figures.nonfinite,
         events: runner.cloths().iter().map(|cloth| ClothEvents::from(cloth.events)).sum(),
         crossings: None,
+        contact: runner.layers().map(|l| ContactReport::from(l.counts())),
+        warnings: runner.warnings(),
         state_hash: report::hash_text(runner.state_hash()),
         dump: args.dump.clone(),
         dumped_frames: dumped,

@@ -1,6 +1,6 @@
 //! `toile try-on`: one whole try-on, from a session to pictures and a report.
 
-use clap::ArgAction;
+use clap::{ArgAction, value_parser};
 use std::path::Path;
 use std::path::PathBuf;
 use toile_assets::body::Sex;
@@ -16,6 +16,7 @@ use toile_assets::skeleton::{BONES, Joint};
 use toile_engine::body::palette;
 use toile_engine::cloth::{Settings, measure};
 use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::frame_loop::governor::LADDER;
 use toile_engine::lines::{CAPACITY, Kind, Lines};
 use toile_engine::triple_buffer::Reader;
 use toile_fitting::dress::measured::{self, Measured};
@@ -23,6 +24,7 @@ use toile_fitting::dress::player::Player;
 use toile_fitting::dress::wish::{self, Choice, Wish};
 use toile_fitting::dress::{body, session};
 use toile_fitting::scene::StepTimes;
+use toile_fitting::scene::contact::ContactReport;
 use toile_sensors::frame::Joints;
 
 use crate::arguments::{Printing, TapeArgs, one_of, quality};
@@ -65,6 +67,9 @@ pub struct TryOnArgs {
     /// Tested settings of the cloth: draft, shop or fine
     #[arg(long, value_name = "Q", value_parser = quality(), default_value = Quality::default().name())]
     pub quality: Quality,
+    /// Hold the quality on a rung of the governor's ladder, to see its error: 0 is all of it
+    #[arg(long, value_name = "R", value_parser = value_parser!(u8).range(0..LADDER.len() as i64), default_value = "0")]
+    pub rung: u8,
     /// Folder for the files; it is made if missing
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
@@ -161,7 +166,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let (garments, recommendations) = put_on(&choices, args.size.as_deref(), &measured, &body)?;
 
     let rig = Rig::fit(&body);
-    let settings = Settings { quality: args.quality, ..Settings::default() };
+    let settings = LADDER[usize::from(args.rung)].of(&Settings { quality: args.quality, ..Settings::default() });
     let (mut frame, mut reader) = Frame::new(body, &rig, garments, settings).map_err(AppError::internal)?;
     let title = title(&recommendations);
     let played = play((args, &words, &title), &mut out, &mut renderer, &mut frame, &mut reader, &track)?;
@@ -182,6 +187,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
             others: recommendations.collect(),
             physics: physics(&frame),
             crossings: played.crossings,
+            contact: contact(&frame),
             hidden_mm: played.hidden_mm.map(|max| report::Penetration { max }),
             state_hash: report::hash_text(frame.state_hash()),
             renderer: played.renderer,
@@ -357,6 +363,11 @@ fn title(recommendations: &[Recommendation]) -> String {
     recommendations.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
+/// What contact of cloth with cloth did, dressing included.
+fn contact(frame: &Frame) -> Option<ContactReport> {
+    frame.layers().map(|layers| ContactReport::from(layers.counts()))
+}
+
 fn physics(frame: &Frame) -> report::PhysicsReport {
     let meters = frame.meters();
     let us = |quantile: f64| meters.step_ns.value_at_quantile(quantile) as f64 * 1e-3;
@@ -375,6 +386,7 @@ fn physics(frame: &Frame) -> report::PhysicsReport {
             ));
         }
     }
+    warnings.extend(contact(frame).iter().flat_map(ContactReport::warnings));
     let held = frame.colliders().held();
     if held > 0 {
         warnings.push(format!("collision spheres jumped or were not finite and were held {held} times"));

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 use toile_fitting::scene::StepTimes;
+use toile_fitting::scene::contact::ContactReport;
 use toile_fitting::scene::events::ClothEvents;
 
 use super::{CrossingReport, StrainReport};
@@ -94,6 +95,11 @@ pub struct RunReport {
     /// Edges that passed through faces, by a test of its own; none where the scene asks for no contact of cloth with cloth.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossings: Option<CrossingReport>,
+    /// What contact of cloth with cloth did; none where the scene asks for none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactReport>,
+    /// What was full, one sentence each.
+    pub warnings: Vec<String>,
     /// Hash of the last state, 16 hexadecimal digits; the same scene gives the same.
     pub state_hash: String,
     /// The folder of the dump; `index.csv` in it lists its files.

@@ -41,7 +41,7 @@ use crate::lanes::{RECORD, Store};
 use program::METERED_STAGES;
 use root::RootMotion;
 pub use root::{RootSettings, Teleport};
-pub use settings::{Quality, Settings};
+pub use settings::{ContactRates, Quality, Settings};
 use state::State;
 pub use wind::Wind;
 

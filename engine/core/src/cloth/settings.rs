@@ -44,6 +44,34 @@ impl FromStr for Quality {
     }
 }
 
+/// Every how many steps each kind of contact is looked for: 1 is in each, 0 is never. In the steps between, what was found is
+/// solved as it was, and was looked for as far ahead as that.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ContactRates {
+    /// Contact of a garment with itself.
+    pub folds: u8,
+    /// Contact between garments.
+    pub layers: u8,
+    /// The nearest points of the skin.
+    pub skin: u8,
+}
+
+impl ContactRates {
+    /// All of it in every step.
+    pub const EVERY_STEP: Self = Self { folds: 1, layers: 1, skin: 1 };
+
+    /// The rarer of both, kind by kind; what one of them never looks for is never looked for.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        let rarer = |a: u8, b: u8| if a == 0 || b == 0 { 0 } else { a.max(b) };
+        let (folds, layers) = (rarer(self.folds, other.folds), rarer(self.layers, other.layers));
+        Self { folds, layers, skin: rarer(self.skin, other.skin) }
+    }
+}
+
+/// Most steps from one search to the next: what is farther ahead is no longer where it was expected.
+const MOST_APART: u8 = 8;
+
 /// How the cloth is stepped; the same for every garment of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -83,6 +111,8 @@ pub struct Settings {
     /// Whether a garment keeps from passing through itself. For telling what it is worth (`toile plan`), and given up by the
     /// governor.
     pub folds: bool,
+    /// How often those of the three that are on are looked for; given up by the governor before they are.
+    pub contact_every: ContactRates,
     /// Workers of a step, 1 or 2. A frame takes the nearest of them that it can have, which its own settings then name.
     pub workers: usize,
     /// Lanes that kernels run on.
@@ -120,6 +150,12 @@ impl Settings {
         ((whole * self.substep_share).ceil() as u32).clamp(1, MAX_SUBSTEPS)
     }
 
+    /// How often each kind of contact is looked for, those that are off never.
+    pub fn contact(&self) -> ContactRates {
+        let [folds, layers, skin] = [self.folds, self.layers, self.skin].map(u8::from);
+        self.contact_every.and(ContactRates { folds, layers, skin })
+    }
+
     /// The settings with every figure that no step can be made with replaced by its default, and without a wind whose
     /// figures cannot be used. Checked at the start of a step, so that a wrong figure costs a step its setting and not the
     /// garment. Settings with nothing wrong are returned unchanged.
@@ -149,6 +185,11 @@ impl Settings {
                 teleport: self.root.teleport,
             },
             static_friction: within(self.static_friction, 0.0, MOST, 1.0),
+            contact_every: ContactRates {
+                folds: self.contact_every.folds.min(MOST_APART),
+                layers: self.contact_every.layers.min(MOST_APART),
+                skin: self.contact_every.skin.min(MOST_APART),
+            },
             ..*self
         }
     }
@@ -178,6 +219,7 @@ impl Default for Settings {
             skin: true,
             layers: true,
             folds: true,
+            contact_every: ContactRates::EVERY_STEP,
             workers: std::thread::available_parallelism().map_or(1, |n| n.get().min(SHARES)),
             width: Width::widest(),
             timed: false,
@@ -200,6 +242,14 @@ mod tests {
     }
 
     #[test]
+    fn contact_that_is_off_is_never_looked_for_and_else_as_rarely_as_asked() {
+        let rates = |folds, layers, skin| ContactRates { folds, layers, skin };
+        let asked = Settings { folds: false, contact_every: rates(2, 4, 1), ..Settings::default() };
+        assert_eq!(asked.contact(), rates(0, 4, 1));
+        assert_eq!(rates(1, 2, 4).and(rates(2, 1, 0)), rates(2, 2, 0));
+    }
+
+    #[test]
     fn what_is_no_figure_is_as_it_is_by_default() {
         let default = Settings::default();
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1.0] {
@@ -218,6 +268,9 @@ mod tests {
             };
             assert_eq!(settings.sound(), default, "{bad}");
         }
+        let [never, rare, rarest] = [0, 2, u8::MAX].map(|n| ContactRates { folds: n, layers: n, skin: n });
+        let sound = |contact_every| Settings { contact_every, ..default }.sound().contact_every;
+        assert_eq!((sound(never), sound(rare), sound(rarest).folds), (never, rare, MOST_APART));
         let endless = Settings { substeps: Some(u32::MAX), ..default };
         assert_eq!(endless.sound().substeps, Some(MAX_SUBSTEPS));
     }

@@ -5,6 +5,7 @@
 //! back a rung at a time, and only where the longest step of a whole while would still be short at the next rung; where
 //! that proves wrong soon after, the while doubles, up to [`LONGEST_WHILE`].
 
+use crate::cloth::{ContactRates, Settings};
 use crate::meter::PERIOD_NS;
 
 /// What a rung leaves of the whole quality.
@@ -14,38 +15,66 @@ pub struct Rung {
     pub gives_up: &'static str,
     /// Share of the substeps that is made.
     pub substep_share: f32,
-    /// Share of the whole quality's time that a step is reckoned with, before any has been made on it.
+    /// Share of the whole quality's time that a step is reckoned with, before any has been made on it. From one rung to the next it
+    /// grows by as much as it does where that is most: substeps where there is no contact, contact in a T-shirt over trousers.
     pub time_share: f32,
-    /// Whether a garment keeps from passing through itself.
-    pub folds: bool,
-    /// Whether garments keep from passing through each other.
-    pub layers: bool,
-    /// Whether cloth lies on the skin; otherwise on cones.
-    pub skin: bool,
+    /// How often each kind of contact is looked for.
+    pub contact: ContactRates,
     /// Whether there is wind.
     pub wind: bool,
 }
 
+impl Rung {
+    /// Settings as this rung leaves them of those of whole quality.
+    pub fn of(&self, whole: &Settings) -> Settings {
+        Settings {
+            substep_share: self.substep_share,
+            wind: whole.wind.filter(|_| self.wind),
+            contact_every: whole.contact_every.and(self.contact),
+            ..*whole
+        }
+    }
+}
+
+/// Rates of the three kinds of contact: of a garment with itself, between garments, with the skin.
+const fn rates([folds, layers, skin]: [u8; 3]) -> ContactRates {
+    ContactRates { folds, layers, skin }
+}
+
 /// Whole quality.
-const WHOLE: Rung = Rung {
-    gives_up: "nothing",
-    substep_share: 1.0,
-    time_share: 1.0,
-    folds: true,
-    layers: true,
-    skin: true,
-    wind: true,
-};
+const WHOLE: Rung =
+    Rung { gives_up: "nothing", substep_share: 1.0, time_share: 1.0, contact: ContactRates::EVERY_STEP, wind: true };
 const QUARTER: Rung = Rung { gives_up: "a quarter of the substeps", substep_share: 0.75, time_share: 0.75, ..WHOLE };
 const HALF: Rung = Rung { gives_up: "half of the substeps", substep_share: 0.5, time_share: 0.5, ..QUARTER };
-const NO_FOLDS: Rung = Rung { gives_up: "contact of a garment with itself", time_share: 0.38, folds: false, ..HALF };
-const NO_LAYERS: Rung = Rung { gives_up: "contact between garments", time_share: 0.33, layers: false, ..NO_FOLDS };
-const NO_SKIN: Rung = Rung { gives_up: "the skin, for cones", time_share: 0.25, skin: false, ..NO_LAYERS };
-const NO_WIND: Rung = Rung { gives_up: "the wind", time_share: 0.22, wind: false, ..NO_SKIN };
+const FOLDS_HALF: Rung = Rung {
+    gives_up: "every second search of a garment for itself",
+    time_share: 0.47,
+    contact: rates([2, 1, 1]),
+    ..HALF
+};
+const FOLDS_QUARTER: Rung = Rung {
+    gives_up: "three of four searches of a garment for itself",
+    time_share: 0.43,
+    contact: rates([4, 1, 1]),
+    ..FOLDS_HALF
+};
+const NO_FOLDS: Rung =
+    Rung { gives_up: "contact of a garment with itself", time_share: 0.31, contact: rates([0, 1, 1]), ..FOLDS_QUARTER };
+const LAYERS_HALF: Rung =
+    Rung { gives_up: "every second search between garments", time_share: 0.3, contact: rates([0, 2, 1]), ..NO_FOLDS };
+const NO_LAYERS: Rung =
+    Rung { gives_up: "contact between garments", time_share: 0.245, contact: rates([0, 0, 1]), ..LAYERS_HALF };
+const SKIN_HALF: Rung =
+    Rung { gives_up: "every second walk on the skin", time_share: 0.22, contact: rates([0, 0, 2]), ..NO_LAYERS };
+const NO_SKIN: Rung =
+    Rung { gives_up: "the skin, for cones", time_share: 0.15, contact: rates([0, 0, 0]), ..SKIN_HALF };
+const NO_WIND: Rung = Rung { gives_up: "the wind", time_share: 0.14, wind: false, ..NO_SKIN };
 
 /// The levels of quality (rungs), whole quality first: substeps go first, then contact of a garment with itself, between
-/// garments, with the skin, then the wind. `toile latency --rung R` measures the error of each.
-pub const LADDER: [Rung; 7] = [WHOLE, QUARTER, HALF, NO_FOLDS, NO_LAYERS, NO_SKIN, NO_WIND];
+/// garments, with the skin, each in rate before it goes altogether, then the wind. `toile latency --rung R` measures the error of
+/// each.
+pub const LADDER: [Rung; 11] =
+    [WHOLE, QUARTER, HALF, FOLDS_HALF, FOLDS_QUARTER, NO_FOLDS, LAYERS_HALF, NO_LAYERS, SKIN_HALF, NO_SKIN, NO_WIND];
 
 /// Share of the period from which on a step is long.
 pub const LONG: f32 = 0.7;
@@ -207,7 +236,7 @@ mod tests {
 
     #[test]
     fn a_step_beyond_its_period_gives_up_a_rung_at_once_down_to_the_last() {
-        let (changes, missed) = play(&mut Governor::default(), 500, |_| 40.0);
+        let (changes, missed) = play(&mut Governor::default(), 500, |_| 80.0);
         let last = LADDER.len() as u8 - 1;
         assert_eq!(changes, (0..last).map(|k| (u64::from(k), k + 1)).collect::<Vec<_>>());
         assert_eq!(missed, 500, "nothing helps against that");
@@ -252,12 +281,29 @@ mod tests {
 
     #[test]
     fn the_ladder_only_gives_up() {
+        // How often in eight steps something is done.
+        let often = |every: u8| if every == 0 { 0 } else { 8 / every };
         for pair in LADDER.windows(2) {
-            let models = |r: &Rung| [r.folds, r.layers, r.skin, r.wind];
-            let back = models(&pair[0]).into_iter().zip(models(&pair[1])).any(|(before, after)| after && !before);
+            let amounts =
+                |r: &Rung| [often(r.contact.folds), often(r.contact.layers), often(r.contact.skin), u8::from(r.wind)];
+            let back = amounts(&pair[0]).into_iter().zip(amounts(&pair[1])).any(|(before, after)| after > before);
             assert!(pair[1].substep_share <= pair[0].substep_share && pair[1].time_share < pair[0].time_share && !back);
             assert!(pair[1] != pair[0]);
         }
-        assert_eq!((LADDER[0].substep_share, LADDER[0].wind), (1.0, true));
+        let whole = Settings { substep_share: 1.0, ..Settings::default() };
+        assert_eq!(LADDER[0].of(&whole), whole);
+        assert_eq!(LADDER[LADDER.len() - 1].contact, ContactRates { folds: 0, layers: 0, skin: 0 });
+    }
+
+    #[test]
+    fn what_is_off_or_rarer_in_whole_quality_stays_so_on_every_rung() {
+        let rarer = ContactRates { folds: 0, layers: 4, skin: 1 };
+        let whole = Settings { contact_every: rarer, skin: false, ..Settings::default() };
+        for rung in &LADDER {
+            let settings = rung.of(&whole);
+            let every = settings.contact();
+            assert_eq!((every.folds, every.skin), (0, 0), "{}", rung.gives_up);
+            assert!(every.layers == 4 || every.layers == 0, "{}", rung.gives_up);
+        }
     }
 }

@@ -75,8 +75,9 @@ impl Scene for FrameScene {
 
     fn set_rung(&mut self, rung: &Rung) {
         let Self { frame, whole } = self;
-        frame.set_quality(rung.substep_share, whole.wind.filter(|_| rung.wind));
-        frame.set_contact(whole.folds && rung.folds, whole.layers && rung.layers, whole.skin && rung.skin);
+        let settings = rung.of(whole);
+        frame.set_quality(settings.substep_share, settings.wind);
+        frame.set_contact(settings.contact_every);
     }
 
     fn measure(&mut self) {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
-use toile_engine::frame_loop::governor::LADDER;
+use toile_engine::frame_loop::governor::{LADDER, Rung};
 use toile_engine::meter::{PERIOD_NS, STEP_BUDGET_US};
 
 use super::cost::{Costs, GarmentTime};
@@ -80,8 +80,7 @@ pub fn judge(scene: &Scene, priced: &Priced, costs: &Costs, workers: usize) -> V
         Priced::with(scene, &settings, costs, workers).step_us()
     };
     let within_budget = step_us <= budget_us;
-    let rung = |share: f32| changed(&|s| s.substep_share = share);
-    let helps = |r: &&toile_engine::frame_loop::governor::Rung| rung(r.substep_share) <= budget_us;
+    let helps = |rung: &&Rung| changed(&|s| *s = rung.of(s)) <= budget_us;
     let gives_up = if within_budget { None } else { LADDER[1..].iter().find(helps).map(|r| r.gives_up) };
     let cures = if within_budget { Vec::new() } else { cures(scene, priced, costs, (workers, budget_us), &changed) };
     Verdict {

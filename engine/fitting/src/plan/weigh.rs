@@ -16,6 +16,7 @@ use super::PlanError;
 use super::calibrate::quartile;
 use super::scene::{Playing, Scene};
 use super::work::STAGES;
+use crate::scene::contact::ContactReport;
 
 /// Steps of a window: 50 ms.
 const WINDOW: usize = 6;
@@ -48,6 +49,9 @@ pub struct Played {
     pub near: u64,
     /// Time of each stage on one core, all garments (us).
     pub stages_us: [f64; STAGES.len()],
+    /// What contact of cloth with cloth did; none where no garment can meet anything.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactReport>,
     /// Steps that were played.
     pub steps: usize,
     /// Moments that were gone on from.
@@ -95,7 +99,8 @@ pub fn play(scene: &Scene, workers: usize) -> Result<Played, PlanError> {
     let models = variants[1..].iter().zip(tallies).map(|(v, tally)| tally.weighed(v, &as_is)).collect();
     let cloth_us = [0.5, 0.99].map(|share| quantile(&mut times, share).unwrap_or(0.0));
     let near = playing.cloths.iter().map(|c| c.contact_counts().near).sum::<u64>() / steps.max(1) as u64;
-    Ok(Played { cloth_us, near, stages_us, steps: times.len(), moments, models })
+    let contact = playing.layers.as_ref().map(|l| ContactReport::from(l.counts()));
+    Ok(Played { cloth_us, near, stages_us, contact, steps: times.len(), moments, models })
 }
 
 /// The scene as it is, then each model left out that it has, then each added that it has not.

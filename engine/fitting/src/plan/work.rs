@@ -132,7 +132,9 @@ impl Work {
         let [shear, scattered] = count.links(&garment.layout().shear);
         let touching = first.near / BLOCK * n;
         let beside = first.beside / count.lanes as f64;
-        let meetings = when(settings.folds || (settings.layers && beside > 0.0), n);
+        let every = settings.contact();
+        let rate = |every: u8, amount: f64| if every == 0 { 0.0 } else { amount / f64::from(every) };
+        let meetings = when(every.folds > 0 || (every.layers > 0 && beside > 0.0), n);
         let counts = [
             per([particles, fixed, count.tensions(), 0.0]),
             count.bending(&matrix).map(|c| c * bent),
@@ -142,7 +144,7 @@ impl Work {
             [garment.particles() as f64 / BLOCK, touching, n, first.on_skin / BLOCK * n],
             only(settings.wind.is_some(), count.vectors(garment.triangles.len())),
             only(held, particles * n),
-            [when(settings.folds, particles), when(settings.layers, beside), meetings, 0.0],
+            [rate(every.folds, particles), rate(every.layers, beside), meetings, 0.0],
             [particles, fixed, 0.0, 0.0],
         ];
         let bending = Bending { stages: first.bend.stages, ..Bending::plain(&matrix) };

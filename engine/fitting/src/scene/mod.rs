@@ -6,6 +6,7 @@
 //!
 //! Everything that is particular to the engine as it is now stands in [`Runner::new`] and [`Runner::step`].
 
+pub mod contact;
 pub mod events;
 pub mod surface;
 pub mod yardstick;
@@ -290,9 +291,18 @@ impl Runner {
         &self.cloths
     }
 
-    /// Whether cloth is kept from passing through cloth.
-    pub fn keeps_apart(&self) -> bool {
-        self.layers.is_some()
+    /// What keeps cloth from passing through cloth, where the scene asks for it.
+    pub fn layers(&self) -> Option<&Layers> {
+        self.layers.as_ref()
+    }
+
+    /// What of contact was full, one sentence each.
+    pub fn warnings(&self) -> Vec<String> {
+        let asked = self.settings.first().is_some_and(|s| s.layers || s.folds);
+        let mut all: Vec<String> =
+            contact::too_many(self.garments.len(), self.layers()).filter(|_| asked).into_iter().collect();
+        all.extend(self.layers().into_iter().flat_map(|l| contact::ContactReport::from(l.counts()).warnings()));
+        all
     }
 
     /// The colliders as last placed.

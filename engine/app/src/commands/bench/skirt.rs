@@ -72,7 +72,7 @@ pub struct SkirtArgs {
     threads: usize,
     /// Step this garment of the wardrobe on a performing mannequin in place of the skirt; again for an outfit
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(wardrobe::names()),
-          conflicts_with_all = ["verts", "motion", "mesh", "stretch", "wind", "garments", "table", "backend"])]
+          conflicts_with_all = ["verts", "motion", "mesh", "stretch", "wind", "garments", "table"])]
     garment: Vec<String>,
     /// With several garments: let them pass through each other
     #[arg(long, requires = "garment")]
@@ -80,7 +80,7 @@ pub struct SkirtArgs {
     /// With a garment: let it pass through itself
     #[arg(long, requires = "garment")]
     no_folds: bool,
-    /// With a garment: let it lie on the body's cones, not on the skin that is seen
+    /// With a garment: let it lie on the body's cones, not on the skin that is seen. A device steps a garment only without all three
     #[arg(long, requires = "garment")]
     no_skin: bool,
     /// Skirts to step, equal ones
@@ -186,6 +186,7 @@ impl SkirtArgs {
             skin: !self.no_skin,
             folds: !self.no_folds,
             steps: self.steps,
+            backend: self.backend.choice,
         }
     }
 }
@@ -202,6 +203,7 @@ pub fn run(args: &SkirtArgs) -> Result<(), AppError> {
     }
     if !args.garment.is_empty() {
         let report = worn::measure(&args.worn(), &heap).map_err(not_worn)?;
+        backend::print_fallback(&report.stepped_by);
         if args.json {
             return terminal::print_json(&Document::new("bench-worn", report));
         }

@@ -14,6 +14,9 @@ pub fn summary(report: &WornReport, paint: Paint) -> String {
     put_line!(text, "{}", paint.tone(&title, Tone::Strong));
     let substeps: Vec<String> = substeps.iter().map(u32::to_string).collect();
     put_line!(text, "  quality {quality}, {} substeps, {lanes} lanes, {threads} thread(s)", substeps.join(" and "));
+    if let Some(adapter) = report.stepped_by.adapter.as_ref().filter(|_| report.stepped_by.backend == "gpu") {
+        put_line!(text, "  stepped by    {} ({}, {})", adapter.name, adapter.kind, adapter.driver);
+    }
     put_line!(text, "  a step takes  {:.1} us, 99 % of them under {:.1} us", step_us.p50, step_us.p99);
     let [mean, p99, max] = [strain.mean, strain.p99, strain.max].map(|s| s * 100.0);
     put_line!(text, "  strain        {mean:.3} % mean, {p99:.2} % at the 99th percentile, {max:.1} % at worst");

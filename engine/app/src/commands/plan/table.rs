@@ -3,6 +3,7 @@
 use toile_fitting::plan::report::Plan;
 use toile_fitting::plan::weigh::Played;
 use toile_fitting::plan::work::STAGES;
+use toile_fitting::scene::contact::ContactReport;
 
 use crate::terminal::{Paint, Tone};
 
@@ -89,6 +90,8 @@ fn stages(plan: &Plan, lines: &mut Vec<String>, paint: Paint) {
             played.near, held.error_percent
         ));
         lines.push(format!("  on one core: {total:.0} us predicted, {one:.0} us played, {off:+.0} % off"));
+        let warnings = played.contact.iter().flat_map(ContactReport::warnings);
+        lines.extend(warnings.map(|w| paint.tone(&format!("  {w}"), Tone::Warn).into_owned()));
     }
     if !v.within_budget {
         let gives_up = v.gives_up.map_or_else(

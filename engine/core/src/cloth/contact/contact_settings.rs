@@ -18,8 +18,8 @@ pub struct ContactSettings {
     pub step_seconds: f32,
     /// Whether ways are followed between the ends of a substep, or only these looked at.
     pub continuous: bool,
-    /// Whether the skin is met, where there is one.
-    pub skin: bool,
+    /// Every how many steps the nearest point of the skin is looked for, where there is one; 0 leaves all to the cones.
+    pub skin_every: u8,
 }
 
 impl ContactSettings {
@@ -31,7 +31,7 @@ impl ContactSettings {
             friction_kinetic: fabric.friction,
             step_seconds: settings.step_seconds,
             continuous: settings.continuous,
-            skin: settings.skin,
+            skin_every: settings.contact().skin,
         }
     }
 

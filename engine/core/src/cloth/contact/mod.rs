@@ -152,7 +152,7 @@ impl OwnerContacts {
             reach,
             step_seconds: how.step_seconds,
         });
-        let body = colliders.skin().filter(|_| how.skin);
+        let body = colliders.skin().filter(|_| how.skin_every > 0);
         self.skin.find(width, cols, body, how);
         if self.skin.any() {
             let still =

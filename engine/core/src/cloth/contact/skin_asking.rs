@@ -1,5 +1,7 @@
 //! Which particles may lie by the skin: each is looked at again when it and the skin may have come near since.
 
+use std::ops::Range;
+
 use toile_assets::garment::Part;
 
 use super::ContactSettings;
@@ -54,27 +56,48 @@ impl PartList {
         let found = vec![NearestPoint::default(); len].into();
         Self { part, found, particles, left: Store::zeros(len), looked: [(); 3].map(|()| Store::zeros(len)) }
     }
+}
 
-    /// Looks for the nearest points of some particles from anew: a sixteenth of them in each step.
-    pub fn look_anew(
-        &mut self,
+/// Which of so many particles walk in a step, where each does every so many.
+pub fn turn(count: usize, tick: u64, every: u8) -> Range<usize> {
+    let share = count.div_ceil(MOST).div_ceil(usize::from(every)) * MOST;
+    let from = ((tick % u64::from(every)) as usize * share).min(count);
+    from..(from + share).min(count)
+}
+
+/// Looks for the nearest points of some particles from anew: a sixteenth of them in each step.
+pub struct LookAnew {
+    /// Those of the list that may look; whole groups of [`MOST`].
+    pub among: Range<usize>,
+    /// How often each has walked.
+    pub walk: u64,
+    /// Whether all of them look, from however far.
+    pub all: bool,
+}
+
+impl LookAnew {
+    /// Looks.
+    pub fn look(
+        self,
         width: Width,
         cols: ParticleColumns<'_>,
-        body: &BodySurface,
-        surface: &PartSurface,
-        tick: u64,
+        (body, surface): (&BodySurface, &PartSurface),
+        list: &mut PartList,
     ) {
-        let groups = self.particles.chunks(MOST).zip(self.found.chunks_mut(MOST));
-        for (group, ((ids, found), left)) in groups.zip(self.left.as_mut().chunks_mut(MOST)).enumerate() {
+        let PartList { particles, found, left, .. } = list;
+        let groups = particles.chunks(MOST).zip(found.chunks_mut(MOST)).zip(left.as_mut().chunks_mut(MOST));
+        let first = self.among.start / MOST;
+        let among = groups.enumerate().skip(first).take(self.among.len().div_ceil(MOST));
+        for (group, ((ids, found), left)) in among {
             let distance = |f: &NearestPoint| f.distance2.sqrt();
             let far = found.iter().all(|f| distance(f) > 4.0 * DISAGREE_M);
-            if tick != 0 && !(group as u64 + tick).is_multiple_of(ANEW_STEPS[usize::from(far)]) {
+            let number = group as u64 + self.walk;
+            if !self.all && !number.is_multiple_of(ANEW_STEPS[usize::from(far)]) {
                 continue;
             }
             left.fill(0.0);
             for (&i, found) in ids.iter().zip(found) {
-                // At first from however far.
-                let within = if tick == 0 { FARTHEST_M } else { distance(found) + LOOKED_M };
+                let within = if self.all { FARTHEST_M } else { distance(found) + LOOKED_M };
                 let vertex = width.run(NearestVertex {
                     clusters: &surface.clusters,
                     boxes: &surface.boxes,
@@ -134,9 +157,16 @@ impl AskingList {
         self.found.extend(self.places.iter().map(|&k| found[k as usize]));
     }
 
-    /// Notes what was found.
-    pub fn note(&self, cols: ParticleColumns<'_>, list: &mut PartList) {
-        for ((&k, &i), found) in self.places.iter().zip(&self.particles).zip(&self.found) {
+    /// Those whose places in the part's list are among some.
+    pub fn range(&self, among: &Range<usize>) -> Range<usize> {
+        let before = |end: usize| self.places.partition_point(|&k| (k as usize) < end);
+        before(among.start)..before(among.end)
+    }
+
+    /// Notes what was found by some.
+    pub fn note(&self, cols: ParticleColumns<'_>, list: &mut PartList, of: Range<usize>) {
+        let places = self.places[of.clone()].iter().zip(&self.particles[of.clone()]);
+        for ((&k, &i), found) in places.zip(&self.found[of]) {
             let k = k as usize;
             list.found[k] = *found;
             list.left.as_mut()[k] = found.distance2.sqrt();

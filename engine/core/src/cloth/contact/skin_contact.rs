@@ -10,7 +10,7 @@ use toile_assets::garment::Part;
 
 use super::ContactSettings;
 use super::near::ParticleBlock;
-use super::skin_asking::{AskingList, PartList};
+use super::skin_asking::{AskingList, LookAnew, PartList, turn};
 use super::touch::{ContactSurface, Friction, push};
 use crate::body_surface::{BodyPart, BodySurface, PartSurface};
 use crate::cloth::state::{ParticleColumns, get};
@@ -103,22 +103,26 @@ impl SkinContacts {
             }
             return;
         };
+        let every = how.skin_every.max(1);
         let Self { lists, asking, by, particles, planes, tick, .. } = self;
         let mut to = PlaneList { particles, planes: planes.each_mut().map(Store::column) };
         for list in lists {
             list.particles.iter().for_each(|&i| by[i as usize] = None);
             let Some(surface) = body.of(list.part) else { continue };
-            list.look_anew(width, cols, body, surface, *tick);
+            // All where nobody has walked in the step before.
+            let walking = if asked { turn(list.particles.len(), *tick, every) } else { 0..list.particles.len() };
+            let anew = LookAnew { among: walking.clone(), walk: *tick / u64::from(every), all: *tick == 0 };
+            anew.look(width, cols, (body, surface), list);
             asking.list(width, cols, list, surface.moved, how);
-            let AskingList { particles, found, .. } = &mut *asking;
+            let walking = asking.range(&walking);
             width.run(FindNearest {
                 mesh: &surface.mesh,
                 surface: body.start(),
                 points: cols.x.each_ref().map(Readable::reader),
-                list: particles,
-                found,
+                list: &asking.particles[walking.clone()],
+                found: &mut asking.found[walking.clone()],
             });
-            asking.note(cols, list);
+            asking.note(cols, list, walking);
             let AskingList { particles, found, .. } = &*asking;
             width.run(LieBySkin { cols, body, surface, particles, found, how, by, to: &mut to });
         }

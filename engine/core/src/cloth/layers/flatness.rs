@@ -7,8 +7,8 @@ use crate::cloth::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, MOST, Mask, V3, Width, reciprocal_root};
 use crate::surface::{Clusters, SurfaceMesh};
 
-/// Every so many steps each cluster is looked at: 33 ms, in which a flat one is not folded.
-const LOOKED_STEPS: usize = 4;
+/// Every so many times each cluster is looked at: 33 ms, in which a flat one is not folded.
+const LOOKED_TIMES: usize = 4;
 
 /// Cosine between the normals of a cluster's triangles and its first one's from which on it is flat: 45 degrees.
 const FLAT: f32 = 0.7;
@@ -27,6 +27,8 @@ pub struct Flatness {
     front: Box<[[f32; 3]]>,
     /// Whether each lies flat `[clusters]`.
     flat: Box<[bool]>,
+    /// Times that was looked.
+    times: u64,
 }
 
 impl Flatness {
@@ -47,12 +49,14 @@ impl Flatness {
             corners: corners.map(Vec::into),
             front: vec![[0.0; 3]; clusters.len()].into(),
             flat: vec![false; clusters.len()].into(),
+            times: 0,
         }
     }
 
-    /// Looks at a part of the clusters.
-    pub fn look(&mut self, columns: ParticleColumns<'_>, tick: u64, width: Width) {
-        width.run(LookAtClusters { columns, tick, to: self });
+    /// Looks at a part of the clusters; at first at all.
+    pub fn look(&mut self, columns: ParticleColumns<'_>, width: Width) {
+        width.run(LookAtClusters { columns, to: self });
+        self.times += 1;
     }
 
     /// Whether two clusters lie flat and look the same way.
@@ -71,7 +75,6 @@ impl Flatness {
 
 struct LookAtClusters<'a> {
     columns: ParticleColumns<'a>,
-    tick: u64,
     to: &'a mut Flatness,
 }
 
@@ -80,8 +83,9 @@ impl Kernel for LookAtClusters<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { columns, tick, to } = self;
-        let mut c = if tick == 0 { 0 } else { (tick % LOOKED_STEPS as u64) as usize };
+        let Self { columns, to } = self;
+        let all = to.times == 0;
+        let mut c = if all { 0 } else { (to.times % LOOKED_TIMES as u64) as usize };
         while c < to.flat.len() {
             let (begin, end) = (to.start[c] as usize, to.start[c + 1] as usize);
             let mut front = [0.0; 3];
@@ -99,7 +103,7 @@ impl Kernel for LookAtClusters<'_> {
                 from += L::N;
             }
             (to.front[c], to.flat[c]) = (front, flat);
-            c += if tick == 0 { 1 } else { LOOKED_STEPS };
+            c += if all { 1 } else { LOOKED_TIMES };
         }
     }
 }

@@ -27,10 +27,10 @@ impl FoldMotion {
         }
     }
 
-    /// Takes them, at the start of the `tick`th step.
-    pub fn take(&mut self, clusters: &Clusters, columns: ParticleColumns<'_>, tick: u64, width: Width) {
+    /// Takes them.
+    pub fn take(&mut self, clusters: &Clusters, columns: ParticleColumns<'_>, width: Width) {
         width.run(TakeClusters { clusters, columns, to: self });
-        self.flatness.look(columns, tick, width);
+        self.flatness.look(columns, width);
     }
 
     /// Least velocity along each axis, then the greatest (m/s) `[clusters]`.

@@ -19,9 +19,10 @@ use super::pair::{PairScene, opposite};
 use super::uncross::{Tangle, Uncross};
 use crate::cloth::state::get;
 
-/// Pairs that one share of a garment has room for, a particle: a particle has at most twelve others around it that keep apart, each
+/// Pairs that one worker keeps of a garment's particles, a particle of it. Of more the nearest are kept, by how far apart they are to
+/// be, then those of the lowest index; the others are counted. There is room enough: a particle has at most twelve others around it that keep apart, each
 /// pair is one share's, and few are folded everywhere.
-const PAIRS_A_PARTICLE: usize = 2;
+pub const PAIRS_A_PARTICLE: usize = 2;
 
 /// Where there is no room the pairs nearer than such a part of what they keep apart are taken (1), then again of that.
 const NEARER: f32 = 0.8;
@@ -53,9 +54,28 @@ pub struct FoldShare {
     share: usize,
     /// Of each part of its clusters the pairs that were found when that was last looked at.
     pairs: [Vec<FoldPair>; PARTS],
+    /// Whether the pairs of all parts have to be found, because nothing is known of them.
+    unknown: bool,
+    /// Most pairs that were kept at once.
+    most: usize,
     /// Pairs that there was no room for, summed over the steps.
-    pub left_out: u64,
+    crowded: u64,
     uncross: Uncross,
+}
+
+/// What there was no room for, counted since the garment was made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct FoldCounts {
+    /// Most pairs that one worker kept at once.
+    pub pairs_most: u64,
+    /// Room for pairs that one worker has.
+    pub pairs_room: u64,
+    /// Pairs that there was no room for, summed over the steps.
+    pub crowded: u64,
+    /// Most crossings that were kept at once.
+    pub crossings_most: u64,
+    /// Crossings that there was no room for, summed over the steps.
+    pub left_out: u64,
 }
 
 impl FoldShare {
@@ -64,7 +84,9 @@ impl FoldShare {
         Self {
             share,
             pairs: [(); PARTS].map(|()| Vec::with_capacity(PAIRS_A_PARTICLE * particles / PARTS)),
-            left_out: 0,
+            unknown: true,
+            most: 0,
+            crowded: 0,
             uncross: Uncross::new(particles),
         }
     }
@@ -85,7 +107,7 @@ impl FoldShare {
         self.find_pairs(scene, folds);
         let mesh = &scene.surfaces[0].mesh;
         let tangle = Tangle { x: scene.columns[0].x, mesh, tick: scene.tick };
-        self.uncross.begin_step();
+        self.uncross.begin_step(tangle);
         for pair in self.pairs.iter().flatten() {
             let [x, y] = pair.particles.map(|v| get(scene.columns[0].x, v as usize));
             if x.distance_squared(y) < (MAY_CROSS * pair.gap).powi(2) {
@@ -111,13 +133,29 @@ impl FoldShare {
         self.pairs.iter().map(|p| p.len() as u64).sum()
     }
 
-    /// Finds the pairs of the part whose turn it is; of all in the first step.
+    /// Finds the pairs of the part whose turn it is; of all where nothing is known yet.
     fn find_pairs(&mut self, scene: &PairScene<'_>, folds: FoldScene<'_>) {
         for part in 0..PARTS {
-            if scene.tick == 0 || scene.tick % PARTS as u64 == part as u64 {
+            if self.unknown || scene.tick % PARTS as u64 == part as u64 {
                 self.find_part(scene, folds, part);
             }
         }
+        self.unknown = false;
+        self.most = self.most.max(self.pairs.iter().map(Vec::len).sum());
+    }
+
+    /// Forgets what was found, because steps are made without it.
+    pub fn forget(&mut self) {
+        self.pairs.iter_mut().for_each(Vec::clear);
+        self.unknown = true;
+    }
+
+    /// What there was no room for.
+    pub fn counts(&self) -> FoldCounts {
+        let Uncross { most, left_out, .. } = self.uncross;
+        let pairs_room = self.pairs.iter().map(Vec::capacity).sum::<usize>() as u64;
+        let (pairs_most, crossings_most) = (self.most as u64, most as u64);
+        FoldCounts { pairs_most, pairs_room, crowded: self.crowded, crossings_most, left_out }
     }
 
     /// Finds the pairs of a part: all, or where there is no room the nearest.
@@ -134,7 +172,7 @@ impl FoldShare {
                 nearest: if time == 0 { ALL } else { NEARER.powi(time - 1) },
                 pairs: &mut self.pairs[part],
             });
-            self.left_out += if time == 0 { left_out } else { 0 };
+            self.crowded += if time == 0 { left_out } else { 0 };
             if left_out == 0 {
                 break;
             }

@@ -76,20 +76,14 @@ impl GarmentMotion {
         }
     }
 
-    /// Takes the motion of a garment at the start of the `tick`th step; the normals only where another garment asks for them.
-    pub fn take(
-        &mut self,
-        surface: &GarmentSurface,
-        columns: ParticleColumns<'_>,
-        (tick, width): (u64, Width),
-        normals: bool,
-    ) {
+    /// Takes the motion of a garment at the start of a step; the normals only where another garment asks for them.
+    pub fn take(&mut self, surface: &GarmentSurface, columns: ParticleColumns<'_>, width: Width, normals: bool) {
         let x = columns.x.each_ref().map(Readable::reader);
         width.run(FillBoxes { clusters: &surface.clusters, surface: x, boxes: &mut self.boxes });
         let speed2 = (0..columns.w.len()).map(|i| get(columns.v, i).length_squared());
         self.fastest = speed2.fold(0.0f32, f32::max).sqrt();
         if surface.folds.is_some() {
-            self.folds.take(&surface.clusters, columns, tick, width);
+            self.folds.take(&surface.clusters, columns, width);
         }
         if !normals {
             return;

@@ -17,6 +17,7 @@ mod fold_surface;
 mod garment_surface;
 mod lay;
 mod order;
+mod pace;
 mod pair;
 mod pair_share;
 mod step;
@@ -35,13 +36,16 @@ use toile_assets::limits::MAX_GARMENTS;
 
 use garment_surface::{GarmentMotion, GarmentSurface};
 use order::heights;
+use pace::PairPace;
 use pair::{LayerPair, Wearing};
 use pair_share::PairShare;
 use touch::TouchLists;
 use turns::Turns;
 
+pub use fold_share::PAIRS_A_PARTICLE;
 pub use lay::lay_outside;
 pub use order::wearing_order;
+pub use uncross::MOST_CROSSINGS;
 
 /// Garments that lie farther apart than this where they start (m) never meet.
 const MEETING_M: f32 = 0.15;
@@ -54,7 +58,34 @@ pub struct LayerCounts {
     /// Contacts that were solved, summed over the steps.
     pub contacts: u64,
     /// Most contacts of one step.
-    pub most: u64,
+    pub contacts_most: u64,
+    /// Most pairs of its own particles that one worker kept of a garment at once.
+    pub pairs_most: u64,
+    /// Room for such pairs: [`PAIRS_A_PARTICLE`] times the particles, of the garment that has most.
+    pub pairs_room: u64,
+    /// Pairs of its own particles that there was no room for, summed over the steps: the nearest were kept.
+    pub crowded: u64,
+    /// Most crossings that one worker kept of one garment at once, of [`MOST_CROSSINGS`].
+    pub crossings_most: u64,
+    /// Crossings that there was no room for, summed over the steps.
+    pub left_out: u64,
+}
+
+impl LayerCounts {
+    /// Adds what a step did, whose shares are these.
+    fn add(&mut self, shares: &[PairShare]) {
+        let contacts = shares.iter().map(|s| s.contacts.len() as u64).sum();
+        self.asked += shares.iter().map(|s| s.asked).sum::<u64>();
+        self.contacts += contacts;
+        self.contacts_most = self.contacts_most.max(contacts);
+        // These are counted since the start.
+        let folds = || shares.iter().map(PairShare::fold_counts);
+        self.pairs_most = folds().map(|f| f.pairs_most).max().unwrap_or(0);
+        self.pairs_room = folds().map(|f| f.pairs_room).max().unwrap_or(0);
+        self.crowded = folds().map(|f| f.crowded).sum();
+        self.crossings_most = folds().map(|f| f.crossings_most).max().unwrap_or(0);
+        self.left_out = folds().map(|f| f.left_out).sum();
+    }
 }
 
 /// The contact between the garments of an outfit. All storage is made once.
@@ -63,6 +94,8 @@ pub struct Layers {
     surfaces: Box<[GarmentSurface]>,
     motions: Box<[GarmentMotion]>,
     pairs: Box<[LayerPair]>,
+    /// In which steps each is searched.
+    paces: Box<[PairPace]>,
     /// First share of every pair, then the second.
     shares: Box<[PairShare]>,
     touching: Box<[TouchLists]>,
@@ -108,6 +141,7 @@ impl Layers {
             worker: workers(garments),
             turns: Turns { top: heights.iter().copied().max().unwrap_or(0).max(1) },
             surfaces,
+            paces: pairs.iter().map(|_| PairPace::default()).collect(),
             pairs: pairs.into(),
             tick: 0,
             counts: LayerCounts::default(),

@@ -5,6 +5,7 @@ use toile_assets::garment::{Garment, Part};
 use super::contact::ContactLaw;
 use super::garment_surface::{GarmentMotion, GarmentSurface};
 use super::thickness::thickness;
+use crate::cloth::ContactRates;
 use crate::cloth::state::ParticleColumns;
 use crate::lanes::Width;
 
@@ -71,6 +72,11 @@ impl LayerPair {
         self.wearing == Wearing::Folded
     }
 
+    /// Every how many steps it is searched at these rates; 0 is never.
+    pub fn every(&self, rates: ContactRates) -> u8 {
+        if self.is_fold() { rates.folds } else { rates.layers }
+    }
+
     /// What its contacts have in common in a substep of `dt` (s); `static_friction` is that of what sticks over that of what
     /// slides.
     pub fn law(&self, dt: f32, static_friction: f32) -> ContactLaw {
@@ -95,9 +101,9 @@ pub struct PairScene<'a> {
     pub surfaces: [&'a GarmentSurface; 2],
     /// How they move.
     pub motions: [&'a GarmentMotion; 2],
-    /// Length of the step (s).
+    /// Time until the next search (s): a step, or several.
     pub step_seconds: f32,
-    /// Number of the step.
+    /// Number of the search.
     pub tick: u64,
     /// Lanes of the kernels.
     pub width: Width,

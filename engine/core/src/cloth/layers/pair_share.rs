@@ -3,7 +3,7 @@
 use glam::Vec3A;
 
 use super::contact::LayerContact;
-use super::fold_share::{FoldScene, FoldShare};
+use super::fold_share::{FoldCounts, FoldScene, FoldShare};
 use super::garment_surface::GarmentSurface;
 use super::pair::{LayerPair, PairScene, Wearing, opposite};
 use crate::cloth::state::get;
@@ -130,6 +130,13 @@ impl PairShare {
         }
     }
 
+    /// Has no contacts in this step.
+    pub fn rest(&mut self) {
+        self.contacts.clear();
+        self.asked = 0;
+        self.folds.iter_mut().for_each(FoldShare::forget);
+    }
+
     /// Lists the particles that may have come near since they were last looked at.
     fn list_near(&mut self, scene: &PairScene<'_>) {
         self.list.clear();
@@ -176,6 +183,12 @@ impl PairShare {
             remembered.triangle = triangle;
         }
         self.slack.as_mut()[k] = 0.0;
+    }
+
+    /// What of a garment's folds there was no room for; a particle makes one contact with another garment, so that there is room
+    /// for all of these.
+    pub fn fold_counts(&self) -> FoldCounts {
+        self.folds.as_ref().map(FoldShare::counts).unwrap_or_default()
     }
 
     /// Memory that it holds (bytes).

@@ -4,6 +4,7 @@ use toile_assets::garment::Garment;
 use toile_assets::limits::MAX_GARMENTS;
 
 use super::Layers;
+use super::pace::PairPace;
 use super::work::{LayerParts, LayerPhase, LayerWork};
 use crate::cloth::{Cloth, Settings, Step};
 use crate::workers::{SharePanicked, WorkerPool};
@@ -11,7 +12,13 @@ use crate::workers::{SharePanicked, WorkerPool};
 impl Layers {
     /// Whether these settings ask for any of it.
     pub fn asked(&self, settings: &Settings) -> bool {
-        settings.folds || (settings.layers && self.pairs.iter().any(|p| !p.is_fold()))
+        let every = settings.contact();
+        self.pairs.iter().any(|p| p.every(every) > 0)
+    }
+
+    /// Forgets what was found, because no step will be made with it.
+    pub fn forget(&mut self) {
+        self.paces.iter_mut().for_each(PairPace::forget);
     }
 
     /// One step of the garments that these layers were made of, each worker its garments: the same bits with one worker.
@@ -37,8 +44,11 @@ impl Layers {
             let _ = works.push(cloth.work(garment, step, carried));
         }
         let substeps = asked as usize;
-        let Self { surfaces, motions, pairs, shares, touching, worker, turns, tick, .. } = self;
-        let parts = LayerParts { surfaces, pairs, worker, turns: *turns, motions, shares, touching, tick: *tick };
+        let Self { surfaces, motions, pairs, paces, shares, touching, worker, turns, tick, .. } = self;
+        for (place, (pair, pace)) in pairs.iter().zip(paces.iter_mut()).enumerate() {
+            pace.decide(pair.every(settings.contact()), *tick, place);
+        }
+        let parts = LayerParts { surfaces, pairs, paces, worker, turns: *turns, motions, shares, touching };
         let work = LayerWork::new(&works, parts, substeps);
         let done = match &works[..] {
             // One garment is shared by the workers; several are one worker's each.
@@ -63,10 +73,7 @@ impl Layers {
             cloth.end(garment, step, limited, done.is_err());
         }
         self.tick += 1;
-        let contacts = self.shares.iter().map(|s| s.contacts.len() as u64).sum();
-        self.counts.asked += self.shares.iter().map(|s| s.asked).sum::<u64>();
-        self.counts.contacts += contacts;
-        self.counts.most = self.counts.most.max(contacts);
+        self.counts.add(&self.shares);
         done
     }
 }

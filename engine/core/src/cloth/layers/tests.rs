@@ -7,7 +7,7 @@ use toile_assets::garment::{Garment, Shape};
 use toile_assets::skeleton::BONES;
 
 use super::*;
-use crate::cloth::{Cloth, Settings, Step};
+use crate::cloth::{Cloth, ContactRates, Settings, Step};
 use crate::colliders::Colliders;
 use crate::lanes::Width;
 use crate::workers::WorkerPool;
@@ -55,6 +55,14 @@ impl Scene {
             let step =
                 Step { palette: &[Affine3A::IDENTITY; BONES], colliders: &self.colliders, settings: &self.settings };
             self.layers.step(&mut self.pool, &mut self.cloths, &self.garments, &step).unwrap();
+        }
+    }
+
+    /// Looks for folds and layers every so many steps.
+    fn rates(&mut self, folds: u8, layers: u8) {
+        self.settings.contact_every = ContactRates { folds, layers, skin: 1 };
+        if !self.layers.asked(&self.settings) {
+            self.layers.forget();
         }
     }
 
@@ -142,7 +150,9 @@ fn an_order_that_was_lost_comes_back() {
 fn workers_and_lanes_change_no_bit() {
     let state = |workers, width| {
         let mut scene = Scene::new(pile(3, 0.006), workers, width);
-        scene.steps(60);
+        scene.steps(30);
+        scene.rates(2, 4);
+        scene.steps(30);
         scene.cloths.iter().flat_map(|c| c.positions.iter().map(|p| p.to_array().map(f32::to_bits))).collect::<Vec<_>>()
     };
     let first = state(1, Width::One);
@@ -217,4 +227,45 @@ fn a_fold_keeps_as_far_from_itself_as_the_edges_ask_for() {
     let (with, without) = (least(true), least(false));
     assert!(with > 0.018, "one particle of twenty is {with} m from the other half");
     assert!(without < 0.01, "without contact they would be {without} m apart: the test shows nothing");
+}
+
+#[test]
+fn what_is_looked_for_in_every_second_or_fourth_step_keeps_sheets_apart_in_all() {
+    for every in [2, 4] {
+        let mut scene = Scene::new(pile(3, 0.006), 1, Width::widest());
+        scene.rates(every, every);
+        let mut asked = Vec::new();
+        for _ in 0..240 {
+            let before = scene.layers.counts().asked;
+            scene.steps(1);
+            asked.push(scene.layers.counts().asked - before);
+        }
+        for k in 1..3 {
+            let gap = scene.height(k) - scene.height(k - 1);
+            assert!((gap - 0.004).abs() < 0.000_3, "every {every} steps: sheet {k} lies {gap} m above the one below");
+        }
+        let [busiest, mean] = [*asked[100..].iter().max().unwrap(), asked[100..].iter().sum::<u64>() / 140];
+        assert!(busiest < 2 * mean, "every {every} steps: {busiest} are looked at in one step, {mean} on average");
+    }
+}
+
+#[test]
+fn contact_that_comes_back_is_looked_for_at_once() {
+    let mut scene = Scene::new(pile(2, 0.006), 1, Width::widest());
+    scene.rates(2, 2);
+    scene.steps(100);
+    scene.rates(0, 0);
+    assert!(!scene.layers.asked(&scene.settings));
+    // Meanwhile the sheets are stepped by themselves, and then lie elsewhere.
+    for cloth in &mut scene.cloths {
+        (0..cloth.positions.len()).for_each(|i| cloth.disturb(i, cloth.positions[i] + Vec3A::X, Vec3A::ZERO));
+    }
+    for ticks in 0..2 {
+        scene.rates(2, 2);
+        let before = scene.layers.counts().asked;
+        scene.steps(1);
+        assert!(scene.layers.counts().asked > before, "not in step {ticks}");
+        scene.rates(0, 0);
+        scene.steps(1);
+    }
 }

@@ -12,8 +12,9 @@ use crate::cloth::state::get;
 use crate::lanes::WriteColumn;
 use crate::surface::SurfaceMesh;
 
-/// Crossings that one worker keeps at once: a tenth of what a garment of 10,000 particles has when all of it is crushed.
-/// What is found beyond is left for a later step, and counted.
+/// Crossings that one worker keeps of a garment at once: a tenth of what a garment of 10,000 particles has when all of it is
+/// crushed. Of more those are kept whose edges reach least far through, then those of the lowest index; the others are left for a
+/// later step, and counted.
 pub const MOST_CROSSINGS: usize = 1024;
 
 /// Every so many steps the edges of two particles are tried: 66 ms.
@@ -31,19 +32,34 @@ const CLEAR: f32 = 0.5;
 /// Smallest cosine between an edge and the normal of the face that it crosses.
 const LEAST_COSINE: f32 = 0.05;
 
-/// An edge and a face that it passes through.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// An edge and a face that it passes through, and where.
+#[derive(Debug, Clone, Copy)]
 struct Crossing {
     edge: [u32; 2],
     triangle: u32,
+    hit: Hit,
 }
 
 /// Where an edge passes through a face.
+#[derive(Debug, Clone, Copy)]
 struct Hit {
     /// How far along the edge (1).
     along: f32,
+    /// Length of the shorter part of the edge (m): so far it reaches through.
+    through: f32,
     /// Shares of the corners.
     shares: [f32; 3],
+}
+
+impl Crossing {
+    /// What is lower is kept rather: no length is below 0, so that its bits are in its order.
+    fn order(&self) -> (u32, [u32; 2], u32) {
+        (self.hit.through.to_bits(), self.edge, self.triangle)
+    }
+
+    fn is(&self, edge: [u32; 2], triangle: u32) -> bool {
+        (self.edge, self.triangle) == (edge, triangle)
+    }
 }
 
 /// The crossings of one worker's half of a garment.
@@ -52,6 +68,8 @@ pub struct Uncross {
     active: Vec<Crossing>,
     /// For how many steps each particle keeps apart from nobody `[particles]`.
     unsure: Box<[u8]>,
+    /// Most crossings that were kept at once.
+    pub most: usize,
     /// Crossings that there was no room for, summed over the steps.
     pub left_out: u64,
 }
@@ -70,7 +88,7 @@ pub struct Tangle<'a> {
 impl Uncross {
     /// Room for a garment of so many particles. At load.
     pub fn new(particles: usize) -> Self {
-        Self { active: Vec::with_capacity(MOST_CROSSINGS), unsure: vec![0; particles].into(), left_out: 0 }
+        Self { active: Vec::with_capacity(MOST_CROSSINGS), unsure: vec![0; particles].into(), most: 0, left_out: 0 }
     }
 
     /// Whether none of a particle's edges has crossed anything lately.
@@ -83,20 +101,22 @@ impl Uncross {
         2 * MOST_CROSSINGS
     }
 
-    /// Begins a step.
-    pub fn begin_step(&mut self) {
+    /// Begins a step: forgets what crosses no more.
+    pub fn begin_step(&mut self, tangle: Tangle<'_>) {
         self.unsure.iter_mut().for_each(|u| *u = u.saturating_sub(1));
+        self.active.retain_mut(|crossing| {
+            let hit = tangle.hit(crossing.edge, crossing.triangle);
+            hit.inspect(|hit| crossing.hit = *hit).is_some()
+        });
     }
 
-    /// Adds contacts that draw apart what crosses; forgets what crosses no more. `told` says of a particle and a triangle whether
-    /// the parts of the body tell where the particle belongs: then their contact knows better.
+    /// Adds contacts that draw apart what crosses. `told` says of a particle and a triangle whether the parts of the body tell where
+    /// the particle belongs: then their contact knows better.
     pub fn draw_out(&mut self, tangle: Tangle<'_>, told: impl Fn(u32, u32) -> bool, contacts: &mut Vec<LayerContact>) {
+        self.most = self.most.max(self.active.len());
         let Self { active, unsure, .. } = self;
-        active.retain(|crossing| {
-            let Some(hit) = tangle.hit(crossing) else { return false };
-            if crossing.edge.iter().any(|&i| told(i, crossing.triangle)) {
-                return true;
-            }
+        for crossing in active.iter().filter(|c| !c.edge.iter().any(|&i| told(i, c.triangle))) {
+            let hit = crossing.hit;
             crossing.edge.iter().for_each(|&i| unsure[i as usize] = UNSURE_STEPS);
             if let Some(way) = tangle.way_out(crossing) {
                 let corners = tangle.mesh.corners(crossing.triangle);
@@ -108,8 +128,7 @@ impl Uncross {
                     contacts.push(LayerContact { particle, corners, shares, normal, drawn, ..none });
                 }
             }
-            true
-        });
+        }
     }
 
     /// Tries the edges of each of two particles against the triangles of the other, every so many steps.
@@ -128,15 +147,27 @@ impl Uncross {
             // Each edge of the fan once, but for those of borders.
             let j = corners[(turn + 1) % 3];
             for &triangle in tangle.mesh.fan(other) {
-                let crossing = Crossing { edge: [i.min(j), i.max(j)], triangle };
-                if tangle.hit(&crossing).is_some() && !self.active.contains(&crossing) {
-                    if self.active.len() < MOST_CROSSINGS {
-                        self.active.push(crossing);
-                    } else {
-                        self.left_out += 1;
-                    }
+                let edge = [i.min(j), i.max(j)];
+                if let Some(hit) = tangle.hit(edge, triangle)
+                    && !self.active.iter().any(|c| c.is(edge, triangle))
+                {
+                    self.keep(Crossing { edge, triangle, hit });
                 }
             }
+        }
+    }
+
+    /// Keeps a crossing, if need be in place of the one that reaches farthest through.
+    fn keep(&mut self, crossing: Crossing) {
+        if self.active.len() < MOST_CROSSINGS {
+            self.active.push(crossing);
+            return;
+        }
+        self.left_out += 1;
+        if let Some(worst) = self.active.iter_mut().max_by_key(|c| c.order())
+            && crossing.order() < worst.order()
+        {
+            *worst = crossing;
         }
     }
 
@@ -153,12 +184,12 @@ impl Tangle<'_> {
 
     /// Where an edge passes through a face, if it does (Moeller, Trumbore 1997, "Fast, minimum storage ray/triangle
     /// intersection"). What has a corner in common does not.
-    fn hit(&self, crossing: &Crossing) -> Option<Hit> {
-        let corners = self.mesh.corners(crossing.triangle);
-        if crossing.edge.iter().any(|e| corners.contains(e)) {
+    fn hit(&self, edge: [u32; 2], triangle: u32) -> Option<Hit> {
+        let corners = self.mesh.corners(triangle);
+        if edge.iter().any(|e| corners.contains(e)) {
             return None;
         }
-        let [p, q] = crossing.edge.map(|e| self.at(e));
+        let [p, q] = edge.map(|e| self.at(e));
         let [a, b, c] = corners.map(|v| self.at(v));
         let (way, ab, ac) = (q - p, b - a, c - a);
         let across = way.cross(ac);
@@ -171,7 +202,8 @@ impl Tangle<'_> {
         let along = ac.dot(up) * inverse;
         // Not so where anything is not a number.
         let inside = v >= 0.0 && w >= 0.0 && v + w <= 1.0 && (0.0..=1.0).contains(&along);
-        (inside && volume != 0.0).then_some(Hit { along, shares: [1.0 - v - w, v, w] })
+        let through = along.min(1.0 - along).max(0.0) * way.length();
+        (inside && volume != 0.0).then_some(Hit { along, through, shares: [1.0 - v - w, v, w] })
     }
 
     /// Which way an edge is to go against a face for the curve that they meet in to become shorter, up to 1 long.
@@ -201,5 +233,36 @@ impl Tangle<'_> {
     fn face(&self, triangle: u32) -> Option<Vec3A> {
         let [a, b, c] = self.mesh.corners(triangle).map(|v| self.at(v));
         (b - a).cross(c - a).try_normalize()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn crossing(k: u32) -> Crossing {
+        // Some are equal in how far they reach.
+        let through = (k % 100) as f32 * 1e-4;
+        Crossing { edge: [k, k + 1], triangle: k, hit: Hit { along: 0.5, through, shares: [1.0, 0.0, 0.0] } }
+    }
+
+    #[test]
+    fn what_reaches_least_far_through_is_kept_whatever_comes_first() {
+        let count = MOST_CROSSINGS as u32 + 500;
+        let kept = |order: &dyn Fn(u32) -> u32| {
+            let mut uncross = Uncross::new(0);
+            (0..count).for_each(|k| uncross.keep(crossing(order(k))));
+            let mut all: Vec<_> = uncross.active.iter().map(Crossing::order).collect();
+            all.sort_unstable();
+            (all, uncross.left_out, uncross.active.capacity())
+        };
+        let (first, left_out, capacity) = kept(&|k| k);
+        assert_eq!((first.len(), left_out, capacity), (MOST_CROSSINGS, 500, MOST_CROSSINGS));
+        let mut all: Vec<_> = (0..count).map(|k| crossing(k).order()).collect();
+        all.sort_unstable();
+        assert_eq!(first, all[..MOST_CROSSINGS]);
+        assert_eq!(kept(&|k| count - 1 - k).0, first);
+        // 7 has no factor in common with the count, so that each comes once.
+        assert_eq!(kept(&|k| k * 7 % count).0, first);
     }
 }

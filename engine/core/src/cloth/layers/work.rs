@@ -9,6 +9,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::time::Instant;
 
 use super::garment_surface::{GarmentMotion, GarmentSurface};
+use super::pace::{PairPace, Search};
 use super::pair::{LayerPair, PairScene, Wearing};
 use super::pair_share::PairShare;
 use super::touch::TouchLists;
@@ -134,12 +135,12 @@ pub struct LayerWork<'a> {
     works: &'a [StepWork<'a>],
     surfaces: &'a [GarmentSurface],
     pairs: &'a [LayerPair],
+    paces: &'a [PairPace],
     worker: &'a [usize],
     turns: Turns,
     motions: Cells<'a, GarmentMotion>,
     shares: Cells<'a, PairShare>,
     touching: Cells<'a, TouchLists>,
-    tick: u64,
     substeps: usize,
     /// Time of the stages of all garments (ns), where they are timed.
     times: [AtomicU64; METERED_STAGES.len()],
@@ -151,6 +152,8 @@ pub struct LayerParts<'a> {
     pub surfaces: &'a [GarmentSurface],
     /// The pairs.
     pub pairs: &'a [LayerPair],
+    /// What this step does to find the contacts of each.
+    pub paces: &'a [PairPace],
     /// Who steps which garment.
     pub worker: &'a [usize],
     /// The turns of a substep.
@@ -161,25 +164,23 @@ pub struct LayerParts<'a> {
     pub shares: &'a mut [PairShare],
     /// Touches of the garments.
     pub touching: &'a mut [TouchLists],
-    /// Number of the step.
-    pub tick: u64,
 }
 
 impl<'a> LayerWork<'a> {
     /// The work of a step.
     pub fn new(works: &'a [StepWork<'a>], parts: LayerParts<'a>, substeps: usize) -> Self {
-        let LayerParts { surfaces, pairs, worker, turns, motions, shares, touching, tick } = parts;
+        let LayerParts { surfaces, pairs, paces, worker, turns, motions, shares, touching } = parts;
         let (motions, shares, touching) = (Cells::new(motions), Cells::new(shares), Cells::new(touching));
         Self {
             works,
             surfaces,
             pairs,
+            paces,
             worker,
             turns,
             motions,
             shares,
             touching,
-            tick,
             substeps,
             times: Default::default(),
         }
@@ -211,9 +212,10 @@ impl<'a> LayerWork<'a> {
     fn part(&self, phase: LayerPhase, share: usize) {
         match phase {
             LayerPhase::Motions => self.each_garment(share, |g| self.motion(g)),
-            LayerPhase::Find => self.each_pair(share, |p, own| match self.meets(p) {
-                true => own.find(&self.pairs[p], &self.scene(p)),
-                false => own.contacts.clear(),
+            LayerPhase::Find => self.each_pair(share, |p, own| match self.paces[p].search {
+                Search::Anew(steps) => own.find(&self.pairs[p], &self.scene(p, steps)),
+                Search::Keep => own.asked = 0,
+                Search::Off => own.rest(),
             }),
             LayerPhase::Lists => self.each_garment(share, |g| self.fill_lists(g)),
             LayerPhase::Substep(k) => self.each_garment(share, |g| {
@@ -241,12 +243,6 @@ impl<'a> LayerWork<'a> {
         }
     }
 
-    /// Whether the settings ask for a pair.
-    fn meets(&self, pair: usize) -> bool {
-        let settings = self.works[0].step.settings;
-        if self.pairs[pair].is_fold() { settings.folds } else { settings.layers }
-    }
-
     fn each_garment(&self, share: usize, act: impl Fn(usize)) {
         (0..self.works.len()).filter(|&g| self.worker[g] == share).for_each(act);
     }
@@ -272,21 +268,28 @@ impl<'a> LayerWork<'a> {
     }
 
     fn motion(&self, garment: usize) {
+        let looks = |(pair, pace): (&LayerPair, &PairPace)| {
+            matches!(pace.search, Search::Anew(_)) && (pair.particles == garment || pair.faces == garment)
+        };
+        if !self.pairs.iter().zip(self.paces).any(looks) {
+            return;
+        }
         // SAFETY: written in this phase by the garment's worker, read in the next.
         let motion = unsafe { self.motions.own(garment) };
-        let meets = self.works.len() > 1 && self.works[0].step.settings.layers;
-        motion.take(&self.surfaces[garment], self.particles(garment), (self.tick, self.width()), meets);
+        let meets = self.works.len() > 1 && self.works[0].step.settings.contact().layers > 0;
+        motion.take(&self.surfaces[garment], self.particles(garment), self.width(), meets);
     }
 
-    fn scene(&self, pair: usize) -> PairScene<'_> {
+    /// What a pair is found from, for so many steps.
+    fn scene(&self, pair: usize, steps: u8) -> PairScene<'_> {
         let LayerPair { particles, faces, .. } = self.pairs[pair];
         PairScene {
             columns: [particles, faces].map(|g| self.particles(g)),
             surfaces: [particles, faces].map(|g| &self.surfaces[g]),
             // SAFETY: written in the phase before.
             motions: [particles, faces].map(|g| unsafe { self.motions.read(g) }),
-            step_seconds: self.works[0].step.settings.step_seconds,
-            tick: self.tick,
+            step_seconds: self.works[0].step.settings.step_seconds * f32::from(steps),
+            tick: self.paces[pair].number,
             width: self.width(),
         }
     }

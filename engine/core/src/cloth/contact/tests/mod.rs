@@ -22,7 +22,7 @@ pub const HOW: ContactSettings = ContactSettings {
     friction_kinetic: 0.3,
     step_seconds: 1.0 / 120.0,
     continuous: true,
-    skin: false,
+    skin_every: 0,
 };
 
 /// A small generator of its own: the tests give the same numbers everywhere.
