@@ -6,10 +6,13 @@
 //!
 //! Crossings are counted by [`crate::crossings`], which shares no code with the engine.
 
+mod off;
 mod order;
+mod poses;
 mod row;
 mod scenes;
 mod sheets;
+mod skin;
 mod table;
 mod twist;
 mod worn;
