@@ -6,6 +6,7 @@
 //!
 //! Crossings are counted by [`crate::crossings`], which shares no code with the engine.
 
+mod exact;
 mod off;
 mod order;
 mod poses;

@@ -7,6 +7,7 @@ use toile_engine::workers::WorkerPoolError;
 use toile_fitting::scene::RunError;
 
 use crate::skirt::SkirtError;
+use crate::validate::specimen::SpecimenError;
 use crate::worn::WornError;
 
 /// Why a case cannot be measured.
@@ -21,6 +22,9 @@ pub enum ContactError {
     /// Garments that cannot be worn.
     #[error(transparent)]
     Worn(#[from] WornError),
+    /// A case with an exact answer that cannot be run.
+    #[error(transparent)]
+    Exact(#[from] SpecimenError),
     /// A skirt that cannot be made.
     #[error(transparent)]
     Skirt(#[from] SkirtError),

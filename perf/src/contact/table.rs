@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
+use super::exact::{capstan, incline, weight};
 use super::off::off;
 use super::order::order;
 use super::row::{ContactError, ContactRow};
-use super::sheets::{incline, pile, stack};
+use super::sheets::{pile, stack};
 use super::skin::{poses, skin};
 use super::twist::{skirt, twist};
 use super::worn::outfits;
@@ -29,9 +30,11 @@ impl ContactTable {
 type Case = fn() -> Result<Vec<ContactRow>, ContactError>;
 
 /// The cases by name; those of whole garments last, because they take longest.
-const CASES: [(&str, Case); 10] = [
+const CASES: [(&str, Case); 12] = [
     ("three sheets on a floor", stack),
     ("sheet on sheet on an incline", incline),
+    ("sheet over sheet on a cylinder", capstan),
+    ("sheet under a coat", weight),
     ("lost order", order),
     ("twist", twist),
     ("pile over a cylinder", pile),
