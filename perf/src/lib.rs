@@ -9,6 +9,7 @@ pub mod agreement;
 pub mod backend;
 pub mod crossings;
 pub mod depth;
+pub mod distance;
 pub mod filters;
 pub mod gestures;
 pub mod oracle;

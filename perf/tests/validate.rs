@@ -7,13 +7,15 @@ use toile_perf::validate::case::ValidationRow;
 use toile_perf::validate::run::{ValidationOptions, run};
 
 /// What is run: cheap enough for a build without optimisation.
-const QUICK: [(&str, &str); 6] = [
+const QUICK: [(&str, &str); 8] = [
     ("elastica", "P L^2/B 10"),
     ("strip", "E 6000 N/m"),
     ("pendulum", "90 deg"),
     ("spring", "8 substeps"),
     ("free-fall", "1 s"),
     ("stopping", "1 m/s, mu 0.3"),
+    ("layer-incline", "mu 0.4"),
+    ("layer-weight", "shirt hung by two sides"),
 ];
 
 fn options(case: &str, parameter: &str) -> ValidationOptions {

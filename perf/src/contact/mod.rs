@@ -6,10 +6,14 @@
 //!
 //! Crossings are counted by [`crate::crossings`], which shares no code with the engine.
 
+mod exact;
+mod off;
 mod order;
+mod poses;
 mod row;
 mod scenes;
 mod sheets;
+mod skin;
 mod table;
 mod twist;
 mod worn;

@@ -59,20 +59,6 @@ pub fn twist() -> String {
         .to_owned()
 }
 
-/// A small sheet on a large one that is held but for a corner, on an incline: gravity leans instead of the sheets. `slope` is its tangent.
-pub fn incline(slope: f64) -> String {
-    let across = 9.81 / (1.0 + slope * slope).sqrt();
-    let lower =
-        sheet(40, 0.8, [0.2, 0.0, 0.0], 3.0, "").replace("thickness_mm = 3", "thickness_mm = 3\nfriction = 0.4");
-    let upper =
-        sheet(9, 0.16, [0.0, 0.003, 0.003], 3.0, "").replace("thickness_mm = 3", "thickness_mm = 3\nfriction = 0.4");
-    format!(
-        "duration = 2\ngravity = [{}, {}, 0]\n{lower}[[garment.pin]]\nvertices = [\"0-1598\"]\n{upper}",
-        across * slope,
-        -across
-    )
-}
-
 /// Two sheets on a floor, of which the outer one starts 10 mm below the inner one; turn and shift tell seeds apart.
 pub fn lost_order(turn_deg: f64, shift_m: f64) -> String {
     let turned = format!("rotation_deg = [0, {turn_deg}, 0]");

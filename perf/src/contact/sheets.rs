@@ -1,4 +1,4 @@
-//! Sheets over one another: on a floor, over a cylinder, on an incline.
+//! Sheets over one another: on a floor, over a cylinder.
 
 use glam::Vec3A;
 use toile_engine::cloth::Cloth;
@@ -11,9 +11,6 @@ const GAP_M: f64 = 0.003;
 
 /// Sheets of the pile.
 const SHEETS: f64 = 10.0;
-
-/// Coefficient of friction of the sheets on the incline (1).
-const FRICTION: f64 = 0.4;
 
 fn mean(cloth: &Cloth) -> Vec3A {
     cloth.positions.iter().sum::<Vec3A>() / cloth.positions.len() as f32
@@ -47,28 +44,5 @@ pub fn pile() -> Result<Vec<ContactRow>, ContactError> {
         ContactRow::at_most(name("time of a sheet's step, one core"), 0.3, figures.step_us.p50 * 1e-3 / SHEETS, "ms"),
         ContactRow::at_most(name("most crossings in 10 s"), 0.0, crossings.max as f64, "edges"),
         ContactRow::at_most(name("most of them between sheets"), 0.0, crossings.max_between as f64, "edges"),
-    ])
-}
-
-/// How far the small sheet has slid on an incline of so much of the critical slope (mm).
-fn slid(share: f64) -> Result<f64, ContactError> {
-    let mut run = runner(&scenes::incline(FRICTION * share))?;
-    let before = mean(&run.cloths()[1]);
-    play(&mut run);
-    Ok(1e3 * f64::from((mean(&run.cloths()[1]) - before).x))
-}
-
-/// Sheet on sheet on an incline: it holds below the angle of friction and slides above it.
-pub fn incline() -> Result<Vec<ContactRow>, ContactError> {
-    let ideal = 0.5 * 9.81 * 0.02 * FRICTION / (1.0 + (FRICTION * 1.02).powi(2)).sqrt() * 4.0 * 1e3;
-    let (holds, slides) = (slid(0.98)?, slid(1.02)?);
-    Ok(vec![
-        ContactRow::at_most("incline, sheet on sheet: slid in 2 s at 98 % of tan = mu", 1.0, holds.abs(), "mm"),
-        ContactRow::at_most(
-            "incline, sheet on sheet: slid too little in 2 s at 102 %, of the exact way",
-            50.0,
-            100.0 * (1.0 - slides / ideal),
-            "%",
-        ),
     ])
 }

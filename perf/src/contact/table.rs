@@ -2,11 +2,14 @@
 
 use serde::Serialize;
 
+use super::exact::{capstan, incline, weight};
+use super::off::off;
 use super::order::order;
 use super::row::{ContactError, ContactRow};
-use super::sheets::{incline, pile, stack};
+use super::sheets::{pile, stack};
+use super::skin::{poses, skin};
 use super::twist::{skirt, twist};
-use super::worn::{outfit, skin};
+use super::worn::outfits;
 
 /// The table of targets.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -27,15 +30,19 @@ impl ContactTable {
 type Case = fn() -> Result<Vec<ContactRow>, ContactError>;
 
 /// The cases by name; those of whole garments last, because they take longest.
-const CASES: [(&str, Case); 8] = [
+const CASES: [(&str, Case); 12] = [
     ("three sheets on a floor", stack),
     ("sheet on sheet on an incline", incline),
+    ("sheet over sheet on a cylinder", capstan),
+    ("sheet under a coat", weight),
     ("lost order", order),
     ("twist", twist),
     ("pile over a cylinder", pile),
     ("skirt against itself", skirt),
+    ("contact off", off),
     ("skin in place of cones", skin),
-    ("outfit in layers", outfit),
+    ("skin in four poses", poses),
+    ("outfit in layers", outfits),
 ];
 
 /// Runs the cases whose names contain `only`, all with none; says which is begun.

@@ -21,6 +21,10 @@ pub struct CrossingFigures {
     pub max_between: u64,
     /// The longest time without a moment free of them (s).
     pub longest_s: f64,
+    /// Moments with any crossing between garments.
+    pub frames_between: u64,
+    /// The longest time without a moment free of crossings between garments (s).
+    pub longest_between_s: f64,
 }
 
 /// Looks at garments from time to time.
@@ -28,15 +32,15 @@ pub struct CrossingFigures {
 pub struct CrossingWatch {
     test: CrossingTest,
     figures: CrossingFigures,
-    /// Moments with crossings up to now without one free of them.
-    lasting: u64,
+    /// Moments with crossings up to now without one free of them, and of these with crossings between garments.
+    lasting: [u64; 2],
     step_seconds: f64,
 }
 
 impl CrossingWatch {
     /// Of garments with these triangles, in steps of so many seconds. At load.
     pub fn new(triangles: &[&[[u32; 3]]], step_seconds: f64) -> Self {
-        Self { test: CrossingTest::new(triangles), figures: CrossingFigures::default(), lasting: 0, step_seconds }
+        Self { test: CrossingTest::new(triangles), figures: CrossingFigures::default(), lasting: [0; 2], step_seconds }
     }
 
     /// Whether the moment after a step is looked at.
@@ -58,9 +62,12 @@ impl CrossingWatch {
         self.figures.frames_with += u64::from(count > 0);
         self.figures.max = self.figures.max.max(count);
         self.figures.max_between = self.figures.max_between.max(between);
-        self.lasting = if count > 0 { self.lasting + 1 } else { 0 };
-        let seconds = self.lasting as f64 * LOOKED_STEPS as f64 * self.step_seconds;
-        self.figures.longest_s = self.figures.longest_s.max(seconds);
+        self.figures.frames_between += u64::from(between > 0);
+        let longest = [&mut self.figures.longest_s, &mut self.figures.longest_between_s];
+        for ((lasting, count), longest) in self.lasting.iter_mut().zip([count, between]).zip(longest) {
+            *lasting = if count > 0 { *lasting + 1 } else { 0 };
+            *longest = longest.max(*lasting as f64 * LOOKED_STEPS as f64 * self.step_seconds);
+        }
         [within as u64, between]
     }
 
@@ -82,8 +89,20 @@ mod tests {
         for y in [0.5, 0.4, 2.0, 0.3, 2.0] {
             watch.look(&[sheet(y), upright.clone()]);
         }
-        let CrossingFigures { frames, frames_with, max, max_between, longest_s } = watch.figures();
-        assert_eq!((frames, frames_with, max, max_between), (5, 3, 2, 2));
-        assert!((longest_s - 2.0 / 12.0).abs() < 1e-9, "{longest_s}");
+        let found = watch.figures();
+        let CrossingFigures { longest_s, longest_between_s, .. } = found;
+        assert_eq!((found.frames, found.frames_with, found.frames_between), (5, 3, 3));
+        assert_eq!((found.max, found.max_between), (2, 2));
+        assert!((longest_s - 2.0 / 12.0).abs() < 1e-9 && longest_between_s == longest_s, "{found:?}");
+    }
+
+    #[test]
+    fn crossings_within_a_garment_are_none_between_garments() {
+        let folded = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.3, -0.5, 0.3], [0.3, 0.5, 0.3]];
+        let folded: Vec<Vec3> = folded.into_iter().map(Vec3::from).collect();
+        let mut watch = CrossingWatch::new(&[&[[0, 1, 2], [0, 3, 4]]], 1.0 / 120.0);
+        watch.look(&[folded]);
+        let found = watch.figures();
+        assert_eq!((found.frames_with, found.frames_between, found.longest_between_s), (1, 0, 0.0));
     }
 }

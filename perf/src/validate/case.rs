@@ -197,6 +197,9 @@ fn cause(found: &CaseOutcome, row: &ValidationRow) -> String {
 fn known(row: &ValidationRow) -> Option<&'static str> {
     match (row.name, row.mesh) {
         ("capstan", _) => Some("contact and fibers are solved in turn: a heavy load on a light rope slips early"),
+        ("layer-capstan", _) => Some(
+            "pairs of cloths that are near and do not touch take a share of what holds those that do: what sticks creeps",
+        ),
         ("euler", _) => Some(
             "bending taken as a plain force rings a little, and the stretch solves of a pressed column feed it (suspected)",
         ),

@@ -7,9 +7,12 @@
 pub mod case;
 mod cases;
 pub mod exact;
+pub mod layered;
 pub mod mesh;
 pub mod run;
 pub mod specimen;
+
+pub use cases::layered::cases as layered_cases;
 
 use toile_engine::cloth::Quality;
 use toile_gpu::backend::Backends;

@@ -63,7 +63,7 @@ impl ValidationReport {
 const STACK_BYTES: usize = 32 << 20;
 
 /// The names of all cases, in the order of the table: known without working out what is exact, which takes seconds.
-pub const NAMES: [&str; 20] = [
+pub const NAMES: [&str; 23] = [
     "cantilever",
     "peirce",
     "elastica",
@@ -83,6 +83,9 @@ pub const NAMES: [&str; 20] = [
     "capstan",
     "incline",
     "stopping",
+    "layer-capstan",
+    "layer-incline",
+    "layer-weight",
     "invariance",
 ];
 

@@ -11,6 +11,7 @@ use toile_assets::numeric::statistics::median_of;
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere};
+use toile_engine::workers::WorkerPoolError;
 use toile_gpu::backend::ClothStepper;
 use toile_gpu::cloth_batch::ClothBatch;
 
@@ -27,6 +28,12 @@ pub enum SpecimenError {
     /// Colliders that the engine does not take.
     #[error("a case's colliders are refused: {0}")]
     Colliders(#[from] ColliderError),
+    /// Workers that cannot be started.
+    #[error(transparent)]
+    WorkerPool(#[from] WorkerPoolError),
+    /// Sheets that lie too far apart to meet.
+    #[error("a case's sheets start too far apart to ever touch; let them start over one another")]
+    Apart,
 }
 
 /// What a case collides with.
@@ -38,6 +45,25 @@ pub struct Surroundings {
     pub radius: f64,
     /// Planes as unit normal and offset (m).
     pub planes: Vec<Vec4>,
+}
+
+impl Surroundings {
+    /// As the engine has them; they stand still from the first step on.
+    ///
+    /// # Errors
+    /// Where the engine does not take them.
+    pub fn colliders(&self) -> Result<Colliders, ColliderError> {
+        let ends = self.capsule.unwrap_or_default();
+        let spheres = ends.map(|p| RestSphere { bone: 0, centre: p.as_vec3(), radius: self.radius as f32 });
+        let (spheres, capsules): (&[RestSphere], &[[u8; 2]]) =
+            if self.capsule.is_some() { (&spheres, &[[0, 1]]) } else { (&[], &[]) };
+        let mut colliders = Colliders::new(spheres, capsules, false)?;
+        colliders.set_planes(&self.planes)?;
+        let placed: Vec<Vec4> = spheres.iter().map(|s| s.centre.extend(s.radius)).collect();
+        // Twice: once is where they start, once where they end.
+        (0..2).for_each(|_| colliders.place_spheres(&placed));
+        Ok(colliders)
+    }
 }
 
 /// Acceleration of gravity (m/s2), as the engine's settings have it.
@@ -88,17 +114,8 @@ impl Specimen {
         surroundings: &Surroundings,
     ) -> Result<Self, SpecimenError> {
         let garment = bake("case", "one size", shape, &cloth.fabric())?;
-        let ends = surroundings.capsule.unwrap_or_default();
-        let spheres = ends.map(|p| RestSphere { bone: 0, centre: p.as_vec3(), radius: surroundings.radius as f32 });
-        let (spheres, capsules): (&[RestSphere], &[[u8; 2]]) =
-            if surroundings.capsule.is_some() { (&spheres, &[[0, 1]]) } else { (&[], &[]) };
-        let mut colliders = Colliders::new(spheres, capsules, false)?;
-        colliders.set_planes(&surroundings.planes)?;
-        let placed: Vec<Vec4> = spheres.iter().map(|s| s.centre.extend(s.radius)).collect();
-        // Twice, so that they stand still from the first step on.
-        (0..2).for_each(|_| colliders.place_spheres(&placed));
-        let mut particle = vec![0; garment.particles()];
-        garment.source.iter().enumerate().for_each(|(i, vertex)| particle[*vertex as usize] = i);
+        let colliders = surroundings.colliders()?;
+        let particle = particle_of(&garment);
         Ok(Self {
             cloth: Cloth::new(&garment, &colliders),
             settings: setup.level.settings(&garment),
@@ -148,8 +165,7 @@ impl Specimen {
 
     /// Positions of particles and solids now.
     pub fn seen(&self) -> Placement<'_> {
-        let at = self.cloth.positions.iter().map(|p| p.as_dvec3()).collect();
-        Placement { garment: &self.garment, particle: &self.particle, at }
+        Placement::of(&self.garment, &self.particle, &self.cloth)
     }
 
     /// Where everything would be at rest: the oracle's equilibrium of the very same garment, searched for from where the
@@ -190,7 +206,7 @@ impl Specimen {
 
     /// Mass of the vertices that can move (kg).
     pub fn mass(&self) -> f64 {
-        self.garment.inverse_mass.iter().filter(|w| **w > 0.0).map(|w| f64::from(*w).recip()).sum()
+        moving_mass(&self.garment)
     }
 
     /// Energy of motion, weight, stretch and bending (J).
@@ -216,6 +232,18 @@ impl Specimen {
     }
 }
 
+/// Mass of the particles of a garment that can move (kg).
+pub fn moving_mass(garment: &Garment) -> f64 {
+    garment.inverse_mass.iter().filter(|w| **w > 0.0).map(|w| f64::from(*w).recip()).sum()
+}
+
+/// The particle of each vertex of the shape that a garment was baked from.
+pub fn particle_of(garment: &Garment) -> Vec<usize> {
+    let mut particle = vec![0; garment.particles()];
+    garment.source.iter().enumerate().for_each(|(i, vertex)| particle[*vertex as usize] = i);
+    particle
+}
+
 /// Where the particles of a garment are, read in the numbers of its shape.
 pub struct Placement<'a> {
     garment: &'a Garment,
@@ -224,7 +252,12 @@ pub struct Placement<'a> {
     at: Vec<DVec3>,
 }
 
-impl Placement<'_> {
+impl<'a> Placement<'a> {
+    /// Of a garment whose vertices are these particles, as its state has them.
+    pub fn of(garment: &'a Garment, particle: &'a [usize], cloth: &Cloth) -> Self {
+        Self { garment, particle, at: cloth.positions.iter().map(|p| p.as_dvec3()).collect() }
+    }
+
     /// Where a vertex of the shape is (m).
     pub fn at(&self, vertex: usize) -> DVec3 {
         self.at[self.particle[vertex]]

@@ -1,9 +1,10 @@
 //! Garments on a performing mannequin, ready to be stepped.
 
-use glam::Affine3A;
+use glam::{Affine3A, Vec3};
 use toile_assets::bake::bake;
 use toile_assets::garment::{Garment, Part};
 use toile_assets::limits::STEP_SECONDS;
+use toile_assets::mesh::SkinWeights;
 use toile_assets::numeric::hash;
 use toile_assets::scene::{self, shopper};
 use toile_assets::skeleton::{BONES, Pose, Skeleton};
@@ -105,6 +106,9 @@ pub struct WornScene {
     stepper: ClothStepper,
     layers: Option<Layers>,
     skinning: SkinningJob,
+    skin_triangles: Vec<[u32; 3]>,
+    /// The bone that carries most of each triangle's first corner `[triangles]`.
+    skin_bones: Vec<u8>,
     skin: Posed,
 }
 
@@ -150,6 +154,8 @@ impl WornScene {
             cloths,
             tick: 0,
             memory_bytes: bytes,
+            skin_triangles: body.mesh.triangles.clone(),
+            skin_bones: body.mesh.triangles.iter().map(|t| heaviest(&body.weights[t[0] as usize])).collect(),
             skeleton: mannequin.body.skeleton,
             bones: [Affine3A::IDENTITY; BONES],
             settings,
@@ -161,19 +167,24 @@ impl WornScene {
             skin: skinning.posed(),
             skinning,
         };
-        scene.place();
+        scene.place(&performed(&scene.skeleton, 0));
         Ok(scene)
     }
 
     /// Places the body where it is at the end of the coming step. Not timed.
     pub fn prepare(&mut self) {
+        self.prepare_in(&performed(&self.skeleton, self.tick + 1));
+    }
+
+    /// The same with a body that does something else than perform: its pose at the end of the coming step.
+    pub fn prepare_in(&mut self, pose: &Pose) {
         self.tick += 1;
-        self.place();
+        self.place(pose);
         timing::wake(&mut self.pool);
     }
 
-    fn place(&mut self) {
-        palette(&self.skeleton, &performed(&self.skeleton, self.tick), &mut self.bones);
+    fn place(&mut self, pose: &Pose) {
+        palette(&self.skeleton, pose, &mut self.bones);
         self.colliders.place(&self.bones);
         self.skinning.run(Blend::Linear, &self.bones, &mut self.skin);
         self.colliders.place_skin(&self.skin);
@@ -216,6 +227,21 @@ impl WornScene {
         &self.backends
     }
 
+    /// The body's joints.
+    pub fn skeleton(&self) -> &Skeleton {
+        &self.skeleton
+    }
+
+    /// The skin as last placed: where its vertices are (m), and its triangles.
+    pub fn skin(&self) -> (Vec<Vec3>, &[[u32; 3]]) {
+        ((0..self.skin.vertices()).map(|v| self.skin.position(v)).collect(), &self.skin_triangles)
+    }
+
+    /// The bone that carries most of a triangle of the skin.
+    pub fn bone_of(&self, triangle: u32) -> u8 {
+        self.skin_bones[triangle as usize]
+    }
+
     /// How the steps are done.
     pub fn settings(&self) -> &Settings {
         &self.settings
@@ -254,6 +280,12 @@ impl WornScene {
         };
         hash::of_numbers(self.cloths.iter().zip(&self.garments).flat_map(of))
     }
+}
+
+/// The bone that carries most of a vertex.
+fn heaviest(weights: &SkinWeights) -> u8 {
+    let pairs = weights.bones.iter().zip(weights.weights);
+    pairs.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(bone, _)| *bone)
 }
 
 fn between(a: Option<Heap>, b: Option<Heap>) -> Option<u64> {

@@ -28,7 +28,7 @@ impl CrossingCount {
 
     /// What was seen.
     pub fn report(&self) -> CrossingReport {
-        let CrossingFigures { frames, frames_with, max, max_between, longest_s } = self.0.figures();
+        let CrossingFigures { frames, frames_with, max, max_between, longest_s, .. } = self.0.figures();
         CrossingReport { frames, frames_with, max, max_between, longest_s }
     }
 }

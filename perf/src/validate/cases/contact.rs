@@ -1,7 +1,5 @@
 //! Contact and friction: the rope around a post, the incline, the stopping distance, on the engine's own colliders.
 
-use std::f64::consts::PI;
-
 use glam::{DVec3, Vec4};
 use toile_assets::garment::Shape;
 
@@ -11,6 +9,7 @@ use crate::validate::exact::string;
 use crate::validate::mesh::{CaseFabric, EndSupport, MeshStyle, Strip};
 use crate::validate::specimen::{G, Specimen, SpecimenError, Surroundings};
 
+use super::rope::{LoadedRope, POST, ROPE_LOADS, ROPE_ROWS, ROPE_WATCH, rope_length};
 use super::search::threshold;
 
 /// The gap that cloth keeps from a surface (m), as the cases' fabric has it.
@@ -26,23 +25,6 @@ pub fn cases() -> Vec<ValidationCase> {
     all.extend([(1.0, 0.3), (2.0, 0.3), (1.0, 0.6)].map(|(v, mu)| stopping(v, mu)));
     all
 }
-
-/// Radius at which the rope lies around the post (m).
-const POST: f64 = 0.1;
-
-/// Length of each hanging end (m).
-const HANGING: f64 = 0.1;
-
-/// Links of the rope.
-const ROPE_ROWS: usize = 64;
-
-/// Pulls of the lighter end over the weight of the whole rope, whose own weight on the post is part of the exact value. The
-/// second is hard: whatever hangs on light cloth by far heavier things takes solvers long to hold.
-const ROPE_LOADS: [f64; 2] = [4.0, 20.0];
-
-/// How long the rope is watched (s), and how far it must run to have slipped (m): far more than the ends give while they
-/// begin to pull.
-const ROPE_WATCH: (f64, f64) = (1.5, 0.02);
 
 /// A rope over half a turn of a post with a load at each end: the ratio of the two pulls at which it slips.
 fn capstan(mu: f64, load: f64) -> ValidationCase {
@@ -62,35 +44,8 @@ fn capstan(mu: f64, load: f64) -> ValidationCase {
     }
 }
 
-fn rope_length() -> f64 {
-    PI * POST + 2.0 * HANGING
-}
-
 fn rope(setup: CaseSetup<'_>, mu: f64, pulls: [f64; 2]) -> Result<(CaseOutcome, bool), SpecimenError> {
-    let around = PI * POST;
-    let strip = Strip::narrow(rope_length(), ROPE_ROWS, [EndSupport::Free, EndSupport::Free]);
-    let worn = |along: f64, across: f64| {
-        let s = along - HANGING;
-        if s < 0.0 {
-            DVec3::new(-POST, s, across)
-        } else if s > around {
-            DVec3::new(POST, around - s, across)
-        } else {
-            let angle = s / POST;
-            DVec3::new(-POST * angle.cos(), POST * angle.sin(), across)
-        }
-    };
-    let mut shape = strip.shape(worn);
-    let ends = [0.0, strip.length].map(|end| {
-        (0..shape.cut.len()).filter(|v| (f64::from(-shape.cut[*v].y) - end).abs() < 1e-4).collect::<Vec<_>>()
-    });
-    // What hangs below the post pulls too.
-    let hanging = (HANGING - 0.5 * strip.link()) / strip.length;
-    let half = 0.5 / ROPE_ROWS as f64;
-    shape.heavier = vec![1.0; shape.cut.len()];
-    for (end, pull) in ends.iter().zip(pulls) {
-        end.iter().for_each(|&v| shape.heavier[v] = ((pull - hanging) / half) as f32);
-    }
+    let LoadedRope { shape, ends } = LoadedRope::new(pulls);
     let cloth = CaseFabric { friction: mu, damping: 5.0, stretch: 1e5, ..CaseFabric::PLAIN };
     let surroundings = Surroundings {
         capsule: Some([DVec3::NEG_Z * 0.2, DVec3::Z * 0.2]),

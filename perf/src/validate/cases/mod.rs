@@ -8,7 +8,9 @@ mod bending;
 mod buckling;
 mod contact;
 mod invariance;
+pub mod layered;
 mod motion;
+mod rope;
 mod search;
 mod strings;
 
@@ -16,6 +18,14 @@ use super::case::ValidationCase;
 
 /// All cases, in the order of the table.
 pub fn all() -> Vec<ValidationCase> {
-    let rooms = [bending::cases, buckling::cases, strings::cases, motion::cases, contact::cases, invariance::cases];
+    let rooms = [
+        bending::cases,
+        buckling::cases,
+        strings::cases,
+        motion::cases,
+        contact::cases,
+        layered::cases,
+        invariance::cases,
+    ];
     rooms.into_iter().flat_map(|cases| cases()).collect()
 }
