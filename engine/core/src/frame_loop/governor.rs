@@ -282,7 +282,7 @@ mod tests {
     #[test]
     fn the_ladder_only_gives_up() {
         // How often in eight steps something is done.
-        let often = |every: u8| if every == 0 { 0 } else { 8 / every };
+        let often = |every: u8| 8u8.checked_div(every).unwrap_or(0);
         for pair in LADDER.windows(2) {
             let amounts =
                 |r: &Rung| [often(r.contact.folds), often(r.contact.layers), often(r.contact.skin), u8::from(r.wind)];
