@@ -4,11 +4,12 @@ use glam::{Vec3, Vec3A};
 
 use crate::lanes::{MOST, Store, WriteColumn};
 
-/// Columns: position, previous, velocity (three each), inverse mass.
-const COLUMNS: usize = 10;
+/// Columns: position, previous, velocity (three each), inverse mass, what the body gives way.
+const COLUMNS: usize = 11;
 const PREVIOUS: usize = 3;
 const VELOCITY: usize = 6;
 const WEIGHT: usize = 9;
+const GIVEN: usize = 10;
 
 /// Numbers between two places that a processor takes for the same when it looks whether a load follows a store (4 KiB).
 const ALIAS: usize = 1_024;
@@ -36,6 +37,9 @@ pub struct ParticleColumns<'a> {
     pub v: [WriteColumn<'a>; 3],
     /// Inverse mass (1/kg).
     pub w: WriteColumn<'a>,
+    /// How far the body gives way under the particle (m): what two limbs press between them lies in both. Written between steps
+    /// by contact of cloth with cloth, read by contact with the skin.
+    pub given: WriteColumn<'a>,
 }
 
 impl ParticleColumns<'_> {
@@ -52,6 +56,7 @@ impl ParticleColumns<'_> {
             previous: [px.cut(len), py.cut(len), pz.cut(len)],
             v: [vx.cut(len), vy.cut(len), vz.cut(len)],
             w: self.w,
+            given: self.given.cut(len),
         }
     }
 }
@@ -110,7 +115,14 @@ impl State {
         let (starts, len) = (self.starts, self.len);
         let all = self.numbers.column();
         let three = |first: usize| [0, 1, 2].map(|axis| all.part(starts[first + axis], len));
-        ParticleColumns { x: three(0), previous: three(PREVIOUS), v: three(VELOCITY), w: all.part(starts[WEIGHT], len) }
+        let one = |c: usize| all.part(starts[c], len);
+        ParticleColumns {
+            x: three(0),
+            previous: three(PREVIOUS),
+            v: three(VELOCITY),
+            w: one(WEIGHT),
+            given: one(GIVEN),
+        }
     }
 
     /// Memory that it holds (bytes).

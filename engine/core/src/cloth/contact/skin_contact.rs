@@ -243,8 +243,9 @@ impl LieBySkin<'_, '_> {
         let inside = L::splat(-DISAGREE_M).lt(height).bits() & near;
         let beside = L::splat(BEYOND_M * BEYOND_M).lt(beside2).bits();
         let approach = (on.carried - v * dt).dot(on.normal).max(L::splat(0.0));
-        let touches = (height - L::splat(self.how.offset_m + MARGIN_M)).lt(L::splat(FASTER) * approach).bits();
-        let offset = on.start.dot(on.normal) + L::splat(self.how.offset_m);
+        let apart = L::splat(self.how.offset_m) - L::gather(self.cols.given, index, n);
+        let touches = (height - (apart + L::splat(MARGIN_M))).lt(L::splat(FASTER) * approach).bits();
+        let offset = on.start.dot(on.normal) + apart;
         let [normal, carried] = [on.normal, on.carried];
         let across = carried.dot(normal);
         let numbers = [normal.x, normal.y, normal.z, offset, across, carried.x, carried.y, carried.z];

@@ -21,6 +21,9 @@ const FARTHEST_MOVE_M: f32 = 1.0;
 /// Cosine between where something holds a particle and where it is pushed against from which on it does not give way.
 const SUPPORTED: f32 = 0.5;
 
+/// Share of both sides that something holds (1) from which on nothing but the body can give way.
+const PINCHED: f32 = 0.99;
+
 /// How many times its own load presses at most on a contact from above (1): a coat over a shirt, ten sheets of a pile. Crushed
 /// cloth presses more, and would be held where it is.
 const MOST_ABOVE: f32 = 10.0;
@@ -46,6 +49,9 @@ pub struct LayerContact {
     pub gap: f32,
     /// Not a contact but a crossing that is drawn apart, so fast (m/s); 0 otherwise.
     pub drawn: f32,
+    /// How much too near the two sides were left because the body holds both against each other (m), below 0 where they have
+    /// room; minus infinity where it does not.
+    pub pinched: f32,
     /// From the face to the side on which the particle belongs, unit length.
     pub normal: Vec3A,
     /// What the last solve does to the place of the particle: times its inverse mass and its share (kg m).
@@ -130,6 +136,7 @@ impl LayerContact {
     /// Solves the contact as the constraints of a substep have left the garments.
     #[inline(always)]
     pub fn solve(&mut self, of: [ParticleColumns<'_>; 2], rest: [RestingOn<'_>; 2], law: ContactLaw) {
+        self.pinched = f32::NEG_INFINITY;
         let (give, held) = self.give(rest);
         if self.drawn > 0.0 {
             self.push = self.normal * (self.drawn * law.dt * give);
@@ -139,6 +146,7 @@ impl LayerContact {
         let [x, before] = self.relative(of, rest, held);
         let n = self.normal;
         let depth = self.gap - x.dot(n);
+        self.pinched = if self.held[0] * self.held[1] > PINCHED { depth } else { f32::NEG_INFINITY };
         let moved = x - before;
         (self.push, self.carry) = (Vec3A::ZERO, Vec3A::ZERO);
         // Not so where anything is not finite: what is wrong with one garment stays in it.

@@ -10,6 +10,7 @@
 //! apart from nobody meanwhile, since it would be held where it is.
 
 use glam::Vec3A;
+use toile_assets::garment::Part;
 
 use super::contact::LayerContact;
 use super::find_folds::{FASTER, FindFolds, FoldPair, MARGIN_M, PARTS};
@@ -35,6 +36,9 @@ const NEARER_TIMES: i32 = 6;
 
 /// Farther apart than such a part of what they keep apart (1) no edges of two particles cross.
 const MAY_CROSS: f32 = 0.9;
+
+/// Particles of different parts nearer to each other than this where the garment starts (m) lie beside the seam between these.
+const SEAM_M: f32 = 0.05;
 
 /// Cosine of normals from which on two pieces look at each other.
 const FACING: f32 = -0.3;
@@ -119,16 +123,13 @@ impl FoldShare {
             let Some(away) = touching(scene, pair) else { continue };
             let free = self.uncross.is_sure(i) && self.uncross.is_sure(j) || folds.surface.is_local(i, j);
             let along = || if free { away.try_normalize() } else { None };
-            contacts.extend(match side(scene, i, j) {
+            contacts.extend(match side(scene, folds.surface, i, j) {
                 Some(normal) => Some(apart(&FoldPair { gap: pair.gap.min(thickness), ..*pair }, normal)),
                 None => along().map(|normal| apart(pair, normal)),
             });
         }
         let parts = &scene.surfaces[0].parts;
-        let told = |i: u32, triangle: u32| {
-            let corner = mesh.corners(triangle)[0];
-            opposite(parts[i as usize], parts[corner as usize]) == Some(true)
-        };
+        let told = |i: u32, triangle: u32| are_opposite(parts, folds.surface, i, mesh.corners(triangle)[0]);
         self.uncross.draw_out(tangle, told, contacts);
         self.pairs.iter().map(|p| p.len() as u64).sum()
     }
@@ -194,10 +195,15 @@ fn touching(scene: &PairScene<'_>, pair: &FoldPair) -> Option<Vec3A> {
     (away.length_squared() < reach * reach).then_some(away)
 }
 
+/// Whether two particles meet front to front if they meet at all, because they lie on parts that do. Not so beside the seam between
+/// the two: that folds either way.
+fn are_opposite(parts: &[Part], surface: &FoldSurface, i: u32, j: u32) -> bool {
+    opposite(parts[i as usize], parts[j as usize]) == Some(true) && surface.start_distance(i, j) > SEAM_M
+}
+
 /// Where the parts of the body tell on which side of `j` the particle `i` belongs, and it is not there: towards that side.
-fn side(scene: &PairScene<'_>, i: u32, j: u32) -> Option<Vec3A> {
-    let parts = &scene.surfaces[0].parts;
-    if opposite(parts[i as usize], parts[j as usize]) != Some(true) {
+fn side(scene: &PairScene<'_>, surface: &FoldSurface, i: u32, j: u32) -> Option<Vec3A> {
+    if !are_opposite(&scene.surfaces[0].parts, surface, i, j) {
         return None;
     }
     let x = scene.columns[0].x;

@@ -88,7 +88,13 @@ impl FoldSurface {
     #[inline(always)]
     pub fn gap(&self, i: u32, j: u32) -> f32 {
         let edges = self.radius[i as usize] + self.radius[j as usize];
-        edges.min(KEPT_SHARE * self.at(i).distance(self.at(j)))
+        edges.min(KEPT_SHARE * self.start_distance(i, j))
+    }
+
+    /// How far apart two particles start (m).
+    #[inline(always)]
+    pub fn start_distance(&self, i: u32, j: u32) -> f32 {
+        self.at(i).distance(self.at(j))
     }
 
     /// Whether two particles lie so near to each other where the garment starts that only their own fold can bring them together.

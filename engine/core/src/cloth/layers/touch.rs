@@ -37,6 +37,16 @@ const MOVED_M: f32 = 1e-6;
 /// What slides less than this in a substep (m) sticks: 50 mm/s at a thousand substeps a second.
 const STICKS_M: f32 = 5e-5;
 
+/// The farthest that the body gives way (m): less than what makes cones win over the skin.
+const GIVES_MOST_M: f32 = 0.012;
+
+/// How fast it gives way (m/s), and how fast it comes back.
+const GIVES_M_S: f32 = 0.5;
+const COMES_BACK_M_S: f32 = 0.05;
+
+/// With less room than this to spare (m) it stays where it is.
+const SETTLED_M: f32 = 0.001;
+
 /// The lists of one garment.
 #[derive(Debug, Clone)]
 pub struct TouchLists {
@@ -266,6 +276,24 @@ impl TouchLists {
             let sticks = by_body && slid.length_squared() < STICKS_M * STICKS_M;
             self.lift[i] = if sticks { back } else { body * back.dot(body) };
             self.body[i] = body;
+        }
+    }
+
+    /// Lets the body give way under particles that the last step's contacts have left pinched between two limbs, half of what is
+    /// missing on either side, and takes that back where there is room again. Once a step, before contacts are looked for;
+    /// `seconds` is its length.
+    pub fn give_way<'c>(&self, columns: ParticleColumns<'_>, seconds: f32, lists: impl Fn(usize) -> &'c [LayerContact]) {
+        let [faster, back] = [GIVES_M_S, COMES_BACK_M_S].map(|speed| speed * seconds);
+        for i in 0..columns.given.len() {
+            let before = columns.given.get(i);
+            let touches = &self.touches[self.start[i] as usize..self.start[i + 1] as usize];
+            if touches.is_empty() && before == 0.0 {
+                continue;
+            }
+            let each = touches.iter().map(|t| lists(t.list as usize)[t.contact as usize].pinched);
+            let missing = each.fold(f32::NEG_INFINITY, f32::max);
+            let more = if missing > -SETTLED_M { (0.5 * missing).clamp(0.0, faster) } else { -back };
+            columns.given.set(i, (before + more).clamp(0.0, GIVES_MOST_M));
         }
     }
 

@@ -211,7 +211,10 @@ impl<'a> LayerWork<'a> {
 
     fn part(&self, phase: LayerPhase, share: usize) {
         match phase {
-            LayerPhase::Motions => self.each_garment(share, |g| self.motion(g)),
+            LayerPhase::Motions => self.each_garment(share, |g| {
+                self.give_way(g);
+                self.motion(g);
+            }),
             LayerPhase::Find => self.each_pair(share, |p, own| match self.paces[p].search {
                 Search::Anew(steps) => own.find(&self.pairs[p], &self.scene(p, steps)),
                 Search::Keep => own.asked = 0,
@@ -265,6 +268,12 @@ impl<'a> LayerWork<'a> {
 
     fn width(&self) -> Width {
         self.works[0].width
+    }
+
+    /// What the last step has shown of where the body is in its own way. Its contacts stand until `Find`.
+    fn give_way(&self, garment: usize) {
+        let seconds = self.works[0].step.settings.step_seconds;
+        self.touching(garment).give_way(self.particles(garment), seconds, |list| self.contacts(list));
     }
 
     fn motion(&self, garment: usize) {
